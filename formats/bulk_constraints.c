@@ -506,7 +506,7 @@ static ritz_status solve_moved(const ritz_bulk_tying *it, ritz_dense *E)
 
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, m, m, E->val, m, pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', m, E->val, m, size, &rcond);
-    if (!(rcond > RITZ_LOOSE_MOTION))
+    if (!(rcond > RITZ_HALF_DIGITS))
         RITZ_CHECK(
             tying_refuse(it, "cannot be solved for the dofs that UM names"));
     if (rest > 0)

@@ -130,7 +130,7 @@ static void find_axes(const ritz_bulk_frame *frame,
         for (int j = 0; j < 3; j++)
             p[i] += frame->axes[3 * i + j] * (position[j] - frame->origin[j]);
     r = hypot(p[0], p[1]);
-    if (frame->kind == RITZ_RECTANGULAR || r <= RITZ_ON_AXIS * scale)
+    if (frame->kind == RITZ_RECTANGULAR || r <= RITZ_TIE_ROUNDING * scale)
         return;
     local_axes(frame->kind, p, r, local);
     for (int64_t i = 0; i < 3; i++)
@@ -164,8 +164,8 @@ static ritz_status orient_frame(const ritz_bulk_cards *all,
         divide_vector(e_z, z);
     cross_product(e_z, to_C, e_y);
     y = length_of(e_y);
-    if (!(z > 0.0 && y > RITZ_POINTS_ON_A_LINE * length_of(to_C) &&
-          isfinite(z) && isfinite(y)))
+    if (!(z > 0.0 && y > RITZ_HALF_DIGITS * length_of(to_C) && isfinite(z) &&
+          isfinite(y)))
         RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
                                      "the three points of coordinate system "
                                      "%" PRId64 " lie on a line",

@@ -215,7 +215,7 @@ static ritz_status say_losses(const ritz_reduced *reduced, const exudyn_body *b,
             "at most, of mode %lld",
             loss, (long long)mode + 1));
     if (fabs(rigid[0] - m) + fabs(rigid[7] - m) + fabs(rigid[14] - m) >
-        RITZ_MASS_BY_DIRECTION * m)
+        RITZ_MASS_AGREES * m)
         RITZ_CHECK(ritz_export_say(report,
                                    "mass differs by direction, %.6g %.6g %.6g: "
                                    "are dofs fixed? Their mean is taken",

@@ -2,7 +2,8 @@
  * Every tolerance of the library, with its reason. A number in a comparison
  * anywhere else is a mathematical constant of that method, with its source.
  *
- * eps is 2^-52, the distance from 1 to the next larger double.
+ * eps is 2^-52, the distance from 1 to the next larger double. "Relative" is to
+ * the larger of what is compared.
  */
 #ifndef RITZ_BASE_TOLERANCES_H
 #define RITZ_BASE_TOLERANCES_H
@@ -11,43 +12,59 @@
 /* (sqrt(5) - 1) / 2: a bracket that is divided so keeps one of its points. */
 #define RITZ_GOLDEN 0.61803398874989485
 
-/* Subspaces and ranks */
+/* Everywhere */
 
-/* Singular values below this part of the largest are rounding, where rows
-   or columns were scaled to a norm of 1 first. */
-#define RITZ_RANK_LOSS 1e-9
-/* What orthogonalisation leaves of a vector, relative to its length: less
-   is a combination of those before it. */
-#define RITZ_DEPENDENT 1e-10
-/* Reciprocal condition of T'T, its columns scaled, below which columns of T
-   depend on each other to six digits. */
-#define RITZ_SQUARED_DEPENDENT 1e-12
+/* A value below this part of the largest of its kind is rounding: some
+   thousand terms were summed, and rigid motions that cancel leave 1e-13. */
+#define RITZ_NEGLIGIBLE 1e-12
+/* Numbers closer than this, relative or in degrees, are one: they are written
+   with fewer digits, or computed in two ways. */
+#define RITZ_SAME 1e-9
+/* A value must exceed another by this factor to be the larger one: ties go to
+   the first, on every processor. */
+#define RITZ_TIE (1.0 + 1e-9)
 /* Frequencies, or eigenvalues, closer than this are one cluster: vectors
    within it are any mixture, so that it is kept, tracked and ranked whole. */
 #define RITZ_CLUSTER_GAP 1e-6
-/* A value must exceed another by this factor to be the larger one: ties go
-   to the first, on every processor. */
-#define RITZ_TIE (1.0 + 1e-9)
+/* Asymmetry of a matrix, relative to its largest entry, that rounding of its
+   sums explains. */
+#define RITZ_SYMMETRIC 1e-12
+/* A scale that would be 0 is this, so that it divides. */
+#define RITZ_LEAST_SCALE 1e-300
+
+/* Subspaces and ranks */
+
+/* Singular values below this part of the largest are rounding, where rows or
+   columns were scaled to a norm of 1 first. */
+#define RITZ_RANK_LOSS 1e-9
+/* Relative length after orthogonalisation below which a vector depends on
+   those before it. */
+#define RITZ_DEPENDENT 1e-10
+/* Eigenvalue, or reciprocal condition, of a Gram matrix of unit columns below
+   which they depend on each other to six digits. */
+#define RITZ_SQUARED_DEPENDENT 1e-12
+/* Reciprocal condition, rows scaled, below which half of the digits of a
+   solution are lost: such a matrix is not divided out. */
+#define RITZ_WELL_CONDITIONED 1e-8
+/* Root of eps. A sine, or a singular value relative to the largest, below it
+   is decided by positions that keep less than half of their digits. */
+#define RITZ_HALF_DIGITS 1.5e-8
 /* Entries of a null vector below this part of its largest do not name a
    mechanism. */
 #define RITZ_NULL_VECTOR_SHARE 1e-6
-/* Asymmetry of a matrix, relative to its largest entry, that rounding of
-   its sums explains. */
-#define RITZ_SYMMETRIC 1e-12
 
 /* Assembly */
 
-/* Gap of a closed loop over its size, and its turn: angles and positions in
-   a scene are written with five digits or so. */
+/* Gap and turn of a closed loop, over its size: a scene gives angles and
+   positions with five digits or so. */
 #define RITZ_LOOP_CLOSURE 1e-4
-/* The same of placements that are products of a few rotations, each within
-   eps of orthogonal: no gap at all. */
+/* The gap that products of a few rotations leave, each within eps of
+   orthogonal. */
 #define RITZ_PLACEMENT_ROUNDING 1e-13
 /* Grids of two ports are paired within this part of the larger port: decks
    give positions with six digits. */
 #define RITZ_PORT_MATCH 1e-5
-/* The same of ports of one grid, which have no size: rounding of a position
-   of the order of 1. */
+/* Ports of one grid have no size: rounding of a position of about 1. */
 #define RITZ_PORT_MATCH_LEAST 1e-12
 /* Diagonal entries of a condensed matrix below this part of the largest are
    its rounding. */
@@ -55,115 +72,98 @@
 
 /* Responses */
 
-/* Frequencies of a grid closer than this, relative, are one point: their
-   last digits differ by rounding. */
+/* Frequencies of a grid closer than this, relative, are one point: their last
+   digits differ by rounding. */
 #define RITZ_SAME_POINT 1e-13
-/* Points of a cubic closer than this, relative, are one: a cubic through
-   two of them divides the rounding of H by their distance. */
+/* Points of a cubic closer than this, relative, are one: a cubic through two
+   of them divides the rounding of H by their distance. */
 #define RITZ_SAME_KNOT 1e-9
-/* A step of the search for a minimum of |H| smaller than this part of the
-   frequency is the last. */
-#define RITZ_DIP_SETTLED 1e-9
-/* An interval this short, relative to its frequency, is not halved: four
-   times what is one knot. */
+/* An interval this short, relative to its frequency, is not halved: four times
+   the distance of two knots. */
 #define RITZ_SHORTEST_INTERVAL 4e-9
-/* A frequency beyond the end of a range by this part of it lies in the
-   range. */
+/* A frequency beyond the end of a range by this part of it is in the range. */
 #define RITZ_RANGE_ROUNDING 1e-12
-/* A response was prepared up to this factor of the end of its range: ends
-   are computed in other units than points. */
+/* A response was prepared up to this factor of the end of its range: ends are
+   computed in other units than points. */
 #define RITZ_RANGE_END (1.0 + 1e-9)
-/* A pole without damping gets this ratio, so that it is a point of the
-   grid, at which the responder says what is wrong. */
+/* A pole without damping gets this ratio, so that it is a point of the grid,
+   at which the responder says what is wrong. */
 #define RITZ_LEAST_RATIO 1e-15
-/* A channel whose peak is below this part of what its errors are relative
-   to is rounding. */
+/* A channel whose peak is below this part of what its errors are relative to
+   is rounding. */
 #define RITZ_CHANNEL_HEARD 0.5
-/* Between points an error is measured at the middle and at a quarter only:
-   it is held to this part of the tolerance. */
+/* Between points an error is measured at the middle, and at this part of the
+   interval, only: it is held to RITZ_SAMPLED_MARGIN of the tolerance. */
+#define RITZ_SAMPLED_AT     0.25
 #define RITZ_SAMPLED_MARGIN 0.5
-/* The place of the second sample of an interval, beside its middle. */
-#define RITZ_SAMPLED_AT 0.25
-/* A channel that never exceeds this part of its level is rounding: rigid
-   motions that cancel leave 1e-13, measured. */
-#define RITZ_CHANNEL_ROUNDING 1e-12
 /* Rounding of a response from one frequency to the next, relative to its
    level: 4 eps. */
 #define RITZ_RESPONSE_GRAIN 0x1p-50
 /* A channel below this part of the geometric mean of its row and column is
    rounding of these. */
 #define RITZ_CHANNEL_LEAST 1e-9
-/* Poles of full matrices are found to this factor of the end: those above
-   bend the response less than its tolerance. */
+/* Poles of full matrices are found to this factor of the end: those above bend
+   the response less than its tolerance. */
 #define RITZ_POLES_BEYOND 1.5
-/* What engines that approximate hold themselves to where nothing is asked,
-   relative to the largest |H|. */
+/* Error, relative to the largest |H|, that engines that approximate hold
+   themselves to unless another is asked for. */
 #define RITZ_ENGINE_TOLERANCE 1e-9
-/* A projection cannot be more exact than this: rounding of its inner
-   products. Also what rounding leaves of the terms of a response. */
+/* Rounding of inner products: a projection cannot be more exact, nor the terms
+   of a response. */
 #define RITZ_PROJECTION_FLOOR 1e-13
 /* The first point of a free body, over the end of the range: at rest its
    response is infinite. */
 #define RITZ_ABOVE_REST 1e-4
-/* Distance from an undamped pole, relative to its frequency, at which K -
-   w^2 M can still be factored to four digits. */
+/* Distance from an undamped pole, relative to its frequency, at which K - w^2 M
+   can still be factored to four digits. */
 #define RITZ_BESIDE_POLE 1e-4
-/* The same of an expansion point, which needs the direction of the mode
-   more than its digits. */
+/* An expansion point needs the direction of a mode more than its digits. */
 #define RITZ_BESIDE_MODE 1e-5
 /* A node nearer than this to a pole or zero, relative, is on it. */
 #define RITZ_NODE_CLEAR 1e-6
 /* Of w^2: nearer to an undamped pole than this there is no response. */
 #define RITZ_POLE_HIT 1e-12
-/* Poles nearer than this, relative to |s|, are one. */
-#define RITZ_SAME_POLE 1e-9
-/* Of lambda_h, the first eigenvalue left out: what lambda_h - w^2 is taken
-   for at least, so that a bound near it stays finite. */
+/* Least lambda_h - w^2, of lambda_h, the first eigenvalue left out, so that a
+   bound near it stays finite. */
 #define RITZ_LEAST_GAP 0.02
-/* An indicator is corrected by what was measured, at most by this factor. */
+/* An indicator is corrected by measured errors by this factor at most. */
 #define RITZ_MOST_AMPLIFIED 1e6
 /* A correction that leaves more than this part of the error was the last. */
 #define RITZ_CORRECTION_PAYS 0.3
-/* Of |L|: an imaginary part below this is 0, and a sign that changes
-   through infinity is no crossing. */
+/* Of |L|: an imaginary part below this is 0, and a sign that changes through
+   infinity is no crossing. */
 #define RITZ_REAL_CROSSING 1e-6
-/* Bisection of a frequency ends where its interval is this part of it, some
-   50 eps. */
+/* Bisection of a frequency ends where its interval is this part of it: 50 eps. */
 #define RITZ_BISECTION_END 1e-14
-/* How far a shift stays from a pole that was projected out, of its lambda:
-   its own error is of this size or less, while the factor loses as many
-   digits in a direction that does not count. */
+/* Distance of a shift from an eigenvalue, relative: the matrix can be factored
+   there. A pole that was projected out is itself in error by as much, and the
+   digits that the factor loses are in a direction that does not count. */
 #define RITZ_NUDGE 1e-9
-/* The same of rigid motions, of the first flexible lambda. */
+/* Distance of a shift from rigid motions, of the first flexible lambda. */
 #define RITZ_NUDGE_AT_REST 1e-6
-/* Sums of rounding come to this many eps, at most; 2 to 5 were measured. */
+/* Sums of rounding come to this many eps at most; 2 to 5 were measured. */
 #define RITZ_SUMMED_ROUNDING 16.0
 /* An eigenvalue of the stiffness below minus this part of the largest is no
-   rounding; -3e-9 was seen of sound models. */
+   rounding; sound models have -3e-9, measured. */
 #define RITZ_NEGATIVE_STIFFNESS 1e-6
-/* A product A N below this part of |A| |N| is rounding: A does not act on
-   N. */
-#define RITZ_NO_COUPLING 1e-12
 
-/* COMPARE */
+/* Comparison of models */
 
-/* MAC from which on a mode of the next configuration is taken for the same
-   mode. */
-#define RITZ_TRACK_LIKE 0.5
-/* A second candidate must be this much less like, or the track is a near-
-   tie. */
+/* MAC from which on two modes are the same mode. */
+#define RITZ_SAME_MODE 0.5
+/* A track is nearly a tie unless the second candidate's MAC is less by this. */
 #define RITZ_TRACK_CLEAR 0.1
-/* Two modes of which each holds this much of the other turn within their
-   plane; below it they cross. */
+/* Two modes of which each has this MAC with the other turn within their plane;
+   below it they cross. */
 #define RITZ_TRACK_MIXED 0.05
-/* Part of a plane of two modes that must stay in it for the two to have
-   turned rather than changed. */
+/* Part of a plane of two modes that must stay in it for the two to have turned
+   rather than changed. */
 #define RITZ_TRACK_PLANE 0.9
-/* What is left of a force without the part that pushes the body as a whole:
-   less is rounding of that part. */
+/* A force without its resultant, or a response without rigid motion, below this
+   part of the whole is rounding of it: the body is rigid, or pushed as one. */
 #define RITZ_FORCE_RELIEVED 1e-11
-/* Singular values 60 dB below the mean are compared with the mean: nobody
-   reads a plot there. */
+/* Singular values 60 dB below the mean are compared with the mean: a plot does
+   not show them. */
 #define RITZ_BODE_FLOOR 1e-3
 /* A response over a band from 0 Hz starts at this part of its end. */
 #define RITZ_BAND_START 1e-3
@@ -171,45 +171,37 @@
    lambda_max; two are compared, and P and V add their own: this many times
    e eps lambda_max, measured 3 to 8. */
 #define RITZ_EIGENVALUE_ROUNDING 20.0
-/* A mass scaled to unit diagonal with a pivot below this counts as
-   singular. */
+/* A mass of unit diagonal with a pivot below this is singular. */
 #define RITZ_MASS_CONDITION 1e-12
 /* Least relative length of a direction that rigid or kept modes add: rigid
    modes hold flexible motion of eps |P|'|K||P| / lambda, 1e-11 measured on
    frames of bars. */
 #define RITZ_TIGHTEST_RIGID 1e-9
-/* The same of static corrections of a system. */
+/* ... that static corrections of a system add. */
 #define RITZ_TIGHTEST_STATIC 1e-12
-/* The same of static corrections of one body: to forces that depend on each
-   other they differ by eps cond(K) of its solver. */
+/* ... that those of one body add: to forces that depend on each other they
+   differ by eps cond(K) of its solver. */
 #define RITZ_TIGHTEST_BODY 1e-10
-/* An error between listed angles below this asks for no further angle:
-   nobody would see it in a plot. */
+/* No further angle is suggested for an error between listed angles below this,
+   which a plot does not show, or below RITZ_SUGGEST_FACTOR times the error at
+   listed angles, where another angle changes nothing. */
 #define RITZ_SUGGEST_VISIBLE 1e-3
-/* Nor does one below this many times the error at listed angles, where
-   another angle would change nothing. */
-#define RITZ_SUGGEST_FACTOR 10.0
-/* Angles that differ by less, in degrees, are one: they are written with
-   fewer digits. */
-#define RITZ_SAME_ANGLE 1e-9
+#define RITZ_SUGGEST_FACTOR  10.0
 
 /* Bases */
 
 /* A pole nearer to the real axis than this part of |s| is real. */
 #define RITZ_POLE_REAL 1e-12
-/* A mode without damping has its interpolation point at this ratio, lest
-   the point be a pole. */
+/* A mode without damping has its interpolation point at this ratio, lest the
+   point be a pole. */
 #define RITZ_LEAST_DECAY 1e-4
 /* A mode at critical damping has its point at this part of w^2, not at 0. */
 #define RITZ_LEAST_SQUARE 1e-2
-/* Participation of a mode below this part of the largest of its kind is
-   rounding. */
-#define RITZ_LEAST_PARTICIPATION 1e-12
-/* IRKA ends where its points change by less, relative: interpolation is
-   exact where they stand, and an optimum is flat. */
+/* IRKA ends where its points change by less, relative: interpolation is exact
+   where they stand, and an optimum is flat. */
 #define RITZ_POINTS_SETTLED 1e-6
-/* Above this condition three digits of what is measured are lost, and it is
-   said. */
+/* Condition above which SEREP says that three digits of measured shapes are
+   lost. */
 #define RITZ_SEREP_CONDITION 1e3
 /* Rounding of a Gramian above this part of the least damping is not small. */
 #define RITZ_LANCZOS_SMALL 1e-3
@@ -217,97 +209,76 @@
 #define RITZ_LANCZOS_SAFE 10.0
 /* A pole may be off by this many times its first-order bound. */
 #define RITZ_POLE_BOUND_FACTOR 8.0
-/* What of a state is no rigid motion, relative: more is another motion. */
+/* Part of a state that is no rigid motion, relative, above which the state is
+   another motion. */
 #define RITZ_RIGID_STATE 1e-6
-/* Squares of norms whose difference is below this part of them are equal:
-   some 400 eps for sums of thousands. */
+/* Squares of norms whose difference is below this part of them are equal: some
+   400 eps for sums of thousands. */
 #define RITZ_SQUARE_ROUNDING 1e-13
-/* A column below this part of the largest is no motion of the body. */
-#define RITZ_NO_MOTION 1e-12
-/* Sweeps with a shifted factor end in rounding of eps lambda_max / lambda
-   of the first mode left out, 5e-8 measured on a rotor of stiff bars, 1e-13
-   on solids: a change of more than this is no convergence. */
+/* Sweeps with a shifted factor end in rounding of eps lambda_max / lambda of
+   the first mode left out, 5e-8 measured on a rotor of stiff bars, 1e-13 on
+   solids: a change of more than this is no convergence. */
 #define RITZ_SWEEPS_UNSETTLED 1e-5
-/* Sweeps end where the change is below this times sqrt(n), the rounding of
-   a norm. */
+/* Sweeps end where the change is below this times sqrt(n), the rounding of a
+   norm. */
 #define RITZ_SWEEPS_SETTLED 1e-14
-/* A residual mode below this part of what its load does, rigid motion
-   included, is rounding: the load acts on a body that is rigid. */
-#define RITZ_RESIDUAL_ROUNDING 1e-11
 /* A shift below 0 as part of the first flexible eigenvalue: small enough to
    converge, large enough to keep digits of a free body. */
 #define RITZ_SHIFT_OF_FIRST 1e-2
-/* The same as part of K / M where no flexible mode is known. */
+/* ... as part of K / M where no flexible mode is known. */
 #define RITZ_SHIFT_OF_SIZE 1e-6
-/* Forces that cancel to this part of what they were summed from are none. */
-#define RITZ_CANCELLED_FORCE 1e-11
 
 /* Rankings */
 
-/* A coupling K_bn over sqrt(K_bb K_nn) above this: these are modes of
-   another interface than the one that is held. */
+/* A coupling K_bn over sqrt(K_bb K_nn) above this: these are modes of another
+   interface than the one that is held. */
 #define RITZ_FOREIGN_INTERFACE 1e-6
 /* Effective masses that sum to less than this part of the body: rigid modes
-   carry what there is. */
+   carry all of it. */
 #define RITZ_NO_MASS_SHARE 1e-9
-/* Eigenvalues of the interface mass, of unit diagonal, below this part of
-   the largest: motions that move no mass. */
-#define RITZ_MASSLESS_INTERFACE 1e-12
-/* A mode whose Gramian entry is below this part of the largest is rounding,
-   and so is its coupling. */
+/* A mode whose Gramian entry is below this part of the largest is rounding, and
+   so is its coupling. */
 #define RITZ_NEGLIGIBLE_GRAMIAN 1e-20
 /* Part of the old weight that a reweighting keeps, which damps its
    oscillation. */
 #define RITZ_OLD_WEIGHT 0.5
-/* Weights, whose mean is 1, that differ by less are the same: reweighting
-   has settled, or oscillates. */
-#define RITZ_SAME_WEIGHTS 1e-9
-/* Values of a ranking below this part of the largest are rounding, and so
-   equal. */
-#define RITZ_EQUAL_VALUES 1e-12
 
 /* Linear algebra */
 
-/* An entry of a product below this part of the same product in
-   magnitudes is rounding: 64 eps. */
+/* An entry of a product below this part of the same product in magnitudes is
+   rounding: 64 eps. */
 #define RITZ_SUM_ROUNDING 0x1p-46
-/* Asymmetry that a few sums of products leave of a symmetric matrix: 8 eps.
-   More is told apart, where a symmetric form saves work and digits. */
+/* Asymmetry that a few sums of products leave: 8 eps. A matrix within it is
+   taken as symmetric, which saves work and digits. */
 #define RITZ_SYMMETRIC_SUMS 0x1p-49
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
-/* Entries of a vector this near to its largest are as large: the first of
-   them gives the sign, on every processor. */
+/* Entries of a vector this near to its largest are as large: the first of them
+   gives the sign, on every processor. */
 #define RITZ_LIKE_LARGEST 1e-9
-/* A mass of unit diagonal with a worse reciprocal condition is taken as
-   singular, and motions without mass are condensed. */
-#define RITZ_MASS_WELL_CONDITIONED 1e-8
-/* E of unit diagonal with a worse reciprocal condition is not divided out. */
-#define RITZ_FRAME_CONDITION 1e-8
 /* Rounding that scaling may add, over that of the matrices as given. */
 #define RITZ_FRAME_GROWTH 1e4
-/* An eigenvalue of a dense pencil below this part of the largest has lost
-   six digits and more, and is found again among its like. */
+/* An eigenvalue of a dense pencil below this part of the largest has lost six
+   digits and more, and is found again among its like. */
 #define RITZ_EIGEN_FAR_BELOW 1e-6
 /* Residual of a sparse eigenpair after inverse iteration: a larger one is
    refused. */
 #define RITZ_EIGEN_RESIDUAL 1e-11
-/* Place within a gap of eigenvalues where the modes below are counted,
-   if its middle is hit. */
+/* Point within a gap of eigenvalues where modes below it are counted, if the
+   middle of the gap is an eigenvalue. */
 #define RITZ_COUNT_PLACE 0.3
-/* Modes up to a frequency are counted this far above its lambda, relative:
-   the next is tried where a mode lies there. */
+/* Modes up to a frequency are counted this far above its lambda, relative: the
+   next is tried where a mode lies there. */
 #define RITZ_COUNT_ABOVE                                                       \
     {                                                                          \
         1e-8, 1e-7, 3e-7                                                       \
     }
 /* A mode this close above the end of a range, relative in lambda, is in it. */
 #define RITZ_SPAN_ROUNDING 1e-8
-/* Part of the first shift that is taken at least where a low frequency asks
-   for less. */
-#define RITZ_LEAST_SHIFT 1e-6
-/* First shift below 0, of the median of K_jj / M_jj. */
+/* First shift below 0, of the median of K_jj / M_jj, and the least part of it
+   that is taken where a low frequency asks for less. */
 #define RITZ_FIRST_SHIFT 1e-5
+#define RITZ_LEAST_SHIFT 1e-6
 /* A shift this many times the first flexible eigenvalue blurs it: another is
    taken. */
 #define RITZ_SHIFT_BLURRED 1e3
@@ -325,80 +296,63 @@
 #define RITZ_SINGULAR_SPD 0x1p-52
 /* Smallest |H y| / |y| of rows scaled to one that is not rounding: 4 eps. */
 #define RITZ_SINGULAR_LDL 0x1p-50
-/* Rounding of each entry of a column after all sums of an
-   orthogonalisation, in eps. */
+/* Rounding of each entry of a column after all sums of an orthogonalisation, in
+   eps. */
 #define RITZ_ENTRY_ROUNDING 100.0
 /* Square of eps: a squared norm below this part of another is 0. */
 #define RITZ_NEGLIGIBLE_SQUARE 0x1p-104
 /* A peak below this part of the highest is not followed between points. */
 #define RITZ_PEAK_WORTH 0.5
-/* A bracket of a peak this short, relative to its upper end, is done: a peak
-   is flat there to the square of it. */
+/* A bracket of a peak, or of a dip, this short, relative to its upper end, is
+   done: the curve is flat there to the square of it. */
 #define RITZ_PEAK_PLACED 1e-9
-/* The same where a peak may be infinite for want of damping. */
-#define RITZ_PEAK_SHARP 1e-10
-/* A value that grows by the factor below while its bracket shrinks from this
-   to RITZ_PEAK_SHARP is infinite. */
-#define RITZ_PEAK_LATE 1e-8
-/* See above. */
+/* A peak is infinite, for want of damping, if it grows by RITZ_PEAK_GROWTH while
+   its bracket shrinks from RITZ_PEAK_LATE to RITZ_PEAK_SHARP. */
+#define RITZ_PEAK_SHARP  1e-10
+#define RITZ_PEAK_LATE   1e-8
 #define RITZ_PEAK_GROWTH 1.5
 
 /* Modal models and states */
 
-/* What a shifted solve leaves of the share of motions without mass where
-   they have none, relative. */
+/* Relative share of motions without mass that a shifted solve leaves where
+   they have none. */
 #define RITZ_MASSLESS_SHARE 1e-8
-/* Singular values of the rigid motions of a tie below this part of the
-   largest are rounding of positions: beneath the root of eps a position of
-   half the digits decides. */
-#define RITZ_LOOSE_MOTION 1.5e-8
-/* A loose motion is known to eps over that gap: a row that has more than this
-   part of it depends on it. */
+/* A loose motion is known to eps over the gap RITZ_HALF_DIGITS: a row that has
+   more than this part of it depends on it. */
 #define RITZ_LOOSE_PART 1e-6
-/* Reciprocal condition of constraint equations below which half the digits
-   of what follows from them are lost: they leave their dof undetermined. */
-#define RITZ_UNDETERMINED 1e-8
 /* Sine of the angle between the two axes of a joint below which they are
    parallel: scenes give axes with six digits. */
 #define RITZ_PARALLEL_AXES 1e-6
-/* Settings of a joint, in degrees or lengths, that differ by less are one. */
-#define RITZ_SAME_SETTING 1e-9
 
 /* Gramians */
 
-/* Hankel values whose relative gap is below this count once in the bound.
-   Two of one sign with the gap g need in one channel a pole g^2 / 16 of the
-   others: below this it is rounding, above it both count, as the error of
-   such a system is the sum of both. */
+/* Hankel values whose relative gap is below this count once in the bound. Two
+   of one sign with the gap g need in one channel a pole g^2 / 16 of the others:
+   below this it is rounding, above it both count, as the error of such a system
+   is the sum of both. */
 #define RITZ_HANKEL_REPEATED 1e-9
 /* Distance of W'E T from I up to which a value still has a direction. */
 #define RITZ_BALANCED_DEFECT 0.1
 /* Residual of a low-rank Gramian, if none is asked for. */
 #define RITZ_ADI_TOLERANCE 1e-10
-/* What is left of a load without rigid motion below this part, squared, is
-   rounding: there is nothing flexible to iterate on. */
+/* A load without its rigid motion below this part, squared, is rounding: there
+   is nothing flexible to iterate on. */
 #define RITZ_ADI_NOTHING 1e-24
 /* Columns of a factor below this part of the longest are dropped. */
 #define RITZ_SHORT_COLUMN 1e-14
 /* Bytes that one factor may take: three of them stay below 4 GiB. */
 #define RITZ_FACTOR_BYTES 1.4e9
-/* What sparse products leave of a rigid motion, of the same product in
-   magnitudes, where there is none. */
+/* Rigid motion that sparse products leave, of the same product in magnitudes,
+   where there is none. */
 #define RITZ_RIGID_LOAD 1e-10
-/* Eigenvalues of the Gram matrix of unit columns below this are dependent
-   columns: rounding, twice over. */
-#define RITZ_WINDOW_DEPENDENT 1e-12
 /* An imaginary part below this of the real one makes a shift real. */
 #define RITZ_SHIFT_REAL 1e-3
 /* Least |Re p| / |p| of a shift that can be told from none: 64 eps. */
 #define RITZ_SHIFT_DAMPED 0x1p-46
-/* Damping between two modes, over the root of their own, above which they
-   are coupled: the closed forms err by its square. */
+/* Damping between two modes, over the root of their own, above which they are
+   coupled: the closed forms err by its square. */
 #define RITZ_DAMPING_COUPLES 1e-6
-/* The same of the largest damping of all, which rounding leaves. */
-#define RITZ_DAMPING_ROUNDING 1e-12
-/* Roundings on the way to a band Gramian, of the magnitudes of its sum:
-   8 eps. */
+/* Roundings on the way to a band Gramian, of the magnitudes of its sum: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49
 /* Up to this ratio a mode is eliminated as a whole: eigenvectors of its two
    poles are no better than its block. */
@@ -406,38 +360,36 @@
 
 /* Poles, zeros and norms */
 
-/* Backward error of LAPACK's eigensolvers, in eps. Measured, what the middle
-   of a symmetric structure observes of modes that are zero there: 0.1 to 1.8
-   times the first-order bound with 1 for it, of rows of 5 to 767 masses and
+/* Backward error of LAPACK's eigensolvers, in eps. What the middle of a
+   symmetric structure observes of modes that are zero there, measured: 0.1 to
+   1.8 times the first-order bound with 1 for it, of rows of 5 to 767 masses and
    clamped beams of 4 to 128 elements. */
 #define RITZ_BACKWARD_ERROR 8.0
 /* A gain below this part of its error is rounding. */
 #define RITZ_NO_GAIN 1e-14
-/* A modal matrix with smaller entries, against its diagonal, is diagonal:
-   the error is of its square. */
+/* A modal matrix with smaller entries, against its diagonal, is diagonal: the
+   error is of its square. */
 #define RITZ_DIAGONAL_WITHIN 1e-9
-/* A mode whose participation in all channels is below this part of the
-   product of the largest is not controllable and observable. */
+/* ... against the largest entry of all: rounding of its projection. */
+#define RITZ_DIAGONAL_ROUNDING 1e-15
+/* A mode whose participation in all channels is below this part of the product
+   of the largest is not controllable and observable. */
 #define RITZ_UNOBSERVED 1e-10
-/* D is a M + b K up to this part of |D|: more than rounding leaves of
-   matrices in text of few digits. */
+/* D is a M + b K up to this part of |D|: more than rounding leaves of matrices
+   in text of few digits. */
 #define RITZ_PROPORTIONAL_WITHIN 1e-6
 /* A step of inverse iteration this small, of |s|, is the last. */
 #define RITZ_REFINED 1e-12
-/* One below this that no longer shrinks is the last too: slow poles of stiff
-   models err by eps |K| / |s|. */
+/* A step, or the term of a series, below this that no longer shrinks is the last
+   too: slow poles of stiff models err by eps |K| / |s|. */
 #define RITZ_REFINED_NEARLY 1e-6
-/* So far from an eigenvalue, relative, a matrix can be factored. */
-#define RITZ_BESIDE_EIGENVALUE 1e-9
-/* What the series of modes that are left out is good to, of the whole
+/* The series of modes that are left out is good to this part of the whole
    response at the end of the range. */
 #define RITZ_SERIES_WITHIN 1e-12
 /* A change of a term of that series this small, of its largest value, is the
    last. */
 #define RITZ_SERIES_SETTLED 1e-14
-/* Rounding of an ill-conditioned K may keep a term from that, not from this. */
-#define RITZ_SERIES_UNSETTLED 1e-6
-/* A change below this part of the whole response is not seen: eps / 2. */
+/* A change below this part of the whole response does not alter it: eps / 2. */
 #define RITZ_SERIES_NEGLIGIBLE 0x1p-53
 /* Shift below 0 of that series, of the last eigenvalue that is kept: a step
    then shrinks by 100. */
@@ -448,31 +400,28 @@
 /* Terms must fall by this factor each: forty of them reach
    RITZ_SERIES_WITHIN. */
 #define RITZ_SERIES_FALLS 0.5
-/* A static response to a damper of which less than this is new adds nothing
-   to the undamped modes. */
+/* A static response to a damper of which less than this is new adds nothing to
+   the undamped modes. */
 #define RITZ_STATIC_DEPENDENT 1e-8
-/* Undamped modes are taken to this factor of what is asked for, in number
-   and in frequency: damping moves poles across. */
+/* Undamped modes are taken to this factor of what is asked for, in number and
+   in frequency: damping moves poles across. */
 #define RITZ_SPECTRUM_BEYOND 2.0
-/* Inverse iteration that moves s further than this, relative, went to
-   another pole. */
+/* Inverse iteration that moves s further than this, relative, went to another
+   pole. */
 #define RITZ_REFINED_ELSEWHERE 0.1
 /* Shapes of equal poles that correlate more than this are one; of a double
-   pole they are apart. */
+   pole they are not. */
 #define RITZ_SAME_SHAPE 0.9
-/* Square of what an entry of a motion without mass may err by, of its
-   largest. */
+/* Square of the error of an entry of a motion without mass, of its largest. */
 #define RITZ_MASSLESS_VECTOR 1e-24
-/* Damping between a motion without mass and others, of the largest, above
-   which it must be damped itself. */
+/* Damping between a motion without mass and others, of the largest, above which
+   it must be damped itself. */
 #define RITZ_MASSLESS_COUPLED 1e-8
 /* A step of a zero no larger than this part of it is the last: 4 eps. */
 #define RITZ_ZERO_STEP 0x1p-50
 /* A zero that rounding may move by this part of its distance from 0 and from
    all poles is one at infinity. */
 #define RITZ_ZERO_DOUBT 0.1
-/* The same against the largest entry of all: rounding of its projection. */
-#define RITZ_DIAGONAL_ROUNDING 1e-15
 /* K that differs from a multiple of M by less than this, squared and relative,
    is one: b of a M + b K is then 0. */
 #define RITZ_PROPORTIONAL_RANK 1e-12
@@ -483,19 +432,16 @@
 
 /* Checks of models */
 
-/* Asymmetry of a matrix, relative to its largest entry, that importing
-   averages away: rounding leaves 6e-7 in superelements as supplied. */
+/* Asymmetry of a matrix, relative to its largest entry, that importing averages
+   away: rounding leaves 6e-7 in superelements as supplied. */
 #define RITZ_SYMMETRIC_SOURCE 1e-6
-/* Whole numbers of some unit up to this are meant as they stand, not
-   rounded, unless harm is seen. */
+/* Whole numbers of some unit up to this are meant as they stand, not rounded,
+   unless harm is shown. */
 #define RITZ_SHORT_NUMBERS 1e6
-/* Negative eigenvalues of a matrix of unit diagonal that a static
-   condensation leaves: commercial superelements stay below, measured. Also
-   those of matrices in text of ten digits. */
+/* Negative eigenvalues of a matrix of unit diagonal that a static condensation
+   leaves: commercial superelements stay below, measured, and matrices in text
+   of ten digits. */
 #define RITZ_CONDENSATION_LOSS 1e-10
-/* A row of an interface whose entries are below this part of the largest
-   moves nothing. */
-#define RITZ_ROW_UNMOVED 1e-12
 /* Columns with this part of the largest share of a motion are named with it. */
 #define RITZ_WORTH_NAMING 0.3
 /* A rigid motion driven by less than this part of the softest flexible
@@ -515,37 +461,34 @@
 #define RITZ_SINGLE_PRECISION 0x1p-24
 /* Digits of a source that lose nothing of the differences of stiffness. */
 #define RITZ_ENOUGH_DIGITS 12.0
-/* Sine of the angle between rigid eigenvectors and the motions that
-   positions give: of six digits of a position. */
-#define RITZ_MOTIONS_AGREE 1e-6
-/* Beyond this sine a position or a frame is wrong. */
+/* Sine of the angle between rigid eigenvectors and the motions that positions
+   give: six digits of a position; beyond the second one a position or a frame
+   is wrong. */
+#define RITZ_MOTIONS_AGREE    1e-6
 #define RITZ_MOTIONS_BEARABLE 1e-3
-/* Relative difference of the masses along the axes, and of what couples
-   them, that lumping, averaging and single precision leave. */
-#define RITZ_MASS_AGREES 1e-6
-/* Beyond this no averaging explains them. */
+/* Relative difference of the masses along the axes, and of their couplings,
+   that lumping, averaging and single precision leave; beyond the second one no
+   averaging explains it. */
+#define RITZ_MASS_AGREES   1e-6
 #define RITZ_MASS_BEARABLE 1e-2
-/* Grids no further apart than this part of the component's size are in one
-   place. */
-#define RITZ_SAME_PLACE 1e-9
 /* A motion that a port holds by less than this part of the best is not held. */
 #define RITZ_PORT_HELD 1e-6
 /* Entries of a rigid motion below this, per unit of size, are no motion. */
 #define RITZ_MOTION_PRESENT 1e-9
-/* Square of what an entry of a motion without mass may err by, of its
-   largest, where its damping is judged. */
+/* Square of the error of an entry of a motion without mass, of its largest,
+   where its damping is judged. */
 #define RITZ_MASSLESS_DAMPING 1e-20
 /* A free motion this small is not followed any more. */
 #define RITZ_DIED_OUT 1e-3
-/* Rounding that squaring e^(A t) may have added up when it ends. */
+/* Rounding that squaring e^(A t) may have added up when it ends, and growth of
+   the energy of a free motion that it leaves. */
 #define RITZ_POWERS_ROUNDING 1e-7
-/* Growth of the energy of a free motion that squaring e^(A t) leaves. */
 #define RITZ_GROWTH_ROUNDING 1e-6
-/* Error of a state per step that integrators let pass unless they are told
-   otherwise: what grows by more than its inverse is lost in it. */
+/* Error of a state per step that integrators accept by default: a motion that
+   grows by more than its inverse is lost in it. */
 #define RITZ_INTEGRATOR_ERROR 1e-3
-/* Springs, masses and dampers that are attached to an interface, times its
-   own: three decades to either side. */
+/* Springs, masses and dampers that are attached to an interface, times its own:
+   three decades to either side. */
 #define RITZ_ATTACHMENTS                                                       \
     {                                                                          \
         1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3                                   \
@@ -557,11 +500,10 @@
 #define RITZ_ZERO_ON_AXIS 1e-7
 /* There is no response this close to a pole, of w. */
 #define RITZ_SAMPLER_POLE 1e-13
-/* Width of a pole that is taken at least, of |s|, to place frequencies
-   around it. */
+/* Least width of a pole, of |s|, to place frequencies around it. */
 #define RITZ_LEAST_WIDTH 1e-3
-/* An eigenvalue of a Hamiltonian pencil no further from the axis, of |s|, is
-   on it. */
+/* An eigenvalue of a Hamiltonian pencil no further from the axis, of |s|, is on
+   it. */
 #define RITZ_PENCIL_ON_AXIS 1e-6
 /* Negative part of a response, of |G|, that rounding may leave of a passive
    model. */
@@ -569,37 +511,35 @@
 
 /* Decks and files of other programs */
 
-/* Shares of a tie, scaled so that lengths cancel, below this part of the
-   largest of their row are rounding and would only fill the matrices: 16
-   eps. */
+/* 16 eps, some ten operations on a position: shares of a tie, scaled so that
+   lengths cancel, below this part of the largest of their row, which would only
+   fill the matrices; the distance of a grid from the axis of a curved system
+   that it is on, of that from the origin. */
 #define RITZ_TIE_ROUNDING 0x1p-48
-/* Sine of the angle of three points of a coordinate system, at the root of
-   eps: below it the x axis keeps less than half its digits. */
-#define RITZ_POINTS_ON_A_LINE 1.5e-8
-/* A grid this near to the axis of a curved system, of its distance from the
-   origin, is on it: 16 eps, some ten operations on a position. */
-#define RITZ_ON_AXIS 0x1p-48
-/* A rotation that is new by less than this part is no motion: grids on a
-   line have five. */
+/* A rotation that is new by less than this part is no motion: grids on a line
+   have five. */
 #define RITZ_ROTATION_ON_A_LINE 1e-8
 /* Part of a motion without stiffness that no rigid motion explains: between
    what matrices of six digits do to a rigid mode (1e-5, a judgement) and the
    order of 1 of a loose part. */
 #define RITZ_LOOSE_IN_FRAME 1e-3
-/* A loss of kinetic energy that is said: rounding of modes that 98 columns
-   make is 3e-9, measured. */
+/* A loss of kinetic energy above this is reported: rounding of modes that 98
+   columns make is 3e-9, measured. */
 #define RITZ_ENERGY_LOST 1e-6
-/* Masses by direction that differ by less are one: the asymmetry that import
-   averages away. */
-#define RITZ_MASS_BY_DIRECTION 1e-6
+/* Numbers below this, or above 9e98, may take an exponent of three digits once
+   they are rounded. */
+#define RITZ_TWO_DIGIT_EXPONENT 1e-98
+/* Rounding of a few products of double-doubles, each within 2^-102: a decimal
+   that is nearer to a tie goes to strtod. */
+#define RITZ_DOUBLE_DOUBLE 0x1p-96
 
 /* Simulation */
 
-/* What rounding of an output may have grown to, of what could be shown: more
-   is an error of the step. */
+/* Rounding of an output may have grown to this part of what could be shown:
+   more is an error of the step. */
 #define RITZ_ROUNDING_GROWN 1e-9
-/* Elongation of the period of the highest wanted mode, for which the step of
-   an accurate simulation is quoted. */
+/* Elongation of the period of the highest wanted mode, for which the step of an
+   accurate simulation is quoted. */
 #define RITZ_PERIOD_ERROR 1e-3
 /* Least processor time of one measurement of a step. */
 #define RITZ_MEASURED_SECONDS 2e-3
@@ -609,12 +549,8 @@
 #define RITZ_MOST_STEPS 1e10
 /* A step that ends within this part of itself of the end, ends there. */
 #define RITZ_STEP_ROUNDING 1e-6
-/* Times of two simulations closer than this, of the end, are one. */
-#define RITZ_SAME_TIME 1e-9
-/* Inputs that do nothing are scaled by this, which is not 0. */
-#define RITZ_LEAST_SCALE 1e-300
 
-/* Full against reduced, estimates and fit */
+/* Full against reduced */
 
 /* A full model's modes are computed to this multiple of the band's end. */
 #define RITZ_REFERENCE_REACH 3.0
@@ -630,28 +566,30 @@
  * tests/claims/states.claims comes near its bound by less.
  */
 #define RITZ_BOUND_ROUNDING 1e3
-/* Damping ratios below this part of the largest are rounding of the some
-   thousand terms of a modal damping. */
-#define RITZ_UNDAMPED_WITHIN 1e-12
-/* Participation below this part of |c_i| |phi|, or of the largest product of
-   a channel, is rounding of products and eigenvectors. */
+/* Participation below this part of |c_i| |phi|, or of the largest product of a
+   channel, is rounding of products and eigenvectors. */
 #define RITZ_PARTICIPATION_ROUNDING 1e-10
-/* Rounding of the edge of a band belongs to it. */
-#define RITZ_BAND_EDGE 1e-9
-/* A reduced mode with less than half of a full mode is not that mode. */
-#define RITZ_PARTNER_ABOVE 0.5
-/* Leaving out a mode costs as much as frequencies 15 % apart do: with two
-   left out, modes pair up to 30 %. */
+/* Leaving out a mode costs as much as frequencies 15 % apart do: with two left
+   out, modes pair up to 30 %. */
 #define RITZ_SKIP_COST 0.15
-/* Modes that inputs and outputs see wholly differently cost as much as
-   frequencies 10 % apart. */
+/* Modes whose participation in inputs and outputs differs wholly cost as much
+   as frequencies 10 % apart. */
 #define RITZ_UNLIKE_COST 0.1
-/* An exchange of partners that gains less is rounding. */
+/* An exchange of paired modes that gains less is rounding. */
 #define RITZ_EXCHANGE_GAIN 1e-9
-/* Largest tolerance of a relative measure. */
+/* Largest tolerances of a relative measure, and of a count. */
 #define RITZ_MOST_RELATIVE 1.0
-/* Largest tolerance of a count. */
-#define RITZ_MOST_COUNT 1e9
+#define RITZ_MOST_COUNT    1e9
+/* Modes closer than this, relative, are one cluster to ritz-verify: reduction
+   turns vectors within modes that lie closer than its own error. */
+#define RITZ_CLOSE 1e-3
+/* A response below this part of the largest |H| is not compared. */
+#define RITZ_AUDIBLE 1e-6
+/* A thousand eps: rounding of a sum over some thousand modes. */
+#define RITZ_HEARD_ROUNDING 2.3e-13
+
+/* Estimates */
+
 /* Roundings, in eps, of a sum of terms that cancel: one is due, the rest is
    room. */
 #define RITZ_CANCELLED_ROUNDINGS 4.0
@@ -661,19 +599,19 @@
 #define RITZ_GOOD_RATIO 3.0
 /* Relative error above which a mode is in no known gap. */
 #define RITZ_COARSE_ERROR 0.1
-/* The first count lies between these multiples of the band's end, in lambda. */
-#define RITZ_COUNT_NEAR 2.0
-/* The same, the upper one. */
-#define RITZ_COUNT_FAR 8.0
-/* A count for responses lies below this multiple of it. */
+/* The first count lies between the first two multiples of the band's end, in
+   lambda; a count for responses lies below the third. */
+#define RITZ_COUNT_NEAR     2.0
+#define RITZ_COUNT_FAR      8.0
 #define RITZ_COUNT_FARTHEST 40.0
 /* Ratio (rho - sigma) / (theta - sigma) beyond which a count gains nothing. */
 #define RITZ_COUNT_ENOUGH 3.0
 /* A gap narrower than this part of its distance to the mode gains nothing. */
 #define RITZ_GAP_CLOSE 0.3
-/* Part of the band's end, in lambda, below which a reduced mode may be a rigid
-   motion that the basis holds badly. */
+/* Parts of the band's end, in lambda, below which a reduced mode may be a rigid
+   motion that the basis holds badly, and below which a mode is rigid. */
 #define RITZ_MAY_BE_RIGID 1e-6
+#define RITZ_SURELY_RIGID 0.5e-6
 /* Gaps of eigenvalues narrower than this, relative, hold no count. */
 #define RITZ_GAP_NARROW 1e-6
 /* The full mode of the same number is named unless another one's bound is
@@ -683,60 +621,59 @@
 #define RITZ_VECTOR_NEAR 0.1
 /* Rounding of |c|^2, here and in ritz-verify. */
 #define RITZ_SHARE_ROUNDING 1e-6
-/* The band is taken so much wider, in lambda: ritz-verify allows 2e-9. */
+/* The band is taken wider by this, in lambda: ritz-verify allows 2e-9. */
 #define RITZ_BAND_EDGE_COUNTED 4e-9
+/* A count at the band's end lies this far behind it, in lambda: further than
+   what ritz-verify takes to be in the band. */
+#define RITZ_COUNT_BEHIND 8e-9
 /* A frequency error below this needs no tighter bound. */
 #define RITZ_NO_ERROR 1e-9
-/* Least relative distance of a count from the mode it is for. */
-#define RITZ_COUNT_BESIDE 1e-7
-/* Largest relative distance of a count from the mode it is for. */
+/* Least and largest relative distance of a count from the mode it is for. */
+#define RITZ_COUNT_BESIDE  1e-7
 #define RITZ_COUNT_TOO_FAR 0.03
-/* A count at the band's end lies so far behind it, in lambda: further than what
-   ritz-verify takes to be in the band. */
-#define RITZ_COUNT_BEHIND 8e-9
-/* Part of the band's end, in lambda, below which a mode is rigid. */
-#define RITZ_SURELY_RIGID 0.5e-6
-/* -sigma as a part of the band's end in lambda: a smaller one makes bounds at the
-   end tighter, a larger one rounds less. */
+/* A rigid motion is counted at this part of the limit of rigid ones at least. */
+#define RITZ_COUNT_LEAST 1e-3
+/* -sigma as a part of the band's end in lambda: a smaller one makes bounds at
+   the end tighter, a larger one rounds less. */
 #define RITZ_ESTIMATE_SHIFT 0.1
 /* The trial holds modes to this multiple of the band's end, in lambda, and as
    many beyond the band's last. */
 #define RITZ_TRIAL_REACH 30.0
-/* D is a M + b K if entries differ by less than this part of
-   sqrt(d_ii d_jj): rounding of matrices printed with 15 digits. */
+/* D is a M + b K if entries differ by less than this part of sqrt(d_ii d_jj):
+   rounding of matrices printed with 15 digits. */
 #define RITZ_RAYLEIGH_WITHIN 1e-13
-/* Eigenvalues closer than this, relative, are a pair. */
-#define RITZ_EQUAL_PAIR 1e-3
 /* A participation below this part of the largest is rounding. */
 #define RITZ_NO_PART 1e-9
 /* Largest relative residual of a rigid mode: its square is far below rounding. */
 #define RITZ_RIGID_RESIDUAL 1e-7
-/* Intervals are not split for a bound below this part of the largest |H_r|. */
-#define RITZ_RESPONSE_NOTHING 1e-12
 /* An interval is split until its bound is within this factor of the points'. */
 #define RITZ_INTERVAL_SLACK 1.05
 /* Relative asymmetry of D above which it has a gyroscopic part. */
 #define RITZ_GYROSCOPIC 1e-9
+
+/* Fits and scenes */
+
 /*
  * A first stage that stands for the full system: modes of bodies up to this
- * part of the band, and further where a tolerance is finer than ten times what
- * that leaves. Measured on beams by Craig-Bampton: frequencies in the band err
- * by 6.4e-5 at 8 times the band, and from 4 times fell faster than its square.
+ * part of the band, and further where a tolerance is finer than ten times the
+ * relative error of frequencies that it leaves. Measured on beams by
+ * Craig-Bampton: frequencies in the band err by 6.4e-5 at 8 times the band, and
+ * from 4 times fell faster than its square.
  */
-#define RITZ_RICH_TO 8.0
-/* What that leaves: the relative error of frequencies in the band. */
+#define RITZ_RICH_TO     8.0
 #define RITZ_RICH_LEAVES 6.4e-5
-/* Largest multiple of the band's end that a first stage has modes to: bodies
-   of a solid have modes as its third power. */
+/* Largest multiple of the band's end that a first stage has modes to: bodies of
+   a solid have modes as its third power. */
 #define RITZ_RICH_MOST 32.0
-/* Modes of bodies count so far, of what a reference would hold, as steps of the
-   ladder: to six times the band, and further for the finest tolerances. */
+/* Part of the modes that a reference holds up to which those of bodies are
+   steps of the ladder: to six times the band, and further for the finest
+   tolerances. */
 #define RITZ_LADDER_TO 0.75
-/* Logarithm of the ratio of two steps that is worth saying: five per cent. */
+/* Logarithm of the ratio of two steps that is reported: five per cent. */
 #define RITZ_STEP_WORTH_SAYING 0.05
-/* Above this a MAC is told by how much it is less than 1. */
+/* A MAC above this is reported by its distance from 1. */
 #define RITZ_MAC_NEARLY_ONE 0.9989
-/* Of a rigid motion: less of it in a column is rounding. */
+/* A share of rigid motion in a column below this is rounding. */
 #define RITZ_RIGID_PART 1e-6
 /* Part of a tolerance that may be the first stage's own error. */
 #define RITZ_STAGE_MAY_LEAVE 0.1
@@ -745,37 +682,16 @@
 /* A longer ladder, or a richer stage, is of use if it leaves less than this
    part of the error. */
 #define RITZ_NO_NEARER 0.9
-/* Modes closer than this, relative, are one cluster to ritz-verify: reduction
-   turns vectors within modes that lie closer than its own error. */
-#define RITZ_CLOSE 1e-3
-/* What is below this part of the largest |H| is not looked at. */
-#define RITZ_AUDIBLE 1e-6
-/* A rigid motion is counted at this part of the limit of rigid ones at least. */
-#define RITZ_COUNT_LEAST 1e-3
-/* A thousand eps: rounding of a sum over some thousand modes. */
-#define RITZ_HEARD_ROUNDING 2.3e-13
-/* A response of 0 has a level too. */
-#define RITZ_LEAST_LEVEL 1e-300
 /* Of two ratios of error to tolerance the smaller one is nearer, but for
    rounding. */
 #define RITZ_SAME_RATIO 1e-6
-/* A pivot of Gram-Schmidt columns must exceed another by this factor: of
-   those that are equal to six digits the first is taken. */
+/* A pivot of Gram-Schmidt columns must exceed another by this factor: of those
+   that are equal to six digits the first is taken. */
 #define RITZ_PIVOT_TIE (1.0 + 1e-6)
-/* Default of `select: {tolerance}`: modes below this part of the largest
-   value of all configurations do not matter. */
-#define RITZ_SCENE_SELECT 1e-3
-/* Default of the composite set: directions below this part of the largest
-   are rounding, so that nothing else is removed. */
-#define RITZ_SCENE_COMPOSITE 1e-12
-/* Default of `attached: auto`: static gain to this part of its largest
-   singular value. */
+/* Defaults of a scene: of `select: {tolerance}`, as a part of the largest value
+   of all configurations, and of `attached: auto`, as a part of the largest
+   singular value of the static gain. */
+#define RITZ_SCENE_SELECT   1e-3
 #define RITZ_SCENE_ATTACHED 1e-3
-/* Numbers below this, or above 9e98, may take an exponent of three digits
-   once they are rounded. */
-#define RITZ_TWO_DIGIT_EXPONENT 1e-98
-/* Rounding of a few products of double-doubles, each within 2^-102: a
-   decimal that is nearer to a tie goes to strtod. */
-#define RITZ_DOUBLE_DOUBLE 0x1p-96
 
 #endif

@@ -267,7 +267,7 @@ static double pole_gain(const dominant_model *s, const candidate *pole,
     for (int64_t g = 0; g < s->R->num_groups; g++) {
         double share = find_direction(s, pole, g, b);
 
-        if (!(share > RITZ_LEAST_PARTICIPATION * s->most[g]))
+        if (!(share > RITZ_NEGLIGIBLE * s->most[g]))
             share = 0.0;
         if (s->R->group[g].kind == RITZ_LOADS_OUTPUTS) {
             out = share;
@@ -296,7 +296,7 @@ static double find_most(const dominant_model *s, int64_t g, double _Complex *b)
         terms = fmax(terms, s->terms[g][0] + size * (s->terms[g][1] +
                                                      size * s->terms[g][2]));
     }
-    return most > RITZ_LEAST_PARTICIPATION * terms ? most : HUGE_VAL;
+    return most > RITZ_NEGLIGIBLE * terms ? most : HUGE_VAL;
 }
 
 static ritz_status weigh_poles(dominant_model *s)
@@ -346,7 +346,7 @@ static void set_probe(const dominant_model *s, const candidate *pole, int64_t g,
 {
     double _Complex *b = probe->b + s->R->group[g].first;
     double share = find_direction(s, pole, g, b);
-    bool counts = share > RITZ_LEAST_PARTICIPATION * s->most[g];
+    bool counts = share > RITZ_NEGLIGIBLE * s->most[g];
 
     probe->s = pole->s;
     probe->group = g;

@@ -142,7 +142,7 @@ static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
         own[j] = ritz_dense_dot(p->F, j, &X, j);
         least[j] =
             fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
-                 RITZ_RESIDUAL_ROUNDING * ritz_dense_col_max(&X, j));
+                 RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
     }
     return RITZ_OK;
 }
@@ -247,7 +247,7 @@ static ritz_status choose_independent(const residual_problem *p,
         double own = ritz_dense_col(&R, j)[j];
         double all = own + kept_flexibility(p, j);
 
-        if (own > tolerance * all && own > RITZ_RESIDUAL_ROUNDING * answer[j])
+        if (own > tolerance * all && own > RITZ_FORCE_RELIEVED * answer[j])
             scale[j] = 1.0 / sqrt(own);
     }
     for (int64_t j = 0; j < R.ncol; j++)

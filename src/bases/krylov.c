@@ -147,7 +147,7 @@ static void clear_rounding(const ritz_dense *G, const ritz_dense *size,
             left += fabs(g[i] * x[i]);
             before += all[i] * fabs(x[i]);
         }
-        if (!(left > RITZ_CANCELLED_FORCE * before) && R->nrow > 0)
+        if (!(left > RITZ_FORCE_RELIEVED * before) && R->nrow > 0)
             memset(x, 0, (size_t)R->nrow * sizeof *x);
     }
 }

@@ -15,7 +15,7 @@
 /* Whether a motion is zero at all dofs: a plane model, a point mass. */
 static bool is_nothing(const ritz_dense *R, int64_t j, double largest)
 {
-    return ritz_dense_col_max(R, j) <= RITZ_NO_MOTION * largest;
+    return ritz_dense_col_max(R, j) <= RITZ_NEGLIGIBLE * largest;
 }
 
 static ritz_status make_rigid(const ritz_request *request, ritz_basis *out)

@@ -82,7 +82,7 @@ static bool keep_column(ritz_dense *Lt, int64_t j, double largest)
 
     for (int64_t i = 0; i < Lt->nrow; i++)
         most = fmax(most, fabs(ritz_dense_col(Lt, j)[i]));
-    return most > RITZ_ROW_UNMOVED * largest;
+    return most > RITZ_NEGLIGIBLE * largest;
 }
 
 /* Rows of all ports as columns of Lt, and what they are called. */

@@ -42,7 +42,7 @@ static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
             square += pow(c->grids.position[3 * g + i] - port->origin[i], 2.0);
         size = fmax(size, sqrt(square));
     }
-    size = size > RITZ_SAME_PLACE * it->size ? size : 1.0;
+    size = size > RITZ_SAME * it->size ? size : 1.0;
     RITZ_CHECK(ritz_rigid_geometry(c, port->origin, &R));
     RITZ_CHECK(ritz_dense_new(p, 6, &S));
     for (int64_t j = 0; j < 6; j++)
@@ -223,7 +223,7 @@ static int64_t count_double(const ritz_checker *it, const ritz_port *port,
                 square +=
                     pow(grids->position[3 * i + k] - grids->position[3 * j + k],
                         2.0);
-            if (sqrt(square) > RITZ_SAME_PLACE * it->size)
+            if (sqrt(square) > RITZ_SAME * it->size)
                 continue;
             count++;
             snprintf(name, sizeof name, "grid %" PRId64, grids->id[i]);

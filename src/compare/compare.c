@@ -66,7 +66,7 @@ static ritz_status list_halfway(const ritz_scene *scene, int64_t *rows,
     if (sweep >= 0 && scene->sweep[sweep].turns) {
         double step = first[h + sweep] - first[sweep];
 
-        if (fabs(last[sweep] + step - first[sweep] - 360.0) < RITZ_SAME_ANGLE)
+        if (fabs(last[sweep] + step - first[sweep] - 360.0) < RITZ_SAME)
             RITZ_CHECK(
                 add_between(scene, last, sweep, last[sweep] + step, rows, row));
     }

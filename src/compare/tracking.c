@@ -96,7 +96,7 @@ static int64_t find_paired_mode(const ritz_track_step *step, const bool *taken,
     for (int64_t j = 0; j < step->num_to; j++) {
         double mac = ritz_dense_col(&step->mac, j)[i];
 
-        if (!taken[j] && mac >= RITZ_TRACK_LIKE &&
+        if (!taken[j] && mac >= RITZ_SAME_MODE &&
             (best < 0 || mac > ritz_dense_col(&step->mac, best)[i]))
             best = j;
     }

@@ -300,19 +300,19 @@ static bool can_be_partner(const ritz_measuring *m, const ritz_partners *p,
     ritz_share share = share_of(p, g, r);
     double elsewhere = 0.0;
 
-    if (share.most < RITZ_PARTNER_ABOVE - RITZ_SHARE_ROUNDING ||
-        most_by_residual(m, g, r) < RITZ_PARTNER_ABOVE)
+    if (share.most < RITZ_SAME_MODE - RITZ_SHARE_ROUNDING ||
+        most_by_residual(m, g, r) < RITZ_SAME_MODE)
         return false;
     for (int64_t k = 0; k < p->count; k++)
         if (&p->group[k] != g)
             elsewhere += share_of(p, &p->group[k], r).least;
-    return 1.0 - elsewhere >= RITZ_PARTNER_ABOVE - RITZ_SHARE_ROUNDING;
+    return 1.0 - elsewhere >= RITZ_SAME_MODE - RITZ_SHARE_ROUNDING;
 }
 
 static bool must_be_partner(const ritz_partners *p, const ritz_mode_group *g,
                             int64_t r)
 {
-    return share_of(p, g, r).least > RITZ_PARTNER_ABOVE + RITZ_SHARE_ROUNDING;
+    return share_of(p, g, r).least > RITZ_SAME_MODE + RITZ_SHARE_ROUNDING;
 }
 
 static void free_partners(ritz_partners *partners)

@@ -207,8 +207,8 @@ static bool is_at_odds(const ritz_bounder *r)
         double zeta = r->rates[j] / sqrt(fmax(low, DBL_MIN));
         double next = r->rates[j + 1] / sqrt(fmax(high, DBL_MIN));
 
-        if (!r->coupled && high - low <= RITZ_EQUAL_PAIR * high &&
-            fabs(zeta - next) > RITZ_EQUAL_PAIR * next)
+        if (!r->coupled && high - low <= RITZ_CLOSE * high &&
+            fabs(zeta - next) > RITZ_CLOSE * next)
             return true;
     }
     return false;
@@ -334,7 +334,7 @@ static ritz_status bound_band(ritz_bounder *r, const double band_hz[2],
             *at = hertz[k];
         }
     }
-    best = fmax(best, RITZ_RESPONSE_NOTHING * r->largest);
+    best = fmax(best, RITZ_NEGLIGIBLE * r->largest);
     top = best;
     for (int64_t k = 0; k + 1 < count && !r->coupled; k++)
         top = fmax(top,

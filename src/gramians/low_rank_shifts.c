@@ -147,7 +147,7 @@ static ritz_status orthonormal_window(const ritz_low_rank_window *window,
             ritz_dense_col(&G, j)[i] =
                 size[i] * ritz_dense_col(&window->G[0], j)[i] * size[j];
     RITZ_CHECK(symmetric_modes(&G, e));
-    while (first < c && !(e[first] > RITZ_WINDOW_DEPENDENT * e[c - 1]))
+    while (first < c && !(e[first] > RITZ_SQUARED_DEPENDENT * e[c - 1]))
         first++;
     RITZ_CHECK(ritz_dense_columns(&G, first, c - first, out));
     for (int64_t j = 0; j < out->ncol; j++)

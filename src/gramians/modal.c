@@ -137,12 +137,11 @@ bool ritz_modes_coupled(const ritz_modal_model *modes, ritz_coupling *out)
             double off = fmax(fabs(ritz_dense_col(d, j)[i]),
                               fabs(ritz_dense_col(d, i)[j]));
 
-            if (off <=
-                RITZ_DAMPING_COUPLES * own + RITZ_DAMPING_ROUNDING * largest)
+            if (off <= RITZ_DAMPING_COUPLES * own + RITZ_NEGLIGIBLE * largest)
                 continue;
             out->hertz[0] = ritz_eigen_hertz(modes->lambda[i]);
             out->hertz[1] = ritz_eigen_hertz(modes->lambda[j]);
-            out->ratio = off / fmax(own, RITZ_DAMPING_ROUNDING * largest);
+            out->ratio = off / fmax(own, RITZ_NEGLIGIBLE * largest);
             return true;
         }
     return false;

@@ -150,10 +150,10 @@ static int64_t count_open(const ritz_dense *A)
 
     (void)LAPACKE_dtrcon(LAPACK_COL_MAJOR, '1', 'U', 'N', SIX, A->val, SIX,
                          &rcond);
-    if (rcond > RITZ_LOOSE_MOTION)
+    if (rcond > RITZ_HALF_DIGITS)
         return 0;
     while (rank < SIX - 1 && fabs(ritz_dense_col(A, rank)[rank]) >
-                                 RITZ_LOOSE_MOTION * fabs(A->val[0]))
+                                 RITZ_HALF_DIGITS * fabs(A->val[0]))
         rank++;
     return SIX - rank;
 }

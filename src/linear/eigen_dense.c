@@ -100,7 +100,7 @@ static ritz_status is_definite(const ritz_dense *M, ritz_dense *C, bool *out)
         return RITZ_OK;
     RITZ_CHECK(lapack_status(
         LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, C->val, n, norm, &rcond)));
-    *out = rcond > RITZ_MASS_WELL_CONDITIONED;
+    *out = rcond > RITZ_WELL_CONDITIONED;
     return RITZ_OK;
 }
 

@@ -40,7 +40,7 @@ static ritz_status factor_cholesky(ritz_dense *E, bool *good)
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = j; i < n; i++)
             ritz_dense_col(E, j)[i] *= root[i];
-    *good = rcond > RITZ_FRAME_CONDITION;
+    *good = rcond > RITZ_WELL_CONDITIONED;
     return RITZ_OK;
 }
 

@@ -140,7 +140,7 @@ static ritz_status solve_dense(const eliminator *s, const int64_t *circle,
         RITZ_REFUSE_IF(LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, A->val, n, size,
                                       &rcond) != 0,
                        RITZ_ERR_MEMORY, "no memory for the constraints");
-    RITZ_REFUSE_IF(!(rcond > RITZ_UNDETERMINED), RITZ_ERR_SINGULAR,
+    RITZ_REFUSE_IF(!(rcond > RITZ_WELL_CONDITIONED), RITZ_ERR_SINGULAR,
                    "%s leaves '%s' undetermined%s",
                    ritz_equations_cite(eq, eq->source[circle[0]], cited),
                    ritz_dof_name(eq->dependent[circle[0]], name),

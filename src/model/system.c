@@ -48,8 +48,7 @@ static ritz_status read_part(const ritz_system *system, const char *part,
 static bool has_settings(const ritz_configuration *c, const double *wanted)
 {
     for (int64_t k = 0; k < c->num_settings; k++)
-        if (!isnan(wanted[k]) &&
-            fabs(c->setting[k] - wanted[k]) > RITZ_SAME_SETTING)
+        if (!isnan(wanted[k]) && fabs(c->setting[k] - wanted[k]) > RITZ_SAME)
             return false;
     return true;
 }

@@ -161,7 +161,7 @@ static ritz_status solve_rigid(ritz_dense *S_n, const ritz_dense *S_m,
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, 'I', 6, S_n->val, 6, size,
                              &rcond);
     RITZ_REFUSE_IF(
-        !(rcond > RITZ_LOOSE_MOTION), RITZ_ERR_SINGULAR,
+        !(rcond > RITZ_HALF_DIGITS), RITZ_ERR_SINGULAR,
         "the independent dofs leave it free to move as a rigid body");
     if (count > 0)
         RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'T', 6, count, S_n->val,
@@ -300,7 +300,7 @@ ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
                                       (lapack_int)count, Vt, SIX, work) != 0,
                        RITZ_ERR_CONVERGENCE,
                        "singular values of the average do not converge");
-    while (rank < least && sigma[rank] > RITZ_LOOSE_MOTION * sigma[0])
+    while (rank < least && sigma[rank] > RITZ_HALF_DIGITS * sigma[0])
         rank++;
     list_loose(rank, Vt, &new);
     RITZ_CHECK(multiply_average(over, &U, rank, sigma, Vt, &new));
@@ -322,7 +322,7 @@ bool ritz_average_tells(const ritz_average *average, const double row[static 6])
 
         for (int64_t i = 0; i < SIX; i++)
             part += scaled[i] * average->loose[SIX * k + i];
-        /* a loose motion is known to eps over the gap, RITZ_LOOSE_MOTION */
+        /* a loose motion is known to eps over the gap, RITZ_HALF_DIGITS */
         if (fabs(part) > RITZ_LOOSE_PART * norm)
             return false;
     }

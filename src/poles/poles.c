@@ -372,7 +372,7 @@ static ritz_status acts_on(const ritz_dense *A, const ritz_dense *N, bool *out)
     RITZ_CHECK(ritz_dense_mul(A, N, &AN));
     RITZ_CHECK(ritz_dense_mul_tn(A, N, &NA));
     if (fmax(ritz_dense_max(&AN), ritz_dense_max(&NA)) >
-        RITZ_NO_COUPLING * ritz_dense_max(A) * ritz_dense_max(N))
+        RITZ_NEGLIGIBLE * ritz_dense_max(A) * ritz_dense_max(N))
         *out = true;
     return RITZ_OK;
 }

@@ -95,7 +95,7 @@ static ritz_status take_step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
     *move = 0.0;
     last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x, beside it */
     if (last)
-        status = factor_at(r, *s * (1.0 + RITZ_BESIDE_EIGENVALUE));
+        status = factor_at(r, *s * (1.0 + RITZ_NUDGE));
     if (last && status == RITZ_ERR_SINGULAR)
         return RITZ_OK;
     RITZ_TRY(status);

@@ -155,7 +155,7 @@ static void measure_change(const ritz_rest_solver *s, const ritz_dense *R,
             continue;
         *change = fmax(*change, moved / (RITZ_SERIES_SETTLED * size +
                                          RITZ_SERIES_NEGLIGIBLE * seen));
-        *apart = fmax(*apart, moved / (RITZ_SERIES_UNSETTLED * size +
+        *apart = fmax(*apart, moved / (RITZ_REFINED_NEARLY * size +
                                        RITZ_SERIES_WITHIN * seen));
     }
 }
@@ -191,7 +191,7 @@ static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
         !(apart <= 1.0), RITZ_ERR_CONVERGENCE,
         "what modes above the band answer did not settle in %d steps: "
         "the last one changed it by %.1e",
-        (int)MOST_STEPS, apart * RITZ_SERIES_UNSETTLED);
+        (int)MOST_STEPS, apart * RITZ_REFINED_NEARLY);
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)
         s->whole[j] = fmax(s->whole[j], ritz_dense_col_max(&R, j));
     s->begun = true;

@@ -287,7 +287,7 @@ static bool is_listed(const ritz_spectrum *spectrum, int64_t count,
                       double _Complex s, const ritz_dense *x)
 {
     for (int64_t j = 0; j < count; j++)
-        if (cabs(spectrum->s[j] - s) <= RITZ_SAME_POLE * cabs(s) &&
+        if (cabs(spectrum->s[j] - s) <= RITZ_SAME * cabs(s) &&
             correlation_of(spectrum, j, x) > RITZ_SAME_SHAPE)
             return true;
     return false;
@@ -330,8 +330,7 @@ done:
 /* The first that are asked for. */
 static void keep_first(const ritz_span *span, ritz_spectrum *spectrum)
 {
-    double limit =
-        sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + RITZ_SAME_POLE);
+    double limit = sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + RITZ_SAME);
     int64_t count = 0;
 
     while (count < spectrum->count &&

@@ -51,7 +51,7 @@ static double mode_size(const ranked_values *s, int64_t mode)
 {
     double size = fabs(s->ranking->value[mode]);
 
-    return size > RITZ_EQUAL_VALUES * s->largest ? size : 0.0;
+    return size > RITZ_NEGLIGIBLE * s->largest ? size : 0.0;
 }
 
 /* The mode with a number; -1 if there is none. */

@@ -139,7 +139,7 @@ static ritz_status invert_mass(const ritz_dense *M_s, ritz_dense *X)
                          lambda);
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
                    "the mass of the interface has no eigenvalues");
-    while (r < p && !(lambda[r] > RITZ_MASSLESS_INTERFACE * lambda[p - 1]))
+    while (r < p && !(lambda[r] > RITZ_NEGLIGIBLE * lambda[p - 1]))
         r++;
     RITZ_CHECK(ritz_dense_new(p - r, p, X));
     for (int64_t i = 0; i < p; i++)

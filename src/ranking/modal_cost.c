@@ -252,7 +252,7 @@ static bool is_same(const loop *l, const weighting_trial *a,
                     const weighting_trial *b)
 {
     for (int64_t i = 0; i < l->p; i++)
-        if (!(fabs(a->q[i] - b->q[i]) <= RITZ_SAME_WEIGHTS))
+        if (!(fabs(a->q[i] - b->q[i]) <= RITZ_SAME))
             return false;
     return memcmp(a->taken, b->taken, (size_t)l->m * sizeof *a->taken) == 0;
 }

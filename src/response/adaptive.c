@@ -288,7 +288,7 @@ static ritz_status pursue_zero(ritz_mesh *mesh, int64_t v, double low,
             return RITZ_OK;
         z = w - H / slope;
         before = w;
-        still = H == 0.0 || fabs(creal(z) - w) <= RITZ_DIP_SETTLED * w;
+        still = H == 0.0 || fabs(creal(z) - w) <= RITZ_PEAK_PLACED * w;
         if (!still)
             w = creal(z);
         if (!(w > low && w < high))

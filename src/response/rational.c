@@ -451,7 +451,7 @@ static void add_pole(rational_nodes *s, double _Complex pole)
     int64_t there = 0;
 
     for (int64_t k = 0; k < s->num_poles; k++)
-        there += cabs(s->pole[k] - pole) <= RITZ_SAME_POLE * cabs(pole);
+        there += cabs(s->pole[k] - pole) <= RITZ_SAME * cabs(pole);
     if (there < 2)
         s->pole[s->num_poles++] = pole;
 }

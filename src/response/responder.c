@@ -121,7 +121,7 @@ void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
 
     ritz_channel_scales(num_outputs, num_inputs, peak, scale);
     for (int64_t v = 0; v < values; v++) {
-        double least = RITZ_CHANNEL_ROUNDING * level[v];
+        double least = RITZ_NEGLIGIBLE * level[v];
 
         if (peak[v] <= least)
             scale[v] = fmax(scale[v], least / tolerance);

@@ -236,7 +236,7 @@ ritz_status ritz_scene_configurations(const ritz_yaml *yaml,
 static bool rows_agree(int64_t n, const double *a, const double *b)
 {
     for (int64_t k = 0; k < n; k++)
-        if (!(fabs(a[k] - b[k]) <= RITZ_SAME_SETTING))
+        if (!(fabs(a[k] - b[k]) <= RITZ_SAME))
             return false;
     return true;
 }

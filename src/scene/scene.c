@@ -186,7 +186,7 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
     scene = {.source = &ritz_container_source,
              .select_by = "hankel",
              .select_tolerance = RITZ_SCENE_SELECT,
-             .composite_tolerance = RITZ_SCENE_COMPOSITE,
+             .composite_tolerance = RITZ_NEGLIGIBLE,
              .attached_tolerance = RITZ_SCENE_ATTACHED};
 
     RITZ_CHECK_NEW(scene.path, (int64_t)strlen(path) + 1);

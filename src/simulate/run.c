@@ -552,7 +552,7 @@ ritz_status ritz_simulation_difference(const ritz_simulation *exact,
                    RITZ_ERR_ARGUMENT, "two simulations do not fit each other");
     for (int64_t k = 0; k < exact->count; k++)
         RITZ_REFUSE_IF(fabs(exact->seconds[k] - other->seconds[k]) >
-                           RITZ_SAME_TIME * exact->seconds[exact->count - 1],
+                           RITZ_SAME * exact->seconds[exact->count - 1],
                        RITZ_ERR_ARGUMENT,
                        "two simulations have different times");
     for (int64_t i = 0; i < p; i++) {

@@ -68,7 +68,7 @@ static int64_t choose(const ritz_dense *Q, const ritz_poles *reduced,
             chosen = r;
         }
     }
-    return *best >= RITZ_PARTNER_ABOVE ? chosen : -1;
+    return *best >= RITZ_SAME_MODE ? chosen : -1;
 }
 
 static int ascending(const void *left, const void *right)

@@ -44,7 +44,7 @@ static double undamped(const ritz_sides *sides)
         for (int64_t k = 0; k < count[t]; k++)
             if (isfinite(both[t]->zeta[k]))
                 largest = fmax(largest, fabs(both[t]->zeta[k]));
-    return RITZ_UNDAMPED_WITHIN * largest;
+    return RITZ_NEGLIGIBLE * largest;
 }
 
 /*

@@ -196,7 +196,7 @@ static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
     const int64_t values = s->full->values;
     double least =
         sides->reduced.num_rigid > 0
-            ? RITZ_BAND_START * sides->full->band_hz[1] * (1.0 - RITZ_BAND_EDGE)
+            ? RITZ_BAND_START * sides->full->band_hz[1] * (1.0 - RITZ_SAME)
             : 0.0;
 
     gap->flexible = fmax(gap->flexible, s->full->flexible);
@@ -226,7 +226,7 @@ static void compare_levels(const sweep_pair *s, ritz_gap *gap)
 
     for (int64_t k = 0; k < s->full->count * values; k++) {
         double a = cabs(s->full->full[k]);
-        double b = fmax(cabs(s->reduced[k]), RITZ_LEAST_LEVEL);
+        double b = fmax(cabs(s->reduced[k]), RITZ_LEAST_SCALE);
 
         if (a > RITZ_AUDIBLE * gap->largest &&
             fabs(20.0 * log10(b / a)) > gap->db) {

@@ -25,8 +25,8 @@ bool ritz_in_band(const double band_hz[2], double lambda)
 {
     double hertz = ritz_eigen_hertz(lambda);
 
-    return hertz >= band_hz[0] * (1.0 - RITZ_BAND_EDGE) &&
-           hertz <= band_hz[1] * (1.0 + RITZ_BAND_EDGE);
+    return hertz >= band_hz[0] * (1.0 - RITZ_SAME) &&
+           hertz <= band_hz[1] * (1.0 + RITZ_SAME);
 }
 
 static double norm(int64_t n, const double *x, int64_t stride)
