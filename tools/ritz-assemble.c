@@ -1,7 +1,6 @@
 /* ritz-assemble - the components of a scene joined at its configurations. */
 #include "base/alloc.h"
-#include "print/describe.h"
-#include "print/tracks.h"
+#include "print/print.h"
 
 #include <ritz/assembly.h>
 
@@ -12,12 +11,11 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
 {
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_system) system = {0};
-    ritz_stamp stamp = {0};
 
     RITZ_CHECK(ritz_stage_new(scene, &stage));
     RITZ_CHECK(ritz_assemble(&stage, at, &system));
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_system(run->output, &system, &stamp));
+    RITZ_CHECK(
+        ritz_container_write_system(run->output, &system, cli_stamp(run)));
     cli_say(run, "%s:", run->output);
     RITZ_CHECK(describe_system(run, &system));
     RITZ_CHECK(tracks_report(run, &stage, &system, tracks));
@@ -29,15 +27,14 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
                            const char *at)
 {
     RITZ_OWN(ritz_component) full = {0};
-    ritz_stamp stamp = {0};
     RITZ_OWN_ARRAY double *setting =
         calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
 
     RITZ_REFUSE_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
     RITZ_CHECK(ritz_scene_settings(scene, at ? at : "", setting));
     RITZ_CHECK(ritz_assemble_full(scene, setting, &full));
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_component(run->output, &full, &stamp));
+    RITZ_CHECK(
+        ritz_container_write_component(run->output, &full, cli_stamp(run)));
     cli_say(run, "%s:", run->output);
     describe_component(run, &full);
     cli_record(run, "full", full.num_dofs);

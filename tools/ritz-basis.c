@@ -1,6 +1,6 @@
 /* ritz-basis - find the subspace in which a component is reduced. */
 #include "cli/options.h"
-#include "print/basis.h"
+#include "print/print.h"
 
 static void list_methods(void)
 {
@@ -24,18 +24,18 @@ int main(int argc, char **argv)
 {
     enum { NUM_OWN = 6 };
     choice_words choice = {0};
-    basis_wish asked = {.request = RITZ_REQUEST_NONE};
-    ritz_request *request = &asked.request;
+    basis_options given = {.request = RITZ_REQUEST_NONE};
+    ritz_request *request = &given.request;
     cli_option options[NUM_OWN + WORDS_MOST + 1] = {
         CLI_INT("modes", &request->modes, "N", 0, 100000,
                 "how many flexible vectors (of states: states), or"),
         CLI_REAL("up-to-hz", &request->up_to_hz, "F", 1e-9, 1e9,
                  "every mode up to this frequency"),
-        CLI_TEXT("attach", &asked.ports, "PORT[,PORT]",
+        CLI_TEXT("attach", &given.ports, "PORT[,PORT]",
                  "keep the dofs of these ports; '' for none [all]"),
         CLI_REAL("tolerance", &request->tolerance, "X", 1e-15, 1e-2,
                  "relative, below which a column depends on others"),
-        CLI_LIST("neighbour", &asked.neighbours, "PORT=FILE:PORT",
+        CLI_LIST("neighbour", &given.neighbours, "PORT=FILE:PORT",
                  "hang this component on a port"),
         CLI_ACTION("list", list_methods, "list methods and their papers"),
     };
@@ -56,18 +56,18 @@ int main(int argc, char **argv)
 
     words_add(&choice, 0, options + NUM_OWN);
     cli_parse(&program, argc, argv, &run);
-    asked.method =
+    given.method =
         cli_choose(&program, "no method", run.operand[0], ritz_methods);
-    if (asked.ports && !(asked.method->uses & RITZ_USES_ATTACHED))
+    if (given.ports && !(given.method->uses & RITZ_USES_ATTACHED))
         cli_refuse(&program,
                    "%s keeps no attached dofs, --attach is not for it",
-                   asked.method->name);
-    if (asked.neighbours.count > 0 &&
-        !(asked.method->uses & RITZ_USES_NEIGHBOUR))
+                   given.method->name);
+    if (given.neighbours.count > 0 &&
+        !(given.method->uses & RITZ_USES_NEIGHBOUR))
         cli_refuse(&program, "%s loads nothing, --neighbour is not for it",
-                   asked.method->name);
+                   given.method->name);
     words_take(&program, &choice, &request->choice);
-    if (ritz_request_check(asked.method, request) != RITZ_OK)
+    if (ritz_request_check(given.method, request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
-    return cli_finish(&run, basis_run(&run, &asked));
+    return cli_finish(&run, basis_run(&run, &given));
 }

@@ -1,45 +1,45 @@
 /* ritz-compare - two-stage reduction of a scene over all configurations. */
-#include "print/comparison.h"
+#include "print/print.h"
 
 #include <ritz/base.h>
 
 /* "1e-12,1e-6" */
 static void read_tolerances(const cli_program *program, const char *list,
-                            comparison_wish *asked)
+                            comparison_options *given)
 {
     char word[RITZ_NAME_SIZE];
 
     while (cli_next(&list, word)) {
-        double *into = &asked->tolerance[asked->num_tolerances];
+        double *into = &given->tolerance[given->num_tolerances];
 
-        if (asked->num_tolerances == COMPARISON_MOST_TOLERANCES)
+        if (given->num_tolerances == COMPARISON_MOST_TOLERANCES)
             cli_refuse(program, "--tolerances takes %d numbers, not more",
                        (int)COMPARISON_MOST_TOLERANCES);
         if (!ritz_text_real(word, into) || !(*into > 0.0 && *into < 1.0))
             cli_refuse(program,
                        "--tolerances takes numbers between 0 and 1, not '%s'",
                        word);
-        asked->num_tolerances++;
+        given->num_tolerances++;
     }
 }
 
 int main(int argc, char **argv)
 {
-    comparison_wish asked = {0};
+    comparison_options given = {0};
     const char *tolerances = NULL;
     const cli_option options[] = {
-        CLI_TEXT("components", &asked.prefix, "PREFIX",
+        CLI_TEXT("components", &given.prefix, "PREFIX",
                  "write the reduced components too, as PREFIXname.h5"),
-        CLI_TEXT("report", &asked.report, "FILE", "write the report there too"),
-        CLI_TEXT("extraneous", &asked.extraneous, "WORD",
+        CLI_TEXT("report", &given.report, "FILE", "write the report there too"),
+        CLI_TEXT("extraneous", &given.extraneous, "WORD",
                  "modes of the system that stand for no kept one: keep, "
                  "remove, out-of-band [the scene's]"),
-        CLI_TEXT("tracks", &asked.tracks, "FILE",
+        CLI_TEXT("tracks", &given.tracks, "FILE",
                  "write which mode of stage 1 is which at every "
                  "configuration, as a table with tabs"),
         CLI_TEXT("tolerances", &tolerances, "X[,X]",
                  "chart composite tolerances against orders and errors"),
-        CLI_TEXT("tolerance-table", &asked.tolerance_table, "FILE",
+        CLI_TEXT("tolerance-table", &given.tolerance_table, "FILE",
                  "write that chart as a table with tabs [tolerances 1e-12 to "
                  "1e-2]"),
         {0},
@@ -60,9 +60,9 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (asked.tolerance_table && !tolerances)
+    if (given.tolerance_table && !tolerances)
         tolerances = "1e-12,1e-10,1e-8,1e-6,1e-5,1e-4,1e-3,1e-2";
     if (tolerances)
-        read_tolerances(&program, tolerances, &asked);
-    return cli_finish(&run, comparison_run(&run, &asked));
+        read_tolerances(&program, tolerances, &given);
+    return cli_finish(&run, comparison_run(&run, &given));
 }

@@ -1,6 +1,6 @@
 /* ritz-export - a reduced model or a response as a file of others. */
 #include "cli/options.h"
-#include "print/export.h"
+#include "print/print.h"
 
 static void list_formats(void)
 {
@@ -12,8 +12,8 @@ static void list_formats(void)
 int main(int argc, char **argv)
 {
     const char *to = NULL;
-    export_wish asked = {0};
-    ritz_export_request *request = &asked.request;
+    export_options given = {0};
+    ritz_export_request *request = &given.request;
     const cli_option options[] = {
         CLI_TEXT("to", &to, "FORMAT", "one of those that --list shows"),
         CLI_TEXT("matrix", &request->matrices, "NAME[,NAME]",
@@ -22,14 +22,14 @@ int main(int argc, char **argv)
         CLI_FLAG("dense", &request->dense, "every entry, zeros too (output4)"),
         CLI_INT("digits", &request->digits, "N", 1, 17,
                 "significant, of text; 17 if not given"),
-        ORDER_OPTION(&asked.order),
-        DAMPERS_OPTION(&asked.damper),
-        CLI_FLAG("force", &asked.force,
+        ORDER_OPTION(&given.order),
+        DAMPERS_OPTION(&given.damper),
+        CLI_FLAG("force", &given.force,
                  "even if nothing is known of the errors, or if unstable"),
         CLI_TEXT("modes", &request->modes, "LIST",
                  "shapes of these modes, or columns, 1-6,9 (vtu, xdmf) [all; "
                  "10 of a component]"),
-        CLI_TEXT("component", &asked.component, "FILE",
+        CLI_TEXT("component", &given.component, "FILE",
                  "the component that a basis is of (vtu, xdmf)"),
         CLI_ACTION("list", list_formats, "list formats and what they take"),
         {0},
@@ -52,11 +52,11 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv, &run);
     if (!to)
         cli_refuse(&program, "no format, name it with --to; --list shows all");
-    asked.exporter = cli_choose(&program, "no format", to, ritz_exporters);
-    if (ritz_export_check(asked.exporter, request) != RITZ_OK)
+    given.exporter = cli_choose(&program, "no format", to, ritz_exporters);
+    if (ritz_export_check(given.exporter, request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     request->output = run.output;
-    if (asked.component && !asked.exporter->write_shapes)
+    if (given.component && !given.exporter->write_shapes)
         cli_refuse(&program, "--component is for shapes of a basis");
-    return cli_finish(&run, export_run(&run, &asked));
+    return cli_finish(&run, export_run(&run, &given));
 }

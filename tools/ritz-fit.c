@@ -1,6 +1,6 @@
 /* ritz-fit - the smallest model that meets a tolerance. */
 #include "cli/options.h"
-#include "print/fit.h"
+#include "print/print.h"
 
 enum { NUM_OWN = 14 };
 
@@ -25,16 +25,16 @@ static const char *tolerance_help(void)
 
 int main(int argc, char **argv)
 {
-    fit_wish asked = {.request = RITZ_FIT_NONE, .seed = 1};
-    ritz_fit_request *r = &asked.request;
+    fit_options given = {.request = RITZ_FIT_NONE, .seed = 1};
+    ritz_fit_request *r = &given.request;
     choice_words choice = {0};
     cli_option options[NUM_OWN + WORDS_MOST + 1] = {
-        CLI_TEXT("tolerance", &asked.tolerance, "[MEASURE=]X[,MEASURE=X]",
+        CLI_TEXT("tolerance", &given.tolerance, "[MEASURE=]X[,MEASURE=X]",
                  tolerance_help()),
-        CLI_TEXT("band-hz", &asked.band, "F,F",
+        CLI_TEXT("band-hz", &given.band, "F,F",
                  "where it is to hold [the scene's]"),
-        DAMPERS_OPTION(&asked.damper),
-        CLI_TEXT("methods", &asked.methods, "M[,M]",
+        DAMPERS_OPTION(&given.damper),
+        CLI_TEXT("methods", &given.methods, "M[,M]",
                  "which, or all; of a scene compare too [those of second "
                  "order with a number of modes]"),
         CLI_TEXT("attach", &r->attach, "PORT[,PORT]",
@@ -45,16 +45,16 @@ int main(int argc, char **argv)
                 "random frequencies at which an answer is confirmed"),
         CLI_INT("between", &r->num_between, "N", 0, 1000,
                 "random configurations at which it is confirmed"),
-        CLI_INT("seed", &asked.seed, "N", 0, 1e15, "of those"),
-        CLI_FLAG("all", &asked.all,
+        CLI_INT("seed", &given.seed, "N", 0, 1e15, "of those"),
+        CLI_FLAG("all", &given.all,
                  "compare all methods at equal error and at equal order"),
-        CLI_INT("order", &asked.order, "N", 1, 100000,
+        CLI_INT("order", &given.order, "N", 1, 100000,
                 "that equal order [the answer's]"),
-        CLI_TEXT("components", &asked.prefix, "PREFIX",
+        CLI_TEXT("components", &given.prefix, "PREFIX",
                  "of a scene: write the reduced components too, as "
                  "PREFIXname.h5"),
-        CLI_TEXT("report", &asked.report, "FILE", "write the report there too"),
-        DAMPING_OPTION(&asked.damping),
+        CLI_TEXT("report", &given.report, "FILE", "write the report there too"),
+        DAMPING_OPTION(&given.damping),
     };
     const cli_program program = {
         .name = "ritz-fit",
@@ -73,7 +73,7 @@ int main(int argc, char **argv)
 
     words_add(&choice, RITZ_USES_DAMPING | RITZ_USES_BAND, options + NUM_OWN);
     cli_parse(&program, argc, argv, &run);
-    fit_take(&program, &asked);
+    fit_take(&program, &given);
     words_take(&program, &choice, &r->choice);
-    return cli_finish(&run, fit_search(&run, &asked));
+    return cli_finish(&run, fit_search(&run, &given));
 }

@@ -1,6 +1,6 @@
 /* ritz-frf - frequency response from inputs to outputs. */
 #include "cli/options.h"
-#include "print/responses.h"
+#include "print/print.h"
 
 #include <math.h>
 
@@ -18,41 +18,41 @@ static const cli_program about = {
 
 int main(int argc, char **argv)
 {
-    responses_wish asked = {.from_hz = (double)NAN,
-                            .to_hz = (double)NAN,
-                            .up_to_hz = (double)NAN,
-                            .tolerance = (double)NAN,
-                            .method = "auto"};
-    loops_wish *loops = &asked.loops;
+    response_options given = {.from_hz = (double)NAN,
+                              .to_hz = (double)NAN,
+                              .up_to_hz = (double)NAN,
+                              .tolerance = (double)NAN,
+                              .method = "auto"};
+    loop_options *loops = &given.loops;
     const cli_option options[] = {
-        CLI_REAL("from-hz", &asked.from_hz, "F", 0.0, 1e9,
+        CLI_REAL("from-hz", &given.from_hz, "F", 0.0, 1e9,
                  "start [the band's, or a thousandth "
                  "of the end]"),
-        CLI_REAL("to-hz", &asked.to_hz, "F", 1e-9, 1e9,
+        CLI_REAL("to-hz", &given.to_hz, "F", 1e-9, 1e9,
                  "end [the band's of a system]"),
-        CLI_INT("points", &asked.points, "N", 2, 1000000,
+        CLI_INT("points", &given.points, "N", 2, 1000000,
                 "how many evenly spaced points [400; with --tolerance 20]"),
-        CLI_FLAG("log", &asked.log,
+        CLI_FLAG("log", &given.log,
                  "evenly spaced in the logarithm of frequency"),
-        CLI_FLAG("no-refine", &asked.no_refine,
+        CLI_FLAG("no-refine", &given.no_refine,
                  "add no points at and around resonances"),
-        CLI_TEXT("points-of", &asked.points_of, "FILE",
+        CLI_TEXT("points-of", &given.points_of, "FILE",
                  "the points of another response instead"),
-        CLI_TEXT("method", &asked.method, "NAME",
+        CLI_TEXT("method", &given.method, "NAME",
                  "one of those that --list shows"),
-        CLI_REAL("tolerance", &asked.tolerance, "X", 1e-9, 0.5,
+        CLI_REAL("tolerance", &given.tolerance, "X", 1e-9, 0.5,
                  "as many points as keep it between them, of the largest |H|"),
-        CLI_REAL("up-to-hz", &asked.up_to_hz, "F", 1e-9, 1e9,
+        CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
                  "modes of a component up to this one [three times the end]"),
         CLI_ACTION("list", responses_list, "list methods and what each is for"),
-        MODEL_OPTIONS(&asked.model),
-        CLI_FLAG("singular-values", &asked.singular,
+        MODEL_OPTIONS(&given.model),
+        CLI_FLAG("singular-values", &given.singular,
                  "of H at each point too, and the largest between points"),
-        CLI_FLAG("over-limits", &asked.over_limits,
+        CLI_FLAG("over-limits", &given.over_limits,
                  "singular values of outputs divided by their limits"),
-        CLI_LIST("input-size", &asked.input_size, "NAME=X",
+        CLI_LIST("input-size", &given.input_size, "NAME=X",
                  "singular values of this input multiplied by X"),
-        CLI_FLAG("zeros", &asked.zeros, "list the zeros of every channel"),
+        CLI_FLAG("zeros", &given.zeros, "list the zeros of every channel"),
         CLI_TEXT("controller", &loops->controller, "FILE",
                  "close a loop with this state space"),
         CLI_LIST("connect", &loops->connect, "OUT=IN",
@@ -71,9 +71,9 @@ int main(int argc, char **argv)
     program.options = options;
     cli_parse(&program, argc, argv, &run);
     loops_check(&program, loops);
-    responses_check(&program, &asked);
-    if (asked.points_of && !isnan(asked.tolerance))
+    responses_check(&program, &given);
+    if (given.points_of && !isnan(given.tolerance))
         cli_refuse(&program, "--points-of gives the points, --tolerance "
                              "chooses them: one of the two");
-    return cli_finish(&run, responses_run(&run, &asked));
+    return cli_finish(&run, responses_run(&run, &given));
 }

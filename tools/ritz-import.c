@@ -1,5 +1,5 @@
 /* ritz-import - matrices and geometry of an FE code become a component. */
-#include "print/import.h"
+#include "print/print.h"
 
 #include <string.h>
 
@@ -23,7 +23,7 @@ static void refuse_others(const cli_program *program)
 
 /* The options stand in main, which has room for nothing else. */
 static int import_files(const cli_option *options, int argc, char **argv,
-                        import_wish *asked)
+                        import_options *given)
 {
     const cli_program program = {
         .name = "ritz-import",
@@ -38,62 +38,62 @@ static int import_files(const cli_option *options, int argc, char **argv,
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (asked->space.matrices) {
+    if (given->space.matrices) {
         refuse_others(&program);
-        asked->space.units = asked->request.units;
-        return cli_finish(&run, import_states(&run, &asked->space));
+        given->space.units = given->request.units;
+        return cli_finish(&run, import_states(&run, &given->space));
     }
-    if (asked->space.inputs || asked->space.outputs)
+    if (given->space.inputs || given->space.outputs)
         cli_refuse(&program, "--input-names and --output-names are for "
                              "--state-space");
-    if (!asked->request.stiffness && !asked->request.mass)
+    if (!given->request.stiffness && !given->request.mass)
         cli_refuse(&program, "nothing to import: name --stiffness, --mass or "
                              "both, or --state-space");
-    return cli_finish(&run, import_component(&run, asked));
+    return cli_finish(&run, import_component(&run, given));
 }
 
 int main(int argc, char **argv)
 {
-    import_wish asked = {0};
+    import_options given = {0};
     const cli_option options[] = {
-        CLI_TEXT("stiffness", &asked.request.stiffness, "F",
+        CLI_TEXT("stiffness", &given.request.stiffness, "F",
                  "matrix K, F being FILE[:NAME[#K]]; absent: a rigid body"),
-        CLI_TEXT("mass", &asked.request.mass, "F", "matrix M"),
-        CLI_TEXT("damping", &asked.request.damping, "F", "viscous damping D"),
-        CLI_TEXT("structural-damping", &asked.request.structural_damping, "F",
+        CLI_TEXT("mass", &given.request.mass, "F", "matrix M"),
+        CLI_TEXT("damping", &given.request.damping, "F", "viscous damping D"),
+        CLI_TEXT("structural-damping", &given.request.structural_damping, "F",
                  "structural damping K4, of K + i K4"),
-        CLI_LIST("geometric-stiffness", &asked.load, "F@LOAD",
+        CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
                  "geometric stiffness of a unit load"),
-        CLI_TEXT("bulk", &asked.request.bulk, "F",
+        CLI_TEXT("bulk", &given.request.bulk, "F",
                  "NASTRAN bulk data: grids, frames, sets"),
-        CLI_TEXT("dofs", &asked.request.dofs, "F",
+        CLI_TEXT("dofs", &given.request.dofs, "F",
                  "what each row is: GRID COMP a line, COMP 0 a scalar point"),
-        CLI_LIST("port", &asked.port, "NAME=GRIDS[:COMPS]",
+        CLI_LIST("port", &given.port, "NAME=GRIDS[:COMPS]",
                  "dofs by which other bodies hold this one"),
-        CLI_LIST("rigid-port", &asked.rigid, "NAME=GRIDS[:COMPS]",
+        CLI_LIST("rigid-port", &given.rigid, "NAME=GRIDS[:COMPS]",
                  "port of a new grid amid these, which they follow rigidly"),
-        CLI_LIST("averaged-port", &asked.averaged, "NAME=GRIDS[:COMPS]",
+        CLI_LIST("averaged-port", &given.averaged, "NAME=GRIDS[:COMPS]",
                  "port of a new grid that is the average of these"),
-        CLI_LIST("input", &asked.input, "NAME=GRID:COMP[*SCALE]",
+        CLI_LIST("input", &given.input, "NAME=GRID:COMP[*SCALE]",
                  "force (COMP 1-3) or moment (4-6)"),
-        CLI_LIST("output-at", &asked.output,
+        CLI_LIST("output-at", &given.output,
                  "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
                  "displacement, velocity or acceleration that matters"),
-        CLI_LIST("damper", &asked.damper, "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
+        CLI_LIST("damper", &given.damper, "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
                  "damper C, and spring K, from a dof to another or to ground"),
-        CLI_TEXT("state-space", &asked.space.matrices,
+        CLI_TEXT("state-space", &given.space.matrices,
                  "A=F,B=F,C=F[,D=F][,E=F]",
                  "E x' = A x + B u, y = C x + D u instead; or a file of them"),
-        CLI_TEXT("input-names", &asked.space.inputs, "NAME[,NAME]",
+        CLI_TEXT("input-names", &given.space.inputs, "NAME[,NAME]",
                  "of a state space [u1,u2,...]"),
-        CLI_TEXT("output-names", &asked.space.outputs, "NAME[@LIMIT][,NAME]",
+        CLI_TEXT("output-names", &given.space.outputs, "NAME[@LIMIT][,NAME]",
                  "the same [y1,y2,...]"),
-        CLI_TEXT("units", &asked.request.units, "LABELS",
+        CLI_TEXT("units", &given.request.units, "LABELS",
                  "\"kg m s\": kept and shown, nothing is converted"),
-        CLI_FLAG("symmetrise", &asked.request.symmetrise,
+        CLI_FLAG("symmetrise", &given.request.symmetrise,
                  "average away any asymmetry, not only up to 1e-6"),
         {0},
     };
 
-    return import_files(options, argc, argv, &asked);
+    return import_files(options, argc, argv, &given);
 }

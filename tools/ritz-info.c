@@ -1,5 +1,5 @@
 /* ritz-info - what is in a container, a matrix file or a bulk data deck. */
-#include "print/describe.h"
+#include "print/print.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,23 +1,23 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
 #include "cli/options.h"
-#include "print/poles.h"
+#include "print/print.h"
 
 #include <math.h>
 
 int main(int argc, char **argv)
 {
-    poles_wish asked = {.mode = 1, .up_to_hz = (double)NAN};
+    poles_options given = {.mode = 1, .up_to_hz = (double)NAN};
     const cli_option options[] = {
-        CLI_INT("modes", &asked.modes, "N", 1, 1e6,
+        CLI_INT("modes", &given.modes, "N", 1, 1e6,
                 "the lowest N [all, 20 of a component]"),
-        CLI_REAL("up-to-hz", &asked.up_to_hz, "F", 1e-9, 1e9,
+        CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
                  "those of |s| up to this instead"),
-        MODEL_OPTIONS(&asked.model),
-        CLI_TEXT("scan", &asked.scan, "NAME[,NAME]=FROM:TO:STEP",
+        MODEL_OPTIONS(&given.model),
+        CLI_TEXT("scan", &given.scan, "NAME[,NAME]=FROM:TO:STEP",
                  "give these dampers one c, through a range"),
-        CLI_INT("mode", &asked.mode, "K", 1, 1e6,
+        CLI_INT("mode", &given.mode, "K", 1, 1e6,
                 "follow this one in a scan, counted where it begins"),
-        CLI_FLAG("tsv", &asked.tsv,
+        CLI_FLAG("tsv", &given.tsv,
                  "columns divided by tabs, ratios as numbers"),
         {0},
     };
@@ -38,8 +38,8 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (asked.modes > 0 && !isnan(asked.up_to_hz))
+    if (given.modes > 0 && !isnan(given.up_to_hz))
         cli_refuse(&program, "--modes and --up-to-hz are two ways to say the "
                              "same");
-    return cli_finish(&run, poles_report(&run, &asked));
+    return cli_finish(&run, poles_report(&run, &given));
 }

@@ -1,7 +1,7 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
 #include "chart/chart.h"
 #include "cli/options.h"
-#include "print/rankings_make.h"
+#include "print/rankings.h"
 
 static void list_rankers(void)
 {
@@ -12,39 +12,39 @@ static void list_rankers(void)
 
 int main(int argc, char **argv)
 {
-    rank_wish asked = {.by = "hankel", .top = 10, .draw = chart_rankings};
+    rank_options given = {.by = "hankel", .top = 10, .draw = chart_rankings};
     const cli_option options[] = {
-        CLI_TEXT("by", &asked.by, "NAME[,NAME]",
+        CLI_TEXT("by", &given.by, "NAME[,NAME]",
                  "rankings, of those that --list shows"),
-        CLI_TEXT("at", &asked.at, "JOINT=SETTING[,JOINT=SETTING]",
+        CLI_TEXT("at", &given.at, "JOINT=SETTING[,JOINT=SETTING]",
                  "one configuration of a system, degrees and lengths [all]"),
-        ORDER_OPTION(&asked.order),
-        CLI_LIST("damping", &asked.damping, "TEXT",
+        ORDER_OPTION(&given.order),
+        CLI_LIST("damping", &given.damping, "TEXT",
                  "\"modal ZETA\" or another that --help of ritz-frf shows "
                  "[the model's]"),
-        CLI_TEXT("band-hz", &asked.band, "F,F",
+        CLI_TEXT("band-hz", &given.band, "F,F",
                  "of hankel-band [the system's]"),
-        CLI_TEXT("input-weights", &asked.input_weights, "NAME=W,...",
+        CLI_TEXT("input-weights", &given.input_weights, "NAME=W,...",
                  "intensities of inputs, squares of their size [1]"),
-        CLI_TEXT("output-weights", &asked.output_weights, "NAME=W,...",
+        CLI_TEXT("output-weights", &given.output_weights, "NAME=W,...",
                  "what squares of outputs count [1 / limit^2, or 1]"),
-        CLI_INT("reweigh", &asked.keep, "N", 1, 1e6,
+        CLI_INT("reweigh", &given.keep, "N", 1, 1e6,
                 "find output weights that suit a choice of N modes"),
-        CLI_TEXT("engine", &asked.engine, "WORD",
+        CLI_TEXT("engine", &given.engine, "WORD",
                  "Gramians of a component: auto, dense, modal, low-rank"),
-        CLI_TEXT("among-hz", &asked.among, "F",
+        CLI_TEXT("among-hz", &given.among, "F",
                  "modal Gramians of a component: modes up to here"),
-        CLI_TEXT("tracks", &asked.tracks, "FILE",
+        CLI_TEXT("tracks", &given.tracks, "FILE",
                  "table of ritz-assemble --tracks: which mode is which at "
                  "other configurations"),
-        CLI_FLAG("compare", &asked.compare,
+        CLI_FLAG("compare", &given.compare,
                  "files are rankings, each is held against the first"),
-        CLI_INT("top", &asked.top, "N", 1, 1e6,
+        CLI_INT("top", &given.top, "N", 1, 1e6,
                 "so many of each are compared, drawn and, of several, "
                 "printed"),
-        CLI_TEXT("table", &asked.table, "FILE",
+        CLI_TEXT("table", &given.table, "FILE",
                  "write all values as a table with tabs"),
-        CLI_TEXT("chart", &asked.chart, "FILE.svg",
+        CLI_TEXT("chart", &given.chart, "FILE.svg",
                  "draw bars of the values, by gnuplot"),
         CLI_ACTION("list", list_rankers, "list rankings and their papers"),
         {0},
@@ -68,6 +68,6 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    rank_take(&run, &asked);
-    return cli_finish(&run, rank_run(&run, &asked));
+    rank_take(&run, &given);
+    return cli_finish(&run, rank_run(&run, &given));
 }

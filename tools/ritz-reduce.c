@@ -1,17 +1,17 @@
 /* ritz-reduce - a component in the subspace of a basis, with estimates. */
 #include "cli/options.h"
-#include "print/basis.h"
+#include "print/print.h"
 
 int main(int argc, char **argv)
 {
-    reduce_wish asked = {0};
+    reduce_options given = {0};
     const char *band = NULL;
     const cli_option options[] = {
         CLI_TEXT("band-hz", &band, "F,F",
                  "where errors are estimated [up to half of what the basis "
                  "knows]"),
-        DAMPING_OPTION(&asked.damping),
-        CLI_FLAG("without-basis", &asked.without_basis,
+        DAMPING_OPTION(&given.damping),
+        CLI_FLAG("without-basis", &given.without_basis,
                  "leave out T and the full mesh: a smaller file"),
         {0},
     };
@@ -31,6 +31,6 @@ int main(int argc, char **argv)
 
     cli_parse(&program, argc, argv, &run);
     if (band)
-        cli_pair(&program, "band-hz", band, asked.estimate.band_hz);
-    return cli_finish(&run, reduce_run(&run, &asked));
+        cli_pair(&program, "band-hz", band, given.estimate.band_hz);
+    return cli_finish(&run, reduce_run(&run, &given));
 }

@@ -1,6 +1,6 @@
 /* ritz-simulate - time responses, and what a simulated second costs. */
 #include "cli/options.h"
-#include "print/simulation.h"
+#include "print/print.h"
 
 #include <math.h>
 
@@ -29,41 +29,41 @@ static const cli_program about = {
 
 int main(int argc, char **argv)
 {
-    simulation_wish asked = {.method = "modal",
-                             .hold = "first",
-                             .seconds = (double)NAN,
-                             .step = (double)NAN,
-                             .accuracy = (double)NAN,
-                             .up_to_hz = (double)NAN,
-                             .rho = 0.8,
-                             .every = 1};
+    simulation_options given = {.method = "modal",
+                                .hold = "first",
+                                .seconds = (double)NAN,
+                                .step = (double)NAN,
+                                .accuracy = (double)NAN,
+                                .up_to_hz = (double)NAN,
+                                .rho = 0.8,
+                                .every = 1};
     const cli_option options[] = {
-        CLI_TEXT("method", &asked.method, "NAME",
+        CLI_TEXT("method", &given.method, "NAME",
                  "the integrator, one of --list"),
-        CLI_REAL("seconds", &asked.seconds, "T", 1e-12, 1e12, "how long"),
-        CLI_REAL("step", &asked.step, "H", 1e-15, 1e12,
+        CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12, "how long"),
+        CLI_REAL("step", &given.step, "H", 1e-15, 1e12,
                  "of time, seconds [as --accuracy says]"),
-        CLI_REAL("accuracy", &asked.accuracy, "X", 1e-12, 1.0,
+        CLI_REAL("accuracy", &given.accuracy, "X", 1e-12, 1.0,
                  "halve the step until outputs are within X of their largest "
                  "[1e-3]"),
-        CLI_LIST("input", &asked.input, "NAME=SIGNAL",
+        CLI_LIST("input", &given.input, "NAME=SIGNAL",
                  "step, impulse, sine:F or chirp:F,F (*A behind), or a file of "
                  "times and values"),
-        CLI_TEXT("initial", &asked.initial, "TEXT",
+        CLI_TEXT("initial", &given.initial, "TEXT",
                  "mode:K or mode:K*A, or a file, a value and its rate a row"),
-        CLI_TEXT("hold", &asked.hold, "first|zero",
+        CLI_TEXT("hold", &given.hold, "first|zero",
                  "inputs in a step: linear, or as at its start"),
-        CLI_REAL("rho", &asked.rho, "R", 0.0, 1.0,
+        CLI_REAL("rho", &given.rho, "R", 0.0, 1.0,
                  "generalised-alpha: what a step leaves of high frequency"),
-        CLI_INT("every", &asked.every, "N", 1, 1e9,
+        CLI_INT("every", &given.every, "N", 1, 1e9,
                 "write each N-th step, with --step"),
-        CLI_REAL("up-to-hz", &asked.up_to_hz, "F", 1e-9, 1e9,
+        CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
                  "modes of a component, for modal"),
-        CLI_FLAG("cost", &asked.cost,
+        CLI_FLAG("cost", &given.cost,
                  "what a simulated second costs, by each integrator"),
-        CLI_TEXT("band-hz", &asked.band, "F,F",
+        CLI_TEXT("band-hz", &given.band, "F,F",
                  "whose end --cost resolves [of a system its own, or all]"),
-        MODEL_OPTIONS(&asked.model),
+        MODEL_OPTIONS(&given.model),
         CLI_ACTION("list", list_integrators,
                    "list the integrators, with what they hold and where they "
                    "fail"),
@@ -75,6 +75,6 @@ int main(int argc, char **argv)
 
     program.options = options;
     cli_parse(&program, argc, argv, &run);
-    simulation_take(&run, &asked);
-    return cli_finish(&run, simulation_run(&run, &asked));
+    simulation_take(&run, &given);
+    return cli_finish(&run, simulation_run(&run, &given));
 }

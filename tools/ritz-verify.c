@@ -1,6 +1,6 @@
 /* ritz-verify - full against reduced: every error, pass or fail. */
 #include "cli/options.h"
-#include "print/verification.h"
+#include "print/print.h"
 
 enum { OWN_OPTIONS = 5 };
 
@@ -23,13 +23,13 @@ static void add_limits(ritz_verify_request *request,
 int main(int argc, char **argv)
 {
     const char *band = NULL;
-    verify_wish asked = {.verify = RITZ_VERIFY_NONE};
+    verify_options given = {.verify = RITZ_VERIFY_NONE};
     char name[RITZ_MEASURES][RITZ_NAME_SIZE];
     cli_option options[OWN_OPTIONS + RITZ_MEASURES + 1] = {
         CLI_TEXT("band-hz", &band, "F,F",
                  "band in Hz of all measures [the scene's; else up to half the "
                  "highest reduced frequency]"),
-        MODEL_OPTIONS(&asked.model),
+        MODEL_OPTIONS(&given.model),
     };
     const cli_program program = {
         .name = "ritz-verify",
@@ -51,9 +51,9 @@ int main(int argc, char **argv)
     };
     cli_run run;
 
-    add_limits(&asked.verify, name, options + OWN_OPTIONS);
+    add_limits(&given.verify, name, options + OWN_OPTIONS);
     cli_parse(&program, argc, argv, &run);
     if (band)
-        cli_pair(&program, "band-hz", band, asked.verify.band_hz);
-    return cli_finish(&run, verify_run(&run, &asked));
+        cli_pair(&program, "band-hz", band, given.verify.band_hz);
+    return cli_finish(&run, verify_run(&run, &given));
 }

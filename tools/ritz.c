@@ -89,7 +89,7 @@ static int start_tool(const char *verb, char **argv)
 int main(int argc, char **argv)
 {
     static char help[] = "--help";
-    char *asked[] = {NULL, help, NULL};
+    char *given[] = {NULL, help, NULL};
     const char *word = argc > 1 ? argv[1] : "--help";
     bool helping = argc > 2 && strcmp(word, "help") == 0;
 
@@ -104,6 +104,6 @@ int main(int argc, char **argv)
     }
     for (int k = 0; k < NUM_VERBS; k++)
         if (strcmp(word, verbs[k].name) == 0)
-            return start_tool(word, helping ? asked : argv + 1);
+            return start_tool(word, helping ? given : argv + 1);
     return refuse_verb(word);
 }

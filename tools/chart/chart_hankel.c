@@ -1,7 +1,7 @@
 /* Values of modes as bars, from rankings. */
 #include "chart/chart.h"
 #include "chart/html.h"
-#include "print/rankings_make.h"
+#include "print/rankings.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -186,12 +186,12 @@ ritz_status chart_hankel(const chart_sources *sources,
                          const chart_request *request, picture *out)
 {
     rank_result result = {0};
-    [[gnu::cleanup(rank_contest_free)]] contest all = {0};
+    RITZ_OWN(contest) all = {0};
     char title[256];
 
     RITZ_CHECK(picture_new(request->path, request->keep, out));
     RITZ_CHECK(borrow_rankings(sources, out, &result));
-    RITZ_CHECK(rank_contest(&result, true, &all));
+    RITZ_CHECK(contest_new(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,
              rankings_damping(all.ranking[0]));
     return draw_rankings(out, title, &all, request->top);

@@ -427,8 +427,8 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
         .warnings = json_array(),
         .line = json_object(),
     };
-    run->said = open_memstream(&run->text, &run->text_size);
-    if (!run->operand || !run->report || !run->line || !run->said)
+    if (!run->operand || !run->report || !run->line ||
+        cli_table_new(&run->said) != RITZ_OK)
         cli_refuse(program, "no memory");
     keep_command(run, argc, argv);
     gather_options(program, run, all);

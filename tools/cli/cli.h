@@ -8,6 +8,8 @@
 #ifndef RITZ_TOOLS_CLI_CLI_H
 #define RITZ_TOOLS_CLI_CLI_H
 
+#include "cli/cli_table.h"
+
 #include <ritz/base.h>
 #include <ritz/container.h>
 
@@ -122,10 +124,9 @@ typedef struct cli_run {
     json_t *open[CLI_MAX_DEPTH];   /* in it, where values go at present */
     int depth;
     json_t *warnings;
-    json_t *line; /* of --record: method, order, errors */
-    FILE *said;   /* all that cli_say was told, kept in the next two */
-    char *text;
-    size_t text_size;
+    json_t *line;     /* of --record: method, order, errors */
+    cli_table said;   /* all that cli_say was told */
+    ritz_stamp stamp; /* command and inputs, as cli_stamp last gave them */
     int64_t num_inputs;
     char **input;  /* "SHA256  NAME" of each file read */
     int64_t bytes; /* of those files */
@@ -195,7 +196,7 @@ ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest);
 ritz_status cli_can_write(const char *path);
 
 /** Command and inputs so far, as containers take them; borrowed from run. */
-ritz_stamp cli_stamp(const cli_run *run);
+const ritz_stamp *cli_stamp(cli_run *run);
 
 /** A line for people, on standard output; not with --quiet or --json. */
 [[gnu::format(printf, 2, 3)]] void cli_say(const cli_run *run,

@@ -156,7 +156,8 @@ ritz_status cli_can_write(const char *path)
     return ritz_context(status, path);
 }
 
-ritz_stamp cli_stamp(const cli_run *run)
+const ritz_stamp *cli_stamp(cli_run *run)
 {
-    return (ritz_stamp){run->command, run->num_inputs, run->input};
+    run->stamp = (ritz_stamp){run->command, run->num_inputs, run->input};
+    return &run->stamp;
 }

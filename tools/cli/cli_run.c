@@ -1,7 +1,6 @@
 /* A run and its reports: text for people, JSON, records, exit status. */
 #include "cli/cli.h"
 
-#include "base/draft.h"
 #include "cli/cli_watch.h"
 
 #include <ritz/base.h>
@@ -18,24 +17,7 @@
 
 ritz_status cli_save(cli_run *run, const char *path)
 {
-    ritz_status status = RITZ_OK;
-    ritz_draft draft = {0};
-    FILE *file = NULL;
-    bool whole = false;
-
-    RITZ_FAIL_IF(fflush(run->said) != 0, RITZ_ERR_MEMORY,
-                 "no memory for the report");
-    RITZ_TRY(ritz_draft_new(path, &draft));
-    file = fopen(draft.name, "w");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", draft.name,
-                 strerror(errno));
-    whole = fwrite(run->text, 1, run->text_size, file) == run->text_size;
-    whole = fclose(file) == 0 && whole;
-    RITZ_FAIL_IF(!whole, RITZ_ERR_FILE, "cannot write: %s", strerror(errno));
-    RITZ_TRY(ritz_draft_publish(&draft));
-done:
-    ritz_draft_free(&draft);
-    return ritz_context(status, path);
+    return cli_table_save(&run->said, path);
 }
 
 void cli_warn(cli_run *run, const char *format, ...)
@@ -228,8 +210,7 @@ static void free_run(cli_run *run)
         free(run->input[k]);
     free(run->input);
     free(run->operand);
-    fclose(run->said);
-    free(run->text);
+    cli_table_free(&run->said);
     json_decref(run->report);
     json_decref(run->warnings);
     json_decref(run->line);

@@ -433,16 +433,16 @@ ritz_status model_prefix(model *m, const char *path, int64_t order)
     return RITZ_OK;
 }
 
-ritz_status model_settle(model *m, const char *path, const model_wish *asked,
+ritz_status model_settle(model *m, const char *path, const model_options *given,
                          ritz_damping *damping)
 {
-    RITZ_CHECK(model_prefix(m, path, asked->order));
-    RITZ_CHECK(model_at(m, path, asked->at));
-    RITZ_REFUSE_IF(m->kind == MODEL_STATES && asked->damping, RITZ_ERR_ARGUMENT,
+    RITZ_CHECK(model_prefix(m, path, given->order));
+    RITZ_CHECK(model_at(m, path, given->at));
+    RITZ_REFUSE_IF(m->kind == MODEL_STATES && given->damping, RITZ_ERR_ARGUMENT,
                    "a state space is damped as it was made: --damping is for "
                    "ritz-basis");
-    RITZ_CHECK_IN(path, model_install(m, &asked->damper));
-    return model_damping(m, asked->damping, damping);
+    RITZ_CHECK_IN(path, model_install(m, &given->damper));
+    return model_damping(m, given->damping, damping);
 }
 
 ritz_second_order model_matrices(const model *m)
@@ -497,14 +497,14 @@ ritz_status model_install(model *m, const cli_list *texts)
                  : ritz_reduced_install(&m->reduced);
 }
 
-ritz_status model_damping(const model *m, const char *asked, ritz_damping *out)
+ritz_status model_damping(const model *m, const char *given, ritz_damping *out)
 {
     const char *own = m->kind == MODEL_COMPONENT ? m->component.damping
                       : m->kind == MODEL_SYSTEM  ? m->system.damping
                                                  : m->reduced.damping;
 
-    return ritz_context(ritz_damping_parse(asked ? asked : own, out),
-                        asked ? "--damping" : "damping of the model");
+    return ritz_context(ritz_damping_parse(given ? given : own, out),
+                        given ? "--damping" : "damping of the model");
 }
 
 ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
@@ -604,13 +604,13 @@ ritz_status model_write_bodies(cli_run *run, const char *prefix,
                                const ritz_scene *scene,
                                const ritz_reduced *body)
 {
-    ritz_stamp stamp = cli_stamp(run);
     char path[MODEL_PATH];
 
     sink_list(run, "component_files");
     for (int64_t k = 0; prefix && k < scene->num_components; k++) {
         RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
-        RITZ_CHECK(ritz_container_write_reduced(path, &body[k], &stamp));
+        RITZ_CHECK(
+            ritz_container_write_reduced(path, &body[k], cli_stamp(run)));
         sink_add(run, "%s", path);
     }
     sink_end(run);

@@ -47,12 +47,12 @@ typedef struct model {
 } model;
 
 /* Options that choose or change a model before it is used. */
-typedef struct model_wish {
+typedef struct model_options {
     const char *at;      /* configuration of a system; NULL: the only one */
     const char *damping; /* NULL: the model's own */
     cli_list damper;     /* "NAME=C[*K]", other values of dampers */
     int64_t order;       /* columns of a nested component; 0: all */
-} model_wish;
+} model_options;
 
 /** The kind of a container, and how sentences call it: "a system". */
 ritz_status model_peek(const char *path, model_kind *kind, const char **noun);
@@ -86,7 +86,7 @@ ritz_status model_prefix(model *model, const char *path, int64_t order);
  * @return RITZ_ERR_ARGUMENT if a state space is to be damped otherwise
  */
 ritz_status model_settle(model *model, const char *path,
-                         const model_wish *asked, ritz_damping *damping);
+                         const model_options *given, ritz_damping *damping);
 
 /*
  * Questions that tools ask of a component, reduced component, system with its
@@ -150,7 +150,7 @@ ritz_status model_tune(model *model, const cli_list *texts);
 ritz_status model_install(model *model, const cli_list *texts);
 
 /** The damping of --damping, or else the model's own. */
-ritz_status model_damping(const model *model, const char *asked,
+ritz_status model_damping(const model *model, const char *given,
                           ritz_damping *out);
 
 /** Frequencies of a small dense model, Hz, rigid modes as 0. */

@@ -24,9 +24,9 @@
              "give a damper other values than the model states")
 
 /* All that is asked of a model before anything is made of it. */
-#define MODEL_OPTIONS(wish)                                                    \
-    AT_OPTION(&(wish)->at), ORDER_OPTION(&(wish)->order),                      \
-        DAMPING_OPTION(&(wish)->damping), DAMPERS_OPTION(&(wish)->damper)
+#define MODEL_OPTIONS(given)                                                   \
+    AT_OPTION(&(given)->at), ORDER_OPTION(&(given)->order),                    \
+        DAMPING_OPTION(&(given)->damping), DAMPERS_OPTION(&(given)->damper)
 
 /* The words of a choice (choice.h) as options. */
 enum { WORDS_MOST = 32, WORDS_NAME = 32 };

@@ -187,22 +187,24 @@ static json_t *find_target(const cli_run *run, const char *keys)
 /* End the line, and show what of the text is new. */
 static void end_line(const cli_run *run, long from)
 {
-    putc('\n', run->said);
-    fflush(run->said);
-    if (run->quiet || run->json || !run->text || from < 0)
+    const cli_table *said = &run->said;
+
+    putc('\n', said->file);
+    fflush(said->file);
+    if (run->quiet || run->json || !said->text || from < 0)
         return;
     cli_watch_clear();
-    fwrite(run->text + from, 1, run->text_size - (size_t)from, stdout);
+    fwrite(said->text + from, 1, said->size - (size_t)from, stdout);
 }
 
 static void tell_line(const cli_run *run, const char *title, const char *keys,
                       const char *format, arguments *args)
 {
-    long from = ftell(run->said);
-    telling t = {run->said, keys, find_target(run, keys)};
+    long from = ftell(run->said.file);
+    telling t = {run->said.file, keys, find_target(run, keys)};
 
     if (title)
-        fprintf(run->said, "  %-14s ", title);
+        fprintf(run->said.file, "  %-14s ", title);
     tell_values(&t, format, args);
     end_line(run, from);
 }

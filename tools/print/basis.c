@@ -1,13 +1,4 @@
-#include "print/basis.h"
-
-#include "print/describe.h"
-
-#include <ritz/assembly.h>
-#include <ritz/check.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "print/print.h"
 
 enum { MAX_PATH = 4096 };
 
@@ -55,7 +46,7 @@ static ritz_status add_neighbour(cli_run *run, const char *text,
     return ritz_joint_neighbour(&joint, NULL, side, 0, attached, sum);
 }
 
-static ritz_status read_neighbours(cli_run *run, const cli_list *given,
+static ritz_status read_neighbours(cli_run *run, const cli_list *list,
                                    const ritz_component *component,
                                    const ritz_dofs *attached,
                                    ritz_neighbour *out)
@@ -63,8 +54,8 @@ static ritz_status read_neighbours(cli_run *run, const cli_list *given,
     RITZ_OWN(ritz_neighbour) sum = {0};
 
     RITZ_CHECK(ritz_neighbour_new(attached->count, &sum));
-    for (int k = 0; k < given->count; k++)
-        RITZ_CHECK_IN("--neighbour", add_neighbour(run, given->text[k],
+    for (int k = 0; k < list->count; k++)
+        RITZ_CHECK_IN("--neighbour", add_neighbour(run, list->text[k],
                                                    component, attached, &sum));
     RITZ_MOVE(*out, sum);
     return RITZ_OK;
@@ -97,15 +88,14 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
     cli_record(run, basis->origin.method, c->count);
 }
 
-ritz_status basis_run(cli_run *run, basis_wish *asked)
+ritz_status basis_run(cli_run *run, basis_options *given)
 {
     ritz_status status = RITZ_OK;
-    const ritz_method *method = asked->method;
-    ritz_request *request = &asked->request;
+    const ritz_method *method = given->method;
+    ritz_request *request = &given->request;
     model m = {0};
     ritz_neighbour neighbour = {0};
     ritz_basis basis = {0};
-    ritz_stamp stamp = {0};
 
     cli_record(run, method->name, -1);
     RITZ_TRY(model_read(run, run->operand[1],
@@ -118,18 +108,17 @@ ritz_status basis_run(cli_run *run, basis_wish *asked)
         request->component = &m.component;
     if (request->component && method->uses & RITZ_USES_ATTACHED)
         RITZ_TRY_IN(run->operand[1],
-                    ritz_component_attached(&m.component, asked->ports,
+                    ritz_component_attached(&m.component, given->ports,
                                             &request->attached));
-    if (asked->neighbours.count > 0) {
-        RITZ_TRY(read_neighbours(run, &asked->neighbours, &m.component,
+    if (given->neighbours.count > 0) {
+        RITZ_TRY(read_neighbours(run, &given->neighbours, &m.component,
                                  &request->attached, &neighbour));
         request->neighbour = &neighbour;
     }
     RITZ_TRY_IN(run->operand[1], ritz_basis_make(method, request, &basis));
-    stamp = cli_stamp(run);
     RITZ_TRY(ritz_container_write_basis(
         run->output, &basis,
-        request->space ? m.states.units : m.component.units, &stamp));
+        request->space ? m.states.units : m.component.units, cli_stamp(run)));
     say_basis(run, &basis);
 done:
     ritz_dofs_free(&request->attached);
@@ -176,18 +165,17 @@ static ritz_status say_reduced(cli_run *run, const ritz_reduced *reduced)
 
 static ritz_status reduce_to_matrices(cli_run *run, const ritz_component *full,
                                       const ritz_basis *basis,
-                                      const reduce_wish *asked)
+                                      const reduce_options *given)
 {
     const char *what = run->operand[1];
     RITZ_OWN(ritz_reduced) reduced = {0};
-    ritz_stamp stamp = {0};
 
     RITZ_CHECK_IN(what, ritz_reduce(full, basis, &reduced));
-    RITZ_CHECK_IN(what, ritz_estimate(full, basis, &asked->estimate, &reduced));
-    if (asked->without_basis)
+    RITZ_CHECK_IN(what, ritz_estimate(full, basis, &given->estimate, &reduced));
+    if (given->without_basis)
         drop_basis(&reduced);
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_reduced(run->output, &reduced, &stamp));
+    RITZ_CHECK(
+        ritz_container_write_reduced(run->output, &reduced, cli_stamp(run)));
     return say_reduced(run, &reduced);
 }
 
@@ -216,14 +204,13 @@ static ritz_status reduce_to_states(cli_run *run, const model *full,
     const char *what = run->operand[1];
     RITZ_OWN(ritz_state_space) states = {0};
     ritz_probe probe = {0};
-    ritz_stamp stamp = {0};
     char text[2 * RITZ_NAME_SIZE];
 
     RITZ_CHECK_IN(what, project_model(full, basis, &states));
     RITZ_CHECK_IN(what, ritz_probe_states(&states, &probe));
     RITZ_CHECK(ritz_probe_record(&probe, &states.estimates));
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_state_space(run->output, &states, &stamp));
+    RITZ_CHECK(
+        ritz_container_write_state_space(run->output, &states, cli_stamp(run)));
     cli_say(run, "%s:", run->output);
     RITZ_CHECK(describe_states(run, &states));
     sink_set(run, "vectors", "%ld", states.columns.count);
@@ -252,7 +239,7 @@ static ritz_status check_rows(const cli_run *run, const model *full,
     return RITZ_OK;
 }
 
-ritz_status reduce_run(cli_run *run, reduce_wish *asked)
+ritz_status reduce_run(cli_run *run, reduce_options *given)
 {
     const char *what = run->operand[1];
     RITZ_OWN(model) full = {0};
@@ -262,15 +249,15 @@ ritz_status reduce_run(cli_run *run, reduce_wish *asked)
                           &full));
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
-    RITZ_CHECK(model_damping(&full, asked->damping, &asked->estimate.damping));
+    RITZ_CHECK(model_damping(&full, given->damping, &given->estimate.damping));
     RITZ_REFUSE_IF(
-        asked->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
+        given->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
         "a reduced state space keeps no basis, --without-basis is for "
         "components");
     if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
         RITZ_CHECK(reduce_to_states(run, &full, &basis.basis));
     else
         RITZ_CHECK(
-            reduce_to_matrices(run, &full.component, &basis.basis, asked));
+            reduce_to_matrices(run, &full.component, &basis.basis, given));
     return RITZ_OK;
 }

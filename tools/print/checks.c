@@ -1,4 +1,4 @@
-#include "print/checks.h"
+#include "print/print.h"
 
 static int64_t count_checks(const ritz_audit *audit, ritz_verdict verdict)
 {

@@ -1,16 +1,9 @@
 /* The report of ritz-compare: what was reduced, how far, how wrong it is. */
-#include "print/comparison.h"
+#include "print/print.h"
 
-#include "base/alloc.h"
 #include "cli/cli_table.h"
-#include "print/tracks.h"
-
-#include <ritz/matrix.h>
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static void say_orders(cli_run *run, const ritz_stage *first,
                        const ritz_stage *second)
@@ -412,20 +405,20 @@ static void mark_kept(const ritz_compare_row *row,
     double highest = first->lambda[first->K.nrow - 1];
 
     for (int64_t i = 0; i < row->num_kept; i++) {
-        double asked = first->lambda[first->num_rigid + row->kept[i]];
+        double given = first->lambda[first->num_rigid + row->kept[i]];
         double best = (double)INFINITY;
         int64_t at = -1;
 
         for (int64_t k = 0; k < out->count; k++) {
             double apart =
-                fabs(second->lambda[second->num_rigid + k] - asked) / asked;
+                fabs(second->lambda[second->num_rigid + k] - given) / given;
 
             if (apart < best && !out->kept[k]) {
                 best = apart;
                 at = k;
             }
         }
-        if (at >= 0 && best <= fmax(1e-9, 1e3 * DBL_EPSILON * highest / asked))
+        if (at >= 0 && best <= fmax(1e-9, 1e3 * DBL_EPSILON * highest / given))
             out->kept[at] = true;
     }
 }
@@ -607,47 +600,46 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
 }
 
 /* The chart of the composite tolerance. */
-static ritz_status chart_tolerances(cli_run *run, const comparison_wish *asked,
+static ritz_status chart_tolerances(cli_run *run,
+                                    const comparison_options *given,
                                     const ritz_stage *stage,
                                     const ritz_comparison *comparison)
 {
     ritz_status status = RITZ_OK;
-    int64_t count = asked->num_tolerances;
+    int64_t count = given->num_tolerances;
     ritz_tolerance_row *rows = NULL;
 
     if (count == 0)
         return RITZ_OK;
     RITZ_TRY_IN("tolerances", ritz_compare_tolerances(stage, comparison, count,
-                                                      asked->tolerance, &rows));
+                                                      given->tolerance, &rows));
     say_tolerances(run, stage, count, rows);
-    if (asked->tolerance_table)
-        RITZ_TRY(write_tolerances(asked->tolerance_table, stage, count, rows));
+    if (given->tolerance_table)
+        RITZ_TRY(write_tolerances(given->tolerance_table, stage, count, rows));
 done:
     ritz_tolerances_free(count, &rows);
     return status;
 }
 
-ritz_status comparison_run(cli_run *run, const comparison_wish *asked)
+ritz_status comparison_run(cli_run *run, const comparison_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_comparison) c = {0};
-    ritz_stamp stamp = {0};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
-    if (asked->extraneous)
+    if (given->extraneous)
         RITZ_CHECK_IN("--extraneous",
-                      ritz_scene_set_extraneous(&scene, asked->extraneous));
+                      ritz_scene_set_extraneous(&scene, given->extraneous));
     RITZ_CHECK(ritz_stage_new(&scene, &stage));
     RITZ_CHECK(ritz_compare(&stage, &c));
-    RITZ_CHECK(model_write_bodies(run, asked->prefix, &scene, c.second.body));
-    stamp = cli_stamp(run);
-    RITZ_CHECK(
-        ritz_container_write_system(run->output, &c.second_system, &stamp));
+    RITZ_CHECK(model_write_bodies(run, given->prefix, &scene, c.second.body));
+    RITZ_CHECK(ritz_container_write_system(run->output, &c.second_system,
+                                           cli_stamp(run)));
     RITZ_CHECK(say_comparison(run, &stage, &c));
-    RITZ_CHECK(tracks_report(run, &stage, &c.first_system, asked->tracks));
-    RITZ_CHECK(chart_tolerances(run, asked, &stage, &c));
-    if (asked->report)
-        RITZ_CHECK(cli_save(run, asked->report));
+    RITZ_CHECK(tracks_report(run, &stage, &c.first_system, given->tracks));
+    RITZ_CHECK(chart_tolerances(run, given, &stage, &c));
+    if (given->report)
+        RITZ_CHECK(cli_save(run, given->report));
     return RITZ_OK;
 }

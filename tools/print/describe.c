@@ -1,16 +1,9 @@
-#include "print/describe.h"
+#include "print/print.h"
 
-#include "base/alloc.h"
 #include "base/tolerances.h"
-#include "print/checksum.h"
-
-#include <ritz/check.h>
-#include <ritz/model.h>
 
 #include <complex.h>
 #include <inttypes.h>
-#include <math.h>
-#include <stdlib.h>
 
 /* Relative size of an antisymmetric part that is rounding. */
 static const double skew_rounding = 1e-12;
@@ -21,7 +14,41 @@ static void describe_units(cli_run *run, const char *units)
     cli_say(run, "  %-14s %s", "units", *units ? units : "not stated");
 }
 
-/* A sparse matrix: a line, and its checksum. An absent one is passed over. */
+enum { PARTS = 3 * RITZ_DIGEST_SIZE + 64 };
+
+static void add_part(char text[PARTS], const void *bytes, int64_t count,
+                     size_t size)
+{
+    char sum[RITZ_DIGEST_SIZE];
+
+    ritz_digest_bytes(bytes, (size_t)count * size, sum);
+    sink_append(text, PARTS, " %s", sum);
+}
+
+/* The sum of all parts; a name may have commas, by which sink.h would cut it. */
+static void set_checksum(cli_run *run, const char *name, const char text[PARTS],
+                         char out[RITZ_DIGEST_SIZE])
+{
+    ritz_digest_bytes(text, strlen(text), out);
+    sink_object(run, "checksums");
+    json_object_set_new(sink_here(run), name, cli_string(out));
+    sink_end(run);
+}
+
+void checksum_sparse(cli_run *run, const char *name, const ritz_sparse *A,
+                     char out[RITZ_DIGEST_SIZE])
+{
+    char text[PARTS];
+    int64_t nnz = A->colptr[A->ncol];
+
+    snprintf(text, sizeof text, "%ld %ld", A->nrow, A->ncol);
+    add_part(text, A->colptr, A->ncol + 1, sizeof *A->colptr);
+    add_part(text, A->rowind, nnz, sizeof *A->rowind);
+    add_part(text, A->val, nnz, sizeof *A->val);
+    set_checksum(run, name, text, out);
+}
+
+/* A matrix: a line, and its checksum. An absent one is passed over. */
 static void describe_sparse(cli_run *run, const char *name,
                             const ritz_sparse *A)
 {
@@ -29,22 +56,22 @@ static void describe_sparse(cli_run *run, const char *name,
 
     if (!A->colptr)
         return;
-    checksum_sparse(A, sum);
-    checksum_set(run, name, sum);
-    cli_say(run, "  %-14s %ld x %ld, %ld entries, sha256 %.12s...", name,
-            A->nrow, A->ncol, A->colptr[A->ncol], sum);
+    checksum_sparse(run, name, A, sum);
+    sink_field(run, name, "", "%ld x %ld, %ld entries, sha256 %.12s...",
+               A->nrow, A->ncol, A->colptr[A->ncol], sum);
 }
 
 static void describe_dense(cli_run *run, const char *name, const ritz_dense *A)
 {
-    char sum[RITZ_DIGEST_SIZE];
+    char text[PARTS], sum[RITZ_DIGEST_SIZE];
 
     if (!A->val)
         return;
-    checksum_dense(A, sum);
-    checksum_set(run, name, sum);
-    cli_say(run, "  %-14s %ld x %ld, dense, sha256 %.12s...", name, A->nrow,
-            A->ncol, sum);
+    snprintf(text, sizeof text, "%ld %ld", A->nrow, A->ncol);
+    add_part(text, A->val, A->nrow * A->ncol, sizeof *A->val);
+    set_checksum(run, name, text, sum);
+    sink_field(run, name, "", "%ld x %ld, dense, sha256 %.12s...", A->nrow,
+               A->ncol, sum);
 }
 
 /* Inputs and outputs by name, these with their limits. */

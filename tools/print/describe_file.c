@@ -1,13 +1,6 @@
 /* Files: containers, and matrix files and decks of other codes. */
-#include "print/checksum.h"
-#include "print/describe.h"
+#include "print/print.h"
 #include "print/rankings.h"
-
-#include <ritz/import.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* One matrix of a file: a line and an item; its checksum comes later. */
 static void describe_matrix(cli_run *run, const ritz_matrix *a, const char *sum)
@@ -72,8 +65,7 @@ static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
     ritz_matrix matrix = {0};
 
     RITZ_CHECK(ritz_foreign_take(file, k, &matrix));
-    checksum_sparse(&matrix.A, sum);
-    checksum_set(run, matrix.name, sum);
+    checksum_sparse(run, matrix.name, &matrix.A, sum);
     sink_list(run, "matrices");
     describe_matrix(run, &matrix, sum);
     sink_end(run);

@@ -1,12 +1,4 @@
-#include "print/export.h"
-
-#include "print/checks.h"
-
-#include <ritz/check.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "print/print.h"
 
 /* K, M, D and K4. */
 enum { NUM_MATRICES = 4 };
@@ -184,11 +176,11 @@ static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
 }
 
 static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
-                                  const export_wish *asked,
+                                  const export_options *given,
                                   ritz_export_report *done)
 {
     RITZ_OWN(ritz_audit) audit = {0};
-    bool force = asked->force;
+    bool force = given->force;
 
     for (int64_t j = 0; j < reduced->dampers.count; j++)
         cli_say(run, "damper '%s' installed: c = %g, k = %g",
@@ -197,9 +189,9 @@ static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
     RITZ_CHECK(say_errors(run, &reduced->errors, &reduced->estimates, force));
     RITZ_CHECK(check_forces(run, &reduced->columns, force));
     RITZ_CHECK_IN(run->operand[0],
-                  audit_reduced(reduced, &asked->request, &audit));
+                  audit_reduced(reduced, &given->request, &audit));
     RITZ_CHECK(check_stability(run, &audit, reduced->origin.method, force));
-    return asked->exporter->write_reduced(reduced, &asked->request, done);
+    return given->exporter->write_reduced(reduced, &given->request, done);
 }
 
 /* An imported state space is no reduction and has no errors; some reductions
@@ -222,62 +214,63 @@ static ritz_status say_state_errors(cli_run *run,
 }
 
 static ritz_status export_states(cli_run *run, const ritz_state_space *states,
-                                 const export_wish *asked,
+                                 const export_options *given,
                                  ritz_export_report *done)
 {
     RITZ_OWN(ritz_audit) audit = {0};
 
     RITZ_CHECK_IN(run->operand[0],
-                  audit_states(states, &asked->request, &audit));
+                  audit_states(states, &given->request, &audit));
     RITZ_CHECK(
-        check_stability(run, &audit, states->origin.method, asked->force));
-    RITZ_CHECK(say_state_errors(run, states, asked->force));
-    return asked->exporter->write_states(states, &asked->request, done);
+        check_stability(run, &audit, states->origin.method, given->force));
+    RITZ_CHECK(say_state_errors(run, states, given->force));
+    return given->exporter->write_states(states, &given->request, done);
 }
 
 static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
-                                     const export_wish *asked, ritz_shapes *out)
+                                     const export_options *given,
+                                     ritz_shapes *out)
 {
     RITZ_OWN(model) of = {0};
 
-    RITZ_REFUSE_IF(!asked->component, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!given->component, RITZ_ERR_ARGUMENT,
                    "'%s' is a basis, which knows no places: name its component "
                    "with --component",
                    run->operand[0]);
-    RITZ_CHECK(model_read(run, asked->component, MODEL_COMPONENT, &of));
-    return ritz_shapes_of_basis(basis, &of.component, asked->request.modes,
+    RITZ_CHECK(model_read(run, given->component, MODEL_COMPONENT, &of));
+    return ritz_shapes_of_basis(basis, &of.component, given->request.modes,
                                 out);
 }
 
 /* Modes of a reduced component or of a component, or columns of a basis. */
 static ritz_status find_shapes(cli_run *run, const model *m,
-                               const export_wish *asked, ritz_shapes *out)
+                               const export_options *given, ritz_shapes *out)
 {
-    const char *modes = asked->request.modes;
+    const char *modes = given->request.modes;
 
     RITZ_REFUSE_IF(
-        asked->component && m->kind != MODEL_BASIS, RITZ_ERR_ARGUMENT,
+        given->component && m->kind != MODEL_BASIS, RITZ_ERR_ARGUMENT,
         "--component is for a basis, '%s' knows its places", run->operand[0]);
     if (m->kind == MODEL_BASIS)
-        return find_basis_shapes(run, &m->basis, asked, out);
+        return find_basis_shapes(run, &m->basis, given, out);
     return m->kind == MODEL_COMPONENT
                ? ritz_shapes_of_component(&m->component, modes, out)
                : ritz_shapes_of_reduced(&m->reduced, modes, out);
 }
 
 static ritz_status export_shapes(cli_run *run, const model *m,
-                                 const export_wish *asked,
+                                 const export_options *given,
                                  ritz_export_report *done)
 {
     RITZ_OWN(ritz_shapes) shapes = {0};
 
     sink_list(run, "shapes");
-    RITZ_CHECK_IN(run->operand[0], find_shapes(run, m, asked, &shapes));
-    cli_record(run, asked->exporter->name, shapes.count);
+    RITZ_CHECK_IN(run->operand[0], find_shapes(run, m, given, &shapes));
+    cli_record(run, given->exporter->name, shapes.count);
     for (int64_t k = 0; k < shapes.count; k++)
         sink_add(run, "%s", shapes.name[k]);
     sink_end(run);
-    return asked->exporter->write_shapes(&shapes, &asked->request, done);
+    return given->exporter->write_shapes(&shapes, &given->request, done);
 }
 
 /* Kinds of model that an exporter takes, summed. */
@@ -293,40 +286,40 @@ static int kinds_of(const ritz_exporter *exporter)
 
 /* Whatever it holds, as the exporter writes that. */
 static ritz_status export_model(cli_run *run, model *m,
-                                const export_wish *asked,
+                                const export_options *given,
                                 ritz_export_report *done)
 {
-    const ritz_exporter *exporter = asked->exporter;
+    const ritz_exporter *exporter = given->exporter;
 
     if (m->kind == MODEL_RESPONSE)
-        return exporter->write_response(&m->response, &asked->request, done);
+        return exporter->write_response(&m->response, &given->request, done);
     if (m->kind == MODEL_SIMULATION)
-        return exporter->write_simulation(&m->simulation, &asked->request,
+        return exporter->write_simulation(&m->simulation, &given->request,
                                           done);
     if (!exporter->write_shapes)
         cli_record(run, exporter->name, model_order(m));
     if (m->kind == MODEL_STATES)
-        return export_states(run, &m->states, asked, done);
-    RITZ_CHECK_IN(run->operand[0], model_install(m, &asked->damper));
+        return export_states(run, &m->states, given, done);
+    RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
     return exporter->write_shapes
-               ? export_shapes(run, m, asked, done)
-               : export_reduced(run, &m->reduced, asked, done);
+               ? export_shapes(run, m, given, done)
+               : export_reduced(run, &m->reduced, given, done);
 }
 
-ritz_status export_run(cli_run *run, const export_wish *asked)
+ritz_status export_run(cli_run *run, const export_options *given)
 {
     const char *path = run->operand[0];
     RITZ_OWN(model) m = {0};
     RITZ_OWN(ritz_export_report) done = {0};
 
-    sink_set(run, "format", "%s", asked->exporter->name);
+    sink_set(run, "format", "%s", given->exporter->name);
     sink_list(run, "said");
     sink_end(run);
-    cli_record(run, asked->exporter->name, -1);
-    RITZ_CHECK(model_read(run, path, kinds_of(asked->exporter), &m));
-    RITZ_CHECK(model_prefix(&m, path, asked->order));
-    RITZ_CHECK(export_model(run, &m, asked, &done));
-    cli_say(run, "%s: %s", run->output, asked->exporter->summary);
+    cli_record(run, given->exporter->name, -1);
+    RITZ_CHECK(model_read(run, path, kinds_of(given->exporter), &m));
+    RITZ_CHECK(model_prefix(&m, path, given->order));
+    RITZ_CHECK(export_model(run, &m, given, &done));
+    cli_say(run, "%s: %s", run->output, given->exporter->summary);
     sink_list(run, "said");
     for (int64_t k = 0; k < done.count; k++) {
         cli_say(run, "  %s", done.line[k]);

@@ -1,24 +1,19 @@
-#include "print/fit.h"
+#include "print/print.h"
 
-#include "base/alloc.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 /* "craig-bampton,rubin", or "all" there are. */
-static void read_methods(const cli_program *program, fit_wish *asked)
+static void read_methods(const cli_program *program, fit_options *given)
 {
-    ritz_fit_request *request = &asked->request;
-    const char *list = asked->methods;
+    ritz_fit_request *request = &given->request;
+    const char *list = given->methods;
     char word[RITZ_NAME_SIZE];
 
-    request->methods = asked->method;
+    request->methods = given->method;
     if (strcmp(list, "all") == 0) {
         for (int k = 0; ritz_methods[k]; k++)
-            asked->method[request->num_methods++] = ritz_methods[k];
-        asked->method[request->num_methods++] = &ritz_fit_compare;
+            given->method[request->num_methods++] = ritz_methods[k];
+        given->method[request->num_methods++] = &ritz_fit_compare;
         return;
     }
     while (cli_next(&list, word)) {
@@ -29,23 +24,23 @@ static void read_methods(const cli_program *program, fit_wish *asked)
         if (request->num_methods == FIT_MOST_METHODS)
             cli_refuse(program, "--methods takes %d methods, not more",
                        (int)FIT_MOST_METHODS);
-        asked->method[request->num_methods++] = found;
+        given->method[request->num_methods++] = found;
     }
 }
 
-void fit_take(const cli_program *program, fit_wish *asked)
+void fit_take(const cli_program *program, fit_options *given)
 {
-    ritz_verify_request *tolerance = &asked->request.tolerance;
+    ritz_verify_request *tolerance = &given->request.tolerance;
 
-    if (!asked->tolerance)
+    if (!given->tolerance)
         cli_refuse(program, "--tolerance says what is to hold");
-    if (ritz_tolerance_take(asked->tolerance, tolerance) != RITZ_OK)
+    if (ritz_tolerance_take(given->tolerance, tolerance) != RITZ_OK)
         cli_refuse(program, "--tolerance: %s", ritz_error_message());
-    if (asked->band)
-        cli_pair(program, "band-hz", asked->band, tolerance->band_hz);
-    if (asked->methods)
-        read_methods(program, asked);
-    asked->request.seed = (uint64_t)asked->seed;
+    if (given->band)
+        cli_pair(program, "band-hz", given->band, tolerance->band_hz);
+    if (given->methods)
+        read_methods(program, given);
+    given->request.seed = (uint64_t)given->seed;
 }
 
 /* Measures by name, in an object of their own. */
@@ -494,7 +489,6 @@ static ritz_status write_scene(cli_run *run, const char *prefix,
                                const ritz_fit_candidate *chosen)
 {
     ritz_status status = RITZ_OK;
-    ritz_stamp stamp = cli_stamp(run);
     ritz_system system = {0};
     ritz_fit_path path = {0};
     ritz_reduced *body = NULL;
@@ -503,7 +497,8 @@ static ritz_status write_scene(cli_run *run, const char *prefix,
     say_path(run, fitter, &path);
     RITZ_TRY(model_write_bodies(run, prefix, scene, body));
     if (run->output)
-        RITZ_TRY(ritz_container_write_system(run->output, &system, &stamp));
+        RITZ_TRY(
+            ritz_container_write_system(run->output, &system, cli_stamp(run)));
 done:
     for (int64_t k = 0; body && k < scene->num_components; k++)
         ritz_reduced_free(&body[k]);
@@ -514,7 +509,7 @@ done:
 }
 
 /* Equal order: all methods once more, at one number of columns. */
-static ritz_status compare_methods(cli_run *run, const fit_wish *a,
+static ritz_status compare_methods(cli_run *run, const fit_options *a,
                                    ritz_fitter *fitter, ritz_fit *fit)
 {
     int64_t order = a->order;
@@ -527,8 +522,7 @@ static ritz_status compare_methods(cli_run *run, const fit_wish *a,
                    fit->why);
     if (order == 0)
         order = fit->candidate[fit->chosen].order;
-    equal = calloc((size_t)fit->num_methods + 1, sizeof *equal);
-    RITZ_REFUSE_IF(!equal, RITZ_ERR_MEMORY, "no memory for a table");
+    RITZ_CHECK_NEW(equal, fit->num_methods + 1);
     RITZ_CHECK(ritz_fitter_equal(fitter, order, fit, equal));
     say_equal(run, fit, order, equal);
     return RITZ_OK;
@@ -538,10 +532,9 @@ static ritz_status write_component(cli_run *run, ritz_fitter *fitter,
                                    const ritz_fit_candidate *chosen)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
-    ritz_stamp stamp = cli_stamp(run);
 
     RITZ_CHECK(ritz_fitter_reduced(fitter, chosen, &reduced));
-    return ritz_container_write_reduced(run->output, &reduced, &stamp);
+    return ritz_container_write_reduced(run->output, &reduced, cli_stamp(run));
 }
 
 /* The tolerance was held from inputs to outputs. Forces and motions at ports were
@@ -559,7 +552,7 @@ static void warn_of_ports(cli_run *run, const ritz_component *component,
 }
 
 /* Search, say, record, write; nothing is written if nothing is found. */
-static ritz_status find_answer(fit_run *f, const fit_wish *a,
+static ritz_status find_answer(fit_run *f, const fit_options *a,
                                const ritz_scene *scene, const model *full,
                                ritz_fitter *fitter)
 {
@@ -603,7 +596,7 @@ static void name_subject(const char *path, char out[RITZ_NAME_SIZE])
         *strrchr(out, '.') = '\0';
 }
 
-static ritz_status fit_component(fit_run *f, const fit_wish *a)
+static ritz_status fit_component(fit_run *f, const fit_options *a)
 {
     const char *path = f->run->operand[0];
     RITZ_OWN(ritz_fitter) *fitter = NULL;
@@ -618,7 +611,7 @@ static ritz_status fit_component(fit_run *f, const fit_wish *a)
     return find_answer(f, a, NULL, &full, fitter);
 }
 
-static ritz_status fit_scene(fit_run *f, const fit_wish *a)
+static ritz_status fit_scene(fit_run *f, const fit_options *a)
 {
     const char *path = f->run->operand[0];
     RITZ_OWN(ritz_fitter) *fitter = NULL;
@@ -635,21 +628,21 @@ static ritz_status fit_scene(fit_run *f, const fit_wish *a)
     return find_answer(f, a, &scene, NULL, fitter);
 }
 
-ritz_status fit_search(cli_run *run, fit_wish *asked)
+ritz_status fit_search(cli_run *run, fit_options *given)
 {
     ritz_status status = RITZ_OK;
     fit_run f = {.run = run};
 
-    asked->request.observe = observe_candidate;
-    asked->request.thorough = asked->all;
-    asked->request.context = &f;
+    given->request.observe = observe_candidate;
+    given->request.thorough = given->all;
+    given->request.context = &f;
     name_subject(run->operand[0], f.subject);
-    if (asked->damping)
+    if (given->damping)
         RITZ_CHECK_IN("--damping",
-                      ritz_damping_parse(asked->damping,
-                                         &asked->request.tolerance.damping));
-    status = ritz_container_is(run->operand[0]) ? fit_component(&f, asked)
-                                                : fit_scene(&f, asked);
+                      ritz_damping_parse(given->damping,
+                                         &given->request.tolerance.damping));
+    status = ritz_container_is(run->operand[0]) ? fit_component(&f, given)
+                                                : fit_scene(&f, given);
     free_files(&f.files);
     return status;
 }

@@ -1,12 +1,4 @@
-#include "print/import.h"
-
-#include "base/alloc.h"
-#include "print/describe.h"
-
-#include <ritz/import.h>
-
-#include <stdlib.h>
-#include <string.h>
+#include "print/print.h"
 
 /* Remember the file of "FILE[:NAME[#K]]"; NULL: none was given. */
 static ritz_status take_matrix(cli_run *run, const char *spec)
@@ -152,7 +144,7 @@ static void say_import(cli_run *run, const ritz_component *component,
 }
 
 /* Lists of options as the request has them. */
-static void take_lists(import_wish *lists)
+static void take_lists(import_options *lists)
 {
     ritz_import_request *request = &lists->request;
 
@@ -172,21 +164,20 @@ static void take_lists(import_wish *lists)
     request->damper = lists->damper.text;
 }
 
-ritz_status import_component(cli_run *run, import_wish *asked)
+ritz_status import_component(cli_run *run, import_options *given)
 {
-    ritz_import_request *request = &asked->request;
+    ritz_import_request *request = &given->request;
     RITZ_OWN(ritz_file_sums) sums = {0};
     RITZ_OWN(ritz_component) component = {0};
     RITZ_OWN(ritz_import_report) done = {0};
-    ritz_stamp stamp = {0};
 
-    take_lists(asked);
+    take_lists(given);
     RITZ_CHECK(take_inputs(run, request));
     request->sums = &sums;
     RITZ_CHECK(ritz_import(request, &component, &done));
     RITZ_CHECK(take_sums(run, &sums));
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_component(run->output, &component, &stamp));
+    RITZ_CHECK(ritz_container_write_component(run->output, &component,
+                                              cli_stamp(run)));
     say_import(run, &component, &done);
     return RITZ_OK;
 }
@@ -206,14 +197,13 @@ ritz_status import_states(cli_run *run, ritz_import_space_request *request)
 {
     RITZ_OWN(ritz_state_space) space = {0};
     RITZ_OWN(ritz_file_sums) sums = {0};
-    ritz_stamp stamp = {0};
 
     RITZ_CHECK(take_space_inputs(run, request->matrices));
     request->sums = &sums;
     RITZ_CHECK_IN("--state-space", ritz_import_state_space(request, &space));
     RITZ_CHECK(take_sums(run, &sums));
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_state_space(run->output, &space, &stamp));
+    RITZ_CHECK(
+        ritz_container_write_state_space(run->output, &space, cli_stamp(run)));
     cli_say(run, "%s:", run->output);
     RITZ_CHECK(describe_states(run, &space));
     cli_record(run, "import", space.A.nrow);

@@ -1,22 +1,16 @@
-#include "print/loops.h"
+#include "print/print.h"
 
-#include <ritz/check.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-void loops_check(const cli_program *program, const loops_wish *asked)
+void loops_check(const cli_program *program, const loop_options *given)
 {
     static const char *const signs[] = {"negative", "positive"};
 
-    if (!asked->controller && (asked->connect.count > 0 || asked->feedback ||
-                               asked->states || asked->force))
+    if (!given->controller && (given->connect.count > 0 || given->feedback ||
+                               given->states || given->force))
         cli_refuse(program, "--connect, --feedback, --closed-loop and --force "
                             "say how a loop is closed: give its --controller");
-    if (asked->feedback && strcmp(asked->feedback, signs[0]) != 0 &&
-        strcmp(asked->feedback, signs[1]) != 0)
-        cli_refuse_name(program, "no feedback", asked->feedback, 2, signs);
+    if (given->feedback && strcmp(given->feedback, signs[0]) != 0 &&
+        strcmp(given->feedback, signs[1]) != 0)
+        cli_refuse_name(program, "no feedback", given->feedback, 2, signs);
 }
 
 static ritz_ends find_ends(const model *m)
@@ -28,24 +22,24 @@ static ritz_ends find_ends(const model *m)
                        (const char(*)[RITZ_NAME_SIZE])io.output};
 }
 
-ritz_status loops_read(cli_run *run, const loops_wish *asked, loop_run *out)
+ritz_status loops_read(cli_run *run, const loop_options *given, loop_run *out)
 {
-    return asked->controller ? model_read(run, asked->controller, MODEL_STATES,
+    return given->controller ? model_read(run, given->controller, MODEL_STATES,
                                           &out->controller)
                              : RITZ_OK;
 }
 
-static ritz_status join_signals(cli_run *run, const loops_wish *asked,
+static ritz_status join_signals(cli_run *run, const loop_options *given,
                                 const model *m, loop_run *out)
 {
     ritz_ends plant = find_ends(m), inner = find_ends(&out->controller);
 
-    RITZ_CHECK_IN(asked->controller,
-                  ritz_loop_match(&plant, &inner, asked->connect.count,
-                                  asked->connect.text, &out->loop));
+    RITZ_CHECK_IN(given->controller,
+                  ritz_loop_match(&plant, &inner, given->connect.count,
+                                  given->connect.text, &out->loop));
     out->loop.positive =
-        asked->feedback && strcmp(asked->feedback, "positive") == 0;
-    cli_say(run, "loop with '%s', %s feedback:", asked->controller,
+        given->feedback && strcmp(given->feedback, "positive") == 0;
+    cli_say(run, "loop with '%s', %s feedback:", given->controller,
             out->loop.positive ? "positive" : "negative");
     for (int64_t k = 0; k < out->loop.num_measured; k++)
         cli_say(run, "  %s -> controller %s",
@@ -81,17 +75,16 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
 }
 
 /* Poles of the closed loop, if its plant has states. */
-static ritz_status find_poles(cli_run *run, const loops_wish *asked,
+static ritz_status find_poles(cli_run *run, const loop_options *given,
                               const model *m, const ritz_damping *damping,
                               const loop_run *loop, int64_t *count,
                               double _Complex **pole)
 {
     RITZ_OWN(ritz_state_space) made = {0}, closed = {0};
     const ritz_state_space *plant = NULL;
-    ritz_stamp stamp = {0};
 
     RITZ_CHECK(model_states(m, damping, &made, &plant));
-    RITZ_REFUSE_IF(!plant && asked->states, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!plant && given->states, RITZ_ERR_ARGUMENT,
                    "--closed-loop: the plant is too large for states, or has "
                    "structural damping: reduce it");
     if (!plant) {
@@ -103,19 +96,18 @@ static ritz_status find_poles(cli_run *run, const loops_wish *asked,
     }
     RITZ_CHECK(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
                                 &closed));
-    RITZ_CHECK(say_stability(run, &closed, asked->force));
+    RITZ_CHECK(say_stability(run, &closed, given->force));
     RITZ_CHECK(ritz_state_space_poles(&closed, count, pole));
-    if (asked->states) {
-        stamp = cli_stamp(run);
-        RITZ_CHECK(
-            ritz_container_write_state_space(asked->states, &closed, &stamp));
-        cli_say(run, "%s: the closed loop, %ld states", asked->states,
+    if (given->states) {
+        RITZ_CHECK(ritz_container_write_state_space(given->states, &closed,
+                                                    cli_stamp(run)));
+        cli_say(run, "%s: the closed loop, %ld states", given->states,
                 closed.A.nrow);
     }
     return RITZ_OK;
 }
 
-ritz_status loops_close(cli_run *run, const loops_wish *asked, const model *m,
+ritz_status loops_close(cli_run *run, const loop_options *given, const model *m,
                         const ritz_damping *damping, ritz_responder *plant,
                         const double range_hz[2], loop_run *out)
 {
@@ -125,12 +117,12 @@ ritz_status loops_close(cli_run *run, const loops_wish *asked, const model *m,
     ritz_response_request request = {.from_hz = range_hz[0],
                                      .to_hz = range_hz[1]};
 
-    if (!asked->controller)
+    if (!given->controller)
         return RITZ_OK;
-    RITZ_TRY(join_signals(run, asked, m, out));
-    RITZ_TRY(find_poles(run, asked, m, damping, out, &count, &pole));
+    RITZ_TRY(join_signals(run, given, m, out));
+    RITZ_TRY(find_poles(run, given, m, damping, out, &count, &pole));
     request.states = &out->controller.states;
-    RITZ_TRY_IN(asked->controller,
+    RITZ_TRY_IN(given->controller,
                 ritz_responder_new(ritz_response_engine_find("states"),
                                    &request, &out->inner));
     RITZ_TRY(ritz_loop_responder(&out->loop, plant, out->inner, count, pole,

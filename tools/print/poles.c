@@ -1,13 +1,8 @@
-#include "print/poles.h"
+#include "print/print.h"
 
-#include "base/alloc.h"
 #include "base/tolerances.h"
-#include "print/describe.h"
 
 #include <complex.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Poles of a large component that are listed where nothing is asked for. */
 enum { SOME_MODES = 20 };
@@ -126,8 +121,7 @@ static ritz_status take_names(char *names, const ritz_dampers *dampers,
 {
     char *rest = NULL;
 
-    *out = ritz_zalloc((int64_t)strlen(names) + 1, sizeof **out);
-    RITZ_REFUSE_IF(!*out, RITZ_ERR_MEMORY, "no memory for a scan");
+    RITZ_CHECK_NEW(*out, (int64_t)strlen(names) + 1);
     for (char *at = strtok_r(names, ",", &rest); at;
          at = strtok_r(NULL, ",", &rest)) {
         int64_t j = ritz_dampers_find(dampers, at);
@@ -174,38 +168,39 @@ done:
     return ritz_context(status, "--scan");
 }
 
-static ritz_status scan_dampers(cli_run *run, model *m, const poles_wish *asked,
+static ritz_status scan_dampers(cli_run *run, model *m,
+                                const poles_options *given,
                                 const ritz_damping *damping)
 {
     ritz_scan_request request = {0};
     RITZ_OWN_ARRAY int64_t *damper = NULL;
     RITZ_OWN(ritz_scan) found = {0};
 
-    RITZ_CHECK(parse_scan(asked->scan, model_dampers(m), &request, &damper));
-    request.mode = asked->mode - 1;
+    RITZ_CHECK(parse_scan(given->scan, model_dampers(m), &request, &damper));
+    request.mode = given->mode - 1;
     RITZ_CHECK(model_scan(m, damping, &request, &found));
-    say_scan(run, &found, asked->tsv);
+    say_scan(run, &found, given->tsv);
     return RITZ_OK;
 }
 
 /* Those that are asked for, of what a small model gives. */
 static ritz_status find_poles(cli_run *run, const model *m,
-                              const poles_wish *asked,
+                              const poles_options *given,
                               const ritz_damping *damping)
 {
     RITZ_OWN(ritz_spectrum) found = {0};
-    bool by_hertz = !isnan(asked->up_to_hz);
-    double limit = 2.0 * RITZ_PI * asked->up_to_hz * (1.0 + 1e-9);
-    ritz_span span = {.modes = asked->modes > 0 ? asked->modes : SOME_MODES};
+    bool by_hertz = !isnan(given->up_to_hz);
+    double limit = 2.0 * RITZ_PI * given->up_to_hz * (1.0 + 1e-9);
+    ritz_span span = {.modes = given->modes > 0 ? given->modes : SOME_MODES};
 
     if (by_hertz)
-        span = (ritz_span){.modes = -1, .up_to_hz = asked->up_to_hz};
+        span = (ritz_span){.modes = -1, .up_to_hz = given->up_to_hz};
     RITZ_CHECK(model_spectrum(m, damping, &span, &found));
     while (m->kind != MODEL_COMPONENT && found.count > 0 &&
-           ((asked->modes > 0 && found.count > asked->modes) ||
+           ((given->modes > 0 && found.count > given->modes) ||
             (by_hertz && cabs(found.s[found.count - 1]) > limit)))
         found.count--;
-    say_poles(run, &found, asked->tsv);
+    say_poles(run, &found, given->tsv);
     cli_record(run, "poles", found.count);
     return RITZ_OK;
 }
@@ -222,7 +217,7 @@ static void say_damping(cli_run *run, model *m, const ritz_damping *damping)
         describe_dampers(run, model_dampers(m));
 }
 
-ritz_status poles_report(cli_run *run, const poles_wish *asked)
+ritz_status poles_report(cli_run *run, const poles_options *given)
 {
     const char *path = run->operand[0];
     RITZ_OWN(model) m = {0};
@@ -230,19 +225,19 @@ ritz_status poles_report(cli_run *run, const poles_wish *asked)
 
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_REFUSE_IF(
-        m.kind == MODEL_STATES && (asked->model.damping || asked->scan ||
-                                   asked->model.damper.count > 0),
+        m.kind == MODEL_STATES && (given->model.damping || given->scan ||
+                                   given->model.damper.count > 0),
         RITZ_ERR_ARGUMENT,
         "'%s' is a state space, damped as it is: --damping, --damper "
         "and --scan are not for it",
         path);
-    RITZ_CHECK(model_settle(&m, path, &asked->model, &damping));
-    if (!asked->tsv)
+    RITZ_CHECK(model_settle(&m, path, &given->model, &damping));
+    if (!given->tsv)
         say_damping(run, &m, &damping);
-    if (asked->scan)
-        RITZ_CHECK_IN(path, scan_dampers(run, &m, asked, &damping));
+    if (given->scan)
+        RITZ_CHECK_IN(path, scan_dampers(run, &m, given, &damping));
     else
-        RITZ_CHECK_IN(path, find_poles(run, &m, asked, &damping));
+        RITZ_CHECK_IN(path, find_poles(run, &m, given, &damping));
     if (run->output)
         RITZ_CHECK(cli_save(run, run->output));
     return RITZ_OK;

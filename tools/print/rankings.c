@@ -1,13 +1,5 @@
 #include "print/rankings.h"
 
-#include "cli/cli_table.h"
-
-#include <ritz/basis.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* Above this share of one mode in another's Gramian, Gregory's assumption of
  * modes that do not couple costs several percent. */
 static const double coupled_limit = 0.1;
@@ -26,11 +18,14 @@ const ritz_ranking *ranked_whole(const ranked *group)
     return group->all.count == 1 ? group->all.item : &group->largest;
 }
 
-const int64_t *ranked_track(const ranked *group)
+int64_t *ranked_track(const ranked *group)
 {
-    if (group->all.count > 1)
-        return group->track;
-    return group->all.track ? group->all.track[0] : NULL;
+    return group->all.count > 1 ? group->track : ranked_numbers(&group->all, 0);
+}
+
+int64_t *ranked_numbers(const ritz_rankings *all, int64_t k)
+{
+    return all->track ? all->track[k] : NULL;
 }
 
 void ranked_free(ranked *group)
@@ -199,35 +194,23 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
         cli_say(run, "all values add up to %.9g", r->total);
 }
 
-int64_t rankings_place(const ritz_ranking *r, const int64_t *track,
-                       int64_t number)
+void rankings_append_place(const ritz_ranking *r, const int64_t *track,
+                           int64_t number, int width, size_t size, char *out)
 {
-    for (int64_t k = 0; k < r->count; k++)
-        if ((track ? track[r->order[k]] : r->order[k]) == number)
-            return k + 1;
-    return 0;
-}
+    int64_t k = 0;
 
-/* Places of one mode in each ranking of a group: "  1  2  -". */
-static void print_places(const ranked *group, int64_t number, size_t size,
-                         char *out)
-{
-    out[0] = '\0';
-    for (int64_t c = 0; c < group->all.count; c++) {
-        int64_t place = rankings_place(
-            &group->all.item[c], group->all.track ? group->all.track[c] : NULL,
-            number);
-
-        if (place > 0)
-            sink_append(out, size, " %3ld", place);
-        else
-            sink_append(out, size, "   -");
-    }
+    while (k < r->count && number_of(track, r->order[k]) != number + 1)
+        k++;
+    if (k < r->count)
+        sink_append(out, size, " %*ld", width, k + 1);
+    else
+        sink_append(out, size, " %*s", width, "-");
 }
 
 void rankings_say_largest(const cli_run *run, const ranked *group)
 {
     enum { MOST_COLUMNS = 24 };
+    const ritz_rankings *all = &group->all;
     const ritz_ranking *r = &group->largest;
     char places[MOST_COLUMNS * 8] = "";
     char cluster[CELL];
@@ -235,19 +218,21 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
     cli_say(run,
             "\nLargest over %ld configurations by %s; modes are followed by "
             "%s:",
-            group->all.count, r->by, group->all.track ? "track" : "number");
+            all->count, r->by, all->track ? "track" : "number");
     cli_say(run, "%4s %6s %14s %7s %13.13s  %-24s %s", "rank",
-            group->all.track ? "track" : "mode", "Hz", "cluster", r->by,
-            "where", "place at each");
+            all->track ? "track" : "mode", "Hz", "cluster", r->by, "where",
+            "place at each");
     for (int64_t k = 0; k < r->count; k++) {
         int64_t mode = r->order[k];
 
         name_cluster(r, group->track, mode, cluster);
-        if (group->all.count <= MOST_COLUMNS)
-            print_places(group, group->track[mode], sizeof places, places);
+        places[0] = '\0';
+        for (int64_t c = 0; c < all->count && all->count <= MOST_COLUMNS; c++)
+            rankings_append_place(&all->item[c], ranked_numbers(all, c),
+                                  group->track[mode], 3, sizeof places, places);
         cli_say(run, "%4ld %6ld %14.7g %7s %13.5e  %-24s %s", k + 1,
                 number_of(group->track, mode), r->hertz[mode], cluster,
-                r->value[mode], group->all.item[group->where[mode]].at, places);
+                r->value[mode], all->item[group->where[mode]].at, places);
     }
 }
 
@@ -264,6 +249,10 @@ void rankings_say_values(const cli_run *run, const ritz_ranking *r,
 
 void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
 {
+    bool item = json_is_array(sink_here(run));
+
+    if (item)
+        sink_object(run, NULL);
     sink_set(run, "by,at,damping,total,coupling,difference",
              "%s %s %s %g %g %g", r->by, r->at, r->damping, r->total,
              r->coupling, rankings_difference(r));
@@ -283,6 +272,8 @@ void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
         sink_end(run);
         sink_end(run);
     }
+    if (item)
+        sink_end(run);
 }
 
 /* Every ranking; the object that is open has the keys of the first too. */
@@ -296,7 +287,7 @@ void rankings_describe(cli_run *run, const ritz_rankings *all)
     sink_list(run, "rankings");
     for (int64_t k = 0; k < all->count; k++) {
         const ritz_ranking *r = &all->item[k];
-        const int64_t *track = all->track ? all->track[k] : NULL;
+        const int64_t *track = ranked_numbers(all, k);
 
         cli_say(run, "  %-14s of %ld flexible modes by %s [%s]%s%s, damping %s",
                 "ranking", r->count, r->by, r->reference, *r->at ? ", at " : "",
@@ -305,9 +296,7 @@ void rankings_describe(cli_run *run, const ritz_rankings *all)
             rankings_say(run, r, track, INT64_MAX);
         else
             rankings_say_values(run, r, INT64_MAX);
-        sink_object(run, NULL);
         rankings_set(run, r, track);
-        sink_end(run);
     }
     first = json_array_get(sink_here(run), 0);
     sink_end(run);
@@ -364,9 +353,8 @@ void rankings_warn(cli_run *run, const ranked *group)
         cli_warn(run, "%s", text);
 }
 
-/* "1 2 5" of modes. */
-static void list_modes(int64_t count, const int64_t *mode, size_t size,
-                       char *out)
+void rankings_list_modes(int64_t count, const int64_t *mode, size_t size,
+                         char *out)
 {
     snprintf(out, size, "%s", count > 0 ? "" : "none");
     for (int64_t k = 0; k < count; k++)
@@ -391,8 +379,8 @@ void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
 {
     char kept[1024], other[1024], outcome[128];
 
-    list_modes(found->num_kept, found->kept, sizeof kept, kept);
-    list_modes(found->num_other, found->other, sizeof other, other);
+    rankings_list_modes(found->num_kept, found->kept, sizeof kept, kept);
+    rankings_list_modes(found->num_other, found->other, sizeof other, other);
     sink_object(run, "reweighting");
     sink_say(run, "keep", "\nReweighting outputs for %ld modes %s: modes %s.",
              keep, outcome_of(found, outcome), kept);

@@ -2,7 +2,7 @@
 #ifndef RITZ_TOOLS_PRINT_RANKINGS_H
 #define RITZ_TOOLS_PRINT_RANKINGS_H
 
-#include "cli/sink.h"
+#include "print/print.h"
 
 #include <ritz/ranking.h>
 
@@ -15,7 +15,11 @@ typedef struct ranked {
 
 /** One ranking that stands for all: the largest, or the only one. */
 const ritz_ranking *ranked_whole(const ranked *group);
-const int64_t *ranked_track(const ranked *group);
+int64_t *ranked_track(const ranked *group);
+
+/** Numbers of the modes of the k-th ranking; NULL: their index. */
+int64_t *ranked_numbers(const ritz_rankings *all, int64_t k);
+
 void ranked_free(ranked *group);
 
 /**
@@ -27,9 +31,14 @@ void ranked_free(ranked *group);
 void rankings_say(const cli_run *run, const ritz_ranking *ranking,
                   const int64_t *track, int64_t most);
 
-/** Place from 1 of the mode with that number; 0: it is not there. */
-int64_t rankings_place(const ritz_ranking *ranking, const int64_t *track,
-                       int64_t number);
+/** Append " 3", the place of the mode with that number, or " -" if it is not
+ * there, in @p width letters. */
+void rankings_append_place(const ritz_ranking *ranking, const int64_t *track,
+                           int64_t number, int width, size_t size, char *out);
+
+/** "1 2 5" of indices of modes, or "none". */
+void rankings_list_modes(int64_t count, const int64_t *mode, size_t size,
+                         char *out);
 
 /** The largest over configurations, where it stands, and places at each. */
 void rankings_say_largest(const cli_run *run, const ranked *group);
@@ -38,7 +47,8 @@ void rankings_say_largest(const cli_run *run, const ranked *group);
 void rankings_say_values(const cli_run *run, const ritz_ranking *ranking,
                          int64_t most);
 
-/** by, at, damping, order, values and all else, in the object that is open. */
+/** by, at, damping, order, values and all else, in the object that is open, or
+ * as an item of the list that is. */
 void rankings_set(cli_run *run, const ritz_ranking *ranking,
                   const int64_t *track);
 
@@ -64,15 +74,55 @@ void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
 typedef struct contest {
     int64_t count;
     const ritz_ranking **ranking;
-    const int64_t **track;
+    int64_t **track;
     char (*name)[2 * RITZ_NAME_SIZE];
     bool chain; /* each against the one before, not against the first */
 } contest;
+
+/* A group for each ranking and each damping, or for each file. */
+typedef struct rank_result {
+    int64_t count;
+    ranked *group;
+    char (*file)[RITZ_NAME_SIZE]; /* of groups that were read; else NULL */
+} rank_result;
+
+void rank_result_free(rank_result *result);
+
+/**
+ * Rankings to be compared: of several groups the whole of each, of a single one
+ * its configurations in a row; with @p all every ranking there is.
+ */
+ritz_status contest_new(const rank_result *result, bool all, contest *out);
+void contest_free(contest *all);
 
 /** Compare them: places, correlations, overlaps, what comes and goes. */
 ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top);
 
 /** All rankings as one table with tabs. */
 ritz_status rankings_write_table(const char *path, const contest *all);
+
+enum { RANK_MOST = 16 };
+
+/* Options of ritz-rank; NULL: not given. */
+typedef struct rank_options {
+    int64_t num_rankers;
+    const ritz_ranker *ranker[RANK_MOST];
+    cli_list damping;
+    const char *by, *band, *engine, *among; /* words that rank_take reads */
+    const char *at, *input_weights, *output_weights, *tracks, *table, *chart;
+    double band_hz[2]; /* [0, 0]: the model's */
+    int64_t keep, top; /* keep 0: weights stay */
+    int64_t order;     /* columns of a nested component; 0: all */
+    bool compare;
+    ritz_status (*draw)(const char *path, const char *title, const contest *all,
+                        int64_t most); /* for `chart` */
+    ritz_choice choice;                /* of a component's Gramians */
+} rank_options;
+
+/** Take words of the command line, or end the program. */
+void rank_take(const cli_run *run, rank_options *given);
+
+/** Rank what the operand holds, or read rankings of --compare, and report. */
+ritz_status rank_run(cli_run *run, const rank_options *given);
 
 #endif

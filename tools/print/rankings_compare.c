@@ -1,29 +1,14 @@
 /* Several rankings side by side: correlations, overlaps, what swaps. */
-#include "print/rankings_make.h"
+#include "print/rankings.h"
 
-#include "base/alloc.h"
 #include "cli/cli_table.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MOST_COLUMNS = 10, CELL = 16, LIST = 1024 };
 
 /* Frequencies of one mode in two rankings of one model agree to rounding. */
 static const double same_frequency = 1e-3;
 
-static ritz_status contest_new(int64_t count, contest *out)
-{
-    out->ranking = ritz_zalloc(count + 1, sizeof(void *));
-    out->track = ritz_zalloc(count + 1, sizeof(void *));
-    out->name = ritz_zalloc(count + 1, sizeof *out->name);
-    RITZ_REFUSE_IF(!out->ranking || !out->track || !out->name, RITZ_ERR_MEMORY,
-                   "no memory for rankings");
-    return RITZ_OK;
-}
-
-static void add_ranking(const ritz_ranking *ranking, const int64_t *track,
+static void add_ranking(const ritz_ranking *ranking, int64_t *track,
                         const char *file, contest *out)
 {
     out->ranking[out->count] = ranking;
@@ -65,26 +50,27 @@ static void name_all(contest *c)
             append_word(c->ranking[k]->by, c->name[k], size);
 }
 
-ritz_status rank_contest(const rank_result *result, bool all, contest *out)
+ritz_status contest_new(const rank_result *result, bool all, contest *out)
 {
-    [[gnu::cleanup(rank_contest_free)]] contest c = {0};
-    int64_t count = 0;
+    RITZ_OWN(contest) c = {0};
+    int64_t count = 1;
     bool files = result->file != NULL;
     bool one = result->count == 1;
 
     for (int64_t g = 0; g < result->count; g++)
         count += result->group[g].all.count;
-    RITZ_CHECK(contest_new(count, &c));
+    RITZ_CHECK_NEW(c.ranking, count);
+    RITZ_CHECK_NEW(c.track, count);
+    RITZ_CHECK_NEW(c.name, count);
     for (int64_t g = 0; g < result->count; g++) {
         const ranked *group = &result->group[g];
-        const ritz_rankings *r = &group->all;
 
         if (!all && !files && !one) {
             add_ranking(ranked_whole(group), ranked_track(group), "", &c);
             continue;
         }
-        for (int64_t k = 0; k < r->count; k++)
-            add_ranking(&r->item[k], r->track ? r->track[k] : NULL,
+        for (int64_t k = 0; k < group->all.count; k++)
+            add_ranking(&group->all.item[k], ranked_numbers(&group->all, k),
                         files && !one ? result->file[g] : "", &c);
     }
     c.chain = one && !files;
@@ -93,45 +79,12 @@ ritz_status rank_contest(const rank_result *result, bool all, contest *out)
     return RITZ_OK;
 }
 
-void rank_contest_free(contest *all)
+void contest_free(contest *all)
 {
     free(all->ranking);
     free(all->track);
     free(all->name);
     *all = (contest){0};
-}
-
-ritz_status rank_write(const char *path, const rank_result *result,
-                       const ritz_stamp *stamp)
-{
-    ritz_status status = RITZ_OK;
-    contest c = {0};
-    ritz_rankings all = {0}; /* borrows what it holds */
-    bool tracked = true;
-
-    RITZ_TRY(rank_contest(result, true, &c));
-    all.item = ritz_zalloc(c.count + 1, sizeof *all.item);
-    all.track = ritz_zalloc(c.count + 1, sizeof *all.track);
-    RITZ_FAIL_IF(!all.item || !all.track, RITZ_ERR_MEMORY,
-                 "no memory for rankings");
-    for (int64_t k = 0; k < c.count; k++) {
-        all.item[k] = *c.ranking[k];
-        tracked = tracked && c.track[k];
-    }
-    for (int64_t g = 0, k = 0; tracked && g < result->count; g++)
-        for (int64_t i = 0; i < result->group[g].all.count; i++)
-            all.track[k++] = result->group[g].all.track[i];
-    all.count = c.count;
-    if (!tracked) {
-        free(all.track);
-        all.track = NULL;
-    }
-    RITZ_TRY(ritz_container_write_rankings(path, &all, stamp));
-done:
-    free(all.item);
-    free(all.track);
-    rank_contest_free(&c);
-    return status;
 }
 
 static int64_t number_of(const contest *all, int64_t which, int64_t mode)
@@ -161,30 +114,14 @@ static void say_places(cli_run *run, const contest *all, int64_t most)
         int64_t number = number_of(all, 0, r->order[k]);
 
         line[0] = '\0';
-        for (int64_t c = 0; c < all->count; c++) {
-            int64_t place =
-                rankings_place(all->ranking[c], all->track[c], number);
-
-            if (place > 0)
-                sink_append(line, sizeof line, " %5ld", place);
-            else
-                sink_append(line, sizeof line, " %5s", "-");
-        }
+        for (int64_t c = 0; c < all->count; c++)
+            rankings_append_place(all->ranking[c], all->track[c], number, 5,
+                                  sizeof line, line);
         cli_say(run, "%6ld %14.7g  %s", number + 1, r->hertz[r->order[k]],
                 line);
     }
     if (r->count > most)
         cli_say(run, "       and %ld more", (r->count - most));
-}
-
-/* Numbers of modes as a list, and as "1 2 5". */
-static void list_modes(cli_run *run, const char *key, int64_t count,
-                       const int64_t *number, char out[LIST])
-{
-    snprintf(out, LIST, "%s", count > 0 ? "" : "none");
-    for (int64_t k = 0; k < count; k++)
-        sink_append(out, LIST, "%s%ld", k > 0 ? " " : "", number[k] + 1);
-    sink_numbers(run, key, count, number);
 }
 
 static void say_pair(cli_run *run, const contest *all, int64_t a, int64_t b,
@@ -211,8 +148,10 @@ static void say_pair(cli_run *run, const contest *all, int64_t a, int64_t b,
                 "in the other",
                 g->alone[0], g->alone[1]);
     cli_say(run, "  the first k in common, %s", text);
-    list_modes(run, "left", g->num_left, g->left, left);
-    list_modes(run, "entered", g->num_entered, g->entered, entered);
+    rankings_list_modes(g->num_left, g->left, LIST, left);
+    rankings_list_modes(g->num_entered, g->entered, LIST, entered);
+    sink_numbers(run, "left", g->num_left, g->left);
+    sink_numbers(run, "entered", g->num_entered, g->entered);
     sink_set(run, "top,top_share", "%ld %g", g->top, g->top_share);
     if (g->num_left + g->num_entered > 0)
         cli_say(run, "  among the first %ld: %s leave, %s enter", g->top, left,
@@ -272,13 +211,12 @@ ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top)
     warn_numbers(run, all);
     for (int64_t b = 1; b < all->count; b++) {
         int64_t a = all->chain ? b - 1 : 0;
-        ritz_agreement g = {0};
+        RITZ_OWN(ritz_agreement) g = {0};
 
         RITZ_CHECK(ritz_rankings_agree(all->ranking[a], all->track[a],
                                        all->ranking[b], all->track[b], top,
                                        &g));
         say_pair(run, all, a, b, &g);
-        ritz_agreement_free(&g);
     }
     sink_end(run);
     return RITZ_OK;

@@ -1,15 +1,6 @@
-#include "print/rankings_make.h"
-
-#include "base/alloc.h"
-
-#include <ritz/base.h>
-#include <ritz/basis.h>
+#include "print/rankings.h"
 
 #include <inttypes.h>
-#include <limits.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { FIELDS = 3, FIELD = 256 };
 
@@ -62,8 +53,30 @@ static ritz_status take_track(const char *line, int64_t most,
     return RITZ_OK;
 }
 
-static ritz_status check_tracks(const ritz_rankings *all)
+/* No mode has a number yet. */
+static ritz_status make_tracks(ritz_rankings *all)
 {
+    RITZ_CHECK_NEW(all->track, all->count + 1);
+    for (int64_t k = 0; k < all->count; k++) {
+        RITZ_CHECK_NEW(all->track[k], all->item[k].count + 1);
+        for (int64_t i = 0; i < all->item[k].count; i++)
+            all->track[k][i] = -1;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status take_tracks(const char *text, ritz_rankings *all)
+{
+    int64_t rows = 0;
+
+    RITZ_CHECK(make_tracks(all));
+    RITZ_REFUSE_IF(strncmp(text, "track\tconfiguration\tmode\t", 25) != 0,
+                   RITZ_ERR_FORMAT, "it is no table of tracks");
+    for (const char *c = text; *c; c++)
+        rows += *c == '\n';
+    for (const char *line = strchr(text, '\n'); line && line[1];
+         line = strchr(line + 1, '\n'))
+        RITZ_CHECK(take_track(line + 1, rows, all));
     for (int64_t k = 0; k < all->count; k++)
         for (int64_t i = 0; i < all->item[k].count; i++)
             RITZ_REFUSE_IF(all->track[k][i] < 0, RITZ_ERR_FORMAT,
@@ -72,44 +85,17 @@ static ritz_status check_tracks(const ritz_rankings *all)
     return RITZ_OK;
 }
 
-static ritz_status make_tracks(ritz_rankings *all)
-{
-    all->track = ritz_zalloc(all->count + 1, sizeof *all->track);
-    RITZ_REFUSE_IF(!all->track, RITZ_ERR_MEMORY, "no memory for tracks");
-    for (int64_t k = 0; k < all->count; k++) {
-        size_t m = (size_t)all->item[k].count;
-
-        all->track[k] = malloc((m + 1) * sizeof **all->track);
-        RITZ_REFUSE_IF(!all->track[k], RITZ_ERR_MEMORY, "no memory for tracks");
-        for (size_t i = 0; i < m; i++)
-            all->track[k][i] = -1;
-    }
-    return RITZ_OK;
-}
-
 /* Numbers of modes at each configuration, from the table that --tracks of other
    tools writes. */
 static ritz_status read_tracks(cli_run *run, const char *path,
                                ritz_rankings *all)
 {
-    ritz_status status = RITZ_OK;
-    char *text = NULL;
-    int64_t size = 0, rows = 0;
+    RITZ_OWN_ARRAY char *text = NULL;
+    int64_t size = 0;
 
-    RITZ_TRY(cli_input(run, path));
-    RITZ_TRY(ritz_bytes_read(path, &size, &text));
-    RITZ_TRY(make_tracks(all));
-    RITZ_FAIL_IF(strncmp(text, "track\tconfiguration\tmode\t", 25) != 0,
-                 RITZ_ERR_FORMAT, "it is no table of tracks");
-    for (const char *c = text; *c; c++)
-        rows += *c == '\n';
-    for (const char *line = strchr(text, '\n'); line && line[1];
-         line = strchr(line + 1, '\n'))
-        RITZ_TRY(take_track(line + 1, rows, all));
-    RITZ_TRY(check_tracks(all));
-done:
-    free(text);
-    return ritz_context(status, path);
+    RITZ_CHECK_IN(path, cli_input(run, path));
+    RITZ_CHECK_IN(path, ritz_bytes_read(path, &size, &text));
+    return ritz_context(take_tracks(text, all), path);
 }
 
 /* Words of Gramians that are a choice of components. */
@@ -122,46 +108,58 @@ static void take_choice(const cli_program *program, const char *key,
             cli_refuse(program, "%s", ritz_error_message());
 }
 
-void rank_take(const cli_run *run, rank_wish *asked)
+void rank_take(const cli_run *run, rank_options *given)
 {
     const cli_program *program = run->program;
-    const char *list = asked->by;
+    const char *list = given->by;
     char word[RITZ_NAME_SIZE];
 
-    if (asked->compare && (asked->at || asked->damping.count > 0 ||
-                           asked->tracks || asked->keep > 0))
+    if (given->compare && (given->at || given->damping.count > 0 ||
+                           given->tracks || given->keep > 0))
         cli_refuse(program, "--compare takes rankings as they are");
-    if (!asked->compare && run->num_operands > 1)
+    if (!given->compare && run->num_operands > 1)
         cli_refuse(program, "one model is ranked; rankings of several go to "
                             "--compare");
-    if (asked->at && asked->tracks)
+    if (given->at && given->tracks)
         cli_refuse(program, "--tracks follows modes over configurations, --at "
                             "leaves one");
     while (cli_next(&list, word)) {
-        if (asked->num_rankers == RANK_MOST)
+        if (given->num_rankers == RANK_MOST)
             cli_refuse(program, "--by takes up to %d rankings", RANK_MOST);
-        asked->ranker[asked->num_rankers++] =
+        given->ranker[given->num_rankers++] =
             cli_choose(program, "no ranking", word, ritz_rankers);
     }
-    if (asked->band)
-        cli_pair(program, "band-hz", asked->band, asked->band_hz);
-    take_choice(program, "engine", asked->engine, &asked->choice);
-    take_choice(program, "among_hz", asked->among, &asked->choice);
+    if (given->band)
+        cli_pair(program, "band-hz", given->band, given->band_hz);
+    take_choice(program, "engine", given->engine, &given->choice);
+    take_choice(program, "among_hz", given->among, &given->choice);
 }
 
 /* A model, and the settings of the rankings at work. */
 typedef struct subject {
     cli_run *run;
-    const rank_wish *asked;
+    const rank_options *given;
     model *m;
-    ritz_weights weights;
     ritz_rank_choice choice; /* with the damping of the group at work */
     char damping[RITZ_DAMPING_SIZE];
 } subject;
 
-static ritz_status request_of(const subject *s, const ritz_ranker *ranker,
-                              const ritz_configuration *at,
-                              ritz_rank_request *out)
+static int64_t count_configurations(const model *m)
+{
+    return m->kind == MODEL_SYSTEM && !m->at ? m->system.num_configurations : 1;
+}
+
+/* The k-th configuration that is ranked; NULL: of a reduced component. */
+static ritz_configuration *configuration_of(const model *m, int64_t k)
+{
+    if (m->at || m->kind != MODEL_SYSTEM)
+        return m->at;
+    return &m->system.configuration[k];
+}
+
+static ritz_status make_request(const subject *s, const ritz_ranker *ranker,
+                                const ritz_configuration *at,
+                                ritz_rank_request *out)
 {
     return at ? ritz_rank_request_of_configuration(at, &s->choice,
                                                    ranker->needs, out)
@@ -172,43 +170,37 @@ static ritz_status request_of(const subject *s, const ritz_ranker *ranker,
 static ritz_status rank_at(const subject *s, const ritz_ranker *ranker,
                            const ritz_configuration *at, ritz_ranking *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_rank_request request = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
 
-    RITZ_TRY(request_of(s, ranker, at, &request));
-    RITZ_TRY(ritz_rank(ranker, &request, out));
+    RITZ_CHECK(make_request(s, ranker, at, &request));
+    RITZ_CHECK(ritz_rank(ranker, &request, out));
     snprintf(out->damping, sizeof out->damping, "%s", s->damping);
     if (at)
         snprintf(out->at, sizeof out->at, "%s", at->at);
-done:
-    ritz_rank_request_free(&request);
-    return at ? ritz_context(status, at->at) : status;
+    return RITZ_OK;
 }
 
 /* At one configuration: at several, each would want weights of its own. */
 static ritz_status reweigh_outputs(const subject *s)
 {
-    const ritz_system *system = &s->m->system;
-    const ritz_configuration *at = s->m->at;
     RITZ_OWN(ritz_rank_request) request = {0};
     RITZ_OWN(ritz_reweighing) found = {0};
-    const rank_wish *asked = s->asked;
+    int64_t keep = s->given->keep;
 
-    RITZ_REFUSE_IF(!at && system->num_configurations > 1, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(count_configurations(s->m) > 1, RITZ_ERR_ARGUMENT,
                    "weights are found at one configuration, --at says which");
-    if (!at && system->num_configurations == 1)
-        at = system->configuration;
-    RITZ_CHECK(request_of(s, &ritz_ranker_modal_cost, at, &request));
-    RITZ_CHECK(ritz_reweigh(&request, asked->keep, &found));
-    rankings_say_weights(s->run, &request, &found, asked->keep);
+    RITZ_CHECK(make_request(s, &ritz_ranker_modal_cost,
+                            configuration_of(s->m, 0), &request));
+    RITZ_CHECK(ritz_reweigh(&request, keep, &found));
+    rankings_say_weights(s->run, &request, &found, keep);
     return RITZ_OK;
 }
 
 static void say_group(const subject *s, const ranked *group)
 {
-    const rank_wish *asked = s->asked;
-    bool several = group->all.count > 1 || asked->num_rankers > 1 ||
-                   asked->damping.count > 1;
+    const rank_options *given = s->given;
+    bool several = group->all.count > 1 || given->num_rankers > 1 ||
+                   given->damping.count > 1;
 
     for (int64_t k = 0; k < group->all.count; k++) {
         const ritz_ranking *r = &group->all.item[k];
@@ -218,8 +210,8 @@ static void say_group(const subject *s, const ranked *group)
                 k > 0 ? "\n" : "", r->count, s->run->operand[0],
                 *r->at ? " at " : "", r->at, r->by, r->reference,
                 rankings_damping(r));
-        rankings_say(s->run, r, group->all.track ? group->all.track[k] : NULL,
-                     several ? asked->top : INT64_MAX);
+        rankings_say(s->run, r, ranked_numbers(&group->all, k),
+                     several ? given->top : INT64_MAX);
     }
     if (group->all.count > 1)
         rankings_say_largest(s->run, group);
@@ -230,23 +222,21 @@ static void say_group(const subject *s, const ranked *group)
 static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
                               ranked *out)
 {
-    const model *m = s->m;
-    bool system = m->kind == MODEL_SYSTEM;
-    int64_t count = system && !m->at ? m->system.num_configurations : 1;
+    int64_t count = count_configurations(s->m);
     ritz_rankings *all = &out->all;
 
-    all->item = ritz_zalloc(count + 1, sizeof *all->item);
-    RITZ_REFUSE_IF(!all->item, RITZ_ERR_MEMORY, "no memory for rankings");
-    for (int64_t k = 0; k < count; k++) {
-        const ritz_configuration *at = m->at    ? m->at
-                                       : system ? &m->system.configuration[k]
-                                                : NULL;
+    RITZ_CHECK_NEW(all->item, count + 1);
+    while (all->count < count) {
+        const ritz_configuration *at = configuration_of(s->m, all->count);
+        ritz_ranking *item = &all->item[all->count++];
 
-        all->count++;
-        RITZ_CHECK(rank_at(s, ranker, at, &all->item[k]));
+        if (at)
+            RITZ_CHECK_IN(at->at, rank_at(s, ranker, at, item));
+        else
+            RITZ_CHECK(rank_at(s, ranker, NULL, item));
     }
-    if (s->asked->tracks)
-        RITZ_CHECK(read_tracks(s->run, s->asked->tracks, all));
+    if (s->given->tracks)
+        RITZ_CHECK(read_tracks(s->run, s->given->tracks, all));
     if (count > 1)
         RITZ_CHECK(ritz_rankings_largest(all, &out->largest, &out->where,
                                          &out->track));
@@ -254,64 +244,47 @@ static ritz_status make_group(const subject *s, const ritz_ranker *ranker,
 }
 
 /* Dampers of every configuration that is ranked; what is left out is said. */
-static ritz_status install_dampers(subject *s)
+static ritz_status install_dampers(const subject *s)
 {
-    ritz_status status = RITZ_OK;
-    model *m = s->m;
     const char *path = s->run->operand[0];
-    ritz_configuration *chosen = m->at;
-    bool all = m->kind == MODEL_SYSTEM && !chosen;
-    int64_t count = all ? m->system.num_configurations : 1;
     bool structural = false;
 
-    for (int64_t k = 0; k < count; k++) {
-        if (all)
-            m->at = &m->system.configuration[k];
-        RITZ_TRY_IN(path, model_install(m, NULL));
-        structural = structural || model_matrices(m).K4->val;
+    for (int64_t k = 0; k < count_configurations(s->m); k++) {
+        ritz_configuration *at = configuration_of(s->m, k);
+
+        RITZ_CHECK_IN(path, at ? ritz_configuration_install(at)
+                               : ritz_reduced_install(&s->m->reduced));
+        structural = structural || (at ? at->K4 : s->m->reduced.K4).val;
     }
     if (structural)
         cli_warn(s->run,
                  "the structural damping of '%s' is left out of its ranking",
                  path);
-done:
-    m->at = chosen;
-    return status;
-}
-
-static ritz_status set_damping(subject *s, const char *asked)
-{
-    const char *own = s->m->kind == MODEL_SYSTEM ? s->m->system.damping
-                                                 : s->m->reduced.damping;
-
-    RITZ_CHECK_IN(asked ? "--damping" : "damping of the model",
-                  ritz_damping_parse(asked ? asked : own, &s->choice.damping));
-    ritz_damping_print(&s->choice.damping, s->damping);
     return RITZ_OK;
 }
 
 static ritz_status make_groups(subject *s, rank_result *out)
 {
-    const rank_wish *asked = s->asked;
-    int64_t dampings = asked->damping.count > 0 ? asked->damping.count : 1;
+    const rank_options *given = s->given;
+    int64_t dampings = given->damping.count > 0 ? given->damping.count : 1;
 
-    out->group =
-        ritz_zalloc((asked->num_rankers * dampings) + 1, sizeof *out->group);
-    RITZ_REFUSE_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_CHECK_NEW(out->group, given->num_rankers * dampings + 1);
     for (int64_t d = 0; d < dampings; d++) {
-        RITZ_CHECK(set_damping(
-            s, asked->damping.count > 0 ? asked->damping.text[d] : NULL));
-        for (int64_t r = 0; r < asked->num_rankers; r++) {
+        RITZ_CHECK(model_damping(
+            s->m, given->damping.count > 0 ? given->damping.text[d] : NULL,
+            &s->choice.damping));
+        ritz_damping_print(&s->choice.damping, s->damping);
+        for (int64_t r = 0; r < given->num_rankers; r++) {
             ranked *group = &out->group[out->count++];
 
             RITZ_CHECK_IN(s->run->operand[0],
-                          make_group(s, asked->ranker[r], group));
+                          make_group(s, given->ranker[r], group));
             if (out->count > 1)
                 cli_say(s->run, "%s", "");
             say_group(s, group);
         }
     }
-    if (asked->keep > 0)
+    if (given->keep > 0)
         RITZ_CHECK_IN(s->run->operand[0], reweigh_outputs(s));
     return RITZ_OK;
 }
@@ -325,11 +298,8 @@ static void set_groups(cli_run *run, const rank_result *result)
     for (int64_t g = 0; g < result->count; g++) {
         const ritz_rankings *all = &result->group[g].all;
 
-        for (int64_t k = 0; k < all->count; k++) {
-            sink_object(run, NULL);
-            rankings_set(run, &all->item[k], all->track ? all->track[k] : NULL);
-            sink_end(run);
-        }
+        for (int64_t k = 0; k < all->count; k++)
+            rankings_set(run, &all->item[k], ranked_numbers(all, k));
     }
     sink_end(run);
     sink_object(run, "whole");
@@ -345,71 +315,66 @@ static void set_groups(cli_run *run, const rank_result *result)
     }
 }
 
-static ritz_status rank_modes(cli_run *run, const rank_wish *asked, model *m,
+static ritz_status rank_modes(cli_run *run, const rank_options *given, model *m,
                               rank_result *out)
 {
-    ritz_status status = RITZ_OK;
-    subject s = {.run = run, .asked = asked, .m = m};
-    const double *band = asked->band_hz;
+    RITZ_OWN(ritz_weights) weights = {0};
+    subject s = {
+        .run = run, .given = given, .m = m, .choice.weights = &weights};
+    const double *band = given->band_hz;
 
-    RITZ_FAIL_IF(asked->choice.given, RITZ_ERR_ARGUMENT,
-                 "'%s' is small: its Gramians are in closed form, an engine is "
-                 "chosen for components",
-                 run->operand[0]);
-    if (asked->at)
-        RITZ_TRY(model_at(m, run->operand[0], asked->at));
+    RITZ_REFUSE_IF(given->choice.given, RITZ_ERR_ARGUMENT,
+                   "'%s' is small: its Gramians are in closed form, an engine "
+                   "is chosen for components",
+                   run->operand[0]);
+    if (given->at)
+        RITZ_CHECK(model_at(m, run->operand[0], given->at));
     if (m->kind == MODEL_SYSTEM && !(band[1] > 0.0))
         band = m->system.band_hz;
     memcpy(s.choice.band_hz, band, sizeof s.choice.band_hz);
-    s.choice.weights = &s.weights;
-    RITZ_TRY(ritz_weights_parse(asked->input_weights, asked->output_weights,
-                                &s.weights));
-    RITZ_TRY(install_dampers(&s));
-    RITZ_TRY(make_groups(&s, out));
+    RITZ_CHECK(ritz_weights_parse(given->input_weights, given->output_weights,
+                                  &weights));
+    RITZ_CHECK(install_dampers(&s));
+    RITZ_CHECK(make_groups(&s, out));
     set_groups(run, out);
-done:
-    ritz_weights_free(&s.weights);
-    return status;
+    return RITZ_OK;
 }
 
 /* Exact values of what is not in modes. */
-static ritz_status make_gramians(cli_run *run, const rank_wish *asked,
-                                 const model *m, ritz_gramians *gramians)
+static ritz_status make_gramians(const rank_options *given, const model *m,
+                                 ritz_gramians *gramians)
 {
-    ritz_status status = RITZ_OK;
     ritz_gramians_request request = {.component = &m->component,
-                                     .engine = asked->choice.engine,
-                                     .among_hz = asked->choice.among_hz};
+                                     .engine = given->choice.engine,
+                                     .among_hz = given->choice.among_hz};
 
     if (m->kind == MODEL_STATES) {
-        RITZ_FAIL_IF(asked->damping.count > 0 || asked->choice.given,
-                     RITZ_ERR_ARGUMENT,
-                     "a state space has its damping, and one engine for its "
-                     "Gramians");
+        RITZ_REFUSE_IF(given->damping.count > 0 || given->choice.given,
+                       RITZ_ERR_ARGUMENT,
+                       "a state space has its damping, and one engine for its "
+                       "Gramians");
         return ritz_gramians_of_space(&m->states, gramians);
     }
-    RITZ_TRY(model_damping(
-        m, asked->damping.count > 0 ? asked->damping.text[0] : NULL,
+    RITZ_CHECK(model_damping(
+        m, given->damping.count > 0 ? given->damping.text[0] : NULL,
         &request.damping));
-    RITZ_TRY(ritz_gramians_of_component(&request, gramians));
-done:
-    return ritz_context(status, run->operand[0]);
+    return ritz_gramians_of_component(&request, gramians);
 }
 
-static ritz_status check_values(const rank_wish *asked, const model *m)
+static ritz_status check_values(const rank_options *given, const model *m)
 {
     const char *what =
         m->kind == MODEL_STATES ? "a state space" : "a component";
 
-    RITZ_REFUSE_IF(asked->num_rankers > 1 ||
-                       asked->ranker[0] != &ritz_ranker_hankel,
+    RITZ_REFUSE_IF(given->num_rankers > 1 ||
+                       given->ranker[0] != &ritz_ranker_hankel,
                    RITZ_ERR_ARGUMENT,
                    "%s is not in modes: it has Hankel values, and nothing else "
                    "ranks it; reduce it to modes first",
                    what);
-    RITZ_REFUSE_IF(asked->at || asked->tracks || asked->keep > 0 ||
-                       asked->chart || asked->damping.count > 1 ||
-                       asked->input_weights || asked->output_weights,
+    RITZ_REFUSE_IF(given->at || given->tracks || given->keep > 0 ||
+                       given->chart || given->damping.count > 1 ||
+                       given->input_weights || given->output_weights,
                    RITZ_ERR_ARGUMENT,
                    "%s is not in modes: --at, --tracks, --reweigh, --chart, "
                    "weights and several dampings go with those",
@@ -417,20 +382,19 @@ static ritz_status check_values(const rank_wish *asked, const model *m)
     return RITZ_OK;
 }
 
-static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
-                               rank_result *out)
+static ritz_status rank_values(cli_run *run, const rank_options *given,
+                               model *m, rank_result *out)
 {
     RITZ_OWN(ritz_gramians) gramians = {0};
     ritz_ranking *r = NULL;
 
-    RITZ_CHECK_IN(run->operand[0], check_values(asked, m));
-    RITZ_CHECK(make_gramians(run, asked, m, &gramians));
-    out->group = ritz_zalloc(1, sizeof *out->group);
-    RITZ_REFUSE_IF(!out->group, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_CHECK_IN(run->operand[0], check_values(given, m));
+    RITZ_CHECK_IN(run->operand[0], make_gramians(given, m, &gramians));
+    RITZ_CHECK_NEW(out->group, 1);
     out->count = 1;
-    out->group->all.item = r = ritz_zalloc(1, sizeof *r);
-    RITZ_REFUSE_IF(!r, RITZ_ERR_MEMORY, "no memory for rankings");
+    RITZ_CHECK_NEW(out->group->all.item, 1);
     out->group->all.count = 1;
+    r = out->group->all.item;
     snprintf(r->by, sizeof r->by, "%s", ritz_ranker_hankel.name);
     snprintf(r->reference, sizeof r->reference, "%s",
              ritz_ranker_hankel.reference);
@@ -456,7 +420,7 @@ static ritz_status rank_values(cli_run *run, const rank_wish *asked, model *m,
     return RITZ_OK;
 }
 
-static ritz_status rank_model(cli_run *run, const rank_wish *asked,
+static ritz_status rank_model(cli_run *run, const rank_options *given,
                               rank_result *out)
 {
     RITZ_OWN(model) m = {0};
@@ -464,10 +428,10 @@ static ritz_status rank_model(cli_run *run, const rank_wish *asked,
     RITZ_CHECK(model_read(
         run, run->operand[0],
         MODEL_REDUCED | MODEL_SYSTEM | MODEL_COMPONENT | MODEL_STATES, &m));
-    RITZ_CHECK(model_prefix(&m, run->operand[0], asked->order));
+    RITZ_CHECK(model_prefix(&m, run->operand[0], given->order));
     return m.kind == MODEL_REDUCED || m.kind == MODEL_SYSTEM
-               ? rank_modes(run, asked, &m, out)
-               : rank_values(run, asked, &m, out);
+               ? rank_modes(run, given, &m, out)
+               : rank_values(run, given, &m, out);
 }
 
 /* Rankings of --compare. */
@@ -476,16 +440,13 @@ static ritz_status read_rankings(cli_run *run, rank_result *out)
     int64_t count = run->num_operands;
     RITZ_OWN(model) m = {0};
 
-    out->group = ritz_zalloc(count, sizeof *out->group);
-    out->file = ritz_zalloc(count, sizeof *out->file);
-    RITZ_REFUSE_IF(!out->group || !out->file, RITZ_ERR_MEMORY,
-                   "no memory for rankings");
+    RITZ_CHECK_NEW(out->group, count);
+    RITZ_CHECK_NEW(out->file, count);
     for (int64_t k = 0; k < count; k++) {
         RITZ_CHECK(model_read(run, run->operand[k], MODEL_RANKING, &m));
         RITZ_REFUSE_IF(m.rankings.count == 0, RITZ_ERR_FORMAT,
                        "'%s' holds no ranking", run->operand[k]);
-        out->group[k].all = m.rankings;
-        m.rankings = (ritz_rankings){0};
+        RITZ_MOVE(out->group[k].all, m.rankings);
         snprintf(out->file[k], RITZ_NAME_SIZE, "%.63s", run->operand[k]);
         out->count++;
     }
@@ -498,49 +459,60 @@ static ritz_status read_rankings(cli_run *run, rank_result *out)
 
 void rank_result_free(rank_result *result)
 {
-    for (int64_t k = 0; k < result->count; k++)
-        ranked_free(&result->group[k]);
-    free(result->group);
+    RITZ_FREE_EACH(ranked, result->count, result->group);
     free(result->file);
     *result = (rank_result){0};
 }
 
+/* All rankings in one container; their tracks, if all of them have some. */
+static ritz_status write_rankings(cli_run *run, const contest *all)
+{
+    RITZ_OWN_ARRAY ritz_ranking *item = NULL; /* borrow what they hold */
+    ritz_rankings rankings = {.count = all->count, .track = all->track};
+
+    RITZ_CHECK_NEW(item, all->count + 1);
+    for (int64_t k = 0; k < all->count; k++) {
+        item[k] = *all->ranking[k];
+        if (!all->track[k])
+            rankings.track = NULL;
+    }
+    rankings.item = item;
+    return ritz_container_write_rankings(run->output, &rankings,
+                                         cli_stamp(run));
+}
+
 /* Write rankings and their table, compare them, draw their chart. */
-static ritz_status report_rankings(cli_run *run, const rank_wish *asked,
+static ritz_status report_rankings(cli_run *run, const rank_options *given,
                                    const rank_result *result)
 {
-    [[gnu::cleanup(rank_contest_free)]] contest all = {0};
+    RITZ_OWN(contest) every = {0}, wholes = {0};
     char title[256];
     const ritz_ranking *first = ranked_whole(result->group);
 
-    if (run->output) {
-        ritz_stamp stamp = cli_stamp(run);
-
-        RITZ_CHECK(rank_write(run->output, result, &stamp));
-    }
-    RITZ_CHECK(rank_contest(result, true, &all));
-    if (asked->table)
-        RITZ_CHECK(rankings_write_table(asked->table, &all));
-    rank_contest_free(&all);
-    RITZ_CHECK(rank_contest(result, false, &all));
-    if (all.count > 1)
-        RITZ_CHECK(rankings_compare(run, &all, asked->top));
+    RITZ_CHECK(contest_new(result, true, &every));
+    RITZ_CHECK(contest_new(result, false, &wholes));
+    if (run->output)
+        RITZ_CHECK(write_rankings(run, &every));
+    if (given->table)
+        RITZ_CHECK(rankings_write_table(given->table, &every));
+    if (wholes.count > 1)
+        RITZ_CHECK(rankings_compare(run, &wholes, given->top));
     snprintf(title, sizeof title, "%.100s, damping %.100s", run->operand[0],
              rankings_damping(first));
-    if (asked->chart)
-        RITZ_CHECK(asked->draw(asked->chart, title, &all, asked->top));
+    if (given->chart)
+        RITZ_CHECK(given->draw(given->chart, title, &wholes, given->top));
     cli_record(run, first->by,
                first->count > 0 ? first->count : first->num_system);
     return RITZ_OK;
 }
 
-ritz_status rank_run(cli_run *run, const rank_wish *asked)
+ritz_status rank_run(cli_run *run, const rank_options *given)
 {
     RITZ_OWN(rank_result) result = {0};
 
-    if (asked->compare)
+    if (given->compare)
         RITZ_CHECK(read_rankings(run, &result));
     else
-        RITZ_CHECK(rank_model(run, asked, &result));
-    return report_rankings(run, asked, &result);
+        RITZ_CHECK(rank_model(run, given, &result));
+    return report_rankings(run, given, &result);
 }

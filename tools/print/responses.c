@@ -1,14 +1,8 @@
-#include "print/responses.h"
+#include "print/print.h"
 
-#include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/response.h>
-
 #include <complex.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Even points, where nothing is said; with a tolerance, to begin with. */
 static const int64_t usual_points = 400;
@@ -37,7 +31,7 @@ void responses_list(void)
     }
 }
 
-void responses_check(const cli_program *program, const responses_wish *asked)
+void responses_check(const cli_program *program, const response_options *given)
 {
     enum { MOST = 16 };
     const char *names[MOST + 1] = {"auto"};
@@ -46,9 +40,9 @@ void responses_check(const cli_program *program, const responses_wish *asked)
     for (int k = 0; ritz_response_engines[k] && count <= MOST; k++)
         names[count++] = ritz_response_engines[k]->name;
     for (int64_t k = 0; k < count; k++)
-        if (strcmp(asked->method, names[k]) == 0)
+        if (strcmp(given->method, names[k]) == 0)
             return;
-    cli_refuse_name(program, "no method", asked->method, count, names);
+    cli_refuse_name(program, "no method", given->method, count, names);
 }
 
 /* As which kind an engine takes it. */
@@ -90,7 +84,7 @@ static ritz_status choose_engine(cli_run *run, const model *m,
 
 /* Make a model ready for the range of a grid; @p view is borrowed. */
 static ritz_status
-new_responder(cli_run *run, const model *m, const responses_wish *asked,
+new_responder(cli_run *run, const model *m, const response_options *given,
               const ritz_damping *damping, const ritz_grid *grid,
               const ritz_second_order *view, ritz_responder **out)
 {
@@ -98,9 +92,9 @@ new_responder(cli_run *run, const model *m, const responses_wish *asked,
     const char *why = NULL; /* said before */
     ritz_response_request request = {
         .damping = damping,
-        .up_to_hz = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz,
+        .up_to_hz = isnan(given->up_to_hz) ? 0.0 : given->up_to_hz,
         .tolerance =
-            isnan(asked->tolerance) ? 0.0 : engine_share * asked->tolerance,
+            isnan(given->tolerance) ? 0.0 : engine_share * given->tolerance,
         .from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz,
         .to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz};
 
@@ -110,14 +104,14 @@ new_responder(cli_run *run, const model *m, const responses_wish *asked,
         request.component = &m->component;
     else
         request.matrices = view;
-    RITZ_CHECK(choose_engine(run, m, asked->method, &request, &engine));
-    if (request.component && strcmp(asked->method, "modal") == 0 &&
+    RITZ_CHECK(choose_engine(run, m, given->method, &request, &engine));
+    if (request.component && strcmp(given->method, "modal") == 0 &&
         (m->component.D.colptr || m->component.K4.colptr))
         cli_warn(run,
                  "the damping matrices of '%s' act on the modes that are "
                  "summed alone, --method krylov leaves out nothing",
                  run->operand[0]);
-    if (strcmp(asked->method, "auto") == 0)
+    if (strcmp(given->method, "auto") == 0)
         RITZ_CHECK(ritz_responder_auto(&request, &why, out));
     else
         RITZ_CHECK(ritz_responder_new(engine, &request, out));
@@ -130,11 +124,11 @@ new_responder(cli_run *run, const model *m, const responses_wish *asked,
  * From the band of the system where nothing is said. A band that starts at 0
  * starts a thousandth up instead: a free body has no static response.
  */
-static ritz_status place_points(const model *m, const responses_wish *asked,
+static ritz_status place_points(const model *m, const response_options *given,
                                 ritz_grid *out)
 {
-    double from = asked->from_hz;
-    double to = asked->to_hz;
+    double from = given->from_hz;
+    double to = given->to_hz;
 
     if (isnan(to) && m->kind == MODEL_SYSTEM && m->system.band_hz[1] > 0.0)
         to = m->system.band_hz[1];
@@ -148,27 +142,27 @@ static ritz_status place_points(const model *m, const responses_wish *asked,
     RITZ_REFUSE_IF(!(from < to), RITZ_ERR_ARGUMENT,
                    "no band from %g to %g Hz: --from-hz lies above --to-hz",
                    from, to);
-    RITZ_REFUSE_IF(asked->log && !(from > 0.0), RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(given->log && !(from > 0.0), RITZ_ERR_ARGUMENT,
                    "--log needs --from-hz above 0");
     *out = (ritz_grid){.from_hz = from,
                        .to_hz = to,
-                       .count = asked->points > 0         ? asked->points
-                                : isnan(asked->tolerance) ? usual_points
+                       .count = given->points > 0         ? given->points
+                                : isnan(given->tolerance) ? usual_points
                                                           : first_points,
-                       .log = asked->log,
-                       .refine = !asked->no_refine};
+                       .log = given->log,
+                       .refine = !given->no_refine};
     return RITZ_OK;
 }
 
 /* The points of another response, which can then be subtracted. */
-static ritz_status borrow_points(cli_run *run, const responses_wish *asked,
+static ritz_status borrow_points(cli_run *run, const response_options *given,
                                  model *other, ritz_grid *out)
 {
     const ritz_response *r = &other->response;
 
-    RITZ_CHECK(model_read(run, asked->points_of, MODEL_RESPONSE, other));
+    RITZ_CHECK(model_read(run, given->points_of, MODEL_RESPONSE, other));
     RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT, "'%s' has no points",
-                   asked->points_of);
+                   given->points_of);
     *out = (ritz_grid){.from_hz = r->hertz[0],
                        .to_hz = r->hertz[r->count - 1],
                        .count = r->count,
@@ -199,7 +193,7 @@ static ritz_status take_size(const ritz_response *r, const char *text,
     return RITZ_OK;
 }
 
-static ritz_status find_scales(const responses_wish *asked, const model *m,
+static ritz_status find_scales(const response_options *given, const model *m,
                                const ritz_response *r, double *size,
                                ritz_scales *out)
 {
@@ -208,13 +202,13 @@ static ritz_status find_scales(const responses_wish *asked, const model *m,
 
     for (int64_t j = 0; j < r->num_inputs; j++)
         size[j] = 1.0;
-    for (int k = 0; k < asked->input_size.count; k++)
-        RITZ_CHECK(take_size(r, asked->input_size.text[k], size));
-    for (int64_t i = 0; asked->over_limits && limit && i < r->num_outputs; i++)
+    for (int k = 0; k < given->input_size.count; k++)
+        RITZ_CHECK(take_size(r, given->input_size.text[k], size));
+    for (int64_t i = 0; given->over_limits && limit && i < r->num_outputs; i++)
         any = any || !isnan(limit[i]);
-    RITZ_REFUSE_IF(asked->over_limits && !any, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(given->over_limits && !any, RITZ_ERR_ARGUMENT,
                    "--over-limits: no output of the model has a limit");
-    *out = (ritz_scales){.output = asked->over_limits ? limit : NULL,
+    *out = (ritz_scales){.output = given->over_limits ? limit : NULL,
                          .input = size};
     return RITZ_OK;
 }
@@ -230,7 +224,7 @@ static void set_measure(cli_run *run, const char *name, double value,
 }
 
 /* Singular values into the response, and the largest of them. */
-static ritz_status find_singular(cli_run *run, const responses_wish *asked,
+static ritz_status find_singular(cli_run *run, const response_options *given,
                                  const model *m, ritz_responder *responder,
                                  ritz_response *response)
 {
@@ -238,11 +232,10 @@ static ritz_status find_singular(cli_run *run, const responses_wish *asked,
     RITZ_OWN_ARRAY double *size = NULL;
     double hertz = 0.0, value = 0.0;
 
-    if (!asked->singular)
+    if (!given->singular)
         return RITZ_OK;
-    size = ritz_zalloc(response->num_inputs + 1, sizeof *size);
-    RITZ_REFUSE_IF(!size, RITZ_ERR_MEMORY, "no memory for sizes of inputs");
-    RITZ_CHECK(find_scales(asked, m, response, size, &scales));
+    RITZ_CHECK_NEW(size, response->num_inputs + 1);
+    RITZ_CHECK(find_scales(given, m, response, size, &scales));
     RITZ_CHECK(ritz_singular_of(&scales, response));
     RITZ_CHECK(
         ritz_singular_peak(response, &scales, responder, &hertz, &value));
@@ -352,7 +345,7 @@ static void say_peaks(cli_run *run, const ritz_response *r)
 
 /* The model, or the loop that is closed around it, at the points. */
 static ritz_status find_response(cli_run *run, const model *m,
-                                 const responses_wish *asked,
+                                 const response_options *given,
                                  const ritz_damping *damping,
                                  const ritz_grid *grid, loop_run *loop,
                                  ritz_response *out)
@@ -362,17 +355,17 @@ static ritz_status find_response(cli_run *run, const model *m,
     const ritz_second_order view = model_matrices(m);
     ritz_responder *plant = NULL, *whole = NULL;
 
-    RITZ_TRY(new_responder(run, m, asked, damping, grid, &view, &plant));
-    RITZ_TRY(loops_close(run, &asked->loops, m, damping, plant, range, loop));
+    RITZ_TRY(new_responder(run, m, given, damping, grid, &view, &plant));
+    RITZ_TRY(loops_close(run, &given->loops, m, damping, plant, range, loop));
     whole = loop->closed ? loop->closed : plant;
-    RITZ_TRY(isnan(asked->tolerance)
+    RITZ_TRY(isnan(given->tolerance)
                  ? ritz_responder_sample(whole, grid, out)
-                 : ritz_responder_follow(whole, grid, asked->tolerance, out));
+                 : ritz_responder_follow(whole, grid, given->tolerance, out));
     RITZ_TRY(loops_report(run, loop, plant, out));
     say_peaks(run, out);
-    if (asked->singular)
-        RITZ_TRY(find_singular(run, asked, m, whole, out));
-    if (asked->zeros)
+    if (given->singular)
+        RITZ_TRY(find_singular(run, given, m, whole, out));
+    if (given->zeros)
         RITZ_TRY(find_all_zeros(run, m, damping));
 done:
     ritz_responder_free(&loop->closed); /* it borrows the plant */
@@ -380,7 +373,7 @@ done:
     return status;
 }
 
-ritz_status responses_run(cli_run *run, const responses_wish *asked)
+ritz_status responses_run(cli_run *run, const response_options *given)
 {
     const char *path = run->operand[0];
     RITZ_OWN(model) m = {0};
@@ -389,22 +382,21 @@ ritz_status responses_run(cli_run *run, const responses_wish *asked)
     ritz_grid grid = {0};
     RITZ_OWN(ritz_response) response = {0};
     RITZ_OWN(loop_run) loop = {0};
-    ritz_stamp stamp = {0};
     ritz_io ends; /* borrowed */
 
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_CHECK(loops_read(run, &asked->loops, &loop));
-    RITZ_CHECK(model_settle(&m, path, &asked->model, &damping));
-    if (asked->points_of)
-        RITZ_CHECK(borrow_points(run, asked, &other, &grid));
+    RITZ_CHECK(loops_read(run, &given->loops, &loop));
+    RITZ_CHECK(model_settle(&m, path, &given->model, &damping));
+    if (given->points_of)
+        RITZ_CHECK(borrow_points(run, given, &other, &grid));
     else
-        RITZ_CHECK_IN(path, place_points(&m, asked, &grid));
+        RITZ_CHECK_IN(path, place_points(&m, given, &grid));
     ends = model_io(&m);
     RITZ_REFUSE_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
                    RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
                    path, ends.num_inputs == 0 ? "inputs" : "outputs");
     RITZ_CHECK_IN(
-        path, find_response(run, &m, asked, &damping, &grid, &loop, &response));
-    stamp = cli_stamp(run);
-    return ritz_container_write_response(run->output, &response, &stamp);
+        path, find_response(run, &m, given, &damping, &grid, &loop, &response));
+    return ritz_container_write_response(run->output, &response,
+                                         cli_stamp(run));
 }

@@ -1,38 +1,31 @@
-#include "print/simulation.h"
-
-#include "print/describe.h"
-
-#include <ritz/matrix.h>
+#include "print/print.h"
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Costs are told at explicit steps so far below their limit. */
 static const double margin = 0.95;
 /* Steps of the band over which costs are told, where no time is given. */
 static const double default_steps = 1000.0;
 
-void simulation_take(const cli_run *run, simulation_wish *asked)
+void simulation_take(const cli_run *run, simulation_options *given)
 {
     const cli_program *program = run->program;
 
-    asked->integrator =
-        cli_choose(program, "no integrator", asked->method, ritz_integrators);
-    asked->hold_zero = strcmp(asked->hold, "zero") == 0;
-    if (strcmp(asked->hold, "first") != 0 && !asked->hold_zero)
-        cli_refuse(program, "--hold is first or zero, not '%s'", asked->hold);
-    if (asked->band)
-        cli_pair(program, "--band-hz", asked->band, asked->band_hz);
-    if (!run->output && !asked->cost)
+    given->integrator =
+        cli_choose(program, "no integrator", given->method, ritz_integrators);
+    given->hold_zero = strcmp(given->hold, "zero") == 0;
+    if (strcmp(given->hold, "first") != 0 && !given->hold_zero)
+        cli_refuse(program, "--hold is first or zero, not '%s'", given->hold);
+    if (given->band)
+        cli_pair(program, "--band-hz", given->band, given->band_hz);
+    if (!run->output && !given->cost)
         cli_refuse(program, "nothing to do: give -o, or --cost");
-    if (run->output && isnan(asked->seconds))
+    if (run->output && isnan(given->seconds))
         cli_refuse(program, "how long? give --seconds");
-    if (!isnan(asked->step) && !isnan(asked->accuracy))
+    if (!isnan(given->step) && !isnan(given->accuracy))
         cli_refuse(program, "--step or --accuracy, one of them");
-    if (isnan(asked->accuracy))
-        asked->accuracy = 1e-3;
+    if (isnan(given->accuracy))
+        given->accuracy = 1e-3;
 }
 
 /* The model that is simulated, with its inputs and initial values. */
@@ -79,8 +72,7 @@ static ritz_status take_input(cli_run *run, const char *text, drive *d)
 
 static ritz_status take_inputs(cli_run *run, const cli_list *texts, drive *d)
 {
-    d->signal = calloc((size_t)d->io.num_inputs + 1, sizeof *d->signal);
-    RITZ_REFUSE_IF(!d->signal, RITZ_ERR_MEMORY, "no memory for inputs");
+    RITZ_CHECK_NEW(d->signal, d->io.num_inputs + 1);
     for (int k = 0; k < texts->count; k++)
         RITZ_CHECK_IN("--input", take_input(run, texts->text[k], d));
     return RITZ_OK;
@@ -283,7 +275,7 @@ static ritz_status record_cost(cli_run *run, const ritz_simulated *subject,
 
 /* All integrators at the step that each needs: cost of a second, and error
    against modal. */
-static ritz_status say_costs(cli_run *run, const simulation_wish *asked,
+static ritz_status say_costs(cli_run *run, const simulation_options *given,
                              const model *m, const double band_hz[2], drive *d)
 {
     ritz_cost cost = {0};
@@ -294,13 +286,13 @@ static ritz_status say_costs(cli_run *run, const simulation_wish *asked,
     RITZ_CHECK(record_cost(run, &d->subject, band_hz, &cost));
     model_set_cost(run, &cost);
     say_cost_head(run, &cost);
-    if (asked->input.count == 0 && !asked->initial)
+    if (given->input.count == 0 && !given->initial)
         sweep_inputs(&cost, band_hz, d);
     request.signal = d->signal;
     request.x0 = d->x0;
     request.v0 = d->v0;
-    request.seconds = isnan(asked->seconds) ? default_steps * cost.step_accurate
-                                            : asked->seconds;
+    request.seconds = isnan(given->seconds) ? default_steps * cost.step_accurate
+                                            : given->seconds;
     sink_list(run, "integrators");
     for (const ritz_integrator *const *i = ritz_integrators; *i; i++) {
         request.integrator = *i;
@@ -333,41 +325,40 @@ static void warn_of_rounding(cli_run *run, double accuracy,
              s->output[reached->left], reached->rounding, accuracy, more);
 }
 
-static ritz_status simulate_response(cli_run *run, const simulation_wish *asked,
-                                     const drive *d)
+static ritz_status
+simulate_response(cli_run *run, const simulation_options *given, const drive *d)
 {
     ritz_simulation_request request = {
-        .integrator = asked->integrator,
-        .seconds = asked->seconds,
-        .step = isnan(asked->step) ? 0.0 : asked->step,
-        .hold = asked->hold_zero ? RITZ_HOLD_ZERO : RITZ_HOLD_FIRST,
-        .rho = asked->rho,
-        .up_to_hz = isnan(asked->up_to_hz) ? 0.0 : asked->up_to_hz,
-        .every = asked->every,
+        .integrator = given->integrator,
+        .seconds = given->seconds,
+        .step = isnan(given->step) ? 0.0 : given->step,
+        .hold = given->hold_zero ? RITZ_HOLD_ZERO : RITZ_HOLD_FIRST,
+        .rho = given->rho,
+        .up_to_hz = isnan(given->up_to_hz) ? 0.0 : given->up_to_hz,
+        .every = given->every,
         .signal = d->signal,
         .x0 = d->x0,
         .v0 = d->v0,
     };
     RITZ_OWN(ritz_simulation) s = {0};
-    ritz_stamp stamp = {0};
     ritz_accuracy reached = {.left = -1};
 
-    RITZ_REFUSE_IF(asked->input.count == 0 && !asked->initial,
+    RITZ_REFUSE_IF(given->input.count == 0 && !given->initial,
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
-    if (isnan(asked->step)) {
+    if (isnan(given->step)) {
         RITZ_CHECK(ritz_simulate_accurate(&d->subject, &request,
-                                          asked->accuracy, &reached, &s));
+                                          given->accuracy, &reached, &s));
         cli_record_error(run, "integration", reached.error);
-        warn_of_rounding(run, asked->accuracy, &reached, &s);
+        warn_of_rounding(run, given->accuracy, &reached, &s);
     } else {
         RITZ_CHECK(ritz_simulate(&d->subject, &request, &s));
     }
-    stamp = cli_stamp(run);
-    RITZ_CHECK(ritz_container_write_simulation(run->output, &s, &stamp));
+    RITZ_CHECK(
+        ritz_container_write_simulation(run->output, &s, cli_stamp(run)));
     cli_say(run, "%s:", run->output);
     describe_simulation(run, &s);
-    if (isnan(asked->step))
+    if (isnan(given->step))
         sink_field(run, "accurate to", "error",
                    "%.1e of each output's largest, by half the step",
                    reached.error);
@@ -386,11 +377,11 @@ static ritz_simulated find_subject(const model *m,
     return (ritz_simulated){.model = view, .damping = damping};
 }
 
-ritz_status simulation_run(cli_run *run, const simulation_wish *asked)
+ritz_status simulation_run(cli_run *run, const simulation_options *given)
 {
     ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
-    const double *band_hz = asked->band_hz;
+    const double *band_hz = given->band_hz;
     model m = {0};
     ritz_second_order view = {0};
     ritz_damping damping = {0};
@@ -398,18 +389,18 @@ ritz_status simulation_run(cli_run *run, const simulation_wish *asked)
     drive d = {0};
 
     RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_TRY(model_settle(&m, path, &asked->model, &damping));
+    RITZ_TRY(model_settle(&m, path, &given->model, &damping));
     view = model_matrices(&m);
     d.io = model_io(&m);
     d.subject = find_subject(&m, &view, &damping);
     if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
         band_hz = m.system.band_hz;
-    RITZ_TRY_IN(path, take_inputs(run, &asked->input, &d));
-    RITZ_TRY_IN(path, take_initial(run, asked->initial, model_order(&m), &d));
+    RITZ_TRY_IN(path, take_inputs(run, &given->input, &d));
+    RITZ_TRY_IN(path, take_initial(run, given->initial, model_order(&m), &d));
     if (run->output)
-        RITZ_TRY_IN(path, simulate_response(run, asked, &d));
-    if (asked->cost)
-        RITZ_TRY_IN(path, say_costs(run, asked, &m, band_hz, &d));
+        RITZ_TRY_IN(path, simulate_response(run, given, &d));
+    if (given->cost)
+        RITZ_TRY_IN(path, say_costs(run, given, &m, band_hz, &d));
     else if (run->record && d.subject.model)
         RITZ_TRY(record_cost(run, &d.subject, band_hz, &cost));
 done:

@@ -1,9 +1,6 @@
-#include "print/tracks.h"
+#include "print/print.h"
 
 #include "cli/cli_table.h"
-
-#include <math.h>
-#include <string.h>
 
 /* So many of each kind are said; JSON and the table have all. */
 enum { MOST_SAID = 12 };

@@ -1,19 +1,16 @@
-#include "print/verification.h"
-
-#include <math.h>
-#include <string.h>
+#include "print/print.h"
 
 static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
 {
     const ritz_measure *first = NULL;
     int64_t failed = 0;
-    int64_t asked = 0;
+    int64_t given = 0;
 
     model_say_measures(run, "measures", measures, "measured");
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
-        asked += !isnan(m->limit);
+        given += !isnan(m->limit);
         if (ritz_measure_holds(m))
             continue;
         first = first ? first : m;
@@ -22,19 +19,19 @@ static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
     RITZ_REFUSE_IF(first, RITZ_ERR_CONVERGENCE,
                    "'%s': %ld of %ld limits not met, first '%s', %.3e where "
                    "%.3e is asked",
-                   run->operand[1], failed, asked, first->name, first->value,
+                   run->operand[1], failed, given, first->name, first->value,
                    first->limit);
     return RITZ_OK;
 }
 
 /* A limit of what is not there is met, and nothing was compared. */
-static void warn_unmeasured(cli_run *run, const verify_wish *asked,
+static void warn_unmeasured(cli_run *run, const verify_options *given,
                             const ritz_measures *measures)
 {
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
 
-        if (isnan(asked->verify.limit[k]) ||
+        if (isnan(given->verify.limit[k]) ||
             ritz_measures_find(measures, kind->name) ||
             (kind->other && ritz_measures_find(measures, kind->other)))
             continue;
@@ -43,13 +40,13 @@ static void warn_unmeasured(cli_run *run, const verify_wish *asked,
     }
 }
 
-static ritz_status check_limits(const cli_run *run, const verify_wish *asked,
+static ritz_status check_limits(const cli_run *run, const verify_options *given,
                                 bool states)
 {
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
 
-        RITZ_REFUSE_IF(!isnan(asked->verify.limit[k]) &&
+        RITZ_REFUSE_IF(!isnan(given->verify.limit[k]) &&
                            (states ? !kind->of_states : !kind->of_modes),
                        RITZ_ERR_ARGUMENT,
                        "'%s' is %s state space, --limit-%s is not for it",
@@ -59,31 +56,31 @@ static ritz_status check_limits(const cli_run *run, const verify_wish *asked,
 }
 
 /* Write what was measured, limits met or not, and refuse what is not met. */
-static ritz_status keep_measures(cli_run *run, const verify_wish *asked,
+static ritz_status keep_measures(cli_run *run, const verify_options *given,
                                  ritz_measures *measures, model *reduced)
 {
     ritz_measures *place = model_errors(reduced);
-    ritz_stamp stamp = cli_stamp(run);
 
     ritz_measures_free(place);
     *place = *measures;
     *measures = (ritz_measures){0};
     for (int64_t k = 0; k < place->count; k++)
         cli_record_error(run, place->item[k].name, place->item[k].value);
-    RITZ_CHECK(model_write(reduced, run->output, &stamp));
-    warn_unmeasured(run, asked, place);
+    RITZ_CHECK(model_write(reduced, run->output, cli_stamp(run)));
+    warn_unmeasured(run, given, place);
     return say_measures(run, place);
 }
 
 /* The full model as states: as it is, or a component that is small enough. */
 static ritz_status find_states(const cli_run *run, model *full,
-                               const model *reduced, const verify_wish *asked)
+                               const model *reduced,
+                               const verify_options *given)
 {
     const char *path = run->operand[0];
-    const char *own = asked->model.damping;
+    const char *own = given->model.damping;
     ritz_damping damping = {0};
 
-    RITZ_REFUSE_IF(asked->model.damper.count > 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(given->model.damper.count > 0, RITZ_ERR_ARGUMENT,
                    "'%s' holds its dampers in A: --damper cannot change them",
                    run->operand[1]);
     RITZ_REFUSE_IF(full->kind == MODEL_STATES && own, RITZ_ERR_ARGUMENT,
@@ -105,20 +102,20 @@ static ritz_status find_states(const cli_run *run, model *full,
 }
 
 static ritz_status verify_states(cli_run *run, model *full, model *reduced,
-                                 const verify_wish *asked)
+                                 const verify_options *given)
 {
     RITZ_OWN(ritz_measures) measures = {0};
 
     cli_record(run, reduced->states.origin.method, model_order(reduced));
-    RITZ_CHECK(find_states(run, full, reduced, asked));
+    RITZ_CHECK(find_states(run, full, reduced, given));
     RITZ_CHECK_IN(run->operand[1],
                   ritz_verify_states(&full->states, &reduced->states,
-                                     &asked->verify, &measures));
-    return keep_measures(run, asked, &measures, reduced);
+                                     &given->verify, &measures));
+    return keep_measures(run, given, &measures, reduced);
 }
 
 /* A reduced component is written with its dampers apart, as it was read. */
-static ritz_status take_apart(cli_run *run, const verify_wish *asked,
+static ritz_status take_apart(cli_run *run, const verify_options *given,
                               model *reduced)
 {
     const char *path = run->operand[1];
@@ -127,15 +124,15 @@ static ritz_status take_apart(cli_run *run, const verify_wish *asked,
         return RITZ_OK;
     model_free(reduced);
     RITZ_CHECK(model_read(run, path, MODEL_REDUCED, reduced));
-    RITZ_CHECK(model_prefix(reduced, path, asked->model.order));
-    return ritz_context(model_tune(reduced, &asked->model.damper), path);
+    RITZ_CHECK(model_prefix(reduced, path, given->model.order));
+    return ritz_context(model_tune(reduced, &given->model.damper), path);
 }
 
 static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
-                                   verify_wish *asked)
+                                   verify_options *given)
 {
-    ritz_verify_request *request = &asked->verify;
-    const cli_list *damper = &asked->model.damper;
+    ritz_verify_request *request = &given->verify;
+    const cli_list *damper = &given->model.damper;
     RITZ_OWN(ritz_measures) measures = {0};
 
     RITZ_REFUSE_IF(
@@ -143,7 +140,7 @@ static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
         "'%s' is a state space and '%s' is none: there is nothing to "
         "compare by",
         run->operand[0], run->operand[1]);
-    RITZ_CHECK(model_damping(reduced, asked->model.damping, &request->damping));
+    RITZ_CHECK(model_damping(reduced, given->model.damping, &request->damping));
     if (reduced->at && !(request->band_hz[1] > 0.0))
         memcpy(request->band_hz, reduced->system.band_hz,
                sizeof request->band_hz);
@@ -157,11 +154,11 @@ static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
                                            request, &measures)
                       : ritz_verify_reduced(&full->component, &reduced->reduced,
                                             request, &measures));
-    RITZ_CHECK(take_apart(run, asked, reduced));
-    return keep_measures(run, asked, &measures, reduced);
+    RITZ_CHECK(take_apart(run, given, reduced));
+    return keep_measures(run, given, &measures, reduced);
 }
 
-ritz_status verify_run(cli_run *run, verify_wish *asked)
+ritz_status verify_run(cli_run *run, verify_options *given)
 {
     const char *path = run->operand[1];
     RITZ_OWN(model) full = {0};
@@ -171,10 +168,10 @@ ritz_status verify_run(cli_run *run, verify_wish *asked)
                           &full));
     RITZ_CHECK(model_read(
         run, path, MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &reduced));
-    RITZ_CHECK(model_prefix(&reduced, path, asked->model.order));
-    RITZ_CHECK(model_at(&reduced, path, asked->model.at));
-    RITZ_CHECK(check_limits(run, asked, reduced.kind == MODEL_STATES));
+    RITZ_CHECK(model_prefix(&reduced, path, given->model.order));
+    RITZ_CHECK(model_at(&reduced, path, given->model.at));
+    RITZ_CHECK(check_limits(run, given, reduced.kind == MODEL_STATES));
     return reduced.kind == MODEL_STATES
-               ? verify_states(run, &full, &reduced, asked)
-               : verify_matrices(run, &full, &reduced, asked);
+               ? verify_states(run, &full, &reduced, given)
+               : verify_matrices(run, &full, &reduced, given);
 }

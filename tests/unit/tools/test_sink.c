@@ -10,14 +10,12 @@
 static void open_run(cli_run *run)
 {
     *run = (cli_run){.quiet = true, .report = json_object()};
-    run->said = open_memstream(&run->text, &run->text_size);
-    assert_non_null(run->said);
+    assert_int_equal(cli_table_new(&run->said), RITZ_OK);
 }
 
 static void close_run(cli_run *run)
 {
-    fclose(run->said);
-    free(run->text);
+    cli_table_free(&run->said);
     json_decref(run->report);
 }
 
@@ -40,8 +38,8 @@ static void a_line_gives_text_and_keys(void **state)
              12.34, 5, count, 0.5, true);
     sink_field(&run, "title", "note", "%.3s", "shortened");
     sink_set(&run, "hidden", "%g", 2.0);
-    assert_string_equal(run.text, "ab  |12.3%|    7|+5.0e-01|1\n"
-                                  "  title          sho\n");
+    assert_string_equal(run.said.text, "ab  |12.3%|    7|+5.0e-01|1\n"
+                                       "  title          sho\n");
     assert_report(&run, "{\"name\":\"ab\",\"count\":7,\"size\":0.5,"
                         "\"open\":true,\"note\":\"shortened\",\"hidden\":2.0}");
     close_run(&run);
@@ -55,7 +53,7 @@ static void what_is_no_number_is_null_and_a_dash(void **state)
     open_run(&run);
     sink_say(&run, "a,b,c", "%6.2f|%-6.1e|%s", (double)NAN, (double)NAN, "");
     sink_set(&run, "d", "%g", (double)INFINITY);
-    assert_string_equal(run.text, "     -|-     |\n");
+    assert_string_equal(run.said.text, "     -|-     |\n");
     assert_report(&run, "{\"a\":null,\"b\":null,\"c\":\"\",\"d\":null}");
     close_run(&run);
 }
@@ -80,7 +78,7 @@ static void values_said_in_a_list_are_items(void **state)
     sink_list(&run, "plain");
     sink_add(&run, "%s %d", "x", false);
     sink_end(&run);
-    assert_string_equal(run.text, "head\n1\n");
+    assert_string_equal(run.said.text, "head\n1\n");
     assert_report(&run, "{\"rows\":[{\"k\":1},{\"k\":2,\"modes\":[1,4]}],"
                         "\"reals\":[1.0,2.5],\"plain\":[\"x\",false]}");
     close_run(&run);

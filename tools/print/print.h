@@ -1,0 +1,276 @@
+/*
+ * What each tool does once its command line is read: the main fills the options,
+ * NULL or NaN where one was not given, and one function reads, computes, writes
+ * and reports. What several tools report follows at the end.
+ */
+#ifndef RITZ_TOOLS_PRINT_PRINT_H
+#define RITZ_TOOLS_PRINT_PRINT_H
+
+#include "base/alloc.h"
+#include "cli/model.h"
+
+#include <ritz/assembly.h>
+#include <ritz/basis.h>
+#include <ritz/export.h>
+#include <ritz/fit.h>
+#include <ritz/import.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- ritz-basis, ritz-reduce ---------------------------------------------- */
+
+typedef struct basis_options {
+    const ritz_method *method;
+    const char *ports;    /* "PORT[,PORT]"; NULL: all */
+    cli_list neighbours;  /* "PORT=FILE:PORT" */
+    ritz_request request; /* the component is taken from the operand */
+} basis_options;
+
+ritz_status basis_run(cli_run *run, basis_options *given);
+
+typedef struct reduce_options {
+    bool without_basis;
+    const char *damping; /* NULL: the model's own */
+    ritz_estimate_request estimate;
+} reduce_options;
+
+ritz_status reduce_run(cli_run *run, reduce_options *given);
+
+/* --- ritz-check ----------------------------------------------------------- */
+
+/**
+ * Audit a component, or check the stability of a small model.
+ *
+ * @return RITZ_ERR_FORMAT naming the first check that fails
+ */
+ritz_status checks_run(cli_run *run);
+
+/** A table, the number of each verdict, and a list. */
+void checks_say(cli_run *run, const char *key, const ritz_audit *audit);
+
+/** The first check that fails; NULL if none does. */
+const ritz_check *checks_first(const ritz_audit *audit);
+
+/* --- ritz-compare --------------------------------------------------------- */
+
+enum { COMPARISON_MOST_TOLERANCES = 64 };
+
+typedef struct comparison_options {
+    const char *prefix, *report, *tracks, *extraneous, *tolerance_table;
+    int64_t num_tolerances;
+    double tolerance[COMPARISON_MOST_TOLERANCES];
+} comparison_options;
+
+/** Reduce in two stages, write, and report orders, errors and frequencies. */
+ritz_status comparison_run(cli_run *run, const comparison_options *given);
+
+/* --- ritz-export ---------------------------------------------------------- */
+
+typedef struct export_options {
+    const ritz_exporter *exporter;
+    ritz_export_request request;
+    int64_t order;         /* columns of a nested component; 0: all */
+    const char *component; /* that a basis is of */
+    cli_list damper;
+    bool force;
+} export_options;
+
+/**
+ * Write the operand in the format that is asked for, and say what is known of
+ * its errors and its stability.
+ *
+ * @return RITZ_ERR_ARGUMENT if nothing is known of its errors, or it is not
+ *         stable, without `force`
+ */
+ritz_status export_run(cli_run *run, const export_options *given);
+
+/* --- ritz-fit ------------------------------------------------------------- */
+
+enum { FIT_MOST_METHODS = 64 };
+
+typedef struct fit_options {
+    ritz_fit_request request;
+    const char *tolerance, *band, *methods, *damping, *prefix, *report;
+    const ritz_method *method[FIT_MOST_METHODS]; /* of `methods` */
+    int64_t seed;
+    cli_list damper;
+    bool all;
+    int64_t order; /* at which --all compares; 0: that of the result */
+} fit_options;
+
+/** Take words of the command line into the request, or end the program. */
+void fit_take(const cli_program *program, fit_options *given);
+
+/** Search, report, record every candidate, and write the smallest model. */
+ritz_status fit_search(cli_run *run, fit_options *given);
+
+/* --- ritz-frf ------------------------------------------------------------- */
+
+typedef struct loop_options {
+    const char *controller, *feedback, *states;
+    cli_list connect;
+    bool force;
+} loop_options;
+
+typedef struct response_options {
+    double from_hz, to_hz, up_to_hz;
+    double tolerance; /* between points; NaN: a grid is enough */
+    int64_t points;
+    const char *method;    /* "auto", or a name of the table */
+    const char *points_of; /* another response */
+    bool log, no_refine, singular, over_limits, zeros;
+    cli_list input_size;
+    model_options model;
+    loop_options loops;
+} response_options;
+
+/** Print the table of methods. */
+void responses_list(void);
+
+/** End the program if there is no such method. */
+void responses_check(const cli_program *program, const response_options *given);
+
+/** Compute the response, and report what other options ask for. */
+ritz_status responses_run(cli_run *run, const response_options *given);
+
+/** Options of a loop that exclude each other end the program. */
+void loops_check(const cli_program *program, const loop_options *given);
+
+/* A loop that is closed, and what it is made of. */
+typedef struct loop_run {
+    model controller;
+    ritz_loop loop;
+    ritz_responder *inner;  /* of the controller */
+    ritz_responder *closed; /* to be asked in place of the plant */
+} loop_run;
+
+/** Read the controller, before anything is said; nothing if there is none. */
+ritz_status loops_read(cli_run *run, const loop_options *given, loop_run *out);
+
+/**
+ * Close the loop, say whether it is stable, and refuse an unstable one without
+ * --force; nothing if there is no controller.
+ *
+ * @param[in] plant  of @p m, made ready for the same range
+ */
+ritz_status loops_close(cli_run *run, const loop_options *given, const model *m,
+                        const ritz_damping *damping, ritz_responder *plant,
+                        const double range_hz[2], loop_run *out);
+
+/** Margins of a loop at the points of a response; nothing if there is none. */
+ritz_status loops_report(cli_run *run, const loop_run *loop,
+                         ritz_responder *plant, const ritz_response *response);
+
+void loop_run_free(loop_run *loop);
+
+/* --- ritz-import ---------------------------------------------------------- */
+
+/* Lists of the command line are taken into the request. */
+typedef struct import_options {
+    cli_list load, port, rigid, averaged, input, output, damper;
+    ritz_import_request request;
+    ritz_import_space_request space;
+} import_options;
+
+/** Matrices and geometry become a component. */
+ritz_status import_component(cli_run *run, import_options *given);
+
+/** Matrices of a first-order model become a state space. */
+ritz_status import_states(cli_run *run, ritz_import_space_request *request);
+
+/* --- ritz-poles ----------------------------------------------------------- */
+
+typedef struct poles_options {
+    int64_t modes, mode; /* the lowest, 0: all; the one that a scan follows */
+    double up_to_hz;
+    const char *scan; /* "NAME[,NAME]=FROM:TO:STEP" */
+    model_options model;
+    bool tsv;
+} poles_options;
+
+/** Poles of a model, or one of them through a range of dampers. */
+ritz_status poles_report(cli_run *run, const poles_options *given);
+
+/* --- ritz-simulate -------------------------------------------------------- */
+
+typedef struct simulation_options {
+    const char *method, *hold, *band; /* words that simulation_take reads */
+    const ritz_integrator *integrator;
+    const char *initial; /* "mode:K*A" or a file; NULL: at rest */
+    double seconds, step, accuracy, rho, up_to_hz;
+    double band_hz[2]; /* 0, 0: not given */
+    int64_t every;
+    cli_list input; /* "NAME=SIGNAL" */
+    bool hold_zero, cost;
+    model_options model;
+} simulation_options;
+
+/** Take words of the command line, and refuse what makes no sense whatever the
+ * model is. */
+void simulation_take(const cli_run *run, simulation_options *given);
+
+/** Compute the response, if there is an output, and costs, if asked for. */
+ritz_status simulation_run(cli_run *run, const simulation_options *given);
+
+/* --- ritz-verify ---------------------------------------------------------- */
+
+typedef struct verify_options {
+    ritz_verify_request verify;
+    model_options model; /* the reduced one; dampers are of both */
+} verify_options;
+
+/**
+ * Measure all errors and write the reduced model with them.
+ *
+ * @return RITZ_ERR_CONVERGENCE naming the first limit that is not met
+ */
+ritz_status verify_run(cli_run *run, verify_options *given);
+
+/* --- ritz-info, and the tools that write what it describes ---------------- */
+
+/* Each says it in lines, whose values go to the object that is open. */
+void describe_component(cli_run *run, const ritz_component *component);
+void describe_basis(cli_run *run, const ritz_basis *basis);
+ritz_status describe_reduced(cli_run *run, const ritz_reduced *reduced);
+ritz_status describe_system(cli_run *run, const ritz_system *system);
+void describe_response(cli_run *run, const ritz_response *response);
+void describe_simulation(cli_run *run, const ritz_simulation *simulation);
+ritz_status describe_states(cli_run *run, const ritz_state_space *states);
+
+/**
+ * A container, a matrix file or a deck, and how it was made.
+ *
+ * @param[in] members    list what a container holds, too
+ * @param[in] directory  names and sizes of matrices alone: no values are read
+ */
+ritz_status describe_file(cli_run *run, const char *path, bool members,
+                          bool directory);
+
+/** Text form of a damping, and of a fit its coefficients and residual. */
+void describe_damping(cli_run *run, const char *text);
+void describe_dampers(cli_run *run, const ritz_dampers *dampers);
+
+/**
+ * SHA-256 of a matrix, whatever file it lies in, as a line and among the
+ * checksums: of the text that joins the sums of its parts,
+ *
+ *     sparse  "NROW NCOL COLPTR ROWIND VAL"    dense  "NROW NCOL VAL"
+ *
+ * NROW and NCOL in decimal, the others SHA-256 in hexadecimal of the array's
+ * little-endian bytes (i64, i64, f64).
+ */
+void checksum_sparse(cli_run *run, const char *name, const ritz_sparse *A,
+                     char out[RITZ_DIGEST_SIZE]);
+
+/**
+ * Follow the modes of a system, say what happened to them up to the end of the
+ * scene's band, set keys of the report, and write all of it to @p path, if
+ * there is one, as a table with tabs. A single configuration has nothing to
+ * say.
+ */
+ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
+                          const ritz_system *system, const char *path);
+
+#endif
