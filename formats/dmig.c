@@ -262,7 +262,7 @@ static ritz_status list_terms(const ritz_dmig_header *owner,
                               const ritz_dof *row, int64_t ncol,
                               const ritz_dof *col, ritz_triplets *out)
 {
-    RITZ_CHECK(ritz_triplets_new(2 * owner->count, out));
+    RITZ_CHECK(ritz_triplets_reserve(out, 2 * owner->count));
     for (int64_t k = 0; k < owner->count; k++) {
         const ritz_dmig_term *one = &terms[k];
         int64_t i = find_position(one->row, nrow, row);

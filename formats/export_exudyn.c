@@ -4,10 +4,9 @@
  * only, along basic axes, and come in the order of grid ids.
  */
 #include "base/alloc.h"
-#include "base/draft.h"
 #include "base/tolerances.h"
-#include "container/h5.h"
 #include "formats/exudyn.h"
+#include "formats/sink.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -253,36 +252,25 @@ static hid_t text_type(void)
 
 static ritz_status label_object(hid_t at, const char *datatype)
 {
-    hid_t type = text_type();
-    ritz_status status =
-        ritz_h5_set(at, "datatype", type, ritz_h5_scalar(), &datatype);
+    RITZ_OWN(hid_t) type = text_type();
 
-    ritz_h5_close(type);
-    return status;
+    return ritz_h5_set(at, "datatype", type, ritz_h5_scalar(), &datatype);
 }
 
 static ritz_status label_set(hid_t file, const char *name, const char *datatype)
 {
-    ritz_status status = RITZ_OK;
-    hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    RITZ_OWN(hid_t) set = H5Dopen2(file, name, H5P_DEFAULT);
 
-    RITZ_FAIL_IF(set < 0, RITZ_ERR_FILE, "cannot open '%s'", name);
-    RITZ_TRY(label_object(set, datatype));
-done:
-    ritz_h5_close(set);
-    return status;
+    RITZ_REFUSE_IF(set < 0, RITZ_ERR_FILE, "cannot open '%s'", name);
+    return label_object(set, datatype);
 }
 
 static ritz_status write_text(hid_t file, const char *name, const char *text)
 {
-    ritz_status status = RITZ_OK;
-    hid_t type = text_type();
+    RITZ_OWN(hid_t) type = text_type();
 
-    RITZ_TRY(ritz_h5_write(file, name, type, ritz_h5_scalar(), &text));
-    RITZ_TRY(label_set(file, name, "str"));
-done:
-    ritz_h5_close(type);
-    return status;
+    RITZ_CHECK(ritz_h5_write(file, name, type, ritz_h5_scalar(), &text));
+    return label_set(file, name, "str");
 }
 
 /* Values that are no matrix. */
@@ -345,55 +333,39 @@ static ritz_status write_matrices(hid_t file, const exudyn_body *b)
     return RITZ_OK;
 }
 
-static ritz_status write_file(hid_t file, const ritz_reduced *reduced,
-                              const exudyn_body *b)
-{
-    ritz_status status = RITZ_OK;
-    hid_t group = 0;
+/* What the file is made of. */
+typedef struct exudyn_parts {
+    const ritz_reduced *reduced;
+    const exudyn_body *body;
+} exudyn_parts;
 
-    RITZ_TRY(write_values(file, reduced, b));
-    RITZ_TRY(write_matrices(file, b));
-    RITZ_TRY(write_text(file, "type", "ObjectFFRFreducedOrderInterface"));
-    RITZ_TRY(write_text(file, "rigidBodyNodeType",
-                        "NodeType.RotationEulerParameters"));
-    RITZ_TRY(ritz_h5_group(file, "postProcessingModes", &group));
-    RITZ_TRY(label_object(group, "dict"));
-done:
-    ritz_h5_close(group);
-    return status;
+static ritz_status write_file(hid_t file, const void *what)
+{
+    const exudyn_parts *parts = what;
+    RITZ_OWN(hid_t) group = 0;
+
+    RITZ_CHECK(write_values(file, parts->reduced, parts->body));
+    RITZ_CHECK(write_matrices(file, parts->body));
+    RITZ_CHECK(write_text(file, "type", "ObjectFFRFreducedOrderInterface"));
+    RITZ_CHECK(write_text(file, "rigidBodyNodeType",
+                          "NodeType.RotationEulerParameters"));
+    RITZ_CHECK(ritz_h5_group(file, "postProcessingModes", &group));
+    return label_object(group, "dict");
 }
 
-static ritz_status publish_file(const char *path, const ritz_reduced *reduced,
-                                const exudyn_body *b)
-{
-    ritz_status status = RITZ_OK;
-    ritz_draft draft = {0};
-    hid_t file = 0;
-    herr_t closed = 0;
-
-    RITZ_TRY(ritz_draft_new(path, &draft));
-    RITZ_TRY(ritz_h5_create(draft.name, &file));
-    RITZ_TRY(write_file(file, reduced, b));
-    closed = H5Fclose(file); /* what HDF5 held back may not fit */
-    file = 0;
-    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
-                 "'%s' cannot be written to its end, is the disk full?", path);
-    RITZ_TRY(ritz_draft_publish(&draft));
-done:
-    ritz_h5_close(file);
-    ritz_draft_free(&draft);
-    return status;
-}
-
-static ritz_status write_body(const ritz_reduced *reduced,
+static ritz_status write_body(const ritz_export_object *object,
                               const ritz_export_request *request,
                               ritz_export_report *report)
 {
     RITZ_OWN(exudyn_body) b = {0};
+    RITZ_OWN(ritz_draft) draft = {0};
+    const exudyn_parts parts = {object->reduced, &b};
 
-    RITZ_CHECK(exudyn_body_of(reduced, &b));
-    RITZ_CHECK(exudyn_body_say(reduced, &b, report));
-    return publish_file(request->output, reduced, &b);
+    RITZ_CHECK(exudyn_body_of(object->reduced, &b));
+    RITZ_CHECK(exudyn_body_say(object->reduced, &b, report));
+    RITZ_CHECK(ritz_draft_new(request->output, &draft));
+    RITZ_CHECK(ritz_sink_fill_h5(&draft, write_file, &parts));
+    return ritz_draft_publish(&draft);
 }
 
 const ritz_exporter ritz_exporter_exudyn = {
@@ -401,5 +373,6 @@ const ritz_exporter ritz_exporter_exudyn = {
     .summary = "a flexible body for Exudyn (FFRF, reduced order), HDF5",
     .reference = "Gerstmayr2023",
     .kind = "reduced",
-    .write_reduced = write_body,
+    .takes = RITZ_EXPORT_REDUCED,
+    .write = write_body,
 };

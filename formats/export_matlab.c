@@ -8,11 +8,8 @@
  * whether a disk was full. [MathWorks2019]
  */
 #include "base/alloc.h"
-#include "base/draft.h"
 #include "base/text.h"
-#include "formats/reduced_matrices.h"
-
-#include <ritz/base.h>
+#include "formats/sink.h"
 
 #include <math.h>
 #include <matio.h>
@@ -25,33 +22,36 @@ typedef struct sheet {
     mat_t *file;
 } sheet;
 
-static ritz_status put(sheet *s, const char *name, matvar_t *variable)
+static void sheet_free(sheet *s)
 {
-    ritz_status status = RITZ_OK;
+    if (s->file)
+        Mat_Close(s->file);
+    ritz_draft_free(&s->draft);
+}
 
-    RITZ_FAIL_IF(!variable, RITZ_ERR_MEMORY, "no memory for '%s'", name);
-    RITZ_FAIL_IF(Mat_VarWrite(s->file, variable, MAT_COMPRESSION_NONE) != 0,
-                 RITZ_ERR_FILE, "cannot write '%s'", name);
-done:
+/* Takes the variable. */
+static ritz_status put_variable(sheet *s, const char *name, matvar_t *variable)
+{
+    bool failed =
+        variable && Mat_VarWrite(s->file, variable, MAT_COMPRESSION_NONE) != 0;
+
+    RITZ_REFUSE_IF(!variable, RITZ_ERR_MEMORY, "no memory for '%s'", name);
     Mat_VarFree(variable);
-    return status;
+    RITZ_REFUSE_IF(failed, RITZ_ERR_FILE, "cannot write '%s'", name);
+    return RITZ_OK;
 }
 
 static ritz_status put_real(sheet *s, const char *name, int64_t nrow,
                             int64_t ncol, const double *values)
 {
     size_t dims[2] = {(size_t)nrow, (size_t)ncol};
-    double *copy = NULL; /* which libmatio may write to */
-    ritz_status status = RITZ_OK;
+    RITZ_OWN_ARRAY double *copy = NULL; /* which libmatio may write to */
 
-    RITZ_NEW(copy, nrow * ncol);
+    RITZ_CHECK_NEW(copy, nrow * ncol);
     memcpy(copy, values, (size_t)(nrow * ncol) * sizeof *copy);
-    RITZ_TRY(put(s, name,
-                 Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, copy,
-                               MAT_F_DONT_COPY_DATA)));
-done:
-    free(copy);
-    return status;
+    return put_variable(s, name,
+                        Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims,
+                                      copy, MAT_F_DONT_COPY_DATA));
 }
 
 /* The next letter of UTF-8 as one or two units of UTF-16. */
@@ -90,7 +90,6 @@ static matvar_t *text_variable(const char *name, const char *text)
 static ritz_status put_names(sheet *s, const char *name, int64_t count,
                              const char (*names)[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
     size_t dims[2] = {(size_t)count, 1};
     matvar_t *cells = NULL;
 
@@ -100,35 +99,28 @@ static ritz_status put_names(sheet *s, const char *name, int64_t count,
     for (int64_t k = 0; cells && k < count; k++) {
         matvar_t *text = text_variable(NULL, names[k]);
 
-        RITZ_FAIL_IF(!text, RITZ_ERR_MEMORY, "no memory for '%s'", name);
+        if (!text) {
+            Mat_VarFree(cells);
+            return ritz_fail(RITZ_ERR_MEMORY, "no memory for '%s'", name);
+        }
         Mat_VarSetCell(cells, (int)k, text);
     }
-    status = put(s, name, cells);
-    cells = NULL;
-done:
-    Mat_VarFree(cells);
-    return status;
+    return put_variable(s, name, cells);
 }
 
 static ritz_status put_text(sheet *s, const char *name, const char *text)
 {
-    return *text ? put(s, name, text_variable(name, text)) : RITZ_OK;
+    return *text ? put_variable(s, name, text_variable(name, text)) : RITZ_OK;
 }
 
 /* Matrices as they are listed, every entry. */
-static ritz_status put_matrices(sheet *s, const ritz_matrices *list,
-                                ritz_export_report *report)
+static ritz_status put_matrices(sheet *s, const ritz_matrices *list)
 {
-    RITZ_OWN(ritz_dense) A = {0};
-
     for (int64_t k = 0; k < list->count; k++) {
-        const ritz_matrix *m = &list->matrix[k];
+        RITZ_OWN(ritz_dense) A = {0};
 
-        RITZ_CHECK(ritz_sparse_dense(&m->A, &A));
-        RITZ_CHECK(put_real(s, m->name, A.nrow, A.ncol, A.val));
-        ritz_dense_free(&A);
-        RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld", m->name,
-                                   (long long)m->A.nrow, (long long)m->A.ncol));
+        RITZ_CHECK(ritz_sparse_dense(&list->matrix[k].A, &A));
+        RITZ_CHECK(put_real(s, list->matrix[k].name, A.nrow, A.ncol, A.val));
     }
     return RITZ_OK;
 }
@@ -154,26 +146,25 @@ static ritz_status sheet_open(const char *path, sheet *out)
     return RITZ_OK;
 }
 
-/* True if the file holds the matrices that were to be written, to the bit. */
-static ritz_status check(const char *path, const ritz_matrices *list)
+/* Whether the file holds the matrices that were to be written, to the bit. */
+static ritz_status compare_file(const char *path, const ritz_matrices *list)
 {
     RITZ_OWN(ritz_matrices) back = {0};
-    RITZ_OWN(ritz_dense) A = {0}, B = {0};
 
     RITZ_CHECK_IN("reading back", ritz_foreign_read(path, &back));
     RITZ_REFUSE_IF(back.count < list->count, RITZ_ERR_FILE,
                    "only part of '%s' could be written", path);
     for (int64_t k = 0; k < list->count; k++) {
+        RITZ_OWN(ritz_dense) A = {0}, B = {0};
+        bool same = true;
+
         RITZ_CHECK(ritz_sparse_dense(&list->matrix[k].A, &A));
         RITZ_CHECK(ritz_sparse_dense(&back.matrix[k].A, &B));
-        RITZ_REFUSE_IF(A.nrow != B.nrow || A.ncol != B.ncol, RITZ_ERR_FILE,
-                       "'%s' was not written as it is", list->matrix[k].name);
-        for (int64_t i = 0; i < A.nrow * A.ncol; i++)
-            RITZ_REFUSE_IF(A.val[i] != B.val[i], RITZ_ERR_FILE,
-                           "'%s' was not written as it is",
-                           list->matrix[k].name);
-        ritz_dense_free(&A);
-        ritz_dense_free(&B);
+        same = A.nrow == B.nrow && A.ncol == B.ncol;
+        for (int64_t i = 0; same && i < A.nrow * A.ncol; i++)
+            same = A.val[i] == B.val[i];
+        RITZ_REFUSE_IF(!same, RITZ_ERR_FILE, "'%s' was not written as it is",
+                       list->matrix[k].name);
     }
     return RITZ_OK;
 }
@@ -184,110 +175,77 @@ static ritz_status sheet_publish(sheet *s, const ritz_matrices *list)
 
     s->file = NULL;
     RITZ_REFUSE_IF(failed != 0, RITZ_ERR_FILE, "cannot write all of it");
-    RITZ_CHECK(check(s->draft.name, list));
+    RITZ_CHECK(compare_file(s->draft.name, list));
     return ritz_draft_publish(&s->draft);
-}
-
-static void sheet_free(sheet *s)
-{
-    if (s->file)
-        Mat_Close(s->file);
-    ritz_draft_free(&s->draft);
-}
-
-/* All matrices of a reduced component but T, which may be large. */
-static void list_all(const ritz_reduced *r, size_t room, char *out)
-{
-    const struct {
-        const char *names;
-        bool there;
-    } parts[] = {{"K,M", true},
-                 {",D", r->D.val != NULL},
-                 {",K4", r->K4.val != NULL},
-                 {",B", r->io.num_inputs > 0},
-                 {",C,Cv,Ca", r->io.num_outputs > 0}};
-    size_t used = 0;
-
-    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        if (parts[k].there)
-            used +=
-                (size_t)snprintf(out + used, room - used, "%s", parts[k].names);
 }
 
 /* The kinds of columns by name. */
 static ritz_status put_columns(sheet *s, const ritz_columns *columns)
 {
-    ritz_status status = RITZ_OK;
-    char(*kind)[RITZ_NAME_SIZE] = NULL;
+    RITZ_OWN_ARRAY char(*kind)[RITZ_NAME_SIZE] = NULL;
 
-    RITZ_NEW(kind, columns->count);
+    RITZ_CHECK_NEW(kind, columns->count);
     for (int64_t k = 0; k < columns->count; k++)
         snprintf(kind[k], sizeof kind[k], "%s",
                  ritz_column_name(columns->kind[k]));
-    RITZ_TRY(put_names(s, "columns", columns->count, kind));
-    RITZ_TRY(put_real(s, "hertz", columns->count, 1, columns->hertz));
-done:
-    free(kind);
-    return status;
+    RITZ_CHECK(put_names(s, "columns", columns->count, kind));
+    return put_real(s, "hertz", columns->count, 1, columns->hertz);
 }
 
-static ritz_status write_reduced(const ritz_reduced *reduced,
-                                 const ritz_export_request *request,
-                                 ritz_export_report *report)
+/* What a reduced component has beside its matrices. */
+static ritz_status put_reduced(sheet *s, const ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &reduced->io;
-    ritz_matrices list = {0};
-    char all[32];
-    sheet s = {0};
 
-    list_all(reduced, sizeof all, all);
-    RITZ_TRY(ritz_reduced_matrices(
-        reduced, request->matrices ? request->matrices : all, &list));
-    RITZ_TRY(sheet_open(request->output, &s));
-    RITZ_TRY(put_matrices(&s, &list, report));
-    RITZ_TRY(put_names(&s, "input_names", io->num_inputs, io->input));
-    RITZ_TRY(put_names(&s, "output_names", io->num_outputs, io->output));
-    RITZ_TRY(put_limits(&s, io->num_outputs, io->limit));
-    RITZ_TRY(put_columns(&s, &reduced->columns));
-    RITZ_TRY(put_text(&s, "damping", reduced->damping));
-    RITZ_TRY(put_text(&s, "units", reduced->units));
-    RITZ_TRY(sheet_publish(&s, &list));
-    if (reduced->damping[0])
-        RITZ_TRY(ritz_export_say(report,
-                                 "damping '%s' is text beside the matrices",
-                                 reduced->damping));
-    RITZ_TRY(ritz_export_say(report, "M q'' + D q' + K q = B u, "
-                                     "y = C q + Cv q' + Ca q''"));
-done:
-    sheet_free(&s);
-    ritz_matrices_free(&list);
-    return ritz_context(status, request->output);
+    RITZ_CHECK(put_names(s, "input_names", io->num_inputs, io->input));
+    RITZ_CHECK(put_names(s, "output_names", io->num_outputs, io->output));
+    RITZ_CHECK(put_limits(s, io->num_outputs, io->limit));
+    RITZ_CHECK(put_columns(s, &reduced->columns));
+    RITZ_CHECK(put_text(s, "damping", reduced->damping));
+    return put_text(s, "units", reduced->units);
 }
 
-static ritz_status write_states(const ritz_state_space *model,
-                                const ritz_export_request *request,
-                                ritz_export_report *report)
+static ritz_status put_states(sheet *s, const ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_matrices list = {0};
-    sheet s = {0};
+    RITZ_CHECK(put_names(s, "input_names", model->num_inputs, model->input));
+    RITZ_CHECK(put_names(s, "output_names", model->num_outputs, model->output));
+    RITZ_CHECK(put_limits(s, model->num_outputs, model->limit));
+    return put_text(s, "units", model->units);
+}
 
-    RITZ_TRY(ritz_state_matrices(model, request->matrices, &list));
-    RITZ_TRY(sheet_open(request->output, &s));
-    RITZ_TRY(put_matrices(&s, &list, report));
-    RITZ_TRY(put_names(&s, "input_names", model->num_inputs, model->input));
-    RITZ_TRY(put_names(&s, "output_names", model->num_outputs, model->output));
-    RITZ_TRY(put_limits(&s, model->num_outputs, model->limit));
-    RITZ_TRY(put_text(&s, "units", model->units));
-    RITZ_TRY(sheet_publish(&s, &list));
-    RITZ_TRY(
-        ritz_export_say(report, "%s, y = C x + D u",
-                        model->E.val ? "E x' = A x + B u" : "x' = A x + B u"));
-done:
-    sheet_free(&s);
-    ritz_matrices_free(&list);
-    return ritz_context(status, request->output);
+static ritz_status fill_sheet(const ritz_export_object *object,
+                              const ritz_export_request *request,
+                              ritz_export_report *report)
+{
+    const ritz_reduced *reduced = object->reduced;
+    RITZ_OWN(ritz_matrices) list = {0};
+    RITZ_OWN(sheet) s = {0};
+
+    /* all but T, which may be large */
+    RITZ_CHECK(ritz_export_matrices(
+        object, request, reduced ? "K,M,D,K4,B,C,Cv,Ca" : NULL, report, &list));
+    RITZ_CHECK(sheet_open(request->output, &s));
+    RITZ_CHECK(put_matrices(&s, &list));
+    RITZ_CHECK(reduced ? put_reduced(&s, reduced)
+                       : put_states(&s, object->states));
+    RITZ_CHECK(sheet_publish(&s, &list));
+    if (!reduced)
+        return ritz_export_say(report, "%s, y = C x + D u",
+                               object->states->E.val ? "E x' = A x + B u"
+                                                     : "x' = A x + B u");
+    if (reduced->damping[0])
+        RITZ_CHECK(ritz_export_say(report,
+                                   "damping '%s' is text beside the matrices",
+                                   reduced->damping));
+    return ritz_export_say(report, "M q'' + D q' + K q = B u, "
+                                   "y = C q + Cv q' + Ca q''");
+}
+
+static ritz_status write_sheet(const ritz_export_object *object,
+                               const ritz_export_request *request,
+                               ritz_export_report *report)
+{
+    return ritz_context(fill_sheet(object, request, report), request->output);
 }
 
 const ritz_exporter ritz_exporter_matlab = {
@@ -295,7 +253,6 @@ const ritz_exporter ritz_exporter_matlab = {
     .summary = "matrices and names as a MAT file, level 5",
     .reference = "MathWorks2019",
     .kind = "reduced",
-    .uses = RITZ_EXPORT_MATRICES,
-    .write_reduced = write_reduced,
-    .write_states = write_states,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES,
+    .write = write_sheet,
 };

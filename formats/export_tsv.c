@@ -1,17 +1,11 @@
 /* A frequency response as columns of text: hertz, then |H| and its phase, then
    singular values where it has them; a time response as seconds, inputs,
    outputs, energies. */
-#include "base/draft.h"
-
 #include "base/tolerances.h"
-
-#include <ritz/export.h>
+#include "formats/sink.h"
 
 #include <complex.h>
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static void print_head(FILE *file, const ritz_response *response)
 {
@@ -44,13 +38,14 @@ static void print_rows(FILE *file, const ritz_response *response)
     }
 }
 
-static void print_response(FILE *file, const void *object)
+static ritz_status print_response(FILE *file, const void *object)
 {
     print_head(file, object);
     print_rows(file, object);
+    return RITZ_OK;
 }
 
-static void print_simulation(FILE *file, const void *object)
+static ritz_status print_simulation(FILE *file, const void *object)
 {
     const ritz_simulation *s = object;
     const struct {
@@ -81,55 +76,29 @@ static void print_simulation(FILE *file, const void *object)
             fprintf(file, "\t%.15e", energy[e].value[k]);
         fputc('\n', file);
     }
+    return RITZ_OK;
 }
 
-static ritz_status save(const char *output,
-                        void (*print)(FILE *file, const void *object),
-                        const void *object)
+static ritz_status write_table(const ritz_export_object *object,
+                               const ritz_export_request *request,
+                               ritz_export_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_draft draft = {0};
-    FILE *file = NULL;
+    const ritz_response *response = object->response;
+    const ritz_simulation *simulation = object->simulation;
 
-    RITZ_TRY(ritz_draft_new(output, &draft));
-    file = fopen(draft.name, "w");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", draft.name,
-                 strerror(errno));
-    print(file, object);
-    errno = 0;
-    RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot write '%s'", draft.name);
-    status = fclose(file) == 0 ? RITZ_OK : RITZ_ERR_FILE;
-    file = NULL;
-    RITZ_FAIL_IF(status != RITZ_OK, RITZ_ERR_FILE, "cannot write '%s': %s",
-                 draft.name, strerror(errno));
-    RITZ_TRY(ritz_draft_publish(&draft));
-done:
-    if (file)
-        fclose(file);
-    ritz_draft_free(&draft);
-    return status;
-}
-
-static ritz_status write(const ritz_response *response,
-                         const ritz_export_request *request,
-                         ritz_export_report *report)
-{
-    RITZ_CHECK(save(request->output, print_response, response));
+    if (simulation) {
+        RITZ_CHECK(
+            ritz_sink_write(request->output, print_simulation, simulation));
+        return ritz_export_say(report, "%lld times, %lld outputs, %lld inputs",
+                               (long long)simulation->count,
+                               (long long)simulation->num_outputs,
+                               (long long)simulation->num_inputs);
+    }
+    RITZ_CHECK(ritz_sink_write(request->output, print_response, response));
     return ritz_export_say(
         report, "%lld frequencies, %lld outputs, %lld inputs",
         (long long)response->count, (long long)response->num_outputs,
         (long long)response->num_inputs);
-}
-
-static ritz_status write_simulation(const ritz_simulation *simulation,
-                                    const ritz_export_request *request,
-                                    ritz_export_report *report)
-{
-    RITZ_CHECK(save(request->output, print_simulation, simulation));
-    return ritz_export_say(report, "%lld times, %lld outputs, %lld inputs",
-                           (long long)simulation->count,
-                           (long long)simulation->num_outputs,
-                           (long long)simulation->num_inputs);
 }
 
 const ritz_exporter ritz_exporter_tsv = {
@@ -137,6 +106,6 @@ const ritz_exporter ritz_exporter_tsv = {
     .summary = "a response over hertz or seconds as text columns",
     .reference = "Sirlin1992",
     .kind = "response",
-    .write_response = write,
-    .write_simulation = write_simulation,
+    .takes = RITZ_EXPORT_RESPONSE | RITZ_EXPORT_SIMULATION,
+    .write = write_table,
 };

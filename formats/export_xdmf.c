@@ -4,11 +4,8 @@
  * know others in a mixed mesh.
  */
 #include "base/alloc.h"
-#include "base/draft.h"
-#include "container/h5.h"
 #include "formats/sink.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,44 +59,40 @@ static ritz_status write_field(hid_t file, const char *word, int64_t j,
                          ritz_dense_col(of, j));
 }
 
-/* The numbers; @p length of the list of cells. */
-static ritz_status write_heavy(const char *path, const ritz_shapes *s,
-                               int64_t *length)
-{
-    ritz_status status = RITZ_OK;
-    hid_t file = 0;
-    int64_t *list = NULL;
-    herr_t closed = 0;
+/* Both files: the XML refers to the other by its path. */
+typedef struct xdmf_pair {
+    const ritz_shapes *shapes;
+    int64_t length;     /* of the list of cells */
+    const char *beside; /* path of the numbers */
+} xdmf_pair;
 
-    *length = list_cells(&s->cells, NULL);
-    RITZ_NEW(list, *length);
+static ritz_status write_heavy(hid_t file, const void *what)
+{
+    const xdmf_pair *pair = what;
+    const ritz_shapes *s = pair->shapes;
+    RITZ_OWN_ARRAY int64_t *list = NULL;
+
+    RITZ_CHECK_NEW(list, pair->length);
     (void)list_cells(&s->cells, list);
-    RITZ_TRY(ritz_h5_create(path, &file));
-    RITZ_TRY(ritz_h5_write(file, "points", H5T_IEEE_F64LE,
-                           ritz_h5_table(s->num_points, 3), s->position));
-    RITZ_TRY(ritz_h5_write(file, "grids", H5T_STD_I64LE,
-                           ritz_h5_vector(s->num_points), s->id));
-    RITZ_TRY(ritz_h5_write(
-        file, "cells", H5T_STD_I64LE,
-        s->meshed ? ritz_h5_vector(*length) : ritz_h5_table(*length, 1), list));
+    RITZ_CHECK(ritz_h5_write(file, "points", H5T_IEEE_F64LE,
+                             ritz_h5_table(s->num_points, 3), s->position));
+    RITZ_CHECK(ritz_h5_write(file, "grids", H5T_STD_I64LE,
+                             ritz_h5_vector(s->num_points), s->id));
+    RITZ_CHECK(ritz_h5_write(file, "cells", H5T_STD_I64LE,
+                             s->meshed ? ritz_h5_vector(pair->length)
+                                       : ritz_h5_table(pair->length, 1),
+                             list));
     for (int64_t j = 0; j < s->count; j++) {
-        RITZ_TRY(write_field(file, "translations", j, s, &s->u));
+        RITZ_CHECK(write_field(file, "translations", j, s, &s->u));
         if (s->turn.val)
-            RITZ_TRY(write_field(file, "rotations", j, s, &s->turn));
+            RITZ_CHECK(write_field(file, "rotations", j, s, &s->turn));
     }
-    closed = H5Fclose(file); /* what HDF5 held back may not fit */
-    file = 0;
-    RITZ_FAIL_IF(closed < 0, RITZ_ERR_FILE,
-                 "'%s' cannot be written to its end, is the disk full?", path);
-done:
-    ritz_h5_close(file);
-    free(list);
-    return status;
+    return RITZ_OK;
 }
 
 /* A reference to a data set of the file beside. */
-static void refer(FILE *file, const char *heavy, const char *type, int64_t rows,
-                  int64_t columns, const char *name)
+static void refer_to_set(FILE *file, const char *heavy, const char *type,
+                         int64_t rows, int64_t columns, const char *name)
 {
     fprintf(file, "<DataItem DataType=\"%s\" Precision=\"8\" Dimensions=\"",
             type);
@@ -121,13 +114,17 @@ static void print_field(FILE *file, const char *heavy, const ritz_shapes *s,
     fputs("<Attribute Name=\"", file);
     ritz_xml_put(file, s->name[j]);
     fprintf(file, "%s\" AttributeType=\"Vector\" Center=\"Node\">\n", beside);
-    refer(file, heavy, "Float", s->num_points, 3, name);
+    refer_to_set(file, heavy, "Float", s->num_points, 3, name);
     fputs("</Attribute>\n", file);
 }
 
-static void print_light(FILE *file, const char *heavy, const ritz_shapes *s,
-                        int64_t length)
+static ritz_status print_light(FILE *file, const void *what)
 {
+    const xdmf_pair *pair = what;
+    const ritz_shapes *s = pair->shapes;
+    const char *folder = strrchr(pair->beside, '/');
+    const char *heavy = folder ? folder + 1 : pair->beside;
+
     fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
           "<Grid Name=\"shapes\" GridType=\"Uniform\">\n",
           file);
@@ -136,9 +133,9 @@ static void print_light(FILE *file, const char *heavy, const ritz_shapes *s,
             "\"%s>\n",
             s->meshed ? "Mixed" : "Polyvertex", s->cells.count,
             s->meshed ? "" : " NodesPerElement=\"1\"");
-    refer(file, heavy, "Int", length, s->meshed ? 0 : 1, "cells");
+    refer_to_set(file, heavy, "Int", pair->length, s->meshed ? 0 : 1, "cells");
     fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">\n", file);
-    refer(file, heavy, "Float", s->num_points, 3, "points");
+    refer_to_set(file, heavy, "Float", s->num_points, 3, "points");
     fputs("</Geometry>\n", file);
     for (int64_t j = 0; j < s->count; j++) {
         print_field(file, heavy, s, j, "translations", "");
@@ -148,25 +145,8 @@ static void print_light(FILE *file, const char *heavy, const ritz_shapes *s,
     fputs("<Attribute Name=\"grid\" AttributeType=\"Scalar\" "
           "Center=\"Node\">\n",
           file);
-    refer(file, heavy, "Int", s->num_points, 0, "grids");
+    refer_to_set(file, heavy, "Int", s->num_points, 0, "grids");
     fputs("</Attribute>\n</Grid>\n</Domain>\n</Xdmf>\n", file);
-}
-
-static ritz_status write_light(const char *path, const char *heavy,
-                               const ritz_shapes *s, int64_t length)
-{
-    const char *name = strrchr(heavy, '/');
-    bool whole = true;
-    FILE *file = fopen(path, "w");
-
-    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", path,
-                   strerror(errno));
-    print_light(file, name ? name + 1 : heavy, s, length);
-    whole = !ferror(file);
-    whole = fclose(file) == 0 && whole;
-    RITZ_REFUSE_IF(!whole, RITZ_ERR_FILE,
-                   "'%s' cannot be written to its end, is the disk full?",
-                   path);
     return RITZ_OK;
 }
 
@@ -187,19 +167,21 @@ static ritz_status name_heavy(const char *output, char **out)
 }
 
 /* Both drafts are complete before either gets its name. */
-static ritz_status write(const ritz_shapes *shapes,
-                         const ritz_export_request *request,
-                         ritz_export_report *report)
+static ritz_status write_shapes(const ritz_export_object *object,
+                                const ritz_export_request *request,
+                                ritz_export_report *report)
 {
+    const ritz_shapes *shapes = object->shapes;
     RITZ_OWN(ritz_draft) heavy = {0}, light = {0};
     RITZ_OWN_ARRAY char *beside = NULL;
-    int64_t length = 0;
+    xdmf_pair pair = {shapes, list_cells(&shapes->cells, NULL), NULL};
 
     RITZ_CHECK(name_heavy(request->output, &beside));
+    pair.beside = beside;
     RITZ_CHECK(ritz_draft_new(beside, &heavy));
     RITZ_CHECK(ritz_draft_new(request->output, &light));
-    RITZ_CHECK(write_heavy(heavy.name, shapes, &length));
-    RITZ_CHECK(write_light(light.name, beside, shapes, length));
+    RITZ_CHECK(ritz_sink_fill_h5(&heavy, write_heavy, &pair));
+    RITZ_CHECK(ritz_sink_fill(&light, print_light, &pair));
     RITZ_CHECK(ritz_draft_publish(&heavy));
     RITZ_CHECK(ritz_draft_publish(&light));
     RITZ_CHECK(ritz_shapes_say(shapes, report));
@@ -214,6 +196,6 @@ const ritz_exporter ritz_exporter_xdmf = {
     .summary = "shapes of modes or of columns for viewers (XDMF, HDF5)",
     .reference = "Clarke2007",
     .kind = "shapes",
-    .uses = RITZ_EXPORT_SHAPES,
-    .write_shapes = write,
+    .takes = RITZ_EXPORT_SHAPES,
+    .write = write_shapes,
 };

@@ -46,15 +46,13 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
 static ritz_status read_matrix(const ritz_foreign *file,
                                const ritz_listed *which, ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
     const struct level *level = find_level(file->bytes, file->size);
     ritz_mat_list list = {
         .wanted = which->at, .bytes = file->size, .spelling = level->spelling};
+    ritz_status status = level->read(file->bytes, file->size, &list);
 
-    RITZ_TRY(level->read(file->bytes, file->size, &list));
-    *out = list.matrix;
-    list.matrix = (ritz_matrix){0};
-done:
+    if (status == RITZ_OK)
+        RITZ_MOVE(*out, list.matrix);
     ritz_matrix_free(&list.matrix);
     return status;
 }

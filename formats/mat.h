@@ -20,8 +20,10 @@ enum {
     RITZ_MAT_COMPRESSED,
 };
 
-/* How deep structs in structs are followed. */
-enum { RITZ_MAT_DEPTH = 8 };
+enum {
+    RITZ_MAT_DEPTH = 8,         /* how deep structs in structs are followed */
+    RITZ_MAT_MOST_RATIO = 1032, /* that deflate can reach */
+};
 
 /* Values as the file holds them, `at` NULL: there are none. */
 typedef struct ritz_mat_values {
@@ -30,6 +32,15 @@ typedef struct ritz_mat_values {
     int type;
     bool swap; /* of the other byte order */
 } ritz_mat_values;
+
+/* The entries of a matrix. Full, `col` without values: by columns. Sparse: rows
+   from `base`; columns too, or ncol + 1 starts of theirs from 0. */
+typedef struct ritz_mat_entries {
+    int64_t nrow, ncol, count;
+    ritz_mat_values row, col, re, im;
+    int64_t base;
+    bool starts;
+} ritz_mat_entries;
 
 /* A file that is gone through, to list what it holds or to read one of it. */
 typedef struct ritz_mat_list {
@@ -49,31 +60,18 @@ double ritz_mat_value(const ritz_mat_values *values, int64_t k);
 /** An unsigned number of 1 to 8 bytes. */
 uint64_t ritz_mat_bits(const unsigned char *at, int64_t size, bool swap);
 
-/** Count a matrix that is not wanted; false: it is to be added. */
-bool ritz_mat_pass(ritz_mat_list *list);
+/** Whether the next matrix is not wanted, so that its values need not be read
+ * before it is added. */
+bool ritz_mat_passes(const ritz_mat_list *list);
 
 /** Add a variable that is not a matrix, and the reason. */
 ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
                                const char *why);
 
-/** A full matrix by columns; there are nrow * ncol values. */
-ritz_status ritz_mat_add_full(ritz_mat_list *list, const char *name,
-                              int64_t nrow, int64_t ncol,
-                              const ritz_mat_values *re,
-                              const ritz_mat_values *im);
-
-/* Entries of a sparse matrix: rows from `base`; columns too, or ncol + 1
-   starts of theirs from 0. */
-typedef struct ritz_mat_entries {
-    int64_t nrow, ncol, count;
-    ritz_mat_values row, col, re, im;
-    int64_t base;
-    bool starts;
-} ritz_mat_entries;
-
-/** @return RITZ_ERR_FORMAT if a place is out of range or given twice */
-ritz_status ritz_mat_add_sparse(ritz_mat_list *list, const char *name,
-                                const ritz_mat_entries *entries);
+/** Add a matrix. @return RITZ_ERR_FORMAT if the place of an entry is out of
+ * range or given twice */
+ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
+                         const ritz_mat_entries *entries);
 
 /* Each level: whether bytes look like it, and all that they hold. */
 bool ritz_mat_is_level4(const char *bytes, int64_t size);

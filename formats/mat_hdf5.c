@@ -18,8 +18,7 @@
 #include <string.h>
 
 enum {
-    BLOCK = 512,       /* where HDF5 begins */
-    MOST_RATIO = 1032, /* that deflate can reach */
+    BLOCK = 512, /* where HDF5 begins */
     MOST_MEMBERS = 65536,
     PIECE = 65536, /* bytes by which an image grows: it never does */
 };
@@ -39,6 +38,13 @@ typedef struct hdf5_walk {
     group *group;
 } hdf5_walk;
 
+static void hdf5_walk_free(hdf5_walk *w)
+{
+    for (int64_t k = 0; k < w->count; k++)
+        ritz_h5_close(w->group[k].id);
+    free(w->group);
+}
+
 bool ritz_mat_is_hdf5(const char *bytes, int64_t size)
 {
     static const char mark[] = "\211HDF\r\n\032\n";
@@ -50,34 +56,32 @@ bool ritz_mat_is_hdf5(const char *bytes, int64_t size)
 /* The bytes as a file that is open. */
 static ritz_status open_image(const char *bytes, int64_t size, hid_t *out)
 {
-    ritz_status status = RITZ_OK;
-    char *copy = NULL; /* HDF5 wants what it may write to */
-    hid_t plan = 0;
+    RITZ_OWN_ARRAY char *copy = NULL; /* HDF5 wants what it may write to */
+    RITZ_OWN(hid_t) plan = 0;
 
     ritz_h5_begin();
-    RITZ_NEW(copy, size);
+    RITZ_CHECK_NEW(copy, size);
     memcpy(copy, bytes, (size_t)size);
     plan = H5Pcreate(H5P_FILE_ACCESS);
-    RITZ_FAIL_IF(H5Pset_fapl_core(plan, PIECE, false) < 0 ||
-                     H5Pset_file_image(plan, copy, (size_t)size) < 0,
-                 RITZ_ERR_MEMORY, "no memory for the file");
+    RITZ_REFUSE_IF(H5Pset_fapl_core(plan, PIECE, false) < 0 ||
+                       H5Pset_file_image(plan, copy, (size_t)size) < 0,
+                   RITZ_ERR_MEMORY, "no memory for the file");
     *out = H5Fopen("image", H5F_ACC_RDONLY, plan);
-    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FORMAT, "a damaged file of HDF5");
-done:
-    ritz_h5_close(plan);
-    free(copy);
-    return status;
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FORMAT, "a damaged file of HDF5");
+    return RITZ_OK;
 }
 
-/* True if all filters are known ones: their output is bounded. */
-static bool is_plain(hid_t set)
+/* True if all filters are known ones: their output is bounded. `chunk` gets the
+ * values of a chunk, as many as HDF5 takes memory for; 0: there are none. */
+static bool is_plain(hid_t set, hsize_t *chunk)
 {
     static const H5Z_filter_t known[] = {H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE,
                                          H5Z_FILTER_FLETCHER32};
-    hid_t plan = H5Dget_create_plist(set);
+    RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
     bool plain = plan >= 0 && H5Pget_external_count(plan) == 0 &&
                  H5Pget_layout(plan) != H5D_VIRTUAL;
     int filters = plan < 0 ? 0 : H5Pget_nfilters(plan);
+    ritz_h5_shape cut = {0};
 
     for (int k = 0; plain && k < filters; k++) {
         unsigned flags = 0;
@@ -87,75 +91,109 @@ static bool is_plain(hid_t set)
 
         plain = is == known[0] || is == known[1] || is == known[2];
     }
-    ritz_h5_close(plan);
+    if (H5Pget_layout(plan) == H5D_CHUNKED)
+        cut.rank = H5Pget_chunk(plan, RITZ_H5_RANK, cut.dims);
+    *chunk = cut.rank > 0 && cut.rank <= RITZ_H5_RANK
+                 ? ritz_h5_volume(&cut, INT64_MAX / 64)
+                 : 0;
     return plain;
-}
-
-/* Bytes of a chunk: HDF5 takes as much memory. 0 if it is not in chunks. */
-static hsize_t chunk_values(hid_t set)
-{
-    hid_t plan = H5Dget_create_plist(set);
-    ritz_h5_shape chunk = {.rank = RITZ_H5_RANK};
-
-    if (H5Pget_layout(plan) != H5D_CHUNKED)
-        chunk.rank = 0;
-    else
-        chunk.rank = H5Pget_chunk(plan, RITZ_H5_RANK, chunk.dims);
-    ritz_h5_close(plan);
-    return chunk.rank > 0 && chunk.rank <= RITZ_H5_RANK
-               ? ritz_h5_volume(&chunk, INT64_MAX / 64)
-               : 0;
 }
 
 /* Its dimensions, once the storage bears them out. */
 static ritz_status take_shape(hid_t set, const char *name, int64_t bytes,
                               ritz_h5_shape *out)
 {
-    ritz_status status = RITZ_OK;
-    hid_t space = H5Dget_space(set);
-    hid_t type = H5Dget_type(set);
+    RITZ_OWN(hid_t) space = H5Dget_space(set);
+    RITZ_OWN(hid_t) type = H5Dget_type(set);
     hsize_t most = 0;
+    hsize_t chunk = 0;
 
     out->rank = H5Sget_simple_extent_ndims(space);
-    RITZ_FAIL_IF(out->rank < 0, RITZ_ERR_FORMAT, "'%s' has no size", name);
+    RITZ_REFUSE_IF(out->rank < 0, RITZ_ERR_FORMAT, "'%s' has no size", name);
     if (out->rank > RITZ_H5_RANK)
-        goto done; /* refused by its rank */
+        return RITZ_OK; /* refused by its rank */
     H5Sget_simple_extent_dims(space, out->dims, NULL);
-    RITZ_FAIL_IF(!is_plain(set), RITZ_ERR_FORMAT,
-                 "'%s' is stored in a way that is not known", name);
+    RITZ_REFUSE_IF(!is_plain(set, &chunk), RITZ_ERR_FORMAT,
+                   "'%s' is stored in a way that is not known", name);
     most = H5Dget_storage_size(set);
     most = most < (hsize_t)bytes ? most : (hsize_t)bytes;
-    most = most * MOST_RATIO / H5Tget_size(type);
-    RITZ_FAIL_IF(
-        ritz_h5_volume(out, most) > most || chunk_values(set) > most + PIECE,
-        RITZ_ERR_FORMAT, "'%s' declares more than the file holds", name);
-done:
-    ritz_h5_close(type);
-    ritz_h5_close(space);
-    return status;
+    most = most * RITZ_MAT_MOST_RATIO / H5Tget_size(type);
+    RITZ_REFUSE_IF(ritz_h5_volume(out, most) > most || chunk > most + PIECE,
+                   RITZ_ERR_FORMAT, "'%s' declares more than the file holds",
+                   name);
+    return RITZ_OK;
 }
 
-/* Type in memory: doubles, or one part of a pair of them. */
-static hid_t part_of(const char *part)
+/* Kind of the values: 'r' real, 'c' complex, 0 neither. */
+static char kind_of(hid_t set)
 {
-    hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(double));
+    RITZ_OWN(hid_t) type = H5Dget_type(set);
+    H5T_class_t class = H5Tget_class(type);
 
-    H5Tinsert(type, part, 0, H5T_NATIVE_DOUBLE);
-    return type;
+    if (class == H5T_INTEGER || class == H5T_FLOAT)
+        return 'r';
+    return class == H5T_COMPOUND && H5Tget_nmembers(type) == 2 &&
+                   H5Tget_member_index(type, "real") >= 0 &&
+                   H5Tget_member_index(type, "imag") >= 0
+               ? 'c'
+               : 0;
 }
 
+/* Numbers of a data set; `im` NULL if they are real. */
+typedef struct numbers {
+    int64_t count;
+    double *re, *im;
+} numbers;
+
+static void numbers_free(numbers *list)
+{
+    free(list->re);
+    free(list->im);
+}
+
+/* @param[in] part  of a pair of doubles; NULL: of one double */
 static ritz_status read_part(hid_t set, const char *name, const char *part,
                              int64_t count, double **out)
 {
-    ritz_status status = RITZ_OK;
-    hid_t type = part ? part_of(part) : H5Tcopy(H5T_NATIVE_DOUBLE);
+    RITZ_OWN(hid_t)
+    type = part ? H5Tcreate(H5T_COMPOUND, sizeof(double))
+                : H5Tcopy(H5T_NATIVE_DOUBLE);
 
-    RITZ_NEW(*out, count);
-    RITZ_FAIL_IF(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *out) < 0,
-                 RITZ_ERR_FORMAT, "'%s' is damaged", name);
-done:
-    ritz_h5_close(type);
-    return status;
+    if (part)
+        H5Tinsert(type, part, 0, H5T_NATIVE_DOUBLE);
+    RITZ_CHECK_NEW(*out, count);
+    RITZ_REFUSE_IF(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *out) < 0,
+                   RITZ_ERR_FORMAT, "'%s' is damaged", name);
+    return RITZ_OK;
+}
+
+static ritz_status read_numbers(hid_t set, const char *name, int64_t count,
+                                numbers *out)
+{
+    bool real = kind_of(set) == 'r';
+
+    out->count = count;
+    RITZ_CHECK(read_part(set, name, real ? NULL : "real", count, &out->re));
+    return real ? RITZ_OK : read_part(set, name, "imag", count, &out->im);
+}
+
+/* A data set of one dimension, of a sparse matrix; absent: no values. */
+static ritz_status read_vector(hid_t at, const char *name, int64_t bytes,
+                               numbers *out)
+{
+    RITZ_OWN(hid_t) set = 0;
+    ritz_h5_shape shape = {0};
+
+    if (!ritz_h5_has(at, name))
+        return RITZ_OK;
+    set = H5Dopen2(at, name, H5P_DEFAULT);
+    RITZ_REFUSE_IF(set < 0 || !kind_of(set), RITZ_ERR_FORMAT,
+                   "'%s' is no list of numbers", name);
+    RITZ_CHECK(take_shape(set, name, bytes, &shape));
+    RITZ_REFUSE_IF(shape.rank > RITZ_H5_RANK, RITZ_ERR_FORMAT,
+                   "'%s' is no list of numbers", name);
+    return read_numbers(set, name, (int64_t)ritz_h5_volume(&shape, INT64_MAX),
+                        out);
 }
 
 /* Values as they stand in memory now. */
@@ -168,99 +206,42 @@ static ritz_mat_values values_of(const double *values, int64_t count)
                              RITZ_MAT_DOUBLE, *first == 0};
 }
 
-/* Kind of the values: 'r' real, 'c' complex, 0 neither. */
-static char kind_of(hid_t set)
-{
-    hid_t type = H5Dget_type(set);
-    H5T_class_t class = H5Tget_class(type);
-    char kind = 0;
-
-    if (class == H5T_INTEGER || class == H5T_FLOAT)
-        kind = 'r';
-    else if (class == H5T_COMPOUND && H5Tget_nmembers(type) == 2 &&
-             H5Tget_member_index(type, "real") >= 0 &&
-             H5Tget_member_index(type, "imag") >= 0)
-        kind = 'c';
-    ritz_h5_close(type);
-    return kind;
-}
-
-/* A data set of one dimension, of a sparse matrix; absent: no values. */
-static ritz_status read_vector(hid_t at, const char *name, int64_t bytes,
-                               double *re[2], int64_t *count)
-{
-    ritz_status status = RITZ_OK;
-    ritz_h5_shape shape = {0};
-    hid_t set = 0;
-
-    if (!ritz_h5_has(at, name))
-        return RITZ_OK;
-    set = H5Dopen2(at, name, H5P_DEFAULT);
-    RITZ_FAIL_IF(set < 0 || !kind_of(set), RITZ_ERR_FORMAT,
-                 "'%s' is no list of numbers", name);
-    RITZ_TRY(take_shape(set, name, bytes, &shape));
-    RITZ_FAIL_IF(shape.rank > RITZ_H5_RANK, RITZ_ERR_FORMAT,
-                 "'%s' is no list of numbers", name);
-    *count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
-    if (kind_of(set) == 'r') {
-        RITZ_TRY(read_part(set, name, NULL, *count, &re[0]));
-    } else {
-        RITZ_TRY(read_part(set, name, "real", *count, &re[0]));
-        RITZ_TRY(read_part(set, name, "imag", *count, &re[1]));
-    }
-done:
-    ritz_h5_close(set);
-    return status;
-}
-
 /* One number of an attribute; -1 if it is not there. */
 static double read_attribute(hid_t at, const char *name)
 {
     double value = -1.0;
-    hid_t id = H5Aexists(at, name) > 0 ? H5Aopen(at, name, H5P_DEFAULT) : -1;
-    hid_t space = id < 0 ? -1 : H5Aget_space(id);
+    RITZ_OWN(hid_t)
+    id = H5Aexists(at, name) > 0 ? H5Aopen(at, name, H5P_DEFAULT) : -1;
+    RITZ_OWN(hid_t) space = id < 0 ? -1 : H5Aget_space(id);
 
-    if (space >= 0 && H5Sget_simple_extent_npoints(space) == 1 &&
+    if (space < 0 || H5Sget_simple_extent_npoints(space) != 1 ||
         H5Aread(id, H5T_NATIVE_DOUBLE, &value) < 0)
-        value = -1.0;
-    ritz_h5_close(space);
-    ritz_h5_close(id);
+        return -1.0;
     return value;
 }
 
 static ritz_status add_sparse(hdf5_walk *w, hid_t at, const char *name)
 {
-    ritz_status status = RITZ_OK;
-    double *row[2] = {0}, *start[2] = {0}, *value[2] = {0};
-    int64_t count[3] = {0};
+    RITZ_OWN(numbers) row = {0}, start = {0}, value = {0};
     double nrow = read_attribute(at, "MATLAB_sparse");
-    ritz_mat_entries e = {.starts = true};
     int64_t bytes = w->list->bytes;
 
-    RITZ_TRY_IN(name, read_vector(at, "ir", bytes, row, &count[0]));
-    RITZ_TRY_IN(name, read_vector(at, "jc", bytes, start, &count[1]));
-    RITZ_TRY_IN(name, read_vector(at, "data", bytes, value, &count[2]));
-    RITZ_FAIL_IF(!(nrow >= 0.0 && nrow < 9e15) || count[1] < 1 ||
-                     count[0] != count[2],
-                 RITZ_ERR_FORMAT, "'%s' is no sparse matrix", name);
-    e.nrow = (int64_t)nrow;
-    e.ncol = count[1] - 1;
-    e.count = count[0];
-    e.row = values_of(row[0], count[0]);
-    e.col = values_of(start[0], count[1]);
-    e.re = values_of(value[0], count[2]);
-    e.im = values_of(value[1], count[2]);
-    if (e.nrow == 0 || e.ncol == 0)
-        RITZ_TRY(ritz_mat_add_other(w->list, name, "empty"));
-    else
-        RITZ_TRY(ritz_mat_add_sparse(w->list, name, &e));
-done:
-    for (int k = 0; k < 2; k++) {
-        free(row[k]);
-        free(start[k]);
-        free(value[k]);
-    }
-    return status;
+    RITZ_CHECK_IN(name, read_vector(at, "ir", bytes, &row));
+    RITZ_CHECK_IN(name, read_vector(at, "jc", bytes, &start));
+    RITZ_CHECK_IN(name, read_vector(at, "data", bytes, &value));
+    RITZ_REFUSE_IF(!(nrow >= 0.0 && nrow < 9e15) || start.count < 1 ||
+                       row.count != value.count,
+                   RITZ_ERR_FORMAT, "'%s' is no sparse matrix", name);
+    return ritz_mat_add(
+        w->list, name,
+        &(ritz_mat_entries){.nrow = (int64_t)nrow,
+                            .ncol = start.count - 1,
+                            .count = row.count,
+                            .row = values_of(row.re, row.count),
+                            .col = values_of(start.re, start.count),
+                            .re = values_of(value.re, value.count),
+                            .im = values_of(value.im, value.count),
+                            .starts = true});
 }
 
 /* Why a data set is no matrix, by its class and size; NULL if it is one. */
@@ -292,36 +273,23 @@ static const char *why_none(hid_t set, const ritz_h5_shape *shape)
 
 static ritz_status add_set(hdf5_walk *w, hid_t set, const char *name)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(numbers) value = {0};
     ritz_h5_shape shape = {0};
     const char *why = NULL;
-    double *part[2] = {0};
-    ritz_mat_values values[2] = {0};
     int64_t count = 0;
 
-    RITZ_TRY(take_shape(set, name, w->list->bytes, &shape));
+    RITZ_CHECK(take_shape(set, name, w->list->bytes, &shape));
     why = why_none(set, &shape);
-    if (why) {
-        RITZ_TRY(ritz_mat_add_other(w->list, name, why));
-        goto done;
-    }
-    if (ritz_mat_pass(w->list))
-        goto done;
+    if (why || ritz_mat_passes(w->list))
+        return ritz_mat_add_other(w->list, name, why);
     count = (int64_t)(shape.dims[0] * shape.dims[1]);
-    if (kind_of(set) == 'r') {
-        RITZ_TRY(read_part(set, name, NULL, count, &part[0]));
-    } else {
-        RITZ_TRY(read_part(set, name, "real", count, &part[0]));
-        RITZ_TRY(read_part(set, name, "imag", count, &part[1]));
-    }
-    for (int k = 0; k < 2; k++)
-        values[k] = values_of(part[k], count);
-    RITZ_TRY(ritz_mat_add_full(w->list, name, (int64_t)shape.dims[1],
-                               (int64_t)shape.dims[0], &values[0], &values[1]));
-done:
-    free(part[0]);
-    free(part[1]);
-    return status;
+    RITZ_CHECK(read_numbers(set, name, count, &value));
+    return ritz_mat_add(w->list, name,
+                        &(ritz_mat_entries){.nrow = (int64_t)shape.dims[1],
+                                            .ncol = (int64_t)shape.dims[0],
+                                            .count = count,
+                                            .re = values_of(value.re, count),
+                                            .im = values_of(value.im, count)});
 }
 
 /* A struct waits, and keeps its object open. */
@@ -340,67 +308,53 @@ static ritz_status add_group(hdf5_walk *w, hid_t object, const char *whole,
 
 static ritz_status add_member(hdf5_walk *w, const group *in, const char *name)
 {
-    ritz_status status = RITZ_OK;
-    hid_t object = H5Oopen(in->id, name, H5P_DEFAULT);
+    RITZ_OWN(hid_t) object = H5Oopen(in->id, name, H5P_DEFAULT);
     H5I_type_t kind = object < 0 ? H5I_BADID : H5Iget_type(object);
     char whole[2 * RITZ_NAME_SIZE];
 
     snprintf(whole, sizeof whole, "%s%s%s", in->name, *in->name ? "." : "",
              name);
     whole[RITZ_NAME_SIZE - 1] = '\0';
-    RITZ_FAIL_IF(kind != H5I_GROUP && kind != H5I_DATASET, RITZ_ERR_FORMAT,
-                 "'%s' is damaged", whole);
+    RITZ_REFUSE_IF(kind != H5I_GROUP && kind != H5I_DATASET, RITZ_ERR_FORMAT,
+                   "'%s' is damaged", whole);
     if (kind == H5I_DATASET)
-        RITZ_TRY(add_set(w, object, whole));
-    else if (H5Aexists(object, "MATLAB_sparse") > 0)
-        RITZ_TRY(add_sparse(w, object, whole));
-    else if (in->depth >= RITZ_MAT_DEPTH)
-        RITZ_TRY(
-            ritz_mat_add_other(w->list, whole, "a struct, too deep in others"));
-    else
-        RITZ_TRY(add_group(w, object, whole, in->depth + 1));
-done:
-    ritz_h5_close(object);
-    return status;
+        return add_set(w, object, whole);
+    if (H5Aexists(object, "MATLAB_sparse") > 0)
+        return add_sparse(w, object, whole);
+    if (in->depth >= RITZ_MAT_DEPTH)
+        return ritz_mat_add_other(w->list, whole,
+                                  "a struct, too deep in others");
+    return add_group(w, object, whole, in->depth + 1);
 }
 
 static ritz_status add_members(hdf5_walk *w, const group *in)
 {
-    ritz_status status = RITZ_OK;
-    char(*names)[RITZ_NAME_SIZE] = NULL;
+    RITZ_OWN_ARRAY char(*names)[RITZ_NAME_SIZE] = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_h5_list(in->id, &count, &names));
+    RITZ_CHECK(ritz_h5_list(in->id, &count, &names));
     for (int64_t k = 0; k < count; k++) {
         if (names[k][0] == '#' || !ritz_h5_has(in->id, names[k]))
             continue; /* what MATLAB keeps for itself, and links */
-        RITZ_FAIL_IF(w->members++ >= MOST_MEMBERS, RITZ_ERR_FORMAT,
-                     "holds more than %d members", (int)MOST_MEMBERS);
-        RITZ_TRY(add_member(w, in, names[k]));
+        RITZ_REFUSE_IF(w->members++ >= MOST_MEMBERS, RITZ_ERR_FORMAT,
+                       "holds more than %d members", (int)MOST_MEMBERS);
+        RITZ_CHECK(add_member(w, in, names[k]));
     }
-done:
-    free(names);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_mat_read_hdf5(const char *bytes, int64_t size,
                                ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
-    hdf5_walk w = {.list = list};
-    hid_t file = 0;
+    RITZ_OWN(hid_t) file = 0;
+    RITZ_OWN(hdf5_walk) w = {.list = list};
 
-    RITZ_TRY(open_image(bytes, size, &file));
-    RITZ_TRY(add_group(&w, file, "", 0));
+    RITZ_CHECK(open_image(bytes, size, &file));
+    RITZ_CHECK(add_group(&w, file, "", 0));
     for (int64_t k = 0; k < w.count; k++) {
         group turn = w.group[k];
 
-        RITZ_TRY(add_members(&w, &turn));
+        RITZ_CHECK(add_members(&w, &turn));
     }
-done:
-    for (int64_t k = 0; k < w.count; k++)
-        ritz_h5_close(w.group[k].id);
-    free(w.group);
-    ritz_h5_close(file);
-    return status;
+    return RITZ_OK;
 }

@@ -78,55 +78,48 @@ static ritz_status add_sparse(ritz_mat_list *list, const char *name,
                               const head *h, const ritz_mat_values *all)
 {
     int64_t n = h->nrow;
-    int64_t bytes = ritz_mat_size(h->type);
     ritz_mat_values column[4] = {0};
-    ritz_mat_entries e = {.count = n - 1, .base = 1};
     double size[2];
 
     RITZ_REFUSE_IF(n < 1 || h->ncol < 3 || h->ncol > 4 || h->parts > 1,
                    RITZ_ERR_FORMAT, "'%s' is no sparse matrix", name);
     for (int64_t j = 0; j < h->ncol; j++)
-        column[j] =
-            (ritz_mat_values){all->at + j * n * bytes, n, all->type, all->swap};
+        column[j] = (ritz_mat_values){all->at + j * n * ritz_mat_size(h->type),
+                                      n, all->type, all->swap};
     for (int k = 0; k < 2; k++) {
         size[k] = ritz_mat_value(&column[k], n - 1);
         RITZ_REFUSE_IF(!(size[k] >= 0.0 && size[k] < 9e15), RITZ_ERR_FORMAT,
                        "'%s' has no size", name);
     }
-    e.nrow = (int64_t)size[0];
-    e.ncol = (int64_t)size[1];
-    e.row = column[0];
-    e.col = column[1];
-    e.re = column[2];
-    e.im = column[3];
-    if (e.nrow == 0 || e.ncol == 0)
-        RITZ_CHECK(ritz_mat_add_other(list, name, "empty"));
-    else
-        RITZ_CHECK(ritz_mat_add_sparse(list, name, &e));
-    return RITZ_OK;
+    return ritz_mat_add(list, name,
+                        &(ritz_mat_entries){.nrow = (int64_t)size[0],
+                                            .ncol = (int64_t)size[1],
+                                            .count = n - 1,
+                                            .row = column[0],
+                                            .col = column[1],
+                                            .re = column[2],
+                                            .im = column[3],
+                                            .base = 1});
 }
 
 static ritz_status add_variable(ritz_mat_list *list, const char *name,
                                 const head *h, const char *values)
 {
-    int64_t count = h->nrow * h->ncol;
-    ritz_mat_values re = {(const unsigned char *)values, count, h->type,
-                          h->swap};
-    ritz_mat_values im = {0};
+    ritz_mat_entries e = {.nrow = h->nrow,
+                          .ncol = h->ncol,
+                          .count = h->nrow * h->ncol,
+                          .re = {(const unsigned char *)values,
+                                 h->nrow * h->ncol, h->type, h->swap}};
 
-    if (h->parts > 1) {
-        im = re;
-        im.at += count * ritz_mat_size(h->type);
-    }
     if (h->form == TEXT)
-        RITZ_CHECK(ritz_mat_add_other(list, name, "text"));
-    else if (count == 0)
-        RITZ_CHECK(ritz_mat_add_other(list, name, "empty"));
-    else if (h->form == SPARSE)
-        RITZ_CHECK(add_sparse(list, name, h, &re));
-    else
-        RITZ_CHECK(ritz_mat_add_full(list, name, h->nrow, h->ncol, &re, &im));
-    return RITZ_OK;
+        return ritz_mat_add_other(list, name, "text");
+    if (h->form == SPARSE && e.count > 0)
+        return add_sparse(list, name, h, &e.re);
+    if (h->parts > 1) {
+        e.im = e.re;
+        e.im.at += e.count * ritz_mat_size(h->type);
+    }
+    return ritz_mat_add(list, name, &e);
 }
 
 ritz_status ritz_mat_read_level4(const char *bytes, int64_t size,

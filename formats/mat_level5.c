@@ -34,7 +34,6 @@ enum {
     HEAD = 128,
     VERSION = 124,
     LEVEL_5 = 0x0100,
-    MOST_RATIO = 1032, /* that deflate can reach */
 };
 
 /* The version, whichever way its bytes lie; 0 if that is no such file. */
@@ -195,18 +194,18 @@ static ritz_status read_head(mat_reader *r, const char *outer, mat_array *out)
 static ritz_status read_numbers(mat_reader *r, const mat_array *a,
                                 ritz_mat_list *list)
 {
-    ritz_mat_values part[2] = {0};
+    ritz_mat_entries e = {.nrow = a->nrow, .ncol = a->ncol};
 
     for (int k = 0; k < (a->complex ? 2 : 1); k++) {
-        RITZ_CHECK(take_values(r, &part[k]));
-        RITZ_REFUSE_IF(
-            part[k].count / a->ncol != a->nrow || part[k].count % a->ncol != 0,
-            RITZ_ERR_FORMAT,
-            "'%s' is %" PRId64 " x %" PRId64 " and has %" PRId64 " values",
-            a->name, a->nrow, a->ncol, part[k].count);
+        RITZ_CHECK(take_values(r, k ? &e.im : &e.re));
+        e.count = k ? e.im.count : e.re.count;
+        RITZ_REFUSE_IF(e.count / a->ncol != a->nrow || e.count % a->ncol != 0,
+                       RITZ_ERR_FORMAT,
+                       "'%s' is %" PRId64 " x %" PRId64 " and has %" PRId64
+                       " values",
+                       a->name, a->nrow, a->ncol, e.count);
     }
-    return ritz_mat_add_full(list, a->name, a->nrow, a->ncol, &part[0],
-                             &part[1]);
+    return ritz_mat_add(list, a->name, &e);
 }
 
 static ritz_status read_sparse(mat_reader *r, const mat_array *a,
@@ -232,7 +231,7 @@ static ritz_status read_sparse(mat_reader *r, const mat_array *a,
                    "'%s' declares %g entries, and has %" PRId64 " values",
                    a->name, count, e.re.count);
     e.count = (int64_t)count;
-    return ritz_mat_add_sparse(list, a->name, &e);
+    return ritz_mat_add(list, a->name, &e);
 }
 
 /* An array that is to be read, and what it is a part of. */
@@ -248,9 +247,9 @@ typedef struct queue {
     pending *item;
 } queue;
 
-static void queue_free(queue *fields)
+static void queue_free(queue *waiting)
 {
-    free(fields->item);
+    free(waiting->item);
 }
 
 static ritz_status take_field(mat_reader *r, const mat_array *a,
@@ -334,14 +333,11 @@ static ritz_status read_one(pending *p, ritz_mat_list *list, queue *fields)
     a.name[RITZ_NAME_SIZE - 1] = '\0';
     why = why_none(&a, p->depth);
     if (why)
-        RITZ_CHECK(ritz_mat_add_other(list, a.name, why));
-    else if (a.class == CLASS_STRUCT)
-        RITZ_CHECK(read_struct(r, &a, p->depth, fields));
-    else if (a.class == CLASS_SPARSE)
-        RITZ_CHECK(read_sparse(r, &a, list));
-    else
-        RITZ_CHECK(read_numbers(r, &a, list));
-    return RITZ_OK;
+        return ritz_mat_add_other(list, a.name, why);
+    if (a.class == CLASS_STRUCT)
+        return read_struct(r, &a, p->depth, fields);
+    return a.class == CLASS_SPARSE ? read_sparse(r, &a, list)
+                                   : read_numbers(r, &a, list);
 }
 
 /* The inside of an array element, and of structs in it. */
@@ -361,33 +357,18 @@ static ritz_status read_array(const mat_reader *reader, ritz_mat_list *list)
 
 /* ---- arrays that are deflated ------------------------------------------- */
 
-/* Inflate until `room` bytes stand in out; the number that do. */
-static int64_t inflate_into(z_stream *stream, unsigned char *out, int64_t room)
+/* Inflate into `room` bytes; `got` counts those that this gave, up to the end
+ * of the data or of the room. */
+static ritz_status inflate_bytes(const mat_element *packed, int64_t room,
+                                 unsigned char *out, int64_t *got)
 {
-    stream->next_out = out;
-    stream->avail_out = (uInt)room;
-    (void)inflate(stream, Z_NO_FLUSH);
-    return room - (int64_t)stream->avail_out;
-}
+    uLong size = (uLong)room;
+    int end = uncompress(out, &size, packed->at, (uLong)packed->bytes);
 
-/* All of it, the end of the stream and its checksum included. */
-static ritz_status inflate_rest(z_stream *stream, unsigned char *out,
-                                int64_t room)
-{
-    int64_t done_bytes = 0;
-    int last = Z_OK;
-
-    while (last == Z_OK && done_bytes < room) {
-        int64_t piece = room - done_bytes;
-
-        piece = piece < INT32_MAX ? piece : INT32_MAX;
-        stream->next_out = out + done_bytes;
-        stream->avail_out = (uInt)piece;
-        last = inflate(stream, Z_NO_FLUSH);
-        done_bytes += piece - (int64_t)stream->avail_out;
-    }
-    RITZ_REFUSE_IF(last != Z_STREAM_END || done_bytes + 1 != room,
-                   RITZ_ERR_FORMAT, "compressed data are damaged");
+    RITZ_REFUSE_IF(end == Z_MEM_ERROR, RITZ_ERR_MEMORY, "no memory to inflate");
+    RITZ_REFUSE_IF(end != Z_OK && end != Z_BUF_ERROR, RITZ_ERR_FORMAT,
+                   "compressed data are damaged");
+    *got = (int64_t)size;
     return RITZ_OK;
 }
 
@@ -395,57 +376,45 @@ static ritz_status inflate_rest(z_stream *stream, unsigned char *out,
 static ritz_status inflate_element(const mat_element *packed, bool swap,
                                    int64_t *size, unsigned char **out)
 {
-    ritz_status status = RITZ_OK;
-    z_stream stream = {0};
     unsigned char tag[8];
-    unsigned char *bytes = NULL;
-    bool begun = false;
+    RITZ_OWN_ARRAY unsigned char *bytes = NULL;
+    int64_t got = 0;
 
-    memcpy(&stream.next_in, &packed->at, sizeof packed->at); /* not const */
-    stream.avail_in = (uInt)packed->bytes;
-    begun = inflateInit(&stream) == Z_OK;
-    RITZ_FAIL_IF(!begun, RITZ_ERR_MEMORY, "no memory to inflate");
-    RITZ_FAIL_IF(inflate_into(&stream, tag, sizeof tag) != sizeof tag,
-                 RITZ_ERR_FORMAT, "compressed data are damaged");
+    RITZ_CHECK(inflate_bytes(packed, sizeof tag, tag, &got));
+    RITZ_REFUSE_IF(got < (int64_t)sizeof tag, RITZ_ERR_FORMAT,
+                   "compressed data are damaged");
     *size = (int64_t)sizeof tag + (int64_t)ritz_mat_bits(tag + 4, 4, swap);
-    RITZ_FAIL_IF(*size / MOST_RATIO > packed->bytes, RITZ_ERR_FORMAT,
-                 "declares %" PRId64 " bytes, which %" PRId64
-                 " cannot be inflated to",
-                 *size, packed->bytes);
-    RITZ_NEW(bytes, *size + 1); /* one more, to see that there is no more */
-    memcpy(bytes, tag, sizeof tag);
-    RITZ_TRY(inflate_rest(&stream, bytes + sizeof tag,
-                          *size + 1 - (int64_t)sizeof tag));
+    RITZ_REFUSE_IF(*size / RITZ_MAT_MOST_RATIO > packed->bytes, RITZ_ERR_FORMAT,
+                   "declares %" PRId64 " bytes, which %" PRId64
+                   " cannot be inflated to",
+                   *size, packed->bytes);
+    RITZ_CHECK_NEW(bytes,
+                   *size + 1); /* one more, to see that there is no more */
+    RITZ_CHECK(inflate_bytes(packed, *size + 1, bytes, &got));
+    RITZ_REFUSE_IF(got != *size, RITZ_ERR_FORMAT,
+                   "compressed data are damaged");
     RITZ_MOVE(*out, bytes);
-done:
-    if (begun)
-        inflateEnd(&stream);
-    free(bytes);
-    return status;
+    return RITZ_OK;
 }
 
 /* An array, or a compressed one; other elements are not known here. */
 static ritz_status read_element(const mat_element *e, bool swap,
                                 ritz_mat_list *list)
 {
-    ritz_status status = RITZ_OK;
     mat_reader inside = {e->at, e->at, e->at + e->bytes, swap};
     mat_element array = *e;
-    unsigned char *bytes = NULL;
+    RITZ_OWN_ARRAY unsigned char *bytes = NULL;
     int64_t size = 0;
 
     if (e->type == RITZ_MAT_COMPRESSED) {
-        RITZ_TRY(inflate_element(e, swap, &size, &bytes));
+        RITZ_CHECK(inflate_element(e, swap, &size, &bytes));
         inside = (mat_reader){bytes, bytes, bytes + size, swap};
-        RITZ_TRY(take_element(&inside, &array));
+        RITZ_CHECK(take_element(&inside, &array));
     }
-    RITZ_FAIL_IF(array.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
-                 "an element of type %d where an array is due", array.type);
+    RITZ_REFUSE_IF(array.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
+                   "an element of type %d where an array is due", array.type);
     inside = (mat_reader){array.at, array.at, array.at + array.bytes, swap};
-    RITZ_TRY(read_array(&inside, list));
-done:
-    free(bytes);
-    return status;
+    return read_array(&inside, list);
 }
 
 ritz_status ritz_mat_read_level5(const char *bytes, int64_t size,

@@ -62,34 +62,26 @@ double ritz_mat_value(const ritz_mat_values *values, int64_t k)
     }
 }
 
-bool ritz_mat_pass(ritz_mat_list *list)
+bool ritz_mat_passes(const ritz_mat_list *list)
 {
-    bool passed = !list->listing && list->count != list->wanted;
-
-    list->count += passed;
-    return passed;
+    return !list->listing && list->count != list->wanted;
 }
 
-/* A matrix that was met: listed and let go, or kept. */
+/* A matrix that was met: listed and let go, or kept if it is the wanted one. */
 static ritz_status add_matrix(ritz_mat_list *list, const char *name,
                               ritz_matrix *matrix)
 {
     ritz_listed item = {.nrow = matrix->A.nrow,
                         .ncol = matrix->A.ncol,
                         .is_complex = matrix->imaginary != NULL,
-                        .at = list->count};
+                        .at = list->count++};
 
-    list->count++;
     snprintf(item.name, sizeof item.name, "%s", name);
     memcpy(item.other, matrix->other, sizeof item.other);
     if (list->listing)
         return ritz_listing_add(list->listing, &item);
     memcpy(matrix->name, item.name, sizeof matrix->name);
-    if (!*matrix->spelling)
-        snprintf(matrix->spelling, sizeof matrix->spelling, "%s",
-                 list->spelling);
-    list->matrix = *matrix;
-    *matrix = (ritz_matrix){0};
+    RITZ_MOVE(list->matrix, *matrix);
     return RITZ_OK;
 }
 
@@ -98,76 +90,14 @@ ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
 {
     RITZ_OWN(ritz_matrix) none = {0};
 
-    if (ritz_mat_pass(list))
-        return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_new(0, 0, 0, &none.A));
-    snprintf(none.other, sizeof none.other, "%s", why);
-    return add_matrix(list, name, &none);
-}
-
-/* True if all values are finite; if not, `why` says where. */
-static bool is_finite(const ritz_triplets *t, char why[RITZ_NAME_SIZE])
-{
-    for (int64_t k = 0; k < t->count; k++)
-        if (!isfinite(t->re[k]) || !isfinite(t->im[k])) {
-            snprintf(why, RITZ_NAME_SIZE,
-                     "not finite at (%" PRId64 ", %" PRId64 ")", t->row[k] + 1,
-                     t->col[k] + 1);
-            return false;
-        }
-    return true;
-}
-
-/* Triplets without zeros become a matrix of the list. */
-static ritz_status compress_triplets(ritz_mat_list *list, const char *name,
-                                     const ritz_mat_entries *e,
-                                     const char *form, const ritz_triplets *t)
-{
-    char why[RITZ_NAME_SIZE];
-    RITZ_OWN(ritz_matrix)
-    matrix = {.digits = e->re.type == RITZ_MAT_SINGLE ? 7 : 17};
-
-    if (!is_finite(t, why)) {
-        RITZ_CHECK(ritz_mat_add_other(list, name, why));
+    if (ritz_mat_passes(list)) {
+        list->count++;
         return RITZ_OK;
     }
-    RITZ_CHECK(
-        ritz_triplets_compress(t, e->nrow, e->ncol, e->im.at != NULL, &matrix));
-    RITZ_REFUSE_IF(matrix.A.colptr[e->ncol] < t->count, RITZ_ERR_FORMAT,
-                   "'%s' has an entry twice", name);
-    snprintf(matrix.spelling, sizeof matrix.spelling, "%s, %s%s",
-             list->spelling, form,
-             e->re.type == RITZ_MAT_SINGLE ? ", single" : "");
-    return add_matrix(list, name, &matrix);
-}
-
-static void put_entry(ritz_triplets *t, int64_t row, int64_t col, double re,
-                      double im)
-{
-    if (re == 0.0 && im == 0.0)
-        return;
-    t->row[t->count] = row;
-    t->col[t->count] = col;
-    t->re[t->count] = re;
-    t->im[t->count++] = im;
-}
-
-ritz_status ritz_mat_add_full(ritz_mat_list *list, const char *name,
-                              int64_t nrow, int64_t ncol,
-                              const ritz_mat_values *re,
-                              const ritz_mat_values *im)
-{
-    const ritz_mat_entries entries = {
-        .nrow = nrow, .ncol = ncol, .count = nrow * ncol, .re = *re, .im = *im};
-    RITZ_OWN(ritz_triplets) t = {0};
-
-    if (ritz_mat_pass(list))
-        return RITZ_OK;
-    RITZ_CHECK(ritz_triplets_new(entries.count, &t));
-    for (int64_t k = 0; k < entries.count; k++)
-        put_entry(&t, k % nrow, k / nrow, ritz_mat_value(re, k),
-                  im->at ? ritz_mat_value(im, k) : 0.0);
-    return compress_triplets(list, name, &entries, "full", &t);
+    RITZ_CHECK(ritz_sparse_new(0, 0, 0, &none.A));
+    snprintf(none.other, sizeof none.other, "%s", why);
+    snprintf(none.spelling, sizeof none.spelling, "%s", list->spelling);
+    return add_matrix(list, name, &none);
 }
 
 /* Value k as an index from 0, or -1 if it is not one below `most`. */
@@ -200,34 +130,73 @@ static ritz_status spread_starts(const char *name, const ritz_mat_entries *e,
     return RITZ_OK;
 }
 
-ritz_status ritz_mat_add_sparse(ritz_mat_list *list, const char *name,
-                                const ritz_mat_entries *e)
+/* Rows and columns of all entries. */
+static ritz_status find_places(const char *name, const ritz_mat_entries *e,
+                               ritz_triplets *t)
 {
-    RITZ_OWN(ritz_triplets) t = {0};
-    RITZ_OWN_ARRAY int64_t *col = NULL;
+    bool full = !e->col.at;
 
-    if (ritz_mat_pass(list))
-        return RITZ_OK;
-    RITZ_REFUSE_IF(
-        e->nrow - NULL_ROWS > list->bytes || e->ncol - NULL_ROWS > list->bytes,
-        RITZ_ERR_FORMAT,
-        "'%s', %" PRId64 " x %" PRId64 ", is far more than the file can fill",
-        name, e->nrow, e->ncol);
-    RITZ_CHECK(ritz_triplets_new(e->count, &t));
-    RITZ_CHECK_NEW(col, e->count);
     if (e->starts)
-        RITZ_CHECK(spread_starts(name, e, col));
+        RITZ_CHECK(spread_starts(name, e, t->col));
     for (int64_t k = 0; k < e->count; k++) {
-        int64_t i = find_place(&e->row, k, e->base, e->nrow);
-
+        t->row[k] =
+            full ? k % e->nrow : find_place(&e->row, k, e->base, e->nrow);
         if (!e->starts)
-            col[k] = find_place(&e->col, k, e->base, e->ncol);
-        RITZ_REFUSE_IF(i < 0 || col[k] < 0, RITZ_ERR_FORMAT,
+            t->col[k] =
+                full ? k / e->nrow : find_place(&e->col, k, e->base, e->ncol);
+        RITZ_REFUSE_IF(t->row[k] < 0 || t->col[k] < 0, RITZ_ERR_FORMAT,
                        "'%s': entry %" PRId64 " lies outside %" PRId64
                        " x %" PRId64,
                        name, k + 1, e->nrow, e->ncol);
-        put_entry(&t, i, col[k], ritz_mat_value(&e->re, k),
-                  e->im.at ? ritz_mat_value(&e->im, k) : 0.0);
     }
-    return compress_triplets(list, name, e, "sparse", &t);
+    return RITZ_OK;
+}
+
+/* Values at these places, without zeros; `why` is set if one is not finite. */
+static void put_values(const ritz_mat_entries *e, ritz_triplets *t,
+                       char why[RITZ_NAME_SIZE])
+{
+    for (int64_t k = 0; k < e->count; k++) {
+        double re = ritz_mat_value(&e->re, k);
+        double im = e->im.at ? ritz_mat_value(&e->im, k) : 0.0;
+
+        if (!*why && (!isfinite(re) || !isfinite(im)))
+            snprintf(why, RITZ_NAME_SIZE,
+                     "not finite at (%" PRId64 ", %" PRId64 ")", t->row[k] + 1,
+                     t->col[k] + 1);
+        ritz_triplets_put_value(t, t->row[k], t->col[k], re, im);
+    }
+}
+
+ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
+                         const ritz_mat_entries *e)
+{
+    bool single = e->re.type == RITZ_MAT_SINGLE;
+    char why[RITZ_NAME_SIZE] = "";
+    RITZ_OWN(ritz_triplets) t = {0};
+    RITZ_OWN(ritz_matrix) matrix = {.digits = single ? 7 : 17};
+    int64_t kept = 0;
+
+    if (e->nrow == 0 || e->ncol == 0 || ritz_mat_passes(list))
+        return ritz_mat_add_other(list, name, "empty");
+    RITZ_REFUSE_IF(e->col.at && (e->nrow - NULL_ROWS > list->bytes ||
+                                 e->ncol - NULL_ROWS > list->bytes),
+                   RITZ_ERR_FORMAT,
+                   "'%s', %" PRId64 " x %" PRId64
+                   ", is far more than the file can fill",
+                   name, e->nrow, e->ncol);
+    RITZ_CHECK(ritz_triplets_reserve(&t, e->count > 0 ? e->count : 1));
+    RITZ_CHECK(find_places(name, e, &t));
+    put_values(e, &t, why);
+    if (*why)
+        return ritz_mat_add_other(list, name, why);
+    kept = t.count;
+    RITZ_CHECK(ritz_triplets_compress(&t, e->nrow, e->ncol, e->im.at != NULL,
+                                      &matrix));
+    RITZ_REFUSE_IF(matrix.A.colptr[e->ncol] < kept, RITZ_ERR_FORMAT,
+                   "'%s' has an entry twice", name);
+    snprintf(matrix.spelling, sizeof matrix.spelling, "%s, %s%s",
+             list->spelling, e->col.at ? "sparse" : "full",
+             single ? ", single" : "");
+    return add_matrix(list, name, &matrix);
 }

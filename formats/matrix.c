@@ -4,36 +4,77 @@
 #include "base/alloc.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-ritz_status ritz_triplets_new(int64_t most, ritz_triplets *out)
+ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
 {
-    RITZ_OWN(ritz_triplets) list = {0};
+    RITZ_OWN(ritz_triplets) wide = {.count = list->count, .room = list->room};
+    size_t used = (size_t)list->count;
 
-    RITZ_CHECK_NEW(list.row, most);
-    RITZ_CHECK_NEW(list.col, most);
-    RITZ_CHECK_NEW(list.re, most);
-    RITZ_CHECK_NEW(list.im, most);
-    RITZ_MOVE(*out, list);
+    if (more <= list->room - list->count)
+        return RITZ_OK;
+    wide.room += more > list->room ? more : list->room;
+    RITZ_CHECK_NEW(wide.row, wide.room);
+    RITZ_CHECK_NEW(wide.col, wide.room);
+    RITZ_CHECK_NEW(wide.re, wide.room);
+    RITZ_CHECK_NEW(wide.im, wide.room);
+    if (used > 0) {
+        memcpy(wide.row, list->row, used * sizeof *wide.row);
+        memcpy(wide.col, list->col, used * sizeof *wide.col);
+        memcpy(wide.re, list->re, used * sizeof *wide.re);
+        memcpy(wide.im, list->im, used * sizeof *wide.im);
+    }
+    ritz_triplets_free(list);
+    RITZ_MOVE(*list, wide);
     return RITZ_OK;
 }
 
-ritz_status ritz_triplets_compress(const ritz_triplets *list, int64_t nrow,
+static bool is_sorted(const ritz_triplets *list)
+{
+    for (int64_t k = 1; k < list->count; k++)
+        if (list->col[k - 1] > list->col[k] ||
+            (list->col[k - 1] == list->col[k] &&
+             list->row[k - 1] >= list->row[k]))
+            return false;
+    return true;
+}
+
+/* Sorted entries become the columns as they are. */
+static ritz_status move_entries(ritz_triplets *list, int64_t ncol,
+                                ritz_sparse *A, double **imaginary)
+{
+    if (!list->row)
+        RITZ_CHECK(ritz_triplets_reserve(list, 1));
+    RITZ_CHECK_NEW(A->colptr, ncol + 1);
+    for (int64_t k = 0; k < list->count; k++)
+        A->colptr[list->col[k] + 1]++;
+    for (int64_t j = 0; j < ncol; j++)
+        A->colptr[j + 1] += A->colptr[j];
+    RITZ_MOVE(A->rowind, list->row);
+    RITZ_MOVE(A->val, list->re);
+    RITZ_MOVE(*imaginary, list->im);
+    return RITZ_OK;
+}
+
+ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
                                    int64_t ncol, bool complex, ritz_matrix *m)
 {
-    RITZ_OWN(ritz_sparse) real = {0};
-    RITZ_OWN(ritz_sparse) imaginary = {0};
+    RITZ_OWN(ritz_sparse) A = {.nrow = nrow, .ncol = ncol}, imaginary = {0};
 
-    RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
-                                         list->col, list->re, &real));
-    if (complex) {
+    if (is_sorted(list)) {
+        RITZ_CHECK(move_entries(list, ncol, &A, &imaginary.val));
+    } else {
         RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
-                                             list->col, list->im, &imaginary));
-        free(m->imaginary);
-        m->imaginary = imaginary.val; /* the pattern is the same */
-        imaginary.val = NULL;
+                                             list->col, list->re, &A));
+        if (complex)
+            RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count,
+                                                 list->row, list->col, list->im,
+                                                 &imaginary));
     }
-    ritz_sparse_free(&m->A);
-    RITZ_MOVE(m->A, real);
+    ritz_triplets_free(list);
+    RITZ_MOVE(m->A, A);
+    if (complex) /* the pattern is the same */
+        RITZ_MOVE(m->imaginary, imaginary.val);
     return RITZ_OK;
 }
 

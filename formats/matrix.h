@@ -6,13 +6,13 @@
 
 /* No place occurs twice. */
 typedef struct ritz_triplets {
-    int64_t count;
+    int64_t count, room;
     int64_t *row, *col;
     double *re, *im;
 } ritz_triplets;
 
-/** Room for @p most entries. */
-ritz_status ritz_triplets_new(int64_t most, ritz_triplets *out);
+/** Make sure of room for @p more entries. */
+ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more);
 
 /** Append an entry that there is room for. */
 static inline void ritz_triplets_put(ritz_triplets *list, int64_t row,
@@ -24,8 +24,20 @@ static inline void ritz_triplets_put(ritz_triplets *list, int64_t row,
     list->im[list->count++] = im;
 }
 
-/** Put the entries into @p m, in place of its own, as nrow x ncol. */
-ritz_status ritz_triplets_compress(const ritz_triplets *list, int64_t nrow,
+/** The same unless it is zero: patterns would differ between the spellings of
+ * a matrix, of which some write zeros and others do not. */
+static inline void ritz_triplets_put_value(ritz_triplets *list, int64_t row,
+                                           int64_t col, double re, double im)
+{
+    if (re != 0.0 || im != 0.0)
+        ritz_triplets_put(list, row, col, re, im);
+}
+
+/**
+ * The entries as nrow x ncol in @p m, which has no entries yet; the list is
+ * left empty. Entries in the order of columns and rows are not copied.
+ */
+ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
                                    int64_t ncol, bool complex, ritz_matrix *m);
 
 void ritz_triplets_free(ritz_triplets *list);

@@ -134,55 +134,25 @@ static ritz_status settle_entries(ritz_market *m)
     return RITZ_OK;
 }
 
-static bool is_zero(const ritz_market_entry *e)
+/* All entries of the matrix, both triangles of symmetric ones. */
+static ritz_status compress_entries(const ritz_market *m, ritz_matrix *out)
 {
-    return e->re == 0.0 && e->im == 0.0;
-}
+    bool mirrored = m->symmetry != RITZ_MARKET_GENERAL;
+    RITZ_OWN(ritz_triplets) list = {0};
 
-/*
- * Columns from sorted entries. Mirrored ones come from columns further left, so
- * that they are in place, in order, when a column's own entries follow.
- */
-static ritz_status compress_columns(const ritz_market *m, ritz_matrix *out)
-{
-    RITZ_OWN(ritz_sparse) A = {0};
-    RITZ_OWN_ARRAY int64_t *next = NULL;
-    RITZ_OWN_ARRAY double *imaginary = NULL;
-
-    RITZ_CHECK_NEW(next, m->ncol + 1);
-    for (int64_t k = 0; k < m->count; k++) {
-        const ritz_market_entry *e = &m->entry[k];
-
-        if (is_zero(e))
-            continue;
-        next[e->col + 1]++;
-        if (m->symmetry != RITZ_MARKET_GENERAL && e->row != e->col)
-            next[e->row + 1]++;
-    }
-    for (int64_t j = 0; j < m->ncol; j++)
-        next[j + 1] += next[j];
-    RITZ_CHECK(ritz_sparse_new(m->nrow, m->ncol, next[m->ncol], &A));
-    memcpy(A.colptr, next, (size_t)(m->ncol + 1) * sizeof *next);
-    if (m->field == RITZ_MARKET_COMPLEX)
-        RITZ_CHECK_NEW(imaginary, next[m->ncol]);
+    RITZ_CHECK(
+        ritz_triplets_reserve(&list, mirrored ? 2 * m->count : m->count));
     for (int64_t k = 0; k < m->count; k++) {
         ritz_market_entry e = m->entry[k];
-        bool twice = m->symmetry != RITZ_MARKET_GENERAL && e.row != e.col;
 
-        for (int turn = 0; turn < (twice ? 2 : 1) && !is_zero(&e); turn++) {
-            int64_t p = next[turn ? e.row : e.col]++;
-
-            if (turn)
-                mirror_value(m, &e.re, &e.im);
-            A.rowind[p] = turn ? e.col : e.row;
-            A.val[p] = e.re;
-            if (imaginary)
-                imaginary[p] = e.im;
-        }
+        ritz_triplets_put_value(&list, e.row, e.col, e.re, e.im);
+        if (!mirrored || e.row == e.col)
+            continue;
+        mirror_value(m, &e.re, &e.im);
+        ritz_triplets_put_value(&list, e.col, e.row, e.re, e.im);
     }
-    RITZ_MOVE(out->A, A);
-    RITZ_MOVE(out->imaginary, imaginary);
-    return RITZ_OK;
+    return ritz_triplets_compress(&list, m->nrow, m->ncol,
+                                  m->field == RITZ_MARKET_COMPLEX, out);
 }
 
 /* ---- lines of entries --------------------------------------------------- */
@@ -489,7 +459,7 @@ static ritz_status read_matrix(const ritz_foreign *file,
     RITZ_NEW(m.entry, m.most);
     RITZ_TRY(read_entries(&m));
     RITZ_TRY(settle_entries(&m));
-    RITZ_TRY(compress_columns(&m, out));
+    RITZ_TRY(compress_entries(&m, out));
     out->symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
     out->digits = count_digits(&m);
     snprintf(out->spelling, sizeof out->spelling, "Matrix Market %s, %s, %s",

@@ -7,7 +7,6 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
-#include "formats/reduced_matrices.h"
 #include "formats/sink.h"
 
 #include <ritz/import.h>
@@ -128,63 +127,33 @@ static ritz_status name_file(const char *output, const char *name, char **out)
     return RITZ_OK;
 }
 
-static ritz_status write_one(const ritz_matrix *one, const char *method,
-                             const ritz_export_request *request,
-                             ritz_export_report *report)
+/* One file takes one matrix, a pattern of names all of them. */
+static ritz_status write_matrices(const ritz_export_object *object,
+                                  const ritz_export_request *request,
+                                  ritz_export_report *report)
 {
-    char comment[4 * RITZ_NAME_SIZE];
-    RITZ_OWN_ARRAY char *path = NULL;
+    bool pattern = strchr(request->output, '%') != NULL;
+    const char *one = object->states ? "A" : "K";
+    const char *method = object->states ? object->states->origin.method
+                                        : object->reduced->origin.method;
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    snprintf(comment, sizeof comment, *method ? "%s, reduced by %s" : "%s",
-             one->name, method);
-    RITZ_CHECK(name_file(request->output, one->name, &path));
-    RITZ_CHECK(ritz_matrix_market_write(path, one, comment));
-    return ritz_export_say(report, "%s  %lld x %lld", one->name,
-                           (long long)one->A.nrow, (long long)one->A.ncol);
-}
-
-static ritz_status write_list(const ritz_matrices *list, const char *method,
-                              const ritz_export_request *request,
-                              ritz_export_report *report)
-{
-    RITZ_REFUSE_IF(list->count != 1 && !strchr(request->output, '%'),
-                   RITZ_ERR_ARGUMENT,
+    RITZ_CHECK(ritz_export_matrices(object, request, pattern ? NULL : one,
+                                    report, &list));
+    RITZ_REFUSE_IF(list.count != 1 && !pattern, RITZ_ERR_ARGUMENT,
                    "a Matrix Market file holds one matrix: name it with "
                    "--matrix, or write '%%' for it in the output's name");
-    for (int64_t k = 0; k < list->count; k++)
-        RITZ_CHECK(write_one(&list->matrix[k], method, request, report));
+    for (int64_t k = 0; k < list.count; k++) {
+        const char *name = list.matrix[k].name;
+        char comment[4 * RITZ_NAME_SIZE];
+        RITZ_OWN_ARRAY char *path = NULL;
+
+        snprintf(comment, sizeof comment, *method ? "%s, reduced by %s" : "%s",
+                 name, method);
+        RITZ_CHECK(name_file(request->output, name, &path));
+        RITZ_CHECK(ritz_matrix_market_write(path, &list.matrix[k], comment));
+    }
     return RITZ_OK;
-}
-
-/* One file takes one matrix, a pattern of names all of them. */
-static const char *choose_matrices(const ritz_export_request *request,
-                                   const char *one)
-{
-    if (request->matrices || strchr(request->output, '%'))
-        return request->matrices;
-    return one;
-}
-
-static ritz_status write_reduced(const ritz_reduced *reduced,
-                                 const ritz_export_request *request,
-                                 ritz_export_report *report)
-{
-    RITZ_OWN(ritz_matrices) list = {0};
-
-    RITZ_CHECK(
-        ritz_reduced_matrices(reduced, choose_matrices(request, "K"), &list));
-    return write_list(&list, reduced->origin.method, request, report);
-}
-
-static ritz_status write_states(const ritz_state_space *model,
-                                const ritz_export_request *request,
-                                ritz_export_report *report)
-{
-    RITZ_OWN(ritz_matrices) list = {0};
-
-    RITZ_CHECK(
-        ritz_state_matrices(model, choose_matrices(request, "A"), &list));
-    return write_list(&list, model->origin.method, request, report);
 }
 
 const ritz_exporter ritz_exporter_matrix_market = {
@@ -192,7 +161,6 @@ const ritz_exporter ritz_exporter_matrix_market = {
     .summary = "Matrix Market text: one matrix, or -o NAME-%.mtx for all",
     .reference = "BoisvertPozoRemington1996",
     .kind = "reduced",
-    .uses = RITZ_EXPORT_MATRICES,
-    .write_reduced = write_reduced,
-    .write_states = write_states,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES,
+    .write = write_matrices,
 };

@@ -1,40 +1,42 @@
-/* OUTPUT4 as it is put together, by the readers of text and of binary. */
+/*
+ * OUTPUT4 between its spellings, text and binary, and the matrix: private to
+ * the reader.
+ */
 #ifndef RITZ_FORMATS_OUTPUT4_H
 #define RITZ_FORMATS_OUTPUT4_H
 
-#include <ritz/import.h>
+#include "formats/lines.h"
+#include "formats/matrix.h"
 
 #include <math.h>
-
-/*
- * Columns that a file may declare beyond one for each of its bytes. A matrix of
- * ten million columns, nearly all null, is legal and takes 150 bytes; a limit
- * keeps such bytes from asking for all memory there is.
- */
-enum { RITZ_OUTPUT4_NULL_COLUMNS = 32000000 };
 
 /* The header of a matrix. */
 typedef struct ritz_output4_header {
     int64_t ncol, nrow;
     bool bigmat; /* its strings have two integers in front */
     int64_t form, type;
+    int64_t numbers; /* per value: 1 real, 2 complex */
+    bool symmetric;  /* by FORM */
     char name[RITZ_NAME_SIZE];
+    int64_t at, line; /* where it begins, as in ritz_listed */
 } ritz_output4_header;
 
-/* A matrix while its columns arrive. */
+/** The header that NCOL NROW FORM TYPE and a padded name state. @return false
+ * if no matrix has such numbers */
+bool ritz_output4_header_of(const int64_t n[static 4], const char *name,
+                            int64_t length, ritz_output4_header *out);
+
+/* ---- a matrix while its columns arrive ---------------------------------- */
+
 typedef struct ritz_output4_build {
     ritz_output4_header header;
-    ritz_matrix matrix;
-    int64_t numbers;  /* per value: 1 real, 2 complex */
-    int64_t nnz;      /* entries so far */
-    int64_t room;     /* and how many there is room for */
-    int64_t columns;  /* that it may still declare, by the limit above */
-    int64_t pointers; /* room in colptr */
-    int64_t column;   /* the one being read, from 0; -1 before the first */
-    int64_t below;    /* rows up to here are taken in this column */
-    int64_t rule;     /* reading of strings that fitted last */
-    int64_t wide;     /* and words of a real by it; 0: none yet */
-    bool sparse;      /* a column came in strings */
+    ritz_triplets entries;
+    int64_t columns; /* that it may still declare */
+    int64_t column;  /* the one being read, from 0; -1 before the first */
+    int64_t first;   /* entry of this column */
+    int64_t below;   /* rows up to here are taken in this column */
+    int64_t rule;    /* reading of the strings' headers, below */
+    int64_t wide;    /* words of a real by that reading */
 } ritz_output4_build;
 
 /* A string of a sparse column: consecutive rows. */
@@ -44,25 +46,22 @@ typedef struct ritz_output4_string {
     int64_t words; /* of the column's count that it uses, header included */
 } ritz_output4_string;
 
-/* Number of readings of a string's header, and how many integers it has. */
+/* Number of readings of a string's header, and the integers in it. */
 enum { RITZ_OUTPUT4_RULES = 3 };
-int64_t ritz_output4_integers(int64_t rule);
-
-/** The k-th reading to try, the one that the header declares first. */
-int64_t ritz_output4_rule(const ritz_output4_build *build, int64_t k);
+int64_t ritz_output4_integers(const ritz_output4_build *build);
 
 /**
- * What a string's header says by @p rule, words of a real @p wide.
+ * What a string's header says.
  *
  * @return false if that is not possible within @p left words
  */
-bool ritz_output4_decode(const ritz_output4_build *build, int64_t rule,
-                         int64_t wide, const int64_t *integers, int64_t left,
+bool ritz_output4_decode(const ritz_output4_build *build,
+                         const int64_t *integers, int64_t left,
                          ritz_output4_string *out);
 
-/** Begin a matrix of a file of @p size bytes, with room for @p nnz entries. */
+/** Begin a matrix of a file of @p size bytes. */
 ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
-                               int64_t nnz, ritz_output4_build *out);
+                               ritz_output4_build *out);
 
 /** Begin column @p column, from 1; those between are null. */
 ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column);
@@ -74,47 +73,67 @@ void ritz_output4_rewind(ritz_output4_build *build);
 ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
                               int64_t count);
 
-/** Append a value that there is room for; zeros of dense spellings would make
- * patterns differ between spellings, so none is kept. */
-static inline void ritz_output4_put(ritz_output4_build *build, int64_t row,
-                                    double re, double im)
-{
-    if (re == 0.0 && im == 0.0)
-        return;
-    build->matrix.A.rowind[build->nnz] = row;
-    build->matrix.A.val[build->nnz] = re;
-    if (build->matrix.imaginary)
-        build->matrix.imaginary[build->nnz] = im;
-    build->nnz++;
-}
-
-/** Refuse a value that is not finite. */
-ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row);
+/** Append a value that there is room for; it must be finite. */
+ritz_status ritz_output4_put(ritz_output4_build *build, int64_t row, double re,
+                             double im);
 
 /** After the last column: obey FORM and hand the matrix over. */
 ritz_status ritz_output4_end(ritz_output4_build *build, ritz_matrix *out);
 
-/** Append what a header says to a directory. */
-ritz_status ritz_output4_list(ritz_listing *listing,
-                              const ritz_output4_header *header, int64_t at,
-                              int64_t line);
+void ritz_output4_build_free(ritz_output4_build *build);
 
-/** Copy a name without its padding. */
-void ritz_output4_name(const char *bytes, int64_t size,
-                       char out[RITZ_NAME_SIZE]);
+/* ---- spellings ---------------------------------------------------------- */
 
-/* Each spelling: recognition, directory (and a check of all values), one
- * matrix. */
-bool ritz_output4_is_text(const char *bytes, int64_t size);
-ritz_status ritz_output4_list_text(const ritz_foreign *file, bool check,
-                                   ritz_listing *out);
-ritz_status ritz_output4_read_text(const ritz_foreign *file,
-                                   const ritz_listed *which, ritz_matrix *out);
-bool ritz_output4_is_binary(const char *bytes, int64_t size);
-ritz_status ritz_output4_list_binary(const ritz_foreign *file, bool check,
-                                     ritz_listing *out);
-ritz_status ritz_output4_read_binary(const ritz_foreign *file,
-                                     const ritz_listed *which,
-                                     ritz_matrix *out);
+/* A file that is gone through; a copy goes on from where it was made. */
+typedef struct ritz_output4_reader {
+    const struct ritz_output4_spelling *as;
+    const char *begin;
+    ritz_lines text; /* binary has no lines: only `at` and `end` are used */
+    char format[32]; /* how the matrix is written, "1P,3E23.16" */
+    int64_t digits;  /* of its values, as in ritz_matrix */
+    int64_t wide;    /* words of a real, as the header has them */
+    int64_t widths;  /* 2: they may as well be the other of 1 and 2 */
+    /* text: nEw.d */
+    int64_t per_line, width;
+    /* binary */
+    bool big_endian;
+    int64_t mark;    /* bytes of a record's length */
+    int64_t integer; /* bytes of an integer, the size of a word too */
+    int64_t real;    /* bytes of a number in this matrix */
+    const char *data, *data_end; /* of the column's record */
+} ritz_output4_reader;
+
+typedef struct ritz_output4_spelling {
+    const char *name; /* "text" */
+    /** True if the file is spelled so; sets what holds of all matrices. */
+    bool (*recognise)(ritz_output4_reader *r);
+    /** Take a header, and what it says of the spelling. @param[out] found
+     * false at the end of the file */
+    ritz_status (*take_header)(ritz_output4_reader *r, ritz_output4_header *out,
+                               bool *found);
+    /** Take ICOL, IROW and NW of the next column. */
+    ritz_status (*take_column)(ritz_output4_reader *r,
+                               const ritz_output4_build *build, int64_t n[3]);
+    /** Read a dense column from those. */
+    ritz_status (*read_dense)(ritz_output4_reader *r, ritz_output4_build *build,
+                              const int64_t n[3]);
+    /** Take the header of a string, of @p words of which @p left are to come,
+     * and then its numbers. */
+    ritz_status (*take_string)(ritz_output4_reader *r,
+                               const ritz_output4_build *build, int64_t words,
+                               int64_t left, ritz_output4_string *out);
+    ritz_status (*read_numbers)(ritz_output4_reader *r,
+                                ritz_output4_build *build, int64_t row,
+                                int64_t reals);
+    /** Move behind a column; false if its counts do not lead there. NULL: it
+     * was taken whole. */
+    bool (*skip_column)(ritz_output4_reader *r, const int64_t n[3]);
+    /** Take what stands behind ICOL = NCOL + 1. NULL: it was taken whole. */
+    ritz_status (*skip_last)(ritz_output4_reader *r,
+                             const ritz_output4_build *build, int64_t words);
+} ritz_output4_spelling;
+
+extern const ritz_output4_spelling ritz_output4_text;
+extern const ritz_output4_spelling ritz_output4_binary;
 
 #endif

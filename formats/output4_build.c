@@ -11,12 +11,9 @@
  * Headers do not always tell which (a bigmat of few rows may be unmarked), so
  * that one is taken by which the strings of a column add up to its word count.
  */
-#include "base/alloc.h"
-#include "formats/matrix.h"
 #include "formats/output4.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- FORM --------------------------------------------------------------- */
@@ -30,79 +27,45 @@
 enum { DIAGONAL = 3, SYMMETRIC = 6, IDENTITY = 8 };
 
 /* True if entries lie beside the diagonal, and all on one side of it. */
-static bool is_triangle(const ritz_sparse *A)
+static bool is_triangle(const ritz_triplets *t)
 {
     bool above = false;
     bool below = false;
 
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            above = above || A->rowind[p] < j;
-            below = below || A->rowind[p] > j;
-        }
+    for (int64_t k = 0; k < t->count; k++) {
+        above = above || t->row[k] < t->col[k];
+        below = below || t->row[k] > t->col[k];
+    }
     return above != below;
 }
 
-/* The matrix that an entry of the file is a shorthand of. */
-typedef enum shape { MIRRORED, ON_DIAGONAL, UNIT } shape;
-
-/* The entries that the file's own stand for, as the n x n matrix has them. */
-static ritz_status list_entries(const ritz_matrix *m, shape as, int64_t n,
-                                ritz_triplets *out)
-{
-    const ritz_sparse *A = &m->A;
-
-    RITZ_CHECK(ritz_triplets_new(as == UNIT ? n : 2 * A->colptr[A->ncol], out));
-    for (int64_t k = 0; as == UNIT && k < n; k++)
-        ritz_triplets_put(out, k, k, 1.0, 0.0);
-    for (int64_t j = 0; as != UNIT && j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            double im = m->imaginary ? m->imaginary[p] : 0.0;
-            int64_t i = A->rowind[p];
-            int64_t at = A->ncol == 1 ? i : j;
-
-            if (as == ON_DIAGONAL)
-                ritz_triplets_put(out, at, at, A->val[p], im);
-            else
-                ritz_triplets_put(out, i, j, A->val[p], im);
-            if (as == MIRRORED && i != j)
-                ritz_triplets_put(out, j, i, A->val[p], im);
-        }
-    return RITZ_OK;
-}
-
-/* m := the n x n matrix that its entries are a shorthand of. */
-static ritz_status expand_form(ritz_matrix *m, shape as, int64_t n)
-{
-    RITZ_OWN(ritz_triplets) list = {0};
-
-    RITZ_CHECK(list_entries(m, as, n, &list));
-    return ritz_triplets_compress(&list, n, n, m->imaginary != NULL, m);
-}
-
-/* Give the matrix the meaning that FORM says. */
+/* Give the entries the meaning that FORM says; nrow and ncol follow. */
 static ritz_status obey_form(ritz_output4_build *build)
 {
-    ritz_matrix *m = &build->matrix;
-    int64_t nrow = m->A.nrow;
-    int64_t ncol = m->A.ncol;
-    int64_t n = nrow > ncol ? nrow : ncol;
-    int64_t form = build->header.form;
-    bool vector = form == DIAGONAL && (nrow == 1 || ncol == 1) && n > 1;
-    bool unit = form == IDENTITY && nrow == ncol && build->nnz == 0;
+    ritz_output4_header *h = &build->header;
+    ritz_triplets *t = &build->entries;
+    int64_t n = h->nrow > h->ncol ? h->nrow : h->ncol;
+    int64_t count = t->count;
+    bool square = h->nrow == h->ncol;
+    bool vector =
+        h->form == DIAGONAL && (h->nrow == 1 || h->ncol == 1) && n > 1;
+    bool unit = h->form == IDENTITY && square && count == 0;
+    bool half = h->symmetric && is_triangle(t);
 
     RITZ_REFUSE_IF((vector || unit) && n > build->columns, RITZ_ERR_FORMAT,
                    "'%s' is said to be a diagonal of %" PRId64
                    " rows, far more than its file can fill",
-                   build->header.name, n);
-    if (vector || unit) {
-        build->columns -= n;
-        RITZ_CHECK(expand_form(m, unit ? UNIT : ON_DIAGONAL, n));
-    }
-    if (form == SYMMETRIC && nrow == ncol && is_triangle(&m->A))
-        RITZ_CHECK(expand_form(m, MIRRORED, n));
-    m->symmetric = m->A.nrow == m->A.ncol &&
-                   (form == SYMMETRIC || form == DIAGONAL || form == IDENTITY);
+                   h->name, n);
+    RITZ_CHECK(ritz_triplets_reserve(t, unit ? n : half ? count : 0));
+    for (int64_t k = 0; unit && k < n; k++)
+        ritz_triplets_put(t, k, k, 1.0, 0.0);
+    for (int64_t k = 0; half && k < count; k++)
+        if (t->row[k] != t->col[k])
+            ritz_triplets_put(t, t->col[k], t->row[k], t->re[k], t->im[k]);
+    for (int64_t k = 0; vector && k < count; k++)
+        t->row[k] = t->col[k] += t->row[k]; /* one of them is 0 */
+    if (vector)
+        h->nrow = h->ncol = n;
     return RITZ_OK;
 }
 
@@ -110,126 +73,78 @@ static ritz_status obey_form(ritz_output4_build *build)
 
 enum { WORDS, VALUES, BIGMAT };
 
-int64_t ritz_output4_integers(int64_t rule)
+/*
+ * Columns that a file may declare beyond one for each of its bytes. A matrix of
+ * ten million columns, nearly all null, is legal and takes 150 bytes; a limit
+ * keeps such bytes from asking for all memory there is.
+ */
+enum { NULL_COLUMNS = 32000000 };
+
+bool ritz_output4_header_of(const int64_t n[static 4], const char *name,
+                            int64_t length, ritz_output4_header *out)
 {
-    return rule == BIGMAT ? 2 : 1;
+    int64_t used = 0;
+
+    if (n[0] < 0 || n[1] == INT64_MIN || n[3] < 1 || n[3] > 4)
+        return false;
+    *out = (ritz_output4_header){
+        .ncol = n[0],
+        .nrow = n[1] < 0 ? -n[1] : n[1],
+        .bigmat = n[1] < 0 || n[1] >= 65536,
+        .form = n[2],
+        .type = n[3],
+        .numbers = n[3] > 2 ? 2 : 1,
+        .symmetric = n[2] == SYMMETRIC && (n[1] == n[0] || n[1] == -n[0]),
+    };
+    for (int64_t k = 0; k < length && used < RITZ_NAME_SIZE - 1; k++)
+        if (name[k] > ' ' && name[k] < 127)
+            out->name[used++] = name[k];
+    return true;
 }
 
-int64_t ritz_output4_rule(const ritz_output4_build *build, int64_t k)
+int64_t ritz_output4_integers(const ritz_output4_build *build)
 {
-    return (build->rule + k) % RITZ_OUTPUT4_RULES;
+    return build->rule == BIGMAT ? 2 : 1;
 }
 
-bool ritz_output4_decode(const ritz_output4_build *build, int64_t rule,
-                         int64_t wide, const int64_t *integers, int64_t left,
+bool ritz_output4_decode(const ritz_output4_build *build,
+                         const int64_t *integers, int64_t left,
                          ritz_output4_string *out)
 {
-    int64_t count = rule == BIGMAT ? integers[0] : integers[0] / 65536;
-    int64_t row = rule == BIGMAT ? integers[1] : integers[0] % 65536;
-    int64_t value = build->numbers * wide; /* words of one */
+    bool pair = build->rule == BIGMAT;
+    int64_t count = pair ? integers[0] : integers[0] / 65536;
+    int64_t row = pair ? integers[1] : integers[0] % 65536;
+    int64_t value = build->header.numbers * build->wide; /* words of one */
     int64_t words = count - 1;
 
     if (count < 1 || count > left)
         return false;
-    if (rule == VALUES)
+    if (build->rule == VALUES)
         words = count * value;
     *out = (ritz_output4_string){
         .row = row - 1,
-        .reals = words / wide,
-        .words = words + ritz_output4_integers(rule),
+        .reals = words / build->wide,
+        .words = words + ritz_output4_integers(build),
     };
     return words >= 1 && words % value == 0 && out->words <= left && row >= 1 &&
            row - 1 + words / value <= build->header.nrow;
 }
 
-/* Room for `need` entries, doubled so that growing costs O(1) an entry. */
-static ritz_status grow_entries(ritz_output4_build *build, int64_t need)
-{
-    ritz_matrix *m = &build->matrix;
-    int64_t room = need > 2 * build->room ? need : 2 * build->room;
-    size_t used = (size_t)build->nnz;
-    RITZ_OWN_ARRAY int64_t *rowind = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
-    RITZ_OWN_ARRAY double *imaginary = NULL;
-
-    RITZ_CHECK_NEW(rowind, room);
-    RITZ_CHECK_NEW(val, room);
-    if (build->numbers == 2)
-        RITZ_CHECK_NEW(imaginary, room);
-    if (used > 0) {
-        memcpy(rowind, m->A.rowind, used * sizeof *rowind);
-        memcpy(val, m->A.val, used * sizeof *val);
-        if (imaginary)
-            memcpy(imaginary, m->imaginary, used * sizeof *imaginary);
-    }
-    free(m->A.rowind);
-    free(m->A.val);
-    free(m->imaginary);
-    RITZ_MOVE(m->A.rowind, rowind);
-    m->A.val = val;
-    m->imaginary = imaginary;
-    build->room = room;
-    val = imaginary = NULL;
-    return RITZ_OK;
-}
-
-/* Room for pointers 0..column + 1, at most of all columns. */
-static ritz_status grow_pointers(ritz_output4_build *build, int64_t column)
-{
-    int64_t most = build->header.ncol + 1;
-    int64_t room = 2 * build->pointers;
-    int64_t *colptr = NULL;
-
-    if (column + 2 <= build->pointers)
-        return RITZ_OK;
-    if (room < column + 2)
-        room = column + 2;
-    if (room > most)
-        room = most;
-    RITZ_CHECK_NEW(colptr, room);
-    if (build->pointers > 0)
-        memcpy(colptr, build->matrix.A.colptr,
-               (size_t)build->pointers * sizeof *colptr);
-    free(build->matrix.A.colptr);
-    build->matrix.A.colptr = colptr;
-    build->pointers = room;
-    return RITZ_OK;
-}
-
 ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
-                               int64_t nnz, ritz_output4_build *out)
+                               ritz_output4_build *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_output4_build build = {.header = *header,
-                                .column = -1,
-                                .columns = RITZ_OUTPUT4_NULL_COLUMNS + size};
+    int64_t most = NULL_COLUMNS + size;
 
-    RITZ_FAIL_IF(header->ncol > build.columns, RITZ_ERR_FORMAT,
-                 "'%s' is said to have %" PRId64
-                 " columns, far more than its file can fill",
-                 header->name, header->ncol);
-    build.columns -= header->ncol;
-    build.matrix.A.nrow = header->nrow;
-    build.matrix.A.ncol = header->ncol;
-    build.numbers = header->type > 2 ? 2 : 1;
-    build.rule = header->bigmat ? BIGMAT : WORDS;
-    memcpy(build.matrix.name, header->name, sizeof build.matrix.name);
-    RITZ_TRY(grow_entries(&build, nnz > 0 ? nnz : 1));
-    RITZ_TRY(grow_pointers(&build, -1));
-    RITZ_MOVE(*out, build);
-done:
-    ritz_matrix_free(&build.matrix);
-    return status;
-}
-
-/* Columns after the present one up to `column` begin where entries end. */
-static ritz_status close_columns(ritz_output4_build *build, int64_t column)
-{
-    RITZ_CHECK(grow_pointers(build, column - 1));
-    for (int64_t j = build->column + 1; j <= column; j++)
-        build->matrix.A.colptr[j] = build->nnz;
-    build->column = column;
-    build->below = 0;
+    RITZ_REFUSE_IF(header->ncol > most, RITZ_ERR_FORMAT,
+                   "'%s' is said to have %" PRId64
+                   " columns, far more than its file can fill",
+                   header->name, header->ncol);
+    *out = (ritz_output4_build){
+        .header = *header,
+        .columns = most - header->ncol,
+        .column = -1,
+        .rule = header->bigmat ? BIGMAT : WORDS,
+    };
     return RITZ_OK;
 }
 
@@ -241,12 +156,15 @@ ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column)
     RITZ_REFUSE_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
                    "column %" PRId64 " of '%s' follows column %" PRId64, column,
                    build->header.name, build->column + 1);
-    return close_columns(build, column - 1);
+    build->column = column - 1;
+    build->first = build->entries.count;
+    build->below = 0;
+    return RITZ_OK;
 }
 
 void ritz_output4_rewind(ritz_output4_build *build)
 {
-    build->nnz = build->matrix.A.colptr[build->column];
+    build->entries.count = build->first;
     build->below = 0;
 }
 
@@ -264,51 +182,35 @@ ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
         build->column + 1, build->header.name, count, row + 1,
         build->header.nrow);
     build->below = row + count;
-    if (count > build->room - build->nnz)
-        RITZ_CHECK(grow_entries(build, build->nnz + count));
-    return RITZ_OK;
+    return ritz_triplets_reserve(&build->entries, count);
 }
 
-ritz_status ritz_output4_infinite(const ritz_output4_build *build, int64_t row)
+ritz_status ritz_output4_put(ritz_output4_build *build, int64_t row, double re,
+                             double im)
 {
-    return ritz_fail(RITZ_ERR_FORMAT,
-                     "row %" PRId64 " of column %" PRId64
-                     " of '%s' is not finite",
-                     row + 1, build->column + 1, build->header.name);
+    RITZ_REFUSE_IF(!isfinite(re) || !isfinite(im), RITZ_ERR_FORMAT,
+                   "row %" PRId64 " of column %" PRId64
+                   " of '%s' is not finite",
+                   row + 1, build->column + 1, build->header.name);
+    ritz_triplets_put_value(&build->entries, row, build->column, re, im);
+    return RITZ_OK;
 }
 
 ritz_status ritz_output4_end(ritz_output4_build *build, ritz_matrix *out)
 {
-    RITZ_CHECK(close_columns(build, build->header.ncol));
+    const ritz_output4_header *h = &build->header;
+
     RITZ_CHECK(obey_form(build));
-    *out = build->matrix;
-    build->matrix = (ritz_matrix){0};
+    RITZ_CHECK(ritz_triplets_compress(&build->entries, h->nrow, h->ncol,
+                                      h->numbers == 2, out));
+    memcpy(out->name, h->name, sizeof out->name);
+    out->symmetric =
+        h->nrow == h->ncol &&
+        (h->symmetric || h->form == DIAGONAL || h->form == IDENTITY);
     return RITZ_OK;
 }
 
-void ritz_output4_name(const char *bytes, int64_t size,
-                       char out[RITZ_NAME_SIZE])
+void ritz_output4_build_free(ritz_output4_build *build)
 {
-    int64_t used = 0;
-
-    for (int64_t k = 0; k < size && used < RITZ_NAME_SIZE - 1; k++)
-        if (bytes[k] > ' ' && bytes[k] < 127)
-            out[used++] = bytes[k];
-    out[used] = '\0';
-}
-
-ritz_status ritz_output4_list(ritz_listing *listing,
-                              const ritz_output4_header *header, int64_t at,
-                              int64_t line)
-{
-    bool square = header->nrow == header->ncol;
-    ritz_listed item = {.nrow = header->nrow,
-                        .ncol = header->ncol,
-                        .symmetric = square && header->form == SYMMETRIC,
-                        .is_complex = header->type > 2,
-                        .at = at,
-                        .line = line};
-
-    memcpy(item.name, header->name, sizeof item.name);
-    return ritz_listing_add(listing, &item);
+    ritz_triplets_free(&build->entries);
 }

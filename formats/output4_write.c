@@ -6,10 +6,7 @@
  * bigmat: it has no limit of rows. Binary has 4-byte integers in native order.
  */
 #include "base/tolerances.h"
-#include "formats/reduced_matrices.h"
 #include "formats/sink.h"
-
-#include <ritz/import.h>
 
 #include <inttypes.h>
 #include <math.h>
@@ -316,49 +313,25 @@ ritz_status ritz_output4_write(const char *path, int64_t count,
 
 /* ---- exporter ----------------------------------------------------------- */
 
-static ritz_status write_list(const ritz_matrices *list,
-                              const ritz_export_request *request,
-                              ritz_export_report *report)
+static ritz_status write_matrices(const ritz_export_object *object,
+                                  const ritz_export_request *request,
+                                  ritz_export_report *report)
 {
     const ritz_output4_style style = {
         .text = request->text,
         .sparse = !request->dense,
         .digits = request->digits > 0 ? request->digits : 17,
     };
+    RITZ_OWN(ritz_matrices) list = {0};
 
-    for (int64_t k = 0; k < list->count; k++)
-        RITZ_CHECK(ritz_export_say(report, "%s  %lld x %lld",
-                                   list->matrix[k].name,
-                                   (long long)list->matrix[k].A.nrow,
-                                   (long long)list->matrix[k].A.ncol));
+    RITZ_CHECK(ritz_export_matrices(object, request, NULL, report, &list));
     if (style.text && style.digits < 17)
         RITZ_CHECK(
             ritz_export_say(report,
                             "%lld digits: values are rounded, and a free "
                             "body is then not quite free",
                             (long long)style.digits));
-    return ritz_output4_write(request->output, list->count, list->matrix,
-                              &style);
-}
-
-static ritz_status write_reduced(const ritz_reduced *reduced,
-                                 const ritz_export_request *request,
-                                 ritz_export_report *report)
-{
-    RITZ_OWN(ritz_matrices) list = {0};
-
-    RITZ_CHECK(ritz_reduced_matrices(reduced, request->matrices, &list));
-    return write_list(&list, request, report);
-}
-
-static ritz_status write_states(const ritz_state_space *model,
-                                const ritz_export_request *request,
-                                ritz_export_report *report)
-{
-    RITZ_OWN(ritz_matrices) list = {0};
-
-    RITZ_CHECK(ritz_state_matrices(model, request->matrices, &list));
-    return write_list(&list, request, report);
+    return ritz_output4_write(request->output, list.count, list.matrix, &style);
 }
 
 const ritz_exporter ritz_exporter_output4 = {
@@ -366,7 +339,7 @@ const ritz_exporter ritz_exporter_output4 = {
     .summary = "NASTRAN OUTPUT4 matrices, binary or text",
     .reference = "MSC2014",
     .kind = "reduced",
-    .uses = RITZ_EXPORT_MATRICES | RITZ_EXPORT_STYLE,
-    .write_reduced = write_reduced,
-    .write_states = write_states,
+    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES |
+             RITZ_EXPORT_STYLE,
+    .write = write_matrices,
 };

@@ -2,7 +2,6 @@
 #include "formats/sink.h"
 
 #include "base/alloc.h"
-#include "base/draft.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -11,31 +10,50 @@
 #include <stdlib.h>
 #include <string.h>
 
-ritz_status ritz_sink_write(const char *path,
-                            ritz_status (*write)(FILE *file, const void *what),
-                            const void *what)
+ritz_status ritz_sink_fill(const ritz_draft *draft, ritz_sink_writer *write,
+                           const void *what)
 {
+    FILE *file = fopen(draft->name, "wb");
     ritz_status status = RITZ_OK;
-    ritz_draft draft = {0};
-    FILE *file = NULL;
-    int failed = 0;
+    bool failed = false;
 
-    RITZ_TRY_IN(path, ritz_draft_new(path, &draft));
-    file = fopen(draft.name, "wb");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", path,
-                 strerror(errno));
-    RITZ_TRY(write(file, what));
+    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot write '%s': %s", draft->path,
+                   strerror(errno));
+    status = write(file, what);
     failed = ferror(file);
     failed = fclose(file) != 0 || failed;
-    file = NULL;
-    RITZ_FAIL_IF(failed, RITZ_ERR_FILE, "cannot write all of '%s': %s", path,
-                 strerror(errno));
-    RITZ_TRY(ritz_draft_publish(&draft));
-done:
-    if (file)
-        fclose(file);
-    ritz_draft_free(&draft);
-    return status;
+    RITZ_CHECK(status);
+    RITZ_REFUSE_IF(failed, RITZ_ERR_FILE,
+                   "'%s' cannot be written to its end, is the disk full?",
+                   draft->path);
+    return RITZ_OK;
+}
+
+ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
+                              ritz_sink_h5_writer *write, const void *what)
+{
+    hid_t file = 0;
+    ritz_status status = RITZ_OK;
+    herr_t closed = 0;
+
+    RITZ_CHECK(ritz_h5_create(draft->name, &file));
+    status = write(file, what);
+    closed = H5Fclose(file); /* what HDF5 held back may not fit */
+    RITZ_CHECK(status);
+    RITZ_REFUSE_IF(closed < 0, RITZ_ERR_FILE,
+                   "'%s' cannot be written to its end, is the disk full?",
+                   draft->path);
+    return RITZ_OK;
+}
+
+ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,
+                            const void *what)
+{
+    RITZ_OWN(ritz_draft) draft = {0};
+
+    RITZ_CHECK_IN(path, ritz_draft_new(path, &draft));
+    RITZ_CHECK(ritz_sink_fill(&draft, write, what));
+    return ritz_draft_publish(&draft);
 }
 
 ritz_status ritz_sink_check(const ritz_matrix *m)

@@ -1,23 +1,45 @@
-/* Files, reports and XML that exporters share. */
+/* Files, reports, matrices and XML that exporters share. */
 #ifndef RITZ_FORMATS_SINK_H
 #define RITZ_FORMATS_SINK_H
+
+#include "base/draft.h"
+#include "container/h5.h"
 
 #include <ritz/export.h>
 #include <ritz/import.h>
 
 #include <stdio.h>
 
-/**
- * Let @p write put @p what into a draft of @p path, then give it its name.
- *
- * @return RITZ_ERR_FILE if not all of it could be written; what @p write says
- */
-ritz_status ritz_sink_write(const char *path,
-                            ritz_status (*write)(FILE *file, const void *what),
+/* What puts @p what into a file. */
+typedef ritz_status ritz_sink_writer(FILE *file, const void *what);
+typedef ritz_status ritz_sink_h5_writer(hid_t file, const void *what);
+
+/** Let @p write fill a draft. @return RITZ_ERR_FILE if not all of it could be
+ * written; what @p write says */
+ritz_status ritz_sink_fill(const ritz_draft *draft, ritz_sink_writer *write,
+                           const void *what);
+ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
+                              ritz_sink_h5_writer *write, const void *what);
+
+/** Fill a draft of @p path, then give it its name. */
+ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,
                             const void *what);
 
 /** Refuse a matrix that holds a value that is not finite, naming it. */
 ritz_status ritz_sink_check(const ritz_matrix *m);
+
+/**
+ * The matrices of a reduced component or state space that the request names,
+ * and a line of the report for each.
+ *
+ * @param[in] usual  names with commas between, for a request that names none:
+ *                   absent ones are left out; NULL: all but T, inputs, outputs
+ * @return RITZ_ERR_ARGUMENT if there is no such matrix
+ */
+ritz_status ritz_export_matrices(const ritz_export_object *object,
+                                 const ritz_export_request *request,
+                                 const char *usual, ritz_export_report *report,
+                                 ritz_matrices *out);
 
 /** @p text with markup as entities and control characters as '?'. */
 void ritz_xml_put(FILE *file, const char *text);

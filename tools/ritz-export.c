@@ -56,7 +56,7 @@ int main(int argc, char **argv)
     if (ritz_export_check(given.exporter, request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     request->output = run.output;
-    if (given.component && !given.exporter->write_shapes)
+    if (given.component && !(given.exporter->takes & RITZ_EXPORT_SHAPES))
         cli_refuse(&program, "--component is for shapes of a basis");
     return cli_finish(&run, export_run(&run, &given));
 }

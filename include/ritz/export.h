@@ -64,11 +64,25 @@ typedef struct ritz_export_report {
     char (*line)[256];
 } ritz_export_report;
 
-/* The fields of a request that an exporter uses; others must not be set. */
+/* What is exported: one of these, the others are NULL. */
+typedef struct ritz_export_object {
+    const ritz_reduced *reduced;
+    const ritz_state_space *states;
+    const ritz_response *response;
+    const ritz_simulation *simulation;
+    const ritz_shapes *shapes;
+} ritz_export_object;
+
+/* The objects that an exporter takes, and the fields of a request that it uses
+   beside `output`, and beside `modes` of shapes; others must not be set. */
 enum {
-    RITZ_EXPORT_MATRICES = 1,
-    RITZ_EXPORT_STYLE = 2,
-    RITZ_EXPORT_SHAPES = 4,
+    RITZ_EXPORT_REDUCED = 1,
+    RITZ_EXPORT_STATES = 2,
+    RITZ_EXPORT_RESPONSE = 4,
+    RITZ_EXPORT_SIMULATION = 8,
+    RITZ_EXPORT_SHAPES = 16,
+    RITZ_EXPORT_MATRICES = 32,
+    RITZ_EXPORT_STYLE = 64,
 };
 
 typedef struct ritz_exporter {
@@ -76,25 +90,10 @@ typedef struct ritz_exporter {
     const char *summary;
     const char *reference;
     const char *kind; /* of what it takes: "reduced", "response", "shapes" */
-    int uses;         /* RITZ_EXPORT_... */
-    ritz_status (*write_reduced)(const ritz_reduced *reduced,
-                                 const ritz_export_request *request,
-                                 ritz_export_report *report);
-    ritz_status (*write_response)(const ritz_response *response,
-                                  const ritz_export_request *request,
-                                  ritz_export_report *report);
-    /** Beside its kind; NULL: it takes none. */
-    ritz_status (*write_states)(const ritz_state_space *model,
-                                const ritz_export_request *request,
-                                ritz_export_report *report);
-    /** Beside responses over frequency; NULL: it takes none. */
-    ritz_status (*write_simulation)(const ritz_simulation *simulation,
-                                    const ritz_export_request *request,
-                                    ritz_export_report *report);
-    /** For kind "shapes" only. */
-    ritz_status (*write_shapes)(const ritz_shapes *shapes,
-                                const ritz_export_request *request,
-                                ritz_export_report *report);
+    int takes;        /* RITZ_EXPORT_... */
+    ritz_status (*write)(const ritz_export_object *object,
+                         const ritz_export_request *request,
+                         ritz_export_report *report);
 } ritz_exporter;
 
 /** All exporters, ended by NULL. */
@@ -106,8 +105,6 @@ extern const ritz_exporter ritz_exporter_output4;
 extern const ritz_exporter ritz_exporter_tsv;
 extern const ritz_exporter ritz_exporter_vtu;
 extern const ritz_exporter ritz_exporter_xdmf;
-
-const ritz_exporter *ritz_exporter_find(const char *name);
 
 /** @return RITZ_ERR_ARGUMENT if something is asked that the format has not */
 ritz_status ritz_export_check(const ritz_exporter *exporter,

@@ -76,6 +76,12 @@ hid_t ritz_h5_string(size_t size);
 /** Close any object of these functions; 0 or less is none. */
 void ritz_h5_close(hid_t id);
 
+/** The same for RITZ_OWN(hid_t). */
+static inline void hid_t_free(const hid_t *id)
+{
+    ritz_h5_close(*id);
+}
+
 /** Attributes. To read, the number of values must agree, not the shape. */
 ritz_status ritz_h5_set(hid_t at, const char *name, hid_t type,
                         ritz_h5_shape shape, const void *values);

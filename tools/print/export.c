@@ -191,7 +191,8 @@ static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
     RITZ_CHECK_IN(run->operand[0],
                   audit_reduced(reduced, &given->request, &audit));
     RITZ_CHECK(check_stability(run, &audit, reduced->origin.method, force));
-    return given->exporter->write_reduced(reduced, &given->request, done);
+    return given->exporter->write(&(ritz_export_object){.reduced = reduced},
+                                  &given->request, done);
 }
 
 /* An imported state space is no reduction and has no errors; some reductions
@@ -224,7 +225,8 @@ static ritz_status export_states(cli_run *run, const ritz_state_space *states,
     RITZ_CHECK(
         check_stability(run, &audit, states->origin.method, given->force));
     RITZ_CHECK(say_state_errors(run, states, given->force));
-    return given->exporter->write_states(states, &given->request, done);
+    return given->exporter->write(&(ritz_export_object){.states = states},
+                                  &given->request, done);
 }
 
 static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
@@ -270,18 +272,27 @@ static ritz_status export_shapes(cli_run *run, const model *m,
     for (int64_t k = 0; k < shapes.count; k++)
         sink_add(run, "%s", shapes.name[k]);
     sink_end(run);
-    return given->exporter->write_shapes(&shapes, &given->request, done);
+    return given->exporter->write(&(ritz_export_object){.shapes = &shapes},
+                                  &given->request, done);
 }
 
 /* Kinds of model that an exporter takes, summed. */
 static int kinds_of(const ritz_exporter *exporter)
 {
-    if (strcmp(exporter->kind, "response") == 0)
-        return MODEL_RESPONSE |
-               (exporter->write_simulation ? MODEL_SIMULATION : 0);
-    if (exporter->write_shapes)
-        return MODEL_REDUCED | MODEL_COMPONENT | MODEL_BASIS;
-    return MODEL_REDUCED | (exporter->write_states ? MODEL_STATES : 0);
+    static const struct {
+        int takes, kinds;
+    } rows[] = {
+        {RITZ_EXPORT_REDUCED, MODEL_REDUCED},
+        {RITZ_EXPORT_STATES, MODEL_STATES},
+        {RITZ_EXPORT_RESPONSE, MODEL_RESPONSE},
+        {RITZ_EXPORT_SIMULATION, MODEL_SIMULATION},
+        {RITZ_EXPORT_SHAPES, MODEL_REDUCED | MODEL_COMPONENT | MODEL_BASIS},
+    };
+    int kinds = 0;
+
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        kinds |= exporter->takes & rows[k].takes ? rows[k].kinds : 0;
+    return kinds;
 }
 
 /* Whatever it holds, as the exporter writes that. */
@@ -290,20 +301,22 @@ static ritz_status export_model(cli_run *run, model *m,
                                 ritz_export_report *done)
 {
     const ritz_exporter *exporter = given->exporter;
+    bool shapes = exporter->takes & RITZ_EXPORT_SHAPES;
 
     if (m->kind == MODEL_RESPONSE)
-        return exporter->write_response(&m->response, &given->request, done);
+        return exporter->write(&(ritz_export_object){.response = &m->response},
+                               &given->request, done);
     if (m->kind == MODEL_SIMULATION)
-        return exporter->write_simulation(&m->simulation, &given->request,
-                                          done);
-    if (!exporter->write_shapes)
+        return exporter->write(
+            &(ritz_export_object){.simulation = &m->simulation},
+            &given->request, done);
+    if (!shapes)
         cli_record(run, exporter->name, model_order(m));
     if (m->kind == MODEL_STATES)
         return export_states(run, &m->states, given, done);
     RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
-    return exporter->write_shapes
-               ? export_shapes(run, m, given, done)
-               : export_reduced(run, &m->reduced, given, done);
+    return shapes ? export_shapes(run, m, given, done)
+                  : export_reduced(run, &m->reduced, given, done);
 }
 
 ritz_status export_run(cli_run *run, const export_options *given)

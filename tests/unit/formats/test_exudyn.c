@@ -391,8 +391,8 @@ static ritz_status export(const ritz_reduced *reduced, const char *path)
 {
     ritz_export_report report = {0};
     const ritz_export_request request = {.output = path};
-    ritz_status status =
-        ritz_exporter_exudyn.write_reduced(reduced, &request, &report);
+    ritz_status status = ritz_exporter_exudyn.write(
+        &(ritz_export_object){.reduced = reduced}, &request, &report);
 
     ritz_export_report_free(&report);
     return status;

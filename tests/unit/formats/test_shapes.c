@@ -160,7 +160,8 @@ static ritz_status write_once(const fixture *f, const ritz_exporter *exporter,
     ritz_shapes shapes = {0};
 
     RITZ_TRY(ritz_shapes_of_reduced(&f->reduced, "7", &shapes));
-    RITZ_TRY(exporter->write_shapes(&shapes, &request, &report));
+    RITZ_TRY(exporter->write(&(ritz_export_object){.shapes = &shapes}, &request,
+                             &report));
 done:
     ritz_shapes_free(&shapes);
     ritz_export_report_free(&report);
