@@ -16,6 +16,16 @@
 
 #pragma GCC visibility push(default)
 
+/* Some reduced components. */
+typedef struct ritz_bodies {
+    int64_t count;
+    ritz_reduced *item;
+} ritz_bodies;
+
+/** So many empty ones. */
+ritz_status ritz_bodies_new(int64_t count, ritz_bodies *out);
+void ritz_bodies_free(ritz_bodies *bodies);
+
 /* A scene with its models loaded and reduced: the result of stage one. */
 typedef struct ritz_stage {
     const ritz_scene *scene; /* borrowed */

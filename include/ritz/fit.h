@@ -9,6 +9,7 @@
 #ifndef RITZ_FIT_H
 #define RITZ_FIT_H
 
+#include <ritz/assembly.h>
 #include <ritz/basis.h>
 #include <ritz/model.h>
 #include <ritz/scene.h>
@@ -107,7 +108,7 @@ typedef struct ritz_fitter ritz_fitter;
 
 /* What came of a search. */
 typedef struct ritz_fit {
-    int64_t count;
+    int64_t count, room;
     ritz_fit_candidate *candidate; /* all that were tried, in their order */
     int64_t chosen, runner_up;     /* -1: none; the runner-up is the best of
                                       another method */
@@ -121,25 +122,16 @@ typedef struct ritz_fit {
     char why[1024];
 } ritz_fit;
 
-/* The answer with each flexible body cut to its first columns. */
-typedef struct ritz_fit_row {
-    int64_t *first;  /* num_bodies: the `order` of each in a scene's file */
-    int64_t columns; /* of all flexible bodies together */
-    int64_t order;   /* of the largest system */
-    ritz_measures errors; /* worst of all listed and random configurations; {0}
-                             if refused */
-    double ratio;         /* as of candidates */
-    int64_t worst;
-    bool feasible;
-    char refusal[256]; /* why it could not be joined, or would be feasible and
-                          is unstable; "" */
-} ritz_fit_row;
-
-/* From the whole answer down to the fewest columns that its bodies can have,
-   each row one column less than the one before; where they are many, some. */
+/*
+ * From the whole answer down to the fewest columns that its bodies can have,
+ * each row one column less than the one before; where they are many, some. In a
+ * row each flexible body is cut to its first columns: so many as `modes` says,
+ * the `order` of its file in a scene. Errors are the worst of all listed and
+ * random configurations.
+ */
 typedef struct ritz_fit_path {
     int64_t num_bodies, count;
-    ritz_fit_row *row;
+    ritz_fit_candidate *row;
 } ritz_fit_path;
 
 /* Composite modes of a scene's configurations on each body, the second stage of
@@ -238,8 +230,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
  * alone is cut to that prefix while all others are whole. What several cuts
  * come to together, the path tells.
  *
- * @param[out] body  one for each component of the scene, nested where flexible;
- *                   the caller's to free
+ * @param[out] body  one for each component of the scene, nested where flexible
  * @param[out] path  from the whole system down, measured where candidates are
  *                   confirmed; ritz_fit_path_free
  * @cost  of c columns that may go at p listed and q random configurations:
@@ -250,7 +241,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
  */
 ritz_status ritz_fitter_system(ritz_fitter *fitter,
                                const ritz_fit_candidate *candidate,
-                               ritz_reduced **body, ritz_fit_path *path,
+                               ritz_bodies *body, ritz_fit_path *path,
                                ritz_system *out);
 
 void ritz_fitter_free(ritz_fitter **fitter);

@@ -974,7 +974,7 @@ ritz_status ritz_system_find(const ritz_system *system, const char *at,
                              const ritz_configuration **out);
 
 /** "clock=60,slide=0.5" from names and settings. */
-void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
+void ritz_configuration_name(int64_t count, const char *sweep, size_t stride,
                              const double *setting, char out[RITZ_NAME_SIZE]);
 
 /**

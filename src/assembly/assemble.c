@@ -186,31 +186,24 @@ static ritz_status fill_configuration(const ritz_stage *stage,
                                       const ritz_dense *P,
                                       ritz_configuration *c)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene *scene = stage->scene;
-    char(*sweep)[RITZ_NAME_SIZE] = NULL;
 
-    RITZ_NEW(sweep, scene->num_sweeps);
-    RITZ_NEW(c->setting, scene->num_sweeps);
+    RITZ_CHECK_NEW(c->setting, scene->num_sweeps);
     c->num_settings = scene->num_sweeps;
-    for (int64_t k = 0; k < scene->num_sweeps; k++) {
-        memcpy(sweep[k], scene->sweep[k].name, RITZ_NAME_SIZE);
+    for (int64_t k = 0; k < scene->num_sweeps; k++)
         c->setting[k] = setting[k];
-    }
-    ritz_configuration_name(scene->num_sweeps, sweep, setting, c->at);
-    RITZ_NEW(c->P, stage->count);
+    ritz_configuration_name(scene->num_sweeps, (const char *)scene->sweep,
+                            sizeof *scene->sweep, setting, c->at);
+    RITZ_CHECK_NEW(c->P, stage->count);
     for (int64_t k = 0; k < stage->count; k++) {
         c->num_blocks++;
-        RITZ_TRY(
+        RITZ_CHECK(
             copy_rows(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
     }
-    RITZ_TRY(ritz_io_project(&stage->io, P, &c->io));
-    RITZ_TRY(ritz_dampers_project(&stage->dampers, P, &c->dampers));
-    RITZ_TRY(project_structural(stage, P, &c->K4));
-    RITZ_TRY(ritz_place_mass(stage, setting, c));
-done:
-    free(sweep);
-    return status;
+    RITZ_CHECK(ritz_io_project(&stage->io, P, &c->io));
+    RITZ_CHECK(ritz_dampers_project(&stage->dampers, P, &c->dampers));
+    RITZ_CHECK(project_structural(stage, P, &c->K4));
+    return ritz_place_mass(stage, setting, c);
 }
 
 ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,

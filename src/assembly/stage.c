@@ -360,6 +360,21 @@ done:
     return status;
 }
 
+ritz_status ritz_bodies_new(int64_t count, ritz_bodies *out)
+{
+    RITZ_CHECK_NEW(out->item, count);
+    out->count = count;
+    return RITZ_OK;
+}
+
+void ritz_bodies_free(ritz_bodies *bodies)
+{
+    for (int64_t k = 0; k < bodies->count; k++)
+        ritz_reduced_free(&bodies->item[k]);
+    free(bodies->item);
+    *bodies = (ritz_bodies){0};
+}
+
 void ritz_stage_scale(const ritz_stage *stage, double *scale)
 {
     for (int64_t k = 0; k < stage->count; k++) {

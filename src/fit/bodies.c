@@ -52,32 +52,32 @@ static ritz_status load_bodies(ritz_fitter *f)
     const ritz_scene *scene = f->scene;
     RITZ_OWN(ritz_component) full = {0};
 
-    f->num_components = scene->num_components;
-    RITZ_CHECK_NEW(f->still, scene->num_components);
+    RITZ_CHECK(ritz_bodies_new(scene->num_components, &f->still));
     RITZ_CHECK_NEW(f->model, scene->num_components);
     RITZ_CHECK_NEW(f->body, scene->num_components);
     for (int64_t k = 0; k < scene->num_components; k++) {
         const ritz_scene_component *item = &scene->component[k];
+        ritz_reduced *still = &f->still.item[k];
         const ritz_method *method = NULL;
 
         ritz_monitor_step("component", k, scene->num_components);
-        RITZ_CHECK(ritz_stage_load(scene, k, &full, &f->still[k]));
-        if (full.num_dofs == 0) {
-            f->rich = true; /* there is no full system */
+        RITZ_CHECK(ritz_stage_load(scene, k, &full, still));
+        method = full.num_dofs > 0 ? ritz_method_find(item->basis) : NULL;
+        if (method && method->uses & RITZ_USES_MODES) {
+            f->body[f->num_bodies] = k;
+            RITZ_MOVE(f->model[f->num_bodies++], full);
             continue;
         }
-        method = ritz_method_find(item->basis);
-        if (!method || !(method->uses & RITZ_USES_MODES)) {
+        if (full.num_dofs == 0)
+            f->rich = true; /* there is no full system */
+        else
             RITZ_CHECK(ritz_scene_context(
                 scene,
-                method ? ritz_stage_reduce(scene, k, item, &full, &f->still[k])
+                method ? ritz_stage_reduce(scene, k, item, &full, still)
                        : RITZ_ERR_ARGUMENT,
                 item->line, item->column, "component", item->name));
-            ritz_component_free(&full);
-            continue;
-        }
-        f->body[f->num_bodies] = k;
-        RITZ_MOVE(f->model[f->num_bodies++], full);
+        RITZ_CHECK(ritz_reduced_install(still));
+        ritz_component_free(&full);
     }
     RITZ_REFUSE_IF(f->num_bodies == 0, RITZ_ERR_ARGUMENT,
                    "no component of the scene is reduced by a number of modes: "
@@ -85,92 +85,61 @@ static ritz_status load_bodies(ritz_fitter *f)
     return RITZ_OK;
 }
 
-/* A flexible mode of a body. */
-typedef struct body_mode {
-    double hertz;
-    int64_t body;
-} body_mode;
-
-static int by_hertz(const void *left, const void *right)
+static int compare_steps(const void *left, const void *right)
 {
-    const body_mode *a = left;
-    const body_mode *b = right;
+    const ritz_fit_step *a = left;
+    const ritz_fit_step *b = right;
 
     if (a->hertz != b->hertz)
         return (a->hertz > b->hertz) - (a->hertz < b->hertz);
     return (a->body > b->body) - (a->body < b->body);
 }
 
-/* Flexible modes of all bodies, while they are gathered. */
-typedef struct body_modes {
-    int64_t count;
-    body_mode *all;
-    double limit; /* Hz: up to it no body lacks any */
-} body_modes;
+/* A ladder while flexible modes of all bodies are gathered. */
+typedef struct ladder_draft {
+    int64_t count, room;
+    ritz_fit_step *step;
+    double limit; /* Hz: up to it no body lacks any mode */
+} ladder_draft;
 
-/* Those of one body; so many as were asked for, or all up to a frequency. */
+static void ladder_draft_free(ladder_draft *r)
+{
+    free(r->step);
+}
+
+/* Modes of one body; so many as were asked for, or all up to a frequency. */
 static ritz_status gather_modes(const ritz_fitter *f, int64_t k,
-                                const ritz_span *span, body_modes *r)
+                                const ritz_span *span, ladder_draft *r)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
-    body_mode *more = NULL;
     int64_t found = 0;
 
     RITZ_CHECK_IN(
         ritz_fitter_body(f, k),
         ritz_eigen_sparse(&f->model[k].K, &f->model[k].M, span, &pairs));
     found = pairs.Phi.ncol - pairs.num_rigid;
-    RITZ_CHECK_NEW(more, r->count + found);
-    if (r->count > 0)
-        memcpy(more, r->all, (size_t)r->count * sizeof *more);
-    free(r->all);
-    r->all = more;
-    for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++)
-        r->all[r->count++] = (body_mode){ritz_eigen_hertz(pairs.lambda[j]), k};
+    for (int64_t j = pairs.num_rigid; j < pairs.Phi.ncol; j++) {
+        RITZ_CHECK_ROOM(r->step, r->count, r->room);
+        r->step[r->count++] =
+            (ritz_fit_step){ritz_eigen_hertz(pairs.lambda[j]), k};
+    }
     if (span->modes >= 0 && found >= span->modes && found > 0)
-        r->limit = fmin(r->limit, r->all[r->count - 1].hertz);
+        r->limit = fmin(r->limit, r->step[r->count - 1].hertz);
     return RITZ_OK;
 }
 
-/* They become the ladder, as far as no body lacks any. */
-static ritz_status set_ladder(body_modes *r, ritz_fitter *f)
+/* By frequency they become the ladder, as far as no body lacks any. */
+static void set_ladder(ladder_draft *r, ritz_fitter *f)
 {
-    RITZ_OWN_ARRAY int64_t *step = NULL;
-    RITZ_OWN_ARRAY double *hertz = NULL;
-    const int64_t all = r->all ? r->count : 0;
     int64_t count = 0;
 
-    if (all > 0)
-        qsort(r->all, (size_t)all, sizeof *r->all, by_hertz);
-    RITZ_CHECK_NEW(step, all);
-    RITZ_CHECK_NEW(hertz, all);
-    for (; count < all && r->all[count].hertz <= r->limit; count++) {
-        step[count] = r->all[count].body;
-        hertz[count] = r->all[count].hertz;
-    }
+    if (r->count > 0)
+        qsort(r->step, (size_t)r->count, sizeof *r->step, compare_steps);
+    while (count < r->count && r->step[count].hertz <= r->limit)
+        count++;
     free(f->step);
-    free(f->step_hz);
-    RITZ_MOVE(f->step, step);
-    RITZ_MOVE(f->step_hz, hertz);
+    RITZ_MOVE(f->step, r->step);
     f->num_steps = count;
-    return RITZ_OK;
-}
-
-/* The free modes of all bodies by frequency: who gets the next mode. */
-static ritz_status make_ladder(ritz_fitter *f)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_span span = {.modes = -1,
-                            .up_to_hz = RITZ_LADDER_TO * f->rich_hz};
-    body_modes r = {.limit = HUGE_VAL};
-
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        RITZ_TRY(gather_modes(f, k, &span, &r));
-    RITZ_TRY(set_ladder(&r, f));
-    f->num_first = f->num_steps;
-done:
-    free(r.all);
-    return status;
 }
 
 /* Modes of a body that are on the ladder. */
@@ -179,118 +148,101 @@ static int64_t count_on_ladder(const ritz_fitter *f, int64_t body)
     int64_t count = 0;
 
     for (int64_t t = 0; t < f->num_steps; t++)
-        count += f->step[t] == body;
+        count += f->step[t].body == body;
     return count;
 }
 
 ritz_status ritz_fit_extend(ritz_fitter *f, ritz_fit_end *end)
 {
-    ritz_status status = RITZ_OK;
-    body_modes r = {.limit = f->rich ? f->rich_hz : HUGE_VAL};
+    RITZ_OWN(ladder_draft)
+    draft = {.limit = f->rich ? f->rich_hz : HUGE_VAL};
     const int64_t before = f->num_steps;
-    int64_t room =
-        f->request.largest > furthest ? f->request.largest : furthest;
+    const int64_t room =
+        (f->request.largest > furthest ? f->request.largest : furthest) -
+        before;
 
     *end = RITZ_FIT_END_FAR;
-    room -= before;
-    if (room <= 0)
-        return RITZ_OK;
-    for (int64_t k = 0; k < f->num_bodies; k++) {
+    for (int64_t k = 0; k < f->num_bodies && room > 0; k++) {
         int64_t has = count_on_ladder(f, k);
         int64_t more = has + AT_FIRST < room ? has + AT_FIRST : room;
         const ritz_span span = {.modes = has + more};
+        ritz_status status = RITZ_OK;
 
         ritz_monitor_step("modes of bodies", k, f->num_bodies);
-        RITZ_TRY(gather_modes(f, k, &span, &r));
+        status = gather_modes(f, k, &span, &draft);
+        if (status != RITZ_OK) {
+            *end = RITZ_FIT_END_REFUSED; /* the ladder is as it was */
+            return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+        }
     }
-    RITZ_TRY(set_ladder(&r, f));
+    if (room <= 0)
+        return RITZ_OK;
+    set_ladder(&draft, f);
     *end = f->num_steps > before ? RITZ_FIT_END_NONE
            : f->rich             ? RITZ_FIT_END_REFERENCE
                                  : RITZ_FIT_END_WHOLE;
-done:
-    free(r.all);
-    if (status != RITZ_OK && status != RITZ_ERR_MEMORY) {
-        *end = RITZ_FIT_END_REFUSED; /* the ladder is as it was */
-        status = RITZ_OK;
-    }
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_bodies(ritz_fitter *f)
 {
+    const ritz_span span = {.modes = -1,
+                            .up_to_hz = RITZ_LADDER_TO * f->rich_hz};
+    RITZ_OWN(ladder_draft) draft = {.limit = HUGE_VAL};
+
     RITZ_CHECK(load_bodies(f));
-    return make_ladder(f);
+    for (int64_t k = 0; k < f->num_bodies; k++)
+        RITZ_CHECK(gather_modes(f, k, &span, &draft));
+    set_ladder(&draft, f);
+    f->num_first = f->num_steps;
+    return RITZ_OK;
 }
 
-/* Bodies that stay as they are, lent to a stage, come home. */
-static void take_back(ritz_fitter *f, ritz_reduced *body)
+ritz_status ritz_fit_join(const ritz_fitter *f, const ritz_reduced *flexible,
+                          ritz_fit_joined *out)
 {
-    for (int64_t k = 0; body && k < f->num_components; k++) {
-        bool flexible = false;
+    RITZ_OWN_ARRAY ritz_reduced *body = NULL; /* all borrowed */
 
-        for (int64_t j = 0; j < f->num_bodies; j++)
-            flexible = flexible || f->body[j] == k;
-        if (flexible)
-            continue;
-        f->still[k] = body[k]; /* its dampers may be installed by now */
-        body[k] = (ritz_reduced){0};
-    }
-}
-
-ritz_status ritz_fit_join(ritz_fitter *f, ritz_reduced *flexible,
-                          ritz_stage *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_reduced *body = NULL;
-
-    RITZ_NEW(body, f->num_components);
-    for (int64_t k = 0; k < f->num_components; k++)
-        body[k] = f->still[k];
+    RITZ_CHECK_NEW(body, f->still.count);
+    memcpy(body, f->still.item, (size_t)f->still.count * sizeof *body);
     for (int64_t k = 0; k < f->num_bodies; k++)
         body[f->body[k]] = flexible[k];
-    status = f->scene ? ritz_stage_from(f->scene, body, out)
-                      : ritz_reduced_install(&body[0]);
-    if (status == RITZ_OK && !f->scene) {
-        *out = (ritz_stage){.count = 1, .body = body};
-        body = NULL;
-    }
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        flexible[k] = status == RITZ_OK ? (ritz_reduced){0} : body[f->body[k]];
-    if (status != RITZ_OK)
-        take_back(f, body);
-done:
-    free(body);
-    return status;
+    if (f->scene)
+        return ritz_stage_from(f->scene, body, &out->stage);
+    out->stage.count = 1;
+    RITZ_MOVE(out->stage.body, body);
+    return RITZ_OK;
 }
 
-void ritz_fit_part(ritz_fitter *f, ritz_stage *stage, ritz_reduced *flexible)
+ritz_status ritz_fit_join_own(const ritz_fitter *f, ritz_fit_joined *joined)
 {
-    take_back(f, stage->body);
-    for (int64_t k = 0; stage->body && flexible && k < f->num_bodies; k++) {
-        flexible[k] = stage->body[f->body[k]];
-        stage->body[f->body[k]] = (ritz_reduced){0};
-    }
+    for (int64_t k = 0; k < joined->own.count; k++)
+        RITZ_CHECK(ritz_reduced_install(&joined->own.item[k]));
+    return ritz_fit_join(f, joined->own.item, joined);
+}
+
+void ritz_fit_joined_free(ritz_fit_joined *joined)
+{
+    ritz_stage *stage = &joined->stage;
+
+    if (stage->body) /* they are borrowed */
+        memset(stage->body, 0, (size_t)stage->count * sizeof *stage->body);
     ritz_stage_free(stage);
+    ritz_bodies_free(&joined->own);
 }
 
-ritz_status ritz_fit_rich(ritz_fitter *f, double up_to_hz, ritz_stage *out)
+ritz_status ritz_fit_rich(const ritz_fitter *f, double up_to_hz,
+                          ritz_fit_joined *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced *body = NULL;
-
-    RITZ_NEW(body, f->num_bodies);
+    RITZ_CHECK(ritz_bodies_new(f->num_bodies, &out->own));
     for (int64_t k = 0; k < f->num_bodies; k++) {
         ritz_scene_component item = f->scene->component[f->body[k]];
 
         item.modes = -1;
         item.up_to_hz = up_to_hz;
-        RITZ_TRY_IN(item.name, ritz_stage_reduce(f->scene, f->body[k], &item,
-                                                 &f->model[k], &body[k]));
+        RITZ_CHECK_IN(item.name,
+                      ritz_stage_reduce(f->scene, f->body[k], &item,
+                                        &f->model[k], &out->own.item[k]));
     }
-    RITZ_TRY(ritz_fit_join(f, body, out));
-done:
-    for (int64_t k = 0; body && k < f->num_bodies; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    return status;
+    return ritz_fit_join_own(f, out);
 }

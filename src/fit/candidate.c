@@ -164,19 +164,13 @@ ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
         item.name);
 }
 
-static void free_made(ritz_fit_made *made)
-{
-    ritz_reduced_free(&made->reduced);
-    *made = (ritz_fit_made){0};
-}
-
 void ritz_fit_forget(ritz_fitter *f, const ritz_method *method)
 {
     int64_t kept = 0;
 
     for (int64_t k = 0; k < f->num_made; k++)
         if (f->made[k].method == method)
-            free_made(&f->made[k]);
+            ritz_reduced_free(&f->made[k].reduced);
         else
             f->made[kept++] = f->made[k];
     f->num_made = kept;
@@ -197,10 +191,10 @@ static bool keeps_basis(const ritz_fitter *f, const ritz_dense *T)
 static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
                              int64_t body, int64_t modes, int64_t *at)
 {
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    const ritz_fit_watch watch = ritz_fit_start();
+    ritz_fit_made *made = NULL;
     ritz_status status = RITZ_OK;
-    ritz_fit_made made = {.method = method, .body = body, .modes = modes};
-    ritz_fit_made *more = NULL;
-    ritz_fit_watch watch = {0};
 
     for (*at = 0; *at < f->num_made; (*at)++) {
         const ritz_fit_made *m = &f->made[*at];
@@ -208,45 +202,45 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
         if (m->method == method && m->body == body && m->modes == modes)
             return RITZ_OK;
     }
-    watch = ritz_fit_start();
-    status = ritz_fit_body(f, method, body, modes, &made.reduced);
+    RITZ_CHECK_ROOM(f->made, f->num_made, f->room_made);
+    status = ritz_fit_body(f, method, body, modes, &reduced);
+    if (status == RITZ_OK)
+        status = ritz_reduced_install(&reduced);
     if (status == RITZ_ERR_MEMORY)
-        goto done;
+        return status;
+    if (!keeps_basis(f, &reduced.T))
+        ritz_dense_free(&reduced.T);
+    made = &f->made[f->num_made++];
+    *made = (ritz_fit_made){
+        .method = method, .body = body, .modes = modes, .status = status};
     if (status != RITZ_OK)
-        (void)snprintf(made.refusal, sizeof made.refusal, "%s",
+        (void)snprintf(made->refusal, sizeof made->refusal, "%s",
                        ritz_error_message());
-    made.status = status;
-    made.making = ritz_fit_since(watch);
-    if (!keeps_basis(f, &made.reduced.T))
-        ritz_dense_free(&made.reduced.T);
-    RITZ_NEW(more, f->num_made + 1);
-    if (f->num_made > 0)
-        memcpy(more, f->made, (size_t)f->num_made * sizeof *more);
-    free(f->made);
-    f->made = more;
-    RITZ_MOVE(f->made[f->num_made++], made);
-    status = RITZ_OK;
-done:
-    free_made(&made);
-    return status;
+    made->making = ritz_fit_since(watch);
+    RITZ_MOVE(made->reduced, reduced);
+    return RITZ_OK;
 }
 
-/* All of them, and what they took; a refused one refuses the candidate. */
-static ritz_status make_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
-                               int64_t *at)
+/* All bodies joined, and what they took; a refused one refuses the candidate. */
+static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
+                               ritz_fit_joined *out)
 {
+    RITZ_OWN_ARRAY ritz_reduced *body = NULL; /* borrowed */
+
+    RITZ_CHECK_NEW(body, f->num_bodies);
     candidate->making = (ritz_fit_watch){0};
     candidate->columns = 0;
     if (f->scene && candidate->method == &ritz_fit_compare) {
-        RITZ_CHECK(ritz_fit_second_make(f));
+        RITZ_CHECK(ritz_fit_second_make(f, f->rich_hz, NULL));
         candidate->making = f->second.making;
     }
     for (int64_t k = 0; k < f->num_bodies; k++) {
         const ritz_fit_made *made = NULL;
+        int64_t at = 0;
 
         RITZ_CHECK(
-            make_body(f, candidate->method, k, candidate->modes[k], &at[k]));
-        made = &f->made[at[k]];
+            make_body(f, candidate->method, k, candidate->modes[k], &at));
+        made = &f->made[at];
         if (made->status != RITZ_OK) {
             set_refusal(made->refusal, candidate);
             return RITZ_OK;
@@ -254,42 +248,9 @@ static ritz_status make_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
         candidate->making.wall += made->making.wall;
         candidate->making.cpu += made->making.cpu;
         candidate->columns += made->reduced.K.ncol;
+        body[k] = made->reduced;
     }
-    return RITZ_OK;
-}
-
-/* What is done with the candidate once it is a stage. */
-typedef ritz_status ritz_fit_use(ritz_fitter *f, const ritz_stage *stage,
-                                 ritz_fit_candidate *candidate);
-
-static ritz_status with_stage(ritz_fitter *f, ritz_fit_use *use,
-                              ritz_fit_candidate *candidate)
-{
-    ritz_status status = RITZ_OK;
-    ritz_reduced *lent = NULL;
-    int64_t *at = NULL;
-    ritz_stage stage = {0};
-
-    RITZ_NEW(lent, f->num_bodies);
-    RITZ_NEW(at, f->num_bodies);
-    RITZ_TRY(make_bodies(f, candidate, at));
-    if (candidate->refusal[0])
-        goto done;
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        lent[k] = f->made[at[k]].reduced;
-    status = ritz_fit_join(f, lent, &stage);
-    if (status == RITZ_OK) {
-        status = use(f, &stage, candidate);
-        ritz_fit_part(f, &stage, lent);
-    }
-    for (int64_t k = 0; k < f->num_bodies; k++) /* their dampers may be in */
-        f->made[at[k]].reduced = lent[k];
-done:
-    if (!f->scene) /* one of its candidates shares nothing with another */
-        ritz_fit_forget(f, candidate->method);
-    free(lent);
-    free(at);
-    return status;
+    return ritz_fit_join(f, body, out);
 }
 
 /* --- a stage at a place --------------------------------------------------------- */
@@ -301,6 +262,11 @@ typedef struct ritz_fit_model {
     ritz_configuration at; /* of a scene */
     ritz_reduced lent;     /* its matrices, and T of a component; borrowed */
 } ritz_fit_model;
+
+static void ritz_fit_model_free(ritz_fit_model *m)
+{
+    ritz_configuration_free(&m->at);
+}
 
 static ritz_status open_model(const ritz_fitter *f, const ritz_stage *stage,
                               const ritz_fit_place *place, ritz_fit_model *m)
@@ -339,25 +305,6 @@ static ritz_status check_stability(const ritz_fitter *f,
     return RITZ_OK;
 }
 
-static ritz_status take_cost(const ritz_fitter *f, const ritz_fit_model *m,
-                             ritz_fit_candidate *candidate)
-{
-    const ritz_verify_request *limits = &f->request.tolerance;
-    const ritz_second_order model = {&m->lent.K, &m->lent.M, &m->lent.D, NULL,
-                                     &m->lent.io};
-    ritz_status status = RITZ_OK;
-
-    if (!f->request.costs)
-        return RITZ_OK;
-    status = ritz_simulate_cost(&model, &limits->damping, limits->band_hz,
-                                &candidate->cost);
-    if (status != RITZ_OK && status != RITZ_ERR_MEMORY) {
-        candidate->cost = (ritz_cost){0}; /* it has none, and is no worse */
-        status = RITZ_OK;
-    }
-    return status;
-}
-
 /* Its errors there are among the worst so far. */
 static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
                                  int points, ritz_fit_candidate *candidate)
@@ -375,22 +322,6 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
     if (candidate->feasible && points)
         RITZ_CHECK(check_stability(f, m, candidate));
     return RITZ_OK;
-}
-
-ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
-                                const ritz_fit_place *place, int points,
-                                ritz_fit_candidate *candidate)
-{
-    ritz_status status = RITZ_OK;
-    ritz_fit_model m = {0};
-
-    RITZ_TRY(open_model(f, stage, place, &m));
-    if (m.lent.K.ncol > candidate->order)
-        candidate->order = m.lent.K.ncol;
-    RITZ_TRY(measure_model(f, &m, points, candidate));
-done:
-    ritz_configuration_free(&m.at);
-    return status;
 }
 
 /* --- bounds ---------------------------------------------------------------------- */
@@ -451,23 +382,20 @@ static bool surely_fails(const ritz_verify_request *limits,
 static ritz_status bound_model(const ritz_fitter *f, const ritz_fit_model *m,
                                bool least, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_fit_place *place = m->place;
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_dense) T = {0};
     ritz_basis basis = {.T = m->lent.T};
+    ritz_status status = RITZ_OK;
 
     if (f->scene) {
-        RITZ_TRY(ritz_stage_basis(m->stage, &m->at, place->full.num_dofs,
-                                  place->master, &T));
+        RITZ_CHECK(ritz_stage_basis(m->stage, &m->at, place->full.num_dofs,
+                                    place->master, &T));
         basis.T = T;
     }
     status =
         least ? ritz_estimator_least(place->estimator, &basis, &m->lent, out)
               : ritz_estimator_measure(place->estimator, &basis, &m->lent, out);
-    status = status == RITZ_ERR_MEMORY ? status : RITZ_OK;
-done:
-    ritz_dense_free(&T);
-    return status;
+    return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
 }
 
 /* Where modes are missing the worst error of the others may be 0. */
@@ -487,9 +415,9 @@ static void forget_least(ritz_measures *found)
  * measuring costs less than they do, save that what is off at one configuration
  * need not be measured at all: so that is asked alone.
  */
-static ritz_status foresee(const ritz_fitter *f, const ritz_fit_model *m,
-                           ritz_fit_candidate *candidate,
-                           ritz_fit_verdict *verdict)
+static ritz_status foresee_errors(const ritz_fitter *f, const ritz_fit_model *m,
+                                  ritz_fit_candidate *candidate,
+                                  ritz_fit_verdict *verdict)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
     RITZ_OWN(ritz_measures) found = {0};
@@ -515,29 +443,22 @@ static ritz_status foresee(const ritz_fitter *f, const ritz_fit_model *m,
 ritz_status ritz_fit_bound_stage(ritz_fitter *f, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
-    ritz_measures found = {0};
-    ritz_fit_model m = {0};
-
     ritz_measures_free(&candidate->estimates);
-    for (int64_t k = 0; k < f->num_places && has_bases(stage); k++) {
+    if (!f->place[0].estimator || !has_bases(stage))
+        return RITZ_OK;
+    for (int64_t k = 0; k < f->num_places; k++) {
         ritz_fit_place *place = &f->place[k];
+        RITZ_OWN(ritz_fit_model) m = {0};
+        RITZ_OWN(ritz_measures) found = {0};
 
-        if (!f->place[0].estimator)
-            continue;
         if (!place->estimator)
-            RITZ_TRY(ritz_fit_estimator(f, &place->full, place));
-        RITZ_TRY(open_model(f, stage, place, &m));
-        RITZ_TRY(bound_model(f, &m, false, &found));
+            RITZ_CHECK(ritz_fit_estimator(f, &place->full, place));
+        RITZ_CHECK(open_model(f, stage, place, &m));
+        RITZ_CHECK(bound_model(f, &m, false, &found));
         forget_least(&found);
-        RITZ_TRY(ritz_fit_worst(&found, place->at, &candidate->estimates));
-        ritz_measures_free(&found);
-        ritz_configuration_free(&m.at);
+        RITZ_CHECK(ritz_fit_worst(&found, place->at, &candidate->estimates));
     }
-done:
-    ritz_measures_free(&found);
-    ritz_configuration_free(&m.at);
-    return status;
+    return RITZ_OK;
 }
 
 /* --- a candidate ----------------------------------------------------------------- */
@@ -557,28 +478,49 @@ static ritz_status look_at(ritz_fitter *f, const ritz_stage *stage,
                            const ritz_fit_place *place, int points, bool bounds,
                            ritz_fit_candidate *candidate)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(ritz_fit_model) m = {0};
     ritz_fit_verdict verdict = RITZ_FIT_OPEN;
-    ritz_fit_model m = {0};
 
-    RITZ_TRY(open_model(f, stage, place, &m));
+    RITZ_CHECK(open_model(f, stage, place, &m));
     if (m.lent.K.ncol > candidate->order)
         candidate->order = m.lent.K.ncol;
-    RITZ_FAIL_IF(candidate->order > f->largest, RITZ_ERR_ARGUMENT,
-                 "an order of %" PRId64 " is more than the %" PRId64
-                 " that are tried",
-                 candidate->order, f->largest);
+    RITZ_REFUSE_IF(candidate->order > f->largest, RITZ_ERR_ARGUMENT,
+                   "an order of %" PRId64 " is more than the %" PRId64
+                   " that are tried",
+                   candidate->order, f->largest);
     if (bounds)
-        RITZ_TRY(foresee(f, &m, candidate, &verdict));
+        RITZ_CHECK(foresee_errors(f, &m, candidate, &verdict));
     if (verdict == RITZ_FIT_OPEN)
-        RITZ_TRY(measure_model(f, &m, points, candidate));
-    if (candidate->feasible && points && place == f->place)
-        RITZ_TRY(take_cost(f, &m, candidate));
+        RITZ_CHECK(measure_model(f, &m, points, candidate));
     candidate->bounded = verdict == RITZ_FIT_HOLDS;
     candidate->feasible = candidate->feasible || candidate->bounded;
-done:
-    ritz_configuration_free(&m.at);
-    return status;
+    return RITZ_OK;
+}
+
+ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
+                                const ritz_fit_place *place, int points,
+                                ritz_fit_candidate *candidate)
+{
+    return look_at(f, stage, place, points, false, candidate);
+}
+
+/* The cost of simulation at the first place; what has none is no worse. */
+static ritz_status take_cost(const ritz_fitter *f, const ritz_stage *stage,
+                             ritz_fit_candidate *candidate)
+{
+    const ritz_verify_request *limits = &f->request.tolerance;
+    RITZ_OWN(ritz_fit_model) m = {0};
+    ritz_second_order model = {0};
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(open_model(f, stage, &f->place[0], &m));
+    model =
+        (ritz_second_order){&m.lent.K, &m.lent.M, &m.lent.D, NULL, &m.lent.io};
+    status = ritz_simulate_cost(&model, &limits->damping, limits->band_hz,
+                                &candidate->cost);
+    if (status != RITZ_OK)
+        candidate->cost = (ritz_cost){0};
+    return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
 }
 
 /*
@@ -595,8 +537,8 @@ static ritz_status meet_grid(ritz_fitter *f, const ritz_stage *stage,
 
     RITZ_CHECK(look_at(f, stage, &f->place[first], 0, bounds, candidate));
     worst = candidate->ratio;
-    for (int64_t k = 0; k < f->num_places && !candidate->ruled_out; k++) {
-        if (!f->place[k].listed || k == first)
+    for (int64_t k = 0; k < f->num_listed && !candidate->ruled_out; k++) {
+        if (k == first)
             continue;
         RITZ_CHECK(look_at(f, stage, &f->place[k], 0, false, candidate));
         if (candidate->ratio > worst)
@@ -623,20 +565,31 @@ ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_stage *stage,
     candidate->bounded = bounded;
     candidate->unconfirmed =
         !candidate->feasible && candidate->refusal[0] == '\0';
-    return RITZ_OK;
+    return candidate->feasible && f->request.costs
+               ? take_cost(f, stage, candidate)
+               : RITZ_OK;
 }
 
 ritz_status ritz_fit_try(ritz_fitter *f, ritz_fit_candidate *candidate)
 {
-    return ritz_fit_refuse(with_stage(f, ritz_fit_measure, candidate),
-                           candidate);
+    RITZ_OWN(ritz_fit_joined) joined = {0};
+    ritz_status status = join_bodies(f, candidate, &joined);
+
+    if (status == RITZ_OK && !candidate->refusal[0])
+        status = ritz_fit_measure(f, &joined.stage, candidate);
+    if (!f->scene) /* one of its candidates shares nothing with another */
+        ritz_fit_forget(f, candidate->method);
+    return ritz_fit_refuse(status, candidate);
 }
 
 ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
 {
-    return f->scene && f->place[0].estimator && candidate->left_out == 0
-               ? with_stage(f, ritz_fit_bound_stage, candidate)
-               : RITZ_OK;
+    RITZ_OWN(ritz_fit_joined) joined = {0};
+
+    if (!f->scene || !f->place[0].estimator || candidate->left_out > 0)
+        return RITZ_OK;
+    RITZ_CHECK(join_bodies(f, candidate, &joined));
+    return ritz_fit_bound_stage(f, &joined.stage, candidate);
 }
 
 ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,

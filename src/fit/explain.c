@@ -62,25 +62,6 @@ static void add_error(ritz_fit *fit, const ritz_fit_candidate *c)
             ritz_tolerance_word(m->name), m->value, m->where, m->limit);
 }
 
-/* The next smaller one of the same method, of those that were tried. */
-static const ritz_fit_candidate *smaller(const ritz_fit *fit,
-                                         const ritz_fit_candidate *than)
-{
-    const ritz_fit_candidate *best = NULL;
-
-    for (int64_t k = 0; k < fit->count; k++) {
-        const ritz_fit_candidate *c = &fit->candidate[k];
-
-        if (c->method != than->method || c->order >= than->order ||
-            c->refusal[0])
-            continue;
-        if (!best || c->order > best->order ||
-            (c->order == best->order && c->ratio < best->ratio))
-            best = c;
-    }
-    return best;
-}
-
 /* What ended a method, but where a number says it. */
 static const char *const words[] = {
     [RITZ_FIT_END_WHOLE] = "there are no more modes to be had",
@@ -194,7 +175,7 @@ ritz_status ritz_fit_explain(const ritz_fitter *fitter, ritz_fit *fit)
 {
     const ritz_fit_candidate *c = NULL;
     const ritz_fit_candidate *less = NULL;
-    int64_t caught = 0;
+    int64_t caught = 0, smaller = -1;
 
     fit->why[0] = '\0';
     if (fit->chosen < 0) {
@@ -202,7 +183,8 @@ ritz_status ritz_fit_explain(const ritz_fitter *fitter, ritz_fit *fit)
         return RITZ_OK;
     }
     c = &fit->candidate[fit->chosen];
-    less = smaller(fit, c);
+    smaller = ritz_fit_largest_of(fit, c->method, c->order - 1);
+    less = smaller < 0 ? NULL : &fit->candidate[smaller];
     add(fit, "%s meets the tolerance with %" PRId64 " column%s",
         c->method->name, c->order, c->order == 1 ? "" : "s");
     if (c->left_out > 0)

@@ -1,5 +1,5 @@
 /* Over all methods: which are tried, which of them is the answer. */
-#include "fit/search.h"
+#include "fit/fitter.h"
 
 #include "base/alloc.h"
 
@@ -48,7 +48,7 @@ static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
     for (int64_t m = 0; m < fit->num_methods; m++) {
         fit->best[m] = fit->reached[m] = -1;
         if (fitter->scene && fit->method[m] == &ritz_fit_compare)
-            RITZ_CHECK(ritz_fit_second_make(fitter));
+            RITZ_CHECK(ritz_fit_second_make(fitter, fitter->rich_hz, NULL));
     }
     return RITZ_OK;
 }
@@ -175,7 +175,7 @@ ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
     for (int64_t m = 0; m < fit->num_methods; m++) {
         RITZ_CHECK(approach(fitter, order, m, modes, fit));
         ritz_fit_conclude(fit, m);
-        at[m] = ritz_fit_largest_of(fit, m, order);
+        at[m] = ritz_fit_largest_of(fit, fit->method[m], order);
     }
     return RITZ_OK;
 }

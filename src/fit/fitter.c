@@ -59,21 +59,16 @@ static void free_copy(ritz_component *copy)
 static ritz_status install_copy(const ritz_component *component,
                                 ritz_component *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component copy = *component; /* all but what follows is borrowed */
+    const ritz_sparse *const K = &component->K, *const D = &component->D;
 
-    copy.K = copy.D = (ritz_sparse){0};
-    copy.dampers = (ritz_dampers){0};
-    RITZ_TRY(ritz_sparse_add(1.0, &component->K, 0.0, &component->K, &copy.K));
-    if (component->D.colptr)
-        RITZ_TRY(
-            ritz_sparse_add(1.0, &component->D, 0.0, &component->D, &copy.D));
-    RITZ_TRY(ritz_dampers_copy(&component->dampers, &copy.dampers));
-    RITZ_TRY(ritz_component_install(&copy));
-    RITZ_MOVE(*out, copy);
-done:
-    free_copy(&copy);
-    return status;
+    *out = *component; /* all but what follows is borrowed */
+    out->K = out->D = (ritz_sparse){0};
+    out->dampers = (ritz_dampers){0};
+    RITZ_CHECK(ritz_sparse_add(1.0, K, 0.0, K, &out->K));
+    if (D->colptr)
+        RITZ_CHECK(ritz_sparse_add(1.0, D, 0.0, D, &out->D));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &out->dampers));
+    return ritz_component_install(out);
 }
 
 /* A tolerance needs something to be measured by. */
@@ -156,42 +151,25 @@ static ritz_status make_places(ritz_fitter *f)
     RITZ_REFUSE_IF(listed < 1, RITZ_ERR_ARGUMENT,
                    "the scene has no configuration");
     RITZ_CHECK_NEW(f->place, listed + between);
+    f->num_listed = listed;
     for (int64_t k = 0; k < listed + between; k++) {
         ritz_fit_place *place = &f->place[f->num_places++];
         double at = (double)(listed - 1) * ritz_random_next(&seed);
         int64_t from = k < listed ? k : (int64_t)at;
         const double *a = scene->setting + from * h;
 
-        place->listed = k < listed;
         RITZ_CHECK_NEW(place->setting, h);
         for (int64_t j = 0; j < h; j++)
             place->setting[j] =
-                place->listed ? a[j]
-                              : a[j] + (at - (double)from) * (a[h + j] - a[j]);
+                k < listed ? a[j]
+                           : a[j] + (at - (double)from) * (a[h + j] - a[j]);
         (void)snprintf(place->at, sizeof place->at, "as joined");
+        if (h > 0)
+            ritz_configuration_name(h, (const char *)scene->sweep,
+                                    sizeof *scene->sweep, place->setting,
+                                    place->at);
     }
     return RITZ_OK;
-}
-
-/* "clock=60,cone=0" of each place. */
-static ritz_status name_places(ritz_fitter *f)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_scene *scene = f->scene;
-    char(*name)[RITZ_NAME_SIZE] = NULL;
-
-    if (scene->num_sweeps == 0)
-        return RITZ_OK;
-    RITZ_NEW(name, scene->num_sweeps);
-    for (int64_t j = 0; j < scene->num_sweeps; j++)
-        memcpy(name[j], scene->sweep[j].name, sizeof name[j]);
-    for (int64_t k = 0; k < f->num_places; k++)
-        ritz_configuration_name(scene->num_sweeps,
-                                (const char(*)[RITZ_NAME_SIZE])name,
-                                f->place[k].setting, f->place[k].at);
-done:
-    free(name);
-    return status;
 }
 
 double ritz_fit_rich_to(const ritz_verify_request *limits)
@@ -211,8 +189,9 @@ double ritz_fit_rich_to(const ritz_verify_request *limits)
 }
 
 /* Mass normalised modes of a rich first stage as a model to compare with. */
-static ritz_status as_component(const ritz_configuration *from,
-                                const ritz_scene *scene, ritz_component *out)
+static ritz_status copy_as_component(const ritz_configuration *from,
+                                     const ritz_scene *scene,
+                                     ritz_component *out)
 {
     enum { MATRICES = 4 };
     const ritz_dense *const matrix[MATRICES] = {&from->K, &from->M, &from->D,
@@ -240,21 +219,17 @@ static ritz_status as_component(const ritz_configuration *from,
 /* The same in the place of full systems. */
 static ritz_status rich_systems(ritz_fitter *f)
 {
-    ritz_status status = RITZ_OK;
-    ritz_stage stage = {0};
-    ritz_configuration at = {0};
+    RITZ_OWN(ritz_fit_joined) rich = {0};
 
-    RITZ_TRY(ritz_fit_rich(f, f->rich_hz, &stage));
+    RITZ_CHECK(ritz_fit_rich(f, f->rich_hz, &rich));
     for (int64_t k = 0; k < f->num_places; k++) {
+        RITZ_OWN(ritz_configuration) at = {0};
+
         ritz_monitor_step("first stage", k, f->num_places);
-        RITZ_TRY(ritz_stage_assemble(&stage, f->place[k].setting, &at));
-        RITZ_TRY(as_component(&at, f->scene, &f->place[k].full));
-        ritz_configuration_free(&at);
+        RITZ_CHECK(ritz_stage_assemble(&rich.stage, f->place[k].setting, &at));
+        RITZ_CHECK(copy_as_component(&at, f->scene, &f->place[k].full));
     }
-done:
-    ritz_configuration_free(&at);
-    ritz_fit_part(f, &stage, NULL);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status full_systems(ritz_fitter *f)
@@ -267,7 +242,7 @@ static ritz_status full_systems(ritz_fitter *f)
                       ritz_assemble_masters(f->scene, place->setting,
                                             &place->full, &place->master));
         RITZ_CHECK_IN(place->at, ritz_component_install(&place->full));
-        if (place->listed)
+        if (k < f->num_listed)
             RITZ_CHECK(ritz_fit_estimator(f, &place->full, place));
     }
     return RITZ_OK;
@@ -302,7 +277,6 @@ static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
     f->rich_hz = ritz_fit_rich_to(limits) * limits->band_hz[1];
     RITZ_CHECK(ritz_fit_bodies(f));
     RITZ_CHECK(make_places(f));
-    RITZ_CHECK(name_places(f));
     RITZ_CHECK(refer_scene(f));
     RITZ_CHECK(check_limits(limits, &f->place[0].full));
     io = &f->place[0].full.io;
@@ -326,12 +300,10 @@ static ritz_status open_component(const ritz_component *component,
     if (limits->damping.kind == RITZ_DAMPING_NONE && component->damping[0])
         RITZ_CHECK_IN("damping",
                       ritz_damping_parse(component->damping, &limits->damping));
-    f->num_components = f->num_bodies = 1;
     RITZ_CHECK_NEW(f->body, 1);
-    RITZ_CHECK_NEW(f->still, 1);
     RITZ_CHECK_NEW(f->place, 1);
-    f->num_places = 1;
-    f->place[0].listed = true;
+    RITZ_CHECK(ritz_bodies_new(1, &f->still));
+    f->num_bodies = f->num_places = f->num_listed = 1;
     RITZ_CHECK(install_copy(component, &f->place[0].full));
     RITZ_CHECK(check_limits(limits, &f->place[0].full));
     RITZ_CHECK(
@@ -344,33 +316,35 @@ static ritz_status open_component(const ritz_component *component,
     return RITZ_OK;
 }
 
-ritz_status ritz_fitter_new(const ritz_component *component,
-                            const ritz_fit_request *request, ritz_fitter **out)
+/* The full model of a component or of a scene, the other being NULL. */
+static ritz_status open_fitter(const ritz_component *component,
+                               const ritz_scene *scene,
+                               const ritz_fit_request *request,
+                               ritz_fitter **out)
 {
     RITZ_OWN(ritz_fitter) *f = NULL;
 
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->component = component;
-    RITZ_CHECK(open_component(component, f));
+    f->scene = scene;
+    RITZ_CHECK(scene ? open_scene(scene, f) : open_component(component, f));
     settle_limits(f->place[0].reference, &f->request.tolerance);
     RITZ_MOVE(*out, f);
     return RITZ_OK;
+}
+
+ritz_status ritz_fitter_new(const ritz_component *component,
+                            const ritz_fit_request *request, ritz_fitter **out)
+{
+    return open_fitter(component, NULL, request, out);
 }
 
 ritz_status ritz_fitter_scene(const ritz_scene *scene,
                               const ritz_fit_request *request,
                               ritz_fitter **out)
 {
-    RITZ_OWN(ritz_fitter) *f = NULL;
-
-    RITZ_CHECK_NEW(f, 1);
-    f->request = *request;
-    f->scene = scene;
-    RITZ_CHECK(open_scene(scene, f));
-    settle_limits(f->place[0].reference, &f->request.tolerance);
-    RITZ_MOVE(*out, f);
-    return RITZ_OK;
+    return open_fitter(NULL, scene, request, out);
 }
 
 const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter)
@@ -385,11 +359,9 @@ int64_t ritz_fitter_bodies(const ritz_fitter *fitter)
 
 void ritz_fitter_describe(const ritz_fitter *fitter, int64_t size, char *out)
 {
-    int64_t listed = 0;
+    const int64_t listed = fitter->num_listed;
     const ritz_component *full = &fitter->place[0].full;
 
-    for (int64_t k = 0; k < fitter->num_places; k++)
-        listed += fitter->place[k].listed;
     if (!fitter->scene)
         (void)snprintf(out, (size_t)size,
                        "the full component of %" PRId64 " dofs",
@@ -425,18 +397,15 @@ void ritz_fitter_free(ritz_fitter **fitter)
         free_place(f, &f->place[k]);
     for (int64_t k = 0; f->model && k < f->num_bodies; k++)
         ritz_component_free(&f->model[k]);
-    for (int64_t k = 0; f->still && k < f->num_components; k++)
-        ritz_reduced_free(&f->still[k]);
+    ritz_bodies_free(&f->still);
     for (int64_t k = 0; k < f->num_made; k++)
         ritz_reduced_free(&f->made[k].reduced);
-    ritz_fit_second_free(f->num_bodies, &f->second);
+    ritz_fit_second_free(&f->second);
     ritz_dofs_free(&f->attached);
     free(f->place);
     free(f->body);
     free(f->model);
-    free(f->still);
     free(f->step);
-    free(f->step_hz);
     free(f->made);
     free(f);
     *fitter = NULL;

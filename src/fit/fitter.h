@@ -14,7 +14,6 @@
 typedef struct ritz_fit_place {
     double *setting; /* of each sweep of the scene; NULL: of a component */
     char at[RITZ_NAME_SIZE];
-    bool listed;         /* false: between listed ones, to confirm */
     ritz_component full; /* as it is compared, with its dampers */
     ritz_reference *reference;
     ritz_estimator *estimator; /* NULL: there are no bounds */
@@ -25,46 +24,57 @@ typedef struct ritz_fit_place {
 typedef struct ritz_fit_made {
     const ritz_method *method;
     int64_t body, modes;
-    ritz_reduced reduced; /* without T, unless bounds need it */
+    ritz_reduced reduced; /* dampers installed; without T, unless bounds need
+                             it */
     ritz_fit_watch making;
     ritz_status status; /* of making it */
     char refusal[256];
 } ritz_fit_made;
+
+/* A rung of a ladder: the body that gets one mode more. */
+typedef struct ritz_fit_step {
+    double hertz; /* of that mode; 0 where it is a direction of COMPARE */
+    int64_t body;
+} ritz_fit_step;
 
 /* Bodies of COMPARE's second stage in all their directions. */
 typedef struct ritz_fit_second {
     bool made;
     ritz_status status; /* of making it */
     char refusal[256];
-    ritz_reduced *body; /* num_bodies, nested, dampers bare */
-    int64_t *rigid;     /* num_bodies, columns that move rigidly */
-    int64_t num_steps;  /* of a ladder of its own */
-    int64_t *step;      /* num_steps, whose next direction matters most */
-    double rich_hz;     /* the first stage has modes up to it */
+    ritz_bodies body;    /* num_bodies, nested, dampers not installed */
+    int64_t *rigid;      /* num_bodies, columns that move rigidly */
+    int64_t num_steps;   /* of a ladder of its own */
+    ritz_fit_step *step; /* num_steps, whose next direction matters most */
+    double rich_hz;      /* the first stage has modes up to it */
     ritz_fit_watch making;
 } ritz_fit_second;
+
+/* Bodies joined: the stage borrows all of them. */
+typedef struct ritz_fit_joined {
+    ritz_stage stage;
+    ritz_bodies own; /* flexible ones that were made for this stage alone */
+} ritz_fit_joined;
 
 struct ritz_fitter {
     ritz_fit_request request;
     const ritz_component *component; /* borrowed; NULL: of a scene */
     const ritz_scene *scene;         /* borrowed; NULL: of a component */
     ritz_dofs attached;              /* of a component */
-    int64_t num_places;
-    ritz_fit_place *place;  /* listed ones first */
-    int64_t hardest;        /* listed place where errors were largest */
-    bool rich;              /* a stage one is the reference */
-    int64_t num_components; /* of the scene; 1 of a component */
-    int64_t num_bodies;     /* flexible ones */
-    int64_t *body;          /* num_bodies, component of the scene */
-    ritz_component *model;  /* num_bodies, of a scene */
-    ritz_reduced *still;    /* num_components, those that stay as they are;
-                               flexible ones are empty */
-    int64_t num_first;      /* rungs of the ladder that all are tried on */
-    int64_t num_steps;      /* rungs there are beyond the lowest */
-    int64_t *step;          /* num_steps, which body has one mode more */
-    double *step_hz;        /* num_steps, and that mode's frequency */
-    double rich_hz;         /* modes of bodies in a rich reference, up to it */
-    int64_t num_made;
+    int64_t num_places, num_listed;
+    ritz_fit_place *place; /* listed ones first; those between them confirm */
+    int64_t hardest;       /* listed place where errors were largest */
+    bool rich;             /* a stage one is the reference */
+    ritz_bodies still;     /* of each component of the scene that stays as it
+                              is, dampers installed; flexible ones are empty */
+    int64_t num_bodies;    /* flexible ones; 1 of a component */
+    int64_t *body;         /* num_bodies, component of the scene */
+    ritz_component *model; /* num_bodies, of a scene */
+    int64_t num_first;     /* rungs of the ladder that all are tried on */
+    int64_t num_steps;     /* rungs there are beyond the lowest */
+    ritz_fit_step *step;   /* num_steps, ascending frequencies */
+    double rich_hz;        /* modes of bodies in a rich reference, up to it */
+    int64_t num_made, room_made;
     ritz_fit_made *made;
     ritz_fit_second second;
     int64_t largest; /* order to be tried */
@@ -87,21 +97,22 @@ ritz_status ritz_fit_bodies(ritz_fitter *fitter);
 ritz_status ritz_fit_extend(ritz_fitter *fitter, ritz_fit_end *end);
 
 /**
- * Join flexible bodies, dampers installed by that, to those that stay. Both are
- * lent until ritz_fit_part; on failure they are given back.
+ * Join flexible bodies to those that stay. All are borrowed until
+ * ritz_fit_joined_free.
  *
- * @param[in,out] flexible  num_bodies, empty after
+ * @param[in] flexible  num_bodies, dampers installed
  */
-ritz_status ritz_fit_join(ritz_fitter *fitter, ritz_reduced *flexible,
-                          ritz_stage *out);
+ritz_status ritz_fit_join(const ritz_fitter *fitter,
+                          const ritz_reduced *flexible, ritz_fit_joined *out);
 
-/** Take a stage apart; flexible bodies come back, or are freed if NULL. */
-void ritz_fit_part(ritz_fitter *fitter, ritz_stage *stage,
-                   ritz_reduced *flexible);
+/** Join the flexible bodies that @p joined owns, and install their dampers. */
+ritz_status ritz_fit_join_own(const ritz_fitter *fitter,
+                              ritz_fit_joined *joined);
+void ritz_fit_joined_free(ritz_fit_joined *joined);
 
 /** The scene with modes of flexible bodies far beyond the band. */
-ritz_status ritz_fit_rich(ritz_fitter *fitter, double up_to_hz,
-                          ritz_stage *out);
+ritz_status ritz_fit_rich(const ritz_fitter *fitter, double up_to_hz,
+                          ritz_fit_joined *out);
 
 /* --- second.c ---------------------------------------------------------------- */
 
@@ -110,18 +121,20 @@ void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
                    int64_t rung, int64_t *modes);
 int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method);
 
-/** Make COMPARE's bodies, once; if they are refused, each candidate says why. */
-ritz_status ritz_fit_second_make(ritz_fitter *fitter);
-
-/** The same of a first stage with modes up to that; what fails leaves those
- * that were made before. */
-ritz_status ritz_fit_second_remake(ritz_fitter *fitter, double up_to_hz,
-                                   bool *made);
+/**
+ * Make COMPARE's bodies of a first stage with modes up to a frequency, unless
+ * they are made of as rich a one. If the first time is refused, each candidate
+ * says why; later a refusal leaves those that were made before.
+ *
+ * @param[out] made  whether they are now of so rich a stage; NULL: not wanted
+ */
+ritz_status ritz_fit_second_make(ritz_fitter *fitter, double up_to_hz,
+                                 bool *made);
 
 /** Flexible body @p k with its rigid motions and so many directions. */
 ritz_status ritz_fit_second_body(ritz_fitter *fitter, int64_t k, int64_t count,
                                  ritz_reduced *out);
-void ritz_fit_second_free(int64_t num_bodies, ritz_fit_second *second);
+void ritz_fit_second_free(ritz_fit_second *second);
 
 /* --- fitter.c ---------------------------------------------------------------- */
 
@@ -161,7 +174,7 @@ ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
                           int64_t k, int64_t modes, ritz_reduced *out);
 void ritz_fit_forget(ritz_fitter *fitter, const ritz_method *method);
 
-/** Errors of a stage at a place among the worst so far; refuse what is
+/** Add the errors of a stage at a place to the worst so far; refuse what is
  * unstable where it is confirmed (@p points is not 0). */
 ritz_status ritz_fit_measure_at(ritz_fitter *fitter, const ritz_stage *stage,
                                 const ritz_fit_place *place, int points,
@@ -192,10 +205,22 @@ double ritz_fit_misses(const ritz_fit_candidate *candidate);
 
 /* --- nest.c ------------------------------------------------------------------ */
 
-/** Flexible bodies of a candidate, num_bodies, cut if it is. */
+/** Whether a column must stay: without it a body could not move rigidly, or
+ * would not have its interface. */
+bool ritz_fit_stays(ritz_column_kind kind);
+
+/**
+ * What the columns of a body are. One that takes part in its rigid motion is
+ * rigid, whatever its method calls it: modes of Rubin store energy.
+ *
+ * @param[out] kind  one for each column
+ */
+ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
+
+/** Flexible bodies of a candidate, cut if it is; dampers not installed. */
 ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
                                  const ritz_fit_candidate *candidate,
-                                 ritz_reduced *out);
+                                 ritz_bodies *out);
 
 /**
  * The candidate without columns that its tolerance can do without; its order is
@@ -203,6 +228,43 @@ ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
  */
 ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
                           ritz_fit_candidate *out);
+
+/* --- search.c ---------------------------------------------------------------- */
+
+/* A candidate up to this factor larger than the smallest may still win once
+   columns are left out. */
+#define RITZ_FIT_REACH 1.5
+
+/** Try a candidate, or find it among those that were tried. */
+ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                           const int64_t *modes, int64_t *at);
+
+/** Whether it was made, and not refused. */
+bool ritz_fit_was_made(const ritz_fit_candidate *candidate);
+
+/** One candidate more, moved into the list. */
+ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate);
+
+/** Whether candidate @p a is a better answer than @p b: smaller, or as small
+ * and nearer. */
+bool ritz_fit_is_better(const ritz_fit_candidate *a,
+                        const ritz_fit_candidate *b);
+
+/** Largest candidate of a method with at most @p order columns, the nearest of
+ * those; -1: it has none that was made. */
+int64_t ritz_fit_largest_of(const ritz_fit *fit, const ritz_method *method,
+                            int64_t order);
+
+/** The best and the nearest of a method, of all that were tried. */
+void ritz_fit_conclude(ritz_fit *fit, int64_t method);
+
+/** Make COMPARE's first stage rich enough; @p end: what ended that, or none. */
+ritz_status ritz_fit_enrich(ritz_fitter *fitter, ritz_fit_end *end);
+
+/** Search one method; @p on: beyond the end of the scene's first ladder, where
+ * nothing was met. */
+ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
+                            bool on);
 
 /* --- explain.c --------------------------------------------------------------- */
 

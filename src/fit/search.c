@@ -3,7 +3,7 @@
  * feasible, then bisection, and then the rungs below one by one, since an error
  * may rise where a mode is added and fall again with the next.
  */
-#include "fit/search.h"
+#include "fit/fitter.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -39,15 +39,8 @@ bool ritz_fit_was_made(const ritz_fit_candidate *c)
 
 ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate)
 {
-    ritz_fit_candidate *more = NULL;
-
-    RITZ_CHECK_NEW(more, fit->count + 1);
-    if (fit->count > 0)
-        memcpy(more, fit->candidate, (size_t)fit->count * sizeof *more);
-    free(fit->candidate);
-    fit->candidate = more;
-    more[fit->count++] = *candidate;
-    *candidate = (ritz_fit_candidate){0};
+    RITZ_CHECK_ROOM(fit->candidate, fit->count, fit->room);
+    RITZ_MOVE(fit->candidate[fit->count++], *candidate);
     return RITZ_OK;
 }
 
@@ -88,7 +81,8 @@ bool ritz_fit_is_better(const ritz_fit_candidate *a,
     return a->ratio < b->ratio * (1.0 - RITZ_SAME_RATIO);
 }
 
-int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order)
+int64_t ritz_fit_largest_of(const ritz_fit *fit, const ritz_method *method,
+                            int64_t order)
 {
     int64_t best = -1;
 
@@ -96,8 +90,7 @@ int64_t ritz_fit_largest_of(const ritz_fit *fit, int64_t method, int64_t order)
         const ritz_fit_candidate *c = &fit->candidate[k];
         const ritz_fit_candidate *b = best < 0 ? NULL : &fit->candidate[best];
 
-        if (c->method != fit->method[method] || !ritz_fit_was_made(c) ||
-            c->order > order)
+        if (c->method != method || !ritz_fit_was_made(c) || c->order > order)
             continue;
         if (!b || c->order > b->order ||
             (c->order == b->order && c->ratio < b->ratio))
@@ -129,15 +122,16 @@ void ritz_fit_conclude(ritz_fit *fit, int64_t method)
 /* --- COMPARE's first stage ---------------------------------------------------------- */
 
 /* How far COMPARE is off with nothing removed, whatever its order. */
-static ritz_status excess_of_all(ritz_fitter *f, double *out)
+static ritz_status measure_uncut(ritz_fitter *f, double *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_fit_request request = f->request;
     const int64_t largest = f->largest;
-    ritz_fit_candidate whole = {
+    RITZ_OWN(ritz_fit_candidate)
+    whole = {
         .method = &ritz_fit_compare, .num_bodies = f->num_bodies, .worst = -1};
+    ritz_status status = RITZ_OK;
 
-    RITZ_NEW(whole.modes, f->num_bodies);
+    RITZ_CHECK_NEW(whole.modes, f->num_bodies);
     ritz_fit_rung(f, whole.method, ritz_fit_rungs(f, whole.method),
                   whole.modes);
     f->largest = INT64_MAX;
@@ -146,10 +140,7 @@ static ritz_status excess_of_all(ritz_fitter *f, double *out)
     status = ritz_fit_try(f, &whole);
     f->request = request;
     f->largest = largest;
-    RITZ_TRY(status);
     *out = whole.refusal[0] ? 0.0 : whole.ratio; /* its sentence is told */
-done:
-    ritz_fit_candidate_free(&whole);
     return status;
 }
 
@@ -158,7 +149,7 @@ static int64_t count_to(const ritz_fitter *f, double hertz)
 {
     int64_t count = 0;
 
-    while (count < f->num_steps && f->step_hz[count] <= hertz)
+    while (count < f->num_steps && f->step[count].hertz <= hertz)
         count++;
     return count;
 }
@@ -183,7 +174,8 @@ static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
         return RITZ_OK;
     *end = RITZ_FIT_END_NONE;
     more = more < f->num_steps ? more : f->num_steps;
-    *hertz = fmax(RITZ_STAGE_FARTHER * from, f->step_hz[more - 1] * RITZ_TIE);
+    *hertz =
+        fmax(RITZ_STAGE_FARTHER * from, f->step[more - 1].hertz * RITZ_TIE);
     return RITZ_OK;
 }
 
@@ -193,33 +185,33 @@ static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
  */
 ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
 {
-    ritz_status status = RITZ_OK;
     double excess = 0.0, before = HUGE_VAL, hertz = 0.0;
     bool made = false;
 
     *end = RITZ_FIT_END_NONE;
-    RITZ_TRY(ritz_fit_second_make(f));
+    RITZ_CHECK(ritz_fit_second_make(f, f->rich_hz, NULL));
     if (f->second.status != RITZ_OK)
         return RITZ_OK;
-    RITZ_TRY(excess_of_all(f, &excess));
+    RITZ_CHECK(measure_uncut(f, &excess));
     for (int flat = 0; excess > RITZ_STAGE_MAY_LEAVE;) {
-        RITZ_TRY(next_hz(f, &hertz, end));
+        RITZ_CHECK(next_hz(f, &hertz, end));
         if (*end != RITZ_FIT_END_NONE)
-            break;
-        *end = RITZ_FIT_END_REFUSED;
-        RITZ_TRY(ritz_fit_second_remake(f, hertz, &made));
-        if (!made)
-            break;
+            return RITZ_OK;
+        RITZ_CHECK(ritz_fit_second_make(f, hertz, &made));
+        if (!made) {
+            *end = RITZ_FIT_END_REFUSED;
+            return RITZ_OK;
+        }
         ritz_fit_forget(f, &ritz_fit_compare);
         before = excess;
-        RITZ_TRY(excess_of_all(f, &excess));
+        RITZ_CHECK(measure_uncut(f, &excess));
         flat = excess > RITZ_NO_NEARER * before ? flat + 1 : 0;
-        *end = flat == MOST_FLAT_STAGES ? RITZ_FIT_END_FLAT : RITZ_FIT_END_NONE;
-        if (*end != RITZ_FIT_END_NONE)
-            break;
+        if (flat == MOST_FLAT_STAGES) {
+            *end = RITZ_FIT_END_FLAT;
+            return RITZ_OK;
+        }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -255,17 +247,15 @@ static ritz_status move_modes(thinning *t, int64_t i, int64_t less, int64_t j,
     return RITZ_OK;
 }
 
-static ritz_status take_modes(thinning *t)
+/* One mode of each body in turn; if none can go, exchanges between bodies. */
+static ritz_status move_all(thinning *t)
 {
-    for (int64_t i = 0; i < t->fitter->num_bodies; i++)
+    const int64_t bodies = t->fitter->num_bodies, before = t->best;
+
+    for (int64_t i = 0; i < bodies; i++)
         RITZ_CHECK(move_modes(t, i, 1, i, 0));
-    return RITZ_OK;
-}
-
-static ritz_status exchange_modes(thinning *t)
-{
-    int64_t bodies = t->fitter->num_bodies;
-
+    if (t->best != before)
+        return RITZ_OK;
     for (int64_t given = 1; given <= MOST_GIVEN; given++)
         for (int64_t i = 0; i < bodies; i++)
             for (int64_t j = 0; j < bodies; j++)
@@ -275,27 +265,25 @@ static ritz_status exchange_modes(thinning *t)
 }
 
 static ritz_status thin_modes(ritz_fitter *fitter, ritz_fit *fit,
-                              int64_t method, int64_t *best)
+                              int64_t method)
 {
-    ritz_status status = RITZ_OK;
-    size_t size = (size_t)fitter->num_bodies * sizeof(int64_t);
-    thinning t = {
-        .fitter = fitter, .fit = fit, .method = method, .best = *best};
+    RITZ_OWN_ARRAY int64_t *from = NULL, *modes = NULL;
+    thinning t = {.fitter = fitter,
+                  .fit = fit,
+                  .method = method,
+                  .best = fit->best[method]};
 
-    RITZ_NEW(t.from, fitter->num_bodies);
-    RITZ_NEW(t.modes, fitter->num_bodies);
+    RITZ_CHECK_NEW(from, fitter->num_bodies);
+    RITZ_CHECK_NEW(modes, fitter->num_bodies);
+    t.from = from;
+    t.modes = modes;
     for (int64_t before = -1; before != t.best;) {
         before = t.best;
-        memcpy(t.from, fit->candidate[before].modes, size);
-        RITZ_TRY(take_modes(&t));
-        if (t.best == before)
-            RITZ_TRY(exchange_modes(&t));
+        memcpy(from, fit->candidate[before].modes,
+               (size_t)fitter->num_bodies * sizeof *from);
+        RITZ_CHECK(move_all(&t));
     }
-    *best = t.best;
-done:
-    free(t.from);
-    free(t.modes);
-    return status;
+    return RITZ_OK;
 }
 
 /* --- the ladder --------------------------------------------------------------------- */
@@ -312,13 +300,13 @@ typedef struct ladder {
     ritz_fit_end end;      /* why there is no higher one; NONE: there is */
 } ladder;
 
-static ritz_status rung(const ladder *l, int64_t t, int64_t *at)
+static ritz_status visit_rung(const ladder *l, int64_t t, int64_t *at)
 {
     ritz_fit_rung(l->fitter, l->fit->method[l->method], t, l->modes);
     return ritz_fit_visit(l->fitter, l->fit, l->method, l->modes, at);
 }
 
-static const ritz_fit_candidate *get(const ladder *l, int64_t at)
+static const ritz_fit_candidate *find_candidate(const ladder *l, int64_t at)
 {
     return &l->fit->candidate[at];
 }
@@ -326,8 +314,9 @@ static const ritz_fit_candidate *get(const ladder *l, int64_t at)
 /* Why rungs above a refused candidate are not tried. */
 static ritz_fit_end wall_of(const ladder *l, int64_t at)
 {
-    return get(l, at)->order > l->fitter->largest ? RITZ_FIT_END_LARGEST
-                                                  : RITZ_FIT_END_REFUSED;
+    return find_candidate(l, at)->order > l->fitter->largest
+               ? RITZ_FIT_END_LARGEST
+               : RITZ_FIT_END_REFUSED;
 }
 
 /* Order of the best of all methods but one; INT64_MAX: there is none. */
@@ -348,7 +337,8 @@ static bool in_reach(const ladder *l, int64_t at)
     int64_t least = least_order(l->fit, l->method);
 
     return l->fitter->request.thorough || least == INT64_MAX ||
-           (double)get(l, at)->order < RITZ_FIT_REACH * (double)least;
+           (double)find_candidate(l, at)->order <
+               RITZ_FIT_REACH * (double)least;
 }
 
 /*
@@ -356,7 +346,7 @@ static bool in_reach(const ladder *l, int64_t at)
  * the last below that was made and is not feasible, -1 if none. Where a rung is
  * refused for its size, the highest that is not is sought between.
  */
-static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
+static ritz_status climb_ladder(ladder *l, int64_t *low, int64_t *high)
 {
     int64_t refused = 0, at = 0, wall = l->top + 1, before = -1;
 
@@ -365,8 +355,8 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
     for (int64_t t = 0; t < wall && *high < 0;) {
         const ritz_fit_candidate *c = NULL;
 
-        RITZ_CHECK(rung(l, t, &at));
-        c = get(l, at);
+        RITZ_CHECK(visit_rung(l, t, &at));
+        c = find_candidate(l, at);
         if (c->feasible) {
             *high = t;
         } else if (ritz_fit_was_made(c)) {
@@ -396,10 +386,10 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
         t = *low + (wall - *low) / 2;
         if (wall > l->top) /* all that was tried was made */
             break;
-        RITZ_CHECK(rung(l, t, &at));
-        if (get(l, at)->feasible)
+        RITZ_CHECK(visit_rung(l, t, &at));
+        if (find_candidate(l, at)->feasible)
             *high = t;
-        else if (ritz_fit_was_made(get(l, at)))
+        else if (ritz_fit_was_made(find_candidate(l, at)))
             *low = t;
         else
             wall = t;
@@ -409,7 +399,8 @@ static ritz_status climb(ladder *l, int64_t *low, int64_t *high)
 
 /* Whether one comes better than another of fewer modes; what bounds no longer
    rule out does. */
-static bool falls(const ritz_fit_candidate *now, const ritz_fit_candidate *then)
+static bool is_better_than(const ritz_fit_candidate *now,
+                           const ritz_fit_candidate *then)
 {
     if (now->ruled_out != then->ruled_out)
         return then->ruled_out;
@@ -449,7 +440,7 @@ static ritz_status climb_first(ladder *l, int64_t *low, int64_t *high)
     l->length =
         composite ? ritz_fit_rungs(l->fitter, method) : l->fitter->num_first;
     l->top = top_of(l);
-    RITZ_CHECK(climb(l, low, high));
+    RITZ_CHECK(climb_ladder(l, low, high));
     if (l->end == RITZ_FIT_END_NONE && l->top == l->length)
         l->end = whole;
     if (l->end == RITZ_FIT_END_NONE && l->fitter->component &&
@@ -471,7 +462,7 @@ static bool goes_on(const ladder *l)
 }
 
 /* Twice as long, of what is there or can be had. */
-static ritz_status lengthen(ladder *l)
+static ritz_status lengthen_ladder(ladder *l)
 {
     const int64_t twice = 2 * l->length + BESIDE;
 
@@ -490,22 +481,23 @@ static ritz_status climb_on(ladder *l, int64_t *low, int64_t *high)
     int64_t flat = 0;
 
     while (*high < 0 && goes_on(l)) {
-        flat = l->earlier >= 0 && falls(get(l, l->last), get(l, l->earlier))
+        flat = l->earlier >= 0 && is_better_than(find_candidate(l, l->last),
+                                                 find_candidate(l, l->earlier))
                    ? 0
                    : flat + 1;
         if (flat == MOST_FLAT) {
             l->end = RITZ_FIT_END_FLAT;
             break;
         }
-        RITZ_CHECK(lengthen(l));
+        RITZ_CHECK(lengthen_ladder(l));
         if (l->end == RITZ_FIT_END_NONE)
-            RITZ_CHECK(climb(l, low, high));
+            RITZ_CHECK(climb_ladder(l, low, high));
     }
     return RITZ_OK;
 }
 
 /* Between, and then below. */
-static ritz_status descend(const ladder *l, int64_t low, int64_t high)
+static ritz_status descend_ladder(const ladder *l, int64_t low, int64_t high)
 {
     int64_t below = l->fitter->scene ? SCENE_BELOW : COMPONENT_BELOW;
     int64_t at = 0;
@@ -513,12 +505,12 @@ static ritz_status descend(const ladder *l, int64_t low, int64_t high)
     while (high - low > 1) {
         int64_t t = low + (high - low) / 2;
 
-        RITZ_CHECK(rung(l, t, &at));
-        *(get(l, at)->feasible ? &high : &low) = t;
+        RITZ_CHECK(visit_rung(l, t, &at));
+        *(find_candidate(l, at)->feasible ? &high : &low) = t;
     }
     for (int64_t t = high - 1; t >= 0 && t >= high - below; t--) {
-        RITZ_CHECK(rung(l, t, &at));
-        if (get(l, at)->feasible)
+        RITZ_CHECK(visit_rung(l, t, &at));
+        if (find_candidate(l, at)->feasible)
             high = t;
     }
     return RITZ_OK;
@@ -530,51 +522,50 @@ static ritz_status descend(const ladder *l, int64_t low, int64_t high)
  */
 static ritz_status measure_largest(const ladder *l)
 {
-    ritz_status status = RITZ_OK;
     ritz_fitter *fitter = l->fitter;
     const bool thorough = fitter->request.thorough;
-    const int64_t at = ritz_fit_largest_of(l->fit, l->method, INT64_MAX);
+    const int64_t at =
+        ritz_fit_largest_of(l->fit, l->fit->method[l->method], INT64_MAX);
     ritz_fit_candidate *c = at < 0 ? NULL : &l->fit->candidate[at];
     ritz_fit_candidate again = {0};
+    ritz_status status = RITZ_OK;
 
     if (!c || !c->ruled_out)
         return RITZ_OK;
     fitter->request.thorough = true;
     status = ritz_fitter_try(fitter, c->method, c->modes, &again);
     fitter->request.thorough = thorough;
-    RITZ_TRY(status);
+    RITZ_CHECK(status);
     ritz_fit_candidate_free(c);
     *c = again;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                             bool on)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN_ARRAY int64_t *modes = NULL;
     ladder l = {.fitter = fitter, .fit = fit, .method = method};
     int64_t low = -1, high = -1;
 
-    RITZ_NEW(l.modes, fitter->num_bodies);
-    RITZ_TRY(climb_first(&l, &low, &high));
+    RITZ_CHECK_NEW(modes, fitter->num_bodies);
+    l.modes = modes;
+    RITZ_CHECK(climb_first(&l, &low, &high));
     l.on = on;
     if (on)
-        RITZ_TRY(climb_on(&l, &low, &high));
+        RITZ_CHECK(climb_on(&l, &low, &high));
     if (high >= 0)
-        RITZ_TRY(descend(&l, low, high));
+        RITZ_CHECK(descend_ladder(&l, low, high));
     ritz_fit_conclude(fit, method);
     fit->end[method] = high < 0 ? l.end : RITZ_FIT_END_NONE;
     if (fit->best[method] < 0) {
-        RITZ_TRY(measure_largest(&l));
+        RITZ_CHECK(measure_largest(&l));
         ritz_fit_conclude(fit, method);
     }
     if (fitter->scene && fit->best[method] >= 0 &&
         (!on || in_reach(&l, fit->best[method]))) {
-        RITZ_TRY(thin_modes(fitter, fit, method, &fit->best[method]));
+        RITZ_CHECK(thin_modes(fitter, fit, method));
         ritz_fit_conclude(fit, method);
     }
-done:
-    free(l.modes);
-    return status;
+    return RITZ_OK;
 }

@@ -22,7 +22,8 @@
 #include <string.h>
 
 /* A component by itself has no configurations. */
-static ritz_status refuse(const ritz_request *request, ritz_basis *out)
+static ritz_status refuse_component(const ritz_request *request,
+                                    ritz_basis *out)
 {
     (void)request;
     (void)out;
@@ -40,7 +41,7 @@ const ritz_method ritz_fit_compare = {
     .holds = "rigid motions; the rest is measured",
     .fails = "between configurations that are too far apart",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
-    .make = refuse,
+    .make = refuse_component,
 };
 
 const ritz_method *ritz_fit_method_find(const char *name)
@@ -54,7 +55,7 @@ const ritz_method *ritz_fit_method_find(const char *name)
  * nothing is asked of modes and there is damping to rank by. Static answers
  * come first where their gain is asked for.
  */
-static ritz_scene choosing(const ritz_fitter *f)
+static ritz_scene choose_modes(const ritz_fitter *f)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
     bool seen = true;             /* no tolerance is of modes */
@@ -76,28 +77,25 @@ static ritz_scene choosing(const ritz_fitter *f)
 }
 
 /* D and K without its dampers, as bases leave them. */
-static ritz_status make_bare(ritz_reduced *body)
+static ritz_status remove_dampers(ritz_reduced *body)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN_ARRAY double *zero = NULL;
     ritz_dampers *d = &body->dampers;
-    double *const c = d->c;
-    double *const k = d->k;
-    double *zero = NULL;
+    const ritz_dampers kept = *d;
+    ritz_status status = RITZ_OK;
 
-    RITZ_NEW(zero, d->count);
+    RITZ_CHECK_NEW(zero, d->count);
     d->c = d->k = zero;
     status = ritz_reduced_install(body);
-    d->c = c;
-    d->k = k;
-done:
-    free(zero);
+    d->c = kept.c;
+    d->k = kept.k;
     return status;
 }
 
 /* Rigid motions cost no energy: what K shows for them is rounding, and zero is
    taken for it, as in ritz_reduce. A damper's spring may be negative, and then
    a body by itself need not be free of energy where the system is. */
-static void settle(int64_t rigid, ritz_reduced *body)
+static void settle_rigid(int64_t rigid, ritz_reduced *body)
 {
     ritz_dense *K = &body->K;
 
@@ -109,18 +107,18 @@ static void settle(int64_t rigid, ritz_reduced *body)
 }
 
 /* A body in all its directions, nested. */
-static ritz_status nest(ritz_reduced *first, const ritz_dense *V, int64_t rigid,
-                        ritz_reduced *out)
+static ritz_status nest_directions(ritz_reduced *first, const ritz_dense *V,
+                                   int64_t rigid, ritz_reduced *out)
 {
     RITZ_OWN(ritz_reduced) whole = {0};
     RITZ_OWN_ARRAY int64_t *order = NULL;
 
-    RITZ_CHECK(make_bare(first));
+    RITZ_CHECK(remove_dampers(first));
     RITZ_CHECK(ritz_reduced_project(first, V, &whole));
     RITZ_CHECK_NEW(order, V->ncol);
     for (int64_t j = 0; j < V->ncol; j++)
         order[j] = j;
-    settle(rigid, &whole);
+    settle_rigid(rigid, &whole);
     (void)snprintf(whole.origin.method, sizeof whole.origin.method, "%s",
                    ritz_fit_compare.name);
     (void)snprintf(whole.origin.reference, sizeof whole.origin.reference, "%s",
@@ -146,110 +144,88 @@ static ritz_status keep_steps(const ritz_fitter *f,
             if (f->body[k] != composite->step[t])
                 continue;
             if (moves[k])
-                second->step[second->num_steps++] = k;
+                second->step[second->num_steps++].body = k;
             moves[k] = true;
         }
     return RITZ_OK;
 }
 
-static ritz_status make(ritz_fitter *f, double up_to_hz,
-                        ritz_fit_second *second)
+static ritz_status make_second(const ritz_fitter *f, double up_to_hz,
+                               ritz_fit_second *second)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_scene scene = choosing(f);
-    ritz_stage stage = {0};
-    ritz_composite composite = {0};
+    const ritz_scene scene = choose_modes(f);
+    RITZ_OWN(ritz_fit_joined) rich = {0};
+    RITZ_OWN(ritz_composite) composite = {0};
 
-    RITZ_TRY(ritz_fit_rich(f, up_to_hz, &stage));
-    stage.scene = &scene;
-    RITZ_TRY(ritz_composite_new(&stage, &composite));
-    RITZ_NEW(second->body, f->num_bodies);
-    RITZ_NEW(second->rigid, f->num_bodies);
+    RITZ_CHECK(ritz_fit_rich(f, up_to_hz, &rich));
+    rich.stage.scene = &scene;
+    RITZ_CHECK(ritz_composite_new(&rich.stage, &composite));
+    RITZ_CHECK(ritz_bodies_new(f->num_bodies, &second->body));
+    RITZ_CHECK_NEW(second->rigid, f->num_bodies);
     for (int64_t k = 0; k < f->num_bodies; k++) {
         const int64_t b = f->body[k];
 
         second->rigid[k] = composite.rigid[b];
-        RITZ_TRY_IN(ritz_fitter_body(f, k),
-                    nest(&stage.body[b], &composite.V[b], composite.rigid[b],
-                         &second->body[k]));
+        RITZ_CHECK_IN(ritz_fitter_body(f, k),
+                      nest_directions(&rich.stage.body[b], &composite.V[b],
+                                      composite.rigid[b],
+                                      &second->body.item[k]));
     }
-    RITZ_TRY(keep_steps(f, &composite, second));
-done:
-    ritz_fit_part(f, &stage, NULL);
-    ritz_composite_free(&composite);
-    return status;
+    return keep_steps(f, &composite, second);
 }
 
-ritz_status ritz_fit_second_make(ritz_fitter *f)
+ritz_status ritz_fit_second_make(ritz_fitter *f, double up_to_hz, bool *made)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_fit_watch watch = ritz_fit_start();
-    ritz_fit_second made = {.made = true, .rich_hz = f->rich_hz};
-
-    if (f->second.made)
-        return RITZ_OK;
-    status = make(f, f->rich_hz, &made);
-    if (status != RITZ_OK) { /* why, is said by every candidate */
-        ritz_fit_second_free(f->num_bodies, &made);
-        made.made = status != RITZ_ERR_MEMORY;
-        made.status = status;
-        (void)snprintf(made.refusal, sizeof made.refusal, "%s",
-                       ritz_error_message());
-    }
-    made.making = ritz_fit_since(watch);
-    f->second = made;
-    return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
-}
-
-ritz_status ritz_fit_second_remake(ritz_fitter *f, double up_to_hz, bool *made)
-{
-    ritz_status status = RITZ_OK;
     const ritz_fit_watch watch = ritz_fit_start();
     ritz_fit_second more = {.made = true, .rich_hz = up_to_hz};
+    ritz_status status = RITZ_OK;
 
-    *made = false;
-    status = make(f, up_to_hz, &more);
+    if (f->second.made && up_to_hz <= f->second.rich_hz)
+        return RITZ_OK;
+    status = make_second(f, up_to_hz, &more);
+    if (made)
+        *made = status == RITZ_OK;
     if (status != RITZ_OK) {
-        ritz_fit_second_free(f->num_bodies, &more);
-        return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+        ritz_fit_second_free(&more);
+        if (status == RITZ_ERR_MEMORY || f->second.made)
+            return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+        more = (ritz_fit_second){
+            .made = true, .status = status, .rich_hz = up_to_hz};
+        (void)snprintf(more.refusal, sizeof more.refusal, "%s",
+                       ritz_error_message());
     }
     more.making = ritz_fit_since(watch);
-    ritz_fit_second_free(f->num_bodies, &f->second);
+    ritz_fit_second_free(&f->second);
     f->second = more;
-    *made = true;
     return RITZ_OK;
 }
 
 ritz_status ritz_fit_second_body(ritz_fitter *f, int64_t k, int64_t count,
                                  ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_fit_second *second = &f->second;
-    int64_t most = 0;
+    int64_t rigid = 0, most = 0;
 
-    RITZ_TRY(ritz_fit_second_make(f));
-    RITZ_FAIL_IF(second->status != RITZ_OK, second->status, "%s",
-                 second->refusal);
-    most = second->body[k].K.ncol - second->rigid[k];
-    RITZ_FAIL_IF(count > most, RITZ_ERR_ARGUMENT,
-                 "'%s' has %" PRId64 " composite vectors, and not %" PRId64,
-                 ritz_fitter_body(f, k), most, count);
-    RITZ_FAIL_IF(second->rigid[k] + count == 0, RITZ_ERR_ARGUMENT,
-                 "'%s' would not move at all", ritz_fitter_body(f, k));
-    RITZ_TRY(
-        ritz_reduced_prefix(&second->body[k], second->rigid[k] + count, out));
+    RITZ_CHECK(ritz_fit_second_make(f, f->rich_hz, NULL));
+    RITZ_REFUSE_IF(second->status != RITZ_OK, second->status, "%s",
+                   second->refusal);
+    rigid = second->rigid[k];
+    most = second->body.item[k].K.ncol - rigid;
+    RITZ_REFUSE_IF(count > most, RITZ_ERR_ARGUMENT,
+                   "'%s' has %" PRId64 " composite vectors, and not %" PRId64,
+                   ritz_fitter_body(f, k), most, count);
+    RITZ_REFUSE_IF(rigid + count == 0, RITZ_ERR_ARGUMENT,
+                   "'%s' would not move at all", ritz_fitter_body(f, k));
+    RITZ_CHECK(ritz_reduced_prefix(&second->body.item[k], rigid + count, out));
     ritz_nested_free(&out->nested);
     (void)snprintf(out->origin.options, sizeof out->origin.options,
                    "modes %" PRId64, count);
-done:
-    return status;
+    return RITZ_OK;
 }
 
-void ritz_fit_second_free(int64_t num_bodies, ritz_fit_second *second)
+void ritz_fit_second_free(ritz_fit_second *second)
 {
-    for (int64_t k = 0; second->body && k < num_bodies; k++)
-        ritz_reduced_free(&second->body[k]);
-    free(second->body);
+    ritz_bodies_free(&second->body);
     free(second->rigid);
     free(second->step);
     *second = (ritz_fit_second){0};
@@ -266,7 +242,7 @@ void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
 {
     const ritz_fit_second *second = &fitter->second;
     const bool composite = method == &ritz_fit_compare;
-    const int64_t *step = composite ? second->step : fitter->step;
+    const ritz_fit_step *step = composite ? second->step : fitter->step;
 
     if (!fitter->scene) {
         modes[0] = rung;
@@ -275,5 +251,5 @@ void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
     for (int64_t k = 0; k < fitter->num_bodies; k++)
         modes[k] = composite && second->rigid && second->rigid[k] == 0;
     for (int64_t k = 0; k < rung && k < ritz_fit_rungs(fitter, method); k++)
-        modes[step[k]]++;
+        modes[step[k].body]++;
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
+void ritz_configuration_name(int64_t count, const char *sweep, size_t stride,
                              const double *setting, char out[RITZ_NAME_SIZE])
 {
     size_t used = 0;
@@ -17,7 +17,8 @@ void ritz_configuration_name(int64_t count, const char (*sweep)[RITZ_NAME_SIZE],
     out[0] = '\0';
     for (int64_t k = 0; k < count && used < RITZ_NAME_SIZE; k++)
         used += (size_t)snprintf(out + used, RITZ_NAME_SIZE - used, "%s%s=%.9g",
-                                 k > 0 ? "," : "", sweep[k], setting[k]);
+                                 k > 0 ? "," : "", sweep + (size_t)k * stride,
+                                 setting[k]);
     if (count == 0)
         snprintf(out, RITZ_NAME_SIZE, "fixed");
 }

@@ -167,7 +167,7 @@ static void name_row(const ritz_stage *stage, const ritz_comparison *c,
     snprintf(out, RITZ_NAME_SIZE, "as joined");
     if (stage->scene->num_sweeps > 0)
         ritz_configuration_name(system->num_sweeps,
-                                (const char(*)[RITZ_NAME_SIZE])system->sweep,
+                                (const char *)system->sweep, RITZ_NAME_SIZE,
                                 row->setting, out);
 }
 

@@ -393,12 +393,12 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
 
 /* Orders and errors of the answer with its bodies cut to first columns. */
 static void set_step(cli_run *run, const ritz_fitter *fitter,
-                     const ritz_fit_row *row)
+                     const ritz_fit_candidate *row)
 {
     sink_object(run, NULL);
     sink_object(run, "orders");
     for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++)
-        sink_set(run, ritz_fitter_body(fitter, k), "%ld", row->first[k]);
+        sink_set(run, ritz_fitter_body(fitter, k), "%ld", row->modes[k]);
     sink_end(run);
     sink_set(run, "columns,error,feasible", "%ld %g %d", row->columns,
              row->ratio, row->feasible);
@@ -410,15 +410,15 @@ static void set_step(cli_run *run, const ritz_fitter *fitter,
 }
 
 /* " %9ld" of each body, or its name in the head. */
-static void print_bodies(const ritz_fitter *fitter, const ritz_fit_row *row,
-                         size_t size, char *out)
+static void print_bodies(const ritz_fitter *fitter,
+                         const ritz_fit_candidate *row, size_t size, char *out)
 {
     out[0] = '\0';
     for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++) {
         if (strlen(out) + 16 >= size)
             return;
         if (row)
-            sink_append(out, size, " %9ld", row->first[k]);
+            sink_append(out, size, " %9ld", row->modes[k]);
         else
             sink_append(out, size, " %9.9s", ritz_fitter_body(fitter, k));
     }
@@ -426,7 +426,7 @@ static void print_bodies(const ritz_fitter *fitter, const ritz_fit_row *row,
 
 /* "        26        20        46     42      0.47 frequency" */
 static void say_step(const cli_run *run, const ritz_fitter *fitter,
-                     const ritz_fit_row *row)
+                     const ritz_fit_candidate *row)
 {
     char orders[256];
     const char *word =
@@ -456,7 +456,7 @@ static void say_enough(cli_run *run, const ritz_fitter *fitter,
     for (int64_t k = 0;
          k < path->num_bodies && strlen(orders) + 80 < sizeof orders; k++)
         sink_append(orders, sizeof orders, "%s%s to %ld", k > 0 ? ", " : "",
-                    ritz_fitter_body(fitter, k), path->row[last].first[k]);
+                    ritz_fitter_body(fitter, k), path->row[last].modes[k]);
     cli_say(run, "\nThe tolerance holds down to order %ld: cut %s.",
             path->row[last].order, orders);
 }
@@ -488,24 +488,17 @@ static ritz_status write_scene(cli_run *run, const char *prefix,
                                const ritz_scene *scene, ritz_fitter *fitter,
                                const ritz_fit_candidate *chosen)
 {
-    ritz_status status = RITZ_OK;
-    ritz_system system = {0};
-    ritz_fit_path path = {0};
-    ritz_reduced *body = NULL;
+    RITZ_OWN(ritz_system) system = {0};
+    RITZ_OWN(ritz_fit_path) path = {0};
+    RITZ_OWN(ritz_bodies) body = {0};
 
-    RITZ_TRY(ritz_fitter_system(fitter, chosen, &body, &path, &system));
+    RITZ_CHECK(ritz_fitter_system(fitter, chosen, &body, &path, &system));
     say_path(run, fitter, &path);
-    RITZ_TRY(model_write_bodies(run, prefix, scene, body));
+    RITZ_CHECK(model_write_bodies(run, prefix, scene, body.item));
     if (run->output)
-        RITZ_TRY(
+        RITZ_CHECK(
             ritz_container_write_system(run->output, &system, cli_stamp(run)));
-done:
-    for (int64_t k = 0; body && k < scene->num_components; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    ritz_fit_path_free(&path);
-    ritz_system_free(&system);
-    return status;
+    return RITZ_OK;
 }
 
 /* Equal order: all methods once more, at one number of columns. */

@@ -30,7 +30,7 @@ static void name_middle(const ritz_system *system, const ritz_track_event *e,
 
     for (int64_t k = 0; k < count; k++)
         middle[k] = 0.5 * (a->setting[k] + b->setting[k]);
-    ritz_configuration_name(count, (const char(*)[RITZ_NAME_SIZE])system->sweep,
+    ritz_configuration_name(count, (const char *)system->sweep, RITZ_NAME_SIZE,
                             middle, out);
 }
 

@@ -113,9 +113,9 @@ static void its_bodies_are_nested_and_say_so(void **state)
     answer_system(&a, chosen);
     assert_int_equal(a.system.configuration[0].K.ncol, chosen->order);
     for (int k = 0; k < 2; k++) {
-        assert_string_equal(a.body[k].origin.method, "compare");
-        assert_true(a.body[k].nested.smallest > 0);
-        assert_true(a.body[k].T.ncol == a.body[k].K.ncol);
+        assert_string_equal(a.body.item[k].origin.method, "compare");
+        assert_true(a.body.item[k].nested.smallest > 0);
+        assert_true(a.body.item[k].T.ncol == a.body.item[k].K.ncol);
     }
     assert_int_equal(answer_columns(&a), chosen->columns);
     answer_free(&a);
@@ -166,11 +166,11 @@ static void its_ladder_ends_with_all_directions(void **state)
 
     (void)state;
     open_beams(2, 2, &a);
-    assert_ok(ritz_fit_second_make(a.fitter));
+    assert_ok(ritz_fit_second_make(a.fitter, a.fitter->rich_hz, NULL));
     ritz_fit_rung(a.fitter, &ritz_fit_compare,
                   ritz_fit_rungs(a.fitter, &ritz_fit_compare), modes);
     for (int k = 0; k < 2; k++)
-        assert_int_equal(modes[k], a.fitter->second.body[k].K.ncol);
+        assert_int_equal(modes[k], a.fitter->second.body.item[k].K.ncol);
     assert_ok(ritz_fitter_try(a.fitter, &ritz_fit_compare, modes, &a.whole));
     assert_string_equal(a.whole.refusal, "");
     assert_true(a.whole.feasible);
@@ -241,7 +241,7 @@ static ritz_status make_anew(ritz_fitter *fitter)
     ritz_status status = RITZ_OK;
     ritz_reduced body = {0};
 
-    ritz_fit_second_free(fitter->num_bodies, &fitter->second);
+    ritz_fit_second_free(&fitter->second);
     RITZ_TRY(ritz_fit_second_body(fitter, 1, 2, &body));
 done:
     ritz_reduced_free(&body);

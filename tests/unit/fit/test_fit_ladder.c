@@ -7,7 +7,6 @@
 #include "folder.h"
 
 #include "fit/fitter.h"
-#include "fit/search.h"
 
 #include <stdlib.h>
 
@@ -65,14 +64,14 @@ static void it_goes_on_to_the_last_mode(void **state)
     open_beams(fixed, "frequency=1e-3", &a);
     while (end == RITZ_FIT_END_NONE) {
         const double last = a.fitter->num_steps > 0
-                                ? a.fitter->step_hz[a.fitter->num_steps - 1]
+                                ? a.fitter->step[a.fitter->num_steps - 1].hertz
                                 : 0.0;
 
         before = a.fitter->num_steps;
         assert_ok(ritz_fit_extend(a.fitter, &end));
         assert_true(a.fitter->num_steps >= before);
         for (int64_t t = before; t < a.fitter->num_steps; t++)
-            assert_true(a.fitter->step_hz[t] >= last * (1.0 - 1e-9));
+            assert_true(a.fitter->step[t].hertz >= last * (1.0 - 1e-9));
     }
     assert_int_equal(end, RITZ_FIT_END_WHOLE);
     assert_int_equal(a.fitter->num_steps, a.fitter->model[0].num_dofs +

@@ -4,7 +4,6 @@
 #include "answers.h"
 #include "dualspin.h"
 #include "fit/fitter.h"
-#include "fit/order.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
@@ -32,7 +31,7 @@ static void assert_path_holds(const answer *a)
     int64_t order[ANSWER_BODIES];
 
     for (int64_t t = 0; t < a->path.count; t++) {
-        const ritz_fit_row *row = &a->path.row[t];
+        const ritz_fit_candidate *row = &a->path.row[t];
         ritz_measures found = {0};
 
         assert_string_equal(row->refusal, "");
@@ -77,8 +76,8 @@ static void a_cut_spacecraft_is_as_far_off_as_the_path_says(void **state)
     assert_int_equal(a.fitter->num_places, 2 + 2);
     assert_int_equal(a.path.count, 3 + 2 + 1);
     assert_path_holds(&a);
-    assert_int_equal(a.body[2].nested.smallest, 0); /* rigid, as it was */
-    assert_int_equal(a.body[2].K.ncol, 6);
+    assert_int_equal(a.body.item[2].nested.smallest, 0); /* rigid, as it was */
+    assert_int_equal(a.body.item[2].K.ncol, 6);
     answer_free(&a);
 }
 
@@ -97,18 +96,18 @@ static void a_path_leads_from_the_answer_to_what_must_stay(void **state)
     assert_int_equal(a.path.row[0].order, a.whole.order);
     assert_near(a.path.row[0].ratio, a.whole.ratio, 1e-9);
     for (int64_t t = 0; t < a.path.count; t++) {
-        const ritz_fit_row *row = &a.path.row[t];
+        const ritz_fit_candidate *row = &a.path.row[t];
 
         assert_int_equal(row->columns, a.whole.columns - t);
-        assert_int_equal(row->first[0] + row->first[1], row->columns);
+        assert_int_equal(row->modes[0] + row->modes[1], row->columns);
         assert_int_equal(row->order, a.whole.order - t);
         assert_true(row->worst >= 0);
         assert_int_equal(row->feasible, row->ratio <= 1.0);
     }
     for (int k = 0; k < 2; k++) {
-        const ritz_reduced *body = &a.body[k];
+        const ritz_reduced *body = &a.body.item[k];
 
-        assert_int_equal(a.path.row[a.path.count - 1].first[k], fixed[k]);
+        assert_int_equal(a.path.row[a.path.count - 1].modes[k], fixed[k]);
         assert_int_equal(body->nested.smallest, fixed[k]);
         assert_int_equal(body->T.ncol, body->K.ncol);
         for (int64_t j = 0; j < body->K.ncol; j++)
@@ -130,8 +129,8 @@ static void bodies_note_what_the_system_comes_to(void **state)
     answer_make(fit_scenes_beams, &request, &ritz_method_craig_bampton, modes,
                 &a);
     for (int k = 0; k < 2; k++)
-        for (int64_t r = a.body[k].nested.smallest; r <= a.body[k].K.ncol;
-             r++) {
+        for (int64_t r = a.body.item[k].nested.smallest;
+             r <= a.body.item[k].K.ncol; r++) {
             int64_t order[] = {0, 0};
             ritz_reduced prefix = {0};
             ritz_measures found = {0};
@@ -139,7 +138,7 @@ static void bodies_note_what_the_system_comes_to(void **state)
 
             order[k] = r;
             answer_measure(&a, order, true, &found);
-            assert_ok(ritz_reduced_prefix(&a.body[k], r, &prefix));
+            assert_ok(ritz_reduced_prefix(&a.body.item[k], r, &prefix));
             assert_int_equal(prefix.errors.count, found.count);
             for (int64_t j = 0; j < found.count; j++) {
                 snprintf(name, sizeof name, "system-%s", found.item[j].name);
@@ -161,7 +160,7 @@ static void assert_least_went(const answer *a, const int64_t *before,
     const double least = answer_excess(a, after);
 
     for (int k = 0; k < 2; k++)
-        for (int64_t j = a->body[k].nested.smallest; j < before[k]; j++) {
+        for (int64_t j = a->body.item[k].nested.smallest; j < before[k]; j++) {
             int64_t order[] = {before[0], before[1]};
 
             answer_turn(a, k, j, before[k] - 1);
@@ -210,8 +209,8 @@ static void of_a_body_without_interface_one_column_stays(void **state)
     fit_scenes_store_beams(4, 6);
     answer_make(fit_scenes_beams, &request, &ritz_method_normal_modes, modes,
                 &a);
-    assert_int_equal(a.body[0].nested.smallest, 1);
-    assert_int_equal(a.body[1].nested.smallest, 3); /* rigid motion */
+    assert_int_equal(a.body.item[0].nested.smallest, 1);
+    assert_int_equal(a.body.item[1].nested.smallest, 3); /* rigid motion */
     assert_int_equal(a.path.count, 4 + 4 + 1);
     assert_int_equal(a.path.row[a.path.count - 1].columns, 1 + 3);
     answer_free(&a);
@@ -233,8 +232,8 @@ static void of_many_cuts_some_are_measured_and_the_smallest_is(void **state)
     assert_int_equal(a.path.row[1].columns, 14);
     assert_int_equal(a.path.row[2].columns, 10);
     assert_int_equal(a.path.row[3].columns, 9);
-    assert_int_equal(a.body[0].nested.count, 2); /* 7 and 3 columns */
-    assert_int_equal(a.body[1].nested.count, 3); /* 11, 7 and 6 */
+    assert_int_equal(a.body.item[0].nested.count, 2); /* 7 and 3 columns */
+    assert_int_equal(a.body.item[1].nested.count, 3); /* 11, 7 and 6 */
     assert_path_holds(&a);
     answer_free(&a);
 }
@@ -254,15 +253,13 @@ static const char tiny[] =
 static ritz_status system_once(const answer *a)
 {
     ritz_status status = RITZ_OK;
-    ritz_reduced *body = NULL;
+    ritz_bodies body = {0};
     ritz_fit_path path = {0};
     ritz_system system = {0};
 
     RITZ_TRY(ritz_fitter_system(a->fitter, &a->whole, &body, &path, &system));
 done:
-    for (int64_t k = 0; body && k < a->scene.num_components; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
+    ritz_bodies_free(&body);
     ritz_fit_path_free(&path);
     ritz_system_free(&system);
     return status;

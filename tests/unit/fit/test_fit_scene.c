@@ -50,7 +50,7 @@ static void the_answer_is_a_system_of_nested_bodies(void **state)
     assert_int_equal(a.system.num_configurations, 1);
     assert_int_equal(a.system.configuration[0].K.ncol, chosen->order);
     for (int k = 0; k < 2; k++)
-        assert_true(a.body[k].nested.smallest > 0);
+        assert_true(a.body.item[k].nested.smallest > 0);
     assert_int_equal(answer_columns(&a), chosen->columns);
     answer_free(&a);
 }

@@ -3,7 +3,6 @@
 
 #include "answers.h"
 #include "fit/fitter.h"
-#include "fit/order.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
@@ -77,14 +76,14 @@ static void a_cut_of_another_scene_is_refused(void **state)
 {
     const int64_t modes[] = {1, 1};
     answer a = {0};
-    ritz_reduced body[2] = {0};
+    ritz_bodies body = {0};
 
     (void)state;
     open_beams(2, 2, "response=1", &a);
     assert_ok(ritz_fitter_try(a.fitter, one[0], modes, &a.whole));
     a.whole.columns = 1;
     a.whole.left_out = 100;
-    assert_fails(ritz_fit_make_bodies(a.fitter, &a.whole, body),
+    assert_fails(ritz_fit_make_bodies(a.fitter, &a.whole, &body),
                  RITZ_ERR_ARGUMENT, "no cut of it has 1 columns");
     answer_free(&a);
 }
