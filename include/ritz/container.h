@@ -88,49 +88,28 @@ void ritz_container_members(const char *kind, const void *object,
                                         void *data),
                             void *data);
 
-/* One pair for each kind. Reading a component settles it. */
-ritz_status ritz_container_read_component(const char *path,
-                                          ritz_component *out);
-ritz_status ritz_container_write_component(const char *path,
-                                           const ritz_component *component,
-                                           const ritz_stamp *stamp);
-ritz_status ritz_container_read_basis(const char *path, ritz_basis *out);
-ritz_status ritz_container_write_basis(const char *path,
-                                       const ritz_basis *basis,
-                                       const char *units,
-                                       const ritz_stamp *stamp);
-ritz_status ritz_container_read_reduced(const char *path, ritz_reduced *out);
-ritz_status ritz_container_write_reduced(const char *path,
-                                         const ritz_reduced *reduced,
-                                         const ritz_stamp *stamp);
-ritz_status ritz_container_read_system(const char *path, ritz_system *out);
-ritz_status ritz_container_write_system(const char *path,
-                                        const ritz_system *system,
-                                        const ritz_stamp *stamp);
-ritz_status ritz_container_read_response(const char *path, ritz_response *out);
-ritz_status ritz_container_write_response(const char *path,
-                                          const ritz_response *response,
-                                          const ritz_stamp *stamp);
-ritz_status ritz_container_read_state_space(const char *path,
-                                            ritz_state_space *out);
-ritz_status ritz_container_write_state_space(const char *path,
-                                             const ritz_state_space *model,
-                                             const ritz_stamp *stamp);
-ritz_status ritz_container_read_simulation(const char *path,
-                                           ritz_simulation *out);
-ritz_status ritz_container_write_simulation(const char *path,
-                                            const ritz_simulation *simulation,
-                                            const ritz_stamp *stamp);
-ritz_status ritz_container_read_ranking(const char *path, ritz_ranking *out);
-ritz_status ritz_container_write_ranking(const char *path,
-                                         const ritz_ranking *ranking,
-                                         const ritz_stamp *stamp);
+/*
+ * One pair for each kind of container, such as
+ *
+ *     ritz_container_read_component(path, &component)
+ *     ritz_container_write_component(path, &component, &stamp)
+ *
+ * Reading a component settles it. A file of one ranking holds it at its root.
+ */
+#define RITZ_CONTAINER_PAIR(kind)                                              \
+    ritz_status ritz_container_read_##kind(const char *path,                   \
+                                           ritz_##kind *out);                  \
+    ritz_status ritz_container_write_##kind(                                   \
+        const char *path, const ritz_##kind *object, const ritz_stamp *stamp)
 
-/** The same of several in one file; a file of one is as above. */
-ritz_status ritz_container_read_rankings(const char *path, ritz_rankings *out);
-ritz_status ritz_container_write_rankings(const char *path,
-                                          const ritz_rankings *rankings,
-                                          const ritz_stamp *stamp);
+RITZ_CONTAINER_PAIR(component);
+RITZ_CONTAINER_PAIR(basis);
+RITZ_CONTAINER_PAIR(reduced);
+RITZ_CONTAINER_PAIR(system);
+RITZ_CONTAINER_PAIR(response);
+RITZ_CONTAINER_PAIR(state_space);
+RITZ_CONTAINER_PAIR(simulation);
+RITZ_CONTAINER_PAIR(rankings);
 
 #pragma GCC visibility pop
 

@@ -692,6 +692,7 @@ typedef struct ritz_basis {
     double among_hz; /* they are made of modes up to here alone; 0: of all */
     ritz_columns columns;
     ritz_origin origin;
+    char units[RITZ_NAME_SIZE];      /* of the model, "kg m s" */
     char remark[4 * RITZ_NAME_SIZE]; /* what a user should know; not stored */
 } ritz_basis;
 

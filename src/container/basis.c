@@ -63,28 +63,8 @@ static const ritz_member members[] = {
 
 const ritz_schema ritz_schema_basis = {
     .name = "basis",
+    .units = offsetof(ritz_basis, units),
     .sizes = sizes,
     .members = members,
     .settle = settle_basis,
 };
-
-ritz_status ritz_container_read_basis(const char *path, ritz_basis *out)
-{
-    ritz_basis basis = {0};
-    ritz_status status =
-        ritz_schema_read(path, &ritz_schema_basis, &basis, NULL);
-
-    if (status == RITZ_OK)
-        *out = basis;
-    else
-        ritz_basis_free(&basis);
-    return status;
-}
-
-ritz_status ritz_container_write_basis(const char *path,
-                                       const ritz_basis *basis,
-                                       const char *units,
-                                       const ritz_stamp *stamp)
-{
-    return ritz_schema_write(path, &ritz_schema_basis, basis, units, stamp);
-}

@@ -120,28 +120,8 @@ static const ritz_member members[] = {
 
 const ritz_schema ritz_schema_component = {
     .name = "component",
+    .units = offsetof(ritz_component, units),
     .sizes = sizes,
     .members = members,
     .settle = settle_component,
 };
-
-ritz_status ritz_container_read_component(const char *path, ritz_component *out)
-{
-    ritz_component component = {0};
-    ritz_status status = ritz_schema_read(path, &ritz_schema_component,
-                                          &component, component.units);
-
-    if (status == RITZ_OK)
-        *out = component;
-    else
-        ritz_component_free(&component);
-    return status;
-}
-
-ritz_status ritz_container_write_component(const char *path,
-                                           const ritz_component *component,
-                                           const ritz_stamp *stamp)
-{
-    return ritz_schema_write(path, &ritz_schema_component, component,
-                             component->units, stamp);
-}

@@ -12,14 +12,8 @@
 
 enum { FORMAT = 1 };
 
-/* A container being written, under a name of its own until it is complete. */
-typedef struct container_writer {
-    hid_t file;
-    ritz_draft draft;
-} container_writer;
-
 /* A short command is a plain attribute. */
-static ritz_status set_command(hid_t file, const char *command)
+static ritz_status write_command(hid_t file, const char *command)
 {
     RITZ_OWN_ARRAY char *copy = NULL;
     size_t size = strlen(command) + 1;
@@ -31,149 +25,147 @@ static ritz_status set_command(hid_t file, const char *command)
     return ritz_h5_set_texts(file, "command", 1, &copy);
 }
 
-static void free_writer(container_writer *writer)
+/* The attributes that every container begins with. */
+static ritz_status write_head(hid_t file, const char *kind, const char *units,
+                              const ritz_stamp *stamp)
 {
-    ritz_h5_close(writer->file);
-    ritz_draft_free(&writer->draft);
-    *writer = (container_writer){0};
-}
-
-static ritz_status new_writer(const char *path, const char *kind,
-                              const char *units, const ritz_stamp *stamp,
-                              container_writer *out)
-{
-    ritz_status status = RITZ_OK;
-    container_writer writer = {0};
     const int64_t format = FORMAT;
 
-    RITZ_TRY(ritz_draft_new(path, &writer.draft));
-    RITZ_TRY(ritz_h5_create(writer.draft.name, &writer.file));
-    RITZ_TRY(ritz_h5_set_text(writer.file, "ritz_kind", kind));
-    RITZ_TRY(ritz_h5_set(writer.file, "ritz_format", H5T_STD_I64LE,
-                         ritz_h5_scalar(), &format));
-    RITZ_TRY(ritz_h5_set_text(writer.file, "ritz_version", ritz_version()));
-    RITZ_TRY(set_command(writer.file, stamp->command));
-    RITZ_TRY(ritz_h5_set_texts(writer.file, "inputs", stamp->num_inputs,
-                               stamp->input));
-    RITZ_TRY(ritz_h5_set_text(writer.file, "units", units));
-    RITZ_MOVE(*out, writer);
-done:
-    free_writer(&writer);
-    return status;
+    RITZ_CHECK(ritz_h5_set_text(file, "ritz_kind", kind));
+    RITZ_CHECK(ritz_h5_set(file, "ritz_format", H5T_STD_I64LE, ritz_h5_scalar(),
+                           &format));
+    RITZ_CHECK(ritz_h5_set_text(file, "ritz_version", ritz_version()));
+    RITZ_CHECK(write_command(file, stamp->command));
+    RITZ_CHECK(
+        ritz_h5_set_texts(file, "inputs", stamp->num_inputs, stamp->input));
+    return ritz_h5_set_text(file, "units", units);
 }
 
-/* HDF5 writes what it has buffered: on a full disk closing fails. */
-static ritz_status finish_writer(container_writer *writer)
+/* A file is written under a name of its own until it is complete. */
+static ritz_status write_container(const char *path, const ritz_schema *schema,
+                                   const void *object, const ritz_stamp *stamp)
 {
-    herr_t closed = H5Fclose(writer->file);
+    RITZ_OWN(ritz_draft) draft = {0};
+    RITZ_OWN(hid_t) file = 0;
+    const char *units =
+        schema->units > 0 ? (const char *)object + schema->units : "";
+    herr_t closed = 0;
 
-    writer->file = 0;
+    if (schema->check)
+        RITZ_CHECK(schema->check(object));
+    RITZ_CHECK(ritz_draft_new(path, &draft));
+    RITZ_CHECK(ritz_h5_create(draft.name, &file));
+    RITZ_CHECK(write_head(file, schema->name, units, stamp));
+    RITZ_CHECK(ritz_schema_move(
+        &(ritz_place){.at = file, .schema = schema, .object = object}));
+    closed = H5Fclose(file); /* what is buffered is written now */
+    file = 0;
     RITZ_REFUSE_IF(closed < 0, RITZ_ERR_FILE,
                    "cannot be written to its end, is the disk full?");
-    return ritz_draft_publish(&writer->draft);
+    return ritz_draft_publish(&draft);
 }
 
 /* Open a container of any kind that this release reads. */
-static ritz_status open_any(const char *path, char kind[RITZ_NAME_SIZE],
-                            hid_t *out)
+static ritz_status open_container(const char *path, char kind[RITZ_NAME_SIZE],
+                                  hid_t *out)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(hid_t) file = 0;
     int64_t format = 0;
-    hid_t file = 0;
 
-    RITZ_TRY(ritz_h5_open(path, &file));
-    RITZ_FAIL_IF(H5Aexists(file, "ritz_kind") <= 0, RITZ_ERR_FORMAT,
-                 "an HDF5 file, but no container: it has no 'ritz_kind'");
-    RITZ_TRY(ritz_h5_get_text(file, "ritz_kind", RITZ_NAME_SIZE, kind));
-    RITZ_TRY(ritz_h5_get(file, "ritz_format", H5T_STD_I64LE, 1, &format));
-    RITZ_FAIL_IF(format != FORMAT, RITZ_ERR_FORMAT,
-                 "is of format %" PRId64 ", this release reads %d", format,
-                 FORMAT);
-    *out = file;
-    file = 0;
-done:
-    ritz_h5_close(file);
-    return status;
+    RITZ_CHECK(ritz_h5_open(path, &file));
+    RITZ_REFUSE_IF(H5Aexists(file, "ritz_kind") <= 0, RITZ_ERR_FORMAT,
+                   "an HDF5 file, but no container: it has no 'ritz_kind'");
+    RITZ_CHECK(ritz_h5_get_text(file, "ritz_kind", RITZ_NAME_SIZE, kind));
+    RITZ_CHECK(ritz_h5_get(file, "ritz_format", H5T_STD_I64LE, 1, &format));
+    RITZ_REFUSE_IF(format != FORMAT, RITZ_ERR_FORMAT,
+                   "is of format %" PRId64 ", this release reads %d", format,
+                   FORMAT);
+    RITZ_MOVE(*out, file);
+    return RITZ_OK;
 }
 
-ritz_status ritz_schema_write(const char *path, const ritz_schema *schema,
-                              const void *object, const char *units,
-                              const ritz_stamp *stamp)
+/* Read an empty object, which may be filled in part on failure. */
+static ritz_status read_container(const char *path, const ritz_schema *schema,
+                                  void *object)
 {
-    ritz_status status = RITZ_OK;
-    container_writer writer = {0};
-    ritz_place place = {.schema = schema, .object = object};
-
-    RITZ_TRY(new_writer(path, schema->name, units, stamp, &writer));
-    place.at = writer.file;
-    RITZ_TRY(ritz_schema_move(&place));
-    RITZ_TRY(finish_writer(&writer));
-done:
-    free_writer(&writer);
-    return ritz_context(status, path);
-}
-
-ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
-                             void *object, char *units)
-{
-    ritz_status status = RITZ_OK;
-    ritz_place place = {.schema = schema, .object = object, .target = object};
+    RITZ_OWN(hid_t) file = 0;
     ritz_name found = "";
 
-    RITZ_TRY(open_any(path, found, &place.at));
-    RITZ_FAIL_IF(strcmp(found, schema->name) != 0, RITZ_ERR_FORMAT,
-                 "holds a %s where a %s is due", found, schema->name);
-    if (units)
-        RITZ_TRY(ritz_h5_get_text(place.at, "units", RITZ_NAME_SIZE, units));
-    RITZ_TRY(ritz_schema_move(&place));
-done:
-    ritz_h5_close(place.at);
-    return ritz_context(status, path);
+    RITZ_CHECK(open_container(path, found, &file));
+    RITZ_REFUSE_IF(strcmp(found, schema->name) != 0, RITZ_ERR_FORMAT,
+                   "holds a %s where a %s is due", found, schema->name);
+    if (schema->units > 0)
+        RITZ_CHECK(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE,
+                                    (char *)object + schema->units));
+    return ritz_schema_move(&(ritz_place){
+        .at = file, .schema = schema, .object = object, .target = object});
 }
+
+/* The functions of a kind of container: its pair, declared in the header. */
+#define DEFINE_KIND(kind)                                                      \
+    ritz_status ritz_container_read_##kind(const char *path, ritz_##kind *out) \
+    {                                                                          \
+        RITZ_OWN(ritz_##kind) object = {0};                                    \
+                                                                               \
+        RITZ_CHECK_IN(path,                                                    \
+                      read_container(path, &ritz_schema_##kind, &object));     \
+        RITZ_MOVE(*out, object);                                               \
+        return RITZ_OK;                                                        \
+    }                                                                          \
+                                                                               \
+    ritz_status ritz_container_write_##kind(                                   \
+        const char *path, const ritz_##kind *object, const ritz_stamp *stamp)  \
+    {                                                                          \
+        return ritz_context(                                                   \
+            write_container(path, &ritz_schema_##kind, object, stamp), path);  \
+    }
+
+DEFINE_KIND(component)
+DEFINE_KIND(basis)
+DEFINE_KIND(reduced)
+DEFINE_KIND(state_space)
+DEFINE_KIND(system)
+DEFINE_KIND(response)
+DEFINE_KIND(simulation)
+DEFINE_KIND(rankings)
 
 bool ritz_container_is(const char *path)
 {
-    struct stat there;
-    hid_t file = -1;
-    bool is = false;
+    RITZ_OWN(hid_t) file = 0;
 
-    ritz_h5_begin();
-    if (stat(path, &there) == 0 && S_ISREG(there.st_mode))
-        file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    is = file >= 0 && H5Aexists(file, "ritz_kind") > 0;
-    ritz_h5_close(file);
-    return is;
+    return ritz_h5_open(path, &file) == RITZ_OK &&
+           H5Aexists(file, "ritz_kind") > 0;
+}
+
+static ritz_status read_head(const char *path, ritz_summary *out)
+{
+    RITZ_OWN(hid_t) file = 0;
+    RITZ_OWN(ritz_summary) summary = {0};
+    RITZ_OWN(ritz_texts) command = {0}, inputs = {0};
+
+    RITZ_CHECK(open_container(path, summary.kind, &file));
+    RITZ_CHECK(ritz_h5_get_text(file, "ritz_version", RITZ_NAME_SIZE,
+                                summary.version));
+    RITZ_CHECK(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE, summary.units));
+    RITZ_CHECK(ritz_h5_get_texts(file, "command", &command));
+    RITZ_REFUSE_IF(command.count != 1, RITZ_ERR_FORMAT,
+                   "'command' is not one text");
+    RITZ_CHECK(ritz_h5_get_texts(file, "inputs", &inputs));
+    RITZ_MOVE(summary.command, command.text[0]);
+    summary.num_inputs = inputs.count;
+    RITZ_MOVE(summary.input, inputs.text);
+    RITZ_MOVE(*out, summary);
+    return RITZ_OK;
 }
 
 ritz_status ritz_container_summary(const char *path, ritz_summary *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_summary summary = {0};
-    char **command = NULL;
-    int64_t count = 0;
-    hid_t file = 0;
-
-    RITZ_TRY(open_any(path, summary.kind, &file));
-    RITZ_TRY(ritz_h5_get_text(file, "ritz_version", RITZ_NAME_SIZE,
-                              summary.version));
-    RITZ_TRY(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE, summary.units));
-    RITZ_TRY(ritz_h5_get_texts(file, "command", &count, &command));
-    RITZ_FAIL_IF(count != 1, RITZ_ERR_FORMAT, "'command' is not one text");
-    summary.command = command[0];
-    command[0] = NULL;
-    RITZ_TRY(
-        ritz_h5_get_texts(file, "inputs", &summary.num_inputs, &summary.input));
-    RITZ_MOVE(*out, summary);
-done:
-    ritz_h5_free_texts(count, command);
-    ritz_summary_free(&summary);
-    ritz_h5_close(file);
-    return ritz_context(status, path);
+    return ritz_context(read_head(path, out), path);
 }
 
 void ritz_summary_free(ritz_summary *summary)
 {
     free(summary->command);
-    ritz_h5_free_texts(summary->num_inputs, summary->input);
+    ritz_texts_free(&(ritz_texts){summary->num_inputs, summary->input});
     *summary = (ritz_summary){0};
 }

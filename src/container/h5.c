@@ -50,32 +50,24 @@ static hid_t plan_object(hid_t kind)
 
 ritz_status ritz_h5_create(const char *path, hid_t *out)
 {
-    ritz_status status = RITZ_OK;
-    hid_t plan = 0;
-    hid_t bounds = 0;
+    RITZ_OWN(hid_t) plan = 0, bounds = 0;
 
     ritz_h5_begin();
     plan = plan_object(H5P_FILE_CREATE);
     bounds = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
     *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
-    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);
-done:
-    ritz_h5_close(plan);
-    ritz_h5_close(bounds);
-    return status;
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);
+    return RITZ_OK;
 }
 
 ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out)
 {
-    ritz_status status = RITZ_OK;
-    hid_t plan = plan_object(H5P_GROUP_CREATE);
+    RITZ_OWN(hid_t) plan = plan_object(H5P_GROUP_CREATE);
 
     *out = H5Gcreate2(at, name, H5P_DEFAULT, plan, H5P_DEFAULT);
-    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FILE, "cannot create group '%s'", name);
-done:
-    ritz_h5_close(plan);
-    return status;
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create group '%s'", name);
+    return RITZ_OK;
 }
 
 bool ritz_h5_has(hid_t at, const char *name)
@@ -99,9 +91,24 @@ ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out)
 
 /* Names of the links of a group, collected while HDF5 iterates. */
 typedef struct listing {
+    ritz_status status; /* of the link at which the iteration stopped */
     int64_t count, room;
-    char (*name)[RITZ_NAME_SIZE]; /* NULL while they are only counted */
+    char (*name)[RITZ_NAME_SIZE];
 } listing;
+
+static void listing_free(listing *list)
+{
+    free(list->name);
+}
+
+static ritz_status append_name(listing *list, const char *name)
+{
+    RITZ_CHECK_ROOM(list->name, list->count, list->room);
+    RITZ_REFUSE_IF(ritz_name_copy(name, list->name[list->count]) != RITZ_OK,
+                   RITZ_ERR_FORMAT, "a member has no proper name");
+    list->count++;
+    return RITZ_OK;
+}
 
 static herr_t take_link(hid_t group, const char *name, const H5L_info_t *info,
                         void *data)
@@ -110,85 +117,58 @@ static herr_t take_link(hid_t group, const char *name, const H5L_info_t *info,
 
     (void)group;
     (void)info;
-    if (list->name) {
-        if (list->count == list->room ||
-            ritz_name_copy(name, list->name[list->count]) != RITZ_OK)
-            return -1;
-    }
-    list->count++;
-    return 0;
-}
-
-static ritz_status list_by_name(hid_t group, listing *out)
-{
-    ritz_status status = RITZ_OK;
-    listing list = {0};
-    herr_t result =
-        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, take_link, &list);
-
-    RITZ_FAIL_IF(result < 0, RITZ_ERR_FORMAT, "list of members is damaged");
-    RITZ_NEW(list.name, list.count);
-    list.room = list.count;
-    list.count = 0;
-    result =
-        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, take_link, &list);
-    RITZ_FAIL_IF(result < 0 || list.count != list.room, RITZ_ERR_FORMAT,
-                 "a member has no proper name");
-    RITZ_MOVE(*out, list);
-done:
-    free(list.name);
-    return status;
+    list->status = append_name(list, name);
+    return list->status == RITZ_OK ? 0 : -1;
 }
 
 /* Attribute `index` of a member; *out is unchanged if it has none. */
 static ritz_status read_index(hid_t group, const char *name, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-    hid_t member = 0;
+    RITZ_OWN(hid_t) member = 0;
 
-    RITZ_FAIL_IF(!ritz_h5_has(group, name), RITZ_ERR_FORMAT,
-                 "'%s' is a link to elsewhere", name);
+    RITZ_REFUSE_IF(!ritz_h5_has(group, name), RITZ_ERR_FORMAT,
+                   "'%s' is a link to elsewhere", name);
     member = H5Oopen(group, name, H5P_DEFAULT);
-    RITZ_FAIL_IF(member < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
+    RITZ_REFUSE_IF(member < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
     if (H5Aexists(member, "index") > 0)
-        RITZ_TRY_IN(name, ritz_h5_get(member, "index", H5T_STD_I64LE, 1, out));
-done:
-    ritz_h5_close(member);
-    return status;
+        RITZ_CHECK_IN(name,
+                      ritz_h5_get(member, "index", H5T_STD_I64LE, 1, out));
+    return RITZ_OK;
 }
 
 ritz_status ritz_h5_list(hid_t group, int64_t *count,
                          char (**out)[RITZ_NAME_SIZE])
 {
-    ritz_status status = RITZ_OK;
-    listing list = {0};
-    char(*sorted)[RITZ_NAME_SIZE] = NULL;
+    RITZ_OWN(listing) list = {0};
+    RITZ_OWN_ARRAY char(*sorted)[RITZ_NAME_SIZE] = NULL;
     int64_t indexed = 0;
+    herr_t result =
+        H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, take_link, &list);
 
-    RITZ_TRY(list_by_name(group, &list));
-    RITZ_NEW(sorted, list.count);
+    RITZ_CHECK(list.status);
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FORMAT, "list of members is damaged");
+    RITZ_CHECK_NEW(sorted, list.count);
     for (int64_t k = 0; k < list.count; k++) {
         int64_t at = -1;
 
-        RITZ_TRY(read_index(group, list.name[k], &at));
+        RITZ_CHECK(read_index(group, list.name[k], &at));
         if (at == -1)
             continue;
-        RITZ_FAIL_IF(at < 0 || at >= list.count || sorted[at][0],
-                     RITZ_ERR_FORMAT,
-                     "index %" PRId64 " of '%s' is taken, or out of range", at,
-                     list.name[k]);
+        RITZ_REFUSE_IF(at < 0 || at >= list.count || sorted[at][0],
+                       RITZ_ERR_FORMAT,
+                       "index %" PRId64 " of '%s' is taken, or out of range",
+                       at, list.name[k]);
         memcpy(sorted[at], list.name[k], RITZ_NAME_SIZE);
         indexed++;
     }
-    RITZ_FAIL_IF(indexed != 0 && indexed != list.count, RITZ_ERR_FORMAT,
-                 "some members have an 'index', some do not");
+    RITZ_REFUSE_IF(indexed != 0 && indexed != list.count, RITZ_ERR_FORMAT,
+                   "some members have an 'index', some do not");
     *count = list.count;
-    *out = indexed ? sorted : list.name;
-    *(indexed ? &sorted : &list.name) = NULL;
-done:
-    free(sorted);
-    free(list.name);
-    return status;
+    if (indexed || list.count == 0)
+        RITZ_MOVE(*out, sorted);
+    else
+        RITZ_MOVE(*out, list.name);
+    return RITZ_OK;
 }
 
 hid_t ritz_h5_string(size_t size)
@@ -234,43 +214,36 @@ ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
 ritz_status ritz_h5_set(hid_t at, const char *name, hid_t type,
                         ritz_h5_shape shape, const void *values)
 {
-    ritz_status status = RITZ_OK;
-    hid_t memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
-    hid_t space = H5Screate_simple(shape.rank, shape.dims, NULL);
-    hid_t attribute =
-        H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    RITZ_OWN(hid_t) memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
+    RITZ_OWN(hid_t)
+    space = H5Screate_simple(shape.rank, shape.dims, NULL);
+    RITZ_OWN(hid_t)
+    attribute = H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
 
-    RITZ_FAIL_IF(attribute < 0 || H5Awrite(attribute, memory, values) < 0,
-                 RITZ_ERR_FILE, "cannot write attribute '%s'", name);
-done:
-    ritz_h5_close(attribute);
-    ritz_h5_close(space);
-    ritz_h5_close(memory);
-    return status;
+    RITZ_REFUSE_IF(attribute < 0 || H5Awrite(attribute, memory, values) < 0,
+                   RITZ_ERR_FILE, "cannot write attribute '%s'", name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_h5_get(hid_t at, const char *name, hid_t type, int64_t count,
                         void *values)
 {
-    ritz_status status = RITZ_OK;
-    hid_t memory = 0;
-    hid_t attribute = H5Aopen(at, name, H5P_DEFAULT);
-    hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
-    hid_t on_file = attribute < 0 ? -1 : H5Aget_type(attribute);
+    RITZ_OWN(hid_t) attribute = H5Aopen(at, name, H5P_DEFAULT);
+    RITZ_OWN(hid_t) space = 0, on_file = 0, memory = 0;
 
-    RITZ_FAIL_IF(space < 0 || on_file < 0, RITZ_ERR_FORMAT, "no attribute '%s'",
-                 name);
-    RITZ_FAIL_IF(H5Sget_simple_extent_npoints(space) != count, RITZ_ERR_FORMAT,
-                 "attribute '%s' is not of %" PRId64 " values", name, count);
-    RITZ_TRY(ritz_h5_match(name, on_file, type, &memory));
-    RITZ_FAIL_IF(H5Aread(attribute, memory, values) < 0, RITZ_ERR_FORMAT,
-                 "cannot read attribute '%s'", name);
-done:
-    ritz_h5_close(memory);
-    ritz_h5_close(on_file);
-    ritz_h5_close(space);
-    ritz_h5_close(attribute);
-    return status;
+    if (attribute >= 0) {
+        space = H5Aget_space(attribute);
+        on_file = H5Aget_type(attribute);
+    }
+    RITZ_REFUSE_IF(space <= 0 || on_file <= 0, RITZ_ERR_FORMAT,
+                   "no attribute '%s'", name);
+    RITZ_REFUSE_IF(H5Sget_simple_extent_npoints(space) != count,
+                   RITZ_ERR_FORMAT,
+                   "attribute '%s' is not of %" PRId64 " values", name, count);
+    RITZ_CHECK(ritz_h5_match(name, on_file, type, &memory));
+    RITZ_REFUSE_IF(H5Aread(attribute, memory, values) < 0, RITZ_ERR_FORMAT,
+                   "cannot read attribute '%s'", name);
+    return RITZ_OK;
 }
 
 ritz_h5_shape ritz_h5_scalar(void)
@@ -280,18 +253,14 @@ ritz_h5_shape ritz_h5_scalar(void)
 
 ritz_status ritz_h5_set_text(hid_t at, const char *name, const char *text)
 {
-    hid_t type = ritz_h5_string(strlen(text) + 1);
-    ritz_status status = ritz_h5_set(at, name, type, ritz_h5_scalar(), text);
+    RITZ_OWN(hid_t) type = ritz_h5_string(strlen(text) + 1);
 
-    ritz_h5_close(type);
-    return status;
+    return ritz_h5_set(at, name, type, ritz_h5_scalar(), text);
 }
 
 ritz_status ritz_h5_get_text(hid_t at, const char *name, size_t size, char *out)
 {
-    hid_t type = ritz_h5_string(size);
-    ritz_status status = ritz_h5_get(at, name, type, 1, out);
+    RITZ_OWN(hid_t) type = ritz_h5_string(size);
 
-    ritz_h5_close(type);
-    return status;
+    return ritz_h5_get(at, name, type, 1, out);
 }

@@ -93,15 +93,19 @@ ritz_status ritz_h5_set_text(hid_t at, const char *name, const char *text);
 ritz_status ritz_h5_get_text(hid_t at, const char *name, size_t size,
                              char *out);
 
+typedef struct ritz_texts {
+    int64_t count;
+    char **text;
+} ritz_texts;
+
 /**
  * Texts of any length and number: an attribute, or a data set `long_NAME` if
  * they are too long for an object header. The caller frees what is read.
  */
 ritz_status ritz_h5_set_texts(hid_t at, const char *name, int64_t count,
                               char *const *text);
-ritz_status ritz_h5_get_texts(hid_t at, const char *name, int64_t *count,
-                              char ***out);
-void ritz_h5_free_texts(int64_t count, char **text);
+ritz_status ritz_h5_get_texts(hid_t at, const char *name, ritz_texts *out);
+void ritz_texts_free(ritz_texts *texts);
 
 /** Type in memory for values of @p type that the file holds as @p on_file. */
 ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,

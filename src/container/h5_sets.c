@@ -95,11 +95,11 @@ static ritz_status create_set(hid_t at, const char *name, hid_t type,
                               ritz_h5_shape shape, ritz_h5_shape *chunk,
                               hid_t *out)
 {
-    ritz_status status = RITZ_OK;
     hsize_t size = H5Tget_size(type);
     hsize_t count = ritz_h5_volume(&shape, INT64_MAX);
-    hid_t space = H5Screate_simple(shape.rank, shape.dims, NULL);
-    hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+    RITZ_OWN(hid_t)
+    space = H5Screate_simple(shape.rank, shape.dims, NULL);
+    RITZ_OWN(hid_t) plan = H5Pcreate(H5P_DATASET_CREATE);
 
     H5Pset_obj_track_times(plan, false);
     *chunk = shape;
@@ -111,11 +111,8 @@ static ritz_status create_set(hid_t at, const char *name, hid_t type,
         H5Pset_fletcher32(plan);
     }
     *out = H5Dcreate2(at, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
-    RITZ_FAIL_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", name);
-done:
-    ritz_h5_close(plan);
-    ritz_h5_close(space);
-    return status;
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", name);
+    return RITZ_OK;
 }
 
 /* Go on to the next chunk, the last dimension first; false after the last. */
@@ -178,8 +175,8 @@ static bool is_plain(hid_t plan)
 /* Whether the file holds as many values as the data set and chunks declare. */
 static bool is_borne_out(hid_t set, hid_t plan, const ritz_h5_shape *shape)
 {
-    hid_t type = H5Dget_type(set);
-    hid_t file = H5Iget_file_id(set);
+    RITZ_OWN(hid_t) type = H5Dget_type(set);
+    RITZ_OWN(hid_t) file = H5Iget_file_id(set);
     hsize_t stored = H5Dget_storage_size(set);
     hsize_t size = H5Tget_size(type);
     hsize_t present = 0;
@@ -188,8 +185,6 @@ static bool is_borne_out(hid_t set, hid_t plan, const ritz_h5_shape *shape)
     bool held = false;
 
     H5Fget_filesize(file, &present);
-    ritz_h5_close(file);
-    ritz_h5_close(type);
     if (ritz_h5_volume(shape, 1) == 0)
         return true;
     held = size > 0 && stored <= present &&
@@ -205,65 +200,51 @@ static bool is_borne_out(hid_t set, hid_t plan, const ritz_h5_shape *shape)
 ritz_status ritz_h5_open_set(hid_t at, const char *name, int rank,
                              ritz_h5_shape *shape, hid_t *out)
 {
-    ritz_status status = RITZ_OK;
-    hid_t set = ritz_h5_has(at, name) ? H5Dopen2(at, name, H5P_DEFAULT) : -1;
-    hid_t space = set < 0 ? -1 : H5Dget_space(set);
-    hid_t plan = set < 0 ? -1 : H5Dget_create_plist(set);
+    RITZ_OWN(hid_t) set = 0, space = 0, plan = 0;
 
-    RITZ_FAIL_IF(space < 0 || plan < 0 ||
-                     H5Sget_simple_extent_ndims(space) != rank,
-                 RITZ_ERR_FORMAT, "no data set '%s' of %d dimension%s", name,
-                 rank, rank == 1 ? "" : "s");
+    if (ritz_h5_has(at, name))
+        set = H5Dopen2(at, name, H5P_DEFAULT);
+    if (set > 0) {
+        space = H5Dget_space(set);
+        plan = H5Dget_create_plist(set);
+    }
+    RITZ_REFUSE_IF(space <= 0 || plan <= 0 ||
+                       H5Sget_simple_extent_ndims(space) != rank,
+                   RITZ_ERR_FORMAT, "no data set '%s' of %d dimension%s", name,
+                   rank, rank == 1 ? "" : "s");
     shape->rank = rank;
     H5Sget_simple_extent_dims(space, shape->dims, NULL);
-    RITZ_FAIL_IF(!is_plain(plan), RITZ_ERR_FORMAT,
-                 "'%s' is compressed, or lies in another file", name);
-    RITZ_FAIL_IF(!is_borne_out(set, plan, shape), RITZ_ERR_FORMAT,
-                 "'%s' declares more values than the file holds", name);
-    *out = set;
-    set = 0;
-done:
-    ritz_h5_close(plan);
-    ritz_h5_close(space);
-    ritz_h5_close(set);
-    return status;
+    RITZ_REFUSE_IF(!is_plain(plan), RITZ_ERR_FORMAT,
+                   "'%s' is compressed, or lies in another file", name);
+    RITZ_REFUSE_IF(!is_borne_out(set, plan, shape), RITZ_ERR_FORMAT,
+                   "'%s' declares more values than the file holds", name);
+    RITZ_MOVE(*out, set);
+    return RITZ_OK;
 }
 
-static ritz_h5_shape pieces_of(hid_t set, const ritz_h5_shape *shape)
+/* The pieces in which a matrix is read: its chunks, or whole rows. */
+static ritz_h5_shape find_pieces(hid_t set, const ritz_h5_shape *shape)
 {
-    hid_t plan = H5Dget_create_plist(set);
+    RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
     ritz_h5_shape chunk = *shape;
 
     if (H5Pget_layout(plan) == H5D_CHUNKED)
         H5Pget_chunk(plan, shape->rank, chunk.dims);
     else if (ritz_h5_volume(shape, CHUNK) > CHUNK)
-        chunk.dims[0] = /* whole rows, which lie side by side */
+        chunk.dims[0] =
             size_piece(shape->dims[0],
                        shape->dims[1] < CHUNK ? CHUNK / shape->dims[1] : 1);
     for (int k = 0; k < shape->rank; k++)
         chunk.dims[k] = smaller_of(chunk.dims[k], shape->dims[k]);
-    ritz_h5_close(plan);
     return chunk;
 }
 
 ritz_status ritz_h5_shape_of(hid_t at, const char *name, int rank,
                              ritz_h5_shape *out)
 {
-    hid_t set = 0;
-    ritz_status status = ritz_h5_open_set(at, name, rank, out, &set);
+    RITZ_OWN(hid_t) set = 0;
 
-    ritz_h5_close(set);
-    return status;
-}
-
-static ritz_status count_of(hid_t at, const char *name, int64_t *out)
-{
-    ritz_h5_shape shape = {0};
-    ritz_status status = ritz_h5_shape_of(at, name, 1, &shape);
-
-    if (status == RITZ_OK)
-        *out = (int64_t)shape.dims[0];
-    return status;
+    return ritz_h5_open_set(at, name, rank, out, &set);
 }
 
 static int64_t sum_words(int64_t bytes, const void *values)
@@ -281,26 +262,18 @@ static int64_t sum_words(int64_t bytes, const void *values)
     return (int64_t)(h >> 1); /* a positive number for every reader */
 }
 
-static bool is_chunked(hid_t set)
-{
-    hid_t plan = H5Dget_create_plist(set);
-    bool is = H5Pget_layout(plan) == H5D_CHUNKED;
-
-    ritz_h5_close(plan);
-    return is;
-}
-
 static ritz_status seal_values(hid_t set, const char *name, int64_t bytes,
                                const void *values)
 {
+    RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
     int64_t checksum = 0;
 
-    if (!is_chunked(set))
+    if (H5Pget_layout(plan) != H5D_CHUNKED)
         return RITZ_OK;
     checksum = sum_words(bytes, values);
-    RITZ_CHECK_IN(name, ritz_h5_set(set, "checksum", H5T_STD_I64LE,
-                                    ritz_h5_scalar(), &checksum));
-    return RITZ_OK;
+    return ritz_context(ritz_h5_set(set, "checksum", H5T_STD_I64LE,
+                                    ritz_h5_scalar(), &checksum),
+                        name);
 }
 
 /* A data set that a script wrote has no checksum, and is not checked. */
@@ -318,39 +291,24 @@ static ritz_status verify_values(hid_t set, const char *name, int64_t bytes,
     return RITZ_OK;
 }
 
-static hsize_t count_bytes(const ritz_h5_shape *shape, hid_t memory)
+static int64_t count_bytes(const ritz_h5_shape *shape, hid_t memory)
 {
-    return ritz_h5_volume(shape, INT64_MAX) * H5Tget_size(memory);
+    return (int64_t)(ritz_h5_volume(shape, INT64_MAX) * H5Tget_size(memory));
 }
 
 ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
                           ritz_h5_shape shape, const void *values)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape chunk = {0};
-    hid_t memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
-    hid_t set = 0;
+    RITZ_OWN(hid_t) memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
+    RITZ_OWN(hid_t) set = 0;
     herr_t result = 0;
 
-    RITZ_TRY(create_set(at, name, type, shape, &chunk, &set));
+    RITZ_CHECK(create_set(at, name, type, shape, &chunk, &set));
     if (ritz_h5_volume(&shape, 1) > 0)
         result = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-    RITZ_FAIL_IF(result < 0, RITZ_ERR_FILE, "cannot write '%s'", name);
-    RITZ_TRY(
-        seal_values(set, name, (int64_t)count_bytes(&shape, memory), values));
-done:
-    ritz_h5_close(set);
-    ritz_h5_close(memory);
-    return status;
-}
-
-static bool is_same(const ritz_h5_shape *a, const ritz_h5_shape *b)
-{
-    bool same = a->rank == b->rank;
-
-    for (int k = 0; k < a->rank; k++)
-        same = same && a->dims[k] == b->dims[k];
-    return same;
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE, "cannot write '%s'", name);
+    return seal_values(set, name, count_bytes(&shape, memory), values);
 }
 
 /* "3 x 4" */
@@ -365,133 +323,92 @@ static const char *print_shape(const ritz_h5_shape *shape, char text[80])
     return text;
 }
 
-static ritz_status check_shape(const char *name, const ritz_h5_shape *found,
-                               const ritz_h5_shape *due)
+/* Open a data set that must have the shape that is due. */
+static ritz_status open_due(hid_t at, const char *name,
+                            const ritz_h5_shape *due, hid_t *out)
 {
+    RITZ_OWN(hid_t) set = 0;
+    ritz_h5_shape found = {0};
     char have[80];
     char want[80];
 
-    RITZ_REFUSE_IF(!is_same(found, due), RITZ_ERR_FORMAT,
-                   "'%s' is of %s values where %s are due", name,
-                   print_shape(found, have), print_shape(due, want));
+    RITZ_CHECK(ritz_h5_open_set(at, name, due->rank, &found, &set));
+    for (int k = 0; k < due->rank; k++)
+        RITZ_REFUSE_IF(found.dims[k] != due->dims[k], RITZ_ERR_FORMAT,
+                       "'%s' is of %s values where %s are due", name,
+                       print_shape(&found, have), print_shape(due, want));
+    RITZ_MOVE(*out, set);
     return RITZ_OK;
 }
 
 ritz_status ritz_h5_expect(hid_t at, const char *name, ritz_h5_shape shape)
 {
-    ritz_h5_shape found = {0};
+    RITZ_OWN(hid_t) set = 0;
 
-    RITZ_CHECK(ritz_h5_shape_of(at, name, shape.rank, &found));
-    return check_shape(name, &found, &shape);
+    return open_due(at, name, &shape, &set);
 }
 
 ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
                          ritz_h5_shape shape, void *values)
 {
-    ritz_status status = RITZ_OK;
-    ritz_h5_shape found = {0};
-    hid_t set = 0;
-    hid_t on_file = 0;
-    hid_t memory = 0;
+    RITZ_OWN(hid_t) set = 0, on_file = 0, memory = 0;
     herr_t result = 0;
 
-    RITZ_TRY(ritz_h5_open_set(at, name, shape.rank, &found, &set));
-    RITZ_TRY(check_shape(name, &found, &shape));
+    RITZ_CHECK(open_due(at, name, &shape, &set));
     on_file = H5Dget_type(set);
-    RITZ_TRY(ritz_h5_match(name, on_file, type, &memory));
+    RITZ_CHECK(ritz_h5_match(name, on_file, type, &memory));
     if (ritz_h5_volume(&shape, 1) > 0)
         result = H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-    RITZ_FAIL_IF(result < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
-    RITZ_TRY(
-        verify_values(set, name, (int64_t)count_bytes(&shape, memory), values));
-done:
-    ritz_h5_close(memory);
-    ritz_h5_close(on_file);
-    ritz_h5_close(set);
-    return status;
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
+    return verify_values(set, name, count_bytes(&shape, memory), values);
 }
 
-/* A rectangle of a matrix, and its selection in the file. */
-typedef struct block {
-    hsize_t start[2], count[2];
-    hid_t space;
-} block;
-
-static void cut_block(const ritz_h5_shape *shape, const ritz_h5_shape *chunk,
-                      block *b)
-{
-    for (int k = 0; k < 2; k++) {
-        hsize_t rest = shape->dims[k] - b->start[k];
-
-        b->count[k] = rest < chunk->dims[k] ? rest : chunk->dims[k];
-    }
-    H5Sselect_hyperslab(b->space, H5S_SELECT_SET, b->start, NULL, b->count,
-                        NULL);
-}
-
-/* HDF5 is row-major, Ritz is not: rows[i * columns + j] = A(i, j). */
-static herr_t write_block(hid_t set, const block *b, const ritz_dense *A,
-                          double *rows)
-{
-    hsize_t count = b->count[0] * b->count[1];
-    hid_t memory = H5Screate_simple(1, &count, NULL);
-    herr_t result = 0;
-
-    for (hsize_t j = 0; j < b->count[1]; j++) {
-        const double *a = ritz_dense_col(A, (int64_t)(b->start[1] + j));
-
-        for (hsize_t i = 0; i < b->count[0]; i++)
-            rows[i * b->count[1] + j] = a[b->start[0] + i];
-    }
-    result =
-        H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, b->space, H5P_DEFAULT, rows);
-    ritz_h5_close(memory);
-    return result;
-}
-
-static herr_t read_block(hid_t set, const block *b, const ritz_dense *A,
+/*
+ * Reads or writes the piece of a matrix from (i, j) on. HDF5 is row-major, Ritz
+ * is not: rows[r * columns + c] = A(i + r, j + c).
+ */
+static herr_t move_piece(hid_t set, const ritz_h5_shape *piece, bool reads,
+                         hsize_t i, hsize_t j, const ritz_dense *A,
                          double *rows)
 {
-    hsize_t count = b->count[0] * b->count[1];
-    hid_t memory = H5Screate_simple(1, &count, NULL);
-    herr_t result =
-        H5Dread(set, H5T_NATIVE_DOUBLE, memory, b->space, H5P_DEFAULT, rows);
+    const hsize_t all[2] = {(hsize_t)A->nrow, (hsize_t)A->ncol};
+    const hsize_t start[2] = {i, j};
+    const hsize_t count[2] = {smaller_of(piece->dims[0], all[0] - i),
+                              smaller_of(piece->dims[1], all[1] - j)};
+    const hsize_t total = count[0] * count[1];
+    RITZ_OWN(hid_t) space = H5Screate_simple(2, all, NULL);
+    RITZ_OWN(hid_t) memory = H5Screate_simple(1, &total, NULL);
 
-    for (hsize_t j = 0; j < b->count[1] && result >= 0; j++) {
-        double *a = ritz_dense_col(A, (int64_t)(b->start[1] + j));
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+    if (reads &&
+        H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, rows) < 0)
+        return -1;
+    for (hsize_t c = 0; c < count[1]; c++)
+        for (hsize_t r = 0; r < count[0]; r++) {
+            double *a = ritz_dense_col(A, (int64_t)(j + c)) + i + r;
+            double *in_row = &rows[r * count[1] + c];
 
-        for (hsize_t i = 0; i < b->count[0]; i++)
-            a[b->start[0] + i] = rows[i * b->count[1] + j];
-    }
-    ritz_h5_close(memory);
-    return result;
+            *(reads ? a : in_row) = reads ? *in_row : *a;
+        }
+    return reads ? 0
+                 : H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT,
+                            rows);
 }
 
-/* Read or write a matrix chunk by chunk, so that each is decoded once. */
-static ritz_status
-each_block(hid_t set, const ritz_h5_shape *chunk, const ritz_dense *A,
-           herr_t (*move)(hid_t, const block *, const ritz_dense *, double *))
+/* Reads or writes a matrix chunk by chunk, so that each is decoded once. */
+static ritz_status move_pieces(hid_t set, const ritz_h5_shape *piece,
+                               bool reads, const ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
-    ritz_h5_shape shape = ritz_h5_table(A->nrow, A->ncol);
-    block b = {.space = H5Screate_simple(2, shape.dims, NULL)};
-    double *rows = NULL;
+    RITZ_OWN_ARRAY double *rows = NULL;
 
     if (A->nrow == 0 || A->ncol == 0)
-        goto done;
-    RITZ_NEW(rows, (int64_t)(chunk->dims[0] * chunk->dims[1]));
-    for (hsize_t i = 0; i < shape.dims[0]; i += chunk->dims[0])
-        for (hsize_t j = 0; j < shape.dims[1]; j += chunk->dims[1]) {
-            b.start[0] = i;
-            b.start[1] = j;
-            cut_block(&shape, chunk, &b);
-            RITZ_FAIL_IF(move(set, &b, A, rows) < 0, RITZ_ERR_FILE,
-                         "damaged, or the disk is full");
-        }
-done:
-    free(rows);
-    ritz_h5_close(b.space);
-    return status;
+        return RITZ_OK;
+    RITZ_CHECK_NEW(rows, (int64_t)(piece->dims[0] * piece->dims[1]));
+    for (hsize_t i = 0; i < (hsize_t)A->nrow; i += piece->dims[0])
+        for (hsize_t j = 0; j < (hsize_t)A->ncol; j += piece->dims[1])
+            if (move_piece(set, piece, reads, i, j, A, rows) < 0)
+                return RITZ_ERR_FILE;
+    return RITZ_OK;
 }
 
 static int64_t matrix_bytes(const ritz_dense *A)
@@ -501,17 +418,17 @@ static int64_t matrix_bytes(const ritz_dense *A)
 
 ritz_status ritz_h5_write_dense(hid_t at, const char *name, const ritz_dense *A)
 {
-    ritz_status status = RITZ_OK;
+    ritz_h5_shape shape = ritz_h5_table(A->nrow, A->ncol);
     ritz_h5_shape chunk = {0};
-    hid_t set = 0;
+    RITZ_OWN(hid_t) set = 0;
+    ritz_status status = RITZ_OK;
 
-    RITZ_TRY(create_set(at, name, H5T_IEEE_F64LE,
-                        ritz_h5_table(A->nrow, A->ncol), &chunk, &set));
-    RITZ_TRY_IN(name, each_block(set, &chunk, A, write_block));
-    RITZ_TRY(seal_values(set, name, matrix_bytes(A), A->val));
-done:
-    ritz_h5_close(set);
-    return status;
+    RITZ_CHECK(create_set(at, name, H5T_IEEE_F64LE, shape, &chunk, &set));
+    status = move_pieces(set, &chunk, false, A);
+    RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
+                   "cannot write '%s', is the disk full?", name);
+    RITZ_CHECK(status);
+    return seal_values(set, name, matrix_bytes(A), A->val);
 }
 
 static ritz_status check_dense(const ritz_dense *A)
@@ -526,104 +443,94 @@ static ritz_status check_dense(const ritz_dense *A)
 ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
                                int64_t ncol, ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape shape = {0};
-    ritz_h5_shape chunk = {0};
-    ritz_dense A = {0};
-    hid_t set = 0;
-    hid_t on_file = 0;
-    hid_t memory = 0;
+    ritz_h5_shape piece = {0};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(hid_t) set = 0, on_file = 0, memory = 0;
+    ritz_status status = RITZ_OK;
     int64_t n = 0;
     int64_t m = 0;
 
-    RITZ_TRY(ritz_h5_open_set(at, name, 2, &shape, &set));
-    RITZ_FAIL_IF(shape.dims[0] > INT_MAX || shape.dims[1] > INT_MAX,
-                 RITZ_ERR_FORMAT, "'%s' is too large", name);
+    RITZ_CHECK(ritz_h5_open_set(at, name, 2, &shape, &set));
+    RITZ_REFUSE_IF(shape.dims[0] > INT_MAX || shape.dims[1] > INT_MAX,
+                   RITZ_ERR_FORMAT, "'%s' is too large", name);
     n = (int64_t)shape.dims[0];
     m = (int64_t)shape.dims[1];
-    RITZ_FAIL_IF(nrow >= 0 && nrow == ncol && n != m, RITZ_ERR_FORMAT,
-                 "'%s' is not square", name);
-    RITZ_FAIL_IF((nrow >= 0 && nrow != n) || (ncol >= 0 && ncol != m),
-                 RITZ_ERR_FORMAT,
-                 "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
-                 " x %" PRId64 " is due",
-                 name, n, m, nrow < 0 ? n : nrow, ncol < 0 ? m : ncol);
+    RITZ_REFUSE_IF(nrow >= 0 && nrow == ncol && n != m, RITZ_ERR_FORMAT,
+                   "'%s' is not square", name);
+    RITZ_REFUSE_IF((nrow >= 0 && nrow != n) || (ncol >= 0 && ncol != m),
+                   RITZ_ERR_FORMAT,
+                   "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
+                   " x %" PRId64 " is due",
+                   name, n, m, nrow < 0 ? n : nrow, ncol < 0 ? m : ncol);
     on_file = H5Dget_type(set);
-    RITZ_TRY(ritz_h5_match(name, on_file, H5T_IEEE_F64LE, &memory));
-    RITZ_TRY(ritz_dense_new(n, m, &A));
-    chunk = pieces_of(set, &shape);
-    status = each_block(set, &chunk, &A, read_block);
-    RITZ_FAIL_IF(status == RITZ_ERR_FILE, RITZ_ERR_FORMAT, "'%s' is damaged",
-                 name);
-    RITZ_TRY(status);
-    RITZ_TRY(verify_values(set, name, matrix_bytes(&A), A.val));
-    RITZ_TRY_IN(name, check_dense(&A));
+    RITZ_CHECK(ritz_h5_match(name, on_file, H5T_IEEE_F64LE, &memory));
+    RITZ_CHECK(ritz_dense_new(n, m, &A));
+    piece = find_pieces(set, &shape);
+    status = move_pieces(set, &piece, true, &A);
+    RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FORMAT, "'%s' is damaged",
+                   name);
+    RITZ_CHECK(status);
+    RITZ_CHECK(verify_values(set, name, matrix_bytes(&A), A.val));
+    RITZ_CHECK_IN(name, check_dense(&A));
     RITZ_MOVE(*out, A);
-done:
-    ritz_dense_free(&A);
-    ritz_h5_close(memory);
-    ritz_h5_close(on_file);
-    ritz_h5_close(set);
-    return status;
+    return RITZ_OK;
+}
+
+/* The parts of a sparse matrix; each is written, or read. */
+static ritz_status write_columns(hid_t group, const ritz_sparse *A)
+{
+    int64_t shape[] = {A->nrow, A->ncol};
+    ritz_h5_shape nnz = ritz_h5_vector(A->colptr[A->ncol]);
+
+    RITZ_CHECK(ritz_h5_set_text(group, "format", "csc"));
+    RITZ_CHECK(
+        ritz_h5_set(group, "shape", H5T_STD_I64LE, ritz_h5_vector(2), shape));
+    RITZ_CHECK(ritz_h5_write(group, "data", H5T_IEEE_F64LE, nnz, A->val));
+    RITZ_CHECK(ritz_h5_write(group, "indices", H5T_STD_I64LE, nnz, A->rowind));
+    return ritz_h5_write(group, "indptr", H5T_STD_I64LE,
+                         ritz_h5_vector(A->ncol + 1), A->colptr);
+}
+
+static ritz_status read_columns(hid_t group, ritz_sparse *A)
+{
+    char format[RITZ_NAME_SIZE] = "";
+    int64_t shape[2] = {0};
+    ritz_h5_shape nnz = {0}, pointers = {0};
+
+    RITZ_CHECK(ritz_h5_get_text(group, "format", sizeof format, format));
+    RITZ_REFUSE_IF(strcmp(format, "csc") != 0, RITZ_ERR_FORMAT,
+                   "is not in compressed columns");
+    RITZ_CHECK(ritz_h5_get(group, "shape", H5T_STD_I64LE, 2, shape));
+    RITZ_CHECK(ritz_h5_shape_of(group, "data", 1, &nnz));
+    RITZ_CHECK(ritz_h5_shape_of(group, "indptr", 1, &pointers));
+    RITZ_REFUSE_IF(pointers.dims[0] < 1 || shape[0] < 0 ||
+                       shape[1] != (int64_t)pointers.dims[0] - 1,
+                   RITZ_ERR_FORMAT, "shape and column pointers disagree");
+    RITZ_CHECK(ritz_sparse_new(shape[0], shape[1], (int64_t)nnz.dims[0], A));
+    RITZ_CHECK(ritz_h5_read(group, "data", H5T_IEEE_F64LE, nnz, A->val));
+    RITZ_CHECK(ritz_h5_read(group, "indices", H5T_STD_I64LE, nnz, A->rowind));
+    RITZ_CHECK(
+        ritz_h5_read(group, "indptr", H5T_STD_I64LE, pointers, A->colptr));
+    return ritz_sparse_check(A, (int64_t)nnz.dims[0]);
 }
 
 ritz_status ritz_h5_write_sparse(hid_t at, const char *name,
                                  const ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
-    int64_t shape[] = {A->nrow, A->ncol};
-    ritz_h5_shape nnz = ritz_h5_vector(A->colptr[A->ncol]);
-    hid_t group = 0;
+    RITZ_OWN(hid_t) group = 0;
 
-    RITZ_TRY(ritz_h5_group(at, name, &group));
-    RITZ_TRY(ritz_h5_set_text(group, "format", "csc"));
-    RITZ_TRY(
-        ritz_h5_set(group, "shape", H5T_STD_I64LE, ritz_h5_vector(2), shape));
-    RITZ_TRY(ritz_h5_write(group, "data", H5T_IEEE_F64LE, nnz, A->val));
-    RITZ_TRY(ritz_h5_write(group, "indices", H5T_STD_I64LE, nnz, A->rowind));
-    RITZ_TRY(ritz_h5_write(group, "indptr", H5T_STD_I64LE,
-                           ritz_h5_vector(A->ncol + 1), A->colptr));
-done:
-    ritz_h5_close(group);
-    return ritz_context(status, name);
-}
-
-static ritz_status read_columns(hid_t group, int64_t nnz, ritz_sparse *A)
-{
-    ritz_h5_shape entries = ritz_h5_vector(nnz);
-
-    RITZ_CHECK(ritz_h5_read(group, "data", H5T_IEEE_F64LE, entries, A->val));
-    RITZ_CHECK(
-        ritz_h5_read(group, "indices", H5T_STD_I64LE, entries, A->rowind));
-    RITZ_CHECK(ritz_h5_read(group, "indptr", H5T_STD_I64LE,
-                            ritz_h5_vector(A->ncol + 1), A->colptr));
-    return ritz_sparse_check(A, nnz);
+    RITZ_CHECK_IN(name, ritz_h5_group(at, name, &group));
+    return ritz_context(write_columns(group, A), name);
 }
 
 ritz_status ritz_h5_read_sparse(hid_t at, const char *name, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
-    char format[RITZ_NAME_SIZE] = "";
-    int64_t shape[2] = {0};
-    int64_t nnz = 0;
-    int64_t pointers = 0;
-    hid_t group = 0;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(hid_t) group = 0;
 
-    RITZ_TRY(ritz_h5_enter(at, name, &group));
-    RITZ_TRY(ritz_h5_get_text(group, "format", sizeof format, format));
-    RITZ_FAIL_IF(strcmp(format, "csc") != 0, RITZ_ERR_FORMAT,
-                 "is not in compressed columns");
-    RITZ_TRY(ritz_h5_get(group, "shape", H5T_STD_I64LE, 2, shape));
-    RITZ_TRY(count_of(group, "data", &nnz));
-    RITZ_TRY(count_of(group, "indptr", &pointers));
-    RITZ_FAIL_IF(pointers < 1 || shape[0] < 0 || shape[1] != pointers - 1,
-                 RITZ_ERR_FORMAT, "shape and column pointers disagree");
-    RITZ_TRY(ritz_sparse_new(shape[0], shape[1], nnz, &A));
-    RITZ_TRY(read_columns(group, nnz, &A));
+    RITZ_CHECK_IN(name, ritz_h5_enter(at, name, &group));
+    RITZ_CHECK_IN(name, read_columns(group, &A));
     RITZ_MOVE(*out, A);
-done:
-    ritz_sparse_free(&A);
-    ritz_h5_close(group);
-    return ritz_context(status, name);
+    return RITZ_OK;
 }

@@ -121,11 +121,6 @@ static bool has_invariants(const void *object)
     return has_inertia(object) && reduced->invariants.momentum.val;
 }
 
-static bool has_dofs(const void *object)
-{
-    return ((const ritz_reduced *)object)->dof;
-}
-
 static ritz_status settle_reduced(const ritz_place *place)
 {
     ritz_reduced *reduced = place->target;
@@ -168,10 +163,10 @@ static const ritz_member members[] = {
     {"elements", PART, RITZ_AT(ritz_reduced, elements), .optional = "",
      .some = 'e', .schema = &ritz_schema_elements},
     {"dofs/grid", SET_WHOLE, RITZ_ITEM(ritz_reduced, dof, ritz_dof, grid), "n",
-     "as in a component", .optional = "dofs", .has = has_dofs},
+     "as in a component", .optional = "dofs"},
     {"dofs/component", SET_WHOLE,
      RITZ_ITEM(ritz_reduced, dof, ritz_dof, component), "n",
-     "as in a component", "0..6", .optional = "dofs", .has = has_dofs},
+     "as in a component", "0..6", .optional = "dofs"},
     {"recovery", PART, RITZ_AT(ritz_reduced, recovery), .optional = "recovery",
      .some = 'd', .schema = &ritz_schema_recovery},
     {"", PART, RITZ_AT(ritz_reduced, columns), .schema = &ritz_schema_columns},
@@ -211,28 +206,8 @@ static const ritz_member members[] = {
 
 const ritz_schema ritz_schema_reduced = {
     .name = "reduced",
+    .units = offsetof(ritz_reduced, units),
     .sizes = sizes,
     .members = members,
     .settle = settle_reduced,
 };
-
-ritz_status ritz_container_read_reduced(const char *path, ritz_reduced *out)
-{
-    ritz_reduced reduced = {0};
-    ritz_status status =
-        ritz_schema_read(path, &ritz_schema_reduced, &reduced, reduced.units);
-
-    if (status == RITZ_OK)
-        *out = reduced;
-    else
-        ritz_reduced_free(&reduced);
-    return status;
-}
-
-ritz_status ritz_container_write_reduced(const char *path,
-                                         const ritz_reduced *reduced,
-                                         const ritz_stamp *stamp)
-{
-    return ritz_schema_write(path, &ritz_schema_reduced, reduced,
-                             reduced->units, stamp);
-}

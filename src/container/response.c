@@ -89,23 +89,3 @@ const ritz_schema ritz_schema_response = {
     .members = members,
     .settle = settle_response,
 };
-
-ritz_status ritz_container_read_response(const char *path, ritz_response *out)
-{
-    ritz_response response = {0};
-    ritz_status status =
-        ritz_schema_read(path, &ritz_schema_response, &response, NULL);
-
-    if (status == RITZ_OK)
-        *out = response;
-    else
-        ritz_response_free(&response);
-    return status;
-}
-
-ritz_status ritz_container_write_response(const char *path,
-                                          const ritz_response *response,
-                                          const ritz_stamp *stamp)
-{
-    return ritz_schema_write(path, &ritz_schema_response, response, "", stamp);
-}

@@ -287,44 +287,34 @@ static int compare_names(const void *a, const void *b)
 /* Each can be the name of a link, and no two are the same. */
 static ritz_status check_names(int64_t count, const ritz_name *names)
 {
-    ritz_status status = RITZ_OK;
-    ritz_name *sorted = NULL;
+    RITZ_OWN_ARRAY ritz_name *sorted = NULL;
 
-    RITZ_NEW(sorted, count);
-    for (int64_t k = 0; k < count; k++) {
-        status = ritz_name_copy(names[k], sorted[k]);
-        RITZ_FAIL_IF(status != RITZ_OK, RITZ_ERR_FORMAT,
-                     "name %" PRId64 ", '%.40s', cannot be one", k + 1,
-                     names[k]);
-    }
+    RITZ_CHECK_NEW(sorted, count);
+    for (int64_t k = 0; k < count; k++)
+        RITZ_REFUSE_IF(
+            ritz_name_copy(names[k], sorted[k]) != RITZ_OK, RITZ_ERR_FORMAT,
+            "name %" PRId64 ", '%.40s', cannot be one", k + 1, names[k]);
     qsort(sorted, (size_t)count, sizeof *sorted, compare_names);
     for (int64_t k = 1; k < count; k++)
-        RITZ_FAIL_IF(strcmp(sorted[k - 1], sorted[k]) == 0, RITZ_ERR_FORMAT,
-                     "'%s' is there twice", sorted[k]);
-done:
-    free(sorted);
-    return status;
+        RITZ_REFUSE_IF(strcmp(sorted[k - 1], sorted[k]) == 0, RITZ_ERR_FORMAT,
+                       "'%s' is there twice", sorted[k]);
+    return RITZ_OK;
 }
 
 static ritz_status write_array(const ritz_place *place, hid_t at,
                                const ritz_member *row)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
     const void *field = field_of(place, row);
-    hid_t type = type_of(row);
-    char *values = NULL;
+    RITZ_OWN(hid_t) type = type_of(row);
+    RITZ_OWN_ARRAY char *values = NULL;
 
-    RITZ_NEW(values, count * (int64_t)width_in_file(row));
+    RITZ_CHECK_NEW(values, count * (int64_t)width_in_file(row));
     gather_values(row, count, row->inside ? field : pointer_in(field), values);
     if (row->kind == SET_NAMES)
-        RITZ_TRY_IN(name_of(row), check_names(count, (void *)values));
-    RITZ_TRY(ritz_h5_write(at, name_of(row), type, shape, values));
-done:
-    free(values);
-    ritz_h5_close(type);
-    return status;
+        RITZ_CHECK_IN(name_of(row), check_names(count, (void *)values));
+    return ritz_h5_write(at, name_of(row), type, shape, values);
 }
 
 static ritz_status check_values(const ritz_place *place, const ritz_member *row,
@@ -361,25 +351,26 @@ static ritz_status find_room(const ritz_member *row, int64_t count, void *field,
 static ritz_status read_array(const ritz_place *place, hid_t at,
                               const ritz_member *row)
 {
-    ritz_status status = RITZ_OK;
     ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
-    hid_t type = type_of(row);
-    char *values = NULL, *to = NULL;
+    RITZ_OWN(hid_t) type = type_of(row);
+    RITZ_OWN_ARRAY char *values = NULL;
+    char *to = NULL;
 
-    RITZ_TRY(ritz_h5_expect(at, name_of(row), shape));
-    RITZ_NEW(values, count * (int64_t)width_in_file(row));
-    RITZ_TRY(find_room(row, count, target_of(place, row), &to));
-    RITZ_TRY(ritz_h5_read(at, name_of(row), type, shape, values));
-    RITZ_TRY(check_values(place, row, count, values));
-    RITZ_TRY(scatter_values(row, count, values, to));
-done:
-    free(values);
-    ritz_h5_close(type);
-    return status;
+    RITZ_CHECK(ritz_h5_expect(at, name_of(row), shape));
+    RITZ_CHECK_NEW(values, count * (int64_t)width_in_file(row));
+    RITZ_CHECK(find_room(row, count, target_of(place, row), &to));
+    RITZ_CHECK(ritz_h5_read(at, name_of(row), type, shape, values));
+    RITZ_CHECK(check_values(place, row, count, values));
+    return scatter_values(row, count, values, to);
 }
 
 /* Attributes. */
+
+static hid_t type_of_attribute(const ritz_member *row)
+{
+    return row->kind == ATTRIBUTE_REAL ? H5T_IEEE_F64LE : H5T_STD_I64LE;
+}
 
 static ritz_status write_attribute(const ritz_place *place, hid_t at,
                                    const ritz_member *row)
@@ -389,24 +380,29 @@ static ritz_status write_attribute(const ritz_place *place, hid_t at,
 
     if (row->kind == ATTRIBUTE_TEXT)
         return ritz_h5_set_text(at, row->name, field);
-    return ritz_h5_set(at, row->name,
-                       row->kind == ATTRIBUTE_REAL ? H5T_IEEE_F64LE
-                                                   : H5T_STD_I64LE,
+    return ritz_h5_set(at, row->name, type_of_attribute(row),
                        ritz_schema_shape(place, row),
                        row->kind == ATTRIBUTE_FLAG ? &one : field);
 }
 
 static ritz_status check_attribute(const ritz_place *place,
-                                   const ritz_member *row, int64_t value)
+                                   const ritz_member *row, const void *value)
 {
-    int64_t least = 1, most = 1; /* of a flag */
+    int64_t least = 1, most = 1, whole = 0; /* of a flag */
+    double real = 0.0;
 
+    memcpy(&whole, value, sizeof whole);
+    memcpy(&real, value, sizeof real);
+    RITZ_REFUSE_IF(row->kind == ATTRIBUTE_REAL &&
+                       !is_allowed(real, row->values),
+                   RITZ_ERR_FORMAT, "attribute '%s' is not finite", row->name);
     if (row->kind == ATTRIBUTE_WHOLE)
         read_range(place, row->range, &least, &most);
-    RITZ_REFUSE_IF(value < least || value > most, RITZ_ERR_FORMAT,
-                   "attribute '%s' is %" PRId64 ", not in %" PRId64
-                   "..%" PRId64,
-                   row->name, value, least, most);
+    RITZ_REFUSE_IF(
+        row->kind != ATTRIBUTE_REAL && (whole < least || whole > most),
+        RITZ_ERR_FORMAT,
+        "attribute '%s' is %" PRId64 ", not in %" PRId64 "..%" PRId64,
+        row->name, whole, least, most);
     return RITZ_OK;
 }
 
@@ -415,29 +411,21 @@ static ritz_status read_attribute(const ritz_place *place, hid_t at,
 {
     ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
+    bool is_flag = row->kind == ATTRIBUTE_FLAG;
     void *field = target_of(place, row);
-    int64_t whole = 0;
-    const double *x = field;
+    int64_t flag = 0;
+    char *values = is_flag ? (char *)&flag : field;
 
-    switch (row->kind) {
-    case ATTRIBUTE_TEXT:
+    if (row->kind == ATTRIBUTE_TEXT)
         return ritz_h5_get_text(at, row->name, row->size, field);
-    case ATTRIBUTE_FLAG:
-        RITZ_CHECK(ritz_h5_get(at, row->name, H5T_STD_I64LE, 1, &whole));
+    RITZ_CHECK(
+        ritz_h5_get(at, row->name, type_of_attribute(row), count, values));
+    for (int64_t k = 0; k < count; k++)
+        RITZ_CHECK(
+            check_attribute(place, row, values + (size_t)k * sizeof(int64_t)));
+    if (is_flag)
         *(bool *)field = true;
-        return check_attribute(place, row, whole);
-    case ATTRIBUTE_WHOLE:
-        RITZ_CHECK(ritz_h5_get(at, row->name, H5T_STD_I64LE, count, field));
-        for (int64_t k = 0; k < count; k++)
-            RITZ_CHECK(check_attribute(place, row, ((int64_t *)field)[k]));
-        return RITZ_OK;
-    default:
-        RITZ_CHECK(ritz_h5_get(at, row->name, H5T_IEEE_F64LE, count, field));
-        for (int64_t k = 0; k < count; k++)
-            RITZ_REFUSE_IF(!is_allowed(x[k], row->values), RITZ_ERR_FORMAT,
-                           "attribute '%s' is not finite", row->name);
-        return RITZ_OK;
-    }
+    return RITZ_OK;
 }
 
 /*
@@ -461,19 +449,16 @@ static ritz_status open_group(const ritz_place *place, const char *name,
 
 static ritz_status move_part(const ritz_place *place, const ritz_member *row)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(hid_t) group = 0;
     ritz_place part = ritz_schema_part(place, row);
 
     if (is_read(place))
         part.target = target_of(place, row);
     if (!*row->name)
         return ritz_schema_move(&part);
-    part.at = 0;
-    RITZ_TRY(open_group(place, row->name, &part.at));
-    RITZ_TRY(ritz_schema_move(&part));
-done:
-    ritz_h5_close(part.at);
-    return ritz_context(status, row->name);
+    RITZ_CHECK_IN(row->name, open_group(place, row->name, &group));
+    part.at = group;
+    return ritz_context(ritz_schema_move(&part), row->name);
 }
 
 static ritz_status move_sparse(const ritz_place *place, hid_t at,
@@ -487,24 +472,20 @@ static ritz_status move_sparse(const ritz_place *place, hid_t at,
 /* An item whose one member has no name is a sparse matrix, itself a group. */
 static ritz_status move_item(const ritz_place *item, const char *name)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(hid_t) group = 0;
     ritz_place inner = *item;
     const ritz_member *row = item->schema->members;
     bool is_matrix = row->kind == MATRIX_SPARSE && !*row->name;
 
-    inner.at = 0;
     if (is_matrix)
         RITZ_CHECK(move_sparse(item, item->at, name, row));
-    RITZ_TRY(is_matrix ? ritz_h5_enter(item->at, name, &inner.at)
-                       : open_group(item, name, &inner.at));
+    RITZ_CHECK_IN(name, is_matrix ? ritz_h5_enter(item->at, name, &group)
+                                  : open_group(item, name, &group));
+    inner.at = group;
     if (!is_read(item))
-        RITZ_TRY(ritz_h5_set(inner.at, "index", H5T_STD_I64LE, ritz_h5_scalar(),
-                             &item->index));
-    if (!is_matrix)
-        RITZ_TRY(ritz_schema_move(&inner));
-done:
-    ritz_h5_close(inner.at);
-    return ritz_context(status, name);
+        RITZ_CHECK_IN(name, ritz_h5_set(group, "index", H5T_STD_I64LE,
+                                        ritz_h5_scalar(), &item->index));
+    return is_matrix ? RITZ_OK : ritz_context(ritz_schema_move(&inner), name);
 }
 
 /* Names of the groups of a list: its items' own, or "0", "1", ... */
@@ -541,29 +522,33 @@ static ritz_status find_items(const ritz_place *place, const ritz_member *row,
     return RITZ_OK;
 }
 
-static ritz_status move_list(const ritz_place *place, const ritz_member *row)
+static ritz_status move_items(const ritz_place *place, const ritz_member *row,
+                              hid_t group)
 {
-    ritz_status status = RITZ_OK;
-    ritz_place item = {.schema = row->schema, .outer = place};
-    ritz_name *name = NULL;
+    ritz_place item = {.at = group, .schema = row->schema, .outer = place};
+    RITZ_OWN_ARRAY ritz_name *name = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(open_group(place, row->name, &item.at));
-    RITZ_TRY(is_read(place) ? find_items(place, row, item.at, &count, &name)
-                            : ritz_schema_items(place, row, &count, &name));
+    RITZ_CHECK(is_read(place) ? find_items(place, row, group, &count, &name)
+                              : ritz_schema_items(place, row, &count, &name));
     item.object = pointer_in(field_of(place, row));
     if (is_read(place))
         memcpy(&item.target, field_of(place, row), sizeof item.target);
     for (; item.index < count; item.index++) {
-        RITZ_TRY(move_item(&item, name[item.index]));
+        RITZ_CHECK(move_item(&item, name[item.index]));
         item.object = (const char *)item.object + row->size;
         if (is_read(place))
             item.target = (char *)item.target + row->size;
     }
-done:
-    free(name);
-    ritz_h5_close(item.at);
-    return ritz_context(status, row->name);
+    return RITZ_OK;
+}
+
+static ritz_status move_list(const ritz_place *place, const ritz_member *row)
+{
+    RITZ_OWN(hid_t) group = 0;
+
+    RITZ_CHECK_IN(row->name, open_group(place, row->name, &group));
+    return ritz_context(move_items(place, row, group), row->name);
 }
 
 static ritz_status move_dense(const ritz_place *place, hid_t at,
@@ -607,6 +592,12 @@ typedef struct row_group {
     hid_t id;
 } row_group;
 
+static void row_group_free(row_group *open)
+{
+    ritz_h5_close(open->id);
+    *open = (row_group){0};
+}
+
 static ritz_status follow_group(const ritz_place *place, const ritz_member *row,
                                 row_group *open)
 {
@@ -615,8 +606,7 @@ static ritz_status follow_group(const ritz_place *place, const ritz_member *row,
     copy_group(row->name, name);
     if (strcmp(name, open->name) == 0)
         return RITZ_OK;
-    ritz_h5_close(open->id);
-    *open = (row_group){0};
+    row_group_free(open);
     if (!name[0])
         return RITZ_OK;
     RITZ_CHECK(open_group(place, name, &open->id));
@@ -624,12 +614,16 @@ static ritz_status follow_group(const ritz_place *place, const ritz_member *row,
     return RITZ_OK;
 }
 
+static ritz_status put_context(const row_group *open, ritz_status status)
+{
+    return open->name[0] ? ritz_context(status, open->name) : status;
+}
+
 /* Size of a letter, read from the data set of the row whose shape has it. */
 static ritz_status measure_row(const ritz_place *place, char letter,
                                const ritz_member *row, int64_t *out)
 {
-    ritz_status status = RITZ_OK;
-    row_group open = {0};
+    RITZ_OWN(row_group) open = {0};
     ritz_h5_shape found = {0};
     int rank = 1, which = 0;
 
@@ -637,15 +631,14 @@ static ritz_status measure_row(const ritz_place *place, char letter,
         which = *c == letter && which == 0 ? rank : which;
         rank += *c == ' ';
     }
-    RITZ_TRY(follow_group(place, row, &open));
-    RITZ_TRY(ritz_h5_shape_of(open.id ? open.id : place->at, name_of(row), rank,
-                              &found));
-    RITZ_FAIL_IF(found.dims[which - 1] > INT64_MAX / 4, RITZ_ERR_FORMAT,
-                 "'%s' is too large", name_of(row));
+    RITZ_CHECK(follow_group(place, row, &open));
+    RITZ_CHECK(
+        put_context(&open, ritz_h5_shape_of(open.id ? open.id : place->at,
+                                            name_of(row), rank, &found)));
+    RITZ_REFUSE_IF(found.dims[which - 1] > INT64_MAX / 4, RITZ_ERR_FORMAT,
+                   "'%s' is too large", name_of(row));
     *out = (int64_t)found.dims[which - 1];
-done:
-    ritz_h5_close(open.id);
-    return open.name[0] ? ritz_context(status, open.name) : status;
+    return RITZ_OK;
 }
 
 static ritz_status read_sizes(const ritz_place *place)
@@ -669,8 +662,7 @@ static ritz_status read_sizes(const ritz_place *place)
 
 ritz_status ritz_schema_move(const ritz_place *place)
 {
-    ritz_status status = RITZ_OK;
-    row_group open = {0};
+    RITZ_OWN(row_group) open = {0};
     const double none = nan(""); /* for what earlier releases did not write */
 
     if (is_read(place))
@@ -683,14 +675,12 @@ ritz_status ritz_schema_move(const ritz_place *place)
                 memcpy(target_of(place, row), &none, sizeof none);
             continue;
         }
-        RITZ_TRY(follow_group(place, row, &open));
-        status = move_row(place, open.id ? open.id : place->at, row);
-        RITZ_TRY(open.name[0] ? ritz_context(status, open.name) : status);
+        RITZ_CHECK(follow_group(place, row, &open));
+        RITZ_CHECK(put_context(
+            &open, move_row(place, open.id ? open.id : place->at, row)));
     }
     if (is_read(place) && place->schema->settle)
-        RITZ_TRY(place->schema->settle(place));
-done:
-    ritz_h5_close(open.id);
-    return status;
+        RITZ_CHECK(place->schema->settle(place));
+    return RITZ_OK;
 }
 /* NOLINTEND(misc-no-recursion) */

@@ -101,6 +101,9 @@ struct ritz_schema {
                            with a slash, or "" */
     const ritz_size *sizes; /* ended by letter 0; NULL: none */
     const ritz_member *members; /* ended by name NULL */
+    size_t units; /* of a kind: offset of char[RITZ_NAME_SIZE], 0: it has none */
+    /** Checks an object before it is written; NULL: nothing is to check. */
+    ritz_status (*check)(const void *object);
     /** Checks and completes what was read. */
     ritz_status (*settle)(const ritz_place *place);
 };
@@ -120,19 +123,6 @@ struct ritz_schema {
 #define RITZ_ITEM(type, field, item_type, value)                               \
     .offset = offsetof(type, field), .size = sizeof(item_type),                \
     .item = offsetof(item_type, value)
-
-/** Write a file of the kind that the schema names. */
-ritz_status ritz_schema_write(const char *path, const ritz_schema *schema,
-                              const void *object, const char *units,
-                              const ritz_stamp *stamp);
-
-/**
- * Read one into an empty object, which may be filled in part on failure.
- *
- * @param[out] units  RITZ_NAME_SIZE letters; NULL if not wanted
- */
-ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
-                             void *object, char *units);
 
 /** Write all members of an object at its place, or read them to its target. */
 ritz_status ritz_schema_move(const ritz_place *place);

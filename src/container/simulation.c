@@ -3,12 +3,6 @@
 
 #include <inttypes.h>
 
-/* There are all energies or none. */
-static bool has_energies(const void *object)
-{
-    return ((const ritz_simulation *)object)->balance;
-}
-
 static ritz_status settle_simulation(const ritz_place *place)
 {
     const ritz_simulation *s = place->target;
@@ -47,17 +41,16 @@ static const ritz_member members[] = {
      "inputs, without an impulse at 0"},
     {"y", SET_REAL, RITZ_AT(ritz_simulation, y), "k p", "outputs"},
     {"energies/kinetic", SET_REAL, RITZ_AT(ritz_simulation, kinetic), "k",
-     "of M; energies are of second-order models alone", .optional = "energies",
-     .has = has_energies},
+     "of M; energies are of second-order models alone", .optional = "energies"},
     {"energies/potential", SET_REAL, RITZ_AT(ritz_simulation, potential), "k",
-     "of K", .optional = "energies", .has = has_energies},
+     "of K", .optional = "energies"},
     {"energies/dissipated", SET_REAL, RITZ_AT(ritz_simulation, dissipated), "k",
-     "by damping up to then", .optional = "energies", .has = has_energies},
+     "by damping up to then", .optional = "energies"},
     {"energies/work", SET_REAL, RITZ_AT(ritz_simulation, work), "k",
-     "of the inputs up to then", .optional = "energies", .has = has_energies},
+     "of the inputs up to then", .optional = "energies"},
     {"energies/balance", SET_REAL, RITZ_AT(ritz_simulation, balance), "k",
      "kinetic + potential + dissipated - work - what was there at the start",
-     .optional = "energies", .has = has_energies},
+     .optional = "energies"},
     {0},
 };
 
@@ -67,25 +60,3 @@ const ritz_schema ritz_schema_simulation = {
     .members = members,
     .settle = settle_simulation,
 };
-
-ritz_status ritz_container_read_simulation(const char *path,
-                                           ritz_simulation *out)
-{
-    ritz_simulation simulation = {0};
-    ritz_status status =
-        ritz_schema_read(path, &ritz_schema_simulation, &simulation, NULL);
-
-    if (status == RITZ_OK)
-        *out = simulation;
-    else
-        ritz_simulation_free(&simulation);
-    return status;
-}
-
-ritz_status ritz_container_write_simulation(const char *path,
-                                            const ritz_simulation *simulation,
-                                            const ritz_stamp *stamp)
-{
-    return ritz_schema_write(path, &ritz_schema_simulation, simulation, "",
-                             stamp);
-}

@@ -23,6 +23,11 @@ static ritz_status settle_state_space(const ritz_place *place)
     return ritz_state_space_check(model);
 }
 
+static ritz_status check_model(const void *object)
+{
+    return ritz_state_space_check(object);
+}
+
 static const ritz_size sizes[] = {
     {'r', .offset = offsetof(ritz_state_space, A.ncol), "A"},
     {'m', .offset = offsetof(ritz_state_space, num_inputs), "inputs/names"},
@@ -61,30 +66,9 @@ static const ritz_member members[] = {
 
 const ritz_schema ritz_schema_state_space = {
     .name = "state-space",
+    .units = offsetof(ritz_state_space, units),
     .sizes = sizes,
     .members = members,
+    .check = check_model,
     .settle = settle_state_space,
 };
-
-ritz_status ritz_container_read_state_space(const char *path,
-                                            ritz_state_space *out)
-{
-    ritz_state_space model = {0};
-    ritz_status status =
-        ritz_schema_read(path, &ritz_schema_state_space, &model, model.units);
-
-    if (status == RITZ_OK)
-        *out = model;
-    else
-        ritz_state_space_free(&model);
-    return status;
-}
-
-ritz_status ritz_container_write_state_space(const char *path,
-                                             const ritz_state_space *model,
-                                             const ritz_stamp *stamp)
-{
-    RITZ_CHECK_IN(path, ritz_state_space_check(model));
-    return ritz_schema_write(path, &ritz_schema_state_space, model,
-                             model->units, stamp);
-}

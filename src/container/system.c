@@ -32,14 +32,11 @@ static const ritz_schema block_schema = {
 static ritz_status write_block(hid_t blocks, const char *name,
                                const system_block *block)
 {
-    ritz_status status = RITZ_OK;
-    ritz_place at = {.schema = &block_schema, .object = block};
+    RITZ_OWN(hid_t) group = 0;
 
-    RITZ_TRY(ritz_h5_group(blocks, name, &at.at));
-    RITZ_TRY(ritz_schema_move(&at));
-done:
-    ritz_h5_close(at.at);
-    return status;
+    RITZ_CHECK(ritz_h5_group(blocks, name, &group));
+    return ritz_schema_move(
+        &(ritz_place){.at = group, .schema = &block_schema, .object = block});
 }
 
 static ritz_status write_blocks(const ritz_place *place, hid_t group)
@@ -62,18 +59,18 @@ static ritz_status write_blocks(const ritz_place *place, hid_t group)
 static ritz_status read_block(hid_t blocks, const char *name, int64_t due,
                               system_block *block)
 {
-    ritz_status status = RITZ_OK;
-    ritz_place at = {.schema = &block_schema, .object = block, .target = block};
+    RITZ_OWN(hid_t) group = 0;
 
-    RITZ_TRY(ritz_h5_enter(blocks, name, &at.at));
-    RITZ_TRY(ritz_schema_move(&at));
-    RITZ_FAIL_IF(block->first != due, RITZ_ERR_FORMAT,
-                 "attribute 'first' is %" PRId64 ", not in %" PRId64
-                 "..%" PRId64,
-                 block->first, due, due);
-done:
-    ritz_h5_close(at.at);
-    return ritz_context(status, name);
+    RITZ_CHECK(ritz_h5_enter(blocks, name, &group));
+    RITZ_CHECK(ritz_schema_move(&(ritz_place){.at = group,
+                                              .schema = &block_schema,
+                                              .object = block,
+                                              .target = block}));
+    RITZ_REFUSE_IF(block->first != due, RITZ_ERR_FORMAT,
+                   "attribute 'first' is %" PRId64 ", not in %" PRId64
+                   "..%" PRId64,
+                   block->first, due, due);
+    return RITZ_OK;
 }
 
 static ritz_status read_blocks(const ritz_place *place, hid_t group)
@@ -88,7 +85,8 @@ static ritz_status read_blocks(const ritz_place *place, hid_t group)
     for (int64_t c = 0; c < system->num_components; c++) {
         system_block block = {0};
 
-        RITZ_CHECK(read_block(group, system->component[c], first, &block));
+        RITZ_CHECK_IN(system->component[c],
+                      read_block(group, system->component[c], first, &block));
         system->order[c] = block.order;
         system->order_full[c] = block.order_full;
         first += block.order;
@@ -167,7 +165,7 @@ static const ritz_member configuration_members[] = {
     {"momentum", MATRIX_DENSE, RITZ_AT(ritz_configuration, momentum), "6 e",
      "R'M of x, with R the rigid motions about the origin of the first body's "
      "basic frame",
-     .optional = "momentum", .has = has_momentum},
+     .optional = ""},
     {"rigid", SET_REAL, RITZ_AT(ritz_configuration, rigid), "6 6", "R'MR",
      .inside = true, .optional = "momentum", .has = has_momentum},
     {"errors", PART, RITZ_AT(ritz_configuration, errors), .optional = "",
@@ -206,27 +204,7 @@ static const ritz_member members[] = {
 
 const ritz_schema ritz_schema_system = {
     .name = "system",
+    .units = offsetof(ritz_system, units),
     .sizes = sizes,
     .members = members,
 };
-
-ritz_status ritz_container_read_system(const char *path, ritz_system *out)
-{
-    ritz_system system = {0};
-    ritz_status status =
-        ritz_schema_read(path, &ritz_schema_system, &system, system.units);
-
-    if (status == RITZ_OK)
-        *out = system;
-    else
-        ritz_system_free(&system);
-    return status;
-}
-
-ritz_status ritz_container_write_system(const char *path,
-                                        const ritz_system *system,
-                                        const ritz_stamp *stamp)
-{
-    return ritz_schema_write(path, &ritz_schema_system, system, system->units,
-                             stamp);
-}

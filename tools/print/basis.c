@@ -116,9 +116,9 @@ ritz_status basis_run(cli_run *run, basis_options *given)
         request->neighbour = &neighbour;
     }
     RITZ_TRY_IN(run->operand[1], ritz_basis_make(method, request, &basis));
-    RITZ_TRY(ritz_container_write_basis(
-        run->output, &basis,
-        request->space ? m.states.units : m.component.units, cli_stamp(run)));
+    memcpy(basis.units, request->space ? m.states.units : m.component.units,
+           sizeof basis.units);
+    RITZ_TRY(ritz_container_write_basis(run->output, &basis, cli_stamp(run)));
     say_basis(run, &basis);
 done:
     ritz_dofs_free(&request->attached);

@@ -322,7 +322,7 @@ static void other_files_are_refused(void **state)
     assert_fails(ritz_container_read_component(path, &none), RITZ_ERR_FORMAT,
                  "test_container_damage.h5: holds a basis where a component "
                  "is due");
-    assert_fails(ritz_container_write_basis("nowhere/b.h5", &basis, "", &stamp),
+    assert_fails(ritz_container_write_basis("nowhere/b.h5", &basis, &stamp),
                  RITZ_ERR_FILE, "nowhere/b.h5: cannot create");
 }
 
