@@ -1179,6 +1179,63 @@ ritz_status ritz_state_space_poles(const ritz_state_space *model,
 
 void ritz_state_space_free(ritz_state_space *model);
 
+/*
+ * Small dense matrices and what drives and observes them, borrowed; D, K4 NULL
+ * or {0}: there is none.
+ */
+typedef struct ritz_second_order {
+    const ritz_dense *K, *M, *D, *K4;
+    const ritz_io *io;
+} ritz_second_order;
+
+typedef enum ritz_model_kind {
+    RITZ_MODEL_COMPONENT = 1, /* full and sparse */
+    RITZ_MODEL_DENSE = 2,     /* a reduced component, or a configuration */
+    RITZ_MODEL_STATES = 4,
+} ritz_model_kind;
+
+/*
+ * A model of any kind whose poles, zeros, response or motion is wanted: a
+ * reference that borrows all it names and is passed by value. Dampers act as
+ * far as they are installed.
+ */
+typedef struct ritz_model {
+    ritz_model_kind kind;
+    union {
+        const ritz_component *component;
+        ritz_second_order dense;
+        const ritz_state_space *states;
+    };
+    const ritz_dampers *dampers; /* of second order; NULL: none */
+    const ritz_damping *damping; /* in addition to that of matrices; NULL: none.
+                                    Of a state space it is in A */
+} ritz_model;
+
+ritz_model ritz_model_of_component(const ritz_component *component,
+                                   const ritz_damping *damping);
+ritz_model ritz_model_of_reduced(const ritz_reduced *reduced,
+                                 const ritz_damping *damping);
+ritz_model ritz_model_of_configuration(const ritz_configuration *configuration,
+                                       const ritz_damping *damping);
+ritz_model ritz_model_of_dense(const ritz_second_order *matrices,
+                               const ritz_damping *damping);
+ritz_model ritz_model_of_states(const ritz_state_space *states);
+
+/** Number of dofs, reduced coordinates or states. */
+int64_t ritz_model_order(ritz_model model);
+
+/** Inputs and outputs, borrowed; names and limits alone of a state space. */
+ritz_io ritz_model_io(ritz_model model);
+
+/**
+ * The model in first-order form: that of @p model itself if it is a state
+ * space, else one that is written to @p made and is the caller's to free.
+ *
+ * @return as ritz_state_space_of_component
+ */
+ritz_status ritz_model_states(ritz_model model, ritz_state_space *made,
+                              const ritz_state_space **out);
+
 #pragma GCC visibility pop
 
 #endif

@@ -23,35 +23,29 @@ typedef struct ritz_spectrum {
 } ritz_spectrum;
 
 /**
- * All poles of a dense model; io may be NULL. M may be singular: coordinates
- * without mass answer at once, or with a real pole where D acts on them.
+ * Poles of a model: all of a dense one (its io may be NULL) and of a state
+ * space, which has neither shapes nor residuals; the lowest of a component.
  *
- * Ratios of @p damping act on its undamped modes, beside D.
+ * M may be singular: coordinates without mass respond statically, or with a
+ * real pole where D acts on them. Damping ratios act on the undamped modes,
+ * beside D. Of a component dampers count as far as they are installed.
  *
+ * Small components are solved as dense models. Of large ones the poles are
+ * sought in the space of twice as many undamped modes as are wanted and of the
+ * static responses to forces along each damper's influence vector
+ * [ChuMilman1992], then made exact on the full matrices by inverse iteration;
+ * the residual says how exact. Damping ratios are then added to what matrices
+ * give.
+ *
+ * @param[in] span  of a component: so many poles beside those at 0, or those
+ *                  up to |s| / (2 pi); not read of other models
  * @return RITZ_ERR_SINGULAR if neither mass nor stiffness holds a motion;
  *         RITZ_ERR_ARGUMENT if K4, or a skew part of D, acts on coordinates
  *         without mass
- * @cost   O((2 n)^3)
+ * @cost   O((2 n)^3) of a dense model
  */
-ritz_status ritz_spectrum_dense(const ritz_second_order *model,
-                                const ritz_damping *damping,
-                                ritz_spectrum *out);
-
-/**
- * The lowest poles of a component as K and D stand: dampers count as far as
- * they are installed.
- *
- * Small ones are solved as dense. Of large ones the poles are sought in the
- * space of twice as many undamped modes as are wanted and of the static answers
- * to forces along each damper's influence vector [ChuMilman1992], then made
- * exact on the full matrices by inverse iteration; the residual says how exact.
- * Ratios of @p damping are then added to what matrices give.
- *
- * @param[in] span  so many poles beside those at 0, or those up to |s| / (2 pi)
- */
-ritz_status ritz_spectrum_component(const ritz_component *component,
-                                    const ritz_damping *damping,
-                                    const ritz_span *span, ritz_spectrum *out);
+ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
+                             ritz_spectrum *out);
 
 /**
  * That space as a model of its own, with its dampers projected: T is kept.
@@ -84,23 +78,15 @@ typedef struct ritz_scan {
  * steps point is taken for the same mode, as frequencies swap places: the step
  * must be small against the way between poles.
  *
- * @param[in] model    K and D as they stand
- * @param[in] dampers  for its coordinates, with what K and D hold of them
+ * A large component is scanned in the space of some modes and static
+ * responses: at what the scan finds, ask ritz_spectrum_of.
+ *
+ * @param[in] model  no state space; K and D as they stand, with what they hold
+ *                   of its dampers
  * @return RITZ_ERR_ARGUMENT if the range is none, or has no such mode
  */
-ritz_status ritz_scan_dampers(const ritz_second_order *model,
-                              const ritz_dampers *dampers,
-                              const ritz_damping *damping,
-                              const ritz_scan_request *request, ritz_scan *out);
-
-/**
- * The same of a component. A large one is scanned in the space of some modes
- * and static answers: at what the scan finds, ask ritz_spectrum_component.
- */
-ritz_status ritz_scan_component(const ritz_component *component,
-                                const ritz_damping *damping,
-                                const ritz_scan_request *request,
-                                ritz_scan *out);
+ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
+                         ritz_scan *out);
 
 void ritz_spectrum_free(ritz_spectrum *spectrum);
 void ritz_scan_free(ritz_scan *scan);
@@ -120,13 +106,13 @@ void ritz_scan_free(ritz_scan *scan);
 enum { RITZ_ALL_CHANNELS = -1 };
 
 /**
- * Finite zeros of a small dense model, rad/s, by magnitude ascending, of a pair
- * the one above the axis first.
+ * Finite zeros of a small model, rad/s, by magnitude ascending, of a pair the
+ * one above the axis first.
  *
  * Of one channel they are transmission zeros: what poles cancel, as those of
- * modes that are not driven or not seen, is not among them. Of all channels at
- * once they are invariant zeros, such modes among them, but for free rigid
- * motions that no input drives or no output sees.
+ * modes that are not controllable or not observable, is not among them. Of all
+ * channels at once they are invariant zeros, such modes among them, but for
+ * free rigid motions that are not controllable or not observable.
  *
  * A zero that rounding of the model could move by its own magnitude cannot be
  * told from one at infinity, and is taken for that. Without damping, and with
@@ -134,35 +120,18 @@ enum { RITZ_ALL_CHANNELS = -1 };
  * are +- pairs exactly, and those on the axis lie on it exactly; collocated
  * ones are all there, between the poles.
  *
- * @param[in] damping  as of responses; NULL: that of the matrices alone
  * @param[in] output, input  indices from 0, or both RITZ_ALL_CHANNELS: as many
  *                           outputs as inputs
  * @param[out] out     count of them, to be freed
  * @return RITZ_ERR_ARGUMENT if there is no such channel, outputs are not as
- *         many as inputs, there is structural damping, or massless dofs are
- *         damped or seen by velocities; RITZ_ERR_SINGULAR if nothing passes,
- *         or of all channels less than all, at any frequency
+ *         many as inputs, there is structural damping, massless dofs are
+ *         damped or observed by velocities, or a component has too many dofs
+ *         for dense matrices; RITZ_ERR_SINGULAR if nothing passes, or of all
+ *         channels less than all, at any frequency
  * @cost   O(n^3), n coordinates
  */
-ritz_status ritz_zeros_dense(const ritz_second_order *model,
-                             const ritz_damping *damping, int64_t output,
-                             int64_t input, int64_t *count,
-                             double _Complex **out);
-
-/**
- * The same of a component, its dampers at work.
- *
- * @return RITZ_ERR_ARGUMENT also if it has too many dofs for dense matrices
- */
-ritz_status ritz_zeros_component(const ritz_component *component,
-                                 const ritz_damping *damping, int64_t output,
-                                 int64_t input, int64_t *count,
-                                 double _Complex **out);
-
-/** The same of a model in first-order form. */
-ritz_status ritz_zeros_states(const ritz_state_space *model, int64_t output,
-                              int64_t input, int64_t *count,
-                              double _Complex **out);
+ritz_status ritz_zeros_of(ritz_model model, int64_t output, int64_t input,
+                          int64_t *count, double _Complex **out);
 
 /* Norms of systems: how large a model, or the difference of two, can answer. */
 

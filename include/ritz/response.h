@@ -49,12 +49,6 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out);
 
-/* A small dense model, borrowed; D, K4 NULL or {0}: there is none. */
-typedef struct ritz_second_order {
-    const ritz_dense *K, *M, *D, *K4;
-    const ritz_io *io;
-} ritz_second_order;
-
 /** ritz_response_dense for a model that may have structural damping too. */
 ritz_status ritz_response_second_order(const ritz_second_order *model,
                                        const ritz_damping *damping,

@@ -179,8 +179,8 @@ ritz_status ritz_check_locked_states(ritz_checker *it)
         return RITZ_OK;
     }
     RITZ_TRY(ritz_probe_judge(&pairs->A, &probe));
-    status = ritz_zeros_states(&model, RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS,
-                               &count, &zero);
+    status = ritz_zeros_of(ritz_model_of_states(&model), RITZ_ALL_CHANNELS,
+                           RITZ_ALL_CHANNELS, &count, &zero);
     if (status == RITZ_ERR_SINGULAR) {
         ritz_checker_say(it, name, nan(""), nan(""), RITZ_WARN, "",
                          "its pairs depend on each other, they cannot be held");

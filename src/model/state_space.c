@@ -414,6 +414,26 @@ ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
+ritz_status ritz_model_states(ritz_model model, ritz_state_space *made,
+                              const ritz_state_space **out)
+{
+    static const ritz_damping none = {0};
+    const ritz_damping *damping = model.damping ? model.damping : &none;
+    const ritz_second_order *m = &model.dense;
+    ritz_structure structure = {0}; /* borrowed */
+
+    *out = model.kind == RITZ_MODEL_STATES ? model.states : made;
+    if (model.kind == RITZ_MODEL_STATES)
+        return RITZ_OK;
+    if (model.kind == RITZ_MODEL_COMPONENT)
+        return ritz_state_space_of_component(model.component, damping, made);
+    RITZ_CHECK(ritz_structure_refuse(m->K4 && m->K4->val));
+    structure = (ritz_structure){.K = *m->K, .M = *m->M};
+    if (m->D)
+        structure.D = *m->D;
+    return convert_structure(&structure, m->io, damping, made);
+}
+
 void ritz_state_space_free(ritz_state_space *model)
 {
     ritz_dense_free(&model->A);

@@ -193,7 +193,8 @@ static ritz_status take_coupled(const ritz_poles *poles,
 
     RITZ_CHECK_NEW(of, poles->count);
     RITZ_CHECK(modal_new(poles, &m));
-    RITZ_CHECK(ritz_spectrum_dense(&model, NULL, &damped->listing));
+    RITZ_CHECK(ritz_spectrum_of(ritz_model_of_dense(&model, NULL), NULL,
+                                &damped->listing));
     RITZ_CHECK(assign_poles(poles, &damped->listing, of));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {
         damped->s[k] =

@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "poles/poles.h"
+#include "poles/spectrum_parts.h"
 #include "poles/state.h"
 
 #include <complex.h>

@@ -109,7 +109,7 @@ static ritz_status poles_at(bench *b, const ritz_scan_request *request,
     return ritz_spectrum_dense(&b->model, damping, out);
 }
 
-ritz_status ritz_scan_dampers(const ritz_second_order *model,
+static ritz_status scan_dense(const ritz_second_order *model,
                               const ritz_dampers *dampers,
                               const ritz_damping *damping,
                               const ritz_scan_request *request, ritz_scan *out)
@@ -226,10 +226,13 @@ void ritz_whole_free(ritz_whole *whole)
     ritz_dense_free(&whole->K4);
 }
 
-ritz_status ritz_scan_component(const ritz_component *component,
-                                const ritz_damping *damping,
-                                const ritz_scan_request *request,
-                                ritz_scan *out)
+/*
+ * A large component is scanned in the space of some modes and static responses.
+ */
+static ritz_status scan_component(const ritz_component *component,
+                                  const ritz_damping *damping,
+                                  const ritz_scan_request *request,
+                                  ritz_scan *out)
 {
     ritz_span span = {.modes = EACH_MODE * (request->mode + 1) + LEAST_MODES};
     RITZ_OWN(ritz_whole) w = {0};
@@ -239,12 +242,20 @@ ritz_status ritz_scan_component(const ritz_component *component,
 
     if (component->num_dofs <= RITZ_WHOLE_DOFS) {
         RITZ_CHECK(ritz_whole_new(component, &w));
-        RITZ_CHECK(ritz_scan_dampers(&w.model, &component->dampers, damping,
-                                     request, out));
-        return RITZ_OK;
+        return scan_dense(&w.model, &component->dampers, damping, request, out);
     }
     RITZ_CHECK(ritz_spectrum_space(component, &span, &small));
-    return ritz_scan_dampers(&model, &small.dampers, damping, request, out);
+    return scan_dense(&model, &small.dampers, damping, request, out);
+}
+
+ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
+                         ritz_scan *out)
+{
+    RITZ_REFUSE_IF(model.kind == RITZ_MODEL_STATES || !model.dampers,
+                   RITZ_ERR_ARGUMENT, "the model has no dampers to scan");
+    if (model.kind == RITZ_MODEL_COMPONENT)
+        return scan_component(model.component, model.damping, request, out);
+    return scan_dense(&model.dense, model.dampers, model.damping, request, out);
 }
 
 /* Beyond what is wanted, of modes and of frequencies. */
@@ -437,18 +448,53 @@ done:
     return status;
 }
 
-ritz_status ritz_spectrum_component(const ritz_component *component,
-                                    const ritz_damping *damping,
-                                    const ritz_span *span, ritz_spectrum *out)
+static ritz_status spectrum_of_component(const ritz_component *component,
+                                         const ritz_damping *damping,
+                                         const ritz_span *span,
+                                         ritz_spectrum *out)
 {
-    RITZ_OWN(ritz_spectrum) spectrum = {0};
+    if (component->num_dofs > RITZ_WHOLE_DOFS)
+        return ritz_spectrum_large(component, damping, span, out);
+    RITZ_CHECK(solve_whole(component, damping, out));
+    keep_first(span, out);
+    return RITZ_OK;
+}
 
-    if (component->num_dofs <= RITZ_WHOLE_DOFS) {
-        RITZ_CHECK(solve_whole(component, damping, &spectrum));
-        keep_first(span, &spectrum);
-    } else {
-        RITZ_CHECK(ritz_spectrum_large(component, damping, span, &spectrum));
+/* One pole of each pair; a state space has no shapes and so no residuals. */
+static ritz_status spectrum_of_states(const ritz_state_space *model,
+                                      ritz_spectrum *out)
+{
+    int64_t count = 0;
+
+    RITZ_CHECK(ritz_state_space_poles(model, &count, &out->s));
+    RITZ_CHECK_NEW(out->residual, count);
+    for (int64_t k = 0; k < count; k++) {
+        if (cimag(out->s[k]) < 0.0)
+            continue;
+        out->residual[out->count] = nan("");
+        out->s[out->count++] = out->s[k];
     }
-    RITZ_MOVE(*out, spectrum);
+    (void)snprintf(out->engine, sizeof out->engine, "dense LAPACK");
+    return RITZ_OK;
+}
+
+ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
+                             ritz_spectrum *out)
+{
+    RITZ_OWN(ritz_spectrum) found = {0};
+
+    switch (model.kind) {
+    case RITZ_MODEL_COMPONENT:
+        RITZ_CHECK(spectrum_of_component(model.component, model.damping, span,
+                                         &found));
+        break;
+    case RITZ_MODEL_DENSE:
+        RITZ_CHECK(ritz_spectrum_dense(&model.dense, model.damping, &found));
+        break;
+    case RITZ_MODEL_STATES:
+        RITZ_CHECK(spectrum_of_states(model.states, &found));
+        break;
+    }
+    RITZ_MOVE(*out, found);
     return RITZ_OK;
 }

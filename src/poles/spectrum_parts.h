@@ -13,7 +13,12 @@ typedef struct ritz_whole {
     ritz_second_order model; /* of these; io NULL */
 } ritz_whole;
 
-/* * Poles of a component of more dofs than that, by a projection. */
+/** All poles of a dense model; its io may be NULL. @cost O((2 n)^3) */
+ritz_status ritz_spectrum_dense(const ritz_second_order *model,
+                                const ritz_damping *damping,
+                                ritz_spectrum *out);
+
+/** Poles of a component of more dofs than that, by a projection. */
 ritz_status ritz_spectrum_large(const ritz_component *component,
                                 const ritz_damping *damping,
                                 const ritz_span *span, ritz_spectrum *out);

@@ -590,36 +590,24 @@ done:
     return status;
 }
 
-ritz_status ritz_zeros_dense(const ritz_second_order *model,
-                             const ritz_damping *damping, int64_t output,
-                             int64_t input, int64_t *count,
-                             double _Complex **out)
+ritz_status ritz_zeros_of(ritz_model model, int64_t output, int64_t input,
+                          int64_t *count, double _Complex **out)
 {
     RITZ_OWN(ritz_channel) channel = {0};
-
-    RITZ_CHECK(ritz_channel_dense(model, damping, output, input, &channel));
-    return find_zeros(&channel, output != RITZ_ALL_CHANNELS, count, out);
-}
-
-ritz_status ritz_zeros_component(const ritz_component *component,
-                                 const ritz_damping *damping, int64_t output,
-                                 int64_t input, int64_t *count,
-                                 double _Complex **out)
-{
     RITZ_OWN(ritz_structure) dense = {0};
-    ritz_second_order model = {
-        .K = &dense.K, .M = &dense.M, .D = &dense.D, .io = &component->io};
+    ritz_second_order matrices = model.dense;
 
-    RITZ_CHECK(ritz_structure_of_component(component, &dense));
-    return ritz_zeros_dense(&model, damping, output, input, count, out);
-}
-
-ritz_status ritz_zeros_states(const ritz_state_space *model, int64_t output,
-                              int64_t input, int64_t *count,
-                              double _Complex **out)
-{
-    RITZ_OWN(ritz_channel) channel = {0};
-
-    RITZ_CHECK(ritz_channel_states(model, output, input, &channel));
+    if (model.kind == RITZ_MODEL_COMPONENT) {
+        RITZ_CHECK(ritz_structure_of_component(model.component, &dense));
+        matrices = (ritz_second_order){.K = &dense.K,
+                                       .M = &dense.M,
+                                       .D = &dense.D,
+                                       .io = &model.component->io};
+    }
+    if (model.kind == RITZ_MODEL_STATES)
+        RITZ_CHECK(ritz_channel_states(model.states, output, input, &channel));
+    else
+        RITZ_CHECK(ritz_channel_dense(&matrices, model.damping, output, input,
+                                      &channel));
     return find_zeros(&channel, output != RITZ_ALL_CHANNELS, count, out);
 }

@@ -505,8 +505,9 @@ static ritz_status list_poles(const rational_nodes *s,
 
     if (!s->small || !s->full.poles.coupled)
         return ritz_responder_poles(responder, count, out);
-    RITZ_CHECK(
-        ritz_spectrum_dense(&s->whole.model, remaining_damping(s), &all));
+    RITZ_CHECK(ritz_spectrum_of(
+        ritz_model_of_dense(&s->whole.model, remaining_damping(s)), NULL,
+        &all));
     RITZ_CHECK_NEW(found, all.count + all.num_zero);
     for (int64_t k = 0; k < all.count; k++)
         found[k] = all.s[k];
@@ -554,8 +555,9 @@ static ritz_status find_zeros(rational_nodes *s)
     for (int64_t v = 0; v < s->values; v++) {
         int64_t count = 0, n = 0;
 
-        status = ritz_zeros_dense(&s->whole.model, remaining_damping(s),
-                                  v / inputs, v % inputs, &count, &z);
+        status = ritz_zeros_of(
+            ritz_model_of_dense(&s->whole.model, remaining_damping(s)),
+            v / inputs, v % inputs, &count, &z);
         if (status == RITZ_ERR_MEMORY)
             goto done;
         if (status != RITZ_OK) /* H is zero, or no zeros were found */

@@ -275,7 +275,8 @@ static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
     int64_t n = 0;
 
     if (r->pairs)
-        RITZ_TRY(ritz_spectrum_component(r->component, &r->given, &span, &own));
+        RITZ_TRY(ritz_spectrum_of(
+            ritz_model_of_component(r->component, &r->given), &span, &own));
     else
         RITZ_TRY(ritz_damped_new(r->poles, NULL, NULL, band_hz, &damped));
     RITZ_NEW(s, all->count + all->num_zero);

@@ -107,7 +107,8 @@ static ritz_status spectrum_of_component(const model *m,
                                          const ritz_span *span,
                                          ritz_spectrum *out)
 {
-    return ritz_spectrum_component(&m->component, damping, span, out);
+    return ritz_spectrum_of(ritz_model_of_component(&m->component, damping),
+                            span, out);
 }
 
 static ritz_status spectrum_of_matrices(const model *m,
@@ -118,30 +119,15 @@ static ritz_status spectrum_of_matrices(const model *m,
     const ritz_second_order matrices = model_matrices(m);
 
     (void)span;
-    return ritz_spectrum_dense(&matrices, damping, out);
+    return ritz_spectrum_of(ritz_model_of_dense(&matrices, damping), NULL, out);
 }
 
-/* One pole of each pair; a state space has no shapes and so no residuals. */
 static ritz_status spectrum_of_states(const model *m,
                                       const ritz_damping *damping,
                                       const ritz_span *span, ritz_spectrum *out)
 {
-    RITZ_OWN(ritz_spectrum) found = {.engine = "dense LAPACK"};
-    int64_t count = 0;
-
     (void)damping;
-    (void)span;
-    RITZ_CHECK(ritz_state_space_poles(&m->states, &count, &found.s));
-    found.residual = calloc((size_t)count + 1, sizeof *found.residual);
-    RITZ_REFUSE_IF(!found.residual, RITZ_ERR_MEMORY, "no memory for poles");
-    for (int64_t k = 0; k < count; k++) {
-        if (cimag(found.s[k]) < 0.0)
-            continue;
-        found.residual[found.count] = (double)NAN;
-        found.s[found.count++] = found.s[k];
-    }
-    RITZ_MOVE(*out, found);
-    return RITZ_OK;
+    return ritz_spectrum_of(ritz_model_of_states(&m->states), span, out);
 }
 
 /* Second-order models as they are: their modes tell more than states. */
@@ -150,8 +136,8 @@ static ritz_status zeros_of_component(const model *m,
                                       const int64_t at[2], int64_t *count,
                                       double _Complex **out)
 {
-    return ritz_zeros_component(&m->component, damping, at[0], at[1], count,
-                                out);
+    return ritz_zeros_of(ritz_model_of_component(&m->component, damping), at[0],
+                         at[1], count, out);
 }
 
 static ritz_status zeros_of_matrices(const model *m,
@@ -161,7 +147,8 @@ static ritz_status zeros_of_matrices(const model *m,
 {
     const ritz_second_order matrices = model_matrices(m);
 
-    return ritz_zeros_dense(&matrices, damping, at[0], at[1], count, out);
+    return ritz_zeros_of(ritz_model_of_dense(&matrices, damping), at[0], at[1],
+                         count, out);
 }
 
 static ritz_status zeros_of_states(const model *m, const ritz_damping *damping,
@@ -169,7 +156,8 @@ static ritz_status zeros_of_states(const model *m, const ritz_damping *damping,
                                    double _Complex **out)
 {
     (void)damping;
-    return ritz_zeros_states(&m->states, at[0], at[1], count, out);
+    return ritz_zeros_of(ritz_model_of_states(&m->states), at[0], at[1], count,
+                         out);
 }
 
 static ritz_status states_of_component(const model *m,
@@ -465,12 +453,12 @@ ritz_measures *model_errors(model *m)
 ritz_status model_scan(model *m, const ritz_damping *damping,
                        const ritz_scan_request *request, ritz_scan *out)
 {
-    const ritz_second_order matrices = model_matrices(m);
+    ritz_model scanned = ritz_model_of_component(&m->component, damping);
 
-    if (m->kind == MODEL_COMPONENT)
-        return ritz_scan_component(&m->component, damping, request, out);
-    return ritz_scan_dampers(&matrices, model_dampers(m), damping, request,
-                             out);
+    if (m->kind != MODEL_COMPONENT)
+        scanned = m->at ? ritz_model_of_configuration(m->at, damping)
+                        : ritz_model_of_reduced(&m->reduced, damping);
+    return ritz_scan_of(scanned, request, out);
 }
 
 ritz_dampers *model_dampers(model *m)

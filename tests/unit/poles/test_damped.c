@@ -352,8 +352,9 @@ static void assert_poles(const ritz_component *full,
     const ritz_second_order model = {&c->K, &c->M, &c->D, &c->K4, NULL};
     ritz_spectrum one = {0}, two = {0};
 
-    assert_ok(ritz_spectrum_component(full, NULL, &all, &one));
-    assert_ok(ritz_spectrum_dense(&model, NULL, &two));
+    assert_ok(
+        ritz_spectrum_of(ritz_model_of_component(full, NULL), &all, &one));
+    assert_ok(ritz_spectrum_of(ritz_model_of_dense(&model, NULL), NULL, &two));
     assert_int_equal(one.count, count);
     assert_int_equal(two.count, count);
     for (int64_t j = 0; j < count; j++) /* eps times the largest |s|, 27 */

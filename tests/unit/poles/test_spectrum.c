@@ -19,7 +19,8 @@ static ritz_spectrum poles_of(int64_t n, double *K, double *M, double *D,
     ritz_spectrum spectrum = {0};
 
     assert_ok(ritz_damping_parse(damping, &given));
-    assert_ok(ritz_spectrum_dense(&model, &given, &spectrum));
+    assert_ok(
+        ritz_spectrum_of(ritz_model_of_dense(&model, &given), NULL, &spectrum));
     return spectrum;
 }
 
@@ -197,12 +198,15 @@ static void what_cannot_be_answered_is_refused_in_words(void **state)
     ritz_spectrum s = {0};
 
     (void)state;
-    assert_fails(ritz_spectrum_dense(&skew, NULL, &s), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_spectrum_of(ritz_model_of_dense(&skew, NULL), NULL, &s),
+                 RITZ_ERR_ARGUMENT,
                  "are its gyroscopic terms at massless dofs?");
-    assert_fails(ritz_spectrum_dense(&loss, NULL, &s), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_spectrum_of(ritz_model_of_dense(&loss, NULL), NULL, &s),
+                 RITZ_ERR_ARGUMENT,
                  "there are motions without mass beside structural damping");
     K[3] = 0.0;
-    assert_fails(ritz_spectrum_dense(&skew, NULL, &s), RITZ_ERR_SINGULAR,
+    assert_fails(ritz_spectrum_of(ritz_model_of_dense(&skew, NULL), NULL, &s),
+                 RITZ_ERR_SINGULAR,
                  "neither is the stiffness of the motions without mass");
 }
 
@@ -279,13 +283,15 @@ static void the_chain_has_its_published_poles(void **state)
     small[0] = with_ritz_vectors(&chain);
     small[1] = truncate(&chain);
     assert_ok(ritz_component_install(&chain));
-    assert_ok(ritz_spectrum_component(&chain, NULL, &twenty, &s[0]));
+    assert_ok(ritz_spectrum_of(ritz_model_of_component(&chain, NULL), &twenty,
+                               &s[0]));
     assert_int_equal(s[0].count, 20);
     for (int k = 0; k < 2; k++) {
         ritz_second_order model = view(&small[k]);
 
         assert_ok(ritz_reduced_install(&small[k]));
-        assert_ok(ritz_spectrum_dense(&model, NULL, &s[1 + k]));
+        assert_ok(ritz_spectrum_of(ritz_model_of_dense(&model, NULL), NULL,
+                                   &s[1 + k]));
     }
     for (int k = 0; k < ROWS; k++) {
         assert_row(&s[0], table[k].pole, table[k].full);
@@ -320,13 +326,14 @@ static void scans_find_the_published_optima(void **state)
             double c = best[mode][k];
             const ritz_scan_request request = {3,        all,  c - 60.0,
                                                c + 60.0, 10.0, mode};
-            ritz_second_order model = view(&small[k > 0 ? k - 1 : 0]);
             ritz_scan scan = {0};
 
-            assert_ok(k == 0
-                          ? ritz_scan_component(&chain, NULL, &request, &scan)
-                          : ritz_scan_dampers(&model, &small[k - 1].dampers,
-                                              NULL, &request, &scan));
+            assert_ok(
+                k == 0
+                    ? ritz_scan_of(ritz_model_of_component(&chain, NULL),
+                                   &request, &scan)
+                    : ritz_scan_of(ritz_model_of_reduced(&small[k - 1], NULL),
+                                   &request, &scan));
             assert_int_equal(scan.count, 13);
             assert_near(scan.c[scan.best], c, 0.0);
             if (mode == 1)
@@ -351,7 +358,8 @@ static void a_mode_is_followed_past_poles_that_come_between(void **state)
     (void)state;
     assert_ok(chain_component(30, &chain));
     assert_ok(ritz_component_install(&chain));
-    assert_ok(ritz_scan_component(&chain, NULL, &request, &scan));
+    assert_ok(
+        ritz_scan_of(ritz_model_of_component(&chain, NULL), &request, &scan));
     assert_int_equal(scan.count, 16);
     assert_near(cabs(scan.s[15]), table[3].full[0], 5.1e-6);
     assert_near(100.0 * ritz_spectrum_ratio(scan.s[15]), table[3].full[1],
@@ -381,9 +389,9 @@ static void bad_scans_are_refused_in_words(void **state)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         ritz_scan scan = {0};
 
-        assert_fails(
-            ritz_scan_component(&chain, NULL, &cases[k].request, &scan),
-            RITZ_ERR_ARGUMENT, cases[k].words);
+        assert_fails(ritz_scan_of(ritz_model_of_component(&chain, NULL),
+                                  &cases[k].request, &scan),
+                     RITZ_ERR_ARGUMENT, cases[k].words);
     }
     ritz_component_free(&chain);
 }
@@ -404,7 +412,8 @@ static void a_large_component_has_the_poles_of_its_dense_matrices(void **state)
     assert_ok(ritz_sparse_dense(&chain.K, &A[0]));
     assert_ok(ritz_sparse_dense(&chain.M, &A[1]));
     assert_ok(ritz_sparse_dense(&chain.D, &A[2]));
-    assert_ok(ritz_spectrum_dense(&model, NULL, &whole));
+    assert_ok(
+        ritz_spectrum_of(ritz_model_of_dense(&model, NULL), NULL, &whole));
     assert_ok(ritz_spectrum_large(&chain, NULL, &ten, &part));
     assert_int_equal(part.count, 10);
     for (int64_t j = 0; j < part.count; j++) {
@@ -466,8 +475,9 @@ static ritz_status scan_all(const ritz_component *chain)
     ritz_scan scan = {0};
     ritz_spectrum s = {0};
 
-    RITZ_TRY(ritz_scan_component(chain, NULL, &request, &scan));
-    RITZ_TRY(ritz_spectrum_component(chain, NULL, &two, &s));
+    RITZ_TRY(
+        ritz_scan_of(ritz_model_of_component(chain, NULL), &request, &scan));
+    RITZ_TRY(ritz_spectrum_of(ritz_model_of_component(chain, NULL), &two, &s));
 done:
     ritz_scan_free(&scan);
     ritz_spectrum_free(&s);
@@ -488,9 +498,9 @@ static ritz_status spectrum_of_everything(void)
     ritz_status status = RITZ_OK;
     ritz_spectrum s = {0};
 
-    RITZ_TRY(ritz_spectrum_dense(&real, NULL, &s));
+    RITZ_TRY(ritz_spectrum_of(ritz_model_of_dense(&real, NULL), NULL, &s));
     ritz_spectrum_free(&s);
-    RITZ_TRY(ritz_spectrum_dense(&complex_, NULL, &s));
+    RITZ_TRY(ritz_spectrum_of(ritz_model_of_dense(&complex_, NULL), NULL, &s));
 done:
     ritz_spectrum_free(&s);
     return status;

@@ -66,7 +66,8 @@ static void two_masses_have_the_zero_of_the_second_alone(void **state)
     (void)state;
     chain_new(2, m, k, NULL, &s);
     chain_ends(&s, 1, &first, 1, &first);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 2);
     /* a sum of two terms: a few roundings */
     assert_near(cimag(zero[0]), 4.0, 16 * DBL_EPSILON * 4.0);
@@ -74,7 +75,8 @@ static void two_masses_have_the_zero_of_the_second_alone(void **state)
     assert_true(zero[1] == conj(zero[0]));
     free(zero);
     chain_ends(&s, 1, &first, 1, &second);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 0);
     free(zero);
     chain_free_all(&s);
@@ -92,13 +94,15 @@ static void a_damped_pair_has_the_zeros_of_its_link(void **state)
     (void)state;
     chain_new(2, m, k, c, &s);
     chain_ends(&s, 1, &first, 1, &second);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 1);
     /* far beyond the poles, where two modes all but cancel: measured 1.2e-13 */
     assert_near(cabs(zero[0] + 40.0), 0.0, 1e-12);
     free(zero);
     chain_ends(&s, 1, &first, 1, &first);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 2);
     due = -0.2 + (double _Complex)_Complex_I * sqrt(16.0 - 0.04);
     assert_near(cabs(zero[0] - due), 0.0, 100 * DBL_EPSILON * cabs(due));
@@ -161,7 +165,8 @@ static void collocated_zeros_are_poles_of_the_held_structure(void **state)
     held = held_frequencies(N, m, k, at);
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 1, &at, 1, &at);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_ok(ritz_eigen_dense(s.model.K, s.model.M, &pairs));
     assert_int_equal(count, 2 * (N - 1));
     for (int64_t j = 0; j < N - 1; j++) {
@@ -197,7 +202,8 @@ static void zeros_between_are_those_of_both_ends(void **state)
     behind = held_frequencies(N - b, m + b, k + b, 0);
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 1, &a, 1, &b);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 2 * (a + N - 1 - b));
     for (int64_t j = 0; j < count; j += 2) {
         double w = cimag(zero[j]), nearest = HUGE_VAL;
@@ -233,7 +239,8 @@ static void a_wave_guide_has_no_zeros_of_rounding(void **state)
     }
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 1, &a, 1, &b);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 0);
     free(zero);
     chain_free_all(&s);
@@ -253,13 +260,15 @@ static void a_mode_that_is_not_seen_makes_no_zero(void **state)
     chain_new(3, m, k, NULL, &s);
     ritz_dense_col(&s.dense.K, 2)[2] += 5.0;
     chain_ends(&s, 1, &middle, 1, &middle);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
+                            &zero));
     assert_int_equal(count, 2);
     assert_near(cimag(zero[0]), sqrt(8.0), 32 * DBL_EPSILON * sqrt(8.0));
     free(zero);
     /* of all channels it is an invariant zero too */
-    assert_ok(ritz_zeros_dense(&s.model, NULL, RITZ_ALL_CHANNELS,
-                               RITZ_ALL_CHANNELS, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL),
+                            RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
+                            &zero));
     assert_int_equal(count, 4);
     for (int j = 0; j < 4; j++)
         /* measured 0; a few roundings */
@@ -339,7 +348,8 @@ static void derivatives_have_zeros_at_rest(void **state)
                 io->C = io->Ca;
                 io->Ca = kept;
             }
-            assert_ok(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero));
+            assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0,
+                                    &count, &zero));
             assert_int_equal(count, 2 + rest);
             for (int64_t j = 0; j < rest; j++)
                 assert_true(zero[j] == 0.0);
@@ -367,10 +377,12 @@ static void both_forms_have_the_same_zeros(void **state)
     for (int damped = 0; damped < 2; damped++) {
         chain_new(N, m, k, damped ? c : NULL, &s);
         chain_ends(&s, 1, &a, 1, &b);
-        assert_ok(ritz_zeros_dense(&s.model, &ratios, 0, 0, &count, &zero));
+        assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, &ratios), 0, 0,
+                                &count, &zero));
         assert_ok(
             ritz_state_space_of_component(&s.component, &ratios, &states));
-        assert_ok(ritz_zeros_states(&states, 0, 0, &again, &same));
+        assert_ok(
+            ritz_zeros_of(ritz_model_of_states(&states), 0, 0, &again, &same));
         assert_true(count >= 2 * (a + N - 1 - b));
         assert_int_equal(count, again);
         for (int64_t j = 0; j < count; j++) {
@@ -411,8 +423,9 @@ static void all_channels_collocated_have_poles_of_what_is_held(void **state)
     due[2] = behind[0];
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 2, at, 2, at);
-    assert_ok(ritz_zeros_dense(&s.model, NULL, RITZ_ALL_CHANNELS,
-                               RITZ_ALL_CHANNELS, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL),
+                            RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
+                            &zero));
     assert_int_equal(count, 6);
     for (int j = 0; j < 6; j++) {
         double nearest = HUGE_VAL;
@@ -442,7 +455,7 @@ static void a_state_space_has_the_zeros_of_its_numerator(void **state)
 
     (void)state;
     assert_ok(spaces_make(&rows, &model));
-    assert_ok(ritz_zeros_states(&model, 0, 0, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_states(&model), 0, 0, &count, &zero));
     assert_int_equal(count, 2);
     assert_near(cabs(zero[0] + 2.0), 0.0, 1e-13); /* measured 2.7e-15 */
     assert_near(cabs(zero[1] - 3.0), 0.0, 1e-13);
@@ -462,24 +475,28 @@ static void what_has_no_zeros_is_refused(void **state)
     (void)state;
     chain_new(2, m, k, NULL, &s);
     chain_ends(&s, 2, ends, 1, ends);
-    assert_fails(ritz_zeros_dense(&s.model, NULL, 1, 0, &count, &zero),
-                 RITZ_ERR_ARGUMENT, "there is no output 2, there are 1");
-    assert_fails(ritz_zeros_dense(&s.model, NULL, 0, 2, &count, &zero),
-                 RITZ_ERR_ARGUMENT, "there is no input 3, there are 2");
-    assert_fails(ritz_zeros_dense(&s.model, NULL, RITZ_ALL_CHANNELS,
-                                  RITZ_ALL_CHANNELS, &count, &zero),
-                 RITZ_ERR_ARGUMENT,
-                 "as many outputs as inputs, not of 1 and 2");
+    assert_fails(
+        ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 1, 0, &count, &zero),
+        RITZ_ERR_ARGUMENT, "there is no output 2, there are 1");
+    assert_fails(
+        ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 2, &count, &zero),
+        RITZ_ERR_ARGUMENT, "there is no input 3, there are 2");
+    assert_fails(
+        ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), RITZ_ALL_CHANNELS,
+                      RITZ_ALL_CHANNELS, &count, &zero),
+        RITZ_ERR_ARGUMENT, "as many outputs as inputs, not of 1 and 2");
     assert_ok(ritz_dense_new(2, 2, &K4));
     s.model.K4 = &K4;
-    assert_fails(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero),
-                 RITZ_ERR_ARGUMENT, "structural damping is of harmonic motion");
+    assert_fails(
+        ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count, &zero),
+        RITZ_ERR_ARGUMENT, "structural damping is of harmonic motion");
     chain_free_all(&s);
     ritz_dense_free(&K4);
     chain_new(2, m, apart, NULL, &s);
     chain_ends(&s, 1, ends, 1, ends + 1);
-    assert_fails(ritz_zeros_dense(&s.model, NULL, 0, 0, &count, &zero),
-                 RITZ_ERR_SINGULAR, "nothing passes");
+    assert_fails(
+        ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count, &zero),
+        RITZ_ERR_SINGULAR, "nothing passes");
     chain_free_all(&s);
 }
 
@@ -489,10 +506,11 @@ static ritz_status forget(const chain *s, const ritz_state_space *states)
     double _Complex *zero = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_zeros_dense(&s->model, NULL, 0, 0, &count, &zero));
+    RITZ_TRY(ritz_zeros_of(ritz_model_of_dense(&s->model, NULL), 0, 0, &count,
+                           &zero));
     free(zero);
     zero = NULL;
-    RITZ_TRY(ritz_zeros_states(states, 0, 0, &count, &zero));
+    RITZ_TRY(ritz_zeros_of(ritz_model_of_states(states), 0, 0, &count, &zero));
 done:
     free(zero);
     return status;

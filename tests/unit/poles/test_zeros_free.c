@@ -120,7 +120,8 @@ static void expect_zeros(const bodies *s, int64_t at, int64_t count,
     double _Complex *zero = NULL;
     int64_t found = 0;
 
-    assert_ok(ritz_zeros_dense(&s->model, NULL, at, at, &found, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s->model, NULL), at, at,
+                            &found, &zero));
     assert_int_equal(found, count);
     for (int64_t k = 0; k < count; k++) {
         double nearest = HUGE_VAL;
@@ -183,8 +184,9 @@ static void of_all_channels_no_rigid_motion_is_left_over(void **state)
         bodies_new(damped, NONE, &s);
         bodies_ends(&s, 2, ends, ends);
         look_also(&s, 1, 6, 1.0);
-        assert_ok(ritz_zeros_dense(&s.model, NULL, RITZ_ALL_CHANNELS,
-                                   RITZ_ALL_CHANNELS, &count, &zero));
+        assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL),
+                                RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
+                                &zero));
         assert_int_equal(count, 2 + 4);
         due = root_of(mass[2], damped ? rate[0][1] : 0.0, stiff[0][1]);
         for (int64_t j = 0; j < count; j++) {
@@ -214,7 +216,8 @@ static void true_zeros_near_rest_stay(void **state)
 
         assert_ok(masses_component(3, m, k, damped ? c : NULL, &row));
         assert_ok(masses_io(&row, 1, ends, 1, ends));
-        assert_ok(ritz_zeros_component(&row, NULL, 0, 0, &count, &zero));
+        assert_ok(ritz_zeros_of(ritz_model_of_component(&row, NULL), 0, 0,
+                                &count, &zero));
         assert_int_equal(count, 4);
         for (int j = 0; j < 2; j++)
             /* measured 1.1e-9 of it, beside poles of 158 rad/s */
@@ -267,8 +270,9 @@ static void what_an_output_does_not_see_is_no_zero(void **state)
             if (both == 1)
                 expect_zeros(&s, 0, 2, due);
         }
-        assert_ok(ritz_zeros_dense(&s.model, NULL, RITZ_ALL_CHANNELS,
-                                   RITZ_ALL_CHANNELS, &count, &zero));
+        assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL),
+                                RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
+                                &zero));
         assert_int_equal(count, 2 + 4);
         for (int64_t k = 0; k < count; k++)
             assert_true(cabs(zero[k]) > 1.0);
@@ -297,18 +301,22 @@ static void a_rigid_plate_has_none(void **state)
         ritz_dense_col(&M, i)[i] = inertia[i];
         io.B.val[i] = io.C.val[i] = push[i];
     }
-    assert_ok(ritz_zeros_dense(&model, NULL, 0, 0, &count, &zero));
+    assert_ok(
+        ritz_zeros_of(ritz_model_of_dense(&model, NULL), 0, 0, &count, &zero));
     assert_int_equal(count, 0);
     free(zero);
-    assert_ok(ritz_zeros_dense(&model, NULL, RITZ_ALL_CHANNELS,
-                               RITZ_ALL_CHANNELS, &count, &zero));
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&model, NULL),
+                            RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
+                            &zero));
     assert_int_equal(count, 0);
     free(zero);
     memcpy(io.C.val, across, sizeof across);
-    assert_fails(ritz_zeros_dense(&model, NULL, 0, 0, &count, &zero),
-                 RITZ_ERR_SINGULAR, "nothing passes");
-    assert_fails(ritz_zeros_dense(&model, NULL, RITZ_ALL_CHANNELS,
-                                  RITZ_ALL_CHANNELS, &count, &zero),
+    assert_fails(
+        ritz_zeros_of(ritz_model_of_dense(&model, NULL), 0, 0, &count, &zero),
+        RITZ_ERR_SINGULAR, "nothing passes");
+    assert_fails(ritz_zeros_of(ritz_model_of_dense(&model, NULL),
+                               RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
+                               &zero),
                  RITZ_ERR_SINGULAR, "nothing passes");
     ritz_dense_free(&K);
     ritz_dense_free(&M);
@@ -321,10 +329,12 @@ static ritz_status forget(const bodies *s, const ritz_component *row)
     double _Complex *zero = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_zeros_dense(&s->model, NULL, 0, 0, &count, &zero));
+    RITZ_TRY(ritz_zeros_of(ritz_model_of_dense(&s->model, NULL), 0, 0, &count,
+                           &zero));
     free(zero);
     zero = NULL;
-    RITZ_TRY(ritz_zeros_component(row, NULL, 0, 0, &count, &zero));
+    RITZ_TRY(
+        ritz_zeros_of(ritz_model_of_component(row, NULL), 0, 0, &count, &zero));
 done:
     free(zero);
     return status;
