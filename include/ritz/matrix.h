@@ -30,6 +30,26 @@ ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
 
 ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out);
 
+/** I of @p n rows. */
+ritz_status ritz_dense_identity(int64_t n, ritz_dense *out);
+
+/** A := A + factor B. */
+void ritz_dense_add(double factor, const ritz_dense *B, ritz_dense *A);
+
+/** A(i,j) := factor[i] A(i,j). */
+void ritz_dense_scale_rows(const double *factor, ritz_dense *A);
+
+/** A := B, which is left empty. */
+void ritz_dense_replace(ritz_dense *A, ritz_dense *B);
+
+/** The block of @p out's size whose first entry is A(row, col). */
+void ritz_dense_cut(const ritz_dense *A, int64_t row, int64_t col,
+                    ritz_dense *out);
+
+/** A becomes the block of @p out whose first entry is (row, col). */
+void ritz_dense_put(const ritz_dense *A, int64_t row, int64_t col,
+                    ritz_dense *out);
+
 /** |A(i,j)|. */
 ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out);
 
@@ -76,6 +96,10 @@ ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count);
 /** Rows row[0], row[1], ... as a matrix of their own. */
 ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
                             const int64_t *row, ritz_dense *out);
+
+/** Columns col[0], col[1], ... likewise. */
+ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
+                            const int64_t *col, ritz_dense *out);
 
 /** Largest |A(i,j)|, 0 if empty. */
 double ritz_dense_max(const ritz_dense *A);

@@ -6,9 +6,10 @@
  * in the inner product of M, which may be singular: every vector starts in the
  * range of the operator and stays there.
  */
+#include "linear/arpack.h"
+
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/shifted.h"
 
 #include <ritz/base.h>
 
@@ -179,8 +180,7 @@ ritz_status ritz_lanczos_lowest(const ritz_shifted *S, int64_t k, ritz_dense *X,
     if (*end != RITZ_LANCZOS_FOUND)
         return RITZ_OK;
     RITZ_CHECK(extract_pairs(S, &L));
-    *X = L.V;
-    X->ncol = L.nev;
-    L.V = (ritz_dense){0};
+    L.V.ncol = L.nev;
+    RITZ_MOVE(*X, L.V);
     return RITZ_OK;
 }

@@ -51,23 +51,71 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
     return RITZ_OK;
 }
 
+ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
+                            const int64_t *col, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
+    for (int64_t j = 0; j < count && A->nrow > 0; j++)
+        memcpy(ritz_dense_col(out, j), ritz_dense_col(A, col[j]),
+               (size_t)A->nrow * sizeof *out->val);
+    return RITZ_OK;
+}
+
+void ritz_dense_cut(const ritz_dense *A, int64_t row, int64_t col,
+                    ritz_dense *out)
+{
+    for (int64_t j = 0; j < out->ncol; j++)
+        for (int64_t i = 0; i < out->nrow; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(A, col + j)[row + i];
+}
+
+void ritz_dense_put(const ritz_dense *A, int64_t row, int64_t col,
+                    ritz_dense *out)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(out, col + j)[row + i] = ritz_dense_col(A, j)[i];
+}
+
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *out)
 {
-    int64_t a = A->nrow * A->ncol;
-    int64_t b = B->nrow * B->ncol;
-
     RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol + B->ncol, out));
-    if (a > 0)
-        memcpy(out->val, A->val, (size_t)a * sizeof *out->val);
-    if (b > 0)
-        memcpy(out->val + a, B->val, (size_t)b * sizeof *out->val);
+    ritz_dense_put(A, 0, 0, out);
+    ritz_dense_put(B, 0, A->ncol, out);
     return RITZ_OK;
 }
 
 ritz_status ritz_dense_copy(const ritz_dense *A, ritz_dense *out)
 {
     return ritz_dense_columns(A, 0, A->ncol, out);
+}
+
+ritz_status ritz_dense_identity(int64_t n, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(n, n, out));
+    for (int64_t j = 0; j < n; j++)
+        ritz_dense_col(out, j)[j] = 1.0;
+    return RITZ_OK;
+}
+
+void ritz_dense_add(double factor, const ritz_dense *B, ritz_dense *A)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        A->val[k] += factor * B->val[k];
+}
+
+void ritz_dense_scale_rows(const double *factor, ritz_dense *A)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            ritz_dense_col(A, j)[i] *= factor[i];
+}
+
+void ritz_dense_replace(ritz_dense *A, ritz_dense *B)
+{
+    ritz_dense_free(A);
+    RITZ_MOVE(*A, *B);
 }
 
 ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out)
@@ -111,20 +159,16 @@ double ritz_dense_max(const ritz_dense *A)
 
 double ritz_dense_col_max(const ritz_dense *A, int64_t j)
 {
-    const ritz_dense column = ritz_dense_part(A, j, 1);
-
-    return ritz_dense_max(&column);
+    return ritz_dense_max(&(ritz_dense){A->nrow, 1, ritz_dense_col(A, j)});
 }
 
 void ritz_dense_orient(ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++) {
         double *a = ritz_dense_col(A, j);
-        double largest = 0.0;
+        double largest = ritz_dense_col_max(A, j);
         int64_t first = 0;
 
-        for (int64_t i = 0; i < A->nrow; i++)
-            largest = fmax(largest, fabs(a[i]));
         while (first < A->nrow &&
                fabs(a[first]) < largest * (1 - RITZ_LIKE_LARGEST))
             first++;
@@ -204,19 +248,7 @@ ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
 
     RITZ_CHECK(ritz_dense_mul_tn(right, X, &part));
     RITZ_CHECK(ritz_dense_mul(left, &part, &gone));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        X->val[k] -= gone.val[k];
-    return RITZ_OK;
-}
-
-ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
-                                  ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) AB = {0};
-
-    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
-    RITZ_CHECK(ritz_dense_mul_tn(B, &AB, out));
-    ritz_dense_symmetrise(out);
+    ritz_dense_add(-1.0, &gone, X);
     return RITZ_OK;
 }
 
@@ -229,6 +261,14 @@ ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
     RITZ_CHECK(ritz_dense_mul_tn(B, &AB, out));
     if (ritz_dense_asymmetry(A) == 0.0)
         ritz_dense_symmetrise(out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
+                                  ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_project(A, B, out));
+    ritz_dense_symmetrise(out);
     return RITZ_OK;
 }
 

@@ -1,14 +1,25 @@
 /* Shared by all eigensolvers: counts of modes, rigid modes, units. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/shifted.h"
+#include "linear/general.h"
 
-#include <ritz/base.h>
+#include <ritz/matrix.h>
 
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+
+ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
+                              int64_t cols_M)
+{
+    RITZ_REFUSE_IF(rows_K != cols_K || rows_M != rows_K || cols_M != rows_K,
+                   RITZ_ERR_ARGUMENT,
+                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                   " x %" PRId64,
+                   rows_K, cols_K, rows_M, cols_M);
+    return RITZ_OK;
+}
 
 ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
                              double tau, int64_t *out)
@@ -16,12 +27,7 @@ ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_OWN(ritz_sparse) A = {0};
     RITZ_OWN(ritz_ldl) *F = NULL;
 
-    RITZ_REFUSE_IF(K->nrow != K->ncol || M->nrow != K->nrow ||
-                       M->ncol != K->nrow,
-                   RITZ_ERR_ARGUMENT,
-                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                   " x %" PRId64,
-                   K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_CHECK(ritz_eigen_refuse(K->nrow, K->ncol, M->nrow, M->ncol));
     RITZ_REFUSE_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
                    "modes below %g cannot be counted", tau);
     RITZ_CHECK(ritz_sparse_add(1.0, K, -tau, M, &A));
@@ -40,7 +46,8 @@ typedef struct cut {
 } cut;
 
 /* The most that the cut allows; all of them, if none stands above. */
-static int64_t below(const cut *c, int64_t count, const double *lambda)
+static int64_t count_below_cut(const cut *c, int64_t count,
+                               const double *lambda)
 {
     double largest = c->floor;
     int64_t found = 0;
@@ -63,13 +70,13 @@ int64_t ritz_eigen_rigid(int64_t count, const double *lambda, double lambda_max)
     const cut clean = {64.0 * rounding, rounding, 100.0};
     int64_t found = 0;
 
-    if (count > 6 && below(&body, 7, lambda) == 6)
+    if (count > 6 && count_below_cut(&body, 7, lambda) == 6)
         return 6;
     if (negative > clean.limit) {
-        found = below(&noisy, count, lambda);
+        found = count_below_cut(&noisy, count, lambda);
         return found < count ? found : 0;
     }
-    found = below(&clean, count, lambda);
+    found = count_below_cut(&clean, count, lambda);
     for (int64_t k = 0; found == 0 && 2 * (k + 1) <= count; k++)
         if (fabs(lambda[k]) <= RITZ_FREE_MOTION * lambda[k + 1])
             found = k + 1;

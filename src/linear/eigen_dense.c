@@ -8,10 +8,9 @@
  * Held to: bars and membranes in closed form, masses of rank one, masses of
  * 1 and 1e8 side by side.
  */
-#include "linear/eigen_dense.h"
-
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 
 #include <ritz/matrix.h>
 
@@ -154,8 +153,7 @@ static ritz_status condense_massless(const ritz_dense *K, ritz_dense *N,
     RITZ_CHECK(lapack_status(
         LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', k, r, NKN.val, k, NKQ.val, k)));
     RITZ_CHECK(ritz_dense_mul(N, &NKQ, &fall));
-    for (int64_t i = 0; i < fall.nrow * fall.ncol; i++)
-        Q_r->val[i] -= fall.val[i];
+    ritz_dense_add(-1.0, &fall, Q_r);
     return RITZ_OK;
 }
 
@@ -220,9 +218,7 @@ ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
     } else {
         RITZ_CHECK(by_condensing(&K_s, &M_s, lambda, X));
     }
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < X->nrow; i++)
-            ritz_dense_col(X, j)[i] *= s[i];
+    ritz_dense_scale_rows(s, X);
     return RITZ_OK;
 }
 
@@ -312,11 +308,7 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     RITZ_OWN(ritz_pairs) pairs = {.proven_to = HUGE_VAL};
     int64_t n = K->nrow;
 
-    RITZ_REFUSE_IF(K->ncol != n || M->nrow != n || M->ncol != n,
-                   RITZ_ERR_ARGUMENT,
-                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                   " x %" PRId64,
-                   K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
     RITZ_CHECK_NEW(pairs.lambda, n);
     RITZ_CHECK_NEW(pairs.residual, n);
     if (n > 0)

@@ -15,16 +15,18 @@
  * and with dofs without mass.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
-#include "linear/shifted.h"
-
-#include <ritz/base.h>
+#include "linear/arpack.h"
+#include "linear/general.h"
 
 #include <float.h>
 #include <inttypes.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     SMALL = 600,   /* dofs, or dofs with mass: dense is faster */
@@ -41,7 +43,9 @@ typedef struct search {
     double limit;   /* of lambda by frequency, a little above */
     int64_t target; /* modes below limit */
     ritz_shifted S;
-    ritz_survey seen;
+    double typical; /* median of K_jj / M_jj, 1 if there is none */
+    int64_t *heavy; /* columns of M that are not zero */
+    int64_t num_heavy;
     double broken; /* -sigma at which the factor broke down */
     int64_t ask;
     int64_t misses; /* how often the count found more */
@@ -49,13 +53,228 @@ typedef struct search {
     ritz_pairs found;
 } search;
 
+static void search_free(search *s)
+{
+    free(s->heavy);
+    ritz_factor_free(&s->S.A);
+    ritz_pairs_free(&s->found);
+}
+
+/* Median of K_jj / M_jj, and the columns of M that are not zero. */
+static ritz_status survey_pencil(search *s)
+{
+    const ritz_sparse *K = s->S.K, *M = s->S.M;
+    RITZ_OWN_ARRAY double *ratio = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK_NEW(ratio, K->nrow);
+    RITZ_CHECK_NEW(s->heavy, K->nrow);
+    for (int64_t j = 0; j < K->nrow; j++) {
+        double k = ritz_sparse_diagonal(K, j);
+        double m = ritz_sparse_diagonal(M, j);
+        bool heavy = false;
+
+        for (int64_t p = M->colptr[j]; p < M->colptr[j + 1]; p++)
+            heavy = heavy || M->val[p] != 0.0;
+        if (heavy)
+            s->heavy[s->num_heavy++] = j;
+        if (k > 0.0 && m > 0.0)
+            ratio[count++] = k / m;
+    }
+    qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
+    s->typical = count > 0 ? ratio[count / 2] : 1.0;
+    return RITZ_OK;
+}
+
+/* Residual of one pair, as ritz_pairs defines it; *energy = |x|'|K||x|. */
+static double residual_of(const ritz_shifted *S, const double *x, double lambda,
+                          double *energy)
+{
+    const ritz_sparse *K = S->K;
+    const ritz_sparse *M = S->M;
+    double gap = 0.0;
+    double size = 0.0;
+
+    *energy = 0.0;
+    for (int64_t j = 0; j < K->ncol; j++) {
+        double g = 0.0;
+        double k = 0.0;
+        double m = 0.0;
+
+        for (int64_t p = K->colptr[j]; p < K->colptr[j + 1]; p++) {
+            g += K->val[p] * x[K->rowind[p]];
+            k += fabs(K->val[p] * x[K->rowind[p]]);
+        }
+        for (int64_t p = M->colptr[j]; p < M->colptr[j + 1]; p++) {
+            g -= lambda * M->val[p] * x[M->rowind[p]];
+            m += fabs(M->val[p] * x[M->rowind[p]]);
+        }
+        *energy += fabs(x[j]) * k;
+        k += fabs(lambda) * m;
+        gap = hypot(gap, g);
+        size = hypot(size, k);
+    }
+    return size > 0.0 ? gap / size : 0.0;
+}
+
+/* Residuals and the number of rigid modes; the worst residual. */
+static double assess_pairs(const ritz_shifted *S, ritz_pairs *P)
+{
+    double worst = 0.0;
+    double scale = 0.0;
+
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
+        double energy = 0.0;
+
+        P->residual[j] =
+            residual_of(S, ritz_dense_col(&P->Phi, j), P->lambda[j], &energy);
+        scale = fmax(scale, energy);
+        worst = P->residual[j] <= worst ? worst : P->residual[j];
+    }
+    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    return worst;
+}
+
+/* A_r := (A_r + A_r') / 2, with unit diagonal of M_r: Y_j / |Y_j|_M. */
+static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
+{
+    int64_t k = Y->ncol;
+
+    for (int64_t j = 0; j < k; j++) {
+        double size = sqrt(ritz_dense_col(M_r, j)[j]);
+
+        if (!(size > 0.0))
+            continue;
+        for (int64_t i = 0; i < k; i++) {
+            A_r->val[i + j * k] /= size;
+            M_r->val[i + j * k] /= size;
+            A_r->val[j + i * k] /= size;
+            M_r->val[j + i * k] /= size;
+        }
+        for (int64_t i = 0; i < Y->nrow; i++)
+            ritz_dense_col(Y, j)[i] /= size;
+    }
+    ritz_dense_symmetrise(A_r);
+}
+
+/*
+ * theta = q' A_r q of each column: nearly diagonal, so even the lowest comes
+ * without the rounding of the highest that the small eigenproblem leaves.
+ */
+static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
+                                  double *theta)
+{
+    RITZ_OWN(ritz_dense) AQ = {0};
+
+    RITZ_CHECK(ritz_dense_mul(A_r, Q, &AQ));
+    for (int64_t j = 0; j < Q->ncol; j++)
+        theta[j] = ritz_dense_dot(Q, j, &AQ, j);
+    return RITZ_OK;
+}
+
+/*
+ * One inverse iteration and Rayleigh-Ritz: X becomes M-orthonormal, lambda
+ * ascends.
+ *
+ *     A Y = M X,   A_r = Y' (M X),   M_r = Y' M Y,   A_r q = theta M_r q
+ *
+ * A Y is known without a product by A: with one, x' A x would lose all digits
+ * of a soft mode, x' |A| |x| being that much larger.
+ */
+static ritz_status polish_vectors(const ritz_shifted *S, ritz_dense *X,
+                                  double *lambda)
+{
+    RITZ_OWN(ritz_dense) MX = {0}, MY = {0}, XQ = {0};
+    RITZ_OWN(ritz_dense) A_r = {0}, M_r = {0};
+    RITZ_OWN(ritz_pairs) small = {0};
+
+    RITZ_CHECK(ritz_sparse_mul(S->M, X, &MX));
+    memcpy(X->val, MX.val, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
+    RITZ_CHECK(ritz_factor_solve(S->A, X)); /* X is Y now */
+    RITZ_CHECK(ritz_dense_mul_tn(X, &MX, &A_r));
+    RITZ_CHECK(ritz_sparse_mul(S->M, X, &MY));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &MY, &M_r));
+    balance_projection(&A_r, &M_r, X);
+    RITZ_CHECK(ritz_eigen_dense(&A_r, &M_r, &small));
+    RITZ_REFUSE_IF(small.Phi.ncol < X->ncol, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " eigenvectors depend on each other",
+                   X->ncol - small.Phi.ncol);
+    RITZ_CHECK(ritz_dense_mul(X, &small.Phi, &XQ));
+    ritz_dense_replace(X, &XQ);
+    RITZ_CHECK(find_quotients(&A_r, &small.Phi, lambda));
+    for (int64_t j = 0; j < X->ncol; j++)
+        lambda[j] += S->sigma;
+    return RITZ_OK;
+}
+
+/*
+ * All finite modes, where only the columns h of M are not zero. Only the rows h of M x are not zero, so
+ *
+ *     x = theta W M_hh x_h,   W = A^-1 E_h,   G = E_h' W = (A^-1)_hh
+ *
+ * and x_h solves the dense pencil G^-1 x_h = theta M_hh x_h, theta = lambda -
+ * sigma: G^-1 is A condensed to h.
+ */
+
+/* G := G^-1, symmetric positive definite. */
+static ritz_status invert_matrix(ritz_dense *G)
+{
+    int n = (int)G->nrow;
+    int info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, G->val, n);
+
+    if (info == 0)
+        info = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', n, G->val, n);
+    RITZ_REFUSE_IF(
+        info != 0, RITZ_ERR_SINGULAR,
+        "stiffness condensed to the masses is not positive definite");
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < j; i++)
+            G->val[i + j * n] = G->val[j + i * n];
+    return RITZ_OK;
+}
+
+/* M_hh. */
+static ritz_status pick_mass(const ritz_sparse *M, int64_t count,
+                             const int64_t *h, ritz_dense *out)
+{
+    RITZ_OWN(ritz_sparse) M_hh = {0};
+
+    RITZ_CHECK(ritz_sparse_extract(M, count, h, count, h, &M_hh));
+    return ritz_sparse_dense(&M_hh, out);
+}
+
+static ritz_status find_all_modes(const ritz_shifted *S, int64_t count,
+                                  const int64_t *heavy, ritz_dense *X)
+{
+    RITZ_OWN(ritz_dense) W = {0}, G = {0}, M_hh = {0}, MX_h = {0};
+    RITZ_OWN(ritz_pairs) small = {0};
+
+    RITZ_CHECK(ritz_dense_new(S->K->nrow, count, &W));
+    if (count > 0) {
+        for (int64_t j = 0; j < count; j++)
+            ritz_dense_col(&W, j)[heavy[j]] = 1.0;
+        RITZ_CHECK(ritz_factor_solve(S->A, &W));
+        RITZ_CHECK(ritz_dense_rows(&W, count, heavy, &G));
+        RITZ_CHECK(invert_matrix(&G));
+    }
+    RITZ_CHECK(pick_mass(S->M, count, heavy, &M_hh));
+    RITZ_CHECK(ritz_eigen_dense(&G, &M_hh, &small));
+    RITZ_CHECK(ritz_dense_mul(&M_hh, &small.Phi, &MX_h));
+    RITZ_CHECK(ritz_dense_mul(&W, &MX_h, X));
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < X->nrow; i++)
+            ritz_dense_col(X, j)[i] *= small.lambda[j];
+    return RITZ_OK;
+}
+
 static bool is_clustered(double a, double b)
 {
     return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
 }
 
 /* How many of the pairs were asked for. */
-static int64_t wanted(const ritz_pairs *P, const ritz_span *span, double limit)
+static int64_t count_wanted(const ritz_pairs *P, const ritz_span *span,
+                            double limit)
 {
     int64_t end = P->num_rigid + (span->modes < 0 ? 0 : span->modes);
     int64_t count = P->Phi.ncol;
@@ -80,18 +299,16 @@ static void truncate_pairs(ritz_pairs *P, int64_t end)
 /* Factor K - sigma M in place of what was factored before. */
 static ritz_status shift_to(search *s, double sigma)
 {
+    RITZ_OWN(ritz_sparse) A = {0};
     ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
 
     ritz_factor_free(&s->S.A); /* two at once may not fit */
     ritz_monitor_step("factor", 0, 0);
-    RITZ_TRY(ritz_sparse_add(1.0, s->S.K, -sigma, s->S.M, &A));
+    RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -sigma, s->S.M, &A));
     status = ritz_factor_spd(&A, &s->S.A);
     if (status == RITZ_ERR_SINGULAR)
         s->broken = fmax(s->broken, -sigma);
     s->S.sigma = sigma;
-done:
-    ritz_sparse_free(&A);
     return status;
 }
 
@@ -101,7 +318,7 @@ static ritz_status shift_near(search *s, double sigma)
 {
     ritz_status status = shift_to(s, sigma);
 
-    while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * s->seen.typical) {
+    while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * s->typical) {
         sigma *= 100.0;
         status = shift_to(s, sigma);
     }
@@ -117,13 +334,12 @@ static ritz_status refine_pairs(search *s, ritz_dense *X)
     double worst = HUGE_VAL;
 
     ritz_pairs_free(&s->found);
-    s->found.Phi = *X;
-    *X = (ritz_dense){0};
+    RITZ_MOVE(s->found.Phi, *X);
     RITZ_CHECK_NEW(s->found.lambda, s->found.Phi.ncol);
     RITZ_CHECK_NEW(s->found.residual, s->found.Phi.ncol);
     for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
-        RITZ_CHECK(ritz_shifted_polish(&s->S, &s->found.Phi, s->found.lambda));
-        worst = ritz_shifted_assess(&s->S, &s->found);
+        RITZ_CHECK(polish_vectors(&s->S, &s->found.Phi, s->found.lambda));
+        worst = assess_pairs(&s->S, &s->found);
     }
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
                    "a residual of %.1e stays above %.0e", worst,
@@ -155,11 +371,9 @@ static ritz_status find_pairs(search *s)
     double reach = 0.0;
 
     ritz_pairs_free(&s->found);
-    s->all =
-        s->all || s->seen.num_heavy <= SMALL || s->ask + 21 > s->seen.num_heavy;
+    s->all = s->all || s->num_heavy <= SMALL || s->ask + 21 > s->num_heavy;
     if (s->all)
-        RITZ_CHECK(
-            ritz_condensed_all(&s->S, s->seen.num_heavy, s->seen.heavy, &X));
+        RITZ_CHECK(find_all_modes(&s->S, s->num_heavy, s->heavy, &X));
     else
         RITZ_CHECK(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
@@ -248,7 +462,7 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
     int64_t count = 0;
     int64_t at = 0;
 
-    *end = wanted(P, s->span, 0.0);
+    *end = count_wanted(P, s->span, 0.0);
     if (*end >= P->Phi.ncol && !s->all) {
         s->ask += P->num_rigid + SPARE; /* there is no end of rigid modes yet */
         return RITZ_OK;
@@ -277,7 +491,7 @@ static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
 
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;
-    *end = wanted(P, s->span, s->limit);
+    *end = count_wanted(P, s->span, s->limit);
     RITZ_REFUSE_IF(below > s->target, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes were found where there are %" PRId64,
                    below, s->target);
@@ -332,8 +546,8 @@ static ritz_status begin_search(search *s)
 {
     double sigma = 0.0;
 
-    RITZ_CHECK(ritz_shifted_survey(s->S.K, s->S.M, &s->seen));
-    sigma = RITZ_FIRST_SHIFT * s->seen.typical;
+    RITZ_CHECK(survey_pencil(s));
+    sigma = RITZ_FIRST_SHIFT * s->typical;
     s->ask = BODY + s->span->modes + s->span->modes / 10 + SPARE;
     if (s->span->modes < 0) {
         RITZ_CHECK(count_target(s));
@@ -346,24 +560,18 @@ static ritz_status begin_search(search *s)
 static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
                               const ritz_span *span, ritz_pairs *out)
 {
-    ritz_status status = RITZ_OK;
-    search s = {.span = span, .S = {.K = K, .M = M}};
+    RITZ_OWN(search) s = {.span = span, .S = {.K = K, .M = M}};
     int64_t end = 0;
 
-    RITZ_TRY(begin_search(&s));
-    RITZ_TRY(search_proven(&s, &end));
+    RITZ_CHECK(begin_search(&s));
+    RITZ_CHECK(search_proven(&s, &end));
     truncate_pairs(&s.found, end);
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     snprintf(s.found.engine, sizeof s.found.engine, "%s",
              s.all ? "condensed LAPACK" : "ARPACK");
-    *out = s.found;
-    s.found = (ritz_pairs){0};
-done:
-    free(s.seen.heavy);
-    ritz_factor_free(&s.S.A);
-    ritz_pairs_free(&s.found);
-    return status;
+    RITZ_MOVE(*out, s.found);
+    return RITZ_OK;
 }
 
 /* Every mode, which proves itself; then those that are wanted. */
@@ -380,7 +588,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_CHECK(ritz_eigen_dense(&K_d, &M_d, &P));
     if (span->modes < 0)
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
-    end = wanted(&P, span, limit);
+    end = count_wanted(&P, span, limit);
     if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
         P.proven_to = fmax(limit, place_between(&P, end, RITZ_COUNT_PLACE));
     truncate_pairs(&P, end);
@@ -393,11 +601,7 @@ ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
 {
     int64_t n = K->nrow;
 
-    RITZ_REFUSE_IF(K->ncol != n || M->nrow != n || M->ncol != n,
-                   RITZ_ERR_ARGUMENT,
-                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                   " x %" PRId64,
-                   K->nrow, K->ncol, M->nrow, M->ncol);
+    RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
     RITZ_REFUSE_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " modes cannot be asked for", span->modes);
     RITZ_REFUSE_IF(span->modes < 0 &&

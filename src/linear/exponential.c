@@ -29,19 +29,6 @@ static void scale_matrix(double factor, ritz_dense *A)
         A->val[k] *= factor;
 }
 
-static void add_scaled(double factor, const ritz_dense *X, ritz_dense *A)
-{
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        A->val[k] += factor * X->val[k];
-}
-
-static void replace_matrix(ritz_dense *A, ritz_dense *by)
-{
-    ritz_dense_free(A);
-    *A = *by;
-    *by = (ritz_dense){0};
-}
-
 /* A := D^-1 A D with D = diag(d) of powers of two. */
 static ritz_status balance_matrix(ritz_dense *A, double *d)
 {
@@ -68,15 +55,13 @@ static ritz_status sum_series(const ritz_dense *A, ritz_dense *E)
 {
     RITZ_OWN(ritz_dense) AE = {0};
 
-    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, E));
-    for (int64_t j = 0; j < A->nrow; j++)
-        ritz_dense_col(E, j)[j] = 1.0;
+    RITZ_CHECK(ritz_dense_identity(A->nrow, E));
     for (int k = TERMS; k > 0; k--) {
         RITZ_CHECK(ritz_dense_mul(A, E, &AE));
         scale_matrix(1.0 / k, &AE);
         for (int64_t j = 0; j < A->nrow; j++)
             ritz_dense_col(&AE, j)[j] += 1.0;
-        replace_matrix(E, &AE);
+        ritz_dense_replace(E, &AE);
     }
     return RITZ_OK;
 }
@@ -94,8 +79,8 @@ static ritz_status sum_integral(const ritz_dense *A, double t,
         RITZ_CHECK(ritz_dense_mul(&X, A, &XA));
         ritz_dense_symmetrise(&XA); /* half of X A + A'X */
         scale_matrix(2.0 / k, &XA);
-        replace_matrix(&X, &XA);
-        add_scaled(1.0, &X, W);
+        ritz_dense_replace(&X, &XA);
+        ritz_dense_add(1.0, &X, W);
     }
     return RITZ_OK;
 }
@@ -106,7 +91,7 @@ static ritz_status double_integral(const ritz_dense *E, ritz_dense *W)
     RITZ_OWN(ritz_dense) more = {0};
 
     RITZ_CHECK(ritz_dense_congruence(W, E, &more));
-    add_scaled(1.0, &more, W);
+    ritz_dense_add(1.0, &more, W);
     return RITZ_OK;
 }
 
@@ -136,7 +121,7 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
         for (int k = 0; k < count; k++)
             RITZ_CHECK(double_integral(E, &W[k]));
         RITZ_CHECK(ritz_dense_mul(E, E, &square));
-        replace_matrix(E, &square);
+        ritz_dense_replace(E, &square);
     }
     return RITZ_OK;
 }

@@ -163,7 +163,6 @@ static ritz_status smallest_eigenvalue(ritz_factor *F, const double *a,
 
 static ritz_status judge_pivots(ritz_factor *F, const double *a, int64_t *weak)
 {
-    ritz_status status = RITZ_OK;
     const int64_t *perm = F->L->Perm;
     double ratio = HUGE_VAL;
     double lambda = HUGE_VAL;
@@ -173,22 +172,20 @@ static ritz_status judge_pivots(ritz_factor *F, const double *a, int64_t *weak)
         row = F->L->minor < F->L->n ? perm[F->L->minor] : -1;
         lambda = 0.0;
     } else {
-        RITZ_TRY(weakest_pivot(F->L, a, &ratio, &row));
+        RITZ_CHECK(weakest_pivot(F->L, a, &ratio, &row));
         if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))
-            RITZ_TRY(smallest_eigenvalue(F, a, row, &lambda));
+            RITZ_CHECK(smallest_eigenvalue(F, a, row, &lambda));
     }
     if (weak)
         *weak = row;
-    RITZ_FAIL_IF(!(lambda > RITZ_SINGULAR_SPD), RITZ_ERR_SINGULAR,
-                 "not positive definite, is a rigid-body motion left free?");
-done:
-    return status;
+    RITZ_REFUSE_IF(!(lambda > RITZ_SINGULAR_SPD), RITZ_ERR_SINGULAR,
+                   "not positive definite, is a rigid-body motion left free?");
+    return RITZ_OK;
 }
 
 /* Supernodal or not, and which ordering, CHOLMOD decides by the fill. */
 static ritz_status factorise_sparse(ritz_factor *F, const ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
     cholmod_sparse view = view_sparse(A);
 
     cholmod_l_start(&F->common);
@@ -197,15 +194,14 @@ static ritz_status factorise_sparse(ritz_factor *F, const ritz_sparse *A)
     F->L = cholmod_l_analyze(&view, &F->common);
     if (F->L)
         cholmod_l_factorize(&view, F->L, &F->common);
-    RITZ_FAIL_IF(F->common.status == CHOLMOD_OUT_OF_MEMORY ||
-                     F->common.status == CHOLMOD_TOO_LARGE,
-                 RITZ_ERR_MEMORY,
-                 "no memory for the factor of %" PRId64 " rows", A->nrow);
-    RITZ_FAIL_IF(F->common.status < 0, RITZ_ERR_ARGUMENT,
-                 "the matrix cannot be factored, CHOLMOD says %d",
-                 F->common.status);
-done:
-    return status;
+    RITZ_REFUSE_IF(F->common.status == CHOLMOD_OUT_OF_MEMORY ||
+                       F->common.status == CHOLMOD_TOO_LARGE,
+                   RITZ_ERR_MEMORY,
+                   "no memory for the factor of %" PRId64 " rows", A->nrow);
+    RITZ_REFUSE_IF(F->common.status < 0, RITZ_ERR_ARGUMENT,
+                   "the matrix cannot be factored, CHOLMOD says %d",
+                   F->common.status);
+    return RITZ_OK;
 }
 
 ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,

@@ -68,12 +68,6 @@ static ritz_status reduce_pencil(const ritz_dense *A, const ritz_dense *E,
     return RITZ_OK;
 }
 
-static double size_of(const ritz_dense *A)
-{
-    return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
-                          A->val, (int)A->nrow);
-}
-
 static double least_of(int64_t count, const double *value)
 {
     double least = HUGE_VAL;
@@ -121,8 +115,9 @@ static ritz_status balance_frame(ritz_frame *f)
     if (n > 0)
         RITZ_CHECK(scale_frame(f));
     most = RITZ_FRAME_GROWTH * least_of(n, f->left) * least_of(n, f->right);
-    if (n > 0 && (size_of(&f->A) > most * size_of(&A) ||
-                  (E.val && size_of(&f->E) > most * size_of(&E)))) {
+    if (n > 0 &&
+        (ritz_general_size(&f->A) > most * ritz_general_size(&A) ||
+         (E.val && ritz_general_size(&f->E) > most * ritz_general_size(&E)))) {
         memcpy(f->A.val, A.val, (size_t)(n * n) * sizeof *A.val);
         if (E.val)
             memcpy(f->E.val, E.val, (size_t)(n * n) * sizeof *E.val);
@@ -148,29 +143,29 @@ ritz_status ritz_frame_new(const ritz_dense *A, const ritz_dense *E,
     return RITZ_OK;
 }
 
+/* V := L^-1 V, or L^-T V */
+static void divide_factor(const ritz_frame *f, CBLAS_TRANSPOSE trans,
+                          ritz_dense *V)
+{
+    if (f->L.val && V->ncol > 0)
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, trans, CblasNonUnit,
+                    (int)V->nrow, (int)V->ncol, 1.0, f->L.val, (int)V->nrow,
+                    V->val, (int)V->nrow);
+}
+
 void ritz_frame_turn_back(const ritz_frame *f, const double *scale,
                           ritz_dense *V)
 {
-    for (int64_t j = 0; j < V->ncol; j++)
-        for (int64_t i = 0; i < V->nrow; i++)
-            ritz_dense_col(V, j)[i] *= scale[i];
-    if (f->L.val && V->ncol > 0)
-        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
-                    CblasNonUnit, (int)V->nrow, (int)V->ncol, 1.0, f->L.val,
-                    (int)V->nrow, V->val, (int)V->nrow);
+    ritz_dense_scale_rows(scale, V);
+    divide_factor(f, CblasTrans, V);
 }
 
 ritz_status ritz_frame_forward(const ritz_frame *f, const double *scale,
                                const ritz_dense *V, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_copy(V, out));
-    if (f->L.val && V->ncol > 0)
-        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans,
-                    CblasNonUnit, (int)V->nrow, (int)V->ncol, 1.0, f->L.val,
-                    (int)V->nrow, out->val, (int)V->nrow);
-    for (int64_t j = 0; j < V->ncol; j++)
-        for (int64_t i = 0; i < V->nrow; i++)
-            ritz_dense_col(out, j)[i] *= scale[i];
+    divide_factor(f, CblasNoTrans, out);
+    ritz_dense_scale_rows(scale, out);
     return RITZ_OK;
 }
 

@@ -8,19 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The Fortran name; character arguments bring their lengths at the end. */
-void sb03od_(/* NOLINT: its name */ const char *dico, const char *fact,
-             const char *trans, const int *n, const int *m, double *A,
-             const int *lda, double *Q, const int *ldq, double *B,
-             const int *ldb, double *scale, double *wr, double *wi,
-             double *work, const int *ldwork, int *info, size_t dico_length,
-             size_t fact_length, size_t trans_length);
-
-static int larger_of(int64_t a, int64_t b)
-{
-    return (int)(a > b ? a : b);
-}
-
 ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X)
 {
@@ -44,6 +31,12 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
     (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, transposed ? 'T' : 'N', n,
                          (int)X->ncol, LU.val, n, pivot, X->val, n);
     return RITZ_OK;
+}
+
+double ritz_general_size(const ritz_dense *A)
+{
+    return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
+                          A->val, (int)A->nrow);
 }
 
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out)
@@ -102,40 +95,5 @@ ritz_status ritz_general_norm(ritz_dense *A, double *out)
     RITZ_CHECK_NEW(sigma, k);
     RITZ_CHECK(ritz_general_singular(A, sigma));
     *out = k > 0 ? sigma[0] : 0.0;
-    return RITZ_OK;
-}
-
-ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
-                                 ritz_dense *U)
-{
-    int n = (int)A->nrow;
-    int m = (int)B->ncol;
-    int room = larger_of(1, 4 * A->nrow * 32 + B->ncol);
-    int info = 0;
-    double scale = 1.0;
-    RITZ_OWN(ritz_dense) S = {0}, Q = {0}, X = {0}, factor = {0};
-    RITZ_OWN_ARRAY double *work = NULL, *re = NULL, *im = NULL;
-
-    RITZ_CHECK_NEW(work, room);
-    RITZ_CHECK_NEW(re, n);
-    RITZ_CHECK_NEW(im, n);
-    RITZ_CHECK(ritz_dense_copy(A, &S));
-    RITZ_CHECK(ritz_dense_new(n, n, &Q));
-    RITZ_CHECK(ritz_dense_new(n, larger_of(m, n), &X));
-    RITZ_CHECK(ritz_dense_new(n, n, &factor));
-    for (int64_t k = 0; k < B->nrow * B->ncol; k++)
-        X.val[k] = B->val[k];
-    if (n > 0)
-        sb03od_("C", "N", "T", &n, &m, S.val, &n, Q.val, &n, X.val, &n, &scale,
-                re, im, work, &room, &info, 1, 1, 1);
-    RITZ_REFUSE_IF(info < 0 || info > 3, RITZ_ERR_CONVERGENCE,
-                   "the Lyapunov equation was not solved, SLICOT says %d",
-                   info);
-    RITZ_REFUSE_IF(info > 1, RITZ_ERR_ARGUMENT,
-                   "a Gramian is infinite: a pole is not stable");
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i <= j; i++)
-            ritz_dense_col(&factor, j)[i] = ritz_dense_col(&X, j)[i] / scale;
-    RITZ_MOVE(*U, factor);
     return RITZ_OK;
 }

@@ -50,6 +50,21 @@ ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
                                     bool transposed, const ritz_dense *B,
                                     ritz_dense *F);
 
+/** RITZ_ERR_ARGUMENT if a pencil of such sizes has no eigenvalues. */
+ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
+                              int64_t cols_M);
+
+/**
+ * K x = lambda M x by one call of LAPACK, M semidefinite; lambda ascending, in
+ * error by few eps of the largest.
+ *
+ * @param[out] lambda  n
+ * @param[out] X       n x r, X'MX = I, infinite ones left out
+ * @return RITZ_ERR_SINGULAR if K + M is, or M has a negative eigenvalue
+ */
+ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
+                                  double *lambda, ritz_dense *X);
+
 /**
  * Singular values of A, min(m, n) of them, descending; A is lost.
  *
@@ -59,6 +74,9 @@ ritz_status ritz_general_singular(ritz_dense *A, double *sigma);
 
 /** The largest of them, 0 of an empty matrix; A is lost. */
 ritz_status ritz_general_norm(ritz_dense *A, double *out);
+
+/** Frobenius norm. */
+double ritz_general_size(const ritz_dense *A);
 
 /** The transpose. */
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);

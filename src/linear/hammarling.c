@@ -1,7 +1,7 @@
 /*
- * Factors of Gramians of a pair in Schur form. SLICOT takes the Schur vectors,
- * here the identity, and leaves a triangle: U, W = U U', or of the transposed
- * equation U'U, for which the right hand side goes in as B'.
+ * Factors of Gramians. SLICOT leaves a triangle: U, W = U U', or of the
+ * transposed equation U'U, for which the right hand side goes in as B'. Of a
+ * pair in Schur form it takes the Schur vectors, here the identity.
  */
 #include "base/alloc.h"
 #include "linear/general.h"
@@ -26,7 +26,7 @@ void sg03bd_(/* NOLINT: its name */ const char *dico, const char *fact,
 /* Arguments of SLICOT, which it may overwrite. */
 typedef struct equation {
     int n, m, ldb, room;
-    bool transposed;
+    bool schur, transposed;
     ritz_dense S, P, Q, Z, B;
     double *re, *im, *beta, *work;
     double scale;
@@ -43,14 +43,6 @@ static void equation_free(equation *e)
     free(e->im);
     free(e->beta);
     free(e->work);
-}
-
-static ritz_status identity_matrix(int64_t n, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(n, n, out));
-    for (int64_t i = 0; i < n; i++)
-        ritz_dense_col(out, i)[i] = 1.0;
-    return RITZ_OK;
 }
 
 static ritz_status copy_right_side(const ritz_dense *B, equation *e)
@@ -73,12 +65,12 @@ static ritz_status prepare_equation(const ritz_dense *S, const ritz_dense *P,
 {
     e->n = (int)S->nrow;
     e->m = (int)B->ncol;
-    e->room = 64 * (e->n + e->m) + 64;
+    e->room = e->schur ? 64 * (e->n + e->m) + 64 : 128 * e->n + e->m;
     RITZ_CHECK(ritz_dense_copy(S, &e->S));
-    RITZ_CHECK(identity_matrix(e->n, &e->Q));
+    RITZ_CHECK(ritz_dense_identity(e->n, &e->Q));
     if (P->val) {
         RITZ_CHECK(ritz_dense_copy(P, &e->P));
-        RITZ_CHECK(identity_matrix(e->n, &e->Z));
+        RITZ_CHECK(ritz_dense_identity(e->n, &e->Z));
     }
     RITZ_CHECK(copy_right_side(B, e));
     RITZ_CHECK_NEW(e->re, e->n);
@@ -91,16 +83,17 @@ static ritz_status prepare_equation(const ritz_dense *S, const ritz_dense *P,
 static ritz_status solve_equation(equation *e)
 {
     const char *trans = e->transposed ? "N" : "T";
+    const char *fact = e->schur ? "F" : "N";
     int n = e->n;
     int unstable = e->P.val ? 5 : 3;
     int info = 0;
 
     if (e->P.val)
-        sg03bd_("C", "F", trans, &n, &e->m, e->S.val, &n, e->P.val, &n,
+        sg03bd_("C", fact, trans, &n, &e->m, e->S.val, &n, e->P.val, &n,
                 e->Q.val, &n, e->Z.val, &n, e->B.val, &e->ldb, &e->scale, e->re,
                 e->im, e->beta, e->work, &e->room, &info, 1, 1, 1);
     else
-        sb03od_("C", "F", trans, &n, &e->m, e->S.val, &n, e->Q.val, &n,
+        sb03od_("C", fact, trans, &n, &e->m, e->S.val, &n, e->Q.val, &n,
                 e->B.val, &e->ldb, &e->scale, e->re, e->im, e->work, &e->room,
                 &info, 1, 1, 1);
     RITZ_REFUSE_IF(info == unstable || (!e->P.val && info == 2),
@@ -127,15 +120,30 @@ static ritz_status take_triangle(const equation *e, ritz_dense *F)
     return RITZ_OK;
 }
 
+static ritz_status find_factor(const ritz_dense *S, const ritz_dense *P,
+                               const ritz_dense *B, equation *e, ritz_dense *F)
+{
+    if (S->nrow == 0 || B->ncol == 0)
+        return ritz_dense_new(S->nrow, S->nrow, F);
+    RITZ_CHECK(prepare_equation(S, P, B, e));
+    RITZ_CHECK(solve_equation(e));
+    return take_triangle(e, F);
+}
+
 ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
                                     bool transposed, const ritz_dense *B,
                                     ritz_dense *F)
 {
-    RITZ_OWN(equation) e = {.transposed = transposed, .scale = 1.0};
+    RITZ_OWN(equation)
+    e = {.schur = true, .transposed = transposed, .scale = 1.0};
 
-    if (S->nrow == 0 || B->ncol == 0)
-        return ritz_dense_new(S->nrow, S->nrow, F);
-    RITZ_CHECK(prepare_equation(S, P, B, &e));
-    RITZ_CHECK(solve_equation(&e));
-    return take_triangle(&e, F);
+    return find_factor(S, P, B, &e, F);
+}
+
+ritz_status ritz_general_gramian(const ritz_dense *A, const ritz_dense *B,
+                                 ritz_dense *U)
+{
+    RITZ_OWN(equation) e = {.scale = 1.0};
+
+    return find_factor(A, &(ritz_dense){0}, B, &e, U);
 }

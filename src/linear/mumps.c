@@ -1,13 +1,23 @@
-#include "linear/mumps.h"
+/*
+ * Factors by sequential MUMPS: A = L D L', real, and sum_k c_k A_k = L D L' or
+ * L U, complex.
+ */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
+#include <ritz/matrix.h>
+
 #include <cblas.h>
+#include <complex.h>
+#include <dmumps_c.h>
 #include <float.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
+#include <zmumps_c.h>
 
 enum {
     EQUILIBRATIONS = 5, /* halve the logarithm of the row maxima each */
@@ -15,8 +25,10 @@ enum {
     MORE_ROOM = 8,      /* times the workspace may grow */
 };
 
-/* Indices from zero of the control arrays, ICNTL(k) of the manual being k - 1.
- */
+/* MUMPS's numbers for its jobs. */
+enum { START = -1, END = -2, ANALYSE = 1, FACTOR = 2, SOLVE = 3 };
+
+/* Indices from zero of the control arrays: ICNTL(k) of the manual is k - 1. */
 enum {
     ERROR_UNIT = 0,
     DIAGNOSTIC_UNIT = 1,
@@ -25,14 +37,46 @@ enum {
     MAX_TRANSVERSAL = 5,
     ORDERING = 6,
     SCALING = 7,
+    TRANSPOSED = 8, /* 1 is A, else its transpose is solved for */
     SYMMETRIC_STRATEGY = 11,
     ROOT_SEQUENTIAL = 12,
     ROOM_PERCENT = 13,
     NULL_PIVOTS = 23,
-    NULL_PIVOT_SIZE = 2, /* of CNTL */
-    OUTCOME = 0,         /* of INFOG */
-    NUM_NULL_PIVOTS = 27,
+    THRESHOLD = 0,        /* of CNTL: of pivots, 0 for none */
+    NULL_PIVOT_SIZE = 2,  /* of CNTL */
+    OUTCOME = 0,          /* of INFOG */
+    NEGATIVE_PIVOTS = 11, /* of INFOG */
+    NUM_NULL_PIVOTS = 27, /* of INFOG */
 };
+
+typedef struct mumps_factor {
+    int width; /* doubles per number: 1 real, 2 complex */
+    union {
+        DMUMPS_STRUC_C d;
+        ZMUMPS_STRUC_C z;
+    } id; /* real, complex */
+    bool started;
+    bool factored;
+    bool
+        whole; /* one of the matrices is not symmetric: not only its triangle */
+    int64_t n, nnz;       /* union of the patterns, entry k at row[k], col[k] */
+    MUMPS_INT *row, *col; /* from 1; borrowed by MUMPS, as val is */
+    double *val;          /* width * nnz */
+    int64_t count;
+    ritz_sparse *A; /* borrowed, all but the array */
+    int64_t *place; /* of each row among the entries of one column */
+} mumps_factor;
+
+struct ritz_ldl {
+    mumps_factor of;
+};
+
+struct ritz_zldl {
+    mumps_factor of;
+};
+
+/* A field that the structs of both arithmetics have. */
+#define FIELD(F, name) (*((F)->width == 1 ? &(F)->id.d.name : &(F)->id.z.name))
 
 static ritz_status check_sizes(int64_t count, const ritz_sparse *const *A,
                                int64_t *room)
@@ -52,65 +96,59 @@ static ritz_status check_sizes(int64_t count, const ritz_sparse *const *A,
     return RITZ_OK;
 }
 
-/* Add column j of A to P, unless `whole` without what lies above the diagonal;
- * mark[i] is the last column + 1 that row i was met in. */
-static ritz_status unite_column(const ritz_sparse *A, int64_t j, bool whole,
-                                int64_t *mark, ritz_mumps_pattern *P)
+/* Add column j of A to the pattern; mark[i] is the last column + 1 that row i
+ * was met in. */
+static ritz_status unite_column(const ritz_sparse *A, int64_t j, int64_t *mark,
+                                mumps_factor *F)
 {
     for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
         int64_t i = A->rowind[p];
 
         RITZ_REFUSE_IF(!isfinite(A->val[p]), RITZ_ERR_ARGUMENT,
                        "entry (%" PRId64 ", %" PRId64 ") is not finite", i, j);
-        if ((i < j && !whole) || mark[i] == j + 1)
+        if ((i < j && !F->whole) || mark[i] == j + 1)
             continue;
         mark[i] = j + 1;
-        P->row[P->nnz] = (MUMPS_INT)(i + 1);
-        P->col[P->nnz++] = (MUMPS_INT)(j + 1);
+        F->row[F->nnz] = (MUMPS_INT)(i + 1);
+        F->col[F->nnz++] = (MUMPS_INT)(j + 1);
     }
     return RITZ_OK;
 }
 
-ritz_status ritz_mumps_unite(int64_t count, const ritz_sparse *const *A,
-                             bool whole, ritz_mumps_pattern *out)
+/* Column by column, rows in the order they are met. */
+static ritz_status unite_patterns(int64_t count, const ritz_sparse *const *A,
+                                  mumps_factor *F)
 {
-    RITZ_OWN(ritz_mumps_pattern) P = {0};
     RITZ_OWN_ARRAY int64_t *mark = NULL;
     int64_t room = 0;
 
     RITZ_CHECK(check_sizes(count, A, &room));
-    P.n = A[0]->nrow;
-    RITZ_CHECK_NEW(mark, P.n);
-    RITZ_CHECK_NEW(P.row, room);
-    RITZ_CHECK_NEW(P.col, room);
-    for (int64_t j = 0; j < P.n; j++)
+    F->n = A[0]->nrow;
+    RITZ_CHECK_NEW(mark, F->n);
+    RITZ_CHECK_NEW(F->row, room);
+    RITZ_CHECK_NEW(F->col, room);
+    for (int64_t j = 0; j < F->n; j++)
         for (int64_t k = 0; k < count; k++)
-            RITZ_CHECK(unite_column(A[k], j, whole, mark, &P));
-    RITZ_MOVE(*out, P);
+            RITZ_CHECK(unite_column(A[k], j, mark, F));
     return RITZ_OK;
 }
 
-void ritz_mumps_pattern_free(ritz_mumps_pattern *P)
+/* Silent, null pivots found. */
+static void set_options(mumps_factor *F)
 {
-    free(P->row);
-    free(P->col);
-    *P = (ritz_mumps_pattern){0};
-}
+    MUMPS_INT *icntl = FIELD(F, icntl);
 
-void ritz_mumps_configure(const ritz_mumps *mumps)
-{
-    mumps->icntl[ERROR_UNIT] = -1;
-    mumps->icntl[DIAGNOSTIC_UNIT] = -1;
-    mumps->icntl[GLOBAL_UNIT] = -1;
-    mumps->icntl[PRINT_LEVEL] = 0;
-    mumps->icntl[MAX_TRANSVERSAL] = 0; /* so that analysis reads no values */
-    mumps->icntl[SYMMETRIC_STRATEGY] = 1;
-    mumps->icntl[ORDERING] = 7;        /* the best of those it was built with */
-    mumps->icntl[SCALING] = 7;         /* rows and columns, while factoring */
-    mumps->icntl[ROOT_SEQUENTIAL] = 1; /* or pivots there go uncounted */
-    mumps->icntl[ROOM_PERCENT] = 30;
-    mumps->icntl[NULL_PIVOTS] = 1;
-    mumps->cntl[NULL_PIVOT_SIZE] = DBL_EPSILON / 16.0; /* judge() does more */
+    icntl[ERROR_UNIT] = icntl[DIAGNOSTIC_UNIT] = icntl[GLOBAL_UNIT] = -1;
+    icntl[PRINT_LEVEL] = 0;
+    icntl[MAX_TRANSVERSAL] = 0; /* so that analysis reads no values */
+    icntl[SYMMETRIC_STRATEGY] = 1;
+    icntl[ORDERING] = 7;        /* the best of those it was built with */
+    icntl[SCALING] = 7;         /* rows and columns, while factoring */
+    icntl[ROOT_SEQUENTIAL] = 1; /* or pivots there go uncounted */
+    icntl[ROOM_PERCENT] = 30;
+    icntl[NULL_PIVOTS] = 1;
+    /* refuse_singular() does more */
+    FIELD(F, cntl)[NULL_PIVOT_SIZE] = DBL_EPSILON / 16.0;
 }
 
 /* Failures that MUMPS reports in INFOG(1). */
@@ -147,23 +185,82 @@ static ritz_status report_failure(const MUMPS_INT *infog)
                      (int)infog[OUTCOME]);
 }
 
-ritz_status ritz_mumps_run(const ritz_mumps *mumps, int job)
+static void call_mumps(mumps_factor *F, int job)
 {
-    *mumps->job = job;
-    mumps->call(mumps->id);
-    for (int k = 0; k < MORE_ROOM && (mumps->infog[OUTCOME] == -8 ||
-                                      mumps->infog[OUTCOME] == -9);
-         k++) {
-        mumps->icntl[ROOM_PERCENT] *= 2;
-        *mumps->job = job;
-        mumps->call(mumps->id);
+    FIELD(F, job) = job;
+    if (F->width == 1)
+        dmumps_c(&F->id.d);
+    else
+        zmumps_c(&F->id.z);
+}
+
+/* Run a job, with more room each time MUMPS asks for it. */
+static ritz_status run_job(mumps_factor *F, int job)
+{
+    const MUMPS_INT *infog = FIELD(F, infog);
+
+    call_mumps(F, job);
+    for (int k = 0;
+         k < MORE_ROOM && (infog[OUTCOME] == -8 || infog[OUTCOME] == -9); k++) {
+        FIELD(F, icntl)[ROOM_PERCENT] *= 2;
+        call_mumps(F, job);
     }
-    RITZ_CHECK(report_failure(mumps->infog));
-    RITZ_REFUSE_IF(job == RITZ_MUMPS_FACTOR &&
-                       mumps->infog[NUM_NULL_PIVOTS] > 0,
+    RITZ_CHECK(report_failure(infog));
+    RITZ_REFUSE_IF(job == FACTOR && infog[NUM_NULL_PIVOTS] > 0,
                    RITZ_ERR_SINGULAR, "the matrix is singular, %d times",
-                   (int)mumps->infog[NUM_NULL_PIVOTS]);
+                   (int)infog[NUM_NULL_PIVOTS]);
     return RITZ_OK;
+}
+
+static ritz_status analyse_pattern(mumps_factor *F)
+{
+    FIELD(F, sym) = F->whole ? 0 : 2;
+    FIELD(F, par) = 1;
+    RITZ_CHECK(run_job(F, START));
+    F->started = true;
+    set_options(F);
+    FIELD(F, n) = (MUMPS_INT)F->n;
+    FIELD(F, nnz) = F->nnz;
+    FIELD(F, irn) = F->row;
+    FIELD(F, jcn) = F->col;
+    if (F->width == 1)
+        F->id.d.a = F->val;
+    else
+        F->id.z.a = (void *)F->val;
+    return run_job(F, ANALYSE);
+}
+
+static ritz_status prepare_factor(int64_t count, const ritz_sparse *const *A,
+                                  mumps_factor *F)
+{
+    RITZ_CHECK(unite_patterns(count, A, F));
+    RITZ_CHECK_NEW(F->val, F->width * F->nnz);
+    RITZ_CHECK_NEW(F->place, F->n);
+    RITZ_CHECK_NEW(F->A, count);
+    for (int64_t k = 0; k < count; k++)
+        F->A[k] = *A[k];
+    F->count = count;
+    return F->n > 0 ? analyse_pattern(F) : RITZ_OK;
+}
+
+/* val += c A, or its lower triangle. */
+static void add_values(const ritz_sparse *A, double _Complex c, mumps_factor *F)
+{
+    double _Complex *z = (void *)F->val;
+    int64_t at = 0;
+
+    for (int64_t j = 0; j < F->n; j++) {
+        for (; at < F->nnz && F->col[at] == j + 1; at++)
+            F->place[F->row[at] - 1] = at;
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            if (!F->whole && A->rowind[p] < j)
+                continue;
+            if (F->width == 1)
+                F->val[F->place[A->rowind[p]]] += A->val[p];
+            else
+                z[F->place[A->rowind[p]]] += c * A->val[p];
+        }
+    }
 }
 
 static double magnitude_of(const double *val, int64_t k, int width)
@@ -172,41 +269,45 @@ static double magnitude_of(const double *val, int64_t k, int width)
 }
 
 /* S such that the largest |S A S| of every row and column is near one. */
-static ritz_status equilibrate_rows(const ritz_mumps_pattern *P,
-                                    const double *val, int width, double *s)
+static ritz_status equilibrate_rows(const mumps_factor *F, double *s)
 {
     RITZ_OWN_ARRAY double *largest = NULL;
 
-    RITZ_CHECK_NEW(largest, P->n);
-    for (int64_t i = 0; i < P->n; i++)
+    RITZ_CHECK_NEW(largest, F->n);
+    for (int64_t i = 0; i < F->n; i++)
         s[i] = 1.0;
     for (int e = 0; e < EQUILIBRATIONS; e++) {
-        for (int64_t i = 0; i < P->n; i++)
+        for (int64_t i = 0; i < F->n; i++)
             largest[i] = 0.0;
-        for (int64_t k = 0; k < P->nnz; k++) {
-            int64_t i = P->row[k] - 1;
-            int64_t j = P->col[k] - 1;
-            double a = s[i] * magnitude_of(val, k, width) * s[j];
+        for (int64_t k = 0; k < F->nnz; k++) {
+            int64_t i = F->row[k] - 1;
+            int64_t j = F->col[k] - 1;
+            double a = s[i] * magnitude_of(F->val, k, F->width) * s[j];
 
             largest[i] = fmax(largest[i], a);
             largest[j] = fmax(largest[j], a);
         }
-        for (int64_t i = 0; i < P->n; i++)
+        for (int64_t i = 0; i < F->n; i++)
             s[i] /= largest[i] > 0.0 ? sqrt(largest[i]) : 1.0;
     }
     return RITZ_OK;
 }
 
-ritz_status ritz_mumps_solve(const ritz_mumps *mumps, int64_t n, int64_t k,
-                             void *x)
+/* Overwrite @p x, n x k numbers, by the solution. */
+static ritz_status solve_factored(mumps_factor *F, int64_t k, double *x)
 {
     RITZ_REFUSE_IF(k < 0 || k > INT_MAX, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " right-hand sides are more than MUMPS can count",
                    k);
-    if (n == 0 || k == 0)
+    if (F->n == 0 || k == 0)
         return RITZ_OK;
-    mumps->set_rhs(mumps->id, (int)n, (int)k, x);
-    return ritz_mumps_run(mumps, RITZ_MUMPS_SOLVE);
+    if (F->width == 1)
+        F->id.d.rhs = x;
+    else
+        F->id.z.rhs = (void *)x;
+    FIELD(F, nrhs) = (MUMPS_INT)k;
+    FIELD(F, lrhs) = (MUMPS_INT)F->n;
+    return run_job(F, SOLVE);
 }
 
 /* Every entry counts, none equal: no eigenvector is likely to be missed. */
@@ -232,26 +333,142 @@ static void divide_rows(const double *s, int64_t count, int width, double *y)
         y[i] /= s[i / width];
 }
 
-ritz_status ritz_mumps_judge(const ritz_mumps *mumps,
-                             const ritz_mumps_pattern *P, const double *val)
+/*
+ * A is singular to working accuracy if |H y| <= c eps |y| for some y, where
+ * H = S A S is A scaled so that the largest entry of each row is near one.
+ */
+static ritz_status refuse_singular(mumps_factor *F)
 {
-    int64_t count = P->n * mumps->width;
+    int64_t count = F->n * F->width;
     double smallest = HUGE_VAL;
     RITZ_OWN_ARRAY double *s = NULL;
     RITZ_OWN_ARRAY double *y = NULL;
 
-    RITZ_CHECK_NEW(s, P->n);
+    RITZ_CHECK_NEW(s, F->n);
     RITZ_CHECK_NEW(y, count);
-    RITZ_CHECK(equilibrate_rows(P, val, mumps->width, s));
+    RITZ_CHECK(equilibrate_rows(F, s));
     start_vector(count, y);
     normalise_vector(count, y);
-    for (int k = 0; k < SWEEPS && P->n > 0; k++) {
-        divide_rows(s, count, mumps->width, y);
-        RITZ_CHECK(ritz_mumps_solve(mumps, P->n, 1, y));
-        divide_rows(s, count, mumps->width, y);
+    for (int k = 0; k < SWEEPS; k++) {
+        divide_rows(s, count, F->width, y);
+        RITZ_CHECK(solve_factored(F, 1, y));
+        divide_rows(s, count, F->width, y);
         smallest = 1.0 / normalise_vector(count, y);
     }
     RITZ_REFUSE_IF(!(smallest > RITZ_SINGULAR_LDL), RITZ_ERR_SINGULAR,
                    "the matrix is singular to working accuracy");
     return RITZ_OK;
+}
+
+static ritz_status factor_values(mumps_factor *F)
+{
+    if (F->n > 0) {
+        RITZ_CHECK(run_job(F, FACTOR));
+        RITZ_CHECK(refuse_singular(F));
+    }
+    F->factored = true;
+    return RITZ_OK;
+}
+
+static void release_factor(mumps_factor *F)
+{
+    if (F->started)
+        call_mumps(F, END);
+    free(F->row);
+    free(F->col);
+    free(F->val);
+    free(F->A);
+    free(F->place);
+}
+
+ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
+                         ritz_ldl **out)
+{
+    RITZ_OWN(ritz_ldl) *F = NULL;
+
+    RITZ_CHECK_NEW(F, 1);
+    F->of.width = 1;
+    RITZ_CHECK(prepare_factor(1, &A, &F->of));
+    add_values(A, 1.0, &F->of);
+    RITZ_CHECK(factor_values(&F->of));
+    if (negative)
+        *negative = A->nrow > 0 ? F->of.id.d.infog[NEGATIVE_PIVOTS] : 0;
+    RITZ_MOVE(*out, F);
+    return RITZ_OK;
+}
+
+ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)
+{
+    RITZ_REFUSE_IF(X->nrow != F->of.n, RITZ_ERR_ARGUMENT,
+                   "a factor of %" PRId64 " rows meets %" PRId64, F->of.n,
+                   X->nrow);
+    return solve_factored(&F->of, X->ncol, X->val);
+}
+
+void ritz_ldl_free(ritz_ldl **F)
+{
+    if (*F)
+        release_factor(&(*F)->of);
+    free(*F);
+    *F = NULL;
+}
+
+ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
+                          ritz_zldl **out)
+{
+    RITZ_OWN(ritz_zldl) *F = NULL;
+
+    RITZ_CHECK_NEW(F, 1);
+    F->of.width = 2;
+    for (int64_t k = 0; k < count; k++)
+        F->of.whole = F->of.whole || (A[k]->nrow == A[k]->ncol &&
+                                      ritz_sparse_asymmetry(A[k]) > 0.0);
+    RITZ_CHECK(prepare_factor(count, A, &F->of));
+    RITZ_MOVE(*out, F);
+    return RITZ_OK;
+}
+
+void ritz_zldl_definite(ritz_zldl *F)
+{
+    if (F->of.started)
+        F->of.id.z.cntl[THRESHOLD] = 0.0;
+}
+
+ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
+{
+    F->of.factored = false;
+    memset(F->of.val, 0, 2 * (size_t)F->of.nnz * sizeof *F->of.val);
+    for (int64_t k = 0; k < F->of.count; k++) {
+        RITZ_REFUSE_IF(
+            !isfinite(creal(c[k])) || !isfinite(cimag(c[k])), RITZ_ERR_ARGUMENT,
+            "coefficient %" PRId64 " of the matrices is not finite", k + 1);
+        add_values(&F->of.A[k], c[k], &F->of);
+    }
+    return factor_values(&F->of);
+}
+
+ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X)
+{
+    RITZ_REFUSE_IF(!F->of.factored, RITZ_ERR_ARGUMENT,
+                   "a solve needs a factor first");
+    return solve_factored(&F->of, k, (double *)X);
+}
+
+ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
+                                       double _Complex *X)
+{
+    ritz_status status = RITZ_OK;
+
+    F->of.id.z.icntl[TRANSPOSED] = 0;
+    status = ritz_zldl_solve(F, k, X);
+    F->of.id.z.icntl[TRANSPOSED] = 1;
+    return status;
+}
+
+void ritz_zldl_free(ritz_zldl **F)
+{
+    if (*F)
+        release_factor(&(*F)->of);
+    free(*F);
+    *F = NULL;
 }

@@ -38,10 +38,10 @@ static ritz_status weigh_columns(const ritz_sparse *W, const ritz_dense *R,
     return RITZ_OK;
 }
 
-/* * Pivoted Cholesky of G, which it destroys, diagonal one: order[] are its
- * strong pivots, at most @p most, the largest first.
- *
- * @return how many there are */
+/*
+ * Pivoted Cholesky of G, which it destroys, diagonal one: order[] are its
+ * strong pivots, at most @p most, the largest first; how many there are.
+ */
 static int64_t find_pivots(ritz_dense *G, int64_t most, int64_t *order)
 {
     int64_t p = G->ncol;
@@ -91,10 +91,7 @@ static ritz_status factor_cholesky(ritz_dense *G)
     return RITZ_OK;
 }
 
-/* * Q := Q L^-T with Q'WQ = L L', twice, and WQ with it.
- *
- * @param[in] Q  far from dependent: strong pivots
- * @return RITZ_ERR_CONVERGENCE if it is not */
+/* Q := Q L^-T with Q'WQ = L L', twice, and WQ with it; pivots are strong. */
 static ritz_status normalise_columns(const ritz_sparse *W, ritz_dense *Q,
                                      ritz_dense *WQ)
 {
@@ -124,6 +121,14 @@ typedef struct column_block {
     double *least;  /* energy that is rounding of the column that came in */
 } column_block;
 
+static void column_block_free(column_block *b)
+{
+    ritz_dense_free(&b->WR); /* R is borrowed */
+    free(b->source);
+    free(b->energy);
+    free(b->least);
+}
+
 static void scale_column(ritz_dense *A, int64_t j, double factor)
 {
     double *a = ritz_dense_col(A, j);
@@ -137,6 +142,16 @@ static void copy_column(ritz_dense *A, int64_t from, int64_t to)
     if (from != to && A->nrow > 0)
         memcpy(ritz_dense_col(A, to), ritz_dense_col(A, from),
                (size_t)A->nrow * sizeof *A->val);
+}
+
+/* Column `from` becomes column `to`. */
+static void move_column(column_block *b, int64_t from, int64_t to)
+{
+    copy_column(&b->R, from, to);
+    copy_column(&b->WR, from, to);
+    b->source[to] = b->source[from];
+    b->least[to] = b->least[from];
+    b->energy[to] = b->energy[from];
 }
 
 /* A := A - B H, of what is kept as columns. */
@@ -207,11 +222,8 @@ static void drop_columns(column_block *b, double tolerance)
             continue;
         scale_column(&b->R, j, 1.0 / sqrt(size));
         scale_column(&b->WR, j, 1.0 / sqrt(size));
-        copy_column(&b->R, j, kept);
-        copy_column(&b->WR, j, kept);
-        b->source[kept] = b->source[j];
-        b->least[kept] = b->least[j];
-        b->energy[kept++] = left;
+        b->energy[j] = left;
+        move_column(b, j, kept++);
     }
     b->R.ncol = b->WR.ncol = kept;
 }
@@ -253,10 +265,8 @@ static ritz_status widen_columns(ritz_dense *A, int64_t count, int64_t room)
     ritz_dense wide = {0};
 
     RITZ_CHECK(ritz_dense_new(A->nrow, room, &wide));
-    if (A->nrow * count > 0)
-        memcpy(wide.val, A->val, (size_t)(A->nrow * count) * sizeof *wide.val);
-    ritz_dense_free(A);
-    *A = wide;
+    ritz_dense_put(&(ritz_dense){A->nrow, count, A->val}, 0, 0, &wide);
+    ritz_dense_replace(A, &wide);
     return RITZ_OK;
 }
 
@@ -297,13 +307,8 @@ static ritz_status take_columns(ritz_orthonormal *set, column_block *b,
             gone = gone || order[k] == j;
         if (gone && taken)
             taken[b->source[j]] = true;
-        if (gone)
-            continue;
-        copy_column(&b->R, j, kept);
-        copy_column(&b->WR, j, kept);
-        b->source[kept] = b->source[j];
-        b->least[kept] = b->least[j];
-        b->energy[kept++] = b->energy[j];
+        if (!gone)
+            move_column(b, j, kept++);
     }
     b->R.ncol = b->WR.ncol = kept;
     return RITZ_OK;
@@ -327,19 +332,16 @@ static ritz_status go_round(ritz_orthonormal *set, column_block *b,
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
                                     int64_t most, bool *taken)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense WR = {0};
-    column_block b = {.R = *R};
-    int64_t *order = NULL;
+    RITZ_OWN(column_block) b = {.R = *R};
+    RITZ_OWN_ARRAY int64_t *order = NULL;
     int64_t before = set->count;
 
-    RITZ_NEW(b.source, R->ncol);
-    RITZ_NEW(b.energy, R->ncol);
-    RITZ_NEW(b.least, R->ncol);
-    RITZ_NEW(order, R->ncol);
-    RITZ_TRY(ritz_dense_new(R->nrow, R->ncol, &WR));
-    RITZ_TRY(weigh_columns(set->W, R, &WR));
-    b.WR = WR;
+    RITZ_CHECK_NEW(b.source, R->ncol);
+    RITZ_CHECK_NEW(b.energy, R->ncol);
+    RITZ_CHECK_NEW(b.least, R->ncol);
+    RITZ_CHECK_NEW(order, R->ncol);
+    RITZ_CHECK(ritz_dense_new(R->nrow, R->ncol, &b.WR));
+    RITZ_CHECK(weigh_columns(set->W, R, &b.WR));
     for (int64_t j = 0; j < R->ncol; j++) {
         b.source[j] = j;
         b.energy[j] = 1.0;
@@ -348,17 +350,12 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
     }
     scale_block(set->W, &b);
     while (b.R.ncol > 0 && set->count - before < most)
-        RITZ_TRY(go_round(set, &b, most - (set->count - before), order, taken));
-    RITZ_TRY(orthogonalise_block(set, &b));
+        RITZ_CHECK(
+            go_round(set, &b, most - (set->count - before), order, taken));
+    RITZ_CHECK(orthogonalise_block(set, &b));
     drop_columns(&b, set->tolerance);
     set->left = b.R.ncol;
-done:
-    ritz_dense_free(&WR);
-    free(b.source);
-    free(b.energy);
-    free(b.least);
-    free(order);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,

@@ -69,9 +69,7 @@ static ritz_status turn_columns(const pivoted *f, const ritz_dense *V,
     int m = (int)f->A.nrow;
 
     RITZ_CHECK(ritz_dense_new(m, V->ncol, out));
-    for (int64_t j = 0; j < V->ncol; j++)
-        for (int64_t i = 0; i < V->nrow; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(V, j)[i];
+    ritz_dense_put(V, 0, 0, out);
     if (V->ncol > 0)
         RITZ_REFUSE_IF(
             LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', m, (int)V->ncol,
@@ -108,12 +106,11 @@ static ritz_status scale_rows(const ritz_dense *Y, const double *length,
 static ritz_status multiply_scaled(const ritz_dense *X, const double *length,
                                    const pivoted *of_Y, ritz_dense *F)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = X->nrow;
-    ritz_dense sorted = {0}, R = {0}; /* R', n x rank */
+    RITZ_OWN(ritz_dense) sorted = {0}, R = {0}; /* R', n x rank */
 
-    RITZ_TRY(ritz_dense_new(n, X->ncol, &sorted));
-    RITZ_TRY(ritz_dense_new(n, of_Y->rank, &R));
+    RITZ_CHECK(ritz_dense_new(n, X->ncol, &sorted));
+    RITZ_CHECK(ritz_dense_new(n, of_Y->rank, &R));
     for (int64_t j = 0; j < X->ncol; j++)
         for (int64_t i = 0; i < n; i++) {
             int64_t row = of_Y->at[i] - 1;
@@ -125,11 +122,7 @@ static ritz_status multiply_scaled(const ritz_dense *X, const double *length,
     for (int64_t i = 0; i < n; i++)
         for (int64_t j = 0; j <= i && j < of_Y->rank; j++)
             ritz_dense_col(&R, j)[i] = ritz_dense_col(&of_Y->A, i)[j];
-    RITZ_TRY(ritz_dense_mul_tn(&sorted, &R, F));
-done:
-    ritz_dense_free(&sorted);
-    ritz_dense_free(&R);
-    return status;
+    return ritz_dense_mul_tn(&sorted, &R, F);
 }
 
 /* G = P_F R_F', as far as R_F is not negligible. */

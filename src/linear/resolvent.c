@@ -38,32 +38,27 @@ static void turn_loads(const double _Complex *Q, const double _Complex *Z,
 
 static ritz_status triangularise_pencil(ritz_resolvent *r)
 {
-    ritz_status status = RITZ_OK;
     int n = r->n;
     int64_t square = (int64_t)n * n;
-    double _Complex *Q = NULL, *Z = NULL, *alpha = NULL, *beta = NULL;
+    RITZ_OWN_ARRAY double _Complex *Q = NULL, *Z = NULL;
+    RITZ_OWN_ARRAY double _Complex *alpha = NULL, *beta = NULL;
     lapack_int none = 0;
     int info = 0;
 
-    RITZ_NEW(Q, square);
-    RITZ_NEW(alpha, n);
+    RITZ_CHECK_NEW(Q, square);
+    RITZ_CHECK_NEW(alpha, n);
     if (r->P) {
-        RITZ_NEW(Z, square);
-        RITZ_NEW(beta, n);
+        RITZ_CHECK_NEW(Z, square);
+        RITZ_CHECK_NEW(beta, n);
         info = LAPACKE_zgges(LAPACK_COL_MAJOR, 'V', 'V', 'N', NULL, n, r->S, n,
                              r->P, n, &none, alpha, beta, Q, n, Z, n);
     } else {
         info = LAPACKE_zgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n, r->S, n,
                              &none, alpha, Q, n);
     }
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
     turn_loads(Q, r->P ? Z : Q, r);
-done:
-    free(Q);
-    free(Z);
-    free(alpha);
-    free(beta);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,

@@ -9,6 +9,7 @@
 #include "linear/schur.h"
 
 #include "base/alloc.h"
+#include "linear/general.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -20,12 +21,6 @@
 typedef struct vectors {
     ritz_dense left, right, Eright;
 } vectors;
-
-static double frobenius_norm(const ritz_dense *A)
-{
-    return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
-                          A->val, (int)A->nrow);
-}
 
 static void vectors_free(vectors *v)
 {
@@ -51,8 +46,7 @@ static ritz_status find_vectors(ritz_schur *schur, vectors *out)
             LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'A', NULL, n, schur->S.val, n,
                            out->left.val, n, out->right.val, n, n, &found);
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                   "eigenvectors of a Schur "
-                   "form were not found");
+                   "eigenvectors of a Schur form were not found");
     if (schur->T.val)
         RITZ_CHECK(ritz_dense_mul(&schur->T, &out->right, &out->Eright));
     return RITZ_OK;
@@ -80,8 +74,8 @@ static double cosine_of(const vectors *v, int64_t k, bool pair)
 static ritz_status find_errors(ritz_schur *schur)
 {
     RITZ_OWN(vectors) v = {0};
-    double size = frobenius_norm(&schur->S);
-    double size_of_E = schur->T.val ? frobenius_norm(&schur->T) : 0.0;
+    double size = ritz_general_size(&schur->S);
+    double size_of_E = schur->T.val ? ritz_general_size(&schur->T) : 0.0;
     int64_t step = 1;
 
     RITZ_CHECK(find_vectors(schur, &v));
@@ -104,7 +98,7 @@ static ritz_status find_errors(ritz_schur *schur)
 static ritz_status diagonalise_blocks(ritz_schur *schur)
 {
     int n = (int)schur->count;
-    double size = frobenius_norm(&schur->S);
+    double size = ritz_general_size(&schur->S);
 
     for (int64_t k = 0; k < schur->count * schur->count; k++) {
         schur->Q.val[k] = schur->S.val[k];
@@ -137,7 +131,7 @@ static ritz_status factor_schur(ritz_schur *schur)
 /* lambda = alpha / beta, beta the diagonal of T. */
 static ritz_status divide_eigenvalues(ritz_schur *schur, const double *beta)
 {
-    double least = DBL_EPSILON * frobenius_norm(&schur->T);
+    double least = DBL_EPSILON * ritz_general_size(&schur->T);
 
     for (int64_t k = 0; k < schur->count; k++) {
         RITZ_REFUSE_IF(!(fabs(beta[k]) > least), RITZ_ERR_SINGULAR,
@@ -207,26 +201,23 @@ static int reorder_schur(ritz_schur *schur, const lapack_logical *select,
 ritz_status ritz_schur_order(ritz_schur *schur, const bool *first,
                              int64_t *moved)
 {
-    ritz_status status = RITZ_OK;
-    lapack_logical *select = NULL;
-    double *work = NULL; /* of a pair it begins with the diagonal of T */
+    RITZ_OWN_ARRAY lapack_logical *select = NULL;
+    /* of a pair it begins with the diagonal of T */
+    RITZ_OWN_ARRAY double *work = NULL;
     lapack_int count = 0;
 
-    RITZ_NEW(select, schur->count);
-    RITZ_NEW(work, 5 * schur->count + 16);
+    RITZ_CHECK_NEW(select, schur->count);
+    RITZ_CHECK_NEW(work, 5 * schur->count + 16);
     for (int64_t k = 0; k < schur->count; k++)
         select[k] = first[k];
     if (schur->count > 0)
-        RITZ_FAIL_IF(reorder_schur(schur, select, work, &count) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "poles that must be told apart are too close to be");
+        RITZ_REFUSE_IF(reorder_schur(schur, select, work, &count) != 0,
+                       RITZ_ERR_CONVERGENCE,
+                       "poles that must be told apart are too close to be");
     if (schur->T.val)
-        RITZ_TRY(divide_eigenvalues(schur, work));
+        RITZ_CHECK(divide_eigenvalues(schur, work));
     *moved = count;
-done:
-    free(select);
-    free(work);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_schur_free(ritz_schur *schur)

@@ -110,28 +110,27 @@ ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
                                 const int64_t *rows, int64_t num_cols,
                                 const int64_t *cols, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t *new_row = NULL; /* position in rows plus one, 0 if not wanted */
-    int64_t *row = NULL;
-    int64_t *col = NULL;
-    double *val = NULL;
+    /* position in rows plus one, 0 if not wanted */
+    RITZ_OWN_ARRAY int64_t *new_row = NULL;
+    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
     int64_t nnz = 0;
     int64_t kept = 0;
 
-    RITZ_NEW(new_row, A->nrow);
+    RITZ_CHECK_NEW(new_row, A->nrow);
     for (int64_t k = 0; k < num_rows; k++) {
-        RITZ_FAIL_IF(rows[k] < 0 || rows[k] >= A->nrow, RITZ_ERR_ARGUMENT,
-                     "row %" PRId64 " is out of range", rows[k]);
+        RITZ_REFUSE_IF(rows[k] < 0 || rows[k] >= A->nrow, RITZ_ERR_ARGUMENT,
+                       "row %" PRId64 " is out of range", rows[k]);
         new_row[rows[k]] = k + 1;
     }
     for (int64_t k = 0; k < num_cols; k++) {
-        RITZ_FAIL_IF(cols[k] < 0 || cols[k] >= A->ncol, RITZ_ERR_ARGUMENT,
-                     "column %" PRId64 " is out of range", cols[k]);
+        RITZ_REFUSE_IF(cols[k] < 0 || cols[k] >= A->ncol, RITZ_ERR_ARGUMENT,
+                       "column %" PRId64 " is out of range", cols[k]);
         nnz += A->colptr[cols[k] + 1] - A->colptr[cols[k]];
     }
-    RITZ_NEW(row, nnz);
-    RITZ_NEW(col, nnz);
-    RITZ_NEW(val, nnz);
+    RITZ_CHECK_NEW(row, nnz);
+    RITZ_CHECK_NEW(col, nnz);
+    RITZ_CHECK_NEW(val, nnz);
     for (int64_t k = 0; k < num_cols; k++) {
         for (int64_t p = A->colptr[cols[k]]; p < A->colptr[cols[k] + 1]; p++) {
             if (!new_row[A->rowind[p]])
@@ -141,14 +140,8 @@ ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
             val[kept++] = A->val[p];
         }
     }
-    RITZ_TRY(ritz_sparse_from_triplets(num_rows, num_cols, kept, row, col, val,
-                                       out));
-done:
-    free(new_row);
-    free(row);
-    free(col);
-    free(val);
-    return status;
+    return ritz_sparse_from_triplets(num_rows, num_cols, kept, row, col, val,
+                                     out);
 }
 
 /* Merge column j of both into C from entry *at on. */
@@ -282,27 +275,20 @@ ritz_status ritz_sparse_check(const ritz_sparse *A, int64_t nnz)
 }
 
 /* A(i,j), 0 where nothing is stored. */
-static double entry_at(const ritz_sparse *A, int64_t i, int64_t j)
+static double entry_at(const ritz_sparse *A, int64_t i, int64_t j, bool *stored)
 {
     int64_t p = A->colptr[j];
     int64_t k = ritz_search(A->colptr[j + 1] - p, A->rowind + p, i);
 
-    return k < 0 ? 0.0 : A->val[p + k];
-}
-
-static bool is_stored(const ritz_sparse *A, int64_t i, int64_t j)
-{
-    int64_t p = A->colptr[j];
-
-    return ritz_search(A->colptr[j + 1] - p, A->rowind + p, i) >= 0;
+    *stored = k >= 0;
+    return *stored ? A->val[p + k] : 0.0;
 }
 
 double ritz_sparse_diagonal(const ritz_sparse *A, int64_t j)
 {
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-        if (A->rowind[p] == j)
-            return A->val[p];
-    return 0.0;
+    bool stored = false;
+
+    return entry_at(A, j, j, &stored);
 }
 
 double ritz_sparse_max(const ritz_sparse *A)
@@ -318,11 +304,14 @@ double ritz_sparse_asymmetry(const ritz_sparse *A)
 {
     double largest = 0.0;
     double gap = 0.0;
+    bool stored = false;
 
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            double other = entry_at(A, j, A->rowind[p], &stored);
+
             largest = fmax(largest, fabs(A->val[p]));
-            gap = fmax(gap, fabs(A->val[p] - entry_at(A, j, A->rowind[p])));
+            gap = fmax(gap, fabs(A->val[p] - other));
         }
     return gap > 0.0 ? gap / largest : 0.0;
 }
@@ -330,17 +319,17 @@ double ritz_sparse_asymmetry(const ritz_sparse *A)
 double ritz_sparse_skew(const ritz_sparse *A)
 {
     double all = 0.0;
-    double skew =
-        0.0; /* of A - A', each pair of places counted once or twice */
+    double skew = 0.0; /* of A - A' */
+    bool stored = false;
 
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            int64_t i = A->rowind[p];
-            double gap = 0.5 * (A->val[p] - entry_at(A, j, i));
+            double other = entry_at(A, j, A->rowind[p], &stored);
+            double gap = 0.5 * (A->val[p] - other);
 
             all = hypot(all, A->val[p]);
             skew = hypot(skew, gap);
-            if (!is_stored(A, j, i)) /* the other place is not met */
+            if (!stored) /* the loop does not come to A(j,i) */
                 skew = hypot(skew, gap);
         }
     return all > 0.0 ? skew / all : 0.0;
@@ -366,7 +355,7 @@ ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
     RITZ_CHECK(ritz_sparse_from_triplets(A->nrow, A->ncol, 2 * nnz, row, col,
                                          half, &mean));
     ritz_sparse_free(A);
-    *A = mean;
+    RITZ_MOVE(*A, mean);
     return RITZ_OK;
 }
 
@@ -390,10 +379,9 @@ ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
     RITZ_CHECK_NEW(next, A->nrow);
     for (int64_t p = 0; p < nnz; p++)
         B.colptr[A->rowind[p] + 1]++;
-    for (int64_t i = 0; i < A->nrow; i++) {
-        B.colptr[i + 1] += B.colptr[i];
-        next[i] = B.colptr[i];
-    }
+    accumulate_counts(A->nrow, B.colptr);
+    if (A->nrow > 0)
+        memcpy(next, B.colptr, (size_t)A->nrow * sizeof *next);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             int64_t q = next[A->rowind[p]]++;
@@ -482,32 +470,25 @@ ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
     return RITZ_OK;
 }
 
-/* T'AT as it comes. */
-static ritz_status condense_block(const ritz_sparse *A, const ritz_dense *T,
-                                  ritz_dense *out)
+ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
+                                ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) AT = {0};
 
+    if (!A->colptr)
+        return RITZ_OK;
     RITZ_CHECK(ritz_sparse_mul(A, T, &AT));
-    return ritz_dense_mul_tn(T, &AT, out);
+    RITZ_CHECK(ritz_dense_mul_tn(T, &AT, out));
+    if (ritz_sparse_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(out);
+    return RITZ_OK;
 }
 
 ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
                                  ritz_dense *out)
 {
-    RITZ_CHECK(condense_block(A, T, out));
+    RITZ_CHECK(ritz_sparse_project(A, T, out));
     ritz_dense_symmetrise(out);
-    return RITZ_OK;
-}
-
-ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
-                                ritz_dense *out)
-{
-    if (!A->colptr)
-        return RITZ_OK;
-    RITZ_CHECK(condense_block(A, T, out));
-    if (ritz_sparse_asymmetry(A) == 0.0)
-        ritz_dense_symmetrise(out);
     return RITZ_OK;
 }
 

@@ -31,19 +31,15 @@
 /* Whether no rounding of the matrices makes a pole unstable; all are left. */
 static ritz_status prove_stable(const ritz_schur *schur, bool *proven)
 {
-    int n = (int)schur->count;
     RITZ_OWN(ritz_dense) one = {0}, F = {0};
     double change = RITZ_POLE_BOUND_FACTOR * DBL_EPSILON * 2.0;
 
-    RITZ_CHECK(ritz_dense_new(n, n, &one));
-    for (int64_t i = 0; i < n; i++)
-        ritz_dense_col(&one, i)[i] = 1.0;
+    RITZ_CHECK(ritz_dense_identity(schur->count, &one));
     RITZ_CHECK(ritz_general_hammarling(&schur->S, &schur->T, false, &one, &F));
-    change *= LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, schur->S.val, n);
-    change *= pow(LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, F.val, n), 2.0);
+    change *= ritz_general_size(&schur->S);
+    change *= pow(ritz_general_size(&F), 2.0);
     if (schur->T.val)
-        change *=
-            2.0 * LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', n, n, schur->T.val, n);
+        change *= 2.0 * ritz_general_size(&schur->T);
     *proven = change < 1.0;
     return RITZ_OK;
 }
@@ -98,13 +94,6 @@ static ritz_status decouple_blocks(const ritz_schur *schur, int64_t m,
     return RITZ_OK;
 }
 
-/* out = base + sign factor, of the same size. */
-static void add_scaled(double sign, const ritz_dense *term, ritz_dense *out)
-{
-    for (int64_t k = 0; k < out->nrow * out->ncol; k++)
-        out->val[k] += sign * term->val[k];
-}
-
 /* X, T, Y, W in the coordinates of the form's own matrices. */
 static ritz_status assemble_split(const ritz_schur *schur, int64_t m,
                                   ritz_split *out)
@@ -122,21 +111,12 @@ static ritz_status assemble_split(const ritz_schur *schur, int64_t m,
     RITZ_CHECK(ritz_dense_columns(&schur->Q, 0, m, &out->Y));
     RITZ_CHECK(ritz_dense_columns(Z, m, a, &out->T));
     RITZ_CHECK(ritz_dense_columns(&schur->Q, m, a, &out->W));
-    add_scaled(1.0, &Z1R, &out->T);
-    add_scaled(-1.0, &Q2G, &out->Y);
+    ritz_dense_add(1.0, &Z1R, &out->T);
+    ritz_dense_add(-1.0, &Q2G, &out->Y);
     if (schur->T.val && a > 0)
         cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasTrans,
                     CblasNonUnit, (int)n, (int)a, 1.0, schur->T.val + m * n + m,
                     (int)n, out->W.val, (int)n);
-    return RITZ_OK;
-}
-
-static ritz_status take_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(m, m, out));
-    for (int64_t j = 0; j < m; j++)
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
     return RITZ_OK;
 }
 
@@ -154,9 +134,12 @@ ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
     RITZ_CHECK_NEW(stable, A->nrow);
     RITZ_CHECK(choose_stable(&schur, stable));
     RITZ_CHECK(ritz_schur_order(&schur, stable, &m));
-    RITZ_CHECK(take_leading(&schur.S, m, &split.S));
-    if (schur.T.val)
-        RITZ_CHECK(take_leading(&schur.T, m, &split.P));
+    RITZ_CHECK(ritz_dense_new(m, m, &split.S));
+    ritz_dense_cut(&schur.S, 0, 0, &split.S);
+    if (schur.T.val) {
+        RITZ_CHECK(ritz_dense_new(m, m, &split.P));
+        ritz_dense_cut(&schur.T, 0, 0, &split.P);
+    }
     RITZ_CHECK(assemble_split(&schur, m, &split));
     ritz_frame_turn_back(&f, f.right, &split.X);
     ritz_frame_turn_back(&f, f.right, &split.T);

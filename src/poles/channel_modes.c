@@ -15,7 +15,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/eigen_dense.h"
 #include "linear/general.h"
 
 #include <float.h>
