@@ -126,14 +126,14 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
  *
  * @cost  an eigenproblem of M, K and D each; of others some fifty of 2r states
  */
-ritz_status ritz_probe_audit_reduced(const ritz_reduced *reduced,
+ritz_status ritz_audit_reduced(const ritz_reduced *reduced,
                                      ritz_audit *out);
 
 /**
  * The same of states, from poles on. The interface are pairs of an input and an
  * output of one name, taken for a force and how its own point moves.
  */
-ritz_status ritz_probe_audit_states(const ritz_state_space *model,
+ritz_status ritz_audit_states(const ritz_state_space *model,
                                     ritz_audit *out);
 
 /** "stable", "marginal" or "unstable". */

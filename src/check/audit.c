@@ -1,13 +1,114 @@
-/* All checks of a model, one after the other. */
+/*
+ * All checks of a model, one after the other, and what they share: saying what
+ * was found, and naming where.
+ */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/general.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum {
+    SHOWN = 4, /* dofs that a line names before it says "..." */
+};
+
+void ritz_checker_say(ritz_checker *it, const char *name, double value,
+                      double limit, ritz_verdict verdict, const char *where,
+                      const char *says, ...)
+{
+    ritz_check *check = NULL;
+    va_list values;
+
+    if (it->audit.count >= RITZ_MOST_CHECKS)
+        return;
+    check = &it->audit.check[it->audit.count++];
+    *check = (ritz_check){.value = value, .limit = limit, .verdict = verdict};
+    snprintf(check->name, sizeof check->name, "%s", name);
+    snprintf(check->where, sizeof check->where, "%s", where ? where : "");
+    va_start(values, says);
+    vsnprintf(check->says, sizeof check->says, says, values);
+    va_end(values);
+}
+
+void ritz_checker_list(char where[RITZ_WHERE_SIZE], const char *text)
+{
+    size_t used = strlen(where);
+    size_t left = RITZ_WHERE_SIZE - used;
+    const char *comma = used > 0 ? ", " : "";
+    const char *const full = ", ...";
+
+    if (used >= strlen(full) && strcmp(where + used - 3, "...") == 0)
+        return;
+    if (strlen(comma) + strlen(text) + strlen(full) < left)
+        snprintf(where + used, left, "%s%s", comma, text);
+    else if (strlen(full) < left)
+        snprintf(where + used, left, "%s", full);
+}
+
+int64_t ritz_checker_dofs(const ritz_checker *it, const bool *flag,
+                          char where[RITZ_WHERE_SIZE])
+{
+    int64_t count = 0;
+    char name[RITZ_DOF_NAME_SIZE];
+
+    where[0] = '\0';
+    for (int64_t k = 0; k < it->component->num_dofs; k++) {
+        if (!flag[k])
+            continue;
+        count++;
+        if (count <= SHOWN)
+            ritz_checker_list(where,
+                              ritz_dof_name(it->component->dof[k], name));
+        else if (count == SHOWN + 1)
+            ritz_checker_list(where, "...");
+    }
+    return count;
+}
+
+void ritz_checker_flagged(ritz_checker *it, const char *name, const bool *flag,
+                          ritz_verdict verdict, const char *none,
+                          const char *some)
+{
+    char where[RITZ_WHERE_SIZE];
+    int64_t count = ritz_checker_dofs(it, flag, where);
+
+    ritz_checker_say(it, name, (double)count, 0.0,
+                     count == 0 ? RITZ_PASS : verdict, where, "%s",
+                     count == 0 ? none : some);
+}
+
+bool ritz_checker_settled(ritz_checker *it, const char *name, const char *proof)
+{
+    bool none = it->space ? it->pairs.B.ncol == 0 : it->L.nrow == 0;
+
+    if (none)
+        ritz_checker_say(
+            it, name, nan(""), nan(""), RITZ_PASS, "", "not applicable: no %s",
+            it->space ? "input and output of one name" : "port and no input");
+    else if (it->definite)
+        ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, "", "proven: %s",
+                         proof);
+    return none || it->definite;
+}
+
+const char *ritz_verdict_name(ritz_verdict verdict)
+{
+    static const char *const names[] = {
+        [RITZ_PASS] = "pass", [RITZ_WARN] = "warn", [RITZ_FAIL] = "fail"};
+
+    return names[verdict];
+}
+
+void ritz_audit_free(ritz_audit *audit)
+{
+    free(audit->check);
+    *audit = (ritz_audit){0};
+}
 
 /* Features of the model that checks may need. */
 static unsigned find_features(const ritz_checker *it)
@@ -45,7 +146,7 @@ static ritz_status run_checks(ritz_checker *it, unsigned of, ritz_audit *out)
     return RITZ_OK;
 }
 
-static void free_checker(ritz_checker *it)
+static void ritz_checker_free(ritz_checker *it)
 {
     ritz_audit_free(&it->audit);
     free(it->part);
@@ -62,27 +163,13 @@ static void free_checker(ritz_checker *it)
 ritz_status ritz_audit_component(const ritz_component *component,
                                  ritz_audit *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_checker it = {.component = component, .softest = nan("")};
+    RITZ_OWN(ritz_checker) it = {.component = component, .softest = nan("")};
 
-    RITZ_FAIL_IF(component->num_dofs == 0, RITZ_ERR_ARGUMENT,
-                 "the component has no dofs");
+    RITZ_REFUSE_IF(component->num_dofs == 0, RITZ_ERR_ARGUMENT,
+                   "the component has no dofs");
     it.rigid =
         !component->K.colptr || component->K.colptr[component->K.ncol] == 0;
-    RITZ_TRY(run_checks(&it, RITZ_OF_COMPONENT, out));
-done:
-    free_checker(&it);
-    return status;
-}
-
-/* Column j of @p Lt is a row of the interface, if it moves. */
-static bool keep_column(ritz_dense *Lt, int64_t j, double largest)
-{
-    double most = 0.0;
-
-    for (int64_t i = 0; i < Lt->nrow; i++)
-        most = fmax(most, fabs(ritz_dense_col(Lt, j)[i]));
-    return most > RITZ_NEGLIGIBLE * largest;
+    return run_checks(&it, RITZ_OF_COMPONENT, out);
 }
 
 /* Rows of all ports as columns of Lt, and what they are called. */
@@ -101,7 +188,7 @@ static int64_t take_ports(const ritz_reduced *reduced, ritz_dense *Lt,
                 ritz_dense_col(Lt, at)[j] = ritz_dense_col(&port->map, j)[i];
             snprintf(row[at], RITZ_NAME_SIZE, "%.20s, %s", port->name,
                      ritz_dof_name(port->dof[i], dof));
-            at += keep_column(Lt, at, largest);
+            at += ritz_dense_col_max(Lt, at) > RITZ_NEGLIGIBLE * largest;
         }
     }
     return at;
@@ -117,7 +204,7 @@ static int64_t take_inputs(const ritz_io *io, ritz_dense *Lt,
         memcpy(ritz_dense_col(Lt, at), ritz_dense_col(&io->B, j),
                (size_t)Lt->nrow * sizeof *Lt->val);
         snprintf(row[at], RITZ_NAME_SIZE, "%s", io->input[j]);
-        at += keep_column(Lt, at, largest);
+        at += ritz_dense_col_max(Lt, at) > RITZ_NEGLIGIBLE * largest;
     }
     return at;
 }
@@ -144,35 +231,20 @@ static ritz_status take_interface(ritz_checker *it)
 }
 
 /* Structural damping, of harmonic motion alone, has a check of its own. */
-static ritz_status take_reduced(ritz_checker *it)
+ritz_status ritz_audit_reduced(const ritz_reduced *reduced, ritz_audit *out)
 {
-    RITZ_CHECK(ritz_damping_parse(it->reduced->damping, &it->damping));
-    RITZ_CHECK(ritz_structure_of_reduced(it->reduced, &it->model));
-    return take_interface(it);
+    RITZ_OWN(ritz_checker) it = {.reduced = reduced, .definite = true};
+
+    RITZ_CHECK(ritz_damping_parse(reduced->damping, &it.damping));
+    RITZ_CHECK(ritz_structure_of_reduced(reduced, &it.model));
+    RITZ_CHECK(take_interface(&it));
+    return run_checks(&it, RITZ_OF_REDUCED, out);
 }
 
-ritz_status ritz_probe_audit_reduced(const ritz_reduced *reduced,
-                                     ritz_audit *out)
+ritz_status ritz_audit_states(const ritz_state_space *model, ritz_audit *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_checker it = {.reduced = reduced, .definite = true};
+    RITZ_OWN(ritz_checker) it = {.space = model};
 
-    RITZ_TRY(take_reduced(&it));
-    RITZ_TRY(run_checks(&it, RITZ_OF_REDUCED, out));
-done:
-    free_checker(&it);
-    return status;
-}
-
-ritz_status ritz_probe_audit_states(const ritz_state_space *model,
-                                    ritz_audit *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_checker it = {.space = model};
-
-    RITZ_TRY(ritz_collocated_of_space(model, &it.pairs));
-    RITZ_TRY(run_checks(&it, RITZ_OF_STATES, out));
-done:
-    free_checker(&it);
-    return status;
+    RITZ_CHECK(ritz_collocated_of_space(model, &it.pairs));
+    return run_checks(&it, RITZ_OF_STATES, out);
 }

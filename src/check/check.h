@@ -82,8 +82,9 @@ typedef struct ritz_checker {
     ritz_dense L; /* p x r, rows of the interface; velocities are L q' */
     char (*row)[RITZ_NAME_SIZE]; /* p */
 
-    /* Of a state space. */
-    ritz_collocated pairs; /* inputs and outputs of one name */
+    /* x' = A x, and with it, of a state space, inputs and outputs of one name
+       or, of a reduced component, forces and velocities of the interface. */
+    ritz_collocated pairs;
 
     bool usable;   /* what checks found so far lets the others be made */
     bool rigid;    /* of a component: K has no entries */
@@ -94,7 +95,7 @@ typedef struct ritz_checker {
     bool stable;   /* no pole is right of the axis */
 } ritz_checker;
 
-/* Room for what all checks say: the tables in audit.h and probe.h have fewer. */
+/* Room for what all checks say: the tables in ritz/check.h have fewer. */
 enum { RITZ_MOST_CHECKS = 32 };
 
 /* A row of the list: of which models, with what, the function. */
@@ -119,8 +120,36 @@ int64_t ritz_checker_dofs(const ritz_checker *it, const bool *flag,
 /** Append @p text to a list, ", ..." once where it is full. */
 void ritz_checker_list(char where[RITZ_WHERE_SIZE], const char *text);
 
-/** Eigenpairs of a symmetric A, vectors of length one. */
-ritz_status ritz_check_eigen(const ritz_dense *A, ritz_pairs *out);
+/** Say of the dofs that are flagged @p some, with @p verdict, or @p none. */
+void ritz_checker_flagged(ritz_checker *it, const char *name, const bool *flag,
+                          ritz_verdict verdict, const char *none,
+                          const char *some);
+
+/** Whether a check of the interface needs no computation; then it is said. */
+bool ritz_checker_settled(ritz_checker *it, const char *name,
+                          const char *proof);
+
+/** A(rows, cols); NULL: all of them. */
+ritz_status ritz_check_pick(const ritz_dense *A, const ritz_dofs *rows,
+                            const ritz_dofs *cols, ritz_dense *out);
+
+/* Of S A S, S = diag(by)^-1/2. */
+typedef struct ritz_least_value {
+    double value;   /* its least eigenvalue, over the largest magnitude */
+    double *motion; /* S times the eigenvector of that */
+} ritz_least_value;
+
+ritz_status ritz_least_value_new(const ritz_dense *A, const ritz_dense *by,
+                                 ritz_least_value *out);
+void ritz_least_value_free(ritz_least_value *found);
+
+/** The least value that rounding leaves of a semidefinite A. */
+double ritz_least_rounding(const ritz_dense *A);
+
+/** All modes; or that M and K are singular together. */
+ritz_status ritz_check_modes(const ritz_structure *model,
+                             const ritz_damping *damping,
+                             ritz_modal_model *modes, bool *singular);
 
 /* The checks of a component: each uses what those before it left. */
 ritz_status ritz_check_values(ritz_checker *it);
@@ -144,20 +173,14 @@ ritz_status ritz_check_poles(ritz_checker *it);
 ritz_status ritz_check_growth(ritz_checker *it);
 ritz_status ritz_check_passivity(ritz_checker *it);
 ritz_status ritz_check_locked(ritz_checker *it);
-ritz_status ritz_check_locked_states(ritz_checker *it);
 ritz_status ritz_check_sprung(ritz_checker *it);
-ritz_status ritz_check_sprung_states(ritz_checker *it);
 ritz_status ritz_check_joined(ritz_checker *it);
 
 /** The pole of x' = A x that decides on its stability, into @p out. */
-ritz_status ritz_probe_judge(const ritz_dense *A, ritz_probe *out);
+ritz_status ritz_probe_matrix(const ritz_dense *A, ritz_probe *out);
 
-/**
- * First-order matrix of the modes that have mass in [w q; q'], whose square is
- * twice the energy, q of rigid modes left out.
- */
-ritz_status ritz_probe_energy_matrix(const ritz_modal_model *modes,
-                                     ritz_dense *out);
+/** Re s of that pole over the radius; 0 without poles. */
+double ritz_probe_growth(const ritz_probe *probe);
 
 /**
  * Inputs and outputs of one name as pairs; an output is taken for the

@@ -1,5 +1,5 @@
 /*
- * The list of checks. A row may say several things: audit.h and probe.h name
+ * The list of checks. A row may say several things: ritz/check.h names
  * them in this order. Each uses what those before it left.
  */
 #include "check/check.h"
@@ -26,10 +26,8 @@ const ritz_check_row ritz_checks[] = {
     {BOTH, 0, ritz_check_poles},
     {BOTH, 0, ritz_check_growth},
     {BOTH, 0, ritz_check_passivity},
-    {RITZ_OF_REDUCED, 0, ritz_check_locked},
-    {RITZ_OF_STATES, 0, ritz_check_locked_states},
-    {RITZ_OF_REDUCED, 0, ritz_check_sprung},
-    {RITZ_OF_STATES, 0, ritz_check_sprung_states},
+    {BOTH, 0, ritz_check_locked},
+    {BOTH, 0, ritz_check_sprung},
     {RITZ_OF_REDUCED, 0, ritz_check_joined},
     {0, 0, NULL},
 };

@@ -81,22 +81,16 @@ static void name_columns(const ritz_checker *it, const double *motion,
     }
 }
 
-/* The least eigenvalue over the largest magnitude, and its vector. */
-typedef struct least_value {
-    double value;
-    double *motion; /* n */
-} least_value;
-
 /* 1 / sqrt of the diagonal, 1 where it is 0. */
-static double scale_of(const ritz_dense *by, int64_t j)
+static double find_scale(const ritz_dense *by, int64_t j)
 {
     double d = fabs(ritz_dense_col(by, j)[j]);
 
     return d > 0.0 ? 1.0 / sqrt(d) : 1.0;
 }
 
-static ritz_status find_least(const ritz_dense *A, const ritz_dense *by,
-                              least_value *out)
+ritz_status ritz_least_value_new(const ritz_dense *A, const ritz_dense *by,
+                                 ritz_least_value *out)
 {
     int n = (int)A->nrow;
     RITZ_OWN(ritz_dense) V = {0};
@@ -109,7 +103,7 @@ static ritz_status find_least(const ritz_dense *A, const ritz_dense *by,
     ritz_dense_symmetrise(&V);
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(&V, j)[i] *= scale_of(by, i) * scale_of(by, j);
+            ritz_dense_col(&V, j)[i] *= find_scale(by, i) * find_scale(by, j);
     if (n > 0)
         RITZ_REFUSE_IF(
             LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, V.val, n, lambda) != 0,
@@ -119,38 +113,55 @@ static ritz_status find_least(const ritz_dense *A, const ritz_dense *by,
         most = fmax(most, fabs(lambda[k]));
     out->value = most > 0.0 ? lambda[0] / most : 0.0;
     for (int64_t i = 0; i < n; i++)
-        out->motion[i] = ritz_dense_col(&V, 0)[i] * scale_of(by, i);
+        out->motion[i] = ritz_dense_col(&V, 0)[i] * find_scale(by, i);
     return RITZ_OK;
+}
+
+void ritz_least_value_free(ritz_least_value *found)
+{
+    free(found->motion);
+    *found = (ritz_least_value){0};
+}
+
+double ritz_least_rounding(const ritz_dense *A)
+{
+    return -RITZ_POLE_BOUND_FACTOR * (double)A->nrow * DBL_EPSILON;
+}
+
+/* Say that no eigenvalue is below a limit, or @p bad and where the motion is. */
+static void say_least(ritz_checker *it, const char *name,
+                      const ritz_least_value *found, double limit,
+                      ritz_verdict verdict, const char *bad)
+{
+    bool holds = found->value >= limit;
+    char where[RITZ_WHERE_SIZE] = "";
+
+    if (!holds)
+        name_columns(it, found->motion, where);
+    it->definite = it->definite && holds;
+    ritz_checker_say(it, name, found->value, limit, holds ? RITZ_PASS : verdict,
+                     where, "%s", holds ? "no negative eigenvalue" : bad);
 }
 
 ritz_status ritz_check_reduced_mass(ritz_checker *it)
 {
-    static const char name[] = "mass-definite";
-    ritz_status status = RITZ_OK;
     const ritz_dense *M = &it->model.M;
-    double limit = -RITZ_POLE_BOUND_FACTOR * (double)M->nrow * DBL_EPSILON;
-    least_value found = {0};
-    char where[RITZ_WHERE_SIZE];
+    RITZ_OWN(ritz_least_value) found = {0};
+    char bad[RITZ_NAME_SIZE];
 
-    RITZ_TRY(find_least(M, M, &found));
-    if (found.value >= limit) {
-        ritz_checker_say(it, name, found.value, limit, RITZ_PASS, "",
-                         "no negative eigenvalue");
-    } else {
-        it->usable = it->definite = false;
-        name_columns(it, found.motion, where);
-        ritz_checker_say(it, name, found.value, limit, RITZ_FAIL, where,
-                         "mass with a negative eigenvalue, %.2g of the largest",
-                         found.value);
-    }
-done:
-    free(found.motion);
-    return status;
+    RITZ_CHECK(ritz_least_value_new(M, M, &found));
+    snprintf(bad, sizeof bad,
+             "mass with a negative eigenvalue, %.2g of the largest",
+             found.value);
+    say_least(it, "mass-definite", &found, ritz_least_rounding(M), RITZ_FAIL,
+              bad);
+    it->usable = it->definite;
+    return RITZ_OK;
 }
 
 /* N'DN of motions without mass, entries that are rounding alone taken out. */
-static ritz_status damping_of_massless(const ritz_dense *D, const ritz_dense *N,
-                                       ritz_dense *out)
+static ritz_status project_massless(const ritz_dense *D, const ritz_dense *N,
+                                    ritz_dense *out)
 {
     /* what an entry of N may err by, of its largest, squared */
     double floor =
@@ -166,32 +177,26 @@ static ritz_status damping_of_massless(const ritz_dense *D, const ritz_dense *N,
 }
 
 /* Least n'D n of motions without mass, N: k + c s = 0 grows if c < 0. */
-static ritz_status find_massless(const ritz_checker *it, least_value *out)
+static ritz_status find_massless(const ritz_checker *it, ritz_least_value *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_second_order model = {.K = &it->model.K, .M = &it->model.M};
-    ritz_dense N = {0}, D = {0}, unit = {0};
-    least_value found = {0};
+    RITZ_OWN(ritz_dense) N = {0}, D = {0}, unit = {0};
+    RITZ_OWN(ritz_least_value) found = {0};
 
     if (it->modes.count == it->modes.num_dofs)
         return RITZ_OK;
-    RITZ_TRY(ritz_massless(&model, &it->modes.Phi, it->modes.lambda, &N));
-    RITZ_TRY(damping_of_massless(&it->model.D, &N, &D));
-    RITZ_TRY(ritz_dense_new(N.ncol, N.ncol, &unit));
-    RITZ_TRY(find_least(&D, &unit, &found));
-    if (found.value < -RITZ_CONDENSATION_LOSS) {
-        RITZ_NEW(out->motion, N.nrow);
-        out->value = found.value;
-        for (int64_t j = 0; j < N.ncol; j++)
-            for (int64_t i = 0; i < N.nrow; i++)
-                out->motion[i] += ritz_dense_col(&N, j)[i] * found.motion[j];
-    }
-done:
-    free(found.motion);
-    ritz_dense_free(&N);
-    ritz_dense_free(&D);
-    ritz_dense_free(&unit);
-    return status;
+    RITZ_CHECK(ritz_massless(&model, &it->modes.Phi, it->modes.lambda, &N));
+    RITZ_CHECK(project_massless(&it->model.D, &N, &D));
+    RITZ_CHECK(ritz_dense_new(N.ncol, N.ncol, &unit));
+    RITZ_CHECK(ritz_least_value_new(&D, &unit, &found));
+    if (found.value >= -RITZ_CONDENSATION_LOSS)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(out->motion, N.nrow);
+    out->value = found.value;
+    for (int64_t j = 0; j < N.ncol; j++)
+        for (int64_t i = 0; i < N.nrow; i++)
+            out->motion[i] += ritz_dense_col(&N, j)[i] * found.motion[j];
+    return RITZ_OK;
 }
 
 /* Share of D that is antisymmetric, in the Frobenius norm. */
@@ -211,81 +216,49 @@ static double skew_of(const ritz_dense *D)
     return whole > 0.0 ? skew / whole : 0.0;
 }
 
-static void say_damping(ritz_checker *it, const least_value *found,
-                        double limit)
+ritz_status ritz_check_reduced_damping(ritz_checker *it)
 {
     static const char name[] = "damping-definite";
-    double skew = skew_of(&it->model.D);
-    bool slight = found->value >= -RITZ_CONDENSATION_LOSS;
-    char where[RITZ_WHERE_SIZE] = "";
+    const ritz_dense *D = &it->model.D;
+    double limit = RITZ_POLE_BOUND_FACTOR * ritz_least_rounding(D);
+    double skew = skew_of(D);
+    RITZ_OWN(ritz_least_value) found = {0}, massless = {0};
 
-    if (found->value >= limit && skew > 0.0) {
-        ritz_checker_say(it, name, found->value, limit, RITZ_PASS, "",
+    RITZ_CHECK(find_massless(it, &massless));
+    if (massless.motion) {
+        say_least(it, name, &massless, 0.0, RITZ_FAIL,
+                  "negative damping of a motion without mass, which grows");
+        return RITZ_OK;
+    }
+    RITZ_CHECK(ritz_least_value_new(D, &it->model.M, &found));
+    if (found.value >= limit && skew > 0.0)
+        ritz_checker_say(it, name, found.value, limit, RITZ_PASS, "",
                          "no negative eigenvalue; %.3g %% is gyroscopic, which "
                          "does no work",
                          100.0 * skew);
-        return;
-    }
-    if (found->value < limit)
-        name_columns(it, found->motion, where);
-    it->definite = it->definite && found->value >= limit;
-    ritz_checker_say(it, name, found->value, limit,
-                     found->value >= limit ? RITZ_PASS : RITZ_WARN, where, "%s",
-                     found->value >= limit ? "no negative eigenvalue"
-                     : slight ? "damping with a negative eigenvalue, no larger "
-                                "than ten digits leave"
-                              : "damping with a negative eigenvalue: a motion "
-                                "is driven");
+    else
+        say_least(it, name, &found, limit, RITZ_WARN,
+                  found.value >= -RITZ_CONDENSATION_LOSS
+                      ? "damping with a negative eigenvalue, no larger than "
+                        "ten digits leave"
+                      : "damping with a negative eigenvalue: a motion gains "
+                        "energy");
+    return RITZ_OK;
 }
 
-ritz_status ritz_check_reduced_damping(ritz_checker *it)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_dense *D = &it->model.D;
-    double limit = -RITZ_POLE_BOUND_FACTOR * RITZ_POLE_BOUND_FACTOR *
-                   (double)D->nrow * DBL_EPSILON;
-    least_value found = {0}, massless = {0};
-    char where[RITZ_WHERE_SIZE];
-
-    RITZ_TRY(find_massless(it, &massless));
-    if (massless.motion) {
-        it->definite = false;
-        name_columns(it, massless.motion, where);
-        ritz_checker_say(it, "damping-definite", massless.value, 0.0, RITZ_FAIL,
-                         where,
-                         "negative damping of a motion without mass, which "
-                         "grows");
-        goto done;
-    }
-    RITZ_TRY(find_least(D, &it->model.M, &found));
-    say_damping(it, &found, limit);
-done:
-    free(found.motion);
-    free(massless.motion);
-    return status;
-}
-
+/* Proofs for free motion do not count on K4. */
 ritz_status ritz_check_reduced_structural(ritz_checker *it)
 {
-    static const char name[] = "structural-definite";
-    ritz_status status = RITZ_OK;
-    const ritz_dense *K4 = &it->reduced->K4;
-    least_value found = {0};
-    char where[RITZ_WHERE_SIZE] = "";
-    bool holds = true;
+    const bool definite = it->definite;
+    RITZ_OWN(ritz_least_value) found = {0};
 
-    RITZ_TRY(find_least(K4, &it->model.M, &found));
-    holds = found.value >= -RITZ_CONDENSATION_LOSS;
-    if (!holds)
-        name_columns(it, found.motion, where);
-    ritz_checker_say(it, name, found.value, -RITZ_CONDENSATION_LOSS,
-                     holds ? RITZ_PASS : RITZ_FAIL, where, "%s",
-                     holds ? "no negative eigenvalue"
-                           : "structural damping with a negative eigenvalue: "
-                             "harmonic motion gains energy");
-done:
-    free(found.motion);
-    return status;
+    RITZ_CHECK(ritz_least_value_new(&it->reduced->K4, &it->model.M, &found));
+    say_least(it, "structural-definite", &found, -RITZ_CONDENSATION_LOSS,
+              RITZ_FAIL,
+              "structural damping with a negative eigenvalue: harmonic motion "
+              "gains energy");
+    it->definite = definite;
+    return RITZ_OK;
 }
 
 /*
@@ -293,22 +266,6 @@ done:
  * phi has none: phi'K phi beyond rounding is of matrices of too few digits,
  * which hold a free body or drive it.
  */
-
-/* The modes are found here: whether they exist is part of the check. */
-static ritz_status find_modes(ritz_checker *it, bool *singular)
-{
-    ritz_status status = RITZ_OK;
-    ritz_io none = {0};
-
-    RITZ_TRY(ritz_io_new(it->model.K.nrow, 0, 0, &none));
-    status = ritz_modal_model_new(&it->model, &none, &it->damping, &it->modes);
-    *singular = status == RITZ_ERR_SINGULAR;
-    if (*singular)
-        status = RITZ_OK;
-done:
-    ritz_io_free(&none);
-    return status;
-}
 
 /* phi'K phi of rigid motions, 0 where it is rounding: the largest magnitude. */
 static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
@@ -368,15 +325,17 @@ static ritz_status say_stiffness(ritz_checker *it)
     int64_t r = modes->num_rigid;
     double least = r < modes->count ? modes->lambda[r] : 0.0;
     double most = modes->count > 0 ? modes->lambda[modes->count - 1] : 0.0;
+    double value = 0.0;
     char where[RITZ_WHERE_SIZE] = "";
     bool said = false;
 
     most = fmax(most, -least);
+    value = most > 0.0 ? least / most : 0.0;
     it->usable = least >= 0.0;
     it->definite = it->definite && it->usable;
     if (least < 0.0) {
         name_columns(it, ritz_dense_col(&modes->Phi, r), where);
-        ritz_checker_say(it, name, least / most, 0.0, RITZ_FAIL, where,
+        ritz_checker_say(it, name, value, 0.0, RITZ_FAIL, where,
                          "stiffness with a negative eigenvalue, %.4g "
                          "rad^2/s^2",
                          least);
@@ -387,15 +346,13 @@ static ritz_status say_stiffness(ritz_checker *it)
         return RITZ_OK;
     snprintf(where, sizeof where, "%" PRId64 " rigid", r);
     if (massless > 0)
-        ritz_checker_say(it, name, most > 0.0 ? least / most : 0.0, 0.0,
-                         RITZ_PASS, where,
+        ritz_checker_say(it, name, value, 0.0, RITZ_PASS, where,
                          "no negative eigenvalue; %" PRId64 " of %" PRId64
                          " motions have no mass, which no explicit integrator "
                          "takes",
                          massless, modes->num_dofs);
     else
-        ritz_checker_say(it, name, most > 0.0 ? least / most : 0.0, 0.0,
-                         RITZ_PASS, where,
+        ritz_checker_say(it, name, value, 0.0, RITZ_PASS, where,
                          "no negative eigenvalue beyond rigid motion");
     return RITZ_OK;
 }
@@ -404,13 +361,12 @@ ritz_status ritz_check_reduced_stiffness(ritz_checker *it)
 {
     bool singular = false;
 
-    RITZ_CHECK(find_modes(it, &singular));
-    if (singular) {
-        it->usable = it->definite = false;
-        ritz_checker_say(it, "stiffness-definite", nan(""), 0.0, RITZ_FAIL, "",
-                         "mass and stiffness that are singular together");
-    } else {
-        RITZ_CHECK(say_stiffness(it));
-    }
+    RITZ_CHECK(
+        ritz_check_modes(&it->model, &it->damping, &it->modes, &singular));
+    if (!singular)
+        return say_stiffness(it);
+    it->usable = it->definite = false;
+    ritz_checker_say(it, "stiffness-definite", nan(""), 0.0, RITZ_FAIL, "",
+                     "mass and stiffness that are singular together");
     return RITZ_OK;
 }

@@ -1,10 +1,22 @@
 /*
- * Attachments to the pairs of a state space. Whatever quantity an output is,
+ * What an assembly may do to a model: hold its interface, attach springs,
+ * dampers or masses to it, or join it by forces.
+ *
+ * Attached to the pairs of a state space, whatever quantity an output is,
  *
  *     u = -k y,    A - B k (I + D k)^-1 C
  *
- * is a spring, a damper or a mass on it, and y = 0 holds it: the poles are then
- * its zeros.
+ * is a spring, a damper or a mass, and y = 0 holds it: the poles are then its
+ * zeros. Of a reduced component
+ *
+ *     L q = 0;    K + a sum k_i l_i' l_i;    M + a sum m_i l_i' l_i
+ *
+ * with rows l_i of the interface, each with its own stiffness and mass,
+ *
+ *     1 / k_i = l_i Phi_f Lambda_f^-1 Phi_f' l_i',  1 / m_i = l_i Phi Phi' l_i'
+ *
+ * and a from 1e-3 to 1e3. Where M, K and D are semidefinite, so are all of
+ * these, and nothing is computed.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -23,8 +35,40 @@
 static const double times_own[] = RITZ_ATTACHMENTS;
 enum { TIMES = sizeof times_own / sizeof *times_own };
 
+static const char proof[] = "M, K and D stay semidefinite";
+
+/* The worst of several models that an assembly makes of one. */
+typedef struct attachment_trial {
+    double growth, tolerance; /* the largest so far */
+    bool fails;
+    char where[RITZ_WHERE_SIZE], why[2 * RITZ_NAME_SIZE];
+} attachment_trial;
+
+static void keep_worst(const ritz_probe *probe, const char *where,
+                       attachment_trial *t)
+{
+    double growth = ritz_probe_growth(probe);
+    bool fails = probe->verdict == RITZ_UNSTABLE;
+
+    if (fails < t->fails || (fails == t->fails && growth <= t->growth))
+        return;
+    t->growth = growth;
+    t->tolerance = probe->tolerance;
+    t->fails = fails;
+    snprintf(t->where, sizeof t->where, "%s", where);
+    ritz_probe_print(probe, t->why);
+}
+
+static void say_trial(ritz_checker *it, const char *name,
+                      const attachment_trial *t, const char *what)
+{
+    ritz_checker_say(it, name, t->growth, t->tolerance,
+                     t->fails ? RITZ_FAIL : RITZ_PASS, t->where, "%s: %s", what,
+                     *t->why ? t->why : "nothing is left that moves");
+}
+
 /* Middle of what |y_i / u_i| is over the grid; k_i is one over it. */
-static ritz_status own_gains(const ritz_collocated *pairs, double *gain)
+static ritz_status find_gains(const ritz_collocated *pairs, double *gain)
 {
     RITZ_OWN(ritz_sampler) *sampler = NULL;
     RITZ_OWN_ARRAY double *w = NULL, *sum = NULL;
@@ -83,32 +127,26 @@ static const char *attachment_name(const ritz_collocated *pairs, int64_t only)
     return only < 0 ? "attachments" : names[pairs->power[only] + 1];
 }
 
-/* The worst case of all attachments, into worst and where. */
-static ritz_status try_all_pairs(ritz_checker *it, const double *gain,
-                                 ritz_probe *worst, char where[RITZ_WHERE_SIZE])
+static ritz_status try_all_pairs(const ritz_collocated *pairs,
+                                 attachment_trial *t)
 {
-    const ritz_collocated *pairs = &it->pairs;
     int64_t p = pairs->B.ncol;
-    RITZ_OWN(ritz_dense) A = {0};
-    double most = -HUGE_VAL;
+    RITZ_OWN_ARRAY double *gain = NULL;
+    char where[RITZ_WHERE_SIZE];
 
+    RITZ_CHECK_NEW(gain, p);
+    RITZ_CHECK(find_gains(pairs, gain));
     for (int64_t only = p > 1 ? -1 : 0; only < p; only++)
         for (int k = 0; k < TIMES; k++) {
+            RITZ_OWN(ritz_dense) A = {0};
             ritz_probe probe = {0};
-            double growth = 0.0;
 
-            ritz_dense_free(&A);
             RITZ_CHECK(attach_to_pairs(pairs, only, times_own[k], gain, &A));
-            RITZ_CHECK(ritz_probe_judge(&A, &probe));
-            growth = probe.radius > 0.0 ? probe.pole[0] / probe.radius : 0.0;
-            if (probe.verdict < worst->verdict ||
-                (probe.verdict == worst->verdict && growth <= most))
-                continue;
-            most = growth;
-            *worst = probe;
-            snprintf(where, RITZ_WHERE_SIZE, "%s of %g times its own at %s",
+            RITZ_CHECK(ritz_probe_matrix(&A, &probe));
+            snprintf(where, sizeof where, "%s of %g times its own at %s",
                      attachment_name(pairs, only), times_own[k],
                      only < 0 ? "all pairs" : pairs->name[only]);
+            keep_worst(&probe, where, t);
         }
     return RITZ_OK;
 }
@@ -136,29 +174,22 @@ static int64_t worst_zero(const ritz_collocated *pairs, int64_t count,
 static void say_locked(ritz_checker *it, int64_t count,
                        const double _Complex *zero, double radius)
 {
-    static const char name[] = "interface-locked";
     int64_t at = worst_zero(&it->pairs, count, zero, radius);
     ritz_probe probe = {.count = count, .radius = radius};
-    char text[2 * RITZ_NAME_SIZE];
-    bool fails = false;
+    attachment_trial t = {.tolerance = RITZ_ZERO_ON_AXIS};
 
-    if (at < 0) {
-        ritz_checker_say(it, name, 0.0, RITZ_ZERO_ON_AXIS, RITZ_PASS, "",
-                         "with its outputs held nothing is left that moves");
-        return;
+    if (at >= 0) {
+        t.growth = creal(zero[at]) / cabs(zero[at]);
+        t.fails = creal(zero[at]) > RITZ_ZERO_ON_AXIS * cabs(zero[at]);
+        probe.pole[0] = creal(zero[at]);
+        probe.pole[1] = fabs(cimag(zero[at]));
+        ritz_probe_print(&probe, t.why);
     }
-    fails = creal(zero[at]) > RITZ_ZERO_ON_AXIS * cabs(zero[at]);
-    probe.pole[0] = creal(zero[at]);
-    probe.pole[1] = fabs(cimag(zero[at]));
-    ritz_probe_print(&probe, text);
-    ritz_checker_say(it, name, creal(zero[at]) / cabs(zero[at]),
-                     RITZ_ZERO_ON_AXIS, fails ? RITZ_FAIL : RITZ_PASS, "",
-                     "with its outputs held: %s", text);
+    say_trial(it, "interface-locked", &t, "with its outputs held");
 }
 
-ritz_status ritz_check_locked_states(ritz_checker *it)
+static ritz_status lock_pairs(ritz_checker *it)
 {
-    static const char name[] = "interface-locked";
     ritz_status status = RITZ_OK;
     const ritz_collocated *pairs = &it->pairs;
     const ritz_state_space model = {
@@ -169,131 +200,19 @@ ritz_status ritz_check_locked_states(ritz_checker *it)
         .num_inputs = pairs->B.ncol,
         .num_outputs = pairs->B.ncol,
     };
-    double _Complex *zero = NULL;
+    RITZ_OWN_ARRAY double _Complex *zero = NULL;
     int64_t count = 0;
     ritz_probe probe = {0};
 
-    if (pairs->B.ncol == 0) {
-        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
-                         "not applicable: no input and output of one name");
-        return RITZ_OK;
-    }
-    RITZ_TRY(ritz_probe_judge(&pairs->A, &probe));
+    RITZ_CHECK(ritz_probe_matrix(&pairs->A, &probe));
     status = ritz_zeros_of(ritz_model_of_states(&model), RITZ_ALL_CHANNELS,
                            RITZ_ALL_CHANNELS, &count, &zero);
-    if (status == RITZ_ERR_SINGULAR) {
-        ritz_checker_say(it, name, nan(""), nan(""), RITZ_WARN, "",
-                         "its pairs depend on each other, they cannot be held");
-        return RITZ_OK;
-    }
-    RITZ_TRY(status);
-    say_locked(it, count, zero, probe.radius);
-done:
-    free(zero);
-    return status;
-}
-
-ritz_status ritz_check_sprung_states(ritz_checker *it)
-{
-    static const char name[] = "interface-sprung";
-    RITZ_OWN_ARRAY double *gain = NULL;
-    ritz_probe worst = {.verdict = RITZ_STABLE};
-    char where[RITZ_WHERE_SIZE] = "";
-    char text[2 * RITZ_NAME_SIZE];
-
-    if (it->pairs.B.ncol == 0) {
-        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
-                         "not applicable: no input and output of one name");
-        return RITZ_OK;
-    }
-    RITZ_CHECK_NEW(gain, it->pairs.B.ncol);
-    RITZ_CHECK(own_gains(&it->pairs, gain));
-    RITZ_CHECK(try_all_pairs(it, gain, &worst, where));
-    ritz_probe_print(&worst, text);
-    ritz_checker_say(
-        it, name, worst.radius > 0.0 ? worst.pole[0] / worst.radius : 0.0,
-        worst.tolerance, worst.verdict == RITZ_UNSTABLE ? RITZ_FAIL : RITZ_PASS,
-        where, "with that hung on it: %s", text);
-    return RITZ_OK;
-}
-
-/*
- * What an assembly may do with a reduced component: hold its interface, attach
- * springs or masses to it, or join it by forces.
- *
- *     L q = 0;    K + a sum k_i l_i' l_i;    M + a sum m_i l_i' l_i
- *
- * with rows l_i of the interface, each with its own stiffness and mass,
- *
- *     1 / k_i = l_i Phi_f Lambda_f^-1 Phi_f' l_i',  1 / m_i = l_i Phi Phi' l_i'
- *
- * and a from 1e-3 to 1e3. Where M, K and D are semidefinite, so are all of
- * these, and nothing is computed.
- */
-
-/* A model as an assembly makes it of this one, and the worst of several. */
-typedef struct attachment_trial {
-    ritz_dense K, M, D;
-    double growth, tolerance; /* the largest so far */
-    bool fails;
-    char where[RITZ_WHERE_SIZE], why[2 * RITZ_NAME_SIZE];
-} attachment_trial;
-
-static void trial_free(attachment_trial *t)
-{
-    ritz_dense_free(&t->K);
-    ritz_dense_free(&t->M);
-    ritz_dense_free(&t->D);
-}
-
-/* D with what ratios add to it, by the modes of the free model. */
-static ritz_status all_damping(const ritz_checker *it, ritz_dense *out)
-{
-    const ritz_modal_model *modes = &it->modes;
-    RITZ_OWN(ritz_dense) own = {0}, part = {0}, sum = {0};
-
-    if (it->model.D.val)
-        RITZ_CHECK(ritz_dense_project(&it->model.D, &modes->Phi, &own));
-    else
-        RITZ_CHECK(ritz_dense_new(modes->count, modes->count, &own));
-    for (int64_t k = 0; k < own.nrow * own.ncol; k++)
-        own.val[k] = modes->Delta.val[k] - own.val[k];
-    RITZ_CHECK(ritz_dense_mul(&modes->MPhi, &own, &part));
-    RITZ_CHECK(ritz_dense_mul_nt(&part, &modes->MPhi, &sum));
-    for (int64_t k = 0; it->model.D.val && k < sum.nrow * sum.ncol; k++)
-        sum.val[k] += it->model.D.val[k];
-    RITZ_MOVE(*out, sum);
-    return RITZ_OK;
-}
-
-static ritz_status copy_model(const ritz_checker *it, const ritz_dense *D,
-                              attachment_trial *t)
-{
-    trial_free(t);
-    RITZ_CHECK(ritz_dense_copy(&it->model.K, &t->K));
-    RITZ_CHECK(ritz_dense_copy(&it->model.M, &t->M));
-    return ritz_dense_copy(D, &t->D);
-}
-
-/* Its poles; the largest growth of all trials is remembered with its case. */
-static ritz_status probe_trial(attachment_trial *t, const char *where)
-{
-    ritz_probe probe = {0};
-    double growth = 0.0;
-    bool fails = false;
-
-    if (t->K.nrow == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_probe_second_order(&t->K, &t->M, &t->D, NULL, &probe));
-    fails = probe.verdict == RITZ_UNSTABLE;
-    growth = probe.radius > 0.0 ? probe.pole[0] / probe.radius : 0.0;
-    if (fails < t->fails || (fails == t->fails && growth <= t->growth))
-        return RITZ_OK;
-    t->growth = growth;
-    t->tolerance = probe.tolerance;
-    t->fails = fails;
-    snprintf(t->where, sizeof t->where, "%s", where);
-    ritz_probe_print(&probe, t->why);
+    if (status == RITZ_OK)
+        say_locked(it, count, zero, probe.radius);
+    if (status != RITZ_ERR_SINGULAR)
+        return status;
+    ritz_checker_say(it, "interface-locked", nan(""), nan(""), RITZ_WARN, "",
+                     "its pairs depend on each other, they cannot be held");
     return RITZ_OK;
 }
 
@@ -313,7 +232,7 @@ static void attach_to_rows(const ritz_dense *L, int64_t only, double a,
 }
 
 /* k_i and m_i; 0 where a row moves no mode. */
-static ritz_status own_sizes(const ritz_checker *it, double *k, double *m)
+static ritz_status find_sizes(const ritz_checker *it, double *k, double *m)
 {
     const ritz_modal_model *modes = &it->modes;
     RITZ_OWN(ritz_dense) LPhi = {0};
@@ -337,7 +256,7 @@ static ritz_status own_sizes(const ritz_checker *it, double *k, double *m)
 
 /* Springs and masses, at one row (or at all: -1). */
 static ritz_status try_attached(const ritz_checker *it, const ritz_dense *D,
-                                int64_t only, const double *own[static 2],
+                                int64_t only, const double *const own[2],
                                 attachment_trial *t)
 {
     static const char *const what[] = {"springs", "masses"};
@@ -345,47 +264,42 @@ static ritz_status try_attached(const ritz_checker *it, const ritz_dense *D,
 
     for (int mass = 0; mass < 2; mass++)
         for (int k = 0; k < TIMES; k += 1 + mass) {
-            RITZ_CHECK(copy_model(it, D, t));
+            RITZ_OWN(ritz_dense) K = {0}, M = {0};
+            ritz_probe probe = {0};
+
+            RITZ_CHECK(ritz_dense_copy(&it->model.K, &K));
+            RITZ_CHECK(ritz_dense_copy(&it->model.M, &M));
             attach_to_rows(&it->L, only, times_own[k], own[mass],
-                           mass ? &t->M : &t->K);
+                           mass ? &M : &K);
             snprintf(where, sizeof where, "%s of %g times its own at %s",
                      what[mass], times_own[k],
                      only < 0 ? "the whole interface" : it->row[only]);
-            RITZ_CHECK(probe_trial(t, where));
+            RITZ_CHECK(ritz_probe_second_order(&K, &M, D, NULL, &probe));
+            keep_worst(&probe, where, t);
         }
     return RITZ_OK;
 }
 
-static bool is_proven(ritz_checker *it, const char *name)
+/* D of the model, with what damping ratios add to it. */
+static ritz_status find_damping(const ritz_checker *it, ritz_dense *out)
 {
-    if (it->L.nrow == 0)
-        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
-                         "not applicable: no port and no input");
-    else if (it->definite)
-        ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, "",
-                         "proven: M, K and D stay semidefinite");
-    else
-        return false;
-    return true;
+    if (it->model.D.val)
+        RITZ_CHECK(ritz_dense_copy(&it->model.D, out));
+    return ritz_modal_damping(&it->model, &it->damping, out);
 }
 
-static void say_trial(ritz_checker *it, const char *name,
-                      const attachment_trial *t, const char *what)
-{
-    ritz_checker_say(it, name, t->growth, t->tolerance,
-                     t->fails ? RITZ_FAIL : RITZ_PASS, t->where, "%s: %s", what,
-                     *t->why ? t->why : "nothing is left that moves");
-}
-
-static ritz_status locked_reduced(ritz_checker *it)
+/* In the null space N of L, whose rows are scaled to one length. */
+static ritz_status lock_rows(ritz_checker *it)
 {
     RITZ_OWN(ritz_dense) D = {0}, scaled = {0}, U = {0}, V = {0};
+    RITZ_OWN(ritz_dense) K_N = {0}, M_N = {0}, D_N = {0};
     ritz_dense N = {0};
     RITZ_OWN_ARRAY double *sigma = NULL;
     int64_t rank = 0;
-    [[gnu::cleanup(trial_free)]] attachment_trial t = {.growth = -HUGE_VAL};
+    attachment_trial t = {.growth = -HUGE_VAL};
+    ritz_probe probe = {0};
 
-    RITZ_CHECK(all_damping(it, &D));
+    RITZ_CHECK(find_damping(it, &D));
     RITZ_CHECK(ritz_dense_copy(&it->L, &scaled));
     for (int64_t i = 0; i < scaled.nrow; i++) {
         double size = 0.0;
@@ -400,53 +314,56 @@ static ritz_status locked_reduced(ritz_checker *it)
            sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
     N = ritz_dense_part(&V, rank, V.ncol - rank);
-    RITZ_CHECK(ritz_dense_congruence(&it->model.K, &N, &t.K));
-    RITZ_CHECK(ritz_dense_congruence(&it->model.M, &N, &t.M));
-    RITZ_CHECK(ritz_dense_project(&D, &N, &t.D));
-    RITZ_CHECK(probe_trial(&t, ""));
+    if (N.ncol > 0) {
+        RITZ_CHECK(ritz_dense_congruence(&it->model.K, &N, &K_N));
+        RITZ_CHECK(ritz_dense_congruence(&it->model.M, &N, &M_N));
+        if (D.val)
+            RITZ_CHECK(ritz_dense_project(&D, &N, &D_N));
+        RITZ_CHECK(ritz_probe_second_order(&K_N, &M_N, &D_N, NULL, &probe));
+        keep_worst(&probe, "", &t);
+    }
     say_trial(it, "interface-locked", &t, "with its interface held");
     return RITZ_OK;
 }
 
 /* All rows at once, and each of them alone while they are few. */
-static ritz_status sprung_reduced(ritz_checker *it)
+static ritz_status try_all_rows(const ritz_checker *it, attachment_trial *t)
 {
     enum { FEW = 12, SMALL = 100 };
     RITZ_OWN(ritz_dense) D = {0};
     RITZ_OWN_ARRAY double *k = NULL, *m = NULL;
     int64_t p = it->L.nrow;
-    int64_t apart = p > 1 && it->model.K.nrow <= SMALL ? p : 0;
-    [[gnu::cleanup(trial_free)]] attachment_trial t = {.growth = -HUGE_VAL};
-    const double *own[2];
+    int64_t alone = p > 1 && it->model.K.nrow <= SMALL ? p : 0;
 
     RITZ_CHECK_NEW(k, p);
     RITZ_CHECK_NEW(m, p);
-    RITZ_CHECK(own_sizes(it, k, m));
-    RITZ_CHECK(all_damping(it, &D));
-    own[0] = k;
-    own[1] = m;
-    for (int64_t only = -1; only < apart && only < FEW; only++)
-        RITZ_CHECK(try_attached(it, &D, only, own, &t));
-    say_trial(it, "interface-sprung", &t, "with springs or masses on it");
+    RITZ_CHECK(find_sizes(it, k, m));
+    RITZ_CHECK(find_damping(it, &D));
+    for (int64_t only = -1; only < alone && only < FEW; only++)
+        RITZ_CHECK(try_attached(it, &D, only, (const double *[2]){k, m}, t));
     return RITZ_OK;
 }
 
 ritz_status ritz_check_locked(ritz_checker *it)
 {
-    static const char name[] = "interface-locked";
-
-    if (it->space)
-        return ritz_check_locked_states(it);
-    return is_proven(it, name) ? RITZ_OK : locked_reduced(it);
+    if (ritz_checker_settled(it, "interface-locked", proof))
+        return RITZ_OK;
+    return it->space ? lock_pairs(it) : lock_rows(it);
 }
 
 ritz_status ritz_check_sprung(ritz_checker *it)
 {
     static const char name[] = "interface-sprung";
+    attachment_trial t = {.growth = -HUGE_VAL};
 
-    if (it->space)
-        return ritz_check_sprung_states(it);
-    return is_proven(it, name) ? RITZ_OK : sprung_reduced(it);
+    if (ritz_checker_settled(it, name, proof))
+        return RITZ_OK;
+    RITZ_CHECK(it->space ? try_all_pairs(&it->pairs, &t)
+                         : try_all_rows(it, &t));
+    say_trial(it, name, &t,
+              it->space ? "with these attachments"
+                        : "with springs or masses on it");
+    return RITZ_OK;
 }
 
 /*
@@ -461,132 +378,97 @@ ritz_status ritz_check_sprung(ritz_checker *it)
  * negative eigenvalue for each force that has mass [Rixen2004].
  */
 
-typedef struct joint {
-    int64_t count; /* of force columns */
-    int64_t *force, *other;
-    ritz_dense Cq, Cp;   /* rows of C that C_p reaches */
-    ritz_dense Kpp, Mpp; /* of the force columns */
-    ritz_dense flexible; /* K_pp^-1 C_p' */
-    ritz_dense K, M;     /* of [q; lambda] */
-} joint;
-
-static void joint_free(joint *j)
+/* Columns of kind force, and the others. */
+static ritz_status sort_columns(const ritz_columns *columns, ritz_dofs *force,
+                                ritz_dofs *other)
 {
-    free(j->force);
-    free(j->other);
-    ritz_dense_free(&j->Cq);
-    ritz_dense_free(&j->Cp);
-    ritz_dense_free(&j->Kpp);
-    ritz_dense_free(&j->Mpp);
-    ritz_dense_free(&j->flexible);
-    ritz_dense_free(&j->K);
-    ritz_dense_free(&j->M);
-}
-
-static ritz_status find_columns(const ritz_reduced *reduced, joint *j)
-{
-    int64_t rest = 0;
-
-    RITZ_CHECK_NEW(j->force, reduced->columns.count);
-    RITZ_CHECK_NEW(j->other, reduced->columns.count);
-    for (int64_t k = 0; k < reduced->columns.count; k++)
-        if (reduced->columns.kind[k] == RITZ_COLUMN_FORCE)
-            j->force[j->count++] = k;
+    RITZ_CHECK_NEW(force->at, columns->count);
+    RITZ_CHECK_NEW(other->at, columns->count);
+    for (int64_t k = 0; k < columns->count; k++)
+        if (columns->kind[k] == RITZ_COLUMN_FORCE)
+            force->at[force->count++] = k;
         else
-            j->other[rest++] = k;
-    return RITZ_OK;
-}
-
-/* Columns, or a square part, of A. */
-static ritz_status pick_columns(const ritz_dense *A, int64_t count,
-                                const int64_t *at, bool square, ritz_dense *out)
-{
-    int64_t rows = square ? count : A->nrow;
-
-    RITZ_CHECK(ritz_dense_new(rows, count, out));
-    for (int64_t j = 0; j < count; j++)
-        for (int64_t i = 0; i < rows; i++)
-            ritz_dense_col(out, j)[i] =
-                ritz_dense_col(A, at[j])[square ? at[i] : i];
+            other->at[other->count++] = k;
     return RITZ_OK;
 }
 
 /* C := U'C, U the directions of forces that force columns respond to. */
-static ritz_status take_rows(const ritz_checker *it, joint *j)
+static ritz_status take_rows(const ritz_dense *L, const ritz_dofs *force,
+                             const ritz_dofs *other, ritz_dense *C_p,
+                             ritz_dense *C_q)
 {
-    RITZ_OWN(ritz_dense) Cq = {0}, Cp = {0}, U = {0};
+    RITZ_OWN(ritz_dense) L_p = {0}, L_q = {0}, U = {0};
     ritz_dense kept = {0};
     RITZ_OWN_ARRAY double *sigma = NULL;
     int64_t rank = 0;
-    int64_t most = it->L.nrow < j->count ? it->L.nrow : j->count;
+    int64_t most = L->nrow < force->count ? L->nrow : force->count;
 
-    RITZ_CHECK(pick_columns(&it->L, j->count, j->force, false, &Cp));
-    RITZ_CHECK(
-        pick_columns(&it->L, it->L.ncol - j->count, j->other, false, &Cq));
-    RITZ_CHECK(ritz_general_svd(&Cp, &U, &sigma, NULL));
+    RITZ_CHECK(ritz_check_pick(L, NULL, force, &L_p));
+    RITZ_CHECK(ritz_check_pick(L, NULL, other, &L_q));
+    RITZ_CHECK(ritz_general_svd(&L_p, &U, &sigma, NULL));
     while (rank < most && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
     kept = ritz_dense_part(&U, 0, rank);
-    RITZ_CHECK(ritz_dense_mul_tn(&kept, &Cq, &j->Cq));
-    return ritz_dense_mul_tn(&kept, &Cp, &j->Cp);
+    RITZ_CHECK(ritz_dense_mul_tn(&kept, &L_q, C_q));
+    return ritz_dense_mul_tn(&kept, &L_p, C_p);
 }
 
-static ritz_status fill_joint(const ritz_checker *it, joint *j)
+/* A = [A_qq C'; C S] of its three parts, C NULL: 0. */
+static ritz_status join_blocks(const ritz_dense *A_qq, const ritz_dense *C,
+                               double sign, const ritz_dense *S,
+                               ritz_dense *out)
 {
-    int64_t q = it->L.ncol - j->count;
-    int64_t s = j->Cp.nrow;
-    RITZ_OWN(ritz_dense) soft = {0}, mass = {0};
+    int64_t q = A_qq->nrow, s = S->nrow;
 
-    RITZ_CHECK(ritz_general_transpose(&j->Cp, &j->flexible));
-    RITZ_CHECK_IN("force columns",
-                  ritz_general_solve(&j->Kpp, false, &j->flexible));
-    RITZ_CHECK(ritz_dense_mul(&j->Cp, &j->flexible, &soft));
-    RITZ_CHECK(ritz_dense_congruence(&j->Mpp, &j->flexible, &mass));
-    RITZ_CHECK(ritz_dense_new(q + s, q + s, &j->K));
-    RITZ_CHECK(ritz_dense_new(q + s, q + s, &j->M));
+    RITZ_CHECK(ritz_dense_new(q + s, q + s, out));
     for (int64_t b = 0; b < q; b++) {
-        for (int64_t a = 0; a < q; a++) {
-            ritz_dense_col(&j->K, b)[a] =
-                ritz_dense_col(&it->model.K, j->other[b])[j->other[a]];
-            ritz_dense_col(&j->M, b)[a] =
-                ritz_dense_col(&it->model.M, j->other[b])[j->other[a]];
-        }
-        for (int64_t a = 0; a < s; a++)
-            ritz_dense_col(&j->K, b)[q + a] = ritz_dense_col(&j->K, q + a)[b] =
-                ritz_dense_col(&j->Cq, b)[a];
+        for (int64_t a = 0; a < q; a++)
+            ritz_dense_col(out, b)[a] = ritz_dense_col(A_qq, b)[a];
+        for (int64_t a = 0; C && a < s; a++)
+            ritz_dense_col(out, b)[q + a] = ritz_dense_col(out, q + a)[b] =
+                ritz_dense_col(C, b)[a];
     }
     for (int64_t b = 0; b < s; b++)
-        for (int64_t a = 0; a < s; a++) {
-            ritz_dense_col(&j->K, q + b)[q + a] = -ritz_dense_col(&soft, b)[a];
-            ritz_dense_col(&j->M, q + b)[q + a] = ritz_dense_col(&mass, b)[a];
-        }
-    ritz_dense_symmetrise(&j->K);
-    ritz_dense_symmetrise(&j->M);
+        for (int64_t a = 0; a < s; a++)
+            ritz_dense_col(out, q + b)[q + a] = sign * ritz_dense_col(S, b)[a];
+    ritz_dense_symmetrise(out);
     return RITZ_OK;
+}
+
+static ritz_status probe_joined(const ritz_checker *it, const ritz_dofs *force,
+                                const ritz_dofs *other, ritz_probe *out)
+{
+    const ritz_dense none = {0};
+    RITZ_OWN(ritz_dense) C_p = {0}, C_q = {0}, K_pp = {0}, M_pp = {0};
+    RITZ_OWN(ritz_dense) K_qq = {0}, M_qq = {0}, H = {0}, soft = {0};
+    RITZ_OWN(ritz_dense) mass = {0}, K = {0}, M = {0};
+
+    RITZ_CHECK(take_rows(&it->L, force, other, &C_p, &C_q));
+    RITZ_CHECK(ritz_check_pick(&it->model.K, force, force, &K_pp));
+    RITZ_CHECK(ritz_check_pick(&it->model.M, force, force, &M_pp));
+    RITZ_CHECK(ritz_check_pick(&it->model.K, other, other, &K_qq));
+    RITZ_CHECK(ritz_check_pick(&it->model.M, other, other, &M_qq));
+    RITZ_CHECK(ritz_general_transpose(&C_p, &H));
+    RITZ_CHECK_IN("force columns", ritz_general_solve(&K_pp, false, &H));
+    RITZ_CHECK(ritz_dense_mul(&C_p, &H, &soft));
+    RITZ_CHECK(ritz_dense_congruence(&M_pp, &H, &mass));
+    RITZ_CHECK(join_blocks(&K_qq, &C_q, -1.0, &soft, &K));
+    RITZ_CHECK(join_blocks(&M_qq, NULL, 1.0, &mass, &M));
+    return ritz_probe_second_order(&K, &M, &none, NULL, out);
 }
 
 ritz_status ritz_check_joined(ritz_checker *it)
 {
-    const ritz_dense none = {0};
-    RITZ_OWN(joint) j = {0};
+    RITZ_OWN(ritz_dofs) force = {0}, other = {0};
+    attachment_trial t = {.growth = -HUGE_VAL};
     ritz_probe probe = {0};
-    char text[2 * RITZ_NAME_SIZE];
 
-    RITZ_CHECK(find_columns(it->reduced, &j));
-    if (j.count == 0 || it->L.nrow == 0)
+    RITZ_CHECK(sort_columns(&it->reduced->columns, &force, &other));
+    if (force.count == 0 || it->L.nrow == 0)
         return RITZ_OK;
-    RITZ_CHECK(take_rows(it, &j));
-    RITZ_CHECK(pick_columns(&it->model.K, j.count, j.force, true, &j.Kpp));
-    RITZ_CHECK(pick_columns(&it->model.M, j.count, j.force, true, &j.Mpp));
-    RITZ_CHECK(fill_joint(it, &j));
-    RITZ_CHECK(ritz_probe_second_order(&j.K, &j.M, &none, NULL, &probe));
-    ritz_probe_print(&probe, text);
-    ritz_checker_say(it, "interface-joined",
-                     probe.radius > 0.0 ? probe.pole[0] / probe.radius : 0.0,
-                     probe.tolerance,
-                     probe.verdict == RITZ_UNSTABLE ? RITZ_FAIL : RITZ_PASS, "",
-                     "joined by interface forces, as its columns are made "
-                     "for: %s",
-                     text);
+    RITZ_CHECK(probe_joined(it, &force, &other, &probe));
+    keep_worst(&probe, "", &t);
+    say_trial(it, "interface-joined", &t,
+              "joined by interface forces, as its columns are made for");
     return RITZ_OK;
 }

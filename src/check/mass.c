@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
+#include "linear/general.h"
 
 #include <ritz/matrix.h>
 #include <ritz/model.h>
@@ -154,18 +155,15 @@ static void flag_empty(const ritz_sparse *A, bool *flag)
 static void check_rows(ritz_checker *it, const ritz_sparse *A, const char *name,
                        const char *meaning, bool *flag)
 {
-    char where[RITZ_WHERE_SIZE];
+    char some[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
     flag_empty(A, flag);
-    count = ritz_checker_dofs(it, flag, where);
-    if (count == 0)
-        ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, where,
-                         "there are none");
-    else
-        ritz_checker_say(it, name, (double)count, 0.0, RITZ_WARN, where,
-                         "%" PRId64 " of %" PRId64 " dofs %s", count,
-                         it->component->num_dofs, meaning);
+    for (int64_t j = 0; j < A->ncol; j++)
+        count += flag[j];
+    snprintf(some, sizeof some, "%" PRId64 " of %" PRId64 " dofs %s", count,
+             A->ncol, meaning);
+    ritz_checker_flagged(it, name, flag, RITZ_WARN, "there are none", some);
 }
 
 ritz_status ritz_check_dofs(ritz_checker *it)
@@ -216,10 +214,7 @@ static ritz_status condense_mass(const ritz_checker *it, const double *centre,
 /* Whether any dof lies along a basic axis. */
 static bool has_direction(const ritz_checker *it, int64_t j)
 {
-    for (int64_t i = 0; i < it->R.nrow; i++)
-        if (fabs(ritz_dense_col(&it->R, j)[i]) > 0.0)
-            return true;
-    return false;
+    return ritz_dense_col_max(&it->R, j) > 0.0;
 }
 
 /* The three masses agree; the largest of them. */
@@ -291,7 +286,7 @@ static ritz_status find_moments(const ritz_dense *A, double J[3])
         for (int64_t i = 0; i < 3; i++)
             ritz_dense_col(&tensor, j)[i] = ritz_dense_col(A, 3 + j)[3 + i];
     ritz_dense_symmetrise(&tensor);
-    RITZ_CHECK(ritz_check_eigen(&tensor, &pairs));
+    RITZ_CHECK(ritz_general_symmetric(&tensor, &pairs));
     for (int64_t k = 0; k < 3; k++)
         J[k] = pairs.lambda[k];
     return RITZ_OK;

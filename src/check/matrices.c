@@ -54,7 +54,7 @@ static bool digits_suffice(double value, int digits)
 }
 
 /* The digits of a value, and the power of ten of the last one. */
-static int digits_of(double value, int *place)
+static int count_decimals(double value, int *place)
 {
     char text[40];
     int digits = 1;
@@ -91,7 +91,7 @@ static ritz_status count_digits(const ritz_sparse *K, decimals *out)
     RITZ_CHECK_NEW(value, LOOKED_AT + 1);
     d.count = sample_entries(K, value);
     for (int64_t k = 0; k < d.count && d.digits < FULL; k++) {
-        int place = 0, digits = digits_of(value[k], &place);
+        int place = 0, digits = count_decimals(value[k], &place);
 
         if (digits > d.digits)
             d.full = 0;
@@ -177,6 +177,7 @@ static void check_symmetry(ritz_checker *it)
     const ritz_component *c = it->component;
     /* not D, whose gyroscopic part is not symmetric by right */
     const ritz_sparse *const all[3] = {&c->K, &c->M, &c->K4};
+    ritz_verdict verdict = RITZ_PASS;
     double now = 0.0;
     double found = 0.0;
 
@@ -184,17 +185,16 @@ static void check_symmetry(ritz_checker *it)
         if (all[k]->colptr)
             now = fmax(now, ritz_sparse_asymmetry(all[k]));
     found = fmax(now, c->asymmetry);
-    if (now > RITZ_SYMMETRIC_SOURCE)
-        ritz_checker_say(it, "symmetry", found, RITZ_SYMMETRIC_SOURCE,
-                         RITZ_FAIL, NULL, "the matrices are not symmetric");
-    else if (found > RITZ_SYMMETRIC_SOURCE)
-        ritz_checker_say(it, "symmetry", found, RITZ_SYMMETRIC_SOURCE,
-                         RITZ_WARN, NULL,
-                         "the source was not symmetric, and was averaged");
-    else
-        ritz_checker_say(
-            it, "symmetry", found, RITZ_SYMMETRIC_SOURCE, RITZ_PASS, NULL,
-            found > 0.0 ? "rounding only, averaged away" : "exactly symmetric");
+    verdict = now > RITZ_SYMMETRIC_SOURCE     ? RITZ_FAIL
+              : found > RITZ_SYMMETRIC_SOURCE ? RITZ_WARN
+                                              : RITZ_PASS;
+    ritz_checker_say(it, "symmetry", found, RITZ_SYMMETRIC_SOURCE, verdict,
+                     NULL, "%s",
+                     verdict == RITZ_FAIL ? "the matrices are not symmetric"
+                     : verdict == RITZ_WARN
+                         ? "the source was not symmetric, and was averaged"
+                     : found > 0.0 ? "rounding only, averaged away"
+                                   : "exactly symmetric");
 }
 
 ritz_status ritz_check_values(ritz_checker *it)
@@ -229,7 +229,7 @@ static void read_diagonal(const ritz_sparse *A, double *diagonal)
 }
 
 /* A row that a negative or missing diagonal entry makes indefinite; or -1. */
-static int64_t bad_diagonal(const ritz_sparse *A, const double *diagonal)
+static int64_t find_bad_diagonal(const ritz_sparse *A, const double *diagonal)
 {
     for (int64_t j = 0; j < A->ncol; j++) {
         if (diagonal[j] < 0.0)
@@ -274,25 +274,19 @@ static ritz_status count_negative(const ritz_sparse *A, const double *diagonal,
                                   int64_t *count)
 {
     ritz_status status = RITZ_OK;
-    ritz_sparse scaled = {0};
-    ritz_factor *F = NULL;
-    ritz_ldl *L = NULL;
+    RITZ_OWN(ritz_sparse) scaled = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_ldl) *L = NULL;
 
     *count = 0;
     *weak = -1;
-    RITZ_TRY(scale_matrix(A, diagonal, tol, &scaled, sum));
+    RITZ_CHECK(scale_matrix(A, diagonal, tol, &scaled, sum));
     status = ritz_factor_spd_weak(&scaled, &F, weak);
     if (status != RITZ_ERR_SINGULAR)
-        goto done;
+        return status;
     *count = 1; /* what is known if MUMPS meets an exact zero */
     status = ritz_ldl_new(&scaled, count, &L);
-    if (status == RITZ_ERR_SINGULAR)
-        status = RITZ_OK;
-done:
-    ritz_sparse_free(&scaled);
-    ritz_factor_free(&F);
-    ritz_ldl_free(&L);
-    return status;
+    return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
 }
 
 static void say_negative(ritz_checker *it, const char *name, int64_t count,
@@ -331,7 +325,7 @@ static ritz_status check_definite(ritz_checker *it, const ritz_sparse *A,
 
     RITZ_CHECK_NEW(diagonal, A->nrow);
     read_diagonal(A, diagonal);
-    weak = bad_diagonal(A, diagonal);
+    weak = find_bad_diagonal(A, diagonal);
     if (weak >= 0) {
         char dof[RITZ_DOF_NAME_SIZE];
 

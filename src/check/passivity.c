@@ -86,7 +86,7 @@ void ritz_sampler_free(ritz_sampler **sampler)
 
 /* Distances from a pole at which a frequency is placed, in units of |Re s|
    or, where that is less, of |s| / 1000. */
-static const double beside[] = {0.25, 1.0, 4.0};
+static const double distances[] = {0.25, 1.0, 4.0};
 /* Of its upper end: the length of a bracket that is not divided any more. */
 enum { DESCENTS = 3, MOST_STATES = 200, PER_POLE = 9 };
 
@@ -99,6 +99,13 @@ typedef struct descent {
     double scale; /* largest |G| so far */
     ritz_passivity found;
 } descent;
+
+static void descent_free(descent *s)
+{
+    ritz_sampler_free(&s->sampler);
+    free(s->H);
+    free(s->lambda);
+}
 
 /* Sort, leave out what is not positive or there twice; how many are left. */
 static int64_t sort_frequencies(int64_t count, double *w)
@@ -128,9 +135,9 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
 
         w[n++] = size;
         w[n++] = fabs(poles.im[k]);
-        for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
-            w[n++] = fabs(poles.im[k]) - beside[i] * width;
-            w[n++] = fabs(poles.im[k]) + beside[i] * width;
+        for (size_t i = 0; i < sizeof distances / sizeof *distances; i++) {
+            w[n++] = fabs(poles.im[k]) - distances[i] * width;
+            w[n++] = fabs(poles.im[k]) + distances[i] * width;
         }
     }
     n = sort_frequencies(n, w);
@@ -233,28 +240,21 @@ static ritz_status meet_crossings(descent *s, const ritz_collocated *model)
 
 ritz_status ritz_passivity_of(const ritz_collocated *model, ritz_passivity *out)
 {
-    ritz_status status = RITZ_OK;
-    descent s = {.p = (int)model->B.ncol, .found = {.value = 1.0}};
-    double *w = NULL, *value = NULL;
+    RITZ_OWN(descent) s = {.p = (int)model->B.ncol, .found = {.value = 1.0}};
+    RITZ_OWN_ARRAY double *w = NULL, *value = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_sampler_new(model, &s.sampler));
-    RITZ_NEW(s.H, (int64_t)s.p * s.p);
-    RITZ_NEW(s.lambda, s.p);
-    RITZ_TRY(ritz_probe_grid(&model->A, &count, &w));
-    RITZ_NEW(value, count);
+    RITZ_CHECK(ritz_sampler_new(model, &s.sampler));
+    RITZ_CHECK_NEW(s.H, (int64_t)s.p * s.p);
+    RITZ_CHECK_NEW(s.lambda, s.p);
+    RITZ_CHECK(ritz_probe_grid(&model->A, &count, &w));
+    RITZ_CHECK_NEW(value, count);
     for (int64_t k = 0; k < count; k++)
         value[k] = meet_at(&s, w[k]);
-    RITZ_TRY(descend_all(&s, count, w, value));
-    RITZ_TRY(meet_crossings(&s, model));
+    RITZ_CHECK(descend_all(&s, count, w, value));
+    RITZ_CHECK(meet_crossings(&s, model));
     *out = s.found;
-done:
-    ritz_sampler_free(&s.sampler);
-    free(s.H);
-    free(s.lambda);
-    free(w);
-    free(value);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -355,7 +355,7 @@ ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
  * the displacement, velocity or acceleration of where it acts.
  */
 
-static int64_t output_of(const ritz_state_space *model, int64_t input)
+static int64_t find_output(const ritz_state_space *model, int64_t input)
 {
     for (int64_t i = 0; i < model->num_outputs; i++)
         if (strcmp(model->output[i], model->input[input]) == 0)
@@ -363,37 +363,53 @@ static int64_t output_of(const ritz_state_space *model, int64_t input)
     return -1;
 }
 
+ritz_status ritz_check_pick(const ritz_dense *A, const ritz_dofs *rows,
+                            const ritz_dofs *cols, ritz_dense *out)
+{
+    int64_t n = rows ? rows->count : A->nrow;
+    int64_t m = cols ? cols->count : A->ncol;
+
+    RITZ_CHECK(ritz_dense_new(n, m, out));
+    for (int64_t j = 0; j < m; j++) {
+        const double *col = ritz_dense_col(A, cols ? cols->at[j] : j);
+
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(out, j)[i] = col[rows ? rows->at[i] : i];
+    }
+    return RITZ_OK;
+}
+
+/* Some inputs and outputs of a model with D, in their order. */
+static ritz_status pick_pairs(const ritz_dense *A, const ritz_dense *B,
+                              const ritz_dense *C, const ritz_dense *D,
+                              const ritz_dofs at[2], ritz_collocated *out)
+{
+    RITZ_CHECK(ritz_dense_copy(A, &out->A));
+    RITZ_CHECK(ritz_check_pick(B, NULL, &at[0], &out->B));
+    RITZ_CHECK(ritz_check_pick(C, &at[1], NULL, &out->C));
+    RITZ_CHECK(ritz_check_pick(D, &at[1], &at[0], &out->D));
+    RITZ_CHECK_NEW(out->power, at[0].count);
+    RITZ_CHECK_NEW(out->name, at[0].count);
+    return RITZ_OK;
+}
+
 static ritz_status take_pairs(const ritz_state_space *model,
                               ritz_collocated *out)
 {
-    int64_t n = model->A.nrow;
-    RITZ_OWN_ARRAY int64_t *in = NULL, *seen = NULL;
+    RITZ_OWN_ARRAY int64_t *in = NULL, *to = NULL;
     int64_t p = 0;
 
     RITZ_CHECK_NEW(in, model->num_inputs);
-    RITZ_CHECK_NEW(seen, model->num_inputs);
+    RITZ_CHECK_NEW(to, model->num_inputs);
     for (int64_t j = 0; j < model->num_inputs; j++) {
-        seen[p] = output_of(model, j);
+        to[p] = find_output(model, j);
         in[p] = j;
-        p += seen[p] >= 0;
+        p += to[p] >= 0;
     }
-    RITZ_CHECK(ritz_dense_copy(&model->A, &out->A));
-    RITZ_CHECK(ritz_dense_new(n, p, &out->B));
-    RITZ_CHECK(ritz_dense_new(p, n, &out->C));
-    RITZ_CHECK(ritz_dense_new(p, p, &out->D));
-    RITZ_CHECK_NEW(out->power, p);
-    RITZ_CHECK_NEW(out->name, p);
-    for (int64_t j = 0; j < p; j++) {
-        memcpy(ritz_dense_col(&out->B, j), ritz_dense_col(&model->B, in[j]),
-               (size_t)n * sizeof *out->B.val);
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(&out->C, i)[j] =
-                ritz_dense_col(&model->C, i)[seen[j]];
-        for (int64_t i = 0; i < p; i++)
-            ritz_dense_col(&out->D, j)[i] =
-                ritz_dense_col(&model->D, in[j])[seen[i]];
+    RITZ_CHECK(pick_pairs(&model->A, &model->B, &model->C, &model->D,
+                          (ritz_dofs[2]){{p, in}, {p, to}}, out));
+    for (int64_t j = 0; j < p; j++)
         memcpy(out->name[j], model->input[in[j]], sizeof *out->name);
-    }
     if (model->E.val) {
         RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &out->A));
         RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &out->B));
@@ -401,47 +417,27 @@ static ritz_status take_pairs(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-/* One pair as a model of its own. */
-static ritz_status take_pair(const ritz_collocated *all, int64_t i, int *power,
-                             ritz_collocated *out)
-{
-    RITZ_OWN(ritz_dense) row = {0};
-
-    out->A = all->A; /* borrowed, as power is */
-    out->power = power;
-    RITZ_CHECK(ritz_dense_columns(&all->B, i, 1, &out->B));
-    RITZ_CHECK(ritz_dense_rows(&all->C, 1, &i, &out->C));
-    RITZ_CHECK(ritz_dense_rows(&all->D, 1, &i, &row));
-    return ritz_dense_columns(&row, i, 1, &out->D);
-}
-
 /* Take output i for the quantity that violates passivity least, a
    displacement if equal. */
 static ritz_status guess_quantity(const ritz_collocated *all, int64_t i)
 {
-    ritz_status status = RITZ_OK;
     static const int powers[] = {1, 0, -1};
+    const ritz_dofs at[2] = {{1, &i}, {1, &i}};
+    RITZ_OWN(ritz_collocated) one = {0};
     double best = -HUGE_VAL;
 
+    RITZ_CHECK(pick_pairs(&all->A, &all->B, &all->C, &all->D, at, &one));
     for (size_t k = 0; k < sizeof powers / sizeof *powers; k++) {
-        ritz_collocated one = {0};
         ritz_passivity found = {0};
-        int power = powers[k];
 
-        status = take_pair(all, i, &power, &one);
-        if (status == RITZ_OK)
-            status = ritz_passivity_of(&one, &found);
-        one.A = (ritz_dense){0};
-        one.power = NULL;
-        ritz_collocated_free(&one);
-        RITZ_TRY(status);
+        *one.power = powers[k];
+        RITZ_CHECK(ritz_passivity_of(&one, &found));
         if (found.value > best + RITZ_PASSIVE) {
             best = found.value;
-            all->power[i] = power;
+            all->power[i] = powers[k];
         }
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_collocated_of_space(const ritz_state_space *model,
@@ -458,20 +454,17 @@ ritz_status ritz_collocated_of_space(const ritz_state_space *model,
 
 /* Whether energy can come out of the interface, and where it does. */
 
-/* From forces along the interface to its velocities, by the modes. */
-static ritz_status collocated_of_modes(const ritz_checker *it,
-                                       ritz_collocated *out)
+/* From forces along the interface to its velocities, by the modes: A is there. */
+static ritz_status take_rows(const ritz_checker *it, ritz_collocated *pairs)
 {
     const ritz_modal_model *modes = &it->modes;
     int64_t m = modes->count, first = m - modes->num_rigid;
-    RITZ_OWN(ritz_collocated) model = {0};
     RITZ_OWN(ritz_dense) LPhi = {0};
     int64_t p = 0;
 
     RITZ_CHECK(ritz_dense_mul(&it->L, &modes->Phi, &LPhi));
-    RITZ_CHECK(ritz_probe_energy_matrix(modes, &model.A));
-    RITZ_CHECK(ritz_dense_new(first + m, LPhi.nrow, &model.B));
-    RITZ_CHECK_NEW(model.name, LPhi.nrow);
+    RITZ_CHECK(ritz_dense_new(first + m, LPhi.nrow, &pairs->B));
+    RITZ_CHECK_NEW(pairs->name, LPhi.nrow);
     for (int64_t i = 0; i < LPhi.nrow; i++) {
         double size = 0.0;
 
@@ -480,16 +473,14 @@ static ritz_status collocated_of_modes(const ritz_checker *it,
         if (size == 0.0) /* moves without mass: it only stores */
             continue;
         for (int64_t j = 0; j < m; j++)
-            ritz_dense_col(&model.B, p)[first + j] =
+            ritz_dense_col(&pairs->B, p)[first + j] =
                 ritz_dense_col(&LPhi, j)[i] / size;
-        memcpy(model.name[p++], it->row[i], sizeof *model.name);
+        memcpy(pairs->name[p++], it->row[i], sizeof *pairs->name);
     }
-    model.B.ncol = p;
-    RITZ_CHECK_NEW(model.power, p);
-    RITZ_CHECK(ritz_general_transpose(&model.B, &model.C));
-    RITZ_CHECK(ritz_dense_new(p, p, &model.D));
-    RITZ_MOVE(*out, model);
-    return RITZ_OK;
+    pairs->B.ncol = p;
+    RITZ_CHECK_NEW(pairs->power, p);
+    RITZ_CHECK(ritz_general_transpose(&pairs->B, &pairs->C));
+    return ritz_dense_new(p, p, &pairs->D);
 }
 
 void ritz_collocated_free(ritz_collocated *model)
@@ -520,48 +511,31 @@ static void name_pairs(const ritz_collocated *pairs,
     }
 }
 
-static ritz_status say_passivity(ritz_checker *it, const ritz_collocated *model)
-{
-    ritz_passivity found = {0};
-    char where[RITZ_WHERE_SIZE] = "";
-
-    RITZ_CHECK(ritz_passivity_of(model, &found));
-    if (found.value >= -RITZ_PASSIVE) {
-        if (it->space)
-            name_pairs(model, where);
-        ritz_checker_say(it, "passivity", found.value, -RITZ_PASSIVE, RITZ_PASS,
-                         where, "no energy comes out at any frequency met");
-        return RITZ_OK;
-    }
-    snprintf(where, sizeof where, "%.6g Hz, %s", found.hertz,
-             model->name[found.port]);
-    ritz_checker_say(it, "passivity", found.value, -RITZ_PASSIVE, RITZ_WARN,
-                     where,
-                     "energy comes out of the interface: with some passive "
-                     "neighbour it can be unstable");
-    return RITZ_OK;
-}
-
 ritz_status ritz_check_passivity(ritz_checker *it)
 {
     static const char name[] = "passivity";
-    RITZ_OWN(ritz_collocated) model = {0};
+    ritz_collocated *pairs = &it->pairs;
+    ritz_passivity found = {0};
+    char where[RITZ_WHERE_SIZE] = "";
 
-    if (it->space && it->pairs.B.ncol == 0) {
-        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
-                         "not applicable: no input and output of one name");
-    } else if (it->space) {
-        RITZ_CHECK(say_passivity(it, &it->pairs));
-    } else if (it->L.nrow == 0) {
-        ritz_checker_say(it, name, nan(""), nan(""), RITZ_PASS, "",
-                         "not applicable: no port and no input");
-    } else if (it->definite) {
-        ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, "",
-                         "proven: M, K and D are semidefinite, and forces act "
-                         "where velocities are met");
-    } else {
-        RITZ_CHECK(collocated_of_modes(it, &model));
-        RITZ_CHECK(say_passivity(it, &model));
+    if (ritz_checker_settled(it, name,
+                             "M, K and D are semidefinite, and forces act "
+                             "where velocities are met"))
+        return RITZ_OK;
+    if (it->reduced)
+        RITZ_CHECK(take_rows(it, pairs));
+    RITZ_CHECK(ritz_passivity_of(pairs, &found));
+    if (found.value >= -RITZ_PASSIVE) {
+        if (it->space)
+            name_pairs(pairs, where);
+        ritz_checker_say(it, name, found.value, -RITZ_PASSIVE, RITZ_PASS, where,
+                         "no energy comes out at any frequency met");
+        return RITZ_OK;
     }
+    snprintf(where, sizeof where, "%.6g Hz, %s", found.hertz,
+             pairs->name[found.port]);
+    ritz_checker_say(it, name, found.value, -RITZ_PASSIVE, RITZ_WARN, where,
+                     "energy comes out of the interface: with some passive "
+                     "neighbour it can be unstable");
     return RITZ_OK;
 }

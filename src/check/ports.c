@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
+#include "linear/general.h"
 
 #include <ritz/matrix.h>
 
@@ -20,9 +21,19 @@
  */
 
 /* The k-th dof of a port. */
-static ritz_dof dof_of(const ritz_checker *it, const ritz_port *port, int64_t k)
+static ritz_dof port_dof(const ritz_checker *it, const ritz_port *port,
+                         int64_t k)
 {
     return it->component->dof[port->dofs.at[k]];
+}
+
+static double find_distance(const double *a, const double *b)
+{
+    double square = 0.0;
+
+    for (int i = 0; i < 3; i++)
+        square += pow(a[i] - b[i], 2.0);
+    return sqrt(square);
 }
 
 /* R_p of one port: about its origin, lengths over size. */
@@ -35,19 +46,18 @@ static ritz_status find_motions(const ritz_checker *it, const ritz_port *port,
     int64_t p = port->dofs.count;
 
     for (int64_t k = 0; k < p; k++) {
-        int64_t g = ritz_grids_find(&c->grids, dof_of(it, port, k).grid);
-        double square = 0.0;
+        int64_t g = ritz_grids_find(&c->grids, port_dof(it, port, k).grid);
 
-        for (int i = 0; g >= 0 && i < 3; i++)
-            square += pow(c->grids.position[3 * g + i] - port->origin[i], 2.0);
-        size = fmax(size, sqrt(square));
+        if (g >= 0)
+            size = fmax(size,
+                        find_distance(&c->grids.position[3 * g], port->origin));
     }
     size = size > RITZ_SAME * it->size ? size : 1.0;
     RITZ_CHECK(ritz_rigid_geometry(c, port->origin, &R));
     RITZ_CHECK(ritz_dense_new(p, 6, &S));
     for (int64_t j = 0; j < 6; j++)
         for (int64_t k = 0; k < p; k++) {
-            bool turns = dof_of(it, port, k).component > 3;
+            bool turns = port_dof(it, port, k).component > 3;
 
             /* per unit of size, and rotations as arcs at that distance */
             ritz_dense_col(&S, j)[k] = ritz_dense_col(&R, j)[port->dofs.at[k]] /
@@ -63,12 +73,7 @@ static int64_t drop_absent(const ritz_checker *it, ritz_dense *S)
     int64_t kept = 0;
 
     for (int64_t j = 0; j < 6; j++) {
-        bool present = false;
-
-        for (int64_t i = 0; i < it->R.nrow; i++)
-            present = present ||
-                      fabs(ritz_dense_col(&it->R, j)[i]) > RITZ_MOTION_PRESENT;
-        if (!present)
+        if (!(ritz_dense_col_max(&it->R, j) > RITZ_MOTION_PRESENT))
             continue;
         if (kept < j)
             memcpy(ritz_dense_col(S, kept), ritz_dense_col(S, j),
@@ -94,7 +99,7 @@ static ritz_status measure_hold(const ritz_checker *it, const ritz_port *port,
     if (k == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_mul_tn(&S, &S, &A));
-    RITZ_CHECK(ritz_check_eigen(&A, &pairs));
+    RITZ_CHECK(ritz_general_symmetric(&A, &pairs));
     for (int64_t j = 0; j < k; j++) {
         double ratio = pairs.lambda[j] / pairs.lambda[k - 1];
 
@@ -108,7 +113,7 @@ static ritz_status measure_hold(const ritz_checker *it, const ritz_port *port,
 static bool has_rotation(const ritz_checker *it, const ritz_port *port)
 {
     for (int64_t k = 0; k < port->dofs.count; k++)
-        if (dof_of(it, port, k).component > 3)
+        if (port_dof(it, port, k).component > 3)
             return true;
     return false;
 }
@@ -146,8 +151,6 @@ static ritz_status check_collinear(ritz_checker *it)
     return RITZ_OK;
 }
 
-/* Ports: how many dofs, whose, where, and whether the body is behind them. */
-
 static void check_count(ritz_checker *it)
 {
     const ritz_component *c = it->component;
@@ -158,7 +161,7 @@ static void check_count(ritz_checker *it)
     for (int64_t p = 0; p < c->num_ports; p++) {
         const ritz_port *port = &c->port[p];
 
-        if (port->dofs.count > 0 && dof_of(it, port, 0).component == 0) {
+        if (port->dofs.count > 0 && port_dof(it, port, 0).component == 0) {
             points++;
             continue;
         }
@@ -182,8 +185,6 @@ static ritz_status check_dependent(ritz_checker *it)
     const ritz_component *c = it->component;
     RITZ_OWN_ARRAY int64_t *owners = NULL;
     RITZ_OWN_ARRAY bool *flag = NULL;
-    char where[RITZ_WHERE_SIZE];
-    int64_t count = 0;
 
     RITZ_CHECK_NEW(owners, c->num_dofs);
     RITZ_CHECK_NEW(flag, c->num_dofs);
@@ -193,37 +194,31 @@ static ritz_status check_dependent(ritz_checker *it)
 
             flag[row] = ++owners[row] > 1;
         }
-    count = ritz_checker_dofs(it, flag, where);
-    ritz_checker_say(it, "port-dependent", (double)count, 0.0,
-                     count == 0 ? RITZ_PASS : RITZ_WARN, where,
-                     count == 0 ? "no dof belongs to two ports"
-                                : "dofs of two ports: joints at both would "
-                                  "hold them twice");
+    ritz_checker_flagged(
+        it, "port-dependent", flag, RITZ_WARN, "no dof belongs to two ports",
+        "dofs of two ports: joints at both would hold them twice");
     return RITZ_OK;
 }
 
-/* Two grids of one port in one place: a joint cannot tell them apart. */
-static int64_t count_double(const ritz_checker *it, const ritz_port *port,
-                            char where[RITZ_WHERE_SIZE])
+/* Pairs of grids of one port that have the same position. */
+static int64_t count_coincident(const ritz_checker *it, const ritz_port *port,
+                                char where[RITZ_WHERE_SIZE])
 {
     const ritz_grids *grids = &it->component->grids;
     int64_t count = 0;
 
     for (int64_t a = 0; a < port->dofs.count; a++)
         for (int64_t b = 0; b < a; b++) {
-            int64_t i = ritz_grids_find(grids, dof_of(it, port, a).grid);
-            int64_t j = ritz_grids_find(grids, dof_of(it, port, b).grid);
-            double square = 0.0;
+            int64_t i = ritz_grids_find(grids, port_dof(it, port, a).grid);
+            int64_t j = ritz_grids_find(grids, port_dof(it, port, b).grid);
             char name[RITZ_DOF_NAME_SIZE];
 
             if (i < 0 || j < 0 || i == j ||
-                dof_of(it, port, a).component != dof_of(it, port, b).component)
+                port_dof(it, port, a).component !=
+                    port_dof(it, port, b).component)
                 continue;
-            for (int k = 0; k < 3; k++)
-                square +=
-                    pow(grids->position[3 * i + k] - grids->position[3 * j + k],
-                        2.0);
-            if (sqrt(square) > RITZ_SAME * it->size)
+            if (find_distance(&grids->position[3 * i],
+                              &grids->position[3 * j]) > RITZ_SAME * it->size)
                 continue;
             count++;
             snprintf(name, sizeof name, "grid %" PRId64, grids->id[i]);
@@ -242,12 +237,12 @@ static void check_places(ritz_checker *it)
 
     for (int64_t p = 0; p < c->num_ports; p++)
         if (c->port[p].dofs.count <= LARGEST)
-            count += count_double(it, &c->port[p], where);
+            count += count_coincident(it, &c->port[p], where);
     ritz_checker_say(it, "port-positions", (double)count, 0.0,
                      count == 0 ? RITZ_PASS : RITZ_WARN, where,
-                     count == 0 ? "the grids of every port lie apart"
-                                : "grids of one port in one place: a joint "
-                                  "cannot tell them apart");
+                     count == 0 ? "all grids of a port have different positions"
+                                : "grids of one port with the same position: a "
+                                  "joint cannot distinguish them");
 }
 
 /* Port dofs that meet no stiffness, or lie in a part that is not the body. */
@@ -255,8 +250,6 @@ static ritz_status check_disconnected(ritz_checker *it)
 {
     const ritz_component *c = it->component;
     RITZ_OWN_ARRAY bool *flag = NULL;
-    char where[RITZ_WHERE_SIZE];
-    int64_t count = 0;
 
     RITZ_CHECK_NEW(flag, c->num_dofs);
     for (int64_t p = 0; p < c->num_ports; p++)
@@ -269,12 +262,10 @@ static ritz_status check_disconnected(ritz_checker *it)
                 stiff = c->K.val[q] != 0.0;
             flag[row] = !stiff || it->part[row] != it->largest;
         }
-    count = ritz_checker_dofs(it, flag, where);
-    ritz_checker_say(it, "port-disconnected", (double)count, 0.0,
-                     count == 0 ? RITZ_PASS : RITZ_FAIL, where,
-                     count == 0 ? "every port dof is connected to the body"
-                                : "port dofs that nothing connects to the "
-                                  "body: it is not held there");
+    ritz_checker_flagged(
+        it, "port-disconnected", flag, RITZ_FAIL,
+        "every port dof is connected to the body",
+        "port dofs that nothing connects to the body: it is not held there");
     return RITZ_OK;
 }
 

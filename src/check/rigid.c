@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
+#include "linear/general.h"
 
 #include <ritz/matrix.h>
 
@@ -22,21 +23,18 @@ static ritz_status check_positions(ritz_checker *it)
 {
     const ritz_component *c = it->component;
     RITZ_OWN_ARRAY bool *flag = NULL;
-    char where[RITZ_WHERE_SIZE];
-    int64_t count = 0;
 
     RITZ_CHECK_NEW(flag, c->num_dofs);
-    for (int64_t k = 0; k < c->num_dofs; k++)
+    it->placed = true;
+    for (int64_t k = 0; k < c->num_dofs; k++) {
         flag[k] = c->dof[k].component > 0 &&
                   ritz_grids_find(&c->grids, c->dof[k].grid) < 0;
-    count = ritz_checker_dofs(it, flag, where);
-    it->placed = count == 0;
-    ritz_checker_say(it, "positions", (double)count, 0.0,
-                     it->placed ? RITZ_PASS : RITZ_WARN, where,
-                     it->placed ? "all grids have positions"
-                                : "dofs of grids without a position: rotations "
-                                  "cannot be checked, and axes are taken as "
-                                  "basic");
+        it->placed = it->placed && !flag[k];
+    }
+    ritz_checker_flagged(it, "positions", flag, RITZ_WARN,
+                         "all grids have positions",
+                         "dofs of grids without a position: rotations cannot "
+                         "be checked, and axes are taken as basic");
     return RITZ_OK;
 }
 
@@ -72,15 +70,12 @@ static void measure_extent(ritz_checker *it)
 static ritz_status use_translations(ritz_checker *it)
 {
     const ritz_component *c = it->component;
-    ritz_status status = ritz_dense_new(c->num_dofs, 3, &it->R);
 
-    for (int64_t k = 0; status == RITZ_OK && k < c->num_dofs; k++) {
-        int64_t direction = c->dof[k].component;
-
-        if (direction >= 1 && direction <= 3)
-            ritz_dense_col(&it->R, direction - 1)[k] = 1.0;
-    }
-    return status;
+    RITZ_CHECK(ritz_dense_new(c->num_dofs, 3, &it->R));
+    for (int64_t k = 0; k < c->num_dofs; k++)
+        if (c->dof[k].component >= 1 && c->dof[k].component <= 3)
+            ritz_dense_col(&it->R, c->dof[k].component - 1)[k] = 1.0;
+    return RITZ_OK;
 }
 
 static ritz_status find_motions(ritz_checker *it)
@@ -122,7 +117,7 @@ static ritz_status orthonormalise_motions(const ritz_checker *it,
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     RITZ_CHECK(ritz_sparse_condense(&it->component->M, &it->R, &B));
-    RITZ_CHECK(ritz_check_eigen(&B, &pairs));
+    RITZ_CHECK(ritz_general_symmetric(&B, &pairs));
     RITZ_CHECK(ritz_dense_new(B.nrow, B.nrow, &V));
     keep_massive(&pairs, &V);
     return ritz_dense_mul(&it->R, &V, out);
@@ -140,7 +135,7 @@ ritz_status ritz_check_geometry(ritz_checker *it)
     if (Q.ncol == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_condense(&it->component->K, &Q, &A));
-    RITZ_CHECK(ritz_check_eigen(&A, &pairs));
+    RITZ_CHECK(ritz_general_symmetric(&A, &pairs));
     RITZ_CHECK(ritz_dense_mul(&Q, &pairs.Phi, &it->Phi));
     memcpy(it->mu, pairs.lambda, (size_t)Q.ncol * sizeof *it->mu);
     return RITZ_OK;
@@ -315,6 +310,7 @@ static void check_geometry(ritz_checker *it)
         isfinite(it->softest) ? it->softest : typical_eigenvalue(it->component);
     int64_t motions = it->Phi.ncol;
     double worst = 0.0;
+    char text[RITZ_WHERE_SIZE];
 
     it->num_free = 0;
     for (int64_t k = 0; k < motions; k++)
@@ -322,26 +318,23 @@ static void check_geometry(ritz_checker *it)
             it->num_free++;
             worst = fmax(worst, fabs(it->mu[k]) / scale);
         }
-    if (it->num_free < motions && it->rounded)
-        ritz_checker_say(it, "rigid-modes-geometry", (double)it->num_free,
-                         (double)motions, RITZ_FAIL, NULL,
-                         "only %" PRId64 " of %" PRId64 " rigid motions are "
-                         "free: rounding of the source holds the others",
-                         it->num_free, motions);
-    else if (it->num_free < motions)
-        ritz_checker_say(it, "rigid-modes-geometry", (double)it->num_free,
-                         (double)motions, RITZ_PASS, NULL,
-                         "%" PRId64 " of %" PRId64 " rigid motions are free, "
-                         "stiffness holds the others",
-                         it->num_free, motions);
+    if (it->num_free < motions)
+        snprintf(text, sizeof text,
+                 "%s%" PRId64 " of %" PRId64 " rigid motions are free%s",
+                 it->rounded ? "only " : "", it->num_free, motions,
+                 it->rounded ? ": rounding of the source holds the others"
+                             : ", stiffness holds the others");
     else
-        ritz_checker_say(
-            it, "rigid-modes-geometry", (double)it->num_free, (double)motions,
-            worst <= RITZ_FREE_MOTION ? RITZ_PASS : RITZ_WARN, NULL,
-            "all %" PRId64 " rigid motions are free: the most "
-            "that one is held is %.1e of the first flexible "
-            "eigenvalue",
-            motions, worst);
+        snprintf(text, sizeof text,
+                 "all %" PRId64 " rigid motions are free: the most that one is "
+                 "held is %.1e of the first flexible eigenvalue",
+                 motions, worst);
+    ritz_checker_say(
+        it, "rigid-modes-geometry", (double)it->num_free, (double)motions,
+        it->num_free < motions      ? it->rounded ? RITZ_FAIL : RITZ_PASS
+        : worst <= RITZ_FREE_MOTION ? RITZ_PASS
+                                    : RITZ_WARN,
+        NULL, "%s", text);
 }
 
 /* How far the free motions leave the span of X. */
@@ -409,29 +402,25 @@ static void say_agreement(ritz_checker *it, int64_t eigen, double sine)
 /* The third way is another factor: MUMPS instead of CHOLMOD and ARPACK. */
 static ritz_status check_null_space(ritz_checker *it, int64_t eigen)
 {
-    ritz_status status = RITZ_OK;
+    static const char name[] = "rigid-modes-null-space";
     const ritz_component *c = it->component;
     double tau =
         (isfinite(it->softest) ? it->softest : typical_eigenvalue(c)) / 100.0;
     int64_t count = 0;
+    ritz_status status = ritz_eigen_count(&c->K, &c->M, tau, &count);
 
-    status = ritz_eigen_count(&c->K, &c->M, tau, &count);
-    if (status == RITZ_ERR_SINGULAR) {
-        status = RITZ_OK;
-        ritz_checker_say(it, "rigid-modes-null-space", nan(""), (double)eigen,
-                         RITZ_FAIL, NULL, "cannot be counted: %s",
-                         ritz_error_message());
-        goto done;
-    }
-    RITZ_TRY(status);
-    ritz_checker_say(it, "rigid-modes-null-space", (double)count, (double)eigen,
-                     count == eigen ? RITZ_PASS : RITZ_FAIL, NULL,
-                     count == eigen
-                         ? "stiffness lets as many motions free as there are "
-                           "rigid eigenvectors"
-                         : "not as many as rigid eigenvectors");
-done:
-    return status;
+    if (status == RITZ_OK)
+        ritz_checker_say(it, name, (double)count, (double)eigen,
+                         count == eigen ? RITZ_PASS : RITZ_FAIL, NULL,
+                         count == eigen
+                             ? "stiffness lets as many motions free as there "
+                               "are rigid eigenvectors"
+                             : "not as many as rigid eigenvectors");
+    if (status != RITZ_ERR_SINGULAR)
+        return status;
+    ritz_checker_say(it, name, nan(""), (double)eigen, RITZ_FAIL, NULL,
+                     "cannot be counted: %s", ritz_error_message());
+    return RITZ_OK;
 }
 
 /*
@@ -481,34 +470,30 @@ ritz_status ritz_check_rigid(ritz_checker *it)
     ritz_status status = RITZ_OK;
     const ritz_component *c = it->component;
     const ritz_span span = {.modes = 7};
-    ritz_pairs pairs = {0};
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_dense) X = {0};
     double sine = 0.0;
 
     if (it->rigid) {
         audit_rigid_body(it);
-        goto done;
+        return RITZ_OK;
     }
     status = ritz_eigen_sparse(&c->K, &c->M, &span, &pairs);
     if (status == RITZ_ERR_SINGULAR || status == RITZ_ERR_CONVERGENCE) {
-        status = RITZ_OK;
         ritz_checker_say(it, "rigid-modes-eigenvectors", nan(""), 6.0,
                          RITZ_FAIL, NULL, "no modes: %s", ritz_error_message());
         check_geometry(it);
-        goto done;
+        return RITZ_OK;
     }
-    RITZ_TRY(status);
+    RITZ_CHECK(status);
     it->softest = find_softest(it, &pairs);
     check_geometry(it);
-    RITZ_TRY(check_null_space(it, pairs.num_rigid));
+    RITZ_CHECK(check_null_space(it, pairs.num_rigid));
     say_eigenvectors(it, &pairs);
     if (it->num_free > 0 && isfinite(it->softest)) {
-        RITZ_TRY(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &X));
-        RITZ_TRY(measure_angle(it, &X, &sine));
+        RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &X));
+        RITZ_CHECK(measure_angle(it, &X, &sine));
     }
     say_agreement(it, pairs.num_rigid, sine);
-done:
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }

@@ -39,6 +39,16 @@ double ritz_general_size(const ritz_dense *A)
                           A->val, (int)A->nrow);
 }
 
+ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out)
+{
+    RITZ_OWN(ritz_dense) unit = {0};
+
+    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, &unit));
+    for (int64_t k = 0; k < A->nrow; k++)
+        ritz_dense_col(&unit, k)[k] = 1.0;
+    return ritz_eigen_dense(A, &unit, out);
+}
+
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(A->ncol, A->nrow, out));

@@ -78,6 +78,9 @@ ritz_status ritz_general_norm(ritz_dense *A, double *out);
 /** Frobenius norm. */
 double ritz_general_size(const ritz_dense *A);
 
+/** Eigenpairs of a symmetric A, vectors of length one: see ritz_eigen_dense. */
+ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out);
+
 /** The transpose. */
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);
 

@@ -209,12 +209,12 @@ static ritz_status audit_component(const model *m, ritz_audit *out)
 
 static ritz_status audit_reduced(const model *m, ritz_audit *out)
 {
-    return ritz_probe_audit_reduced(&m->reduced, out);
+    return ritz_audit_reduced(&m->reduced, out);
 }
 
 static ritz_status audit_states(const model *m, ritz_audit *out)
 {
-    return ritz_probe_audit_states(&m->states, out);
+    return ritz_audit_states(&m->states, out);
 }
 
 /* Kinds of container, and their answers to what tools ask; NULL: none. */

@@ -35,7 +35,7 @@ static ritz_status audit_reduced(const ritz_reduced *reduced,
                                     &rounded.K4};
 
     if (digits > 16)
-        return ritz_probe_audit_reduced(reduced, out);
+        return ritz_audit_reduced(reduced, out);
     for (int k = 0; k < NUM_MATRICES; k++)
         *to[k] = (ritz_dense){0};
     for (int k = 0; k < NUM_MATRICES; k++) {
@@ -43,7 +43,7 @@ static ritz_status audit_reduced(const ritz_reduced *reduced,
             RITZ_TRY(ritz_dense_copy(from[k], to[k]));
         round_matrix(digits, to[k]);
     }
-    RITZ_TRY(ritz_probe_audit_reduced(&rounded, out));
+    RITZ_TRY(ritz_audit_reduced(&rounded, out));
 done:
     for (int k = 0; k < NUM_MATRICES; k++)
         ritz_dense_free(to[k]);
@@ -59,14 +59,14 @@ static ritz_status audit_states(const ritz_state_space *states,
     ritz_state_space rounded = *states;
 
     if (digits > 16)
-        return ritz_probe_audit_states(states, out);
+        return ritz_audit_states(states, out);
     rounded.A = rounded.E = (ritz_dense){0};
     RITZ_TRY(ritz_dense_copy(&states->A, &rounded.A));
     if (states->E.val)
         RITZ_TRY(ritz_dense_copy(&states->E, &rounded.E));
     round_matrix(digits, &rounded.A);
     round_matrix(digits, &rounded.E);
-    RITZ_TRY(ritz_probe_audit_states(&rounded, out));
+    RITZ_TRY(ritz_audit_states(&rounded, out));
 done:
     ritz_dense_free(&rounded.A);
     ritz_dense_free(&rounded.E);

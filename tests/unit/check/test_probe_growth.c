@@ -38,7 +38,7 @@ static ritz_check of_columns(int64_t n, const double *K, const double *M,
     }
     assert_ok(ritz_columns_new(n, &model.columns));
     assert_ok(ritz_io_new(n, 0, 0, &model.io));
-    assert_ok(ritz_probe_audit_reduced(&model, &audit));
+    assert_ok(ritz_audit_reduced(&model, &audit));
     check = growth_of(&audit);
     ritz_audit_free(&audit);
     ritz_reduced_free(&model);
@@ -55,7 +55,7 @@ static ritz_check of_states(int64_t n, const double *A)
     assert_non_null(B);
     assert_ok(
         spaces_make(&(spaces_rows){n, 1, 1, A, B, B, NULL, NULL}, &model));
-    assert_ok(ritz_probe_audit_states(&model, &audit));
+    assert_ok(ritz_audit_states(&model, &audit));
     check = growth_of(&audit);
     ritz_audit_free(&audit);
     ritz_state_space_free(&model);
@@ -199,7 +199,7 @@ static void growth_survives_every_allocation(void **unused)
     (void)unused;
     assert_ok(
         spaces_make(&(spaces_rows){2, 1, 1, rows, B, B, NULL, NULL}, &model));
-    assert_survives_every_allocation(ritz_probe_audit_states(&model, &audit));
+    assert_survives_every_allocation(ritz_audit_states(&model, &audit));
     ritz_audit_free(&audit);
     ritz_state_space_free(&model);
 }
