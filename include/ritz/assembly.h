@@ -349,7 +349,7 @@ typedef struct ritz_tracking {
     double *hertz;
     double *mac; /* with its like in `before`; NaN where it has none */
     int64_t num_tracks;
-    int64_t num_events;
+    int64_t num_events, room; /* of events */
     ritz_track_event *event;
 } ritz_tracking;
 

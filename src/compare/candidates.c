@@ -53,25 +53,21 @@ static void remove_mass(ritz_range massless, ritz_reduced *body)
 static ritz_status project_bodies(const ritz_stage *stage,
                                   const ritz_range *massless, ritz_trial *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced *body = NULL;
+    RITZ_OWN(ritz_stage) made = {0};
 
-    RITZ_NEW(body, stage->count);
+    RITZ_CHECK_NEW(made.body, stage->count);
+    made.count = stage->count;
     for (int64_t c = 0; c < stage->count; c++) {
-        ritz_origin *origin = &body[c].origin;
+        ritz_origin *origin = &made.body[c].origin;
 
-        RITZ_TRY(ritz_reduced_project(&stage->body[c], &out->V[c], &body[c]));
-        remove_mass(massless[c], &body[c]);
+        RITZ_CHECK(
+            ritz_reduced_project(&stage->body[c], &out->V[c], &made.body[c]));
+        remove_mass(massless[c], &made.body[c]);
         snprintf(origin->method, sizeof origin->method, "compare");
         snprintf(origin->reference, sizeof origin->reference, "LeeTsuha1992");
         out->removed = out->removed || out->V[c].ncol < out->V[c].nrow;
     }
-    RITZ_TRY(ritz_stage_from(stage->scene, body, &out->second));
-done:
-    for (int64_t c = 0; body && c < stage->count; c++)
-        ritz_reduced_free(&body[c]);
-    free(body);
-    return status;
+    return ritz_stage_from(stage->scene, made.body, &out->second);
 }
 
 ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
@@ -101,36 +97,44 @@ void ritz_trial_free(ritz_trial *trial)
     *trial = (ritz_trial){0};
 }
 
-/* Orders of a trial, and its largest errors at listed configurations. */
-static ritz_status measure_trial(const ritz_rows *rows, ritz_trial *trial,
+/* Orders of the bodies of a trial, and their sum. */
+static ritz_status list_orders(const ritz_trial *trial, int64_t **order,
+                               int64_t *total)
+{
+    RITZ_CHECK_NEW(*order, trial->count);
+    for (int64_t c = 0; c < trial->count; c++)
+        *total += (*order)[c] = trial->V[c].ncol;
+    return RITZ_OK;
+}
+
+/* Stage two at one tolerance, and its largest errors at all rows. */
+static ritz_status try_tolerance(const ritz_rows *rows, const ritz_plan *plan,
                                  ritz_tolerance_row *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_compare_row row = {0};
+    RITZ_OWN(ritz_trial) trial = {0};
 
-    RITZ_NEW(out->order, trial->count);
-    for (int64_t c = 0; c < trial->count; c++)
-        out->total += out->order[c] = trial->V[c].ncol;
-    out->removed = trial->removed;
+    out->tolerance = plan->tolerance;
     out->frequency_error = out->gain_error = out->response_error = nan("");
+    RITZ_CHECK(ritz_compare_try(rows, plan, &trial));
+    RITZ_CHECK(list_orders(&trial, &out->order, &out->total));
+    out->removed = trial.removed;
     for (int64_t k = 0; k < rows->num_rows; k++) {
-        ritz_configuration *second = &trial->system.configuration[k];
+        ritz_compare_row row = rows->row[k]; /* borrowed but for its strays */
+        ritz_status status = RITZ_OK;
 
-        row = rows->row[k]; /* strays are its own; others are borrowed */
         row.num_strays = 0;
         row.stray = NULL;
-        RITZ_TRY(ritz_compare_measure(rows->stage, trial->V,
-                                      ritz_rows_first(rows, k), second, &row));
+        status =
+            ritz_compare_measure(rows->stage, trial.V, ritz_rows_first(rows, k),
+                                 &trial.system.configuration[k], &row);
+        free(row.stray);
+        RITZ_CHECK(status);
         out->largest = row.order > out->largest ? row.order : out->largest;
         out->frequency_error = fmax(out->frequency_error, row.frequency_error);
         out->gain_error = fmax(out->gain_error, row.gain_error);
         out->response_error = fmax(out->response_error, row.response_error);
-        free(row.stray);
-        row.stray = NULL;
     }
-done:
-    free(row.stray);
-    return status;
+    return RITZ_OK;
 }
 
 /* The scene's plan, with the attached dofs that were chosen. */
@@ -162,7 +166,6 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
     };
     ritz_plan plan = chosen_plan(stage, comparison);
     ritz_tolerance_row *made = NULL;
-    ritz_trial trial = {0};
 
     RITZ_NEW(made, count);
     for (int64_t k = 0; k < count; k++) {
@@ -170,14 +173,11 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
             !(tolerance[k] > 0.0 && tolerance[k] < 1.0), RITZ_ERR_ARGUMENT,
             "the composite tolerance %g is not between 0 and 1", tolerance[k]);
         ritz_monitor_step("tolerances", k, count);
-        made[k].tolerance = plan.tolerance = tolerance[k];
-        RITZ_TRY(ritz_compare_try(&rows, &plan, &trial));
-        RITZ_TRY(measure_trial(&rows, &trial, &made[k]));
-        ritz_trial_free(&trial);
+        plan.tolerance = tolerance[k];
+        RITZ_TRY(try_tolerance(&rows, &plan, &made[k]));
     }
     RITZ_MOVE(*out, made);
 done:
-    ritz_trial_free(&trial);
     ritz_tolerances_free(count, &made);
     return status;
 }
@@ -239,12 +239,12 @@ static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
 {
     const ritz_scene *scene = rows->stage->scene;
     bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
-    RITZ_OWN(ritz_two_responses) r = {0};
 
     for (int64_t k = 0; k < trial->system.num_configurations; k++) {
+        RITZ_OWN(ritz_two_responses) r = {0};
         const ritz_configuration *first = ritz_rows_first(rows, k);
         const ritz_configuration *second = &trial->system.configuration[k];
-        double gain = nan(""), apart = 0.0, hertz = 0.0;
+        double gain = nan(""), deviation = 0.0, hertz = 0.0;
 
         if (driven)
             RITZ_CHECK(ritz_compare_gain(first, second, &gain));
@@ -254,10 +254,9 @@ static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
         if (!ritz_compare_responds(scene))
             continue;
         RITZ_CHECK(ritz_compare_respond(scene, first, second, &r));
-        RITZ_CHECK(ritz_compare_bode(&r, &apart, &hertz));
-        ritz_two_responses_free(&r);
-        if (isnan(out->deviation) || apart > out->deviation) {
-            out->deviation = apart;
+        RITZ_CHECK(ritz_compare_bode(&r, &deviation, &hertz));
+        if (isnan(out->deviation) || deviation > out->deviation) {
+            out->deviation = deviation;
             out->hertz = hertz;
             memcpy(out->at, first->at, sizeof out->at);
         }
@@ -271,17 +270,16 @@ static ritz_status measure_between(const ritz_rows *rows, ritz_trial *trial,
 {
     const ritz_scene *scene = rows->stage->scene;
     bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
-    RITZ_OWN(ritz_configuration) second = {0};
 
     for (int64_t k = trial->system.num_configurations;
          k < rows->num_rows && driven; k++) {
+        RITZ_OWN(ritz_configuration) second = {0};
         double gain = 0.0;
 
         RITZ_CHECK(
             ritz_stage_assemble(&trial->second, rows->row[k].setting, &second));
         RITZ_CHECK(ritz_compare_gain(ritz_rows_first(rows, k), &second, &gain));
         out->gain_between = fmax(out->gain_between, gain);
-        ritz_configuration_free(&second);
     }
     return RITZ_OK;
 }
@@ -289,23 +287,17 @@ static ritz_status measure_between(const ritz_rows *rows, ritz_trial *trial,
 static ritz_status try_set(const ritz_rows *rows, const ritz_plan *plan,
                            ritz_candidate *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_trial trial = {0};
+    RITZ_OWN(ritz_trial) trial = {0};
 
     out->level = plan->augment;
     out->attached = plan->attached;
     out->inputs_too = plan->inputs_too;
     out->gain_listed = out->gain_between = out->deviation = nan("");
     name_set(rows->stage->scene, out);
-    RITZ_TRY(ritz_compare_try(rows, plan, &trial));
-    RITZ_NEW(out->order, trial.count);
-    for (int64_t c = 0; c < trial.count; c++)
-        out->total += out->order[c] = trial.V[c].ncol;
-    RITZ_TRY(measure_listed(rows, &trial, out));
-    RITZ_TRY(measure_between(rows, &trial, out));
-done:
-    ritz_trial_free(&trial);
-    return ritz_context(status, out->name);
+    RITZ_CHECK(ritz_compare_try(rows, plan, &trial));
+    RITZ_CHECK(list_orders(&trial, &out->order, &out->total));
+    RITZ_CHECK(measure_listed(rows, &trial, out));
+    return measure_between(rows, &trial, out);
 }
 
 /*
@@ -386,7 +378,7 @@ ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
     *count = most;
     for (int64_t k = 0; k < most; k++) {
         ritz_monitor_step("attached dofs", k, most);
-        RITZ_CHECK(try_set(rows, &sets[k], &(*out)[k]));
+        RITZ_CHECK_IN((*out)[k].name, try_set(rows, &sets[k], &(*out)[k]));
     }
     chosen = open ? choose_set(scene, most, *out) : find_set(most, sets, plan);
     (*out)[chosen].chosen = true;
@@ -400,69 +392,4 @@ void ritz_candidates_free(int64_t count, ritz_candidate **candidates)
         free((*candidates)[k].order);
     free(*candidates);
     *candidates = NULL;
-}
-
-/*
- * Which angle to add: one where an error between listed angles is large
- * relative to those at listed angles. Errors that would be invisible in a plot
- * suggest nothing, nor do errors that are as large at listed angles, where
- * another angle would not help.
- */
-
-static const struct measure {
-    const char *name;
-    size_t offset; /* in ritz_compare_row */
-} measures[] = {
-    {"response", offsetof(ritz_compare_row, response_error)},
-    {"frequency", offsetof(ritz_compare_row, frequency_error)},
-    {"gain", offsetof(ritz_compare_row, gain_error)},
-};
-
-static double read_error(const ritz_compare_row *row, const struct measure *m)
-{
-    return *(const double *)((const char *)row + m->offset);
-}
-
-/* The largest error of one measure between angles; row -1 if there is none. */
-static ritz_suggestion find_worst(const ritz_comparison *c,
-                                  const struct measure *m)
-{
-    ritz_suggestion worst = {.row = -1, .measure = m->name};
-
-    for (int64_t k = 0; k < c->num_rows; k++) {
-        double error = read_error(&c->row[k], m);
-
-        if (c->row[k].listed)
-            worst.listed = fmax(worst.listed, error); /* fmax ignores NaN */
-        else if (!isnan(error) && (worst.row < 0 || error > worst.error)) {
-            worst.row = k;
-            worst.error = error;
-        }
-    }
-    return worst;
-}
-
-/* How prominent an error is: at one or less no angle is suggested. */
-static double rate_prominence(const ritz_suggestion *s)
-{
-    return s->row < 0 ? 0.0
-                      : s->error / fmax(RITZ_SUGGEST_VISIBLE,
-                                        RITZ_SUGGEST_FACTOR * s->listed);
-}
-
-void ritz_compare_suggest(const ritz_comparison *comparison,
-                          ritz_suggestion *out)
-{
-    ritz_suggestion best = {.row = -1};
-
-    for (size_t k = 0; k < sizeof measures / sizeof *measures; k++) {
-        ritz_suggestion one = find_worst(comparison, &measures[k]);
-
-        one.worth = rate_prominence(&one) > 1.0;
-        if (one.row >= 0 &&
-            (best.row < 0 ||
-             (one.worth && rate_prominence(&one) > rate_prominence(&best))))
-            best = one;
-    }
-    *out = best;
 }

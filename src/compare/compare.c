@@ -10,6 +10,7 @@
 #include <ritz/base.h>
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,18 +28,26 @@ static int64_t find_sweep(int64_t sweeps, const double *a, const double *b)
     return one;
 }
 
-/* Append a row half way between two configurations. */
-static ritz_status add_between(const ritz_scene *scene, const double *from,
-                               int64_t sweep, double to, int64_t *count,
-                               ritz_compare_row *rows)
+/* Append a row at these settings. */
+static ritz_status add_row(const ritz_scene *scene, const double *setting,
+                           bool listed, ritz_comparison *c)
 {
-    ritz_compare_row *row = &rows[*count];
+    ritz_compare_row *row = &c->row[c->num_rows++];
 
-    *count += 1;
+    row->listed = listed;
     RITZ_CHECK_NEW(row->setting, scene->num_sweeps);
-    memcpy(row->setting, from,
-           (size_t)scene->num_sweeps * sizeof *row->setting);
-    row->setting[sweep] = 0.5 * (from[sweep] + to);
+    if (scene->num_sweeps > 0)
+        memcpy(row->setting, setting,
+               (size_t)scene->num_sweeps * sizeof *row->setting);
+    return RITZ_OK;
+}
+
+/* Append a row half way between two settings of one sweep. */
+static ritz_status add_between(const ritz_scene *scene, const double *from,
+                               int64_t sweep, double to, ritz_comparison *c)
+{
+    RITZ_CHECK(add_row(scene, from, false, c));
+    c->row[c->num_rows - 1].setting[sweep] = 0.5 * (from[sweep] + to);
     return RITZ_OK;
 }
 
@@ -46,8 +55,7 @@ static ritz_status add_between(const ritz_scene *scene, const double *from,
  * Rows half way between neighbours of the list. Where a joint turns on by the
  * same step round the full circle, also between its last and first angle.
  */
-static ritz_status list_halfway(const ritz_scene *scene, int64_t *rows,
-                                ritz_compare_row *row)
+static ritz_status list_halfway(const ritz_scene *scene, ritz_comparison *c)
 {
     int64_t h = scene->num_sweeps;
     int64_t count = scene->num_configurations;
@@ -60,97 +68,86 @@ static ritz_status list_halfway(const ritz_scene *scene, int64_t *rows,
 
         sweep = find_sweep(h, a, a + h);
         if (sweep >= 0)
-            RITZ_CHECK(add_between(scene, a, sweep, a[h + sweep], rows, row));
+            RITZ_CHECK(add_between(scene, a, sweep, a[h + sweep], c));
     }
     sweep = count > 2 ? find_sweep(h, first, last) : -1;
     if (sweep >= 0 && scene->sweep[sweep].turns) {
         double step = first[h + sweep] - first[sweep];
 
         if (fabs(last[sweep] + step - first[sweep] - 360.0) < RITZ_SAME)
-            RITZ_CHECK(
-                add_between(scene, last, sweep, last[sweep] + step, rows, row));
+            RITZ_CHECK(add_between(scene, last, sweep, last[sweep] + step, c));
     }
     return RITZ_OK;
 }
 
 /* Listed configurations, then those half way between neighbours. */
-static ritz_status list_rows(const ritz_scene *scene, int64_t *count,
-                             ritz_compare_row **out)
+static ritz_status list_rows(const ritz_scene *scene, ritz_comparison *c)
 {
-    int64_t h = scene->num_sweeps;
-
     RITZ_REFUSE_IF(scene->num_configurations < 1, RITZ_ERR_ARGUMENT,
                    "the scene has no configuration");
-    RITZ_CHECK_NEW(*out, 2 * scene->num_configurations);
-    for (int64_t k = 0; k < scene->num_configurations; k++) {
-        ritz_compare_row *row = &(*out)[(*count)++];
-
-        row->listed = true;
-        RITZ_CHECK_NEW(row->setting, h);
-        if (h > 0)
-            memcpy(row->setting, scene->setting + k * h,
-                   (size_t)h * sizeof *row->setting);
-    }
-    return list_halfway(scene, count, *out);
+    RITZ_CHECK_NEW(c->row, 2 * scene->num_configurations);
+    for (int64_t k = 0; k < scene->num_configurations; k++)
+        RITZ_CHECK(
+            add_row(scene, scene->setting + k * scene->num_sweeps, true, c));
+    return list_halfway(scene, c);
 }
 
-/* Errors, recorded in the files of stage two. */
+/* Errors of a configuration, as the files of stage two record them. */
+static const struct {
+    const char *name;
+    size_t offset; /* in ritz_compare_row */
+    const char *where;
+    bool of_bodies; /* the largest is recorded with every body too */
+} errors[] = {
+    {"stage1-frequency-relative", offsetof(ritz_compare_row, frequency_error),
+     "kept modes against the stage-1 system", true},
+    {"stage1-mac", offsetof(ritz_compare_row, mac),
+     "kept modes against the stage-1 system", false},
+    {"stage1-rigid-hertz", offsetof(ritz_compare_row, rigid_error), "", false},
+    {"stage1-static-gain-relative", offsetof(ritz_compare_row, gain_error), "",
+     true},
+    {"stage1-moments-relative", offsetof(ritz_compare_row, moment_error), "",
+     false},
+    {"stage1-response-relative", offsetof(ritz_compare_row, response_error), "",
+     true},
+};
 
-/* Append a measure, unless it is NaN, which means that it was not computed. */
-static ritz_status add_measure(ritz_measures *errors, const char *name,
-                               double value, double limit, const char *where)
+enum { NUM_ERRORS = sizeof errors / sizeof *errors };
+
+static double read_error(const ritz_compare_row *row, size_t offset)
 {
-    return isnan(value) ? RITZ_OK
-                        : ritz_measures_add(errors, name, value, limit, where);
+    return *(const double *)((const char *)row + offset);
+}
+
+/* Append an error, unless it is NaN, which means that it was not computed. */
+static ritz_status add_error(ritz_measures *to, int k, double value,
+                             double limit, const char *where)
+{
+    return isnan(value)
+               ? RITZ_OK
+               : ritz_measures_add(to, errors[k].name, value, limit, where);
 }
 
 /* Record the errors of one configuration. */
-static ritz_status record_row(const ritz_compare_row *row,
-                              ritz_measures *errors)
+static ritz_status record_row(const ritz_compare_row *row, ritz_measures *to)
 {
-    static const char against[] = "kept modes against the stage-1 system";
-
-    RITZ_CHECK(add_measure(errors, "stage1-frequency-relative",
-                           row->frequency_error, row->allowed, against));
-    RITZ_CHECK(add_measure(errors, "stage1-mac", row->mac, nan(""), against));
-    RITZ_CHECK(add_measure(errors, "stage1-rigid-hertz", row->rigid_error,
-                           nan(""), ""));
-    RITZ_CHECK(add_measure(errors, "stage1-static-gain-relative",
-                           row->gain_error, nan(""), ""));
-    RITZ_CHECK(add_measure(errors, "stage1-moments-relative", row->moment_error,
-                           nan(""), ""));
-    return add_measure(errors, "stage1-response-relative", row->response_error,
-                       nan(""), "");
+    for (int k = 0; k < NUM_ERRORS; k++)
+        RITZ_CHECK(add_error(to, k, read_error(row, errors[k].offset),
+                             k == 0 ? row->allowed : nan(""), errors[k].where));
+    return RITZ_OK;
 }
 
-/*
- * Record the largest errors over all listed configurations for every body. A
- * measure that no configuration has is NaN and stays NaN: fmax ignores NaN.
- */
-static ritz_status record_bodies(ritz_comparison *out)
+/* Record the largest error over all listed configurations for every body. */
+static ritz_status record_bodies(int k, ritz_comparison *out)
 {
-    static const char worst[] = "worst listed angle, against stage 1";
-    double frequency = nan(""), gain = nan(""), response = nan("");
+    double largest = nan(""); /* fmax ignores NaN */
 
-    for (int64_t k = 0; k < out->num_rows; k++) {
-        const ritz_compare_row *row = &out->row[k];
-
-        if (!row->listed)
-            continue;
-        frequency = fmax(frequency, row->frequency_error);
-        gain = fmax(gain, row->gain_error);
-        response = fmax(response, row->response_error);
-    }
-    for (int64_t c = 0; c < out->second.count; c++) {
-        ritz_measures *errors = &out->second.body[c].errors;
-
-        RITZ_CHECK(add_measure(errors, "stage1-frequency-relative", frequency,
-                               nan(""), worst));
-        RITZ_CHECK(add_measure(errors, "stage1-static-gain-relative", gain,
-                               nan(""), worst));
-        RITZ_CHECK(add_measure(errors, "stage1-response-relative", response,
-                               nan(""), worst));
-    }
+    for (int64_t i = 0; i < out->num_rows; i++)
+        if (out->row[i].listed)
+            largest = fmax(largest, read_error(&out->row[i], errors[k].offset));
+    for (int64_t c = 0; c < out->second.count; c++)
+        RITZ_CHECK(add_error(&out->second.body[c].errors, k, largest, nan(""),
+                             "worst listed angle, against stage 1"));
     return RITZ_OK;
 }
 
@@ -161,7 +158,10 @@ static ritz_status record_comparison(ritz_comparison *comparison)
         RITZ_CHECK(
             record_row(&comparison->row[k],
                        &comparison->second_system.configuration[k].errors));
-    return record_bodies(comparison);
+    for (int k = 0; k < NUM_ERRORS; k++)
+        if (errors[k].of_bodies)
+            RITZ_CHECK(record_bodies(k, comparison));
+    return RITZ_OK;
 }
 
 /*
@@ -180,22 +180,20 @@ static ritz_status record_comparison(ritz_comparison *comparison)
 static ritz_status assemble_between(ritz_rows *rows)
 {
     int64_t listed = rows->listed->num_configurations;
+    ritz_system *between = &rows->between;
 
-    RITZ_CHECK_NEW(rows->between, rows->num_rows - listed);
+    RITZ_CHECK_NEW(between->configuration, rows->num_rows - listed);
     for (int64_t k = listed; k < rows->num_rows; k++) {
         RITZ_CHECK(ritz_stage_assemble(rows->stage, rows->row[k].setting,
-                                       &rows->between[k - listed]));
-        rows->num_between++;
+                                       &between->configuration[k - listed]));
+        between->num_configurations++;
     }
     return RITZ_OK;
 }
 
-static void free_between(ritz_rows *rows)
+static void ritz_rows_free(ritz_rows *rows)
 {
-    for (int64_t k = 0; k < rows->num_between; k++)
-        ritz_configuration_free(&rows->between[k]);
-    free(rows->between);
-    rows->between = NULL;
+    ritz_system_free(&rows->between);
 }
 
 /*
@@ -220,10 +218,9 @@ static ritz_status choose_modes(const ritz_rows *rows)
  */
 static ritz_status measure_rows(const ritz_rows *rows, ritz_comparison *c)
 {
-    RITZ_OWN(ritz_configuration) second = {0};
-
     for (int64_t k = 0; k < rows->num_rows; k++) {
         ritz_compare_row *row = &rows->row[k];
+        RITZ_OWN(ritz_configuration) second = {0};
 
         ritz_monitor_step("errors", k, rows->num_rows);
         if (!row->listed)
@@ -231,7 +228,6 @@ static ritz_status measure_rows(const ritz_rows *rows, ritz_comparison *c)
         RITZ_CHECK(ritz_compare_measure(
             rows->stage, c->V, ritz_rows_first(rows, k),
             row->listed ? &c->second_system.configuration[k] : &second, row));
-        ritz_configuration_free(&second);
     }
     return RITZ_OK;
 }
@@ -258,26 +254,82 @@ static ritz_status reduce_bodies(const ritz_rows *rows, ritz_comparison *c)
 
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_comparison c = {0};
-    ritz_rows rows = {.stage = stage, .listed = &c.first_system};
+    RITZ_OWN(ritz_comparison) c = {0};
+    RITZ_OWN(ritz_rows) rows = {.stage = stage, .listed = &c.first_system};
 
-    RITZ_TRY(ritz_dual_refuse(stage));
-    RITZ_TRY(list_rows(stage->scene, &c.num_rows, &c.row));
+    RITZ_CHECK(ritz_dual_refuse(stage));
+    RITZ_CHECK(list_rows(stage->scene, &c));
     rows.num_rows = c.num_rows;
     rows.row = c.row;
-    RITZ_TRY_IN("stage 1", ritz_assemble(stage, NULL, &c.first_system));
-    RITZ_TRY_IN("stage 1", assemble_between(&rows));
-    RITZ_TRY_IN("selection", choose_modes(&rows));
-    RITZ_TRY(reduce_bodies(&rows, &c));
-    RITZ_TRY_IN("errors", measure_rows(&rows, &c));
+    RITZ_CHECK_IN("stage 1", ritz_assemble(stage, NULL, &c.first_system));
+    RITZ_CHECK_IN("stage 1", assemble_between(&rows));
+    RITZ_CHECK_IN("selection", choose_modes(&rows));
+    RITZ_CHECK(reduce_bodies(&rows, &c));
+    RITZ_CHECK_IN("errors", measure_rows(&rows, &c));
     ritz_compare_suggest(&c, &c.suggestion);
-    RITZ_TRY(record_comparison(&c));
+    RITZ_CHECK(record_comparison(&c));
     RITZ_MOVE(*out, c);
-done:
-    free_between(&rows);
-    ritz_comparison_free(&c);
-    return status;
+    return RITZ_OK;
+}
+
+/*
+ * Which angle to add: one where an error between listed angles is large
+ * relative to those at listed angles. Errors that would be invisible in a plot
+ * suggest nothing, nor do errors that are as large at listed angles, where
+ * another angle would not help.
+ */
+
+static const struct measure {
+    const char *name;
+    size_t offset; /* in ritz_compare_row */
+} measures[] = {
+    {"response", offsetof(ritz_compare_row, response_error)},
+    {"frequency", offsetof(ritz_compare_row, frequency_error)},
+    {"gain", offsetof(ritz_compare_row, gain_error)},
+};
+
+/* The largest error of one measure between angles; row -1 if there is none. */
+static ritz_suggestion find_worst(const ritz_comparison *c,
+                                  const struct measure *m)
+{
+    ritz_suggestion worst = {.row = -1, .measure = m->name};
+
+    for (int64_t k = 0; k < c->num_rows; k++) {
+        double error = read_error(&c->row[k], m->offset);
+
+        if (c->row[k].listed)
+            worst.listed = fmax(worst.listed, error); /* fmax ignores NaN */
+        else if (!isnan(error) && (worst.row < 0 || error > worst.error)) {
+            worst.row = k;
+            worst.error = error;
+        }
+    }
+    return worst;
+}
+
+/* How prominent an error is: at one or less no angle is suggested. */
+static double rate_prominence(const ritz_suggestion *s)
+{
+    return s->row < 0 ? 0.0
+                      : s->error / fmax(RITZ_SUGGEST_VISIBLE,
+                                        RITZ_SUGGEST_FACTOR * s->listed);
+}
+
+void ritz_compare_suggest(const ritz_comparison *comparison,
+                          ritz_suggestion *out)
+{
+    ritz_suggestion best = {.row = -1};
+
+    for (size_t k = 0; k < sizeof measures / sizeof *measures; k++) {
+        ritz_suggestion one = find_worst(comparison, &measures[k]);
+
+        one.worth = rate_prominence(&one) > 1.0;
+        if (one.row >= 0 &&
+            (best.row < 0 ||
+             (one.worth && rate_prominence(&one) > rate_prominence(&best))))
+            best = one;
+    }
+    *out = best;
 }
 
 void ritz_comparison_free(ritz_comparison *comparison)

@@ -28,8 +28,7 @@ typedef struct ritz_trial {
 typedef struct ritz_rows {
     const ritz_stage *stage;
     const ritz_system *listed;
-    int64_t num_between;
-    ritz_configuration *between;
+    ritz_system between; /* its configurations alone */
     int64_t num_rows;
     ritz_compare_row *row;
 } ritz_rows;
@@ -70,6 +69,13 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
                                 double least, ritz_compare_row *row);
 
 /**
+ * Static solutions in modal coordinates, flexible part: Lambda^-1 B, and for
+ * @p both Lambda^-1 [C', Cv', Ca'], where outputs measure.
+ */
+ritz_status ritz_system_statics(const ritz_configuration *configuration,
+                                bool both, ritz_dense *out);
+
+/**
  * Krylov vectors of a configuration in its modal coordinates, flexible part:
  * span of Lambda^-1 R, Lambda^-2 R, ... with R = B, or [B, C'] for @p both;
  * K-orthonormal, dependent ones deflated.
@@ -96,8 +102,26 @@ enum {
     RITZ_GIVEN_RIGID,
     RITZ_GIVEN_STATIC,
     RITZ_GIVEN_KEPT, /* modes or Krylov vectors */
-    RITZ_GIVEN
+    RITZ_GROUPS
 };
+
+/* What a configuration contributes, in its modal coordinates, by groups. */
+typedef struct ritz_given {
+    const ritz_configuration *at;
+    double *value; /* of each flexible mode; NULL where it is not wanted */
+    ritz_dense X[RITZ_GROUPS];
+} ritz_given;
+
+typedef struct ritz_givens {
+    int64_t count;
+    ritz_given *each;
+} ritz_givens;
+
+/** P_c X of one body and group, all configurations side by side. */
+ritz_status ritz_givens_gather(const ritz_givens *givens,
+                               const ritz_stage *stage, int64_t body, int group,
+                               ritz_dense *out);
+void ritz_givens_free(ritz_givens *givens);
 
 /**
  * Modal coordinates of the vectors that a configuration contributes to a group.
@@ -160,6 +184,18 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  const ritz_configuration *first,
                                  ritz_configuration *second,
                                  ritz_compare_row *row);
+
+/**
+ * X = sum_c P_c' M_c V_c P2_c: M-products of the modes of two systems of unit
+ * mass, whose squares are their MAC.
+ *
+ * @param[in] V         of every body; NULL: the second is of the same bodies
+ * @param[in] flexible  of flexible modes only
+ */
+ritz_status ritz_modes_correlate(const ritz_stage *stage, const ritz_dense *V,
+                                 bool flexible, const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 ritz_dense *X);
 
 /** Error of the flexible static gain: see ritz_gain_error. */
 ritz_status ritz_compare_gain(const ritz_configuration *first,

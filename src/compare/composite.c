@@ -68,16 +68,32 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
     *mixed = true;
     ritz_dense_free(L);
     return ritz_mixed_factor(body, scale, ritz_typical_lambda(body), L);
-    return RITZ_OK;
 }
 
-void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U)
+/*
+ * Limit columns to length one: with unit M-norm a motion of little mass is
+ * long, and its rounding would act as mass that it does not have.
+ */
+static void limit_length(ritz_dense *U)
+{
+    for (int64_t j = 0; j < U->ncol; j++) {
+        double norm = cblas_dnrm2((int)U->nrow, ritz_dense_col(U, j), 1);
+
+        if (norm > 1.0)
+            cblas_dscal((int)U->nrow, 1.0 / norm, ritz_dense_col(U, j), 1);
+    }
+}
+
+void ritz_mass_return(const ritz_dense *L, const double *scale, bool limited,
+                      ritz_dense *U)
 {
     int r = (int)U->nrow;
 
     if (U->ncol > 0)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, r, (int)U->ncol, 1.0, L->val, r, U->val, r);
+    if (limited)
+        limit_length(U);
     for (int64_t j = 0; j < U->ncol; j++)
         for (int64_t i = 0; i < r; i++)
             ritz_dense_col(U, j)[i] *= scale[i];
@@ -97,8 +113,50 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
     return RITZ_OK;
 }
 
-ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
-                             double *value, ritz_dense *out)
+ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W)
+{
+    RITZ_OWN(ritz_dense) both = {0};
+
+    if (more->ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_beside(W, more, &both));
+    ritz_dense_free(W);
+    RITZ_MOVE(*W, both);
+    return RITZ_OK;
+}
+
+ritz_status ritz_givens_gather(const ritz_givens *givens,
+                               const ritz_stage *stage, int64_t body, int group,
+                               ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) W = {0};
+
+    RITZ_CHECK(ritz_dense_new(stage->body[body].K.ncol, 0, &W));
+    for (int64_t k = 0; k < givens->count; k++) {
+        const ritz_given *given = &givens->each[k];
+        RITZ_OWN(ritz_dense) part = {0};
+
+        RITZ_CHECK(
+            ritz_dense_mul(&given->at->P[body], &given->X[group], &part));
+        RITZ_CHECK(ritz_columns_append(&part, &W));
+    }
+    RITZ_MOVE(*out, W);
+    return RITZ_OK;
+}
+
+void ritz_givens_free(ritz_givens *givens)
+{
+    for (int64_t k = 0; givens->each && k < givens->count; k++) {
+        for (int group = 0; group < RITZ_GROUPS; group++)
+            ritz_dense_free(&givens->each[k].X[group]);
+        free(givens->each[k].value);
+    }
+    free(givens->each);
+    *givens = (ritz_givens){0};
+}
+
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         double *value, ritz_dense *out)
 {
     int r = (int)Y->nrow;
     int m = (int)Y->ncol;
@@ -124,12 +182,6 @@ ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
     return ritz_dense_columns(&U, 0, rank, out);
 }
 
-ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
-                         ritz_dense *out)
-{
-    return ritz_span_values(Y, tolerance, largest, NULL, out);
-}
-
 /*
  * The vectors that one configuration contributes to the composite set, in its
  * modal coordinates: rigid modes, static solutions of the system, kept modes or
@@ -137,7 +189,7 @@ ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
  */
 
 /* Scale the flexible part of x to unit norm; false if there is none. */
-static bool normalise(const ritz_configuration *c, double *x)
+static bool normalise_flexible(const ritz_configuration *c, double *x)
 {
     double norm = 0.0;
 
@@ -148,44 +200,24 @@ static bool normalise(const ritz_configuration *c, double *x)
     return norm > 0.0;
 }
 
-/* Modal coordinates of the static solution for input j. */
-static bool solve_input(const ritz_configuration *c, int64_t j, double *x)
-{
-    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
-        x[k] = ritz_dense_col(&c->io.B, j)[k] / c->lambda[k];
-    return normalise(c, x);
-}
-
-/*
- * Modal coordinates of the static solution for a unit force that acts where row
- * i of an output measures.
- */
-static bool solve_output(const ritz_configuration *c, const ritz_dense *C,
-                         int64_t i, double *x)
-{
-    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
-        x[k] = ritz_dense_col(C, k)[i] / c->lambda[k];
-    return normalise(c, x);
-}
-
 /* Modal coordinates of the system's static solutions. */
 static ritz_status choose_statics(const ritz_scene *scene,
                                   const ritz_configuration *c,
                                   const ritz_plan *plan, ritz_dense *out)
 {
-    const ritz_dense *const C[] = {&c->io.C, &c->io.Cv, &c->io.Ca};
     RITZ_OWN(ritz_dense) X = {0};
     int64_t m = 0;
 
-    RITZ_CHECK(ritz_dense_new(c->K.ncol,
-                              c->io.num_inputs + 3 * c->io.num_outputs, &X));
-    for (int64_t j = 0; j < c->io.num_inputs; j++)
-        if (ritz_plan_attaches(scene, plan, j))
-            m += solve_input(c, j, ritz_dense_col(&X, m));
-    for (int kind = 0; kind < 3; kind++)
-        for (int64_t i = 0; i < c->io.num_outputs; i++)
-            if (plan->attached & RITZ_ATTACHED_OUTPUTS)
-                m += solve_output(c, C[kind], i, ritz_dense_col(&X, m));
+    RITZ_CHECK(ritz_system_statics(c, true, &X));
+    for (int64_t j = 0; j < X.ncol; j++) {
+        bool attached = j < c->io.num_inputs
+                            ? ritz_plan_attaches(scene, plan, j)
+                            : plan->attached & RITZ_ATTACHED_OUTPUTS;
+
+        if (attached && normalise_flexible(c, ritz_dense_col(&X, j)))
+            memmove(ritz_dense_col(&X, m++), ritz_dense_col(&X, j),
+                    (size_t)X.nrow * sizeof *X.val);
+    }
     return ritz_dense_columns(&X, 0, m, out);
 }
 
@@ -207,7 +239,7 @@ static ritz_status choose_krylov(const ritz_scene *scene,
     RITZ_CHECK(ritz_system_krylov(c, scene->select_vectors,
                                   scene->select_outputs, out, &moments));
     for (int64_t j = 0; j < out->ncol; j++)
-        (void)normalise(c, ritz_dense_col(out, j));
+        (void)normalise_flexible(c, ritz_dense_col(out, j));
     return RITZ_OK;
 }
 
@@ -244,8 +276,7 @@ enum {
     MASSLESS = RITZ_GIVEN_MASSLESS,
     RIGID = RITZ_GIVEN_RIGID,
     STATIC = RITZ_GIVEN_STATIC,
-    KEPT = RITZ_GIVEN_KEPT,
-    GROUPS = RITZ_GIVEN
+    KEPT = RITZ_GIVEN_KEPT
 };
 
 ritz_status ritz_composite_choose(const ritz_scene *scene,
@@ -275,36 +306,9 @@ ritz_status ritz_composite_choose(const ritz_scene *scene,
  * solutions of a body for linearly dependent forces differ by eps cond(K) of
  * the solver.
  */
-static const double tightest[GROUPS] = {
+static const double tightest[RITZ_GROUPS] = {
     RITZ_TIGHTEST_RIGID, RITZ_TIGHTEST_RIGID, RITZ_TIGHTEST_STATIC,
     RITZ_TIGHTEST_STATIC};
-
-typedef struct columns {
-    ritz_dense group[GROUPS];
-    ritz_range massless; /* columns of V without mass */
-} columns;
-
-/* W = [W, more]; frees `more`. */
-static ritz_status append_columns(ritz_dense *more, ritz_dense *W)
-{
-    ritz_status status = RITZ_OK;
-    int64_t n = more->nrow;
-    int64_t before = W->val ? W->ncol : 0;
-    ritz_dense both = {0};
-
-    RITZ_TRY(ritz_dense_new(n, before + more->ncol, &both));
-    if (n * before > 0)
-        memcpy(both.val, W->val, (size_t)(n * before) * sizeof *both.val);
-    if (n * more->ncol > 0)
-        memcpy(ritz_dense_col(&both, before), more->val,
-               (size_t)(n * more->ncol) * sizeof *both.val);
-    ritz_dense_free(W);
-    RITZ_MOVE(*W, both);
-done:
-    ritz_dense_free(more);
-    ritz_dense_free(&both);
-    return status;
-}
 
 static ritz_status set_identity(int64_t r, ritz_dense *out)
 {
@@ -325,83 +329,84 @@ static void scale_to_unit(ritz_dense *Y)
     }
 }
 
-/*
- * Limit columns to length one: with unit M-norm a motion of little mass is
- * long, and its rounding would act as mass that it does not have.
- */
-static void limit_length(ritz_dense *U)
-{
-    for (int64_t j = 0; j < U->ncol; j++) {
-        double norm = cblas_dnrm2((int)U->nrow, ritz_dense_col(U, j), 1);
+/* A body while its composite set is made. */
+typedef struct composing {
+    const ritz_stage *stage;
+    int64_t body;
+    const ritz_plan *plan;
+    const ritz_givens *givens; /* of the configurations */
+    ritz_statics own;          /* of the body itself */
+} composing;
 
-        if (norm > 1.0)
-            cblas_dscal((int)U->nrow, 1.0 / norm, ritz_dense_col(U, j), 1);
-    }
+/* W: what configurations and the body itself contribute to a group. */
+static ritz_status gather_group(const composing *it, int group, ritz_dense *W)
+{
+    const ritz_dense none = {0};
+    const ritz_dense *const own[RITZ_GROUPS] = {
+        &it->own.massless, &it->own.rigid, &it->own.answers, &none};
+
+    RITZ_CHECK(ritz_givens_gather(it->givens, it->stage, it->body, group, W));
+    return ritz_columns_append(own[group], W);
 }
 
 /* U: the groups in turn, each orthogonal to those before it. */
-static ritz_status choose_directions(const ritz_dense *L, const double *scale,
-                                     columns *of, const ritz_plan *plan,
+static ritz_status choose_directions(const composing *it, const ritz_dense *L,
+                                     const double *scale, ritz_range *massless,
                                      ritz_dense *U)
 {
-    bool own = plan->augment == RITZ_AUGMENT_COMPONENT;
-    RITZ_OWN(ritz_dense) Y = {0}, more = {0};
+    bool own = it->plan->augment == RITZ_AUGMENT_COMPONENT;
     double largest = 0.0;
 
     RITZ_CHECK(ritz_dense_new(L->nrow, 0, U));
-    for (int g = 0; g < GROUPS; g++) {
+    for (int g = 0; g < RITZ_GROUPS; g++) {
+        RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0};
         double least = tightest[g];
 
         if (g == KEPT)
-            least = fmax(plan->tolerance, least);
+            least = fmax(it->plan->tolerance, least);
         if (g == STATIC && own)
             least = RITZ_TIGHTEST_BODY;
-        RITZ_CHECK(ritz_mass_transform(L, scale, &of->group[g], &Y));
+        RITZ_CHECK(gather_group(it, g, &W));
+        RITZ_CHECK(ritz_mass_transform(L, scale, &W, &Y));
         if (g == MASSLESS || (g == STATIC && own))
             scale_to_unit(&Y);
         RITZ_CHECK(ritz_dense_take_out(U, U, &Y));
         RITZ_CHECK(ritz_dense_take_out(U, U, &Y)); /* twice is enough */
-        RITZ_CHECK(ritz_span_of(&Y, least, &largest, &more));
-        if (g == MASSLESS) {
-            of->massless = (ritz_range){U->ncol, U->ncol + more.ncol};
-        }
-        RITZ_CHECK(append_columns(&more, U));
-        ritz_dense_free(&Y);
+        RITZ_CHECK(ritz_span_of(&Y, least, &largest, NULL, &more));
+        if (g == MASSLESS)
+            *massless = (ritz_range){U->ncol, U->ncol + more.ncol};
+        RITZ_CHECK(ritz_columns_append(&more, U));
     }
     return RITZ_OK;
 }
 
-/* V of one body from the columns that all configurations contributed. */
-static ritz_status orthonormalise(const ritz_reduced *body, const double *scale,
-                                  columns *of, const ritz_plan *plan,
-                                  ritz_dense *V)
+/* V of one body; *count grows by its own vectors. */
+static ritz_status compose_body(composing *it, const double *scale,
+                                ritz_dense *V, ritz_range *massless,
+                                int64_t *count)
 {
-    int64_t r = body->M.ncol;
+    const ritz_reduced *body = &it->stage->body[it->body];
     RITZ_OWN(ritz_dense) L = {0}, U = {0};
     bool mixed = false;
 
+    if (it->plan->augment != RITZ_AUGMENT_NONE)
+        RITZ_CHECK(ritz_body_massless(body, scale, &it->own.massless));
+    if (it->plan->augment == RITZ_AUGMENT_COMPONENT)
+        RITZ_CHECK(ritz_body_statics(it->stage, it->body, it->plan, &it->own));
+    *count += it->own.answers.ncol;
     RITZ_CHECK(ritz_mass_factor(body, scale, &L, &mixed));
-    RITZ_CHECK(choose_directions(&L, scale, of, plan, &U));
-    if (U.ncol == r) { /* nothing to remove: leave the body as it is */
-        of->massless = (ritz_range){0, 0};
-        RITZ_CHECK(set_identity(r, V));
-        return RITZ_OK;
+    RITZ_CHECK(choose_directions(it, &L, scale, massless, &U));
+    if (U.ncol == U.nrow) { /* nothing to remove: leave the body as it is */
+        *massless = (ritz_range){0, 0};
+        return set_identity(U.nrow, V);
     }
-    if (U.ncol > 0)
-        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
-                    CblasNonUnit, (int)r, (int)U.ncol, 1.0, L.val, (int)r,
-                    U.val, (int)r);
-    if (mixed)
-        limit_length(&U);
-    for (int64_t j = 0; j < U.ncol; j++)
-        for (int64_t i = 0; i < r; i++)
-            ritz_dense_col(&U, j)[i] *= scale[i];
+    ritz_mass_return(&L, scale, mixed, &U);
     RITZ_MOVE(*V, U);
     return RITZ_OK;
 }
 
 /* Whether configuration k of the scene contributes to the composite set. */
-static bool contributes(const ritz_scene *scene, int64_t k)
+static bool is_reference(const ritz_scene *scene, int64_t k)
 {
     for (int64_t j = 0; j < scene->num_reference; j++)
         if (scene->reference[j] == k)
@@ -409,52 +414,26 @@ static bool contributes(const ritz_scene *scene, int64_t k)
     return scene->num_reference == 0;
 }
 
-/*
- * Append the contributions of one configuration to every body; count its
- * vectors.
- */
-static ritz_status collect_configuration(const ritz_rows *rows, int64_t k,
-                                         const ritz_plan *plan, columns *of,
-                                         int64_t *count)
+/* The contributions of all configurations; count their vectors. */
+static ritz_status list_contributions(const ritz_rows *rows,
+                                      const ritz_plan *plan, ritz_givens *out,
+                                      int64_t *count)
 {
-    const ritz_stage *stage = rows->stage;
-    const ritz_configuration *c = ritz_rows_first(rows, k);
-    RITZ_OWN(ritz_dense) X = {0}, more = {0};
+    const ritz_scene *scene = rows->stage->scene;
 
-    for (int g = 0; g < GROUPS; g++) {
-        RITZ_CHECK(
-            ritz_composite_choose(stage->scene, c, &rows->row[k], g, plan, &X));
-        *count += X.ncol;
-        for (int64_t b = 0; b < stage->count; b++) {
-            RITZ_CHECK(ritz_dense_mul(&c->P[b], &X, &more));
-            RITZ_CHECK(append_columns(&more, &of[b].group[g]));
-        }
-        ritz_dense_free(&X);
-    }
-    return RITZ_OK;
-}
+    RITZ_CHECK_NEW(out->each, rows->listed->num_configurations);
+    for (int64_t k = 0; k < rows->listed->num_configurations; k++) {
+        ritz_given *given = &out->each[out->count];
 
-/* Append each body's own contributions, once for all configurations. */
-static ritz_status collect_own(const ritz_stage *stage, const double *scale,
-                               const ritz_plan *plan, columns *of,
-                               int64_t *count)
-{
-    RITZ_OWN(ritz_statics) own = {0};
-
-    for (int64_t b = 0; b < stage->count && plan->augment != RITZ_AUGMENT_NONE;
-         b++) {
-        const ritz_scene_component *item = &stage->scene->component[b];
-
-        RITZ_CHECK_IN(item->name, ritz_body_massless(&stage->body[b],
-                                                     scale + stage->first[b],
-                                                     &own.massless));
-        RITZ_CHECK(append_columns(&own.massless, &of[b].group[MASSLESS]));
-        if (plan->augment != RITZ_AUGMENT_COMPONENT)
+        if (!is_reference(scene, k))
             continue;
-        RITZ_CHECK_IN(item->name, ritz_body_statics(stage, b, plan, &own));
-        *count += own.answers.ncol;
-        RITZ_CHECK(append_columns(&own.rigid, &of[b].group[RIGID]));
-        RITZ_CHECK(append_columns(&own.answers, &of[b].group[STATIC]));
+        out->count++;
+        given->at = ritz_rows_first(rows, k);
+        for (int g = 0; g < RITZ_GROUPS; g++) {
+            RITZ_CHECK(ritz_composite_choose(scene, given->at, &rows->row[k], g,
+                                             plan, &given->X[g]));
+            *count += given->X[g].ncol;
+        }
     }
     return RITZ_OK;
 }
@@ -463,31 +442,22 @@ ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
                                    ritz_dense *V, ritz_range *massless,
                                    int64_t *count)
 {
-    ritz_status status = RITZ_OK;
     const ritz_stage *stage = rows->stage;
-    const ritz_scene *scene = stage->scene;
-    columns *of = NULL;
-    double *scale = NULL;
+    RITZ_OWN(ritz_givens) givens = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
 
     *count = 0;
-    RITZ_NEW(of, stage->count);
-    RITZ_NEW(scale, stage->num_coordinates);
+    RITZ_CHECK_NEW(scale, stage->num_coordinates);
     ritz_stage_scale(stage, scale);
-    for (int64_t k = 0; k < rows->listed->num_configurations; k++)
-        if (contributes(scene, k))
-            RITZ_TRY(collect_configuration(rows, k, plan, of, count));
-    RITZ_TRY(collect_own(stage, scale, plan, of, count));
+    RITZ_CHECK(list_contributions(rows, plan, &givens, count));
     for (int64_t c = 0; c < stage->count; c++) {
-        RITZ_TRY_IN(scene->component[c].name,
-                    orthonormalise(&stage->body[c], scale + stage->first[c],
-                                   &of[c], plan, &V[c]));
-        massless[c] = of[c].massless;
+        composing it = {
+            .stage = stage, .body = c, .plan = plan, .givens = &givens};
+        ritz_status status = compose_body(&it, scale + stage->first[c], &V[c],
+                                          &massless[c], count);
+
+        ritz_statics_free(&it.own);
+        RITZ_CHECK_IN(stage->scene->component[c].name, status);
     }
-done:
-    for (int64_t c = 0; of && c < stage->count; c++)
-        for (int g = 0; g < GROUPS; g++)
-            ritz_dense_free(&of[c].group[g]);
-    free(of);
-    free(scale);
-    return status;
+    return RITZ_OK;
 }

@@ -16,55 +16,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-/*
- * The contributions of all configurations of a stage to its composite set, in
- * groups.
- */
+/* The groups of contributions, which differ from those of composite.c. */
+enum { GROUP_RIGID, GROUP_BAND, GROUP_STATIC, GROUP_REST };
 
-/* In order of right. */
-enum {
-    RITZ_GROUP_RIGID,
-    RITZ_GROUP_BAND,
-    RITZ_GROUP_STATIC,
-    RITZ_GROUP_REST,
-    RITZ_GROUPS
-};
-
-/* The contributions of one configuration, in its modal coordinates. */
-typedef struct ritz_given {
-    const ritz_configuration *at;
-    double *value; /* of each flexible mode */
-    ritz_dense X[RITZ_GROUPS];
-} ritz_given;
-
-typedef struct ritz_givens {
+/* A stage at all configurations, while directions are ordered. */
+typedef struct ordering {
     const ritz_stage *stage; /* borrowed */
     double lambda;           /* of the end of the band */
     double *scale;           /* of all coordinates: ritz_stage_scale */
     ritz_system system;
-    ritz_given *each; /* of each configuration */
-} ritz_givens;
+    ritz_givens givens; /* of each configuration */
+} ordering;
+
+static void ordering_free(ordering *g)
+{
+    ritz_givens_free(&g->givens);
+    free(g->scale);
+    ritz_system_free(&g->system);
+}
 
 /* The value of each mode, relative to the largest of all. */
-static ritz_status weigh_modes(ritz_givens *g)
+static ritz_status weigh_modes(ordering *g)
 {
     double largest = 0.0;
 
-    for (int64_t k = 0; k < g->system.num_configurations; k++) {
-        const ritz_configuration *at = &g->system.configuration[k];
-        int64_t flexible = at->K.ncol - at->num_rigid;
+    for (int64_t k = 0; k < g->givens.count; k++) {
+        ritz_given *given = &g->givens.each[k];
+        int64_t flexible = given->at->K.ncol - given->at->num_rigid;
 
-        g->each[k].at = at;
-        RITZ_CHECK_NEW(g->each[k].value, flexible);
-        RITZ_CHECK(ritz_compare_values(g->stage->scene, at, g->each[k].value));
+        RITZ_CHECK_NEW(given->value, flexible);
+        RITZ_CHECK(
+            ritz_compare_values(g->stage->scene, given->at, given->value));
         for (int64_t j = 0; j < flexible; j++)
-            largest = fmax(largest, g->each[k].value[j]);
+            largest = fmax(largest, given->value[j]);
     }
-    for (int64_t k = 0; k < g->system.num_configurations; k++)
-        for (int64_t j = g->each[k].at->num_rigid; j < g->each[k].at->K.ncol;
-             j++)
-            g->each[k].value[j - g->each[k].at->num_rigid] /=
-                largest > 0.0 ? largest : 1.0;
+    for (int64_t k = 0; k < g->givens.count; k++) {
+        const ritz_given *given = &g->givens.each[k];
+
+        for (int64_t j = 0; j < given->at->K.ncol - given->at->num_rigid; j++)
+            given->value[j] /= largest > 0.0 ? largest : 1.0;
+    }
     return RITZ_OK;
 }
 
@@ -83,7 +74,7 @@ static ritz_status choose_modes(const ritz_configuration *at, double highest,
     return RITZ_OK;
 }
 
-static ritz_status list_contributions(const ritz_givens *g, ritz_given *to)
+static ritz_status list_contributions(const ordering *g, ritz_given *to)
 {
     const ritz_scene *scene = g->stage->scene;
     const ritz_plan plan = {.augment = RITZ_AUGMENT_SYSTEM,
@@ -92,80 +83,40 @@ static ritz_status list_contributions(const ritz_givens *g, ritz_given *to)
     RITZ_OWN(ritz_dense) band = {0}, answers = {0};
 
     RITZ_CHECK(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_RIGID,
-                                     &plan, &to->X[RITZ_GROUP_RIGID]));
+                                     &plan, &to->X[GROUP_RIGID]));
     RITZ_CHECK(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_STATIC,
                                      &plan, &answers));
     RITZ_CHECK(choose_modes(to->at, g->lambda, to->value, &band));
-    RITZ_CHECK(choose_modes(to->at, HUGE_VAL, NULL, &to->X[RITZ_GROUP_REST]));
+    RITZ_CHECK(choose_modes(to->at, HUGE_VAL, NULL, &to->X[GROUP_REST]));
     if (scene->augment == RITZ_AUGMENT_NONE) {
-        to->X[RITZ_GROUP_BAND] = band;
-        to->X[RITZ_GROUP_STATIC] = answers;
+        to->X[GROUP_BAND] = band;
+        to->X[GROUP_STATIC] = answers;
         band = answers = (ritz_dense){0};
     } else {
-        RITZ_CHECK(ritz_dense_beside(&band, &answers, &to->X[RITZ_GROUP_BAND]));
-        RITZ_CHECK(ritz_dense_new(band.nrow, 0, &to->X[RITZ_GROUP_STATIC]));
+        RITZ_CHECK(ritz_dense_beside(&band, &answers, &to->X[GROUP_BAND]));
+        RITZ_CHECK(ritz_dense_new(band.nrow, 0, &to->X[GROUP_STATIC]));
     }
     return RITZ_OK;
-}
-
-/* P_c X of one body and group, all configurations side by side. */
-static ritz_status gather_contributions(const ritz_givens *g, int64_t body,
-                                        int group, ritz_dense *out)
-{
-    int64_t r = g->stage->body[body].K.ncol;
-    int64_t used = 0;
-    RITZ_OWN(ritz_dense) part = {0};
-
-    for (int64_t k = 0; k < g->system.num_configurations; k++)
-        used += g->each[k].X[group].ncol;
-    RITZ_CHECK(ritz_dense_new(r, used, out));
-    used = 0;
-    for (int64_t k = 0; k < g->system.num_configurations; k++) {
-        RITZ_CHECK(ritz_dense_mul(&g->each[k].at->P[body], &g->each[k].X[group],
-                                  &part));
-        if (r * part.ncol > 0)
-            memcpy(ritz_dense_col(out, used), part.val,
-                   (size_t)(r * part.ncol) * sizeof *part.val);
-        used += part.ncol;
-        ritz_dense_free(&part);
-    }
-    return RITZ_OK;
-}
-
-/* Free what all configurations contribute. */
-static void free_givens(ritz_givens *g)
-{
-    for (int64_t k = 0; g->each && k < g->system.num_configurations; k++) {
-        for (int group = 0; group < RITZ_GROUPS; group++)
-            ritz_dense_free(&g->each[k].X[group]);
-        free(g->each[k].value);
-    }
-    free(g->each);
-    free(g->scale);
-    ritz_system_free(&g->system);
-    *g = (ritz_givens){0};
 }
 
 /* Assemble all configurations and list the contributions of each. */
-static ritz_status create_givens(const ritz_stage *stage, ritz_givens *out)
+static ritz_status assemble_ordering(const ritz_stage *stage, ordering *g)
 {
-    ritz_status status = RITZ_OK;
-    ritz_givens g = {.stage = stage,
-                     .lambda = ritz_eigen_lambda(stage->scene->band_hz[1])};
-
-    RITZ_FAIL_IF(!(g.lambda > 0.0), RITZ_ERR_ARGUMENT,
-                 "the scene has no band: which modes are to be kept");
-    RITZ_TRY_IN("stage 1", ritz_assemble(stage, NULL, &g.system));
-    RITZ_NEW(g.each, g.system.num_configurations);
-    RITZ_NEW(g.scale, stage->num_coordinates);
-    ritz_stage_scale(stage, g.scale);
-    RITZ_TRY_IN("selection", weigh_modes(&g));
-    for (int64_t k = 0; k < g.system.num_configurations; k++)
-        RITZ_TRY(list_contributions(&g, &g.each[k]));
-    RITZ_MOVE(*out, g);
-done:
-    free_givens(&g);
-    return status;
+    g->stage = stage;
+    g->lambda = ritz_eigen_lambda(stage->scene->band_hz[1]);
+    RITZ_REFUSE_IF(!(g->lambda > 0.0), RITZ_ERR_ARGUMENT,
+                   "the scene has no band: which modes are to be kept");
+    RITZ_CHECK_IN("stage 1", ritz_assemble(stage, NULL, &g->system));
+    RITZ_CHECK_NEW(g->givens.each, g->system.num_configurations);
+    RITZ_CHECK_NEW(g->scale, stage->num_coordinates);
+    ritz_stage_scale(stage, g->scale);
+    g->givens.count = g->system.num_configurations;
+    for (int64_t k = 0; k < g->givens.count; k++)
+        g->givens.each[k].at = &g->system.configuration[k];
+    RITZ_CHECK_IN("selection", weigh_modes(g));
+    for (int64_t k = 0; k < g->givens.count; k++)
+        RITZ_CHECK(list_contributions(g, &g->givens.each[k]));
+    return RITZ_OK;
 }
 
 /*
@@ -206,7 +157,7 @@ typedef struct direction {
  * Independent rigid motions of a body, by mass: by energy, stiffness that is
  * rounding would count.
  */
-static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
+static ritz_status rigid_motions(const ordering *g, int64_t body,
                                  ritz_dense *out)
 {
     const double *scale = g->scale + g->stage->first[body];
@@ -214,11 +165,11 @@ static ritz_status rigid_motions(const ritz_givens *g, int64_t body,
     double largest = 0.0;
     bool mixed = false;
 
-    RITZ_CHECK(gather_contributions(g, body, RITZ_GROUP_RIGID, &W));
+    RITZ_CHECK(ritz_givens_gather(&g->givens, g->stage, body, GROUP_RIGID, &W));
     RITZ_CHECK(ritz_mass_factor(&g->stage->body[body], scale, &L, &mixed));
     RITZ_CHECK(ritz_mass_transform(&L, scale, &W, &Y));
-    RITZ_CHECK(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, out));
-    ritz_mass_return(&L, scale, out);
+    RITZ_CHECK(ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, NULL, out));
+    ritz_mass_return(&L, scale, false, out);
     return RITZ_OK;
 }
 
@@ -235,7 +186,15 @@ typedef struct frame {
     double *value;  /* of the directions of a group */
 } frame;
 
-static ritz_status start_body(const ritz_givens *g, frame *f)
+static void frame_free(frame *f)
+{
+    free(f->scale);
+    ritz_dense_free(&f->L);
+    ritz_dense_free(&f->U);
+    free(f->value);
+}
+
+static ritz_status start_body(const ordering *g, frame *f)
 {
     const ritz_reduced *body = &g->stage->body[f->body];
     RITZ_OWN(ritz_dense) R = {0}, Y = {0};
@@ -252,59 +211,48 @@ static ritz_status start_body(const ritz_givens *g, frame *f)
     RITZ_CHECK(ritz_mixed_factor(body, f->scale, g->lambda, &f->L));
     RITZ_CHECK(rigid_motions(g, f->body, &R));
     RITZ_CHECK(ritz_mass_transform(&f->L, f->scale, &R, &Y));
-    return ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, &f->U);
+    return ritz_span_of(&Y, RITZ_RANK_LOSS, &largest, NULL, &f->U);
 }
 
 /*
  * Append the independent part of a group to U, up to the number of coordinates.
  */
-static ritz_status add_group(const ritz_givens *g, int group, frame *f)
+static ritz_status add_group(const ordering *g, int group, frame *f)
 {
-    RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0}, both = {0};
+    RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0};
 
-    RITZ_CHECK(gather_contributions(g, f->body, group, &W));
+    RITZ_CHECK(ritz_givens_gather(&g->givens, g->stage, f->body, group, &W));
     RITZ_CHECK(ritz_mass_transform(&f->L, f->scale, &W, &Y));
     RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y));
     RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y)); /* twice is enough */
-    RITZ_CHECK(
-        ritz_span_values(&Y, RITZ_RANK_LOSS, &f->largest, f->value, &more));
+    RITZ_CHECK(ritz_span_of(&Y, RITZ_RANK_LOSS, &f->largest, f->value, &more));
     if (more.ncol > f->U.nrow - f->U.ncol)
         more.ncol = f->U.nrow - f->U.ncol;
-    RITZ_CHECK(ritz_dense_beside(&f->U, &more, &both));
-    ritz_dense_free(&f->U);
-    RITZ_MOVE(f->U, both);
-    return RITZ_OK;
+    return ritz_columns_append(&more, &f->U);
 }
 
 /* V of one body; its directions join those of all others in the list. */
-static ritz_status order_body(const ritz_givens *g, int64_t body,
+static ritz_status order_body(const ordering *g, int64_t body,
                               ritz_composite *out, direction *all)
 {
-    ritz_status status = RITZ_OK;
-    frame f = {.body = body};
+    RITZ_OWN(frame) f = {.body = body};
 
-    RITZ_TRY(start_body(g, &f));
+    RITZ_CHECK(start_body(g, &f));
     out->rigid[body] = f.U.ncol;
-    for (int group = RITZ_GROUP_BAND; group < RITZ_GROUPS; group++) {
+    for (int group = GROUP_BAND; group <= GROUP_REST; group++) {
         int64_t before = f.U.ncol;
 
-        RITZ_TRY(add_group(g, group, &f));
+        RITZ_CHECK(add_group(g, group, &f));
         for (int64_t j = before; j < f.U.ncol; j++)
             all[out->num_steps++] =
                 (direction){/* a body must move */
-                            .group = j == 0 ? RITZ_GROUP_RIGID : group,
+                            .group = j == 0 ? GROUP_RIGID : group,
                             .value = f.value[j - before],
                             .body = body};
     }
-    ritz_mass_return(&f.L, f.scale, &f.U);
-    out->V[body] = f.U;
-    f.U = (ritz_dense){0};
-done:
-    ritz_dense_free(&f.L);
-    ritz_dense_free(&f.U);
-    free(f.scale);
-    free(f.value);
-    return ritz_context(status, g->stage->scene->component[body].name);
+    ritz_mass_return(&f.L, f.scale, false, &f.U);
+    RITZ_MOVE(out->V[body], f.U);
+    return RITZ_OK;
 }
 
 static int compare_right(const void *left, const void *right)
@@ -319,7 +267,7 @@ static int compare_right(const void *left, const void *right)
     return (a->body > b->body) - (a->body < b->body);
 }
 
-static ritz_status order_bodies(const ritz_givens *g, ritz_composite *out)
+static ritz_status order_bodies(const ordering *g, ritz_composite *out)
 {
     const ritz_stage *stage = g->stage;
     RITZ_OWN_ARRAY direction *all = NULL;
@@ -330,7 +278,8 @@ static ritz_status order_bodies(const ritz_givens *g, ritz_composite *out)
     RITZ_CHECK_NEW(out->step, stage->num_coordinates);
     RITZ_CHECK_NEW(all, stage->num_coordinates);
     for (int64_t c = 0; c < stage->count; c++)
-        RITZ_CHECK(order_body(g, c, out, all));
+        RITZ_CHECK_IN(stage->scene->component[c].name,
+                      order_body(g, c, out, all));
     qsort(all, (size_t)out->num_steps, sizeof *all, compare_right);
     for (int64_t k = 0; k < out->num_steps; k++)
         out->step[k] = all[k].body;
@@ -339,18 +288,14 @@ static ritz_status order_bodies(const ritz_givens *g, ritz_composite *out)
 
 ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_givens givens = {0};
-    ritz_composite made = {0};
+    RITZ_OWN(ordering) g = {0};
+    RITZ_OWN(ritz_composite) made = {0};
 
-    RITZ_TRY(ritz_dual_refuse(stage));
-    RITZ_TRY(create_givens(stage, &givens));
-    RITZ_TRY_IN("composite modes", order_bodies(&givens, &made));
+    RITZ_CHECK(ritz_dual_refuse(stage));
+    RITZ_CHECK(assemble_ordering(stage, &g));
+    RITZ_CHECK_IN("composite modes", order_bodies(&g, &made));
     RITZ_MOVE(*out, made);
-done:
-    free_givens(&givens);
-    ritz_composite_free(&made);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_composite_free(ritz_composite *composite)

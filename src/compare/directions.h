@@ -36,21 +36,25 @@ ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
 ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
                                 const ritz_dense *W, ritz_dense *Y);
 
-/** Replace U by the W with Y = U. */
-void ritz_mass_return(const ritz_dense *L, const double *scale, ritz_dense *U);
+/**
+ * Replace U by the W with Y = U.
+ *
+ * @param[in] limited  columns longer than one, before scaling, become unit ones
+ */
+void ritz_mass_return(const ritz_dense *L, const double *scale, bool limited,
+                      ritz_dense *U);
+
+/** W := [W, more]. */
+ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W);
 
 /**
  * Orthonormal directions of Y (destroyed) whose singular values exceed
  * @p tolerance times *largest, which grows to the largest there is.
+ *
+ * @param[out] value  these values, descending; room for as many as @p Y has
+ *                    rows; NULL: not wanted
  */
 ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
-                         ritz_dense *out);
-
-/**
- * ritz_span_of with singular values, descending: @p value has room for as many
- * as @p Y has rows.
- */
-ritz_status ritz_span_values(ritz_dense *Y, double tolerance, double *largest,
-                             double *value, ritz_dense *out);
+                         double *value, ritz_dense *out);
 
 #endif

@@ -24,10 +24,10 @@ static void divide_by_lambda(const ritz_configuration *c, const double *r,
         v[k] = r[k * stride] / c->lambda[k];
 }
 
-/* The first block: B, and for `both` the rows of C, Cv and Ca. */
-static ritz_status start_block(const ritz_configuration *c, bool both,
-                               ritz_dense *out)
+ritz_status ritz_system_statics(const ritz_configuration *configuration,
+                                bool both, ritz_dense *out)
 {
+    const ritz_configuration *c = configuration;
     const ritz_io *io = &c->io;
     const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
     int64_t m = 0;
@@ -90,7 +90,7 @@ ritz_status ritz_system_krylov(const ritz_configuration *configuration,
 
     RITZ_CHECK(fill_weights(c, &weights));
     RITZ_CHECK(ritz_orthonormal_new(c->K.ncol, &weights, RITZ_DEPENDENT, &set));
-    RITZ_CHECK(start_block(c, both, &W));
+    RITZ_CHECK(ritz_system_statics(c, both, &W));
     RITZ_CHECK(append_block(&W, most, &set, &fits));
     while (fits) {
         blocks++;

@@ -79,28 +79,23 @@ void ritz_two_responses_free(ritz_two_responses *responses)
 static ritz_status largest_singular(int64_t count, int64_t m, int64_t n,
                                     const double _Complex *H, double *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t least = m < n ? m : n;
-    double _Complex *A = NULL;
-    double *sigma = NULL, *work = NULL;
+    RITZ_OWN_ARRAY double _Complex *A = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL, *work = NULL;
 
-    RITZ_NEW(A, m * n);
-    RITZ_NEW(sigma, least);
-    RITZ_NEW(work, least);
+    RITZ_CHECK_NEW(A, m * n);
+    RITZ_CHECK_NEW(sigma, least);
+    RITZ_CHECK_NEW(work, least);
     for (int64_t k = 0; k < count; k++) {
         memcpy(A, H + k * m * n, (size_t)(m * n) * sizeof *A);
-        RITZ_FAIL_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)n, (int)m,
-                                    A, (int)n, sigma, NULL, 1, NULL, 1,
-                                    work) != 0,
-                     RITZ_ERR_CONVERGENCE,
-                     "singular values of a response do not converge");
+        RITZ_REFUSE_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)n,
+                                      (int)m, A, (int)n, sigma, NULL, 1, NULL,
+                                      1, work) != 0,
+                       RITZ_ERR_CONVERGENCE,
+                       "singular values of a response do not converge");
         out[k] = sigma[0];
     }
-done:
-    free(A);
-    free(sigma);
-    free(work);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_compare_bode(const ritz_two_responses *responses,
@@ -109,7 +104,7 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
     const ritz_two_responses *r = responses;
     RITZ_OWN_ARRAY double *one = NULL, *two = NULL;
     double mean = 0.0;
-    int64_t seen = 0;
+    int64_t nonzero = 0;
 
     RITZ_CHECK_NEW(one, r->count);
     RITZ_CHECK_NEW(two, r->count);
@@ -120,17 +115,17 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
     for (int64_t k = 0; k < r->count; k++)
         if (one[k] > 0.0) {
             mean += log(one[k]);
-            seen++;
+            nonzero++;
         }
-    mean = seen > 0 ? exp(mean / (double)seen) : 0.0;
+    mean = nonzero > 0 ? exp(mean / (double)nonzero) : 0.0;
     *deviation = 0.0;
     *hertz = r->count > 0 ? r->hertz[0] : 0.0;
     for (int64_t k = 0; k < r->count; k++) {
         double level = fmax(one[k], RITZ_BODE_FLOOR * mean);
-        double apart = level > 0.0 ? fabs(two[k] - one[k]) / level : 0.0;
+        double error = level > 0.0 ? fabs(two[k] - one[k]) / level : 0.0;
 
-        if (apart > *deviation) {
-            *deviation = apart;
+        if (error > *deviation) {
+            *deviation = error;
             *hertz = r->hertz[k];
         }
     }
@@ -210,58 +205,44 @@ static ritz_status find_strays(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-/* Columns `keep` of A. */
-static ritz_status copy_columns(int64_t count, const int64_t *keep,
-                                ritz_dense *A)
+/* Keep columns `keep` of A, in place; keep[j] >= j. */
+static void keep_columns(int64_t count, const int64_t *keep, ritz_dense *A)
 {
-    RITZ_OWN(ritz_dense) less = {0};
-
-    RITZ_CHECK(ritz_dense_new(A->nrow, count, &less));
-    for (int64_t j = 0; j < count && A->nrow > 0; j++)
-        memcpy(ritz_dense_col(&less, j), ritz_dense_col(A, keep[j]),
-               (size_t)A->nrow * sizeof *A->val);
-    ritz_dense_free(A);
-    RITZ_MOVE(*A, less);
-    return RITZ_OK;
+    if (!A->val)
+        return;
+    for (int64_t j = 0; j < count; j++)
+        memmove(ritz_dense_col(A, j), ritz_dense_col(A, keep[j]),
+                (size_t)A->nrow * sizeof *A->val);
+    A->ncol = count;
 }
 
-/* Rows and columns `keep` of a square A, or rows alone. */
-static ritz_status copy_rows(int64_t count, const int64_t *keep, bool square,
-                             ritz_dense *A)
+static void keep_rows(int64_t count, const int64_t *keep, ritz_dense *A)
 {
-    RITZ_OWN(ritz_dense) less = {0};
-
-    if (square)
-        RITZ_CHECK(copy_columns(count, keep, A));
-    RITZ_CHECK(ritz_dense_rows(A, count, keep, &less));
-    ritz_dense_free(A);
-    RITZ_MOVE(*A, less);
-    return RITZ_OK;
+    if (!A->val)
+        return;
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < count; i++)
+            A->val[j * count + i] = A->val[j * A->nrow + keep[i]];
+    A->nrow = count;
 }
 
 /* Keep the modes `keep` of a configuration and no others. */
-static ritz_status truncate_modes(int64_t count, const int64_t *keep,
-                                  ritz_configuration *c)
+static void truncate_modes(int64_t count, const int64_t *keep,
+                           ritz_configuration *c)
 {
+    ritz_dense *const columns[] = {&c->io.C, &c->io.Cv, &c->io.Ca, &c->momentum,
+                                   &c->K,    &c->M,     &c->D,     &c->K4};
+    ritz_dense *const rows[] = {&c->io.B, &c->dampers.B, &c->K,
+                                &c->M,    &c->D,         &c->K4};
+
     for (int64_t k = 0; k < c->num_blocks; k++)
-        RITZ_CHECK(copy_columns(count, keep, &c->P[k]));
-    RITZ_CHECK(copy_columns(count, keep, &c->io.C));
-    RITZ_CHECK(copy_columns(count, keep, &c->io.Cv));
-    RITZ_CHECK(copy_columns(count, keep, &c->io.Ca));
-    if (c->momentum.val)
-        RITZ_CHECK(copy_columns(count, keep, &c->momentum));
-    RITZ_CHECK(copy_rows(count, keep, false, &c->io.B));
-    RITZ_CHECK(copy_rows(count, keep, true, &c->K));
-    RITZ_CHECK(copy_rows(count, keep, true, &c->M));
-    if (c->D.val)
-        RITZ_CHECK(copy_rows(count, keep, true, &c->D));
-    if (c->K4.val)
-        RITZ_CHECK(copy_rows(count, keep, true, &c->K4));
-    if (c->dampers.B.val)
-        RITZ_CHECK(copy_rows(count, keep, false, &c->dampers.B));
-    for (int64_t j = 0; j < count; j++) /* keep[j] >= j */
+        keep_columns(count, keep, &c->P[k]);
+    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
+        keep_columns(count, keep, columns[k]);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        keep_rows(count, keep, rows[k]);
+    for (int64_t j = 0; j < count; j++)
         c->lambda[j] = c->lambda[keep[j]];
-    return RITZ_OK;
 }
 
 /* Remove the modes marked `removed` from the second system. */
@@ -270,21 +251,19 @@ static ritz_status remove_strays(const ritz_compare_row *row,
 {
     RITZ_OWN_ARRAY int64_t *keep = NULL;
     int64_t count = 0;
-    int64_t next = 0;
+    int64_t next = 0; /* strays ascend by mode */
 
     RITZ_CHECK_NEW(keep, second->K.ncol);
     for (int64_t j = 0; j < second->K.ncol; j++) {
-        while (next < row->num_strays &&
-               (row->stray[next].mode + second->num_rigid < j))
-            next++;
-        if (next < row->num_strays &&
-            row->stray[next].mode + second->num_rigid == j &&
-            row->stray[next].removed)
-            continue;
-        keep[count++] = j;
+        bool stray = next < row->num_strays &&
+                     row->stray[next].mode + second->num_rigid == j;
+
+        if (!stray || !row->stray[next].removed)
+            keep[count++] = j;
+        next += stray;
     }
     if (count < second->K.ncol)
-        RITZ_CHECK(truncate_modes(count, keep, second));
+        truncate_modes(count, keep, second);
     return RITZ_OK;
 }
 
@@ -295,24 +274,27 @@ static ritz_status remove_strays(const ritz_compare_row *row,
  *     X = sum_c P_c' M_c V_c P2_c,    X_kj^2 = MAC of mode k and mode j
  */
 
-/* X = sum_c P_c' M_c V_c P2_c, modes of the first by modes of the second. */
-static ritz_status correlate_modes(const ritz_stage *stage, const ritz_dense *V,
-                                   const ritz_configuration *first,
-                                   const ritz_configuration *second,
-                                   ritz_dense *X)
+ritz_status ritz_modes_correlate(const ritz_stage *stage, const ritz_dense *V,
+                                 bool flexible, const ritz_configuration *first,
+                                 const ritz_configuration *second,
+                                 ritz_dense *X)
 {
-    RITZ_OWN(ritz_dense) VP = {0}, MVP = {0}, part = {0};
+    int64_t i = flexible ? first->num_rigid : 0;
+    int64_t j = flexible ? second->num_rigid : 0;
+    int64_t m = first->K.ncol - i, n = second->K.ncol - j;
 
-    RITZ_CHECK(ritz_dense_new(first->K.ncol, second->K.ncol, X));
+    RITZ_CHECK(ritz_dense_new(m, n, X));
     for (int64_t c = 0; c < stage->count; c++) {
-        RITZ_CHECK(ritz_dense_mul(&V[c], &second->P[c], &VP));
-        RITZ_CHECK(ritz_dense_mul(&stage->body[c].M, &VP, &MVP));
-        RITZ_CHECK(ritz_dense_mul_tn(&first->P[c], &MVP, &part));
-        for (int64_t k = 0; k < part.nrow * part.ncol; k++)
+        const ritz_dense P = ritz_dense_part(&first->P[c], i, m);
+        const ritz_dense P2 = ritz_dense_part(&second->P[c], j, n);
+        RITZ_OWN(ritz_dense) VP = {0}, MVP = {0}, part = {0};
+
+        if (V)
+            RITZ_CHECK(ritz_dense_mul(&V[c], &P2, &VP));
+        RITZ_CHECK(ritz_dense_mul(&stage->body[c].M, V ? &VP : &P2, &MVP));
+        RITZ_CHECK(ritz_dense_mul_tn(&P, &MVP, &part));
+        for (int64_t k = 0; k < m * n; k++)
             X->val[k] += part.val[k];
-        ritz_dense_free(&VP);
-        ritz_dense_free(&MVP);
-        ritz_dense_free(&part);
     }
     return RITZ_OK;
 }
@@ -387,11 +369,11 @@ static void measure_rigid(const ritz_configuration *second,
 static double relative_difference(const ritz_dense *one, const ritz_dense *two)
 {
     double largest = ritz_dense_max(one);
-    double apart = 0.0;
+    double difference = 0.0;
 
     for (int64_t k = 0; k < one->nrow * one->ncol; k++)
-        apart = fmax(apart, fabs(two->val[k] - one->val[k]));
-    return largest > 0.0 ? apart / largest : 0.0;
+        difference = fmax(difference, fabs(two->val[k] - one->val[k]));
+    return largest > 0.0 ? difference / largest : 0.0;
 }
 
 ritz_status ritz_compare_gain(const ritz_configuration *first,
@@ -471,7 +453,7 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     row->num_rigid = first->num_rigid;
     row->num_flexible = first->K.ncol - first->num_rigid;
     row->gain_error = row->response_error = nan("");
-    RITZ_CHECK(correlate_modes(stage, V, first, second, &X));
+    RITZ_CHECK(ritz_modes_correlate(stage, V, false, first, second, &X));
     measure_modes(first, second, &X, row);
     measure_rigid(second, row);
     RITZ_CHECK(find_strays(scene, first, second, &X, row));

@@ -15,35 +15,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Values of the flexible modes of one configuration. */
-static ritz_status rank_one(const ritz_scene *scene,
-                            const ritz_configuration *c, ritz_ranking *ranking)
-{
-    ritz_status status = RITZ_OK;
-    const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
-    const ritz_rank_choice choice = {
-        .damping = scene->damping,
-        .band_hz = {scene->band_hz[0], scene->band_hz[1]}};
-    ritz_rank_request request = {0};
-
-    if (!ranker) {
-        status = RITZ_ERR_ARGUMENT;
-        goto done;
-    }
-    RITZ_TRY(ritz_rank_request_of_configuration(c, &choice, ranker->needs,
-                                                &request));
-    request.bare = true;
-    RITZ_TRY(ritz_rank(ranker, &request, ranking));
-    RITZ_FAIL_IF(ranking->count != c->K.ncol - c->num_rigid,
-                 RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " flexible modes were ranked where there are "
-                 "%" PRId64,
-                 ranking->count, c->K.ncol - c->num_rigid);
-done:
-    ritz_rank_request_free(&request);
-    return ritz_context(status, c->at);
-}
-
 /* Whether a configuration has what the ranking needs. */
 static bool is_ranked(const ritz_scene *scene)
 {
@@ -55,27 +26,49 @@ static bool is_ranked(const ritz_scene *scene)
            (scene->num_outputs > 0 || !(needs & RITZ_RANK_OUTPUTS));
 }
 
+/* Put what one ranking says of the modes of one configuration into `value`. */
+static ritz_status rank_modes(const ritz_scene *scene,
+                              const ritz_configuration *c, double *value)
+{
+    const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
+    const ritz_rank_choice choice = {
+        .damping = scene->damping,
+        .band_hz = {scene->band_hz[0], scene->band_hz[1]}};
+    int64_t flexible = c->K.ncol - c->num_rigid;
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
+
+    if (!ranker)
+        return RITZ_ERR_ARGUMENT;
+    RITZ_CHECK(ritz_rank_request_of_configuration(c, &choice, ranker->needs,
+                                                  &request));
+    request.bare = true;
+    RITZ_CHECK(ritz_rank(ranker, &request, &ranking));
+    RITZ_REFUSE_IF(ranking.count != flexible, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " flexible modes were ranked where there are "
+                   "%" PRId64,
+                   ranking.count, flexible);
+    for (int64_t k = 0; k < flexible; k++)
+        value[k] = fabs(ranking.value[k]);
+    return RITZ_OK;
+}
+
 ritz_status ritz_compare_values(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double *value)
 {
     const ritz_configuration *c = configuration;
-    RITZ_OWN(ritz_ranking) ranking = {0};
 
     for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
         value[k] = 1.0;
     if (!is_ranked(scene))
         return RITZ_OK;
-    RITZ_CHECK(rank_one(scene, c, &ranking));
-    for (int64_t k = 0; k < ranking.count; k++)
-        value[k] = fabs(ranking.value[k]);
-    return RITZ_OK;
+    return ritz_context(rank_modes(scene, c, value), c->at);
 }
 
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
                                    const ritz_system *system, double *least)
 {
-    RITZ_OWN(ritz_ranking) ranking = {0};
     double largest = 0.0;
 
     *least = 0.0;
@@ -88,10 +81,13 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
         return RITZ_OK;
     }
     for (int64_t k = 0; k < system->num_configurations; k++) {
-        RITZ_CHECK(rank_one(scene, &system->configuration[k], &ranking));
-        for (int64_t j = 0; j < ranking.count; j++)
-            largest = fmax(largest, fabs(ranking.value[j]));
-        ritz_ranking_free(&ranking);
+        const ritz_configuration *c = &system->configuration[k];
+        RITZ_OWN_ARRAY double *value = NULL;
+
+        RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
+        RITZ_CHECK(ritz_compare_values(scene, c, value));
+        for (int64_t j = 0; j < c->K.ncol - c->num_rigid; j++)
+            largest = fmax(largest, value[j]);
     }
     RITZ_REFUSE_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
                    "no flexible mode answers any input at any output, so none "
@@ -105,11 +101,12 @@ static ritz_status mark_ranked(const ritz_scene *scene,
                                const ritz_configuration *c, double least,
                                bool *taken)
 {
-    RITZ_OWN(ritz_ranking) ranking = {0};
+    RITZ_OWN_ARRAY double *value = NULL;
 
-    RITZ_CHECK(rank_one(scene, c, &ranking));
-    for (int64_t k = 0; k < ranking.count; k++)
-        taken[k] = fabs(ranking.value[k]) >= least;
+    RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
+    RITZ_CHECK(ritz_compare_values(scene, c, value));
+    for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
+        taken[k] = value[k] >= least;
     return RITZ_OK;
 }
 
@@ -223,5 +220,5 @@ const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k)
     int64_t listed = rows->listed->num_configurations;
 
     return k < listed ? &rows->listed->configuration[k]
-                      : &rows->between[k - listed];
+                      : &rows->between.configuration[k - listed];
 }

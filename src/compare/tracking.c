@@ -4,7 +4,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/assembly.h>
+#include "compare/compare.h"
 
 #include <ritz/base.h>
 #include <ritz/matrix.h>
@@ -23,6 +23,12 @@ typedef struct ritz_track_step {
     ritz_dense mac;            /* num_from x num_to, the same in a cluster */
     int64_t *partner;          /* num_from, in `to`; -1: lost */
 } ritz_track_step;
+
+static void ritz_track_step_free(ritz_track_step *step)
+{
+    free(step->partner);
+    ritz_dense_free(&step->mac);
+}
 
 /* One past the last mode of the cluster of mode i. */
 static int64_t cluster_end(const int64_t *cluster, int64_t count, int64_t i)
@@ -59,31 +65,6 @@ static void average_clusters(ritz_track_step *step)
     }
 }
 
-/* X of the flexible modes. */
-static ritz_status correlate_modes(const ritz_stage *stage,
-                                   const ritz_configuration *from,
-                                   const ritz_configuration *to, ritz_dense *X)
-{
-    RITZ_OWN(ritz_dense) A = {0}, B = {0}, MB = {0}, part = {0};
-    int64_t m = from->K.ncol - from->num_rigid;
-    int64_t n = to->K.ncol - to->num_rigid;
-
-    RITZ_CHECK(ritz_dense_new(m, n, X));
-    for (int64_t c = 0; c < stage->count; c++) {
-        RITZ_CHECK(ritz_dense_columns(&from->P[c], from->num_rigid, m, &A));
-        RITZ_CHECK(ritz_dense_columns(&to->P[c], to->num_rigid, n, &B));
-        RITZ_CHECK(ritz_dense_mul(&stage->body[c].M, &B, &MB));
-        RITZ_CHECK(ritz_dense_mul_tn(&A, &MB, &part));
-        for (int64_t k = 0; k < m * n; k++)
-            X->val[k] += part.val[k];
-        ritz_dense_free(&A);
-        ritz_dense_free(&B);
-        ritz_dense_free(&MB);
-        ritz_dense_free(&part);
-    }
-    return RITZ_OK;
-}
-
 /*
  * The unpaired mode of `to` with the largest MAC with mode i; -1 if none has
  * any.
@@ -113,7 +94,7 @@ static ritz_status match_modes(const ritz_stage *stage,
 
     RITZ_CHECK_NEW(taken, step->num_to);
     RITZ_CHECK_NEW(step->partner, step->num_from);
-    RITZ_CHECK(correlate_modes(stage, from, to, &step->mac));
+    RITZ_CHECK(ritz_modes_correlate(stage, NULL, true, from, to, &step->mac));
     average_clusters(step);
     for (int64_t i = 0; i < step->num_from; i++) {
         step->partner[i] = find_paired_mode(step, taken, i);
@@ -132,15 +113,7 @@ static double read_mac(const ritz_track_step *step, int64_t i, int64_t j)
 static ritz_status add_event(const ritz_track_step *step,
                              const ritz_track_event *event, ritz_tracking *t)
 {
-    ritz_track_event *more = NULL;
-
-    if ((t->num_events & (t->num_events - 1)) == 0) { /* a power of two, or 0 */
-        RITZ_CHECK_NEW(more, t->num_events > 0 ? 2 * t->num_events : 1);
-        if (t->num_events > 0)
-            memcpy(more, t->event, (size_t)t->num_events * sizeof *more);
-        free(t->event);
-        t->event = more;
-    }
+    RITZ_CHECK_ROOM(t->event, t->num_events, t->room);
     t->event[t->num_events] = *event;
     t->event[t->num_events].from = step->from;
     t->event[t->num_events].to = step->to;
@@ -427,9 +400,8 @@ static ritz_status track_step(const ritz_stage *stage,
                               const ritz_system *system, int64_t k,
                               double up_to_hz, ritz_tracking *t)
 {
-    ritz_status status = RITZ_OK;
     int64_t before = t->before[k];
-    ritz_track_step step = {.from = before, .to = k};
+    RITZ_OWN(ritz_track_step) step = {.from = before, .to = k};
 
     step.num_to = t->first[k + 1] - t->first[k];
     if (before >= 0) {
@@ -438,15 +410,12 @@ static ritz_status track_step(const ritz_stage *stage,
         step.hertz[1] = t->hertz + t->first[k];
         step.cluster[0] = t->cluster + t->first[before];
         step.cluster[1] = t->cluster + t->first[k];
-        RITZ_TRY(match_modes(stage, &system->configuration[before],
-                             &system->configuration[k], &step));
-        RITZ_TRY(append_events(&step, up_to_hz, t));
+        RITZ_CHECK(match_modes(stage, &system->configuration[before],
+                               &system->configuration[k], &step));
+        RITZ_CHECK(append_events(&step, up_to_hz, t));
     }
     continue_tracks(&step, t);
-done:
-    free(step.partner);
-    ritz_dense_free(&step.mac);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
