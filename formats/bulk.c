@@ -23,32 +23,6 @@
 typedef ritz_status taker(ritz_bulk_cards *all, const ritz_card *card,
                           int32_t how);
 
-static ritz_status take_grid(ritz_bulk_cards *all, const ritz_card *card,
-                             int32_t how)
-{
-    (void)how;
-    return ritz_bulk_take_grid(all, card);
-}
-
-static ritz_status take_defaults(ritz_bulk_cards *all, const ritz_card *card,
-                                 int32_t how)
-{
-    (void)how;
-    return ritz_bulk_take_defaults(all, card);
-}
-
-static ritz_status take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
-                                 int32_t how)
-{
-    return ritz_bulk_take_frame(all, card, how, true);
-}
-
-static ritz_status take_by_points(ritz_bulk_cards *all, const ritz_card *card,
-                                  int32_t how)
-{
-    return ritz_bulk_take_frame(all, card, how, false);
-}
-
 /* 1, 3, 5 THRU 9 from field k of a card, each part as `range`; or ALL. */
 static ritz_status take_list(const ritz_card *card, int64_t k,
                              ritz_bulk_range range, ritz_bulk_ranges *out)
@@ -69,8 +43,8 @@ static ritz_status take_list(const ritz_card *card, int64_t k,
             k += 2;
             RITZ_CHECK(ritz_card_id(card, k, &range.to));
             if (range.to < range.from)
-                RITZ_CHECK(
-                    ritz_card_refuse(card, k, "at or above where THRU begins"));
+                return ritz_card_refuse(card, k,
+                                        "at or above where THRU begins");
         }
         RITZ_CHECK(ritz_bulk_add_range(out, range));
     }
@@ -87,17 +61,6 @@ static ritz_status take_points(ritz_bulk_cards *all, const ritz_card *card,
     return take_list(card, 0,
                      (ritz_bulk_range){.line = card->entry->line, .mask = 1},
                      &all->points);
-}
-
-static ritz_status take_directions(const ritz_card *card, int64_t k,
-                                   uint8_t *out)
-{
-    int64_t digits = 0;
-
-    RITZ_CHECK(ritz_card_whole(card, k, 0, &digits));
-    if (!ritz_card_mask(digits, out))
-        RITZ_CHECK(ritz_card_refuse(card, k, "a list of directions 1 to 6"));
-    return RITZ_OK;
 }
 
 /* SPC cards have a set id in front of what those of other sets have. */
@@ -127,7 +90,7 @@ static ritz_status take_pairs(ritz_bulk_cards *all, const ritz_card *card,
             continue;
         RITZ_CHECK(ritz_card_id(card, k, &range.from));
         range.to = range.from;
-        RITZ_CHECK(take_directions(card, k + 1, &range.mask));
+        RITZ_CHECK(ritz_card_directions(card, k + 1, &range.mask));
         if (how == RITZ_BULK_SPC)
             RITZ_CHECK(ritz_card_real(card, k + 2, 0.0, &motion));
         range.imposed = motion != 0.0;
@@ -144,7 +107,7 @@ static ritz_status take_set(ritz_bulk_cards *all, const ritz_card *card,
     int64_t first = 0;
 
     RITZ_CHECK(take_sid(card, how, &first, &range.set));
-    RITZ_CHECK(take_directions(card, first, &range.mask));
+    RITZ_CHECK(ritz_card_directions(card, first, &range.mask));
     return take_list(card, first + 1, range, &all->ranges[how]);
 }
 
@@ -191,12 +154,12 @@ static const struct kind {
     {"BNDFIX1", take_set, RITZ_SET_B},
     {"BSET", take_pairs, RITZ_SET_B},
     {"BSET1", take_set, RITZ_SET_B},
-    {"CORD1C", take_by_grids, RITZ_CYLINDRICAL},
-    {"CORD1R", take_by_grids, RITZ_RECTANGULAR},
-    {"CORD1S", take_by_grids, RITZ_SPHERICAL},
-    {"CORD2C", take_by_points, RITZ_CYLINDRICAL},
-    {"CORD2R", take_by_points, RITZ_RECTANGULAR},
-    {"CORD2S", take_by_points, RITZ_SPHERICAL},
+    {"CORD1C", ritz_bulk_take_by_grids, RITZ_CYLINDRICAL},
+    {"CORD1R", ritz_bulk_take_by_grids, RITZ_RECTANGULAR},
+    {"CORD1S", ritz_bulk_take_by_grids, RITZ_SPHERICAL},
+    {"CORD2C", ritz_bulk_take_by_points, RITZ_CYLINDRICAL},
+    {"CORD2R", ritz_bulk_take_by_points, RITZ_RECTANGULAR},
+    {"CORD2S", ritz_bulk_take_by_points, RITZ_SPHERICAL},
     {"CRBAR", take_constraint, false},
     {"CRBE1", take_constraint, false},
     {"CRBE2", take_constraint, false},
@@ -208,8 +171,8 @@ static const struct kind {
     {"CRROD", take_constraint, false},
     {"CRSPLINE", take_constraint, false},
     {"CRTRPLT", take_constraint, false},
-    {"GRDSET", take_defaults, 0},
-    {"GRID", take_grid, 0},
+    {"GRDSET", ritz_bulk_take_defaults, 0},
+    {"GRID", ritz_bulk_take_grid, 0},
     {"MPC", take_constraint, true},
     {"MPCADD", take_sum, RITZ_SELECT_MPC},
     {"QSET", take_pairs, RITZ_SET_Q},
@@ -340,7 +303,7 @@ static ritz_status name_constraints(const ritz_bulk_cards *all, ritz_deck *out)
     return RITZ_OK;
 }
 
-static void free_cards(ritz_bulk_cards *all)
+static void ritz_bulk_cards_free(ritz_bulk_cards *all)
 {
     ritz_cards_free(&all->cards);
     free(all->grid);
@@ -397,18 +360,15 @@ static ritz_status build_deck(ritz_bulk_cards *all, ritz_deck *out)
 static ritz_status parse_bulk(const char *path, const char *bytes, int64_t size,
                               const char *folder, ritz_deck *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_bulk_cards all = {.defaults = {.line = -1,
-                                        .cp = RITZ_BULK_BLANK,
-                                        .cd = RITZ_BULK_BLANK,
-                                        .spc = RITZ_BULK_BLANK}};
+    RITZ_OWN(ritz_bulk_cards)
+    all = {.defaults = {.line = -1,
+                        .cp = RITZ_BULK_BLANK,
+                        .cd = RITZ_BULK_BLANK,
+                        .spc = RITZ_BULK_BLANK}};
 
-    RITZ_TRY(ritz_cards_parse(path, bytes, size, folder, &all.cards));
-    RITZ_TRY(take_cards(&all));
-    RITZ_TRY(build_deck(&all, out));
-done:
-    free_cards(&all);
-    return status;
+    RITZ_CHECK(ritz_cards_parse(path, bytes, size, folder, &all.cards));
+    RITZ_CHECK(take_cards(&all));
+    return build_deck(&all, out);
 }
 
 /* Any text may be bulk data: comments and unknown cards are passed over. */

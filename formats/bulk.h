@@ -79,12 +79,15 @@ typedef struct ritz_bulk_cards {
     ritz_bulk_ranges ranges[RITZ_BULK_SETS];
 } ritz_bulk_cards;
 
-/** Take a card into what was read. */
-ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card);
-ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all,
-                                    const ritz_card *card);
-ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
-                                 int32_t kind, bool by_grids);
+/** Take a card into what was read; @p how: the kind of a frame. */
+ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card,
+                                int32_t how);
+ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all, const ritz_card *card,
+                                    int32_t how);
+ritz_status ritz_bulk_take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
+                                    int32_t how);
+ritz_status ritz_bulk_take_by_points(ritz_bulk_cards *all,
+                                     const ritz_card *card, int32_t how);
 
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
                                           int64_t id);

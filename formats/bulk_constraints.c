@@ -22,13 +22,13 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+enum { ALL_SIX = 0x7e }; /* bits of directions 1 to 6 */
+
 ritz_status ritz_bulk_keep_sentence(char **out)
 {
     const char *said = ritz_error_message();
-    size_t size = strlen(said) + 1;
 
-    RITZ_CHECK_NEW(*out, (int64_t)size);
-    memcpy(*out, said, size);
+    RITZ_CHECK_COPY(*out, said, (int64_t)strlen(said) + 1);
     return RITZ_OK;
 }
 
@@ -56,28 +56,25 @@ static ritz_status tying_grid(const ritz_bulk_tying *it, int64_t k,
     RITZ_CHECK(ritz_card_id(it->card, k, &id));
     *out = ritz_grids_find(&built->grids, id);
     if (*out < 0 && ritz_search(built->num_points, built->point, id) >= 0)
-        RITZ_CHECK(tying_refuse(it,
-                                "names '%" PRId64 "', a scalar point: "
-                                "it is nowhere and cannot turn",
-                                id));
+        return tying_refuse(it,
+                            "names '%" PRId64 "', a scalar point: "
+                            "it is nowhere and cannot turn",
+                            id);
     if (*out < 0)
-        RITZ_CHECK(tying_refuse(
-            it, "names grid '%" PRId64 "', which the deck does not define",
-            id));
+        return tying_refuse(
+            it, "names grid '%" PRId64 "', which the deck does not define", id);
     return RITZ_OK;
 }
 
-/* Directions that field @p k lists; 0 of a blank or 0. */
-static ritz_status tying_mask(const ritz_bulk_tying *it, int64_t k,
+/* Directions that field @p k lists, 0 of a blank or 0: none, unless one is
+ * due. */
+static ritz_status tying_mask(const ritz_bulk_tying *it, int64_t k, bool due,
                               uint8_t *out)
 {
-    int64_t digits = 0;
-
-    RITZ_CHECK(ritz_card_whole(it->card, k, 0, &digits));
-    if (!ritz_card_mask(digits, out))
-        RITZ_CHECK(
-            ritz_card_refuse(it->card, k, "a list of directions 1 to 6"));
-    *out &= 0x7e; /* bit 0: there are none */
+    RITZ_CHECK(ritz_card_directions(it->card, k, out));
+    *out &= ALL_SIX;
+    if (due && *out == 0)
+        return ritz_card_refuse(it->card, k, "a list of directions 1 to 6");
     return RITZ_OK;
 }
 
@@ -101,10 +98,7 @@ static ritz_status tying_pairs(const ritz_bulk_tying *it, int64_t k,
         if (tying_is_real(it, k)) /* thermal expansion */
             break;
         RITZ_CHECK(tying_grid(it, k, &tie_element.grid));
-        RITZ_CHECK(tying_mask(it, k + 1, &tie_element.mask));
-        if (tie_element.mask == 0)
-            RITZ_CHECK(ritz_card_refuse(it->card, k + 1,
-                                        "a list of directions 1 to 6"));
+        RITZ_CHECK(tying_mask(it, k + 1, true, &tie_element.mask));
         RITZ_CHECK(ritz_ties_add(out, tie_element));
         k += 2;
     }
@@ -129,17 +123,17 @@ static ritz_status take_term(const ritz_bulk_tying *it, int64_t k, term *out)
     RITZ_CHECK(ritz_card_whole(it->card, k + 1, 0, &c));
     RITZ_CHECK(ritz_card_real(it->card, k + 2, nan(""), &out->factor));
     if (isnan(out->factor))
-        RITZ_CHECK(ritz_card_refuse(it->card, k + 2, "a factor"));
+        return ritz_card_refuse(it->card, k + 2, "a factor");
     if (ritz_search(built->num_points, built->point, id) >= 0) {
         if (c < 0 || c > 1)
-            RITZ_CHECK(ritz_card_refuse(it->card, k + 1,
-                                        "a direction of a scalar point"));
+            return ritz_card_refuse(it->card, k + 1,
+                                    "a direction of a scalar point");
         c = 0;
     } else if (ritz_grids_find(&built->grids, id) < 0) {
-        RITZ_CHECK(tying_refuse(
-            it, "names '%" PRId64 "', which the deck does not define", id));
+        return tying_refuse(
+            it, "names '%" PRId64 "', which the deck does not define", id);
     } else if (c < 1 || c > 6) {
-        RITZ_CHECK(ritz_card_refuse(it->card, k + 1, "a direction 1 to 6"));
+        return ritz_card_refuse(it->card, k + 1, "a direction 1 to 6");
     }
     out->dof = (ritz_dof){id, c};
     return RITZ_OK;
@@ -165,9 +159,9 @@ static ritz_status tie_mpc(const ritz_bulk_tying *it)
     RITZ_CHECK(check_layout(it));
     RITZ_CHECK(take_term(it, 1, &first));
     if (first.factor == 0.0)
-        RITZ_CHECK(tying_refuse(
+        return tying_refuse(
             it, "begins with a factor of zero, and its first dof is the one "
-                "that depends"));
+                "that depends");
     RITZ_CHECK(ritz_equations_begin(it->out, first.dof));
     for (int64_t k = 4; k < it->card->count; k += k % 8 == 4 ? 5 : 3) {
         if (!*ritz_card_text(it->card, k) &&
@@ -200,8 +194,6 @@ static ritz_status tie_mpc(const ritz_bulk_tying *it)
  * [Nastran1986], section 2.4; [MSC2012].
  */
 
-enum { ALL_SIX = 0x7e };
-
 static ritz_status tie_all(const ritz_bulk_tying *it, const ritz_ties *from,
                            const ritz_ties *to)
 {
@@ -209,20 +201,19 @@ static ritz_status tie_all(const ritz_bulk_tying *it, const ritz_ties *from,
     long long count = ritz_ties_dofs(from);
 
     if (count != 6)
-        RITZ_TRY(
-            tying_refuse(it, "has %lld independent dofs, six are due", count));
+        return tying_refuse(it, "has %lld independent dofs, six are due",
+                            count);
     for (int64_t k = 0; k < from->count; k++)
         for (int64_t j = 0; j < to->count; j++)
             if (from->tie[k].grid == to->tie[j].grid &&
                 (from->tie[k].mask & to->tie[j].mask))
-                RITZ_TRY(tying_refuse(
+                return tying_refuse(
                     it, "makes a dof of grid '%lld' depend on itself",
-                    (long long)it->built->grids.id[from->tie[k].grid]));
+                    (long long)it->built->grids.id[from->tie[k].grid]);
     status = ritz_tie_rigid(&it->built->grids, from, to, it->out);
     if (status == RITZ_ERR_SINGULAR)
-        RITZ_TRY(tying_refuse(
-            it, "is left free to move by its six independent dofs"));
-done:
+        return tying_refuse(it,
+                            "is left free to move by its six independent dofs");
     return status;
 }
 
@@ -233,10 +224,7 @@ static ritz_status tie_rbe2(const ritz_bulk_tying *it)
 
     RITZ_CHECK(tying_grid(it, 1, &tie.grid));
     RITZ_CHECK(ritz_ties_add(&from, tie));
-    RITZ_CHECK(tying_mask(it, 2, &tie.mask));
-    if (tie.mask == 0)
-        RITZ_CHECK(
-            ritz_card_refuse(it->card, 2, "a list of directions 1 to 6"));
+    RITZ_CHECK(tying_mask(it, 2, true, &tie.mask));
     for (int64_t k = 3; k < it->card->count; k++) {
         if (!*ritz_card_text(it->card, k))
             continue;
@@ -260,8 +248,8 @@ static ritz_status tie_corners(const ritz_bulk_tying *it, int64_t corners,
     for (int64_t k = 0; k < corners; k++) {
         RITZ_CHECK(tying_grid(it, 1 + k, &free[k].grid));
         held[k] = free[k];
-        RITZ_CHECK(tying_mask(it, 1 + corners + k, &free[k].mask));
-        RITZ_CHECK(tying_mask(it, at + k, &held[k].mask));
+        RITZ_CHECK(tying_mask(it, 1 + corners + k, false, &free[k].mask));
+        RITZ_CHECK(tying_mask(it, at + k, false, &held[k].mask));
         given = given || held[k].mask != 0;
     }
     for (int64_t k = 0; k < corners; k++) {
@@ -298,12 +286,12 @@ static ritz_status tie_rbe1(const ritz_bulk_tying *it)
             continue;
         }
         RITZ_CHECK(tying_grid(it, k, &tie.grid));
-        RITZ_CHECK(tying_mask(it, k + 1, &tie.mask));
+        RITZ_CHECK(tying_mask(it, k + 1, false, &tie.mask));
         RITZ_CHECK(ritz_ties_add(&from, tie));
         k += 2;
     }
     if (k == it->card->count)
-        RITZ_CHECK(tying_refuse(it, "names no dependent dofs by UM"));
+        return tying_refuse(it, "names no dependent dofs by UM");
     RITZ_CHECK(tying_pairs(it, k + 1, &to));
     return tie_all(it, &from, &to);
 }
@@ -330,6 +318,12 @@ typedef struct average_card {
     ritz_ties over, moved;
 } average_card;
 
+static void average_card_free(average_card *card)
+{
+    ritz_ties_free(&card->over);
+    ritz_ties_free(&card->moved);
+}
+
 /* WT C G1 G2 ... from field k on; where the next group begins. */
 static ritz_status take_group(const ritz_bulk_tying *it, int64_t *k,
                               average_card *out)
@@ -338,11 +332,8 @@ static ritz_status take_group(const ritz_bulk_tying *it, int64_t *k,
 
     RITZ_CHECK(ritz_card_real(it->card, *k, 0.0, &tie.weight));
     if (tie.weight < 0.0)
-        RITZ_CHECK(ritz_card_refuse(it->card, *k, "a weight from zero on"));
-    RITZ_CHECK(tying_mask(it, *k + 1, &tie.mask));
-    if (tie.mask == 0)
-        RITZ_CHECK(
-            ritz_card_refuse(it->card, *k + 1, "a list of directions 1 to 6"));
+        return ritz_card_refuse(it->card, *k, "a weight from zero on");
+    RITZ_CHECK(tying_mask(it, *k + 1, true, &tie.mask));
     for (*k += 2; *k < it->card->count; (*k)++) {
         const char *text = ritz_card_text(it->card, *k);
 
@@ -363,10 +354,7 @@ static ritz_status take_average(const ritz_bulk_tying *it, average_card *out)
     int64_t k = 4;
 
     RITZ_CHECK(tying_grid(it, 2, &out->grid));
-    RITZ_CHECK(tying_mask(it, 3, &out->mask));
-    if (out->mask == 0)
-        RITZ_CHECK(
-            ritz_card_refuse(it->card, 3, "a list of directions 1 to 6"));
+    RITZ_CHECK(tying_mask(it, 3, true, &out->mask));
     while (k < it->card->count) {
         const char *text = ritz_card_text(it->card, k);
 
@@ -404,11 +392,11 @@ static ritz_status average_rows(const ritz_bulk_tying *it,
         ritz_tie_row(grids, card->grid, c, grids->position + 3 * card->grid,
                      row);
         if (!ritz_average_tells(average, row))
-            RITZ_CHECK(tying_refuse(
+            return tying_refuse(
                 it,
                 "cannot tell '%s' from the dofs that it averages: do they "
                 "lie on a line?",
-                ritz_dof_name(ref[at], name)));
+                ritz_dof_name(ref[at], name));
         for (int64_t j = 0; j < average->A.ncol; j++)
             for (int i = 0; i < 6; i++)
                 ritz_dense_col(out, j)[at] +=
@@ -479,9 +467,9 @@ static ritz_status move_front(const ritz_bulk_tying *it,
             while (j < E->ncol && ritz_dof_compare(&dof[j], &wanted) != 0)
                 j++;
             if (j == E->ncol)
-                RITZ_CHECK(tying_refuse(
+                return tying_refuse(
                     it, "names '%s' by UM, which it does not hold, or twice",
-                    ritz_dof_name(wanted, name)));
+                    ritz_dof_name(wanted, name));
             dof[j] = dof[at];
             dof[at] = wanted;
             for (int64_t i = 0; i < E->nrow; i++) {
@@ -507,8 +495,7 @@ static ritz_status solve_moved(const ritz_bulk_tying *it, ritz_dense *E)
     if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, m, m, E->val, m, pivot) == 0)
         (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', m, E->val, m, size, &rcond);
     if (!(rcond > RITZ_HALF_DIGITS))
-        RITZ_CHECK(
-            tying_refuse(it, "cannot be solved for the dofs that UM names"));
+        return tying_refuse(it, "cannot be solved for the dofs that UM names");
     if (rest > 0)
         RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', m, rest, E->val, m,
                                       pivot, ritz_dense_col(E, m), m) != 0,
@@ -526,9 +513,9 @@ static ritz_status put_moved(const ritz_bulk_tying *it,
     RITZ_OWN_ARRAY ritz_dof *dof = NULL;
 
     if (ritz_ties_dofs(&card->moved) != m)
-        RITZ_CHECK(
-            tying_refuse(it, "names %" PRId64 " dofs by UM, %" PRId64 " depend",
-                         ritz_ties_dofs(&card->moved), m));
+        return tying_refuse(it,
+                            "names %" PRId64 " dofs by UM, %" PRId64 " depend",
+                            ritz_ties_dofs(&card->moved), m);
     RITZ_CHECK(join_columns(TA, ref, average, length, &dof, &E));
     RITZ_CHECK(move_front(it, card, dof, &E));
     RITZ_CHECK(solve_moved(it, &E));
@@ -544,31 +531,26 @@ static ritz_status put_moved(const ritz_bulk_tying *it,
 
 static ritz_status tie_rbe3(const ritz_bulk_tying *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_grids *grids = &it->built->grids;
-    average_card card = {0};
-    ritz_average average = {0};
-    ritz_dense TA = {0};
+    RITZ_OWN(average_card) card = {0};
+    RITZ_OWN(ritz_average) average = {0};
+    RITZ_OWN(ritz_dense) TA = {0};
     ritz_dof ref[6] = {0};
     int64_t m = 0;
 
-    RITZ_TRY(take_average(it, &card));
-    RITZ_TRY(ritz_average_new(grids, &card.over,
-                              grids->position + 3 * card.grid, &average));
+    RITZ_CHECK(take_average(it, &card));
+    RITZ_CHECK(ritz_average_new(grids, &card.over,
+                                grids->position + 3 * card.grid, &average));
     for (int c = 1; c <= 6; c++)
         m += (card.mask >> c) & 1;
-    RITZ_TRY(ritz_dense_new(m, average.A.ncol, &TA));
-    RITZ_TRY(average_rows(it, &card, &average, ref, &TA));
+    RITZ_CHECK(ritz_dense_new(m, average.A.ncol, &TA));
+    RITZ_CHECK(average_rows(it, &card, &average, ref, &TA));
     if (card.moved.count > 0)
-        RITZ_TRY(put_moved(it, &card, &TA, ref, &average));
-    for (int64_t i = 0; i < m && card.moved.count == 0; i++)
-        RITZ_TRY(put_row(&TA, i, ref[i], average.dof, average.length, it->out));
-done:
-    ritz_ties_free(&card.over);
-    ritz_ties_free(&card.moved);
-    ritz_average_free(&average);
-    ritz_dense_free(&TA);
-    return status;
+        return put_moved(it, &card, &TA, ref, &average);
+    for (int64_t i = 0; i < m; i++)
+        RITZ_CHECK(
+            put_row(&TA, i, ref[i], average.dof, average.length, it->out));
+    return RITZ_OK;
 }
 
 /* ---- all of them -------------------------------------------------------- */
@@ -596,12 +578,10 @@ static ritz_status copy_paths(const ritz_cards *cards, ritz_equations *out)
     RITZ_CHECK_NEW(out->file, cards->num_files);
     for (; out->num_files < cards->num_files; out->num_files++) {
         const char *path = cards->file[out->num_files].path;
-        size_t size = path ? strlen(path) + 1 : 0;
 
-        if (!path)
-            continue;
-        RITZ_CHECK_NEW(out->file[out->num_files], (int64_t)size);
-        memcpy(out->file[out->num_files], path, size);
+        if (path)
+            RITZ_CHECK_COPY(out->file[out->num_files], path,
+                            (int64_t)strlen(path) + 1);
     }
     return RITZ_OK;
 }
@@ -630,26 +610,22 @@ static ritz_status tie_card(const ritz_bulk_cards *all,
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
                                      ritz_deck *built)
 {
-    ritz_status status = RITZ_OK;
-    ritz_card card = {0};
+    RITZ_OWN(ritz_card) card = {0};
 
     if (all->num_constraints == 0)
-        goto done;
-    RITZ_TRY(copy_paths(&all->cards, &built->equations));
+        return RITZ_OK;
+    RITZ_CHECK(copy_paths(&all->cards, &built->equations));
     for (int64_t k = 0; k < all->num_constraints; k++) {
         const ritz_bulk_constraint *one = &all->constraint[k];
+        ritz_status status = RITZ_OK;
 
         if (one->is_set &&
             !ritz_cards_select(&all->cards, RITZ_SELECT_MPC, one->id))
             continue;
         status = tie_card(all, one, &card, built);
-        if (status == RITZ_ERR_FORMAT) {
-            RITZ_TRY(ritz_bulk_keep_sentence(&built->equations.refused));
-            break;
-        }
-        RITZ_TRY(status);
+        if (status == RITZ_ERR_FORMAT)
+            return ritz_bulk_keep_sentence(&built->equations.refused);
+        RITZ_CHECK(status);
     }
-done:
-    ritz_card_free(&card);
-    return status;
+    return RITZ_OK;
 }

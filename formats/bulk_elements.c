@@ -53,6 +53,11 @@ typedef struct gathering {
     int64_t kinds_room, firsts_room, grids_room, num_grids, num_firsts;
 } gathering;
 
+static void gathering_free(gathering *it)
+{
+    ritz_elements_free(&it->elements);
+}
+
 static int compare_name(const void *name, const void *cell)
 {
     const ritz_bulk_cell *one = cell;
@@ -133,33 +138,26 @@ static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
 
 ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_cards *cards = &all->cards;
-    gathering it = {0};
-    ritz_card card = {0};
-    int64_t strange = 0;
+    RITZ_OWN(gathering) it = {0};
+    RITZ_OWN(ritz_card) card = {0};
 
     for (int64_t k = 0; k < cards->num_entries; k++) {
         const ritz_bulk_cell *cell =
             bsearch(cards->entry[k].name, cells, sizeof cells / sizeof *cells,
                     sizeof *cells, compare_name);
+        ritz_status status = RITZ_OK;
 
         if (!cell)
             continue;
         status = ritz_card_take(cards, k, &card);
-        if (status == RITZ_OK)
-            status = take_cell(&card, cell, &it, &strange);
-        else if (status == RITZ_ERR_FORMAT) {
-            strange++;
-            status = RITZ_OK;
+        if (status == RITZ_ERR_FORMAT) {
+            out->num_strange++;
+            continue;
         }
-        RITZ_TRY(status);
+        RITZ_CHECK(status);
+        RITZ_CHECK(take_cell(&card, cell, &it, &out->num_strange));
     }
-    out->elements = it.elements;
-    out->num_strange = strange;
-    it.elements = (ritz_elements){0};
-done:
-    ritz_card_free(&card);
-    ritz_elements_free(&it.elements);
-    return status;
+    RITZ_MOVE(out->elements, it.elements);
+    return RITZ_OK;
 }

@@ -166,10 +166,10 @@ static ritz_status orient_frame(const ritz_bulk_cards *all,
     y = length_of(e_y);
     if (!(z > 0.0 && y > RITZ_HALF_DIGITS * length_of(to_C) && isfinite(z) &&
           isfinite(y)))
-        RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
-                                     "the three points of coordinate system "
-                                     "%" PRId64 " lie on a line",
-                                     frame->id));
+        return ritz_cards_refuse(&all->cards, frame->line,
+                                 "the three points of coordinate system "
+                                 "%" PRId64 " lie on a line",
+                                 frame->id);
     divide_vector(e_y, y);
     cross_product(e_y, e_z, e_x);
     return RITZ_OK;
@@ -195,21 +195,23 @@ static ritz_status take_frames(const ritz_card *card, ritz_bulk_grid *out)
     RITZ_CHECK(ritz_card_whole(card, 5, RITZ_BULK_BLANK, &out->cd));
     RITZ_CHECK(ritz_card_whole(card, 6, RITZ_BULK_BLANK, &out->spc));
     if (*ritz_card_text(card, 1) && out->cp < 0)
-        RITZ_CHECK(ritz_card_refuse(card, 1, "a coordinate system"));
+        return ritz_card_refuse(card, 1, "a coordinate system");
     if (*ritz_card_text(card, 5) && out->cd < 0)
-        RITZ_CHECK(ritz_card_refuse(card, 5,
-                                    "a coordinate system in which a structure "
-                                    "moves"));
+        return ritz_card_refuse(card, 5,
+                                "a coordinate system in which a structure "
+                                "moves");
     if (out->spc != RITZ_BULK_BLANK &&
         (!ritz_card_mask(out->spc, &mask) || (out->spc != 0 && (mask & 1))))
-        RITZ_CHECK(ritz_card_refuse(card, 6, "a list of directions 1 to 6"));
+        return ritz_card_refuse(card, 6, "a list of directions 1 to 6");
     return RITZ_OK;
 }
 
-ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card)
+ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card,
+                                int32_t how)
 {
     ritz_bulk_grid new = {.line = card->entry->line};
 
+    (void)how;
     RITZ_CHECK(ritz_card_id(card, 0, &new.id));
     RITZ_CHECK(take_frames(card, &new));
     for (int64_t k = 0; k < 3; k++)
@@ -219,28 +221,61 @@ ritz_status ritz_bulk_take_grid(ritz_bulk_cards *all, const ritz_card *card)
     return RITZ_OK;
 }
 
-ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all, const ritz_card *card)
+ritz_status ritz_bulk_take_defaults(ritz_bulk_cards *all, const ritz_card *card,
+                                    int32_t how)
 {
     ritz_bulk_grid new = {.line = card->entry->line};
 
+    (void)how;
     RITZ_CHECK(take_frames(card, &new));
     if (all->defaults.line >= 0 &&
         (new.cp != all->defaults.cp || new.cd != all->defaults.cd ||
          new.spc != all->defaults.spc))
-        RITZ_CHECK(ritz_cards_refuse(&all->cards, new.line,
-                                     "there is another GRDSET before"));
+        return ritz_cards_refuse(&all->cards, new.line,
+                                 "there is another GRDSET before");
     all->defaults = new;
     return RITZ_OK;
 }
 
-static int compare_grids(const void *a, const void *b)
+/* Order of structs that begin with an id and the line of their card. */
+static int compare_items(const void *left, const void *right)
 {
-    const ritz_bulk_grid *left = a;
-    const ritz_bulk_grid *right = b;
-    int order = (left->id > right->id) - (left->id < right->id);
+    const int64_t *a = left;
+    const int64_t *b = right;
+    int order = ritz_cards_compare_ids(a, b);
 
-    return order ? order
-                 : (left->line > right->line) - (left->line < right->line);
+    return order ? order : ritz_cards_compare_ids(a + 1, b + 1);
+}
+
+/* Sort such structs and keep each id once; what `same` finds to be another
+ * definition of an id is refused. */
+static ritz_status settle_items(const ritz_cards *cards, const char *noun,
+                                int64_t *count, size_t size, void *items,
+                                bool (*same)(const void *a, const void *b))
+{
+    char *first = items;
+    char *last = NULL;
+    int64_t kept = 0;
+
+    if (*count > 1)
+        qsort(items, (size_t)*count, size, compare_items);
+    for (int64_t k = 0; k < *count; k++) {
+        const char *item = first + (size_t)k * size;
+        int64_t key[2];
+
+        memcpy(key, item, sizeof key);
+        if (kept > 0 && ritz_cards_compare_ids(last, item) == 0) {
+            if (!same(last, item))
+                return ritz_cards_refuse(
+                    cards, key[1], "%s %" PRId64 " is defined otherwise before",
+                    noun, key[0]);
+            continue;
+        }
+        last = first + (size_t)kept++ * size;
+        memmove(last, item, size);
+    }
+    *count = kept;
+    return RITZ_OK;
 }
 
 static void complete_field(int64_t *value, int64_t given)
@@ -249,44 +284,24 @@ static void complete_field(int64_t *value, int64_t given)
         *value = given == RITZ_BULK_BLANK ? 0 : given;
 }
 
-static bool same_grid(const ritz_bulk_grid *a, const ritz_bulk_grid *b)
+static bool is_same_grid(const void *left, const void *right)
 {
+    const ritz_bulk_grid *a = left;
+    const ritz_bulk_grid *b = right;
+
     return a->cp == b->cp && a->cd == b->cd && a->spc == b->spc &&
            a->x[0] == b->x[0] && a->x[1] == b->x[1] && a->x[2] == b->x[2];
 }
 
-static bool is_sorted(const ritz_bulk_cards *all)
-{
-    for (int64_t k = 1; k < all->num_grids; k++)
-        if (all->grid[k - 1].id > all->grid[k].id)
-            return false;
-    return true;
-}
-
 static ritz_status settle_grids(ritz_bulk_cards *all)
 {
-    int64_t kept = 0;
-
-    if (!is_sorted(all))
-        qsort(all->grid, (size_t)all->num_grids, sizeof *all->grid,
-              compare_grids);
     for (int64_t k = 0; k < all->num_grids; k++) {
-        ritz_bulk_grid *grid = &all->grid[k];
-
-        complete_field(&grid->cp, all->defaults.cp);
-        complete_field(&grid->cd, all->defaults.cd);
-        complete_field(&grid->spc, all->defaults.spc);
-        if (kept == 0 || all->grid[kept - 1].id != grid->id) {
-            all->grid[kept++] = *grid;
-            continue;
-        }
-        if (!same_grid(&all->grid[kept - 1], grid))
-            RITZ_CHECK(ritz_cards_refuse(
-                &all->cards, grid->line,
-                "GRID %" PRId64 " is defined otherwise before", grid->id));
+        complete_field(&all->grid[k].cp, all->defaults.cp);
+        complete_field(&all->grid[k].cd, all->defaults.cd);
+        complete_field(&all->grid[k].spc, all->defaults.spc);
     }
-    all->num_grids = kept;
-    return RITZ_OK;
+    return settle_items(&all->cards, "GRID", &all->num_grids, sizeof *all->grid,
+                        all->grid, is_same_grid);
 }
 
 const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
@@ -311,59 +326,48 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
 
 enum { UNTOUCHED, OPEN, RESOLVED };
 
-static int compare_frames(const void *a, const void *b)
+static ritz_status add_frame(ritz_bulk_cards *all, const ritz_bulk_frame *frame)
 {
-    const ritz_bulk_frame *left = a;
-    const ritz_bulk_frame *right = b;
-    int order = (left->id > right->id) - (left->id < right->id);
-
-    return order ? order
-                 : (left->line > right->line) - (left->line < right->line);
+    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
+    all->frame[all->num_frames++] = *frame;
+    return RITZ_OK;
 }
 
 /* CORD1: CID G1 G2 G3, twice on a card. */
-static ritz_status take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
-                                 int64_t from, int32_t kind)
+ritz_status ritz_bulk_take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
+                                    int32_t how)
 {
-    ritz_bulk_frame new = {
-        .line = card->entry->line, .kind = kind, .by_grids = true};
+    int64_t last = card->count > 4 ? 4 : 0;
 
-    RITZ_CHECK(ritz_card_id(card, from, &new.id));
-    for (int64_t k = 0; k < 3; k++)
-        RITZ_CHECK(ritz_card_id(card, from + 1 + k, &new.grid[k]));
-    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
-    all->frame[all->num_frames++] = new;
+    for (int64_t from = 0; from <= last; from += 4) {
+        ritz_bulk_frame new = {
+            .line = card->entry->line, .kind = how, .by_grids = true};
+
+        RITZ_CHECK(ritz_card_id(card, from, &new.id));
+        for (int64_t k = 0; k < 3; k++)
+            RITZ_CHECK(ritz_card_id(card, from + 1 + k, &new.grid[k]));
+        RITZ_CHECK(add_frame(all, &new));
+    }
     return RITZ_OK;
 }
 
 /* CORD2: CID RID A B C. */
-static ritz_status take_by_points(ritz_bulk_cards *all, const ritz_card *card,
-                                  int32_t kind)
+ritz_status ritz_bulk_take_by_points(ritz_bulk_cards *all,
+                                     const ritz_card *card, int32_t how)
 {
-    ritz_bulk_frame new = {.line = card->entry->line, .kind = kind};
+    ritz_bulk_frame new = {.line = card->entry->line, .kind = how};
 
     RITZ_CHECK(ritz_card_id(card, 0, &new.id));
     RITZ_CHECK(ritz_card_whole(card, 1, 0, &new.base));
     for (int64_t k = 0; k < 9; k++)
         RITZ_CHECK(ritz_card_real(card, 2 + k, 0.0, &new.point[k]));
-    RITZ_CHECK_ROOM(all->frame, all->num_frames, all->frames_room);
-    all->frame[all->num_frames++] = new;
-    return RITZ_OK;
+    return add_frame(all, &new);
 }
 
-ritz_status ritz_bulk_take_frame(ritz_bulk_cards *all, const ritz_card *card,
-                                 int32_t kind, bool by_grids)
+static bool is_same_frame(const void *left, const void *right)
 {
-    if (!by_grids)
-        return take_by_points(all, card, kind);
-    RITZ_CHECK(take_by_grids(all, card, 0, kind));
-    if (card->count > 4)
-        RITZ_CHECK(take_by_grids(all, card, 4, kind));
-    return RITZ_OK;
-}
-
-static bool same_frame(const ritz_bulk_frame *a, const ritz_bulk_frame *b)
-{
+    const ritz_bulk_frame *a = left;
+    const ritz_bulk_frame *b = right;
     bool same =
         a->kind == b->kind && a->by_grids == b->by_grids && a->base == b->base;
 
@@ -372,30 +376,6 @@ static bool same_frame(const ritz_bulk_frame *a, const ritz_bulk_frame *b)
     for (int64_t k = 0; k < 9; k++)
         same = same && a->point[k] == b->point[k];
     return same;
-}
-
-static ritz_status settle_frames(ritz_bulk_cards *all)
-{
-    int64_t kept = 0;
-
-    if (all->num_frames > 1)
-        qsort(all->frame, (size_t)all->num_frames, sizeof *all->frame,
-              compare_frames);
-    for (int64_t k = 0; k < all->num_frames; k++) {
-        ritz_bulk_frame *frame = &all->frame[k];
-
-        if (kept == 0 || all->frame[kept - 1].id != frame->id) {
-            all->frame[kept++] = *frame;
-            continue;
-        }
-        if (!same_frame(&all->frame[kept - 1], frame))
-            RITZ_CHECK(ritz_cards_refuse(&all->cards, frame->line,
-                                         "coordinate system %" PRId64
-                                         " is defined otherwise before",
-                                         frame->id));
-    }
-    all->num_frames = kept;
-    return RITZ_OK;
 }
 
 /* Frame or grid by id; NULL if there is none. */
@@ -436,35 +416,27 @@ static ritz_status next_open(const ritz_bulk_cards *all,
                              const ritz_bulk_frame *frame,
                              ritz_bulk_frame **out)
 {
-    ritz_status status = RITZ_OK;
-
     *out = NULL;
     for (int k = 0; k < 3 && !*out; k++) {
         ritz_bulk_frame *below = NULL;
         int64_t id = 0;
 
-        RITZ_TRY(rests_on(all, frame, k, &id));
+        RITZ_CHECK(rests_on(all, frame, k, &id));
         if (id == 0)
             continue;
         below = find_frame(all, id);
-        if (!below) {
-            status =
-                ritz_cards_refuse(&all->cards, frame->line,
-                                  "coordinate system %" PRId64
-                                  " rests on %" PRId64 ", which there is not",
-                                  frame->id, id);
-            goto done;
-        }
-        if (below->progress == OPEN)
-            RITZ_TRY(ritz_cards_refuse(&all->cards, frame->line,
-                                       "coordinate system %" PRId64
-                                       " rests on itself by way of %" PRId64,
-                                       frame->id, id));
+        if (!below || below->progress == OPEN)
+            return ritz_cards_refuse(
+                &all->cards, frame->line,
+                below ? "coordinate system %" PRId64
+                        " rests on itself by way of %" PRId64
+                      : "coordinate system %" PRId64 " rests on %" PRId64
+                        ", which there is not",
+                frame->id, id);
         if (below->progress == UNTOUCHED)
             *out = below;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status resolve_frame(const ritz_bulk_cards *all,
@@ -547,34 +519,36 @@ static bool is_identity(const double axes[static 9])
     return true;
 }
 
-/* Axes while they are collected. */
+/* Grids while their axes are collected. */
 typedef struct builder {
     int64_t room;
     int64_t *row; /* of each rectangular frame, 0 until it has one */
     ritz_grids grids;
 } builder;
 
+static void builder_free(builder *build)
+{
+    free(build->row);
+    ritz_grids_free(&build->grids);
+}
+
 static ritz_status add_axes(builder *build, const double axes[static 9],
                             int64_t *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_grids *grids = &build->grids;
     double *more = NULL;
 
     *out = 0;
     if (is_identity(axes))
-        goto done;
+        return RITZ_OK;
     more = ritz_array_grown(grids->axes, grids->num_frames, &build->room,
                             9 * sizeof *axes);
-    if (!more) {
-        status = RITZ_ERR_MEMORY;
-        goto done;
-    }
+    if (!more)
+        return RITZ_ERR_MEMORY;
     grids->axes = more;
     memcpy(grids->axes + 9 * grids->num_frames, axes, 9 * sizeof *axes);
     *out = grids->num_frames++;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status place_grid(const ritz_bulk_cards *all, int64_t k,
@@ -591,9 +565,9 @@ static ritz_status place_grid(const ritz_bulk_cards *all, int64_t k,
     place_point(frame, grid->x, position);
     for (int j = 0; j < 3; j++)
         if (!isfinite(position[j]))
-            RITZ_CHECK(ritz_cards_refuse(
-                &all->cards, grid->line,
-                "GRID %" PRId64 " is infinitely far away", grid->id));
+            return ritz_cards_refuse(&all->cards, grid->line,
+                                     "GRID %" PRId64 " is infinitely far away",
+                                     grid->id);
     RITZ_CHECK(frame_of(all, grid, grid->cd, &frame));
     if (!frame)
         return RITZ_OK;
@@ -612,27 +586,23 @@ static ritz_status place_grid(const ritz_bulk_cards *all, int64_t k,
 
 ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out)
 {
-    ritz_status status = RITZ_OK;
-    builder build = {.room = 1};
+    RITZ_OWN(builder) build = {.room = 1};
 
-    RITZ_TRY(settle_grids(all));
-    RITZ_TRY(settle_frames(all));
-    RITZ_TRY(resolve_frames(all));
-    RITZ_NEW(build.row, all->num_frames);
-    RITZ_NEW(build.grids.id, all->num_grids);
-    RITZ_NEW(build.grids.position, 3 * all->num_grids);
-    RITZ_NEW(build.grids.frame, all->num_grids);
-    RITZ_NEW(build.grids.axes, 9);
+    RITZ_CHECK(settle_grids(all));
+    RITZ_CHECK(settle_items(&all->cards, "coordinate system", &all->num_frames,
+                            sizeof *all->frame, all->frame, is_same_frame));
+    RITZ_CHECK(resolve_frames(all));
+    RITZ_CHECK_NEW(build.row, all->num_frames);
+    RITZ_CHECK_NEW(build.grids.id, all->num_grids);
+    RITZ_CHECK_NEW(build.grids.position, 3 * all->num_grids);
+    RITZ_CHECK_NEW(build.grids.frame, all->num_grids);
+    RITZ_CHECK_NEW(build.grids.axes, 9);
     for (int k = 0; k < 9; k += 4)
         build.grids.axes[k] = 1.0;
     build.grids.num_frames = 1;
     build.grids.count = all->num_grids;
     for (int64_t k = 0; k < all->num_grids; k++)
-        RITZ_TRY(place_grid(all, k, &build));
-    *out = build.grids;
-    build.grids = (ritz_grids){0};
-done:
-    free(build.row);
-    ritz_grids_free(&build.grids);
-    return status;
+        RITZ_CHECK(place_grid(all, k, &build));
+    RITZ_MOVE(*out, build.grids);
+    return RITZ_OK;
 }

@@ -13,7 +13,8 @@
 
 #include <inttypes.h>
 
-enum { MOST_IDS = 10000000 };
+enum { MOST_IDS = 10000000 }; /* that ranges alone may stand for */
+
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range)
 {
     RITZ_CHECK_ROOM(list->range, list->count, list->room);
@@ -54,9 +55,9 @@ static ritz_status count_ids(const ritz_cards *cards, int64_t count,
     *out = 0;
     for (int64_t k = 0; k < count; k++) {
         if (range[k].to - range[k].from >= MOST_IDS - *out)
-            RITZ_CHECK(ritz_cards_refuse(cards, range[k].line,
-                                         "THRU stands for more than %d points",
-                                         MOST_IDS));
+            return ritz_cards_refuse(cards, range[k].line,
+                                     "THRU stands for more than %d points",
+                                     MOST_IDS);
         *out += range[k].to - range[k].from + 1;
     }
     return RITZ_OK;
@@ -69,10 +70,7 @@ ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
     int64_t count = 0;
     int64_t num = 0;
 
-    RITZ_CHECK_NEW(range, all->points.count);
-    if (all->points.count > 0)
-        memcpy(range, all->points.range,
-               (size_t)all->points.count * sizeof *range);
+    RITZ_CHECK_COPY(range, all->points.range, all->points.count);
     count = merge_ranges(all->points.count, range);
     RITZ_CHECK(count_ids(&all->cards, count, range, &num));
     RITZ_CHECK_NEW(point, num);
@@ -80,10 +78,10 @@ ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
     for (int64_t k = 0; k < count; k++)
         for (int64_t id = range[k].from; id <= range[k].to; id++) {
             if (ritz_bulk_find_grid(all, id))
-                RITZ_CHECK(ritz_cards_refuse(&all->cards, range[k].line,
-                                             "%" PRId64 " is a GRID and an "
-                                             "SPOINT",
-                                             id));
+                return ritz_cards_refuse(&all->cards, range[k].line,
+                                         "%" PRId64 " is a GRID and an "
+                                         "SPOINT",
+                                         id);
             point[num++] = id;
         }
     RITZ_MOVE(out->point, point);
@@ -98,6 +96,11 @@ typedef struct dofs {
     int64_t count, room;
     ritz_dof *dof;
 } dofs;
+
+static void dofs_free(dofs *list)
+{
+    free(list->dof);
+}
 
 static ritz_status add_dof(dofs *list, int64_t grid, int64_t component)
 {
@@ -120,13 +123,13 @@ static ritz_status add_named(const ritz_bulk_cards *all,
     bool grid = ritz_grids_find(&built->grids, one->from) >= 0;
 
     if (point && (one->mask & ~3U))
-        RITZ_CHECK(ritz_cards_refuse(
-            &all->cards, one->line,
-            "scalar point %" PRId64 " has no directions", one->from));
+        return ritz_cards_refuse(&all->cards, one->line,
+                                 "scalar point %" PRId64 " has no directions",
+                                 one->from);
     if (grid && has_direction(one, 0))
-        RITZ_CHECK(ritz_cards_refuse(
-            &all->cards, one->line,
-            "no directions of GRID %" PRId64 " are given", one->from));
+        return ritz_cards_refuse(&all->cards, one->line,
+                                 "no directions of GRID %" PRId64 " are given",
+                                 one->from);
     for (int64_t c = 0; c <= 6; c++)
         if (has_direction(one, c))
             RITZ_CHECK(add_dof(list, one->from, point ? 0 : c));
@@ -186,21 +189,17 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_deck *built, int64_t *count,
                                ritz_dof **out)
 {
-    ritz_status status = RITZ_OK;
-    dofs found = {0};
+    RITZ_OWN(dofs) found = {0};
 
     for (int64_t k = 0; k < list->count; k++)
         if (list->range[k].each)
-            RITZ_TRY(add_named(all, &list->range[k], built, &found));
+            RITZ_CHECK(add_named(all, &list->range[k], built, &found));
     for (int64_t c = 0; c <= 6; c++)
-        RITZ_TRY(add_direction(all, list, built, c, &found));
+        RITZ_CHECK(add_direction(all, list, built, c, &found));
     found.count = ritz_dof_distinct(found.count, found.dof);
     if (!found.dof)
-        RITZ_NEW(found.dof, 0);
-    *out = found.dof;
+        RITZ_CHECK_NEW(found.dof, 0);
     *count = found.count;
-    found.dof = NULL;
-done:
-    free(found.dof);
-    return status;
+    RITZ_MOVE(*out, found.dof);
+    return RITZ_OK;
 }

@@ -33,6 +33,12 @@ typedef struct ritz_scanner {
     card_text open[RITZ_CARDS_DEEPEST + 1];
 } ritz_scanner;
 
+static void ritz_scanner_free(ritz_scanner *scan)
+{
+    while (scan->depth > 0)
+        free(scan->open[--scan->depth].folder);
+}
+
 /* ---- files and their control sections ----------------------------------- */
 
 /* SPC = 5 in the case control: remember which set is meant. */
@@ -95,16 +101,6 @@ static ritz_status skip_control(const char *path, ritz_lines *text,
     return RITZ_OK;
 }
 
-static ritz_status copy_text(const char *text, char **out)
-{
-    char *copy = NULL;
-
-    RITZ_CHECK_NEW(copy, (int64_t)strlen(text) + 1);
-    memcpy(copy, text, strlen(text) + 1);
-    *out = copy;
-    return RITZ_OK;
-}
-
 /* Append a file; @p text becomes the deck's, unless the call fails. */
 static ritz_status add_file(ritz_cards *cards, const char *path, char *text)
 {
@@ -112,9 +108,8 @@ static ritz_status add_file(ritz_cards *cards, const char *path, char *text)
 
     RITZ_CHECK_ROOM(cards->file, cards->num_files, cards->files_room);
     if (path)
-        RITZ_CHECK(copy_text(path, &copy));
-    cards->file[cards->num_files].path = copy;
-    cards->file[cards->num_files++].text = text;
+        RITZ_CHECK_COPY(copy, path, (int64_t)strlen(path) + 1);
+    cards->file[cards->num_files++] = (ritz_cards_file){copy, text};
     return RITZ_OK;
 }
 
@@ -181,27 +176,11 @@ static const char *path_of(const ritz_scanner *scan, int level)
     return scan->cards->file[scan->open[level].file].path;
 }
 
-/* Go on with a file before the one that includes it; takes `bytes`. */
-static ritz_status open_file(ritz_scanner *scan, const char *path, char *bytes)
-{
-    ritz_status status = RITZ_OK;
-    card_text new = {.text = {.at = bytes, .end = bytes + strlen(bytes)},
-                     .file = scan->cards->num_files};
-
-    status = add_file(scan->cards, path, bytes);
-    if (status != RITZ_OK)
-        free(bytes);
-    RITZ_TRY(status);
-    RITZ_TRY(skip_control(path, &new.text, scan->cards));
-    RITZ_TRY(ritz_path_folder(path, &new.folder));
-    scan->open[scan->depth++] = new;
-done:
-    return status;
-}
-
+/* Go on with a file before the one that includes it. */
 static ritz_status include_file(ritz_scanner *scan, const char *path)
 {
-    char *bytes = NULL;
+    card_text new = {.file = scan->cards->num_files};
+    RITZ_OWN_ARRAY char *bytes = NULL;
 
     for (int k = 0; k < scan->depth; k++)
         RITZ_REFUSE_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
@@ -211,7 +190,13 @@ static ritz_status include_file(ritz_scanner *scan, const char *path)
     RITZ_REFUSE_IF(scan->cards->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
                    "INCLUDE reads more than %d files", MOST_FILES);
     RITZ_CHECK(ritz_text_read(path, &bytes));
-    return open_file(scan, path, bytes);
+    new.text = (ritz_lines){.at = bytes, .end = bytes + strlen(bytes)};
+    RITZ_CHECK(add_file(scan->cards, path, bytes));
+    bytes = NULL;
+    RITZ_CHECK(skip_control(path, &new.text, scan->cards));
+    RITZ_CHECK(ritz_path_folder(path, &new.folder));
+    scan->open[scan->depth++] = new;
+    return RITZ_OK;
 }
 
 /* Follow an INCLUDE; @p rest is what stands behind the word. */
@@ -283,25 +268,21 @@ static ritz_status take_line(ritz_scanner *scan)
 static ritz_status scan_text(const char *path, const char *folder,
                              ritz_lines text, ritz_cards *cards)
 {
-    ritz_status status = RITZ_OK;
-    ritz_scanner scan = {.cards = cards};
+    RITZ_OWN(ritz_scanner) scan = {.cards = cards};
     char *copy = NULL;
 
-    RITZ_TRY(add_file(cards, path, NULL));
-    RITZ_TRY(skip_control(path, &text, cards));
+    RITZ_CHECK(add_file(cards, path, NULL));
+    RITZ_CHECK(skip_control(path, &text, cards));
     if (folder)
-        RITZ_TRY(copy_text(folder, &copy));
+        RITZ_CHECK_COPY(copy, folder, (int64_t)strlen(folder) + 1);
     scan.open[scan.depth++] = (card_text){.text = text, .folder = copy};
     while (scan.depth > 0 && !scan.ended) {
         if (ritz_lines_next(&scan.open[scan.depth - 1].text))
-            RITZ_TRY(take_line(&scan));
+            RITZ_CHECK(take_line(&scan));
         else
             free(scan.open[--scan.depth].folder);
     }
-done:
-    while (scan.depth > 0)
-        free(scan.open[--scan.depth].folder);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- from lines to cards ------------------------------------------------ */
@@ -317,6 +298,7 @@ static void copy_marker(const char *text, int64_t length,
 {
     int64_t k = 0;
 
+    ritz_card_trim(&text, &length);
     for (; k < length && k < RITZ_CARD_NAME; k++)
         out[k] = ritz_card_upper(text[k]);
     out[k] = '\0';
@@ -329,12 +311,10 @@ static void leading_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
     int64_t length = 0;
 
     ritz_view_name(line, &text, &length);
-    if (length > 0) {
-        text++;
-        length--;
-    }
-    ritz_card_trim(&text, &length);
-    copy_marker(text, length, out);
+    if (length > 0)
+        copy_marker(text + 1, length - 1, out);
+    else
+        out[0] = '\0';
 }
 
 /* Marker that a line ends with: what is in columns 73-80. */
@@ -367,7 +347,6 @@ static void trailing_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
         text++;
         length--;
     }
-    ritz_card_trim(&text, &length);
     copy_marker(text, length, out);
 }
 
@@ -395,6 +374,11 @@ typedef struct strays {
     int64_t count, room;
     marker *marker;
 } strays;
+
+static void strays_free(strays *list)
+{
+    free(list->marker);
+}
 
 static ritz_status add_stray(strays *list, int64_t line,
                              const char text[RITZ_CARD_NAME + 1])
@@ -449,10 +433,10 @@ static ritz_status join_strays(ritz_cards *cards, strays *list)
           compare_markers);
     for (int64_t k = 1; k < list->count; k++)
         if (compare_markers(&list->marker[k - 1], &list->marker[k]) == 0)
-            RITZ_CHECK(ritz_cards_refuse(cards, list->marker[k].line,
-                                         "another continuation has the marker "
-                                         "'+%s' too",
-                                         list->marker[k].text));
+            return ritz_cards_refuse(cards, list->marker[k].line,
+                                     "another continuation has the marker "
+                                     "'+%s' too",
+                                     list->marker[k].text);
     for (int64_t k = 0; k < cards->num_lines; k++) {
         marker *found = NULL;
 
@@ -465,9 +449,9 @@ static ritz_status join_strays(ritz_cards *cards, strays *list)
         if (!found)
             continue;
         if (found->taken)
-            RITZ_CHECK(ritz_cards_refuse(
-                cards, k, "another line is continued by '+%s' too",
-                wanted.text));
+            return ritz_cards_refuse(cards, k,
+                                     "another line is continued by '+%s' too",
+                                     wanted.text);
         found->taken = true;
         cards->line[k].next = found->line;
     }
@@ -486,29 +470,14 @@ static ritz_status check_reach(const ritz_cards *cards)
             reached[at] = true;
     for (int64_t k = 0; k < cards->num_lines; k++)
         if (!reached[k])
-            RITZ_CHECK(
-                ritz_cards_refuse(cards, k,
-                                  "the continuation '%.*s' belongs to no "
-                                  "card",
-                                  cards->line[k].length < RITZ_CARD_NAME
-                                      ? (int)cards->line[k].length
-                                      : RITZ_CARD_NAME,
-                                  cards->line[k].text));
+            return ritz_cards_refuse(cards, k,
+                                     "the continuation '%.*s' belongs to no "
+                                     "card",
+                                     cards->line[k].length < RITZ_CARD_NAME
+                                         ? (int)cards->line[k].length
+                                         : RITZ_CARD_NAME,
+                                     cards->line[k].text);
     return RITZ_OK;
-}
-
-/* Find the cards; give every continuation to the line that it continues. */
-static ritz_status join_lines(ritz_cards *cards)
-{
-    ritz_status status = RITZ_OK;
-    strays list = {0};
-
-    RITZ_TRY(join_neighbours(cards, &list));
-    RITZ_TRY(join_strays(cards, &list));
-    RITZ_TRY(check_reach(cards));
-done:
-    free(list.marker);
-    return status;
 }
 
 /* ---- decks -------------------------------------------------------------- */
@@ -535,10 +504,13 @@ ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
                              const char *folder, ritz_cards *out)
 {
     RITZ_OWN(ritz_cards) cards = {0};
+    RITZ_OWN(strays) list = {0};
     ritz_lines whole = {.at = text, .end = text + size};
 
     RITZ_CHECK(scan_text(path, folder, whole, &cards));
-    RITZ_CHECK(join_lines(&cards));
+    RITZ_CHECK(join_neighbours(&cards, &list));
+    RITZ_CHECK(join_strays(&cards, &list));
+    RITZ_CHECK(check_reach(&cards));
     RITZ_MOVE(*out, cards);
     return RITZ_OK;
 }

@@ -135,4 +135,8 @@ bool ritz_card_is_word(const char *text, const char *word);
 /** Directions "123" as digits; @return false if they are not distinct 0-6 */
 bool ritz_card_mask(int64_t digits, uint8_t *out);
 
+/** Field @p k as directions: bit c, or bit 0 alone of a blank or 0. */
+ritz_status ritz_card_directions(const ritz_card *card, int64_t k,
+                                 uint8_t *out);
+
 #endif

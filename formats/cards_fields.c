@@ -102,8 +102,6 @@ bool ritz_card_is_word(const char *text, const char *word)
     return *text == *word;
 }
 
-/* that ranges alone may stand for */
-
 bool ritz_card_mask(int64_t digits, uint8_t *out)
 {
     uint8_t mask = digits == 0 ? 1 : 0;
@@ -121,6 +119,16 @@ bool ritz_card_mask(int64_t digits, uint8_t *out)
     return true;
 }
 
+ritz_status ritz_card_directions(const ritz_card *card, int64_t k, uint8_t *out)
+{
+    int64_t digits = 0;
+
+    RITZ_CHECK(ritz_card_whole(card, k, 0, &digits));
+    if (!ritz_card_mask(digits, out))
+        return ritz_card_refuse(card, k, "a list of directions 1 to 6");
+    return RITZ_OK;
+}
+
 /* ---- fields ------------------------------------------------------------- */
 
 static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
@@ -130,9 +138,9 @@ static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
 
     ritz_card_trim(&text, &length);
     if (length >= RITZ_CARD_FIELD_SIZE)
-        RITZ_CHECK(ritz_cards_refuse(card->cards, line,
-                                     "'%.16s...' in %s is too long for a field",
-                                     text, card->entry->name));
+        return ritz_cards_refuse(card->cards, line,
+                                 "'%.16s...' in %s is too long for a field",
+                                 text, card->entry->name);
     RITZ_CHECK_ROOM(card->field, card->count, card->room);
     field = &card->field[card->count++];
     memcpy(field->text, text, (size_t)length);
@@ -171,9 +179,9 @@ static ritz_status add_free(ritz_card *card, int64_t line,
     if ((tenth_length > 0 && !ritz_view_is_marker(tenth, tenth_length) &&
          *tenth != '+') ||
         more_items(seen, width + 1))
-        RITZ_CHECK(ritz_cards_refuse(card->cards, line,
-                                     "a line of %s has more than %d fields",
-                                     card->entry->name, (int)width));
+        return ritz_cards_refuse(card->cards, line,
+                                 "a line of %s has more than %d fields",
+                                 card->entry->name, (int)width);
     for (int64_t k = 0; k < width; k++) {
         length = 0;
         if (k < count)
@@ -211,10 +219,9 @@ static ritz_status check_name(const ritz_card *card, const ritz_view *seen)
     ritz_view_name(seen, &name, &length);
     for (int64_t k = 0; k < length; k++)
         if (ritz_card_is_blank(name[k]) && name[length - 1] != '*')
-            RITZ_CHECK(
-                ritz_cards_refuse(card->cards, card->entry->line,
-                                  "'%.*s' is not the name of a card alone",
-                                  (int)(length < 20 ? length : 20), name));
+            return ritz_cards_refuse(card->cards, card->entry->line,
+                                     "'%.*s' is not the name of a card alone",
+                                     (int)(length < 20 ? length : 20), name);
     return RITZ_OK;
 }
 

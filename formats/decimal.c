@@ -16,6 +16,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { STEP = 22, MOST_EXPONENT = 250, MOST_DIGITS = 19, LONGEST = 128 };
 
@@ -191,22 +192,14 @@ static const char *scan_exponent(const char *at, const char *end, reading *r)
 static bool scan_word(const char **at, const char *c, const char *end,
                       ritz_decimal *out)
 {
-    static const struct {
-        const char *word;
-        double value;
-    } words[] = {
-        {"infinity", HUGE_VAL}, {"inf", HUGE_VAL}, {"nan", (double)NAN}};
+    static const char *const words[] = {"infinity", "inf", "nan"};
 
     for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
-        size_t length = strlen(words[k].word);
-        size_t same = 0;
+        size_t length = strlen(words[k]);
 
-        while (same < length && c + same < end &&
-               (c[same] | 32) == words[k].word[same])
-            same++;
-        if (same < length)
+        if ((size_t)(end - c) < length || strncasecmp(c, words[k], length) != 0)
             continue;
-        *out = (ritz_decimal){.value = words[k].value};
+        *out = (ritz_decimal){.value = k < 2 ? HUGE_VAL : (double)NAN};
         *at = c + length;
         return true;
     }

@@ -18,6 +18,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "formats/cards.h"
+#include "formats/lines.h"
 #include "formats/matrix.h"
 
 #include <ritz/import.h>
@@ -60,6 +61,13 @@ typedef struct ritz_dmig_cards {
     ritz_dmig_term *term;
 } ritz_dmig_cards;
 
+static void ritz_dmig_cards_free(ritz_dmig_cards *all)
+{
+    ritz_cards_free(&all->cards);
+    free(all->header);
+    free(all->term);
+}
+
 static int compare_names(const void *a, const void *b)
 {
     const ritz_dmig_header *left = a;
@@ -99,26 +107,26 @@ static bool is_header(const ritz_card *card)
 
 static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
 {
-    ritz_dmig_header new = {.line = card->entry->line,
-                            .rank = all->num_headers};
+    ritz_dmig_header header = {.line = card->entry->line,
+                               .rank = all->num_headers};
     int64_t type = 0;
     int64_t polar = 0;
 
-    RITZ_CHECK(take_name(card, new.name));
-    RITZ_CHECK(ritz_card_whole(card, 2, 0, &new.form));
+    RITZ_CHECK(take_name(card, header.name));
+    RITZ_CHECK(ritz_card_whole(card, 2, 0, &header.form));
     RITZ_CHECK(ritz_card_whole(card, 3, 0, &type));
     RITZ_CHECK(ritz_card_whole(card, 5, 0, &polar));
-    if (new.form != RITZ_DMIG_SQUARE &&new.form != RITZ_DMIG_WIDE &&new.form !=
-        RITZ_DMIG_SYMMETRIC &&new.form != RITZ_DMIG_COLUMNS)
-        RITZ_CHECK(ritz_card_refuse(card, 2, "a form: 1, 2, 6 or 9"));
+    if (header.form != RITZ_DMIG_SQUARE && header.form != RITZ_DMIG_WIDE &&
+        header.form != RITZ_DMIG_SYMMETRIC && header.form != RITZ_DMIG_COLUMNS)
+        return ritz_card_refuse(card, 2, "a form: 1, 2, 6 or 9");
     if (type < 1 || type > 4)
-        RITZ_CHECK(ritz_card_refuse(card, 3, "a type: 1, 2, 3 or 4"));
+        return ritz_card_refuse(card, 3, "a type: 1, 2, 3 or 4");
     if (polar != 0 && polar != 1)
-        RITZ_CHECK(ritz_card_refuse(card, 5, "0 or 1 for POLAR"));
-    new.complex = type > 2;
-    new.polar = polar == 1;
+        return ritz_card_refuse(card, 5, "0 or 1 for POLAR");
+    header.complex = type > 2;
+    header.polar = polar == 1;
     RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
-    all->header[all->num_headers++] = new;
+    all->header[all->num_headers++] = header;
     return RITZ_OK;
 }
 
@@ -129,9 +137,9 @@ static ritz_status sort_headers(ritz_dmig_cards *all)
               compare_names);
     for (int64_t k = 1; k < all->num_headers; k++)
         if (compare_names(&all->header[k - 1], &all->header[k]) == 0)
-            RITZ_CHECK(ritz_cards_refuse(&all->cards, all->header[k].line,
-                                         "DMIG '%s' has a second header",
-                                         all->header[k].name));
+            return ritz_cards_refuse(&all->cards, all->header[k].line,
+                                     "DMIG '%s' has a second header",
+                                     all->header[k].name);
     return RITZ_OK;
 }
 
@@ -140,7 +148,7 @@ static ritz_status take_dof(const ritz_card *card, int64_t k, ritz_dof *out)
     RITZ_CHECK(ritz_card_id(card, k, &out->grid));
     RITZ_CHECK(ritz_card_whole(card, k + 1, 0, &out->component));
     if (out->component < 0 || out->component > 6)
-        RITZ_CHECK(ritz_card_refuse(card, k + 1, "a direction, 0 to 6"));
+        return ritz_card_refuse(card, k + 1, "a direction, 0 to 6");
     return RITZ_OK;
 }
 
@@ -166,8 +174,8 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
     RITZ_CHECK(ritz_card_real(card, k + 2, 0.0, &a));
     RITZ_CHECK(ritz_card_real(card, k + 3, 0.0, &b));
     if (!owner->complex && b != 0.0)
-        RITZ_CHECK(
-            ritz_card_refuse(card, k + 3, "blank, as it is in a real matrix"));
+        return ritz_card_refuse(card, k + 3,
+                                "blank, as it is in a real matrix");
     new.line = card->field[k].line;
     new.re = owner->polar ? a *cos(b * RADIANS) : a;
     new.im = owner->polar ? a *sin(b * RADIANS) : b;
@@ -184,28 +192,22 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
 
 static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dmig_header wanted = {0};
+    ritz_dmig_header named = {0};
     ritz_dmig_header *owner = NULL;
     ritz_dof col = {0};
 
-    RITZ_TRY(take_name(card, wanted.name));
+    RITZ_CHECK(take_name(card, named.name));
     if (all->num_headers > 0)
-        owner = bsearch(&wanted, all->header, (size_t)all->num_headers,
-                        sizeof wanted, compare_names);
-    if (!owner) {
-        status = ritz_cards_refuse(&all->cards, card->entry->line,
-                                   "DMIG '%s' has no header", wanted.name);
-        goto done;
-    }
-    RITZ_TRY(take_dof(card, 1, &col));
-    if (owner->rank != all->wanted)
-        goto done;
-    for (int64_t k = 4; k < card->count; k += 4)
+        owner = bsearch(&named, all->header, (size_t)all->num_headers,
+                        sizeof named, compare_names);
+    if (!owner)
+        return ritz_cards_refuse(&all->cards, card->entry->line,
+                                 "DMIG '%s' has no header", named.name);
+    RITZ_CHECK(take_dof(card, 1, &col));
+    for (int64_t k = 4; k < card->count && owner->rank == all->wanted; k += 4)
         if (!is_empty_group(card, k))
-            RITZ_TRY(add_term(all, owner, card, k, col));
-done:
-    return status;
+            RITZ_CHECK(add_term(all, owner, card, k, col));
+    return RITZ_OK;
 }
 
 /* Go through the DMIG cards: headers first, as they may follow columns. */
@@ -219,10 +221,7 @@ static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
         RITZ_CHECK(ritz_card_take(&all->cards, k, &card));
         if (is_header(&card) != headers)
             continue;
-        if (headers)
-            RITZ_CHECK(add_header(all, &card));
-        else
-            RITZ_CHECK(add_column(all, &card));
+        RITZ_CHECK(headers ? add_header(all, &card) : add_column(all, &card));
     }
     return RITZ_OK;
 }
@@ -305,11 +304,6 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     return RITZ_OK;
 }
 
-static int compare_whole(int64_t a, int64_t b)
-{
-    return (a > b) - (a < b);
-}
-
 /* By column, then row, then line. */
 static int compare_terms(const void *a, const void *b)
 {
@@ -319,7 +313,7 @@ static int compare_terms(const void *a, const void *b)
 
     if (!order)
         order = ritz_dof_compare(&left->row, &right->row);
-    return order ? order : compare_whole(left->line, right->line);
+    return order ? order : ritz_cards_compare_ids(&left->line, &right->line);
 }
 
 static int compare_ranks(const void *a, const void *b)
@@ -327,7 +321,7 @@ static int compare_ranks(const void *a, const void *b)
     const ritz_dmig_header *left = a;
     const ritz_dmig_header *right = b;
 
-    return compare_whole(left->rank, right->rank);
+    return ritz_cards_compare_ids(&left->rank, &right->rank);
 }
 
 static void swap_to_lower(ritz_dmig_term *one)
@@ -367,24 +361,17 @@ static ritz_status check_terms(const ritz_dmig_header *owner,
             continue;
         if (owner->form == RITZ_DMIG_SYMMETRIC)
             both = "; a symmetric one gives one triangle only";
-        RITZ_CHECK(ritz_cards_refuse(&all->cards, one->line,
-                                     "DMIG '%s' gives (%s, %s) twice%s",
-                                     owner->name, ritz_dof_name(one->row, row),
-                                     ritz_dof_name(one->col, col), both));
+        return ritz_cards_refuse(&all->cards, one->line,
+                                 "DMIG '%s' gives (%s, %s) twice%s",
+                                 owner->name, ritz_dof_name(one->row, row),
+                                 ritz_dof_name(one->col, col), both);
     }
     if (owner->count == 0 && all->cards.num_skipped > 0)
-        RITZ_CHECK(ritz_cards_refuse(&all->cards, owner->line,
-                                     "DMIG '%s' has no columns here, and "
-                                     "INCLUDE is not followed without a folder",
-                                     owner->name));
+        return ritz_cards_refuse(&all->cards, owner->line,
+                                 "DMIG '%s' has no columns here, and "
+                                 "INCLUDE is not followed without a folder",
+                                 owner->name);
     return RITZ_OK;
-}
-
-static void free_cards(ritz_dmig_cards *all)
-{
-    ritz_cards_free(&all->cards);
-    free(all->header);
-    free(all->term);
 }
 
 /* The deck and its headers. */
@@ -399,13 +386,12 @@ static ritz_status take_headers(const ritz_foreign *file, ritz_dmig_cards *all)
 /* Sizes follow from the columns: headers do not state them. */
 static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dmig_cards all = {.wanted = -1};
+    RITZ_OWN(ritz_dmig_cards) all = {.wanted = -1};
 
-    RITZ_TRY(take_headers(file, &all));
-    RITZ_TRY(take_cards(&all, false)); /* columns without a header */
-    RITZ_FAIL_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
-                 "there is no DMIG card in the bulk data");
+    RITZ_CHECK(take_headers(file, &all));
+    RITZ_CHECK(take_cards(&all, false)); /* columns without a header */
+    RITZ_REFUSE_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
+                   "there is no DMIG card in the bulk data");
     qsort(all.header, (size_t)all.num_headers, sizeof *all.header,
           compare_ranks);
     for (int64_t k = 0; k < all.num_headers; k++) {
@@ -417,31 +403,25 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
                             .at = header->rank};
 
         memcpy(item.name, header->name, sizeof item.name);
-        RITZ_TRY(ritz_listing_add(out, &item));
+        RITZ_CHECK(ritz_listing_add(out, &item));
     }
-done:
-    free_cards(&all);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status read_matrix(const ritz_foreign *file,
                                const ritz_listed *which, ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dmig_cards all = {.wanted = which->at};
+    RITZ_OWN(ritz_dmig_cards) all = {.wanted = which->at};
     const ritz_dmig_header *header = NULL;
 
-    RITZ_TRY(take_headers(file, &all));
-    RITZ_TRY(take_cards(&all, false));
+    RITZ_CHECK(take_headers(file, &all));
+    RITZ_CHECK(take_cards(&all, false));
     header = all.header;
     while (header->rank != which->at)
         header++;
     sort_terms(header, &all);
-    RITZ_TRY(check_terms(header, &all));
-    RITZ_TRY(make_matrix(header, all.term, out));
-done:
-    free_cards(&all);
-    return status;
+    RITZ_CHECK(check_terms(header, &all));
+    return make_matrix(header, all.term, out);
 }
 
 /* True if a line begins with the word DMIG, in any case. */
@@ -458,17 +438,11 @@ static bool is_dmig(const char *line, int64_t length)
 
 static bool recognise_dmig(const char *bytes, int64_t size)
 {
-    const char *at = bytes;
-    const char *end = bytes + size;
+    ritz_lines text = {.at = bytes, .end = bytes + size};
 
-    while (at < end) {
-        if (is_dmig(at, end - at))
+    while (ritz_lines_next(&text))
+        if (is_dmig(text.line, text.line_end - text.line))
             return true;
-        at = memchr(at, '\n', (size_t)(end - at));
-        if (!at)
-            return false;
-        at++;
-    }
     return false;
 }
 

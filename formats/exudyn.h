@@ -15,16 +15,6 @@ typedef struct exudyn_modes {
     double lowest_hz, highest_hz; /* of (K, M) */
 } exudyn_modes;
 
-/**
- * Leave rigid-body motion to the moving frame: columns of kind rigid if those
- * make up all of it, eigenvectors of (K_r, M_r) otherwise.
- *
- * @return RITZ_ERR_ARGUMENT if no mode is flexible, or if something moves
- *         without stiffness that is no rigid body
- */
-ritz_status exudyn_modes_of(const ritz_reduced *reduced, exudyn_modes *out);
-void exudyn_modes_free(exudyn_modes *modes);
-
 /* The arrays of Exudyn's file that are made from the invariants. */
 typedef struct exudyn_terms {
     ritz_dense inertiaLocal;       /* 3 x 3, about the basic origin */

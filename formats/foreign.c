@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 /* "output4, matrix-market or dmig" would age: the list comes from the table. */
@@ -30,20 +31,16 @@ static const ritz_format *recognise_bytes(const char *bytes, int64_t size)
 
 ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_foreign file = {0};
+    RITZ_OWN(ritz_foreign) file = {0};
 
-    RITZ_TRY(ritz_bytes_read(path, &file.size, &file.owned));
-    RITZ_TRY(ritz_path_folder(path, &file.folder));
-    RITZ_NEW(file.path, (int64_t)strlen(path) + 1);
-    memcpy(file.path, path, strlen(path) + 1);
+    RITZ_CHECK(ritz_bytes_read(path, &file.size, &file.owned));
+    RITZ_CHECK(ritz_path_folder(path, &file.folder));
+    RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
     file.bytes = file.owned;
     ritz_digest_bytes(file.bytes, (size_t)file.size, file.digest);
     file.format = recognise_bytes(file.bytes, file.size);
     RITZ_MOVE(*out, file);
-done:
-    ritz_foreign_close(&file);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_foreign_list(ritz_foreign *file)
@@ -78,7 +75,7 @@ ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status)
     return ritz_context(status, what);
 }
 
-void ritz_foreign_close(ritz_foreign *file)
+void ritz_foreign_free(ritz_foreign *file)
 {
     free(file->path);
     free(file->folder);
@@ -105,34 +102,24 @@ static ritz_status take_all(ritz_foreign *file, ritz_matrices *out)
 ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
                                ritz_matrices *out)
 {
-    ritz_foreign file = {
+    RITZ_OWN(ritz_foreign)
+    file = {
         .bytes = bytes, .size = size, .format = recognise_bytes(bytes, size)};
-    ritz_status status = take_all(&file, out);
 
-    ritz_foreign_close(&file);
-    return status;
+    return take_all(&file, out);
 }
 
 ritz_status ritz_foreign_read(const char *path, ritz_matrices *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_foreign file = {0};
+    RITZ_OWN(ritz_foreign) file = {0};
 
-    RITZ_TRY(ritz_foreign_open(path, &file));
-    RITZ_TRY(ritz_foreign_context(&file, take_all(&file, out)));
-done:
-    ritz_foreign_close(&file);
-    return status;
+    RITZ_CHECK(ritz_foreign_open(path, &file));
+    return ritz_foreign_context(&file, take_all(&file, out));
 }
 
 /* ---- one by name -------------------------------------------------------- */
 
-static char fold_case(char c)
-{
-    return (char)(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
-}
-
-static int64_t padded_length(const char *text, int64_t length)
+static size_t padded_length(const char *text, size_t length)
 {
     while (length > 0 && text[length - 1] == ' ')
         length--;
@@ -140,25 +127,19 @@ static int64_t padded_length(const char *text, int64_t length)
 }
 
 /* Names are one if they differ by case and trailing blanks only. */
-static bool same_name(const char *a, const char *b, int64_t length)
+static bool same_name(const char *a, const char *b, size_t length)
 {
-    int64_t n = padded_length(a, (int64_t)strlen(a));
+    size_t n = padded_length(a, strlen(a));
 
-    length = padded_length(b, length);
-    if (n != length)
-        return false;
-    for (int64_t k = 0; k < n; k++)
-        if (fold_case(a[k]) != fold_case(b[k]))
-            return false;
-    return true;
+    return n == padded_length(b, length) && strncasecmp(a, b, n) == 0;
 }
 
 /* A spec taken apart; `name` NULL where there is none. */
 typedef struct spec {
     int64_t path; /* length of the file's name */
     const char *name;
-    int64_t length; /* of the name */
-    int64_t which;  /* K from 1, 0 where there is none */
+    size_t length; /* of the name */
+    int64_t which; /* K from 1, 0 where there is none */
 } spec;
 
 /* The last colon parts file and name, unless the whole is a file's name. */
@@ -174,10 +155,10 @@ static spec split_spec(const char *text)
         return s;
     s.path = colon - text;
     s.name = colon + 1;
-    s.length = (int64_t)strlen(s.name);
+    s.length = strlen(s.name);
     mark = strrchr(s.name, '#');
     if (mark && ritz_text_whole(mark + 1, &s.which) && s.which > 0)
-        s.length = mark - s.name;
+        s.length = (size_t)(mark - s.name);
     else
         s.which = 0;
     return s;
@@ -186,27 +167,27 @@ static spec split_spec(const char *text)
 ritz_status ritz_foreign_path(const char *spec_text, char **out)
 {
     spec s = split_spec(spec_text);
-    char *path = NULL;
 
-    RITZ_CHECK_NEW(path, s.path + 1);
-    memcpy(path, spec_text, (size_t)s.path);
-    *out = path;
+    RITZ_CHECK_NEW(*out, s.path + 1);
+    memcpy(*out, spec_text, (size_t)s.path);
     return RITZ_OK;
+}
+
+static bool has_name(const ritz_listed *item, const spec *s)
+{
+    return strlen(item->name) == s->length &&
+           strncmp(item->name, s->name, s->length) == 0;
 }
 
 /* Names are compared as they stand; if none is equal, without their case. */
 static bool is_named(const ritz_listing *all, const spec *s, int64_t k)
 {
-    const char *name = all->item[k].name;
-
     if (!s->name)
         return !all->item[k].other[0];
     for (int64_t i = 0; i < all->count; i++)
-        if (strlen(all->item[i].name) == (size_t)s->length &&
-            strncmp(all->item[i].name, s->name, (size_t)s->length) == 0)
-            return strlen(name) == (size_t)s->length &&
-                   strncmp(name, s->name, (size_t)s->length) == 0;
-    return same_name(name, s->name, s->length);
+        if (has_name(&all->item[i], s))
+            return has_name(&all->item[k], s);
+    return same_name(all->item[k].name, s->name, s->length);
 }
 
 static int64_t count_name(const ritz_listing *all, const char *name,
@@ -215,7 +196,7 @@ static int64_t count_name(const ritz_listing *all, const char *name,
     int64_t count = 0;
 
     for (int64_t k = from; k < all->count; k++)
-        count += same_name(all->item[k].name, name, (int64_t)strlen(name));
+        count += same_name(all->item[k].name, name, strlen(name));
     return count;
 }
 
@@ -304,13 +285,13 @@ static ritz_status take_named(ritz_foreign *file, const char *spec_text,
 
 ritz_status ritz_file_sums_add(ritz_file_sums *sums, const ritz_foreign *file)
 {
-    char *path = NULL;
+    ritz_file_sum *sum = NULL;
 
     RITZ_CHECK_ROOM(sums->sum, sums->count, sums->room);
-    RITZ_CHECK_NEW(path, (int64_t)strlen(file->path) + 1);
-    memcpy(path, file->path, strlen(file->path) + 1);
-    sums->sum[sums->count].path = path;
-    memcpy(sums->sum[sums->count++].digest, file->digest, sizeof file->digest);
+    sum = &sums->sum[sums->count];
+    RITZ_CHECK_COPY(sum->path, file->path, (int64_t)strlen(file->path) + 1);
+    memcpy(sum->digest, file->digest, sizeof file->digest);
+    sums->count++;
     return RITZ_OK;
 }
 
@@ -341,25 +322,21 @@ static ritz_status take_of_file(int64_t k, int64_t count,
                                 const ritz_wanted *wanted, bool *taken,
                                 ritz_file_sums *sums)
 {
-    ritz_status status = RITZ_OK;
-    ritz_foreign file = {0};
-    char *path = NULL;
+    RITZ_OWN(ritz_foreign) file = {0};
+    RITZ_OWN_ARRAY char *path = NULL;
 
-    RITZ_TRY(ritz_foreign_path(wanted[k].spec, &path));
-    RITZ_TRY(add_context(wanted[k].what, ritz_foreign_open(path, &file)));
+    RITZ_CHECK(ritz_foreign_path(wanted[k].spec, &path));
+    RITZ_CHECK(add_context(wanted[k].what, ritz_foreign_open(path, &file)));
     if (sums)
-        RITZ_TRY(ritz_file_sums_add(sums, &file));
+        RITZ_CHECK(ritz_file_sums_add(sums, &file));
     for (; k < count; k++) {
         if (taken[k] || !is_of_file(&file, wanted[k].spec))
             continue;
         taken[k] = true;
-        RITZ_TRY(add_context(
+        RITZ_CHECK(add_context(
             wanted[k].what, take_named(&file, wanted[k].spec, wanted[k].into)));
     }
-done:
-    ritz_foreign_close(&file);
-    free(path);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,

@@ -22,6 +22,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* In the order of their names below. */
 enum { RITZ_MARKET_COORDINATE, RITZ_MARKET_ARRAY };
@@ -55,6 +56,11 @@ typedef struct ritz_market {
     ritz_market_entry *entry;
     int64_t digits;
 } ritz_market;
+
+static void ritz_market_free(ritz_market *m)
+{
+    free(m->entry);
+}
 
 /* ---- entries to columns ------------------------------------------------- */
 
@@ -181,11 +187,10 @@ static ritz_status read_number(ritz_market *m, const char **at, double *out)
     *at = begin;
     RITZ_REFUSE_IF(!ritz_decimal_scan(at, m->text.line_end, &number) ||
                        ritz_decimal_is_inside(*at, m->text.line_end),
-                   RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' is not a number",
-                   m->text.number, ritz_lines_quoted(begin, m->text.line_end),
-                   begin);
+                   RITZ_ERR_FORMAT, "'%.*s' is not a number",
+                   ritz_lines_quoted(begin, m->text.line_end), begin);
     RITZ_REFUSE_IF(!isfinite(number.value), RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": the value is not finite", m->text.number);
+                   "the value is not finite");
     if (number.digits > m->digits)
         m->digits = number.digits;
     *out = number.value;
@@ -197,22 +202,20 @@ static ritz_status append_entry(ritz_market *m, ritz_market_entry e)
     int64_t row = e.row;
 
     RITZ_REFUSE_IF(m->count == m->most, RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": more entries than the %" PRId64
-                   " that are declared",
-                   m->text.number, m->most);
+                   "more entries than the %" PRId64 " that are declared",
+                   m->most);
     RITZ_REFUSE_IF(e.row < 0 || e.row >= m->nrow || e.col < 0 ||
                        e.col >= m->ncol,
                    RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": entry (%" PRId64 ", %" PRId64
-                   ") lies outside a %" PRId64 " x %" PRId64 " matrix",
-                   m->text.number, e.row + 1, e.col + 1, m->nrow, m->ncol);
+                   "entry (%" PRId64 ", %" PRId64 ") lies outside a %" PRId64
+                   " x %" PRId64 " matrix",
+                   e.row + 1, e.col + 1, m->nrow, m->ncol);
     RITZ_REFUSE_IF(
         row == e.col && ((m->symmetry == RITZ_MARKET_SKEW &&
                           (e.re != 0.0 || e.im != 0.0)) ||
                          (m->symmetry == RITZ_MARKET_HERMITIAN && e.im != 0.0)),
-        RITZ_ERR_FORMAT,
-        "line %" PRId64 ": diagonal entry %" PRId64 " cannot be in a %s matrix",
-        m->text.number, row + 1, m->kind);
+        RITZ_ERR_FORMAT, "diagonal entry %" PRId64 " cannot be in a %s matrix",
+        row + 1, m->kind);
     if (m->symmetry != RITZ_MARKET_GENERAL && e.row < e.col) {
         e.row = e.col;
         e.col = row;
@@ -235,11 +238,10 @@ static ritz_status read_entry(ritz_market *m)
     good = good && second > at;
     at = second;
     good = good && ritz_decimal_scan_whole(&at, m->text.line_end, &e.col);
-    RITZ_REFUSE_IF(
-        !good || ritz_decimal_is_inside(at, m->text.line_end), RITZ_ERR_FORMAT,
-        "line %" PRId64 ": '%.*s' is not an entry 'row column value'",
-        m->text.number, ritz_lines_quoted(m->text.line, m->text.line_end),
-        m->text.line);
+    RITZ_REFUSE_IF(!good || ritz_decimal_is_inside(at, m->text.line_end),
+                   RITZ_ERR_FORMAT, "'%.*s' is not an entry 'row column value'",
+                   ritz_lines_quoted(m->text.line, m->text.line_end),
+                   m->text.line);
     e.row--;
     e.col--;
     if (m->field != RITZ_MARKET_PATTERN)
@@ -247,9 +249,7 @@ static ritz_status read_entry(ritz_market *m)
     if (m->field == RITZ_MARKET_COMPLEX)
         RITZ_CHECK(read_number(m, &at, &e.im));
     RITZ_REFUSE_IF(ritz_decimal_skip(at, m->text.line_end) != m->text.line_end,
-                   RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": more than an entry on the line",
-                   m->text.number);
+                   RITZ_ERR_FORMAT, "more than an entry on the line");
     return append_entry(m, e);
 }
 
@@ -263,9 +263,8 @@ static ritz_status read_values(ritz_market *m, ritz_market_entry *next)
         if (m->field == RITZ_MARKET_COMPLEX)
             RITZ_CHECK(read_number(m, &at, &next->im));
         RITZ_REFUSE_IF(m->count == m->most, RITZ_ERR_FORMAT,
-                       "line %" PRId64 ": more values than the %" PRId64
-                       " that are declared",
-                       m->text.number, m->most);
+                       "more values than the %" PRId64 " that are declared",
+                       m->most);
         RITZ_CHECK(append_entry(m, *next));
         next->row++;
         if (next->row == m->nrow) {
@@ -282,16 +281,12 @@ static ritz_status read_entries(ritz_market *m)
 {
     ritz_market_entry next = {.row = m->symmetry == RITZ_MARKET_SKEW};
 
-    while (next_line(m)) {
-        if (m->layout == RITZ_MARKET_COORDINATE)
-            RITZ_CHECK(read_entry(m));
-        else
-            RITZ_CHECK(read_values(m, &next));
-    }
+    while (next_line(m))
+        RITZ_CHECK(m->layout == RITZ_MARKET_COORDINATE ? read_entry(m)
+                                                       : read_values(m, &next));
     RITZ_REFUSE_IF(m->count < m->most, RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": ends after %" PRId64 " of %" PRId64
-                   " entries",
-                   m->text.number, m->count, m->most);
+                   "ends after %" PRId64 " of %" PRId64 " entries", m->count,
+                   m->most);
     return RITZ_OK;
 }
 
@@ -306,30 +301,19 @@ static const char *const fields[] = {"real",    "double",  "integer",
 static const char *const symmetries[] = {"general", "symmetric",
                                          "skew-symmetric", "hermitian", NULL};
 
-static bool is_gap(char c)
-{
-    return c <= ' ';
-}
-
 /* Move over one word of the banner; its place in `words`, -1 if not there. */
 static int take_word(const char **at, const char *end, const char *const *words)
 {
     const char *begin = ritz_decimal_skip(*at, end);
     const char *stop = begin;
 
-    while (stop < end && !is_gap(*stop))
+    while (stop<end && * stop> ' ')
         stop++;
     *at = stop;
-    for (int k = 0; words[k]; k++) {
-        size_t length = strlen(words[k]);
-        size_t same = 0;
-
-        while (same < length && begin + same < stop &&
-               (begin[same] | 32) == (words[k][same] | 32))
-            same++;
-        if (same == length && begin + same == stop)
+    for (int k = 0; words[k]; k++)
+        if (strlen(words[k]) == (size_t)(stop - begin) &&
+            strncasecmp(words[k], begin, (size_t)(stop - begin)) == 0)
             return k;
-    }
     return -1;
 }
 
@@ -342,24 +326,24 @@ static ritz_status read_banner(ritz_market *m)
 
     RITZ_REFUSE_IF(take_word(&at, stop, banner) < 0 ||
                        take_word(&at, stop, object) < 0,
-                   RITZ_ERR_FORMAT, "line 1: not '%%%%MatrixMarket matrix'");
+                   RITZ_ERR_FORMAT, "not '%%%%MatrixMarket matrix'");
     m->layout = take_word(&at, stop, layouts);
     RITZ_REFUSE_IF(m->layout < 0, RITZ_ERR_FORMAT,
-                   "line 1: neither 'coordinate' nor 'array'");
+                   "neither 'coordinate' nor 'array'");
     m->field = take_word(&at, stop, fields);
     RITZ_REFUSE_IF(m->field < 0 || (m->field == RITZ_MARKET_PATTERN &&
                                     m->layout == RITZ_MARKET_ARRAY),
                    RITZ_ERR_FORMAT,
-                   "line 1: the values are not real, integer, complex or "
+                   "the values are not real, integer, complex or "
                    "a pattern");
     m->symmetry = take_word(&at, stop, symmetries);
     RITZ_REFUSE_IF(m->symmetry < 0, RITZ_ERR_FORMAT,
-                   "line 1: not general, symmetric, skew-symmetric or "
+                   "not general, symmetric, skew-symmetric or "
                    "hermitian");
     m->kind = symmetries[m->symmetry];
     RITZ_REFUSE_IF(m->symmetry == RITZ_MARKET_HERMITIAN &&
                        m->field != RITZ_MARKET_COMPLEX,
-                   RITZ_ERR_FORMAT, "line 1: hermitian, but not complex");
+                   RITZ_ERR_FORMAT, "hermitian, but not complex");
     return RITZ_OK;
 }
 
@@ -383,14 +367,12 @@ static ritz_status read_size(ritz_market *m)
     int64_t n[3] = {0};
     int64_t bytes = 0;
 
-    RITZ_REFUSE_IF(!next_line(m), RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": ends before its size", m->text.number);
+    RITZ_REFUSE_IF(!next_line(m), RITZ_ERR_FORMAT, "ends before its size");
     RITZ_REFUSE_IF(!ritz_decimal_scan_row(
                        m->text.line, m->text.line_end,
                        m->layout == RITZ_MARKET_COORDINATE ? 3 : 2, n) ||
                        n[0] < 0 || n[1] < 0 || n[2] < 0,
-                   RITZ_ERR_FORMAT, "line %" PRId64 ": '%.*s' is not a size",
-                   m->text.number,
+                   RITZ_ERR_FORMAT, "'%.*s' is not a size",
                    ritz_lines_quoted(m->text.line, m->text.line_end),
                    m->text.line);
     m->nrow = n[0];
@@ -398,21 +380,37 @@ static ritz_status read_size(ritz_market *m)
     bytes = m->text.end - m->text.at;
     RITZ_REFUSE_IF(m->symmetry != RITZ_MARKET_GENERAL && m->nrow != m->ncol,
                    RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": a %s matrix cannot be %" PRId64
-                   " x %" PRId64,
-                   m->text.number, m->kind, m->nrow, m->ncol);
+                   "a %s matrix cannot be %" PRId64 " x %" PRId64, m->kind,
+                   m->nrow, m->ncol);
     RITZ_REFUSE_IF(m->nrow - NULL_ROWS > bytes || m->ncol - NULL_ROWS > bytes,
                    RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": %" PRId64 " x %" PRId64
+                   "%" PRId64 " x %" PRId64
                    " is far more than the file can fill",
-                   m->text.number, m->nrow, m->ncol);
+                   m->nrow, m->ncol);
     m->most =
         m->layout == RITZ_MARKET_COORDINATE ? n[2] : array_values(m, bytes);
     RITZ_REFUSE_IF(m->most < 0 || m->most > bytes / 2 + 1, RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": declares more entries than %" PRId64
-                   " bytes can hold",
-                   m->text.number, bytes);
+                   "declares more entries than %" PRId64 " bytes can hold",
+                   bytes);
     return RITZ_OK;
+}
+
+/* Read the head, and the entries too if they are wanted; what is wrong is
+ * said with its line. */
+static ritz_status read_lines(ritz_market *m, bool entries)
+{
+    ritz_status status = read_banner(m);
+    char line[32];
+
+    if (status == RITZ_OK)
+        status = read_size(m);
+    if (status == RITZ_OK && entries) {
+        RITZ_CHECK_NEW(m->entry, m->most);
+        status = read_entries(m);
+    }
+    snprintf(line, sizeof line, "line %" PRId64,
+             m->text.number > 0 ? m->text.number : 1);
+    return ritz_context(status, line);
 }
 
 static bool has_banner(const char *bytes, int64_t size)
@@ -429,8 +427,7 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
         .text = {.at = file->bytes, .end = file->bytes + file->size}};
     ritz_listed item = {0};
 
-    RITZ_CHECK(read_banner(&m));
-    RITZ_CHECK(read_size(&m));
+    RITZ_CHECK(read_lines(&m, false));
     item.nrow = m.nrow;
     item.ncol = m.ncol;
     item.symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
@@ -449,24 +446,18 @@ static int64_t count_digits(const ritz_market *m)
 static ritz_status read_matrix(const ritz_foreign *file,
                                const ritz_listed *which, ritz_matrix *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_market m = {
-        .text = {.at = file->bytes, .end = file->bytes + file->size}};
+    RITZ_OWN(ritz_market)
+    m = {.text = {.at = file->bytes, .end = file->bytes + file->size}};
 
     (void)which; /* there is one */
-    RITZ_TRY(read_banner(&m));
-    RITZ_TRY(read_size(&m));
-    RITZ_NEW(m.entry, m.most);
-    RITZ_TRY(read_entries(&m));
-    RITZ_TRY(settle_entries(&m));
-    RITZ_TRY(compress_entries(&m, out));
+    RITZ_CHECK(read_lines(&m, true));
+    RITZ_CHECK(settle_entries(&m));
+    RITZ_CHECK(compress_entries(&m, out));
     out->symmetric = m.symmetry == RITZ_MARKET_SYMMETRIC;
     out->digits = count_digits(&m);
     snprintf(out->spelling, sizeof out->spelling, "Matrix Market %s, %s, %s",
              layouts[m.layout], fields[m.field], m.kind);
-done:
-    free(m.entry);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_format ritz_format_matrix_market = {

@@ -11,22 +11,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Modes or columns from 0, as listed. */
-typedef struct shapes_choice {
-    int64_t count;
-    int64_t *at;
-} shapes_choice;
-
-/* Rows of a body and how they move. */
-typedef struct shapes_motion {
+/* A body that moves, with recovered dofs behind its own. */
+typedef struct body {
     int64_t num_dofs;
     const ritz_dof *dof;
+    const ritz_recovery *recovery;
     const ritz_grids *grids;
     const ritz_elements *elements;
-    const ritz_dense *T; /* num_dofs x shapes */
-} shapes_motion;
+} body;
 
 /* ---- lists of modes, "1-6,9" -------------------------------------------- */
+
+/* Modes or columns from 0, as listed. */
+typedef struct choice {
+    int64_t count, room;
+    int64_t *at;
+} choice;
+
+static void choice_free(choice *which)
+{
+    free(which->at);
+}
 
 /* "5" or "7-9" of so many letters. */
 static bool read_part(const char *text, size_t length, int64_t *from,
@@ -47,13 +52,13 @@ static bool read_part(const char *text, size_t length, int64_t *from,
     return !dash || (ritz_text_whole(dash, to) && *to >= *from);
 }
 
-/* Twice: to count, and to fill `at` unless it is NULL. */
+/* Append the numbers of a list, which are at most @p most; `which` NULL: only
+ * the largest is wanted. */
 static ritz_status walk_list(const char *list, const char *what, int64_t most,
-                             shapes_choice *out)
+                             choice *which, int64_t *largest)
 {
     const char *end = list + strlen(list);
 
-    out->count = 0;
     for (const char *at = list; at <= end;) {
         size_t length = strcspn(at, ",");
         int64_t from = 0, to = 0;
@@ -64,28 +69,11 @@ static ritz_status walk_list(const char *list, const char *what, int64_t most,
         RITZ_REFUSE_IF(to > most, RITZ_ERR_ARGUMENT,
                        "there is no %s %" PRId64 ", there are %" PRId64, what,
                        to, most);
-        for (int64_t k = from; k <= to; k++, out->count++)
-            if (out->at)
-                out->at[out->count] = k - 1;
-        at += length + 1;
-    }
-    return RITZ_OK;
-}
-
-/* The largest number of a list, to know how many modes are wanted. */
-static ritz_status find_furthest(const char *list, int64_t *out)
-{
-    const char *end = list + strlen(list);
-
-    *out = 0;
-    for (const char *at = list; at <= end;) {
-        size_t length = strcspn(at, ",");
-        int64_t from = 0, to = 0;
-
-        RITZ_REFUSE_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
-                       "'%.*s' is no part of a list of modes such as 1,5,10-20",
-                       (int)(length % 64), at);
-        *out = to > *out ? to : *out;
+        *largest = to > *largest ? to : *largest;
+        for (int64_t k = from; which && k <= to; k++) {
+            RITZ_CHECK_ROOM(which->at, which->count, which->room);
+            which->at[which->count++] = k - 1;
+        }
         at += length + 1;
     }
     return RITZ_OK;
@@ -93,30 +81,22 @@ static ritz_status find_furthest(const char *list, int64_t *out)
 
 /* "1,7-9" of @p most that there are; NULL: all. */
 static ritz_status choose_modes(const char *list, const char *what,
-                                int64_t most, shapes_choice *out)
+                                int64_t most, choice *out)
 {
-    ritz_status status = RITZ_OK;
-    shapes_choice made = {.count = most};
+    int64_t largest = 0;
 
     if (list)
-        RITZ_TRY(walk_list(list, what, most, &made));
-    RITZ_NEW(made.at, made.count + 1);
-    if (list)
-        RITZ_TRY(walk_list(list, what, most, &made));
-    for (int64_t k = 0; !list && k < most; k++)
-        made.at[k] = k;
-    *out = made;
-    made.at = NULL;
-done:
-    free(made.at);
-    return status;
+        return walk_list(list, what, most, out, &largest);
+    RITZ_CHECK_NEW(out->at, most);
+    for (; out->count < most; out->count++)
+        out->at[out->count] = out->count;
+    return RITZ_OK;
 }
 
 /* ---- points, how they move, and cells between them ---------------------- */
 
 /* Grids with a dof, in ascending order; index[k]: point of grid k, or -1. */
-static ritz_status list_points(const shapes_motion *m, int64_t *index,
-                               ritz_shapes *out)
+static ritz_status list_points(const body *m, int64_t *index, ritz_shapes *out)
 {
     const ritz_grids *grids = m->grids;
 
@@ -150,8 +130,8 @@ static ritz_status list_points(const shapes_motion *m, int64_t *index,
 }
 
 /* Displacement axis i of a grid brings axes[3 i + j] along basic axis j. */
-static void place_motion(const shapes_motion *m, const int64_t *index,
-                         ritz_shapes *out)
+static void place_motion(const body *m, const ritz_dense *T,
+                         const int64_t *index, ritz_shapes *out)
 {
     const ritz_grids *grids = m->grids;
 
@@ -164,14 +144,14 @@ static void place_motion(const shapes_motion *m, const int64_t *index,
         if (k < 0)
             continue;
         axis = grids->axes + 9 * grids->frame[k] + 3 * ((c - 1) % 3);
-        for (int64_t j = 0; j < m->T->ncol; j++)
+        for (int64_t j = 0; j < T->ncol; j++)
             for (int b = 0; b < 3; b++)
                 ritz_dense_col(to, j)[3 * index[k] + b] +=
-                    axis[b] * ritz_dense_col(m->T, j)[i];
+                    axis[b] * ritz_dense_col(T, j)[i];
     }
 }
 
-static bool has_rotations(const shapes_motion *m)
+static bool has_rotations(const body *m)
 {
     for (int64_t i = 0; i < m->num_dofs; i++)
         if (m->dof[i].component > 3)
@@ -180,7 +160,7 @@ static bool has_rotations(const shapes_motion *m)
 }
 
 /* Elements by points; a cell for each point if there are none. */
-static ritz_status list_cells(const shapes_motion *m, ritz_shapes *out)
+static ritz_status list_cells(const body *m, ritz_shapes *out)
 {
     RITZ_OWN(ritz_elements) cells = {0};
 
@@ -204,26 +184,33 @@ static ritz_status list_cells(const shapes_motion *m, ritz_shapes *out)
     return RITZ_OK;
 }
 
-/* All of the shapes but their names. */
-static ritz_status place_shapes(const shapes_motion *m, ritz_shapes *out)
+/* All of the shapes but their names; recovered dofs move with the others. */
+static ritz_status place_shapes(const body *own, const ritz_dense *T,
+                                ritz_shapes *out)
 {
     RITZ_OWN_ARRAY int64_t *index = NULL;
+    RITZ_OWN_ARRAY ritz_dof *dof = NULL;
+    RITZ_OWN(ritz_dense) shape = {0};
+    body all = *own;
 
-    RITZ_CHECK_NEW(index, m->grids->count);
-    RITZ_CHECK(list_points(m, index, out));
-    RITZ_CHECK(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->u));
-    if (has_rotations(m))
-        RITZ_CHECK(ritz_dense_new(3 * out->num_points, m->T->ncol, &out->turn));
-    place_motion(m, index, out);
-    return list_cells(m, out);
+    RITZ_CHECK(ritz_recovery_extend(own->recovery, own->num_dofs, own->dof, T,
+                                    &dof, &shape));
+    all.num_dofs += own->recovery->count;
+    all.dof = dof;
+    RITZ_CHECK_NEW(index, all.grids->count);
+    RITZ_CHECK(list_points(&all, index, out));
+    RITZ_CHECK(ritz_dense_new(3 * out->num_points, shape.ncol, &out->u));
+    if (has_rotations(&all))
+        RITZ_CHECK(ritz_dense_new(3 * out->num_points, shape.ncol, &out->turn));
+    place_motion(&all, &shape, index, out);
+    return list_cells(&all, out);
 }
 
 /* ---- which shapes ------------------------------------------------------- */
 
 /* Chosen columns, and room for what they are called. */
-static ritz_status pick_shapes(const ritz_dense *from,
-                               const shapes_choice *which, ritz_dense *T,
-                               ritz_shapes *out)
+static ritz_status pick_shapes(const ritz_dense *from, const choice *which,
+                               ritz_dense *T, ritz_shapes *out)
 {
     RITZ_CHECK(ritz_dense_new(from->nrow, which->count, T));
     RITZ_CHECK_NEW(out->name, which->count + 1);
@@ -235,9 +222,8 @@ static ritz_status pick_shapes(const ritz_dense *from,
 }
 
 /* "mode 7, 12.3 Hz" */
-static ritz_status pick_modes(const ritz_pairs *pairs,
-                              const shapes_choice *which, ritz_dense *Phi,
-                              ritz_shapes *out)
+static ritz_status pick_modes(const ritz_pairs *pairs, const choice *which,
+                              ritz_dense *Phi, ritz_shapes *out)
 {
     RITZ_CHECK(pick_shapes(&pairs->Phi, which, Phi, out));
     for (int64_t j = 0; j < which->count; j++) {
@@ -251,31 +237,7 @@ static ritz_status pick_modes(const ritz_pairs *pairs,
     return RITZ_OK;
 }
 
-/* A body that moves by T, with recovered dofs behind its own. */
-typedef struct body {
-    int64_t num_dofs;
-    const ritz_dof *dof;
-    const ritz_recovery *recovery;
-    const ritz_grids *grids;
-    const ritz_elements *elements;
-} body;
-
-static ritz_status finish_shapes(const body *of, const ritz_dense *T,
-                                 ritz_shapes *shapes)
-{
-    RITZ_OWN_ARRAY ritz_dof *all = NULL;
-    RITZ_OWN(ritz_dense) shape = {0};
-    shapes_motion m = {.grids = of->grids, .elements = of->elements};
-
-    RITZ_CHECK(ritz_recovery_extend(of->recovery, of->num_dofs, of->dof, T,
-                                    &all, &shape));
-    m.num_dofs = of->num_dofs + of->recovery->count;
-    m.dof = all;
-    m.T = &shape;
-    return place_shapes(&m, shapes);
-}
-
-static body of_component(const ritz_component *component)
+static body body_of_component(const ritz_component *component)
 {
     return (body){component->num_dofs, component->dof, &component->recovery,
                   &component->grids, &component->elements};
@@ -284,83 +246,63 @@ static body of_component(const ritz_component *component)
 ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
                                    const char *list, ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
     const body whole = {reduced->num_dofs, reduced->dof, &reduced->recovery,
                         &reduced->grids, &reduced->elements};
-    ritz_shapes shapes = {0};
-    ritz_dampers dampers = {0};
-    ritz_dense K = {0}, D = {0}, Phi = {0}, T = {0};
-    ritz_pairs pairs = {0};
-    shapes_choice which = {0};
+    RITZ_OWN(ritz_shapes) shapes = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
+    RITZ_OWN(ritz_dense) K = {0}, D = {0}, Phi = {0}, T = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(choice) which = {0};
 
-    RITZ_FAIL_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
-                 "it was reduced --without-basis, which holds the shapes");
-    RITZ_TRY(ritz_dense_copy(&reduced->K, &K));
-    RITZ_TRY(ritz_dampers_copy(&reduced->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install(&dampers, &K, &D));
-    RITZ_TRY(ritz_eigen_dense(&K, &reduced->M, &pairs));
-    RITZ_TRY(choose_modes(list, "mode", pairs.Phi.ncol, &which));
-    RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
-    RITZ_TRY(ritz_dense_mul(&reduced->T, &Phi, &T));
-    RITZ_TRY(finish_shapes(&whole, &T, &shapes));
+    RITZ_REFUSE_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
+                   "it was reduced --without-basis, which holds the shapes");
+    RITZ_CHECK(ritz_dense_copy(&reduced->K, &K));
+    RITZ_CHECK(ritz_dampers_copy(&reduced->dampers, &dampers));
+    RITZ_CHECK(ritz_dampers_install(&dampers, &K, &D));
+    RITZ_CHECK(ritz_eigen_dense(&K, &reduced->M, &pairs));
+    RITZ_CHECK(choose_modes(list, "mode", pairs.Phi.ncol, &which));
+    RITZ_CHECK(pick_modes(&pairs, &which, &Phi, &shapes));
+    RITZ_CHECK(ritz_dense_mul(&reduced->T, &Phi, &T));
+    RITZ_CHECK(place_shapes(&whole, &T, &shapes));
     RITZ_MOVE(*out, shapes);
-done:
-    ritz_shapes_free(&shapes);
-    ritz_dampers_free(&dampers);
-    ritz_dense_free(&K);
-    ritz_dense_free(&D);
-    ritz_dense_free(&Phi);
-    ritz_dense_free(&T);
-    ritz_pairs_free(&pairs);
-    free(which.at);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_shapes_of_component(const ritz_component *component,
                                      const char *list, ritz_shapes *out)
 {
     enum { USUAL = 10 };
-    ritz_status status = RITZ_OK;
-    const body whole = of_component(component);
-    ritz_shapes shapes = {0};
-    ritz_dampers dampers = {0};
-    ritz_sparse K = {0}, D = {0};
-    ritz_span span = {.modes = USUAL};
-    ritz_dense Phi = {0};
-    ritz_pairs pairs = {0};
-    shapes_choice which = {0};
+    const body whole = body_of_component(component);
+    RITZ_OWN(ritz_shapes) shapes = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
+    RITZ_OWN(ritz_sparse) K = {0}, D = {0};
+    RITZ_OWN(ritz_dense) Phi = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(choice) which = {0};
+    ritz_span span = {.modes = list ? 0 : USUAL};
+    int64_t most = 0;
 
     if (list)
-        RITZ_TRY(find_furthest(list, &span.modes));
+        RITZ_CHECK(walk_list(list, "mode", INT64_MAX, NULL, &span.modes));
     if (span.modes > component->num_dofs)
         span.modes = component->num_dofs;
-    RITZ_TRY(ritz_sparse_copy(&component->K, &K));
-    RITZ_TRY(ritz_dampers_copy(&component->dampers, &dampers));
-    RITZ_TRY(ritz_dampers_install_sparse(&dampers, &K, &D));
-    RITZ_TRY(ritz_eigen_sparse(&K, &component->M, &span, &pairs));
-    RITZ_TRY(choose_modes(list, "mode",
-                          list ? pairs.Phi.ncol : pairs.num_rigid + span.modes,
-                          &which));
-    if (!list && which.count > pairs.Phi.ncol)
-        which.count = pairs.Phi.ncol;
-    RITZ_TRY(pick_modes(&pairs, &which, &Phi, &shapes));
-    RITZ_TRY(finish_shapes(&whole, &Phi, &shapes));
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &K));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
+    RITZ_CHECK(ritz_dampers_install_sparse(&dampers, &K, &D));
+    RITZ_CHECK(ritz_eigen_sparse(&K, &component->M, &span, &pairs));
+    most = pairs.Phi.ncol;
+    if (!list && most > pairs.num_rigid + span.modes)
+        most = pairs.num_rigid + span.modes;
+    RITZ_CHECK(choose_modes(list, "mode", most, &which));
+    RITZ_CHECK(pick_modes(&pairs, &which, &Phi, &shapes));
+    RITZ_CHECK(place_shapes(&whole, &Phi, &shapes));
     RITZ_MOVE(*out, shapes);
-done:
-    ritz_shapes_free(&shapes);
-    ritz_dampers_free(&dampers);
-    ritz_sparse_free(&K);
-    ritz_sparse_free(&D);
-    ritz_dense_free(&Phi);
-    ritz_pairs_free(&pairs);
-    free(which.at);
-    return status;
+    return RITZ_OK;
 }
 
 /* "column 3 constraint", "column 9 normal, 12.3 Hz" */
-static ritz_status pick_columns(const ritz_basis *basis,
-                                const shapes_choice *which, ritz_dense *T,
-                                ritz_shapes *out)
+static ritz_status pick_columns(const ritz_basis *basis, const choice *which,
+                                ritz_dense *T, ritz_shapes *out)
 {
     RITZ_CHECK(pick_shapes(&basis->T, which, T, out));
     for (int64_t j = 0; j < which->count; j++) {
@@ -382,27 +324,22 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
                                  const ritz_component *component,
                                  const char *list, ritz_shapes *out)
 {
-    ritz_status status = RITZ_OK;
-    const body whole = of_component(component);
-    ritz_shapes shapes = {0};
-    ritz_dense T = {0};
-    shapes_choice which = {0};
+    const body whole = body_of_component(component);
+    RITZ_OWN(ritz_shapes) shapes = {0};
+    RITZ_OWN(ritz_dense) T = {0};
+    RITZ_OWN(choice) which = {0};
 
-    RITZ_FAIL_IF(basis->states, RITZ_ERR_ARGUMENT,
-                 "a basis of states has no shapes");
-    RITZ_FAIL_IF(basis->T.nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
-                 "the basis is for %" PRId64
-                 " dofs, the component has %" PRId64,
-                 basis->T.nrow, component->num_dofs);
-    RITZ_TRY(choose_modes(list, "column", basis->T.ncol, &which));
-    RITZ_TRY(pick_columns(basis, &which, &T, &shapes));
-    RITZ_TRY(finish_shapes(&whole, &T, &shapes));
+    RITZ_REFUSE_IF(basis->states, RITZ_ERR_ARGUMENT,
+                   "a basis of states has no shapes");
+    RITZ_REFUSE_IF(basis->T.nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
+                   "the basis is for %" PRId64
+                   " dofs, the component has %" PRId64,
+                   basis->T.nrow, component->num_dofs);
+    RITZ_CHECK(choose_modes(list, "column", basis->T.ncol, &which));
+    RITZ_CHECK(pick_columns(basis, &which, &T, &shapes));
+    RITZ_CHECK(place_shapes(&whole, &T, &shapes));
     RITZ_MOVE(*out, shapes);
-done:
-    ritz_shapes_free(&shapes);
-    ritz_dense_free(&T);
-    free(which.at);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_shapes_free(ritz_shapes *shapes)

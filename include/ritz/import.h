@@ -95,7 +95,7 @@ ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
 
 /** Put the path of a file before what is wrong with it. */
 ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status);
-void ritz_foreign_close(ritz_foreign *file);
+void ritz_foreign_free(ritz_foreign *file);
 
 /** All matrices of a file, or of bytes, at once. */
 ritz_status ritz_foreign_read(const char *path, ritz_matrices *out);

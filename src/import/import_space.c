@@ -196,7 +196,7 @@ static ritz_status take_file(const char *text, ritz_file_sums *sums, parts *out)
         RITZ_TRY(find_stem(&file.listing, path, stem));
     RITZ_TRY(take_stem(&file, stem, out));
 done:
-    ritz_foreign_close(&file);
+    ritz_foreign_free(&file);
     free(path);
     return status;
 }

@@ -240,7 +240,7 @@ static ritz_status describe_foreign(cli_run *run, const char *path,
         RITZ_TRY(describe_text(run, &file));
     }
 done:
-    ritz_foreign_close(&file);
+    ritz_foreign_free(&file);
     return status;
 }
 

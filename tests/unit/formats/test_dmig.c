@@ -25,7 +25,7 @@ static ritz_status parse_bytes(const char *bytes, int64_t size,
     all = (ritz_matrices){0};
 done:
     ritz_matrices_free(&all);
-    ritz_foreign_close(&file);
+    ritz_foreign_free(&file);
     return status;
 }
 

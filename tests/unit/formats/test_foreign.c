@@ -149,7 +149,7 @@ static void a_directory_is_read_without_values(void **state)
     ritz_matrix_free(&m);
     assert_fails(ritz_foreign_take(&file, 1, &m), RITZ_ERR_FORMAT,
                  "line 8: '  ?.0E+00' in column 1 of 'MAA' is not a number");
-    ritz_foreign_close(&file);
+    ritz_foreign_free(&file);
     remove("foreign.op4");
 }
 
@@ -193,7 +193,7 @@ static void matrices_are_taken_in_any_order(const ritz_output4_style *style)
         ritz_matrix_free(&m);
         ritz_matrix_free(&all[k]);
     }
-    ritz_foreign_close(&file);
+    ritz_foreign_free(&file);
     remove("foreign.op4");
 }
 
