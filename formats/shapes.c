@@ -23,12 +23,12 @@ typedef struct body {
 /* ---- lists of modes, "1-6,9" -------------------------------------------- */
 
 /* Modes or columns from 0, as listed. */
-typedef struct choice {
+typedef struct mode_choice {
     int64_t count, room;
     int64_t *at;
-} choice;
+} mode_choice;
 
-static void choice_free(choice *which)
+static void mode_choice_free(mode_choice *which)
 {
     free(which->at);
 }
@@ -55,7 +55,7 @@ static bool read_part(const char *text, size_t length, int64_t *from,
 /* Append the numbers of a list, which are at most @p most; `which` NULL: only
  * the largest is wanted. */
 static ritz_status walk_list(const char *list, const char *what, int64_t most,
-                             choice *which, int64_t *largest)
+                             mode_choice *which, int64_t *largest)
 {
     const char *end = list + strlen(list);
 
@@ -81,7 +81,7 @@ static ritz_status walk_list(const char *list, const char *what, int64_t most,
 
 /* "1,7-9" of @p most that there are; NULL: all. */
 static ritz_status choose_modes(const char *list, const char *what,
-                                int64_t most, choice *out)
+                                int64_t most, mode_choice *out)
 {
     int64_t largest = 0;
 
@@ -209,7 +209,7 @@ static ritz_status place_shapes(const body *own, const ritz_dense *T,
 /* ---- which shapes ------------------------------------------------------- */
 
 /* Chosen columns, and room for what they are called. */
-static ritz_status pick_shapes(const ritz_dense *from, const choice *which,
+static ritz_status pick_shapes(const ritz_dense *from, const mode_choice *which,
                                ritz_dense *T, ritz_shapes *out)
 {
     RITZ_CHECK(ritz_dense_new(from->nrow, which->count, T));
@@ -222,7 +222,7 @@ static ritz_status pick_shapes(const ritz_dense *from, const choice *which,
 }
 
 /* "mode 7, 12.3 Hz" */
-static ritz_status pick_modes(const ritz_pairs *pairs, const choice *which,
+static ritz_status pick_modes(const ritz_pairs *pairs, const mode_choice *which,
                               ritz_dense *Phi, ritz_shapes *out)
 {
     RITZ_CHECK(pick_shapes(&pairs->Phi, which, Phi, out));
@@ -252,7 +252,7 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     RITZ_OWN(ritz_dampers) dampers = {0};
     RITZ_OWN(ritz_dense) K = {0}, D = {0}, Phi = {0}, T = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    RITZ_OWN(choice) which = {0};
+    RITZ_OWN(mode_choice) which = {0};
 
     RITZ_REFUSE_IF(!reduced->T.val || !reduced->dof, RITZ_ERR_ARGUMENT,
                    "it was reduced --without-basis, which holds the shapes");
@@ -278,7 +278,7 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
     RITZ_OWN(ritz_sparse) K = {0}, D = {0};
     RITZ_OWN(ritz_dense) Phi = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    RITZ_OWN(choice) which = {0};
+    RITZ_OWN(mode_choice) which = {0};
     ritz_span span = {.modes = list ? 0 : USUAL};
     int64_t most = 0;
 
@@ -301,8 +301,9 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
 }
 
 /* "column 3 constraint", "column 9 normal, 12.3 Hz" */
-static ritz_status pick_columns(const ritz_basis *basis, const choice *which,
-                                ritz_dense *T, ritz_shapes *out)
+static ritz_status pick_columns(const ritz_basis *basis,
+                                const mode_choice *which, ritz_dense *T,
+                                ritz_shapes *out)
 {
     RITZ_CHECK(pick_shapes(&basis->T, which, T, out));
     for (int64_t j = 0; j < which->count; j++) {
@@ -327,7 +328,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
     const body whole = body_of_component(component);
     RITZ_OWN(ritz_shapes) shapes = {0};
     RITZ_OWN(ritz_dense) T = {0};
-    RITZ_OWN(choice) which = {0};
+    RITZ_OWN(mode_choice) which = {0};
 
     RITZ_REFUSE_IF(basis->states, RITZ_ERR_ARGUMENT,
                    "a basis of states has no shapes");
