@@ -16,7 +16,9 @@ int main(void)
     ritz_status status = rod_component(200, &rod);
 
     if (status == RITZ_OK)
-        status = ritz_response_modal(&rod, &damping, 0.0, &grid, &response);
+        status = ritz_response_of(ritz_model_of_component(&rod, &damping),
+                                  &ritz_response_engine_modal, 0.0, 0.0, &grid,
+                                  &response);
     if (status == RITZ_OK) {
         puts("       Hz          |H|");
         for (int64_t k = 0; k < response.count; k++)

@@ -49,56 +49,6 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out);
 
-/** ritz_response_dense for a model that may have structural damping too. */
-ritz_status ritz_response_second_order(const ritz_second_order *model,
-                                       const ritz_damping *damping,
-                                       const ritz_grid *grid,
-                                       ritz_response *out);
-
-/**
- * Modal: every mode of a small dense model, damping ratios from @p damping and
- * Phi'D Phi; where D couples modes, they are solved for together at each point.
- *
- * Rigid modes contribute 1/(-omega^2); a point at 0 Hz is refused if they
- * are controllable and observable.
- *
- * @return RITZ_ERR_SINGULAR if a point lies on an undamped pole
- */
-ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
-                                const ritz_damping *damping,
-                                const ritz_grid *grid, ritz_response *out);
-
-/**
- * Modal, on the full matrices: modes up to @p up_to_hz (0: three times the
- * highest point); modes above respond without damping, as a series in w^2 that
- * begins with their residual flexibility.
- */
-ritz_status ritz_response_modal(const ritz_component *component,
-                                const ritz_damping *damping, double up_to_hz,
-                                const ritz_grid *grid, ritz_response *out);
-
-/**
- * Direct: one complex factor of K + i K4 + i w D - w^2 M at each
- * point. Ratios of @p damping act on the modes up to @p up_to_hz, which are
- * taken out of the load first; what lies above them is then undamped but for
- * D and K4. Rayleigh damping is exact. With D, K4 or Rayleigh damping a free
- * body is refused at 0 Hz.
- */
-ritz_status ritz_response_direct(const ritz_component *component,
-                                 const ritz_damping *damping, double up_to_hz,
-                                 const ritz_grid *grid, ritz_response *out);
-
-/**
- * Response C (i w E - A)^-1 B + D; a grid that is refined gets points around
- * every pole.
- *
- * @return RITZ_ERR_SINGULAR if a point lies on a pole
- * @cost   O(n^3), and O(n^2) a point and input
- */
-ritz_status ritz_response_states(const ritz_state_space *model,
-                                 const ritz_grid *grid, ritz_response *out);
-
 /**
  * Between stored points: each channel is the cubic through the four points
  * around, two on either side, at the ends the outermost four; of fewer points,
@@ -112,26 +62,16 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
 
 void ritz_response_free(ritz_response *response);
 
-/* The model that responds, one of the first three; everything is borrowed. */
 typedef struct ritz_response_request {
-    const ritz_component *component;
-    const ritz_second_order *matrices;
-    const ritz_state_space *states;
-    const ritz_damping *damping; /* NULL: that of the matrices alone */
-    double from_hz, to_hz;       /* the range of later requests */
-    double up_to_hz;  /* modes of a component; 0: three times the end */
+    ritz_model model;      /* that responds */
+    double from_hz, to_hz; /* the range of later requests */
+    double up_to_hz;       /* modes of a component; 0: three times the end */
     double tolerance; /* of engines that approximate, relative to the largest
                          |H| of a channel; 0: 1e-9 */
 } ritz_response_request;
 
 /* A model made ready to respond at any frequency of its range: opaque. */
 typedef struct ritz_responder ritz_responder;
-
-enum {
-    RITZ_RESPONDS_COMPONENT = 1,
-    RITZ_RESPONDS_MATRICES = 2,
-    RITZ_RESPONDS_STATES = 4,
-};
 
 typedef struct ritz_response_engine {
     const char *name;    /* as typed on the command line */
@@ -140,13 +80,32 @@ typedef struct ritz_response_engine {
     /* what a newcomer chooses by: for which models, at what cost, what is
        guaranteed, where it fails */
     const char *when, *cost, *holds, *fails;
-    int takes; /* RITZ_RESPONDS_... */
+    int takes; /* sum of ritz_model_kind */
     ritz_status (*make)(const ritz_response_request *request,
                         ritz_responder *out);
 } ritz_response_engine;
 
 /** All engines, ended by NULL. */
 extern const ritz_response_engine *const ritz_response_engines[];
+
+/**
+ * The full matrices of a component at each point. Damping ratios act on the
+ * modes up to `up_to_hz`, which are taken out of the load first; what lies above
+ * them is then undamped but for D and K4. Rayleigh damping is exact. With D, K4
+ * or Rayleigh damping a free body is refused at 0 Hz.
+ */
+extern const ritz_response_engine ritz_response_engine_direct;
+
+/**
+ * A sum of modes. Of a dense model all of them, with ratios of given damping and
+ * of Phi'D Phi; where D couples modes, they are solved for together at each
+ * point. Of a component those up to `up_to_hz`; modes above respond without
+ * damping, as a series in w^2 that begins with their residual flexibility.
+ *
+ * Rigid modes contribute 1/(-w^2): a point at 0 Hz is refused if they are
+ * controllable and observable.
+ */
+extern const ritz_response_engine ritz_response_engine_modal;
 
 /** Engine called @p name; NULL and a sentence with the nearest if none. */
 const ritz_response_engine *ritz_response_engine_find(const char *name);
@@ -214,14 +173,17 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
 void ritz_responder_free(ritz_responder **responder);
 
 /**
- * All at once for a component: the points of @p grid if @p tolerance is 0, else
- * those that keep it. @p engine NULL: ritz_responder_auto.
+ * All at once: the points of @p grid if @p tolerance is 0, else those that keep
+ * it.
+ *
+ * @param[in] engine    NULL: ritz_responder_auto
+ * @param[in] up_to_hz  as in a request
+ * @return RITZ_ERR_SINGULAR if a point lies on an undamped pole
  */
-ritz_status ritz_response_component(const ritz_component *component,
-                                    const ritz_response_engine *engine,
-                                    const ritz_damping *damping,
-                                    double up_to_hz, double tolerance,
-                                    const ritz_grid *grid, ritz_response *out);
+ritz_status ritz_response_of(ritz_model model,
+                             const ritz_response_engine *engine,
+                             double up_to_hz, double tolerance,
+                             const ritz_grid *grid, ritz_response *out);
 
 /*
  * Singular values of a response of several inputs and outputs: the largest is

@@ -134,14 +134,6 @@ typedef struct ritz_simulation {
     char damping[RITZ_DAMPING_SIZE];
 } ritz_simulation;
 
-/* What is simulated: one of the three, borrowed. */
-typedef struct ritz_simulated {
-    const ritz_second_order *model;  /* small and dense */
-    const ritz_component *component; /* full, its dampers installed */
-    const ritz_state_space *states;  /* its damping is in A */
-    const ritz_damping *damping;     /* beside matrices; NULL: none */
-} ritz_simulated;
-
 /**
  * Simulate. Of a small dense model motions without mass are eliminated
  * statically. A full component goes by its modes up to request->up_to_hz, what
@@ -160,7 +152,7 @@ typedef struct ritz_simulated {
  *         the others O(r^3) once and O(r^2) a step; of a full component one
  *         factor, and one solve a step
  */
-ritz_status ritz_simulate(const ritz_simulated *subject,
+ritz_status ritz_simulate(ritz_model subject,
                           const ritz_simulation_request *request,
                           ritz_simulation *out);
 
@@ -190,7 +182,7 @@ typedef struct ritz_accuracy {
  * @return RITZ_ERR_CONVERGENCE if no step with which there are 2^23 of them,
  *         and 2^28 values, reaches it
  */
-ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
+ritz_status ritz_simulate_accurate(ritz_model subject,
                                    const ritz_simulation_request *request,
                                    double tolerance, ritz_accuracy *reached,
                                    ritz_simulation *out);
@@ -234,13 +226,11 @@ typedef struct ritz_cost {
  * @return RITZ_ERR_ARGUMENT as ritz_simulate, or if the band makes no sense
  * @cost   O(r^3) and some 20 ms of steps
  */
-ritz_status ritz_simulate_cost(const ritz_second_order *model,
-                               const ritz_damping *damping,
-                               const double band_hz[2], ritz_cost *out);
+ritz_status ritz_simulate_cost(ritz_model model, const double band_hz[2],
+                               ritz_cost *out);
 
 /** Processor time, s, of one step of any integrator: the least of several. */
-ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
-                                    const ritz_damping *damping,
+ritz_status ritz_simulate_step_cost(ritz_model model,
                                     const ritz_integrator *integrator,
                                     double step, double *out);
 
@@ -264,8 +254,7 @@ ritz_status ritz_simulate_refactor_cost(int64_t order, double *out);
  *
  * @param[in] step  s; of an explicit integrator any, above its limit too
  */
-ritz_status ritz_simulate_growth(const ritz_second_order *model,
-                                 const ritz_damping *damping,
+ritz_status ritz_simulate_growth(ritz_model model,
                                  const ritz_integrator *integrator, double step,
                                  int64_t steps, int64_t starts, double *out);
 

@@ -516,8 +516,8 @@ static ritz_status take_cost(const ritz_fitter *f, const ritz_stage *stage,
     RITZ_CHECK(open_model(f, stage, &f->place[0], &m));
     model =
         (ritz_second_order){&m.lent.K, &m.lent.M, &m.lent.D, NULL, &m.lent.io};
-    status = ritz_simulate_cost(&model, &limits->damping, limits->band_hz,
-                                &candidate->cost);
+    status = ritz_simulate_cost(ritz_model_of_dense(&model, &limits->damping),
+                                limits->band_hz, &candidate->cost);
     if (status != RITZ_OK)
         candidate->cost = (ritz_cost){0};
     return status == RITZ_ERR_MEMORY ? status : RITZ_OK;

@@ -358,7 +358,7 @@ static ritz_status make_direct(const ritz_response_request *request,
     RITZ_OWN_ARRAY ritz_direct *s = NULL;
 
     RITZ_CHECK_NEW(s, 1);
-    RITZ_CHECK(ritz_direct_new(request->component, request->damping,
+    RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
                                ritz_response_highest(request), s));
     out->poles = &s->poles;
     out->pairs = &s->pairs;
@@ -376,17 +376,6 @@ const ritz_response_engine ritz_response_engine_direct = {
     .holds = "D, K4 and Rayleigh damping exactly, ratios on the modes up to "
              "--up-to-hz",
     .fails = "many points of a large model take hours",
-    .takes = RITZ_RESPONDS_COMPONENT,
+    .takes = RITZ_MODEL_COMPONENT,
     .make = make_direct,
 };
-
-ritz_status ritz_response_direct(const ritz_component *component,
-                                 const ritz_damping *damping, double up_to_hz,
-                                 const ritz_grid *grid, ritz_response *out)
-{
-    ritz_response_request request = {
-        .component = component, .damping = damping, .up_to_hz = up_to_hz};
-
-    return ritz_response_once(&ritz_response_engine_direct, &request, grid,
-                              out);
-}

@@ -547,7 +547,7 @@ static ritz_status converge_errors(krylov_responder *k,
  */
 static double highest_mode(const ritz_response_request *request)
 {
-    const ritz_damping *damping = request->damping;
+    const ritz_damping *damping = request->model.damping;
 
     if (request->up_to_hz > 0.0 ||
         (damping && damping->kind != RITZ_DAMPING_NONE &&
@@ -559,7 +559,7 @@ static double highest_mode(const ritz_response_request *request)
 static ritz_status start_krylov(const ritz_response_request *request,
                                 krylov_responder *k)
 {
-    const ritz_io *io = &request->component->io;
+    const ritz_io *io = &request->model.component->io;
     double highest = highest_mode(request);
 
     RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
@@ -573,8 +573,8 @@ static ritz_status start_krylov(const ritz_response_request *request,
     k->outputs = io->num_outputs;
     k->inputs = io->num_inputs;
     k->values = k->outputs * k->inputs;
-    RITZ_CHECK(ritz_direct_new(request->component, request->damping, highest,
-                               &k->full));
+    RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
+                               highest, &k->full));
     RITZ_CHECK(ritz_krylov_space_new(
         &k->full, ritz_eigen_lambda(request->to_hz), &k->space));
     RITZ_CHECK(prepare_points(k, request->from_hz, request->to_hz));
@@ -623,6 +623,6 @@ const ritz_response_engine ritz_response_engine_krylov = {
     .holds = "the tolerance: by a bound without D and K4, else by an indicator "
              "that full answers confirm",
     .fails = "hundreds of inputs or outputs: each adds vectors",
-    .takes = RITZ_RESPONDS_COMPONENT,
+    .takes = RITZ_MODEL_COMPONENT,
     .make = make_krylov,
 };

@@ -45,10 +45,11 @@ static ritz_status set_component(const ritz_response_request *request,
     RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
                    "modes up to %g Hz cannot give a response up to %g Hz",
                    highest, request->to_hz);
-    RITZ_CHECK(ritz_poles_of_component(request->component, request->damping,
-                                       highest, &m->pairs, &m->poles));
-    return ritz_residual_new(request->component, request->damping, &m->pairs,
-                             request->to_hz, highest, &m->residual);
+    RITZ_CHECK(ritz_poles_of_component(request->model.component,
+                                       request->model.damping, highest,
+                                       &m->pairs, &m->poles));
+    return ritz_residual_new(request->model.component, request->model.damping,
+                             &m->pairs, request->to_hz, highest, &m->residual);
 }
 
 static ritz_status make_modal(const ritz_response_request *request,
@@ -58,11 +59,12 @@ static ritz_status make_modal(const ritz_response_request *request,
     modal_responder *m = NULL;
 
     RITZ_NEW(m, 1);
-    if (request->component)
+    if (request->model.kind == RITZ_MODEL_COMPONENT)
         RITZ_TRY(set_component(request, m));
     else
-        RITZ_TRY(ritz_poles_of_dense(request->matrices, request->damping,
-                                     request->to_hz, &m->poles));
+        RITZ_TRY(ritz_poles_of_dense(&request->model.dense,
+                                     request->model.damping, request->to_hz,
+                                     &m->poles));
     out->poles = &m->poles;
     out->at = modal_at;
     out->free = finish_modal;
@@ -84,36 +86,6 @@ const ritz_response_engine ritz_response_engine_modal = {
              "but a M + b K, to 1e-12",
     .fails = "of components, K4 and any other D act on the modes that are "
              "summed alone",
-    .takes = RITZ_RESPONDS_COMPONENT | RITZ_RESPONDS_MATRICES,
+    .takes = (int)RITZ_MODEL_COMPONENT | (int)RITZ_MODEL_DENSE,
     .make = make_modal,
 };
-
-ritz_status ritz_response_modal(const ritz_component *component,
-                                const ritz_damping *damping, double up_to_hz,
-                                const ritz_grid *grid, ritz_response *out)
-{
-    ritz_response_request request = {
-        .component = component, .damping = damping, .up_to_hz = up_to_hz};
-
-    return ritz_response_once(&ritz_response_engine_modal, &request, grid, out);
-}
-
-ritz_status ritz_response_second_order(const ritz_second_order *model,
-                                       const ritz_damping *damping,
-                                       const ritz_grid *grid,
-                                       ritz_response *out)
-{
-    ritz_response_request request = {.matrices = model, .damping = damping};
-
-    return ritz_response_once(&ritz_response_engine_modal, &request, grid, out);
-}
-
-ritz_status ritz_response_dense(const ritz_dense *K, const ritz_dense *M,
-                                const ritz_dense *D, const ritz_io *io,
-                                const ritz_damping *damping,
-                                const ritz_grid *grid, ritz_response *out)
-{
-    const ritz_second_order model = {.K = K, .M = M, .D = D, .io = io};
-
-    return ritz_response_second_order(&model, damping, grid, out);
-}

@@ -620,13 +620,13 @@ static void free_rational(rational_nodes *s)
 static ritz_status start_rational(const ritz_response_request *request,
                                   const ritz_responder *out, rational_nodes *s)
 {
-    const ritz_io *io = &request->component->io;
+    const ritz_io *io = &request->model.component->io;
     double unit = 2.0 * RITZ_PI * request->to_hz;
     double low = request->from_hz;
 
     s->values = io->num_outputs * io->num_inputs;
     s->noise = &out->noise;
-    s->mirror = !request->component->K4.colptr;
+    s->mirror = !request->model.component->K4.colptr;
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = RITZ_ABOVE_REST * request->to_hz;
     RITZ_CHECK(find_poles(s, out));
@@ -663,7 +663,7 @@ static ritz_status make_rational(const ritz_response_request *request,
     rational_nodes *s = NULL;
 
     RITZ_NEW(s, 1);
-    RITZ_TRY(ritz_direct_new(request->component, request->damping,
+    RITZ_TRY(ritz_direct_new(request->model.component, request->model.damping,
                              ritz_response_highest(request), &s->full));
     out->poles = &s->full.poles;
     out->pairs = &s->full.pairs;
@@ -690,6 +690,6 @@ const ritz_response_engine ritz_response_engine_rational = {
     .holds = "what the nodes that came last showed, three in a row",
     .fails = "many modes: krylov needs fewer factors; D or K4 of a large "
              "component, whose poles take factors too",
-    .takes = RITZ_RESPONDS_COMPONENT,
+    .takes = RITZ_MODEL_COMPONENT,
     .make = make_rational,
 };

@@ -18,22 +18,24 @@ static bool has_matrices(const ritz_component *c)
 
 static bool is_rayleigh(const ritz_response_request *request)
 {
-    return request->damping && ritz_damping_is_rayleigh(request->damping);
+    const ritz_damping *damping = request->model.damping;
+
+    return damping && ritz_damping_is_rayleigh(damping);
 }
 
 const ritz_response_engine *
 ritz_response_engine_choose(const ritz_response_request *request,
                             const char **why)
 {
-    if (request->states) {
+    if (request->model.kind == RITZ_MODEL_STATES) {
         *why = "a state space has no other";
         return &ritz_response_engine_states;
     }
-    if (request->matrices) {
+    if (request->model.kind == RITZ_MODEL_DENSE) {
         *why = "all modes of a small dense model cost little";
         return &ritz_response_engine_modal;
     }
-    if (has_matrices(request->component) || is_rayleigh(request)) {
+    if (has_matrices(request->model.component) || is_rayleigh(request)) {
         *why = "damping matrices act on all modes, which a sum of some misses";
         return &ritz_response_engine_krylov;
     }
@@ -56,7 +58,8 @@ ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
     ritz_status status = ritz_responder_new(engine, request, out);
     char said[RITZ_REMARK_SIZE / 2];
 
-    if (status != RITZ_ERR_CONVERGENCE || !request->component)
+    if (status != RITZ_ERR_CONVERGENCE ||
+        request->model.kind != RITZ_MODEL_COMPONENT)
         return status;
     (void)snprintf(said, sizeof said, "%.*s", (int)sizeof said - 1,
                    ritz_error_message());
@@ -67,18 +70,15 @@ done:
     return status;
 }
 
-ritz_status ritz_response_component(const ritz_component *component,
-                                    const ritz_response_engine *engine,
-                                    const ritz_damping *damping,
-                                    double up_to_hz, double tolerance,
-                                    const ritz_grid *grid, ritz_response *out)
+ritz_status ritz_response_of(ritz_model model,
+                             const ritz_response_engine *engine,
+                             double up_to_hz, double tolerance,
+                             const ritz_grid *grid, ritz_response *out)
 {
     RITZ_OWN(ritz_responder) *responder = NULL;
     const char *why = NULL;
-    ritz_response_request request = {.component = component,
-                                     .damping = damping,
-                                     .up_to_hz = up_to_hz,
-                                     .tolerance = 0.1 * tolerance};
+    ritz_response_request request = {
+        .model = model, .up_to_hz = up_to_hz, .tolerance = 0.1 * tolerance};
 
     RITZ_CHECK(ritz_grid_check(grid));
     request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
@@ -88,8 +88,6 @@ ritz_status ritz_response_component(const ritz_component *component,
     else
         RITZ_CHECK(ritz_responder_auto(&request, &why, &responder));
     if (tolerance > 0.0)
-        RITZ_CHECK(ritz_responder_follow(responder, grid, tolerance, out));
-    else
-        RITZ_CHECK(ritz_responder_sample(responder, grid, out));
-    return RITZ_OK;
+        return ritz_responder_follow(responder, grid, tolerance, out);
+    return ritz_responder_sample(responder, grid, out);
 }

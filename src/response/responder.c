@@ -18,10 +18,10 @@ enum { KINDS = 3 };
 static double shifted_diagonal(const ritz_response_request *request, double tau,
                                int64_t k)
 {
-    const ritz_component *c = request->component;
-    const ritz_second_order *m = request->matrices;
+    const ritz_component *c = request->model.component;
+    const ritz_second_order *m = &request->model.dense;
 
-    if (c)
+    if (request->model.kind == RITZ_MODEL_COMPONENT)
         return ritz_sparse_diagonal(&c->K, k) +
                tau * ritz_sparse_diagonal(&c->M, k);
     return ritz_dense_col(m->K, k)[k] + tau * ritz_dense_col(m->M, k)[k];
@@ -62,12 +62,13 @@ static ritz_status new_noise(const ritz_response_request *request,
                              ritz_noise *out)
 {
     ritz_status status = RITZ_OK;
-    const ritz_io *io = request->component  ? &request->component->io
-                        : request->matrices ? request->matrices->io
-                                            : NULL;
+    const ritz_model *model = &request->model;
+    const ritz_io *io = model->kind == RITZ_MODEL_COMPONENT
+                            ? &model->component->io
+                            : model->dense.io;
     ritz_noise noise = {0};
 
-    if (!io)
+    if (model->kind == RITZ_MODEL_STATES)
         return RITZ_OK;
     noise.num_outputs = io->num_outputs;
     noise.num_inputs = io->num_inputs;
@@ -147,11 +148,14 @@ double ritz_grid_end(const ritz_grid *grid)
 static ritz_status check_needs(const ritz_response_engine *engine,
                                const ritz_response_request *request)
 {
-    static const char *const nouns[] = {"a component", "a small dense model",
-                                        "a state space"};
-    int kind = request->component ? 0 : request->matrices ? 1 : 2;
+    static const char *const nouns[] = {
+        [RITZ_MODEL_COMPONENT] = "a component",
+        [RITZ_MODEL_DENSE] = "a small dense model",
+        [RITZ_MODEL_STATES] = "a state space",
+    };
+    ritz_model_kind kind = request->model.kind;
 
-    RITZ_REFUSE_IF(!(engine->takes & (1 << kind)), RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!(engine->takes & (int)kind), RITZ_ERR_ARGUMENT,
                    "%s is not for %s", engine->name, nouns[kind]);
     RITZ_REFUSE_IF(
         !isfinite(request->from_hz) || !isfinite(request->to_hz) ||
@@ -170,11 +174,12 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
     RITZ_CHECK(check_needs(engine, request));
     RITZ_CHECK_NEW(r, 1);
     r->engine = engine;
-    r->component = request->component;
+    if (request->model.kind == RITZ_MODEL_COMPONENT)
+        r->component = request->model.component;
     r->from_hz = request->from_hz;
     r->to_hz = request->to_hz;
-    if (request->damping)
-        r->given = *request->damping;
+    if (request->model.damping)
+        r->given = *request->model.damping;
     ritz_damping_print(&r->given, r->damping);
     RITZ_CHECK(new_noise(request, &r->noise));
     RITZ_CHECK(engine->make(request, r));
@@ -229,19 +234,6 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
     }
     RITZ_MOVE(*out, r);
     return RITZ_OK;
-}
-
-ritz_status ritz_response_once(const ritz_response_engine *engine,
-                               ritz_response_request *request,
-                               const ritz_grid *grid, ritz_response *out)
-{
-    RITZ_OWN(ritz_responder) *responder = NULL;
-
-    RITZ_CHECK(ritz_grid_check(grid));
-    request->from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
-    request->to_hz = ritz_grid_end(grid);
-    RITZ_CHECK(ritz_responder_new(engine, request, &responder));
-    return ritz_responder_sample(responder, grid, out);
 }
 
 /* Both roots of s^2 + rate s + lambda, the conjugate of a pair left out. */

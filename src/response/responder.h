@@ -58,9 +58,7 @@ struct ritz_responder {
     void (*free)(void *state); /* with all that it owns */
 };
 
-extern const ritz_response_engine ritz_response_engine_direct;
 extern const ritz_response_engine ritz_response_engine_krylov;
-extern const ritz_response_engine ritz_response_engine_modal;
 extern const ritz_response_engine ritz_response_engine_rational;
 extern const ritz_response_engine ritz_response_engine_states;
 
@@ -77,11 +75,6 @@ double ritz_response_highest(const ritz_response_request *request);
 
 /** The highest frequency of a grid of any kind, Hz. */
 double ritz_grid_end(const ritz_grid *grid);
-
-/** Make an engine ready and respond on a grid. */
-ritz_status ritz_response_once(const ritz_response_engine *engine,
-                               ritz_response_request *request,
-                               const ritz_grid *grid, ritz_response *out);
 
 /**
  * Damped poles. Decoupled modes give the roots of s^2 + rate s + lambda, if

@@ -194,7 +194,7 @@ static ritz_status make_states(const ritz_response_request *request,
     state_responder *s = NULL;
 
     RITZ_NEW(s, 1);
-    s->model = request->states;
+    s->model = request->model.states;
     RITZ_TRY(find_poles(s->model, &s->poles));
     RITZ_TRY(start_hessenberg(s->model, &s->h));
     memcpy(out->damping, s->model->damping, sizeof out->damping);
@@ -216,15 +216,6 @@ const ritz_response_engine ritz_response_engine_states = {
     .cost = "O(n^3), then O(n^2) a point and input",
     .holds = "exact to rounding",
     .fails = "a point on a pole is refused",
-    .takes = RITZ_RESPONDS_STATES,
+    .takes = RITZ_MODEL_STATES,
     .make = make_states,
 };
-
-ritz_status ritz_response_states(const ritz_state_space *model,
-                                 const ritz_grid *grid, ritz_response *out)
-{
-    ritz_response_request request = {.states = model};
-
-    return ritz_response_once(&ritz_response_engine_states, &request, grid,
-                              out);
-}

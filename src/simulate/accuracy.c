@@ -94,7 +94,7 @@ static void judge_outputs(const ritz_simulation *exact,
 }
 
 /* Differences at a step, from `modal` (or itself) at half of it. */
-static ritz_status measure_errors(const ritz_simulated *subject,
+static ritz_status measure_errors(ritz_model subject,
                                   const ritz_simulation_request *request,
                                   double tolerance, halving_trial *t)
 {
@@ -105,7 +105,7 @@ static ritz_status measure_errors(const ritz_simulated *subject,
     coarse.every = 1;
     fine.step = 0.5 * request->step;
     fine.every = 2;
-    if (!subject->component)
+    if (subject.kind != RITZ_MODEL_COMPONENT)
         fine.integrator = &ritz_integrator_modal;
     RITZ_CHECK(ritz_simulate_noting(subject, &coarse, false, NULL, &made));
     RITZ_CHECK(ritz_simulate_noting(subject, &fine, false, &reach, &exact));
@@ -159,33 +159,25 @@ static ritz_status refuse_steps(const ritz_simulation_request *request,
                      2.0 * request->step, tolerance, what);
 }
 
-static void count_io(const ritz_simulated *s, int64_t *inputs, int64_t *outputs)
-{
-    const ritz_io *io = s->model       ? s->model->io
-                        : s->component ? &s->component->io
-                                       : NULL;
-
-    *inputs = io ? io->num_inputs : s->states ? s->states->num_inputs : 0;
-    *outputs = io ? io->num_outputs : s->states ? s->states->num_outputs : 0;
-}
-
-ritz_status ritz_simulate_accurate(const ritz_simulated *subject,
+ritz_status ritz_simulate_accurate(ritz_model subject,
                                    const ritz_simulation_request *request,
                                    double tolerance, ritz_accuracy *reached,
                                    ritz_simulation *out)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request asked = *request;
-    int64_t inputs = 0, outputs = 0, most = 0, steps = 0;
+    int64_t most = 0, steps = 0;
+    ritz_io io = {0}; /* borrowed */
     halving_trial t = {0};
 
     RITZ_FAIL_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
                  tolerance);
-    count_io(subject, &inputs, &outputs);
-    asked.step = first_step(request, inputs);
-    most = most_tried(inputs + outputs + 1);
+    if (subject.kind != 0)
+        io = ritz_model_io(subject);
+    asked.step = first_step(request, io.num_inputs);
+    most = most_tried(io.num_inputs + io.num_outputs + 1);
     RITZ_TRY(ritz_request_steps(&asked, &steps));
-    RITZ_TRY(trial_new(outputs, &t));
+    RITZ_TRY(trial_new(io.num_outputs, &t));
     while (true) {
         if (asked.seconds / asked.step > (double)most) {
             status = refuse_steps(&asked, most, &t.found, tolerance, status);

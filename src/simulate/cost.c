@@ -100,38 +100,35 @@ static ritz_status measure_march(ritz_march *march, const double *u,
     return RITZ_OK;
 }
 
-ritz_status ritz_simulate_step_cost(const ritz_second_order *model,
-                                    const ritz_damping *damping,
+ritz_status ritz_simulate_step_cost(ritz_model model,
                                     const ritz_integrator *integrator,
                                     double step, double *out)
 {
     const ritz_simulation_request request = {
         .integrator = integrator, .step = step, .rho = 0.8};
-    const ritz_simulated subject = {.model = model, .damping = damping};
     RITZ_OWN(ritz_motion) motion = {0};
     RITZ_OWN(ritz_march) march = {0};
     RITZ_OWN_ARRAY double *u = NULL;
 
     RITZ_REFUSE_IF(!(step > 0.0) || !isfinite(step), RITZ_ERR_ARGUMENT,
                    "%g s is no step", step);
-    RITZ_CHECK(ritz_motion_new(&subject, &request, &motion));
+    RITZ_CHECK(ritz_motion_new(model, &request, &motion));
     RITZ_CHECK_NEW(u, motion.B.ncol);
     RITZ_CHECK(ritz_march_new(&motion, integrator, step, request.rho, &march));
     return measure_march(&march, u, out);
 }
 
-ritz_status ritz_simulate_cost(const ritz_second_order *model,
-                               const ritz_damping *damping,
-                               const double band_hz[2], ritz_cost *out)
+ritz_status ritz_simulate_cost(ritz_model model, const double band_hz[2],
+                               ritz_cost *out)
 {
-    ritz_cost cost = {.order = model->K->nrow};
+    ritz_cost cost = {.order = model.dense.K->nrow};
     RITZ_OWN(ritz_motion) modes = {0};
     double end = band_hz ? band_hz[1] : 0.0;
     double root = 0.0;
 
     RITZ_REFUSE_IF(!isfinite(end) || end < 0.0, RITZ_ERR_ARGUMENT,
                    "a band to %g Hz makes no sense", end);
-    RITZ_CHECK(ritz_motion_dense(model, damping, true, &modes));
+    RITZ_CHECK(ritz_motion_dense(model, true, &modes));
     RITZ_CHECK(find_fastest(&modes, &root));
     cost.highest_hz = sqrt(modes.highest) / (2.0 * RITZ_PI);
     cost.step_explicit = root > 0.0 ? 2.0 / root : HUGE_VAL;
@@ -141,9 +138,8 @@ ritz_status ritz_simulate_cost(const ritz_second_order *model,
     cost.step = cost.step_accurate;
     (void)snprintf(cost.integrator, sizeof cost.integrator, "%s",
                    ritz_integrator_trapezoidal.name);
-    RITZ_CHECK(ritz_simulate_step_cost(model, damping,
-                                       &ritz_integrator_trapezoidal, cost.step,
-                                       &cost.seconds_per_second));
+    RITZ_CHECK(ritz_simulate_step_cost(model, &ritz_integrator_trapezoidal,
+                                       cost.step, &cost.seconds_per_second));
     cost.seconds_per_second /= cost.step;
     *out = cost;
     return RITZ_OK;

@@ -115,8 +115,7 @@ static ritz_status run_all(growth_trial *t, const ritz_integrator *integrator,
     return RITZ_OK;
 }
 
-ritz_status ritz_simulate_growth(const ritz_second_order *model,
-                                 const ritz_damping *damping,
+ritz_status ritz_simulate_growth(ritz_model model,
                                  const ritz_integrator *integrator, double step,
                                  int64_t steps, int64_t starts, double *out)
 {
@@ -128,9 +127,9 @@ ritz_status ritz_simulate_growth(const ritz_second_order *model,
     RITZ_FAIL_IF(!(step > 0.0) || !isfinite(step) || steps < 1 || starts < 1,
                  RITZ_ERR_ARGUMENT,
                  "growth is of one step and one start at least");
-    RITZ_TRY(ritz_motion_dense(model, damping, true, &modes));
-    RITZ_TRY(ritz_motion_dense(model, damping,
-                               integrator == &ritz_integrator_modal, &motion));
+    RITZ_TRY(ritz_motion_dense(model, true, &modes));
+    RITZ_TRY(ritz_motion_dense(model, integrator == &ritz_integrator_modal,
+                               &motion));
     motion.any_step = true;
     RITZ_TRY(run_all(&t, integrator, step, count, out));
 done:

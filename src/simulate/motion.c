@@ -318,11 +318,11 @@ static ritz_status fill_dense(const ritz_structure *s, const ritz_io *io,
     return drive_dense(io, m);
 }
 
-ritz_status ritz_motion_dense(const ritz_second_order *model,
-                              const ritz_damping *damping, bool modal,
-                              ritz_motion *out)
+ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out)
 {
     static const ritz_damping none = {0};
+    const ritz_second_order *model = &subject.dense;
+    const ritz_damping *damping = subject.damping ? subject.damping : &none;
     /* borrowed */
     const ritz_structure s = {*model->K, *model->M,
                               is_present(model->D) ? *model->D
@@ -331,7 +331,6 @@ ritz_status ritz_motion_dense(const ritz_second_order *model,
     RITZ_OWN(ritz_motion) m = {0};
     double highest = 0.0;
 
-    damping = damping ? damping : &none;
     RITZ_CHECK(refuse_structural(is_present(model->K4) &&
                                  ritz_dense_max(model->K4) > 0.0));
     RITZ_CHECK(ritz_modal_model_new(&s, model->io, damping, &modes));
@@ -367,31 +366,30 @@ ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out)
     return RITZ_OK;
 }
 
-ritz_status ritz_motion_new(const ritz_simulated *subject,
+ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,
                             ritz_motion *out)
 {
     const ritz_integrator *integrator = request->integrator;
     bool modal = integrator == &ritz_integrator_modal;
 
-    if (subject->states) {
+    if (subject.kind == RITZ_MODEL_STATES) {
         RITZ_REFUSE_IF(!integrator->takes_states, RITZ_ERR_ARGUMENT,
                        "'%s' is of second-order models, a state space goes by "
                        "modal or trapezoidal",
                        integrator->name);
-        return ritz_motion_states(subject->states, out);
+        return ritz_motion_states(subject.states, out);
     }
-    if (subject->model)
-        return ritz_motion_dense(subject->model, subject->damping, modal, out);
+    if (subject.kind == RITZ_MODEL_DENSE)
+        return ritz_motion_dense(subject, modal, out);
     if (modal)
-        return motion_of_modes(subject->component, subject->damping,
+        return motion_of_modes(subject.component, subject.damping,
                                request->up_to_hz, out);
     RITZ_REFUSE_IF(!integrator->takes_sparse, RITZ_ERR_ARGUMENT,
                    "'%s' is of small dense models: a full component goes by "
                    "modal, trapezoidal or generalised-alpha",
                    integrator->name);
-    return motion_of_sparse(subject->component, subject->damping, out);
-    return RITZ_OK;
+    return motion_of_sparse(subject.component, subject.damping, out);
 }
 
 void ritz_motion_free(ritz_motion *motion)

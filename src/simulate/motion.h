@@ -45,14 +45,12 @@ typedef struct ritz_motion {
 } ritz_motion;
 
 /** Modal if @p modal, else dense: of its modes where M is singular. */
-ritz_status ritz_motion_dense(const ritz_second_order *model,
-                              const ritz_damping *damping, bool modal,
-                              ritz_motion *out);
+ritz_status ritz_motion_dense(ritz_model model, bool modal, ritz_motion *out);
 
 ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out);
 
 /** Whichever of them a subject and an integrator ask for. */
-ritz_status ritz_motion_new(const ritz_simulated *subject,
+ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,
                             ritz_motion *out);
 

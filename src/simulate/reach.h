@@ -23,8 +23,8 @@ typedef struct ritz_reach {
     double seconds; /* when that was */
 } ritz_reach;
 
-ritz_status ritz_reach_new(const ritz_simulated *subject,
-                           const ritz_motion *motion, ritz_reach *out);
+ritz_status ritz_reach_new(ritz_model subject, const ritz_motion *motion,
+                           ritz_reach *out);
 
 void ritz_reach_free(ritz_reach *reach);
 

@@ -113,11 +113,11 @@ static double sparse_diagonal(const ritz_sparse *A, int64_t j)
 }
 
 /* M or K of dof j by itself. */
-static double diagonal_at(const ritz_simulated *s, bool mass, int64_t j)
+static double diagonal_at(ritz_model s, bool mass, int64_t j)
 {
-    if (s->component)
-        return sparse_diagonal(mass ? &s->component->M : &s->component->K, j);
-    return ritz_dense_col(mass ? s->model->M : s->model->K, j)[j];
+    if (s.kind == RITZ_MODEL_COMPONENT)
+        return sparse_diagonal(mass ? &s.component->M : &s.component->K, j);
+    return ritz_dense_col(mass ? s.dense.M : s.dense.K, j)[j];
 }
 
 /* weight^2 += c^2 / by */
@@ -128,10 +128,10 @@ static void add_weight(const ritz_dense *C, int64_t j, int64_t i, double by,
         *weight = hypot(*weight, ritz_dense_col(C, j)[i] / sqrt(by));
 }
 
-static void weigh_outputs(const ritz_simulated *s, const ritz_io *io,
-                          ritz_reach *reach)
+static void weigh_outputs(ritz_model s, ritz_reach *reach)
 {
-    int64_t n = s->component ? s->component->num_dofs : s->model->M->nrow;
+    const ritz_io io = ritz_model_io(s);
+    int64_t n = ritz_model_order(s);
 
     for (int64_t j = 0; j < n; j++) {
         double m = diagonal_at(s, true, j);
@@ -140,28 +140,25 @@ static void weigh_outputs(const ritz_simulated *s, const ritz_io *io,
         for (int64_t i = 0; i < reach->count; i++) {
             double *weight = reach->weight + i * WAYS;
 
-            add_weight(&io->C, j, i, m, &weight[BY_PLACE]);
-            add_weight(&io->Cv, j, i, m, &weight[BY_RATE]);
-            add_weight(&io->Ca, j, i, m, &weight[BY_ACCELERATION]);
-            add_weight(&io->C, j, i, k, &weight[BY_STRAIN]);
+            add_weight(&io.C, j, i, m, &weight[BY_PLACE]);
+            add_weight(&io.Cv, j, i, m, &weight[BY_RATE]);
+            add_weight(&io.Ca, j, i, m, &weight[BY_ACCELERATION]);
+            add_weight(&io.C, j, i, k, &weight[BY_STRAIN]);
         }
     }
 }
 
-ritz_status ritz_reach_new(const ritz_simulated *subject,
-                           const ritz_motion *motion, ritz_reach *out)
+ritz_status ritz_reach_new(ritz_model subject, const ritz_motion *motion,
+                           ritz_reach *out)
 {
     RITZ_OWN(ritz_reach) reach = {.count = motion->feed.nrow};
 
     RITZ_CHECK_NEW(reach.size, reach.count);
-    if (subject->model || subject->component) {
+    if (subject.kind != RITZ_MODEL_STATES) {
         RITZ_CHECK_NEW(reach.weight, WAYS * reach.count);
         RITZ_CHECK_NEW(reach.last, motion->n);
         RITZ_CHECK_NEW(reach.work, motion->n);
-        weigh_outputs(subject,
-                      subject->model ? subject->model->io
-                                     : &subject->component->io,
-                      &reach);
+        weigh_outputs(subject, &reach);
     }
     RITZ_MOVE(*out, reach);
     return RITZ_OK;
@@ -476,41 +473,31 @@ const ritz_integrator *ritz_integrator_find(const char *name)
     return ritz_row_find(ritz_integrators, "integrator", name);
 }
 
-static ritz_status check_subject(const ritz_simulated *subject,
+static ritz_status check_subject(ritz_model subject,
                                  const ritz_simulation_request *request)
 {
     int64_t steps = 0;
 
-    RITZ_REFUSE_IF((subject->model != NULL) + (subject->component != NULL) +
-                           (subject->states != NULL) !=
-                       1,
-                   RITZ_ERR_ARGUMENT, "there is not one thing to simulate");
+    RITZ_REFUSE_IF(subject.kind == 0, RITZ_ERR_ARGUMENT,
+                   "there is not one thing to simulate");
     RITZ_CHECK(ritz_request_steps(request, &steps));
-    RITZ_REFUSE_IF(subject->states && subject->damping &&
-                       subject->damping->kind != RITZ_DAMPING_NONE,
+    RITZ_REFUSE_IF(subject.kind == RITZ_MODEL_STATES && subject.damping &&
+                       subject.damping->kind != RITZ_DAMPING_NONE,
                    RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
     return RITZ_OK;
 }
 
-static void take_names(const ritz_simulated *subject, ritz_simulation *s)
+static void take_names(ritz_model subject, ritz_simulation *s)
 {
-    const ritz_io *io = subject->model       ? subject->model->io
-                        : subject->component ? &subject->component->io
-                                             : NULL;
-    const char(*input)[RITZ_NAME_SIZE] =
-        io ? (const char(*)[RITZ_NAME_SIZE])io->input
-           : (const char(*)[RITZ_NAME_SIZE])subject->states->input;
-    const char(*output)[RITZ_NAME_SIZE] =
-        io ? (const char(*)[RITZ_NAME_SIZE])io->output
-           : (const char(*)[RITZ_NAME_SIZE])subject->states->output;
+    const ritz_io io = ritz_model_io(subject);
 
     if (s->num_inputs > 0)
-        memcpy(s->input, input, (size_t)s->num_inputs * RITZ_NAME_SIZE);
+        memcpy(s->input, io.input, (size_t)s->num_inputs * RITZ_NAME_SIZE);
     if (s->num_outputs > 0)
-        memcpy(s->output, output, (size_t)s->num_outputs * RITZ_NAME_SIZE);
+        memcpy(s->output, io.output, (size_t)s->num_outputs * RITZ_NAME_SIZE);
 }
 
-ritz_status ritz_simulate_noting(const ritz_simulated *subject,
+ritz_status ritz_simulate_noting(ritz_model subject,
                                  const ritz_simulation_request *request,
                                  bool energies, ritz_reach *reach,
                                  ritz_simulation *out)
@@ -525,16 +512,16 @@ ritz_status ritz_simulate_noting(const ritz_simulated *subject,
         RITZ_CHECK(ritz_reach_new(subject, &motion, &found));
     RITZ_CHECK(run_march(&motion, request, reach ? &found : NULL, out));
     take_names(subject, out);
-    if (subject->damping)
-        ritz_damping_print(subject->damping, out->damping);
-    else if (subject->states)
-        memcpy(out->damping, subject->states->damping, sizeof out->damping);
+    if (subject.damping)
+        ritz_damping_print(subject.damping, out->damping);
+    else if (subject.kind == RITZ_MODEL_STATES)
+        memcpy(out->damping, subject.states->damping, sizeof out->damping);
     if (reach)
         RITZ_MOVE(*reach, found);
     return RITZ_OK;
 }
 
-ritz_status ritz_simulate(const ritz_simulated *subject,
+ritz_status ritz_simulate(ritz_model subject,
                           const ritz_simulation_request *request,
                           ritz_simulation *out)
 {

@@ -13,7 +13,7 @@ ritz_status ritz_request_steps(const ritz_simulation_request *request,
  *
  * @param[out] reach  may be NULL; the caller frees it
  */
-ritz_status ritz_simulate_noting(const ritz_simulated *subject,
+ritz_status ritz_simulate_noting(ritz_model subject,
                                  const ritz_simulation_request *request,
                                  bool energies, ritz_reach *reach,
                                  ritz_simulation *out);

@@ -147,8 +147,10 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
     s->values = poles->io.num_inputs * poles->io.num_outputs;
     RITZ_NEW(s->full, s->count * s->values);
     if (local) {
-        RITZ_TRY(ritz_response_direct(reference->component, &reference->damping,
-                                      reference->modes_hz, &grid, &direct));
+        RITZ_TRY(ritz_response_of(
+            ritz_model_of_component(reference->component, &reference->damping),
+            &ritz_response_engine_direct, reference->modes_hz, 0.0, &grid,
+            &direct));
         memcpy(s->full, direct.H,
                (size_t)(s->count * s->values) * sizeof *s->full);
     }

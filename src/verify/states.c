@@ -370,11 +370,12 @@ static ritz_status compare_at(const ritz_state_pair *p, int refined,
     ritz_grid same = *grid;
     int64_t values = 0;
 
-    RITZ_TRY(ritz_response_states(&p->model[refined], grid, &r[refined]));
+    RITZ_TRY(ritz_response_of(ritz_model_of_states(&p->model[refined]), NULL,
+                              0.0, 0.0, grid, &r[refined]));
     same.hertz = r[refined].hertz;
     same.count = r[refined].count;
-    RITZ_TRY(
-        ritz_response_states(&p->model[1 - refined], &same, &r[1 - refined]));
+    RITZ_TRY(ritz_response_of(ritz_model_of_states(&p->model[1 - refined]),
+                              NULL, 0.0, 0.0, &same, &r[1 - refined]));
     values = r[0].num_inputs * r[0].num_outputs;
     for (int64_t k = 0; k < r[0].count * values; k++) {
         double error = cabs(r[0].H[k] - r[1].H[k]);

@@ -119,11 +119,11 @@ static ritz_status bench(int argc, char **argv)
     ritz_status status = RITZ_OK;
     ritz_component component = {0};
     ritz_damping damping = {0};
-    ritz_response_request request = {.component = &component,
-                                     .damping = &damping,
-                                     .from_hz = strtod(argv[3], NULL),
-                                     .to_hz = strtod(argv[4], NULL),
-                                     .tolerance = 1e-7};
+    ritz_response_request request = {
+        .model = ritz_model_of_component(&component, &damping),
+        .from_hz = strtod(argv[3], NULL),
+        .to_hz = strtod(argv[4], NULL),
+        .tolerance = 1e-7};
     checks c = {.count = strtol(argv[5], NULL, 10)};
 
     RITZ_TRY(ritz_container_read_component(argv[1], &component));

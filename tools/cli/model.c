@@ -450,15 +450,20 @@ ritz_measures *model_errors(model *m)
     return m->at ? &m->at->errors : &m->reduced.errors;
 }
 
+ritz_model model_reference(const model *m, const ritz_damping *damping)
+{
+    if (m->kind == MODEL_STATES)
+        return ritz_model_of_states(&m->states);
+    if (m->kind == MODEL_COMPONENT)
+        return ritz_model_of_component(&m->component, damping);
+    return m->at ? ritz_model_of_configuration(m->at, damping)
+                 : ritz_model_of_reduced(&m->reduced, damping);
+}
+
 ritz_status model_scan(model *m, const ritz_damping *damping,
                        const ritz_scan_request *request, ritz_scan *out)
 {
-    ritz_model scanned = ritz_model_of_component(&m->component, damping);
-
-    if (m->kind != MODEL_COMPONENT)
-        scanned = m->at ? ritz_model_of_configuration(m->at, damping)
-                        : ritz_model_of_reduced(&m->reduced, damping);
-    return ritz_scan_of(scanned, request, out);
+    return ritz_scan_of(model_reference(m, damping), request, out);
 }
 
 ritz_dampers *model_dampers(model *m)

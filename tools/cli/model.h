@@ -106,6 +106,9 @@ int64_t model_order(const model *model);
 /** Matrices of a reduced component or a system; borrowed. */
 ritz_second_order model_matrices(const model *model);
 
+/** What the library is asked for poles, zeros, responses and motions. */
+ritz_model model_reference(const model *model, const ritz_damping *damping);
+
 /** Errors that ritz-verify measured. */
 ritz_measures *model_errors(model *model);
 

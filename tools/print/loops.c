@@ -121,7 +121,7 @@ ritz_status loops_close(cli_run *run, const loop_options *given, const model *m,
         return RITZ_OK;
     RITZ_TRY(join_signals(run, given, m, out));
     RITZ_TRY(find_poles(run, given, m, damping, out, &count, &pole));
-    request.states = &out->controller.states;
+    request.model = ritz_model_of_states(&out->controller.states);
     RITZ_TRY_IN(given->controller,
                 ritz_responder_new(ritz_response_engine_find("states"),
                                    &request, &out->inner));

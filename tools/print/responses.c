@@ -45,67 +45,47 @@ void responses_check(const cli_program *program, const response_options *given)
     cli_refuse_name(program, "no method", given->method, count, names);
 }
 
-/* As which kind an engine takes it. */
-static int find_kind(const model *m)
-{
-    switch (m->kind) {
-    case MODEL_COMPONENT:
-        return RITZ_RESPONDS_COMPONENT;
-    case MODEL_STATES:
-        return RITZ_RESPONDS_STATES;
-    default:
-        return RITZ_RESPONDS_MATRICES;
-    }
-}
-
 /* The engine that is asked for, if it is for such a model. */
-static ritz_status choose_engine(cli_run *run, const model *m,
-                                 const char *method,
+static ritz_status choose_engine(cli_run *run, const char *method,
                                  const ritz_response_request *request,
                                  const ritz_response_engine **out)
 {
     const char *why = NULL;
-    int kind = find_kind(m);
+    int kind = (int)request->model.kind;
 
     *out = strcmp(method, "auto") == 0
                ? ritz_response_engine_choose(request, &why)
                : ritz_response_engine_find(method);
-    RITZ_REFUSE_IF(!((*out)->takes & kind) && kind == RITZ_RESPONDS_COMPONENT,
+    RITZ_REFUSE_IF(!((*out)->takes & kind) && kind == (int)RITZ_MODEL_COMPONENT,
                    RITZ_ERR_ARGUMENT,
                    "'%s' is a component: --method %s is not for it",
                    run->operand[0], method);
     RITZ_REFUSE_IF(!((*out)->takes & kind), RITZ_ERR_ARGUMENT,
                    "'%s' is small and dense: --method %s is for components",
                    run->operand[0], method);
-    if (why && kind == RITZ_RESPONDS_COMPONENT)
+    if (why && kind == (int)RITZ_MODEL_COMPONENT)
         cli_say(run, "method %s: %s", (*out)->name, why);
     return RITZ_OK;
 }
 
-/* Make a model ready for the range of a grid; @p view is borrowed. */
-static ritz_status
-new_responder(cli_run *run, const model *m, const response_options *given,
-              const ritz_damping *damping, const ritz_grid *grid,
-              const ritz_second_order *view, ritz_responder **out)
+/* Make a model ready for the range of a grid. */
+static ritz_status new_responder(cli_run *run, const model *m,
+                                 const response_options *given,
+                                 const ritz_damping *damping,
+                                 const ritz_grid *grid, ritz_responder **out)
 {
     const ritz_response_engine *engine = NULL;
     const char *why = NULL; /* said before */
     ritz_response_request request = {
-        .damping = damping,
+        .model = model_reference(m, damping),
         .up_to_hz = isnan(given->up_to_hz) ? 0.0 : given->up_to_hz,
         .tolerance =
             isnan(given->tolerance) ? 0.0 : engine_share * given->tolerance,
         .from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz,
         .to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz};
 
-    if (m->kind == MODEL_STATES)
-        request.states = &m->states;
-    else if (m->kind == MODEL_COMPONENT)
-        request.component = &m->component;
-    else
-        request.matrices = view;
-    RITZ_CHECK(choose_engine(run, m, given->method, &request, &engine));
-    if (request.component && strcmp(given->method, "modal") == 0 &&
+    RITZ_CHECK(choose_engine(run, given->method, &request, &engine));
+    if (m->kind == MODEL_COMPONENT && strcmp(given->method, "modal") == 0 &&
         (m->component.D.colptr || m->component.K4.colptr))
         cli_warn(run,
                  "the damping matrices of '%s' act on the modes that are "
@@ -352,10 +332,9 @@ static ritz_status find_response(cli_run *run, const model *m,
 {
     ritz_status status = RITZ_OK;
     const double range[2] = {grid->from_hz, grid->to_hz};
-    const ritz_second_order view = model_matrices(m);
     ritz_responder *plant = NULL, *whole = NULL;
 
-    RITZ_TRY(new_responder(run, m, given, damping, grid, &view, &plant));
+    RITZ_TRY(new_responder(run, m, given, damping, grid, &plant));
     RITZ_TRY(loops_close(run, &given->loops, m, damping, plant, range, loop));
     whole = loop->closed ? loop->closed : plant;
     RITZ_TRY(isnan(given->tolerance)

@@ -31,7 +31,7 @@ void simulation_take(const cli_run *run, simulation_options *given)
 /* The model that is simulated, with its inputs and initial values. */
 typedef struct drive {
     ritz_io io; /* borrowed */
-    ritz_simulated subject;
+    ritz_model subject;
     ritz_signal *signal; /* of each input */
     double *x0, *v0;     /* NULL: at rest */
 } drive;
@@ -101,21 +101,21 @@ static ritz_status parse_mode(const char *text, int64_t *mode, double *amount)
 
 static ritz_status take_mode(const char *text, drive *d)
 {
-    const ritz_simulated *s = &d->subject;
+    const ritz_model *s = &d->subject;
     RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t mode = 0;
     double amount = 1.0;
 
-    RITZ_REFUSE_IF(s->states, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(s->kind == RITZ_MODEL_STATES, RITZ_ERR_ARGUMENT,
                    "a state space has no modes: give a file");
     RITZ_CHECK(parse_mode(text, &mode, &amount));
-    if (s->component) {
+    if (s->kind == RITZ_MODEL_COMPONENT) {
         const ritz_span span = {.modes = mode};
 
         RITZ_CHECK(ritz_eigen_sparse(&s->component->K, &s->component->M, &span,
                                      &pairs));
     } else {
-        RITZ_CHECK(ritz_eigen_dense(s->model->K, s->model->M, &pairs));
+        RITZ_CHECK(ritz_eigen_dense(s->dense.K, s->dense.M, &pairs));
     }
     RITZ_REFUSE_IF(mode > pairs.Phi.ncol, RITZ_ERR_ARGUMENT,
                    "there are %" PRId64 " modes, not %" PRId64, pairs.Phi.ncol,
@@ -189,7 +189,7 @@ static void free_drive(drive *d)
 }
 
 /* Largest relative difference from the same by the modal integrator. */
-static ritz_status measure_difference(const ritz_simulated *subject,
+static ritz_status measure_difference(ritz_model subject,
                                       ritz_simulation_request request,
                                       double *out)
 {
@@ -201,14 +201,14 @@ static ritz_status measure_difference(const ritz_simulated *subject,
     return ritz_simulation_difference(&exact, &made, out);
 }
 
-static ritz_status say_integrator(cli_run *run, const ritz_simulated *subject,
+static ritz_status say_integrator(cli_run *run, ritz_model subject,
                                   ritz_simulation_request request)
 {
     const ritz_integrator *integrator = request.integrator;
     double spent = 0.0, error = 0.0;
 
-    RITZ_CHECK(ritz_simulate_step_cost(subject->model, subject->damping,
-                                       integrator, request.step, &spent));
+    RITZ_CHECK(
+        ritz_simulate_step_cost(subject, integrator, request.step, &spent));
     RITZ_CHECK(measure_difference(subject, request, &error));
     sink_say(run, "name,step,seconds_per_second,error",
              "%-20s %12.4g %14.3g %12.2e", integrator->name, request.step,
@@ -262,11 +262,10 @@ static void sweep_inputs(const ritz_cost *cost, const double band_hz[2],
 }
 
 /* The cost of a model, in the line of --record. */
-static ritz_status record_cost(cli_run *run, const ritz_simulated *subject,
+static ritz_status record_cost(cli_run *run, ritz_model subject,
                                const double band_hz[2], ritz_cost *cost)
 {
-    RITZ_CHECK(
-        ritz_simulate_cost(subject->model, subject->damping, band_hz, cost));
+    RITZ_CHECK(ritz_simulate_cost(subject, band_hz, cost));
     sink_line(run);
     model_set_cost(run, cost);
     sink_end(run);
@@ -281,9 +280,9 @@ static ritz_status say_costs(cli_run *run, const simulation_options *given,
     ritz_cost cost = {0};
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
 
-    RITZ_REFUSE_IF(!d->subject.model, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(d->subject.kind != RITZ_MODEL_DENSE, RITZ_ERR_ARGUMENT,
                    "--cost is of reduced components and systems");
-    RITZ_CHECK(record_cost(run, &d->subject, band_hz, &cost));
+    RITZ_CHECK(record_cost(run, d->subject, band_hz, &cost));
     model_set_cost(run, &cost);
     say_cost_head(run, &cost);
     if (given->input.count == 0 && !given->initial)
@@ -299,7 +298,7 @@ static ritz_status say_costs(cli_run *run, const simulation_options *given,
         request.step = cost.step_accurate;
         if ((*i)->is_explicit)
             request.step = fmin(request.step, margin * cost.step_explicit);
-        RITZ_CHECK_IN((*i)->name, say_integrator(run, &d->subject, request));
+        RITZ_CHECK_IN((*i)->name, say_integrator(run, d->subject, request));
     }
     sink_end(run);
     RITZ_CHECK(say_refactored(run, &cost));
@@ -347,12 +346,12 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
     if (isnan(given->step)) {
-        RITZ_CHECK(ritz_simulate_accurate(&d->subject, &request,
-                                          given->accuracy, &reached, &s));
+        RITZ_CHECK(ritz_simulate_accurate(d->subject, &request, given->accuracy,
+                                          &reached, &s));
         cli_record_error(run, "integration", reached.error);
         warn_of_rounding(run, given->accuracy, &reached, &s);
     } else {
-        RITZ_CHECK(ritz_simulate(&d->subject, &request, &s));
+        RITZ_CHECK(ritz_simulate(d->subject, &request, &s));
     }
     RITZ_CHECK(
         ritz_container_write_simulation(run->output, &s, cli_stamp(run)));
@@ -366,33 +365,20 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
     return RITZ_OK;
 }
 
-static ritz_simulated find_subject(const model *m,
-                                   const ritz_second_order *view,
-                                   const ritz_damping *damping)
-{
-    if (m->kind == MODEL_STATES)
-        return (ritz_simulated){.states = &m->states};
-    if (m->kind == MODEL_COMPONENT)
-        return (ritz_simulated){.component = &m->component, .damping = damping};
-    return (ritz_simulated){.model = view, .damping = damping};
-}
-
 ritz_status simulation_run(cli_run *run, const simulation_options *given)
 {
     ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     const double *band_hz = given->band_hz;
     model m = {0};
-    ritz_second_order view = {0};
     ritz_damping damping = {0};
     ritz_cost cost = {0};
     drive d = {0};
 
     RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_TRY(model_settle(&m, path, &given->model, &damping));
-    view = model_matrices(&m);
     d.io = model_io(&m);
-    d.subject = find_subject(&m, &view, &damping);
+    d.subject = model_reference(&m, &damping);
     if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
         band_hz = m.system.band_hz;
     RITZ_TRY_IN(path, take_inputs(run, &given->input, &d));
@@ -401,8 +387,8 @@ ritz_status simulation_run(cli_run *run, const simulation_options *given)
         RITZ_TRY_IN(path, simulate_response(run, given, &d));
     if (given->cost)
         RITZ_TRY_IN(path, say_costs(run, given, &m, band_hz, &d));
-    else if (run->record && d.subject.model)
-        RITZ_TRY(record_cost(run, &d.subject, band_hz, &cost));
+    else if (run->record && d.subject.kind == RITZ_MODEL_DENSE)
+        RITZ_TRY(record_cost(run, d.subject, band_hz, &cost));
 done:
     free_drive(&d);
     model_free(&m);

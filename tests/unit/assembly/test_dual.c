@@ -352,7 +352,10 @@ static void an_unstable_model_has_no_response(void **state)
     assemble(&systems[0].of, &c);
     assert_ok(ritz_io_new(c.K.ncol, 1, 1, &io));
     assert_fails(
-        ritz_response_dense(&c.K, &c.M, NULL, &io, &damping, &grid, &none),
+        ritz_response_of(
+            ritz_model_of_dense(
+                &(ritz_second_order){&c.K, &c.M, NULL, NULL, &io}, &damping),
+            NULL, 0.0, 0.0, &grid, &none),
         RITZ_ERR_ARGUMENT, "negative eigenvalue");
     ritz_io_free(&io);
     ritz_configuration_free(&c);

@@ -28,7 +28,8 @@ static ritz_ends ends_of(const ritz_state_space *m)
 static void responder(const ritz_state_space *model, double to_hz,
                       ritz_responder **out)
 {
-    const ritz_response_request request = {.states = model, .to_hz = to_hz};
+    const ritz_response_request request = {.model = ritz_model_of_states(model),
+                                           .to_hz = to_hz};
 
     assert_ok(
         ritz_responder_new(ritz_response_engine_find("states"), &request, out));
@@ -248,7 +249,8 @@ static void both_ways_close_the_same_loop(void **state)
         assert_int_equal(p.loop.measured[0], 2);
         assert_int_equal(p.loop.driven[0], 1);
         assert_ok(ritz_responder_sample(p.H, &grid, &by_loop));
-        assert_ok(ritz_response_states(&p.closed, &grid, &by_states));
+        assert_ok(ritz_response_of(ritz_model_of_states(&p.closed), NULL, 0.0,
+                                   0.0, &grid, &by_states));
         assert_int_equal(by_states.count, by_loop.count);
         for (int64_t j = 0; j < 6 * by_loop.count; j++) /* well conditioned */
             assert_near(cabs(by_loop.H[j] - by_states.H[j]), 0.0, 1e-12);
@@ -410,7 +412,8 @@ static void all_values_are_there_and_descend(void **state)
 
     (void)state;
     random_space(6, 2, 3, false, 3, &model);
-    assert_ok(ritz_response_states(&model, &grid, &r));
+    assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
+                               &grid, &r));
     assert_ok(ritz_singular_of(NULL, &r));
     assert_ok(ritz_singular_of(NULL, &r)); /* once more: in their place */
     assert_int_equal(r.num_singular, 2);

@@ -148,8 +148,8 @@ static ritz_response_request request_of(const subject *s,
                                         const ritz_component *c)
 {
     return (ritz_response_request){
-        .component = c,
-        .damping = s->damping.kind ? &s->damping : NULL,
+        .model =
+            ritz_model_of_component(c, s->damping.kind ? &s->damping : NULL),
         .from_hz = 0.002,
         .to_hz = 0.3,
         .up_to_hz = s->up_to_hz,
@@ -255,8 +255,7 @@ static void interpolation_of_one_mode_takes_few_nodes(void **state)
     const int64_t zero = 0;
     const double k = 39.47841760435743, m = 1.0; /* 1 Hz */
     const ritz_damping light = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    ritz_response_request request = {
-        .damping = &light, .from_hz = 0.1, .to_hz = 2.0};
+    ritz_response_request request = {.from_hz = 0.1, .to_hz = 2.0};
     ritz_component c = {.num_dofs = 1};
     double _Complex H = 0.0;
 
@@ -265,11 +264,11 @@ static void interpolation_of_one_mode_takes_few_nodes(void **state)
     assert_ok(ritz_sparse_from_triplets(1, 1, 1, &zero, &zero, &m, &c.M));
     assert_ok(ritz_io_new(1, 1, 1, &c.io));
     c.io.B.val[0] = c.io.C.val[0] = 1.0;
-    request.component = &c;
+    request.model = ritz_model_of_component(&c, &light);
     for (int e = 0; ritz_response_engines[e]; e++) {
         ritz_responder *responder = NULL;
 
-        if (!(ritz_response_engines[e]->takes & RITZ_RESPONDS_COMPONENT))
+        if (!(ritz_response_engines[e]->takes & RITZ_MODEL_COMPONENT))
             continue;
         assert_ok(
             ritz_responder_new(ritz_response_engines[e], &request, &responder));
@@ -292,7 +291,8 @@ static void engines_refuse_what_they_are_not_for(void **state)
 {
     const ritz_second_order none = {0};
     const char *why = NULL;
-    ritz_response_request request = {.matrices = &none, .to_hz = 1.0};
+    ritz_response_request request = {.model = ritz_model_of_dense(&none, NULL),
+                                     .to_hz = 1.0};
     ritz_responder *r = NULL;
     ritz_component beam = {0};
 
@@ -305,8 +305,10 @@ static void engines_refuse_what_they_are_not_for(void **state)
     assert_string_equal(ritz_response_engine_choose(&request, &why)->name,
                         "modal");
     make_beam(true, &beam);
-    request = (ritz_response_request){
-        .component = &beam, .to_hz = 0.3, .up_to_hz = 0.1};
+    request =
+        (ritz_response_request){.model = ritz_model_of_component(&beam, NULL),
+                                .to_hz = 0.3,
+                                .up_to_hz = 0.1};
     assert_string_equal(ritz_response_engine_choose(&request, &why)->name,
                         "modal");
     for (int k = 0; k < 2; k++)
@@ -335,12 +337,12 @@ static void every_engine_refuses_an_undamped_pole(void **state)
 
     (void)state;
     make_beam(true, &beam);
-    request.component = &beam;
+    request.model = ritz_model_of_component(&beam, NULL);
     assert_ok(ritz_eigen_sparse(&beam.K, &beam.M, &span, &pairs));
     for (int e = 0; ritz_response_engines[e]; e++) {
         ritz_responder *r = NULL;
 
-        if (!(ritz_response_engines[e]->takes & RITZ_RESPONDS_COMPONENT))
+        if (!(ritz_response_engines[e]->takes & RITZ_MODEL_COMPONENT))
             continue;
         assert_ok(ritz_responder_new(ritz_response_engines[e], &request, &r));
         assert_fails(ritz_responder_at(r, ritz_eigen_hertz(pairs.lambda[0]), H),
@@ -364,7 +366,10 @@ static void an_acceleration_on_an_undamped_pole_is_refused(void **state)
     (void)state;
     assert_ok(ritz_io_new(1, 1, 1, &io));
     io.B.val[0] = io.Ca.val[0] = 1.0;
-    assert_fails(ritz_response_dense(&K, &M, NULL, &io, NULL, &grid, &r),
+    assert_fails(ritz_response_of(
+                     ritz_model_of_dense(
+                         &(ritz_second_order){&K, &M, NULL, NULL, &io}, NULL),
+                     NULL, 0.0, 0.0, &grid, &r),
                  RITZ_ERR_SINGULAR, "1 Hz is the frequency of an undamped");
     ritz_io_free(&io);
 }
@@ -379,7 +384,7 @@ static void beyond_its_range_a_responder_says_nothing(void **state)
 
     (void)state;
     make_beam(true, &beam);
-    request.component = &beam;
+    request.model = ritz_model_of_component(&beam, NULL);
     assert_ok(
         ritz_responder_new(ritz_response_engine_find("krylov"), &request, &r));
     assert_fails(ritz_responder_at(r, 0.31, H), RITZ_ERR_ARGUMENT,
@@ -391,11 +396,11 @@ static void beyond_its_range_a_responder_says_nothing(void **state)
 static ritz_status respond_once(const ritz_component *c, const char *engine)
 {
     const ritz_damping light = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.05};
-    const ritz_response_request request = {.component = c,
-                                           .damping = &light,
-                                           .from_hz = 0.05,
-                                           .to_hz = 0.1,
-                                           .tolerance = 1e-3};
+    const ritz_response_request request = {
+        .model = ritz_model_of_component(c, &light),
+        .from_hz = 0.05,
+        .to_hz = 0.1,
+        .tolerance = 1e-3};
     ritz_status status = RITZ_OK;
     ritz_responder *r = NULL;
     double _Complex H = 0.0;

@@ -92,13 +92,13 @@ static void the_tolerance_holds_at_a_thousand_frequencies(void **state)
     const double tolerance[] = {1e-2, 1e-3, 1e-4, 1e-6};
     const ritz_damping faint = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
     const ritz_grid grid = {.from_hz = 0.0, .to_hz = 10.0, .count = 20};
-    ritz_response_request request = {.damping = &faint, .to_hz = 10.0};
+    ritz_response_request request = {.to_hz = 10.0};
     ritz_responder *responder = NULL;
     oscillators o;
 
     (void)state;
     make_oscillators(4, hertz, gain, &o);
-    request.matrices = &o.model;
+    request.model = ritz_model_of_dense(&o.model, &faint);
     assert_ok(ritz_responder_new(ritz_response_engine_find("modal"), &request,
                                  &responder));
     for (size_t k = 0; k < sizeof tolerance / sizeof *tolerance; k++) {
@@ -128,15 +128,14 @@ static void a_zero_between_points_is_a_point(void **state)
     const double gain[] = {1.0, 1.0};
     const ritz_damping faint = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
     const ritz_grid grid = {.from_hz = 0.5, .to_hz = 3.0, .count = 5};
-    ritz_response_request request = {
-        .damping = &faint, .from_hz = 0.5, .to_hz = 3.0};
+    ritz_response_request request = {.from_hz = 0.5, .to_hz = 3.0};
     ritz_responder *responder = NULL;
     ritz_response r = {0};
     oscillators o;
 
     (void)state;
     make_oscillators(2, hertz, gain, &o);
-    request.matrices = &o.model;
+    request.model = ritz_model_of_dense(&o.model, &faint);
     assert_ok(ritz_responder_new(ritz_response_engine_find("modal"), &request,
                                  &responder));
     assert_ok(ritz_responder_follow(responder, &grid, 1e-3, &r));
@@ -158,8 +157,7 @@ static void a_free_body_is_followed_by_krylov(void **state)
 
     (void)state;
     for (int damped = 0; damped < 2; damped++) {
-        ritz_response_request request = {
-            .damping = &light, .from_hz = 0.002, .to_hz = 0.3};
+        ritz_response_request request = {.from_hz = 0.002, .to_hz = 0.3};
         ritz_component c = {0};
         ritz_responder *direct = NULL;
         ritz_response r = {0};
@@ -170,12 +168,12 @@ static void a_free_body_is_followed_by_krylov(void **state)
         if (damped)
             assert_ok(ritz_sparse_from_triplets(c.num_dofs, c.num_dofs, 1, &at,
                                                 &at, &d, &c.D));
-        request.component = &c;
+        request.model = ritz_model_of_component(&c, &light);
         assert_ok(ritz_responder_new(ritz_response_engine_find("direct"),
                                      &request, &direct));
-        assert_ok(ritz_response_component(&c,
-                                          ritz_response_engine_find("krylov"),
-                                          &light, 0.0, 1e-4, &grid, &r));
+        assert_ok(ritz_response_of(ritz_model_of_component(&c, &light),
+                                   ritz_response_engine_find("krylov"), 0.0,
+                                   1e-4, &grid, &r));
         assert_string_equal(r.method, "krylov");
         assert_true(error_between(&r, direct) <= 1e-4);
         ritz_responder_free(&direct);
@@ -230,7 +228,7 @@ static void what_cannot_be_followed_is_refused(void **state)
 
     (void)state;
     make_oscillators(1, hertz, gain, &o);
-    request.matrices = &o.model;
+    request.model = ritz_model_of_dense(&o.model, NULL);
     assert_ok(ritz_responder_new(ritz_response_engine_find("modal"), &request,
                                  &responder));
     assert_fails(ritz_responder_follow(responder, &grid, 1e-3, &r),
@@ -248,7 +246,9 @@ static ritz_status follow_once(const ritz_second_order *model)
     const ritz_damping light = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.05};
     const ritz_grid grid = {.from_hz = 0.5, .to_hz = 2.5, .count = 3};
     const ritz_response_request request = {
-        .matrices = model, .damping = &light, .from_hz = 0.5, .to_hz = 2.5};
+        .model = ritz_model_of_dense(model, &light),
+        .from_hz = 0.5,
+        .to_hz = 2.5};
     ritz_status status = RITZ_OK;
     ritz_responder *responder = NULL;
     ritz_response r = {0};

@@ -115,7 +115,9 @@ static void a_rest_without_mass_answers_by_its_springs(void **state)
     for (size_t k = 0; k < sizeof up_to / sizeof *up_to; k++) {
         ritz_response r = {0};
 
-        assert_ok(ritz_response_modal(&row, NULL, up_to[k], &grid, &r));
+        assert_ok(ritz_response_of(ritz_model_of_component(&row, NULL),
+                                   &ritz_response_engine_modal, up_to[k], 0.0,
+                                   &grid, &r));
         assert_true(row_apart(r.count, r.hertz, 0.0, 0.0, r.H) < 1e-11);
         ritz_response_free(&r);
     }
@@ -210,10 +212,11 @@ static void a_small_gyroscopic_model_is_answered(void **state)
     (void)state;
     open_whirl(&whirl);
     for (size_t t = 0; t < sizeof tolerance / sizeof *tolerance; t++) {
-        const ritz_response_request request = {.component = &whirl,
-                                               .from_hz = 0.05,
-                                               .to_hz = 90.0,
-                                               .tolerance = tolerance[t]};
+        const ritz_response_request request = {
+            .model = ritz_model_of_component(&whirl, NULL),
+            .from_hz = 0.05,
+            .to_hz = 90.0,
+            .tolerance = tolerance[t]};
         ritz_responder *r = NULL;
         double worst = 0.0, largest = 0.0;
 
@@ -252,9 +255,10 @@ static ritz_status give_up(const ritz_response_request *request,
 static void where_an_engine_gives_up_direct_answers(void **state)
 {
     const ritz_response_engine futile = {
-        .name = "futile", .takes = RITZ_RESPONDS_COMPONENT, .make = give_up};
+        .name = "futile", .takes = RITZ_MODEL_COMPONENT, .make = give_up};
     ritz_component row = {0};
-    ritz_response_request request = {.component = &row, .to_hz = 1.0};
+    ritz_response_request request = {
+        .model = ritz_model_of_component(&row, NULL), .to_hz = 1.0};
     ritz_responder *r = NULL;
     double _Complex H[ENDS * ENDS];
     const double hertz = 0.3;
@@ -267,8 +271,9 @@ static void where_an_engine_gives_up_direct_answers(void **state)
     assert_ok(ritz_responder_at(r, hertz, H));
     assert_true(row_apart(1, &hertz, 0.0, 0.0, H) < 1e-11);
     ritz_responder_free(&r);
-    request.component = NULL; /* of a dense model there is no direct */
-    request.matrices = &(ritz_second_order){.io = &row.io};
+    /* of a dense model there is no direct */
+    request.model =
+        ritz_model_of_dense(&(ritz_second_order){.io = &row.io}, NULL);
     assert_fails(ritz_responder_or_direct(&futile, &request, &r),
                  RITZ_ERR_ARGUMENT, "not for");
     ritz_component_free(&row);
@@ -326,9 +331,9 @@ static void an_output_of_rounding_holds_up_nothing(void **state)
         ritz_response r = {0};
         double worst = 0.0, largest = 0.0, other = 0.0;
 
-        assert_ok(ritz_response_component(&twins,
-                                          ritz_response_engine_find(engines[e]),
-                                          &modal, 100.0, tolerance, &grid, &r));
+        assert_ok(ritz_response_of(ritz_model_of_component(&twins, &modal),
+                                   ritz_response_engine_find(engines[e]), 100.0,
+                                   tolerance, &grid, &r));
         for (int64_t k = 0; k < r.count; k++) {
             double _Complex exact = twin_response(r.hertz[k], modal.zeta);
 
@@ -354,8 +359,8 @@ static ritz_status follow_twins(const ritz_component *twins)
     ritz_status status = RITZ_OK;
     ritz_response r = {0};
 
-    RITZ_TRY(
-        ritz_response_component(twins, NULL, &modal, 100.0, 0.4, &grid, &r));
+    RITZ_TRY(ritz_response_of(ritz_model_of_component(twins, &modal), NULL,
+                              100.0, 0.4, &grid, &r));
 done:
     ritz_response_free(&r);
     return status;
@@ -394,9 +399,9 @@ static void a_faint_link_between_equals_shows_both_poles(void **state)
     pair.K.val[pair.K.colptr[2] - 1] +=
         lambda; /* to the ground, as the first */
     assert_ok(masses_io(&pair, 1, &in, 2, out));
-    assert_ok(ritz_response_component(&pair,
-                                      ritz_response_engine_find("rational"),
-                                      &modal, 10.0, 0.0, &grid, &r));
+    assert_ok(ritz_response_of(ritz_model_of_component(&pair, &modal),
+                               ritz_response_engine_find("rational"), 10.0, 0.0,
+                               &grid, &r));
     for (int64_t p = 0; p < r.count; p++) {
         double w = 2.0 * pi * r.hertz[p];
         double rate = 2.0 * modal.zeta * w;

@@ -38,7 +38,7 @@ static void oscillate(const ritz_integrator *integrator, double w, double step,
     request.signal = NULL;
     request.x0 = &x0;
     request.rho = rho;
-    assert_ok(ritz_simulate(&one.dense, &request, out));
+    assert_ok(ritz_simulate(one.dense, &request, out));
     motions_free(&one);
 }
 
@@ -95,8 +95,7 @@ static void generalised_alpha_damps_by_rho_a_step(void **state)
 }
 
 /* Largest difference from modal at the same step and inputs. */
-static double error_of(const ritz_simulated *subject,
-                       ritz_simulation_request request)
+static double error_of(ritz_model subject, ritz_simulation_request request)
 {
     ritz_simulation made = {0}, exact = {0};
     double error = 0.0;
@@ -129,7 +128,7 @@ static void orders_are_two_with_dampers_and_inputs(void **state)
 
             request.signal = &sine;
             request.x0 = x0;
-            error[j] = error_of(&m.dense, request);
+            error[j] = error_of(m.dense, request);
         }
         assert_true(error[0] < 0.05 && error[2] > 1e-6);
         /* the next term is of order h^2 relative: (w h)^2 = 0.02 */
@@ -162,7 +161,7 @@ static void a_held_input_keeps_second_order(void **state)
 
             request.signal = &jump;
             request.hold = RITZ_HOLD_ZERO;
-            error[j] = error_of(&m.dense, request);
+            error[j] = error_of(m.dense, request);
         }
         assert_near(log2(error[0] / error[1]), 2.0, 0.15);
         motions_free(&m);
@@ -176,7 +175,7 @@ static void the_trapezoidal_rule_balances_energies(void **state)
         .kind = RITZ_SIGNAL_CHIRP, .amplitude = 5.0, .hertz = {0.1, 3.0}};
     ritz_simulation_request request =
         asking(&ritz_integrator_trapezoidal, 20.0, 0.05);
-    ritz_simulated subjects[2];
+    ritz_model subjects[2];
     motions m = {0};
 
     (void)state;
@@ -188,7 +187,7 @@ static void the_trapezoidal_rule_balances_energies(void **state)
         ritz_simulation r = {0};
         double size = 0.0;
 
-        assert_ok(ritz_simulate(&subjects[k], &request, &r));
+        assert_ok(ritz_simulate(subjects[k], &request, &r));
         for (int64_t j = 0; j < r.count; j++) {
             size = fmax(size, r.dissipated[j] + r.kinetic[j] + r.potential[j]);
             assert_near(r.balance[j], 0.0,
@@ -211,15 +210,17 @@ static void an_explicit_step_above_its_limit_is_refused_and_grows(void **state)
 
     (void)state;
     assert_ok(motions_new(false, &m));
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "2.04667 Hz, limits it to 0.155526 s");
     request.step = limit * 0.9999;
-    assert_ok(ritz_simulate(&m.dense, &request, &r));
+    assert_ok(ritz_simulate(m.dense, &request, &r));
     ritz_simulation_free(&r);
-    assert_ok(ritz_simulate_growth(&m.model, &none, request.integrator,
-                                   0.9 * limit, 3000, 2, &below));
-    assert_ok(ritz_simulate_growth(&m.model, &none, request.integrator,
-                                   1.01 * limit, 3000, 2, &above));
+    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
+                                   request.integrator, 0.9 * limit, 3000, 2,
+                                   &below));
+    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
+                                   request.integrator, 1.01 * limit, 3000, 2,
+                                   &above));
     assert_true(below < 20.0); /* its own energy is (1 - (w h / 2)^2) of E */
     assert_true(above > 1e10);
     motions_free(&m);
@@ -237,11 +238,11 @@ static void central_differences_stand_damping_to_their_limit(void **state)
     assert_ok(motions_new(true, &m));
     for (int k = 0; k < 9; k++)
         m.D.val[k] *= 30.0;
-    assert_ok(ritz_simulate_growth(&m.model, &none,
+    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
                                    &ritz_integrator_central_difference,
                                    0.999 * limit, 2000, 3, &damped));
     memcpy(m.D.val, skew, sizeof skew);
-    assert_ok(ritz_simulate_growth(&m.model, &none,
+    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
                                    &ritz_integrator_central_difference,
                                    0.9 * limit, 2000, 3, &gyroscopic));
     assert_true(damped < 3000.0); /* (1 - 0.999^2)^-1 and a start */
@@ -269,8 +270,8 @@ static void a_component_and_its_dense_matrices_answer_alike(void **state)
                 m.D.val[3] += 0.5;
                 m.component.D.val[m.component.D.colptr[1]] += 0.5;
             }
-            assert_ok(ritz_simulate(&m.dense, &request, &dense));
-            assert_ok(ritz_simulate(&m.sparse, &request, &sparse));
+            assert_ok(ritz_simulate(m.dense, &request, &dense));
+            assert_ok(ritz_simulate(m.sparse, &request, &sparse));
             assert_ok(ritz_simulation_difference(&dense, &sparse, &off));
             assert_true(off < 1e-12); /* some eps a step, 100 steps */
             assert_string_equal(sparse.output[0], "y1");
@@ -296,13 +297,13 @@ static void a_component_goes_by_its_modes(void **state)
     (void)state;
     assert_ok(motions_new(true, &m));
     request.up_to_hz = 1.8;
-    assert_ok(ritz_simulate(&m.sparse, &request, &some));
+    assert_ok(ritz_simulate(m.sparse, &request, &some));
     assert_int_equal(some.order, 2);
     /* u = K^-1 f after all motion has died: 1 / 100 at the first mass */
     assert_near(some.y[some.count - 1], 0.01, 1e-9);
     request.up_to_hz = 10.0;
-    assert_ok(ritz_simulate(&m.sparse, &request, &all));
-    assert_ok(ritz_simulate(&m.dense, &request, &dense));
+    assert_ok(ritz_simulate(m.sparse, &request, &all));
+    assert_ok(ritz_simulate(m.dense, &request, &dense));
     assert_ok(ritz_simulation_difference(&dense, &all, &off));
     assert_true(off < 1e-11);
     ritz_simulation_free(&all);
@@ -329,21 +330,21 @@ static void a_dof_without_mass_follows_at_once(void **state)
             asking(&ritz_integrator_modal, 3.0, 0.005);
 
         request.signal = s == 0 ? &motions_step : &sine;
-        assert_ok(ritz_simulate(&m.dense, &request, &exact));
+        assert_ok(ritz_simulate(m.dense, &request, &exact));
         assert_near(exact.y[0], s == 0 ? 0.02 : 0.0, 1e-16);
         for (int j = 1; j < 4; j++) {
             ritz_simulation r = {0};
             double off = 1.0;
 
             request.integrator = ritz_integrators[j];
-            assert_ok(ritz_simulate(&m.dense, &request, &r));
+            assert_ok(ritz_simulate(m.dense, &request, &r));
             assert_ok(ritz_simulation_difference(&exact, &r, &off));
             assert_true(off < 2e-3); /* (w h)^2 / 12 of a phase of 21, and as
                                     much again by rho */
             ritz_simulation_free(&r);
             if (ritz_integrators[j]->is_explicit)
                 continue;
-            assert_ok(ritz_simulate(&m.sparse, &request, &r));
+            assert_ok(ritz_simulate(m.sparse, &request, &r));
             assert_ok(ritz_simulation_difference(&exact, &r, &off));
             assert_true(off < 2e-3);
             ritz_simulation_free(&r);
@@ -368,11 +369,11 @@ static void an_impulse_is_a_velocity(void **state)
         double off = 1.0;
 
         request.signal = &impulse;
-        assert_ok(ritz_simulate(&m.dense, &request, &pushed));
+        assert_ok(ritz_simulate(m.dense, &request, &pushed));
         assert_near(pushed.work[0], 3.0, 1e-14); /* m v^2 / 2 */
         request.signal = NULL;
         request.v0 = v0;
-        assert_ok(ritz_simulate(&m.dense, &request, &started));
+        assert_ok(ritz_simulate(m.dense, &request, &started));
         assert_ok(ritz_simulation_difference(&started, &pushed, &off));
         assert_true(off < 1e-13);
         ritz_simulation_free(&pushed);
@@ -387,26 +388,26 @@ static void a_state_space_is_simulated(void **state)
     static const double A = -3.0, B = 1.0, C = 1.0, D = 1.0, E = 2.0;
     const spaces_rows rows = {1, 1, 1, &A, &B, &C, &D, &E};
     ritz_state_space space = {0};
-    const ritz_simulated subject = {.states = &space};
+    const ritz_model subject = ritz_model_of_states(&space);
     ritz_simulation_request request = asking(&ritz_integrator_modal, 5.0, 0.5);
     ritz_simulation r = {0};
 
     (void)state;
     assert_ok(spaces_make(&rows, &space));
-    assert_ok(ritz_simulate(&subject, &request, &r));
+    assert_ok(ritz_simulate(subject, &request, &r));
     for (int64_t k = 0; k < r.count; k++)
         assert_near(r.y[k], (1.0 - exp(-1.5 * r.seconds[k])) / 3.0 + 1.0,
                     1e-15 * (double)(k + 2));
     assert_null(r.balance);
     ritz_simulation_free(&r);
     request.integrator = &ritz_integrator_trapezoidal;
-    assert_ok(ritz_simulate(&subject, &request, &r));
+    assert_ok(ritz_simulate(subject, &request, &r));
     for (int64_t k = 0; k < r.count; k++) /* ((1 - z) / (1 + z))^k, z = 3/8 */
         assert_near(r.y[k], (1.0 - pow(0.625 / 1.375, (double)k)) / 3.0 + 1.0,
                     1e-15 * (double)(k + 2));
     ritz_simulation_free(&r);
     request.integrator = &ritz_integrator_central_difference;
-    assert_fails(ritz_simulate(&subject, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(subject, &request, &r), RITZ_ERR_ARGUMENT,
                  "is of second-order models");
     ritz_state_space_free(&space);
 }
@@ -423,7 +424,7 @@ static void a_step_is_halved_until_it_is_accurate(void **state)
         ritz_accuracy reached = {.error = 1.0};
 
         assert_ok(
-            ritz_simulate_accurate(&m.dense, &request, 1e-3, &reached, &r));
+            ritz_simulate_accurate(m.dense, &request, 1e-3, &reached, &r));
         assert_true(reached.error <= 1e-3);
         assert_int_equal(reached.num_left, 0);
         assert_true(r.step <= 0.06);
@@ -431,7 +432,7 @@ static void a_step_is_halved_until_it_is_accurate(void **state)
         if (k > 0) {
             request.step = 2.0 * r.step;
             if (request.step < 0.05)
-                assert_true(error_of(&m.dense, request) > 1e-3);
+                assert_true(error_of(m.dense, request) > 1e-3);
         }
         ritz_simulation_free(&r);
     }
@@ -446,36 +447,36 @@ static void what_makes_no_sense_is_refused(void **state)
     const ritz_dense K4 = {3, 3, k4};
     ritz_simulation_request request = asking(&ritz_integrator_modal, 1.0, 0.1);
     ritz_simulation r = {0};
-    ritz_simulated nothing = {0};
+    ritz_model nothing = {0};
     motions m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
-    assert_fails(ritz_simulate(&nothing, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(nothing, &request, &r), RITZ_ERR_ARGUMENT,
                  "not one thing");
-    assert_fails(ritz_simulate(&m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
                  "no frequency is given");
     request.integrator = &ritz_integrator_central_difference;
-    assert_fails(ritz_simulate(&m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
                  "is of small dense models");
     request.integrator = &ritz_integrator_trapezoidal;
     m.sparse.damping = &modal;
-    assert_fails(ritz_simulate(&m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
                  "damping ratios are of modes");
-    m.model.K4 = &K4;
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_ARGUMENT,
+    m.dense.dense.K4 = &K4;
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "structural damping");
-    m.model.K4 = NULL;
+    m.dense.dense.K4 = NULL;
     request.integrator = &ritz_integrator_generalised_alpha;
     request.rho = 1.5;
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "spectral radius");
     request.step = 0.0;
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "0 s is no step");
     request.step = 0.1;
     request.seconds = -1.0;
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "no -1 seconds");
     assert_null(ritz_integrator_find("trapezoid"));
     assert_non_null(strstr(ritz_error_message(), "is 'trapezoidal' meant?"));
@@ -492,9 +493,9 @@ static void damping_of_a_dof_without_mass_is_refused(void **state)
 
     (void)state;
     assert_ok(motions_row(2, mass, k, c, &m));
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "dofs without mass are damped");
-    assert_fails(ritz_simulate(&m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_simulate(m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
                  "grid 2 T1 has damping and no mass");
     motions_free(&m);
 }
@@ -508,7 +509,7 @@ static void an_unstable_model_leaves_all_bounds(void **state)
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, NULL, &m));
-    assert_fails(ritz_simulate(&m.dense, &request, &r), RITZ_ERR_CONVERGENCE,
+    assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_CONVERGENCE,
                  "left all bounds");
     motions_free(&m);
 }
@@ -579,8 +580,7 @@ static void a_table_is_linear_between_its_points(void **state)
                  "a file that can be read");
 }
 
-static ritz_status run(const ritz_simulated *subject,
-                       const ritz_integrator *integrator)
+static ritz_status run(ritz_model subject, const ritz_integrator *integrator)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request request = asking(integrator, 0.3, 0.1);
@@ -605,9 +605,9 @@ static void integrators_survive_every_allocation(void **state)
     m.dense.damping = &light;
     m.sparse.damping = &rayleigh;
     for (int k = 1; ritz_integrators[k]; k++)
-        assert_survives_every_allocation(run(&m.dense, ritz_integrators[k]));
+        assert_survives_every_allocation(run(m.dense, ritz_integrators[k]));
     assert_survives_every_allocation(
-        run(&m.sparse, &ritz_integrator_generalised_alpha));
+        run(m.sparse, &ritz_integrator_generalised_alpha));
     motions_free(&m);
 }
 

@@ -16,7 +16,8 @@ static void steps_are_those_of_the_scheme(void **state)
 
     (void)state;
     assert_ok(motions_new(false, &m));
-    assert_ok(ritz_simulate_cost(&m.model, &none, band, &cost));
+    assert_ok(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), band, &cost));
     /* scipy.linalg.eigh */
     assert_near(cost.step_explicit, 0.1555256079217896, 1e-14);
     assert_near(cost.highest_hz, 2.04667187, 1e-8);
@@ -26,7 +27,8 @@ static void steps_are_those_of_the_scheme(void **state)
     assert_string_equal(cost.integrator, "trapezoidal");
     assert_int_equal(cost.order, 3);
     assert_true(cost.seconds_per_second > 0.0);
-    assert_ok(ritz_simulate_cost(&m.model, &none, NULL, &cost));
+    assert_ok(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), NULL, &cost));
     assert_near(pow(2.0 * pi * cost.highest_hz * cost.step_accurate, 2.0) /
                     12.0,
                 1e-3, 1e-15);
@@ -43,11 +45,13 @@ static void the_explicit_step_heeds_damping(void **state)
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, &c, &m));
-    assert_ok(ritz_simulate_cost(&m.model, NULL, NULL, &cost));
+    assert_ok(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, NULL), NULL, &cost));
     assert_near(cost.step_explicit, 2.0 * (sqrt(1.09) - 0.3) / 3.0, 1e-15);
     motions_free(&m);
     assert_ok(motions_new(true, &m));
-    assert_ok(ritz_simulate_cost(&m.model, &none, NULL, &cost));
+    assert_ok(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), NULL, &cost));
     assert_near(cost.step_explicit, 1.4821065717397161e-01, 1e-14);
     motions_free(&m);
 }
@@ -61,11 +65,13 @@ static void a_rigid_body_has_no_explicit_limit(void **state)
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, NULL, &m));
-    assert_ok(ritz_simulate_cost(&m.model, &none, band, &cost));
+    assert_ok(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), band, &cost));
     assert_true(isinf(cost.step_explicit));
     assert_near(cost.highest_hz, 0.0, 0.0);
     assert_near(cost.step_accurate, sqrt(0.012) / (20.0 * pi), 1e-15);
-    assert_ok(ritz_simulate_cost(&m.model, &none, NULL, &cost));
+    assert_ok(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), NULL, &cost));
     assert_near(cost.step_accurate, sqrt(0.012) / (2.0 * pi), 1e-15);
     motions_free(&m);
 }
@@ -83,10 +89,12 @@ static void more_coordinates_cost_more(void **state)
     assert_ok(motions_row(3, mass, k, NULL, &small));
     assert_ok(motions_row(64, mass, k, NULL, &large));
     for (int j = 0; ritz_integrators[j]; j++) {
-        assert_ok(ritz_simulate_step_cost(&small.model, &none,
-                                          ritz_integrators[j], 0.1, &few));
-        assert_ok(ritz_simulate_step_cost(&large.model, &none,
-                                          ritz_integrators[j], 0.1, &many));
+        assert_ok(
+            ritz_simulate_step_cost(ritz_model_of_dense(&small.model, &none),
+                                    ritz_integrators[j], 0.1, &few));
+        assert_ok(
+            ritz_simulate_step_cost(ritz_model_of_dense(&large.model, &none),
+                                    ritz_integrators[j], 0.1, &many));
         assert_true(few > 0.0 && many > few);
     }
     assert_ok(ritz_simulate_refactor_cost(3, &few));
@@ -105,9 +113,10 @@ static void costs_without_sense_are_refused(void **state)
 
     (void)state;
     assert_ok(motions_new(false, &m));
-    assert_fails(ritz_simulate_cost(&m.model, &none, band, &cost),
-                 RITZ_ERR_ARGUMENT, "makes no sense");
-    assert_fails(ritz_simulate_step_cost(&m.model, &none,
+    assert_fails(
+        ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), band, &cost),
+        RITZ_ERR_ARGUMENT, "makes no sense");
+    assert_fails(ritz_simulate_step_cost(ritz_model_of_dense(&m.model, &none),
                                          &ritz_integrator_modal, 0.0, &time),
                  RITZ_ERR_ARGUMENT, "no step");
     assert_fails(ritz_simulate_refactor_cost(0, &time), RITZ_ERR_ARGUMENT,
@@ -125,14 +134,16 @@ static void growth_tells_an_unstable_model(void **state)
     for (int j = 0; ritz_integrators[j]; j++) {
         double stable = 0.0, unstable = 0.0;
 
-        assert_ok(ritz_simulate_growth(&m.model, &none, ritz_integrators[j],
-                                       0.02, 2000, 3, &stable));
+        assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
+                                       ritz_integrators[j], 0.02, 2000, 3,
+                                       &stable));
         /* generalised-alpha and explicit ones conserve an energy near E */
         assert_true(stable > 0.0 && stable < 1.05);
         for (int k = 0; k < 9; k++)
             m.D.val[k] = -m.D.val[k];
-        assert_ok(ritz_simulate_growth(&m.model, &none, ritz_integrators[j],
-                                       0.02, 2000, 3, &unstable));
+        assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
+                                       ritz_integrators[j], 0.02, 2000, 3,
+                                       &unstable));
         assert_true(unstable > 100.0);
         for (int k = 0; k < 9; k++)
             m.D.val[k] = -m.D.val[k];
@@ -152,8 +163,9 @@ static void growth_tells_an_unsymmetric_damping(void **state)
     (void)state;
     assert_ok(motions_row(2, mass, k, NULL, &m));
     m.model.D = &D;
-    assert_ok(ritz_simulate_growth(
-        &m.model, &none, &ritz_integrator_trapezoidal, 0.05, 4000, 2, &growth));
+    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
+                                   &ritz_integrator_trapezoidal, 0.05, 4000, 2,
+                                   &growth));
     assert_true(growth > 100.0);
     motions_free(&m);
 }
@@ -163,10 +175,12 @@ static ritz_status measure(const motions *m, int which)
     ritz_cost cost = {0};
     double growth = 0.0;
 
-    return which == 0 ? ritz_simulate_cost(&m->model, &none, NULL, &cost)
-                      : ritz_simulate_growth(&m->model, &none,
-                                             &ritz_integrator_trapezoidal, 0.1,
-                                             2, 1, &growth);
+    return which == 0
+               ? ritz_simulate_cost(ritz_model_of_dense(&m->model, &none), NULL,
+                                    &cost)
+               : ritz_simulate_growth(ritz_model_of_dense(&m->model, &none),
+                                      &ritz_integrator_trapezoidal, 0.1, 2, 1,
+                                      &growth);
 }
 
 static void costs_survive_every_allocation(void **state)

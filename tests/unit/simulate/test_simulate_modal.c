@@ -160,7 +160,7 @@ static void a_step_response_is_that_of_the_textbook_at_any_step(void **state)
             request.seconds = 6.0;
             request.step = steps[s];
             request.signal = &motions_step;
-            assert_ok(ritz_simulate(&one.dense, &request, &r));
+            assert_ok(ritz_simulate(one.dense, &request, &r));
             assert_int_equal(r.count, (int64_t)(6.0 / steps[s] + 0.5) + 1);
             for (int64_t j = 0; j < r.count; j++) /* each step some eps */
                 assert_near(r.y[j], one_dof_step(w, zetas[z], r.seconds[j]),
@@ -196,12 +196,12 @@ modes_that_damping_couples_go_together_as_scipy_has_them(void **state)
             request.step = expected[k].t / steps;
             request.every = steps;
             request.signal = &motions_step;
-            assert_ok(ritz_simulate(&m.dense, &request, &r));
+            assert_ok(ritz_simulate(m.dense, &request, &r));
             assert_int_equal(r.count, 2);
             assert_near(r.y[1], expected[k].step, 1e-15); /* of 0.01 */
             ritz_simulation_free(&r);
             request.signal = &impulse;
-            assert_ok(ritz_simulate(&m.dense, &request, &r));
+            assert_ok(ritz_simulate(m.dense, &request, &r));
             assert_near(r.y[1], expected[k].impulse, 1e-14); /* of 0.1 */
             ritz_simulation_free(&r);
         }
@@ -221,9 +221,9 @@ static void an_input_is_held_or_linear_over_a_step_as_asked(void **state)
     request.seconds = 2.0;
     request.step = 0.05;
     request.signal = &sine;
-    assert_ok(ritz_simulate(&m.dense, &request, &first));
+    assert_ok(ritz_simulate(m.dense, &request, &first));
     request.hold = RITZ_HOLD_ZERO;
-    assert_ok(ritz_simulate(&m.dense, &request, &zero));
+    assert_ok(ritz_simulate(m.dense, &request, &zero));
     assert_int_equal(first.count, 41);
     /* scipy.signal.lsim, interp True and False */
     assert_near(first.y[40], -1.4103876625323254e-03, 1e-15);
@@ -251,7 +251,7 @@ static void a_free_body_is_accelerated(void **state)
     request.seconds = 1000.0;
     request.step = 10.0;
     request.signal = &motions_step;
-    assert_ok(ritz_simulate(&body.dense, &request, &r));
+    assert_ok(ritz_simulate(body.dense, &request, &r));
     for (int64_t j = 0; j < r.count; j++) {
         double t = r.seconds[j];
 
@@ -290,7 +290,7 @@ static void energies_balance_with_coupled_damping_and_inputs(void **state)
                 request.hold = (ritz_hold)hold;
                 request.signal = &signals[s];
                 request.v0 = v0;
-                assert_ok(ritz_simulate(&m.dense, &request, &r));
+                assert_ok(ritz_simulate(m.dense, &request, &r));
                 for (int64_t j = 0; j < r.count; j++) {
                     size = larger(size, r.kinetic[j] + r.potential[j] +
                                             r.dissipated[j]);
@@ -337,7 +337,7 @@ static void a_step_too_long_for_its_states_is_refused(void **state)
                  RITZ_ERR_ARGUMENT, "too long for the fastest");
 }
 
-static ritz_status run(const ritz_simulated *subject)
+static ritz_status run(ritz_model subject)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
@@ -361,8 +361,8 @@ static void modal_survives_every_allocation(void **state)
     (void)state;
     assert_ok(motions_new(true, &m));
     m.dense.damping = m.sparse.damping = &light;
-    assert_survives_every_allocation(run(&m.dense));
-    assert_survives_every_allocation(run(&m.sparse));
+    assert_survives_every_allocation(run(m.dense));
+    assert_survives_every_allocation(run(m.sparse));
     motions_free(&m);
 }
 

@@ -57,8 +57,8 @@ static ritz_simulation_request asking(const ritz_integrator *integrator)
  */
 enum { ENOUGH = 3200 };
 
-static void check(const ritz_simulated *subject,
-                  const ritz_integrator *integrator, double size)
+static void check(ritz_model subject, const ritz_integrator *integrator,
+                  double size)
 {
     ritz_simulation_request request = asking(integrator);
     ritz_simulation r = {0};
@@ -89,9 +89,9 @@ static void an_output_that_is_rounding_does_not_drive_the_step(void **state)
 
         turn(0.0, sizes[s], &m);
         for (int k = 0; ritz_integrators[k]; k++) {
-            check(&m.dense, ritz_integrators[k], sizes[s]);
+            check(m.dense, ritz_integrators[k], sizes[s]);
             if (ritz_integrators[k]->takes_sparse)
-                check(&m.sparse, ritz_integrators[k], sizes[s]);
+                check(m.sparse, ritz_integrators[k], sizes[s]);
         }
         motions_free(&m);
     }
@@ -109,12 +109,12 @@ static void nor_does_one_of_a_state_space(void **state)
     const double C[] = {c, s, 0, 0, -s, c, 0, 0};
     const spaces_rows rows = {4, 1, 2, A, B, C, NULL, NULL};
     ritz_state_space space = {0};
-    const ritz_simulated subject = {.states = &space};
+    const ritz_model subject = ritz_model_of_states(&space);
 
     (void)state;
     assert_ok(spaces_make(&rows, &space));
-    check(&subject, &ritz_integrator_modal, 1.0);
-    check(&subject, &ritz_integrator_trapezoidal, 1.0);
+    check(subject, &ritz_integrator_modal, 1.0);
+    check(subject, &ritz_integrator_trapezoidal, 1.0);
     ritz_state_space_free(&space);
 }
 
@@ -131,7 +131,7 @@ static void an_output_that_responds_weakly_is_held(void **state)
         ritz_accuracy reached = {0};
 
         assert_ok(
-            ritz_simulate_accurate(&m.dense, &request, 1e-3, &reached, &r));
+            ritz_simulate_accurate(m.dense, &request, 1e-3, &reached, &r));
         assert_int_equal(reached.num_left, 0);
         assert_int_equal(reached.left, -1);
         ritz_simulation_free(&r);
@@ -157,8 +157,7 @@ static void what_a_step_does_not_resolve_is_no_rounding(void **state)
 
         request.signal = NULL;
         request.x0 = &x0;
-        assert_ok(
-            ritz_simulate_accurate(&m.dense, &request, 0.5, &reached, &r));
+        assert_ok(ritz_simulate_accurate(m.dense, &request, 0.5, &reached, &r));
         assert_int_equal(reached.num_left, 0);
         assert_true(r.step * 500.0 < 0.15);
         ritz_simulation_free(&r);
@@ -178,7 +177,7 @@ static void a_sine_is_seen_by_the_first_step(void **state)
     (void)state;
     turn(0.0, 1.0, &m);
     request.signal = &sine;
-    assert_ok(ritz_simulate_accurate(&m.dense, &request, 1e-2, NULL, &r));
+    assert_ok(ritz_simulate_accurate(m.dense, &request, 1e-2, NULL, &r));
     /* (p sin(20 t) / 20 - sin(p t)) / (p^2 - 400), p = 200 pi */
     for (int64_t k = 0; k < r.count; k++) {
         const double p = 200.0 * 3.14159265358979323846;
@@ -206,19 +205,19 @@ static void more_steps_than_are_tried_are_refused(void **state)
     turn(0.0, 1.0, &m);
     request.signal = &sine;
     request.seconds = 1e6;
-    assert_fails(ritz_simulate_accurate(&m.dense, &request, 1e-3, NULL, &r),
+    assert_fails(ritz_simulate_accurate(m.dense, &request, 1e-3, NULL, &r),
                  RITZ_ERR_CONVERGENCE,
                  "more than 8388608 steps are not tried, and inputs need "
                  "1e+10");
     request.integrator = &ritz_integrator_central_difference;
     request.signal = &motions_step;
     request.seconds = 1e9;
-    assert_fails(ritz_simulate_accurate(&m.dense, &request, 1e-3, NULL, &r),
+    assert_fails(ritz_simulate_accurate(m.dense, &request, 1e-3, NULL, &r),
                  RITZ_ERR_ARGUMENT, "more than 8388608 steps are not tried: ");
     motions_free(&m);
 }
 
-static ritz_status ask(const ritz_simulated *subject)
+static ritz_status ask(ritz_model subject)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request request = asking(&ritz_integrator_trapezoidal);
@@ -236,8 +235,8 @@ static void a_search_survives_every_allocation(void **state)
 
     (void)state;
     turn(0.0, 1.0, &m);
-    assert_survives_every_allocation(ask(&m.dense));
-    assert_survives_every_allocation(ask(&m.sparse));
+    assert_survives_every_allocation(ask(m.dense));
+    assert_survives_every_allocation(ask(m.sparse));
     motions_free(&m);
 }
 
