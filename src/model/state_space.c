@@ -8,6 +8,8 @@
  * x = [q; q'] of the modes with mass, as modal.c finds them.
  */
 #include "base/alloc.h"
+#include "base/complex.h"
+#include "linear/eigenvalues.h"
 #include "linear/general.h"
 #include "model/modal.h"
 #include "model/state_reduce.h"
@@ -432,6 +434,25 @@ ritz_status ritz_model_states(ritz_model model, ritz_state_space *made,
     if (m->D)
         structure.D = *m->D;
     return convert_structure(&structure, m->io, damping, made);
+}
+
+ritz_status ritz_state_space_poles(const ritz_state_space *model,
+                                   int64_t *count, double _Complex **out)
+{
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_eigenvalues) found = {0};
+    double _Complex *poles = NULL;
+
+    RITZ_CHECK(ritz_dense_copy(&model->A, &A));
+    if (model->E.val)
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &A));
+    RITZ_CHECK(ritz_eigenvalues_of(&A, &found));
+    RITZ_CHECK_NEW(poles, found.count);
+    for (int64_t k = 0; k < found.count; k++)
+        poles[k] = ritz_complex(found.re[k], found.im[k]);
+    *count = found.count;
+    *out = poles;
+    return RITZ_OK;
 }
 
 void ritz_state_space_free(ritz_state_space *model)

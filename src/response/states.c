@@ -8,9 +8,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/eigenvalues.h"
 #include "linear/frame.h"
-#include "linear/general.h"
 #include "response/responder.h"
 
 #include <ritz/model.h>
@@ -106,25 +104,6 @@ static ritz_status solve_hessenberg(hessenberg *h, double hertz)
         hertz);
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
                    "the poles were not found, SLICOT says %d", info);
-    return RITZ_OK;
-}
-
-ritz_status ritz_state_space_poles(const ritz_state_space *model,
-                                   int64_t *count, double _Complex **out)
-{
-    RITZ_OWN(ritz_dense) A = {0};
-    RITZ_OWN(ritz_eigenvalues) found = {0};
-    double _Complex *poles = NULL;
-
-    RITZ_CHECK(ritz_dense_copy(&model->A, &A));
-    if (model->E.val)
-        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &A));
-    RITZ_CHECK(ritz_eigenvalues_of(&A, &found));
-    RITZ_CHECK_NEW(poles, found.count);
-    for (int64_t k = 0; k < found.count; k++)
-        poles[k] = ritz_complex(found.re[k], found.im[k]);
-    *count = found.count;
-    *out = poles;
     return RITZ_OK;
 }
 
