@@ -1,5 +1,4 @@
 /* ritz-basis - find the subspace in which a component is reduced. */
-#include "cli/options.h"
 #include "print/print.h"
 
 static void list_methods(void)

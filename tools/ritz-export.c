@@ -1,5 +1,4 @@
 /* ritz-export - a reduced model or a response as a file of others. */
-#include "cli/options.h"
 #include "print/print.h"
 
 static void list_formats(void)

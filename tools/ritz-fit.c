@@ -1,5 +1,4 @@
 /* ritz-fit - the smallest model that meets a tolerance. */
-#include "cli/options.h"
 #include "print/print.h"
 
 enum { NUM_OWN = 14 };

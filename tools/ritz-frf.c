@@ -1,5 +1,4 @@
 /* ritz-frf - frequency response from inputs to outputs. */
-#include "cli/options.h"
 #include "print/print.h"
 
 #include <math.h>

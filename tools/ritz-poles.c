@@ -1,5 +1,4 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
-#include "cli/options.h"
 #include "print/print.h"
 
 #include <math.h>

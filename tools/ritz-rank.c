@@ -1,6 +1,5 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
 #include "chart/chart.h"
-#include "cli/options.h"
 #include "print/rankings.h"
 
 static void list_rankers(void)

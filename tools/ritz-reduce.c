@@ -1,5 +1,4 @@
 /* ritz-reduce - a component in the subspace of a basis, with estimates. */
-#include "cli/options.h"
 #include "print/print.h"
 
 int main(int argc, char **argv)

@@ -1,5 +1,4 @@
 /* ritz-simulate - time responses, and what a simulated second costs. */
-#include "cli/options.h"
 #include "print/print.h"
 
 #include <math.h>

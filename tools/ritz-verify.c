@@ -1,5 +1,4 @@
 /* ritz-verify - full against reduced: every error, pass or fail. */
-#include "cli/options.h"
 #include "print/print.h"
 
 enum { OWN_OPTIONS = 5 };

@@ -1,7 +1,5 @@
 #include "cli/cli.h"
 
-#include "cli/cli_watch.h"
-
 #include <ritz/base.h>
 
 #include <fcntl.h>

@@ -61,38 +61,25 @@ typedef struct cli_option {
     const char *help;
 } cli_option;
 
-/* Rows of a table: kind and place of an answer, held to each other by the
+/* Rows of a table: kind and place of a value, held to each other by the
    compiler. */
+#define CLI_ROW(KIND, member, word, place, value, low, high, says)             \
+    {                                                                          \
+        .kind = CLI_KIND_##KIND, .to.member = (place), .name = (word),         \
+        .argument = (value), .min = (low), .max = (high), .help = (says)       \
+    }
 #define CLI_ACTION(word, function, says)                                       \
-    {                                                                          \
-        .kind = CLI_KIND_ACTION, .name = (word), .to.action = (function),      \
-        .help = (says)                                                         \
-    }
+    CLI_ROW(ACTION, action, word, function, NULL, 0.0, 0.0, says)
 #define CLI_FLAG(word, place, says)                                            \
-    {                                                                          \
-        .kind = CLI_KIND_FLAG, .name = (word), .to.flag = (place),             \
-        .help = (says)                                                         \
-    }
+    CLI_ROW(FLAG, flag, word, place, NULL, 0.0, 0.0, says)
 #define CLI_INT(word, place, value, low, high, says)                           \
-    {                                                                          \
-        .kind = CLI_KIND_INT, .name = (word), .to.whole = (place),             \
-        .argument = (value), .min = (low), .max = (high), .help = (says)       \
-    }
+    CLI_ROW(INT, whole, word, place, value, low, high, says)
 #define CLI_REAL(word, place, value, low, high, says)                          \
-    {                                                                          \
-        .kind = CLI_KIND_REAL, .name = (word), .to.real = (place),             \
-        .argument = (value), .min = (low), .max = (high), .help = (says)       \
-    }
+    CLI_ROW(REAL, real, word, place, value, low, high, says)
 #define CLI_TEXT(word, place, value, says)                                     \
-    {                                                                          \
-        .kind = CLI_KIND_TEXT, .name = (word), .to.text = (place),             \
-        .argument = (value), .help = (says)                                    \
-    }
+    CLI_ROW(TEXT, text, word, place, value, 0.0, 0.0, says)
 #define CLI_LIST(word, place, value, says)                                     \
-    {                                                                          \
-        .kind = CLI_KIND_LIST, .name = (word), .to.list = (place),             \
-        .argument = (value), .help = (says)                                    \
-    }
+    CLI_ROW(LIST, list, word, place, value, 0.0, 0.0, says)
 
 typedef struct cli_operand {
     const char *name; /* "COMPONENT" */
@@ -224,6 +211,19 @@ void cli_record_error(cli_run *run, const char *name, double value);
  * @param[in] line  given away
  */
 ritz_status cli_record_line(cli_run *run, json_t *line);
+
+/*
+ * Signals and progress while a tool works, for this room.
+ */
+
+/** From now on SIGINT, SIGTERM and SIGHUP remove unfinished files first. */
+void cli_watch_signals(void);
+
+/** Show steps of the library as one line, if standard error is a terminal. */
+void cli_watch_progress(bool quiet);
+
+/** Remove that line, before something else is written. */
+void cli_watch_clear(void);
 
 /** Exit status for main: report, say why it failed, check standard output. */
 int cli_finish(cli_run *run, ritz_status status);

@@ -1,4 +1,4 @@
-#include "cli/cli_watch.h"
+#include "cli/cli.h"
 
 #include "base/draft.h"
 

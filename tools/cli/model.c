@@ -1,321 +1,101 @@
 #include "cli/model.h"
 
-#include <ritz/check.h>
-#include <ritz/matrix.h>
-#include <ritz/model.h>
-#include <ritz/poles.h>
+#include "base/alloc.h"
 
-#include <complex.h>
+#include <ritz/matrix.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static ritz_status read_component(const char *path, model *out)
-{
-    return ritz_container_read_component(path, &out->component);
-}
-
-static ritz_status read_basis(const char *path, model *out)
-{
-    return ritz_container_read_basis(path, &out->basis);
-}
-
-static ritz_status read_reduced(const char *path, model *out)
-{
-    return ritz_container_read_reduced(path, &out->reduced);
-}
-
-static ritz_status read_system(const char *path, model *out)
-{
-    return ritz_container_read_system(path, &out->system);
-}
-
-static ritz_status read_response(const char *path, model *out)
-{
-    return ritz_container_read_response(path, &out->response);
-}
-
-static ritz_status read_ranking(const char *path, model *out)
-{
-    return ritz_container_read_rankings(path, &out->rankings);
-}
-
-static ritz_status read_states(const char *path, model *out)
-{
-    return ritz_container_read_state_space(path, &out->states);
-}
-
-static ritz_status read_simulation(const char *path, model *out)
-{
-    return ritz_container_read_simulation(path, &out->simulation);
-}
-
-static ritz_status write_reduced(const model *m, const char *path,
-                                 const ritz_stamp *stamp)
-{
-    return ritz_container_write_reduced(path, &m->reduced, stamp);
-}
-
-static ritz_status write_system(const model *m, const char *path,
-                                const ritz_stamp *stamp)
-{
-    return ritz_container_write_system(path, &m->system, stamp);
-}
-
-static ritz_status write_states(const model *m, const char *path,
-                                const ritz_stamp *stamp)
-{
-    return ritz_container_write_state_space(path, &m->states, stamp);
-}
-
-static ritz_io io_of_component(const model *m)
-{
-    return m->component.io;
-}
-
-static ritz_io io_of_matrices(const model *m)
-{
-    return *model_matrices(m).io;
-}
-
-static ritz_io io_of_states(const model *m)
-{
-    return (ritz_io){.num_inputs = m->states.num_inputs,
-                     .num_outputs = m->states.num_outputs,
-                     .input = m->states.input,
-                     .output = m->states.output,
-                     .limit = m->states.limit};
-}
-
-static int64_t order_of_component(const model *m)
-{
-    return m->component.num_dofs;
-}
-
-static int64_t order_of_matrices(const model *m)
-{
-    return model_matrices(m).K->nrow;
-}
-
-static int64_t order_of_states(const model *m)
-{
-    return m->states.A.nrow;
-}
-
-static ritz_status spectrum_of_component(const model *m,
-                                         const ritz_damping *damping,
-                                         const ritz_span *span,
-                                         ritz_spectrum *out)
-{
-    return ritz_spectrum_of(ritz_model_of_component(&m->component, damping),
-                            span, out);
-}
-
-static ritz_status spectrum_of_matrices(const model *m,
-                                        const ritz_damping *damping,
-                                        const ritz_span *span,
-                                        ritz_spectrum *out)
-{
-    const ritz_second_order matrices = model_matrices(m);
-
-    (void)span;
-    return ritz_spectrum_of(ritz_model_of_dense(&matrices, damping), NULL, out);
-}
-
-static ritz_status spectrum_of_states(const model *m,
-                                      const ritz_damping *damping,
-                                      const ritz_span *span, ritz_spectrum *out)
-{
-    (void)damping;
-    return ritz_spectrum_of(ritz_model_of_states(&m->states), span, out);
-}
-
-/* Second-order models as they are: their modes tell more than states. */
-static ritz_status zeros_of_component(const model *m,
-                                      const ritz_damping *damping,
-                                      const int64_t at[2], int64_t *count,
-                                      double _Complex **out)
-{
-    return ritz_zeros_of(ritz_model_of_component(&m->component, damping), at[0],
-                         at[1], count, out);
-}
-
-static ritz_status zeros_of_matrices(const model *m,
-                                     const ritz_damping *damping,
-                                     const int64_t at[2], int64_t *count,
-                                     double _Complex **out)
-{
-    const ritz_second_order matrices = model_matrices(m);
-
-    return ritz_zeros_of(ritz_model_of_dense(&matrices, damping), at[0], at[1],
-                         count, out);
-}
-
-static ritz_status zeros_of_states(const model *m, const ritz_damping *damping,
-                                   const int64_t at[2], int64_t *count,
-                                   double _Complex **out)
-{
-    (void)damping;
-    return ritz_zeros_of(ritz_model_of_states(&m->states), at[0], at[1], count,
-                         out);
-}
-
-static ritz_status states_of_component(const model *m,
-                                       const ritz_damping *damping,
-                                       ritz_state_space *made,
-                                       const ritz_state_space **out)
-{
-    *out = NULL;
-    if (m->component.num_dofs > MODEL_MOST_DOFS || m->component.K4.colptr)
-        return RITZ_OK;
-    *out = made;
-    return ritz_state_space_of_component(&m->component, damping, made);
-}
-
-static ritz_status states_of_matrices(const model *m,
-                                      const ritz_damping *damping,
-                                      ritz_state_space *made,
-                                      const ritz_state_space **out)
-{
-    const ritz_second_order view = model_matrices(m);
-    ritz_reduced bare = {0}; /* borrowed; dampers are in K and D already */
-
-    *out = NULL;
-    if (view.K4 && view.K4->val)
-        return RITZ_OK;
-    bare.K = *view.K;
-    bare.M = *view.M;
-    bare.io = *view.io;
-    if (view.D)
-        bare.D = *view.D;
-    *out = made;
-    return ritz_state_space_of_reduced(&bare, damping, made);
-}
-
-static ritz_status states_of_states(const model *m, const ritz_damping *damping,
-                                    ritz_state_space *made,
-                                    const ritz_state_space **out)
-{
-    (void)damping;
-    (void)made;
-    *out = &m->states;
-    return RITZ_OK;
-}
-
-static ritz_status audit_component(const model *m, ritz_audit *out)
-{
-    return ritz_audit_component(&m->component, out);
-}
-
-static ritz_status audit_reduced(const model *m, ritz_audit *out)
-{
-    return ritz_audit_reduced(&m->reduced, out);
-}
-
-static ritz_status audit_states(const model *m, ritz_audit *out)
-{
-    return ritz_audit_states(&m->states, out);
-}
-
-/* Kinds of container, and their answers to what tools ask; NULL: none. */
+/* Kinds of container. */
 static const struct kind {
     const char *name; /* in files */
     const char *noun; /* in sentences */
     model_kind kind;
     size_t offset; /* of the object in a model */
-    ritz_status (*read)(const char *path, model *out);
-    ritz_status (*write)(const model *m, const char *path,
-                         const ritz_stamp *stamp);
-    ritz_io (*io)(const model *m);
-    int64_t (*order)(const model *m);
-    ritz_status (*spectrum)(const model *m, const ritz_damping *damping,
-                            const ritz_span *span, ritz_spectrum *out);
-    ritz_status (*zeros)(const model *m, const ritz_damping *damping,
-                         const int64_t at[2], int64_t *count,
-                         double _Complex **out);
-    ritz_status (*states)(const model *m, const ritz_damping *damping,
-                          ritz_state_space *made, const ritz_state_space **out);
-    ritz_status (*audit)(const model *m, ritz_audit *out);
 } kinds[] = {
-    {"component", "a component", MODEL_COMPONENT, offsetof(model, component),
-     read_component, NULL, io_of_component, order_of_component,
-     spectrum_of_component, zeros_of_component, states_of_component,
-     audit_component},
-    {"basis", "a basis", MODEL_BASIS, offsetof(model, basis),
-     .read = read_basis},
-    {"reduced", "a reduced component", MODEL_REDUCED, offsetof(model, reduced),
-     read_reduced, write_reduced, io_of_matrices, order_of_matrices,
-     spectrum_of_matrices, zeros_of_matrices, states_of_matrices,
-     audit_reduced},
-    {"system", "a system", MODEL_SYSTEM, offsetof(model, system), read_system,
-     write_system, io_of_matrices, order_of_matrices, spectrum_of_matrices,
-     zeros_of_matrices, states_of_matrices, NULL},
-    {"response", "a response", MODEL_RESPONSE, offsetof(model, response),
-     .read = read_response},
-    {"ranking", "a ranking", MODEL_RANKING, offsetof(model, rankings),
-     .read = read_ranking},
-    {"state-space", "a state space", MODEL_STATES, offsetof(model, states),
-     read_states, write_states, io_of_states, order_of_states,
-     spectrum_of_states, zeros_of_states, states_of_states, audit_states},
+    {"component", "a component", MODEL_COMPONENT, offsetof(model, component)},
+    {"basis", "a basis", MODEL_BASIS, offsetof(model, basis)},
+    {"reduced", "a reduced component", MODEL_REDUCED, offsetof(model, reduced)},
+    {"system", "a system", MODEL_SYSTEM, offsetof(model, system)},
+    {"response", "a response", MODEL_RESPONSE, offsetof(model, response)},
+    {"ranking", "a ranking", MODEL_RANKING, offsetof(model, rankings)},
+    {"state-space", "a state space", MODEL_STATES, offsetof(model, states)},
     {"simulation", "a time response", MODEL_SIMULATION,
-     offsetof(model, simulation), .read = read_simulation},
+     offsetof(model, simulation)},
 };
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
 
-/* The row of a model that was read. */
-static const struct kind *kind_of(const model *m)
+static ritz_status read_object(const char *path, model *m)
+{
+    switch (m->kind) {
+    case MODEL_COMPONENT:
+        return ritz_container_read_component(path, &m->component);
+    case MODEL_BASIS:
+        return ritz_container_read_basis(path, &m->basis);
+    case MODEL_REDUCED:
+        return ritz_container_read_reduced(path, &m->reduced);
+    case MODEL_SYSTEM:
+        return ritz_container_read_system(path, &m->system);
+    case MODEL_RESPONSE:
+        return ritz_container_read_response(path, &m->response);
+    case MODEL_RANKING:
+        return ritz_container_read_rankings(path, &m->rankings);
+    case MODEL_STATES:
+        return ritz_container_read_state_space(path, &m->states);
+    default:
+        return ritz_container_read_simulation(path, &m->simulation);
+    }
+}
+
+ritz_status model_write(cli_run *run, const model *m)
+{
+    const ritz_stamp *stamp = cli_stamp(run);
+
+    if (m->kind == MODEL_STATES)
+        return ritz_container_write_state_space(run->output, &m->states, stamp);
+    return m->kind == MODEL_SYSTEM
+               ? ritz_container_write_system(run->output, &m->system, stamp)
+               : ritz_container_write_reduced(run->output, &m->reduced, stamp);
+}
+
+const void *model_object(const model *m)
 {
     int k = 0;
 
     while (kinds[k].kind != m->kind)
         k++;
-    return &kinds[k];
+    return (const char *)m + kinds[k].offset;
 }
 
-const void *model_object(const model *m)
+ritz_model model_reference(const model *m, const ritz_damping *damping)
 {
-    return (const char *)m + kind_of(m)->offset;
+    if (m->kind == MODEL_COMPONENT)
+        return ritz_model_of_component(&m->component, damping);
+    if (m->kind == MODEL_STATES)
+        return ritz_model_of_states(&m->states);
+    return m->at ? ritz_model_of_configuration(m->at, damping)
+                 : ritz_model_of_reduced(&m->reduced, damping);
 }
 
 ritz_io model_io(const model *m)
 {
-    return kind_of(m)->io(m);
+    return ritz_model_io(model_reference(m, NULL));
 }
 
 int64_t model_order(const model *m)
 {
-    return kind_of(m)->order(m);
+    return ritz_model_order(model_reference(m, NULL));
 }
 
-ritz_status model_write(const model *m, const char *path,
-                        const ritz_stamp *stamp)
+bool model_has_states(const model *m)
 {
-    return kind_of(m)->write(m, path, stamp);
-}
-
-ritz_status model_spectrum(const model *m, const ritz_damping *damping,
-                           const ritz_span *span, ritz_spectrum *out)
-{
-    return kind_of(m)->spectrum(m, damping, span, out);
-}
-
-ritz_status model_zeros(const model *m, const ritz_damping *damping,
-                        const int64_t at[2], int64_t *count,
-                        double _Complex **out)
-{
-    return kind_of(m)->zeros(m, damping, at, count, out);
-}
-
-ritz_status model_states(const model *m, const ritz_damping *damping,
-                         ritz_state_space *made, const ritz_state_space **out)
-{
-    return kind_of(m)->states(m, damping, made, out);
-}
-
-ritz_status model_audit(const model *m, ritz_audit *out)
-{
-    return kind_of(m)->audit(m, out);
+    if (m->kind == MODEL_COMPONENT)
+        return m->component.num_dofs <= MODEL_MOST_DOFS &&
+               !m->component.K4.colptr;
+    return m->kind == MODEL_STATES || !model_matrices(m).K4->val;
 }
 
 /* "a component or a system" */
@@ -369,8 +149,8 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
                    path, summary.kind, list);
     RITZ_REFUSE_IF(!(wanted & (int)kinds[k].kind), RITZ_ERR_FORMAT,
                    "'%s' holds %s, not %s", path, kinds[k].noun, list);
-    RITZ_CHECK(kinds[k].read(path, out));
     out->kind = kinds[k].kind;
+    RITZ_CHECK(read_object(path, out));
     if (out->kind == MODEL_COMPONENT &&
         out->component.asymmetry > MODEL_ROUNDING)
         cli_warn(run,
@@ -450,22 +230,6 @@ ritz_measures *model_errors(model *m)
     return m->at ? &m->at->errors : &m->reduced.errors;
 }
 
-ritz_model model_reference(const model *m, const ritz_damping *damping)
-{
-    if (m->kind == MODEL_STATES)
-        return ritz_model_of_states(&m->states);
-    if (m->kind == MODEL_COMPONENT)
-        return ritz_model_of_component(&m->component, damping);
-    return m->at ? ritz_model_of_configuration(m->at, damping)
-                 : ritz_model_of_reduced(&m->reduced, damping);
-}
-
-ritz_status model_scan(model *m, const ritz_damping *damping,
-                       const ritz_scan_request *request, ritz_scan *out)
-{
-    return ritz_scan_of(model_reference(m, damping), request, out);
-}
-
 ritz_dampers *model_dampers(model *m)
 {
     if (m->kind == MODEL_COMPONENT)
@@ -504,29 +268,21 @@ ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
                         int64_t *num_rigid, int64_t *count, double **out)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
-    double *hertz = NULL;
 
     RITZ_CHECK(ritz_eigen_dense(K, M, &pairs));
-    hertz = calloc((size_t)pairs.Phi.ncol + 1, sizeof *hertz);
-    RITZ_REFUSE_IF(!hertz, RITZ_ERR_MEMORY, "no memory for frequencies");
+    RITZ_CHECK_NEW(*out, pairs.Phi.ncol + 1);
     for (int64_t k = pairs.num_rigid; k < pairs.Phi.ncol; k++)
-        hertz[k] = ritz_eigen_hertz(pairs.lambda[k]);
+        (*out)[k] = ritz_eigen_hertz(pairs.lambda[k]);
     *num_rigid = pairs.num_rigid;
     *count = pairs.Phi.ncol;
-    *out = hertz;
     return RITZ_OK;
 }
 
 ritz_status model_hertz_at(const ritz_configuration *at, double **out)
 {
-    int64_t e = at->K.nrow;
-    double *hertz = calloc((size_t)e + 1, sizeof *hertz);
-
-    if (!hertz)
-        return ritz_fail(RITZ_ERR_MEMORY, "no memory for frequencies");
-    for (int64_t k = at->num_rigid; k < e; k++)
-        hertz[k] = ritz_eigen_hertz(at->lambda[k]);
-    *out = hertz;
+    RITZ_CHECK_NEW(*out, at->K.nrow + 1);
+    for (int64_t k = at->num_rigid; k < at->K.nrow; k++)
+        (*out)[k] = ritz_eigen_hertz(at->lambda[k]);
     return RITZ_OK;
 }
 
@@ -637,4 +393,31 @@ void model_free(model *m)
     ritz_state_space_free(&m->states);
     ritz_simulation_free(&m->simulation);
     *m = (model){0};
+}
+
+void words_add(choice_words *all, int except, cli_option *options)
+{
+    int count = 0;
+
+    for (int k = 0; ritz_choice_words[k].key && k < WORDS_MOST; k++) {
+        const ritz_choice_word *word = &ritz_choice_words[k];
+        char *name = all->name[k];
+
+        if (word->uses & except)
+            continue;
+        snprintf(name, WORDS_NAME, "%s", word->key);
+        for (char *at = strchr(name, '_'); at; at = strchr(at, '_'))
+            *at = '-';
+        options[count++] = (cli_option)CLI_TEXT(name, &all->text[k],
+                                                word->argument, word->help);
+    }
+}
+
+void words_take(const cli_program *program, const choice_words *all,
+                ritz_choice *choice)
+{
+    for (int k = 0; ritz_choice_words[k].key && k < WORDS_MOST; k++)
+        if (all->text[k] && ritz_choice_take(&ritz_choice_words[k],
+                                             all->text[k], choice) != RITZ_OK)
+            cli_refuse(program, "%s", ritz_error_message());
 }

@@ -54,6 +54,50 @@ typedef struct model_options {
     int64_t order;       /* columns of a nested component; 0: all */
 } model_options;
 
+/* Rows of option tables that several tools share. */
+#define AT_OPTION(place)                                                       \
+    CLI_TEXT("at", place, "JOINT=SETTING[,JOINT=SETTING]",                     \
+             "which configuration of a system, degrees and lengths")
+
+#define ORDER_OPTION(place)                                                    \
+    CLI_INT("order", place, "N", 1, 1e6,                                       \
+            "the first N columns of a nested reduced component [all]")
+
+#define DAMPING_OPTION(place)                                                  \
+    CLI_TEXT("damping", place, "TEXT",                                         \
+             "\"modal ZETA\", \"modes ZETA ...\", \"bands F F ZETA ...\" "     \
+             "(Hz), \"rayleigh A B\" or \"fit F ZETA ...\" [the model's]")
+
+#define DAMPERS_OPTION(list)                                                   \
+    CLI_LIST("damper", list, "NAME=C[*K]",                                     \
+             "give a damper other values than the model states")
+
+/* All that is asked of a model before anything is made of it. */
+#define MODEL_OPTIONS(given)                                                   \
+    AT_OPTION(&(given)->at), ORDER_OPTION(&(given)->order),                    \
+        DAMPING_OPTION(&(given)->damping), DAMPERS_OPTION(&(given)->damper)
+
+/* The words of a choice (choice.h) as options. */
+enum { WORDS_MOST = 32, WORDS_NAME = 32 };
+
+typedef struct choice_words {
+    const char *text[WORDS_MOST];
+    char name[WORDS_MOST][WORDS_NAME];
+} choice_words;
+
+/**
+ * An option for every word: shift_hz becomes --shift-hz.
+ *
+ * @param[in]  except   RITZ_USES_... of words that the tool has options of its
+ *                      own for
+ * @param[out] options  room for WORDS_MOST
+ */
+void words_add(choice_words *all, int except, cli_option *options);
+
+/** Take the words that were given into a choice, or end the program. */
+void words_take(const cli_program *program, const choice_words *all,
+                ritz_choice *choice);
+
 /** The kind of a container, and how sentences call it: "a system". */
 ritz_status model_peek(const char *path, model_kind *kind, const char **noun);
 
@@ -96,6 +140,10 @@ ritz_status model_settle(model *model, const char *path,
 /** The object that was read, whatever its kind. */
 const void *model_object(const model *model);
 
+/** As the library takes it, with damping beside that of its matrices; borrowed.
+ */
+ritz_model model_reference(const model *model, const ritz_damping *damping);
+
 /** Names and limits of inputs and outputs, with matrices where it has them;
  * borrowed. */
 ritz_io model_io(const model *model);
@@ -106,44 +154,19 @@ int64_t model_order(const model *model);
 /** Matrices of a reduced component or a system; borrowed. */
 ritz_second_order model_matrices(const model *model);
 
-/** What the library is asked for poles, zeros, responses and motions. */
-ritz_model model_reference(const model *model, const ritz_damping *damping);
-
-/** Errors that ritz-verify measured. */
-ritz_measures *model_errors(model *model);
-
-ritz_status model_write(const model *model, const char *path,
-                        const ritz_stamp *stamp);
-
-/** Poles; @p span is heeded of components alone, others give all. */
-ritz_status model_spectrum(const model *model, const ritz_damping *damping,
-                           const ritz_span *span, ritz_spectrum *out);
-
-/** Poles through a range of dampers' constants; no state space. */
-ritz_status model_scan(model *model, const ritz_damping *damping,
-                       const ritz_scan_request *request, ritz_scan *out);
-
-/** Zeros of one channel, @p at being its output and its input. */
-ritz_status model_zeros(const model *model, const ritz_damping *damping,
-                        const int64_t at[2], int64_t *count,
-                        double _Complex **out);
-
 /* A component with more dofs is not made a first-order model just for its poles
    or zeros. */
 enum { MODEL_MOST_DOFS = 400 };
 
-/**
- * The model as states: of a state space itself, borrowed; of others made, and
- * to be freed.
- *
- * @param[out] out  NULL if it has none: structural damping, or a component of
- *                  too many dofs
- */
-ritz_status model_states(const model *model, const ritz_damping *damping,
-                         ritz_state_space *made, const ritz_state_space **out);
+/** Whether it is or can be made a state space: it has no structural damping, and
+ * not too many dofs. */
+bool model_has_states(const model *model);
 
-/** Audit of a component; stability checks of a small model; no system. */
-ritz_status model_audit(const model *model, ritz_audit *out);
+/** Errors that ritz-verify measured. */
+ritz_measures *model_errors(model *model);
+
+/** Write a reduced component, system or state space as the output. */
+ritz_status model_write(cli_run *run, const model *model);
 
 /** Dampers of a model, and the values that --damper gives them. */
 ritz_dampers *model_dampers(model *model);

@@ -28,7 +28,7 @@ typedef struct record {
 } record;
 
 typedef struct records {
-    int64_t count;
+    int64_t count, room;
     record *item;
 } records;
 

@@ -1,7 +1,5 @@
 #include "cli/sink.h"
 
-#include "cli/cli_watch.h"
-
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -257,14 +255,19 @@ void sink_add(cli_run *run, const char *format, ...)
     va_end(args.list);
 }
 
+static void push_value(cli_run *run, json_t *value)
+{
+    if (run->depth == CLI_MAX_DEPTH || !value)
+        abort();
+    run->open[run->depth++] = value;
+}
+
 /* Open what is there under that key, or else a new object or list. */
 static void open_value(cli_run *run, const char *key, json_t *value)
 {
     json_t *here = sink_here(run);
     json_t *there = key ? json_object_get(here, key) : NULL;
 
-    if (run->depth == CLI_MAX_DEPTH || !value)
-        abort();
     if (there && json_typeof(there) == json_typeof(value)) {
         json_decref(value);
         value = there;
@@ -273,7 +276,7 @@ static void open_value(cli_run *run, const char *key, json_t *value)
     } else {
         json_array_append_new(here, value);
     }
-    run->open[run->depth++] = value;
+    push_value(run, value);
 }
 
 void sink_object(cli_run *run, const char *key)
@@ -301,9 +304,7 @@ void sink_lift(cli_run *run, const json_t *from)
 
 void sink_record(cli_run *run)
 {
-    if (run->depth == CLI_MAX_DEPTH)
-        abort();
-    run->open[run->depth++] = json_object();
+    push_value(run, json_object());
 }
 
 ritz_status sink_end_record(cli_run *run)
@@ -313,9 +314,7 @@ ritz_status sink_end_record(cli_run *run)
 
 void sink_line(cli_run *run)
 {
-    if (run->depth == CLI_MAX_DEPTH)
-        abort();
-    run->open[run->depth++] = run->line;
+    push_value(run, run->line);
 }
 
 void sink_reals(cli_run *run, const char *key, int64_t count,
@@ -323,26 +322,29 @@ void sink_reals(cli_run *run, const char *key, int64_t count,
 {
     sink_list(run, key);
     for (int64_t k = 0; k < count; k++)
-        json_array_append_new(sink_here(run), cli_real(values[k]));
+        sink_add(run, "%g", values[k]);
+    sink_end(run);
+}
+
+static void set_list(cli_run *run, const char *key, int64_t count,
+                     const int64_t *values, int64_t first)
+{
+    sink_list(run, key);
+    for (int64_t k = 0; k < count; k++)
+        sink_add(run, "%ld", first + values[k]);
     sink_end(run);
 }
 
 void sink_wholes(cli_run *run, const char *key, int64_t count,
                  const int64_t *values)
 {
-    sink_list(run, key);
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(sink_here(run), json_integer(values[k]));
-    sink_end(run);
+    set_list(run, key, count, values, 0);
 }
 
 void sink_numbers(cli_run *run, const char *key, int64_t count,
                   const int64_t *indices)
 {
-    sink_list(run, key);
-    for (int64_t k = 0; k < count; k++)
-        json_array_append_new(sink_here(run), json_integer(indices[k] + 1));
-    sink_end(run);
+    set_list(run, key, count, indices, 1);
 }
 
 void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
@@ -350,9 +352,9 @@ void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
 {
     sink_list(run, key);
     for (int64_t k = 0; k < count; k++) {
-        json_array_append_new(sink_here(run), cli_string(name[k]));
+        sink_add(run, "%s", name[k]);
         if (title)
-            cli_say(run, "  %-14s %s", k > 0 ? "" : title, name[k]);
+            sink_field(run, k > 0 ? "" : title, "", "%s", name[k]);
     }
     sink_end(run);
 }

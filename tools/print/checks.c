@@ -51,7 +51,11 @@ ritz_status checks_run(cli_run *run)
                           MODEL_COMPONENT | MODEL_REDUCED | MODEL_STATES, &m));
     cli_record(run, m.kind == MODEL_COMPONENT ? "audit" : "probe",
                model_order(&m));
-    RITZ_CHECK_IN(path, model_audit(&m, &audit));
+    RITZ_CHECK_IN(path, m.kind == MODEL_COMPONENT
+                            ? ritz_audit_component(&m.component, &audit)
+                        : m.kind == MODEL_STATES
+                            ? ritz_audit_states(&m.states, &audit)
+                            : ritz_audit_reduced(&m.reduced, &audit));
     checks_say(run, "checks", &audit);
     for (int64_t k = 0; k < audit.count; k++)
         cli_record_error(run, audit.check[k].name, audit.check[k].value);

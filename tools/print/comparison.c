@@ -166,9 +166,8 @@ static void name_row(const ritz_stage *stage, const ritz_comparison *c,
 
     snprintf(out, RITZ_NAME_SIZE, "as joined");
     if (stage->scene->num_sweeps > 0)
-        ritz_configuration_name(system->num_sweeps,
-                                (const char *)system->sweep, RITZ_NAME_SIZE,
-                                row->setting, out);
+        ritz_configuration_name(system->num_sweeps, (const char *)system->sweep,
+                                RITZ_NAME_SIZE, row->setting, out);
 }
 
 /* A line of the table of errors; listed configurations are numbered. */
@@ -202,7 +201,7 @@ static void say_errors(cli_run *run, const ritz_compare_row *row,
 static ritz_status set_modes(cli_run *run, const ritz_compare_row *row,
                              const ritz_configuration *at)
 {
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
 
     sink_list(run, "extraneous");
     for (int64_t i = 0; i < row->num_strays; i++) {
@@ -216,7 +215,6 @@ static ritz_status set_modes(cli_run *run, const ritz_compare_row *row,
         return RITZ_OK;
     RITZ_CHECK(model_hertz_at(at, &hertz));
     sink_reals(run, "frequencies_hz", at->K.nrow, hertz);
-    free(hertz);
     return RITZ_OK;
 }
 
@@ -379,19 +377,18 @@ static void say_strays(cli_run *run, const ritz_stage *first,
  */
 typedef struct mode_column {
     char title[RITZ_NAME_SIZE];
-    int64_t count;
+    int64_t count, rigid; /* of all modes, rigid ones first */
     double *hertz;
-    bool *kept;
+    bool *kept; /* of flexible modes */
 } mode_column;
 
-static void free_columns(int64_t count, mode_column *columns)
+static void mode_column_free(mode_column *column)
 {
-    for (int64_t k = 0; columns && k < count; k++) {
-        free(columns[k].hertz);
-        free(columns[k].kept);
-    }
-    free(columns);
+    free(column->hertz);
+    free(column->kept);
 }
+
+RITZ_ARRAY_OF(mode_column);
 
 /*
  * The stage-2 mode nearest to each kept mode of stage 1 is marked if it is as
@@ -405,79 +402,66 @@ static void mark_kept(const ritz_compare_row *row,
     double highest = first->lambda[first->K.nrow - 1];
 
     for (int64_t i = 0; i < row->num_kept; i++) {
-        double given = first->lambda[first->num_rigid + row->kept[i]];
+        double kept = first->lambda[first->num_rigid + row->kept[i]];
         double best = (double)INFINITY;
         int64_t at = -1;
 
-        for (int64_t k = 0; k < out->count; k++) {
-            double apart =
-                fabs(second->lambda[second->num_rigid + k] - given) / given;
+        for (int64_t k = 0; k < out->count - out->rigid; k++) {
+            double apart = fabs(second->lambda[out->rigid + k] - kept) / kept;
 
             if (apart < best && !out->kept[k]) {
                 best = apart;
                 at = k;
             }
         }
-        if (at >= 0 && best <= fmax(1e-9, 1e3 * DBL_EPSILON * highest / given))
+        if (at >= 0 && best <= fmax(1e-9, 1e3 * DBL_EPSILON * highest / kept))
             out->kept[at] = true;
     }
 }
 
-static ritz_status new_column(const char *title, int64_t count,
-                              mode_column *out)
+/* Of a component by its number or, behind these, of a configuration. */
+static ritz_status find_column(const ritz_comparison *c, int64_t k,
+                               mode_column *out)
 {
-    out->hertz = calloc((size_t)count + 1, sizeof *out->hertz);
-    out->kept = calloc((size_t)count + 1, sizeof *out->kept);
-    RITZ_REFUSE_IF(!out->hertz || !out->kept, RITZ_ERR_MEMORY,
-                   "no memory for the report");
-    out->count = count;
-    snprintf(out->title, sizeof out->title, "%s", title);
+    const ritz_reduced *body = &c->second.body[k];
+    int64_t at = k - c->second.count;
+
+    if (at < 0) {
+        snprintf(out->title, sizeof out->title, "%s",
+                 c->second.scene->component[k].name);
+        RITZ_CHECK(model_hertz(&body->K, &body->M, &out->rigid, &out->count,
+                               &out->hertz));
+    } else {
+        const ritz_configuration *system = &c->second_system.configuration[at];
+
+        snprintf(out->title, sizeof out->title, "#%ld", at + 1);
+        RITZ_CHECK(model_hertz_at(system, &out->hertz));
+        out->rigid = system->num_rigid;
+        out->count = system->K.nrow;
+    }
+    RITZ_CHECK_NEW(out->kept, out->count + 1);
+    if (at >= 0)
+        mark_kept(&c->row[at], &c->first_system.configuration[at],
+                  &c->second_system.configuration[at], out);
     return RITZ_OK;
 }
 
-static ritz_status find_body_column(const char *name, const ritz_reduced *body,
-                                    mode_column *out)
-{
-    int64_t rigid = 0;
-    int64_t count = 0;
-    RITZ_OWN_ARRAY double *hertz = NULL;
-
-    RITZ_CHECK(model_hertz(&body->K, &body->M, &rigid, &count, &hertz));
-    RITZ_CHECK(new_column(name, count - rigid, out));
-    for (int64_t k = 0; k < count - rigid; k++)
-        out->hertz[k] = hertz[rigid + k];
-    return RITZ_OK;
-}
-
-static ritz_status find_system_column(int64_t number, const ritz_comparison *c,
-                                      mode_column *out)
-{
-    const ritz_configuration *first = &c->first_system.configuration[number];
-    const ritz_configuration *second = &c->second_system.configuration[number];
-    char title[32];
-
-    snprintf(title, sizeof title, "#%ld", number + 1);
-    RITZ_CHECK(new_column(title, second->K.nrow - second->num_rigid, out));
-    for (int64_t k = 0; k < out->count; k++)
-        out->hertz[k] = ritz_eigen_hertz(second->lambda[second->num_rigid + k]);
-    mark_kept(&c->row[number], first, second, out);
-    return RITZ_OK;
-}
-
-static void say_mode_line(cli_run *run, int64_t mode, int64_t count,
-                          const mode_column *columns)
+/* Frequencies of the mode-th flexible mode; below 0: the titles. */
+static void say_mode_line(cli_run *run, int64_t mode,
+                          const mode_column_array *columns)
 {
     enum { WIDTH = 13, MOST = 512 };
     char line[MOST] = "";
     size_t used = 0;
 
-    for (int64_t k = 0; k < count && strlen(line) + WIDTH + WIDTH < MOST; k++) {
-        const mode_column *c = &columns[k];
+    for (int64_t k = 0;
+         k < columns->count && strlen(line) + WIDTH + WIDTH < MOST; k++) {
+        const mode_column *c = &columns->at[k];
 
         if (mode < 0)
             sink_append(line, MOST, " %10.10s  ", c->title);
-        else if (mode < c->count)
-            sink_append(line, MOST, " %10.5f%s", c->hertz[mode],
+        else if (c->rigid + mode < c->count)
+            sink_append(line, MOST, " %10.5f%s", c->hertz[c->rigid + mode],
                         c->kept[mode] ? " \u2020" : "  ");
         else
             sink_append(line, MOST, "%13s", "");
@@ -493,35 +477,30 @@ static void say_mode_line(cli_run *run, int64_t mode, int64_t count,
 static ritz_status say_modes(cli_run *run, const ritz_comparison *c)
 {
     enum { MOST_SYSTEMS = 12 };
-    ritz_status status = RITZ_OK;
-    const ritz_stage *stage = &c->second;
     int64_t systems = c->second_system.num_configurations;
     int64_t shown = systems < MOST_SYSTEMS ? systems : MOST_SYSTEMS;
-    int64_t count = stage->count + shown;
     int64_t longest = 0;
-    mode_column *columns = calloc((size_t)count + 1, sizeof *columns);
+    RITZ_OWN(mode_column_array) columns = {.count = c->second.count + shown};
 
-    RITZ_FAIL_IF(!columns, RITZ_ERR_MEMORY, "no memory for the report");
-    for (int64_t k = 0; k < count; k++) {
-        int64_t at = k - stage->count;
+    RITZ_CHECK_NEW(columns.at, columns.count + 1);
+    for (int64_t k = 0; k < columns.count; k++) {
+        mode_column *column = &columns.at[k];
+        int64_t flexible = 0;
 
-        RITZ_TRY(at < 0 ? find_body_column(stage->scene->component[k].name,
-                                           &stage->body[k], &columns[k])
-                        : find_system_column(at, c, &columns[k]));
-        longest = columns[k].count > longest ? columns[k].count : longest;
+        RITZ_CHECK(find_column(c, k, column));
+        flexible = column->count - column->rigid;
+        longest = flexible > longest ? flexible : longest;
     }
     cli_say(run, "\nFlexible modes after stage 2, Hz: of each component by "
                  "itself, and of the system at each configuration");
     for (int64_t mode = -1; mode < longest; mode++)
-        say_mode_line(run, mode, count, columns);
+        say_mode_line(run, mode, &columns);
     cli_say(run, "  \u2020 a mode of the stage-1 system that was kept, and is "
                  "there exactly");
     if (shown < systems)
         cli_say(run, "  %ld more configurations are in the output",
-                (systems - shown));
-done:
-    free_columns(count, columns);
-    return status;
+                systems - shown);
+    return RITZ_OK;
 }
 
 static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
@@ -549,16 +528,26 @@ static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
     return say_modes(run, c);
 }
 
-static void say_tolerances(cli_run *run, const ritz_stage *first, int64_t count,
-                           const ritz_tolerance_row *rows)
+typedef struct tolerance_rows {
+    int64_t count;
+    ritz_tolerance_row *at;
+} tolerance_rows;
+
+static void tolerance_rows_free(tolerance_rows *rows)
+{
+    ritz_tolerances_free(rows->count, &rows->at);
+}
+
+static void say_tolerances(cli_run *run, const ritz_stage *first,
+                           const tolerance_rows *rows)
 {
     cli_say(run, "\nComposite tolerance against orders, and worst errors at "
                  "listed configurations");
     cli_say(run, "%10s  %-16s %6s %6s %9s %9s %9s", "tolerance", "orders",
             "total", "system", "frequency", "gain", "response");
     sink_list(run, "tolerances");
-    for (int64_t k = 0; k < count; k++) {
-        const ritz_tolerance_row *row = &rows[k];
+    for (int64_t k = 0; k < rows->count; k++) {
+        const ritz_tolerance_row *row = &rows->at[k];
         char orders[80];
 
         sink_object(run, NULL);
@@ -575,8 +564,7 @@ static void say_tolerances(cli_run *run, const ritz_stage *first, int64_t count,
 }
 
 static ritz_status write_tolerances(const char *path, const ritz_stage *first,
-                                    int64_t count,
-                                    const ritz_tolerance_row *rows)
+                                    const tolerance_rows *rows)
 {
     RITZ_OWN(cli_table) table = {0};
 
@@ -585,8 +573,8 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
                         "response");
     for (int64_t b = 0; b < first->count; b++)
         fprintf(table.file, "\t%s", first->scene->component[b].name);
-    for (int64_t k = 0; k < count; k++) {
-        const ritz_tolerance_row *row = &rows[k];
+    for (int64_t k = 0; k < rows->count; k++) {
+        const ritz_tolerance_row *row = &rows->at[k];
 
         fprintf(table.file, "\n%g\t%ld\t%ld\t%s\t%.6e\t%.6e\t%.6e",
                 row->tolerance, row->total, row->largest,
@@ -599,33 +587,12 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
     return cli_table_save(&table, path);
 }
 
-/* The chart of the composite tolerance. */
-static ritz_status chart_tolerances(cli_run *run,
-                                    const comparison_options *given,
-                                    const ritz_stage *stage,
-                                    const ritz_comparison *comparison)
-{
-    ritz_status status = RITZ_OK;
-    int64_t count = given->num_tolerances;
-    ritz_tolerance_row *rows = NULL;
-
-    if (count == 0)
-        return RITZ_OK;
-    RITZ_TRY_IN("tolerances", ritz_compare_tolerances(stage, comparison, count,
-                                                      given->tolerance, &rows));
-    say_tolerances(run, stage, count, rows);
-    if (given->tolerance_table)
-        RITZ_TRY(write_tolerances(given->tolerance_table, stage, count, rows));
-done:
-    ritz_tolerances_free(count, &rows);
-    return status;
-}
-
 ritz_status comparison_run(cli_run *run, const comparison_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_comparison) c = {0};
+    RITZ_OWN(tolerance_rows) rows = {0};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
     if (given->extraneous)
@@ -638,7 +605,15 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
                                            cli_stamp(run)));
     RITZ_CHECK(say_comparison(run, &stage, &c));
     RITZ_CHECK(tracks_report(run, &stage, &c.first_system, given->tracks));
-    RITZ_CHECK(chart_tolerances(run, given, &stage, &c));
+    if (given->num_tolerances > 0) {
+        rows.count = given->num_tolerances;
+        RITZ_CHECK_IN("tolerances",
+                      ritz_compare_tolerances(&stage, &c, rows.count,
+                                              given->tolerance, &rows.at));
+        say_tolerances(run, &stage, &rows);
+    }
+    if (given->tolerance_table)
+        RITZ_CHECK(write_tolerances(given->tolerance_table, &stage, &rows));
     if (given->report)
         RITZ_CHECK(cli_save(run, given->report));
     return RITZ_OK;

@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include "model/arrays.h"
+
 #include <sys/stat.h>
 
 /* "craig-bampton,rubin", or "all" there are. */
@@ -102,24 +104,15 @@ static void set_candidate(cli_run *run, const ritz_fit_candidate *c)
         sink_set(run, "refused", "%s", c->refusal);
 }
 
-/* A file that an answer makes, and whether something was there before. */
-typedef struct fit_file {
-    char *path;
-    bool there;
-} fit_file;
-
-typedef struct fit_files {
-    int64_t count;
-    fit_file *file;
-} fit_files;
-
 /* A run of ritz-fit, for the observer that records candidates. */
 typedef struct fit_run {
     cli_run *run;
+    const fit_options *given;
+    const ritz_scene *scene; /* NULL: a component is fitted */
     char subject[RITZ_NAME_SIZE];
     const ritz_verify_request *limits; /* NULL: not known yet */
     ritz_status recorded;              /* the first failure to append */
-    fit_files files;                   /* that an answer makes */
+    bool *there; /* of files that the result makes: they were there before */
 } fit_run;
 
 /* Verdict on a candidate at the end of the search. */
@@ -156,55 +149,49 @@ static void observe_candidate(const ritz_fit_candidate *candidate,
     record_candidate(context, candidate, (fit_mark){0});
 }
 
-static ritz_status add_file(fit_files *files, const char *path)
+/* Files that the result makes: the output, the report, and bodies. */
+static int64_t count_files(const fit_run *f)
 {
-    fit_file *more = NULL;
-    struct stat there;
+    return 2 + (f->given->prefix && f->scene ? f->scene->num_components : 0);
+}
 
-    RITZ_CHECK(cli_can_write(path));
-    more = realloc(files->file, (size_t)(files->count + 1) * sizeof *more);
-    RITZ_REFUSE_IF(!more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
-    files->file = more;
-    more[files->count] = (fit_file){strdup(path), lstat(path, &there) == 0};
-    RITZ_REFUSE_IF(!more[files->count].path, RITZ_ERR_MEMORY,
-                   "no memory for '%s'", path);
-    files->count++;
+/* The name of the k-th; "" if it is not made. */
+static ritz_status name_file(const fit_run *f, int64_t k, char out[MODEL_PATH])
+{
+    const char *path = k == 0 ? f->run->output : f->given->report;
+
+    if (k >= 2)
+        return model_body_path(f->given->prefix,
+                               f->scene->component[k - 2].name, out);
+    snprintf(out, MODEL_PATH, "%s", path ? path : "");
     return RITZ_OK;
 }
 
-/* Every file that an answer makes: that it can be made is known before the
-   search. */
-static ritz_status foresee_files(const cli_run *run, const char *prefix,
-                                 const char *report, const ritz_scene *scene,
-                                 fit_files *out)
+/* That they can be made is known before the search. */
+static ritz_status foresee_files(fit_run *f)
 {
-    if (run->output)
-        RITZ_CHECK(add_file(out, run->output));
-    if (report)
-        RITZ_CHECK(add_file(out, report));
-    for (int64_t k = 0; prefix && scene && k < scene->num_components; k++) {
-        char path[MODEL_PATH];
+    char path[MODEL_PATH];
+    struct stat there;
 
-        RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
-        RITZ_CHECK(add_file(out, path));
+    RITZ_CHECK_NEW(f->there, count_files(f));
+    for (int64_t k = 0; k < count_files(f); k++) {
+        RITZ_CHECK(name_file(f, k, path));
+        if (*path)
+            RITZ_CHECK(cli_can_write(path));
+        f->there[k] = !*path || lstat(path, &there) == 0;
     }
     return RITZ_OK;
 }
 
-/* Remove those that were not there before. */
-static void discard_files(const fit_files *files)
+/* After a failure remove those that were not there before. */
+static ritz_status end_search(const fit_run *f, ritz_status status)
 {
-    for (int64_t k = 0; k < files->count; k++)
-        if (!files->file[k].there)
-            (void)remove(files->file[k].path);
-}
+    char path[MODEL_PATH];
 
-static void free_files(fit_files *files)
-{
-    for (int64_t k = 0; k < files->count; k++)
-        free(files->file[k].path);
-    free(files->file);
-    *files = (fit_files){0};
+    for (int64_t k = 0; status != RITZ_OK && k < count_files(f); k++)
+        if (!f->there[k] && name_file(f, k, path) == RITZ_OK)
+            (void)remove(path);
+    return status;
 }
 
 /* "1.2e-03" of the measure that decides, or what stood in the way. */
@@ -482,23 +469,22 @@ static void say_path(cli_run *run, const ritz_fitter *fitter,
     say_enough(run, fitter, path);
 }
 
-/* Its bodies as PREFIXname.h5 if @p prefix is there, and its system to the
+/* Its bodies as PREFIXname.h5 if there is a prefix, and its system to the
    output if there is one. */
-static ritz_status write_scene(cli_run *run, const char *prefix,
-                               const ritz_scene *scene, ritz_fitter *fitter,
+static ritz_status write_scene(const fit_run *f, ritz_fitter *fitter,
                                const ritz_fit_candidate *chosen)
 {
+    cli_run *run = f->run;
     RITZ_OWN(ritz_system) system = {0};
     RITZ_OWN(ritz_fit_path) path = {0};
     RITZ_OWN(ritz_bodies) body = {0};
 
     RITZ_CHECK(ritz_fitter_system(fitter, chosen, &body, &path, &system));
     say_path(run, fitter, &path);
-    RITZ_CHECK(model_write_bodies(run, prefix, scene, body.item));
-    if (run->output)
-        RITZ_CHECK(
-            ritz_container_write_system(run->output, &system, cli_stamp(run)));
-    return RITZ_OK;
+    RITZ_CHECK(model_write_bodies(run, f->given->prefix, f->scene, body.item));
+    if (!run->output)
+        return RITZ_OK;
+    return ritz_container_write_system(run->output, &system, cli_stamp(run));
 }
 
 /* Equal order: all methods once more, at one number of columns. */
@@ -545,38 +531,31 @@ static void warn_of_ports(cli_run *run, const ritz_component *component,
 }
 
 /* Search, say, record, write; nothing is written if nothing is found. */
-static ritz_status find_answer(fit_run *f, const fit_options *a,
-                               const ritz_scene *scene, const model *full,
-                               ritz_fitter *fitter)
+static ritz_status find_smallest(fit_run *f, const model *full,
+                                 ritz_fitter *fitter)
 {
-    ritz_status status = RITZ_OK;
     cli_run *run = f->run;
-    ritz_fit fit = {0};
+    RITZ_OWN(ritz_fit) fit = {0};
     const ritz_fit_candidate *chosen = NULL;
 
     f->limits = ritz_fitter_tolerance(fitter);
-    RITZ_TRY(ritz_fitter_search(fitter, &fit));
+    RITZ_CHECK(ritz_fitter_search(fitter, &fit));
     say_fit(run, fitter, &fit);
-    RITZ_TRY(compare_methods(run, a, fitter, &fit));
-    RITZ_FAIL_IF(fit.chosen < 0, RITZ_ERR_CONVERGENCE, "%s", fit.why);
+    RITZ_CHECK(compare_methods(run, f->given, fitter, &fit));
+    RITZ_REFUSE_IF(fit.chosen < 0, RITZ_ERR_CONVERGENCE, "%s", fit.why);
     chosen = &fit.candidate[fit.chosen];
     if (fit.runner_up >= 0)
         record_candidate(f, &fit.candidate[fit.runner_up],
                          (fit_mark){.runner_up = true});
     record_candidate(f, chosen, (fit_mark){.chosen = true, .why = fit.why});
-    RITZ_TRY(f->recorded);
-    if (!scene)
+    RITZ_CHECK(f->recorded);
+    if (!f->scene)
         warn_of_ports(run, &full->component, chosen);
-    if (run->output || a->prefix)
-        RITZ_TRY(scene ? write_scene(run, a->prefix, scene, fitter, chosen)
-                       : write_component(run, fitter, chosen));
-    if (a->report)
-        RITZ_TRY(cli_save(run, a->report));
-done:
-    if (status != RITZ_OK)
-        discard_files(&f->files);
-    ritz_fit_free(&fit);
-    return status;
+    if (f->scene && (run->output || f->given->prefix))
+        RITZ_CHECK(write_scene(f, fitter, chosen));
+    else if (run->output)
+        RITZ_CHECK(write_component(run, fitter, chosen));
+    return f->given->report ? cli_save(run, f->given->report) : RITZ_OK;
 }
 
 /* The name of the file without folder and ending, as charts call it. */
@@ -589,42 +568,46 @@ static void name_subject(const char *path, char out[RITZ_NAME_SIZE])
         *strrchr(out, '.') = '\0';
 }
 
-static ritz_status fit_component(fit_run *f, const fit_options *a)
+static ritz_status fit_component(fit_run *f)
 {
     const char *path = f->run->operand[0];
+    const fit_options *given = f->given;
     RITZ_OWN(ritz_fitter) *fitter = NULL;
     RITZ_OWN(model) full = {0};
 
-    RITZ_REFUSE_IF(a->prefix, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(given->prefix, RITZ_ERR_ARGUMENT,
                    "'%s' is a component: --components is for scenes", path);
     RITZ_CHECK(model_read(f->run, path, MODEL_COMPONENT, &full));
-    RITZ_CHECK_IN(path, model_tune(&full, &a->damper));
-    RITZ_CHECK(foresee_files(f->run, NULL, a->report, NULL, &f->files));
-    RITZ_CHECK_IN(path, ritz_fitter_new(&full.component, &a->request, &fitter));
-    return find_answer(f, a, NULL, &full, fitter);
+    RITZ_CHECK_IN(path, model_tune(&full, &given->damper));
+    RITZ_CHECK(foresee_files(f));
+    RITZ_CHECK_IN(path,
+                  ritz_fitter_new(&full.component, &given->request, &fitter));
+    return end_search(f, find_smallest(f, &full, fitter));
 }
 
-static ritz_status fit_scene(fit_run *f, const fit_options *a)
+static ritz_status fit_scene(fit_run *f)
 {
     const char *path = f->run->operand[0];
+    const fit_options *given = f->given;
     RITZ_OWN(ritz_fitter) *fitter = NULL;
     RITZ_OWN(ritz_scene) scene = {0};
 
-    RITZ_REFUSE_IF(a->damper.count > 0 || a->request.attach, RITZ_ERR_ARGUMENT,
-                   "'%s' is a scene: --damper and --attach are for components",
-                   path);
+    RITZ_REFUSE_IF(
+        given->damper.count > 0 || given->request.attach, RITZ_ERR_ARGUMENT,
+        "'%s' is a scene: --damper and --attach are for components", path);
     RITZ_CHECK(model_scene(f->run, path, &scene));
-    RITZ_CHECK(foresee_files(f->run, a->prefix, a->report, &scene, &f->files));
+    f->scene = &scene;
+    RITZ_CHECK(foresee_files(f));
     if (*scene.name)
         snprintf(f->subject, sizeof f->subject, "%s", scene.name);
-    RITZ_CHECK_IN(path, ritz_fitter_scene(&scene, &a->request, &fitter));
-    return find_answer(f, a, &scene, NULL, fitter);
+    RITZ_CHECK_IN(path, ritz_fitter_scene(&scene, &given->request, &fitter));
+    return end_search(f, find_smallest(f, NULL, fitter));
 }
 
 ritz_status fit_search(cli_run *run, fit_options *given)
 {
     ritz_status status = RITZ_OK;
-    fit_run f = {.run = run};
+    fit_run f = {.run = run, .given = given};
 
     given->request.observe = observe_candidate;
     given->request.thorough = given->all;
@@ -634,8 +617,8 @@ ritz_status fit_search(cli_run *run, fit_options *given)
         RITZ_CHECK_IN("--damping",
                       ritz_damping_parse(given->damping,
                                          &given->request.tolerance.damping));
-    status = ritz_container_is(run->operand[0]) ? fit_component(&f, given)
-                                                : fit_scene(&f, given);
-    free_files(&f.files);
+    status =
+        ritz_container_is(run->operand[0]) ? fit_component(&f) : fit_scene(&f);
+    free(f.there);
     return status;
 }

@@ -82,18 +82,19 @@ static ritz_status find_poles(cli_run *run, const loop_options *given,
 {
     RITZ_OWN(ritz_state_space) made = {0}, closed = {0};
     const ritz_state_space *plant = NULL;
+    bool known = model_has_states(m);
 
-    RITZ_CHECK(model_states(m, damping, &made, &plant));
-    RITZ_REFUSE_IF(!plant && given->states, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!known && given->states, RITZ_ERR_ARGUMENT,
                    "--closed-loop: the plant is too large for states, or has "
                    "structural damping: reduce it");
-    if (!plant) {
+    if (!known) {
         cli_warn(run, "whether the loop is stable is not known: the plant is "
                       "too large for that, or has structural damping; reduce "
                       "it");
         sink_set(run, "stability", "%s", "unknown");
         return RITZ_OK;
     }
+    RITZ_CHECK(ritz_model_states(model_reference(m, damping), &made, &plant));
     RITZ_CHECK(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
                                 &closed));
     RITZ_CHECK(say_stability(run, &closed, given->force));

@@ -178,7 +178,7 @@ static ritz_status scan_dampers(cli_run *run, model *m,
 
     RITZ_CHECK(parse_scan(given->scan, model_dampers(m), &request, &damper));
     request.mode = given->mode - 1;
-    RITZ_CHECK(model_scan(m, damping, &request, &found));
+    RITZ_CHECK(ritz_scan_of(model_reference(m, damping), &request, &found));
     say_scan(run, &found, given->tsv);
     return RITZ_OK;
 }
@@ -195,7 +195,7 @@ static ritz_status find_poles(cli_run *run, const model *m,
 
     if (by_hertz)
         span = (ritz_span){.modes = -1, .up_to_hz = given->up_to_hz};
-    RITZ_CHECK(model_spectrum(m, damping, &span, &found));
+    RITZ_CHECK(ritz_spectrum_of(model_reference(m, damping), &span, &found));
     while (m->kind != MODEL_COMPONENT && found.count > 0 &&
            ((given->modes > 0 && found.count > given->modes) ||
             (by_hertz && cabs(found.s[found.count - 1]) > limit)))

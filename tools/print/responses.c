@@ -258,7 +258,8 @@ static ritz_status find_zeros(cli_run *run, const model *m,
     sink_object(run, NULL);
     sink_say(run, "output,input", "zeros of %s / %s:", io.output[at[0]],
              io.input[at[1]]);
-    status = model_zeros(m, damping, at, &count, &zero);
+    status =
+        ritz_zeros_of(model_reference(m, damping), at[0], at[1], &count, &zero);
     if (status == RITZ_OK)
         say_zeros(run, count, zero);
     if (status == RITZ_ERR_SINGULAR) {
@@ -273,13 +274,10 @@ static ritz_status find_zeros(cli_run *run, const model *m,
 static ritz_status find_all_zeros(cli_run *run, const model *m,
                                   const ritz_damping *damping)
 {
-    const ritz_component *whole = &m->component;
     const ritz_io io = model_io(m);
 
     RITZ_REFUSE_IF(
-        m->kind == MODEL_COMPONENT &&
-            (whole->num_dofs > MODEL_MOST_DOFS || whole->K4.colptr),
-        RITZ_ERR_ARGUMENT,
+        m->kind == MODEL_COMPONENT && !model_has_states(m), RITZ_ERR_ARGUMENT,
         "--zeros: of a component with structural damping, or of more "
         "than %d dofs, there are none to be had: reduce it",
         MODEL_MOST_DOFS);

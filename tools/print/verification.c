@@ -66,7 +66,7 @@ static ritz_status keep_measures(cli_run *run, const verify_options *given,
     *measures = (ritz_measures){0};
     for (int64_t k = 0; k < place->count; k++)
         cli_record_error(run, place->item[k].name, place->item[k].value);
-    RITZ_CHECK(model_write(reduced, run->output, cli_stamp(run)));
+    RITZ_CHECK(model_write(run, reduced));
     warn_unmeasured(run, given, place);
     return say_measures(run, place);
 }
