@@ -84,7 +84,7 @@ void ritz_stage_scale(const ritz_stage *stage, double *scale);
  * singular values tell rank apart from rounding.
  *
  * @param[in] setting  one for each sweep of the scene
- * @param[in] scale      Q, as ritz_stage_scale gives it
+ * @param[in] scale    Q, as ritz_stage_scale gives it; NULL: each is 1
  */
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
                                    const double *setting, const double *scale,

@@ -35,15 +35,24 @@ static ritz_status copy_rows(const ritz_dense *P, int64_t first, int64_t count,
     return RITZ_OK;
 }
 
-/* A_e += P_k' A_k P_k. */
-static ritz_status add_projected(const ritz_dense *A, const ritz_dense *P,
-                                 ritz_dense *sum)
+/* Sum of P_k' A_k P_k, A the matrix at an offset in each body; {0} if no body
+   has it. */
+static ritz_status project_bodies(const ritz_stage *stage, size_t offset,
+                                  const ritz_dense *P, ritz_dense *sum)
 {
-    RITZ_OWN(ritz_dense) part = {0};
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_dense *A = ritz_body_matrix(&stage->body[k], offset);
+        RITZ_OWN(ritz_dense) block = {0}, part = {0};
 
-    RITZ_CHECK(ritz_dense_project(A, P, &part));
-    for (int64_t k = 0; k < part.nrow * part.ncol; k++)
-        sum->val[k] += part.val[k];
+        if (!A->val)
+            continue;
+        if (!sum->val)
+            RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, sum));
+        RITZ_CHECK(copy_rows(P, stage->first[k], A->ncol, &block));
+        RITZ_CHECK(ritz_dense_project(A, &block, &part));
+        for (int64_t i = 0; i < part.nrow * part.ncol; i++)
+            sum->val[i] += part.val[i];
+    }
     return RITZ_OK;
 }
 
@@ -52,46 +61,12 @@ static ritz_status project_all(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *P,
                                ritz_dense *K, ritz_dense *M, ritz_dense *D)
 {
-    RITZ_OWN(ritz_dense) block = {0};
-    bool damped = ritz_springs_damp(springs);
-
-    for (int64_t k = 0; k < stage->count; k++)
-        damped = damped || stage->body[k].D.val;
-    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, K));
-    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, M));
-    if (damped)
+    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K), P, K));
+    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, M), P, M));
+    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, D), P, D));
+    if (!D->val && ritz_springs_damp(springs))
         RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, D));
-    for (int64_t k = 0; k < stage->count; k++) {
-        const ritz_reduced *body = &stage->body[k];
-
-        RITZ_CHECK(copy_rows(P, stage->first[k], body->K.ncol, &block));
-        RITZ_CHECK(add_projected(&body->K, &block, K));
-        RITZ_CHECK(add_projected(&body->M, &block, M));
-        if (body->D.val)
-            RITZ_CHECK(add_projected(&body->D, &block, D));
-        ritz_dense_free(&block);
-    }
     return ritz_springs_add(springs, P, K, D);
-}
-
-/* K4 of the system; none if no body has any. */
-static ritz_status project_structural(const ritz_stage *stage,
-                                      const ritz_dense *P, ritz_dense *K4)
-{
-    RITZ_OWN(ritz_dense) block = {0};
-
-    for (int64_t k = 0; k < stage->count; k++) {
-        const ritz_dense *own = &stage->body[k].K4;
-
-        if (!own->val)
-            continue;
-        if (!K4->val)
-            RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, K4));
-        RITZ_CHECK(copy_rows(P, stage->first[k], own->ncol, &block));
-        RITZ_CHECK(add_projected(own, &block, K4));
-        ritz_dense_free(&block);
-    }
-    return RITZ_OK;
 }
 
 /*
@@ -101,7 +76,6 @@ static ritz_status project_structural(const ritz_stage *stage,
 static bool are_separate(const double *lambda, int64_t rigid, int64_t i,
                          int64_t j)
 {
-
     return (i >= rigid || j >= rigid) &&
            fabs(lambda[i] - lambda[j]) >
                RITZ_CLUSTER_GAP * fmax(fabs(lambda[i]), fabs(lambda[j]));
@@ -202,7 +176,7 @@ static ritz_status fill_configuration(const ritz_stage *stage,
     }
     RITZ_CHECK(ritz_io_project(&stage->io, P, &c->io));
     RITZ_CHECK(ritz_dampers_project(&stage->dampers, P, &c->dampers));
-    RITZ_CHECK(project_structural(stage, P, &c->K4));
+    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K4), P, &c->K4));
     return ritz_place_mass(stage, setting, c);
 }
 

@@ -12,6 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+const ritz_dense *ritz_body_matrix(const ritz_reduced *body, size_t offset)
+{
+    return (const ritz_dense *)(const void *)((const char *)body + offset);
+}
+
 bool ritz_springs_damp(const ritz_springs *springs)
 {
     for (int64_t k = 0; k < springs->S.nrow; k++)
@@ -128,20 +133,6 @@ void ritz_springs_free(ritz_springs *springs)
  * them, so that rounding stays small relative to a constraint.
  */
 
-static ritz_joint_end describe_end(const ritz_stage *stage,
-                                   const ritz_scene_place *place,
-                                   const ritz_port_map *port)
-{
-    return (ritz_joint_end){
-        .component = stage->scene->component[place->component].name,
-        .port = port->name,
-        .origin = port->origin,
-        .count = port->count,
-        .dof = port->dof,
-        .position = port->position,
-    };
-}
-
 /* The ports that a joint holds. */
 static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
                               const ritz_port_map *port[2])
@@ -158,10 +149,12 @@ static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
 }
 
 /* Write a relation as a row over all coordinates, each times its scale. */
-static void fill_row(const ritz_stage *stage, const ritz_joint *joint,
-                     const ritz_port_map *const port[2], const ritz_relation *r,
-                     const double *scale, int64_t row, ritz_dense *C)
+static void fill_row(const ritz_stage *stage, const ritz_relation *r,
+                     const ritz_port_map *const port[2], const double *scale,
+                     int64_t row, ritz_dense *C)
 {
+    const ritz_joint *joint = &stage->scene->joint[r->joint];
+
     for (int end = 0; end < 2; end++) {
         int64_t first = stage->first[joint->between[end].component];
         const ritz_dense *map = &port[end]->map;
@@ -173,7 +166,7 @@ static void fill_row(const ritz_stage *stage, const ritz_joint *joint,
                 sum +=
                     r->factor[end][k] * ritz_dense_col(map, j)[r->row[end][k]];
             ritz_dense_col(C, first + j)[row] +=
-                (end == 0 ? sum : -sum) * scale[first + j];
+                (end == 0 ? sum : -sum) * (scale ? scale[first + j] : 1.0);
         }
     }
 }
@@ -190,23 +183,29 @@ static double row_norm(const ritz_dense *C, int64_t row)
     return sqrt(sum);
 }
 
-/* Divide `count` rows of each kind by the largest norm among them. */
-static void scale_rows(const bool *rotation, int64_t first, int64_t count,
-                       ritz_dense *C)
+/* Divide the rows of one joint and kind by the largest norm among them. */
+static void scale_rows(const ritz_relations *list, ritz_dense *C)
 {
-    double most[2] = {0.0, 0.0};
+    for (int64_t first = 0, end = 0; first < list->count; first = end) {
+        const ritz_relation *r = list->item;
+        double most[2] = {0.0, 0.0};
 
-    for (int64_t k = first; k < first + count; k++)
-        most[rotation[k]] = fmax(most[rotation[k]], row_norm(C, k));
-    for (int64_t k = first; k < first + count; k++)
-        for (int64_t j = 0; j < C->ncol; j++)
-            if (most[rotation[k]] > 0.0)
-                ritz_dense_col(C, j)[k] /= most[rotation[k]];
+        while (end < list->count && r[end].joint == r[first].joint) {
+            most[r[end].rotation] =
+                fmax(most[r[end].rotation], row_norm(C, end));
+            end++;
+        }
+        for (int64_t k = first; k < end; k++)
+            for (int64_t j = 0; j < C->ncol; j++)
+                if (most[r[k].rotation] > 0.0)
+                    ritz_dense_col(C, j)[k] /= most[r[k].rotation];
+    }
 }
 
-/* The relations of every joint at some settings. */
+/* The relations of every joint at some settings, those of one state. */
 static ritz_status list_relations(const ritz_stage *stage,
-                                  const double *setting, ritz_relations *list)
+                                  const double *setting,
+                                  ritz_freedom_state state, ritz_relations *out)
 {
     const ritz_scene *scene = stage->scene;
     RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
@@ -216,130 +215,66 @@ static ritz_status list_relations(const ritz_stage *stage,
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
         const ritz_port_map *port[2] = {NULL, NULL};
+        int64_t kept = out->count;
         ritz_joint_end end[2];
 
         RITZ_CHECK(find_ports(stage, joint, port));
         for (int k = 0; k < 2; k++)
-            end[k] = describe_end(stage, &joint->between[k], port[k]);
-        RITZ_CHECK(ritz_joint_relate(joint, end, &pose[j], &list[j]));
+            end[k] = ritz_joint_end_at(
+                scene->component[joint->between[k].component].name, port[k]);
+        RITZ_CHECK(ritz_joint_relate(joint, end, &pose[j], out));
+        for (int64_t k = kept; k < out->count; k++) {
+            out->item[k].joint = j;
+            if (out->item[k].freedom.state == state)
+                out->item[kept++] = out->item[k];
+        }
+        out->count = kept;
     }
     return RITZ_OK;
 }
 
-static int64_t count_state(const ritz_relations *list, ritz_freedom_state state)
-{
-    int64_t count = 0;
-
-    for (int64_t k = 0; k < list->count; k++)
-        count += list->item[k].freedom.state == state;
-    return count;
-}
-
-/* Relations of one state of all joints, as rows of a matrix. */
-typedef struct rows {
-    ritz_dense C;
-    int64_t *of_joint; /* number of rows of each joint */
-    bool *rotation;    /* whether a row is a rotation */
-    ritz_freedom *freedom;
-} rows;
-
-static void free_rows(rows *r)
-{
-    ritz_dense_free(&r->C);
-    free(r->of_joint);
-    free(r->rotation);
-    free(r->freedom);
-    *r = (rows){0};
-}
-
-/* Count the rows of one state and allocate them. */
-static ritz_status count_rows(const ritz_stage *stage,
-                              const ritz_relations *list,
-                              ritz_freedom_state state, rows *out)
-{
-    int64_t count = 0;
-
-    RITZ_CHECK_NEW(out->of_joint, stage->scene->num_joints);
-    for (int64_t j = 0; j < stage->scene->num_joints; j++) {
-        out->of_joint[j] = count_state(&list[j], state);
-        count += out->of_joint[j];
-    }
-    RITZ_CHECK_NEW(out->rotation, count);
-    RITZ_CHECK_NEW(out->freedom, count);
-    return ritz_dense_new(count, stage->num_coordinates, &out->C);
-}
-
+/* Relations of one state of all joints, as rows of C; @p scale NULL: of 1. */
 static ritz_status make_rows(const ritz_stage *stage, const double *setting,
                              ritz_freedom_state state, const double *scale,
-                             rows *out)
+                             ritz_relations *list, ritz_dense *C)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_scene *scene = stage->scene;
-    ritz_relations *list = NULL;
-    int64_t row = 0;
-
-    RITZ_NEW(list, scene->num_joints);
-    RITZ_TRY(list_relations(stage, setting, list));
-    RITZ_TRY(count_rows(stage, list, state, out));
-    for (int64_t j = 0; j < scene->num_joints; j++) {
+    RITZ_CHECK(list_relations(stage, setting, state, list));
+    RITZ_CHECK(ritz_dense_new(list->count, stage->num_coordinates, C));
+    for (int64_t k = 0; k < list->count; k++) {
         const ritz_port_map *port[2] = {NULL, NULL};
 
-        RITZ_TRY(find_ports(stage, &scene->joint[j], port));
-        for (int64_t k = 0; k < list[j].count; k++) {
-            const ritz_relation *r = &list[j].item[k];
-
-            if (r->freedom.state != state)
-                continue;
-            out->rotation[row] = r->rotation;
-            out->freedom[row] = r->freedom;
-            fill_row(stage, &scene->joint[j], port, r, scale, row++, &out->C);
-        }
+        RITZ_CHECK(
+            find_ports(stage, &stage->scene->joint[list->item[k].joint], port));
+        fill_row(stage, &list->item[k], port, scale, k, C);
     }
-done:
-    for (int64_t j = 0; list && j < scene->num_joints; j++)
-        ritz_relations_free(&list[j]);
-    free(list);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
                                    const double *setting, const double *scale,
                                    ritz_dense *out)
 {
-    ritz_status status = RITZ_OK;
-    rows r = {0};
-    int64_t first = 0;
+    RITZ_OWN(ritz_relations) list = {0};
+    RITZ_OWN(ritz_dense) C = {0};
 
-    RITZ_TRY(make_rows(stage, setting, RITZ_LOCKED, scale, &r));
-    for (int64_t j = 0; j < stage->scene->num_joints; j++) {
-        scale_rows(r.rotation, first, r.of_joint[j], &r.C);
-        first += r.of_joint[j];
-    }
-    *out = r.C;
-    r.C = (ritz_dense){0};
-done:
-    free_rows(&r);
-    return status;
+    RITZ_CHECK(make_rows(stage, setting, RITZ_LOCKED, scale, &list, &C));
+    scale_rows(&list, &C);
+    RITZ_MOVE(*out, C);
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
                                ritz_springs *out)
 {
-    ritz_status status = RITZ_OK;
-    rows r = {0};
-    double *one = NULL;
+    RITZ_OWN(ritz_relations) list = {0};
+    RITZ_OWN(ritz_springs) springs = {0};
 
-    RITZ_NEW(one, stage->num_coordinates);
-    for (int64_t j = 0; j < stage->num_coordinates; j++)
-        one[j] = 1.0;
-    RITZ_TRY(make_rows(stage, setting, RITZ_CAGED, one, &r));
-    *out = (ritz_springs){.S = r.C, .hold = r.freedom};
-    r.C = (ritz_dense){0};
-    r.freedom = NULL;
-done:
-    free_rows(&r);
-    free(one);
-    return status;
+    RITZ_CHECK(make_rows(stage, setting, RITZ_CAGED, NULL, &list, &springs.S));
+    RITZ_CHECK_NEW(springs.hold, list.count);
+    for (int64_t k = 0; k < list.count; k++)
+        springs.hold[k] = list.item[k].freedom;
+    RITZ_MOVE(*out, springs);
+    return RITZ_OK;
 }
 
 /*

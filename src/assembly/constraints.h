@@ -21,6 +21,9 @@ typedef struct ritz_springs {
 ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
                                ritz_springs *out);
 
+/** A dense matrix of a body by its offset in ritz_reduced. */
+const ritz_dense *ritz_body_matrix(const ritz_reduced *body, size_t offset);
+
 /** Whether one of the springs has damping. */
 bool ritz_springs_damp(const ritz_springs *springs);
 

@@ -197,7 +197,7 @@ static ritz_status add_joint(const split *s, const ritz_dense *C_q,
     return RITZ_OK;
 }
 
-static void free_split(split *s)
+static void split_free(split *s)
 {
     ritz_dense_free(&s->L);
     ritz_dense_free(&s->U);
@@ -205,11 +205,10 @@ static void free_split(split *s)
     free(s->sigma);
 }
 
-static void free_dual(ritz_dual *dual)
+static void ritz_dual_free(ritz_dual *dual)
 {
     ritz_dense_free(&dual->X);
     ritz_dense_free(&dual->joint);
-    *dual = (ritz_dual){0};
 }
 
 /*
@@ -220,26 +219,18 @@ static void free_dual(ritz_dual *dual)
 static ritz_status new_dual(const ritz_dense *K, const ritz_dense *C,
                             const bool *is_force, ritz_dual *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dual dual = {0};
-    split s = {0};
-    ritz_dense C_q = {0}, N = {0};
+    RITZ_OWN(split) s = {0};
+    RITZ_OWN(ritz_dense) C_q = {0}, N = {0};
 
-    RITZ_TRY(factor_flexibility(K, is_force, &s.L));
-    RITZ_TRY(decompose_constraints(C, is_force, &s));
-    RITZ_TRY(select_columns(C, is_force, false, &C_q));
-    RITZ_TRY(constrain_modal(&s, &C_q, &dual.rank, &N));
-    RITZ_TRY(build_transformation(&s, is_force, &N, &dual.X));
-    RITZ_TRY(add_joint(&s, &C_q, &N, &dual.joint));
-    dual.rank += s.rank;
-    dual.num_forces = s.rank;
-    RITZ_MOVE(*out, dual);
-done:
-    free_split(&s);
-    free_dual(&dual);
-    ritz_dense_free(&C_q);
-    ritz_dense_free(&N);
-    return status;
+    RITZ_CHECK(factor_flexibility(K, is_force, &s.L));
+    RITZ_CHECK(decompose_constraints(C, is_force, &s));
+    RITZ_CHECK(select_columns(C, is_force, false, &C_q));
+    RITZ_CHECK(constrain_modal(&s, &C_q, &out->rank, &N));
+    RITZ_CHECK(build_transformation(&s, is_force, &N, &out->X));
+    RITZ_CHECK(add_joint(&s, &C_q, &N, &out->joint));
+    out->rank += s.rank;
+    out->num_forces = s.rank;
+    return RITZ_OK;
 }
 
 /*
@@ -292,9 +283,7 @@ static ritz_status stack_blocks(const ritz_stage *stage, size_t offset,
     bool any = false;
 
     for (int64_t k = 0; k < stage->count; k++) {
-        const ritz_dense *A =
-            (const ritz_dense *)(const void *)((const char *)&stage->body[k] +
-                                               offset);
+        const ritz_dense *A = ritz_body_matrix(&stage->body[k], offset);
         int64_t first = stage->first[k];
 
         if (!A->val)
@@ -306,18 +295,10 @@ static ritz_status stack_blocks(const ritz_stage *stage, size_t offset,
         for (int64_t j = 0; j < A->ncol; j++)
             for (int64_t i = 0; i < A->nrow; i++)
                 ritz_dense_col(out, first + j)[first + i] =
-                    scale[first + i] * scale[first + j] *
+                    (scale ? scale[first + i] * scale[first + j] : 1.0) *
                     ritz_dense_col(A, j)[i];
     }
     return RITZ_OK;
-}
-
-static void mark_forces(const ritz_stage *stage, bool *is_force)
-{
-    for (int64_t k = 0; k < stage->count; k++)
-        for (int64_t j = 0; j < stage->body[k].columns.count; j++)
-            is_force[stage->first[k] + j] =
-                stage->body[k].columns.kind[j] == RITZ_COLUMN_FORCE;
 }
 
 /*
@@ -328,7 +309,7 @@ typedef struct dual_pencil {
     ritz_dense K, M, P;
 } dual_pencil;
 
-static void free_pencil(dual_pencil *of)
+static void dual_pencil_free(dual_pencil *of)
 {
     ritz_dense_free(&of->K);
     ritz_dense_free(&of->M);
@@ -338,27 +319,26 @@ static void free_pencil(dual_pencil *of)
 /* Transform K, M and P to new coordinates, z = Z w. */
 static ritz_status transform_pencil(const ritz_dense *Z, dual_pencil *of)
 {
-    [[gnu::cleanup(free_pencil)]] dual_pencil to = {0};
+    RITZ_OWN(dual_pencil) to = {0};
 
     RITZ_CHECK(ritz_dense_congruence(&of->K, Z, &to.K));
     RITZ_CHECK(ritz_dense_congruence(&of->M, Z, &to.M));
     RITZ_CHECK(ritz_dense_mul(&of->P, Z, &to.P));
-    free_pencil(of);
+    dual_pencil_free(of);
     RITZ_MOVE(*of, to);
     return RITZ_OK;
 }
 
 static ritz_status make_pencil(const ritz_stage *stage,
-                               const ritz_springs *springs,
+                               const ritz_springs *springs, const ritz_dense *K,
                                const ritz_dual *dual, const double *scale,
                                dual_pencil *out)
 {
-    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) M = {0};
     ritz_dense none = {0};
 
-    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, K), scale, &K));
     RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, M), scale, &M));
-    RITZ_CHECK(ritz_dense_congruence(&K, &dual->X, &out->K));
+    RITZ_CHECK(ritz_dense_congruence(K, &dual->X, &out->K));
     RITZ_CHECK(ritz_dense_congruence(&M, &dual->X, &out->M));
     RITZ_CHECK(ritz_dense_copy(&dual->X, &out->P));
     for (int64_t j = 0; j < out->P.ncol; j++)
@@ -510,12 +490,8 @@ static ritz_status add_damping(const ritz_stage *stage,
                                ritz_configuration *c)
 {
     RITZ_OWN(ritz_dense) D = {0}, none = {0};
-    RITZ_OWN_ARRAY double *one = NULL;
 
-    RITZ_CHECK_NEW(one, stage->num_coordinates);
-    for (int64_t i = 0; i < stage->num_coordinates; i++)
-        one[i] = 1.0;
-    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, D), one, &D));
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, D), NULL, &D));
     if (D.val)
         RITZ_CHECK(ritz_dense_project(&D, P, &c->D));
     else if (ritz_springs_damp(springs))
@@ -533,28 +509,25 @@ static ritz_status prepare_pencil(const ritz_stage *stage,
                                   const ritz_dense *C, const double *scale,
                                   dual_pencil *of, int64_t *rank)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dual dual = {0};
-    ritz_dense K = {0}, Z = {0};
-    bool *is_force = NULL;
+    RITZ_OWN(ritz_dual) dual = {0};
+    RITZ_OWN(ritz_dense) K = {0}, Z = {0};
+    RITZ_OWN_ARRAY bool *is_force = NULL;
     int64_t massless = 0;
 
-    RITZ_NEW(is_force, stage->num_coordinates);
-    mark_forces(stage, is_force);
-    RITZ_TRY(stack_blocks(stage, offsetof(ritz_reduced, K), scale, &K));
-    RITZ_TRY(new_dual(&K, C, is_force, &dual));
-    RITZ_TRY(make_pencil(stage, springs, &dual, scale, of));
-    RITZ_TRY(diagonalise_forces(&of->M, dual.num_forces, &Z, &massless));
-    RITZ_TRY(transform_pencil(&Z, of));
+    RITZ_CHECK_NEW(is_force, stage->num_coordinates);
+    for (int64_t k = 0; k < stage->count; k++)
+        for (int64_t j = 0; j < stage->body[k].columns.count; j++)
+            is_force[stage->first[k] + j] =
+                stage->body[k].columns.kind[j] == RITZ_COLUMN_FORCE;
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, K), scale, &K));
+    RITZ_CHECK(new_dual(&K, C, is_force, &dual));
+    RITZ_CHECK(make_pencil(stage, springs, &K, &dual, scale, of));
+    RITZ_CHECK(diagonalise_forces(&of->M, dual.num_forces, &Z, &massless));
+    RITZ_CHECK(transform_pencil(&Z, of));
     if (massless > 0)
-        RITZ_TRY(condense_massless(massless, of));
+        RITZ_CHECK(condense_massless(massless, of));
     *rank = dual.rank;
-done:
-    free(is_force);
-    free_dual(&dual);
-    ritz_dense_free(&K);
-    ritz_dense_free(&Z);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_dual_assemble(const ritz_stage *stage,
@@ -562,7 +535,7 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const double *scale, ritz_dense *P,
                                ritz_configuration *c)
 {
-    [[gnu::cleanup(free_pencil)]] dual_pencil of = {0};
+    RITZ_OWN(dual_pencil) of = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     RITZ_CHECK(prepare_pencil(stage, springs, C, scale, &of, &c->rank));
@@ -570,7 +543,6 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
     RITZ_CHECK(order_modes(&pairs, &of.P, c));
     RITZ_CHECK(add_damping(stage, springs, &of.P, c));
     RITZ_CHECK(report_negative(c));
-    *P = of.P;
-    of.P = (ritz_dense){0};
+    RITZ_MOVE(*P, of.P);
     return RITZ_OK;
 }

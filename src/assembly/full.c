@@ -49,18 +49,7 @@ static ritz_status restrict_port(const ritz_component *component,
 {
     RITZ_OWN(ritz_dense) turn = {0};
 
-    memcpy(map->name, port->name, sizeof map->name);
-    memcpy(map->origin, port->origin, sizeof map->origin);
-    map->count = port->dofs.count;
-    RITZ_CHECK(ritz_port_turn(component, port, &turn, &map->dof));
-    RITZ_CHECK_NEW(map->position, 3 * map->count);
-    for (int64_t i = 0; i < map->count; i++) {
-        int64_t k = ritz_grids_find(&component->grids, map->dof[i].grid);
-
-        if (k >= 0)
-            memcpy(map->position + 3 * i, component->grids.position + 3 * k,
-                   3 * sizeof *map->position);
-    }
+    RITZ_CHECK(ritz_port_describe(component, port, &turn, map));
     RITZ_CHECK(ritz_dense_new(map->count, held->count, &map->map));
     for (int64_t j = 0; j < map->count; j++)
         memcpy(ritz_dense_col(&map->map, find_held(held, port->dofs.at[j])),
@@ -70,19 +59,17 @@ static ritz_status restrict_port(const ritz_component *component,
 
 /* A body restricted to its held dofs. */
 static ritz_status restrict_body(const ritz_component *component,
-                                 const ritz_dofs *held, ritz_reduced *out)
+                                 const ritz_dofs *held, ritz_reduced *body)
 {
-    RITZ_OWN(ritz_reduced) body = {.num_dofs = component->num_dofs};
-
-    RITZ_CHECK(ritz_dense_new(held->count, held->count, &body.K));
-    RITZ_CHECK(ritz_dense_new(held->count, held->count, &body.M));
-    RITZ_CHECK_NEW(body.port, component->num_ports);
+    body->num_dofs = component->num_dofs;
+    RITZ_CHECK(ritz_dense_new(held->count, held->count, &body->K));
+    RITZ_CHECK(ritz_dense_new(held->count, held->count, &body->M));
+    RITZ_CHECK_NEW(body->port, component->num_ports);
     for (int64_t k = 0; k < component->num_ports; k++) {
-        body.num_ports++;
-        RITZ_CHECK(
-            restrict_port(component, &component->port[k], held, &body.port[k]));
+        body->num_ports++;
+        RITZ_CHECK(restrict_port(component, &component->port[k], held,
+                                 &body->port[k]));
     }
-    RITZ_MOVE(*out, body);
     return RITZ_OK;
 }
 
@@ -97,9 +84,10 @@ static ritz_status load_body(const ritz_source *source, const char *model,
     return source->component(source->state, model, out);
 }
 
-static ritz_status load_bodies(const ritz_scene *scene, ritz_held *p)
+static ritz_status load_bodies(ritz_held *p)
 {
-    p->scene = scene;
+    const ritz_scene *scene = p->scene;
+
     RITZ_CHECK_NEW(p->body, scene->num_components);
     RITZ_CHECK_NEW(p->held, scene->num_components);
     RITZ_CHECK_NEW(p->first, scene->num_components);
@@ -118,52 +106,27 @@ static ritz_status load_bodies(const ritz_scene *scene, ritz_held *p)
 /* Build the stage of held dofs, and list their indices among all dofs. */
 static ritz_status build_stage(ritz_held *p)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced *body = NULL;
+    RITZ_OWN(ritz_bodies) body = {0};
 
-    RITZ_NEW(body, p->count);
+    RITZ_CHECK(ritz_bodies_new(p->count, &body));
     for (int64_t k = 0; k < p->count; k++)
-        RITZ_TRY_IN(p->scene->component[k].name,
-                    restrict_body(&p->body[k], &p->held[k], &body[k]));
-    RITZ_TRY(ritz_stage_from(p->scene, body, &p->stage));
-    RITZ_NEW(p->row, p->stage.num_coordinates);
+        RITZ_CHECK_IN(p->scene->component[k].name,
+                      restrict_body(&p->body[k], &p->held[k], &body.item[k]));
+    RITZ_CHECK(ritz_stage_from(p->scene, body.item, &p->stage));
+    RITZ_CHECK_NEW(p->row, p->stage.num_coordinates);
     for (int64_t k = 0; k < p->count; k++)
         for (int64_t j = 0; j < p->held[k].count; j++)
             p->row[p->stage.first[k] + j] = p->first[k] + p->held[k].at[j];
-done:
-    for (int64_t k = 0; body && k < p->count; k++)
-        ritz_reduced_free(&body[k]);
-    free(body);
-    return status;
+    return RITZ_OK;
 }
 
-static void free_held(ritz_held *p)
+static void ritz_held_free(ritz_held *p)
 {
-    for (int64_t k = 0; k < p->count; k++) {
-        if (p->body)
-            ritz_component_free(&p->body[k]);
-        if (p->held)
-            ritz_dofs_free(&p->held[k]);
-    }
-    free(p->body);
-    free(p->held);
+    RITZ_FREE_EACH(ritz_component, p->count, p->body);
+    RITZ_FREE_EACH(ritz_dofs, p->count, p->held);
     free(p->first);
     free(p->row);
     ritz_stage_free(&p->stage);
-}
-
-/* Load the full models and list the dofs of their ports. */
-static ritz_status load_held(const ritz_scene *scene, ritz_held *out)
-{
-    ritz_status status = RITZ_OK;
-    ritz_held held = {0};
-
-    RITZ_TRY(load_bodies(scene, &held));
-    RITZ_TRY(build_stage(&held));
-    RITZ_MOVE(*out, held);
-done:
-    free_held(&held);
-    return status;
 }
 
 /* Row and column of the largest entry left; later columns win ties. */
@@ -282,43 +245,39 @@ static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
                                      T);
 }
 
-/* One matrix of a body, by its offset in the component. */
-static const ritz_sparse *body_matrix(const ritz_component *body, size_t offset)
-{
-    return (const ritz_sparse *)(const void *)((const char *)body + offset);
-}
-
 /*
- * diag(A_1, A_2, ...), with a zero block for a body without the matrix; {0} if
- * no body has it.
+ * A matrix of each body, by its offset in the component, on a block diagonal:
+ * rows from @p first, columns those of the body; {0} if no body has it.
  */
 static ritz_status stack_matrices(const ritz_held *p, size_t offset,
+                                  int64_t rows, const int64_t *first,
                                   ritz_sparse *out)
 {
     RITZ_OWN(ritz_sparse) A = {0};
     int64_t nnz = 0, at = 0;
     bool any = false;
 
-    for (int64_t k = 0; k < p->count; k++) {
-        const ritz_sparse *part = body_matrix(&p->body[k], offset);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t k = 0; k < p->count; k++) {
+            const ritz_sparse *part =
+                (const ritz_sparse *)(const void *)((const char *)&p->body[k] +
+                                                    offset);
 
-        any = any || part->colptr;
-        nnz += part->colptr ? part->colptr[part->ncol] : 0;
-    }
-    if (!any)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_new(p->num_dofs, p->num_dofs, nnz, &A));
-    for (int64_t k = 0; k < p->count; k++) {
-        const ritz_sparse *part = body_matrix(&p->body[k], offset);
-
-        for (int64_t j = 0; j < p->body[k].num_dofs; j++) {
-            for (int64_t e = part->colptr ? part->colptr[j] : 0;
-                 part->colptr && e < part->colptr[j + 1]; e++) {
-                A.rowind[at] = p->first[k] + part->rowind[e];
-                A.val[at++] = part->val[e];
+            any = any || part->colptr;
+            nnz += part->colptr ? part->colptr[part->ncol] : 0;
+            for (int64_t j = 0; j < p->body[k].num_dofs && pass == 1; j++) {
+                for (int64_t e = part->colptr ? part->colptr[j] : 0;
+                     part->colptr && e < part->colptr[j + 1]; e++) {
+                    A.rowind[at] = first[k] + part->rowind[e];
+                    A.val[at++] = part->val[e];
+                }
+                A.colptr[p->first[k] + j + 1] = at;
             }
-            A.colptr[p->first[k] + j + 1] = at;
         }
+        if (!any)
+            return RITZ_OK;
+        if (pass == 0)
+            RITZ_CHECK(ritz_sparse_new(rows, p->num_dofs, nnz, &A));
     }
     RITZ_MOVE(*out, A);
     return RITZ_OK;
@@ -343,7 +302,7 @@ static ritz_status project_matrices(const ritz_held *p, const double *setting,
         ritz_sparse *into =
             (ritz_sparse *)(void *)((char *)system + offsets[k]);
 
-        RITZ_CHECK(stack_matrices(p, offsets[k], &all));
+        RITZ_CHECK(stack_matrices(p, offsets[k], p->num_dofs, p->first, &all));
         if (k == K || k == D)
             RITZ_CHECK(ritz_springs_add_sparse(&springs, k == D, p->num_dofs,
                                                p->row, &all));
@@ -411,35 +370,24 @@ static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
 static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
                                   ritz_recovery *out)
 {
-    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
-    int64_t entries = 0, rows = 0, at = 0;
+    RITZ_OWN_ARRAY int64_t *first = NULL;
+    int64_t rows = 0;
 
+    RITZ_CHECK_NEW(first, p->count);
     for (int64_t k = 0; k < p->count; k++) {
-        const ritz_recovery *r = &p->body[k].recovery;
-
-        rows += r->count;
-        entries += r->count > 0 ? r->G.colptr[r->G.ncol] : 0;
+        first[k] = rows;
+        rows += p->body[k].recovery.count;
     }
-    RITZ_CHECK_NEW(row, entries);
-    RITZ_CHECK_NEW(col, entries);
-    RITZ_CHECK_NEW(val, entries);
     RITZ_CHECK_NEW(out->dof, rows);
     for (int64_t k = 0; k < p->count; k++) {
         const ritz_recovery *r = &p->body[k].recovery;
 
-        for (int64_t j = 0; r->count > 0 && j < r->G.ncol; j++)
-            for (int64_t e = r->G.colptr[j]; e < r->G.colptr[j + 1]; e++) {
-                row[at] = out->count + r->G.rowind[e];
-                col[at] = p->first[k] + j;
-                val[at++] = r->G.val[e];
-            }
         for (int64_t i = 0; i < r->count; i++)
             out->dof[out->count++] =
                 (ritz_dof){r->dof[i].grid + add[k], r->dof[i].component};
     }
-    return ritz_sparse_from_triplets(rows, p->num_dofs, at, row, col, val,
-                                     &out->G);
+    return stack_matrices(p, offsetof(ritz_component, recovery.G), rows, first,
+                          &out->G);
 }
 
 /* Project the recovery of the bodies' eliminated dofs: diag(G_k) T. */
@@ -494,54 +442,90 @@ ritz_status ritz_assemble_masters(const ritz_scene *scene,
                                   const double *setting, ritz_component *out,
                                   ritz_master **where)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component system = {0};
-    ritz_master *master = NULL;
-    ritz_held p = {0};
-    ritz_dense C = {0};
-    ritz_sparse T = {0};
-    double *scale = NULL;
-    int64_t *pivot_of = NULL;
+    RITZ_OWN(ritz_component) system = {0};
+    RITZ_OWN(ritz_held) p = {.scene = scene};
+    RITZ_OWN(ritz_dense) C = {0};
+    RITZ_OWN(ritz_sparse) T = {0};
+    RITZ_OWN_ARRAY ritz_master *master = NULL;
+    RITZ_OWN_ARRAY int64_t *pivot_of = NULL;
 
-    RITZ_TRY(load_held(scene, &p));
-    RITZ_TRY(check_units(scene, &p));
-    RITZ_NEW(scale, p.stage.num_coordinates);
-    for (int64_t j = 0; j < p.stage.num_coordinates; j++)
-        scale[j] = 1.0;
-    RITZ_TRY(ritz_stage_constraints(&p.stage, setting, scale, &C));
-    RITZ_NEW(pivot_of, C.ncol);
-    RITZ_NEW(master, p.num_dofs);
+    RITZ_CHECK(load_bodies(&p));
+    RITZ_CHECK(build_stage(&p));
+    RITZ_CHECK(check_units(scene, &p));
+    RITZ_CHECK(ritz_stage_constraints(&p.stage, setting, NULL, &C));
+    RITZ_CHECK_NEW(pivot_of, C.ncol);
+    RITZ_CHECK_NEW(master, p.num_dofs);
     eliminate_slaves(&C, pivot_of);
-    RITZ_TRY(make_basis(&p, &C, pivot_of, master, &T));
+    RITZ_CHECK(make_basis(&p, &C, pivot_of, master, &T));
     system.num_dofs = T.ncol;
-    RITZ_TRY(project_matrices(&p, setting, &T, &system));
-    RITZ_TRY(project_io(&p, &T, &system.io));
-    RITZ_TRY(project_dampers(&p, &T, &system.dampers));
-    RITZ_TRY(name_dofs(&p, setting, master, &T, &system));
+    RITZ_CHECK(project_matrices(&p, setting, &T, &system));
+    RITZ_CHECK(project_io(&p, &T, &system.io));
+    RITZ_CHECK(project_dampers(&p, &T, &system.dampers));
+    RITZ_CHECK(name_dofs(&p, setting, master, &T, &system));
     ritz_damping_print(&scene->damping, system.damping);
     memcpy(system.units, p.body[0].units, sizeof system.units);
-    RITZ_TRY(ritz_component_settle(&system, false));
-    *out = system;
-    *where = master;
-    system = (ritz_component){0};
-    master = NULL;
-done:
-    free(scale);
-    free(pivot_of);
-    free(master);
-    ritz_dense_free(&C);
-    ritz_sparse_free(&T);
-    free_held(&p);
-    ritz_component_free(&system);
-    return status;
+    RITZ_CHECK(ritz_component_settle(&system, false));
+    RITZ_MOVE(*out, system);
+    RITZ_MOVE(*where, master);
+    return RITZ_OK;
 }
 
 ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
                                ritz_component *out)
 {
-    ritz_master *master = NULL;
-    ritz_status status = ritz_assemble_masters(scene, setting, out, &master);
+    RITZ_OWN_ARRAY ritz_master *master = NULL;
 
-    free(master);
-    return status;
+    return ritz_assemble_masters(scene, setting, out, &master);
+}
+
+/*
+ * The basis T of an assembled system. Bodies move as u_c = T_c q_c with q_c =
+ * P_c x. C P = 0 holds in their ports' maps, which are rows of T_c, so that
+ * (u_1, u_2, ...) satisfies the full-order constraints too and follows from its
+ * masters.
+ */
+/*
+ * Append the rows of body k, whose coordinates are rows first .. first + count
+ * - 1 of P.
+ */
+static ritz_status add_rows(const ritz_reduced *body, const ritz_dense *P,
+                            int64_t first, int64_t count, const int64_t *row,
+                            ritz_dense *T)
+{
+    RITZ_OWN(ritz_dense) part = {0}, TP = {0};
+
+    RITZ_CHECK(ritz_dense_rows(&body->T, count, row, &part));
+    RITZ_CHECK(ritz_dense_mul(&part, P, &TP));
+    for (int64_t j = 0; j < T->ncol; j++)
+        memcpy(ritz_dense_col(T, j) + first, ritz_dense_col(&TP, j),
+               (size_t)count * sizeof *T->val);
+    return RITZ_OK;
+}
+
+ritz_status ritz_stage_basis(const ritz_stage *stage,
+                             const ritz_configuration *at, int64_t n,
+                             const ritz_master *master, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) T = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL;
+
+    RITZ_CHECK_NEW(row, n);
+    RITZ_CHECK(ritz_dense_new(n, at->K.ncol, &T));
+    for (int64_t first = 0, last = 0; first < n; first = last) {
+        const int64_t k = master[first].body;
+        const ritz_reduced *body = &stage->body[k];
+        int64_t most = 0;
+
+        for (last = first; last < n && master[last].body == k; last++) {
+            row[last] = master[last].dof;
+            most = row[last] > most ? row[last] : most;
+        }
+        RITZ_REFUSE_IF(!body->T.val || body->T.nrow <= most, RITZ_ERR_ARGUMENT,
+                       "'%s' has no basis T for its %" PRId64 " dofs",
+                       stage->scene->component[k].name, most + 1);
+        RITZ_CHECK(
+            add_rows(body, &at->P[k], first, last - first, row + first, &T));
+    }
+    RITZ_MOVE(*out, T);
+    return RITZ_OK;
 }

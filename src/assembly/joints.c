@@ -1,6 +1,5 @@
-#include "assembly/turns.h"
-
 #include "assembly/joints.h"
+
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -231,9 +230,41 @@ static const struct {
  * at the same place, each measured from its port's origin.
  */
 
+ritz_joint_end ritz_joint_end_at(const char *component,
+                                 const ritz_port_map *port)
+{
+    return (ritz_joint_end){.component = component,
+                            .port = port->name,
+                            .origin = port->origin,
+                            .count = port->count,
+                            .dof = port->dof,
+                            .position = port->position};
+}
+
+ritz_status ritz_port_describe(const ritz_component *component,
+                               const ritz_port *port, ritz_dense *turn,
+                               ritz_port_map *out)
+{
+    const ritz_grids *grids = &component->grids;
+
+    memcpy(out->name, port->name, sizeof out->name);
+    memcpy(out->origin, port->origin, sizeof out->origin);
+    out->count = port->dofs.count;
+    RITZ_CHECK(ritz_port_turn(component, port, turn, &out->dof));
+    RITZ_CHECK_NEW(out->position, 3 * out->count);
+    for (int64_t i = 0; i < out->count; i++) {
+        int64_t k = ritz_grids_find(grids, out->dof[i].grid);
+
+        if (k >= 0)
+            memcpy(out->position + 3 * i, grids->position + 3 * k,
+                   3 * sizeof *out->position);
+    }
+    return RITZ_OK;
+}
+
 /* Row of a direction of the grid that starts at port row @p first, or -1. */
-static int64_t joint_direction(const ritz_joint_end *end, int64_t first,
-                               int64_t direction)
+static int64_t find_direction(const ritz_joint_end *end, int64_t first,
+                              int64_t direction)
 {
     for (int64_t k = first; k < end->count; k++)
         if (end->dof[k].grid == end->dof[first].grid &&
@@ -242,25 +273,14 @@ static int64_t joint_direction(const ritz_joint_end *end, int64_t first,
     return -1;
 }
 
-/* Words for the dofs that a port lacks to be one six-dof grid. */
-static void list_missing(const ritz_joint_end *end, char text[64])
-{
-    static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
-    size_t used = 0;
-
-    text[0] = '\0';
-    for (int64_t k = 0; k < 6; k++)
-        if (joint_direction(end, 0, k + 1) < 0)
-            used += (size_t)snprintf(text + used, 64 - used, "%s%s",
-                                     used > 0 ? ", " : "", words[k]);
-}
-
 /* Port rows of the six directions of a joint's one grid. */
 static ritz_status find_six(const ritz_joint_end *end, const char *called,
                             int64_t row[static 6])
 {
+    static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
     int64_t others = 0;
-    char missing[64];
+    char missing[64] = "";
+    size_t used = 0;
 
     for (int64_t k = 0; k < end->count; k++)
         others +=
@@ -270,14 +290,17 @@ static ritz_status find_six(const ritz_joint_end *end, const char *called,
                    called, end->component, end->port,
                    others > 0 ? "more than one grid, or a scalar point"
                               : "no grid");
-    list_missing(end, missing);
+    for (int64_t k = 0; k < 6; k++) {
+        row[k] = find_direction(end, 0, k + 1);
+        if (row[k] < 0)
+            used += (size_t)snprintf(missing + used, sizeof missing - used,
+                                     "%s%s", used > 0 ? ", " : "", words[k]);
+    }
     RITZ_REFUSE_IF(missing[0], RITZ_ERR_ARGUMENT,
                    "a %s holds one six-dof grid on each side, grid %" PRId64
                    " of '%s/%s' has no %s",
                    called, end->dof[0].grid, end->component, end->port,
                    missing);
-    for (int64_t k = 0; k < 6; k++)
-        row[k] = joint_direction(end, 0, k + 1);
     return RITZ_OK;
 }
 
@@ -389,6 +412,7 @@ static ritz_status relate_six(const ritz_joint *joint,
 
         if (freedom.state == RITZ_FREE)
             continue;
+        RITZ_CHECK_ROOM(list->item, list->count, list->room);
         list->item[list->count] =
             project_motion(e[k], k >= 3, pose->R, arm, row);
         list->item[list->count++].freedom = freedom;
@@ -412,22 +436,25 @@ static int64_t list_grids(const ritz_joint_end *end, int64_t *first)
 }
 
 /* Append up to six equalities, for the directions that both grids have. */
-static void pair_grids(const ritz_joint_end end[static 2], int64_t a, int64_t b,
-                       ritz_relations *list)
+static ritz_status pair_grids(const ritz_joint_end end[static 2], int64_t a,
+                              int64_t b, ritz_relations *list)
 {
     for (int64_t direction = 1; direction <= 6; direction++) {
-        int64_t i = joint_direction(&end[0], a, direction);
-        int64_t j = joint_direction(&end[1], b, direction);
+        int64_t i = find_direction(&end[0], a, direction);
+        int64_t j = find_direction(&end[1], b, direction);
 
-        if (i >= 0 && j >= 0)
-            list->item[list->count++] = (ritz_relation){
-                .rotation = direction > 3,
-                .freedom = {.state = RITZ_LOCKED},
-                .num_terms = {1, 1},
-                .row = {{i}, {j}},
-                .factor = {{1.0}, {1.0}},
-            };
+        if (i < 0 || j < 0)
+            continue;
+        RITZ_CHECK_ROOM(list->item, list->count, list->room);
+        list->item[list->count++] = (ritz_relation){
+            .rotation = direction > 3,
+            .freedom = {.state = RITZ_LOCKED},
+            .num_terms = {1, 1},
+            .row = {{i}, {j}},
+            .factor = {{1.0}, {1.0}},
+        };
     }
+    return RITZ_OK;
 }
 
 /* The nearest free grid to `grid`, -1 if all are taken. */
@@ -445,75 +472,58 @@ static int64_t find_nearest(const ritz_joint_end end[static 2], int64_t grid,
     return near;
 }
 
-/*
- * The relations of a fixed joint: its grids are paired; there is room for those
- * of the first port.
- */
+/* The relations of a fixed joint: its grids are paired. */
 static ritz_status pair_joint(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               ritz_relations *list)
 {
-    ritz_status status = RITZ_OK;
-    double tolerance = joint_tolerance(joint, &end[0]);
-    int64_t *first[2] = {NULL, NULL};
-    bool *taken = NULL;
-    int64_t count[2];
+    const double tolerance = joint_tolerance(joint, &end[0]);
+    RITZ_OWN_ARRAY int64_t *near_row = NULL, *far_row = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
+    int64_t count = 0, others = 0;
 
-    for (int k = 0; k < 2; k++) {
-        RITZ_NEW(first[k], end[k].count);
-        count[k] = list_grids(&end[k], first[k]);
-    }
-    RITZ_FAIL_IF(count[0] != count[1], RITZ_ERR_ARGUMENT,
-                 "'%s/%s' has %" PRId64 " grids and '%s/%s' has %" PRId64,
-                 end[0].component, end[0].port, count[0], end[1].component,
-                 end[1].port, count[1]);
-    RITZ_NEW(taken, count[1]);
-    for (int64_t k = 0; k < count[0]; k++) {
-        int64_t a = first[0][k];
-        int64_t near = find_nearest(end, a, count[1], first[1], taken);
-        int64_t b = first[1][near];
+    RITZ_CHECK_NEW(near_row, end[0].count);
+    RITZ_CHECK_NEW(far_row, end[1].count);
+    count = list_grids(&end[0], near_row);
+    others = list_grids(&end[1], far_row);
+    RITZ_REFUSE_IF(count != others, RITZ_ERR_ARGUMENT,
+                   "'%s/%s' has %" PRId64 " grids and '%s/%s' has %" PRId64,
+                   end[0].component, end[0].port, count, end[1].component,
+                   end[1].port, others);
+    RITZ_CHECK_NEW(taken, count);
+    for (int64_t k = 0; k < count; k++) {
+        const int64_t a = near_row[k];
+        const int64_t near = find_nearest(end, a, count, far_row, taken);
+        const int64_t b = far_row[near];
 
-        RITZ_FAIL_IF(joint_distance(end, a, b) > tolerance, RITZ_ERR_ARGUMENT,
-                     "grid %" PRId64
-                     " of '%s/%s' has no partner: the nearest, grid "
-                     "%" PRId64 " of '%s/%s', lies %.3g away, %.3g is let pass",
-                     end[0].dof[a].grid, end[0].component, end[0].port,
-                     end[1].dof[b].grid, end[1].component, end[1].port,
-                     joint_distance(end, a, b), tolerance);
+        RITZ_REFUSE_IF(
+            joint_distance(end, a, b) > tolerance, RITZ_ERR_ARGUMENT,
+            "grid %" PRId64 " of '%s/%s' has no partner: the nearest, grid "
+            "%" PRId64 " of '%s/%s', lies %.3g away, %.3g is let pass",
+            end[0].dof[a].grid, end[0].component, end[0].port,
+            end[1].dof[b].grid, end[1].component, end[1].port,
+            joint_distance(end, a, b), tolerance);
         taken[near] = true;
-        pair_grids(end, a, b, list);
+        RITZ_CHECK(pair_grids(end, a, b, list));
     }
-done:
-    free(first[0]);
-    free(first[1]);
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_joint_relate(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
-                              const ritz_joint_pose *pose, ritz_relations *out)
+                              const ritz_joint_pose *pose, ritz_relations *list)
 {
-    ritz_status status = RITZ_OK;
-    ritz_relations list = {0};
+    const int64_t before = list->count;
+    char what[RITZ_NAME_SIZE + 40];
+    ritz_status status = joint->type == RITZ_JOINT_FIXED
+                             ? pair_joint(joint, end, list)
+                             : relate_six(joint, end, pose, list);
 
-    RITZ_NEW(list.item, end[0].count + 6);
-    if (joint->type == RITZ_JOINT_FIXED)
-        RITZ_TRY(pair_joint(joint, end, &list));
-    else
-        RITZ_TRY(relate_six(joint, end, pose, &list));
-    RITZ_FAIL_IF(list.count == 0, RITZ_ERR_ARGUMENT,
-                 "its ports have no direction in common");
-    RITZ_MOVE(*out, list);
-done:
-    ritz_relations_free(&list);
-    if (status != RITZ_OK) {
-        char what[RITZ_NAME_SIZE + 40];
-
-        snprintf(what, sizeof what, "joint '%s'", joint->name);
-        status = ritz_context(status, what);
-    }
-    return status;
+    if (status == RITZ_OK && list->count == before)
+        status = ritz_fail(RITZ_ERR_ARGUMENT,
+                           "its ports have no direction in common");
+    snprintf(what, sizeof what, "joint '%s'", joint->name);
+    return ritz_context(status, what);
 }
 
 void ritz_relations_free(ritz_relations *relations)

@@ -1,7 +1,9 @@
-/* The relations of a joint between the motions of two port grids. */
+/* The relations of a joint between the motions of two port grids, and rotations
+   in space. */
 #ifndef RITZ_ASSEMBLY_JOINTS_H
 #define RITZ_ASSEMBLY_JOINTS_H
 
+#include <ritz/model.h>
 #include <ritz/scene.h>
 
 /*
@@ -30,6 +32,7 @@ typedef struct ritz_joint_pose {
  * rows: zero where locked, the elongation of a spring where caged.
  */
 typedef struct ritz_relation {
+    int64_t joint; /* of the scene, where there are several */
     bool rotation;
     ritz_freedom freedom;
     int64_t num_terms[2];
@@ -38,16 +41,31 @@ typedef struct ritz_relation {
 } ritz_relation;
 
 typedef struct ritz_relations {
-    int64_t count;
+    int64_t count, room;
     ritz_relation *item;
 } ritz_relations;
+
+/** The end of a joint at a port. */
+ritz_joint_end ritz_joint_end_at(const char *component,
+                                 const ritz_port_map *port);
+
+/**
+ * Name, origin, dofs and positions of a port, and how its dofs turn into the
+ * motions along basic axes.
+ *
+ * @param[out] turn  p x p
+ * @param[out] out   without its map
+ */
+ritz_status ritz_port_describe(const ritz_component *component,
+                               const ritz_port *port, ritz_dense *turn,
+                               ritz_port_map *out);
 
 /** The pose that a joint's settings give, @p setting being all of the scene. */
 void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
                         ritz_joint_pose *out);
 
 /**
- * The relative motions that a joint locks or holds on springs.
+ * Append the relative motions that a joint locks or holds on springs.
  *
  * @return RITZ_ERR_ARGUMENT if the ports do not fit: a grid has no counterpart
  *         within the tolerance, or a port is not the one six-dof grid that the
@@ -55,8 +73,35 @@ void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
  */
 ritz_status ritz_joint_relate(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
-                              const ritz_joint_pose *pose, ritz_relations *out);
+                              const ritz_joint_pose *pose,
+                              ritz_relations *list);
 
 void ritz_relations_free(ritz_relations *relations);
+
+/* Rotations and directions in space, 3 x 3 row by row. */
+
+/** Rotation by @p degrees about a unit axis; quarter turns are exact. */
+void ritz_turn_about(const double axis[static 3], double degrees,
+                     double R[static 9]);
+
+/** C = A B. */
+void ritz_turn_product(const double A[static 9], const double B[static 9],
+                       double C[static 9]);
+
+/** C = A'B. */
+void ritz_turn_between(const double A[static 9], const double B[static 9],
+                       double C[static 9]);
+
+/** y = R x, and y = R'x. */
+void ritz_turn_apply(const double R[static 9], const double x[static 3],
+                     double y[static 3]);
+void ritz_turn_back(const double R[static 9], const double x[static 3],
+                    double y[static 3]);
+
+/** c = a x b. */
+void ritz_cross(const double a[static 3], const double b[static 3],
+                double c[static 3]);
+
+double ritz_dot(const double a[static 3], const double b[static 3]);
 
 #endif

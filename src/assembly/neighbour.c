@@ -26,8 +26,37 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Relations F q - G u of the far body's q and the near port's dofs u. */
+typedef struct ritz_link {
+    int64_t count;
+    ritz_dense F, G; /* count x r, count x p */
+    ritz_freedom *freedom;
+} ritz_link;
+
+/*
+ * Rows of one state; a spring's row is multiplied by the root of its stiffness.
+ */
 static ritz_status select_rows(const ritz_dense *A, const ritz_link *of,
-                               ritz_freedom_state state, ritz_dense *out);
+                               ritz_freedom_state state, ritz_dense *out)
+{
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < of->count; k++)
+        count += of->freedom[k].state == state;
+    RITZ_CHECK(ritz_dense_new(count, A->ncol, out));
+    count = 0;
+    for (int64_t k = 0; k < of->count; k++) {
+        const ritz_freedom *freedom = &of->freedom[k];
+        double factor = state == RITZ_CAGED ? sqrt(freedom->stiffness) : 1.0;
+
+        if (freedom->state != state)
+            continue;
+        for (int64_t j = 0; j < A->ncol; j++)
+            ritz_dense_col(out, j)[count] = factor * ritz_dense_col(A, j)[k];
+        count++;
+    }
+    return RITZ_OK;
+}
 
 /* K + f f' of the springs' rows, each times the root of its stiffness. */
 static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
@@ -56,31 +85,6 @@ static ritz_status condense_stiffness(const ritz_reduced *far,
     for (int64_t k = 0; k < gap.nrow * gap.ncol; k++)
         gap.val[k] -= g.val[k];
     return add_springs(&K, &gap, out);
-}
-
-/*
- * Rows of one state; a spring's row is multiplied by the root of its stiffness.
- */
-static ritz_status select_rows(const ritz_dense *A, const ritz_link *of,
-                               ritz_freedom_state state, ritz_dense *out)
-{
-    int64_t count = 0;
-
-    for (int64_t k = 0; k < of->count; k++)
-        count += of->freedom[k].state == state;
-    RITZ_CHECK(ritz_dense_new(count, A->ncol, out));
-    count = 0;
-    for (int64_t k = 0; k < of->count; k++) {
-        const ritz_freedom *freedom = &of->freedom[k];
-        double factor = state == RITZ_CAGED ? sqrt(freedom->stiffness) : 1.0;
-
-        if (freedom->state != state)
-            continue;
-        for (int64_t j = 0; j < A->ncol; j++)
-            ritz_dense_col(out, j)[count] = factor * ritz_dense_col(A, j)[k];
-        count++;
-    }
-    return RITZ_OK;
 }
 
 /*
@@ -219,12 +223,11 @@ static ritz_status condense_link(const ritz_reduced *far, const ritz_link *link,
     return ritz_dense_congruence(&far->M, &Y, M);
 }
 
-static void free_link(ritz_link *link)
+static void ritz_link_free(ritz_link *link)
 {
     ritz_dense_free(&link->F);
     ritz_dense_free(&link->G);
     free(link->freedom);
-    *link = (ritz_link){0};
 }
 
 /*
@@ -249,33 +252,6 @@ static ritz_status condense_body(const ritz_component *far,
     RITZ_CHECK(ritz_basis_make(rigid ? &ritz_method_rigid : &ritz_method_guyan,
                                &request, &basis));
     return ritz_reduce(far, &basis, out);
-}
-
-/*
- * The rows of a port: their dofs and positions; turn * dofs are along basic
- * axes.
- */
-typedef struct near_port {
-    ritz_dense turn;
-    ritz_dof *dof;
-    double *position;
-} near_port;
-
-static ritz_status describe_port(const ritz_component *component,
-                                 const ritz_port *port, near_port *out)
-{
-    const ritz_grids *grids = &component->grids;
-
-    RITZ_CHECK(ritz_port_turn(component, port, &out->turn, &out->dof));
-    RITZ_CHECK_NEW(out->position, 3 * port->dofs.count);
-    for (int64_t i = 0; i < port->dofs.count; i++) {
-        int64_t k = ritz_grids_find(grids, out->dof[i].grid);
-
-        if (k >= 0)
-            memcpy(out->position + 3 * i, grids->position + 3 * k,
-                   3 * sizeof *out->position);
-    }
-    return RITZ_OK;
 }
 
 /* Row k of a matrix += factor times row i of another. */
@@ -313,33 +289,24 @@ static ritz_status link_bodies(const ritz_joint *joint, const double *setting,
                                const ritz_joined side[2], int near,
                                const ritz_reduced *far, ritz_link *out)
 {
-    ritz_status status = RITZ_OK;
-    const char *name = joint->between[near].port;
-    const ritz_port *port = ritz_component_port(side[near].component, name);
+    const ritz_port *port =
+        ritz_component_port(side[near].component, joint->between[near].port);
     const ritz_port_map *map =
         ritz_reduced_port(far, joint->between[1 - near].port);
+    RITZ_OWN(ritz_relations) list = {0};
+    RITZ_OWN(ritz_port_map) at = {0};
+    RITZ_OWN(ritz_dense) turn = {0};
     ritz_joint_pose pose;
     ritz_joint_end end[2];
-    ritz_relations list = {0};
-    near_port at = {0};
 
     if (!port || !map)
         return RITZ_ERR_ARGUMENT;
-    RITZ_TRY(describe_port(side[near].component, port, &at));
-    end[near] = (ritz_joint_end){side[near].name,  name,   port->origin,
-                                 port->dofs.count, at.dof, at.position};
-    end[1 - near] =
-        (ritz_joint_end){side[1 - near].name, map->name, map->origin,
-                         map->count,          map->dof,  map->position};
+    RITZ_CHECK(ritz_port_describe(side[near].component, port, &turn, &at));
+    end[near] = ritz_joint_end_at(side[near].name, &at);
+    end[1 - near] = ritz_joint_end_at(side[1 - near].name, map);
     ritz_joint_pose_at(joint, setting, &pose);
-    RITZ_TRY(ritz_joint_relate(joint, end, &pose, &list));
-    RITZ_TRY(fill_rows(&list, near, &at.turn, &map->map, out));
-done:
-    ritz_relations_free(&list);
-    ritz_dense_free(&at.turn);
-    free(at.dof);
-    free(at.position);
-    return status;
+    RITZ_CHECK(ritz_joint_relate(joint, end, &pose, &list));
+    return fill_rows(&list, near, &turn, &map->map, out);
 }
 
 /* Indices of a port's dofs among the attached ones. */
@@ -376,36 +343,29 @@ ritz_status ritz_joint_neighbour(const ritz_joint *joint, const double *setting,
                                  const ritz_joined side[static 2], int near,
                                  const ritz_dofs *attached, ritz_neighbour *sum)
 {
-    ritz_status status = RITZ_OK;
     const ritz_port *port =
         ritz_component_port(side[near].component, joint->between[near].port);
     const ritz_port *other =
         port ? ritz_component_port(side[1 - near].component,
                                    joint->between[1 - near].port)
              : NULL;
-    ritz_reduced far = {0};
-    ritz_link link = {0};
-    ritz_dense K = {0}, M = {0};
-    int64_t *at = NULL;
+    RITZ_OWN(ritz_reduced) far = {0};
+    RITZ_OWN(ritz_link) link = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN_ARRAY int64_t *at = NULL;
 
     if (!other)
         return ritz_context(RITZ_ERR_ARGUMENT,
                             side[port ? 1 - near : near].name);
-    RITZ_NEW(at, port->dofs.count);
-    RITZ_TRY(locate_port(side[near].component, port, attached, at));
-    RITZ_TRY_IN(side[1 - near].name,
-                condense_body(side[1 - near].component, other, &far));
-    RITZ_TRY(link_bodies(joint, setting, side, near, &far, &link));
-    RITZ_TRY(condense_link(&far, &link, &K, &M));
+    RITZ_CHECK_NEW(at, port->dofs.count);
+    RITZ_CHECK(locate_port(side[near].component, port, attached, at));
+    RITZ_CHECK_IN(side[1 - near].name,
+                  condense_body(side[1 - near].component, other, &far));
+    RITZ_CHECK(link_bodies(joint, setting, side, near, &far, &link));
+    RITZ_CHECK(condense_link(&far, &link, &K, &M));
     add_scattered(&K, at, &sum->K);
     add_scattered(&M, at, &sum->M);
-done:
-    free(at);
-    ritz_reduced_free(&far);
-    free_link(&link);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_neighbour_new(int64_t attached, ritz_neighbour *out)

@@ -4,13 +4,6 @@
 
 #include <ritz/assembly.h>
 
-/* Relations F q - G u of the far body's q and the near port's dofs u. */
-typedef struct ritz_link {
-    int64_t count;
-    ritz_dense F, G; /* count x r, count x p */
-    ritz_freedom *freedom;
-} ritz_link;
-
 /**
  * The neighbours of component @p k of a scene at its first configuration, by
  * all its joints; the other components are read for it.

@@ -10,7 +10,6 @@
  */
 #include "assembly/placement.h"
 
-#include "assembly/turns.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -134,6 +133,32 @@ static void place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
     }
 }
 
+/* Placements of all bodies of a stage, and poses of its joints. */
+typedef struct places {
+    ritz_placement *body;
+    ritz_joint_pose *pose;
+} places;
+
+static void places_free(places *p)
+{
+    free(p->body);
+    free(p->pose);
+}
+
+/* At the settings of a scene, as these say; a loop may not close. */
+static ritz_status find_places(const ritz_stage *stage, const double *setting,
+                               places *out)
+{
+    const ritz_scene *scene = stage->scene;
+
+    RITZ_CHECK_NEW(out->body, stage->count);
+    RITZ_CHECK_NEW(out->pose, scene->num_joints);
+    for (int64_t j = 0; j < scene->num_joints; j++)
+        ritz_joint_pose_at(&scene->joint[j], setting, &out->pose[j]);
+    place_bodies(stage, out->pose, out->body);
+    return RITZ_OK;
+}
+
 static double vector_norm(const double *x)
 {
     return sqrt(ritz_dot(x, x));
@@ -191,7 +216,6 @@ static ritz_status close_joint(const ritz_stage *stage, int64_t j,
                                const link *at, const ritz_placement *place,
                                ritz_joint_pose *pose)
 {
-    ritz_status status = RITZ_OK;
     const ritz_joint *joint = &stage->scene->joint[j];
     const ritz_scene_component *component = stage->scene->component;
     const misfit found = measure_misfit(at, place);
@@ -199,38 +223,37 @@ static ritz_status close_joint(const ritz_stage *stage, int64_t j,
     if (found.gap <= RITZ_PLACEMENT_ROUNDING * found.size &&
         found.turn <= RITZ_PLACEMENT_ROUNDING)
         return RITZ_OK;
-    RITZ_FAIL_IF(found.gap > RITZ_LOOP_CLOSURE * found.size, RITZ_ERR_ARGUMENT,
-                 "closes a loop of joints that does not meet: '%s/%s' and "
-                 "'%s/%s' stand %.3g apart",
-                 component[at->body[0]].name, joint->between[0].port,
-                 component[at->body[1]].name, joint->between[1].port,
-                 found.gap);
-    RITZ_FAIL_IF(found.turn > RITZ_LOOP_CLOSURE && !at->turns_freely,
-                 RITZ_ERR_ARGUMENT,
-                 "closes a loop of joints whose angles do not agree: '%s' is "
-                 "turned otherwise against '%s' by the other joints",
-                 component[at->body[1]].name, component[at->body[0]].name);
+    RITZ_REFUSE_IF(
+        found.gap > RITZ_LOOP_CLOSURE * found.size, RITZ_ERR_ARGUMENT,
+        "closes a loop of joints that does not meet: '%s/%s' and "
+        "'%s/%s' stand %.3g apart",
+        component[at->body[0]].name, joint->between[0].port,
+        component[at->body[1]].name, joint->between[1].port, found.gap);
+    RITZ_REFUSE_IF(found.turn > RITZ_LOOP_CLOSURE && !at->turns_freely,
+                   RITZ_ERR_ARGUMENT,
+                   "closes a loop of joints whose angles do not agree: '%s' is "
+                   "turned otherwise against '%s' by the other joints",
+                   component[at->body[1]].name, component[at->body[0]].name);
     derive_pose(at, place, pose);
-done:
-    return ritz_scene_context(stage->scene, status, joint->line, joint->column,
-                              "joint", joint->name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
                               ritz_joint_pose *pose)
 {
     const ritz_scene *scene = stage->scene;
-    RITZ_OWN_ARRAY ritz_placement *place = NULL;
+    RITZ_OWN(places) all = {0};
 
-    RITZ_CHECK_NEW(place, stage->count);
-    for (int64_t j = 0; j < scene->num_joints; j++)
-        ritz_joint_pose_at(&scene->joint[j], setting, &pose[j]);
-    place_bodies(stage, pose, place);
+    RITZ_CHECK(find_places(stage, setting, &all));
     for (int64_t j = 0; j < scene->num_joints; j++) {
+        const ritz_joint *joint = &scene->joint[j];
         link at;
 
-        if (find_link(stage, j, pose, &at))
-            RITZ_CHECK(close_joint(stage, j, &at, place, &pose[j]));
+        if (find_link(stage, j, all.pose, &at))
+            RITZ_CHECK(ritz_scene_context(
+                scene, close_joint(stage, j, &at, all.body, &all.pose[j]),
+                joint->line, joint->column, "joint", joint->name));
+        pose[j] = all.pose[j];
     }
     return RITZ_OK;
 }
@@ -241,7 +264,8 @@ ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
  * Numbers are kept where the bodies' ranges do not overlap; else body k adds k
  * 10^p.
  */
-static void renumber(int64_t count, const ritz_component *body, int64_t *add)
+static void renumber_grids(int64_t count, const ritz_component *body,
+                           int64_t *add)
 {
     int64_t power = 1;
     int64_t highest = -1;
@@ -332,8 +356,7 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t count, const ritz_component *body,
                              int64_t *add, ritz_grids *out)
 {
-    RITZ_OWN_ARRAY ritz_placement *place = NULL;
-    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
+    RITZ_OWN(places) place = {0};
     RITZ_OWN(ritz_grids) all = {0};
     int64_t grids = 0;
     int64_t frames = 1;
@@ -342,21 +365,17 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
         grids += body[k].grids.count;
         frames += body[k].grids.num_frames;
     }
-    RITZ_CHECK_NEW(place, count);
-    RITZ_CHECK_NEW(pose, stage->scene->num_joints);
     RITZ_CHECK_NEW(all.id, grids);
     RITZ_CHECK_NEW(all.position, 3 * grids);
     RITZ_CHECK_NEW(all.frame, grids);
     RITZ_CHECK_NEW(all.axes, 9 * frames);
-    for (int64_t j = 0; j < stage->scene->num_joints; j++)
-        ritz_joint_pose_at(&stage->scene->joint[j], setting, &pose[j]);
-    place_bodies(stage, pose, place);
-    renumber(count, body, add);
+    RITZ_CHECK(find_places(stage, setting, &place));
+    renumber_grids(count, body, add);
     all.num_frames = 1;
     for (int64_t k = 0; k < 3; k++)
         all.axes[4 * k] = 1.0;
     for (int64_t k = 0; k < count; k++)
-        append_grids(&body[k].grids, &place[k], add[k], &all);
+        append_grids(&body[k].grids, &place.body[k], add[k], &all);
     RITZ_CHECK(sort_grids(&all));
     RITZ_MOVE(*out, all);
     return RITZ_OK;
@@ -373,14 +392,6 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
  */
 
 enum { DIRECTIONS = 6, MASSES = 36 };
-
-static bool is_known(const ritz_stage *stage)
-{
-    for (int64_t k = 0; k < stage->count; k++)
-        if (!stage->body[k].invariants.momentum.val)
-            return false;
-    return stage->count > 0;
-}
 
 /* X of a placement, 6 x 6. */
 static void fill_transport(const ritz_placement *place, ritz_dense *X)
@@ -421,21 +432,21 @@ static ritz_status add_body(const ritz_invariants *own, const ritz_dense *X,
 ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
                             ritz_configuration *configuration)
 {
-    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
-    RITZ_OWN_ARRAY ritz_placement *place = NULL;
+    RITZ_OWN(places) all = {0};
     RITZ_OWN(ritz_dense) X = {0};
 
-    if (!is_known(stage))
-        return RITZ_OK;
-    RITZ_CHECK_NEW(pose, stage->scene->num_joints);
-    RITZ_CHECK_NEW(place, stage->count);
-    RITZ_CHECK(ritz_place_joints(stage, setting, pose));
-    place_bodies(stage, pose, place);
+    for (int64_t k = 0; k < stage->count; k++)
+        if (!stage->body[k].invariants.momentum.val)
+            return RITZ_OK;
+    RITZ_CHECK(find_places(stage, setting, &all));
+    RITZ_CHECK(ritz_place_joints(stage, setting, all.pose));
+    memset(all.body, 0, (size_t)stage->count * sizeof *all.body);
+    place_bodies(stage, all.pose, all.body);
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, DIRECTIONS, &X));
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
                               &configuration->momentum));
     for (int64_t k = 0; k < stage->count; k++) {
-        fill_transport(&place[k], &X);
+        fill_transport(&all.body[k], &X);
         RITZ_CHECK(add_body(&stage->body[k].invariants, &X,
                             &configuration->P[k], configuration));
     }

@@ -6,123 +6,95 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const struct content {
-    int holds, model;
-    const char *noun;
-} contents[] = {
-    {CHART_RECORDS, 0, "run records"},
-    {CHART_TRACKS, 0, "a table of tracks"},
-    {CHART_RANKING, MODEL_RANKING, "a ranking"},
-    {CHART_RESPONSE, MODEL_RESPONSE, "a response"},
-    {CHART_SIMULATION, MODEL_SIMULATION, "a time response"},
-    {CHART_MODES, MODEL_REDUCED, "a reduced component"},
-    {CHART_MODES, MODEL_BASIS, "a basis"},
-    {CHART_MODES, MODEL_COMPONENT, "a component"},
-    {CHART_SYSTEM, MODEL_SYSTEM, "a system"},
-};
-
-enum { NUM_CONTENTS = sizeof contents / sizeof *contents };
-
-static const char tracks_head[] = "track\tconfiguration\tmode\thertz\tmac";
-
 static bool is_tracks(const char *path)
 {
-    char line[sizeof tracks_head] = "";
+    static const char head[] = "track\tconfiguration\tmode\thertz\tmac";
+    char line[sizeof head] = "";
     FILE *file = fopen(path, "r");
     bool is = false;
 
     if (!file)
         return false;
-    is = fgets(line, sizeof line, file) && strcmp(line, tracks_head) == 0;
+    is = fgets(line, sizeof line, file) && strcmp(line, head) == 0;
     fclose(file);
     return is;
 }
 
-/* Kinds of containers (MODEL_...) that hold one of these (CHART_...). */
-static int models_of(int holds)
+/* What is known by the kind of a container, or by a look into a text. */
+static const struct content {
+    int holds, model;
+    bool (*is)(const char *path);
+    const char *noun;
+} contents[] = {
+    {CHART_RECORDS, 0, records_is, "run records"},
+    {CHART_TRACKS, 0, is_tracks, "a table of tracks"},
+    {CHART_RANKING, MODEL_RANKING, NULL, "a ranking"},
+    {CHART_RESPONSE, MODEL_RESPONSE, NULL, "a response"},
+    {CHART_SIMULATION, MODEL_SIMULATION, NULL, "a time response"},
+    {CHART_MODES, MODEL_REDUCED, NULL, "a reduced component"},
+    {CHART_MODES, MODEL_BASIS, NULL, "a basis"},
+    {CHART_MODES, MODEL_COMPONENT, NULL, "a component"},
+    {CHART_SYSTEM, MODEL_SYSTEM, NULL, "a system"},
+};
+
+enum { NUM_CONTENTS = sizeof contents / sizeof *contents };
+
+static ritz_status refuse_content(const char *path, const char *noun, int holds)
 {
-    int sum = 0;
+    char list[160] = "";
 
     for (int k = 0; k < NUM_CONTENTS; k++)
         if (contents[k].holds & holds)
-            sum |= contents[k].model;
-    return sum;
-}
-
-/* Noun for what a text file holds. */
-static const char *noun_of(int found)
-{
-    for (int k = 0; k < NUM_CONTENTS; k++)
-        if (contents[k].holds == found && !contents[k].model)
-            return contents[k].noun;
-    return "";
-}
-
-static ritz_status refuse(const char *path, const char *noun, int holds)
-{
-    char list[160] = "";
-    size_t used = 0;
-
-    for (int k = 0; k < NUM_CONTENTS; k++)
-        if ((contents[k].holds & holds) && used < sizeof list)
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
-                                     used > 0 ? " or " : "", contents[k].noun);
+            sink_append(list, sizeof list, "%s%s", *list ? " or " : "",
+                        contents[k].noun);
     return ritz_fail(RITZ_ERR_FORMAT, "'%s' holds %s, not %s", path, noun,
                      list);
 }
 
-static ritz_status check_text(const char *path, int found, int holds)
+/* What is wrong with a file that is none of those. */
+static ritz_status refuse_file(const char *path)
 {
-    ritz_status status = RITZ_OK;
     struct stat file = {0};
 
-    RITZ_FAIL_IF(stat(path, &file) != 0, RITZ_ERR_FILE, "cannot open '%s': %s",
-                 path, strerror(errno));
-    RITZ_FAIL_IF(S_ISREG(file.st_mode) && file.st_size == 0, RITZ_ERR_FORMAT,
-                 "'%s' is empty", path);
-    RITZ_FAIL_IF(S_ISDIR(file.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
-                 path);
-    RITZ_FAIL_IF(found == 0, RITZ_ERR_FORMAT,
-                 "'%s' is no container, no table of --tracks, and no file of "
-                 "--record",
-                 path);
-    if (!(found & holds))
-        status = refuse(path, noun_of(found), holds);
-done:
-    return status;
-}
-
-static ritz_status read_model(cli_run *run, int holds, chart_file *file)
-{
-    model_kind kind = MODEL_ANY;
-    const char *noun = NULL;
-
-    RITZ_CHECK(model_peek(file->path, &kind, &noun));
-    if (!(models_of(holds) & (int)kind))
-        return refuse(file->path, noun, holds);
-    RITZ_CHECK(model_read(run, file->path, (int)kind, &file->model));
-    for (int k = 0; k < NUM_CONTENTS; k++)
-        if (contents[k].model == (int)kind)
-            file->holds = contents[k].holds;
-    return RITZ_OK;
+    RITZ_REFUSE_IF(stat(path, &file) != 0, RITZ_ERR_FILE,
+                   "cannot open '%s': %s", path, strerror(errno));
+    RITZ_REFUSE_IF(S_ISREG(file.st_mode) && file.st_size == 0, RITZ_ERR_FORMAT,
+                   "'%s' is empty", path);
+    RITZ_REFUSE_IF(S_ISDIR(file.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
+                   path);
+    return ritz_fail(RITZ_ERR_FORMAT,
+                     "'%s' is no container, no table of --tracks, and no file "
+                     "of --record",
+                     path);
 }
 
 static ritz_status read_file(cli_run *run, const char *path, int holds,
                              chart_sources *out, chart_file *file)
 {
+    const bool container = ritz_container_is(path);
+    model_kind kind = MODEL_ANY;
+    const char *noun = NULL;
+
     file->path = path;
-    if (ritz_container_is(path))
-        return read_model(run, holds, file);
-    file->holds = is_tracks(path)    ? CHART_TRACKS
-                  : records_is(path) ? CHART_RECORDS
-                                     : 0;
-    RITZ_CHECK(check_text(path, file->holds, holds));
+    if (container)
+        RITZ_CHECK(model_peek(path, &kind, &noun));
+    for (int k = 0; k < NUM_CONTENTS; k++) {
+        const struct content *c = &contents[k];
+
+        if (container ? c->model != (int)kind : !c->is || !c->is(path))
+            continue;
+        file->holds = c->holds;
+        noun = container ? noun : c->noun;
+    }
+    if (!noun)
+        return refuse_file(path);
+    if (!(file->holds & holds))
+        return refuse_content(path, noun, holds);
+    if (container)
+        return model_read(run, path, (int)kind, &file->model);
     RITZ_CHECK(cli_input(run, path));
-    if (file->holds == CHART_RECORDS)
-        RITZ_CHECK(records_read(path, &out->runs));
-    else
-        RITZ_CHECK(ritz_text_read(path, &file->text));
-    return RITZ_OK;
+    return file->holds == CHART_RECORDS ? records_read(path, &out->runs)
+                                        : ritz_text_read(path, &file->text);
 }
 
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
@@ -183,11 +155,13 @@ void chart_say_seconds(double seconds, char out[32])
              seconds / units[k].unit, units[k].name);
 }
 
-const char *chart_base(const char *path)
+int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
+                        const char *wanted)
 {
-    const char *slash = strrchr(path, '/');
-
-    return slash ? slash + 1 : path;
+    for (int64_t k = 0; k < count; k++)
+        if (strcmp(name[k], wanted) == 0)
+            return k;
+    return -1;
 }
 
 int chart_mark(int64_t series)

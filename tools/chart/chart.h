@@ -94,8 +94,9 @@ ritz_status chart_rankings(const char *path, const char *title,
 void chart_say_error(double error, char out[32]);
 void chart_say_seconds(double seconds, char out[32]);
 
-/** "rotor.h5" of "build/rotor.h5". */
-const char *chart_base(const char *path);
+/** Index of a name in a list; -1: it is not there. */
+int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
+                        const char *wanted);
 
 /** Whole decades around some values. */
 typedef struct chart_range {

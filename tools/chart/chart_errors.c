@@ -6,7 +6,6 @@
 #include "chart/html.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A finite element model is itself wrong by about this: see docs/chart.md. */
@@ -189,27 +188,26 @@ static int64_t list_line(work *w, int64_t method)
 
 static void say_point(work *w, const record *r, const measure *m)
 {
-    char error[32], time[80] = "", cost[80] = "", word[32];
+    char error[32], costs[160] = "", word[32];
 
     chart_say_error(record_error(r, m->name), error);
     if (isfinite(r->cpu)) {
         chart_say_seconds(r->cpu, word);
-        snprintf(time, sizeof time, "\nto reduce: %s", word);
+        sink_append(costs, sizeof costs, "\nto reduce: %s", word);
     }
     if (isfinite(r->cost)) {
         chart_say_seconds(r->cost, word);
-        snprintf(cost, sizeof cost, "\none simulated second: %s", word);
+        sink_append(costs, sizeof costs, "\none simulated second: %s", word);
     }
-    picture_tip(w->picture, "%.60s, order %lld\n%s: %s (%.4g)%s%s%s%s",
-                r->method, (long long)r->order, m->title, error,
-                record_error(r, m->name), time, cost,
-                !r->tolerance ? ""
-                : r->feasible ? "\nmeets the tolerance"
-                              : "\nmisses the tolerance",
-                !r->tolerance  ? ""
-                : r->chosen    ? "; chosen"
-                : r->runner_up ? "; runner-up"
-                               : "");
+    if (r->tolerance)
+        sink_append(costs, sizeof costs, "\n%s the tolerance%s",
+                    r->feasible ? "meets" : "misses",
+                    r->chosen      ? "; chosen"
+                    : r->runner_up ? "; runner-up"
+                                   : "");
+    picture_tip(w->picture, "%.60s, order %lld\n%s: %s (%.4g)%s", r->method,
+                (long long)r->order, m->title, error, record_error(r, m->name),
+                costs);
 }
 
 /* A row; its word is the order, if it is to be written beside the point. */
@@ -369,23 +367,22 @@ static void add_signs(work *w)
 /* The note: how many errors are drawn at the foot or not at all. */
 static void say_missing(work *w)
 {
-    char *text = w->picture->note;
-    size_t used = 0;
+    const long long lifted = w->lifted, left_out = w->left_out;
 
-    if (w->lifted > 0)
-        used = (size_t)snprintf(
-            text, PICTURE_WORD, "%lld error%s below %.0e %s at the foot. ",
-            (long long)w->lifted, w->lifted > 1 ? "s" : "", RECORDS_ROUNDING,
-            w->lifted > 1 ? "stand" : "stands");
-    if (w->left_out > 0)
-        snprintf(text + used, PICTURE_WORD - used,
-                 "%lld %s not known and left out.", (long long)w->left_out,
-                 w->left_out > 1 ? "are" : "is");
+    if (lifted > 0)
+        sink_append(w->picture->note, PICTURE_WORD,
+                    "%lld error%s below %.0e %s at the foot. ", lifted,
+                    lifted > 1 ? "s" : "", RECORDS_ROUNDING,
+                    lifted > 1 ? "stand" : "stands");
+    if (left_out > 0)
+        sink_append(w->picture->note, PICTURE_WORD,
+                    "%lld %s not known and left out.", left_out,
+                    left_out > 1 ? "are" : "is");
 }
 
 /* --- the picture ---------------------------------------------------------- */
 
-static ritz_status compose(work *w)
+static ritz_status compose_errors(work *w)
 {
     static const int64_t stride = sizeof(panel) / sizeof(double);
     const int64_t n = w->s.num_measures, across = n > 1 ? 2 : 1;
@@ -425,15 +422,13 @@ static ritz_status refuse_measure(const record_set *s, const char *asked,
                                   int64_t kept)
 {
     char names[16 * RITZ_NAME_SIZE] = "";
-    size_t used = 0;
 
     for (int64_t k = 0; k < s->num_measures; k++) {
         RITZ_REFUSE_IF(k < kept && strcmp(s->measure[k].name, asked) == 0,
                        RITZ_ERR_ARGUMENT, "--measure '%s' is given twice",
                        asked);
-        if (used < sizeof names)
-            used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
-                                     used > 0 ? ", " : "", s->measure[k].name);
+        sink_append(names, sizeof names, "%s%s", k > 0 ? ", " : "",
+                    s->measure[k].name);
     }
     return ritz_fail(RITZ_ERR_ARGUMENT, "no record has an error '%s', but %s",
                      asked, names);
@@ -464,42 +459,34 @@ static ritz_status choose_measures(record_set *s, const cli_list *asked)
     return RITZ_OK;
 }
 
-static ritz_status prepare(work *w, const chart_request *request)
-{
-    const int64_t n = w->s.all.count;
-    bool any = false;
-
-    RITZ_CHECK(choose_measures(&w->s, &request->measure));
-    for (int64_t k = 0; k < n; k++)
-        any = any || isfinite(w->form->x(&w->s.all.item[k]));
-    RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
-                   "no record says what its model cost");
-    RITZ_CHECK(picture_new(request->path, request->keep, w->picture));
-    PICTURE_NEW(w->picture, w->panel, w->s.num_measures);
-    PICTURE_NEW(w->picture, w->x, n);
-    PICTURE_NEW(w->picture, w->y, n);
-    PICTURE_NEW(w->picture, w->at_x, n);
-    PICTURE_NEW(w->picture, w->at_y, n);
-    PICTURE_NEW(w->picture, w->group, n);
-    PICTURE_NEW(w->picture, w->front, n);
-    PICTURE_NEW(w->picture, w->keep, n);
-    PICTURE_NEW(w->picture, w->order, n);
-    return RITZ_OK;
-}
-
 static ritz_status draw_errors(const chart_sources *sources,
                                const chart_request *request, const form *how,
                                picture *out)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(record_set) set = {0};
     work w = {.form = how, .picture = out};
+    int64_t n = 0;
+    bool any = false;
 
-    RITZ_TRY(record_set_new(&sources->runs, request->subject, &w.s));
-    RITZ_TRY(prepare(&w, request));
-    RITZ_TRY(compose(&w));
-done:
-    record_set_free(&w.s);
-    return status;
+    RITZ_CHECK(record_set_new(&sources->runs, request->subject, &set));
+    RITZ_CHECK(choose_measures(&set, &request->measure));
+    n = set.all.count;
+    for (int64_t k = 0; k < n; k++)
+        any = any || isfinite(how->x(&set.all.item[k]));
+    RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
+                   "no record says what its model cost");
+    RITZ_CHECK(picture_new(request->path, request->keep, out));
+    PICTURE_NEW(out, w.panel, set.num_measures);
+    PICTURE_NEW(out, w.x, n);
+    PICTURE_NEW(out, w.y, n);
+    PICTURE_NEW(out, w.at_x, n);
+    PICTURE_NEW(out, w.at_y, n);
+    PICTURE_NEW(out, w.group, n);
+    PICTURE_NEW(out, w.front, n);
+    PICTURE_NEW(out, w.keep, n);
+    PICTURE_NEW(out, w.order, n);
+    w.s = set; /* borrowed */
+    return compose_errors(&w);
 }
 
 static double time_of(const record *r)

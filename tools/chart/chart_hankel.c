@@ -91,40 +91,39 @@ static double hertz_of(const contest *all, int64_t number)
 static void put_data(picture *p, const contest *all, int64_t count,
                      const int64_t *number)
 {
-    FILE *data = p->data.file, *table = p->table.file;
+    FILE *const both[] = {p->data.file, p->table.file};
     const char *noun = all->track[0] ? "track" : "mode";
 
-    fprintf(data, "mode\tlabel");
-    fprintf(table, "mode\tlabel");
     for (int64_t c = 0; c < all->count; c++) {
         picture_sign sign = {.colour = svg_series((int)(c % SVG_SERIES)),
                              .wide = 8.0};
 
         snprintf(sign.name, sizeof sign.name, "%.120s", all->name[c]);
         picture_add_sign(p, &sign);
-        fprintf(data, "\t");
-        html_line(data, all->name[c]);
-        fprintf(data, "\ttip");
-        fprintf(table, "\t");
-        html_line(table, all->name[c]);
     }
-    for (int64_t k = 0; k < count; k++) {
-        const long long named = (long long)number[k] + 1;
-        const double hertz = hertz_of(all, number[k]);
-
-        fprintf(data, "\n%lld\t%lld: %.3g", named, named, hertz);
-        fprintf(table, "\n%lld\t%lld: %.3g", named, named, hertz);
+    for (int t = 0; t < 2; t++) {
+        fprintf(both[t], "mode\tlabel");
         for (int64_t c = 0; c < all->count; c++) {
-            double value = height_of(all, c, number[k]);
-
-            fprintf(data, "\t%.6g\t", value);
-            fprintf(table, "\t%.6g", value);
-            picture_tip(p, "%s %lld, %.4g Hz\n%s: %.4g", noun, named, hertz,
-                        all->name[c], value);
+            fprintf(both[t], "\t");
+            html_line(both[t], all->name[c]);
+            fprintf(both[t], t == 0 ? "\ttip" : "");
         }
+        for (int64_t k = 0; k < count; k++) {
+            const long long named = (long long)number[k] + 1;
+            const double hertz = hertz_of(all, number[k]);
+
+            fprintf(both[t], "\n%lld\t%lld: %.3g", named, named, hertz);
+            for (int64_t c = 0; c < all->count; c++) {
+                double value = height_of(all, c, number[k]);
+
+                fprintf(both[t], t == 0 ? "\t%.6g\t" : "\t%.6g", value);
+                if (t == 0)
+                    picture_tip(p, "%s %lld, %.4g Hz\n%s: %.4g", noun, named,
+                                hertz, all->name[c], value);
+            }
+        }
+        fprintf(both[t], "\n");
     }
-    fprintf(data, "\n");
-    fprintf(table, "\n");
 }
 
 static ritz_status draw_rankings(picture *p, const char *title,
@@ -177,7 +176,7 @@ static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
                        "'%s' holds no ranking", file->path);
         out->group[out->count].all = file->model.rankings;
         snprintf(out->file[out->count++], RITZ_NAME_SIZE, "%.63s",
-                 chart_base(file->path));
+                 picture_base(file->path));
     }
     return RITZ_OK;
 }

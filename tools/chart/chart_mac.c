@@ -9,6 +9,8 @@
  * each, so that units do not matter.
  */
 #include "chart/chart.h"
+
+#include "base/alloc.h"
 #include "chart/html.h"
 
 #include <ritz/matrix.h>
@@ -41,26 +43,27 @@ typedef struct mac_shapes {
     double hertz[MOST_MODES]; /* NaN: none */
     int64_t count;
     const ritz_dof *dof;    /* n, borrowed; NULL: rows are not dofs */
-    int64_t num_common;     /* inputs and outputs in common, once matched */
     char (*channel)[LABEL]; /* n, inputs and outputs; NULL: rows are none */
     char name[2 * PICTURE_WORD]; /* "system.h5, clock=60" */
 } mac_shapes;
 
-static void free_shapes(mac_shapes *s)
+/* Both models, and how many inputs and outputs they have in common, if they are
+   compared by these. */
+typedef struct mac_pair {
+    mac_shapes of[2];
+    int64_t num_common;
+} mac_pair;
+
+static void mac_pair_free(mac_pair *pair)
 {
-    ritz_dense_free(&s->U);
-    ritz_dense_free(&s->MU);
-    free(s->channel);
+    for (int k = 0; k < 2; k++) {
+        ritz_dense_free(&pair->of[k].U);
+        ritz_dense_free(&pair->of[k].MU);
+        free(pair->of[k].channel);
+    }
 }
 
 /* --- modes, at dofs and by inputs and outputs ----------------------------- */
-
-static void name_side(const mac_side *side, mac_shapes *out)
-{
-    snprintf(out->name, sizeof out->name, "%.80s%s%.80s",
-             chart_base(side->file->path), side->at ? ", " : "",
-             side->at ? side->at->at : "");
-}
 
 /* Number and frequencies of the flexible modes behind the rigid ones. */
 static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
@@ -103,8 +106,8 @@ static ritz_status shapes_at_dofs(const mac_side *side, mac_shapes *out)
 {
     const model *m = &side->file->model;
     const ritz_basis *b = &m->basis;
+    RITZ_OWN(ritz_dense) Phi = {0};
 
-    name_side(side, out);
     if (m->kind == MODEL_BASIS) {
         out->count = b->T.ncol < MOST_MODES ? b->T.ncol : MOST_MODES;
         for (int64_t k = 0; k < out->count; k++)
@@ -116,39 +119,41 @@ static ritz_status shapes_at_dofs(const mac_side *side, mac_shapes *out)
                    "it was made without its basis, it has no shapes");
     RITZ_CHECK(find_modes(side, out));
     out->dof = m->component.dof;
-    if (m->kind == MODEL_REDUCED) {
-        ritz_dense Phi = out->U;
-        ritz_status status = RITZ_OK;
-
-        out->U = (ritz_dense){0};
-        out->dof = m->reduced.dof;
-        status = ritz_dense_mul(&m->reduced.T, &Phi, &out->U);
-        ritz_dense_free(&Phi);
-        return status;
-    }
-    return RITZ_OK;
+    if (m->kind != MODEL_REDUCED)
+        return RITZ_OK;
+    RITZ_MOVE(Phi, out->U);
+    out->dof = m->reduced.dof;
+    return ritz_dense_mul(&m->reduced.T, &Phi, &out->U);
 }
 
 /* Rows: inputs, then displacements, velocities and accelerations of outputs. */
 static ritz_status stack_channels(const ritz_io *io, mac_shapes *out)
 {
-    static const char *const kind[] = {"output", "velocity", "acceleration"};
-    const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
-    int64_t n = io->num_inputs + 3 * io->num_outputs, row = 0;
+    RITZ_OWN(ritz_dense) inputs = {0};
+    const struct {
+        const char *kind;
+        const ritz_dense *C;
+        int64_t count;
+        char (*name)[RITZ_NAME_SIZE];
+    } parts[] = {{"input", &inputs, io->num_inputs, io->input},
+                 {"output", &io->C, io->num_outputs, io->output},
+                 {"velocity", &io->Cv, io->num_outputs, io->output},
+                 {"acceleration", &io->Ca, io->num_outputs, io->output}};
+    const int64_t n = io->num_inputs + 3 * io->num_outputs;
 
-    RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
-    out->channel = calloc((size_t)n + 1, sizeof *out->channel);
-    RITZ_REFUSE_IF(!out->channel, RITZ_ERR_MEMORY, "no memory for modes");
-    for (int64_t j = 0; j < io->num_inputs; j++, row++) {
-        snprintf(out->channel[row], LABEL, "input %s", io->input[j]);
+    RITZ_CHECK(ritz_dense_new(io->num_inputs, out->count, &inputs));
+    for (int64_t j = 0; j < io->num_inputs; j++)
         for (int64_t k = 0; k < out->count; k++)
-            ritz_dense_col(&out->U, k)[row] = ritz_dense_col(&io->B, j)[k];
-    }
-    for (int t = 0; t < 3; t++)
-        for (int64_t i = 0; i < io->num_outputs; i++, row++) {
-            snprintf(out->channel[row], LABEL, "%s %s", kind[t], io->output[i]);
+            ritz_dense_col(&inputs, k)[j] = ritz_dense_col(&io->B, j)[k];
+    RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
+    RITZ_CHECK_NEW(out->channel, n);
+    for (int64_t p = 0, row = 0; p < 4; p++)
+        for (int64_t i = 0; i < parts[p].count; i++, row++) {
+            snprintf(out->channel[row], LABEL, "%s %s", parts[p].kind,
+                     parts[p].name[i]);
             for (int64_t k = 0; k < out->count; k++)
-                ritz_dense_col(&out->U, k)[row] = ritz_dense_col(C[t], k)[i];
+                ritz_dense_col(&out->U, k)[row] =
+                    ritz_dense_col(parts[p].C, k)[i];
         }
     return RITZ_OK;
 }
@@ -163,7 +168,6 @@ static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
                                                    : &m->component.io;
     RITZ_OWN(ritz_io) own = {0};
 
-    name_side(side, out);
     RITZ_REFUSE_IF(m->kind == MODEL_BASIS ||
                        io->num_inputs + io->num_outputs < 1,
                    RITZ_ERR_ARGUMENT,
@@ -191,11 +195,10 @@ static ritz_status refuse_bodies(const mac_side *side, const char *why)
 {
     const ritz_system *s = &side->file->model.system;
     char list[400] = "";
-    size_t used = 0;
 
-    for (int64_t c = 0; c < s->num_components && used < sizeof list; c++)
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s'%.63s'",
-                                 c > 0 ? ", " : "", s->component[c]);
+    for (int64_t c = 0; c < s->num_components; c++)
+        sink_append(list, sizeof list, "%s'%.63s'", c > 0 ? ", " : "",
+                    s->component[c]);
     return ritz_fail(RITZ_ERR_ARGUMENT,
                      "the bodies of '%s' (%s) are not these: %s",
                      side->file->path, list, why);
@@ -251,13 +254,12 @@ static ritz_status put_block(const ritz_dense *P, const ritz_dense *M,
 /* Whether U'MU, with the masses of the files, is M of the configuration. */
 static ritz_status check_mass(const mac_side *side, const mac_shapes *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *M = &side->at->M;
-    int64_t rigid = side->at->num_rigid;
-    ritz_dense product = {0};
+    const int64_t rigid = side->at->num_rigid;
+    RITZ_OWN(ritz_dense) product = {0};
     double apart = 0.0, most = 0.0;
 
-    RITZ_TRY(ritz_dense_mul_tn(&s->U, &s->MU, &product));
+    RITZ_CHECK(ritz_dense_mul_tn(&s->U, &s->MU, &product));
     for (int64_t j = 0; j < s->count; j++)
         for (int64_t i = 0; i < s->count; i++) {
             double due = ritz_dense_col(M, rigid + j)[rigid + i];
@@ -265,11 +267,9 @@ static ritz_status check_mass(const mac_side *side, const mac_shapes *s)
             apart = fmax(apart, fabs(ritz_dense_col(&product, j)[i] - due));
             most = fmax(most, fabs(due));
         }
-    if (!(apart <= rounding * most))
-        status = refuse_bodies(side, "their masses are not its mass");
-done:
-    ritz_dense_free(&product);
-    return status;
+    return apart <= rounding * most
+               ? RITZ_OK
+               : refuse_bodies(side, "their masses are not its mass");
 }
 
 /* Coordinates of all bodies of a configuration, and their masses times them;
@@ -283,7 +283,6 @@ static ritz_status shapes_of_bodies(const mac_side *side, int64_t count,
     const ritz_reduced *of[MOST_BODIES] = {NULL};
     int64_t n = 0, first = 0;
 
-    name_side(side, out);
     RITZ_CHECK(assign_bodies(side, count, body, of));
     for (int64_t c = 0; c < s->num_components; c++)
         n += s->order[c];
@@ -309,93 +308,95 @@ static bool is_same(const mac_shapes *a, int64_t k, const mac_shapes *b,
            a->dof[k].component == b->dof[i].component;
 }
 
-static double largest_in(const mac_shapes *s, int64_t row)
+/* Those rows of U and MU in place of all. */
+static ritz_status take_rows(int64_t count, const int64_t *row, mac_shapes *s)
 {
-    double most = 0.0;
+    ritz_dense *const all[] = {&s->U, &s->MU};
 
-    for (int64_t k = 0; k < s->count; k++)
-        most = fmax(most, fabs(ritz_dense_col(&s->U, k)[row]));
-    return most;
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(ritz_dense) some = {0};
+
+        if (!all[k]->val)
+            continue;
+        RITZ_CHECK(ritz_dense_rows(all[k], count, row, &some));
+        ritz_dense_free(all[k]);
+        RITZ_MOVE(*all[k], some);
+    }
+    return RITZ_OK;
 }
 
-static void divide_row(mac_shapes *s, int64_t row, double by)
+/* Keep the rows that both have, in the order of the first. */
+static ritz_status match_rows(mac_shapes *a, mac_shapes *b)
 {
-    for (int64_t k = 0; k < s->count; k++)
-        ritz_dense_col(&s->U, k)[row] /= by;
+    const int64_t n = a->U.nrow, m = b->U.nrow;
+    const bool named = (a->dof && b->dof) || (a->channel && b->channel);
+    RITZ_OWN_ARRAY int64_t *row = NULL, *other = NULL;
+    int64_t common = 0;
+
+    RITZ_CHECK_NEW(row, n);
+    RITZ_CHECK_NEW(other, n);
+    RITZ_REFUSE_IF(!named && n != m, RITZ_ERR_ARGUMENT,
+                   "a basis names no dofs: '%s' has %lld rows and '%s' %lld",
+                   a->name, (long long)n, b->name, (long long)m);
+    for (int64_t k = 0, guess = 0; k < n && named; k++)
+        for (int64_t i = 0; i < m; i++) {
+            const int64_t at = (guess + i) % m; /* mostly in one order */
+
+            if (!is_same(a, k, b, at))
+                continue;
+            row[common] = k;
+            other[common++] = at;
+            guess = at + 1;
+            break;
+        }
+    RITZ_REFUSE_IF(named && common == 0 && !a->channel, RITZ_ERR_ARGUMENT,
+                   "'%s' and '%s' have no dof in common", a->name, b->name);
+    if (!named)
+        return RITZ_OK;
+    RITZ_CHECK(take_rows(common, row, a));
+    return take_rows(common, other, b);
 }
 
 /* Divide each input and output by its largest value in both models, so that
-   units do not matter. */
-static ritz_status scale_rows(mac_shapes *a, mac_shapes *b, const int64_t *row)
+   units do not matter; those without any tell nothing. */
+static ritz_status scale_channels(mac_shapes *a, mac_shapes *b, int64_t *count)
 {
-    int64_t count = 0;
+    mac_shapes *const both[] = {a, b};
 
-    for (int64_t k = 0; k < a->U.nrow; k++) {
-        double most =
-            row[k] < 0 ? 0.0 : fmax(largest_in(a, k), largest_in(b, row[k]));
+    *count = 0;
+    for (int64_t i = 0; i < a->U.nrow; i++) {
+        double most = 0.0;
 
-        if (!(most > 0.0))
-            continue;
-        divide_row(a, k, most);
-        divide_row(b, row[k], most);
-        count++;
+        for (int t = 0; t < 2; t++)
+            for (int64_t k = 0; k < both[t]->count; k++)
+                most = fmax(most, fabs(ritz_dense_col(&both[t]->U, k)[i]));
+        for (int t = 0; t < 2 && most > 0.0; t++)
+            for (int64_t k = 0; k < both[t]->count; k++)
+                ritz_dense_col(&both[t]->U, k)[i] /= most;
+        *count += most > 0.0;
     }
     RITZ_REFUSE_IF(
-        count < 2, RITZ_ERR_ARGUMENT,
+        *count < 2, RITZ_ERR_ARGUMENT,
         "'%s' and '%s' have %s in common by which modes could be told "
         "apart; configurations of the same bodies can be compared by "
         "their masses: name their reduced components too",
         a->name, b->name,
-        count == 0 ? "no input or output" : "but one input or output");
-    a->num_common = b->num_common = count;
+        *count == 0 ? "no input or output" : "but one input or output");
     return RITZ_OK;
 }
 
-static ritz_status match_rows(mac_shapes *a, mac_shapes *b, picture *p,
-                              int64_t **out)
+static double mac_of(const mac_shapes *a, const mac_shapes *b, int64_t i,
+                     int64_t j)
 {
-    int64_t n = a->U.nrow, m = b->U.nrow, common = 0;
-    int64_t *row = NULL;
-    bool named = (a->dof && b->dof) || (a->channel && b->channel);
-
-    PICTURE_NEW(p, row, n);
-    RITZ_REFUSE_IF(!named && n != m, RITZ_ERR_ARGUMENT,
-                   "a basis names no dofs: '%s' has %lld rows and '%s' %lld",
-                   a->name, (long long)n, b->name, (long long)m);
-    for (int64_t k = 0, guess = 0; k < n; k++) {
-        row[k] = named ? -1 : k;
-        for (int64_t i = 0; named && i < m && row[k] < 0; i++) {
-            int64_t at = (guess + i) % m; /* they mostly come in one order */
-
-            if (is_same(a, k, b, at))
-                row[k] = at;
-        }
-        guess = row[k] >= 0 ? row[k] + 1 : guess;
-        common += row[k] >= 0;
-    }
-    if (a->channel && b->channel)
-        RITZ_CHECK(scale_rows(a, b, row));
-    RITZ_REFUSE_IF(common == 0, RITZ_ERR_ARGUMENT,
-                   "'%s' and '%s' have no dof in common", a->name, b->name);
-    *out = row;
-    return RITZ_OK;
-}
-
-static double mac_of(const mac_shapes *a, const mac_shapes *b,
-                     const int64_t *row, int64_t i, int64_t j)
-{
-    const ritz_dense *MA = a->MU.val ? &a->MU : &a->U;
-    const ritz_dense *MB = b->MU.val ? &b->MU : &b->U;
-    const double *u = a->U.val + i * a->U.nrow, *Mu = MA->val + i * a->U.nrow;
-    const double *v = b->U.val + j * b->U.nrow, *Mv = MB->val + j * b->U.nrow;
+    const double *u = ritz_dense_col(&a->U, i), *v = ritz_dense_col(&b->U, j);
+    const double *Mu = a->MU.val ? ritz_dense_col(&a->MU, i) : u;
+    const double *Mv = b->MU.val ? ritz_dense_col(&b->MU, j) : v;
     double uv = 0.0, uu = 0.0, vv = 0.0;
 
     for (int64_t k = 0; k < a->U.nrow; k++) {
-        if (row[k] < 0)
-            continue;
-        uv += u[k] * Mv[row[k]];
+        uv += u[k] * Mv[k];
         uu += u[k] * Mu[k];
-        vv += v[row[k]] * Mv[row[k]];
+        vv += v[k] * Mv[k];
     }
     return uu > 0.0 && vv > 0.0 ? uv * uv / (uu * vv) : nan("");
 }
@@ -409,29 +410,13 @@ typedef struct choice {
     const chart_file *body[MOST_FILES];
 } choice;
 
+/* A side that is a system at a configuration; NULL: its only one. */
 static ritz_status find_at(const chart_file *file, const char *at,
                            mac_side *out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_configuration *found = NULL;
-
-    *out = (mac_side){.file = file};
-    if (file->holds == CHART_SYSTEM)
-        status = ritz_system_find(&file->model.system, at, &found);
-    out->at = found;
-    return ritz_context(status, file->path);
-}
-
-/* Two systems, --at being given once for both, for each, or not at all. */
-static ritz_status choose_two(const chart_file *const *system,
-                              const cli_list *at, choice *out)
-{
-    for (int k = 0; k < 2; k++)
-        RITZ_CHECK(find_at(system[k],
-                           at->count == 0   ? NULL
-                           : at->count == 1 ? at->text[0]
-                                            : at->text[k],
-                           &out->side[k]));
+    out->file = file;
+    RITZ_CHECK_IN(file->path,
+                  ritz_system_find(&file->model.system, at, &out->at));
     return RITZ_OK;
 }
 
@@ -441,28 +426,25 @@ static ritz_status choose_one(const chart_file *system, const cli_list *at,
 {
     const ritz_system *s = &system->model.system;
 
-    if (at->count == 2) {
-        for (int k = 0; k < 2; k++)
-            RITZ_CHECK(find_at(system, at->text[k], &out->side[k]));
-    } else if (out->num_bodies == 1) {
+    if (out->num_bodies == 1) {
         RITZ_CHECK(
             find_at(system, at->count ? at->text[0] : NULL, &out->side[0]));
-        RITZ_CHECK(find_at(out->body[0], NULL, &out->side[1]));
+        out->side[1] = (mac_side){.file = out->body[0]};
         out->num_bodies = 0;
-    } else {
-        RITZ_REFUSE_IF(
-            at->count == 1 || s->num_configurations != 2, RITZ_ERR_ARGUMENT,
-            "MAC is of two: choose two configurations of '%s' by --at "
-            "and --at again",
-            system->path);
-        out->side[0] = (mac_side){system, &s->configuration[0]};
-        out->side[1] = (mac_side){system, &s->configuration[1]};
+        return RITZ_OK;
     }
+    RITZ_REFUSE_IF(at->count == 1 || s->num_configurations != 2,
+                   RITZ_ERR_ARGUMENT,
+                   "MAC is of two: choose two configurations of '%s' by --at "
+                   "and --at again",
+                   system->path);
+    for (int k = 0; k < 2; k++)
+        out->side[k] = (mac_side){system, &s->configuration[k]};
     return RITZ_OK;
 }
 
-static ritz_status choose(const chart_sources *sources, const cli_list *at,
-                          choice *out)
+static ritz_status choose_sides(const chart_sources *sources,
+                                const cli_list *at, choice *out)
 {
     const chart_file *system[2] = {NULL, NULL};
     int64_t num_systems = 0;
@@ -483,8 +465,14 @@ static ritz_status choose(const chart_sources *sources, const cli_list *at,
     }
     RITZ_REFUSE_IF(at->count > 2, RITZ_ERR_ARGUMENT,
                    "MAC is of two: --at is there more than twice");
+    if (num_systems == 1 && at->count == 2) /* it is compared with itself */
+        system[num_systems++] = system[0];
+    for (int64_t k = 0; k < 2 && num_systems == 2; k++)
+        RITZ_CHECK(find_at(system[k],
+                           at->count ? at->text[k < at->count ? k : 0] : NULL,
+                           &out->side[k]));
     if (num_systems == 2)
-        return choose_two(system, at, out);
+        return RITZ_OK;
     if (num_systems == 1)
         return choose_one(system[0], at, out);
     RITZ_REFUSE_IF(at->count > 0, RITZ_ERR_ARGUMENT,
@@ -498,30 +486,38 @@ static ritz_status choose(const chart_sources *sources, const cli_list *at,
     return RITZ_OK;
 }
 
-static ritz_status shapes_of(const choice *chosen, const char **how,
-                             mac_shapes set[2])
+/* Shapes of both sides, in rows that both have. */
+static ritz_status find_shapes(const choice *chosen, const char **how,
+                               mac_pair *pair)
 {
+    mac_shapes *const set = pair->of;
     const bool systems = chosen->side[0].at || chosen->side[1].at;
+    const bool masses = chosen->num_bodies > 0;
 
-    *how = chosen->num_bodies > 0 ? "by masses"
-           : systems              ? "by inputs and outputs"
-                                  : "by dofs";
+    *how = masses ? "by masses" : systems ? "by inputs and outputs" : "by dofs";
     for (int64_t k = 0; k < chosen->num_bodies; k++)
         RITZ_REFUSE_IF(chosen->body[k]->model.kind != MODEL_REDUCED,
                        RITZ_ERR_ARGUMENT,
                        "'%s' is no reduced component, of which systems are "
                        "assembled",
                        chosen->body[k]->path);
-    for (int k = 0; k < 2; k++)
-        if (chosen->num_bodies > 0)
-            RITZ_CHECK(shapes_of_bodies(&chosen->side[k], chosen->num_bodies,
-                                        chosen->body, &set[k]));
-        else if (systems)
-            RITZ_CHECK_IN(chosen->side[k].file->path,
-                          shapes_by_channels(&chosen->side[k], &set[k]));
+    for (int k = 0; k < 2; k++) {
+        const mac_side *side = &chosen->side[k];
+
+        snprintf(set[k].name, sizeof set[k].name, "%.80s%s%.80s",
+                 picture_base(side->file->path), side->at ? ", " : "",
+                 side->at ? side->at->at : "");
+        if (masses)
+            RITZ_CHECK(shapes_of_bodies(side, chosen->num_bodies, chosen->body,
+                                        &set[k]));
         else
-            RITZ_CHECK_IN(chosen->side[k].file->path,
-                          shapes_at_dofs(&chosen->side[k], &set[k]));
+            RITZ_CHECK_IN(side->file->path,
+                          systems ? shapes_by_channels(side, &set[k])
+                                  : shapes_at_dofs(side, &set[k]));
+    }
+    RITZ_CHECK(match_rows(&set[0], &set[1]));
+    if (set[0].channel)
+        RITZ_CHECK(scale_channels(&set[0], &set[1], &pair->num_common));
     return RITZ_OK;
 }
 
@@ -539,20 +535,16 @@ static void say_mode(const mac_shapes *s, int64_t k, char out[32])
 }
 
 /* Names of modes, as an array of the template. */
-static ritz_status give_modes(picture *p, const char *name, const mac_shapes *s)
+static void give_modes(picture *p, const char *name, const mac_shapes *s)
 {
-    enum { SIZE = 32 };
-    char(*word)[SIZE] = NULL;
+    char word[MOST_MODES][32];
 
-    PICTURE_NEW(p, word, s->count);
     for (int64_t k = 0; k < s->count; k++)
         say_mode(s, k, word[k]);
-    picture_give_texts(p, name, s->count, word[0], SIZE);
-    return RITZ_OK;
+    picture_give_texts(p, name, s->count, word[0], sizeof word[0]);
 }
 
-static void put_data(const mac_shapes *a, const mac_shapes *b,
-                     const int64_t *row, picture *p)
+static void put_data(const mac_shapes *a, const mac_shapes *b, picture *p)
 {
     FILE *data = p->data.file, *table = p->table.file;
     char x[32], y[32];
@@ -567,7 +559,7 @@ static void put_data(const mac_shapes *a, const mac_shapes *b,
         say_mode(a, i, y);
         fprintf(table, "\n%s", y);
         for (int64_t j = 0; j < b->count; j++) {
-            double mac = mac_of(a, b, row, i, j);
+            double mac = mac_of(a, b, i, j);
 
             say_mode(b, j, x);
             fprintf(data, "%lld\t%lld\t%.6g\t", (long long)j, (long long)i,
@@ -582,10 +574,11 @@ static void put_data(const mac_shapes *a, const mac_shapes *b,
     fprintf(table, "\n");
 }
 
-static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
-                            const int64_t *row, const char *how, picture *p)
+static ritz_status draw_mac(const mac_pair *pair, const char *how, picture *p)
 {
     enum { LEFT = 116, RIGHT = 64, HEAD = 40, FOOT = 100, LETTER = 8 };
+    const mac_shapes *a = &pair->of[0], *b = &pair->of[1];
+    const int64_t num_common = pair->num_common;
     const int64_t most = a->count > b->count ? a->count : b->count;
     const double cell = most <= NUMBERED ? 34.0 : 640.0 / (double)most;
     char title[4 * PICTURE_WORD];
@@ -597,12 +590,11 @@ static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
                    (double)(LEFT + LETTER * letters));
     p->body = HEAD + FOOT + cell * (double)a->count;
     /* as many modes can be told apart as there are inputs and outputs */
-    if (a->num_common > 0 &&
-        (a->num_common < a->count || a->num_common < b->count))
+    if (num_common > 0 && (num_common < a->count || num_common < b->count))
         snprintf(p->note, sizeof p->note,
                  "%lld inputs and outputs tell no more modes apart than that: "
                  "likeness can be chance",
-                 (long long)a->num_common);
+                 (long long)num_common);
     fprintf(p->given.file,
             "across = %lld\ndown = %lld\ncell = %.6g\nleft = %d\n"
             "numbered = %d\n",
@@ -611,9 +603,9 @@ static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
     picture_give_text(p, "head", title);
     picture_give_text(p, "xlabel", b->name);
     picture_give_text(p, "ylabel", a->name);
-    RITZ_CHECK(give_modes(p, "column_name", b));
-    RITZ_CHECK(give_modes(p, "row_name", a));
-    put_data(a, b, row, p);
+    give_modes(p, "column_name", b);
+    give_modes(p, "row_name", a);
+    put_data(a, b, p);
     return picture_draw(p, "mac.gp", title,
                         "likeness of mode shapes: 1 the same, 0 nothing in "
                         "common");
@@ -622,19 +614,12 @@ static ritz_status draw_mac(const mac_shapes *a, const mac_shapes *b,
 ritz_status chart_mac(const chart_sources *sources,
                       const chart_request *request, picture *out)
 {
-    ritz_status status = RITZ_OK;
+    RITZ_OWN(mac_pair) pair = {0};
     choice chosen = {.num_bodies = 0};
-    mac_shapes set[2] = {{.count = 0}};
     const char *how = "";
-    int64_t *row = NULL;
 
-    RITZ_TRY(choose(sources, &request->at, &chosen));
-    RITZ_TRY(shapes_of(&chosen, &how, set));
-    RITZ_TRY(picture_new(request->path, request->keep, out));
-    RITZ_TRY(match_rows(&set[0], &set[1], out, &row));
-    RITZ_TRY(draw_mac(&set[0], &set[1], row, how, out));
-done:
-    free_shapes(&set[0]);
-    free_shapes(&set[1]);
-    return status;
+    RITZ_CHECK(choose_sides(sources, &request->at, &chosen));
+    RITZ_CHECK(find_shapes(&chosen, &how, &pair));
+    RITZ_CHECK(picture_new(request->path, request->keep, out));
+    return draw_mac(&pair, how, out);
 }

@@ -13,7 +13,6 @@
 
 #include <complex.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -33,42 +32,42 @@ enum { RELATIVE, DECIBELS, STRIPS };
 /* A singular value is rounding below this part of the largest. */
 static const double rounding = 1e-12;
 
+/* A channel, and the ends of its axes; the template is given the doubles. */
+typedef struct channel {
+    int64_t output, input; /* of the first response; SINGULAR */
+    int64_t lines;         /* one, or as many as there are singular values */
+    char title[2 * PICTURE_WORD];
+    double singular;    /* whether it is that of singular values */
+    double shared;      /* points in common with the first response */
+    double most, least; /* of magnitudes above 0 */
+    double top;         /* the same as most, or a true peak above it */
+    double worst[STRIPS], best[STRIPS]; /* of errors above 0 */
+    double y_low, y_high, low[STRIPS], high[STRIPS];
+} channel;
+
 typedef struct overlay {
     int64_t count;
     const ritz_response *curve[MOST_RESPONSES];
     const char *name[MOST_RESPONSES];
     int64_t num_channels;
-    int64_t output[MOST_CHANNELS], input[MOST_CHANNELS];
+    channel channel[MOST_CHANNELS];
     int64_t passed; /* channels that are not drawn */
     bool strip[STRIPS];
     picture *picture;
 } overlay;
 
-/* Ends of axes of one channel. */
-typedef struct extent {
-    double most, least; /* of magnitudes above 0 */
-    double top;         /* the same as most, or a true peak above it */
-    double worst[STRIPS], best[STRIPS]; /* of errors above 0 */
-    int64_t shared; /* points in common with the first response */
-} extent;
-
-/* What the template is given for a channel. */
-typedef struct channel {
-    char title[2 * PICTURE_WORD];
-    double singular, shared, y_low, y_high;
-    double low[STRIPS], high[STRIPS];
-} channel;
-
 /* --- what is drawn -------------------------------------------------------- */
 
-/* Index of a name in a list; -1: it is not there. */
-static int64_t find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
-                         const char *wanted)
+/* Refuse a response without one of some names of the first. */
+static ritz_status check_names(const char *path, const char *kind,
+                               int64_t count, char (*name)[RITZ_NAME_SIZE],
+                               int64_t num_first, char (*first)[RITZ_NAME_SIZE])
 {
-    for (int64_t k = 0; k < count; k++)
-        if (strcmp(name[k], wanted) == 0)
-            return k;
-    return -1;
+    for (int64_t i = 0; i < num_first; i++)
+        RITZ_REFUSE_IF(chart_find_name(count, name, first[i]) < 0,
+                       RITZ_ERR_ARGUMENT, "'%s' has no %s '%s'", path, kind,
+                       first[i]);
+    return RITZ_OK;
 }
 
 static ritz_status take_response(const chart_file *file, overlay *o)
@@ -81,16 +80,11 @@ static ritz_status take_response(const chart_file *file, overlay *o)
     RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
                    "'%s' has fewer than two points", file->path);
     first = first ? first : r;
-    for (int64_t i = 0; i < first->num_outputs; i++)
-        RITZ_REFUSE_IF(find_name(r->num_outputs, r->output, first->output[i]) <
-                           0,
-                       RITZ_ERR_ARGUMENT, "'%s' has no output '%s'", file->path,
-                       first->output[i]);
-    for (int64_t i = 0; i < first->num_inputs; i++)
-        RITZ_REFUSE_IF(find_name(r->num_inputs, r->input, first->input[i]) < 0,
-                       RITZ_ERR_ARGUMENT, "'%s' has no input '%s'", file->path,
-                       first->input[i]);
-    o->name[o->count] = chart_base(file->path);
+    RITZ_CHECK(check_names(file->path, "output", r->num_outputs, r->output,
+                           first->num_outputs, first->output));
+    RITZ_CHECK(check_names(file->path, "input", r->num_inputs, r->input,
+                           first->num_inputs, first->input));
+    o->name[o->count] = picture_base(file->path);
     o->curve[o->count++] = r;
     return RITZ_OK;
 }
@@ -114,8 +108,8 @@ static ritz_status add_singular(overlay *o)
                        "singular values do not compare",
                        o->name[w], o->name[0]);
     }
-    o->output[o->num_channels] = SINGULAR;
-    o->input[o->num_channels++] = SINGULAR;
+    o->channel[o->num_channels++] = (channel){
+        .output = SINGULAR, .lines = first->num_singular, .singular = 1.0};
     return RITZ_OK;
 }
 
@@ -128,8 +122,8 @@ static ritz_status add_channel(overlay *o, const char *text)
 
     if (slash && slash - text < RITZ_NAME_SIZE) {
         snprintf(output, sizeof output, "%.*s", (int)(slash - text), text);
-        i = find_name(r->num_outputs, r->output, output);
-        j = find_name(r->num_inputs, r->input, slash + 1);
+        i = chart_find_name(r->num_outputs, r->output, output);
+        j = chart_find_name(r->num_inputs, r->input, slash + 1);
     }
     RITZ_REFUSE_IF(o->num_channels == MOST_CHANNELS, RITZ_ERR_ARGUMENT,
                    "more than %d channels do not fit", (int)MOST_CHANNELS);
@@ -139,8 +133,7 @@ static ritz_status add_channel(overlay *o, const char *text)
                    "no channel '%s': say OUTPUT/INPUT, such as '%s/%s', or "
                    "'" CHART_SINGULAR_WORD "'",
                    text, r->output[0], r->input[0]);
-    o->output[o->num_channels] = i;
-    o->input[o->num_channels++] = j;
+    o->channel[o->num_channels++] = (channel){i, j, .lines = 1};
     return RITZ_OK;
 }
 
@@ -159,47 +152,37 @@ static ritz_status choose_channels(const cli_list *asked, overlay *o)
             o->passed++;
             continue;
         }
-        o->output[o->num_channels] = c / r->num_inputs;
-        o->input[o->num_channels++] = c % r->num_inputs;
+        o->channel[o->num_channels++] =
+            (channel){c / r->num_inputs, c % r->num_inputs, .lines = 1};
     }
     return RITZ_OK;
 }
 
 /* --- values and errors ---------------------------------------------------- */
 
-static bool is_singular(const overlay *o, int64_t c)
-{
-    return o->output[c] == SINGULAR;
-}
-
-static int64_t count_lines(const overlay *o, int64_t c)
-{
-    return is_singular(o, c) ? o->curve[0]->num_singular : 1;
-}
-
-/* H of a curve's k-th point in channel c, or one of its singular values. */
-static double _Complex value_of(const overlay *o, int64_t which, int64_t k,
-                                int64_t c, int64_t line)
+/* H of a curve's k-th point in a channel, or one of its singular values. */
+static double _Complex value_of(const overlay *o, const channel *c,
+                                int64_t which, int64_t k, int64_t line)
 {
     const ritz_response *first = o->curve[0], *r = o->curve[which];
     int64_t i = 0, j = 0;
 
-    if (is_singular(o, c))
+    if (c->output == SINGULAR)
         return r->singular[k * r->num_singular + line];
-    i = find_name(r->num_outputs, r->output, first->output[o->output[c]]);
-    j = find_name(r->num_inputs, r->input, first->input[o->input[c]]);
+    i = chart_find_name(r->num_outputs, r->output, first->output[c->output]);
+    j = chart_find_name(r->num_inputs, r->input, first->input[c->input]);
     return r->H[(k * r->num_outputs + i) * r->num_inputs + j];
 }
 
-static double size_of(const overlay *o, int64_t k, int64_t c)
+static double size_of(const overlay *o, const channel *c, int64_t k)
 {
-    return cabs(value_of(o, 0, k, c, 0));
+    return cabs(value_of(o, c, 0, k, 0));
 }
 
 /* Values at point k of the first response are rounding up to this. */
-static double nothing_at(const overlay *o, int64_t k, int64_t c)
+static double nothing_at(const overlay *o, const channel *c, int64_t k)
 {
-    return is_singular(o, c) ? rounding * size_of(o, k, c) : 0.0;
+    return c->output == SINGULAR ? rounding * size_of(o, c, k) : 0.0;
 }
 
 /* Index of the point at a frequency; -1: the response has none there. */
@@ -221,8 +204,8 @@ static int64_t find_point(const ritz_response *r, double hertz)
 
 /* Errors of curve w at its point k; NaN where the first has no such point, or
    a value is rounding. */
-static void measure_errors(const overlay *o, int64_t w, int64_t k, int64_t c,
-                           int64_t line, double most, double error[STRIPS])
+static void measure_errors(const overlay *o, const channel *c, int64_t w,
+                           int64_t k, int64_t line, double error[STRIPS])
 {
     const int64_t at = find_point(o->curve[0], o->curve[w]->hertz[k]);
     double _Complex H = 0.0, H_r = 0.0;
@@ -231,50 +214,29 @@ static void measure_errors(const overlay *o, int64_t w, int64_t k, int64_t c,
     error[RELATIVE] = error[DECIBELS] = nan("");
     if (at < 0 || w == 0)
         return;
-    H = value_of(o, 0, at, c, line);
-    H_r = value_of(o, w, k, c, line);
-    least = nothing_at(o, at, c);
-    error[RELATIVE] = cabs(H_r - H) / most;
+    H = value_of(o, c, 0, at, line);
+    H_r = value_of(o, c, w, k, line);
+    least = nothing_at(o, c, at);
+    error[RELATIVE] = cabs(H_r - H) / (c->most > 0.0 ? c->most : 1.0);
     if (cabs(H) > least && cabs(H_r) > least)
         error[DECIBELS] = fabs(20.0 * log10(cabs(H_r) / cabs(H)));
 }
 
-static void widen_by_errors(const overlay *o, int64_t w, int64_t c, extent *e)
+static void widen_by_errors(const overlay *o, int64_t w, channel *c)
 {
     double error[STRIPS];
 
-    for (int64_t line = 0; line < count_lines(o, c); line++)
+    for (int64_t line = 0; line < c->lines; line++)
         for (int64_t k = 0; k < o->curve[w]->count; k++) {
-            measure_errors(o, w, k, c, line, e->most, error);
-            e->shared += !isnan(error[RELATIVE]);
+            measure_errors(o, c, w, k, line, error);
+            c->shared += !isnan(error[RELATIVE]);
             for (int s = 0; s < STRIPS; s++) {
                 if (error[s] > 0.0)
-                    e->best[s] = fmin(e->best[s], error[s]);
-                if (error[s] > e->worst[s])
-                    e->worst[s] = error[s];
+                    c->best[s] = fmin(c->best[s], error[s]);
+                if (error[s] > c->worst[s])
+                    c->worst[s] = error[s];
             }
         }
-}
-
-static extent find_extent(const overlay *o, int64_t c)
-{
-    extent e = {.least = HUGE_VAL, .best = {HUGE_VAL, HUGE_VAL}};
-
-    for (int64_t line = 0; line < count_lines(o, c); line++)
-        for (int64_t k = 0; k < o->curve[0]->count; k++) {
-            double size = cabs(value_of(o, 0, k, c, line));
-
-            e.most = fmax(e.most, size);
-            if (size > nothing_at(o, k, c))
-                e.least = fmin(e.least, size);
-        }
-    e.top = e.most;
-    for (int64_t w = 0; is_singular(o, c) && w < o->count; w++)
-        if (isfinite(o->curve[w]->singular_peak[1]))
-            e.top = fmax(e.top, o->curve[w]->singular_peak[1]);
-    for (int64_t w = 1; e.most > 0.0 && w < o->count; w++)
-        widen_by_errors(o, w, c, &e);
-    return e;
 }
 
 /* Whole decades that hold both ends, at most fourteen. */
@@ -284,6 +246,28 @@ static void set_decades(double least, double most, double *low, double *high)
     least = least < most ? least : most / 10.0;
     *low = pow(10.0, floor(log10(fmax(least, 1e-14 * most))));
     *high = pow(10.0, ceil(log10(1.01 * most)));
+}
+
+static void find_extent(const overlay *o, channel *c)
+{
+    c->least = c->best[RELATIVE] = c->best[DECIBELS] = HUGE_VAL;
+    for (int64_t line = 0; line < c->lines; line++)
+        for (int64_t k = 0; k < o->curve[0]->count; k++) {
+            double size = cabs(value_of(o, c, 0, k, line));
+
+            c->most = fmax(c->most, size);
+            if (size > nothing_at(o, c, k))
+                c->least = fmin(c->least, size);
+        }
+    c->top = c->most;
+    for (int64_t w = 0; c->output == SINGULAR && w < o->count; w++)
+        if (isfinite(o->curve[w]->singular_peak[1]))
+            c->top = fmax(c->top, o->curve[w]->singular_peak[1]);
+    for (int64_t w = 1; c->most > 0.0 && w < o->count; w++)
+        widen_by_errors(o, w, c);
+    set_decades(c->least, c->top, &c->y_low, &c->y_high);
+    for (int s = 0; s < STRIPS; s++)
+        set_decades(c->best[s], c->worst[s], &c->low[s], &c->high[s]);
 }
 
 /* --- data ----------------------------------------------------------------- */
@@ -342,8 +326,8 @@ static void keep_extremes(int64_t count, point *p)
     }
 }
 
-static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
-                            int64_t line, double most)
+static ritz_status put_line(const overlay *o, const channel *c, int64_t w,
+                            int64_t line)
 {
     const ritz_response *r = o->curve[w];
     FILE *file = o->picture->data.file;
@@ -351,11 +335,11 @@ static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
 
     PICTURE_NEW(o->picture, all, r->count);
     for (int64_t k = 0; k < r->count; k++) {
-        const double _Complex H = value_of(o, w, k, c, line);
+        const double _Complex H = value_of(o, c, w, k, line);
 
         all[k].value[0] = cabs(H);
-        all[k].value[1] = is_singular(o, c) ? nan("") : carg(H) * 180.0 / M_PI;
-        measure_errors(o, w, k, c, line, most, all[k].value + 2);
+        all[k].value[1] = c->singular ? nan("") : carg(H) * 180.0 / M_PI;
+        measure_errors(o, c, w, k, line, all[k].value + 2);
     }
     for (int64_t k = 0, end = 0; k < r->count; k = end) {
         const int64_t column = column_of(o->curve[0], r->hertz[k]);
@@ -368,8 +352,8 @@ static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
     for (int64_t k = 0; k < r->count; k++) {
         if (!all[k].keep)
             continue;
-        fprintf(file, "%lld\t%lld\t%lld", (long long)c, (long long)w,
-                (long long)line);
+        fprintf(file, "%lld\t%lld\t%lld", (long long)(c - o->channel),
+                (long long)w, (long long)line);
         put_real(file, r->hertz[k]);
         for (int v = 0; v < VALUES; v++)
             put_real(file, all[k].value[v]);
@@ -380,18 +364,19 @@ static ritz_status put_line(const overlay *o, int64_t w, int64_t c,
 }
 
 /* Peaks of the first response, largest first. */
-static int64_t find_peaks(const overlay *o, int64_t c, int64_t peak[MOST_PEAKS])
+static int64_t find_peaks(const overlay *o, const channel *c,
+                          int64_t peak[MOST_PEAKS])
 {
     int64_t count = 0;
     int64_t last = o->curve[0]->count - 1;
 
     for (int64_t k = 1; k < last; k++) {
-        double size = size_of(o, k, c);
+        double size = size_of(o, c, k);
         int64_t at = count;
 
-        if (size <= size_of(o, k - 1, c) || size < size_of(o, k + 1, c))
+        if (size <= size_of(o, c, k - 1) || size < size_of(o, c, k + 1))
             continue;
-        while (at > 0 && size_of(o, peak[at - 1], c) < size)
+        while (at > 0 && size_of(o, c, peak[at - 1]) < size)
             at--;
         if (at == MOST_PEAKS)
             continue;
@@ -404,65 +389,66 @@ static int64_t find_peaks(const overlay *o, int64_t c, int64_t peak[MOST_PEAKS])
 }
 
 /* The row of a mark: in the data up to its tip, in the table up to errors. */
-static void begin_rows(const overlay *o, int64_t c, int which, int64_t w,
+static void begin_rows(const overlay *o, const channel *c, int which, int64_t w,
                        double hertz, double drawn, double value)
 {
     const ritz_response *first = o->curve[0];
     FILE *table = o->picture->table.file;
 
     fprintf(o->picture->data.file,
-            "%lld\t%d\t%lld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t", (long long)c, which,
-            (long long)w, hertz, drawn);
-    if (is_singular(o, c)) {
+            "%lld\t%d\t%lld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t",
+            (long long)(c - o->channel), which, (long long)w, hertz, drawn);
+    if (c->singular) {
         fprintf(table, "singular values");
     } else {
-        html_line(table, first->output[o->output[c]]);
+        html_line(table, first->output[c->output]);
         fprintf(table, "/");
-        html_line(table, first->input[o->input[c]]);
+        html_line(table, first->input[c->input]);
     }
     fprintf(table, "\t%.6g\t%.5g", hertz, value);
 }
 
-/* A peak of the first response and the errors of the others there. */
-static void put_peak(const overlay *o, int64_t c, int64_t k, double most)
+static void end_rows(const overlay *o)
 {
-    const double hertz = o->curve[0]->hertz[k];
+    fputc('\n', o->picture->data.file);
+    fputc('\n', o->picture->table.file);
+}
+
+/* A peak of the first response and the errors of the others there. */
+static void put_peak(const overlay *o, const channel *c, int64_t k)
+{
+    const double hertz = o->curve[0]->hertz[k], size = size_of(o, c, k);
     double error[STRIPS];
     char others[1000] = "";
-    size_t used = 0;
 
-    begin_rows(o, c, -1, 0, hertz, size_of(o, k, c), size_of(o, k, c));
+    begin_rows(o, c, -1, 0, hertz, size, size);
     for (int64_t w = 1; w < o->count; w++) {
         int64_t at = find_point(o->curve[w], hertz);
 
         error[RELATIVE] = error[DECIBELS] = nan("");
-        if (at >= 0)
-            measure_errors(o, w, at, c, 0, most, error);
-        if (at >= 0 && used < sizeof others)
-            used +=
-                (size_t)snprintf(others + used, sizeof others - used,
-                                 "\n%.40s: error %.2e of the largest, %.2g dB",
-                                 o->name[w], error[RELATIVE], error[DECIBELS]);
+        if (at >= 0) {
+            measure_errors(o, c, w, at, 0, error);
+            sink_append(others, sizeof others,
+                        "\n%.40s: error %.2e of the largest, %.2g dB",
+                        o->name[w], error[RELATIVE], error[DECIBELS]);
+        }
         fprintf(o->picture->table.file, "\t%.3e\t%.3g", error[RELATIVE],
                 error[DECIBELS]);
     }
     picture_tip(o->picture, "peak at %.6g Hz\n%.60s: %s = %.5g%s", hertz,
-                o->name[0], is_singular(o, c) ? "largest" : "|H|",
-                size_of(o, k, c), others);
-    fprintf(o->picture->data.file, "\n");
-    fprintf(o->picture->table.file, "\n");
+                o->name[0], c->singular ? "largest" : "|H|", size, others);
+    end_rows(o);
 }
 
 /* The largest singular value between points, as stored beside them. */
-static void put_true_peak(const overlay *o, int64_t w, int64_t c,
-                          const extent *e)
+static void put_true_peak(const overlay *o, const channel *c, int64_t w)
 {
     const double *own = o->curve[w]->singular_peak;
     const double *first = o->curve[0]->singular_peak;
 
     if (!(own[1] > 0.0))
         return;
-    begin_rows(o, c, -2, w, own[0], isinf(own[1]) ? e->top : own[1], own[1]);
+    begin_rows(o, c, -2, w, own[0], isinf(own[1]) ? c->top : own[1], own[1]);
     if (isinf(own[1]))
         picture_tip(o->picture,
                     "%.60s: infinite\na pole at %.6g Hz is not damped",
@@ -479,24 +465,22 @@ static void put_true_peak(const overlay *o, int64_t w, int64_t c,
                 known ? fabs(own[1] - first[1]) / first[1] : nan(""),
                 known ? fabs(20.0 * log10(own[1] / first[1])) : nan(""));
     }
-    fprintf(o->picture->data.file, "\n");
-    fprintf(o->picture->table.file, "\n");
+    end_rows(o);
 }
 
-static ritz_status put_channel(const overlay *o, int64_t c, const extent *e)
+static ritz_status put_channel(const overlay *o, const channel *c)
 {
-    const double most = e->most > 0.0 ? e->most : 1.0;
     int64_t peak[MOST_PEAKS];
-    int64_t count = find_peaks(o, c, peak);
+    const int64_t count = find_peaks(o, c, peak);
 
     for (int64_t w = 0; w < o->count; w++)
-        for (int64_t line = 0; line < count_lines(o, c); line++)
-            RITZ_CHECK(put_line(o, w, c, line, most));
+        for (int64_t line = 0; line < c->lines; line++)
+            RITZ_CHECK(put_line(o, c, w, line));
     for (int64_t p = 0; p < count; p++)
-        put_peak(o, c, peak[p], most);
+        put_peak(o, c, peak[p]);
     fputc('\n', o->picture->data.file);
-    for (int64_t w = 0; is_singular(o, c) && w < o->count; w++)
-        put_true_peak(o, w, c, e);
+    for (int64_t w = 0; c->singular && w < o->count; w++)
+        put_true_peak(o, c, w);
     fputc('\n', o->picture->data.file);
     return RITZ_OK;
 }
@@ -538,7 +522,7 @@ static void add_signs(const overlay *o)
         many = many || o->curve[w]->num_singular > 1;
     }
     for (int64_t c = 0; c < o->num_channels; c++)
-        singular = singular || is_singular(o, c);
+        singular = singular || o->channel[c].singular;
     if (singular && many)
         picture_add_sign(o->picture,
                          &(picture_sign){.name = "thin: all but the largest",
@@ -552,58 +536,41 @@ static void add_signs(const overlay *o)
 }
 
 /* "tip / torque: error at most 0.31 %, 0.027 dB" */
-static void say_title(const overlay *o, int64_t c, const extent *e,
-                      char out[2 * PICTURE_WORD])
+static void say_title(const overlay *o, channel *c)
 {
     const ritz_response *r = o->curve[0];
-    char worst[32], decibels[24] = "";
-    size_t used = 0;
+    const bool relative = o->strip[RELATIVE], decibels = o->strip[DECIBELS];
+    char worst[32];
 
-    if (is_singular(o, c))
-        used = (size_t)snprintf(out, PICTURE_WORD, "singular values");
+    if (c->singular)
+        snprintf(c->title, sizeof c->title, "singular values");
     else
-        used = (size_t)snprintf(out, 2 * RITZ_NAME_SIZE + 4, "%s / %s",
-                                r->output[o->output[c]], r->input[o->input[c]]);
-    if (o->count < 2 || e->shared == 0)
+        snprintf(c->title, sizeof c->title, "%s / %s", r->output[c->output],
+                 r->input[c->input]);
+    if (!c->shared)
         return;
-    chart_say_error(e->worst[RELATIVE], worst);
-    snprintf(decibels, sizeof decibels,
-             "%.2g\xc2\xa0"
-             "dB",
-             e->worst[DECIBELS]);
-    snprintf(out + used, 120, ": %s at most %s%s%s",
-             o->strip[RELATIVE] ? "error" : "difference",
-             o->strip[RELATIVE] ? worst : "",
-             o->strip[RELATIVE] && o->strip[DECIBELS] ? ", " : "",
-             o->strip[DECIBELS] ? decibels : "");
-}
-
-static ritz_status take_channel(const overlay *o, int64_t c, channel *out)
-{
-    const extent e = find_extent(o, c);
-
-    say_title(o, c, &e, out->title);
-    out->singular = is_singular(o, c);
-    out->shared = o->count > 1 && e.shared > 0;
-    set_decades(e.least, e.top, &out->y_low, &out->y_high);
-    for (int s = 0; s < STRIPS; s++)
-        set_decades(e.best[s], e.worst[s], &out->low[s], &out->high[s]);
-    return put_channel(o, c, &e);
-}
-
-/* Height of a cell in pixels, which has room for one strip of errors or two. */
-static int cell_high(const overlay *o)
-{
-    return CELL_HIGH +
-           (o->strip[RELATIVE] && o->strip[DECIBELS] ? STRIP_HIGH : 0);
+    chart_say_error(c->worst[RELATIVE], worst);
+    sink_append(c->title, sizeof c->title, ": %s at most %s%s",
+                relative ? "error" : "difference", relative ? worst : "",
+                relative && decibels ? ", " : "");
+    if (decibels)
+        sink_append(c->title, sizeof c->title,
+                    "%.2g\xc2\xa0"
+                    "dB",
+                    c->worst[DECIBELS]);
 }
 
 /* Variables of the template: those of all channels, then of each. */
-static void give_channels(const overlay *o, const channel *all)
+static void give_channels(const overlay *o)
 {
     static const int64_t stride = sizeof(channel) / sizeof(double);
     const ritz_response *r = o->curve[0];
     const double low = r->hertz[0], high = r->hertz[r->count - 1];
+    const channel *all = o->channel;
+    picture *p = o->picture;
+    const int64_t n = o->num_channels, across = n > 1 ? 2 : 1;
+    const int strips = o->strip[RELATIVE] + o->strip[DECIBELS];
+    const int tall = CELL_HIGH + (strips > 1 ? STRIP_HIGH : 0);
     const struct {
         const char *name;
         const double *value;
@@ -612,35 +579,34 @@ static void give_channels(const overlay *o, const channel *all)
                 {"error_low", &all->low[0]},   {"error_high", &all->high[0]},
                 {"decibel_low", &all->low[1]}, {"decibel_high", &all->high[1]}};
 
-    fprintf(o->picture->given.file,
-            "channels = %lld\nacross = %d\ntall = %d\ncurves = %lld\n"
+    p->wide = (double)(across * CELL_WIDE);
+    p->body = (double)((n + across - 1) / across * tall);
+    fprintf(p->given.file,
+            "channels = %lld\nacross = %lld\ntall = %d\ncurves = %lld\n"
             "strips = %d\ndecibels = %d\nx_low = %.9g\nx_high = %.9g\n"
             "x_log = %d\n",
-            (long long)o->num_channels, o->num_channels > 1 ? 2 : 1,
-            cell_high(o), (long long)o->count,
-            o->strip[RELATIVE] + o->strip[DECIBELS], o->strip[DECIBELS], low,
-            high > low ? high : low + 1.0, is_decades(r));
-    picture_give_texts(o->picture, "title", o->num_channels, all->title,
-                       sizeof *all);
+            (long long)n, (long long)across, tall, (long long)o->count, strips,
+            o->strip[DECIBELS], low, high > low ? high : low + 1.0,
+            is_decades(r));
+    picture_give_texts(p, "title", n, all->title, sizeof *all);
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-        picture_give_reals(o->picture, list[k].name, o->num_channels,
-                           list[k].value, stride);
+        picture_give_reals(p, list[k].name, n, list[k].value, stride);
 }
 
-static ritz_status compose(const overlay *o)
+static ritz_status draw_overlay(overlay *o)
 {
-    const int64_t across = o->num_channels > 1 ? 2 : 1;
     picture *p = o->picture;
-    channel all[MOST_CHANNELS] = {0};
 
-    const int64_t down = (o->num_channels + across - 1) / across;
-
-    p->wide = (double)(across * CELL_WIDE);
-    p->body = (double)(down * cell_high(o));
     put_heads(o);
-    for (int64_t c = 0; c < o->num_channels; c++)
-        RITZ_CHECK(take_channel(o, c, &all[c]));
-    give_channels(o, all);
+    for (int64_t k = 0; k < o->num_channels; k++) {
+        channel *c = &o->channel[k];
+
+        find_extent(o, c);
+        say_title(o, c);
+        c->shared = c->shared > 0.0;
+        RITZ_CHECK(put_channel(o, c));
+    }
+    give_channels(o);
     add_signs(o);
     if (o->passed > 0)
         snprintf(p->note, sizeof p->note,
@@ -664,5 +630,5 @@ ritz_status chart_response(const chart_sources *sources,
             RITZ_CHECK(take_response(&sources->file[k], &o));
     RITZ_CHECK(choose_channels(&request->channel, &o));
     RITZ_CHECK(picture_new(request->path, request->keep, out));
-    return compose(&o);
+    return draw_overlay(&o);
 }

@@ -3,7 +3,6 @@
 #include "chart/html.h"
 
 #include <math.h>
-#include <string.h>
 
 enum {
     MOST_RUNS = 8,
@@ -23,14 +22,6 @@ typedef struct runs {
     picture *picture;
 } runs;
 
-static int64_t find_output(const ritz_simulation *s, const char *name)
-{
-    for (int64_t k = 0; k < s->num_outputs; k++)
-        if (strcmp(s->output[k], name) == 0)
-            return k;
-    return -1;
-}
-
 static ritz_status take_runs(const chart_sources *sources, runs *out)
 {
     for (int64_t k = 0; k < sources->count; k++) {
@@ -45,13 +36,14 @@ static ritz_status take_runs(const chart_sources *sources, runs *out)
         RITZ_REFUSE_IF(s->count < 2 || s->num_outputs < 1, RITZ_ERR_ARGUMENT,
                        "'%s' has no output over time", file->path);
         for (int64_t i = 0; i < out->num_outputs; i++)
-            RITZ_REFUSE_IF(find_output(s, out->run[0]->output[i]) < 0,
+            RITZ_REFUSE_IF(chart_find_name(s->num_outputs, s->output,
+                                           out->run[0]->output[i]) < 0,
                            RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
                            file->path, out->run[0]->output[i]);
         if (out->count == 0)
             out->num_outputs =
                 s->num_outputs < MOST_OUTPUTS ? s->num_outputs : MOST_OUTPUTS;
-        out->name[out->count] = chart_base(file->path);
+        out->name[out->count] = picture_base(file->path);
         out->run[out->count++] = s;
     }
     RITZ_REFUSE_IF(out->count == 0, RITZ_ERR_ARGUMENT,
@@ -64,7 +56,8 @@ static void put_line(runs *all, int64_t i, int64_t w)
 {
     const ritz_simulation *s = all->run[w];
     const int64_t few = 1 + 2 * s->count / MOST_POINTS, n = s->num_outputs;
-    const int64_t output = find_output(s, all->run[0]->output[i]);
+    const int64_t output =
+        chart_find_name(s->num_outputs, s->output, all->run[0]->output[i]);
     FILE *file = all->picture->data.file, *table = all->picture->table.file;
     double low = HUGE_VAL, high = -HUGE_VAL;
 
@@ -96,7 +89,7 @@ static void put_line(runs *all, int64_t i, int64_t w)
             s->y[(s->count - 1) * n + output], s->integrator);
 }
 
-static ritz_status compose(runs *all)
+static ritz_status draw_runs(runs *all)
 {
     const ritz_simulation *first = all->run[0];
     picture *p = all->picture;
@@ -145,5 +138,5 @@ ritz_status chart_simulation(const chart_sources *sources,
 
     RITZ_CHECK(take_runs(sources, &all));
     RITZ_CHECK(picture_new(request->path, request->keep, out));
-    return compose(&all);
+    return draw_runs(&all);
 }

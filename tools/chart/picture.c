@@ -67,7 +67,7 @@ void picture_add_sign(picture *p, const picture_sign *sign)
 }
 
 /* Text in gnuplot's single quotes, where it reads nothing but ''. */
-static void quote(FILE *file, const char *text)
+static void quote_text(FILE *file, const char *text)
 {
     fputc('\'', file);
     while (*text) {
@@ -81,7 +81,7 @@ static void quote(FILE *file, const char *text)
 void picture_give_text(picture *p, const char *name, const char *text)
 {
     fprintf(p->given.file, "%s = ", name);
-    quote(p->given.file, text);
+    quote_text(p->given.file, text);
     fputc('\n', p->given.file);
 }
 
@@ -93,7 +93,7 @@ void picture_give_texts(picture *p, const char *name, int64_t count,
     fprintf(file, "array %s[%lld] = [", name, (long long)count);
     for (int64_t k = 0; k < count; k++) {
         fputs(k > 0 ? ", " : "", file);
-        quote(file, text + (size_t)k * size);
+        quote_text(file, text + (size_t)k * size);
     }
     fputs("]\n", file);
 }
@@ -177,7 +177,7 @@ ritz_status picture_thin(int64_t count, const double *x, const double *y,
     return RITZ_OK;
 }
 
-static const char *base_of(const char *path)
+const char *picture_base(const char *path)
 {
     const char *slash = strrchr(path, '/');
 
@@ -190,9 +190,9 @@ static void put_name(FILE *file, const char *variable, const char *path,
 {
     char name[PICTURE_PATH + 16];
 
-    snprintf(name, sizeof name, "./%s%s", base_of(path), ending);
+    snprintf(name, sizeof name, "./%s%s", picture_base(path), ending);
     fprintf(file, "if (!exists('%s')) %s = ", variable, variable);
-    quote(file, name);
+    quote_text(file, name);
     fputc('\n', file);
 }
 
@@ -229,7 +229,7 @@ static void put_legend(const picture *p, FILE *file)
         letters = count_letters(name, space);
         most = letters > most ? letters : most;
         fprintf(file, "key_name[%d] = ", k + 1);
-        quote(file, name);
+        quote_text(file, name);
         fprintf(file, "\nkey_sign[%d] = 'with ", k + 1);
         if (s->mark > 0)
             fprintf(file, "points pt %d ps 0.9 lw 1.6", s->mark);
@@ -257,14 +257,14 @@ static ritz_status write_script(picture *p, const char *template,
     RITZ_REFUSE_IF(fflush(p->given.file) != 0, RITZ_ERR_MEMORY,
                    "no memory for a chart");
     fprintf(out->file, "# gnuplot ");
-    html_line(out->file, base_of(p->path));
+    html_line(out->file, picture_base(p->path));
     fprintf(out->file, ".gp\n");
     put_name(out->file, "out", p->path, "");
     put_name(out->file, "data", p->path, ".tsv");
     for (const svg_colour *c = svg_colours; c->name; c++)
         fprintf(out->file, "%s = '%s'\n", c->name, c->value);
     fprintf(out->file, "wide = %.0f\nbody = %.0f\nnote = ", p->wide, p->body);
-    quote(out->file, p->keep ? p->note : "");
+    quote_text(out->file, p->keep ? p->note : "");
     fputc('\n', out->file);
     put_legend(p, out->file);
     fputs(p->given.text, out->file);
@@ -275,8 +275,8 @@ static ritz_status write_script(picture *p, const char *template,
 }
 
 /* The command NAME='FILE' for -e; a relative name gets a "./" in front. */
-static ritz_status assign(const char *name, const char *value, size_t size,
-                          char *out)
+static ritz_status set_variable(const char *name, const char *value,
+                                size_t size, char *out)
 {
     size_t used =
         (size_t)snprintf(out, size, "%s='%s", name, *value == '/' ? "" : "./");
@@ -302,8 +302,8 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     pid_t child = -1;
 
     snprintf(file, sizeof file, "%s%s", *script == '/' ? "" : "./", script);
-    RITZ_CHECK(assign("out", out, sizeof set_out, set_out));
-    RITZ_CHECK(assign("data", data, sizeof set_data, set_data));
+    RITZ_CHECK(set_variable("out", out, sizeof set_out, set_out));
+    RITZ_CHECK(set_variable("data", data, sizeof set_data, set_data));
     child = fork();
     if (child == 0) {
         execvp(program, argv);
@@ -336,7 +336,7 @@ static ritz_status put_beside(const picture *p, cli_table *table,
     return cli_table_write(table, out);
 }
 
-static ritz_status publish(const picture *p)
+static ritz_status publish_picture(const picture *p)
 {
     const svg_names names = {p->title, p->summary, NULL};
     RITZ_OWN(cli_table) table = {0};
@@ -346,31 +346,31 @@ static ritz_status publish(const picture *p)
     return cli_table_save(&table, p->path);
 }
 
+static ritz_status draw_files(picture *p, const char *template)
+{
+    char data[PICTURE_PATH], script[PICTURE_PATH];
+    RITZ_OWN(ritz_draft) draft = {0}, data_draft = {0}, script_draft = {0};
+    RITZ_OWN(cli_table) text = {0};
+
+    RITZ_CHECK(write_script(p, template, &text));
+    RITZ_CHECK(put_beside(p, &p->data, ".tsv", &data_draft, data));
+    RITZ_CHECK(put_beside(p, &text, ".gp", &script_draft, script));
+    RITZ_CHECK(ritz_draft_new(p->path, &draft));
+    RITZ_CHECK(run_gnuplot(script, data, draft.name));
+    RITZ_CHECK(ritz_text_read(draft.name, &p->drawn));
+    RITZ_REFUSE_IF(!strstr(p->drawn, "</svg>"), RITZ_ERR_FILE,
+                   "gnuplot drew no picture");
+    return p->keep ? publish_picture(p) : RITZ_OK;
+}
+
 ritz_status picture_draw(picture *p, const char *template, const char *title,
                          const char *summary)
 {
     ritz_status status = RITZ_OK;
-    char data[PICTURE_PATH], script[PICTURE_PATH];
-    ritz_draft draft = {0}, data_draft = {0}, script_draft = {0};
-    cli_table text = {0};
 
     snprintf(p->title, sizeof p->title, "%s", title);
     p->summary = summary;
-    RITZ_TRY(write_script(p, template, &text));
-    RITZ_TRY(put_beside(p, &p->data, ".tsv", &data_draft, data));
-    RITZ_TRY(put_beside(p, &text, ".gp", &script_draft, script));
-    RITZ_TRY(ritz_draft_new(p->path, &draft));
-    RITZ_TRY(run_gnuplot(script, data, draft.name));
-    RITZ_TRY(ritz_text_read(draft.name, &p->drawn));
-    RITZ_FAIL_IF(!strstr(p->drawn, "</svg>"), RITZ_ERR_FILE,
-                 "gnuplot drew no picture");
-    if (p->keep)
-        RITZ_TRY(publish(p));
-done:
-    cli_table_free(&text);
-    ritz_draft_free(&draft);
-    ritz_draft_free(&data_draft);
-    ritz_draft_free(&script_draft);
+    status = draw_files(p, template);
     return p->keep ? ritz_context(status, p->path) : status;
 }
 

@@ -68,6 +68,9 @@ void *picture_room(picture *p, int64_t count, size_t size);
             return RITZ_ERR_MEMORY;                                            \
     } while (0)
 
+/** "rotor.h5" of "build/rotor.h5". */
+const char *picture_base(const char *path);
+
 /** Another sign of the legend; what is more than there is room for is left. */
 void picture_add_sign(picture *p, const picture_sign *sign);
 

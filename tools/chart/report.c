@@ -85,12 +85,10 @@ static ritz_status put_picture(report_page *p, const struct part *part,
 {
     chart_request request = *p->request;
     char names[400] = "", caption[500];
-    size_t used = 0;
 
-    for (int64_t k = 0; k < some->count && used < sizeof names; k++)
-        used +=
-            (size_t)snprintf(names + used, sizeof names - used, "%s%.60s",
-                             k > 0 ? ", " : "", chart_base(some->file[k].path));
+    for (int64_t k = 0; k < some->count; k++)
+        sink_append(names, sizeof names, "%s%.60s", k > 0 ? ", " : "",
+                    picture_base(some->file[k].path));
     RITZ_CHECK(report_figure(p, part->kind, some, &request, names));
     if (request.channel.count > 0 || !have_singular(some->count, some->file))
         return RITZ_OK;
@@ -220,23 +218,28 @@ static void put_hash(FILE *file, const char *name)
 static void put_field(FILE *file, const char *name, size_t length,
                       const report_page *p)
 {
+    static const struct {
+        const char *name, *part;
+        void (*put)(FILE *file, const char *part);
+    } embedded[] = {{"style", "report.css", put_lines},
+                    {"script", "report.js", put_lines},
+                    {"style-hash", "report.css", put_hash},
+                    {"script-hash", "report.js", put_hash}};
     char word[32] = "";
 
     snprintf(word, sizeof word, "%.*s", (int)length, name);
-    if (strcmp(word, "style") == 0)
-        put_lines(file, "report.css");
-    else if (strcmp(word, "script") == 0)
-        put_lines(file, "report.js");
-    else if (strcmp(word, "style-hash") == 0)
-        put_hash(file, "report.css");
-    else if (strcmp(word, "script-hash") == 0)
-        put_hash(file, "report.js");
-    else if (strcmp(word, "version") == 0)
-        fputs(ritz_version(), file);
-    else if (strcmp(word, "title") == 0)
+    for (size_t k = 0; k < sizeof embedded / sizeof *embedded; k++)
+        if (strcmp(word, embedded[k].name) == 0) {
+            embedded[k].put(file, embedded[k].part);
+            return;
+        }
+    if (strcmp(word, "title") == 0)
         put_title(file, p->sources);
     else
-        fputs(strcmp(word, "body") == 0 ? p->body.text : p->links.text, file);
+        fputs(strcmp(word, "version") == 0 ? ritz_version()
+              : strcmp(word, "body") == 0  ? p->body.text
+                                           : p->links.text,
+              file);
 }
 
 static ritz_status put_page(FILE *file, const report_page *p)
@@ -258,32 +261,32 @@ static ritz_status put_page(FILE *file, const report_page *p)
     return RITZ_OK;
 }
 
+static void report_page_free(report_page *p)
+{
+    cli_table_free(&p->body);
+    cli_table_free(&p->links);
+    cli_table_free(&p->figures);
+}
+
 ritz_status report_write(const chart_sources *sources,
                          const chart_request *request)
 {
-    ritz_status status = RITZ_OK;
-    report_page p = {.sources = sources, .request = request};
-    cli_table whole = {0};
+    RITZ_OWN(report_page) p = {.sources = sources, .request = request};
+    RITZ_OWN(cli_table) whole = {0};
     const size_t length = strlen(request->path);
 
-    RITZ_FAIL_IF(length >= 4 && strcmp(request->path + length - 4, ".svg") == 0,
-                 RITZ_ERR_ARGUMENT,
-                 "a report is a page, no picture: -o NAME.html");
-    RITZ_TRY(cli_table_new(&p.body));
-    RITZ_TRY(cli_table_new(&p.links));
-    RITZ_TRY(cli_table_new(&p.figures));
-    RITZ_TRY(cli_table_new(&whole));
-    RITZ_TRY(report_records(&p));
-    RITZ_TRY(put_pictures(&p));
-    RITZ_FAIL_IF(p.num_pictures == 0, RITZ_ERR_ARGUMENT,
-                 "there is nothing to draw in these files");
-    RITZ_TRY(put_provenance(&p));
-    RITZ_TRY(put_page(whole.file, &p));
-    RITZ_TRY(cli_table_save(&whole, request->path));
-done:
-    cli_table_free(&p.body);
-    cli_table_free(&p.links);
-    cli_table_free(&p.figures);
-    cli_table_free(&whole);
-    return status;
+    RITZ_REFUSE_IF(
+        length >= 4 && strcmp(request->path + length - 4, ".svg") == 0,
+        RITZ_ERR_ARGUMENT, "a report is a page, no picture: -o NAME.html");
+    RITZ_CHECK(cli_table_new(&p.body));
+    RITZ_CHECK(cli_table_new(&p.links));
+    RITZ_CHECK(cli_table_new(&p.figures));
+    RITZ_CHECK(cli_table_new(&whole));
+    RITZ_CHECK(report_records(&p));
+    RITZ_CHECK(put_pictures(&p));
+    RITZ_REFUSE_IF(p.num_pictures == 0, RITZ_ERR_ARGUMENT,
+                   "there is nothing to draw in these files");
+    RITZ_CHECK(put_provenance(&p));
+    RITZ_CHECK(put_page(whole.file, &p));
+    return cli_table_save(&whole, request->path);
 }

@@ -34,14 +34,10 @@ static void add_signs(report_page *p, const picture *from)
 
         while (own < end && !look_alike(own, s))
             own++;
-        if (own == end && p->num_signs < PICTURE_SIGNS) {
+        if (own == end && p->num_signs < PICTURE_SIGNS)
             p->sign[p->num_signs++] = *s;
-        } else if (own < end && !strstr(own->name, s->name)) {
-            size_t used = strlen(own->name);
-
-            snprintf(own->name + used, sizeof own->name - used, ", %s",
-                     s->name);
-        }
+        else if (own < end && !strstr(own->name, s->name))
+            sink_append(own->name, sizeof own->name, ", %s", s->name);
     }
 }
 

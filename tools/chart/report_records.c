@@ -2,13 +2,13 @@
  * Sections of the page that records make: the verdict (which method, how large,
  * how wrong, how fast), charts, and methods side by side.
  */
+#include "base/alloc.h"
 #include "chart/html.h"
 #include "chart/report.h"
 
 #include <ritz/verify.h>
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* --- the verdict ---------------------------------------------------------- */
@@ -74,10 +74,11 @@ static const record *find_answer(const records *all, reason *why)
 
 static const record *find_second(const records *all)
 {
-    for (int64_t k = 0; k < all->count; k++)
-        if (all->item[k].runner_up)
-            return &all->item[k];
-    return NULL;
+    const record *r = all->item;
+
+    while (r < all->item + all->count && !r->runner_up)
+        r++;
+    return r < all->item + all->count ? r : NULL;
 }
 
 static void begin_card(FILE *file, const char *question, const char *answer)
@@ -405,28 +406,22 @@ static void put_tables(FILE *file, const record_set *s)
 
 /* Subjects of records that can be drawn, each once; borrowed names. */
 static ritz_status list_subjects(const records *all, int64_t *count,
-                                 const char ***out)
+                                 const char **list)
 {
-    const char **list = calloc((size_t)all->count + 1, sizeof *list);
-    int64_t n = 0;
-
-    RITZ_REFUSE_IF(!list, RITZ_ERR_MEMORY, "no memory for records");
-    *out = list;
     for (int64_t k = 0; k < all->count; k++) {
         const record *r = &all->item[k];
         int64_t i = 0;
 
         if (!r->errors || r->order < 0 || !*r->method)
             continue;
-        while (i < n && strcmp(list[i], r->subject) != 0)
+        while (i < *count && strcmp(list[i], r->subject) != 0)
             i++;
-        if (i == n)
-            list[n++] = r->subject;
+        if (i == *count)
+            list[(*count)++] = r->subject;
     }
-    RITZ_REFUSE_IF(n == 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(*count == 0, RITZ_ERR_ARGUMENT,
                    "no record has a method, an order and errors: those of "
                    "ritz-verify and ritz-fit do");
-    *count = n;
     return RITZ_OK;
 }
 
@@ -508,40 +503,32 @@ static ritz_status put_charts(report_page *p, const record_set *s,
     return report_end(p);
 }
 
-static void put_verdict(report_page *p, const record_set *s,
-                        const char *subject, long long number)
-{
-    html_print(p->body.file,
-               "<section aria-labelledby=\"v%lld\">\n<h2 id=\"v%lld\">%s</h2>"
-               "\n",
-               number, number, *subject ? subject : "What was found");
-    put_answer(p->body.file, s);
-    fprintf(p->body.file, "</section>\n");
-}
-
 ritz_status report_records(report_page *p)
 {
-    ritz_status status = RITZ_OK;
-    const char **subject = NULL;
-    record_set s = {0};
+    const records *all = &p->sources->runs;
+    RITZ_OWN_ARRAY const char **subject = NULL;
     int64_t count = 0;
 
-    if (p->sources->runs.count == 0)
+    if (all->count == 0)
         return RITZ_OK;
-    RITZ_TRY(list_subjects(&p->sources->runs, &count, &subject));
+    RITZ_CHECK_NEW(subject, all->count); /* NOLINT: of pointers */
+    RITZ_CHECK(list_subjects(all, &count, subject));
     /* verdicts of all subjects come first */
     for (int64_t k = 0; k < 2 * count; k++) {
         const char *of = subject[k % count];
+        RITZ_OWN(record_set) s = {0};
 
-        RITZ_TRY(record_set_new(&p->sources->runs, of, &s));
-        if (k < count)
-            put_verdict(p, &s, of, k);
-        else
-            RITZ_TRY(put_charts(p, &s, of, count > 1 ? of : ""));
-        record_set_free(&s);
+        RITZ_CHECK(record_set_new(all, of, &s));
+        if (k >= count) {
+            RITZ_CHECK(put_charts(p, &s, of, count > 1 ? of : ""));
+            continue;
+        }
+        html_print(p->body.file,
+                   "<section aria-labelledby=\"v%lld\">\n"
+                   "<h2 id=\"v%lld\">%s</h2>\n",
+                   (long long)k, (long long)k, *of ? of : "What was found");
+        put_answer(p->body.file, &s);
+        fprintf(p->body.file, "</section>\n");
     }
-done:
-    record_set_free(&s);
-    free(subject);
-    return status;
+    return RITZ_OK;
 }

@@ -4,7 +4,7 @@
  */
 #include "testing.h"
 
-#include "assembly/turns.h"
+#include "assembly/joints.h"
 #include "bodies.h"
 #include "folder.h"
 #include "scenes.h"
