@@ -160,57 +160,51 @@ static const struct kind {
     {"CORD2C", ritz_bulk_take_by_points, RITZ_CYLINDRICAL},
     {"CORD2R", ritz_bulk_take_by_points, RITZ_RECTANGULAR},
     {"CORD2S", ritz_bulk_take_by_points, RITZ_SPHERICAL},
-    {"CRBAR", take_constraint, false},
-    {"CRBE1", take_constraint, false},
-    {"CRBE2", take_constraint, false},
-    {"CRBE3", take_constraint, false},
-    {"CRIGD1", take_constraint, false},
-    {"CRIGD2", take_constraint, false},
-    {"CRIGD3", take_constraint, false},
-    {"CRIGDR", take_constraint, false},
-    {"CRROD", take_constraint, false},
-    {"CRSPLINE", take_constraint, false},
-    {"CRTRPLT", take_constraint, false},
     {"GRDSET", ritz_bulk_take_defaults, 0},
     {"GRID", ritz_bulk_take_grid, 0},
     {"MPC", take_constraint, true},
     {"MPCADD", take_sum, RITZ_SELECT_MPC},
     {"QSET", take_pairs, RITZ_SET_Q},
     {"QSET1", take_set, RITZ_SET_Q},
-    {"RBAR", take_constraint, false},
-    {"RBAR1", take_constraint, false},
-    {"RBE1", take_constraint, false},
-    {"RBE2", take_constraint, false},
-    {"RBE2GS", take_constraint, false},
-    {"RBE3", take_constraint, false},
-    {"RJOINT", take_constraint, false},
-    {"RROD", take_constraint, false},
-    {"RSPLINE", take_constraint, false},
-    {"RSSCON", take_constraint, false},
-    {"RTRPLT", take_constraint, false},
-    {"RTRPLT1", take_constraint, false},
     {"SPC", take_pairs, RITZ_BULK_SPC},
     {"SPC1", take_set, RITZ_BULK_SPC},
     {"SPCADD", take_sum, RITZ_SELECT_SPC},
     {"SPOINT", take_points, 0},
 };
 
-static int compare_name(const void *name, const void *kind)
-{
-    const struct kind *one = kind;
+/* Elements that make dofs depend on others; sorted. */
+static const char *const CONSTRAINTS[] = {
+    "CRBAR",  "CRBE1",   "CRBE2",  "CRBE3",    "CRIGD1",  "CRIGD2",
+    "CRIGD3", "CRIGDR",  "CRROD",  "CRSPLINE", "CRTRPLT", "RBAR",
+    "RBAR1",  "RBE1",    "RBE2",   "RBE2GS",   "RBE3",    "RJOINT",
+    "RROD",   "RSPLINE", "RSSCON", "RTRPLT",   "RTRPLT1"};
 
-    return strcmp(name, one->name);
+/* Of tables whose rows begin with a name. */
+static int compare_name(const void *name, const void *row)
+{
+    const char *const *one = row;
+
+    return strcmp(name, *one);
 }
 
-/* Take every card of the deck that says something of grids or sets. */
+/* How a card is taken, if it says something of grids or sets. */
+static const struct kind *find_kind(const char *name)
+{
+    static const struct kind constraint = {"", take_constraint, false};
+
+    if (bsearch(name, CONSTRAINTS, sizeof CONSTRAINTS / sizeof *CONSTRAINTS,
+                sizeof *CONSTRAINTS, compare_name))
+        return &constraint;
+    return bsearch(name, KINDS, sizeof KINDS / sizeof *KINDS, sizeof *KINDS,
+                   compare_name);
+}
+
 static ritz_status take_cards(ritz_bulk_cards *all)
 {
     RITZ_OWN(ritz_card) card = {0};
 
     for (int64_t k = 0; k < all->cards.num_entries; k++) {
-        const struct kind *kind =
-            bsearch(all->cards.entry[k].name, KINDS,
-                    sizeof KINDS / sizeof *KINDS, sizeof *KINDS, compare_name);
+        const struct kind *kind = find_kind(all->cards.entry[k].name);
 
         if (!kind)
             continue;

@@ -23,13 +23,13 @@ enum { RITZ_RECTANGULAR, RITZ_CYLINDRICAL, RITZ_SPHERICAL };
 typedef struct ritz_bulk_frame {
     int64_t id, line;
     int32_t kind;
-    bool by_grids;    /* CORD1: else CORD2 */
-    int64_t grid[3];  /* by grids: ids of origin, z axis, x-z plane */
-    int64_t base;     /* by points: the frame these are in */
+    int64_t grid[3];  /* CORD1: ids of origin, z axis, x-z plane; CORD2: 0 */
+    int64_t base[3];  /* frame in which each of these points is given */
     double point[9];  /* the points, row by row */
     int32_t progress; /* of resolving it */
     double origin[3]; /* basic frame, from here on */
     double axes[9];   /* row i is axis i */
+    int64_t row;      /* of these among the axes of the grids; 0: not yet */
 } ritz_bulk_frame;
 
 /* Grids from..to have these directions in a set; one grid if from == to. */

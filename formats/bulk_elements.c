@@ -47,17 +47,6 @@ static const ritz_bulk_cell cells[] = {
     {"PLOTEL", 1, 1, RITZ_CELL_LINE, 0},
 };
 
-/* Cells as they are gathered. */
-typedef struct gathering {
-    ritz_elements elements;
-    int64_t kinds_room, firsts_room, grids_room, num_grids, num_firsts;
-} gathering;
-
-static void gathering_free(gathering *it)
-{
-    ritz_elements_free(&it->elements);
-}
-
 static int compare_name(const void *name, const void *cell)
 {
     const ritz_bulk_cell *one = cell;
@@ -98,50 +87,41 @@ static int64_t place_of(int64_t kind, int64_t i)
     return i < corners + 2 * edges ? i + edges : i - edges;
 }
 
-static ritz_status add_cell(int64_t kind, const int64_t *grid, gathering *it)
-{
-    ritz_elements *all = &it->elements;
-    int64_t size = ritz_cell_size(kind);
-
-    RITZ_CHECK_ROOM(all->kind, all->count, it->kinds_room);
-    RITZ_CHECK_ROOM(all->first, it->num_firsts, it->firsts_room);
-    if (it->num_firsts == 0)
-        all->first[it->num_firsts++] = 0;
-    RITZ_CHECK_ROOM(all->first, it->num_firsts, it->firsts_room);
-    for (int64_t i = 0; i < size; i++) {
-        RITZ_CHECK_ROOM(all->grid, it->num_grids, it->grids_room);
-        all->grid[it->num_grids++] = grid[place_of(kind, i)];
-    }
-    all->first[it->num_firsts++] = it->num_grids;
-    all->kind[all->count++] = kind;
-    return RITZ_OK;
-}
-
 /* A spring to the ground joins one grid and is nothing to be seen. */
 static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
-                             gathering *it, int64_t *strange)
+                             int64_t *room, ritz_deck *out)
 {
+    ritz_elements *all = &out->elements;
     int64_t grid[MOST_GRIDS];
     int64_t corners = ritz_cell_size(cell->kind);
     int64_t most = cell->full ? ritz_cell_size(cell->full) : corners;
     int64_t count = take_grids(card, cell, most, grid);
+    int64_t kind = cell->full && count == most ? cell->full : cell->kind;
+    int64_t *end = &all->first[all->count + 1];
 
     if (count == 1 && corners == 2)
         return RITZ_OK;
     if (count < corners) {
-        (*strange)++;
+        out->num_strange++;
         return RITZ_OK;
     }
-    return add_cell(cell->full && count == most ? cell->full : cell->kind, grid,
-                    it);
+    *end = all->first[all->count];
+    for (int64_t i = 0; i < ritz_cell_size(kind); i++) {
+        RITZ_CHECK_ROOM(all->grid, *end, *room);
+        all->grid[(*end)++] = grid[place_of(kind, i)];
+    }
+    all->kind[all->count++] = kind;
+    return RITZ_OK;
 }
 
 ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out)
 {
     const ritz_cards *cards = &all->cards;
-    RITZ_OWN(gathering) it = {0};
     RITZ_OWN(ritz_card) card = {0};
+    int64_t room = 0;
 
+    RITZ_CHECK_NEW(out->elements.kind, cards->num_entries);
+    RITZ_CHECK_NEW(out->elements.first, cards->num_entries + 1);
     for (int64_t k = 0; k < cards->num_entries; k++) {
         const ritz_bulk_cell *cell =
             bsearch(cards->entry[k].name, cells, sizeof cells / sizeof *cells,
@@ -156,8 +136,7 @@ ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out)
             continue;
         }
         RITZ_CHECK(status);
-        RITZ_CHECK(take_cell(&card, cell, &it, &out->num_strange));
+        RITZ_CHECK(take_cell(&card, cell, &room, out));
     }
-    RITZ_MOVE(out->elements, it.elements);
     return RITZ_OK;
 }

@@ -340,8 +340,7 @@ ritz_status ritz_bulk_take_by_grids(ritz_bulk_cards *all, const ritz_card *card,
     int64_t last = card->count > 4 ? 4 : 0;
 
     for (int64_t from = 0; from <= last; from += 4) {
-        ritz_bulk_frame new = {
-            .line = card->entry->line, .kind = how, .by_grids = true};
+        ritz_bulk_frame new = {.line = card->entry->line, .kind = how};
 
         RITZ_CHECK(ritz_card_id(card, from, &new.id));
         for (int64_t k = 0; k < 3; k++)
@@ -358,7 +357,8 @@ ritz_status ritz_bulk_take_by_points(ritz_bulk_cards *all,
     ritz_bulk_frame new = {.line = card->entry->line, .kind = how};
 
     RITZ_CHECK(ritz_card_id(card, 0, &new.id));
-    RITZ_CHECK(ritz_card_whole(card, 1, 0, &new.base));
+    RITZ_CHECK(ritz_card_whole(card, 1, 0, &new.base[0]));
+    new.base[1] = new.base[2] = new.base[0];
     for (int64_t k = 0; k < 9; k++)
         RITZ_CHECK(ritz_card_real(card, 2 + k, 0.0, &new.point[k]));
     return add_frame(all, &new);
@@ -368,8 +368,7 @@ static bool is_same_frame(const void *left, const void *right)
 {
     const ritz_bulk_frame *a = left;
     const ritz_bulk_frame *b = right;
-    bool same =
-        a->kind == b->kind && a->by_grids == b->by_grids && a->base == b->base;
+    bool same = a->kind == b->kind && a->base[0] == b->base[0];
 
     for (int64_t k = 0; k < 3; k++)
         same = same && a->grid[k] == b->grid[k];
@@ -389,25 +388,22 @@ static ritz_bulk_frame *find_frame(const ritz_bulk_cards *all, int64_t id)
 
 /* ---- resolving ---------------------------------------------------------- */
 
-/* Id of the k-th frame that a frame rests on, 0 for none or the basic one. */
-static ritz_status rests_on(const ritz_bulk_cards *all,
-                            const ritz_bulk_frame *frame, int k, int64_t *out)
+/* Where the grids are that define a frame. */
+static ritz_status locate_grids(const ritz_bulk_cards *all,
+                                ritz_bulk_frame *frame)
 {
-    const ritz_bulk_grid *grid = NULL;
+    for (int64_t k = 0; k < 3 && frame->grid[k]; k++) {
+        const ritz_bulk_grid *grid = ritz_bulk_find_grid(all, frame->grid[k]);
 
-    *out = 0;
-    if (!frame->by_grids) {
-        *out = k == 0 ? frame->base : 0;
-        return RITZ_OK;
+        if (!grid)
+            return ritz_cards_refuse(&all->cards, frame->line,
+                                     "coordinate system %" PRId64
+                                     " is defined by grid %" PRId64
+                                     ", which there is not",
+                                     frame->id, frame->grid[k]);
+        frame->base[k] = grid->cp;
+        memcpy(frame->point + 3 * k, grid->x, sizeof grid->x);
     }
-    grid = ritz_bulk_find_grid(all, frame->grid[k]);
-    if (!grid)
-        return ritz_cards_refuse(&all->cards, frame->line,
-                                 "coordinate system %" PRId64
-                                 " is defined by grid %" PRId64
-                                 ", which there is not",
-                                 frame->id, frame->grid[k]);
-    *out = grid->cp;
     return RITZ_OK;
 }
 
@@ -418,13 +414,11 @@ static ritz_status next_open(const ritz_bulk_cards *all,
 {
     *out = NULL;
     for (int k = 0; k < 3 && !*out; k++) {
-        ritz_bulk_frame *below = NULL;
-        int64_t id = 0;
+        int64_t id = frame->base[k];
+        ritz_bulk_frame *below = id ? find_frame(all, id) : NULL;
 
-        RITZ_CHECK(rests_on(all, frame, k, &id));
         if (id == 0)
             continue;
-        below = find_frame(all, id);
         if (!below || below->progress == OPEN)
             return ritz_cards_refuse(
                 &all->cards, frame->line,
@@ -444,19 +438,9 @@ static ritz_status resolve_frame(const ritz_bulk_cards *all,
 {
     double p[3][3];
 
-    for (int64_t k = 0; k < 3; k++) {
-        const double *x = &frame->point[3 * k];
-        int64_t base = frame->base;
-
-        if (frame->by_grids) {
-            const ritz_bulk_grid *grid =
-                ritz_bulk_find_grid(all, frame->grid[k]);
-
-            x = grid->x;
-            base = grid->cp;
-        }
-        place_point(base ? find_frame(all, base) : NULL, x, p[k]);
-    }
+    for (int64_t k = 0; k < 3; k++)
+        place_point(frame->base[k] ? find_frame(all, frame->base[k]) : NULL,
+                    &frame->point[3 * k], p[k]);
     frame->progress = RESOLVED;
     return orient_frame(all, p[0], p[1], p[2], frame);
 }
@@ -491,6 +475,8 @@ static ritz_status resolve_frames(ritz_bulk_cards *all)
 
     RITZ_CHECK_NEW(stack, all->num_frames);
     for (int64_t k = 0; k < all->num_frames; k++)
+        RITZ_CHECK(locate_grids(all, &all->frame[k]));
+    for (int64_t k = 0; k < all->num_frames; k++)
         RITZ_CHECK(resolve_from(all, k, stack));
     return RITZ_OK;
 }
@@ -519,29 +505,14 @@ static bool is_identity(const double axes[static 9])
     return true;
 }
 
-/* Grids while their axes are collected. */
-typedef struct builder {
-    int64_t room;
-    int64_t *row; /* of each rectangular frame, 0 until it has one */
-    ritz_grids grids;
-} builder;
-
-static void builder_free(builder *build)
+static ritz_status add_axes(const double axes[static 9], int64_t *room,
+                            ritz_grids *grids, int64_t *out)
 {
-    free(build->row);
-    ritz_grids_free(&build->grids);
-}
-
-static ritz_status add_axes(builder *build, const double axes[static 9],
-                            int64_t *out)
-{
-    ritz_grids *grids = &build->grids;
     double *more = NULL;
 
-    *out = 0;
     if (is_identity(axes))
         return RITZ_OK;
-    more = ritz_array_grown(grids->axes, grids->num_frames, &build->room,
+    more = ritz_array_grown(grids->axes, grids->num_frames, room,
                             9 * sizeof *axes);
     if (!more)
         return RITZ_ERR_MEMORY;
@@ -552,15 +523,14 @@ static ritz_status add_axes(builder *build, const double axes[static 9],
 }
 
 static ritz_status place_grid(const ritz_bulk_cards *all, int64_t k,
-                              builder *build)
+                              int64_t *room, ritz_grids *out)
 {
     const ritz_bulk_grid *grid = &all->grid[k];
-    double *position = &build->grids.position[3 * k];
+    double *position = &out->position[3 * k];
     ritz_bulk_frame *frame = NULL;
     double axes[9];
-    int64_t *shared = NULL;
 
-    build->grids.id[k] = grid->id;
+    out->id[k] = grid->id;
     RITZ_CHECK(frame_of(all, grid, grid->cp, &frame));
     place_point(frame, grid->x, position);
     for (int j = 0; j < 3; j++)
@@ -571,38 +541,35 @@ static ritz_status place_grid(const ritz_bulk_cards *all, int64_t k,
     RITZ_CHECK(frame_of(all, grid, grid->cd, &frame));
     if (!frame)
         return RITZ_OK;
-    if (frame->kind == RITZ_RECTANGULAR)
-        shared = &build->row[frame - all->frame];
-    if (shared && *shared) {
-        build->grids.frame[k] = *shared;
-        return RITZ_OK;
+    if (!frame->row) {
+        find_axes(frame, position, axes);
+        RITZ_CHECK(add_axes(axes, room, out, &out->frame[k]));
+    } else {
+        out->frame[k] = frame->row;
     }
-    find_axes(frame, position, axes);
-    RITZ_CHECK(add_axes(build, axes, &build->grids.frame[k]));
-    if (shared)
-        *shared = build->grids.frame[k];
+    if (frame->kind == RITZ_RECTANGULAR)
+        frame->row = out->frame[k];
     return RITZ_OK;
 }
 
 ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out)
 {
-    RITZ_OWN(builder) build = {.room = 1};
+    RITZ_OWN(ritz_grids) grids = {.num_frames = 1};
+    int64_t room = 1;
 
     RITZ_CHECK(settle_grids(all));
     RITZ_CHECK(settle_items(&all->cards, "coordinate system", &all->num_frames,
                             sizeof *all->frame, all->frame, is_same_frame));
     RITZ_CHECK(resolve_frames(all));
-    RITZ_CHECK_NEW(build.row, all->num_frames);
-    RITZ_CHECK_NEW(build.grids.id, all->num_grids);
-    RITZ_CHECK_NEW(build.grids.position, 3 * all->num_grids);
-    RITZ_CHECK_NEW(build.grids.frame, all->num_grids);
-    RITZ_CHECK_NEW(build.grids.axes, 9);
+    RITZ_CHECK_NEW(grids.id, all->num_grids);
+    RITZ_CHECK_NEW(grids.position, 3 * all->num_grids);
+    RITZ_CHECK_NEW(grids.frame, all->num_grids);
+    RITZ_CHECK_NEW(grids.axes, 9);
     for (int k = 0; k < 9; k += 4)
-        build.grids.axes[k] = 1.0;
-    build.grids.num_frames = 1;
-    build.grids.count = all->num_grids;
+        grids.axes[k] = 1.0;
+    grids.count = all->num_grids;
     for (int64_t k = 0; k < all->num_grids; k++)
-        RITZ_CHECK(place_grid(all, k, &build));
-    RITZ_MOVE(*out, build.grids);
+        RITZ_CHECK(place_grid(all, k, &room, &grids));
+    RITZ_MOVE(*out, grids);
     return RITZ_OK;
 }

@@ -293,78 +293,56 @@ typedef struct marker {
     bool taken;
 } marker;
 
-static void copy_marker(const char *text, int64_t length,
+static void copy_marker(ritz_piece piece, int64_t skipped,
                         char out[RITZ_CARD_NAME + 1])
 {
     int64_t k = 0;
 
-    ritz_card_trim(&text, &length);
-    for (; k < length && k < RITZ_CARD_NAME; k++)
-        out[k] = ritz_card_upper(text[k]);
+    piece.text += skipped;
+    piece.length -= skipped;
+    ritz_card_trim(&piece.text, &piece.length);
+    for (; k < piece.length && k < RITZ_CARD_NAME; k++)
+        out[k] = ritz_card_upper(piece.text[k]);
     out[k] = '\0';
+}
+
+static bool has_plus(ritz_piece piece)
+{
+    return piece.length > 0 && (*piece.text == '+' || *piece.text == '*');
 }
 
 /* Marker that a continuation begins with: field 1 without its + or *. */
 static void leading_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
 {
-    const char *text = NULL;
-    int64_t length = 0;
-
-    ritz_view_name(line, &text, &length);
-    if (length > 0)
-        copy_marker(text + 1, length - 1, out);
-    else
-        out[0] = '\0';
+    copy_marker(line->name, line->name.length > 0, out);
 }
 
-/* Marker that a line ends with: what is in columns 73-80. */
+/* Marker that a line ends with: what is in columns 73-80, of which the first
+ * does not count, whatever it holds. */
 static void trailing_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
 {
-    const char *text = NULL;
-    int64_t length = 0;
-    int64_t mark = 0;
+    ritz_piece last = line->marker;
 
-    out[0] = '\0';
-    if (line->free) {
-        (void)ritz_view_items(line, &mark);
-        if (mark == 0)
-            return;
-        (void)ritz_view_item(line, mark, &text, &length);
-    } else {
-        if (line->length <= RITZ_CARD_DATA)
-            return;
-        text = line->text + RITZ_CARD_DATA;
-        length = line->length - RITZ_CARD_DATA;
+    if (last.length > 0 && ritz_card_is_blank(*last.text)) {
+        ritz_card_trim(&last.text, &last.length);
+    } else if (last.length > 0 && !line->free && !has_plus(last)) {
+        last.text++;
+        last.length--;
     }
-    /* the first of the eight columns does not count, whatever it holds */
-    if (length > 0 && ritz_card_is_blank(*text))
-        ritz_card_trim(&text, &length);
-    else if (length > 0 && !line->free && *text != '+' && *text != '*') {
-        text++;
-        length--;
-    }
-    if (length > 0 && (*text == '+' || *text == '*')) {
-        text++;
-        length--;
-    }
-    copy_marker(text, length, out);
+    copy_marker(last, has_plus(last), out);
 }
 
-static ritz_status add_entry(ritz_cards *cards, int64_t line,
-                             const ritz_view *seen)
+static ritz_status add_entry(ritz_cards *cards, int64_t line, ritz_piece name)
 {
     ritz_entry *entry = NULL;
-    const char *name = NULL;
-    int64_t length = 0;
 
-    ritz_view_name(seen, &name, &length);
     RITZ_CHECK_ROOM(cards->entry, cards->num_entries, cards->entries_room);
     entry = &cards->entry[cards->num_entries++];
     *entry = (ritz_entry){.line = line};
-    for (int64_t k = 0; k < length && k < RITZ_CARD_NAME_SIZE - 1; k++) {
-        if (name[k] == '*' || ritz_card_is_blank(name[k]))
+    for (int64_t k = 0; k < name.length && k < RITZ_CARD_NAME_SIZE - 1; k++) {
+        if (name.text[k] == '*' || ritz_card_is_blank(name.text[k]))
             break;
-        entry->name[k] = ritz_card_upper(name[k]);
+        entry->name[k] = ritz_card_upper(name.text[k]);
     }
     return RITZ_OK;
 }
@@ -399,7 +377,7 @@ static ritz_status join_neighbours(ritz_cards *cards, strays *list)
     for (int64_t k = 0; k < cards->num_lines; k++) {
         ritz_view_look(&cards->line[k], &seen);
         if (!seen.continues) {
-            RITZ_CHECK(add_entry(cards, k, &seen));
+            RITZ_CHECK(add_entry(cards, k, seen.name));
             trailing_marker(&seen, trail);
             continue;
         }

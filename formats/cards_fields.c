@@ -131,97 +131,34 @@ ritz_status ritz_card_directions(const ritz_card *card, int64_t k, uint8_t *out)
 
 /* ---- fields ------------------------------------------------------------- */
 
-static ritz_status add_field(ritz_card *card, int64_t line, const char *text,
-                             int64_t length)
+static ritz_status add_field(ritz_card *card, int64_t line, ritz_piece piece)
 {
     ritz_field *field = NULL;
 
-    ritz_card_trim(&text, &length);
-    if (length >= RITZ_CARD_FIELD_SIZE)
+    ritz_card_trim(&piece.text, &piece.length);
+    if (piece.length >= RITZ_CARD_FIELD_SIZE)
         return ritz_cards_refuse(card->cards, line,
                                  "'%.16s...' in %s is too long for a field",
-                                 text, card->entry->name);
+                                 piece.text, card->entry->name);
     RITZ_CHECK_ROOM(card->field, card->count, card->room);
     field = &card->field[card->count++];
-    memcpy(field->text, text, (size_t)length);
-    field->text[length] = '\0';
+    if (piece.length > 0)
+        memcpy(field->text, piece.text, (size_t)piece.length);
+    field->text[piece.length] = '\0';
     field->line = line;
     return RITZ_OK;
 }
 
-/* True if a free line has anything but blanks after item k. */
-static bool more_items(const ritz_view *line, int64_t k)
-{
-    const char *text = NULL;
-    int64_t length = 0;
-
-    if (!ritz_view_item(line, k + 1, &text, &length))
-        return false;
-    for (const char *c = text; c < line->text + line->length; c++)
-        if (*c != ',' && !ritz_card_is_blank(*c))
-            return true;
-    return false;
-}
-
-static ritz_status add_free(ritz_card *card, int64_t line,
-                            const ritz_view *seen)
-{
-    int64_t width = seen->large ? 4 : 8;
-    const char *text = "";
-    int64_t length = 0;
-    int64_t mark = 0;
-    int64_t count = ritz_view_items(seen, &mark);
-    const char *tenth = "";
-    int64_t tenth_length = 0;
-
-    if (mark > width)
-        (void)ritz_view_item(seen, mark, &tenth, &tenth_length);
-    if ((tenth_length > 0 && !ritz_view_is_marker(tenth, tenth_length) &&
-         *tenth != '+') ||
-        more_items(seen, width + 1))
-        return ritz_cards_refuse(card->cards, line,
-                                 "a line of %s has more than %d fields",
-                                 card->entry->name, (int)width);
-    for (int64_t k = 0; k < width; k++) {
-        length = 0;
-        if (k < count)
-            (void)ritz_view_item(seen, k + 1, &text, &length);
-        RITZ_CHECK(add_field(card, line, text, length));
-    }
-    return RITZ_OK;
-}
-
-static ritz_status add_fixed(ritz_card *card, int64_t line,
-                             const ritz_view *seen)
-{
-    int64_t width = seen->large ? 16 : 8;
-
-    for (int64_t column = RITZ_CARD_NAME; column < RITZ_CARD_DATA;
-         column += width) {
-        int64_t length = seen->length - column;
-
-        if (length > width)
-            length = width;
-        if (length < 0)
-            length = 0;
-        RITZ_CHECK(
-            add_field(card, line, length ? seen->text + column : "", length));
-    }
-    return RITZ_OK;
-}
-
 /* The name must fill its field alone, or the columns are not what they seem. */
-static ritz_status check_name(const ritz_card *card, const ritz_view *seen)
+static ritz_status check_name(const ritz_card *card, ritz_piece name)
 {
-    const char *name = NULL;
-    int64_t length = 0;
-
-    ritz_view_name(seen, &name, &length);
-    for (int64_t k = 0; k < length; k++)
-        if (ritz_card_is_blank(name[k]) && name[length - 1] != '*')
+    for (int64_t k = 0; k < name.length; k++)
+        if (ritz_card_is_blank(name.text[k]) &&
+            name.text[name.length - 1] != '*')
             return ritz_cards_refuse(card->cards, card->entry->line,
                                      "'%.*s' is not the name of a card alone",
-                                     (int)(length < 20 ? length : 20), name);
+                                     (int)(name.length < 20 ? name.length : 20),
+                                     name.text);
     return RITZ_OK;
 }
 
@@ -235,13 +172,15 @@ ritz_status ritz_card_take(const ritz_cards *cards, int64_t k, ritz_card *card)
     for (int64_t at = card->entry->line; at >= 0; at = cards->line[at].next) {
         ritz_view_look(&cards->line[at], &seen);
         if (at == card->entry->line)
-            RITZ_CHECK(check_name(card, &seen));
+            RITZ_CHECK(check_name(card, seen.name));
         while (!seen.large && card->count % 8 != 0)
-            RITZ_CHECK(add_field(card, at, "", 0));
-        if (seen.free)
-            RITZ_CHECK(add_free(card, at, &seen));
-        else
-            RITZ_CHECK(add_fixed(card, at, &seen));
+            RITZ_CHECK(add_field(card, at, (ritz_piece){0}));
+        if (seen.overfull)
+            return ritz_cards_refuse(cards, at,
+                                     "a line of %s has more than %d fields",
+                                     card->entry->name, (int)seen.width);
+        for (int64_t j = 0; j < seen.width; j++)
+            RITZ_CHECK(add_field(card, at, seen.field[j]));
     }
     while (card->count > 0 && !card->field[card->count - 1].text[0])
         card->count--;

@@ -33,34 +33,25 @@ void ritz_card_uncomment(const char *line, int64_t *length);
 bool ritz_card_begins(const char *line, int64_t length, const char *word,
                       const char **rest);
 
-/* A fixed line with its tabs expanded, or a free line as it is. */
+/* Part of a line. */
+typedef struct ritz_piece {
+    const char *text;
+    int64_t length;
+} ritz_piece;
+
+/* A line of whichever layout, taken apart; parts may point into `buffer`. */
 typedef struct ritz_view {
     bool free;
-    bool large;     /* '*' ends the name, or begins a continuation */
-    bool continues; /* it belongs to a card above */
-    int64_t length;
-    const char *text; /* buffer, or the line itself */
+    bool large;      /* '*' ends the name, or begins a continuation */
+    bool continues;  /* it belongs to a card above */
+    bool overfull;   /* there are more fields than `width` */
+    ritz_piece name; /* without blanks around it */
+    int64_t width;   /* fields of data: 8, or 4 large ones */
+    ritz_piece field[8];
+    ritz_piece marker; /* of the line that continues it */
     char buffer[RITZ_CARD_COLUMNS + 1];
 } ritz_view;
 
 void ritz_view_look(const ritz_line *line, ritz_view *out);
-
-/** First field of a line, without blanks around it. */
-void ritz_view_name(const ritz_view *line, const char **text, int64_t *length);
-
-/** Item @p k of a free line, parted by commas; false if there is none. */
-bool ritz_view_item(const ritz_view *line, int64_t k, const char **text,
-                    int64_t *length);
-
-/** True if a free item is a marker, +C1 or *, rather than a number. */
-bool ritz_view_is_marker(const char *text, int64_t length);
-
-/**
- * Items of a free line that are data: up to the ninth, or to a marker that
- * ends the line before.
- *
- * @param[out] mark  the item of the marker, 0 if there is none
- */
-int64_t ritz_view_items(const ritz_view *line, int64_t *mark);
 
 #endif

@@ -42,7 +42,6 @@ typedef struct ritz_dmig_header {
     bool complex, polar;
     int64_t digits;
     int64_t count; /* of its terms */
-    int64_t rank;  /* place in the file */
 } ritz_dmig_header;
 
 /* A(row, col) = re + i im, as a column card gives it. */
@@ -56,8 +55,9 @@ typedef struct ritz_dmig_cards {
     ritz_cards cards;
     int64_t num_headers, headers_room;
     int64_t num_terms, terms_room;
-    int64_t wanted;           /* rank of the matrix whose terms are taken */
-    ritz_dmig_header *header; /* sorted by name once taken */
+    int64_t wanted; /* the matrix whose terms are taken */
+    int64_t last;   /* that was found by name: cards of one come together */
+    ritz_dmig_header *header; /* in the order of the file */
     ritz_dmig_term *term;
 } ritz_dmig_cards;
 
@@ -68,12 +68,16 @@ static void ritz_dmig_cards_free(ritz_dmig_cards *all)
     free(all->term);
 }
 
-static int compare_names(const void *a, const void *b)
+/* The matrix of that name; -1 if there is none. */
+static int64_t find_header(ritz_dmig_cards *all, const char *name)
 {
-    const ritz_dmig_header *left = a;
-    const ritz_dmig_header *right = b;
+    for (int64_t k = 0; k < all->num_headers; k++) {
+        int64_t at = (all->last + k) % all->num_headers;
 
-    return strcmp(left->name, right->name);
+        if (strcmp(all->header[at].name, name) == 0)
+            return all->last = at;
+    }
+    return -1;
 }
 
 static char upper_case(char letter)
@@ -107,8 +111,7 @@ static bool is_header(const ritz_card *card)
 
 static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
 {
-    ritz_dmig_header header = {.line = card->entry->line,
-                               .rank = all->num_headers};
+    ritz_dmig_header header = {.line = card->entry->line};
     int64_t type = 0;
     int64_t polar = 0;
 
@@ -125,21 +128,11 @@ static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
         return ritz_card_refuse(card, 5, "0 or 1 for POLAR");
     header.complex = type > 2;
     header.polar = polar == 1;
+    if (find_header(all, header.name) >= 0)
+        return ritz_cards_refuse(&all->cards, header.line,
+                                 "DMIG '%s' has a second header", header.name);
     RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
     all->header[all->num_headers++] = header;
-    return RITZ_OK;
-}
-
-static ritz_status sort_headers(ritz_dmig_cards *all)
-{
-    if (all->num_headers > 1)
-        qsort(all->header, (size_t)all->num_headers, sizeof *all->header,
-              compare_names);
-    for (int64_t k = 1; k < all->num_headers; k++)
-        if (compare_names(&all->header[k - 1], &all->header[k]) == 0)
-            return ritz_cards_refuse(&all->cards, all->header[k].line,
-                                     "DMIG '%s' has a second header",
-                                     all->header[k].name);
     return RITZ_OK;
 }
 
@@ -192,21 +185,19 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
 
 static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
 {
-    ritz_dmig_header named = {0};
-    ritz_dmig_header *owner = NULL;
+    char name[RITZ_NAME_SIZE];
+    int64_t owner = 0;
     ritz_dof col = {0};
 
-    RITZ_CHECK(take_name(card, named.name));
-    if (all->num_headers > 0)
-        owner = bsearch(&named, all->header, (size_t)all->num_headers,
-                        sizeof named, compare_names);
-    if (!owner)
+    RITZ_CHECK(take_name(card, name));
+    owner = find_header(all, name);
+    if (owner < 0)
         return ritz_cards_refuse(&all->cards, card->entry->line,
-                                 "DMIG '%s' has no header", named.name);
+                                 "DMIG '%s' has no header", name);
     RITZ_CHECK(take_dof(card, 1, &col));
-    for (int64_t k = 4; k < card->count && owner->rank == all->wanted; k += 4)
+    for (int64_t k = 4; k < card->count && owner == all->wanted; k += 4)
         if (!is_empty_group(card, k))
-            RITZ_CHECK(add_term(all, owner, card, k, col));
+            RITZ_CHECK(add_term(all, &all->header[owner], card, k, col));
     return RITZ_OK;
 }
 
@@ -255,25 +246,6 @@ static int64_t find_position(ritz_dof wanted, int64_t count,
     return found - dof;
 }
 
-/* Both triangles where one is given. */
-static ritz_status list_terms(const ritz_dmig_header *owner,
-                              const ritz_dmig_term *terms, int64_t nrow,
-                              const ritz_dof *row, int64_t ncol,
-                              const ritz_dof *col, ritz_triplets *out)
-{
-    RITZ_CHECK(ritz_triplets_reserve(out, 2 * owner->count));
-    for (int64_t k = 0; k < owner->count; k++) {
-        const ritz_dmig_term *one = &terms[k];
-        int64_t i = find_position(one->row, nrow, row);
-        int64_t j = find_position(one->col, ncol, col);
-
-        ritz_triplets_put(out, i, j, one->re, one->im);
-        if (owner->form == RITZ_DMIG_SYMMETRIC && i != j)
-            ritz_triplets_put(out, j, i, one->re, one->im);
-    }
-    return RITZ_OK;
-}
-
 /* The matrix of a header and its sorted terms. */
 static ritz_status make_matrix(const ritz_dmig_header *owner,
                                const ritz_dmig_term *terms, ritz_matrix *out)
@@ -297,8 +269,16 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     if (!square)
         RITZ_CHECK(
             collect_dofs(terms, owner->count, false, true, &ncol, &new.col));
-    RITZ_CHECK(list_terms(owner, terms, nrow, new.row, ncol,
-                          square ? new.row : new.col, &list));
+    RITZ_CHECK(ritz_triplets_reserve(&list, 2 * owner->count));
+    for (int64_t k = 0; k < owner->count; k++) {
+        const ritz_dmig_term *one = &terms[k];
+        int64_t i = find_position(one->row, nrow, new.row);
+        int64_t j = find_position(one->col, ncol, square ? new.row : new.col);
+
+        ritz_triplets_put(&list, i, j, one->re, one->im);
+        if (new.symmetric && i != j) /* one triangle is given */
+            ritz_triplets_put(&list, j, i, one->re, one->im);
+    }
     RITZ_CHECK(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
     RITZ_MOVE(*out, new);
     return RITZ_OK;
@@ -314,14 +294,6 @@ static int compare_terms(const void *a, const void *b)
     if (!order)
         order = ritz_dof_compare(&left->row, &right->row);
     return order ? order : ritz_cards_compare_ids(&left->line, &right->line);
-}
-
-static int compare_ranks(const void *a, const void *b)
-{
-    const ritz_dmig_header *left = a;
-    const ritz_dmig_header *right = b;
-
-    return ritz_cards_compare_ids(&left->rank, &right->rank);
 }
 
 static void swap_to_lower(ritz_dmig_term *one)
@@ -374,13 +346,13 @@ static ritz_status check_terms(const ritz_dmig_header *owner,
     return RITZ_OK;
 }
 
-/* The deck and its headers. */
-static ritz_status take_headers(const ritz_foreign *file, ritz_dmig_cards *all)
+/* The deck: its headers, and the terms of the matrix that is wanted. */
+static ritz_status take_deck(const ritz_foreign *file, ritz_dmig_cards *all)
 {
     RITZ_CHECK(ritz_cards_parse(NULL, file->bytes, file->size, file->folder,
                                 &all->cards));
     RITZ_CHECK(take_cards(all, true));
-    return sort_headers(all);
+    return take_cards(all, false);
 }
 
 /* Sizes follow from the columns: headers do not state them. */
@@ -388,19 +360,16 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
 {
     RITZ_OWN(ritz_dmig_cards) all = {.wanted = -1};
 
-    RITZ_CHECK(take_headers(file, &all));
-    RITZ_CHECK(take_cards(&all, false)); /* columns without a header */
+    RITZ_CHECK(take_deck(file, &all));
     RITZ_REFUSE_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                    "there is no DMIG card in the bulk data");
-    qsort(all.header, (size_t)all.num_headers, sizeof *all.header,
-          compare_ranks);
     for (int64_t k = 0; k < all.num_headers; k++) {
         const ritz_dmig_header *header = &all.header[k];
         ritz_listed item = {.nrow = -1,
                             .ncol = -1,
                             .symmetric = header->form == RITZ_DMIG_SYMMETRIC,
                             .is_complex = header->complex,
-                            .at = header->rank};
+                            .at = k};
 
         memcpy(item.name, header->name, sizeof item.name);
         RITZ_CHECK(ritz_listing_add(out, &item));
@@ -414,11 +383,8 @@ static ritz_status read_matrix(const ritz_foreign *file,
     RITZ_OWN(ritz_dmig_cards) all = {.wanted = which->at};
     const ritz_dmig_header *header = NULL;
 
-    RITZ_CHECK(take_headers(file, &all));
-    RITZ_CHECK(take_cards(&all, false));
-    header = all.header;
-    while (header->rank != which->at)
-        header++;
+    RITZ_CHECK(take_deck(file, &all));
+    header = &all.header[which->at];
     sort_terms(header, &all);
     RITZ_CHECK(check_terms(header, &all));
     return make_matrix(header, all.term, out);
