@@ -358,7 +358,8 @@ static ritz_status check_nodes(const ritz_nodes *nodes)
         const int64_t *row = nodes->row + 3 * k;
         bool all = row[0] >= 0 && row[1] >= 0 && row[2] >= 0;
 
-        RITZ_REFUSE_IF(!all && !ritz_nodes_basic(nodes, k), RITZ_ERR_ARGUMENT,
+        RITZ_REFUSE_IF(!all && !ritz_axes_basic(ritz_nodes_axes(nodes, k)),
+                       RITZ_ERR_ARGUMENT,
                        "grid %lld has axes of its own and brings only some of "
                        "its translations",
                        (long long)nodes->grids->id[nodes->grid[k]]);

@@ -483,9 +483,6 @@ ritz_status ritz_component_attached(const ritz_component *component,
 const ritz_port *ritz_component_port(const ritz_component *component,
                                      const char *name);
 
-/** Row of a dof, -1 if there is none. @cost O(n) */
-int64_t ritz_component_row(const ritz_component *component, ritz_dof dof);
-
 /** Index of grid @p id in @p grids, -1 if it has no position. O(log n) */
 int64_t ritz_grids_find(const ritz_grids *grids, int64_t id);
 
@@ -698,7 +695,10 @@ typedef struct ritz_basis {
 
 /** @p r columns of kind normal, with neither dof nor hertz nor residual. */
 ritz_status ritz_columns_new(int64_t r, ritz_columns *out);
-ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out);
+
+/** Columns at[0], at[1], ... of some in place of @p out; @p at NULL: the first. */
+ritz_status ritz_columns_pick(const ritz_columns *columns, int64_t count,
+                              const int64_t *at, ritz_columns *out);
 
 /** Basis of @p r zero columns for @p n dofs. */
 ritz_status ritz_basis_new(int64_t n, int64_t r, ritz_basis *out);

@@ -40,19 +40,22 @@ ritz_status ritz_columns_new(int64_t r, ritz_columns *out)
     return RITZ_OK;
 }
 
-ritz_status ritz_columns_copy(const ritz_columns *columns, ritz_columns *out)
+ritz_status ritz_columns_pick(const ritz_columns *columns, int64_t count,
+                              const int64_t *at, ritz_columns *out)
 {
-    ritz_columns copy = {0};
-    size_t r = (size_t)columns->count;
+    RITZ_OWN(ritz_columns) picked = {0};
 
-    RITZ_CHECK(ritz_columns_new(columns->count, &copy));
-    if (r > 0) {
-        memcpy(copy.kind, columns->kind, r * sizeof *copy.kind);
-        memcpy(copy.dof, columns->dof, r * sizeof *copy.dof);
-        memcpy(copy.hertz, columns->hertz, r * sizeof *copy.hertz);
-        memcpy(copy.residual, columns->residual, r * sizeof *copy.residual);
+    RITZ_CHECK(ritz_columns_new(count, &picked));
+    for (int64_t j = 0; j < count; j++) {
+        int64_t k = at ? at[j] : j;
+
+        picked.kind[j] = columns->kind[k];
+        picked.dof[j] = columns->dof[k];
+        picked.hertz[j] = columns->hertz[k];
+        picked.residual[j] = columns->residual[k];
     }
-    *out = copy;
+    ritz_columns_free(out);
+    RITZ_MOVE(*out, picked);
     return RITZ_OK;
 }
 

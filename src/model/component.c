@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/names.h"
 #include "base/tolerances.h"
 
 #include <ritz/model.h>
@@ -17,65 +18,63 @@ static ritz_status check_matrix(const ritz_sparse *A, int64_t n)
     return ritz_sparse_check(A, A->colptr[n]);
 }
 
-static ritz_status settle_matrix(ritz_sparse *A, int64_t n, bool symmetrise,
-                                 double *worst)
+/* What is settled, and the worst asymmetry that was averaged away. */
+typedef struct settling {
+    int64_t n;
+    bool symmetrise; /* any asymmetry */
+    double worst;
+} settling;
+
+static ritz_status settle_matrix(ritz_sparse *A, settling *s)
 {
     double asymmetry = 0.0;
 
-    RITZ_CHECK(check_matrix(A, n));
+    RITZ_CHECK(check_matrix(A, s->n));
     asymmetry = ritz_sparse_asymmetry(A);
-    RITZ_REFUSE_IF(asymmetry > RITZ_SYMMETRIC_SOURCE && !symmetrise,
+    RITZ_REFUSE_IF(asymmetry > RITZ_SYMMETRIC_SOURCE && !s->symmetrise,
                    RITZ_ERR_FORMAT,
                    "unsymmetric by %.1e of its largest entry, %.0e is let pass "
                    "(--symmetrise averages it away)",
                    asymmetry, RITZ_SYMMETRIC_SOURCE);
     if (asymmetry > 0.0)
         RITZ_CHECK(ritz_sparse_symmetrise(A));
-    *worst = fmax(*worst, asymmetry);
+    s->worst = fmax(s->worst, asymmetry);
     return RITZ_OK;
 }
 
-/* An absent matrix stays so, or becomes an empty one. */
-static ritz_status settle_optional(ritz_sparse *A, int64_t n, bool complete,
-                                   bool symmetrise, double *worst)
+/* An absent matrix becomes an empty one. */
+static ritz_status complete_matrix(ritz_sparse *A, settling *s)
 {
-    if (A->colptr)
-        return settle_matrix(A, n, symmetrise, worst);
-    return complete ? ritz_sparse_new(n, n, 0, A) : RITZ_OK;
+    return A->colptr ? settle_matrix(A, s) : ritz_sparse_new(s->n, s->n, 0, A);
 }
 
 /*
  * D alone may be unsymmetric by more than rounding: a rotor's gyroscopic terms
  * are, and D is kept as it came then.
  */
-static ritz_status settle_damping(ritz_sparse *D, int64_t n, bool symmetrise,
-                                  double *worst)
+static ritz_status settle_damping(ritz_sparse *D, settling *s)
 {
-    if (!D->colptr)
-        return RITZ_OK;
-    RITZ_CHECK(check_matrix(D, n));
-    if (symmetrise || ritz_sparse_asymmetry(D) <= RITZ_SYMMETRIC_SOURCE)
-        RITZ_CHECK(settle_matrix(D, n, symmetrise, worst));
+    RITZ_CHECK(check_matrix(D, s->n));
+    if (s->symmetrise || ritz_sparse_asymmetry(D) <= RITZ_SYMMETRIC_SOURCE)
+        RITZ_CHECK(settle_matrix(D, s));
     return RITZ_OK;
 }
 
 static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
 {
-    int64_t n = component->num_dofs;
-    double worst = 0.0;
+    settling s = {component->num_dofs, symmetrise, 0.0};
 
     RITZ_REFUSE_IF(!component->M.colptr, RITZ_ERR_FORMAT, "there is no mass");
-    RITZ_CHECK_IN("M", settle_matrix(&component->M, n, symmetrise, &worst));
-    RITZ_CHECK_IN("K",
-                  settle_optional(&component->K, n, true, symmetrise, &worst));
-    RITZ_CHECK_IN("D", settle_damping(&component->D, n, symmetrise, &worst));
-    RITZ_CHECK_IN(
-        "K4", settle_optional(&component->K4, n, false, symmetrise, &worst));
+    RITZ_CHECK_IN("M", settle_matrix(&component->M, &s));
+    RITZ_CHECK_IN("K", complete_matrix(&component->K, &s));
+    if (component->D.colptr)
+        RITZ_CHECK_IN("D", settle_damping(&component->D, &s));
+    if (component->K4.colptr)
+        RITZ_CHECK_IN("K4", settle_matrix(&component->K4, &s));
     for (int64_t k = 0; k < component->num_loads; k++)
         RITZ_CHECK_IN(component->load[k].name,
-                      settle_optional(&component->load[k].KG, n, true,
-                                      symmetrise, &worst));
-    component->asymmetry = worst;
+                      complete_matrix(&component->load[k].KG, &s));
+    component->asymmetry = s.worst;
     return RITZ_OK;
 }
 
@@ -181,19 +180,11 @@ ritz_status ritz_component_install(ritz_component *component)
 const ritz_port *ritz_component_port(const ritz_component *component,
                                      const char *name)
 {
-    const char *near = NULL;
+    const ritz_names names = {"port", component->num_ports,
+                              (char *)component->port, sizeof *component->port};
+    int64_t k = ritz_names_seek(&names, name);
 
-    for (int64_t k = 0; k < component->num_ports; k++)
-        if (strcmp(component->port[k].name, name) == 0)
-            return &component->port[k];
-    near = ritz_text_nearest(name, component->num_ports,
-                             (const char *)component->port,
-                             sizeof *component->port);
-    if (near)
-        ritz_record("there is no port '%s', is '%s' meant?", name, near);
-    else
-        ritz_record("there is no port '%s'", name);
-    return NULL;
+    return k < 0 ? NULL : &component->port[k];
 }
 
 /* A dof that several ports share is attached once. */
@@ -211,12 +202,11 @@ static void attach_port(const ritz_port *port, bool *taken, ritz_dofs *set)
 ritz_status ritz_component_attached(const ritz_component *component,
                                     const char *ports, ritz_dofs *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dofs set = {0};
-    bool *taken = NULL;
+    RITZ_OWN(ritz_dofs) set = {0};
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    RITZ_NEW(taken, component->num_dofs);
-    RITZ_NEW(set.at, component->num_dofs);
+    RITZ_CHECK_NEW(taken, component->num_dofs);
+    RITZ_CHECK_NEW(set.at, component->num_dofs);
     for (int64_t k = 0; !ports && k < component->num_ports; k++)
         attach_port(&component->port[k], taken, &set);
     while (ports && *ports) {
@@ -224,32 +214,18 @@ ritz_status ritz_component_attached(const ritz_component *component,
         size_t length = strcspn(ports, ",");
         const ritz_port *port = NULL;
 
-        RITZ_FAIL_IF(length >= sizeof name, RITZ_ERR_ARGUMENT,
-                     "there is no port '%.40s...'", ports);
+        RITZ_REFUSE_IF(length >= sizeof name, RITZ_ERR_ARGUMENT,
+                       "there is no port '%.40s...'", ports);
         memcpy(name, ports, length);
         name[length] = '\0';
         port = ritz_component_port(component, name);
-        if (!port) {
-            status = RITZ_ERR_ARGUMENT;
-            goto done;
-        }
+        if (!port)
+            return RITZ_ERR_ARGUMENT;
         attach_port(port, taken, &set);
         ports += length + (ports[length] != '\0');
     }
     RITZ_MOVE(*out, set);
-done:
-    free(taken);
-    ritz_dofs_free(&set);
-    return status;
-}
-
-int64_t ritz_component_row(const ritz_component *component, ritz_dof dof)
-{
-    for (int64_t k = 0; k < component->num_dofs; k++)
-        if (component->dof[k].grid == dof.grid &&
-            component->dof[k].component == dof.component)
-            return k;
-    return -1;
+    return RITZ_OK;
 }
 
 void ritz_component_free(ritz_component *component)

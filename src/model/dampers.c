@@ -1,5 +1,5 @@
-
 #include "base/alloc.h"
+#include "base/names.h"
 
 #include <ritz/model.h>
 
@@ -24,8 +24,8 @@ ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out)
 }
 
 /* Copy names and numbers of `from` to places first, first + 1, ... */
-static void put_damper(const ritz_dampers *from, int64_t first,
-                       ritz_dampers *to)
+static void put_dampers(const ritz_dampers *from, int64_t first,
+                        ritz_dampers *to)
 {
     size_t bytes = (size_t)from->count * sizeof *from->c;
 
@@ -45,7 +45,7 @@ ritz_status ritz_dampers_project(const ritz_dampers *dampers,
     if (dampers->count == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_dampers_new(0, dampers->count, &projected));
-    put_damper(dampers, 0, &projected);
+    put_dampers(dampers, 0, &projected);
     ritz_dense_free(&projected.B);
     RITZ_CHECK(ritz_dense_mul_tn(T, &dampers->B, &projected.B));
     RITZ_MOVE(*out, projected);
@@ -86,20 +86,13 @@ ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
     if (more->count == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_dampers_new(n, count + more->count, &all));
-    if (count > 0) {
-        put_damper(dampers, 0, &all);
-        memcpy(all.B.val, dampers->B.val,
-               (size_t)(n * count) * sizeof *all.B.val);
-    }
-    put_damper(more, count, &all);
-    for (int64_t k = 0; k < more->count; k++) {
-        if (more->B.nrow > 0)
-            memcpy(ritz_dense_col(&all.B, count + k) + first,
-                   ritz_dense_col(&more->B, k),
-                   (size_t)more->B.nrow * sizeof *all.B.val);
-        if (owner)
-            RITZ_CHECK(own_name(owner, all.name[count + k]));
-    }
+    if (count > 0)
+        put_dampers(dampers, 0, &all);
+    ritz_dense_put(&dampers->B, 0, 0, &all.B);
+    put_dampers(more, count, &all);
+    ritz_dense_put(&more->B, first, count, &all.B);
+    for (int64_t k = count; k < all.count && owner; k++)
+        RITZ_CHECK(own_name(owner, all.name[k]));
     ritz_dampers_free(dampers);
     RITZ_MOVE(*dampers, all);
     return RITZ_OK;
@@ -141,25 +134,14 @@ ritz_status ritz_dampers_check(const ritz_dampers *dampers, int64_t n)
 
 int64_t ritz_dampers_find(const ritz_dampers *dampers, const char *name)
 {
-    const char *near = NULL;
+    const ritz_names names = {"damper", dampers->count, (char *)dampers->name,
+                              sizeof *dampers->name};
 
-    for (int64_t j = 0; j < dampers->count; j++)
-        if (strcmp(dampers->name[j], name) == 0)
-            return j;
-    if (dampers->count > 0)
-        near = ritz_text_nearest(name, dampers->count, dampers->name[0],
-                                 sizeof *dampers->name);
-    if (near)
-        ritz_record("there is no damper '%s', is '%s' meant?", name, near);
-    else
-        ritz_record("there is no damper '%.63s'%s", name,
-                    dampers->count > 0 ? "" : ", the model has none");
-    return -1;
+    return ritz_names_seek(&names, name);
 }
 
 ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strrchr(text, '=');
     char name[RITZ_NAME_SIZE] = "";
     char number[RITZ_NAME_SIZE] = "";
@@ -179,19 +161,16 @@ ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text)
         good =
             ritz_text_real(number, &c) && (!star || ritz_text_real(star, &k));
     }
-    RITZ_FAIL_IF(!good, RITZ_ERR_ARGUMENT,
-                 "'%.80s' is not of the form NAME=C or NAME=C*K", text);
-    RITZ_FAIL_IF(c < 0.0, RITZ_ERR_ARGUMENT,
-                 "'%.80s': a damper's c is not negative", text);
+    RITZ_REFUSE_IF(!good, RITZ_ERR_ARGUMENT,
+                   "'%.80s' is not of the form NAME=C or NAME=C*K", text);
+    RITZ_REFUSE_IF(c < 0.0, RITZ_ERR_ARGUMENT,
+                   "'%.80s': a damper's c is not negative", text);
     j = ritz_dampers_find(dampers, name);
-    if (j < 0) {
-        status = RITZ_ERR_ARGUMENT;
-        goto done;
-    }
+    if (j < 0)
+        return RITZ_ERR_ARGUMENT;
     dampers->c[j] = c;
     dampers->k[j] = star ? k : dampers->k[j];
-done:
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_dampers_free(ritz_dampers *dampers)
@@ -210,64 +189,52 @@ void ritz_dampers_free(ritz_dampers *dampers)
 /* Entries that b b' of one damper may have in a sparse matrix. */
 static const int64_t most_entries = 1000000;
 
-/* Damping and stiffness of damper j that D and K do not contain yet. */
-static double more_c(const ritz_dampers *dampers, int64_t j)
+/* Whether there is more than the matrix holds already. */
+static bool has_more(int64_t count, const double *value, const double *held)
 {
-    return dampers->c[j] - dampers->held_c[j];
-}
-
-static double more_k(const ritz_dampers *dampers, int64_t j)
-{
-    return dampers->k[j] - dampers->held_k[j];
-}
-
-static bool has_any(const ritz_dampers *dampers,
-                    double (*more)(const ritz_dampers *, int64_t))
-{
-    for (int64_t j = 0; j < dampers->count; j++)
-        if (more(dampers, j) != 0.0)
+    for (int64_t j = 0; j < count; j++)
+        if (value[j] - held[j] != 0.0)
             return true;
     return false;
 }
 
-static void note_installed(ritz_dampers *dampers)
+static ritz_status check_coordinates(const ritz_dampers *dampers, int64_t n)
 {
-    for (int64_t j = 0; j < dampers->count; j++) {
-        dampers->held_c[j] = dampers->c[j];
-        dampers->held_k[j] = dampers->k[j];
-    }
+    RITZ_REFUSE_IF(dampers->count > 0 && dampers->B.nrow != n,
+                   RITZ_ERR_ARGUMENT,
+                   "dampers of %" PRId64 " coordinates in a model of %" PRId64,
+                   dampers->B.nrow, n);
+    return RITZ_OK;
 }
 
-/* A += sum more_j b_j b_j', whose two triangles are the same to the bit. */
-static void add_influence(const ritz_dampers *dampers,
-                          double (*more)(const ritz_dampers *, int64_t),
-                          ritz_dense *A)
+/* A += sum (value_j - held_j) b_j b_j', whose two triangles are the same to the
+   bit; A then holds them. */
+static ritz_status add_influence(const ritz_dampers *dampers,
+                                 const double *value, double *held,
+                                 ritz_dense *A)
 {
+    int64_t n = dampers->B.nrow;
+
+    if (has_more(dampers->count, value, held) && !A->val)
+        RITZ_CHECK(ritz_dense_new(n, n, A));
     for (int64_t j = 0; j < dampers->count; j++) {
         const double *b = ritz_dense_col(&dampers->B, j);
-        double value = more(dampers, j);
+        double more = value[j] - held[j];
 
-        for (int64_t c = 0; value != 0.0 && c < A->ncol; c++)
-            for (int64_t r = 0; r < A->nrow; r++)
-                ritz_dense_col(A, c)[r] += value * (b[r] * b[c]);
+        for (int64_t c = 0; more != 0.0 && c < n; c++)
+            for (int64_t r = 0; r < n; r++)
+                ritz_dense_col(A, c)[r] += more * (b[r] * b[c]);
+        held[j] = value[j];
     }
+    return RITZ_OK;
 }
 
 ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
                                  ritz_dense *D)
 {
-    int64_t n = K->nrow;
-
-    RITZ_REFUSE_IF(dampers->count > 0 && dampers->B.nrow != n,
-                   RITZ_ERR_ARGUMENT,
-                   "dampers of %" PRId64 " coordinates in a model of %" PRId64,
-                   dampers->B.nrow, n);
-    if (has_any(dampers, more_c) && !D->val)
-        RITZ_CHECK(ritz_dense_new(n, n, D));
-    add_influence(dampers, more_c, D);
-    add_influence(dampers, more_k, K);
-    note_installed(dampers);
-    return RITZ_OK;
+    RITZ_CHECK(check_coordinates(dampers, K->nrow));
+    RITZ_CHECK(add_influence(dampers, dampers->c, dampers->held_c, D));
+    return add_influence(dampers, dampers->k, dampers->held_k, K);
 }
 
 static int64_t count_entries(const ritz_dense *B, int64_t j)
@@ -279,9 +246,9 @@ static int64_t count_entries(const ritz_dense *B, int64_t j)
     return count;
 }
 
-/* sum more_j b_j b_j', sparse, from the few entries of each b. */
+/* sum (value_j - held_j) b_j b_j', sparse, from the few entries of each b. */
 static ritz_status outer_product(const ritz_dampers *dampers,
-                                 double (*more)(const ritz_dampers *, int64_t),
+                                 const double *value, const double *held,
                                  ritz_sparse *out)
 {
     int64_t n = dampers->B.nrow;
@@ -311,42 +278,35 @@ static ritz_status outer_product(const ritz_dampers *dampers,
                 if (b[r] != 0.0) {
                     row[count] = r;
                     col[count] = c;
-                    val[count++] = more(dampers, j) * (b[r] * b[c]);
+                    val[count++] = (value[j] - held[j]) * (b[r] * b[c]);
                 }
     }
     return ritz_sparse_from_triplets(n, n, count, row, col, val, out);
 }
 
-/* A := A + sum more_j b_j b_j'. */
-static ritz_status add_sparse(const ritz_dampers *dampers,
-                              double (*more)(const ritz_dampers *, int64_t),
-                              ritz_sparse *A)
+/* As of a dense matrix. */
+static ritz_status add_sparse(const ritz_dampers *dampers, const double *value,
+                              double *held, ritz_sparse *A)
 {
-    RITZ_OWN(ritz_sparse) part = {0};
-    RITZ_OWN(ritz_sparse) sum = {0};
+    RITZ_OWN(ritz_sparse) part = {0}, sum = {0};
 
-    if (!has_any(dampers, more))
+    if (!has_more(dampers->count, value, held))
         return RITZ_OK;
-    RITZ_CHECK(outer_product(dampers, more, &part));
-    if (A->colptr) {
+    RITZ_CHECK(outer_product(dampers, value, held, &part));
+    if (A->colptr)
         RITZ_CHECK(ritz_sparse_add(1.0, A, 1.0, &part, &sum));
-        ritz_sparse_free(A);
-        RITZ_MOVE(*A, sum);
-    } else {
-        RITZ_MOVE(*A, part);
-    }
+    else
+        RITZ_MOVE(sum, part);
+    ritz_sparse_free(A);
+    RITZ_MOVE(*A, sum);
+    memcpy(held, value, (size_t)dampers->count * sizeof *held);
     return RITZ_OK;
 }
 
 ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
                                         ritz_sparse *D)
 {
-    RITZ_REFUSE_IF(dampers->count > 0 && dampers->B.nrow != K->nrow,
-                   RITZ_ERR_ARGUMENT,
-                   "dampers of %" PRId64 " coordinates in a model of %" PRId64,
-                   dampers->B.nrow, K->nrow);
-    RITZ_CHECK(add_sparse(dampers, more_c, D));
-    RITZ_CHECK(add_sparse(dampers, more_k, K));
-    note_installed(dampers);
-    return RITZ_OK;
+    RITZ_CHECK(check_coordinates(dampers, K->nrow));
+    RITZ_CHECK(add_sparse(dampers, dampers->c, dampers->held_c, D));
+    return add_sparse(dampers, dampers->k, dampers->held_k, K);
 }

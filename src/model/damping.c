@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,7 +120,6 @@ double ritz_damping_ratio(const ritz_damping *damping, double omega)
     case RITZ_DAMPING_MODAL:
         return damping->zeta;
     case RITZ_DAMPING_BANDS:
-        /* an edge that two bands share is the upper one's */
         for (int64_t k = damping->count - 1; k >= 0; k--)
             if (hertz >= damping->band[k][0] && hertz <= damping->band[k][1])
                 return damping->band[k][2];
@@ -151,6 +151,9 @@ double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
 enum { MOST_NUMBERS = RITZ_MOST_RATIOS, NUMBER_SIZE = 32 };
 static_assert(3 * RITZ_MAX_BANDS <= MOST_NUMBERS, "bands are fewer numbers");
 static_assert(2 * RITZ_MOST_POINTS <= MOST_NUMBERS, "points are fewer numbers");
+static_assert(offsetof(ritz_damping, b) ==
+                  offsetof(ritz_damping, a) + sizeof(double),
+              "a and b are numbers one behind the other");
 static_assert(16 + 25 * MOST_NUMBERS <= RITZ_DAMPING_SIZE, "the text fits");
 
 static ritz_status check_ratio(double zeta)
@@ -160,12 +163,6 @@ static ritz_status check_ratio(double zeta)
     RITZ_REFUSE_IF(!(zeta < 1.0), RITZ_ERR_ARGUMENT,
                    "damping ratio %g is overdamped, it must stay below 1",
                    zeta);
-    return RITZ_OK;
-}
-
-static ritz_status check_none(const ritz_damping *damping)
-{
-    (void)damping;
     return RITZ_OK;
 }
 
@@ -246,91 +243,29 @@ static ritz_status check_fit(const ritz_damping *damping)
     return RITZ_OK;
 }
 
-/* The numbers behind the word, in the order of the text; how many. */
-static int64_t numbers_of(const ritz_damping *damping,
-                          double number[MOST_NUMBERS])
-{
-    switch (damping->kind) {
-    case RITZ_DAMPING_NONE:
-        break;
-    case RITZ_DAMPING_MODAL:
-        number[0] = damping->zeta;
-        return 1;
-    case RITZ_DAMPING_BANDS:
-        memcpy(number, damping->band, sizeof damping->band);
-        return 3 * damping->count;
-    case RITZ_DAMPING_RAYLEIGH:
-        number[0] = damping->a;
-        number[1] = damping->b;
-        return 2;
-    case RITZ_DAMPING_MODES:
-        memcpy(number, damping->ratio, sizeof damping->ratio);
-        return damping->count;
-    case RITZ_DAMPING_FIT:
-        memcpy(number, damping->point, sizeof damping->point);
-        return 2 * damping->count;
-    }
-    return 0;
-}
-
-static void take_modal(const double *number, int64_t count, ritz_damping *out)
-{
-    (void)count;
-    out->zeta = number[0];
-}
-
-static void take_bands(const double *number, int64_t count, ritz_damping *out)
-{
-    out->count = count / 3;
-    memcpy(out->band, number, (size_t)count * sizeof *number);
-}
-
-static void take_rayleigh(const double *number, int64_t count,
-                          ritz_damping *out)
-{
-    (void)count;
-    out->a = number[0];
-    out->b = number[1];
-}
-
-static void take_modes(const double *number, int64_t count, ritz_damping *out)
-{
-    out->count = count;
-    memcpy(out->ratio, number, (size_t)count * sizeof *number);
-}
-
-static void take_fit(const double *number, int64_t count, ritz_damping *out)
-{
-    out->count = count / 2;
-    memcpy(out->point, number, (size_t)count * sizeof *number);
-}
-
-static void take_nothing(const double *number, int64_t count, ritz_damping *out)
-{
-    (void)number;
-    (void)count;
-    (void)out;
-}
-
+/* A word and the numbers behind it, which are the fields from an offset on. */
 static const struct form {
     char name[16];
-    int64_t least, step, most; /* numbers behind the word */
-    void (*take)(const double *number, int64_t count, ritz_damping *out);
-    ritz_status (*check)(const ritz_damping *damping);
+    int64_t least, most; /* numbers behind the word */
+    int64_t group;       /* numbers that `count` counts as one; 0: no count */
+    size_t offset;
+    ritz_status (*check)(const ritz_damping *damping); /* NULL: nothing */
     const char *example;
 } forms[] = {
-    [RITZ_DAMPING_NONE] = {"", 0, 1, 0, take_nothing, check_none, ""},
-    [RITZ_DAMPING_MODAL] = {"modal", 1, 1, 1, take_modal, check_modal,
-                            "modal 0.002"},
-    [RITZ_DAMPING_BANDS] = {"bands", 3, 3, 3 * (int64_t)RITZ_MAX_BANDS,
-                            take_bands, check_bands,
+    [RITZ_DAMPING_NONE] = {"", 0, 0, 0, 0, NULL, ""},
+    [RITZ_DAMPING_MODAL] = {"modal", 1, 1, 0, offsetof(ritz_damping, zeta),
+                            check_modal, "modal 0.002"},
+    [RITZ_DAMPING_BANDS] = {"bands", 3, 3 * (int64_t)RITZ_MAX_BANDS, 3,
+                            offsetof(ritz_damping, band), check_bands,
                             "bands 0 5 0.002 5 20 0.005"},
-    [RITZ_DAMPING_RAYLEIGH] = {"rayleigh", 2, 1, 2, take_rayleigh,
+    [RITZ_DAMPING_RAYLEIGH] = {"rayleigh", 2, 2, 0, offsetof(ritz_damping, a),
                                check_rayleigh, "rayleigh 0.1 2e-5"},
-    [RITZ_DAMPING_MODES] = {"modes", 1, 1, RITZ_MOST_RATIOS, take_modes,
-                            check_modes, "modes 0.01 0.02 0.015"},
-    [RITZ_DAMPING_FIT] = {"fit", 4, 2, 2 * (int64_t)RITZ_MOST_POINTS, take_fit,
-                          check_fit, "fit 1 0.01 10 0.02"},
+    [RITZ_DAMPING_MODES] = {"modes", 1, RITZ_MOST_RATIOS, 1,
+                            offsetof(ritz_damping, ratio), check_modes,
+                            "modes 0.01 0.02 0.015"},
+    [RITZ_DAMPING_FIT] = {"fit", 4, 2 * (int64_t)RITZ_MOST_POINTS, 2,
+                          offsetof(ritz_damping, point), check_fit,
+                          "fit 1 0.01 10 0.02"},
 };
 
 enum { NUM_FORMS = sizeof forms / sizeof *forms };
@@ -356,11 +291,14 @@ static size_t print_number(double value, char out[NUMBER_SIZE])
 void ritz_damping_print(const ritz_damping *damping,
                         char text[RITZ_DAMPING_SIZE])
 {
+    const struct form *form = &forms[damping->kind];
+    int64_t count = form->group > 0 ? form->group * damping->count : form->most;
     double number[MOST_NUMBERS];
-    int64_t count = numbers_of(damping, number);
-    size_t used = strlen(forms[damping->kind].name);
+    size_t used = strlen(form->name);
 
-    memcpy(text, forms[damping->kind].name, used + 1);
+    memcpy(text, form->name, used + 1);
+    memcpy(number, (const char *)damping + form->offset,
+           (size_t)count * sizeof *number);
     for (int64_t k = 0; k < count; k++) {
         text[used++] = ' ';
         used += print_number(number[k], text + used);
@@ -369,7 +307,9 @@ void ritz_damping_print(const ritz_damping *damping,
 
 ritz_status ritz_damping_check(const ritz_damping *damping)
 {
-    return forms[damping->kind].check(damping);
+    const struct form *form = &forms[damping->kind];
+
+    return form->check ? form->check(damping) : RITZ_OK;
 }
 
 bool ritz_damping_is_rayleigh(const ritz_damping *damping)
@@ -394,7 +334,7 @@ static ritz_status read_numbers(const struct form *form, int64_t count,
                                 char *word[], double number[MOST_NUMBERS])
 {
     RITZ_REFUSE_IF(count < form->least || count > form->most ||
-                       (count - form->least) % form->step != 0,
+                       (form->group > 0 && count % form->group != 0),
                    RITZ_ERR_ARGUMENT,
                    "damping '%s' with %" PRId64 " numbers is not such as '%s'",
                    form->name, count, form->example);
@@ -426,8 +366,11 @@ ritz_status ritz_damping_parse(const char *text, ritz_damping *out)
                    word[0]);
     if (count > 0) {
         damping.kind = (ritz_damping_kind)kind;
-        RITZ_CHECK(read_numbers(&forms[kind], count - 1, word + 1, number));
-        forms[kind].take(number, count - 1, &damping);
+        RITZ_CHECK(read_numbers(&forms[kind], --count, word + 1, number));
+        memcpy((char *)&damping + forms[kind].offset, number,
+               (size_t)count * sizeof *number);
+        if (forms[kind].group > 0)
+            damping.count = count / forms[kind].group;
     }
     RITZ_CHECK(ritz_damping_check(&damping));
     if (damping.kind == RITZ_DAMPING_FIT)

@@ -6,7 +6,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 ritz_status ritz_dofs_complement(const ritz_dofs *set, int64_t n,
                                  ritz_dofs *out)
@@ -36,13 +35,8 @@ ritz_status ritz_dofs_complement(const ritz_dofs *set, int64_t n,
 
 ritz_status ritz_dofs_copy(const ritz_dofs *set, ritz_dofs *out)
 {
-    ritz_dofs copy = {0};
-
-    RITZ_CHECK_NEW(copy.at, set->count);
-    copy.count = set->count;
-    if (set->count > 0)
-        memcpy(copy.at, set->at, (size_t)set->count * sizeof *set->at);
-    *out = copy;
+    RITZ_CHECK_COPY(out->at, set->at, set->count);
+    out->count = set->count;
     return RITZ_OK;
 }
 

@@ -59,19 +59,14 @@ int64_t ritz_cell_linear(int64_t kind)
 ritz_status ritz_elements_copy(const ritz_elements *elements,
                                ritz_elements *out)
 {
-    RITZ_OWN(ritz_elements) copy = {.count = elements->count};
-    size_t n = (size_t)elements->count;
-    int64_t grids = 0;
+    int64_t n = elements->count;
+    RITZ_OWN(ritz_elements) copy = {.count = n};
 
     if (n == 0)
         return RITZ_OK;
-    grids = elements->first[n];
-    RITZ_CHECK_NEW(copy.kind, copy.count);
-    RITZ_CHECK_NEW(copy.first, copy.count + 1);
-    RITZ_CHECK_NEW(copy.grid, grids);
-    memcpy(copy.kind, elements->kind, n * sizeof *copy.kind);
-    memcpy(copy.first, elements->first, (n + 1) * sizeof *copy.first);
-    memcpy(copy.grid, elements->grid, (size_t)grids * sizeof *copy.grid);
+    RITZ_CHECK_COPY(copy.kind, elements->kind, n);
+    RITZ_CHECK_COPY(copy.first, elements->first, n + 1);
+    RITZ_CHECK_COPY(copy.grid, elements->grid, elements->first[n]);
     RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }

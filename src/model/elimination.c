@@ -27,20 +27,39 @@ typedef struct elimination_row {
     double *val;
 } elimination_row;
 
+static void elimination_row_free(elimination_row *row)
+{
+    free(row->col);
+    free(row->val);
+}
+
+RITZ_ARRAY_OF(elimination_row);
+
 typedef struct eliminator {
     const ritz_equations *equations;
     int64_t num_all;
     const ritz_dof *dof;
     int64_t *at;       /* of each term of the equations, its dof among all */
     int64_t *equation; /* of each dof among all, -1 if it is not dependent */
-    elimination_row *found; /* of each equation */
-    double *sum;            /* among all dofs, zero between uses */
-    bool *used;             /* whether a place of `sum` is in use */
-    int64_t *list;          /* the places in use */
+    elimination_row_array found; /* of each equation */
+    double *sum;                 /* among all dofs, zero between uses */
+    bool *used;                  /* whether a place of `sum` is in use */
+    int64_t *list;               /* the places in use */
     int64_t num_used;
     int64_t *member;  /* of each equation, its place in the circle, or -1 */
     int64_t num_kept; /* entries of all rows found */
 } eliminator;
+
+static void eliminator_free(eliminator *s)
+{
+    free(s->at);
+    free(s->equation);
+    elimination_row_array_free(&s->found);
+    free(s->sum);
+    free(s->used);
+    free(s->list);
+    free(s->member);
+}
 
 enum {
     MOST_COUPLED = 2000,      /* in one circle: a factor of 32 MB */
@@ -66,7 +85,7 @@ static void substitute_known(eliminator *s, int64_t e, int64_t i, ritz_dense *A)
 
     for (int64_t k = eq->first[e]; k < eq->first[e + 1]; k++) {
         int64_t of = s->equation[s->at[k]];
-        const elimination_row *known = of < 0 ? NULL : &s->found[of];
+        const elimination_row *known = of < 0 ? NULL : &s->found.at[of];
 
         if (of < 0)
             add_to_sum(s, s->at[k], eq->share[k]);
@@ -101,12 +120,11 @@ static ritz_status count_entries(eliminator *s, int64_t count)
 static ritz_status keep_row(eliminator *s, const ritz_dense *X, int64_t i,
                             elimination_row *out)
 {
-    ritz_status status = RITZ_OK;
-    elimination_row new = {0};
+    RITZ_OWN(elimination_row) new = {0};
 
-    RITZ_TRY(count_entries(s, s->num_used));
-    RITZ_NEW(new.col, s->num_used);
-    RITZ_NEW(new.val, s->num_used);
+    RITZ_CHECK(count_entries(s, s->num_used));
+    RITZ_CHECK_NEW(new.col, s->num_used);
+    RITZ_CHECK_NEW(new.val, s->num_used);
     for (int64_t k = 0; k < s->num_used; k++) {
         double value = X ? ritz_dense_col(X, k)[i] : s->sum[s->list[k]];
 
@@ -116,10 +134,7 @@ static ritz_status keep_row(eliminator *s, const ritz_dense *X, int64_t i,
         new.val[new.count++] = value;
     }
     RITZ_MOVE(*out, new);
-done:
-    free(new.col);
-    free(new.val);
-    return status;
+    return RITZ_OK;
 }
 
 /* X := A^-1 X. Rows of A have entries of about 1 and need no scaling. */
@@ -159,54 +174,41 @@ static ritz_status gather_circle(eliminator *s, int64_t count,
                                  const int64_t *circle, ritz_dense *A,
                                  ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
-    elimination_row *side = NULL;
+    RITZ_OWN(elimination_row_array) side = {.count = count};
 
-    RITZ_NEW(side, count);
+    RITZ_CHECK_NEW(side.at, count);
     for (int64_t i = 0; i < count; i++) {
         substitute_known(s, circle[i], i, A);
-        RITZ_TRY(keep_row(s, NULL, 0, &side[i]));
+        RITZ_CHECK(keep_row(s, NULL, 0, &side.at[i]));
         for (int64_t k = 0; k < s->num_used; k++)
             s->sum[s->list[k]] = 0.0;
     }
-    RITZ_TRY(ritz_dense_new(count, s->num_used, X));
+    RITZ_CHECK(ritz_dense_new(count, s->num_used, X));
     for (int64_t k = 0; k < s->num_used; k++)
         s->sum[s->list[k]] = (double)k;
     for (int64_t i = 0; i < count; i++)
-        for (int64_t k = 0; k < side[i].count; k++)
-            ritz_dense_col(X, (int64_t)s->sum[side[i].col[k]])[i] =
-                side[i].val[k];
-done:
-    for (int64_t i = 0; side && i < count; i++) {
-        free(side[i].col);
-        free(side[i].val);
-    }
-    free(side);
-    return status;
+        for (int64_t k = 0; k < side.at[i].count; k++)
+            ritz_dense_col(X, (int64_t)s->sum[side.at[i].col[k]])[i] =
+                side.at[i].val[k];
+    return RITZ_OK;
 }
 
 static ritz_status solve_circle(eliminator *s, int64_t count,
                                 const int64_t *circle)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0}, X = {0};
+    RITZ_OWN(ritz_dense) A = {0}, X = {0};
 
-    RITZ_FAIL_IF(count > MOST_COUPLED, RITZ_ERR_FORMAT,
-                 "%" PRId64 " dofs depend on each other in a circle, of at "
-                 "most %d that is solved",
-                 count, MOST_COUPLED);
-    RITZ_TRY(ritz_dense_new(count, count, &A));
+    RITZ_REFUSE_IF(count > MOST_COUPLED, RITZ_ERR_FORMAT,
+                   "%" PRId64 " dofs depend on each other in a circle, of at "
+                   "most %d that is solved",
+                   count, MOST_COUPLED);
+    RITZ_CHECK(ritz_dense_identity(count, &A));
+    RITZ_CHECK(gather_circle(s, count, circle, &A, &X));
+    RITZ_CHECK(solve_dense(s, circle, &A, &X));
     for (int64_t i = 0; i < count; i++)
-        ritz_dense_col(&A, i)[i] = 1.0;
-    RITZ_TRY(gather_circle(s, count, circle, &A, &X));
-    RITZ_TRY(solve_dense(s, circle, &A, &X));
-    for (int64_t i = 0; i < count; i++)
-        RITZ_TRY(keep_row(s, &X, i, &s->found[circle[i]]));
-done:
+        RITZ_CHECK(keep_row(s, &X, i, &s->found.at[circle[i]]));
     clear_sum(s);
-    ritz_dense_free(&A);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 static bool needs_itself(const eliminator *s, int64_t e)
@@ -224,13 +226,11 @@ static bool needs_itself(const eliminator *s, int64_t e)
 static ritz_status settle_circle(eliminator *s, int64_t count,
                                  const int64_t *circle)
 {
-    ritz_status status = RITZ_OK;
-
     if (count == 1 && !needs_itself(s, circle[0])) {
         substitute_known(s, circle[0], 0, NULL);
-        status = keep_row(s, NULL, 0, &s->found[circle[0]]);
+        RITZ_CHECK(keep_row(s, NULL, 0, &s->found.at[circle[0]]));
         clear_sum(s);
-        return status;
+        return RITZ_OK;
     }
     for (int64_t i = 0; i < count; i++)
         s->member[circle[i]] = i;
@@ -346,6 +346,16 @@ typedef struct walk {
     int64_t depth, height, met;
 } walk;
 
+static void walk_free(walk *w)
+{
+    free(w->index);
+    free(w->low);
+    free(w->next);
+    free(w->path);
+    free(w->stack);
+    free(w->waiting);
+}
+
 static void enter_equation(const ritz_equations *eq, int64_t e, walk *w)
 {
     w->index[e] = w->low[e] = ++w->met;
@@ -392,16 +402,15 @@ static ritz_status leave_equation(eliminator *s, int64_t e, walk *w)
 
 static ritz_status settle_all(eliminator *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_equations *eq = s->equations;
-    walk w = {0};
+    RITZ_OWN(walk) w = {0};
 
-    RITZ_NEW(w.index, eq->count);
-    RITZ_NEW(w.low, eq->count);
-    RITZ_NEW(w.next, eq->count);
-    RITZ_NEW(w.path, eq->count);
-    RITZ_NEW(w.stack, eq->count);
-    RITZ_NEW(w.waiting, eq->count);
+    RITZ_CHECK_NEW(w.index, eq->count);
+    RITZ_CHECK_NEW(w.low, eq->count);
+    RITZ_CHECK_NEW(w.next, eq->count);
+    RITZ_CHECK_NEW(w.path, eq->count);
+    RITZ_CHECK_NEW(w.stack, eq->count);
+    RITZ_CHECK_NEW(w.waiting, eq->count);
     for (int64_t e = 0; e < eq->count; e++) {
         if (w.index[e] > 0)
             continue;
@@ -413,17 +422,10 @@ static ritz_status settle_all(eliminator *s)
             if (to >= 0)
                 enter_equation(eq, to, &w);
             else
-                RITZ_TRY(leave_equation(s, here, &w));
+                RITZ_CHECK(leave_equation(s, here, &w));
         }
     }
-done:
-    free(w.index);
-    free(w.low);
-    free(w.next);
-    free(w.path);
-    free(w.stack);
-    free(w.waiting);
-    return status;
+    return RITZ_OK;
 }
 
 /* ---- all together ------------------------------------------------------ */
@@ -453,7 +455,7 @@ static ritz_status build_elimination(const eliminator *s, ritz_elimination *out)
     int64_t count = s->num_all - s->equations->count;
 
     for (int64_t e = 0; e < s->equations->count; e++)
-        count += s->found[e].count;
+        count += s->found.at[e].count;
     RITZ_CHECK_NEW(column, s->num_all);
     RITZ_CHECK_NEW(line, count);
     RITZ_CHECK_NEW(col, count);
@@ -462,7 +464,7 @@ static ritz_status build_elimination(const eliminator *s, ritz_elimination *out)
     count = 0;
     for (int64_t k = 0; k < s->num_all; k++) {
         const elimination_row *known =
-            s->equation[k] < 0 ? NULL : &s->found[s->equation[k]];
+            s->equation[k] < 0 ? NULL : &s->found.at[s->equation[k]];
 
         for (int64_t j = 0; j < (known ? known->count : 1); j++) {
             line[count] = k;
@@ -478,39 +480,27 @@ ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
                                  const ritz_dof *dof, const bool *fixed,
                                  ritz_elimination *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_elimination new = {0};
-    eliminator s = {.equations = equations, .num_all = count, .dof = dof};
+    RITZ_OWN(ritz_elimination) new = {0};
+    RITZ_OWN(eliminator)
+    s = {.equations = equations, .num_all = count, .dof = dof};
     int64_t terms =
         equations->count > 0 ? equations->first[equations->count] : 0;
 
-    RITZ_NEW(s.at, terms);
-    RITZ_NEW(s.equation, count);
-    RITZ_NEW(s.found, equations->count);
-    RITZ_NEW(s.sum, count);
-    RITZ_NEW(s.used, count);
-    RITZ_NEW(s.list, count);
-    RITZ_NEW(s.member, equations->count);
+    RITZ_CHECK_NEW(s.at, terms);
+    RITZ_CHECK_NEW(s.equation, count);
+    RITZ_CHECK_NEW(s.found.at, equations->count);
+    s.found.count = equations->count;
+    RITZ_CHECK_NEW(s.sum, count);
+    RITZ_CHECK_NEW(s.used, count);
+    RITZ_CHECK_NEW(s.list, count);
+    RITZ_CHECK_NEW(s.member, equations->count);
     for (int64_t e = 0; e < equations->count; e++)
         s.member[e] = -1;
-    RITZ_TRY(name_terms(&s, fixed));
-    RITZ_TRY(settle_all(&s));
-    RITZ_TRY(build_elimination(&s, &new));
+    RITZ_CHECK(name_terms(&s, fixed));
+    RITZ_CHECK(settle_all(&s));
+    RITZ_CHECK(build_elimination(&s, &new));
     RITZ_MOVE(*out, new);
-done:
-    for (int64_t e = 0; s.found && e < equations->count; e++) {
-        free(s.found[e].col);
-        free(s.found[e].val);
-    }
-    free(s.at);
-    free(s.equation);
-    free(s.found);
-    free(s.sum);
-    free(s.used);
-    free(s.list);
-    free(s.member);
-    ritz_elimination_free(&new);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_elimination_free(ritz_elimination *elimination)

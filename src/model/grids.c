@@ -1,6 +1,8 @@
 /* Where grids are, along which axes they move, and rigid-body geometry. */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "model/nodes.h"
+#include "model/ties.h"
 
 #include <ritz/model.h>
 
@@ -21,14 +23,6 @@ static const double *axes_of(const ritz_grids *grids, int64_t id)
     int64_t k = ritz_grids_find(grids, id);
 
     return k < 0 ? basic : grids->axes + 9 * grids->frame[k];
-}
-
-static bool is_basic(const double *axes)
-{
-    for (int k = 0; k < 9; k++)
-        if (axes[k] != (k % 4 == 0 ? 1.0 : 0.0))
-            return false;
-    return true;
 }
 
 /* One grid of a port, and where in the port's dofs its six directions are. */
@@ -69,7 +63,7 @@ static ritz_status turn_triple(const member *grid, int first,
                                int64_t *row, ritz_dof *label)
 {
     const int64_t *place = grid->place + first;
-    bool plain = is_basic(axes);
+    bool plain = ritz_axes_basic(axes);
     bool all = place[0] >= 0 && place[1] >= 0 && place[2] >= 0;
     bool none = place[0] < 0 && place[1] < 0 && place[2] < 0;
 
@@ -123,23 +117,6 @@ ritz_status ritz_port_turn(const ritz_component *component,
     return RITZ_OK;
 }
 
-/*
- * Motion of a point at d from the origin: translation t + rotation r x d. Row
- * of one direction with axis a: a . (t + r x d) or a . r.
- */
-static void fill_row(const double *a, const double *d, bool rotation,
-                     int64_t row, ritz_dense *R)
-{
-    const double turned[3] = {d[1] * a[2] - d[2] * a[1],
-                              d[2] * a[0] - d[0] * a[2],
-                              d[0] * a[1] - d[1] * a[0]};
-
-    for (int j = 0; j < 3; j++) {
-        ritz_dense_col(R, j)[row] = rotation ? 0.0 : a[j];
-        ritz_dense_col(R, 3 + j)[row] = rotation ? a[j] : turned[j];
-    }
-}
-
 ritz_status ritz_rigid_geometry(const ritz_component *component,
                                 const double origin[static 3], ritz_dense *out)
 {
@@ -150,15 +127,13 @@ ritz_status ritz_rigid_geometry(const ritz_component *component,
     for (int64_t row = 0; row < component->num_dofs; row++) {
         ritz_dof dof = component->dof[row];
         int64_t k = dof.component == 0 ? -1 : ritz_grids_find(grids, dof.grid);
-        double d[3];
+        double motion[6];
 
         if (k < 0)
             continue;
-        for (int i = 0; i < 3; i++)
-            d[i] = grids->position[3 * k + i] - origin[i];
-        fill_row(grids->axes + 9 * grids->frame[k] +
-                     3 * ((dof.component - 1) % 3),
-                 d, dof.component > 3, row, &R);
+        ritz_tie_row(grids, k, dof.component, origin, motion);
+        for (int j = 0; j < 6; j++)
+            ritz_dense_col(&R, j)[row] = motion[j];
     }
     *out = R;
     return RITZ_OK;

@@ -6,6 +6,7 @@
  *            |  m c~     J_o  |     J_c = J_o - m (c'c I - c c')
  */
 #include "base/alloc.h"
+#include "linear/general.h"
 #include "model/nodes.h"
 
 #include <ritz/model.h>
@@ -65,7 +66,7 @@ static bool is_seen(const ritz_dense *A, int i, int j)
 }
 
 /* Inertias that the model's translations do not determine stay zero. */
-static void read_off(const ritz_dense *A, ritz_inertia *inertia)
+static void read_inertia(const ritz_dense *A, ritz_inertia *inertia)
 {
     double m = mean_mass(A);
     double *c = inertia->centre;
@@ -94,7 +95,7 @@ ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
     *out = (ritz_inertia){0};
     if (component->grids.count > 0) {
         RITZ_CHECK(condense_mass(component, &A));
-        read_off(&A, out);
+        read_inertia(&A, out);
     }
     return RITZ_OK;
 }
@@ -141,6 +142,13 @@ typedef struct triplets {
     double *val;
 } triplets;
 
+static void triplets_free(triplets *t)
+{
+    free(t->row);
+    free(t->col);
+    free(t->val);
+}
+
 /* place[i]: 3 node + direction of row i of the component, -1 if neither. */
 static void gather_masses(const ritz_sparse *M, const ritz_nodes *nodes,
                           const int64_t *place, triplets *t)
@@ -171,31 +179,24 @@ static void gather_masses(const ritz_sparse *M, const ritz_nodes *nodes,
 static ritz_status nodal_mass(const ritz_component *component,
                               const ritz_nodes *nodes, ritz_sparse *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_sparse *M = &component->M;
-    int64_t *place = NULL;
-    triplets t = {0};
+    RITZ_OWN_ARRAY int64_t *place = NULL;
+    RITZ_OWN(triplets) t = {0};
 
-    RITZ_NEW(place, component->num_dofs);
+    RITZ_CHECK_NEW(place, component->num_dofs);
     for (int64_t i = 0; i < component->num_dofs; i++)
         place[i] = -1;
     for (int64_t k = 0; k < 3 * nodes->count; k++)
         if (nodes->row[k] >= 0)
             place[nodes->row[k]] = k;
     gather_masses(M, nodes, place, &t); /* counts them */
-    RITZ_NEW(t.row, t.count);
-    RITZ_NEW(t.col, t.count);
-    RITZ_NEW(t.val, t.count);
+    RITZ_CHECK_NEW(t.row, t.count);
+    RITZ_CHECK_NEW(t.col, t.count);
+    RITZ_CHECK_NEW(t.val, t.count);
     t.count = 0;
     gather_masses(M, nodes, place, &t);
-    RITZ_TRY(ritz_sparse_from_triplets(nodes->count, nodes->count, t.count,
-                                       t.row, t.col, t.val, out));
-done:
-    free(place);
-    free(t.row);
-    free(t.col);
-    free(t.val);
-    return status;
+    return ritz_sparse_from_triplets(nodes->count, nodes->count, t.count, t.row,
+                                     t.col, t.val, out);
 }
 
 /* R'MR and R'MT. */
@@ -223,43 +224,34 @@ static ritz_status list_positions(const ritz_nodes *nodes, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Copy A to (row, col) of `out`, and A' to (col, row) if `mirror`. */
-static void put_block(const ritz_dense *A, int64_t row, int64_t col,
-                      bool mirror, ritz_dense *out)
-{
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < A->nrow; i++) {
-            double value = ritz_dense_col(A, j)[i];
-
-            ritz_dense_col(out, col + j)[row + i] = value;
-            if (mirror)
-                ritz_dense_col(out, row + i)[col + j] = value;
-        }
-}
-
 /* X_a' m T_b and T_a' m T_b of all a <= b for one b. */
 static ritz_status find_products(const ritz_nodes *nodes, const ritz_sparse *m,
                                  const ritz_dense *T, int b,
                                  ritz_invariants *out)
 {
     int64_t r = T->ncol;
-    RITZ_OWN(ritz_dense) X = {0}, T_b = {0}, mT = {0}, T_a = {0}, P = {0};
+    RITZ_OWN(ritz_dense)
+    X = {0},
+    T_b = {0}, mT = {0}, T_a = {0}, P = {0}, mirror = {0};
 
     RITZ_CHECK(ritz_nodes_along(nodes, T, b, &T_b));
     RITZ_CHECK(ritz_sparse_mul(m, &T_b, &mT));
     RITZ_CHECK(list_positions(nodes, &X));
     RITZ_CHECK(ritz_dense_mul_tn(&X, &mT, &P));
-    put_block(&P, 0, b * r, false, &out->position);
+    ritz_dense_put(&P, 0, b * r, &out->position);
     ritz_dense_free(&P);
     RITZ_CHECK(ritz_dense_mul_tn(&T_b, &mT, &P));
     ritz_dense_symmetrise(&P);
-    put_block(&P, b * r, b * r, false, &out->product);
+    ritz_dense_put(&P, b * r, b * r, &out->product);
     ritz_dense_free(&T_b);
     for (int a = 0; a < b; a++) {
         ritz_dense_free(&P);
         RITZ_CHECK(ritz_nodes_along(nodes, T, a, &T_a));
         RITZ_CHECK(ritz_dense_mul_tn(&T_a, &mT, &P));
-        put_block(&P, a * r, b * r, true, &out->product);
+        ritz_dense_put(&P, a * r, b * r, &out->product);
+        RITZ_CHECK(ritz_general_transpose(&P, &mirror));
+        ritz_dense_put(&mirror, b * r, a * r, &out->product);
+        ritz_dense_free(&mirror);
         ritz_dense_free(&T_a);
     }
     return RITZ_OK;
@@ -292,7 +284,7 @@ static ritz_status repeat_blocks(const ritz_dense *V, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, out));
     for (int b = 0; b < 3; b++)
-        put_block(V, b * V->nrow, b * V->ncol, false, out);
+        ritz_dense_put(V, b * V->nrow, b * V->ncol, out);
     return RITZ_OK;
 }
 

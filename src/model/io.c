@@ -30,28 +30,15 @@ ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
     return RITZ_OK;
 }
 
-/* Names and limits. */
-static void copy_names(const ritz_io *from, ritz_io *to)
-{
-    for (int64_t k = 0; k < from->num_inputs; k++)
-        memcpy(to->input[k], from->input[k], RITZ_NAME_SIZE);
-    for (int64_t k = 0; k < from->num_outputs; k++) {
-        memcpy(to->output[k], from->output[k], RITZ_NAME_SIZE);
-        to->limit[k] = from->limit[k];
-    }
-}
-
 ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
                             ritz_io *out)
 {
-    RITZ_OWN(ritz_io) part = {0};
+    RITZ_OWN(ritz_io)
+    part = {.num_inputs = io->num_inputs, .num_outputs = io->num_outputs};
 
-    RITZ_CHECK(ritz_io_new(0, io->num_inputs, io->num_outputs, &part));
-    copy_names(io, &part);
-    ritz_dense_free(&part.B);
-    ritz_dense_free(&part.C);
-    ritz_dense_free(&part.Cv);
-    ritz_dense_free(&part.Ca);
+    RITZ_CHECK_COPY(part.input, io->input, io->num_inputs);
+    RITZ_CHECK_COPY(part.output, io->output, io->num_outputs);
+    RITZ_CHECK_COPY(part.limit, io->limit, io->num_outputs);
     RITZ_CHECK_IN("inputs", ritz_dense_mul_tn(T, &io->B, &part.B));
     RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->C, T, &part.C));
     RITZ_CHECK_IN("outputs", ritz_dense_mul(&io->Cv, T, &part.Cv));

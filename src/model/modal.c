@@ -130,8 +130,7 @@ static ritz_status massless_share(const ritz_structure *model,
     RITZ_OWN(ritz_dense) A = {0}, Y = {0}, q = {0}, part = {0};
 
     RITZ_CHECK(ritz_dense_copy(&model->K, &A));
-    for (int64_t k = 0; k < A.nrow * A.ncol; k++)
-        A.val[k] += s * model->M.val[k];
+    ritz_dense_add(s, &model->M, &A);
     RITZ_CHECK(ritz_dense_copy(X, &Y));
     RITZ_CHECK_IN("motion without mass", ritz_general_solve(&A, false, &Y));
     *size = ritz_dense_max(&Y);
@@ -140,8 +139,7 @@ static ritz_status massless_share(const ritz_structure *model,
         for (int64_t i = 0; i < q.nrow; i++)
             ritz_dense_col(&q, j)[i] /= modes->lambda[i] + s;
     RITZ_CHECK(ritz_dense_mul(&modes->Phi, &q, &part));
-    for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
-        Y.val[k] -= part.val[k];
+    ritz_dense_add(-1.0, &part, &Y);
     RITZ_MOVE(*RX, Y);
     return RITZ_OK;
 }
@@ -206,10 +204,9 @@ static ritz_status project_io(const ritz_io *io, ritz_modal_model *model)
             ritz_dense_col(&part.C, k)[i] -= ca * model->lambda[k];
             ritz_dense_col(&part.Cv, k)[i] -= ritz_dense_col(&CaDelta, k)[i];
         }
-    model->B = part.B;
-    model->C = part.C;
-    model->Cv = part.Cv;
-    part.B = part.C = part.Cv = (ritz_dense){0};
+    RITZ_MOVE(model->B, part.B);
+    RITZ_MOVE(model->C, part.C);
+    RITZ_MOVE(model->Cv, part.Cv);
     return RITZ_OK;
 }
 
@@ -219,12 +216,10 @@ void ritz_modal_model_take(ritz_pairs *pairs, int64_t num_dofs,
     out->num_dofs = num_dofs;
     out->count = pairs->Phi.ncol;
     out->num_rigid = pairs->num_rigid;
-    out->Phi = pairs->Phi;
-    out->lambda = pairs->lambda;
+    RITZ_MOVE(out->Phi, pairs->Phi);
+    RITZ_MOVE(out->lambda, pairs->lambda);
     for (int64_t k = 0; k < out->num_rigid; k++)
         out->lambda[k] = 0.0;
-    pairs->Phi = (ritz_dense){0};
-    pairs->lambda = NULL;
 }
 
 static ritz_status find_modes(const ritz_structure *model,
@@ -294,10 +289,9 @@ ritz_status ritz_modal_damping(const ritz_structure *model,
             more.val[k] =
                 damping->a * model->M.val[k] + damping->b * model->K.val[k];
     }
-    for (int64_t k = 0; D->val && k < n * n; k++)
-        more.val[k] += D->val[k];
-    ritz_dense_free(D);
-    RITZ_MOVE(*D, more);
+    if (D->val)
+        ritz_dense_add(1.0, D, &more);
+    ritz_dense_replace(D, &more);
     return RITZ_OK;
 }
 

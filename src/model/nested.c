@@ -45,23 +45,18 @@ static ritz_status check_order(const ritz_reduced *in, int64_t order)
     return RITZ_OK;
 }
 
-/* A copy with a new row for an order, or a new column for a name, or both. */
-static ritz_status widen_table(const ritz_nested *in, int64_t row, bool new_row,
-                               int64_t col, bool new_col, ritz_nested *out)
+/* Rows below `count` of a table: behind `row` and `col` one further on. */
+static void copy_table(const ritz_nested *in, int64_t count, int64_t row,
+                       int64_t col, ritz_nested *out)
 {
-    RITZ_CHECK(new_nested(in->smallest, in->count + new_row,
-                          in->num_errors + new_col, out));
-    for (int64_t k = 0; k < in->count; k++)
-        out->order[k + (new_row && k >= row)] = in->order[k];
+    for (int64_t k = 0; k < count; k++)
+        out->order[k + (k >= row)] = in->order[k];
     for (int64_t j = 0; j < in->num_errors; j++) {
-        int64_t to = j + (new_col && j >= col);
-
-        memcpy(out->error[to], in->error[j], sizeof in->error[j]);
-        for (int64_t k = 0; k < in->count; k++)
-            ritz_dense_col(&out->value, to)[k + (new_row && k >= row)] =
+        memcpy(out->error[j + (j >= col)], in->error[j], sizeof in->error[j]);
+        for (int64_t k = 0; k < count; k++)
+            ritz_dense_col(&out->value, j + (j >= col))[k + (k >= row)] =
                 ritz_dense_col(&in->value, j)[k];
     }
-    return RITZ_OK;
 }
 
 ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
@@ -71,6 +66,7 @@ ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
     RITZ_OWN(ritz_nested) wide = {0};
     char copy[RITZ_NAME_SIZE] = "";
     int64_t row = 0, col = 0;
+    bool new_row = false, new_col = false;
 
     RITZ_CHECK(check_order(reduced, order));
     RITZ_CHECK(ritz_name_copy(name, copy));
@@ -81,24 +77,17 @@ ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
         row++;
     while (col < n->num_errors && strcmp(n->error[col], copy) < 0)
         col++;
-    RITZ_CHECK(widen_table(
-        n, row, row == n->count || n->order[row] != order, col,
-        col == n->num_errors || strcmp(n->error[col], copy) != 0, &wide));
+    new_row = row == n->count || n->order[row] != order;
+    new_col = col == n->num_errors || strcmp(n->error[col], copy) != 0;
+    RITZ_CHECK(new_nested(n->smallest, n->count + new_row,
+                          n->num_errors + new_col, &wide));
+    copy_table(n, n->count, new_row ? row : n->count,
+               new_col ? col : n->num_errors, &wide);
     wide.order[row] = order;
     memcpy(wide.error[col], copy, sizeof copy);
     ritz_dense_col(&wide.value, col)[row] = value;
     ritz_nested_free(n);
     RITZ_MOVE(*n, wide);
-    return RITZ_OK;
-}
-
-static ritz_status pick_columns(const ritz_dense *A, int64_t count,
-                                const int64_t *at, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
-    for (int64_t j = 0; j < count && A->nrow > 0; j++)
-        memcpy(ritz_dense_col(out, j), ritz_dense_col(A, at[j]),
-               (size_t)A->nrow * sizeof *out->val);
     return RITZ_OK;
 }
 
@@ -116,21 +105,11 @@ static ritz_status pick_invariants(const ritz_invariants *in, int64_t r,
     for (int64_t k = 0; k < 3 * count; k++)
         thrice[k] = k / count * r + at[k % count];
     memcpy(out->rigid, in->rigid, sizeof out->rigid);
-    RITZ_CHECK(pick_columns(&in->momentum, count, at, &out->momentum));
-    RITZ_CHECK(pick_columns(&in->position, 3 * count, thrice, &out->position));
+    RITZ_CHECK(ritz_dense_pick(&in->momentum, count, at, &out->momentum));
+    RITZ_CHECK(
+        ritz_dense_pick(&in->position, 3 * count, thrice, &out->position));
     RITZ_CHECK(ritz_dense_rows(&in->product, 3 * count, thrice, &rows));
-    return pick_columns(&rows, 3 * count, thrice, &out->product);
-}
-
-static void pick_kinds(const ritz_columns *in, const int64_t *at,
-                       ritz_columns *out)
-{
-    for (int64_t j = 0; j < out->count; j++) {
-        out->kind[j] = in->kind[at[j]];
-        out->dof[j] = in->dof[at[j]];
-        out->hertz[j] = in->hertz[at[j]];
-        out->residual[j] = in->residual[at[j]];
-    }
+    return ritz_dense_pick(&rows, 3 * count, thrice, &out->product);
 }
 
 /* A projection on unit vectors, but columns of T and of the invariants, which
@@ -138,28 +117,24 @@ static void pick_kinds(const ritz_columns *in, const int64_t *at,
 static ritz_status select_columns(const ritz_reduced *in, int64_t count,
                                   const int64_t *at, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_reduced bare = *in; /* borrowed */
-    ritz_reduced made = {0};
-    ritz_dense S = {0};
+    RITZ_OWN(ritz_reduced) made = {0};
+    RITZ_OWN(ritz_dense) S = {0};
 
     bare.T.nrow = 0;
     bare.invariants = (ritz_invariants){0};
-    RITZ_TRY(ritz_dense_new(in->K.ncol, count, &S));
+    RITZ_CHECK(ritz_dense_new(in->K.ncol, count, &S));
     for (int64_t j = 0; j < count; j++)
         ritz_dense_col(&S, j)[at[j]] = 1.0;
-    RITZ_TRY(ritz_reduced_project(&bare, &S, &made));
-    pick_kinds(&in->columns, at, &made.columns);
+    RITZ_CHECK(ritz_reduced_project(&bare, &S, &made));
+    RITZ_CHECK(ritz_columns_pick(&in->columns, count, at, &made.columns));
     ritz_dense_free(&made.T);
     if (in->T.val)
-        RITZ_TRY(pick_columns(&in->T, count, at, &made.T));
-    RITZ_TRY(pick_invariants(&in->invariants, in->K.ncol, count, at,
-                             &made.invariants));
+        RITZ_CHECK(ritz_dense_pick(&in->T, count, at, &made.T));
+    RITZ_CHECK(pick_invariants(&in->invariants, in->K.ncol, count, at,
+                               &made.invariants));
     RITZ_MOVE(*out, made);
-done:
-    ritz_reduced_free(&made);
-    ritz_dense_free(&S);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status check_columns(int64_t r, int64_t count, const int64_t *at,
@@ -209,14 +184,7 @@ static ritz_status shorten_table(const ritz_nested *in, int64_t order,
     while (count < in->count && in->order[count] <= order)
         count++;
     RITZ_CHECK(new_nested(in->smallest, count, in->num_errors, out));
-    for (int64_t k = 0; k < count; k++)
-        out->order[k] = in->order[k];
-    for (int64_t j = 0; j < in->num_errors; j++) {
-        memcpy(out->error[j], in->error[j], sizeof in->error[j]);
-        for (int64_t k = 0; k < count; k++)
-            ritz_dense_col(&out->value, j)[k] =
-                ritz_dense_col(&in->value, j)[k];
-    }
+    copy_table(in, count, count, in->num_errors, out);
     return RITZ_OK;
 }
 

@@ -48,16 +48,6 @@ const double *ritz_nodes_axes(const ritz_nodes *nodes, int64_t node)
     return nodes->grids->axes + 9 * nodes->grids->frame[nodes->grid[node]];
 }
 
-bool ritz_nodes_basic(const ritz_nodes *nodes, int64_t node)
-{
-    const double *axes = ritz_nodes_axes(nodes, node);
-
-    for (int k = 0; k < 9; k++)
-        if (axes[k] != (k % 4 == 0 ? 1.0 : 0.0))
-            return false;
-    return true;
-}
-
 ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
                              int b, ritz_dense *out)
 {

@@ -21,8 +21,14 @@ ritz_status ritz_nodes_of(int64_t n, const ritz_dof *dof,
 /** Displacement axes of a node, row by row. */
 const double *ritz_nodes_axes(const ritz_nodes *nodes, int64_t node);
 
-/** Whether those axes are the basic ones. */
-bool ritz_nodes_basic(const ritz_nodes *nodes, int64_t node);
+/** Whether axes, row by row, are the basic ones. */
+static inline bool ritz_axes_basic(const double *axes)
+{
+    for (int k = 0; k < 9; k++)
+        if (axes[k] != (k % 4 == 0 ? 1.0 : 0.0))
+            return false;
+    return true;
+}
 
 /**
  * Translations of the nodes along basic axis @p b for each column of @p T; an

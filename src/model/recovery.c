@@ -69,7 +69,7 @@ ritz_status ritz_recovery_copy(const ritz_recovery *recovery,
 
     if (recovery->count == 0)
         return RITZ_OK;
-    RITZ_CHECK(join_names(recovery, 0, NULL, &copy.dof));
+    RITZ_CHECK_COPY(copy.dof, recovery->dof, recovery->count);
     RITZ_CHECK(ritz_sparse_copy(&recovery->G, &copy.G));
     RITZ_MOVE(*out, copy);
     return RITZ_OK;
@@ -86,14 +86,8 @@ static ritz_status stack_rows(const ritz_recovery *recovery,
     if (m > 0)
         RITZ_CHECK(ritz_sparse_mul(&recovery->G, T, &GT));
     RITZ_CHECK(ritz_dense_new(n + m, T->ncol, &all));
-    for (int64_t j = 0; j < T->ncol; j++) {
-        double *to = ritz_dense_col(&all, j);
-
-        if (n > 0)
-            memcpy(to, ritz_dense_col(T, j), (size_t)n * sizeof *to);
-        if (m > 0)
-            memcpy(to + n, ritz_dense_col(&GT, j), (size_t)m * sizeof *to);
-    }
+    ritz_dense_put(T, 0, 0, &all);
+    ritz_dense_put(&GT, n, 0, &all);
     RITZ_MOVE(*out, all);
     return RITZ_OK;
 }

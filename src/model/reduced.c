@@ -1,5 +1,6 @@
 /* Reduced components: projection of a component on a basis. */
 #include "base/alloc.h"
+#include "base/names.h"
 #include "base/tolerances.h"
 
 #include <ritz/model.h>
@@ -32,15 +33,28 @@ static ritz_status copy_mass_columns(const ritz_basis *basis, ritz_dense *out)
     return RITZ_OK;
 }
 
+/* Largest K_jj / M_jj of coordinates with mass, and whether some have none. */
+typedef struct fastest {
+    double most;
+    bool any;
+} fastest;
+
+static void weigh_coordinate(double k, double m, fastest *f)
+{
+    if (m > 0.0)
+        f->most = fmax(f->most, k / m);
+    else
+        f->any = true;
+}
+
 /*
  * A column that combines massless dofs alone has a mass that is rounding. An
- * eigenvalue above 1/eps times `fast`, the largest of motions with mass, cannot
- * be told from an infinite one: such a mass is set to zero. fast = 0: all
- * motions have mass.
+ * eigenvalue above 1/eps times the largest of motions with mass cannot be told
+ * from an infinite one: such a mass is set to zero.
  */
-static void clear_rounding(double fast, const ritz_dense *K, ritz_dense *M)
+static void clear_rounding(const fastest *f, const ritz_dense *K, ritz_dense *M)
 {
-    double limit = fast / DBL_EPSILON;
+    double limit = f->any ? f->most / DBL_EPSILON : 0.0;
 
     for (int64_t j = 0; j < M->ncol && limit > 0.0; j++) {
         if (ritz_dense_col(K, j)[j] <= limit * fabs(ritz_dense_col(M, j)[j]))
@@ -50,51 +64,27 @@ static void clear_rounding(double fast, const ritz_dense *K, ritz_dense *M)
     }
 }
 
-/* Largest K_jj / M_jj of dofs with mass; 0 if all of them have mass. */
-static double fastest_dof(const ritz_component *component)
-{
-    double most = 0.0;
-    bool any = false;
-
-    for (int64_t j = 0; j < component->num_dofs; j++) {
-        double m = ritz_sparse_diagonal(&component->M, j);
-
-        if (m > 0.0)
-            most = fmax(most, ritz_sparse_diagonal(&component->K, j) / m);
-        else
-            any = true;
-    }
-    return any ? most : 0.0;
-}
-
 static void settle_mass(const ritz_component *component,
                         const ritz_columns *columns, ritz_reduced *reduced)
 {
-    clear_rounding(fastest_dof(component), &reduced->K, &reduced->M);
+    fastest f = {0.0, false};
+
+    for (int64_t j = 0; j < component->num_dofs; j++)
+        weigh_coordinate(ritz_sparse_diagonal(&component->K, j),
+                         ritz_sparse_diagonal(&component->M, j), &f);
+    clear_rounding(&f, &reduced->K, &reduced->M);
     clear_massless(columns, &reduced->M);
     clear_massless(columns, &reduced->D);
 }
 
-/* Largest K_jj / M_jj of coordinates with mass; 0 if all of them have mass. */
-static double fastest_coordinate(const ritz_reduced *reduced)
-{
-    double most = 0.0;
-    bool any = false;
-
-    for (int64_t j = 0; j < reduced->M.ncol; j++) {
-        double m = ritz_dense_col(&reduced->M, j)[j];
-
-        if (m > 0.0)
-            most = fmax(most, ritz_dense_col(&reduced->K, j)[j] / m);
-        else
-            any = true;
-    }
-    return any ? most : 0.0;
-}
-
 static void settle_mass_again(const ritz_reduced *from, ritz_reduced *to)
 {
-    clear_rounding(fastest_coordinate(from), &to->K, &to->M);
+    fastest f = {0.0, false};
+
+    for (int64_t j = 0; j < from->M.ncol; j++)
+        weigh_coordinate(ritz_dense_col(&from->K, j)[j],
+                         ritz_dense_col(&from->M, j)[j], &f);
+    clear_rounding(&f, &to->K, &to->M);
 }
 
 /* Columns that are rigid-body motions, or combine to some. */
@@ -174,37 +164,29 @@ static ritz_status project_stiffness(const ritz_sparse *K, const ritz_dense *T,
 
 static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
 {
-    RITZ_OWN(ritz_grids)
-    copy = {.count = grids->count, .num_frames = grids->num_frames};
-    size_t n = (size_t)grids->count;
+    int64_t n = grids->count, frames = grids->num_frames;
+    RITZ_OWN(ritz_grids) copy = {.count = n, .num_frames = frames};
 
-    RITZ_CHECK_NEW(copy.id, grids->count);
-    RITZ_CHECK_NEW(copy.position, 3 * grids->count);
-    RITZ_CHECK_NEW(copy.frame, grids->count);
-    RITZ_CHECK_NEW(copy.axes, 9 * grids->num_frames);
-    if (n > 0) {
-        memcpy(copy.id, grids->id, n * sizeof *copy.id);
-        memcpy(copy.position, grids->position, 3 * n * sizeof *copy.position);
-        memcpy(copy.frame, grids->frame, n * sizeof *copy.frame);
-        memcpy(copy.axes, grids->axes,
-               9 * (size_t)grids->num_frames * sizeof *copy.axes);
-    }
+    RITZ_CHECK_COPY(copy.id, grids->id, n);
+    RITZ_CHECK_COPY(copy.position, grids->position, 3 * n);
+    RITZ_CHECK_COPY(copy.frame, grids->frame, n);
+    RITZ_CHECK_COPY(copy.axes, grids->axes, 9 * frames);
     RITZ_MOVE(*out, copy);
     return RITZ_OK;
 }
 
-static ritz_status copy_dofs(int64_t n, const ritz_dof *dof, ritz_dof **out)
+/* What names the rows of T. */
+static ritz_status copy_rows(int64_t n, const ritz_dof *dof,
+                             const ritz_grids *grids,
+                             const ritz_elements *elements,
+                             const ritz_recovery *recovery, ritz_reduced *out)
 {
-    ritz_dof *copy = NULL;
-
-    RITZ_CHECK_NEW(copy, n);
-    if (n > 0)
-        memcpy(copy, dof, (size_t)n * sizeof *copy);
-    *out = copy;
-    return RITZ_OK;
+    RITZ_CHECK_COPY(out->dof, dof, n);
+    RITZ_CHECK(copy_grids(grids, &out->grids));
+    RITZ_CHECK(ritz_elements_copy(elements, &out->elements));
+    return ritz_recovery_copy(recovery, &out->recovery);
 }
 
-/* The rows `at` of T. */
 /* A port moves by its rows of T, turned into basic axes. */
 static ritz_status map_port(const ritz_component *component,
                             const ritz_port *port, const ritz_dense *T,
@@ -252,12 +234,11 @@ static ritz_status keep_names(const ritz_component *component,
     reduced->num_dofs = component->num_dofs;
     memcpy(reduced->units, component->units, sizeof reduced->units);
     memcpy(reduced->damping, component->damping, sizeof reduced->damping);
-    RITZ_CHECK(ritz_columns_copy(&basis->columns, &reduced->columns));
+    RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count, NULL,
+                                 &reduced->columns));
     RITZ_CHECK(ritz_dense_copy(&basis->T, &reduced->T));
-    RITZ_CHECK(copy_dofs(component->num_dofs, component->dof, &reduced->dof));
-    RITZ_CHECK(copy_grids(&component->grids, &reduced->grids));
-    RITZ_CHECK(ritz_elements_copy(&component->elements, &reduced->elements));
-    RITZ_CHECK(ritz_recovery_copy(&component->recovery, &reduced->recovery));
+    RITZ_CHECK(copy_rows(component->num_dofs, component->dof, &component->grids,
+                         &component->elements, &component->recovery, reduced));
     RITZ_CHECK(ritz_inertia_of(component, &reduced->inertia));
     RITZ_CHECK(copy_mass_columns(basis, &T));
     return ritz_invariants_of(component, &T, &reduced->invariants);
@@ -307,11 +288,8 @@ static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
         copy->dof = NULL;
         copy->position = NULL;
         copy->map = (ritz_dense){0};
-        RITZ_CHECK(copy_dofs(port->count, port->dof, &copy->dof));
-        RITZ_CHECK_NEW(copy->position, 3 * port->count);
-        if (port->count > 0)
-            memcpy(copy->position, port->position,
-                   3 * (size_t)port->count * sizeof *copy->position);
+        RITZ_CHECK_COPY(copy->dof, port->dof, port->count);
+        RITZ_CHECK_COPY(copy->position, port->position, 3 * port->count);
         RITZ_CHECK(ritz_dense_mul(&port->map, V, &copy->map));
     }
     return RITZ_OK;
@@ -344,10 +322,8 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         ritz_invariants_project(&reduced->invariants, V, &second.invariants));
     if (reduced->T.val) {
         RITZ_CHECK(ritz_dense_mul(&reduced->T, V, &second.T));
-        RITZ_CHECK(copy_dofs(reduced->num_dofs, reduced->dof, &second.dof));
-        RITZ_CHECK(copy_grids(&reduced->grids, &second.grids));
-        RITZ_CHECK(ritz_elements_copy(&reduced->elements, &second.elements));
-        RITZ_CHECK(ritz_recovery_copy(&reduced->recovery, &second.recovery));
+        RITZ_CHECK(copy_rows(reduced->num_dofs, reduced->dof, &reduced->grids,
+                             &reduced->elements, &reduced->recovery, &second));
     }
     RITZ_MOVE(*out, second);
     return RITZ_OK;
@@ -361,19 +337,11 @@ ritz_status ritz_reduced_install(ritz_reduced *reduced)
 const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
                                        const char *name)
 {
-    const char *near = NULL;
+    const ritz_names names = {"port", reduced->num_ports, (char *)reduced->port,
+                              sizeof *reduced->port};
+    int64_t k = ritz_names_seek(&names, name);
 
-    for (int64_t k = 0; k < reduced->num_ports; k++)
-        if (strcmp(reduced->port[k].name, name) == 0)
-            return &reduced->port[k];
-    near =
-        ritz_text_nearest(name, reduced->num_ports, (const char *)reduced->port,
-                          sizeof *reduced->port);
-    if (near)
-        ritz_record("there is no port '%s', is '%s' meant?", name, near);
-    else
-        ritz_record("there is no port '%s'", name);
-    return NULL;
+    return k < 0 ? NULL : &reduced->port[k];
 }
 
 void ritz_port_map_free(ritz_port_map *port)

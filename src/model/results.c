@@ -103,14 +103,11 @@ double ritz_measures_value(const ritz_measures *measures, const char *name)
 
 ritz_status ritz_measures_copy(const ritz_measures *from, ritz_measures *out)
 {
-    ritz_measures made = {0};
+    ritz_measure *item = NULL;
 
-    RITZ_CHECK_NEW(made.item, from->count);
-    made.count = from->count;
-    if (from->count > 0)
-        memcpy(made.item, from->item, (size_t)made.count * sizeof *made.item);
+    RITZ_CHECK_COPY(item, from->item, from->count);
     ritz_measures_free(out);
-    *out = made;
+    *out = (ritz_measures){from->count, item};
     return RITZ_OK;
 }
 

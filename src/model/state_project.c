@@ -43,15 +43,15 @@ static void large_free(large *m)
     ritz_dense_free(&m->F);
 }
 
-static ritz_status take_half(const ritz_dense *T, int64_t first,
-                             ritz_dense *out)
+static ritz_status take_halves(const ritz_dense *T, ritz_dense *upper,
+                               ritz_dense *lower)
 {
     int64_t n = T->nrow / 2;
 
-    RITZ_CHECK(ritz_dense_new(n, T->ncol, out));
-    for (int64_t j = 0; j < T->ncol; j++)
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(T, j)[first + i];
+    RITZ_CHECK(ritz_dense_new(n, T->ncol, upper));
+    RITZ_CHECK(ritz_dense_new(n, T->ncol, lower));
+    ritz_dense_cut(T, 0, 0, upper);
+    ritz_dense_cut(T, n, 0, lower);
     return RITZ_OK;
 }
 
@@ -59,10 +59,7 @@ static ritz_status install_dampers(const ritz_component *component, large *m)
 {
     RITZ_OWN(ritz_dampers) dampers = {0};
 
-    RITZ_REFUSE_IF(
-        component->K4.colptr, RITZ_ERR_ARGUMENT,
-        "structural damping is of harmonic motion and has no states, "
-        "give it as a modal ratio");
+    RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
     RITZ_CHECK(ritz_sparse_copy(&component->K, &m->K));
     if (component->D.colptr)
         RITZ_CHECK(ritz_sparse_copy(&component->D, &m->D));
@@ -84,13 +81,6 @@ static ritz_status stiffness_times(const large *m, const ritz_dense *X,
         for (int64_t i = 0; i < Y->nrow && is_rigid(m, j); i++)
             ritz_dense_col(Y, j)[i] = 0.0;
     return RITZ_OK;
-}
-
-/* A := A + factor B */
-static void add_scaled(double factor, const ritz_dense *B, ritz_dense *A)
-{
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        A->val[k] += factor * B->val[k];
 }
 
 /* F += M Phi diag(2 zeta w) Phi'M T_v */
@@ -115,7 +105,7 @@ static ritz_status add_ratios(const ritz_damping *damping, double among_hz,
                 ritz_modal_rate(damping, k - modes.num_rigid, modes.lambda[k]);
     RITZ_CHECK(ritz_dense_mul(&modes.Phi, &q, &rate));
     RITZ_CHECK(ritz_sparse_mul(M, &rate, &force));
-    add_scaled(1.0, &force, &m->F);
+    ritz_dense_add(1.0, &force, &m->F);
     return RITZ_OK;
 }
 
@@ -128,13 +118,13 @@ static ritz_status add_damping(const ritz_damping *damping, double among_hz,
     RITZ_CHECK(ritz_dense_copy(&m->KT, &m->F));
     if (m->D.colptr) {
         RITZ_CHECK(ritz_sparse_mul(&m->D, &m->T_v, &part));
-        add_scaled(1.0, &part, &m->F);
+        ritz_dense_add(1.0, &part, &m->F);
     }
     if (ritz_damping_is_rayleigh(damping)) {
         ritz_dense_free(&part);
         RITZ_CHECK(stiffness_times(m, &m->T_v, &part));
-        add_scaled(damping->b, &part, &m->F);
-        add_scaled(damping->a, MT, &m->F);
+        ritz_dense_add(damping->b, &part, &m->F);
+        ritz_dense_add(damping->a, MT, &m->F);
     } else if (damping->kind != RITZ_DAMPING_NONE) {
         RITZ_CHECK(add_ratios(damping, among_hz, MT, m));
     }
@@ -164,7 +154,7 @@ static ritz_status settle_rigid(const large *m, const ritz_dense *const left[2],
 
     RITZ_CHECK(multiply_magnitudes(left[0], right[0], &first));
     RITZ_CHECK(multiply_magnitudes(left[1], right[1], &second));
-    add_scaled(1.0, &second, &first);
+    ritz_dense_add(1.0, &second, &first);
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             if (is_rigid(m, i) != is_rigid(m, j) &&
@@ -195,30 +185,26 @@ static ritz_status project_forces(const large *m, ritz_dense *A)
 /* C := C - Y'F, D := Y'B; M Y = Ca' */
 static ritz_status fill_accelerations(const large *m, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &m->component->io;
-    ritz_factor *L = NULL;
-    ritz_dense Y = {0}, part = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) Y = {0}, part = {0};
+    ritz_status status = RITZ_OK;
 
     if (ritz_dense_max(&io->Ca) == 0.0)
         return RITZ_OK;
-    RITZ_TRY(ritz_general_transpose(&io->Ca, &Y));
+    RITZ_CHECK(ritz_general_transpose(&io->Ca, &Y));
     status = ritz_factor_spd(&m->component->M, &L);
-    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_ARGUMENT,
-                 "accelerations are seen of a component with massless dofs: "
-                 "condense them first");
-    RITZ_TRY(status);
-    RITZ_TRY(ritz_factor_solve(L, &Y));
-    RITZ_TRY(ritz_dense_mul_tn(&Y, &m->F, &part));
-    add_scaled(-1.0, &part, &out->C);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_ARGUMENT,
+                   "accelerations are seen of a component with massless dofs: "
+                   "condense them first");
+    RITZ_CHECK(status);
+    RITZ_CHECK(ritz_factor_solve(L, &Y));
+    RITZ_CHECK(ritz_dense_mul_tn(&Y, &m->F, &part));
+    ritz_dense_add(-1.0, &part, &out->C);
     ritz_dense_free(&part);
-    RITZ_TRY(ritz_dense_mul_tn(&Y, &io->B, &part));
-    add_scaled(1.0, &part, &out->D);
-done:
-    ritz_factor_free(&L);
-    ritz_dense_free(&Y);
-    ritz_dense_free(&part);
-    return status;
+    RITZ_CHECK(ritz_dense_mul_tn(&Y, &io->B, &part));
+    ritz_dense_add(1.0, &part, &out->D);
+    return RITZ_OK;
 }
 
 static ritz_status fill_outputs(const large *m, ritz_state_space *out)
@@ -231,7 +217,7 @@ static ritz_status fill_outputs(const large *m, ritz_state_space *out)
     RITZ_CHECK(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
     RITZ_CHECK(ritz_dense_mul(&io->C, &m->T_q, &out->C));
     RITZ_CHECK(ritz_dense_mul(&io->Cv, &m->T_v, &rate));
-    add_scaled(1.0, &rate, &out->C);
+    ritz_dense_add(1.0, &rate, &out->C);
     return fill_accelerations(m, out);
 }
 
@@ -258,18 +244,14 @@ ritz_status ritz_states_project(const ritz_component *component,
                                 const ritz_basis *basis, ritz_state_space *out,
                                 ritz_dense *E)
 {
-    int64_t n = component->num_dofs;
-    const ritz_dense *T = &basis->T;
-    const ritz_dense *W = basis->W.val ? &basis->W : T;
+    const ritz_dense *W = basis->W.val ? &basis->W : &basis->T;
     RITZ_OWN(large) m = {.component = component, .columns = &basis->columns};
     RITZ_OWN(ritz_dense) MT = {0}, inertia = {0};
 
     RITZ_CHECK(refuse_massless_inputs(component));
     RITZ_CHECK(install_dampers(component, &m));
-    RITZ_CHECK(take_half(T, 0, &m.T_q));
-    RITZ_CHECK(take_half(T, n, &m.T_v));
-    RITZ_CHECK(take_half(W, 0, &m.W_q));
-    RITZ_CHECK(take_half(W, n, &m.W_v));
+    RITZ_CHECK(take_halves(&basis->T, &m.T_q, &m.T_v));
+    RITZ_CHECK(take_halves(W, &m.W_q, &m.W_v));
     RITZ_CHECK(ritz_sparse_mul(&component->M, &m.T_v, &MT));
     RITZ_CHECK(stiffness_times(&m, &m.T_q, &m.KT));
     RITZ_CHECK(add_damping(damping, basis->among_hz, &MT, &m));
@@ -277,7 +259,7 @@ ritz_status ritz_states_project(const ritz_component *component,
     RITZ_CHECK(fill_outputs(&m, out));
     RITZ_CHECK(ritz_dense_mul_tn(&m.W_q, &m.T_q, E));
     RITZ_CHECK(ritz_dense_mul_tn(&m.W_v, &MT, &inertia));
-    add_scaled(1.0, &inertia, E);
+    ritz_dense_add(1.0, &inertia, E);
     return settle_rigid(&m, (const ritz_dense *[]){&m.W_q, &m.W_v},
                         (const ritz_dense *[]){&m.T_q, &MT}, E);
 }

@@ -31,17 +31,8 @@ static ritz_status take_rows(const ritz_dense *A, const ritz_dense *X,
     RITZ_OWN(ritz_dense) part = {0};
 
     RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, &part));
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < A->nrow; i++)
-            ritz_dense_col(&part, j)[i] = ritz_dense_col(X, j)[first + i];
+    ritz_dense_cut(X, first, 0, &part);
     return ritz_dense_mul_tn(A, &part, out);
-}
-
-/* A := A + sign B */
-static void add_scaled(double sign, const ritz_dense *B, ritz_dense *A)
-{
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        A->val[k] += sign * B->val[k];
 }
 
 /* out = A'B + sign C'D */
@@ -53,7 +44,7 @@ static ritz_status two_products(const ritz_dense *A, const ritz_dense *B,
 
     RITZ_CHECK(ritz_dense_mul_tn(A, B, out));
     RITZ_CHECK(ritz_dense_mul_tn(C, D, &second));
-    add_scaled(sign, &second, out);
+    ritz_dense_add(sign, &second, out);
     return RITZ_OK;
 }
 
@@ -79,10 +70,9 @@ static ritz_status project_outputs(const ritz_modal_model *modes,
 
     RITZ_CHECK(ritz_dense_mul(&modes->C, T_q, &C));
     RITZ_CHECK(ritz_dense_mul(&modes->Cv, T_v, &rate));
-    add_scaled(1.0, &rate, &C);
-    ritz_dense_free(&out->C);
-    RITZ_MOVE(out->C, C);
-    add_scaled(1.0, &modes->feed, &out->D);
+    ritz_dense_add(1.0, &rate, &C);
+    ritz_dense_replace(&out->C, &C);
+    ritz_dense_add(1.0, &modes->feed, &out->D);
     return RITZ_OK;
 }
 
@@ -131,55 +121,45 @@ static ritz_status take_settled(const ritz_modal_model *modes,
     return RITZ_OK;
 }
 
-static ritz_status project(const ritz_modal_model *modes,
-                           const ritz_basis *basis, ritz_state_space *out,
-                           ritz_dense *E)
-{
-    int64_t n = modes->num_dofs;
-    bool own = basis->W.val != NULL;
-    const ritz_dense *W = own ? &basis->W : &basis->T;
-    RITZ_OWN(ritz_dense) T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0}, F = {0};
-    const ritz_columns *columns = &basis->columns;
-
-    ritz_dense_free(&out->A);
-    ritz_dense_free(&out->B);
-    RITZ_CHECK(take_settled(modes, columns, &modes->MPhi, &basis->T, 0, &T_q));
-    RITZ_CHECK(take_settled(modes, columns, &modes->MPhi, &basis->T, n, &T_v));
-    RITZ_CHECK(take_settled(modes, columns, &modes->Phi, W, 0, &W_q));
-    RITZ_CHECK(take_settled(modes, columns, &modes->MPhi, W, n, &W_v));
-    RITZ_CHECK(find_restoring(modes, &T_q, &T_v, &F));
-    RITZ_CHECK(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
-    RITZ_CHECK(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
-    RITZ_CHECK(ritz_dense_mul_tn(&W_v, &modes->B, &out->B));
-    return project_outputs(modes, &T_q, &T_v, out);
-}
-
 /* By all modes, of which there can be so many. */
 static ritz_status project_modes(const ritz_component *component,
                                  const ritz_damping *damping,
                                  const ritz_basis *basis, ritz_state_space *out,
                                  ritz_dense *E)
 {
+    int64_t n = component->num_dofs;
+    const ritz_dense *W = basis->W.val ? &basis->W : &basis->T;
     RITZ_OWN(ritz_structure) model = {0};
     RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_dense) T_q = {0}, T_v = {0}, W_q = {0}, W_v = {0}, F = {0};
+    const ritz_columns *columns = &basis->columns;
 
     RITZ_CHECK(ritz_structure_of_component(component, &model));
     RITZ_CHECK(ritz_modal_model_new(&model, &component->io, damping, &modes));
-    return project(&modes, basis, out, E);
+    ritz_dense_free(&out->A);
+    ritz_dense_free(&out->B);
+    RITZ_CHECK(take_settled(&modes, columns, &modes.MPhi, &basis->T, 0, &T_q));
+    RITZ_CHECK(take_settled(&modes, columns, &modes.MPhi, &basis->T, n, &T_v));
+    RITZ_CHECK(take_settled(&modes, columns, &modes.Phi, W, 0, &W_q));
+    RITZ_CHECK(take_settled(&modes, columns, &modes.MPhi, W, n, &W_v));
+    RITZ_CHECK(find_restoring(&modes, &T_q, &T_v, &F));
+    RITZ_CHECK(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
+    RITZ_CHECK(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
+    RITZ_CHECK(ritz_dense_mul_tn(&W_v, &modes.B, &out->B));
+    return project_outputs(&modes, &T_q, &T_v, out);
 }
 
-static ritz_status check_basis(const ritz_component *component,
-                               const ritz_basis *basis)
+static ritz_status check_basis(const ritz_basis *basis, int64_t states)
 {
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = &basis->W;
 
     RITZ_REFUSE_IF(!basis->states, RITZ_ERR_ARGUMENT,
                    "the basis is of displacements, not of states");
-    RITZ_REFUSE_IF(T->nrow != 2 * component->num_dofs, RITZ_ERR_ARGUMENT,
-                   "the basis has %" PRId64
-                   " rows, the component has 2 x %" PRId64 " states",
-                   T->nrow, component->num_dofs);
+    RITZ_REFUSE_IF(T->nrow != states, RITZ_ERR_ARGUMENT,
+                   "the basis is for %" PRId64
+                   " states, the model has %" PRId64,
+                   T->nrow, states);
     RITZ_REFUSE_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
                    RITZ_ERR_ARGUMENT,
                    "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
@@ -196,7 +176,7 @@ ritz_status ritz_reduce_states(const ritz_component *component,
     RITZ_OWN(ritz_state_space) reduced = {0};
     RITZ_OWN(ritz_dense) E = {0};
 
-    RITZ_CHECK(check_basis(component, basis));
+    RITZ_CHECK(check_basis(basis, 2 * component->num_dofs));
     RITZ_CHECK(ritz_state_space_new(basis->T.ncol, &component->io, &reduced));
     if (small)
         RITZ_CHECK(project_modes(component, damping, basis, &reduced, &E));
@@ -219,8 +199,8 @@ ritz_status ritz_reduce_states(const ritz_component *component,
  * which the companion form comes by division, its upper half being [0 I].
  */
 
-static ritz_status check(const ritz_component *component,
-                         const ritz_basis *basis)
+static ritz_status check_second_order(const ritz_component *component,
+                                      const ritz_basis *basis)
 {
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = &basis->W;
@@ -242,15 +222,9 @@ static ritz_status check(const ritz_component *component,
 static ritz_status stack_halves(const ritz_dense *upper,
                                 const ritz_dense *lower, ritz_dense *out)
 {
-    int64_t n = upper->nrow;
-    size_t size = (size_t)n * sizeof *out->val;
-
-    RITZ_CHECK(ritz_dense_new(2 * n, 2 * upper->ncol, out));
-    for (int64_t j = 0; j < upper->ncol && n > 0; j++) {
-        memcpy(ritz_dense_col(out, j), ritz_dense_col(upper, j), size);
-        memcpy(ritz_dense_col(out, upper->ncol + j) + n,
-               ritz_dense_col(lower, j), size);
-    }
+    RITZ_CHECK(ritz_dense_new(2 * upper->nrow, 2 * upper->ncol, out));
+    ritz_dense_put(upper, 0, 0, out);
+    ritz_dense_put(lower, upper->nrow, upper->ncol, out);
     return RITZ_OK;
 }
 
@@ -277,7 +251,7 @@ static ritz_status to_states(const ritz_component *component,
 }
 
 /* q' is q', without the rounding of a division. */
-static void settle(ritz_state_space *model)
+static void settle_companion(ritz_state_space *model)
 {
     int64_t r = model->A.nrow / 2;
 
@@ -296,34 +270,14 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
 {
     RITZ_OWN(ritz_basis) states = {0};
 
-    RITZ_CHECK(check(component, basis));
+    RITZ_CHECK(check_second_order(component, basis));
     RITZ_CHECK(to_states(component, basis, &states));
     RITZ_CHECK(ritz_reduce_states(component, damping, &states, out));
-    settle(out);
+    settle_companion(out);
     return RITZ_OK;
 }
 
 /* A state space in a basis of its states: see ritz_reduce_states. */
-
-static ritz_status check_space_basis(const ritz_state_space *full,
-                                     const ritz_basis *basis)
-{
-    const ritz_dense *T = &basis->T;
-    const ritz_dense *W = &basis->W;
-
-    RITZ_REFUSE_IF(!basis->states, RITZ_ERR_ARGUMENT,
-                   "the basis is of displacements, and a state space has none");
-    RITZ_REFUSE_IF(T->nrow != full->A.nrow, RITZ_ERR_ARGUMENT,
-                   "the basis is for %" PRId64
-                   " states, the state space has %" PRId64,
-                   T->nrow, full->A.nrow);
-    RITZ_REFUSE_IF(W->val && (W->nrow != T->nrow || W->ncol != T->ncol),
-                   RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " x %" PRId64 " left vectors do not fit %" PRId64
-                   " x %" PRId64 " right ones",
-                   W->nrow, W->ncol, T->nrow, T->ncol);
-    return RITZ_OK;
-}
 
 /* W'A T */
 static ritz_status product_between(const ritz_dense *W, const ritz_dense *A,
@@ -351,7 +305,7 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
     RITZ_OWN(ritz_state_space) reduced = {0};
     RITZ_OWN(ritz_dense) E = {0};
 
-    RITZ_CHECK(check_space_basis(full, basis));
+    RITZ_CHECK(check_basis(basis, full->A.nrow));
     RITZ_CHECK(ritz_state_space_new(T->ncol, &io, &reduced));
     RITZ_CHECK(product_between(W, &full->A, T, &reduced.A));
     RITZ_CHECK(product_between(W, &full->E, T, &E));
@@ -359,8 +313,7 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
     RITZ_CHECK(ritz_dense_mul_tn(W, &full->B, &reduced.B));
     ritz_dense_free(&reduced.C);
     RITZ_CHECK(ritz_dense_mul(&full->C, T, &reduced.C));
-    ritz_dense_free(&reduced.D);
-    RITZ_CHECK(ritz_dense_copy(&full->D, &reduced.D));
+    ritz_dense_put(&full->D, 0, 0, &reduced.D);
     RITZ_CHECK(ritz_states_settle(basis, &E, &reduced));
     memcpy(reduced.units, full->units, sizeof reduced.units);
     memcpy(reduced.damping, full->damping, sizeof reduced.damping);

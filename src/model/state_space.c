@@ -34,146 +34,76 @@
  * G = [A B; C D].
  */
 
-static void copy_part(const ritz_dense *from, int64_t row, int64_t col,
-                      ritz_dense *G)
-{
-    for (int64_t j = 0; j < from->ncol; j++)
-        for (int64_t i = 0; i < from->nrow; i++)
-            ritz_dense_col(G, col + j)[row + i] = ritz_dense_col(from, j)[i];
-}
-
-/* A becomes rows row.. and columns col.. of G. */
-static void paste_block(const ritz_dense *G, int64_t row, int64_t col,
-                        ritz_dense *A)
-{
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < A->nrow; i++)
-            ritz_dense_col(A, j)[i] = ritz_dense_col(G, col + j)[row + i];
-}
-
-static ritz_status join_matrices(const ritz_state_space *model, ritz_dense *out)
-{
-    int64_t n = model->A.nrow;
-
-    RITZ_CHECK(
-        ritz_dense_new(n + model->num_outputs, n + model->num_inputs, out));
-    copy_part(&model->A, 0, 0, out);
-    copy_part(&model->B, 0, n, out);
-    copy_part(&model->C, n, 0, out);
-    copy_part(&model->D, n, n, out);
-    return RITZ_OK;
-}
-
 /* Numbers below @p count of those that stay: states, and all that follow. */
 static ritz_status choose_states(const ritz_columns *columns, int64_t count,
-                                 bool perturbed, int64_t *kept, int64_t **out)
+                                 bool perturbed, ritz_dofs *out)
 {
-    int64_t *at = NULL;
-    int64_t next = 0;
-
-    RITZ_CHECK_NEW(at, count);
-    for (int64_t k = 0; k < count; k++) {
-        bool is =
-            k < columns->count && columns->kind[k] == RITZ_COLUMN_PERTURBED;
-
-        if (is == perturbed)
-            at[next++] = k;
-    }
-    *kept = next;
-    *out = at;
+    RITZ_CHECK_NEW(out->at, count);
+    for (int64_t k = 0; k < count; k++)
+        if (perturbed ==
+            (k < columns->count && columns->kind[k] == RITZ_COLUMN_PERTURBED))
+            out->at[out->count++] = k;
     return RITZ_OK;
 }
 
-/* Rows and columns of G. */
-static ritz_status pick_block(const ritz_dense *G, int64_t nrow,
-                              const int64_t *rows, int64_t ncol,
-                              const int64_t *cols, ritz_dense *out)
+/* G11 - G12 G22^-1 G21, the first with `rows` and `cols`. */
+static ritz_status eliminate_rest(const ritz_dense *G, const ritz_dofs *rows,
+                                  const ritz_dofs *cols, const ritz_dofs *rest,
+                                  ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(nrow, ncol, out));
-    for (int64_t j = 0; j < ncol; j++)
-        for (int64_t i = 0; i < nrow; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(G, cols[j])[rows[i]];
-    return RITZ_OK;
-}
-
-/* G11 - G12 G22^-1 G21, with the states of kind perturbed second. */
-static ritz_status eliminate_static(const ritz_state_space *model,
-                                    const ritz_columns *columns,
-                                    ritz_dense *out)
-{
+    RITZ_OWN(ritz_dense) upper = {0}, lower = {0}, change = {0};
+    RITZ_OWN(ritz_dense) G12 = {0}, G21 = {0}, G22 = {0};
     ritz_status status = RITZ_OK;
-    ritz_dense G = {0}, G12 = {0}, G21 = {0}, G22 = {0}, change = {0};
-    int64_t *rows = NULL, *cols = NULL, *rest = NULL;
-    int64_t nrow = 0, ncol = 0, count = 0;
 
-    RITZ_TRY(join_matrices(model, &G));
-    RITZ_TRY(choose_states(columns, G.nrow, false, &nrow, &rows));
-    RITZ_TRY(choose_states(columns, G.ncol, false, &ncol, &cols));
-    RITZ_TRY(choose_states(columns, columns->count, true, &count, &rest));
-    RITZ_TRY(pick_block(&G, nrow, rows, ncol, cols, out));
-    RITZ_TRY(pick_block(&G, nrow, rows, count, rest, &G12));
-    RITZ_TRY(pick_block(&G, count, rest, ncol, cols, &G21));
-    RITZ_TRY(pick_block(&G, count, rest, count, rest, &G22));
+    RITZ_CHECK(ritz_dense_rows(G, rows->count, rows->at, &upper));
+    RITZ_CHECK(ritz_dense_rows(G, rest->count, rest->at, &lower));
+    RITZ_CHECK(ritz_dense_pick(&upper, cols->count, cols->at, out));
+    RITZ_CHECK(ritz_dense_pick(&upper, rest->count, rest->at, &G12));
+    RITZ_CHECK(ritz_dense_pick(&lower, cols->count, cols->at, &G21));
+    RITZ_CHECK(ritz_dense_pick(&lower, rest->count, rest->at, &G22));
     status = ritz_general_solve(&G22, false, &G21);
-    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                 "the remainder has no static answer: a motion that nothing "
-                 "holds is among its states");
-    RITZ_TRY(status);
-    RITZ_TRY(ritz_dense_mul(&G12, &G21, &change));
-    for (int64_t k = 0; k < change.nrow * change.ncol; k++)
-        out->val[k] -= change.val[k];
-done:
-    ritz_dense_free(&G);
-    ritz_dense_free(&G12);
-    ritz_dense_free(&G21);
-    ritz_dense_free(&G22);
-    ritz_dense_free(&change);
-    free(rows);
-    free(cols);
-    free(rest);
-    return status;
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "the remainder has no static answer: a motion that nothing "
+                   "holds is among its states");
+    RITZ_CHECK(status);
+    RITZ_CHECK(ritz_dense_mul(&G12, &G21, &change));
+    ritz_dense_add(-1.0, &change, out);
+    return RITZ_OK;
 }
 
-/* Of states that stay what the columns say. */
-static ritz_status keep_columns(const ritz_columns *columns, int64_t kept,
-                                ritz_columns *out)
+/* Block of G that begins at (row, col), in place of A. */
+static ritz_status take_block(const ritz_dense *G, int64_t row, int64_t col,
+                              int64_t nrow, int64_t ncol, ritz_dense *A)
 {
-    ritz_columns stay = {0};
-    int64_t next = 0;
-
-    RITZ_CHECK(ritz_columns_new(kept, &stay));
-    for (int64_t k = 0; k < columns->count; k++) {
-        if (columns->kind[k] == RITZ_COLUMN_PERTURBED)
-            continue;
-        stay.kind[next] = columns->kind[k];
-        stay.dof[next] = columns->dof[k];
-        stay.hertz[next] = columns->hertz[k];
-        stay.residual[next++] = columns->residual[k];
-    }
-    ritz_columns_free(out);
-    *out = stay;
+    ritz_dense_free(A);
+    RITZ_CHECK(ritz_dense_new(nrow, ncol, A));
+    ritz_dense_cut(G, row, col, A);
     return RITZ_OK;
 }
 
 static ritz_status perturb_states(const ritz_columns *columns,
                                   ritz_state_space *model)
 {
-    RITZ_OWN(ritz_dense) G = {0};
+    int64_t n = model->A.nrow, p = model->num_outputs, m = model->num_inputs;
+    RITZ_OWN(ritz_dofs) rows = {0}, cols = {0}, rest = {0};
+    RITZ_OWN(ritz_dense) whole = {0}, G = {0};
     int64_t r = 0;
 
-    RITZ_CHECK(eliminate_static(model, columns, &G));
-    r = G.nrow - model->num_outputs;
-    ritz_dense_free(&model->A);
-    ritz_dense_free(&model->B);
-    ritz_dense_free(&model->C);
-    RITZ_CHECK(ritz_dense_new(r, r, &model->A));
-    RITZ_CHECK(ritz_dense_new(r, model->num_inputs, &model->B));
-    RITZ_CHECK(ritz_dense_new(model->num_outputs, r, &model->C));
-    paste_block(&G, 0, 0, &model->A);
-    paste_block(&G, 0, r, &model->B);
-    paste_block(&G, r, 0, &model->C);
-    paste_block(&G, r, r, &model->D);
-    return keep_columns(columns, r, &model->columns);
+    RITZ_CHECK(ritz_dense_new(n + p, n + m, &whole));
+    ritz_dense_put(&model->A, 0, 0, &whole);
+    ritz_dense_put(&model->B, 0, n, &whole);
+    ritz_dense_put(&model->C, n, 0, &whole);
+    ritz_dense_put(&model->D, n, n, &whole);
+    RITZ_CHECK(choose_states(columns, n + p, false, &rows));
+    RITZ_CHECK(choose_states(columns, n + m, false, &cols));
+    RITZ_CHECK(choose_states(columns, n, true, &rest));
+    RITZ_CHECK(eliminate_rest(&whole, &rows, &cols, &rest, &G));
+    r = G.nrow - p;
+    RITZ_CHECK(take_block(&G, 0, 0, r, r, &model->A));
+    RITZ_CHECK(take_block(&G, 0, r, r, m, &model->B));
+    RITZ_CHECK(take_block(&G, r, 0, p, r, &model->C));
+    ritz_dense_cut(&G, r, r, &model->D);
+    return ritz_columns_pick(columns, r, rows.at, &model->columns);
 }
 
 static ritz_status note_bound(const ritz_basis *basis, ritz_state_space *model)
@@ -199,23 +129,13 @@ ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
     RITZ_CHECK(ritz_general_solve(E, false, &model->B));
     for (int64_t k = 0; k < basis->columns.count; k++)
         whole = whole && basis->columns.kind[k] != RITZ_COLUMN_PERTURBED;
-    if (whole) {
-        ritz_columns_free(&model->columns);
-        RITZ_CHECK(ritz_columns_copy(&basis->columns, &model->columns));
-    } else {
+    if (whole)
+        RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count,
+                                     NULL, &model->columns));
+    else
         RITZ_CHECK(perturb_states(&basis->columns, model));
-    }
     RITZ_CHECK(note_bound(basis, model));
     model->origin = basis->origin;
-    return RITZ_OK;
-}
-
-static ritz_status copy_names(int64_t count, const char (*from)[RITZ_NAME_SIZE],
-                              char (**out)[RITZ_NAME_SIZE])
-{
-    RITZ_CHECK_NEW(*out, count);
-    if (count > 0)
-        memcpy(*out, from, (size_t)count * RITZ_NAME_SIZE);
     return RITZ_OK;
 }
 
@@ -229,11 +149,9 @@ ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
     RITZ_CHECK(ritz_dense_new(states, io->num_inputs, &model.B));
     RITZ_CHECK(ritz_dense_new(io->num_outputs, states, &model.C));
     RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &model.D));
-    RITZ_CHECK(copy_names(io->num_inputs, io->input, &model.input));
-    RITZ_CHECK(copy_names(io->num_outputs, io->output, &model.output));
-    RITZ_CHECK_NEW(model.limit, io->num_outputs);
-    for (int64_t k = 0; k < io->num_outputs; k++)
-        model.limit[k] = io->limit[k];
+    RITZ_CHECK_COPY(model.input, io->input, io->num_inputs);
+    RITZ_CHECK_COPY(model.output, io->output, io->num_outputs);
+    RITZ_CHECK_COPY(model.limit, io->limit, io->num_outputs);
     RITZ_CHECK(ritz_columns_new(states, &model.columns));
     for (int64_t k = 0; k < states; k++)
         model.columns.kind[k] = RITZ_COLUMN_STATE;
@@ -283,10 +201,11 @@ static ritz_status add_product(double sign, const ritz_dense *A,
                                ritz_dense *C)
 {
     RITZ_OWN(ritz_dense) AB = {0};
+    ritz_dense part = {0};
 
     RITZ_CHECK(ritz_dense_mul(A, B, &AB));
-    for (int64_t k = 0; k < AB.nrow * AB.ncol; k++)
-        C->val[k + first * C->nrow] += sign * AB.val[k];
+    part = ritz_dense_part(C, first, AB.ncol);
+    ritz_dense_add(sign, &AB, &part);
     return RITZ_OK;
 }
 
@@ -303,14 +222,10 @@ static ritz_status fill_dofs(const ritz_dense *K, const ritz_dense *D,
             ritz_dense_col(&out->A, j)[n + i] = -ritz_dense_col(K, j)[i];
             ritz_dense_col(&out->A, n + j)[n + i] = -ritz_dense_col(D, j)[i];
         }
-        for (int64_t i = 0; i < io->num_outputs; i++) {
-            ritz_dense_col(&out->C, j)[i] = ritz_dense_col(&io->C, j)[i];
-            ritz_dense_col(&out->C, n + j)[i] = ritz_dense_col(&io->Cv, j)[i];
-        }
     }
-    for (int64_t j = 0; j < io->num_inputs; j++)
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(&out->B, j)[n + i] = ritz_dense_col(B, j)[i];
+    ritz_dense_put(&io->C, 0, 0, &out->C);
+    ritz_dense_put(&io->Cv, 0, n, &out->C);
+    ritz_dense_put(B, n, 0, &out->B);
     if (ritz_dense_max(&io->Ca) == 0.0)
         return RITZ_OK;
     RITZ_CHECK(add_product(-1.0, &io->Ca, K, 0, &out->C));
@@ -318,24 +233,26 @@ static ritz_status fill_dofs(const ritz_dense *K, const ritz_dense *D,
     return add_product(1.0, &io->Ca, B, 0, &out->D);
 }
 
-RITZ_ARRAY_OF(ritz_dense);
+/* X = M^-1 B */
+static ritz_status divide_mass(const ritz_structure *model, const ritz_dense *B,
+                               ritz_dense *X)
+{
+    RITZ_CHECK(ritz_dense_copy(B, X));
+    return ritz_general_solve(&model->M, false, X);
+}
 
 /* x = [u; u']; RITZ_ERR_SINGULAR if M is. */
 static ritz_status by_dofs(const ritz_structure *model, const ritz_dense *D,
                            const ritz_io *io, ritz_state_space *out)
 {
-    const ritz_dense *const parts[] = {&model->K, D, &io->B};
-    RITZ_OWN(ritz_dense_array) solved = {.count = 3};
+    RITZ_OWN(ritz_dense) K_m = {0}, D_m = {0}, B_m = {0};
     RITZ_OWN(ritz_state_space) made = {0};
 
-    RITZ_CHECK_NEW(solved.at, solved.count);
-    for (int k = 0; k < 3; k++) {
-        RITZ_CHECK(ritz_dense_copy(parts[k], &solved.at[k]));
-        RITZ_CHECK(ritz_general_solve(&model->M, false, &solved.at[k]));
-    }
+    RITZ_CHECK(divide_mass(model, &model->K, &K_m));
+    RITZ_CHECK(divide_mass(model, D, &D_m));
+    RITZ_CHECK(divide_mass(model, &io->B, &B_m));
     RITZ_CHECK(ritz_state_space_new(2 * D->nrow, io, &made));
-    RITZ_CHECK(
-        fill_dofs(&solved.at[0], &solved.at[1], &solved.at[2], io, &made));
+    RITZ_CHECK(fill_dofs(&K_m, &D_m, &B_m, io, &made));
     RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
@@ -360,9 +277,7 @@ static ritz_status by_modes(const ritz_structure *model, const ritz_io *io,
     ritz_dense_free(&made.C);
     RITZ_CHECK(ritz_modal_states(&modes, &(ritz_modal_layout){.scale = ones},
                                  &made.A, &made.B, &made.C));
-    ritz_dense_free(&made.D);
-    made.D = modes.feed;
-    modes.feed = (ritz_dense){0};
+    ritz_dense_replace(&made.D, &modes.feed);
     RITZ_MOVE(*out, made);
     return RITZ_OK;
 }
@@ -372,22 +287,19 @@ static ritz_status convert_structure(const ritz_structure *model,
                                      const ritz_damping *damping,
                                      ritz_state_space *out)
 {
+    RITZ_OWN(ritz_dense) D = {0};
     ritz_status status = RITZ_OK;
-    ritz_dense D = {0};
 
+    RITZ_CHECK(ritz_dense_new(model->K.nrow, model->K.nrow, &D));
     if (model->D.val)
-        RITZ_TRY(ritz_dense_copy(&model->D, &D));
-    else
-        RITZ_TRY(ritz_dense_new(model->K.nrow, model->K.nrow, &D));
-    RITZ_TRY(ritz_modal_damping(model, damping, &D));
+        ritz_dense_put(&model->D, 0, 0, &D);
+    RITZ_CHECK(ritz_modal_damping(model, damping, &D));
     status = by_dofs(model, &D, io, out);
     if (status == RITZ_ERR_SINGULAR)
-        RITZ_TRY(by_modes(model, io, damping, out));
-    RITZ_TRY(status);
+        status = by_modes(model, io, damping, out);
+    RITZ_CHECK(status);
     ritz_damping_print(damping, out->damping);
-done:
-    ritz_dense_free(&D);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_state_space_of_component(const ritz_component *component,

@@ -41,9 +41,8 @@ static ritz_status read_part(const ritz_system *system, const char *part,
             wanted[k] = setting;
             return RITZ_OK;
         }
-    RITZ_REFUSE_IF(true, RITZ_ERR_ARGUMENT, "there is no joint '%.*s' to set",
-                   (int)length, part);
-    return RITZ_OK;
+    return ritz_fail(RITZ_ERR_ARGUMENT, "there is no joint '%.*s' to set",
+                     (int)length, part);
 }
 
 static bool has_settings(const ritz_configuration *c, const double *wanted)
@@ -117,9 +116,7 @@ ritz_status ritz_configuration_install(ritz_configuration *configuration)
 
 void ritz_configuration_free(ritz_configuration *configuration)
 {
-    for (int64_t k = 0; k < configuration->num_blocks; k++)
-        ritz_dense_free(&configuration->P[k]);
-    free(configuration->P);
+    RITZ_FREE_EACH(ritz_dense, configuration->num_blocks, configuration->P);
     free(configuration->setting);
     free(configuration->lambda);
     ritz_dense_free(&configuration->K);

@@ -127,17 +127,16 @@ static void what_bodies_recover_the_system_recovers(void **state)
     assert_int_equal(system.recovery.dof[1].grid, 177); /* B's are moved on */
     for (int64_t k = 0; k < 2; k++) {
         ritz_dense row = {0}, e = {0};
-        int64_t first = k == 0
-                            ? ritz_component_row(&system, (ritz_dof){5, 1})
-                            : ritz_component_row(&system, (ritz_dof){105, 1});
-        int64_t shared = ritz_component_row(&system, (ritz_dof){6, 1});
-        int64_t last = k == 0 ? ritz_component_row(&system, (ritz_dof){6, 6})
-                              : ritz_component_row(&system, (ritz_dof){106, 6});
+        int64_t first = k == 0 ? row_of_dof(&system, (ritz_dof){5, 1})
+                               : row_of_dof(&system, (ritz_dof){105, 1});
+        int64_t shared = row_of_dof(&system, (ritz_dof){6, 1});
+        int64_t last = k == 0 ? row_of_dof(&system, (ritz_dof){6, 6})
+                              : row_of_dof(&system, (ritz_dof){106, 6});
 
         if (first < 0) /* one of the two that are joined has the row */
             first = shared;
         if (last < 0)
-            last = ritz_component_row(&system, (ritz_dof){105, 6});
+            last = row_of_dof(&system, (ritz_dof){105, 6});
         assert_ok(ritz_dense_new(9, 1, &e));
         e.val[first] = 10.0;
         e.val[last] = 1.0;

@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "folder.h"
+#include "frame.h"
 #include "matrices.h"
 
 #include <ritz/import.h>
@@ -42,7 +43,7 @@ static const char *put_diagonal(const char *name, int n, const double *value)
 
 static int64_t row(const ritz_component *c, int64_t grid, int64_t direction)
 {
-    return ritz_component_row(c, (ritz_dof){grid, direction});
+    return row_of_dof(c, (ritz_dof){grid, direction});
 }
 
 static void assert_same(const ritz_sparse *A, const ritz_sparse *B,

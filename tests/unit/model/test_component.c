@@ -158,8 +158,8 @@ static void a_port_is_found_or_the_nearest_named(void **state)
     ritz_dofs_free(&set);
     assert_fails(ritz_component_attached(&c, "top", &set), RITZ_ERR_ARGUMENT,
                  "there is no port 'top'");
-    assert_int_equal(ritz_component_row(&c, (ritz_dof){11, 2}), 7);
-    assert_int_equal(ritz_component_row(&c, (ritz_dof){12, 2}), -1);
+    assert_int_equal(row_of_dof(&c, (ritz_dof){11, 2}), 7);
+    assert_int_equal(row_of_dof(&c, (ritz_dof){12, 2}), -1);
     ritz_component_free(&c);
 }
 

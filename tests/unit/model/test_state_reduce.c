@@ -253,7 +253,7 @@ static void a_basis_of_other_states_is_refused(void **state)
     assert_ok(spaces_make(&rows, &full));
     any_basis(6, true, &basis);
     assert_fails(ritz_reduce_space(&full, &basis, &none), RITZ_ERR_ARGUMENT,
-                 "is for 6 states, the state space has 1");
+                 "is for 6 states, the model has 1");
     basis.states = false;
     assert_fails(ritz_reduce_space(&full, &basis, &none), RITZ_ERR_ARGUMENT,
                  "of displacements");
