@@ -9,6 +9,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
+#include "verify/participation.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -345,13 +346,9 @@ ritz_status ritz_estimator_new(const ritz_component *full,
                                const ritz_estimate_request *request,
                                ritz_estimator **out)
 {
-    const double *band = request->band_hz;
     ritz_estimator *made = NULL;
 
-    RITZ_REFUSE_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
-                       (band[1] != 0.0 && band[0] >= band[1]),
-                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                   band[0], band[1]);
+    RITZ_CHECK(ritz_verify_band(request->band_hz, true));
     RITZ_CHECK_NEW(made, 1);
     made->component = full;
     made->request = *request;

@@ -1,4 +1,7 @@
-/* Less than half of a mode is not that mode. */
+/*
+ * Which mode of a reduced model corresponds to which of the full one: the one
+ * that holds most of its shape, half at least, or, without shapes, by alignment.
+ */
 #include "verify/match.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -6,10 +9,11 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* No partner for any mode, and no MAC. */
-static ritz_status ritz_match_new(const ritz_poles *full,
-                                  const ritz_poles *reduced, ritz_match *out)
+static ritz_status match_none(const ritz_poles *full, const ritz_poles *reduced,
+                              ritz_match *out)
 {
     out->count = full->count;
     out->num_reduced = reduced->count;
@@ -24,13 +28,21 @@ static ritz_status ritz_match_new(const ritz_poles *full,
 }
 
 /* How much of the space of modes first .. last - 1 reduced mode r holds. */
-static double share(const ritz_dense *Q, int64_t first, int64_t last, int64_t r)
+static double sum_squares(const ritz_dense *Q, int64_t first, int64_t last,
+                          int64_t r)
 {
     double sum = 0.0;
 
     for (int64_t k = first; k < last; k++)
         sum += ritz_dense_col(Q, r)[k] * ritz_dense_col(Q, r)[k];
     return sum;
+}
+
+/* Whether mode k and the next are so close that vectors may be any mixture. */
+static bool is_close(const ritz_poles *full, int64_t k)
+{
+    return sqrt(full->lambda[k + 1]) * (1.0 - RITZ_CLOSE) <=
+           sqrt(full->lambda[k]);
 }
 
 /* Least singular value of a cluster's block of Q, squared. */
@@ -54,14 +66,15 @@ static ritz_status subspace_mac(const ritz_dense *Q, int64_t first,
 }
 
 /* The best free reduced mode for a cluster, -1 if none has half of it. */
-static int64_t choose(const ritz_dense *Q, const ritz_poles *reduced,
-                      const bool *taken, const int64_t range[2], double *best)
+static int64_t choose_mode(const ritz_dense *Q, const ritz_poles *reduced,
+                           const bool *taken, const int64_t range[2],
+                           double *best)
 {
     int64_t chosen = -1;
 
     *best = 0.0;
     for (int64_t r = reduced->num_rigid; r < reduced->count; r++) {
-        double part = taken[r] ? 0.0 : share(Q, range[0], range[1], r);
+        double part = taken[r] ? 0.0 : sum_squares(Q, range[0], range[1], r);
 
         if (part > *best) {
             *best = part;
@@ -71,7 +84,7 @@ static int64_t choose(const ritz_dense *Q, const ritz_poles *reduced,
     return *best >= RITZ_SAME_MODE ? chosen : -1;
 }
 
-static int ascending(const void *left, const void *right)
+static int compare_numbers(const void *left, const void *right)
 {
     int64_t a = *(const int64_t *)left;
     int64_t b = *(const int64_t *)right;
@@ -87,7 +100,7 @@ static ritz_status match_cluster(const ritz_dense *Q, const ritz_poles *reduced,
     double best = 1.0;
 
     while (found < last) {
-        int64_t r = choose(Q, reduced, match->taken, range, &best);
+        int64_t r = choose_mode(Q, reduced, match->taken, range, &best);
 
         if (r < 0)
             break;
@@ -95,7 +108,7 @@ static ritz_status match_cluster(const ritz_dense *Q, const ritz_poles *reduced,
         match->taken[r] = true;
     }
     qsort(match->partner + first, (size_t)(found - first),
-          sizeof *match->partner, ascending);
+          sizeof *match->partner, compare_numbers);
     if (found == last)
         RITZ_CHECK(subspace_mac(Q, first, last, match->partner, &best));
     for (int64_t k = first; k < last; k++)
@@ -109,12 +122,10 @@ ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
     RITZ_OWN(ritz_match) match = {0};
     int64_t last = 0;
 
-    RITZ_CHECK(ritz_match_new(full, reduced, &match));
+    RITZ_CHECK(match_none(full, reduced, &match));
     for (int64_t first = full->num_rigid; first < full->count; first = last) {
         last = first + 1;
-        while (last < full->count &&
-               sqrt(full->lambda[last]) * (1.0 - RITZ_CLOSE) <=
-                   sqrt(full->lambda[last - 1]))
+        while (last < full->count && is_close(full, last - 1))
             last++;
         RITZ_CHECK(match_cluster(Q, reduced, first, last, &match));
     }
@@ -153,19 +164,20 @@ static void pairing_free(pairing *p)
     free(p->by);
 }
 
-/* Of a mode that is not seen nothing tells but its frequency. */
-static double pair_cost(const ritz_seen *seen, const ritz_poles *full,
+/* A mode that is not observable is known by its frequency alone. */
+static double pair_cost(const ritz_participation *part, const ritz_poles *full,
                         int64_t k, const ritz_poles *reduced, int64_t r)
 {
     double apart = fabs(log(reduced->lambda[r] / full->lambda[k])) / 2.0;
 
-    if (!seen->mode[k])
+    if (!part->observable[k])
         return apart;
-    return apart +
-           RITZ_UNLIKE_COST * (1.0 - ritz_seen_mac(seen, full, k, reduced, r));
+    return apart + RITZ_UNLIKE_COST * (1.0 - ritz_participation_mac(
+                                                 part, full, k, reduced, r));
 }
 
-static ritz_status pairing_new(const ritz_seen *seen, const ritz_poles *full,
+static ritz_status pairing_new(const ritz_participation *part,
+                               const ritz_poles *full,
                                const ritz_poles *reduced, pairing *p)
 {
     p->m = full->count - full->num_rigid;
@@ -176,12 +188,10 @@ static ritz_status pairing_new(const ritz_seen *seen, const ritz_poles *full,
     RITZ_CHECK_NEW(p->by, p->n);
     for (int64_t k = 0; k < p->m; k++)
         for (int64_t r = 0; r < p->n; r++)
-            p->cost[k * p->n + r] = pair_cost(seen, full, full->num_rigid + k,
+            p->cost[k * p->n + r] = pair_cost(part, full, full->num_rigid + k,
                                               reduced, reduced->num_rigid + r);
-    for (int64_t k = 0; k < p->m; k++)
-        p->of[k] = -1;
-    for (int64_t r = 0; r < p->n; r++)
-        p->by[r] = -1;
+    memset(p->of, -1, (size_t)p->m * sizeof *p->of);
+    memset(p->by, -1, (size_t)p->n * sizeof *p->by);
     return RITZ_OK;
 }
 
@@ -189,7 +199,7 @@ static ritz_status pairing_new(const ritz_seen *seen, const ritz_poles *full,
  * total(k, r) of aligning the first k and r modes, by the recurrence of edit
  * distance; then back along what was cheapest.
  */
-static void align(pairing *p)
+static void align_modes(pairing *p)
 {
     int64_t n = p->n;
 
@@ -221,7 +231,8 @@ static void align(pairing *p)
     }
 }
 
-/* Of mode k with that partner, which may be none; so far and no further. */
+/* Cost of mode k with partner r, each of which may be none; infinite where two
+   unpaired modes would cost less. */
 static double cost_of(const pairing *p, int64_t k, int64_t r)
 {
     double cost = RITZ_SKIP_COST;
@@ -233,8 +244,9 @@ static double cost_of(const pairing *p, int64_t k, int64_t r)
     return cost <= 2.0 * RITZ_SKIP_COST ? cost : HUGE_VAL;
 }
 
-/* Give mode k partner r, and who had r what k had, if that costs less. */
-static bool exchange(pairing *p, int64_t k, int64_t r)
+/* Give mode k partner r, and the former owner of r that of k, if that costs
+   less. */
+static bool exchange_partners(pairing *p, int64_t k, int64_t r)
 {
     int64_t old = p->of[k];
     int64_t other = p->by[r];
@@ -252,31 +264,21 @@ static bool exchange(pairing *p, int64_t k, int64_t r)
     return true;
 }
 
-/* Each exchange lowers the sum, so that there is an end. */
-static void untangle(pairing *p)
+/* Until no exchange lowers the sum of costs. */
+static void exchange_all(pairing *p)
 {
     for (bool changed = true; changed;) {
         changed = false;
         for (int64_t k = 0; k < p->m; k++)
             for (int64_t r = 0; r < p->n; r++)
-                changed = exchange(p, k, r) || changed;
+                changed = exchange_partners(p, k, r) || changed;
     }
 }
 
-/* Whether a neighbour is so close that vectors are any mixture of both. */
-static bool in_cluster(const ritz_poles *full, int64_t k)
-{
-    double w = sqrt(full->lambda[k]);
-
-    return (k > 0 && w - sqrt(full->lambda[k - 1]) <= RITZ_CLOSE * w) ||
-           (k + 1 < full->count &&
-            sqrt(full->lambda[k + 1]) - w <= RITZ_CLOSE * w);
-}
-
-/* Nothing is like a mode that is seen and has no partner. */
-static void take(const pairing *p, const ritz_seen *seen,
-                 const ritz_poles *full, const ritz_poles *reduced,
-                 ritz_match *match)
+/* The MAC of an observable mode without partner is 0. */
+static void take_partners(const pairing *p, const ritz_participation *part,
+                          const ritz_poles *full, const ritz_poles *reduced,
+                          ritz_match *match)
 {
     for (int64_t j = 0; j < p->m; j++) {
         int64_t k = full->num_rigid + j;
@@ -286,24 +288,26 @@ static void take(const pairing *p, const ritz_seen *seen,
             match->partner[k] = r;
             match->taken[r] = true;
         }
-        if (seen->mode[k] && !in_cluster(full, k))
-            match->mac[k] =
-                p->of[j] < 0 ? 0.0 : ritz_seen_mac(seen, full, k, reduced, r);
+        if (part->observable[k] && !(k > 0 && is_close(full, k - 1)) &&
+            !(k + 1 < full->count && is_close(full, k)))
+            match->mac[k] = p->of[j] < 0 ? 0.0
+                                         : ritz_participation_mac(part, full, k,
+                                                                  reduced, r);
     }
 }
 
 ritz_status ritz_match_outputs(const ritz_poles *full,
-                               const ritz_poles *reduced, const ritz_seen *seen,
-                               ritz_match *out)
+                               const ritz_poles *reduced,
+                               const ritz_participation *part, ritz_match *out)
 {
     RITZ_OWN(ritz_match) match = {0};
     RITZ_OWN(pairing) p = {0};
 
-    RITZ_CHECK(ritz_match_new(full, reduced, &match));
-    RITZ_CHECK(pairing_new(seen, full, reduced, &p));
-    align(&p);
-    untangle(&p);
-    take(&p, seen, full, reduced, &match);
+    RITZ_CHECK(match_none(full, reduced, &match));
+    RITZ_CHECK(pairing_new(part, full, reduced, &p));
+    align_modes(&p);
+    exchange_all(&p);
+    take_partners(&p, part, full, reduced, &match);
     RITZ_MOVE(*out, match);
     return RITZ_OK;
 }

@@ -1,15 +1,15 @@
-/* Which mode of the reduced model stands for which of the full one. */
+/* Which mode of the reduced model corresponds to which of the full one. */
 #ifndef RITZ_VERIFY_MATCH_H
 #define RITZ_VERIFY_MATCH_H
 
-#include "verify/seen.h"
+#include "verify/participation.h"
 
 typedef struct ritz_match {
     int64_t count;    /* modes of the full model */
     int64_t *partner; /* count, mode of the reduced one; -1: it has none */
     double *mac;      /* count, of the cluster it is in; NaN: not known */
     int64_t num_reduced;
-    bool *taken; /* num_reduced, is somebody's partner */
+    bool *taken; /* num_reduced, whether it is a partner */
 } ritz_match;
 
 /**
@@ -21,15 +21,14 @@ ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
                               const ritz_dense *Q, ritz_match *out);
 
 /**
- * By frequency and by what inputs and outputs see: the alignment of the two
- * ascending lists that costs least, but for modes that have changed places in
- * one of them. MAC is ritz_seen_mac, 0 without partner; NaN
- * of modes that are not seen, and of those closer than 1e-3, which are any
- * mixture.
+ * By frequency and participations: the alignment of the two ascending lists that
+ * costs least, and then exchanges of modes whose order differs between them. MAC
+ * is ritz_participation_mac, 0 without partner; NaN of modes that are not
+ * observable, and of those closer than 1e-3, which may be any mixture.
  */
 ritz_status ritz_match_outputs(const ritz_poles *full,
-                               const ritz_poles *reduced, const ritz_seen *seen,
-                               ritz_match *out);
+                               const ritz_poles *reduced,
+                               const ritz_participation *part, ritz_match *out);
 
 void ritz_match_free(ritz_match *match);
 

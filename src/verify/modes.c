@@ -18,23 +18,18 @@ static bool in_band(const ritz_sides *sides, double lambda)
     return ritz_in_band(sides->full->band_hz, lambda);
 }
 
-/* Whether mode k of the full model is in the band and has a partner. */
-static bool is_paired(const ritz_sides *sides, int64_t k)
-{
-    return in_band(sides, sides->full->poles.lambda[k]) &&
-           sides->match.partner[k] >= 0;
-}
-
-static double frequency_error(const ritz_sides *sides, int64_t k, int64_t r)
+static double frequency_error(const ritz_sides *sides, double nothing,
+                              int64_t k, int64_t r)
 {
     double full = sqrt(sides->full->poles.lambda[k]);
     double reduced = sqrt(sides->reduced.lambda[r]);
 
+    (void)nothing;
     return fabs(reduced - full) / full;
 }
 
-/* The ratio up to which a mode is undamped. */
-static double undamped(const ritz_sides *sides)
+/* The damping ratio up to which a mode is undamped. */
+static double find_negligible(const ritz_sides *sides)
 {
     const ritz_damped *both[] = {&sides->full->damped, &sides->damped_reduced};
     const int64_t count[] = {sides->full->poles.count, sides->reduced.count};
@@ -48,9 +43,10 @@ static double undamped(const ritz_sides *sides)
 }
 
 /*
- * Where D couples modes, undamped partners need not be damped ones: the nearest
- * pole is. Of a mode that does not oscillate in the full model nothing is said
- * (NaN); one that does so in it alone is wholly wrong.
+ * Where D couples modes, the damped mode of the undamped partner need not be the
+ * partner: the nearest pole is. The error is unknown (NaN) where the mode of the
+ * full model does not oscillate, and 1 where that of the reduced one alone does
+ * not.
  */
 static double damping_error(const ritz_sides *sides, double nothing, int64_t k,
                             int64_t r)
@@ -89,53 +85,56 @@ static void tell_mode(const ritz_sides *sides, extreme found, ritz_measure *out)
                    ritz_eigen_hertz(sides->full->poles.lambda[found.mode]));
 }
 
-ritz_status ritz_modes_frequency(const ritz_sides *sides, ritz_measure *out)
+/* The largest error of modes in the band that have a partner. */
+static void tell_worst(const ritz_sides *sides,
+                       double (*error)(const ritz_sides *sides, double nothing,
+                                       int64_t k, int64_t r),
+                       double nothing, ritz_measure *out)
 {
+    const ritz_poles *full = &sides->full->poles;
     extreme found = {0.0, -1};
 
-    for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
-        if (is_paired(sides, k))
-            keep_larger(frequency_error(sides, k, sides->match.partner[k]), k,
+    for (int64_t k = full->num_rigid; k < sides->match.count; k++)
+        if (in_band(sides, full->lambda[k]) && sides->match.partner[k] >= 0)
+            keep_larger(error(sides, nothing, k, sides->match.partner[k]), k,
                         &found);
     tell_mode(sides, found, out);
+}
+
+ritz_status ritz_modes_frequency(const ritz_sides *sides, ritz_measure *out)
+{
+    tell_worst(sides, frequency_error, 0.0, out);
     return RITZ_OK;
 }
 
+/* Without stated damping there is nothing to compare. */
 ritz_status ritz_modes_damping(const ritz_sides *sides, ritz_measure *out)
 {
-    const double nothing = undamped(sides);
-    extreme found = {0.0, -1};
-
-    if (sides->full->assumed) /* nothing is known to compare with */
-        return RITZ_OK;
-    for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
-        if (is_paired(sides, k))
-            keep_larger(
-                damping_error(sides, nothing, k, sides->match.partner[k]), k,
-                &found);
-    tell_mode(sides, found, out);
+    if (!sides->full->assumed)
+        tell_worst(sides, damping_error, find_negligible(sides), out);
     return RITZ_OK;
 }
 
-/* How many modes of the band no channel shows: they have no MAC. */
-static int64_t count_unseen(const ritz_sides *sides)
+/* How many modes of the band are not observable: they have no MAC. */
+static int64_t count_unobservable(const ritz_sides *sides)
 {
     const ritz_poles *full = &sides->full->poles;
     int64_t count = 0;
 
     for (int64_t k = full->num_rigid; k < full->count; k++)
-        count += in_band(sides, full->lambda[k]) && !sides->full->seen.mode[k];
+        count +=
+            in_band(sides, full->lambda[k]) && !sides->full->part.observable[k];
     return count;
 }
 
-/* "mode 5, 0.1202 Hz, 1 not seen" */
+/* "mode 5, 0.1202 Hz, 1 not observable" */
 ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out)
 {
-    int64_t unseen = sides->outputs ? count_unseen(sides) : 0;
+    int64_t unobservable = !sides->component ? count_unobservable(sides) : 0;
     extreme found = {0.0, -1};
     size_t used = 0;
 
-    if (!sides->shapes && !sides->outputs)
+    if (!sides->shapes && sides->component)
         return RITZ_OK;
     for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
         if (in_band(sides, sides->full->poles.lambda[k]))
@@ -143,9 +142,9 @@ ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out)
     found.value = -found.value;
     tell_mode(sides, found, out);
     used = strlen(out->where);
-    if (found.mode >= 0 && unseen > 0)
+    if (found.mode >= 0 && unobservable > 0)
         (void)snprintf(out->where + used, sizeof out->where - used,
-                       ", %" PRId64 " not seen", unseen);
+                       ", %" PRId64 " not observable", unobservable);
     return RITZ_OK;
 }
 

@@ -1,4 +1,7 @@
-/* Whether an output sees an input at all. */
+/*
+ * Measures between the responses and static gains of two models, which exist
+ * where any transfer function of the full model is more than rounding.
+ */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "verify/sides.h"
@@ -11,23 +14,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A mode's largest entry of B, and of C, Cv and Ca, each by any channel. */
+/* A mode's largest participation in any input, and in any row of C, Cv, Ca. */
 enum { SHARES = 4 };
 enum { SWEEPS = 3 };
 
-static void shares_of(const ritz_io *io, int64_t k, double share[SHARES])
+static void find_participations(const ritz_io *io, int64_t k,
+                                double share[SHARES])
 {
-    const ritz_dense *see[] = {&io->C, &io->Cv, &io->Ca};
-
     share[0] = 0.0;
     for (int64_t j = 0; j < io->num_inputs; j++)
         share[0] = fmax(share[0], fabs(ritz_dense_col(&io->B, j)[k]));
-    for (int t = 0; t < 3; t++) {
-        share[t + 1] = 0.0;
-        for (int64_t i = 0; i < io->num_outputs; i++)
-            share[t + 1] =
-                fmax(share[t + 1], fabs(ritz_dense_col(see[t], k)[i]));
-    }
+    share[1] = ritz_dense_col_max(&io->C, k);
+    share[2] = ritz_dense_col_max(&io->Cv, k);
+    share[3] = ritz_dense_col_max(&io->Ca, k);
 }
 
 /*
@@ -36,20 +35,20 @@ static void shares_of(const ritz_io *io, int64_t k, double share[SHARES])
  *
  *     1e3 eps sum_k (|c_k| b + c |b_k|) / |w_k^2 - w^2 + i w d_k|
  */
-static ritz_status ritz_sweep_hear(const ritz_poles *poles,
-                                   ritz_reference_sweep *s)
+static ritz_status find_significance(const ritz_poles *poles,
+                                     ritz_reference_sweep *s)
 {
     double most[SHARES] = {0.0};
     RITZ_OWN_ARRAY double *share = NULL;
 
-    s->heard = false;
+    s->significant = false;
     RITZ_CHECK_NEW(share, SHARES * poles->count);
     for (int64_t k = 0; k < poles->count; k++) {
-        shares_of(&poles->io, k, &share[SHARES * k]);
+        find_participations(&poles->io, k, &share[SHARES * k]);
         for (int t = 0; t < SHARES; t++)
             most[t] = fmax(most[t], share[SHARES * k + t]);
     }
-    for (int64_t p = 0; p < s->count && !s->heard; p++) {
+    for (int64_t p = 0; p < s->count && !s->significant; p++) {
         double w = 2.0 * RITZ_PI * s->hertz[p];
         double c_most = most[1] + w * (most[2] + w * most[3]);
         double sum = 0.0;
@@ -63,12 +62,11 @@ static ritz_status ritz_sweep_hear(const ritz_poles *poles,
                 sum += (c * most[0] + c_most * of[0]) / below;
         }
         for (int64_t e = p * s->values; e < (p + 1) * s->values; e++)
-            s->heard = s->heard || cabs(s->full[e]) > RITZ_HEARD_ROUNDING * sum;
+            s->significant =
+                s->significant || cabs(s->full[e]) > RITZ_HEARD_ROUNDING * sum;
     }
     return RITZ_OK;
 }
-
-/* Measures between the responses and static gains of two models. */
 
 void ritz_sweep_free(ritz_reference_sweep *sweep)
 {
@@ -97,7 +95,7 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                             &out->count, &out->hertz);
 }
 
-/* The largest of what is no rigid motion: y = (C + i w Cv - w^2 Ca) q less the
+/* The largest response without rigid motion: y = (C + i w Cv - w^2 Ca) q less the
  * rigid q = phi'b / (-w^2 + i w d). */
 static double flexible_part(const ritz_poles *poles,
                             const ritz_reference_sweep *s)
@@ -129,8 +127,8 @@ bool ritz_reference_factors(const ritz_reference *reference)
 }
 
 /*
- * Modes and the static answer of the rest do not say what a local damper does,
- * through which the rest moves too: then each point takes a factor.
+ * Modes and the static response of the rest do not give the effect of a local
+ * damper, through which the rest moves too: then each point takes a factor.
  */
 ritz_status ritz_reference_respond(const ritz_reference *reference,
                                    ritz_reference_sweep *s)
@@ -160,7 +158,7 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
                           s->full + k * s->values);
     }
     s->flexible = flexible_part(poles, s);
-    RITZ_TRY(ritz_sweep_hear(poles, s));
+    RITZ_TRY(find_significance(poles, s));
 done:
     ritz_response_free(&direct);
     return ritz_context(status, "full model");
@@ -172,6 +170,12 @@ typedef struct sweep_pair {
     double _Complex *reduced;
 } sweep_pair;
 
+static void keep_larger(double value, double hertz, ritz_extreme *of)
+{
+    if (value > of->value)
+        *of = (ritz_extreme){value, hertz};
+}
+
 /* One response of both models at a frequency. */
 static ritz_status compare_entry(double _Complex H, double _Complex H_r,
                                  double hertz, ritz_gap *gap)
@@ -181,16 +185,13 @@ static ritz_status compare_entry(double _Complex H, double _Complex H_r,
     RITZ_REFUSE_IF(!isfinite(error), RITZ_ERR_CONVERGENCE,
                    "the response at %.6g Hz leaves all bounds", hertz);
     gap->largest = fmax(gap->largest, cabs(H));
-    if (error > gap->error) {
-        gap->error = error;
-        gap->error_hz = hertz;
-    }
+    keep_larger(error, hertz, &gap->error);
     return RITZ_OK;
 }
 
 /*
- * The reduced model at the points, and how far it is off. Where a rigid motion
- * of the reduced model alone would answer without end, at rest, it is not asked.
+ * The reduced model at the points, and how far it is off. It is not compared at
+ * rest where its rigid motion alone would make its response infinite.
  */
 static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
                                  ritz_gap *gap)
@@ -202,7 +203,7 @@ static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
             : 0.0;
 
     gap->flexible = fmax(gap->flexible, s->full->flexible);
-    gap->heard = gap->heard || s->full->heard;
+    gap->significant = gap->significant || s->full->significant;
     RITZ_CHECK_NEW(s->reduced, s->full->count * values);
     for (int64_t k = 0; k < s->full->count; k++) {
         double hertz = s->full->hertz[k];
@@ -221,7 +222,7 @@ static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
     return RITZ_OK;
 }
 
-/* Levels mean something above a part of the largest |H|, once that is known. */
+/* Levels are compared where |H| is not negligible beside the largest. */
 static void compare_levels(const sweep_pair *s, ritz_gap *gap)
 {
     const int64_t values = s->full->values;
@@ -230,24 +231,10 @@ static void compare_levels(const sweep_pair *s, ritz_gap *gap)
         double a = cabs(s->full->full[k]);
         double b = fmax(cabs(s->reduced[k]), RITZ_LEAST_SCALE);
 
-        if (a > RITZ_AUDIBLE * gap->largest &&
-            fabs(20.0 * log10(b / a)) > gap->db) {
-            gap->db = fabs(20.0 * log10(b / a));
-            gap->db_hz = s->full->hertz[k / values];
-        }
+        if (a > RITZ_AUDIBLE * gap->largest)
+            keep_larger(fabs(20.0 * log10(b / a)), s->full->hertz[k / values],
+                        &gap->db);
     }
-}
-
-/* "3.41 Hz, modal 0.01 assumed" */
-static void say_where(const ritz_reference *full, double hertz,
-                      char where[RITZ_NAME_SIZE])
-{
-    char damping[RITZ_DAMPING_SIZE] = "";
-
-    ritz_damping_print(&full->damping, damping);
-    (void)snprintf(where, RITZ_NAME_SIZE, "%.6g Hz%s%.30s%s", hertz,
-                   damping[0] ? ", " : "", damping,
-                   full->assumed ? " assumed" : "");
 }
 
 /* Singular values of a model at every point of a sweep, descending at each. */
@@ -304,10 +291,7 @@ static ritz_status compare_singular(const ritz_sides *sides,
         double error = fabs(full - reduced[k * most + rank - 1]);
 
         gap->singular = fmax(gap->singular, full);
-        if (error > gap->singular_error) {
-            gap->singular_error = error;
-            gap->singular_hz = s->full->hertz[k];
-        }
+        keep_larger(error, s->full->hertz[k], &gap->singular_error);
     }
     return RITZ_OK;
 }
@@ -354,17 +338,28 @@ done:
     return status;
 }
 
+/* The error over @p unit, and "3.41 Hz, modal 0.01 assumed". */
+static void tell_error(const ritz_sides *sides, ritz_extreme found, double unit,
+                       ritz_measure *out)
+{
+    const ritz_reference *full = sides->full;
+    char damping[RITZ_DAMPING_SIZE] = "";
+
+    if (!sides->gap.significant)
+        return;
+    out->value = found.value / unit;
+    ritz_damping_print(&full->damping, damping);
+    (void)snprintf(out->where, sizeof out->where, "%.6g Hz%s%.30s%s",
+                   found.hertz, damping[0] ? ", " : "", damping,
+                   full->assumed ? " assumed" : "");
+}
+
 /* Models without rigid motion have one response, and it is the flexible one. */
 ritz_status ritz_responses_error(const ritz_sides *sides, ritz_measure *out)
 {
-    const ritz_gap *gap = &sides->gap;
-
-    if (!gap->heard)
-        return RITZ_OK;
-    out->value = gap->error / gap->largest;
+    tell_error(sides, sides->gap.error, sides->gap.largest, out);
     if (sides->full->poles.num_rigid == 0)
         out->limit = fmin(out->limit, sides->limit[RITZ_MEASURE_FLEXIBLE]);
-    say_where(sides->full, gap->error_hz, out->where);
     return RITZ_OK;
 }
 
@@ -372,31 +367,22 @@ ritz_status ritz_responses_flexible(const ritz_sides *sides, ritz_measure *out)
 {
     const ritz_gap *gap = &sides->gap;
 
-    if (!gap->heard || sides->full->poles.num_rigid == 0 ||
-        !(gap->flexible > RITZ_AUDIBLE * gap->error))
-        return RITZ_OK;
-    out->value = gap->error / gap->flexible;
-    say_where(sides->full, gap->error_hz, out->where);
+    if (sides->full->poles.num_rigid > 0 &&
+        gap->flexible > RITZ_AUDIBLE * gap->error.value)
+        tell_error(sides, gap->error, gap->flexible, out);
     return RITZ_OK;
 }
 
 ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out)
 {
-    if (!sides->gap.heard)
-        return RITZ_OK;
-    out->value = sides->gap.db;
-    say_where(sides->full, sides->gap.db_hz, out->where);
+    tell_error(sides, sides->gap.db, 1.0, out);
     return RITZ_OK;
 }
 
 ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out)
 {
-    const ritz_gap *gap = &sides->gap;
-
-    if (!gap->heard || !(gap->singular > 0.0))
-        return RITZ_OK;
-    out->value = gap->singular_error / gap->singular;
-    say_where(sides->full, gap->singular_hz, out->where);
+    if (sides->gap.singular > 0.0)
+        tell_error(sides, sides->gap.singular_error, sides->gap.singular, out);
     return RITZ_OK;
 }
 

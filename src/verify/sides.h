@@ -12,8 +12,8 @@ typedef struct ritz_reference_sweep {
     int64_t count, values; /* points; responses at each */
     double *hertz;
     double _Complex *full;
-    double flexible; /* largest |H| less what rigid motion answers */
-    bool heard;      /* any |H| is more than rounding */
+    double flexible;  /* largest |H| without rigid motion */
+    bool significant; /* any |H| is more than rounding */
 } ritz_reference_sweep;
 
 /* What of the full model serves every comparison. */
@@ -27,31 +27,36 @@ struct ritz_reference {
     ritz_poles poles;
     ritz_residual residual;
     ritz_damped damped;
-    ritz_seen seen;
+    ritz_participation part;
     ritz_dense gain;
     ritz_reference_sweep own, random;
 };
 
+/* The largest of some values, and where it was found. */
+typedef struct ritz_extreme {
+    double value, hertz;
+} ritz_extreme;
+
 /* How far the responses of two models are apart, over all points. */
 typedef struct ritz_gap {
-    bool heard;      /* any |H| of the full model is more than rounding */
-    double largest;  /* |H| of the full model */
-    double flexible; /* |H| less what rigid motion answers */
-    double error, error_hz; /* |H - H_r|, and where */
-    double db, db_hz;       /* of levels, where |H| is audible */
-    double singular;        /* smallest non-zero singular value, its largest */
-    double singular_error, singular_hz;
+    bool significant;   /* any |H| of the full model is more than rounding */
+    double largest;     /* |H| of the full model */
+    double flexible;    /* the same without rigid motion */
+    ritz_extreme error; /* |H - H_r| */
+    ritz_extreme db;    /* of levels, where |H| is not negligible */
+    double singular;    /* largest of the smallest non-zero singular value */
+    ritz_extreme singular_error;
 } ritz_gap;
 
 typedef struct ritz_sides {
     const ritz_reference *full;
-    const double *limit; /* RITZ_MEASURES of them, by ritz_measure_id */
-    const ritz_second_order *model; /* the reduced one */
+    const double *limit;     /* RITZ_MEASURES of them, by ritz_measure_id */
+    ritz_second_order model; /* the reduced one */
+    const ritz_reduced *component; /* it too; NULL: a system */
     ritz_gap gap;
     int where;        /* sum of RITZ_AT_... */
-    bool shapes;      /* MAC is of shapes */
-    bool outputs;     /* MAC is of what inputs and outputs see, of modes that
-                         they do see */
+    bool shapes;      /* MAC is of shapes; else, of a system, of the
+                         participations of observable modes */
     ritz_pairs small; /* of the reduced model, all */
     ritz_poles reduced;
     ritz_dense gain_reduced;

@@ -41,28 +41,18 @@ void ritz_state_pair_free(ritz_state_pair *p)
 static ritz_status make_states(const ritz_state_space *model, int64_t states,
                                ritz_state_space *out)
 {
-    const ritz_io io = {.num_inputs = model->num_inputs,
-                        .num_outputs = model->num_outputs,
-                        .input = model->input,
-                        .output = model->output,
-                        .limit = model->limit};
+    const ritz_io io = ritz_model_io(ritz_model_of_states(model));
 
     return ritz_state_space_new(states, &io, out);
 }
 
-static ritz_status check_names(const char *what, int64_t a, int64_t b,
-                               const char (*of_a)[RITZ_NAME_SIZE],
-                               const char (*of_b)[RITZ_NAME_SIZE])
+static ritz_status check_signals(const ritz_state_space *full,
+                                 const ritz_state_space *reduced)
 {
-    RITZ_REFUSE_IF(a != b, RITZ_ERR_ARGUMENT,
-                   "the models differ in %ss: %" PRId64 " and %" PRId64, what,
-                   a, b);
-    for (int64_t k = 0; k < a; k++)
-        RITZ_REFUSE_IF(strcmp(of_a[k], of_b[k]) != 0, RITZ_ERR_ARGUMENT,
-                       "%s %" PRId64 " is '%s' of one model and '%s' of the "
-                       "other",
-                       what, k + 1, of_a[k], of_b[k]);
-    return RITZ_OK;
+    const ritz_io io = ritz_model_io(ritz_model_of_states(full));
+    const ritz_io io_r = ritz_model_io(ritz_model_of_states(reduced));
+
+    return ritz_verify_signals(&io, &io_r);
 }
 
 /* to(row.., col..) = sign from */
@@ -84,16 +74,7 @@ static void place_descriptor(const ritz_dense *E, int64_t n, int64_t first,
         ritz_dense_col(to, first + i)[first + i] = 1.0;
 }
 
-static ritz_status check_signals(const ritz_state_space *a,
-                                 const ritz_state_space *b)
-{
-    RITZ_CHECK(
-        check_names("input", a->num_inputs, b->num_inputs, a->input, b->input));
-    return check_names("output", a->num_outputs, b->num_outputs, a->output,
-                       b->output);
-}
-
-/* a - b: both models side by side, the outputs of the second taken off. */
+/* a - b: both models side by side, the outputs of b subtracted. */
 ritz_status ritz_state_space_difference(const ritz_state_space *a,
                                         const ritz_state_space *b,
                                         ritz_state_space *out)
@@ -123,18 +104,11 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
     return RITZ_OK;
 }
 
-/* In the place of a matrix of zeros. */
+/* Over a matrix of zeros; none of none. */
 static ritz_status copy_matrix(const ritz_dense *from, ritz_dense *to)
 {
     ritz_dense_free(to);
     return from->val ? ritz_dense_copy(from, to) : RITZ_OK;
-}
-
-/* A row of outputs over its limit. */
-static void divide_row(double limit, int64_t i, ritz_dense *A)
-{
-    for (int64_t j = 0; j < A->ncol && !isnan(limit); j++)
-        ritz_dense_col(A, j)[i] /= limit;
 }
 
 static ritz_status divide_outputs(const ritz_state_space *model,
@@ -147,13 +121,17 @@ static ritz_status divide_outputs(const ritz_state_space *model,
     RITZ_CHECK(copy_matrix(&model->D, &out->D));
     RITZ_CHECK(copy_matrix(&model->E, &out->E));
     for (int64_t i = 0; i < model->num_outputs; i++) {
-        divide_row(limit[i], i, &out->C);
-        divide_row(limit[i], i, &out->D);
+        if (isnan(limit[i]))
+            continue;
+        for (int64_t j = 0; j < out->C.ncol; j++)
+            ritz_dense_col(&out->C, j)[i] /= limit[i];
+        for (int64_t j = 0; j < out->D.ncol; j++)
+            ritz_dense_col(&out->D, j)[i] /= limit[i];
     }
     return RITZ_OK;
 }
 
-/* What belongs to poles left of the axis: Y'A X, Y'E X, Y'B, C X. */
+/* The part of the poles left of the axis: Y'A X, Y'E X, Y'B, C X. */
 static ritz_status take_stable(const ritz_state_space *model,
                                ritz_state_space *out, int64_t *num_unstable)
 {
@@ -186,17 +164,14 @@ static ritz_status static_gain(const ritz_state_space *model, ritz_dense *out)
 
 static ritz_status take_gains(ritz_state_pair *p)
 {
-    ritz_status status = RITZ_OK;
-
     for (int k = 0; k < 2; k++) {
-        status = static_gain(&p->model[k], &p->gain[k]);
-        if (status == RITZ_ERR_SINGULAR)
-            return RITZ_OK;
-        RITZ_TRY(status);
+        ritz_status status = static_gain(&p->model[k], &p->gain[k]);
+
+        if (status != RITZ_OK)
+            return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
     }
     p->has_gain = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status open_pair(const ritz_state_space *full,
@@ -281,23 +256,26 @@ static void say_where(const ritz_state_pair *p, char where[RITZ_NAME_SIZE])
         snprintf(where + used, RITZ_NAME_SIZE - used, ", at least");
 }
 
-ritz_status ritz_states_infinity(const ritz_state_pair *p, ritz_measure *out)
+/* The norm of the difference, if there is one, over @p unit. */
+static ritz_status tell_norm(const ritz_state_pair *p, double unit,
+                             ritz_measure *out)
 {
-    if (!p->has_norms)
+    if (!p->has_norms || !(unit > 0.0))
         return RITZ_OK;
-    out->value = p->error.value;
+    out->value = p->error.value / unit;
     say_where(p, out->where);
     return RITZ_OK;
+}
+
+ritz_status ritz_states_infinity(const ritz_state_pair *p, ritz_measure *out)
+{
+    return tell_norm(p, 1.0, out);
 }
 
 ritz_status ritz_states_infinity_relative(const ritz_state_pair *p,
                                           ritz_measure *out)
 {
-    if (!p->has_norms || !(p->full.value > 0.0))
-        return RITZ_OK;
-    out->value = p->error.value / p->full.value;
-    say_where(p, out->where);
-    return RITZ_OK;
+    return tell_norm(p, p->full.value, out);
 }
 
 ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
@@ -306,14 +284,12 @@ ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
     const double bound =
         ritz_measures_value(&p->given[1]->estimates, "h-infinity-bound");
 
-    if (!p->has_norms || isnan(bound))
+    if (isnan(bound))
         return RITZ_OK;
-    out->value = p->error.value;
     out->limit = bound + (RITZ_NORM_TOLERANCE * bound +
                           RITZ_BOUND_ROUNDING * (double)p->model[0].A.nrow *
                               DBL_EPSILON * p->full.value);
-    say_where(p, out->where);
-    return RITZ_OK;
+    return tell_norm(p, 1.0, out);
 }
 
 ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
@@ -336,22 +312,25 @@ ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
     return RITZ_OK;
 }
 
+RITZ_PAIR_OF(ritz_state_space);
+
 /* Second-order models in first-order form. */
 ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out)
 {
     const ritz_verify_request request = RITZ_VERIFY_NONE;
-    const ritz_second_order *m = sides->model;
-    const ritz_reduced lent = {
-        .K = *m->K, .M = *m->M, .D = *m->D, .K4 = *m->K4, .io = *m->io};
-    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
+    const ritz_damping *damping = &sides->full->damping;
+    const ritz_state_space *full = NULL, *reduced = NULL;
+    RITZ_OWN(ritz_state_space_pair) made = {0};
     RITZ_OWN(ritz_state_pair) p = {0};
 
     RITZ_CHECK_IN("full model",
-                  ritz_state_space_of_component(sides->full->component,
-                                                &sides->full->damping, &full));
-    RITZ_CHECK_IN("reduced model", ritz_state_space_of_reduced(
-                                       &lent, &sides->full->damping, &reduced));
-    RITZ_CHECK(open_pair(&full, &reduced, &request, &p));
+                  ritz_model_states(
+                      ritz_model_of_component(sides->full->component, damping),
+                      &made[0], &full));
+    RITZ_CHECK_IN("reduced model",
+                  ritz_model_states(ritz_model_of_dense(&sides->model, damping),
+                                    &made[1], &reduced));
+    RITZ_CHECK(open_pair(full, reduced, &request, &p));
     RITZ_CHECK(check_norms(&p));
     return ritz_states_h2(&p, out);
 }
@@ -361,21 +340,22 @@ typedef struct largest {
     double error, full, hertz;
 } largest;
 
+RITZ_PAIR_OF(ritz_response);
+
 /* Both at the points that are refined at the poles of one of them. */
 static ritz_status compare_at(const ritz_state_pair *p, int refined,
                               const ritz_grid *grid, largest *found)
 {
-    ritz_status status = RITZ_OK;
-    ritz_response r[2] = {0};
+    RITZ_OWN(ritz_response_pair) r = {0};
     ritz_grid same = *grid;
     int64_t values = 0;
 
-    RITZ_TRY(ritz_response_of(ritz_model_of_states(&p->model[refined]), NULL,
-                              0.0, 0.0, grid, &r[refined]));
+    RITZ_CHECK(ritz_response_of(ritz_model_of_states(&p->model[refined]), NULL,
+                                0.0, 0.0, grid, &r[refined]));
     same.hertz = r[refined].hertz;
     same.count = r[refined].count;
-    RITZ_TRY(ritz_response_of(ritz_model_of_states(&p->model[1 - refined]),
-                              NULL, 0.0, 0.0, &same, &r[1 - refined]));
+    RITZ_CHECK(ritz_response_of(ritz_model_of_states(&p->model[1 - refined]),
+                                NULL, 0.0, 0.0, &same, &r[1 - refined]));
     values = r[0].num_inputs * r[0].num_outputs;
     for (int64_t k = 0; k < r[0].count * values; k++) {
         double error = cabs(r[0].H[k] - r[1].H[k]);
@@ -386,10 +366,7 @@ static ritz_status compare_at(const ritz_state_pair *p, int refined,
             found->hertz = r[0].hertz[k / values];
         }
     }
-done:
-    ritz_response_free(&r[0]);
-    ritz_response_free(&r[1]);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_states_response(const ritz_state_pair *p, ritz_measure *out)

@@ -1,8 +1,8 @@
 /*
- * Full against reduced. The reference holds what every comparison with one full
- * model needs, made once: modes, responses on a grid that is refined at its
- * poles, flexible static gain. A reduced model is then held against it by every
- * row of the table of measures.
+ * A full model against reduced ones. The reference holds what every comparison
+ * with one full model needs, made once: modes, responses on a grid that is
+ * refined at its poles, flexible static gain. A reduced model is compared with
+ * it by every row of the table of measures.
  */
 #include "base/alloc.h"
 #include "base/search.h"
@@ -18,8 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Dofs up to which all modes are taken where D couples them, or does what is
-   not known to those above. */
+/* Dofs up to which all modes are taken where D couples them, or acts on those
+   above in a way that is not known. */
 enum { SMALL = 300 };
 /* Points before those at the poles are added. */
 enum { EVEN_POINTS = 200 };
@@ -66,18 +66,16 @@ static ritz_status full_gain(ritz_reference *r)
     return RITZ_OK;
 }
 
-/* Modes up to a frequency, and the answer of the rest. */
+/* Modes up to a frequency, and the static response of the rest. */
 static ritz_status take_modes(double up_to_hz, ritz_reference *r)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_component *full = r->component;
-
-    RITZ_TRY(ritz_poles_of_component(full, &r->damping, up_to_hz, &r->pairs,
-                                     &r->poles));
-    RITZ_TRY(ritz_residual_new(full, &r->damping, &r->pairs, r->band_hz[1],
-                               up_to_hz, &r->residual));
-done:
-    return ritz_context(status, "full model");
+    RITZ_CHECK_IN("full model",
+                  ritz_poles_of_component(r->component, &r->damping, up_to_hz,
+                                          &r->pairs, &r->poles));
+    return ritz_context(ritz_residual_new(r->component, &r->damping, &r->pairs,
+                                          r->band_hz[1], up_to_hz,
+                                          &r->residual),
+                        "full model");
 }
 
 static ritz_status open_modes(ritz_reference *r)
@@ -93,8 +91,9 @@ static ritz_status open_modes(ritz_reference *r)
     RITZ_CHECK_IN("full model",
                   ritz_damped_new(&r->poles, r->component, &r->pairs,
                                   r->band_hz, &r->damped));
-    RITZ_CHECK_IN("full model", ritz_seen_new(r->component, &r->pairs,
-                                              &r->poles, r->band_hz, &r->seen));
+    RITZ_CHECK_IN("full model",
+                  ritz_participation_new(r->component, &r->pairs, &r->poles,
+                                         r->band_hz, &r->part));
     RITZ_CHECK_IN("full model", full_gain(r));
     return RITZ_OK;
 }
@@ -121,7 +120,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
     return ritz_reference_respond(r, &r->random);
 }
 
-/* The same with damping that somebody has chosen, or has not. */
+/* With the damping of the request, which may be assumed. */
 static ritz_status open_reference(const ritz_component *full,
                                   const ritz_reference_request *request,
                                   bool assumed, ritz_reference **out)
@@ -140,7 +139,8 @@ static ritz_status open_reference(const ritz_component *full,
     return RITZ_OK;
 }
 
-/* Damping of both models: as asked, as the full one says, as the other does. */
+/* Damping of both models: as requested, else as the full model states it, else
+   as the reduced one does. */
 static ritz_status choose_damping(const ritz_component *full,
                                   const char *reduced_text,
                                   const ritz_damping *asked, ritz_damping *out,
@@ -165,10 +165,7 @@ ritz_status ritz_reference_new(const ritz_component *full,
     ritz_reference_request own = *request;
     bool is_assumed = false;
 
-    RITZ_REFUSE_IF(!(own.band_hz[0] >= 0.0) || !isfinite(own.band_hz[1]) ||
-                       !(own.band_hz[0] < own.band_hz[1]),
-                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                   own.band_hz[0], own.band_hz[1]);
+    RITZ_CHECK(ritz_verify_band(own.band_hz, false));
     RITZ_CHECK(
         choose_damping(full, "", &request->damping, &own.damping, &is_assumed));
     return open_reference(full, &own, is_assumed, out);
@@ -195,7 +192,7 @@ void ritz_reference_free(ritz_reference **reference)
     ritz_poles_free(&r->poles);
     ritz_residual_free(&r->residual);
     ritz_damped_free(&r->damped);
-    ritz_seen_free(&r->seen);
+    ritz_participation_free(&r->part);
     ritz_dense_free(&r->gain);
     ritz_sweep_free(&r->own);
     ritz_sweep_free(&r->random);
@@ -204,14 +201,8 @@ void ritz_reference_free(ritz_reference **reference)
 }
 
 /*
- * Full against reduced. Frequencies, shapes and damping ratios of the modes in
- * the band, responses on a grid that is refined at the poles of both models,
- * the flexible static gain, and what one of them has and the other has not.
- */
-
-/*
- * The highest frequency that a reduced model answers for: of the modes that its
- * basis was made with, or else the highest of its own.
+ * The highest frequency of the modes that the basis of a reduced model was made
+ * with, or else of its own modes.
  */
 static double highest_hertz(const ritz_poles *reduced,
                             const ritz_columns *columns)
@@ -244,77 +235,32 @@ static void choose_band(const ritz_poles *reduced, double highest,
         band[1] = fmax(1.0, 2.0 * band[0]); /* rigid bodies: any will do */
 }
 
-/* That what goes in and comes out is the same of both. */
-static ritz_status check_signals(const ritz_io *full, const ritz_io *io)
-{
-    RITZ_REFUSE_IF(full->num_inputs != io->num_inputs ||
-                       full->num_outputs != io->num_outputs,
-                   RITZ_ERR_ARGUMENT,
-                   "the full model has %" PRId64 " inputs and %" PRId64
-                   " outputs, the reduced one %" PRId64 " and %" PRId64,
-                   full->num_inputs, full->num_outputs, io->num_inputs,
-                   io->num_outputs);
-    for (int64_t k = 0; k < io->num_inputs; k++)
-        RITZ_REFUSE_IF(
-            strcmp(full->input[k], io->input[k]) != 0, RITZ_ERR_ARGUMENT,
-            "input %" PRId64 " is '%s' in the full model and '%s' in "
-            "the reduced one",
-            k + 1, full->input[k], io->input[k]);
-    for (int64_t k = 0; k < io->num_outputs; k++)
-        RITZ_REFUSE_IF(
-            strcmp(full->output[k], io->output[k]) != 0, RITZ_ERR_ARGUMENT,
-            "output %" PRId64 " is '%s' in the full model and '%s' in "
-            "the reduced one",
-            k + 1, full->output[k], io->output[k]);
-    return RITZ_OK;
-}
-
-static ritz_status check_band(const ritz_verify_request *request)
-{
-    RITZ_REFUSE_IF(!(request->band_hz[0] >= 0.0) ||
-                       !isfinite(request->band_hz[1]) ||
-                       (request->band_hz[1] != 0.0 &&
-                        request->band_hz[0] >= request->band_hz[1]),
-                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                   request->band_hz[0], request->band_hz[1]);
-    return RITZ_OK;
-}
-
 /* Its basis is dense and its modes are all there. */
 static ritz_status open_sides(const ritz_second_order *model,
                               const ritz_damping *damping, double to_hz,
                               ritz_sides *sides)
 {
+    sides->model = *model;
     RITZ_CHECK_IN("reduced model",
                   ritz_poles_of_dense(model, damping, to_hz, &sides->reduced));
-    RITZ_CHECK_IN("reduced model",
-                  ritz_eigen_dense(model->K, model->M, &sides->small));
-    return RITZ_OK;
-}
-
-/* Q = Phi_full' M (T Phi_reduced) */
-static ritz_status multiply_shapes(const ritz_sides *sides, const ritz_dense *T,
-                                   ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) shapes = {0};
-    RITZ_OWN(ritz_dense) MS = {0};
-
-    RITZ_CHECK(ritz_dense_mul(T, &sides->small.Phi, &shapes));
-    RITZ_CHECK(ritz_sparse_mul(&sides->full->component->M, &shapes, &MS));
-    return ritz_dense_mul_tn(&sides->full->pairs.Phi, &MS, out);
+    return ritz_context(ritz_eigen_dense(model->K, model->M, &sides->small),
+                        "reduced model");
 }
 
 /* Which mode of the full model is which of the reduced one. */
-static ritz_status match_modes(const ritz_dense *T, ritz_sides *sides)
+static ritz_status match_modes(ritz_sides *sides)
 {
     const ritz_reference *full = sides->full;
-    RITZ_OWN(ritz_dense) Q = {0};
+    const ritz_dense *T = sides->component ? &sides->component->T : NULL;
+    RITZ_OWN(ritz_dense) shapes = {0}, MS = {0}, Q = {0};
 
     sides->shapes = T && T->val && T->nrow == full->component->num_dofs;
     if (!sides->shapes)
-        return ritz_match_outputs(&full->poles, &sides->reduced, &full->seen,
+        return ritz_match_outputs(&full->poles, &sides->reduced, &full->part,
                                   &sides->match);
-    RITZ_CHECK(multiply_shapes(sides, T, &Q));
+    RITZ_CHECK(ritz_dense_mul(T, &sides->small.Phi, &shapes));
+    RITZ_CHECK(ritz_sparse_mul(&full->component->M, &shapes, &MS));
+    RITZ_CHECK(ritz_dense_mul_tn(&full->pairs.Phi, &MS, &Q));
     return ritz_match_shapes(&full->poles, &sides->reduced, &Q, &sides->match);
 }
 
@@ -344,55 +290,62 @@ static ritz_status measure_rows(const ritz_sides *sides, ritz_measures *out)
  * The measures of one model, whose poles are there already, against the full
  * one.
  *
- * @param[in]     T      NULL: shapes cannot be compared
- * @param[in,out] sides  with `reduced` and `small`; the rest is filled in
+ * @param[in,out] sides  with `reduced`, `small` and `full`
  */
-static ritz_status measure_sides(const ritz_second_order *model,
-                                 const ritz_dense *T,
-                                 const ritz_verify_request *limits,
+static ritz_status measure_sides(const ritz_verify_request *limits,
                                  ritz_sides *sides, ritz_measures *out)
 {
     const ritz_reference *full = sides->full;
     RITZ_OWN(ritz_measures) found = {0};
 
     sides->limit = limits->limit;
-    sides->model = model;
     RITZ_CHECK_IN("reduced model",
                   ritz_damped_new(&sides->reduced, NULL, NULL, full->band_hz,
                                   &sides->damped_reduced));
     RITZ_CHECK_IN("reduced model",
-                  ritz_static_gain(model->K, model->M, model->io,
-                                   full->pairs.num_rigid,
+                  ritz_static_gain(sides->model.K, sides->model.M,
+                                   sides->model.io, full->pairs.num_rigid,
                                    &sides->gain_reduced));
-    RITZ_CHECK(match_modes(T, sides));
+    RITZ_CHECK(match_modes(sides));
     RITZ_CHECK(ritz_sides_respond(sides));
     RITZ_CHECK(measure_rows(sides, &found));
     RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
 
-static void free_sides(ritz_sides *sides)
+static void ritz_sides_free(ritz_sides *sides)
 {
     ritz_pairs_free(&sides->small);
     ritz_poles_free(&sides->reduced);
     ritz_dense_free(&sides->gain_reduced);
     ritz_match_free(&sides->match);
     ritz_damped_free(&sides->damped_reduced);
-    *sides = (ritz_sides){0};
 }
 
-/* Measures of a dense model, made with the T that may be there. */
+static ritz_status check_dofs(const ritz_component *full,
+                              const ritz_reduced *reduced)
+{
+    RITZ_REFUSE_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
+                   "the reduced model comes from %" PRId64
+                   " dofs, the full one has %" PRId64,
+                   reduced->num_dofs, full->num_dofs);
+    return RITZ_OK;
+}
+
+/* A reduced component, or a system, which has no shapes: NULL. */
 static ritz_status measure_dense(const ritz_reference *reference,
                                  const ritz_second_order *model,
-                                 const ritz_dense *T,
-                                 const ritz_verify_request *limits,
-                                 ritz_sides *sides, ritz_measures *out)
+                                 const ritz_reduced *reduced,
+                                 const ritz_verify_request *limits, int where,
+                                 ritz_measures *out)
 {
-    RITZ_CHECK(check_signals(&reference->component->io, model->io));
+    RITZ_OWN(ritz_sides)
+    sides = {.full = reference, .component = reduced, .where = where};
+
+    RITZ_CHECK(ritz_verify_signals(&reference->component->io, model->io));
     RITZ_CHECK(
-        open_sides(model, &reference->damping, reference->band_hz[1], sides));
-    sides->full = reference;
-    return measure_sides(model, T, limits, sides, out);
+        open_sides(model, &reference->damping, reference->band_hz[1], &sides));
+    return measure_sides(limits, &sides, out);
 }
 
 ritz_status ritz_reference_measure(const ritz_reference *reference,
@@ -400,21 +353,10 @@ ritz_status ritz_reference_measure(const ritz_reference *reference,
                                    const ritz_verify_request *limits, int where,
                                    ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
-                                     &reduced->K4, &reduced->io};
-    ritz_sides sides = {.where = where};
+    const ritz_model model = ritz_model_of_reduced(reduced, NULL);
 
-    RITZ_FAIL_IF(reduced->num_dofs != reference->component->num_dofs,
-                 RITZ_ERR_ARGUMENT,
-                 "the reduced model comes from %" PRId64
-                 " dofs, the full one has %" PRId64,
-                 reduced->num_dofs, reference->component->num_dofs);
-    RITZ_TRY(
-        measure_dense(reference, &model, &reduced->T, limits, &sides, out));
-done:
-    free_sides(&sides);
-    return status;
+    RITZ_CHECK(check_dofs(reference->component, reduced));
+    return measure_dense(reference, &model.dense, reduced, limits, where, out);
 }
 
 ritz_status ritz_reference_measure_at(const ritz_reference *reference,
@@ -422,26 +364,12 @@ ritz_status ritz_reference_measure_at(const ritz_reference *reference,
                                       const ritz_verify_request *limits,
                                       int where, ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_second_order model = {&reduced->K, &reduced->M, &reduced->D,
-                                     &reduced->K4, &reduced->io};
-    ritz_sides sides = {.where = where, .outputs = true};
+    const ritz_model model = ritz_model_of_configuration(reduced, NULL);
 
-    RITZ_TRY(measure_dense(reference, &model, NULL, limits, &sides, out));
-done:
-    free_sides(&sides);
-    return status;
+    return measure_dense(reference, &model.dense, NULL, limits, where, out);
 }
 
-/* What is compared: a reduced component, or a system without shapes. */
-typedef struct other {
-    ritz_second_order model;
-    const ritz_columns *columns;
-    const ritz_dense *T;
-    const char *damping;
-} other;
-
-/* What is held to something must be there to be measured. */
+/* A measure that has a limit must exist. */
 static ritz_status check_limits(const ritz_io *io,
                                 const ritz_verify_request *request)
 {
@@ -457,32 +385,32 @@ static ritz_status check_limits(const ritz_io *io,
     return RITZ_OK;
 }
 
-static ritz_status verify_dense(const ritz_component *full, const other *o,
+/* The same with a reference of its own. */
+static ritz_status verify_dense(const ritz_component *full,
+                                const ritz_second_order *model,
+                                const ritz_reduced *reduced,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
-    ritz_status status = RITZ_OK;
     ritz_reference_request asked = {0};
-    ritz_reference *reference = NULL;
-    ritz_sides sides = {.where = RITZ_AT_OTHER_POLES, .outputs = !o->columns};
+    RITZ_OWN(ritz_reference) *reference = NULL;
+    RITZ_OWN(ritz_sides)
+    sides = {.component = reduced, .where = RITZ_AT_OTHER_POLES};
     bool is_assumed = false;
 
-    RITZ_TRY(check_signals(&full->io, o->model.io));
-    RITZ_TRY(check_band(request));
-    RITZ_TRY(check_limits(&full->io, request));
-    RITZ_TRY(choose_damping(full, o->damping, &request->damping, &asked.damping,
-                            &is_assumed));
-    RITZ_TRY(
-        open_sides(&o->model, &asked.damping, request->band_hz[1], &sides));
-    choose_band(&sides.reduced, highest_hertz(&sides.reduced, o->columns),
-                request, asked.band_hz);
-    RITZ_TRY(open_reference(full, &asked, is_assumed, &reference));
+    RITZ_CHECK(ritz_verify_signals(&full->io, model->io));
+    RITZ_CHECK(ritz_verify_band(request->band_hz, true));
+    RITZ_CHECK(check_limits(&full->io, request));
+    RITZ_CHECK(choose_damping(full, reduced ? reduced->damping : "",
+                              &request->damping, &asked.damping, &is_assumed));
+    RITZ_CHECK(open_sides(model, &asked.damping, request->band_hz[1], &sides));
+    choose_band(
+        &sides.reduced,
+        highest_hertz(&sides.reduced, reduced ? &reduced->columns : NULL),
+        request, asked.band_hz);
+    RITZ_CHECK(open_reference(full, &asked, is_assumed, &reference));
     sides.full = reference;
-    RITZ_TRY(measure_sides(&o->model, o->T, request, &sides, out));
-done:
-    free_sides(&sides);
-    ritz_reference_free(&reference);
-    return status;
+    return measure_sides(request, &sides, out);
 }
 
 ritz_status ritz_verify_reduced(const ritz_component *full,
@@ -490,17 +418,10 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
-    const other o = {
-        {&reduced->K, &reduced->M, &reduced->D, &reduced->K4, &reduced->io},
-        &reduced->columns,
-        &reduced->T,
-        reduced->damping};
+    const ritz_model model = ritz_model_of_reduced(reduced, NULL);
 
-    RITZ_REFUSE_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
-                   "the reduced model comes from %" PRId64
-                   " dofs, the full one has %" PRId64,
-                   reduced->num_dofs, full->num_dofs);
-    return verify_dense(full, &o, request, out);
+    RITZ_CHECK(check_dofs(full, reduced));
+    return verify_dense(full, &model.dense, reduced, request, out);
 }
 
 ritz_status ritz_verify_system(const ritz_component *full,
@@ -508,13 +429,9 @@ ritz_status ritz_verify_system(const ritz_component *full,
                                const ritz_verify_request *request,
                                ritz_measures *out)
 {
-    const other o = {
-        {&reduced->K, &reduced->M, &reduced->D, &reduced->K4, &reduced->io},
-        NULL,
-        NULL,
-        ""};
+    const ritz_model model = ritz_model_of_configuration(reduced, NULL);
 
-    return verify_dense(full, &o, request, out);
+    return verify_dense(full, &model.dense, NULL, request, out);
 }
 
 static ritz_status check_states(const ritz_state_space *full,
@@ -526,10 +443,7 @@ static ritz_status check_states(const ritz_state_space *full,
                    RITZ_ERR_ARGUMENT,
                    "there are no %s, nothing can be compared",
                    full->num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_REFUSE_IF(!(band[0] >= 0.0) || !isfinite(band[1]) ||
-                       (band[1] != 0.0 && band[0] >= band[1]),
-                   RITZ_ERR_ARGUMENT, "a band from %g to %g Hz is none",
-                   band[0], band[1]);
+    RITZ_CHECK(ritz_verify_band(band, true));
     for (int k = 0; k < RITZ_MEASURES && band[1] == 0.0; k++)
         RITZ_REFUSE_IF(!isnan(request->limit[k]) &&
                            ritz_measure_table[k].needs & RITZ_NEEDS_BAND,

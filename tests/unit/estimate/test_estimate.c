@@ -342,7 +342,7 @@ static void bands_and_bases_that_do_not_fit_are_refused(void **state)
     reduce_by(&ritz_method_craig_bampton, &beam, (ritz_dofs){3, attached}, 4,
               &basis, &reduced);
     assert_fails(ritz_estimate(&beam, &basis, &request, &reduced),
-                 RITZ_ERR_ARGUMENT, "a band from 2 to 1 Hz is none");
+                 RITZ_ERR_ARGUMENT, "a band from 2 to 1 Hz is not a band of frequencies");
     request.band_hz[1] = 4.0;
     basis.T.ncol--;
     assert_fails(ritz_estimate(&beam, &basis, &request, &reduced),

@@ -298,7 +298,7 @@ static void models_that_differ_in_kind_have_no_difference(void **unused)
     snprintf(b.output[0], RITZ_NAME_SIZE, "tip");
     assert_fails(ritz_state_space_difference(&a, &b, &difference),
                  RITZ_ERR_ARGUMENT,
-                 "output 1 is 'y1' of one model and 'tip' of the other");
+                 "output 1 is 'y1' in the full model and 'tip' in the reduced one");
     ritz_state_space_free(&a);
     ritz_state_space_free(&b);
 }

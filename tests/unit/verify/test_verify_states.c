@@ -199,7 +199,8 @@ static void models_of_other_names_are_refused(void **state)
     request.band_hz[0] = 3.0;
     request.band_hz[1] = 2.0;
     assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
-                 RITZ_ERR_ARGUMENT, "a band from 3 to 2 Hz is none");
+                 RITZ_ERR_ARGUMENT,
+                 "a band from 3 to 2 Hz is not a band of frequencies");
     snprintf(reduced.output[0], sizeof reduced.output[0], "z");
     assert_fails(ritz_verify_states(&full, &reduced, &none, &found),
                  RITZ_ERR_ARGUMENT, "output 1 is 'y'");

@@ -1,6 +1,6 @@
 /*
- * Modes of systems, told by what inputs drive and outputs see: oscillators side
- * by side, one a mode, whose shares are chosen.
+ * Modes of systems are compared by their participations in inputs and outputs:
+ * uncoupled oscillators, one a mode, whose participations are chosen.
  */
 #include "testing.h"
 
@@ -109,14 +109,14 @@ static void inputs_and_outputs_are_scaled_by_their_largest(void **state)
 }
 
 /*
- * Mode 3 has its share in both channels times `part`, and the second output of
+ * The participations of mode 3 in both channels are multiplied by `part`, and the second output of
  * it has the wrong sign.
  */
-static void only_modes_that_are_seen_decide(void **state)
+static void only_observable_modes_decide(void **state)
 {
     static const struct {
         double part, hertz, zeta;
-        bool seen;
+        bool observable;
     } cases[] = {
         {1e-7, 4.0, 0.01, false},  {1e-5, 4.0, 0.01, true},
         {1e-7, 0.1, 0.01, true},   /* low: statically it is 1e-5 of mode 1 */
@@ -131,7 +131,7 @@ static void only_modes_that_are_seen_decide(void **state)
         ritz_component component = {0};
         ritz_pairs pairs = {0};
         ritz_poles poles = {0};
-        ritz_seen seen = {0};
+        ritz_participation part = {0};
         const double band[] = {0.0, 5.0};
         oscillators s = plain;
         int64_t at = 2;
@@ -146,10 +146,12 @@ static void only_modes_that_are_seen_decide(void **state)
         for (int64_t j = 0; j < 3; j++)
             poles.rate[j] =
                 2.0 * sqrt(poles.lambda[j]) * (j == at ? cases[k].zeta : 0.01);
-        assert_ok(ritz_seen_new(&component, &pairs, &poles, band, &seen));
+        assert_ok(
+            ritz_participation_new(&component, &pairs, &poles, band, &part));
         for (int64_t j = 0; j < 3; j++)
-            assert_int_equal(seen.mode[j], j == at ? cases[k].seen : true);
-        ritz_seen_free(&seen);
+            assert_int_equal(part.observable[j],
+                             j == at ? cases[k].observable : true);
+        ritz_participation_free(&part);
         ritz_poles_free(&poles);
         ritz_pairs_free(&pairs);
         ritz_component_free(&component);
@@ -171,19 +173,20 @@ static void noise_has_no_mac_and_is_counted(void **state)
     reduced.c[2][1] = -1.0;
     /* [1, 1, 1/2] as above: of the modes that are left the largest are 1, 1, 2 */
     assert_mac(&full, &reduced, (1.75 / 2.25) * (1.75 / 2.25),
-               "mode 3, 4 Hz, 1 not seen");
+               "mode 3, 4 Hz, 1 not observable");
     reduced.c[2][1] = 1.0;
-    assert_mac(&full, &reduced, 1.0, "mode 1, 1 Hz, 1 not seen");
+    assert_mac(&full, &reduced, 1.0, "mode 1, 1 Hz, 1 not observable");
 }
 
-/* An output of which no mode in the band moves anything does not speak. */
+/* An output in which no mode of the band takes part does not count. */
 static void an_output_of_rounding_counts_for_nothing(void **state)
 {
     oscillators full = plain, reduced = plain;
 
     (void)state;
     full.count = reduced.count = 4;
-    full.hertz[3] = reduced.hertz[3] = 9.0; /* beyond the band, seen in y2 */
+    full.hertz[3] = reduced.hertz[3] =
+        9.0; /* beyond the band, observable in y2 */
     full.c[3][1] = reduced.c[3][1] = 1.0;
     for (int k = 0; k < 3; k++) {
         full.c[k][1] = 1e-16 * (k + 1);
@@ -208,7 +211,7 @@ static void modes_that_have_changed_places_are_found(void **state)
     ritz_measures_free(&found);
 }
 
-/* Seen, it has a MAC of 0; not seen, none. */
+/* An observable mode without partner has a MAC of 0, another one none. */
 static void nothing_is_like_a_mode_that_is_missing(void **state)
 {
     oscillators full = plain, reduced = plain;
@@ -217,7 +220,7 @@ static void nothing_is_like_a_mode_that_is_missing(void **state)
     reduced.count = 2;
     assert_mac(&full, &reduced, 0.0, "mode 3, 4 Hz");
     full.c[2][0] = full.c[2][1] = 0.0;
-    assert_mac(&full, &reduced, 1.0, "mode 1, 1 Hz, 1 not seen");
+    assert_mac(&full, &reduced, 1.0, "mode 1, 1 Hz, 1 not observable");
 }
 
 static ritz_status verify_once(const ritz_component *full,
@@ -249,7 +252,7 @@ static void verifying_a_system_survives_every_allocation(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(inputs_and_outputs_are_scaled_by_their_largest),
-    cmocka_unit_test(only_modes_that_are_seen_decide),
+    cmocka_unit_test(only_observable_modes_decide),
     cmocka_unit_test(noise_has_no_mac_and_is_counted),
     cmocka_unit_test(an_output_of_rounding_counts_for_nothing),
     cmocka_unit_test(modes_that_have_changed_places_are_found),
@@ -257,4 +260,4 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(verifying_a_system_survives_every_allocation),
 };
 
-TEST_MODULE(seen, tests, NULL, NULL)
+TEST_MODULE(participation, tests, NULL, NULL)
