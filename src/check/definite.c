@@ -9,7 +9,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
-#include "poles/massless.h"
+#include "poles/poles.h"
 
 #include <float.h>
 #include <inttypes.h>

@@ -6,7 +6,7 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "check/check.h"
-#include "poles/proportional.h"
+#include "poles/poles.h"
 
 #include <ritz/matrix.h>
 

@@ -7,7 +7,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "poles/refine.h"
 
 #include <ritz/base.h>
 
@@ -17,38 +16,14 @@
 #include <string.h>
 
 /* The modal matrices as a model. */
-typedef struct damped_modal {
-    ritz_dense K, M, D, K4;
-} damped_modal;
-
-static void modal_free(damped_modal *m)
-{
-    ritz_dense_free(&m->K);
-    ritz_dense_free(&m->M);
-    ritz_dense_free(&m->D);
-    ritz_dense_free(&m->K4);
-}
-
-/* Rows and columns of the modes. */
-static ritz_status take_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
-{
-    if (!A->val)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_new(m, m, out));
-    for (int64_t j = 0; j < m; j++)
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
-    return RITZ_OK;
-}
-
-static ritz_status modal_new(const ritz_poles *poles, damped_modal *out)
+static ritz_status fill_modal(const ritz_poles *poles, ritz_reduced *out)
 {
     int64_t m = poles->count;
 
     RITZ_CHECK(ritz_dense_new(m, m, &out->K));
     RITZ_CHECK(ritz_dense_new(m, m, &out->M));
-    RITZ_CHECK(take_leading(&poles->D, m, &out->D));
-    RITZ_CHECK(take_leading(&poles->K4, m, &out->K4));
+    RITZ_CHECK(ritz_leading(&poles->D, m, &out->D));
+    RITZ_CHECK(ritz_leading(&poles->K4, m, &out->K4));
     for (int64_t k = 0; k < m; k++) {
         ritz_dense_col(&out->K, k)[k] = poles->lambda[k];
         ritz_dense_col(&out->M, k)[k] = 1.0;
@@ -127,13 +102,9 @@ static ritz_status shape_of(const ritz_dense *Phi,
                             const ritz_spectrum *spectrum, int64_t j,
                             ritz_dense *out)
 {
-    int64_t m = Phi->ncol;
     RITZ_OWN(ritz_dense) q = {0};
 
-    RITZ_CHECK(ritz_dense_new(m, 2, &q));
-    memcpy(q.val, ritz_dense_col(&spectrum->re, j), (size_t)m * sizeof *q.val);
-    memcpy(q.val + m, ritz_dense_col(&spectrum->im, j),
-           (size_t)m * sizeof *q.val);
+    RITZ_CHECK(ritz_spectrum_shape(spectrum, j, &q));
     return ritz_dense_mul(Phi, &q, out);
 }
 
@@ -163,7 +134,7 @@ static ritz_status refine_band(const ritz_poles *poles,
     RITZ_OWN_ARRAY double *own = NULL;
 
     RITZ_CHECK(own_rates(&component->D, &pairs->Phi, &own));
-    RITZ_CHECK(ritz_refiner_new(component, true, &refiner));
+    RITZ_CHECK(ritz_refiner_new(component, &refiner));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {
         double _Complex s = 0.0;
         double zeta = 0.0;
@@ -187,13 +158,12 @@ static ritz_status take_coupled(const ritz_poles *poles,
                                 const ritz_pairs *pairs,
                                 const double band_hz[2], ritz_damped *damped)
 {
-    [[gnu::cleanup(modal_free)]] damped_modal m = {0};
-    const ritz_second_order model = {&m.K, &m.M, &m.D, &m.K4, NULL};
+    RITZ_OWN(ritz_reduced) m = {0};
     RITZ_OWN_ARRAY int64_t *of = NULL;
 
     RITZ_CHECK_NEW(of, poles->count);
-    RITZ_CHECK(modal_new(poles, &m));
-    RITZ_CHECK(ritz_spectrum_of(ritz_model_of_dense(&model, NULL), NULL,
+    RITZ_CHECK(fill_modal(poles, &m));
+    RITZ_CHECK(ritz_spectrum_of(ritz_model_of_reduced(&m, NULL), NULL,
                                 &damped->listing));
     RITZ_CHECK(assign_poles(poles, &damped->listing, of));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {

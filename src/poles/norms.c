@@ -52,21 +52,6 @@ static void peak_free(peak *s)
     free(s->H);
     free(s->sigma);
     free(s->spare);
-    *s = (peak){0};
-}
-
-static ritz_status peak_new(const ritz_split *split, const ritz_dense *B,
-                            const ritz_dense *C, const ritz_dense *D, peak *out)
-{
-    RITZ_OWN(peak) s = {.D = *D};
-    int64_t least = B->ncol < C->nrow ? B->ncol : C->nrow;
-
-    RITZ_CHECK(ritz_resolvent_new(&split->S, &split->P, B, C, &s.resolvent));
-    RITZ_CHECK_NEW(s.H, B->ncol * C->nrow);
-    RITZ_CHECK_NEW(s.sigma, least);
-    RITZ_CHECK_NEW(s.spare, least);
-    RITZ_MOVE(*out, s);
-    return RITZ_OK;
 }
 
 static ritz_status peak_at(peak *s, double w, double *value)
@@ -246,45 +231,17 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
     return RITZ_OK;
 }
 
-/* Arguments of AB13DD, and its work space. */
-typedef struct hamiltonian {
-    ritz_dense S, P, B, C, D;
-    int *iwork;
-    double *work;
-    double _Complex *cwork;
-} hamiltonian;
-
-static void hamiltonian_free(hamiltonian *h)
-{
-    ritz_dense_free(&h->S);
-    ritz_dense_free(&h->P);
-    ritz_dense_free(&h->B);
-    ritz_dense_free(&h->C);
-    ritz_dense_free(&h->D);
-    free(h->iwork);
-    free(h->work);
-    free(h->cwork);
-}
-
-static ritz_status hamiltonian_new(const stable *s, hamiltonian *h)
-{
-    RITZ_CHECK(ritz_dense_copy(&s->split.S, &h->S));
-    if (s->split.P.val)
-        RITZ_CHECK(ritz_dense_copy(&s->split.P, &h->P));
-    else
-        RITZ_CHECK(ritz_dense_new(1, 1, &h->P));
-    RITZ_CHECK(ritz_dense_copy(&s->B, &h->B));
-    RITZ_CHECK(ritz_dense_copy(&s->C, &h->C));
-    return ritz_dense_copy(&s->D, &h->D);
-}
-
 /* Peak and its frequency, from @p w on; false if it did not come to an end. */
 static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
                                double *value, bool *found)
 {
-    RITZ_OWN(hamiltonian) h = {0};
+    RITZ_OWN(ritz_dense) S = {0}, P = {0}, B = {0}, C = {0}, D = {0};
+    RITZ_OWN_ARRAY int *iwork = NULL;
+    RITZ_OWN_ARRAY double *work = NULL;
+    RITZ_OWN_ARRAY double _Complex *cwork = NULL;
+    bool pencil = s->split.P.val;
     int n = (int)s->B.nrow, m = (int)s->B.ncol, p = (int)s->C.nrow;
-    int lde = s->split.P.val ? n : 1;
+    int lde = pencil ? n : 1;
     int room = 15 * n * n + p * p + m * m + (6 * n + 3) * (p + m) + 4 * p * m +
                n * m + 22 * n + 7 * (p < m ? p : m) + 64 * n;
     int croom = (n + m) * (n + p) + 2 * (p < m ? p : m) + p + m + 64 * n;
@@ -292,14 +249,18 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
     double gain[2] = {0.0, 1.0};
     int info = 0;
 
-    RITZ_CHECK(hamiltonian_new(s, &h));
-    RITZ_CHECK_NEW(h.iwork, n);
-    RITZ_CHECK_NEW(h.work, room);
-    RITZ_CHECK_NEW(h.cwork, croom);
-    ab13dd_("C", s->split.P.val ? "G" : "I", "N", "D", &n, &m, &p, frequency,
-            h.S.val, &n, h.P.val, &lde, h.B.val, &n, h.C.val, &p, h.D.val, &p,
-            gain, &tolerance, h.iwork, h.work, &room, h.cwork, &croom, &info, 1,
-            1, 1, 1);
+    RITZ_CHECK(ritz_dense_copy(&s->split.S, &S));
+    RITZ_CHECK(pencil ? ritz_dense_copy(&s->split.P, &P)
+                      : ritz_dense_new(1, 1, &P));
+    RITZ_CHECK(ritz_dense_copy(&s->B, &B));
+    RITZ_CHECK(ritz_dense_copy(&s->C, &C));
+    RITZ_CHECK(ritz_dense_copy(&s->D, &D));
+    RITZ_CHECK_NEW(iwork, n);
+    RITZ_CHECK_NEW(work, room);
+    RITZ_CHECK_NEW(cwork, croom);
+    ab13dd_("C", pencil ? "G" : "I", "N", "D", &n, &m, &p, frequency, S.val, &n,
+            P.val, &lde, B.val, &n, C.val, &p, D.val, &p, gain, &tolerance,
+            iwork, work, &room, cwork, &croom, &info, 1, 1, 1, 1);
     *found = info == 0 && gain[1] > 0.0;
     *w = frequency[1] > 0.0 ? frequency[0] : HUGE_VAL;
     *value = gain[0];
@@ -308,11 +269,16 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
 
 static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
 {
-    RITZ_OWN(peak) p = {0};
+    RITZ_OWN(peak) p = {.D = s->D};
+    int64_t least = s->B.ncol < s->C.nrow ? s->B.ncol : s->C.nrow;
     double direct = 0.0, w = 0.0, value = 0.0;
     bool found = false;
 
-    RITZ_CHECK(peak_new(&s->split, &s->B, &s->C, &s->D, &p));
+    RITZ_CHECK(ritz_resolvent_new(&s->split.S, &s->split.P, &s->B, &s->C,
+                                  &p.resolvent));
+    RITZ_CHECK_NEW(p.H, s->B.ncol * s->C.nrow);
+    RITZ_CHECK_NEW(p.sigma, least);
+    RITZ_CHECK_NEW(p.spare, least);
     RITZ_CHECK(peak_search(&p));
     w = p.w;
     if (p.resolvent.n > 0 && p.resolvent.n <= MOST_STATES && p.value > 0.0)

@@ -5,7 +5,6 @@
 #include "base/tolerances.h"
 #include "model/io.h"
 #include "model/modal.h"
-#include "poles/massless.h"
 
 #include <complex.h>
 #include <lapacke.h>
@@ -69,27 +68,27 @@ static int factor_coupled(bool skew, int m, double _Complex *Z,
 static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
                                  double _Complex *q)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = poles->count + poles->massless;
     int64_t inputs = poles->io.num_inputs;
-    double _Complex *Z = NULL;
-    double *s = NULL;
-    lapack_int *pivot = NULL;
+    RITZ_OWN_ARRAY double _Complex *Z = NULL;
+    RITZ_OWN_ARRAY double *s = NULL;
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     double rcond = 0.0;
     int info = 0;
 
-    RITZ_NEW(Z, m * m);
-    RITZ_NEW(s, m);
-    RITZ_NEW(pivot, m);
+    RITZ_CHECK_NEW(Z, m * m);
+    RITZ_CHECK_NEW(s, m);
+    RITZ_CHECK_NEW(pivot, m);
     assemble_coupled(poles, 2.0 * RITZ_PI * hertz, Z);
     for (int64_t k = 0; k < m * inputs; k++)
         q[k] = poles->io.B.val[k];
     equilibrate_coupled(m, inputs, Z, q, s);
     info = factor_coupled(poles->skew, (int)m, Z, pivot, &rcond);
-    RITZ_FAIL_IF(info != 0 || !(rcond > RITZ_COUPLED_RCOND), RITZ_ERR_SINGULAR,
-                 "the response at %.9g Hz is infinite: an undamped mode, or at "
-                 "0 Hz a rigid-body motion",
-                 hertz);
+    RITZ_REFUSE_IF(
+        info != 0 || !(rcond > RITZ_COUPLED_RCOND), RITZ_ERR_SINGULAR,
+        "the response at %.9g Hz is infinite: an undamped mode, or at "
+        "0 Hz a rigid-body motion",
+        hertz);
     if (poles->skew)
         (void)LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', (int)m, (int)inputs, Z,
                              (int)m, pivot, q, (int)m);
@@ -98,11 +97,7 @@ static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
                              (int)m, pivot, q, (int)m);
     for (int64_t k = 0; k < m * inputs; k++)
         q[k] *= s[k % m];
-done:
-    free(Z);
-    free(s);
-    free(pivot);
-    return status;
+    return RITZ_OK;
 }
 
 static bool couples_modes(const ritz_dense *A)

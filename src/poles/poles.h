@@ -138,4 +138,45 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
 
 void ritz_residual_free(ritz_residual *residual);
 
+/**
+ * The part of a dense model's response that its modes do not have, the same at
+ * all frequencies: with N of ritz_massless, C N N' B. No term where every
+ * motion has mass; damping of such motions is left out.
+ *
+ * @param[in] pairs  of ritz_eigen_dense: all modes of finite frequency
+ */
+ritz_status ritz_static_rest(const ritz_second_order *model,
+                             const ritz_pairs *pairs, ritz_residual *out);
+
+/**
+ * N, n x (n - m), the motions without mass, given the m finite pairs of the
+ * model.
+ *
+ * @return RITZ_ERR_SINGULAR if K does not hold the motions without mass
+ */
+ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
+                          const double *lambda, ritz_dense *out);
+
+/**
+ * The a and b for which |D - a M - b K| is least in the Frobenius norm.
+ *
+ * @param[in]  component  with D
+ * @param[out] left       |D - a M - b K| / |D|
+ */
+ritz_status ritz_proportional(const ritz_component *component, double *a,
+                              double *b, double *left);
+
+/** D + a M + b K, of Rayleigh damping. */
+ritz_status ritz_damping_matrix(const ritz_component *component,
+                                const ritz_damping *damping, ritz_sparse *out);
+
+/** Symbolic factor of c_0 K + c_1 M + c_2 D + i K4 for any c. */
+ritz_status ritz_impedance_new(const ritz_component *component,
+                               ritz_zldl **out);
+
+/** @return RITZ_ERR_SINGULAR */
+ritz_status ritz_impedance_factor(const ritz_component *component,
+                                  const double _Complex c[static 3],
+                                  ritz_zldl *Z);
+
 #endif

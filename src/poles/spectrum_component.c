@@ -2,8 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/orthonormal.h"
-#include "poles/refine.h"
-#include "poles/spectrum_parts.h"
+#include "poles/damped.h"
 
 #include <ritz/base.h>
 #include <ritz/matrix.h>
@@ -15,6 +14,182 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Inverse iteration on the full matrices. */
+
+enum { MOST_STEPS = 12, MOST_MATRICES = 4 };
+
+ritz_status ritz_impedance_new(const ritz_component *component, ritz_zldl **out)
+{
+    const ritz_sparse *A[MOST_MATRICES] = {&component->K, &component->M};
+    int64_t count = 2;
+
+    if (component->D.colptr)
+        A[count++] = &component->D;
+    if (component->K4.colptr)
+        A[count++] = &component->K4;
+    return ritz_zldl_new(count, A, out);
+}
+
+ritz_status ritz_impedance_factor(const ritz_component *component,
+                                  const double _Complex c[static 3],
+                                  ritz_zldl *Z)
+{
+    double _Complex all[MOST_MATRICES] = {c[0], c[1]};
+    int64_t count = 2;
+
+    if (component->D.colptr)
+        all[count++] = c[2];
+    if (component->K4.colptr)
+        all[count] = ritz_complex(0.0, 1.0);
+    return ritz_zldl_factor(Z, all);
+}
+
+ritz_status ritz_refiner_new(const ritz_component *component, ritz_refiner *out)
+{
+    out->component = component;
+    return ritz_impedance_new(component, &out->Z);
+}
+
+static double norm_of(const ritz_dense *x)
+{
+    double sum = 0.0;
+
+    for (int64_t i = 0; i < x->nrow * x->ncol; i++)
+        sum = hypot(sum, x->val[i]);
+    return sum;
+}
+
+/* u += c A x. */
+static ritz_status add_product(const ritz_sparse *A, double _Complex c,
+                               const ritz_dense *x, double _Complex *u)
+{
+    RITZ_OWN(ritz_dense) Ax = {0};
+    int64_t n = x->nrow;
+
+    if (!A->colptr)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_mul(A, x, &Ax));
+    for (int64_t i = 0; i < n; i++)
+        u[i] += c * ritz_complex(Ax.val[i], Ax.val[n + i]);
+    return RITZ_OK;
+}
+
+/* most += |c||A||x|, entry by entry. */
+static void add_most(const ritz_sparse *A, double c, const ritz_dense *x,
+                     double *most)
+{
+    int64_t n = x->nrow;
+
+    for (int64_t j = 0; A->colptr && j < n; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            most[A->rowind[p]] +=
+                c * fabs(A->val[p]) * hypot(x->val[j], x->val[n + j]);
+}
+
+static ritz_status factor_at(ritz_refiner *r, double _Complex s)
+{
+    const double _Complex c[] = {1.0, s * s, s};
+
+    return ritz_impedance_factor(r->component, c, r->Z);
+}
+
+/* One step; how far it moved s, 0 where s is the eigenvalue. */
+static ritz_status take_step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
+                             double _Complex *u, double *move)
+{
+    ritz_status status = RITZ_OK;
+    double size = norm_of(x);
+    double _Complex xu = 0.0;
+    int64_t n = x->nrow;
+    bool last = false;
+
+    for (int64_t i = 0; i < 2 * n; i++)
+        x->val[i] /= size;
+    for (int64_t i = 0; i < n; i++)
+        u[i] = 0.0;
+    RITZ_CHECK(add_product(&r->component->M, 2.0 * *s, x, u));
+    RITZ_CHECK(add_product(&r->component->D, 1.0, x, u));
+    status = factor_at(r, *s);
+    *move = 0.0;
+    last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x, beside it */
+    if (last)
+        status = factor_at(r, *s * (1.0 + RITZ_NUDGE));
+    if (last && status == RITZ_ERR_SINGULAR)
+        return RITZ_OK;
+    RITZ_CHECK(status);
+    RITZ_CHECK(ritz_zldl_solve(r->Z, 1, u));
+    for (int64_t i = 0; i < n; i++)
+        xu += ritz_complex(x->val[i], -x->val[n + i]) * u[i];
+    for (int64_t i = 0; i < n; i++) {
+        x->val[i] = creal(u[i]);
+        x->val[n + i] = cimag(u[i]);
+    }
+    if (!last) {
+        *move = cabs(1.0 / xu);
+        *s -= 1.0 / xu;
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_refine(ritz_refiner *refiner, ritz_dense *x,
+                        double _Complex *s)
+{
+    RITZ_OWN_ARRAY double _Complex *u = NULL;
+    double before = HUGE_VAL;
+    double move = HUGE_VAL;
+    bool still = false;
+
+    RITZ_CHECK_NEW(u, x->nrow);
+    for (int t = 0; t < MOST_STEPS && !still; t++) {
+        RITZ_CHECK(take_step(refiner, x, s, u, &move));
+        still =
+            move <= RITZ_REFINED * cabs(*s) ||
+            (move <= RITZ_REFINED_NEARLY * cabs(*s) && move >= 0.5 * before);
+        before = move;
+    }
+    RITZ_REFUSE_IF(!still, RITZ_ERR_CONVERGENCE,
+                   "the damped mode near %.6g Hz was not found",
+                   ritz_eigen_hertz(cabs(*s) * cabs(*s)));
+    return RITZ_OK;
+}
+
+ritz_status ritz_refiner_residual(const ritz_refiner *refiner,
+                                  const ritz_dense *x, double _Complex s,
+                                  double *out)
+{
+    const struct {
+        const ritz_sparse *A;
+        double _Complex c;
+    } terms[] = {
+        {&refiner->component->K, 1.0},
+        {&refiner->component->M, s * s},
+        {&refiner->component->D, s},
+        {&refiner->component->K4, ritz_complex(0.0, 1.0)},
+    };
+    RITZ_OWN_ARRAY double _Complex *u = NULL;
+    RITZ_OWN_ARRAY double *most = NULL;
+    double size = 0.0, gap = 0.0;
+
+    RITZ_CHECK_NEW(u, x->nrow);
+    RITZ_CHECK_NEW(most, x->nrow);
+    for (int k = 0; k < MOST_MATRICES; k++) {
+        RITZ_CHECK(add_product(terms[k].A, terms[k].c, x, u));
+        add_most(terms[k].A, cabs(terms[k].c), x, most);
+    }
+    for (int64_t i = 0; i < x->nrow; i++) {
+        gap = hypot(gap, cabs(u[i]));
+        size = hypot(size, most[i]);
+    }
+    *out = size > 0.0 ? gap / size : 0.0;
+    return RITZ_OK;
+}
+
+void ritz_refiner_free(ritz_refiner *refiner)
+{
+    ritz_zldl_free(&refiner->Z);
+    *refiner = (ritz_refiner){0};
+}
 
 /* One mode followed while dampers change. */
 static const int64_t most_points = 100000;
@@ -72,59 +247,30 @@ static double _Complex nearest_pole(const ritz_spectrum *spectrum,
     return best;
 }
 
-/* The model that is scanned: copies of K, D and the dampers. */
-typedef struct bench {
-    ritz_dense K, D;
-    ritz_dampers dampers;
-    ritz_second_order model;
-} bench;
-
-static void bench_free(bench *b)
-{
-    ritz_dense_free(&b->K);
-    ritz_dense_free(&b->D);
-    ritz_dampers_free(&b->dampers);
-}
-
-static ritz_status bench_new(const ritz_second_order *model,
-                             const ritz_dampers *dampers, bench *b)
-{
-    RITZ_CHECK(ritz_dense_copy(model->K, &b->K));
-    if (model->D && model->D->val)
-        RITZ_CHECK(ritz_dense_copy(model->D, &b->D));
-    RITZ_CHECK(ritz_dampers_copy(dampers, &b->dampers));
-    b->model = *model;
-    b->model.K = &b->K;
-    b->model.D = &b->D;
-    return RITZ_OK;
-}
-
-static ritz_status poles_at(bench *b, const ritz_scan_request *request,
-                            const ritz_damping *damping, double c,
-                            ritz_spectrum *out)
-{
-    for (int64_t j = 0; j < request->count; j++)
-        b->dampers.c[request->damper[j]] = c;
-    RITZ_CHECK(ritz_dampers_install(&b->dampers, &b->K, &b->D));
-    return ritz_spectrum_dense(&b->model, damping, out);
-}
-
-static ritz_status scan_dense(const ritz_second_order *model,
-                              const ritz_dampers *dampers,
-                              const ritz_damping *damping,
+/* Of a dense model; K, D and the dampers are copied. */
+static ritz_status scan_dense(ritz_model model,
                               const ritz_scan_request *request, ritz_scan *out)
 {
     RITZ_OWN(ritz_scan) scan = {0};
     RITZ_OWN(ritz_spectrum) spectrum = {0};
-    RITZ_OWN(bench) b = {0};
+    RITZ_OWN(ritz_dampers) dampers = {0};
+    RITZ_OWN(ritz_dense) K = {0}, D = {0};
 
     RITZ_CHECK(check_range(request, &scan.count));
-    RITZ_CHECK(bench_new(model, dampers, &b));
+    RITZ_CHECK(ritz_dense_copy(model.dense.K, &K));
+    if (model.dense.D && model.dense.D->val)
+        RITZ_CHECK(ritz_dense_copy(model.dense.D, &D));
+    RITZ_CHECK(ritz_dampers_copy(model.dampers, &dampers));
+    model.dense.K = &K;
+    model.dense.D = &D;
     RITZ_CHECK_NEW(scan.c, scan.count);
     RITZ_CHECK_NEW(scan.s, scan.count);
     for (int64_t k = 0; k < scan.count; k++) {
         scan.c[k] = request->from + (double)k * request->step;
-        RITZ_CHECK(poles_at(&b, request, damping, scan.c[k], &spectrum));
+        for (int64_t j = 0; j < request->count; j++)
+            dampers.c[request->damper[j]] = scan.c[k];
+        RITZ_CHECK(ritz_dampers_install(&dampers, &K, &D));
+        RITZ_CHECK(ritz_spectrum_dense(&model.dense, model.damping, &spectrum));
         if (k == 0)
             RITZ_CHECK(begin_scan(&spectrum, request->mode, &scan.s[0]));
         else
@@ -206,7 +352,7 @@ ritz_status ritz_spectrum_space(const ritz_component *component,
     return ritz_reduce(component, &basis, out);
 }
 
-ritz_status ritz_whole_new(const ritz_component *component, ritz_whole *out)
+ritz_status ritz_whole_new(const ritz_component *component, ritz_reduced *out)
 {
     RITZ_CHECK(ritz_sparse_dense(&component->K, &out->K));
     RITZ_CHECK(ritz_sparse_dense(&component->M, &out->M));
@@ -214,48 +360,29 @@ ritz_status ritz_whole_new(const ritz_component *component, ritz_whole *out)
         RITZ_CHECK(ritz_sparse_dense(&component->D, &out->D));
     if (component->K4.colptr)
         RITZ_CHECK(ritz_sparse_dense(&component->K4, &out->K4));
-    out->model = (ritz_second_order){&out->K, &out->M, &out->D, &out->K4, NULL};
     return RITZ_OK;
-}
-
-void ritz_whole_free(ritz_whole *whole)
-{
-    ritz_dense_free(&whole->K);
-    ritz_dense_free(&whole->M);
-    ritz_dense_free(&whole->D);
-    ritz_dense_free(&whole->K4);
-}
-
-/*
- * A large component is scanned in the space of some modes and static responses.
- */
-static ritz_status scan_component(const ritz_component *component,
-                                  const ritz_damping *damping,
-                                  const ritz_scan_request *request,
-                                  ritz_scan *out)
-{
-    ritz_span span = {.modes = EACH_MODE * (request->mode + 1) + LEAST_MODES};
-    RITZ_OWN(ritz_whole) w = {0};
-    RITZ_OWN(ritz_reduced) small = {0};
-    const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,
-                                     NULL};
-
-    if (component->num_dofs <= RITZ_WHOLE_DOFS) {
-        RITZ_CHECK(ritz_whole_new(component, &w));
-        return scan_dense(&w.model, &component->dampers, damping, request, out);
-    }
-    RITZ_CHECK(ritz_spectrum_space(component, &span, &small));
-    return scan_dense(&model, &small.dampers, damping, request, out);
 }
 
 ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
                          ritz_scan *out)
 {
+    const ritz_component *c = model.component;
+    RITZ_OWN(ritz_reduced) small = {0};
+    ritz_span span = {.modes = EACH_MODE * (request->mode + 1) + LEAST_MODES};
+    ritz_model scanned = model;
+
     RITZ_REFUSE_IF(model.kind == RITZ_MODEL_STATES || !model.dampers,
                    RITZ_ERR_ARGUMENT, "the model has no dampers to scan");
-    if (model.kind == RITZ_MODEL_COMPONENT)
-        return scan_component(model.component, model.damping, request, out);
-    return scan_dense(&model.dense, model.dampers, model.damping, request, out);
+    if (model.kind == RITZ_MODEL_COMPONENT) {
+        if (c->num_dofs > RITZ_WHOLE_DOFS)
+            RITZ_CHECK(ritz_spectrum_space(c, &span, &small));
+        else
+            RITZ_CHECK(ritz_whole_new(c, &small));
+        scanned = ritz_model_of_reduced(&small, model.damping);
+        if (c->num_dofs <= RITZ_WHOLE_DOFS)
+            scanned.dampers = &c->dampers;
+    }
+    return scan_dense(scanned, request, out);
 }
 
 /* Beyond what is wanted, of modes and of frequencies. */
@@ -304,38 +431,39 @@ static bool is_listed(const ritz_spectrum *spectrum, int64_t count,
     return false;
 }
 
+ritz_status ritz_spectrum_shape(const ritz_spectrum *spectrum, int64_t j,
+                                ritz_dense *out)
+{
+    const ritz_dense re = ritz_dense_part(&spectrum->re, j, 1);
+    const ritz_dense im = ritz_dense_part(&spectrum->im, j, 1);
+
+    return ritz_dense_beside(&re, &im, out);
+}
+
 /* Pole j on the full matrices, where inverse iteration stays near. */
 static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
                                ritz_spectrum *spectrum)
 {
-    ritz_status status = RITZ_OK;
     double _Complex s = spectrum->s[j];
-    int64_t n = spectrum->re.nrow;
-    double *re = ritz_dense_col(&spectrum->re, j);
-    double *im = ritz_dense_col(&spectrum->im, j);
-    ritz_dense x = {0}, start = {0};
+    size_t size = (size_t)spectrum->re.nrow * sizeof(double);
+    RITZ_OWN(ritz_dense) x = {0}, start = {0};
+    ritz_status status = RITZ_OK;
 
-    RITZ_TRY(ritz_dense_new(n, 2, &x));
-    memcpy(x.val, re, (size_t)n * sizeof *re);
-    memcpy(x.val + n, im, (size_t)n * sizeof *im);
-    RITZ_TRY(ritz_dense_copy(&x, &start));
+    RITZ_CHECK(ritz_spectrum_shape(spectrum, j, &x));
+    RITZ_CHECK(ritz_dense_copy(&x, &start));
     status = ritz_refine(refiner, &x, &s);
     if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE)
-        goto done;
+        return status;
     if (status == RITZ_OK &&
         cabs(s - spectrum->s[j]) <= RITZ_REFINED_ELSEWHERE * cabs(s) &&
         !is_listed(spectrum, j, s, &x)) {
         spectrum->s[j] = s;
-        memcpy(re, x.val, (size_t)n * sizeof *re);
-        memcpy(im, x.val + n, (size_t)n * sizeof *im);
-        memcpy(start.val, x.val, (size_t)(2 * n) * sizeof *re);
+        memcpy(ritz_dense_col(&spectrum->re, j), ritz_dense_col(&x, 0), size);
+        memcpy(ritz_dense_col(&spectrum->im, j), ritz_dense_col(&x, 1), size);
+        memcpy(start.val, x.val, 2 * size);
     }
-    status = ritz_refiner_residual(refiner, &start, spectrum->s[j],
-                                   &spectrum->residual[j]);
-done:
-    ritz_dense_free(&x);
-    ritz_dense_free(&start);
-    return status;
+    return ritz_refiner_residual(refiner, &start, spectrum->s[j],
+                                 &spectrum->residual[j]);
 }
 
 /* The first that are asked for. */
@@ -349,15 +477,6 @@ static void keep_first(const ritz_span *span, ritz_spectrum *spectrum)
                              : cabs(spectrum->s[count]) <= limit))
         count++;
     spectrum->count = spectrum->re.ncol = spectrum->im.ncol = count;
-}
-
-static ritz_status solve_whole(const ritz_component *component,
-                               const ritz_damping *damping, ritz_spectrum *out)
-{
-    RITZ_OWN(ritz_whole) w = {0};
-
-    RITZ_CHECK(ritz_whole_new(component, &w));
-    return ritz_spectrum_dense(&w.model, damping, out);
 }
 
 /* Shapes of the small model become those of the component. */
@@ -383,8 +502,7 @@ static ritz_status solve_projected(const ritz_component *component,
         .up_to_hz = RITZ_SPECTRUM_BEYOND * span->up_to_hz,
     };
     RITZ_OWN(ritz_reduced) small = {0};
-    const ritz_second_order model = {&small.K, &small.M, &small.D, &small.K4,
-                                     NULL};
+    const ritz_second_order model = ritz_model_of_reduced(&small, NULL).dense;
     RITZ_OWN(ritz_refiner) refiner = {0};
 
     RITZ_CHECK(ritz_spectrum_space(component, &wide, &small));
@@ -392,7 +510,7 @@ static ritz_status solve_projected(const ritz_component *component,
     keep_first(span, out);
     RITZ_CHECK(expand_shapes(&small.T, &out->re));
     RITZ_CHECK(expand_shapes(&small.T, &out->im));
-    RITZ_CHECK(ritz_refiner_new(component, true, &refiner));
+    RITZ_CHECK(ritz_refiner_new(component, &refiner));
     for (int64_t j = 0; j < out->count; j++) {
         RITZ_CHECK(refine_pole(&refiner, j, out));
         ritz_monitor_step("damped modes", j + 1, out->count);
@@ -402,23 +520,16 @@ static ritz_status solve_projected(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* D := D + a M + b K: `seen` borrows all of the component but D, which it
-   owns. */
-static ritz_status add_rayleigh(const ritz_component *component,
-                                const ritz_damping *damping,
-                                ritz_component *seen)
+ritz_status ritz_damping_matrix(const ritz_component *component,
+                                const ritz_damping *damping, ritz_sparse *out)
 {
     RITZ_OWN(ritz_sparse) given = {0};
 
-    *seen = *component;
-    seen->D = (ritz_sparse){0};
     RITZ_CHECK(ritz_sparse_add(damping->a, &component->M, damping->b,
                                &component->K, &given));
-    if (component->D.colptr) {
-        RITZ_CHECK(ritz_sparse_add(1.0, &component->D, 1.0, &given, &seen->D));
-    } else {
-        RITZ_MOVE(seen->D, given);
-    }
+    if (component->D.colptr)
+        return ritz_sparse_add(1.0, &component->D, 1.0, &given, out);
+    RITZ_MOVE(*out, given);
     return RITZ_OK;
 }
 
@@ -426,16 +537,16 @@ ritz_status ritz_spectrum_large(const ritz_component *component,
                                 const ritz_damping *damping,
                                 const ritz_span *span, ritz_spectrum *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component seen = {0};
+    RITZ_OWN(ritz_sparse) D = {0};
+    ritz_component damped = *component; /* borrowed */
     int64_t mode = 0;
 
     if (damping && ritz_damping_is_rayleigh(damping)) {
-        RITZ_TRY(add_rayleigh(component, damping, &seen));
-        RITZ_TRY(solve_projected(&seen, span, out));
-        goto done;
+        RITZ_CHECK(ritz_damping_matrix(component, damping, &D));
+        damped.D = D;
+        return solve_projected(&damped, span, out);
     }
-    RITZ_TRY(solve_projected(component, span, out));
+    RITZ_CHECK(solve_projected(component, span, out));
     for (int64_t j = 0; damping && j < out->count; j++)
         if (cimag(out->s[j]) > 0.0) {
             double w = cabs(out->s[j]);
@@ -443,9 +554,7 @@ ritz_status ritz_spectrum_large(const ritz_component *component,
             out->s[j] =
                 add_ratio(out->s[j], ritz_damping_of_mode(damping, mode++, w));
         }
-done:
-    ritz_sparse_free(&seen.D);
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status spectrum_of_component(const ritz_component *component,
@@ -453,9 +562,14 @@ static ritz_status spectrum_of_component(const ritz_component *component,
                                          const ritz_span *span,
                                          ritz_spectrum *out)
 {
+    RITZ_OWN(ritz_reduced) whole = {0};
+    ritz_second_order view;
+
     if (component->num_dofs > RITZ_WHOLE_DOFS)
         return ritz_spectrum_large(component, damping, span, out);
-    RITZ_CHECK(solve_whole(component, damping, out));
+    RITZ_CHECK(ritz_whole_new(component, &whole));
+    view = ritz_model_of_reduced(&whole, NULL).dense;
+    RITZ_CHECK(ritz_spectrum_dense(&view, damping, out));
     keep_first(span, out);
     return RITZ_OK;
 }

@@ -50,8 +50,6 @@ typedef struct pencil {
     int n, m, p, nu, rank;
     double speed; /* that time was divided by */
     ritz_dense A, B, C, D, Af, Bf;
-    int *infz, *kronr, *kronl, *iwork;
-    double *work, *re, *im, *beta;
 } pencil;
 
 static void pencil_free(pencil *s)
@@ -62,14 +60,6 @@ static void pencil_free(pencil *s)
     ritz_dense_free(&s->D);
     ritz_dense_free(&s->Af);
     ritz_dense_free(&s->Bf);
-    free(s->infz);
-    free(s->kronr);
-    free(s->kronl);
-    free(s->iwork);
-    free(s->work);
-    free(s->re);
-    free(s->im);
-    free(s->beta);
 }
 
 /* A scaled to a largest entry of 1; `size` is what it was, or 1 if A is
@@ -101,12 +91,7 @@ static ritz_status start_pencil(const ritz_channel *c, pencil *s)
         s->D.val[k] *= s->speed / (b * seen);
     RITZ_CHECK(ritz_dense_new(s->n + s->m, s->n + (s->m < s->p ? s->m : s->p),
                               &s->Af));
-    RITZ_CHECK(ritz_dense_new(s->n + s->p, s->n + s->m, &s->Bf));
-    RITZ_CHECK_NEW(s->infz, s->n);
-    RITZ_CHECK_NEW(s->kronr, (int64_t)s->n + s->m + 1);
-    RITZ_CHECK_NEW(s->kronl, (int64_t)s->n + s->p + 1);
-    RITZ_CHECK_NEW(s->iwork, (int64_t)s->m + s->p);
-    return RITZ_OK;
+    return ritz_dense_new(s->n + s->p, s->n + s->m, &s->Bf);
 }
 
 static ritz_status deflate_pencil(pencil *s)
@@ -117,12 +102,19 @@ static ritz_status deflate_pencil(pencil *s)
     int ldaf = s->n + s->m, ldbf = s->n + s->p;
     int dinfz = 0, nkror = 0, nkrol = 0, info = 0;
     double tolerance = 0.0; /* its own: sqrt((n + p)(n + m)) eps */
+    RITZ_OWN_ARRAY int *infz = NULL, *kronr = NULL, *kronl = NULL;
+    RITZ_OWN_ARRAY int *iwork = NULL;
+    RITZ_OWN_ARRAY double *work = NULL;
 
-    RITZ_CHECK_NEW(s->work, room);
+    RITZ_CHECK_NEW(infz, s->n);
+    RITZ_CHECK_NEW(kronr, ldaf + 1);
+    RITZ_CHECK_NEW(kronl, ldbf + 1);
+    RITZ_CHECK_NEW(iwork, (int64_t)s->m + s->p);
+    RITZ_CHECK_NEW(work, room);
     ab08nd_("N", &s->n, &s->m, &s->p, s->A.val, &lda, s->B.val, &lda, s->C.val,
             &ldp, s->D.val, &ldp, &s->nu, &s->rank, &dinfz, &nkror, &nkrol,
-            s->infz, s->kronr, s->kronl, s->Af.val, &ldaf, s->Bf.val, &ldbf,
-            &tolerance, s->iwork, s->work, &room, &info, 1);
+            infz, kronr, kronl, s->Af.val, &ldaf, s->Bf.val, &ldbf, &tolerance,
+            iwork, work, &room, &info, 1);
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
                    "the zeros were not found, SLICOT says %d", info);
     RITZ_REFUSE_IF(s->rank < s->m || s->rank < s->p, RITZ_ERR_SINGULAR,
@@ -134,44 +126,43 @@ static ritz_status deflate_pencil(pencil *s)
     return RITZ_OK;
 }
 
-/* * Finite zeros as the pencil has them, which rounding of its largest entries
- * moves; conjugate pairs one after the other (SLICOT AB08ND). */
+/*
+ * Finite zeros as the pencil has them, which rounding of its largest entries
+ * moves; conjugate pairs one after the other.
+ */
 static ritz_status find_pencil_zeros(const ritz_channel *channel,
                                      int64_t *count, double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    pencil s = {0};
-    double _Complex *zero = NULL;
+    RITZ_OWN(pencil) s = {0};
+    RITZ_OWN_ARRAY double _Complex *zero = NULL;
+    RITZ_OWN_ARRAY double *re = NULL, *im = NULL, *beta = NULL;
     int64_t kept = 0;
     int info = 0;
 
-    RITZ_TRY(start_pencil(channel, &s));
-    RITZ_TRY(deflate_pencil(&s));
-    RITZ_NEW(s.re, s.nu);
-    RITZ_NEW(s.im, s.nu);
-    RITZ_NEW(s.beta, s.nu);
-    RITZ_NEW(zero, s.nu);
+    RITZ_CHECK(start_pencil(channel, &s));
+    RITZ_CHECK(deflate_pencil(&s));
+    RITZ_CHECK_NEW(re, s.nu);
+    RITZ_CHECK_NEW(im, s.nu);
+    RITZ_CHECK_NEW(beta, s.nu);
+    RITZ_CHECK_NEW(zero, s.nu);
     if (s.nu > 0)
-        info = LAPACKE_dggev(LAPACK_COL_MAJOR, 'N', 'N', s.nu, s.Af.val,
-                             s.n + s.m, s.Bf.val, s.n + s.p, s.re, s.im, s.beta,
-                             NULL, 1, NULL, 1);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE, "zeros were not found");
+        info =
+            LAPACKE_dggev(LAPACK_COL_MAJOR, 'N', 'N', s.nu, s.Af.val, s.n + s.m,
+                          s.Bf.val, s.n + s.p, re, im, beta, NULL, 1, NULL, 1);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE, "zeros were not found");
     for (int k = 0; k < s.nu; k++) {
-        bool second = kept > 0 && s.im[k] < 0.0 && s.im[k - 1] > 0.0;
+        bool second = kept > 0 && im[k] < 0.0 && im[k - 1] > 0.0;
 
-        if (s.beta[k] == 0.0)
+        if (beta[k] == 0.0)
             continue;
-        zero[kept] = ritz_complex(s.re[k], s.im[k]) / s.beta[k] * s.speed;
+        zero[kept] = ritz_complex(re[k], im[k]) / beta[k] * s.speed;
         if (second) /* of a pair, exactly */
             zero[kept] = conj(zero[kept - 1]);
         kept++;
     }
     *count = kept;
     RITZ_MOVE(*out, zero);
-done:
-    free(zero);
-    pencil_free(&s);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -225,18 +216,13 @@ static void fill_block(const ritz_channel *channel, int64_t k, triangle *t)
 static ritz_status fill_schur(const ritz_channel *channel, triangle *t)
 {
     const ritz_dense none = {0};
-    ritz_resolvent r = {0};
+    RITZ_OWN(ritz_resolvent) r = {0};
 
     RITZ_CHECK(
         ritz_resolvent_new(&channel->A, &none, &channel->B, &channel->C, &r));
-    free(t->T);
-    free(t->b);
-    free(t->c);
-    t->T = r.S;
-    t->b = r.B;
-    t->c = r.C;
-    r.S = r.B = r.C = NULL;
-    ritz_resolvent_free(&r);
+    RITZ_MOVE(t->T, r.S);
+    RITZ_MOVE(t->b, r.B);
+    RITZ_MOVE(t->c, r.C);
     return RITZ_OK;
 }
 
@@ -258,23 +244,23 @@ static ritz_status triangle_new(const ritz_channel *channel, triangle *out)
     int64_t n = channel->A.nrow;
     RITZ_OWN(triangle) t = {.n = n, .d = channel->D.val[0]};
 
-    RITZ_CHECK_NEW(t.T, n * n);
-    RITZ_CHECK_NEW(t.b, n);
-    RITZ_CHECK_NEW(t.c, n);
+    if (!channel->squared && !channel->blocks) {
+        t.band = n;
+        RITZ_CHECK(fill_schur(channel, &t));
+    } else {
+        t.band = channel->blocks;
+        RITZ_CHECK_NEW(t.T, n * n);
+        RITZ_CHECK_NEW(t.b, n);
+        RITZ_CHECK_NEW(t.c, n);
+    }
     RITZ_CHECK_NEW(t.cancelled, n);
     RITZ_CHECK_NEW(t.x, n);
     RITZ_CHECK_NEW(t.w, n);
     RITZ_CHECK_NEW(t.two, n);
-    if (channel->squared) {
+    if (channel->squared)
         fill_diagonal(channel, &t);
-    } else if (channel->blocks) {
-        t.band = 1;
-        for (int64_t k = 0; k < n / 2; k++)
-            fill_block(channel, k, &t);
-    } else {
-        t.band = n;
-        RITZ_CHECK(fill_schur(channel, &t));
-    }
+    for (int64_t k = 0; channel->blocks && k < n / 2; k++)
+        fill_block(channel, k, &t);
     RITZ_MOVE(*out, t);
     return RITZ_OK;
 }
@@ -484,18 +470,15 @@ static void drop_far(triangle *t, int64_t *count, double _Complex *zero)
 static ritz_status polish_zeros(triangle *t, int64_t *count,
                                 double _Complex *zero)
 {
-    ritz_status status = RITZ_OK;
-    bool *done = NULL;
-    double _Complex *start = NULL;
+    RITZ_OWN_ARRAY bool *done = NULL;
+    RITZ_OWN_ARRAY double _Complex *start = NULL;
     bool all = false;
 
-    RITZ_NEW(done, *count);
-    RITZ_NEW(start, *count);
+    RITZ_CHECK_NEW(done, *count);
     if (t->n == 0)
-        goto done;
+        return RITZ_OK;
     cancel_zeros(t, count, zero);
-    for (int64_t i = 0; i < *count; i++)
-        start[i] = zero[i];
+    RITZ_CHECK_COPY(start, zero, *count);
     for (int k = 0; k < MOST_SWEEPS && !all; k++) {
         all = true;
         sweep_zeros(t, *count, zero, done);
@@ -505,14 +488,11 @@ static ritz_status polish_zeros(triangle *t, int64_t *count,
     for (int64_t i = 0; i < *count; i++) /* such as a double one */
         zero[i] = done[i] ? zero[i] : start[i];
     drop_far(t, count, zero);
-done:
-    free(start);
-    free(done);
-    return status;
+    return RITZ_OK;
 }
 
 /* By magnitude; equal ones by real part, and of a pair the upper one first. */
-static int ascending(const void *left, const void *right)
+static int compare_zeros(const void *left, const void *right)
 {
     const double _Complex *a = left;
     const double _Complex *b = right;
@@ -528,19 +508,15 @@ static int ascending(const void *left, const void *right)
 }
 
 /* s = +-sqrt(mu), on an axis exactly where mu is real. */
-static int64_t unsquare(double _Complex mu, double _Complex *out)
+static void unsquare_zero(double _Complex mu, double _Complex out[2])
 {
     double re = creal(mu);
-    double _Complex s;
+    bool real = cimag(mu) == 0.0;
 
-    if (cimag(mu) == 0.0)
-        s = re < 0.0 ? ritz_complex(0.0, sqrt(-re))
-                     : ritz_complex(sqrt(re), 0.0);
-    else
-        s = csqrt(mu);
-    out[0] = s;
-    out[1] = cimag(mu) == 0.0 && re < 0.0 ? conj(s) : -s;
-    return 2;
+    out[0] = !real      ? csqrt(mu)
+             : re < 0.0 ? ritz_complex(0.0, sqrt(-re))
+                        : ritz_complex(sqrt(re), 0.0);
+    out[1] = real && re < 0.0 ? conj(out[0]) : -out[0];
 }
 
 /* Poles at 0 that the zeros of a derivative cancel. */
@@ -550,10 +526,10 @@ static int64_t poles_at_rest(const ritz_channel *c, const triangle *t)
     double size = 0.0;
 
     for (int64_t k = 0; k < t->n; k++)
-        size = fmax(size, cabs(t->T[k + k * t->n]));
+        size = fmax(size, cabs(pole_at(t, k)));
     for (int64_t k = 0; k < t->n; k++)
         if (!t->cancelled[k] &&
-            cabs(t->T[k + k * t->n]) <= (double)t->n * DBL_EPSILON * size)
+            cabs(pole_at(t, k)) <= (double)t->n * DBL_EPSILON * size)
             count += c->squared ? 2 : 1;
     return count;
 }
@@ -561,33 +537,30 @@ static int64_t poles_at_rest(const ritz_channel *c, const triangle *t)
 static ritz_status find_zeros(const ritz_channel *c, bool single,
                               int64_t *count, double _Complex **out)
 {
-    ritz_status status = RITZ_OK;
-    triangle t = {0};
-    double _Complex *found = NULL, *zero = NULL;
+    RITZ_OWN(triangle) t = {0};
+    RITZ_OWN_ARRAY double _Complex *found = NULL, *zero = NULL;
     int64_t n = 0, kept = 0, at_rest = c->derivative;
 
-    RITZ_TRY(find_pencil_zeros(c, &n, &found));
+    RITZ_CHECK(find_pencil_zeros(c, &n, &found));
     if (single) {
-        RITZ_TRY(triangle_new(c, &t));
-        RITZ_TRY(polish_zeros(&t, &n, found));
+        RITZ_CHECK(triangle_new(c, &t));
+        RITZ_CHECK(polish_zeros(&t, &n, found));
         at_rest -= poles_at_rest(c, &t);
     }
-    RITZ_NEW(zero, 2 * n + 2);
+    RITZ_CHECK_NEW(zero, 2 * n + 2);
     for (int64_t k = 0; k < n; k++)
-        if (c->squared)
-            kept += unsquare(found[k], zero + kept);
-        else
+        if (c->squared) {
+            unsquare_zero(found[k], zero + kept);
+            kept += 2;
+        } else {
             zero[kept++] = found[k];
+        }
     for (int64_t k = 0; k < at_rest; k++)
         zero[kept++] = 0.0;
-    qsort(zero, (size_t)kept, sizeof *zero, ascending);
+    qsort(zero, (size_t)kept, sizeof *zero, compare_zeros);
     *count = kept;
     RITZ_MOVE(*out, zero);
-done:
-    free(found);
-    free(zero);
-    triangle_free(&t);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_zeros_of(ritz_model model, int64_t output, int64_t input,

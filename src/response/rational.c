@@ -3,7 +3,7 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "model/modal.h"
-#include "poles/spectrum_parts.h"
+#include "poles/damped.h"
 #include "response/direct.h"
 #include "response/responder.h"
 #include <complex.h>
@@ -68,8 +68,9 @@ typedef struct rational_nodes {
     double *peak, *level, *scale;
     double _Complex *H, *guess, *other;
     int64_t nodes;
-    bool small; /* `whole` holds the model */
-    ritz_whole whole;
+    bool small;         /* `whole` holds the model */
+    ritz_reduced whole; /* of which `view` is a view, with inputs and outputs */
+    ritz_second_order view;
 } rational_nodes;
 
 static void free_interpolant(ritz_interpolant *interpolant)
@@ -466,7 +467,8 @@ static ritz_status project_whole(rational_nodes *s)
     RITZ_OWN(ritz_dense) scaled = {0}, given = {0};
 
     RITZ_CHECK(ritz_whole_new(full->component, &s->whole));
-    s->whole.model.io = &full->component->io;
+    s->view = ritz_model_of_reduced(&s->whole, NULL).dense;
+    s->view.io = &full->component->io;
     s->small = true;
     if (!full->ratios)
         return RITZ_OK;
@@ -506,8 +508,7 @@ static ritz_status list_poles(const rational_nodes *s,
     if (!s->small || !s->full.poles.coupled)
         return ritz_responder_poles(responder, count, out);
     RITZ_CHECK(ritz_spectrum_of(
-        ritz_model_of_dense(&s->whole.model, remaining_damping(s)), NULL,
-        &all));
+        ritz_model_of_dense(&s->view, remaining_damping(s)), NULL, &all));
     RITZ_CHECK_NEW(found, all.count + all.num_zero);
     for (int64_t k = 0; k < all.count; k++)
         found[k] = all.s[k];
@@ -555,9 +556,9 @@ static ritz_status find_zeros(rational_nodes *s)
     for (int64_t v = 0; v < s->values; v++) {
         int64_t count = 0, n = 0;
 
-        status = ritz_zeros_of(
-            ritz_model_of_dense(&s->whole.model, remaining_damping(s)),
-            v / inputs, v % inputs, &count, &z);
+        status =
+            ritz_zeros_of(ritz_model_of_dense(&s->view, remaining_damping(s)),
+                          v / inputs, v % inputs, &count, &z);
         if (status == RITZ_ERR_MEMORY)
             goto done;
         if (status != RITZ_OK) /* H is zero, or no zeros were found */
@@ -600,7 +601,7 @@ static const int64_t most_channels = 9;
 static void free_rational(rational_nodes *s)
 {
     ritz_direct_free(&s->full);
-    ritz_whole_free(&s->whole);
+    ritz_reduced_free(&s->whole);
     free_interpolant(&s->poles);
     free_interpolant(&s->both);
     free(s->pole);

@@ -10,7 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "simulate/run.h"
+#include "simulate/motion.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -31,27 +31,10 @@ typedef struct halving_trial {
     ritz_accuracy found;
 } halving_trial;
 
-static ritz_status trial_new(int64_t num_outputs, halving_trial *out)
-{
-    ritz_status status = RITZ_OK;
-    halving_trial t = {.num_outputs = num_outputs, .found.error = HUGE_VAL};
-
-    RITZ_NEW(t.before, num_outputs);
-    RITZ_NEW(t.in_vain, num_outputs);
-    for (int64_t i = 0; i < num_outputs; i++)
-        t.before[i] = HUGE_VAL;
-    RITZ_MOVE(*out, t);
-done:
-    free(t.before);
-    free(t.in_vain);
-    return status;
-}
-
-static void trial_free(halving_trial *t)
+static void halving_trial_free(halving_trial *t)
 {
     free(t->before);
     free(t->in_vain);
-    *t = (halving_trial){0};
 }
 
 /* Whether the difference of two runs is rounding of what the output could
@@ -71,12 +54,7 @@ static void judge_outputs(const ritz_simulation *exact,
         double size = 0.0, off = 0.0;
         double shown = reach->size[i];
 
-        for (int64_t k = 0; k < exact->count; k++) {
-            int64_t at = k * t->num_outputs + i;
-
-            size = fmax(size, fabs(exact->y[at]));
-            off = fmax(off, fabs(made->y[at] - exact->y[at]));
-        }
+        ritz_simulation_compare(exact, made, i, &size, &off);
         t->in_vain[i] = off > 0.5 * t->before[i] ? t->in_vain[i] + 1 : 0;
         t->before[i] = off;
         if (!(size > 0.0))
@@ -168,34 +146,34 @@ ritz_status ritz_simulate_accurate(ritz_model subject,
     ritz_simulation_request asked = *request;
     int64_t most = 0, steps = 0;
     ritz_io io = {0}; /* borrowed */
-    halving_trial t = {0};
+    RITZ_OWN(halving_trial) t = {.found.error = HUGE_VAL};
 
-    RITZ_FAIL_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
-                 tolerance);
+    RITZ_REFUSE_IF(!(tolerance > 0.0), RITZ_ERR_ARGUMENT, "%g is no accuracy",
+                   tolerance);
     if (subject.kind != 0)
         io = ritz_model_io(subject);
     asked.step = first_step(request, io.num_inputs);
     most = most_tried(io.num_inputs + io.num_outputs + 1);
-    RITZ_TRY(ritz_request_steps(&asked, &steps));
-    RITZ_TRY(trial_new(io.num_outputs, &t));
+    RITZ_CHECK(ritz_request_steps(&asked, &steps));
+    t.num_outputs = io.num_outputs;
+    RITZ_CHECK_NEW(t.before, t.num_outputs);
+    RITZ_CHECK_NEW(t.in_vain, t.num_outputs);
+    for (int64_t i = 0; i < t.num_outputs; i++)
+        t.before[i] = HUGE_VAL;
     while (true) {
-        if (asked.seconds / asked.step > (double)most) {
-            status = refuse_steps(&asked, most, &t.found, tolerance, status);
-            goto done;
-        }
+        if (asked.seconds / asked.step > (double)most)
+            return refuse_steps(&asked, most, &t.found, tolerance, status);
         status = measure_errors(subject, &asked, tolerance, &t);
         if (status == RITZ_OK && t.found.error <= tolerance)
             break;
         /* an explicit integrator may refuse what is too coarse */
         if (status != RITZ_OK &&
             (status != RITZ_ERR_ARGUMENT || !asked.integrator->is_explicit))
-            goto done;
+            return status;
         asked.step *= 0.5;
     }
-    RITZ_TRY(ritz_simulate(subject, &asked, out));
+    RITZ_CHECK(ritz_simulate(subject, &asked, out));
     if (reached)
         *reached = t.found;
-done:
-    trial_free(&t);
-    return status;
+    return RITZ_OK;
 }

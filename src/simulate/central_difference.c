@@ -9,14 +9,15 @@
  * h omega_max < 2, changes by -h v_c'D v_c alone, v_c = (x_+ - x_-) / (2 h)
  * [Belytschko2014]. See simulate.h for that of damping forces half a step old.
  */
-#include "simulate/newmark.h"
+#include "simulate/motion.h"
 
 #include "base/tolerances.h"
 
 #include <math.h>
 
-static ritz_status start(const ritz_motion *motion, double step, double rho,
-                         ritz_march *out)
+static ritz_status start_central_difference(const ritz_motion *motion,
+                                            double step, double rho,
+                                            ritz_march *out)
 {
     const ritz_newmark weights = {0.0, 0.0, 0.0, 0.5};
     double omega = sqrt(motion->highest);
@@ -38,5 +39,5 @@ const ritz_integrator ritz_integrator_central_difference = {
     .fails = "one stiff mode makes every step short",
     .reference = "Belytschko2014",
     .is_explicit = true,
-    .start = start,
+    .start = start_central_difference,
 };

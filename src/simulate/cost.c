@@ -9,7 +9,7 @@
  *
  * symmetric with the symmetric part of D.
  */
-#include "simulate/run.h"
+#include "simulate/motion.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -67,36 +67,56 @@ static ritz_status find_fastest(const ritz_motion *modes, double *out)
     return RITZ_OK;
 }
 
-/* Some steps; how much processor time they took. */
-static ritz_status take_steps(ritz_march *march, int64_t steps, const double *u,
-                              double *out)
+/* What is repeated while it is measured. */
+typedef struct repeated {
+    ritz_march *march; /* one step of it, with inputs u; NULL: a factor of A */
+    const double *u;
+    const ritz_dense *A;
+    ritz_dense work;
+} repeated;
+
+/* Well-conditioned A: its Cholesky factor. */
+static ritz_status factor_once(repeated *r)
+{
+    int n = (int)r->A->nrow;
+
+    memcpy(r->work.val, r->A->val,
+           (size_t)(r->A->nrow * r->A->ncol) * sizeof *r->A->val);
+    RITZ_REFUSE_IF(
+        LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, r->work.val, n) != 0,
+        RITZ_ERR_SINGULAR, "a factor broke down");
+    return RITZ_OK;
+}
+
+/* Processor time of @p count repetitions. */
+static ritz_status run_repeated(repeated *r, int64_t count, double *out)
 {
     double began = processor_seconds();
 
-    for (int64_t k = 0; k < steps; k++)
-        RITZ_CHECK(march->advance(march, u, u));
+    for (int64_t k = 0; k < count; k++)
+        RITZ_CHECK(r->march ? r->march->advance(r->march, r->u, r->u)
+                            : factor_once(r));
     *out = processor_seconds() - began;
     return RITZ_OK;
 }
 
-/* Fewer at first: until they take long enough to be measured. */
-static ritz_status measure_march(ritz_march *march, const double *u,
-                                 double *out)
+/* Processor time of one: repeated until it takes long enough to be measured,
+   the least of several measurements. */
+static ritz_status measure_repeated(repeated *r, int64_t count, double *out)
 {
-    int64_t steps = FIRST_STEPS;
     double spent = 0.0, least = HUGE_VAL;
 
-    RITZ_CHECK(take_steps(march, steps, u, &spent));
+    RITZ_CHECK(run_repeated(r, count, &spent));
     while (spent < RITZ_MEASURED_SECONDS) {
-        steps *= 2;
-        RITZ_CHECK(take_steps(march, steps, u, &spent));
+        count *= 2;
+        RITZ_CHECK(run_repeated(r, count, &spent));
     }
     least = spent;
     for (int k = 1; k < MEASUREMENTS; k++) {
-        RITZ_CHECK(take_steps(march, steps, u, &spent));
+        RITZ_CHECK(run_repeated(r, count, &spent));
         least = fmin(least, spent);
     }
-    *out = least / (double)steps;
+    *out = least / (double)count;
     return RITZ_OK;
 }
 
@@ -115,7 +135,8 @@ ritz_status ritz_simulate_step_cost(ritz_model model,
     RITZ_CHECK(ritz_motion_new(model, &request, &motion));
     RITZ_CHECK_NEW(u, motion.B.ncol);
     RITZ_CHECK(ritz_march_new(&motion, integrator, step, request.rho, &march));
-    return measure_march(&march, u, out);
+    return measure_repeated(&(repeated){.march = &march, .u = u}, FIRST_STEPS,
+                            out);
 }
 
 ritz_status ritz_simulate_cost(ritz_model model, const double band_hz[2],
@@ -145,29 +166,9 @@ ritz_status ritz_simulate_cost(ritz_model model, const double band_hz[2],
     return RITZ_OK;
 }
 
-/* Cholesky factors of a well-conditioned matrix until they take long enough. */
-static ritz_status measure_factors(const ritz_dense *A, int64_t count,
-                                   ritz_dense *work, double *out)
-{
-    int n = (int)A->nrow;
-    size_t size = (size_t)(A->nrow * A->ncol) * sizeof *A->val;
-    double began = processor_seconds();
-
-    for (int64_t k = 0; k < count; k++) {
-        memcpy(work->val, A->val, size);
-        RITZ_REFUSE_IF(
-            LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, work->val, n) != 0,
-            RITZ_ERR_SINGULAR, "a factor broke down");
-    }
-    *out = processor_seconds() - began;
-    return RITZ_OK;
-}
-
 ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)
 {
     RITZ_OWN(ritz_dense) A = {0}, work = {0};
-    double spent = 0.0, least = HUGE_VAL;
-    int64_t count = 1;
 
     RITZ_REFUSE_IF(order < 1, RITZ_ERR_ARGUMENT, "%" PRId64 " is no order",
                    order);
@@ -176,16 +177,5 @@ ritz_status ritz_simulate_refactor_cost(int64_t order, double *out)
     for (int64_t j = 0; j < order; j++)
         for (int64_t i = 0; i < order; i++)
             ritz_dense_col(&A, j)[i] = i == j ? 2.0 : 1.0 / (double)order;
-    RITZ_CHECK(measure_factors(&A, count, &work, &spent));
-    while (spent < RITZ_MEASURED_SECONDS) {
-        count *= 2;
-        RITZ_CHECK(measure_factors(&A, count, &work, &spent));
-    }
-    least = spent;
-    for (int k = 1; k < MEASUREMENTS; k++) {
-        RITZ_CHECK(measure_factors(&A, count, &work, &spent));
-        least = fmin(least, spent);
-    }
-    *out = least / (double)count;
-    return RITZ_OK;
+    return measure_repeated(&(repeated){.A = &A, .work = work}, 1, out);
 }

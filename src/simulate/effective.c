@@ -26,44 +26,40 @@ double ritz_motion_dot(int64_t n, const double *a, const double *b)
     return sum;
 }
 
-static void sparse_product(const ritz_sparse *A, double alpha, const double *x,
-                           double *y)
+/* y += alpha A x with A of a sparse motion, or else of a dense one. */
+static void add_product(const ritz_motion *motion, const ritz_sparse *sparse,
+                        const ritz_dense *dense, double alpha, const double *x,
+                        double *y)
 {
-    for (int64_t j = 0; A->colptr && j < A->ncol; j++) {
+    if (motion->form != RITZ_FORM_SPARSE) {
+        ritz_motion_gemv(dense, alpha, x, y);
+        return;
+    }
+    for (int64_t j = 0; sparse->colptr && j < sparse->ncol; j++) {
         double xj = alpha * x[j];
 
-        if (xj == 0.0)
-            continue;
-        for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
-            y[A->rowind[k]] += A->val[k] * xj;
+        for (int64_t k = sparse->colptr[j];
+             xj != 0.0 && k < sparse->colptr[j + 1]; k++)
+            y[sparse->rowind[k]] += sparse->val[k] * xj;
     }
 }
 
 void ritz_motion_stiffness(const ritz_motion *motion, double alpha,
                            const double *x, double *y)
 {
-    if (motion->form == RITZ_FORM_SPARSE)
-        sparse_product(&motion->sK, alpha, x, y);
-    else
-        ritz_motion_gemv(&motion->K, alpha, x, y);
+    add_product(motion, &motion->sK, &motion->K, alpha, x, y);
 }
 
 void ritz_motion_mass(const ritz_motion *motion, double alpha, const double *x,
                       double *y)
 {
-    if (motion->form == RITZ_FORM_SPARSE)
-        sparse_product(&motion->sM, alpha, x, y);
-    else
-        ritz_motion_gemv(&motion->M, alpha, x, y);
+    add_product(motion, &motion->sM, &motion->M, alpha, x, y);
 }
 
 void ritz_motion_damping(const ritz_motion *motion, double alpha,
                          const double *x, double *y)
 {
-    if (motion->form == RITZ_FORM_SPARSE)
-        sparse_product(&motion->sD, alpha, x, y);
-    else
-        ritz_motion_gemv(&motion->D, alpha, x, y);
+    add_product(motion, &motion->sD, &motion->D, alpha, x, y);
 }
 
 static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
@@ -123,21 +119,17 @@ static ritz_status factor_sparse(const ritz_motion *motion, const double c[3],
     ritz_status status = RITZ_OK;
     bool skew = motion->sD.colptr && c[1] != 0.0 &&
                 ritz_sparse_asymmetry(&motion->sD) > 0.0;
-    const ritz_sparse *sum = NULL;
+    const ritz_sparse *sum = &F->kept;
 
-    RITZ_NEW(F->kept, 1);
-    RITZ_TRY(combine_matrices(motion, c, fill, F->kept));
-    sum = F->kept;
+    RITZ_CHECK(combine_matrices(motion, c, fill, &F->kept));
     if (skew) {
-        RITZ_NEW(F->z, motion->n);
-        RITZ_TRY(ritz_zldl_new(1, &sum, &F->general));
-        RITZ_TRY(ritz_zldl_factor(F->general, &one));
-        goto done;
+        RITZ_CHECK_NEW(F->z, motion->n);
+        RITZ_CHECK(ritz_zldl_new(1, &sum, &F->general));
+        return ritz_zldl_factor(F->general, &one);
     }
     status = ritz_factor_spd(sum, &F->spd);
     if (status == RITZ_ERR_SINGULAR && !fill)
         status = ritz_ldl_new(sum, NULL, &F->ldl);
-done:
     return status;
 }
 
@@ -145,14 +137,11 @@ ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
                                double k, bool fill, ritz_effective *out)
 {
     const double c[3] = {m, d, k};
-    RITZ_OWN(ritz_effective) F = {.n = motion->n};
 
+    out->n = motion->n;
     if (motion->form == RITZ_FORM_SPARSE)
-        RITZ_CHECK(factor_sparse(motion, c, fill, &F));
-    else
-        RITZ_CHECK(factor_dense(motion, m, d, k, &F));
-    RITZ_MOVE(*out, F);
-    return RITZ_OK;
+        return factor_sparse(motion, c, fill, out);
+    return factor_dense(motion, m, d, k, out);
 }
 
 /* A real right side of the complex factor. */
@@ -194,9 +183,7 @@ void ritz_effective_free(ritz_effective *F)
     ritz_factor_free(&F->spd);
     ritz_ldl_free(&F->ldl);
     ritz_zldl_free(&F->general);
-    if (F->kept)
-        ritz_sparse_free(F->kept);
-    free(F->kept);
+    ritz_sparse_free(&F->kept);
     free(F->z);
     *F = (ritz_effective){0};
 }

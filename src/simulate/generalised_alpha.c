@@ -9,10 +9,11 @@
  * least from low frequencies [ChungHulbert1993]. rho = 1 takes nothing, rho = 0
  * ends what it cannot resolve in one step.
  */
-#include "simulate/newmark.h"
+#include "simulate/motion.h"
 
-static ritz_status start(const ritz_motion *motion, double step, double rho,
-                         ritz_march *out)
+static ritz_status start_generalised_alpha(const ritz_motion *motion,
+                                           double step, double rho,
+                                           ritz_march *out)
 {
     ritz_newmark w = {0};
 
@@ -37,5 +38,5 @@ const ritz_integrator ritz_integrator_generalised_alpha = {
     .fails = "takes energy from modes that matter if steps are coarse",
     .reference = "ChungHulbert1993",
     .takes_sparse = true,
-    .start = start,
+    .start = start_generalised_alpha,
 };

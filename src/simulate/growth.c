@@ -5,7 +5,7 @@
  * full matrices; modes only read the energy: q = Phi'M x.
  */
 #include "base/tolerances.h"
-#include "simulate/run.h"
+#include "simulate/motion.h"
 
 #include "base/alloc.h"
 
@@ -66,6 +66,14 @@ typedef struct growth_trial {
     double *q, *v, *u;
 } growth_trial;
 
+static void growth_trial_free(growth_trial *t)
+{
+    ritz_effective_free(&t->mass);
+    free(t->q);
+    free(t->v);
+    free(t->u);
+}
+
 static ritz_status free_motion(growth_trial *t, ritz_march *march,
                                int64_t steps, uint64_t *seed, double *worst)
 {
@@ -119,25 +127,17 @@ ritz_status ritz_simulate_growth(ritz_model model,
                                  const ritz_integrator *integrator, double step,
                                  int64_t steps, int64_t starts, double *out)
 {
-    ritz_status status = RITZ_OK;
     const int64_t count[2] = {steps, starts};
-    ritz_motion modes = {0}, motion = {0};
-    growth_trial t = {.modes = &modes, .motion = &motion};
+    RITZ_OWN(ritz_motion) modes = {0}, motion = {0};
+    RITZ_OWN(growth_trial)
+    t = {.modes = &modes, .motion = &motion};
 
-    RITZ_FAIL_IF(!(step > 0.0) || !isfinite(step) || steps < 1 || starts < 1,
-                 RITZ_ERR_ARGUMENT,
-                 "growth is of one step and one start at least");
-    RITZ_TRY(ritz_motion_dense(model, true, &modes));
-    RITZ_TRY(ritz_motion_dense(model, integrator == &ritz_integrator_modal,
-                               &motion));
+    RITZ_REFUSE_IF(!(step > 0.0) || !isfinite(step) || steps < 1 || starts < 1,
+                   RITZ_ERR_ARGUMENT,
+                   "growth is of one step and one start at least");
+    RITZ_CHECK(ritz_motion_dense(model, true, &modes));
+    RITZ_CHECK(ritz_motion_dense(model, integrator == &ritz_integrator_modal,
+                                 &motion));
     motion.any_step = true;
-    RITZ_TRY(run_all(&t, integrator, step, count, out));
-done:
-    ritz_effective_free(&t.mass);
-    free(t.q);
-    free(t.v);
-    free(t.u);
-    ritz_motion_free(&modes);
-    ritz_motion_free(&motion);
-    return status;
+    return run_all(&t, integrator, step, count, out);
 }

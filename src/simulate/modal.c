@@ -1,7 +1,7 @@
 /*
  * Exact propagation by modes [Sirlin1992]: inputs that are held, or linear,
  * over a step leave no error but rounding, at any step. Modes that D does not
- * couple are propagated by the closed forms of oscillator.c; those it couples
+ * couple are propagated by the closed forms below; those it couples
  * together, each group by one exponential of
  *
  *     z = [q; q'; s u; s u'],   z' = [0 I 0 0; -L -D B/s 0; 0 0 0 I; 0 0 0 0] z
@@ -14,8 +14,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/exponential.h"
-#include "simulate/oscillator.h"
-#include "simulate/states.h"
+#include "simulate/motion.h"
 
 #include <ritz/matrix.h>
 
@@ -24,6 +23,108 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+/*
+ * All are divided differences of exp(s h) over the roots s_1, s_2 of
+ * s^2 + d s + lambda and over 0: S of [s_1, s_2], P of [0, s_1, s_2] and R of
+ * [0, 0, s_1, s_2]. So
+ *
+ * - while the roots are small, |s| h <= 1, by their power series: with h_k the
+ *   complete symmetric polynomials, h_k = -d h_(k-1) - lambda h_(k-2),
+ *
+ *       S = sum h_k h^(k+1) / (k+1)!
+ *
+ *   and P, R one and two powers further; there is no root in it, and nothing
+ *   divides;
+ * - of real roots by the recursion that divides by the larger of them,
+ *   P = (E - S) / -s_big, E = (exp(s_small h) - 1) / s_small, as the small one
+ *   may vanish, and with expm1, as they may meet;
+ * - of complex roots by sine and cosine, P and R from the equation itself,
+ *   S' - 1 + d S + lambda P = 0 and S - h + d P + lambda R = 0, which loses
+ *   nothing as lambda h^2 >= 1 there.
+ */
+
+/* 1/22! is below the rounding of 1. */
+enum { TERMS = 22 };
+
+static ritz_oscillator by_series(double lambda, double d, double h)
+{
+    ritz_oscillator o = {0};
+    double before = 0.0; /* h_(k-1), each times h^k */
+    double term = 1.0;
+    double factorial = 1.0; /* k! */
+
+    for (int k = 0; k < TERMS; k++) {
+        double next = -d * h * term - lambda * h * h * before;
+
+        o.rate += term / factorial;
+        o.S += h * term / (factorial * (k + 1));
+        o.P += h * h * term / (factorial * (k + 1) * (k + 2));
+        o.R += h * h * h * term / (factorial * (k + 1) * (k + 2) * (k + 3));
+        factorial *= k + 1;
+        before = term;
+        term = next;
+    }
+    o.hold = 1.0 - lambda * o.P;
+    return o;
+}
+
+/* (exp(s h) - 1 - s h) / s^2 */
+static double second_difference(double s, double h)
+{
+    double z = s * h;
+    double sum = 0.0;
+
+    if (fabs(z) > 1.0)
+        return (expm1(z) - z) / (s * s);
+    for (int k = TERMS; k >= 2; k--)
+        sum = sum * z / (k + 1) + 1.0;
+    return 0.5 * h * h * sum;
+}
+
+static ritz_oscillator by_real_roots(double lambda, double d, double h)
+{
+    ritz_oscillator o = {0};
+    double half = 0.5 * d;
+    double root = sqrt(fmax(half * half - lambda, 0.0));
+    double big = half >= 0.0 ? -(half + root) : root - half;
+    double small = lambda / big;
+    double gap = 2.0 * root;
+    double top = big > small ? big : small;
+    double first = small != 0.0 ? expm1(small * h) / small : h;
+
+    o.S = exp(top * h) * (gap * h > 0.0 ? -expm1(-gap * h) / gap : h);
+    o.rate = exp(big * h) + small * o.S;
+    o.hold = exp(big * h) - big * o.S;
+    o.P = (o.S - first) / big;
+    o.R = (o.P - second_difference(small, h)) / big;
+    return o;
+}
+
+static ritz_oscillator by_complex_roots(double lambda, double d, double h)
+{
+    ritz_oscillator o = {0};
+    double w = sqrt(lambda);
+    double half = 0.5 * d;
+    double r = sqrt((w - half) * (w + half));
+    double fade = exp(-half * h);
+
+    o.S = fade * (r > 0.0 ? sin(r * h) / r : h);
+    o.rate = fade * cos(r * h) - half * o.S;
+    o.hold = fade * cos(r * h) + half * o.S;
+    o.P = (1.0 - o.hold) / lambda;
+    o.R = (h - o.S - d * o.P) / lambda;
+    return o;
+}
+
+ritz_oscillator ritz_oscillator_over(double lambda, double d, double h)
+{
+    if (fabs(d) * h <= 1.0 && fabs(lambda) * h * h <= 1.0)
+        return by_series(lambda, d, h);
+    if (lambda <= 0.25 * d * d)
+        return by_real_roots(lambda, d, h);
+    return by_complex_roots(lambda, d, h);
+}
 
 typedef struct groups {
     int64_t count;
@@ -163,11 +264,13 @@ static ritz_status group_forms(const ritz_motion *m, const coupled_modes *part,
     return RITZ_OK;
 }
 
+RITZ_PAIR_OF(ritz_dense);
+
 static ritz_status prepare_group(const ritz_motion *m, double h,
                                  coupled_modes *part)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense A = {0}, Q[2] = {{0}, {0}};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_dense_pair) Q = {0};
     int64_t j = part->mode[0];
 
     part->scale = fmax(ritz_dense_max(&m->B), RITZ_LEAST_SCALE);
@@ -177,16 +280,10 @@ static ritz_status prepare_group(const ritz_motion *m, double h,
         if (!m->energies)
             return RITZ_OK;
     }
-    RITZ_TRY(group_matrix(m, part, &A));
+    RITZ_CHECK(group_matrix(m, part, &A));
     if (m->energies)
-        RITZ_TRY(group_forms(m, part, &A, Q));
-    RITZ_TRY(
-        ritz_exponential(&A, h, m->energies ? 2 : 0, Q, &part->E, part->W));
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&Q[0]);
-    ritz_dense_free(&Q[1]);
-    return status;
+        RITZ_CHECK(group_forms(m, part, &A, Q));
+    return ritz_exponential(&A, h, m->energies ? 2 : 0, Q, &part->E, part->W);
 }
 
 static double value_of_form(const ritz_dense *W, const double *z)
@@ -278,31 +375,26 @@ static ritz_status advance_modal(ritz_march *march, const double *u0,
 static ritz_status start_modes(const ritz_motion *motion, double step,
                                ritz_march *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t room = 2 * motion->n + 2 * motion->B.ncol;
     modal *s = NULL;
 
-    RITZ_NEW(s, 1);
-    RITZ_TRY(groups_new(&motion->D, &s->parts));
-    RITZ_NEW(s->group, s->parts.count);
-    s->num_groups = s->parts.count;
-    RITZ_NEW(s->f, motion->n);
-    RITZ_NEW(s->g, motion->n);
-    RITZ_NEW(s->z, room);
-    RITZ_NEW(s->z1, room);
-    for (int64_t k = 0; k < s->num_groups; k++) {
-        s->group[k].mode = s->parts.member + s->parts.first[k];
-        s->group[k].count = s->parts.first[k + 1] - s->parts.first[k];
-        RITZ_TRY(prepare_group(motion, step, &s->group[k]));
-    }
+    RITZ_CHECK_NEW(s, 1);
     out->own = s;
     out->advance = advance_modal;
     out->free = release_modal;
-    s = NULL;
-done:
-    if (s)
-        release_modal(s);
-    return status;
+    RITZ_CHECK(groups_new(&motion->D, &s->parts));
+    RITZ_CHECK_NEW(s->group, s->parts.count);
+    s->num_groups = s->parts.count;
+    RITZ_CHECK_NEW(s->f, motion->n);
+    RITZ_CHECK_NEW(s->g, motion->n);
+    RITZ_CHECK_NEW(s->z, room);
+    RITZ_CHECK_NEW(s->z1, room);
+    for (int64_t k = 0; k < s->num_groups; k++) {
+        s->group[k].mode = s->parts.member + s->parts.first[k];
+        s->group[k].count = s->parts.first[k + 1] - s->parts.first[k];
+        RITZ_CHECK(prepare_group(motion, step, &s->group[k]));
+    }
+    return RITZ_OK;
 }
 
 static ritz_status start_modal(const ritz_motion *motion, double step,

@@ -191,27 +191,16 @@ static ritz_status fill_sparse(const ritz_component *component,
                                const ritz_damping *damping, ritz_motion *m)
 {
     const ritz_io *io = &component->io;
-    RITZ_OWN(ritz_sparse) D = {0};
 
     m->n = m->original = component->num_dofs;
     RITZ_CHECK_NEW(m->massless, m->n);
     RITZ_CHECK(ritz_sparse_copy(&component->K, &m->sK));
     RITZ_CHECK(ritz_sparse_copy(&component->M, &m->sM));
     find_empty(&m->sM, m->massless);
-    if (component->D.colptr)
+    if (ritz_damping_is_rayleigh(damping))
+        RITZ_CHECK(ritz_damping_matrix(component, damping, &m->sD));
+    else if (component->D.colptr)
         RITZ_CHECK(ritz_sparse_copy(&component->D, &m->sD));
-    if (ritz_damping_is_rayleigh(damping)) {
-        RITZ_CHECK(ritz_sparse_add(damping->a, &m->sM, damping->b, &m->sK, &D));
-        if (m->sD.colptr) {
-            ritz_sparse sum = {0};
-
-            RITZ_CHECK(ritz_sparse_add(1.0, &D, 1.0, &m->sD, &sum));
-            ritz_sparse_free(&m->sD);
-            m->sD = sum;
-        } else {
-            RITZ_MOVE(m->sD, D);
-        }
-    }
     RITZ_CHECK(check_sparse(component, damping, m->massless, &m->sD));
     RITZ_CHECK(ritz_dense_copy(&io->B, &m->B));
     RITZ_CHECK(ritz_dense_copy(&io->C, &m->C));

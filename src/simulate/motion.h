@@ -75,11 +75,12 @@ typedef struct ritz_effective {
     ritz_factor *spd;
     ritz_ldl *ldl;
     ritz_zldl *general; /* of the sparse matrix below, which it borrows */
-    ritz_sparse *kept;
+    ritz_sparse kept;
     double _Complex *z; /* n, to work in */
 } ritz_effective;
 
 /**
+ * @param[out] out  empty; must stay where it is, freed on failure too
  * @param[in] fill  1 in its diagonal where rows of M are empty: for M alone
  * @return RITZ_ERR_SINGULAR
  */
@@ -114,5 +115,93 @@ void ritz_march_free(ritz_march *march);
 /** Kinetic and potential energy now. */
 void ritz_march_energy(const ritz_march *march, double *kinetic,
                        double *potential);
+
+/*
+ * The largest value that a motion could give an output; its rounding is
+ * relative to that: with |x|^2 = x'M x, and M in M^-1 by its diagonal alone,
+ *
+ *     |c x + cv x' + ca x''| <= |c| |x| + |cv| |x'| + |ca| |x''|,
+ *     |c|^2 = c M^-1 c',
+ *
+ * and of dofs without mass by the strain energy, with x'K x and K. Units of
+ * dofs, of outputs and of time cancel. Of a state space sum |c_j| |x_j|.
+ */
+typedef struct ritz_reach {
+    int64_t count;  /* outputs */
+    double *weight; /* 4 x count: |c|, |cv|, |ca| and |c| by K; NULL: of
+                          states */
+    double *size;   /* count: the largest value so far */
+    double *last;   /* n: velocities when it was last noted */
+    double *work;   /* n */
+    double seconds; /* when that was */
+} ritz_reach;
+
+void ritz_reach_free(ritz_reach *reach);
+
+/** How many steps a request takes. @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_request_steps(const ritz_simulation_request *request,
+                               int64_t *out);
+
+/**
+ * ritz_simulate, with or without energies.
+ *
+ * @param[out] reach  may be NULL; the caller frees it
+ */
+ritz_status ritz_simulate_noting(ritz_model subject,
+                                 const ritz_simulation_request *request,
+                                 bool energies, ritz_reach *reach,
+                                 ritz_simulation *out);
+
+/** Largest |value| of an output, and its largest difference from another. */
+void ritz_simulation_compare(const ritz_simulation *exact,
+                             const ritz_simulation *other, int64_t output,
+                             double *size, double *difference);
+
+/** A state space by the exponential of A: starts a march. */
+ritz_status ritz_states_exact(const ritz_motion *motion, double step,
+                              ritz_march *out);
+
+/**
+ * A state space by the trapezoidal rule: starts a march.
+ *
+ * @return RITZ_ERR_SINGULAR if 2 / step is an eigenvalue of A
+ */
+ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
+                                    ritz_march *out);
+
+/*
+ * The family of Newmark and generalised-alpha integrators: with z_b =
+ * (1 - b) z_1 + b z_0,
+ *
+ *     M a_(alpha_m) + D v_(alpha_f) + K x_(alpha_f) = B u_(alpha_f)
+ *     x_1 = x_0 + h v_0 + h^2 ((1/2 - beta) a_0 + beta a_1)
+ *     v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1)
+ */
+typedef struct ritz_newmark {
+    double alpha_m, alpha_f, beta, gamma;
+} ritz_newmark;
+
+/** Starts a march by these weights. @return RITZ_ERR_SINGULAR */
+ritz_status ritz_newmark_start(const ritz_motion *motion, double step,
+                               const ritz_newmark *weights, ritz_march *out);
+
+/*
+ * One damped mode, q'' + d q' + lambda q = f, propagated exactly over h while f
+ * changes linearly, at rate g:
+ *
+ *     q_1  = (S' + d S) q_0 +      S  v_0 + P f + R g
+ *     v_1  =   -lambda S q_0 +     S' v_0 + S f + P g
+ *
+ * S is the response of q to a unit velocity, S' its rate, P and R its first and
+ * second integral.
+ */
+typedef struct ritz_oscillator {
+    double hold; /* S' + d S */
+    double S, rate, P, R;
+} ritz_oscillator;
+
+/** For any real lambda and d, without loss of digits where roots meet or
+ * vanish. */
+ritz_oscillator ritz_oscillator_over(double lambda, double d, double h);
 
 #endif

@@ -19,7 +19,7 @@
  *
  *     (x_1 - x_0)'(M (v_1 - v_0) / h + D v + K (x_1 + x_0) / 2 - B u) = 0.
  */
-#include "simulate/newmark.h"
+#include "simulate/motion.h"
 
 #include "base/alloc.h"
 
@@ -37,7 +37,7 @@ typedef struct newmark {
     double *last; /* inputs at the end of the last step */
 } newmark;
 
-static void release(void *own)
+static void release_newmark(void *own)
 {
     newmark *s = own;
 
@@ -137,8 +137,8 @@ static void account_energy(ritz_march *march, const double *u0,
     march->dissipated += ritz_motion_dot(m->n, s->x0, s->work);
 }
 
-static ritz_status advance(ritz_march *march, const double *u0,
-                           const double *u1)
+static ritz_status advance_newmark(ritz_march *march, const double *u0,
+                                   const double *u1)
 {
     const ritz_motion *m = march->motion;
     newmark *s = march->own;
@@ -158,27 +158,21 @@ static ritz_status advance(ritz_march *march, const double *u0,
 ritz_status ritz_newmark_start(const ritz_motion *motion, double step,
                                const ritz_newmark *weights, ritz_march *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_newmark *w = weights;
     double f1 = 1.0 - w->alpha_f;
     newmark *s = NULL;
 
-    RITZ_NEW(s, 1);
-    s->w = *w;
-    RITZ_NEW(s->a, motion->n);
-    RITZ_NEW(s->x0, motion->n);
-    RITZ_NEW(s->rhs, motion->n);
-    RITZ_NEW(s->work, motion->n);
-    RITZ_NEW(s->last, motion->B.ncol);
-    RITZ_TRY(ritz_effective_new(motion, 1.0 - w->alpha_m, f1 * w->gamma * step,
-                                f1 * w->beta * step * step, false, &s->F));
+    RITZ_CHECK_NEW(s, 1);
     out->own = s;
-    out->advance = advance;
+    out->advance = advance_newmark;
     out->settle = settle_start;
-    out->free = release;
-    s = NULL;
-done:
-    if (s)
-        release(s);
-    return status;
+    out->free = release_newmark;
+    s->w = *w;
+    RITZ_CHECK_NEW(s->a, motion->n);
+    RITZ_CHECK_NEW(s->x0, motion->n);
+    RITZ_CHECK_NEW(s->rhs, motion->n);
+    RITZ_CHECK_NEW(s->work, motion->n);
+    RITZ_CHECK_NEW(s->last, motion->B.ncol);
+    return ritz_effective_new(motion, 1.0 - w->alpha_m, f1 * w->gamma * step,
+                              f1 * w->beta * step * step, false, &s->F);
 }

@@ -1,10 +1,8 @@
 /* A simulation: the request, the loop over time, and what it yields. */
-#include "simulate/run.h"
+#include "simulate/motion.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "simulate/motion.h"
-#include "simulate/reach.h"
 
 #include <ritz/base.h>
 #include <ritz/simulate.h>
@@ -102,21 +100,12 @@ void ritz_march_energy(const ritz_march *march, double *kinetic,
 
 enum { BY_PLACE, BY_RATE, BY_ACCELERATION, BY_STRAIN, WAYS };
 
-static double sparse_diagonal(const ritz_sparse *A, int64_t j)
-{
-    double sum = 0.0;
-
-    for (int64_t k = A->colptr[j]; k < A->colptr[j + 1]; k++)
-        if (A->rowind[k] == j)
-            sum += A->val[k];
-    return sum;
-}
-
 /* M or K of dof j by itself. */
 static double diagonal_at(ritz_model s, bool mass, int64_t j)
 {
     if (s.kind == RITZ_MODEL_COMPONENT)
-        return sparse_diagonal(mass ? &s.component->M : &s.component->K, j);
+        return ritz_sparse_diagonal(mass ? &s.component->M : &s.component->K,
+                                    j);
     return ritz_dense_col(mass ? s.dense.M : s.dense.K, j)[j];
 }
 
@@ -148,8 +137,8 @@ static void weigh_outputs(ritz_model s, ritz_reach *reach)
     }
 }
 
-ritz_status ritz_reach_new(ritz_model subject, const ritz_motion *motion,
-                           ritz_reach *out)
+static ritz_status reach_new(ritz_model subject, const ritz_motion *motion,
+                             ritz_reach *out)
 {
     RITZ_OWN(ritz_reach) reach = {.count = motion->feed.nrow};
 
@@ -277,8 +266,6 @@ static ritz_status make_room(const ritz_motion *motion,
     RITZ_CHECK_NEW(s->seconds, s->count);
     RITZ_CHECK_NEW(s->u, s->count * s->num_inputs);
     RITZ_CHECK_NEW(s->y, s->count * s->num_outputs);
-    RITZ_CHECK_NEW(s->input, s->num_inputs);
-    RITZ_CHECK_NEW(s->output, s->num_outputs);
     if (motion->form != RITZ_FORM_STATES && motion->energies) {
         RITZ_CHECK_NEW(s->kinetic, s->count);
         RITZ_CHECK_NEW(s->potential, s->count);
@@ -360,8 +347,7 @@ static void push_impulses(const ritz_motion *motion,
     double *moved = march->v ? march->v : march->x;
     double before = 0.0, after = 0.0, potential = 0.0;
 
-    if (march->v)
-        ritz_march_energy(march, &before, &potential);
+    ritz_march_energy(march, &before, &potential);
     for (int64_t j = 0; request->signal && j < motion->push.ncol; j++) {
         const double *jump = ritz_dense_col(&motion->push, j);
         const ritz_signal *signal = &request->signal[j];
@@ -370,8 +356,7 @@ static void push_impulses(const ritz_motion *motion,
              signal->kind == RITZ_SIGNAL_IMPULSE && k < motion->n; k++)
             moved[k] += signal->amplitude * jump[k];
     }
-    if (march->v)
-        ritz_march_energy(march, &after, &potential);
+    ritz_march_energy(march, &after, &potential);
     march->work += after - before;
 }
 
@@ -410,8 +395,7 @@ static ritz_status begin_run(const ritz_motion *motion,
     if (march->v)
         transform_start(motion, request->v0, march->v);
     RITZ_CHECK(balance_massless(motion, u, march->x));
-    if (march->v)
-        ritz_march_energy(march, &kinetic, &potential);
+    ritz_march_energy(march, &kinetic, &potential);
     *energy = kinetic + potential;
     push_impulses(motion, request, march);
     if (march->settle)
@@ -419,14 +403,15 @@ static ritz_status begin_run(const ritz_motion *motion,
     return RITZ_OK;
 }
 
-/* * Simulate what has become a motion; names are left to the caller.
+/*
+ * Simulate what has become a motion; names are left to the caller.
  *
- * @param[in,out] reach  noted with each time that is written; may be NULL */
+ * @param[in,out] reach  noted with each time that is written; may be NULL
+ */
 static ritz_status run_march(const ritz_motion *motion,
                              const ritz_simulation_request *request,
-                             ritz_reach *reach, ritz_simulation *out)
+                             ritz_reach *reach, ritz_simulation *s)
 {
-    RITZ_OWN(ritz_simulation) s = {0};
     RITZ_OWN(ritz_march) march = {0};
     RITZ_OWN_ARRAY double *u0 = NULL, *u1 = NULL;
     int64_t steps = 0;
@@ -434,37 +419,36 @@ static ritz_status run_march(const ritz_motion *motion,
     double energy = 0.0;
 
     RITZ_CHECK(ritz_request_steps(request, &steps));
-    RITZ_CHECK(make_room(motion, request, steps, &s));
-    RITZ_CHECK_NEW(u0, s.num_inputs);
-    RITZ_CHECK_NEW(u1, s.num_inputs);
+    RITZ_CHECK(make_room(motion, request, steps, s));
+    RITZ_CHECK_NEW(u0, s->num_inputs);
+    RITZ_CHECK_NEW(u1, s->num_inputs);
     RITZ_CHECK(ritz_march_new(motion, request->integrator, request->step,
                               request->rho, &march));
-    inputs_at(request, 0, s.num_inputs, u1);
+    inputs_at(request, 0, s->num_inputs, u1);
     RITZ_CHECK(begin_run(motion, request, u1, &march, &energy));
-    note_energy(&march, energy, 0, u1, &s);
-    if (reach)
-        note_reach(reach, &march, 0.0);
-    for (int64_t k = 1; k <= steps; k++) {
+    for (int64_t k = 0; k <= steps; k++) {
         double t = (double)k * request->step;
 
-        memcpy(u0, u1, (size_t)s.num_inputs * sizeof *u0);
-        inputs_at(request, k, s.num_inputs, u1);
-        RITZ_CHECK(march.advance(&march, u0,
-                                 request->hold == RITZ_HOLD_ZERO ? u0 : u1));
+        if (k > 0) {
+            memcpy(u0, u1, (size_t)s->num_inputs * sizeof *u0);
+            inputs_at(request, k, s->num_inputs, u1);
+            RITZ_CHECK(march.advance(
+                &march, u0, request->hold == RITZ_HOLD_ZERO ? u0 : u1));
+        }
         if (k % every != 0)
             continue;
         RITZ_REFUSE_IF(
-            !is_finite(&march), RITZ_ERR_CONVERGENCE,
+            k > 0 && !is_finite(&march), RITZ_ERR_CONVERGENCE,
             "the motion has left all bounds after %g s: is the model "
             "stable?",
             t);
-        s.seconds[k / every] = t;
-        note_energy(&march, energy, k / every, u1, &s);
+        s->seconds[k / every] = t;
+        note_energy(&march, energy, k / every, u1, s);
         if (reach)
             note_reach(reach, &march, t);
-        ritz_monitor_step("simulation", k, steps);
+        if (k > 0)
+            ritz_monitor_step("simulation", k, steps);
     }
-    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -487,16 +471,6 @@ static ritz_status check_subject(ritz_model subject,
     return RITZ_OK;
 }
 
-static void take_names(ritz_model subject, ritz_simulation *s)
-{
-    const ritz_io io = ritz_model_io(subject);
-
-    if (s->num_inputs > 0)
-        memcpy(s->input, io.input, (size_t)s->num_inputs * RITZ_NAME_SIZE);
-    if (s->num_outputs > 0)
-        memcpy(s->output, io.output, (size_t)s->num_outputs * RITZ_NAME_SIZE);
-}
-
 ritz_status ritz_simulate_noting(ritz_model subject,
                                  const ritz_simulation_request *request,
                                  bool energies, ritz_reach *reach,
@@ -504,18 +478,23 @@ ritz_status ritz_simulate_noting(ritz_model subject,
 {
     RITZ_OWN(ritz_motion) motion = {0};
     RITZ_OWN(ritz_reach) found = {0};
+    RITZ_OWN(ritz_simulation) s = {0};
+    ritz_io io; /* borrowed */
 
     RITZ_CHECK(check_subject(subject, request));
+    io = ritz_model_io(subject);
     RITZ_CHECK(ritz_motion_new(subject, request, &motion));
     motion.energies = energies && motion.form != RITZ_FORM_STATES;
     if (reach)
-        RITZ_CHECK(ritz_reach_new(subject, &motion, &found));
-    RITZ_CHECK(run_march(&motion, request, reach ? &found : NULL, out));
-    take_names(subject, out);
+        RITZ_CHECK(reach_new(subject, &motion, &found));
+    RITZ_CHECK(run_march(&motion, request, reach ? &found : NULL, &s));
+    RITZ_CHECK_COPY(s.input, io.input, s.num_inputs);
+    RITZ_CHECK_COPY(s.output, io.output, s.num_outputs);
     if (subject.damping)
-        ritz_damping_print(subject.damping, out->damping);
+        ritz_damping_print(subject.damping, s.damping);
     else if (subject.kind == RITZ_MODEL_STATES)
-        memcpy(out->damping, subject.states->damping, sizeof out->damping);
+        memcpy(s.damping, subject.states->damping, sizeof s.damping);
+    RITZ_MOVE(*out, s);
     if (reach)
         RITZ_MOVE(*reach, found);
     return RITZ_OK;
@@ -528,29 +507,35 @@ ritz_status ritz_simulate(ritz_model subject,
     return ritz_simulate_noting(subject, request, true, NULL, out);
 }
 
+void ritz_simulation_compare(const ritz_simulation *exact,
+                             const ritz_simulation *other, int64_t output,
+                             double *size, double *difference)
+{
+    *size = *difference = 0.0;
+    for (int64_t k = 0; k < exact->count; k++) {
+        int64_t at = k * exact->num_outputs + output;
+
+        *size = fmax(*size, fabs(exact->y[at]));
+        *difference = fmax(*difference, fabs(other->y[at] - exact->y[at]));
+    }
+}
+
 ritz_status ritz_simulation_difference(const ritz_simulation *exact,
                                        const ritz_simulation *other,
                                        double *out)
 {
-    int64_t p = exact->num_outputs;
-    double worst = 0.0;
+    double worst = 0.0, size = 0.0, off = 0.0;
 
-    RITZ_REFUSE_IF(exact->count != other->count || p != other->num_outputs,
+    RITZ_REFUSE_IF(exact->count != other->count ||
+                       exact->num_outputs != other->num_outputs,
                    RITZ_ERR_ARGUMENT, "two simulations do not fit each other");
     for (int64_t k = 0; k < exact->count; k++)
         RITZ_REFUSE_IF(fabs(exact->seconds[k] - other->seconds[k]) >
                            RITZ_SAME * exact->seconds[exact->count - 1],
                        RITZ_ERR_ARGUMENT,
                        "two simulations have different times");
-    for (int64_t i = 0; i < p; i++) {
-        double size = 0.0, off = 0.0;
-
-        for (int64_t k = 0; k < exact->count; k++) {
-            double y = exact->y[k * p + i];
-
-            size = fmax(size, fabs(y));
-            off = fmax(off, fabs(other->y[k * p + i] - y));
-        }
+    for (int64_t i = 0; i < exact->num_outputs; i++) {
+        ritz_simulation_compare(exact, other, i, &size, &off);
         if (size > 0.0)
             worst = fmax(worst, off / size);
     }

@@ -7,7 +7,7 @@
  *
  *     E = (I - h/2 A)^-1 (I + h/2 A),   G = (I - h/2 A)^-1 h B,   H = G / 2
  */
-#include "simulate/states.h"
+#include "simulate/motion.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -24,7 +24,7 @@ typedef struct states {
     double *rise; /* inputs */
 } states;
 
-static void release(void *own)
+static void release_states(void *own)
 {
     states *s = own;
 
@@ -36,8 +36,8 @@ static void release(void *own)
     free(s);
 }
 
-static ritz_status advance(ritz_march *march, const double *u0,
-                           const double *u1)
+static ritz_status advance_states(ritz_march *march, const double *u0,
+                                  const double *u1)
 {
     states *s = march->own;
     int64_t n = march->motion->n;
@@ -52,27 +52,17 @@ static ritz_status advance(ritz_march *march, const double *u0,
     return RITZ_OK;
 }
 
-static ritz_status states_new(const ritz_motion *motion, states **out)
+/* A march whose E, G and H are still to be found. */
+static ritz_status march_new(const ritz_motion *motion, ritz_march *out,
+                             states **s)
 {
-    ritz_status status = RITZ_OK;
-    states *s = NULL;
-
-    RITZ_NEW(s, 1);
-    RITZ_NEW(s->x, motion->n);
-    RITZ_NEW(s->rise, motion->B.ncol);
-    RITZ_MOVE(*out, s);
-done:
-    if (s)
-        release(s);
-    return status;
-}
-
-static void hand_over(states **s, ritz_march *out)
-{
+    RITZ_CHECK_NEW(*s, 1);
     out->own = *s;
-    out->advance = advance;
-    out->free = release;
-    *s = NULL;
+    out->advance = advance_states;
+    out->free = release_states;
+    RITZ_CHECK_NEW((*s)->x, motion->n);
+    RITZ_CHECK_NEW((*s)->rise, motion->B.ncol);
+    return RITZ_OK;
 }
 
 /* Rows 0..n-1 of some columns, times a factor. */
@@ -90,15 +80,14 @@ static ritz_status take_block(const ritz_dense *A, int64_t n, int64_t first,
 ritz_status ritz_states_exact(const ritz_motion *motion, double step,
                               ritz_march *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = motion->n;
     int64_t p = motion->B.ncol;
     double scale = fmax(ritz_dense_max(&motion->B), RITZ_LEAST_SCALE);
-    ritz_dense A = {0}, E = {0};
+    RITZ_OWN(ritz_dense) A = {0}, E = {0};
     states *s = NULL;
 
-    RITZ_TRY(states_new(motion, &s));
-    RITZ_TRY(ritz_dense_new(n + 2 * p, n + 2 * p, &A));
+    RITZ_CHECK(march_new(motion, out, &s));
+    RITZ_CHECK(ritz_dense_new(n + 2 * p, n + 2 * p, &A));
     for (int64_t j = 0; j < n; j++)
         memcpy(ritz_dense_col(&A, j), ritz_dense_col(&motion->A, j),
                (size_t)n * sizeof *A.val);
@@ -108,44 +97,30 @@ ritz_status ritz_states_exact(const ritz_motion *motion, double step,
                 ritz_dense_col(&motion->B, j)[i] / scale;
         ritz_dense_col(&A, n + p + j)[n + j] = 1.0 / step;
     }
-    RITZ_TRY(ritz_exponential(&A, step, 0, NULL, &E, NULL));
-    RITZ_TRY(take_block(&E, n, 0, n, 1.0, &s->E));
-    RITZ_TRY(take_block(&E, n, n, p, scale, &s->G));
-    RITZ_TRY(take_block(&E, n, n + p, p, scale, &s->H));
-    hand_over(&s, out);
-done:
-    ritz_dense_free(&A);
-    ritz_dense_free(&E);
-    if (s)
-        release(s);
-    return status;
+    RITZ_CHECK(ritz_exponential(&A, step, 0, NULL, &E, NULL));
+    RITZ_CHECK(take_block(&E, n, 0, n, 1.0, &s->E));
+    RITZ_CHECK(take_block(&E, n, n, p, scale, &s->G));
+    return take_block(&E, n, n + p, p, scale, &s->H);
 }
 
 ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
                                     ritz_march *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = motion->n;
-    ritz_dense left = {0};
+    RITZ_OWN(ritz_dense) left = {0};
     states *s = NULL;
 
-    RITZ_TRY(states_new(motion, &s));
-    RITZ_TRY(ritz_dense_copy(&motion->A, &left));
-    RITZ_TRY(ritz_dense_copy(&motion->A, &s->E));
+    RITZ_CHECK(march_new(motion, out, &s));
+    RITZ_CHECK(ritz_dense_copy(&motion->A, &left));
+    RITZ_CHECK(ritz_dense_copy(&motion->A, &s->E));
     for (int64_t k = 0; k < n * n; k++) {
         double one = k % (n + 1) == 0 ? 1.0 : 0.0;
 
         left.val[k] = one - 0.5 * step * left.val[k];
         s->E.val[k] = one + 0.5 * step * s->E.val[k];
     }
-    RITZ_TRY(take_block(&motion->B, n, 0, motion->B.ncol, step, &s->G));
-    RITZ_TRY(ritz_general_solve(&left, false, &s->E));
-    RITZ_TRY(ritz_general_solve(&left, false, &s->G));
-    RITZ_TRY(take_block(&s->G, n, 0, s->G.ncol, 0.5, &s->H));
-    hand_over(&s, out);
-done:
-    ritz_dense_free(&left);
-    if (s)
-        release(s);
-    return status;
+    RITZ_CHECK(take_block(&motion->B, n, 0, motion->B.ncol, step, &s->G));
+    RITZ_CHECK(ritz_general_solve(&left, false, &s->E));
+    RITZ_CHECK(ritz_general_solve(&left, false, &s->G));
+    return take_block(&s->G, n, 0, s->G.ncol, 0.5, &s->H);
 }

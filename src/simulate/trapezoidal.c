@@ -3,11 +3,10 @@
  * beta = 1/4, the average acceleration: unconditionally stable, and what it
  * takes from energy is what D takes. Periods come out longer by (w h)^2 / 12.
  */
-#include "simulate/newmark.h"
-#include "simulate/states.h"
+#include "simulate/motion.h"
 
-static ritz_status start(const ritz_motion *motion, double step, double rho,
-                         ritz_march *out)
+static ritz_status start_trapezoidal(const ritz_motion *motion, double step,
+                                     double rho, ritz_march *out)
 {
     const ritz_newmark weights = {0.0, 0.0, 0.25, 0.5};
 
@@ -27,5 +26,5 @@ const ritz_integrator ritz_integrator_trapezoidal = {
     .reference = "Newmark1959",
     .takes_sparse = true,
     .takes_states = true,
-    .start = start,
+    .start = start_trapezoidal,
 };

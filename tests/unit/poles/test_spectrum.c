@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "poles/spectrum_parts.h"
+#include "poles/damped.h"
 #include "scenes.h"
 #include "spring_chain.h"
 

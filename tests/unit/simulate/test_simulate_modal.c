@@ -4,7 +4,7 @@
 #include "motions.h"
 
 #include "linear/exponential.h"
-#include "simulate/oscillator.h"
+#include "simulate/motion.h"
 
 #include <ritz/simulate.h>
 
