@@ -44,52 +44,41 @@ static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
     return ritz_sparse_from_triplets(n, n, kept, row, col, val, out);
 }
 
-/* Rows with stiffness, with mass, with other entries, and fixed ones. */
-typedef struct presence {
-    bool *K, *M, *other, *fixed;
-} presence;
+/* What the entries of a row are of. */
+enum { HAS_STIFFNESS = 1, HAS_MASS = 2, HAS_OTHER = 4 };
 
-static ritz_status find_presence(const ritz_parts *parts, const ritz_deck *deck,
-                                 const ritz_row_names *names,
-                                 const ritz_component *component, presence *at)
+static void mark_rows(const ritz_parts *parts, const ritz_component *component,
+                      unsigned char *mark)
 {
-    RITZ_CHECK_NEW(at->K, names->count);
-    RITZ_CHECK_NEW(at->M, names->count);
-    RITZ_CHECK_NEW(at->other, names->count);
-    RITZ_CHECK_NEW(at->fixed, names->count);
     for (int64_t k = 0; k < parts->count; k++) {
-        const ritz_part *part = &parts->part[k];
+        const ritz_sparse *becomes = parts->part[k].becomes;
 
-        if (part->becomes == &component->K)
-            ritz_part_mark(part, at->K);
-        else if (part->becomes == &component->M)
-            ritz_part_mark(part, at->M);
-        else
-            ritz_part_mark(part, at->other);
+        ritz_part_mark(&parts->part[k],
+                       becomes == &component->K   ? HAS_STIFFNESS
+                       : becomes == &component->M ? HAS_MASS
+                                                  : HAS_OTHER,
+                       mark);
     }
-    for (int64_t k = 0; deck->num_fixed > 0 && k < names->count; k++)
-        at->fixed[k] =
-            bsearch(&names->dof[k], deck->fixed, (size_t)deck->num_fixed,
-                    sizeof *deck->fixed, ritz_dof_compare) != NULL;
-    return RITZ_OK;
 }
 
 /* Sort the rows: stays[k] is the new row, -1 if it is left out. */
-static ritz_status sort_rows(const presence *at, const ritz_row_names *names,
-                             bool rigid, int64_t *stays,
-                             ritz_import_report *report, ritz_component *to)
+static ritz_status sort_rows(const unsigned char *mark, const ritz_deck *deck,
+                             const ritz_row_names *names, bool rigid,
+                             int64_t *stays, ritz_import_report *report,
+                             ritz_component *to)
 {
     char name[RITZ_DOF_NAME_SIZE];
 
     for (int64_t k = 0; k < names->count; k++) {
-        bool empty = !at->K[k] && !at->M[k];
+        bool empty = !(mark[k] & (HAS_STIFFNESS | HAS_MASS));
 
         stays[k] = -1;
-        if (at->fixed[k] && !empty) {
+        if (!empty &&
+            ritz_dof_among(names->dof[k], deck->num_fixed, deck->fixed)) {
             report->fixed[report->num_fixed++] = names->dof[k];
             continue;
         }
-        RITZ_REFUSE_IF(empty && at->other[k], RITZ_ERR_FORMAT,
+        RITZ_REFUSE_IF(empty && mark[k] & HAS_OTHER, RITZ_ERR_FORMAT,
                        "'%s' has damping or geometric stiffness, but neither "
                        "stiffness nor mass",
                        ritz_dof_name(names->dof[k], name));
@@ -97,8 +86,8 @@ static ritz_status sort_rows(const presence *at, const ritz_row_names *names,
             report->removed[report->num_removed++] = names->dof[k];
             continue;
         }
-        report->num_massless += !at->M[k];
-        report->num_floating += !at->K[k] && !rigid;
+        report->num_massless += !(mark[k] & HAS_MASS);
+        report->num_floating += !(mark[k] & HAS_STIFFNESS) && !rigid;
         stays[k] = to->num_dofs;
         to->dof[to->num_dofs++] = names->dof[k];
     }
@@ -157,51 +146,31 @@ static ritz_status place_alone(const ritz_row_names *names, ritz_grids *out)
     return RITZ_OK;
 }
 
-/* Positions and frames of the grids that are named; the origin for a single
- * grid without a deck. */
-static ritz_status ritz_import_place(const ritz_deck *deck,
-                                     const ritz_row_names *names,
-                                     ritz_component *component)
-{
-    RITZ_OWN(ritz_roster) roster = {0};
-
-    if (deck->grids.count == 0)
-        return place_alone(names, &component->grids);
-    RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
-    return keep_grids(&deck->grids, &roster, &component->grids);
-}
-
 /* Put the parts into the component but for its grids, without rows that are
  * empty in K and M. */
-static ritz_status ritz_parts_settle(ritz_parts *parts, const ritz_deck *deck,
-                                     const ritz_row_names *names,
-                                     ritz_component *component,
-                                     ritz_import_report *report)
+static ritz_status settle_parts(const ritz_parts *parts, const ritz_deck *deck,
+                                const ritz_row_names *names,
+                                ritz_component *component,
+                                ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    presence at = {0};
-    int64_t *stays = NULL;
+    RITZ_OWN_ARRAY unsigned char *mark = NULL;
+    RITZ_OWN_ARRAY int64_t *stays = NULL;
     bool rigid = true;
 
     for (int64_t k = 0; k < parts->count; k++)
         rigid = rigid && parts->part[k].becomes != &component->K;
-    RITZ_NEW(stays, names->count);
-    RITZ_NEW(component->dof, names->count);
-    RITZ_NEW(report->removed, names->count);
-    RITZ_NEW(report->fixed, names->count);
-    RITZ_TRY(find_presence(parts, deck, names, component, &at));
-    RITZ_TRY(sort_rows(&at, names, rigid, stays, report, component));
+    RITZ_CHECK_NEW(mark, names->count);
+    RITZ_CHECK_NEW(stays, names->count);
+    RITZ_CHECK_NEW(component->dof, names->count);
+    RITZ_CHECK_NEW(report->removed, names->count);
+    RITZ_CHECK_NEW(report->fixed, names->count);
+    mark_rows(parts, component, mark);
+    RITZ_CHECK(sort_rows(mark, deck, names, rigid, stays, report, component));
     for (int64_t k = 0; k < parts->count; k++)
-        RITZ_TRY(scatter_part(&parts->part[k], stays, component->num_dofs,
-                              parts->part[k].becomes));
+        RITZ_CHECK(scatter_part(&parts->part[k], stays, component->num_dofs,
+                                parts->part[k].becomes));
     memcpy(report->map, names->map, sizeof report->map);
-done:
-    free(stays);
-    free(at.K);
-    free(at.M);
-    free(at.other);
-    free(at.fixed);
-    return status;
+    return RITZ_OK;
 }
 
 static void ritz_parts_free(ritz_parts *parts)
@@ -209,6 +178,7 @@ static void ritz_parts_free(ritz_parts *parts)
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_matrix_free(&parts->part[k].matrix);
         free(parts->part[k].place);
+        free(parts->part[k].owned);
     }
     free(parts->part);
     *parts = (ritz_parts){0};
@@ -226,14 +196,6 @@ static ritz_status check_matrix(const ritz_part *part)
     RITZ_REFUSE_IF(A->imaginary, RITZ_ERR_FORMAT,
                    "'%s' is complex, a real matrix is due", part->spec);
     return RITZ_OK;
-}
-
-static void add_part(const char *spec, const char *what, ritz_sparse *becomes,
-                     ritz_parts *parts)
-{
-    if (spec)
-        parts->part[parts->count++] =
-            (ritz_part){.spec = spec, .what = what, .becomes = becomes};
 }
 
 /* Read the matrices of all parts: each file once. */
@@ -255,10 +217,11 @@ static ritz_status read_parts(ritz_parts *parts, ritz_file_sums *sums)
 
 /* "F@LOAD": geometric stiffness of a unit load. */
 static ritz_status take_load(const char *text, ritz_component *component,
-                             char **spec, ritz_parts *parts)
+                             ritz_parts *parts)
 {
     ritz_load *load = &component->load[component->num_loads];
     const char *at = strrchr(text, '@');
+    ritz_part *part = &parts->part[parts->count];
 
     RITZ_REFUSE_IF(!at || at == text, RITZ_ERR_ARGUMENT,
                    "'%s' is not of the form FILE@LOAD", text);
@@ -267,16 +230,18 @@ static ritz_status take_load(const char *text, ritz_component *component,
         RITZ_REFUSE_IF(strcmp(component->load[k].name, load->name) == 0,
                        RITZ_ERR_ARGUMENT, "there are two loads '%s'",
                        load->name);
-    RITZ_CHECK_NEW(*spec, at - text + 1);
-    memcpy(*spec, text, (size_t)(at - text));
+    RITZ_CHECK_NEW(part->owned, at - text + 1);
+    memcpy(part->owned, text, (size_t)(at - text));
+    part->spec = part->owned;
+    part->what = "geometric stiffness";
+    part->becomes = &load->KG;
+    parts->count++;
     component->num_loads++;
-    add_part(*spec, "geometric stiffness", &load->KG, parts);
     return RITZ_OK;
 }
 
 static ritz_status take_parts(const ritz_import_request *request,
-                              ritz_component *component, char **specs,
-                              ritz_parts *parts)
+                              ritz_component *component, ritz_parts *parts)
 {
     const struct {
         const char *option, *spec;
@@ -294,10 +259,14 @@ static ritz_status take_parts(const ritz_import_request *request,
     RITZ_CHECK_NEW(parts->part, most + request->num_loads);
     RITZ_CHECK_NEW(component->load, request->num_loads);
     for (int64_t k = 0; k < most; k++)
-        add_part(table[k].spec, table[k].option, table[k].becomes, parts);
+        if (table[k].spec)
+            parts->part[parts->count++] =
+                (ritz_part){.spec = table[k].spec,
+                            .what = table[k].option,
+                            .becomes = table[k].becomes};
     for (int64_t k = 0; k < request->num_loads; k++)
         RITZ_CHECK_IN("geometric stiffness",
-                      take_load(request->load[k], component, &specs[k], parts));
+                      take_load(request->load[k], component, parts));
     return read_parts(parts, request->sums);
 }
 
@@ -323,17 +292,22 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
     return RITZ_OK;
 }
 
-/* Grids of rows and of recovered dofs are placed. */
+/* Grids of rows and of recovered dofs; the origin for a single grid without a
+ * deck. */
 static ritz_status place_grids(const ritz_deck *deck,
                                const ritz_row_names *kept,
                                ritz_component *component)
 {
     const ritz_recovery *recovery = &component->recovery;
     RITZ_OWN(ritz_row_names) all = {.count = kept->count + recovery->count};
+    RITZ_OWN(ritz_roster) roster = {0};
 
     RITZ_CHECK(ritz_recovery_extend(recovery, kept->count, kept->dof, NULL,
                                     &all.dof, NULL));
-    return ritz_import_place(deck, &all, component);
+    if (deck->grids.count == 0)
+        return place_alone(&all, &component->grids);
+    RITZ_CHECK(ritz_roster_new(all.count, all.dof, &roster));
+    return keep_grids(&deck->grids, &roster, &component->grids);
 }
 
 /* Rows, with the dofs eliminated that constraints make depend on others. */
@@ -348,7 +322,7 @@ static ritz_status settle_rows(const ritz_import_request *request,
     RITZ_CHECK(ritz_tying_new(deck, parts, names, component, report, &tying));
     RITZ_CHECK(ritz_tying_ports(request, deck, &tying, report));
     RITZ_CHECK(ritz_tying_apply(&tying, parts, &kept, report));
-    RITZ_CHECK(ritz_parts_settle(parts, deck, &kept, component, report));
+    RITZ_CHECK(settle_parts(parts, deck, &kept, component, report));
     RITZ_CHECK(ritz_tying_recover(&tying, component, report));
     return place_grids(deck, &kept, component);
 }
@@ -388,7 +362,7 @@ static ritz_status make_component(const ritz_import_request *request,
         RITZ_CHECK(
             settle_rows(request, parts, deck, &names, component, report));
     } else {
-        RITZ_CHECK(ritz_parts_settle(parts, deck, &names, component, report));
+        RITZ_CHECK(settle_parts(parts, deck, &names, component, report));
         RITZ_CHECK(place_grids(deck, &names, component));
     }
     take_elements(deck, component, report);
@@ -402,31 +376,20 @@ static ritz_status make_component(const ritz_import_request *request,
 ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
                         ritz_import_report *report)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component component = {0};
-    ritz_import_report done_what = {0};
-    ritz_parts parts = {0};
-    ritz_deck deck = {0};
-    char **specs = NULL; /* of loads, cut before '@' */
+    RITZ_OWN(ritz_component) component = {0};
+    RITZ_OWN(ritz_import_report) done_what = {0};
+    RITZ_OWN(ritz_parts) parts = {0};
+    RITZ_OWN(ritz_deck) deck = {0};
 
-    RITZ_NEW(specs, request->num_loads);
-    RITZ_TRY(take_parts(request, &component, specs, &parts));
-    RITZ_TRY(make_component(request, &parts, &deck, &component, &done_what));
+    RITZ_CHECK(take_parts(request, &component, &parts));
+    RITZ_CHECK(make_component(request, &parts, &deck, &component, &done_what));
     ritz_parts_free(&parts); /* the larger half of the memory, done with */
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_import_attach(request, &deck.equations, &done_what, &component));
-    RITZ_TRY(ritz_component_settle(&component, request->symmetrise));
+    RITZ_CHECK(ritz_component_settle(&component, request->symmetrise));
     RITZ_MOVE(*out, component);
     RITZ_MOVE(*report, done_what);
-done:
-    for (int64_t k = 0; specs && k < request->num_loads; k++)
-        free(specs[k]);
-    free(specs);
-    ritz_parts_free(&parts);
-    ritz_deck_free(&deck);
-    ritz_component_free(&component);
-    ritz_import_report_free(&done_what);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_import_report_free(ritz_import_report *report)

@@ -11,6 +11,7 @@
 /* A matrix that was asked for, and which one of the component it becomes. */
 typedef struct ritz_part {
     const char *spec; /* "kgg.op4:KGG", for messages */
+    char *owned;      /* the spec of a load, cut off its name; else NULL */
     const char *what; /* "stiffness" */
     ritz_matrix matrix;
     ritz_sparse *becomes;
@@ -64,16 +65,28 @@ ritz_status ritz_names_find(const ritz_import_request *request,
 ritz_status ritz_names_of_file(const char *path, ritz_row_names *out);
 void ritz_row_names_free(ritz_row_names *names);
 
-/** Rows that have an entry other than zero. */
-void ritz_part_mark(const ritz_part *part, bool *taken);
+/** Set a bit for each row that has an entry other than zero. */
+void ritz_part_mark(const ritz_part *part, unsigned char bit,
+                    unsigned char *mark);
+
+/** Whether a dof is in a sorted list. */
+bool ritz_dof_among(ritz_dof dof, int64_t count, const ritz_dof *sorted);
+
+/** Make the array at the address @p array longer, by zeros. */
+ritz_status ritz_import_extend(void *array, int64_t before, int64_t more,
+                               size_t size);
+
+enum {
+    RITZ_TIED_FIXED = 1,   /* u = 0 */
+    RITZ_TIED_ALIVE = 2,   /* the dof has stiffness or mass of its own */
+    RITZ_TIED_OUTSIDE = 4, /* it is no row: the matrices lack dependent dofs */
+};
 
 /* Constraints between the rows, and what becomes of the dofs by them. */
 typedef struct ritz_tying {
     const ritz_deck *deck;
     ritz_row_names names; /* all rows of the matrices and dofs of equations */
-    bool *fixed;          /* of each: u = 0 */
-    bool *alive;          /* has stiffness or mass of its own */
-    bool *outside;        /* is no row, as matrices are without dependents */
+    unsigned char *mark;  /* of each: sum of RITZ_TIED_... */
     bool acts;            /* matrices have dependent dofs of the deck */
     ritz_elimination by;  /* the equations of the deck solved */
 } ritz_tying;
@@ -92,7 +105,7 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
 /** Solve the equations of the deck and of the ports so far. */
 ritz_status ritz_tying_solve(ritz_tying *tying);
 
-/** Add dofs to the names, neither fixed nor alive nor outside. */
+/** Add dofs to the names, without marks. */
 ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
                               ritz_tying *tying);
 
@@ -100,6 +113,9 @@ ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
 ritz_status ritz_tying_ports(const ritz_import_request *request,
                              ritz_deck *deck, ritz_tying *tying,
                              ritz_import_report *report);
+
+/** Mark the dofs that follow from some which the matrices do not have. */
+void ritz_tying_unknown(const ritz_tying *tying, bool *unknown);
 
 /**
  * Eliminate: A_nn = G'AG of every part.

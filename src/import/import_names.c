@@ -130,7 +130,7 @@ static ritz_status list_dependents(const ritz_deck *deck, ritz_dof **out)
     return RITZ_OK;
 }
 
-static bool is_in(ritz_dof dof, int64_t count, const ritz_dof *sorted)
+bool ritz_dof_among(ritz_dof dof, int64_t count, const ritz_dof *sorted)
 {
     return count > 0 && bsearch(&dof, sorted, (size_t)count, sizeof *sorted,
                                 ritz_dof_compare);
@@ -143,7 +143,7 @@ static void leave_out(int64_t count, const ritz_dof *sorted,
     int64_t kept = 0;
 
     for (int64_t k = 0; k < names->count; k++)
-        if (!is_in(names->dof[k], count, sorted))
+        if (!ritz_dof_among(names->dof[k], count, sorted))
             names->dof[kept++] = names->dof[k];
     names->count = kept;
 }
@@ -192,6 +192,17 @@ static bool same_names(const ritz_row_names *a, const ritz_row_names *b)
 
 enum { ALL, SETS, FREE, LESS, LEAST, KINDS };
 
+/* The lists of names that a deck explains. */
+typedef struct deck_lists {
+    ritz_row_names list[KINDS];
+} deck_lists;
+
+static void deck_lists_free(deck_lists *lists)
+{
+    for (int k = 0; k < KINDS; k++)
+        ritz_row_names_free(&lists->list[k]);
+}
+
 /* Names of the lists in messages. */
 static const char *const WORDS[KINDS] = {"", "a-set", "grids less SPCs",
                                          "grids less dependents",
@@ -238,35 +249,29 @@ static ritz_status choose_list(const ritz_deck *deck, int64_t n,
         if (*chosen < 0)
             *chosen = k;
     }
-    if (*chosen < 0) {
-        explain_sizes(deck, list, sizeof sizes, sizes);
-        RITZ_REFUSE_IF(true, RITZ_ERR_FORMAT,
-                       "'%s' has %" PRId64 " rows; the deck explains %s", spec,
-                       n, sizes);
-    }
-    return RITZ_OK;
+    if (*chosen >= 0)
+        return RITZ_OK;
+    explain_sizes(deck, list, sizeof sizes, sizes);
+    return ritz_fail(RITZ_ERR_FORMAT,
+                     "'%s' has %" PRId64 " rows; the deck explains %s", spec, n,
+                     sizes);
 }
 
 /* Names that a deck has for @p spec, n rows. @return RITZ_ERR_FORMAT */
 static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
                                    const char *spec, ritz_row_names *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_row_names list[KINDS] = {0};
+    RITZ_OWN(deck_lists) lists = {0};
+    ritz_row_names *list = lists.list;
     int chosen = -1;
 
-    RITZ_TRY(list_all(deck, &list[ALL]));
-    RITZ_TRY(list_sets(deck, &list[SETS]));
-    RITZ_TRY(list_less(deck, true, false, &list[FREE]));
-    RITZ_TRY(list_less(deck, false, true, &list[LESS]));
-    RITZ_TRY(list_less(deck, true, true, &list[LEAST]));
-    RITZ_TRY(choose_list(deck, n, spec, list, &chosen));
-    *out = list[chosen];
-    list[chosen] = (ritz_row_names){0};
-done:
-    for (int k = 0; k < KINDS; k++)
-        ritz_row_names_free(&list[k]);
-    return status;
+    RITZ_CHECK(list_all(deck, &list[ALL]));
+    RITZ_CHECK(list_sets(deck, &list[SETS]));
+    for (int k = FREE; k < KINDS; k++)
+        RITZ_CHECK(list_less(deck, k != LESS, k != FREE, &list[k]));
+    RITZ_CHECK(choose_list(deck, n, spec, list, &chosen));
+    RITZ_MOVE(*out, list[chosen]);
+    return RITZ_OK;
 }
 
 /* `GRID COMP` of one line, which may be blank or end in a comment. */
@@ -443,11 +448,10 @@ static ritz_status name_by_file(const char *path, ritz_parts *parts,
 static ritz_status check_size(const ritz_part *part, int64_t due,
                               const char *other)
 {
-    if (part->matrix.A.nrow == due)
-        return RITZ_OK;
-    return ritz_fail(RITZ_ERR_FORMAT,
-                     "'%s' has %" PRId64 " rows, '%s' has %" PRId64, part->spec,
-                     part->matrix.A.nrow, other, due);
+    RITZ_REFUSE_IF(part->matrix.A.nrow != due, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " rows, '%s' has %" PRId64, part->spec,
+                   part->matrix.A.nrow, other, due);
+    return RITZ_OK;
 }
 
 /* Parts whose files name the rows are placed by name, others as they are. */
@@ -512,15 +516,15 @@ ritz_status ritz_names_find(const ritz_import_request *request,
     return RITZ_OK;
 }
 
-/* Rows of the component-to-be where a matrix has an entry that is not zero. */
-void ritz_part_mark(const ritz_part *part, bool *taken)
+void ritz_part_mark(const ritz_part *part, unsigned char bit,
+                    unsigned char *mark)
 {
     const ritz_sparse *A = &part->matrix.A;
 
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             if (A->val[p] != 0.0) {
-                taken[part->place[j]] = true;
-                taken[part->place[A->rowind[p]]] = true;
+                mark[part->place[j]] |= bit;
+                mark[part->place[A->rowind[p]]] |= bit;
             }
 }

@@ -14,27 +14,21 @@ static ritz_status extend_rows(const ritz_component *component,
                                const ritz_equations *equations,
                                ritz_extended *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_extended new = {.view = *component,
-                         .num_rows = component->num_dofs,
-                         .equations = equations};
+    RITZ_OWN(ritz_extended)
+    new = {.view = *component,
+           .num_rows = component->num_dofs,
+           .equations = equations};
     const ritz_recovery *recovery = &component->recovery;
-    ritz_dof *all = NULL;
 
-    RITZ_TRY(ritz_recovery_extend(recovery, component->num_dofs, component->dof,
-                                  NULL, &all, NULL));
-    new.view.dof = all;
+    new.view.dof = NULL;
+    RITZ_CHECK(ritz_recovery_extend(recovery, component->num_dofs,
+                                    component->dof, NULL, &new.view.dof, NULL));
     new.view.num_dofs += recovery->count;
-    RITZ_TRY(ritz_roster_new(new.view.num_dofs, all, &new.roster));
+    RITZ_CHECK(ritz_roster_new(new.view.num_dofs, new.view.dof, &new.roster));
     if (recovery->count > 0)
-        RITZ_TRY(ritz_sparse_transpose(&recovery->G, &new.from));
+        RITZ_CHECK(ritz_sparse_transpose(&recovery->G, &new.from));
     RITZ_MOVE(*out, new);
-    all = NULL;
-done:
-    ritz_roster_free(&new.roster);
-    ritz_sparse_free(&new.from);
-    free(all);
-    return status;
+    return RITZ_OK;
 }
 
 void ritz_extended_free(ritz_extended *extended)
@@ -81,6 +75,12 @@ typedef struct draft {
     ritz_port port;
     int64_t num_grids; /* that have a position */
 } draft;
+
+static void draft_free(draft *it)
+{
+    free(it->taken);
+    ritz_dofs_free(&it->port.dofs);
+}
 
 /* The digits behind the last ':': 1 to 6, or 0 for scalar points. */
 static ritz_status take_components(const char *text, draft *it)
@@ -173,7 +173,6 @@ static ritz_status check_turn(int64_t first, const draft *it)
 
 static ritz_status add_grid(int64_t grid, draft *it)
 {
-    ritz_status status = RITZ_OK;
     const ritz_roster *roster = &it->extended->roster;
     int64_t before = it->port.dofs.count;
 
@@ -182,22 +181,17 @@ static ritz_status add_grid(int64_t grid, draft *it)
 
         if (it->choosy && !it->want[c])
             continue;
-        if (row < 0 && it->choosy) {
-            status = ritz_roster_miss(roster, (ritz_dof){grid, c});
-            goto done;
-        }
+        if (row < 0 && it->choosy)
+            return ritz_roster_miss(roster, (ritz_dof){grid, c});
         if (row >= 0)
-            RITZ_TRY(add_row(row, it));
+            RITZ_CHECK(add_row(row, it));
     }
-    if (it->port.dofs.count == before) {
-        status = ritz_roster_miss(roster, (ritz_dof){grid, 1});
-        goto done;
-    }
+    if (it->port.dofs.count == before)
+        return ritz_roster_miss(roster, (ritz_dof){grid, 1});
     if (it->whole)
-        RITZ_TRY(check_turn(before, it));
+        RITZ_CHECK(check_turn(before, it));
     add_position(grid, it);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* Grids from..to that exist, or points if directions are 0. */
@@ -270,35 +264,19 @@ static ritz_status fill_port(const char *text, draft *it)
     return RITZ_OK;
 }
 
-/* A port's list has room for all rows until it is known; then it is cut. */
-static ritz_status shorten_dofs(ritz_dofs *dofs)
-{
-    ritz_dofs fit = {0};
-    ritz_status status = ritz_dofs_copy(dofs, &fit);
-
-    if (status == RITZ_OK) {
-        ritz_dofs_free(dofs);
-        *dofs = fit;
-    }
-    return status;
-}
-
 ritz_status ritz_import_port(const char *text, bool whole,
                              const ritz_extended *extended, ritz_port *out)
 {
-    ritz_status status = RITZ_OK;
-    draft it = {.extended = extended, .whole = whole};
+    RITZ_OWN(draft) it = {.extended = extended, .whole = whole};
+    ritz_dofs fit = {0}; /* without the room for all rows */
 
-    RITZ_NEW(it.taken, extended->view.num_dofs);
-    RITZ_NEW(it.port.dofs.at, extended->view.num_dofs);
-    RITZ_TRY(fill_port(text, &it));
-    RITZ_TRY(shorten_dofs(&it.port.dofs));
+    RITZ_CHECK_NEW(it.taken, extended->view.num_dofs);
+    RITZ_CHECK_NEW(it.port.dofs.at, extended->view.num_dofs);
+    RITZ_CHECK(fill_port(text, &it));
+    RITZ_CHECK(ritz_dofs_copy(&it.port.dofs, &fit));
     *out = it.port;
-    it.port = (ritz_port){0};
-done:
-    free(it.taken);
-    ritz_dofs_free(&it.port.dofs);
-    return status;
+    out->dofs = fit;
+    return RITZ_OK;
 }
 
 /* The six dofs of a grid that was made for a port. */
@@ -311,18 +289,16 @@ static ritz_status make_tied(const ritz_import_grid *grid,
     return ritz_import_port(text, true, extended, out);
 }
 
-static ritz_status add_port(ritz_port *port, ritz_component *component)
+/* Count the port that was put behind the others. */
+static ritz_status add_port(ritz_component *component)
 {
-    ritz_status status = RITZ_OK;
-    int64_t count = component->num_ports;
+    const ritz_port *port = &component->port[component->num_ports++];
 
-    component->port[component->num_ports++] = *port;
-    for (int64_t j = 0; j < count; j++)
-        RITZ_FAIL_IF(strcmp(component->port[j].name, port->name) == 0,
-                     RITZ_ERR_ARGUMENT, "there are two ports '%s'", port->name);
-done:
-    *port = (ritz_port){0};
-    return status;
+    for (int64_t j = 0; j + 1 < component->num_ports; j++)
+        RITZ_REFUSE_IF(strcmp(component->port[j].name, port->name) == 0,
+                       RITZ_ERR_ARGUMENT, "there are two ports '%s'",
+                       port->name);
+    return RITZ_OK;
 }
 
 static ritz_status add_ports(const ritz_import_request *request,
@@ -330,18 +306,18 @@ static ritz_status add_ports(const ritz_import_request *request,
                              const ritz_extended *extended,
                              ritz_component *component)
 {
-    ritz_port port = {0};
-
     RITZ_CHECK_NEW(component->port, request->num_ports + report->num_grids);
     for (int64_t k = 0; k < request->num_ports; k++) {
-        RITZ_CHECK_IN(request->port[k], ritz_import_port(request->port[k], true,
-                                                         extended, &port));
-        RITZ_CHECK(add_port(&port, component));
+        RITZ_CHECK_IN(request->port[k],
+                      ritz_import_port(request->port[k], true, extended,
+                                       &component->port[k]));
+        RITZ_CHECK(add_port(component));
     }
     for (int64_t k = 0; k < report->num_grids; k++) {
         RITZ_CHECK_IN(report->grid[k].port,
-                      make_tied(&report->grid[k], extended, &port));
-        RITZ_CHECK(add_port(&port, component));
+                      make_tied(&report->grid[k], extended,
+                                &component->port[component->num_ports]));
+        RITZ_CHECK(add_port(component));
     }
     return RITZ_OK;
 }
@@ -367,13 +343,12 @@ typedef struct aim {
 static ritz_status take_aim(const ritz_extended *extended, ritz_dof dof,
                             aim *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_roster *roster = &extended->roster;
     ritz_port port = {.name = ""};
     int64_t rows[3];
     int64_t first = dof.component > 3 ? 4 : 1;
-    ritz_dense turn = {0};
-    ritz_dof *label = NULL;
+    RITZ_OWN(ritz_dense) turn = {0};
+    RITZ_OWN_ARRAY ritz_dof *label = NULL;
 
     port.dofs.at = rows;
     if (dof.component == 0) {
@@ -386,11 +361,9 @@ static ritz_status take_aim(const ritz_extended *extended, ritz_dof dof,
         if (row >= 0)
             rows[port.dofs.count++] = row;
     }
-    if (port.dofs.count == 0) {
-        status = ritz_roster_miss(roster, dof);
-        goto done;
-    }
-    RITZ_TRY(ritz_port_turn(&extended->view, &port, &turn, &label));
+    if (port.dofs.count == 0)
+        return ritz_roster_miss(roster, dof);
+    RITZ_CHECK(ritz_port_turn(&extended->view, &port, &turn, &label));
     *out = (aim){0};
     for (int64_t k = 0; k < port.dofs.count; k++)
         for (int64_t j = 0;
@@ -398,12 +371,7 @@ static ritz_status take_aim(const ritz_extended *extended, ritz_dof dof,
             out->row[out->count] = rows[j];
             out->share[out->count++] = ritz_dense_col(&turn, j)[k];
         }
-    if (out->count == 0)
-        status = ritz_roster_miss(roster, dof);
-done:
-    ritz_dense_free(&turn);
-    free(label);
-    return status;
+    return out->count == 0 ? ritz_roster_miss(roster, dof) : RITZ_OK;
 }
 
 /*
@@ -452,6 +420,20 @@ static ritz_status take_dof(const char *text, size_t length, ritz_dof *out)
     return RITZ_OK;
 }
 
+/* Add scale t of "GRID:COMP", of so many letters, as add_aim does. */
+static ritz_status add_direction(const char *text, size_t length,
+                                 const ritz_extended *extended, double scale,
+                                 int64_t stride, double *into)
+{
+    ritz_dof dof = {0};
+    aim to = {0};
+
+    RITZ_CHECK(take_dof(text, length, &dof));
+    RITZ_CHECK(take_aim(extended, dof, &to));
+    add_aim(extended, &to, scale, stride, into);
+    return RITZ_OK;
+}
+
 /* A number behind `mark`, if that is there; the text is cut before it. */
 static ritz_status take_number(const char *text, char mark, size_t *length,
                                double *out)
@@ -473,17 +455,13 @@ static ritz_status make_input(const char *text, const ritz_extended *extended,
     const char *rest = NULL;
     size_t length = 0;
     double scale = 1.0;
-    ritz_dof dof = {0};
-    aim to = {0};
 
     RITZ_CHECK(
         ritz_import_split(text, "NAME=GRID:COMP[*SCALE]", io->input[k], &rest));
     length = strlen(rest);
     RITZ_CHECK(take_number(rest, '*', &length, &scale));
-    RITZ_CHECK(take_dof(rest, length, &dof));
-    RITZ_CHECK(take_aim(extended, dof, &to));
-    add_aim(extended, &to, scale, 1, ritz_dense_col(&io->B, k));
-    return RITZ_OK;
+    return add_direction(rest, length, extended, scale, 1,
+                         ritz_dense_col(&io->B, k));
 }
 
 /* The quantity of an output: displacement unless a word follows '/'. */
@@ -519,9 +497,7 @@ static ritz_status make_output(const char *text, const ritz_extended *extended,
 {
     const char *rest = NULL;
     size_t length = 0;
-    ritz_dof dof = {0};
     ritz_dense *C = NULL;
-    aim to = {0};
 
     RITZ_CHECK(ritz_import_split(text, "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
                                  io->output[k], &rest));
@@ -530,33 +506,15 @@ static ritz_status make_output(const char *text, const ritz_extended *extended,
     RITZ_REFUSE_IF(io->limit[k] < 0.0, RITZ_ERR_ARGUMENT,
                    "a limit is positive, '%g' is not", io->limit[k]);
     RITZ_CHECK(take_quantity(rest, &length, io, &C));
-    RITZ_CHECK(take_dof(rest, length, &dof));
-    RITZ_CHECK(take_aim(extended, dof, &to));
-    add_aim(extended, &to, 1.0, C->nrow, C->val + k);
-    return RITZ_OK;
-}
-
-/* Add @p scale times the row vector of "GRID:COMP", of so many letters. */
-static ritz_status ritz_import_aim(const char *text, size_t length,
-                                   const ritz_extended *extended, double scale,
-                                   double *into)
-{
-    ritz_dof dof = {0};
-    aim to = {0};
-
-    RITZ_CHECK(take_dof(text, length, &dof));
-    RITZ_CHECK(take_aim(extended, dof, &to));
-    add_aim(extended, &to, scale, 1, into);
-    return RITZ_OK;
+    return add_direction(rest, length, extended, 1.0, C->nrow, C->val + k);
 }
 
 static ritz_status check_new(const char (*name)[RITZ_NAME_SIZE], int64_t k,
                              const char *what)
 {
     for (int64_t j = 0; j < k; j++)
-        if (strcmp(name[j], name[k]) == 0)
-            return ritz_fail(RITZ_ERR_ARGUMENT, "there are two %s '%s'", what,
-                             name[k]);
+        RITZ_REFUSE_IF(strcmp(name[j], name[k]) == 0, RITZ_ERR_ARGUMENT,
+                       "there are two %s '%s'", what, name[k]);
     return RITZ_OK;
 }
 
@@ -628,11 +586,11 @@ static ritz_status make_damper(const char *text, const ritz_extended *extended,
                    form);
     RITZ_CHECK(take_constants(star + 1, &dampers->c[j], &dampers->k[j]));
     comma = memchr(rest, ',', (size_t)(star - rest));
-    RITZ_CHECK(ritz_import_aim(rest, (size_t)((comma ? comma : star) - rest),
-                               extended, 1.0, b));
+    RITZ_CHECK(add_direction(rest, (size_t)((comma ? comma : star) - rest),
+                             extended, 1.0, 1, b));
     if (comma)
-        RITZ_CHECK(ritz_import_aim(comma + 1, (size_t)(star - comma - 1),
-                                   extended, -1.0, b));
+        RITZ_CHECK(add_direction(comma + 1, (size_t)(star - comma - 1),
+                                 extended, -1.0, 1, b));
     for (int64_t i = 0; i < dampers->B.nrow; i++)
         largest = fmax(largest, fabs(b[i]));
     RITZ_REFUSE_IF(largest == 0.0, RITZ_ERR_ARGUMENT,

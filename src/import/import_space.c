@@ -180,25 +180,20 @@ static ritz_status take_stem(const ritz_foreign *file, const char *stem,
 /* "FILE[:NAME]" */
 static ritz_status take_file(const char *text, ritz_file_sums *sums, parts *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_foreign file = {0};
+    RITZ_OWN(ritz_foreign) file = {0};
+    RITZ_OWN_ARRAY char *path = NULL;
     char stem[RITZ_NAME_SIZE] = "";
-    char *path = NULL;
 
-    RITZ_TRY(ritz_foreign_path(text, &path));
-    RITZ_TRY(ritz_foreign_open(path, &file));
+    RITZ_CHECK(ritz_foreign_path(text, &path));
+    RITZ_CHECK(ritz_foreign_open(path, &file));
     if (sums)
-        RITZ_TRY(ritz_file_sums_add(sums, &file));
-    RITZ_TRY(ritz_foreign_context(&file, ritz_foreign_list(&file)));
+        RITZ_CHECK(ritz_file_sums_add(sums, &file));
+    RITZ_CHECK(ritz_foreign_context(&file, ritz_foreign_list(&file)));
     if (strlen(path) < strlen(text))
         snprintf(stem, sizeof stem, "%s", text + strlen(path) + 1);
     else
-        RITZ_TRY(find_stem(&file.listing, path, stem));
-    RITZ_TRY(take_stem(&file, stem, out));
-done:
-    ritz_foreign_free(&file);
-    free(path);
-    return status;
+        RITZ_CHECK(find_stem(&file.listing, path, stem));
+    return take_stem(&file, stem, out);
 }
 
 /* A, B and C are there, all are real, and they are as large as A says. */

@@ -32,6 +32,14 @@ typedef struct ritz_tied {
     ritz_average average; /* of its dofs */
 } ritz_tied;
 
+static void ritz_tied_free(ritz_tied *it)
+{
+    free(it->held);
+    ritz_dofs_free(&it->port.dofs);
+    ritz_ties_free(&it->over);
+    ritz_average_free(&it->average);
+}
+
 enum { SIX = 6 };
 
 /* Name this port as the source of the equations that follow. */
@@ -73,6 +81,12 @@ typedef struct reach {
     ritz_dof *dof;
 } reach;
 
+static void reach_free(reach *over)
+{
+    free(over->dof);
+    ritz_dense_free(&over->A);
+}
+
 /* Columns of A G that are not zero, of dofs held or not, from `first` on;
  * place[j]: column of j there. */
 static int64_t place_columns(const ritz_tied *it, const ritz_sparse *turned,
@@ -87,7 +101,8 @@ static int64_t place_columns(const ritz_tied *it, const ritz_sparse *turned,
             int64_t j = turned->rowind[p];
             int64_t k = tying->by.kept.at[j];
 
-            if (!tying->fixed[k] && it->held[k] == held && place[j] < 0)
+            if (!(tying->mark[k] & RITZ_TIED_FIXED) && it->held[k] == held &&
+                place[j] < 0)
                 place[j] = first++;
         }
     return first;
@@ -249,40 +264,18 @@ static ritz_status put_equations(const ritz_tied *it, const ritz_dense *X,
  */
 static ritz_status tie_average(const ritz_tied *it, const ritz_sparse *turned)
 {
-    ritz_status status = RITZ_OK;
-    reach over = {0};
-    ritz_dense X = {0};
-    lapack_int *order = NULL;
+    RITZ_OWN(reach) over = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN_ARRAY lapack_int *order = NULL;
 
-    RITZ_TRY(substitute_dependents(it, turned, &over));
-    RITZ_NEW(order, over.A.ncol);
-    RITZ_TRY(pivot_columns(&over, order, &X));
-    RITZ_TRY(cite_port(it));
-    RITZ_TRY(put_equations(it, &X, over.dof, order));
-done:
-    free(over.dof);
-    free(order);
-    ritz_dense_free(&over.A);
-    ritz_dense_free(&X);
-    return status;
+    RITZ_CHECK(substitute_dependents(it, turned, &over));
+    RITZ_CHECK_NEW(order, over.A.ncol);
+    RITZ_CHECK(pivot_columns(&over, order, &X));
+    RITZ_CHECK(cite_port(it));
+    return put_equations(it, &X, over.dof, order);
 }
-
-/* ---- ports and their grids ---------------------------------------------- */
 
 /* ---- the dofs that there are -------------------------------------------- */
-
-/* True if all dofs that a dependent one follows are known. */
-static bool is_known(const ritz_tying *tying, const ritz_sparse *turned,
-                     int64_t dof)
-{
-    for (int64_t p = turned->colptr[dof]; p < turned->colptr[dof + 1]; p++) {
-        int64_t k = tying->by.kept.at[turned->rowind[p]];
-
-        if (tying->outside[k] && !tying->fixed[k])
-            return false;
-    }
-    return true;
-}
 
 /* Dofs that a port may name: with stiffness or mass, their own or that of what
  * depends on them, or dependent on such. */
@@ -290,19 +283,16 @@ static ritz_status find_present(const ritz_tying *tying,
                                 const ritz_sparse *turned, bool *present)
 {
     const ritz_elimination *by = &tying->by;
-    RITZ_OWN_ARRAY bool *gone = NULL;
+    RITZ_OWN_ARRAY bool *unknown = NULL;
 
-    RITZ_CHECK_NEW(gone, tying->names.count);
+    RITZ_CHECK_NEW(unknown, tying->names.count);
+    ritz_tying_unknown(tying, unknown);
     for (int64_t k = 0; k < by->gone.count; k++)
-        gone[by->gone.at[k]] = true;
-    for (int64_t k = 0; k < tying->names.count; k++) {
-        if (gone[k])
-            present[k] = is_known(tying, turned, k);
-        if (!tying->alive[k])
-            continue;
-        for (int64_t p = turned->colptr[k]; p < turned->colptr[k + 1]; p++)
+        present[by->gone.at[k]] = !unknown[by->gone.at[k]];
+    for (int64_t k = 0; k < tying->names.count; k++)
+        for (int64_t p = turned->colptr[k];
+             tying->mark[k] & RITZ_TIED_ALIVE && p < turned->colptr[k + 1]; p++)
             present[by->kept.at[turned->rowind[p]]] = true;
-    }
     return RITZ_OK;
 }
 
@@ -371,33 +361,22 @@ static ritz_status add_grid(ritz_tied *it)
 {
     ritz_grids *grids = &it->deck->grids;
     int64_t n = grids->count;
-    RITZ_OWN_ARRAY int64_t *id = NULL, *frame = NULL;
-    RITZ_OWN_ARRAY double *position = NULL;
     ritz_dof dof[SIX];
 
     it->id = largest_id(it->deck, &it->tying->names);
     RITZ_REFUSE_IF(it->id >= INT64_MAX - 1, RITZ_ERR_ARGUMENT,
                    "no id is left for its grid");
     it->id++;
-    RITZ_CHECK_NEW(id, n + 1);
-    RITZ_CHECK_NEW(frame, n + 1);
-    RITZ_CHECK_NEW(position, 3 * (n + 1));
-    memcpy(id, grids->id, (size_t)n * sizeof *id);
-    memcpy(frame, grids->frame, (size_t)n * sizeof *frame);
-    memcpy(position, grids->position, 3 * (size_t)n * sizeof *position);
-    id[n] = it->id;
-    memcpy(position + 3 * n, it->port.origin, sizeof it->port.origin);
     for (int64_t c = 1; c <= SIX; c++)
         dof[c - 1] = (ritz_dof){it->id, c};
     RITZ_CHECK(ritz_tying_append(SIX, dof, it->tying));
-    free(grids->id);
-    free(grids->frame);
-    free(grids->position);
-    grids->id = id;
-    grids->frame = frame;
-    RITZ_MOVE(grids->position, position);
+    RITZ_CHECK(ritz_import_extend(&grids->id, n, 1, sizeof *grids->id));
+    RITZ_CHECK(ritz_import_extend(&grids->frame, n, 1, sizeof *grids->frame));
+    RITZ_CHECK(ritz_import_extend(&grids->position, 3 * n, 3,
+                                  sizeof *grids->position));
+    grids->id[n] = it->id;
+    memcpy(grids->position + 3 * n, it->port.origin, sizeof it->port.origin);
     grids->count = n + 1;
-    id = frame = NULL;
     return RITZ_OK;
 }
 
@@ -463,24 +442,6 @@ static ritz_status tie_port(ritz_tied *it, const ritz_import_report *report)
     return ritz_tying_solve(it->tying);
 }
 
-static ritz_status add_port(ritz_tied *it, ritz_import_report *report)
-{
-    ritz_status status = RITZ_OK;
-    ritz_import_grid *grid = &report->grid[report->num_grids];
-
-    RITZ_TRY_IN(it->text, tie_port(it, report));
-    memcpy(grid->port, it->port.name, sizeof grid->port);
-    grid->id = it->id;
-    grid->num_tied = it->port.dofs.count;
-    report->num_grids++;
-done:
-    free(it->held);
-    ritz_dofs_free(&it->port.dofs);
-    ritz_ties_free(&it->over);
-    ritz_average_free(&it->average);
-    return status;
-}
-
 ritz_status ritz_tying_ports(const ritz_import_request *request,
                              ritz_deck *deck, ritz_tying *tying,
                              ritz_import_report *report)
@@ -490,14 +451,20 @@ ritz_status ritz_tying_ports(const ritz_import_request *request,
     RITZ_CHECK_NEW(report->grid, count);
     for (int64_t k = 0; k < count; k++) {
         int64_t j = k - request->num_rigid_ports;
-        ritz_tied it = {.text = j < 0 ? request->rigid_port[k]
-                                      : request->averaged_port[j],
-                        .rigid = j < 0,
-                        .request = request,
-                        .deck = deck,
-                        .tying = tying};
+        ritz_import_grid *grid = &report->grid[k];
+        RITZ_OWN(ritz_tied)
+        it = {.text =
+                  j < 0 ? request->rigid_port[k] : request->averaged_port[j],
+              .rigid = j < 0,
+              .request = request,
+              .deck = deck,
+              .tying = tying};
 
-        RITZ_CHECK(add_port(&it, report));
+        RITZ_CHECK_IN(it.text, tie_port(&it, report));
+        memcpy(grid->port, it.port.name, sizeof grid->port);
+        grid->id = it.id;
+        grid->num_tied = it.port.dofs.count;
+        report->num_grids++;
     }
     return RITZ_OK;
 }

@@ -16,39 +16,35 @@
 
 /* ---- which rows there are ----------------------------------------------- */
 
+ritz_status ritz_import_extend(void *array, int64_t before, int64_t more,
+                               size_t size)
+{
+    void *old = NULL;
+    char *longer = ritz_zalloc(before + more, size);
+
+    if (!longer)
+        return RITZ_ERR_MEMORY;
+    memcpy(&old, array, sizeof old);
+    if (before > 0)
+        memcpy(longer, old, (size_t)before * size);
+    free(old);
+    memcpy(array, &longer, sizeof longer);
+    return RITZ_OK;
+}
+
 ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
                               ritz_tying *tying)
 {
-    ritz_status status = RITZ_OK;
-    int64_t before = tying->names.count;
-    ritz_dof *names = NULL;
-    bool *flag[3] = {NULL, NULL, NULL};
-    bool **old[3] = {&tying->fixed, &tying->alive, &tying->outside};
+    ritz_row_names *names = &tying->names;
 
-    RITZ_NEW(names, before + count);
-    for (int i = 0; i < 3; i++) {
-        RITZ_NEW(flag[i], before + count);
-        if (before > 0)
-            memcpy(flag[i], *old[i], (size_t)before * sizeof **flag);
-    }
-    if (before > 0)
-        memcpy(names, tying->names.dof, (size_t)before * sizeof *names);
+    RITZ_CHECK(ritz_import_extend(&names->dof, names->count, count,
+                                  sizeof *names->dof));
+    RITZ_CHECK(ritz_import_extend(&tying->mark, names->count, count,
+                                  sizeof *tying->mark));
     if (count > 0)
-        memcpy(names + before, dof, (size_t)count * sizeof *names);
-    for (int i = 0; i < 3; i++) {
-        free(*old[i]);
-        *old[i] = flag[i];
-        flag[i] = NULL;
-    }
-    free(tying->names.dof);
-    tying->names.dof = names;
-    tying->names.count = before + count;
-    names = NULL;
-done:
-    for (int i = 0; i < 3; i++)
-        free(flag[i]);
-    free(names);
-    return status;
+        memcpy(names->dof + names->count, dof, (size_t)count * sizeof *dof);
+    names->count += count;
+    return RITZ_OK;
 }
 
 /* Dofs of the equations that are no rows, each once. */
@@ -119,15 +115,12 @@ static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
     for (int64_t k = 0; k < parts->count; k++)
         if (parts->part[k].becomes == &component->K ||
             parts->part[k].becomes == &component->M)
-            ritz_part_mark(&parts->part[k], it->alive);
+            ritz_part_mark(&parts->part[k], RITZ_TIED_ALIVE, it->mark);
     for (int64_t k = 0; k < names->count; k++) {
-        bool row = ritz_roster_row(&roster, names->dof[k]) >= 0;
-
-        it->fixed[k] =
-            deck->num_fixed > 0 &&
-            bsearch(&names->dof[k], deck->fixed, (size_t)deck->num_fixed,
-                    sizeof *deck->fixed, ritz_dof_compare) != NULL;
-        it->outside[k] = !row && !it->acts;
+        if (ritz_dof_among(names->dof[k], deck->num_fixed, deck->fixed))
+            it->mark[k] |= RITZ_TIED_FIXED;
+        if (!it->acts && ritz_roster_row(&roster, names->dof[k]) < 0)
+            it->mark[k] |= RITZ_TIED_OUTSIDE;
     }
     return RITZ_OK;
 }
@@ -175,10 +168,8 @@ static ritz_status check_sets(const ritz_deck *deck)
     for (int64_t e = 0; e < eq->count; e++)
         for (int s = 0; s < RITZ_NUM_SETS; s++)
             RITZ_REFUSE_IF(
-                deck->num_sets[s] > 0 &&
-                    bsearch(&eq->dependent[e], deck->set[s],
-                            (size_t)deck->num_sets[s], sizeof *deck->set[s],
-                            ritz_dof_compare),
+                ritz_dof_among(eq->dependent[e], deck->num_sets[s],
+                               deck->set[s]),
                 RITZ_ERR_FORMAT,
                 "'%s' depends on %s and is in the a-set: it cannot be both",
                 ritz_dof_name(eq->dependent[e], name),
@@ -208,9 +199,14 @@ static ritz_status name_constraints(const ritz_deck *deck,
 
 ritz_status ritz_tying_solve(ritz_tying *tying)
 {
+    RITZ_OWN_ARRAY bool *fixed = NULL;
+
+    RITZ_CHECK_NEW(fixed, tying->names.count);
+    for (int64_t k = 0; k < tying->names.count; k++)
+        fixed[k] = tying->mark[k] & RITZ_TIED_FIXED;
     ritz_elimination_free(&tying->by);
     return ritz_elimination_new(&tying->deck->equations, tying->names.count,
-                                tying->names.dof, tying->fixed, &tying->by);
+                                tying->names.dof, fixed, &tying->by);
 }
 
 ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
@@ -223,9 +219,7 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
     *names = (ritz_row_names){0};
     RITZ_CHECK(find_action(deck, &new));
     RITZ_CHECK(pass_refusal(deck, &new, report));
-    RITZ_CHECK_NEW(new.fixed, new.names.count);
-    RITZ_CHECK_NEW(new.alive, new.names.count);
-    RITZ_CHECK_NEW(new.outside, new.names.count);
+    RITZ_CHECK_NEW(new.mark, new.names.count);
     RITZ_CHECK(find_rows(deck, parts, component, &new));
     if (new.acts)
         RITZ_CHECK(check_sets(deck));
@@ -238,43 +232,12 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
 void ritz_tying_free(ritz_tying *tying)
 {
     ritz_row_names_free(&tying->names);
-    free(tying->fixed);
-    free(tying->alive);
-    free(tying->outside);
+    free(tying->mark);
     ritz_elimination_free(&tying->by);
     *tying = (ritz_tying){0};
 }
 
 /* ---- constraints applied ------------------------------------------------ */
-
-/* Rows of G that a part has, with columns renumbered. */
-static ritz_status rows_of(const ritz_sparse *G_turned, const ritz_part *part,
-                           const int64_t *column, int64_t n, ritz_sparse *out)
-{
-    int64_t rows = part->matrix.A.nrow;
-    int64_t count = 0;
-    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
-
-    for (int64_t i = 0; i < rows; i++)
-        count += G_turned->colptr[part->place[i] + 1] -
-                 G_turned->colptr[part->place[i]];
-    RITZ_CHECK_NEW(row, count);
-    RITZ_CHECK_NEW(col, count);
-    RITZ_CHECK_NEW(val, count);
-    count = 0;
-    for (int64_t i = 0; i < rows; i++) {
-        int64_t from = part->place[i];
-
-        for (int64_t p = G_turned->colptr[from]; p < G_turned->colptr[from + 1];
-             p++) {
-            row[count] = i;
-            col[count] = column[G_turned->rowind[p]];
-            val[count++] = G_turned->val[p];
-        }
-    }
-    return ritz_sparse_from_triplets(rows, n, count, row, col, val, out);
-}
 
 /* A := G'AG, unsymmetric as it was: what is averaged away is to be reported. */
 static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
@@ -289,24 +252,6 @@ static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
     return RITZ_OK;
 }
 
-/* Columns of G that become rows; -1: dofs that the matrices have not. */
-static ritz_status list_kept(const ritz_tying *tying, int64_t *column,
-                             ritz_row_names *kept)
-{
-    const ritz_dofs *by = &tying->by.kept;
-
-    RITZ_CHECK_NEW(kept->dof, by->count);
-    for (int64_t j = 0; j < by->count; j++) {
-        column[j] = -1;
-        if (tying->outside[by->at[j]])
-            continue;
-        column[j] = kept->count;
-        kept->dof[kept->count++] = tying->names.dof[by->at[j]];
-    }
-    memcpy(kept->map, tying->names.map, sizeof kept->map);
-    return RITZ_OK;
-}
-
 /* True if no row of the part is eliminated: G is the identity there. */
 static bool is_kept(const ritz_tying *tying, const ritz_part *part)
 {
@@ -318,21 +263,22 @@ static bool is_kept(const ritz_tying *tying, const ritz_part *part)
     return true;
 }
 
-static ritz_status apply_part(const ritz_tying *tying,
-                              const ritz_sparse *turned, const int64_t *column,
-                              int64_t n, ritz_part *part)
+/* A := G'AG of a part, with those columns of G that become rows. */
+static ritz_status apply_part(const ritz_tying *tying, int64_t n,
+                              const int64_t *column, ritz_part *part)
 {
+    const ritz_elimination *by = &tying->by;
+    int64_t rows = part->matrix.A.nrow;
     RITZ_OWN(ritz_sparse) G = {0};
 
     if (is_kept(tying, part)) {
-        for (int64_t i = 0; i < part->matrix.A.nrow; i++) {
-            int64_t *place = &part->place[i];
-
-            *place = column[turned->rowind[turned->colptr[*place]]];
-        }
+        for (int64_t i = 0; i < rows; i++)
+            part->place[i] = ritz_search(
+                n, column,
+                ritz_search(by->kept.count, by->kept.at, part->place[i]));
         return RITZ_OK;
     }
-    RITZ_CHECK(rows_of(turned, part, column, n, &G));
+    RITZ_CHECK(ritz_sparse_extract(&by->G, rows, part->place, n, column, &G));
     RITZ_CHECK(project_matrix(&G, &part->matrix.A));
     free(part->place);
     RITZ_CHECK_NEW(part->place, n);
@@ -359,102 +305,74 @@ static ritz_status count_eliminated(const ritz_tying *tying,
 ritz_status ritz_tying_apply(const ritz_tying *tying, ritz_parts *parts,
                              ritz_row_names *kept, ritz_import_report *report)
 {
+    const ritz_dofs *by = &tying->by.kept;
     RITZ_OWN(ritz_row_names) names = {0};
-    RITZ_OWN(ritz_sparse) turned = {0};
-    RITZ_OWN_ARRAY int64_t *column = NULL;
+    RITZ_OWN_ARRAY int64_t *column = NULL; /* of G, of each row that stays */
 
-    RITZ_CHECK_NEW(column, tying->by.kept.count);
-    RITZ_CHECK(list_kept(tying, column, &names));
+    RITZ_CHECK_NEW(column, by->count);
+    RITZ_CHECK_NEW(names.dof, by->count);
+    for (int64_t j = 0; j < by->count; j++) {
+        if (tying->mark[by->at[j]] & RITZ_TIED_OUTSIDE)
+            continue;
+        column[names.count] = j;
+        names.dof[names.count++] = tying->names.dof[by->at[j]];
+    }
+    memcpy(names.map, tying->names.map, sizeof names.map);
     RITZ_CHECK(count_eliminated(tying, parts, &report->num_eliminated));
-    RITZ_CHECK(ritz_sparse_transpose(&tying->by.G, &turned));
     for (int64_t k = 0; k < parts->count; k++)
-        RITZ_CHECK(
-            apply_part(tying, &turned, column, names.count, &parts->part[k]));
+        RITZ_CHECK(apply_part(tying, names.count, column, &parts->part[k]));
     RITZ_MOVE(*kept, names);
     return RITZ_OK;
 }
 
 /* ---- recovery ----------------------------------------------------------- */
 
-/* Row of the component that a column of G is: -1 if that dof does not move,
- * -2 if nothing is known of it. */
-static ritz_status list_rows(const ritz_tying *tying,
-                             const ritz_component *component, int64_t *row)
+void ritz_tying_unknown(const ritz_tying *tying, bool *unknown)
 {
-    const ritz_dofs *kept = &tying->by.kept;
-    RITZ_OWN(ritz_roster) roster = {0};
+    const ritz_sparse *G = &tying->by.G;
 
-    RITZ_CHECK(ritz_roster_new(component->num_dofs, component->dof, &roster));
-    for (int64_t j = 0; j < kept->count; j++) {
-        int64_t k = kept->at[j];
-
-        row[j] = ritz_roster_row(&roster, tying->names.dof[k]);
-        if (tying->outside[k] && !tying->fixed[k])
-            row[j] = -2;
-    }
-    return RITZ_OK;
-}
-
-static bool is_known(const ritz_sparse *turned, int64_t of, const int64_t *row)
-{
-    for (int64_t p = turned->colptr[of]; p < turned->colptr[of + 1]; p++)
-        if (row[turned->rowind[p]] == -2)
-            return false;
-    return true;
-}
-
-/* Rows of G of the dofs that are gone, as far as they are known. */
-static ritz_status gather_rows(const ritz_tying *tying,
-                               const ritz_sparse *turned, const int64_t *row,
-                               int64_t n, ritz_recovery *out)
-{
-    const ritz_dofs *gone = &tying->by.gone;
-    int64_t most = tying->by.G.colptr[tying->by.G.ncol];
-    RITZ_OWN_ARRAY int64_t *line = NULL, *col = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
-    int64_t count = 0;
-
-    RITZ_CHECK_NEW(line, most);
-    RITZ_CHECK_NEW(col, most);
-    RITZ_CHECK_NEW(val, most);
-    RITZ_CHECK_NEW(out->dof, gone->count);
-    for (int64_t k = 0; k < gone->count; k++) {
-        int64_t of = gone->at[k];
-
-        if (!is_known(turned, of, row))
-            continue;
-        for (int64_t p = turned->colptr[of]; p < turned->colptr[of + 1]; p++) {
-            if (row[turned->rowind[p]] < 0)
-                continue;
-            line[count] = out->count;
-            col[count] = row[turned->rowind[p]];
-            val[count++] = turned->val[p];
-        }
-        out->dof[out->count++] = tying->names.dof[of];
-    }
-    return ritz_sparse_from_triplets(out->count, n, count, line, col, val,
-                                     &out->G);
+    for (int64_t j = 0; j < G->ncol; j++)
+        if ((tying->mark[tying->by.kept.at[j]] &
+             (RITZ_TIED_OUTSIDE | RITZ_TIED_FIXED)) == RITZ_TIED_OUTSIDE)
+            for (int64_t p = G->colptr[j]; p < G->colptr[j + 1]; p++)
+                unknown[G->rowind[p]] = true;
 }
 
 ritz_status ritz_tying_recover(const ritz_tying *tying,
                                ritz_component *component,
                                ritz_import_report *report)
 {
+    const ritz_dofs *kept = &tying->by.kept, *gone = &tying->by.gone;
     RITZ_OWN(ritz_recovery) recovery = {0};
-    RITZ_OWN(ritz_sparse) turned = {0};
-    RITZ_OWN_ARRAY int64_t *row = NULL;
+    RITZ_OWN(ritz_roster) roster = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL, *column = NULL; /* of G */
+    RITZ_OWN_ARRAY bool *unknown = NULL;
 
-    if (tying->by.gone.count == 0)
+    if (gone->count == 0)
         return RITZ_OK;
-    RITZ_CHECK_NEW(row, tying->by.kept.count);
-    RITZ_CHECK(list_rows(tying, component, row));
-    RITZ_CHECK(ritz_sparse_transpose(&tying->by.G, &turned));
-    RITZ_CHECK(
-        gather_rows(tying, &turned, row, component->num_dofs, &recovery));
+    RITZ_CHECK_NEW(row, gone->count);
+    RITZ_CHECK_NEW(column, component->num_dofs);
+    RITZ_CHECK_NEW(unknown, tying->names.count);
+    RITZ_CHECK_NEW(recovery.dof, gone->count);
+    RITZ_CHECK(ritz_roster_new(component->num_dofs, component->dof, &roster));
+    for (int64_t j = 0; j < kept->count; j++) {
+        int64_t k = ritz_roster_row(&roster, tying->names.dof[kept->at[j]]);
+
+        if (k >= 0)
+            column[k] = j;
+    }
+    ritz_tying_unknown(tying, unknown);
+    for (int64_t k = 0; k < gone->count; k++)
+        if (!unknown[gone->at[k]]) {
+            row[recovery.count] = gone->at[k];
+            recovery.dof[recovery.count++] = tying->names.dof[gone->at[k]];
+        }
     report->num_recovered = recovery.count;
-    report->num_lost = tying->by.gone.count - recovery.count;
+    report->num_lost = gone->count - recovery.count;
     if (recovery.count == 0)
         return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_extract(&tying->by.G, recovery.count, row,
+                                   component->num_dofs, column, &recovery.G));
     RITZ_MOVE(component->recovery, recovery);
     return RITZ_OK;
 }
