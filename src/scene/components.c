@@ -38,33 +38,23 @@ static ritz_status read_port(const ritz_yaml *yaml, const yaml_node_t *list,
 static ritz_status take_attach(const ritz_yaml *yaml, const yaml_node_t *node,
                                void *field)
 {
-    ritz_status status = RITZ_OK;
-    char(*port)[RITZ_NAME_SIZE] = NULL;
-    char *ports = NULL;
+    RITZ_OWN_ARRAY char(*port)[RITZ_NAME_SIZE] = NULL;
     char **out = (char **)field;
+    char *end = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_scene_count(yaml, node, &count));
-    RITZ_YAML_FAIL_IF(
-        count == 0, yaml, node,
-        "no port is listed; without 'attach' those that joints and "
-        "inputs use are attached");
-    RITZ_NEW(port, count);
+    RITZ_CHECK(ritz_scene_count(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0, yaml, node,
+                   "no port is listed; without 'attach' those that joints and "
+                   "inputs use are attached");
+    RITZ_CHECK_NEW(port, count);
     for (int64_t k = 0; k < count; k++)
-        RITZ_TRY(read_port(yaml, node, k, port[0], port[k]));
-    RITZ_NEW(ports, count * RITZ_NAME_SIZE);
-    for (int64_t k = 0, used = 0; k < count; k++) {
-        size_t length = strlen(port[k]);
-
-        if (k > 0)
-            ports[used++] = ',';
-        memcpy(ports + used, port[k], length);
-        used += (int64_t)length;
-    }
-    *out = ports;
-done:
-    free(port);
-    return status;
+        RITZ_CHECK(read_port(yaml, node, k, port[0], port[k]));
+    RITZ_CHECK_NEW(*out, count * RITZ_NAME_SIZE);
+    end = *out;
+    for (int64_t k = 0; k < count; k++)
+        end += sprintf(end, "%s%s", k > 0 ? "," : "", port[k]);
+    return RITZ_OK;
 }
 
 enum { MODEL, BASIS, ORDER, MODES, UP_TO, ATTACH, NUM_KEYS, MOST_KEYS = 32 };
@@ -136,8 +126,7 @@ static ritz_status read_component(const ritz_yaml *yaml,
     int64_t count = list_keys(all);
 
     out->modes = -1;
-    out->line = (int64_t)word->start_mark.line + 1;
-    out->column = (int64_t)word->start_mark.column + 1;
+    ritz_yaml_locate(word, &out->line, &out->column);
     RITZ_CHECK(ritz_yaml_mapping(yaml, node, count, all, out, value));
     RITZ_REFUSE_AT(value[MODES] && value[UP_TO], yaml, value[UP_TO],
                    "'modes' and 'up_to_hz' are both given, one decides");
@@ -170,12 +159,10 @@ ritz_status ritz_scene_components(const ritz_yaml *yaml,
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
         ritz_scene_component *component = &scene->component[k];
-        ritz_names before = {"component", k, scene->component->name,
-                             sizeof *component};
 
         RITZ_CHECK(ritz_yaml_name(yaml, word, component->name));
-        RITZ_REFUSE_AT(ritz_names_index(&before, component->name) >= 0, yaml,
-                       word, "component '%s' is given twice", component->name);
+        RITZ_CHECK(ritz_yaml_distinct(yaml, word, "component", k,
+                                      scene->component, sizeof *component));
         RITZ_CHECK(read_component(yaml, word, ritz_yaml_value_at(yaml, node, k),
                                   component));
     }

@@ -53,75 +53,25 @@ enum { /* bits of keys */
 };
 
 static const joint_kind kinds[] = {
-    [RITZ_JOINT_FIXED] =
-        {
-            .name = "fixed",
-            .called = "fixed joint",
-            .keys = TOLERANCE,
-        },
-    [RITZ_JOINT_HINGE] =
-        {
-            .name = "hinge",
-            .called = "hinge",
-            .keys = AXIS | ANGLES | CAGE,
-            .required = AXIS,
-            .freedoms = 1,
-            .sweeps = 1,
-            .sweep_key = {KEY_ANGLES},
-            .one = true,
-        },
-    [RITZ_JOINT_SLIDER] =
-        {
-            .name = "slider",
-            .called = "slider",
-            .keys = AXIS | POSITIONS | CAGE,
-            .required = AXIS,
-            .freedoms = 1,
-            .sweeps = 1,
-            .sweep_key = {KEY_POSITIONS},
-            .one = true,
-        },
-    [RITZ_JOINT_UNIVERSAL] =
-        {
-            .name = "universal",
-            .called = "universal joint",
-            .keys = AXES | ANGLES | ANGLES2 | CAGE,
-            .required = AXES,
-            .freedoms = 2,
-            .sweeps = 2,
-            .sweep_key = {KEY_ANGLES, KEY_ANGLES2},
-            .one = true,
-            .many = true,
-        },
-    [RITZ_JOINT_SPHERICAL] =
-        {
-            .name = "spherical",
-            .called = "spherical joint",
-            .keys = CAGE,
-            .freedoms = 3,
-            .one = true,
-        },
-    [RITZ_JOINT_BUSHING] =
-        {
-            .name = "bushing",
-            .called = "bushing",
-            .keys = AXES | STIFFNESS | DAMPING | TOLERANCE,
-            .required = STIFFNESS,
-            .freedoms = 6,
-            .many = true,
-        },
-    [RITZ_JOINT_RIGID] =
-        {
-            .name = "rigid",
-            .called = "rigid joint",
-            .keys = OFFSET,
-        },
+    [RITZ_JOINT_FIXED] = {"fixed", "fixed joint", .keys = TOLERANCE},
+    [RITZ_JOINT_HINGE] = {"hinge", "hinge", AXIS | ANGLES | CAGE, AXIS,
+                          .freedoms = 1, .sweeps = 1, .sweep_key = {KEY_ANGLES},
+                          .one = true},
+    [RITZ_JOINT_SLIDER] = {"slider", "slider", AXIS | POSITIONS | CAGE, AXIS,
+                           .freedoms = 1, .sweeps = 1,
+                           .sweep_key = {KEY_POSITIONS}, .one = true},
+    [RITZ_JOINT_UNIVERSAL] = {"universal", "universal joint",
+                              AXES | ANGLES | ANGLES2 | CAGE, AXES,
+                              .freedoms = 2, .sweeps = 2,
+                              .sweep_key = {KEY_ANGLES, KEY_ANGLES2},
+                              .one = true, .many = true},
+    [RITZ_JOINT_SPHERICAL] = {"spherical", "spherical joint", CAGE,
+                              .freedoms = 3, .one = true},
+    [RITZ_JOINT_BUSHING] = {"bushing", "bushing",
+                            AXES | STIFFNESS | DAMPING | TOLERANCE, STIFFNESS,
+                            .freedoms = 6, .many = true},
+    [RITZ_JOINT_RIGID] = {"rigid", "rigid joint", OFFSET},
 };
-
-static const joint_kind *kind_of(ritz_joint_type type)
-{
-    return &kinds[type];
-}
 
 /* axis / |axis|, scaled first so that no square leaves the range. */
 static ritz_status take_axis(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -217,7 +167,7 @@ static const char states[][8] = {
 static ritz_status read_states(const ritz_yaml *yaml, const yaml_node_t *node,
                                ritz_joint *joint)
 {
-    const joint_kind *kind = kind_of(joint->type);
+    const joint_kind *kind = &kinds[joint->type];
     ritz_names names = {"state", sizeof states / sizeof *states, states[0],
                         sizeof *states};
     bool many = kind->many && node->type == YAML_SEQUENCE_NODE;
@@ -243,7 +193,7 @@ static ritz_status read_numbers(const ritz_yaml *yaml, const yaml_node_t *node,
                                 const ritz_joint *joint, const char *what,
                                 double number[RITZ_MOST_FREEDOMS])
 {
-    const joint_kind *kind = kind_of(joint->type);
+    const joint_kind *kind = &kinds[joint->type];
     bool many =
         !kind->one || (kind->many && node && node->type == YAML_SEQUENCE_NODE);
 
@@ -275,7 +225,7 @@ static ritz_status check_cage(const ritz_yaml *yaml, const yaml_node_t *node,
                               const ritz_joint *joint)
 {
     static const int numbers[] = {KEY_STIFFNESS, KEY_DAMPING};
-    const char *called = kind_of(joint->type)->called;
+    const char *called = kinds[joint->type].called;
     bool caged = false, held = false;
 
     for (int64_t k = 0; k < joint->num_freedoms; k++) {
@@ -416,8 +366,7 @@ static ritz_status read_joint(const ritz_yaml *yaml, const yaml_node_t *node,
 {
     const yaml_node_t *value[NUM_KEYS];
 
-    joint->line = (int64_t)node->start_mark.line + 1;
-    joint->column = (int64_t)node->start_mark.column + 1;
+    ritz_yaml_locate(node, &joint->line, &joint->column);
     joint->axis[0][0] = joint->axis[1][1] = 1.0;
     RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, joint, value));
     RITZ_CHECK(read_between(yaml, value[KEY_BETWEEN], scene, joint->between));
@@ -463,11 +412,10 @@ ritz_status ritz_scene_joints(const ritz_yaml *yaml, const yaml_node_t *node,
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
         ritz_joint *joint = &scene->joint[k];
-        ritz_names before = {"joint", k, scene->joint->name, sizeof *joint};
 
         RITZ_CHECK(read_joint(yaml, item, scene, joint));
-        RITZ_REFUSE_AT(ritz_names_index(&before, joint->name) >= 0, yaml, item,
-                       "joint '%s' is given twice", joint->name);
+        RITZ_CHECK(ritz_yaml_distinct(yaml, item, "joint", k, scene->joint,
+                                      sizeof *joint));
     }
     return check_sweeps(yaml, node, scene);
 }

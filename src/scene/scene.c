@@ -27,154 +27,134 @@ static ritz_status take_band(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-static ritz_status take_modal(const ritz_yaml *yaml, const yaml_node_t *node,
-                              void *field)
-{
-    ritz_damping *damping = (ritz_damping *)field;
+/* Forms of damping: rows of `width` numbers, from `least` to `most` of them. */
+static const struct damping_form {
+    ritz_damping_kind kind;
+    const char *what; /* NULL: one row, without a list */
+    int64_t least, most, width;
+    size_t offset; /* of the numbers in ritz_damping */
+} forms[] = {
+    {RITZ_DAMPING_MODAL, NULL, 1, 1, 1, offsetof(ritz_damping, zeta)},
+    {RITZ_DAMPING_MODES, "ratios of modes", 1, RITZ_MOST_RATIOS, 1,
+     offsetof(ritz_damping, ratio)},
+    {RITZ_DAMPING_BANDS, "bands", 1, RITZ_MAX_BANDS, 3,
+     offsetof(ritz_damping, band)},
+    {RITZ_DAMPING_RAYLEIGH, NULL, 1, 1, 2, offsetof(ritz_damping, a)},
+    {RITZ_DAMPING_FIT, "points of a fit", 2, RITZ_MOST_POINTS, 2,
+     offsetof(ritz_damping, point)},
+};
 
-    damping->kind = RITZ_DAMPING_MODAL;
-    RITZ_CHECK(ritz_yaml_real(yaml, node, &damping->zeta));
-    return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
+enum { NUM_FORMS = sizeof forms / sizeof *forms };
+
+static const ritz_yaml_key damping_keys[NUM_FORMS] = {
+    {.name = "modal"},    {.name = "modes"},        {.name = "bands"},
+    {.name = "rayleigh"}, {.name = "rayleigh_fit"},
+};
+
+static ritz_status read_numbers(const ritz_yaml *yaml, const yaml_node_t *node,
+                                int64_t width, double *out)
+{
+    return width == 1 ? ritz_yaml_real(yaml, node, out)
+                      : ritz_yaml_reals(yaml, node, width, out);
 }
 
-static ritz_status take_bands(const ritz_yaml *yaml, const yaml_node_t *node,
-                              void *field)
+/* What is wrong with a band is said at that band. */
+static ritz_status read_damping(const ritz_yaml *yaml, const yaml_node_t *node,
+                                const struct damping_form *form,
+                                ritz_damping *damping)
 {
-    ritz_damping *damping = (ritz_damping *)field;
+    double *number = (double *)(void *)((char *)damping + form->offset);
     int64_t count = 0;
 
-    damping->kind = RITZ_DAMPING_BANDS;
+    damping->kind = form->kind;
+    if (!form->what) {
+        RITZ_CHECK(read_numbers(yaml, node, form->width, number));
+        return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
+    }
     RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
-    RITZ_REFUSE_AT(count < 1 || count > RITZ_MAX_BANDS, yaml, node,
-                   "1 to %d bands can be given, not %" PRId64, RITZ_MAX_BANDS,
-                   count);
+    RITZ_REFUSE_AT(count < form->least || count > form->most, yaml, node,
+                   "%" PRId64 " to %" PRId64 " %s can be given, not %" PRId64,
+                   form->least, form->most, form->what, count);
     for (int64_t k = 0; k < count; k++) {
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
 
-        RITZ_CHECK(ritz_yaml_reals(yaml, item, 3, damping->band[k]));
+        RITZ_CHECK(
+            read_numbers(yaml, item, form->width, number + k * form->width));
         damping->count = k + 1;
-        RITZ_CHECK(ritz_yaml_at(yaml, item, ritz_damping_check(damping)));
+        if (form->kind == RITZ_DAMPING_BANDS || k + 1 == count)
+            RITZ_CHECK(ritz_yaml_at(
+                yaml, form->kind == RITZ_DAMPING_BANDS ? item : node,
+                ritz_damping_check(damping)));
     }
+    if (form->kind == RITZ_DAMPING_FIT)
+        ritz_damping_fit(damping);
     return RITZ_OK;
 }
-
-static ritz_status take_rayleigh(const ritz_yaml *yaml, const yaml_node_t *node,
-                                 void *field)
-{
-    ritz_damping *damping = (ritz_damping *)field;
-    double number[2] = {0.0};
-
-    RITZ_CHECK(ritz_yaml_reals(yaml, node, 2, number));
-    *damping = (ritz_damping){
-        .kind = RITZ_DAMPING_RAYLEIGH, .a = number[0], .b = number[1]};
-    return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
-}
-
-static ritz_status take_modes(const ritz_yaml *yaml, const yaml_node_t *node,
-                              void *field)
-{
-    ritz_damping *damping = (ritz_damping *)field;
-
-    damping->kind = RITZ_DAMPING_MODES;
-    RITZ_CHECK(ritz_yaml_list(yaml, node, &damping->count));
-    RITZ_REFUSE_AT(damping->count < 1 || damping->count > RITZ_MOST_RATIOS,
-                   yaml, node,
-                   "1 to %d ratios of modes can be given, not %" PRId64,
-                   RITZ_MOST_RATIOS, damping->count);
-    RITZ_CHECK(ritz_yaml_reals(yaml, node, damping->count, damping->ratio));
-    return ritz_yaml_at(yaml, node, ritz_damping_check(damping));
-}
-
-static ritz_status take_fit(const ritz_yaml *yaml, const yaml_node_t *node,
-                            void *field)
-{
-    ritz_damping *damping = (ritz_damping *)field;
-
-    damping->kind = RITZ_DAMPING_FIT;
-    RITZ_CHECK(ritz_yaml_list(yaml, node, &damping->count));
-    RITZ_REFUSE_AT(damping->count < 2 || damping->count > RITZ_MOST_POINTS,
-                   yaml, node,
-                   "2 to %d points of a fit can be given, not %" PRId64,
-                   RITZ_MOST_POINTS, damping->count);
-    for (int64_t k = 0; k < damping->count; k++)
-        RITZ_CHECK(ritz_yaml_reals(yaml, ritz_yaml_item(yaml, node, k), 2,
-                                   damping->point[k]));
-    RITZ_CHECK(ritz_yaml_at(yaml, node, ritz_damping_check(damping)));
-    ritz_damping_fit(damping);
-    return RITZ_OK;
-}
-
-static const ritz_yaml_key damping_keys[] = {
-    {"modal", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_modal},
-    {"modes", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_modes},
-    {"bands", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_bands},
-    {"rayleigh", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_rayleigh},
-    {"rayleigh_fit", false, RITZ_YAML_BY_HAND, .offset = 0, .take = take_fit},
-};
 
 static ritz_status take_damping(const ritz_yaml *yaml, const yaml_node_t *node,
                                 void *field)
 {
-    enum { NUM_KEYS = sizeof damping_keys / sizeof *damping_keys };
-    const yaml_node_t *value[NUM_KEYS];
+    const yaml_node_t *value[NUM_FORMS];
     int64_t count = 0;
 
     RITZ_CHECK(ritz_yaml_pairs(yaml, node, &count));
     RITZ_REFUSE_AT(count != 1, yaml, node,
                    "damping is one of modal, modes, bands, rayleigh and "
                    "rayleigh_fit");
-    return ritz_yaml_mapping(yaml, node, NUM_KEYS, damping_keys, field, value);
+    RITZ_CHECK(
+        ritz_yaml_mapping(yaml, node, NUM_FORMS, damping_keys, field, value));
+    for (int k = 0; k < NUM_FORMS; k++)
+        if (value[k])
+            RITZ_CHECK(read_damping(yaml, value[k], &forms[k], field));
+    return RITZ_OK;
 }
 
 /* ---- the whole ---------------------------------------------------------- */
 
-enum {
-    SCENE,
-    COMPONENTS,
-    JOINTS,
-    CONFIGURATIONS,
-    INPUTS,
-    OUTPUTS,
-    BAND,
-    DAMPING,
-    SELECT,
-    COMPOSITE,
-    AUGMENT,
-    EXTRANEOUS,
-    NUM_KEYS
+enum { /* in the order in which parts name each other */
+       SCENE,
+       COMPONENTS,
+       JOINTS,
+       CONFIGURATIONS,
+       INPUTS,
+       OUTPUTS,
+       BAND,
+       DAMPING,
+       SELECT,
+       COMPOSITE,
+       AUGMENT,
+       EXTRANEOUS,
+       NUM_KEYS
 };
 
 static const ritz_yaml_key keys[NUM_KEYS] = {
     [SCENE] = {"scene", true, RITZ_YAML_NAME,
                .offset = offsetof(ritz_scene, name)},
+    [BAND] = {"band_hz", false, RITZ_YAML_BY_HAND,
+              .offset = offsetof(ritz_scene, band_hz), .take = take_band},
+    [DAMPING] = {"damping", false, RITZ_YAML_BY_HAND,
+                 .offset = offsetof(ritz_scene, damping), .take = take_damping},
     [COMPONENTS] = {.name = "components", .required = true},
     [JOINTS] = {.name = "joints"},
     [CONFIGURATIONS] = {.name = "configurations"},
     [INPUTS] = {.name = "inputs"},
     [OUTPUTS] = {.name = "outputs"},
-    [BAND] = {"band_hz", false, RITZ_YAML_BY_HAND,
-              .offset = offsetof(ritz_scene, band_hz), .take = take_band},
-    [DAMPING] = {"damping", false, RITZ_YAML_BY_HAND,
-                 .offset = offsetof(ritz_scene, damping), .take = take_damping},
     [SELECT] = {.name = "select"},
     [COMPOSITE] = {.name = "composite"},
     [AUGMENT] = {.name = "augment"},
     [EXTRANEOUS] = {.name = "extraneous"},
 };
 
-static const struct {
-    int key;
-    ritz_scene_part *read;
-} parts[] = {
-    {COMPONENTS, ritz_scene_components},
-    {JOINTS, ritz_scene_joints},
-    {CONFIGURATIONS, ritz_scene_configurations},
-    {INPUTS, ritz_scene_inputs},
-    {OUTPUTS, ritz_scene_outputs},
-    {SELECT, ritz_scene_select},
-    {COMPOSITE, ritz_scene_composite},
-    {AUGMENT, ritz_scene_augment},
-    {EXTRANEOUS, ritz_scene_extraneous},
+static ritz_scene_part *const parts[NUM_KEYS] = {
+    [COMPONENTS] = ritz_scene_components,
+    [JOINTS] = ritz_scene_joints,
+    [CONFIGURATIONS] = ritz_scene_configurations,
+    [INPUTS] = ritz_scene_inputs,
+    [OUTPUTS] = ritz_scene_outputs,
+    [SELECT] = ritz_scene_select,
+    [COMPOSITE] = ritz_scene_composite,
+    [AUGMENT] = ritz_scene_augment,
+    [EXTRANEOUS] = ritz_scene_extraneous,
 };
 
 ritz_status ritz_scene_parse(const char *path, const char *text,
@@ -194,8 +174,9 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
     RITZ_CHECK(ritz_yaml_load(path, text, &yaml));
     RITZ_CHECK(ritz_yaml_mapping(&yaml, ritz_yaml_root(&yaml), NUM_KEYS, keys,
                                  &scene, value));
-    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        RITZ_CHECK(parts[k].read(&yaml, value[parts[k].key], &scene));
+    for (int k = 0; k < NUM_KEYS; k++)
+        if (parts[k])
+            RITZ_CHECK(parts[k](&yaml, value[k], &scene));
     RITZ_MOVE(*out, scene);
     return RITZ_OK;
 }

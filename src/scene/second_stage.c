@@ -167,53 +167,39 @@ static const ritz_yaml_key augment_keys[NUM_AUGMENT_KEYS] = {
 static const char sets[][RITZ_NAME_SIZE] = {"inputs", "interface", "outputs"};
 enum { NUM_SETS = sizeof sets / sizeof *sets };
 
-/* Words that may stand under 'attached'. */
-static ritz_status list_words(const ritz_scene *scene,
-                              char (**out)[RITZ_NAME_SIZE])
-{
-    char(*words)[RITZ_NAME_SIZE] = NULL;
-
-    RITZ_CHECK_NEW(words, NUM_SETS + scene->num_inputs);
-    memcpy(words, sets, sizeof sets);
-    for (int64_t j = 0; j < scene->num_inputs; j++)
-        memcpy(words[NUM_SETS + j], scene->input[j].name, RITZ_NAME_SIZE);
-    *out = words;
-    return RITZ_OK;
-}
-
 static ritz_status take_attached(const ritz_yaml *yaml, const yaml_node_t *node,
                                  ritz_scene *scene)
 {
-    ritz_status status = RITZ_OK;
-    char(*words)[RITZ_NAME_SIZE] = NULL;
-    bool *taken = NULL;
+    const int64_t num_words = NUM_SETS + scene->num_inputs;
+    RITZ_OWN_ARRAY char(*words)[RITZ_NAME_SIZE] = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
     int64_t count = 0;
 
-    RITZ_TRY(ritz_yaml_list(yaml, node, &count));
-    RITZ_YAML_FAIL_IF(count == 0, yaml, node,
-                      "nothing is attached: 'augment: none' says so");
-    RITZ_TRY(list_words(scene, &words));
-    RITZ_NEW(taken, NUM_SETS + scene->num_inputs);
-    RITZ_NEW(scene->attached_input, scene->num_inputs);
+    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_REFUSE_AT(count == 0, yaml, node,
+                   "nothing is attached: 'augment: none' says so");
+    RITZ_CHECK_NEW(words, num_words);
+    memcpy(words, sets, sizeof sets); /* then the names of inputs */
+    for (int64_t j = 0; j < scene->num_inputs; j++)
+        memcpy(words[NUM_SETS + j], scene->input[j].name, RITZ_NAME_SIZE);
+    RITZ_CHECK_NEW(taken, num_words);
+    RITZ_CHECK_NEW(scene->attached_input, scene->num_inputs);
     for (int64_t k = 0; k < count; k++) {
-        const ritz_names names = {"attached set", NUM_SETS + scene->num_inputs,
-                                  words[0], sizeof *words};
+        const ritz_names names = {"attached set", num_words, words[0],
+                                  sizeof *words};
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
         int64_t at = 0;
 
-        RITZ_TRY(ritz_yaml_word(yaml, item, &names, &at));
-        RITZ_YAML_FAIL_IF(taken[at], yaml, item, "'%s' is listed before",
-                          words[at]);
+        RITZ_CHECK(ritz_yaml_word(yaml, item, &names, &at));
+        RITZ_REFUSE_AT(taken[at], yaml, item, "'%s' is listed before",
+                       words[at]);
         taken[at] = true;
         if (at < NUM_SETS)
             scene->attached |= 1 << at;
         else
             scene->attached_input[scene->num_attached_inputs++] = at - NUM_SETS;
     }
-done:
-    free(words);
-    free(taken);
-    return status;
+    return RITZ_OK;
 }
 
 /* The word 'auto', or a list of sets. */

@@ -107,43 +107,42 @@ static ritz_status read_force(const ritz_yaml *yaml, const io_side *side,
                               const yaml_node_t *const *value,
                               const ritz_scene *scene, ritz_scene_io *io)
 {
-    ritz_status status = RITZ_OK;
-
     if (!side->drives)
         return take_component(yaml, value[COMPONENT], &io->component);
-    RITZ_TRY(take_directions(yaml, value[COMPONENT], io));
+    RITZ_CHECK(take_directions(yaml, value[COMPONENT], io));
     if (!value[AGAINST])
         return RITZ_OK;
-    RITZ_TRY(ritz_scene_place_read(yaml, value[AGAINST], scene, &io->against));
-    RITZ_YAML_FAIL_IF(io->against.component == io->at.component &&
-                          strcmp(io->against.port, io->at.port) == 0,
-                      yaml, value[AGAINST], "input '%s' acts against itself",
-                      io->name);
-done:
-    return status;
+    RITZ_CHECK(
+        ritz_scene_place_read(yaml, value[AGAINST], scene, &io->against));
+    RITZ_REFUSE_AT(io->against.component == io->at.component &&
+                       strcmp(io->against.port, io->at.port) == 0,
+                   yaml, value[AGAINST], "input '%s' acts against itself",
+                   io->name);
+    return RITZ_OK;
 }
 
 static ritz_status read_list(const ritz_yaml *yaml, const yaml_node_t *list,
                              const io_side *side, const ritz_scene *scene,
-                             int64_t count, ritz_scene_io *io)
+                             int64_t *count, ritz_scene_io **out)
 {
     const yaml_node_t *value[NUM_OUTPUT_KEYS];
 
-    for (int64_t k = 0; k < count; k++) {
+    if (list)
+        RITZ_CHECK(ritz_scene_count(yaml, list, count));
+    RITZ_CHECK_NEW(*out, *count);
+    for (int64_t k = 0; k < *count; k++) {
         const yaml_node_t *node = ritz_yaml_item(yaml, list, k);
-        ritz_names before = {side->what, k, io->name, sizeof *io};
+        ritz_scene_io *io = &(*out)[k];
 
-        io[k].scale = 1.0;
-        io[k].limit = (double)NAN;
-        io[k].line = (int64_t)node->start_mark.line + 1;
-        io[k].column = (int64_t)node->start_mark.column + 1;
-        RITZ_CHECK(ritz_yaml_mapping(yaml, node, side->count, side->keys,
-                                     &io[k], value));
-        RITZ_REFUSE_AT(ritz_names_index(&before, io[k].name) >= 0, yaml,
-                       value[NAME], "%s '%s' is given twice", side->what,
-                       io[k].name);
-        RITZ_CHECK(ritz_scene_place_read(yaml, value[AT], scene, &io[k].at));
-        RITZ_CHECK(read_force(yaml, side, value, scene, &io[k]));
+        io->scale = 1.0;
+        io->limit = (double)NAN;
+        ritz_yaml_locate(node, &io->line, &io->column);
+        RITZ_CHECK(
+            ritz_yaml_mapping(yaml, node, side->count, side->keys, io, value));
+        RITZ_CHECK(ritz_yaml_distinct(yaml, value[NAME], side->what, k, *out,
+                                      sizeof *io));
+        RITZ_CHECK(ritz_scene_place_read(yaml, value[AT], scene, &io->at));
+        RITZ_CHECK(read_force(yaml, side, value, scene, io));
     }
     return RITZ_OK;
 }
@@ -153,11 +152,8 @@ ritz_status ritz_scene_inputs(const ritz_yaml *yaml, const yaml_node_t *node,
 {
     static const io_side inputs = {"input", NUM_INPUT_KEYS, input_keys, true};
 
-    if (node)
-        RITZ_CHECK(ritz_scene_count(yaml, node, &scene->num_inputs));
-    RITZ_CHECK_NEW(scene->input, scene->num_inputs);
-    return read_list(yaml, node, &inputs, scene, scene->num_inputs,
-                     scene->input);
+    return read_list(yaml, node, &inputs, scene, &scene->num_inputs,
+                     &scene->input);
 }
 
 ritz_status ritz_scene_outputs(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -166,9 +162,6 @@ ritz_status ritz_scene_outputs(const ritz_yaml *yaml, const yaml_node_t *node,
     static const io_side outputs = {"output", NUM_OUTPUT_KEYS, output_keys,
                                     false};
 
-    if (node)
-        RITZ_CHECK(ritz_scene_count(yaml, node, &scene->num_outputs));
-    RITZ_CHECK_NEW(scene->output, scene->num_outputs);
-    return read_list(yaml, node, &outputs, scene, scene->num_outputs,
-                     scene->output);
+    return read_list(yaml, node, &outputs, scene, &scene->num_outputs,
+                     &scene->output);
 }

@@ -70,32 +70,28 @@ static int step_of(yaml_token_type_t type)
 /* Scan the tokens first, to refuse what libyaml would need hours to load. */
 static ritz_status guard_size(const char *path, const char *text)
 {
-    ritz_status status = RITZ_OK;
-    yaml_parser_t parser = {0};
-    yaml_token_t token = {0};
+    [[gnu::cleanup(yaml_parser_delete)]] yaml_parser_t parser = {0};
     bool at_end = false;
     int depth = 0;
     int anchors = 0;
 
-    RITZ_TRY(start_parser(&parser, path, text));
+    RITZ_CHECK(start_parser(&parser, path, text));
     while (!at_end) {
+        [[gnu::cleanup(yaml_token_delete)]] yaml_token_t token = {0};
+
         if (!yaml_parser_scan(&parser, &token))
-            RITZ_TRY(explain_failure(path, text, &parser));
+            return explain_failure(path, text, &parser);
         at_end = token.type == YAML_STREAM_END_TOKEN;
         depth += step_of(token.type);
         anchors += token.type == YAML_ANCHOR_TOKEN;
-        RITZ_FAIL_IF(depth > MOST_NESTED || anchors > MOST_ANCHORS,
-                     RITZ_ERR_FORMAT, "%s:%zu:%zu: more than %d %s", path,
-                     token.start_mark.line + 1, token.start_mark.column + 1,
-                     depth > MOST_NESTED ? MOST_NESTED : MOST_ANCHORS,
-                     depth > MOST_NESTED ? "brackets one in another"
-                                         : "anchors");
-        yaml_token_delete(&token);
+        RITZ_REFUSE_IF(depth > MOST_NESTED || anchors > MOST_ANCHORS,
+                       RITZ_ERR_FORMAT, "%s:%zu:%zu: more than %d %s", path,
+                       token.start_mark.line + 1, token.start_mark.column + 1,
+                       depth > MOST_NESTED ? MOST_NESTED : MOST_ANCHORS,
+                       depth > MOST_NESTED ? "brackets one in another"
+                                           : "anchors");
     }
-done:
-    yaml_token_delete(&token);
-    yaml_parser_delete(&parser);
-    return status;
+    return RITZ_OK;
 }
 
 /* Load the next document of the stream; at its end one without a root. */
@@ -110,25 +106,19 @@ static ritz_status load_document(yaml_parser_t *parser, const char *text,
 
 ritz_status ritz_yaml_load(const char *path, const char *text, ritz_yaml *out)
 {
-    ritz_status status = RITZ_OK;
-    yaml_parser_t parser = {0};
-    ritz_yaml yaml = {.path = path};
-    ritz_yaml second = {.path = path};
+    [[gnu::cleanup(yaml_parser_delete)]] yaml_parser_t parser = {0};
+    RITZ_OWN(ritz_yaml) yaml = {.path = path}, second = {.path = path};
 
-    RITZ_TRY(guard_size(path, text));
-    RITZ_TRY(start_parser(&parser, path, text));
-    RITZ_TRY(load_document(&parser, text, &yaml));
-    RITZ_FAIL_IF(!ritz_yaml_root(&yaml), RITZ_ERR_FORMAT,
-                 "%s:1:1: the file is empty", path);
-    RITZ_TRY(load_document(&parser, text, &second));
-    RITZ_YAML_FAIL_IF(ritz_yaml_root(&second), &second, ritz_yaml_root(&second),
-                      "a second document begins here, a scene is one");
+    RITZ_CHECK(guard_size(path, text));
+    RITZ_CHECK(start_parser(&parser, path, text));
+    RITZ_CHECK(load_document(&parser, text, &yaml));
+    RITZ_REFUSE_IF(!ritz_yaml_root(&yaml), RITZ_ERR_FORMAT,
+                   "%s:1:1: the file is empty", path);
+    RITZ_CHECK(load_document(&parser, text, &second));
+    RITZ_REFUSE_AT(ritz_yaml_root(&second), &second, ritz_yaml_root(&second),
+                   "a second document begins here, a scene is one");
     RITZ_MOVE(*out, yaml);
-done:
-    ritz_yaml_free(&second);
-    ritz_yaml_free(&yaml);
-    yaml_parser_delete(&parser);
-    return status;
+    return RITZ_OK;
 }
 
 static const yaml_node_t *node_of(const ritz_yaml *yaml, int number)
@@ -154,6 +144,24 @@ ritz_status ritz_yaml_at(const ritz_yaml *yaml, const yaml_node_t *node,
     return ritz_fail(RITZ_ERR_FORMAT, "%s:%zu:%zu: %s", yaml->path,
                      node->start_mark.line + 1, node->start_mark.column + 1,
                      inner);
+}
+
+void ritz_yaml_locate(const yaml_node_t *node, int64_t *line, int64_t *column)
+{
+    *line = (int64_t)node->start_mark.line + 1;
+    *column = (int64_t)node->start_mark.column + 1;
+}
+
+ritz_status ritz_yaml_distinct(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const char *what, int64_t k, const void *items,
+                               size_t size)
+{
+    const ritz_names before = {what, k, items, size};
+    const char *name = (const char *)items + (size_t)k * size;
+
+    RITZ_REFUSE_AT(ritz_names_index(&before, name) >= 0, yaml, node,
+                   "%s '%s' is given twice", what, name);
+    return RITZ_OK;
 }
 
 static const char *const kind_name[] = {

@@ -72,22 +72,26 @@ const yaml_node_t *ritz_yaml_root(const ritz_yaml *yaml);
 ritz_status ritz_yaml_at(const ritz_yaml *yaml, const yaml_node_t *node,
                          ritz_status status);
 
-/* RITZ_FAIL_IF and RITZ_REFUSE_IF with a node's place before the sentence. */
-#define RITZ_YAML_FAIL_IF(condition, yaml, node, ...)                          \
-    do {                                                                       \
-        if (condition) {                                                       \
-            status = ritz_yaml_at((yaml), (node),                              \
-                                  ritz_fail(RITZ_ERR_FORMAT, __VA_ARGS__));    \
-            goto done;                                                         \
-        }                                                                      \
-    } while (0)
-
+/* RITZ_REFUSE_IF with a node's place before the sentence. */
 #define RITZ_REFUSE_AT(condition, yaml, node, ...)                             \
     do {                                                                       \
         if (condition)                                                         \
             return ritz_yaml_at((yaml), (node),                                \
                                 ritz_fail(RITZ_ERR_FORMAT, __VA_ARGS__));      \
     } while (0)
+
+/** Line and column of a node, from 1. */
+void ritz_yaml_locate(const yaml_node_t *node, int64_t *line, int64_t *column);
+
+/**
+ * Whether item @p k of an array, whose items of @p size bytes begin with their
+ * names, has another name than those before it.
+ *
+ * @return RITZ_ERR_FORMAT "WHAT 'clock' is given twice"
+ */
+ritz_status ritz_yaml_distinct(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const char *what, int64_t k, const void *items,
+                               size_t size);
 
 /** Number of items of a list, which @p node must be; and one of them. */
 ritz_status ritz_yaml_list(const ritz_yaml *yaml, const yaml_node_t *node,
