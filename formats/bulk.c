@@ -282,8 +282,11 @@ static ritz_status settle_fixed(ritz_bulk_cards *all, ritz_deck *out)
     return RITZ_OK;
 }
 
-static ritz_status name_constraints(const ritz_bulk_cards *all, ritz_deck *out)
+/* Keep the constraints that act, and name them. */
+static ritz_status name_constraints(ritz_bulk_cards *all, ritz_deck *out)
 {
+    int64_t kept = 0;
+
     RITZ_CHECK_NEW(out->constraint, all->num_constraints);
     for (int64_t k = 0; k < all->num_constraints; k++) {
         const ritz_bulk_constraint *one = &all->constraint[k];
@@ -291,9 +294,11 @@ static ritz_status name_constraints(const ritz_bulk_cards *all, ritz_deck *out)
         if (one->is_set &&
             !ritz_cards_select(&all->cards, RITZ_SELECT_MPC, one->id))
             continue;
-        snprintf(out->constraint[out->num_constraints++],
-                 sizeof *out->constraint, "%s %" PRId64, one->name, one->id);
+        snprintf(out->constraint[kept], sizeof *out->constraint, "%s %" PRId64,
+                 one->name, one->id);
+        all->constraint[kept++] = *one;
     }
+    all->num_constraints = out->num_constraints = kept;
     return RITZ_OK;
 }
 
@@ -304,9 +309,9 @@ static void ritz_bulk_cards_free(ritz_bulk_cards *all)
     free(all->frame);
     free(all->sum);
     free(all->constraint);
-    free(all->points.range);
+    ritz_bulk_ranges_free(&all->points);
     for (int k = 0; k < RITZ_BULK_SETS; k++)
-        free(all->ranges[k].range);
+        ritz_bulk_ranges_free(&all->ranges[k]);
 }
 
 /* Rows ascend by id: a grid has six dofs, a scalar point one. */

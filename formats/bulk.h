@@ -98,6 +98,7 @@ ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out);
 
 /** Append a range to a set. */
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range);
+void ritz_bulk_ranges_free(ritz_bulk_ranges *list);
 
 /** The scalar points, ascending. */
 ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out);
@@ -121,7 +122,7 @@ ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out);
 /**
  * The equations of all constraint elements that act.
  *
- * @param[in,out] built  its grids and points are there already
+ * @param[in,out] built  its grids, points and names of constraints are there
  */
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
                                      ritz_deck *built);

@@ -586,23 +586,23 @@ static ritz_status copy_paths(const ritz_cards *cards, ritz_equations *out)
     return RITZ_OK;
 }
 
-static ritz_status tie_card(const ritz_bulk_cards *all,
-                            const ritz_bulk_constraint *one, ritz_card *card,
+static ritz_status tie_card(const ritz_bulk_cards *all, int64_t k,
                             ritz_deck *built)
 {
-    ritz_equation_source from = {.name = ""};
+    RITZ_OWN(ritz_card) card = {0};
     const ritz_line *line = NULL;
+    ritz_equation_source from = {.name = ""};
     const ritz_bulk_tying it = {.all = all,
                                 .built = built,
-                                .card = card,
+                                .card = &card,
                                 .name = from.name,
                                 .out = &built->equations};
 
-    RITZ_CHECK(ritz_card_take(&all->cards, one->entry, card));
-    line = &all->cards.line[card->entry->line];
+    RITZ_CHECK(ritz_card_take(&all->cards, all->constraint[k].entry, &card));
+    line = &all->cards.line[card.entry->line];
     from.file = line->file;
     from.line = line->number;
-    snprintf(from.name, sizeof from.name, "%s %" PRId64, one->name, one->id);
+    memcpy(from.name, built->constraint[k], sizeof from.name);
     RITZ_CHECK(ritz_equations_cite_next(&built->equations, from));
     return tie_element(&it);
 }
@@ -610,19 +610,12 @@ static ritz_status tie_card(const ritz_bulk_cards *all,
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
                                      ritz_deck *built)
 {
-    RITZ_OWN(ritz_card) card = {0};
-
-    if (all->num_constraints == 0)
+    if (built->num_constraints == 0)
         return RITZ_OK;
     RITZ_CHECK(copy_paths(&all->cards, &built->equations));
-    for (int64_t k = 0; k < all->num_constraints; k++) {
-        const ritz_bulk_constraint *one = &all->constraint[k];
-        ritz_status status = RITZ_OK;
+    for (int64_t k = 0; k < built->num_constraints; k++) {
+        ritz_status status = tie_card(all, k, built);
 
-        if (one->is_set &&
-            !ritz_cards_select(&all->cards, RITZ_SELECT_MPC, one->id))
-            continue;
-        status = tie_card(all, one, &card, built);
         if (status == RITZ_ERR_FORMAT)
             return ritz_bulk_keep_sentence(&built->equations.refused);
         RITZ_CHECK(status);

@@ -15,6 +15,11 @@
 
 enum { MOST_IDS = 10000000 }; /* that ranges alone may stand for */
 
+void ritz_bulk_ranges_free(ritz_bulk_ranges *list)
+{
+    free(list->range);
+}
+
 ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range)
 {
     RITZ_CHECK_ROOM(list->range, list->count, list->room);
@@ -22,70 +27,71 @@ ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range)
     return RITZ_OK;
 }
 
-static int compare_ranges(const void *a, const void *b)
+static bool has_direction(const ritz_bulk_range *range, int64_t c)
 {
-    const ritz_bulk_range *left = a;
-    const ritz_bulk_range *right = b;
-
-    return (left->from > right->from) - (left->from < right->from);
+    return (((unsigned)range->mask >> (unsigned)c) & 1U) != 0;
 }
 
-/* Ranges that overlap or touch become one; returns how many are left. */
-static int64_t merge_ranges(int64_t count, ritz_bulk_range *range)
+/* Ranges of direction c, less dofs that are named one by one unless `named`;
+ * those that overlap or touch become one. */
+static ritz_status merge_ranges(const ritz_bulk_ranges *given, int64_t c,
+                                bool named, ritz_bulk_ranges *out)
 {
     int64_t kept = 0;
 
-    if (count > 1)
-        qsort(range, (size_t)count, sizeof *range, compare_ranges);
-    for (int64_t k = 0; k < count; k++) {
-        if (kept > 0 && range[k].from <= range[kept - 1].to) {
-            if (range[k].to > range[kept - 1].to)
-                range[kept - 1].to = range[k].to;
-        } else {
-            range[kept++] = range[k];
-        }
+    RITZ_CHECK_NEW(out->range, given->count);
+    for (int64_t k = 0; k < given->count; k++)
+        if ((named || !given->range[k].each) &&
+            has_direction(&given->range[k], c))
+            out->range[out->count++] = given->range[k];
+    if (out->count > 1)
+        qsort(out->range, (size_t)out->count, sizeof *out->range,
+              ritz_cards_compare_ids);
+    for (int64_t k = 0; k < out->count; k++) {
+        ritz_bulk_range *last = &out->range[kept > 0 ? kept - 1 : 0];
+
+        if (kept == 0 || out->range[k].from > last->to)
+            out->range[kept++] = out->range[k];
+        else if (out->range[k].to > last->to)
+            last->to = out->range[k].to;
     }
-    return kept;
+    out->count = kept;
+    return RITZ_OK;
 }
 
 /* How many ids the ranges stand for, refused if too many. */
-static ritz_status count_ids(const ritz_cards *cards, int64_t count,
-                             const ritz_bulk_range *range, int64_t *out)
+static ritz_status count_ids(const ritz_cards *cards,
+                             const ritz_bulk_ranges *list, int64_t *out)
 {
     *out = 0;
-    for (int64_t k = 0; k < count; k++) {
-        if (range[k].to - range[k].from >= MOST_IDS - *out)
-            return ritz_cards_refuse(cards, range[k].line,
+    for (int64_t k = 0; k < list->count; k++) {
+        const ritz_bulk_range *range = &list->range[k];
+
+        if (range->to - range->from >= MOST_IDS - *out)
+            return ritz_cards_refuse(cards, range->line,
                                      "THRU stands for more than %d points",
                                      MOST_IDS);
-        *out += range[k].to - range[k].from + 1;
+        *out += range->to - range->from + 1;
     }
     return RITZ_OK;
 }
 
 ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out)
 {
-    RITZ_OWN_ARRAY ritz_bulk_range *range = NULL;
-    RITZ_OWN_ARRAY int64_t *point = NULL;
-    int64_t count = 0;
+    RITZ_OWN(ritz_bulk_ranges) list = {0};
     int64_t num = 0;
 
-    RITZ_CHECK_COPY(range, all->points.range, all->points.count);
-    count = merge_ranges(all->points.count, range);
-    RITZ_CHECK(count_ids(&all->cards, count, range, &num));
-    RITZ_CHECK_NEW(point, num);
-    num = 0;
-    for (int64_t k = 0; k < count; k++)
-        for (int64_t id = range[k].from; id <= range[k].to; id++) {
+    RITZ_CHECK(merge_ranges(&all->points, 0, true, &list));
+    RITZ_CHECK(count_ids(&all->cards, &list, &num));
+    RITZ_CHECK_NEW(out->point, num);
+    for (int64_t k = 0; k < list.count; k++)
+        for (int64_t id = list.range[k].from; id <= list.range[k].to; id++) {
             if (ritz_bulk_find_grid(all, id))
-                return ritz_cards_refuse(&all->cards, range[k].line,
-                                         "%" PRId64 " is a GRID and an "
-                                         "SPOINT",
+                return ritz_cards_refuse(&all->cards, list.range[k].line,
+                                         "%" PRId64 " is a GRID and an SPOINT",
                                          id);
-            point[num++] = id;
+            out->point[out->num_points++] = id;
         }
-    RITZ_MOVE(out->point, point);
-    out->num_points = num;
     return RITZ_OK;
 }
 
@@ -107,11 +113,6 @@ static ritz_status add_dof(dofs *list, int64_t grid, int64_t component)
     RITZ_CHECK_ROOM(list->dof, list->count, list->room);
     list->dof[list->count++] = (ritz_dof){grid, component};
     return RITZ_OK;
-}
-
-static bool has_direction(const ritz_bulk_range *range, int64_t c)
-{
-    return (((unsigned)range->mask >> (unsigned)c) & 1U) != 0;
 }
 
 /* The dofs of a grid or point that is named. */
@@ -136,51 +137,30 @@ static ritz_status add_named(const ritz_bulk_cards *all,
     return RITZ_OK;
 }
 
-/* Direction c of what exists in merged ranges. */
-static ritz_status add_existing(int64_t num_ids, const int64_t *ids, int64_t c,
-                                int64_t count, const ritz_bulk_range *range,
-                                dofs *list)
-{
-    for (int64_t k = 0; k < count; k++)
-        for (int64_t at = ritz_lower_bound(num_ids, ids, range[k].from);
-             at < num_ids && ids[at] <= range[k].to; at++)
-            RITZ_CHECK(add_dof(list, ids[at], c));
-    return RITZ_OK;
-}
-
-/* Direction c of all in the ranges, where the deck defines no grid at all. */
-static ritz_status add_all(const ritz_bulk_cards *all, int64_t c, int64_t count,
-                           const ritz_bulk_range *range, dofs *list)
-{
-    int64_t ids = 0;
-
-    RITZ_CHECK(count_ids(&all->cards, count, range, &ids));
-    for (int64_t k = 0; k < count; k++)
-        for (int64_t id = range[k].from; id <= range[k].to; id++)
-            RITZ_CHECK(add_dof(list, id, c));
-    return RITZ_OK;
-}
-
+/* Direction c of what exists in the ranges; of all ids in them where the deck
+ * defines no grid at all. */
 static ritz_status add_direction(const ritz_bulk_cards *all,
                                  const ritz_bulk_ranges *given,
-                                 const ritz_deck *built, int64_t c, dofs *list)
+                                 const ritz_deck *built, int64_t c, dofs *out)
 {
-    RITZ_OWN_ARRAY ritz_bulk_range *range = NULL;
-    int64_t count = 0;
+    int64_t count = c == 0 ? built->num_points : built->grids.count;
+    const int64_t *ids = c == 0 ? built->point : built->grids.id;
+    bool any = built->grids.count + built->num_points > 0;
+    RITZ_OWN(ritz_bulk_ranges) list = {0};
+    int64_t num = 0;
 
-    RITZ_CHECK_NEW(range, given->count);
-    for (int64_t k = 0; k < given->count; k++)
-        if (!given->range[k].each && has_direction(&given->range[k], c))
-            range[count++] = given->range[k];
-    count = merge_ranges(count, range);
-    if (built->grids.count + built->num_points == 0)
-        RITZ_CHECK(add_all(all, c, count, range, list));
-    else if (c == 0)
-        RITZ_CHECK(add_existing(built->num_points, built->point, c, count,
-                                range, list));
-    else
-        RITZ_CHECK(add_existing(built->grids.count, built->grids.id, c, count,
-                                range, list));
+    RITZ_CHECK(merge_ranges(given, c, false, &list));
+    if (!any)
+        RITZ_CHECK(count_ids(&all->cards, &list, &num));
+    for (int64_t k = 0; k < list.count; k++) {
+        const ritz_bulk_range *range = &list.range[k];
+
+        for (int64_t id = range->from; !any && id <= range->to; id++)
+            RITZ_CHECK(add_dof(out, id, c));
+        for (int64_t at = ritz_lower_bound(count, ids, range->from);
+             at < count && ids[at] <= range->to; at++)
+            RITZ_CHECK(add_dof(out, ids[at], c));
+    }
     return RITZ_OK;
 }
 

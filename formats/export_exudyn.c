@@ -410,21 +410,16 @@ static ritz_status count_rotating(const ritz_grids *grids, exudyn_body *b)
     return RITZ_OK;
 }
 
-static ritz_status place_nodes(exudyn_body *b)
-{
-    RITZ_CHECK_NEW(b->xRef, 3 * b->nodes.count);
-    for (int64_t k = 0; k < b->nodes.count; k++)
-        memcpy(b->xRef + 3 * k, b->nodes.grids->position + 3 * b->nodes.grid[k],
-               3 * sizeof *b->xRef);
-    return RITZ_OK;
-}
-
-/* Psi: rows x, y, z of each node. */
+/* Where the nodes are, and Psi: rows x, y, z of each node. */
 static ritz_status shape_modes(exudyn_body *b)
 {
     int64_t n = b->nodes.count;
     RITZ_OWN(ritz_dense) Psi = {0}, along = {0};
 
+    RITZ_CHECK_NEW(b->xRef, 3 * n);
+    for (int64_t k = 0; k < n; k++)
+        memcpy(b->xRef + 3 * k, b->nodes.grids->position + 3 * b->nodes.grid[k],
+               3 * sizeof *b->xRef);
     RITZ_CHECK(ritz_dense_mul(&b->T, &b->modes.V, &Psi));
     RITZ_CHECK(ritz_dense_new(3 * n, Psi.ncol, &b->modeBasis));
     for (int a = 0; a < 3; a++) {
@@ -452,7 +447,6 @@ ritz_status exudyn_body_of(const ritz_reduced *reduced, exudyn_body *out)
     leave_partial(reduced->num_dofs, &b.nodes);
     RITZ_CHECK(check_nodes(&b.nodes));
     RITZ_CHECK(find_modes(reduced, &b.modes));
-    RITZ_CHECK(place_nodes(&b));
     RITZ_CHECK(shape_modes(&b));
     RITZ_CHECK(ritz_invariants_project(&reduced->invariants, &b.modes.V,
                                        &b.invariants));
@@ -562,10 +556,11 @@ static ritz_status write_text(hid_t file, const char *name, const char *text)
     return label_set(file, name, "str");
 }
 
-/* Values that are no matrix. */
-static ritz_status write_values(hid_t file, const ritz_reduced *reduced,
+/* Values that are no matrix, then matrices. */
+static ritz_status write_arrays(hid_t file, const ritz_reduced *reduced,
                                 const exudyn_body *b)
 {
+    const exudyn_terms *t = &b->terms;
     int64_t m = b->modes.V.ncol;
     const int64_t version = 1;
     const int64_t info[6] = {m, b->nodes.count, 3, 4, 7, 7 + m};
@@ -585,22 +580,10 @@ static ritz_status write_values(hid_t file, const ritz_reduced *reduced,
          reduced->inertia.centre},
         {"trigList", "ndarray", H5T_IEEE_F64LE, ritz_h5_vector(0), b->xRef},
     };
-
-    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-        RITZ_CHECK(ritz_h5_write(file, list[k].name, list[k].type,
-                                 list[k].shape, list[k].values));
-        RITZ_CHECK(label_set(file, list[k].name, list[k].datatype));
-    }
-    return RITZ_OK;
-}
-
-static ritz_status write_matrices(hid_t file, const exudyn_body *b)
-{
-    const exudyn_terms *t = &b->terms;
     const struct {
         const char *name;
         const ritz_dense *A;
-    } list[] = {
+    } matrix[] = {
         {"modeBasis", &b->modeBasis},
         {"massMatrixReduced", &b->modes.M},
         {"stiffnessMatrixReduced", &b->modes.K},
@@ -616,8 +599,13 @@ static ritz_status write_matrices(hid_t file, const exudyn_body *b)
     };
 
     for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-        RITZ_CHECK(ritz_h5_write_dense(file, list[k].name, list[k].A));
-        RITZ_CHECK(label_set(file, list[k].name, "ndarray"));
+        RITZ_CHECK(ritz_h5_write(file, list[k].name, list[k].type,
+                                 list[k].shape, list[k].values));
+        RITZ_CHECK(label_set(file, list[k].name, list[k].datatype));
+    }
+    for (size_t k = 0; k < sizeof matrix / sizeof *matrix; k++) {
+        RITZ_CHECK(ritz_h5_write_dense(file, matrix[k].name, matrix[k].A));
+        RITZ_CHECK(label_set(file, matrix[k].name, "ndarray"));
     }
     return RITZ_OK;
 }
@@ -633,8 +621,7 @@ static ritz_status write_file(hid_t file, const void *what)
     const exudyn_parts *parts = what;
     RITZ_OWN(hid_t) group = 0;
 
-    RITZ_CHECK(write_values(file, parts->reduced, parts->body));
-    RITZ_CHECK(write_matrices(file, parts->body));
+    RITZ_CHECK(write_arrays(file, parts->reduced, parts->body));
     RITZ_CHECK(write_text(file, "type", "ObjectFFRFreducedOrderInterface"));
     RITZ_CHECK(write_text(file, "rigidBodyNodeType",
                           "NodeType.RotationEulerParameters"));

@@ -2,25 +2,14 @@
 #ifndef RITZ_FORMATS_MAT_H
 #define RITZ_FORMATS_MAT_H
 
+#include "formats/bytes.h"
+
 #include <ritz/import.h>
 
-/* Numbers of the format for types of values. */
 enum {
-    RITZ_MAT_INT8 = 1,
-    RITZ_MAT_UINT8,
-    RITZ_MAT_INT16,
-    RITZ_MAT_UINT16,
-    RITZ_MAT_INT32,
-    RITZ_MAT_UINT32,
-    RITZ_MAT_SINGLE,
-    RITZ_MAT_DOUBLE = 9,
-    RITZ_MAT_INT64 = 12,
-    RITZ_MAT_UINT64,
-    RITZ_MAT_MATRIX,
+    RITZ_MAT_MATRIX =
+        RITZ_BYTES_UINT64 + 1, /* types of elements, not numbers */
     RITZ_MAT_COMPRESSED,
-};
-
-enum {
     RITZ_MAT_DEPTH = 8,         /* how deep structs in structs are followed */
     RITZ_MAT_MOST_RATIO = 1032, /* that deflate can reach */
 };
@@ -52,13 +41,7 @@ typedef struct ritz_mat_list {
     const char *spelling;  /* "MAT level 5" */
 } ritz_mat_list;
 
-/** Bytes of a value; 0 if the type is not a number. */
-int64_t ritz_mat_size(int type);
-
 double ritz_mat_value(const ritz_mat_values *values, int64_t k);
-
-/** An unsigned number of 1 to 8 bytes. */
-uint64_t ritz_mat_bits(const unsigned char *at, int64_t size, bool swap);
 
 /** Whether the next matrix is not wanted, so that its values need not be read
  * before it is added. */

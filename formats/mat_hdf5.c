@@ -203,7 +203,7 @@ static ritz_mat_values values_of(const double *values, int64_t count)
     const unsigned char *first = (const unsigned char *)&one;
 
     return (ritz_mat_values){(const unsigned char *)values, values ? count : 0,
-                             RITZ_MAT_DOUBLE, *first == 0};
+                             RITZ_BYTES_DOUBLE, *first == 0};
 }
 
 /* One number of an attribute; -1 if it is not there. */

@@ -22,18 +22,18 @@ typedef struct head {
 
 static bool take_head(const char *bytes, int64_t size, head *out)
 {
-    static const int types[] = {RITZ_MAT_DOUBLE, RITZ_MAT_SINGLE,
-                                RITZ_MAT_INT32,  RITZ_MAT_INT16,
-                                RITZ_MAT_UINT16, RITZ_MAT_UINT8};
+    static const int types[] = {RITZ_BYTES_DOUBLE, RITZ_BYTES_SINGLE,
+                                RITZ_BYTES_INT32,  RITZ_BYTES_INT16,
+                                RITZ_BYTES_UINT16, RITZ_BYTES_UINT8};
     const unsigned char *at = (const unsigned char *)bytes;
     int64_t word[WORDS];
     bool swap = false;
 
     if (size < HEAD)
         return false;
-    swap = ritz_mat_bits(at, 4, false) > 52; /* M = 0: little endian */
+    swap = ritz_bytes_bits(at, 4, false) > 52; /* M = 0: little endian */
     for (int64_t k = 0; k < WORDS; k++)
-        word[k] = (int32_t)(uint32_t)ritz_mat_bits(at + 4 * k, 4, swap);
+        word[k] = (int32_t)(uint32_t)ritz_bytes_bits(at + 4 * k, 4, swap);
     word[0] -= swap ? 1000 : 0;
     if (word[0] < 0 || word[0] > 52 || word[0] % 10 > SPARSE || word[1] < 0 ||
         word[2] < 0 || word[3] < 0 || word[3] > 1 || word[4] < 1 ||
@@ -84,8 +84,9 @@ static ritz_status add_sparse(ritz_mat_list *list, const char *name,
     RITZ_REFUSE_IF(n < 1 || h->ncol < 3 || h->ncol > 4 || h->parts > 1,
                    RITZ_ERR_FORMAT, "'%s' is no sparse matrix", name);
     for (int64_t j = 0; j < h->ncol; j++)
-        column[j] = (ritz_mat_values){all->at + j * n * ritz_mat_size(h->type),
-                                      n, all->type, all->swap};
+        column[j] =
+            (ritz_mat_values){all->at + j * n * ritz_bytes_size(h->type), n,
+                              all->type, all->swap};
     for (int k = 0; k < 2; k++) {
         size[k] = ritz_mat_value(&column[k], n - 1);
         RITZ_REFUSE_IF(!(size[k] >= 0.0 && size[k] < 9e15), RITZ_ERR_FORMAT,
@@ -117,7 +118,7 @@ static ritz_status add_variable(ritz_mat_list *list, const char *name,
         return add_sparse(list, name, h, &e.re);
     if (h->parts > 1) {
         e.im = e.re;
-        e.im.at += e.count * ritz_mat_size(h->type);
+        e.im.at += e.count * ritz_bytes_size(h->type);
     }
     return ritz_mat_add(list, name, &e);
 }
@@ -139,13 +140,13 @@ ritz_status ritz_mat_read_level4(const char *bytes, int64_t size,
             RITZ_ERR_FORMAT, "byte %" PRId64 ": no matrix begins here", at);
         left -= HEAD + h.name_size;
         at += HEAD + h.name_size;
-        values = left / (h.parts * ritz_mat_size(h.type));
+        values = left / (h.parts * ritz_bytes_size(h.type));
         RITZ_REFUSE_IF(h.ncol > 0 && h.nrow > values / h.ncol, RITZ_ERR_FORMAT,
                        "'%s' is %" PRId64 " x %" PRId64 ", but %" PRId64
                        " bytes are left",
                        name, h.nrow, h.ncol, left);
         RITZ_CHECK(add_variable(list, name, &h, bytes + at));
-        at += h.nrow * h.ncol * h.parts * ritz_mat_size(h.type);
+        at += h.nrow * h.ncol * h.parts * ritz_bytes_size(h.type);
     }
     return RITZ_OK;
 }

@@ -46,7 +46,7 @@ static int version_of(const char *bytes, int64_t size, bool *swap)
     if (memcmp(at + 2, "IM", 2) != 0 && memcmp(at + 2, "MI", 2) != 0)
         return 0;
     *swap = at[2] == 'M'; /* it was written as a number, "MI" of big endian */
-    return (int)ritz_mat_bits(at, 2, *swap);
+    return (int)ritz_bytes_bits(at, 2, *swap);
 }
 
 bool ritz_mat_is_level5(const char *bytes, int64_t size)
@@ -68,7 +68,7 @@ static ritz_status take_element(mat_reader *r, mat_element *out)
                    "byte %" PRId64 ": an element begins, but %" PRId64
                    " bytes are left",
                    where, left);
-    first = ritz_mat_bits(r->at, 4, r->swap);
+    first = ritz_bytes_bits(r->at, 4, r->swap);
     if (first >> 16) { /* small */
         length = (int64_t)(first >> 16);
         RITZ_REFUSE_IF(length > 4, RITZ_ERR_FORMAT,
@@ -79,7 +79,7 @@ static ritz_status take_element(mat_reader *r, mat_element *out)
         r->at += 8;
         return RITZ_OK;
     }
-    length = (int64_t)ritz_mat_bits(r->at + 4, 4, r->swap);
+    length = (int64_t)ritz_bytes_bits(r->at + 4, 4, r->swap);
     RITZ_REFUSE_IF(length > left - 8, RITZ_ERR_FORMAT,
                    "byte %" PRId64 ": an element of %" PRId64
                    " bytes begins, but %" PRId64 " are left",
@@ -145,7 +145,7 @@ static ritz_status take_values(mat_reader *r, ritz_mat_values *out)
     int64_t size = 0;
 
     RITZ_CHECK(take_element(r, &e));
-    size = ritz_mat_size(e.type);
+    size = ritz_bytes_size(e.type);
     RITZ_REFUSE_IF(size == 0, RITZ_ERR_FORMAT,
                    "values of type %d, which is none of numbers", e.type);
     *out = (ritz_mat_values){e.at, e.bytes / size, e.type, r->swap};
@@ -171,23 +171,23 @@ static ritz_status read_head(mat_reader *r, const char *outer, mat_array *out)
     mat_element e = {0};
     uint64_t flags = 0;
 
-    RITZ_CHECK(take_typed(r, "array flags", RITZ_MAT_UINT32, 8, &e));
-    flags = ritz_mat_bits(e.at, 4, r->swap);
+    RITZ_CHECK(take_typed(r, "array flags", RITZ_BYTES_UINT32, 8, &e));
+    flags = ritz_bytes_bits(e.at, 4, r->swap);
     out->class = (int)(flags & 0xff);
     out->complex = flags & FLAG_COMPLEX;
     out->nrow = out->ncol = 1;
     if (out->class != CLASS_OPAQUE) {
-        RITZ_CHECK(take_typed(r, "dimensions", RITZ_MAT_INT32, -1, &e));
+        RITZ_CHECK(take_typed(r, "dimensions", RITZ_BYTES_INT32, -1, &e));
         out->num_dims = (int)(e.bytes / 4);
         RITZ_REFUSE_IF(out->num_dims < 2, RITZ_ERR_FORMAT,
                        "an array of %d dimensions", out->num_dims);
-        out->nrow = (int32_t)(uint32_t)ritz_mat_bits(e.at, 4, r->swap);
-        out->ncol = (int32_t)(uint32_t)ritz_mat_bits(e.at + 4, 4, r->swap);
+        out->nrow = (int32_t)(uint32_t)ritz_bytes_bits(e.at, 4, r->swap);
+        out->ncol = (int32_t)(uint32_t)ritz_bytes_bits(e.at + 4, 4, r->swap);
         RITZ_REFUSE_IF(out->nrow < 0 || out->ncol < 0, RITZ_ERR_FORMAT,
                        "an array of %" PRId64 " x %" PRId64, out->nrow,
                        out->ncol);
     }
-    RITZ_CHECK(take_typed(r, "a name's letters", RITZ_MAT_INT8, -1, &e));
+    RITZ_CHECK(take_typed(r, "a name's letters", RITZ_BYTES_INT8, -1, &e));
     return join_names(outer, (const char *)e.at, e.bytes, out->name);
 }
 
@@ -276,9 +276,9 @@ static ritz_status read_struct(mat_reader *r, const mat_array *a, int depth,
     mat_element size = {0};
     int64_t length = 0;
 
-    RITZ_CHECK(take_typed(r, "lengths of names", RITZ_MAT_INT32, 4, &size));
-    length = (int32_t)(uint32_t)ritz_mat_bits(size.at, 4, r->swap);
-    RITZ_CHECK(take_typed(r, "names of fields", RITZ_MAT_INT8, -1, &names));
+    RITZ_CHECK(take_typed(r, "lengths of names", RITZ_BYTES_INT32, 4, &size));
+    length = (int32_t)(uint32_t)ritz_bytes_bits(size.at, 4, r->swap);
+    RITZ_CHECK(take_typed(r, "names of fields", RITZ_BYTES_INT8, -1, &names));
     RITZ_REFUSE_IF(length < 1 || names.bytes % length != 0, RITZ_ERR_FORMAT,
                    "'%s': %" PRId64 " bytes are no names of %" PRId64 " each",
                    a->name, names.bytes, length);
@@ -383,7 +383,7 @@ static ritz_status inflate_element(const mat_element *packed, bool swap,
     RITZ_CHECK(inflate_bytes(packed, sizeof tag, tag, &got));
     RITZ_REFUSE_IF(got < (int64_t)sizeof tag, RITZ_ERR_FORMAT,
                    "compressed data are damaged");
-    *size = (int64_t)sizeof tag + (int64_t)ritz_mat_bits(tag + 4, 4, swap);
+    *size = (int64_t)sizeof tag + (int64_t)ritz_bytes_bits(tag + 4, 4, swap);
     RITZ_REFUSE_IF(*size / RITZ_MAT_MOST_RATIO > packed->bytes, RITZ_ERR_FORMAT,
                    "declares %" PRId64 " bytes, which %" PRId64
                    " cannot be inflated to",

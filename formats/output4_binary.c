@@ -8,6 +8,7 @@
  * and size of integers follow from the first length. Lengths are integers of 4
  * bytes, of 8 by some compilers; records of no bytes may stand between others.
  */
+#include "formats/bytes.h"
 #include "formats/output4.h"
 
 #include <inttypes.h>
@@ -19,21 +20,12 @@ typedef struct ritz_binary_record {
     int64_t size;
 } ritz_binary_record;
 
-/** @p size bytes as an unsigned number. */
-static inline uint64_t load_bits(const char *at, int64_t size, bool big_endian)
-{
-    uint64_t value = 0;
-
-    for (int64_t k = 0; k < size; k++)
-        value = value << 8 | (unsigned char)at[big_endian ? k : size - 1 - k];
-    return value;
-}
-
 /** @p size bytes, 4 or 8, as an integer. */
 static inline int64_t load_integer(const ritz_output4_reader *b, const char *at,
                                    int64_t size)
 {
-    uint64_t bits = load_bits(at, size, b->big_endian);
+    uint64_t bits =
+        ritz_bytes_bits((const unsigned char *)at, size, b->big_endian);
 
     return size == 4 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
 }
@@ -55,8 +47,8 @@ static bool find_spelling(ritz_output4_reader *b)
         b->big_endian = k & 1;
         b->integer = k & 2 ? 8 : 4;
         b->mark = k & 4 ? 4 : 8;
-        if (size >= b->mark && load_bits(b->begin, b->mark, b->big_endian) ==
-                                   (uint64_t)(6 * b->integer))
+        if (size >= b->mark &&
+            load_integer(b, b->begin, b->mark) == 6 * b->integer)
             return true;
     }
     return false;
@@ -123,33 +115,11 @@ static ritz_status take_header(ritz_output4_reader *b, ritz_output4_header *out,
 
 /* ---- columns ------------------------------------------------------------ */
 
-/* 8 bytes as an unsigned number, in a form that compiles to one instruction. */
-static uint64_t load_8(const char *bytes, bool big_endian)
-{
-    const unsigned char *at = (const unsigned char *)bytes;
-    uint64_t up = (uint64_t)at[0] | (uint64_t)at[1] << 8 |
-                  (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24 |
-                  (uint64_t)at[4] << 32 | (uint64_t)at[5] << 40 |
-                  (uint64_t)at[6] << 48 | (uint64_t)at[7] << 56;
-
-    return big_endian ? load_bits(bytes, 8, true) : up;
-}
-
 static double load_real(const ritz_output4_reader *b, const char *at)
 {
-    double wide = 0.0;
-    float narrow = 0.0F;
-    uint64_t bits = 0;
-    uint32_t half = 0;
-
-    if (b->real == 4) {
-        half = (uint32_t)load_bits(at, 4, b->big_endian);
-        memcpy(&narrow, &half, sizeof narrow);
-        return (double)narrow;
-    }
-    bits = load_8(at, b->big_endian);
-    memcpy(&wide, &bits, sizeof wide);
-    return wide;
+    return ritz_bytes_value(
+        (const unsigned char *)at,
+        b->real == 4 ? RITZ_BYTES_SINGLE : RITZ_BYTES_DOUBLE, b->big_endian);
 }
 
 /* One record after the header. */

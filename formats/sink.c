@@ -1,4 +1,5 @@
-/* Files that exporters write, lines of their reports, XML text. */
+/* What is asked of exporters, files that they write, lines of their reports,
+ * XML text. */
 #include "formats/sink.h"
 
 #include "base/alloc.h"
@@ -66,6 +67,28 @@ ritz_status ritz_sink_check(const ritz_matrix *m)
                            "row %" PRId64 " of column %" PRId64
                            " of '%s' is not finite",
                            m->A.rowind[p] + 1, j + 1, m->name);
+    return RITZ_OK;
+}
+
+ritz_status ritz_export_check(const ritz_exporter *exporter,
+                              const ritz_export_request *request)
+{
+    bool styled = request->text || request->dense || request->digits > 0;
+
+    RITZ_REFUSE_IF(
+        request->matrices && !(exporter->takes & RITZ_EXPORT_MATRICES),
+        RITZ_ERR_ARGUMENT, "%s has no matrices to choose", exporter->name);
+    RITZ_REFUSE_IF(request->matrices && !*request->matrices, RITZ_ERR_ARGUMENT,
+                   "no matrix is named");
+    RITZ_REFUSE_IF(request->modes && !(exporter->takes & RITZ_EXPORT_SHAPES),
+                   RITZ_ERR_ARGUMENT,
+                   "%s takes a model whole, without a choice of modes",
+                   exporter->name);
+    RITZ_REFUSE_IF(styled && !(exporter->takes & RITZ_EXPORT_STYLE),
+                   RITZ_ERR_ARGUMENT,
+                   "%s has one way of writing, without text, "
+                   "dense or digits",
+                   exporter->name);
     return RITZ_OK;
 }
 

@@ -1,0 +1,38 @@
+/* Numbers as the bytes of a file hold them. */
+#ifndef RITZ_FORMATS_BYTES_H
+#define RITZ_FORMATS_BYTES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Types of numbers, by the numbers that MAT files give them. */
+enum {
+    RITZ_BYTES_INT8 = 1,
+    RITZ_BYTES_UINT8,
+    RITZ_BYTES_INT16,
+    RITZ_BYTES_UINT16,
+    RITZ_BYTES_INT32,
+    RITZ_BYTES_UINT32,
+    RITZ_BYTES_SINGLE,
+    RITZ_BYTES_DOUBLE = 9,
+    RITZ_BYTES_INT64 = 12,
+    RITZ_BYTES_UINT64,
+};
+
+/** Bytes of a number; 0 if the type is none of these. */
+int64_t ritz_bytes_size(int type);
+
+/** An unsigned number of 1 to 8 bytes. */
+static inline uint64_t ritz_bytes_bits(const unsigned char *at, int64_t size,
+                                       bool big_endian)
+{
+    uint64_t bits = 0;
+
+    for (int64_t k = 0; k < size; k++)
+        bits = bits << 8 | at[big_endian ? k : size - 1 - k];
+    return bits;
+}
+
+double ritz_bytes_value(const unsigned char *at, int type, bool big_endian);
+
+#endif
