@@ -267,6 +267,19 @@ ritz_status ritz_check_reduced_structural(ritz_checker *it)
  * which hold a free body or drive it.
  */
 
+ritz_status ritz_check_modes(const ritz_structure *model,
+                             const ritz_damping *damping,
+                             ritz_modal_model *modes, bool *singular)
+{
+    ritz_status status = RITZ_OK;
+    RITZ_OWN(ritz_io) none = {0};
+
+    RITZ_CHECK(ritz_io_new(model->K.nrow, 0, 0, &none));
+    status = ritz_modal_model_new(model, &none, damping, modes);
+    *singular = status == RITZ_ERR_SINGULAR;
+    return *singular ? RITZ_OK : status;
+}
+
 /* phi'K phi of rigid motions, 0 where it is rounding: the largest magnitude. */
 static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
                                    int64_t *at)

@@ -55,19 +55,6 @@ ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out)
     return RITZ_OK;
 }
 
-ritz_status ritz_check_modes(const ritz_structure *model,
-                             const ritz_damping *damping,
-                             ritz_modal_model *modes, bool *singular)
-{
-    ritz_status status = RITZ_OK;
-    RITZ_OWN(ritz_io) none = {0};
-
-    RITZ_CHECK(ritz_io_new(model->K.nrow, 0, 0, &none));
-    status = ritz_modal_model_new(model, &none, damping, modes);
-    *singular = status == RITZ_ERR_SINGULAR;
-    return *singular ? RITZ_OK : status;
-}
-
 static ritz_status probe_modes(const ritz_modal_model *modes, ritz_probe *out)
 {
     const ritz_modal_layout layout = {0};

@@ -5,10 +5,10 @@
  *     k_k / (k_k - kappa_rho) = (rho - sigma) / (rho - theta_k)
  *
  * So the first is taken in a wide gap some way above the band. Let o be the
- * full modes less the reduced ones below a count. A mode with the same o in the
- * next counts above and below is full mode k + o; where o jumps between them,
- * modes are missing there, and where is found by halving. Then counts move away
- * from the mode as far as its neighbours let them.
+ * number of full modes less that of reduced ones below a count. If o is the same
+ * in the next counts above and below reduced mode k, it is full mode k + o; if
+ * not, modes are missing between these counts, and are located by halving. Then
+ * counts move away from the mode as far as its neighbours let them.
  */
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
@@ -42,17 +42,31 @@ done:
     return ritz_context(status, "estimate");
 }
 
+int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
+{
+    int64_t below = 0;
+
+    while (below < count && lambda[below] < rho)
+        below++;
+    return below;
+}
+
+static int64_t count_trial_below(const ritz_measuring *m, double rho)
+{
+    return ritz_count_below(m->trial.count, m->trial.theta, rho);
+}
+
 /* A point of a gap, nearer to its lower end: reduced modes are too high. */
-static double within(double low, double high)
+static double split_gap(double low, double high)
 {
     return low + 0.3 * (high - low);
 }
 
 /* A point in the widest gap theta_i, theta_i+1 without a count, of first <= i <
    last; NaN: none. */
-static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
-                     int64_t first, int64_t last)
+static double find_widest(const ritz_measuring *m, int64_t first, int64_t last)
 {
+    const ritz_lehmann *trial = &m->trial;
     double best = RITZ_GAP_NARROW;
     double rho = nan("");
 
@@ -63,9 +77,9 @@ static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
         double gap = (high - low) / (high - trial->sigma);
 
         if (gap > best && high > trial->rounding[i] && low >= 0.0 &&
-            !ritz_counted_within(estimator, low, high)) {
+            !ritz_counted_within(m->estimator, low, high)) {
             best = gap;
-            rho = within(low, high);
+            rho = split_gap(low, high);
         }
     }
     return rho;
@@ -73,38 +87,21 @@ static double widest(const ritz_estimator *estimator, const ritz_lehmann *trial,
 
 /* A point in the widest gap between `from` and `to`, which are above the band;
    NaN if a count is there, or no gap. */
-static double above_band(const ritz_estimator *estimator,
-                         const ritz_lehmann *trial, double from, double to)
+static double find_above(const ritz_measuring *m, double from, double to)
 {
-    int64_t first = 0;
-    int64_t last = 0;
+    int64_t first = count_trial_below(m, from);
 
-    if (ritz_counted_within(estimator, from, to))
+    if (first == 0 || ritz_counted_within(m->estimator, from, to))
         return nan("");
-    while (first < trial->count && trial->theta[first] < from)
-        first++;
-    last = first;
-    while (last < trial->count && trial->theta[last] < to)
-        last++;
-    return first > 0 ? widest(estimator, trial, first - 1, last) : nan("");
+    return find_widest(m, first - 1, count_trial_below(m, to));
 }
 
-static bool satisfied(const ritz_claim *claim, double rounding)
+static bool is_tight(const ritz_claim *claim, double rounding)
 {
     return claim->full_mode >= 0 &&
            claim->bound <=
                2.0 * rounding +
                    RITZ_GOOD_RATIO * fmin(claim->least, RITZ_COARSE_ERROR);
-}
-
-/* Reduced modes below rho. */
-static int64_t trial_below(const ritz_lehmann *trial, double rho)
-{
-    int64_t below = 0;
-
-    while (below < trial->count && trial->theta[below] < rho)
-        below++;
-    return below;
 }
 
 /* The counts next to a mode, and how many full modes each has more than the
@@ -115,32 +112,30 @@ typedef struct sides {
     int64_t first, last;       /* reduced modes between, last included */
 } sides;
 
-static sides sides_of(const ritz_estimator *estimator,
-                      const ritz_lehmann *trial, int64_t k)
+static sides find_sides(const ritz_measuring *m, int64_t k)
 {
-    sides s = {.high = HUGE_VAL, .last = trial->count - 1};
+    const ritz_counted *c = m->estimator->count;
+    sides s = {.high = HUGE_VAL, .last = m->trial.count - 1};
 
-    for (int64_t i = 0; i < estimator->num_counts; i++) {
-        const ritz_counted *c = &estimator->count[i];
-        int64_t below = trial_below(trial, c->rho);
+    for (int64_t i = 0; i < m->estimator->num_counts; i++) {
+        int64_t below = count_trial_below(m, c[i].rho);
 
-        if (below <= k) {
-            s.low = c->rho;
-            s.low_off = c->below - below;
-            s.first = below;
-        } else {
-            s.high = c->rho;
-            s.high_off = c->below - below;
+        if (below > k) {
+            s.high = c[i].rho;
+            s.high_off = c[i].below - below;
             s.last = below - 1;
             break;
         }
+        s.low = c[i].rho;
+        s.low_off = c[i].below - below;
+        s.first = below;
     }
     return s;
 }
 
 /* A point between two ends; NaN if they are close compared with their distance
    to theta. */
-static double between(double low, double high, double theta)
+static double split_ends(double low, double high, double theta)
 {
     double off = fmin(fabs(low - theta), fabs(high - theta));
 
@@ -152,63 +147,48 @@ static double between(double low, double high, double theta)
 
 /* Where modes are missing between the counts around mode k: a count that tells
    on which side of it. */
-static double locate(const ritz_estimator *estimator, const ritz_lehmann *trial,
-                     const sides *s, int64_t k, double least)
+static double locate_missing(const ritz_measuring *m, const sides *s, int64_t k,
+                             double least)
 {
-    double theta = trial->theta[k];
+    double theta = m->trial.theta[k];
     double about = fmax(4.0 * least * theta, RITZ_GAP_NARROW * theta);
     int64_t middle = (s->first + s->last) / 2;
 
     if (s->last > s->first)
-        return widest(estimator, trial, middle, middle + 1);
+        return find_widest(m, middle, middle + 1);
     if (s->high - theta > about)
-        return within(theta, fmin(s->high, 4.0 * theta));
+        return split_gap(theta, fmin(s->high, 4.0 * theta));
     if (theta - s->low > about)
-        return theta - within(0.0, theta - s->low);
+        return theta - split_gap(0.0, theta - s->low);
     return nan("");
 }
 
 /* Where mode k is known to be full mode p: a count in the gap above or below
    it, further off than those there are. */
-static double spread(const ritz_lehmann *trial, const ritz_enclosure *e,
-                     const sides *s, int64_t k, int64_t p)
+static double move_away(const ritz_measuring *m, const sides *s, int64_t k,
+                        int64_t p)
 {
-    double theta = trial->theta[k];
-    double reach = theta - trial->sigma;
+    const ritz_enclosure *e = &m->enclosure;
+    double theta = m->trial.theta[k];
+    double reach = theta - m->trial.sigma;
     double low = fmax(theta, e->low[p + 1]);
     double high = fmin(e->high[p + 1], 4.0 * theta);
     double rho = nan("");
 
-    if (low - trial->sigma < RITZ_COUNT_ENOUGH * reach)
-        rho = between(low, high, theta);
+    if (low - m->trial.sigma < RITZ_COUNT_ENOUGH * reach)
+        rho = split_ends(low, high, theta);
     if (isnan(rho) && p != k)
-        rho = between(e->low[p - 1], fmin(e->high[p - 1], theta), theta);
+        rho = split_ends(e->low[p - 1], fmin(e->high[p - 1], theta), theta);
     if (isnan(rho) && s->low < theta)
-        rho = between(fmax(e->low[p], s->low), fmin(e->high[p], theta), 0.0);
+        rho = split_ends(fmax(e->low[p], s->low), fmin(e->high[p], theta), 0.0);
     return rho;
 }
 
-static double around(const ritz_estimator *estimator, const ritz_lehmann *trial,
-                     const ritz_enclosure *e, int64_t k, double least)
+double ritz_propose_above(const ritz_measuring *m)
 {
-    sides s = sides_of(estimator, trial, k);
-    int64_t p = k + s.low_off;
-    double rho = nan("");
+    double band = ritz_eigen_lambda(m->band_hz[1]);
 
-    if (isinf(s.high))
-        rho = widest(estimator, trial, k, k + GAPS_AROUND);
-    else if (s.low_off != s.high_off)
-        rho = locate(estimator, trial, &s, k, least);
-    if (isnan(rho) && p >= 0 && p + 1 < e->count)
-        rho = spread(trial, e, &s, k, p);
-    return rho;
-}
-
-double ritz_propose_above(const ritz_estimator *estimator,
-                          const ritz_lehmann *trial, double band)
-{
-    return above_band(estimator, trial, RITZ_COUNT_FAR * band,
-                      RITZ_COUNT_FARTHEST * band);
+    return find_above(m, RITZ_COUNT_FAR * band, RITZ_COUNT_FARTHEST * band);
 }
 
 bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho)
@@ -221,6 +201,17 @@ bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho)
     return false;
 }
 
+bool ritz_counted_within(const ritz_estimator *estimator, double low,
+                         double high)
+{
+    const ritz_counted *c = estimator->count;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++)
+        if (c[s].rho > low && c[s].rho < high)
+            return true;
+    return false;
+}
+
 bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
                         double theta, double band)
 {
@@ -228,68 +219,66 @@ bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
            ritz_counted_more(estimator, k, 0.5 * theta);
 }
 
-/* Where to count for one mode; NaN if its claim is good enough. */
-static double next_for(const ritz_estimator *estimator,
-                       const ritz_lehmann *trial,
-                       const ritz_enclosure *enclosure, int64_t k, double band)
+/* Where to count for one mode; NaN if its claim is tight enough. */
+static double propose_for(const ritz_measuring *m, int64_t k, double band)
 {
-    double theta = trial->theta[k];
-    ritz_claim claim = ritz_claim_of(trial, enclosure, k, theta);
+    double theta = m->trial.theta[k];
+    ritz_claim claim = ritz_claim_of(m, k);
+    sides s = find_sides(m, k);
+    int64_t p = k + s.low_off;
+    double rho = nan("");
 
-    if (ritz_counted_rigid(estimator, k, theta, band) ||
-        satisfied(&claim, trial->reduced_rounding[k] / theta))
+    if (ritz_counted_rigid(m->estimator, k, theta, band) ||
+        is_tight(&claim, m->trial.reduced_rounding[k] / theta))
         return nan("");
     if (theta <= RITZ_MAY_BE_RIGID * band)
         return 0.1 * theta;
-    return around(estimator, trial, enclosure, k, claim.least);
+    if (isinf(s.high))
+        rho = find_widest(m, k, k + GAPS_AROUND);
+    else if (s.low_off != s.high_off)
+        rho = locate_missing(m, &s, k, claim.least);
+    if (isnan(rho) && p >= 0 && p + 1 < m->enclosure.count)
+        rho = move_away(m, &s, k, p);
+    return rho;
 }
 
-double ritz_propose_count(const ritz_estimator *estimator,
-                          const ritz_lehmann *trial,
-                          const ritz_enclosure *enclosure,
-                          const ritz_pursuit *pursuit, int64_t *mode)
+double ritz_propose_count(const ritz_measuring *m, const int64_t *tries,
+                          int64_t *mode)
 {
-    int64_t first = pursuit->first;
-    int64_t last = pursuit->last;
-    double band = last > first ? trial->theta[last - 1] : 0.0;
-    double rho = band > 0.0
-                     ? above_band(estimator, trial, RITZ_COUNT_NEAR * band,
-                                  RITZ_COUNT_FAR * band)
-                     : nan("");
+    double band = m->reach > m->first ? m->trial.theta[m->reach - 1] : 0.0;
+    double rho = nan("");
     int64_t fewest = MOST_FOR_ONE;
 
+    if (band > 0.0)
+        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_FAR * band);
     *mode = -1;
-    for (int64_t k = last - 1; k >= first && (isnan(rho) || *mode >= 0); k--) {
-        double next = pursuit->tries[k - first] < fewest
-                          ? next_for(estimator, trial, enclosure, k, band)
-                          : nan("");
+    for (int64_t k = m->reach - 1; k >= m->first && (isnan(rho) || *mode >= 0);
+         k--) {
+        int64_t tried = tries[k - m->first];
+        double next = tried < fewest ? propose_for(m, k, band) : nan("");
 
-        if (next > trial->rounding[k]) {
+        if (next > m->trial.rounding[k]) {
             rho = next;
             *mode = k;
-            fewest = pursuit->tries[k - first];
+            fewest = tried;
         }
     }
     return rho;
 }
 
-int64_t ritz_missing_modes(const ritz_estimator *estimator,
-                           const ritz_measuring *m, double *at)
+int64_t ritz_missing_modes(const ritz_measuring *m)
 {
     double end = ritz_eigen_lambda(m->band_hz[1]);
     int64_t least = -1;
 
-    for (int64_t s = 0; s < estimator->num_counts; s++) {
-        const ritz_counted *c = &estimator->count[s];
-        int64_t below = 0;
+    for (int64_t s = 0; s < m->estimator->num_counts; s++) {
+        const ritz_counted *c = &m->estimator->count[s];
+        int64_t below =
+            ritz_count_below(m->pairs.Phi.ncol, m->pairs.lambda, c->rho);
+        int64_t more = c->below > below ? c->below - below : 0;
 
-        while (below < m->pairs.Phi.ncol && m->pairs.lambda[below] < c->rho)
-            below++;
-        below = c->below > below ? c->below - below : 0;
-        if (c->rho >= end && (least < 0 || below < least)) {
-            least = below;
-            *at = c->rho;
-        }
+        if (c->rho >= end && (least < 0 || more < least))
+            least = more;
     }
     return least;
 }

@@ -29,6 +29,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
+#include "linear/general.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -87,7 +88,7 @@ static ritz_status take_ritz_pairs(const ritz_component *full,
 }
 
 /* |x|'|K||x| of each column. */
-static double magnitude(const ritz_sparse *K, const double *x)
+static double sum_magnitudes(const ritz_sparse *K, const double *x)
 {
     double sum = 0.0;
 
@@ -120,10 +121,10 @@ static ritz_status take_residuals(const ritz_component *full,
 
         for (int64_t i = 0; i < MX.nrow; i++)
             r[i] -= trial->theta[j] * ritz_dense_col(&MX, j)[i];
-        trial->mass_terms[j] = magnitude(&full->M, x);
+        trial->mass_terms[j] = sum_magnitudes(&full->M, x);
         trial->rounding[j] =
             RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
-            (magnitude(&full->K, x) +
+            (sum_magnitudes(&full->K, x) +
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
     }
@@ -253,6 +254,11 @@ void ritz_lehmann_free(ritz_lehmann *trial)
  * and nu are the eigenvalues of L'JL.
  */
 
+static double shift_of(const ritz_lehmann *trial, int64_t j)
+{
+    return trial->theta[j] - trial->sigma;
+}
+
 /* Diagonal of D; false if rounding may have turned a sign of it. */
 static bool take_offsets(const ritz_lehmann *trial, double rho, double *d)
 {
@@ -260,7 +266,7 @@ static bool take_offsets(const ritz_lehmann *trial, double rho, double *d)
 
     for (int64_t j = 0; j < trial->count; j++) {
         double off = rho - trial->theta[j];
-        double t = trial->theta[j] - trial->sigma;
+        double t = shift_of(trial, j);
 
         clear = clear && fabs(off) > trial->rounding[j];
         d[j] = off / (t * (rho - trial->sigma));
@@ -272,11 +278,11 @@ static bool take_offsets(const ritz_lehmann *trial, double rho, double *d)
 static void fill_form(const ritz_lehmann *trial, const double *d, ritz_dense *H)
 {
     for (int64_t j = 0; j < trial->count; j++) {
-        double t_j = trial->theta[j] - trial->sigma;
+        double t_j = shift_of(trial, j);
         double rounded = trial->rounding[j] / (t_j * t_j);
 
         for (int64_t i = 0; i < trial->count; i++) {
-            double t = (trial->theta[i] - trial->sigma) * t_j;
+            double t = shift_of(trial, i) * t_j;
 
             ritz_dense_col(H, j)[i] = ritz_dense_col(&trial->G, j)[i] /
                                       (t * sqrt(t * fabs(d[i] * d[j])));
@@ -310,10 +316,7 @@ static ritz_status join_signs(const ritz_dense *L, const double *d,
     return RITZ_OK;
 }
 
-/*
- * nu for rho, ascending; none where rho is too close to a
- * mode of the trial.
- */
+/* nu for rho, ascending; none where rho is too close to a mode of the trial. */
 static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
                                  ritz_pairs *out)
 {
@@ -321,7 +324,6 @@ static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
     RITZ_OWN_ARRAY double *d = NULL;
     RITZ_OWN(ritz_dense) L = {0};
     RITZ_OWN(ritz_dense) LJL = {0};
-    RITZ_OWN(ritz_dense) one = {0};
 
     RITZ_CHECK_NEW(d, m);
     if (!take_offsets(trial, rho, d))
@@ -331,19 +333,11 @@ static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
     if (!factor_form(&L))
         return RITZ_OK;
     RITZ_CHECK(join_signs(&L, d, &LJL));
-    RITZ_CHECK(ritz_dense_new(m, m, &one));
-    for (int64_t j = 0; j < m; j++)
-        ritz_dense_col(&one, j)[j] = 1.0;
-    return ritz_eigen_dense(&LJL, &one, out);
-}
-
-static double shifted(const ritz_lehmann *trial, int64_t j)
-{
-    return trial->theta[j] - trial->sigma;
+    return ritz_general_symmetric(&LJL, out);
 }
 
 /* 1 / (kappa_rho + 1 / tau) + sigma; infinite if that kappa is not positive. */
-static double eigenvalue(double kappa, double sigma)
+static double lambda_of(double kappa, double sigma)
 {
     return kappa > 0.0 ? 1.0 / kappa + sigma : HUGE_VAL;
 }
@@ -370,56 +364,42 @@ static double rounding_of(const ritz_pairs *nu)
 }
 
 /*
- * What one count says of full modes below it: least is carried down, as modes
- * that rounding may exchange share it.
+ * What one count says of the full modes below it, by the positive nu from the
+ * least on, or of those above it, by the others from the last on. Each end is
+ * carried on to the modes further away, as modes that rounding may exchange
+ * share it.
  */
-static void enclose_below(const ritz_lehmann *trial, const ritz_pairs *nu,
-                          double kappa_rho, int64_t below, ritz_enclosure *e)
+static void enclose_side(const ritz_lehmann *trial, const ritz_pairs *nu,
+                         double kappa_rho, int64_t below, bool above,
+                         ritz_enclosure *e)
 {
     int64_t count = nu->Phi.ncol;
-    int64_t first = 0;
-    double off = rounding_of(nu);
-    double least = HUGE_VAL;
+    int64_t positive = 0; /* the first of these */
+    double off = above ? -rounding_of(nu) : rounding_of(nu);
+    double end = above ? 0.0 : HUGE_VAL;
 
-    while (first < count && nu->lambda[first] <= 0.0)
-        first++;
-    for (int64_t at = first; at < count; at++) {
-        int64_t p = below - 1 - (at - first);
-        double kappa = kappa_rho + nu->lambda[at] + off;
+    while (positive < count && nu->lambda[positive] <= 0.0)
+        positive++;
+    for (int64_t k = 0; k < (above ? positive : count - positive); k++) {
+        int64_t at = above ? positive - 1 - k : positive + k;
+        int64_t p = above ? below + k : below - 1 - k;
+        double lambda =
+            lambda_of(kappa_rho + nu->lambda[at] + off, trial->sigma);
+        double rounding = trial->rounding[count - 1 - at];
 
-        least = fmin(least, eigenvalue(kappa, trial->sigma) -
-                                trial->rounding[count - 1 - at]);
-        if (p >= 0 && p < e->count)
-            e->low[p] = fmax(e->low[p], least);
-    }
-}
-
-/* The same of modes above it: most is carried up. */
-static void enclose_above(const ritz_lehmann *trial, const ritz_pairs *nu,
-                          double kappa_rho, int64_t below, ritz_enclosure *e)
-{
-    int64_t count = nu->Phi.ncol;
-    int64_t last = count - 1;
-    double off = rounding_of(nu);
-    double most = 0.0;
-
-    while (last >= 0 && nu->lambda[last] > 0.0)
-        last--;
-    for (int64_t at = last; at >= 0; at--) {
-        int64_t p = below + (last - at);
-        double kappa = kappa_rho + nu->lambda[at] - off;
-
-        most = fmax(most, eigenvalue(kappa, trial->sigma) +
-                              trial->rounding[count - 1 - at]);
-        if (p < e->count)
-            e->high[p] = fmin(e->high[p], most);
+        end =
+            above ? fmax(end, lambda + rounding) : fmin(end, lambda - rounding);
+        if (above && p < e->count)
+            e->high[p] = fmin(e->high[p], end);
+        else if (!above && p >= 0 && p < e->count)
+            e->low[p] = fmax(e->low[p], end);
     }
 }
 
 /* What one count says of eigenvalues above it, or below it. */
-static ritz_status enclose(const ritz_lehmann *trial,
-                           const ritz_counted *counted, bool above,
-                           ritz_enclosure *e)
+static ritz_status use_count(const ritz_lehmann *trial,
+                             const ritz_counted *counted, bool above,
+                             ritz_enclosure *e)
 {
     double off = RITZ_COUNT_MARGIN * rounding_at(trial, counted->rho);
     double rho = counted->rho + (above ? off : -off);
@@ -429,10 +409,7 @@ static ritz_status enclose(const ritz_lehmann *trial,
     if (!(kappa_rho > 0.0))
         return RITZ_OK;
     RITZ_CHECK(solve_lehmann(trial, rho, &nu));
-    if (above)
-        enclose_above(trial, &nu, kappa_rho, counted->below, e);
-    else
-        enclose_below(trial, &nu, kappa_rho, counted->below, e);
+    enclose_side(trial, &nu, kappa_rho, counted->below, above, e);
     return RITZ_OK;
 }
 
@@ -444,25 +421,23 @@ static ritz_status improve_from_above(const ritz_lehmann *trial,
     double off = 0.0;
     double most = 0.0;
     RITZ_OWN(ritz_dense) S = {0};
-    RITZ_OWN(ritz_dense) one = {0};
     RITZ_OWN(ritz_pairs) kappa = {0};
 
     RITZ_CHECK(ritz_dense_new(m, m, &S));
-    RITZ_CHECK(ritz_dense_new(m, m, &one));
     for (int64_t j = 0; j < m; j++) {
         for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(&S, j)[i] = ritz_dense_col(&trial->G, j)[i] /
-                                       (shifted(trial, i) * shifted(trial, j));
-        ritz_dense_col(&S, j)[j] += 1.0 / shifted(trial, j);
-        ritz_dense_col(&one, j)[j] = 1.0;
+            ritz_dense_col(&S, j)[i] =
+                ritz_dense_col(&trial->G, j)[i] /
+                (shift_of(trial, i) * shift_of(trial, j));
+        ritz_dense_col(&S, j)[j] += 1.0 / shift_of(trial, j);
     }
-    RITZ_CHECK(ritz_eigen_dense(&S, &one, &kappa));
+    RITZ_CHECK(ritz_general_symmetric(&S, &kappa));
     off = rounding_of(&kappa);
     for (int64_t k = 0; k < kappa.Phi.ncol; k++) {
         double better =
             fmin(trial->theta[k],
-                 eigenvalue(kappa.lambda[kappa.Phi.ncol - 1 - k] - off,
-                            trial->sigma));
+                 lambda_of(kappa.lambda[kappa.Phi.ncol - 1 - k] - off,
+                           trial->sigma));
 
         most = fmax(most, better + trial->rounding[k]);
         e->high[k] = fmin(e->high[k], most);
@@ -499,14 +474,13 @@ static ritz_status add_trial(const ritz_estimator *estimator,
 
     RITZ_CHECK(improve_from_above(trial, e));
     for (int64_t s = 0; s < estimator->num_counts; s++) {
-        int64_t below = 0;
+        int64_t below =
+            ritz_count_below(trial->count, trial->theta, counted[s].rho);
 
-        while (below < trial->count && trial->theta[below] < counted[s].rho)
-            below++;
         if (below > 0)
-            RITZ_CHECK(enclose(trial, &counted[s], false, e));
+            RITZ_CHECK(use_count(trial, &counted[s], false, e));
         if (below < trial->count && counted[s].below > below)
-            RITZ_CHECK(enclose(trial, &counted[s], true, e));
+            RITZ_CHECK(use_count(trial, &counted[s], true, e));
     }
     return RITZ_OK;
 }
@@ -515,7 +489,7 @@ static ritz_status add_trial(const ritz_estimator *estimator,
 static void add_near(const ritz_lehmann *trial, ritz_enclosure *e)
 {
     for (int64_t k = 0; k < trial->count; k++) {
-        double t = shifted(trial, k);
+        double t = shift_of(trial, k);
         double eps = sqrt(fmax(ritz_dense_col(&trial->G, k)[k], 0.0) / t);
         int64_t at = e->num_near++;
 
@@ -527,11 +501,10 @@ static void add_near(const ritz_lehmann *trial, ritz_enclosure *e)
     }
 }
 
-ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
-                               const ritz_lehmann *trial,
-                               const ritz_lehmann *polished,
-                               ritz_enclosure *out)
+ritz_status ritz_enclosure_new(const ritz_measuring *m, ritz_enclosure *out)
 {
+    const ritz_estimator *estimator = m->estimator;
+    const ritz_lehmann *trial = &m->trial, *polished = &m->polished;
     RITZ_OWN(ritz_enclosure) e = {.count = trial->count};
     const ritz_counted *counted = estimator->count;
 

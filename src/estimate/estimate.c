@@ -29,20 +29,29 @@ enum { MOST_LISTED = 100 };
 enum { MORE = 10 };
 
 /* Take a count; `end` if K - rho M cannot be factored there. */
-static ritz_status count_at(ritz_estimator *estimator, double rho, bool *end)
+static ritz_status count_at(const ritz_measuring *m, double rho, bool *end)
 {
-    ritz_status status = ritz_estimator_count(estimator, rho);
+    ritz_status status = ritz_estimator_count(m->estimator, rho);
 
     *end = status == RITZ_ERR_SINGULAR;
     return *end ? RITZ_OK : status;
 }
 
-static ritz_status enclose_modes(const ritz_estimator *estimator,
-                                 ritz_measuring *m)
+static bool has_room(const ritz_measuring *m)
+{
+    return m->estimator->num_counts < RITZ_MOST_COUNTS;
+}
+
+static ritz_status enclose_modes(ritz_measuring *m)
 {
     ritz_enclosure_free(&m->enclosure);
-    return ritz_enclosure_new(estimator, &m->trial, &m->polished,
-                              &m->enclosure);
+    return ritz_enclosure_new(m, &m->enclosure);
+}
+
+static ritz_status predict_errors(ritz_measuring *m)
+{
+    RITZ_CHECK(enclose_modes(m));
+    return ritz_measuring_predict(m, &m->prediction);
 }
 
 /*
@@ -50,49 +59,42 @@ static ritz_status enclose_modes(const ritz_estimator *estimator,
  * spent. Before the first count for a single mode the trial gets an inverse
  * iteration.
  */
-static ritz_status refine_modes(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status refine_modes(ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->reach - m->first);
-    ritz_pursuit pursuit = {.first = m->first, .last = m->reach};
+    RITZ_OWN_ARRAY int64_t *tries = NULL;
     bool end = false;
 
-    RITZ_NEW(pursuit.tries, m->reach - m->first);
+    RITZ_CHECK_NEW(tries, m->reach - m->first);
     while (!end) {
         double rho = nan("");
         int64_t mode = -1;
 
-        RITZ_TRY(enclose_modes(estimator, m));
-        if (budget-- > 0 && estimator->num_counts < RITZ_MOST_COUNTS)
-            rho = ritz_propose_count(estimator, &m->trial, &m->enclosure,
-                                     &pursuit, &mode);
+        RITZ_CHECK(enclose_modes(m));
+        if (budget-- > 0 && has_room(m))
+            rho = ritz_propose_count(m, tries, &mode);
         if (mode >= 0 && !m->polished.X.val) {
-            RITZ_TRY(ritz_lehmann_polish(estimator, &m->trial, &m->polished));
+            RITZ_CHECK(
+                ritz_lehmann_polish(m->estimator, &m->trial, &m->polished));
             continue;
         }
         if (mode >= 0)
-            pursuit.tries[mode - m->first]++;
+            tries[mode - m->first]++;
         end = isnan(rho);
         if (!end)
-            RITZ_TRY(count_at(estimator, rho, &end));
+            RITZ_CHECK(count_at(m, rho, &end));
     }
-done:
-    free(pursuit.tries);
-    return status;
+    return RITZ_OK;
 }
 
 /* One count far above the band, for responses: the further modes are, the less
    they respond. */
-static ritz_status count_above(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status count_above(ritz_measuring *m)
 {
-    double rho = ritz_propose_above(estimator, &m->trial,
-                                    ritz_eigen_lambda(m->band_hz[1]));
-    bool end = isnan(rho) || estimator->num_counts == RITZ_MOST_COUNTS;
+    double rho = ritz_propose_above(m);
+    bool end = false;
 
-    if (end)
-        return RITZ_OK;
-    RITZ_CHECK(count_at(estimator, rho, &end));
-    return enclose_modes(estimator, m);
+    return isnan(rho) || !has_room(m) ? RITZ_OK : count_at(m, rho, &end);
 }
 
 /* Where to count for missing modes: at the band's end, or in a gap behind. */
@@ -110,99 +112,93 @@ static double end_of_band(const ritz_measuring *m, int64_t gap)
  * Unless it is known that none is missing, count at the end of the band, and in
  * the next gaps, where the partners of the last modes may be.
  */
-static ritz_status count_band(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status count_band(ritz_measuring *m)
 {
-    double at = 0.0;
     bool end = false;
 
     for (int64_t gap = 0; gap < GAPS && m->last + gap <= m->pairs.Phi.ncol &&
-                          ritz_missing_modes(estimator, m, &at) != 0 && !end &&
-                          estimator->num_counts < RITZ_MOST_COUNTS;
+                          ritz_missing_modes(m) != 0 && !end && has_room(m);
          gap++)
-        RITZ_CHECK(count_at(estimator, end_of_band(m, gap), &end));
+        RITZ_CHECK(count_at(m, end_of_band(m, gap), &end));
     return RITZ_OK;
 }
 
 /* Where intervals do not tell which full modes are in the band, count at its
    ends. */
-static ritz_status count_ends(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status count_ends(ritz_measuring *m)
 {
     double end = ritz_eigen_lambda(m->band_hz[1]);
     bool none = false;
 
-    if ((!m->prediction.counted || m->prediction.edge_unclear) &&
-        estimator->num_counts < RITZ_MOST_COUNTS)
-        RITZ_CHECK(count_at(estimator, end * (1.0 + RITZ_COUNT_BEHIND), &none));
-    if (m->prediction.rigid_unclear && estimator->num_counts < RITZ_MOST_COUNTS)
-        RITZ_CHECK(count_at(estimator, RITZ_SURELY_RIGID * end, &none));
-    RITZ_CHECK(enclose_modes(estimator, m));
-    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
+    if ((!m->prediction.counted || m->prediction.edge_unclear) && has_room(m))
+        RITZ_CHECK(count_at(m, end * (1.0 + RITZ_COUNT_BEHIND), &none));
+    if (m->prediction.rigid_unclear && has_room(m))
+        RITZ_CHECK(count_at(m, RITZ_SURELY_RIGID * end, &none));
+    RITZ_CHECK(predict_errors(m));
     if (m->prediction.num_full > m->reach)
         m->reach = m->prediction.num_full;
     if (m->reach > m->trial.count)
         m->reach = m->trial.count;
-    if (m->reach > m->last) {
-        RITZ_CHECK(refine_modes(estimator, m));
-        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
-    }
-    return RITZ_OK;
+    if (m->reach <= m->last)
+        return RITZ_OK;
+    RITZ_CHECK(refine_modes(m));
+    return ritz_measuring_predict(m, &m->prediction);
 }
 
 /* One more inverse iteration, of what there is. */
-static ritz_status iterate_trial(ritz_estimator *estimator, ritz_measuring *m)
+static ritz_status iterate_trial(ritz_measuring *m)
 {
-    ritz_lehmann next = {0};
+    RITZ_OWN(ritz_lehmann) next = {0};
 
     RITZ_CHECK(ritz_lehmann_polish(
-        estimator, m->polished.X.val ? &m->polished : &m->trial, &next));
+        m->estimator, m->polished.X.val ? &m->polished : &m->trial, &next));
     ritz_lehmann_free(&m->polished);
-    m->polished = next;
+    RITZ_MOVE(m->polished, next);
     return RITZ_OK;
 }
 
-/* Count and iterate until the modes of the band are told. */
-static ritz_status refine_all(ritz_estimator *estimator, bool response,
-                              ritz_measuring *m)
+/* Count and iterate until the modes of the band are known. */
+static ritz_status refine_all(bool response, ritz_measuring *m)
 {
     int iterations = 0, counts = 0;
 
     m->reach = m->last;
-    RITZ_CHECK(refine_modes(estimator, m));
+    RITZ_CHECK(refine_modes(m));
     if (response)
-        RITZ_CHECK(count_above(estimator, m));
-    RITZ_CHECK(count_band(estimator, m));
-    RITZ_CHECK(enclose_modes(estimator, m));
-    RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
-    RITZ_CHECK(count_ends(estimator, m));
-    while (m->prediction.loose || m->prediction.partner_unclear) {
+        RITZ_CHECK(count_above(m));
+    RITZ_CHECK(count_band(m));
+    RITZ_CHECK(predict_errors(m));
+    RITZ_CHECK(count_ends(m));
+    while (m->prediction.loose || m->prediction.unmatched) {
         bool none = false;
 
         if (!isnan(m->prediction.count_at) && counts++ < MOST_BESIDE &&
-            estimator->num_counts < RITZ_MOST_COUNTS)
-            RITZ_CHECK(count_at(estimator, m->prediction.count_at, &none));
+            has_room(m))
+            RITZ_CHECK(count_at(m, m->prediction.count_at, &none));
         else if (iterations++ < ITERATIONS)
-            RITZ_CHECK(iterate_trial(estimator, m));
+            RITZ_CHECK(iterate_trial(m));
         else
             break;
-        RITZ_CHECK(enclose_modes(estimator, m));
-        RITZ_CHECK(ritz_measuring_judge(estimator, m, &m->prediction));
+        RITZ_CHECK(predict_errors(m));
     }
     return RITZ_OK;
 }
 
-/* "mode 7, 3.41 Hz", and which of the full model if it is another. */
-static void say_where(const ritz_claim *claim, int64_t k, double theta,
-                      char where[RITZ_NAME_SIZE])
+/* Add a value with its place, "mode 7, 3.41 Hz, full mode 8". */
+static ritz_status add_mode(const ritz_measuring *m, const char *name,
+                            ritz_pair_error found, ritz_measures *out)
 {
-    int used = snprintf(where, RITZ_NAME_SIZE, "mode %" PRId64 ", %.4g Hz",
-                        k + 1, ritz_eigen_hertz(theta));
-    size_t left = (size_t)(RITZ_NAME_SIZE - used);
+    char other[RITZ_NAME_SIZE] = "", where[2 * RITZ_NAME_SIZE];
 
-    if (claim->full_mode < 0)
-        (void)snprintf(where + used, left, ", near some full mode");
-    else if (claim->full_mode != k)
-        (void)snprintf(where + used, left, ", full mode %" PRId64,
-                       claim->full_mode + 1);
+    if (found.full_mode < 0)
+        (void)snprintf(other, sizeof other, ", near some full mode");
+    else if (found.full_mode != found.mode)
+        (void)snprintf(other, sizeof other, ", full mode %" PRId64,
+                       found.full_mode + 1);
+    (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz%s",
+                   found.mode + 1,
+                   ritz_eigen_hertz(m->pairs.lambda[found.mode]), other);
+    return ritz_measures_add(out, name, found.value, nan(""), where);
 }
 
 /*
@@ -224,102 +220,71 @@ static double least_of(const ritz_measuring *m, int64_t k)
  * can be said of a band that does not begin at 0, as modes below it need no
  * partner.
  */
-static ritz_status report_least(const ritz_estimator *estimator,
-                                const ritz_measuring *m, ritz_measures *out)
+static ritz_status report_least(const ritz_measuring *m, ritz_measures *out)
 {
     double band = ritz_eigen_lambda(m->band_hz[1]);
-    double most = 0.0;
-    char where[RITZ_NAME_SIZE] = "";
+    ritz_pair_error most = {0};
 
     for (int64_t k = m->first; k < m->trial.count && m->band_hz[0] == 0.0 &&
                                m->enclosure.high[k] <= band;
          k++) {
-        double theta = m->pairs.lambda[k];
         double least = least_of(m, k);
 
-        if (!(least > most) || ritz_counted_rigid(estimator, k, theta, band))
-            continue;
-        most = least;
-        (void)snprintf(where, sizeof where, "mode %" PRId64 ", %.4g Hz", k + 1,
-                       ritz_eigen_hertz(theta));
+        if (least > most.value &&
+            !ritz_counted_rigid(m->estimator, k, m->pairs.lambda[k], band))
+            most = (ritz_pair_error){least, k, k};
     }
-    if (most > 0.0)
-        RITZ_CHECK(ritz_measures_add(out, "frequency-relative-least", most,
-                                     nan(""), where));
-    return RITZ_OK;
+    return most.value > 0.0 ? add_mode(m, "frequency-relative-least", most, out)
+                            : RITZ_OK;
 }
 
 /* Where no mode is missing: the claim on the full mode of the same number, if
-   its interval is known and apart from that of the mode that was claimed. */
-static ritz_claim own_claim(const ritz_measuring *m, int64_t k,
-                            ritz_claim claim)
+   its interval is known and disjoint from that of the mode that was claimed. */
+static void prefer_same(const ritz_measuring *m, ritz_pair_error *claim)
 {
     const ritz_enclosure *e = &m->enclosure;
-    const int64_t p = claim.full_mode;
-    double same = ritz_claim_same(&m->trial, e, k, m->pairs.lambda[k]);
-    bool apart = e->high[k] < e->low[p] || e->high[p] < e->low[k];
+    const int64_t p = claim->full_mode, k = claim->mode;
+    double same = ritz_claim_same(m, k);
 
-    if (isfinite(same) && apart) {
-        claim.bound = same;
-        claim.full_mode = k;
-    }
-    return claim;
+    if (isfinite(same) && (e->high[k] < e->low[p] || e->high[p] < e->low[k]))
+        *claim = (ritz_pair_error){same, k, k};
 }
 
 /* "mode-7" and so on, of the band. */
-static ritz_status list_modes(const ritz_estimator *estimator,
-                              const ritz_measuring *m, ritz_measures *out)
+static ritz_status list_modes(const ritz_measuring *m, ritz_measures *out)
 {
     double band = m->last > 0 ? m->pairs.lambda[m->last - 1] : 0.0;
-    double at = 0.0;
-    bool complete = ritz_missing_modes(estimator, m, &at) == 0;
+    bool complete = ritz_missing_modes(m) == 0;
     char name[RITZ_NAME_SIZE];
-    char where[RITZ_NAME_SIZE];
 
     for (int64_t k = m->first; k < m->last && out->count < MOST_LISTED; k++) {
-        double theta = m->pairs.lambda[k];
-        ritz_claim claim = ritz_claim_of(&m->trial, &m->enclosure, k, theta);
+        ritz_claim claim = ritz_claim_of(m, k);
+        ritz_pair_error found = {claim.bound, k, claim.full_mode};
 
-        if (ritz_counted_rigid(estimator, k, theta, band))
+        if (ritz_counted_rigid(m->estimator, k, m->pairs.lambda[k], band))
             continue;
         if (complete && claim.full_mode >= 0 && claim.full_mode != k)
-            claim = own_claim(m, k, claim);
+            prefer_same(m, &found);
         (void)snprintf(name, sizeof name, "mode-%" PRId64, k + 1);
-        say_where(&claim, k, theta, where);
-        RITZ_CHECK(ritz_measures_add(out, name, claim.bound, nan(""), where));
+        RITZ_CHECK(add_mode(m, name, found, out));
     }
     return RITZ_OK;
 }
 
-/* A value with its place, "mode 7, 3.41 Hz, full mode 8". */
-static ritz_status add_pair(const ritz_measuring *m, const char *name,
-                            double value, int64_t k, int64_t full_mode,
-                            ritz_measures *out)
-{
-    const ritz_claim claim = {.full_mode = full_mode};
-    char where[RITZ_NAME_SIZE];
-
-    say_where(&claim, k, m->pairs.lambda[k], where);
-    return ritz_measures_add(out, name, value, nan(""), where);
-}
-
 /* Report the worst mode of the band, then each. */
-static ritz_status report_modes(const ritz_estimator *estimator,
-                                const ritz_measuring *m, ritz_measures *out)
+static ritz_status report_modes(const ritz_measuring *m, ritz_measures *out)
 {
     const ritz_prediction *v = &m->prediction;
     RITZ_OWN(ritz_measures) each = {0};
 
-    RITZ_CHECK(list_modes(estimator, m, &each));
+    RITZ_CHECK(list_modes(m, &each));
     if (!v->counted && (v->any_in_band || each.count > 0))
         RITZ_CHECK(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
                                      nan(""), "modes are not counted"));
-    else if (v->bound >= 0.0)
-        RITZ_CHECK(add_pair(m, "frequency-relative-bound", v->bound,
-                            v->bound_mode, v->bound_full, out));
-    if (v->least > 0.0)
-        RITZ_CHECK(add_pair(m, "frequency-relative-least", v->least,
-                            v->least_mode, v->least_full, out));
+    else if (v->bound.value >= 0.0)
+        RITZ_CHECK(add_mode(m, "frequency-relative-bound", v->bound, out));
+    if (v->least.value > 0.0)
+        RITZ_CHECK(add_mode(m, "frequency-relative-least", v->least, out));
     for (int64_t k = 0; k < each.count; k++)
         RITZ_CHECK(ritz_measures_add(out, each.item[k].name, each.item[k].value,
                                      nan(""), each.item[k].where));
@@ -413,7 +378,7 @@ static int64_t count_trial(const ritz_measuring *m, bool response)
     return count;
 }
 
-static void measuring_free(ritz_measuring *m)
+static void ritz_measuring_free(ritz_measuring *m)
 {
     ritz_pairs_free(&m->pairs);
     ritz_lehmann_free(&m->trial);
@@ -426,11 +391,10 @@ static void measuring_free(ritz_measuring *m)
  * such a mode is no frequency, and left out of the band if a count finds the
  * full model's there.
  */
-static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
-                                      ritz_measuring *m)
+static ritz_status skip_rounded_rigid(ritz_measuring *m)
 {
-    ritz_status status = RITZ_OK;
     double slowest = RITZ_MAY_BE_RIGID * ritz_eigen_lambda(m->band_hz[1]);
+    bool end = false;
 
     while (m->first < m->last) {
         double rounding = m->trial.reduced_rounding[m->first];
@@ -438,27 +402,23 @@ static ritz_status skip_rounded_rigid(ritz_estimator *estimator,
 
         if (m->pairs.lambda[m->first] > rounding || rho > slowest)
             break;
-        if (!ritz_counted_more(estimator, m->first, slowest)) {
-            status = ritz_estimator_count(
-                estimator, fmax(rho, RITZ_COUNT_LEAST * slowest));
-            if (status == RITZ_ERR_SINGULAR)
-                return RITZ_OK; /* it cannot be counted: the mode stays */
-            RITZ_TRY(status);
-        }
-        if (!ritz_counted_more(estimator, m->first, slowest))
-            break;
+        if (!ritz_counted_more(m->estimator, m->first, slowest))
+            RITZ_CHECK(
+                count_at(m, fmax(rho, RITZ_COUNT_LEAST * slowest), &end));
+        if (end || !ritz_counted_more(m->estimator, m->first, slowest))
+            break; /* the mode stays */
         m->first++;
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* The reduced modes in the band, and the trial that serves them. */
-static ritz_status open_measuring(ritz_estimator *estimator,
-                                  const ritz_basis *basis,
+static ritz_status open_measuring(const ritz_basis *basis,
                                   const ritz_reduced *reduced, bool *response,
                                   ritz_measuring *m)
 {
+    ritz_estimator *estimator = m->estimator;
+
     RITZ_REFUSE_IF(basis->T.nrow != estimator->component->num_dofs ||
                        basis->T.ncol != reduced->K.nrow,
                    RITZ_ERR_ARGUMENT, "the basis is not that of the reduction");
@@ -473,7 +433,7 @@ static ritz_status open_measuring(ritz_estimator *estimator,
         estimator, -RITZ_ESTIMATE_SHIFT * ritz_eigen_lambda(m->band_hz[1])));
     RITZ_CHECK(ritz_lehmann_new(estimator, &basis->T, reduced, &m->pairs,
                                 count_trial(m, *response), &m->trial));
-    return skip_rounded_rigid(estimator, m);
+    return skip_rounded_rigid(m);
 }
 
 ritz_status ritz_estimator_measure(ritz_estimator *estimator,
@@ -481,17 +441,17 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
                                    const ritz_reduced *reduced,
                                    ritz_measures *out)
 {
-    [[gnu::cleanup(measuring_free)]] ritz_measuring m = {0};
+    RITZ_OWN(ritz_measuring) m = {.estimator = estimator};
     RITZ_OWN(ritz_measures) found = {0};
     bool response = true;
 
-    RITZ_CHECK(open_measuring(estimator, basis, reduced, &response, &m));
+    RITZ_CHECK(open_measuring(basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0) {
-        RITZ_CHECK(refine_all(estimator, response, &m));
-        RITZ_CHECK(report_modes(estimator, &m, &found));
+        RITZ_CHECK(refine_all(response, &m));
+        RITZ_CHECK(report_modes(&m, &found));
         RITZ_CHECK(report_missing(&m, &found));
         if (response)
-            RITZ_CHECK(ritz_bound_response(estimator, &m, reduced, &found));
+            RITZ_CHECK(ritz_bound_response(&m, reduced, &found));
     }
     RITZ_MOVE(*out, found);
     return RITZ_OK;
@@ -502,19 +462,18 @@ ritz_status ritz_estimator_least(ritz_estimator *estimator,
                                  const ritz_reduced *reduced,
                                  ritz_measures *out)
 {
-    [[gnu::cleanup(measuring_free)]] ritz_measuring m = {0};
+    RITZ_OWN(ritz_measuring) m = {.estimator = estimator};
     ritz_estimator bare = {0}; /* the same, nothing being counted */
     bool response = false;
 
-    RITZ_CHECK(open_measuring(estimator, basis, reduced, &response, &m));
-    if (m.band_hz[1] > 0.0) {
-        bare = *estimator;
-        bare.num_counts = 0;
-        RITZ_CHECK(
-            ritz_enclosure_new(&bare, &m.trial, &m.polished, &m.enclosure));
-        RITZ_CHECK(report_least(&bare, &m, out));
-    }
-    return RITZ_OK;
+    RITZ_CHECK(open_measuring(basis, reduced, &response, &m));
+    if (!(m.band_hz[1] > 0.0))
+        return RITZ_OK;
+    bare = *estimator;
+    bare.num_counts = 0;
+    m.estimator = &bare;
+    RITZ_CHECK(enclose_modes(&m));
+    return report_least(&m, out);
 }
 
 ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,

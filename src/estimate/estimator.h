@@ -61,10 +61,7 @@ ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma);
  */
 ritz_status ritz_estimator_count(ritz_estimator *estimator, double rho);
 
-/**
- * Pairs of the space that the first @p count of @p pairs, those of @p reduced,
- * span through @p T.
- */
+/** Pairs of the space that the first @p count modes of @p reduced span. */
 ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
                              const ritz_reduced *reduced,
                              const ritz_pairs *pairs, int64_t count,
@@ -75,6 +72,9 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out);
 void ritz_lehmann_free(ritz_lehmann *trial);
 
+/** How many of some ascending eigenvalues are below @p rho. */
+int64_t ritz_count_below(int64_t count, const double *lambda, double rho);
+
 /* Intervals that hold the full model's lowest eigenvalues. */
 typedef struct ritz_enclosure {
     int64_t count;    /* full modes, by their number */
@@ -84,28 +84,33 @@ typedef struct ritz_enclosure {
     double *near_low, *near_high; /* holds a full mode of unknown number */
 } ritz_enclosure;
 
+/* A relative error of a frequency, and of which reduced and full mode. */
+typedef struct ritz_pair_error {
+    double value;
+    int64_t mode, full_mode;
+} ritz_pair_error;
+
 /* What ritz-verify would find of the full modes in the band. */
 typedef struct ritz_prediction {
-    bool counted;       /* at most num_full modes lie below the band's end */
-    bool any_in_band;   /* some full mode may be in the band */
-    bool edge_unclear;  /* an interval reaches across the band's end */
-    bool rigid_unclear; /* the first flexible mode may be a rigid one */
-    bool loose;         /* the bound may be far above the error */
-    bool
-        partner_unclear; /* it is not known which mode is some mode's partner */
+    bool counted;        /* at most num_full modes lie below the band's end */
+    bool any_in_band;    /* some full mode may be in the band */
+    bool edge_unclear;   /* an interval reaches across the band's end */
+    bool rigid_unclear;  /* the first flexible mode may be a rigid one */
+    bool loose;          /* the bound may be far above the error */
+    bool unmatched;      /* it is not known which mode is some mode's partner */
     double count_at;     /* where a count may help; NaN: nowhere */
     int64_t num_full;    /* full modes that may lie below the band's end */
     int64_t num_missing; /* those in the band without a proven partner */
     int64_t first_missing; /* -1: there is none */
-    double bound; /* worst |f_r - f| / f; below 0: no mode has a partner */
-    int64_t bound_mode, bound_full; /* of which reduced and full mode */
-    double least; /* the worst |f_r - f| / f is at least this */
-    int64_t least_mode, least_full;
+    /* the worst |f_r - f| / f is at most, and at least, this; bound below 0: no
+       mode has a partner */
+    ritz_pair_error bound, least;
 } ritz_prediction;
 
 /* One reduced model while it is estimated. */
 typedef struct ritz_measuring {
-    ritz_pairs pairs; /* of the reduced matrices as they are */
+    ritz_estimator *estimator; /* borrowed */
+    ritz_pairs pairs;          /* of the reduced matrices as they are */
     double band_hz[2];
     const ritz_dense *T; /* borrowed */
     int64_t first, last; /* its flexible modes in the band: first .. last - 1 */
@@ -115,15 +120,8 @@ typedef struct ritz_measuring {
     ritz_prediction prediction;
 } ritz_measuring;
 
-/**
- * Enclose by Lehmann's method, with every count that was taken.
- *
- * @param[in] polished  the trial after an inverse iteration; {0}: none
- */
-ritz_status ritz_enclosure_new(const ritz_estimator *estimator,
-                               const ritz_lehmann *trial,
-                               const ritz_lehmann *polished,
-                               ritz_enclosure *out);
+/** Enclose by Lehmann's method, with every count that was taken. */
+ritz_status ritz_enclosure_new(const ritz_measuring *m, ritz_enclosure *out);
 void ritz_enclosure_free(ritz_enclosure *enclosure);
 
 /* How far a reduced mode can be from a full one, and from which. */
@@ -133,21 +131,16 @@ typedef struct ritz_claim {
     int64_t full_mode; /* number from 0; -1: near one of unknown number */
 } ritz_claim;
 
-/** Of reduced mode @p k with eigenvalue @p theta the claim with the least
- * bound. */
-ritz_claim ritz_claim_of(const ritz_lehmann *trial,
-                         const ritz_enclosure *enclosure, int64_t k,
-                         double theta);
+/** The claim on reduced mode @p k that has the least bound. */
+ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k);
 
 /** Bound of |f_k - f| / f for the full mode of the same number. */
-double ritz_claim_same(const ritz_lehmann *trial,
-                       const ritz_enclosure *enclosure, int64_t k,
-                       double theta);
+double ritz_claim_same(const ritz_measuring *m, int64_t k);
 
 /**
- * Whether reduced mode @p k is a rigid motion that the basis holds badly: it is
- * far below the band, and a count shows the full mode of its number below half
- * its eigenvalue.
+ * Whether reduced mode @p k, with eigenvalue @p theta, is a rigid motion that
+ * the basis represents badly: it is far below the band, and a count shows the
+ * full mode of its number below half its eigenvalue.
  */
 bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
                         double theta, double band);
@@ -155,40 +148,33 @@ bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
 /** Whether more than @p k full modes were counted at or below @p rho. */
 bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho);
 
-/* Reduced modes that counts are spent on, and how many each has had. */
-typedef struct ritz_pursuit {
-    int64_t first, last; /* modes first .. last - 1 */
-    int64_t *tries;      /* last - first */
-} ritz_pursuit;
+/** Whether modes were counted at some frequency inside (low, high). */
+bool ritz_counted_within(const ritz_estimator *estimator, double low,
+                         double high);
 
 /**
- * Where a count would tighten these modes' enclosures most.
+ * Where a count would tighten the enclosures of modes first .. reach - 1 most.
  *
- * @param[out] mode  the mode that it is for; -1: all of them
+ * @param[in]  tries  counts that each of them has had
+ * @param[out] mode   the mode that it is for; -1: all of them
  * @return NaN if no count helps
  */
-double ritz_propose_count(const ritz_estimator *estimator,
-                          const ritz_lehmann *trial,
-                          const ritz_enclosure *enclosure,
-                          const ritz_pursuit *pursuit, int64_t *mode);
+double ritz_propose_count(const ritz_measuring *m, const int64_t *tries,
+                          int64_t *mode);
 
-/** A gap to count in, far above the band's end @p band; NaN: none. */
-double ritz_propose_above(const ritz_estimator *estimator,
-                          const ritz_lehmann *trial, double band);
+/** A gap to count in, far above the band; NaN: none. */
+double ritz_propose_above(const ritz_measuring *m);
 
 /** Predict what ritz-verify finds of the band, as far as enclosures tell. */
-ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
-                                 const ritz_measuring *m, ritz_prediction *out);
+ritz_status ritz_measuring_predict(const ritz_measuring *m,
+                                   ritz_prediction *out);
 
 /**
  * Fewest full modes less reduced ones below any count at or above the band's
  * end: a mode just within the band may have its partner just outside. -1 if
  * nothing was counted there.
- *
- * @param[out] at  rho of that count
  */
-int64_t ritz_missing_modes(const ritz_estimator *estimator,
-                           const ritz_measuring *m, double *at);
+int64_t ritz_missing_modes(const ritz_measuring *m);
 
 /**
  * Whether anything can be said of a reduced response: there are inputs, outputs
@@ -201,13 +187,8 @@ bool ritz_response_boundable(const ritz_estimator *estimator,
  * Add "response-relative-bound" or, where modes are damped by no common ratio
  * and by no a M + b K, "response-relative-estimate". The trial holds all modes.
  */
-ritz_status ritz_bound_response(ritz_estimator *estimator,
-                                const ritz_measuring *measuring,
+ritz_status ritz_bound_response(const ritz_measuring *m,
                                 const ritz_reduced *reduced,
                                 ritz_measures *out);
-
-/** Whether modes were counted at some place inside (low, high). */
-bool ritz_counted_within(const ritz_estimator *estimator, double low,
-                         double high);
 
 #endif

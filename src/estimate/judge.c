@@ -17,65 +17,55 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Largest |f' - f| / f of f'^2 in [least, most] and f^2 in [low, high]. */
-static double relative_most(double least, double most, double low, double high)
-{
-    if (!(low > 0.0))
-        return HUGE_VAL;
-    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
-}
-
-/* The same of reduced mode k, whose eigenvalue is known but for rounding. */
-static double claim_error(const ritz_lehmann *trial, int64_t k, double theta,
-                          double low, double high)
-{
-    return relative_most(fmax(fmin(theta, trial->reduced_low[k]), 0.0),
-                         fmax(theta, trial->reduced_high[k]), low, high);
-}
-
-/* One end of a reduced eigenvalue's interval: below for sign -1, above for 1.
-   Of modes beyond the trial rounding is not known. */
-static double reduced_end(const ritz_measuring *m, const double *ends,
-                          int64_t k, double sign)
+/* Ends of what a reduced eigenvalue can be; of modes beyond the trial rounding
+   is not known. */
+static void find_ends(const ritz_measuring *m, int64_t k, double *least,
+                      double *most)
 {
     double theta = m->pairs.lambda[k];
 
-    if (k < m->trial.count)
-        theta = sign * fmax(sign * theta, sign * ends[k]);
-    return fmax(theta, 0.0);
+    *least = *most = theta;
+    if (k < m->trial.count) {
+        *least = fmin(theta, m->trial.reduced_low[k]);
+        *most = fmax(theta, m->trial.reduced_high[k]);
+    }
+    *least = fmax(*least, 0.0);
+    *most = fmax(*most, 0.0);
 }
 
 /* |f_k - f| / f at most, and at least, of a full mode in [low, high]. */
 static double error_at_most(const ritz_measuring *m, int64_t k, double low,
                             double high)
 {
-    return relative_most(reduced_end(m, m->trial.reduced_low, k, -1.0),
-                         reduced_end(m, m->trial.reduced_high, k, 1.0), low,
-                         high);
+    double least = 0.0, most = 0.0;
+
+    find_ends(m, k, &least, &most);
+    if (!(low > 0.0))
+        return HUGE_VAL;
+    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
 }
 
 static double error_at_least(const ritz_measuring *m, int64_t k, double low,
                              double high)
 {
-    double least = reduced_end(m, m->trial.reduced_low, k, -1.0);
-    double most = reduced_end(m, m->trial.reduced_high, k, 1.0);
+    double least = 0.0, most = 0.0;
 
+    find_ends(m, k, &least, &most);
     if (!(low > 0.0))
         return 0.0;
     return fmax(0.0, fmax(sqrt(least / high) - 1.0, 1.0 - sqrt(most / low)));
 }
 
-ritz_claim ritz_claim_of(const ritz_lehmann *trial,
-                         const ritz_enclosure *enclosure, int64_t k,
-                         double theta)
+ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
 {
-    const ritz_enclosure *e = enclosure;
+    const ritz_lehmann *trial = &m->trial;
+    const ritz_enclosure *e = &m->enclosure;
     ritz_claim claim = {.bound = HUGE_VAL, .full_mode = k};
-    double same = claim_error(trial, k, theta, e->low[k], e->high[k]);
+    double same = ritz_claim_same(m, k);
     double some = HUGE_VAL;
 
     for (int64_t p = 0; p < e->count; p++) {
-        double bound = claim_error(trial, k, theta, e->low[p], e->high[p]);
+        double bound = error_at_most(m, k, e->low[p], e->high[p]);
 
         if (bound < claim.bound) {
             claim.bound = bound;
@@ -87,8 +77,7 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
         claim.full_mode = k;
     }
     for (int64_t j = 0; j < e->num_near; j++)
-        some = fmin(some, claim_error(trial, k, theta, e->near_low[j],
-                                      e->near_high[j]));
+        some = fmin(some, error_at_most(m, k, e->near_low[j], e->near_high[j]));
     if (RITZ_CLAIM_FAVOUR * some < claim.bound) {
         claim.bound = some;
         claim.full_mode = -1;
@@ -98,10 +87,9 @@ ritz_claim ritz_claim_of(const ritz_lehmann *trial,
     return claim;
 }
 
-double ritz_claim_same(const ritz_lehmann *trial, const ritz_enclosure *e,
-                       int64_t k, double theta)
+double ritz_claim_same(const ritz_measuring *m, int64_t k)
 {
-    return claim_error(trial, k, theta, e->low[k], e->high[k]);
+    return error_at_most(m, k, m->enclosure.low[k], m->enclosure.high[k]);
 }
 
 /*
@@ -139,29 +127,30 @@ typedef struct ritz_share {
     double least, most;
 } ritz_share;
 
-static double square(double x)
+static double square_of(double x)
 {
     return x * x;
 }
 
 /* Bound of |c|^2 / G for modes beyond lambda of a vector at theta. */
-static double weight(const ritz_lehmann *trial, double lambda, double theta)
+static double weight_beyond(const ritz_lehmann *trial, double lambda,
+                            double theta)
 {
-    return (lambda - trial->sigma) / square(lambda - theta);
+    return (lambda - trial->sigma) / square_of(lambda - theta);
 }
 
 /* G of vector s, and what rounding adds. */
-static double residual(const ritz_lehmann *trial, int64_t s)
+static double residual_of(const ritz_lehmann *trial, int64_t s)
 {
     double t = trial->theta[s] - trial->sigma;
 
     return fmax(ritz_dense_col(&trial->G, s)[s], 0.0) +
-           square(trial->rounding[s]) / t;
+           square_of(trial->rounding[s]) / t;
 }
 
 /* Bound of the |c|^2 of vector s outside the group; 1 if nothing is known. */
-static double outside(const ritz_lehmann *trial, const ritz_enclosure *e,
-                      const ritz_mode_group *g, int64_t s)
+static double outside_group(const ritz_lehmann *trial, const ritz_enclosure *e,
+                            const ritz_mode_group *g, int64_t s)
 {
     double theta = trial->theta[s];
     double below = g->first > 0 ? e->high[g->first - 1] : -HUGE_VAL;
@@ -170,10 +159,10 @@ static double outside(const ritz_lehmann *trial, const ritz_enclosure *e,
 
     if (!(below < theta) || !(theta < above))
         return 1.0;
-    most = weight(trial, above, theta);
+    most = weight_beyond(trial, above, theta);
     if (below > trial->sigma)
-        most = fmax(most, weight(trial, below, theta));
-    return fmin(1.0, residual(trial, s) * most);
+        most = fmax(most, weight_beyond(trial, below, theta));
+    return fmin(1.0, residual_of(trial, s) * most);
 }
 
 /* Take a trial's vectors near a group if they are more, or nearer, than those
@@ -185,10 +174,11 @@ static void choose_vectors(const ritz_lehmann *trial, const ritz_enclosure *e,
     int64_t from = 0, to = 0;
     double sum = 0.0;
 
-    while (from < trial->count && outside(trial, e, g, from) > RITZ_VECTOR_NEAR)
+    while (from < trial->count &&
+           outside_group(trial, e, g, from) > RITZ_VECTOR_NEAR)
         from++;
     for (to = from; to < trial->count && to < from + size; to++) {
-        double sin2 = outside(trial, e, g, to);
+        double sin2 = outside_group(trial, e, g, to);
 
         if (sin2 > RITZ_VECTOR_NEAR)
             break;
@@ -233,21 +223,20 @@ static ritz_mode_group group_of(const ritz_measuring *m, int64_t first)
 }
 
 /* Q = Phi' T' M X: what reduced modes hold of a trial's vectors. */
-static ritz_status take_overlap(const ritz_estimator *estimator,
-                                const ritz_measuring *m,
+static ritz_status take_overlap(const ritz_measuring *m,
                                 const ritz_lehmann *trial, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) MX = {0}, TMX = {0};
 
     if (!trial->X.val)
         return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_mul(&estimator->component->M, &trial->X, &MX));
+    RITZ_CHECK(ritz_sparse_mul(&m->estimator->component->M, &trial->X, &MX));
     RITZ_CHECK(ritz_dense_mul_tn(m->T, &MX, &TMX));
     return ritz_dense_mul_tn(&m->pairs.Phi, &TMX, out);
 }
 
 /* Whether rounding of the reduced matrices may mix mode r with a neighbour. */
-static bool turned(const ritz_measuring *m, int64_t r)
+static bool is_mixed(const ritz_measuring *m, int64_t r)
 {
     const ritz_lehmann *t = &m->trial;
 
@@ -263,12 +252,14 @@ static double most_by_residual(const ritz_measuring *m,
     double low = fmax(m->enclosure.low[g->first], 0.0);
     double high = m->enclosure.high[g->last - 1];
 
-    if (r >= trial->count || turned(m, r))
+    if (r >= trial->count || is_mixed(m, r))
         return 1.0;
     if (high < trial->theta[r])
-        return residual(trial, r) * weight(trial, high, trial->theta[r]);
+        return residual_of(trial, r) *
+               weight_beyond(trial, high, trial->theta[r]);
     if (low > trial->theta[r])
-        return residual(trial, r) * weight(trial, low, trial->theta[r]);
+        return residual_of(trial, r) *
+               weight_beyond(trial, low, trial->theta[r]);
     return 1.0;
 }
 
@@ -283,13 +274,13 @@ static ritz_share share_of(const ritz_partners *p, const ritz_mode_group *g,
     if (g->end_vector == g->first_vector || g->sin2 >= 1.0)
         return share;
     for (int64_t s = g->first_vector; s < g->end_vector; s++)
-        sum += square(ritz_dense_col(Q, s)[r]);
+        sum += square_of(ritz_dense_col(Q, s)[r]);
     alpha = acos(fmin(1.0, sqrt(sum)));
     delta = asin(sqrt(g->sin2));
     if (alpha + delta < acos(0.0))
-        share.least = square(cos(alpha + delta));
+        share.least = square_of(cos(alpha + delta));
     if (g->end_vector - g->first_vector == g->last - g->first)
-        share.most = square(cos(fmax(0.0, alpha - delta)));
+        share.most = square_of(cos(fmax(0.0, alpha - delta)));
     return share;
 }
 
@@ -315,33 +306,24 @@ static bool must_be_partner(const ritz_partners *p, const ritz_mode_group *g,
     return share_of(p, g, r).least > RITZ_SAME_MODE + RITZ_SHARE_ROUNDING;
 }
 
-static void free_partners(ritz_partners *partners)
+static void ritz_partners_free(ritz_partners *partners)
 {
     free(partners->group);
     ritz_dense_free(&partners->Q[0]);
     ritz_dense_free(&partners->Q[1]);
-    *partners = (ritz_partners){0};
 }
 
 /* Groups of full modes first .. last - 1. */
-static ritz_status group_modes(const ritz_estimator *estimator,
-                               const ritz_measuring *m, int64_t first,
-                               int64_t last, ritz_partners *out)
+static ritz_status group_modes(const ritz_measuring *m, int64_t first,
+                               int64_t last, ritz_partners *p)
 {
-    ritz_status status = RITZ_OK;
-    ritz_partners p = {0};
-
-    RITZ_NEW(p.group, last - first);
+    RITZ_CHECK_NEW(p->group, last - first);
     while (first < last) {
-        p.group[p.count] = group_of(m, first);
-        first = p.group[p.count++].last;
+        p->group[p->count] = group_of(m, first);
+        first = p->group[p->count++].last;
     }
-    RITZ_TRY(take_overlap(estimator, m, &m->trial, &p.Q[0]));
-    RITZ_TRY(take_overlap(estimator, m, &m->polished, &p.Q[1]));
-    RITZ_MOVE(*out, p);
-done:
-    free_partners(&p);
-    return status;
+    RITZ_CHECK(take_overlap(m, &m->trial, &p->Q[0]));
+    return take_overlap(m, &m->polished, &p->Q[1]);
 }
 
 /*
@@ -351,7 +333,6 @@ done:
  */
 
 typedef struct ritz_judge {
-    const ritz_estimator *estimator;
     const ritz_measuring *m;
     const ritz_partners *partners;
     double low, high; /* the band, in lambda */
@@ -385,17 +366,12 @@ static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
     double least =
         sure && surely_in(j, p) ? error_at_least(j->m, r, low, high) : 0.0;
 
-    if (most > j->v.bound) {
-        j->v.bound = most;
-        j->v.bound_mode = r;
-        j->v.bound_full = p;
+    if (most > j->v.bound.value) {
+        j->v.bound = (ritz_pair_error){most, r, p};
         j->v.loose = !(most <= RITZ_GOOD_RATIO * least + RITZ_NO_ERROR);
     }
-    if (least > j->v.least) {
-        j->v.least = least;
-        j->v.least_mode = r;
-        j->v.least_full = p;
-    }
+    if (least > j->v.least.value)
+        j->v.least = (ritz_pair_error){least, r, p};
 }
 
 /* List the `can` reduced modes that can be partners; returns how many of them
@@ -427,17 +403,6 @@ static int64_t keep_partner(ritz_judge *j, const ritz_mode_group *g,
     return 1;
 }
 
-bool ritz_counted_within(const ritz_estimator *estimator, double low,
-                         double high)
-{
-    const ritz_counted *c = estimator->count;
-
-    for (int64_t s = 0; s < estimator->num_counts; s++)
-        if (c[s].rho > low && c[s].rho < high)
-            return true;
-    return false;
-}
-
 /*
  * Where partners are unclear, counts on both sides of a vector that is nearly a
  * mode tell how many full modes are there, and how many are apart from it.
@@ -459,11 +424,11 @@ static void propose_count(ritz_judge *j, const ritz_mode_group *g)
         if (theta * (1.0 + off) < low || theta * (1.0 - off) > high ||
             !(off < RITZ_COUNT_TOO_FAR))
             continue;
-        if (!ritz_counted_within(j->estimator, theta,
+        if (!ritz_counted_within(j->m->estimator, theta,
                                  theta * (1.0 + 2.0 * off)))
             j->v.count_at = theta * (1.0 + off);
-        else if (!ritz_counted_within(j->estimator, theta * (1.0 - 2.0 * off),
-                                      theta))
+        else if (!ritz_counted_within(j->m->estimator,
+                                      theta * (1.0 - 2.0 * off), theta))
             j->v.count_at = theta * (1.0 - off);
     }
 }
@@ -492,7 +457,7 @@ static void judge_group(ritz_judge *j, const ritz_mode_group *g)
     }
     j->v.any_in_band = j->v.any_in_band || in > 0;
     if (in > 0 && can > 0 && !sure) {
-        j->v.partner_unclear = true;
+        j->v.unmatched = true;
         propose_count(j, g);
     }
     j->v.num_missing += in < size - must ? in : size - must;
@@ -509,19 +474,19 @@ static int64_t first_flexible(const ritz_measuring *m, double band)
     return first;
 }
 
-ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
-                                 const ritz_measuring *m, ritz_prediction *out)
+ritz_status ritz_measuring_predict(const ritz_measuring *m,
+                                   ritz_prediction *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_enclosure *e = &m->enclosure;
-    ritz_partners partners = {0};
-    ritz_judge j = {
-        .estimator = estimator,
-        .m = m,
-        .partners = &partners,
-        .low = ritz_eigen_lambda(m->band_hz[0]),
-        .high = ritz_eigen_lambda(m->band_hz[1]),
-        .v = {.bound = -1.0, .first_missing = -1, .count_at = nan("")}};
+    RITZ_OWN(ritz_partners) partners = {0};
+    RITZ_OWN_ARRAY int64_t *found = NULL;
+    ritz_judge j = {.m = m,
+                    .partners = &partners,
+                    .low = ritz_eigen_lambda(m->band_hz[0]),
+                    .high = ritz_eigen_lambda(m->band_hz[1]),
+                    .v = {.bound = {.value = -1.0},
+                          .first_missing = -1,
+                          .count_at = nan("")}};
     int64_t first = first_flexible(m, j.high);
 
     while (j.v.num_full < e->count &&
@@ -531,14 +496,12 @@ ritz_status ritz_measuring_judge(const ritz_estimator *estimator,
     for (int64_t p = first; p < j.v.num_full; p++)
         j.v.edge_unclear = j.v.edge_unclear || e->high[p] > j.high;
     j.v.rigid_unclear = first < j.v.num_full && !(e->low[first] > 0.0);
-    RITZ_NEW(j.found, m->pairs.Phi.ncol);
-    RITZ_TRY(group_modes(estimator, m, first, e->count, &partners));
+    RITZ_CHECK_NEW(found, m->pairs.Phi.ncol);
+    j.found = found;
+    RITZ_CHECK(group_modes(m, first, e->count, &partners));
     for (int64_t k = 0; k < partners.count; k++)
         if (partners.group[k].first < j.v.num_full)
             judge_group(&j, &partners.group[k]);
     *out = j.v;
-done:
-    free_partners(&partners);
-    free(j.found);
-    return status;
+    return RITZ_OK;
 }

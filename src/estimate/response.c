@@ -387,10 +387,10 @@ static bool rigid_in_full(const ritz_lehmann *trial, int64_t num_rigid)
     return all;
 }
 
-ritz_status ritz_bound_response(ritz_estimator *estimator,
-                                const ritz_measuring *m,
+ritz_status ritz_bound_response(const ritz_measuring *m,
                                 const ritz_reduced *reduced, ritz_measures *out)
 {
+    ritz_estimator *estimator = m->estimator;
     const ritz_damping *damping = &estimator->request.damping;
     bool known = promise_of(estimator, reduced, m->pairs.Phi.ncol) == BOUND;
     bool sure = false;
@@ -407,7 +407,6 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
     RITZ_OWN_ARRAY double *matrices = NULL;
     double bound = 0.0;
     double at = 0.0;
-    double counted = 0.0;
     char where[RITZ_NAME_SIZE];
 
     RITZ_CHECK_NEW(rates, m->trial.count);
@@ -420,8 +419,8 @@ ritz_status ritz_bound_response(ritz_estimator *estimator,
         RITZ_CHECK(take_rates(estimator, &r, rates, matrices));
     RITZ_CHECK(ritz_bounder_open(estimator, &r));
     RITZ_CHECK(bound_band(&r, m->band_hz, &bound, &at));
-    if ((r.coupled && ritz_missing_modes(estimator, m, &counted) != 0) ||
-        is_at_odds(&r) || has_undamped(&r, m->band_hz))
+    if ((r.coupled && ritz_missing_modes(m) != 0) || is_at_odds(&r) ||
+        has_undamped(&r, m->band_hz))
         bound = HUGE_VAL; /* of their damping nothing is known */
     (void)snprintf(where, sizeof where, "%.6g Hz", at);
     if (bound > 0.0)
