@@ -14,13 +14,14 @@ static void list_kinds(void)
            "all of these on one page, with tables and a verdict");
 }
 
-/* The kind of that name; NULL: the report; or the end of the program. */
-static const chart_kind *find(const cli_program *program, const char *word)
+/* NULL: the report. Another word ends the program. */
+static const chart_kind *find_chart(const cli_program *program,
+                                    const char *word)
 {
     const char *names[MAX_KINDS] = {"report"};
     int64_t count = 1;
 
-    if (strcmp(word, "report") == 0)
+    if (strcmp(word, *names) == 0)
         return NULL;
     for (const chart_kind *k = chart_kinds; k->name; k++) {
         if (strcmp(k->name, word) == 0)
@@ -30,36 +31,18 @@ static const chart_kind *find(const cli_program *program, const char *word)
     cli_refuse_name(program, "no chart", word, count, names);
 }
 
-static ritz_status draw(cli_run *run, const chart_kind *kind,
-                        const chart_request *request)
+static ritz_status draw_chart(cli_run *run, const chart_kind *kind,
+                              const chart_request *request)
 {
     RITZ_OWN(chart_sources) sources = {0};
     RITZ_OWN(picture) drawn = {0};
 
     RITZ_CHECK(chart_read(run, run->num_operands - 1, run->operand + 1,
                           kind ? kind->holds : ~CHART_SYSTEM, &sources));
-    if (kind)
-        RITZ_CHECK(kind->draw(&sources, request, &drawn));
-    else
-        RITZ_CHECK(report_write(&sources, request));
+    RITZ_CHECK(kind ? kind->draw(&sources, request, &drawn)
+                    : report_write(&sources, request));
     cli_say(run, "%s", run->output);
     return RITZ_OK;
-}
-
-/* Options that take one of a few words. */
-static void check(const cli_program *program, const chart_request *request)
-{
-    const char *const against = request->against, *const error = request->error;
-
-    if (against && strcmp(against, "reduce") != 0 &&
-        strcmp(against, "simulate") != 0)
-        cli_refuse(program, "--against takes 'reduce' or 'simulate', not '%s'",
-                   against);
-    if (error && strcmp(error, "relative") != 0 &&
-        strcmp(error, "decibels") != 0 && strcmp(error, "both") != 0)
-        cli_refuse(program,
-                   "--error takes 'relative', 'decibels' or 'both', not '%s'",
-                   error);
 }
 
 int main(int argc, char **argv)
@@ -70,15 +53,15 @@ int main(int argc, char **argv)
                  "of records: errors to be drawn [all that are relative]"),
         CLI_TEXT("subject", &request.subject, "NAME",
                  "of records: those of one component or scene"),
-        CLI_TEXT("against", &request.against, "WORD",
-                 "pareto: time to 'reduce' or to 'simulate' [simulate, if all "
+        CLI_WORD("against", &request.against, "reduce|simulate",
+                 "pareto: time to reduce or to simulate [simulate, if all "
                  "records know it]"),
         CLI_LIST("channel", &request.channel, "OUTPUT/INPUT",
                  "response: what is drawn [the first four]; "
                  "'singular-values' of files that hold them"),
-        CLI_TEXT("error", &request.error, "WORD",
-                 "response: 'relative' to the largest, in 'decibels' of each "
-                 "point, or 'both' [relative]"),
+        CLI_WORD("error", &request.error, "relative|decibels|both",
+                 "response: relative to the largest, in decibels of each "
+                 "point, or both [relative]"),
         CLI_LIST("at", &request.at, "JOINT=SETTING[,...]",
                  "mac: configuration of each system, or two of one [the only "
                  "ones]; they are compared by the masses of all bodies, if "
@@ -107,12 +90,10 @@ int main(int argc, char **argv)
         .options = options,
         .output = "the picture, NAME.svg, or the page, NAME.html",
     };
-    const chart_kind *kind = NULL;
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    kind = find(&program, run.operand[0]);
-    check(&program, &request);
     request.path = run.output;
-    return cli_finish(&run, draw(&run, kind, &request));
+    return cli_finish(
+        &run, draw_chart(&run, find_chart(&program, *run.operand), &request));
 }

@@ -30,7 +30,7 @@ int main(int argc, char **argv)
     cli_option options[NUM_OWN + WORDS_MOST + 1] = {
         CLI_TEXT("tolerance", &given.tolerance, "[MEASURE=]X[,MEASURE=X]",
                  tolerance_help()),
-        CLI_TEXT("band-hz", &given.band, "F,F",
+        CLI_PAIR("band-hz", r->tolerance.band_hz, "F,F",
                  "where it is to hold [the scene's]"),
         DAMPERS_OPTION(&given.damper),
         CLI_TEXT("methods", &given.methods, "M[,M]",

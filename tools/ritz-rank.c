@@ -21,7 +21,7 @@ int main(int argc, char **argv)
         CLI_LIST("damping", &given.damping, "TEXT",
                  "\"modal ZETA\" or another that --help of ritz-frf shows "
                  "[the model's]"),
-        CLI_TEXT("band-hz", &given.band, "F,F",
+        CLI_PAIR("band-hz", given.band_hz, "F,F",
                  "of hankel-band [the system's]"),
         CLI_TEXT("input-weights", &given.input_weights, "NAME=W,...",
                  "intensities of inputs, squares of their size [1]"),

@@ -4,9 +4,8 @@
 int main(int argc, char **argv)
 {
     reduce_options given = {0};
-    const char *band = NULL;
     const cli_option options[] = {
-        CLI_TEXT("band-hz", &band, "F,F",
+        CLI_PAIR("band-hz", given.estimate.band_hz, "F,F",
                  "where errors are estimated [up to half of what the basis "
                  "knows]"),
         DAMPING_OPTION(&given.damping),
@@ -29,7 +28,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (band)
-        cli_pair(&program, "band-hz", band, given.estimate.band_hz);
     return cli_finish(&run, reduce_run(&run, &given));
 }

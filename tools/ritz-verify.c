@@ -21,11 +21,10 @@ static void add_limits(ritz_verify_request *request,
 
 int main(int argc, char **argv)
 {
-    const char *band = NULL;
     verify_options given = {.verify = RITZ_VERIFY_NONE};
     char name[RITZ_MEASURES][RITZ_NAME_SIZE];
     cli_option options[OWN_OPTIONS + RITZ_MEASURES + 1] = {
-        CLI_TEXT("band-hz", &band, "F,F",
+        CLI_PAIR("band-hz", given.verify.band_hz, "F,F",
                  "band in Hz of all measures [the scene's; else up to half the "
                  "highest reduced frequency]"),
         MODEL_OPTIONS(&given.model),
@@ -52,7 +51,5 @@ int main(int argc, char **argv)
 
     add_limits(&given.verify, name, options + OWN_OPTIONS);
     cli_parse(&program, argc, argv, &run);
-    if (band)
-        cli_pair(&program, "band-hz", band, given.verify.band_hz);
     return cli_finish(&run, verify_run(&run, &given));
 }

@@ -16,7 +16,8 @@ static const struct verb {
     {"import", "matrices and geometry -> component"},
     {"info", "what is in a container, a matrix file or a bulk data deck"},
     {"check", "audit a component before it is reduced"},
-    {"basis", "component -> basis: twenty methods, 'ritz basis --list'"},
+    {"basis",
+     "component -> basis, by one of the methods of 'ritz basis --list'"},
     {"reduce", "component + basis -> reduced component, with error estimates"},
     {"assemble", "scene -> system at one or all configurations"},
     {"rank", "which modes matter from inputs to outputs"},
@@ -33,6 +34,16 @@ static const struct verb {
 
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
 
+/* Exit status, once standard output is known to have taken all. */
+static int end_output(void)
+{
+    if (fclose(stdout) == 0)
+        return EXIT_SUCCESS;
+    fprintf(stderr, "ritz: cannot write to standard output: %s\n",
+            strerror(errno));
+    return EXIT_FAILURE;
+}
+
 static int list_verbs(void)
 {
     printf("Usage: ritz VERB [OPTION]... INPUT... -o OUTPUT\n\n"
@@ -42,12 +53,7 @@ static int list_verbs(void)
         printf("  %-10s %s\n", verbs[k].name, verbs[k].summary);
     printf("\n'ritz VERB --help' says more; 'ritz VERB' and 'ritz-VERB' are "
            "the same.\n");
-    if (ferror(stdout) || fclose(stdout) != 0) {
-        fprintf(stderr, "ritz: cannot write to standard output: %s\n",
-                strerror(errno));
-        return EXIT_FAILURE;
-    }
-    return EXIT_SUCCESS;
+    return end_output();
 }
 
 static int refuse_verb(const char *word)
@@ -55,10 +61,9 @@ static int refuse_verb(const char *word)
     const char *nearest =
         ritz_text_nearest(word, NUM_VERBS, verbs[0].name, sizeof *verbs);
 
-    fprintf(stderr, "ritz: no tool '%s'", word);
-    if (nearest)
-        fprintf(stderr, ", is '%s' meant?", nearest);
-    fprintf(stderr, "\nTry 'ritz --help'.\n");
+    fprintf(stderr, "ritz: no tool '%s'%s%s%s\nTry 'ritz --help'.\n", word,
+            nearest ? ", is '" : "", nearest ? nearest : "",
+            nearest ? "' meant?" : "");
     return EXIT_USAGE;
 }
 
@@ -68,42 +73,35 @@ static int start_tool(const char *verb, char **argv)
     char self[4096] = "";
     char tool[sizeof self + VERB_SIZE + sizeof "ritz-"];
     ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-    char *slash = NULL;
+    char *slash = length > 0 ? strrchr(self, '/') : NULL;
 
-    self[length > 0 ? length : 0] = '\0';
-    slash = strrchr(self, '/');
+    argv[0] = tool;
     if (slash) {
         slash[1] = '\0';
         snprintf(tool, sizeof tool, "%sritz-%s", self, verb);
-        argv[0] = tool;
         execv(tool, argv);
     }
     snprintf(tool, sizeof tool, "ritz-%s", verb);
-    argv[0] = tool;
     execvp(tool, argv);
-    fprintf(stderr, "ritz: cannot start 'ritz-%s': %s\n", verb,
-            strerror(errno));
+    fprintf(stderr, "ritz: cannot start '%s': %s\n", tool, strerror(errno));
     return EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)
 {
     static char help[] = "--help";
-    char *given[] = {NULL, help, NULL};
-    const char *word = argc > 1 ? argv[1] : "--help";
-    bool helping = argc > 2 && strcmp(word, "help") == 0;
+    char *helping[] = {NULL, help, NULL};
+    bool asks = argc > 2 && strcmp(argv[1], "help") == 0;
+    const char *word = asks ? argv[2] : argc > 1 ? argv[1] : help;
 
-    if (helping)
-        word = argv[2];
-    else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 ||
-             strcmp(word, "help") == 0)
-        return list_verbs();
-    if (strcmp(word, "--version") == 0) {
-        printf("ritz (Ritz) %s\n", ritz_version());
-        return fclose(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-    }
     for (int k = 0; k < NUM_VERBS; k++)
         if (strcmp(word, verbs[k].name) == 0)
-            return start_tool(word, helping ? given : argv + 1);
-    return refuse_verb(word);
+            return start_tool(word, asks ? helping : argv + 1);
+    if (strcmp(word, help) == 0 || strcmp(word, "-h") == 0 ||
+        strcmp(word, "help") == 0)
+        return list_verbs();
+    if (strcmp(word, "--version") != 0)
+        return refuse_verb(word);
+    printf("ritz (Ritz) %s\n", ritz_version());
+    return end_output();
 }

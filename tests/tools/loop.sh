@@ -85,7 +85,7 @@ expect 0 'the loop is stable' ritz-frf chain.h5 --to-hz 0.5 \
 expect 1 "the plant has no output 'u1' for the controller" ritz-frf whole.h5 \
     --to-hz 0.5 --controller damp.h5 -o none.h5
 expect 2 'give its --controller' ritz-frf whole.h5 --to-hz 0.5 --force -o none.h5
-expect 2 "no feedback 'posotive', is 'positive' meant?" ritz-frf whole.h5 \
+expect 2 "takes 'negative' or 'positive', not 'posotive'" ritz-frf whole.h5 \
     --to-hz 0.5 --controller damp.h5 --feedback posotive -o none.h5
 
 # --- nested files --------------------------------------------------------------

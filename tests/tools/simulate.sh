@@ -84,7 +84,7 @@ expect 2 "first or zero, not 'second'" ritz-simulate --hold second --seconds 1 \
 expect 2 'one of them' ritz-simulate --step 1 --accuracy 0.1 --seconds 1 \
     reduced.h5 -o none.h5
 expect 1 'nothing moves it' ritz-simulate --seconds 1 reduced.h5 -o none.h5
-expect 1 "no input 'torqe', is 'torque' meant?" ritz-simulate --seconds 1 \
+expect 1 "unknown input 'torqe', is 'torque' meant?" ritz-simulate --seconds 1 \
     --input torqe=step reduced.h5 -o none.h5
 expect 1 'is given twice' ritz-simulate --seconds 1 --input torque=step \
     --input torque=step reduced.h5 -o none.h5

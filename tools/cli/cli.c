@@ -64,7 +64,8 @@ static void print_default(const cli_option *o)
         print_range(o, (double)*o->to.whole);
     else if (o->kind == CLI_KIND_REAL)
         print_range(o, *o->to.real);
-    else if (o->kind == CLI_KIND_TEXT && *o->to.text)
+    else if ((o->kind == CLI_KIND_TEXT || o->kind == CLI_KIND_WORD) &&
+             *o->to.text)
         printf(" [%s]", *o->to.text);
     else if (o->kind == CLI_KIND_LIST)
         printf("; may be repeated");
@@ -193,23 +194,6 @@ bool cli_given(const cli_option *option)
            (option->kind == CLI_KIND_LIST && option->to.list->count > 0);
 }
 
-void cli_pair(const cli_program *program, const char *option, const char *text,
-              double out[2])
-{
-    char low[64] = "";
-    const char *comma = strchr(text, ',');
-
-    if (comma && comma - text < (ptrdiff_t)sizeof low)
-        memcpy(low, text, (size_t)(comma - text));
-    if (!comma || !ritz_text_real(low, &out[0]) ||
-        !ritz_text_real(comma + 1, &out[1]) || !(out[0] >= 0.0) ||
-        !(out[0] < out[1]))
-        cli_refuse(program,
-                   "--%s takes two ascending numbers, '0,10', not "
-                   "'%s'",
-                   option, text);
-}
-
 /* A whole number or a real in its range, or no return. */
 static double read_number(const cli_program *program, const cli_option *o,
                           const char *text)
@@ -222,6 +206,49 @@ static double read_number(const cli_program *program, const cli_option *o,
         cli_refuse(program, "--%s takes a %s from %g to %g, not '%s'", o->name,
                    whole ? "whole number" : "number", o->min, o->max, text);
     return number;
+}
+
+static void take_pair(const cli_program *program, const cli_option *o,
+                      const char *text)
+{
+    char low[64] = "";
+    const char *comma = strchr(text, ',');
+    double *out = o->to.real;
+
+    if (comma && comma - text < (ptrdiff_t)sizeof low)
+        memcpy(low, text, (size_t)(comma - text));
+    if (!comma || !ritz_text_real(low, &out[0]) ||
+        !ritz_text_real(comma + 1, &out[1]) || !(out[0] >= 0.0) ||
+        !(out[0] < out[1]))
+        cli_refuse(program,
+                   "--%s takes two ascending numbers, '0,10', not "
+                   "'%s'",
+                   o->name, text);
+}
+
+/* One of the words of "on|off|both", or no return. */
+static void take_word(const cli_program *program, const cli_option *o,
+                      const char *text)
+{
+    char list[128] = ""; /* "'on', 'off' or 'both'" */
+    size_t used = 0;
+    int length = 0;
+
+    for (const char *at = o->argument; *at; at += length + (at[length] != 0)) {
+        const char *gap = "";
+
+        length = (int)strcspn(at, "|");
+        if (strlen(text) == (size_t)length &&
+            strncmp(at, text, (size_t)length) == 0) {
+            *o->to.text = text;
+            return;
+        }
+        if (at > o->argument)
+            gap = at[length] ? ", " : " or ";
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s'%.*s'",
+                                 gap, length, at);
+    }
+    cli_refuse(program, "--%s takes %s, not '%s'", o->name, list, text);
 }
 
 static void take_option(cli_run *run, const cli_option *all,
@@ -237,8 +264,14 @@ static void take_option(cli_run *run, const cli_option *all,
     case CLI_KIND_REAL:
         *o->to.real = read_number(run->program, o, text);
         break;
+    case CLI_KIND_PAIR:
+        take_pair(run->program, o, text);
+        break;
     case CLI_KIND_TEXT:
         *o->to.text = text;
+        break;
+    case CLI_KIND_WORD:
+        take_word(run->program, o, text);
         break;
     case CLI_KIND_LIST:
         if (o->to.list->count == CLI_MAX_LIST)

@@ -32,7 +32,9 @@ typedef enum cli_kind {
     CLI_KIND_FLAG,
     CLI_KIND_INT,
     CLI_KIND_REAL,
+    CLI_KIND_PAIR,
     CLI_KIND_TEXT,
+    CLI_KIND_WORD,
     CLI_KIND_LIST,
     CLI_KIND_HELP,
     CLI_KIND_VERSION,
@@ -51,12 +53,12 @@ typedef struct cli_option {
         void (*action)(void);
         bool *flag;
         int64_t *whole;
-        double *real;
+        double *real; /* of a pair: two */
         const char **text;
         cli_list *list;
     } to;
     const char *name;
-    const char *argument; /* what --help calls it */
+    const char *argument; /* what --help calls it; of a word all: "on|off" */
     double min, max;      /* range of a number; a default outside is none */
     const char *help;
 } cli_option;
@@ -76,8 +78,13 @@ typedef struct cli_option {
     CLI_ROW(INT, whole, word, place, value, low, high, says)
 #define CLI_REAL(word, place, value, low, high, says)                          \
     CLI_ROW(REAL, real, word, place, value, low, high, says)
+/* "LOW,HIGH", ascending and not negative; [0, 0] as long as it is not given */
+#define CLI_PAIR(word, place, value, says)                                     \
+    CLI_ROW(PAIR, real, word, place, value, 0.0, 0.0, says)
 #define CLI_TEXT(word, place, value, says)                                     \
     CLI_ROW(TEXT, text, word, place, value, 0.0, 0.0, says)
+#define CLI_WORD(word, place, words, says)                                     \
+    CLI_ROW(WORD, text, word, place, words, 0.0, 0.0, says)
 #define CLI_LIST(word, place, value, says)                                     \
     CLI_ROW(LIST, list, word, place, value, 0.0, 0.0, says)
 
@@ -155,10 +162,6 @@ bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
 
 /** True if the command line gave this flag, text or list. */
 bool cli_given(const cli_option *option);
-
-/** "LOW,HIGH" of an option, or the end of the program. */
-void cli_pair(const cli_program *program, const char *option, const char *text,
-              double out[2]);
 
 /**
  * Remember a file that is about to be read: its SHA-256 goes into what is

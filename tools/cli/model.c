@@ -70,24 +70,24 @@ const void *model_object(const model *m)
     return (const char *)m + kinds[k].offset;
 }
 
-ritz_model model_reference(const model *m, const ritz_damping *damping)
+ritz_model model_reference(const model *m)
 {
     if (m->kind == MODEL_COMPONENT)
-        return ritz_model_of_component(&m->component, damping);
+        return ritz_model_of_component(&m->component, &m->damping);
     if (m->kind == MODEL_STATES)
         return ritz_model_of_states(&m->states);
-    return m->at ? ritz_model_of_configuration(m->at, damping)
-                 : ritz_model_of_reduced(&m->reduced, damping);
+    return m->at ? ritz_model_of_configuration(m->at, &m->damping)
+                 : ritz_model_of_reduced(&m->reduced, &m->damping);
 }
 
 ritz_io model_io(const model *m)
 {
-    return ritz_model_io(model_reference(m, NULL));
+    return ritz_model_io(model_reference(m));
 }
 
 int64_t model_order(const model *m)
 {
-    return ritz_model_order(model_reference(m, NULL));
+    return ritz_model_order(model_reference(m));
 }
 
 bool model_has_states(const model *m)
@@ -95,7 +95,7 @@ bool model_has_states(const model *m)
     if (m->kind == MODEL_COMPONENT)
         return m->component.num_dofs <= MODEL_MOST_DOFS &&
                !m->component.K4.colptr;
-    return m->kind == MODEL_STATES || !model_matrices(m).K4->val;
+    return m->kind == MODEL_STATES || !model_reference(m).dense.K4->val;
 }
 
 /* "a component or a system" */
@@ -201,8 +201,7 @@ ritz_status model_prefix(model *m, const char *path, int64_t order)
     return RITZ_OK;
 }
 
-ritz_status model_settle(model *m, const char *path, const model_options *given,
-                         ritz_damping *damping)
+ritz_status model_settle(model *m, const char *path, const model_options *given)
 {
     RITZ_CHECK(model_prefix(m, path, given->order));
     RITZ_CHECK(model_at(m, path, given->at));
@@ -210,17 +209,7 @@ ritz_status model_settle(model *m, const char *path, const model_options *given,
                    "a state space is damped as it was made: --damping is for "
                    "ritz-basis");
     RITZ_CHECK_IN(path, model_install(m, &given->damper));
-    return model_damping(m, given->damping, damping);
-}
-
-ritz_second_order model_matrices(const model *m)
-{
-    const ritz_reduced *r = &m->reduced;
-
-    if (m->at)
-        return (ritz_second_order){&m->at->K, &m->at->M, &m->at->D, &m->at->K4,
-                                   &m->at->io};
-    return (ritz_second_order){&r->K, &r->M, &r->D, &r->K4, &r->io};
+    return model_damping(m, given->damping, &m->damping);
 }
 
 ritz_measures *model_errors(model *m)
@@ -316,15 +305,13 @@ void model_say_measures(cli_run *run, const char *key,
             width = (int)strlen(measures->item[k].name);
     cli_say(run, "%-*s %12s %12s  %-9s  %s", width, "measure", "value", "limit",
             "verdict", "where");
-    sink_list(run, key);
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
-        sink_say(run, "name,value,limit,verdict,where",
-                 "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
-                 m->limit, name_verdict(m, known), m->where);
+        cli_say(run, "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
+                m->limit, name_verdict(m, known), m->where);
     }
-    sink_end(run);
+    model_set_measures(run, key, measures, known);
 }
 
 void model_set_cost(cli_run *run, const ritz_cost *cost)
@@ -364,22 +351,6 @@ ritz_status model_write_bodies(cli_run *run, const char *prefix,
     }
     sink_end(run);
     return RITZ_OK;
-}
-
-bool model_band(const ritz_columns *columns, double *low, double *high)
-{
-    bool any = false;
-
-    for (int64_t k = 0; k < columns->count; k++) {
-        double hertz = columns->hertz[k];
-
-        if (columns->kind[k] != RITZ_COLUMN_NORMAL || isnan(hertz))
-            continue;
-        *low = any && *low < hertz ? *low : hertz;
-        *high = any && *high > hertz ? *high : hertz;
-        any = true;
-    }
-    return any;
 }
 
 void model_free(model *m)

@@ -44,6 +44,7 @@ typedef struct model {
     ritz_state_space states;
     ritz_simulation simulation;
     ritz_configuration *at; /* of a system, once model_at has chosen */
+    ritz_damping damping;   /* beside that of matrices, as model_settle found */
 } model;
 
 /* Options that choose or change a model before it is used. */
@@ -130,7 +131,7 @@ ritz_status model_prefix(model *model, const char *path, int64_t order);
  * @return RITZ_ERR_ARGUMENT if a state space is to be damped otherwise
  */
 ritz_status model_settle(model *model, const char *path,
-                         const model_options *given, ritz_damping *damping);
+                         const model_options *given);
 
 /*
  * Questions that tools ask of a component, reduced component, system with its
@@ -140,9 +141,8 @@ ritz_status model_settle(model *model, const char *path,
 /** The object that was read, whatever its kind. */
 const void *model_object(const model *model);
 
-/** As the library takes it, with damping beside that of its matrices; borrowed.
- */
-ritz_model model_reference(const model *model, const ritz_damping *damping);
+/** As the library takes it, with that damping; borrowed. */
+ritz_model model_reference(const model *model);
 
 /** Names and limits of inputs and outputs, with matrices where it has them;
  * borrowed. */
@@ -150,9 +150,6 @@ ritz_io model_io(const model *model);
 
 /** Coordinates, dofs or states. */
 int64_t model_order(const model *model);
-
-/** Matrices of a reduced component or a system; borrowed. */
-ritz_second_order model_matrices(const model *model);
 
 /* A component with more dofs is not made a first-order model just for its poles
    or zeros. */
@@ -209,9 +206,6 @@ ritz_status model_body_path(const char *prefix, const char *name,
 ritz_status model_write_bodies(cli_run *run, const char *prefix,
                                const ritz_scene *scene,
                                const ritz_reduced *body);
-
-/** "1.2 to 30.5 Hz" of the columns that have a frequency; false if none. */
-bool model_band(const ritz_columns *columns, double *low, double *high);
 
 void model_free(model *model);
 

@@ -90,42 +90,38 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
 
 ritz_status basis_run(cli_run *run, basis_options *given)
 {
-    ritz_status status = RITZ_OK;
+    const char *path = run->operand[1];
     const ritz_method *method = given->method;
     ritz_request *request = &given->request;
-    model m = {0};
-    ritz_neighbour neighbour = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(model) m = {0};
+    RITZ_OWN(ritz_dofs) attached = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     cli_record(run, method->name, -1);
-    RITZ_TRY(model_read(run, run->operand[1],
-                        MODEL_COMPONENT |
-                            (method->uses & RITZ_USES_SPACE ? MODEL_STATES : 0),
-                        &m));
+    RITZ_CHECK(model_read(
+        run, path,
+        MODEL_COMPONENT | (method->uses & RITZ_USES_SPACE ? MODEL_STATES : 0),
+        &m));
     if (m.kind == MODEL_STATES)
         request->space = &m.states;
     else
         request->component = &m.component;
     if (request->component && method->uses & RITZ_USES_ATTACHED)
-        RITZ_TRY_IN(run->operand[1],
-                    ritz_component_attached(&m.component, given->ports,
-                                            &request->attached));
+        RITZ_CHECK_IN(path, ritz_component_attached(&m.component, given->ports,
+                                                    &attached));
+    request->attached = attached;
     if (given->neighbours.count > 0) {
-        RITZ_TRY(read_neighbours(run, &given->neighbours, &m.component,
-                                 &request->attached, &neighbour));
+        RITZ_CHECK(read_neighbours(run, &given->neighbours, &m.component,
+                                   &attached, &neighbour));
         request->neighbour = &neighbour;
     }
-    RITZ_TRY_IN(run->operand[1], ritz_basis_make(method, request, &basis));
+    RITZ_CHECK_IN(path, ritz_basis_make(method, request, &basis));
     memcpy(basis.units, request->space ? m.states.units : m.component.units,
            sizeof basis.units);
-    RITZ_TRY(ritz_container_write_basis(run->output, &basis, cli_stamp(run)));
+    RITZ_CHECK(ritz_container_write_basis(run->output, &basis, cli_stamp(run)));
     say_basis(run, &basis);
-done:
-    ritz_dofs_free(&request->attached);
-    ritz_neighbour_free(&neighbour);
-    ritz_basis_free(&basis);
-    model_free(&m);
-    return status;
+    return RITZ_OK;
 }
 
 /* Without T nobody can recover the full mesh, but the file is small. */

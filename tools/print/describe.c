@@ -11,7 +11,7 @@ static const double skew_rounding = 1e-12;
 static void describe_units(cli_run *run, const char *units)
 {
     sink_set(run, "units", "%s", units);
-    cli_say(run, "  %-14s %s", "units", *units ? units : "not stated");
+    sink_field(run, "units", "", "%s", *units ? units : "not stated");
 }
 
 enum { PARTS = 3 * RITZ_DIGEST_SIZE + 64 };
@@ -90,9 +90,11 @@ static void describe_io(cli_run *run, const ritz_io *io)
     }
 }
 
-/* A port: its grids in order of first appearance, how many dofs, where. */
+/* A port: its grids in order of first appearance, how many dofs, where.
+   @p at names its dofs among all; NULL: they are its own. */
 static void describe_port(cli_run *run, const char *name, int64_t count,
-                          const ritz_dof *dof, const double *origin)
+                          const int64_t *at, const ritz_dof *dof,
+                          const double *origin)
 {
     enum { SHOWN = 12 };
     char text[SHOWN * 22] = "";
@@ -106,12 +108,15 @@ static void describe_port(cli_run *run, const char *name, int64_t count,
     sink_set(run, "name,dofs", "%s %ld", name, count);
     sink_reals(run, "origin", 3, origin);
     sink_list(run, "grids");
-    for (int64_t k = 0; k < count; k++) {
-        if (k > 0 && dof[k].grid == dof[k - 1].grid)
-            continue;
-        if (grids++ < SHOWN)
-            sink_append(text, sizeof text, " %ld", dof[k].grid);
-        sink_add(run, "%ld", dof[k].grid);
+    for (int64_t k = 0, last = 0; k < count; k++) {
+        int64_t grid = dof[at ? at[k] : k].grid;
+
+        if (k == 0 || grid != last) {
+            sink_add(run, "%ld", grid);
+            if (grids++ < SHOWN)
+                sink_append(text, sizeof text, " %ld", grid);
+        }
+        last = grid;
     }
     sink_end(run);
     sink_end(run);
@@ -124,24 +129,8 @@ static void describe_port(cli_run *run, const char *name, int64_t count,
 /* Lists of ports are there even where there is none. */
 static void start_ports(cli_run *run)
 {
-    sink_list(run, "ports");
-    sink_end(run);
-    sink_list(run, "port_details");
-    sink_end(run);
-}
-
-static void describe_component_ports(cli_run *run, const ritz_component *c)
-{
-    start_ports(run);
-    for (int64_t k = 0; k < c->num_ports; k++) {
-        const ritz_port *p = &c->port[k];
-        ritz_dof *dof = calloc((size_t)p->dofs.count + 1, sizeof *dof);
-
-        for (int64_t i = 0; dof && i < p->dofs.count; i++)
-            dof[i] = c->dof[p->dofs.at[i]];
-        describe_port(run, p->name, dof ? p->dofs.count : 0, dof, p->origin);
-        free(dof);
-    }
+    sink_wholes(run, "ports", 0, NULL);
+    sink_wholes(run, "port_details", 0, NULL);
 }
 
 void describe_damping(cli_run *run, const char *text)
@@ -152,7 +141,7 @@ void describe_damping(cli_run *run, const char *text)
 
     sink_set(run, "damping", "%s", text);
     if (*text)
-        cli_say(run, "  %-14s %s", "damping", text);
+        sink_field(run, "damping", "", "%s", text);
     if (ritz_damping_parse(text, &damping) != RITZ_OK ||
         damping.kind != RITZ_DAMPING_FIT)
         return;
@@ -184,9 +173,9 @@ static void describe_skew(cli_run *run, double share)
 {
     sink_set(run, "gyroscopic", "%g", share);
     if (share > skew_rounding)
-        cli_say(run,
-                "  %-14s unsymmetric: a gyroscopic part of %.3g %% is kept", "",
-                100.0 * share);
+        sink_field(run, "", "",
+                   "unsymmetric: a gyroscopic part of %.3g %% is kept",
+                   100.0 * share);
 }
 
 static double measure_skew(const ritz_dense *D)
@@ -260,7 +249,7 @@ void describe_component(cli_run *run, const ritz_component *c)
                c->num_dofs, grids,
                c->grids.count > 0 ? "" : " without positions");
     if (scalar > 0)
-        cli_say(run, "  %-14s %ld", "scalar points", scalar);
+        sink_field(run, "scalar points", "", "%ld", scalar);
     describe_units(run, c->units);
     describe_sparse(run, "K", &c->K);
     describe_sparse(run, "M", &c->M);
@@ -277,12 +266,32 @@ void describe_component(cli_run *run, const ritz_component *c)
     describe_dampers(run, &c->dampers);
     describe_recovery(run, &c->recovery);
     if (c->digits > 0.0)
-        cli_say(run, "  %-14s %g significant", "digits", c->digits);
+        sink_field(run, "digits", "", "%g significant", c->digits);
     if (c->asymmetry > 0.0)
         cli_say(run, "  %-14s %.1e of the largest entry, averaged away",
                 "asymmetry", c->asymmetry);
-    describe_component_ports(run, c);
+    start_ports(run);
+    for (int64_t k = 0; k < c->num_ports; k++)
+        describe_port(run, c->port[k].name, c->port[k].dofs.count,
+                      c->port[k].dofs.at, c->dof, c->port[k].origin);
     describe_io(run, &c->io);
+}
+
+/* Lowest and highest frequency of normal modes; false if none has one. */
+static bool find_band(const ritz_columns *columns, double *low, double *high)
+{
+    bool any = false;
+
+    for (int64_t k = 0; k < columns->count; k++) {
+        double hertz = columns->hertz[k];
+
+        if (columns->kind[k] != RITZ_COLUMN_NORMAL || isnan(hertz))
+            continue;
+        *low = any && *low < hertz ? *low : hertz;
+        *high = any && *high > hertz ? *high : hertz;
+        any = true;
+    }
+    return any;
 }
 
 /* "12 constraint, 8 normal". */
@@ -309,9 +318,9 @@ static void describe_columns(cli_run *run, const ritz_columns *c)
     }
     sink_end(run);
     sink_set(run, "modes", "%ld", modes);
-    cli_say(run, "  %-14s %s", "columns", text);
-    if (model_band(c, &low, &high))
-        cli_say(run, "  %-14s %g to %g Hz", "normal modes", low, high);
+    sink_field(run, "columns", "", "%s", text);
+    if (find_band(c, &low, &high))
+        sink_field(run, "normal modes", "", "%g to %g Hz", low, high);
 }
 
 /* How a basis was made. */
@@ -319,9 +328,9 @@ static void describe_origin(cli_run *run, const ritz_origin *o)
 {
     sink_set(run, "method,options,engine", "%s %s %s", o->method, o->options,
              o->engine);
-    cli_say(run, "  %-14s %s (%s) [%s]%s%s", "method", o->method,
-            *o->options ? o->options : "no options", o->reference,
-            *o->engine ? ", " : "", o->engine);
+    sink_field(run, "method", "", "%s (%s) [%s]%s%s", o->method,
+               *o->options ? o->options : "no options", o->reference,
+               *o->engine ? ", " : "", o->engine);
 }
 
 /* Values of a balanced basis: some of them, and all in JSON. */
@@ -333,8 +342,8 @@ static void describe_hankel(cli_run *run, const ritz_basis *b)
     for (int64_t k = 0; k < b->num_hankel && k < SHOWN; k++)
         sink_append(text, sizeof text, "%s%.4g", k > 0 ? " " : "",
                     b->hankel[k]);
-    cli_say(run, "  %-14s %s%s", "Hankel values", text,
-            b->num_hankel > SHOWN ? " ..." : "");
+    sink_field(run, "Hankel values", "", "%s%s", text,
+               b->num_hankel > SHOWN ? " ..." : "");
     sink_reals(run, "hankel_values", b->num_hankel, b->hankel);
 }
 
@@ -364,8 +373,8 @@ static void describe_inertia(cli_run *run, const ritz_inertia *i)
     sink_object(run, "inertia");
     if (i->known) {
         sink_field(run, "mass", "mass", "%.8g", i->mass);
-        cli_say(run, "  %-14s (%.6g, %.6g, %.6g)", "centre of mass",
-                i->centre[0], i->centre[1], i->centre[2]);
+        sink_field(run, "centre of mass", "", "(%.6g, %.6g, %.6g)",
+                   i->centre[0], i->centre[1], i->centre[2]);
         for (size_t k = 0; k < 3; k++)
             cli_say(run, "  %-14s %14.6g %14.6g %14.6g", k > 0 ? "" : "inertia",
                     i->tensor[3 * k], i->tensor[3 * k + 1],
@@ -395,12 +404,12 @@ static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
 static void describe_measures(cli_run *run, const char *key,
                               const ritz_measures *m, const char *known)
 {
-    if (m->count > 0)
-        cli_say(run, "  %s:", key);
-    if (m->count > 0)
-        model_say_measures(run, key, m, known);
-    else
+    if (m->count == 0) {
         model_set_measures(run, key, m, known);
+        return;
+    }
+    cli_say(run, "  %s:", key);
+    model_say_measures(run, key, m, known);
 }
 
 /* A row a measure and a column an order, some orders at a time. */
@@ -476,8 +485,8 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_inertia(run, &r->inertia);
     start_ports(run);
     for (int64_t k = 0; k < r->num_ports; k++)
-        describe_port(run, r->port[k].name, r->port[k].count, r->port[k].dof,
-                      r->port[k].origin);
+        describe_port(run, r->port[k].name, r->port[k].count, NULL,
+                      r->port[k].dof, r->port[k].origin);
     describe_io(run, &r->io);
     describe_measures(run, "estimates", &r->estimates, "estimated");
     describe_measures(run, "errors", &r->errors, "measured");
@@ -488,7 +497,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
 static ritz_status describe_configuration(cli_run *run,
                                           const ritz_configuration *c)
 {
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
 
     RITZ_CHECK(model_hertz_at(c, &hertz));
     sink_object(run, NULL);
@@ -497,7 +506,6 @@ static ritz_status describe_configuration(cli_run *run,
                    hertz);
     describe_measures(run, "errors", &c->errors, "measured");
     sink_end(run);
-    free(hertz);
     return RITZ_OK;
 }
 
@@ -506,18 +514,18 @@ static ritz_status describe_configurations(cli_run *run, const ritz_system *s)
 {
     for (int64_t k = 0; k < s->num_configurations; k++) {
         const ritz_configuration *c = &s->configuration[k];
-        const json_t *first = NULL;
+        const json_t *item = NULL;
         char name[2][RITZ_NAME_SIZE + 4];
 
         sink_list(run, "configurations");
         RITZ_CHECK(describe_configuration(run, c));
-        first = json_array_get(sink_here(run), 0);
+        item = json_array_get(sink_here(run), (size_t)k);
         sink_end(run);
         if (k == 0) {
             sink_set(run, "dofs,modes", "%ld %ld", c->K.nrow,
-                     (c->K.nrow - c->num_rigid));
+                     c->K.nrow - c->num_rigid);
             json_object_set(sink_here(run), "frequencies_hz",
-                            json_object_get(first, "frequencies_hz"));
+                            json_object_get(item, "frequencies_hz"));
             describe_io(run, &c->io);
         }
         snprintf(name[0], sizeof name[0], "%s/K", c->at);
@@ -544,8 +552,8 @@ ritz_status describe_system(cli_run *run, const ritz_system *s)
                    s->order[k], s->order_full[k]);
     sink_end(run);
     if (s->band_hz[1] > 0.0)
-        cli_say(run, "  %-14s %g to %g Hz", "band", s->band_hz[0],
-                s->band_hz[1]);
+        sink_field(run, "band", "", "%g to %g Hz", s->band_hz[0],
+                   s->band_hz[1]);
     describe_damping(run, s->damping);
     if (s->num_configurations > 0)
         describe_dampers(run, &s->configuration[0].dampers);
@@ -632,8 +640,8 @@ static void describe_poles(cli_run *run, int64_t count,
     enum { SHOWN = 40 };
     int64_t shown = 0;
 
-    cli_say(run, "  %-14s %14s %14s %12s %10s", "poles", "real, rad/s",
-            "imaginary", "Hz", "damping");
+    sink_field(run, "poles", "", "%14s %14s %12s %10s", "real, rad/s",
+               "imaginary", "Hz", "damping");
     sink_list(run, "poles");
     for (int64_t k = 0; k < count; k++) {
         double re = creal(pole[k]);
@@ -644,29 +652,24 @@ static void describe_poles(cli_run *run, int64_t count,
         sink_add(run, "%g %g", re, im);
         sink_end(run);
         if (im >= 0.0 && shown++ < SHOWN)
-            cli_say(run, "  %-14s %14.6g %14.6g %12.6g %10.4g", "", re, im,
-                    w / (2.0 * RITZ_PI), w > 0.0 ? -re / w : 0.0);
+            sink_field(run, "", "", "%14.6g %14.6g %12.6g %10.4g", re, im,
+                       w / (2.0 * RITZ_PI), w > 0.0 ? -re / w : 0.0);
     }
     sink_end(run);
     if (shown > SHOWN)
-        cli_say(run, "  %-14s and %ld faster ones", "", (shown - SHOWN));
+        sink_field(run, "", "", "and %ld faster ones", (shown - SHOWN));
 }
 
 ritz_status describe_states(cli_run *run, const ritz_state_space *states)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_io io = {.num_inputs = states->num_inputs,
-                        .num_outputs = states->num_outputs,
-                        .input = states->input,
-                        .output = states->output,
-                        .limit = states->limit};
+    const ritz_io io = ritz_model_io(ritz_model_of_states(states));
     ritz_probe probe = {0};
-    double _Complex *pole = NULL;
+    RITZ_OWN_ARRAY double _Complex *pole = NULL;
     int64_t count = 0;
     char text[2 * RITZ_NAME_SIZE];
 
-    RITZ_TRY(ritz_probe_states(states, &probe));
-    RITZ_TRY(ritz_state_space_poles(states, &count, &pole));
+    RITZ_CHECK(ritz_probe_states(states, &probe));
+    RITZ_CHECK(ritz_state_space_poles(states, &count, &pole));
     sink_set(run, "kind", "%s", "state-space");
     sink_field(run, "kind", "states", "state space, %ld states",
                states->A.nrow);
@@ -687,7 +690,5 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
                ritz_stability_name(probe.verdict), text);
     describe_measures(run, "estimates", &states->estimates, "estimated");
     describe_measures(run, "errors", &states->errors, "measured");
-done:
-    free(pole);
-    return status;
+    return RITZ_OK;
 }

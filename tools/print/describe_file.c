@@ -2,75 +2,65 @@
 #include "print/print.h"
 #include "print/rankings.h"
 
-/* One matrix of a file: a line and an item; its checksum comes later. */
-static void describe_matrix(cli_run *run, const ritz_matrix *a, const char *sum)
+/* One matrix of a file, of which one at a time is held: a line and an item. */
+static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
+                                   int64_t k)
 {
-    bool square = a->A.nrow == a->A.ncol;
-    char form[32];
-    char size[48];
+    RITZ_OWN(ritz_matrix) a = {0};
+    char sum[RITZ_DIGEST_SIZE] = "";
+    char form[32], size[48];
+    bool square = false;
 
+    RITZ_CHECK(ritz_foreign_take(file, k, &a));
+    checksum_sparse(run, a.name, &a.A, sum);
+    square = a.A.nrow == a.A.ncol;
     snprintf(form, sizeof form, "%s%s",
-             a->symmetric ? "symmetric"
-             : square     ? "square"
-                          : "rectangular",
-             a->imaginary ? " complex" : "");
-    snprintf(size, sizeof size, "%ld x %ld", a->A.nrow, a->A.ncol);
+             a.symmetric ? "symmetric"
+             : square    ? "square"
+                         : "rectangular",
+             a.imaginary ? " complex" : "");
+    snprintf(size, sizeof size, "%ld x %ld", a.A.nrow, a.A.ncol);
+    sink_list(run, "matrices");
     sink_object(run, NULL);
     sink_set(run, "name,rows,columns,symmetric,complex,dofs_named,checksum",
-             "%s %ld %ld %d %d %d %s", a->name, a->A.nrow, a->A.ncol,
-             a->symmetric, a->imaginary != NULL, a->row != NULL, sum);
+             "%s %ld %ld %d %d %d %s", a.name, a.A.nrow, a.A.ncol, a.symmetric,
+             a.imaginary != NULL, a.row != NULL, sum);
     sink_say(run, ",,entries,,digits,asymmetry,spelling",
-             "  %-10s %17s %10ld %-17s %6ld %9.1e  %s",
-             *a->name ? a->name : "-", size, a->A.colptr[a->A.ncol], form,
-             a->digits, square ? ritz_sparse_asymmetry(&a->A) : (double)NAN,
-             a->spelling);
+             "  %-10s %17s %10ld %-17s %6ld %9.1e  %s", *a.name ? a.name : "-",
+             size, a.A.colptr[a.A.ncol], form, a.digits,
+             square ? ritz_sparse_asymmetry(&a.A) : (double)NAN, a.spelling);
     sink_end(run);
+    sink_end(run);
+    return RITZ_OK;
 }
 
-/* Variables of a file that are no matrices are told by what they are. */
-static void describe_other(cli_run *run, const ritz_listed *one)
-{
-    sink_list(run, "matrices");
-    sink_set(run, "name,other", "%s %s", one->name, one->other);
-    sink_end(run);
-    cli_say(run, "  %-10s %17s %s", *one->name ? one->name : "-", "-",
-            one->other);
-}
-
-/* A matrix by its entry in the file's directory; some formats give no sizes. */
+/*
+ * A matrix by its entry in the file's directory, where some formats give no
+ * sizes; variables that are no matrices are told by what they are.
+ */
 static void describe_listed(cli_run *run, const ritz_listed *one)
 {
+    const char *name = *one->name ? one->name : "-";
     char size[48] = "-";
 
     if (one->nrow >= 0)
         snprintf(size, sizeof size, "%ld x %ld", one->nrow, one->ncol);
     sink_list(run, "matrices");
     sink_object(run, NULL);
-    sink_set(run, "name,symmetric,complex", "%s %d %d", one->name,
-             one->symmetric, one->is_complex);
-    if (one->nrow >= 0)
-        sink_set(run, "rows,columns", "%ld %ld", one->nrow, one->ncol);
-    cli_say(run, "  %-10s %17s %s%s", *one->name ? one->name : "-", size,
-            one->symmetric ? "symmetric" : "",
-            one->is_complex ? " complex" : "");
+    sink_set(run, "name", "%s", one->name);
+    if (*one->other) {
+        sink_say(run, ",,other", "  %-10s %17s %s", name, "-", one->other);
+    } else {
+        sink_set(run, "symmetric,complex", "%d %d", one->symmetric,
+                 one->is_complex);
+        if (one->nrow >= 0)
+            sink_set(run, "rows,columns", "%ld %ld", one->nrow, one->ncol);
+        cli_say(run, "  %-10s %17s %s%s", name, size,
+                one->symmetric ? "symmetric" : "",
+                one->is_complex ? " complex" : "");
+    }
     sink_end(run);
     sink_end(run);
-}
-
-/* One matrix of the file is held at a time. */
-static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
-                                   int64_t k)
-{
-    char sum[RITZ_DIGEST_SIZE] = "";
-    ritz_matrix matrix = {0};
-
-    RITZ_CHECK(ritz_foreign_take(file, k, &matrix));
-    checksum_sparse(run, matrix.name, &matrix.A, sum);
-    sink_list(run, "matrices");
-    describe_matrix(run, &matrix, sum);
-    sink_end(run);
-    ritz_matrix_free(&matrix);
-    return RITZ_OK;
 }
 
 static ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
@@ -88,14 +78,11 @@ static ritz_status describe_matrices(cli_run *run, const ritz_foreign *file,
                 "entries", "form", "digits", "asymmetry", "spelling");
     sink_object(run, "checksums");
     sink_end(run);
-    for (int64_t k = 0; k < all->count; k++) {
-        if (*all->item[k].other)
-            describe_other(run, &all->item[k]);
-        else if (directory)
+    for (int64_t k = 0; k < all->count; k++)
+        if (directory || *all->item[k].other)
             describe_listed(run, &all->item[k]);
         else
             RITZ_CHECK(describe_values(run, file, k));
-    }
     return RITZ_OK;
 }
 
@@ -106,7 +93,7 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
 
     sink_set(run, "kind,dependent", "%s %ld", deck->format->name,
              deck->equations.count);
-    cli_say(run, "  %-14s %s", "kind", deck->format->title);
+    sink_field(run, "kind", "", "%s", deck->format->title);
     sink_field(run, "grids", "grids,frames", "%ld, in %ld displacement frames",
                deck->grids.count, deck->grids.num_frames);
     sink_field(run, "scalar points", "scalar_points", "%ld", deck->num_points);
@@ -125,12 +112,12 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
     }
     sink_end(run);
     if (deck->num_constraints > 10)
-        cli_say(run, "  %-14s and %ld more", "", (deck->num_constraints - 10));
+        sink_field(run, "", "", "and %ld more", (deck->num_constraints - 10));
     if (deck->num_constraints > 0)
-        cli_say(run, "  %-14s %ld dofs, by these", "dependent",
-                deck->equations.count);
+        sink_field(run, "dependent", "", "%ld dofs, by these",
+                   deck->equations.count);
     if (deck->equations.refused)
-        cli_say(run, "  %-14s %s", "", deck->equations.refused);
+        sink_field(run, "", "", "%s", deck->equations.refused);
 }
 
 /* Any of them, by its kind. */
@@ -178,8 +165,7 @@ static ritz_status describe_container(cli_run *run, const char *path,
     RITZ_OWN(ritz_summary) summary = {0};
     RITZ_OWN(model) m = {0};
 
-    sink_list(run, "made_from");
-    sink_end(run);
+    sink_names(run, NULL, "made_from", 0, NULL);
     RITZ_CHECK(model_read(run, path, MODEL_ANY, &m));
     RITZ_CHECK(ritz_container_summary(path, &summary));
     RITZ_CHECK_IN(path, describe_model(run, &m));
@@ -227,21 +213,15 @@ static ritz_status describe_text(cli_run *run, const ritz_foreign *file)
 static ritz_status describe_foreign(cli_run *run, const char *path,
                                     bool directory)
 {
-    ritz_status status = RITZ_OK;
-    ritz_foreign file = {0};
+    RITZ_OWN(ritz_foreign) file = {0};
 
-    RITZ_TRY(cli_input_unread(run, path));
-    RITZ_TRY(ritz_foreign_open(path, &file));
-    RITZ_TRY(cli_input_sum(run, path, file.digest));
-    if (file.format) {
-        RITZ_TRY_IN(path, ritz_foreign_list(&file));
-        RITZ_TRY_IN(path, describe_matrices(run, &file, directory));
-    } else {
-        RITZ_TRY(describe_text(run, &file));
-    }
-done:
-    ritz_foreign_free(&file);
-    return status;
+    RITZ_CHECK(cli_input_unread(run, path));
+    RITZ_CHECK(ritz_foreign_open(path, &file));
+    RITZ_CHECK(cli_input_sum(run, path, file.digest));
+    if (!file.format)
+        return describe_text(run, &file);
+    RITZ_CHECK_IN(path, ritz_foreign_list(&file));
+    return ritz_context(describe_matrices(run, &file, directory), path);
 }
 
 ritz_status describe_file(cli_run *run, const char *path, bool members,

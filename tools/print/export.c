@@ -1,76 +1,57 @@
 #include "print/print.h"
 
-/* K, M, D and K4. */
-enum { NUM_MATRICES = 4 };
 enum { SUM_SIZE = 2 * RITZ_WHERE_SIZE + RITZ_NAME_SIZE + 8 };
 
-/* A reader of the file integrates the rounded matrices, so these are checked. */
-static void round_matrix(int64_t digits, ritz_dense *A)
+/* A matrix as its text has it: a reader of the file integrates the rounded
+   matrices, so these are checked. */
+static ritz_status copy_rounded(const ritz_export_request *request,
+                                const ritz_dense *A, ritz_dense *out)
 {
     char text[40];
+    bool exact = !request->text || request->digits == 0 || request->digits > 16;
 
-    for (int64_t k = 0; A->val && k < A->nrow * A->ncol; k++) {
-        snprintf(text, sizeof text, "%.*e", (int)digits - 1, A->val[k]);
-        A->val[k] = strtod(text, NULL);
+    if (!A->val)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_copy(A, out));
+    for (int64_t k = 0; !exact && k < A->nrow * A->ncol; k++) {
+        snprintf(text, sizeof text, "%.*e", (int)request->digits - 1,
+                 A->val[k]);
+        out->val[k] = strtod(text, NULL);
     }
+    return RITZ_OK;
 }
 
-/* Digits that are left of what is written; 17: all. */
-static int64_t digits_of(const ritz_export_request *request)
-{
-    return request->text && request->digits > 0 ? request->digits : 17;
-}
-
-/* The probe of what will be written, rounded to as many digits. */
+/* Stability checks of what will be written. */
 static ritz_status audit_reduced(const ritz_reduced *reduced,
                                  const ritz_export_request *request,
                                  ritz_audit *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t digits = digits_of(request);
-    ritz_reduced rounded = *reduced; /* borrowed but for its matrices */
-    const ritz_dense *from[NUM_MATRICES] = {&reduced->K, &reduced->M,
-                                            &reduced->D, &reduced->K4};
-    ritz_dense *to[NUM_MATRICES] = {&rounded.K, &rounded.M, &rounded.D,
-                                    &rounded.K4};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, K4 = {0};
+    ritz_reduced rounded = *reduced; /* borrowed but for these */
 
-    if (digits > 16)
-        return ritz_audit_reduced(reduced, out);
-    for (int k = 0; k < NUM_MATRICES; k++)
-        *to[k] = (ritz_dense){0};
-    for (int k = 0; k < NUM_MATRICES; k++) {
-        if (from[k]->val)
-            RITZ_TRY(ritz_dense_copy(from[k], to[k]));
-        round_matrix(digits, to[k]);
-    }
-    RITZ_TRY(ritz_audit_reduced(&rounded, out));
-done:
-    for (int k = 0; k < NUM_MATRICES; k++)
-        ritz_dense_free(to[k]);
-    return status;
+    RITZ_CHECK(copy_rounded(request, &reduced->K, &K));
+    RITZ_CHECK(copy_rounded(request, &reduced->M, &M));
+    RITZ_CHECK(copy_rounded(request, &reduced->D, &D));
+    RITZ_CHECK(copy_rounded(request, &reduced->K4, &K4));
+    rounded.K = K;
+    rounded.M = M;
+    rounded.D = D;
+    rounded.K4 = K4;
+    return ritz_audit_reduced(&rounded, out);
 }
 
 static ritz_status audit_states(const ritz_state_space *states,
                                 const ritz_export_request *request,
                                 ritz_audit *out)
 {
-    ritz_status status = RITZ_OK;
-    int64_t digits = digits_of(request);
-    ritz_state_space rounded = *states;
+    RITZ_OWN(ritz_dense) A = {0}, E = {0};
+    ritz_state_space rounded = *states; /* borrowed but for these */
 
-    if (digits > 16)
-        return ritz_audit_states(states, out);
-    rounded.A = rounded.E = (ritz_dense){0};
-    RITZ_TRY(ritz_dense_copy(&states->A, &rounded.A));
-    if (states->E.val)
-        RITZ_TRY(ritz_dense_copy(&states->E, &rounded.E));
-    round_matrix(digits, &rounded.A);
-    round_matrix(digits, &rounded.E);
-    RITZ_TRY(ritz_audit_states(&rounded, out));
-done:
-    ritz_dense_free(&rounded.A);
-    ritz_dense_free(&rounded.E);
-    return status;
+    RITZ_CHECK(copy_rounded(request, &states->A, &A));
+    RITZ_CHECK(copy_rounded(request, &states->E, &E));
+    rounded.A = A;
+    rounded.E = E;
+    return ritz_audit_states(&rounded, out);
 }
 
 /* "stable: pole at ...", or the first check that fails. */

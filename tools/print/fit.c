@@ -38,8 +38,6 @@ void fit_take(const cli_program *program, fit_options *given)
         cli_refuse(program, "--tolerance says what is to hold");
     if (ritz_tolerance_take(given->tolerance, tolerance) != RITZ_OK)
         cli_refuse(program, "--tolerance: %s", ritz_error_message());
-    if (given->band)
-        cli_pair(program, "band-hz", given->band, tolerance->band_hz);
     if (given->methods)
         read_methods(program, given);
     given->request.seed = (uint64_t)given->seed;

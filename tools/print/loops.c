@@ -2,15 +2,10 @@
 
 void loops_check(const cli_program *program, const loop_options *given)
 {
-    static const char *const signs[] = {"negative", "positive"};
-
     if (!given->controller && (given->connect.count > 0 || given->feedback ||
                                given->states || given->force))
         cli_refuse(program, "--connect, --feedback, --closed-loop and --force "
                             "say how a loop is closed: give its --controller");
-    if (given->feedback && strcmp(given->feedback, signs[0]) != 0 &&
-        strcmp(given->feedback, signs[1]) != 0)
-        cli_refuse_name(program, "no feedback", given->feedback, 2, signs);
 }
 
 static ritz_ends find_ends(const model *m)
@@ -76,9 +71,8 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
 
 /* Poles of the closed loop, if its plant has states. */
 static ritz_status find_poles(cli_run *run, const loop_options *given,
-                              const model *m, const ritz_damping *damping,
-                              const loop_run *loop, int64_t *count,
-                              double _Complex **pole)
+                              const model *m, const loop_run *loop,
+                              int64_t *count, double _Complex **pole)
 {
     RITZ_OWN(ritz_state_space) made = {0}, closed = {0};
     const ritz_state_space *plant = NULL;
@@ -94,7 +88,7 @@ static ritz_status find_poles(cli_run *run, const loop_options *given,
         sink_set(run, "stability", "%s", "unknown");
         return RITZ_OK;
     }
-    RITZ_CHECK(ritz_model_states(model_reference(m, damping), &made, &plant));
+    RITZ_CHECK(ritz_model_states(model_reference(m), &made, &plant));
     RITZ_CHECK(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
                                 &closed));
     RITZ_CHECK(say_stability(run, &closed, given->force));
@@ -109,28 +103,24 @@ static ritz_status find_poles(cli_run *run, const loop_options *given,
 }
 
 ritz_status loops_close(cli_run *run, const loop_options *given, const model *m,
-                        const ritz_damping *damping, ritz_responder *plant,
                         const double range_hz[2], loop_run *out)
 {
-    ritz_status status = RITZ_OK;
-    double _Complex *pole = NULL;
+    RITZ_OWN_ARRAY double _Complex *pole = NULL;
     int64_t count = 0;
-    ritz_response_request request = {.from_hz = range_hz[0],
-                                     .to_hz = range_hz[1]};
+    const ritz_response_request request = {
+        .model = ritz_model_of_states(&out->controller.states),
+        .from_hz = range_hz[0],
+        .to_hz = range_hz[1]};
 
     if (!given->controller)
         return RITZ_OK;
-    RITZ_TRY(join_signals(run, given, m, out));
-    RITZ_TRY(find_poles(run, given, m, damping, out, &count, &pole));
-    request.model = ritz_model_of_states(&out->controller.states);
-    RITZ_TRY_IN(given->controller,
-                ritz_responder_new(ritz_response_engine_find("states"),
-                                   &request, &out->inner));
-    RITZ_TRY(ritz_loop_responder(&out->loop, plant, out->inner, count, pole,
-                                 &out->closed));
-done:
-    free(pole);
-    return status;
+    RITZ_CHECK(join_signals(run, given, m, out));
+    RITZ_CHECK(find_poles(run, given, m, out, &count, &pole));
+    RITZ_CHECK_IN(given->controller,
+                  ritz_responder_new(ritz_response_engine_find("states"),
+                                     &request, &out->inner));
+    return ritz_loop_responder(&out->loop, out->plant, out->inner, count, pole,
+                               &out->closed);
 }
 
 /* One of the margins, and where it is. */
@@ -147,13 +137,13 @@ static void say_margin(cli_run *run, const char *key, const char *text,
 }
 
 ritz_status loops_report(cli_run *run, const loop_run *loop,
-                         ritz_responder *plant, const ritz_response *response)
+                         const ritz_response *response)
 {
     ritz_margins m = {0};
 
     if (!loop->closed)
         return RITZ_OK;
-    RITZ_CHECK(ritz_loop_margins(&loop->loop, plant, loop->inner,
+    RITZ_CHECK(ritz_loop_margins(&loop->loop, loop->plant, loop->inner,
                                  response->count, response->hertz, &m));
     sink_object(run, "loop");
     cli_say(run, "loop, in this range: %38s", "at Hz");
@@ -173,6 +163,7 @@ void loop_run_free(loop_run *loop)
 {
     ritz_responder_free(&loop->closed);
     ritz_responder_free(&loop->inner);
+    ritz_responder_free(&loop->plant);
     ritz_loop_free(&loop->loop);
     model_free(&loop->controller);
     *loop = (loop_run){0};

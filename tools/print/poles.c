@@ -115,20 +115,17 @@ static void say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
                  scan->c[scan->best]);
 }
 
-/* The names before '=', as indices; to be freed. */
+/* The names before '=', as indices. */
 static ritz_status take_names(char *names, const ritz_dampers *dampers,
-                              int64_t *count, int64_t **out)
+                              int64_t *count, int64_t *out)
 {
     char *rest = NULL;
 
-    RITZ_CHECK_NEW(*out, (int64_t)strlen(names) + 1);
     for (char *at = strtok_r(names, ",", &rest); at;
          at = strtok_r(NULL, ",", &rest)) {
-        int64_t j = ritz_dampers_find(dampers, at);
-
-        if (j < 0)
+        out[*count] = ritz_dampers_find(dampers, at);
+        if (out[(*count)++] < 0)
             return RITZ_ERR_ARGUMENT;
-        (*out)[(*count)++] = j;
     }
     return RITZ_OK;
 }
@@ -151,42 +148,41 @@ static bool take_range(char *text, ritz_scan_request *request)
 static ritz_status parse_scan(const char *text, const ritz_dampers *dampers,
                               ritz_scan_request *out, int64_t **damper)
 {
-    ritz_status status = RITZ_OK;
-    char *copy = strdup(text);
-    char *equals = copy ? strrchr(copy, '=') : NULL;
+    RITZ_OWN_ARRAY char *copy = NULL;
+    int64_t size = (int64_t)strlen(text) + 1;
+    char *equals = NULL;
 
-    RITZ_FAIL_IF(!copy, RITZ_ERR_MEMORY, "no memory for a scan");
+    RITZ_CHECK_COPY(copy, text, size);
+    RITZ_CHECK_NEW(*damper, size);
+    equals = strrchr(copy, '=');
     if (equals)
         *equals = '\0';
-    RITZ_FAIL_IF(!equals || equals == copy || !take_range(equals + 1, out),
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' is not of the form NAME[,NAME]=FROM:TO:STEP", text);
-    RITZ_TRY(take_names(copy, dampers, &out->count, damper));
+    RITZ_REFUSE_IF(!equals || equals == copy || !take_range(equals + 1, out),
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is not of the form NAME[,NAME]=FROM:TO:STEP", text);
+    RITZ_CHECK(take_names(copy, dampers, &out->count, *damper));
     out->damper = *damper;
-done:
-    free(copy);
-    return ritz_context(status, "--scan");
+    return RITZ_OK;
 }
 
 static ritz_status scan_dampers(cli_run *run, model *m,
-                                const poles_options *given,
-                                const ritz_damping *damping)
+                                const poles_options *given)
 {
     ritz_scan_request request = {0};
     RITZ_OWN_ARRAY int64_t *damper = NULL;
     RITZ_OWN(ritz_scan) found = {0};
 
-    RITZ_CHECK(parse_scan(given->scan, model_dampers(m), &request, &damper));
+    RITZ_CHECK_IN("--scan",
+                  parse_scan(given->scan, model_dampers(m), &request, &damper));
     request.mode = given->mode - 1;
-    RITZ_CHECK(ritz_scan_of(model_reference(m, damping), &request, &found));
+    RITZ_CHECK(ritz_scan_of(model_reference(m), &request, &found));
     say_scan(run, &found, given->tsv);
     return RITZ_OK;
 }
 
 /* Those that are asked for, of what a small model gives. */
 static ritz_status find_poles(cli_run *run, const model *m,
-                              const poles_options *given,
-                              const ritz_damping *damping)
+                              const poles_options *given)
 {
     RITZ_OWN(ritz_spectrum) found = {0};
     bool by_hertz = !isnan(given->up_to_hz);
@@ -195,7 +191,7 @@ static ritz_status find_poles(cli_run *run, const model *m,
 
     if (by_hertz)
         span = (ritz_span){.modes = -1, .up_to_hz = given->up_to_hz};
-    RITZ_CHECK(ritz_spectrum_of(model_reference(m, damping), &span, &found));
+    RITZ_CHECK(ritz_spectrum_of(model_reference(m), &span, &found));
     while (m->kind != MODEL_COMPONENT && found.count > 0 &&
            ((given->modes > 0 && found.count > given->modes) ||
             (by_hertz && cabs(found.s[found.count - 1]) > limit)))
@@ -206,11 +202,11 @@ static ritz_status find_poles(cli_run *run, const model *m,
 }
 
 /* The damping that poles are of. */
-static void say_damping(cli_run *run, model *m, const ritz_damping *damping)
+static void say_damping(cli_run *run, model *m)
 {
     char text[RITZ_DAMPING_SIZE] = "";
 
-    ritz_damping_print(damping, text);
+    ritz_damping_print(&m->damping, text);
     cli_say(run, "%s:", run->operand[0]);
     describe_damping(run, m->kind == MODEL_STATES ? m->states.damping : text);
     if (m->kind != MODEL_STATES)
@@ -221,7 +217,6 @@ ritz_status poles_report(cli_run *run, const poles_options *given)
 {
     const char *path = run->operand[0];
     RITZ_OWN(model) m = {0};
-    ritz_damping damping = {0};
 
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_REFUSE_IF(
@@ -231,14 +226,10 @@ ritz_status poles_report(cli_run *run, const poles_options *given)
         "'%s' is a state space, damped as it is: --damping, --damper "
         "and --scan are not for it",
         path);
-    RITZ_CHECK(model_settle(&m, path, &given->model, &damping));
+    RITZ_CHECK(model_settle(&m, path, &given->model));
     if (!given->tsv)
-        say_damping(run, &m, &damping);
-    if (given->scan)
-        RITZ_CHECK_IN(path, scan_dampers(run, &m, given, &damping));
-    else
-        RITZ_CHECK_IN(path, find_poles(run, &m, given, &damping));
-    if (run->output)
-        RITZ_CHECK(cli_save(run, run->output));
-    return RITZ_OK;
+        say_damping(run, &m);
+    RITZ_CHECK_IN(path, given->scan ? scan_dampers(run, &m, given)
+                                    : find_poles(run, &m, given));
+    return run->output ? cli_save(run, run->output) : RITZ_OK;
 }

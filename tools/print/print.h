@@ -92,7 +92,7 @@ enum { FIT_MOST_METHODS = 64 };
 
 typedef struct fit_options {
     ritz_fit_request request;
-    const char *tolerance, *band, *methods, *damping, *prefix, *report;
+    const char *tolerance, *methods, *damping, *prefix, *report;
     const ritz_method *method[FIT_MOST_METHODS]; /* of `methods` */
     int64_t seed;
     cli_list damper;
@@ -138,30 +138,31 @@ ritz_status responses_run(cli_run *run, const response_options *given);
 /** Options of a loop that exclude each other end the program. */
 void loops_check(const cli_program *program, const loop_options *given);
 
-/* A loop that is closed, and what it is made of. */
+/* A model made ready to respond, and the loop that is closed around it. */
 typedef struct loop_run {
+    ritz_responder *plant;
     model controller;
     ritz_loop loop;
     ritz_responder *inner;  /* of the controller */
-    ritz_responder *closed; /* to be asked in place of the plant */
+    ritz_responder *closed; /* of both; NULL: there is no controller */
 } loop_run;
 
 /** Read the controller, before anything is said; nothing if there is none. */
 ritz_status loops_read(cli_run *run, const loop_options *given, loop_run *out);
 
 /**
- * Close the loop, say whether it is stable, and refuse an unstable one without
- * --force; nothing if there is no controller.
+ * Close the loop around a plant that is ready for a range, say whether it is
+ * stable, and refuse an unstable one without --force; nothing if there is no
+ * controller.
  *
- * @param[in] plant  of @p m, made ready for the same range
+ * @param[in] m  the model of the plant
  */
 ritz_status loops_close(cli_run *run, const loop_options *given, const model *m,
-                        const ritz_damping *damping, ritz_responder *plant,
                         const double range_hz[2], loop_run *out);
 
 /** Margins of a loop at the points of a response; nothing if there is none. */
 ritz_status loops_report(cli_run *run, const loop_run *loop,
-                         ritz_responder *plant, const ritz_response *response);
+                         const ritz_response *response);
 
 void loop_run_free(loop_run *loop);
 
@@ -196,7 +197,7 @@ ritz_status poles_report(cli_run *run, const poles_options *given);
 /* --- ritz-simulate -------------------------------------------------------- */
 
 typedef struct simulation_options {
-    const char *method, *hold, *band; /* words that simulation_take reads */
+    const char *method, *hold; /* words that simulation_take reads */
     const ritz_integrator *integrator;
     const char *initial; /* "mode:K*A" or a file; NULL: at rest */
     double seconds, step, accuracy, rho, up_to_hz;

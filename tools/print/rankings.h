@@ -108,7 +108,7 @@ typedef struct rank_options {
     int64_t num_rankers;
     const ritz_ranker *ranker[RANK_MOST];
     cli_list damping;
-    const char *by, *band, *engine, *among; /* words that rank_take reads */
+    const char *by, *engine, *among; /* words that rank_take reads */
     const char *at, *input_weights, *output_weights, *tracks, *table, *chart;
     double band_hz[2]; /* [0, 0]: the model's */
     int64_t keep, top; /* keep 0: weights stay */

@@ -129,8 +129,6 @@ void rank_take(const cli_run *run, rank_options *given)
         given->ranker[given->num_rankers++] =
             cli_choose(program, "no ranking", word, ritz_rankers);
     }
-    if (given->band)
-        cli_pair(program, "band-hz", given->band, given->band_hz);
     take_choice(program, "engine", given->engine, &given->choice);
     take_choice(program, "among_hz", given->among, &given->choice);
 }

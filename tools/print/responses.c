@@ -71,13 +71,12 @@ static ritz_status choose_engine(cli_run *run, const char *method,
 /* Make a model ready for the range of a grid. */
 static ritz_status new_responder(cli_run *run, const model *m,
                                  const response_options *given,
-                                 const ritz_damping *damping,
                                  const ritz_grid *grid, ritz_responder **out)
 {
     const ritz_response_engine *engine = NULL;
     const char *why = NULL; /* said before */
     ritz_response_request request = {
-        .model = model_reference(m, damping),
+        .model = model_reference(m),
         .up_to_hz = isnan(given->up_to_hz) ? 0.0 : given->up_to_hz,
         .tolerance =
             isnan(given->tolerance) ? 0.0 : engine_share * given->tolerance,
@@ -212,8 +211,6 @@ static ritz_status find_singular(cli_run *run, const response_options *given,
     RITZ_OWN_ARRAY double *size = NULL;
     double hertz = 0.0, value = 0.0;
 
-    if (!given->singular)
-        return RITZ_OK;
     RITZ_CHECK_NEW(size, response->num_inputs + 1);
     RITZ_CHECK(find_scales(given, m, response, size, &scales));
     RITZ_CHECK(ritz_singular_of(&scales, response));
@@ -247,32 +244,27 @@ static void say_zeros(cli_run *run, int64_t count, const double _Complex *zero)
 }
 
 /* One channel; one that has no transfer function says so. */
-static ritz_status find_zeros(cli_run *run, const model *m,
-                              const ritz_damping *damping, const int64_t at[2])
+static ritz_status find_zeros(cli_run *run, const model *m, int64_t output,
+                              int64_t input)
 {
     const ritz_io io = model_io(m);
-    double _Complex *zero = NULL;
+    RITZ_OWN_ARRAY double _Complex *zero = NULL;
     int64_t count = 0;
-    ritz_status status = RITZ_OK;
+    ritz_status status =
+        ritz_zeros_of(model_reference(m), output, input, &count, &zero);
 
     sink_object(run, NULL);
-    sink_say(run, "output,input", "zeros of %s / %s:", io.output[at[0]],
-             io.input[at[1]]);
-    status =
-        ritz_zeros_of(model_reference(m, damping), at[0], at[1], &count, &zero);
+    sink_say(run, "output,input", "zeros of %s / %s:", io.output[output],
+             io.input[input]);
     if (status == RITZ_OK)
         say_zeros(run, count, zero);
-    if (status == RITZ_ERR_SINGULAR) {
+    else if (status == RITZ_ERR_SINGULAR)
         cli_say(run, "  %s", ritz_error_message());
-        status = RITZ_OK;
-    }
     sink_end(run);
-    free(zero);
-    return status;
+    return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
 }
 
-static ritz_status find_all_zeros(cli_run *run, const model *m,
-                                  const ritz_damping *damping)
+static ritz_status find_all_zeros(cli_run *run, const model *m)
 {
     const ritz_io io = model_io(m);
 
@@ -284,7 +276,7 @@ static ritz_status find_all_zeros(cli_run *run, const model *m,
     sink_list(run, "zeros");
     for (int64_t i = 0; i < io.num_outputs; i++)
         for (int64_t j = 0; j < io.num_inputs; j++)
-            RITZ_CHECK(find_zeros(run, m, damping, (int64_t[]){i, j}));
+            RITZ_CHECK(find_zeros(run, m, i, j));
     sink_end(run);
     return RITZ_OK;
 }
@@ -324,30 +316,23 @@ static void say_peaks(cli_run *run, const ritz_response *r)
 /* The model, or the loop that is closed around it, at the points. */
 static ritz_status find_response(cli_run *run, const model *m,
                                  const response_options *given,
-                                 const ritz_damping *damping,
                                  const ritz_grid *grid, loop_run *loop,
                                  ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
     const double range[2] = {grid->from_hz, grid->to_hz};
-    ritz_responder *plant = NULL, *whole = NULL;
+    ritz_responder *whole = NULL;
 
-    RITZ_TRY(new_responder(run, m, given, damping, grid, &plant));
-    RITZ_TRY(loops_close(run, &given->loops, m, damping, plant, range, loop));
-    whole = loop->closed ? loop->closed : plant;
-    RITZ_TRY(isnan(given->tolerance)
-                 ? ritz_responder_sample(whole, grid, out)
-                 : ritz_responder_follow(whole, grid, given->tolerance, out));
-    RITZ_TRY(loops_report(run, loop, plant, out));
+    RITZ_CHECK(new_responder(run, m, given, grid, &loop->plant));
+    RITZ_CHECK(loops_close(run, &given->loops, m, range, loop));
+    whole = loop->closed ? loop->closed : loop->plant;
+    RITZ_CHECK(isnan(given->tolerance)
+                   ? ritz_responder_sample(whole, grid, out)
+                   : ritz_responder_follow(whole, grid, given->tolerance, out));
+    RITZ_CHECK(loops_report(run, loop, out));
     say_peaks(run, out);
     if (given->singular)
-        RITZ_TRY(find_singular(run, given, m, whole, out));
-    if (given->zeros)
-        RITZ_TRY(find_all_zeros(run, m, damping));
-done:
-    ritz_responder_free(&loop->closed); /* it borrows the plant */
-    ritz_responder_free(&plant);
-    return status;
+        RITZ_CHECK(find_singular(run, given, m, whole, out));
+    return given->zeros ? find_all_zeros(run, m) : RITZ_OK;
 }
 
 ritz_status responses_run(cli_run *run, const response_options *given)
@@ -355,7 +340,6 @@ ritz_status responses_run(cli_run *run, const response_options *given)
     const char *path = run->operand[0];
     RITZ_OWN(model) m = {0};
     RITZ_OWN(model) other = {0};
-    ritz_damping damping = {0};
     ritz_grid grid = {0};
     RITZ_OWN(ritz_response) response = {0};
     RITZ_OWN(loop_run) loop = {0};
@@ -363,7 +347,7 @@ ritz_status responses_run(cli_run *run, const response_options *given)
 
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_CHECK(loops_read(run, &given->loops, &loop));
-    RITZ_CHECK(model_settle(&m, path, &given->model, &damping));
+    RITZ_CHECK(model_settle(&m, path, &given->model));
     if (given->points_of)
         RITZ_CHECK(borrow_points(run, given, &other, &grid));
     else
@@ -372,8 +356,7 @@ ritz_status responses_run(cli_run *run, const response_options *given)
     RITZ_REFUSE_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
                    RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
                    path, ends.num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_CHECK_IN(
-        path, find_response(run, &m, given, &damping, &grid, &loop, &response));
+    RITZ_CHECK_IN(path, find_response(run, &m, given, &grid, &loop, &response));
     return ritz_container_write_response(run->output, &response,
                                          cli_stamp(run));
 }

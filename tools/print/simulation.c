@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include "base/names.h"
+
 #include <inttypes.h>
 
 /* Costs are told at explicit steps so far below their limit. */
@@ -14,10 +16,6 @@ void simulation_take(const cli_run *run, simulation_options *given)
     given->integrator =
         cli_choose(program, "no integrator", given->method, ritz_integrators);
     given->hold_zero = strcmp(given->hold, "zero") == 0;
-    if (strcmp(given->hold, "first") != 0 && !given->hold_zero)
-        cli_refuse(program, "--hold is first or zero, not '%s'", given->hold);
-    if (given->band)
-        cli_pair(program, "--band-hz", given->band, given->band_hz);
     if (!run->output && !given->cost)
         cli_refuse(program, "nothing to do: give -o, or --cost");
     if (run->output && isnan(given->seconds))
@@ -40,28 +38,15 @@ static ritz_status take_input(cli_run *run, const char *text, drive *d)
 {
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
-    int64_t count = d->io.num_inputs;
-    char(*name)[RITZ_NAME_SIZE] = d->io.input;
+    const ritz_names names = {"input", d->io.num_inputs, *d->io.input,
+                              RITZ_NAME_SIZE};
     char word[RITZ_NAME_SIZE] = "";
     int64_t j = 0;
 
     RITZ_REFUSE_IF(!equals || length == 0 || length >= sizeof word,
                    RITZ_ERR_ARGUMENT, "'%s' is not NAME=SIGNAL", text);
     memcpy(word, text, length);
-    while (j < count && strcmp(name[j], word) != 0)
-        j++;
-    if (j == count) {
-        const char *nearest =
-            count > 0 ? ritz_text_nearest(word, count, name[0], sizeof *name)
-                      : NULL;
-
-        if (!nearest && count > 0)
-            return ritz_fail(RITZ_ERR_ARGUMENT, "no input '%s', but '%s'%s",
-                             word, name[0], count > 1 ? ", ..." : "");
-        return ritz_fail(RITZ_ERR_ARGUMENT, "no input '%s'%s%s%s", word,
-                         nearest ? ", is '" : "", nearest ? nearest : "",
-                         nearest ? "' meant?" : "");
-    }
+    RITZ_CHECK(ritz_words_find(&names, word, &j));
     RITZ_REFUSE_IF(d->signal[j].kind != RITZ_SIGNAL_ZERO, RITZ_ERR_ARGUMENT,
                    "input '%s' is given twice", word);
     RITZ_CHECK(ritz_signal_parse(equals + 1, &d->signal[j]));
@@ -129,13 +114,11 @@ static ritz_status take_mode(const char *text, drive *d)
 static ritz_status take_values(const char *path, int64_t n, drive *d)
 {
     static const char blank[] = " \t\r,;\n";
-    ritz_status status = RITZ_OK;
-    char *text = NULL;
-    char *line = NULL;
+    RITZ_OWN_ARRAY char *text = NULL;
     int64_t row = 0;
 
-    RITZ_TRY(ritz_text_read(path, &text));
-    for (line = text; line;) {
+    RITZ_CHECK(ritz_text_read(path, &text));
+    for (char *line = text; line;) {
         char *end = strchr(line, '\n');
         char *place = NULL;
         char *word = NULL;
@@ -146,20 +129,18 @@ static ritz_status take_values(const char *path, int64_t n, drive *d)
         line = end ? end + 1 : NULL;
         if (!word || word[0] == '#')
             continue;
-        RITZ_FAIL_IF(
-            row == n || !ritz_text_real(word, &d->x0[row]), RITZ_ERR_FORMAT,
-            "row %" PRId64 " is not a value of %" PRId64 " in all", row + 1, n);
+        RITZ_REFUSE_IF(row == n || !ritz_text_real(word, &d->x0[row]),
+                       RITZ_ERR_FORMAT, "row %ld is not a value of %ld in all",
+                       row + 1, n);
         word = strtok_r(NULL, blank, &place);
-        RITZ_FAIL_IF(word && !ritz_text_real(word, &d->v0[row]),
-                     RITZ_ERR_FORMAT, "row %" PRId64 ": '%s' is no rate",
-                     row + 1, word);
+        RITZ_REFUSE_IF(word && !ritz_text_real(word, &d->v0[row]),
+                       RITZ_ERR_FORMAT, "row %ld: '%s' is no rate", row + 1,
+                       word);
         row++;
     }
-    RITZ_FAIL_IF(row != n, RITZ_ERR_FORMAT,
-                 "%" PRId64 " rows for %" PRId64 " coordinates", row, n);
-done:
-    free(text);
-    return ritz_context(status, path);
+    RITZ_REFUSE_IF(row != n, RITZ_ERR_FORMAT, "%ld rows for %ld coordinates",
+                   row, n);
+    return RITZ_OK;
 }
 
 static ritz_status take_initial(cli_run *run, const char *text, int64_t n,
@@ -169,21 +150,17 @@ static ritz_status take_initial(cli_run *run, const char *text, int64_t n,
 
     if (!text)
         return RITZ_OK;
-    d->x0 = calloc((size_t)n + 1, sizeof *d->x0);
-    d->v0 = calloc((size_t)n + 1, sizeof *d->v0);
-    RITZ_REFUSE_IF(!d->x0 || !d->v0, RITZ_ERR_MEMORY,
-                   "no memory for initial values");
+    RITZ_CHECK_NEW(d->x0, n + 1);
+    RITZ_CHECK_NEW(d->v0, n + 1);
     if (strncmp(text, mode, sizeof mode - 1) == 0)
         return take_mode(text + sizeof mode - 1, d);
     RITZ_CHECK(cli_input(run, text));
-    return take_values(text, n, d);
+    return ritz_context(take_values(text, n, d), text);
 }
 
-static void free_drive(drive *d)
+static void drive_free(drive *d)
 {
-    for (int64_t j = 0; d->signal && j < d->io.num_inputs; j++)
-        ritz_signal_free(&d->signal[j]);
-    free(d->signal);
+    RITZ_FREE_EACH(ritz_signal, d->io.num_inputs, d->signal);
     free(d->x0);
     free(d->v0);
 }
@@ -367,30 +344,25 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
 
 ritz_status simulation_run(cli_run *run, const simulation_options *given)
 {
-    ritz_status status = RITZ_OK;
     const char *path = run->operand[0];
     const double *band_hz = given->band_hz;
-    model m = {0};
-    ritz_damping damping = {0};
+    RITZ_OWN(model) m = {0};
+    RITZ_OWN(drive) d = {0};
     ritz_cost cost = {0};
-    drive d = {0};
 
-    RITZ_TRY(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_TRY(model_settle(&m, path, &given->model, &damping));
+    RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_CHECK(model_settle(&m, path, &given->model));
     d.io = model_io(&m);
-    d.subject = model_reference(&m, &damping);
+    d.subject = model_reference(&m);
     if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
         band_hz = m.system.band_hz;
-    RITZ_TRY_IN(path, take_inputs(run, &given->input, &d));
-    RITZ_TRY_IN(path, take_initial(run, given->initial, model_order(&m), &d));
+    RITZ_CHECK_IN(path, take_inputs(run, &given->input, &d));
+    RITZ_CHECK_IN(path, take_initial(run, given->initial, model_order(&m), &d));
     if (run->output)
-        RITZ_TRY_IN(path, simulate_response(run, given, &d));
+        RITZ_CHECK_IN(path, simulate_response(run, given, &d));
     if (given->cost)
-        RITZ_TRY_IN(path, say_costs(run, given, &m, band_hz, &d));
-    else if (run->record && d.subject.kind == RITZ_MODEL_DENSE)
-        RITZ_TRY(record_cost(run, d.subject, band_hz, &cost));
-done:
-    free_drive(&d);
-    model_free(&m);
-    return status;
+        return ritz_context(say_costs(run, given, &m, band_hz, &d), path);
+    if (run->record && d.subject.kind == RITZ_MODEL_DENSE)
+        return record_cost(run, d.subject, band_hz, &cost);
+    return RITZ_OK;
 }
