@@ -34,26 +34,19 @@ static const struct verb {
 
 enum { NUM_VERBS = sizeof verbs / sizeof *verbs };
 
-/* Exit status, once standard output is known to have taken all. */
-static int end_output(void)
+static int list_verbs(void)
 {
+    printf("Usage: ritz VERB [OPTION]... INPUT... -o OUTPUT\n\n"
+           "Reduce finite-element models for flexible-multibody simulation, "
+           "with their errors.\n\n");
+    for (int k = 0; k < NUM_VERBS; k++)
+        printf("  %-10s %s\n", verbs[k].name, verbs[k].summary);
+    printf("\n'ritz VERB --help' says more. 'ritz VERB' is 'ritz-VERB'.\n");
     if (fclose(stdout) == 0)
         return EXIT_SUCCESS;
     fprintf(stderr, "ritz: cannot write to standard output: %s\n",
             strerror(errno));
     return EXIT_FAILURE;
-}
-
-static int list_verbs(void)
-{
-    printf("Usage: ritz VERB [OPTION]... INPUT... -o OUTPUT\n\n"
-           "Large finite-element components into small ones for "
-           "flexible-multibody simulation,\nwith their errors.\n\n");
-    for (int k = 0; k < NUM_VERBS; k++)
-        printf("  %-10s %s\n", verbs[k].name, verbs[k].summary);
-    printf("\n'ritz VERB --help' says more; 'ritz VERB' and 'ritz-VERB' are "
-           "the same.\n");
-    return end_output();
 }
 
 static int refuse_verb(const char *word)
@@ -103,5 +96,5 @@ int main(int argc, char **argv)
     if (strcmp(word, "--version") != 0)
         return refuse_verb(word);
     printf("ritz (Ritz) %s\n", ritz_version());
-    return end_output();
+    return fclose(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -79,7 +79,7 @@ expect 2 "no integrator 'trapezoid'" ritz-simulate --method trapezoid \
     --seconds 1 reduced.h5 -o none.h5
 expect 2 'how long? give --seconds' ritz-simulate reduced.h5 -o none.h5
 expect 2 'nothing to do' ritz-simulate reduced.h5
-expect 2 "first or zero, not 'second'" ritz-simulate --hold second --seconds 1 \
+expect 2 "takes 'first' or 'zero', not 'second'" ritz-simulate --hold second --seconds 1 \
     reduced.h5 -o none.h5
 expect 2 'one of them' ritz-simulate --step 1 --accuracy 0.1 --seconds 1 \
     reduced.h5 -o none.h5
