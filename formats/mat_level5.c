@@ -160,8 +160,8 @@ static ritz_status join_names(const char *outer, const char *name,
     char clean[RITZ_NAME_SIZE] = "";
 
     snprintf(own, sizeof own, "%.*s", (int)(length < 99 ? length : 99), name);
-    if (*own)
-        RITZ_CHECK(ritz_name_copy(own, clean));
+    if (*own && ritz_name_copy(own, clean) != RITZ_OK)
+        return RITZ_ERR_FORMAT; /* it was said why */
     snprintf(out, JOINED, "%s%s%s", outer, *outer && *clean ? "." : "", clean);
     return RITZ_OK;
 }

@@ -1,6 +1,8 @@
 /* Constraint elements of bulk data as equations. */
 #include "testing.h"
 
+#include "solvers.h"
+
 #include <ritz/import.h>
 
 #include <stdio.h>
@@ -236,50 +238,25 @@ static void rotations_weigh_by_the_square_of_the_mean_distance(void **state)
 
 /* ---- what a commercial NASTRAN made of it ------------------------------ */
 
-static const char *data_file(const char *name, size_t size, char *path)
-{
-    const char *data = getenv("RITZ_EXTERNAL_DATA");
-
-    snprintf(path, size, "%s/nastran/nas2cam_csuper/%s", data ? data : "",
-             name);
-    return data && access(path, R_OK) == 0 ? path : NULL;
-}
-
-/* Rows of all dofs of outboard.dat: 27 grids ascending, 22 points. */
-static int64_t list_dofs(const ritz_deck *bulk, ritz_dof *dof)
-{
-    int64_t n = 0;
-
-    for (int64_t k = 0; k < bulk->grids.count; k++)
-        for (int64_t c = 1; c <= 6; c++)
-            dof[n++] = (ritz_dof){bulk->grids.id[k], c};
-    for (int64_t k = 0; k < bulk->num_points; k++)
-        dof[n++] = (ritz_dof){bulk->point[k], 0};
-    return n;
-}
-
 /* GM of superelement 101, 4 x 180, from RBE2 600, RBE3 601 and MPC 602, with
  * grids in two displacement frames. */
 static void nastran_makes_the_same_of_the_outboard_deck(void **state)
 {
     enum { ALL = 27 * 6 + 22, DEPENDENT = 4 };
-    char deck[500], matrix[500], spec[510];
+    char deck[512], matrix[512], spec[520];
     ritz_deck bulk = {0};
     ritz_elimination e = {0};
     ritz_matrix gm = {0};
     ritz_dense G = {0}, GM = {0};
-    ritz_dof dof[ALL];
 
     (void)state;
-    if (!data_file("outboard.dat", sizeof deck, deck) ||
-        !data_file("nas2cam.op4", sizeof matrix, matrix)) {
-        print_message("skipped: no external data\n");
+    if (!solvers_find(CSUPER "outboard.dat", deck) ||
+        !solvers_find(CSUPER "nas2cam.op4", matrix))
         skip();
-    }
     snprintf(spec, sizeof spec, "%s:GM", matrix);
     assert_ok(ritz_deck_read(deck, &bulk));
-    assert_int_equal(list_dofs(&bulk, dof), ALL);
-    assert_ok(ritz_elimination_new(&bulk.equations, ALL, dof, NULL, &e));
+    assert_int_equal(bulk.num_dofs, ALL);
+    assert_ok(ritz_elimination_new(&bulk.equations, ALL, bulk.dof, NULL, &e));
     assert_int_equal(e.gone.count, DEPENDENT);
     assert_ok(ritz_foreign_select(spec, &gm));
     assert_ok(ritz_sparse_dense(&gm.A, &GM));
@@ -427,21 +404,18 @@ many_continuations_are_read_and_repeats_left_to_elimination(void **state)
 
 static ritz_status parse_all(void)
 {
-    ritz_status status = RITZ_OK;
     char text[1024];
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     snprintf(text, sizeof text,
              "%sSPOINT,7\nRBE2,9,1,123456,2\nRBAR,10,1,3,1234,23\n"
              "RBE3,11,,4,123456,1.0,123,1,2\n,3,5\n,UM,5,123,4,126\n"
              "MPC,1,4,4,1.0,7,0,-1.0\nSPC,1,1,3,0.5\nRSPLINE,12,,1,2,3\n",
              FRAMES);
-    RITZ_TRY(parse(text, &bulk));
-    RITZ_FAIL_IF(!bulk.equations.refused || !bulk.imposed, RITZ_ERR_ARGUMENT,
-                 "a sentence is missing");
-done:
-    ritz_deck_free(&bulk);
-    return status;
+    RITZ_CHECK(parse(text, &bulk));
+    RITZ_REFUSE_IF(!bulk.equations.refused || !bulk.imposed, RITZ_ERR_ARGUMENT,
+                   "a sentence is missing");
+    return RITZ_OK;
 }
 
 static void reading_survives_every_allocation(void **state)

@@ -180,17 +180,13 @@ static void numbers_are_read_in_nastran_spelling(void **state)
 
 static ritz_status parse_all(const char *text)
 {
-    ritz_status status = RITZ_OK;
-    ritz_cards cards = {0};
-    ritz_card card = {0};
+    RITZ_OWN(ritz_cards) cards = {0};
+    RITZ_OWN(ritz_card) card = {0};
 
-    RITZ_TRY(parse(text, &cards));
+    RITZ_CHECK(parse(text, &cards));
     for (int64_t k = 0; k < cards.num_entries; k++)
-        RITZ_TRY(ritz_card_take(&cards, k, &card));
-done:
-    ritz_card_free(&card);
-    ritz_cards_free(&cards);
-    return status;
+        RITZ_CHECK(ritz_card_take(&cards, k, &card));
+    return RITZ_OK;
 }
 
 static void what_is_no_card_is_refused_with_its_line(void **state)

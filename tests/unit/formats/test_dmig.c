@@ -1,6 +1,10 @@
 /* DMIG cards: matrices of every form, and what cannot be one. */
 #include "testing.h"
 
+#include "damage.h"
+#include "folder.h"
+#include "solvers.h"
+
 #include <ritz/import.h>
 
 #include <lapacke.h>
@@ -11,22 +15,16 @@
 static ritz_status parse_bytes(const char *bytes, int64_t size,
                                ritz_matrices *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_foreign file = {
-        .bytes = bytes, .size = size, .format = &ritz_format_dmig};
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_foreign)
+    file = {.bytes = bytes, .size = size, .format = &ritz_format_dmig};
+    RITZ_OWN(ritz_matrices) all = {0};
 
-    RITZ_TRY(ritz_format_dmig.list(&file, &file.listing));
-    all.matrix = calloc((size_t)file.listing.count, sizeof *all.matrix);
-    RITZ_FAIL_IF(!all.matrix, RITZ_ERR_MEMORY, "no memory");
+    RITZ_CHECK(ritz_format_dmig.list(&file, &file.listing));
+    RITZ_CHECK_NEW(all.matrix, file.listing.count);
     for (; all.count < file.listing.count; all.count++)
-        RITZ_TRY(ritz_foreign_take(&file, all.count, &all.matrix[all.count]));
-    *out = all;
-    all = (ritz_matrices){0};
-done:
-    ritz_matrices_free(&all);
-    ritz_foreign_free(&file);
-    return status;
+        RITZ_CHECK(ritz_foreign_take(&file, all.count, &all.matrix[all.count]));
+    RITZ_MOVE(*out, all);
+    return RITZ_OK;
 }
 
 static ritz_status parse(const char *text, ritz_matrices *out)
@@ -34,25 +32,14 @@ static ritz_status parse(const char *text, ritz_matrices *out)
     return parse_bytes(text, (int64_t)strlen(text), out);
 }
 
-/* A(i,j), 0 where nothing is stored. */
-static double at(const ritz_sparse *A, const double *val, int64_t i, int64_t j)
-{
-    if (!A->colptr)
-        return (double)NAN;
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-        if (A->rowind[p] == i)
-            return val[p];
-    return 0.0;
-}
-
 static double re(const ritz_matrix *m, int64_t i, int64_t j)
 {
-    return at(&m->A, m->A.val, i, j);
+    return matrix_entry(&m->A, m->A.val, i, j);
 }
 
 static double im(const ritz_matrix *m, int64_t i, int64_t j)
 {
-    return at(&m->A, m->imaginary, i, j);
+    return matrix_entry(&m->A, m->imaginary, i, j);
 }
 
 /* The same 3 x 3: grids 2 T1, 2 R3 and point 10. */
@@ -197,79 +184,43 @@ static void only_a_dmig_card_is_recognised(void **state)
             ritz_format_dmig.recognise(OTHERS[k], (int64_t)strlen(OTHERS[k])));
 }
 
-/* Whatever the bytes are: success or a sentence, and nothing left over. */
-static void try_bytes(const char *bytes, int64_t size)
+static ritz_status read_bytes(const char *bytes, int64_t size)
 {
-    ritz_matrices all = {0};
-    char *copy = malloc((size_t)size + 1); /* so that ASan sees its end */
+    RITZ_OWN(ritz_matrices) all = {0};
 
-    assert_non_null(copy);
-    memcpy(copy, bytes, (size_t)size);
-    (void)ritz_format_dmig.recognise(copy, size);
-    if (parse_bytes(copy, size, &all) == RITZ_OK)
-        ritz_matrices_free(&all);
-    else
-        assert_null(all.matrix);
-    free(copy);
+    (void)ritz_format_dmig.recognise(bytes, size);
+    return parse_bytes(bytes, size, &all);
 }
 
 static void a_deck_cut_or_corrupted_anywhere_ends_well(void **state)
 {
     static const char *const TEXTS[] = {SMALL, LARGE, FREE};
-    char text[sizeof LARGE];
 
     (void)state;
     for (int t = 0; t < 3; t++) {
-        int64_t size = (int64_t)strlen(TEXTS[t]);
-
-        for (int64_t k = 0; k <= size; k++)
-            try_bytes(TEXTS[t], k);
-        for (unsigned seed = 0; size > 0 && seed < 500; seed++) {
-            unsigned random = seed * 2654435761U + 12345U;
-
-            memcpy(text, TEXTS[t], (size_t)size);
-            for (int n = 0; n < 5; n++) {
-                random = random * 1664525U + 1013904223U;
-                text[(random >> 8) % (unsigned)size] = (char)(random >> 3);
-            }
-            try_bytes(text, size);
-        }
+        damage_cut(read_bytes, TEXTS[t], (int64_t)strlen(TEXTS[t]) + 1);
+        damage_corrupt(read_bytes, TEXTS[t], (int64_t)strlen(TEXTS[t]));
     }
-}
-
-static ritz_status read_and_free(const char *text)
-{
-    ritz_matrices all = {0};
-    ritz_status status = parse(text, &all);
-
-    if (status == RITZ_OK)
-        ritz_matrices_free(&all);
-    return status;
 }
 
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
-    assert_survives_every_allocation(read_and_free(LARGE));
-    assert_survives_every_allocation(
-        read_and_free("DMIG,P,0,9,4,0,1,,2\nDMIG,P,3,,,1,1,2.,45.\n"));
+    static const char POLAR[] = "DMIG,P,0,9,4,0,1,,2\n"
+                                "DMIG,P,3,,,1,1,2.,45.\n";
+
+    assert_survives_every_allocation(read_bytes(LARGE, sizeof LARGE - 1));
+    assert_survives_every_allocation(read_bytes(POLAR, sizeof POLAR - 1));
 }
 
 /* ---- what others wrote ------------------------------------------------- */
 
 static bool external(const char *name, ritz_matrices *out)
 {
-    const char *folder = getenv("RITZ_EXTERNAL_DATA");
-    char path[600];
-    FILE *file = NULL;
+    char path[512];
 
-    snprintf(path, sizeof path, "%s/nastran/%s", folder ? folder : "", name);
-    file = folder ? fopen(path, "rb") : NULL;
-    if (!file) {
-        print_message("skipped: no external data\n");
+    if (!solvers_find(name, path))
         return false;
-    }
-    fclose(file);
     assert_ok(ritz_foreign_read(path, out));
     return out->matrix != NULL;
 }
@@ -348,37 +299,24 @@ static void forms_and_types_of_others_are_read(void **state)
     ritz_matrices_free(&all);
 }
 
-static void put(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "w");
-
-    assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
-    assert_int_equal(fclose(file), 0);
-}
-
 /* Columns in an included file are columns of the matrix. */
 static void included_columns_are_read(void **state)
 {
-    char folder[] = "/tmp/ritz-dmig-XXXXXX";
-    char deck[64], part[64];
+    const char *deck = NULL;
     ritz_matrices all = {0};
 
-    (void)state;
-    assert_non_null(mkdtemp(folder));
-    snprintf(deck, sizeof deck, "%s/deck.bdf", folder);
-    snprintf(part, sizeof part, "%s/part.pch", folder);
-    put(deck, "DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,4.0\nINCLUDE 'part.pch'\n");
-    put(part, "DMIG,K,2,1,,2,1,9.0\n");
+    assert_int_equal(folder_make(state), 0);
+    deck = folder_write(
+        "deck.bdf", "DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,4.0\nINCLUDE 'part.pch'\n");
+    folder_write("part.pch", "DMIG,K,2,1,,2,1,9.0\n");
     assert_ok(ritz_foreign_read(deck, &all));
     assert_int_equal(all.count, 1);
     assert_int_equal(all.matrix[0].A.ncol, 2);
     assert_near(all.matrix[0].A.val[1], 9.0, 0.0);
     ritz_matrices_free(&all);
-    remove(part);
+    remove(folder_path("part.pch"));
     assert_fails(ritz_foreign_read(deck, &all), RITZ_ERR_FILE, "part.pch");
-    remove(deck);
-    remove(folder);
+    assert_int_equal(folder_remove(state), 0);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -31,50 +31,42 @@ static double shape(int64_t k, int64_t i, int64_t a)
 
 static ritz_status make_grids(bool turned, ritz_grids *out)
 {
-    ritz_status status = RITZ_OK;
+    const int64_t id[] = {11, 12};
+    const int64_t frame[] = {0, turned};
 
     out->count = 2;
     out->num_frames = 2;
-    RITZ_NEW(out->id, 2);
-    RITZ_NEW(out->position, 6);
-    RITZ_NEW(out->frame, 2);
-    RITZ_NEW(out->axes, 18);
-    out->id[0] = 11;
-    out->id[1] = 12;
-    out->frame[1] = turned;
-    memcpy(out->position, places, sizeof places);
-    memcpy(out->axes, axes, sizeof axes);
-done:
-    return status;
+    RITZ_CHECK_COPY(out->id, id, 2);
+    RITZ_CHECK_COPY(out->position, places, 6);
+    RITZ_CHECK_COPY(out->frame, frame, 2);
+    RITZ_CHECK_COPY(out->axes, axes, 18);
+    return RITZ_OK;
 }
 
 /* Two masses; `k` joins them along x, the line on which they lie: K = k b b'
  * with b the stretch of a unit motion along each displacement axis. */
 static ritz_status make_pair(bool turned, double k, ritz_component *out)
 {
-    ritz_status status = RITZ_OK;
     const double *last = axes + (turned ? 9 : 0);
     const double b[6] = {1.0, 0.0, 0.0, -last[0], -last[3], -last[6]};
     int64_t row[36], col[36];
     double val[36], m[6];
 
     out->num_dofs = 6;
-    RITZ_NEW(out->dof, 6);
+    RITZ_CHECK_NEW(out->dof, 6);
     for (int i = 0; i < 36; i++) {
         row[i] = i % 6;
         col[i] = i / 6;
         val[i] = k * b[i % 6] * b[i / 6];
     }
-    RITZ_TRY(ritz_sparse_from_triplets(6, 6, 36, row, col, val, &out->K));
+    RITZ_CHECK(ritz_sparse_from_triplets(6, 6, 36, row, col, val, &out->K));
     for (int i = 0; i < 6; i++) {
         out->dof[i] = (ritz_dof){11 + i / 3, 1 + i % 3};
         m[i] = masses[i / 3];
     }
-    RITZ_TRY(ritz_sparse_from_triplets(6, 6, 6, row, row, m, &out->M));
-    RITZ_TRY(make_grids(turned, &out->grids));
-    RITZ_TRY(ritz_component_settle(out, false));
-done:
-    return status;
+    RITZ_CHECK(ritz_sparse_from_triplets(6, 6, 6, row, row, m, &out->M));
+    RITZ_CHECK(make_grids(turned, &out->grids));
+    return ritz_component_settle(out, false);
 }
 
 /* The modes above along the displacement axes of the grids. */
@@ -185,17 +177,13 @@ static void axes_of_displacements_change_no_term(void **state)
 /* The whole space as basis. */
 static ritz_status reduce(const ritz_component *component, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     int64_t n = component->num_dofs;
 
-    RITZ_TRY(ritz_basis_new(n, n, &basis));
+    RITZ_CHECK(ritz_basis_new(n, n, &basis));
     for (int64_t i = 0; i < n; i++)
         ritz_dense_col(&basis.T, i)[i] = 1.0;
-    RITZ_TRY(ritz_reduce(component, &basis, out));
-done:
-    ritz_basis_free(&basis);
-    return status;
+    return ritz_reduce(component, &basis, out);
 }
 
 static ritz_status reduce_pair(bool turned, double k, ritz_reduced *out)
@@ -434,30 +422,31 @@ static void a_file_written_twice_has_the_same_bytes(void **state)
     ritz_reduced_free(&reduced);
 }
 
+static const char *const names[] = {"fileVersion",
+                                    "type",
+                                    "modeBasis",
+                                    "trigList",
+                                    "xRef",
+                                    "massMatrixReduced",
+                                    "infoList",
+                                    "Mtt",
+                                    "stiffnessMatrixReduced",
+                                    "inertiaLocal",
+                                    "totalMass",
+                                    "postProcessingModes",
+                                    "chiU",
+                                    "chiUtilde",
+                                    "rigidBodyNodeType",
+                                    "mPhitTPsi",
+                                    "mPsiTildePsi",
+                                    "mPsiTildePsiTilde",
+                                    "mXRefTildePsi",
+                                    "mPhitTPsiTilde",
+                                    "mXRefTildePsiTilde"};
+
 static void a_file_holds_what_its_reader_asks_for(void **state)
 {
     (void)state;
-    static const char *const names[] = {"fileVersion",
-                                        "type",
-                                        "modeBasis",
-                                        "trigList",
-                                        "xRef",
-                                        "massMatrixReduced",
-                                        "infoList",
-                                        "Mtt",
-                                        "stiffnessMatrixReduced",
-                                        "inertiaLocal",
-                                        "totalMass",
-                                        "postProcessingModes",
-                                        "chiU",
-                                        "chiUtilde",
-                                        "rigidBodyNodeType",
-                                        "mPhitTPsi",
-                                        "mPsiTildePsi",
-                                        "mPsiTildePsiTilde",
-                                        "mXRefTildePsi",
-                                        "mPhitTPsiTilde",
-                                        "mXRefTildePsiTilde"};
     const int64_t info[6] = {1, 2, 3, 4, 7, 8};
     int64_t found[6] = {0};
     ritz_reduced reduced = {0};
@@ -541,78 +530,75 @@ static void a_second_projection_takes_invariants_along(void **state)
 }
 
 /* Each spoils one thing. */
-static void drop_basis(ritz_reduced *r)
-{
-    ritz_dense_free(&r->T);
-}
+enum {
+    NO_BASIS,
+    NO_GRIDS,
+    NO_MASS,
+    NO_INVARIANTS,
+    SCALAR_POINT,
+    NO_PLACE,
+    PARTIAL_GRID,
+    ROTATIONS_ALONE,
+    NO_STIFFNESS,
+    DEFECTS
+};
 
-static void drop_grids(ritz_reduced *r)
+static void spoil_body(int defect, ritz_reduced *r)
 {
-    ritz_grids_free(&r->grids);
-}
-
-static void drop_mass(ritz_reduced *r)
-{
-    r->inertia = (ritz_inertia){0};
-}
-
-static void drop_invariants(ritz_reduced *r)
-{
-    ritz_invariants_free(&r->invariants);
-}
-
-static void make_scalar(ritz_reduced *r)
-{
-    r->dof[2] = (ritz_dof){77, 0};
-}
-
-static void make_placeless(ritz_reduced *r)
-{
-    r->dof[2] = (ritz_dof){78, 3};
-}
-
-static void make_partial(ritz_reduced *r)
-{
-    r->dof[5] = (ritz_dof){11, 4};
-}
-
-static void make_rotations(ritz_reduced *r)
-{
-    for (int i = 0; i < 6; i++)
-        r->dof[i].component += 3;
-}
-
-static void soften(ritz_reduced *r)
-{
-    memset(r->K.val, 0, 36 * sizeof *r->K.val);
+    switch (defect) {
+    case NO_BASIS:
+        ritz_dense_free(&r->T);
+        break;
+    case NO_GRIDS:
+        ritz_grids_free(&r->grids);
+        break;
+    case NO_MASS:
+        r->inertia = (ritz_inertia){0};
+        break;
+    case NO_INVARIANTS:
+        ritz_invariants_free(&r->invariants);
+        break;
+    case SCALAR_POINT:
+        r->dof[2] = (ritz_dof){77, 0};
+        break;
+    case NO_PLACE:
+        r->dof[2] = (ritz_dof){78, 3};
+        break;
+    case PARTIAL_GRID:
+        r->dof[5] = (ritz_dof){11, 4};
+        break;
+    case ROTATIONS_ALONE:
+        for (int i = 0; i < 6; i++)
+            r->dof[i].component += 3;
+        break;
+    default:
+        memset(r->K.val, 0, 36 * sizeof *r->K.val);
+    }
 }
 
 static void what_is_no_body_is_refused(void **state)
 {
     (void)state;
-    static const struct {
-        void (*spoil)(ritz_reduced *reduced);
-        const char *words;
-    } cases[] = {
-        {drop_basis, "--without-basis"},
-        {drop_grids, "no grid has a position: import with --bulk"},
-        {drop_mass, "the body has no mass"},
-        {drop_invariants, "kept of at most 400 columns, and it has 6"},
-        {make_scalar, "point 77 is a scalar point"},
-        {make_placeless, "grid 78 has no position"},
-        {make_partial, "grid 12 has axes of its own"},
-        {make_rotations, "no grid has a translation"},
-        {soften, "no mode is flexible"},
+    static const char *const words[DEFECTS] = {
+        [NO_BASIS] = "--without-basis",
+        [NO_GRIDS] = "no grid has a position: import with --bulk",
+        [NO_MASS] = "the body has no mass",
+        [NO_INVARIANTS] = "kept of at most 400 columns, and it has 6",
+        [SCALAR_POINT] = "point 77 is a scalar point",
+        [NO_PLACE] = "grid 78 has no position",
+        [PARTIAL_GRID] = "grid 12 has axes of its own",
+        [ROTATIONS_ALONE] = "no grid has a translation",
+        [NO_STIFFNESS] = "no mode is flexible",
     };
     char path[PATH_SIZE];
 
     make_path("refused.hdf5", path);
-    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    for (int k = 0; k < DEFECTS; k++) {
         ritz_reduced reduced = {0};
 
         assert_ok(reduce_pair(true, 30.0, &reduced));
-        cases[k].spoil(&reduced);
-        assert_fails(export(&reduced, path), RITZ_ERR_ARGUMENT, cases[k].words);
+        spoil_body(k, &reduced);
+        assert_fails(export(&reduced, path), RITZ_ERR_ARGUMENT, words[k]);
         assert_int_not_equal(access(path, F_OK), 0);
         ritz_reduced_free(&reduced);
     }

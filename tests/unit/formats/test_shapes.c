@@ -150,22 +150,16 @@ static void cells_that_do_not_fit_are_refused(void **state)
                  "do not begin");
 }
 
-/* The call, and all it made freed again. */
 static ritz_status write_once(const fixture *f, const ritz_exporter *exporter,
                               const char *path)
 {
-    ritz_status status = RITZ_OK;
     const ritz_export_request request = {.output = path};
-    ritz_export_report report = {0};
-    ritz_shapes shapes = {0};
+    RITZ_OWN(ritz_export_report) report = {0};
+    RITZ_OWN(ritz_shapes) shapes = {0};
 
-    RITZ_TRY(ritz_shapes_of_reduced(&f->reduced, "7", &shapes));
-    RITZ_TRY(exporter->write(&(ritz_export_object){.shapes = &shapes}, &request,
-                             &report));
-done:
-    ritz_shapes_free(&shapes);
-    ritz_export_report_free(&report);
-    return status;
+    RITZ_CHECK(ritz_shapes_of_reduced(&f->reduced, "7", &shapes));
+    return exporter->write(&(ritz_export_object){.shapes = &shapes}, &request,
+                           &report);
 }
 
 static void no_allocation_failure_leaks(void **state)
