@@ -41,7 +41,7 @@ static void a_chain_of_frames_gives_positions_by_hand(void **state)
         "GRID,7,3,2.,60.,4.\n"
         "GRID,1,2,2.,90.,0.\n"
         "GRID,5,2,2.,60.,90.\n";
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
     double s = sqrt(3.0);
     double o[3]; /* of frame 3, in the rectangular axes of 2 */
     double e_z[3];
@@ -83,7 +83,6 @@ static void a_chain_of_frames_gives_positions_by_hand(void **state)
         p[k] = o[k] + 1.0 * e_x[k] + s * e_y[k] + 4.0 * e_z[k];
     assert_vector(&bulk.grids.position[6], 10.0 + p[2], 20.0 + p[0],
                   30.0 + p[1], 3e-14);
-    ritz_deck_free(&bulk);
 }
 
 static void frames_by_grids_are_resolved_in_any_order(void **state)
@@ -93,7 +92,7 @@ static void frames_by_grids_are_resolved_in_any_order(void **state)
         "CORD1R,5,2,3,4,6,2,3,4\n" /* two on a card */
         "CORD2R,7,0,1.,0.,0.,1.,0.,1.\n,1.,1.,0.\n"
         "GRID,2,7\nGRID,3,7,1.\nGRID,4,,1.,1.,1.\nGRID,10,6,1.\n";
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
@@ -101,7 +100,6 @@ static void frames_by_grids_are_resolved_in_any_order(void **state)
      * grid 3 - grid 2 = y, x along (1,1,1) - (1,0,0) less its y = z, y = x */
     assert_vector(&bulk.grids.position[9], 3.0, 3.0, 1.0, 1e-14);
     assert_vector(&bulk.grids.position[12], 1.0, 0.0, 1.0, 1e-14);
-    ritz_deck_free(&bulk);
 }
 
 static void curved_displacement_axes_follow_the_grid(void **state)
@@ -117,7 +115,7 @@ static void curved_displacement_axes_follow_the_grid(void **state)
         "GRID,4,2,2.,0.,0.,2\n" /* on the polar axis */
         "GRID,5,,,,,3\nGRID,6,,1.,,,3\n"
         "GRID,7,,1.,,,4\nGRID,8,,1.,,,0\n"; /* 4 has the basic axes */
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
     double c = sqrt(3.0) / 2.0;
 
     (void)state;
@@ -138,7 +136,6 @@ static void curved_displacement_axes_follow_the_grid(void **state)
     assert_int_equal(bulk.grids.frame[6], 0);
     assert_int_equal(bulk.grids.frame[7], 0);
     assert_int_equal(bulk.grids.num_frames, 4);
-    ritz_deck_free(&bulk);
 }
 
 /* Dofs as "5.1 5.2 9.0". */
@@ -166,7 +163,7 @@ static void sets_list_each_dof_once(void **state)
         "BSET1,4,ALL\nBNDFIX,1,5\n"
         "QSET1,0,ALL\nQSET,12,1\n"
         "SPC1,5,2,2\nSPC,5,4,6,0.1,11,0\n";
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(parse(TEXT, &bulk));
@@ -180,17 +177,15 @@ static void sets_list_each_dof_once(void **state)
     assert_dofs(bulk.num_sets[RITZ_SET_Q], bulk.set[RITZ_SET_Q],
                 "11.0 12.0 13.0 20.0");
     assert_dofs(bulk.num_fixed, bulk.fixed, "1.6 2.2 4.1 4.3 4.6 11.0");
-    ritz_deck_free(&bulk);
 }
 
 static void sets_without_grids_stand_for_all_they_name(void **state)
 {
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(parse("ASET1,3,5,THRU,7\n", &bulk));
     assert_dofs(bulk.num_sets[RITZ_SET_A], bulk.set[RITZ_SET_A], "5.3 6.3 7.3");
-    ritz_deck_free(&bulk);
 }
 
 static void the_case_control_chooses_what_acts(void **state)

@@ -66,7 +66,7 @@ static void assert_rigid(const ritz_deck *bulk, double bound)
 
 static void an_mpc_is_solved_for_its_first_dof(void **state)
 {
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(parse("GRID,1\nGRID,2\nSPOINT,5,6\n"
@@ -80,7 +80,6 @@ static void an_mpc_is_solved_for_its_first_dof(void **state)
     assert_near(share(&bulk, (ritz_dof){1, 3}, (ritz_dof){2, 2}), -0.5, 0.0);
     assert_string_equal(bulk.equations.from[0].name, "MPC 4");
     assert_int_equal(bulk.equations.from[0].line, 4);
-    ritz_deck_free(&bulk);
 }
 
 static void mpc_sets_act_as_the_case_control_selects(void **state)
@@ -102,7 +101,7 @@ static void mpc_sets_act_as_the_case_control_selects(void **state)
 
 static void an_rbe2_carries_its_grids_along(void **state)
 {
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     /* grid 2 two to the right of grid 1: u_y = u1_y + 2 r1_z */
@@ -118,7 +117,6 @@ static void an_rbe2_carries_its_grids_along(void **state)
     assert_true(isnan(share(&bulk, (ritz_dof){2, 4}, (ritz_dof){1, 4})));
     /* along basic axes nothing but what is written above: no rounding */
     assert_int_equal(bulk.equations.first[8], 1 + 2 + 2 + 1 + 2 + 1 + 2 + 1);
-    ritz_deck_free(&bulk);
 }
 
 static const char FRAMES[] = "CORD2R,4,,0.,0.,0.,0.3,0.1,1.0\n,1.0,0.4,0.\n"
@@ -161,7 +159,7 @@ static void every_element_follows_rigid_motion(void **state)
 
 static void an_rbar_names_its_dependents_or_leaves_them_over(void **state)
 {
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(parse("GRID,1\nGRID,2,,0.,0.,5.\nRBAR,3,1,2,123456,,,12\n"
@@ -174,7 +172,6 @@ static void an_rbar_names_its_dependents_or_leaves_them_over(void **state)
     assert_non_null(strstr(bulk.equations.refused,
                            "'deck.bdf', line 5: RBAR 5 is left free to move by "
                            "its six independent dofs"));
-    ritz_deck_free(&bulk);
 }
 
 /* Four grids around the fifth: what symmetry demands. */
@@ -224,7 +221,7 @@ static void an_rbe3_is_the_mean_of_what_is_around_it(void **state)
 static void rotations_weigh_by_the_square_of_the_mean_distance(void **state)
 {
     const double L = 8.0;
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(parse("GRID,1,,-8.,0.,0.\nGRID,2,,8.,0.,0.\nGRID,3\n"
@@ -233,7 +230,6 @@ static void rotations_weigh_by_the_square_of_the_mean_distance(void **state)
     assert_near(share(&bulk, (ritz_dof){3, 6}, (ritz_dof){2, 2}), 0.25 / L,
                 1e-16); /* eps of the numbers beside */
     assert_near(share(&bulk, (ritz_dof){3, 6}, (ritz_dof){1, 6}), 0.25, 1e-15);
-    ritz_deck_free(&bulk);
 }
 
 /* ---- what a commercial NASTRAN made of it ------------------------------ */
@@ -244,10 +240,10 @@ static void nastran_makes_the_same_of_the_outboard_deck(void **state)
 {
     enum { ALL = 27 * 6 + 22, DEPENDENT = 4 };
     char deck[512], matrix[512], spec[520];
-    ritz_deck bulk = {0};
-    ritz_elimination e = {0};
-    ritz_matrix gm = {0};
-    ritz_dense G = {0}, GM = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
+    RITZ_OWN(ritz_elimination) e = {0};
+    RITZ_OWN(ritz_matrix) gm = {0};
+    RITZ_OWN(ritz_dense) G = {0}, GM = {0};
 
     (void)state;
     if (!solvers_find(CSUPER "outboard.dat", deck) ||
@@ -269,11 +265,6 @@ static void nastran_makes_the_same_of_the_outboard_deck(void **state)
         for (int64_t i = 0; i < DEPENDENT; i++)
             assert_near(ritz_dense_col(&G, j)[e.gone.at[i]],
                         ritz_dense_col(&GM, j)[i], 1e-12);
-    ritz_dense_free(&G);
-    ritz_dense_free(&GM);
-    ritz_matrix_free(&gm);
-    ritz_elimination_free(&e);
-    ritz_deck_free(&bulk);
 }
 
 /* ---- refusals ---------------------------------------------------------- */

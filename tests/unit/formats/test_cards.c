@@ -13,8 +13,8 @@ static ritz_status parse(const char *text, ritz_cards *out)
 /* Fields of the k-th card with '|' behind each, for comparison at a glance. */
 static void fields_of(const char *text, int64_t k, char *out, size_t size)
 {
-    ritz_cards cards = {0};
-    ritz_card card = {0};
+    RITZ_OWN(ritz_cards) cards = {0};
+    RITZ_OWN(ritz_card) card = {0};
     size_t used = 0;
 
     assert_ok(parse(text, &cards));
@@ -24,8 +24,6 @@ static void fields_of(const char *text, int64_t k, char *out, size_t size)
     for (int64_t j = 0; j < card.count; j++)
         used += (size_t)snprintf(out + used, size - used, "%s|",
                                  ritz_card_text(&card, j));
-    ritz_card_free(&card);
-    ritz_cards_free(&cards);
 }
 
 static void assert_fields(const char *text, const char *expected)
@@ -129,7 +127,7 @@ static void control_sections_are_left_out(void **state)
 
 static void the_case_control_says_which_sets_act(void **state)
 {
-    ritz_cards cards = {0};
+    RITZ_OWN(ritz_cards) cards = {0};
 
     (void)state;
     assert_ok(parse("SPC = 9\nCEND\n  spc=5\nMPC = 7 $ x\nMPCFORCES = 3\n"
@@ -140,7 +138,6 @@ static void the_case_control_says_which_sets_act(void **state)
     assert_int_equal(cards.selected[RITZ_SELECT_SPC][2], 6);
     assert_int_equal(cards.num_selected[RITZ_SELECT_MPC], 1);
     assert_int_equal(cards.selected[RITZ_SELECT_MPC][0], 7);
-    ritz_cards_free(&cards);
 }
 
 static void numbers_are_read_in_nastran_spelling(void **state)

@@ -23,7 +23,7 @@ static void a_deck_names_its_format_and_all_its_dofs(void **state)
 {
     static const char TEXT[] = "GRID,7\nGRID,2\nSPOINT,5\n";
     const ritz_dof last = {7, 6};
-    ritz_deck deck = {0};
+    RITZ_OWN(ritz_deck) deck = {0};
     (void)state;
 
     assert_ok(
@@ -35,7 +35,6 @@ static void a_deck_names_its_format_and_all_its_dofs(void **state)
     assert_int_equal(deck.dof[6].grid, 5);
     assert_int_equal(deck.dof[6].component, 0);
     assert_int_equal(ritz_dof_compare(&deck.dof[12], &last), 0);
-    ritz_deck_free(&deck);
 }
 
 static void bytes_that_are_no_deck_are_refused(void **state)

@@ -71,7 +71,7 @@ static void check_spelling(const char *text, int64_t digits)
     static const double K[3][3] = {
         {2.0, 0.0, -1.5}, {0.0, 4.0, 0.0}, {-1.5, 0.0, 0.75}};
     static const ritz_dof ROWS[] = {{2, 1}, {2, 6}, {10, 0}};
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
     ritz_matrix *m = NULL;
 
     assert_true(ritz_format_dmig.recognise(text, (int64_t)strlen(text)));
@@ -92,7 +92,6 @@ static void check_spelling(const char *text, int64_t digits)
         assert_int_equal(m->row[i].component, ROWS[i].component);
         assert_near(re(m, i, j), K[i][j], 0.0); /* no arithmetic */
     }
-    ritz_matrices_free(&all);
 }
 
 static void three_spellings_give_the_same_bits(void **state)
@@ -105,7 +104,7 @@ static void three_spellings_give_the_same_bits(void **state)
 
 static void square_ones_stay_as_they_are_given(void **state)
 {
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
 
     (void)state;
     assert_ok(
@@ -116,12 +115,11 @@ static void square_ones_stay_as_they_are_given(void **state)
     assert_near(re(&all.matrix[0], 0, 1), 2.0, 0.0);
     assert_near(re(&all.matrix[0], 1, 0), 0.0, 0.0);
     assert_int_equal(all.matrix[1].A.nrow, 0);
-    ritz_matrices_free(&all);
 }
 
 static void polar_values_are_turned(void **state)
 {
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
     double half = 2.0 * sqrt(0.5);
 
     (void)state;
@@ -132,7 +130,6 @@ static void polar_values_are_turned(void **state)
     /* sin and cos of a rounded angle: two units in the last place of 1.4 */
     assert_near(re(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
     assert_near(im(&all.matrix[0], 0, 0), half, 2 * 2.3e-16);
-    ritz_matrices_free(&all);
 }
 
 static void what_is_no_matrix_is_refused(void **state)
@@ -228,7 +225,7 @@ static bool external(const char *name, ritz_matrices *out)
 static void a_punched_model_has_its_published_frequencies(void **state)
 {
     enum { N = 15 };
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
     double K[N * N];
     double M[N * N];
     double w[N];
@@ -264,7 +261,6 @@ static void a_punched_model_has_its_published_frequencies(void **state)
     assert_near(f[1], 2.130694, 5e-7);
     assert_int_equal(all.matrix[3].A.ncol, 1); /* VAX */
     assert_int_equal(all.matrix[3].col[0].component, 0);
-    ritz_matrices_free(&all);
 }
 
 static void forms_and_types_of_others_are_read(void **state)

@@ -133,11 +133,11 @@ static void assert_products(const ritz_dense *A, int p, int q)
 static void check_terms(bool turned)
 {
     enum { MOVE = 0, SPIN = 3, PSI = 6, TILDE = 6 + MODES };
-    ritz_component pair = {0};
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_component) pair = {0};
+    RITZ_OWN(ritz_dense) T = {0};
     ritz_inertia inertia = {0};
-    ritz_invariants invariants = {0};
-    exudyn_terms t = {0};
+    RITZ_OWN(ritz_invariants) invariants = {0};
+    RITZ_OWN(exudyn_terms) t = {0};
 
     assert_ok(make_pair(turned, 1.0, &pair));
     make_shapes(&pair, &T);
@@ -156,10 +156,6 @@ static void check_terms(bool turned)
     assert_near(ritz_dense_col(&t.chiUtilde, 0)[2], 2.0, 1e2 * DBL_EPSILON);
     assert_near(ritz_dense_col(&t.chiUtilde, 1)[2], 2.8, 1e2 * DBL_EPSILON);
     assert_near(ritz_dense_col(&t.chiUtilde, 2)[0], -2.0, 1e2 * DBL_EPSILON);
-    exudyn_terms_free(&t);
-    ritz_invariants_free(&invariants);
-    ritz_dense_free(&T);
-    ritz_component_free(&pair);
 }
 
 static void terms_of_two_masses_are_what_defines_them(void **state)
@@ -201,8 +197,8 @@ static ritz_status reduce_pair(bool turned, double k, ritz_reduced *out)
 static void rigid_motion_is_left_to_the_frame(void **state)
 {
     (void)state;
-    ritz_reduced reduced = {0};
-    exudyn_body body = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(exudyn_body) body = {0};
     const double k = 30.0;
     /* w^2 = k (1/m1 + 1/m2); psi = (m2, -m1) sqrt(1 / (m1 m2 (m1 + m2))) */
     const double lambda = k * (1.0 / 2.0 + 1.0 / 3.0);
@@ -222,15 +218,13 @@ static void rigid_motion_is_left_to_the_frame(void **state)
     /* x.psi = 2 * 1 * 3u - 3 * 4 * 2u = -18 u, on the axes across */
     assert_near(ritz_dense_col(&body.terms.mXRefTildePsiTilde, 1)[1],
                 -18.0 * unit, 1e4 * DBL_EPSILON);
-    exudyn_body_free(&body);
-    ritz_reduced_free(&reduced);
 }
 
 /* Rigid columns 0-4 and two others; the first of those may be rigid too. */
 static void make_marked(double spare, ritz_reduced *out)
 {
-    ritz_component pair = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) pair = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(make_pair(false, 30.0, &pair));
     assert_ok(ritz_basis_new(6, 6, &basis));
@@ -244,15 +238,13 @@ static void make_marked(double spare, ritz_reduced *out)
     ritz_dense_col(&basis.T, 5)[0] = 0.75;
     ritz_dense_col(&basis.T, 5)[4] = spare;
     assert_ok(ritz_reduce(&pair, &basis, out));
-    ritz_basis_free(&basis);
-    ritz_component_free(&pair);
 }
 
 static void columns_beside_rigid_ones_stay_as_they_are(void **state)
 {
     (void)state;
-    ritz_reduced reduced = {0};
-    exudyn_body body = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(exudyn_body) body = {0};
 
     make_marked(0.25, &reduced);
     assert_ok(exudyn_body_of(&reduced, &body));
@@ -260,15 +252,13 @@ static void columns_beside_rigid_ones_stay_as_they_are(void **state)
     assert_int_equal(body.modes.num_rigid, 5);
     assert_near(body.modeBasis.val[0], 0.75, 0.0);
     assert_near(body.modeBasis.val[4], 0.25, 0.0);
-    exudyn_body_free(&body);
-    ritz_reduced_free(&reduced);
 }
 
 static void a_loose_part_is_refused(void **state)
 {
     (void)state;
-    ritz_component pair = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) pair = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     exudyn_body body = {0};
     const int64_t row[1] = {0};
     const double val[1] = {30.0};
@@ -282,8 +272,6 @@ static void a_loose_part_is_refused(void **state)
     assert_ok(reduce(&pair, &reduced));
     assert_fails(exudyn_body_of(&reduced, &body), RITZ_ERR_ARGUMENT,
                  "a part is loose");
-    ritz_component_free(&pair);
-    ritz_reduced_free(&reduced);
 }
 
 /* A mass that turns too, on the second grid: R1 R2 R3, with inertia 0.7. */
@@ -347,9 +335,9 @@ static void assert_consistent(const exudyn_terms *t, int64_t k)
 static void rotations_count_to_zeroth_order(void **state)
 {
     (void)state;
-    ritz_reduced reduced = {0};
-    exudyn_body body = {0};
-    ritz_export_report report = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(exudyn_body) body = {0};
+    RITZ_OWN(ritz_export_report) report = {0};
 
     make_turning(&reduced);
     assert_ok(exudyn_body_of(&reduced, &body));
@@ -365,9 +353,6 @@ static void rotations_count_to_zeroth_order(void **state)
     assert_true(says(&report, "rotations of 1 grids left out"));
     /* R1 moves alone: all of its energy */
     assert_true(says(&report, "by 1 at most"));
-    ritz_export_report_free(&report);
-    exudyn_body_free(&body);
-    ritz_reduced_free(&reduced);
 }
 
 static void make_path(const char *name, char path[PATH_SIZE])
@@ -408,7 +393,7 @@ static void assert_same_bytes(const char *one, const char *other)
 static void a_file_written_twice_has_the_same_bytes(void **state)
 {
     (void)state;
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     char one[PATH_SIZE], other[PATH_SIZE];
 
     make_path("one.hdf5", one);
@@ -419,7 +404,6 @@ static void a_file_written_twice_has_the_same_bytes(void **state)
     assert_same_bytes(one, other);
     remove(one);
     remove(other);
-    ritz_reduced_free(&reduced);
 }
 
 static const char *const names[] = {"fileVersion",
@@ -449,7 +433,7 @@ static void a_file_holds_what_its_reader_asks_for(void **state)
     (void)state;
     const int64_t info[6] = {1, 2, 3, 4, 7, 8};
     int64_t found[6] = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_dense A = {0};
     hid_t file = 0;
     char path[PATH_SIZE];
@@ -475,13 +459,12 @@ static void a_file_holds_what_its_reader_asks_for(void **state)
     ritz_dense_free(&A);
     ritz_h5_close(file);
     remove(path);
-    ritz_reduced_free(&reduced);
 }
 
 static void invariants_go_through_a_container(void **state)
 {
     (void)state;
-    ritz_reduced reduced = {0}, again = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0}, again = {0};
     const ritz_stamp stamp = {.command = "test"};
     char path[PATH_SIZE];
 
@@ -498,17 +481,15 @@ static void invariants_go_through_a_container(void **state)
     assert_memory_equal(again.invariants.product.val,
                         reduced.invariants.product.val, 729 * sizeof(double));
     remove(path);
-    ritz_reduced_free(&reduced);
-    ritz_reduced_free(&again);
 }
 
 static void a_second_projection_takes_invariants_along(void **state)
 {
     (void)state;
-    ritz_component pair = {0};
-    ritz_reduced reduced = {0}, second = {0};
-    ritz_invariants direct = {0};
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_component) pair = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0}, second = {0};
+    RITZ_OWN(ritz_invariants) direct = {0};
+    RITZ_OWN(ritz_dense) T = {0};
 
     assert_ok(make_pair(true, 30.0, &pair));
     make_shapes(&pair, &T);
@@ -522,11 +503,6 @@ static void a_second_projection_takes_invariants_along(void **state)
     for (int64_t k = 0; k < 27; k++)
         assert_near(second.invariants.position.val[k], direct.position.val[k],
                     1e4 * DBL_EPSILON);
-    ritz_invariants_free(&direct);
-    ritz_dense_free(&T);
-    ritz_reduced_free(&second);
-    ritz_reduced_free(&reduced);
-    ritz_component_free(&pair);
 }
 
 /* Each spoils one thing. */
@@ -594,29 +570,26 @@ static void what_is_no_body_is_refused(void **state)
 
     make_path("refused.hdf5", path);
     for (int k = 0; k < DEFECTS; k++) {
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         assert_ok(reduce_pair(true, 30.0, &reduced));
         spoil_body(k, &reduced);
         assert_fails(export(&reduced, path), RITZ_ERR_ARGUMENT, words[k]);
         assert_int_not_equal(access(path, F_OK), 0);
-        ritz_reduced_free(&reduced);
     }
 }
 
 static void of_many_columns_no_invariants_are_kept(void **state)
 {
     (void)state;
-    ritz_component pair = {0};
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_component) pair = {0};
+    RITZ_OWN(ritz_dense) T = {0};
     ritz_invariants none = {0};
 
     assert_ok(make_pair(false, 1.0, &pair));
     assert_ok(ritz_dense_new(6, RITZ_INVARIANT_COLUMNS + 1, &T));
     assert_ok(ritz_invariants_of(&pair, &T, &none));
     assert_null(none.momentum.val);
-    ritz_dense_free(&T);
-    ritz_component_free(&pair);
 }
 
 static ritz_status reduce_and_export(void *path)
@@ -643,12 +616,11 @@ static void every_allocation_may_fail(void **state)
 static void a_folder_that_is_not_there_is_said(void **state)
 {
     (void)state;
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     assert_ok(reduce_pair(false, 30.0, &reduced));
     assert_fails(export(&reduced, "/no/such/folder/body.hdf5"), RITZ_ERR_FILE,
                  "/no/such/folder");
-    ritz_reduced_free(&reduced);
 }
 
 static const struct CMUnitTest tests[] = {

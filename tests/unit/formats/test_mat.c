@@ -37,7 +37,7 @@ static void what_libmatio_writes_is_read_to_the_bit(void **state)
 {
     (void)state;
     for (int k = 0; k < MAT_SAMPLES; k++) {
-        ritz_matrices all = {0};
+        RITZ_OWN(ritz_matrices) all = {0};
 
         assert_ok(ritz_foreign_read(folder_path(mat_samples[k].path), &all));
         assert_string_equal(all.format, "mat");
@@ -46,7 +46,6 @@ static void what_libmatio_writes_is_read_to_the_bit(void **state)
         assert_sparse(&all.matrix[1], "S");
         assert_full(&all.matrix[2], "sys.a");
         assert_sparse(&all.matrix[3], "sys.s");
-        ritz_matrices_free(&all);
     }
 }
 
@@ -89,7 +88,7 @@ static void level_four_is_read_in_either_byte_order(void **state)
     (void)state;
     for (int swap = 0; swap < 2; swap++) {
         bytes b = {0};
-        ritz_matrices all = {0};
+        RITZ_OWN(ritz_matrices) all = {0};
 
         add_level4(&b, 0, 3, 2, mat_full, swap);
         add_level4(&b, 2, 6, 3, triplets, swap);
@@ -97,7 +96,6 @@ static void level_four_is_read_in_either_byte_order(void **state)
         assert_int_equal(all.count, 2);
         assert_full(&all.matrix[0], "A");
         assert_sparse(&all.matrix[1], "A");
-        ritz_matrices_free(&all);
     }
 }
 
@@ -124,7 +122,7 @@ static void what_is_no_matrix_is_said_by_name(void **state)
     char letters[] = "abc";
     size_t three[2] = {1, 3};
     mat_t *file = Mat_CreateVer(folder_path("other.mat"), NULL, MAT_FT_MAT5);
-    ritz_matrix m = {0};
+    RITZ_OWN(ritz_matrix) m = {0};
 
     (void)state;
     mat_put(file,
@@ -150,7 +148,6 @@ static void what_is_no_matrix_is_said_by_name(void **state)
     assert_ok(ritz_foreign_select(folder_path("other.mat"),
                                   &m)); /* the only matrix */
     assert_full(&m, "A");
-    ritz_matrix_free(&m);
 }
 
 static void integers_singles_and_pairs_keep_what_they_are(void **state)
@@ -162,7 +159,7 @@ static void integers_singles_and_pairs_keep_what_they_are(void **state)
     double re[2] = {1, 2}, im[2] = {0, -4};
     mat_complex_split_t z = {re, im};
     mat_t *file = Mat_CreateVer(folder_path("types.mat"), NULL, MAT_FT_MAT5);
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
 
     (void)state;
     mat_put(file,
@@ -185,7 +182,6 @@ static void integers_singles_and_pairs_keep_what_they_are(void **state)
     assert_true(all.matrix[2].A.val[0] == (double)0.1F);
     assert_int_equal(all.matrix[2].digits, 7);
     assert_true(all.matrix[3].imaginary && all.matrix[3].imaginary[1] == -4.0);
-    ritz_matrices_free(&all);
 }
 
 static void a_wrong_checksum_of_compressed_data_is_found(void **state)

@@ -21,7 +21,7 @@ static ritz_status read_text(const char *text)
 /* A 2 x 2 matrix by columns. */
 static void assert_holds(const char *text, const double *re, const double *im)
 {
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
     const ritz_matrix *m = NULL;
 
     assert_ok(parse(text, &all));
@@ -35,7 +35,6 @@ static void assert_holds(const char *text, const double *re, const double *im)
         assert_true(!im ||
                     matrix_entry(&m->A, m->imaginary, e % 2, e / 2) == im[e]);
     }
-    ritz_matrices_free(&all);
 }
 
 #define REAL "%%MatrixMarket matrix coordinate real "
@@ -162,7 +161,7 @@ static void a_long_line_is_quoted_by_its_first_79_letters(void **state)
 /* Two mirrored pairs that agree, one after the other. */
 static void both_triangles_are_taken_once(void **state)
 {
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
     (void)state;
 
     assert_ok(parse(REAL "symmetric\n3 3 6\n2 1 1\n1 2 1\n3 1 2\n1 3 2\n"
@@ -171,7 +170,6 @@ static void both_triangles_are_taken_once(void **state)
     assert_int_equal(all.matrix[0].A.colptr[3], 6);
     assert_true(ritz_sparse_asymmetry(&all.matrix[0].A) == 0.0);
     assert_true(all.matrix[0].symmetric);
-    ritz_matrices_free(&all);
 }
 
 static void assert_round_trip(const ritz_matrix *m, const char *spelling)
@@ -251,7 +249,7 @@ static void third_party_files_are_read(void **state)
         skip();
     }
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        ritz_matrices all = {0};
+        RITZ_OWN(ritz_matrices) all = {0};
         const ritz_matrix *m = NULL;
         char path[600];
 
@@ -265,7 +263,6 @@ static void third_party_files_are_read(void **state)
             assert_int_equal(m->A.colptr[m->A.ncol], cases[k].nnz);
             assert_true(m->A.val[0] == cases[k].first);
         }
-        ritz_matrices_free(&all);
     }
 }
 

@@ -128,7 +128,7 @@ static void every_spelling_of_text_gives_the_same_matrix(void **state)
 {
     (void)state;
     for (int k = 0; k < SPELLINGS; k++) {
-        ritz_matrices all = {0};
+        RITZ_OWN(ritz_matrices) all = {0};
         const ritz_matrix *m = NULL;
 
         parse(spellings[k], &all);
@@ -143,7 +143,6 @@ static void every_spelling_of_text_gives_the_same_matrix(void **state)
         assert_true(at(m, 1, 1) == 3.0 && at(m, 2, 1) == 4.0);
         assert_int_equal(m->digits, 10);
         assert_false(m->symmetric);
-        ritz_matrices_free(&all);
     }
 }
 
@@ -172,7 +171,7 @@ static void forms_mean_what_nastran_means_by_them(void **state)
     (void)state;
 
     for (int k = 0; k < 4; k++) {
-        ritz_matrices all = {0};
+        RITZ_OWN(ritz_matrices) all = {0};
         char whole[300];
 
         snprintf(whole, sizeof whole, "%s%s", text[k], end);
@@ -181,7 +180,6 @@ static void forms_mean_what_nastran_means_by_them(void **state)
         for (int e = 0; e < 4; e++)
             assert_true(at(&all.matrix[0], e % 2, e / 2) == expected[k][e]);
         assert_int_equal(all.matrix[0].symmetric, k < 3);
-        ritz_matrices_free(&all);
     }
 }
 
@@ -195,14 +193,13 @@ static void ten_million_null_columns_are_read(void **state)
         " 5.0E+00\n"
         "10000002       1       1\n"
         " 1.0E+00\n";
-    ritz_matrices all = {0};
+    RITZ_OWN(ritz_matrices) all = {0};
     (void)state;
 
     parse(text, &all);
     assert_int_equal(all.matrix[0].A.ncol, 10000001);
     assert_int_equal(all.matrix[0].A.colptr[10000000], 0);
     assert_true(at(&all.matrix[0], 6, 10000000) == 5.0);
-    ritz_matrices_free(&all);
 }
 
 static void what_is_wrong_is_said(void **state)
@@ -340,49 +337,49 @@ static void make(bool complex, bool extreme, ritz_matrix *out)
         free(imaginary);
 }
 
+static void assert_round_trip(int64_t count, const ritz_matrix *m,
+                              const ritz_output4_style *style)
+{
+    const char *path = "output4_round.op4";
+    RITZ_OWN(ritz_matrices) all = {0};
+
+    assert_ok(ritz_output4_write(path, count, m, style));
+    assert_ok(ritz_foreign_read(path, &all));
+    assert_int_equal(all.count, count);
+    for (int64_t k = 0; k < count; k++) {
+        assert_string_equal(all.matrix[k].name,
+                            m[k].imaginary ? "CPLX" : "KREAL");
+        assert_int_equal(all.matrix[k].digits, style->digits);
+        assert_same(&m[k], &all.matrix[k],
+                    style->digits < 17 ? style->digits : 0);
+    }
+    remove(path);
+}
+
 static void what_is_written_is_read_to_the_same_bits(void **state)
 {
     (void)state;
     for (int k = 0; k < 16; k++) {
         const ritz_output4_style style = {k & 1, k & 2, 17};
-        const char *path = "output4_round.op4";
         ritz_matrix m[2] = {0};
-        ritz_matrices all = {0};
 
         make(k & 4, k & 8, &m[0]);
         make(!(k & 4), false, &m[1]);
-        assert_ok(ritz_output4_write(path, 2, m, &style));
-        assert_ok(ritz_foreign_read(path, &all));
-        assert_int_equal(all.count, 2);
-        assert_string_equal(all.matrix[0].name, k & 4 ? "CPLX" : "KREAL");
-        assert_int_equal(all.matrix[0].digits, 17);
-        assert_same(&m[0], &all.matrix[0], 0);
-        assert_same(&m[1], &all.matrix[1], 0);
-        ritz_matrices_free(&all);
+        assert_round_trip(2, m, &style);
         ritz_matrix_free(&m[0]);
         ritz_matrix_free(&m[1]);
-        remove(path);
     }
 }
 
 static void fewer_digits_are_right_to_half_a_unit(void **state)
 {
+    RITZ_OWN(ritz_matrix) m = {0};
     (void)state;
-    for (int64_t digits = 1; digits <= 16; digits++) {
-        const ritz_output4_style style = {true, digits % 2, digits};
-        const char *path = "output4_digits.op4";
-        ritz_matrix m = {0};
-        ritz_matrices all = {0};
 
-        make(true, false, &m);
-        assert_ok(ritz_output4_write(path, 1, &m, &style));
-        assert_ok(ritz_foreign_read(path, &all));
-        assert_int_equal(all.matrix[0].digits, digits);
-        assert_same(&m, &all.matrix[0], digits);
-        ritz_matrices_free(&all);
-        ritz_matrix_free(&m);
-        remove(path);
-    }
+    make(true, false, &m);
+    for (int64_t digits = 1; digits <= 16; digits++)
+        assert_round_trip(1, &m,
+                          &(ritz_output4_style){true, digits % 2, digits});
 }
 
 static void what_cannot_be_written_leaves_no_file(void **state)
@@ -390,7 +387,7 @@ static void what_cannot_be_written_leaves_no_file(void **state)
     const ritz_output4_style style = {.text = true, .digits = 18};
     const ritz_output4_style binary = {0};
     const char *path = "output4_none.op4";
-    ritz_matrix m = {0};
+    RITZ_OWN(ritz_matrix) m = {0};
     (void)state;
 
     make(false, false, &m);
@@ -405,7 +402,6 @@ static void what_cannot_be_written_leaves_no_file(void **state)
     assert_fails(ritz_output4_write("/no/such/place", 1, &m, &binary),
                  RITZ_ERR_FILE, "/no/such/place");
     assert_int_not_equal(access(path, F_OK), 0);
-    ritz_matrix_free(&m);
 }
 
 /* Files that hold the same matrices as the first; 0 digits: the same bits. */
@@ -493,8 +489,8 @@ static void spellings_of_third_party_files_agree(void **state)
         skip();
     for (size_t k = 0; k < sizeof families / sizeof *families; k++)
         for (int o = 0; families[k].other[o]; o++, pairs++) {
-            ritz_matrices a = {0};
-            ritz_matrices b = {0};
+            RITZ_OWN(ritz_matrices) a = {0};
+            RITZ_OWN(ritz_matrices) b = {0};
 
             solvers_find(families[k].file, path);
             assert_ok(ritz_foreign_read(path, &a));
@@ -503,8 +499,6 @@ static void spellings_of_third_party_files_agree(void **state)
             assert_int_equal(a.count, b.count);
             for (int64_t m = 0; m < a.count; m++)
                 assert_same(&a.matrix[m], &b.matrix[m], families[k].digits);
-            ritz_matrices_free(&a);
-            ritz_matrices_free(&b);
         }
     assert_int_equal(pairs, 54);
 }
@@ -527,7 +521,7 @@ static void all_third_party_files_are_read(void **state)
         folder = opendir(path);
         assert_non_null(folder);
         while ((entry = readdir(folder)) != NULL) {
-            ritz_matrices all = {0};
+            RITZ_OWN(ritz_matrices) all = {0};
             char file[PATH_SIZE + 300];
 
             if (!strstr(entry->d_name, ".op4"))
@@ -540,7 +534,6 @@ static void all_third_party_files_are_read(void **state)
                     all.matrix[m].A.colptr[all.matrix[m].A.ncol]));
             assert_string_equal(all.format, "output4");
             files++;
-            ritz_matrices_free(&all);
         }
         closedir(folder);
     }

@@ -113,7 +113,7 @@ static void elements_with_strange_grids_are_counted(void **state)
                                "CTRIA3,4,1,1,2\n"
                                "CHEXA,5,1,1,2,1,2,1,2\n,1,2,9\n"
                                "ENDDATA\n";
-    ritz_deck bulk = {0};
+    RITZ_OWN(ritz_deck) bulk = {0};
 
     (void)state;
     assert_ok(
@@ -125,7 +125,6 @@ static void elements_with_strange_grids_are_counted(void **state)
     assert_int_equal(bulk.elements.first[2], 10);
     assert_int_equal(ritz_elements_keep(&bulk.elements, 1, (int64_t[]){1}), 2);
     assert_int_equal(bulk.elements.count, 0);
-    ritz_deck_free(&bulk);
 }
 
 static void cells_that_do_not_fit_are_refused(void **state)
