@@ -2,6 +2,7 @@
 #include "estimate/bounder.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -9,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double square(double x)
+typedef double _Complex number;
+
+static double square_of(double x)
 {
     return x * x;
 }
@@ -27,12 +30,29 @@ static double rate_at(const ritz_bounder *r, double lambda)
                        : 2.0 * r->zeta * sqrt(fmax(lambda, 0.0));
 }
 
-double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j)
+void ritz_bounder_take_rates(ritz_bounder *r)
 {
-    if (r->rates)
-        return r->rates[j];
-    return j < r->num_rigid && !r->rayleigh ? 0.0
-                                            : rate_at(r, stiffness_of(r, j));
+    for (int64_t j = 0; j < r->trial->count; j++)
+        r->rates[j] = rate_at(r, stiffness_of(r, j));
+}
+
+/* The product of a real symmetric matrix and a complex vector. */
+static void multiply_real(const ritz_dense *G, const number *x, number *y)
+{
+    memset(y, 0, (size_t)G->nrow * sizeof *y);
+    for (int64_t j = 0; j < G->ncol; j++)
+        for (int64_t i = 0; i < G->nrow && x[j] != 0.0; i++)
+            y[i] += ritz_dense_col(G, j)[i] * x[j];
+}
+
+static double norm_of(const ritz_bounder *r, const number *x, number *work)
+{
+    double sum = 0.0;
+
+    multiply_real(&r->G, x, work);
+    for (int64_t i = 0; i < r->size; i++)
+        sum += creal(conj(x[i]) * work[i]);
+    return sqrt(fmax(sum, 0.0));
 }
 
 /* Put A X into V from column `at` on; zeros if there is no A. */
@@ -117,8 +137,8 @@ static double rigid_sin2(const ritz_bounder *r)
         double t = trial->theta[j] - trial->sigma;
         double eps2 = fmax(ritz_dense_col(&trial->G, j)[j], 0.0) / t;
 
-        sum += square(trial->rounding[j] / trial->sigma) +
-               eps2 * square(1.0 - trial->sigma / next);
+        sum += square_of(trial->rounding[j] / trial->sigma) +
+               eps2 * square_of(1.0 - trial->sigma / next);
     }
     return sum;
 }
@@ -213,15 +233,13 @@ static ritz_status condense_on_modes(const ritz_sparse *A, const ritz_dense *X,
 static ritz_status open_coupled(const ritz_component *full, ritz_bounder *r)
 {
     int64_t m = r->trial->count;
-    int64_t sides = r->io->num_inputs + r->io->num_outputs;
-    const double *rates = r->rates;
 
     RITZ_CHECK(condense_on_modes(&full->D, &r->trial->X, &r->D));
     RITZ_CHECK(condense_on_modes(&full->K4, &r->trial->X, &r->K4));
     for (int64_t j = r->num_rigid; j < m; j++)
-        ritz_dense_col(&r->D, j)[j] += rates[j] - r->matrix_rates[j];
+        ritz_dense_col(&r->D, j)[j] += r->rates[j] - r->matrix_rates[j];
     RITZ_CHECK_NEW(r->Z, m * m);
-    RITZ_CHECK_NEW(r->responses, m * sides);
+    RITZ_CHECK_NEW(r->responses, m * r->num_sides);
     RITZ_CHECK_NEW(r->pivot, m);
     return RITZ_OK;
 }
@@ -242,11 +260,11 @@ static void fill_side(const ritz_bounder *r, double w,
     s->change = s->damping_part = s->defect_quarter = s->defect_three = 0.0;
 }
 
-/* eta and alpha of all sides at @p w, whose modal shares are there. */
+/* eta and alpha of all sides at @p w, whose participations are there. */
 static void solve_coupled(ritz_bounder *r, double w)
 {
     int m = (int)r->trial->count;
-    int sides = (int)(r->io->num_inputs + r->io->num_outputs);
+    int sides = (int)r->num_sides;
     double _Complex *at = r->responses;
 
     for (int64_t j = 0; j < m; j++)
@@ -254,25 +272,50 @@ static void solve_coupled(ritz_bounder *r, double w)
             r->Z[i + j * m] = ritz_complex(
                 i == j ? stiffness_of(r, j) - w * w : 0.0,
                 w * ritz_dense_col(&r->D, j)[i] + ritz_dense_col(&r->K4, j)[i]);
-    for (int side = 0; side < sides; side++) {
-        const ritz_side *s = side < r->io->num_inputs
-                                 ? &r->in[side]
-                                 : &r->out[side - r->io->num_inputs];
-
-        for (int64_t j = 0; j < m; j++)
-            at[j + (int64_t)side * m] = s->participation[j];
-    }
+    for (int64_t k = 0; k < sides; k++)
+        memcpy(at + k * m, r->side[k].participation, (size_t)m * sizeof *at);
     if (LAPACKE_zgesv(LAPACK_COL_MAJOR, m, sides, r->Z, m, r->pivot, at, m))
         for (int64_t k = 0; k < (int64_t)m * sides; k++)
             at[k] = nan("");
-    for (int64_t k = 0; k < r->io->num_inputs; k++, at += m)
-        fill_side(r, w, at, &r->in[k]);
-    for (int64_t k = 0; k < r->io->num_outputs; k++, at += m)
-        fill_side(r, w, at, &r->out[k]);
+    for (int64_t k = 0; k < sides; k++) {
+        fill_side(r, w, at + k * m, &r->side[k]);
+        r->side[k].residual_norm = norm_of(r, r->side[k].residual, r->GV);
+    }
 }
 
-static void free_coupled(ritz_bounder *r)
+static ritz_status open_side(const ritz_bounder *r, ritz_side *s)
 {
+    RITZ_CHECK_NEW(s->residual, r->size);
+    RITZ_CHECK_NEW(s->participation, r->trial->count);
+    RITZ_CHECK_NEW(s->eta, r->trial->count);
+    RITZ_CHECK_NEW(s->residual_slope, r->size);
+    RITZ_CHECK_NEW(s->participation_slope, r->trial->count);
+    RITZ_CHECK_NEW(s->curvature, r->trial->count);
+    return RITZ_OK;
+}
+
+static void ritz_side_free(ritz_side *s)
+{
+    free(s->residual);
+    free(s->participation);
+    free(s->eta);
+    free(s->residual_slope);
+    free(s->participation_slope);
+    free(s->curvature);
+}
+
+void ritz_bounder_free(ritz_bounder *r)
+{
+    RITZ_FREE_EACH(ritz_side, r->num_sides, r->side);
+    ritz_dense_free(&r->G);
+    ritz_dense_free(&r->Q);
+    for (int k = 0; k <= KINDS; k++)
+        ritz_dense_free(&r->channel[k]);
+    free(r->rates);
+    free(r->vector_norm);
+    free(r->sin2);
+    free(r->GV);
+    free(r->QV);
     ritz_dense_free(&r->D);
     ritz_dense_free(&r->K4);
     free(r->Z);
@@ -280,70 +323,28 @@ static void free_coupled(ritz_bounder *r)
     free(r->pivot);
 }
 
-static ritz_status new_sides(const ritz_bounder *r, int64_t count,
-                             ritz_side **out)
-{
-    RITZ_CHECK_NEW(*out, count);
-    for (int64_t k = 0; k < count; k++) {
-        RITZ_CHECK_NEW((*out)[k].residual, r->size);
-        RITZ_CHECK_NEW((*out)[k].participation, r->trial->count);
-        RITZ_CHECK_NEW((*out)[k].eta, r->trial->count);
-        RITZ_CHECK_NEW((*out)[k].residual_slope, r->size);
-        RITZ_CHECK_NEW((*out)[k].participation_slope, r->trial->count);
-        RITZ_CHECK_NEW((*out)[k].curvature, r->trial->count);
-    }
-    return RITZ_OK;
-}
-
-static void free_sides(int64_t count, ritz_side *sides)
-{
-    for (int64_t k = 0; sides && k < count; k++) {
-        free(sides[k].residual);
-        free(sides[k].participation);
-        free(sides[k].eta);
-        free(sides[k].residual_slope);
-        free(sides[k].participation_slope);
-        free(sides[k].curvature);
-    }
-    free(sides);
-}
-
-void ritz_bounder_free(ritz_bounder *r)
-{
-    free_sides(r->io->num_inputs, r->in);
-    free_sides(r->io->num_outputs, r->out);
-    ritz_dense_free(&r->G);
-    ritz_dense_free(&r->Q);
-    ritz_dense_free(&r->B);
-    for (int k = 0; k < KINDS; k++)
-        ritz_dense_free(&r->C[k]);
-    free(r->vector_norm);
-    free(r->sin2);
-    free(r->GV);
-    free(r->QV);
-    free_coupled(r);
-}
-
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
 {
     const ritz_io *io = r->io;
     const ritz_dense *X = &r->trial->X;
+    RITZ_OWN(ritz_dense) XB = {0};
 
+    r->num_sides = io->num_inputs + io->num_outputs;
     r->size = (r->coupled ? 3 : 1) * r->trial->count + io->num_inputs +
               KINDS * io->num_outputs;
     RITZ_CHECK(take_forms(estimator, r));
     RITZ_CHECK(take_sines(r));
-    RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &r->B));
-    RITZ_CHECK(ritz_dense_mul(&io->C, X, &r->C[0]));
-    RITZ_CHECK(ritz_dense_mul(&io->Cv, X, &r->C[1]));
-    RITZ_CHECK(ritz_dense_mul(&io->Ca, X, &r->C[2]));
-    RITZ_CHECK(new_sides(r, io->num_inputs, &r->in));
-    RITZ_CHECK(new_sides(r, io->num_outputs, &r->out));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &XB));
+    RITZ_CHECK(ritz_general_transpose(&XB, &r->channel[0]));
+    RITZ_CHECK(ritz_dense_mul(&io->C, X, &r->channel[1]));
+    RITZ_CHECK(ritz_dense_mul(&io->Cv, X, &r->channel[2]));
+    RITZ_CHECK(ritz_dense_mul(&io->Ca, X, &r->channel[3]));
+    RITZ_CHECK_NEW(r->side, r->num_sides);
+    for (int64_t k = 0; k < r->num_sides; k++)
+        RITZ_CHECK(open_side(r, &r->side[k]));
     RITZ_CHECK_NEW(r->GV, r->size);
     RITZ_CHECK_NEW(r->QV, r->size);
-    if (r->coupled)
-        RITZ_CHECK(open_coupled(estimator->component, r));
-    return RITZ_OK;
+    return r->coupled ? open_coupled(estimator->component, r) : RITZ_OK;
 }
 
 /*
@@ -351,32 +352,11 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
  * or anywhere in an interval; the equations are in response.c.
  */
 
-typedef double _Complex number;
-
-/* The product of a real symmetric matrix and a complex vector. */
-static void multiply(const ritz_dense *G, const number *x, number *y)
-{
-    memset(y, 0, (size_t)G->nrow * sizeof *y);
-    for (int64_t j = 0; j < G->ncol; j++)
-        for (int64_t i = 0; i < G->nrow && x[j] != 0.0; i++)
-            y[i] += ritz_dense_col(G, j)[i] * x[j];
-}
-
-static double norm_of(const ritz_bounder *r, const number *x, number *work)
-{
-    double sum = 0.0;
-
-    multiply(&r->G, x, work);
-    for (int64_t i = 0; i < r->size; i++)
-        sum += creal(conj(x[i]) * work[i]);
-    return sqrt(fmax(sum, 0.0));
-}
-
 /* Bounds of |c eta_j| and of its second derivative within h of w. */
 static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
                     double w, double h, double out[2])
 {
-    double d = ritz_bounder_rate_of(r, j);
+    double d = r->rates[j];
     double theta = stiffness_of(r, j);
     double off = h * (2.0 * w + h) + h * d;
     double z = fmax(hypot(theta - w * w, w * d) - off, fmax(w - h, 0.0) * d);
@@ -413,7 +393,7 @@ static void solve_side(ritz_bounder *r, double w, double h, double bent,
     s->damping_part = s->defect_quarter = s->defect_three = 0.0;
     for (int64_t j = 0; j < r->trial->count; j++) {
         double theta = stiffness_of(r, j);
-        double d = ritz_bounder_rate_of(r, j);
+        double d = r->rates[j];
         number z = ritz_complex(theta - w * w, w * d);
         number z1 = ritz_complex(-2.0 * w, d);
         double size = r->vector_norm[j];
@@ -443,47 +423,39 @@ static void solve_side(ritz_bounder *r, double w, double h, double bent,
 /* Participation, response and residual of all inputs and outputs. */
 static void solve_all(ritz_bounder *r, double w, double h)
 {
-    const ritz_io *io = r->io;
+    const ritz_dense *C = &r->channel[1];
     int64_t m = r->trial->count;
-    int64_t p = io->num_outputs;
+    int64_t inputs = r->io->num_inputs, p = r->io->num_outputs;
 
-    for (int64_t k = 0; k < io->num_inputs; k++) {
-        memset(r->in[k].residual, 0, (size_t)r->size * sizeof(number));
-        r->in[k].residual[m + k] = 1.0;
-        for (int64_t j = 0; j < m; j++)
-            r->in[k].participation[j] = ritz_dense_col(&r->B, k)[j];
-        if (!r->coupled)
-            solve_side(r, w, h, 0.0, &r->in[k]);
-    }
-    for (int64_t k = 0; k < p; k++) {
-        ritz_side *s = &r->out[k];
-        int64_t at = m + io->num_inputs + k;
+    for (int64_t k = 0; k < r->num_sides; k++) {
+        ritz_side *s = &r->side[k];
+        int64_t at = m + k, i = k - inputs;
 
         memset(s->residual, 0, (size_t)r->size * sizeof(number));
         s->residual[at] = 1.0;
-        s->residual[at + p] = ritz_complex(0.0, w);
-        s->residual[at + 2 * p] = -w * w;
-        s->residual_slope[at + p] = ritz_complex(0.0, 1.0);
-        s->residual_slope[at + 2 * p] = -2.0 * w;
-        for (int64_t j = 0; j < m; j++) {
-            double cv = ritz_dense_col(&r->C[1], j)[k];
-            double ca = ritz_dense_col(&r->C[2], j)[k];
+        for (int64_t j = 0; k < inputs && j < m; j++)
+            s->participation[j] = ritz_dense_col(&r->channel[0], j)[k];
+        if (k >= inputs) {
+            s->residual[at + p] = ritz_complex(0.0, w);
+            s->residual[at + 2 * p] = -w * w;
+            s->residual_slope[at + p] = ritz_complex(0.0, 1.0);
+            s->residual_slope[at + 2 * p] = -2.0 * w;
+        }
+        for (int64_t j = 0; k >= inputs && j < m; j++) {
+            double cv = ritz_dense_col(&C[1], j)[i];
+            double ca = ritz_dense_col(&C[2], j)[i];
 
-            s->participation[j] = ritz_complex(
-                ritz_dense_col(&r->C[0], j)[k] - w * w * ca, w * cv);
+            s->participation[j] =
+                ritz_complex(ritz_dense_col(&C[0], j)[i] - w * w * ca, w * cv);
             s->participation_slope[j] = ritz_complex(-2.0 * w * ca, cv);
             s->curvature[j] = 2.0 * fabs(ca);
         }
         if (!r->coupled)
-            solve_side(r, w, h, 2.0 * r->vector_norm[at + 2 * p], s);
+            solve_side(r, w, h,
+                       k < inputs ? 0.0 : 2.0 * r->vector_norm[at + 2 * p], s);
     }
-    if (!r->coupled)
-        return;
-    solve_coupled(r, w);
-    for (int64_t k = 0; k < io->num_inputs; k++)
-        r->in[k].residual_norm = norm_of(r, r->in[k].residual, r->GV);
-    for (int64_t k = 0; k < p; k++)
-        r->out[k].residual_norm = norm_of(r, r->out[k].residual, r->GV);
+    if (r->coupled)
+        solve_coupled(r, w);
 }
 
 /* One interval of frequencies. */
@@ -609,12 +581,13 @@ double ritz_bound_at(ritz_bounder *r, double w, double h)
 
     solve_all(r, w, h);
     for (int64_t j = 0; j < io->num_inputs; j++) {
-        multiply(&r->G, r->in[j].residual, r->GV);
-        multiply(&r->Q, r->in[j].residual, r->QV);
+        const ritz_side *in = &r->side[j], *out = &r->side[io->num_inputs];
+
+        multiply_real(&r->G, in->residual, r->GV);
+        multiply_real(&r->Q, in->residual, r->QV);
         for (int64_t i = 0; i < io->num_outputs; i++) {
             double response = 0.0;
-            double one =
-                bound_pair(r, &at, h, &r->in[j], &r->out[i], &response);
+            double one = bound_pair(r, &at, h, in, &out[i], &response);
 
             largest = fmax(largest, isnan(one) ? HUGE_VAL : one);
             if (h == 0.0) {

@@ -38,13 +38,14 @@ typedef struct ritz_bounder {
     int64_t num_rigid;
     bool rayleigh; /* D = a M + b K; else the ratio zeta of all modes */
     double zeta, a, b;
-    const double *rates;    /* modal damping by D; NULL: by zeta, a and b */
-    int64_t size;           /* columns of V = [R b_o c_o D_o K4_o] */
-    ritz_dense G, Q;        /* V'A^-1 V and V'A^-1 M A^-1 V */
-    double *vector_norm;    /* |V_j|_(A^-1) */
-    ritz_dense B, C[KINDS]; /* X'B; C X, Cv X, Ca X */
-    double *sin2;           /* of each full mode to the trial space, at most */
-    ritz_side *in, *out;
+    double *rates;                 /* damping of each trial mode */
+    int64_t size;                  /* columns of V = [R b_o c_o D_o K4_o] */
+    ritz_dense G, Q;               /* V'A^-1 V and V'A^-1 M A^-1 V */
+    double *vector_norm;           /* |V_j|_(A^-1) */
+    ritz_dense channel[1 + KINDS]; /* B'X, C X, Cv X, Ca X */
+    double *sin2; /* of each full mode to the trial space, at most */
+    int64_t num_sides;
+    ritz_side *side;          /* inputs, then outputs */
     double _Complex *GV, *QV; /* G and Q times the residual of an input */
     bool coupled;             /* D or K4 couples modes: an estimate, no bound */
     const double *matrix_rates; /* the part of rates that is of D and K4 */
@@ -59,8 +60,8 @@ typedef struct ritz_bounder {
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
 void ritz_bounder_free(ritz_bounder *r);
 
-/** Rate of damping of trial mode @p j: 2 zeta omega, or a + b lambda. */
-double ritz_bounder_rate_of(const ritz_bounder *r, int64_t j);
+/** Rates of damping of trial modes: 2 zeta omega, or a + b lambda. */
+void ritz_bounder_take_rates(ritz_bounder *r);
 
 /**
  * The largest bound of all pairs anywhere within @p h of @p w rad/s; with h = 0

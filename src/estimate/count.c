@@ -42,15 +42,6 @@ done:
     return ritz_context(status, "estimate");
 }
 
-int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
-{
-    int64_t below = 0;
-
-    while (below < count && lambda[below] < rho)
-        below++;
-    return below;
-}
-
 static int64_t count_trial_below(const ritz_measuring *m, double rho)
 {
     return ritz_count_below(m->trial.count, m->trial.theta, rho);

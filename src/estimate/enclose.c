@@ -466,6 +466,15 @@ static void settle_ends(const ritz_estimator *estimator,
         e->high[p] = fmin(e->high[p], e->high[p + 1]);
 }
 
+int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
+{
+    int64_t below = 0;
+
+    while (below < count && lambda[below] < rho)
+        below++;
+    return below;
+}
+
 /* What a trial says with each count. */
 static ritz_status add_trial(const ritz_estimator *estimator,
                              const ritz_lehmann *trial, ritz_enclosure *e)
@@ -534,4 +543,89 @@ void ritz_enclosure_free(ritz_enclosure *enclosure)
     free(enclosure->near_low);
     free(enclosure->near_high);
     *enclosure = (ritz_enclosure){0};
+}
+
+/*
+ * A claim says how far one reduced mode can be from a full mode: from any whose
+ * interval is known or, without a number, from one that is near by
+ *
+ *     |kappa - 1/t| <= eps / t,   eps = |R|_(A^-1) / |x|_A
+ *
+ * which holds for some kappa of the full model, also of the same vector after an
+ * inverse iteration, where eps is far smaller.
+ */
+
+/* Ends of what a reduced eigenvalue can be; of modes beyond the trial rounding
+   is not known. */
+static void find_ends(const ritz_measuring *m, int64_t k, double *least,
+                      double *most)
+{
+    double theta = m->pairs.lambda[k];
+
+    *least = *most = theta;
+    if (k < m->trial.count) {
+        *least = fmin(theta, m->trial.reduced_low[k]);
+        *most = fmax(theta, m->trial.reduced_high[k]);
+    }
+    *least = fmax(*least, 0.0);
+    *most = fmax(*most, 0.0);
+}
+
+double ritz_error_most(const ritz_measuring *m, int64_t k, double low,
+                       double high)
+{
+    double least = 0.0, most = 0.0;
+
+    find_ends(m, k, &least, &most);
+    if (!(low > 0.0))
+        return HUGE_VAL;
+    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
+}
+
+double ritz_error_least(const ritz_measuring *m, int64_t k, double low,
+                        double high)
+{
+    double least = 0.0, most = 0.0;
+
+    find_ends(m, k, &least, &most);
+    if (!(low > 0.0))
+        return 0.0;
+    return fmax(0.0, fmax(sqrt(least / high) - 1.0, 1.0 - sqrt(most / low)));
+}
+
+ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
+{
+    const ritz_lehmann *trial = &m->trial;
+    const ritz_enclosure *e = &m->enclosure;
+    ritz_claim claim = {.bound = HUGE_VAL, .full_mode = k};
+    double same = ritz_claim_same(m, k);
+    double some = HUGE_VAL;
+
+    for (int64_t p = 0; p < e->count; p++) {
+        double bound = ritz_error_most(m, k, e->low[p], e->high[p]);
+
+        if (bound < claim.bound) {
+            claim.bound = bound;
+            claim.full_mode = p;
+        }
+    }
+    if (same <= RITZ_CLAIM_FAVOUR * claim.bound) {
+        claim.bound = same;
+        claim.full_mode = k;
+    }
+    for (int64_t j = 0; j < e->num_near; j++)
+        some =
+            fmin(some, ritz_error_most(m, k, e->near_low[j], e->near_high[j]));
+    if (RITZ_CLAIM_FAVOUR * some < claim.bound) {
+        claim.bound = some;
+        claim.full_mode = -1;
+    }
+    claim.least = 0.5 * ritz_dense_col(&trial->G, k)[k] /
+                  ((trial->theta[k] - trial->sigma) * fabs(trial->theta[k]));
+    return claim;
+}
+
+double ritz_claim_same(const ritz_measuring *m, int64_t k)
+{
+    return ritz_error_most(m, k, m->enclosure.low[k], m->enclosure.high[k]);
 }

@@ -131,6 +131,12 @@ typedef struct ritz_claim {
     int64_t full_mode; /* number from 0; -1: near one of unknown number */
 } ritz_claim;
 
+/** |f_k - f| / f at most, and at least, of a full mode in [low, high]. */
+double ritz_error_most(const ritz_measuring *m, int64_t k, double low,
+                       double high);
+double ritz_error_least(const ritz_measuring *m, int64_t k, double low,
+                        double high);
+
 /** The claim on reduced mode @p k that has the least bound. */
 ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k);
 

@@ -1,14 +1,4 @@
-/*
- * What ritz-verify would find, told from enclosures alone.
- *
- * A claim says how far one reduced mode can be from a full mode: from any whose
- * interval is known or, without a number, from one that is near by
- *
- *     |kappa - 1/t| <= eps / t,   eps = |R|_(A^-1) / |x|_A
- *
- * which holds for some kappa of the full model, also of the same vector after an
- * inverse iteration, where eps is far smaller. Partners follow below.
- */
+/* What ritz-verify would find, predicted from enclosures alone. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
@@ -16,81 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Ends of what a reduced eigenvalue can be; of modes beyond the trial rounding
-   is not known. */
-static void find_ends(const ritz_measuring *m, int64_t k, double *least,
-                      double *most)
-{
-    double theta = m->pairs.lambda[k];
-
-    *least = *most = theta;
-    if (k < m->trial.count) {
-        *least = fmin(theta, m->trial.reduced_low[k]);
-        *most = fmax(theta, m->trial.reduced_high[k]);
-    }
-    *least = fmax(*least, 0.0);
-    *most = fmax(*most, 0.0);
-}
-
-/* |f_k - f| / f at most, and at least, of a full mode in [low, high]. */
-static double error_at_most(const ritz_measuring *m, int64_t k, double low,
-                            double high)
-{
-    double least = 0.0, most = 0.0;
-
-    find_ends(m, k, &least, &most);
-    if (!(low > 0.0))
-        return HUGE_VAL;
-    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
-}
-
-static double error_at_least(const ritz_measuring *m, int64_t k, double low,
-                             double high)
-{
-    double least = 0.0, most = 0.0;
-
-    find_ends(m, k, &least, &most);
-    if (!(low > 0.0))
-        return 0.0;
-    return fmax(0.0, fmax(sqrt(least / high) - 1.0, 1.0 - sqrt(most / low)));
-}
-
-ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
-{
-    const ritz_lehmann *trial = &m->trial;
-    const ritz_enclosure *e = &m->enclosure;
-    ritz_claim claim = {.bound = HUGE_VAL, .full_mode = k};
-    double same = ritz_claim_same(m, k);
-    double some = HUGE_VAL;
-
-    for (int64_t p = 0; p < e->count; p++) {
-        double bound = error_at_most(m, k, e->low[p], e->high[p]);
-
-        if (bound < claim.bound) {
-            claim.bound = bound;
-            claim.full_mode = p;
-        }
-    }
-    if (same <= RITZ_CLAIM_FAVOUR * claim.bound) {
-        claim.bound = same;
-        claim.full_mode = k;
-    }
-    for (int64_t j = 0; j < e->num_near; j++)
-        some = fmin(some, error_at_most(m, k, e->near_low[j], e->near_high[j]));
-    if (RITZ_CLAIM_FAVOUR * some < claim.bound) {
-        claim.bound = some;
-        claim.full_mode = -1;
-    }
-    claim.least = 0.5 * ritz_dense_col(&trial->G, k)[k] /
-                  ((trial->theta[k] - trial->sigma) * fabs(trial->theta[k]));
-    return claim;
-}
-
-double ritz_claim_same(const ritz_measuring *m, int64_t k)
-{
-    return error_at_most(m, k, m->enclosure.low[k], m->enclosure.high[k]);
-}
 
 /*
  * Partners. ritz-verify pairs a full mode with the reduced mode that holds most
@@ -362,9 +277,9 @@ static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
     const ritz_enclosure *e = &j->m->enclosure;
     double low = fmax(e->low[p], j->low * (1.0 - RITZ_BAND_EDGE_COUNTED));
     double high = fmin(e->high[p], j->high * (1.0 + RITZ_BAND_EDGE_COUNTED));
-    double most = error_at_most(j->m, r, low, high);
+    double most = ritz_error_most(j->m, r, low, high);
     double least =
-        sure && surely_in(j, p) ? error_at_least(j->m, r, low, high) : 0.0;
+        sure && surely_in(j, p) ? ritz_error_least(j->m, r, low, high) : 0.0;
 
     if (most > j->v.bound.value) {
         j->v.bound = (ritz_pair_error){most, r, p};

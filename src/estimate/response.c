@@ -33,6 +33,8 @@
 #include "base/tolerances.h"
 #include "estimate/bounder.h"
 #include "estimate/estimator.h"
+#include "model/modal.h"
+#include "poles/poles.h"
 
 #include <float.h>
 #include <math.h>
@@ -43,58 +45,15 @@ enum { PASSES = 3 };
 enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };
 
 /*
- * D as a M + b K, if it is that to rounding: least squares over the diagonals
- * d, m, k, by Gram-Schmidt, once more of what it leaves, and then held to every
- * entry.
+ * D as a M + b K, if it is that to rounding: least squares, twice more of what
+ * it leaves, and then every entry is compared.
  */
 
-typedef struct sums {
-    double mm, mk, md;
-} sums;
-
-/* Entry j of m, k and of d - a m - b k. */
-static void entry(const ritz_component *full, const double ab[2], int64_t j,
-                  double out[3])
-{
-    out[0] = ritz_sparse_diagonal(&full->M, j);
-    out[1] = ritz_sparse_diagonal(&full->K, j);
-    out[2] =
-        ritz_sparse_diagonal(&full->D, j) - ab[0] * out[0] - ab[1] * out[1];
-}
-
-/* One pass: a and b get better. */
-static void improve(const ritz_component *full, double ab[2])
-{
-    sums s = {0};
-    double kk = 0.0, kd = 0.0, b = 0.0;
-    double e[3];
-
-    for (int64_t j = 0; j < full->num_dofs; j++) {
-        entry(full, ab, j, e);
-        s.mm += e[0] * e[0];
-        s.mk += e[0] * e[1];
-        s.md += e[0] * e[2];
-    }
-    for (int64_t j = 0; j < full->num_dofs && s.mm > 0.0; j++) {
-        double k = 0.0;
-
-        entry(full, ab, j, e);
-        k = e[1] - s.mk / s.mm * e[0];
-        kk += k * k;
-        kd += k * e[2];
-    }
-    b = kk > 0.0 ? kd / kk : 0.0;
-    if (s.mm > 0.0)
-        ab[0] += (s.md - s.mk * b) / s.mm;
-    ab[1] += b;
-}
-
-/* A soft row is held to what is soft, however stiff others are. */
-static ritz_status vanishes(const ritz_component *full, const double ab[2],
-                            const ritz_sparse *rest, bool *out)
+/* Entries of a soft row are compared with soft ones, however stiff others are. */
+static ritz_status is_negligible(const ritz_component *full, const double ab[2],
+                                 const ritz_sparse *rest, bool *out)
 {
     RITZ_OWN_ARRAY double *size = NULL;
-    bool all = true;
 
     RITZ_CHECK_NEW(size, full->num_dofs);
     for (int64_t j = 0; j < full->num_dofs; j++)
@@ -102,10 +61,11 @@ static ritz_status vanishes(const ritz_component *full, const double ab[2],
                        (fabs(ritz_sparse_diagonal(&full->D, j)) +
                         fabs(ab[0] * ritz_sparse_diagonal(&full->M, j)) +
                         fabs(ab[1] * ritz_sparse_diagonal(&full->K, j))));
+    *out = true;
     for (int64_t j = 0; j < rest->ncol; j++)
         for (int64_t p = rest->colptr[j]; p < rest->colptr[j + 1]; p++)
-            all = all && fabs(rest->val[p]) <= size[rest->rowind[p]] * size[j];
-    *out = all;
+            *out =
+                *out && fabs(rest->val[p]) <= size[rest->rowind[p]] * size[j];
     return RITZ_OK;
 }
 
@@ -113,23 +73,31 @@ static ritz_status vanishes(const ritz_component *full, const double ab[2],
 static ritz_status fit_rayleigh(const ritz_component *full, double *a,
                                 double *b, bool *found)
 {
-    RITZ_OWN(ritz_sparse) part = {0};
     RITZ_OWN(ritz_sparse) rest = {0};
     double ab[2] = {0.0, 0.0};
-    double k_size = ritz_sparse_max(&full->K);
-    double m_size = ritz_sparse_max(&full->M);
     double most = 0.0;
 
     *found = false;
     if (!full->D.colptr || full->K4.colptr)
         return RITZ_OK;
     most = RITZ_RAYLEIGH_WITHIN * ritz_sparse_max(&full->D);
-    for (int pass = 0; pass < PASSES; pass++)
-        improve(full, ab);
-    RITZ_CHECK(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
-    RITZ_CHECK(ritz_sparse_add(1.0, &part, -ab[1], &full->K, &rest));
-    RITZ_CHECK(vanishes(full, ab, &rest, found));
-    *found = *found && ab[0] * m_size >= -most && ab[1] * k_size >= -most;
+    RITZ_CHECK(ritz_sparse_copy(&full->D, &rest));
+    for (int pass = 0; pass < PASSES; pass++) {
+        RITZ_OWN(ritz_sparse) part = {0};
+        ritz_component left = *full; /* borrowed */
+        double more[2] = {0.0, 0.0}, size = 0.0;
+
+        left.D = rest;
+        RITZ_CHECK(ritz_proportional(&left, &more[0], &more[1], &size));
+        ab[0] += more[0];
+        ab[1] += more[1];
+        RITZ_CHECK(ritz_sparse_add(1.0, &full->D, -ab[0], &full->M, &part));
+        ritz_sparse_free(&rest);
+        RITZ_CHECK(ritz_sparse_add(1.0, &part, -ab[1], &full->K, &rest));
+    }
+    RITZ_CHECK(is_negligible(full, ab, &rest, found));
+    *found = *found && ab[0] * ritz_sparse_max(&full->M) >= -most &&
+             ab[1] * ritz_sparse_max(&full->K) >= -most;
     *a = fmax(ab[0], 0.0);
     *b = fmax(ab[1], 0.0);
     return RITZ_OK;
@@ -138,8 +106,8 @@ static ritz_status fit_rayleigh(const ritz_component *full, double *a,
 /* Modal damping where no ratio is common to all modes. */
 
 /* Diagonal of X'A X; unchanged if there is no A. */
-static ritz_status diagonal(const ritz_sparse *D, const ritz_dense *X,
-                            double *out)
+static ritz_status project_diagonal(const ritz_sparse *D, const ritz_dense *X,
+                                    double *out)
 {
     RITZ_OWN(ritz_dense) DX = {0};
 
@@ -164,30 +132,31 @@ static bool is_lost(const ritz_lehmann *trial, int64_t j, double damping)
  * Rates where no ratio is common to all modes: D's diagonal, K4's over omega,
  * and what was asked for. The least ratio stands for modes not yet met.
  *
- * @param[out] rates,matrices  of each trial mode; matrices: what comes of D, K4
+ * @param[out] matrices  the part of each rate that is of D and K4
  */
 static ritz_status take_rates(const ritz_estimator *estimator, ritz_bounder *r,
-                              double *rates, double *matrices)
+                              double *matrices)
 {
+    double *rates = r->rates;
     const ritz_damping *damping = &estimator->request.damping;
     RITZ_OWN_ARRAY double *hysteretic = NULL;
 
     RITZ_CHECK_NEW(hysteretic, r->trial->count);
-    RITZ_CHECK(diagonal(&estimator->component->D, &r->trial->X, rates));
-    RITZ_CHECK(diagonal(&estimator->component->K4, &r->trial->X, hysteretic));
+    RITZ_CHECK(project_diagonal(&estimator->component->D, &r->trial->X, rates));
+    RITZ_CHECK(
+        project_diagonal(&estimator->component->K4, &r->trial->X, hysteretic));
     r->zeta = 1.0;
     for (int64_t j = r->num_rigid; j < r->trial->count; j++) {
         double w = sqrt(fmax(r->trial->theta[j], DBL_MIN));
 
         matrices[j] = rates[j] + hysteretic[j] / w;
-        rates[j] = matrices[j] +
-                   2.0 * w * ritz_damping_of_mode(damping, j - r->num_rigid, w);
+        rates[j] = matrices[j] + ritz_modal_rate(damping, j - r->num_rigid,
+                                                 r->trial->theta[j]);
         if (is_lost(r->trial, j, rates[j] * w))
             rates[j] = 0.0; /* see has_undamped */
         else
             r->zeta = fmin(r->zeta, fmax(0.5 * rates[j] / w, 0.0));
     }
-    r->rates = rates;
     r->matrix_rates = matrices;
     r->coupled =
         estimator->component->D.colptr || estimator->component->K4.colptr;
@@ -201,7 +170,7 @@ static ritz_status take_rates(const ritz_estimator *estimator, ritz_bounder *r,
  */
 static bool is_at_odds(const ritz_bounder *r)
 {
-    for (int64_t j = r->num_rigid; r->rates && j + 1 < r->trial->count; j++) {
+    for (int64_t j = r->num_rigid; j + 1 < r->trial->count; j++) {
         double low = r->trial->theta[j];
         double high = r->trial->theta[j + 1];
         double zeta = r->rates[j] / sqrt(fmax(low, DBL_MIN));
@@ -214,43 +183,32 @@ static bool is_at_odds(const ritz_bounder *r)
     return false;
 }
 
-/* Largest |v_j| / sqrt(theta_j - sigma) of a row or column of shares, of all or
- * of one mode. */
-static double share(const ritz_bounder *r, const ritz_dense *V, bool rows,
-                    int64_t j)
+/* Largest participation of mode j in some channels, over sqrt(theta_j - sigma). */
+static double participation_of(const ritz_bounder *r, int which, int64_t j)
 {
-    int64_t count = rows ? V->ncol : V->nrow;
-    double t = r->trial->theta[j] - r->trial->sigma;
-    double most = 0.0;
-
-    for (int64_t i = 0; i < count; i++)
-        most = fmax(most, fabs(rows ? ritz_dense_col(V, i)[j]
-                                    : ritz_dense_col(V, j)[i]));
-    return most / sqrt(t);
+    return ritz_dense_col_max(&r->channel[which], j) /
+           sqrt(r->trial->theta[j] - r->trial->sigma);
 }
 
-/* Whether mode j takes part in V, beside the modes that do most. */
-static bool takes_part(const ritz_bounder *r, const ritz_dense *V, bool rows,
-                       int64_t j)
+/* Whether that is not negligible beside those of other modes. */
+static bool takes_part(const ritz_bounder *r, int which, int64_t j)
 {
     double most = 0.0;
 
     for (int64_t k = 0; k < r->trial->count; k++)
-        most = fmax(most, share(r, V, rows, k));
-    return share(r, V, rows, j) > RITZ_NO_PART * most;
+        most = fmax(most, participation_of(r, which, k));
+    return participation_of(r, which, j) > RITZ_NO_PART * most;
 }
 
-/* Whether a mode of the band that is driven and seen has no damping. */
+/* Whether a controllable and observable mode of the band has no damping. */
 static bool has_undamped(const ritz_bounder *r, const double band_hz[2])
 {
-    for (int64_t j = r->num_rigid; r->rates && j < r->trial->count; j++) {
+    for (int64_t j = r->num_rigid; j < r->trial->count; j++) {
         double hertz = ritz_eigen_hertz(r->trial->theta[j]);
 
         if (r->rates[j] == 0.0 && hertz >= band_hz[0] && hertz <= band_hz[1] &&
-            takes_part(r, &r->B, true, j) &&
-            (takes_part(r, &r->C[0], false, j) ||
-             takes_part(r, &r->C[1], false, j) ||
-             takes_part(r, &r->C[2], false, j)))
+            takes_part(r, 0, j) &&
+            (takes_part(r, 1, j) || takes_part(r, 2, j) || takes_part(r, 3, j)))
             return true;
     }
     return false;
@@ -309,9 +267,7 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
 
         omega[k] = sqrt(fmax(theta, 0.0));
         zeta[k] =
-            omega[k] > 0.0
-                ? 0.5 * ritz_bounder_rate_of(r, r->num_rigid + k) / omega[k]
-                : 1.0;
+            omega[k] > 0.0 ? 0.5 * r->rates[r->num_rigid + k] / omega[k] : 1.0;
     }
     return ritz_grid_points(&grid, m, omega, zeta, count, hertz);
 }
@@ -403,20 +359,21 @@ ritz_status ritz_bound_response(const ritz_measuring *m,
          .zeta = damping->zeta,
          .a = damping->a,
          .b = damping->b};
-    RITZ_OWN_ARRAY double *rates = NULL;
     RITZ_OWN_ARRAY double *matrices = NULL;
     double bound = 0.0;
     double at = 0.0;
     char where[RITZ_NAME_SIZE];
 
-    RITZ_CHECK_NEW(rates, m->trial.count);
+    RITZ_CHECK_NEW(r.rates, m->trial.count);
     RITZ_CHECK_NEW(matrices, m->trial.count);
     if (!known && damping->kind == RITZ_DAMPING_NONE)
         RITZ_CHECK(fit_rayleigh(estimator->component, &r.a, &r.b, &r.rayleigh));
-    sure =
-        (known || r.rayleigh) && rigid_in_full(&m->trial, m->pairs.num_rigid);
-    if (!known && !r.rayleigh)
-        RITZ_CHECK(take_rates(estimator, &r, rates, matrices));
+    known = known || r.rayleigh;
+    sure = known && rigid_in_full(&m->trial, m->pairs.num_rigid);
+    if (known)
+        ritz_bounder_take_rates(&r);
+    else
+        RITZ_CHECK(take_rates(estimator, &r, matrices));
     RITZ_CHECK(ritz_bounder_open(estimator, &r));
     RITZ_CHECK(bound_band(&r, m->band_hz, &bound, &at));
     if ((r.coupled && ritz_missing_modes(m) != 0) || is_at_odds(&r) ||
