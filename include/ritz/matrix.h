@@ -82,7 +82,7 @@ ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
 double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
                       int64_t j);
 
-/** [A B]; both have as many rows, or B has no columns. */
+/** [A B]; both have as many rows, or one has no columns. */
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *out);
 
@@ -92,6 +92,10 @@ ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
 
 /** The same, borrowed: they stay where they are. */
 ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count);
+
+/** A(row..row+nrow-1, col..col+ncol-1) as a matrix of its own. */
+ritz_status ritz_dense_block(const ritz_dense *A, int64_t row, int64_t nrow,
+                             int64_t col, int64_t ncol, ritz_dense *out);
 
 /** Rows row[0], row[1], ... as a matrix of their own. */
 ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,

@@ -1016,45 +1016,31 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
 
 /**
  * Exact controllability and observability Gramians of the modal model in the
- * states (q_1, q_1', q_2, ...), 2m x 2m, closed form, O(m^2).
+ * states (q_1, q_1', q_2, ...), 2m x 2m, closed form, O(m^2). Those of a band,
+ *
+ *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
+ *
+ * and W_o likewise, are semidefinite, rounding apart, and from 0 to infinity
+ * those of all frequencies.
+ *
+ * @param[in] band_hz  from and to, HUGE_VAL is infinity; NULL: all frequencies
+ * @return RITZ_ERR_ARGUMENT if it is no band, or a mode has no damping
  */
-ritz_status ritz_modal_gramians(const ritz_modal *modal, ritz_dense *Wc,
-                                ritz_dense *Wo);
-
-/** Exact Hankel singular values, 2m, descending. @cost O(m^3) */
-ritz_status ritz_modal_hankel(const ritz_modal *modal, double *sigma);
+ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
+                                ritz_dense *Wc, ritz_dense *Wo);
 
 /**
  * Factors of both, W_c = Z_c Z_c' and W_o = Z_o Z_o', in the same states and of
  * as many columns as there is rank.
+ *
+ * @return RITZ_ERR_CONVERGENCE if one is indefinite beyond rounding
  */
-ritz_status ritz_modal_factors(const ritz_modal *modal, ritz_dense *Zc,
-                               ritz_dense *Zo);
+ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
+                               ritz_dense *Zc, ritz_dense *Zo);
 
-/**
- * The same of a band alone, closed form:
- *
- *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
- *
- * and W_o likewise. From 0 to infinity they are those above. They are
- * semidefinite, rounding apart.
- *
- * @param[in] band_hz  from and to; HUGE_VAL is infinity
- * @return RITZ_ERR_ARGUMENT if it is no band, or a mode has no damping
- */
-ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
-                                     const double band_hz[static 2],
-                                     ritz_dense *Wc, ritz_dense *Wo);
-
-/** @return RITZ_ERR_CONVERGENCE if one is indefinite beyond rounding */
-ritz_status ritz_modal_factors_band(const ritz_modal *modal,
-                                    const double band_hz[static 2],
-                                    ritz_dense *Zc, ritz_dense *Zo);
-
-/** Hankel values over a band, 2m, descending. @return as the factors */
-ritz_status ritz_modal_hankel_band(const ritz_modal *modal,
-                                   const double band_hz[static 2],
-                                   double *sigma);
+/** Exact Hankel singular values, 2m, descending. @cost O(m^3) */
+ritz_status ritz_modal_hankel(const ritz_modal *modal, const double *band_hz,
+                              double *sigma);
 
 void ritz_modal_free(ritz_modal *modal);
 

@@ -101,12 +101,16 @@ typedef struct ritz_ranker {
     const char *summary;
     const char *reference;
     int needs; /* RITZ_RANK_... */
-    bool sums; /* values add up: a cluster's is shared out evenly. If not, it
-                   is that of the whole for each of its modes */
+    bool sums; /* values add up: that of a cluster is divided equally among its
+                  modes; if not, it is the value of each of them */
     double (*exact)(const double pair[static 2]); /* what a value approaches, of
                    a pair of exact Hankel values; NULL: it is no Hankel value */
-    /** Values, and `total` and parts where it has any, by ritz_ranking_parts;
-     * all modes of a cluster get the same, or are summed up by the caller. */
+    /* one of both: the value of a cluster, which is a model of its own, or ... */
+    ritz_status (*value)(const ritz_rank_request *request,
+                         const ritz_modal *cluster, double *out);
+    /** ... all values, and `total` and parts where it has any, by
+     * ritz_ranking_parts; all modes of a cluster get the same value, or they are
+     * summed up by the caller. */
     ritz_status (*rank)(const ritz_rank_request *request,
                         ritz_ranking *ranking);
 } ritz_ranker;

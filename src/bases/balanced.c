@@ -12,13 +12,13 @@
  * Rigid modes, and unstable poles of a state space, have no Gramian: they are
  * decoupled and always kept.
  */
-#include "bases/balance_asked.h"
+#include "bases/balancing.h"
 
 static ritz_status make_balanced(const ritz_request *request, ritz_basis *out)
 {
     RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_CHECK(ritz_gramians_asked(request, &gramians));
+    RITZ_CHECK(ritz_request_gramians(request, &gramians));
     return ritz_balanced_states(request, &gramians, true, out);
 }
 

@@ -10,7 +10,7 @@
  * modal coordinates they have closed forms.
  */
 #include "base/alloc.h"
-#include "bases/balance_asked.h"
+#include "bases/balancing.h"
 
 static ritz_status make_balanced_band(const ritz_request *request,
                                       ritz_basis *out)
@@ -20,7 +20,7 @@ static ritz_status make_balanced_band(const ritz_request *request,
     RITZ_REFUSE_IF(
         !(request->choice.given & RITZ_USES_BAND), RITZ_ERR_ARGUMENT,
         "a band is needed, from and to which frequency: band-hz 0,10");
-    RITZ_CHECK(ritz_gramians_asked(request, &gramians));
+    RITZ_CHECK(ritz_request_gramians(request, &gramians));
     return ritz_balanced_states(request, &gramians, false, out);
 }
 
@@ -30,7 +30,7 @@ const ritz_method ritz_method_balanced_band = {
     .reference = "GawronskiJuang1990",
     .when = "a response over one band, modal damping, in states",
     .cost = "all modes, or those up to a frequency; O(m^3)",
-    .holds = "nothing: stability is probed, the error measured",
+    .holds = "nothing: stability is checked, the error measured",
     .fails = "one reduction in ten is unstable; coupled damping",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
             RITZ_USES_AMONG | RITZ_USES_BAND,

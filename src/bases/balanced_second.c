@@ -23,20 +23,13 @@
  * Z_p, as [MeyerSrinivasan1996] do and keep T alone of, needs M^-1 to be a left
  * vector and is not symmetric where the model is.
  */
-#include <ritz/basis.h>
-
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "bases/balance_asked.h"
+#include "bases/balancing.h"
+#include "bases/columns.h"
 #include "linear/orthonormal.h"
 
 #include <ritz/matrix.h>
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
-/* Balancing that keeps the second-order form of a model. */
 
 /* Which half of the controllability Gramian of x = [u; u'] is balanced. */
 typedef enum ritz_half {
@@ -51,7 +44,7 @@ typedef struct second {
     ritz_dense Phi, MPhi; /* rigid modes; {0}: none */
 } second;
 
-static void release(second *s)
+static void second_free(second *s)
 {
     ritz_gramians_free(&s->states);
     ritz_gramians_free(&s->half);
@@ -64,19 +57,14 @@ static ritz_status copy_half(const ritz_dense *Z, bool lower, ritz_dense *out)
 {
     int64_t n = Z->nrow / 2;
 
-    RITZ_CHECK(ritz_dense_new(n, Z->ncol, out));
-    for (int64_t j = 0; j < Z->ncol && n > 0; j++)
-        memcpy(ritz_dense_col(out, j), ritz_dense_col(Z, j) + (lower ? n : 0),
-               (size_t)n * sizeof *out->val);
-    return RITZ_OK;
+    return ritz_dense_block(Z, lower ? n : 0, n, 0, Z->ncol, out);
 }
 
 /* The part without Gramian must be rigid motion. */
 static ritz_status refuse_unstable(const second *s)
 {
-    RITZ_OWN(ritz_dense) part = {0};
-
     for (int lower = 0; lower < 2; lower++) {
+        RITZ_OWN(ritz_dense) part = {0};
         double size = 0.0;
 
         RITZ_CHECK(copy_half(&s->states.T, lower, &part));
@@ -87,7 +75,6 @@ static ritz_status refuse_unstable(const second *s)
             ritz_dense_max(&part) > RITZ_RIGID_STATE * size, RITZ_ERR_ARGUMENT,
             "a pole that is no rigid motion is not left of the axis: "
             "balance the states of this component instead");
-        ritz_dense_free(&part);
     }
     return RITZ_OK;
 }
@@ -134,19 +121,6 @@ static ritz_status squared_norm(const ritz_dense *X, const ritz_dense *Y,
     return RITZ_OK;
 }
 
-/* C scaled by the limits, transposed. */
-static ritz_status scale_outputs(const ritz_io *io, const ritz_dense *C,
-                                 ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
-    for (int64_t i = 0; i < C->nrow; i++)
-        for (int64_t j = 0; j < C->ncol; j++)
-            ritz_dense_col(out, i)[j] =
-                ritz_dense_col(C, j)[i] /
-                (isnan(io->limit[i]) ? 1.0 : io->limit[i]);
-    return RITZ_OK;
-}
-
 /*
  * Whether B B' = a C'C, a > 0, and K, M and D are symmetric:
  *
@@ -159,7 +133,6 @@ static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
 {
     const ritz_io *io = &component->io;
     bool velocity = half == RITZ_HALF_VELOCITY;
-    const ritz_dense *seen = velocity ? &io->Cv : &io->C;
     RITZ_OWN(ritz_dense) C = {0};
     double BB = 0.0, CB = 0.0, CC = 0.0;
 
@@ -168,7 +141,7 @@ static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
         ritz_dense_max(&io->Ca) > 0.0 ||
         (component->D.colptr && ritz_sparse_asymmetry(&component->D) > 0.0))
         return RITZ_OK;
-    RITZ_CHECK(scale_outputs(io, seen, &C));
+    RITZ_CHECK(ritz_outputs_scaled(velocity ? &io->Cv : &io->C, io->limit, &C));
     RITZ_CHECK(squared_norm(&io->B, &io->B, &BB));
     RITZ_CHECK(squared_norm(&C, &io->B, &CB));
     RITZ_CHECK(squared_norm(&C, &C, &CC));
@@ -176,29 +149,20 @@ static ritz_status is_self_dual(const ritz_component *component, ritz_half half,
     return RITZ_OK;
 }
 
-/* [Phi X] */
-static ritz_status join_rigid(const second *s, const ritz_dense *X,
-                              ritz_dense *out)
-{
-    return s->Phi.ncol == 0 ? ritz_dense_copy(X, out)
-                            : ritz_dense_beside(&s->Phi, X, out);
-}
-
 /*
  * Make T M-orthonormal column by column, so that the first columns remain the
  * most important.
  */
-static ritz_status orthonormalise(const ritz_component *component,
-                                  double tolerance, ritz_dense *T)
+static ritz_status orthonormalise_columns(const ritz_component *component,
+                                          double tolerance, ritz_dense *T)
 {
     RITZ_OWN(ritz_orthonormal) set = {0};
-    RITZ_OWN(ritz_dense) column = {0};
 
     RITZ_CHECK(ritz_orthonormal_new(T->nrow, &component->M, tolerance, &set));
     for (int64_t j = 0; j < T->ncol; j++) {
-        RITZ_CHECK(ritz_dense_columns(T, j, 1, &column));
+        ritz_dense column = ritz_dense_part(T, j, 1); /* overwritten */
+
         RITZ_CHECK(ritz_orthonormal_append(&set, &column, 1, NULL));
-        ritz_dense_free(&column);
     }
     ritz_dense_free(T);
     return ritz_dense_columns(&set.V, 0, set.count, T);
@@ -207,21 +171,17 @@ static ritz_status orthonormalise(const ritz_component *component,
 static ritz_status find_vectors(const ritz_request *request, const second *s,
                                 bool one_sided, ritz_basis *basis)
 {
-    RITZ_CHECK(join_rigid(s, &s->balanced.T, &basis->T));
+    RITZ_CHECK(ritz_dense_beside(&s->Phi, &s->balanced.T, &basis->T));
     if (one_sided)
-        RITZ_CHECK(
-            orthonormalise(request->component, request->tolerance, &basis->T));
+        RITZ_CHECK(orthonormalise_columns(request->component,
+                                          request->tolerance, &basis->T));
     else
-        RITZ_CHECK(join_rigid(s, &s->balanced.W, &basis->W));
+        RITZ_CHECK(ritz_dense_beside(&s->Phi, &s->balanced.W, &basis->W));
     RITZ_CHECK(ritz_columns_new(basis->T.ncol, &basis->columns));
-    for (int64_t j = 0; j < basis->T.ncol; j++) {
-        bool rigid = j < s->Phi.ncol;
-
-        basis->columns.kind[j] =
-            rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_BALANCED;
-        if (rigid)
-            basis->columns.hertz[j] = 0.0;
-    }
+    for (int64_t j = 0; j < basis->T.ncol; j++)
+        basis->columns.kind[j] = RITZ_COLUMN_BALANCED;
+    for (int64_t j = 0; j < s->Phi.ncol; j++)
+        ritz_columns_label_rigid(j, &basis->columns);
     return RITZ_OK;
 }
 
@@ -229,33 +189,29 @@ static ritz_status find_vectors(const ritz_request *request, const second *s,
  * T = [Phi, T_b] and W = [Phi, W_b], Phi the rigid modes: as above.
  *
  * @return RITZ_ERR_ARGUMENT if a pole that is no rigid motion is not left of
- *         the axis, or as ritz_gramians_asked
+ *         the axis, or as ritz_request_gramians
  */
 static ritz_status balance_second_order(const ritz_request *request,
                                         ritz_half half, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
-    second s = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(second) s = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     bool self_dual = false;
 
-    RITZ_TRY(ritz_gramians_asked(request, &s.states));
-    RITZ_TRY(find_rigid(component, &s));
-    RITZ_TRY(cut_halves(component, half, &s));
-    RITZ_TRY(ritz_balance_asked(request, &s.half, &s.balanced));
-    RITZ_TRY(is_self_dual(component, half, &self_dual));
-    RITZ_TRY(find_vectors(request, &s, self_dual || request->choice.one_sided,
-                          &basis));
+    RITZ_CHECK(ritz_request_gramians(request, &s.states));
+    RITZ_CHECK(find_rigid(component, &s));
+    RITZ_CHECK(cut_halves(component, half, &s));
+    RITZ_CHECK(ritz_request_balance(request, &s.half, &s.balanced));
+    RITZ_CHECK(is_self_dual(component, half, &self_dual));
+    RITZ_CHECK(find_vectors(request, &s, self_dual || request->choice.one_sided,
+                            &basis));
     if (self_dual)
-        ritz_remark_append(&basis, "left and right vectors agree");
-    RITZ_TRY(ritz_balanced_note(request, &s.states, &s.balanced, false,
-                                "vectors", &basis));
+        ritz_remark_add(&basis, "; ", "left and right vectors agree");
+    RITZ_CHECK(ritz_balanced_note(request, &s.states, &s.balanced, false,
+                                  "vectors", &basis));
     RITZ_MOVE(*out, basis);
-done:
-    release(&s);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -275,7 +231,7 @@ const ritz_method ritz_method_balanced_position = {
     .when = "few inputs, displacements as outputs, a second-order result",
     .cost = "as balanced: modal O(m^2 r), dense O(n^3), low rank",
     .holds = "symmetry and stability if outputs lie at inputs, or on one side",
-    .fails = "inputs and outputs apart: stability is probed, error measured",
+    .fails = "inputs and outputs apart: stability is checked, error measured",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
             RITZ_USES_AMONG | RITZ_USES_SIDES,
     .make = make_position,
@@ -298,7 +254,7 @@ const ritz_method ritz_method_balanced_velocity = {
     .when = "few inputs, velocities as outputs, a second-order result",
     .cost = "as balanced: modal O(m^2 r), dense O(n^3), low rank",
     .holds = "symmetry and stability if velocities lie at inputs, or one side",
-    .fails = "inputs and outputs apart: stability is probed, error measured",
+    .fails = "inputs and outputs apart: stability is checked, error measured",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
             RITZ_USES_AMONG | RITZ_USES_SIDES,
     .make = make_velocity,

@@ -7,7 +7,7 @@
  * Without damping matrices the modes are decoupled; with them poles are
  * eigenvalues of [0, I; -Lambda - i K4, -W].
  */
-#include "bases/dominant.h"
+#include "bases/rational.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -38,11 +38,11 @@ typedef struct dominant_model {
     int64_t count;
     candidate *pole;                       /* at most 2 m */
     double _Complex *vectors;              /* m for each */
-    double terms[RITZ_RATIONAL_GROUPS][3]; /* largest they might do */
+    double terms[RITZ_RATIONAL_GROUPS][3]; /* upper bounds of |F'x| */
     double most[RITZ_RATIONAL_GROUPS];     /* largest |F'x|; huge if rounding */
 } dominant_model;
 
-static void free_model(dominant_model *s)
+static void dominant_model_free(dominant_model *s)
 {
     ritz_pairs_free(&s->modes);
     ritz_dense_free(&s->W);
@@ -102,9 +102,9 @@ static ritz_status project_loads(const ritz_dense *X, dominant_model *s)
  */
 enum { BEYOND_LISTED = RITZ_MOST_RATIOS };
 
-static ritz_status make_model(const ritz_rational *R,
-                              const ritz_damping *damping, const ritz_dense *T,
-                              dominant_model *s)
+static ritz_status project_component(const ritz_rational *R,
+                                     const ritz_damping *damping,
+                                     const ritz_dense *T, dominant_model *s)
 {
     const ritz_component *component = R->component;
     RITZ_OWN(ritz_dense) K = {0}, M = {0}, TX = {0};
@@ -197,26 +197,21 @@ static void keep_pole(double _Complex p, const double _Complex *z,
 
 static ritz_status solve_coupled(dominant_model *s)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = s->W.ncol;
     int n = (int)(2 * m);
-    double _Complex *A = NULL, *p = NULL, *V = NULL;
+    RITZ_OWN_ARRAY double _Complex *A = NULL, *p = NULL, *V = NULL;
 
-    RITZ_NEW(A, 4 * m * m);
-    RITZ_NEW(p, 2 * m);
-    RITZ_NEW(V, 4 * m * m);
+    RITZ_CHECK_NEW(A, 4 * m * m);
+    RITZ_CHECK_NEW(p, 2 * m);
+    RITZ_CHECK_NEW(V, 4 * m * m);
     fill_states(s, A);
-    RITZ_FAIL_IF(n > 0 && LAPACKE_zgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n, p,
-                                        NULL, 1, V, n) != 0,
-                 RITZ_ERR_CONVERGENCE,
-                 "poles of the reduced component do not converge");
+    RITZ_REFUSE_IF(n > 0 && LAPACKE_zgeev(LAPACK_COL_MAJOR, 'N', 'V', n, A, n,
+                                          p, NULL, 1, V, n) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "poles of the reduced component do not converge");
     for (int64_t k = 0; k < 2 * m; k++)
         keep_pole(p[k], V + k * 2 * m, s);
-done:
-    free(A);
-    free(p);
-    free(V);
-    return status;
+    return RITZ_OK;
 }
 
 /* b = conj(F(-conj(s))'x) for one kind of load; returns |b|. */
@@ -265,15 +260,15 @@ static double pole_gain(const dominant_model *s, const candidate *pole,
     int64_t outputs = 0;
 
     for (int64_t g = 0; g < s->R->num_groups; g++) {
-        double share = find_direction(s, pole, g, b);
+        double part = find_direction(s, pole, g, b);
 
-        if (!(share > RITZ_NEGLIGIBLE * s->most[g]))
-            share = 0.0;
+        if (!(part > RITZ_NEGLIGIBLE * s->most[g]))
+            part = 0.0;
         if (s->R->group[g].kind == RITZ_LOADS_OUTPUTS) {
-            out = share;
+            out = part;
             outputs++;
         } else {
-            in = hypot(in, share);
+            in = hypot(in, part);
         }
     }
     if (outputs == 0)
@@ -301,11 +296,10 @@ static double find_most(const dominant_model *s, int64_t g, double _Complex *b)
 
 static ritz_status weigh_poles(dominant_model *s)
 {
-    ritz_status status = RITZ_OK;
-    double _Complex *b = NULL;
+    RITZ_OWN_ARRAY double _Complex *b = NULL;
     double largest = DBL_MIN;
 
-    RITZ_NEW(b, s->R->num_loads);
+    RITZ_CHECK_NEW(b, s->R->num_loads);
     for (int64_t g = 0; g < s->R->num_groups; g++)
         s->most[g] = find_most(s, g, b);
     for (int64_t k = 0; k < s->count; k++) {
@@ -317,9 +311,7 @@ static ritz_status weigh_poles(dominant_model *s)
     }
     for (int64_t k = 0; k < s->count; k++)
         s->pole[k].value = (double)(float)(s->pole[k].value / largest);
-done:
-    free(b);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -345,18 +337,17 @@ static void set_probe(const dominant_model *s, const candidate *pole, int64_t g,
                       ritz_interpolation_point *probe)
 {
     double _Complex *b = probe->b + s->R->group[g].first;
-    double share = find_direction(s, pole, g, b);
-    bool counts = share > RITZ_NEGLIGIBLE * s->most[g];
+    double part = find_direction(s, pole, g, b);
+    bool counts = part > RITZ_NEGLIGIBLE * s->most[g];
 
     probe->s = pole->s;
     probe->group = g;
     for (int64_t j = 0; j < s->R->group[g].count; j++)
-        b[j] = counts ? b[j] / share : 0.0;
+        b[j] = counts ? b[j] / part : 0.0;
 }
 
 static ritz_status list_probes(const dominant_model *s, ritz_probes *out)
 {
-    ritz_probes probes = {0};
     int64_t poles = 0;
     int64_t groups = 0;
     int64_t at = 0;
@@ -364,13 +355,12 @@ static ritz_status list_probes(const dominant_model *s, ritz_probes *out)
     while (poles < s->count && s->pole[poles].value > 0.0)
         poles++;
     for (int64_t g = 0; g < s->R->num_groups; g++)
-        groups += s->R->group[g].answered;
-    RITZ_CHECK(ritz_probes_new(poles * groups, s->R->num_loads, &probes));
+        groups += s->R->group[g].interpolated;
+    RITZ_CHECK(ritz_probes_new(poles * groups, s->R->num_loads, out));
     for (int64_t k = 0; k < poles; k++)
         for (int64_t g = 0; g < s->R->num_groups; g++)
-            if (s->R->group[g].answered)
-                set_probe(s, &s->pole[k], g, &probes.item[at++]);
-    *out = probes;
+            if (s->R->group[g].interpolated)
+                set_probe(s, &s->pole[k], g, &out->item[at++]);
     return RITZ_OK;
 }
 
@@ -378,19 +368,15 @@ ritz_status ritz_dominant_probes(const ritz_rational *R,
                                  const ritz_damping *damping,
                                  const ritz_dense *T, ritz_probes *out)
 {
-    ritz_status status = RITZ_OK;
-    dominant_model s = {0};
+    RITZ_OWN(dominant_model) s = {0};
 
-    RITZ_TRY(make_model(R, damping, T, &s));
+    RITZ_CHECK(project_component(R, damping, T, &s));
     if (ritz_rational_damped(R))
-        RITZ_TRY(solve_coupled(&s));
+        RITZ_CHECK(solve_coupled(&s));
     else
         solve_decoupled(&s);
-    RITZ_TRY(weigh_poles(&s));
+    RITZ_CHECK(weigh_poles(&s));
     if (s.count > 0)
         qsort(s.pole, (size_t)s.count, sizeof *s.pole, compare_dominance);
-    RITZ_TRY(list_probes(&s, out));
-done:
-    free_model(&s);
-    return status;
+    return list_probes(&s, out);
 }

@@ -45,7 +45,7 @@ static int64_t largest_row(int64_t n, int64_t r, const double *W)
 }
 
 /* Rows of W less their part along row `pivot`, which becomes zero. */
-static void deflate(int64_t n, int64_t r, int64_t pivot, double *W)
+static void deflate_rows(int64_t n, int64_t r, int64_t pivot, double *W)
 {
     double size = 0.0;
 
@@ -84,7 +84,7 @@ static ritz_status choose_support(ritz_elastic *E)
         int64_t pivot = largest_row(n, r, W);
 
         E->held.at[E->held.count] = pivot;
-        deflate(n, r, pivot, W);
+        deflate_rows(n, r, pivot, W);
     }
     return ritz_dofs_complement(&E->held, n, &E->rest);
 }
@@ -96,47 +96,38 @@ static ritz_status find_rigid(ritz_elastic *E)
 
     RITZ_CHECK_IN("rigid modes",
                   ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
-    E->Phi = pairs.Phi;
-    E->residual = pairs.residual;
-    pairs.Phi = (ritz_dense){0};
-    pairs.residual = NULL;
+    RITZ_MOVE(E->Phi, pairs.Phi);
+    RITZ_MOVE(E->residual, pairs.residual);
     return ritz_sparse_mul(E->M, &E->Phi, &E->MPhi);
 }
 
 /* Why K has no factorization, apart from its rigid modes. */
 static ritz_status refuse_stiffness(const ritz_elastic *E)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span one = {.modes = 1};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_TRY(ritz_eigen_sparse(E->K, E->M, &one, &pairs));
-    RITZ_FAIL_IF(pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0, RITZ_ERR_SINGULAR,
-                 "K is not positive semidefinite: an eigenvalue is %.3g",
-                 pairs.lambda[0]);
-    status = ritz_fail(RITZ_ERR_SINGULAR,
-                       "K is singular, but for no rigid motion that has mass");
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+    RITZ_CHECK(ritz_eigen_sparse(E->K, E->M, &one, &pairs));
+    RITZ_REFUSE_IF(pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "K is not positive semidefinite: an eigenvalue is %.3g",
+                   pairs.lambda[0]);
+    return ritz_fail(RITZ_ERR_SINGULAR,
+                     "K is singular, but for no rigid motion that has mass");
 }
 
 static ritz_status factor_stiffness(ritz_elastic *E)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *w = &E->rest;
-    ritz_sparse K_ww = {0};
+    RITZ_OWN(ritz_sparse) K_ww = {0};
+    ritz_status status = RITZ_OK;
 
     if (w->count == 0)
-        goto done;
-    RITZ_TRY(
+        return RITZ_OK;
+    RITZ_CHECK(
         ritz_sparse_extract(E->K, w->count, w->at, w->count, w->at, &K_ww));
     status = ritz_factor_spd(&K_ww, &E->L);
-    if (status == RITZ_ERR_SINGULAR)
-        status = refuse_stiffness(E);
-done:
-    ritz_sparse_free(&K_ww);
-    return status;
+    return status == RITZ_ERR_SINGULAR ? refuse_stiffness(E) : status;
 }
 
 ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
@@ -193,22 +184,13 @@ static ritz_status solve_supported(const ritz_elastic *E, ritz_dense *X)
     return RITZ_OK;
 }
 
-ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X)
+ritz_status ritz_elastic_respond(const ritz_elastic *E, ritz_ldl *A,
+                                 ritz_dense *X)
 {
     if (X->ncol == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_elastic_forces(E, X));
-    RITZ_CHECK(solve_supported(E, X));
-    return take_out_motion(E, X);
-}
-
-ritz_status ritz_elastic_answer_at(const ritz_elastic *E, ritz_ldl *A,
-                                   ritz_dense *X)
-{
-    if (X->ncol == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_elastic_forces(E, X));
-    RITZ_CHECK(ritz_ldl_solve(A, X));
+    RITZ_CHECK(A ? ritz_ldl_solve(A, X) : solve_supported(E, X));
     return take_out_motion(E, X);
 }
 

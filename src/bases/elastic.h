@@ -40,12 +40,11 @@ ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F);
 /**
  * X := P' S P X, S the flexibility on any determinate support: the response
  * that is M-orthogonal to rigid motion. Without rigid modes it is K^-1 X.
+ *
+ * @param[in] A  factor of K - sigma M, for X := P' A^-1 P X; NULL: at 0 Hz
  */
-ritz_status ritz_elastic_answer(const ritz_elastic *E, ritz_dense *X);
-
-/** X := P' A^-1 P X, with a factor of A = K - sigma M. */
-ritz_status ritz_elastic_answer_at(const ritz_elastic *E, ritz_ldl *A,
-                                   ritz_dense *X);
+ritz_status ritz_elastic_respond(const ritz_elastic *E, ritz_ldl *A,
+                                 ritz_dense *X);
 
 void ritz_elastic_free(ritz_elastic *E);
 

@@ -13,34 +13,20 @@
  * by it, or negligible relative to the flexibility of the kept modes, are
  * removed.
  */
-
 #include "bases/free_modes.h"
+
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "bases/columns.h"
 #include "bases/loads.h"
 
 #include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MOST_SWEEPS = 60 };
-
-typedef struct residual_problem {
-    const ritz_request *request;
-    const ritz_pairs *modes;
-    const ritz_dense *F;
-} residual_problem;
-
-/* K + s M. */
-static ritz_status shift_stiffness(const ritz_sparse *K, const ritz_sparse *M,
-                                   double s, ritz_sparse *out)
-{
-    return ritz_sparse_add(1.0, K, s, M, out);
-}
 
 /*
  * A shift below the first flexible mode contracts fast and makes A well
@@ -70,7 +56,7 @@ static ritz_status choose_shift(const ritz_component *component,
 }
 
 /* An upper bound of the kept flexible modes' static response to load j. */
-static double largest_answer(const ritz_pairs *modes, const ritz_dense *F,
+static double bound_response(const ritz_pairs *modes, const ritz_dense *F,
                              int64_t j)
 {
     double most = 0.0;
@@ -117,44 +103,32 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* G: the loads less those that the kept modes carry. */
-static ritz_status find_load(const ritz_dense *F, const ritz_dense *Phi,
-                             const ritz_dense *MPhi, ritz_dense *G)
-{
-    RITZ_CHECK(ritz_dense_copy(F, G));
-    RITZ_CHECK(ritz_dense_take_out(MPhi, Phi, G));
-    RITZ_CHECK(ritz_dense_take_out(MPhi, Phi, G)); /* twice is enough */
-    return RITZ_OK;
-}
-
 /*
  * The response of A to each load at the load itself, and the size below which
  * its column is rounding.
  */
-static ritz_status find_scales(const residual_problem *p, ritz_factor *A,
-                               double *own, double *least)
+static ritz_status find_scales(const ritz_free_set *set, double tolerance,
+                               ritz_factor *A, double *own, double *least)
 {
     RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_CHECK(ritz_dense_copy(p->F, &X));
+    RITZ_CHECK(ritz_dense_copy(&set->F, &X));
     RITZ_CHECK(ritz_factor_solve(A, &X));
     for (int64_t j = 0; j < X.ncol; j++) {
-        own[j] = ritz_dense_dot(p->F, j, &X, j);
-        least[j] =
-            fmax(p->request->tolerance * largest_answer(p->modes, p->F, j),
-                 RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
+        own[j] = ritz_dense_dot(&set->F, j, &X, j);
+        least[j] = fmax(tolerance * bound_response(&set->modes, &set->F, j),
+                        RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
     }
     return RITZ_OK;
 }
 
 /* Psi, and the response of A to each load at the load itself. */
-static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
-                                 double *answer)
+static ritz_status find_residual(const ritz_request *request,
+                                 ritz_free_set *set, double *response)
 {
-    const ritz_component *component = p->request->component;
-    const ritz_pairs *modes = p->modes;
-    const double settled =
-        RITZ_SWEEPS_SETTLED * sqrt((double)component->num_dofs);
+    const ritz_sparse *M = &request->component->M;
+    const ritz_dense *Phi = &set->modes.Phi;
+    const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
     double s = 0.0;
     double change = 1.0, best = HUGE_VAL;
     RITZ_OWN(ritz_sparse) A = {0};
@@ -162,18 +136,19 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
     RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
     RITZ_OWN_ARRAY double *least = NULL;
 
-    RITZ_CHECK_NEW(least, p->F->ncol);
-    RITZ_CHECK(choose_shift(component, modes, &s));
-    RITZ_CHECK(shift_stiffness(&component->K, &component->M, s, &A));
+    RITZ_CHECK_NEW(least, set->F.ncol);
+    RITZ_CHECK(choose_shift(request->component, &set->modes, &s));
+    RITZ_CHECK(ritz_sparse_add(1.0, &request->component->K, s, M, &A));
     RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
-    RITZ_CHECK(find_scales(p, L, answer, least));
-    RITZ_CHECK(ritz_sparse_mul(&component->M, &modes->Phi, &MPhi));
-    RITZ_CHECK(find_load(p->F, &modes->Phi, &MPhi, &G));
-    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, Psi));
+    RITZ_CHECK(find_scales(set, request->tolerance, L, response, least));
+    RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
+    RITZ_CHECK(ritz_dense_copy(&set->F, &G));
+    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G));
+    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* twice is enough */
+    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &set->Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
-        RITZ_CHECK(
-            iterate_residual(L, &component->M, s, &G, least, Psi, &change));
-        RITZ_CHECK(ritz_dense_take_out(&modes->Phi, &MPhi, Psi));
+        RITZ_CHECK(iterate_residual(L, M, s, &G, least, &set->Psi, &change));
+        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &set->Psi));
         if (k > 8 && change > 0.5 * best)
             break; /* rounding, not contraction, is what is left */
         best = fmin(best, change);
@@ -184,13 +159,13 @@ static ritz_status find_residual(const residual_problem *p, ritz_dense *Psi,
 }
 
 /* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes for load j. */
-static double kept_flexibility(const residual_problem *p, int64_t j)
+static double kept_flexibility(const ritz_free_set *set, int64_t j)
 {
-    const ritz_pairs *modes = p->modes;
+    const ritz_pairs *modes = &set->modes;
     double sum = 0.0;
 
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
-        double x = ritz_dense_dot(&modes->Phi, k, p->F, j);
+        double x = ritz_dense_dot(&modes->Phi, k, &set->F, j);
 
         sum += x * x / modes->lambda[k];
     }
@@ -233,52 +208,27 @@ static void choose_columns(ritz_dense *R, double tolerance, bool *keep)
 }
 
 /* Mark the residual modes that are independent and more than rounding. */
-static ritz_status choose_independent(const residual_problem *p,
-                                      const ritz_dense *Psi,
-                                      const double *answer, bool *keep)
+static ritz_status choose_independent(const double *response, double tolerance,
+                                      ritz_free_set *set)
 {
-    double tolerance = p->request->tolerance;
     RITZ_OWN(ritz_dense) R = {0};
     RITZ_OWN_ARRAY double *scale = NULL;
 
-    RITZ_CHECK_NEW(scale, Psi->ncol);
-    RITZ_CHECK(ritz_dense_mul_tn(p->F, Psi, &R));
+    RITZ_CHECK_NEW(scale, set->Psi.ncol);
+    RITZ_CHECK(ritz_dense_mul_tn(&set->F, &set->Psi, &R));
     for (int64_t j = 0; j < R.ncol; j++) {
         double own = ritz_dense_col(&R, j)[j];
-        double all = own + kept_flexibility(p, j);
+        double all = own + kept_flexibility(set, j);
 
-        if (own > tolerance * all && own > RITZ_FORCE_RELIEVED * answer[j])
+        if (own > tolerance * all && own > RITZ_FORCE_RELIEVED * response[j])
             scale[j] = 1.0 / sqrt(own);
     }
     for (int64_t j = 0; j < R.ncol; j++)
         for (int64_t i = 0; i < R.ncol; i++)
             ritz_dense_col(&R, j)[i] *= scale[i] * scale[j];
     ritz_dense_symmetrise(&R);
-    choose_columns(&R, tolerance, keep);
+    choose_columns(&R, tolerance, set->keep);
     return RITZ_OK;
-}
-
-/*
- * @param[in]  request  component and tolerance
- * @param[in]  modes    those that are kept, rigid ones first
- * @param[in]  F        n x p, loads; unit forces at the attached dofs, say
- * @param[out] Psi      n x p, M- and K-orthogonal to the kept modes
- * @param[out] keep     one for each column: false where it depends on others or
- *                      is nothing beside the kept modes
- * @return RITZ_ERR_CONVERGENCE, RITZ_ERR_SINGULAR
- * @cost   one factor, 3 to 10 solves a column
- */
-static ritz_status find_residual_modes(const ritz_request *request,
-                                       const ritz_pairs *modes,
-                                       const ritz_dense *F, ritz_dense *Psi,
-                                       bool *keep)
-{
-    const residual_problem p = {request, modes, F};
-    RITZ_OWN_ARRAY double *answer = NULL;
-
-    RITZ_CHECK_NEW(answer, F->ncol);
-    RITZ_CHECK(find_residual(&p, Psi, answer));
-    return choose_independent(&p, Psi, answer, keep);
 }
 
 /*
@@ -292,36 +242,26 @@ static ritz_status find_residual_modes(const ritz_request *request,
  * F at the loaded dofs is exact.
  */
 
-static ritz_status find_modes(const ritz_request *request, ritz_pairs *out)
-{
-    const ritz_component *component = request->component;
-    const ritz_span span = {request->modes, request->up_to_hz};
-
-    RITZ_CHECK_IN("free-interface modes",
-                  ritz_eigen_sparse(&component->K, &component->M, &span, out));
-    RITZ_REFUSE_IF(out->Phi.ncol > 0 && out->num_rigid == 0 &&
-                       out->lambda[0] <= 0.0,
-                   RITZ_ERR_SINGULAR,
-                   "K is not positive semidefinite: an eigenvalue is %.3g",
-                   out->lambda[0]);
-    return RITZ_OK;
-}
-
 ritz_status ritz_free_set_find(const ritz_request *request, int loads,
                                ritz_free_set *out)
 {
+    const ritz_component *component = request->component;
+    const ritz_span span = {request->modes, request->up_to_hz};
     RITZ_OWN(ritz_free_set) set = {.loads = loads};
     RITZ_OWN(ritz_dofs) rest = {0};
+    RITZ_OWN_ARRAY double *response = NULL;
 
     /* refuses attached dofs that are out of range or repeated */
-    RITZ_CHECK(ritz_dofs_complement(&request->attached,
-                                    request->component->num_dofs, &rest));
-    RITZ_CHECK(find_modes(request, &set.modes));
+    RITZ_CHECK(
+        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_CHECK(ritz_lowest_modes("free-interface modes", "K", &component->K,
+                                 &component->M, &span, &set.modes));
     if (ritz_loads_count(request, loads) > 0) {
         RITZ_CHECK(ritz_loads_collect(request, loads, &set.F, &set.dof));
         RITZ_CHECK_NEW(set.keep, set.F.ncol);
-        RITZ_CHECK(find_residual_modes(request, &set.modes, &set.F, &set.Psi,
-                                       set.keep));
+        RITZ_CHECK_NEW(response, set.F.ncol);
+        RITZ_CHECK(find_residual(request, &set, response));
+        RITZ_CHECK(choose_independent(response, request->tolerance, &set));
     }
     RITZ_MOVE(*out, set);
     return RITZ_OK;
@@ -336,52 +276,31 @@ int64_t ritz_free_set_kept(const ritz_free_set *set)
     return kept;
 }
 
-static void add_remark(const ritz_request *request, const ritz_free_set *set,
-                       ritz_column_kind kind, ritz_basis *basis)
-{
-    char name[RITZ_LOADS_NAME_SIZE] = "";
-    int64_t left_out = 0;
-
-    for (int64_t j = 0; j < set->Psi.ncol; j++)
-        if (!set->keep[j] && left_out++ == 0)
-            ritz_loads_name(request, set->loads, j, name);
-    if (left_out > 0)
-        snprintf(basis->remark, sizeof basis->remark,
-                 "%" PRId64 " %s mode(s) left out, the first of %s: "
-                 "dependent, or nothing beside the kept modes",
-                 left_out, ritz_column_name(kind), name);
-}
-
 ritz_status ritz_free_set_join(const ritz_request *request,
                                const ritz_free_set *set, ritz_column_kind kind,
                                ritz_basis *out)
 {
-    const ritz_pairs *modes = &set->modes;
-    size_t column = (size_t)modes->Phi.nrow * sizeof *modes->Phi.val;
-    ritz_columns *columns = &out->columns;
-    int64_t k = modes->Phi.ncol;
+    int64_t kept = ritz_free_set_kept(set);
+    int64_t k = set->modes.Phi.ncol;
+    char name[RITZ_LOADS_NAME_SIZE] = "";
 
-    RITZ_CHECK(ritz_basis_new(request->component->num_dofs,
-                              k + ritz_free_set_kept(set), out));
-    for (int64_t j = 0; j < k; j++) {
-        bool rigid = j < modes->num_rigid;
-
-        columns->kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
-        columns->hertz[j] = rigid ? 0.0 : ritz_eigen_hertz(modes->lambda[j]);
-        columns->residual[j] = modes->residual[j];
-        memcpy(ritz_dense_col(&out->T, j), ritz_dense_col(&modes->Phi, j),
-               column);
-    }
+    RITZ_CHECK(ritz_basis_of_modes(&set->modes, kept, out));
     for (int64_t j = 0; j < set->Psi.ncol; j++) {
+        const ritz_dense column = ritz_dense_part(&set->Psi, j, 1);
+
+        if (!set->keep[j] && !name[0])
+            ritz_loads_name(request, set->loads, j, name);
         if (!set->keep[j])
             continue;
-        columns->kind[k] = kind;
-        columns->dof[k] = set->dof[j];
-        memcpy(ritz_dense_col(&out->T, k++), ritz_dense_col(&set->Psi, j),
-               column);
+        out->columns.kind[k] = kind;
+        out->columns.dof[k] = set->dof[j];
+        ritz_dense_put(&column, 0, k++, &out->T);
     }
-    memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
-    add_remark(request, set, kind, out);
+    if (kept < set->Psi.ncol)
+        ritz_remark_add(out, "; ",
+                        "%" PRId64 " %s mode(s) left out, the first of %s: "
+                        "dependent, or negligible relative to the kept modes",
+                        set->Psi.ncol - kept, ritz_column_name(kind), name);
     return RITZ_OK;
 }
 

@@ -1,5 +1,5 @@
 /* No reduction: every dof a column. For small components and comparisons. */
-#include <ritz/basis.h>
+#include "bases/columns.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -16,8 +16,7 @@ static ritz_status make_full(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(ritz_basis_new(n, n, out));
     for (int64_t j = 0; j < n; j++) {
         ritz_dense_col(&out->T, j)[j] = 1.0;
-        out->columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
-        out->columns.dof[j] = j;
+        ritz_columns_label_dofs(1, &j, j, &out->columns);
     }
     snprintf(out->origin.engine, sizeof out->origin.engine, "identity");
     return RITZ_OK;

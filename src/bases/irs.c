@@ -20,21 +20,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-
-/* [I; Psi], a column for each attached dof. */
-static ritz_status find_guyan(const ritz_partition *s, ritz_factor *L,
-                              ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) Psi = {0};
-
-    RITZ_CHECK(ritz_partition_constraint_modes(s, L, &Psi));
-    RITZ_CHECK(ritz_dense_new(s->component->num_dofs, s->b->count, out));
-    ritz_partition_scatter(&Psi, &s->i, 0, out);
-    for (int64_t j = 0; j < s->b->count; j++)
-        ritz_dense_col(out, j)[s->b->at[j]] = 1.0;
-    return RITZ_OK;
-}
 
 static ritz_status refuse_mass(const ritz_partition *s, int64_t j)
 {
@@ -46,24 +31,20 @@ static ritz_status refuse_mass(const ritz_partition *s, int64_t j)
                      ritz_dof_name(s->component->dof[s->b->at[j]], name));
 }
 
-/* Rows of a matrix in another order, scaled: B(k,:) = d[p[k]] A(p[k],:). */
+/*
+ * B(k,:) = d[p[k]] A(p[k],:), or back: B(p[k],:) = d[p[k]] A(k,:). LAPACK counts
+ * pivots from 1.
+ */
 static void permute_rows(const ritz_dense *A, const int *p, const double *d,
-                         ritz_dense *B)
+                         bool back, ritz_dense *B)
 {
     for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t k = 0; k < A->nrow; k++)
-            ritz_dense_col(B, j)[k] =
-                d[p[k] - 1] * ritz_dense_col(A, j)[p[k] - 1];
-}
+        for (int64_t k = 0; k < A->nrow; k++) {
+            int64_t at = p[k] - 1;
 
-/* The inverse: A(p[k],:) = d[p[k]] B(k,:). */
-static void restore_rows(const ritz_dense *B, const int *p, const double *d,
-                         ritz_dense *A)
-{
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t k = 0; k < A->nrow; k++)
-            ritz_dense_col(A, j)[p[k] - 1] =
-                d[p[k] - 1] * ritz_dense_col(B, j)[k];
+            ritz_dense_col(B, j)[back ? at : k] =
+                d[at] * ritz_dense_col(A, j)[back ? k : at];
+        }
 }
 
 /*
@@ -73,43 +54,34 @@ static void restore_rows(const ritz_dense *B, const int *p, const double *d,
 static ritz_status solve_mass(const ritz_partition *s, double tolerance,
                               ritz_dense *M_R, ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     int64_t a = M_R->ncol;
     int n = (int)a;
     int rank = 0;
-    ritz_dense Y = {0};
-    double *d = NULL;
-    int *pivot = NULL;
+    RITZ_OWN(ritz_dense) Y = {0};
+    RITZ_OWN_ARRAY double *d = NULL;
+    RITZ_OWN_ARRAY int *pivot = NULL;
 
-    RITZ_NEW(d, a);
-    RITZ_NEW(pivot, a);
-    RITZ_TRY(ritz_dense_new(a, a, &Y));
+    RITZ_CHECK_NEW(d, a);
+    RITZ_CHECK_NEW(pivot, a);
+    RITZ_CHECK(ritz_dense_new(a, a, &Y));
     for (int64_t j = 0; j < a; j++) {
         double own = ritz_dense_col(M_R, j)[j];
 
-        if (!(own > 0.0)) {
-            status = refuse_mass(s, j);
-            goto done;
-        }
+        if (!(own > 0.0))
+            return refuse_mass(s, j);
         d[j] = 1.0 / sqrt(own);
     }
     for (int64_t k = 0; k < a * a; k++)
         M_R->val[k] *= d[k % a] * d[k / a];
     if (LAPACKE_dpstrf(LAPACK_COL_MAJOR, 'L', n, M_R->val, n, pivot, &rank,
-                       tolerance) != 0) {
-        status = refuse_mass(s, pivot[rank] - 1);
-        goto done;
-    }
-    permute_rows(X, pivot, d, &Y);
-    RITZ_FAIL_IF(
+                       tolerance) != 0)
+        return refuse_mass(s, pivot[rank] - 1);
+    permute_rows(X, pivot, d, false, &Y);
+    RITZ_REFUSE_IF(
         LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, n, M_R->val, n, Y.val, n) != 0,
         RITZ_ERR_MEMORY, "no memory for the condensed mass");
-    restore_rows(&Y, pivot, d, X);
-done:
-    free(d);
-    free(pivot);
-    ritz_dense_free(&Y);
-    return status;
+    permute_rows(&Y, pivot, d, true, X);
+    return RITZ_OK;
 }
 
 /* T_i += K_ii^-1 (M T)_i X. */
@@ -120,10 +92,7 @@ static ritz_status add_inertia(const ritz_partition *s, ritz_factor *L,
 
     RITZ_CHECK(ritz_sparse_mul(&s->component->M, T, &MT));
     RITZ_CHECK(ritz_dense_mul(&MT, X, &force));
-    RITZ_CHECK(ritz_dense_new(s->i.count, T->ncol, &move));
-    for (int64_t j = 0; j < T->ncol; j++)
-        for (int64_t k = 0; k < s->i.count; k++)
-            ritz_dense_col(&move, j)[k] = ritz_dense_col(&force, j)[s->i.at[k]];
+    RITZ_CHECK(ritz_dense_rows(&force, s->i.count, s->i.at, &move));
     RITZ_CHECK(ritz_factor_solve(L, &move));
     for (int64_t j = 0; j < T->ncol; j++)
         for (int64_t k = 0; k < s->i.count; k++)
@@ -131,36 +100,23 @@ static ritz_status add_inertia(const ritz_partition *s, ritz_factor *L,
     return RITZ_OK;
 }
 
-static ritz_status fill_basis(const ritz_request *request,
-                              const ritz_partition *s, ritz_dense *T)
-{
-    RITZ_OWN(ritz_factor) *L = NULL;
-    RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0};
-
-    RITZ_CHECK(ritz_partition_factor(s, &L));
-    RITZ_CHECK(find_guyan(s, L, T));
-    if (s->i.count == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_condense(s->component, T, &K_R, &M_R));
-    RITZ_CHECK(solve_mass(s, request->tolerance, &M_R, &K_R));
-    return add_inertia(s, L, &K_R, T);
-}
-
 static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
 {
-    const ritz_dofs *b = &request->attached;
     RITZ_OWN(ritz_partition) s = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0};
     RITZ_OWN(ritz_basis) basis = {0};
 
     RITZ_REFUSE_IF(
-        b->count == 0, RITZ_ERR_ARGUMENT,
+        request->attached.count == 0, RITZ_ERR_ARGUMENT,
         "nothing is attached, so nothing would be kept: name a port");
     RITZ_CHECK(ritz_partition_new(request, &s));
-    RITZ_CHECK(ritz_columns_new(b->count, &basis.columns));
-    RITZ_CHECK(fill_basis(request, &s, &basis.T));
-    for (int64_t j = 0; j < b->count; j++) {
-        basis.columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
-        basis.columns.dof[j] = b->at[j];
+    RITZ_CHECK(ritz_partition_factor(&s, &L));
+    RITZ_CHECK(ritz_partition_boundary(&s, L, &basis));
+    if (s.i.count > 0) {
+        RITZ_CHECK(ritz_condense(s.component, &basis.T, &K_R, &M_R));
+        RITZ_CHECK(solve_mass(&s, request->tolerance, &M_R, &K_R));
+        RITZ_CHECK(add_inertia(&s, L, &K_R, &basis.T));
     }
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "CHOLMOD");
     RITZ_MOVE(*out, basis);

@@ -15,6 +15,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "bases/columns.h"
 #include "bases/loads.h"
 
 #include <ritz/matrix.h>
@@ -22,9 +23,7 @@
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /*
@@ -46,36 +45,29 @@ static void set_points(const ritz_choice *choice, ritz_krylov *S)
 static ritz_status factor_point(const ritz_elastic *body,
                                 ritz_krylov_point *point)
 {
+    RITZ_OWN(ritz_sparse) A = {0};
     ritz_status status = RITZ_OK;
-    ritz_sparse A = {0};
 
     point->sigma = ritz_eigen_lambda(point->hertz);
     if (point->hertz == 0.0)
-        goto done;
-    RITZ_TRY(ritz_sparse_add(1.0, body->K, -point->sigma, body->M, &A));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_add(1.0, body->K, -point->sigma, body->M, &A));
     status = ritz_ldl_new(&A, NULL, &point->A);
-    if (status == RITZ_ERR_SINGULAR)
-        status = ritz_fail(RITZ_ERR_SINGULAR,
-                           "expansion point %g Hz is a natural frequency: move "
-                           "it",
-                           point->hertz);
-done:
-    ritz_sparse_free(&A);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, status,
+                   "expansion point %g Hz is a natural frequency: move it",
+                   point->hertz);
     return status;
 }
 
 /* v'Mv must be positive for every v. */
 static ritz_status check_mass(const ritz_sparse *M)
 {
-    ritz_status status = RITZ_OK;
-    ritz_factor *L = NULL;
+    RITZ_OWN(ritz_factor) *L = NULL;
+    ritz_status status = ritz_factor_spd(M, &L);
 
-    status = ritz_factor_spd(M, &L);
-    if (status == RITZ_ERR_SINGULAR)
-        status = ritz_fail(RITZ_ERR_SINGULAR,
-                           "mass is singular, so it gives no inner product: "
-                           "take stiffness");
-    ritz_factor_free(&L);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, status,
+                   "mass is singular, so it gives no inner product: take "
+                   "stiffness");
     return status;
 }
 
@@ -152,9 +144,9 @@ static void clear_rounding(const ritz_dense *G, const ritz_dense *size,
     }
 }
 
-ritz_status ritz_krylov_answer(const ritz_krylov *S,
-                               const ritz_krylov_point *point,
-                               const ritz_forces *forces, ritz_dense *R)
+ritz_status ritz_krylov_respond(const ritz_krylov *S,
+                                const ritz_krylov_point *point,
+                                const ritz_forces *forces, ritz_dense *R)
 {
     RITZ_OWN(ritz_dense) PG = {0}, size = {0}, X = {0};
 
@@ -163,30 +155,24 @@ ritz_status ritz_krylov_answer(const ritz_krylov *S,
     RITZ_CHECK(add_rigid_size(S->body, &forces->G, &size));
     RITZ_CHECK(ritz_elastic_forces(S->body, &PG));
     RITZ_CHECK(ritz_dense_copy(&PG, &X));
-    if (point->A)
-        RITZ_CHECK(ritz_elastic_answer_at(S->body, point->A, &X));
-    else
-        RITZ_CHECK(ritz_elastic_answer(S->body, &X));
+    RITZ_CHECK(ritz_elastic_respond(S->body, point->A, &X));
     clear_rounding(&PG, &size, &X);
     RITZ_MOVE(*R, X);
     return RITZ_OK;
 }
 
 /* The forces F themselves, from column `first` on. */
-static ritz_status append_loads(const ritz_dense *F, int64_t first,
-                                ritz_forces *out)
+static ritz_status copy_loads(const ritz_dense *F, int64_t first,
+                              ritz_forces *out)
 {
     RITZ_CHECK(ritz_dense_columns(F, first, F->ncol - first, &out->G));
-    RITZ_CHECK(ritz_dense_copy(&out->G, &out->size));
-    for (int64_t k = 0; k < F->nrow * (F->ncol - first); k++)
-        out->size.val[k] = fabs(out->size.val[k]);
-    return RITZ_OK;
+    return ritz_dense_abs(&out->G, &out->size);
 }
 
 /* Inertia forces M Q of the last block of a point. */
-static ritz_status append_inertia(const ritz_krylov *S,
-                                  const ritz_krylov_point *point,
-                                  ritz_forces *out)
+static ritz_status find_inertia(const ritz_krylov *S,
+                                const ritz_krylov_point *point,
+                                ritz_forces *out)
 {
     const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
 
@@ -196,16 +182,14 @@ static ritz_status append_inertia(const ritz_krylov *S,
     return RITZ_OK;
 }
 
-/*
- * Append the response to the forces at a point; *added counts the new columns.
- */
+/* Append the response to the forces at a point. */
 static ritz_status append_block(ritz_krylov *S, const ritz_krylov_point *point,
                                 const ritz_forces *forces, int64_t most,
                                 bool *taken)
 {
     RITZ_OWN(ritz_dense) R = {0};
 
-    RITZ_CHECK(ritz_krylov_answer(S, point, forces, &R));
+    RITZ_CHECK(ritz_krylov_respond(S, point, forces, &R));
     return ritz_orthonormal_append(&S->set, &R, most, taken);
 }
 
@@ -214,39 +198,30 @@ ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken)
     const ritz_krylov_point at_rest = {0};
     RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(append_loads(F, 0, &forces));
+    RITZ_CHECK(copy_loads(F, 0, &forces));
     RITZ_CHECK(append_block(S, &at_rest, &forces, F->ncol, taken));
     S->seeds = S->set.count;
     return RITZ_OK;
 }
 
-/* The first block of a point; at 0 Hz it includes the seeds. */
-static ritz_status start_point(ritz_krylov *S, const ritz_dense *F,
-                               int64_t seeded, ritz_krylov_point *point)
+/*
+ * The next block of a point: with F the first, which at 0 Hz includes the
+ * seeds, else that of the inertia forces of the last one.
+ */
+static ritz_status advance_point(ritz_krylov *S, const ritz_dense *F,
+                                 int64_t seeded, ritz_krylov_point *point)
 {
     int64_t before = S->set.count;
     RITZ_OWN(ritz_forces) forces = {0};
 
-    RITZ_CHECK(append_loads(F, point->A ? 0 : seeded, &forces));
+    RITZ_CHECK(F ? copy_loads(F, point->A ? 0 : seeded, &forces)
+                 : find_inertia(S, point, &forces));
     RITZ_CHECK(
         append_block(S, point, &forces, S->vectors + S->seeds - before, NULL));
-    point->first = before;
-    if (!point->A && before == S->seeds)
-        point->first = 0;
+    point->first = F && !point->A && before == S->seeds ? 0 : before;
     point->count = S->set.count - point->first;
-    return RITZ_OK;
-}
-
-static ritz_status advance_point(ritz_krylov *S, ritz_krylov_point *point)
-{
-    int64_t before = S->set.count;
-    RITZ_OWN(ritz_forces) forces = {0};
-
-    RITZ_CHECK(append_inertia(S, point, &forces));
-    RITZ_CHECK(
-        append_block(S, point, &forces, S->vectors + S->seeds - before, NULL));
-    point->first = before;
-    point->count = S->set.count - before;
+    point->ended = point->count == 0;
+    point->whole += !point->ended && S->set.left == 0;
     return RITZ_OK;
 }
 
@@ -262,12 +237,7 @@ ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F, int64_t seeded)
 
             if (point->ended)
                 continue;
-            if (block == 0)
-                RITZ_CHECK(start_point(S, F, seeded, point));
-            else
-                RITZ_CHECK(advance_point(S, point));
-            point->ended = point->count == 0;
-            point->whole += !point->ended && S->set.left == 0;
+            RITZ_CHECK(advance_point(S, block == 0 ? F : NULL, seeded, point));
             moving = moving || !point->ended;
         }
     }
@@ -286,33 +256,6 @@ void ritz_krylov_free(ritz_krylov *S)
         ritz_ldl_free(&S->point[k].A);
     ritz_orthonormal_free(&S->set);
     *S = (ritz_krylov){0};
-}
-
-void ritz_krylov_say(ritz_basis *basis, const char *format, ...)
-{
-    size_t used = strlen(basis->remark);
-    va_list args;
-
-    va_start(args, format);
-    (void)vsnprintf(basis->remark + used, sizeof basis->remark - used, format,
-                    args);
-    va_end(args);
-}
-
-void ritz_krylov_say_blocks(const ritz_krylov *S, int64_t asked,
-                            ritz_basis *basis)
-{
-    int64_t found = S->set.count - S->seeds;
-
-    if (found < asked)
-        ritz_krylov_say(basis,
-                        "%" PRId64 " vectors and not %" PRId64
-                        ", nothing new is left; ",
-                        found, asked);
-    for (int64_t k = 0; k < S->num_points; k++)
-        ritz_krylov_say(basis, "%s%" PRId64 " whole block(s) about %g Hz",
-                        k > 0 ? ", " : "", S->point[k].whole,
-                        S->point[k].hertz);
 }
 
 /* Largest |v|'|W||v| of the columns. */
@@ -349,14 +292,27 @@ static ritz_status measure_orthonormality(const ritz_krylov *S, double *worst,
     return RITZ_OK;
 }
 
-ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S, ritz_basis *basis)
+ritz_status ritz_krylov_sign(const ritz_krylov *S, int64_t wanted,
+                             ritz_basis *basis)
 {
-    const char *W = S->inner == RITZ_INNER_MASS ? "M" : "K";
+    int64_t found = S->set.count - S->seeds;
     double worst = 0.0;
     double bound = 0.0;
 
     RITZ_CHECK(measure_orthonormality(S, &worst, &bound));
-    ritz_krylov_say(basis, "; |V'%sV - I| is %.1e, %s %.1e", W, worst,
+    snprintf(basis->origin.engine, sizeof basis->origin.engine, "CHOLMOD%s",
+             S->point[S->num_points - 1].A ? " + MUMPS" : "");
+    if (found < wanted)
+        ritz_remark_add(basis, "; ",
+                        "%" PRId64 " vectors and not %" PRId64
+                        ", nothing new is left",
+                        found, wanted);
+    for (int64_t k = 0; k < S->num_points; k++)
+        ritz_remark_add(basis, k > 0 ? ", " : "; ",
+                        "%" PRId64 " whole block(s) about %g Hz",
+                        S->point[k].whole, S->point[k].hertz);
+    ritz_remark_add(basis, "; ", "|V'%sV - I| is %.1e, %s %.1e",
+                    S->inner == RITZ_INNER_MASS ? "M" : "K", worst,
                     worst <= bound ? "within" : "beyond", bound);
     return RITZ_OK;
 }
@@ -364,25 +320,20 @@ ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S, ritz_basis *basis)
 ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
 {
     const ritz_dense *Phi = &S->body->Phi;
+    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
     int64_t r = Phi->ncol;
-    size_t size = (size_t)Phi->nrow * sizeof *Phi->val;
 
-    RITZ_REFUSE_IF(r + S->set.count == 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(r + V.ncol == 0, RITZ_ERR_ARGUMENT,
                    "the basis would have no vectors");
-    RITZ_CHECK(ritz_basis_new(S->body->K->nrow, r + S->set.count, out));
+    RITZ_CHECK(ritz_basis_new(S->body->K->nrow, r + V.ncol, out));
+    ritz_dense_put(Phi, 0, 0, &out->T);
+    ritz_dense_put(&V, 0, r, &out->T);
+    for (int64_t j = 0; j < r + V.ncol; j++)
+        out->columns.kind[j] = RITZ_COLUMN_KRYLOV;
     for (int64_t j = 0; j < r; j++) {
-        memcpy(ritz_dense_col(&out->T, j), ritz_dense_col(Phi, j), size);
-        out->columns.kind[j] = RITZ_COLUMN_RIGID;
-        out->columns.hertz[j] = 0.0;
+        ritz_columns_label_rigid(j, &out->columns);
         out->columns.residual[j] = S->body->residual[j];
     }
-    for (int64_t j = 0; j < S->set.count; j++) {
-        memcpy(ritz_dense_col(&out->T, r + j), ritz_dense_col(&S->set.V, j),
-               (size_t)out->T.nrow * sizeof *out->T.val);
-        out->columns.kind[r + j] = RITZ_COLUMN_KRYLOV;
-    }
-    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD%s",
-             S->point[S->num_points - 1].A ? " + MUMPS" : "");
     return RITZ_OK;
 }
 
@@ -403,13 +354,11 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
  * tridiagonal V'MV that full reorthogonalisation must leave.
  */
 
-static const int all_loads =
-    RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
-
 static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
 {
     const ritz_component *component = request->component;
-    int loads = request->choice.loads ? request->choice.loads : all_loads;
+    int loads =
+        request->choice.loads ? request->choice.loads : RITZ_KRYLOV_LOADS;
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
     RITZ_OWN(ritz_elastic) body = {0};
@@ -421,8 +370,7 @@ static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(ritz_krylov_new(&body, request, &S));
     RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
     RITZ_CHECK(ritz_krylov_join(&S, &basis));
-    ritz_krylov_say_blocks(&S, request->modes, &basis);
-    RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
+    RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

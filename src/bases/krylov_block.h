@@ -7,6 +7,12 @@
 
 #include <ritz/basis.h>
 
+/* The loads of a Krylov basis where the request names none. */
+enum {
+    RITZ_KRYLOV_LOADS =
+        RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
+};
+
 /*
  * A point at which the response is expanded, and the state of its sequence of
  * blocks.
@@ -16,13 +22,13 @@ typedef struct ritz_krylov_point {
     ritz_ldl *A;          /* factor of K - sigma M; NULL at 0 Hz */
     int64_t first, count; /* the last block: columns of V */
     int64_t whole;        /* blocks that are complete */
-    bool ended;           /* nothing new came of the last block */
+    bool ended;           /* the last block had no new vector */
 } ritz_krylov_point;
 
 typedef struct ritz_krylov {
     const ritz_elastic *body; /* borrowed */
     ritz_inner inner;
-    int64_t vectors; /* that are wanted beside the seeds */
+    int64_t vectors; /* that are wanted in addition to the seeds */
     int64_t seeds;   /* columns of V that were put there before */
     int64_t num_points;
     ritz_krylov_point point[RITZ_MOST_SHIFTS];
@@ -68,9 +74,9 @@ ritz_status ritz_krylov_run(ritz_krylov *S, const ritz_dense *F,
 /**
  * R = P' A^-1 P G of a point. Columns that are rounding come out as zero.
  */
-ritz_status ritz_krylov_answer(const ritz_krylov *S,
-                               const ritz_krylov_point *point,
-                               const ritz_forces *forces, ritz_dense *R);
+ritz_status ritz_krylov_respond(const ritz_krylov *S,
+                                const ritz_krylov_point *point,
+                                const ritz_forces *forces, ritz_dense *R);
 
 /**
  * Add |A| |X|, the magnitude of the terms that A X sums, times @p factor to @p
@@ -83,22 +89,15 @@ void ritz_krylov_size(const ritz_sparse *A, const ritz_dense *X, double factor,
 ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out);
 
 /**
- * Append to the remark the number of vectors and whole blocks, and why there
- * are not more.
+ * Say what was done: the engine, and in the remark the number of vectors and
+ * whole blocks, why there are not more, and how orthonormal V is:
+ * max |V'WV - I|, and 16 eps max |v|'|W||v|, as near as products by W can show
+ * it.
+ *
+ * @param[in] wanted  vectors of the request
  */
-void ritz_krylov_say_blocks(const ritz_krylov *S, int64_t asked,
-                            ritz_basis *basis);
-
-/**
- * Append to the remark how orthonormal V is: max |V'WV - I|, and 16 eps max
- * |v|'|W||v|, as near as products by W can show it.
- */
-ritz_status ritz_krylov_say_orthonormal(const ritz_krylov *S,
-                                        ritz_basis *basis);
-
-/** Append to a remark as far as there is room. */
-[[gnu::format(printf, 2, 3)]] void ritz_krylov_say(ritz_basis *basis,
-                                                   const char *format, ...);
+ritz_status ritz_krylov_sign(const ritz_krylov *S, int64_t wanted,
+                             ritz_basis *basis);
 
 void ritz_forces_free(ritz_forces *forces);
 void ritz_krylov_free(ritz_krylov *S);

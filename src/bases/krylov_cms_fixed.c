@@ -17,14 +17,6 @@
 #include "bases/loads.h"
 #include "bases/partition.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum {
-    ALL_LOADS = RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
-};
-
 /* M_ib + M_ii Psi. */
 static ritz_status find_coupling(const ritz_partition *s, const ritz_dense *Psi,
                                  ritz_dense *out)
@@ -47,49 +39,24 @@ static ritz_status find_loads(const ritz_request *request,
                               const ritz_partition *s, const ritz_dense *Psi,
                               ritz_dense *out)
 {
-    int loads = request->choice.loads ? request->choice.loads : ALL_LOADS;
+    int loads =
+        request->choice.loads ? request->choice.loads : RITZ_KRYLOV_LOADS;
     int others = loads & ~RITZ_LOADS_ATTACHED;
     int64_t more = ritz_loads_count(request, others);
     int64_t b = loads & RITZ_LOADS_ATTACHED ? Psi->ncol : 0;
-    RITZ_OWN(ritz_dense) coupling = {0}, F = {0};
+    RITZ_OWN(ritz_dense) coupling = {0}, F = {0}, F_i = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
 
     if (more > 0 || b == 0) /* refuses none */
         RITZ_CHECK(
             ritz_loads_collect(request, more > 0 ? others : loads, &F, &dof));
     RITZ_CHECK(ritz_dense_new(s->i.count, b + more, out));
-    if (b > 0) {
+    if (b > 0)
         RITZ_CHECK(find_coupling(s, Psi, &coupling));
-        memcpy(out->val, coupling.val,
-               (size_t)(s->i.count * b) * sizeof *out->val);
-    }
-    for (int64_t j = 0; j < more; j++)
-        for (int64_t k = 0; k < s->i.count; k++)
-            ritz_dense_col(out, b + j)[k] = ritz_dense_col(&F, j)[s->i.at[k]];
-    return RITZ_OK;
-}
-
-/* [I; Psi], a column for each boundary dof, then [0; V]. */
-static ritz_status join_columns(const ritz_partition *s, const ritz_dense *Psi,
-                                const ritz_krylov *S, ritz_basis *out)
-{
-    const ritz_dofs *b = s->b;
-    const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
-
-    RITZ_REFUSE_IF(b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
-                   "the basis would have no vectors");
-    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count + V.ncol, out));
-    ritz_partition_scatter(Psi, &s->i, 0, &out->T);
-    ritz_partition_scatter(&V, &s->i, b->count, &out->T);
-    for (int64_t j = 0; j < b->count; j++) {
-        ritz_dense_col(&out->T, j)[b->at[j]] = 1.0;
-        out->columns.kind[j] = RITZ_COLUMN_CONSTRAINT;
-        out->columns.dof[j] = b->at[j];
-    }
-    for (int64_t j = 0; j < V.ncol; j++)
-        out->columns.kind[b->count + j] = RITZ_COLUMN_KRYLOV;
-    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD%s",
-             S->point[S->num_points - 1].A ? " + MUMPS" : "");
+    ritz_dense_put(&coupling, 0, 0, out);
+    if (more > 0)
+        RITZ_CHECK(ritz_dense_rows(&F, s->i.count, s->i.at, &F_i));
+    ritz_dense_put(&F_i, 0, b, out);
     return RITZ_OK;
 }
 
@@ -101,18 +68,24 @@ static ritz_status make_krylov_fixed(const ritz_request *request,
     RITZ_OWN(ritz_dense) Psi = {0}, F = {0};
     RITZ_OWN(ritz_elastic) interior = {0};
     RITZ_OWN(ritz_krylov) S = {0};
-    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_basis) boundary = {0}, basis = {0};
+    ritz_dense V = {0};
 
     RITZ_CHECK(ritz_partition_new(request, &s));
     RITZ_CHECK(ritz_partition_factor(&s, &L));
-    RITZ_CHECK(ritz_partition_constraint_modes(&s, L, &Psi));
+    RITZ_CHECK(ritz_partition_boundary(&s, L, &boundary));
+    RITZ_CHECK(ritz_dense_rows(&boundary.T, s.i.count, s.i.at, &Psi));
     RITZ_CHECK(find_loads(request, &s, &Psi, &F));
     ritz_elastic_held(&s.K_ii, &s.M_ii, &L, &interior);
     RITZ_CHECK(ritz_krylov_new(&interior, request, &S));
     RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
-    RITZ_CHECK(join_columns(&s, &Psi, &S, &basis));
-    ritz_krylov_say_blocks(&S, request->modes, &basis);
-    RITZ_CHECK(ritz_krylov_say_orthonormal(&S, &basis));
+    V = ritz_dense_part(&S.set.V, 0, S.set.count);
+    RITZ_REFUSE_IF(s.b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
+                   "the basis would have no vectors");
+    RITZ_CHECK(ritz_partition_join(&s, &boundary, &V, &basis));
+    for (int64_t j = s.b->count; j < basis.T.ncol; j++)
+        basis.columns.kind[j] = RITZ_COLUMN_KRYLOV;
+    RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

@@ -10,14 +10,11 @@
  * too.
  */
 #include "base/alloc.h"
+#include "bases/columns.h"
 
-#include <ritz/basis.h>
 #include <ritz/matrix.h>
 
 #include <inttypes.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A + E A_n E'. */
 static ritz_status add_neighbour(const ritz_sparse *A, const ritz_dense *A_n,
@@ -68,27 +65,6 @@ static ritz_status check_request(const ritz_request *request)
     return RITZ_OK;
 }
 
-static ritz_status copy_modes(const ritz_pairs *pairs, ritz_basis *out)
-{
-    int64_t n = pairs->Phi.nrow;
-    int64_t k = pairs->Phi.ncol;
-
-    RITZ_CHECK(ritz_basis_new(n, k, out));
-    for (int64_t j = 0; j < k; j++) {
-        bool rigid = j < pairs->num_rigid;
-
-        out->columns.kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
-        out->columns.hertz[j] =
-            rigid ? 0.0 : ritz_eigen_hertz(pairs->lambda[j]);
-        out->columns.residual[j] = pairs->residual[j];
-    }
-    if (n * k > 0)
-        memcpy(out->T.val, pairs->Phi.val,
-               (size_t)(n * k) * sizeof *out->T.val);
-    memcpy(out->origin.engine, pairs->engine, sizeof out->origin.engine);
-    return RITZ_OK;
-}
-
 static ritz_status make_loaded_interface(const ritz_request *request,
                                          ritz_basis *out)
 {
@@ -105,14 +81,9 @@ static ritz_status make_loaded_interface(const ritz_request *request,
                              &request->attached, &K));
     RITZ_CHECK(add_neighbour(&component->M, &request->neighbour->M,
                              &request->attached, &M));
-    RITZ_CHECK_IN("loaded modes", ritz_eigen_sparse(&K, &M, &span, &pairs));
-    RITZ_REFUSE_IF(pairs.Phi.ncol > 0 && pairs.num_rigid == 0 &&
-                       pairs.lambda[0] <= 0.0,
-                   RITZ_ERR_SINGULAR,
-                   "K with its neighbour is not positive semidefinite: an "
-                   "eigenvalue is %.3g",
-                   pairs.lambda[0]);
-    return copy_modes(&pairs, out);
+    RITZ_CHECK(ritz_lowest_modes("loaded modes", "K with its neighbour", &K, &M,
+                                 &span, &pairs));
+    return ritz_basis_of_modes(&pairs, 0, out);
 }
 
 const ritz_method ritz_method_loaded_interface = {

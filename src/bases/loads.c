@@ -3,84 +3,33 @@
 #include "base/alloc.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
-/* One kind of load: the number of its columns, and the entries of each. */
-typedef struct source {
+/* Kinds of loads, and what one of them is called. */
+static const struct {
     int bit;
     const char *word;
-    int64_t (*count)(const ritz_request *request);
-    double (*entry)(const ritz_request *request, int64_t j, int64_t i);
-    const char *(*name)(const ritz_request *request, int64_t j);
-} source;
-
-static int64_t count_attached(const ritz_request *request)
-{
-    return request->attached.count;
-}
-
-static double attached_entry(const ritz_request *request, int64_t j, int64_t i)
-{
-    return request->attached.at[j] == i ? 1.0 : 0.0;
-}
-
-static int64_t count_inputs(const ritz_request *request)
-{
-    return request->component->io.num_inputs;
-}
-
-static double input_entry(const ritz_request *request, int64_t j, int64_t i)
-{
-    return ritz_dense_col(&request->component->io.B, j)[i];
-}
-
-static const char *input_name(const ritz_request *request, int64_t j)
-{
-    return request->component->io.input[j];
-}
-
-/* Rows of C, then those of Cv, then those of Ca. */
-static int64_t count_outputs(const ritz_request *request)
-{
-    return 3 * request->component->io.num_outputs;
-}
-
-static double output_entry(const ritz_request *request, int64_t j, int64_t i)
-{
-    const ritz_io *io = &request->component->io;
-    const ritz_dense *const reads[] = {&io->C, &io->Cv, &io->Ca};
-
-    return ritz_dense_col(reads[j / io->num_outputs], i)[j % io->num_outputs];
-}
-
-static const char *output_name(const ritz_request *request, int64_t j)
-{
-    const ritz_io *io = &request->component->io;
-
-    return io->output[j % io->num_outputs];
-}
-
-static int64_t count_dampers(const ritz_request *request)
-{
-    return request->component->dampers.count;
-}
-
-static double damper_entry(const ritz_request *request, int64_t j, int64_t i)
-{
-    return ritz_dense_col(&request->component->dampers.B, j)[i];
-}
-
-static const char *damper_name(const ritz_request *request, int64_t j)
-{
-    return request->component->dampers.name[j];
-}
-
-static const source sources[] = {
-    {RITZ_LOADS_ATTACHED, "attached", count_attached, attached_entry, NULL},
-    {RITZ_LOADS_INPUTS, "input", count_inputs, input_entry, input_name},
-    {RITZ_LOADS_OUTPUTS, "output", count_outputs, output_entry, output_name},
-    {RITZ_LOADS_DAMPERS, "damper", count_dampers, damper_entry, damper_name},
+} kinds[] = {
+    {RITZ_LOADS_ATTACHED, "attached"},
+    {RITZ_LOADS_INPUTS, "input"},
+    {RITZ_LOADS_OUTPUTS, "output"},
+    {RITZ_LOADS_DAMPERS, "damper"},
 };
+
+enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
+
+/* One load vector: a unit force at a row, or entries that lie elsewhere. */
+typedef struct load_view {
+    const char *word; /* kind */
+    const char *name; /* NULL: of an attached dof */
+    int64_t row;      /* of an attached dof; -1 */
+    const double *val;
+    int64_t stride;
+} load_view;
+
+static double load_entry(const load_view *load, int64_t i)
+{
+    return load->val ? load->val[i * load->stride] : i == load->row;
+}
 
 /* An iterator over the loads that are not zero. */
 typedef struct load_walk {
@@ -90,57 +39,80 @@ typedef struct load_walk {
     int64_t at; /* of that kind: the next to be looked at */
 } load_walk;
 
-static bool is_zero(const ritz_request *request, const source *from, int64_t j)
+/* Load j of a kind; false past the last. */
+static bool find_load(const ritz_request *request, size_t kind, int64_t j,
+                      load_view *out)
 {
-    for (int64_t i = 0; i < request->component->num_dofs; i++)
-        if (from->entry(request, j, i) != 0.0)
+    const ritz_io *io = &request->component->io;
+    const ritz_dampers *dampers = &request->component->dampers;
+    const ritz_dense *const reads[] = {&io->C, &io->Cv, &io->Ca};
+    const ritz_dofs *attached = &request->attached;
+    int64_t p = io->num_outputs;
+
+    *out = (load_view){kinds[kind].word, NULL, -1, NULL, 1};
+    switch (kinds[kind].bit) {
+    case RITZ_LOADS_ATTACHED:
+        out->row = j < attached->count ? attached->at[j] : -1;
+        return j < attached->count;
+    case RITZ_LOADS_INPUTS:
+        if (j >= io->num_inputs)
             return false;
-    return true;
+        out->name = io->input[j];
+        out->val = ritz_dense_col(&io->B, j);
+        return true;
+    case RITZ_LOADS_OUTPUTS: /* rows of C, then those of Cv, then those of Ca */
+        if (j >= 3 * p)
+            return false;
+        out->name = io->output[j % p];
+        out->val = reads[j / p]->val + j % p;
+        out->stride = p;
+        return true;
+    default:
+        if (j >= dampers->count)
+            return false;
+        out->name = dampers->name[j];
+        out->val = ritz_dense_col(&dampers->B, j);
+        return true;
+    }
 }
 
-/* The next source and its load; false past the last. */
-static bool next_load(load_walk *w, const source **from, int64_t *j)
+/* The next load that is not zero; false past the last. */
+static bool next_load(load_walk *w, load_view *out)
 {
-    for (; w->kind < sizeof sources / sizeof *sources; w->kind++, w->at = 0) {
-        const source *here = &sources[w->kind];
-
-        while ((w->loads & here->bit) && w->at < here->count(w->request)) {
-            int64_t k = w->at++;
-
-            if (is_zero(w->request, here, k))
-                continue;
-            *from = here;
-            *j = k;
-            return true;
+    for (; w->kind < NUM_KINDS; w->kind++, w->at = 0)
+        while ((w->loads & kinds[w->kind].bit) &&
+               find_load(w->request, w->kind, w->at, out)) {
+            w->at++;
+            for (int64_t i = 0; i < w->request->component->num_dofs; i++)
+                if (load_entry(out, i) != 0.0)
+                    return true;
         }
-    }
     return false;
 }
 
 int64_t ritz_loads_count(const ritz_request *request, int loads)
 {
     load_walk w = {request, loads, 0, 0};
-    const source *from = NULL;
-    int64_t j = 0;
+    load_view load = {0};
     int64_t count = 0;
 
-    while (next_load(&w, &from, &j))
+    while (next_load(&w, &load))
         count++;
     return count;
 }
 
-/* "attached, inputs": the requested kinds. */
+/* "attached dof or input": the requested kinds. */
 static const char *list_kinds(int loads, char text[64])
 {
     size_t used = 0;
 
     text[0] = '\0';
-    for (size_t k = 0; k < sizeof sources / sizeof *sources; k++)
-        if (loads & sources[k].bit)
+    for (size_t k = 0; k < NUM_KINDS; k++)
+        if (loads & kinds[k].bit)
             used += (size_t)snprintf(
                 text + used, 64 - used, "%s%s%s", used > 0 ? " or " : "",
-                sources[k].word,
-                sources[k].bit == RITZ_LOADS_ATTACHED ? " dof" : "");
+                kinds[k].word,
+                kinds[k].bit == RITZ_LOADS_ATTACHED ? " dof" : "");
     return text;
 }
 
@@ -149,27 +121,25 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
 {
     int64_t n = request->component->num_dofs;
     load_walk w = {request, loads, 0, 0};
-    const source *from = NULL;
+    load_view load = {0};
     RITZ_OWN(ritz_dofs) rest = {0};
     RITZ_OWN(ritz_dense) columns = {0};
     RITZ_OWN_ARRAY int64_t *row = NULL;
     int64_t count = 0;
-    int64_t j = 0;
     char text[64];
 
     if (loads & RITZ_LOADS_ATTACHED) /* refuses repeated or impossible ones */
         RITZ_CHECK(ritz_dofs_complement(&request->attached, n, &rest));
     count = ritz_loads_count(request, loads);
     RITZ_REFUSE_IF(count == 0, RITZ_ERR_ARGUMENT,
-                   "there is no load to answer, no %s",
+                   "there is no load to respond to, no %s",
                    list_kinds(loads, text));
     RITZ_CHECK(ritz_dense_new(n, count, &columns));
     RITZ_CHECK_NEW(row, count);
-    for (int64_t k = 0; k < count && next_load(&w, &from, &j); k++) {
-        row[k] =
-            from->bit == RITZ_LOADS_ATTACHED ? request->attached.at[j] : -1;
+    for (int64_t k = 0; next_load(&w, &load); k++) {
+        row[k] = load.row;
         for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(&columns, k)[i] = from->entry(request, j, i);
+            ritz_dense_col(&columns, k)[i] = load_entry(&load, i);
     }
     RITZ_MOVE(*F, columns);
     RITZ_MOVE(*dof, row);
@@ -180,22 +150,17 @@ const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
                             char text[RITZ_LOADS_NAME_SIZE])
 {
     load_walk w = {request, loads, 0, 0};
-    const source *from = NULL;
+    load_view load = {0};
     char name[RITZ_DOF_NAME_SIZE];
-    int64_t at = 0;
 
     text[0] = '\0';
     for (int64_t k = 0; k <= j; k++)
-        if (!next_load(&w, &from, &at))
+        if (!next_load(&w, &load))
             return text;
-    if (!from)
-        return text;
-    if (from->bit == RITZ_LOADS_ATTACHED)
+    if (load.row >= 0)
         snprintf(text, RITZ_LOADS_NAME_SIZE, "%s",
-                 ritz_dof_name(
-                     request->component->dof[request->attached.at[at]], name));
-    else
-        snprintf(text, RITZ_LOADS_NAME_SIZE, "%s '%s'", from->word,
-                 from->name(request, at));
+                 ritz_dof_name(request->component->dof[load.row], name));
+    else if (load.name)
+        snprintf(text, RITZ_LOADS_NAME_SIZE, "%s '%s'", load.word, load.name);
     return text;
 }

@@ -83,14 +83,14 @@ const ritz_method ritz_method_macneal = {
 static ritz_status add_modes(ritz_free_set *set)
 {
     const ritz_pairs *modes = &set->modes;
-    RITZ_OWN(ritz_dense) share = {0}, part = {0};
+    RITZ_OWN(ritz_dense) q = {0}, part = {0};
 
-    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, &set->F, &share));
-    for (int64_t j = 0; j < share.ncol; j++)
-        for (int64_t k = 0; k < share.nrow; k++)
-            ritz_dense_col(&share, j)[k] *=
+    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, &set->F, &q));
+    for (int64_t j = 0; j < q.ncol; j++)
+        for (int64_t k = 0; k < q.nrow; k++)
+            ritz_dense_col(&q, j)[k] *=
                 k < modes->num_rigid ? 0.0 : 1.0 / modes->lambda[k];
-    RITZ_CHECK(ritz_dense_mul(&modes->Phi, &share, &part));
+    RITZ_CHECK(ritz_dense_mul(&modes->Phi, &q, &part));
     for (int64_t k = 0; k < part.nrow * part.ncol; k++)
         set->Psi.val[k] += part.val[k];
     return RITZ_OK;
@@ -180,7 +180,7 @@ const ritz_method ritz_method_normal_modes = {
     .when = "one structure with its loads, dampers to be tuned",
     .cost = "a factor, two solves a mode, 3 to 10 a load",
     .holds = "kept modes, flexible static gain of its loads",
-    .fails = "interfaces: what other bodies push on is not answered",
+    .fails = "interfaces: forces of other bodies have no static correction",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .make = make_normal_modes,
 };

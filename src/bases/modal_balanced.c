@@ -5,35 +5,31 @@
  *
  *     sigma_k = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
  *
- * with a displacement output. Of lightly damped modes far apart these are the
- * Hankel values of the whole, and the best modes its balanced states; of close
- * ones they are not. The error is at most the response of all modes that are
- * left out: twice the sum of all values of each cluster alone.
+ * with a displacement output. For lightly damped modes of well separated
+ * frequencies these are the Hankel values of the whole model, and the best modes
+ * its balanced states; for close modes they are not. The error is at most the
+ * response of all modes that are left out: twice the sum of all values of each
+ * cluster alone.
  */
 #include "base/alloc.h"
-#include "bases/balance_asked.h"
-#include "gramians/cluster.h"
-#include "gramians/engines.h"
-#include "gramians/modal_modes.h"
+#include "bases/balancing.h"
+#include "bases/columns.h"
 
 #include <ritz/matrix.h>
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Modes that are kept whole or not at all. */
 typedef struct mode_group {
     int64_t first, last; /* flexible modes first .. last - 1 */
     double value;        /* by which it is ranked */
-    double bound;        /* of what it answers alone */
+    double bound;        /* of its own response */
     bool keep;
 } mode_group;
 
 typedef struct subset_search {
-    ritz_gramians_request asked;
     ritz_modal_model modes;
     ritz_modal modal;
     int64_t count;
@@ -42,69 +38,38 @@ typedef struct subset_search {
     double bound;       /* of all that is left out */
 } subset_search;
 
-static void release_search(subset_search *s)
+static void subset_search_free(subset_search *s)
 {
     ritz_modal_model_free(&s->modes);
     ritz_modal_free(&s->modal);
     free(s->groups);
 }
 
-static ritz_status check_request(const ritz_request *request)
+static ritz_status find_modes(const ritz_request *request,
+                              const ritz_damping *damping, subset_search *s)
 {
     const ritz_io *io = &request->component->io;
+    const ritz_gramians_request all = {.component = request->component,
+                                       .damping = *damping,
+                                       .among_hz = request->choice.among_hz};
 
     RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
                    "the best modes are asked for by their number, not by a "
                    "frequency: among-hz says which to choose from");
     RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
                    "no modes are asked for, one at least is needed");
-    RITZ_REFUSE_IF(io->num_inputs == 0, RITZ_ERR_ARGUMENT,
-                   "the component has no inputs: no mode can be reached");
-    RITZ_REFUSE_IF(io->num_outputs == 0, RITZ_ERR_ARGUMENT,
-                   "the component has no outputs: no mode can be seen");
-    for (int64_t i = 0; i < io->num_outputs; i++)
-        RITZ_REFUSE_IF(io->limit[i] <= 0.0, RITZ_ERR_ARGUMENT,
-                       "output '%s' has the limit %g, which is not positive",
-                       io->output[i], io->limit[i]);
-    return RITZ_OK;
+    RITZ_CHECK(ritz_ends_check("component", io->num_inputs, io->num_outputs,
+                               io->limit, io->output));
+    RITZ_CHECK(ritz_gramians_modes(&all, &s->modes));
+    return ritz_modal_of_modes(&s->modes, io,
+                               "modes are ranked one by one: take 'balanced'",
+                               &s->modal);
 }
 
-static ritz_status find_modes(const ritz_request *request, subset_search *s)
-{
-    const ritz_choice *choice = &request->choice;
-    ritz_coupling coupling = {0};
-
-    s->asked = (ritz_gramians_request){.component = request->component,
-                                       .engine = RITZ_ENGINE_MODAL,
-                                       .among_hz = choice->among_hz};
-    RITZ_CHECK(ritz_request_damping(request, &s->asked.damping));
-    RITZ_CHECK(ritz_gramians_modes(&s->asked, &s->modes));
-    if (ritz_modes_coupled(&s->modes, &coupling))
-        RITZ_CHECK(ritz_coupling_refuse(
-            &coupling, "modes are ranked one by one: take 'balanced'"));
-    return ritz_modal_of_modes(&s->modes, &request->component->io, &s->modal);
-}
-
-/* The value of modes first .. last - 1 alone; over a band, if there is one. */
-static ritz_status weigh_modes(const subset_search *s, const double *band,
-                               double *sigma, mode_group *at)
-{
-    RITZ_OWN(ritz_modal) part = {0};
-
-    RITZ_CHECK(ritz_modal_part(&s->modal, at->first, at->last, &part));
-    RITZ_CHECK(ritz_modal_hankel(&part, sigma));
-    for (int64_t k = 0; k < 2 * part.count; k++)
-        at->bound += 2.0 * sigma[k];
-    if (band)
-        RITZ_CHECK(ritz_modal_hankel_band(&part, band, sigma));
-    at->value = sigma[0];
-    return RITZ_OK;
-}
-
+/* The value of each cluster of modes alone; over a band, if there is one. */
 static ritz_status rank_groups(const ritz_request *request, subset_search *s)
 {
     bool banded = request->choice.given & RITZ_USES_BAND;
-    const double *band = banded ? request->choice.band_hz : NULL;
     RITZ_OWN_ARRAY double *sigma = NULL;
     int64_t last = 0;
 
@@ -112,10 +77,18 @@ static ritz_status rank_groups(const ritz_request *request, subset_search *s)
     RITZ_CHECK_NEW(s->groups, s->modal.count);
     for (int64_t first = 0; first < s->modal.count; first = last) {
         mode_group *at = &s->groups[s->count++];
+        RITZ_OWN(ritz_modal) part = {0};
 
         last = ritz_modal_cluster(&s->modal, first);
         *at = (mode_group){.first = first, .last = last};
-        RITZ_CHECK(weigh_modes(s, band, sigma, at));
+        RITZ_CHECK(ritz_modal_part(&s->modal, first, last, NULL, &part));
+        RITZ_CHECK(ritz_modal_hankel(&part, NULL, sigma));
+        for (int64_t k = 0; k < 2 * part.count; k++)
+            at->bound += 2.0 * sigma[k];
+        if (banded)
+            RITZ_CHECK(
+                ritz_modal_hankel(&part, request->choice.band_hz, sigma));
+        at->value = sigma[0];
     }
     return RITZ_OK;
 }
@@ -145,7 +118,7 @@ static ritz_status choose_groups(const ritz_request *request, subset_search *s)
     mode_group *next = find_best(s);
 
     RITZ_REFUSE_IF(!next, RITZ_ERR_ARGUMENT,
-                   "inputs reach no mode that outputs see");
+                   "no mode is both controllable and observable");
     RITZ_REFUSE_IF(next->last - next->first > request->modes, RITZ_ERR_ARGUMENT,
                    "%" PRId64
                    " modes at %.6g Hz are one cluster, kept whole or "
@@ -166,53 +139,49 @@ static ritz_status choose_groups(const ritz_request *request, subset_search *s)
 static void copy_mode(const subset_search *s, int64_t mode, int64_t column,
                       ritz_basis *basis)
 {
-    bool rigid = mode < s->modes.num_rigid;
+    const ritz_dense phi = ritz_dense_part(&s->modes.Phi, mode, 1);
 
-    memcpy(ritz_dense_col(&basis->T, column),
-           ritz_dense_col(&s->modes.Phi, mode),
-           (size_t)basis->T.nrow * sizeof *basis->T.val);
-    basis->columns.kind[column] =
-        rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
-    basis->columns.hertz[column] =
-        rigid ? 0.0 : ritz_eigen_hertz(s->modes.lambda[mode]);
+    ritz_dense_put(&phi, 0, column, &basis->T);
+    basis->columns.hertz[column] = ritz_eigen_hertz(s->modes.lambda[mode]);
+    if (mode < s->modes.num_rigid)
+        ritz_columns_label_rigid(column, &basis->columns);
 }
 
 static void add_remark(const ritz_request *request, const subset_search *s,
-                       ritz_basis *basis)
+                       const ritz_damping *damping, ritz_basis *basis)
 {
-    char damping[RITZ_DAMPING_SIZE] = "";
-    char text[2 * RITZ_DAMPING_SIZE];
+    char stated[RITZ_DAMPING_SIZE] = "";
     char among[RITZ_NAME_SIZE] = "";
     char less[RITZ_NAME_SIZE] = "";
 
-    if (s->asked.among_hz > 0.0)
-        snprintf(among, sizeof among, " up to %.6g Hz", s->asked.among_hz);
+    if (request->choice.among_hz > 0.0)
+        snprintf(among, sizeof among, " up to %.6g Hz",
+                 request->choice.among_hz);
     if (s->kept < request->modes)
         snprintf(less, sizeof less, " of %" PRId64 " asked for",
                  request->modes);
-    ritz_damping_print(&s->asked.damping, damping);
-    snprintf(text, sizeof text,
-             "the best %" PRId64 " of %" PRId64
-             " modes%s%s; the others together answer at most %.4g; "
-             "damping: %s",
-             s->kept, s->modal.count, among, less, s->bound,
-             damping[0] ? damping : "that of the matrices");
-    ritz_remark_append(basis, text);
+    ritz_damping_print(damping, stated);
+    ritz_remark_add(basis, "; ",
+                    "the best %" PRId64 " of %" PRId64
+                    " modes%s%s; the response of the others together is at "
+                    "most %.4g; damping: %s",
+                    s->kept, s->modal.count, among, less, s->bound,
+                    stated[0] ? stated : "that of the matrices");
 }
 
 static ritz_status make_modal_balanced(const ritz_request *request,
                                        ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
-    subset_search s = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(subset_search) s = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    ritz_damping damping = {0};
     int64_t column = 0;
 
-    RITZ_TRY(check_request(request));
-    RITZ_TRY(find_modes(request, &s));
-    RITZ_TRY(rank_groups(request, &s));
-    RITZ_TRY(choose_groups(request, &s));
-    RITZ_TRY(
+    RITZ_CHECK(ritz_request_damping(request, &damping));
+    RITZ_CHECK(find_modes(request, &damping, &s));
+    RITZ_CHECK(rank_groups(request, &s));
+    RITZ_CHECK(choose_groups(request, &s));
+    RITZ_CHECK(
         ritz_basis_new(s.modes.num_dofs, s.modes.num_rigid + s.kept, &basis));
     for (; column < s.modes.num_rigid; column++)
         copy_mode(&s, column, column, &basis);
@@ -221,12 +190,9 @@ static ritz_status make_modal_balanced(const ritz_request *request,
              j < s.groups[k].last && s.groups[k].keep; j++)
             copy_mode(&s, s.modes.num_rigid + j, column++, &basis);
     snprintf(basis.origin.engine, sizeof basis.origin.engine, "closed form");
-    add_remark(request, &s, &basis);
+    add_remark(request, &s, &damping, &basis);
     RITZ_MOVE(*out, basis);
-done:
-    release_search(&s);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_modal_balanced = {

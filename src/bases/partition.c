@@ -1,6 +1,7 @@
 #include "bases/partition.h"
 
 #include "base/tolerances.h"
+#include "bases/columns.h"
 
 #include <ritz/matrix.h>
 
@@ -49,41 +50,34 @@ static void name_dofs(const ritz_component *component, const ritz_dofs *i,
     }
 }
 
-ritz_status ritz_mechanism_refuse(const ritz_component *component,
-                                  const ritz_sparse *K_ii,
-                                  const ritz_sparse *M_ii, const ritz_dofs *i,
-                                  int64_t weak)
+ritz_status ritz_mechanism_refuse(const ritz_partition *s, int64_t weak)
 {
-    ritz_status status = RITZ_OK;
     const ritz_span rigid_only = {.modes = 0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     char text[160] = "";
     char name[RITZ_DOF_NAME_SIZE];
+    ritz_status status =
+        ritz_eigen_sparse(&s->K_ii, &s->M_ii, &rigid_only, &pairs);
 
-    status = ritz_eigen_sparse(K_ii, M_ii, &rigid_only, &pairs);
     if (status == RITZ_ERR_MEMORY)
-        goto done;
+        return status;
     if (status == RITZ_OK && pairs.num_rigid > 0)
-        name_dofs(component, i, ritz_dense_col(&pairs.Phi, 0), text);
+        name_dofs(s->component, &s->i, ritz_dense_col(&pairs.Phi, 0), text);
     else if (weak >= 0)
         snprintf(text, sizeof text, "%s",
-                 ritz_dof_name(component->dof[i->at[weak]], name));
-    if (status == RITZ_OK && pairs.num_rigid == 0 && pairs.Phi.ncol > 0 &&
-        pairs.lambda[0] < 0.0)
-        status = ritz_fail(RITZ_ERR_SINGULAR,
-                           "not positive definite: an eigenvalue is %.3g",
-                           pairs.lambda[0]);
-    else
-        status = ritz_fail(
-            RITZ_ERR_SINGULAR,
-            "singular, is a rigid-body motion or mechanism left free? with "
-            "the attached dofs held, %" PRId64 " motion(s) cost no energy; "
-            "largest at %s",
-            pairs.num_rigid > 0 ? pairs.num_rigid : 1,
-            text[0] ? text : "no dof in particular");
-done:
-    ritz_pairs_free(&pairs);
-    return status;
+                 ritz_dof_name(s->component->dof[s->i.at[weak]], name));
+    RITZ_REFUSE_IF(status == RITZ_OK && pairs.num_rigid == 0 &&
+                       pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "not positive definite: an eigenvalue is %.3g",
+                   pairs.lambda[0]);
+    return ritz_fail(
+        RITZ_ERR_SINGULAR,
+        "singular, is a rigid-body motion or mechanism left free? with "
+        "the attached dofs held, %" PRId64 " motion(s) cost no energy; "
+        "largest at %s",
+        pairs.num_rigid > 0 ? pairs.num_rigid : 1,
+        text[0] ? text : "no dof in particular");
 }
 
 ritz_status ritz_condense(const ritz_component *component,
@@ -99,9 +93,8 @@ ritz_status ritz_condense(const ritz_component *component,
     for (int64_t k = 0; k < most.nrow * most.ncol; k++)
         if (fabs(stiffness.val[k]) <= rounding * most.val[k])
             stiffness.val[k] = 0.0;
-    *K = stiffness;
-    *M = mass;
-    stiffness = mass = (ritz_dense){0};
+    RITZ_MOVE(*K, stiffness);
+    RITZ_MOVE(*M, mass);
     return RITZ_OK;
 }
 
@@ -124,54 +117,67 @@ ritz_status ritz_partition_new(const ritz_request *request, ritz_partition *out)
     return RITZ_OK;
 }
 
+/* Rows of X become the rows `to` of T, in columns from `first` on. */
+static void scatter_rows(const ritz_dense *X, const ritz_dofs *to,
+                         int64_t first, ritz_dense *T)
+{
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t k = 0; k < X->nrow; k++)
+            ritz_dense_col(T, first + j)[to->at[k]] = ritz_dense_col(X, j)[k];
+}
+
 ritz_status ritz_partition_factor(const ritz_partition *s, ritz_factor **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t weak = -1;
+    ritz_status status = RITZ_OK;
 
-    if (s->i.count == 0)
-        goto done;
-    status = ritz_factor_spd_weak(&s->K_ii, out, &weak);
-    if (status == RITZ_ERR_SINGULAR)
-        status = ritz_mechanism_refuse(s->component, &s->K_ii, &s->M_ii, &s->i,
-                                       weak);
-    RITZ_TRY_IN("interior stiffness", status);
-done:
-    return status;
-}
-
-/* -A as a dense matrix: the right-hand sides of the constraint modes. */
-static ritz_status negate_dense(const ritz_sparse *A, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol, out));
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-            ritz_dense_col(out, j)[A->rowind[p]] = -A->val[p];
-    return RITZ_OK;
-}
-
-ritz_status ritz_partition_constraint_modes(const ritz_partition *s,
-                                            ritz_factor *L, ritz_dense *Psi)
-{
-    RITZ_OWN(ritz_dense) X = {0};
-
-    RITZ_CHECK(negate_dense(&s->K_ib, &X));
     if (s->i.count > 0)
-        RITZ_CHECK(ritz_factor_solve(L, &X));
-    RITZ_MOVE(*Psi, X);
+        status = ritz_factor_spd_weak(&s->K_ii, out, &weak);
+    if (status == RITZ_ERR_SINGULAR)
+        status = ritz_mechanism_refuse(s, weak);
+    return ritz_context(status, "interior stiffness");
+}
+
+ritz_status ritz_partition_boundary(const ritz_partition *s, ritz_factor *L,
+                                    ritz_basis *out)
+{
+    const ritz_sparse *K_ib = &s->K_ib;
+    const ritz_dofs *b = s->b;
+    RITZ_OWN(ritz_dense) Psi = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+
+    RITZ_CHECK(ritz_dense_new(s->i.count, b->count, &Psi));
+    for (int64_t j = 0; j < b->count; j++)
+        for (int64_t p = K_ib->colptr[j]; p < K_ib->colptr[j + 1]; p++)
+            ritz_dense_col(&Psi, j)[K_ib->rowind[p]] = -K_ib->val[p];
+    if (s->i.count > 0)
+        RITZ_CHECK(ritz_factor_solve(L, &Psi));
+    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, &basis));
+    scatter_rows(&Psi, &s->i, 0, &basis.T);
+    for (int64_t j = 0; j < b->count; j++)
+        ritz_dense_col(&basis.T, j)[b->at[j]] = 1.0;
+    ritz_columns_label_dofs(b->count, b->at, 0, &basis.columns);
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
 
-void ritz_partition_scatter(const ritz_dense *part, const ritz_dofs *to,
-                            int64_t first, ritz_dense *T)
+ritz_status ritz_partition_join(const ritz_partition *s,
+                                const ritz_basis *boundary, const ritz_dense *X,
+                                ritz_basis *out)
 {
-    for (int64_t j = 0; j < part->ncol; j++) {
-        const double *from = ritz_dense_col(part, j);
-        double *into = ritz_dense_col(T, first + j);
+    const ritz_columns *from = &boundary->columns;
 
-        for (int64_t k = 0; k < part->nrow; k++)
-            into[to->at[k]] = from[k];
+    RITZ_CHECK(
+        ritz_basis_new(s->component->num_dofs, from->count + X->ncol, out));
+    for (int64_t j = 0; j < from->count; j++) {
+        out->columns.kind[j] = from->kind[j];
+        out->columns.dof[j] = from->dof[j];
+        out->columns.hertz[j] = from->hertz[j];
+        out->columns.residual[j] = from->residual[j];
     }
+    ritz_dense_put(&boundary->T, 0, 0, &out->T);
+    scatter_rows(X, &s->i, from->count, &out->T);
+    return RITZ_OK;
 }
 
 void ritz_partition_free(ritz_partition *s)

@@ -1,4 +1,4 @@
-/* Dofs of a component split into attached ones and the rest. */
+/* Dofs of a component divided into attached ones and the rest. */
 #ifndef RITZ_BASES_PARTITION_H
 #define RITZ_BASES_PARTITION_H
 
@@ -26,31 +26,33 @@ ritz_status ritz_partition_new(const ritz_request *request,
 ritz_status ritz_partition_factor(const ritz_partition *s, ritz_factor **out);
 
 /**
- * Psi = -K_ii^-1 K_ib, interior x boundary.
+ * The columns of the boundary, [I; Psi] with Psi = -K_ii^-1 K_ib.
  *
  * @param[in] L  of ritz_partition_factor
  */
-ritz_status ritz_partition_constraint_modes(const ritz_partition *s,
-                                            ritz_factor *L, ritz_dense *Psi);
+ritz_status ritz_partition_boundary(const ritz_partition *s, ritz_factor *L,
+                                    ritz_basis *out);
 
-/** Rows of @p part go to the dofs @p to, its columns from @p first on in T. */
-void ritz_partition_scatter(const ritz_dense *part, const ritz_dofs *to,
-                            int64_t first, ritz_dense *T);
+/**
+ * The columns of @p boundary, and then [0; X].
+ *
+ * @param[in] boundary  may span fewer motions of the boundary
+ * @param[in] X         interior x k; labels of its columns are the caller's to
+ *                      set
+ */
+ritz_status ritz_partition_join(const ritz_partition *s,
+                                const ritz_basis *boundary, const ritz_dense *X,
+                                ritz_basis *out);
 
 void ritz_partition_free(ritz_partition *s);
 
 /**
- * Record a sentence that names the dofs which move freely while the rest of
- * the component is held, and return RITZ_ERR_SINGULAR (or a worse failure).
+ * Record a sentence that names the dofs which move freely while the boundary
+ * is held, and return RITZ_ERR_SINGULAR (or a worse failure).
  *
- * @param[in] K_ii,M_ii  the singular block and its mass
- * @param[in] i          rows of the component that they stand for
- * @param[in] weak       row of the block that gave way, -1 if not known
+ * @param[in] weak  row of K_ii that gave way, -1 if not known
  */
-ritz_status ritz_mechanism_refuse(const ritz_component *component,
-                                  const ritz_sparse *K_ii,
-                                  const ritz_sparse *M_ii, const ritz_dofs *i,
-                                  int64_t weak);
+ritz_status ritz_mechanism_refuse(const ritz_partition *s, int64_t weak);
 
 /**
  * T_b'KT_b and T_b'MT_b. For motions that store no energy the first is rounding

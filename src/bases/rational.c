@@ -9,17 +9,12 @@
 
 #include "base/alloc.h"
 #include "bases/loads.h"
+#include "linear/general.h"
 
 #include <complex.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-static bool is_zero(const ritz_dense *A)
-{
-    return ritz_dense_max(A) == 0.0;
-}
 
 /* Columns are the rows of C, Cv, Ca, at powers 0, 1, 2 of s. */
 static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
@@ -27,16 +22,9 @@ static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
     const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
 
     out->count = io->num_outputs;
-    for (int power = 0; power < 3; power++) {
-        const ritz_dense *C = rows[power];
-
-        if (is_zero(C))
-            continue;
-        RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, &out->F[power]));
-        for (int64_t j = 0; j < C->ncol; j++)
-            for (int64_t i = 0; i < C->nrow; i++)
-                ritz_dense_col(&out->F[power], i)[j] = ritz_dense_col(C, j)[i];
-    }
+    for (int power = 0; power < 3; power++)
+        if (ritz_dense_max(rows[power]) > 0.0)
+            RITZ_CHECK(ritz_general_transpose(rows[power], &out->F[power]));
     return RITZ_OK;
 }
 
@@ -68,13 +56,13 @@ static ritz_status read_groups(const ritz_request *request, int loads,
             continue;
         R->num_groups++;
         group->first = R->num_loads;
-        group->answered = loads & kinds[k];
-        any = any || group->answered;
+        group->interpolated = loads & kinds[k];
+        any = any || group->interpolated;
         RITZ_CHECK(read_loads(request, kinds[k], group));
         R->num_loads += group->count;
     }
     RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
-                   "there is no load to answer: attach a port, or give the "
+                   "there is no load to respond to: attach a port, or give the "
                    "component inputs or outputs");
     return RITZ_OK;
 }
@@ -104,7 +92,7 @@ ritz_status ritz_rational_new(const ritz_request *request, int loads,
                        ritz_sparse_asymmetry(&component->D) > 0.0,
                    RITZ_ERR_ARGUMENT,
                    "D is not symmetric (gyroscopic?), which one-sided "
-                   "interpolation cannot answer for");
+                   "interpolation cannot reproduce");
     RITZ_CHECK(read_groups(request, loads, &R));
     RITZ_CHECK(
         ritz_sparse_add(1.0, &component->M, 1.0 / scale, &component->K, &R.P));
@@ -121,28 +109,26 @@ bool ritz_rational_damped(const ritz_rational *R)
 /* Factor Z(s), unless it is factored at s already. */
 static ritz_status factor_impedance(ritz_rational *R, double _Complex s)
 {
-    ritz_status status = RITZ_OK;
     double _Complex c[4] = {s * s, 1.0};
     int count = 2;
+    ritz_status status = RITZ_OK;
 
     if (R->factored && R->s == s)
-        goto done;
+        return RITZ_OK;
     R->factored = false;
     if (R->component->D.colptr)
         c[count++] = s;
     if (R->component->K4.colptr)
         c[count++] = cimag(s) > 0.0 ? (double _Complex)_Complex_I : 0.0;
     status = ritz_zldl_factor(R->Z, c);
-    if (status == RITZ_ERR_SINGULAR)
-        status = ritz_fail(RITZ_ERR_SINGULAR,
-                           "%g%+gi rad/s is a pole of the component, where "
-                           "nothing can be interpolated",
-                           creal(s), cimag(s));
-    RITZ_TRY(status);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, status,
+                   "%g%+gi rad/s is a pole of the component, where nothing can "
+                   "be interpolated",
+                   creal(s), cimag(s));
+    RITZ_CHECK(status);
     R->s = s;
     R->factored = true;
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* v += F(s) b of a group. */
@@ -159,15 +145,6 @@ static void add_load(const ritz_rational_loads *group,
             for (int64_t i = 0; i < group->F[k].nrow; i++)
                 v[i] += factor * f[i];
         }
-}
-
-static ritz_status solve_probe(ritz_rational *R,
-                               const ritz_interpolation_point *probe,
-                               double _Complex *v)
-{
-    add_load(&R->group[probe->group], probe, v);
-    RITZ_CHECK(factor_impedance(R, probe->s));
-    return ritz_zldl_solve(R->Z, 1, v);
 }
 
 /* w := w / |w|, and |w| in the inner product P. */
@@ -187,13 +164,13 @@ static ritz_status normalise_vector(const ritz_rational *R, ritz_dense *w,
 static ritz_status remove_span(const ritz_rational *R, const ritz_dense *Q,
                                ritz_dense *w)
 {
-    RITZ_OWN(ritz_dense) Pw = {0}, share = {0}, gone = {0};
+    RITZ_OWN(ritz_dense) Pw = {0}, q = {0}, part = {0};
 
     RITZ_CHECK(ritz_sparse_mul(&R->P, w, &Pw));
-    RITZ_CHECK(ritz_dense_mul_tn(Q, &Pw, &share));
-    RITZ_CHECK(ritz_dense_mul(Q, &share, &gone));
+    RITZ_CHECK(ritz_dense_mul_tn(Q, &Pw, &q));
+    RITZ_CHECK(ritz_dense_mul(Q, &q, &part));
     for (int64_t i = 0; i < w->nrow; i++)
-        w->val[i] -= gone.val[i];
+        w->val[i] -= part.val[i];
     return RITZ_OK;
 }
 
@@ -214,8 +191,7 @@ static ritz_status append_vector(const ritz_rational *R, ritz_dense *w,
         left *= size;
     }
     if (left > R->tolerance)
-        memcpy(ritz_dense_col(Q, Q->ncol++), w->val,
-               (size_t)w->nrow * sizeof *w->val);
+        ritz_dense_put(w, 0, Q->ncol++, Q);
     return RITZ_OK;
 }
 
@@ -254,40 +230,34 @@ static ritz_status add_probe(ritz_rational *R,
                              const ritz_interpolation_point *probe,
                              int64_t room, ritz_dense *Q)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = R->component->num_dofs;
     int64_t parts = ritz_rational_damped(R) && cimag(probe->s) > 0.0 ? 2 : 1;
-    double _Complex *v = NULL;
-    ritz_dense part[2] = {{0}};
+    RITZ_OWN_ARRAY double _Complex *v = NULL;
+    RITZ_OWN(ritz_dense_pair) part = {0};
 
     if (room < parts)
         return RITZ_OK;
-    RITZ_NEW(v, n);
-    RITZ_TRY(ritz_dense_new(n, 1, &part[0]));
-    RITZ_TRY(ritz_dense_new(n, 1, &part[1]));
-    RITZ_TRY(solve_probe(R, probe, v));
-    RITZ_TRY(split_complex(R, v, part));
+    RITZ_CHECK_NEW(v, n);
+    RITZ_CHECK(ritz_dense_new(n, 1, &part[0]));
+    RITZ_CHECK(ritz_dense_new(n, 1, &part[1]));
+    add_load(&R->group[probe->group], probe, v);
+    RITZ_CHECK(factor_impedance(R, probe->s));
+    RITZ_CHECK(ritz_zldl_solve(R->Z, 1, v));
+    RITZ_CHECK(split_complex(R, v, part));
     for (int64_t k = 0; k < 2 && k < room; k++)
-        RITZ_TRY(append_vector(R, &part[k], Q));
-done:
-    free(v);
-    ritz_dense_free(&part[0]);
-    ritz_dense_free(&part[1]);
-    return status;
+        RITZ_CHECK(append_vector(R, &part[k], Q));
+    return RITZ_OK;
 }
 
 ritz_status ritz_rational_span(ritz_rational *R, const ritz_probes *probes,
                                const ritz_dense *first, int64_t most,
                                ritz_dense *out, int64_t *gave)
 {
-    int64_t n = R->component->num_dofs;
     int64_t r = first->ncol;
     RITZ_OWN(ritz_dense) Q = {0};
-    ritz_dense kept = {0};
 
-    RITZ_CHECK(ritz_dense_new(n, r + most, &Q));
-    if (r > 0)
-        memcpy(Q.val, first->val, (size_t)(n * r) * sizeof *Q.val);
+    RITZ_CHECK(ritz_dense_new(R->component->num_dofs, r + most, &Q));
+    ritz_dense_put(first, 0, 0, &Q);
     Q.ncol = r;
     for (int64_t k = 0; k < probes->count; k++) {
         int64_t before = Q.ncol;
@@ -295,9 +265,7 @@ ritz_status ritz_rational_span(ritz_rational *R, const ritz_probes *probes,
         RITZ_CHECK(add_probe(R, &probes->item[k], r + most - before, &Q));
         gave[k] = Q.ncol - before;
     }
-    RITZ_CHECK(ritz_dense_columns(&Q, 0, Q.ncol, &kept));
-    *out = kept;
-    return RITZ_OK;
+    return ritz_dense_copy(&Q, out);
 }
 
 ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
@@ -305,17 +273,17 @@ ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
     RITZ_OWN(ritz_probes) probes = {.count = count};
 
     RITZ_CHECK_NEW(probes.item, count);
+    RITZ_CHECK_NEW(probes.b, count * width);
     for (int64_t k = 0; k < count; k++)
-        RITZ_CHECK_NEW(probes.item[k].b, width);
+        probes.item[k].b = probes.b + k * width;
     RITZ_MOVE(*out, probes);
     return RITZ_OK;
 }
 
 void ritz_probes_free(ritz_probes *probes)
 {
-    for (int64_t k = 0; probes->item && k < probes->count; k++)
-        free(probes->item[k].b);
     free(probes->item);
+    free(probes->b);
     *probes = (ritz_probes){0};
 }
 

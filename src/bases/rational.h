@@ -17,9 +17,9 @@ enum { RITZ_RATIONAL_GROUPS = 4 };
 
 /* Loads of one kind; powers of s without a load are {0}. */
 typedef struct ritz_rational_loads {
-    int kind;      /* RITZ_LOADS_... */
-    bool answered; /* or only weighed with */
-    int64_t first; /* of all loads, which of them is its first */
+    int kind;          /* RITZ_LOADS_... */
+    bool interpolated; /* false: poles are only weighted by it */
+    int64_t first;     /* of all loads, which of them is its first */
     int64_t count;
     ritz_dense F[3]; /* n x count */
 } ritz_rational_loads;
@@ -31,12 +31,13 @@ typedef struct ritz_interpolation_point {
     double _Complex s; /* Im s >= 0; K4 counts above the real axis only */
     int64_t group;
     double _Complex *b; /* as many as there are loads of all groups, zero of
-                           others; owned */
+                           others; borrowed from ritz_probes */
 } ritz_interpolation_point;
 
 typedef struct ritz_probes {
     int64_t count;
     ritz_interpolation_point *item;
+    double _Complex *b; /* the directions of all */
 } ritz_probes;
 
 typedef struct ritz_rational {
@@ -55,7 +56,7 @@ typedef struct ritz_rational {
  * Each kind of load is a group. Inputs and outputs are read in any case, since
  * poles are weighted by them.
  *
- * @param[in] loads  to be answered, sum of RITZ_LOADS_...
+ * @param[in] loads  to be interpolated, sum of RITZ_LOADS_...
  * @param[in] scale  an eigenvalue of the component  [rad^2/s^2]
  * @return RITZ_ERR_ARGUMENT if there is no load, or D is not symmetric
  */
@@ -66,15 +67,13 @@ ritz_status ritz_rational_new(const ritz_request *request, int loads,
 bool ritz_rational_damped(const ritz_rational *R);
 
 /**
- * Real and imaginary parts of the responses to probes, in their order, after
- * the columns of @p first, orthonormal in M + K / scale; dependent parts are
- * left out.
- *
- * A probe whose response needs more columns than are left is skipped.
+ * The columns of @p first, and then real and imaginary parts of the responses at
+ * the points, in their order, orthonormal in M + K / scale; dependent parts are
+ * left out. A point whose response needs more columns than are left is skipped.
  *
  * @param[in]  first  n x r, orthonormal in the same product; may have no column
- * @param[in]  most   columns beside those of @p first
- * @param[out] gave   probes->count: how many columns the answer gave
+ * @param[in]  most   columns in addition to those of @p first
+ * @param[out] gave   probes->count: how many columns each response gave
  * @return RITZ_ERR_SINGULAR if a point is a pole
  * @cost   a complex LDL' factor for each change of s
  */
@@ -87,5 +86,30 @@ ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out);
 
 void ritz_probes_free(ritz_probes *probes);
 void ritz_rational_free(ritz_rational *R);
+
+/**
+ * Points and directions from the poles of a projected component. Each pole p,
+ * Im p >= 0, of (T'MT, T'DT + damping, T'KT + i T'K4T) and its vector x,
+ * x'(2 p M + D) x = 1, give a term of the response,
+ *
+ *     (C x) (x'B) / (s - p),     of H2 norm |C x| |x'B| / sqrt(2 |Re p|),
+ *
+ * by which poles are ordered, the largest first; uncontrollable and
+ * unobservable ones are left out. B are all loads but outputs; if there are
+ * only outputs, or none, B = C' or C = B'. Each pole gives a probe for each
+ * group to be interpolated, in direction conj(F(-conj(s))'x).
+ *
+ * If the component has D or K4, the point of a pole is s = -conj(p), at least
+ * 1e-4 |p| off the axis. If not, s^2 = -w^2 (1 - zeta), w^2 an eigenvalue and
+ * zeta its ratio: half of the half-power distance below the resonance of a
+ * component without damping, whose response there is real.
+ *
+ * @param[in] T  n x r, independent columns without rigid motion
+ * @return RITZ_ERR_CONVERGENCE
+ * @cost   O(r nnz + n r^2 + r^3)
+ */
+ritz_status ritz_dominant_probes(const ritz_rational *R,
+                                 const ritz_damping *damping,
+                                 const ritz_dense *T, ritz_probes *out);
 
 #endif

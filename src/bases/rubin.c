@@ -14,6 +14,7 @@
  * free_modes.c removes are no coordinates, and the remark names them.
  */
 #include "base/alloc.h"
+#include "bases/columns.h"
 #include "bases/free_modes.h"
 #include "bases/loads.h"
 
@@ -32,16 +33,16 @@ enum { NAMED = 3 };
 static ritz_status pick_columns(const ritz_free_set *set, ritz_dense *Psi,
                                 int64_t *b)
 {
-    int64_t n = set->Psi.nrow;
     int64_t k = 0;
 
-    RITZ_CHECK(ritz_dense_new(n, ritz_free_set_kept(set), Psi));
+    RITZ_CHECK(ritz_dense_new(set->Psi.nrow, ritz_free_set_kept(set), Psi));
     for (int64_t j = 0; j < set->Psi.ncol; j++) {
+        const ritz_dense column = ritz_dense_part(&set->Psi, j, 1);
+
         if (!set->keep[j])
             continue;
         b[k] = set->dof[j];
-        memcpy(ritz_dense_col(Psi, k++), ritz_dense_col(&set->Psi, j),
-               (size_t)n * sizeof *Psi->val);
+        ritz_dense_put(&column, 0, k++, Psi);
     }
     return RITZ_OK;
 }
@@ -78,28 +79,26 @@ static ritz_status divide_residual(const int64_t *b, ritz_dense *Psi)
 }
 
 /*
- * Set the rows of G to ones and those of Phi - G Phi_b to zeros where they are
- * so exactly.
+ * T = [G, Phi - G Phi_b]. The rows of G are those of I, and those of
+ * Phi - G Phi_b zero, where they are so exactly.
  */
-static ritz_status set_exact_entries(const ritz_dense *Phi, const int64_t *b,
-                                     ritz_dense *G, ritz_dense *T)
+static ritz_status fill_basis(const ritz_dense *Phi, const int64_t *b,
+                              ritz_dense *G, ritz_dense *T)
 {
     RITZ_OWN(ritz_dense) Phi_b = {0};
     int64_t n = G->nrow;
     int64_t p = G->ncol;
-    double *rest = ritz_dense_col(T, p);
 
     RITZ_CHECK(ritz_dense_rows(Phi, p, b, &Phi_b));
     for (int64_t j = 0; j < p; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(G, j)[b[i]] = i == j ? 1.0 : 0.0;
-    memcpy(T->val, G->val, (size_t)(n * p) * sizeof *T->val);
-    if (Phi->ncol > 0) {
-        memcpy(rest, Phi->val, (size_t)(n * Phi->ncol) * sizeof *T->val);
+    ritz_dense_put(G, 0, 0, T);
+    ritz_dense_put(Phi, 0, p, T);
+    if (Phi->ncol > 0)
         cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)n,
                     (int)Phi->ncol, (int)p, -1.0, G->val, (int)n, Phi_b.val,
-                    (int)p, 1.0, rest, (int)n);
-    }
+                    (int)p, 1.0, ritz_dense_col(T, p), (int)n);
     for (int64_t j = p; j < T->ncol; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(T, j)[b[i]] = 0.0;
@@ -115,40 +114,18 @@ static void add_remark(const ritz_request *request, const ritz_free_set *set,
     size_t used = 0;
     int64_t count = 0;
 
-    for (int64_t j = 0; j < set->Psi.ncol; j++) {
-        if (set->keep[j])
-            continue;
-        if (count++ < NAMED)
+    for (int64_t j = 0; j < set->Psi.ncol; j++)
+        if (!set->keep[j] && count++ < NAMED)
             used += (size_t)snprintf(
                 text + used, sizeof text - used, "%s%s", used > 0 ? ", " : "",
                 ritz_loads_name(request, set->loads, j, name));
-    }
     if (count > 0)
         snprintf(basis->remark, sizeof basis->remark,
                  "%" PRId64
                  " attached dof(s) are no coordinates, %.80s%s: their "
-                 "residual flexibility depends on others, or is nothing "
-                 "beside the kept modes",
+                 "residual flexibility depends on others, or is negligible "
+                 "relative to the kept modes",
                  count, text, count > NAMED ? ", ..." : "");
-}
-
-/* [constraint, normal], the modes in their previous order. */
-static void label_columns(const ritz_free_set *set, const int64_t *b, int64_t p,
-                          ritz_basis *basis)
-{
-    const ritz_pairs *modes = &set->modes;
-    ritz_columns *columns = &basis->columns;
-
-    for (int64_t j = 0; j < p; j++) {
-        columns->kind[j] = RITZ_COLUMN_CONSTRAINT;
-        columns->dof[j] = b[j];
-    }
-    for (int64_t j = 0; j < modes->Phi.ncol; j++) {
-        if (j >= modes->num_rigid) /* the others are no longer rigid */
-            columns->hertz[p + j] = ritz_eigen_hertz(modes->lambda[j]);
-        columns->residual[p + j] = modes->residual[j];
-    }
-    memcpy(basis->origin.engine, modes->engine, sizeof basis->origin.engine);
 }
 
 static ritz_status make_rubin(const ritz_request *request, ritz_basis *out)
@@ -157,6 +134,7 @@ static ritz_status make_rubin(const ritz_request *request, ritz_basis *out)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_dense) G = {0};
     RITZ_OWN_ARRAY int64_t *b = NULL;
+    const ritz_pairs *modes = &set.modes;
 
     RITZ_CHECK(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
     if (ritz_free_set_kept(&set) == 0) { /* then the modes are all there is */
@@ -168,9 +146,15 @@ static ritz_status make_rubin(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK_NEW(b, set.Psi.ncol);
     RITZ_CHECK(pick_columns(&set, &G, b));
     RITZ_CHECK(divide_residual(b, &G));
-    RITZ_CHECK(ritz_basis_new(G.nrow, G.ncol + set.modes.Phi.ncol, &basis));
-    RITZ_CHECK(set_exact_entries(&set.modes.Phi, b, &G, &basis.T));
-    label_columns(&set, b, G.ncol, &basis);
+    RITZ_CHECK(ritz_basis_new(G.nrow, G.ncol + modes->Phi.ncol, &basis));
+    RITZ_CHECK(fill_basis(&modes->Phi, b, &G, &basis.T));
+    ritz_columns_label_dofs(G.ncol, b, 0, &basis.columns);
+    ritz_columns_label(modes, RITZ_COLUMN_NORMAL, G.ncol, &basis.columns);
+    for (int64_t j = G.ncol; j < G.ncol + modes->num_rigid; j++) {
+        basis.columns.kind[j] = RITZ_COLUMN_NORMAL; /* and no longer rigid */
+        basis.columns.hertz[j] = nan("");
+    }
+    memcpy(basis.origin.engine, modes->engine, sizeof basis.origin.engine);
     add_remark(request, &set, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;

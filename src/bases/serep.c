@@ -16,8 +16,8 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "bases/columns.h"
 
-#include <ritz/basis.h>
 #include <ritz/matrix.h>
 
 #include <lapacke.h>
@@ -37,6 +37,11 @@ typedef struct selection {
     double condition;
     int64_t worst; /* least observable mode */
 } selection;
+
+static void selection_free(selection *c)
+{
+    free(c->at);
+}
 
 static int64_t dof_kind(const ritz_component *component, int64_t row)
 {
@@ -195,8 +200,8 @@ static ritz_status find_serep(selection *c, ritz_dense *T)
     name_worst(c, text);
     RITZ_REFUSE_IF(
         !(c->condition * c->request->tolerance < 1.0), RITZ_ERR_SINGULAR,
-        "the attached dofs cannot tell the kept modes apart (condition "
-        "%.1e), they see least of %s: attach dofs where it moves, or "
+        "the attached dofs cannot distinguish the kept modes (condition "
+        "%.1e), %s is least observable: attach dofs where it moves, or "
         "keep fewer modes",
         c->condition, text);
     return expand_basis(c, &U, sigma, &Vt, T);
@@ -210,90 +215,75 @@ static void add_remark(const selection *c, ritz_basis *basis)
 {
     const ritz_dofs *a = &c->request->attached;
     int64_t m = basis->T.ncol;
-    char *text = basis->remark;
     const size_t size = sizeof basis->remark;
-    size_t used = 0;
     char name[RITZ_NAME_SIZE];
 
     if (c->condition > RITZ_SEREP_CONDITION) {
         name_worst(c, name);
-        used += (size_t)snprintf(text, size,
-                                 "attached dofs see %s badly: condition %.1e%s",
-                                 name, c->condition, m < a->count ? "; " : "");
+        ritz_remark_add(basis, "; ",
+                        "%s is hardly observable at the attached dofs: "
+                        "condition %.1e",
+                        name, c->condition);
     }
-    if (m < a->count)
-        used += (size_t)snprintf(text + used, size - used,
-                                 "%" PRId64 " of %" PRId64 " attached dofs are "
-                                 "coordinates, which are enough:",
-                                 m, a->count);
-    for (int64_t k = 0; k < m && m < a->count && used < size; k++)
-        used += (size_t)snprintf(
-            text + used, size - used, "%s %s", k > 0 ? "," : "",
+    if (m == a->count)
+        return;
+    ritz_remark_add(basis, "; ",
+                    "%" PRId64 " of %" PRId64 " attached dofs are "
+                    "coordinates, which are enough:",
+                    m, a->count);
+    for (int64_t k = 0; k < m; k++)
+        ritz_remark_add(
+            basis, k > 0 ? ", " : " ", "%s",
             ritz_dof_name(c->request->component->dof[a->at[c->at[k]]], name));
-    if (used >= size)
-        memcpy(text + size - 4, "...", 4);
-}
-
-static ritz_status check_request(const ritz_request *request,
-                                 const ritz_pairs *modes)
-{
-    int64_t m = modes->Phi.ncol;
-    int64_t a = request->attached.count;
-
-    RITZ_REFUSE_IF(m == 0, RITZ_ERR_ARGUMENT,
-                   "no mode is kept: there is no rigid one, ask for flexible "
-                   "ones");
-    RITZ_REFUSE_IF(m > a, RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " attached dof(s) cannot show %" PRId64
-                   " modes, %" PRId64 " rigid ones among them: attach more or "
-                   "keep fewer",
-                   a, m, modes->num_rigid);
-    return RITZ_OK;
+    if (strlen(basis->remark) + 1 == size)
+        memcpy(basis->remark + size - 4, "...", 4);
 }
 
 static ritz_status make_serep(const ritz_request *request, ritz_basis *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_component *component = request->component;
+    const ritz_dofs *a = &request->attached;
     const ritz_span span = {request->modes, request->up_to_hz};
-    ritz_pairs modes = {0};
-    selection c = {.request = request, .modes = &modes};
-    ritz_basis basis = {0};
-    ritz_dofs rest = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
+    RITZ_OWN(selection) c = {.request = request, .modes = &modes};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_dofs) rest = {0};
+    int64_t m = 0;
 
-    RITZ_FAIL_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
-                 "nothing is attached, so nothing is measured: name a port");
+    RITZ_REFUSE_IF(a->count == 0, RITZ_ERR_ARGUMENT,
+                   "nothing is attached, so nothing is measured: name a port");
     /* refuses attached dofs that are out of range or repeated */
-    RITZ_TRY(
-        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
-    RITZ_TRY_IN("free-interface modes",
-                ritz_eigen_sparse(&component->K, &component->M, &span, &modes));
-    RITZ_TRY(check_request(request, &modes));
-    RITZ_TRY(ritz_columns_new(modes.Phi.ncol, &basis.columns));
-    RITZ_TRY(find_serep(&c, &basis.T));
-    for (int64_t k = 0; k < basis.T.ncol; k++) {
-        basis.columns.kind[k] = RITZ_COLUMN_CONSTRAINT;
-        basis.columns.dof[k] = request->attached.at[c.at[k]];
-    }
+    RITZ_CHECK(ritz_dofs_complement(a, component->num_dofs, &rest));
+    RITZ_CHECK_IN(
+        "free-interface modes",
+        ritz_eigen_sparse(&component->K, &component->M, &span, &modes));
+    m = modes.Phi.ncol;
+    RITZ_REFUSE_IF(m == 0, RITZ_ERR_ARGUMENT,
+                   "no mode is kept: there is no rigid one, ask for flexible "
+                   "ones");
+    RITZ_REFUSE_IF(m > a->count, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " attached dof(s) cannot show %" PRId64
+                   " modes, %" PRId64 " rigid ones among them: attach more or "
+                   "keep fewer",
+                   a->count, m, modes.num_rigid);
+    RITZ_CHECK(ritz_columns_new(m, &basis.columns));
+    RITZ_CHECK(find_serep(&c, &basis.T));
+    for (int64_t k = 0; k < m; k++)
+        ritz_columns_label_dofs(1, &a->at[c.at[k]], k, &basis.columns);
     add_remark(&c, &basis);
     memcpy(basis.origin.engine, modes.engine, sizeof basis.origin.engine);
     RITZ_MOVE(*out, basis);
-done:
-    ritz_pairs_free(&modes);
-    ritz_dofs_free(&rest);
-    free(c.at);
-    ritz_basis_free(&basis);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_method ritz_method_serep = {
     .name = "serep",
-    .summary = "modes seen through attached dofs (test-analysis models)",
+    .summary = "modes observed at attached dofs (test-analysis models)",
     .reference = "OCallahan1989b",
     .when = "test-analysis models: exact modes on measured dofs",
     .cost = "a factor, two solves a mode",
     .holds = "kept frequencies and shapes",
-    .fails = "statics; modes that the measured dofs do not tell apart",
+    .fails = "statics; modes that the measured dofs do not distinguish",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
     .only_named = RITZ_NAMED_FOR_SCENES,
     .make = make_serep,

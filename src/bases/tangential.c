@@ -26,7 +26,8 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "bases/dominant.h"
+#include "bases/balancing.h"
+#include "bases/columns.h"
 #include "bases/loads.h"
 
 #include <ritz/matrix.h>
@@ -48,8 +49,8 @@ static const ritz_damping assumed = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
 typedef struct irka_search {
     const ritz_request *request;
     ritz_damping damping;
-    bool assumed;     /* nobody had said how it is damped */
-    ritz_pairs modes; /* where it begins */
+    bool assumed;     /* the damping, of which nothing is known */
+    ritz_pairs modes; /* where the search begins */
     ritz_dense rigid;
     int64_t most; /* vectors besides the rigid ones */
     ritz_rational R;
@@ -60,7 +61,7 @@ typedef struct irka_search {
     double change;
 } irka_search;
 
-static void free_search(irka_search *s)
+static void irka_search_free(irka_search *s)
 {
     ritz_pairs_free(&s->modes);
     ritz_dense_free(&s->rigid);
@@ -73,13 +74,10 @@ static void free_search(irka_search *s)
 static ritz_status choose_damping(irka_search *s)
 {
     const ritz_component *component = s->request->component;
-    const ritz_choice *choice = &s->request->choice;
 
-    s->damping = choice->damping;
-    if (!(choice->given & RITZ_USES_DAMPING))
-        RITZ_CHECK(ritz_damping_parse(component->damping, &s->damping));
+    RITZ_CHECK(ritz_request_damping(s->request, &s->damping));
     s->assumed = s->damping.kind == RITZ_DAMPING_NONE && !component->D.colptr &&
-                 !component->K4.colptr && choice->num_shifts == 0;
+                 !component->K4.colptr && s->request->choice.num_shifts == 0;
     if (s->assumed)
         s->damping = assumed;
     return RITZ_OK;
@@ -111,14 +109,8 @@ static ritz_status find_modes(irka_search *s)
     ritz_pairs *modes = &s->modes;
     int64_t flexible = 0;
 
-    RITZ_CHECK_IN(
-        "modes to begin with",
-        ritz_eigen_sparse(&component->K, &component->M, &span, modes));
-    RITZ_REFUSE_IF(modes->Phi.ncol > 0 && modes->num_rigid == 0 &&
-                       modes->lambda[0] <= 0.0,
-                   RITZ_ERR_SINGULAR,
-                   "K is not positive semidefinite: an eigenvalue is %.3g",
-                   modes->lambda[0]);
+    RITZ_CHECK(ritz_lowest_modes("modes to begin with", "K", &component->K,
+                                 &component->M, &span, modes));
     if (wanted < 0)
         wanted = count_modes(modes, request->up_to_hz);
     flexible = component->num_dofs - modes->num_rigid;
@@ -134,20 +126,19 @@ static ritz_status find_modes(irka_search *s)
 static ritz_status list_given(const irka_search *s, ritz_probes *out)
 {
     const ritz_choice *choice = &s->request->choice;
-    ritz_probes probes = {0};
     int64_t loads = 0;
     int64_t at = 0;
 
     for (int64_t g = 0; g < s->R.num_groups; g++)
-        loads += s->R.group[g].answered ? s->R.group[g].count : 0;
+        loads += s->R.group[g].interpolated ? s->R.group[g].count : 0;
     RITZ_CHECK(
-        ritz_probes_new(choice->num_shifts * loads, s->R.num_loads, &probes));
+        ritz_probes_new(choice->num_shifts * loads, s->R.num_loads, out));
     for (int64_t k = 0; k < choice->num_shifts; k++)
         for (int64_t g = 0; g < s->R.num_groups; g++) {
             const ritz_rational_loads *group = &s->R.group[g];
 
-            for (int64_t j = 0; group->answered && j < group->count; j++) {
-                ritz_interpolation_point *probe = &probes.item[at++];
+            for (int64_t j = 0; group->interpolated && j < group->count; j++) {
+                ritz_interpolation_point *probe = &out->item[at++];
 
                 probe->s = (double _Complex)_Complex_I *
                            (2.0 * RITZ_PI * choice->shift_hz[k]);
@@ -155,14 +146,13 @@ static ritz_status list_given(const irka_search *s, ritz_probes *out)
                 probe->b[group->first + j] = 1.0;
             }
         }
-    *out = probes;
     return RITZ_OK;
 }
 
 /* T from probes; probes that gave no column are dropped. */
 static ritz_status span_probes(irka_search *s, ritz_probes *probes)
 {
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_dense) T = {0};
     RITZ_OWN_ARRAY int64_t *gave = NULL;
     int64_t kept = 0;
 
@@ -171,15 +161,12 @@ static ritz_status span_probes(irka_search *s, ritz_probes *probes)
     for (int64_t k = 0; k < probes->count; k++)
         if (gave[k] > 0)
             probes->item[kept++] = probes->item[k];
-        else
-            free(probes->item[k].b);
     s->left_out = probes->count - kept;
     probes->count = kept;
     ritz_probes_free(&s->probes);
-    s->probes = *probes;
-    *probes = (ritz_probes){0};
+    RITZ_MOVE(s->probes, *probes);
     ritz_dense_free(&s->T);
-    s->T = T;
+    RITZ_MOVE(s->T, T);
     return RITZ_OK;
 }
 
@@ -286,90 +273,70 @@ static ritz_status interpolate_response(irka_search *s)
     RITZ_REFUSE_IF(
         s->probes.count == 0 && s->left_out > 0 && s->most == 1,
         RITZ_ERR_ARGUMENT,
-        "one vector cannot hold the real and the imaginary part of an "
-        "answer: ask for 2 or more");
+        "one vector cannot hold the real and the imaginary part of a "
+        "response: ask for 2 or more");
     RITZ_REFUSE_IF(s->probes.count == 0, RITZ_ERR_ARGUMENT,
-                   "the loads drive no flexible mode, or no output reads one");
+                   "no flexible mode is controllable by the loads, or none is "
+                   "observable at an output");
     return RITZ_OK;
 }
 
 /* Remark on how the points were found, and on their limits. */
 static void add_remark(const irka_search *s, ritz_basis *basis)
 {
-    char *text = basis->remark;
-    const size_t size = sizeof basis->remark;
+    bool given = s->request->choice.num_shifts > 0;
     int64_t missing = s->most + s->rigid.ncol - basis->T.ncol;
-    int used = 0;
 
     if (s->most == 0)
         return;
-    if (s->request->choice.num_shifts > 0)
-        used = snprintf(text, size, "%" PRId64 " answer(s) interpolated",
+    if (given)
+        ritz_remark_add(basis, "; ", "%" PRId64 " response(s) interpolated",
                         s->probes.count);
     else if (s->change <= RITZ_POINTS_SETTLED)
-        used =
-            snprintf(text, size, "points settled after %d round(s)", s->rounds);
+        ritz_remark_add(basis, "; ", "points settled after %d round(s)",
+                        s->rounds);
     else
-        used = snprintf(text, size,
+        ritz_remark_add(basis, "; ",
                         "points did not settle in %d rounds, the last moved "
                         "them by %.1e; interpolation is exact where they were",
                         s->rounds, s->change);
     if (s->assumed)
-        used += snprintf(text + used, size - (size_t)used,
-                         "; damping modal 0.01 assumed for them");
-    if (s->request->choice.num_shifts > 0 && s->left_out > 0)
-        used += snprintf(text + used, size - (size_t)used,
-                         "; %" PRId64 " more have no room", s->left_out);
+        ritz_remark_add(basis, "; ", "damping modal 0.01 assumed for them");
+    if (given && s->left_out > 0)
+        ritz_remark_add(basis, "; ", "%" PRId64 " more have no room",
+                        s->left_out);
     if (missing > 0)
-        snprintf(text + used, size - (size_t)used,
-                 "; %" PRId64 " vector(s) fewer than asked", missing);
-}
-
-/* Rigid, krylov. */
-static ritz_status label_columns(const irka_search *s, ritz_basis *out)
-{
-    RITZ_OWN(ritz_basis) basis = {0};
-    ritz_columns *columns = &basis.columns;
-
-    RITZ_CHECK(ritz_dense_copy(&s->T, &basis.T));
-    RITZ_CHECK(ritz_columns_new(s->T.ncol, columns));
-    for (int64_t j = 0; j < s->T.ncol; j++) {
-        bool rigid = j < s->rigid.ncol;
-
-        columns->kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_KRYLOV;
-        if (rigid) {
-            columns->hertz[j] = 0.0;
-            columns->residual[j] = s->modes.residual[j];
-        }
-    }
-    snprintf(basis.origin.engine, sizeof basis.origin.engine, "MUMPS LDL'");
-    add_remark(s, &basis);
-    RITZ_MOVE(*out, basis);
-    return RITZ_OK;
+        ritz_remark_add(basis, "; ", "%" PRId64 " vector(s) fewer than asked",
+                        missing);
 }
 
 ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
                                  ritz_probes *probes)
 {
-    ritz_status status = RITZ_OK;
-    irka_search s = {.request = request};
-    ritz_dofs rest = {0};
+    RITZ_OWN(irka_search) s = {.request = request};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_dofs) rest = {0};
 
     /* refuses attached dofs that are out of range or repeated */
-    RITZ_TRY(ritz_dofs_complement(&request->attached,
-                                  request->component->num_dofs, &rest));
-    RITZ_TRY(choose_damping(&s));
-    RITZ_TRY(find_modes(&s));
-    RITZ_TRY(interpolate_response(&s));
-    RITZ_TRY(label_columns(&s, out));
-    if (probes) {
-        *probes = s.probes;
-        s.probes = (ritz_probes){0};
+    RITZ_CHECK(ritz_dofs_complement(&request->attached,
+                                    request->component->num_dofs, &rest));
+    RITZ_CHECK(choose_damping(&s));
+    RITZ_CHECK(find_modes(&s));
+    RITZ_CHECK(interpolate_response(&s));
+    RITZ_CHECK(ritz_columns_new(s.T.ncol, &basis.columns));
+    RITZ_MOVE(basis.T, s.T);
+    for (int64_t j = 0; j < basis.T.ncol; j++)
+        basis.columns.kind[j] = RITZ_COLUMN_KRYLOV;
+    for (int64_t j = 0; j < s.rigid.ncol; j++) {
+        ritz_columns_label_rigid(j, &basis.columns);
+        basis.columns.residual[j] = s.modes.residual[j];
     }
-done:
-    free_search(&s);
-    ritz_dofs_free(&rest);
-    return status;
+    snprintf(basis.origin.engine, sizeof basis.origin.engine, "MUMPS LDL'");
+    add_remark(&s, &basis);
+    RITZ_MOVE(*out, basis);
+    if (probes)
+        RITZ_MOVE(*probes, s.probes);
+    return RITZ_OK;
 }
 
 static ritz_status make_tangential(const ritz_request *request, ritz_basis *out)
@@ -379,7 +346,8 @@ static ritz_status make_tangential(const ritz_request *request, ritz_basis *out)
 
 const ritz_method ritz_method_tangential = {
     .name = "tangential",
-    .summary = "answers at mirrored poles, a search in H2 (second-order IRKA)",
+    .summary =
+        "responses at mirrored poles, a search in H2 (second-order IRKA)",
     .reference = "Wyatt2012",
     .when = "few inputs and outputs that drive few of many modes",
     .cost = "a complex factor a point and round, some 2 to 50 rounds",

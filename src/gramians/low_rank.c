@@ -11,23 +11,22 @@
  * so that |W_j'W_j| is the residual. Transposed, W_0 = [C'; Cv'], it is the
  * other Gramian, of the same factors. Shifts: low_rank_shifts.c.
  *
- * A mode whose poles lie apart from all others, by more than their distance to
- * the axis, needs a shift of its own. Many such modes have no low rank: what
- * the residual has done so far says how many shifts it will take.
+ * A mode whose poles are farther from all others than from the axis needs a shift of its own. Gramians of many such modes have
+ * no low rank: the residuals so far show how many shifts it will take.
  *
  * [LiWhite2002], [BennerKuerschnerSaak2013], [BennerKuerschnerSaak2014]
  */
-#include "gramians/low_rank.h"
+#include "gramians/low_rank_parts.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "gramians/low_rank_parts.h"
+#include "gramians/modes.h"
+#include "linear/general.h"
 
 #include <ritz/base.h>
 
 #include <complex.h>
 #include <inttypes.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,152 +48,138 @@
  *                 v_+ = Re v + d Im v, g^2 = -4 Re p, d = Re p / Im p
  */
 
-/* v of one side. */
-typedef struct half_block {
-    ritz_dense re[RITZ_HALVES], im[RITZ_HALVES];
-} half_block;
+/* The iteration: W of the model shrinks as Z grows. */
+typedef struct sweep_state {
+    ritz_low_rank_model model;
+    ritz_zldl *F;
+    ritz_low_rank_window window;
+    ritz_low_rank_columns Z[RITZ_SIDES];
+    double first[RITZ_SIDES];    /* |W'W| of the start */
+    double residual[RITZ_SIDES]; /* |W'W| over that */
+    bool open[RITZ_SIDES];
+    double tolerance;
+    double least; /* damping ratio of the shifts so far */
+    int64_t shifts;
+} sweep_state;
 
-static void free_block(half_block *v)
+static void sweep_state_free(sweep_state *sweep)
 {
-    for (int half = 0; half < RITZ_HALVES; half++) {
-        ritz_dense_free(&v->re[half]);
-        ritz_dense_free(&v->im[half]);
-    }
+    ritz_zldl_free(&sweep->F);
+    ritz_low_rank_window_free(&sweep->window);
+    ritz_low_rank_model_free(&sweep->model);
+    free(sweep->Z[RITZ_CONTROLLABLE].val);
+    free(sweep->Z[RITZ_OBSERVABLE].val);
 }
+
+/*
+ * v of one side: a pair of halves, each n x 2p, of p columns Re v and then as
+ * many Im v.
+ */
 
 /* The half of v that is solved for: v_1 for controllability, v_2 for
    observability. */
 static int solved_half(int side)
 {
-    return side == RITZ_REACHED ? RITZ_ABOVE : RITZ_BELOW;
+    return side == RITZ_CONTROLLABLE ? RITZ_ABOVE : RITZ_BELOW;
 }
 
-/* out := a X + b Y */
-static ritz_status combine_columns(double a, const ritz_dense *X, double b,
-                                   const ritz_dense *Y, ritz_dense *out)
+/* The right-hand side that v of a side is solved from. */
+static ritz_status load_side(const ritz_low_rank_model *model, int side,
+                             double _Complex p, double _Complex *x)
 {
-    RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, out));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        out->val[k] = a * X->val[k] + b * Y->val[k];
-    return RITZ_OK;
-}
-
-/* x := (p M - D) W_1 - W_2 of what is reached. */
-static ritz_status load_reached(const ritz_low_rank_model *model,
-                                double _Complex p, double _Complex *x)
-{
-    const ritz_dense *W = model->W[RITZ_REACHED];
+    const ritz_dense *W = model->W[side];
+    int64_t size = W[0].nrow * W[0].ncol;
     RITZ_OWN(ritz_dense) MW = {0}, DW = {0};
 
+    if (side == RITZ_OBSERVABLE) {
+        for (int64_t k = 0; k < size; k++)
+            x[k] = p * W[RITZ_BELOW].val[k] - W[RITZ_ABOVE].val[k];
+        return RITZ_OK;
+    }
     RITZ_CHECK(ritz_sparse_mul(&model->M, &W[RITZ_ABOVE], &MW));
     RITZ_CHECK(ritz_sparse_mul(&model->D, &W[RITZ_ABOVE], &DW));
-    for (int64_t k = 0; k < MW.nrow * MW.ncol; k++)
+    for (int64_t k = 0; k < size; k++)
         x[k] = p * MW.val[k] - DW.val[k] - W[RITZ_BELOW].val[k];
     return RITZ_OK;
 }
 
-static void load_seen(const ritz_low_rank_model *model, double _Complex p,
-                      double _Complex *x)
-{
-    const ritz_dense *W = model->W[RITZ_SEEN];
-
-    for (int64_t k = 0; k < W[0].nrow * W[0].ncol; k++)
-        x[k] = p * W[RITZ_BELOW].val[k] - W[RITZ_ABOVE].val[k];
-}
-
-/* Real and imaginary parts of what was solved for, without rigid motion. */
+/* The half that is solved for, x without rigid motion. */
 static ritz_status split_parts(const ritz_low_rank_model *model,
                                int64_t columns, const double _Complex *x,
-                               int half, half_block *v)
+                               ritz_dense *v)
 {
-    ritz_dense *re = &v->re[half];
-    ritz_dense *im = &v->im[half];
+    int64_t size = model->n * columns;
 
-    RITZ_CHECK(ritz_dense_new(model->n, columns, re));
-    RITZ_CHECK(ritz_dense_new(model->n, columns, im));
-    for (int64_t k = 0; k < model->n * columns; k++) {
-        re->val[k] = creal(x[k]);
-        im->val[k] = cimag(x[k]);
+    RITZ_CHECK(ritz_dense_new(model->n, 2 * columns, v));
+    for (int64_t k = 0; k < size; k++) {
+        v->val[k] = creal(x[k]);
+        v->val[size + k] = cimag(x[k]);
     }
-    if (model->Phi.ncol > 0) {
-        RITZ_CHECK(ritz_dense_take_out(&model->Phi, &model->MPhi, re));
-        RITZ_CHECK(ritz_dense_take_out(&model->Phi, &model->MPhi, im));
+    for (int part = 0; part < 2 && model->Phi.ncol > 0; part++) {
+        ritz_dense X = ritz_dense_part(v, part * columns, columns);
+
+        RITZ_CHECK(ritz_dense_take_out(&model->Phi, &model->MPhi, &X));
     }
     return RITZ_OK;
 }
 
-/* v_2 = W_1 - p v_1 */
-static ritz_status finish_reached(const ritz_low_rank_model *model,
-                                  double _Complex p, half_block *v)
-{
-    const ritz_dense *W = &model->W[RITZ_REACHED][RITZ_ABOVE];
-    const ritz_dense *re = &v->re[RITZ_ABOVE];
-    const ritz_dense *im = &v->im[RITZ_ABOVE];
-
-    RITZ_CHECK(
-        combine_columns(-creal(p), re, cimag(p), im, &v->re[RITZ_BELOW]));
-    RITZ_CHECK(
-        combine_columns(-creal(p), im, -cimag(p), re, &v->im[RITZ_BELOW]));
-    for (int64_t k = 0; k < W->nrow * W->ncol; k++)
-        v->re[RITZ_BELOW].val[k] += W->val[k];
-    return RITZ_OK;
-}
-
-/* v_1 = W_2 - p M v_2 + D'v_2 */
-static ritz_status finish_seen(const ritz_low_rank_model *model,
-                               double _Complex p, half_block *v)
+/* The other half: v_2 = W_1 - p v_1, or v_1 = W_2 + D'v_2 - p M v_2 */
+static ritz_status find_halves(const ritz_low_rank_model *model, int side,
+                               double _Complex p, const double _Complex *x,
+                               ritz_dense v[static RITZ_HALVES])
 {
     const ritz_sparse *Dt = model->Dt.colptr ? &model->Dt : &model->D;
-    const ritz_dense *W = &model->W[RITZ_SEEN][RITZ_BELOW];
-    RITZ_OWN(ritz_dense) Mre = {0}, Mim = {0}, Dre = {0}, Dim = {0};
-    ritz_dense *re = &v->re[RITZ_ABOVE];
-    ritz_dense *im = &v->im[RITZ_ABOVE];
+    const ritz_dense *W = &model->W[side][solved_half(side)];
+    const ritz_dense *own = &v[solved_half(side)];
+    ritz_dense *other = &v[1 - solved_half(side)];
+    int64_t size = W->nrow * W->ncol;
+    RITZ_OWN(ritz_dense) Mv = {0};
 
-    RITZ_CHECK(ritz_sparse_mul(&model->M, &v->re[RITZ_BELOW], &Mre));
-    RITZ_CHECK(ritz_sparse_mul(&model->M, &v->im[RITZ_BELOW], &Mim));
-    RITZ_CHECK(ritz_sparse_mul(Dt, &v->re[RITZ_BELOW], &Dre));
-    RITZ_CHECK(ritz_sparse_mul(Dt, &v->im[RITZ_BELOW], &Dim));
-    RITZ_CHECK(combine_columns(-creal(p), &Mre, cimag(p), &Mim, re));
-    RITZ_CHECK(combine_columns(-creal(p), &Mim, -cimag(p), &Mre, im));
-    for (int64_t k = 0; k < W->nrow * W->ncol; k++) {
-        re->val[k] += W->val[k] + Dre.val[k];
-        im->val[k] += Dim.val[k];
+    RITZ_CHECK(split_parts(model, W->ncol, x, &v[solved_half(side)]));
+    if (side == RITZ_OBSERVABLE) {
+        RITZ_CHECK(ritz_sparse_mul(&model->M, own, &Mv));
+        RITZ_CHECK(ritz_sparse_mul(Dt, own, other));
+        own = &Mv;
+    } else {
+        RITZ_CHECK(ritz_dense_new(own->nrow, own->ncol, other));
+    }
+    for (int64_t k = 0; k < size; k++) {
+        double re = own->val[k], im = own->val[size + k];
+
+        other->val[k] += W->val[k];
+        other->val[k] += -creal(p) * re + cimag(p) * im;
+        other->val[size + k] += -creal(p) * im - cimag(p) * re;
     }
     return RITZ_OK;
 }
 
 /* Factor, and v of both sides that are open. */
-static ritz_status solve_shifted(ritz_low_rank_sweep *sweep, double _Complex p,
-                                 half_block v[static RITZ_SIDES])
+static ritz_status solve_shifted(sweep_state *sweep, double _Complex p,
+                                 ritz_dense_pair v[static RITZ_SIDES])
 {
-    ritz_status status = RITZ_OK;
     ritz_low_rank_model *model = &sweep->model;
     bool symmetric = !model->Dt.colptr;
-    int64_t in = sweep->open[RITZ_REACHED] ? model->W[RITZ_REACHED][0].ncol : 0;
-    int64_t seen = sweep->open[RITZ_SEEN] ? model->W[RITZ_SEEN][0].ncol : 0;
-    double _Complex *x = NULL, *y = NULL;
+    int64_t columns[RITZ_SIDES] = {0};
+    RITZ_OWN_ARRAY double _Complex *x = NULL;
+    double _Complex *of[RITZ_SIDES] = {NULL};
 
-    RITZ_NEW(x, model->n * (in + seen));
-    y = x + model->n * in;
-    if (in > 0)
-        RITZ_TRY(load_reached(model, p, x));
-    if (seen > 0)
-        load_seen(model, p, y);
-    RITZ_TRY(ritz_zldl_factor(sweep->F, (double _Complex[]){p * p, 1.0, -p}));
-    RITZ_TRY(ritz_zldl_solve(sweep->F, symmetric ? in + seen : in, x));
+    for (int side = 0; side < RITZ_SIDES; side++)
+        columns[side] = sweep->open[side] ? model->W[side][0].ncol : 0;
+    RITZ_CHECK_NEW(x, model->n * (columns[0] + columns[1]));
+    of[0] = x;
+    of[1] = x + model->n * columns[0];
+    for (int side = 0; side < RITZ_SIDES; side++)
+        if (columns[side] > 0)
+            RITZ_CHECK(load_side(model, side, p, of[side]));
+    RITZ_CHECK(ritz_zldl_factor(sweep->F, (double _Complex[]){p * p, 1.0, -p}));
+    RITZ_CHECK(ritz_zldl_solve(
+        sweep->F, symmetric ? columns[0] + columns[1] : columns[0], x));
     if (!symmetric)
-        RITZ_TRY(ritz_zldl_solve_transposed(sweep->F, seen, y));
-    if (in > 0) {
-        RITZ_TRY(split_parts(model, in, x, RITZ_ABOVE, &v[RITZ_REACHED]));
-        RITZ_TRY(finish_reached(model, p, &v[RITZ_REACHED]));
-    }
-    if (seen > 0) {
-        RITZ_TRY(split_parts(model, seen, y, RITZ_BELOW, &v[RITZ_SEEN]));
-        RITZ_TRY(finish_seen(model, p, &v[RITZ_SEEN]));
-    }
-done:
-    free(x);
-    return status;
+        RITZ_CHECK(ritz_zldl_solve_transposed(sweep->F, columns[1], of[1]));
+    for (int side = 0; side < RITZ_SIDES; side++)
+        if (columns[side] > 0)
+            RITZ_CHECK(find_halves(model, side, p, of[side], v[side]));
+    return RITZ_OK;
 }
 
 /* Columns first .. of half a factor := f X */
@@ -226,56 +211,51 @@ static ritz_status shrink_residual(ritz_low_rank_model *model, int side,
     return RITZ_OK;
 }
 
-static ritz_status append_columns(ritz_low_rank_sweep *sweep, int side,
-                                  double _Complex p, const half_block *v)
+static ritz_status append_columns(sweep_state *sweep, int side,
+                                  double _Complex p,
+                                  const ritz_dense v[static RITZ_HALVES])
 {
-    ritz_status status = RITZ_OK;
     ritz_low_rank_model *model = &sweep->model;
     ritz_low_rank_columns *Z = &sweep->Z[side];
     bool pair = cimag(p) != 0.0;
     double d = pair ? creal(p) / cimag(p) : 0.0;
     double g = sqrt((pair ? -4.0 : -2.0) * creal(p));
-    int64_t columns = v->re[0].ncol;
-    ritz_dense plus[RITZ_HALVES] = {0};
+    int64_t columns = v[0].ncol / 2;
+    int64_t added = pair ? 2 * columns : columns;
+    const ritz_dense latest = ritz_dense_part(&v[solved_half(side)], 0, added);
+    RITZ_OWN(ritz_dense_pair) plus = {0};
 
-    RITZ_TRY(ritz_low_rank_reserve(model->n, pair ? 2 * columns : columns, Z));
+    RITZ_CHECK(ritz_low_rank_reserve(model->n, added, Z));
     for (int half = 0; half < RITZ_HALVES; half++) {
-        RITZ_TRY(
-            combine_columns(1.0, &v->re[half], d, &v->im[half], &plus[half]));
+        const ritz_dense im = ritz_dense_part(&v[half], columns, columns);
+
+        RITZ_CHECK(ritz_dense_columns(&v[half], 0, columns, &plus[half]));
+        for (int64_t k = 0; k < im.nrow * im.ncol; k++)
+            plus[half].val[k] += d * im.val[k];
         put_half(model, half, g, &plus[half], Z->count, Z);
         if (pair)
-            put_half(model, half, g * sqrt(d * d + 1.0), &v->im[half],
+            put_half(model, half, g * sqrt(d * d + 1.0), &im,
                      Z->count + columns, Z);
     }
-    Z->count += pair ? 2 * columns : columns;
-    RITZ_TRY(shrink_residual(model, side, g * g, plus));
-    RITZ_TRY(ritz_low_rank_window_add(model, &v->re[solved_half(side)],
-                                      &sweep->window));
-    if (pair)
-        RITZ_TRY(ritz_low_rank_window_add(model, &v->im[solved_half(side)],
-                                          &sweep->window));
-done:
-    ritz_dense_free(&plus[RITZ_ABOVE]);
-    ritz_dense_free(&plus[RITZ_BELOW]);
-    return status;
+    Z->count += added;
+    RITZ_CHECK(shrink_residual(model, side, g * g, plus));
+    return ritz_low_rank_window_add(model, &latest, &sweep->window);
 }
 
-/* Take one shift, or a pair of them, and add what it gives. */
-static ritz_status take_shift(ritz_low_rank_sweep *sweep, double _Complex p)
-{
-    ritz_status status = RITZ_OK;
-    half_block v[RITZ_SIDES] = {0};
+RITZ_PAIR_OF(ritz_dense_pair);
 
-    RITZ_TRY(solve_shifted(sweep, p, v));
+/* Take one shift, or a pair of them, and add what it gives. */
+static ritz_status take_shift(sweep_state *sweep, double _Complex p)
+{
+    RITZ_OWN(ritz_dense_pair_pair) v = {0};
+
+    RITZ_CHECK(solve_shifted(sweep, p, v));
     for (int side = 0; side < RITZ_SIDES; side++)
         if (sweep->open[side])
-            RITZ_TRY(append_columns(sweep, side, p, &v[side]));
+            RITZ_CHECK(append_columns(sweep, side, p, v[side]));
     sweep->shifts++;
     sweep->least = fmin(sweep->least, -creal(p) / cabs(p));
-done:
-    free_block(&v[RITZ_REACHED]);
-    free_block(&v[RITZ_SEEN]);
-    return status;
+    return RITZ_OK;
 }
 
 enum {
@@ -299,18 +279,9 @@ static const patience patiences[] = {
     {RITZ_LOW_RANK_SHIFTS, RITZ_LOW_RANK_SHIFTS, 0.0},
 };
 
-static void free_sweep(ritz_low_rank_sweep *sweep)
-{
-    ritz_zldl_free(&sweep->F);
-    ritz_low_rank_window_free(&sweep->window);
-    ritz_low_rank_model_free(&sweep->model);
-    free(sweep->Z[RITZ_REACHED].val);
-    free(sweep->Z[RITZ_SEEN].val);
-}
-
 /* A side is open that flexible motion has a part in. */
 static ritz_status start_sweep(const ritz_gramians_request *request,
-                               ritz_low_rank_sweep *sweep)
+                               sweep_state *sweep)
 {
     ritz_low_rank_model *model = &sweep->model;
     const ritz_sparse *const A[] = {&model->M, &model->K, &model->D};
@@ -335,13 +306,13 @@ static ritz_status start_sweep(const ritz_gramians_request *request,
     return RITZ_OK;
 }
 
-static bool is_open(const ritz_low_rank_sweep *sweep)
+static bool is_open(const sweep_state *sweep)
 {
-    return sweep->open[RITZ_REACHED] || sweep->open[RITZ_SEEN];
+    return sweep->open[RITZ_CONTROLLABLE] || sweep->open[RITZ_OBSERVABLE];
 }
 
 /* Residuals after a step, and factors that grew compressed. */
-static ritz_status update_residuals(ritz_low_rank_sweep *sweep)
+static ritz_status update_residuals(sweep_state *sweep)
 {
     for (int side = 0; side < RITZ_SIDES; side++) {
         ritz_low_rank_columns *Z = &sweep->Z[side];
@@ -359,14 +330,14 @@ static ritz_status update_residuals(ritz_low_rank_sweep *sweep)
     return RITZ_OK;
 }
 
-static double worst_residual(const ritz_low_rank_sweep *sweep)
+static double worst_residual(const sweep_state *sweep)
 {
-    return fmax(sweep->residual[RITZ_REACHED], sweep->residual[RITZ_SEEN]);
+    return fmax(sweep->residual[RITZ_CONTROLLABLE],
+                sweep->residual[RITZ_OBSERVABLE]);
 }
 
 /* Shifts in all, if the second half of those so far is how it goes on. */
-static double expected_shifts(const ritz_low_rank_sweep *sweep,
-                              const double *history)
+static double expected_shifts(const sweep_state *sweep, const double *history)
 {
     int64_t half = sweep->shifts / 2;
     double now = log(worst_residual(sweep) / sweep->tolerance);
@@ -381,8 +352,7 @@ static double expected_shifts(const ritz_low_rank_sweep *sweep,
 /*
  * Whether it goes too slowly. A small model may take a shift for every mode.
  */
-static ritz_status refuse_slow(const ritz_low_rank_sweep *sweep,
-                               const double *history)
+static ritz_status refuse_slow(const sweep_state *sweep, const double *history)
 {
     bool small = sweep->model.n < RITZ_LOW_RANK_SHIFTS;
     double total = 0.0;
@@ -402,7 +372,7 @@ static ritz_status refuse_slow(const ritz_low_rank_sweep *sweep,
     return RITZ_OK;
 }
 
-static ritz_status run_sweep(ritz_low_rank_sweep *sweep)
+static ritz_status run_sweep(sweep_state *sweep)
 {
     double history[RITZ_LOW_RANK_SHIFTS + 1] = {1.0};
     double _Complex shift[TOGETHER];
@@ -428,8 +398,7 @@ static ritz_status run_sweep(ritz_low_rank_sweep *sweep)
 }
 
 /* Z as a matrix of its own columns. */
-static ritz_status take_factor(ritz_low_rank_sweep *sweep, int side,
-                               ritz_dense *out)
+static ritz_status take_factor(sweep_state *sweep, int side, ritz_dense *out)
 {
     ritz_low_rank_columns *Z = &sweep->Z[side];
 
@@ -442,50 +411,37 @@ static ritz_status take_factor(ritz_low_rank_sweep *sweep, int side,
     return RITZ_OK;
 }
 
-/* Rows first.. of columns from.. of @p to := X */
-static void put_rows(const ritz_dense *X, int64_t first, int64_t from,
-                     ritz_dense *to)
-{
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < X->nrow; i++)
-            ritz_dense_col(to, from + j)[first + i] = ritz_dense_col(X, j)[i];
-}
-
 /* [I 0; 0 M] Z */
-static ritz_status by_mass(const ritz_low_rank_model *model,
-                           const ritz_dense *Z, ritz_dense *out)
+static ritz_status multiply_mass(const ritz_low_rank_model *model,
+                                 const ritz_dense *Z, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) below = {0}, MZ = {0};
 
-    RITZ_CHECK(ritz_dense_new(model->n, Z->ncol, &below));
-    for (int64_t j = 0; j < Z->ncol; j++)
-        for (int64_t i = 0; i < model->n; i++)
-            ritz_dense_col(&below, j)[i] = ritz_dense_col(Z, j)[model->n + i];
+    RITZ_CHECK(ritz_dense_block(Z, model->n, model->n, 0, Z->ncol, &below));
     RITZ_CHECK(ritz_sparse_mul(&model->M, &below, &MZ));
     RITZ_CHECK(ritz_dense_copy(Z, out));
-    put_rows(&MZ, model->n, 0, out);
+    ritz_dense_put(&MZ, model->n, 0, out);
     return RITZ_OK;
 }
 
-static ritz_status finish_gramians(ritz_low_rank_sweep *sweep,
-                                   ritz_gramians *out)
+static ritz_status finish_gramians(sweep_state *sweep, ritz_gramians *out)
 {
     const ritz_low_rank_model *model = &sweep->model;
     int64_t n = model->n;
     int64_t a = model->Phi.ncol;
 
     ritz_zldl_free(&sweep->F);
-    RITZ_CHECK(take_factor(sweep, RITZ_REACHED, &out->Zc));
-    RITZ_CHECK(take_factor(sweep, RITZ_SEEN, &out->Zo));
-    RITZ_CHECK(by_mass(model, &out->Zc, &out->EZc));
+    RITZ_CHECK(take_factor(sweep, RITZ_CONTROLLABLE, &out->Zc));
+    RITZ_CHECK(take_factor(sweep, RITZ_OBSERVABLE, &out->Zo));
+    RITZ_CHECK(multiply_mass(model, &out->Zc, &out->EZc));
     RITZ_CHECK(ritz_dense_new(2 * n, 2 * a, &out->T));
     RITZ_CHECK(ritz_dense_new(2 * n, 2 * a, &out->W));
-    put_rows(&model->Phi, 0, 0, &out->T);
-    put_rows(&model->Phi, n, a, &out->T);
-    put_rows(&model->MPhi, 0, 0, &out->W);
-    put_rows(&model->Phi, n, a, &out->W);
-    out->residual[0] = sweep->residual[RITZ_REACHED];
-    out->residual[1] = sweep->residual[RITZ_SEEN];
+    ritz_dense_put(&model->Phi, 0, 0, &out->T);
+    ritz_dense_put(&model->Phi, n, a, &out->T);
+    ritz_dense_put(&model->MPhi, 0, 0, &out->W);
+    ritz_dense_put(&model->Phi, n, a, &out->W);
+    out->residual[0] = sweep->residual[RITZ_CONTROLLABLE];
+    out->residual[1] = sweep->residual[RITZ_OBSERVABLE];
     snprintf(out->engine, sizeof out->engine, "ADI, %" PRId64 " shifts",
              sweep->shifts);
     return RITZ_OK;
@@ -494,18 +450,14 @@ static ritz_status finish_gramians(ritz_low_rank_sweep *sweep,
 ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
                                    ritz_gramians *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_low_rank_sweep sweep = {0};
-    ritz_gramians gramians = {0};
+    RITZ_OWN(sweep_state) sweep = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_TRY(start_sweep(request, &sweep));
-    RITZ_TRY(run_sweep(&sweep));
-    RITZ_TRY(finish_gramians(&sweep, &gramians));
+    RITZ_CHECK(start_sweep(request, &sweep));
+    RITZ_CHECK(run_sweep(&sweep));
+    RITZ_CHECK(finish_gramians(&sweep, &gramians));
     if (request->damping.kind != RITZ_DAMPING_NONE)
         ritz_damping_print(&request->damping, gramians.damping);
     RITZ_MOVE(*out, gramians);
-done:
-    free_sweep(&sweep);
-    ritz_gramians_free(&gramians);
-    return status;
+    return RITZ_OK;
 }

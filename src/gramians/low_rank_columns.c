@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
+#include "linear/general.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -51,7 +52,7 @@ static double unit_above(const ritz_low_rank_model *model, int side, int64_t i)
 
     if (!(stiff > 0.0))
         return 0.0;
-    return side == RITZ_REACHED ? sqrt(stiff) : 1.0 / sqrt(stiff);
+    return side == RITZ_CONTROLLABLE ? sqrt(stiff) : 1.0 / sqrt(stiff);
 }
 
 /* Row i of the lower half, velocities; of M times that, one over it. */
@@ -63,16 +64,15 @@ static double unit_below(const ritz_low_rank_model *model, int64_t i)
 ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
                                double *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dense *W = model->W[side];
-    ritz_dense S[RITZ_HALVES] = {0}, G = {0}, more = {0};
-    double *e = NULL;
+    RITZ_OWN(ritz_dense_pair) S = {0}, G = {0};
+    RITZ_OWN_ARRAY double *e = NULL;
     int p = (int)W[0].ncol;
     int info = 0;
 
-    RITZ_NEW(e, p);
-    RITZ_TRY(ritz_dense_copy(&W[RITZ_ABOVE], &S[RITZ_ABOVE]));
-    RITZ_TRY(ritz_dense_copy(&W[RITZ_BELOW], &S[RITZ_BELOW]));
+    RITZ_CHECK_NEW(e, p);
+    RITZ_CHECK(ritz_dense_copy(&W[RITZ_ABOVE], &S[RITZ_ABOVE]));
+    RITZ_CHECK(ritz_dense_copy(&W[RITZ_BELOW], &S[RITZ_BELOW]));
     for (int64_t i = 0; i < model->n; i++) {
         double above = unit_above(model, side, i);
         double m = unit_below(model, i);
@@ -82,27 +82,22 @@ ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
             ritz_dense_col(&S[RITZ_BELOW], j)[i] *= m > 0.0 ? 1.0 / m : 0.0;
         }
     }
-    RITZ_TRY(ritz_dense_mul_tn(&S[RITZ_ABOVE], &S[RITZ_ABOVE], &G));
-    RITZ_TRY(ritz_dense_mul_tn(&S[RITZ_BELOW], &S[RITZ_BELOW], &more));
-    for (int64_t k = 0; k < G.nrow * G.ncol; k++)
-        G.val[k] += more.val[k];
+    for (int half = 0; half < RITZ_HALVES; half++)
+        RITZ_CHECK(ritz_dense_mul_tn(&S[half], &S[half], &G[half]));
+    for (int64_t k = 0; k < G[0].nrow * G[0].ncol; k++)
+        G[0].val[k] += G[1].val[k];
     if (p > 0)
-        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', p, G.val, p, e);
-    RITZ_FAIL_IF(info != 0 || (p > 0 && !isfinite(e[p - 1])),
-                 RITZ_ERR_CONVERGENCE, "a residual of a Gramian is not finite");
+        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', p, G[0].val, p, e);
+    RITZ_REFUSE_IF(info != 0 || (p > 0 && !isfinite(e[p - 1])),
+                   RITZ_ERR_CONVERGENCE,
+                   "a residual of a Gramian is not finite");
     *out = p > 0 ? fmax(e[p - 1], 0.0) : 0.0;
-done:
-    ritz_dense_free(&S[RITZ_ABOVE]);
-    ritz_dense_free(&S[RITZ_BELOW]);
-    ritz_dense_free(&G);
-    ritz_dense_free(&more);
-    free(e);
-    return status;
+    return RITZ_OK;
 }
 
 /* R of S Z = Q R. */
-static ritz_status triangle_of(const ritz_low_rank_model *model, int side,
-                               const ritz_low_rank_columns *Z, ritz_dense *R)
+static ritz_status find_triangle(const ritz_low_rank_model *model, int side,
+                                 const ritz_low_rank_columns *Z, ritz_dense *R)
 {
     int64_t rows = 2 * model->n;
     int64_t k = Z->count;
@@ -162,7 +157,7 @@ ritz_status ritz_low_rank_compress(const ritz_low_rank_model *model, int side,
 
     if (Z->count == 0)
         return RITZ_OK;
-    RITZ_CHECK(triangle_of(model, side, Z, &R));
+    RITZ_CHECK(find_triangle(model, side, Z, &R));
     RITZ_CHECK(find_long_columns(&R, &V));
     RITZ_CHECK(ritz_dense_mul(&all, &V, &turned));
     free(Z->val);

@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
+#include "gramians/modes.h"
 
 #include <ritz/matrix.h>
 
@@ -20,25 +21,12 @@
  *     u_m = -K_mm^-1 (K_mr u_r - B_m f),    T = [I; -K_mm^-1 K_mr],
  *
  * so that B and C' become T'B and T'C', zero in rows m, and C_m K_mm^-1 B_m
- * feeds through. An acceleration output sees, with X = T M_rr^-1 T'Ca',
+ * feeds through. An acceleration output gives, with X = T M_rr^-1 T'Ca',
  *
  *     C' := C' - K X,    Cv' := Cv' - D'X.
  *
  * Feedthrough is left out: it is the same whatever is kept.
  */
-
-/* Rows of C as columns, divided by limits. */
-static ritz_status turn_outputs(const ritz_io *io, const ritz_dense *C,
-                                ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
-    for (int64_t i = 0; i < C->nrow; i++)
-        for (int64_t j = 0; j < C->ncol; j++)
-            ritz_dense_col(out, i)[j] =
-                ritz_dense_col(C, j)[i] /
-                (isnan(io->limit[i]) ? 1.0 : io->limit[i]);
-    return RITZ_OK;
-}
 
 /* Rows @p to of A += f X. */
 static void add_rows(const ritz_dofs *to, double f, const ritz_dense *X,
@@ -91,18 +79,18 @@ static ritz_status follow_rows(const ritz_low_rank_model *model, ritz_factor *F,
     return RITZ_OK;
 }
 
-/* Whether outputs C' see what inputs move at once. */
+/* Refuse outputs C' of motions without mass that inputs cause at once. */
 static ritz_status refuse_improper(const ritz_low_rank_model *model,
                                    ritz_factor *F, const ritz_dense *B,
                                    const ritz_dense *Ct, const char *what)
 {
-    RITZ_OWN(ritz_dense) X = {0}, C_m = {0}, seen = {0};
+    RITZ_OWN(ritz_dense) X = {0}, C_m = {0}, feed = {0};
 
     RITZ_CHECK(solve_held(model, F, B, &X));
     RITZ_CHECK(
         ritz_dense_rows(Ct, model->massless.count, model->massless.at, &C_m));
-    RITZ_CHECK(ritz_dense_mul_tn(&C_m, &X, &seen));
-    RITZ_REFUSE_IF(ritz_dense_max(&seen) > RITZ_RIGID_LOAD *
+    RITZ_CHECK(ritz_dense_mul_tn(&C_m, &X, &feed));
+    RITZ_REFUSE_IF(ritz_dense_max(&feed) > RITZ_RIGID_LOAD *
                                                ritz_dense_max(&C_m) *
                                                ritz_dense_max(&X),
                    RITZ_ERR_ARGUMENT,
@@ -140,34 +128,28 @@ static ritz_status condense_all(const ritz_low_rank_model *model,
 static ritz_status solve_free(const ritz_low_rank_model *model, ritz_factor *F,
                               ritz_dense *X)
 {
-    ritz_status status = RITZ_OK;
     const ritz_dofs *r = &model->massive;
-    ritz_sparse M_rr = {0};
-    ritz_factor *mass = NULL;
-    ritz_dense Y = {0};
+    RITZ_OWN(ritz_sparse) M_rr = {0};
+    RITZ_OWN(ritz_factor) *mass = NULL;
+    RITZ_OWN(ritz_dense) Y = {0};
+    ritz_status status = RITZ_OK;
 
     if (r->count == 0)
         return RITZ_OK;
-    RITZ_TRY(ritz_sparse_extract(&model->M, r->count, r->at, r->count, r->at,
-                                 &M_rr));
+    RITZ_CHECK(ritz_sparse_extract(&model->M, r->count, r->at, r->count, r->at,
+                                   &M_rr));
     status = ritz_factor_spd(&M_rr, &mass);
-    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                 "M is singular, and not by dofs without mass alone: engine "
-                 "'low-rank' needs mass for every other motion");
-    RITZ_TRY(status);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "M is singular, and not by dofs without mass alone: engine "
+                   "'low-rank' needs mass for every other motion");
+    RITZ_CHECK(status);
     if (ritz_dense_max(X) == 0.0)
-        goto done;
-    RITZ_TRY(ritz_dense_rows(X, r->count, r->at, &Y));
-    RITZ_TRY(ritz_factor_solve(mass, &Y));
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_rows(X, r->count, r->at, &Y));
+    RITZ_CHECK(ritz_factor_solve(mass, &Y));
     clear_rows(r, X);
     add_rows(r, 1.0, &Y, X);
-    if (F)
-        RITZ_TRY(follow_rows(model, F, X));
-done:
-    ritz_sparse_free(&M_rr);
-    ritz_factor_free(&mass);
-    ritz_dense_free(&Y);
-    return status;
+    return F ? follow_rows(model, F, X) : RITZ_OK;
 }
 
 static ritz_status subtract_product(const ritz_sparse *A, const ritz_dense *X,
@@ -184,18 +166,18 @@ static ritz_status subtract_product(const ritz_sparse *A, const ritz_dense *X,
 /* W of both sides, whose dofs and modes are known. */
 static ritz_status find_loads(const ritz_io *io, ritz_low_rank_model *model)
 {
-    ritz_dense *B = &model->W[RITZ_REACHED][RITZ_BELOW];
-    ritz_dense *C = &model->W[RITZ_SEEN][RITZ_ABOVE];
-    ritz_dense *Cv = &model->W[RITZ_SEEN][RITZ_BELOW];
+    ritz_dense *B = &model->W[RITZ_CONTROLLABLE][RITZ_BELOW];
+    ritz_dense *C = &model->W[RITZ_OBSERVABLE][RITZ_ABOVE];
+    ritz_dense *Cv = &model->W[RITZ_OBSERVABLE][RITZ_BELOW];
     RITZ_OWN(ritz_dense) X = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
 
     RITZ_CHECK(ritz_dense_new(model->n, io->num_inputs,
-                              &model->W[RITZ_REACHED][RITZ_ABOVE]));
+                              &model->W[RITZ_CONTROLLABLE][RITZ_ABOVE]));
     RITZ_CHECK(ritz_dense_copy(&io->B, B));
-    RITZ_CHECK(turn_outputs(io, &io->C, C));
-    RITZ_CHECK(turn_outputs(io, &io->Cv, Cv));
-    RITZ_CHECK(turn_outputs(io, &io->Ca, &X));
+    RITZ_CHECK(ritz_outputs_scaled(&io->C, io->limit, C));
+    RITZ_CHECK(ritz_outputs_scaled(&io->Cv, io->limit, Cv));
+    RITZ_CHECK(ritz_outputs_scaled(&io->Ca, io->limit, &X));
     RITZ_CHECK(condense_all(model, (ritz_dense *[]){B, C, Cv, &X}, &F));
     RITZ_CHECK(solve_free(model, F, &X));
     RITZ_CHECK(subtract_product(&model->K, &X, C));
@@ -215,35 +197,13 @@ static ritz_status find_loads(const ritz_io *io, ritz_low_rank_model *model)
     return RITZ_OK;
 }
 
-/* D := D + a M + b K */
-static ritz_status add_rayleigh(const ritz_sparse *M, const ritz_sparse *K,
-                                const ritz_damping *damping, ritz_sparse *D)
-{
-    RITZ_OWN(ritz_sparse) C = {0};
-    ritz_sparse sum = {0};
-
-    RITZ_CHECK(ritz_sparse_add(damping->a, M, damping->b, K, &C));
-    if (D->colptr) {
-        RITZ_CHECK(ritz_sparse_add(1.0, D, 1.0, &C, &sum));
-        ritz_sparse_free(D);
-        *D = sum;
-    } else {
-        RITZ_MOVE(*D, C);
-    }
-    return RITZ_OK;
-}
-
 static ritz_status collect_matrices(const ritz_gramians_request *request,
                                     ritz_low_rank_model *model)
 {
     const ritz_component *component = request->component;
     const ritz_damping *damping = &request->damping;
-    RITZ_OWN(ritz_dampers) dampers = {0};
 
-    RITZ_REFUSE_IF(
-        component->K4.colptr, RITZ_ERR_ARGUMENT,
-        "structural damping is of harmonic motion and has no states, "
-        "give it as a modal ratio");
+    RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
     RITZ_REFUSE_IF(damping->kind != RITZ_DAMPING_NONE &&
                        !ritz_damping_is_rayleigh(damping),
                    RITZ_ERR_ARGUMENT,
@@ -252,13 +212,7 @@ static ritz_status collect_matrices(const ritz_gramians_request *request,
                    "engine 'modal'");
     model->n = component->num_dofs;
     model->M = component->M;
-    RITZ_CHECK(ritz_sparse_copy(&component->K, &model->K));
-    if (component->D.colptr)
-        RITZ_CHECK(ritz_sparse_copy(&component->D, &model->D));
-    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
-    RITZ_CHECK(ritz_dampers_install_sparse(&dampers, &model->K, &model->D));
-    if (damping->kind != RITZ_DAMPING_NONE)
-        RITZ_CHECK(add_rayleigh(&model->M, &model->K, damping, &model->D));
+    RITZ_CHECK(ritz_structure_sparse(component, damping, &model->K, &model->D));
     RITZ_REFUSE_IF(!model->D.colptr || ritz_sparse_max(&model->D) == 0.0,
                    RITZ_ERR_ARGUMENT,
                    "there is no damping, without which no motion decays and no "
@@ -313,8 +267,8 @@ static ritz_status weigh_dofs(double lambda, ritz_low_rank_model *model)
 }
 
 /* |D Phi - M Phi (Phi'D Phi)| of a rigid motion against |D||Phi|. */
-static ritz_status check_apart(const ritz_sparse *D,
-                               const ritz_low_rank_model *model)
+static ritz_status check_decoupled(const ritz_sparse *D,
+                                   const ritz_low_rank_model *model)
 {
     RITZ_OWN(ritz_dense) DPhi = {0};
 
@@ -325,7 +279,7 @@ static ritz_status check_apart(const ritz_sparse *D,
                                                ritz_dense_max(&model->Phi),
                    RITZ_ERR_ARGUMENT,
                    "damping couples rigid motion to deformation, which engine "
-                   "'low-rank' cannot set apart: hold the component, or take "
+                   "'low-rank' cannot decouple: hold the component, or take "
                    "engine 'dense'");
     return RITZ_OK;
 }
@@ -370,9 +324,9 @@ static ritz_status find_modes(ritz_low_rank_model *model)
                   ritz_eigen_sparse(&model->K, &model->M, &span, &pairs));
     RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &model->Phi));
     RITZ_CHECK(ritz_sparse_mul(&model->M, &model->Phi, &model->MPhi));
-    RITZ_CHECK(check_apart(&model->D, model));
+    RITZ_CHECK(check_decoupled(&model->D, model));
     if (model->Dt.colptr)
-        RITZ_CHECK(check_apart(&model->Dt, model));
+        RITZ_CHECK(check_decoupled(&model->Dt, model));
     RITZ_CHECK(find_starts(&pairs, model));
     if (model->num_starts > 0)
         lambda = pairs.lambda[pairs.num_rigid];

@@ -15,7 +15,7 @@ enum {
 };
 
 /* The two equations, and the two halves of 2n rows. */
-enum { RITZ_REACHED, RITZ_SEEN, RITZ_SIDES };
+enum { RITZ_CONTROLLABLE, RITZ_OBSERVABLE, RITZ_SIDES };
 enum { RITZ_ABOVE, RITZ_BELOW, RITZ_HALVES };
 
 /* The equation M v' + D v + K u = 0 with its loads W. */
@@ -82,19 +82,5 @@ ritz_status ritz_low_rank_shifts(const ritz_low_rank_model *model,
                                  const bool open[static RITZ_SIDES],
                                  int64_t most, int64_t *count,
                                  double _Complex *out);
-
-/* The iteration: W of the model shrinks as Z grows. */
-typedef struct ritz_low_rank_sweep {
-    ritz_low_rank_model model;
-    ritz_zldl *F;
-    ritz_low_rank_window window;
-    ritz_low_rank_columns Z[RITZ_SIDES];
-    double first[RITZ_SIDES];    /* |W'W| of the start */
-    double residual[RITZ_SIDES]; /* |W'W| over that */
-    bool open[RITZ_SIDES];
-    double tolerance;
-    double least; /* damping ratio of the shifts so far */
-    int64_t shifts;
-} ritz_low_rank_sweep;
 
 #endif

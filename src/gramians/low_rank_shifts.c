@@ -5,12 +5,12 @@
  *
  *     A = [0 w; -w -Delta],   A x_i = lambda_i x_i,   y_i'A = lambda_i y_i'
  *
- * and what is left of W has the shares |y_i'w| / |y_i'x_i| and |w'x_i|, |x_i|
- * being one. Poles with the largest share are the next shifts: each takes its
- * own share away.
+ * and in what is left of W a pole participates by |y_i'w| / |y_i'x_i| and
+ * |w'x_i|, |x_i| being one. Poles of the largest participation are the next
+ * shifts: each removes its own.
  *
  * Projection on the latest block is [BennerKuerschnerSaak2014]; second order,
- * more blocks and the choice by shares are our own.
+ * more blocks and the choice by participation are our own.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -35,8 +35,8 @@ ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
                                      ritz_low_rank_window *out)
 {
     RITZ_OWN(ritz_low_rank_window) window = {0};
-    int64_t step = 2 * (model->W[RITZ_REACHED][RITZ_BELOW].ncol +
-                        model->W[RITZ_SEEN][RITZ_BELOW].ncol);
+    int64_t step = 2 * (model->W[RITZ_CONTROLLABLE][RITZ_BELOW].ncol +
+                        model->W[RITZ_OBSERVABLE][RITZ_BELOW].ncol);
 
     window.room = 2 * step > COLUMNS ? 2 * step : COLUMNS;
     RITZ_CHECK(ritz_dense_new(model->n, window.room, &window.X));
@@ -44,6 +44,15 @@ ritz_status ritz_low_rank_window_new(const ritz_low_rank_model *model,
         RITZ_CHECK(ritz_dense_new(window.room, window.room, &window.G[k]));
     RITZ_MOVE(*out, window);
     return RITZ_OK;
+}
+
+/* M X, K X and D X of new columns. */
+typedef ritz_dense products[3];
+
+static void products_free(products *AX)
+{
+    for (int k = 0; k < 3; k++)
+        ritz_dense_free(&(*AX)[k]);
 }
 
 /* g := X'y, count entries. */
@@ -69,51 +78,37 @@ static void put_products(int64_t at, const double *Ax, const double *Atx,
     project_window(window, Ax, column);
 }
 
-static void put_column(const double *x, ritz_low_rank_window *window,
-                       int64_t *at)
-{
-    size_t size = (size_t)window->X.nrow * sizeof *x;
-
-    *at = window->next;
-    memcpy(ritz_dense_col(&window->X, *at), x, size);
-    window->next = (*at + 1) % window->room;
-    if (window->count < window->room)
-        window->count++;
-}
-
 ritz_status ritz_low_rank_window_add(const ritz_low_rank_model *model,
                                      const ritz_dense *X,
                                      ritz_low_rank_window *window)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_sparse *const A[3] = {&model->M, &model->K, &model->D};
-    ritz_dense AX[3] = {0}, DtX = {0};
+    bool turned = model->Dt.colptr;
+    const ritz_sparse *const A[] = {&model->M, &model->K, &model->D};
+    RITZ_OWN(ritz_dense) DtX = {0};
+    RITZ_OWN(products) AX = {0};
 
     for (int k = 0; k < 3; k++)
-        RITZ_TRY(ritz_sparse_mul(A[k], X, &AX[k]));
-    if (model->Dt.colptr)
-        RITZ_TRY(ritz_sparse_mul(&model->Dt, X, &DtX));
+        RITZ_CHECK(ritz_sparse_mul(A[k], X, &AX[k]));
+    if (turned)
+        RITZ_CHECK(ritz_sparse_mul(&model->Dt, X, &DtX));
     for (int64_t j = 0; j < X->ncol; j++) {
-        int64_t at = 0;
+        int64_t at = window->next;
+        const ritz_dense x = ritz_dense_part(X, j, 1);
 
-        put_column(ritz_dense_col(X, j), window, &at);
-        for (int k = 0; k < 3; k++) {
-            const double *Ax = ritz_dense_col(&AX[k], j);
-            bool turned = k == 2 && DtX.val;
-
-            put_products(at, Ax, turned ? ritz_dense_col(&DtX, j) : Ax, window,
-                         &window->G[k]);
-        }
+        ritz_dense_put(&x, 0, at, &window->X);
+        window->next = (at + 1) % window->room;
+        if (window->count < window->room)
+            window->count++;
+        for (int k = 0; k < 3; k++)
+            put_products(at, ritz_dense_col(&AX[k], j),
+                         ritz_dense_col(turned && k == 2 ? &DtX : &AX[k], j),
+                         window, &window->G[k]);
     }
-done:
-    for (int k = 0; k < 3; k++)
-        ritz_dense_free(&AX[k]);
-    ritz_dense_free(&DtX);
-    return status;
+    return RITZ_OK;
 }
 
 /* A = V diag(e) V', V over A. */
-static ritz_status symmetric_modes(ritz_dense *A, double *e)
+static ritz_status diagonalise(ritz_dense *A, double *e)
 {
     int n = (int)A->nrow;
     int info = 0;
@@ -126,8 +121,8 @@ static ritz_status symmetric_modes(ritz_dense *A, double *e)
 }
 
 /* F with F'GF = I, G = X'MX, of what is independent in X. */
-static ritz_status orthonormal_window(const ritz_low_rank_window *window,
-                                      ritz_dense *out)
+static ritz_status orthonormalise_window(const ritz_low_rank_window *window,
+                                         ritz_dense *out)
 {
     int64_t c = window->count;
     int64_t first = 0;
@@ -136,17 +131,15 @@ static ritz_status orthonormal_window(const ritz_low_rank_window *window,
 
     RITZ_CHECK_NEW(size, c);
     RITZ_CHECK_NEW(e, c);
-    RITZ_CHECK(ritz_dense_new(c, c, &G));
+    RITZ_CHECK(ritz_dense_block(&window->G[0], 0, c, 0, c, &G));
     for (int64_t j = 0; j < c; j++) {
-        double g = ritz_dense_col(&window->G[0], j)[j];
+        double g = ritz_dense_col(&G, j)[j];
 
         size[j] = g > 0.0 ? 1.0 / sqrt(g) : 0.0;
     }
-    for (int64_t j = 0; j < c; j++)
-        for (int64_t i = 0; i < c; i++)
-            ritz_dense_col(&G, j)[i] =
-                size[i] * ritz_dense_col(&window->G[0], j)[i] * size[j];
-    RITZ_CHECK(symmetric_modes(&G, e));
+    for (int64_t k = 0; k < c * c; k++)
+        G.val[k] = size[k % c] * G.val[k] * size[k / c];
+    RITZ_CHECK(diagonalise(&G, e));
     while (first < c && !(e[first] > RITZ_SQUARED_DEPENDENT * e[c - 1]))
         first++;
     RITZ_CHECK(ritz_dense_columns(&G, first, c - first, out));
@@ -157,17 +150,14 @@ static ritz_status orthonormal_window(const ritz_low_rank_window *window,
 }
 
 /* F'GF of the columns that are there. */
-static ritz_status product_between(const ritz_low_rank_window *window,
-                                   int which, const ritz_dense *F,
-                                   ritz_dense *out)
+static ritz_status project_products(const ritz_low_rank_window *window,
+                                    int which, const ritz_dense *F,
+                                    ritz_dense *out)
 {
     int64_t c = window->count;
     RITZ_OWN(ritz_dense) G = {0};
 
-    RITZ_CHECK(ritz_dense_new(c, c, &G));
-    for (int64_t j = 0; j < c; j++)
-        memcpy(ritz_dense_col(&G, j), ritz_dense_col(&window->G[which], j),
-               (size_t)c * sizeof *G.val);
+    RITZ_CHECK(ritz_dense_block(&window->G[which], 0, c, 0, c, &G));
     return ritz_dense_project(&G, F, out);
 }
 
@@ -184,13 +174,13 @@ static ritz_status find_window_modes(const ritz_low_rank_window *window,
     RITZ_OWN(ritz_dense) V = {0}, K = {0}, modes = {0};
     RITZ_OWN_ARRAY double *w = NULL;
 
-    RITZ_CHECK(orthonormal_window(window, &V));
-    RITZ_CHECK(product_between(window, 1, &V, &K));
+    RITZ_CHECK(orthonormalise_window(window, &V));
+    RITZ_CHECK(project_products(window, 1, &V, &K));
     RITZ_CHECK_NEW(w, K.nrow);
     ritz_dense_symmetrise(&K);
-    RITZ_CHECK(symmetric_modes(&K, w));
+    RITZ_CHECK(diagonalise(&K, w));
     RITZ_CHECK(ritz_dense_mul(&V, &K, &modes));
-    RITZ_CHECK(product_between(window, 2, &modes, Delta));
+    RITZ_CHECK(project_products(window, 2, &modes, Delta));
     for (int64_t k = 0; k < K.nrow; k++) /* the last one is exact enough */
         w[k] = sqrt(fmax(w[k], DBL_EPSILON * w[K.nrow - 1]));
     RITZ_MOVE(*F, modes);
@@ -214,10 +204,10 @@ typedef struct small {
     double *re, *im;          /* 2r */
     ritz_dense left, right;   /* 2r x 2r, as LAPACK packs pairs */
     ritz_dense w[RITZ_SIDES]; /* 2r x inputs, outputs */
-    double *share;            /* 2r */
+    double *part;             /* 2r, participation */
 } small;
 
-static void free_small(small *s)
+static void small_free(small *s)
 {
     ritz_dense_free(&s->F);
     ritz_dense_free(&s->A);
@@ -226,9 +216,9 @@ static void free_small(small *s)
     free(s->im);
     ritz_dense_free(&s->left);
     ritz_dense_free(&s->right);
-    ritz_dense_free(&s->w[RITZ_REACHED]);
-    ritz_dense_free(&s->w[RITZ_SEEN]);
-    free(s->share);
+    ritz_dense_free(&s->w[RITZ_CONTROLLABLE]);
+    ritz_dense_free(&s->w[RITZ_OBSERVABLE]);
+    free(s->part);
 }
 
 /* A, its poles and both kinds of vectors. */
@@ -283,23 +273,24 @@ static ritz_status project_loads(const ritz_low_rank_model *model,
                                  const ritz_low_rank_window *window, small *s)
 {
     int64_t r = s->F.ncol;
-    const ritz_dense *U = model->W[RITZ_REACHED];
-    const ritz_dense *Y = model->W[RITZ_SEEN];
+    const ritz_dense *U = model->W[RITZ_CONTROLLABLE];
+    const ritz_dense *Y = model->W[RITZ_OBSERVABLE];
     RITZ_OWN(ritz_dense) MU = {0};
 
     RITZ_CHECK(ritz_sparse_mul(&model->M, &U[RITZ_ABOVE], &MU));
-    RITZ_CHECK(ritz_dense_new(2 * r, MU.ncol, &s->w[RITZ_REACHED]));
-    RITZ_CHECK(ritz_dense_new(2 * r, Y[0].ncol, &s->w[RITZ_SEEN]));
-    RITZ_CHECK(put_half(window, &MU, 1.0, 0, s, &s->w[RITZ_REACHED]));
+    RITZ_CHECK(ritz_dense_new(2 * r, MU.ncol, &s->w[RITZ_CONTROLLABLE]));
+    RITZ_CHECK(ritz_dense_new(2 * r, Y[0].ncol, &s->w[RITZ_OBSERVABLE]));
+    RITZ_CHECK(put_half(window, &MU, 1.0, 0, s, &s->w[RITZ_CONTROLLABLE]));
     RITZ_CHECK(
-        put_half(window, &U[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_REACHED]));
-    RITZ_CHECK(put_half(window, &Y[RITZ_ABOVE], -1.0, 0, s, &s->w[RITZ_SEEN]));
-    return put_half(window, &Y[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_SEEN]);
+        put_half(window, &U[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_CONTROLLABLE]));
+    RITZ_CHECK(
+        put_half(window, &Y[RITZ_ABOVE], -1.0, 0, s, &s->w[RITZ_OBSERVABLE]));
+    return put_half(window, &Y[RITZ_BELOW], 0.0, r, s, &s->w[RITZ_OBSERVABLE]);
 }
 
 /* |x'w|^2 of a vector whose imaginary part is y, NULL if real. */
-static double seen_by(int64_t n, const double *x, const double *y,
-                      const ritz_dense *w)
+static double sum_squares(int64_t n, const double *x, const double *y,
+                          const ritz_dense *w)
 {
     double sum = 0.0;
 
@@ -318,8 +309,8 @@ static double seen_by(int64_t n, const double *x, const double *y,
 }
 
 /* |y'x|^2 of a left and a right vector. */
-static double cosine_of(int64_t n, const double *y, const double *y_im,
-                        const double *x, const double *x_im)
+static double square_product(int64_t n, const double *y, const double *y_im,
+                             const double *x, const double *x_im)
 {
     double re = 0.0;
     double im = 0.0;
@@ -331,37 +322,37 @@ static double cosine_of(int64_t n, const double *y, const double *y_im,
     return re * re + im * im;
 }
 
-/* Squares of both shares, each of the largest, added. */
+/* Squares of both participations, each over the largest, added. */
 static ritz_status weigh_poles(const bool open[static RITZ_SIDES], small *s)
 {
     int64_t n = s->A.nrow;
     double most[RITZ_SIDES] = {0.0, 0.0};
     RITZ_OWN(ritz_dense) part = {0};
 
-    RITZ_CHECK_NEW(s->share, n);
+    RITZ_CHECK_NEW(s->part, n);
     RITZ_CHECK(ritz_dense_new(n, RITZ_SIDES, &part));
     for (int64_t k = 0; k < n; k += s->im[k] != 0.0 ? 2 : 1) {
         bool pair = s->im[k] != 0.0;
         const double *x = ritz_dense_col(&s->right, k);
         const double *y = ritz_dense_col(&s->left, k);
         const double angle =
-            cosine_of(n, y, pair ? y + n : NULL, x, pair ? x + n : NULL);
-        double *in = ritz_dense_col(&part, RITZ_REACHED) + k;
-        double *seen = ritz_dense_col(&part, RITZ_SEEN) + k;
+            square_product(n, y, pair ? y + n : NULL, x, pair ? x + n : NULL);
+        double *in = ritz_dense_col(&part, RITZ_CONTROLLABLE) + k;
+        double *seen = ritz_dense_col(&part, RITZ_OBSERVABLE) + k;
 
-        *in = seen_by(n, y, pair ? y + n : NULL, &s->w[RITZ_REACHED]);
+        *in = sum_squares(n, y, pair ? y + n : NULL, &s->w[RITZ_CONTROLLABLE]);
         *in /= fmax(angle, DBL_EPSILON);
-        *seen = seen_by(n, x, pair ? x + n : NULL, &s->w[RITZ_SEEN]);
-        most[RITZ_REACHED] = fmax(most[RITZ_REACHED], *in);
-        most[RITZ_SEEN] = fmax(most[RITZ_SEEN], *seen);
+        *seen = sum_squares(n, x, pair ? x + n : NULL, &s->w[RITZ_OBSERVABLE]);
+        most[RITZ_CONTROLLABLE] = fmax(most[RITZ_CONTROLLABLE], *in);
+        most[RITZ_OBSERVABLE] = fmax(most[RITZ_OBSERVABLE], *seen);
     }
     for (int side = 0; side < RITZ_SIDES; side++)
         for (int64_t k = 0; k < n && open[side] && most[side] > 0.0; k++)
-            s->share[k] += ritz_dense_col(&part, side)[k] / most[side];
+            s->part[k] += ritz_dense_col(&part, side)[k] / most[side];
     return RITZ_OK;
 }
 
-/* The poles with the largest shares, of a pair the first. */
+/* The poles of largest participation, of a pair the first. */
 static ritz_status choose_shifts(small *s, int64_t most, int64_t *count,
                                  double _Complex *out)
 {
@@ -370,7 +361,7 @@ static ritz_status choose_shifts(small *s, int64_t most, int64_t *count,
         double size = 0.0;
 
         for (int64_t k = 0; k < s->A.nrow; k++)
-            if (s->share[k] > 0.0 && (best < 0 || s->share[k] > s->share[best]))
+            if (s->part[k] > 0.0 && (best < 0 || s->part[k] > s->part[best]))
                 best = k;
         if (best < 0)
             break;
@@ -383,7 +374,7 @@ static ritz_status choose_shifts(small *s, int64_t most, int64_t *count,
         out[*count] = s->re[best];
         if (fabs(s->im[best]) > RITZ_SHIFT_REAL * fabs(s->re[best]))
             out[*count] += fabs(s->im[best]) * (double _Complex)_Complex_I;
-        s->share[best] = 0.0;
+        s->part[best] = 0.0;
     }
     RITZ_REFUSE_IF(*count == 0, RITZ_ERR_CONVERGENCE,
                    "there is no shift for what the Gramians still miss");
@@ -396,14 +387,10 @@ ritz_status ritz_low_rank_shifts(const ritz_low_rank_model *model,
                                  int64_t most, int64_t *count,
                                  double _Complex *out)
 {
-    ritz_status status = RITZ_OK;
-    small s = {0};
+    RITZ_OWN(small) s = {0};
 
-    RITZ_TRY(find_poles(window, &s));
-    RITZ_TRY(project_loads(model, window, &s));
-    RITZ_TRY(weigh_poles(open, &s));
-    RITZ_TRY(choose_shifts(&s, most, count, out));
-done:
-    free_small(&s);
-    return status;
+    RITZ_CHECK(find_poles(window, &s));
+    RITZ_CHECK(project_loads(model, window, &s));
+    RITZ_CHECK(weigh_poles(open, &s));
+    return choose_shifts(&s, most, count, out);
 }

@@ -21,14 +21,12 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "gramians/modes.h"
 #include "linear/general.h"
-
-#include <ritz/model.h>
 
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 /* S of a mode, in states (q, q'). */
@@ -105,7 +103,7 @@ static ritz_status filter_gramian(const response *S, bool transposed,
     return RITZ_OK;
 }
 
-/* Band Gramians with the magnitudes that they are sums of. */
+/* A band Gramian with the magnitudes that it is a sum of. */
 typedef struct filtered {
     ritz_dense W, terms;
 } filtered;
@@ -116,38 +114,24 @@ static void filtered_free(filtered *f)
     ritz_dense_free(&f->terms);
 }
 
-static ritz_status filter_both(const response *S, const response *size,
-                               bool transposed, const ritz_dense *W,
-                               filtered *out)
-{
-    RITZ_OWN(ritz_dense) magnitude = {0};
+RITZ_PAIR_OF(filtered);
 
-    RITZ_CHECK(ritz_dense_abs(W, &magnitude));
-    RITZ_CHECK(filter_gramian(S, transposed, W, &out->W));
-    return filter_gramian(size, transposed, &magnitude, &out->terms);
-}
-
-static ritz_status check_band(const double band_hz[static 2])
+/* Both Gramians of a band. */
+static ritz_status filter_gramians(const ritz_modal *modal,
+                                   const double band_hz[static 2],
+                                   filtered out[static 2])
 {
+    const double w[2] = {2.0 * RITZ_PI * band_hz[0],
+                         2.0 * RITZ_PI * band_hz[1]};
+    RITZ_OWN(ritz_dense_pair) W = {0};
+    RITZ_OWN_ARRAY response *S = NULL, *size = NULL;
+
     RITZ_REFUSE_IF(!(band_hz[0] >= 0.0 && band_hz[1] > band_hz[0]) ||
                        isinf(band_hz[0]),
                    RITZ_ERR_ARGUMENT,
                    "a band is from 0 Hz or more to more, not from %g to %g",
                    band_hz[0], band_hz[1]);
-    return RITZ_OK;
-}
-
-static ritz_status band_gramians(const ritz_modal *modal,
-                                 const double band_hz[static 2],
-                                 filtered out[static 2])
-{
-    const double w[2] = {2.0 * RITZ_PI * band_hz[0],
-                         2.0 * RITZ_PI * band_hz[1]};
-    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0};
-    RITZ_OWN_ARRAY response *S = NULL, *size = NULL;
-
-    RITZ_CHECK(check_band(band_hz));
-    RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
+    RITZ_CHECK(ritz_modal_gramians_whole(modal, &W[0], &W[1]));
     RITZ_CHECK_NEW(S, modal->count);
     RITZ_CHECK_NEW(size, modal->count);
     for (int64_t k = 0; k < modal->count; k++) {
@@ -155,25 +139,27 @@ static ritz_status band_gramians(const ritz_modal *modal,
         for (int i = 0; i < 4; i++)
             size[k].s[i / 2][i % 2] = fabs(S[k].s[i / 2][i % 2]);
     }
-    RITZ_CHECK(filter_both(S, size, false, &Wc, &out[0]));
-    return filter_both(S, size, true, &Wo, &out[1]);
+    for (int side = 0; side < 2; side++) {
+        RITZ_OWN(ritz_dense) terms = {0};
+
+        RITZ_CHECK(ritz_dense_abs(&W[side], &terms));
+        RITZ_CHECK(filter_gramian(S, side == 1, &W[side], &out[side].W));
+        RITZ_CHECK(filter_gramian(size, side == 1, &terms, &out[side].terms));
+    }
+    return RITZ_OK;
 }
 
-ritz_status ritz_modal_gramians_band(const ritz_modal *modal,
-                                     const double band_hz[static 2],
-                                     ritz_dense *Wc, ritz_dense *Wo)
+ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
+                                ritz_dense *Wc, ritz_dense *Wo)
 {
-    ritz_status status = RITZ_OK;
-    filtered of[2] = {0};
+    RITZ_OWN(filtered_pair) of = {0};
 
-    RITZ_TRY(band_gramians(modal, band_hz, of));
-    *Wc = of[0].W;
-    *Wo = of[1].W;
-    of[0].W = of[1].W = (ritz_dense){0};
-done:
-    filtered_free(&of[0]);
-    filtered_free(&of[1]);
-    return status;
+    if (!band_hz)
+        return ritz_modal_gramians_whole(modal, Wc, Wo);
+    RITZ_CHECK(filter_gramians(modal, band_hz, of));
+    RITZ_MOVE(*Wc, of[0].W);
+    RITZ_MOVE(*Wo, of[1].W);
+    return RITZ_OK;
 }
 
 /* Roots of the diagonal, 0 where that is rounding. */
@@ -254,61 +240,37 @@ static ritz_status factor_filtered(filtered *f, ritz_dense *out)
     return put_factor(&f->W, s, root, out);
 }
 
-ritz_status ritz_modal_factors_band(const ritz_modal *modal,
-                                    const double band_hz[static 2],
-                                    ritz_dense *Zc, ritz_dense *Zo)
+ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
+                               ritz_dense *Zc, ritz_dense *Zo)
 {
-    ritz_status status = RITZ_OK;
-    filtered of[2] = {0};
-    ritz_dense C = {0}, O = {0};
+    RITZ_OWN(filtered_pair) of = {0};
+    RITZ_OWN(ritz_dense_pair) Z = {0};
 
-    RITZ_TRY(band_gramians(modal, band_hz, of));
-    RITZ_TRY(factor_filtered(&of[0], &C));
-    RITZ_TRY(factor_filtered(&of[1], &O));
-    *Zc = C;
-    *Zo = O;
-    C = O = (ritz_dense){0};
-done:
-    filtered_free(&of[0]);
-    filtered_free(&of[1]);
-    ritz_dense_free(&C);
-    ritz_dense_free(&O);
-    return status;
+    if (!band_hz)
+        return ritz_modal_factors_whole(modal, Zc, Zo);
+    RITZ_CHECK(filter_gramians(modal, band_hz, of));
+    RITZ_CHECK(factor_filtered(&of[0], &Z[0]));
+    RITZ_CHECK(factor_filtered(&of[1], &Z[1]));
+    RITZ_MOVE(*Zc, Z[0]);
+    RITZ_MOVE(*Zo, Z[1]);
+    return RITZ_OK;
 }
 
 /*
- * Exact Hankel singular values of a modal model: those of Z_o'Z_c, of factors
+ * Exact Hankel singular values of a modal model are those of Z_o'Z_c, of factors
  * in closed form. Modes that are not controllable or not observable get zero
  * and not a failure.
  *
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
-static ritz_status hankel_values(const ritz_dense *Zo, const ritz_dense *Zc,
-                                 double *sigma)
+ritz_status ritz_modal_hankel(const ritz_modal *modal, const double *band_hz,
+                              double *sigma)
 {
-    RITZ_OWN(ritz_dense) H = {0};
+    RITZ_OWN(ritz_dense) Zc = {0}, Zo = {0}, H = {0};
 
-    for (int64_t k = 0; k < Zc->nrow; k++)
+    RITZ_CHECK(ritz_modal_factors(modal, band_hz, &Zc, &Zo));
+    for (int64_t k = 0; k < 2 * modal->count; k++)
         sigma[k] = 0.0;
-    RITZ_CHECK(ritz_dense_mul_tn(Zo, Zc, &H));
-    RITZ_CHECK_IN("Hankel values", ritz_general_singular(&H, sigma));
-    return RITZ_OK;
-}
-
-ritz_status ritz_modal_hankel(const ritz_modal *modal, double *sigma)
-{
-    RITZ_OWN(ritz_dense) Zc = {0}, Zo = {0};
-
-    RITZ_CHECK(ritz_modal_factors(modal, &Zc, &Zo));
-    return hankel_values(&Zo, &Zc, sigma);
-}
-
-ritz_status ritz_modal_hankel_band(const ritz_modal *modal,
-                                   const double band_hz[static 2],
-                                   double *sigma)
-{
-    RITZ_OWN(ritz_dense) Zc = {0}, Zo = {0};
-
-    RITZ_CHECK(ritz_modal_factors_band(modal, band_hz, &Zc, &Zo));
-    return hankel_values(&Zo, &Zc, sigma);
+    RITZ_CHECK(ritz_dense_mul_tn(&Zo, &Zc, &H));
+    return ritz_context(ritz_general_singular(&H, sigma), "Hankel values");
 }

@@ -17,9 +17,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/general.h"
-
-#include <ritz/model.h>
+#include "gramians/modes.h"
 
 #include <cblas.h>
 #include <float.h>
@@ -33,7 +31,7 @@ typedef struct energy_model {
     ritz_dense F[2]; /* 2m x inputs, 2m x outputs: B and J C' */
 } energy_model;
 
-static void energy_free(energy_model *model)
+static void energy_model_free(energy_model *model)
 {
     free(model->w);
     free(model->d);
@@ -43,10 +41,11 @@ static void energy_free(energy_model *model)
 }
 
 /* @return RITZ_ERR_ARGUMENT if a mode has no damping or no stiffness */
-static ritz_status energy_new(const ritz_modal *modal, energy_model *out)
+static ritz_status create_energy_model(const ritz_modal *modal,
+                                       energy_model *out)
 {
     int64_t m = modal->count;
-    [[gnu::cleanup(energy_free)]] energy_model model = {.count = m};
+    RITZ_OWN(energy_model) model = {.count = m};
 
     RITZ_CHECK_NEW(model.w, m);
     RITZ_CHECK_NEW(model.d, m);
@@ -175,14 +174,14 @@ static ritz_status find_gramian(const energy_model *model, const ritz_dense *F,
     return RITZ_OK;
 }
 
-ritz_status ritz_modal_gramians(const ritz_modal *modal, ritz_dense *Wc,
-                                ritz_dense *Wo)
+ritz_status ritz_modal_gramians_whole(const ritz_modal *modal, ritz_dense *Wc,
+                                      ritz_dense *Wo)
 {
-    [[gnu::cleanup(energy_free)]] energy_model model = {0};
+    RITZ_OWN(energy_model) model = {0};
     RITZ_OWN(ritz_dense) X = {0}, Y = {0};
     RITZ_OWN_ARRAY double *inverse = NULL;
 
-    RITZ_CHECK(energy_new(modal, &model));
+    RITZ_CHECK(create_energy_model(modal, &model));
     RITZ_CHECK_NEW(inverse, modal->count);
     for (int64_t k = 0; k < modal->count; k++)
         inverse[k] = 1.0 / modal->omega[k];
@@ -459,14 +458,14 @@ static ritz_status spread_rows(const ritz_dense *Z, const double *t,
     return RITZ_OK;
 }
 
-ritz_status ritz_modal_factors(const ritz_modal *modal, ritz_dense *Zc,
-                               ritz_dense *Zo)
+ritz_status ritz_modal_factors_whole(const ritz_modal *modal, ritz_dense *Zc,
+                                     ritz_dense *Zo)
 {
-    [[gnu::cleanup(energy_free)]] energy_model model = {0};
+    RITZ_OWN(energy_model) model = {0};
     RITZ_OWN(ritz_dense) L = {0}, R = {0}, C = {0}, O = {0};
     RITZ_OWN_ARRAY double *inverse = NULL;
 
-    RITZ_CHECK(energy_new(modal, &model));
+    RITZ_CHECK(create_energy_model(modal, &model));
     RITZ_CHECK_NEW(inverse, modal->count);
     for (int64_t k = 0; k < modal->count; k++)
         inverse[k] = 1.0 / modal->omega[k];

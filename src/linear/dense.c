@@ -69,6 +69,14 @@ void ritz_dense_cut(const ritz_dense *A, int64_t row, int64_t col,
             ritz_dense_col(out, j)[i] = ritz_dense_col(A, col + j)[row + i];
 }
 
+ritz_status ritz_dense_block(const ritz_dense *A, int64_t row, int64_t nrow,
+                             int64_t col, int64_t ncol, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(nrow, ncol, out));
+    ritz_dense_cut(A, row, col, out);
+    return RITZ_OK;
+}
+
 void ritz_dense_put(const ritz_dense *A, int64_t row, int64_t col,
                     ritz_dense *out)
 {
@@ -80,7 +88,9 @@ void ritz_dense_put(const ritz_dense *A, int64_t row, int64_t col,
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(A->nrow, A->ncol + B->ncol, out));
+    int64_t n = A->nrow > 0 ? A->nrow : B->nrow;
+
+    RITZ_CHECK(ritz_dense_new(n, A->ncol + B->ncol, out));
     ritz_dense_put(A, 0, 0, out);
     ritz_dense_put(B, 0, A->ncol, out);
     return RITZ_OK;

@@ -222,8 +222,6 @@ ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
-RITZ_PAIR_OF(ritz_dense);
-
 /* |a + t b| of columns j. */
 static double norm_of(double t, const ritz_dense *B, ritz_dense *A, int64_t j)
 {

@@ -14,6 +14,7 @@
 #include "linear/exponential.h"
 
 #include "base/alloc.h"
+#include "linear/general.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -125,8 +126,6 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
     }
     return RITZ_OK;
 }
-
-RITZ_PAIR_OF(ritz_dense);
 
 ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
                              const ritz_dense *Q, ritz_dense *E, ritz_dense *W)

@@ -2,9 +2,13 @@
 #ifndef RITZ_LINEAR_GENERAL_H
 #define RITZ_LINEAR_GENERAL_H
 
+#include "base/alloc.h"
+
 #include <ritz/matrix.h>
 
 #include <stdbool.h>
+
+RITZ_PAIR_OF(ritz_dense);
 
 /**
  * X := A^-1 X by an LU factor; X := A'^-1 X if @p transposed.

@@ -62,6 +62,32 @@ ritz_status ritz_structure_of_component(const ritz_component *component,
     return RITZ_OK;
 }
 
+ritz_status ritz_structure_sparse(const ritz_component *component,
+                                  const ritz_damping *rayleigh, ritz_sparse *K,
+                                  ritz_sparse *D)
+{
+    RITZ_OWN(ritz_dampers) dampers = {0};
+    RITZ_OWN(ritz_sparse) given = {0}, sum = {0};
+
+    RITZ_CHECK(ritz_sparse_copy(&component->K, K));
+    if (component->D.colptr)
+        RITZ_CHECK(ritz_sparse_copy(&component->D, D));
+    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
+    RITZ_CHECK(ritz_dampers_install_sparse(&dampers, K, D));
+    if (!rayleigh || rayleigh->kind == RITZ_DAMPING_NONE)
+        return RITZ_OK;
+    RITZ_CHECK(
+        ritz_sparse_add(rayleigh->a, &component->M, rayleigh->b, K, &given));
+    if (D->colptr) {
+        RITZ_CHECK(ritz_sparse_add(1.0, D, 1.0, &given, &sum));
+        ritz_sparse_free(D);
+        RITZ_MOVE(*D, sum);
+    } else {
+        RITZ_MOVE(*D, given);
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
                                       ritz_structure *out)
 {

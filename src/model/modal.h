@@ -24,6 +24,15 @@ ritz_status ritz_structure_of_reduced(const ritz_reduced *reduced,
 /** RITZ_ERR_ARGUMENT, and its sentence, if there is structural damping. */
 ritz_status ritz_structure_refuse(bool structural);
 
+/**
+ * Sparse K and D with dampers installed and D := D + a M + b K; D {0}: none.
+ *
+ * @param[in] rayleigh  a and b; NULL or of kind NONE: no more damping
+ */
+ritz_status ritz_structure_sparse(const ritz_component *component,
+                                  const ritz_damping *rayleigh, ritz_sparse *K,
+                                  ritz_sparse *D);
+
 void ritz_structure_free(ritz_structure *model);
 
 typedef struct ritz_modal_model {

@@ -57,14 +57,8 @@ static ritz_status take_halves(const ritz_dense *T, ritz_dense *upper,
 
 static ritz_status install_dampers(const ritz_component *component, large *m)
 {
-    RITZ_OWN(ritz_dampers) dampers = {0};
-
     RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
-    RITZ_CHECK(ritz_sparse_copy(&component->K, &m->K));
-    if (component->D.colptr)
-        RITZ_CHECK(ritz_sparse_copy(&component->D, &m->D));
-    RITZ_CHECK(ritz_dampers_copy(&component->dampers, &dampers));
-    return ritz_dampers_install_sparse(&dampers, &m->K, &m->D);
+    return ritz_structure_sparse(component, NULL, &m->K, &m->D);
 }
 
 static bool is_rigid(const large *m, int64_t j)

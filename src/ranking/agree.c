@@ -14,6 +14,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "ranking/costs.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,11 +41,6 @@ static ranked_values open_ranking(const ritz_ranking *ranking,
     for (int64_t k = 0; k < ranking->count; k++)
         s.largest = fmax(s.largest, fabs(ranking->value[k]));
     return s;
-}
-
-static int64_t mode_number(const ranked_values *s, int64_t mode)
-{
-    return s->track ? s->track[mode] : mode;
 }
 
 static double mode_size(const ranked_values *s, int64_t mode)
@@ -82,6 +78,12 @@ static void set_places(int64_t count, shared *all, int which)
     }
 }
 
+/* xy / sqrt(xx yy); NaN where one is zero. */
+static double correlation(double xy, double xx, double yy)
+{
+    return xx > 0.0 && yy > 0.0 ? xy / sqrt(xx * yy) : nan("");
+}
+
 static double correlate_ranks(int64_t count, const shared *all)
 {
     double mean = 0.5 * ((double)count + 1.0);
@@ -95,30 +97,23 @@ static double correlate_ranks(int64_t count, const shared *all)
         xx += x * x;
         yy += y * y;
     }
-    return xx > 0.0 && yy > 0.0 ? xy / sqrt(xx * yy) : nan("");
-}
-
-static int sign_of(double x)
-{
-    return (x > 0.0) - (x < 0.0);
+    return correlation(xy, xx, yy);
 }
 
 static double count_pairs(int64_t count, const shared *all)
 {
-    double sum = 0.0, untied[2] = {0.0, 0.0};
+    double xy = 0.0, xx = 0.0, yy = 0.0;
 
     for (int64_t i = 0; i < count; i++)
         for (int64_t j = 0; j < i; j++) {
-            int a = sign_of(all[i].place[0] - all[j].place[0]);
-            int b = sign_of(all[i].place[1] - all[j].place[1]);
+            double x = all[i].place[0] - all[j].place[0];
+            double y = all[i].place[1] - all[j].place[1];
 
-            sum += a * b;
-            untied[0] += a != 0;
-            untied[1] += b != 0;
+            xy += (x * y > 0.0) - (x * y < 0.0);
+            xx += x != 0.0;
+            yy += y != 0.0;
         }
-    return untied[0] > 0.0 && untied[1] > 0.0
-               ? sum / sqrt(untied[0] * untied[1])
-               : nan("");
+    return correlation(xy, xx, yy);
 }
 
 static ritz_status correlate_rankings(const ranked_values s[static 2],
@@ -130,7 +125,7 @@ static ritz_status correlate_rankings(const ranked_values s[static 2],
 
     RITZ_CHECK_NEW(all, a->count);
     for (int64_t k = 0; k < a->count; k++) {
-        int64_t number = mode_number(&s[0], k);
+        int64_t number = ritz_mode_number(s[0].track, k);
         int64_t other = find_mode(&s[1], number);
 
         if (other < 0)
@@ -162,7 +157,7 @@ static int64_t extend_to_cluster(const ritz_ranking *r, int64_t k)
 static bool is_among(const ranked_values *s, int64_t n, int64_t number)
 {
     for (int64_t k = 0; k < n; k++)
-        if (mode_number(s, s->ranking->order[k]) == number)
+        if (ritz_mode_number(s->track, s->ranking->order[k]) == number)
             return true;
     return false;
 }
@@ -180,7 +175,7 @@ static int64_t list_difference(const ranked_values *s,
     int64_t count = 0;
 
     for (int64_t i = 0; i < n; i++) {
-        int64_t number = mode_number(s, s->ranking->order[i]);
+        int64_t number = ritz_mode_number(s->track, s->ranking->order[i]);
 
         if (is_among(other, m, number))
             continue;

@@ -1,4 +1,4 @@
-/* What several rankings have in common. */
+/* What several rankings share: costs, clusters, order. */
 #ifndef RITZ_RANKING_COSTS_H
 #define RITZ_RANKING_COSTS_H
 
@@ -12,23 +12,23 @@ void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
                             const char *letter, int64_t k,
                             char out[RITZ_NAME_SIZE]);
 
-/* The value of a cluster of modes that is a model of its own. */
-typedef ritz_status ritz_cluster_value(const ritz_rank_request *request,
-                                       const ritz_modal *cluster, double *out);
+/** The first mode of each mode's cluster. */
+void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster);
 
-/** Rank by cluster: the value of each mode is that of its cluster. */
-ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
-                                    ritz_cluster_value *value,
-                                    ritz_ranking *ranking);
+/** One past the last mode of the cluster that begins at mode @p first. */
+int64_t ritz_cluster_end(int64_t count, const int64_t *cluster, int64_t first);
 
 /** Replace the values within each cluster by their mean. */
-void ritz_ranking_share(const ritz_modal *modal, double *value);
+void ritz_ranking_share(int64_t count, const int64_t *cluster, double *value);
 
 /** Sort modes by magnitude of value; of equal ones the lower mode precedes. */
 ritz_status ritz_ranking_sort(int64_t count, const double *value,
                               int64_t *order);
 
-/** The first mode of each mode's cluster. */
-void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster);
+/** A ranking of so many modes, all zero; nothing of the whole is known. */
+ritz_status ritz_ranking_new(int64_t count, ritz_ranking *out);
+
+/** Number of a mode: its track, or its index without tracks. */
+int64_t ritz_mode_number(const int64_t *track, int64_t mode);
 
 #endif

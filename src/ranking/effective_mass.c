@@ -65,15 +65,12 @@ static double largest_fraction(const ritz_ranking *ranking, int64_t first,
 static ritz_status rank_masses(const ritz_rank_request *request,
                                ritz_ranking *ranking)
 {
-    int64_t m = request->modal.count;
     int64_t last = 0;
     double largest = 0.0;
 
     RITZ_CHECK(fill_mass_parts(request, ranking));
-    ritz_ranking_clusters(&request->modal, ranking->cluster);
-    for (int64_t first = 0; first < m; first = last) {
-        for (last = first + 1; last < m && ranking->cluster[last] == first;)
-            last++;
+    for (int64_t first = 0; first < ranking->count; first = last) {
+        last = ritz_cluster_end(ranking->count, ranking->cluster, first);
         for (int64_t k = first; k < last; k++)
             ranking->value[k] = largest_fraction(ranking, first, last);
         largest = fmax(largest, ranking->value[first]);

@@ -54,17 +54,11 @@ static ritz_status gregory_value(const ritz_rank_request *request,
     return ritz_general_norm(&CB, out);
 }
 
-static ritz_status rank_gregory(const ritz_rank_request *request,
-                                ritz_ranking *ranking)
-{
-    return ritz_ranking_by_cluster(request, gregory_value, ranking);
-}
-
 /*
  * The two exact values of one mode, sigma (sqrt(1 + zeta^2) +- zeta), have the
  * product sigma^2.
  */
-static double exact(const double pair[static 2])
+static double approached_value(const double pair[static 2])
 {
     return sqrt(pair[0]) * sqrt(pair[1]);
 }
@@ -74,6 +68,6 @@ const ritz_ranker ritz_ranker_gregory = {
     .summary = "Hankel values in the limit of light damping, mode by mode",
     .reference = "Gregory1984",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
-    .exact = exact,
-    .rank = rank_gregory,
+    .exact = approached_value,
+    .value = gregory_value,
 };

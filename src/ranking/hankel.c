@@ -7,31 +7,29 @@
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
 #include "base/alloc.h"
-
 #include "ranking/costs.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-static ritz_status hankel_value(const ritz_rank_request *request,
-                                const ritz_modal *cluster, double *out)
+static ritz_status find_largest(const ritz_modal *cluster,
+                                const double *band_hz, double *out)
 {
     RITZ_OWN_ARRAY double *sigma = NULL;
 
-    (void)request;
     RITZ_CHECK_NEW(sigma, 2 * cluster->count);
-    RITZ_CHECK(ritz_modal_hankel(cluster, sigma));
+    RITZ_CHECK(ritz_modal_hankel(cluster, band_hz, sigma));
     *out = sigma[0];
     return RITZ_OK;
 }
 
-static ritz_status rank_hankel(const ritz_rank_request *request,
-                               ritz_ranking *ranking)
+static ritz_status hankel_value(const ritz_rank_request *request,
+                                const ritz_modal *cluster, double *out)
 {
-    return ritz_ranking_by_cluster(request, hankel_value, ranking);
+    (void)request;
+    return find_largest(cluster, NULL, out);
 }
 
-static double exact(const double pair[static 2])
+static double approached_value(const double pair[static 2])
 {
     return pair[0];
 }
@@ -41,8 +39,8 @@ const ritz_ranker ritz_ranker_hankel = {
     .summary = "largest exact Hankel value of each mode (or cluster) alone",
     .reference = "Moore1981",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
-    .exact = exact,
-    .rank = rank_hankel,
+    .exact = approached_value,
+    .value = hankel_value,
 };
 
 /*
@@ -60,18 +58,7 @@ const ritz_ranker ritz_ranker_hankel = {
 static ritz_status band_value(const ritz_rank_request *request,
                               const ritz_modal *cluster, double *out)
 {
-    RITZ_OWN_ARRAY double *sigma = NULL;
-
-    RITZ_CHECK_NEW(sigma, 2 * cluster->count);
-    RITZ_CHECK(ritz_modal_hankel_band(cluster, request->band_hz, sigma));
-    *out = sigma[0];
-    return RITZ_OK;
-}
-
-static ritz_status rank_band(const ritz_rank_request *request,
-                             ritz_ranking *ranking)
-{
-    return ritz_ranking_by_cluster(request, band_value, ranking);
+    return find_largest(cluster, request->band_hz, out);
 }
 
 const ritz_ranker ritz_ranker_hankel_band = {
@@ -80,7 +67,7 @@ const ritz_ranker ritz_ranker_hankel_band = {
     .reference = "GawronskiJuang1990",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING |
              RITZ_RANK_BAND,
-    .rank = rank_band,
+    .value = band_value,
 };
 
 /*
@@ -109,16 +96,10 @@ static ritz_status h2_value(const ritz_rank_request *request,
     return RITZ_OK;
 }
 
-static ritz_status rank_h2(const ritz_rank_request *request,
-                           ritz_ranking *ranking)
-{
-    return ritz_ranking_by_cluster(request, h2_value, ranking);
-}
-
 const ritz_ranker ritz_ranker_h2 = {
     .name = "h2",
     .summary = "H2 norm of each mode (or cluster) alone",
     .reference = "Skelton1982",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
-    .rank = rank_h2,
+    .value = h2_value,
 };

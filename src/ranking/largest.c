@@ -6,12 +6,12 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-static int64_t mode_number(const ritz_rankings *all, int64_t item, int64_t mode)
+/* Number of a mode of one of the rankings. */
+static int64_t number_of(const ritz_rankings *all, int64_t item, int64_t mode)
 {
-    return all->track ? all->track[item][mode] : mode;
+    return ritz_mode_number(all->track ? all->track[item] : NULL, mode);
 }
 
 static ritz_status check_rankings(const ritz_rankings *all, int64_t *numbers)
@@ -32,24 +32,28 @@ static ritz_status check_rankings(const ritz_rankings *all, int64_t *numbers)
                        " at '%s': only tracks say which is which",
                        first->count, first->at, r->count, r->at);
         for (int64_t i = 0; i < r->count; i++)
-            if (mode_number(all, k, i) >= *numbers)
-                *numbers = mode_number(all, k, i) + 1;
+            if (number_of(all, k, i) >= *numbers)
+                *numbers = number_of(all, k, i) + 1;
     }
     return RITZ_OK;
 }
 
 /*
- * The ranking and the mode in which each number has its largest value, -1 if
- * none has it.
+ * For each number that a ranking has, the ranking and the mode with its largest
+ * value; returns how many there are.
+ *
+ * @param[out] item,mode,number  of each, in order of numbers
  */
-static void find_largest(const ritz_rankings *all, int64_t numbers,
-                         int64_t *item, int64_t *mode)
+static int64_t find_largest(const ritz_rankings *all, int64_t numbers,
+                            int64_t *item, int64_t *mode, int64_t *number)
 {
+    int64_t count = 0;
+
     for (int64_t n = 0; n < numbers; n++)
         item[n] = -1;
     for (int64_t k = 0; k < all->count; k++)
         for (int64_t i = 0; i < all->item[k].count; i++) {
-            int64_t n = mode_number(all, k, i);
+            int64_t n = number_of(all, k, i);
             double size = fabs(all->item[k].value[i]);
 
             if (item[n] < 0 || size > fabs(all->item[item[n]].value[mode[n]])) {
@@ -57,55 +61,12 @@ static void find_largest(const ritz_rankings *all, int64_t numbers,
                 mode[n] = i;
             }
         }
-}
-
-/*
- * Modes of one cluster where the first of them is largest remain one cluster.
- */
-static void take_clusters(const ritz_rankings *all, const int64_t *item,
-                          const int64_t *mode, ritz_ranking *out)
-{
-    for (int64_t k = 0; k < out->count; k++) {
-        const ritz_ranking *r = &all->item[item[k]];
-
-        out->cluster[k] = k;
-        if (k > 0 && item[k] == item[k - 1] &&
-            r->cluster[mode[k]] == r->cluster[mode[k - 1]])
-            out->cluster[k] = out->cluster[k - 1];
-    }
-}
-
-static ritz_status create_ranking(const ritz_ranking *like, int64_t count,
-                                  ritz_ranking *out)
-{
-    memcpy(out->by, like->by, sizeof out->by);
-    memcpy(out->reference, like->reference, sizeof out->reference);
-    memcpy(out->damping, like->damping, sizeof out->damping);
-    out->count = count;
-    out->total = nan("");
-    out->coupling = nan("");
-    RITZ_CHECK_NEW(out->hertz, count);
-    RITZ_CHECK_NEW(out->zeta, count);
-    RITZ_CHECK_NEW(out->value, count);
-    RITZ_CHECK_NEW(out->order, count);
-    RITZ_CHECK_NEW(out->cluster, count);
-    RITZ_CHECK_NEW(out->system_value, 1);
-    return RITZ_OK;
-}
-
-/* Remove the numbers that no ranking has. */
-static int64_t remove_gaps(int64_t numbers, int64_t *item, int64_t *mode,
-                           int64_t *track)
-{
-    int64_t count = 0;
-
-    for (int64_t n = 0; n < numbers; n++) {
-        if (item[n] < 0)
-            continue;
-        item[count] = item[n];
-        mode[count] = mode[n];
-        track[count++] = n;
-    }
+    for (int64_t n = 0; n < numbers; n++)
+        if (item[n] >= 0) {
+            item[count] = item[n];
+            mode[count] = mode[n];
+            number[count++] = n;
+        }
     return count;
 }
 
@@ -113,6 +74,7 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
                                   ritz_ranking *out, int64_t **where,
                                   int64_t **track)
 {
+    const ritz_ranking *first = rankings->item;
     RITZ_OWN(ritz_ranking) largest = {0};
     RITZ_OWN_ARRAY int64_t *item = NULL, *mode = NULL, *number = NULL;
     int64_t numbers = 0, count = 0;
@@ -121,17 +83,23 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
     RITZ_CHECK_NEW(item, numbers);
     RITZ_CHECK_NEW(mode, numbers);
     RITZ_CHECK_NEW(number, numbers);
-    find_largest(rankings, numbers, item, mode);
-    count = remove_gaps(numbers, item, mode, number);
-    RITZ_CHECK(create_ranking(rankings->item, count, &largest));
+    count = find_largest(rankings, numbers, item, mode, number);
+    RITZ_CHECK(ritz_ranking_new(count, &largest));
+    memcpy(largest.by, first->by, sizeof largest.by);
+    memcpy(largest.reference, first->reference, sizeof largest.reference);
+    memcpy(largest.damping, first->damping, sizeof largest.damping);
     for (int64_t k = 0; k < count; k++) {
         const ritz_ranking *r = &rankings->item[item[k]];
 
         largest.hertz[k] = r->hertz[mode[k]];
         largest.zeta[k] = r->zeta[mode[k]];
         largest.value[k] = r->value[mode[k]];
+        largest.cluster[k] = k;
+        /* neighbours that were one cluster where they are largest remain one */
+        if (k > 0 && item[k] == item[k - 1] &&
+            r->cluster[mode[k]] == r->cluster[mode[k - 1]])
+            largest.cluster[k] = largest.cluster[k - 1];
     }
-    take_clusters(rankings, item, mode, &largest);
     RITZ_CHECK(ritz_ranking_sort(count, largest.value, largest.order));
     RITZ_MOVE(*out, largest);
     RITZ_MOVE(*where, item);

@@ -16,7 +16,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "gramians/cluster.h"
+#include "gramians/modes.h"
 
 #include <ritz/ranking.h>
 
@@ -24,30 +24,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* c_ia of state a = 2 k or 2 k + 1 of mode k. */
-static double output_entry(const ritz_modal *modal, int64_t i, int64_t a)
-{
-    const ritz_dense *C = a % 2 == 0 ? &modal->C : &modal->Cv;
-
-    return ritz_dense_col(C, a / 2)[i];
-}
-
-/* [c_i1 c_i2 ...]' of all outputs: 2m x p. */
+/* [c_i1 c_i2 ...]' of all outputs: 2m x p, states (q_1, q_1', q_2, ...). */
 static ritz_status transpose_outputs(const ritz_modal *modal, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(2 * modal->count, modal->C.nrow, out));
     for (int64_t i = 0; i < out->ncol; i++)
-        for (int64_t a = 0; a < out->nrow; a++)
-            ritz_dense_col(out, i)[a] = output_entry(modal, i, a);
+        for (int64_t k = 0; k < modal->count; k++) {
+            double *c = ritz_dense_col(out, i) + 2 * k;
+
+            c[0] = ritz_dense_col(&modal->C, k)[i];
+            c[1] = ritz_dense_col(&modal->Cv, k)[i];
+        }
     return RITZ_OK;
 }
 
 ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0}, C = {0}, X = {0};
-    RITZ_OWN(ritz_dense) V = {0};
+    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0}, C = {0}, X = {0}, V = {0};
 
-    RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
+    RITZ_CHECK(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
     RITZ_CHECK(transpose_outputs(modal, &C));
     RITZ_CHECK(ritz_dense_mul(&Wc, &C, &X));
     RITZ_CHECK(ritz_dense_new(modal->count, modal->C.nrow, &V));
@@ -92,21 +87,11 @@ const ritz_ranker ritz_ranker_modal_cost = {
     .rank = rank_modal_cost,
 };
 
-/*
- * Iteration between output weights and the choice of modes:
- * include/ritz/reweigh.h.
- */
+/* Iteration between output weights and the choice of modes: see ritz_reweigh. */
 
 enum { MOST_ROUNDS = 400, LONGEST = 12 };
 
-/* The choice of one round. */
-typedef struct weighting_trial {
-    bool *taken; /* m */
-    double *q;   /* p, weights of this round */
-    double *d;   /* p, cost that its choice misses */
-} weighting_trial;
-
-/* What all rounds have in common, and the last few rounds. */
+/* What all rounds have in common, and the rounds. */
 typedef struct loop {
     const ritz_modal *modal;
     int64_t m, p, keep;
@@ -114,13 +99,10 @@ typedef struct loop {
     double *Y;    /* p */
     double *value;
     int64_t *order, *cluster;
-    weighting_trial past[LONGEST + 1]; /* round r is past[r % (LONGEST + 1)] */
+    ritz_dense q,
+        d;       /* p x rounds, weights and the costs that a choice misses */
+    bool *taken; /* m x rounds, the choice */
 } loop;
-
-static weighting_trial *find_round(loop *l, int64_t r)
-{
-    return &l->past[r % (LONGEST + 1)];
-}
 
 static ritz_status create_loop(const ritz_rank_request *request, int64_t keep,
                                loop *l)
@@ -134,14 +116,14 @@ static ritz_status create_loop(const ritz_rank_request *request, int64_t keep,
     RITZ_CHECK_NEW(l->value, l->m);
     RITZ_CHECK_NEW(l->order, l->m);
     RITZ_CHECK_NEW(l->cluster, l->m);
-    for (int k = 0; k <= LONGEST; k++) {
-        RITZ_CHECK_NEW(l->past[k].taken, l->m);
-        RITZ_CHECK_NEW(l->past[k].q, l->p);
-        RITZ_CHECK_NEW(l->past[k].d, l->p);
-    }
-    for (int64_t i = 0; i < l->p; i++)
+    RITZ_CHECK_NEW(l->taken, l->m * MOST_ROUNDS);
+    RITZ_CHECK(ritz_dense_new(l->p, MOST_ROUNDS, &l->q));
+    RITZ_CHECK(ritz_dense_new(l->p, MOST_ROUNDS, &l->d));
+    for (int64_t i = 0; i < l->p; i++) {
+        l->q.val[i] = 1.0;
         for (int64_t k = 0; k < l->m; k++)
             l->Y[i] += ritz_dense_col(&l->V, i)[k];
+    }
     ritz_ranking_clusters(l->modal, l->cluster);
     return RITZ_OK;
 }
@@ -153,176 +135,124 @@ static void loop_free(loop *l)
     free(l->value);
     free(l->order);
     free(l->cluster);
-    for (int k = 0; k <= LONGEST; k++) {
-        free(l->past[k].taken);
-        free(l->past[k].q);
-        free(l->past[k].d);
-    }
+    ritz_dense_free(&l->q);
+    ritz_dense_free(&l->d);
+    free(l->taken);
 }
 
 /* Choose the modes of largest cost, clusters whole. */
-static ritz_status choose_modes(loop *l, weighting_trial *t)
+static ritz_status choose_modes(loop *l, int64_t round)
 {
-    int64_t n = 0;
+    const double *q = ritz_dense_col(&l->q, round);
 
     for (int64_t k = 0; k < l->m; k++) {
         l->value[k] = 0.0;
-        t->taken[k] = false;
         for (int64_t i = 0; i < l->p; i++)
-            l->value[k] += t->q[i] * ritz_dense_col(&l->V, i)[k];
+            l->value[k] += q[i] * ritz_dense_col(&l->V, i)[k];
     }
-    ritz_ranking_share(l->modal, l->value);
+    ritz_ranking_share(l->m, l->cluster, l->value);
     RITZ_CHECK(ritz_ranking_sort(l->m, l->value, l->order));
-    for (; n < l->m; n++) {
+    for (int64_t n = 0; n < l->m; n++) {
         bool rest =
             n > 0 && l->cluster[l->order[n]] == l->cluster[l->order[n - 1]];
 
         if (n >= l->keep && !rest)
             break;
-        t->taken[l->order[n]] = true;
+        l->taken[round * l->m + l->order[n]] = true;
     }
-    return RITZ_OK;
-}
-
-/* The chosen modes as a model of their own. */
-static ritz_status extract_modes(const ritz_modal *modal, const bool *taken,
-                                 ritz_modal *out)
-{
-    RITZ_OWN(ritz_modal) part = {0};
-    RITZ_OWN_ARRAY int64_t *mode = NULL;
-    int64_t n = 0;
-
-    RITZ_CHECK_NEW(mode, modal->count);
-    for (int64_t k = 0; k < modal->count; k++)
-        if (taken[k])
-            mode[n++] = k;
-    part.count = n;
-    RITZ_CHECK_NEW(part.omega, n);
-    RITZ_CHECK_NEW(part.zeta, n);
-    RITZ_CHECK(ritz_dense_rows(&modal->B, n, mode, &part.B));
-    RITZ_CHECK(ritz_dense_new(modal->C.nrow, n, &part.C));
-    RITZ_CHECK(ritz_dense_new(modal->C.nrow, n, &part.Cv));
-    for (int64_t k = 0; k < n; k++) {
-        size_t size = (size_t)modal->C.nrow * sizeof(double);
-
-        part.omega[k] = modal->omega[mode[k]];
-        part.zeta[k] = modal->zeta[mode[k]];
-        memcpy(ritz_dense_col(&part.C, k), ritz_dense_col(&modal->C, mode[k]),
-               size);
-        memcpy(ritz_dense_col(&part.Cv, k), ritz_dense_col(&modal->Cv, mode[k]),
-               size);
-    }
-    RITZ_MOVE(*out, part);
     return RITZ_OK;
 }
 
 /* d_i = |Y_i - Y_i(kept alone)|. */
-static ritz_status measure_misses(const loop *l, weighting_trial *t)
+static ritz_status measure_misses(loop *l, int64_t round)
 {
     RITZ_OWN(ritz_modal) kept = {0};
     RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_CHECK(extract_modes(l->modal, t->taken, &kept));
+    RITZ_CHECK(
+        ritz_modal_part(l->modal, 0, l->m, l->taken + round * l->m, &kept));
     RITZ_CHECK(ritz_modal_costs(&kept, &V));
     for (int64_t i = 0; i < l->p; i++) {
         double alone = 0.0;
 
         for (int64_t k = 0; k < V.nrow; k++)
             alone += ritz_dense_col(&V, i)[k];
-        t->d[i] = fabs(l->Y[i] - alone);
+        ritz_dense_col(&l->d, round)[i] = fabs(l->Y[i] - alone);
     }
     return RITZ_OK;
 }
 
 /* q := (1 - a) p d / sum d + a q; without misses the weights stay. */
-static void update_weights(const loop *l, const weighting_trial *t, double *q)
+static void update_weights(loop *l, int64_t round)
 {
+    const double *q = ritz_dense_col(&l->q, round);
+    const double *d = ritz_dense_col(&l->d, round);
     double sum = 0.0;
 
     for (int64_t i = 0; i < l->p; i++)
-        sum += t->d[i];
+        sum += d[i];
     for (int64_t i = 0; i < l->p; i++)
-        q[i] = sum > 0.0
-                   ? RITZ_OLD_WEIGHT * t->q[i] +
-                         (1.0 - RITZ_OLD_WEIGHT) * (double)l->p * t->d[i] / sum
-                   : t->q[i];
+        ritz_dense_col(&l->q, round + 1)[i] =
+            sum > 0.0 ? RITZ_OLD_WEIGHT * q[i] +
+                            (1.0 - RITZ_OLD_WEIGHT) * (double)l->p * d[i] / sum
+                      : q[i];
 }
 
-static bool is_same(const loop *l, const weighting_trial *a,
-                    const weighting_trial *b)
+static bool is_same(const loop *l, int64_t a, int64_t b)
 {
     for (int64_t i = 0; i < l->p; i++)
-        if (!(fabs(a->q[i] - b->q[i]) <= RITZ_SAME))
+        if (!(fabs(ritz_dense_col(&l->q, a)[i] - ritz_dense_col(&l->q, b)[i]) <=
+              RITZ_SAME))
             return false;
-    return memcmp(a->taken, b->taken, (size_t)l->m * sizeof *a->taken) == 0;
+    return memcmp(l->taken + a * l->m, l->taken + b * l->m,
+                  (size_t)l->m * sizeof *l->taken) == 0;
 }
 
 /* The number of rounds after which the last one recurs; 0 if it has not yet. */
-static int64_t find_period(loop *l, int64_t round)
+static int64_t find_period(const loop *l, int64_t round)
 {
     for (int64_t k = 1; k <= LONGEST && k <= round; k++)
-        if (is_same(l, find_round(l, round), find_round(l, round - k)))
+        if (is_same(l, round, round - k))
             return k;
     return 0;
 }
 
-static double worst_miss(const loop *l, const weighting_trial *t)
-{
-    double largest = 0.0;
-
-    for (int64_t i = 0; i < l->p; i++)
-        largest = fmax(largest, t->d[i]);
-    return largest;
-}
-
-/* The round of a period, or of those remembered, with the smallest miss. */
-static const weighting_trial *find_best(loop *l, int64_t round, int64_t period)
+/* The round of a period, or of the last few, with the smallest miss. */
+static int64_t find_best(const loop *l, int64_t round, int64_t period)
 {
     int64_t count = period > 0 ? period : LONGEST;
-    const weighting_trial *best = find_round(l, round);
+    int64_t best = round;
 
-    for (int64_t k = 1; k < count && k <= round; k++) {
-        const weighting_trial *t = find_round(l, round - k);
-
-        if (worst_miss(l, t) < worst_miss(l, best))
-            best = t;
-    }
+    for (int64_t k = 1; k < count && k <= round; k++)
+        if (ritz_dense_col_max(&l->d, round - k) <
+            ritz_dense_col_max(&l->d, best))
+            best = round - k;
     return best;
 }
 
-/* List the modes that some round of the period keeps and the best does not. */
-static void list_others(loop *l, int64_t round, const weighting_trial *best,
-                        ritz_reweighing *out)
-{
-    for (int64_t k = 0; k < l->m; k++)
-        for (int64_t r = 0; r < out->period; r++)
-            if (find_round(l, round - r)->taken[k] && !best->taken[k]) {
-                out->other[out->num_other++] = k;
-                break;
-            }
-}
-
-static ritz_status report_rounds(loop *l, int64_t round, int64_t period,
+static ritz_status report_rounds(const loop *l, int64_t round, int64_t period,
                                  ritz_reweighing *out)
 {
-    const weighting_trial *best = find_best(l, round, period);
-    size_t size = (size_t)l->p * sizeof(double);
+    int64_t best = find_best(l, round, period);
 
     out->num_outputs = l->p;
     out->rounds = round + 1;
     out->period = period;
-    RITZ_CHECK_NEW(out->weight, l->p);
-    RITZ_CHECK_NEW(out->cost, l->p);
-    RITZ_CHECK_NEW(out->missed, l->p);
+    RITZ_CHECK_COPY(out->weight, ritz_dense_col(&l->q, best), l->p);
+    RITZ_CHECK_COPY(out->cost, l->Y, l->p);
+    RITZ_CHECK_COPY(out->missed, ritz_dense_col(&l->d, best), l->p);
     RITZ_CHECK_NEW(out->kept, l->m);
     RITZ_CHECK_NEW(out->other, l->m);
-    memcpy(out->weight, best->q, size);
-    memcpy(out->cost, l->Y, size);
-    memcpy(out->missed, best->d, size);
-    for (int64_t k = 0; k < l->m; k++)
-        if (best->taken[k])
+    for (int64_t k = 0; k < l->m; k++) {
+        bool any = false;
+
+        for (int64_t r = 0; r < period; r++)
+            any = any || l->taken[(round - r) * l->m + k];
+        if (l->taken[best * l->m + k])
             out->kept[out->num_kept++] = k;
-    list_others(l, round, best, out);
+        else if (any)
+            out->other[out->num_other++] = k;
+    }
     return RITZ_OK;
 }
 
@@ -340,18 +270,13 @@ ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
                    "weights choose at least one mode and leave one out, of %d",
                    (int)request->modal.count);
     RITZ_CHECK(create_loop(request, keep, &l));
-    for (int64_t i = 0; i < l.p; i++)
-        find_round(&l, 0)->q[i] = 1.0;
-    while (true) {
-        weighting_trial *t = find_round(&l, round);
-
-        RITZ_CHECK(choose_modes(&l, t));
-        RITZ_CHECK(measure_misses(&l, t));
+    for (;; round++) {
+        RITZ_CHECK(choose_modes(&l, round));
+        RITZ_CHECK(measure_misses(&l, round));
         period = find_period(&l, round);
         if (period > 0 || round + 1 == MOST_ROUNDS)
             break;
-        round++;
-        update_weights(&l, t, find_round(&l, round)->q);
+        update_weights(&l, round);
     }
     RITZ_CHECK(report_rounds(&l, round, period, &found));
     RITZ_MOVE(*out, found);

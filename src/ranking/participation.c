@@ -15,20 +15,6 @@
 
 #include <math.h>
 
-/* Rows first .. last - 1 of B, and their largest singular value. */
-static ritz_status largest_singular(const ritz_dense *B, int64_t first,
-                                    int64_t last, double *out)
-{
-    int64_t n = last - first;
-    RITZ_OWN(ritz_dense) A = {0};
-
-    RITZ_CHECK(ritz_dense_new(n, B->ncol, &A));
-    for (int64_t j = 0; j < B->ncol; j++)
-        for (int64_t k = 0; k < n; k++)
-            ritz_dense_col(&A, j)[k] = ritz_dense_col(B, j)[first + k];
-    return ritz_general_norm(&A, out);
-}
-
 static void fill_parts(const ritz_dense *B, int64_t first, int64_t last,
                        ritz_dense *parts)
 {
@@ -47,19 +33,19 @@ static ritz_status rank_participation(const ritz_rank_request *request,
                                       ritz_ranking *ranking)
 {
     const ritz_dense *B = &request->modal.B;
-    int64_t m = request->modal.count;
     int64_t last = 0;
 
     RITZ_CHECK(ritz_ranking_parts(B->ncol, ranking));
-    ritz_ranking_clusters(&request->modal, ranking->cluster);
     for (int64_t j = 0; j < B->ncol; j++) {
         ritz_ranking_name_part(request->input, "u", j, ranking->part[j]);
         ranking->whole[j] = nan("");
     }
-    for (int64_t first = 0; first < m; first = last) {
-        for (last = first + 1; last < m && ranking->cluster[last] == first;)
-            last++;
-        RITZ_CHECK(largest_singular(B, first, last, &ranking->value[first]));
+    for (int64_t first = 0; first < ranking->count; first = last) {
+        RITZ_OWN(ritz_dense) rows = {0};
+
+        last = ritz_cluster_end(ranking->count, ranking->cluster, first);
+        RITZ_CHECK(ritz_dense_block(B, first, last - first, 0, B->ncol, &rows));
+        RITZ_CHECK(ritz_general_norm(&rows, &ranking->value[first]));
         for (int64_t k = first + 1; k < last; k++)
             ranking->value[k] = ranking->value[first];
         fill_parts(B, first, last, &ranking->parts);
@@ -69,7 +55,7 @@ static ritz_status rank_participation(const ritz_rank_request *request,
 
 const ritz_ranker ritz_ranker_participation = {
     .name = "participation",
-    .summary = "how hard inputs drive each mode (or cluster)",
+    .summary = "how strongly inputs excite each mode (or cluster)",
     .reference = "Girard2008",
     .needs = RITZ_RANK_INPUTS,
     .rank = rank_participation,

@@ -6,15 +6,12 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "gramians/cluster.h"
+#include "gramians/modes.h"
 
 #include <ritz/ranking.h>
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const ritz_ranker *ritz_ranker_find(const char *name)
 {
@@ -46,46 +43,41 @@ static void find_coupling(const ritz_dense *W, ritz_ranking *ranking)
         }
 }
 
-/*
- * The largest normalised off-diagonal |W_ab| / sqrt(W_aa W_bb) of both exact
- * Gramians, except within clusters, which are ranked whole.
- */
-static ritz_status measure_coupling(const ritz_modal *modal,
-                                    ritz_ranking *ranking)
-{
-    RITZ_OWN(ritz_dense) Wc = {0};
-    RITZ_OWN(ritz_dense) Wo = {0};
-
-    RITZ_CHECK(ritz_modal_gramians(modal, &Wc, &Wo));
-    ranking->coupling = 0.0;
-    find_coupling(&Wc, ranking);
-    find_coupling(&Wo, ranking);
-    return RITZ_OK;
-}
-
 static ritz_status create_ranking(const ritz_ranker *ranker,
                                   const ritz_rank_request *request,
                                   ritz_ranking *out)
 {
     const ritz_modal *modal = &request->modal;
-    int64_t m = modal->count;
 
+    RITZ_CHECK(ritz_ranking_new(modal->count, out));
     (void)snprintf(out->by, RITZ_NAME_SIZE, "%s", ranker->name);
     (void)snprintf(out->reference, RITZ_NAME_SIZE, "%s", ranker->reference);
-    out->count = m;
-    out->total = nan("");
-    out->coupling = nan("");
-    RITZ_CHECK_NEW(out->hertz, m);
-    RITZ_CHECK_NEW(out->zeta, m);
-    RITZ_CHECK_NEW(out->value, m);
-    RITZ_CHECK_NEW(out->order, m);
-    RITZ_CHECK_NEW(out->cluster, m);
-    RITZ_CHECK_NEW(out->system_value, 2 * m);
-    for (int64_t k = 0; k < m; k++) {
+    for (int64_t k = 0; k < out->count; k++) {
         out->hertz[k] = modal->omega[k] / (2.0 * RITZ_PI);
         out->zeta[k] = request->undamped ? 0.0 : modal->zeta[k];
     }
     ritz_ranking_clusters(modal, out->cluster);
+    return RITZ_OK;
+}
+
+/* The value of each cluster of modes, as a model of its own, is that of all its
+   modes. */
+static ritz_status rank_clusters(const ritz_ranker *ranker,
+                                 const ritz_rank_request *request,
+                                 ritz_ranking *ranking)
+{
+    int64_t last = 0;
+
+    for (int64_t first = 0; first < ranking->count; first = last) {
+        RITZ_OWN(ritz_modal) cluster = {0};
+
+        last = ritz_cluster_end(ranking->count, ranking->cluster, first);
+        RITZ_CHECK(
+            ritz_modal_part(&request->modal, first, last, NULL, &cluster));
+        RITZ_CHECK(ranker->value(request, &cluster, &ranking->value[first]));
+        for (int64_t k = first + 1; k < last; k++)
+            ranking->value[k] = ranking->value[first];
+    }
     return RITZ_OK;
 }
 
@@ -121,28 +113,37 @@ static ritz_status check_needs(const ritz_ranker *ranker,
     return RITZ_OK;
 }
 
-/* The exact values of the whole model, if it has inputs and outputs. */
+/*
+ * The exact values of the whole model, if it has inputs and outputs, and the
+ * largest normalised off-diagonal |W_ab| / sqrt(W_aa W_bb) of both exact
+ * Gramians, except within clusters, which are ranked whole.
+ */
 static ritz_status add_whole_values(const ritz_rank_request *request,
                                     ritz_ranking *ranking)
 {
     const ritz_modal *modal = &request->modal;
+    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0};
 
     if (request->bare || request->undamped || modal->B.ncol == 0 ||
         modal->C.nrow == 0)
         return RITZ_OK;
-    RITZ_CHECK(ritz_modal_hankel(modal, ranking->system_value));
+    RITZ_CHECK(ritz_modal_hankel(modal, NULL, ranking->system_value));
     ranking->num_system = 2 * modal->count;
-    return measure_coupling(modal, ranking);
+    RITZ_CHECK(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
+    ranking->coupling = 0.0;
+    find_coupling(&Wc, ranking);
+    find_coupling(&Wo, ranking);
+    return RITZ_OK;
 }
 
 /* One value for each cluster; a sum is divided equally among its modes. */
-static void share_clusters(const ritz_ranker *ranker, const ritz_modal *modal,
-                           ritz_ranking *ranking)
+static void share_clusters(const ritz_ranker *ranker, ritz_ranking *ranking)
 {
     if (ranker->sums)
-        ritz_ranking_share(modal, ranking->value);
+        ritz_ranking_share(ranking->count, ranking->cluster, ranking->value);
     for (int64_t j = 0; j < ranking->num_parts; j++)
-        ritz_ranking_share(modal, ritz_dense_col(&ranking->parts, j));
+        ritz_ranking_share(ranking->count, ranking->cluster,
+                           ritz_dense_col(&ranking->parts, j));
 }
 
 ritz_status ritz_rank(const ritz_ranker *ranker,
@@ -152,8 +153,10 @@ ritz_status ritz_rank(const ritz_ranker *ranker,
 
     RITZ_CHECK_IN(ranker->name, check_needs(ranker, request));
     RITZ_CHECK(create_ranking(ranker, request, &ranking));
-    RITZ_CHECK_IN(ranker->name, ranker->rank(request, &ranking));
-    share_clusters(ranker, &request->modal, &ranking);
+    RITZ_CHECK_IN(ranker->name, ranker->value
+                                    ? rank_clusters(ranker, request, &ranking)
+                                    : ranker->rank(request, &ranking));
+    share_clusters(ranker, &ranking);
     RITZ_CHECK(ritz_ranking_sort(ranking.count, ranking.value, ranking.order));
     RITZ_CHECK(add_whole_values(request, &ranking));
     RITZ_MOVE(*out, ranking);

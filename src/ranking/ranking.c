@@ -1,15 +1,13 @@
 #include <ritz/ranking.h>
 
 #include "base/alloc.h"
-#include "base/tolerances.h"
-#include "gramians/cluster.h"
+#include "gramians/modes.h"
 #include "ranking/costs.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Order of modes by magnitude of value, and the values of clusters. */
 
@@ -55,14 +53,43 @@ void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster)
     }
 }
 
-void ritz_ranking_share(const ritz_modal *modal, double *value)
+int64_t ritz_cluster_end(int64_t count, const int64_t *cluster, int64_t first)
+{
+    int64_t last = first + 1;
+
+    while (last < count && cluster[last] == first)
+        last++;
+    return last;
+}
+
+int64_t ritz_mode_number(const int64_t *track, int64_t mode)
+{
+    return track ? track[mode] : mode;
+}
+
+ritz_status ritz_ranking_new(int64_t count, ritz_ranking *out)
+{
+    RITZ_OWN(ritz_ranking)
+    ranking = {.count = count, .total = nan(""), .coupling = nan("")};
+
+    RITZ_CHECK_NEW(ranking.hertz, count);
+    RITZ_CHECK_NEW(ranking.zeta, count);
+    RITZ_CHECK_NEW(ranking.value, count);
+    RITZ_CHECK_NEW(ranking.order, count);
+    RITZ_CHECK_NEW(ranking.cluster, count);
+    RITZ_CHECK_NEW(ranking.system_value, 2 * count);
+    RITZ_MOVE(*out, ranking);
+    return RITZ_OK;
+}
+
+void ritz_ranking_share(int64_t count, const int64_t *cluster, double *value)
 {
     int64_t last = 0;
 
-    for (int64_t first = 0; first < modal->count; first = last) {
+    for (int64_t first = 0; first < count; first = last) {
         double sum = 0.0;
 
-        last = ritz_modal_cluster(modal, first);
+        last = ritz_cluster_end(count, cluster, first);
         for (int64_t k = first; k < last; k++)
             sum += value[k];
         for (int64_t k = first; last > first + 1 && k < last; k++)
@@ -78,25 +105,6 @@ void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
         (void)snprintf(out, RITZ_NAME_SIZE, "%s", names[k]);
     else
         (void)snprintf(out, RITZ_NAME_SIZE, "%s%" PRId64, letter, k + 1);
-}
-
-ritz_status ritz_ranking_by_cluster(const ritz_rank_request *request,
-                                    ritz_cluster_value *value,
-                                    ritz_ranking *ranking)
-{
-    const ritz_modal *modal = &request->modal;
-    RITZ_OWN(ritz_modal) cluster = {0};
-    int64_t last = 0;
-
-    for (int64_t first = 0; first < modal->count; first = last) {
-        last = ritz_modal_cluster(modal, first);
-        RITZ_CHECK(ritz_modal_part(modal, first, last, &cluster));
-        RITZ_CHECK(value(request, &cluster, &ranking->value[first]));
-        for (int64_t k = first + 1; k < last; k++)
-            ranking->value[k] = ranking->value[first];
-        ritz_modal_free(&cluster);
-    }
-    return RITZ_OK;
 }
 
 ritz_status ritz_ranking_parts(int64_t count, ritz_ranking *ranking)

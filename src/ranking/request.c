@@ -99,11 +99,9 @@ static ritz_status find_name(const ritz_weight *weight, const char *kind,
         }
     if (count > 0)
         near = ritz_text_nearest(weight->name, count, name[0], RITZ_NAME_SIZE);
-    RITZ_REFUSE_IF(true, RITZ_ERR_ARGUMENT,
-                   "there is no %s '%s' to weigh%s%s%s", kind, weight->name,
-                   near ? ", is '" : "", near ? near : "",
-                   near ? "' meant?" : "");
-    return RITZ_OK;
+    return ritz_fail(RITZ_ERR_ARGUMENT, "there is no %s '%s' to weigh%s%s%s",
+                     kind, weight->name, near ? ", is '" : "", near ? near : "",
+                     near ? "' meant?" : "");
 }
 
 /*
@@ -134,8 +132,8 @@ static ritz_status apply_weights(const ritz_weights *weights, ritz_io *io)
 
 /*
  * The data that rankings need of a model. The momentum R'M phi of each mode is
- * computed as six additional outputs, which are removed again: so it belongs to
- * the basis of a cluster that the modal model has chosen.
+ * computed as six additional outputs, which are removed again: it is then that
+ * of the basis that the modal model has chosen for a cluster.
  */
 
 enum { DIRECTIONS = 6 };
@@ -161,67 +159,43 @@ static ritz_status extend_io(const ranked_model *s, const ritz_weights *weights,
     RITZ_OWN(ritz_io) all = {0};
 
     RITZ_CHECK(ritz_io_new(n, io->num_inputs, io->num_outputs + more, &all));
-    for (int64_t j = 0; j < io->num_inputs; j++) {
+    for (int64_t j = 0; j < io->num_inputs; j++)
         memcpy(all.input[j], io->input[j], RITZ_NAME_SIZE);
-        memcpy(ritz_dense_col(&all.B, j), ritz_dense_col(&io->B, j),
-               (size_t)n * sizeof(double));
-    }
     for (int64_t i = 0; i < io->num_outputs; i++) {
         memcpy(all.output[i], io->output[i], RITZ_NAME_SIZE);
         all.limit[i] = io->limit[i];
     }
-    for (int64_t j = 0; j < n; j++) {
-        for (int64_t i = 0; i < io->num_outputs; i++) {
-            ritz_dense_col(&all.C, j)[i] = ritz_dense_col(&io->C, j)[i];
-            ritz_dense_col(&all.Cv, j)[i] = ritz_dense_col(&io->Cv, j)[i];
-            ritz_dense_col(&all.Ca, j)[i] = ritz_dense_col(&io->Ca, j)[i];
-        }
-        for (int64_t d = 0; d < more; d++)
-            ritz_dense_col(&all.C, j)[io->num_outputs + d] =
-                ritz_dense_col(s->momentum, j)[d];
-    }
+    ritz_dense_put(&io->B, 0, 0, &all.B);
+    ritz_dense_put(&io->C, 0, 0, &all.C);
+    ritz_dense_put(&io->Cv, 0, 0, &all.Cv);
+    ritz_dense_put(&io->Ca, 0, 0, &all.Ca);
+    if (more > 0)
+        ritz_dense_put(s->momentum, io->num_outputs, 0, &all.C);
     if (weights)
         RITZ_CHECK(apply_weights(weights, &all));
     RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 
-/* Split off the rows of C from `first` on. */
-static ritz_status split_rows(ritz_dense *C, int64_t first, ritz_dense *rest)
-{
-    RITZ_OWN(ritz_dense) head = {0};
-
-    RITZ_CHECK(ritz_dense_new(first, C->ncol, &head));
-    RITZ_CHECK(ritz_dense_new(C->nrow - first, C->ncol, rest));
-    for (int64_t j = 0; j < C->ncol; j++) {
-        for (int64_t i = 0; i < first; i++)
-            ritz_dense_col(&head, j)[i] = ritz_dense_col(C, j)[i];
-        for (int64_t i = first; i < C->nrow; i++)
-            ritz_dense_col(rest, j)[i - first] = ritz_dense_col(C, j)[i];
-    }
-    ritz_dense_free(C);
-    RITZ_MOVE(*C, head);
-    return RITZ_OK;
-}
-
+/* Take the additional outputs out of the modal model. */
 static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
 {
-    RITZ_OWN(ritz_dense) none = {0};
+    ritz_dense *const outputs[] = {&out->modal.C, &out->modal.Cv};
+    int64_t p = s->io->num_outputs;
+    int64_t m = out->modal.count;
 
     if (!s->momentum->val)
         return RITZ_OK;
-    RITZ_CHECK(split_rows(&out->modal.C, s->io->num_outputs, &out->momentum));
-    RITZ_CHECK(split_rows(&out->modal.Cv, s->io->num_outputs, &none));
-    memcpy(out->rigid, s->rigid, sizeof out->rigid);
-    return RITZ_OK;
-}
+    RITZ_CHECK(
+        ritz_dense_block(&out->modal.C, p, DIRECTIONS, 0, m, &out->momentum));
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(ritz_dense) own = {0};
 
-static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
-                              char (**out)[RITZ_NAME_SIZE])
-{
-    RITZ_CHECK_NEW(*out, count);
-    for (int64_t k = 0; k < count; k++)
-        memcpy((*out)[k], names[k], RITZ_NAME_SIZE);
+        RITZ_CHECK(ritz_dense_block(outputs[k], 0, p, 0, m, &own));
+        ritz_dense_free(outputs[k]);
+        RITZ_MOVE(*outputs[k], own);
+    }
+    memcpy(out->rigid, s->rigid, sizeof out->rigid);
     return RITZ_OK;
 }
 
@@ -230,7 +204,7 @@ static ritz_status copy_names(int64_t count, char (*names)[RITZ_NAME_SIZE],
  * arbitrary ratio is used to find the modes, and `undamped` marks it as
  * meaningless.
  */
-static ritz_status make_modal(const ranked_model *s,
+static ritz_status find_modal(const ranked_model *s,
                               const ritz_rank_choice *choice, int needs,
                               const ritz_io *io, ritz_rank_request *out)
 {
@@ -251,10 +225,10 @@ static ritz_status make_request(const ranked_model *s,
     RITZ_OWN(ritz_io) io = {0};
 
     RITZ_CHECK(extend_io(s, choice->weights, &io));
-    RITZ_CHECK(make_modal(s, choice, needs, &io, &request));
+    RITZ_CHECK(find_modal(s, choice, needs, &io, &request));
     RITZ_CHECK(take_momentum(s, &request));
-    RITZ_CHECK(copy_names(s->io->num_inputs, s->io->input, &request.input));
-    RITZ_CHECK(copy_names(s->io->num_outputs, s->io->output, &request.output));
+    RITZ_CHECK_COPY(request.input, s->io->input, s->io->num_inputs);
+    RITZ_CHECK_COPY(request.output, s->io->output, s->io->num_outputs);
     memcpy(request.band_hz, choice->band_hz, sizeof request.band_hz);
     RITZ_MOVE(*out, request);
     return RITZ_OK;

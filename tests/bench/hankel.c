@@ -127,7 +127,7 @@ static ritz_status closed_gramians(subject *s)
     ritz_status status = RITZ_OK;
     ritz_dense Wc = {0}, Wo = {0};
 
-    RITZ_TRY(ritz_modal_gramians(&s->modal, &Wc, &Wo));
+    RITZ_TRY(ritz_modal_gramians(&s->modal, NULL, &Wc, &Wo));
 done:
     ritz_dense_free(&Wc);
     ritz_dense_free(&Wo);
@@ -139,7 +139,7 @@ static ritz_status closed_factors(subject *s)
     ritz_status status = RITZ_OK;
     ritz_dense Zc = {0}, Zo = {0};
 
-    RITZ_TRY(ritz_modal_factors(&s->modal, &Zc, &Zo));
+    RITZ_TRY(ritz_modal_factors(&s->modal, NULL, &Zc, &Zo));
 done:
     ritz_dense_free(&Zc);
     ritz_dense_free(&Zo);
@@ -161,7 +161,7 @@ done:
 
 static ritz_status closed_hankel(subject *s)
 {
-    return ritz_modal_hankel(&s->modal, s->sigma);
+    return ritz_modal_hankel(&s->modal, NULL, s->sigma);
 }
 
 /* Either routine of SLICOT, which overwrite what they are given. */

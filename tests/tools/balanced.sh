@@ -58,7 +58,7 @@ expect 0 'reduced component, 3 coordinates' ritz-reduce tip.h5 own.h5 \
 
 # --- modes ----------------------------------------------------------------------
 
-expect 0 'the best 4 of 10 modes; the others together answer at most 30.93' \
+expect 0 'the best 4 of 10 modes; the response of the others together is at most 30.93' \
     ritz-basis modal-balanced --modes 4 chain.h5 -o modal.h5
 expect 0 '4 normal' ritz-reduce chain.h5 modal.h5 -o modal-small.h5
 

@@ -35,7 +35,7 @@ expect 0 "2 static mode(s) left out, the first of input 'torque'" ritz-basis \
     -o basis.h5
 expect 0 "6 rigid, 3 normal" ritz-basis normal-modes --modes 3 stator.h5 \
     -o basis.h5
-expect 1 "there is no load to answer, no damper" ritz-basis normal-modes \
+expect 1 "there is no load to respond to, no damper" ritz-basis normal-modes \
     --modes 3 --loads dampers stator.h5 -o basis.h5
 expect 2 "rubin has no 'loads' to choose" ritz-basis rubin --modes 3 \
     --loads inputs rotor.h5 -o basis.h5

@@ -48,7 +48,7 @@ expect 0 'krylov (modes 12 shift-hz 0,30 load inputs) [CraigSuKim1992]' \
 
 expect 1 'ask for a number of them' ritz-basis krylov --up-to-hz 20 truss.h5 \
     -o none.h5
-expect 1 'there is no load to answer' ritz-basis krylov --modes 4 --attach '' \
+expect 1 'there is no load to respond to' ritz-basis krylov --modes 4 --attach '' \
     --loads dampers truss.h5 -o none.h5
 expect 1 'ratios of modes make no matrix D' ritz-basis krylov-damped \
     --modes 4 --damping 'modal 0.01' truss.h5 -o none.h5

@@ -16,7 +16,7 @@ expect 0 'basis of 12 columns for 20 states' ritz-basis lanczos-one-sided \
 expect 0 '12 state' ritz-basis lanczos-two-sided --modes 12 \
     --operator inverse chain.h5 -o two.h5
 expect 0 'W ' ritz-info two.h5
-expect 0 'asked for: the inputs reach 20 of 20; there are 20' \
+expect 0 'asked for: the inputs control 20 of 20; there are 20' \
     ritz-basis lanczos-one-sided --modes 30 chain.h5 -o all.h5
 expect 1 'serious breakdown at the first block: C B is zero' \
     ritz-basis lanczos-two-sided --modes 4 chain.h5 -o none.h5

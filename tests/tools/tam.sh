@@ -77,11 +77,11 @@ expect 0 '1 rigid, 6 krylov' ritz-basis tangential --modes 6 \
 expect 0 'points settled after ' ritz-basis tangential --modes 6 \
     --loads attached --attach sensors --damping 'modal 0.02' a.h5 -o t.h5
 expect 0 'a.h5' ritz-reduce a.h5 t.h5 -o ra.h5
-expect 0 '5 answer(s) interpolated' ritz-basis tangential --modes 5 \
+expect 0 '5 response(s) interpolated' ritz-basis tangential --modes 5 \
     --shift-hz 0.05 --attach sensors a.h5 -o t.h5
 expect 1 '0 Hz is a pole of it' ritz-basis tangential --modes 5 \
     --shift-hz 0 --attach sensors a.h5 -o t.h5
-expect 1 'there is no load to answer' \
+expect 1 'there is no load to respond to' \
     ritz-basis tangential --modes 5 --attach '' a.h5 -o t.h5
 
 # --- interface modes ----------------------------------------------------------

@@ -475,7 +475,8 @@ static void what_is_reached_but_not_seen_is_refused(void **state)
     request.space = &full;
     request.modes = 1;
     assert_fails(ritz_basis_make(&ritz_method_balanced, &request, &none),
-                 RITZ_ERR_ARGUMENT, "nothing that outputs see");
+                 RITZ_ERR_ARGUMENT,
+                 "nothing is both controllable and observable");
     ritz_state_space_free(&full);
 }
 

@@ -748,7 +748,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
     request.modes = 4;
     request.choice.loads = RITZ_LOADS_ATTACHED;
     assert_fails(ritz_basis_make(&ritz_method_krylov, &request, &none),
-                 RITZ_ERR_ARGUMENT, "there is no load to answer");
+                 RITZ_ERR_ARGUMENT, "there is no load to respond to");
     request.choice.loads = 0;
     request.modes = 0;
     assert_fails(ritz_basis_make(&ritz_method_krylov, &request, &none),

@@ -403,7 +403,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
     request.attached = (ritz_dofs){0};
     request.choice.loads = RITZ_LOADS_ATTACHED;
     assert_fails(ritz_basis_make(&ritz_method_krylov_cms_free, &request, &none),
-                 RITZ_ERR_ARGUMENT, "there is no load to answer");
+                 RITZ_ERR_ARGUMENT, "there is no load to respond to");
     request = f->request;
     request.up_to_hz = 5.0;
     assert_fails(

@@ -350,7 +350,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
     stated.damping[0] = '\0';
     request.choice.loads = RITZ_LOADS_DAMPERS;
     assert_fails(ritz_basis_make(&ritz_method_krylov_damped, &request, &none),
-                 RITZ_ERR_ARGUMENT, "there is no load to answer");
+                 RITZ_ERR_ARGUMENT, "there is no load to respond to");
     request.choice.loads = 0;
     request.modes = -1;
     request.up_to_hz = 3.0;

@@ -411,9 +411,9 @@ static void a_semidefinite_gramian_is_worked_on_its_range(void **state)
         assert_int_equal(got.model.A.nrow, t < 2 ? 56 : 58);
         assert_string_equal(
             got.basis.remark,
-            t < 2 ? "60 states asked for: the inputs reach 57 of 60, 56 of "
+            t < 2 ? "60 states asked for: the inputs control 57 of 60, 56 of "
                     "them above rounding; there are 56"
-                  : "60 states asked for: the outputs see 58 of 60; there "
+                  : "60 states asked for: the outputs observe 58 of 60; there "
                     "are 58");
         assert_int_equal(got.probe.verdict, RITZ_STABLE);
         states_discard(&got);

@@ -221,7 +221,7 @@ static void what_cannot_be_done_is_refused(void **state)
     assert_refused(single, &request, RITZ_ERR_ARGUMENT, "the Gramian is zero");
     request.choice.inverse = true;
     assert_refused(both, &request, RITZ_ERR_ARGUMENT,
-                   "no flexible state is reached by an input and seen");
+                   "no flexible state is both controllable and observable");
     ritz_sparse_free(&chain->D);
     assert_ok(masses_io(chain, 1, last, 1, one));
     assert_refused(single, &request, RITZ_ERR_ARGUMENT, "has no damping");

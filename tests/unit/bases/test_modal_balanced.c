@@ -215,7 +215,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
     strcpy(row.damping, "modal 0.02");
     row.io.B.val[2] = 0.0;
     assert_fails(ritz_basis_make(method, &request, &none), RITZ_ERR_ARGUMENT,
-                 "reach no mode");
+                 "no mode is both controllable and observable");
     ritz_component_free(&row);
 }
 

@@ -404,7 +404,7 @@ static void loads_that_are_not_there_are_refused(void **state)
     request.choice.loads = RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
     assert_fails(ritz_basis_make(&ritz_method_normal_modes, &request, &none),
                  RITZ_ERR_ARGUMENT,
-                 "there is no load to answer, no input or output");
+                 "there is no load to respond to, no input or output");
     request.choice.loads = RITZ_LOADS_ATTACHED;
     assert_fails(ritz_basis_make(&ritz_method_normal_modes, &request, &none),
                  RITZ_ERR_ARGUMENT, "no attached dof");

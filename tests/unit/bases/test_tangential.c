@@ -436,7 +436,8 @@ static void given_points_are_interpolated(void **state)
         assert_int_equal(got.probes.count, answers);
         assert_near(cimag(got.probes.item[2].s), 0.2 * pi, 4 * DBL_EPSILON);
         assert_interpolates(&chain, &got.basis.T, &got.probes);
-        assert_non_null(strstr(got.basis.remark, " answer(s) interpolated; "));
+        assert_non_null(
+            strstr(got.basis.remark, " response(s) interpolated; "));
         assert_non_null(strstr(got.basis.remark, damped == 1
                                                      ? "1 more have no room"
                                                      : "2 vector(s) fewer"));
@@ -764,7 +765,7 @@ static void requests_without_sense_are_refused(void **state)
     ritz_sparse_free(&chain.D);
     assert_ok(ritz_io_new(MASSES, 0, 0, &chain.io));
     assert_fails(ritz_basis_make(&ritz_method_tangential, &request, &none),
-                 RITZ_ERR_ARGUMENT, "there is no load to answer");
+                 RITZ_ERR_ARGUMENT, "there is no load to respond to");
     ritz_component_free(&chain);
     assert_ok(
         frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &chain));
@@ -807,7 +808,8 @@ static void loads_that_drive_nothing_flexible_are_refused(void **state)
     assert_ok(masses_component(3, m, k, NULL, &chain));
     assert_ok(frame_io(&chain, 1, at, 1, at));
     assert_fails(ritz_basis_make(&ritz_method_tangential, &request, &none),
-                 RITZ_ERR_ARGUMENT, "the loads drive no flexible mode");
+                 RITZ_ERR_ARGUMENT,
+                 "no flexible mode is controllable by the loads");
     ritz_component_free(&chain);
 }
 

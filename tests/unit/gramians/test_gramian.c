@@ -132,7 +132,7 @@ static void gramians_satisfy_their_lyapunov_equations(void **unused)
             double worst[2];
 
             assert_ok(modal_model(MODES, zeta[z], gap[g], &modal));
-            assert_ok(ritz_modal_gramians(&modal, &Wc, &Wo));
+            assert_ok(ritz_modal_gramians(&modal, NULL, &Wc, &Wo));
             residuals(&modal, &Wc, &Wo, worst);
             assert_near(worst[0], 0.0,
                         2.0 * STATES * 2.2e-16 * 400.0 * largest(&Wc));
@@ -155,7 +155,7 @@ static void both_gramians_give_one_h2_norm(void **unused)
 
     (void)unused;
     assert_ok(modal_model(MODES, 0.05, 1.0, &modal));
-    assert_ok(ritz_modal_gramians(&modal, &Wc, &Wo));
+    assert_ok(ritz_modal_gramians(&modal, NULL, &Wc, &Wo));
     for (int64_t i = 0; i < STATES; i++)
         for (int64_t j = 0; j < STATES; j++) {
             by_c += seen(&modal, i, j) * entry(&Wc, i, j);
@@ -181,7 +181,7 @@ static void one_mode_has_the_textbook_gramian(void **unused)
     modal.omega[0] = 3.0;
     modal.zeta[0] = 0.02;
     beta = driven(&modal, 1, 1);
-    assert_ok(ritz_modal_gramians(&modal, &Wc, &Wo));
+    assert_ok(ritz_modal_gramians(&modal, NULL, &Wc, &Wo));
     assert_near(Wc.val[0], beta / (4 * 0.02 * 27.0), 4e-16 * Wc.val[0]);
     assert_near(Wc.val[3], beta / (4 * 0.02 * 3.0), 4e-16 * Wc.val[3]);
     assert_near(Wc.val[1], 0.0, 0.0);
@@ -199,7 +199,7 @@ static void a_mode_without_damping_has_no_gramian(void **unused)
     (void)unused;
     assert_ok(modal_model(2, 0.02, 1.0, &modal));
     modal.zeta[1] = 0.0;
-    assert_fails(ritz_modal_gramians(&modal, &Wc, &Wo), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_modal_gramians(&modal, NULL, &Wc, &Wo), RITZ_ERR_ARGUMENT,
                  "without damping");
     ritz_modal_free(&modal);
 }
@@ -220,8 +220,8 @@ static void factors_multiply_to_the_gramians(void **unused)
 
         assert_ok(modal_model(MODES, zeta[t / 3], gap[t % 3], &modal));
         modal.zeta[0] = t / 3 == 3 ? 1.0 : modal.zeta[0];
-        assert_ok(ritz_modal_gramians(&modal, &W[0], &W[1]));
-        assert_ok(ritz_modal_factors(&modal, &Z[0], &Z[1]));
+        assert_ok(ritz_modal_gramians(&modal, NULL, &W[0], &W[1]));
+        assert_ok(ritz_modal_factors(&modal, NULL, &Z[0], &Z[1]));
         for (int k = 0; k < 2; k++) {
             ritz_dense ZZ = {0};
 
@@ -286,7 +286,7 @@ static void small_values_are_those_of_hammarlings_factors(void **unused)
         assert_ok(ritz_general_gramian(&At, &Ct, &V));
         assert_ok(ritz_dense_mul_tn(&V, &U, &H));
         assert_ok(ritz_general_svd(&H, &left, &due, NULL));
-        assert_ok(ritz_modal_hankel(&modal, sigma));
+        assert_ok(ritz_modal_hankel(&modal, NULL, sigma));
         assert_true(due[3 * MANY / 4] < 1e-9 * due[0]);
         for (int k = 0; k < 2 * MANY; k++) /* measured: 2e-15 */
             assert_near(sigma[k], due[k], 1e-12 * due[0]);
@@ -310,8 +310,8 @@ static ritz_status gramians_once(const ritz_modal *modal)
     ritz_dense Wo = {0};
     double sigma[STATES];
 
-    RITZ_TRY(ritz_modal_gramians(modal, &Wc, &Wo));
-    RITZ_TRY(ritz_modal_hankel(modal, sigma));
+    RITZ_TRY(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
+    RITZ_TRY(ritz_modal_hankel(modal, NULL, sigma));
 done:
     ritz_dense_free(&Wc);
     ritz_dense_free(&Wo);

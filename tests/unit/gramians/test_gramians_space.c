@@ -536,7 +536,7 @@ static void a_stiff_beam_agrees_with_the_closed_form(void **unused)
     dense(&beam.K, &K);
     dense(&beam.M, &M);
     assert_ok(ritz_modal_new(&K, &M, NULL, &beam.io, &damping, &modal));
-    assert_ok(ritz_modal_hankel(&modal, sigma));
+    assert_ok(ritz_modal_hankel(&modal, NULL, sigma));
     assert_ok(ritz_state_space_of_component(&beam, &damping, &model[0]));
     with_mass(&beam, &model[0], &model[1]);
     for (int k = 0; k < 2; k++) {
@@ -603,10 +603,10 @@ static void what_has_no_gramians_is_refused_in_words(void **unused)
     (void)unused;
     expect_refusal(&(spaces_rows){2, 0, 1, A, one, one, NULL, NULL}, none,
                    RITZ_ERR_ARGUMENT,
-                   "the model has no inputs: nothing of it can be reached");
+                   "the model has no inputs: nothing of it is controllable");
     expect_refusal(&(spaces_rows){2, 1, 0, A, one, one, NULL, NULL}, none,
                    RITZ_ERR_ARGUMENT,
-                   "the model has no outputs: nothing of it can be seen");
+                   "the model has no outputs: nothing of it is observable");
     expect_refusal(&(spaces_rows){0, 1, 1, A, one, one, NULL, NULL}, none,
                    RITZ_ERR_ARGUMENT, "the model has no states");
     expect_refusal(&(spaces_rows){2, 1, 1, wrong, one, one, NULL, NULL}, none,

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "gramians/low_rank.h"
+#include "gramians/modes.h"
 #include "mass_row.h"
 #include "masses.h"
 

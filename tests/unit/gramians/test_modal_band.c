@@ -142,7 +142,7 @@ static void band_gramians_are_integrals_over_frequency(void **unused)
         ritz_dense W[2] = {{0}, {0}};
 
         set_model(zeta[t / 3], &modal);
-        assert_ok(ritz_modal_gramians_band(&modal, hz, &W[0], &W[1]));
+        assert_ok(ritz_modal_gramians(&modal, hz, &W[0], &W[1]));
         for (int k = 0; k < 2 * STATES * STATES; k++) {
             const integrand f = {&modal, k % 2, k / 2 / STATES, k / 2 % STATES};
             double scale = size(&W[k % 2], f.i, f.j);
@@ -171,13 +171,13 @@ static void bands_add_up_to_the_whole(void **unused)
         double sum[2][STATES * STATES] = {{0}};
 
         set_model(zeta[z], &modal);
-        assert_ok(ritz_modal_gramians(&modal, &full[0], &full[1]));
-        assert_ok(ritz_modal_gramians_band(&modal, (double[]){0.0, HUGE_VAL},
-                                           &once[0], &once[1]));
+        assert_ok(ritz_modal_gramians(&modal, NULL, &full[0], &full[1]));
+        assert_ok(ritz_modal_gramians(&modal, (double[]){0.0, HUGE_VAL},
+                                      &once[0], &once[1]));
         for (int e = 0; e < 5; e++) {
             ritz_dense W[2] = {{0}, {0}};
 
-            assert_ok(ritz_modal_gramians_band(&modal, &edge[e], &W[0], &W[1]));
+            assert_ok(ritz_modal_gramians(&modal, &edge[e], &W[0], &W[1]));
             for (int k = 0; k < 2 * STATES * STATES; k++)
                 sum[k % 2][k / 2] += W[k % 2].val[k / 2];
             ritz_dense_free(&W[0]);
@@ -211,8 +211,8 @@ static void factors_multiply_to_the_gramians(void **unused)
         ritz_dense W[2] = {{0}, {0}}, Z[2] = {{0}, {0}};
 
         set_model(zeta[t / 3], &modal);
-        assert_ok(ritz_modal_gramians_band(&modal, band[t % 3], &W[0], &W[1]));
-        assert_ok(ritz_modal_factors_band(&modal, band[t % 3], &Z[0], &Z[1]));
+        assert_ok(ritz_modal_gramians(&modal, band[t % 3], &W[0], &W[1]));
+        assert_ok(ritz_modal_factors(&modal, band[t % 3], &Z[0], &Z[1]));
         for (int k = 0; k < 2; k++) {
             ritz_dense ZZ = {0};
 
@@ -237,8 +237,8 @@ a_band_of_everything_has_the_hankel_values_of_everything(void **unused)
 
     (void)unused;
     set_model(0.02, &modal);
-    assert_ok(ritz_modal_hankel(&modal, sigma));
-    assert_ok(ritz_modal_hankel_band(&modal, all, band));
+    assert_ok(ritz_modal_hankel(&modal, NULL, sigma));
+    assert_ok(ritz_modal_hankel(&modal, all, band));
     for (int k = 0; k < STATES; k++) /* of squares: eps / relative value */
         assert_near(band[k], sigma[k],
                     1e-14 * sigma[0] * (sigma[0] / sigma[k]));
@@ -258,9 +258,9 @@ static void a_band_around_one_mode_keeps_its_values(void **unused)
     double sigma[2], in[2], out[2];
 
     (void)unused;
-    assert_ok(ritz_modal_hankel(&modal, sigma));
-    assert_ok(ritz_modal_hankel_band(&modal, (double[]){0.8, 1.2}, in));
-    assert_ok(ritz_modal_hankel_band(&modal, (double[]){1.2, 3.0}, out));
+    assert_ok(ritz_modal_hankel(&modal, NULL, sigma));
+    assert_ok(ritz_modal_hankel(&modal, (double[]){0.8, 1.2}, in));
+    assert_ok(ritz_modal_hankel(&modal, (double[]){1.2, 3.0}, out));
     /* the half-power width is 0.002: atan(200) and so on of pi / 2 */
     assert_near(in[0], sigma[0], 1e-2 * sigma[0]);
     assert_true(in[0] < sigma[0]);
@@ -278,13 +278,13 @@ static void what_is_no_band_is_refused(void **unused)
     (void)unused;
     set_model(0.02, &modal);
     for (int k = 0; k < 4; k++) {
-        assert_fails(ritz_modal_gramians_band(&modal, wrong[k], &X, &Y),
+        assert_fails(ritz_modal_gramians(&modal, wrong[k], &X, &Y),
                      RITZ_ERR_ARGUMENT, "a band is from 0 Hz or more");
-        assert_fails(ritz_modal_hankel_band(&modal, wrong[k], sigma),
+        assert_fails(ritz_modal_hankel(&modal, wrong[k], sigma),
                      RITZ_ERR_ARGUMENT, "a band is from 0 Hz or more");
     }
     modal.zeta[3] = 0.0;
-    assert_fails(ritz_modal_factors_band(&modal, (double[]){0.0, 1.0}, &X, &Y),
+    assert_fails(ritz_modal_factors(&modal, (double[]){0.0, 1.0}, &X, &Y),
                  RITZ_ERR_ARGUMENT, "without damping");
     ritz_modal_free(&modal);
 }
@@ -299,10 +299,10 @@ static void what_is_not_reached_has_no_values(void **unused)
     set_model(0.02, &modal);
     for (int k = 0; k < MODES * INPUTS; k++)
         modal.B.val[k] = 0.0;
-    assert_ok(ritz_modal_hankel_band(&modal, (double[]){0.1, 1.0}, sigma));
+    assert_ok(ritz_modal_hankel(&modal, (double[]){0.1, 1.0}, sigma));
     assert_near(sigma[0], 0.0, 0.0);
     modal.B.ncol = 0;
-    assert_ok(ritz_modal_hankel_band(&modal, (double[]){0.1, 1.0}, sigma));
+    assert_ok(ritz_modal_hankel(&modal, (double[]){0.1, 1.0}, sigma));
     assert_near(sigma[0], 0.0, 0.0);
     ritz_modal_free(&modal);
 }
@@ -313,8 +313,8 @@ static ritz_status once(const ritz_modal *modal)
     ritz_dense X = {0}, Y = {0};
     double sigma[STATES];
 
-    RITZ_TRY(ritz_modal_gramians_band(modal, (double[]){0.1, 1.0}, &X, &Y));
-    RITZ_TRY(ritz_modal_hankel_band(modal, (double[]){0.1, 1.0}, sigma));
+    RITZ_TRY(ritz_modal_gramians(modal, (double[]){0.1, 1.0}, &X, &Y));
+    RITZ_TRY(ritz_modal_hankel(modal, (double[]){0.1, 1.0}, sigma));
 done:
     ritz_dense_free(&X);
     ritz_dense_free(&Y);

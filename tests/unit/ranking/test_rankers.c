@@ -131,7 +131,7 @@ static double norm_squared(const ritz_modal *modal)
     ritz_dense Wc = {0}, Wo = {0};
     double sum = 0.0;
 
-    assert_ok(ritz_modal_gramians(modal, &Wc, &Wo));
+    assert_ok(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
     for (int64_t a = 0; a < STATES; a++)
         for (int64_t b = 0; b < STATES; b++)
             sum += driven(modal, a, b) * ritz_dense_col(&Wo, b)[a];

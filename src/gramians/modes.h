@@ -1,0 +1,151 @@
+/* Gramians in modal coordinates, and the other engines of a component. */
+#ifndef RITZ_GRAMIANS_MODES_H
+#define RITZ_GRAMIANS_MODES_H
+
+#include "model/modal.h"
+
+#include <ritz/basis.h>
+
+#include <stdbool.h>
+
+/** RITZ_ERR_ARGUMENT if a limit of an output is not positive. */
+ritz_status ritz_limits_check(int64_t count, const double *limit,
+                              const char (*output)[RITZ_NAME_SIZE]);
+
+/** The same, or if @p what, "component" say, has no inputs or no outputs. */
+ritz_status ritz_ends_check(const char *what, int64_t inputs, int64_t outputs,
+                            const double *limit,
+                            const char (*output)[RITZ_NAME_SIZE]);
+
+/** C', its columns over the limits of the outputs, where they have any. */
+ritz_status ritz_outputs_scaled(const ritz_dense *C, const double *limit,
+                                ritz_dense *out);
+
+/** One past the last mode of the cluster that begins at mode @p first. */
+int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first);
+
+/**
+ * Modes first .. last - 1 as a model of their own.
+ *
+ * @param[in] taken  one for each mode of @p modal, those that are wanted; NULL:
+ *                   all
+ */
+ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
+                            int64_t last, const bool *taken, ritz_modal *out);
+
+/** ritz_modal_gramians and ritz_modal_factors over all frequencies. */
+ritz_status ritz_modal_gramians_whole(const ritz_modal *modal, ritz_dense *Wc,
+                                      ritz_dense *Wo);
+ritz_status ritz_modal_factors_whole(const ritz_modal *modal, ritz_dense *Zc,
+                                     ritz_dense *Zo);
+
+/**
+ * All modes of the component, or those up to the requested frequency, with all
+ * damping; modes of one frequency are turned so that it couples none of them.
+ *
+ * @return RITZ_ERR_ARGUMENT if there are too many, or no flexible one
+ */
+ritz_status ritz_gramians_modes(const ritz_gramians_request *request,
+                                ritz_modal_model *out);
+
+/**
+ * Modes of one frequency may be any basis of their space: turn them into one in
+ * which damping is diagonal. MPhi may be {0}.
+ */
+ritz_status ritz_modes_turn(ritz_modal_model *modes);
+
+/** Whether damping couples two modes, one of them at least flexible. */
+bool ritz_modes_coupled(const ritz_modal_model *modes);
+
+/**
+ * The flexible modes, which damping must not couple.
+ *
+ * @param[in] io   for the limits of its outputs
+ * @param[in] why  end of the sentence if damping couples modes
+ * @return RITZ_ERR_ARGUMENT if it does, if a mode has no damping, or a limit is
+ *         not positive
+ */
+ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
+                                const ritz_io *io, const char *why,
+                                ritz_modal *out);
+
+/*
+ * States of modes, without the first rigid ones, which are decoupled: q_k is
+ * row k * step, q_k' the next row, or row m + k of 2m.
+ */
+typedef struct ritz_mode_states {
+    const ritz_modal_model *modes;
+    int64_t num_decoupled;
+    int64_t step;        /* 1: all q before all q'; 2: each q before its q' */
+    const double *scale; /* m, rows are scale q and q'; NULL: q */
+} ritz_mode_states;
+
+/* Which vectors are lifted from states of modes to x = [u; u'], and by what. */
+typedef enum ritz_lift {
+    RITZ_LIFT_RIGHT,   /* [Phi S^-1 0; 0 Phi], of Z_c and T */
+    RITZ_LIFT_MOMENTA, /* [Phi S^-1 0; 0 M Phi], of E Z_c */
+    RITZ_LIFT_LEFT,    /* [M Phi S 0; 0 Phi], of Z_o and W */
+} ritz_lift;
+
+/**
+ * The vectors Z of states as those of x = [u; u'].
+ *
+ * @param[in] rigid  behind the same of the decoupled rigid modes, positions and
+ *                   then velocities
+ */
+ritz_status ritz_states_lift(const ritz_mode_states *states, ritz_lift kind,
+                             bool rigid, const ritz_dense *Z, ritz_dense *out);
+
+/*
+ * A component in well scaled states z = [S q; q'] of its modes, S = diag(w)
+ * where w > 0: A is then nearly skew, and the size of a state is the root of
+ * its energy. Rigid modes that no damping couples with others are decoupled:
+ * they are no part of A, B and C.
+ */
+typedef struct ritz_states {
+    ritz_modal_model modes;
+    int64_t num_decoupled; /* rigid modes, the first ones */
+    int64_t count;         /* of states in A */
+    double *scale;         /* count / 2 */
+    double alpha;          /* A is less alpha I  [rad/s] */
+    ritz_dense A, B, C;
+    char damping[RITZ_DAMPING_SIZE];
+} ritz_states;
+
+/**
+ * @param[in] damping  in addition to the component's matrices and dampers
+ * @param[in] alpha    A is less alpha I  [rad/s]
+ * @return RITZ_ERR_ARGUMENT as ritz_state_space_of_component, or if there are
+ *         only rigid modes
+ */
+ritz_status ritz_states_new(const ritz_component *component,
+                            const ritz_damping *damping, double alpha,
+                            ritz_states *out);
+
+/**
+ * A basis of x = [u; u']: the decoupled rigid modes, and then @p T and @p W of
+ * z.
+ *
+ * @param[in] T,W  count x k, W'T = I
+ */
+ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
+                              const ritz_dense *W, ritz_basis *out);
+
+void ritz_states_free(ritz_states *states);
+
+/**
+ * Factors of both Gramians of a large component by low-rank ADI from sparse M,
+ * D, K; first-order matrices are never formed. Rigid modes are decoupled, dofs
+ * without mass are condensed statically.
+ *
+ * @return RITZ_ERR_ARGUMENT if damping is no sparse matrix (ratios of modes,
+ *         K4), there is none, it couples rigid motion to others or acts on
+ *         dofs without mass; RITZ_ERR_CONVERGENCE if the Gramians have no low
+ *         rank
+ * @cost   a complex factor a shift, some 20 to 200 shifts; three factors of
+ *         2 n x k numbers
+ */
+ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
+                                   ritz_gramians *out);
+
+#endif
