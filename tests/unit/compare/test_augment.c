@@ -68,7 +68,7 @@ static double gain_error(const ritz_comparison *c, double *norm)
 
 /* ||H K^-1 G|| = 11.5485; P&A {1,2,3,5} misses 1.68e-3, the attachment mode of
  * dof 5 leaves 1.9e-5 of it, all three inputs nothing but rounding. */
-static void static_gains_are_those_published(void **state)
+static void static_gains_are_those_published(void **)
 {
     static const struct {
         const char *augment;
@@ -80,7 +80,6 @@ static void static_gains_are_those_published(void **state)
         {"augment: {level: system, attached: [u1, u2, u3]}\n", 0.0, 1e-11},
     };
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char choice[256];
         double norm = 0.0;
@@ -102,7 +101,7 @@ static void static_gains_are_those_published(void **state)
  * as what they do to A moves B as a rigid body. Orders and errors are those of
  * dense eigenvectors and a pseudoinverse in NumPy.
  */
-static void components_with_all_attached_keep_the_gain(void **state)
+static void components_with_all_attached_keep_the_gain(void **)
 {
     static const struct {
         const char *name;
@@ -117,7 +116,6 @@ static void components_with_all_attached_keep_the_gain(void **state)
     };
     fixture f;
 
-    (void)state;
     reduce(&f, "select: {modes: [1]}\naugment: component\n");
     assert_int_equal(f.c.num_candidates, 5);
     for (int i = 0; i < 5; i++) {
@@ -152,7 +150,7 @@ static ritz_dense forces_at(const ritz_reduced *body, const char *port)
  * K A = F - M R R'F and R'M A = 0, for the free beam B. |K| is 3e2, |A| 1 and
  * the condition number of the elastic part 1e4.
  */
-static void attachment_modes_relieve_inertia(void **state)
+static void attachment_modes_relieve_inertia(void **)
 {
     const ritz_plan plan = {.augment = RITZ_AUGMENT_COMPONENT,
                             .attached = RITZ_ATTACHED_INTERFACE};
@@ -163,7 +161,6 @@ static void attachment_modes_relieve_inertia(void **state)
     const ritz_reduced *B = NULL;
     fixture f;
 
-    (void)state;
     prepare(&f, "select: {modes: [1]}\naugment: component\n");
     B = &f.stage.body[1];
     assert_ok(ritz_body_statics(&f.stage, 1, &plan, &own));
@@ -243,12 +240,11 @@ static void prepare_thruster(fixture *f, const char *choice)
  * All interface dofs and all inputs, once for all angles: exact at those listed
  * and between them. Any smaller set is not.
  */
-static void the_gain_is_exact_at_every_angle_with_all_attached(void **state)
+static void the_gain_is_exact_at_every_angle_with_all_attached(void **)
 {
     const ritz_candidate *k = NULL;
     fixture f;
 
-    (void)state;
     dualspin_or_skip();
     prepare_thruster(&f, "augment: component\n");
     assert_ok(ritz_compare(&f.stage, &f.c));
@@ -270,11 +266,10 @@ static void the_gain_is_exact_at_every_angle_with_all_attached(void **state)
 }
 
 /* Static answers of the system are exact at listed angles, not between. */
-static void answers_of_the_system_are_exact_where_they_were_made(void **state)
+static void answers_of_the_system_are_exact_where_they_were_made(void **)
 {
     fixture f;
 
-    (void)state;
     dualspin_or_skip();
     prepare_thruster(&f, "augment: system\n");
     assert_ok(ritz_compare(&f.stage, &f.c));
@@ -299,12 +294,11 @@ static int64_t find_chosen(const ritz_comparison *c)
 }
 
 /* The smallest set that is near enough, of the table that is shown. */
-static void the_fewest_forces_whose_response_fits_are_chosen(void **state)
+static void the_fewest_forces_whose_response_fits_are_chosen(void **)
 {
     static const char *const levels[] = {"component", "system"};
     static const char *const names[] = {"interface", "inputs"};
 
-    (void)state;
     dualspin_or_skip();
     for (int l = 0; l < 2; l++) {
         char choice[128];
@@ -334,7 +328,7 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **state)
  * sigma_max of a 1 x 1 response is |H|, of a diagonal one the larger entry:
  * one point is off by a fifth, one is far below all others.
  */
-static void a_deviation_is_that_of_the_largest_singular_value(void **state)
+static void a_deviation_is_that_of_the_largest_singular_value(void **)
 {
     double hertz[] = {1.0, 2.0, 3.0};
     double _Complex one[] = {3.0, 0.0, 0.0,  1.0, 2.0, 0.0,
@@ -349,14 +343,13 @@ static void a_deviation_is_that_of_the_largest_singular_value(void **state)
                                   .two = two};
     double deviation = 0.0, at = 0.0;
 
-    (void)state;
     assert_ok(ritz_compare_bode(&r, &deviation, &at));
     /* 2 -> 1.6; 1e-9 is held to 1e-3 of the mean level, (6e-9)^(1/3) */
     assert_near(deviation, 0.2, 1e-14);
     assert_near(at, 2.0, 0.0);
 }
 
-static void augmentations_that_make_no_sense_are_refused(void **state)
+static void augmentations_that_make_no_sense_are_refused(void **)
 {
     static const struct {
         const char *choice, *words;
@@ -381,7 +374,6 @@ static void augmentations_that_make_no_sense_are_refused(void **state)
          "outputs and 'band_hz'"},
     };
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         ritz_scene scene = {0};
         ritz_stage stage = {0};
@@ -393,11 +385,10 @@ static void augmentations_that_make_no_sense_are_refused(void **state)
     }
 }
 
-static void a_choice_without_damping_is_refused(void **state)
+static void a_choice_without_damping_is_refused(void **)
 {
     fixture f;
 
-    (void)state;
     prepare(&f, "band_hz: [0, 1]\nselect: {modes: [1]}\n"
                 "augment: {level: system, attached: auto}\n");
     assert_fails(ritz_compare(&f.stage, &f.c), RITZ_ERR_ARGUMENT,
@@ -406,11 +397,10 @@ static void a_choice_without_damping_is_refused(void **state)
 }
 
 /* A motion that nothing holds and that has no mass answers no force. */
-static void a_body_without_stiffness_or_mass_is_refused(void **state)
+static void a_body_without_stiffness_or_mass_is_refused(void **)
 {
     fixture f;
 
-    (void)state;
     prepare(&f, "select: {modes: [1]}\naugment: component\n");
     for (int64_t k = 0; k < 6; k++) { /* of A, its first coordinate */
         ritz_dense *const of[] = {&f.stage.body[0].K, &f.stage.body[0].M};
@@ -448,11 +438,10 @@ static void assert_survives_most_allocations(const ritz_stage *stage)
     }
 }
 
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
     fixture f;
 
-    (void)state;
     prepare(&f, "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
                 "select: {modes: [1, 3]}\n"
                 "augment: {level: system, attached: auto}\n");
@@ -470,11 +459,10 @@ static ritz_status statics_anew(const ritz_stage *stage)
     return status;
 }
 
-static void no_allocation_failure_of_statics_leaks(void **state)
+static void no_allocation_failure_of_statics_leaks(void **)
 {
     fixture f;
 
-    (void)state;
     prepare(&f, "select: {modes: [1, 3]}\naugment: component\n");
     assert_survives_every_allocation(statics_anew(&f.stage));
     assert_survives_most_allocations(&f.stage);

@@ -56,16 +56,15 @@ static void cut(const ritz_stage *stage, const ritz_composite *composite,
  * are motions of the bodies in them: Rayleigh-Ritz returns their frequencies, to
  * what rounding allows, 20 e eps lambda_max / lambda (compare_measure.c).
  */
-static void the_modes_of_the_band_are_in_as_many_directions(void **state)
+static void the_modes_of_the_band_are_in_as_many_directions(void **)
 {
     const double band = 0.5;
-    ritz_scene scene = {0};
-    ritz_stage stage = {0}, second = {0};
-    ritz_composite composite = {0};
-    ritz_configuration one = {0}, two = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0}, second = {0};
+    RITZ_OWN(ritz_composite) composite = {0};
+    RITZ_OWN(ritz_configuration) one = {0}, two = {0};
     int64_t count = 0;
 
-    (void)state;
     open_beams(band, &scene, &stage);
     assert_ok(ritz_composite_new(&stage, &composite));
     assert_ok(ritz_stage_assemble(&stage, NULL, &one));
@@ -82,24 +81,19 @@ static void the_modes_of_the_band_are_in_as_many_directions(void **state)
         assert_true(least <= 20.0 * (double)one.K.ncol * DBL_EPSILON *
                                  one.lambda[one.K.ncol - 1] / one.lambda[k]);
     }
-    ritz_configuration_free(&one);
     ritz_configuration_free(&two);
     ritz_stage_free(&second);
-    ritz_composite_free(&composite);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* V' (M + K / lambda) V = I, to the rounding of the factor of M + K / lambda,
    eps times a condition of 1e6 or so (measured). */
-static void directions_are_orthonormal_by_energy(void **state)
+static void directions_are_orthonormal_by_energy(void **)
 {
     const double band = 0.5;
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_composite composite = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_composite) composite = {0};
 
-    (void)state;
     open_beams(band, &scene, &stage);
     assert_ok(ritz_composite_new(&stage, &composite));
     for (int64_t b = 0; b < 2; b++) {
@@ -117,20 +111,16 @@ static void directions_are_orthonormal_by_energy(void **state)
         ritz_dense_free(&K);
         ritz_dense_free(&M);
     }
-    ritz_composite_free(&composite);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* Every direction of every body has one step; none is left over. */
-static void steps_are_all_directions_of_all_bodies(void **state)
+static void steps_are_all_directions_of_all_bodies(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_composite composite = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_composite) composite = {0};
     int64_t steps[2] = {0};
 
-    (void)state;
     open_beams(0.5, &scene, &stage);
     assert_ok(ritz_composite_new(&stage, &composite));
     for (int64_t t = 0; t < composite.num_steps; t++)
@@ -139,9 +129,6 @@ static void steps_are_all_directions_of_all_bodies(void **state)
         assert_int_equal(composite.V[b].ncol, stage.body[b].K.ncol);
         assert_int_equal(steps[b], composite.V[b].ncol - composite.rigid[b]);
     }
-    ritz_composite_free(&composite);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* How long the modes of the band are along a direction of a body, by energy. */
@@ -166,16 +153,15 @@ static double carried(const ritz_reduced *body, const ritz_configuration *at,
 
 /* Those are the singular values: they fall from step to step, but for the first
    of each body; 1e-9 is the least of the largest that is no rounding. */
-static void steps_go_from_what_carries_most(void **state)
+static void steps_go_from_what_carries_most(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_composite composite = {0};
-    ritz_configuration at = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_composite) composite = {0};
+    RITZ_OWN(ritz_configuration) at = {0};
     int64_t used[2] = {0};
     double before = HUGE_VAL;
 
-    (void)state;
     open_beams(0.5, &scene, &stage);
     assert_ok(ritz_composite_new(&stage, &composite));
     assert_ok(ritz_stage_assemble(&stage, NULL, &at));
@@ -191,22 +177,17 @@ static void steps_go_from_what_carries_most(void **state)
         before = now;
     }
     assert_true(used[0] > 2 && used[1] > 2);
-    ritz_configuration_free(&at);
-    ritz_composite_free(&composite);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* Joined to a wall a body has no rigid motion of the system, and would not
    move: each has its first direction before any has a second, however stiff. */
-static void bodies_that_are_held_begin_with_one_direction_each(void **state)
+static void bodies_that_are_held_begin_with_one_direction_each(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_composite composite = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_composite) composite = {0};
     ritz_dense *K = NULL;
 
-    (void)state;
     open_beams(0.5, &scene, &stage);
     K = &stage.body[0].K;
     for (int64_t k = 0; k < K->nrow * K->ncol; k++)
@@ -216,9 +197,6 @@ static void bodies_that_are_held_begin_with_one_direction_each(void **state)
         assert_int_equal(composite.rigid[b], 0);
     assert_true(composite.step[0] != composite.step[1]);
     assert_int_equal(composite.step[2], 1); /* all that moves is there */
-    ritz_composite_free(&composite);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /*
@@ -226,14 +204,13 @@ static void bodies_that_are_held_begin_with_one_direction_each(void **state)
  * the static gain and the frequencies that matter are nearer. Here the first
  * directions alone are looked at: they differ.
  */
-static void weights_change_what_comes_first(void **state)
+static void weights_change_what_comes_first(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_composite plain = {0}, weighed = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_composite) plain = {0}, weighed = {0};
     double most = 0.0;
 
-    (void)state;
     dualspin_or_skip();
     assert_ok(dualspin_stage(&scene, &stage));
     assert_ok(ritz_composite_new(&stage, &weighed));
@@ -245,24 +222,18 @@ static void weights_change_what_comes_first(void **state)
         most = fmax(most, fabs(fabs(ritz_dense_col(&plain.V[0], 6)[i]) -
                                fabs(ritz_dense_col(&weighed.V[0], 6)[i])));
     assert_true(most > 1e-2);
-    ritz_composite_free(&plain);
     ritz_composite_free(&weighed);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
-static void without_a_band_it_is_refused(void **state)
+static void without_a_band_it_is_refused(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_composite none = {0};
 
-    (void)state;
     open_beams(0.0, &scene, &stage);
     assert_fails(ritz_composite_new(&stage, &none), RITZ_ERR_ARGUMENT,
                  "the scene has no band: which modes are to be kept");
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static ritz_status order_anew(const ritz_stage *stage)
@@ -274,16 +245,13 @@ static ritz_status order_anew(const ritz_stage *stage)
     return status;
 }
 
-static void ordering_survives_every_allocation(void **state)
+static void ordering_survives_every_allocation(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
-    (void)state;
     open_beams(1.5, &scene, &stage);
     assert_survives_every_allocation(order_anew(&stage));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -49,8 +49,8 @@ static void free_all(ritz_scene *scene, ritz_stage *stage, ritz_comparison *c)
 static void assert_vectors(const ritz_configuration *c, int vectors,
                            const double *expected)
 {
-    ritz_dense V = {0}, K = {0}, M = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) V = {0}, K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t moments = 0;
 
     assert_ok(ritz_system_krylov(c, vectors, false, &V, &moments));
@@ -61,13 +61,11 @@ static void assert_vectors(const ritz_configuration *c, int vectors,
     assert_ok(ritz_eigen_dense(&K, &M, &pairs));
     for (int k = 0; k < vectors; k++)
         assert_near(ritz_eigen_hertz(pairs.lambda[k]), expected[k], printed);
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&V);
     ritz_dense_free(&K);
     ritz_dense_free(&M);
 }
 
-static void frequencies_are_those_published(void **state)
+static void frequencies_are_those_published(void **)
 {
     static const struct {
         int vectors;
@@ -87,7 +85,6 @@ static void frequencies_are_those_published(void **state)
           2.765452}},
     };
 
-    (void)state;
     for (size_t t = 0; t < sizeof table / sizeof *table; t++) {
         ritz_scene scene = {0};
         ritz_stage stage = {0};
@@ -117,7 +114,7 @@ static double moment(const ritz_configuration *c, int i)
     return sum;
 }
 
-static void moments_are_those_published(void **state)
+static void moments_are_those_published(void **)
 {
     static const double expected[] = {0.33467, 0.83204,  2.12857,
                                       5.45023, 13.95575, 35.73486};
@@ -125,7 +122,6 @@ static void moments_are_those_published(void **state)
     ritz_stage stage = {0};
     ritz_comparison c = {0};
 
-    (void)state;
     reduce(3, "", &scene, &stage, &c);
     for (int i = 0; i < 6; i++)
         assert_near(moment(&c.first_system.configuration[0], i), expected[i],
@@ -137,7 +133,7 @@ static void moments_are_those_published(void **state)
  * k vectors keep the first k moments, and no more; with the output in the
  * starting block, k blocks keep 2k. cond(K) of the beam is 4e4: 1e-10 is ample.
  */
-static void the_first_moments_are_kept_and_no_more(void **state)
+static void the_first_moments_are_kept_and_no_more(void **)
 {
     static const struct {
         const char *start;
@@ -151,7 +147,6 @@ static void the_first_moments_are_kept_and_no_more(void **state)
         {", start: both", 4, 4},
     };
 
-    (void)state;
     for (size_t t = 0; t < sizeof cases / sizeof *cases; t++) {
         ritz_scene scene = {0};
         ritz_stage stage = {0};
@@ -174,7 +169,7 @@ static void the_first_moments_are_kept_and_no_more(void **state)
 
 /* The space that the input reaches has dimension 8 of 9: axial and bending
  * modes are reached, one antisymmetric in neither. */
-static void the_sequence_ends_where_its_space_does(void **state)
+static void the_sequence_ends_where_its_space_does(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
@@ -182,7 +177,6 @@ static void the_sequence_ends_where_its_space_does(void **state)
     ritz_dense V = {0};
     int64_t moments = 0;
 
-    (void)state;
     reduce(5, "", &scene, &stage, &c);
     assert_ok(ritz_system_krylov(&c.first_system.configuration[0], 20, false,
                                  &V, &moments));
@@ -192,7 +186,7 @@ static void the_sequence_ends_where_its_space_does(void **state)
 }
 
 /* V'KV = I however long the sequence: raw vectors have cond 9e9 at six. */
-static void vectors_are_orthonormal_in_stiffness(void **state)
+static void vectors_are_orthonormal_in_stiffness(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
@@ -200,7 +194,6 @@ static void vectors_are_orthonormal_in_stiffness(void **state)
     ritz_dense V = {0}, K = {0};
     int64_t moments = 0;
 
-    (void)state;
     reduce(5, "", &scene, &stage, &c);
     assert_ok(ritz_system_krylov(&c.first_system.configuration[0], 8, true, &V,
                                  &moments));
@@ -215,13 +208,12 @@ static void vectors_are_orthonormal_in_stiffness(void **state)
 }
 
 /* Body B alone is free: its rigid motion stays, moments are of the rest. */
-static void rigid_modes_are_kept_beside_the_vectors(void **state)
+static void rigid_modes_are_kept_beside_the_vectors(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
     ritz_comparison c = {0};
 
-    (void)state;
     assert_ok(beams_stage(false,
                           "inputs: [{name: u, at: B/n4, component: 2}]\n"
                           "outputs: [{name: y, at: B/n3, component: 6}]\n"
@@ -239,13 +231,12 @@ static void rigid_modes_are_kept_beside_the_vectors(void **state)
     free_all(&scene, &stage, &c);
 }
 
-static void vectors_that_no_input_drives_are_refused(void **state)
+static void vectors_that_no_input_drives_are_refused(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
     ritz_comparison c = {0};
 
-    (void)state;
     make("select: {by: krylov, vectors: 3}\n", &scene, &stage);
     for (int64_t k = 0; k < stage.num_coordinates; k++)
         stage.io.B.val[k] = 0.0;
@@ -264,16 +255,13 @@ static ritz_status compare_anew(const ritz_stage *stage)
     return status;
 }
 
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
-    (void)state;
     make("select: {by: krylov, vectors: 3, start: both}\n", &scene, &stage);
     assert_survives_every_allocation(compare_anew(&stage));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

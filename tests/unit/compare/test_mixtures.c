@@ -59,11 +59,10 @@ static void assert_kept(const ritz_comparison *c)
     }
 }
 
-static void any_mixture_of_bases_keeps_its_modes_and_gain(void **state)
+static void any_mixture_of_bases_keeps_its_modes_and_gain(void **)
 {
     ritz_component component[3] = {0};
 
-    (void)state;
     dualspin_or_skip();
     for (int b = 0; b < 3; b++)
         assert_ok(dualspin_component(b, &component[b]));
@@ -107,14 +106,13 @@ static const char massless[] =
  * gain is kept at both levels; without the motions that have no mass it would
  * be wrong by 6e-4.
  */
-static void motions_without_mass_are_kept_whole(void **state)
+static void motions_without_mass_are_kept_whole(void **)
 {
     static const ritz_augment levels[] = {RITZ_AUGMENT_SYSTEM,
                                           RITZ_AUGMENT_COMPONENT};
     static const int64_t modes[] = {20, 6};
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
-    (void)state;
     dualspin_or_skip();
     assert_ok(ritz_scene_parse("massless.yaml", massless, &scene));
     for (int pass = 0; pass < 2; pass++) {
@@ -142,16 +140,14 @@ static void motions_without_mass_are_kept_whole(void **state)
         ritz_comparison_free(&c);
         ritz_stage_free(&stage);
     }
-    ritz_scene_free(&scene);
 }
 
 /* L L' = M, or M + K / lambda where M has two dofs that are nearly one. */
-static void a_mass_that_is_nearly_singular_is_filled_up(void **state)
+static void a_mass_that_is_nearly_singular_is_filled_up(void **)
 {
     static const double correlation[] = {0.5, 1.0 - 1e-15, 1.0};
     const double one[2] = {1.0, 1.0};
 
-    (void)state;
     for (int k = 0; k < 3; k++) {
         double m[] = {1.0, correlation[k], correlation[k], 1.0};
         double stiffness[] = {4.0, 0.0, 0.0, 4.0};
@@ -168,29 +164,26 @@ static void a_mass_that_is_nearly_singular_is_filled_up(void **state)
     }
 }
 
-static void a_motion_without_mass_and_stiffness_is_refused(void **state)
+static void a_motion_without_mass_and_stiffness_is_refused(void **)
 {
     const double one[2] = {1.0, 1.0};
     double m[] = {1.0, 0.0, 0.0, 0.0};
     const ritz_reduced body = {.M = {2, 2, m}, .K = {2, 2, m}};
-    ritz_dense L = {0};
+    RITZ_OWN(ritz_dense) L = {0};
     bool mixed = false;
 
-    (void)state;
     assert_fails(ritz_mass_factor(&body, one, &L, &mixed), RITZ_ERR_SINGULAR,
                  "a motion has neither mass nor stiffness");
-    ritz_dense_free(&L);
 }
 
 /* The second stage's bodies, given as models: stage one of another scene. */
-static void reduced_bodies_are_reduced_once_more(void **state)
+static void reduced_bodies_are_reduced_once_more(void **)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_comparison c = {0}, again = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_comparison) c = {0}, again = {0};
     int64_t modes[] = {0, 1, 2};
 
-    (void)state;
     dualspin_or_skip();
     assert_ok(dualspin_stage(&scene, &stage));
     assert_ok(ritz_compare(&stage, &c));
@@ -205,9 +198,6 @@ static void reduced_bodies_are_reduced_once_more(void **state)
     }
     assert_true(again.V[0].ncol < c.V[0].ncol);
     ritz_comparison_free(&again);
-    ritz_comparison_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

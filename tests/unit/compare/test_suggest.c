@@ -24,13 +24,12 @@ static void make(ritz_compare_row row[ROWS], ritz_comparison *c)
     *c = (ritz_comparison){.num_rows = ROWS, .row = row};
 }
 
-static void an_angle_that_stands_out_is_to_be_added(void **state)
+static void an_angle_that_stands_out_is_to_be_added(void **)
 {
     ritz_compare_row row[ROWS];
     ritz_comparison c;
     ritz_suggestion s = {0};
 
-    (void)state;
     make(row, &c);
     row[0].response_error = 1e-5;
     row[3].response_error = 3e-2;
@@ -43,12 +42,11 @@ static void an_angle_that_stands_out_is_to_be_added(void **state)
 }
 
 /* Nine times is not ten; 9e-4 is not seen; as large at listed ones: no help. */
-static void an_error_that_does_not_stand_out_asks_for_nothing(void **state)
+static void an_error_that_does_not_stand_out_asks_for_nothing(void **)
 {
     static const double cases[][2] = {
         {1e-2, 9e-2}, {1e-9, 9e-4}, {0.5, 0.6}, {0.0, 1e-6}};
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         ritz_compare_row row[ROWS];
         ritz_comparison c;
@@ -64,13 +62,12 @@ static void an_error_that_does_not_stand_out_asks_for_nothing(void **state)
 }
 
 /* The gain is worse off than the response: it is the gain that is told. */
-static void the_measure_that_stands_out_most_is_told(void **state)
+static void the_measure_that_stands_out_most_is_told(void **)
 {
     ritz_compare_row row[ROWS];
     ritz_comparison c;
     ritz_suggestion s = {0};
 
-    (void)state;
     make(row, &c);
     row[2].response_error = 2e-2;
     row[3].gain_error = 7.7;
@@ -80,13 +77,12 @@ static void the_measure_that_stands_out_most_is_told(void **state)
     assert_true(s.worth);
 }
 
-static void without_rows_between_nothing_is_suggested(void **state)
+static void without_rows_between_nothing_is_suggested(void **)
 {
     ritz_compare_row row[ROWS];
     ritz_comparison c;
     ritz_suggestion s = {0};
 
-    (void)state;
     make(row, &c);
     c.num_rows = LISTED;
     ritz_compare_suggest(&c, &s);
@@ -119,12 +115,11 @@ static void release(fixture *f)
  * A looser tolerance never makes a body larger; at the scene's own tolerance
  * the row is the comparison itself; the gain is exact in all of them.
  */
-static void a_looser_tolerance_trades_exactness_for_size(void **state)
+static void a_looser_tolerance_trades_exactness_for_size(void **)
 {
     ritz_tolerance_row *rows = NULL;
     fixture f;
 
-    (void)state;
     dualspin_or_skip();
     prepare(&f);
     {
@@ -151,13 +146,12 @@ static void a_looser_tolerance_trades_exactness_for_size(void **state)
     release(&f);
 }
 
-static void tolerances_beyond_one_are_refused(void **state)
+static void tolerances_beyond_one_are_refused(void **)
 {
     const double tolerance[] = {0.1, 1.0};
     ritz_tolerance_row *rows = NULL;
     fixture f;
 
-    (void)state;
     dualspin_or_skip();
     prepare(&f);
     assert_fails(ritz_compare_tolerances(&f.stage, &f.c, 2, tolerance, &rows),
@@ -178,12 +172,11 @@ static ritz_status chart_anew(const fixture *f)
 }
 
 /* Every 37th, as a run takes some milliseconds and allocates 2000 times. */
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
     ritz_status status = RITZ_ERR_MEMORY;
     fixture f;
 
-    (void)state;
     dualspin_or_skip();
     prepare(&f);
     f.scene.num_configurations = f.c.first_system.num_configurations = 1;

@@ -14,9 +14,8 @@ static const char path[] = "test_container.h5";
 static const char other[] = "test_container_other.h5";
 static const ritz_stamp stamp = {.command = "ritz-verb this that"};
 
-static int tear_down(void **state)
+static int tear_down(void **)
 {
-    (void)state;
     remove(path);
     remove(other);
     return 0;
@@ -161,8 +160,7 @@ static void same_ports(const ritz_component *a, const ritz_component *b)
 
 static void compare_components(bool full)
 {
-    ritz_component a = {0};
-    ritz_component b = {0};
+    RITZ_OWN(ritz_component) a = {0}, b = {0};
 
     assert_ok(sample_component(full, &a));
     assert_ok(ritz_container_write_component(path, &a, &stamp));
@@ -187,23 +185,18 @@ static void compare_components(bool full)
     assert_string_equal(a.units, b.units);
     assert_near(b.asymmetry, a.asymmetry, 0.0);
     assert_near(b.digits, a.digits, 0.0);
-    ritz_component_free(&a);
-    ritz_component_free(&b);
 }
 
-static void a_component_comes_back(void **state)
+static void a_component_comes_back(void **)
 {
-    (void)state;
     compare_components(true);
     compare_components(false);
 }
 
-static void a_basis_comes_back(void **state)
+static void a_basis_comes_back(void **)
 {
-    ritz_basis a = {0};
-    ritz_basis b = {0};
+    RITZ_OWN(ritz_basis) a = {0}, b = {0};
 
-    (void)state;
     assert_ok(sample_basis(&a));
     assert_ok(ritz_container_write_basis(path, &a, &stamp));
     assert_ok(ritz_container_read_basis(path, &b));
@@ -214,25 +207,19 @@ static void a_basis_comes_back(void **state)
     assert_true(b.states);
     assert_string_equal(a.damping, b.damping);
     assert_string_equal(a.units, b.units);
-    ritz_basis_free(&a);
-    ritz_basis_free(&b);
 }
 
 /* 5003 x 37 is cut both ways, and not into equal parts. */
-static void a_matrix_of_many_chunks_comes_back(void **state)
+static void a_matrix_of_many_chunks_comes_back(void **)
 {
-    ritz_basis a = {0};
-    ritz_basis b = {0};
+    RITZ_OWN(ritz_basis) a = {0}, b = {0};
 
-    (void)state;
     assert_ok(ritz_basis_new(5003, 37, &a));
     for (int64_t k = 0; k < a.T.nrow * a.T.ncol; k++)
         a.T.val[k] = (double)k;
     assert_ok(ritz_container_write_basis(path, &a, &stamp));
     assert_ok(ritz_container_read_basis(path, &b));
     same_dense(&a.T, &b.T);
-    ritz_basis_free(&a);
-    ritz_basis_free(&b);
 }
 
 static void same_nested(const ritz_nested *a, const ritz_nested *b)
@@ -255,8 +242,7 @@ static void same_nested(const ritz_nested *a, const ritz_nested *b)
 
 static void compare_reduced(bool full)
 {
-    ritz_reduced a = {0};
-    ritz_reduced b = {0};
+    RITZ_OWN(ritz_reduced) a = {0}, b = {0};
 
     assert_ok(sample_reduced(full, &a));
     assert_ok(ritz_container_write_reduced(path, &a, &stamp));
@@ -300,13 +286,10 @@ static void compare_reduced(bool full)
     same_measures(&a.errors, &b.errors);
     same_nested(&a.nested, &b.nested);
     assert_string_equal(a.units, b.units);
-    ritz_reduced_free(&a);
-    ritz_reduced_free(&b);
 }
 
-static void a_reduced_component_comes_back(void **state)
+static void a_reduced_component_comes_back(void **)
 {
-    (void)state;
     compare_reduced(true);
     compare_reduced(false);
 }
@@ -335,8 +318,7 @@ static void same_configuration(const ritz_configuration *a,
 
 static void compare_systems(bool full)
 {
-    ritz_system a = {0};
-    ritz_system b = {0};
+    RITZ_OWN(ritz_system) a = {0}, b = {0};
 
     assert_ok(sample_system(full, &a));
     assert_ok(ritz_container_write_system(path, &a, &stamp));
@@ -357,23 +339,18 @@ static void compare_systems(bool full)
     assert_memory_equal(a.band_hz, b.band_hz, sizeof a.band_hz);
     assert_string_equal(a.damping, b.damping);
     assert_string_equal(a.units, b.units);
-    ritz_system_free(&a);
-    ritz_system_free(&b);
 }
 
-static void a_system_comes_back(void **state)
+static void a_system_comes_back(void **)
 {
-    (void)state;
     compare_systems(true);
     compare_systems(false);
 }
 
-static void a_response_comes_back(void **state)
+static void a_response_comes_back(void **)
 {
-    ritz_response a = {0};
-    ritz_response b = {0};
+    RITZ_OWN(ritz_response) a = {0}, b = {0};
 
-    (void)state;
     assert_ok(sample_response(&a));
     assert_ok(ritz_container_write_response(path, &a, &stamp));
     assert_ok(ritz_container_read_response(path, &b));
@@ -390,16 +367,12 @@ static void a_response_comes_back(void **state)
     assert_same(a.singular, b.singular, a.count * a.num_singular, 8);
     assert_same(a.singular_peak, b.singular_peak, 2, 8);
     assert_true(a.singular_peak[1] > 0.0);
-    ritz_response_free(&a);
-    ritz_response_free(&b);
 }
 
-static void a_simulation_comes_back(void **state)
+static void a_simulation_comes_back(void **)
 {
-    ritz_simulation a = {0};
-    ritz_simulation b = {0};
+    RITZ_OWN(ritz_simulation) a = {0}, b = {0};
 
-    (void)state;
     assert_ok(sample_simulation(&a));
     assert_ok(ritz_container_write_simulation(path, &a, &stamp));
     assert_ok(ritz_container_read_simulation(path, &b));
@@ -419,14 +392,11 @@ static void a_simulation_comes_back(void **state)
     assert_string_equal(a.integrator, b.integrator);
     assert_string_equal(a.hold, b.hold);
     assert_string_equal(a.damping, b.damping);
-    ritz_simulation_free(&a);
-    ritz_simulation_free(&b);
 }
 
 static void compare_state_spaces(bool full)
 {
-    ritz_state_space a = {0};
-    ritz_state_space b = {0};
+    RITZ_OWN(ritz_state_space) a = {0}, b = {0};
 
     assert_ok(sample_state_space(full, &a));
     assert_ok(ritz_container_write_state_space(path, &a, &stamp));
@@ -446,25 +416,20 @@ static void compare_state_spaces(bool full)
     same_measures(&a.estimates, &b.estimates);
     assert_string_equal(a.damping, b.damping);
     assert_string_equal(a.units, b.units);
-    ritz_state_space_free(&a);
-    ritz_state_space_free(&b);
 }
 
-static void a_state_space_comes_back(void **state)
+static void a_state_space_comes_back(void **)
 {
-    (void)state;
     compare_state_spaces(true);
     compare_state_spaces(false);
 }
 
-static void a_ranking_comes_back(void **state)
+static void a_ranking_comes_back(void **)
 {
-    ritz_rankings one = {0};
-    ritz_rankings two = {0};
+    RITZ_OWN(ritz_rankings) one = {0}, two = {0};
     ritz_ranking a = {0};
     ritz_ranking b = {0};
 
-    (void)state;
     assert_ok(sample_rankings(true, &one));
     assert_ok(ritz_container_write_rankings(path, &one, &stamp));
     assert_ok(ritz_container_read_rankings(path, &two));
@@ -490,14 +455,11 @@ static void a_ranking_comes_back(void **state)
     assert_same(a.system_value, b.system_value, a.num_system, 8);
     assert_memory_equal(&a.coupling, &b.coupling, 8);
     assert_memory_equal(a.coupled, b.coupled, sizeof a.coupled);
-    ritz_rankings_free(&one);
-    ritz_rankings_free(&two);
 }
 
 /* Also of what holds none of the optional members. */
-static void what_is_read_and_written_again_has_the_same_bytes(void **state)
+static void what_is_read_and_written_again_has_the_same_bytes(void **)
 {
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         assert_ok(sample_kinds[k].make(path, &stamp));
         assert_ok(sample_kinds[k].copy(path, other, &stamp));
@@ -520,9 +482,8 @@ static herr_t find_time(hid_t at, const char *name, const H5O_info_t *info,
     return info->atime || info->mtime || info->ctime || info->btime;
 }
 
-static void no_object_has_a_time(void **state)
+static void no_object_has_a_time(void **)
 {
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         hid_t file = 0;
 
@@ -535,14 +496,13 @@ static void no_object_has_a_time(void **state)
     }
 }
 
-static void no_library_object_stays_open(void **state)
+static void no_library_object_stays_open(void **)
 {
     hsize_t plans = 0;
     hsize_t spaces = 0;
     hsize_t plans_now = 0;
     hsize_t spaces_now = 0;
 
-    (void)state;
     assert_ok(sample_kinds[0].make(path, &stamp)); /* HDF5 has started */
     H5Inmembers(H5I_GENPROP_LST, &plans);
     H5Inmembers(H5I_DATASPACE, &spaces);
@@ -559,14 +519,13 @@ static void no_library_object_stays_open(void **state)
     assert_int_equal(spaces_now, spaces);
 }
 
-static void every_container_says_how_it_was_made(void **state)
+static void every_container_says_how_it_was_made(void **)
 {
     char first[] = "00ff  model.bdf";
     char second[] = "11ee  a longer name.op4";
     char *input[] = {first, second};
     const ritz_stamp full = {"ritz-verb --option this", 2, input};
 
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};
 
@@ -583,20 +542,18 @@ static void every_container_says_how_it_was_made(void **state)
     }
 }
 
-static void an_empty_list_of_inputs_is_one(void **state)
+static void an_empty_list_of_inputs_is_one(void **)
 {
-    ritz_summary summary = {0};
+    RITZ_OWN(ritz_summary) summary = {0};
 
-    (void)state;
     assert_ok(sample_kinds[0].make(path, &stamp));
     assert_ok(ritz_container_summary(path, &summary));
     assert_int_equal(summary.num_inputs, 0);
     assert_string_equal(summary.units, "kg m s");
-    ritz_summary_free(&summary);
 }
 
 /* More than an HDF5 object header takes, of both. */
-static void a_command_of_any_length_comes_back(void **state)
+static void a_command_of_any_length_comes_back(void **)
 {
     enum { LONG = 200000, MANY = 2000 };
     static char command[LONG + 1];
@@ -606,7 +563,6 @@ static void a_command_of_any_length_comes_back(void **state)
     const size_t lengths[] = {16382, 16383, 16384, LONG};
     ritz_summary summary = {0};
 
-    (void)state;
     for (int k = 0; k < MANY; k++) {
         snprintf(text[k], sizeof text[k], "%064d  folder/file %d.op4", k, k);
         input[k] = text[k];
@@ -624,11 +580,10 @@ static void a_command_of_any_length_comes_back(void **state)
     }
 }
 
-static void a_failed_write_leaves_what_was_there(void **state)
+static void a_failed_write_leaves_what_was_there(void **)
 {
-    ritz_component component = {0};
+    RITZ_OWN(ritz_component) component = {0};
 
-    (void)state;
     assert_ok(sample_kinds[1].make(path, &stamp));
     assert_ok(sample_kinds[1].make(other, &stamp));
     assert_ok(sample_component(true, &component));
@@ -636,7 +591,6 @@ static void a_failed_write_leaves_what_was_there(void **state)
     assert_fails(ritz_container_write_component(path, &component, &stamp),
                  RITZ_ERR_FORMAT, "inputs: names: 'torque' is there twice");
     assert_same_file(path, other);
-    ritz_component_free(&component);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -15,9 +15,8 @@ static const char path[] = "test_container_damage.h5";
 static const char again[] = "test_container_damage_again.h5";
 static const ritz_stamp stamp = {.command = "ritz-verb"};
 
-static int tear_down(void **state)
+static int tear_down(void **)
 {
-    (void)state;
     remove(path);
     remove(again);
     return 0;
@@ -69,12 +68,11 @@ static uint32_t next(uint32_t *seed)
 }
 
 /* In one to three places; the seed is said when a value has changed. */
-static void damage_is_found_or_harmless(void **state)
+static void damage_is_found_or_harmless(void **)
 {
     static unsigned char whole[MOST];
     static unsigned char bytes[MOST];
 
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         size_t size = 0;
         int found = 0;
@@ -95,11 +93,10 @@ static void damage_is_found_or_harmless(void **state)
     }
 }
 
-static void a_file_cut_short_is_refused(void **state)
+static void a_file_cut_short_is_refused(void **)
 {
     static unsigned char whole[MOST];
 
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         size_t size = 0;
 
@@ -113,13 +110,12 @@ static void a_file_cut_short_is_refused(void **state)
 }
 
 /* The smallest of them, cut at every byte. */
-static void a_small_file_cut_at_any_byte_is_refused(void **state)
+static void a_small_file_cut_at_any_byte_is_refused(void **)
 {
     static unsigned char whole[MOST];
     size_t least = MOST;
     int smallest = 0;
 
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         size_t size = 0;
 
@@ -261,10 +257,8 @@ static const change changes[] = {
      .rank = 1, .dims = {2}},
 };
 
-static void what_does_not_fit_is_refused_with_its_sentence(void **state)
+static void what_does_not_fit_is_refused_with_its_sentence(void **)
 {
-
-    (void)state;
     for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
         const sample_kind *kind = &sample_kinds[changes[k].kind];
 
@@ -278,12 +272,11 @@ static void what_does_not_fit_is_refused_with_its_sentence(void **state)
 }
 
 /* A link cannot make the reader open other files. */
-static void links_to_elsewhere_are_not_followed(void **state)
+static void links_to_elsewhere_are_not_followed(void **)
 {
     ritz_basis none = {0};
     hid_t file = 0;
 
-    (void)state;
     assert_ok(sample_kinds[1].make(again, &stamp));
     assert_ok(sample_kinds[1].make(path, &stamp));
     file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
@@ -295,14 +288,13 @@ static void links_to_elsewhere_are_not_followed(void **state)
                  "no data set 'T'");
 }
 
-static void other_files_are_refused(void **state)
+static void other_files_are_refused(void **)
 {
     ritz_component none = {0};
     ritz_basis basis = {0};
     ritz_summary summary = {0};
     hid_t file = 0;
 
-    (void)state;
     assert_fails(ritz_container_read_component("nowhere", &none), RITZ_ERR_FILE,
                  "nowhere: No such file");
     assert_false(ritz_container_is("nowhere"));
@@ -326,13 +318,12 @@ static void other_files_are_refused(void **state)
                  RITZ_ERR_FILE, "nowhere/b.h5: cannot create");
 }
 
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
     char input[] = "00  name";
     char *inputs[] = {input};
     const ritz_stamp full = {"ritz-verb", 1, inputs};
 
-    (void)state;
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};
 

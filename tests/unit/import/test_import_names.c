@@ -29,12 +29,11 @@ static const char *const samples[] = {
     "999999999999999999 6\n+5 3\n12345 4\n",
 };
 
-static void rows_are_named_in_the_order_of_the_file(void **state)
+static void rows_are_named_in_the_order_of_the_file(void **)
 {
     static const ritz_dof due[] = {{7, 6}, {2001, 0}, {7, 1}};
     ritz_row_names names = {0};
 
-    (void)state;
     assert_ok(read_text(samples[1], &names));
     assert_int_equal(names.count, 3);
     for (int k = 0; k < 3; k++)
@@ -43,7 +42,7 @@ static void rows_are_named_in_the_order_of_the_file(void **state)
     remove(path);
 }
 
-static void what_is_wrong_is_said_with_its_line(void **state)
+static void what_is_wrong_is_said_with_its_line(void **)
 {
     static const struct {
         const char *text, *words;
@@ -60,7 +59,6 @@ static void what_is_wrong_is_said_with_its_line(void **state)
          "line 4: 'grid 5 T2' was named at line 1 already"},
     };
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         ritz_row_names names = {0};
 
@@ -95,11 +93,10 @@ static void assert_answered(const char *bytes, size_t size)
     ritz_row_names_free(&names);
 }
 
-static void a_file_cut_or_corrupted_anywhere_is_answered(void **state)
+static void a_file_cut_or_corrupted_anywhere_is_answered(void **)
 {
     uint64_t seed = 77;
 
-    (void)state;
     for (size_t s = 0; s < sizeof samples / sizeof *samples; s++) {
         size_t size = strlen(samples[s]);
         char bytes[200];
@@ -130,9 +127,8 @@ static ritz_status read_and_drop(void)
     return status;
 }
 
-static void every_allocation_may_fail(void **state)
+static void every_allocation_may_fail(void **)
 {
-    (void)state;
     write_file(samples[0], strlen(samples[0]));
     assert_survives_every_allocation(read_and_drop());
     remove(path);

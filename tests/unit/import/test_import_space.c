@@ -60,11 +60,10 @@ static ritz_status import(const char *matrices, const char *inputs,
     return ritz_import_state_space(&request, out);
 }
 
-static void a_matrix_for_each_letter_makes_a_state_space(void **state)
+static void a_matrix_for_each_letter_makes_a_state_space(void **)
 {
-    ritz_state_space s = {0};
+    RITZ_OWN(ritz_state_space) s = {0};
 
-    (void)state;
     assert_ok(import(list("C=C.mtx,A=A.mtx,B=B.mtx"), NULL, NULL, &s));
     assert_int_equal(s.A.nrow, 2);
     assert_true(s.A.val[0] == -1.0 && s.A.val[1] == 0.0 && s.A.val[2] == 2.0);
@@ -74,35 +73,30 @@ static void a_matrix_for_each_letter_makes_a_state_space(void **state)
     assert_string_equal(s.input[0], "u1");
     assert_string_equal(s.output[1], "y2");
     assert_true(isnan(s.limit[0]));
-    ritz_state_space_free(&s);
 }
 
-static void d_e_names_and_limits_are_taken(void **state)
+static void d_e_names_and_limits_are_taken(void **)
 {
-    ritz_state_space s = {0};
+    RITZ_OWN(ritz_state_space) s = {0};
 
-    (void)state;
     assert_ok(import(list("A=A.mtx,B=B.mtx,C=C.mtx,D=D.mtx,E=E.mtx"), "force",
                      "tip@1e-3,root", &s));
     assert_true(s.D.val[1] == 9.0 && s.E.val[0] == 2.0 && s.E.val[3] == 3.0);
     assert_string_equal(s.input[0], "force");
     assert_string_equal(s.output[0], "tip");
     assert_true(s.limit[0] == 1e-3 && isnan(s.limit[1]));
-    ritz_state_space_free(&s);
 }
 
-static void an_identity_is_no_e(void **state)
+static void an_identity_is_no_e(void **)
 {
-    ritz_state_space s = {0};
+    RITZ_OWN(ritz_state_space) s = {0};
 
-    (void)state;
     assert_ok(
         import(list("A=A.mtx,B=B.mtx,C=C.mtx,E=one.mtx"), NULL, NULL, &s));
     assert_null(s.E.val);
-    ritz_state_space_free(&s);
 }
 
-static void what_makes_no_state_space_is_refused(void **state)
+static void what_makes_no_state_space_is_refused(void **)
 {
     static const struct {
         const char *matrices, *inputs, *outputs, *words;
@@ -125,7 +119,6 @@ static void what_makes_no_state_space_is_refused(void **state)
     };
     ritz_state_space s = {0};
 
-    (void)state;
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
         assert_int_not_equal(import(list(table[k].matrices), table[k].inputs,
                                     table[k].outputs, &s),
@@ -203,9 +196,8 @@ static ritz_status import_and_drop(const char *matrices)
     return status;
 }
 
-static void every_allocation_may_fail(void **state)
+static void every_allocation_may_fail(void **)
 {
-    (void)state;
     assert_survives_every_allocation(
         import_and_drop(list("A=A.mtx,B=B.mtx,C=C.mtx,D=D.mtx,E=E.mtx")));
 }

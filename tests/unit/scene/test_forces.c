@@ -17,12 +17,11 @@ static void release(ritz_scene *scene, ritz_stage *stage)
 }
 
 /* Coordinates of A are nodes 1 and 2, of B nodes 2, 3 and 4, three each. */
-static void directions_of_a_list_act_at_once(void **state)
+static void directions_of_a_list_act_at_once(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
 
-    (void)state;
     read("inputs: [{name: u, at: A/middle, component: [1, 6, 2], scale: 3}]\n",
          &scene, &stage);
     assert_int_equal(stage.io.num_inputs, 1);
@@ -31,12 +30,11 @@ static void directions_of_a_list_act_at_once(void **state)
     release(&scene, &stage);
 }
 
-static void a_motor_acts_against_the_other_side(void **state)
+static void a_motor_acts_against_the_other_side(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
 
-    (void)state;
     read("inputs: [{name: u, at: A/n1, component: 6, against: B/n4}]\n", &scene,
          &stage);
     for (int64_t k = 0; k < stage.num_coordinates; k++)
@@ -44,7 +42,7 @@ static void a_motor_acts_against_the_other_side(void **state)
     release(&scene, &stage);
 }
 
-static void forces_that_make_no_sense_are_refused(void **state)
+static void forces_that_make_no_sense_are_refused(void **)
 {
     static const struct {
         const char *inputs, *words;
@@ -65,7 +63,6 @@ static void forces_that_make_no_sense_are_refused(void **state)
          "unknown key 'against'"},
     };
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         ritz_scene scene = {0};
         ritz_stage stage = {0};
@@ -75,12 +72,11 @@ static void forces_that_make_no_sense_are_refused(void **state)
     }
 }
 
-static void a_port_without_the_direction_is_refused(void **state)
+static void a_port_without_the_direction_is_refused(void **)
 {
     ritz_scene scene = {0};
     ritz_stage stage = {0};
 
-    (void)state;
     assert_fails(
         beams_stage(false, "inputs: [{name: u, at: A/n1, component: [1, 3]}]\n",
                     &scene, &stage),
@@ -108,9 +104,8 @@ static ritz_status read_anew(void)
     return status;
 }
 
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
-    (void)state;
     assert_survives_every_allocation(read_anew());
 }
 
