@@ -32,7 +32,7 @@ typedef struct ritz_scene_place {
 
 /*
  * What joins two ports; all but fixed ones hold one six-dof grid on each side.
- * src/synthesis/joints.c has the equations.
+ * src/assembly/joints.c has the equations.
  */
 typedef enum ritz_joint_type {
     RITZ_JOINT_FIXED,     /* grids in pairs */

@@ -30,23 +30,12 @@ ritz_plan ritz_compare_plan(const ritz_scene *scene)
     };
 }
 
-/* Set to zero the rows and columns of A that are zero but for rounding. */
+/* Motions without mass have neither mass nor damping, but for rounding. */
 static void zero_entries(ritz_range range, ritz_dense *A)
 {
     for (int64_t j = range.first; j < range.last && A->val; j++)
         for (int64_t i = 0; i < A->nrow; i++)
             ritz_dense_col(A, j)[i] = ritz_dense_col(A, i)[j] = 0.0;
-}
-
-/*
- * The columns of V that are motions without mass have neither mass nor damping.
- */
-static void remove_mass(ritz_range massless, ritz_reduced *body)
-{
-    zero_entries(massless, &body->M);
-    zero_entries(massless, &body->D);
-    for (int64_t j = massless.first; j < massless.last; j++)
-        body->columns.kind[j] = RITZ_COLUMN_MASSLESS;
 }
 
 /* Project the bodies on the subspaces V. */
@@ -62,7 +51,10 @@ static ritz_status project_bodies(const ritz_stage *stage,
 
         RITZ_CHECK(
             ritz_reduced_project(&stage->body[c], &out->V[c], &made.body[c]));
-        remove_mass(massless[c], &made.body[c]);
+        zero_entries(massless[c], &made.body[c].M);
+        zero_entries(massless[c], &made.body[c].D);
+        for (int64_t j = massless[c].first; j < massless[c].last; j++)
+            made.body[c].columns.kind[j] = RITZ_COLUMN_MASSLESS;
         snprintf(origin->method, sizeof origin->method, "compare");
         snprintf(origin->reference, sizeof origin->reference, "LeeTsuha1992");
         out->removed = out->removed || out->V[c].ncol < out->V[c].nrow;
@@ -233,53 +225,50 @@ static void name_set(const ritz_scene *scene, ritz_candidate *candidate)
         snprintf(out, size, "nothing");
 }
 
-/* Errors at listed configurations. */
-static ritz_status measure_listed(const ritz_rows *rows, ritz_trial *trial,
-                                  ritz_candidate *out)
+static ritz_status measure_deviation(const ritz_scene *scene,
+                                     const ritz_configuration *first,
+                                     const ritz_configuration *second,
+                                     ritz_candidate *out)
 {
-    const ritz_scene *scene = rows->stage->scene;
-    bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
+    RITZ_OWN(ritz_response) one = {0}, two = {0};
+    double deviation = 0.0, hertz = 0.0;
 
-    for (int64_t k = 0; k < trial->system.num_configurations; k++) {
-        RITZ_OWN(ritz_two_responses) r = {0};
-        const ritz_configuration *first = ritz_rows_first(rows, k);
-        const ritz_configuration *second = &trial->system.configuration[k];
-        double gain = nan(""), deviation = 0.0, hertz = 0.0;
-
-        if (driven)
-            RITZ_CHECK(ritz_compare_gain(first, second, &gain));
-        out->gain_listed = fmax(out->gain_listed, gain);
-        out->largest =
-            second->K.ncol > out->largest ? second->K.ncol : out->largest;
-        if (!ritz_compare_responds(scene))
-            continue;
-        RITZ_CHECK(ritz_compare_respond(scene, first, second, &r));
-        RITZ_CHECK(ritz_compare_bode(&r, &deviation, &hertz));
-        if (isnan(out->deviation) || deviation > out->deviation) {
-            out->deviation = deviation;
-            out->hertz = hertz;
-            memcpy(out->at, first->at, sizeof out->at);
-        }
+    RITZ_CHECK(ritz_compare_respond(scene, first, second, &one, &two));
+    RITZ_CHECK(ritz_compare_bode(&one, &two, &deviation, &hertz));
+    if (isnan(out->deviation) || deviation > out->deviation) {
+        out->deviation = deviation;
+        out->hertz = hertz;
+        memcpy(out->at, first->at, sizeof out->at);
     }
     return RITZ_OK;
 }
 
-/* Errors of the static gain between listed configurations. */
-static ritz_status measure_between(const ritz_rows *rows, ritz_trial *trial,
-                                   ritz_candidate *out)
+/* Errors at listed configurations, and of the static gain between them. */
+static ritz_status measure_set(const ritz_rows *rows, const ritz_trial *trial,
+                               ritz_candidate *out)
 {
     const ritz_scene *scene = rows->stage->scene;
     bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
+    int64_t listed = trial->system.num_configurations;
 
-    for (int64_t k = trial->system.num_configurations;
-         k < rows->num_rows && driven; k++) {
-        RITZ_OWN(ritz_configuration) second = {0};
-        double gain = 0.0;
+    for (int64_t k = 0; k < (driven ? rows->num_rows : listed); k++) {
+        const ritz_configuration *first = ritz_rows_first(rows, k);
+        RITZ_OWN(ritz_configuration) between = {0};
+        const ritz_configuration *second =
+            k < listed ? &trial->system.configuration[k] : &between;
+        double *gain = k < listed ? &out->gain_listed : &out->gain_between;
+        double error = nan("");
 
-        RITZ_CHECK(
-            ritz_stage_assemble(&trial->second, rows->row[k].setting, &second));
-        RITZ_CHECK(ritz_compare_gain(ritz_rows_first(rows, k), &second, &gain));
-        out->gain_between = fmax(out->gain_between, gain);
+        if (k >= listed)
+            RITZ_CHECK(ritz_stage_assemble(&trial->second, rows->row[k].setting,
+                                           &between));
+        else if (second->K.ncol > out->largest)
+            out->largest = second->K.ncol;
+        if (driven)
+            RITZ_CHECK(ritz_compare_gain(first, second, &error));
+        *gain = fmax(*gain, error);
+        if (k < listed && ritz_compare_responds(scene))
+            RITZ_CHECK(measure_deviation(scene, first, second, out));
     }
     return RITZ_OK;
 }
@@ -296,8 +285,7 @@ static ritz_status try_set(const ritz_rows *rows, const ritz_plan *plan,
     name_set(rows->stage->scene, out);
     RITZ_CHECK(ritz_compare_try(rows, plan, &trial));
     RITZ_CHECK(list_orders(&trial, &out->order, &out->total));
-    RITZ_CHECK(measure_listed(rows, &trial, out));
-    return measure_between(rows, &trial, out);
+    return measure_set(rows, &trial, out);
 }
 
 /*

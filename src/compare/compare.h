@@ -162,15 +162,7 @@ typedef struct ritz_statics {
 ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
                               const ritz_plan *plan, ritz_statics *out);
 
-/** Motions without mass: null space of M, r x 0 if it is definite. */
-ritz_status ritz_body_massless(const ritz_reduced *body, const double *scale,
-                               ritz_dense *out);
-
 void ritz_statics_free(ritz_statics *statics);
-
-/** Whether the plan has static corrections for input @p j. */
-bool ritz_plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
-                        int64_t j);
 
 /**
  * Compare the second system with the first at one configuration: stray modes
@@ -204,26 +196,20 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
 /** Whether a scene has a response: inputs, outputs, a band and damping. */
 bool ritz_compare_responds(const ritz_scene *scene);
 
-/* Responses of two systems at the frequencies of the first. */
-typedef struct ritz_two_responses {
-    int64_t count, num_inputs, num_outputs;
-    double *hertz;
-    double _Complex *one, *two; /* (k * num_outputs + i) * num_inputs + j */
-} ritz_two_responses;
-
+/** Responses of two systems at the frequencies of the first. */
 ritz_status ritz_compare_respond(const ritz_scene *scene,
                                  const ritz_configuration *first,
                                  const ritz_configuration *second,
-                                 ritz_two_responses *out);
-void ritz_two_responses_free(ritz_two_responses *responses);
+                                 ritz_response *one, ritz_response *two);
 
 /**
  * Worst deviation of the largest singular value of H(i w), relative to it at
  * each point; at points more than 60 dB below the mean level of the plot it is
  * relative to that level.
  */
-ritz_status ritz_compare_bode(const ritz_two_responses *responses,
-                              double *deviation, double *hertz);
+ritz_status ritz_compare_bode(const ritz_response *first,
+                              const ritz_response *second, double *deviation,
+                              double *hertz);
 
 /**
  * Errors for each set of attached dofs, where the scene augments components or
@@ -238,5 +224,54 @@ void ritz_candidates_free(int64_t count, ritz_candidate **candidates);
  */
 void ritz_compare_suggest(const ritz_comparison *comparison,
                           ritz_suggestion *out);
+
+/* Independent directions in the mass inner product of a body. */
+
+/**
+ * Lower Cholesky factor of the mass, in coordinates scaled to unit diagonal;
+ * where mass is singular, of mass plus stiffness over a lambda of the body's.
+ *
+ * @param[out] mixed  whether stiffness was added
+ * @return RITZ_ERR_SINGULAR if neither is definite
+ */
+ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
+                             ritz_dense *L, bool *mixed);
+
+/**
+ * Lower Cholesky factor of mass plus stiffness over a given lambda, the norm of
+ * an energy.
+ */
+ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
+                              double lambda, ritz_dense *L);
+
+/**
+ * Y = L' W with W in scaled coordinates: M-inner products become Euclidean
+ * ones.
+ */
+ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
+                                const ritz_dense *W, ritz_dense *Y);
+
+/**
+ * Replace U by the W with Y = U.
+ *
+ * @param[in] limited  columns are at most one long before they are scaled: with
+ *                     unit M-norm a motion of little mass is long, and its
+ *                     rounding would act as mass that it does not have
+ */
+void ritz_mass_return(const ritz_dense *L, const double *scale, bool limited,
+                      ritz_dense *U);
+
+/** W := [W, more]. */
+ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W);
+
+/**
+ * Orthonormal directions of Y (destroyed) whose singular values exceed
+ * @p tolerance times *largest, which grows to the largest there is.
+ *
+ * @param[out] value  these values, descending; room for as many as @p Y has
+ *                    rows; NULL: not wanted
+ */
+ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
+                         double *value, ritz_dense *out);
 
 #endif

@@ -8,7 +8,6 @@
 #include "assembly/dual.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "compare/directions.h"
 
 #include <ritz/matrix.h>
 

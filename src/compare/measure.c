@@ -37,7 +37,7 @@ static ritz_status find_poles(const ritz_scene *scene,
 ritz_status ritz_compare_respond(const ritz_scene *scene,
                                  const ritz_configuration *first,
                                  const ritz_configuration *second,
-                                 ritz_two_responses *out)
+                                 ritz_response *one, ritz_response *two)
 {
     const ritz_grid grid = {
         .from_hz = fmax(scene->band_hz[0], RITZ_BAND_START * scene->band_hz[1]),
@@ -45,40 +45,24 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
         .count = 200,
         .refine = true,
     };
-    RITZ_OWN(ritz_poles) one = {0}, two = {0};
-    RITZ_OWN(ritz_response) r = {0};
     int64_t size = first->io.num_inputs * first->io.num_outputs;
+    RITZ_OWN(ritz_poles) p = {0}, p2 = {0};
 
-    RITZ_CHECK(find_poles(scene, first, &one));
-    RITZ_CHECK(find_poles(scene, second, &two));
-    RITZ_CHECK(ritz_response_new(&grid, &one, "modal", &scene->damping, &r));
-    RITZ_CHECK_NEW(out->two, r.count * size);
-    for (int64_t k = 0; k < r.count; k++) {
-        RITZ_CHECK(ritz_poles_add(&one, r.hertz[k], r.H + k * size));
-        RITZ_CHECK(ritz_poles_add(&two, r.hertz[k], out->two + k * size));
+    RITZ_CHECK(find_poles(scene, first, &p));
+    RITZ_CHECK(find_poles(scene, second, &p2));
+    RITZ_CHECK(ritz_response_new(&grid, &p, "modal", &scene->damping, one));
+    RITZ_CHECK(ritz_response_new(&grid, &p, "modal", &scene->damping, two));
+    for (int64_t k = 0; k < one->count; k++) {
+        RITZ_CHECK(ritz_poles_add(&p, one->hertz[k], one->H + k * size));
+        RITZ_CHECK(ritz_poles_add(&p2, one->hertz[k], two->H + k * size));
     }
-    out->count = r.count;
-    out->num_inputs = first->io.num_inputs;
-    out->num_outputs = first->io.num_outputs;
-    out->hertz = r.hertz;
-    out->one = r.H;
-    r.hertz = NULL;
-    r.H = NULL;
     return RITZ_OK;
 }
 
-void ritz_two_responses_free(ritz_two_responses *responses)
+/* Largest singular value at each point of a response. */
+static ritz_status largest_singular(const ritz_response *r, double *out)
 {
-    free(responses->hertz);
-    free(responses->one);
-    free(responses->two);
-    *responses = (ritz_two_responses){0};
-}
-
-/* Largest singular value of each of several m x n matrices. */
-static ritz_status largest_singular(int64_t count, int64_t m, int64_t n,
-                                    const double _Complex *H, double *out)
-{
+    int64_t m = r->num_outputs, n = r->num_inputs;
     int64_t least = m < n ? m : n;
     RITZ_OWN_ARRAY double _Complex *A = NULL;
     RITZ_OWN_ARRAY double *sigma = NULL, *work = NULL;
@@ -86,8 +70,8 @@ static ritz_status largest_singular(int64_t count, int64_t m, int64_t n,
     RITZ_CHECK_NEW(A, m * n);
     RITZ_CHECK_NEW(sigma, least);
     RITZ_CHECK_NEW(work, least);
-    for (int64_t k = 0; k < count; k++) {
-        memcpy(A, H + k * m * n, (size_t)(m * n) * sizeof *A);
+    for (int64_t k = 0; k < r->count; k++) {
+        memcpy(A, r->H + k * m * n, (size_t)(m * n) * sizeof *A);
         RITZ_REFUSE_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)n,
                                       (int)m, A, (int)n, sigma, NULL, 1, NULL,
                                       1, work) != 0,
@@ -98,20 +82,19 @@ static ritz_status largest_singular(int64_t count, int64_t m, int64_t n,
     return RITZ_OK;
 }
 
-ritz_status ritz_compare_bode(const ritz_two_responses *responses,
-                              double *deviation, double *hertz)
+ritz_status ritz_compare_bode(const ritz_response *first,
+                              const ritz_response *second, double *deviation,
+                              double *hertz)
 {
-    const ritz_two_responses *r = responses;
+    const ritz_response *r = first;
     RITZ_OWN_ARRAY double *one = NULL, *two = NULL;
     double mean = 0.0;
     int64_t nonzero = 0;
 
     RITZ_CHECK_NEW(one, r->count);
     RITZ_CHECK_NEW(two, r->count);
-    RITZ_CHECK(
-        largest_singular(r->count, r->num_outputs, r->num_inputs, r->one, one));
-    RITZ_CHECK(
-        largest_singular(r->count, r->num_outputs, r->num_inputs, r->two, two));
+    RITZ_CHECK(largest_singular(first, one));
+    RITZ_CHECK(largest_singular(second, two));
     for (int64_t k = 0; k < r->count; k++)
         if (one[k] > 0.0) {
             mean += log(one[k]);
@@ -144,20 +127,6 @@ ritz_status ritz_compare_bode(const ritz_two_responses *responses,
  * are due to the projection: bodies have more coordinates than the system had
  * modes [McDaniel2000, table 3.3]. Static corrections are among them.
  */
-
-/* Part s_j of mode j in the space of the kept modes. */
-static double find_participation(const ritz_configuration *first,
-                                 const ritz_compare_row *row, const double *x)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < row->num_kept; i++) {
-        double one = x[first->num_rigid + row->kept[i]];
-
-        sum += one * one;
-    }
-    return sum;
-}
 
 /*
  * Describe a stray mode, and find the mode of the first system with the largest
@@ -195,8 +164,12 @@ static ritz_status find_strays(const ritz_scene *scene,
         return RITZ_OK; /* no mode was kept, so none is stray */
     for (int64_t j = second->num_rigid; j < second->K.ncol; j++) {
         const double *x = ritz_dense_col(X, j);
+        double part = 0.0; /* s_j */
 
-        if (find_participation(first, row, x) >= half)
+        for (int64_t i = 0; i < row->num_kept; i++)
+            part += x[first->num_rigid + row->kept[i]] *
+                    x[first->num_rigid + row->kept[i]];
+        if (part >= half)
             continue;
         row->stray[row->num_strays] =
             describe_stray(scene, first, second->lambda[j], x);
@@ -356,26 +329,6 @@ static void measure_modes(const ritz_configuration *first,
     }
 }
 
-static void measure_rigid(const ritz_configuration *second,
-                          ritz_compare_row *row)
-{
-    row->rigid_error = 0.0;
-    for (int64_t j = 0; j < second->num_rigid; j++)
-        row->rigid_error =
-            fmax(row->rigid_error, fabs(ritz_eigen_hertz(second->lambda[j])));
-}
-
-/* Largest difference of two matrices, relative to the first. */
-static double relative_difference(const ritz_dense *one, const ritz_dense *two)
-{
-    double largest = ritz_dense_max(one);
-    double difference = 0.0;
-
-    for (int64_t k = 0; k < one->nrow * one->ncol; k++)
-        difference = fmax(difference, fabs(two->val[k] - one->val[k]));
-    return largest > 0.0 ? difference / largest : 0.0;
-}
-
 ritz_status ritz_compare_gain(const ritz_configuration *first,
                               const ritz_configuration *second, double *out)
 {
@@ -408,15 +361,17 @@ static ritz_status measure_moments(const ritz_configuration *first,
                                    const ritz_configuration *second,
                                    int64_t count, double *out)
 {
-    RITZ_OWN(ritz_dense) one = {0}, two = {0};
-
     *out = nan("");
     for (int64_t i = 0; i < count && first->io.num_outputs > 0; i++) {
+        RITZ_OWN(ritz_dense) one = {0}, two = {0};
+        double largest = 0.0, gap = 0.0;
+
         RITZ_CHECK(compute_moment(first, i, &one));
         RITZ_CHECK(compute_moment(second, i, &two));
-        *out = fmax(*out, relative_difference(&one, &two));
-        ritz_dense_free(&one);
-        ritz_dense_free(&two);
+        largest = ritz_dense_max(&one);
+        for (int64_t k = 0; k < one.nrow * one.ncol; k++)
+            gap = fmax(gap, fabs(two.val[k] - one.val[k]));
+        *out = fmax(*out, largest > 0.0 ? gap / largest : 0.0);
     }
     return RITZ_OK;
 }
@@ -430,13 +385,13 @@ static ritz_status measure_response(const ritz_scene *scene,
                                     const ritz_configuration *second,
                                     ritz_compare_row *row)
 {
-    RITZ_OWN(ritz_two_responses) r = {0};
+    RITZ_OWN(ritz_response) one = {0}, two = {0};
     double largest = 0.0, gap = 0.0;
 
-    RITZ_CHECK(ritz_compare_respond(scene, first, second, &r));
-    for (int64_t k = 0; k < r.count * r.num_inputs * r.num_outputs; k++) {
-        largest = fmax(largest, cabs(r.one[k]));
-        gap = fmax(gap, cabs(r.one[k] - r.two[k]));
+    RITZ_CHECK(ritz_compare_respond(scene, first, second, &one, &two));
+    for (int64_t k = 0; k < one.count * one.num_inputs * one.num_outputs; k++) {
+        largest = fmax(largest, cabs(one.H[k]));
+        gap = fmax(gap, cabs(one.H[k] - two.H[k]));
     }
     row->response_error = largest > 0.0 ? gap / largest : 0.0;
     return RITZ_OK;
@@ -455,7 +410,10 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     row->gain_error = row->response_error = nan("");
     RITZ_CHECK(ritz_modes_correlate(stage, V, false, first, second, &X));
     measure_modes(first, second, &X, row);
-    measure_rigid(second, row);
+    row->rigid_error = 0.0;
+    for (int64_t j = 0; j < second->num_rigid; j++)
+        row->rigid_error =
+            fmax(row->rigid_error, fabs(ritz_eigen_hertz(second->lambda[j])));
     RITZ_CHECK(find_strays(scene, first, second, &X, row));
     RITZ_CHECK(remove_strays(row, second));
     row->order = second->K.ncol;

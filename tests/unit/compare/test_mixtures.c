@@ -8,7 +8,7 @@
 #include "dualspin.h"
 #include "scenes.h"
 
-#include "compare/directions.h"
+#include "compare/compare.h"
 
 #include <ritz/assembly.h>
 #include <ritz/basis.h>
