@@ -3,6 +3,7 @@
  * once; of the beam of [McDaniel2000]; of a real plate rounded to few digits.
  */
 #include "frame.h"
+#include "project.h"
 #include "testing.h"
 
 #include <ritz/check.h>
@@ -45,7 +46,7 @@ static void add_spring(ritz_dense *K, int a, int b)
 static ritz_component lattice(int parts)
 {
     ritz_component c = {.num_dofs = ROWS, .grids = {.count = GRIDS}};
-    ritz_dense K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
     int64_t whole = parts == 2 ? GRIDS - 1 : GRIDS;
 
     c.grids.num_frames = 1;
@@ -74,8 +75,6 @@ static ritz_component lattice(int parts)
     assert_ok(ritz_sparse_from_dense(&K, &c.K));
     assert_ok(ritz_sparse_from_dense(&M, &c.M));
     assert_ok(ritz_component_settle(&c, false));
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
     return c;
 }
 
@@ -105,24 +104,15 @@ static void add_port(ritz_component *c, const char *name, int64_t count,
         port->axes[4 * i] = 1.0;
 }
 
-static const ritz_check *find(const ritz_audit *audit, const char *name)
-{
-    for (int64_t k = 0; k < audit->count; k++)
-        if (strcmp(audit->check[k].name, name) == 0)
-            return &audit->check[k];
-    fail_msg("there is no check '%s'", name);
-    return NULL;
-}
-
 /* Audit, look at one check, and free. */
 static void expect(ritz_component *c, const char *name, ritz_verdict verdict,
                    double value, const char *where)
 {
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
     const ritz_check *check = NULL;
 
     assert_ok(ritz_audit_component(c, &audit));
-    check = find(&audit, name);
+    check = find_check(&audit, name);
     if (check->verdict != verdict)
         fail_msg("%s: %s: %s", name, ritz_verdict_name(check->verdict),
                  check->says);
@@ -130,14 +120,13 @@ static void expect(ritz_component *c, const char *name, ritz_verdict verdict,
         assert_near(check->value, value, 1e-12 * fabs(value));
     if (!strstr(check->where, where))
         fail_msg("%s: '%s' does not name '%s'", name, check->where, where);
-    ritz_audit_free(&audit);
 }
 
 static void a_sound_body_passes_every_check(void **state)
 {
     const int64_t rows[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     ritz_component c = lattice(1);
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
 
     (void)state;
     add_port(&c, "base", 9, rows);
@@ -145,20 +134,22 @@ static void a_sound_body_passes_every_check(void **state)
     for (int64_t k = 0; k < audit.count; k++)
         if (audit.check[k].verdict != RITZ_PASS)
             fail_msg("%s: %s", audit.check[k].name, audit.check[k].says);
-    assert_near(find(&audit, "rigid-modes-geometry")->value, 6.0, 0.0);
-    assert_near(find(&audit, "rigid-modes-null-space")->value, 6.0, 0.0);
-    assert_near(find(&audit, "rigid-modes-eigenvectors")->value, 6.0, 0.0);
-    assert_non_null(strstr(find(&audit, "mass-translations")->says, "mass 5,"));
+    assert_near(find_check(&audit, "rigid-modes-geometry")->value, 6.0, 0.0);
+    assert_near(find_check(&audit, "rigid-modes-null-space")->value, 6.0, 0.0);
+    assert_near(find_check(&audit, "rigid-modes-eigenvectors")->value, 6.0,
+                0.0);
+    assert_non_null(
+        strstr(find_check(&audit, "mass-translations")->says, "mass 5,"));
     /* mean of the places: 4/5 each */
-    assert_non_null(strstr(find(&audit, "mass-coupling")->says, "0.8 0.8 0.8"));
-    ritz_audit_free(&audit);
+    assert_non_null(
+        strstr(find_check(&audit, "mass-coupling")->says, "0.8 0.8 0.8"));
     ritz_component_free(&c);
 }
 
 static void values_that_are_not_finite_end_the_audit(void **state)
 {
     ritz_component c = lattice(1);
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
 
     (void)state;
     *diagonal(&c.K, 4) = nan("");
@@ -166,7 +157,6 @@ static void values_that_are_not_finite_end_the_audit(void **state)
     assert_int_equal(audit.count, 1);
     assert_int_equal(audit.check[0].verdict, RITZ_FAIL);
     assert_string_equal(audit.check[0].where, "grid 12 T2");
-    ritz_audit_free(&audit);
     ritz_component_free(&c);
 }
 
@@ -310,7 +300,7 @@ static void ports_are_looked_at(void **state)
 /* In the plane there are three rigid motions, of a clamped beam none. */
 static void beams_in_the_plane_have_three_motions(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
 
     (void)state;
     assert_ok(frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &c));
@@ -324,7 +314,6 @@ static void beams_in_the_plane_have_three_motions(void **state)
     expect(&c, "rigid-modes-geometry", RITZ_PASS, 0.0, "");
     expect(&c, "rigid-modes-eigenvectors", RITZ_PASS, 0.0, "");
     expect(&c, "grounding-translation", RITZ_WARN, nan(""), "grid 2");
-    ritz_component_free(&c);
 }
 
 static void stiffness_that_was_forgotten_is_noticed(void **state)
@@ -340,10 +329,9 @@ static void stiffness_that_was_forgotten_is_noticed(void **state)
 
 static ritz_status audit_and_free(const ritz_component *c)
 {
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
     ritz_status status = ritz_audit_component(c, &audit);
 
-    ritz_audit_free(&audit);
     return status;
 }
 
@@ -367,7 +355,7 @@ static bool read_plate(ritz_component *c)
     int handle = -1;
     FILE *file = NULL;
     ritz_import_request request = {.stiffness = path, .mass = mass};
-    ritz_import_report report = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
 
     if (!where) {
         print_message("skipped: no RITZ_EXTERNAL_DATA\n");
@@ -385,7 +373,6 @@ static bool read_plate(ritz_component *c)
     fclose(file);
     assert_ok(ritz_import(&request, c, &report));
     unlink(mass);
-    ritz_import_report_free(&report);
     return true;
 }
 
@@ -412,29 +399,27 @@ static void few_digits_hold_a_free_plate(void **state)
 
     (void)state;
     for (size_t k = 0; k < 2; k++) {
-        ritz_component c = {0};
-        ritz_audit audit = {0};
+        RITZ_OWN(ritz_component) c = {0};
+        RITZ_OWN(ritz_audit) audit = {0};
         const ritz_check *check = NULL;
 
         if (!read_plate(&c))
             skip();
         round_to(&c.K, cases[k].digits);
         assert_ok(ritz_audit_component(&c, &audit));
-        check = find(&audit, "grounding-translation");
+        check = find_check(&audit, "grounding-translation");
         /* half a unit of the one digit printed */
         assert_near(check->value, cases[k].force, 0.125 * cases[k].force);
         assert_int_equal(check->verdict, RITZ_FAIL);
         assert_non_null(strstr(check->says, "a free body is not free"));
-        check = find(&audit, "source-digits");
+        check = find_check(&audit, "source-digits");
         assert_near(check->value, cases[k].digits, 0.0);
         assert_int_equal(check->verdict, RITZ_FAIL);
-        check = find(&audit, "stiffness-definite");
+        check = find_check(&audit, "stiffness-definite");
         assert_int_equal(check->verdict, RITZ_WARN);
         assert_true(check->value >= 1.0);
-        assert_int_equal(find(&audit, "rigid-modes-geometry")->verdict,
+        assert_int_equal(find_check(&audit, "rigid-modes-geometry")->verdict,
                          RITZ_FAIL);
-        ritz_audit_free(&audit);
-        ritz_component_free(&c);
     }
 }
 
@@ -455,9 +440,9 @@ static void the_demo_does_not_fail(void **state)
         char deck[512];
         const ritz_import_request request = {
             .stiffness = K, .mass = M, .bulk = deck};
-        ritz_import_report report = {0};
-        ritz_component c = {0};
-        ritz_audit audit = {0};
+        RITZ_OWN(ritz_import_report) report = {0};
+        RITZ_OWN(ritz_component) c = {0};
+        RITZ_OWN(ritz_audit) audit = {0};
 
         snprintf(K, sizeof K, "%s/dualspin/%s.op4:KGG", where, names[k]);
         snprintf(M, sizeof M, "%s/dualspin/%s.op4:MGG", where, names[k]);
@@ -466,9 +451,6 @@ static void the_demo_does_not_fail(void **state)
         assert_ok(ritz_audit_component(&c, &audit));
         for (int64_t i = 0; i < audit.count; i++)
             assert_int_equal(audit.check[i].verdict, RITZ_PASS);
-        ritz_audit_free(&audit);
-        ritz_component_free(&c);
-        ritz_import_report_free(&report);
     }
 }
 

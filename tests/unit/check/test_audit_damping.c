@@ -11,7 +11,7 @@
 /* The check 'rayleigh' of an audit, copied; false if there is none. */
 static bool find(const ritz_component *component, ritz_check *out)
 {
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
     bool found = false;
 
     assert_ok(ritz_audit_component(component, &audit));
@@ -20,25 +20,23 @@ static bool find(const ritz_component *component, ritz_check *out)
             *out = audit.check[k];
             found = true;
         }
-    ritz_audit_free(&audit);
     return found;
 }
 
 static void without_damping_there_is_nothing_to_fit(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
     assert_false(find(&chain, &check));
-    ritz_component_free(&chain);
 }
 
 /* a M + b K, some roundings of each entry. */
 static void proportional_damping_is_recognised(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
     (void)state;
@@ -49,7 +47,6 @@ static void proportional_damping_is_recognised(void **state)
     assert_string_equal(check.where, "a = 0.3, b = 0.002");
     assert_int_equal(check.verdict, RITZ_PASS);
     assert_non_null(strstr(check.says, "damping is proportional"));
-    ritz_component_free(&chain);
 }
 
 /* One damper alone has few places in common with M and K. */
@@ -57,7 +54,7 @@ static void damping_that_couples_is_no_fault(void **state)
 {
     static const int64_t at[] = {2};
     static const double one[] = {1.0};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
     (void)state;
@@ -67,14 +64,13 @@ static void damping_that_couples_is_no_fault(void **state)
     assert_true(check.value > 0.9 && check.value <= 1.0);
     assert_int_equal(check.verdict, RITZ_PASS);
     assert_non_null(strstr(check.says, "not proportional, it couples modes"));
-    ritz_component_free(&chain);
 }
 
 static void a_gyroscopic_part_is_named(void **state)
 {
     static const int64_t row[] = {2, 3}, col[] = {3, 2};
     static const double skew[] = {1.0, -1.0};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
     (void)state;
@@ -83,7 +79,6 @@ static void a_gyroscopic_part_is_named(void **state)
     assert_true(find(&chain, &check));
     assert_near(check.value, 1.0, 1e-15);
     assert_non_null(strstr(check.says, "100 % of it is gyroscopic"));
-    ritz_component_free(&chain);
 }
 
 /* LF10: D = 100 M + 0.01 K exactly. */
@@ -93,8 +88,8 @@ static void a_published_model_is_proportional_to_rounding(void **state)
     char path[3][512];
     const char *const file[] = {"K", "M", "D"};
     ritz_import_request request = {.dofs = "test_audit_damping.dofs"};
-    ritz_import_report report = {0};
-    ritz_component model = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) model = {0};
     ritz_check check = {0};
     FILE *dofs = NULL;
 
@@ -121,28 +116,24 @@ static void a_published_model_is_proportional_to_rounding(void **state)
     assert_near(check.value, 0.0, 1e-15); /* 17 digits; measured: 4.9e-16 */
     assert_string_equal(check.where, "a = 100, b = 0.01");
     remove(request.dofs);
-    ritz_import_report_free(&report);
-    ritz_component_free(&model);
 }
 
 static ritz_status audit(const ritz_component *component)
 {
-    ritz_audit found = {0};
+    RITZ_OWN(ritz_audit) found = {0};
     ritz_status status = ritz_audit_component(component, &found);
 
-    ritz_audit_free(&found);
     return status;
 }
 
 static void no_allocation_is_forgotten(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_sparse_add(0.3, &chain.M, 0.002, &chain.K, &chain.D));
     assert_survives_every_allocation(audit(&chain));
-    ritz_component_free(&chain);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -1,5 +1,6 @@
 /* source-digits: numbers that were rounded, and numbers that are short. */
 #include "masses.h"
+#include "project.h"
 #include "testing.h"
 
 #include <ritz/check.h>
@@ -16,7 +17,7 @@ static ritz_audit audit_of(int64_t n, const double *k, int64_t declared,
 {
     double m[MASSES];
     char text[64];
-    ritz_component row = {0};
+    RITZ_OWN(ritz_component) row = {0};
     ritz_audit audit = {0};
 
     for (int64_t i = 0; i < n; i++)
@@ -32,7 +33,6 @@ static ritz_audit audit_of(int64_t n, const double *k, int64_t declared,
         row.K.val[p] = strtod(text, NULL);
     }
     assert_ok(ritz_audit_component(&row, &audit));
-    ritz_component_free(&row);
     return audit;
 }
 
@@ -40,22 +40,14 @@ static void assert_digits(int64_t n, const double *k, int64_t declared,
                           const char *format, ritz_verdict verdict,
                           double digits)
 {
-    ritz_audit audit = audit_of(n, k, declared, format);
-    bool found = false;
+    RITZ_OWN(ritz_audit) audit = audit_of(n, k, declared, format);
+    const ritz_check *check = find_check(&audit, "source-digits");
 
-    for (int64_t i = 0; i < audit.count; i++) {
-        const ritz_check *check = &audit.check[i];
-
-        assert_true(check->verdict != RITZ_FAIL);
-        if (strcmp(check->name, "source-digits") != 0)
-            continue;
-        found = true;
-        if (check->verdict != verdict || check->value != digits)
-            fail_msg("%s: %g digits, %s", ritz_verdict_name(check->verdict),
-                     check->value, check->says);
-    }
-    assert_true(found);
-    ritz_audit_free(&audit);
+    for (int64_t i = 0; i < audit.count; i++)
+        assert_true(audit.check[i].verdict != RITZ_FAIL);
+    if (check->verdict != verdict || check->value != digits)
+        fail_msg("%s: %g digits, %s", ritz_verdict_name(check->verdict),
+                 check->value, check->says);
 }
 
 /* Held by 1 beside 200: half a unit of one digit, if these were rounded. */

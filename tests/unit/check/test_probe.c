@@ -138,8 +138,8 @@ static void a_defective_pole_is_not_called_unstable(void **state)
     (void)state;
     for (int body = 0; body < 40; body++) {
         const double k[] = {0, 1.1e6 + 1e3 * body, 0.7e6};
-        ritz_component masses = {0};
-        ritz_state_space model = {0};
+        RITZ_OWN(ritz_component) masses = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
         ritz_probe probe = {0};
 
         assert_ok(masses_component(3, m, k, NULL, &masses));
@@ -148,8 +148,6 @@ static void a_defective_pole_is_not_called_unstable(void **state)
         assert_ok(ritz_probe_states(&model, &probe));
         assert_int_equal(probe.verdict, RITZ_MARGINAL);
         split += probe.pole[0] > 1e-9; /* by 3e-6 (measured) */
-        ritz_state_space_free(&model);
-        ritz_component_free(&masses);
     }
     assert_true(split > 0);
 }
@@ -160,8 +158,8 @@ static void a_defective_pole_is_not_called_unstable(void **state)
  */
 static void a_chain_with_dampers_is_stable(void **state)
 {
-    ritz_component chain = {0};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
 
@@ -175,8 +173,6 @@ static void a_chain_with_dampers_is_stable(void **state)
     assert_near(probe.pole[0], -1.23186e-4, 1e-9);
     ritz_probe_print(&probe, text);
     assert_non_null(strstr(text, "pole at -0.00012319 +- "));
-    ritz_state_space_free(&model);
-    ritz_component_free(&chain);
 }
 
 static void the_verdict_is_an_estimate(void **state)
@@ -186,7 +182,7 @@ static void the_verdict_is_an_estimate(void **state)
                               .radius = 20.0,
                               .tolerance = 1e-15,
                               .count = 4};
-    ritz_measures estimates = {0};
+    RITZ_OWN(ritz_measures) estimates = {0};
 
     (void)state;
     assert_ok(ritz_probe_record(&probe, &estimates));
@@ -196,7 +192,6 @@ static void the_verdict_is_an_estimate(void **state)
     assert_near(estimates.item[0].limit, 1e-15, 0.0);
     assert_string_equal(estimates.item[0].where,
                         "unstable, pole at +0.5 +- 10i rad/s (1.5935 Hz)");
-    ritz_measures_free(&estimates);
 }
 
 static void no_allocation_failure_leaks(void **state)

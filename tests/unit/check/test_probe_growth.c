@@ -1,5 +1,5 @@
 /* How large a free motion becomes before it dies: what the probe measures. */
-#include "masses.h"
+#include "project.h"
 #include "spaces.h"
 #include "testing.h"
 
@@ -13,23 +13,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static ritz_check growth_of(const ritz_audit *audit)
-{
-    for (int64_t k = 0; k < audit->count; k++)
-        if (strcmp(audit->check[k].name, "energy-growth") == 0)
-            return audit->check[k];
-    fail_msg("there is no check of growth");
-    return (ritz_check){0};
-}
-
 /* Of n columns, without an interface. */
 static ritz_check of_columns(int64_t n, const double *K, const double *M,
                              const double *D)
 {
-    ritz_reduced model = {0};
+    RITZ_OWN(ritz_reduced) model = {0};
     const double *from[] = {K, M, D};
     ritz_dense *to[] = {&model.K, &model.M, &model.D};
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
     ritz_check check;
 
     for (int k = 0; k < 3; k++) {
@@ -39,9 +30,7 @@ static ritz_check of_columns(int64_t n, const double *K, const double *M,
     assert_ok(ritz_columns_new(n, &model.columns));
     assert_ok(ritz_io_new(n, 0, 0, &model.io));
     assert_ok(ritz_audit_reduced(&model, &audit));
-    check = growth_of(&audit);
-    ritz_audit_free(&audit);
-    ritz_reduced_free(&model);
+    check = *find_check(&audit, "energy-growth");
     return check;
 }
 
@@ -56,7 +45,7 @@ static ritz_check of_states(int64_t n, const double *A)
     assert_ok(
         spaces_make(&(spaces_rows){n, 1, 1, A, B, B, NULL, NULL}, &model));
     assert_ok(ritz_audit_states(&model, &audit));
-    check = growth_of(&audit);
+    check = *find_check(&audit, "energy-growth");
     ritz_audit_free(&audit);
     ritz_state_space_free(&model);
     free(B);
@@ -193,15 +182,13 @@ static void growth_survives_every_allocation(void **unused)
 {
     static const double rows[] = {-150002.5, 150001.5, -149998.5, 149997.5};
     static const double B[] = {1, 0};
-    ritz_state_space model = {0};
-    ritz_audit audit = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_audit) audit = {0};
 
     (void)unused;
     assert_ok(
         spaces_make(&(spaces_rows){2, 1, 1, rows, B, B, NULL, NULL}, &model));
     assert_survives_every_allocation(ritz_audit_states(&model, &audit));
-    ritz_audit_free(&audit);
-    ritz_state_space_free(&model);
 }
 
 static const struct CMUnitTest tests[] = {

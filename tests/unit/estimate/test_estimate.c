@@ -40,7 +40,7 @@ static void assert_bounds(double bound, double truth, const char *what)
 static void hold_to(const ritz_measures *found, const ritz_reduced *reduced,
                     const double *lambda, double to_hz)
 {
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     int listed = 0;
 
     assert_ok(ritz_eigen_dense(&reduced->K, &reduced->M, &pairs));
@@ -55,7 +55,6 @@ static void hold_to(const ritz_measures *found, const ritz_reduced *reduced,
         listed++;
     }
     assert_true(listed > 0);
-    ritz_pairs_free(&pairs);
 }
 
 /* Some rows are attached; a reduction by a method with so many modes. */
@@ -81,7 +80,7 @@ static void bounds_hold_on_the_bar_and_are_near(void **state)
         &ritz_method_macneal_rubin, &ritz_method_guyan};
     int64_t attached[] = {0, 13, 40};
     ritz_estimate_request request = {0};
-    ritz_component bar = {0};
+    RITZ_OWN(ritz_component) bar = {0};
     double lambda[KNOWN];
 
     (void)state;
@@ -89,8 +88,8 @@ static void bounds_hold_on_the_bar_and_are_near(void **state)
     for (int64_t k = 0; k < KNOWN; k++)
         lambda[k] = bar_eigenvalue(ELEMENTS, k);
     for (int i = 0; i < METHODS; i++) {
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         /* guyan has two flexible modes, the others six at least */
         request.band_hz[1] =
@@ -103,10 +102,7 @@ static void bounds_hold_on_the_bar_and_are_near(void **state)
         /* a Krylov basis has the sixth mode at a frequency above the band */
         assert_true(reported(&reduced.estimates, "missing-modes-bound") <=
                     (method[i] == &ritz_method_krylov_cms_fixed ? 1.0 : 0.0));
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
     }
-    ritz_component_free(&bar);
 }
 
 /* Free bodies, some of whose modes come in near pairs. */
@@ -121,8 +117,8 @@ static void bounds_hold_on_the_spacecraft(void **state)
     (void)state;
     dualspin_or_skip();
     for (int which = 0; which < 3; which++) {
-        ritz_component body = {0};
-        ritz_pairs full = {0};
+        RITZ_OWN(ritz_component) body = {0};
+        RITZ_OWN(ritz_pairs) full = {0};
 
         assert_ok(dualspin_component(which, &body));
         assert_ok(ritz_eigen_sparse(&body.K, &body.M, &span, &full));
@@ -130,19 +126,15 @@ static void bounds_hold_on_the_spacecraft(void **state)
         for (int i = 0; full.Phi.ncol > 10 && i < METHODS; i++) {
             const ritz_estimate_request request = {
                 .band_hz = {0.0, 1.01 * ritz_eigen_hertz(full.lambda[10])}};
-            ritz_basis basis = {0};
-            ritz_reduced reduced = {0};
+            RITZ_OWN(ritz_basis) basis = {0};
+            RITZ_OWN(ritz_reduced) reduced = {0};
 
             reduce_by(method[i], &body, body.port[0].dofs, 14, &basis,
                       &reduced);
             assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
             hold_to(&reduced.estimates, &reduced, full.lambda,
                     request.band_hz[1]);
-            ritz_reduced_free(&reduced);
-            ritz_basis_free(&basis);
         }
-        ritz_pairs_free(&full);
-        ritz_component_free(&body);
     }
 }
 
@@ -166,10 +158,10 @@ static void a_mode_that_is_missing_is_counted_and_skipped(void **state)
     enum { MODES = 7, LEFT_OUT = 2 };
     const ritz_span span = {.modes = MODES + 1};
     ritz_estimate_request request = {0};
-    ritz_component beam = {0};
-    ritz_pairs full = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     const ritz_measures *found = &reduced.estimates;
 
     (void)state;
@@ -190,10 +182,6 @@ static void a_mode_that_is_missing_is_counted_and_skipped(void **state)
         strstr(find_measure(found, "mode-3")->where, "full mode 4"));
     assert_non_null(
         strstr(find_measure(found, "mode-4")->where, "full mode 5"));
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_pairs_free(&full);
-    ritz_component_free(&beam);
 }
 
 /* Against ritz-verify, which has all modes and looks at every peak. */
@@ -214,10 +202,10 @@ static void responses_are_bounded(void **state)
         for (size_t i = 0; i < sizeof damping / sizeof *damping; i++) {
             ritz_verify_request verify = RITZ_VERIFY_NONE;
             ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
-            ritz_component beam = {0};
-            ritz_basis basis = {0};
-            ritz_reduced reduced = {0};
-            ritz_measures measured = {0};
+            RITZ_OWN(ritz_component) beam = {0};
+            RITZ_OWN(ritz_basis) basis = {0};
+            RITZ_OWN(ritz_reduced) reduced = {0};
+            RITZ_OWN(ritz_measures) measured = {0};
             double bound = 0.0, error = 0.0;
 
             open_beam(clamped == 1, &beam);
@@ -233,10 +221,6 @@ static void responses_are_bounded(void **state)
             if (!(bound >= error) || !(bound <= damping[i].most * error))
                 fail_msg("%s: response bound %.3e of %.3e", damping[i].text,
                          bound, error);
-            ritz_measures_free(&measured);
-            ritz_reduced_free(&reduced);
-            ritz_basis_free(&basis);
-            ritz_component_free(&beam);
         }
 }
 
@@ -245,9 +229,9 @@ static void what_is_not_proven_is_called_an_estimate(void **state)
 {
     int64_t attached[] = {0, 1, 2};
     ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     open_beam(true, &beam);
@@ -258,9 +242,6 @@ static void what_is_not_proven_is_called_an_estimate(void **state)
     assert_ok(ritz_estimate(&beam, &basis, &request, &reduced));
     assert_true(reported(&reduced.estimates, "response-relative-estimate") >
                 0.0);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 /* The factor and the counts stay; what they say does not change. */
@@ -270,7 +251,7 @@ static void one_estimator_serves_many_reductions(void **state)
     int64_t attached[] = {0, 1, 2};
     const ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
     ritz_estimator *estimator = NULL;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     double first[TIMES];
 
     (void)state;
@@ -278,9 +259,9 @@ static void one_estimator_serves_many_reductions(void **state)
     assert_ok(ritz_estimator_new(&beam, &request, &estimator));
     for (int64_t pass = 0; pass < 2; pass++)
         for (int64_t i = 0; i < TIMES; i++) {
-            ritz_basis basis = {0};
-            ritz_reduced reduced = {0};
-            ritz_measures found = {0};
+            RITZ_OWN(ritz_basis) basis = {0};
+            RITZ_OWN(ritz_reduced) reduced = {0};
+            RITZ_OWN(ritz_measures) found = {0};
             double bound = 0.0;
 
             reduce_by(&ritz_method_craig_bampton, &beam,
@@ -291,13 +272,9 @@ static void one_estimator_serves_many_reductions(void **state)
             /* more counts may have come since, and do no harm */
             assert_true(pass == 0 || bound <= first[i] * (1.0 + 1e-6));
             first[i] = bound;
-            ritz_measures_free(&found);
-            ritz_reduced_free(&reduced);
-            ritz_basis_free(&basis);
         }
     ritz_estimator_free(&estimator);
     assert_null(estimator);
-    ritz_component_free(&beam);
 }
 
 /* Rows 3, 4, 5 of the chain have no mass: M is singular. */
@@ -307,10 +284,10 @@ static void massless_dofs_are_no_obstacle(void **state)
     const ritz_span span = {.modes = 8};
     int64_t attached[] = {MASSES - 1};
     ritz_estimate_request request = {0};
-    ritz_component chain = {0};
-    ritz_pairs full = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     assert_ok(spring_chain(MASSES, false, &chain));
@@ -323,35 +300,29 @@ static void massless_dofs_are_no_obstacle(void **state)
               &basis, &reduced);
     assert_ok(ritz_estimate(&chain, &basis, &request, &reduced));
     hold_to(&reduced.estimates, &reduced, full.lambda, request.band_hz[1]);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_pairs_free(&full);
-    ritz_component_free(&chain);
 }
 
 static void bands_and_bases_that_do_not_fit_are_refused(void **state)
 {
     int64_t attached[] = {0, 1, 2};
     ritz_estimate_request request = {.band_hz = {2.0, 1.0}};
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     open_beam(true, &beam);
     reduce_by(&ritz_method_craig_bampton, &beam, (ritz_dofs){3, attached}, 4,
               &basis, &reduced);
     assert_fails(ritz_estimate(&beam, &basis, &request, &reduced),
-                 RITZ_ERR_ARGUMENT, "a band from 2 to 1 Hz is not a band of frequencies");
+                 RITZ_ERR_ARGUMENT,
+                 "a band from 2 to 1 Hz is not a band of frequencies");
     request.band_hz[1] = 4.0;
     basis.T.ncol--;
     assert_fails(ritz_estimate(&beam, &basis, &request, &reduced),
                  RITZ_ERR_ARGUMENT, "is not that of the reduction");
     basis.T.ncol++;
     assert_int_equal(reduced.estimates.count, 0);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 static void estimating_survives_every_allocation(void **state)
@@ -359,9 +330,9 @@ static void estimating_survives_every_allocation(void **state)
     int64_t attached[] = {0, 1, 2};
     ritz_estimate_request request = {.band_hz = {0.0, 0.5}};
     int64_t row = 1;
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     assert_ok(frame_component(3, 0.5, &frame_mcdaniel, true, false, 1, &beam));
@@ -371,9 +342,6 @@ static void estimating_survives_every_allocation(void **state)
     assert_ok(ritz_damping_parse("modal 0.05", &request.damping));
     assert_survives_every_allocation(
         ritz_estimate(&beam, &basis, &request, &reduced));
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 static const struct CMUnitTest tests[] = {

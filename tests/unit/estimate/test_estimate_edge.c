@@ -152,20 +152,16 @@ static void bounds_are_of_what_verify_measures(void **state)
         const edge_case *c = &cases[i];
         ritz_estimate_request request = {0};
         ritz_verify_request verify = RITZ_VERIFY_NONE;
-        ritz_component full = {0};
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_component) full = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(ritz_measures) found = {0};
 
         open_case(c, &full, &basis, &reduced);
         request.band_hz[1] = verify.band_hz[1] = ritz_eigen_hertz(c->end);
         assert_ok(ritz_estimate(&full, &basis, &request, &reduced));
         assert_ok(ritz_verify_reduced(&full, &reduced, &verify, &found));
         hold(c, &found, &reduced.estimates);
-        ritz_measures_free(&found);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
-        ritz_component_free(&full);
     }
 }
 
@@ -177,18 +173,15 @@ static void a_mode_at_the_end_of_the_band_is_in_it(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         ritz_estimate_request request = {0};
-        ritz_component full = {0};
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_component) full = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         open_case(&cases[0], &full, &basis, &reduced);
         request.band_hz[1] = ritz_eigen_hertz(4.0) * places[i];
         assert_ok(ritz_estimate(&full, &basis, &request, &reduced));
         assert_true(said(&reduced.estimates, "frequency-relative-bound") >=
                     cases[0].error - 1e-9);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
-        ritz_component_free(&full);
     }
 }
 
@@ -203,9 +196,9 @@ static void damping_at_rounding_is_none(void **state)
 
     (void)state;
     for (int driven = 0; driven < 2; driven++) {
-        ritz_component body = {0};
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_component) body = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
         double told = 0.0;
 
         diagonal(N, lambda, &body);
@@ -222,27 +215,21 @@ static void damping_at_rounding_is_none(void **state)
            1 / 1e-2; it may resonate behind the band, at ratios of 5e-3 */
         if (driven ? !isinf(told) : !(told >= 1e-4 && told <= 2e-2))
             fail_msg("%d: %g", driven, told);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
-        ritz_component_free(&body);
     }
 }
 
 static void judging_survives_every_allocation(void **state)
 {
     ritz_estimate_request request = {0};
-    ritz_component full = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     open_case(&cases[2], &full, &basis, &reduced);
     request.band_hz[1] = ritz_eigen_hertz(cases[2].end);
     assert_survives_every_allocation(
         ritz_estimate(&full, &basis, &request, &reduced));
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&full);
 }
 
 static const struct CMUnitTest tests[] = {

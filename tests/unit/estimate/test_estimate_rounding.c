@@ -42,9 +42,9 @@ static void damping_of_soft_rows_is_looked_at_by_itself(void **state)
     (void)state;
     for (size_t i = 0; i < 2; i++) {
         const double d[N] = {1e-3, kind[i].soft, 1e10};
-        ritz_component body = {0};
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_component) body = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         diagonal(N, lambda, &body);
         assert_ok(ritz_sparse_from_triplets(N, N, N, at, at, d, &body.D));
@@ -54,9 +54,6 @@ static void damping_of_soft_rows_is_looked_at_by_itself(void **state)
         assert_ok(ritz_reduce(&body, &basis, &reduced));
         assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
         (void)find_measure(&reduced.estimates, kind[i].name);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
-        ritz_component_free(&body);
     }
 }
 
@@ -108,9 +105,9 @@ static void damping_that_couples_modes_is_not_left_out(void **state)
     int64_t row[N * N], col[N * N];
     double val[N * N];
     double largest = 0.0, error = 0.0, estimate = 0.0;
-    ritz_component body = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     diagonal(N, lambda, &body);
@@ -133,9 +130,6 @@ static void damping_that_couples_modes_is_not_left_out(void **state)
     /* Z^-1 without coupling is near, not more: measured 1.0 */
     if (!(estimate >= 0.9 * error) || !(estimate <= 3.0 * error))
         fail_msg("estimate %.3e of %.3e", estimate, error);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&body);
 }
 
 /*
@@ -150,8 +144,8 @@ static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **state)
                             10200.0, 12890.0, 16290.0, 22260.0};
     const double share[COLUMNS] = {1.0, 0.0, -0.5};
     const ritz_span span = {.modes = COLUMNS};
-    ritz_component chain = {0};
-    ritz_pairs full = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
     ritz_estimate_request request = {0};
 
     (void)state;
@@ -159,8 +153,8 @@ static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **state)
     assert_ok(ritz_eigen_sparse(&chain.K, &chain.M, &span, &full));
     request.band_hz[1] = 1.1 * ritz_eigen_hertz(full.lambda[COLUMNS - 1]);
     for (size_t k = 0; k < sizeof mixed / sizeof *mixed; k++) {
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         assert_ok(ritz_basis_new(MASSES, COLUMNS, &basis));
         for (int64_t j = 0; j < COLUMNS; j++)
@@ -175,11 +169,7 @@ static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **state)
             fail_msg("%g: bound %g, %s", mixed[k],
                      reduced.estimates.item[0].value,
                      reduced.estimates.item[0].where);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
     }
-    ritz_pairs_free(&full);
-    ritz_component_free(&chain);
 }
 
 /*
@@ -192,15 +182,15 @@ static void modes_that_rounding_exchanges_share_it(void **state)
     enum { N = 6, TIMES = 12 };
     const double lambda[N] = {1.0, 3.0, 7.0, 7.0, 7.0, 40.0};
     ritz_estimate_request request = {0};
-    ritz_component body = {0};
+    RITZ_OWN(ritz_component) body = {0};
     uint64_t seed = 5;
 
     (void)state;
     diagonal(N, lambda, &body);
     request.band_hz[1] = 1.1 * ritz_eigen_hertz(lambda[4]);
     for (int times = 0; times < TIMES; times++) {
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
         const ritz_measures *found = &reduced.estimates;
         double low = 0.0, high = 0.0;
 
@@ -221,10 +211,7 @@ static void modes_that_rounding_exchanges_share_it(void **state)
         /* the worst of the three may be the lowest of them, or the highest */
         if (!(low <= 3.0 * high) || !(high <= 3.0 * low))
             fail_msg("of equal modes %.3e and %.3e", low, high);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
     }
-    ritz_component_free(&body);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -106,10 +106,10 @@ static double measured(const ritz_component *full, int64_t columns,
                        const double *T, ritz_verify_request request,
                        ritz_measure_id id)
 {
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_configuration at = {0};
-    ritz_measures found = {0}, system = {0};
+    RITZ_OWN(ritz_measures) found = {0}, system = {0};
     const char *name = ritz_measure_table[id].name;
     double value = 0.0;
 
@@ -127,10 +127,6 @@ static double measured(const ritz_component *full, int64_t columns,
     value = find_measure(&found, name)->value;
     assert_near(find_measure(&found, name)->limit, 1.0, 0.0);
     assert_near(find_measure(&system, name)->value, value, 1e-13);
-    ritz_measures_free(&found);
-    ritz_measures_free(&system);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
     return value;
 }
 
@@ -160,7 +156,7 @@ static void the_h2_error_of_a_mode_left_out_is_its_norm(void **state)
     static const double T[] = {1.0, 0.0};
     static const int64_t both[] = {0, 1};
     ritz_verify_request request = plain;
-    ritz_component masses = {0};
+    RITZ_OWN(ritz_component) masses = {0};
     double square[2];
 
     (void)state;
@@ -171,7 +167,6 @@ static void the_h2_error_of_a_mode_left_out_is_its_norm(void **state)
     assert_ok(masses_io(&masses, 2, both, 2, both));
     assert_near(measured(&masses, 1, T, request, RITZ_MEASURE_H2),
                 sqrt(square[1] / (square[0] + square[1])), 1e-13);
-    ritz_component_free(&masses);
 }
 
 static void the_h2_error_is_that_of_scipy(void **state)
@@ -193,9 +188,9 @@ static void h2_errors_of_unequal_rigid_motion_are_refused(void **state)
     static const double T[] = {1.0, 0.0, 0.0};
     static const int64_t first = 0;
     ritz_verify_request request = plain;
-    ritz_component row = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) row = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_measures found = {0};
 
     (void)state;
@@ -208,9 +203,6 @@ static void h2_errors_of_unequal_rigid_motion_are_refused(void **state)
     assert_ok(ritz_reduce(&row, &basis, &reduced));
     assert_fails(ritz_verify_reduced(&row, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "the norm of their difference is infinite");
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&row);
 }
 
 /* H = diag(h_1, h_2): below all resonances sigma_2 is the response of the
@@ -223,7 +215,7 @@ static void the_smallest_singular_value_is_of_the_stiffer_mass(void **state)
     static const int64_t both[] = {0, 1};
     const double w = 2.0 * 3.14159265358979323846 * 0.3;
     ritz_verify_request request = plain;
-    ritz_component masses = {0};
+    RITZ_OWN(ritz_component) masses = {0};
     double largest = 0.0;
 
     (void)state;
@@ -233,7 +225,6 @@ static void the_smallest_singular_value_is_of_the_stiffer_mass(void **state)
     largest = 1.0 / hypot(k[1] - w * w, w * c[1]);
     assert_near(measured(&masses, 2, T, request, RITZ_MEASURE_SINGULAR),
                 (1.0 / k[1] - 1.0 / (k[1] + 0.25 * k[2])) / largest, 1e-12);
-    ritz_component_free(&masses);
 }
 
 static void the_smallest_singular_value_is_that_of_scipy(void **state)

@@ -47,7 +47,7 @@ static void open_full(const oscillators *s, ritz_component *out)
 
 static void open_reduced(const oscillators *s, ritz_configuration *out)
 {
-    ritz_component same = {0};
+    RITZ_OWN(ritz_component) same = {0};
 
     open_full(s, &same);
     *out = (ritz_configuration){0};
@@ -55,7 +55,6 @@ static void open_reduced(const oscillators *s, ritz_configuration *out)
     assert_ok(ritz_sparse_dense(&same.M, &out->M));
     out->io = same.io;
     same.io = (ritz_io){0};
-    ritz_component_free(&same);
 }
 
 /* One system against the other, up to 5 Hz. */
@@ -63,16 +62,14 @@ static ritz_measures compare(const oscillators *full,
                              const oscillators *reduced)
 {
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_component component = {0};
-    ritz_configuration at = {0};
+    RITZ_OWN(ritz_component) component = {0};
+    RITZ_OWN(ritz_configuration) at = {0};
     ritz_measures found = {0};
 
     request.band_hz[1] = 5.0;
     open_full(full, &component);
     open_reduced(reduced, &at);
     assert_ok(ritz_verify_system(&component, &at, &request, &found));
-    ritz_component_free(&component);
-    ritz_configuration_free(&at);
     return found;
 }
 
@@ -128,10 +125,10 @@ static void only_observable_modes_decide(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        ritz_component component = {0};
-        ritz_pairs pairs = {0};
-        ritz_poles poles = {0};
-        ritz_participation part = {0};
+        RITZ_OWN(ritz_component) component = {0};
+        RITZ_OWN(ritz_pairs) pairs = {0};
+        RITZ_OWN(ritz_poles) poles = {0};
+        RITZ_OWN(ritz_participation) part = {0};
         const double band[] = {0.0, 5.0};
         oscillators s = plain;
         int64_t at = 2;
@@ -151,10 +148,6 @@ static void only_observable_modes_decide(void **state)
         for (int64_t j = 0; j < 3; j++)
             assert_int_equal(part.observable[j],
                              j == at ? cases[k].observable : true);
-        ritz_participation_free(&part);
-        ritz_poles_free(&poles);
-        ritz_pairs_free(&pairs);
-        ritz_component_free(&component);
     }
 }
 
@@ -228,26 +221,23 @@ static ritz_status verify_once(const ritz_component *full,
 {
     ritz_verify_request request = RITZ_VERIFY_NONE;
     ritz_status status = RITZ_OK;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     request.band_hz[1] = 5.0;
     RITZ_TRY(ritz_verify_system(full, at, &request, &found));
 done:
-    ritz_measures_free(&found);
     return status;
 }
 
 static void verifying_a_system_survives_every_allocation(void **state)
 {
-    ritz_component full = {0};
-    ritz_configuration at = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_configuration) at = {0};
 
     (void)state;
     open_full(&plain, &full);
     open_reduced(&plain, &at);
     assert_survives_every_allocation(verify_once(&full, &at));
-    ritz_component_free(&full);
-    ritz_configuration_free(&at);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -29,19 +29,12 @@ static void open_beam(bool clamped, ritz_component *beam)
 static void truncate_beam(const ritz_component *beam, int64_t modes,
                           ritz_basis *basis)
 {
-    ritz_pairs pairs = {0};
-    ritz_dense K = {0};
-    ritz_dense M = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
-    assert_ok(ritz_sparse_dense(&beam->K, &K));
-    assert_ok(ritz_sparse_dense(&beam->M, &M));
-    assert_ok(ritz_eigen_dense(&K, &M, &pairs));
+    dense_modes(beam, &pairs);
     assert_ok(ritz_basis_new(beam->num_dofs, modes, basis));
     memcpy(basis->T.val, pairs.Phi.val,
            (size_t)(basis->T.nrow * modes) * sizeof(double));
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
 }
 
 /* A basis of exact modes: all but what they leave out is exact. */
@@ -49,10 +42,10 @@ static void exact_modes_have_no_error_but_in_the_gain(void **state)
 {
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
-        ritz_component beam = {0};
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_component) beam = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(ritz_measures) found = {0};
 
         open_beam(clamped, &beam);
         truncate_beam(&beam, 8, &basis);
@@ -71,10 +64,6 @@ static void exact_modes_have_no_error_but_in_the_gain(void **state)
                                "modal 0.01 assumed"));
         if (!clamped)
             assert_true(find_measure(&found, "rigid-hertz")->value < 1e-6);
-        ritz_measures_free(&found);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
-        ritz_component_free(&beam);
     }
 }
 
@@ -82,10 +71,10 @@ static void exact_modes_have_no_error_but_in_the_gain(void **state)
 static void the_whole_space_has_no_error_at_all(void **state)
 {
     ritz_verify_request request = plain;
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     (void)state;
     open_beam(true, &beam);
@@ -102,18 +91,14 @@ static void the_whole_space_has_no_error_at_all(void **state)
     assert_true(ritz_measure_holds(find_measure(&found, "response-relative")));
     assert_near(find_measure(&found, "static-gain-relative")->value, 0.0, 1e-8);
     assert_near(find_measure(&found, "damping-relative")->value, 0.0, 1e-12);
-    ritz_measures_free(&found);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 /* Mode 2 is dropped: it is missing, named, and no other takes its place. */
 static void a_mode_that_was_left_out_is_missing_by_name(void **state)
 {
     ritz_verify_request request = plain;
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_reduced reduced = {0};
     ritz_measures found = {0};
 
@@ -140,8 +125,6 @@ static void a_mode_that_was_left_out_is_missing_by_name(void **state)
         ritz_measures_free(&found);
         ritz_reduced_free(&reduced);
     }
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 /* Two unit masses and a unit spring. */
@@ -151,8 +134,8 @@ static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
     double m[] = {1.0, 0.0, 0.0, 1.0};
     const ritz_dense K = {2, 2, k};
     const ritz_dense M = {2, 2, m};
-    ritz_io io = {0};
-    ritz_dense G = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_dense) G = {0};
 
     (void)s;
     assert_ok(ritz_io_new(2, 1, 1, &io));
@@ -168,17 +151,15 @@ static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
     ritz_dense_free(&G);
     assert_ok(ritz_static_gain(&K, &M, &io, 1, &G));
     assert_near(G.val[0], 0.25, 1e-6);
-    ritz_dense_free(&G);
-    ritz_io_free(&io);
 }
 
 /* |theta - lambda| <= eps (lambda - sigma): checked against the truth. */
 static void estimates_hold_and_vanish_for_exact_modes(void **state)
 {
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     (void)state;
     open_beam(true, &beam);
@@ -200,18 +181,14 @@ static void estimates_hold_and_vanish_for_exact_modes(void **state)
         find_measure(&reduced.estimates, "frequency-relative-bound")->value >=
         find_measure(&found, "frequency-relative")->value);
     assert_non_null(find_measure(&reduced.estimates, "mode-1"));
-    ritz_measures_free(&found);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 static void other_models_are_refused_in_words(void **state)
 {
     ritz_verify_request request = plain;
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_measures found = {0};
 
     (void)state;
@@ -228,9 +205,6 @@ static void other_models_are_refused_in_words(void **state)
     reduced.num_dofs--;
     assert_fails(ritz_verify_reduced(&beam, &reduced, &plain, &found),
                  RITZ_ERR_ARGUMENT, "comes from 23 dofs");
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 static void limits_hold_from_the_right_side(void **state)
@@ -256,12 +230,11 @@ typedef struct pair {
 static ritz_status verify_once(pair *p)
 {
     ritz_status status = RITZ_OK;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     RITZ_TRY(ritz_verify_reduced(&p->beam, &p->reduced, &plain, &found));
     RITZ_TRY(ritz_estimate(&p->beam, &p->basis, &usual, &p->reduced));
 done:
-    ritz_measures_free(&found);
     return status;
 }
 

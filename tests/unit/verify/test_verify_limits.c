@@ -21,18 +21,11 @@ enum { RIGID = 3 };
 
 static void open_free(fixture *f)
 {
-    ritz_dense K = {0};
-    ritz_dense M = {0};
-
     *f = (fixture){0};
     assert_ok(
         frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &f->beam));
-    assert_ok(ritz_sparse_dense(&f->beam.K, &K));
-    assert_ok(ritz_sparse_dense(&f->beam.M, &M));
-    assert_ok(ritz_eigen_dense(&K, &M, &f->pairs));
+    dense_modes(&f->beam, &f->pairs);
     assert_int_equal(f->pairs.num_rigid, RIGID);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
 }
 
 static void close_free(fixture *f)
@@ -46,8 +39,8 @@ static void measure(const fixture *f, int64_t first, int64_t count,
                     double spring, const ritz_verify_request *request,
                     ritz_measures *out)
 {
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     assert_ok(ritz_basis_new(f->beam.num_dofs, count, &basis));
     memcpy(basis.T.val, f->pairs.Phi.val + first * f->pairs.Phi.nrow,
@@ -55,8 +48,6 @@ static void measure(const fixture *f, int64_t first, int64_t count,
     assert_ok(ritz_reduce(&f->beam, &basis, &reduced));
     reduced.K.val[0] += spring; /* M is the identity */
     assert_ok(ritz_verify_reduced(&f->beam, &reduced, request, out));
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
 }
 
 static void a_rigid_motion_that_is_not_there_is_missing(void **state)
@@ -78,7 +69,7 @@ static void a_rigid_motion_that_is_not_there_is_missing(void **state)
     open_free(&f);
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
         ritz_verify_request request = RITZ_VERIFY_NONE;
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_measures) found = {0};
         const ritz_measure *missing = NULL;
 
         request.limit[RITZ_MEASURE_FREQUENCY] = 1e-3;
@@ -92,7 +83,6 @@ static void a_rigid_motion_that_is_not_there_is_missing(void **state)
                             table[k].missing > 0.0 ? "of 3" : "");
         assert_int_equal(ritz_measure_holds(missing), table[k].holds);
         assert_true(find_measure(&found, "missing-modes")->value == 0.0);
-        ritz_measures_free(&found);
     }
     close_free(&f);
 }
@@ -109,9 +99,9 @@ static void rounding_of_a_lone_rigid_motion_is_no_instability(void **state)
     open_free(&f);
     request.band_hz[1] = 0.9 * ritz_eigen_hertz(f.pairs.lambda[RIGID]);
     for (int k = 0; k < 3; k++) {
-        ritz_measures found = {0};
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_measures) found = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         assert_ok(ritz_basis_new(f.beam.num_dofs, 1, &basis));
         memcpy(basis.T.val, f.pairs.Phi.val,
@@ -124,9 +114,6 @@ static void rounding_of_a_lone_rigid_motion_is_no_instability(void **state)
             assert_fails(
                 ritz_verify_reduced(&f.beam, &reduced, &request, &found),
                 RITZ_ERR_ARGUMENT, "an unstable model has no steady response");
-        ritz_measures_free(&found);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
     }
     close_free(&f);
 }
@@ -140,7 +127,7 @@ static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
     open_free(&f);
     for (int soft = 0; soft < 2; soft++) {
         ritz_verify_request request = RITZ_VERIFY_NONE;
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_measures) found = {0};
         const double relative = soft ? 0.9e-3 : 1.1e-3;
         const double lambda = f.pairs.lambda[RIGID];
 
@@ -160,7 +147,6 @@ static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
         assert_true(find_measure(&found, "missing-rigid-modes")->value == 1.0);
         assert_true(
             ritz_measure_holds(find_measure(&found, "missing-rigid-modes")));
-        ritz_measures_free(&found);
     }
     close_free(&f);
 }
@@ -207,10 +193,10 @@ static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **s)
 static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
 {
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) found = {0};
     int64_t tip = 0;
 
     (void)state;
@@ -228,10 +214,6 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
     assert_false(ritz_measure_holds(find_measure(&found, "response-relative")));
     assert_null(ritz_measures_find(&found, "flexible-response-relative"));
     assert_null(ritz_measures_find(&found, "missing-rigid-modes"));
-    ritz_measures_free(&found);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 /* Four masses on springs of their own, the first with a damper. What rounding
@@ -242,7 +224,7 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
     static const double damper[] = {0.1, 1e-17, -3e-17, 2e-4};
     static const double error[] = {0.0, 0.5}; /* of 2e-4 and 4e-4 */
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
 
     (void)state;
     assert_ok(masses_apart(4, stiffness, damper, &c));
@@ -250,9 +232,9 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
     request.band_hz[1] = 1.0;
     request.limit[RITZ_MEASURE_DAMPING] = 1e-2;
     for (int twice = 0; twice < 2; twice++) {
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(ritz_measures) found = {0};
 
         assert_ok(ritz_basis_new(4, 4, &basis));
         for (int k = 0; k < 4; k++)
@@ -265,11 +247,7 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
         assert_ok(ritz_verify_reduced(&c, &reduced, &request, &found));
         assert_near(find_measure(&found, "damping-relative")->value,
                     error[twice], 1e-12);
-        ritz_measures_free(&found);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
     }
-    ritz_component_free(&c);
 }
 
 /* A free chain beside another: an input of one, an output of the other. Rigid
@@ -278,15 +256,15 @@ static void what_cancels_is_no_response(void **state)
 {
     enum { ELEMENTS = 3, ALL = 2 * (ELEMENTS + 1) };
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_component c = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     assert_ok(bar_component(ALL - 1, &c));
     for (int which = 0; which < 2; which++) {
         ritz_sparse *A = which ? &c.M : &c.K;
-        ritz_dense all = {0};
+        RITZ_OWN(ritz_dense) all = {0};
 
         assert_ok(ritz_sparse_dense(A, &all));
         for (int k = 0; k < 2; k++) { /* the element between is cut */
@@ -297,7 +275,6 @@ static void what_cancels_is_no_response(void **state)
         }
         ritz_sparse_free(A);
         assert_ok(ritz_sparse_from_dense(&all, A));
-        ritz_dense_free(&all);
     }
     ritz_io_free(&c.io);
     assert_ok(ritz_io_new(ALL, 1, 1, &c.io));
@@ -311,7 +288,7 @@ static void what_cancels_is_no_response(void **state)
     assert_ok(ritz_reduce(&c, &basis, &reduced));
     request.band_hz[1] = 1.0;
     for (int across = 1; across >= 0; across--) {
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_measures) found = {0};
         const ritz_measure *response = NULL;
 
         if (!across) {
@@ -324,11 +301,7 @@ static void what_cancels_is_no_response(void **state)
         assert_int_equal(response == NULL, across);
         /* cond(T)^2 eps of a full turn: measured, 1e-10 */
         assert_true(!response || response->value < 1e-7);
-        ritz_measures_free(&found);
     }
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&c);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -40,9 +40,9 @@ static double value(const ritz_measures *all, const char *name)
 /* G = 1/(s + 1), G_r = 0.9 G: every relative error is 0.1. */
 static void a_tenth_missing_is_a_tenth_by_every_measure(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_verify_request request = none;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     (void)state;
     first_order(1.0, 0.0, &full);
@@ -57,9 +57,6 @@ static void a_tenth_missing_is_a_tenth_by_every_measure(void **state)
     assert_near(value(&found, "static-gain-relative"), 0.1, 1e-14);
     assert_near(value(&found, "growth-relative"), -1.0, 1e-14);
     assert_null(ritz_measures_find(&found, "h-infinity-bound"));
-    ritz_measures_free(&found);
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
 }
 
 static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
@@ -72,8 +69,8 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
-        ritz_state_space full = {0}, reduced = {0};
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
+        RITZ_OWN(ritz_measures) found = {0};
 
         first_order(1.0, 0.0, &full);
         first_order(0.9, 0.0, &reduced);
@@ -83,16 +80,13 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
         assert_int_equal(
             ritz_measure_holds(ritz_measures_find(&found, "h-infinity-bound")),
             table[k].holds);
-        ritz_measures_free(&found);
-        ritz_state_space_free(&full);
-        ritz_state_space_free(&reduced);
     }
 }
 
 static void outputs_are_divided_by_their_limits(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     (void)state;
     first_order(1.0, 0.0, &full);
@@ -101,14 +95,11 @@ static void outputs_are_divided_by_their_limits(void **state)
     assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
     assert_near(value(&found, "h-infinity"), 0.4, 1.1e-8 * 0.4);
     assert_near(value(&found, "h-infinity-relative"), 0.1, 2.1e-8 * 0.1);
-    ritz_measures_free(&found);
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
 }
 
 static void rigid_motions_of_both_are_left_out_of_norms(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0}, held = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0}, held = {0};
     ritz_verify_request request = none;
     ritz_measures found = {0};
 
@@ -133,14 +124,11 @@ static void rigid_motions_of_both_are_left_out_of_norms(void **state)
     request.limit[RITZ_MEASURE_GAIN] = 1.0;
     assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "a pole is at 0");
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
-    ritz_state_space_free(&held);
 }
 
 static void what_reaches_an_output_at_once_has_no_h2_norm(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_verify_request request = none;
     ritz_measures found = {0};
 
@@ -158,14 +146,12 @@ static void what_reaches_an_output_at_once_has_no_h2_norm(void **state)
     request.limit[RITZ_MEASURE_H2] = 1.0;
     assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "there is no H2 norm");
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
 }
 
 static void growth_fails_unless_the_full_model_grows_too(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     (void)state;
     first_order(1.0, 0.0, &full);
@@ -179,14 +165,11 @@ static void growth_fails_unless_the_full_model_grows_too(void **state)
     assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
     assert_true(
         ritz_measure_holds(ritz_measures_find(&found, "growth-relative")));
-    ritz_measures_free(&found);
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
 }
 
 static void models_of_other_names_are_refused(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_verify_request request = none;
     ritz_measures found = {0};
 
@@ -204,33 +187,28 @@ static void models_of_other_names_are_refused(void **state)
     snprintf(reduced.output[0], sizeof reduced.output[0], "z");
     assert_fails(ritz_verify_states(&full, &reduced, &none, &found),
                  RITZ_ERR_ARGUMENT, "output 1 is 'y'");
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
 }
 
 static ritz_status verify_and_drop(const ritz_state_space *full,
                                    const ritz_state_space *reduced)
 {
     ritz_verify_request request = none;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
     ritz_status status = RITZ_OK;
 
     request.band_hz[1] = 1.0;
     status = ritz_verify_states(full, reduced, &request, &found);
-    ritz_measures_free(&found);
     return status;
 }
 
 static void every_allocation_may_fail(void **state)
 {
-    ritz_state_space full = {0}, reduced = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
 
     (void)state;
     first_order(1.0, 5.0, &full);
     first_order(0.9, 5.0, &reduced);
     assert_survives_every_allocation(verify_and_drop(&full, &reduced));
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&reduced);
 }
 
 static const struct CMUnitTest tests[] = {
