@@ -57,12 +57,14 @@ int main(int argc, char **argv)
     bool full = false;
     const cli_option options[] = {
         CLI_TEXT("at", &at, "JOINT=SETTING[,JOINT=SETTING]",
-                 "one configuration, degrees and lengths [all of the scene's]"),
+                 "one configuration, in degrees and lengths [all of the "
+                 "scene's]"),
         CLI_FLAG("full", &full,
-                 "reduce nothing: one component with the dofs of all"),
+                 "reduce nothing: make one component with the dofs of all "
+                 "bodies"),
         CLI_TEXT("tracks", &tracks, "FILE",
-                 "write which mode is which at every configuration, as a table "
-                 "with tabs"),
+                 "write which mode is which at each configuration, as a "
+                 "table with tabs"),
         {0},
     };
     const cli_program program = {

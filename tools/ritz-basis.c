@@ -4,18 +4,9 @@
 static void list_methods(void)
 {
     for (const ritz_method *const *m = ritz_methods; *m; m++) {
-        const struct {
-            const char *word, *text;
-        } lines[] = {{"when", (*m)->when},
-                     {"cost", (*m)->cost},
-                     {"holds", (*m)->holds},
-                     {"fails", (*m)->fails}};
-
         printf("%s%-18s %s [%s]\n", m > ritz_methods ? "\n" : "", (*m)->name,
                (*m)->summary, (*m)->reference);
-        for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
-            if (lines[k].text)
-                printf("  %-6s %s\n", lines[k].word, lines[k].text);
+        cli_list_advice((*m)->when, (*m)->cost, (*m)->holds, (*m)->fails);
     }
 }
 
@@ -27,15 +18,16 @@ int main(int argc, char **argv)
     ritz_request *request = &given.request;
     cli_option options[NUM_OWN + WORDS_MOST + 1] = {
         CLI_INT("modes", &request->modes, "N", 0, 100000,
-                "how many flexible vectors (of states: states), or"),
+                "number of flexible vectors (of a state space: states), "
+                "or"),
         CLI_REAL("up-to-hz", &request->up_to_hz, "F", 1e-9, 1e9,
-                 "every mode up to this frequency"),
+                 "all modes up to this frequency"),
         CLI_TEXT("attach", &given.ports, "PORT[,PORT]",
                  "keep the dofs of these ports; '' for none [all]"),
         CLI_REAL("tolerance", &request->tolerance, "X", 1e-15, 1e-2,
-                 "relative, below which a column depends on others"),
+                 "drop columns that depend on others within X, relative"),
         CLI_LIST("neighbour", &given.neighbours, "PORT=FILE:PORT",
-                 "hang this component on a port"),
+                 "load a port with another component, joined at its PORT"),
         CLI_ACTION("list", list_methods, "list methods and their papers"),
     };
     const cli_program program = {
@@ -44,8 +36,8 @@ int main(int argc, char **argv)
                      {"COMPONENT",
                       "the component, or state space, to be reduced", false}},
         .summary = "Find the subspace in which a component is reduced. Rigid "
-                   "modes of a free component\nare kept beside the flexible "
-                   "ones asked for.",
+                   "modes of a free component\nare kept in addition to the "
+                   "flexible vectors.",
         .example = "ritz-basis craig-bampton --modes 12 blade.h5 -o basis.h5",
         .options = options,
         .output = "the basis",

@@ -50,27 +50,27 @@ int main(int argc, char **argv)
     chart_request request = {.keep = true, .top = 10, .up_to_hz = 1e12};
     const cli_option options[] = {
         CLI_LIST("measure", &request.measure, "NAME",
-                 "of records: errors to be drawn [all that are relative]"),
+                 "of records: errors to draw [all relative ones]"),
         CLI_TEXT("subject", &request.subject, "NAME",
-                 "of records: those of one component or scene"),
+                 "of records: draw those of one component or scene"),
         CLI_WORD("against", &request.against, "reduce|simulate",
                  "pareto: time to reduce or to simulate [simulate, if all "
                  "records know it]"),
         CLI_LIST("channel", &request.channel, "OUTPUT/INPUT",
-                 "response: what is drawn [the first four]; "
-                 "'singular-values' of files that hold them"),
+                 "response: channels to draw, or 'singular-values' of "
+                 "files that hold them [the first four]"),
         CLI_WORD("error", &request.error, "relative|decibels|both",
-                 "response: relative to the largest, in decibels of each "
-                 "point, or both [relative]"),
+                 "response: relative to the largest |H|, in decibels at "
+                 "each point, or both [relative]"),
         CLI_LIST("at", &request.at, "JOINT=SETTING[,...]",
-                 "mac: configuration of each system, or two of one [the only "
-                 "ones]; they are compared by the masses of all bodies, if "
-                 "their reduced components are named too, else by what inputs "
-                 "drive and outputs see"),
+                 "mac: configuration of each system, or two of one [the "
+                 "only ones]; modes are compared by the masses of all "
+                 "bodies if their reduced components are named too, else "
+                 "by inputs and outputs"),
         CLI_INT("top", &request.top, "N", 1, 1000,
-                "hankel: so many modes of each ranking"),
+                "hankel: number of modes of each ranking"),
         CLI_REAL("up-to-hz", &request.up_to_hz, "F", 0.0, 1e12,
-                 "tracks: modes up to here"),
+                 "tracks: highest frequency"),
         CLI_ACTION("list", list_kinds,
                    "list charts and what they are made from"),
         {0},

@@ -77,7 +77,8 @@ int main(int argc, char **argv)
     const char *data = NULL;
     const cli_option options[] = {
         CLI_TEXT("data", &data, "FOLDER",
-                 "files of others, $DATA in claims [RITZ_EXTERNAL_DATA]"),
+                 "folder of others' files, $DATA in claims "
+                 "[RITZ_EXTERNAL_DATA]"),
         {0},
     };
     const cli_program program = {

@@ -29,19 +29,20 @@ int main(int argc, char **argv)
     const char *tolerances = NULL;
     const cli_option options[] = {
         CLI_TEXT("components", &given.prefix, "PREFIX",
-                 "write the reduced components too, as PREFIXname.h5"),
-        CLI_TEXT("report", &given.report, "FILE", "write the report there too"),
+                 "also write the reduced components, as PREFIXname.h5"),
+        CLI_TEXT("report", &given.report, "FILE",
+                 "also write the report to this file"),
         CLI_TEXT("extraneous", &given.extraneous, "WORD",
-                 "modes of the system that stand for no kept one: keep, "
-                 "remove, out-of-band [the scene's]"),
+                 "system modes that match no kept mode: keep, remove, "
+                 "out-of-band [the scene's]"),
         CLI_TEXT("tracks", &given.tracks, "FILE",
-                 "write which mode of stage 1 is which at every "
+                 "write which mode of stage 1 is which at each "
                  "configuration, as a table with tabs"),
         CLI_TEXT("tolerances", &tolerances, "X[,X]",
-                 "chart composite tolerances against orders and errors"),
+                 "tabulate orders and errors against composite tolerances"),
         CLI_TEXT("tolerance-table", &given.tolerance_table, "FILE",
-                 "write that chart as a table with tabs [tolerances 1e-12 to "
-                 "1e-2]"),
+                 "write that table to a file, with tabs [tolerances 1e-12 "
+                 "to 1e-2]"),
         {0},
     };
     const cli_program program = {

@@ -14,22 +14,25 @@ int main(int argc, char **argv)
     export_options given = {0};
     ritz_export_request *request = &given.request;
     const cli_option options[] = {
-        CLI_TEXT("to", &to, "FORMAT", "one of those that --list shows"),
+        CLI_TEXT("to", &to, "FORMAT", "file format, one of --list"),
         CLI_TEXT("matrix", &request->matrices, "NAME[,NAME]",
-                 "these matrices only [all]"),
-        CLI_FLAG("text", &request->text, "text, not binary (output4)"),
-        CLI_FLAG("dense", &request->dense, "every entry, zeros too (output4)"),
+                 "write these matrices only [all]"),
+        CLI_FLAG("text", &request->text,
+                 "write text instead of binary (output4)"),
+        CLI_FLAG("dense", &request->dense,
+                 "write every entry, zeros too (output4)"),
         CLI_INT("digits", &request->digits, "N", 1, 17,
-                "significant, of text; 17 if not given"),
+                "significant digits of text [17]"),
         ORDER_OPTION(&given.order),
         DAMPERS_OPTION(&given.damper),
         CLI_FLAG("force", &given.force,
-                 "even if nothing is known of the errors, or if unstable"),
+                 "export even a model that is unstable or of unknown "
+                 "errors"),
         CLI_TEXT("modes", &request->modes, "LIST",
-                 "shapes of these modes, or columns, 1-6,9 (vtu, xdmf) [all; "
-                 "10 of a component]"),
+                 "shapes of these modes or columns, as 1-6,9 (vtu, xdmf) "
+                 "[all; 10 of a component]"),
         CLI_TEXT("component", &given.component, "FILE",
-                 "the component that a basis is of (vtu, xdmf)"),
+                 "component to which a basis belongs (vtu, xdmf)"),
         CLI_ACTION("list", list_formats, "list formats and what they take"),
         {0},
     };

@@ -25,43 +25,50 @@ int main(int argc, char **argv)
     loop_options *loops = &given.loops;
     const cli_option options[] = {
         CLI_REAL("from-hz", &given.from_hz, "F", 0.0, 1e9,
-                 "start [the band's, or a thousandth "
-                 "of the end]"),
+                 "lowest frequency [the band's, or a thousandth of the "
+                 "highest]"),
         CLI_REAL("to-hz", &given.to_hz, "F", 1e-9, 1e9,
-                 "end [the band's of a system]"),
+                 "highest frequency [that of the band of a system]"),
         CLI_INT("points", &given.points, "N", 2, 1000000,
-                "how many evenly spaced points [400; with --tolerance 20]"),
+                "number of evenly spaced points [400; with --tolerance "
+                "20]"),
         CLI_FLAG("log", &given.log,
-                 "evenly spaced in the logarithm of frequency"),
+                 "space points evenly in the logarithm of frequency"),
         CLI_FLAG("no-refine", &given.no_refine,
                  "add no points at and around resonances"),
         CLI_TEXT("points-of", &given.points_of, "FILE",
-                 "the points of another response instead"),
+                 "use the points of another response instead"),
         CLI_TEXT("method", &given.method, "NAME",
-                 "one of those that --list shows"),
+                 "how to compute it: one of --list"),
         CLI_REAL("tolerance", &given.tolerance, "X", 1e-9, 0.5,
-                 "as many points as keep it between them, of the largest |H|"),
+                 "add points until interpolation is within X of each "
+                 "channel's largest |H|"),
         CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
-                 "modes of a component up to this one [three times the end]"),
+                 "modes of a component up to here [three times the "
+                 "highest frequency]"),
         CLI_ACTION("list", responses_list, "list methods and what each is for"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("singular-values", &given.singular,
-                 "of H at each point too, and the largest between points"),
+                 "also singular values of H, with their largest between "
+                 "points"),
         CLI_FLAG("over-limits", &given.over_limits,
-                 "singular values of outputs divided by their limits"),
+                 "divide outputs by their limits before taking singular "
+                 "values"),
         CLI_LIST("input-size", &given.input_size, "NAME=X",
-                 "singular values of this input multiplied by X"),
-        CLI_FLAG("zeros", &given.zeros, "list the zeros of every channel"),
+                 "multiply this input by X before taking singular values"),
+        CLI_FLAG("zeros", &given.zeros,
+                 "list the transmission zeros of every channel"),
         CLI_TEXT("controller", &loops->controller, "FILE",
                  "close a loop with this state space"),
         CLI_LIST("connect", &loops->connect, "OUT=IN",
-                 "join signals of plant and controller whose names differ"),
+                 "join signals of plant and controller that have "
+                 "different names"),
         CLI_WORD("feedback", &loops->feedback, "negative|positive",
                  "sign with which the loop is closed [negative]"),
         CLI_TEXT("closed-loop", &loops->states, "FILE",
                  "write the closed loop as a state space"),
         CLI_FLAG("force", &loops->force,
-                 "respond even if the loop is unstable"),
+                 "compute the response even if the loop is unstable"),
         {0},
     };
     cli_program program = about;

@@ -8,16 +8,17 @@ int main(int argc, char **argv)
     poles_options given = {.mode = 1, .up_to_hz = (double)NAN};
     const cli_option options[] = {
         CLI_INT("modes", &given.modes, "N", 1, 1e6,
-                "the lowest N [all, 20 of a component]"),
+                "list the lowest N [all, of a component 20]"),
         CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
-                 "those of |s| up to this instead"),
+                 "list those with |s|/2pi up to this instead"),
         MODEL_OPTIONS(&given.model),
         CLI_TEXT("scan", &given.scan, "NAME[,NAME]=FROM:TO:STEP",
-                 "give these dampers one c, through a range"),
+                 "vary the constant c of these dampers, all alike"),
         CLI_INT("mode", &given.mode, "K", 1, 1e6,
-                "follow this one in a scan, counted where it begins"),
+                "mode that a scan follows, by its number at FROM"),
         CLI_FLAG("tsv", &given.tsv,
-                 "columns divided by tabs, ratios as numbers"),
+                 "print columns separated by tabs, damping ratios not in "
+                 "percent"),
         {0},
     };
     const cli_program program = {

@@ -14,37 +14,40 @@ int main(int argc, char **argv)
     rank_options given = {.by = "hankel", .top = 10, .draw = chart_rankings};
     const cli_option options[] = {
         CLI_TEXT("by", &given.by, "NAME[,NAME]",
-                 "rankings, of those that --list shows"),
+                 "rankings to make, of those that --list shows"),
         CLI_TEXT("at", &given.at, "JOINT=SETTING[,JOINT=SETTING]",
-                 "one configuration of a system, degrees and lengths [all]"),
+                 "one configuration of a system, in degrees and lengths "
+                 "[all]"),
         ORDER_OPTION(&given.order),
         CLI_LIST("damping", &given.damping, "TEXT",
-                 "\"modal ZETA\" or another that --help of ritz-frf shows "
-                 "[the model's]"),
+                 "\"modal ZETA\" or another form that ritz-frf --help "
+                 "shows [the model's]"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",
-                 "of hankel-band [the system's]"),
+                 "band of the ranking hankel-band [the system's]"),
         CLI_TEXT("input-weights", &given.input_weights, "NAME=W,...",
-                 "intensities of inputs, squares of their size [1]"),
+                 "intensities of inputs: squares of their amplitudes [1]"),
         CLI_TEXT("output-weights", &given.output_weights, "NAME=W,...",
-                 "what squares of outputs count [1 / limit^2, or 1]"),
+                 "weights of squared outputs [1 / limit^2, or 1]"),
         CLI_INT("reweigh", &given.keep, "N", 1, 1e6,
-                "find output weights that suit a choice of N modes"),
+                "find the output weights that suit a choice of N modes"),
         CLI_TEXT("engine", &given.engine, "WORD",
-                 "Gramians of a component: auto, dense, modal, low-rank"),
+                 "method for Gramians of a component: auto, dense, modal, "
+                 "low-rank"),
         CLI_TEXT("among-hz", &given.among, "F",
-                 "modal Gramians of a component: modes up to here"),
+                 "modes up to this frequency, for modal Gramians of a "
+                 "component"),
         CLI_TEXT("tracks", &given.tracks, "FILE",
-                 "table of ritz-assemble --tracks: which mode is which at "
-                 "other configurations"),
+                 "table of ritz-assemble --tracks, which matches modes of "
+                 "all configurations"),
         CLI_FLAG("compare", &given.compare,
-                 "files are rankings, each is held against the first"),
+                 "compare rankings that files hold, each with the first"),
         CLI_INT("top", &given.top, "N", 1, 1e6,
-                "so many of each are compared, drawn and, of several, "
-                "printed"),
+                "compare, draw and, of several rankings, print so many "
+                "modes"),
         CLI_TEXT("table", &given.table, "FILE",
                  "write all values as a table with tabs"),
         CLI_TEXT("chart", &given.chart, "FILE.svg",
-                 "draw bars of the values, by gnuplot"),
+                 "draw the values as bars, by gnuplot"),
         CLI_ACTION("list", list_rankers, "list rankings and their papers"),
         {0},
     };
@@ -55,8 +58,8 @@ int main(int argc, char **argv)
                       "state space, exact Hankel values alone",
                       true}},
         .summary = "Rank the flexible modes of a model by what they carry "
-                   "from its inputs to its\noutputs, best first; the exact "
-                   "Hankel values of the whole stand beside.",
+                   "from its inputs to its\noutputs, best first, with "
+                   "the exact Hankel values of the whole model.",
         .example = "ritz-rank system.h5 --at clock=60,cone=0 --by "
                    "gregory,modal-cost --damping \"modal 0.002\"",
         .options = options,

@@ -6,11 +6,11 @@ int main(int argc, char **argv)
     reduce_options given = {0};
     const cli_option options[] = {
         CLI_PAIR("band-hz", given.estimate.band_hz, "F,F",
-                 "where errors are estimated [up to half of what the basis "
-                 "knows]"),
+                 "band of the error estimates [up to half the highest "
+                 "frequency of the basis]"),
         DAMPING_OPTION(&given.damping),
         CLI_FLAG("without-basis", &given.without_basis,
-                 "leave out T and the full mesh: a smaller file"),
+                 "leave out T and the full mesh, for a smaller file"),
         {0},
     };
     const cli_program program = {

@@ -37,31 +37,34 @@ int main(int argc, char **argv)
                                 .rho = 0.8,
                                 .every = 1};
     const cli_option options[] = {
-        CLI_TEXT("method", &given.method, "NAME",
-                 "the integrator, one of --list"),
-        CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12, "how long"),
+        CLI_TEXT("method", &given.method, "NAME", "integrator, one of --list"),
+        CLI_REAL("seconds", &given.seconds, "T", 1e-12, 1e12,
+                 "duration of the simulation, seconds"),
         CLI_REAL("step", &given.step, "H", 1e-15, 1e12,
-                 "of time, seconds [as --accuracy says]"),
+                 "time step in seconds [chosen by --accuracy]"),
         CLI_REAL("accuracy", &given.accuracy, "X", 1e-12, 1.0,
-                 "halve the step until outputs are within X of their largest "
-                 "[1e-3]"),
+                 "halve the step until outputs are within X of their "
+                 "largest [1e-3]"),
         CLI_LIST("input", &given.input, "NAME=SIGNAL",
-                 "step, impulse, sine:F or chirp:F,F (*A behind), or a file of "
-                 "times and values"),
+                 "step, impulse, sine:F or chirp:F,F, each with "
+                 "*AMPLITUDE if not 1, or a file of times and values"),
         CLI_TEXT("initial", &given.initial, "TEXT",
-                 "mode:K or mode:K*A, or a file, a value and its rate a row"),
+                 "mode:K or mode:K*AMPLITUDE, or a file with a value and "
+                 "its rate on each row"),
         CLI_WORD("hold", &given.hold, "first|zero",
-                 "inputs in a step: linear, or as at its start"),
+                 "inputs within a step: linear, or constant as at its "
+                 "start"),
         CLI_REAL("rho", &given.rho, "R", 0.0, 1.0,
-                 "generalised-alpha: what a step leaves of high frequency"),
+                 "spectral radius of generalised-alpha at high frequency"),
         CLI_INT("every", &given.every, "N", 1, 1e9,
-                "write each N-th step, with --step"),
+                "with --step, write every N-th step"),
         CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
-                 "modes of a component, for modal"),
+                 "modes of a component up to here, for --method modal"),
         CLI_FLAG("cost", &given.cost,
-                 "what a simulated second costs, by each integrator"),
+                 "report what a simulated second costs, by each integrator"),
         CLI_PAIR("band-hz", given.band_hz, "F,F",
-                 "whose end --cost resolves [of a system its own, or all]"),
+                 "band that --cost resolves [a system's own; else all "
+                 "frequencies]"),
         MODEL_OPTIONS(&given.model),
         CLI_ACTION("list", list_integrators,
                    "list the integrators, with what they hold and where they "

@@ -95,6 +95,5 @@ int main(int argc, char **argv)
         return list_verbs();
     if (strcmp(word, "--version") != 0)
         return refuse_verb(word);
-    printf("ritz (Ritz) %s\n", ritz_version());
-    return fclose(stdout) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return printf("ritz (Ritz) %s\n", ritz_version()) < 0 || fclose(stdout);
 }

@@ -175,6 +175,17 @@ const void *cli_choose(const cli_program *program, const char *what,
     cli_refuse_name(program, what, word, count, names);
 }
 
+void cli_list_advice(const char *when, const char *cost, const char *holds,
+                     const char *fails)
+{
+    static const char *const word[] = {"when", "cost", "holds", "fails"};
+    const char *const text[] = {when, cost, holds, fails};
+
+    for (int k = 0; k < 4; k++)
+        if (text[k])
+            printf("  %-6s %s\n", word[k], text[k]);
+}
+
 bool cli_next(const char **list, char word[RITZ_NAME_SIZE])
 {
     const char *at = *list;

@@ -121,7 +121,7 @@ typedef struct cli_run {
     json_t *line;     /* of --record: method, order, errors */
     cli_table said;   /* all that cli_say was told */
     ritz_stamp stamp; /* command and inputs, as cli_stamp last gave them */
-    int64_t num_inputs;
+    int64_t num_inputs, room;
     char **input;  /* "SHA256  NAME" of each file read */
     int64_t bytes; /* of those files */
     bool piped;    /* one of them is no regular file */
@@ -156,6 +156,10 @@ _Noreturn void cli_refuse_name(const cli_program *program, const char *what,
  */
 const void *cli_choose(const cli_program *program, const char *what,
                        const char *word, const void *table);
+
+/** What a list of methods says below each; NULL: nothing is known. */
+void cli_list_advice(const char *when, const char *cost, const char *holds,
+                     const char *fails);
 
 /** The next word of "A,B,C", which is cut off; false if none is left. */
 bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);

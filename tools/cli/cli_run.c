@@ -74,16 +74,6 @@ static void limit_threads(cli_run *run, const struct stat *file)
         execv(self, run->argv);
 }
 
-static ritz_status check_opens(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-
-    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
-                   strerror(errno));
-    fclose(file);
-    return RITZ_OK;
-}
-
 /* The line of an input, "SUM  PATH"; NULL if it is none yet. */
 static char **find_input(const cli_run *run, const char *path)
 {
@@ -93,11 +83,19 @@ static char **find_input(const cli_run *run, const char *path)
     return NULL;
 }
 
+/* "SUM  PATH" */
+static ritz_status join_sum(const char *digest, const char *path, char **out)
+{
+    int64_t size = (int64_t)(strlen(digest) + strlen(path) + 3);
+
+    RITZ_CHECK_NEW(*out, size);
+    snprintf(*out, (size_t)size, "%s  %s", digest, path);
+    return RITZ_OK;
+}
+
 static ritz_status add_input(cli_run *run, const char *path, bool sum)
 {
     char digest[RITZ_DIGEST_SIZE] = "-";
-    RITZ_OWN_ARRAY char *line = NULL;
-    char **more = NULL;
     struct stat there = {0};
 
     if (find_input(run, path))
@@ -106,17 +104,15 @@ static ritz_status add_input(cli_run *run, const char *path, bool sum)
         limit_threads(run, &there);
     if ((S_ISREG(there.st_mode) && sum) || there.st_mode == 0)
         RITZ_CHECK(ritz_digest_file(path, digest));
-    else if (S_ISREG(there.st_mode))
-        RITZ_CHECK(check_opens(path));
+    else
+        RITZ_REFUSE_IF(S_ISREG(there.st_mode) && access(path, R_OK) != 0,
+                       RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                       strerror(errno));
     RITZ_REFUSE_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
                    path);
-    more =
-        realloc(run->input, (size_t)(run->num_inputs + 1) * sizeof *run->input);
-    RITZ_REFUSE_IF(!more, RITZ_ERR_MEMORY, "no memory for '%s'", path);
-    run->input = more;
-    RITZ_CHECK_NEW(line, (int64_t)(strlen(digest) + strlen(path) + 3));
-    snprintf(line, strlen(digest) + strlen(path) + 3, "%s  %s", digest, path);
-    RITZ_MOVE(run->input[run->num_inputs++], line);
+    RITZ_CHECK_ROOM(run->input, run->num_inputs, run->room);
+    RITZ_CHECK(join_sum(digest, path, &run->input[run->num_inputs]));
+    run->num_inputs++;
     if (run->output && run->program->threads && run->num_inputs == 1)
         RITZ_CHECK(cli_can_write(run->output));
     return RITZ_OK;
@@ -135,16 +131,13 @@ ritz_status cli_input_unread(cli_run *run, const char *path)
 ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest)
 {
     char **line = find_input(run, path);
-    size_t size = strlen(digest) + strlen(path) + 3;
     struct stat there = {0};
     char *whole = NULL;
 
     if (!line || (*line)[0] != '-' || stat(path, &there) != 0 ||
         !S_ISREG(there.st_mode))
         return RITZ_OK;
-    whole = malloc(size);
-    RITZ_REFUSE_IF(!whole, RITZ_ERR_MEMORY, "no memory for '%s'", path);
-    snprintf(whole, size, "%s  %s", digest, path);
+    RITZ_CHECK(join_sum(digest, path, &whole));
     free(*line);
     *line = whole;
     return RITZ_OK;

@@ -314,6 +314,12 @@ void model_say_measures(cli_run *run, const char *key,
     model_set_measures(run, key, measures, known);
 }
 
+void model_record(cli_run *run, const ritz_measures *measures)
+{
+    for (int64_t k = 0; k < measures->count; k++)
+        cli_record_error(run, measures->item[k].name, measures->item[k].value);
+}
+
 void model_set_cost(cli_run *run, const ritz_cost *cost)
 {
     sink_object(run, "cost");

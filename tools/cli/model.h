@@ -58,7 +58,7 @@ typedef struct model_options {
 /* Rows of option tables that several tools share. */
 #define AT_OPTION(place)                                                       \
     CLI_TEXT("at", place, "JOINT=SETTING[,JOINT=SETTING]",                     \
-             "which configuration of a system, degrees and lengths")
+             "configuration of a system, in degrees and lengths")
 
 #define ORDER_OPTION(place)                                                    \
     CLI_INT("order", place, "N", 1, 1e6,                                       \
@@ -192,6 +192,9 @@ void model_say_measures(cli_run *run, const char *key,
                         const ritz_measures *measures, const char *known);
 void model_set_measures(cli_run *run, const char *key,
                         const ritz_measures *measures, const char *known);
+
+/** Their values for the line of --record. */
+void model_record(cli_run *run, const ritz_measures *measures);
 
 /** Steps and time of a simulator, as the object `cost`. */
 void model_set_cost(cli_run *run, const ritz_cost *cost);

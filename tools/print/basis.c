@@ -135,13 +135,6 @@ static void drop_basis(ritz_reduced *reduced)
     reduced->dof = NULL;
 }
 
-static void record_errors(cli_run *run, const ritz_measures *estimates)
-{
-    for (int64_t k = 0; k < estimates->count; k++)
-        cli_record_error(run, estimates->item[k].name,
-                         estimates->item[k].value);
-}
-
 static ritz_status say_reduced(cli_run *run, const ritz_reduced *reduced)
 {
     const ritz_columns *c = &reduced->columns;
@@ -155,7 +148,7 @@ static ritz_status say_reduced(cli_run *run, const ritz_reduced *reduced)
             sink_add(run, "%g", c->residual[k]);
     sink_end(run);
     cli_record(run, reduced->origin.method, reduced->K.nrow);
-    record_errors(run, &reduced->estimates);
+    model_record(run, &reduced->estimates);
     return RITZ_OK;
 }
 
@@ -211,7 +204,7 @@ static ritz_status reduce_to_states(cli_run *run, const model *full,
     RITZ_CHECK(describe_states(run, &states));
     sink_set(run, "vectors", "%ld", states.columns.count);
     cli_record(run, states.origin.method, states.A.nrow);
-    record_errors(run, &states.estimates);
+    model_record(run, &states.estimates);
     ritz_probe_print(&probe, text);
     if (probe.verdict == RITZ_UNSTABLE)
         cli_warn(run, "'%s' is unstable: %s", run->output, text);

@@ -325,25 +325,16 @@ static void say_stray_row(cli_run *run, const char *at,
         cli_say(run, "  %-28s %4ld %s", at, row->num_strays, line);
 }
 
-/* How many of the listed rows' extraneous modes were removed. */
-static int64_t count_removed(const ritz_comparison *c)
-{
-    int64_t removed = 0;
-
-    for (int64_t k = 0; k < c->num_rows; k++)
-        for (int64_t i = 0; c->row[k].listed && i < c->row[k].num_strays; i++)
-            removed += c->row[k].stray[i].removed;
-    return removed;
-}
-
 static void say_strays(cli_run *run, const ritz_stage *first,
                        const ritz_comparison *c)
 {
-    int64_t removed = count_removed(c);
-    int64_t total = 0;
+    int64_t removed = 0, total = 0;
 
     for (int64_t k = 0; k < c->num_rows; k++)
-        total += c->row[k].listed ? c->row[k].num_strays : 0;
+        for (int64_t i = 0; c->row[k].listed && i < c->row[k].num_strays; i++) {
+            removed += c->row[k].stray[i].removed;
+            total++;
+        }
     sink_set(run, "extraneous_removed", "%ld", removed);
     if (total == 0)
         return;

@@ -113,15 +113,9 @@ typedef struct fit_run {
     bool *there; /* of files that the result makes: they were there before */
 } fit_run;
 
-/* Verdict on a candidate at the end of the search. */
-typedef struct fit_mark {
-    bool chosen, runner_up;
-    const char *why; /* NULL: none */
-} fit_mark;
-
 /* Append a candidate to the file of --record. */
 static void record_candidate(fit_run *fit, const ritz_fit_candidate *c,
-                             fit_mark mark)
+                             bool chosen, bool runner_up, const char *why)
 {
     cli_run *run = fit->run;
     ritz_status status = RITZ_OK;
@@ -129,13 +123,13 @@ static void record_candidate(fit_run *fit, const ritz_fit_candidate *c,
     sink_record(run);
     set_candidate(run, c);
     sink_set(run, "ok,subject,chosen,runner_up", "%d %s %d %d", !c->refusal[0],
-             fit->subject, mark.chosen, mark.runner_up);
+             fit->subject, chosen, runner_up);
     if (fit->limits) {
         set_tolerance(run, fit->limits);
         sink_reals(run, "band_hz", 2, fit->limits->band_hz);
     }
-    if (mark.why)
-        sink_set(run, "why", "%s", mark.why);
+    if (why)
+        sink_set(run, "why", "%s", why);
     status = sink_end_record(run);
     if (fit->recorded == RITZ_OK)
         fit->recorded = status;
@@ -144,7 +138,7 @@ static void record_candidate(fit_run *fit, const ritz_fit_candidate *c,
 static void observe_candidate(const ritz_fit_candidate *candidate,
                               void *context)
 {
-    record_candidate(context, candidate, (fit_mark){0});
+    record_candidate(context, candidate, false, false, NULL);
 }
 
 /* Files that the result makes: the output, the report, and bodies. */
@@ -505,15 +499,6 @@ static ritz_status compare_methods(cli_run *run, const fit_options *a,
     return RITZ_OK;
 }
 
-static ritz_status write_component(cli_run *run, ritz_fitter *fitter,
-                                   const ritz_fit_candidate *chosen)
-{
-    RITZ_OWN(ritz_reduced) reduced = {0};
-
-    RITZ_CHECK(ritz_fitter_reduced(fitter, chosen, &reduced));
-    return ritz_container_write_reduced(run->output, &reduced, cli_stamp(run));
-}
-
 /* The tolerance was held from inputs to outputs. Forces and motions at ports were
    not compared; only methods that keep ports are right there. */
 static void warn_of_ports(cli_run *run, const ritz_component *component,
@@ -534,6 +519,7 @@ static ritz_status find_smallest(fit_run *f, const model *full,
 {
     cli_run *run = f->run;
     RITZ_OWN(ritz_fit) fit = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     const ritz_fit_candidate *chosen = NULL;
 
     f->limits = ritz_fitter_tolerance(fitter);
@@ -543,27 +529,19 @@ static ritz_status find_smallest(fit_run *f, const model *full,
     RITZ_REFUSE_IF(fit.chosen < 0, RITZ_ERR_CONVERGENCE, "%s", fit.why);
     chosen = &fit.candidate[fit.chosen];
     if (fit.runner_up >= 0)
-        record_candidate(f, &fit.candidate[fit.runner_up],
-                         (fit_mark){.runner_up = true});
-    record_candidate(f, chosen, (fit_mark){.chosen = true, .why = fit.why});
+        record_candidate(f, &fit.candidate[fit.runner_up], false, true, NULL);
+    record_candidate(f, chosen, true, false, fit.why);
     RITZ_CHECK(f->recorded);
     if (!f->scene)
         warn_of_ports(run, &full->component, chosen);
-    if (f->scene && (run->output || f->given->prefix))
+    if (f->scene && (run->output || f->given->prefix)) {
         RITZ_CHECK(write_scene(f, fitter, chosen));
-    else if (run->output)
-        RITZ_CHECK(write_component(run, fitter, chosen));
+    } else if (run->output) {
+        RITZ_CHECK(ritz_fitter_reduced(fitter, chosen, &reduced));
+        RITZ_CHECK(ritz_container_write_reduced(run->output, &reduced,
+                                                cli_stamp(run)));
+    }
     return f->given->report ? cli_save(run, f->given->report) : RITZ_OK;
-}
-
-/* The name of the file without folder and ending, as charts call it. */
-static void name_subject(const char *path, char out[RITZ_NAME_SIZE])
-{
-    const char *slash = strrchr(path, '/');
-
-    snprintf(out, RITZ_NAME_SIZE, "%s", slash ? slash + 1 : path);
-    if (strrchr(out, '.'))
-        *strrchr(out, '.') = '\0';
 }
 
 static ritz_status fit_component(fit_run *f)
@@ -606,11 +584,16 @@ ritz_status fit_search(cli_run *run, fit_options *given)
 {
     ritz_status status = RITZ_OK;
     fit_run f = {.run = run, .given = given};
+    const char *slash = strrchr(*run->operand, '/');
 
     given->request.observe = observe_candidate;
     given->request.thorough = given->all;
     given->request.context = &f;
-    name_subject(run->operand[0], f.subject);
+    /* charts call it by its file, without folder and ending */
+    snprintf(f.subject, sizeof f.subject, "%s",
+             slash ? slash + 1 : *run->operand);
+    if (strrchr(f.subject, '.'))
+        *strrchr(f.subject, '.') = '\0';
     if (given->damping)
         RITZ_CHECK_IN("--damping",
                       ritz_damping_parse(given->damping,

@@ -100,7 +100,7 @@ double rankings_difference(const ritz_ranking *r)
     return worst;
 }
 
-static double percent(double part, double whole)
+static double percent_of(double part, double whole)
 {
     return whole != 0.0 ? 100.0 * part / whole : 0.0;
 }
@@ -114,7 +114,7 @@ static void print_parts(const ritz_ranking *r, int64_t mode, size_t size,
         if (isnan(r->whole[j]))
             sink_append(out, size, " %10.3g", value);
         else
-            sink_append(out, size, " %9.2f%%", percent(value, r->whole[j]));
+            sink_append(out, size, " %9.2f%%", percent_of(value, r->whole[j]));
     }
 }
 
@@ -159,7 +159,7 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
                  r->value[mode] / exact - 1.0);
     cli_say(run, "%4ld %6ld %14.7g %9s %7s %13.5e %6.2f%%%s%s%s", k + 1,
             number_of(track, mode), r->hertz[mode], zeta, cluster,
-            r->value[mode], percent(r->value[mode], total), parts, beside,
+            r->value[mode], percent_of(r->value[mode], total), parts, beside,
             differs);
 }
 
@@ -175,7 +175,8 @@ static void say_sums(const cli_run *run, const ritz_ranking *r)
             return;
         for (int64_t k = 0; k < r->count; k++)
             sum += ritz_dense_col(&r->parts, j)[k];
-        sink_append(parts, sizeof parts, " %9.2f%%", percent(sum, r->whole[j]));
+        sink_append(parts, sizeof parts, " %9.2f%%",
+                    percent_of(sum, r->whole[j]));
     }
     cli_say(run, "%4s %52s %13s%s", "sum", "", "", parts);
 }

@@ -24,7 +24,7 @@ static void append_word(const char *word, char *name, size_t size)
 }
 
 /* True if the text `offset` bytes into a ranking differs among them. */
-static bool varies(const contest *c, size_t offset)
+static bool text_varies(const contest *c, size_t offset)
 {
     for (int64_t k = 1; k < c->count; k++)
         if (strcmp((const char *)c->ranking[k] + offset,
@@ -42,7 +42,7 @@ static void name_all(contest *c)
     size_t size = sizeof *c->name;
 
     for (size_t i = 0; i < sizeof part / sizeof *part; i++)
-        for (int64_t k = 0; varies(c, part[i]) && k < c->count; k++)
+        for (int64_t k = 0; text_varies(c, part[i]) && k < c->count; k++)
             append_word((const char *)c->ranking[k] + part[i], c->name[k],
                         size);
     for (int64_t k = 0; k < c->count; k++)

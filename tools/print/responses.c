@@ -17,17 +17,9 @@ void responses_list(void)
            "the one that the model asks for, and says why");
     for (const ritz_response_engine *const *e = ritz_response_engines; *e;
          e++) {
-        const struct {
-            const char *word, *text;
-        } lines[] = {{"when", (*e)->when},
-                     {"cost", (*e)->cost},
-                     {"holds", (*e)->holds},
-                     {"fails", (*e)->fails}};
-
         printf("\n%-12s %s", (*e)->name, (*e)->summary);
         printf((*e)->reference ? " [%s]\n" : "\n", (*e)->reference);
-        for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
-            printf("  %-6s %s\n", lines[k].word, lines[k].text);
+        cli_list_advice((*e)->when, (*e)->cost, (*e)->holds, (*e)->fails);
     }
 }
 

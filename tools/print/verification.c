@@ -4,13 +4,13 @@ static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
 {
     const ritz_measure *first = NULL;
     int64_t failed = 0;
-    int64_t given = 0;
+    int64_t limits = 0;
 
     model_say_measures(run, "measures", measures, "measured");
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
-        given += !isnan(m->limit);
+        limits += !isnan(m->limit);
         if (ritz_measure_holds(m))
             continue;
         first = first ? first : m;
@@ -19,7 +19,7 @@ static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
     RITZ_REFUSE_IF(first, RITZ_ERR_CONVERGENCE,
                    "'%s': %ld of %ld limits not met, first '%s', %.3e where "
                    "%.3e is asked",
-                   run->operand[1], failed, given, first->name, first->value,
+                   run->operand[1], failed, limits, first->name, first->value,
                    first->limit);
     return RITZ_OK;
 }
@@ -64,8 +64,7 @@ static ritz_status keep_measures(cli_run *run, const verify_options *given,
     ritz_measures_free(place);
     *place = *measures;
     *measures = (ritz_measures){0};
-    for (int64_t k = 0; k < place->count; k++)
-        cli_record_error(run, place->item[k].name, place->item[k].value);
+    model_record(run, place);
     RITZ_CHECK(model_write(run, reduced));
     warn_unmeasured(run, given, place);
     return say_measures(run, place);
