@@ -2,6 +2,7 @@
 #include "claims/claims.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <ritz/base.h>
 
@@ -13,19 +14,111 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+/* --- words ---------------------------------------------------------------- */
+
+/* A folder that a word begins with: "$DATA/lund" */
+static const char *replace_folder(const claims_state *state, const char *text,
+                                  size_t *length)
+{
+    const struct {
+        const char *name, *value;
+    } known[] = {{"$DATA", state->data}, {"$HERE", state->here}};
+
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        *length = strlen(known[k].name);
+        if (strncmp(text, known[k].name, *length) == 0)
+            return known[k].value;
+    }
+    return NULL;
+}
+
+/*
+ * One word from `text` to `out`; what follows it, or NULL: never closed. A
+ * quote within a word is a letter.
+ */
+static const char *take_word(const claims_state *state, const char *text,
+                             char *out)
+{
+    char quote = '\0';
+
+    if (strchr("\"'", *text))
+        quote = *text++;
+    for (; *text && (quote || !strchr(" \t", *text)); text++) {
+        size_t length = 0;
+        const char *value =
+            *text == '$' ? replace_folder(state, text, &length) : NULL;
+
+        if (value) {
+            memcpy(out, value, strlen(value));
+            out += strlen(value);
+            text += length - 1;
+        } else if (quote && *text == quote) {
+            *out = '\0';
+            return text + 1;
+        } else {
+            *out++ = *text;
+        }
+    }
+    *out = '\0';
+    return quote ? NULL : text;
+}
+
+/* Room that every word fits, folders put in. */
+static size_t count_room(const char *text)
+{
+    size_t size = 2 * strlen(text) + 1;
+
+    for (const char *at = text; *at; at++)
+        size += *at == '$' ? PATH_MAX : 0;
+    return size;
+}
+
+/*
+ * Cut a line into words: blanks part them, "..." and '...' keep them together,
+ * a word that begins with # ends the line, $DATA and $HERE stand for folders.
+ */
+static ritz_status cut_line(const claims_state *state, const char *text,
+                            claims_line *line)
+{
+    char *out = malloc(count_room(text));
+
+    line->room = out;
+    line->count = 0;
+    RITZ_REFUSE_IF(!out, RITZ_ERR_MEMORY, "no memory for a line");
+    for (text += strspn(text, " \t"); *text && *text != '#';
+         text += strspn(text, " \t")) {
+        RITZ_REFUSE_IF(line->count == CLAIMS_MOST_WORDS, RITZ_ERR_FORMAT,
+                       "more than %d words", CLAIMS_MOST_WORDS);
+        line->word[line->count] = out;
+        text = take_word(state, text, out);
+        RITZ_REFUSE_IF(!text, RITZ_ERR_FORMAT, "a quote is not closed");
+        out += strlen(line->word[line->count++]) + 1;
+    }
+    return RITZ_OK;
+}
+
+static void claims_line_free(claims_line *line)
+{
+    free(line->room);
+}
+
+/* --- statements ----------------------------------------------------------- */
+
 /* The answer of a tool is read from here, in the folder of the state. */
 static const char answer_name[] = "answer.json";
 
+/* Words from the second on as one text. */
+static void join_words(const claims_line *line, size_t size, char *out)
+{
+    out[0] = '\0';
+    for (int k = 1; k < line->count; k++)
+        sink_append(out, size, "%s%s", k > 1 ? " " : "", line->word[k]);
+}
+
 static ritz_status set_source(claims_state *state, const claims_line *line)
 {
-    size_t used = 0;
-
     RITZ_REFUSE_IF(line->count < 2, RITZ_ERR_FORMAT, "a source is not named");
-    state->source[0] = '\0';
-    for (int k = 1; k < line->count && used < sizeof state->source; k++)
-        used +=
-            (size_t)snprintf(state->source + used, sizeof state->source - used,
-                             "%s%s", k > 1 ? " " : "", line->word[k]);
+    join_words(line, sizeof state->source, state->source);
     return RITZ_OK;
 }
 
@@ -74,14 +167,6 @@ static ritz_status read_answer(claims_state *state)
     return RITZ_OK;
 }
 
-static void remember_command(claims_state *state, const claims_line *line)
-{
-    state->command[0] = '\0';
-    for (int k = 1; k < line->count; k++)
-        sink_append(state->command, sizeof state->command, "%s%s",
-                    k > 1 ? " " : "", line->word[k]);
-}
-
 /* "try TOOL ARGUMENT...", whatever becomes of it. */
 static ritz_status try_tool(claims_state *state, const claims_line *line)
 {
@@ -100,7 +185,7 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
                    "there is no tool '%.40s'", line->word[1]);
     memcpy(argv, line->word + 1, (size_t)(line->count - 1) * sizeof *argv);
     argv[line->count - 1] = json;
-    remember_command(state, line);
+    join_words(line, sizeof state->command, state->command);
     json_decref(state->answer);
     state->answer = NULL;
     fflush(stdout);
@@ -128,30 +213,32 @@ static ritz_status run_tool(claims_state *state, const claims_line *line)
     return RITZ_OK;
 }
 
+ritz_status claims_save(const claims_state *state, const char *name,
+                        const char *ending, cli_table *table)
+{
+    char path[2 * PATH_MAX];
+
+    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
+    return cli_table_save(table, path);
+}
+
 /* "rows NAME N [COMPS]": what --dofs reads, N grids or N scalar points. */
 static ritz_status write_rows(claims_state *state, const claims_line *line)
 {
-    ritz_status status = RITZ_OK;
     const char *directions = line->count == 4 ? line->word[3] : "0";
-    char path[2 * PATH_MAX];
-    FILE *file = NULL;
+    RITZ_OWN(cli_table) table = {0};
     int64_t count = 0;
 
-    RITZ_FAIL_IF(line->count < 3 || line->count > 4 ||
-                     strchr(line->word[1], '/') ||
-                     !ritz_text_whole(line->word[2], &count) || count < 1,
-                 RITZ_ERR_FORMAT,
-                 "rows are NAME, a number of grids and their directions");
-    snprintf(path, sizeof path, "%s/%s", state->folder, line->word[1]);
-    file = fopen(path, "w");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s'", path);
+    RITZ_REFUSE_IF(line->count < 3 || line->count > 4 ||
+                       strchr(line->word[1], '/') ||
+                       !ritz_text_whole(line->word[2], &count) || count < 1,
+                   RITZ_ERR_FORMAT,
+                   "rows are NAME, a number of grids and their directions");
+    RITZ_CHECK(cli_table_new(&table));
     for (int64_t k = 1; k <= count; k++)
         for (const char *at = directions; *at; at++)
-            fprintf(file, "%" PRId64 " %c\n", k, *at);
-done:
-    if (file)
-        fclose(file);
-    return status;
+            fprintf(table.file, "%" PRId64 " %c\n", k, *at);
+    return claims_save(state, line->word[1], "", &table);
 }
 
 static const struct statement {
@@ -182,84 +269,68 @@ static ritz_status run_line(claims_state *state, const claims_line *line)
     return RITZ_OK;
 }
 
+/* Cut the next line off a text, which is NULL behind the last. */
+static char *take_line(char **rest)
+{
+    char *line = *rest;
+    char *end = strchr(line, '\n');
+
+    if (end)
+        *end = '\0';
+    *rest = end ? end + 1 : NULL;
+    return line;
+}
+
 /* "text NAME": the lines that follow, indented as the first of them, become
  * that file. */
 static ritz_status write_text(const claims_state *state,
                               const claims_line *line, char **rest, int *number)
 {
-    ritz_status status = RITZ_OK;
-    char path[2 * PATH_MAX];
-    size_t indent = *rest ? strspn(*rest, " \t") : 0;
-    FILE *file = NULL;
+    const size_t indent = *rest ? strspn(*rest, " \t") : 0;
+    RITZ_OWN(cli_table) table = {0};
 
-    RITZ_FAIL_IF(line->count != 2 || strchr(line->word[1], '/'),
-                 RITZ_ERR_FORMAT, "a text has one name");
-    snprintf(path, sizeof path, "%s/%s", state->folder, line->word[1]);
-    file = fopen(path, "w");
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot write '%s'", path);
+    RITZ_REFUSE_IF(line->count != 2 || strchr(line->word[1], '/'),
+                   RITZ_ERR_FORMAT, "a text has one name");
+    RITZ_CHECK(cli_table_new(&table));
     while (*rest && (**rest == ' ' || **rest == '\t')) {
-        size_t blank = strspn(*rest, " \t");
-        char *end = strchr(*rest, '\n');
+        const char *text = take_line(rest);
+        const size_t blank = strspn(text, " \t");
 
-        if (end)
-            *end = '\0';
-        fprintf(file, "%s\n", *rest + (blank < indent ? blank : indent));
-        *rest = end ? end + 1 : NULL;
+        fprintf(table.file, "%s\n", text + (blank < indent ? blank : indent));
         ++*number;
     }
-done:
-    if (file && fclose(file) != 0 && status == RITZ_OK) {
-        ritz_record("cannot write '%s'", path);
-        status = RITZ_ERR_FILE;
-    }
-    return status;
+    return claims_save(state, line->word[1], "", &table);
 }
 
-static ritz_status run_text(claims_state *state, const char *path, char *text)
+/* Run the next line, and take those that belong to it. */
+static ritz_status run_next(claims_state *state, const char *path, char **rest,
+                            int *number)
 {
-    ritz_status status = RITZ_OK;
-    claims_line line = {.file = path};
-    char *rest = text;
-    int number = 0;
+    RITZ_OWN(claims_line) line = {.file = path, .number = *number};
 
-    while (rest && *rest) {
-        char *now = rest;
-        char *end = strchr(now, '\n');
-
-        if (end)
-            *end = '\0';
-        rest = end ? end + 1 : NULL;
-        line.number = ++number;
-        RITZ_TRY(claims_cut(state, now, &line));
-        if (line.count > 0 && strcmp(line.word[0], "text") == 0)
-            RITZ_TRY(write_text(state, &line, &rest, &number));
-        else if (line.count > 0)
-            RITZ_TRY(run_line(state, &line));
-        claims_line_free(&line);
-    }
-done:
-    claims_line_free(&line);
-    if (status != RITZ_OK) {
-        char where[PATH_MAX + 32];
-
-        snprintf(where, sizeof where, "%s:%d", path, line.number);
-        status = ritz_context(status, where);
-    }
-    return status;
+    RITZ_CHECK(cut_line(state, take_line(rest), &line));
+    if (line.count == 0)
+        return RITZ_OK;
+    return strcmp(line.word[0], "text") == 0
+               ? write_text(state, &line, rest, number)
+               : run_line(state, &line);
 }
 
 ritz_status claims_file(claims_state *state, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    char folder[PATH_MAX] = ".";
-    RITZ_OWN_ARRAY char *text = NULL;
+    char where[PATH_MAX + 32];
+    RITZ_OWN_ARRAY char *text = NULL, *folder = NULL;
+    int number = 0;
 
-    if (slash)
-        snprintf(folder, sizeof folder, "%.*s", (int)(slash - path + 1), path);
+    RITZ_CHECK(ritz_path_folder(path, &folder));
     RITZ_REFUSE_IF(!realpath(folder, state->here), RITZ_ERR_FILE,
                    "there is no folder '%s'", folder);
     state->source[0] = '\0';
     state->skipping = false;
     RITZ_CHECK(ritz_text_read(path, &text));
-    return run_text(state, path, text);
+    for (char *rest = text; rest && *rest;) {
+        snprintf(where, sizeof where, "%s:%d", path, ++number);
+        RITZ_CHECK_IN(where, run_next(state, path, &rest, &number));
+    }
+    return RITZ_OK;
 }

@@ -5,6 +5,7 @@
 #ifndef RITZ_TOOLS_CLAIMS_CLAIMS_H
 #define RITZ_TOOLS_CLAIMS_CLAIMS_H
 
+#include "cli/cli_table.h"
 #include "cli/sink.h"
 
 #include <limits.h>
@@ -37,16 +38,6 @@ typedef struct claims_state {
     int64_t holds, fails, skipped;
 } claims_state;
 
-/**
- * Cut a line into words: blanks part them, "..." and '...' keep them together,
- * a word that begins with # ends the line, $DATA and $HERE stand for folders.
- *
- * @return RITZ_ERR_FORMAT for a quote that is not closed
- */
-ritz_status claims_cut(const claims_state *state, const char *text,
-                       claims_line *line);
-void claims_line_free(claims_line *line);
-
 /** Run all lines of a file. @return RITZ_ERR_FORMAT if it is not understood */
 ritz_status claims_file(claims_state *state, const char *path);
 
@@ -61,6 +52,10 @@ const json_t *claims_find(const json_t *answer, const char *path, int64_t more);
 
 /** Compare the answer with "expect PATH ..." and tell. */
 ritz_status claims_expect(claims_state *state, const claims_line *line);
+
+/** Write a text as NAME and its ending into the folder of the state. */
+ritz_status claims_save(const claims_state *state, const char *name,
+                        const char *ending, cli_table *table);
 
 /**
  * "beam NAME --elements N ...": NAME.k.mtx, NAME.m.mtx, NAME.bdf and NAME.dofs

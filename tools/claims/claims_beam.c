@@ -5,10 +5,11 @@
  */
 #include "claims/claims.h"
 
+#include "base/alloc.h"
+
 #include <ritz/base.h>
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { NODE = 3, SIDE = 2 * NODE };
@@ -190,46 +191,27 @@ static int64_t put_entries(const beam *b, double *val, FILE *file)
     return count;
 }
 
-/* A file of the folder; NULL with a sentence. */
-static FILE *open_part(const claims_state *state, const char *name,
-                       const char *end)
-{
-    char path[2 * PATH_MAX];
-    FILE *file = NULL;
-
-    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, end);
-    file = fopen(path, "w");
-    if (!file)
-        ritz_record("cannot write '%s'", path);
-    return file;
-}
-
 /* K or M as Matrix Market. */
 static ritz_status put_matrix(const claims_state *state, const char *name,
                               bool mass, const beam *b, double A[SIDE][SIDE])
 {
-    ritz_status status = RITZ_OK;
     const int64_t dofs = NODE * (b->elements + 1);
+    RITZ_OWN_ARRAY double *val = NULL;
+    RITZ_OWN(cli_table) table = {0};
     int64_t n = 0;
-    double *val = calloc((size_t)(SIDE * dofs), sizeof *val);
-    FILE *file = open_part(state, name, mass ? ".m.mtx" : ".k.mtx");
 
-    RITZ_FAIL_IF(!val || !file, RITZ_ERR_FILE, "cannot write beam '%s'", name);
+    RITZ_CHECK_NEW(val, SIDE * dofs);
+    RITZ_CHECK(cli_table_new(&table));
     add_elements(b, A, val);
     if (mass)
         add_tip(b, val);
     for (int64_t i = 0; i < dofs; i++)
         n += row_of(b, i) >= 0;
-    fprintf(file, "%%%%MatrixMarket matrix coordinate real symmetric\n");
-    fprintf(file, "%" PRId64 " %" PRId64 " %" PRId64 "\n", n, n,
+    fprintf(table.file, "%%%%MatrixMarket matrix coordinate real symmetric\n");
+    fprintf(table.file, "%" PRId64 " %" PRId64 " %" PRId64 "\n", n, n,
             put_entries(b, val, NULL));
-    put_entries(b, val, file);
-    RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot write beam '%s'", name);
-done:
-    free(val);
-    if (file)
-        fclose(file);
-    return status;
+    put_entries(b, val, table.file);
+    return claims_save(state, name, mass ? ".m.mtx" : ".k.mtx", &table);
 }
 
 /* GRID cards, and what each row is. */
@@ -237,24 +219,19 @@ static ritz_status put_names(const claims_state *state, const char *name,
                              const beam *b)
 {
     static const int direction[NODE] = {1, 2, 6};
-    ritz_status status = RITZ_OK;
-    FILE *grids = open_part(state, name, ".bdf");
-    FILE *dofs = open_part(state, name, ".dofs");
+    RITZ_OWN(cli_table) grids = {0}, dofs = {0};
 
-    RITZ_FAIL_IF(!grids || !dofs, RITZ_ERR_FILE, "cannot write '%s.bdf'", name);
+    RITZ_CHECK(cli_table_new(&grids));
+    RITZ_CHECK(cli_table_new(&dofs));
     for (int64_t k = 0; k <= b->elements; k++)
-        fprintf(grids, "GRID,%" PRId64 ",,%.17g,0.,0.\n", b->first + k,
+        fprintf(grids.file, "GRID,%" PRId64 ",,%.17g,0.,0.\n", b->first + k,
                 b->offset + b->length * (double)k / (double)b->elements);
     for (int64_t dof = 0; dof < NODE * (b->elements + 1); dof++)
         if (row_of(b, dof) >= 0)
-            fprintf(dofs, "%" PRId64 " %d\n", b->first + dof / NODE,
+            fprintf(dofs.file, "%" PRId64 " %d\n", b->first + dof / NODE,
                     direction[dof % NODE]);
-done:
-    if (grids)
-        fclose(grids);
-    if (dofs)
-        fclose(dofs);
-    return status;
+    RITZ_CHECK(claims_save(state, name, ".bdf", &grids));
+    return claims_save(state, name, ".dofs", &dofs);
 }
 
 ritz_status claims_beam(claims_state *state, const claims_line *line)

@@ -71,46 +71,29 @@ const json_t *claims_find(const json_t *answer, const char *path, int64_t more)
 }
 
 /* As what a frequency in Hz was published: "as lambda". */
-static double as_hertz(double hertz)
-{
-    return hertz;
-}
+static const char *const forms[] = {"hertz", "omega", "lambda", "beta"};
 
-static double as_omega(double hertz)
-{
-    return 2.0 * RITZ_PI * hertz;
-}
+enum { NUM_FORMS = sizeof forms / sizeof *forms };
 
-static double as_lambda(double hertz)
+/* The form of a claim that has "as NAME" behind its path; NUM_FORMS: unknown. */
+static size_t find_form(const claims_line *line)
 {
-    return as_omega(hertz) * as_omega(hertz);
-}
+    size_t k = 0;
 
-/* of a beam of E I = rho A = L = 1 */
-static double as_beta(double hertz)
-{
-    return sqrt(as_omega(hertz));
-}
-
-static const struct form {
-    const char *name;
-    double (*of)(double hertz);
-} forms[] = {
-    {"hertz", as_hertz},
-    {"omega", as_omega},
-    {"lambda", as_lambda},
-    {"beta", as_beta},
-};
-
-/* The form of a claim that has "as NAME" behind its path; NULL: unknown. */
-static const struct form *find_form(const claims_line *line)
-{
     if (line->count < 4 || strcmp(line->word[2], "as") != 0)
-        return &forms[0];
-    for (size_t k = 0; k < sizeof forms / sizeof *forms; k++)
-        if (strcmp(forms[k].name, line->word[3]) == 0)
-            return &forms[k];
-    return NULL;
+        return 0;
+    while (k < NUM_FORMS && strcmp(forms[k], line->word[3]) != 0)
+        k++;
+    return k;
+}
+
+/* omega = 2 pi f, lambda = omega^2; beta of a beam of E I = rho A = L = 1. */
+static double convert_hertz(double hertz, size_t form)
+{
+    const double omega = 2.0 * RITZ_PI * hertz;
+    const double values[NUM_FORMS] = {hertz, omega, omega * omega, sqrt(omega)};
+
+    return values[form];
 }
 
 /* How a value may differ. */
@@ -213,12 +196,12 @@ static void name_item(const char *path, int64_t more, size_t size, char *out)
 
 /* One number, `more` items beyond the path. */
 static ritz_status expect_number(claims_state *state, const claims_line *line,
-                                 int64_t more, const char *text,
-                                 const struct form *form, const bound *allowed)
+                                 int64_t more, const char *text, size_t form,
+                                 const bound *allowed)
 {
     const json_t *at = claims_find(state->answer, line->word[1], more);
     double expected = 0.0;
-    double value = form->of(json_number_value(at));
+    double value = convert_hertz(json_number_value(at), form);
     char what[160], found[160];
 
     RITZ_REFUSE_IF(text && !ritz_text_real(text, &expected), RITZ_ERR_FORMAT,
@@ -271,7 +254,7 @@ static ritz_status read_bound(const claims_line *line, int count, bound *out)
 
 ritz_status claims_expect(claims_state *state, const claims_line *line)
 {
-    const struct form *form = find_form(line);
+    const size_t form = find_form(line);
     bool named = line->count > 3 && strcmp(line->word[2], "as") == 0;
     int first = named ? 4 : 2;
     int count = line->count - 2 - first;
@@ -290,7 +273,7 @@ ritz_status claims_expect(claims_state *state, const claims_line *line)
         expect_text(state, line);
         return RITZ_OK;
     }
-    RITZ_REFUSE_IF(!form, RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(form == NUM_FORMS, RITZ_ERR_FORMAT,
                    "'%.40s' is none of hertz, omega, lambda, beta",
                    line->word[3]);
     RITZ_CHECK(read_bound(line, count, &allowed));
