@@ -56,23 +56,21 @@ done:
 
 static void assemble(const halves *of, ritz_configuration *c)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     assert_ok(scene_of_two_beams(false, &scene));
     assert_ok(make_stage(of, &scene, &stage));
     assert_ok(ritz_stage_assemble(&stage, NULL, c));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* A body alone is what macneal-rubin makes of it, but for the kind. */
 static void a_body_alone_is_that_of_macneal_rubin(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     int64_t ends[] = {0, 9};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis one = {0}, two = {0};
+    RITZ_OWN(ritz_basis) one = {0}, two = {0};
 
     (void)state;
     assert_ok(spring_chain(10, true, &chain));
@@ -89,16 +87,13 @@ static void a_body_alone_is_that_of_macneal_rubin(void **state)
                                                       : RITZ_COLUMN_FORCE);
     assert_int_equal(two.columns.dof[5], 9);
     assert_string_equal(two.origin.reference, "Rixen2004");
-    ritz_basis_free(&one);
-    ritz_basis_free(&two);
-    ritz_component_free(&chain);
 }
 
 /* Two bodies, which are taken, fixed to each other at their ports 'end'. */
 static void join_ends(ritz_reduced body[2], ritz_configuration *c)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     assert_ok(ritz_scene_parse(
         "two.yaml",
@@ -111,8 +106,6 @@ static void join_ends(ritz_reduced body[2], ritz_configuration *c)
         &scene));
     assert_ok(ritz_stage_from(&scene, body, &stage));
     assert_ok(ritz_stage_assemble(&stage, NULL, c));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /*
@@ -123,18 +116,17 @@ static void join_ends(ritz_reduced body[2], ritz_configuration *c)
 static void a_force_alone_has_a_negative_eigenvalue(void **state)
 {
     ritz_reduced body[2] = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     for (int k = 0; k < 2; k++) {
-        ritz_component mass = {0};
+        RITZ_OWN(ritz_component) mass = {0};
 
         assert_ok(spring_chain(1, false, &mass));
         assert_ok(add_port(&mass, "end", 1));
         assert_ok(
             reduce_with(&mass, &ritz_method_dual_craig_bampton, 0, &body[k]));
         assert_int_equal(body[k].K.ncol, 1);
-        ritz_component_free(&mass);
     }
     join_ends(body, &c);
     assert_int_equal(c.K.ncol, 1);
@@ -146,7 +138,6 @@ static void a_force_alone_has_a_negative_eigenvalue(void **state)
     assert_near(c.errors.item[0].value, 1.0, 0.0);
     assert_near(c.errors.item[0].limit, 0.0, 0.0);
     assert_string_equal(c.errors.item[0].where, "first: mode 1, -5.033 Hz");
-    ritz_configuration_free(&c);
 }
 
 /*
@@ -194,7 +185,7 @@ static void systems_are_those_of_the_formula(void **state)
     (void)state;
     for (size_t n = 0; n < sizeof systems / sizeof *systems; n++) {
         const struct published *s = &systems[n];
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         print_message("%s\n", s->what);
         assemble(&s->of, &c);
@@ -205,7 +196,6 @@ static void systems_are_those_of_the_formula(void **state)
             assert_near(ritz_eigen_hertz(c.lambda[k]), s->hertz[k],
                         5e-10 + system_error * fabs(s->hertz[k]));
         assert_near(c.errors.item[0].value, (double)s->negative, 0.0);
-        ritz_configuration_free(&c);
     }
 }
 
@@ -221,7 +211,7 @@ static void there_are_as_many_negative_eigenvalues_as_forces(void **state)
             {&ritz_method_dual_craig_bampton, &ritz_method_dual_craig_bampton},
             {modes, modes},
             modes % 2 == 1};
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         assemble(&of, &c);
         assert_near(c.errors.item[0].value, 3.0, 0.0);
@@ -229,7 +219,6 @@ static void there_are_as_many_negative_eigenvalues_as_forces(void **state)
             assert_true(fabs(c.lambda[k - 1]) <=
                             fabs(c.lambda[k]) * (1.0 + DBL_EPSILON) ||
                         k < c.num_rigid);
-        ritz_configuration_free(&c);
     }
 }
 
@@ -240,7 +229,7 @@ static void without_force_columns_joints_are_displacements(void **state)
         {&ritz_method_dual_craig_bampton, &ritz_method_dual_craig_bampton},
         {9, 9},
         false};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assemble(&of, &c);
@@ -248,7 +237,6 @@ static void without_force_columns_joints_are_displacements(void **state)
     assert_int_equal(c.errors.count, 0);
     assert_near(ritz_eigen_hertz(c.lambda[11]), 4.231174895,
                 5e-10 + system_error * 4.2);
-    ritz_configuration_free(&c);
 }
 
 /*
@@ -262,11 +250,11 @@ static void forces_without_mass_are_springs(void **state)
     static const int64_t row[] = {0, 1, 0, 1}, col[] = {0, 0, 1, 1};
     static const double k[] = {5.0, -2.0, -2.0, 2.0};
     ritz_reduced body[2] = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     for (int n = 0; n < 2; n++) {
-        ritz_component two = {0};
+        RITZ_OWN(ritz_component) two = {0};
         int64_t zero = 0;
 
         assert_ok(spring_chain(2, false, &two));
@@ -279,23 +267,21 @@ static void forces_without_mass_are_springs(void **state)
         assert_ok(
             reduce_with(&two, &ritz_method_dual_craig_bampton, 1, &body[n]));
         assert_int_equal(body[n].K.ncol, 2);
-        ritz_component_free(&two);
     }
     join_ends(body, &c);
     assert_int_equal(c.K.ncol, 2);
     assert_near(c.errors.item[0].value, 0.0, 0.0);
     assert_near(c.lambda[0], 3.0, 64 * DBL_EPSILON);
     assert_near(c.lambda[1], 5.0, 64 * DBL_EPSILON);
-    ritz_configuration_free(&c);
 }
 
 /* u = P x fits at the joint only weakly, and in the low modes nearly. */
 static void the_joint_of_low_modes_nearly_closes(void **state)
 {
     const halves of = systems[0].of;
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -320,15 +306,12 @@ static void the_joint_of_low_modes_nearly_closes(void **state)
         ritz_dense_free(&u[0]);
         ritz_dense_free(&u[1]);
     }
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void modes_of_such_a_system_are_not_chosen_from(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_comparison none = {0};
 
     (void)state;
@@ -336,17 +319,15 @@ static void modes_of_such_a_system_are_not_chosen_from(void **state)
     assert_ok(make_stage(&systems[0].of, &scene, &stage));
     assert_fails(ritz_compare(&stage, &none), RITZ_ERR_ARGUMENT,
                  "component 'A' is reduced by dual-craig-bampton");
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void an_unstable_model_has_no_response(void **state)
 {
     const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
     const ritz_grid grid = {.from_hz = 0.01, .to_hz = 1.0, .count = 5};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
     ritz_response none = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_io) io = {0};
 
     (void)state;
     assemble(&systems[0].of, &c);
@@ -357,23 +338,18 @@ static void an_unstable_model_has_no_response(void **state)
                 &(ritz_second_order){&c.K, &c.M, NULL, NULL, &io}, &damping),
             NULL, 0.0, 0.0, &grid, &none),
         RITZ_ERR_ARGUMENT, "negative eigenvalue");
-    ritz_io_free(&io);
-    ritz_configuration_free(&c);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
     assert_ok(make_stage(&systems[1].of, &scene, &stage));
     assert_survives_every_allocation(ritz_stage_assemble(&stage, NULL, &c));
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -20,18 +20,17 @@
 static void assemble(const char *text, const double *setting,
                      ritz_component *out)
 {
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
     folder_parse(text, &scene);
     assert_ok(ritz_assemble_full(&scene, setting, out));
-    ritz_scene_free(&scene);
 }
 
 /* Elements first..first + count - 1 of the beam of four; a port a node. */
 static void store_piece(const char *file, int64_t first, int64_t count)
 {
     frame_section section = frame_mcdaniel;
-    ritz_component piece = {0};
+    RITZ_OWN(ritz_component) piece = {0};
 
     section.offset = 0.5 * (double)first;
     assert_ok(frame_component(count, 0.5, &section, first == 0, false, first,
@@ -44,7 +43,6 @@ static void store_piece(const char *file, int64_t first, int64_t count)
             assert_ok(add_port(&piece, name, node));
     }
     folder_store(file, &piece);
-    ritz_component_free(&piece);
 }
 
 /* table 3.1; half a unit of the last digit */
@@ -54,19 +52,18 @@ static void assert_cantilever(const ritz_component *system)
                                    0.544552, 1.012841, 1.537065, 1.626627,
                                    2.578744, 2.792127, 4.037661, 4.231175};
     const ritz_span all = {.modes = 12};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     assert_int_equal(system->num_dofs, 12);
     assert_ok(ritz_eigen_sparse(&system->K, &system->M, &all, &pairs));
     assert_int_equal(pairs.Phi.ncol, 12);
     for (int k = 0; k < 12; k++)
         assert_near(ritz_eigen_hertz(pairs.lambda[k]), hertz[k], 5e-7);
-    ritz_pairs_free(&pairs);
 }
 
 static void three_pieces_make_the_cantilever(void **state)
 {
-    ritz_component system = {0};
+    RITZ_OWN(ritz_component) system = {0};
 
     (void)state;
     store_piece("a.h5", 0, 1);
@@ -80,7 +77,6 @@ static void three_pieces_make_the_cantilever(void **state)
              "  - {name: two, between: [C/node3, B/node3], type: fixed}\n",
              NULL, &system);
     assert_cantilever(&system);
-    ritz_component_free(&system);
 }
 
 /* Grid 77 of a piece, twice the first dof and thrice the last. */
@@ -103,7 +99,8 @@ done:
 /* Of each body, by the dofs that its own have become in the system. */
 static void what_bodies_recover_the_system_recovers(void **state)
 {
-    ritz_component piece = {0}, system = {0};
+    RITZ_OWN(ritz_component) system = {0};
+    ritz_component piece = {0};
 
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -126,7 +123,7 @@ static void what_bodies_recover_the_system_recovers(void **state)
     assert_int_equal(system.recovery.dof[0].grid, 77);
     assert_int_equal(system.recovery.dof[1].grid, 177); /* B's are moved on */
     for (int64_t k = 0; k < 2; k++) {
-        ritz_dense row = {0}, e = {0};
+        RITZ_OWN(ritz_dense) row = {0}, e = {0};
         int64_t first = k == 0 ? row_of_dof(&system, (ritz_dof){5, 1})
                                : row_of_dof(&system, (ritz_dof){105, 1});
         int64_t shared = row_of_dof(&system, (ritz_dof){6, 1});
@@ -142,16 +139,13 @@ static void what_bodies_recover_the_system_recovers(void **state)
         e.val[last] = 1.0;
         assert_ok(ritz_sparse_mul(&system.recovery.G, &e, &row));
         assert_near(row.val[k], 23.0, 0.0);
-        ritz_dense_free(&e);
-        ritz_dense_free(&row);
     }
-    ritz_component_free(&system);
 }
 
 /* The rank of the constraints counts, not their number. */
 static void a_joint_stated_twice_binds_once(void **state)
 {
-    ritz_component system = {0};
+    RITZ_OWN(ritz_component) system = {0};
 
     (void)state;
     store_piece("a.h5", 0, 2);
@@ -164,7 +158,6 @@ static void a_joint_stated_twice_binds_once(void **state)
              "  - {name: two, between: [B/node2, A/node2], type: fixed}\n",
              NULL, &system);
     assert_cantilever(&system);
-    ritz_component_free(&system);
 }
 
 /*
@@ -184,8 +177,8 @@ static void a_loop_of_joints_closes(void **state)
         "  - {name: three, between: [C/node2, A/node2], type: fixed}\n";
     const ritz_span all = {.modes = 18};
     char closed[1024];
-    ritz_component open = {0}, round = {0};
-    ritz_pairs one = {0}, two = {0};
+    RITZ_OWN(ritz_component) open = {0}, round = {0};
+    RITZ_OWN(ritz_pairs) one = {0}, two = {0};
 
     (void)state;
     store_piece("a.h5", 0, 2);
@@ -201,16 +194,12 @@ static void a_loop_of_joints_closes(void **state)
     for (int64_t k = 0; k < 18; k++)
         assert_near(two.lambda[k], one.lambda[k],
                     DBL_EPSILON * (one.lambda[17] + 50.0 * one.lambda[k]));
-    ritz_pairs_free(&one);
-    ritz_pairs_free(&two);
-    ritz_component_free(&open);
-    ritz_component_free(&round);
 }
 
 /* A port of all four free grids, the last one first if `turned`. */
 static void store_whole(const char *file, bool turned, int64_t first_grid)
 {
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_port *port = NULL;
 
     assert_ok(frame_component(4, 0.5, &frame_mcdaniel, true, false, first_grid,
@@ -229,13 +218,12 @@ static void store_whole(const char *file, bool turned, int64_t first_grid)
     for (int64_t k = 0; k < 3; k++)
         port->axes[4 * k] = 1.0;
     folder_store(file, &beam);
-    ritz_component_free(&beam);
 }
 
 /* Twice as stiff, twice as heavy: a beam laid on itself moves as one. */
 static void four_grids_pair_by_position(void **state)
 {
-    ritz_component system = {0};
+    RITZ_OWN(ritz_component) system = {0};
 
     (void)state;
     store_whole("a.h5", false, 0);
@@ -247,7 +235,6 @@ static void four_grids_pair_by_position(void **state)
              "  - {name: all, between: [A/all, B/all], type: fixed}\n",
              NULL, &system);
     assert_cantilever(&system);
-    ritz_component_free(&system);
 }
 
 static const char halves[] =
@@ -260,9 +247,10 @@ static const char halves[] =
 static void a_reduced_model_is_refused(void **state)
 {
     const ritz_stamp stamp = {.command = "test"};
-    ritz_scene scene = {0};
-    ritz_component body = {0}, none = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    ritz_component none = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     store_piece("a.h5", 0, 2);
@@ -274,30 +262,24 @@ static void a_reduced_model_is_refused(void **state)
     folder_parse(halves, &scene);
     assert_fails(ritz_assemble_full(&scene, NULL, &none), RITZ_ERR_ARGUMENT,
                  "b.h5' is reduced already, its full model is wanted");
-    ritz_reduced_free(&reduced);
-    ritz_component_free(&body);
-    ritz_scene_free(&scene);
 }
 
 static ritz_status assemble_and_free(const ritz_scene *scene)
 {
-    ritz_component system = {0};
-    ritz_status status = ritz_assemble_full(scene, NULL, &system);
+    RITZ_OWN(ritz_component) system = {0};
 
-    ritz_component_free(&system);
-    return status;
+    return ritz_assemble_full(scene, NULL, &system);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
     (void)state;
     store_piece("a.h5", 0, 2);
     store_piece("b.h5", 2, 2);
     folder_parse(halves, &scene);
     assert_survives_every_allocation(assemble_and_free(&scene));
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

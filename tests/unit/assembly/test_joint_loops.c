@@ -28,14 +28,13 @@ typedef struct linkage {
 static ritz_status assemble(const linkage *l, const ritz_method *method,
                             const char *at, ritz_configuration *out)
 {
-    ritz_status status = RITZ_OK;
     char text[3000] = "scene: linkage\ncomponents:\n";
     size_t used = strlen(text);
     double setting[8] = {0.0};
     ritz_component body = {0};
     ritz_reduced part[MOST_BODIES] = {0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     for (int64_t k = 0; k < l->count; k++) {
         const double place[2][3] = {{0.0},
@@ -53,18 +52,15 @@ static ritz_status assemble(const linkage *l, const ritz_method *method,
     assert_true(scene.num_sweeps <= 8);
     assert_ok(ritz_scene_settings(&scene, at, setting));
     assert_ok(ritz_stage_from(&scene, part, &stage));
-    RITZ_TRY(ritz_stage_assemble(&stage, setting, out));
-done:
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    return status;
+    RITZ_CHECK(ritz_stage_assemble(&stage, setting, out));
+    return RITZ_OK;
 }
 
 /* Of rigid links rows say things twice; of elastic ones each says its own. */
 static void assert_mobility(const linkage *l, const char *at, int64_t rank,
                             int64_t motions)
 {
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     assert_ok(assemble(l, &ritz_method_rigid, at, &c));
     assert_int_equal(c.rank, rank);
@@ -73,7 +69,6 @@ static void assert_mobility(const linkage *l, const char *at, int64_t rank,
     ritz_configuration_free(&c);
     assert_ok(assemble(l, &ritz_method_full, at, &c));
     assert_int_equal(c.num_rigid, 6 + motions);
-    ritz_configuration_free(&c);
 }
 
 /* Ground A, crank B, coupler C, rocker D: a parallelogram. */
@@ -119,7 +114,7 @@ static void springs_in_a_loop_share_its_motion(void **state)
         "- {name: d, between: [D/g1, A/g2], type: hinge, axis: [0, 0, 1], "
         "state: caged, stiffness: 1, damping: 0.5}\n";
     linkage l = four_bar;
-    ritz_configuration a = {0}, b = {0};
+    RITZ_OWN(ritz_configuration) a = {0}, b = {0};
 
     (void)state;
     l.joints = one;
@@ -134,8 +129,6 @@ static void springs_in_a_loop_share_its_motion(void **state)
                 1e3 * DBL_EPSILON * a.lambda[6]);
     assert_near(ritz_dense_col(&b.D, 6)[6], 0.5 * a.lambda[6],
                 1e3 * DBL_EPSILON * a.lambda[6]);
-    ritz_configuration_free(&a);
-    ritz_configuration_free(&b);
 }
 
 /*
@@ -268,7 +261,7 @@ static void two_spherical_joints_make_a_hinge(void **state)
     static const char hinge[] =
         "- {name: s, between: [A/g1, B/g1], type: hinge, axis: [1, 2, 2]}\n";
     linkage l = {.count = 2, .end = {{1, 2, 2}, {1, 2, 2}}, .joints = balls};
-    ritz_configuration one = {0}, two = {0};
+    RITZ_OWN(ritz_configuration) one = {0}, two = {0};
 
     (void)state;
     assert_mobility(&l, "", 5, 1);
@@ -276,8 +269,6 @@ static void two_spherical_joints_make_a_hinge(void **state)
     l.joints = hinge;
     assert_ok(assemble(&l, &ritz_method_rigid, "", &two));
     assert_int_equal(one.K.ncol, two.K.ncol);
-    ritz_configuration_free(&one);
-    ritz_configuration_free(&two);
 }
 
 /* A bushing beside a hinge is the cage of that hinge, and holds no position. */

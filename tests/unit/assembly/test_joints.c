@@ -58,8 +58,8 @@ static ritz_configuration join_by(const rig *r, const ritz_method *method,
 {
     char text[4000];
     double setting[16] = {0.0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_configuration c = {0};
 
     write_scene(r, joints, text);
@@ -68,8 +68,6 @@ static ritz_configuration join_by(const rig *r, const ritz_method *method,
     assert_ok(ritz_scene_settings(&scene, at, setting));
     stage_of(r, &scene, method, &stage);
     assert_ok(ritz_stage_assemble(&stage, setting, &c));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
     return c;
 }
 
@@ -256,7 +254,7 @@ static void a_cage_damps(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        ritz_configuration c = join(&r, cases[k].joint, "");
+        RITZ_OWN(ritz_configuration) c = join(&r, cases[k].joint, "");
         double sum = 0.0;
 
         assert_non_null(c.D.val);
@@ -267,7 +265,6 @@ static void a_cage_damps(void **state)
             assert_near(j < cases[k].rigid ? d : 0.0, 0.0, rounding);
         }
         assert_near(sum, cases[k].damping, rounding * cases[k].damping);
-        ritz_configuration_free(&c);
     }
     free_rig(&r);
 }
@@ -336,11 +333,10 @@ static void locked_joints_are_fixed_ones(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof locked / sizeof *locked; k++) {
-        ritz_configuration two = join(&r, locked[k], "");
+        RITZ_OWN(ritz_configuration) two = join(&r, locked[k], "");
 
         assert_int_equal(two.rank, 6);
         assert_alike(&one, &two, elastic);
-        ritz_configuration_free(&two);
     }
     ritz_configuration_free(&one);
     free_rig(&r);
@@ -460,11 +456,12 @@ static void stiff_cages_approach_locked_joints(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        ritz_configuration locked = join(&r, cases[k].locked, cases[k].at);
+        RITZ_OWN(ritz_configuration)
+        locked = join(&r, cases[k].locked, cases[k].at);
         double error[2] = {0.0, 0.0};
 
         for (int i = 0; i < 2; i++) {
-            ritz_configuration caged = {0};
+            RITZ_OWN(ritz_configuration) caged = {0};
 
             snprintf(joint, sizeof joint,
                      HELD("%s, state: caged, stiffness: %g"), cases[k].caged,
@@ -474,11 +471,9 @@ static void stiff_cages_approach_locked_joints(void **state)
             for (int64_t j = 6; j < 20; j++) /* the low ones */
                 error[i] = fmax(error[i],
                                 fabs(1.0 - caged.lambda[j] / locked.lambda[j]));
-            ritz_configuration_free(&caged);
         }
         assert_true(error[0] < 1e-2 && error[0] > 1e-7);
         assert_near(error[1] / error[0], 0.1, 1e-3);
-        ritz_configuration_free(&locked);
     }
     free_rig(&r);
 }
@@ -627,7 +622,7 @@ static void a_turned_scene_is_the_same(void **state)
     }
     for (int k = 0; k < NUM_SAMPLES; k++) {
         char here[400], there[400];
-        ritz_configuration one = {0}, two = {0};
+        RITZ_OWN(ritz_configuration) one = {0}, two = {0};
 
         write_sample(&samples[k], unit, here, sizeof here);
         write_sample(&samples[k], R, there, sizeof there);
@@ -637,8 +632,6 @@ static void a_turned_scene_is_the_same(void **state)
         assert_alike(&one, &two, elastic);
         assert_near(damping_of(&two), damping_of(&one),
                     elastic * damping_of(&one));
-        ritz_configuration_free(&one);
-        ritz_configuration_free(&two);
     }
     free_rig(&r);
     free_rig(&turned);
@@ -651,7 +644,7 @@ static void ends_can_be_exchanged(void **state)
     (void)state;
     for (int k = 0; k < NUM_SAMPLES; k++) {
         char here[400], there[400];
-        ritz_configuration one = {0}, two = {0};
+        RITZ_OWN(ritz_configuration) one = {0}, two = {0};
 
         write_sample(&samples[k], unit, here, sizeof here);
         snprintf(there, sizeof there,
@@ -662,8 +655,6 @@ static void ends_can_be_exchanged(void **state)
         assert_alike(&one, &two, elastic);
         assert_near(damping_of(&two), damping_of(&one),
                     elastic * damping_of(&one));
-        ritz_configuration_free(&one);
-        ritz_configuration_free(&two);
     }
     free_rig(&r);
 }
@@ -675,8 +666,8 @@ static ritz_configuration join_all_modes(const rig *r, const char *joints,
     char text[4000];
     double setting[16] = {0.0};
     ritz_reduced body[MOST_BODIES] = {0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_configuration c = {0};
 
     write_scene(r, joints, text);
@@ -687,8 +678,6 @@ static ritz_configuration join_all_modes(const rig *r, const char *joints,
             reduce_with(&r->body[k], &ritz_method_craig_bampton, 18, &body[k]));
     assert_ok(ritz_stage_from(&scene, body, &stage));
     assert_ok(ritz_stage_assemble(&stage, setting, &c));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
     return c;
 }
 
@@ -698,7 +687,7 @@ static ritz_component join_full(const rig *r, const char *joints,
 {
     char text[4000], file[8];
     double setting[16] = {0.0};
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
     ritz_component system = {0};
 
     for (int64_t k = 0; k < r->count; k++) {
@@ -709,7 +698,6 @@ static ritz_component join_full(const rig *r, const char *joints,
     folder_parse(text, &scene);
     assert_ok(ritz_scene_settings(&scene, at, setting));
     assert_ok(ritz_assemble_full(&scene, setting, &system));
-    ritz_scene_free(&scene);
     return system;
 }
 
@@ -717,8 +705,8 @@ static ritz_component join_full(const rig *r, const char *joints,
 static void assert_full(const ritz_configuration *c,
                         const ritz_component *system)
 {
-    ritz_dense K = {0}, M = {0}, D = {0}, modal = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, modal = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     double sum = 0.0;
 
     assert_int_equal(system->num_dofs, c->K.ncol);
@@ -737,11 +725,6 @@ static void assert_full(const ritz_configuration *c,
             sum += ritz_dense_col(&modal, j)[j];
         assert_near(sum, damping_of(c), elastic * sum);
     }
-    ritz_pairs_free(&pairs);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&D);
-    ritz_dense_free(&modal);
 }
 
 static void full_order_agrees(void **state)
@@ -751,15 +734,13 @@ static void full_order_agrees(void **state)
     (void)state;
     for (int k = 0; k < NUM_SAMPLES; k++) {
         char joint[400];
-        ritz_configuration c = {0};
-        ritz_component system = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
+        RITZ_OWN(ritz_component) system = {0};
 
         write_sample(&samples[k], unit, joint, sizeof joint);
         c = join_all_modes(&r, joint, samples[k].at);
         system = join_full(&r, joint, samples[k].at);
         assert_full(&c, &system);
-        ritz_configuration_free(&c);
-        ritz_component_free(&system);
     }
     free_rig(&r);
 }
@@ -786,14 +767,12 @@ static void several_swept_joints_agree_with_full_order(void **state)
 
     (void)state;
     for (int k = 0; k < 3; k++) {
-        ritz_configuration c = join_all_modes(&r, train, at[k]);
-        ritz_component system = join_full(&r, train, at[k]);
+        RITZ_OWN(ritz_configuration) c = join_all_modes(&r, train, at[k]);
+        RITZ_OWN(ritz_component) system = join_full(&r, train, at[k]);
 
         assert_int_equal(c.rank, 5 + 4 + 5);
         assert_int_equal(c.num_rigid, 6 + 4);
         assert_full(&c, &system);
-        ritz_configuration_free(&c);
-        ritz_component_free(&system);
     }
     free_rig(&r);
 }
@@ -847,8 +826,8 @@ static void cut_port(ritz_component *body, const char *name, int64_t kept)
 static void assert_refused(const rig *r, const char *joint, const char *words)
 {
     char text[4000];
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_configuration none = {0};
     const double setting[2] = {0.0, 0.0};
 
@@ -858,8 +837,6 @@ static void assert_refused(const rig *r, const char *joint, const char *words)
     assert_int_equal(ritz_stage_assemble(&stage, setting, &none),
                      RITZ_ERR_ARGUMENT);
     assert_string_equal(ritz_error_message(), words);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void ports_that_do_not_fit_are_refused(void **state)
@@ -899,20 +876,16 @@ static const double allocated[] = {20.0, -35.0};
 
 static ritz_status assemble_anew(const ritz_stage *stage)
 {
-    ritz_configuration c = {0};
-    ritz_status status = ritz_stage_assemble(stage, allocated, &c);
+    RITZ_OWN(ritz_configuration) c = {0};
 
-    ritz_configuration_free(&c);
-    return status;
+    return ritz_stage_assemble(stage, allocated, &c);
 }
 
 static ritz_status assemble_full_anew(const ritz_scene *scene)
 {
-    ritz_component system = {0};
-    ritz_status status = ritz_assemble_full(scene, allocated, &system);
+    RITZ_OWN(ritz_component) system = {0};
 
-    ritz_component_free(&system);
-    return status;
+    return ritz_assemble_full(scene, allocated, &system);
 }
 
 static void no_allocation_failure_leaks(void **state)

@@ -17,8 +17,8 @@ static void reduced_chain(ritz_reduced *out)
     static const double place[GRIDS][3] = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0},
                                            {3, 1, 1}, {4, 0, 1}, {5, 0, 0}};
     int64_t attached[] = {0, 1, 2, 3, 4, 5, 30, 31, 32, 33, 34, 35};
-    ritz_component body = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     const ritz_method *method = &ritz_method_craig_bampton;
 
@@ -43,8 +43,6 @@ static void reduced_chain(ritz_reduced *out)
     assert_ok(ritz_reduce(&body, &basis, out));
     assert_ok(ritz_measures_add(&out->estimates, "mode-1", 1e-9, nan(""), ""));
     assert_ok(ritz_measures_add(&out->errors, "mac", 1.0, nan(""), ""));
-    ritz_basis_free(&basis);
-    ritz_component_free(&body);
 }
 
 /* A(row(i), col(j)) of the whole is B(i, j); NULL: the same. */
@@ -97,7 +95,7 @@ static void same_but_moved(const ritz_reduced *a, int64_t count,
 
 static void columns_move_and_no_number_changes(void **state)
 {
-    ritz_reduced a = {0}, b = {0}, c = {0};
+    RITZ_OWN(ritz_reduced) a = {0}, b = {0}, c = {0};
     int64_t *at = NULL, *back = NULL;
     int64_t r = 0;
 
@@ -124,9 +122,6 @@ static void columns_move_and_no_number_changes(void **state)
                         (size_t)(a.T.nrow * r) * sizeof *a.T.val);
     free(at);
     free(back);
-    ritz_reduced_free(&a);
-    ritz_reduced_free(&b);
-    ritz_reduced_free(&c);
 }
 
 static void natural(const ritz_reduced *a, int64_t smallest, ritz_reduced *out)
@@ -142,8 +137,8 @@ static void natural(const ritz_reduced *a, int64_t smallest, ritz_reduced *out)
 static void a_prefix_is_galerkins_model_in_its_columns(void **state)
 {
     enum { ORDER = 17 };
-    ritz_reduced a = {0}, whole = {0}, prefix = {0};
-    ritz_pairs all = {0}, some = {0};
+    RITZ_OWN(ritz_reduced) a = {0}, whole = {0}, prefix = {0};
+    RITZ_OWN(ritz_pairs) all = {0}, some = {0};
     int64_t first[ORDER];
 
     (void)state;
@@ -158,17 +153,12 @@ static void a_prefix_is_galerkins_model_in_its_columns(void **state)
     assert_ok(ritz_eigen_dense(&prefix.K, &prefix.M, &some));
     for (int64_t j = 6; j < ORDER; j++)
         assert_true(some.lambda[j] >= all.lambda[j] * (1.0 - 1e-12));
-    ritz_pairs_free(&all);
-    ritz_pairs_free(&some);
-    ritz_reduced_free(&a);
-    ritz_reduced_free(&whole);
-    ritz_reduced_free(&prefix);
 }
 
 /* Errors of the whole are none of a prefix; those of its order are. */
 static void a_prefix_knows_what_was_noted_of_it_alone(void **state)
 {
-    ritz_reduced a = {0}, whole = {0}, prefix = {0}, again = {0};
+    RITZ_OWN(ritz_reduced) a = {0}, whole = {0}, prefix = {0}, again = {0};
 
     (void)state;
     reduced_chain(&a);
@@ -200,16 +190,13 @@ static void a_prefix_knows_what_was_noted_of_it_alone(void **state)
     assert_int_equal(again.errors.count, 1);
     assert_near(again.errors.item->value, 1.0, 0.0);
     assert_int_equal(again.nested.count, 2);
-    ritz_reduced_free(&a);
-    ritz_reduced_free(&whole);
-    ritz_reduced_free(&prefix);
-    ritz_reduced_free(&again);
 }
 
 static void what_is_no_prefix_is_refused(void **state)
 {
     const int64_t twice[] = {0, 1, 0}, far[] = {0, 99};
-    ritz_reduced a = {0}, whole = {0}, out = {0};
+    RITZ_OWN(ritz_reduced) a = {0}, whole = {0};
+    ritz_reduced out = {0};
 
     (void)state;
     reduced_chain(&a);
@@ -233,33 +220,26 @@ static void what_is_no_prefix_is_refused(void **state)
     assert_fails(ritz_nested_note(&whole, 14, "mac", nan("")),
                  RITZ_ERR_ARGUMENT, "which is no measure");
     assert_int_equal(whole.nested.count, 0);
-    ritz_reduced_free(&a);
-    ritz_reduced_free(&whole);
 }
 
 static ritz_status forget(const ritz_reduced *a)
 {
     const int64_t at[] = {5, 0, 3, 2};
-    ritz_status status = RITZ_OK;
-    ritz_reduced whole = {0}, prefix = {0};
+    RITZ_OWN(ritz_reduced) whole = {0}, prefix = {0};
 
-    RITZ_TRY(ritz_reduced_nest(a, 4, at, 2, &whole));
-    RITZ_TRY(ritz_nested_note(&whole, 3, "mac", 1.0));
-    RITZ_TRY(ritz_reduced_prefix(&whole, 3, &prefix));
-done:
-    ritz_reduced_free(&whole);
-    ritz_reduced_free(&prefix);
-    return status;
+    RITZ_CHECK(ritz_reduced_nest(a, 4, at, 2, &whole));
+    RITZ_CHECK(ritz_nested_note(&whole, 3, "mac", 1.0));
+    RITZ_CHECK(ritz_reduced_prefix(&whole, 3, &prefix));
+    return RITZ_OK;
 }
 
 static void nesting_survives_every_allocation(void **state)
 {
-    ritz_reduced a = {0};
+    RITZ_OWN(ritz_reduced) a = {0};
 
     (void)state;
     reduced_chain(&a);
     assert_survives_every_allocation(forget(&a));
-    ritz_reduced_free(&a);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -31,23 +31,20 @@ static bool join(const solvers_source from[2], const ritz_method *method,
         " type: fixed}\n";
     const int64_t modes[2] = {inboard, outboard};
     ritz_reduced body[2] = {0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     for (int k = 0; k < 2; k++) {
-        ritz_component component = {0};
+        RITZ_OWN(ritz_component) component = {0};
 
         if (!solvers_import(&from[k], &component))
             return false;
         assert_ok(reduce_with(&component, method, modes[k], &body[k]));
-        ritz_component_free(&component);
     }
     assert_ok(ritz_scene_parse("frames.yaml", text, &scene));
     assert_ok(ritz_stage_from(&scene, body, &stage));
     assert_ok(ritz_stage_assemble(&stage, NULL, out));
     assert_int_equal(out->rank, 24);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
     return true;
 }
 
@@ -72,7 +69,7 @@ static const double whole[] = {1.69880011, 1.76748734, 1.85772039,
 
 static void joined_frames_have_the_published_frequencies(void **state)
 {
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     if (!join(solvers_nastran95, &ritz_method_full, -1, -1, &c)) {
@@ -82,7 +79,6 @@ static void joined_frames_have_the_published_frequencies(void **state)
     /* ten turns about members have neither mass nor a frequency */
     assert_int_equal(c.K.ncol, 2 * 156 - 24 - 10);
     assert_hertz(&c, 0, 6, whole, 5e-9);
-    ritz_configuration_free(&c);
 }
 
 static void craig_bampton_gives_the_published_frequencies(void **state)
@@ -103,7 +99,7 @@ static void craig_bampton_gives_the_published_frequencies(void **state)
 
     (void)state;
     for (size_t n = 0; n < sizeof lines / sizeof *lines; n++) {
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         if (!join(solvers_nastran95, &ritz_method_craig_bampton,
                   lines[n].inboard, lines[n].outboard, &c)) {
@@ -112,7 +108,6 @@ static void craig_bampton_gives_the_published_frequencies(void **state)
         }
         assert_int_equal(c.K.ncol, 24 + lines[n].inboard + lines[n].outboard);
         assert_hertz(&c, lines[n].from, lines[n].count, lines[n].hertz, 5e-9);
-        ritz_configuration_free(&c);
     }
 }
 
@@ -123,7 +118,7 @@ static void craig_bampton_gives_the_published_frequencies(void **state)
 static void macneal_rubin_stands_beside_craig_bampton(void **state)
 {
     static const double measured[] = {0.0, 0.0, 1.7e-7, 1.5e-7, 1.4e-7, 0.0};
-    ritz_configuration fixed = {0}, free_ends = {0};
+    RITZ_OWN(ritz_configuration) fixed = {0}, free_ends = {0};
 
     (void)state;
     if (!join(solvers_nastran95, &ritz_method_craig_bampton, 2, 16, &fixed) ||
@@ -144,8 +139,6 @@ static void macneal_rubin_stands_beside_craig_bampton(void **state)
         assert_true(other >= whole[k] - digits);
         assert_true(other <= whole[k] * (1.0 + 1.1 * measured[k]) + digits);
     }
-    ritz_configuration_free(&fixed);
-    ritz_configuration_free(&free_ends);
 }
 
 /* clients.md: what NASTRAN-95 and MYSTRAN print with the four grids held. */
@@ -174,8 +167,8 @@ static void interface_held_each_solver_has_its_modes(void **state)
 
     (void)state;
     for (size_t n = 0; n < sizeof lines / sizeof *lines; n++) {
-        ritz_component component = {0};
-        ritz_reduced reduced = {0};
+        RITZ_OWN(ritz_component) component = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
 
         if (!solvers_import(lines[n].from, &component)) {
             skip();
@@ -186,8 +179,6 @@ static void interface_held_each_solver_has_its_modes(void **state)
         for (int k = 0; k < lines[n].count; k++)
             assert_near(reduced.columns.hertz[24 + k], lines[n].hertz[k],
                         lines[n].unit[lines[n].hertz[k] > 10.0]);
-        ritz_reduced_free(&reduced);
-        ritz_component_free(&component);
     }
 }
 
@@ -200,7 +191,7 @@ static void spellings_make_the_same_component(void **state)
         SOLVERS "nastran95_inboard.deck",
         NULL,
     };
-    ritz_component a = {0}, b = {0};
+    RITZ_OWN(ritz_component) a = {0}, b = {0};
 
     (void)state;
     if (!solvers_import(&solvers_nastran95[0], &a) ||
@@ -218,8 +209,6 @@ static void spellings_make_the_same_component(void **state)
         assert_memory_equal(A->rowind, B->rowind, nnz * sizeof *A->rowind);
         assert_memory_equal(A->val, B->val, nnz * sizeof *A->val);
     }
-    ritz_component_free(&a);
-    ritz_component_free(&b);
 }
 
 /* The 24 rows of the grids and then modal points, as the a-set orders them. */
@@ -250,8 +239,8 @@ static void commercial_reduction_is_joined_as_it_was(void **state)
          CSUPER "inboard.dat", NULL},
         {CSUPER "nas2cam.op4:KAA#1", CSUPER "nas2cam.op4:MAA#1",
          CSUPER "exse101.bulk", "outboard.dofs"}};
-    ritz_configuration c = {0};
-    ritz_dense lambda = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_dense) lambda = {0};
     bool joined = false;
 
     (void)state;
@@ -269,8 +258,6 @@ static void commercial_reduction_is_joined_as_it_was(void **state)
         assert_near(c.lambda[k], lambda.val[k],
                     0x1p-24 * c.lambda[k] +
                         DBL_EPSILON * c.lambda[53] /* of our own */);
-    ritz_dense_free(&lambda);
-    ritz_configuration_free(&c);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -69,13 +69,12 @@ static void import(const char *name, ritz_component *out)
         .bulk = bulk,
         .num_ports = strcmp(name, "stator") == 0 ? 2 : 1,
         .port = rigid ? scan : ports};
-    ritz_import_report report = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
 
     snprintf(K, sizeof K, "%s/dualspin/%s.op4:KGG", data, name);
     snprintf(M, sizeof M, "%s/dualspin/%s.op4:MGG", data, name);
     snprintf(bulk, sizeof bulk, "%s/dualspin/%s.bdf", data, name);
     assert_ok(ritz_import(&request, out, &report));
-    ritz_import_report_free(&report);
 }
 
 static const char spacecraft[] =
@@ -100,13 +99,12 @@ static bool store_spacecraft(void)
         return false;
     }
     for (int k = 0; k < 3; k++) {
-        ritz_component body = {0};
+        RITZ_OWN(ritz_component) body = {0};
         char file[32];
 
         import(bodies[k], &body);
         snprintf(file, sizeof file, "%s.h5", bodies[k]);
         folder_store(file, &body);
-        ritz_component_free(&body);
     }
     return true;
 }
@@ -114,11 +112,10 @@ static bool store_spacecraft(void)
 static void assemble(const char *text, const double *setting,
                      ritz_component *out)
 {
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
     folder_parse(text, &scene);
     assert_ok(ritz_assemble_full(&scene, setting, out));
-    ritz_scene_free(&scene);
 }
 
 static void find_modes(const ritz_component *system, ritz_pairs *out)
@@ -137,8 +134,8 @@ static void spacecraft_has_the_frequencies_of_its_table(void **state)
         skip();
     for (int a = 0; a < ANGLES; a++) {
         const double angle[] = {60.0 * a, 0.0};
-        ritz_component system = {0};
-        ritz_pairs pairs = {0};
+        RITZ_OWN(ritz_component) system = {0};
+        RITZ_OWN(ritz_pairs) pairs = {0};
 
         assemble(spacecraft, angle, &system);
         assert_int_equal(system.num_dofs, DOFS);
@@ -146,30 +143,27 @@ static void spacecraft_has_the_frequencies_of_its_table(void **state)
         for (int k = 0; k < MODES; k++)
             assert_near(ritz_eigen_hertz(pairs.lambda[RIGID + k]),
                         published[k][a], 5e-5 /* half a unit */);
-        ritz_pairs_free(&pairs);
-        ritz_component_free(&system);
     }
 }
 
 static void reduce_body(const char *name, ritz_reduced *out)
 {
-    ritz_component body = {0};
+    RITZ_OWN(ritz_component) body = {0};
 
     import(name, &body);
     assert_ok(reduce_with(&body, &ritz_method_full, -1, out));
-    ritz_component_free(&body);
 }
 
 /* Rounding of both: eps lambda_max, and some operations on each. */
 static void sparse_and_dense_assembly_agree(void **state)
 {
     const double angle[] = {60.0, 0.0};
-    ritz_scene scene = {0};
-    ritz_component system = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_component) system = {0};
     ritz_reduced reduced[3] = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     (void)state;
     if (!store_spacecraft())
@@ -186,11 +180,6 @@ static void sparse_and_dense_assembly_agree(void **state)
     for (int64_t k = RIGID; k < DOFS; k++)
         assert_near(pairs.lambda[k], c.lambda[k],
                     DBL_EPSILON * (c.lambda[DOFS - 1] + 50.0 * c.lambda[k]));
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    ritz_pairs_free(&pairs);
-    ritz_component_free(&system);
 }
 
 /*
@@ -202,12 +191,12 @@ static void sparse_and_dense_assembly_agree(void **state)
 static void a_hinge_stated_from_both_sides_binds_once(void **state)
 {
     const double angle[] = {37.0, 0.0, -37.0};
-    ritz_scene scene = {0};
-    ritz_component once = {0}, twice = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_component) once = {0}, twice = {0};
     ritz_reduced reduced[3] = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
-    ritz_pairs one = {0}, two = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_pairs) one = {0}, two = {0};
     char text[1024];
 
     (void)state;
@@ -234,13 +223,6 @@ static void a_hinge_stated_from_both_sides_binds_once(void **state)
         assert_near(two.lambda[k], one.lambda[k], bound);
         assert_near(c.lambda[k], one.lambda[k], bound);
     }
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    ritz_pairs_free(&one);
-    ritz_pairs_free(&two);
-    ritz_component_free(&once);
-    ritz_component_free(&twice);
 }
 
 /* Shuffle the rows; grids count downwards from 9999 in the order of ids. */
@@ -297,8 +279,8 @@ static void disorder(ritz_component *c)
 static void order_and_numbers_of_grids_do_not_matter(void **state)
 {
     const double angle[] = {240.0, 0.0};
-    ritz_component system = {0}, other = {0};
-    ritz_pairs one = {0}, two = {0};
+    RITZ_OWN(ritz_component) system = {0}, other = {0};
+    RITZ_OWN(ritz_pairs) one = {0}, two = {0};
     ritz_inertia here = {0}, there = {0};
 
     (void)state;
@@ -306,14 +288,13 @@ static void order_and_numbers_of_grids_do_not_matter(void **state)
         skip();
     assemble(spacecraft, angle, &system);
     for (int k = 0; k < 2; k++) {
-        ritz_component body = {0};
+        RITZ_OWN(ritz_component) body = {0};
         char file[32];
 
         import(bodies[k], &body);
         disorder(&body);
         snprintf(file, sizeof file, "%s.h5", bodies[k]);
         folder_store(file, &body);
-        ritz_component_free(&body);
     }
     assemble(spacecraft, angle, &other);
     find_modes(&system, &one);
@@ -327,10 +308,6 @@ static void order_and_numbers_of_grids_do_not_matter(void **state)
     for (int k = 0; k < 3; k++)
         assert_near(there.centre[k], here.centre[k],
                     DOFS * DBL_EPSILON * 13.2 /* extent, m */);
-    ritz_pairs_free(&one);
-    ritz_pairs_free(&two);
-    ritz_component_free(&system);
-    ritz_component_free(&other);
 }
 
 /* The same, from the platform outwards, one joint seen from its second body. */
@@ -362,8 +339,8 @@ static void overall_motions_by_geometry_cost_nothing(void **state)
     if (!store_spacecraft())
         skip();
     for (int s = 0; s < 2; s++) {
-        ritz_component system = {0};
-        ritz_dense R = {0}, KR = {0};
+        RITZ_OWN(ritz_component) system = {0};
+        RITZ_OWN(ritz_dense) R = {0}, KR = {0};
         ritz_inertia inertia = {0};
 
         assemble(scenes[s], angle, &system);
@@ -374,9 +351,6 @@ static void overall_motions_by_geometry_cost_nothing(void **state)
                     2.4e-8 * sqrt(3.0) * ritz_sparse_max(&system.K));
         assert_ok(ritz_inertia_of(&system, &inertia));
         assert_near(inertia.mass, 2068.392 + 536.620 + 102.000, 3.0 * 5e-4);
-        ritz_dense_free(&R);
-        ritz_dense_free(&KR);
-        ritz_component_free(&system);
     }
 }
 

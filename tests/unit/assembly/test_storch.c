@@ -131,10 +131,10 @@ static void join(int64_t elements, const tip_body *tip, const reduction *way,
         "  body: {model: body.h5, basis: full}\n"
         "joints:\n"
         "  - {name: tip, between: [beam/end, body/root], type: fixed}\n";
-    ritz_component beam = {0}, body = {0};
+    RITZ_OWN(ritz_component) beam = {0}, body = {0};
     ritz_reduced reduced[2] = {0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     assert_ok(ritz_scene_parse("storch.yaml", text, &scene));
     assert_ok(make_beam(elements, &beam));
@@ -143,10 +143,6 @@ static void join(int64_t elements, const tip_body *tip, const reduction *way,
     assert_ok(reduce_with(&body, way->body, -1, &reduced[1]));
     assert_ok(ritz_stage_from(&scene, reduced, &stage));
     assert_ok(ritz_stage_assemble(&stage, NULL, out));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    ritz_component_free(&beam);
-    ritz_component_free(&body);
 }
 
 /* beta of flexible mode k, from 0. */
@@ -171,14 +167,13 @@ static double rounding(const ritz_configuration *c, int64_t k)
  */
 static void joint_holds_what_both_bodies_have(void **state)
 {
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     join(4, &storch, &unreduced, &c);
     assert_int_equal(c.rank, 2);
     assert_int_equal(c.K.ncol, 8 + 6 - 2);
     assert_int_equal(c.num_rigid, 4);
-    ritz_configuration_free(&c);
 }
 
 static void hermite_elements_give_the_printed_table(void **state)
@@ -196,13 +191,12 @@ static void hermite_elements_give_the_printed_table(void **state)
 
     (void)state;
     for (size_t n = 0; n < sizeof lines / sizeof *lines; n++) {
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         join(lines[n].elements, &storch, &unreduced, &c);
         for (int k = 0; k < lines[n].count; k++)
             assert_near(beta_of(&c, k), lines[n].beta[k],
                         lines[n].bound[k] + lines[n].beta[k] * rounding(&c, k));
-        ritz_configuration_free(&c);
     }
 }
 
@@ -217,7 +211,7 @@ static void frequencies_come_down_to_the_exact_ones(void **state)
     (void)state;
     for (int64_t elements = 8; elements <= 32; elements *= 2)
         for (int t = 0; t < 3; t++) {
-            ritz_configuration c = {0};
+            RITZ_OWN(ritz_configuration) c = {0};
 
             join(elements, tips[t], &unreduced, &c);
             for (int k = 0; k < tips[t]->count; k++) {
@@ -230,7 +224,6 @@ static void frequencies_come_down_to_the_exact_ones(void **state)
                 assert_true(beta_of(&c, k) >= beta - slack);
                 assert_true(beta_of(&c, k) <= beta + coarse + slack);
             }
-            ritz_configuration_free(&c);
         }
 }
 
@@ -253,7 +246,7 @@ static void sum_of_inverse_squares_is_the_trace(void **state)
             const double exact =
                 (12.0 * (it->J + it->m * it->c) + 4.0 * it->m + 1.0) / 12.0;
             const double missing = pow((double)elements, -3.0) / 420.0;
-            ritz_configuration c = {0};
+            RITZ_OWN(ritz_configuration) c = {0};
             double sum = 0.0;
 
             join(elements, it, &unreduced, &c);
@@ -261,7 +254,6 @@ static void sum_of_inverse_squares_is_the_trace(void **state)
                 sum += 1.0 / c.lambda[k];
             /* d(1/lambda) is relative to lambda as dlambda is */
             assert_near(sum + missing, exact, exact * rounding(&c, 0));
-            ritz_configuration_free(&c);
         }
 }
 
@@ -274,7 +266,7 @@ static void sum_of_inverse_fourth_powers_converges(void **state)
     (void)state;
     for (int64_t elements = 2; elements <= 16; elements *= 2) {
         const double lacking = pow((double)elements, -3.0) / 420.0;
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
         double sum = 0.0;
         double slack = 0.0;
 
@@ -285,7 +277,6 @@ static void sum_of_inverse_fourth_powers_converges(void **state)
         assert_true(0.9407601905 - sum >= -slack);
         assert_true(0.9407601905 - sum <=
                     2.0 * pow(storch.beta[0], -4.0) * lacking + slack);
-        ritz_configuration_free(&c);
     }
 }
 
@@ -297,7 +288,7 @@ static void rigid_basis_about_the_centre_loses_nothing(void **state)
 
     (void)state;
     for (int t = 0; t < 3; t++) {
-        ritz_configuration one = {0}, other = {0};
+        RITZ_OWN(ritz_configuration) one = {0}, other = {0};
 
         join(4, tips[t], &unreduced, &one);
         join(4, tips[t], &rigid, &other);
@@ -306,8 +297,6 @@ static void rigid_basis_about_the_centre_loses_nothing(void **state)
         for (int64_t k = 0; k < one.K.ncol - one.num_rigid; k++)
             assert_near(beta_of(&other, k), beta_of(&one, k),
                         beta_of(&one, k) * rounding(&one, k));
-        ritz_configuration_free(&one);
-        ritz_configuration_free(&other);
     }
 }
 
@@ -316,21 +305,19 @@ static void all_modes_kept_lose_nothing(void **state)
     static const reduction ways[] = {
         {&ritz_method_craig_bampton, 14, &ritz_method_rigid},
         {&ritz_method_macneal_rubin, 16, &ritz_method_rigid}};
-    ritz_configuration full = {0};
+    RITZ_OWN(ritz_configuration) full = {0};
 
     (void)state;
     join(8, &storch, &unreduced, &full);
     for (int w = 0; w < 2; w++) {
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         join(8, &storch, &ways[w], &c);
         assert_int_equal(c.K.ncol, full.K.ncol);
         for (int64_t k = 0; k < 16; k++)
             assert_near(beta_of(&c, k), beta_of(&full, k),
                         beta_of(&full, k) * rounding(&full, k));
-        ritz_configuration_free(&c);
     }
-    ritz_configuration_free(&full);
 }
 
 /* From above the mesh, not above the basis before, and as far as measured. */
@@ -364,7 +351,7 @@ static void few_modes_come_down_to_the_mesh(void **state)
                  {1.69e-8, 3.12e-6, 6.17e-5}},
                 {{&ritz_method_macneal_rubin, 0, &ritz_method_rigid},
                  {0.0, 8.13e-9, 1.68e-6}}};
-    ritz_configuration full = {0};
+    RITZ_OWN(ritz_configuration) full = {0};
 
     (void)state;
     join(8, &storch, &unreduced, &full);
@@ -373,16 +360,14 @@ static void few_modes_come_down_to_the_mesh(void **state)
 
         for (int64_t modes = 1; modes <= 6; modes++) {
             reduction way = list[w].way;
-            ritz_configuration c = {0};
+            RITZ_OWN(ritz_configuration) c = {0};
 
             way.modes = modes;
             join(8, &storch, &way, &c);
             assert_int_equal(c.K.ncol, modes + 6);
             come_down(&full, &c, modes == 4 ? list[w].left : NULL, before);
-            ritz_configuration_free(&c);
         }
     }
-    ritz_configuration_free(&full);
 }
 
 /* Tables 2 and 3 of the paper: beta_1 squared, c = 0; four digits. */
@@ -398,12 +383,11 @@ static void tables_of_the_paper_are_met(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
         const tip_body tip = {.m = table[k][0], .J = table[k][1]};
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         /* four elements are 1e-6 off */
         join(4, &tip, &unreduced, &c);
         assert_near(sqrt(c.lambda[c.num_rigid]), table[k][2], 5e-5 + 1e-6);
-        ritz_configuration_free(&c);
     }
 }
 
@@ -411,16 +395,14 @@ static void tables_of_the_paper_are_met(void **state)
 static void beam_alone_is_the_cantilever(void **state)
 {
     const double beta = 1.875104069;
-    ritz_component beam = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     assert_ok(make_beam(8, &beam));
     assert_ok(reduce_with(&beam, &ritz_method_macneal_rubin, 1, &reduced));
     assert_near(reduced.columns.hertz[0] * 8.0 * atan(1.0), beta * beta,
                 beta * beta * pow(beta / 8.0, 4.0) / 1440.0);
-    ritz_reduced_free(&reduced);
-    ritz_component_free(&beam);
 }
 
 static const struct CMUnitTest tests[] = {

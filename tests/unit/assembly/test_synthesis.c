@@ -38,9 +38,9 @@ static const double printed = 5e-7;
 
 static void two_halves_make_the_cantilever(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -51,16 +51,13 @@ static void two_halves_make_the_cantilever(void **state)
     assert_int_equal(c.num_rigid, 0);
     for (int k = 0; k < 12; k++)
         assert_near(ritz_eigen_hertz(c.lambda[k]), table_3_1[k], printed);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void two_clamped_halves_make_the_clamped_beam(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(true, &scene));
@@ -70,9 +67,6 @@ static void two_clamped_halves_make_the_clamped_beam(void **state)
     for (int k = 0; k < 9; k++)
         assert_near(ritz_eigen_hertz(c.lambda[k]), table_3_4[k],
                     k == 0 ? 2.0 * printed : printed);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* Modes `keep` (from 1) of the system, projected on each component. */
@@ -80,23 +74,21 @@ static void project_and_assemble(const ritz_stage *stage, int count,
                                  const int *keep, ritz_stage *second,
                                  ritz_configuration *out)
 {
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
     ritz_reduced body[2] = {0};
 
     assert_ok(ritz_stage_assemble(stage, NULL, &c));
     for (int b = 0; b < 2; b++) {
-        ritz_dense V = {0};
+        RITZ_OWN(ritz_dense) V = {0};
 
         assert_ok(ritz_dense_new(stage->body[b].K.ncol, count, &V));
         for (int j = 0; j < count; j++)
             memcpy(ritz_dense_col(&V, j), ritz_dense_col(&c.P[b], keep[j] - 1),
                    (size_t)V.nrow * sizeof *V.val);
         assert_ok(ritz_reduced_project(&stage->body[b], &V, &body[b]));
-        ritz_dense_free(&V);
     }
     assert_ok(ritz_stage_from(stage->scene, body, second));
     assert_ok(ritz_stage_assemble(second, NULL, out));
-    ritz_configuration_free(&c);
 }
 
 /*
@@ -110,9 +102,9 @@ static void a_zero_row_is_no_constraint(void **state)
     static const double B[] = {0.0, 0.0147, 0.3992, 1.5928};
     static const double S[] = {0.0156, 0.0979, 0.2760, 0.5446, 1.0631, 2.0961};
     const double four_digits = 5e-5;
-    ritz_scene scene = {0};
-    ritz_stage stage = {0}, second = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0}, second = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -127,10 +119,6 @@ static void a_zero_row_is_no_constraint(void **state)
     for (int k = 0; k < 4; k++) /* the kept ones are exact */
         assert_near(ritz_eigen_hertz(c.lambda[k]), table_3_1[keep[k] - 1],
                     printed);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&second);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /*
@@ -229,10 +217,10 @@ static void project_on(const ritz_configuration *c, bool augment,
  */
 static void static_gain_is_that_published(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
-    ritz_dense gain = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_dense) gain = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -263,19 +251,15 @@ static void static_gain_is_that_published(void **state)
         ritz_dense_free(&V[0]);
         ritz_dense_free(&V[1]);
     }
-    ritz_dense_free(&gain);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void an_axial_mode_brings_its_constraint(void **state)
 {
     static const int keep[] = {1, 2, 3, 4};
     static const double S[] = {0.0156, 0.0979, 0.2760, 0.4872, 0.6626};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0}, second = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0}, second = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -285,10 +269,6 @@ static void an_axial_mode_brings_its_constraint(void **state)
     assert_int_equal(c.K.ncol, 5);
     for (int k = 0; k < 5; k++)
         assert_near(ritz_eigen_hertz(c.lambda[k]), S[k], 5e-5);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&second);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* With all modes kept, any basis spans the component and nothing is lost. */
@@ -296,13 +276,13 @@ static void bases_of_full_order_lose_nothing(void **state)
 {
     const ritz_method *const methods[] = {&ritz_method_craig_bampton,
                                           &ritz_method_macneal_rubin};
-    ritz_scene scene = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
     for (int m = 0; m < 2; m++) {
-        ritz_stage stage = {0};
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_stage) stage = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         assert_ok(stage_of_two_beams(&scene, methods[m], 9, &stage));
         assert_ok(ritz_stage_assemble(&stage, NULL, &c));
@@ -310,19 +290,17 @@ static void bases_of_full_order_lose_nothing(void **state)
         for (int k = 0; k < 12; k++)
             assert_near(ritz_eigen_hertz(c.lambda[k]), table_3_1[k],
                         printed + system_error);
-        ritz_configuration_free(&c);
-        ritz_stage_free(&stage);
     }
-    ritz_scene_free(&scene);
 }
 
 /* C P = 0, P'MP = I, P'KP = diag(lambda). */
 static void blocks_satisfy_the_constraints_and_diagonalise(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
-    ritz_dense C = {0}, K = {0}, M = {0}, part = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_dense) C = {0}, K = {0}, M = {0};
+    ritz_dense part = {0};
     double *scale = NULL;
 
     (void)state;
@@ -364,18 +342,12 @@ static void blocks_satisfy_the_constraints_and_diagonalise(void **state)
         }
     }
     free(scale);
-    ritz_dense_free(&C);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void a_joint_without_partners_is_refused(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_configuration none = {0};
 
     (void)state;
@@ -388,14 +360,12 @@ static void a_joint_without_partners_is_refused(void **state)
     stage.body[1].port[0].position[0] += 0.5;
     assert_fails(ritz_stage_assemble(&stage, NULL, &none), RITZ_ERR_ARGUMENT,
                  "has no partner");
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static void a_missing_port_is_refused_with_its_line(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_configuration none = {0};
 
     (void)state;
@@ -404,31 +374,25 @@ static void a_missing_port_is_refused_with_its_line(void **state)
     strcpy(scene.joint[0].between[1].port, "midle");
     assert_fails(ritz_stage_assemble(&stage, NULL, &none), RITZ_ERR_ARGUMENT,
                  "joint 'middle': there is no port 'midle', is 'middle' meant");
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static ritz_status assemble_anew(const ritz_stage *stage)
 {
-    ritz_configuration c = {0};
-    ritz_status status = ritz_stage_assemble(stage, NULL, &c);
+    RITZ_OWN(ritz_configuration) c = {0};
 
-    ritz_configuration_free(&c);
-    return status;
+    return ritz_stage_assemble(stage, NULL, &c);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
     assert_ok(
         stage_of_two_beams(&scene, &ritz_method_craig_bampton, 3, &stage));
     assert_survives_every_allocation(assemble_anew(&stage));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

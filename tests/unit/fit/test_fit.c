@@ -115,9 +115,9 @@ static void assert_within_one(const ritz_component *component,
                               const ritz_fit_request *request)
 {
     ritz_fit_request measured = *request;
-    ritz_fitter *fitter = NULL;
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
     ritz_fitter *all = NULL;
-    ritz_fit fit = {0};
+    RITZ_OWN(ritz_fit) fit = {0};
     int64_t least = 0;
     int64_t order = 0;
 
@@ -134,13 +134,11 @@ static void assert_within_one(const ritz_component *component,
     if (order > least + 1)
         fail_msg("%s\nfound %d, exhaustive search %d", fit.why, (int)order,
                  (int)least);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
 }
 
 static void a_clamped_beam_is_fitted_within_one(void **state)
 {
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_fit_request request = quick(0.5, 0.01, "response=1e-2");
 
     (void)state;
@@ -148,16 +146,15 @@ static void a_clamped_beam_is_fitted_within_one(void **state)
     assert_within_one(&beam, &request);
     request = quick(0.5, 0.01, "frequency=1e-3,mac=0.99");
     assert_within_one(&beam, &request);
-    ritz_component_free(&beam);
 }
 
 /* What they rule out is not measured: of the answer's own neighbours none. */
 static void estimates_rule_out_candidates_and_change_no_answer(void **state)
 {
-    ritz_component truss = {0};
+    RITZ_OWN(ritz_component) truss = {0};
     ritz_fit_request request = quick(40.0, 0.01, "frequency=1e-3");
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_fit) fit = {0};
     int64_t screened = 0;
 
     (void)state;
@@ -173,32 +170,27 @@ static void estimates_rule_out_candidates_and_change_no_answer(void **state)
         assert_true(!c->ruled_out || (!c->feasible && c->errors.count == 0));
     }
     assert_true(screened > 0 && screened < fit.count);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&truss);
 }
 
 static void a_free_beam_is_fitted_within_one(void **state)
 {
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_fit_request request = quick(1.0, 0.01, "1e-3,gain=1e-2");
 
     (void)state;
     open_beam(false, &beam);
     assert_within_one(&beam, &request);
-    ritz_component_free(&beam);
 }
 
 static void a_free_truss_is_fitted_within_one(void **state)
 {
-    ritz_component truss = {0};
+    RITZ_OWN(ritz_component) truss = {0};
     ritz_fit_request request = {0};
 
     (void)state;
     open_truss(&truss);
     request = quick(40.0, 0.01, "response=1e-3,frequency=1e-2");
     assert_within_one(&truss, &request);
-    ritz_component_free(&truss);
 }
 
 /*
@@ -223,7 +215,7 @@ static void a_chain_with_dampers_is_fitted_within_one(void **state)
          "response=2e-2,damping=5e-2"},
         {3, RITZ_LOADS_INPUTS | RITZ_LOADS_DAMPERS, "response=1e-3,gain=1e-2"},
     };
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     assert_ok(chain_component(30, &chain));
@@ -238,7 +230,6 @@ static void a_chain_with_dampers_is_fitted_within_one(void **state)
             request.tolerance.damping = rayleigh;
         assert_within_one(&chain, &request);
     }
-    ritz_component_free(&chain);
 }
 
 /* Chains of random masses and springs; half of them are free. */
@@ -252,7 +243,7 @@ static void random_chains_are_fitted_within_one(void **state)
         double k[16];
         const int64_t in = 15;
         const int64_t seen = 5 * trial;
-        ritz_component chain = {0};
+        RITZ_OWN(ritz_component) chain = {0};
         const ritz_fit_request request =
             quick(0.2, 0.02, trial < 2 ? "response=3e-2" : "response=1e-3");
 
@@ -265,7 +256,6 @@ static void random_chains_are_fitted_within_one(void **state)
         assert_ok(masses_component(16, m, k, NULL, &chain));
         assert_ok(masses_io(&chain, 1, &in, 1, &seen));
         assert_within_one(&chain, &request);
-        ritz_component_free(&chain);
     }
 }
 
@@ -292,7 +282,7 @@ static void tolerances_are_taken_and_refused_in_words(void **state)
 
 static void what_cannot_be_fitted_is_refused_in_words(void **state)
 {
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_fitter *fitter = NULL;
     ritz_fit_request request = quick(0.0, 0.01, "response=1e-2");
 
@@ -315,7 +305,6 @@ static void what_cannot_be_fitted_is_refused_in_words(void **state)
     request.attach = "tpi";
     assert_fails(ritz_fitter_new(&beam, &request, &fitter), RITZ_ERR_ARGUMENT,
                  "tpi");
-    ritz_component_free(&beam);
 }
 
 /* Of a mode that is not there no damping is wrong: so all must be there. */
@@ -323,7 +312,7 @@ static void a_tolerance_of_damping_is_not_met_by_missing_modes(void **state)
 {
     const ritz_fit_request request = quick(0.5, 0.01, "damping=1e-2");
     const ritz_fit_candidate *c = NULL;
-    fitted f = {0};
+    RITZ_OWN(fitted) f = {0};
 
     (void)state;
     fit_beam(&request, &f);
@@ -332,7 +321,6 @@ static void a_tolerance_of_damping_is_not_met_by_missing_modes(void **state)
     assert_non_null(find_measure(&c->errors, "damping-relative"));
     assert_true(find_measure(&c->errors, "missing-modes")->value == 0.0);
     assert_true(find_measure(&c->errors, "missing-modes")->limit == 0.0);
-    fitted_free(&f);
 }
 
 /* What is refused for its size is too large, even if nothing smaller was made
@@ -341,7 +329,7 @@ static void equal_order_is_found_below_what_is_too_large(void **state)
 {
     ritz_fit_request request = quick(1e-5, 0.01, "response=1e-1");
     int64_t at = -1;
-    fitted f = {0};
+    RITZ_OWN(fitted) f = {0};
 
     (void)state;
     request.num_methods = 1; /* craig-bampton */
@@ -354,14 +342,13 @@ static void equal_order_is_found_below_what_is_too_large(void **state)
     assert_true(at >= 0);
     assert_int_equal(f.fit.candidate[at].order, 4);
     assert_int_equal(f.fit.candidate[at].modes[0], 1);
-    fitted_free(&f);
 }
 
 /* With few columns allowed, the nearest is told and nothing is chosen. */
 static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
 {
     ritz_fit_request request = quick(1.0, 0.01, "response=1e-6");
-    fitted f = {0};
+    RITZ_OWN(fitted) f = {0};
 
     (void)state;
     request.largest = 6;
@@ -371,7 +358,6 @@ static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
         strstr(f.fit.why, "no method meets the tolerance; nearest"));
     for (int64_t k = 0; k < f.fit.count; k++)
         assert_false(f.fit.candidate[k].feasible);
-    fitted_free(&f);
 }
 
 /*
@@ -381,9 +367,9 @@ static void a_tolerance_that_no_method_meets_tells_the_nearest(void **state)
 static void the_answer_is_nested_and_knows_its_errors(void **state)
 {
     ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3,mac=0.99");
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     const ritz_fit_candidate *chosen = NULL;
-    fitted f = {0};
+    RITZ_OWN(fitted) f = {0};
 
     (void)state;
     request.num_methods = 1; /* craig-bampton */
@@ -394,8 +380,8 @@ static void the_answer_is_nested_and_knows_its_errors(void **state)
     assert_int_equal(reduced.nested.smallest, 3); /* the tip's dofs */
     assert_true(reduced.K.ncol > 3);
     for (int64_t r = 3; r <= reduced.K.ncol; r++) {
-        ritz_reduced part = {0};
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_reduced) part = {0};
+        RITZ_OWN(ritz_measures) found = {0};
         const ritz_verify_request *limits = ritz_fitter_tolerance(f.fitter);
 
         assert_ok(ritz_reduced_prefix(&reduced, r, &part));
@@ -407,12 +393,8 @@ static void the_answer_is_nested_and_knows_its_errors(void **state)
         /* the same arithmetic, but for the order of columns */
         assert_near(find_measure(&part.errors, "mac")->value,
                     find_measure(&found, "mac")->value, 1e-9);
-        ritz_measures_free(&found);
-        ritz_reduced_free(&part);
     }
     assert_near(find_measure(&reduced.errors, "mac")->limit, 0.99, 0.0);
-    ritz_reduced_free(&reduced);
-    fitted_free(&f);
 }
 
 /* The bounds of a candidate hold: none is below the error that it bounds. */
@@ -420,13 +402,13 @@ static void bounds_stand_beside_errors_and_hold(void **state)
 {
     ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3");
     int64_t incomplete = 0;
-    fitted f = {0};
+    RITZ_OWN(fitted) f = {0};
 
     (void)state;
     request.estimates = request.thorough = true;
     prepare_beam(&request, &f);
     for (int64_t modes = 0; modes < 8; modes++) {
-        ritz_fit_candidate c = {0};
+        RITZ_OWN(ritz_fit_candidate) c = {0};
         const ritz_measure *error = NULL;
         const ritz_measure *bound = NULL;
 
@@ -444,10 +426,8 @@ static void bounds_stand_beside_errors_and_hold(void **state)
         }
         /* rounding of a frequency, eps lambda_max / lambda_1 = 1e-9 */
         assert_true(bound->value >= error->value - 1e-9);
-        ritz_fit_candidate_free(&c);
     }
     assert_true(incomplete > 0);
-    fitted_free(&f);
 }
 
 /*
@@ -458,18 +438,18 @@ static void bounds_stand_beside_errors_and_hold(void **state)
 static void a_pole_between_points_is_seen_by_what_confirms(void **state)
 {
     const ritz_fit_request asked = quick(1.0, 1e-5, "response=1e-2");
-    fitted f = {0};
-    ritz_reference *reference = NULL;
-    ritz_fit_candidate c = {0};
+    RITZ_OWN(fitted) f = {0};
+    RITZ_OWN(ritz_reference) *reference = NULL;
+    RITZ_OWN(ritz_fit_candidate) c = {0};
     const int64_t modes = 21;
     ritz_reference_request request = {
         .band_hz = {0.0, 1.0},
         .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-5},
         .num_random = 10,
         .seed = 3};
-    ritz_reduced reduced = {0};
-    ritz_measures grid = {0};
-    ritz_measures all = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) grid = {0};
+    RITZ_OWN(ritz_measures) all = {0};
     double lambda = 0.0;
 
     (void)state;
@@ -488,48 +468,37 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
                                      RITZ_AT_OTHER_POLES, &all));
     assert_true(find_measure(&all, "response-relative")->value >
                 10.0 * find_measure(&grid, "response-relative")->value);
-    ritz_measures_free(&grid);
-    ritz_measures_free(&all);
-    ritz_reduced_free(&reduced);
-    ritz_fit_candidate_free(&c);
-    ritz_reference_free(&reference);
-    fitted_free(&f);
 }
 
 static ritz_status fit_once(const ritz_component *beam)
 {
-    ritz_status status = RITZ_OK;
     ritz_fit_request request = quick(0.3, 0.01, "frequency=1e-2");
     const ritz_method *const one[] = {&ritz_method_normal_modes};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_fit) fit = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     request.methods = one;
     request.num_methods = 1;
     request.num_random = 3;
     request.largest = 2;
-    RITZ_TRY(ritz_fitter_new(beam, &request, &fitter));
-    RITZ_TRY(ritz_fitter_search(fitter, &fit));
-    RITZ_TRY(ritz_fitter_reduced(fitter, &fit.candidate[fit.chosen], &reduced));
-done:
-    ritz_reduced_free(&reduced);
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    return status;
+    RITZ_CHECK(ritz_fitter_new(beam, &request, &fitter));
+    RITZ_CHECK(ritz_fitter_search(fitter, &fit));
+    RITZ_CHECK(
+        ritz_fitter_reduced(fitter, &fit.candidate[fit.chosen], &reduced));
+    return RITZ_OK;
 }
 
 static void fitting_survives_every_allocation(void **state)
 {
     const double ones[] = {1.0, 1.0};
     const int64_t in = 1;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
     (void)state;
     assert_ok(masses_component(2, ones, ones, NULL, &beam));
     assert_ok(masses_io(&beam, 1, &in, 1, &in));
     assert_survives_every_allocation(fit_once(&beam));
-    ritz_component_free(&beam);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -44,12 +44,11 @@ static void store_arm(int64_t left, int64_t right)
         position[k][2] = k % 2 == 0 ? 0.0 : 0.3;
     }
     for (int k = 0; k < 2; k++) {
-        ritz_component chain = {0};
+        RITZ_OWN(ritz_component) chain = {0};
 
         assert_ok(body_chain(count[k], (const double(*)[3])position,
                              k == 0 ? 1 : 101, k == 0 ? 11 : 12, &chain));
         folder_store(file[k], &chain);
-        ritz_component_free(&chain);
     }
 }
 
@@ -98,8 +97,8 @@ static double off(const ritz_dense *A, const ritz_dense *B)
 static void the_system_s_basis_condenses_the_full_system(void **state)
 {
     const double rounding = 1e-13;
-    placed p = {0};
-    ritz_dense T = {0}, K = {0}, M = {0}, B = {0}, C = {0};
+    RITZ_OWN(placed) p = {0};
+    RITZ_OWN(ritz_dense) T = {0}, K = {0}, M = {0}, B = {0}, C = {0};
 
     (void)state;
     place_arm(4, 6, 30.0, &p);
@@ -113,18 +112,12 @@ static void the_system_s_basis_condenses_the_full_system(void **state)
     assert_true(off(&M, &p.at.M) < rounding);
     assert_true(off(&B, &p.at.io.B) < rounding);
     assert_true(off(&C, &p.at.io.C) < rounding);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&B);
-    ritz_dense_free(&C);
-    ritz_dense_free(&T);
-    placed_free(&p);
 }
 
 static void a_body_without_its_basis_is_refused(void **state)
 {
     const ritz_master master[] = {{0, 0}, {0, 1}, {1, 0}};
-    placed p = {0};
+    RITZ_OWN(placed) p = {0};
     ritz_dense T = {0};
 
     (void)state;
@@ -133,27 +126,22 @@ static void a_body_without_its_basis_is_refused(void **state)
     assert_fails(ritz_stage_basis(&p.stage, &p.at, 3, master, &T),
                  RITZ_ERR_ARGUMENT, "'right' has no basis T for its 1 dofs");
     assert_null(T.val);
-    placed_free(&p);
 }
 
 static ritz_status make_basis(const placed *p)
 {
-    ritz_dense T = {0};
-    ritz_status status =
-        ritz_stage_basis(&p->stage, &p->at, p->full.num_dofs, p->master, &T);
+    RITZ_OWN(ritz_dense) T = {0};
 
-    ritz_dense_free(&T);
-    return status;
+    return ritz_stage_basis(&p->stage, &p->at, p->full.num_dofs, p->master, &T);
 }
 
 static void every_allocation_of_the_basis_may_fail(void **state)
 {
-    placed p = {0};
+    RITZ_OWN(placed) p = {0};
 
     (void)state;
     place_arm(2, 2, 90.0, &p);
     assert_survives_every_allocation(make_basis(&p));
-    placed_free(&p);
 }
 
 static ritz_fit_request asked(const char *tolerance, bool estimates)
@@ -178,7 +166,7 @@ static void assert_rightly_screened(ritz_fitter *measuring, const ritz_fit *fit)
 
     for (int64_t k = 0; k < fit->count; k++) {
         const ritz_fit_candidate *c = &fit->candidate[k];
-        ritz_fit_candidate again = {0};
+        RITZ_OWN(ritz_fit_candidate) again = {0};
 
         if (!c->ruled_out)
             continue;
@@ -190,7 +178,6 @@ static void assert_rightly_screened(ritz_fitter *measuring, const ritz_fit *fit)
         if (!(value_of(&again.errors, "missing-modes") > 0.0))
             assert_true(value_of(&again.errors, "frequency-relative") >=
                         value_of(&c->estimates, "frequency-relative-least"));
-        ritz_fit_candidate_free(&again);
     }
     assert_true(screened > 0);
     assert_true(screened < fit->count);
@@ -206,7 +193,7 @@ static void bounds_rule_out_what_fails_and_change_no_answer(void **state)
     for (size_t t = 0; t < sizeof tolerance / sizeof *tolerance; t++) {
         const ritz_fit_request request = asked(tolerance[t], true);
         const ritz_fit_request measured = asked(tolerance[t], false);
-        answer a = {0}, all = {0};
+        RITZ_OWN(answer) a = {0}, all = {0};
 
         store_arm(t % 2 == 0 ? 4 : 5, 4);
         answer_search(arm, &request, &a);
@@ -214,8 +201,6 @@ static void bounds_rule_out_what_fails_and_change_no_answer(void **state)
         assert_int_equal(answer_chosen(&a)->order, answer_chosen(&all)->order);
         assert_int_equal(a.fit.count, all.fit.count);
         assert_rightly_screened(all.fitter, &a.fit);
-        answer_free(&a);
-        answer_free(&all);
     }
 }
 
@@ -225,7 +210,7 @@ static void the_answer_of_a_scene_is_bounded(void **state)
 {
     const ritz_fit_request request =
         asked("frequency=1e-3,response=1e-2", true);
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     const ritz_measures *said = NULL;
     double frequency = 0.0, response = 0.0;
 
@@ -242,7 +227,6 @@ static void the_answer_of_a_scene_is_bounded(void **state)
     assert_true(value_of(said, "frequency-relative-least") > 0.1 * frequency);
     assert_true(value_of(said, "response-relative-bound") >= response);
     assert_true(value_of(said, "missing-modes-bound") == 0.0);
-    answer_free(&a);
 }
 
 /* The bar's errors are known: what is told at least is below, and near. */
@@ -250,7 +234,7 @@ static void what_is_told_at_least_is_below_the_error(void **state)
 {
     enum { ELEMENTS = 40, MODES = 12 };
     int64_t attached[] = {0, 40};
-    ritz_component bar = {0};
+    RITZ_OWN(ritz_component) bar = {0};
 
     (void)state;
     assert_ok(bar_component(ELEMENTS, &bar));
@@ -259,11 +243,11 @@ static void what_is_told_at_least_is_below_the_error(void **state)
             .component = &bar, .attached = {2, attached}, .modes = modes};
         const ritz_estimate_request band = {
             .band_hz = {0.0, ritz_eigen_hertz(bar_eigenvalue(ELEMENTS, 8))}};
-        ritz_estimator *estimator = NULL;
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
-        ritz_pairs pairs = {0};
-        ritz_measures all = {0}, found = {0};
+        RITZ_OWN(ritz_estimator) *estimator = NULL;
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(ritz_pairs) pairs = {0};
+        RITZ_OWN(ritz_measures) all = {0}, found = {0};
         double inside = 0.0, worst = 0.0;
 
         assert_ok(
@@ -291,14 +275,7 @@ static void what_is_told_at_least_is_below_the_error(void **state)
                         value_of(&found, "frequency-relative-least"));
             assert_true(value_of(&all, "frequency-relative-least") <= worst);
         }
-        ritz_measures_free(&found);
-        ritz_measures_free(&all);
-        ritz_pairs_free(&pairs);
-        ritz_estimator_free(&estimator);
-        ritz_reduced_free(&reduced);
-        ritz_basis_free(&basis);
     }
-    ritz_component_free(&bar);
 }
 
 /*

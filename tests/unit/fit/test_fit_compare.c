@@ -32,12 +32,11 @@ static int64_t exhaust(ritz_fitter *fitter, int64_t most)
     for (int64_t i = 0; i <= most; i++)
         for (int64_t j = 0; j <= most; j++) {
             const int64_t modes[] = {i, j};
-            ritz_fit_candidate c = {0};
+            RITZ_OWN(ritz_fit_candidate) c = {0};
 
             assert_ok(ritz_fitter_try(fitter, &ritz_fit_compare, modes, &c));
             if (c.feasible && c.order < least)
                 least = c.order;
-            ritz_fit_candidate_free(&c);
         }
     return least;
 }
@@ -46,7 +45,7 @@ static void assert_within_one(const char *text, const char *tolerance,
                               int64_t most)
 {
     const ritz_fit_request request = alone(tolerance);
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t order = 0;
     int64_t least = 0;
 
@@ -57,7 +56,6 @@ static void assert_within_one(const char *text, const char *tolerance,
     if (order > least + 1)
         fail_msg("%s\nfound %d, exhaustive search %d", a.fit.why, (int)order,
                  (int)least);
-    answer_free(&a);
 }
 
 static void beams_are_fitted_within_one(void **state)
@@ -83,7 +81,7 @@ static void of_a_spacecraft_it_is_the_smallest(void **state)
     static const ritz_method *const two[] = {&ritz_method_macneal_rubin,
                                              &ritz_fit_compare};
     const ritz_fit_request request = fit_scenes_by(two, 2, "flexible=1e-1");
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     dualspin_or_skip();
@@ -93,14 +91,13 @@ static void of_a_spacecraft_it_is_the_smallest(void **state)
     assert_ptr_equal(answer_chosen(&a)->method, &ritz_fit_compare);
     assert_true(a.fit.candidate[a.fit.best[1]].order <
                 a.fit.candidate[a.fit.best[0]].order);
-    answer_free(&a);
 }
 
 /* Bodies that are the answer's: so many columns, and the method's name. */
 static void its_bodies_are_nested_and_say_so(void **state)
 {
     const ritz_fit_candidate *chosen = NULL;
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     open_beams(4, 6, &a);
@@ -118,7 +115,6 @@ static void its_bodies_are_nested_and_say_so(void **state)
         assert_true(a.body.item[k].T.ncol == a.body.item[k].K.ncol);
     }
     assert_int_equal(answer_columns(&a), chosen->columns);
-    answer_free(&a);
 }
 
 static void it_is_compared_at_equal_order(void **state)
@@ -126,7 +122,7 @@ static void it_is_compared_at_equal_order(void **state)
     static const ritz_method *const two[] = {&ritz_method_craig_bampton,
                                              &ritz_fit_compare};
     const ritz_fit_request request = fit_scenes_by(two, 2, "response=1e-2");
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t at[2] = {-1, -1};
 
     (void)state;
@@ -139,14 +135,13 @@ static void it_is_compared_at_equal_order(void **state)
         assert_true(a.fit.candidate[at[m]].order <= 10);
     }
     assert_int_equal(a.fit.candidate[at[1]].order, 10); /* steps are of one */
-    answer_free(&a);
 }
 
 /* Where no methods are named it is among them, of a scene and of no other. */
 static void it_is_tried_of_a_scene_without_being_named(void **state)
 {
     const ritz_fit_request request = fit_scenes_quick("response=1e-1");
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t last = 0;
 
     (void)state;
@@ -155,13 +150,12 @@ static void it_is_tried_of_a_scene_without_being_named(void **state)
     last = a.fit.num_methods - 1;
     assert_ptr_equal(a.fit.method[last], &ritz_fit_compare);
     assert_true(a.fit.best[last] >= 0);
-    answer_free(&a);
 }
 
 /* The last rung of its ladder has all that there is, and no more. */
 static void its_ladder_ends_with_all_directions(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t modes[2] = {0};
 
     (void)state;
@@ -174,32 +168,29 @@ static void its_ladder_ends_with_all_directions(void **state)
     assert_ok(ritz_fitter_try(a.fitter, &ritz_fit_compare, modes, &a.whole));
     assert_string_equal(a.whole.refusal, "");
     assert_true(a.whole.feasible);
-    answer_free(&a);
 }
 
 static void assert_refused(ritz_fitter *fitter, const int64_t *modes,
                            const char *words)
 {
-    ritz_fit_candidate c = {0};
+    RITZ_OWN(ritz_fit_candidate) c = {0};
 
     assert_ok(ritz_fitter_try(fitter, &ritz_fit_compare, modes, &c));
     assert_false(c.feasible);
     if (!strstr(c.refusal, words))
         fail_msg("'%s' says nothing of '%s'", c.refusal, words);
-    ritz_fit_candidate_free(&c);
 }
 
 static void what_it_cannot_make_it_refuses(void **state)
 {
     static const int64_t none[] = {0, 3};
     static const int64_t many[] = {3, 1000};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     open_beams(2, 2, &a);
     assert_refused(a.fitter, none, "'left' would not move at all");
     assert_refused(a.fitter, many, "composite vectors, and not 1000");
-    answer_free(&a);
 }
 
 /* A component has no configurations whose modes it could be made of. */
@@ -207,9 +198,9 @@ static void of_a_component_it_is_refused(void **state)
 {
     static const int64_t tip = 4; /* across */
     ritz_fit_request request = alone("response=1e-2");
-    ritz_component beam = {0};
-    ritz_fitter *fitter = NULL;
-    ritz_fit fit = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_fit) fit = {0};
 
     (void)state;
     request.tolerance.band_hz[1] = 0.2;
@@ -221,9 +212,6 @@ static void of_a_component_it_is_refused(void **state)
     assert_int_equal(fit.chosen, -1);
     assert_non_null(strstr(fit.why, "compare: it is made of the modes of a "
                                     "scene, and this is a component"));
-    ritz_fit_free(&fit);
-    ritz_fitter_free(&fitter);
-    ritz_component_free(&beam);
 }
 
 static void methods_are_found_by_name(void **state)
@@ -238,24 +226,20 @@ static void methods_are_found_by_name(void **state)
 /* The bodies anew, and one of them cut. */
 static ritz_status make_anew(ritz_fitter *fitter)
 {
-    ritz_status status = RITZ_OK;
-    ritz_reduced body = {0};
+    RITZ_OWN(ritz_reduced) body = {0};
 
     ritz_fit_second_free(&fitter->second);
-    RITZ_TRY(ritz_fit_second_body(fitter, 1, 2, &body));
-done:
-    ritz_reduced_free(&body);
-    return status;
+    RITZ_CHECK(ritz_fit_second_body(fitter, 1, 2, &body));
+    return RITZ_OK;
 }
 
 static void it_survives_every_allocation(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     open_beams(2, 1, &a);
     assert_survives_every_allocation(make_anew(a.fitter));
-    answer_free(&a);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -37,7 +37,7 @@ static void a_ladder_that_is_too_short_is_made_longer(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof tolerance / sizeof *tolerance; k++) {
-        answer usual = {0}, less = {0};
+        RITZ_OWN(answer) usual = {0}, less = {0};
         int64_t order = 0;
 
         open_beams(fixed, tolerance[k], &usual);
@@ -47,8 +47,6 @@ static void a_ladder_that_is_too_short_is_made_longer(void **state)
         less.fitter->num_first = less.fitter->num_steps = SHORT;
         assert_in_range(search(&less), order - 1, order + 1);
         assert_true(less.fitter->num_steps > SHORT);
-        answer_free(&usual);
-        answer_free(&less);
     }
 }
 
@@ -56,7 +54,7 @@ static void a_ladder_that_is_too_short_is_made_longer(void **state)
    bodies are there, of which the right one has three that are rigid. */
 static void it_goes_on_to_the_last_mode(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     ritz_fit_end end = RITZ_FIT_END_NONE;
     int64_t before = 0;
 
@@ -76,13 +74,12 @@ static void it_goes_on_to_the_last_mode(void **state)
     assert_int_equal(end, RITZ_FIT_END_WHOLE);
     assert_int_equal(a.fitter->num_steps, a.fitter->model[0].num_dofs +
                                               a.fitter->model[1].num_dofs - 3);
-    answer_free(&a);
 }
 
 /* A first stage to the end of the band leaves too much. */
 static void a_first_stage_that_is_too_poor_is_made_richer(void **state)
 {
-    answer usual = {0}, poor = {0};
+    RITZ_OWN(answer) usual = {0}, poor = {0};
     int64_t order = 0;
     double hertz = 0.0;
 
@@ -94,14 +91,12 @@ static void a_first_stage_that_is_too_poor_is_made_richer(void **state)
     poor.fitter->rich_hz = hertz;
     assert_in_range(search(&poor), order - 1, order + 1);
     assert_true(poor.fitter->second.rich_hz > hertz);
-    answer_free(&usual);
-    answer_free(&poor);
 }
 
 /* One that is rich enough stays as it is. */
 static void one_that_is_rich_enough_stays(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     ritz_fit_end end = RITZ_FIT_END_WHOLE;
 
     (void)state;
@@ -109,14 +104,13 @@ static void one_that_is_rich_enough_stays(void **state)
     assert_ok(ritz_fit_enrich(a.fitter, &end));
     assert_int_equal(end, RITZ_FIT_END_NONE);
     assert_near(a.fitter->second.rich_hz, a.fitter->rich_hz, 0.0);
-    answer_free(&a);
 }
 
 static void assert_ends(const char *tolerance, int64_t largest,
                         ritz_fit_end end, const char *words)
 {
     ritz_fit_request request = fit_scenes_by(fixed, 1, tolerance);
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     request.largest = largest;
     fit_scenes_store_beams(4, 4);
@@ -125,7 +119,6 @@ static void assert_ends(const char *tolerance, int64_t largest,
     assert_int_equal(a.fit.end[0], end);
     if (!strstr(a.fit.why, words))
         fail_msg("'%s' says nothing of '%s'", a.fit.why, words);
-    answer_free(&a);
 }
 
 static void it_is_said_what_ended_the_search(void **state)
@@ -147,12 +140,11 @@ static ritz_status extend(const answer *a)
 
 static void a_ladder_survives_every_allocation(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     open_beams(fixed, "frequency=1e-3", &a);
     assert_survives_every_allocation(extend(&a));
-    answer_free(&a);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -32,13 +32,12 @@ static void assert_path_holds(const answer *a)
 
     for (int64_t t = 0; t < a->path.count; t++) {
         const ritz_fit_candidate *row = &a->path.row[t];
-        ritz_measures found = {0};
+        RITZ_OWN(ritz_measures) found = {0};
 
         assert_string_equal(row->refusal, "");
         answer_orders(a, row, order);
         answer_measure(a, order, true, &found);
         assert_same(&row->errors, &found);
-        ritz_measures_free(&found);
     }
 }
 
@@ -49,7 +48,7 @@ static void cut_beams_are_as_far_off_as_the_path_says(void **state)
 
     (void)state;
     for (int damped = 0; damped < 2; damped++) {
-        answer a = {0};
+        RITZ_OWN(answer) a = {0};
 
         fit_scenes_store_beams(4, 6);
         if (damped)
@@ -58,7 +57,6 @@ static void cut_beams_are_as_far_off_as_the_path_says(void **state)
                     modes, &a);
         assert_int_equal(a.path.count, 4 + 5 + 1);
         assert_path_holds(&a);
-        answer_free(&a);
     }
 }
 
@@ -66,7 +64,7 @@ static void a_cut_spacecraft_is_as_far_off_as_the_path_says(void **state)
 {
     const ritz_fit_request request = fit_scenes_quick("flexible=1e-1");
     const int64_t modes[] = {3, 2};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     dualspin_or_skip();
@@ -78,7 +76,6 @@ static void a_cut_spacecraft_is_as_far_off_as_the_path_says(void **state)
     assert_path_holds(&a);
     assert_int_equal(a.body.item[2].nested.smallest, 0); /* rigid, as it was */
     assert_int_equal(a.body.item[2].K.ncol, 6);
-    answer_free(&a);
 }
 
 /* From the answer down by one column, to those that must stay. */
@@ -87,7 +84,7 @@ static void a_path_leads_from_the_answer_to_what_must_stay(void **state)
     const ritz_fit_request request = fit_scenes_quick("response=1e-2");
     const int64_t modes[] = {3, 4};
     const int64_t fixed[] = {3, 6}; /* dofs of one port, and of two */
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     fit_scenes_store_beams(4, 6);
@@ -114,7 +111,6 @@ static void a_path_leads_from_the_answer_to_what_must_stay(void **state)
             assert_int_equal(ritz_fit_stays(body->columns.kind[j]),
                              j < fixed[k]);
     }
-    answer_free(&a);
 }
 
 /* Every prefix of a body's file, the other body whole. */
@@ -122,7 +118,7 @@ static void bodies_note_what_the_system_comes_to(void **state)
 {
     const ritz_fit_request request = fit_scenes_quick("response=1e-2");
     const int64_t modes[] = {3, 4};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     fit_scenes_store_beams(4, 6);
@@ -150,7 +146,6 @@ static void bodies_note_what_the_system_comes_to(void **state)
             ritz_measures_free(&found);
             ritz_reduced_free(&prefix);
         }
-    answer_free(&a);
 }
 
 /* Nothing else that could have gone in that row leaves less of an error. */
@@ -182,7 +177,7 @@ static void what_goes_is_what_matters_least(void **state)
     const int64_t modes[] = {4, 5};
     int64_t before[ANSWER_BODIES];
     int64_t after[ANSWER_BODIES];
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     fit_scenes_store_beams(5, 4);
@@ -195,7 +190,6 @@ static void what_goes_is_what_matters_least(void **state)
         answer_orders(&a, &a.path.row[t + 1], after);
         assert_least_went(&a, before, after);
     }
-    answer_free(&a);
 }
 
 /* Normal modes of a clamped body alone: there is nothing that must stay. */
@@ -203,7 +197,7 @@ static void of_a_body_without_interface_one_column_stays(void **state)
 {
     const ritz_fit_request request = fit_scenes_quick("frequency=1e-1");
     const int64_t modes[] = {5, 4};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     fit_scenes_store_beams(4, 6);
@@ -213,14 +207,13 @@ static void of_a_body_without_interface_one_column_stays(void **state)
     assert_int_equal(a.body.item[1].nested.smallest, 3); /* rigid motion */
     assert_int_equal(a.path.count, 4 + 4 + 1);
     assert_int_equal(a.path.row[a.path.count - 1].columns, 1 + 3);
-    answer_free(&a);
 }
 
 static void of_many_cuts_some_are_measured_and_the_smallest_is(void **state)
 {
     ritz_fit_request request = fit_scenes_quick("response=1e-2");
     const int64_t modes[] = {4, 5};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     request.most_measured = 5; /* 2 x 9 cuts at one place: every fourth */
@@ -235,7 +228,6 @@ static void of_many_cuts_some_are_measured_and_the_smallest_is(void **state)
     assert_int_equal(a.body.item[0].nested.count, 2); /* 7 and 3 columns */
     assert_int_equal(a.body.item[1].nested.count, 3); /* 11, 7 and 6 */
     assert_path_holds(&a);
-    answer_free(&a);
 }
 
 static const char tiny[] =
@@ -252,24 +244,19 @@ static const char tiny[] =
 
 static ritz_status system_once(const answer *a)
 {
-    ritz_status status = RITZ_OK;
-    ritz_bodies body = {0};
-    ritz_fit_path path = {0};
-    ritz_system system = {0};
+    RITZ_OWN(ritz_bodies) body = {0};
+    RITZ_OWN(ritz_fit_path) path = {0};
+    RITZ_OWN(ritz_system) system = {0};
 
-    RITZ_TRY(ritz_fitter_system(a->fitter, &a->whole, &body, &path, &system));
-done:
-    ritz_bodies_free(&body);
-    ritz_fit_path_free(&path);
-    ritz_system_free(&system);
-    return status;
+    RITZ_CHECK(ritz_fitter_system(a->fitter, &a->whole, &body, &path, &system));
+    return RITZ_OK;
 }
 
 static void nesting_survives_every_allocation(void **state)
 {
     ritz_fit_request request = fit_scenes_quick("frequency=1e-2");
     const int64_t modes[] = {1};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     request.num_random = 1;
@@ -277,7 +264,6 @@ static void nesting_survives_every_allocation(void **state)
     answer_make(tiny, &request, &ritz_method_craig_bampton, modes, &a);
     assert_int_equal(a.path.count, 2);
     assert_survives_every_allocation(system_once(&a));
-    answer_free(&a);
 }
 
 static const struct CMUnitTest tests[] = {

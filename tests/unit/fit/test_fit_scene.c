@@ -15,7 +15,7 @@ static const ritz_method *const one[] = {&ritz_method_craig_bampton};
 static void what_meets_the_listed_angles_alone_is_caught(void **state)
 {
     ritz_fit_request request = fit_scenes_by(one, 1, "flexible=1e-1");
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t caught = 0;
 
     (void)state;
@@ -32,7 +32,6 @@ static void what_meets_the_listed_angles_alone_is_caught(void **state)
     }
     assert_true(caught > 0);
     assert_non_null(strstr(a.fit.why, "met the grid and failed at random"));
-    answer_free(&a);
 }
 
 /* The system has the order that was found, and bodies that are nested. */
@@ -40,7 +39,7 @@ static void the_answer_is_a_system_of_nested_bodies(void **state)
 {
     const ritz_fit_request request = fit_scenes_by(one, 1, "response=1e-2");
     const ritz_fit_candidate *chosen = NULL;
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     fit_scenes_store_beams(4, 6);
@@ -52,7 +51,6 @@ static void the_answer_is_a_system_of_nested_bodies(void **state)
     for (int k = 0; k < 2; k++)
         assert_true(a.body.item[k].nested.smallest > 0);
     assert_int_equal(answer_columns(&a), chosen->columns);
-    answer_free(&a);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -120,7 +120,7 @@ static int64_t exhaust(ritz_fitter *fitter, const ritz_method *method,
     for (int64_t at = 0; at < o.count; at++) {
         int64_t modes[BODIES] = {0};
         int64_t stride = 0;
-        ritz_fit_candidate c = {0};
+        RITZ_OWN(ritz_fit_candidate) c = {0};
 
         if (is_known(&o, at, least))
             continue;
@@ -130,7 +130,6 @@ static int64_t exhaust(ritz_fitter *fitter, const ritz_method *method,
         o.of[at] = c.order;
         if (c.feasible && c.order < least)
             least = c.order;
-        ritz_fit_candidate_free(&c);
     }
     free(o.of);
     return least;
@@ -143,7 +142,7 @@ static void assert_within_one(const char *text, int64_t num_methods,
 {
     const ritz_fit_request request =
         fit_scenes_by(three, num_methods, tolerance);
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t least = 0;
     int64_t order = 0;
 
@@ -156,7 +155,6 @@ static void assert_within_one(const char *text, int64_t num_methods,
     if (order > least + 1 || order < least)
         fail_msg("%s\nfound %d, exhaustive search %d", a.fit.why, (int)order,
                  (int)least);
-    answer_free(&a);
 }
 
 /* Lengths, ends and tolerances: each a scene of its own. */

@@ -40,7 +40,7 @@ static void assert_is_what_it_says(answer *a, const ritz_fit_candidate *c)
 /* The beam is driven and seen across: what moves along it is left out. */
 static void what_moves_along_a_beam_driven_across_is_left_out(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     const ritz_fit_candidate *c = NULL;
 
     (void)state;
@@ -52,30 +52,27 @@ static void what_moves_along_a_beam_driven_across_is_left_out(void **state)
     assert_non_null(strstr(a.fit.why, "of its basis being left out"));
     assert_true(find_measure(&c->errors, "response-relative")->value <= 1e-5);
     assert_is_what_it_says(&a, c);
-    answer_free(&a);
 }
 
 /* No column of the least that each body can have may go. */
 static void what_has_nothing_to_spare_stays(void **state)
 {
     const int64_t none[] = {0, 0};
-    answer a = {0};
-    ritz_fit_candidate less = {0};
+    RITZ_OWN(answer) a = {0};
+    RITZ_OWN(ritz_fit_candidate) less = {0};
 
     (void)state;
     open_beams(3, 3, "response=1", &a);
     assert_ok(ritz_fitter_try(a.fitter, one[0], none, &a.whole));
     assert_ok(ritz_fit_trim(a.fitter, &a.whole, &less));
     assert_int_equal(less.order, 0);
-    ritz_fit_candidate_free(&less);
-    answer_free(&a);
 }
 
 /* A cut that no path of this scene has. */
 static void a_cut_of_another_scene_is_refused(void **state)
 {
     const int64_t modes[] = {1, 1};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     ritz_bodies body = {0};
 
     (void)state;
@@ -85,29 +82,25 @@ static void a_cut_of_another_scene_is_refused(void **state)
     a.whole.left_out = 100;
     assert_fails(ritz_fit_make_bodies(a.fitter, &a.whole, &body),
                  RITZ_ERR_ARGUMENT, "no cut of it has 1 columns");
-    answer_free(&a);
 }
 
 static ritz_status trim(ritz_fitter *fitter, const ritz_fit_candidate *from)
 {
-    ritz_fit_candidate less = {0};
-    ritz_status status = ritz_fit_trim(fitter, from, &less);
+    RITZ_OWN(ritz_fit_candidate) less = {0};
 
-    ritz_fit_candidate_free(&less);
-    return status;
+    return ritz_fit_trim(fitter, from, &less);
 }
 
 static void every_allocation_may_fail(void **state)
 {
     const int64_t modes[] = {1, 1};
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
 
     (void)state;
     open_beams(2, 1, "response=1", &a);
     assert_ok(ritz_fitter_try(a.fitter, one[0], modes, &a.whole));
     assert_true(a.whole.feasible);
     assert_survives_every_allocation(trim(a.fitter, &a.whole));
-    answer_free(&a);
 }
 
 /* As in Rubin's basis: the first two move together freely, and the second is

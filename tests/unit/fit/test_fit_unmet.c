@@ -30,7 +30,7 @@ static void fit(answer *out)
 /* Bounds rule most of them out; of the largest the error is said. */
 static void the_largest_of_a_method_that_fails_is_measured(void **state)
 {
-    answer a = {0};
+    RITZ_OWN(answer) a = {0};
     int64_t screened = 0;
 
     (void)state;
@@ -51,7 +51,6 @@ static void the_largest_of_a_method_that_fails_is_measured(void **state)
     }
     assert_non_null(
         strstr(a.fit.why, "no method meets the tolerance; nearest"));
-    answer_free(&a);
 }
 
 /* Errors of the modes that are there say little where others are missing. */
