@@ -37,9 +37,9 @@ typedef struct ritz_fit_candidate {
     ritz_measures errors;    /* worst of all configurations; {0} if refused */
     ritz_measures estimates; /* bounds; of a scene: worst of the configurations
                                 that were bounded */
-    double ratio;  /* largest error over its tolerance; 1 or less: it holds */
-    int64_t worst; /* the measure of that ratio in `errors`; -1: none */
-    bool feasible; /* it meets the tolerance everywhere, and is stable */
+    double ratio;     /* largest error over its tolerance; 1 or less: met */
+    int64_t worst;    /* the measure of that ratio in `errors`; -1: none */
+    bool feasible;    /* it meets the tolerance everywhere, and is stable */
     bool unconfirmed; /* it met the tolerance on the grid, and not at the random
                          frequencies and configurations */
     bool ruled_out;   /* its bounds exclude it, so it was not measured */
@@ -59,7 +59,7 @@ typedef struct ritz_fit_request {
     int64_t num_methods; /* 0: every one that makes reduced components by a
                             number of modes, and of a scene `compare` */
     const ritz_method *const *methods; /* borrowed */
-    ritz_choice choice;                /* what methods are told that heed it */
+    ritz_choice choice;                /* options of methods that have them */
     const char *attach;                /* ports of a component; NULL: all */
     int64_t largest;       /* order to be tried; 0: four times what the band
                                holds, and 40; of a scene as far as errors fall,
@@ -171,7 +171,7 @@ void ritz_fitter_describe(const ritz_fitter *fitter, int64_t size, char *out);
 /** Band and damping as they were settled. */
 const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter);
 
-/** Flexible bodies; how many there are to be asked for modes. */
+/** Number of flexible bodies, of which a candidate has a number of modes. */
 int64_t ritz_fitter_bodies(const ritz_fitter *fitter);
 const char *ritz_fitter_body(const ritz_fitter *fitter, int64_t k);
 

@@ -80,7 +80,7 @@ double ritz_dot(const double a[static 3], const double b[static 3])
 }
 
 /* x / |x|. */
-static void normalise(double x[static 3])
+static void normalise_vector(double x[static 3])
 {
     double length = sqrt(ritz_dot(x, x));
 
@@ -99,7 +99,7 @@ static void find_normals(const double axis[static 3], double e[static 2][3])
             least = i;
     start[least] = 1.0;
     ritz_cross(axis, start, e[0]);
-    normalise(e[0]);
+    normalise_vector(e[0]);
     ritz_cross(axis, e[0], e[1]);
 }
 
@@ -187,7 +187,7 @@ static void point_universal(const ritz_joint *joint,
     fill_basic(e);
     ritz_turn_apply(pose->R, joint->axis[1], c);
     ritz_cross(a, c, e[5]);
-    normalise(e[5]);
+    normalise_vector(e[5]);
     ritz_cross(c, e[5], v);
     make_dual(a, v, e[3]);
     ritz_cross(e[5], a, v);
@@ -201,7 +201,7 @@ static void point_bushing(const ritz_joint *joint, const ritz_joint_pose *pose,
     (void)pose;
     memcpy(e[0], joint->axis[0], sizeof e[0]);
     ritz_cross(joint->axis[0], joint->axis[1], e[2]);
-    normalise(e[2]);
+    normalise_vector(e[2]);
     ritz_cross(e[2], e[0], e[1]);
     memcpy(e + 3, e, 3 * sizeof e[0]);
 }

@@ -15,12 +15,12 @@
 #include <string.h>
 #include <time.h>
 
-/* Where that is not enough it goes on, by twice the modes of a body and some,
-   to so many of all bodies, or as many as columns are allowed. */
+/* Where the ladder is too short, it is made again with twice the modes of each
+   body and some, up to so many of all bodies or as columns are allowed. */
 enum { AT_FIRST = 4 };
 static const int64_t furthest = 1000;
 
-static double seconds(clockid_t clock)
+static double read_clock(clockid_t clock)
 {
     struct timespec now = {0};
 
@@ -30,8 +30,8 @@ static double seconds(clockid_t clock)
 
 ritz_fit_watch ritz_fit_start(void)
 {
-    return (ritz_fit_watch){seconds(CLOCK_MONOTONIC),
-                            seconds(CLOCK_PROCESS_CPUTIME_ID)};
+    return (ritz_fit_watch){read_clock(CLOCK_MONOTONIC),
+                            read_clock(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
 ritz_fit_watch ritz_fit_since(ritz_fit_watch start)
@@ -107,7 +107,7 @@ static void ladder_draft_free(ladder_draft *r)
     free(r->step);
 }
 
-/* Modes of one body; so many as were asked for, or all up to a frequency. */
+/* Modes of one body: a number of them, or all up to a frequency. */
 static ritz_status gather_modes(const ritz_fitter *f, int64_t k,
                                 const ritz_span *span, ladder_draft *r)
 {

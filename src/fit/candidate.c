@@ -64,8 +64,8 @@ double ritz_fit_misses(const ritz_fit_candidate *c)
     return m && m->value > m->limit ? m->value : 0.0;
 }
 
-/* Of what was not measured nobody knows more than how far off it is at least;
- * errors of the modes that are there say little where others are missing. */
+/* What was not measured is only known to be off by at least its ratio; errors of
+ * the modes that were found say little where others are missing. */
 bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b)
 {
@@ -103,7 +103,8 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
 
 /* --- its bodies ------------------------------------------------------------------ */
 
-/* What this method heeds of what all are told; its damping is everybody's. */
+/* Those of the options that this method uses; band and damping are those of the
+   tolerance where no others are given. */
 static ritz_choice choose_options(const ritz_fitter *fitter,
                                   const ritz_method *method)
 {
@@ -253,7 +254,7 @@ static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
     return ritz_fit_join(f, body, out);
 }
 
-/* --- a stage at a place --------------------------------------------------------- */
+/* --- a model at a place --------------------------------------------------------- */
 
 /* The reduced model at one place. */
 typedef struct ritz_fit_model {
@@ -438,8 +439,8 @@ static ritz_status foresee_errors(const ritz_fitter *f, const ritz_fit_model *m,
     return ritz_fit_worst(&found, m->place->at, &candidate->estimates);
 }
 
-/* What was said of a candidate while it was sought was of one place. Its errors
- * are of random ones too, and so are its bounds. */
+/* Estimates that the search made are those of one place. Errors of the answer
+ * are of random places too, and so are its bounds. */
 ritz_status ritz_fit_bound_stage(ritz_fitter *f, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate)
 {
@@ -504,7 +505,7 @@ ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
     return look_at(f, stage, place, points, false, candidate);
 }
 
-/* The cost of simulation at the first place; what has none is no worse. */
+/* The cost of simulation at the first place; there may be none. */
 static ritz_status take_cost(const ritz_fitter *f, const ritz_stage *stage,
                              ritz_fit_candidate *candidate)
 {
@@ -577,7 +578,7 @@ ritz_status ritz_fit_try(ritz_fitter *f, ritz_fit_candidate *candidate)
 
     if (status == RITZ_OK && !candidate->refusal[0])
         status = ritz_fit_measure(f, &joined.stage, candidate);
-    if (!f->scene) /* one of its candidates shares nothing with another */
+    if (!f->scene) /* its candidates have no body in common */
         ritz_fit_forget(f, candidate->method);
     return ritz_fit_refuse(status, candidate);
 }

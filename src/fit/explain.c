@@ -1,4 +1,4 @@
-/* The answer in words: what decides it, and what else there was. */
+/* Why the chosen candidate was chosen, in words, and what else there was. */
 #include "base/tolerances.h"
 #include "fit/fitter.h"
 
@@ -152,8 +152,8 @@ static bool rigid_alone(const ritz_fitter *fitter, const ritz_fit_candidate *c)
            10.0 * limits->limit[RITZ_MEASURE_RESPONSE];
 }
 
-/* What was asked of something that is not there: no mode lies in the band, no
- * channel shows one, no input drives an output. */
+/* Tolerances that hold because there is nothing to measure: no mode lies in the
+ * band, no channel shows one, no input controls an output. */
 static void add_vacuous(const ritz_fitter *fitter, ritz_fit *fit,
                         const ritz_fit_candidate *c)
 {

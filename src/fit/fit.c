@@ -1,4 +1,4 @@
-/* Over all methods: which are tried, which of them is the answer. */
+/* Over all methods: which are tried, and which candidate is chosen. */
 #include "fit/fitter.h"
 
 #include "base/alloc.h"
@@ -23,7 +23,8 @@ static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
            !(method->only_named & RITZ_NAMED_FOR_COMPONENTS);
 }
 
-/* What is asked, or all that is usual: of joined bodies `compare` too. */
+/* The methods of the request, or all usual ones and, of joined bodies,
+   `compare`. */
 static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
 {
     const ritz_fit_request *asked = &fitter->request;
@@ -53,52 +54,45 @@ static ritz_status list_methods(ritz_fitter *fitter, ritz_fit *fit)
     return RITZ_OK;
 }
 
-/* The best of all methods, and the best of the others. */
-static void choose(ritz_fit *fit)
+/* Best of all methods but one; -1: none meets the tolerance. */
+static int64_t find_best(const ritz_fit *fit, int64_t but)
 {
-    int64_t *const into[] = {&fit->chosen, &fit->runner_up};
+    int64_t found = -1;
 
-    for (int t = 0; t < 2; t++) {
-        *into[t] = -1;
-        for (int64_t m = 0; m < fit->num_methods; m++) {
-            int64_t k = fit->best[m];
+    for (int64_t m = 0; m < fit->num_methods; m++) {
+        const int64_t k = fit->best[m];
 
-            if (k < 0 || (t == 1 && k == fit->chosen))
-                continue;
-            if (*into[t] < 0 || ritz_fit_is_better(&fit->candidate[k],
-                                                   &fit->candidate[*into[t]]))
-                *into[t] = k;
-        }
+        if (k >= 0 && k != but &&
+            (found < 0 ||
+             ritz_fit_is_better(&fit->candidate[k], &fit->candidate[found])))
+            found = k;
     }
+    return found;
 }
 
-/* How wrong the two best can be, wherever a scene is listed. */
-static ritz_status bound(ritz_fitter *fitter, ritz_fit *fit)
+static void choose_best(ritz_fit *fit)
 {
-    const int64_t both[] = {fit->chosen, fit->runner_up};
-
-    for (int t = 0; t < 2; t++)
-        if (both[t] >= 0)
-            RITZ_CHECK(ritz_fit_bound(fitter, &fit->candidate[both[t]]));
-    return RITZ_OK;
+    fit->chosen = find_best(fit, -1);
+    fit->runner_up = find_best(fit, fit->chosen);
 }
 
-/* Columns that matter to nothing are left out of one method's best. */
-static ritz_status trim_one(ritz_fitter *fitter, int64_t at, ritz_fit *fit)
+/* Leave columns that matter to nothing out of one method's best candidate. */
+static ritz_status trim_candidate(ritz_fitter *fitter, int64_t at,
+                                  ritz_fit *fit)
 {
     RITZ_OWN(ritz_fit_candidate) less = {0};
 
     ritz_monitor_step("columns to be left out", at, fit->count);
     RITZ_CHECK(ritz_fit_trim(fitter, &fit->candidate[at], &less));
-    if (less.order > 0) {
-        if (fitter->request.observe)
-            fitter->request.observe(&less, fitter->request.context);
-        RITZ_CHECK(ritz_fit_append(fit, &less));
-    }
-    return RITZ_OK;
+    if (less.order == 0)
+        return RITZ_OK;
+    if (fitter->request.observe)
+        fitter->request.observe(&less, fitter->request.context);
+    return ritz_fit_append(fit, &less);
 }
 
-static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
+/* The same of every method that may still be the best then, and choose again. */
+static ritz_status trim_best(ritz_fitter *fitter, ritz_fit *fit)
 {
     double most = 0.0;
 
@@ -109,11 +103,11 @@ static ritz_status trim(ritz_fitter *fitter, ritz_fit *fit)
 
         if (at >= 0 &&
             ((double)fit->candidate[at].order <= most || at == fit->runner_up))
-            RITZ_CHECK(trim_one(fitter, at, fit));
+            RITZ_CHECK(trim_candidate(fitter, at, fit));
     }
     for (int64_t m = 0; m < fit->num_methods; m++)
         ritz_fit_conclude(fit, m);
-    choose(fit);
+    choose_best(fit);
     return RITZ_OK;
 }
 
@@ -128,17 +122,20 @@ ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
         if (fitter->scene && fit.best[m] < 0 &&
             fit.method[m] != &ritz_fit_compare)
             RITZ_CHECK(ritz_fit_search(fitter, &fit, m, true));
-    choose(&fit);
-    RITZ_CHECK(trim(fitter, &fit));
-    RITZ_CHECK(bound(fitter, &fit));
+    choose_best(&fit);
+    RITZ_CHECK(trim_best(fitter, &fit));
+    if (fit.chosen >= 0)
+        RITZ_CHECK(ritz_fit_bound(fitter, &fit.candidate[fit.chosen]));
+    if (fit.runner_up >= 0)
+        RITZ_CHECK(ritz_fit_bound(fitter, &fit.candidate[fit.runner_up]));
     RITZ_CHECK(ritz_fit_explain(fitter, &fit));
     RITZ_MOVE(*out, fit);
     return RITZ_OK;
 }
 
-/* Of one method the largest that is no larger than that, by bisection. */
-static ritz_status approach(ritz_fitter *fitter, int64_t order, int64_t method,
-                            int64_t *modes, ritz_fit *fit)
+/* Largest candidate of a method with at most @p order columns, by bisection. */
+static ritz_status approach_order(ritz_fitter *fitter, int64_t order,
+                                  int64_t method, int64_t *modes, ritz_fit *fit)
 {
     const ritz_method *asked = fit->method[method];
     bool met = false;
@@ -173,7 +170,7 @@ ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
 
     RITZ_CHECK_NEW(modes, fitter->num_bodies);
     for (int64_t m = 0; m < fit->num_methods; m++) {
-        RITZ_CHECK(approach(fitter, order, m, modes, fit));
+        RITZ_CHECK(approach_order(fitter, order, m, modes, fit));
         ritz_fit_conclude(fit, m);
         at[m] = ritz_fit_largest_of(fit, fit->method[m], order);
     }
@@ -182,9 +179,7 @@ ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
 
 void ritz_fit_free(ritz_fit *fit)
 {
-    for (int64_t k = 0; k < fit->count; k++)
-        ritz_fit_candidate_free(&fit->candidate[k]);
-    free(fit->candidate);
+    RITZ_FREE_EACH(ritz_fit_candidate, fit->count, fit->candidate);
     free(fit->method);
     free(fit->best);
     free(fit->reached);

@@ -35,9 +35,9 @@ typedef struct nesting {
     int64_t *column;      /* count, what matters most first */
     double *alone;        /* of each column: the ratio without it */
     int64_t *own, *some;  /* to work in: columns of one body, and of all */
-    int64_t every;        /* listed places from one to the next that is used */
+    int64_t every;        /* one in so many listed places is used */
     int64_t step;         /* columns between two cuts that are measured */
-    int64_t hardest;      /* of those places: where the last was farthest off */
+    int64_t hardest;      /* the place where the last model was worst */
 } nesting;
 
 static void nesting_free(nesting *n)
@@ -52,7 +52,7 @@ static void nesting_free(nesting *n)
 
 /* --- the model of some columns --------------------------------------------------- */
 
-/* Of some columns those of body k, as it numbers them, into `own`. */
+/* The columns of body k among some, as the body numbers them, into `own`. */
 static int64_t take_own(const nesting *n, int64_t k, int64_t count,
                         const int64_t *column)
 {
@@ -64,8 +64,8 @@ static int64_t take_own(const nesting *n, int64_t k, int64_t count,
     return found;
 }
 
-/* Those columns joined. Invariants do not matter here, nor does T unless MAC is
-   of shapes. */
+/* The model of some columns. It needs no invariants, and T only of a component,
+   whose MAC is that of shapes. */
 static ritz_status join_columns(const nesting *n, int64_t count,
                                 const int64_t *column, ritz_fit_joined *out)
 {
@@ -83,9 +83,9 @@ static ritz_status join_columns(const nesting *n, int64_t count,
 }
 
 /*
- * How far the model of some columns is off at listed places, on the grid, in
- * parts of its tolerance. It begins where the one before was farthest off: what
- * is as far off there as `most` is not measured elsewhere.
+ * Worst error over tolerance of the model of some columns, on the grid of the
+ * listed places. It begins where the last model was worst: a ratio of `most` or
+ * more is not measured at the other places.
  */
 static ritz_status measure_ratio(nesting *n, int64_t count,
                                  const int64_t *column, double most,
@@ -246,7 +246,7 @@ static void move_column(nesting *n, int64_t from, int64_t to)
     n->column[to] = here;
 }
 
-/* Those that may go, by how far the model without each of them alone is off. */
+/* Sort the columns that may go by the ratio of the model without each alone. */
 static ritz_status order_alone(nesting *n)
 {
     for (int64_t k = n->fixed; k < n->count && n->count > 1; k++) {
@@ -265,8 +265,7 @@ static ritz_status order_alone(nesting *n)
     return RITZ_OK;
 }
 
-/* Of a body without columns that must stay the one that matters most alone
-   does. */
+/* A body without columns that must stay keeps the one that matters most alone. */
 static void keep_one_each(nesting *n)
 {
     for (int64_t k = 0; k < n->f->num_bodies; k++) {
@@ -280,7 +279,7 @@ static void keep_one_each(nesting *n)
     }
 }
 
-/* Of the last few of those that are left, one goes to the end. */
+/* Move one of the last few columns to the end: that which is missed least. */
 static ritz_status drop_column(nesting *n, int64_t left)
 {
     double least = HUGE_VAL;
@@ -364,9 +363,7 @@ static ritz_status walk_path(const nesting *n, int64_t patience,
 
 void ritz_fit_path_free(ritz_fit_path *path)
 {
-    for (int64_t k = 0; k < path->count; k++)
-        ritz_fit_candidate_free(&path->row[k]);
-    free(path->row);
+    RITZ_FREE_EACH(ritz_fit_candidate, path->count, path->row);
     *path = (ritz_fit_path){0};
 }
 

@@ -52,22 +52,23 @@ const ritz_method *ritz_fit_method_find(const char *name)
 
 /*
  * The scene as its modes are chosen: in the band of the tolerance, ranked if
- * nothing is asked of modes and there is damping to rank by. Static answers
- * come first where their gain is asked for.
+ * no tolerance is of modes and there is damping to rank by. Static solutions
+ * come first where there is a tolerance of the static gain.
  */
 static ritz_scene choose_modes(const ritz_fitter *f)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
-    bool seen = true;             /* no tolerance is of modes */
+    bool channels = true;         /* all tolerances are of inputs and outputs */
     ritz_scene scene = *f->scene; /* borrowed */
 
     for (int k = 0; k < RITZ_MEASURES; k++)
-        seen = seen && (isnan(limits->limit[k]) ||
-                        ritz_measure_table[k].needs & RITZ_NEEDS_CHANNELS);
+        channels =
+            channels && (isnan(limits->limit[k]) ||
+                         ritz_measure_table[k].needs & RITZ_NEEDS_CHANNELS);
 
     memcpy(scene.band_hz, limits->band_hz, sizeof scene.band_hz);
     scene.damping = limits->damping;
-    scene.select = seen && scene.damping.kind != RITZ_DAMPING_NONE
+    scene.select = channels && scene.damping.kind != RITZ_DAMPING_NONE
                        ? RITZ_SELECT_RANKED
                        : RITZ_SELECT_BAND;
     scene.augment = isnan(limits->limit[RITZ_MEASURE_GAIN])

@@ -123,36 +123,39 @@ void chart_sources_free(chart_sources *sources)
     *sources = (chart_sources){0};
 }
 
-void chart_say_error(double error, char out[32])
+chart_word chart_say_error(double error)
 {
-    if (isnan(error))
-        snprintf(out, 32, "not measured");
-    else if (error <= 0.0)
-        snprintf(out, 32, error < 0.0 ? "below 0" : "0");
+    chart_word out = {"not measured"};
+
+    if (error <= 0.0)
+        snprintf(out.text, sizeof out, error < 0.0 ? "below 0" : "0");
     else if (error < RECORDS_ROUNDING)
-        snprintf(out, 32, "< %.0e", RECORDS_ROUNDING);
+        snprintf(out.text, sizeof out, "< %.0e", RECORDS_ROUNDING);
     else if (error >= 0.0995 && error < 100.0)
-        snprintf(out, 32, "%.0f\xc2\xa0%%", 100.0 * error);
+        snprintf(out.text, sizeof out, "%.0f\xc2\xa0%%", 100.0 * error);
     else if (error >= 1e-4 && error < 100.0)
-        snprintf(out, 32, "%.2g\xc2\xa0%%", 100.0 * error);
-    else
-        snprintf(out, 32, "%.1e", error);
+        snprintf(out.text, sizeof out, "%.2g\xc2\xa0%%", 100.0 * error);
+    else if (!isnan(error))
+        snprintf(out.text, sizeof out, "%.1e", error);
+    return out;
 }
 
-void chart_say_seconds(double seconds, char out[32])
+chart_word chart_say_seconds(double seconds)
 {
     static const struct {
         double unit;
         const char *name;
     } units[] = {{1.0, "s"}, {1e-3, "ms"}, {1e-6, "\xc2\xb5s"}, {1e-9, "ns"}};
+    chart_word out;
     int k = 0;
 
     while (k < 3 && seconds < 0.9995 * units[k].unit)
         k++;
-    snprintf(out, 32,
+    snprintf(out.text, sizeof out,
              seconds >= 99.95 * units[k].unit ? "%.0f\xc2\xa0%s"
                                               : "%.2g\xc2\xa0%s",
              seconds / units[k].unit, units[k].name);
+    return out;
 }
 
 int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],

@@ -90,9 +90,13 @@ ritz_status chart_rankings(const char *path, const char *title,
 
 /* --- words of charts ------------------------------------------------------ */
 
-/** "0.31 %", "3.1e-06", "2.1 ms". */
-void chart_say_error(double error, char out[32]);
-void chart_say_seconds(double seconds, char out[32]);
+/* A number in words: "0.31 %", "3.1e-06", "2.1 ms". */
+typedef struct chart_word {
+    char text[32];
+} chart_word;
+
+chart_word chart_say_error(double error);
+chart_word chart_say_seconds(double seconds);
 
 /** Index of a name in a list; -1: it is not there. */
 int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],

@@ -188,26 +188,24 @@ static int64_t list_line(work *w, int64_t method)
 
 static void say_point(work *w, const record *r, const measure *m)
 {
-    char error[32], costs[160] = "", word[32];
+    char costs[160] = "";
 
-    chart_say_error(record_error(r, m->name), error);
-    if (isfinite(r->cpu)) {
-        chart_say_seconds(r->cpu, word);
-        sink_append(costs, sizeof costs, "\nto reduce: %s", word);
-    }
-    if (isfinite(r->cost)) {
-        chart_say_seconds(r->cost, word);
-        sink_append(costs, sizeof costs, "\none simulated second: %s", word);
-    }
+    if (isfinite(r->cpu))
+        sink_append(costs, sizeof costs, "\nto reduce: %s",
+                    chart_say_seconds(r->cpu).text);
+    if (isfinite(r->cost))
+        sink_append(costs, sizeof costs, "\none simulated second: %s",
+                    chart_say_seconds(r->cost).text);
     if (r->tolerance)
         sink_append(costs, sizeof costs, "\n%s the tolerance%s",
                     r->feasible ? "meets" : "misses",
                     r->chosen      ? "; chosen"
                     : r->runner_up ? "; runner-up"
                                    : "");
-    picture_tip(w->picture, "%.60s, order %lld\n%s: %s (%.4g)%s", r->method,
-                (long long)r->order, m->title, error, record_error(r, m->name),
-                costs);
+    picture_tip(w->picture, "%.60s, order %ld\n%s: %s (%.4g)%s", r->method,
+                r->order, m->title,
+                chart_say_error(record_error(r, m->name)).text,
+                record_error(r, m->name), costs);
 }
 
 /* A row; its word is the order, if it is to be written beside the point. */
@@ -216,15 +214,15 @@ static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
     const record *r = &w->s.all.item[k];
     FILE *file = w->picture->data.file;
 
-    fprintf(file, "%lld\t%lld\t%d\t%.9g\t%.9g\t", (long long)p,
-            (long long)w->s.which[k], style, w->x[k], w->y[k]);
+    fprintf(file, "%ld\t%ld\t%d\t%.9g\t%.9g\t", p, w->s.which[k], style,
+            w->x[k], w->y[k]);
     if (style <= MISSES)
         say_point(w, r, &w->s.measure[p]);
-    fprintf(file, "\t%lld\t", (long long)r->order);
+    fprintf(file, "\t%ld\t", r->order);
     html_line(file, r->method);
     fprintf(file, "\t");
     if (word)
-        fprintf(file, "%lld", (long long)r->order);
+        fprintf(file, "%ld", r->order);
     fputc('\n', file);
 }
 
@@ -295,8 +293,7 @@ static void put_table(const work *w)
         const record *r = &w->s.all.item[k];
 
         html_line(file, r->method);
-        fprintf(file, "\t%lld\t%.4g\t%.4g", (long long)r->order, r->cpu,
-                r->cost);
+        fprintf(file, "\t%ld\t%.4g\t%.4g", r->order, r->cpu, r->cost);
         for (int64_t m = 0; m < w->s.num_measures; m++)
             fprintf(file, "\t%.4g", record_error(r, w->s.measure[m].name));
         fprintf(file, "\t%s\n",
@@ -312,11 +309,10 @@ static void put_table(const work *w)
 /* "chosen: compare, 34", in place of a word beside the point. */
 static void add_chosen(work *w, const record *r, bool chosen)
 {
-    picture_sign sign = {.colour = chosen ? "alarm" : "ink", .mark = 6};
-
-    snprintf(sign.name, sizeof sign.name, "%s: %.40s, %lld",
-             chosen ? "chosen" : "runner-up", r->method, (long long)r->order);
-    picture_add_sign(w->picture, &sign);
+    picture_add_sign(
+        w->picture,
+        (picture_sign){.colour = chosen ? "alarm" : "ink", .mark = 6},
+        "%s: %.40s, %ld", chosen ? "chosen" : "runner-up", r->method, r->order);
 }
 
 static void add_signs(work *w)
@@ -324,13 +320,11 @@ static void add_signs(work *w)
     const record *chosen = NULL, *second = NULL;
     bool hollow = false, limit = false, uncertain = false;
 
-    for (int64_t s = 0; s < w->s.num_methods && s < PICTURE_SIGNS - 7; s++) {
-        picture_sign sign = {.colour = svg_series((int)(s % SVG_SERIES)),
-                             .mark = chart_mark(s)};
-
-        snprintf(sign.name, sizeof sign.name, "%.60s", w->s.method[s]);
-        picture_add_sign(w->picture, &sign);
-    }
+    for (int64_t s = 0; s < w->s.num_methods && s < PICTURE_SIGNS - 7; s++)
+        picture_add_sign(
+            w->picture,
+            (picture_sign){.colour = svg_series(s), .mark = chart_mark(s)},
+            "%.60s", w->s.method[s]);
     for (int64_t k = w->s.all.count - 1; k >= 0; k--) {
         const record *r = &w->s.all.item[k];
 
@@ -361,22 +355,22 @@ static void add_signs(work *w)
 
     for (size_t k = 0; k < sizeof there / sizeof *there; k++)
         if (there[k])
-            picture_add_sign(w->picture, &others[k]);
+            picture_add_sign(w->picture, others[k], "%s", others[k].name);
 }
 
 /* The note: how many errors are drawn at the foot or not at all. */
 static void say_missing(work *w)
 {
-    const long long lifted = w->lifted, left_out = w->left_out;
+    const int64_t lifted = w->lifted, left_out = w->left_out;
 
     if (lifted > 0)
         sink_append(w->picture->note, PICTURE_WORD,
-                    "%lld error%s below %.0e %s at the foot. ", lifted,
+                    "%ld error%s below %.0e %s at the foot. ", lifted,
                     lifted > 1 ? "s" : "", RECORDS_ROUNDING,
                     lifted > 1 ? "stand" : "stands");
     if (left_out > 0)
         sink_append(w->picture->note, PICTURE_WORD,
-                    "%lld %s not known and left out.", left_out,
+                    "%ld %s not known and left out.", left_out,
                     left_out > 1 ? "are" : "is");
 }
 
@@ -400,10 +394,9 @@ static ritz_status compose_errors(work *w)
 
     p->body = (double)(down * CELL_HIGH);
     fprintf(p->given.file,
-            "panels = %lld\nacross = %lld\nmethods = %lld\nseconds = %d\n"
+            "panels = %ld\nacross = %ld\nmethods = %ld\nseconds = %d\n"
             "lines = %d\n",
-            (long long)n, (long long)across, (long long)w->s.num_methods,
-            w->form->seconds, w->form->lines);
+            n, across, w->s.num_methods, w->form->seconds, w->form->lines);
     picture_give_text(p, "xlabel", w->form->xlabel);
     picture_give_texts(p, "title", n, w->s.measure->title, sizeof(measure));
     picture_give_reals(p, "x_low", n, &first->x_low, stride);

@@ -94,13 +94,10 @@ static void put_data(picture *p, const contest *all, int64_t count,
     FILE *const both[] = {p->data.file, p->table.file};
     const char *noun = all->track[0] ? "track" : "mode";
 
-    for (int64_t c = 0; c < all->count; c++) {
-        picture_sign sign = {.colour = svg_series((int)(c % SVG_SERIES)),
-                             .wide = 8.0};
-
-        snprintf(sign.name, sizeof sign.name, "%.120s", all->name[c]);
-        picture_add_sign(p, &sign);
-    }
+    for (int64_t c = 0; c < all->count; c++)
+        picture_add_sign(p,
+                         (picture_sign){.colour = svg_series(c), .wide = 8.0},
+                         "%.120s", all->name[c]);
     for (int t = 0; t < 2; t++) {
         fprintf(both[t], "mode\tlabel");
         for (int64_t c = 0; c < all->count; c++) {
@@ -109,16 +106,16 @@ static void put_data(picture *p, const contest *all, int64_t count,
             fprintf(both[t], t == 0 ? "\ttip" : "");
         }
         for (int64_t k = 0; k < count; k++) {
-            const long long named = (long long)number[k] + 1;
+            const int64_t named = number[k] + 1;
             const double hertz = hertz_of(all, number[k]);
 
-            fprintf(both[t], "\n%lld\t%lld: %.3g", named, named, hertz);
+            fprintf(both[t], "\n%ld\t%ld: %.3g", named, named, hertz);
             for (int64_t c = 0; c < all->count; c++) {
                 double value = height_of(all, c, number[k]);
 
                 fprintf(both[t], t == 0 ? "\t%.6g\t" : "\t%.6g", value);
                 if (t == 0)
-                    picture_tip(p, "%s %lld, %.4g Hz\n%s: %.4g", noun, named,
+                    picture_tip(p, "%s %ld, %.4g Hz\n%s: %.4g", noun, named,
                                 hertz, all->name[c], value);
             }
         }
@@ -142,8 +139,7 @@ static ritz_status draw_rankings(picture *p, const char *title,
     p->wide = 220.0 + (double)(count * (14 + 7 * all->count));
     p->wide = fmin(fmax(p->wide, 640.0), 2400.0);
     p->body = 440.0;
-    fprintf(p->given.file, "rankings = %lld\ncount = %lld\n",
-            (long long)all->count, (long long)count);
+    fprintf(p->given.file, "rankings = %ld\ncount = %ld\n", all->count, count);
     picture_give_text(p, "head", title);
     picture_give_text(p, "xlabel", all->track[0] ? "track: Hz" : "mode: Hz");
     picture_give_text(p, "ylabel",

@@ -214,8 +214,8 @@ static ritz_status assign_bodies(const mac_side *side, int64_t count,
     char why[120];
 
     if (count != s->num_components || count > MOST_BODIES) {
-        snprintf(why, sizeof why, "%lld bodies, %lld named",
-                 (long long)s->num_components, (long long)count);
+        snprintf(why, sizeof why, "%ld bodies, %ld named", s->num_components,
+                 count);
         return refuse_bodies(side, why);
     }
     for (int64_t c = 0; c < count; c++) {
@@ -225,8 +225,8 @@ static ritz_status assign_bodies(const mac_side *side, int64_t count,
                (taken[k] || body[k]->model.reduced.K.ncol != s->order[c]))
             k++;
         if (k == count) {
-            snprintf(why, sizeof why, "none left has %lld coordinates",
-                     (long long)s->order[c]);
+            snprintf(why, sizeof why, "none left has %ld coordinates",
+                     s->order[c]);
             return refuse_bodies(side, why);
         }
         taken[k] = true;
@@ -336,8 +336,8 @@ static ritz_status match_rows(mac_shapes *a, mac_shapes *b)
     RITZ_CHECK_NEW(row, n);
     RITZ_CHECK_NEW(other, n);
     RITZ_REFUSE_IF(!named && n != m, RITZ_ERR_ARGUMENT,
-                   "a basis names no dofs: '%s' has %lld rows and '%s' %lld",
-                   a->name, (long long)n, b->name, (long long)m);
+                   "a basis names no dofs: '%s' has %ld rows and '%s' %ld",
+                   a->name, n, b->name, m);
     for (int64_t k = 0, guess = 0; k < n && named; k++)
         for (int64_t i = 0; i < m; i++) {
             const int64_t at = (guess + i) % m; /* mostly in one order */
@@ -529,9 +529,9 @@ enum { NUMBERED = 24 };
 static void say_mode(const mac_shapes *s, int64_t k, char out[32])
 {
     if (isnan(s->hertz[k]))
-        snprintf(out, 32, "%lld", (long long)k + 1);
+        snprintf(out, 32, "%ld", k + 1);
     else
-        snprintf(out, 32, "%lld: %.3g", (long long)k + 1, s->hertz[k]);
+        snprintf(out, 32, "%ld: %.3g", k + 1, s->hertz[k]);
 }
 
 /* Names of modes, as an array of the template. */
@@ -562,8 +562,7 @@ static void put_data(const mac_shapes *a, const mac_shapes *b, picture *p)
             double mac = mac_of(a, b, i, j);
 
             say_mode(b, j, x);
-            fprintf(data, "%lld\t%lld\t%.6g\t", (long long)j, (long long)i,
-                    mac);
+            fprintf(data, "%ld\t%ld\t%.6g\t", j, i, mac);
             picture_tip(p, "%.60s %s Hz\n%.60s %s Hz\nMAC %.4f", a->name, y,
                         b->name, x, mac);
             fprintf(data, "\n");
@@ -592,14 +591,13 @@ static ritz_status draw_mac(const mac_pair *pair, const char *how, picture *p)
     /* as many modes can be told apart as there are inputs and outputs */
     if (num_common > 0 && (num_common < a->count || num_common < b->count))
         snprintf(p->note, sizeof p->note,
-                 "%lld inputs and outputs tell no more modes apart than that: "
+                 "%ld inputs and outputs tell no more modes apart than that: "
                  "likeness can be chance",
-                 (long long)num_common);
+                 num_common);
     fprintf(p->given.file,
-            "across = %lld\ndown = %lld\ncell = %.6g\nleft = %d\n"
+            "across = %ld\ndown = %ld\ncell = %.6g\nleft = %d\n"
             "numbered = %d\n",
-            (long long)b->count, (long long)a->count, cell, (int)LEFT,
-            most <= NUMBERED);
+            b->count, a->count, cell, (int)LEFT, most <= NUMBERED);
     picture_give_text(p, "head", title);
     picture_give_text(p, "xlabel", b->name);
     picture_give_text(p, "ylabel", a->name);

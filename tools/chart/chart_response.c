@@ -352,8 +352,7 @@ static ritz_status put_line(const overlay *o, const channel *c, int64_t w,
     for (int64_t k = 0; k < r->count; k++) {
         if (!all[k].keep)
             continue;
-        fprintf(file, "%lld\t%lld\t%lld", (long long)(c - o->channel),
-                (long long)w, (long long)line);
+        fprintf(file, "%ld\t%ld\t%ld", (c - o->channel), w, line);
         put_real(file, r->hertz[k]);
         for (int v = 0; v < VALUES; v++)
             put_real(file, all[k].value[v]);
@@ -395,9 +394,8 @@ static void begin_rows(const overlay *o, const channel *c, int which, int64_t w,
     const ritz_response *first = o->curve[0];
     FILE *table = o->picture->table.file;
 
-    fprintf(o->picture->data.file,
-            "%lld\t%d\t%lld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t",
-            (long long)(c - o->channel), which, (long long)w, hertz, drawn);
+    fprintf(o->picture->data.file, "%ld\t%d\t%ld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t",
+            (c - o->channel), which, w, hertz, drawn);
     if (c->singular) {
         fprintf(table, "singular values");
     } else {
@@ -510,14 +508,15 @@ static void add_signs(const overlay *o)
 
     for (int64_t w = 0; w < o->count; w++) {
         const bool under = w == 0 && o->count > 1;
-        picture_sign sign = {
-            .role = under ? "the reference" : NULL,
-            .colour = under ? "pale" : svg_series((int)(w > 0 ? w - 1 : 0)),
-            .dash = (int)w,
-            .wide = under ? 6.0 : 1.8};
 
-        snprintf(sign.name, sizeof sign.name, "%.80s", o->name[w]);
-        picture_add_sign(o->picture, &sign);
+        picture_add_sign(
+            o->picture,
+            (picture_sign){.role = under ? "the reference" : NULL,
+                           .colour =
+                               under ? "pale" : svg_series(w > 0 ? w - 1 : 0),
+                           .dash = (int)w,
+                           .wide = under ? 6.0 : 1.8},
+            "%.80s", o->name[w]);
         peak = peak || o->curve[w]->singular_peak[1] > 0.0;
         many = many || o->curve[w]->num_singular > 1;
     }
@@ -525,14 +524,12 @@ static void add_signs(const overlay *o)
         singular = singular || o->channel[c].singular;
     if (singular && many)
         picture_add_sign(o->picture,
-                         &(picture_sign){.name = "thin: all but the largest",
-                                         .colour = "muted",
-                                         .wide = 0.8});
+                         (picture_sign){.colour = "muted", .wide = 0.8},
+                         "thin: all but the largest");
     if (singular && peak)
         picture_add_sign(o->picture,
-                         &(picture_sign){.name = "peak between points",
-                                         .colour = "muted",
-                                         .mark = 12});
+                         (picture_sign){.colour = "muted", .mark = 12},
+                         "peak between points");
 }
 
 /* "tip / torque: error at most 0.31 %, 0.027 dB" */
@@ -540,7 +537,6 @@ static void say_title(const overlay *o, channel *c)
 {
     const ritz_response *r = o->curve[0];
     const bool relative = o->strip[RELATIVE], decibels = o->strip[DECIBELS];
-    char worst[32];
 
     if (c->singular)
         snprintf(c->title, sizeof c->title, "singular values");
@@ -549,9 +545,9 @@ static void say_title(const overlay *o, channel *c)
                  r->input[c->input]);
     if (!c->shared)
         return;
-    chart_say_error(c->worst[RELATIVE], worst);
     sink_append(c->title, sizeof c->title, ": %s at most %s%s",
-                relative ? "error" : "difference", relative ? worst : "",
+                relative ? "error" : "difference",
+                relative ? chart_say_error(c->worst[RELATIVE]).text : "",
                 relative && decibels ? ", " : "");
     if (decibels)
         sink_append(c->title, sizeof c->title,
@@ -582,12 +578,11 @@ static void give_channels(const overlay *o)
     p->wide = (double)(across * CELL_WIDE);
     p->body = (double)((n + across - 1) / across * tall);
     fprintf(p->given.file,
-            "channels = %lld\nacross = %lld\ntall = %d\ncurves = %lld\n"
+            "channels = %ld\nacross = %ld\ntall = %d\ncurves = %ld\n"
             "strips = %d\ndecibels = %d\nx_low = %.9g\nx_high = %.9g\n"
             "x_log = %d\n",
-            (long long)n, (long long)across, tall, (long long)o->count, strips,
-            o->strip[DECIBELS], low, high > low ? high : low + 1.0,
-            is_decades(r));
+            n, across, tall, o->count, strips, o->strip[DECIBELS], low,
+            high > low ? high : low + 1.0, is_decades(r));
     picture_give_texts(p, "title", n, all->title, sizeof *all);
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
         picture_give_reals(p, list[k].name, n, list[k].value, stride);
@@ -610,8 +605,8 @@ static ritz_status draw_overlay(overlay *o)
     add_signs(o);
     if (o->passed > 0)
         snprintf(p->note, sizeof p->note,
-                 "%lld more channels are not drawn: choose by --channel",
-                 (long long)o->passed);
+                 "%ld more channels are not drawn: choose by --channel",
+                 o->passed);
     return picture_draw(p, "response.gp", "Frequency responses",
                         "magnitudes or singular values over each other, and "
                         "below them how far they are from the first");

@@ -75,8 +75,8 @@ static void put_line(runs *all, int64_t i, int64_t w)
         for (int64_t part = 0; part < (least == most ? 1 : 2); part++) {
             int64_t p = (part == 0) == (least <= most) ? least : most;
 
-            fprintf(file, "%lld\t%lld\t%.9g\t%.9g\n", (long long)i,
-                    (long long)w, s->seconds[p], s->y[p * n + output]);
+            fprintf(file, "%ld\t%ld\t%.9g\t%.9g\n", i, w, s->seconds[p],
+                    s->y[p * n + output]);
         }
     }
     all->low[i] = w > 0 ? fmin(all->low[i], low) : low;
@@ -96,13 +96,14 @@ static ritz_status draw_runs(runs *all)
 
     for (int64_t w = 0; w < all->count; w++) {
         const bool under = w == 0 && all->count > 1;
-        picture_sign sign = {.colour = under ? "pale" : svg_series((int)w),
-                             .dash = (int)w,
-                             .wide = w == 0 ? 4.0 : 1.5,
-                             .role = all->run[w]->integrator};
 
-        snprintf(sign.name, sizeof sign.name, "%.60s", all->name[w]);
-        picture_add_sign(p, &sign);
+        picture_add_sign(
+            p,
+            (picture_sign){.colour = under ? "pale" : svg_series(w),
+                           .dash = (int)w,
+                           .wide = w == 0 ? 4.0 : 1.5,
+                           .role = all->run[w]->integrator},
+            "%.60s", all->name[w]);
     }
     p->wide = WIDE;
     p->body = (double)(HIGH * all->num_outputs);
@@ -120,9 +121,9 @@ static ritz_status draw_runs(runs *all)
         all->high[i] += room;
     }
     fprintf(p->given.file,
-            "outputs = %lld\nruns = %lld\nx_low = %.9g\nx_high = %.9g\n",
-            (long long)all->num_outputs, (long long)all->count,
-            first->seconds[0], first->seconds[first->count - 1]);
+            "outputs = %ld\nruns = %ld\nx_low = %.9g\nx_high = %.9g\n",
+            all->num_outputs, all->count, first->seconds[0],
+            first->seconds[first->count - 1]);
     picture_give_texts(p, "title", all->num_outputs, first->output[0],
                        sizeof *first->output);
     picture_give_reals(p, "y_low", all->num_outputs, all->low, 1);

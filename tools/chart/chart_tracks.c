@@ -59,7 +59,7 @@ static bool take_row(char *line, track_row *out)
 /* Read the rows up to a frequency, and number the configurations. */
 static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
 {
-    long long number = 1;
+    int64_t number = 1;
     char *line = strchr(text, '\n'); /* behind the names of columns */
 
     while (line && *++line) {
@@ -70,8 +70,7 @@ static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
             *end = '\0';
         number++;
         RITZ_REFUSE_IF(line[strspn(line, "\r")] && !take_row(line, r),
-                       RITZ_ERR_FORMAT, "line %lld is no row of tracks",
-                       number);
+                       RITZ_ERR_FORMAT, "line %ld is no row of tracks", number);
         if (r->name && r->hertz <= up_to_hz) {
             r->at = t->num_at - 1;
             while (r->at >= 0 && strcmp(t->at[r->at], r->name) != 0)
@@ -85,8 +84,8 @@ static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
     }
     RITZ_REFUSE_IF(t->count == 0, RITZ_ERR_FORMAT, "no mode is in it");
     RITZ_REFUSE_IF(t->num_tracks > MOST_TRACKS, RITZ_ERR_FORMAT,
-                   "%lld tracks, more than %d cannot be told apart",
-                   (long long)t->num_tracks, (int)MOST_TRACKS);
+                   "%ld tracks, more than %d cannot be told apart",
+                   t->num_tracks, (int)MOST_TRACKS);
     return RITZ_OK;
 }
 
@@ -180,28 +179,26 @@ static void put_data(const track_table *t, picture *p)
     fprintf(rows, "track\tconfiguration\tmode\tHz\tMAC\n");
     for (int64_t k = 0; k < t->count; k++) {
         const track_row *r = &t->row[k];
-        const long long track = r->track, mode = r->mode;
+        const int64_t track = r->track, mode = r->mode;
 
         if (k > 0 && t->row[k - 1].track != track)
             fprintf(data, "\n");
-        fprintf(data, "%lld\t%.9g\t%.9g\t%.6g\t", track, t->x[r->at], r->hertz,
+        fprintf(data, "%ld\t%.9g\t%.9g\t%.6g\t", track, t->x[r->at], r->hertz,
                 r->mac);
-        picture_tip(p, "track %lld, mode %lld at %.100s\n%.6g Hz\nMAC %.3f%s",
+        picture_tip(p, "track %ld, mode %ld at %.100s\n%.6g Hz\nMAC %.3f%s",
                     track, mode, r->name, r->hertz, r->mac,
                     r->mac < doubt ? ": hardly the same mode" : "");
-        fprintf(data, "\t%lld\t", mode);
+        fprintf(data, "\t%ld\t", mode);
         html_line(data, r->name);
         fprintf(data, "\n");
-        fprintf(rows, "%lld\t", track);
+        fprintf(rows, "%ld\t", track);
         html_line(rows, r->name);
-        fprintf(rows, "\t%lld\t%.6g\t%.4g\n", mode, r->hertz, r->mac);
+        fprintf(rows, "\t%ld\t%.6g\t%.4g\n", mode, r->hertz, r->mac);
         doubtful = doubtful || r->mac < doubt;
     }
     if (doubtful)
-        picture_add_sign(p, &(picture_sign){.name = "MAC below 0.9 to where "
-                                                    "the mode comes from",
-                                            .colour = "alarm",
-                                            .mark = 6});
+        picture_add_sign(p, (picture_sign){.colour = "alarm", .mark = 6},
+                         "MAC below 0.9 to where the mode comes from");
 }
 
 static ritz_status draw_tracks(const track_table *t, picture *p)
@@ -218,10 +215,10 @@ static ritz_status draw_tracks(const track_table *t, picture *p)
     p->wide = 720.0;
     p->body = 460.0;
     fprintf(p->given.file,
-            "tracks = %lld\nx_low = %.9g\nx_high = %.9g\ny_high = %.9g\n"
+            "tracks = %ld\nx_low = %.9g\nx_high = %.9g\ny_high = %.9g\n"
             "swept = %d\ndoubt = %g\n",
-            (long long)t->num_tracks, least, last,
-            most > 0.0 ? 1.04 * most : 1.0, t->swept, doubt);
+            t->num_tracks, least, last, most > 0.0 ? 1.04 * most : 1.0,
+            t->swept, doubt);
     picture_give_text(p, "xlabel", t->xlabel);
     return picture_draw(p, "tracks.gp", "Modes over configurations",
                         "frequency of each mode, followed by its shape");

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-static const char *entity(char c)
+static const char *find_entity(char c)
 {
     static const struct {
         char letter;
@@ -36,7 +36,7 @@ int html_letter(FILE *file, const char *text)
 
 int html_symbol(FILE *file, const char *text)
 {
-    const char *escaped = entity(*text);
+    const char *escaped = find_entity(*text);
 
     if (!escaped)
         return html_letter(file, text);
@@ -62,7 +62,7 @@ static void put_argument(FILE *file, char letter, int precision, va_list *args)
     if (letter == 's')
         html_text(file, va_arg(*args, const char *));
     else if (letter == 'd')
-        fprintf(file, "%lld", va_arg(*args, long long));
+        fprintf(file, "%ld", va_arg(*args, long));
     else
         fprintf(file, "%.*g", precision, va_arg(*args, double));
 }

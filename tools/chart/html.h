@@ -13,7 +13,7 @@ void html_text(FILE *file, const char *text);
 
 /**
  * Write markup with text in it, as printf would: only what stands for "%s" is
- * escaped. It knows "%s", "%lld", "%g", "%.3g" and "%%".
+ * escaped. It knows "%s", "%ld", "%g", "%.3g" and "%%".
  */
 [[gnu::format(printf, 2, 3)]] void html_print(FILE *file, const char *format,
                                               ...);

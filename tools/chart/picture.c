@@ -60,10 +60,15 @@ void *picture_room(picture *p, int64_t count, size_t size)
     return made + 1;
 }
 
-void picture_add_sign(picture *p, const picture_sign *sign)
+void picture_add_sign(picture *p, picture_sign sign, const char *format, ...)
 {
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(sign.name, sizeof sign.name, format, args);
+    va_end(args);
     if (p->num_signs < PICTURE_SIGNS)
-        p->sign[p->num_signs++] = *sign;
+        p->sign[p->num_signs++] = sign;
 }
 
 /* Text in gnuplot's single quotes, where it reads nothing but ''. */
@@ -90,7 +95,7 @@ void picture_give_texts(picture *p, const char *name, int64_t count,
 {
     FILE *file = p->given.file;
 
-    fprintf(file, "array %s[%lld] = [", name, (long long)count);
+    fprintf(file, "array %s[%ld] = [", name, count);
     for (int64_t k = 0; k < count; k++) {
         fputs(k > 0 ? ", " : "", file);
         quote_text(file, text + (size_t)k * size);
@@ -103,7 +108,7 @@ void picture_give_reals(picture *p, const char *name, int64_t count,
 {
     FILE *file = p->given.file;
 
-    fprintf(file, "array %s[%lld] = [", name, (long long)count);
+    fprintf(file, "array %s[%ld] = [", name, count);
     for (int64_t k = 0; k < count; k++)
         fprintf(file, "%s%.9g", k > 0 ? ", " : "", value[k * stride]);
     fputs("]\n", file);

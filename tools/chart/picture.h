@@ -71,8 +71,9 @@ void *picture_room(picture *p, int64_t count, size_t size);
 /** "rotor.h5" of "build/rotor.h5". */
 const char *picture_base(const char *path);
 
-/** Another sign of the legend; what is more than there is room for is left. */
-void picture_add_sign(picture *p, const picture_sign *sign);
+/** Add a sign to the legend under this name, as long as there is room. */
+[[gnu::format(printf, 3, 4)]] void
+picture_add_sign(picture *p, picture_sign sign, const char *format, ...);
 
 /** NAME = 'TEXT' for the template. */
 void picture_give_text(picture *p, const char *name, const char *text);

@@ -7,12 +7,12 @@
 
 void report_begin(report_page *p, const char *title)
 {
-    const long long k = ++p->num_sections;
+    const int64_t k = ++p->num_sections;
 
     p->num_signs = 0;
-    html_print(p->links.file, "<li><a href=\"#s%lld\">%s</a></li>\n", k, title);
+    html_print(p->links.file, "<li><a href=\"#s%ld\">%s</a></li>\n", k, title);
     html_print(p->body.file,
-               "<section aria-labelledby=\"s%lld\">\n<h2 id=\"s%lld\">%s</h2>"
+               "<section aria-labelledby=\"s%ld\">\n<h2 id=\"s%ld\">%s</h2>"
                "\n",
                k, k, title);
 }
@@ -145,7 +145,7 @@ ritz_status report_figure(report_page *p, const char *kind,
     RITZ_REFUSE_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
                    "no memory for a table");
     add_signs(p, &drawn);
-    snprintf(prefix, sizeof prefix, "p%lld-", (long long)++p->num_pictures);
+    snprintf(prefix, sizeof prefix, "p%ld-", ++p->num_pictures);
     fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",
             drawn.wide > PICTURE_WIDE ? " class=\"whole\"" : "");
     svg_copy(file, drawn.drawn,

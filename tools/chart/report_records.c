@@ -96,8 +96,8 @@ static void say_method(FILE *file, const record *r, const record *second)
 {
     begin_card(file, "Which method", r->method);
     if (second)
-        html_print(file, "<li>runner-up: %s, order %lld</li>", second->method,
-                   (long long)second->order);
+        html_print(file, "<li>runner-up: %s, order %ld</li>", second->method,
+                   second->order);
     end_card(file);
 }
 
@@ -109,16 +109,16 @@ static void say_size(FILE *file, const record *r)
     const size_t count = json_array_size(modes);
     char order[32];
 
-    snprintf(order, sizeof order, "%lld", (long long)r->order);
+    snprintf(order, sizeof order, "%ld", r->order);
     begin_card(file, "How large", order);
     fprintf(file, "<li>coordinates");
     if (json_integer_value(full) > 0)
-        fprintf(file, ", of %lld dofs of the full model",
-                (long long)json_integer_value(full));
+        fprintf(file, ", of %ld dofs of the full model",
+                (int64_t)json_integer_value(full));
     fprintf(file, count > 0 ? "</li><li>" : "</li>");
     for (size_t k = 0; k < count; k++)
-        fprintf(file, "%s%lld", k > 0 ? " + " : "",
-                (long long)json_integer_value(json_array_get(modes, k)));
+        fprintf(file, "%s%ld", k > 0 ? " + " : "",
+                (int64_t)json_integer_value(json_array_get(modes, k)));
     if (count > 0)
         fprintf(file, " modes asked for%s</li>",
                 count > 1 ? ", component by component" : "");
@@ -129,7 +129,6 @@ static void say_size(FILE *file, const record *r)
 static void say_bounds(FILE *file, const record *r)
 {
     const json_t *estimates = json_object_get(r->json, "estimates");
-    char word[32];
 
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
@@ -139,29 +138,25 @@ static void say_bounds(FILE *file, const record *r)
 
         if (!(bound <= 1.0))
             continue;
-        chart_say_error(bound, word);
-        html_print(file, "<li>proven: %s at most %s</li>", kind->label, word);
+        html_print(file, "<li>proven: %s at most %s</li>", kind->label,
+                   chart_say_error(bound).text);
     }
 }
 
 static void say_errors(FILE *file, const record *r, int64_t count,
                        const measure *m)
 {
-    char word[32], limit[32];
-
-    chart_say_error(record_error(r, m->name), word);
-    begin_card(file, "How wrong", word);
+    begin_card(file, "How wrong",
+               chart_say_error(record_error(r, m->name)).text);
     for (int64_t k = 0; k < count; k++) {
         double error = record_error(r, m[k].name);
 
         if (isnan(error))
             continue;
-        chart_say_error(error, word);
-        html_print(file, "<li>%s: %s", m[k].title, word);
-        if (m[k].tolerance > 0.0) {
-            chart_say_error(m[k].tolerance, limit);
-            fprintf(file, ", allowed <span class=\"whole\">%s</span>", limit);
-        }
+        html_print(file, "<li>%s: %s", m[k].title, chart_say_error(error).text);
+        if (m[k].tolerance > 0.0)
+            fprintf(file, ", allowed <span class=\"whole\">%s</span>",
+                    chart_say_error(m[k].tolerance).text);
         fprintf(file, "</li>");
     }
     say_bounds(file, r);
@@ -175,24 +170,21 @@ static void say_cost(FILE *file, const record *r)
     const double highest = record_value(cost, "highest_hz");
     const char *by = json_string_value(json_object_get(cost, "integrator"));
     const bool simulated = isfinite(r->cost);
-    char word[32];
 
-    chart_say_seconds(simulated ? r->cost : r->cpu, word);
-    begin_card(file, "How fast", word);
+    begin_card(file, "How fast",
+               chart_say_seconds(simulated ? r->cost : r->cpu).text);
     if (simulated)
         fprintf(file, "<li>for one simulated second, %.0f times real time</li>",
                 1.0 / r->cost);
-    if (simulated && isfinite(step)) {
-        chart_say_seconds(step, word);
-        html_print(file, "<li>step %s%s%s</li>", word, by ? ", " : "",
-                   by ? by : "");
-    }
+    if (simulated && isfinite(step))
+        html_print(file, "<li>step %s%s%s</li>", chart_say_seconds(step).text,
+                   by ? ", " : "", by ? by : "");
     if (simulated && isfinite(highest))
         fprintf(file, "<li>highest mode %.4g Hz</li>", highest);
-    chart_say_seconds(r->cpu, word);
     if (isfinite(r->cpu))
         fprintf(file, "<li>%s%sto make basis and reduction</li>",
-                simulated ? word : "", simulated ? " " : "");
+                simulated ? chart_say_seconds(r->cpu).text : "",
+                simulated ? " " : "");
     end_card(file);
 }
 
@@ -215,9 +207,9 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                                 : "one that comes nearest to its tolerance");
     if (count > 1)
         fprintf(file,
-                "<p class=\"note\">One of %lld models that were "
+                "<p class=\"note\">One of %ld models that were "
                 "measured.</p>\n",
-                (long long)count);
+                count);
 }
 
 static void put_answer(FILE *file, const record_set *s)
@@ -227,10 +219,10 @@ static void put_answer(FILE *file, const record_set *s)
 
     if (!r) {
         fprintf(file,
-                "<p>%lld model%s measured. No record says which was chosen, "
+                "<p>%ld model%s measured. No record says which was chosen, "
                 "and none has a tolerance that its errors can be held "
                 "against.</p>\n",
-                (long long)s->all.count, s->all.count == 1 ? " was" : "s were");
+                s->all.count, s->all.count == 1 ? " was" : "s were");
         return;
     }
     fprintf(file, "<dl class=\"cards\">\n");
@@ -307,7 +299,7 @@ static const record *find_smallest(const record_set *s, int64_t method,
 /* One of a method and a column; less is better. */
 typedef struct cell {
     double value;
-    char text[32], small[32];
+    chart_word text, small;
 } cell;
 
 /* What stands in a column: of an order the least error, of an error the fewest
@@ -316,10 +308,9 @@ typedef cell (*find_cell)(const record_set *s, int64_t method, double column);
 
 static cell error_at_order(const record_set *s, int64_t method, double order)
 {
-    cell c = {.value = least_error(s, method, (int64_t)order)};
+    const double value = least_error(s, method, (int64_t)order);
 
-    chart_say_error(c.value, c.text);
-    return c;
+    return (cell){value, chart_say_error(value), {""}};
 }
 
 static cell order_at_error(const record_set *s, int64_t method, double level)
@@ -328,9 +319,9 @@ static cell order_at_error(const record_set *s, int64_t method, double level)
     const double time = !r ? nan("") : records_cost(&s->all) ? r->cost : r->cpu;
     cell c = {.value = r ? (double)r->order : nan("")};
 
-    snprintf(c.text, sizeof c.text, "%.0f", c.value);
+    snprintf(c.text.text, sizeof c.text, "%.0f", c.value);
     if (isfinite(time))
-        chart_say_seconds(time, c.small);
+        c.small = chart_say_seconds(time);
     return c;
 }
 
@@ -355,7 +346,7 @@ static void put_methods(FILE *file, const record_set *s, const char *caption,
         else if (isnan(column[k]))
             snprintf(word, sizeof word, "every tolerance");
         else
-            chart_say_error(column[k], word);
+            snprintf(word, sizeof word, "%s", chart_say_error(column[k]).text);
         html_print(file, "<th scope=\"col\">%s</th>", word);
     }
     fprintf(file, "</tr></thead><tbody>\n");
@@ -366,9 +357,11 @@ static void put_methods(FILE *file, const record_set *s, const char *caption,
 
             fprintf(file, "<td%s>",
                     c.value <= best[k] ? " class=\"best\"" : "");
-            html_print(file, "%s", isnan(c.value) ? "\xe2\x80\x93" : c.text);
-            if (*c.small)
-                html_print(file, " <span class=\"small\">%s</span>", c.small);
+            html_print(file, "%s",
+                       isnan(c.value) ? "\xe2\x80\x93" : c.text.text);
+            if (*c.small.text)
+                html_print(file, " <span class=\"small\">%s</span>",
+                           c.small.text);
             fprintf(file, "</td>");
         }
         fprintf(file, "</tr>\n");
@@ -524,9 +517,9 @@ ritz_status report_records(report_page *p)
             continue;
         }
         html_print(p->body.file,
-                   "<section aria-labelledby=\"v%lld\">\n"
-                   "<h2 id=\"v%lld\">%s</h2>\n",
-                   (long long)k, (long long)k, *of ? of : "What was found");
+                   "<section aria-labelledby=\"v%ld\">\n"
+                   "<h2 id=\"v%ld\">%s</h2>\n",
+                   k, k, *of ? of : "What was found");
         put_answer(p->body.file, &s);
         fprintf(p->body.file, "</section>\n");
     }

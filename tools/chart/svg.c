@@ -14,12 +14,12 @@ const svg_colour svg_colours[] = {
     {"alarm", "#b00020"}, {"pale", "#9fb0c3"}, {NULL, NULL},
 };
 
-const char *svg_series(int series)
+const char *svg_series(int64_t series)
 {
     return svg_colours[series % SVG_SERIES].name;
 }
 
-static bool starts(const char *text, const char *with)
+static bool starts_with(const char *text, const char *with)
 {
     return strncmp(text, with, strlen(with)) == 0;
 }
@@ -45,7 +45,7 @@ static const char *copy_tip(FILE *file, const char *c)
 
     fputs("<g class=\"mark\"><title>", file);
     for (c += strlen(pointed); end && c < end;) {
-        bool line = starts(c, "\\n"), amp = starts(c, "&amp;");
+        bool line = starts_with(c, "\\n"), amp = starts_with(c, "&amp;");
 
         fputc(line ? '\n' : *c, file);
         c += line ? 2 : amp ? 5 : 1;
@@ -62,7 +62,7 @@ static const char *name_colour(const char *text)
     char *end = NULL;
     char value[32];
 
-    if (starts(text, "rgb("))
+    if (starts_with(text, "rgb("))
         for (const char *c = text + 3; *c == '(' || *c == ','; c = end)
             rgb = rgb << 8 | (strtoul(c + 1, &end, 10) & 255);
     else if (text[0] == '#' && strspn(text + 1, "0123456789abcdefABCDEF") == 6)
@@ -91,7 +91,7 @@ static void copy_value(FILE *file, const char *value, size_t length,
         fprintf(file, "var(--%s)", colour);
     else if (is_id)
         fprintf(file, "%s%.*s", prefix, (int)length, value);
-    else if (starts(value, "#gp"))
+    else if (starts_with(value, "#gp"))
         fprintf(file, "#%s%.*s", prefix, (int)length - 1, value + 1);
     else
         fprintf(file, "%.*s", (int)length, value);
@@ -109,7 +109,7 @@ static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
         if (end) {
             fputc(*tag, file);
             copy_value(file, tag + 1, (size_t)(end - tag - 1), prefix,
-                       tag - begin > 4 && starts(tag - 4, " id="));
+                       tag - begin > 4 && starts_with(tag - 4, " id="));
             tag = end;
         }
         fputc(*tag++, file);
@@ -142,14 +142,14 @@ void svg_copy(FILE *file, const char *drawn, const svg_names *names)
                 prefix, prefix);
     }
     while (*c) {
-        if (starts(c, "<title>") && !named) {
+        if (starts_with(c, "<title>") && !named) {
             put_name(file, "title", 't', prefix, names->title);
             put_name(file, "desc", 'd', prefix, names->summary);
             named = true;
             c = skip_past(c, "</desc>");
-        } else if (starts(c, "<title>")) {
+        } else if (starts_with(c, "<title>")) {
             c = skip_past(c, "</title>"); /* of a plot, of no mark */
-        } else if (starts(c, pointed)) {
+        } else if (starts_with(c, pointed)) {
             c = copy_tip(file, c);
         } else if (prefix && *c == '<') {
             c = copy_tag(file, c, prefix);

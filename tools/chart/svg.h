@@ -2,6 +2,7 @@
 #ifndef RITZ_TOOLS_CHART_SVG_H
 #define RITZ_TOOLS_CHART_SVG_H
 
+#include <stdint.h>
 #include <stdio.h>
 
 /*
@@ -19,7 +20,7 @@ enum { SVG_SERIES = 8 };
 extern const svg_colour svg_colours[];
 
 /** Name of the colour of a series. */
-const char *svg_series(int series);
+const char *svg_series(int64_t series);
 
 typedef struct svg_names {
     const char *title, *summary;

@@ -8,7 +8,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -237,7 +236,7 @@ static ritz_status write_rows(claims_state *state, const claims_line *line)
     RITZ_CHECK(cli_table_new(&table));
     for (int64_t k = 1; k <= count; k++)
         for (const char *at = directions; *at; at++)
-            fprintf(table.file, "%" PRId64 " %c\n", k, *at);
+            fprintf(table.file, "%ld %c\n", k, *at);
     return claims_save(state, line->word[1], "", &table);
 }
 

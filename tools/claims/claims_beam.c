@@ -9,7 +9,6 @@
 
 #include <ritz/base.h>
 
-#include <inttypes.h>
 #include <string.h>
 
 enum { NODE = 3, SIDE = 2 * NODE };
@@ -184,8 +183,7 @@ static int64_t put_entries(const beam *b, double *val, FILE *file)
                 continue;
             count++;
             if (file)
-                fprintf(file, "%" PRId64 " %" PRId64 " %.17g\n",
-                        row > col ? row + 1 : col + 1,
+                fprintf(file, "%ld %ld %.17g\n", row > col ? row + 1 : col + 1,
                         row > col ? col + 1 : row + 1, *entry_at(val, i, j));
         }
     return count;
@@ -208,8 +206,7 @@ static ritz_status put_matrix(const claims_state *state, const char *name,
     for (int64_t i = 0; i < dofs; i++)
         n += row_of(b, i) >= 0;
     fprintf(table.file, "%%%%MatrixMarket matrix coordinate real symmetric\n");
-    fprintf(table.file, "%" PRId64 " %" PRId64 " %" PRId64 "\n", n, n,
-            put_entries(b, val, NULL));
+    fprintf(table.file, "%ld %ld %ld\n", n, n, put_entries(b, val, NULL));
     put_entries(b, val, table.file);
     return claims_save(state, name, mass ? ".m.mtx" : ".k.mtx", &table);
 }
@@ -224,11 +221,11 @@ static ritz_status put_names(const claims_state *state, const char *name,
     RITZ_CHECK(cli_table_new(&grids));
     RITZ_CHECK(cli_table_new(&dofs));
     for (int64_t k = 0; k <= b->elements; k++)
-        fprintf(grids.file, "GRID,%" PRId64 ",,%.17g,0.,0.\n", b->first + k,
+        fprintf(grids.file, "GRID,%ld,,%.17g,0.,0.\n", b->first + k,
                 b->offset + b->length * (double)k / (double)b->elements);
     for (int64_t dof = 0; dof < NODE * (b->elements + 1); dof++)
         if (row_of(b, dof) >= 0)
-            fprintf(dofs.file, "%" PRId64 " %d\n", b->first + dof / NODE,
+            fprintf(dofs.file, "%ld %d\n", b->first + dof / NODE,
                     direction[dof % NODE]);
     RITZ_CHECK(claims_save(state, name, ".bdf", &grids));
     return claims_save(state, name, ".dofs", &dofs);

@@ -5,7 +5,6 @@
 
 #include <ritz/base.h>
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -128,7 +127,7 @@ static void tell_claim(claims_state *state, const claims_line *line, bool holds,
     const char *file = slash ? slash + 1 : line->file;
     bool skipped = state->skipping;
 
-    cli_say(state->run, "%sok %" PRId64 " - %s:%d %s: %s; %s%s%s",
+    cli_say(state->run, "%sok %ld - %s:%d %s: %s; %s%s%s",
             skipped || holds ? "" : "not ", number, file, line->number, what,
             skipped ? "not looked at" : found, state->source,
             skipped ? " # skip there is no " : "",
@@ -190,7 +189,7 @@ static void name_item(const char *path, int64_t more, size_t size, char *out)
         snprintf(digits, sizeof digits, "%.*s", (int)strcspn(bracket + 1, "]"),
                  bracket + 1);
     if (more > 0 && ritz_text_whole(digits, &index))
-        snprintf(out, size, "%.*s[%" PRId64 "]", (int)(bracket - path), path,
+        snprintf(out, size, "%.*s[%ld]", (int)(bracket - path), path,
                  index + more);
 }
 
