@@ -212,15 +212,6 @@ static ritz_status run_tool(claims_state *state, const claims_line *line)
     return RITZ_OK;
 }
 
-ritz_status claims_save(const claims_state *state, const char *name,
-                        const char *ending, cli_table *table)
-{
-    char path[2 * PATH_MAX];
-
-    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
-    return cli_table_save(table, path);
-}
-
 /* "rows NAME N [COMPS]": what --dofs reads, N grids or N scalar points. */
 static ritz_status write_rows(claims_state *state, const claims_line *line)
 {

@@ -24,7 +24,7 @@ typedef struct rig {
     ritz_component body[MOST_BODIES];
 } rig;
 
-static void free_rig(rig *r)
+static void rig_free(rig *r)
 {
     for (int64_t k = 0; k < r->count; k++)
         ritz_component_free(&r->body[k]);
@@ -113,16 +113,14 @@ static rig two_points(void)
 static void assert_points(const char *joint, const char *at, int64_t rigid,
                           int64_t count, const double *lambda)
 {
-    rig r = two_points();
-    ritz_configuration c = join(&r, joint, at);
+    RITZ_OWN(rig) r = two_points();
+    RITZ_OWN(ritz_configuration) c = join(&r, joint, at);
 
     assert_int_equal(c.num_rigid, rigid);
     assert_int_equal(c.K.ncol, rigid + count);
     for (int64_t k = 0; k < count; k++)
         assert_near(c.lambda[rigid + k], lambda[k],
                     rounding * lambda[count - 1]);
-    ritz_configuration_free(&c);
-    free_rig(&r);
 }
 
 /* Six rigid modes and one for each motion that is left; rank of the rest. */
@@ -250,7 +248,7 @@ static void a_cage_damps(void **state)
                  "damping: [0, 0, 6, 0, 4, 0]"),
          6, 6.0 * 5.0 / 6.0 + 4.0 * 9.0 / 4.0},
     };
-    rig r = two_points();
+    RITZ_OWN(rig) r = two_points();
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -266,7 +264,6 @@ static void a_cage_damps(void **state)
         }
         assert_near(sum, cases[k].damping, rounding * cases[k].damping);
     }
-    free_rig(&r);
 }
 
 /*
@@ -276,8 +273,8 @@ static void a_cage_damps(void **state)
 static void a_rigid_joint_has_a_lever(void **state)
 {
     const double k = 50.0, d2 = 9.0 + 16.0, heavy = 1e9;
-    rig r = two_points();
-    ritz_configuration c = {0};
+    RITZ_OWN(rig) r = two_points();
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     r.count = 3;
@@ -286,16 +283,14 @@ static void a_rigid_joint_has_a_lever(void **state)
         &r,
         BETWEEN("type: rigid, offset: [3, -4, 12]") "- {name: q, between: "
                                                     "[C/g1, A/g1], type: "
-                                                    "hinge, axis: [0, 0, 1],"
-                                                    " state: caged, stiffness: "
+                                                    "hinge, axis: [0, 0, 1], "
+                                                    "state: caged, stiffness: "
                                                     "50}\n",
         "");
     assert_int_equal(c.num_rigid, 6);
     /* the ground gives way by all inertia about any axis over its own */
     assert_near(c.lambda[6], k / (0.5 + 4.0 + 3.0 * d2),
                 2.0 * (4.5 + 3.0 * 169.0) / heavy * c.lambda[6]);
-    ritz_configuration_free(&c);
-    free_rig(&r);
 }
 
 /* --- elastic bodies ------------------------------------------------------ */
@@ -328,8 +323,8 @@ static void locked_joints_are_fixed_ones(void **state)
         HELD("universal, axes: [[1, 2, 3], [1, 0, 1]], state: locked"),
         HELD("spherical, state: locked"),
     };
-    rig r = chains(2);
-    ritz_configuration one = join(&r, HELD("fixed"), "");
+    RITZ_OWN(rig) r = chains(2);
+    RITZ_OWN(ritz_configuration) one = join(&r, HELD("fixed"), "");
 
     (void)state;
     for (size_t k = 0; k < sizeof locked / sizeof *locked; k++) {
@@ -338,8 +333,6 @@ static void locked_joints_are_fixed_ones(void **state)
         assert_int_equal(two.rank, 6);
         assert_alike(&one, &two, elastic);
     }
-    ritz_configuration_free(&one);
-    free_rig(&r);
 }
 
 /* From grid 1 of a rigid body to its grid 3 is as good as grid 3 itself. */
@@ -357,7 +350,7 @@ static void an_offset_reaches_another_grid(void **state)
         "- {name: p, between: [A/g1, B/g1], type: slider, "
         "axis: [1.3, 1.4, 0.4], state: locked}\n"};
     const double length = sqrt(1.3 * 1.3 + 1.4 * 1.4 + 0.4 * 0.4);
-    rig r = chains(3);
+    RITZ_OWN(rig) r = chains(3);
     ritz_configuration c[4] = {0};
     char joints[600], at[40];
 
@@ -371,7 +364,6 @@ static void an_offset_reaches_another_grid(void **state)
     }
     for (int k = 0; k < 4; k++)
         ritz_configuration_free(&c[k]);
-    free_rig(&r);
 }
 
 /*
@@ -419,9 +411,10 @@ static void joints_agree_with_each_other(void **state)
 
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        rig r = chains(2);
-        ritz_configuration one = join(&r, cases[k].one, cases[k].at_one);
-        ritz_configuration two = {0};
+        RITZ_OWN(rig) r = chains(2);
+        RITZ_OWN(ritz_configuration)
+        one = join(&r, cases[k].one, cases[k].at_one);
+        RITZ_OWN(ritz_configuration) two = {0};
 
         for (int64_t p = 0; p < cases[k].points; p++)
             assert_ok(body_point(0.0, 0.0, &r.body[r.count++]));
@@ -431,9 +424,6 @@ static void joints_agree_with_each_other(void **state)
         for (int64_t j = 0; j < one.K.ncol; j++) /* 1e12 is not all stiffness */
             assert_near(two.lambda[j], one.lambda[j],
                         1e-6 * one.lambda[one.K.ncol - 1]);
-        ritz_configuration_free(&one);
-        ritz_configuration_free(&two);
-        free_rig(&r);
     }
 }
 
@@ -451,7 +441,7 @@ static void stiff_cages_approach_locked_joints(void **state)
          "universal, axes: [[1, 2, 3], [1, 0, 0]]", "p=40,p.2=10"},
         {HELD("spherical, state: locked"), "spherical", ""},
     };
-    rig r = chains(2);
+    RITZ_OWN(rig) r = chains(2);
     char joint[400];
 
     (void)state;
@@ -475,7 +465,6 @@ static void stiff_cages_approach_locked_joints(void **state)
         assert_true(error[0] < 1e-2 && error[0] > 1e-7);
         assert_near(error[1] / error[0], 0.1, 1e-3);
     }
-    free_rig(&r);
 }
 
 /* Each type at settings, its ends exchanged, its axes to be turned. */
@@ -609,7 +598,7 @@ static void a_turned_scene_is_the_same(void **state)
     const double axis[3] = {2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0};
     uint64_t seed = 11;
     double R[9];
-    rig r = chains(2), turned = chains(2);
+    RITZ_OWN(rig) r = chains(2), turned = chains(2);
 
     (void)state;
     ritz_turn_about(axis, 77.7, R);
@@ -633,13 +622,11 @@ static void a_turned_scene_is_the_same(void **state)
         assert_near(damping_of(&two), damping_of(&one),
                     elastic * damping_of(&one));
     }
-    free_rig(&r);
-    free_rig(&turned);
 }
 
 static void ends_can_be_exchanged(void **state)
 {
-    rig r = chains(2);
+    RITZ_OWN(rig) r = chains(2);
 
     (void)state;
     for (int k = 0; k < NUM_SAMPLES; k++) {
@@ -656,7 +643,6 @@ static void ends_can_be_exchanged(void **state)
         assert_near(damping_of(&two), damping_of(&one),
                     elastic * damping_of(&one));
     }
-    free_rig(&r);
 }
 
 /* Craig-Bampton with every mode is the body itself. */
@@ -729,7 +715,7 @@ static void assert_full(const ritz_configuration *c,
 
 static void full_order_agrees(void **state)
 {
-    rig r = chains(2);
+    RITZ_OWN(rig) r = chains(2);
 
     (void)state;
     for (int k = 0; k < NUM_SAMPLES; k++) {
@@ -742,7 +728,6 @@ static void full_order_agrees(void **state)
         system = join_full(&r, joint, samples[k].at);
         assert_full(&c, &system);
     }
-    free_rig(&r);
 }
 
 /* One of each in a row of five bodies, at settings of their own. */
@@ -763,7 +748,7 @@ static void several_swept_joints_agree_with_full_order(void **state)
     static const char *const at[] = {"one=0.1,two=0,three=10",
                                      "one=0.5,two=45,three=30",
                                      "one=-7,two=123,two.2=-80,three=260"};
-    rig r = chains(5);
+    RITZ_OWN(rig) r = chains(5);
 
     (void)state;
     for (int k = 0; k < 3; k++) {
@@ -774,16 +759,15 @@ static void several_swept_joints_agree_with_full_order(void **state)
         assert_int_equal(c.num_rigid, 6 + 4);
         assert_full(&c, &system);
     }
-    free_rig(&r);
 }
 
 static void every_combination_of_settings_is_assembled(void **state)
 {
     char text[4000];
-    rig r = chains(5);
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_system system = {0};
+    RITZ_OWN(rig) r = chains(5);
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_system) system = {0};
     const ritz_configuration *found = NULL;
 
     (void)state;
@@ -807,10 +791,6 @@ static void every_combination_of_settings_is_assembled(void **state)
                  RITZ_ERR_ARGUMENT, "there is no joint 'two.3' to set");
     assert_fails(ritz_system_find(&system, "two", &found), RITZ_ERR_ARGUMENT,
                  "'two' is not JOINT=SETTING");
-    ritz_system_free(&system);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    free_rig(&r);
 }
 
 /* --- refusals ------------------------------------------------------------ */
@@ -841,7 +821,7 @@ static void assert_refused(const rig *r, const char *joint, const char *words)
 
 static void ports_that_do_not_fit_are_refused(void **state)
 {
-    rig r = chains(2);
+    RITZ_OWN(rig) r = chains(2);
 
     (void)state;
     cut_port(&r.body[0], "g3", 3);
@@ -869,7 +849,6 @@ static void ports_that_do_not_fit_are_refused(void **state)
                    "joint 'p': a bushing lies between grids at one place, "
                    "those of 'A/g2' and 'B/g2' lie 0.25 apart, 0.1 is let "
                    "pass");
-    free_rig(&r);
 }
 
 static const double allocated[] = {20.0, -35.0};
@@ -894,9 +873,9 @@ static void no_allocation_failure_leaks(void **state)
         BETWEEN("type: universal, axes: [[0, 0, 1], [0, 1, 0]], "
                 "state: [free, caged], stiffness: 20, damping: 0.5");
     char text[4000];
-    rig r = two_points();
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(rig) r = two_points();
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_component system = join_full(&r, cross, ""); /* stores files */
 
     (void)state;
@@ -906,9 +885,6 @@ static void no_allocation_failure_leaks(void **state)
     stage_of(&r, &scene, &ritz_method_full, &stage);
     assert_survives_every_allocation(assemble_anew(&stage));
     assert_survives_every_allocation(assemble_full_anew(&scene));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
-    free_rig(&r);
 }
 
 static const struct CMUnitTest tests[] = {
