@@ -177,9 +177,6 @@ ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits);
 void ritz_tolerance_print(const ritz_verify_request *limits, int64_t size,
                           char *out);
 
-/** All words that ritz_tolerance_take knows: "frequency, mac". Cut to fit. */
-void ritz_tolerance_words(int64_t size, char *out);
-
 /** Word of a measure: "response" of "response-relative"; its own name if it has
  * none. */
 const char *ritz_tolerance_word(const char *measure);
@@ -264,12 +261,6 @@ int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid);
 bool ritz_reference_factors(const ritz_reference *reference);
 
 void ritz_reference_free(ritz_reference **reference);
-
-/**
- * @p count frequencies of a band, ascending and distinct, the same for one seed.
- */
-void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
-                       double *out);
 
 /** The next number of a sequence, in [0, 1) [Steele2014]. */
 double ritz_random_next(uint64_t *state);

@@ -5,6 +5,7 @@
 #ifndef RITZ_CHECK_CHECK_H
 #define RITZ_CHECK_CHECK_H
 
+#include "linear/resolvent.h"
 #include "model/modal.h"
 
 #include <ritz/check.h>
@@ -192,16 +193,18 @@ ritz_status ritz_collocated_of_space(const ritz_state_space *model,
                                      ritz_collocated *out);
 void ritz_collocated_free(ritz_collocated *model);
 
-/** A model's response in a form in which a point is cheap. */
-typedef struct ritz_sampler ritz_sampler;
+/* A model's transfer functions in a form in which a frequency is cheap. */
+typedef struct ritz_sampler {
+    ritz_resolvent resolvent;
+    double _Complex *H; /* ports x ports, by columns, to work in */
+    const ritz_collocated *model;
+} ritz_sampler;
 
-ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out);
+ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler *out);
 
-/**
- * G(i w), ports x ports by columns, borrowed; NULL where it is infinite.
- */
+/** G(i w), borrowed; NULL where it is infinite. */
 const double _Complex *ritz_sampler_at(ritz_sampler *sampler, double w);
-void ritz_sampler_free(ritz_sampler **sampler);
+void ritz_sampler_free(ritz_sampler *sampler);
 
 /**
  * Frequencies at which a response shows what it has: at every pole, around it,

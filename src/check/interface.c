@@ -70,7 +70,7 @@ static void say_trial(ritz_checker *it, const char *name,
 /* Middle of what |y_i / u_i| is over the grid; k_i is one over it. */
 static ritz_status find_gains(const ritz_collocated *pairs, double *gain)
 {
-    RITZ_OWN(ritz_sampler) *sampler = NULL;
+    RITZ_OWN(ritz_sampler) sampler = {0};
     RITZ_OWN_ARRAY double *w = NULL, *sum = NULL;
     int64_t count = 0, met = 0, p = pairs->B.ncol;
 
@@ -78,7 +78,7 @@ static ritz_status find_gains(const ritz_collocated *pairs, double *gain)
     RITZ_CHECK(ritz_probe_grid(&pairs->A, &count, &w));
     RITZ_CHECK(ritz_sampler_new(pairs, &sampler));
     for (int64_t k = 0; k < count; k++) {
-        const double _Complex *G = ritz_sampler_at(sampler, w[k]);
+        const double _Complex *G = ritz_sampler_at(&sampler, w[k]);
 
         for (int64_t i = 0; G && i < p; i++)
             sum[i] += log(
@@ -413,7 +413,7 @@ static ritz_status take_rows(const ritz_dense *L, const ritz_dofs *force,
     return ritz_dense_mul_tn(&kept, &L_p, C_p);
 }
 
-/* A = [A_qq C'; C S] of its three parts, C NULL: 0. */
+/* A = [A_qq C'; C sign S], C NULL: 0. */
 static ritz_status join_blocks(const ritz_dense *A_qq, const ritz_dense *C,
                                double sign, const ritz_dense *S,
                                ritz_dense *out)
@@ -421,16 +421,12 @@ static ritz_status join_blocks(const ritz_dense *A_qq, const ritz_dense *C,
     int64_t q = A_qq->nrow, s = S->nrow;
 
     RITZ_CHECK(ritz_dense_new(q + s, q + s, out));
-    for (int64_t b = 0; b < q; b++) {
-        for (int64_t a = 0; a < q; a++)
-            ritz_dense_col(out, b)[a] = ritz_dense_col(A_qq, b)[a];
-        for (int64_t a = 0; C && a < s; a++)
-            ritz_dense_col(out, b)[q + a] = ritz_dense_col(out, q + a)[b] =
-                ritz_dense_col(C, b)[a];
+    ritz_general_place(1.0, A_qq, false, 0, 0, out);
+    ritz_general_place(sign, S, false, q, q, out);
+    if (C) {
+        ritz_general_place(1.0, C, false, q, 0, out);
+        ritz_general_place(1.0, C, true, 0, q, out);
     }
-    for (int64_t b = 0; b < s; b++)
-        for (int64_t a = 0; a < s; a++)
-            ritz_dense_col(out, q + b)[q + a] = sign * ritz_dense_col(S, b)[a];
     ritz_dense_symmetrise(out);
     return RITZ_OK;
 }

@@ -11,7 +11,6 @@
 #include "check/check.h"
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
-#include "linear/resolvent.h"
 #include "linear/search.h"
 
 #include <lapacke.h>
@@ -20,23 +19,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct ritz_sampler {
-    ritz_resolvent resolvent;
-    double _Complex *H;           /* p x p, to work in */
-    const ritz_collocated *model; /* borrowed D and powers */
-};
-
-ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler **out)
+ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler *s)
 {
     const ritz_dense none = {0};
-    RITZ_OWN(ritz_sampler) *s = NULL;
 
-    RITZ_CHECK_NEW(s, 1);
     s->model = model;
     RITZ_CHECK(ritz_resolvent_new(&model->A, &none, &model->B, &model->C,
                                   &s->resolvent));
     RITZ_CHECK_NEW(s->H, model->B.ncol * model->B.ncol);
-    RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
@@ -62,16 +52,10 @@ const double _Complex *ritz_sampler_at(ritz_sampler *s, double w)
     return s->H;
 }
 
-void ritz_sampler_free(ritz_sampler **sampler)
+void ritz_sampler_free(ritz_sampler *s)
 {
-    ritz_sampler *s = *sampler;
-
-    if (!s)
-        return;
     ritz_resolvent_free(&s->resolvent);
     free(s->H);
-    free(s);
-    *sampler = NULL;
 }
 
 /*
@@ -92,7 +76,7 @@ enum { DESCENTS = 3, MOST_STATES = 200, PER_POLE = 9 };
 
 /* (G + G^*) / 2 and its eigenvalues, and where they were least. */
 typedef struct descent {
-    ritz_sampler *sampler;
+    ritz_sampler sampler;
     int p;
     double _Complex *H;
     double *lambda;
@@ -157,7 +141,7 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
 /* Least eigenvalue over |G| at w; positive where there is no response. */
 static double meet_at(descent *s, double w)
 {
-    const double _Complex *G = ritz_sampler_at(s->sampler, w);
+    const double _Complex *G = ritz_sampler_at(&s->sampler, w);
     double size = 0.0;
     double value = 1.0;
     int p = s->p;
@@ -271,44 +255,39 @@ static ritz_status take_velocities(const ritz_collocated *model, ritz_dense *C,
 {
     RITZ_OWN(ritz_dense) CA = {0}, CB = {0};
 
-    RITZ_CHECK(ritz_dense_copy(&model->C, C));
-    RITZ_CHECK(ritz_dense_copy(&model->D, D));
     RITZ_CHECK(ritz_dense_mul(&model->C, &model->A, &CA));
     RITZ_CHECK(ritz_dense_mul(&model->C, &model->B, &CB));
-    for (int64_t i = 0; i < C->nrow; i++) {
-        if (model->power[i] != 1)
+    for (int64_t i = 0; i < CA.nrow; i++) {
+        if (model->power[i] == 1)
             continue;
-        for (int64_t j = 0; j < C->ncol; j++)
-            ritz_dense_col(C, j)[i] = ritz_dense_col(&CA, j)[i];
-        for (int64_t j = 0; j < D->ncol; j++)
-            ritz_dense_col(D, j)[i] = ritz_dense_col(&CB, j)[i];
+        for (int64_t j = 0; j < CA.ncol; j++)
+            ritz_dense_col(&CA, j)[i] = ritz_dense_col(&model->C, j)[i];
+        for (int64_t j = 0; j < CB.ncol; j++)
+            ritz_dense_col(&CB, j)[i] = ritz_dense_col(&model->D, j)[i];
     }
+    RITZ_MOVE(*C, CA);
+    RITZ_MOVE(*D, CB);
     return RITZ_OK;
 }
 
 static ritz_status build_pencil(const ritz_collocated *model, double slack,
                                 ritz_dense *P, ritz_dense *Q)
 {
-    int64_t n = model->A.nrow, p = model->B.ncol, all = 2 * n + p;
+    const ritz_dense *A = &model->A, *B = &model->B;
+    int64_t n = A->nrow, p = B->ncol, all = 2 * n + p;
     RITZ_OWN(ritz_dense) C = {0}, D = {0};
 
     RITZ_CHECK(take_velocities(model, &C, &D));
     RITZ_CHECK(ritz_dense_new(all, all, P));
     RITZ_CHECK(ritz_dense_new(all, all, Q));
-    for (int64_t j = 0; j < n; j++) {
-        ritz_dense_col(Q, j)[j] = ritz_dense_col(Q, n + j)[n + j] = 1.0;
-        for (int64_t i = 0; i < n; i++) {
-            ritz_dense_col(P, j)[i] = ritz_dense_col(&model->A, j)[i];
-            ritz_dense_col(P, n + i)[n + j] = -ritz_dense_col(&model->A, j)[i];
-        }
-        for (int64_t i = 0; i < p; i++) {
-            ritz_dense_col(P, j)[2 * n + i] = ritz_dense_col(&C, j)[i];
-            ritz_dense_col(P, 2 * n + i)[n + j] = -ritz_dense_col(&C, j)[i];
-            ritz_dense_col(P, 2 * n + i)[j] = ritz_dense_col(&model->B, i)[j];
-            ritz_dense_col(P, n + j)[2 * n + i] =
-                ritz_dense_col(&model->B, i)[j];
-        }
-    }
+    for (int64_t j = 0; j < 2 * n; j++)
+        ritz_dense_col(Q, j)[j] = 1.0;
+    ritz_general_place(1.0, A, false, 0, 0, P);
+    ritz_general_place(-1.0, A, true, n, n, P);
+    ritz_general_place(1.0, B, false, 0, 2 * n, P);
+    ritz_general_place(-1.0, &C, true, n, 2 * n, P);
+    ritz_general_place(1.0, &C, false, 2 * n, 0, P);
+    ritz_general_place(1.0, B, true, 2 * n, n, P);
     for (int64_t j = 0; j < p; j++)
         for (int64_t i = 0; i < p; i++)
             ritz_dense_col(P, 2 * n + j)[2 * n + i] =

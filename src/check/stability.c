@@ -12,8 +12,12 @@
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/eigenvalues.h"
+#include "linear/exponential.h"
 #include "linear/general.h"
+#include "linear/split.h"
 
+#include <float.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,4 +173,203 @@ ritz_status ritz_probe_record(const ritz_probe *probe, ritz_measures *estimates)
              ritz_stability_name(probe->verdict), text);
     return ritz_measures_add(estimates, "growth-relative",
                              ritz_probe_growth(probe), probe->tolerance, where);
+}
+
+/*
+ * How large a free motion becomes before it dies: the largest |e^(A t)|^2.
+ *
+ * In y = [w q; q'] of the modes |y|^2 is twice the energy, and
+ *
+ *     d/dt |y|^2 = y'(A + A')y = -2 q'' Delta q',
+ *
+ * so where D's symmetric part is semidefinite nothing grows. Otherwise e^(A t)
+ * is met at t = h 2^(i/4) by squaring, which gives what is reached at least;
+ * and with A V = V B, B of diagonal blocks [a b; -b a], a <= 0,
+ *
+ *     |e^(A t)| <= |V| |V^-1|
+ *
+ * gives what is reached at most.
+ */
+
+/* The largest |e^(A t)|^2, t >= 0. */
+typedef struct growth {
+    double met, seconds; /* what was met, and when */
+    double most;         /* bound; HUGE_VAL: none is known */
+    bool followed;       /* false: too many states, `met` is 1 */
+} growth;
+
+enum {
+    MOST_STATES = 400, /* of whose exponential powers are taken */
+    FOURTHS = 4,       /* of an octave */
+};
+
+static double norm_of(const ritz_dense *A)
+{
+    return LAPACKE_dlange(LAPACK_COL_MAJOR, '1', (int)A->nrow, (int)A->ncol,
+                          A->val, (int)A->nrow);
+}
+
+/* e^(A h), e^(2 A h), e^(4 A h), ... until nothing is left, or t = most. */
+static ritz_status follow_powers(const ritz_dense *A, double h, double most,
+                                 growth *out)
+{
+    RITZ_OWN(ritz_dense) E = {0}, next = {0};
+    double size = 1.0;
+
+    RITZ_CHECK(ritz_exponential(A, h, 0, NULL, &E, NULL));
+    for (int k = 0; size > RITZ_DIED_OUT && h * ldexp(1.0, k) <= most; k++) {
+        RITZ_CHECK(ritz_dense_copy(&E, &next));
+        RITZ_CHECK(ritz_general_norm(&next, &size));
+        ritz_dense_free(&next);
+        if (!(size < 1e100)) /* what is unstable is told by its poles */
+            break;
+        if (size * size > out->met) {
+            out->met = size * size;
+            out->seconds = h * ldexp(1.0, k);
+        }
+        RITZ_CHECK(ritz_dense_mul(&E, &E, &next));
+        ritz_dense_free(&E);
+        RITZ_MOVE(E, next);
+    }
+    return RITZ_OK;
+}
+
+/* (|V| |V^-1|)^2, eigenvectors of A as columns of length 1. */
+static ritz_status bound_growth(const ritz_dense *A, double *out)
+{
+    int n = (int)A->nrow;
+    RITZ_OWN(ritz_dense) H = {0}, V = {0};
+    RITZ_OWN_ARRAY double *re = NULL, *im = NULL, *sigma = NULL;
+    int info = 0;
+
+    RITZ_CHECK(ritz_dense_copy(A, &H));
+    RITZ_CHECK(ritz_dense_new(n, n, &V));
+    RITZ_CHECK_NEW(re, n);
+    RITZ_CHECK_NEW(im, n);
+    RITZ_CHECK_NEW(sigma, n);
+    info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, H.val, n, re, im, NULL,
+                         1, V.val, n);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    RITZ_CHECK(ritz_general_singular(&V, sigma));
+    *out = sigma[n - 1] > 0.0 ? pow(sigma[0] / sigma[n - 1], 2.0) : HUGE_VAL;
+    return RITZ_OK;
+}
+
+/* Growth of a stable A. @cost O(n^3), some hundred products up to 400 states */
+static ritz_status measure_growth(const ritz_dense *A, growth *out)
+{
+    double size = norm_of(A);
+
+    *out = (growth){.met = 1.0, .most = HUGE_VAL, .followed = true};
+    if (A->nrow == 0 || size == 0.0) {
+        out->most = 1.0;
+        return RITZ_OK;
+    }
+    RITZ_CHECK(bound_growth(A, &out->most));
+    out->followed = A->nrow <= MOST_STATES;
+    if (!out->followed)
+        return RITZ_OK;
+    for (int k = 0; k < FOURTHS; k++)
+        RITZ_CHECK(follow_powers(A, 0.25 / size * exp2((double)k / FOURTHS),
+                                 RITZ_POWERS_ROUNDING / DBL_EPSILON / size,
+                                 out));
+    out->most = fmax(out->most, out->met);
+    return RITZ_OK;
+}
+
+/*
+ * Units of states are nobody's growth. They are scaled until what goes into
+ * each is as large as what comes out of it; a coupling one way, which some
+ * units make as small as one likes, has a floor to be held against.
+ */
+static ritz_status forget_units(ritz_dense *A)
+{
+    int n = (int)A->nrow;
+    double least = DBL_EPSILON * ritz_dense_max(A);
+    RITZ_OWN(ritz_dense) sizes = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
+    lapack_int low = 0, high = 0;
+
+    RITZ_CHECK_NEW(scale, n);
+    RITZ_CHECK(ritz_dense_new(n, n, &sizes));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            if (i != j)
+                ritz_dense_col(&sizes, j)[i] =
+                    fmax(fabs(ritz_dense_col(A, j)[i]), least);
+    if (n > 0)
+        LAPACKE_dgebal(LAPACK_COL_MAJOR, 'S', n, sizes.val, n, &low, &high,
+                       scale);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(A, j)[i] *= scale[j] / scale[i];
+    return RITZ_OK;
+}
+
+/*
+ * (|s| of the fastest pole over that of the slowest)^2: what a structure that
+ * does not grow shows in displacements and velocities of one unit of time, as
+ * a unit velocity of the slowest mode displaces it by 1 / |s|.
+ */
+static ritz_status pole_spread(const ritz_dense *A, double *out)
+{
+    RITZ_OWN(ritz_eigenvalues) poles = {0};
+    double fast = 0.0, slow = HUGE_VAL;
+
+    RITZ_CHECK(ritz_eigenvalues_of(A, &poles));
+    for (int64_t k = 0; k < poles.count; k++) {
+        double size = hypot(poles.re[k], poles.im[k]);
+
+        fast = fmax(fast, size);
+        slow = fmin(slow, size);
+    }
+    *out = poles.count > 0 && slow > 0.0 ? pow(fast / slow, 2.0) : 1.0;
+    return RITZ_OK;
+}
+
+/*
+ * Energy of a reduced model. States have none, and non-normal growth is no
+ * instability: of the sum of their squares, in units of this check's own
+ * making, growth that the poles do not explain is said.
+ */
+ritz_status ritz_check_growth(ritz_checker *it)
+{
+    static const char name[] = "energy-growth";
+    const ritz_dense none = {0};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_split) split = {0};
+    growth found = {0};
+    double limit = 1.0 + RITZ_GROWTH_ROUNDING; /* squaring doubles rounding */
+    char where[RITZ_WHERE_SIZE];
+
+    if (it->definite || !it->stable) {
+        ritz_checker_say(it, name, it->definite ? 1.0 : HUGE_VAL, 1.0,
+                         it->definite ? RITZ_PASS : RITZ_FAIL, "", "%s",
+                         it->definite ? "proven: M, K and D are semidefinite"
+                                      : "a free motion grows without bound");
+        return RITZ_OK;
+    }
+    if (it->reduced) {
+        RITZ_CHECK(measure_growth(&it->pairs.A, &found));
+    } else {
+        RITZ_CHECK(ritz_dense_copy(&it->pairs.A, &A));
+        RITZ_CHECK(forget_units(&A));
+        RITZ_CHECK(ritz_split_new(&A, &none, &split));
+        RITZ_CHECK(measure_growth(&split.S, &found));
+        RITZ_CHECK(pole_spread(&split.S, &limit));
+        limit /= RITZ_INTEGRATOR_ERROR * RITZ_INTEGRATOR_ERROR;
+    }
+    if (found.seconds > 0.0)
+        snprintf(where, sizeof where, "after %.3g s", found.seconds);
+    else
+        snprintf(where, sizeof where, "not followed, of more than %d states",
+                 MOST_STATES);
+    ritz_checker_say(it, name, found.met, limit,
+                     found.met > limit ? RITZ_WARN : RITZ_PASS,
+                     found.met > 1.0 || !found.followed ? where : "",
+                     "%s of a free motion: %.4g times its first at least, %.3g "
+                     "at most",
+                     it->reduced ? "energy" : "square of scaled states",
+                     found.met, found.most);
+    return RITZ_OK;
 }

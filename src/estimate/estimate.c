@@ -9,7 +9,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
-#include "verify/participation.h"
+#include "verify/sides.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -330,19 +330,6 @@ void ritz_estimator_free(ritz_estimator **estimator)
     *estimator = NULL;
 }
 
-/* Half of the highest frequency of the basis's columns, or of its modes. */
-static double trusted_hertz(const ritz_basis *basis, const ritz_pairs *pairs)
-{
-    double highest = 0.0;
-
-    for (int64_t k = 0; k < basis->columns.count; k++)
-        if (isfinite(basis->columns.hertz[k]))
-            highest = fmax(highest, basis->columns.hertz[k]);
-    if (highest == 0.0 && pairs->Phi.ncol > 0)
-        highest = ritz_eigen_hertz(pairs->lambda[pairs->Phi.ncol - 1]);
-    return 0.5 * highest;
-}
-
 /* The flexible modes in the band; where no band was asked for, one at least. */
 static void choose_modes(const ritz_estimator *estimator,
                          const ritz_basis *basis, ritz_measuring *m)
@@ -351,7 +338,10 @@ static void choose_modes(const ritz_estimator *estimator,
     const double *asked = estimator->request.band_hz;
 
     m->band_hz[0] = asked[0];
-    m->band_hz[1] = asked[1] > 0.0 ? asked[1] : trusted_hertz(basis, pairs);
+    m->band_hz[1] = asked[1] > 0.0 ? asked[1]
+                                   : 0.5 * ritz_highest_hertz(&basis->columns,
+                                                              pairs->Phi.ncol,
+                                                              pairs->lambda);
     m->first = pairs->num_rigid;
     while (m->first < pairs->Phi.ncol &&
            ritz_eigen_hertz(pairs->lambda[m->first]) < m->band_hz[0])

@@ -49,6 +49,16 @@ ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out)
     return ritz_eigen_dense(A, &unit, out);
 }
 
+void ritz_general_place(double sign, const ritz_dense *A, bool transposed,
+                        int64_t row, int64_t col, ritz_dense *to)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++)
+            *(transposed ? &ritz_dense_col(to, col + i)[row + j]
+                         : &ritz_dense_col(to, col + j)[row + i]) =
+                sign * ritz_dense_col(A, j)[i];
+}
+
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(A->ncol, A->nrow, out));

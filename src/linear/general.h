@@ -85,6 +85,10 @@ double ritz_general_size(const ritz_dense *A);
 /** Eigenpairs of a symmetric A, vectors of length one: see ritz_eigen_dense. */
 ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out);
 
+/** to(row.., col..) = sign A, or sign A'. */
+void ritz_general_place(double sign, const ritz_dense *A, bool transposed,
+                        int64_t row, int64_t col, ritz_dense *to);
+
 /** The transpose. */
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);
 

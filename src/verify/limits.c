@@ -76,7 +76,8 @@ bool ritz_measure_holds(const ritz_measure *measure)
            ritz_measure_meets(measure->name, measure->value, measure->limit);
 }
 
-void ritz_tolerance_words(int64_t size, char *out)
+/* "frequency, mac": all words of tolerances. Cut to fit. */
+static void list_words(int64_t size, char *out)
 {
     size_t used = 0;
 
@@ -106,7 +107,7 @@ static const ritz_measure_kind *find_word(const char *word)
         (void)snprintf(known[count++], sizeof *known, "%s", kind->word);
     }
     near = ritz_text_nearest(word, count, known[0], sizeof *known);
-    ritz_tolerance_words(sizeof all, all);
+    list_words(sizeof all, all);
     ritz_record("there is no measure '%s', %s%s%s", word,
                 near ? "is '" : "but ", near ? near : all,
                 near ? "' meant?" : "");

@@ -1,6 +1,5 @@
 /* The table of error measures: see ritz/measures.h. */
 #include "verify/sides.h"
-#include "verify/states.h"
 
 const ritz_measure_kind ritz_measure_table[RITZ_MEASURES] = {
     [RITZ_MEASURE_FREQUENCY] = {.name = "frequency-relative",

@@ -6,7 +6,6 @@
  * Rigid and other poles that are not left of the axis make norms infinite; a
  * reduction keeps them as they are, and norms are of what is left of both.
  */
-#include "verify/states.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
@@ -55,21 +54,11 @@ static ritz_status check_signals(const ritz_state_space *full,
     return ritz_verify_signals(&io, &io_r);
 }
 
-/* to(row.., col..) = sign from */
-static void place_block(double sign, const ritz_dense *from, int64_t row,
-                        int64_t col, ritz_dense *to)
-{
-    for (int64_t j = 0; j < from->ncol; j++)
-        for (int64_t i = 0; i < from->nrow; i++)
-            ritz_dense_col(to, col + j)[row + i] =
-                sign * ritz_dense_col(from, j)[i];
-}
-
 /* E of a model of n states, or the identity, from (first, first) on. */
 static void place_descriptor(const ritz_dense *E, int64_t n, int64_t first,
                              ritz_dense *to)
 {
-    place_block(1.0, E, first, first, to);
+    ritz_general_place(1.0, E, false, first, first, to);
     for (int64_t i = 0; i < n && !E->val; i++)
         ritz_dense_col(to, first + i)[first + i] = 1.0;
 }
@@ -87,12 +76,12 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
     RITZ_CHECK(make_states(a, n + m, &both));
     memcpy(both.damping, a->damping, sizeof both.damping);
     memcpy(both.units, a->units, sizeof both.units);
-    place_block(1.0, &a->A, 0, 0, &both.A);
-    place_block(1.0, &b->A, n, n, &both.A);
-    place_block(1.0, &a->B, 0, 0, &both.B);
-    place_block(1.0, &b->B, n, 0, &both.B);
-    place_block(1.0, &a->C, 0, 0, &both.C);
-    place_block(-1.0, &b->C, 0, n, &both.C);
+    ritz_general_place(1.0, &a->A, false, 0, 0, &both.A);
+    ritz_general_place(1.0, &b->A, false, n, n, &both.A);
+    ritz_general_place(1.0, &a->B, false, 0, 0, &both.B);
+    ritz_general_place(1.0, &b->B, false, n, 0, &both.B);
+    ritz_general_place(1.0, &a->C, false, 0, 0, &both.C);
+    ritz_general_place(-1.0, &b->C, false, 0, n, &both.C);
     for (int64_t k = 0; k < a->D.nrow * a->D.ncol; k++)
         both.D.val[k] = a->D.val[k] - b->D.val[k];
     if (a->E.val || b->E.val) {

@@ -9,7 +9,6 @@
 #include "base/tolerances.h"
 #include "poles/poles.h"
 #include "verify/sides.h"
-#include "verify/states.h"
 
 #include <ritz/verify.h>
 
@@ -36,7 +35,8 @@ double ritz_random_next(uint64_t *state)
     return (double)(z >> 11) * 0x1p-53; /* [Steele2014] */
 }
 
-void ritz_random_hertz(uint64_t seed, const double band_hz[2], int64_t count,
+/* Some frequencies of a band, ascending and distinct, the same for one seed. */
+static void draw_hertz(uint64_t seed, const double band_hz[2], int64_t count,
                        double *out)
 {
     /* one in each of `count` equal parts: anywhere, and nowhere twice */
@@ -116,7 +116,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
         band[0] = fmax(band[0], RITZ_BAND_START * band[1]);
     r->random.count = request->num_random;
     RITZ_CHECK_NEW(r->random.hertz, r->random.count);
-    ritz_random_hertz(request->seed, band, r->random.count, r->random.hertz);
+    draw_hertz(request->seed, band, r->random.count, r->random.hertz);
     return ritz_reference_respond(r, &r->random);
 }
 
@@ -200,20 +200,16 @@ void ritz_reference_free(ritz_reference **reference)
     *reference = NULL;
 }
 
-/*
- * The highest frequency of the modes that the basis of a reduced model was made
- * with, or else of its own modes.
- */
-static double highest_hertz(const ritz_poles *reduced,
-                            const ritz_columns *columns)
+double ritz_highest_hertz(const ritz_columns *columns, int64_t count,
+                          const double *lambda)
 {
     double highest = 0.0;
 
     for (int64_t k = 0; columns && k < columns->count; k++)
         if (isfinite(columns->hertz[k]))
             highest = fmax(highest, columns->hertz[k]);
-    if (highest == 0.0 && reduced->count > 0)
-        highest = ritz_eigen_hertz(reduced->lambda[reduced->count - 1]);
+    if (highest == 0.0 && count > 0)
+        highest = ritz_eigen_hertz(lambda[count - 1]);
     return highest;
 }
 
@@ -404,10 +400,10 @@ static ritz_status verify_dense(const ritz_component *full,
     RITZ_CHECK(choose_damping(full, reduced ? reduced->damping : "",
                               &request->damping, &asked.damping, &is_assumed));
     RITZ_CHECK(open_sides(model, &asked.damping, request->band_hz[1], &sides));
-    choose_band(
-        &sides.reduced,
-        highest_hertz(&sides.reduced, reduced ? &reduced->columns : NULL),
-        request, asked.band_hz);
+    choose_band(&sides.reduced,
+                ritz_highest_hertz(reduced ? &reduced->columns : NULL,
+                                   sides.reduced.count, sides.reduced.lambda),
+                request, asked.band_hz);
     RITZ_CHECK(open_reference(full, &asked, is_assumed, &reference));
     sides.full = reference;
     return measure_sides(request, &sides, out);
