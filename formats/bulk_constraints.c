@@ -14,6 +14,7 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "formats/bulk.h"
+#include "model/equations.h"
 
 #include <lapacke.h>
 

@@ -16,15 +16,11 @@ typedef struct ritz_dense {
 /** Zero matrix. The caller frees @p out. */
 ritz_status ritz_dense_new(int64_t nrow, int64_t ncol, ritz_dense *out);
 
-/** C = A B, with A m x p and B p x q. The caller frees @p C. */
+/** C = A B, C = A'B, C = A B'. The caller frees @p C. */
 ritz_status ritz_dense_mul(const ritz_dense *A, const ritz_dense *B,
                            ritz_dense *C);
-
-/** C = A' B, with A m x p and B m x q. The caller frees @p C. */
 ritz_status ritz_dense_mul_tn(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *C);
-
-/** C = A B', with A m x p and B q x p. The caller frees @p C. */
 ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *C);
 
@@ -59,15 +55,13 @@ void ritz_dense_symmetrise(ritz_dense *A);
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, of a square matrix. */
 double ritz_dense_asymmetry(const ritz_dense *A);
 
-/** B'AB of a square A, made exactly symmetric. The caller frees @p out. */
+/** B'AB of a square A, exactly symmetric: always, or (project) if A is. */
 ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
                                   ritz_dense *out);
-
-/** B'AB of a square A, exactly symmetric only if A is: of damping matrices. */
 ritz_status ritz_dense_project(const ritz_dense *A, const ritz_dense *B,
                                ritz_dense *out);
 
-/** |B|'|A||B|: of B'AB, what it sums up, for its rounding. */
+/** |B|'|A||B|, of which B'AB has the rounding. */
 ritz_status ritz_dense_terms(const ritz_dense *A, const ritz_dense *B,
                              ritz_dense *out);
 
@@ -86,29 +80,23 @@ double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
 ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
                               ritz_dense *out);
 
-/** Columns j0..j0+count-1 as a matrix of their own. */
+/** Columns first, first + 1, ...: a copy; borrowed, where they are. */
 ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
                                int64_t count, ritz_dense *out);
-
-/** The same, borrowed: they stay where they are. */
 ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count);
 
 /** A(row..row+nrow-1, col..col+ncol-1) as a matrix of its own. */
 ritz_status ritz_dense_block(const ritz_dense *A, int64_t row, int64_t nrow,
                              int64_t col, int64_t ncol, ritz_dense *out);
 
-/** Rows row[0], row[1], ... as a matrix of their own. */
+/** Rows row[0], row[1], ..., or columns, as a matrix of their own. */
 ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
                             const int64_t *row, ritz_dense *out);
-
-/** Columns col[0], col[1], ... likewise. */
 ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
                             const int64_t *col, ritz_dense *out);
 
-/** Largest |A(i,j)|, 0 if empty. */
+/** Largest |A(i,j)|, of all or of a column; 0 if empty. */
 double ritz_dense_max(const ritz_dense *A);
-
-/** The same of column @p j alone. */
 double ritz_dense_col_max(const ritz_dense *A, int64_t j);
 
 /**
@@ -193,19 +181,20 @@ ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out);
 ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
                                    ritz_sparse *out);
 
-/** T'AT of a symmetric A, exactly symmetric. @cost O(r nnz + n r^2) */
+/**
+ * T'AT, exactly symmetric: always, or (project) if A is, and {0} of an absent A.
+ *
+ * @cost O(r nnz + n r^2)
+ */
 ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
                                  ritz_dense *out);
-
-/** T'AT, exactly symmetric only if A is: of damping; {0} of an absent A. */
 ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
                                 ritz_dense *out);
 
-/** |T|'|A||T| of a symmetric A: of T'AT, what it sums up, for its rounding. */
+/** |T|'|A||T| of a symmetric A, of which T'AT has the rounding. */
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
                               ritz_dense *out);
 
-/** Copy of @p A. */
 ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out);
 
 /** @p A as a dense matrix. @return RITZ_ERR_ARGUMENT if it is too large */
@@ -225,7 +214,7 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
                             ritz_dense *Y);
 
 /**
- * The same as if summed with twice the digits: each entry to its own rounding,
+ * Y = A X as if summed with twice the digits: each entry to its own rounding,
  * whatever cancels in it. @cost five times as much
  */
 ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
@@ -255,7 +244,6 @@ double ritz_sparse_skew(const ritz_sparse *A);
 /** A := (A + A') / 2, exactly symmetric in values and in pattern. */
 ritz_status ritz_sparse_symmetrise(ritz_sparse *A);
 
-/** Free what @p A owns and leave it empty. */
 void ritz_sparse_free(ritz_sparse *A);
 
 /* Sparse factors: CHOLMOD for definite matrices, MUMPS for all others. */
@@ -268,15 +256,12 @@ typedef struct ritz_factor ritz_factor;
  *
  * @param[in]  A    n x n, symmetric; only its lower triangle is read
  * @param[out] out  independent of A afterwards
- * @return RITZ_ERR_SINGULAR if A is not positive definite to working accuracy;
- *         ritz_factor_weak then names the row that gave way
+ * @return RITZ_ERR_SINGULAR if A is not positive definite to working accuracy:
+ *         at a row the factor broke down, or its smallest pivot stands
  */
 ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out);
 
-/**
- * The same, but on RITZ_ERR_SINGULAR *weak is a row of A at which the factor
- * broke down or its smallest pivot stands (-1 if not known).
- */
+/** On RITZ_ERR_SINGULAR *weak is that row (-1 if not known). */
 ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
                                  int64_t *weak);
 
@@ -307,16 +292,14 @@ void ritz_ldl_free(ritz_ldl **F);
  */
 typedef struct ritz_zldl ritz_zldl;
 
-/**
- * @param[in] count  how many matrices, all n x n, borrowed until free
- */
+/** @param[in] A  count matrices, all n x n, borrowed until free */
 ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
                           ritz_zldl **out);
 
 /**
- * Say that every sum to come has, times one complex number, a definite real
- * part, as s^2 M + s D + K has off the imaginary axis where M, D and K are
- * semidefinite. Such factors are stable without pivots, and a fifth cheaper.
+ * Every sum to come has, times one complex number, a definite real part, as
+ * s^2 M + s D + K has off the imaginary axis where M, D and K are semidefinite:
+ * such factors are stable without pivots, and a fifth cheaper.
  */
 void ritz_zldl_definite(ritz_zldl *F);
 
@@ -326,7 +309,7 @@ ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c);
 /** Overwrite @p X, n x k column-major, by the solution. */
 ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X);
 
-/** The same of the transposed matrix: of symmetric ones no other. */
+/** By the transposed matrix, which is the same of symmetric ones. */
 ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
                                        double _Complex *X);
 void ritz_zldl_free(ritz_zldl **F);

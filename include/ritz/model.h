@@ -1,403 +1,17 @@
 /*
- * Degrees of freedom: what a row of a component is, and sets of rows.
- *
- * Rows are counted from 0 inside the library. Users never see row numbers:
- * messages name grid and direction, "grid 101 T3".
+ * Models: components, bases, reduced components, systems and state spaces, and
+ * a reference to any of them.
  */
 #ifndef RITZ_MODEL_H
 #define RITZ_MODEL_H
 
-#include <ritz/base.h>
-#include <ritz/matrix.h>
+#include <ritz/parts.h>
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #pragma GCC visibility push(default)
-
-/* Directions of a grid: 1-3 translations, 4-6 rotations, 0 a scalar point. */
-typedef struct ritz_dof {
-    int64_t grid;
-    int64_t component;
-} ritz_dof;
-
-typedef struct ritz_dofs {
-    int64_t count;
-    int64_t *at; /* count distinct row numbers, from 0, in the owner's order */
-} ritz_dofs;
-
-/**
- * The rows of 0..n-1 that are not in @p set, ascending.
- *
- * @return RITZ_ERR_ARGUMENT if a member of @p set is out of range or repeated
- */
-ritz_status ritz_dofs_complement(const ritz_dofs *set, int64_t n,
-                                 ritz_dofs *out);
-
-/** Copy of @p set. */
-ritz_status ritz_dofs_copy(const ritz_dofs *set, ritz_dofs *out);
-
-/** Room for the text that ritz_dof_name writes. */
-enum { RITZ_DOF_NAME_SIZE = 40 };
-
-/** "grid 101 T3", "grid 101 R1", "point 2001"; returns @p text. */
-const char *ritz_dof_name(ritz_dof dof, char text[RITZ_DOF_NAME_SIZE]);
-
-/** Order of two ritz_dof, for qsort and bsearch: by grid, then direction. */
-int ritz_dof_compare(const void *left, const void *right);
-
-/**
- * Sort a list and keep each dof once.
- *
- * @return how many are left
- * @cost   O(n log n)
- */
-int64_t ritz_dof_distinct(int64_t count, ritz_dof *dof);
-
-void ritz_dofs_free(ritz_dofs *set);
-
-/*
- * Damping as scenes and options state it, beside what matrices carry.
- *
- * Text form, one word and numbers: "modal 0.002"; "modes 0.01 0.02" (of the
- * first flexible mode, the second, ...; the last for all above); "bands 0 5
- * 0.002 5 20 0.005" (from Hz, to Hz, ratio; ...); "rayleigh a b" (D = a M +
- * b K); "fit 1 0.01 10 0.02" (Hz, ratio; ...: the a and b that come nearest).
- */
-
-enum {
-    RITZ_MAX_BANDS = 8,
-    RITZ_MOST_RATIOS = 40,
-    RITZ_MOST_POINTS = 20,
-    RITZ_DAMPING_SIZE = 1024, /* room for the longest text and its NUL */
-};
-
-typedef enum ritz_damping_kind {
-    RITZ_DAMPING_NONE,
-    RITZ_DAMPING_MODAL,
-    RITZ_DAMPING_BANDS,
-    RITZ_DAMPING_RAYLEIGH,
-    RITZ_DAMPING_MODES,
-    RITZ_DAMPING_FIT,
-} ritz_damping_kind;
-
-typedef struct ritz_damping {
-    ritz_damping_kind kind;
-    double zeta;                       /* modal */
-    int64_t count;                     /* bands, modes, points of a fit */
-    double band[RITZ_MAX_BANDS][3];    /* from Hz, to Hz, zeta */
-    double ratio[RITZ_MOST_RATIOS];    /* modes */
-    double point[RITZ_MOST_POINTS][2]; /* fit: Hz, zeta */
-    double a, b;                       /* rayleigh, and what a fit came to */
-} ritz_damping;
-
-/**
- * Whether a damping makes sense: ratios above 0 and below 1; bands that ascend
- * from 0 Hz and do not overlap; a and b not negative nor both 0; two different
- * frequencies at least in a fit.
- *
- * @return RITZ_ERR_ARGUMENT with what is wrong
- */
-ritz_status ritz_damping_check(const ritz_damping *damping);
-
-/** @return RITZ_ERR_ARGUMENT with what is wrong; "" is none */
-ritz_status ritz_damping_parse(const char *text, ritz_damping *out);
-
-/** The text form of a checked damping, shortest digits that read back the
- * same. */
-void ritz_damping_print(const ritz_damping *damping,
-                        char text[RITZ_DAMPING_SIZE]);
-
-/**
- * Put a and b of a fit whose points are checked where
- *
- *     sum_k ((a / w_k + b w_k) / 2 - zeta_k)^2
- *
- * is least for a, b >= 0.
- */
-void ritz_damping_fit(ritz_damping *damping);
-
-/** Whether it is a M + b K, as stated or as fitted. */
-bool ritz_damping_is_rayleigh(const ritz_damping *damping);
-
-/**
- * Largest |ratio of the fit - ratio asked| of its points; 0 of another kind.
- *
- * @param[out] at  index of that point, 0 if there is none
- */
-double ritz_damping_misfit(const ritz_damping *damping, int64_t *at);
-
-/**
- * Damping ratio at @p omega rad/s; 0 outside all bands. An edge that two bands
- * share belongs to the upper one. Rayleigh: (a / omega + b omega) / 2 or, where
- * omega is 0 and no ratio stands for a, 0. Of modes: that of all above.
- */
-double ritz_damping_ratio(const ritz_damping *damping, double omega);
-
-/** The same of flexible mode @p mode, 0 being the first. */
-double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
-                            double omega);
-
-/*
- * Discrete dampers (and springs) kept apart from D and K, so that they can be
- * retuned after reduction: damper j adds c_j b_j b_j' to D and k_j b_j b_j' to
- * K, b_j being its influence vector, +1 and -1 at the dofs it lies between.
- *
- * D and K of a component and of its reduction hold nothing of them, and bases
- * are made without them; who answers for the model (a response, poles, errors,
- * assembly, export) installs them first. What D and K hold already is kept
- * beside c and k, so that installing twice adds nothing, and installing after a
- * change of c or k adds the difference.
- */
-
-typedef struct ritz_dampers {
-    int64_t count;
-    char (*name)[RITZ_NAME_SIZE]; /* distinct; "body/name" in a system */
-    double *c, *k;                /* either sign of k, c >= 0 */
-    double *held_c, *held_k;      /* what D and K hold of them already */
-    ritz_dense B;                 /* n x count */
-} ritz_dampers;
-
-/** @p count dampers without name, c and k, for @p n coordinates. */
-ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out);
-
-/** What the subspace x = T q sees of them: T'B; names, c and k kept. */
-ritz_status ritz_dampers_project(const ritz_dampers *dampers,
-                                 const ritz_dense *T, ritz_dampers *out);
-
-ritz_status ritz_dampers_copy(const ritz_dampers *dampers, ritz_dampers *out);
-
-/**
- * Append @p more, whose coordinates are rows first, first + 1, ... of the @p n
- * that all have; with @p owner each is called "owner/name".
- *
- * @return RITZ_ERR_ARGUMENT if a name becomes too long
- */
-ritz_status ritz_dampers_append(const ritz_dampers *more, const char *owner,
-                                int64_t n, int64_t first,
-                                ritz_dampers *dampers);
-
-/**
- * Whether dampers make sense for a model of @p n coordinates: names there and
- * distinct, values finite, c not negative.
- *
- * @return RITZ_ERR_FORMAT with what is wrong
- */
-ritz_status ritz_dampers_check(const ritz_dampers *dampers, int64_t n);
-
-/** Index of a name; -1 and a sentence naming the nearest if there is none. */
-int64_t ritz_dampers_find(const ritz_dampers *dampers, const char *name);
-
-/**
- * Take "NAME=C" or "NAME=C*K" as new values; without K it stays.
- *
- * @return RITZ_ERR_ARGUMENT if the name is unknown, or no numbers follow
- */
-ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text);
-
-/**
- * Install: D += sum (c - held_c) b b' and K likewise. An absent D, {0}, is made
- * if there is anything to add.
- *
- * @return RITZ_ERR_ARGUMENT if the sizes disagree
- */
-ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
-                                 ritz_dense *D);
-
-/** The same of sparse matrices; b has few entries. */
-ritz_status ritz_dampers_install_sparse(ritz_dampers *dampers, ritz_sparse *K,
-                                        ritz_sparse *D);
-
-void ritz_dampers_free(ritz_dampers *dampers);
-
-/*
- * Inputs and outputs of a second-order model with n coordinates x:
- *
- *     M x'' + D x' + K x = B u,    y = C x + Cv x' + Ca x''
- *
- * The same object serves components (n dofs), reduced components and systems
- * (n reduced coordinates): a basis T turns B into T'B and C into C T.
- */
-
-typedef struct ritz_io {
-    int64_t num_inputs, num_outputs;
-    char (*input)[RITZ_NAME_SIZE];  /* num_inputs names */
-    char (*output)[RITZ_NAME_SIZE]; /* num_outputs names */
-    ritz_dense B;                   /* n x num_inputs */
-    ritz_dense C, Cv, Ca;           /* num_outputs x n; all three allocated */
-    double *limit; /* num_outputs, largest tolerated |y|; NaN where none */
-} ritz_io;
-
-/** All names empty, all matrices zero, all limits NaN, for n coordinates. */
-ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
-                        ritz_io *out);
-
-/**
- * What the subspace x = T q sees: T'B, C T, Cv T, Ca T; names and limits kept.
- *
- * @param[in]  T    n x r
- */
-ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
-                            ritz_io *out);
-
-void ritz_io_free(ritz_io *io);
-
-/*
- * Which grids belong together, for pictures: cells of a mesh and no mechanics.
- *
- * Kinds and the order of grids in a cell are those of VTK, which most viewers
- * share.
- */
-
-typedef enum ritz_cell {
-    RITZ_CELL_POINT = 1, /* of pictures alone: where there is no element */
-    RITZ_CELL_LINE = 3,
-    RITZ_CELL_TRIANGLE = 5,
-    RITZ_CELL_QUAD = 9,
-    RITZ_CELL_TETRA = 10,
-    RITZ_CELL_HEXA = 12,
-    RITZ_CELL_WEDGE = 13,
-    RITZ_CELL_TRIANGLE6 = 22, /* from here on with nodes between corners */
-    RITZ_CELL_QUAD8 = 23,
-    RITZ_CELL_TETRA10 = 24,
-    RITZ_CELL_HEXA20 = 25,
-    RITZ_CELL_WEDGE15 = 26,
-} ritz_cell;
-
-/* Cell k has grids grid[first[k]] to grid[first[k + 1] - 1]. */
-typedef struct ritz_elements {
-    int64_t count;
-    int64_t *kind;  /* count, of ritz_cell */
-    int64_t *first; /* count + 1; NULL if count is 0 */
-    int64_t *grid;  /* first[count], ids */
-} ritz_elements;
-
-/** Grids of a kind of cell, and those at its corners; 0 if it is none. */
-int64_t ritz_cell_size(int64_t kind);
-int64_t ritz_cell_corners(int64_t kind);
-
-/** The kind that has its corners alone: QUAD of QUAD8. */
-int64_t ritz_cell_linear(int64_t kind);
-
-ritz_status ritz_elements_copy(const ritz_elements *elements,
-                               ritz_elements *out);
-
-/**
- * Leave out cells with a grid that is not among some.
- *
- * @param[in] count,id  ids that there are, ascending
- * @return how many were left out
- */
-int64_t ritz_elements_keep(ritz_elements *elements, int64_t count,
-                           const int64_t *id);
-
-/**
- * Whether kinds are known and sizes fit them, and all grids are there.
- *
- * @return RITZ_ERR_FORMAT with what is wrong
- */
-ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
-                                const int64_t *id);
-
-void ritz_elements_free(ritz_elements *elements);
-
-/*
- * Linear equations between dofs, as constraint elements state them, and their
- * elimination: with the dependent dofs u_m and all others u_n
- *
- *     u_m = R_mm u_m + R_mn u_n,    u = G u_n,   G_m = (I - R_mm)^-1 R_mn
- */
-
-/* What states equations: a card of a deck, or a port. */
-typedef struct ritz_equation_source {
-    char name[RITZ_NAME_SIZE]; /* "RBE2 600" */
-    int64_t file;              /* index in `file`, -1: none */
-    int64_t line;
-} ritz_equation_source;
-
-/* Equation e: u(dependent[e]) = sum share[k] u(dof[k]), k from first[e] to
- * first[e + 1] - 1. A dof may occur more than once, its shares add up. */
-typedef struct ritz_equations {
-    int64_t count;
-    ritz_dof *dependent; /* count */
-    int64_t *first;      /* count + 1; NULL if count is 0 */
-    ritz_dof *dof;
-    double *share;
-    int64_t *source; /* count, index of what states it */
-    int64_t num_sources;
-    ritz_equation_source *from;
-    int64_t num_files;
-    char **file;   /* paths that sources are in */
-    char *refused; /* why there are no more of them; NULL: these are all */
-    int64_t room[6];
-} ritz_equations;
-
-/** Room for what ritz_equations_cite writes. */
-enum { RITZ_CITATION_SIZE = 200 };
-
-/** "RBE2 600 ('deck.bdf', line 12)"; returns @p text. */
-const char *ritz_equations_cite(const ritz_equations *equations, int64_t source,
-                                char text[static RITZ_CITATION_SIZE]);
-
-/** The equation that eliminates @p dof, -1 if none does. @cost O(count) */
-int64_t ritz_equations_find(const ritz_equations *equations, ritz_dof dof);
-
-void ritz_equations_free(ritz_equations *equations);
-
-/* All dofs in terms of those that stay. */
-typedef struct ritz_elimination {
-    ritz_dofs kept; /* n of all, ascending */
-    ritz_dofs gone; /* the others, ascending */
-    ritz_sparse G;  /* all x n; row kept.at[j] is that of the identity */
-} ritz_elimination;
-
-/**
- * Solve the equations for their dependent dofs. Dependents may depend on each
- * other, in chains or in circles.
- *
- * @param[in] dof    count distinct names; every dof of the equations is there
- * @param[in] fixed  count, u = 0 there: none of these may be dependent; NULL
- * @return RITZ_ERR_FORMAT if a dof is dependent twice, dependent and fixed, or
- *         not there; RITZ_ERR_SINGULAR if a circle leaves its dofs undetermined
- * @cost   O(count + entries of G), and the cube of the longest circle
- */
-ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
-                                 const ritz_dof *dof, const bool *fixed,
-                                 ritz_elimination *out);
-
-void ritz_elimination_free(ritz_elimination *elimination);
-
-/*
- * Dofs that are not among the coordinates of a model, but follow from them:
- * u(dof[k]) = G(k,:) u.
- */
-typedef struct ritz_recovery {
-    int64_t count;
-    ritz_dof *dof;
-    ritz_sparse G; /* count x n; {0} if count is 0 */
-} ritz_recovery;
-
-/** Whether these can be recovered from @p n dofs. @return RITZ_ERR_FORMAT */
-ritz_status ritz_recovery_check(const ritz_recovery *recovery, int64_t n,
-                                const ritz_dof *dof);
-
-ritz_status ritz_recovery_copy(const ritz_recovery *recovery,
-                               ritz_recovery *out);
-
-/**
- * The dofs of a model and behind them those recovered, and how all of them
- * move: [T; G T].
- *
- * @param[in]  T      n x r; NULL if @p shape is
- * @param[out] names  n + count
- * @param[out] shape  (n + count) x r; NULL: not wanted
- */
-ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
-                                 const ritz_dof *dof, const ritz_dense *T,
-                                 ritz_dof **names, ritz_dense *shape);
-
-void ritz_recovery_free(ritz_recovery *recovery);
 
 /*
  * A component: the finite-element model of one body,
@@ -408,17 +22,6 @@ void ritz_recovery_free(ritz_recovery *recovery);
  * axes of its displacement frame; positions, port origins and port axes are in
  * the component's basic frame.
  */
-
-/* Where the grids are. Scalar points are not listed. */
-typedef struct ritz_grids {
-    int64_t count;
-    int64_t *id;        /* count, ascending */
-    double *position;   /* count x 3, row by row, basic frame */
-    int64_t *frame;     /* count, row of `axes`; 0 is the basic frame */
-    int64_t num_frames; /* at least 1 once anything is there */
-    double *axes; /* num_frames x 3 x 3, row by row: axes[9 f + 3 i + j] is
-                     component j (basic) of displacement axis i; frame 0 is I */
-} ritz_grids;
 
 /* A named set of dofs by which other bodies hold this one. */
 typedef struct ritz_port {
@@ -467,7 +70,7 @@ typedef struct ritz_component {
  */
 ritz_status ritz_component_settle(ritz_component *component, bool symmetrise);
 
-/** Add the component's dampers to its D and K: see ritz_dampers_install. */
+/** Add its dampers to its D and K: see ritz_dampers_install. */
 ritz_status ritz_component_install(ritz_component *component);
 
 /**
@@ -479,12 +82,9 @@ ritz_status ritz_component_install(ritz_component *component);
 ritz_status ritz_component_attached(const ritz_component *component,
                                     const char *ports, ritz_dofs *out);
 
-/** Port called @p name; NULL and a sentence naming the nearest if none. */
+/** Port called @p name; NULL and a sentence with the nearest name if none. */
 const ritz_port *ritz_component_port(const ritz_component *component,
                                      const char *name);
-
-/** Index of grid @p id in @p grids, -1 if it has no position. O(log n) */
-int64_t ritz_grids_find(const ritz_grids *grids, int64_t id);
 
 /**
  * Displacements of a port's grids along basic axes, from the component's dofs.
@@ -515,121 +115,7 @@ ritz_status ritz_port_turn(const ritz_component *component,
 ritz_status ritz_rigid_geometry(const ritz_component *component,
                                 const double origin[static 3], ritz_dense *out);
 
-void ritz_grids_free(ritz_grids *grids);
 void ritz_component_free(ritz_component *component);
-
-/*
- * What a method is told beside how many vectors it makes: one table of words
- * that options (--shift-hz 0,5) and scenes (shift_hz: [0, 5]) share.
- */
-
-enum { RITZ_MOST_SHIFTS = 16 };
-
-/* What a method heeds of a request; the rest must be left alone. */
-enum {
-    RITZ_USES_MODES = 1,
-    RITZ_USES_ATTACHED = 2,
-    RITZ_USES_SHIFTS = 4,
-    RITZ_USES_LOADS = 8,
-    RITZ_USES_INNER = 16,
-    RITZ_USES_INTERFACE = 32,
-    RITZ_USES_GRAMIAN = 64,
-    RITZ_USES_OPERATOR = 128,
-    RITZ_USES_DAMPING = 256,
-    RITZ_USES_NEIGHBOUR = 512,
-    RITZ_USES_ENGINE = 1024,
-    RITZ_USES_AMONG = 2048,
-    RITZ_USES_BAND = 4096,
-    RITZ_USES_REMAINDER = 8192,
-    RITZ_USES_SIDES = 16384,
-    RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
-};
-
-/* Forces that vectors answer; what is read gives as many: H K^-1 F. */
-enum {
-    RITZ_LOADS_ATTACHED = 1, /* unit forces at the attached dofs */
-    RITZ_LOADS_INPUTS = 2,
-    RITZ_LOADS_OUTPUTS = 4, /* rows of C, Cv and Ca */
-    RITZ_LOADS_DAMPERS = 8, /* influence vectors of discrete dampers */
-};
-
-typedef enum ritz_inner {
-    RITZ_INNER_STIFFNESS, /* v' K v = 1, or K - sigma M with a shift */
-    RITZ_INNER_MASS,      /* v' M v = 1 */
-} ritz_inner;
-
-typedef enum ritz_gramian {
-    RITZ_GRAMIAN_INPUTS,  /* controllability */
-    RITZ_GRAMIAN_OUTPUTS, /* observability */
-} ritz_gramian;
-
-/* How Gramians are found: see gramians.h. */
-typedef enum ritz_engine {
-    RITZ_ENGINE_AUTO,
-    RITZ_ENGINE_DENSE,
-    RITZ_ENGINE_MODAL,
-    RITZ_ENGINE_LOW_RANK,
-} ritz_engine;
-
-typedef struct ritz_choice {
-    int given; /* RITZ_USES_... of the words that were given */
-    int64_t num_shifts;
-    double shift_hz[RITZ_MOST_SHIFTS]; /* expansion points, each once */
-    int loads;                         /* sum of RITZ_LOADS_... */
-    ritz_inner inner;
-    int64_t interface_modes; /* instead of all attached dofs */
-    ritz_gramian gramian;
-    bool inverse;         /* Lanczos on A^-1 instead of A */
-    ritz_damping damping; /* instead of the component's own */
-    ritz_engine engine;
-    double among_hz;   /* modal engine: modes up to here */
-    double band_hz[2]; /* where the response matters */
-    bool perturb;      /* the remainder answers statically, it is not dropped */
-    bool one_sided;    /* of second order: W = T, which keeps symmetry */
-} ritz_choice;
-
-/* What the value of a word is. */
-typedef enum ritz_choice_kind {
-    RITZ_CHOICE_SHIFTS,
-    RITZ_CHOICE_SET,   /* some of its words, as bits of an int */
-    RITZ_CHOICE_ENUM,  /* one of its words, as an int */
-    RITZ_CHOICE_FLAG,  /* the first of two words is false */
-    RITZ_CHOICE_COUNT, /* int64_t, 1 or more */
-    RITZ_CHOICE_HERTZ, /* above 0 */
-    RITZ_CHOICE_BAND,
-    RITZ_CHOICE_DAMPING,
-} ritz_choice_kind;
-
-/* A word, and what it sets. */
-typedef struct ritz_choice_word {
-    const char *key;      /* "shift_hz" in scenes, --shift-hz as option */
-    const char *argument; /* of the option: "F[,F]" */
-    const char *help;
-    int uses; /* bit of a method that heeds it */
-    ritz_choice_kind kind;
-    size_t offset;           /* of the field in ritz_choice */
-    const char *what;        /* what sentences call a value */
-    const char (*value)[16]; /* words that it can be */
-    int64_t num_values;
-} ritz_choice_word;
-
-/* All words, ended by one without a key. */
-extern const ritz_choice_word ritz_choice_words[];
-
-/**
- * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
- * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
- * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
- * "dense", "modal" or "low-rank" for engine, "50" for among_hz, "0,10" for
- * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
- *
- * @return RITZ_ERR_ARGUMENT with what is wrong
- */
-ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
-                             ritz_choice *choice);
-
-/** Words that were given, as "shift-hz 0,5 inner mass"; cut to fit. */
-void ritz_choice_print(const ritz_choice *choice, int64_t size, char *out);
 
 /*
  * A basis: the subspace in which a component is reduced, u = T q or, of states,
@@ -753,8 +239,7 @@ typedef struct ritz_inertia {
 } ritz_inertia;
 
 /*
- * What the inertia of the body in a moving frame needs beyond M_r, in terms of
- * no code in particular. R (n x 6) holds unit rigid motions about the basic
+ * Inertia of the body in a moving frame, beyond M_r. R (n x 6) holds unit rigid motions about the basic
  * origin; T_b (g x r) the translations of the g grids along basic axis b; X_b
  * (g) their positions; m (g x g) is the nodal mass, a third of the trace of
  * each 3 x 3 block of M that joins translations.
@@ -773,10 +258,7 @@ typedef struct ritz_invariants {
 /* Nine r x r matrices: of more columns than this they are not kept. */
 enum { RITZ_INVARIANT_COLUMNS = 400 };
 
-/*
- * Columns so ordered that the first of them are a model too, and what is known
- * of such prefixes: see nested.h.
- */
+/* Columns so ordered that the first of them are a model too: see below. */
 typedef struct ritz_nested {
     int64_t smallest; /* columns of the smallest prefix; 0: it is not nested */
     int64_t count;    /* orders of which something is known */
@@ -833,7 +315,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
 /** Add its dampers to its D and K: see ritz_dampers_install. */
 ritz_status ritz_reduced_install(ritz_reduced *reduced);
 
-/** Port called @p name; NULL and a sentence if there is none. */
+/** As ritz_component_port. */
 const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
                                        const char *name);
 
@@ -850,7 +332,7 @@ ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out);
 ritz_status ritz_invariants_of(const ritz_component *component,
                                const ritz_dense *T, ritz_invariants *out);
 
-/** Those of T V, with V r x s; none of none. */
+/** Invariants of T V, with V r x s; none of none. */
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out);
 
@@ -875,25 +357,19 @@ void ritz_port_map_free(ritz_port_map *port);
 void ritz_reduced_free(ritz_reduced *reduced);
 
 /*
- * Nested reduced components: columns in an order in which the first of them,
- * if they are not fewer than some, are a reduced component too. How many are
- * used is then a matter of use, and no new reduction.
- *
- * A prefix is Galerkin's model in the subspace of its columns: its matrices are
- * the leading blocks, so it is as stable as the whole, and its frequencies lie
+ * Nested reduced components: the first columns, from `smallest` on, are a
+ * reduced component too, so that fewer are used without a new reduction. Such a
+ * prefix is Galerkin's model in the subspace of its columns: its matrices are
+ * the leading blocks, it is as stable as the whole, and its frequencies lie
  * above those of the whole.
  */
 
 /**
- * The columns in another order, and with them all that has columns: matrices,
- * dampers, ports, inputs and outputs, invariants, T.
+ * Columns order_of_columns[0], [1], ..., from 0 and distinct, and all that has
+ * columns: matrices, dampers, ports, inputs and outputs, invariants, T. Errors
+ * stay known if all columns are there; they are not true of some.
  *
- * If all columns are there, what is known of the errors stays as it is; if some
- * are left out, none of that is true of the result, and it is left out too.
- *
- * @param[in] order_of_columns  count of them, from 0 and distinct: the one that
- *                              becomes first, ...
- * @param[in] smallest          1 .. count: no prefix shorter than that
+ * @param[in] smallest  1 .. count: no prefix is shorter
  * @return RITZ_ERR_ARGUMENT if a column is not there, or there twice
  */
 ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
@@ -901,18 +377,16 @@ ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
                               ritz_reduced *out);
 
 /**
- * Its first columns alone. Of its errors what was noted of that order when it
- * was made becomes known: names that end in "-bound" as estimates, others as
- * errors. Errors of more columns are none of fewer.
+ * Its first @p order columns alone, a copy if these are all. Errors that were
+ * noted of that order become known: names that end in "-bound" as estimates.
  *
- * @param[in] order  smallest .. columns; of all columns it is a copy
  * @return RITZ_ERR_ARGUMENT if it is not nested or has no such prefix
  */
 ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
                                 ritz_reduced *out);
 
 /**
- * Note what a measure of a prefix came to; a second value replaces the first.
+ * Note the value of a measure of a prefix; a second value replaces the first.
  *
  * @return RITZ_ERR_ARGUMENT as above, or if the name cannot be one
  */
@@ -1003,46 +477,6 @@ typedef struct ritz_modal {
     ritz_dense C, Cv; /* outputs x m, divided by limits; acceleration outputs
                           are folded into both, their feedthrough left out */
 } ritz_modal;
-
-/**
- * Modal model of symmetric dense matrices or of a configuration in modal form.
- *
- * @param[in] damping  ratio of each mode, added to what D says on the diagonal
- * @return RITZ_ERR_ARGUMENT if a flexible mode has no damping
- */
-ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
-                           const ritz_dense *D, const ritz_io *io,
-                           const ritz_damping *damping, ritz_modal *out);
-
-/**
- * Exact controllability and observability Gramians of the modal model in the
- * states (q_1, q_1', q_2, ...), 2m x 2m, closed form, O(m^2). Those of a band,
- *
- *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
- *
- * and W_o likewise, are semidefinite, rounding apart, and from 0 to infinity
- * those of all frequencies.
- *
- * @param[in] band_hz  from and to, HUGE_VAL is infinity; NULL: all frequencies
- * @return RITZ_ERR_ARGUMENT if it is no band, or a mode has no damping
- */
-ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
-                                ritz_dense *Wc, ritz_dense *Wo);
-
-/**
- * Factors of both, W_c = Z_c Z_c' and W_o = Z_o Z_o', in the same states and of
- * as many columns as there is rank.
- *
- * @return RITZ_ERR_CONVERGENCE if one is indefinite beyond rounding
- */
-ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
-                               ritz_dense *Zc, ritz_dense *Zo);
-
-/** Exact Hankel singular values, 2m, descending. @cost O(m^3) */
-ritz_status ritz_modal_hankel(const ritz_modal *modal, const double *band_hz,
-                              double *sigma);
-
-void ritz_modal_free(ritz_modal *modal);
 
 /*
  * A linear model in first-order form:

@@ -12,6 +12,7 @@
 #include <ritz/import.h>
 #include <ritz/matrix.h>
 #include <ritz/model.h>
+#include <ritz/parts.h>
 #include <ritz/poles.h>
 #include <ritz/ranking.h>
 #include <ritz/response.h>

@@ -6,7 +6,7 @@
 #ifndef RITZ_SCENE_H
 #define RITZ_SCENE_H
 
-#include <ritz/base.h>
+#include <ritz/basis.h>
 #include <ritz/container.h>
 #include <ritz/model.h>
 

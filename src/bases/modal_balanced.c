@@ -14,6 +14,7 @@
 #include "base/alloc.h"
 #include "bases/balancing.h"
 #include "bases/columns.h"
+#include "gramians/modal.h"
 
 #include <ritz/matrix.h>
 

@@ -1,5 +1,6 @@
 /* Gramians of a component by the requested engine, or by one that fits. */
 #include "base/alloc.h"
+#include "gramians/modal.h"
 #include "gramians/modes.h"
 
 #include <ritz/matrix.h>

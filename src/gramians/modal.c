@@ -9,6 +9,7 @@
  *
  * and the feedthrough Ca b u is left out: it is the same whatever is kept.
  */
+#include "gramians/modal.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"

@@ -21,6 +21,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "gramians/modal.h"
 #include "gramians/modes.h"
 #include "linear/general.h"
 

@@ -5,6 +5,8 @@
 #ifndef RITZ_IMPORT_IMPORT_H
 #define RITZ_IMPORT_IMPORT_H
 
+#include "model/equations.h"
+
 #include <ritz/import.h>
 #include <ritz/model.h>
 

@@ -1,6 +1,7 @@
 /* Ports, inputs, outputs and dampers: texts that name dofs of a component. */
 #include "base/alloc.h"
 #include "import/import.h"
+#include "model/equations.h"
 
 #include <inttypes.h>
 #include <math.h>

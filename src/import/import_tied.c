@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "import/import.h"
+#include "model/equations.h"
 #include "model/ties.h"
 
 #include <lapacke.h>

@@ -10,6 +10,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "import/import.h"
+#include "model/equations.h"
 
 #include <stdlib.h>
 #include <string.h>

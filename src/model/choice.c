@@ -2,7 +2,7 @@
  * The words of a choice, by kind: one table says what each is, and one function
  * for each kind reads and prints it.
  */
-#include <ritz/model.h>
+#include <ritz/basis.h>
 
 #include "base/names.h"
 

@@ -7,6 +7,7 @@
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
 #include "base/alloc.h"
+#include "gramians/modal.h"
 #include "ranking/costs.h"
 
 #include <math.h>

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "gramians/modal.h"
 
 #include <ritz/ranking.h>
 

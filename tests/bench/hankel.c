@@ -9,6 +9,7 @@
  * with. What takes less than a second is the median of five.
  */
 #include "base/alloc.h"
+#include "gramians/modal.h"
 #include "linear/general.h"
 
 #include <ritz/model.h>

@@ -1,4 +1,5 @@
 /* Constraint elements of bulk data as equations. */
+#include "model/equations.h"
 #include "testing.h"
 
 #include "solvers.h"

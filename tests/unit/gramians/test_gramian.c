@@ -1,5 +1,6 @@
 #include "testing.h"
 
+#include "gramians/modal.h"
 #include "linear/general.h"
 
 #include <ritz/model.h>

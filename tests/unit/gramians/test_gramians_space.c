@@ -5,6 +5,7 @@
 #include "masses.h"
 #include "spaces.h"
 
+#include "gramians/modal.h"
 #include "linear/general.h"
 
 #include <ritz/basis.h>

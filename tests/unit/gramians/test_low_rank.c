@@ -1,5 +1,6 @@
 #include "testing.h"
 
+#include "gramians/modal.h"
 #include "gramians/modes.h"
 #include "mass_row.h"
 #include "masses.h"

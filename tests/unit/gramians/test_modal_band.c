@@ -1,3 +1,4 @@
+#include "gramians/modal.h"
 #include "testing.h"
 
 #include <ritz/model.h>

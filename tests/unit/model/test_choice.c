@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include <ritz/model.h>
+#include <ritz/basis.h>
 
 #include <string.h>
 

@@ -1,6 +1,7 @@
 #include "testing.h"
 
 #include "frame.h"
+#include "gramians/modal.h"
 
 #include <ritz/matrix.h>
 #include <ritz/ranking.h>
