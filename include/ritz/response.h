@@ -240,13 +240,6 @@ ritz_status ritz_singular_peak(const ritz_response *response,
  * wrong order: G (I + F G)^-1 F is meant.)
  */
 
-/* What goes in and comes out of a model, by name; borrowed. */
-typedef struct ritz_ends {
-    int64_t num_inputs, num_outputs;
-    const char (*input)[RITZ_NAME_SIZE];
-    const char (*output)[RITZ_NAME_SIZE];
-} ritz_ends;
-
 /* Which signal of the plant is connected to which of the controller. */
 typedef struct ritz_loop {
     int64_t num_measured; /* inputs of the controller */
@@ -264,7 +257,7 @@ typedef struct ritz_loop {
  *                  controller, or one of the controller into the plant
  * @return RITZ_ERR_ARGUMENT naming what is not joined, or twice
  */
-ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
+ritz_status ritz_loop_match(const ritz_io *plant, const ritz_io *controller,
                             int64_t num_pairs, const char *const *pair,
                             ritz_loop *out);
 
@@ -273,8 +266,8 @@ ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
  *
  * @return RITZ_ERR_ARGUMENT naming what does not
  */
-ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
-                            const ritz_ends *controller);
+ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_io *plant,
+                            const ritz_io *controller);
 
 /**
  * The closed loop as one model, from the plant's inputs to its outputs; states

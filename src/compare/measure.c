@@ -50,8 +50,8 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
 
     RITZ_CHECK(find_poles(scene, first, &p));
     RITZ_CHECK(find_poles(scene, second, &p2));
-    RITZ_CHECK(ritz_response_new(&grid, &p, "modal", &scene->damping, one));
-    RITZ_CHECK(ritz_response_new(&grid, &p, "modal", &scene->damping, two));
+    RITZ_CHECK(ritz_response_new(&grid, &p, one));
+    RITZ_CHECK(ritz_response_new(&grid, &p, two));
     for (int64_t k = 0; k < one->count; k++) {
         RITZ_CHECK(ritz_poles_add(&p, one->hertz[k], one->H + k * size));
         RITZ_CHECK(ritz_poles_add(&p2, one->hertz[k], two->H + k * size));

@@ -104,7 +104,6 @@ ritz_status ritz_grid_check(const ritz_grid *grid);
 
 /** Response of zeros at the points of a grid, for these modes. */
 ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
-                              const char *method, const ritz_damping *damping,
                               ritz_response *out);
 
 /**

@@ -42,43 +42,35 @@ static ritz_status evaluate_mesh(ritz_mesh *mesh, double hertz)
 
 static ritz_status reserve_mesh(ritz_mesh *mesh, int64_t room)
 {
-    ritz_status status = RITZ_OK;
-    double *hertz = NULL;
-    double _Complex *H = NULL;
-    bool *open = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
+    RITZ_OWN_ARRAY double _Complex *H = NULL;
+    RITZ_OWN_ARRAY bool *open = NULL;
     size_t count = (size_t)mesh->count;
 
     if (room <= mesh->room)
         return RITZ_OK;
     room += room / 2;
-    RITZ_FAIL_IF(room > most_values / (mesh->values > 0 ? mesh->values : 1),
-                 RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " points do not keep the tolerance: ask for less, "
-                 "or for a shorter range",
-                 mesh->count);
-    RITZ_NEW(hertz, room);
-    RITZ_NEW(H, room * mesh->values);
-    RITZ_NEW(open, room);
+    RITZ_REFUSE_IF(room > most_values / (mesh->values > 0 ? mesh->values : 1),
+                   RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " points do not keep the tolerance: ask for "
+                   "less, or for a shorter range",
+                   mesh->count);
+    RITZ_CHECK_NEW(hertz, room);
+    RITZ_CHECK_NEW(H, room * mesh->values);
+    RITZ_CHECK_NEW(open, room);
     if (count > 0) {
         memcpy(hertz, mesh->hertz, count * sizeof *hertz);
         memcpy(H, mesh->H, count * (size_t)mesh->values * sizeof *H);
         memcpy(open, mesh->open, count * sizeof *open);
     }
-    free(mesh->hertz);
-    free(mesh->H);
-    free(mesh->open);
-    mesh->hertz = hertz;
-    mesh->H = H;
-    mesh->open = open;
+    ritz_array_free(&mesh->hertz);
+    ritz_array_free(&mesh->H);
+    ritz_array_free(&mesh->open);
+    RITZ_MOVE(mesh->hertz, hertz);
+    RITZ_MOVE(mesh->H, H);
+    RITZ_MOVE(mesh->open, open);
     mesh->room = room;
-    hertz = NULL;
-    H = NULL;
-    open = NULL;
-done:
-    free(hertz);
-    free(H);
-    free(open);
-    return status;
+    return RITZ_OK;
 }
 
 static void set_point(ritz_mesh *mesh, int64_t to, double hertz, bool open,
@@ -108,7 +100,7 @@ static void remove_duplicates(ritz_mesh *mesh)
     mesh->count = kept;
 }
 
-static void free_mesh(ritz_mesh *mesh)
+static void ritz_mesh_free(ritz_mesh *mesh)
 {
     free(mesh->hertz);
     free(mesh->H);
@@ -118,37 +110,29 @@ static void free_mesh(ritz_mesh *mesh)
     free(mesh->scale);
     free(mesh->row);
     free(mesh->between);
-    *mesh = (ritz_mesh){0};
 }
 
 /* A mesh of given points, which ascend; every interval is still open. */
-static ritz_status new_mesh(ritz_responder *responder, int64_t count,
-                            const double *hertz, ritz_mesh *out)
+static ritz_status fill_mesh(ritz_responder *responder, int64_t count,
+                             const double *hertz, ritz_mesh *mesh)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &responder->poles->io;
-    ritz_mesh mesh = {.responder = responder,
-                      .values = io->num_outputs * io->num_inputs};
 
-    RITZ_NEW(mesh.peak, mesh.values);
-    RITZ_NEW(mesh.level, mesh.values);
-    RITZ_NEW(mesh.scale, mesh.values);
-    RITZ_NEW(mesh.row, mesh.values);
-    RITZ_NEW(mesh.between, mesh.values);
-    RITZ_TRY(reserve_mesh(&mesh, count));
+    mesh->responder = responder;
+    mesh->values = io->num_outputs * io->num_inputs;
+    RITZ_CHECK_NEW(mesh->peak, mesh->values);
+    RITZ_CHECK_NEW(mesh->level, mesh->values);
+    RITZ_CHECK_NEW(mesh->scale, mesh->values);
+    RITZ_CHECK_NEW(mesh->row, mesh->values);
+    RITZ_CHECK_NEW(mesh->between, mesh->values);
+    RITZ_CHECK(reserve_mesh(mesh, count));
     for (int64_t k = 0; k < count; k++) {
-        RITZ_TRY(evaluate_mesh(&mesh, hertz[k]));
-        mesh.hertz[k] = hertz[k];
-        mesh.open[k] = true;
-        memcpy(mesh.H + k * mesh.values, mesh.row,
-               (size_t)mesh.values * sizeof *mesh.row);
+        RITZ_CHECK(evaluate_mesh(mesh, hertz[k]));
+        set_point(mesh, k, hertz[k], true, mesh->row);
     }
-    mesh.count = count;
-    remove_duplicates(&mesh);
-    RITZ_MOVE(*out, mesh);
-done:
-    free_mesh(&mesh);
-    return status;
+    mesh->count = count;
+    remove_duplicates(mesh);
+    return RITZ_OK;
 }
 
 /*
@@ -186,37 +170,37 @@ static ritz_status insert_points(ritz_mesh *mesh, int64_t count,
 
 enum { PARTS = 8, MOST_STEPS = 5 };
 
-/* Points that were found, in the order of channels. */
+/* Points that were found, ascending. */
 typedef struct finds {
-    int64_t count, room, values;
+    int64_t count, room, H_room;
     double *hertz;
-    double _Complex *H;
+    double _Complex *H; /* count x values */
 } finds;
 
-static ritz_status keep_found(finds *f, double hertz, const double _Complex *H)
+static void finds_free(finds *f)
 {
-    ritz_status status = RITZ_OK;
-    finds more = {
-        .count = f->count, .room = 2 * f->room + 16, .values = f->values};
+    free(f->hertz);
+    free(f->H);
+}
 
-    if (f->count == f->room) {
-        RITZ_NEW(more.hertz, more.room);
-        RITZ_NEW(more.H, more.room * more.values);
-        if (f->count > 0) {
-            memcpy(more.hertz, f->hertz, (size_t)f->count * sizeof *f->hertz);
-            memcpy(more.H, f->H, (size_t)(f->count * f->values) * sizeof *f->H);
-        }
-        free(f->hertz);
-        free(f->H);
-        RITZ_MOVE(*f, more);
+/* Behind those of the same frequency. */
+static ritz_status keep_found(finds *f, double hertz, int64_t values,
+                              const double _Complex *H)
+{
+    int64_t at = f->count;
+
+    RITZ_CHECK_ROOM(f->hertz, f->count, f->room);
+    while (f->H_room < (f->count + 1) * values)
+        RITZ_CHECK_ROOM(f->H, f->H_room, f->H_room);
+    for (; at > 0 && f->hertz[at - 1] > hertz; at--) {
+        f->hertz[at] = f->hertz[at - 1];
+        memcpy(f->H + at * values, f->H + (at - 1) * values,
+               (size_t)values * sizeof *H);
     }
-    f->hertz[f->count] = hertz;
-    memcpy(f->H + f->count * f->values, H, (size_t)f->values * sizeof *H);
+    f->hertz[at] = hertz;
+    memcpy(f->H + at * values, H, (size_t)values * sizeof *H);
     f->count++;
-done:
-    free(more.hertz);
-    free(more.H);
-    return status;
+    return RITZ_OK;
 }
 
 /* Interpolation of a response between its points: see ritz_response_at. */
@@ -297,7 +281,7 @@ static ritz_status pursue_zero(ritz_mesh *mesh, int64_t v, double low,
     if (!still)
         RITZ_CHECK(evaluate_mesh(mesh, w));
     if (fabs(cimag(z)) <= high - low)
-        RITZ_CHECK(keep_found(f, w, mesh->row));
+        RITZ_CHECK(keep_found(f, w, mesh->values, mesh->row));
     return RITZ_OK;
 }
 
@@ -330,46 +314,6 @@ static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, finds *f)
     return RITZ_OK;
 }
 
-typedef struct point_within {
-    double hertz;
-    int64_t at;
-} point_within;
-
-static int compare_hertz(const void *left, const void *right)
-{
-    const point_within *a = left;
-    const point_within *b = right;
-
-    return (a->hertz > b->hertz) - (a->hertz < b->hertz);
-}
-
-/* Insert what was found into the mesh, in ascending order. */
-static ritz_status merge_found(ritz_mesh *mesh, const finds *f)
-{
-    ritz_status status = RITZ_OK;
-    point_within *order = NULL;
-    double *hertz = NULL;
-    double _Complex *H = NULL;
-
-    RITZ_NEW(order, f->count);
-    RITZ_NEW(hertz, f->count);
-    RITZ_NEW(H, f->count * f->values);
-    for (int64_t k = 0; k < f->count; k++)
-        order[k] = (point_within){f->hertz[k], k};
-    qsort(order, (size_t)f->count, sizeof *order, compare_hertz);
-    for (int64_t k = 0; k < f->count; k++) {
-        hertz[k] = order[k].hertz;
-        memcpy(H + k * f->values, f->H + order[k].at * f->values,
-               (size_t)f->values * sizeof *H);
-    }
-    RITZ_TRY(insert_points(mesh, f->count, hertz, H));
-done:
-    free(order);
-    free(hertz);
-    free(H);
-    return status;
-}
-
 /*
  * Add the points where a channel has a zero near the axis: the search begins
  * where the cubics dip and iterates w := Re(w - H / H'), each step costing one
@@ -377,17 +321,12 @@ done:
  */
 static ritz_status add_dips(ritz_mesh *mesh)
 {
-    ritz_status status = RITZ_OK;
-    finds f = {.values = mesh->values};
+    RITZ_OWN(finds) f = {0};
 
     for (int64_t v = 0; v < mesh->values; v++)
         if (mesh->peak[v] > RITZ_CHANNEL_HEARD * mesh->scale[v])
-            RITZ_TRY(find_channel_dips(mesh, v, &f));
-    RITZ_TRY(merge_found(mesh, &f));
-done:
-    free(f.hertz);
-    free(f.H);
-    return status;
+            RITZ_CHECK(find_channel_dips(mesh, v, &f));
+    return insert_points(mesh, f.count, f.hertz, f.H);
 }
 
 /* out = sum of weighted rows. */
@@ -465,16 +404,15 @@ static ritz_status begin_mesh(const ritz_responder *responder,
                               const ritz_grid *grid, int64_t *count,
                               double **out)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = 0, num_modes = 0;
-    double _Complex *s = NULL;
-    double *omega = NULL, *zeta = NULL;
+    RITZ_OWN_ARRAY double _Complex *s = NULL;
+    RITZ_OWN_ARRAY double *omega = NULL, *zeta = NULL;
     ritz_grid wide = *grid;
 
     wide.refine = true;
-    RITZ_TRY(ritz_responder_poles(responder, &n, &s));
-    RITZ_NEW(omega, n);
-    RITZ_NEW(zeta, n);
+    RITZ_CHECK(ritz_responder_poles(responder, &n, &s));
+    RITZ_CHECK_NEW(omega, n);
+    RITZ_CHECK_NEW(zeta, n);
     for (int64_t k = 0; k < n; k++) {
         double size = cabs(s[k]);
 
@@ -483,12 +421,7 @@ static ritz_status begin_mesh(const ritz_responder *responder,
         omega[num_modes] = size;
         zeta[num_modes++] = fmax(-creal(s[k]) / size, RITZ_LEAST_RATIO);
     }
-    RITZ_TRY(ritz_grid_points(&wide, num_modes, omega, zeta, count, out));
-done:
-    free(s);
-    free(omega);
-    free(zeta);
-    return status;
+    return ritz_grid_points(&wide, num_modes, omega, zeta, count, out);
 }
 
 /* Whether the cubics of interval k agree with H in mesh->row. */
@@ -542,32 +475,28 @@ static ritz_status test_interval(ritz_mesh *mesh, int64_t k, double allowed,
  */
 static ritz_status halve_open(ritz_mesh *mesh, double allowed, int64_t *added)
 {
-    ritz_status status = RITZ_OK;
-    double *hertz = NULL;
-    double _Complex *H = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
+    RITZ_OWN_ARRAY double _Complex *H = NULL;
     int64_t last = mesh->count - 1, num_open = 0, n = 0;
 
     for (int64_t k = 0; k < last; k++)
         num_open += mesh->open[k];
-    RITZ_NEW(hertz, num_open);
-    RITZ_NEW(H, num_open * mesh->values);
+    RITZ_CHECK_NEW(hertz, num_open);
+    RITZ_CHECK_NEW(H, num_open * mesh->values);
     for (int64_t k = 0; k < last; k++) {
         bool needed = false;
 
         if (!mesh->open[k])
             continue;
-        RITZ_TRY(test_interval(mesh, k, allowed, &hertz[n],
-                               H + n * mesh->values, &needed));
+        RITZ_CHECK(test_interval(mesh, k, allowed, &hertz[n],
+                                 H + n * mesh->values, &needed));
         mesh->open[k] = needed;
         n += needed;
         ritz_monitor_step("points", mesh->count + n, 0);
     }
-    RITZ_TRY(insert_points(mesh, n, hertz, H));
+    RITZ_CHECK(insert_points(mesh, n, hertz, H));
     *added = n;
-done:
-    free(hertz);
-    free(H);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -582,16 +511,13 @@ static ritz_status build_response(ritz_mesh *mesh, const ritz_grid *grid,
         .from_hz = grid->from_hz, .to_hz = grid->to_hz, .count = 2};
     ritz_response r = {0};
 
-    RITZ_CHECK(ritz_response_new(&ends, responder->poles,
-                                 responder->engine->name, NULL, &r));
+    RITZ_CHECK(ritz_response_new(&ends, responder->poles, &r));
+    ritz_responder_sign(responder, &r);
     free(r.hertz);
     free(r.H);
     r.count = mesh->count;
-    r.hertz = mesh->hertz;
-    r.H = mesh->H;
-    mesh->hertz = NULL;
-    mesh->H = NULL;
-    memcpy(r.damping, responder->damping, sizeof r.damping);
+    RITZ_MOVE(r.hertz, mesh->hertz);
+    RITZ_MOVE(r.H, mesh->H);
     (void)snprintf(r.interpolation, sizeof r.interpolation, "cubic");
     r.tolerance = tolerance;
     *out = r;
@@ -602,28 +528,23 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
                                   const ritz_grid *grid, double tolerance,
                                   ritz_response *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_io *io = &responder->poles->io;
-    double *hertz = NULL;
+    RITZ_OWN_ARRAY double *hertz = NULL;
     int64_t count = 0, added = 1;
-    ritz_mesh mesh = {0};
+    RITZ_OWN(ritz_mesh) mesh = {0};
 
-    RITZ_FAIL_IF(!(tolerance > 0.0) || !(tolerance < 1.0), RITZ_ERR_ARGUMENT,
-                 "a tolerance of %g is not between 0 and 1", tolerance);
-    RITZ_FAIL_IF(grid->hertz, RITZ_ERR_ARGUMENT,
-                 "points that are given cannot be chosen by a tolerance");
-    RITZ_TRY(begin_mesh(responder, grid, &count, &hertz));
-    RITZ_TRY(new_mesh(responder, count, hertz, &mesh));
+    RITZ_REFUSE_IF(!(tolerance > 0.0) || !(tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                   "a tolerance of %g is not between 0 and 1", tolerance);
+    RITZ_REFUSE_IF(grid->hertz, RITZ_ERR_ARGUMENT,
+                   "points that are given cannot be chosen by a tolerance");
+    RITZ_CHECK(begin_mesh(responder, grid, &count, &hertz));
+    RITZ_CHECK(fill_mesh(responder, count, hertz, &mesh));
     for (int round = 0; round < MOST_ROUNDS && added > 0; round++) {
         ritz_noise_scales(io->num_outputs, io->num_inputs,
                           RITZ_SAMPLED_MARGIN * tolerance, mesh.peak,
                           mesh.level, mesh.scale);
-        RITZ_TRY(halve_open(&mesh, RITZ_SAMPLED_MARGIN * tolerance, &added));
+        RITZ_CHECK(halve_open(&mesh, RITZ_SAMPLED_MARGIN * tolerance, &added));
     }
-    RITZ_TRY(add_dips(&mesh));
-    RITZ_TRY(build_response(&mesh, grid, tolerance, out));
-done:
-    free(hertz);
-    free_mesh(&mesh);
-    return status;
+    RITZ_CHECK(add_dips(&mesh));
+    return build_response(&mesh, grid, tolerance, out);
 }

@@ -23,15 +23,10 @@ typedef struct signals {
     ritz_dense e, v;
 } signals;
 
-/* A(:, at) */
-static ritz_status copy_columns(const ritz_dense *A, int64_t count,
-                                const int64_t *at, ritz_dense *out)
+static void signals_free(signals *s)
 {
-    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
-    for (int64_t j = 0; j < count && A->nrow > 0; j++)
-        memcpy(ritz_dense_col(out, j), ritz_dense_col(A, at[j]),
-               (size_t)A->nrow * sizeof *out->val);
-    return RITZ_OK;
+    ritz_dense_free(&s->e);
+    ritz_dense_free(&s->v);
 }
 
 /* to(row.., col..) += factor A */
@@ -59,22 +54,20 @@ static ritz_status add_product(double factor, const ritz_dense *A,
 static ritz_status multiply_q(double sign, const ritz_dense *D_yu,
                               const ritz_dense *D_c, ritz_dense *e)
 {
+    RITZ_OWN(ritz_dense) inverse = {0};
     ritz_status status = RITZ_OK;
-    ritz_dense circle = {0};
 
-    RITZ_TRY(ritz_dense_mul(D_yu, D_c, &circle));
-    for (int64_t j = 0; j < circle.ncol; j++)
-        for (int64_t i = 0; i < circle.nrow; i++)
-            ritz_dense_col(&circle, j)[i] =
-                (i == j ? 1.0 : 0.0) - sign * ritz_dense_col(&circle, j)[i];
     if (ritz_dense_max(D_yu) == 0.0 || ritz_dense_max(D_c) == 0.0)
-        goto done; /* Q = I */
-    status = ritz_general_solve(&circle, false, e);
-    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                 "what passes through plant and controller at once makes a "
-                 "circle without an answer: I + D_c D is singular");
-done:
-    ritz_dense_free(&circle);
+        return RITZ_OK; /* Q = I */
+    RITZ_CHECK(ritz_dense_mul(D_yu, D_c, &inverse));
+    for (int64_t j = 0; j < inverse.ncol; j++)
+        for (int64_t i = 0; i < inverse.nrow; i++)
+            ritz_dense_col(&inverse, j)[i] =
+                (i == j ? 1.0 : 0.0) - sign * ritz_dense_col(&inverse, j)[i];
+    status = ritz_general_solve(&inverse, false, e);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "the feedthroughs of plant and controller form a loop that "
+                   "has no solution: I + D_c D is singular");
     return status;
 }
 
@@ -90,7 +83,7 @@ static ritz_status find_signals(const ritz_state_space *p,
         ritz_dense_rows(&p->C, loop->num_measured, loop->measured, &C_y));
     RITZ_CHECK(
         ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
-    RITZ_CHECK(copy_columns(&D_y, loop->num_driven, loop->driven, &D_yu));
+    RITZ_CHECK(ritz_dense_pick(&D_y, loop->num_driven, loop->driven, &D_yu));
     RITZ_CHECK(ritz_dense_mul(&D_yu, &c->C, &DC));
     RITZ_CHECK(ritz_dense_new(loop->num_measured, width, &out->e));
     add_block(1.0, &C_y, 0, 0, &out->e);
@@ -112,8 +105,8 @@ static ritz_status fill_first_order(const ritz_state_space *p,
     int64_t n = p->A.nrow, m = c->A.nrow;
     RITZ_OWN(ritz_dense) B_u = {0}, D_u = {0};
 
-    RITZ_CHECK(copy_columns(&p->B, loop->num_driven, loop->driven, &B_u));
-    RITZ_CHECK(copy_columns(&p->D, loop->num_driven, loop->driven, &D_u));
+    RITZ_CHECK(ritz_dense_pick(&p->B, loop->num_driven, loop->driven, &B_u));
+    RITZ_CHECK(ritz_dense_pick(&p->D, loop->num_driven, loop->driven, &D_u));
     RITZ_CHECK(ritz_dense_new(n + m, n + m + p->num_inputs, rates));
     RITZ_CHECK(ritz_dense_new(p->num_outputs, n + m + p->num_inputs, seen));
     add_block(1.0, &p->A, 0, 0, rates);
@@ -153,15 +146,9 @@ static ritz_status name_signals(const ritz_state_space *p,
 
     out->num_inputs = p->num_inputs;
     out->num_outputs = p->num_outputs;
-    RITZ_CHECK_NEW(out->input, p->num_inputs);
-    RITZ_CHECK_NEW(out->output, p->num_outputs);
-    RITZ_CHECK_NEW(out->limit, p->num_outputs);
-    if (p->num_inputs > 0)
-        memcpy(out->input, p->input, (size_t)p->num_inputs * RITZ_NAME_SIZE);
-    for (int64_t k = 0; k < p->num_outputs; k++) {
-        memcpy(out->output[k], p->output[k], RITZ_NAME_SIZE);
-        out->limit[k] = p->limit[k];
-    }
+    RITZ_CHECK_COPY(out->input, p->input, p->num_inputs);
+    RITZ_CHECK_COPY(out->output, p->output, p->num_outputs);
+    RITZ_CHECK_COPY(out->limit, p->limit, p->num_outputs);
     RITZ_CHECK(ritz_columns_new(n + m, &out->columns));
     for (int64_t k = 0; k < n + m; k++)
         out->columns.kind[k] =
@@ -175,30 +162,23 @@ ritz_status ritz_closed_loop(const ritz_state_space *plant,
                              const ritz_state_space *controller,
                              const ritz_loop *loop, ritz_state_space *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_state_space made = {0};
-    ritz_dense rates = {0}, seen = {0};
-    signals s = {0};
+    RITZ_OWN(ritz_state_space) made = {0};
+    RITZ_OWN(ritz_dense) rates = {0}, seen = {0};
+    RITZ_OWN(signals) s = {0};
+    const ritz_io plant_io = ritz_model_io(ritz_model_of_states(plant));
+    const ritz_io controller_io =
+        ritz_model_io(ritz_model_of_states(controller));
     int64_t states = plant->A.nrow + controller->A.nrow;
 
-    RITZ_TRY(ritz_loop_check(
-        loop, &(ritz_ends){plant->num_inputs, plant->num_outputs, NULL, NULL},
-        &(ritz_ends){controller->num_inputs, controller->num_outputs, NULL,
-                     NULL}));
-    RITZ_TRY(find_signals(plant, controller, loop, &s));
-    RITZ_TRY(fill_first_order(plant, controller, loop, &s, &rates, &seen));
-    RITZ_TRY(name_signals(plant, controller, &made));
-    RITZ_TRY(ritz_dense_columns(&rates, 0, states, &made.A));
-    RITZ_TRY(ritz_dense_columns(&rates, states, plant->num_inputs, &made.B));
-    RITZ_TRY(ritz_dense_columns(&seen, 0, states, &made.C));
-    RITZ_TRY(ritz_dense_columns(&seen, states, plant->num_inputs, &made.D));
-    RITZ_TRY(join_masses(plant, controller, &made.E));
+    RITZ_CHECK(ritz_loop_check(loop, &plant_io, &controller_io));
+    RITZ_CHECK(find_signals(plant, controller, loop, &s));
+    RITZ_CHECK(fill_first_order(plant, controller, loop, &s, &rates, &seen));
+    RITZ_CHECK(name_signals(plant, controller, &made));
+    RITZ_CHECK(ritz_dense_columns(&rates, 0, states, &made.A));
+    RITZ_CHECK(ritz_dense_columns(&rates, states, plant->num_inputs, &made.B));
+    RITZ_CHECK(ritz_dense_columns(&seen, 0, states, &made.C));
+    RITZ_CHECK(ritz_dense_columns(&seen, states, plant->num_inputs, &made.D));
+    RITZ_CHECK(join_masses(plant, controller, &made.E));
     RITZ_MOVE(*out, made);
-done:
-    ritz_state_space_free(&made);
-    ritz_dense_free(&rates);
-    ritz_dense_free(&seen);
-    ritz_dense_free(&s.e);
-    ritz_dense_free(&s.v);
-    return status;
+    return RITZ_OK;
 }

@@ -32,20 +32,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_MATRICES = 4, MOST_NUDGES = 100 };
-
-static ritz_status find_damped_modes(ritz_direct *s)
-{
-    const ritz_component *c = s->component;
-    const ritz_sparse *A[MOST_MATRICES] = {&c->K, &c->M};
-    int64_t count = 2;
-
-    if (c->D.colptr)
-        A[count++] = &c->D;
-    if (c->K4.colptr)
-        A[count++] = &c->K4;
-    return ritz_zldl_new(count, A, &s->Z);
-}
+enum { MOST_NUDGES = 100 };
 
 ritz_status ritz_direct_new(const ritz_component *component,
                             const ritz_damping *damping, double up_to_hz,
@@ -66,7 +53,7 @@ ritz_status ritz_direct_new(const ritz_component *component,
                                        &s.poles));
     s.m = s.pairs.Phi.ncol;
     RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
-    RITZ_CHECK(find_damped_modes(&s));
+    RITZ_CHECK(ritz_impedance_new(component, &s.Z));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
@@ -92,31 +79,30 @@ static ritz_status reserve_columns(ritz_direct *s, int64_t columns)
     return RITZ_OK;
 }
 
+/* a and b of Rayleigh damping, else 0. */
+static void take_rayleigh(const ritz_direct *s, double *a, double *b)
+{
+    bool rayleigh = ritz_damping_is_rayleigh(&s->damping);
+
+    *a = rayleigh ? s->damping.a : 0.0;
+    *b = rayleigh ? s->damping.b : 0.0;
+}
+
 static ritz_status factor_impedance(ritz_direct *s, double w, double w2)
 {
     ritz_status status = RITZ_OK;
-    double a = 0.0;
-    double b = 0.0;
-    double _Complex c[MOST_MATRICES];
-    int64_t count = 2;
+    double a = 0.0, b = 0.0;
+    double _Complex c[3] = {0.0, 0.0, ritz_complex(0.0, w)};
 
-    if (ritz_damping_is_rayleigh(&s->damping)) {
-        a = s->damping.a;
-        b = s->damping.b;
-    }
+    take_rayleigh(s, &a, &b);
     c[0] = ritz_complex(1.0, w * b);
     c[1] = ritz_complex(-w2, w * a);
-    if (s->component->D.colptr)
-        c[count++] = ritz_complex(0.0, w);
-    if (s->component->K4.colptr)
-        c[count] = ritz_complex(0.0, 1.0);
     s->factors++;
-    status = ritz_zldl_factor(s->Z, c);
-    RITZ_FAIL_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                 "the response at %.9g Hz is infinite: an undamped mode, or at "
-                 "0 Hz a rigid-body motion",
-                 w / (2.0 * RITZ_PI));
-done:
+    status = ritz_impedance_factor(s->component, c, s->Z);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "the response at %.9g Hz is infinite: an undamped mode, or "
+                   "at 0 Hz a rigid-body motion",
+                   w / (2.0 * RITZ_PI));
     return status;
 }
 
@@ -199,16 +185,14 @@ static ritz_status correct_ratios(const ritz_direct *s, double w,
                                   int64_t columns, const double _Complex *Y,
                                   double _Complex *X)
 {
-    ritz_status status = RITZ_OK;
     int64_t m = s->m;
-    double _Complex *S = NULL;
-    double _Complex *q = NULL;
-    lapack_int *pivot = NULL;
+    RITZ_OWN_ARRAY double _Complex *S = NULL, *q = NULL;
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     int info = 0;
 
-    RITZ_NEW(S, m * m);
-    RITZ_NEW(q, m * columns);
-    RITZ_NEW(pivot, m);
+    RITZ_CHECK_NEW(S, m * m);
+    RITZ_CHECK_NEW(q, m * columns);
+    RITZ_CHECK_NEW(pivot, m);
     apply_ratios(s, w, m, Y, S);
     apply_ratios(s, w, columns, X, q);
     for (int64_t k = 0; k < m; k++)
@@ -216,17 +200,13 @@ static ritz_status correct_ratios(const ritz_direct *s, double w,
     if (m > 0)
         info = LAPACKE_zgesv(LAPACK_COL_MAJOR, (int)m, (int)columns, S, (int)m,
                              pivot, q, (int)m);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
-                 "the response at %.9g Hz is infinite", w / (2.0 * RITZ_PI));
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_SINGULAR,
+                   "the response at %.9g Hz is infinite", w / (2.0 * RITZ_PI));
     for (int64_t j = 0; j < columns; j++)
         for (int64_t k = 0; k < m; k++)
             for (int64_t i = 0; i < s->n; i++)
                 X[i + j * s->n] -= Y[i + k * s->n] * q[k + j * m];
-done:
-    free(S);
-    free(q);
-    free(pivot);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -238,25 +218,21 @@ static ritz_status solve_coupled(ritz_direct *s, double hertz, bool transposed,
 {
     ritz_status (*solve)(ritz_zldl *, int64_t, double _Complex *) =
         transposed ? ritz_zldl_solve_transposed : ritz_zldl_solve;
-    ritz_status status = RITZ_OK;
     double w = 2.0 * RITZ_PI * hertz;
-    double _Complex *Y = NULL;
+    RITZ_OWN_ARRAY double _Complex *Y = NULL;
 
-    RITZ_FAIL_IF(hertz == 0.0 && s->poles.num_rigid > 0, RITZ_ERR_SINGULAR,
-                 "at 0 Hz the response is infinite: the body is free, begin "
-                 "above 0 Hz");
-    RITZ_TRY(factor_impedance(s, w, w * w));
-    RITZ_TRY(solve(s->Z, k, X));
+    RITZ_REFUSE_IF(hertz == 0.0 && s->poles.num_rigid > 0, RITZ_ERR_SINGULAR,
+                   "at 0 Hz the response is infinite: the body is free, begin "
+                   "above 0 Hz");
+    RITZ_CHECK(factor_impedance(s, w, w * w));
+    RITZ_CHECK(solve(s->Z, k, X));
     if (!s->ratios)
-        goto done;
-    RITZ_NEW(Y, s->n * s->m);
+        return RITZ_OK;
+    RITZ_CHECK_NEW(Y, s->n * s->m);
     for (int64_t i = 0; i < s->n * s->m; i++)
         Y[i] = s->MPhi.val[i];
-    RITZ_TRY(solve(s->Z, s->m, Y));
-    RITZ_TRY(correct_ratios(s, w, k, Y, X));
-done:
-    free(Y);
-    return status;
+    RITZ_CHECK(solve(s->Z, s->m, Y));
+    return correct_ratios(s, w, k, Y, X);
 }
 
 ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
@@ -310,21 +286,20 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
                               const double _Complex *Y, double *out)
 {
     const ritz_component *c = direct->component;
-    bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
     double w = 2.0 * RITZ_PI * hertz;
-    double a = rayleigh ? fabs(direct->damping.a) : 0.0;
-    double b = rayleigh ? fabs(direct->damping.b) : 0.0;
+    double a = 0.0, b = 0.0;
     int64_t n = direct->n;
     RITZ_OWN_ARRAY double *t = NULL;
 
+    take_rayleigh(direct, &a, &b);
     RITZ_CHECK_NEW(t, n);
     for (int64_t j = 0; j < direct->inputs; j++) {
         const double _Complex *x = X + j * n;
 
         for (int64_t k = 0; k < n; k++)
             t[k] = 0.0;
-        add_magnitudes(&c->K, 1.0 + w * b, x, t);
-        add_magnitudes(&c->M, w * w + w * a, x, t);
+        add_magnitudes(&c->K, 1.0 + w * fabs(b), x, t);
+        add_magnitudes(&c->M, w * w + w * fabs(a), x, t);
         add_magnitudes(&c->D, w, x, t);
         add_magnitudes(&c->K4, 1.0, x, t);
         for (int64_t i = 0; i < outputs; i++) {
@@ -349,23 +324,21 @@ static ritz_status direct_at(void *state, double hertz, double _Complex *H)
 static void free_direct(void *state)
 {
     ritz_direct_free(state);
-    free(state);
 }
 
 static ritz_status make_direct(const ritz_response_request *request,
                                ritz_responder *out)
 {
-    RITZ_OWN_ARRAY ritz_direct *s = NULL;
+    ritz_direct *s = NULL;
 
     RITZ_CHECK_NEW(s, 1);
-    RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
-                               ritz_response_highest(request), s));
+    out->state = s;
+    out->free = free_direct;
     out->poles = &s->poles;
     out->pairs = &s->pairs;
     out->at = direct_at;
-    out->free = free_direct;
-    RITZ_MOVE(out->state, s);
-    return RITZ_OK;
+    return ritz_direct_new(request->model.component, request->model.damping,
+                           ritz_response_highest(request), s);
 }
 
 const ritz_response_engine ritz_response_engine_direct = {

@@ -67,10 +67,13 @@ static double avoid_modes(const krylov_responder *k, double f)
 
 /*
  * Place points evenly; where modes are coupled, also at each resonance and
- * between neighbouring ones.
+ * between neighbouring ones. Allocate the arrays.
  */
-static ritz_status place_points(krylov_responder *k, double low, double high)
+static ritz_status place_points(krylov_responder *k,
+                                const ritz_response_request *request)
 {
+    double high = request->to_hz;
+    double low = fmax(request->from_hz, RITZ_ABOVE_REST * high);
     double before = low;
     int64_t m = k->full.m;
     int64_t stride = 1 + m / MOST_MODES;
@@ -89,11 +92,6 @@ static ritz_status place_points(krylov_responder *k, double low, double high)
         k->hertz[k->count++] = avoid_modes(k, 0.5 * (before + mode));
         before = mode;
     }
-    return RITZ_OK;
-}
-
-static ritz_status reserve_points(krylov_responder *k)
-{
     RITZ_CHECK_NEW(k->size, k->inputs + k->outputs);
     RITZ_CHECK_NEW(k->load, k->inputs + k->outputs);
     RITZ_CHECK_NEW(k->error, k->count * k->values);
@@ -103,14 +101,6 @@ static ritz_status reserve_points(krylov_responder *k)
     RITZ_CHECK_NEW(k->allowed, k->values);
     RITZ_CHECK_NEW(k->H, k->values);
     return RITZ_OK;
-}
-
-/* Place the points of a range and allocate the arrays. */
-static ritz_status prepare_points(krylov_responder *k, double from_hz,
-                                  double to_hz)
-{
-    RITZ_CHECK(place_points(k, fmax(from_hz, RITZ_ABOVE_REST * to_hz), to_hz));
-    return reserve_points(k);
 }
 
 /* The residual `index`, inputs before outputs, of the last solution. */
@@ -172,7 +162,9 @@ static void set_allowed(krylov_responder *k)
 
 static ritz_status krylov_at(void *state, double hertz, double _Complex *H)
 {
-    return ritz_poles_add(&((krylov_responder *)state)->small.poles, hertz, H);
+    const krylov_responder *k = state;
+
+    return ritz_poles_add(&k->small.poles, hertz, H);
 }
 
 /* Measure all points and find the largest ratio of error to allowed error. */
@@ -317,18 +309,17 @@ static ritz_status compare_full(krylov_responder *k, double hertz,
                                 const double _Complex *X,
                                 const double _Complex *Y, double *out)
 {
-    ritz_status status = RITZ_OK;
     double more = 1.0;
-    double _Complex *H = NULL;
+    RITZ_OWN_ARRAY double _Complex *H = NULL;
 
-    RITZ_NEW(H, k->values);
-    RITZ_TRY(ritz_direct_noise(&k->full, hertz, X, k->outputs, Y, k->noise));
+    RITZ_CHECK_NEW(H, k->values);
+    RITZ_CHECK(ritz_direct_noise(&k->full, hertz, X, k->outputs, Y, k->noise));
     ritz_io_respond(&k->full.component->io, hertz, X, H);
     if (k->full.apart)
-        RITZ_TRY(ritz_poles_add(&k->full.poles, hertz, H));
-    RITZ_TRY(measure_residuals(k, hertz, k->trial));
+        RITZ_CHECK(ritz_poles_add(&k->full.poles, hertz, H));
+    RITZ_CHECK(measure_residuals(k, hertz, k->trial));
     memset(k->H, 0, (size_t)k->values * sizeof *k->H);
-    RITZ_TRY(ritz_poles_add(&k->small.poles, hertz, k->H));
+    RITZ_CHECK(ritz_poles_add(&k->small.poles, hertz, k->H));
     *out = 0.0;
     for (int64_t v = 0; v < k->values; v++) {
         double error = fmax(cabs(H[v] - k->H[v]) - k->noise[v], 0.0);
@@ -341,9 +332,7 @@ static ritz_status compare_full(krylov_responder *k, double hertz,
             more = fmax(more, error / k->trial[v]);
     }
     k->amplify = fmin(k->amplify * more, RITZ_MOST_AMPLIFIED);
-done:
-    free(H);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -362,12 +351,9 @@ static ritz_status solve_full(krylov_responder *k, double *hertz,
         fill_loads(k, sqrt(ritz_eigen_lambda(*hertz)), Z);
         status = ritz_direct_solve(&k->full, *hertz, false, k->inputs, Z);
     }
-    if (status != RITZ_OK)
-        goto done;
-    RITZ_TRY(ritz_direct_solve(&k->full, *hertz, true, k->outputs,
-                               Z + k->full.n * k->inputs));
-done:
-    return status;
+    RITZ_CHECK(status);
+    return ritz_direct_solve(&k->full, *hertz, true, k->outputs,
+                             Z + k->full.n * k->inputs);
 }
 
 /*
@@ -380,26 +366,22 @@ done:
 static ritz_status expand_at(krylov_responder *k, double hertz, int64_t *added,
                              double *was)
 {
-    ritz_status status = RITZ_OK;
     int64_t n = k->full.n;
     int64_t loads = k->inputs + k->outputs;
-    double _Complex *Z = NULL;
-    ritz_dense X = {0};
+    RITZ_OWN_ARRAY double _Complex *Z = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_NEW(Z, n * loads);
-    RITZ_TRY(solve_full(k, &hertz, Z));
-    RITZ_TRY(compare_full(k, hertz, Z, Z + n * k->inputs, was));
+    RITZ_CHECK_NEW(Z, n * loads);
+    RITZ_CHECK(solve_full(k, &hertz, Z));
+    RITZ_CHECK(compare_full(k, hertz, Z, Z + n * k->inputs, was));
     k->points++;
     *added = 0;
     if (*was <= 1.0)
-        goto done;
-    RITZ_TRY(split_complex(n, loads, Z, &X));
-    RITZ_TRY(renew_projection(k, &X, added));
+        return RITZ_OK;
+    RITZ_CHECK(split_complex(n, loads, Z, &X));
+    RITZ_CHECK(renew_projection(k, &X, added));
     k->unmet = fmax(k->unmet, *was);
-done:
-    free(Z);
-    ritz_dense_free(&X);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -425,8 +407,10 @@ done:
 
 enum { MOST_ROUNDS = 60, MOST_CONFIRMED = 12 };
 
-static void free_krylov(krylov_responder *k)
+static void free_krylov(void *state)
 {
+    krylov_responder *k = state;
+
     ritz_direct_free(&k->full);
     ritz_krylov_space_free(&k->space);
     ritz_krylov_small_free(&k->small);
@@ -577,24 +561,21 @@ static ritz_status start_krylov(const ritz_response_request *request,
                                highest, &k->full));
     RITZ_CHECK(ritz_krylov_space_new(
         &k->full, ritz_eigen_lambda(request->to_hz), &k->space));
-    RITZ_CHECK(prepare_points(k, request->from_hz, request->to_hz));
+    RITZ_CHECK(place_points(k, request));
     return converge_errors(k, request);
-}
-
-static void finish_krylov(void *state)
-{
-    free_krylov(state);
-    free(state);
 }
 
 static ritz_status make_krylov(const ritz_response_request *request,
                                ritz_responder *out)
 {
-    ritz_status status = RITZ_OK;
     krylov_responder *k = NULL;
 
-    RITZ_NEW(k, 1);
-    RITZ_TRY(start_krylov(request, k));
+    RITZ_CHECK_NEW(k, 1);
+    out->state = k;
+    out->free = free_krylov;
+    out->poles = &k->small.poles;
+    out->at = krylov_at;
+    RITZ_CHECK(start_krylov(request, k));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " modes and %" PRId64 " vectors more, of %" PRId64
                    " corrections and %" PRId64
@@ -603,14 +584,7 @@ static ritz_status make_krylov(const ritz_response_request *request,
                    k->points, k->worst * k->tolerance);
     ritz_krylov_space_free(&k->space); /* frees arrays of length n */
     ritz_direct_free(&k->full);
-    out->poles = &k->small.poles;
-    out->at = krylov_at;
-    out->free = finish_krylov;
-    RITZ_MOVE(out->state, k);
-done:
-    if (k)
-        finish_krylov(k);
-    return status;
+    return RITZ_OK;
 }
 
 const ritz_response_engine ritz_response_engine_krylov = {

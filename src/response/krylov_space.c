@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 #include "model/modal.h"
 #include "poles/poles.h"
 
@@ -40,8 +41,6 @@ static ritz_status append_columns(ritz_dense *A, int64_t *room,
 static ritz_status add_columns(ritz_krylov_space *s, ritz_krylov_kind kind,
                                int64_t first, ritz_dense *W)
 {
-    int64_t before = s->W.ncol, S_room = s->W_room, old = s->W_room;
-    ritz_krylov_column *column = NULL;
     RITZ_OWN(ritz_dense) S = {0};
 
     if (W->ncol == 0)
@@ -49,18 +48,12 @@ static ritz_status add_columns(ritz_krylov_space *s, ritz_krylov_kind kind,
     RITZ_CHECK(ritz_dense_take_out(s->MPhi, s->Phi, W));
     RITZ_CHECK(ritz_dense_copy(W, &S));
     RITZ_CHECK(ritz_factor_solve(s->F, &S));
-    RITZ_CHECK(append_columns(&s->S, &S_room, &S));
-    RITZ_CHECK(append_columns(&s->W, &s->W_room, W));
-    if (s->W_room > old) {
-        RITZ_CHECK_NEW(column, s->W_room);
-        if (before > 0)
-            memcpy(column, s->column, (size_t)before * sizeof *column);
-        free(s->column);
-        s->column = column;
+    for (int64_t k = 0; k < W->ncol; k++) {
+        RITZ_CHECK_ROOM(s->column, s->W.ncol + k, s->column_room);
+        s->column[s->W.ncol + k] = (ritz_krylov_column){kind, first + k};
     }
-    for (int64_t k = 0; k < W->ncol; k++)
-        s->column[before + k] = (ritz_krylov_column){kind, first + k};
-    return RITZ_OK;
+    RITZ_CHECK(append_columns(&s->S, &s->S_room, &S));
+    return append_columns(&s->W, &s->W_room, W);
 }
 
 static ritz_status add_loads(ritz_krylov_space *s)
@@ -80,10 +73,7 @@ static ritz_status add_loads(ritz_krylov_space *s)
         if (ritz_dense_max(seen[k].rows) == 0.0)
             continue;
         ritz_dense_free(&W);
-        RITZ_CHECK(ritz_dense_new(seen[k].rows->ncol, seen[k].rows->nrow, &W));
-        for (int64_t j = 0; j < W.ncol; j++)
-            for (int64_t i = 0; i < W.nrow; i++)
-                ritz_dense_col(&W, j)[i] = ritz_dense_col(seen[k].rows, i)[j];
+        RITZ_CHECK(ritz_general_transpose(seen[k].rows, &W));
         RITZ_CHECK(add_columns(s, seen[k].kind, 0, &W));
     }
     return RITZ_OK;
@@ -219,21 +209,6 @@ void ritz_krylov_space_free(ritz_krylov_space *space)
     *space = (ritz_krylov_space){0};
 }
 
-/* The projected matrices, in coordinates of V. */
-typedef struct matrices {
-    ritz_dense K, M, D, K4;
-    ritz_io io;
-} matrices;
-
-static void matrices_free(matrices *a)
-{
-    ritz_dense_free(&a->K);
-    ritz_dense_free(&a->M);
-    ritz_dense_free(&a->D);
-    ritz_dense_free(&a->K4);
-    ritz_io_free(&a->io);
-}
-
 /* diag(leading, block). */
 static ritz_status join_diagonal(int64_t m, const double *leading,
                                  const ritz_dense *block, ritz_dense *out)
@@ -251,8 +226,9 @@ static ritz_status join_diagonal(int64_t m, const double *leading,
 
 /* Modes keep their own eigenvalues, so that resonances lose no digits. */
 static ritz_status project_block(const ritz_direct *direct,
-                                 const ritz_krylov_space *space, matrices *out,
-                                 ritz_dense *K_x, ritz_dense *M_x)
+                                 const ritz_krylov_space *space,
+                                 ritz_reduced *out, ritz_dense *K_x,
+                                 ritz_dense *M_x)
 {
     const ritz_component *c = space->component;
     int64_t m = direct->m;
@@ -300,17 +276,6 @@ static void remove_ratios(const ritz_direct *direct, ritz_poles *poles)
     }
 }
 
-static ritz_status transpose_dense(const ritz_dense *A, ritz_dense *out)
-{
-    if (!A->val)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_new(A->ncol, A->nrow, out));
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < A->nrow; i++)
-            ritz_dense_col(out, i)[j] = ritz_dense_col(A, j)[i];
-    return RITZ_OK;
-}
-
 /* The transposed system, with the outputs' rows as its load vectors. */
 static ritz_status transpose_poles(const ritz_poles *poles, ritz_poles *out)
 {
@@ -325,12 +290,12 @@ static ritz_status transpose_poles(const ritz_poles *poles, ritz_poles *out)
             .coupled = poles->coupled,
             .skew = poles->skew};
 
-    RITZ_CHECK_NEW(dual.lambda, r);
-    RITZ_CHECK_NEW(dual.rate, r);
-    memcpy(dual.lambda, poles->lambda, (size_t)r * sizeof *dual.lambda);
-    memcpy(dual.rate, poles->rate, (size_t)r * sizeof *dual.rate);
-    RITZ_CHECK(transpose_dense(&poles->D, &dual.D));
-    RITZ_CHECK(transpose_dense(&poles->K4, &dual.K4));
+    RITZ_CHECK_COPY(dual.lambda, poles->lambda, r);
+    RITZ_CHECK_COPY(dual.rate, poles->rate, r);
+    if (poles->D.val)
+        RITZ_CHECK(ritz_general_transpose(&poles->D, &dual.D));
+    if (poles->K4.val)
+        RITZ_CHECK(ritz_general_transpose(&poles->K4, &dual.K4));
     RITZ_CHECK(ritz_io_new(r, 3 * p, 0, &dual.io));
     for (int k = 0; k < 3; k++)
         for (int64_t j = 0; j < r; j++)
@@ -352,8 +317,8 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
              .r = space->V.ncol};
     RITZ_OWN(ritz_dense) K_x = {0}, M_x = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    RITZ_OWN(matrices) a = {0};
-    const ritz_second_order model = {&a.K, &a.M, &a.D, &a.K4, &a.io};
+    RITZ_OWN(ritz_reduced) a = {0}; /* in coordinates of V */
+    const ritz_second_order model = ritz_model_of_reduced(&a, NULL).dense;
 
     RITZ_CHECK(project_block(direct, space, &a, &K_x, &M_x));
     RITZ_CHECK(solve_pairs(direct, &K_x, &M_x, &pairs));
@@ -361,8 +326,7 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
                                    &small.poles));
     remove_ratios(direct, &small.poles);
     RITZ_CHECK(transpose_poles(&small.poles, &small.dual));
-    small.T = pairs.Phi;
-    pairs.Phi = (ritz_dense){0};
+    RITZ_MOVE(small.T, pairs.Phi);
     RITZ_CHECK_NEW(small.q, small.r * small.inputs);
     RITZ_CHECK_NEW(small.p, small.r * small.outputs);
     RITZ_CHECK_NEW(small.z, small.r * (3 * small.outputs + small.inputs));

@@ -45,8 +45,8 @@ typedef struct ritz_krylov_space {
     ritz_dense V;               /* n x r, with room for V_room */
     ritz_dense W, S;            /* n x w, with room for W_room */
     ritz_dense G;               /* w x w, W'S */
-    ritz_krylov_column *column; /* W_room */
-    int64_t V_room, W_room;
+    ritz_krylov_column *column; /* w */
+    int64_t V_room, W_room, S_room, column_room;
 } ritz_krylov_space;
 
 /**

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int64_t find_signal(int64_t count, const char (*name)[RITZ_NAME_SIZE],
+static int64_t find_signal(int64_t count, char (*name)[RITZ_NAME_SIZE],
                            const char *word)
 {
     for (int64_t k = 0; k < count; k++)
@@ -24,8 +24,8 @@ static int64_t find_signal(int64_t count, const char (*name)[RITZ_NAME_SIZE],
     return -1;
 }
 
-ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_ends *plant,
-                            const ritz_ends *controller)
+ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_io *plant,
+                            const ritz_io *controller)
 {
     RITZ_REFUSE_IF(loop->num_measured != controller->num_inputs ||
                        loop->num_driven != controller->num_outputs,
@@ -60,49 +60,44 @@ static ritz_status connect_signal(int64_t *place, int64_t index,
  * "OUT=IN", from plant to controller or from controller to plant, whichever has
  * such names.
  */
-static ritz_status connect_pair(const ritz_ends *plant,
-                                const ritz_ends *control, const char *pair,
-                                ritz_loop *loop)
+static ritz_status connect_pair(const ritz_io *plant, const ritz_io *control,
+                                const char *pair, ritz_loop *loop)
 {
-    ritz_status status = RITZ_OK;
     const char *equals = strchr(pair, '=');
     const char *in = equals ? equals + 1 : "";
     char out[RITZ_NAME_SIZE] = "";
     int64_t from = -1, to = -1, back_from = -1, back_to = -1;
 
-    RITZ_FAIL_IF(!equals || equals == pair || !*in ||
-                     equals - pair >= RITZ_NAME_SIZE,
-                 RITZ_ERR_ARGUMENT, "'%.80s' is not of the form OUT=IN", pair);
+    RITZ_REFUSE_IF(
+        !equals || equals == pair || !*in || equals - pair >= RITZ_NAME_SIZE,
+        RITZ_ERR_ARGUMENT, "'%.80s' is not of the form OUT=IN", pair);
     memcpy(out, pair, (size_t)(equals - pair));
     from = find_signal(plant->num_outputs, plant->output, out);
     to = find_signal(control->num_inputs, control->input, in);
     back_from = find_signal(control->num_outputs, control->output, out);
     back_to = find_signal(plant->num_inputs, plant->input, in);
-    RITZ_FAIL_IF(from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0,
-                 RITZ_ERR_ARGUMENT,
-                 "'%s' can be read both ways: plant and controller have both "
-                 "names",
-                 pair);
+    RITZ_REFUSE_IF(from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' can be read both ways: plant and controller have both "
+                   "names",
+                   pair);
     if (from >= 0 && to >= 0)
-        RITZ_TRY(connect_signal(&loop->measured[to], from, control->input[to]));
-    else if (back_from >= 0 && back_to >= 0)
-        RITZ_TRY(connect_signal(&loop->driven[back_from], back_to,
-                                control->output[back_from]));
-    else
-        status = ritz_fail(
-            RITZ_ERR_ARGUMENT,
-            "'%s' joins no output of the plant to an input of the controller, "
-            "nor one of the controller to one of the plant",
-            pair);
-done:
-    return status;
+        return connect_signal(&loop->measured[to], from, control->input[to]);
+    if (back_from >= 0 && back_to >= 0)
+        return connect_signal(&loop->driven[back_from], back_to,
+                              control->output[back_from]);
+    return ritz_fail(
+        RITZ_ERR_ARGUMENT,
+        "'%s' joins no output of the plant to an input of the controller, "
+        "nor one of the controller to one of the plant",
+        pair);
 }
 
 /* Connect the signals that no pair names by equal names. */
 static ritz_status connect_equal_names(int64_t count,
-                                       const char (*name)[RITZ_NAME_SIZE],
+                                       char (*name)[RITZ_NAME_SIZE],
                                        int64_t others,
-                                       const char (*other)[RITZ_NAME_SIZE],
+                                       char (*other)[RITZ_NAME_SIZE],
                                        const char *what, int64_t *place)
 {
     const char *near = NULL;
@@ -127,7 +122,7 @@ static ritz_status connect_equal_names(int64_t count,
     return RITZ_OK;
 }
 
-ritz_status ritz_loop_match(const ritz_ends *plant, const ritz_ends *controller,
+ritz_status ritz_loop_match(const ritz_io *plant, const ritz_io *controller,
                             int64_t num_pairs, const char *const *pair,
                             ritz_loop *out)
 {
@@ -171,26 +166,59 @@ void ritz_loop_free(ritz_loop *loop)
 
 enum { MOST_HALVES = 60 };
 
-typedef enum which { GAIN, SENSITIVITY } which;
-
-typedef struct prober {
+/* A plant and a controller that respond. */
+typedef struct respondents {
     const ritz_loop *loop;
     ritz_responder *plant, *controller;
-    double _Complex *G, *F;
-    which want;
-    double *largest, *sensitivity; /* at the points */
-    double _Complex *gain;
-} prober;
+    double _Complex *G, *F; /* of both, to work in */
+} respondents;
 
-static ritz_status evaluate_loop(prober *s, double hertz,
-                                 ritz_loop_values *values)
+static ritz_status respondents_new(const ritz_loop *loop, ritz_responder *plant,
+                                   ritz_responder *controller, respondents *out)
+{
+    const ritz_io *io = &plant->poles->io;
+
+    out->loop = loop;
+    out->plant = plant;
+    out->controller = controller;
+    RITZ_CHECK_NEW(out->G, io->num_outputs * io->num_inputs);
+    RITZ_CHECK_NEW(out->F, loop->num_driven * loop->num_measured);
+    return RITZ_OK;
+}
+
+static void respondents_free(respondents *s)
+{
+    free(s->G);
+    free(s->F);
+}
+
+/* @param[out] H  of the closed loop; NULL: not wanted */
+static ritz_status evaluate_loop(respondents *s, double hertz,
+                                 double _Complex *H, ritz_loop_values *values)
 {
     const ritz_io *io = &s->plant->poles->io;
 
     RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
     RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
-    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F,
-                        NULL, values);
+    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F, H,
+                        values);
+}
+
+typedef enum which { GAIN, SENSITIVITY } which;
+
+typedef struct prober {
+    respondents of;
+    which want;
+    double *largest, *sensitivity; /* at the points */
+    double _Complex *gain;
+} prober;
+
+static void prober_free(prober *s)
+{
+    respondents_free(&s->of);
+    free(s->largest);
+    free(s->sensitivity);
+    free(s->gain);
 }
 
 static ritz_status evaluate_size(void *state, double hertz, double *value)
@@ -198,7 +226,7 @@ static ritz_status evaluate_size(void *state, double hertz, double *value)
     prober *s = state;
     ritz_loop_values values = {0};
 
-    RITZ_CHECK(evaluate_loop(s, hertz, &values));
+    RITZ_CHECK(evaluate_loop(&s->of, hertz, NULL, &values));
     *value = s->want == GAIN ? values.largest_gain : values.sensitivity;
     return RITZ_OK;
 }
@@ -225,7 +253,7 @@ static ritz_status bisect_crossing(prober *s, double (*zero)(double _Complex),
     for (int k = 0; k < MOST_HALVES && high - low > RITZ_BISECTION_END * high;
          k++) {
         middle = low + (high - low) / 2.0;
-        RITZ_CHECK(evaluate_loop(s, middle, &values));
+        RITZ_CHECK(evaluate_loop(&s->of, middle, NULL, &values));
         if (zero(values.gain) * zero(at_low) > 0.0)
             low = middle;
         else
@@ -267,22 +295,16 @@ static void update_phase_margin(double hertz, double _Complex L,
 
 /* The closed loop as a responder. */
 typedef struct closed {
-    const ritz_loop *loop;
-    ritz_responder *plant, *controller;
+    respondents of;
     ritz_poles poles; /* of all three, and the names */
-    double _Complex *G, *F;
 } closed;
 
 static ritz_status closed_at(void *state, double hertz, double _Complex *H)
 {
     closed *s = state;
-    const ritz_io *io = &s->poles.io;
     ritz_loop_values values = {0};
 
-    RITZ_CHECK_IN("plant", ritz_responder_at(s->plant, hertz, s->G));
-    RITZ_CHECK_IN("controller", ritz_responder_at(s->controller, hertz, s->F));
-    return ritz_loop_at(s->loop, io->num_outputs, io->num_inputs, s->G, s->F, H,
-                        &values);
+    return evaluate_loop(&s->of, hertz, H, &values);
 }
 
 static ritz_status find_crossings(prober *s, int64_t count, const double *hertz,
@@ -325,40 +347,31 @@ ritz_status ritz_loop_margins(const ritz_loop *loop, ritz_responder *plant,
                               ritz_responder *controller, int64_t count,
                               const double *hertz, ritz_margins *out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_io *io = &plant->poles->io;
     const double none = nan("");
     ritz_margins m = {none, none, none, none, HUGE_VAL,
                       none, none, none, none, none};
-    prober s = {.loop = loop, .plant = plant, .controller = controller};
+    RITZ_OWN(prober) s = {0};
 
-    RITZ_NEW(s.G, io->num_outputs * io->num_inputs);
-    RITZ_NEW(s.F, loop->num_driven * loop->num_measured);
-    RITZ_NEW(s.largest, count);
-    RITZ_NEW(s.sensitivity, count);
-    RITZ_NEW(s.gain, count);
+    RITZ_CHECK(respondents_new(loop, plant, controller, &s.of));
+    RITZ_CHECK_NEW(s.largest, count);
+    RITZ_CHECK_NEW(s.sensitivity, count);
+    RITZ_CHECK_NEW(s.gain, count);
     for (int64_t k = 0; k < count; k++) {
         ritz_loop_values values = {0};
 
-        RITZ_TRY(evaluate_loop(&s, hertz[k], &values));
+        RITZ_CHECK(evaluate_loop(&s.of, hertz[k], NULL, &values));
         s.gain[k] = values.gain;
         s.largest[k] = values.largest_gain;
         s.sensitivity[k] = values.sensitivity;
     }
     if (count > 0)
-        RITZ_TRY(find_peaks(&s, count, hertz, &m));
+        RITZ_CHECK(find_peaks(&s, count, hertz, &m));
     if (loop->num_driven == 1 && loop->num_measured == 1)
-        RITZ_TRY(find_crossings(&s, count, hertz, &m));
+        RITZ_CHECK(find_crossings(&s, count, hertz, &m));
     if (isinf(m.phase))
         m.phase = none;
     *out = m;
-done:
-    free(s.G);
-    free(s.F);
-    free(s.largest);
-    free(s.sensitivity);
-    free(s.gain);
-    return status;
+    return RITZ_OK;
 }
 
 /*
@@ -373,54 +386,18 @@ done:
  * which solves only a system of the size of the loop's signals [Sirlin1992].
  */
 
-/* Matrices of one frequency, by columns; c signals are driven, m measured. */
-typedef struct room {
-    int64_t c, m, p, q; /* outputs and inputs of the plant */
-    double _Complex *L; /* c x c, then I + L */
-    double _Complex *X; /* c x (q + c), F G_y and I, then S times them */
-    double *sigma;      /* c */
-    lapack_int *pivot;
-} room;
-
-static void free_room(room *r)
-{
-    free(r->L);
-    free(r->X);
-    free(r->sigma);
-    free(r->pivot);
-}
-
-static ritz_status allocate_room(const ritz_loop *loop, int64_t p, int64_t q,
-                                 room *r)
-{
-    *r = (room){.c = loop->num_driven, .m = loop->num_measured, .p = p, .q = q};
-    RITZ_CHECK_NEW(r->L, r->c * r->c);
-    RITZ_CHECK_NEW(r->X, r->c * (q + r->c));
-    RITZ_CHECK_NEW(r->sigma, r->c);
-    RITZ_CHECK_NEW(r->pivot, r->c);
-    return RITZ_OK;
-}
-
 /* (F S_y G)(i, j) with the sign of negative feedback. */
-static double _Complex filter_entry(const ritz_loop *loop, const room *r,
+static double _Complex filter_entry(const ritz_loop *loop, int64_t inputs,
                                     const double _Complex *G,
                                     const double _Complex *F, int64_t i,
                                     int64_t j)
 {
+    int64_t m = loop->num_measured;
     double _Complex sum = 0.0;
 
-    for (int64_t k = 0; k < r->m; k++)
-        sum += F[i * r->m + k] * G[loop->measured[k] * r->q + j];
+    for (int64_t k = 0; k < m; k++)
+        sum += F[i * m + k] * G[loop->measured[k] * inputs + j];
     return loop->positive ? -sum : sum;
-}
-
-static ritz_status measure_gain(room *r, ritz_loop_values *values)
-{
-    values->gain =
-        r->c == 1 && r->m == 1 ? r->L[0] : ritz_complex(nan(""), nan(""));
-    RITZ_CHECK(ritz_singular_values(r->c, r->c, r->L, NULL, r->sigma));
-    values->largest_gain = r->sigma[0];
-    return RITZ_OK;
 }
 
 ritz_status ritz_loop_at(const ritz_loop *loop, int64_t num_outputs,
@@ -428,39 +405,47 @@ ritz_status ritz_loop_at(const ritz_loop *loop, int64_t num_outputs,
                          const double _Complex *F, double _Complex *H,
                          ritz_loop_values *values)
 {
-    ritz_status status = RITZ_OK;
-    int64_t q = num_inputs;
-    room r = {0};
+    int64_t q = num_inputs, c = loop->num_driven;
+    RITZ_OWN_ARRAY double _Complex *L = NULL; /* c x c, then I + L */
+    RITZ_OWN_ARRAY double _Complex *X = NULL; /* c x (q + c): F G_y and I, then
+                                                 (I + L)^-1 times them */
+    RITZ_OWN_ARRAY double *sigma = NULL;
+    RITZ_OWN_ARRAY lapack_int *pivot = NULL;
     int info = 0;
 
-    RITZ_TRY(allocate_room(loop, num_outputs, num_inputs, &r));
-    for (int64_t i = 0; i < r.c; i++) {
+    RITZ_CHECK_NEW(L, c * c);
+    RITZ_CHECK_NEW(X, c * (q + c));
+    RITZ_CHECK_NEW(sigma, c);
+    RITZ_CHECK_NEW(pivot, c);
+    for (int64_t i = 0; i < c; i++) {
         for (int64_t j = 0; j < q; j++)
-            r.X[i + j * r.c] = filter_entry(loop, &r, G, F, i, j);
-        for (int64_t j = 0; j < r.c; j++)
-            r.L[i + j * r.c] = r.X[i + loop->driven[j] * r.c];
-        r.X[i + (q + i) * r.c] = 1.0;
+            X[i + j * c] = filter_entry(loop, q, G, F, i, j);
+        for (int64_t j = 0; j < c; j++)
+            L[i + j * c] = X[i + loop->driven[j] * c];
+        X[i + (q + i) * c] = 1.0;
     }
-    RITZ_TRY(measure_gain(&r, values));
-    for (int64_t i = 0; i < r.c; i++)
-        r.L[i + i * r.c] += 1.0;
-    info = LAPACKE_zgesv(LAPACK_COL_MAJOR, (int)r.c, (int)(q + r.c), r.L,
-                         (int)r.c, r.pivot, r.X, (int)r.c);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_SINGULAR,
-                 "the closed loop has a pole there: I + F G is singular");
-    RITZ_TRY(ritz_singular_values(r.c, r.c, r.X + q * r.c, NULL, r.sigma));
-    values->sensitivity = r.sigma[0];
+    values->gain = c == 1 && loop->num_measured == 1
+                       ? L[0]
+                       : ritz_complex(nan(""), nan(""));
+    RITZ_CHECK(ritz_singular_values(c, c, L, NULL, sigma));
+    values->largest_gain = sigma[0];
+    for (int64_t i = 0; i < c; i++)
+        L[i + i * c] += 1.0;
+    info = LAPACKE_zgesv(LAPACK_COL_MAJOR, (int)c, (int)(q + c), L, (int)c,
+                         pivot, X, (int)c);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_SINGULAR,
+                   "the closed loop has a pole there: I + F G is singular");
+    RITZ_CHECK(ritz_singular_values(c, c, X + q * c, NULL, sigma));
+    values->sensitivity = sigma[0];
     for (int64_t i = 0; H && i < num_outputs; i++)
         for (int64_t j = 0; j < q; j++) {
             double _Complex sum = G[i * q + j];
 
-            for (int64_t k = 0; k < r.c; k++)
-                sum -= G[i * q + loop->driven[k]] * r.X[k + j * r.c];
+            for (int64_t k = 0; k < c; k++)
+                sum -= G[i * q + loop->driven[k]] * X[k + j * c];
             H[i * q + j] = sum;
         }
-done:
-    free_room(&r);
-    return status;
+    return RITZ_OK;
 }
 
 static void free_closed(void *state)
@@ -468,9 +453,7 @@ static void free_closed(void *state)
     closed *s = state;
 
     ritz_poles_free(&s->poles);
-    free(s->G);
-    free(s->F);
-    free(s);
+    respondents_free(&s->of);
 }
 
 /*
@@ -511,48 +494,23 @@ static ritz_status list_open_poles(const ritz_responder *of, int64_t *count,
     return RITZ_OK;
 }
 
-/*
- * Every pole counts as controllable and observable, for nothing else is known
- * of it.
- */
-static ritz_status name_ends(const ritz_io *io, ritz_poles *poles)
-{
-    int64_t n = poles->count;
-
-    RITZ_CHECK(ritz_io_new(n, io->num_inputs, io->num_outputs, &poles->io));
-    memcpy(poles->io.input, io->input,
-           (size_t)io->num_inputs * sizeof *io->input);
-    memcpy(poles->io.output, io->output,
-           (size_t)io->num_outputs * sizeof *io->output);
-    for (int64_t k = 0; k < n * io->num_inputs; k++)
-        poles->io.B.val[k] = 1.0;
-    for (int64_t k = 0; k < n * io->num_outputs; k++)
-        poles->io.C.val[k] = 1.0;
-    return RITZ_OK;
-}
-
 static ritz_status gather_ends(closed *s, int64_t num_poles,
                                const double _Complex *pole)
 {
-    ritz_status status = RITZ_OK;
-    double _Complex *plant = NULL, *controller = NULL;
+    RITZ_OWN_ARRAY double _Complex *plant = NULL, *controller = NULL;
     int64_t n = 0, m = 0;
 
-    RITZ_TRY(list_open_poles(s->plant, &n, &plant));
-    RITZ_TRY(list_open_poles(s->controller, &m, &controller));
-    RITZ_NEW(s->poles.lambda, num_poles + n + m);
-    RITZ_NEW(s->poles.rate, num_poles + n + m);
+    RITZ_CHECK(list_open_poles(s->of.plant, &n, &plant));
+    RITZ_CHECK(list_open_poles(s->of.controller, &m, &controller));
+    RITZ_CHECK_NEW(s->poles.lambda, num_poles + n + m);
+    RITZ_CHECK_NEW(s->poles.rate, num_poles + n + m);
     add_poles(num_poles, pole, &s->poles);
     add_poles(n, plant, &s->poles);
     add_poles(m, controller, &s->poles);
-    RITZ_TRY(name_ends(&s->plant->poles->io, &s->poles));
-done:
-    free(plant);
-    free(controller);
-    return status;
+    return ritz_poles_name(&s->of.plant->poles->io, &s->poles);
 }
 
-static const ritz_response_engine engine = {
+static const ritz_response_engine closed_loop_engine = {
     .name = "closed loop",
     .summary = "a plant and a controller, closed at each frequency",
     .reference = "Sirlin1992",
@@ -563,33 +521,23 @@ ritz_status ritz_loop_responder(const ritz_loop *loop, ritz_responder *plant,
                                 const double _Complex *pole,
                                 ritz_responder **out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_io *io = &plant->poles->io;
-    const ritz_io *other = &controller->poles->io;
-    ritz_responder *r = NULL;
+    RITZ_OWN(ritz_responder) *r = NULL;
     closed *s = NULL;
 
-    RITZ_TRY(ritz_loop_check(
-        loop, &(ritz_ends){io->num_inputs, io->num_outputs, NULL, NULL},
-        &(ritz_ends){other->num_inputs, other->num_outputs, NULL, NULL}));
-    RITZ_NEW(r, 1);
-    RITZ_NEW(s, 1);
+    RITZ_CHECK(
+        ritz_loop_check(loop, &plant->poles->io, &controller->poles->io));
+    RITZ_CHECK_NEW(r, 1);
+    RITZ_CHECK_NEW(s, 1);
     r->state = s;
     r->free = free_closed;
-    s->loop = loop;
-    s->plant = plant;
-    s->controller = controller;
-    RITZ_NEW(s->G, io->num_outputs * io->num_inputs);
-    RITZ_NEW(s->F, loop->num_driven * loop->num_measured);
-    RITZ_TRY(gather_ends(s, num_poles, pole));
-    r->engine = &engine;
+    RITZ_CHECK(respondents_new(loop, plant, controller, &s->of));
+    RITZ_CHECK(gather_ends(s, num_poles, pole));
+    r->engine = &closed_loop_engine;
     r->poles = &s->poles;
     r->from_hz = fmax(plant->from_hz, controller->from_hz);
     r->to_hz = fmin(plant->to_hz, controller->to_hz);
     memcpy(r->damping, plant->damping, sizeof r->damping);
     r->at = closed_at;
     RITZ_MOVE(*out, r);
-done:
-    ritz_responder_free(&r); /* which frees s too */
-    return status;
+    return RITZ_OK;
 }

@@ -15,17 +15,13 @@ typedef struct modal_responder {
     ritz_residual residual;
 } modal_responder;
 
-static void free_modal(modal_responder *m)
+static void free_modal(void *state)
 {
+    modal_responder *m = state;
+
     ritz_pairs_free(&m->pairs);
     ritz_poles_free(&m->poles);
     ritz_residual_free(&m->residual);
-}
-
-static void finish_modal(void *state)
-{
-    free_modal(state);
-    free(state);
 }
 
 static ritz_status modal_at(void *state, double hertz, double _Complex *H)
@@ -55,24 +51,17 @@ static ritz_status set_component(const ritz_response_request *request,
 static ritz_status make_modal(const ritz_response_request *request,
                               ritz_responder *out)
 {
-    ritz_status status = RITZ_OK;
     modal_responder *m = NULL;
 
-    RITZ_NEW(m, 1);
-    if (request->model.kind == RITZ_MODEL_COMPONENT)
-        RITZ_TRY(set_component(request, m));
-    else
-        RITZ_TRY(ritz_poles_of_dense(&request->model.dense,
-                                     request->model.damping, request->to_hz,
-                                     &m->poles));
+    RITZ_CHECK_NEW(m, 1);
+    out->state = m;
+    out->free = free_modal;
     out->poles = &m->poles;
     out->at = modal_at;
-    out->free = finish_modal;
-    RITZ_MOVE(out->state, m);
-done:
-    if (m)
-        finish_modal(m);
-    return status;
+    if (request->model.kind == RITZ_MODEL_COMPONENT)
+        return set_component(request, m);
+    return ritz_poles_of_dense(&request->model.dense, request->model.damping,
+                               request->to_hz, &m->poles);
 }
 
 const ritz_response_engine ritz_response_engine_modal = {

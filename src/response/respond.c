@@ -1,7 +1,4 @@
-/*
- * Choice of the engine: the one that is named, or the one that suits the
- * component.
- */
+/* The choice of the engine, and a response all at once. */
 #include "response/responder.h"
 
 #include <stdio.h>
@@ -11,22 +8,13 @@ const ritz_response_engine *ritz_response_engine_find(const char *name)
     return ritz_row_find(ritz_response_engines, "engine", name);
 }
 
-static bool has_matrices(const ritz_component *c)
-{
-    return c->D.colptr || c->K4.colptr;
-}
-
-static bool is_rayleigh(const ritz_response_request *request)
-{
-    const ritz_damping *damping = request->model.damping;
-
-    return damping && ritz_damping_is_rayleigh(damping);
-}
-
 const ritz_response_engine *
 ritz_response_engine_choose(const ritz_response_request *request,
                             const char **why)
 {
+    const ritz_component *c = request->model.component;
+    const ritz_damping *damping = request->model.damping;
+
     if (request->model.kind == RITZ_MODEL_STATES) {
         *why = "a state space has no other";
         return &ritz_response_engine_states;
@@ -35,7 +23,8 @@ ritz_response_engine_choose(const ritz_response_request *request,
         *why = "all modes of a small dense model cost little";
         return &ritz_response_engine_modal;
     }
-    if (has_matrices(request->model.component) || is_rayleigh(request)) {
+    if (c->D.colptr || c->K4.colptr ||
+        (damping && ritz_damping_is_rayleigh(damping))) {
         *why = "damping matrices act on all modes, which a sum of some misses";
         return &ritz_response_engine_krylov;
     }
@@ -63,11 +52,10 @@ ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
         return status;
     (void)snprintf(said, sizeof said, "%.*s", (int)sizeof said - 1,
                    ritz_error_message());
-    RITZ_TRY(ritz_responder_new(&ritz_response_engine_direct, request, out));
+    RITZ_CHECK(ritz_responder_new(&ritz_response_engine_direct, request, out));
     (void)snprintf((*out)->remark, sizeof(*out)->remark,
                    "%s gave up, direct instead: %s", engine->name, said);
-done:
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_response_of(ritz_model model,

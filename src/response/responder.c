@@ -1,16 +1,155 @@
-
+/*
+ * What all engines share: the points of a grid, the rounding of responses,
+ * names and damped poles.
+ */
 #include "response/responder.h"
+
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "poles/damped.h"
 
 #include <ritz/base.h>
 
 #include <complex.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/*
+ * The frequencies at which a response is computed. A resonance of ratio zeta at
+ * frequency f is 2 zeta f wide at half its power: an even grid steps over it as
+ * soon as its own step is wider. With `refine` each gets its peak and points on
+ * both sides that lie 1/4 to 8 widths away.
+ */
+
+/* In half-power widths. */
+static const double beside[] = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+enum { BESIDE = sizeof beside / sizeof *beside, AROUND = 2 * BESIDE + 1 };
+static const int64_t most_points = 100000000;
+
+/* Given points must ascend, and none may be negative. */
+static ritz_status check_points(const ritz_grid *grid)
+{
+    RITZ_REFUSE_IF(grid->count < 1, RITZ_ERR_ARGUMENT,
+                   "a response needs at least one frequency");
+    for (int64_t k = 0; k < grid->count; k++)
+        RITZ_REFUSE_IF(!isfinite(grid->hertz[k]) || grid->hertz[k] < 0.0 ||
+                           (k > 0 && grid->hertz[k] <= grid->hertz[k - 1]),
+                       RITZ_ERR_ARGUMENT,
+                       "frequencies do not ascend from 0 Hz at %g",
+                       grid->hertz[k]);
+    return RITZ_OK;
+}
+
+ritz_status ritz_grid_check(const ritz_grid *grid)
+{
+    if (grid->hertz)
+        return check_points(grid);
+    RITZ_REFUSE_IF(!isfinite(grid->from_hz) || !isfinite(grid->to_hz) ||
+                       grid->from_hz < 0.0 || grid->from_hz >= grid->to_hz,
+                   RITZ_ERR_ARGUMENT,
+                   "a response from %g to %g Hz has no range", grid->from_hz,
+                   grid->to_hz);
+    RITZ_REFUSE_IF(grid->count < 2, RITZ_ERR_ARGUMENT,
+                   "a response needs at least two frequencies");
+    RITZ_REFUSE_IF(grid->count > most_points, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " frequencies are too many", grid->count);
+    RITZ_REFUSE_IF(grid->log && !(grid->from_hz > 0.0), RITZ_ERR_ARGUMENT,
+                   "a logarithmic grid cannot begin at 0 Hz");
+    return RITZ_OK;
+}
+
+static double place_even(const ritz_grid *grid, int64_t k)
+{
+    double t = (double)k / (double)(grid->count - 1);
+
+    if (grid->hertz)
+        return grid->hertz[k];
+    if (k == 0)
+        return grid->from_hz;
+    if (k == grid->count - 1)
+        return grid->to_hz;
+    return grid->log ? grid->from_hz * pow(grid->to_hz / grid->from_hz, t)
+                     : grid->from_hz + t * (grid->to_hz - grid->from_hz);
+}
+
+/* Peak of 1/|w^2 - x^2 + 2 i zeta w x|, then the points on both sides of it. */
+static void place_around(double omega, double zeta, double out[static AROUND])
+{
+    double f = omega / (2.0 * RITZ_PI);
+    double peak = zeta < sqrt(0.5) ? f * sqrt(1.0 - 2.0 * zeta * zeta) : f;
+
+    out[0] = peak;
+    for (int k = 0; k < BESIDE; k++) {
+        out[1 + 2 * k] = peak - beside[k] * 2.0 * zeta * f;
+        out[2 + 2 * k] = peak + beside[k] * 2.0 * zeta * f;
+    }
+}
+
+static int64_t remove_equal(int64_t count, double *f)
+{
+    int64_t kept = 0;
+
+    qsort(f, (size_t)count, sizeof *f, ritz_ascending);
+    for (int64_t k = 0; k < count; k++)
+        if (kept == 0 || f[k] - f[kept - 1] > RITZ_SAME_POINT * f[k])
+            f[kept++] = f[k];
+    return kept;
+}
+
+ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
+                             const double *omega, const double *zeta,
+                             int64_t *count, double **out)
+{
+    int64_t n = 0;
+    RITZ_OWN_ARRAY double *f = NULL;
+    double extra[AROUND];
+
+    RITZ_CHECK(ritz_grid_check(grid));
+    RITZ_CHECK_NEW(f, grid->count + (grid->refine ? num_modes * AROUND : 0));
+    for (n = 0; n < grid->count; n++)
+        f[n] = place_even(grid, n);
+    for (int64_t k = 0; grid->refine && !grid->hertz && k < num_modes; k++) {
+        if (!(omega[k] > 0.0 && zeta[k] > 0.0)) /* no width to resolve */
+            continue;
+        place_around(omega[k], zeta[k], extra);
+        for (int a = 0; a < AROUND; a++)
+            if (extra[a] >= grid->from_hz && extra[a] <= grid->to_hz)
+                f[n++] = extra[a];
+    }
+    *count = grid->hertz ? n : remove_equal(n, f);
+    RITZ_MOVE(*out, f);
+    return RITZ_OK;
+}
+
+/* H of more values than this is a mistake in the request. */
+static const int64_t most_values = INT64_C(1) << 31;
+
+ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
+                              ritz_response *out)
+{
+    const ritz_io *io = &poles->io;
+    RITZ_OWN(ritz_response)
+    r = {.num_inputs = io->num_inputs, .num_outputs = io->num_outputs};
+    RITZ_OWN_ARRAY double *omega = NULL, *zeta = NULL;
+
+    RITZ_CHECK(ritz_poles_ratios(poles, &omega, &zeta));
+    RITZ_CHECK(
+        ritz_grid_points(grid, poles->count, omega, zeta, &r.count, &r.hertz));
+    RITZ_REFUSE_IF(r.num_inputs * r.num_outputs > most_values / r.count,
+                   RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " frequencies of %" PRId64 " x %" PRId64
+                   " responses are too many",
+                   r.count, r.num_outputs, r.num_inputs);
+    RITZ_CHECK_COPY(r.input, io->input, r.num_inputs);
+    RITZ_CHECK_COPY(r.output, io->output, r.num_outputs);
+    RITZ_CHECK_NEW(r.H, r.count * r.num_inputs * r.num_outputs);
+    RITZ_MOVE(*out, r);
+    return RITZ_OK;
+}
 
 enum { KINDS = 3 };
 
@@ -47,13 +186,6 @@ static void measure_loads(const ritz_response_request *request,
     }
 }
 
-static void free_noise(ritz_noise *noise)
-{
-    free(noise->output);
-    free(noise->input);
-    *noise = (ritz_noise){0};
-}
-
 /*
  * Of a component or a small dense model; otherwise {0}, with which no channel
  * counts as rounding.
@@ -61,24 +193,16 @@ static void free_noise(ritz_noise *noise)
 static ritz_status new_noise(const ritz_response_request *request,
                              ritz_noise *out)
 {
-    ritz_status status = RITZ_OK;
-    const ritz_model *model = &request->model;
-    const ritz_io *io = model->kind == RITZ_MODEL_COMPONENT
-                            ? &model->component->io
-                            : model->dense.io;
-    ritz_noise noise = {0};
+    const ritz_io io = ritz_model_io(request->model);
 
-    if (model->kind == RITZ_MODEL_STATES)
+    if (request->model.kind == RITZ_MODEL_STATES)
         return RITZ_OK;
-    noise.num_outputs = io->num_outputs;
-    noise.num_inputs = io->num_inputs;
-    RITZ_NEW(noise.output, KINDS * io->num_outputs);
-    RITZ_NEW(noise.input, io->num_inputs);
-    measure_loads(request, io, &noise);
-    RITZ_MOVE(*out, noise);
-done:
-    free_noise(&noise);
-    return status;
+    out->num_outputs = io.num_outputs;
+    out->num_inputs = io.num_inputs;
+    RITZ_CHECK_NEW(out->output, KINDS * io.num_outputs);
+    RITZ_CHECK_NEW(out->input, io.num_inputs);
+    measure_loads(request, &io, out);
+    return RITZ_OK;
 }
 
 /* |c_i + i w cv_i - w^2 ca_i|, or an upper bound that is a little larger. */
@@ -131,14 +255,11 @@ void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
     }
 }
 
-/* What all engines share: the points of a grid, names, damped poles. */
-
 double ritz_response_highest(const ritz_response_request *request)
 {
     return request->up_to_hz > 0.0 ? request->up_to_hz : 3.0 * request->to_hz;
 }
 
-/* The highest frequency of a grid of any kind. */
 double ritz_grid_end(const ritz_grid *grid)
 {
     return grid->hertz && grid->count > 0 ? grid->hertz[grid->count - 1]
@@ -189,12 +310,16 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
 
 void ritz_responder_free(ritz_responder **responder)
 {
-    if (!*responder)
+    ritz_responder *r = *responder;
+
+    if (!r)
         return;
-    if ((*responder)->state)
-        (*responder)->free((*responder)->state);
-    free_noise(&(*responder)->noise);
-    free(*responder);
+    if (r->state)
+        r->free(r->state);
+    free(r->state);
+    free(r->noise.output);
+    free(r->noise.input);
+    free(r);
     *responder = NULL;
 }
 
@@ -219,14 +344,19 @@ ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
     return responder->at(responder->state, hertz, H);
 }
 
+void ritz_responder_sign(const ritz_responder *responder, ritz_response *r)
+{
+    (void)snprintf(r->method, sizeof r->method, "%s", responder->engine->name);
+    memcpy(r->damping, responder->damping, sizeof r->damping);
+}
+
 ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out)
 {
     RITZ_OWN(ritz_response) r = {0};
 
-    RITZ_CHECK(ritz_response_new(grid, responder->poles,
-                                 responder->engine->name, NULL, &r));
-    memcpy(r.damping, responder->damping, sizeof r.damping);
+    RITZ_CHECK(ritz_response_new(grid, responder->poles, &r));
+    ritz_responder_sign(responder, &r);
     for (int64_t k = 0; k < r.count; k++) {
         RITZ_CHECK(ritz_responder_at(responder, r.hertz[k],
                                      r.H + k * r.num_outputs * r.num_inputs));
@@ -259,30 +389,42 @@ static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
     const double band_hz[2] = {r->from_hz, r->to_hz};
     const ritz_span span = {.modes = -1,
                             .up_to_hz = RITZ_POLES_BEYOND * r->to_hz};
-    ritz_status status = RITZ_OK;
-    ritz_spectrum own = {0};
-    ritz_damped damped = {0};
+    RITZ_OWN(ritz_spectrum) own = {0};
+    RITZ_OWN(ritz_damped) damped = {0};
     const ritz_spectrum *all = r->pairs ? &own : &damped.listing;
     double _Complex *s = NULL;
-    int64_t n = 0;
 
     if (r->pairs)
-        RITZ_TRY(ritz_spectrum_of(
+        RITZ_CHECK(ritz_spectrum_of(
             ritz_model_of_component(r->component, &r->given), &span, &own));
     else
-        RITZ_TRY(ritz_damped_new(r->poles, NULL, NULL, band_hz, &damped));
-    RITZ_NEW(s, all->count + all->num_zero);
+        RITZ_CHECK(ritz_damped_new(r->poles, NULL, NULL, band_hz, &damped));
+    *count = all->count + all->num_zero; /* those at 0 behind */
+    RITZ_CHECK_NEW(s, *count);
     for (int64_t k = 0; k < all->count; k++)
-        s[n++] = all->s[k];
-    for (int64_t k = 0; k < all->num_zero; k++)
-        s[n++] = 0.0;
-    *count = n;
-    RITZ_MOVE(*out, s);
-done:
-    free(s);
-    ritz_spectrum_free(&own);
-    ritz_damped_free(&damped);
-    return status;
+        s[k] = all->s[k];
+    *out = s;
+    return RITZ_OK;
+}
+
+ritz_status ritz_poles_name(const ritz_io *io, ritz_poles *poles)
+{
+    ritz_io *to = &poles->io;
+    int64_t n = poles->count;
+
+    to->num_inputs = io->num_inputs;
+    to->num_outputs = io->num_outputs;
+    RITZ_CHECK_COPY(to->input, io->input, io->num_inputs);
+    RITZ_CHECK_COPY(to->output, io->output, io->num_outputs);
+    RITZ_CHECK(ritz_dense_new(n, io->num_inputs, &to->B));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, n, &to->C));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, n, &to->Cv));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, n, &to->Ca));
+    for (int64_t k = 0; k < n * io->num_inputs; k++)
+        to->B.val[k] = 1.0;
+    for (int64_t k = 0; k < n * io->num_outputs; k++)
+        to->C.val[k] = 1.0;
+    return RITZ_OK;
 }
 
 ritz_status ritz_responder_poles(const ritz_responder *responder,

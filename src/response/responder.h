@@ -55,7 +55,7 @@ struct ritz_responder {
     void *state;
     /** Add H at a frequency to an array of zeros. */
     ritz_status (*at)(void *state, double hertz, double _Complex *H);
-    void (*free)(void *state); /* with all that it owns */
+    void (*free)(void *state); /* all that it owns, but not itself */
 };
 
 extern const ritz_response_engine ritz_response_engine_krylov;
@@ -70,11 +70,20 @@ ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
                                      const ritz_response_request *request,
                                      ritz_responder **out);
 
+/** Note the engine and the damping in a response. */
+void ritz_responder_sign(const ritz_responder *responder, ritz_response *r);
+
 /** The highest mode that a request needs of a component, Hz. */
 double ritz_response_highest(const ritz_response_request *request);
 
 /** The highest frequency of a grid of any kind, Hz. */
 double ritz_grid_end(const ritz_grid *grid);
+
+/**
+ * Names of inputs and outputs for poles that are known alone: each counts as
+ * controllable and observable.
+ */
+ritz_status ritz_poles_name(const ritz_io *io, ritz_poles *poles);
 
 /**
  * Damped poles. Decoupled modes give the roots of s^2 + rate s + lambda, if

@@ -24,28 +24,24 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
                                  const ritz_scales *scales, double *sigma)
 {
     static const ritz_scales none = {0};
-    ritz_status status = RITZ_OK;
     int p = (int)num_outputs, m = (int)num_inputs, info = 0;
-    double _Complex *A = NULL;
-    double *spare = NULL;
+    RITZ_OWN_ARRAY double _Complex *A = NULL;
+    RITZ_OWN_ARRAY double *spare = NULL;
 
     if (p == 0 || m == 0)
         return RITZ_OK;
     scales = scales ? scales : &none;
-    RITZ_NEW(A, num_outputs * num_inputs);
-    RITZ_NEW(spare, smaller(num_outputs, num_inputs));
+    RITZ_CHECK_NEW(A, num_outputs * num_inputs);
+    RITZ_CHECK_NEW(spare, smaller(num_outputs, num_inputs));
     for (int64_t i = 0; i < p; i++)
         for (int64_t j = 0; j < m; j++)
             A[i + j * p] = H[i * m + j] * channel_scale(scales->input, j) /
                            channel_scale(scales->output, i);
     info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', p, m, A, p, sigma, NULL,
                           1, NULL, 1, spare);
-    RITZ_FAIL_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                 "singular values of a response were not found");
-done:
-    free(A);
-    free(spare);
-    return status;
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "singular values of a response were not found");
+    return RITZ_OK;
 }
 
 ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)
@@ -74,6 +70,12 @@ typedef struct sampler {
     double *sigma;
 } sampler;
 
+static void sampler_free(sampler *s)
+{
+    free(s->H);
+    free(s->sigma);
+}
+
 static ritz_status largest_at(void *state, double hertz, double *value)
 {
     sampler *s = state;
@@ -91,28 +93,23 @@ ritz_status ritz_singular_peak(const ritz_response *r,
                                ritz_responder *responder, double *hertz,
                                double *value)
 {
-    ritz_status status = RITZ_OK;
     int64_t size = r->num_outputs * r->num_inputs;
-    sampler s = {.response = r, .scales = scales, .responder = responder};
+    RITZ_OWN(sampler)
+    s = {.response = r, .scales = scales, .responder = responder};
     const ritz_curve curve = {largest_at, &s};
-    double *first = NULL;
+    RITZ_OWN_ARRAY double *first = NULL;
 
     *hertz = *value = 0.0;
     if (size == 0 || r->count == 0)
         return RITZ_OK;
-    RITZ_NEW(first, r->count);
-    RITZ_NEW(s.H, size);
-    RITZ_NEW(s.sigma, smaller(r->num_outputs, r->num_inputs));
+    RITZ_CHECK_NEW(first, r->count);
+    RITZ_CHECK_NEW(s.H, size);
+    RITZ_CHECK_NEW(s.sigma, smaller(r->num_outputs, r->num_inputs));
     for (int64_t k = 0; k < r->count; k++) {
-        RITZ_TRY(ritz_singular_values(r->num_outputs, r->num_inputs,
-                                      r->H + k * size, scales, s.sigma));
+        RITZ_CHECK(ritz_singular_values(r->num_outputs, r->num_inputs,
+                                        r->H + k * size, scales, s.sigma));
         first[k] = s.sigma[0];
     }
-    RITZ_TRY(ritz_curve_peak(r->count, r->hertz, first,
-                             responder ? &curve : NULL, hertz, value));
-done:
-    free(first);
-    free(s.H);
-    free(s.sigma);
-    return status;
+    return ritz_curve_peak(r->count, r->hertz, first, responder ? &curve : NULL,
+                           hertz, value);
 }

@@ -110,32 +110,21 @@ static ritz_status solve_hessenberg(hessenberg *h, double hertz)
 /* Poles with Im s >= 0 as modes, for a grid that is refined around them. */
 static ritz_status find_poles(const ritz_state_space *model, ritz_poles *out)
 {
-    ritz_status status = RITZ_OK;
     int64_t count = 0;
-    double _Complex *s = NULL;
-    ritz_poles poles = {0};
+    RITZ_OWN_ARRAY double _Complex *s = NULL;
+    ritz_io io; /* borrowed */
 
-    RITZ_TRY(ritz_state_space_poles(model, &count, &s));
-    RITZ_NEW(poles.lambda, count);
-    RITZ_NEW(poles.rate, count);
+    RITZ_CHECK(ritz_state_space_poles(model, &count, &s));
+    RITZ_CHECK_NEW(out->lambda, count);
+    RITZ_CHECK_NEW(out->rate, count);
     for (int64_t k = 0; k < count; k++) {
         if (cimag(s[k]) < 0.0)
             continue;
-        poles.lambda[poles.count] = pow(cabs(s[k]), 2.0);
-        poles.rate[poles.count++] = fmax(-2.0 * creal(s[k]), 0.0);
+        out->lambda[out->count] = pow(cabs(s[k]), 2.0);
+        out->rate[out->count++] = fmax(-2.0 * creal(s[k]), 0.0);
     }
-    RITZ_TRY(ritz_io_new(0, model->num_inputs, model->num_outputs, &poles.io));
-    if (model->num_inputs > 0)
-        memcpy(poles.io.input, model->input,
-               (size_t)model->num_inputs * RITZ_NAME_SIZE);
-    if (model->num_outputs > 0)
-        memcpy(poles.io.output, model->output,
-               (size_t)model->num_outputs * RITZ_NAME_SIZE);
-    RITZ_MOVE(*out, poles);
-done:
-    free(s);
-    ritz_poles_free(&poles);
-    return status;
+    io = ritz_model_io(ritz_model_of_states(model));
+    return ritz_poles_name(&io, out);
 }
 
 typedef struct state_responder {
@@ -150,7 +139,6 @@ static void free_states(void *state)
 
     ritz_poles_free(&s->poles);
     free_hessenberg(&s->h);
-    free(s);
 }
 
 static ritz_status states_at(void *state, double hertz, double _Complex *H)
@@ -169,22 +157,17 @@ static ritz_status states_at(void *state, double hertz, double _Complex *H)
 static ritz_status make_states(const ritz_response_request *request,
                                ritz_responder *out)
 {
-    ritz_status status = RITZ_OK;
     state_responder *s = NULL;
 
-    RITZ_NEW(s, 1);
-    s->model = request->model.states;
-    RITZ_TRY(find_poles(s->model, &s->poles));
-    RITZ_TRY(start_hessenberg(s->model, &s->h));
-    memcpy(out->damping, s->model->damping, sizeof out->damping);
+    RITZ_CHECK_NEW(s, 1);
+    out->state = s;
+    out->free = free_states;
     out->poles = &s->poles;
     out->at = states_at;
-    out->free = free_states;
-    RITZ_MOVE(out->state, s);
-done:
-    if (s)
-        free_states(s);
-    return status;
+    s->model = request->model.states;
+    memcpy(out->damping, s->model->damping, sizeof out->damping);
+    RITZ_CHECK(find_poles(s->model, &s->poles));
+    return start_hessenberg(s->model, &s->h);
 }
 
 const ritz_response_engine ritz_response_engine_states = {

@@ -8,15 +8,6 @@ void loops_check(const cli_program *program, const loop_options *given)
                             "say how a loop is closed: give its --controller");
 }
 
-static ritz_ends find_ends(const model *m)
-{
-    const ritz_io io = model_io(m);
-
-    return (ritz_ends){io.num_inputs, io.num_outputs,
-                       (const char(*)[RITZ_NAME_SIZE])io.input,
-                       (const char(*)[RITZ_NAME_SIZE])io.output};
-}
-
 ritz_status loops_read(cli_run *run, const loop_options *given, loop_run *out)
 {
     return given->controller ? model_read(run, given->controller, MODEL_STATES,
@@ -27,7 +18,7 @@ ritz_status loops_read(cli_run *run, const loop_options *given, loop_run *out)
 static ritz_status join_signals(cli_run *run, const loop_options *given,
                                 const model *m, loop_run *out)
 {
-    ritz_ends plant = find_ends(m), inner = find_ends(&out->controller);
+    const ritz_io plant = model_io(m), inner = model_io(&out->controller);
 
     RITZ_CHECK_IN(given->controller,
                   ritz_loop_match(&plant, &inner, given->connect.count,

@@ -18,11 +18,9 @@ static void named(char (*name)[RITZ_NAME_SIZE], int64_t k, const char *text)
     snprintf(name[k], RITZ_NAME_SIZE, "%s", text);
 }
 
-static ritz_ends ends_of(const ritz_state_space *m)
+static ritz_io ends_of(const ritz_state_space *m)
 {
-    return (ritz_ends){m->num_inputs, m->num_outputs,
-                       (const char(*)[RITZ_NAME_SIZE])m->input,
-                       (const char(*)[RITZ_NAME_SIZE])m->output};
+    return ritz_model_io(ritz_model_of_states(m));
 }
 
 static void responder(const ritz_state_space *model, double to_hz,
@@ -70,7 +68,7 @@ typedef struct pair {
 /* Join by name and make all ready. */
 static void join(pair *p, bool positive, double to_hz)
 {
-    ritz_ends plant = ends_of(&p->plant), control = ends_of(&p->controller);
+    ritz_io plant = ends_of(&p->plant), control = ends_of(&p->controller);
 
     assert_ok(ritz_loop_match(&plant, &control, 0, NULL, &p->loop));
     p->loop.positive = positive;
@@ -290,7 +288,7 @@ static void loops_without_answer_are_refused(void **state)
     const double one = 1.0;
     const spaces_rows rows = {0, 1, 1, NULL, NULL, NULL, &one, NULL};
     ritz_state_space plant = {0}, controller = {0}, closed = {0};
-    ritz_ends outer, inner;
+    ritz_io outer, inner;
     ritz_loop loop = {0};
     const char *const both[] = {"y=e"}, *const none[] = {"y=force"},
                       *const bad[] = {"y"}, *const twice[] = {"y=e", "y=e"};
@@ -313,7 +311,7 @@ static void loops_without_answer_are_refused(void **state)
                  RITZ_ERR_ARGUMENT, "'e' of the controller is connected twice");
     assert_ok(ritz_loop_match(&outer, &inner, 1, both, &loop));
     assert_fails(ritz_closed_loop(&plant, &controller, &loop, &closed),
-                 RITZ_ERR_SINGULAR, "makes a circle without an answer");
+                 RITZ_ERR_SINGULAR, "form a loop that has no solution");
     loop.measured[0] = 1;
     assert_fails(ritz_closed_loop(&plant, &controller, &loop, &closed),
                  RITZ_ERR_ARGUMENT, "the plant has no output 2");
@@ -460,7 +458,7 @@ static ritz_status forget(pair *p)
     const ritz_grid grid = {
         .from_hz = 0.1, .to_hz = 1.0, .count = 5, .refine = true};
     ritz_status status = RITZ_OK;
-    ritz_ends plant = ends_of(&p->plant), control = ends_of(&p->controller);
+    ritz_io plant = ends_of(&p->plant), control = ends_of(&p->controller);
     ritz_loop loop = {0};
     ritz_state_space closed = {0};
     ritz_responder *H = NULL;
