@@ -47,14 +47,6 @@ typedef struct ritz_spectrum {
 ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
                              ritz_spectrum *out);
 
-/**
- * That space as a model of its own, with its dampers projected: T is kept.
- *
- * @param[in] span  of undamped modes
- */
-ritz_status ritz_spectrum_space(const ritz_component *component,
-                                const ritz_span *span, ritz_reduced *out);
-
 /** Damping ratio -Re s / |s|: 1 of real poles that decay. */
 double ritz_spectrum_ratio(double _Complex s);
 

@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* Z = Lambda - w^2 I + i (w D + K4), both triangles. */
-static void assemble_coupled(const ritz_poles *poles, double w,
+static void assemble_coupled(const ritz_poles *poles, bool transposed, double w,
                              double _Complex *Z)
 {
     int64_t m = poles->count + poles->massless;
@@ -22,8 +22,9 @@ static void assemble_coupled(const ritz_poles *poles, double w,
         double own = poles->lambda[j] - (j < poles->count ? w * w : 0.0);
 
         for (int64_t i = 0; i < m; i++) {
-            double k4 = poles->K4.val ? ritz_dense_col(&poles->K4, j)[i] : 0.0;
-            double d = w * ritz_dense_col(&poles->D, j)[i];
+            int64_t at = transposed ? j + i * m : i + j * m;
+            double k4 = poles->K4.val ? poles->K4.val[at] : 0.0;
+            double d = w * poles->D.val[at];
 
             Z[i + j * m] = ritz_complex(i == j ? own : 0.0, d + k4);
         }
@@ -65,11 +66,12 @@ static int factor_coupled(bool skew, int m, double _Complex *Z,
                                  rcond);
 }
 
-static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
+static ritz_status solve_coupled(const ritz_poles *poles, bool transposed,
+                                 const ritz_dense *loads, double hertz,
                                  double _Complex *q)
 {
     int64_t m = poles->count + poles->massless;
-    int64_t inputs = poles->io.num_inputs;
+    int64_t inputs = loads->ncol;
     RITZ_OWN_ARRAY double _Complex *Z = NULL;
     RITZ_OWN_ARRAY double *s = NULL;
     RITZ_OWN_ARRAY lapack_int *pivot = NULL;
@@ -79,9 +81,9 @@ static ritz_status solve_coupled(const ritz_poles *poles, double hertz,
     RITZ_CHECK_NEW(Z, m * m);
     RITZ_CHECK_NEW(s, m);
     RITZ_CHECK_NEW(pivot, m);
-    assemble_coupled(poles, 2.0 * RITZ_PI * hertz, Z);
+    assemble_coupled(poles, transposed, 2.0 * RITZ_PI * hertz, Z);
     for (int64_t k = 0; k < m * inputs; k++)
-        q[k] = poles->io.B.val[k];
+        q[k] = loads->val[k];
     equilibrate_coupled(m, inputs, Z, q, s);
     info = factor_coupled(poles->skew, (int)m, Z, pivot, &rcond);
     RITZ_REFUSE_IF(
@@ -203,6 +205,18 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
     return false;
 }
 
+ritz_status ritz_refuse_pole(bool rigid, double hertz)
+{
+    if (rigid)
+        return ritz_fail(RITZ_ERR_SINGULAR,
+                         "at 0 Hz the response is infinite: a rigid-body "
+                         "motion is driven and seen, begin above 0 Hz");
+    return ritz_fail(RITZ_ERR_SINGULAR,
+                     "%.9g Hz is the frequency of an undamped mode: give it "
+                     "damping or leave the point out",
+                     hertz);
+}
+
 /* One over the pole's factor; 0 where it is infinite and does not matter. */
 static ritz_status invert_mode(const ritz_poles *poles, int64_t k, double hertz,
                                double _Complex *out)
@@ -212,43 +226,34 @@ static ritz_status invert_mode(const ritz_poles *poles, int64_t k, double hertz,
         ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
     bool on_pole = cabs(z) <= RITZ_POLE_HIT * (poles->lambda[k] + w * w);
 
-    *out = 0.0;
-    if (on_pole) {
-        RITZ_REFUSE_IF(
-            ritz_poles_matter(poles, k) && k < poles->num_rigid,
-            RITZ_ERR_SINGULAR,
-            "at 0 Hz the response is infinite: a rigid-body motion is "
-            "driven and seen, begin above 0 Hz");
-        RITZ_REFUSE_IF(ritz_poles_matter(poles, k), RITZ_ERR_SINGULAR,
-                       "%.9g Hz is the frequency of an undamped mode: give it "
-                       "damping or leave the point out",
-                       hertz);
-    } else {
-        *out = 1.0 / z;
-    }
+    if (on_pole && ritz_poles_matter(poles, k))
+        return ritz_refuse_pole(k < poles->num_rigid, hertz);
+    *out = on_pole ? 0.0 : 1.0 / z;
     return RITZ_OK;
 }
 
-static ritz_status solve_decoupled(const ritz_poles *poles, double hertz,
+static ritz_status solve_decoupled(const ritz_poles *poles,
+                                   const ritz_dense *loads, double hertz,
                                    double _Complex *q)
 {
     double _Complex g = 0.0;
 
     for (int64_t k = 0; k < poles->count; k++) {
         RITZ_CHECK(invert_mode(poles, k, hertz, &g));
-        for (int64_t j = 0; j < poles->io.num_inputs; j++)
-            q[k + j * poles->count] = g * ritz_dense_col(&poles->io.B, j)[k];
+        for (int64_t j = 0; j < loads->ncol; j++)
+            q[k + j * poles->count] = g * ritz_dense_col(loads, j)[k];
     }
     return RITZ_OK;
 }
 
-ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
+ritz_status ritz_poles_solve(const ritz_poles *poles, bool transposed,
+                             const ritz_dense *loads, double hertz,
                              double _Complex *q)
 {
-    if (poles->count + poles->massless == 0 || poles->io.num_inputs == 0)
+    if (poles->count + poles->massless == 0 || loads->ncol == 0)
         return RITZ_OK;
-    return poles->coupled ? solve_coupled(poles, hertz, q)
-                          : solve_decoupled(poles, hertz, q);
+    return poles->coupled ? solve_coupled(poles, transposed, loads, hertz, q)
+                          : solve_decoupled(poles, loads, hertz, q);
 }
 
 /*
@@ -269,7 +274,7 @@ static void add_rigid_acceleration(const ritz_poles *poles, double _Complex *H)
 ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H)
 {
-    RITZ_CHECK(ritz_poles_solve(poles, hertz, poles->q));
+    RITZ_CHECK(ritz_poles_solve(poles, false, &poles->io.B, hertz, poles->q));
     ritz_io_respond(&poles->io, hertz, poles->q, H);
     if (hertz == 0.0 && !poles->coupled)
         add_rigid_acceleration(poles, H);
@@ -421,8 +426,6 @@ static ritz_status mark_massless(int64_t count, const ritz_dense *D,
     }
     return RITZ_OK;
 }
-
-/* Every mode of a small dense model, for a response by all of them. */
 
 ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
                                 const ritz_damping *damping, bool beside,

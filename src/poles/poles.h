@@ -25,10 +25,10 @@
 typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
     double a, b;
-    bool known;          /* a and b are all that D and K4 do to them */
-    double unit;         /* of mu: term j is kept times its power j */
-    double *C, *Cv, *Ca; /* of each term j its C R_j, num_outputs x num_inputs,
-                            as ritz_dense */
+    bool known;      /* a and b are all that D and K4 do to them */
+    double unit;     /* of mu: term j is kept times its power j */
+    double *part[3]; /* C, Cv and Ca: of each term j its C R_j, num_outputs
+                            x num_inputs, as ritz_dense */
 } ritz_residual;
 
 typedef struct ritz_poles {
@@ -50,12 +50,18 @@ typedef struct ritz_poles {
 /**
  * Modal coordinates at one frequency.
  *
- * @param[out] q  count + massless rows, num_inputs columns
+ * @param[in]  transposed  of the transposed system
+ * @param[in]  loads       count + massless rows
+ * @param[out] q           as loads
  * @return RITZ_ERR_SINGULAR if that is on an undamped pole, or at 0 Hz where
  *         rigid modes are controllable and observable
  */
-ritz_status ritz_poles_solve(const ritz_poles *poles, double hertz,
+ritz_status ritz_poles_solve(const ritz_poles *poles, bool transposed,
+                             const ritz_dense *loads, double hertz,
                              double _Complex *q);
+
+/** The refusal of a frequency that is a pole, 0 Hz if @p rigid. */
+ritz_status ritz_refuse_pole(bool rigid, double hertz);
 
 /**
  * Whether mode k is controllable and observable: whether it adds to any

@@ -107,7 +107,7 @@ ritz_status ritz_proportional(const ritz_component *component, double *a,
  * the range, of the whole answer there, and not to its own size.
  */
 
-typedef struct ritz_rest_solver {
+typedef struct rest_solver {
     const ritz_sparse *M;  /* borrowed, as Phi is */
     const ritz_dense *Phi; /* the modes that are known */
     ritz_dense MPhi;
@@ -116,13 +116,13 @@ typedef struct ritz_rest_solver {
     double *
         whole; /* of each input, the response of all modes and R_0 at the end */
     bool begun; /* R_0 is known */
-} ritz_rest_solver;
+} rest_solver;
 
 /* Steps shrink by 100 or more, so that 8 reach rounding; a body of which no
    flexible mode is kept may need more. */
 enum { MOST_STEPS = 200 };
 
-static void rest_solver_free(ritz_rest_solver *s)
+static void rest_solver_free(rest_solver *s)
 {
     ritz_dense_free(&s->MPhi);
     ritz_factor_free(&s->F);
@@ -181,7 +181,7 @@ static ritz_status size_modes(const ritz_pairs *pairs, const ritz_dense *B,
 
 static ritz_status rest_solver_new(const ritz_component *component,
                                    const ritz_pairs *pairs, double to_hz,
-                                   double out_hz, ritz_rest_solver *s)
+                                   double out_hz, rest_solver *s)
 {
     const ritz_dense *B = &component->io.B;
     int64_t m = pairs->Phi.ncol;
@@ -207,7 +207,7 @@ static ritz_status rest_solver_new(const ritz_component *component,
  * against its largest value or against the whole response at the end of the
  * range: @p change over what is wanted, @p apart over what is required.
  */
-static void measure_change(const ritz_rest_solver *s, const ritz_dense *R,
+static void measure_change(const rest_solver *s, const ritz_dense *R,
                            const ritz_dense *last, double *change,
                            double *apart)
 {
@@ -237,8 +237,7 @@ static ritz_status take_out_twice(const ritz_dense *left,
     return ritz_dense_take_out(left, right, X);
 }
 
-static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
-                              ritz_dense *out)
+static ritz_status rest_solve(rest_solver *s, ritz_dense *f, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) R = {0};
     RITZ_OWN(ritz_dense) next = {0};
@@ -270,7 +269,7 @@ static ritz_status rest_solve(ritz_rest_solver *s, ritz_dense *f,
 
 enum { MOST_TERMS = 40 };
 
-/* Term j as the outputs see it. */
+/* Term j at the outputs. */
 static ritz_status put_term(const ritz_dense *C, const ritz_dense *R, int64_t j,
                             double *out)
 {
@@ -282,20 +281,19 @@ static ritz_status put_term(const ritz_dense *C, const ritz_dense *R, int64_t j,
     return RITZ_OK;
 }
 
-static ritz_status add_terms(const ritz_component *component,
-                             ritz_rest_solver *s, ritz_residual *r)
+static ritz_status add_terms(const ritz_component *component, rest_solver *s,
+                             ritz_residual *r)
 {
     const ritz_io *io = &component->io;
+    const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
     RITZ_OWN(ritz_dense) f = {0};
     RITZ_OWN(ritz_dense) R = {0};
 
-    RITZ_CHECK(ritz_dense_new(io->B.nrow, io->B.ncol, &f));
-    memcpy(f.val, io->B.val, (size_t)(f.nrow * f.ncol) * sizeof *f.val);
+    RITZ_CHECK(ritz_dense_copy(&io->B, &f));
     for (int64_t j = 0; j < r->count; j++) {
         RITZ_CHECK(rest_solve(s, &f, &R));
-        RITZ_CHECK(put_term(&io->C, &R, j, r->C));
-        RITZ_CHECK(put_term(&io->Cv, &R, j, r->Cv));
-        RITZ_CHECK(put_term(&io->Ca, &R, j, r->Ca));
+        for (int k = 0; k < 3; k++)
+            RITZ_CHECK(put_term(rows[k], &R, j, r->part[k]));
         ritz_dense_free(&f);
         RITZ_CHECK(ritz_sparse_mul(&component->M, &R, &f));
         for (int64_t k = 0; k < f.nrow * f.ncol; k++)
@@ -360,15 +358,14 @@ ritz_status ritz_residual_new(const ritz_component *component,
          .num_inputs = io->num_inputs,
          .known = true,
          .unit = 1.0};
-    [[gnu::cleanup(rest_solver_free)]] ritz_rest_solver s = {0};
+    RITZ_OWN(rest_solver) s = {0};
 
     if (pairs->Phi.ncol < component->num_dofs && pm > 0) {
         RITZ_CHECK(take_damping(component, damping, &r));
         r.count = count_terms(to_hz, out_hz, &r);
     }
-    RITZ_CHECK_NEW(r.C, r.count * pm);
-    RITZ_CHECK_NEW(r.Cv, r.count * pm);
-    RITZ_CHECK_NEW(r.Ca, r.count * pm);
+    for (int k = 0; k < 3; k++)
+        RITZ_CHECK_NEW(r.part[k], r.count * pm);
     if (r.count > 0) {
         RITZ_CHECK(rest_solver_new(component, pairs, to_hz, out_hz, &s));
         RITZ_CHECK(add_terms(component, &s, &r));
@@ -380,6 +377,8 @@ ritz_status ritz_residual_new(const ritz_component *component,
 void ritz_residual_add(const ritz_residual *residual, double hertz,
                        double _Complex *H)
 {
+    const double *C = residual->part[0], *Cv = residual->part[1],
+                 *Ca = residual->part[2];
     double w2 = ritz_eigen_lambda(hertz);
     double w = sqrt(w2);
     double _Complex stiff = ritz_complex(1.0, w * residual->b);
@@ -392,8 +391,7 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
         for (int64_t j = 0; j < residual->num_inputs; j++)
             for (int64_t i = 0; i < p; i++, k++)
                 H[i * residual->num_inputs + j] +=
-                    power * ritz_complex(residual->C[k] - w2 * residual->Ca[k],
-                                         w * residual->Cv[k]);
+                    power * ritz_complex(C[k] - w2 * Ca[k], w * Cv[k]);
         if (term + 1 < residual->count)
             power *= mu / residual->unit;
     }
@@ -401,9 +399,8 @@ void ritz_residual_add(const ritz_residual *residual, double hertz,
 
 void ritz_residual_free(ritz_residual *residual)
 {
-    free(residual->C);
-    free(residual->Cv);
-    free(residual->Ca);
+    for (int k = 0; k < 3; k++)
+        free(residual->part[k]);
     *residual = (ritz_residual){0};
 }
 
@@ -477,21 +474,11 @@ ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
     return RITZ_OK;
 }
 
-/* out = C N (N'B), num_outputs x num_inputs. */
-static ritz_status put_static(const ritz_dense *C, const ritz_dense *N,
-                              const ritz_dense *NB, double *out)
-{
-    RITZ_OWN(ritz_dense) CN = {0}, H = {0};
-
-    RITZ_CHECK(ritz_dense_mul(C, N, &CN));
-    RITZ_CHECK(ritz_dense_mul(&CN, NB, &H));
-    memcpy(out, H.val, (size_t)(H.nrow * H.ncol) * sizeof *out);
-    return RITZ_OK;
-}
-
 ritz_status ritz_static_rest(const ritz_second_order *model,
                              const ritz_pairs *pairs, ritz_residual *out)
 {
+    const ritz_dense *const rows[] = {&model->io->C, &model->io->Cv,
+                                      &model->io->Ca};
     const ritz_io *io = model->io;
     int64_t size = io->num_outputs * io->num_inputs;
     RITZ_OWN(ritz_residual)
@@ -503,14 +490,15 @@ ritz_status ritz_static_rest(const ritz_second_order *model,
     if (pairs->Phi.ncol == model->K->ncol || size == 0)
         return RITZ_OK;
     found.count = 1;
-    RITZ_CHECK_NEW(found.C, size);
-    RITZ_CHECK_NEW(found.Cv, size);
-    RITZ_CHECK_NEW(found.Ca, size);
     RITZ_CHECK(ritz_massless(model, &pairs->Phi, pairs->lambda, &N));
     RITZ_CHECK(ritz_dense_mul_tn(&N, &io->B, &NB));
-    RITZ_CHECK(put_static(&io->C, &N, &NB, found.C));
-    RITZ_CHECK(put_static(&io->Cv, &N, &NB, found.Cv));
-    RITZ_CHECK(put_static(&io->Ca, &N, &NB, found.Ca));
+    for (int k = 0; k < 3; k++) {
+        RITZ_OWN(ritz_dense) CN = {0};
+
+        RITZ_CHECK_NEW(found.part[k], size);
+        RITZ_CHECK(ritz_dense_mul(rows[k], &N, &CN));
+        RITZ_CHECK(put_term(&CN, &NB, 0, found.part[k]));
+    }
     RITZ_MOVE(*out, found);
     return RITZ_OK;
 }
@@ -543,7 +531,7 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
     RITZ_CHECK(ritz_static_rest(&model, &pairs, &rest));
     RITZ_CHECK(ritz_dense_mul(&modes.C, &modes.B, out));
     for (int64_t k = 0; rest.count > 0 && k < out->nrow * out->ncol; k++)
-        out->val[k] += rest.C[k];
+        out->val[k] += rest.part[0][k];
     return RITZ_OK;
 }
 

@@ -494,7 +494,7 @@ typedef struct listed_pole {
     int64_t index;
 } listed_pole;
 
-static int ascending(const void *left, const void *right)
+static int compare_poles(const void *left, const void *right)
 {
     const listed_pole *a = left;
     const listed_pole *b = right;
@@ -533,7 +533,7 @@ static int64_t choose_listed(const found *f, bool structural, double zero,
         else if (im > 0.0 || (im == 0.0 && !structural))
             order[count++] = (listed_pole){cabs(f->s[j]), im, j};
     }
-    qsort(order, (size_t)count, sizeof *order, ascending);
+    qsort(order, (size_t)count, sizeof *order, compare_poles);
     return count;
 }
 

@@ -341,7 +341,8 @@ static ritz_status span_space(const ritz_component *component,
     return RITZ_OK;
 }
 
-ritz_status ritz_spectrum_space(const ritz_component *component,
+/* That space as a model of its own, with its dampers projected: T is kept. */
+static ritz_status reduce_space(const ritz_component *component,
                                 const ritz_span *span, ritz_reduced *out)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -375,7 +376,7 @@ ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
                    RITZ_ERR_ARGUMENT, "the model has no dampers to scan");
     if (model.kind == RITZ_MODEL_COMPONENT) {
         if (c->num_dofs > RITZ_WHOLE_DOFS)
-            RITZ_CHECK(ritz_spectrum_space(c, &span, &small));
+            RITZ_CHECK(reduce_space(c, &span, &small));
         else
             RITZ_CHECK(ritz_whole_new(c, &small));
         scanned = ritz_model_of_reduced(&small, model.damping);
@@ -505,7 +506,7 @@ static ritz_status solve_projected(const ritz_component *component,
     const ritz_second_order model = ritz_model_of_reduced(&small, NULL).dense;
     RITZ_OWN(ritz_refiner) refiner = {0};
 
-    RITZ_CHECK(ritz_spectrum_space(component, &wide, &small));
+    RITZ_CHECK(reduce_space(component, &wide, &small));
     RITZ_CHECK(ritz_spectrum_dense(&model, NULL, out));
     keep_first(span, out);
     RITZ_CHECK(expand_shapes(&small.T, &out->re));

@@ -17,7 +17,7 @@
 typedef struct ritz_mesh {
     ritz_responder *responder; /* borrowed */
     int64_t values;            /* a point: outputs x inputs */
-    int64_t count, room;
+    int64_t count;
     double *hertz;      /* count, ascending */
     double _Complex *H; /* count x values */
     bool *open;         /* count: from this point to the next is not settled */
@@ -40,66 +40,6 @@ static ritz_status evaluate_mesh(ritz_mesh *mesh, double hertz)
     return RITZ_OK;
 }
 
-static ritz_status reserve_mesh(ritz_mesh *mesh, int64_t room)
-{
-    RITZ_OWN_ARRAY double *hertz = NULL;
-    RITZ_OWN_ARRAY double _Complex *H = NULL;
-    RITZ_OWN_ARRAY bool *open = NULL;
-    size_t count = (size_t)mesh->count;
-
-    if (room <= mesh->room)
-        return RITZ_OK;
-    room += room / 2;
-    RITZ_REFUSE_IF(room > most_values / (mesh->values > 0 ? mesh->values : 1),
-                   RITZ_ERR_CONVERGENCE,
-                   "%" PRId64 " points do not keep the tolerance: ask for "
-                   "less, or for a shorter range",
-                   mesh->count);
-    RITZ_CHECK_NEW(hertz, room);
-    RITZ_CHECK_NEW(H, room * mesh->values);
-    RITZ_CHECK_NEW(open, room);
-    if (count > 0) {
-        memcpy(hertz, mesh->hertz, count * sizeof *hertz);
-        memcpy(H, mesh->H, count * (size_t)mesh->values * sizeof *H);
-        memcpy(open, mesh->open, count * sizeof *open);
-    }
-    ritz_array_free(&mesh->hertz);
-    ritz_array_free(&mesh->H);
-    ritz_array_free(&mesh->open);
-    RITZ_MOVE(mesh->hertz, hertz);
-    RITZ_MOVE(mesh->H, H);
-    RITZ_MOVE(mesh->open, open);
-    mesh->room = room;
-    return RITZ_OK;
-}
-
-static void set_point(ritz_mesh *mesh, int64_t to, double hertz, bool open,
-                      const double _Complex *H)
-{
-    mesh->hertz[to] = hertz;
-    mesh->open[to] = open;
-    memmove(mesh->H + to * mesh->values, H, (size_t)mesh->values * sizeof *H);
-}
-
-/*
- * Remove the points that repeat another, or differ from it by rounding alone.
- */
-static void remove_duplicates(ritz_mesh *mesh)
-{
-    int64_t kept = 0;
-
-    for (int64_t k = 0; k < mesh->count; k++) {
-        if (kept > 0 && mesh->hertz[k] - mesh->hertz[kept - 1] <=
-                            RITZ_SAME_KNOT * mesh->hertz[k]) {
-            mesh->open[kept - 1] = mesh->open[kept - 1] || mesh->open[k];
-            continue;
-        }
-        set_point(mesh, kept++, mesh->hertz[k], mesh->open[k],
-                  mesh->H + k * mesh->values);
-    }
-    mesh->count = kept;
-}
-
 static void ritz_mesh_free(ritz_mesh *mesh)
 {
     free(mesh->hertz);
@@ -112,31 +52,9 @@ static void ritz_mesh_free(ritz_mesh *mesh)
     free(mesh->between);
 }
 
-/* A mesh of given points, which ascend; every interval is still open. */
-static ritz_status fill_mesh(ritz_responder *responder, int64_t count,
-                             const double *hertz, ritz_mesh *mesh)
-{
-    const ritz_io *io = &responder->poles->io;
-
-    mesh->responder = responder;
-    mesh->values = io->num_outputs * io->num_inputs;
-    RITZ_CHECK_NEW(mesh->peak, mesh->values);
-    RITZ_CHECK_NEW(mesh->level, mesh->values);
-    RITZ_CHECK_NEW(mesh->scale, mesh->values);
-    RITZ_CHECK_NEW(mesh->row, mesh->values);
-    RITZ_CHECK_NEW(mesh->between, mesh->values);
-    RITZ_CHECK(reserve_mesh(mesh, count));
-    for (int64_t k = 0; k < count; k++) {
-        RITZ_CHECK(evaluate_mesh(mesh, hertz[k]));
-        set_point(mesh, k, hertz[k], true, mesh->row);
-    }
-    mesh->count = count;
-    remove_duplicates(mesh);
-    return RITZ_OK;
-}
-
 /*
- * Insert points into the mesh, except those that it has already.
+ * Insert points into the mesh, except those that repeat another, or differ from
+ * it by rounding alone.
  *
  * @param[in] hertz  ascending
  * @param[in] H      count x values
@@ -144,24 +62,66 @@ static ritz_status fill_mesh(ritz_responder *responder, int64_t count,
 static ritz_status insert_points(ritz_mesh *mesh, int64_t count,
                                  const double *hertz, const double _Complex *H)
 {
-    int64_t from = mesh->count - 1;
-    int64_t add = count - 1;
+    RITZ_OWN(ritz_mesh) all = {0};
+    int64_t n = mesh->values, last = mesh->count + count;
+    int64_t old = 0, new = 0, to = -1;
 
-    RITZ_CHECK(reserve_mesh(mesh, mesh->count + count));
-    for (int64_t to = mesh->count + count - 1; add >= 0; to--) {
-        if (from >= 0 && mesh->hertz[from] > hertz[add]) {
-            set_point(mesh, to, mesh->hertz[from], mesh->open[from],
-                      mesh->H + from * mesh->values);
-            from--;
+    RITZ_REFUSE_IF(last > most_values / (n > 0 ? n : 1), RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " points do not keep the tolerance: ask for "
+                   "less, or for a shorter range",
+                   mesh->count);
+    RITZ_CHECK_NEW(all.hertz, last);
+    RITZ_CHECK_NEW(all.H, last * n);
+    RITZ_CHECK_NEW(all.open, last);
+    while (old + new < last) {
+        bool own = new == count ||
+                   (old < mesh->count && mesh->hertz[old] <= hertz[new]);
+        double f = own ? mesh->hertz[old] : hertz[new];
+        bool open = own ? mesh->open[old] : old == 0 || mesh->open[old - 1];
+
+        if (to >= 0 && f - all.hertz[to] <= RITZ_SAME_KNOT * f) {
+            all.open[to] = all.open[to] || open;
         } else {
-            set_point(mesh, to, hertz[add], from < 0 || mesh->open[from],
-                      H + add * mesh->values);
-            add--;
+            to++;
+            all.hertz[to] = f;
+            all.open[to] = open;
+            memcpy(all.H + to * n, own ? mesh->H + old * n : H + new *n,
+                   (size_t)n * sizeof *H);
         }
+        old += own;
+        new += !own;
     }
-    mesh->count += count;
-    remove_duplicates(mesh);
+    ritz_array_free(&mesh->hertz);
+    ritz_array_free(&mesh->H);
+    ritz_array_free(&mesh->open);
+    RITZ_MOVE(mesh->hertz, all.hertz);
+    RITZ_MOVE(mesh->H, all.H);
+    RITZ_MOVE(mesh->open, all.open);
+    mesh->count = to + 1;
     return RITZ_OK;
+}
+
+/* A mesh of given points, which ascend; every interval is still open. */
+static ritz_status fill_mesh(ritz_responder *responder, int64_t count,
+                             const double *hertz, ritz_mesh *mesh)
+{
+    const ritz_io *io = &responder->poles->io;
+    int64_t n = io->num_outputs * io->num_inputs;
+    RITZ_OWN_ARRAY double _Complex *H = NULL;
+
+    mesh->responder = responder;
+    mesh->values = n;
+    RITZ_CHECK_NEW(mesh->peak, n);
+    RITZ_CHECK_NEW(mesh->level, n);
+    RITZ_CHECK_NEW(mesh->scale, n);
+    RITZ_CHECK_NEW(mesh->row, n);
+    RITZ_CHECK_NEW(mesh->between, n);
+    RITZ_CHECK_NEW(H, count * n);
+    for (int64_t k = 0; k < count; k++) {
+        RITZ_CHECK(evaluate_mesh(mesh, hertz[k]));
+        memcpy(H + k * n, mesh->row, (size_t)n * sizeof *H);
+    }
+    return insert_points(mesh, count, hertz, H);
 }
 
 /*

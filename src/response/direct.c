@@ -54,6 +54,7 @@ ritz_status ritz_direct_new(const ritz_component *component,
     s.m = s.pairs.Phi.ncol;
     RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
     RITZ_CHECK(ritz_impedance_new(component, &s.Z));
+    RITZ_CHECK_NEW(s.X, s.n * s.inputs);
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
@@ -66,17 +67,6 @@ void ritz_direct_free(ritz_direct *direct)
     ritz_dense_free(&direct->MPhi);
     free(direct->X);
     *direct = (ritz_direct){0};
-}
-
-static ritz_status reserve_columns(ritz_direct *s, int64_t columns)
-{
-    if (columns <= s->room)
-        return RITZ_OK;
-    free(s->X);
-    s->room = 0;
-    RITZ_CHECK_NEW(s->X, s->n * columns);
-    s->room = columns;
-    return RITZ_OK;
 }
 
 /* a and b of Rayleigh damping, else 0. */
@@ -250,7 +240,6 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
 
     if (direct->inputs == 0)
         return RITZ_OK;
-    RITZ_CHECK(reserve_columns(direct, direct->inputs));
     for (int64_t i = 0; i < direct->n * direct->inputs; i++)
         direct->X[i] = io->B.val[i];
     if (direct->apart)

@@ -19,9 +19,8 @@ typedef struct ritz_direct {
     int64_t n, m, inputs;
     bool apart; /* neither D nor K4 nor Rayleigh damping */
     bool ratios;
-    double _Complex *X; /* n x room, work space */
-    int64_t room;
-    int64_t factors; /* how many were computed */
+    double _Complex *X; /* n x inputs, to work in */
+    int64_t factors;    /* how many were computed */
 } ritz_direct;
 
 /** @param[in] up_to_hz  bound of the modes on which damping ratios act */

@@ -276,33 +276,18 @@ static void remove_ratios(const ritz_direct *direct, ritz_poles *poles)
     }
 }
 
-/* The transposed system, with the outputs' rows as its load vectors. */
-static ritz_status transpose_poles(const ritz_poles *poles, ritz_poles *out)
+/* [C' Cv' Ca'], the load vectors of the transposed system. */
+static ritz_status stack_outputs(const ritz_io *io, ritz_dense *out)
 {
-    const ritz_io *io = &poles->io;
     const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
-    int64_t r = poles->count + poles->massless;
     int64_t p = io->num_outputs;
-    RITZ_OWN(ritz_poles)
-    dual = {.count = poles->count,
-            .num_rigid = poles->num_rigid,
-            .massless = poles->massless,
-            .coupled = poles->coupled,
-            .skew = poles->skew};
 
-    RITZ_CHECK_COPY(dual.lambda, poles->lambda, r);
-    RITZ_CHECK_COPY(dual.rate, poles->rate, r);
-    if (poles->D.val)
-        RITZ_CHECK(ritz_general_transpose(&poles->D, &dual.D));
-    if (poles->K4.val)
-        RITZ_CHECK(ritz_general_transpose(&poles->K4, &dual.K4));
-    RITZ_CHECK(ritz_io_new(r, 3 * p, 0, &dual.io));
+    RITZ_CHECK(ritz_dense_new(io->C.ncol, 3 * p, out));
     for (int k = 0; k < 3; k++)
-        for (int64_t j = 0; j < r; j++)
+        for (int64_t j = 0; j < out->nrow; j++)
             for (int64_t i = 0; i < p; i++)
-                ritz_dense_col(&dual.io.B, k * p + i)[j] =
+                ritz_dense_col(out, k * p + i)[j] =
                     ritz_dense_col(rows[k], j)[i];
-    RITZ_MOVE(*out, dual);
     return RITZ_OK;
 }
 
@@ -325,7 +310,7 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
     RITZ_CHECK(ritz_poles_of_pairs(&model, &direct->damping, true, &pairs,
                                    &small.poles));
     remove_ratios(direct, &small.poles);
-    RITZ_CHECK(transpose_poles(&small.poles, &small.dual));
+    RITZ_CHECK(stack_outputs(&small.poles.io, &small.outputs_of));
     RITZ_MOVE(small.T, pairs.Phi);
     RITZ_CHECK_NEW(small.q, small.r * small.inputs);
     RITZ_CHECK_NEW(small.p, small.r * small.outputs);
@@ -358,9 +343,11 @@ ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz)
     int64_t rp = small->r * small->outputs;
     double _Complex *z = small->z;
 
-    RITZ_CHECK(ritz_poles_solve(&small->poles, hertz, z));
+    RITZ_CHECK(
+        ritz_poles_solve(&small->poles, false, &small->poles.io.B, hertz, z));
     transform_back(&small->T, small->inputs, z, small->q);
-    RITZ_CHECK(ritz_poles_solve(&small->dual, hertz, z));
+    RITZ_CHECK(
+        ritz_poles_solve(&small->poles, true, &small->outputs_of, hertz, z));
     for (int64_t k = 0; k < rp; k++)
         z[k] += ritz_complex(0.0, w) * z[rp + k] - w * w * z[2 * rp + k];
     transform_back(&small->T, small->outputs, z, small->p);
@@ -433,7 +420,7 @@ double ritz_krylov_space_norm(const ritz_krylov_space *space,
 void ritz_krylov_small_free(ritz_krylov_small *small)
 {
     ritz_poles_free(&small->poles);
-    ritz_poles_free(&small->dual);
+    ritz_dense_free(&small->outputs_of);
     ritz_dense_free(&small->T);
     free(small->q);
     free(small->p);

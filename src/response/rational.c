@@ -203,14 +203,8 @@ static ritz_status refuse_pole(const rational_nodes *s, double hertz)
         bool on = cabs(ritz_complex(0.0, w) - s->pole[k]) <=
                   RITZ_POLE_HIT * (w + cabs(s->pole[k]));
 
-        RITZ_REFUSE_IF(
-            on && s->pole[k] == 0.0, RITZ_ERR_SINGULAR,
-            "at 0 Hz the response is infinite: a rigid-body motion is "
-            "driven and seen, begin above 0 Hz");
-        RITZ_REFUSE_IF(on, RITZ_ERR_SINGULAR,
-                       "%.9g Hz is the frequency of an undamped mode: give it "
-                       "damping or leave the point out",
-                       hertz);
+        if (on)
+            return ritz_refuse_pole(s->pole[k] == 0.0, hertz);
     }
     return RITZ_OK;
 }

@@ -14,7 +14,7 @@ static double channel_scale(const double *scale, int64_t k)
     return scale && !isnan(scale[k]) ? scale[k] : 1.0;
 }
 
-static int64_t smaller(int64_t a, int64_t b)
+static int64_t smaller_of(int64_t a, int64_t b)
 {
     return a < b ? a : b;
 }
@@ -32,7 +32,7 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
         return RITZ_OK;
     scales = scales ? scales : &none;
     RITZ_CHECK_NEW(A, num_outputs * num_inputs);
-    RITZ_CHECK_NEW(spare, smaller(num_outputs, num_inputs));
+    RITZ_CHECK_NEW(spare, smaller_of(num_outputs, num_inputs));
     for (int64_t i = 0; i < p; i++)
         for (int64_t j = 0; j < m; j++)
             A[i + j * p] = H[i * m + j] * channel_scale(scales->input, j) /
@@ -47,7 +47,7 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
 ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)
 {
     int64_t size = r->num_outputs * r->num_inputs;
-    int64_t width = smaller(r->num_outputs, r->num_inputs);
+    int64_t width = smaller_of(r->num_outputs, r->num_inputs);
     RITZ_OWN_ARRAY double *sigma = NULL;
 
     RITZ_CHECK_NEW(sigma, r->count * width);
@@ -104,7 +104,7 @@ ritz_status ritz_singular_peak(const ritz_response *r,
         return RITZ_OK;
     RITZ_CHECK_NEW(first, r->count);
     RITZ_CHECK_NEW(s.H, size);
-    RITZ_CHECK_NEW(s.sigma, smaller(r->num_outputs, r->num_inputs));
+    RITZ_CHECK_NEW(s.sigma, smaller_of(r->num_outputs, r->num_inputs));
     for (int64_t k = 0; k < r->count; k++) {
         RITZ_CHECK(ritz_singular_values(r->num_outputs, r->num_inputs,
                                         r->H + k * size, scales, s.sigma));

@@ -33,7 +33,9 @@ void tb05ad_(/* NOLINT: its name */ const char *baleig, const char *inita,
 /*
  * The model in the form that SLICOT keeps between points, and its work space.
  */
-typedef struct hessenberg {
+typedef struct state_responder {
+    ritz_poles poles;
+    const ritz_state_space *model; /* borrowed */
     int n, m, p;
     bool begun;
     ritz_dense A, B, C;
@@ -41,16 +43,16 @@ typedef struct hessenberg {
     double *re, *im, *work;
     double _Complex *G, *X, *zwork; /* p x m; n x m */
     int room, zroom;
-} hessenberg;
+} state_responder;
 
 static int at_least_one(int n)
 {
     return n > 1 ? n : 1;
 }
 
-static ritz_status start_hessenberg(const ritz_state_space *model,
-                                    hessenberg *h)
+static ritz_status start_hessenberg(state_responder *h)
 {
+    const ritz_state_space *model = h->model;
     int n = (int)model->A.nrow;
 
     h->n = n;
@@ -70,8 +72,11 @@ static ritz_status start_hessenberg(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-static void free_hessenberg(hessenberg *h)
+static void free_states(void *state)
 {
+    state_responder *h = state;
+
+    ritz_poles_free(&h->poles);
     ritz_dense_free(&h->A);
     ritz_dense_free(&h->B);
     ritz_dense_free(&h->C);
@@ -84,7 +89,7 @@ static void free_hessenberg(hessenberg *h)
     free(h->zwork);
 }
 
-static ritz_status solve_hessenberg(hessenberg *h, double hertz)
+static ritz_status solve_hessenberg(state_responder *h, double hertz)
 {
     const double _Complex s = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     int ldn = at_least_one(h->n);
@@ -127,30 +132,15 @@ static ritz_status find_poles(const ritz_state_space *model, ritz_poles *out)
     return ritz_poles_name(&io, out);
 }
 
-typedef struct state_responder {
-    ritz_poles poles;
-    hessenberg h;
-    const ritz_state_space *model; /* borrowed */
-} state_responder;
-
-static void free_states(void *state)
-{
-    state_responder *s = state;
-
-    ritz_poles_free(&s->poles);
-    free_hessenberg(&s->h);
-}
-
 static ritz_status states_at(void *state, double hertz, double _Complex *H)
 {
-    state_responder *s = state;
-    hessenberg *h = &s->h;
+    state_responder *h = state;
 
     RITZ_CHECK(solve_hessenberg(h, hertz));
     for (int i = 0; i < h->p; i++)
         for (int j = 0; j < h->m; j++)
             H[i * h->m + j] =
-                h->G[i + j * h->p] + ritz_dense_col(&s->model->D, j)[i];
+                h->G[i + j * h->p] + ritz_dense_col(&h->model->D, j)[i];
     return RITZ_OK;
 }
 
@@ -167,7 +157,7 @@ static ritz_status make_states(const ritz_response_request *request,
     s->model = request->model.states;
     memcpy(out->damping, s->model->damping, sizeof out->damping);
     RITZ_CHECK(find_poles(s->model, &s->poles));
-    return start_hessenberg(s->model, &s->h);
+    return start_hessenberg(s);
 }
 
 const ritz_response_engine ritz_response_engine_states = {

@@ -88,7 +88,7 @@ static ritz_status motion_of_modes(const ritz_component *component,
                                       &modes));
     for (int64_t k = 0;
          rest.count > 0 && k < rest.num_outputs * rest.num_inputs; k++)
-        modes.feed.val[k] += rest.C[k];
+        modes.feed.val[k] += rest.part[0][k];
     RITZ_CHECK(take_modes(&modes, &m));
     m.highest = nan("");
     RITZ_MOVE(*out, m);
@@ -337,7 +337,8 @@ ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out)
     return RITZ_OK;
 }
 
-ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out)
+static ritz_status motion_of_states(const ritz_state_space *model,
+                                    ritz_motion *out)
 {
     RITZ_OWN(ritz_motion) m = {.form = RITZ_FORM_STATES, .highest = nan("")};
 
@@ -367,7 +368,7 @@ ritz_status ritz_motion_new(ritz_model subject,
                        "'%s' is of second-order models, a state space goes by "
                        "modal or trapezoidal",
                        integrator->name);
-        return ritz_motion_states(subject.states, out);
+        return motion_of_states(subject.states, out);
     }
     if (subject.kind == RITZ_MODEL_DENSE)
         return ritz_motion_dense(subject, modal, out);

@@ -47,8 +47,6 @@ typedef struct ritz_motion {
 /** Modal if @p modal, else dense: of its modes where M is singular. */
 ritz_status ritz_motion_dense(ritz_model model, bool modal, ritz_motion *out);
 
-ritz_status ritz_motion_states(const ritz_state_space *model, ritz_motion *out);
-
 /** Whichever of them a subject and an integrator ask for. */
 ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,

@@ -124,15 +124,15 @@ static int64_t count_lines(const char *text)
 
 static ritz_status read_table(const char *path, ritz_signal *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_signal signal = {.kind = RITZ_SIGNAL_TABLE, .amplitude = 1.0};
-    char *text = NULL;
+    RITZ_OWN(ritz_signal)
+    signal = {.kind = RITZ_SIGNAL_TABLE, .amplitude = 1.0};
+    RITZ_OWN_ARRAY char *text = NULL;
     char *line = NULL;
     int64_t number = 0;
 
-    RITZ_TRY(ritz_text_read(path, &text));
-    RITZ_NEW(signal.time, count_lines(text));
-    RITZ_NEW(signal.value, count_lines(text));
+    RITZ_CHECK(ritz_text_read(path, &text));
+    RITZ_CHECK_NEW(signal.time, count_lines(text));
+    RITZ_CHECK_NEW(signal.value, count_lines(text));
     for (line = text; line;) {
         char *end = strchr(line, '\n');
         double pair[2] = {0.0, 0.0};
@@ -140,8 +140,8 @@ static ritz_status read_table(const char *path, ritz_signal *out)
 
         if (end)
             *end = '\0';
-        RITZ_TRY(parse_line(line, ++number, &any, pair));
-        RITZ_FAIL_IF(
+        RITZ_CHECK(parse_line(line, ++number, &any, pair));
+        RITZ_REFUSE_IF(
             any && signal.count > 0 && pair[0] < signal.time[signal.count - 1],
             RITZ_ERR_FORMAT, "the time of line %" PRId64 " descends", number);
         signal.time[signal.count] = pair[0];
@@ -149,20 +149,17 @@ static ritz_status read_table(const char *path, ritz_signal *out)
         signal.count += any;
         line = end ? end + 1 : NULL;
     }
-    RITZ_FAIL_IF(signal.count == 0, RITZ_ERR_FORMAT,
-                 "there is no line of a time and a value");
+    RITZ_REFUSE_IF(signal.count == 0, RITZ_ERR_FORMAT,
+                   "there is no line of a time and a value");
     RITZ_MOVE(*out, signal);
-done:
-    free(text);
-    ritz_signal_free(&signal);
-    return ritz_context(status, path);
+    return RITZ_OK;
 }
 
 ritz_status ritz_signal_parse(const char *text, ritz_signal *out)
 {
     const struct word *word = find_word(text);
-    ritz_status status =
-        word ? parse_word(word, text, out) : read_table(text, out);
+    ritz_status status = word ? parse_word(word, text, out)
+                              : ritz_context(read_table(text, out), text);
 
     if (status != RITZ_ERR_FILE)
         return status;

@@ -58,7 +58,7 @@ static ritz_status full_gain(ritz_reference *r)
         for (int64_t i = 0; i < p; i++) {
             double *g = &ritz_dense_col(&r->gain, j)[i];
 
-            *g = r->residual.count > 0 ? r->residual.C[i + j * p] : 0.0;
+            *g = r->residual.count > 0 ? r->residual.part[0][i + j * p] : 0.0;
             for (int64_t k = poles->num_rigid; k < poles->count; k++)
                 *g += ritz_dense_col(&poles->io.C, k)[i] *
                       ritz_dense_col(&poles->io.B, j)[k] / poles->lambda[k];
