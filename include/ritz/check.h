@@ -66,8 +66,8 @@ const char *ritz_verdict_name(ritz_verdict verdict);
 void ritz_audit_free(ritz_audit *audit);
 
 /*
- * Whether a small model is stable, by its own poles and by what others will do
- * with it: what export asks before it hands a model on.
+ * Whether a small model is stable, alone and in an assembly: the check that is
+ * made before export.
  */
 
 typedef enum ritz_stability {
@@ -82,8 +82,7 @@ typedef struct ritz_probe {
     double radius;    /* largest |pole| [rad/s] */
     double tolerance; /* of `pole`, of rounding, relative to the radius */
     int64_t count;    /* of poles; 0: none was looked for */
-    char
-        why[RITZ_NAME_SIZE]; /* of M or K that are amiss; "" if poles decided */
+    char why[RITZ_NAME_SIZE]; /* a defect of M or K; "" if poles decided */
 } ritz_probe;
 
 /**
@@ -98,7 +97,7 @@ ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out);
  * K, none of a motion that is not rigid, then the poles of the quadratic pencil.
  *
  * @param[in] D        may be {0}; need not be symmetric
- * @param[in] damping  ratios beside D, by modes; NULL: none
+ * @param[in] damping  ratios in addition to D, by modes; NULL: none
  */
 ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
                                     const ritz_dense *D,
@@ -106,7 +105,7 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
                                     ritz_probe *out);
 
 /**
- * Everything that can grow, alone or in an assembly. docs/methods/stability.md
+ * Whether any motion can grow, alone or in an assembly. docs/methods/stability.md
  * says what each check measures and where its limit comes from:
  *
  *     mass-definite         least eigenvalue of M, over the largest
@@ -120,26 +119,24 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
  *     interface-sprung      the same on springs, and with masses on it
  *     interface-joined      joined by forces           (if there are such)
  *
- * Where M, K and D are semidefinite, and that is found first, nothing can grow,
- * whatever passive is attached: the checks behind say so and compute nothing.
- * The interface are the ports or, where there is none, the inputs.
+ * Where M, K and D are semidefinite, nothing can grow with any passive system
+ * attached: the checks that follow say so and compute nothing. The interface are
+ * the ports or, without ports, the inputs.
  *
  * @cost  an eigenproblem of M, K and D each; of others some fifty of 2r states
  */
-ritz_status ritz_audit_reduced(const ritz_reduced *reduced,
-                                     ritz_audit *out);
+ritz_status ritz_audit_reduced(const ritz_reduced *reduced, ritz_audit *out);
 
 /**
  * The same of states, from poles on. The interface are pairs of an input and an
- * output of one name, taken for a force and how its own point moves.
+ * output of one name, taken as a force and the motion of its point.
  */
-ritz_status ritz_audit_states(const ritz_state_space *model,
-                                    ritz_audit *out);
+ritz_status ritz_audit_states(const ritz_state_space *model, ritz_audit *out);
 
 /** "stable", "marginal" or "unstable". */
 const char *ritz_stability_name(ritz_stability verdict);
 
-/** "pole +0.31 +- 12.4i rad/s (1.97 Hz)", or what is amiss with M or K. */
+/** "pole +0.31 +- 12.4i rad/s (1.97 Hz)", or the defect of M or K. */
 void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE]);
 
 /**

@@ -132,8 +132,8 @@ ritz_status ritz_verify_reduced(const ritz_component *full,
 
 /**
  * A full-order assembled system and one reduced configuration: the same
- * measures, but MAC, which needs shapes, is of what inputs drive and outputs
- * see, of the modes that are seen at all: see docs/methods/verify.md.
+ * measures, but MAC, for which there are no shapes, is of the participations of
+ * observable modes in inputs and outputs: see docs/methods/verify.md.
  */
 ritz_status ritz_verify_system(const ritz_component *full,
                                const ritz_configuration *reduced,
@@ -184,10 +184,10 @@ const char *ritz_tolerance_word(const char *measure);
 /**
  * Flexible static gain C Phi_f Lambda_f^-1 Phi_f' B of a dense model.
  *
- * @param[in] num_rigid  of the model this one stands for, 0: not known. As many
- *                       of the lowest modes are left out at least: a reduction
- *                       that holds a rigid motion badly has it at some
- *                       frequency, and no compliance by that
+ * @param[in] num_rigid  rigid modes of the full model, 0: not known. At least as
+ *                       many of the lowest modes are left out: a reduction that
+ *                       represents a rigid motion badly has it at some
+ *                       frequency, which is no compliance
  */
 ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
                              const ritz_io *io, int64_t num_rigid,
@@ -195,15 +195,15 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
 
 /**
  * |G - G_r| / |G| of two static gains of one size, largest singular values; NaN
- * where G is nothing but rounding beside the difference.
+ * where G is rounding compared with the difference.
  */
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out);
 
 /*
- * A full model made ready once, to be compared with many reductions of it: its
- * modes to three times the band, what lies above them as static answer, and its
- * responses at every frequency where they are compared.
+ * A full model prepared once for comparison with many reductions of it: its
+ * modes to three times the band, the static response of the modes above, and its
+ * responses at every frequency of comparison.
  */
 
 typedef struct ritz_reference ritz_reference;
@@ -215,8 +215,8 @@ typedef struct ritz_reference_request {
     uint64_t seed;        /* of those; one seed always gives the same */
 } ritz_reference_request;
 
-/* Where responses are compared, beside an even grid and the full model's own
-   poles. */
+/* Where responses are compared in addition to an even grid and the poles of the
+   full model. */
 enum {
     RITZ_AT_OTHER_POLES = 1, /* those of the reduced model */
     RITZ_AT_RANDOM = 2,      /* the random frequencies */
@@ -251,7 +251,7 @@ ritz_status ritz_reference_measure_at(const ritz_reference *reference,
                                       const ritz_verify_request *limits,
                                       int where, ritz_measures *out);
 
-/** Flexible modes of the full model in the band; rigid ones beside them. */
+/** Number of flexible modes of the full model in the band, and of rigid ones. */
 int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid);
 
 /**
@@ -266,20 +266,18 @@ void ritz_reference_free(ritz_reference **reference);
 double ritz_random_next(uint64_t *state);
 
 /*
- * How wrong a reduced component can be, without one mode of the full one: the
- * full model is factored and its modes are counted, never computed.
+ * Bounds of the errors of a reduced component for which no mode of the full one
+ * is computed: the full model is factored and its modes are counted.
  *
  *     mode-7, mode-8, ...         |f_r - f| / f of each reduced mode in the
  *                                 band, f that of the full mode of its number
  *                                 or of the one that the place names
- *     frequency-relative-bound    what ritz-verify's frequency-relative is at
- *                                 most: of full modes in the band and their
- *                                 partners, wherever these lie; none without
- *                                 such modes
- *     frequency-relative-least    what that is at least; none if it may be 0
- *     missing-modes-bound         what its missing-modes are at most: full modes
- *                                 in the band of which no reduced one is proven
- *                                 to hold half
+ *     frequency-relative-bound    upper bound of ritz-verify's measure
+ *                                 frequency-relative; none without modes
+ *     frequency-relative-least    lower bound of it; none if it may be 0
+ *     missing-modes-bound         upper bound of its missing-modes: full modes in
+ *                                 the band of which no reduced one is proven to
+ *                                 hold half
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
  *                                 points too, for ratios common to all modes
  *                                 and for D = a M + b K
@@ -289,7 +287,8 @@ double ritz_random_next(uint64_t *state);
  */
 
 typedef struct ritz_estimate_request {
-    double band_hz[2];    /* [0, 0]: up to half of what the basis knows of */
+    double band_hz[2];    /* [0, 0]: up to half the highest frequency of the
+                             basis */
     ritz_damping damping; /* of responses; none: no response is bounded */
 } ritz_estimate_request;
 

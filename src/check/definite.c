@@ -26,20 +26,20 @@ static void name_column(const ritz_reduced *reduced, int64_t j,
                         char text[RITZ_NAME_SIZE])
 {
     const ritz_columns *columns = &reduced->columns;
-    char beside[RITZ_DOF_NAME_SIZE + 4] = "";
+    char detail[RITZ_DOF_NAME_SIZE + 4] = "";
     char dof[RITZ_DOF_NAME_SIZE];
     int64_t row = columns->dof[j];
 
     if (row >= 0 && reduced->dof && row < reduced->num_dofs)
-        snprintf(beside, sizeof beside, ", %s",
+        snprintf(detail, sizeof detail, ", %s",
                  ritz_dof_name(reduced->dof[row], dof));
     else if (isfinite(columns->hertz[j]))
-        snprintf(beside, sizeof beside, ", %.4g Hz", columns->hertz[j]);
+        snprintf(detail, sizeof detail, ", %.4g Hz", columns->hertz[j]);
     snprintf(text, RITZ_NAME_SIZE, "column %lld %s%.36s", (long long)j + 1,
-             ritz_column_name(columns->kind[j]), beside);
+             ritz_column_name(columns->kind[j]), detail);
 }
 
-/* Share of coordinate j: energies compare, lengths and angles do not. */
+/* Participation of coordinate j: unlike lengths and angles, energies compare. */
 static double share_of(const ritz_checker *it, const double *motion, int64_t j)
 {
     double m = fabs(ritz_dense_col(&it->model.M, j)[j]);
@@ -264,7 +264,7 @@ ritz_status ritz_check_reduced_structural(ritz_checker *it)
 /*
  * Stiffness, by the modes of (K, M), which other checks use too. A rigid motion
  * phi has none: phi'K phi beyond rounding is of matrices of too few digits,
- * which hold a free body or drive it.
+ * which hold a free body or make it grow.
  */
 
 ritz_status ritz_check_modes(const ritz_structure *model,
@@ -304,7 +304,7 @@ static ritz_status rigid_stiffness(const ritz_checker *it, double *out,
     return RITZ_OK;
 }
 
-/* Matrices of few digits: a rigid motion is held, or driven. */
+/* Matrices of few digits hold a rigid motion, or make it grow. */
 static ritz_status say_rigid(ritz_checker *it, bool *said)
 {
     const ritz_modal_model *modes = &it->modes;

@@ -236,15 +236,15 @@ static void check_digits(ritz_checker *it)
         verdict = RITZ_FAIL;
     else if (it->digits < RITZ_ENOUGH_DIGITS && it->declared)
         verdict = RITZ_WARN;
-    ritz_checker_say(it, "source-digits", it->digits, RITZ_ENOUGH_DIGITS,
-                     verdict, NULL,
-                     verdict == RITZ_FAIL
-                         ? "%.0f digits are too few: the body is held by them"
-                     : verdict == RITZ_WARN
-                         ? "%.0f digits: no harm is seen, but differences of "
-                           "stiffness are lost"
-                         : "%.0f digits, as far as can be told",
-                     it->digits);
+    ritz_checker_say(
+        it, "source-digits", it->digits, RITZ_ENOUGH_DIGITS, verdict, NULL,
+        verdict == RITZ_FAIL
+            ? "%.0f digits are too few: the body is held by them"
+        : verdict == RITZ_WARN
+            ? "%.0f digits: no effect is found, but differences of "
+              "stiffness are lost"
+            : "%.0f digits, as far as can be told",
+        it->digits);
 }
 
 static bool has_turned_axes(const ritz_grids *grids)
@@ -425,7 +425,7 @@ static ritz_status check_null_space(ritz_checker *it, int64_t eigen)
 
 /*
  * First flexible eigenvalue. Where rounding holds the body its rigid modes are
- * not told from others by size, and the first six are taken for them.
+ * not distinguished from others by size, and the first six are taken as rigid.
  */
 static double find_softest(const ritz_checker *it, const ritz_pairs *pairs)
 {

@@ -149,7 +149,7 @@ const char *ritz_stability_name(ritz_stability verdict)
 
 void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
 {
-    char beside[RITZ_NAME_SIZE] = "";
+    char imaginary[RITZ_NAME_SIZE] = "";
 
     if (probe->why[0] || probe->count == 0) {
         snprintf(out, (size_t)2 * RITZ_NAME_SIZE, "%s",
@@ -157,9 +157,9 @@ void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
         return;
     }
     if (probe->pole[1] > 0.0)
-        snprintf(beside, sizeof beside, " +- %.5gi", probe->pole[1]);
+        snprintf(imaginary, sizeof imaginary, " +- %.5gi", probe->pole[1]);
     snprintf(out, (size_t)2 * RITZ_NAME_SIZE, "pole at %+.5g%s rad/s (%.5g Hz)",
-             probe->pole[0], beside,
+             probe->pole[0], imaginary,
              hypot(probe->pole[0], probe->pole[1]) / (2.0 * RITZ_PI));
 }
 
@@ -221,7 +221,7 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
         RITZ_CHECK(ritz_dense_copy(&E, &next));
         RITZ_CHECK(ritz_general_norm(&next, &size));
         ritz_dense_free(&next);
-        if (!(size < 1e100)) /* what is unstable is told by its poles */
+        if (!(size < 1e100)) /* unstable: the poles show it */
             break;
         if (size * size > out->met) {
             out->met = size * size;
@@ -278,9 +278,10 @@ static ritz_status measure_growth(const ritz_dense *A, growth *out)
 }
 
 /*
- * Units of states are nobody's growth. They are scaled until what goes into
- * each is as large as what comes out of it; a coupling one way, which some
- * units make as small as one likes, has a floor to be held against.
+ * A change of the units of states is no growth. States are scaled until what
+ * goes into each is as large as what comes out of it; a coupling in one
+ * direction, which units can make as small as one likes, is compared with a
+ * least size.
  */
 static ritz_status forget_units(ritz_dense *A)
 {

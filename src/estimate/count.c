@@ -8,7 +8,7 @@
  * number of full modes less that of reduced ones below a count. If o is the same
  * in the next counts above and below reduced mode k, it is full mode k + o; if
  * not, modes are missing between these counts, and are located by halving. Then
- * counts move away from the mode as far as its neighbours let them.
+ * counts move away from the mode as far as the next modes let them.
  */
 #include "base/tolerances.h"
 #include "estimate/estimator.h"

@@ -43,10 +43,10 @@ enum { MOST_SHIFTS = 16 };
  * Ritz pairs of the full matrices in the range of T, anew: a reduced model's
  * own are theirs to rounding, unless some of its columns have lost their mass.
  *
- * Rounding. K x is summed up from |K||x|: so x'Kx is off by some eps times
- * |x|'|K||x|, and so may any other program's be; M x too. Pairs of a dense
- * pencil err by eps times its largest eigenvalue beside. Modes nearer to each
- * other than that may change places: what one of them is, the other may be.
+ * Rounding. K x is a sum of the terms |K||x|: so x'Kx may be off by some eps
+ * times |x|'|K||x|, in any program, and M x likewise. Pairs of a dense pencil
+ * are off by eps times its largest eigenvalue in addition. Rounding may exchange
+ * modes that are nearer to each other than that: they share one interval.
  */
 
 ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma)

@@ -1,10 +1,11 @@
 /*
- * How far a reduced model can be off, told by one factor of the full matrices,
- * by the residuals of its modes, and by counts of full modes below some
+ * How far a reduced model can be off, found from one factor of the full
+ * matrices, the residuals of its modes, and counts of full modes below some
  * frequencies. Counts and inverse iterations are spent first on the reduced
- * modes in the band, then on what ritz-verify pairs with the full modes in it;
- * what is known then is reported as named numbers. Enclosures are in enclose.c,
- * the choice of counts in count.c, partners in judge.c, responses in response.c.
+ * modes in the band, then on those that ritz-verify pairs with the full modes in
+ * it; the bounds reached then are reported as named numbers. Enclosures are in
+ * enclose.c, the choice of counts in count.c, partners in judge.c, responses in
+ * response.c.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -21,7 +22,7 @@
 enum { GAPS = 3 };
 /* Most counts for one reduction: some, and some for each mode in the band. */
 enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
-/* Most inverse iterations, and most counts beside modes, while partners are
+/* Most inverse iterations, and most counts next to modes, while partners are
    unclear. */
 enum { ITERATIONS = 4, MOST_BESIDE = 16 };
 /* Most modes that are reported one by one. */

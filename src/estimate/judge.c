@@ -22,7 +22,7 @@
  * Delta if there are as many vectors as modes.
  */
 
-/* Full modes first .. last - 1, not known to be apart. */
+/* Full modes first .. last - 1, not known to be separate. */
 typedef struct ritz_mode_group {
     int64_t first, last;
     bool is_cluster; /* they are known to be one cluster */
@@ -320,7 +320,7 @@ static int64_t keep_partner(ritz_judge *j, const ritz_mode_group *g,
 
 /*
  * Where partners are unclear, counts on both sides of a vector that is nearly a
- * mode tell how many full modes are there, and how many are apart from it.
+ * mode show how many full modes are near it, and how many are not.
  */
 static void propose_count(ritz_judge *j, const ritz_mode_group *g)
 {

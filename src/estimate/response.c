@@ -26,7 +26,7 @@
  *
  * Ratios zeta of exact modes are not those of reduced ones: D X is 2 zeta times
  * M X Theta^1/2 and, in exact modes, R times 2 zeta / (sqrt lambda_k + sqrt
- * theta_j) beside: bounded by |R_j|. The defect X'D X - D_r is a second
+ * theta_j) in addition: bounded by |R_j|. The defect X'D X - D_r is a second
  * difference of sqrt lambda, of order |R_i||R_j|.
  */
 #include "base/alloc.h"
@@ -130,7 +130,7 @@ static bool is_lost(const ritz_lehmann *trial, int64_t j, double damping)
 
 /*
  * Rates where no ratio is common to all modes: D's diagonal, K4's over omega,
- * and what was asked for. The least ratio stands for modes not yet met.
+ * and what was requested. Modes above those known get the least ratio.
  *
  * @param[out] matrices  the part of each rate that is of D and K4
  */

@@ -387,11 +387,11 @@ static void pairing_free(pairing *p)
 static double pair_cost(const ritz_participation *part, const ritz_poles *full,
                         int64_t k, const ritz_poles *reduced, int64_t r)
 {
-    double apart = fabs(log(reduced->lambda[r] / full->lambda[k])) / 2.0;
+    double ratio = fabs(log(reduced->lambda[r] / full->lambda[k])) / 2.0;
 
     if (!part->observable[k])
-        return apart;
-    return apart + RITZ_UNLIKE_COST * (1.0 - ritz_participation_mac(
+        return ratio;
+    return ratio + RITZ_UNLIKE_COST * (1.0 - ritz_participation_mac(
                                                  part, full, k, reduced, r));
 }
 

@@ -35,7 +35,7 @@ const ritz_measure_kind ritz_measure_table[RITZ_MEASURES] = {
     [RITZ_MEASURE_MISSING] = {.name = "missing-modes",
                               .word = "missing",
                               .help = "modes of the band without partner [0 "
-                                      "beside a limit of frequency or damping]",
+                                      "with a limit of frequency or damping]",
                               .unit = "modes",
                               .bound = "missing-modes-bound",
                               .of_modes = ritz_modes_missing},

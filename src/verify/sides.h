@@ -38,7 +38,7 @@ typedef struct ritz_extreme {
     double value, hertz;
 } ritz_extreme;
 
-/* How far the responses of two models are apart, over all points. */
+/* How much the responses of two models differ, over all points. */
 typedef struct ritz_gap {
     bool significant;   /* any |H| of the full model is more than rounding */
     double largest;     /* |H| of the full model */
