@@ -33,11 +33,11 @@ static const ritz_size port_sizes[] = {
 
 static const ritz_member port_members[] = {
     {"origin", ATTRIBUTE_REAL, RITZ_AT(ritz_port, origin), "3",
-     "in the basic frame"},
+     "origin of the port in the basic frame"},
     {"axes", ATTRIBUTE_REAL, RITZ_AT(ritz_port, axes), "3 3",
-     "row i is axis i in basic axes"},
-    {"dofs", SET_WHOLE, RITZ_AT(ritz_port, dofs.at), "q", "distinct rows",
-     "0..n-1"},
+     "axes of the port: row i is axis i in basic axes"},
+    {"dofs", SET_WHOLE, RITZ_AT(ritz_port, dofs.at), "q",
+     "distinct rows of the component that the port holds", "0..n-1"},
     {0},
 };
 
@@ -50,7 +50,7 @@ static const ritz_schema port_schema = {
 
 static const ritz_member load_members[] = {
     {"", MATRIX_SPARSE, RITZ_AT(ritz_load, KG), "n n",
-     "geometric stiffness of a unit load"},
+     "geometric stiffness matrix of a unit load"},
     {0},
 };
 
@@ -83,27 +83,28 @@ static const ritz_size sizes[] = {
 
 static const ritz_member members[] = {
     {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_component, damping), "",
-     "as `--damping` reads it; may be empty"},
+     "damping, as `--damping` reads it; may be empty"},
     {"asymmetry", ATTRIBUTE_REAL, RITZ_AT(ritz_component, asymmetry), "",
-     "relative asymmetry that was averaged away"},
+     "relative asymmetry of the matrices, which was averaged away"},
     {"digits", ATTRIBUTE_REAL, RITZ_AT(ritz_component, digits), "",
-     "significant digits of the source, 0 if not known"},
+     "significant digits of the source; 0: not known"},
     {"K", MATRIX_SPARSE, RITZ_AT(ritz_component, K), "n n",
-     "stiffness; no entries in a rigid component", .optional = ""},
-    {"M", MATRIX_SPARSE, RITZ_AT(ritz_component, M), "n n", "mass",
+     "stiffness matrix; without entries in a rigid component", .optional = ""},
+    {"M", MATRIX_SPARSE, RITZ_AT(ritz_component, M), "n n", "mass matrix",
      .optional = ""},
     {"D", MATRIX_SPARSE, RITZ_AT(ritz_component, D), "n n",
-     "viscous damping; the one matrix that need not be symmetric",
+     "viscous damping matrix; the only one that need not be symmetric",
      .optional = ""},
     {"K4", MATRIX_SPARSE, RITZ_AT(ritz_component, K4), "n n",
-     "structural damping, in K + i K4", .optional = ""},
+     "structural damping matrix, as in K + i K4", .optional = ""},
     {"KG", LIST, RITZ_LIST(ritz_component, load), "l", .optional = "",
      .some = 'l', .schema = &load_schema},
     {"dofs/grid", SET_WHOLE, RITZ_ITEM(ritz_component, dof, ritz_dof, grid),
      "n", "grid or scalar point of each row"},
     {"dofs/component", SET_WHOLE,
      RITZ_ITEM(ritz_component, dof, ritz_dof, component), "n",
-     "1-3 translation, 4-6 rotation, 0 scalar point", "0..6"},
+     "direction of each row: 1-3 translation, 4-6 rotation, 0 scalar point",
+     "0..6"},
     {"grids", PART, RITZ_AT(ritz_component, grids), .optional = "", .some = 'f',
      .schema = &ritz_schema_grids},
     {"elements", PART, RITZ_AT(ritz_component, elements), .optional = "",

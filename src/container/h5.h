@@ -111,10 +111,6 @@ void ritz_texts_free(ritz_texts *texts);
 ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
                           hid_t *memory);
 
-/** Open a data set of @p rank, once the file holds as much as it declares. */
-ritz_status ritz_h5_open_set(hid_t at, const char *name, int rank,
-                             ritz_h5_shape *shape, hid_t *out);
-
 /** The shape of such a data set, or whether it has the shape that is due. */
 ritz_status ritz_h5_shape_of(hid_t at, const char *name, int rank,
                              ritz_h5_shape *out);

@@ -197,8 +197,9 @@ static bool is_borne_out(hid_t set, hid_t plan, const ritz_h5_shape *shape)
            is_whole(set, shape, &chunk);
 }
 
-ritz_status ritz_h5_open_set(hid_t at, const char *name, int rank,
-                             ritz_h5_shape *shape, hid_t *out)
+/* Open a data set of @p rank, once the file holds as much as it declares. */
+static ritz_status open_set(hid_t at, const char *name, int rank,
+                            ritz_h5_shape *shape, hid_t *out)
 {
     RITZ_OWN(hid_t) set = 0, space = 0, plan = 0;
 
@@ -244,7 +245,7 @@ ritz_status ritz_h5_shape_of(hid_t at, const char *name, int rank,
 {
     RITZ_OWN(hid_t) set = 0;
 
-    return ritz_h5_open_set(at, name, rank, out, &set);
+    return open_set(at, name, rank, out, &set);
 }
 
 static int64_t sum_words(int64_t bytes, const void *values)
@@ -332,7 +333,7 @@ static ritz_status open_due(hid_t at, const char *name,
     char have[80];
     char want[80];
 
-    RITZ_CHECK(ritz_h5_open_set(at, name, due->rank, &found, &set));
+    RITZ_CHECK(open_set(at, name, due->rank, &found, &set));
     for (int k = 0; k < due->rank; k++)
         RITZ_REFUSE_IF(found.dims[k] != due->dims[k], RITZ_ERR_FORMAT,
                        "'%s' is of %s values where %s are due", name,
@@ -451,7 +452,7 @@ ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
     int64_t n = 0;
     int64_t m = 0;
 
-    RITZ_CHECK(ritz_h5_open_set(at, name, 2, &shape, &set));
+    RITZ_CHECK(open_set(at, name, 2, &shape, &set));
     RITZ_REFUSE_IF(shape.dims[0] > INT_MAX || shape.dims[1] > INT_MAX,
                    RITZ_ERR_FORMAT, "'%s' is too large", name);
     n = (int64_t)shape.dims[0];
@@ -533,4 +534,111 @@ ritz_status ritz_h5_read_sparse(hid_t at, const char *name, ritz_sparse *out)
     RITZ_CHECK_IN(name, read_columns(group, &A));
     RITZ_MOVE(*out, A);
     return RITZ_OK;
+}
+
+/* Lists of texts of any length, as attributes or, where they are long, sets. */
+
+/* A data set `inputs` would clash with the group, hence "long_inputs". */
+typedef char long_name[RITZ_NAME_SIZE];
+
+static const char *name_long(const char *name, long_name out)
+{
+    snprintf(out, sizeof(long_name), "long_%s", name);
+    return out;
+}
+
+ritz_status ritz_h5_set_texts(hid_t at, const char *name, int64_t count,
+                              char *const *text)
+{
+    RITZ_OWN(hid_t) type = 0;
+    RITZ_OWN_ARRAY char *block = NULL; /* of texts padded to the longest */
+    long_name other;
+    int64_t size = 1;
+
+    for (int64_t k = 0; k < count; k++)
+        if ((int64_t)strlen(text[k]) >= size)
+            size = (int64_t)strlen(text[k]) + 1;
+    RITZ_CHECK_NEW(block, count * size);
+    for (int64_t k = 0; k < count; k++)
+        memcpy(block + k * size, text[k], strlen(text[k]));
+    type = ritz_h5_string((size_t)size);
+    if (count * size < RITZ_H5_LONG)
+        return ritz_h5_set(at, name, type, ritz_h5_vector(count), block);
+    return ritz_h5_write(at, name_long(name, other), type,
+                         ritz_h5_vector(count), block);
+}
+
+/* Number of texts and bytes of each, in an attribute or a data set. */
+static ritz_status measure_texts(hid_t at, const char *name, int64_t *count,
+                                 size_t *size)
+{
+    bool short_ones = H5Aexists(at, name) > 0;
+    RITZ_OWN(hid_t) texts = 0, space = 0, type = 0, file = 0;
+    hsize_t present = 0;
+    ritz_h5_shape shape = {0};
+    long_name other;
+
+    if (short_ones)
+        texts = H5Aopen(at, name, H5P_DEFAULT);
+    else
+        RITZ_CHECK(open_set(at, name_long(name, other), 1, &shape, &texts));
+    space = short_ones ? H5Aget_space(texts) : H5Dget_space(texts);
+    type = short_ones ? H5Aget_type(texts) : H5Dget_type(texts);
+    file = H5Iget_file_id(at);
+    H5Fget_filesize(file, &present);
+    RITZ_REFUSE_IF(H5Tget_class(type) != H5T_STRING ||
+                       H5Tis_variable_str(type) != 0,
+                   RITZ_ERR_FORMAT, "'%s' is not text of fixed length", name);
+    *count = H5Sget_simple_extent_npoints(space);
+    *size = H5Tget_size(type);
+    RITZ_REFUSE_IF(*count < 0 || *size < 1 || *size > present ||
+                       (hsize_t)*count > present / *size,
+                   RITZ_ERR_FORMAT, "'%s' declares more than the file holds",
+                   name);
+    return RITZ_OK;
+}
+
+/* Copy each of the padded texts of a block. */
+static ritz_status cut_texts(const char *block, size_t size, int64_t count,
+                             ritz_texts *out)
+{
+    RITZ_OWN(ritz_texts) texts = {.count = count};
+
+    RITZ_CHECK_NEW(texts.text, count);
+    for (int64_t k = 0; k < count; k++) {
+        const char *from = block + (size_t)k * size;
+        size_t length = strnlen(from, size);
+
+        RITZ_CHECK_NEW(texts.text[k], (int64_t)length + 1);
+        memcpy(texts.text[k], from, length);
+    }
+    RITZ_MOVE(*out, texts);
+    return RITZ_OK;
+}
+
+ritz_status ritz_h5_get_texts(hid_t at, const char *name, ritz_texts *out)
+{
+    RITZ_OWN_ARRAY char *block = NULL;
+    RITZ_OWN(hid_t) type = 0;
+    int64_t count = 0;
+    size_t size = 0;
+    long_name other;
+
+    RITZ_CHECK(measure_texts(at, name, &count, &size));
+    RITZ_CHECK_NEW(block, count * (int64_t)size);
+    type = ritz_h5_string(size);
+    if (H5Aexists(at, name) > 0)
+        RITZ_CHECK(ritz_h5_get(at, name, type, count, block));
+    else
+        RITZ_CHECK(ritz_h5_read(at, name_long(name, other), type,
+                                ritz_h5_vector(count), block));
+    return cut_texts(block, size, count, out);
+}
+
+void ritz_texts_free(ritz_texts *texts)
+{
+    for (int64_t k = 0; k < texts->count && texts->text; k++)
+        free(texts->text[k]);
+    free(texts->text);
+    *texts = (ritz_texts){0};
 }

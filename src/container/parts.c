@@ -30,11 +30,14 @@ static const ritz_size grids_sizes[] = {
 };
 
 static const ritz_member grids_members[] = {
-    {"id", SET_WHOLE, RITZ_AT(ritz_grids, id), "g", "ascending"},
+    {"id", SET_WHOLE, RITZ_AT(ritz_grids, id), "g",
+     "numbers of the grids, ascending"},
     {"position", SET_REAL, RITZ_AT(ritz_grids, position), "g 3",
-     "in the basic frame"},
+     "position of each grid in the basic frame"},
     {"frame", SET_WHOLE, RITZ_AT(ritz_grids, frame), "g",
-     "row of `frames` along whose axes the grid's displacements are", "0..f-1"},
+     "index in `frames` of the axes along which the displacements of each grid "
+     "are measured",
+     "0..f-1"},
     {"frames", SET_REAL, RITZ_AT(ritz_grids, axes), "f 3 3",
      "`frames[k, i]` is displacement axis i in basic axes; `frames[0]` is the "
      "identity"},
@@ -78,11 +81,12 @@ static const ritz_size elements_sizes[] = {
 
 static const ritz_member elements_members[] = {
     {"kind", SET_WHOLE, RITZ_AT(ritz_elements, kind), "e",
-     "VTK's number of the cell", "1.."},
+     "type of cell, as VTK numbers it", "1.."},
     {"first", SET_WHOLE, RITZ_AT(ritz_elements, first), "e+1",
-     "element k has the grids `grids[first[k]:first[k + 1]]`, from 0", "0.."},
+     "element k has the grids `grids[first[k]:first[k + 1]]`", "0.."},
     {"grids", SET_WHOLE, RITZ_AT(ritz_elements, grid), "t",
-     "ids that `grids/id` holds, in VTK's order"},
+     "numbers of the grids of each element, in VTK's order; all are in "
+     "`grids/id`"},
     {0},
 };
 
@@ -113,9 +117,9 @@ static const ritz_member recovery_members[] = {
     {"grid", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, grid), "d",
      "grid of each dof that constraints eliminated"},
     {"component", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, component),
-     "d", "and its direction, as in `dofs`", "0..6"},
+     "d", "direction of each of these dofs, as in `dofs`", "0..6"},
     {"G", MATRIX_SPARSE, RITZ_AT(ritz_recovery, G), "d n",
-     "how they follow: u(recovery) = G u, with u the rows that `dofs` names"},
+     "u(recovery) = G u, where u are the dofs that `dofs` names"},
     {0},
 };
 
@@ -141,15 +145,16 @@ static const ritz_size dampers_sizes[] = {
 
 static const ritz_member dampers_members[] = {
     {"names", SET_WORDS, RITZ_AT(ritz_dampers, name), "d",
-     "distinct; `body/damper` in systems"},
+     "distinct names of the dampers; `body/damper` in systems"},
     {"c", SET_REAL, RITZ_AT(ritz_dampers, c), "d",
-     "each damper adds c b b' to D; not negative"},
-    {"k", SET_REAL, RITZ_AT(ritz_dampers, k), "d", "and k b b' to K"},
+     "damping constant: each damper adds c b b' to D; not negative"},
+    {"k", SET_REAL, RITZ_AT(ritz_dampers, k), "d",
+     "stiffness: each damper adds k b b' to K"},
     {"held_c", SET_REAL, RITZ_AT(ritz_dampers, held_c), "d",
-     "what of that `D` contains already: 0 in components and reductions, c in "
-     "systems"},
+     "part of c that `D` already contains: 0 in components and reduced "
+     "components, c in systems"},
     {"held_k", SET_REAL, RITZ_AT(ritz_dampers, held_k), "d",
-     "the same for k and `K`"},
+     "part of k that `K` already contains"},
     {"B", MATRIX_DENSE, RITZ_AT(ritz_dampers, B), "c d",
      "influence vectors b, as columns"},
     {0},
@@ -192,21 +197,22 @@ static const ritz_size io_sizes[] = {
 };
 
 static const ritz_member io_members[] = {
-    {"inputs/names", SET_NAMES, RITZ_AT(ritz_io, input), "m", "distinct",
-     .optional = "inputs", .some = 'm'},
+    {"inputs/names", SET_NAMES, RITZ_AT(ritz_io, input), "m",
+     "distinct names of the inputs", .optional = "inputs", .some = 'm'},
     {"inputs/B", MATRIX_DENSE, RITZ_AT(ritz_io, B), "c m",
      "input matrix: M x'' + D x' + K x = B u", .optional = "inputs",
      .some = 'm'},
-    {"outputs/names", SET_NAMES, RITZ_AT(ritz_io, output), "p", "distinct",
-     .optional = "outputs", .some = 'p'},
+    {"outputs/names", SET_NAMES, RITZ_AT(ritz_io, output), "p",
+     "distinct names of the outputs", .optional = "outputs", .some = 'p'},
     {"outputs/C", MATRIX_DENSE, RITZ_AT(ritz_io, C), "p c",
-     "y = C x + Cv x' + Ca x''", .optional = "outputs", .some = 'p'},
-    {"outputs/Cv", MATRIX_DENSE, RITZ_AT(ritz_io, Cv), "p c", "of velocities",
+     "output matrix of displacements: y = C x + Cv x' + Ca x''",
      .optional = "outputs", .some = 'p'},
+    {"outputs/Cv", MATRIX_DENSE, RITZ_AT(ritz_io, Cv), "p c",
+     "output matrix of velocities", .optional = "outputs", .some = 'p'},
     {"outputs/Ca", MATRIX_DENSE, RITZ_AT(ritz_io, Ca), "p c",
-     "of accelerations", .optional = "outputs", .some = 'p'},
+     "output matrix of accelerations", .optional = "outputs", .some = 'p'},
     {"outputs/limits", SET_REAL, RITZ_AT(ritz_io, limit), "p",
-     "largest tolerated \\|y\\|", .values = VALUES_OR_NAN,
+     "largest tolerated \\|y\\| of each output", .values = VALUES_OR_NAN,
      .optional = "outputs", .some = 'p'},
     {0},
 };
@@ -228,16 +234,18 @@ static const ritz_size columns_sizes[] = {
 
 static const ritz_member columns_members[] = {
     {"columns/kind", SET_COLUMN_KINDS, RITZ_AT(ritz_columns, kind), "r",
-     "rigid, constraint, normal, residual, system, krylov, static, "
+     "kind of each column: rigid, constraint, normal, residual, system, "
+     "krylov, static, "
      "attachment, interface, massless, force, state, perturbed, balanced"},
     {"columns/dof", SET_WHOLE, RITZ_AT(ritz_columns, dof), "r",
-     "row of the full component whose unit motion or force the column "
-     "answers; -1 where none",
+     "row of the full component whose unit motion or unit force defines the "
+     "column; -1: the column has none",
      "-1..n-1"},
     {"columns/hertz", SET_REAL, RITZ_AT(ritz_columns, hertz), "r",
-     "frequency of a mode", .values = VALUES_OR_NAN},
+     "frequency of a column that is a mode", .values = VALUES_OR_NAN},
     {"residuals", SET_REAL, RITZ_AT(ritz_columns, residual), "r",
-     "relative residual of each eigenpair", .values = VALUES_OR_NAN},
+     "relative residual of a column that is an eigenvector",
+     .values = VALUES_OR_NAN},
     {0},
 };
 
@@ -252,13 +260,13 @@ const ritz_schema ritz_schema_columns = {
 
 static const ritz_member origin_members[] = {
     {"method", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, method), "",
-     "which made the basis"},
+     "method that made the basis"},
     {"options", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, options), "",
-     "as given"},
+     "options of the method, as given"},
     {"reference", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, reference), "",
-     "key of `references.bib`"},
+     "key of the method's source in `references.bib`"},
     {"engine", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_origin, engine), "",
-     "libraries that computed it"},
+     "libraries that computed the basis"},
     {0},
 };
 
@@ -294,13 +302,15 @@ static const ritz_size measures_sizes[] = {
 
 static const ritz_member measures_members[] = {
     {"name", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, name), "k",
-     "such as `frequency-relative`; `estimates` are alike"},
+     "name of each measure, such as `frequency-relative`; the group "
+     "`estimates` has the same members"},
     {"value", SET_REAL, RITZ_ITEM(ritz_measures, item, ritz_measure, value),
-     "k", "infinite: a bound that bounds nothing", .values = VALUES_ANY},
+     "k", "value of each measure; infinite for a bound that bounds nothing",
+     .values = VALUES_ANY},
     {"limit", SET_REAL, RITZ_ITEM(ritz_measures, item, ritz_measure, limit),
-     "k", "tolerance that was asked for", .values = VALUES_OR_NAN},
+     "k", "requested tolerance", .values = VALUES_OR_NAN},
     {"where", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, where),
-     "k", "mode, channel or frequency; may be empty"},
+     "k", "mode, channel or frequency where it was found; may be empty"},
     {0},
 };
 

@@ -25,10 +25,7 @@ ritz_scene_part ritz_scene_joints;
 ritz_scene_part ritz_scene_configurations;
 ritz_scene_part ritz_scene_inputs;
 ritz_scene_part ritz_scene_outputs;
-ritz_scene_part ritz_scene_select;
 ritz_scene_part ritz_scene_composite;
-ritz_scene_part ritz_scene_augment;
-ritz_scene_part ritz_scene_extraneous;
 
 /** Number of items of a list of parts, refused if it is too long. */
 ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,
