@@ -314,38 +314,29 @@ static int64_t choose_set(const ritz_scene *scene, int64_t count,
 }
 
 /*
- * The sets to try: those of the level, and the requested one if it is another.
+ * The sets to try: those of the level, and the requested one if it is another;
+ * its index.
  */
-static int64_t list_sets(const ritz_plan *plan, ritz_plan sets[MOST_SETS])
+static int64_t list_sets(const ritz_plan *plan, ritz_plan sets[MOST_SETS],
+                         int64_t *requested)
 {
     bool system = plan->augment == RITZ_AUGMENT_SYSTEM;
     const int *of = system ? of_system : of_components;
     int64_t count =
         (int64_t)(system ? sizeof of_system : sizeof of_components) /
         (int64_t)sizeof *of;
-    bool listed = plan->attached == RITZ_ATTACHED_AUTO;
 
+    *requested = plan->attached == RITZ_ATTACHED_AUTO ? 0 : count;
     for (int64_t k = 0; k < count; k++) {
         sets[k] = *plan;
         sets[k].attached = of[k];
         sets[k].inputs_too = false;
-        listed = listed || (!plan->inputs_too && plan->attached == of[k]);
+        if (!plan->inputs_too && plan->attached == of[k])
+            *requested = k;
     }
-    if (!listed)
+    if (*requested == count)
         sets[count++] = *plan;
     return count;
-}
-
-/* Index of the requested set. */
-static int64_t find_set(int64_t count, const ritz_plan *sets,
-                        const ritz_plan *plan)
-{
-    int64_t at = 0;
-
-    while (at < count - 1 && (sets[at].attached != plan->attached ||
-                              sets[at].inputs_too != plan->inputs_too))
-        at++;
-    return at;
 }
 
 ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
@@ -354,8 +345,8 @@ ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
     const ritz_scene *scene = rows->stage->scene;
     bool open = plan->attached == RITZ_ATTACHED_AUTO;
     ritz_plan sets[MOST_SETS];
-    int64_t most = list_sets(plan, sets);
     int64_t chosen = 0;
+    int64_t most = list_sets(plan, sets, &chosen);
 
     if (plan->augment != RITZ_AUGMENT_COMPONENT && !open)
         return RITZ_OK;
@@ -368,7 +359,8 @@ ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
         ritz_monitor_step("attached dofs", k, most);
         RITZ_CHECK_IN((*out)[k].name, try_set(rows, &sets[k], &(*out)[k]));
     }
-    chosen = open ? choose_set(scene, most, *out) : find_set(most, sets, plan);
+    if (open)
+        chosen = choose_set(scene, most, *out);
     (*out)[chosen].chosen = true;
     *plan = sets[chosen];
     return RITZ_OK;

@@ -261,9 +261,6 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
 void ritz_mass_return(const ritz_dense *L, const double *scale, bool limited,
                       ritz_dense *U);
 
-/** W := [W, more]. */
-ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W);
-
 /**
  * Orthonormal directions of Y (destroyed) whose singular values exceed
  * @p tolerance times *largest, which grows to the largest there is.
@@ -273,5 +270,9 @@ ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W);
  */
 ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
                          double *value, ritz_dense *out);
+
+/** Append those directions of Y, orthogonal to U, to U. */
+ritz_status ritz_span_append(ritz_dense *Y, double tolerance, double *largest,
+                             double *value, ritz_dense *U);
 
 #endif

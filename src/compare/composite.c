@@ -338,7 +338,7 @@ ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
     return RITZ_OK;
 }
 
-ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W)
+static ritz_status append_columns(const ritz_dense *more, ritz_dense *W)
 {
     RITZ_OWN(ritz_dense) both = {0};
 
@@ -348,6 +348,19 @@ ritz_status ritz_columns_append(const ritz_dense *more, ritz_dense *W)
     ritz_dense_free(W);
     RITZ_MOVE(*W, both);
     return RITZ_OK;
+}
+
+ritz_status ritz_span_append(ritz_dense *Y, double tolerance, double *largest,
+                             double *value, ritz_dense *U)
+{
+    RITZ_OWN(ritz_dense) more = {0};
+
+    RITZ_CHECK(ritz_dense_take_out(U, U, Y));
+    RITZ_CHECK(ritz_dense_take_out(U, U, Y)); /* twice is enough */
+    RITZ_CHECK(ritz_span_of(Y, tolerance, largest, value, &more));
+    if (more.ncol > U->nrow - U->ncol)
+        more.ncol = U->nrow - U->ncol;
+    return append_columns(&more, U);
 }
 
 ritz_status ritz_givens_gather(const ritz_givens *givens,
@@ -363,7 +376,7 @@ ritz_status ritz_givens_gather(const ritz_givens *givens,
 
         RITZ_CHECK(
             ritz_dense_mul(&given->at->P[body], &given->X[group], &part));
-        RITZ_CHECK(ritz_columns_append(&part, &W));
+        RITZ_CHECK(append_columns(&part, &W));
     }
     RITZ_MOVE(*out, W);
     return RITZ_OK;
@@ -552,7 +565,7 @@ static ritz_status gather_group(const composing *it, int group, ritz_dense *W)
         &it->own.massless, &it->own.rigid, &it->own.answers, &none};
 
     RITZ_CHECK(ritz_givens_gather(it->givens, it->stage, it->body, group, W));
-    return ritz_columns_append(own[group], W);
+    return append_columns(own[group], W);
 }
 
 /* U: the groups in turn, each orthogonal to those before it. */
@@ -565,7 +578,7 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
 
     RITZ_CHECK(ritz_dense_new(L->nrow, 0, U));
     for (int g = 0; g < RITZ_GROUPS; g++) {
-        RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0};
+        RITZ_OWN(ritz_dense) W = {0}, Y = {0};
         double least = tightest[g];
 
         if (g == KEPT)
@@ -576,12 +589,9 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
         RITZ_CHECK(ritz_mass_transform(L, scale, &W, &Y));
         if (g == MASSLESS || (g == STATIC && own))
             scale_to_unit(false, &Y);
-        RITZ_CHECK(ritz_dense_take_out(U, U, &Y));
-        RITZ_CHECK(ritz_dense_take_out(U, U, &Y)); /* twice is enough */
-        RITZ_CHECK(ritz_span_of(&Y, least, &largest, NULL, &more));
+        RITZ_CHECK(ritz_span_append(&Y, least, &largest, NULL, U));
         if (g == MASSLESS)
-            *massless = (ritz_range){U->ncol, U->ncol + more.ncol};
-        RITZ_CHECK(ritz_columns_append(&more, U));
+            *massless = (ritz_range){0, U->ncol};
     }
     return RITZ_OK;
 }

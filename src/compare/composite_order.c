@@ -218,16 +218,11 @@ static ritz_status start_body(const ordering *g, frame *f)
  */
 static ritz_status add_group(const ordering *g, int group, frame *f)
 {
-    RITZ_OWN(ritz_dense) W = {0}, Y = {0}, more = {0};
+    RITZ_OWN(ritz_dense) W = {0}, Y = {0};
 
     RITZ_CHECK(ritz_givens_gather(&g->givens, g->stage, f->body, group, &W));
     RITZ_CHECK(ritz_mass_transform(&f->L, f->scale, &W, &Y));
-    RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y));
-    RITZ_CHECK(ritz_dense_take_out(&f->U, &f->U, &Y)); /* twice is enough */
-    RITZ_CHECK(ritz_span_of(&Y, RITZ_RANK_LOSS, &f->largest, f->value, &more));
-    if (more.ncol > f->U.nrow - f->U.ncol)
-        more.ncol = f->U.nrow - f->U.ncol;
-    return ritz_columns_append(&more, &f->U);
+    return ritz_span_append(&Y, RITZ_RANK_LOSS, &f->largest, f->value, &f->U);
 }
 
 /* V of one body; its directions join those of all others in the list. */

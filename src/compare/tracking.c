@@ -208,16 +208,6 @@ static ritz_status classify_pair(const ritz_track_step *step, int64_t i,
     return RITZ_OK;
 }
 
-/* Whether two modes, or the modes paired with them, are of one cluster. */
-static bool are_clustered(const ritz_track_step *step, int64_t i, int64_t j)
-{
-    int64_t p = step->partner[i];
-    int64_t q = step->partner[j];
-
-    return step->cluster[0][i] == step->cluster[0][j] ||
-           step->cluster[1][p] == step->cluster[1][q];
-}
-
 /* Append the events of one step, up to a frequency; 0 for all. */
 static ritz_status append_events(const ritz_track_step *step, double up_to_hz,
                                  ritz_tracking *tracking)
@@ -228,10 +218,15 @@ static ritz_status append_events(const ritz_track_step *step, double up_to_hz,
         if (step->hertz[0][i] > most)
             break;
         RITZ_CHECK(classify_mode(step, i, tracking));
-        for (int64_t j = i + 1; j < step->num_from; j++)
-            if (step->partner[i] >= 0 && step->partner[j] >= 0 &&
-                !are_clustered(step, i, j))
+        for (int64_t j = i + 1; j < step->num_from; j++) {
+            int64_t p = step->partner[i], q = step->partner[j];
+
+            /* of different clusters, in both configurations */
+            if (p >= 0 && q >= 0 &&
+                step->cluster[0][i] != step->cluster[0][j] &&
+                step->cluster[1][p] != step->cluster[1][q])
                 RITZ_CHECK(classify_pair(step, i, j, tracking));
+        }
     }
     return RITZ_OK;
 }
@@ -317,15 +312,6 @@ static int64_t find_root(const int64_t *joined, int64_t track)
     return track;
 }
 
-/* Join two tracks; the older one remains. */
-static void join_tracks(int64_t *joined, int64_t a, int64_t b)
-{
-    int64_t p = find_root(joined, a);
-    int64_t q = find_root(joined, b);
-
-    joined[p > q ? p : q] = p < q ? p : q;
-}
-
 /* Tracks of configuration `to`: those of paired modes, and new ones. */
 static void continue_tracks(const ritz_track_step *step, ritz_tracking *t)
 {
@@ -365,9 +351,13 @@ static ritz_status number_tracks(ritz_tracking *t)
         number[k] = -1;
     }
     for (int64_t k = 0; k < t->num_configurations; k++)
-        for (int64_t i = t->first[k]; i < t->first[k + 1]; i++)
-            join_tracks(joined, t->track[i],
-                        t->track[t->first[k] + t->cluster[i]]);
+        for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
+            int64_t p = find_root(joined, t->track[i]);
+            int64_t q =
+                find_root(joined, t->track[t->first[k] + t->cluster[i]]);
+
+            joined[p > q ? p : q] = p < q ? p : q; /* the older one remains */
+        }
     for (int64_t i = 0; i < t->first[t->num_configurations]; i++) {
         int64_t root = find_root(joined, t->track[i]);
 

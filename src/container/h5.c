@@ -110,13 +110,10 @@ static ritz_status append_name(listing *list, const char *name)
     return RITZ_OK;
 }
 
-static herr_t take_link(hid_t group, const char *name, const H5L_info_t *info,
-                        void *data)
+static herr_t take_link(hid_t, const char *name, const H5L_info_t *, void *data)
 {
     listing *list = data;
 
-    (void)group;
-    (void)info;
     list->status = append_name(list, name);
     return list->status == RITZ_OK ? 0 : -1;
 }

@@ -63,9 +63,8 @@ static ritz_status settle_ranking(const ritz_place *place)
 }
 
 /* What earlier releases did not write is always written. */
-static bool has_always(const void *object)
+static bool has_always(const void *)
 {
-    (void)object;
     return true;
 }
 
@@ -120,8 +119,8 @@ static const ritz_member members[] = {
      "damping, as `--damping` reads it; may be empty", .optional = "",
      .has = has_always},
     {"total", ATTRIBUTE_REAL, RITZ_AT(ritz_ranking, total), "",
-     "sum of all values, computed from an identity",
-     .values = VALUES_OR_NAN, .optional = "", .has = has_always},
+     "sum of all values, computed from an identity", .values = VALUES_OR_NAN,
+     .optional = "", .has = has_always},
     {"coupling", ATTRIBUTE_REAL, RITZ_AT(ritz_ranking, coupling), "",
      "largest normalised off-diagonal entry of the modal Gramian",
      .values = VALUES_OR_NAN},
@@ -164,36 +163,6 @@ const ritz_schema ritz_schema_ranking = {
 
 /* One ranking or several. */
 
-static bool has_several(const void *object)
-{
-    return ((const ritz_rankings *)object)->count != 1;
-}
-
-static ritz_status write_single(const ritz_place *place, hid_t group)
-{
-    const ritz_rankings *all = place->object;
-    const ritz_place item = {.at = group,
-                             .schema = &ritz_schema_ranking,
-                             .object = all->item,
-                             .outer = place};
-
-    return has_several(all) ? RITZ_OK : ritz_schema_move(&item);
-}
-
-static ritz_status read_single(const ritz_place *place, hid_t group)
-{
-    ritz_rankings *all = place->target;
-    ritz_place item = {
-        .at = group, .schema = &ritz_schema_ranking, .outer = place};
-
-    if (all->item) /* several were read */
-        return RITZ_OK;
-    RITZ_CHECK_NEW(all->item, 1);
-    all->count = 1;
-    item.object = item.target = all->item;
-    return ritz_schema_move(&item);
-}
-
 static const ritz_size rankings_sizes[] = {
     {'k', .offset = offsetof(ritz_rankings, count)},
     {0},
@@ -201,8 +170,7 @@ static const ritz_size rankings_sizes[] = {
 
 static const ritz_member rankings_members[] = {
     {"rankings", LIST, RITZ_LIST(ritz_rankings, item), "k", .numbered = true,
-     .optional = "", .has = has_several, .schema = &ritz_schema_ranking},
-    {"", BY_HAND, .shape = "", .write = write_single, .read = read_single},
+     .alone = true, .schema = &ritz_schema_ranking},
     {0},
 };
 

@@ -122,6 +122,8 @@ static void tell_items(const ritz_place *place, const char *prefix,
     for (item.index = 0; item.index < count; item.index++) {
         snprintf(path, sizeof path, "%s%s/%s/", prefix, row->name,
                  name[item.index]);
+        if (row->alone && count == 1)
+            snprintf(path, sizeof path, "%s", prefix);
         tell_members(&item, path, to);
         item.object = (const char *)item.object + row->size;
     }

@@ -513,7 +513,9 @@ static ritz_status find_items(const ritz_place *place, const ritz_member *row,
     const ritz_size *size = find_size(place->schema, *row->shape);
     char *items = NULL;
 
-    RITZ_CHECK(ritz_h5_list(group, count, name));
+    *count = 1;
+    if (group != place->at)
+        RITZ_CHECK(ritz_h5_list(group, count, name));
     RITZ_CHECK_NEW(items, *count * (int64_t)row->size);
     memcpy(target_of(place, row), &items, sizeof items);
     memcpy((char *)place->target + size->offset, count, sizeof *count);
@@ -535,7 +537,8 @@ static ritz_status move_items(const ritz_place *place, const ritz_member *row,
     if (is_read(place))
         memcpy(&item.target, field_of(place, row), sizeof item.target);
     for (; item.index < count; item.index++) {
-        RITZ_CHECK(move_item(&item, name[item.index]));
+        RITZ_CHECK(group == place->at ? ritz_schema_move(&item)
+                                      : move_item(&item, name[item.index]));
         item.object = (const char *)item.object + row->size;
         if (is_read(place))
             item.target = (char *)item.target + row->size;
@@ -547,6 +550,10 @@ static ritz_status move_list(const ritz_place *place, const ritz_member *row)
 {
     RITZ_OWN(hid_t) group = 0;
 
+    if (row->alone &&
+        (is_read(place) ? !has_link(place->at, row->name)
+                        : ritz_schema_size(place, *row->shape) == 1))
+        return move_items(place, row, place->at);
     RITZ_CHECK_IN(row->name, open_group(place, row->name, &group));
     return ritz_context(move_items(place, row, group), row->name);
 }

@@ -71,7 +71,8 @@ typedef struct ritz_member {
     ritz_member_values values;
     bool inside;   /* the array is in the object itself */
     bool numbered; /* items of a list are "0", "1", ... and have no names */
-    char some;     /* a letter: see below */
+    bool alone; /* an only item of a list has its members in the list's place */
+    char some;  /* a letter: see below */
     /*
      * A member may be absent from a file if `optional` names what decides that,
      * "" the member itself. It is written if `has` says so, or if the size
@@ -101,7 +102,8 @@ struct ritz_schema {
                            with a slash, or "" */
     const ritz_size *sizes; /* ended by letter 0; NULL: none */
     const ritz_member *members; /* ended by name NULL */
-    size_t units; /* of a kind: offset of char[RITZ_NAME_SIZE], 0: it has none */
+    size_t
+        units; /* of a kind: offset of char[RITZ_NAME_SIZE], 0: it has none */
     /** Checks an object before it is written; NULL: nothing is to check. */
     ritz_status (*check)(const void *object);
     /** Checks and completes what was read. */

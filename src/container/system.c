@@ -29,16 +29,6 @@ static const ritz_schema block_schema = {
     .members = block_members,
 };
 
-static ritz_status write_block(hid_t blocks, const char *name,
-                               const system_block *block)
-{
-    RITZ_OWN(hid_t) group = 0;
-
-    RITZ_CHECK(ritz_h5_group(blocks, name, &group));
-    return ritz_schema_move(
-        &(ritz_place){.at = group, .schema = &block_schema, .object = block});
-}
-
 static ritz_status write_blocks(const ritz_place *place, hid_t group)
 {
     const ritz_system *system = place->object;
@@ -46,30 +36,17 @@ static ritz_status write_blocks(const ritz_place *place, hid_t group)
     ritz_name name = "";
 
     for (int64_t c = 0; c < system->num_components; c++) {
+        RITZ_OWN(hid_t) at = 0;
+
         block.index = c;
         block.order = system->order[c];
         block.order_full = system->order_full[c];
         RITZ_CHECK(ritz_name_copy(system->component[c], name));
-        RITZ_CHECK(write_block(group, name, &block));
+        RITZ_CHECK(ritz_h5_group(group, name, &at));
+        RITZ_CHECK(ritz_schema_move(&(ritz_place){
+            .at = at, .schema = &block_schema, .object = &block}));
         block.first += block.order;
     }
-    return RITZ_OK;
-}
-
-static ritz_status read_block(hid_t blocks, const char *name, int64_t due,
-                              system_block *block)
-{
-    RITZ_OWN(hid_t) group = 0;
-
-    RITZ_CHECK(ritz_h5_enter(blocks, name, &group));
-    RITZ_CHECK(ritz_schema_move(&(ritz_place){.at = group,
-                                              .schema = &block_schema,
-                                              .object = block,
-                                              .target = block}));
-    RITZ_REFUSE_IF(block->first != due, RITZ_ERR_FORMAT,
-                   "attribute 'first' is %" PRId64 ", not in %" PRId64
-                   "..%" PRId64,
-                   block->first, due, due);
     return RITZ_OK;
 }
 
@@ -83,10 +60,20 @@ static ritz_status read_blocks(const ritz_place *place, hid_t group)
     RITZ_CHECK_NEW(system->order, system->num_components);
     RITZ_CHECK_NEW(system->order_full, system->num_components);
     for (int64_t c = 0; c < system->num_components; c++) {
+        const char *name = system->component[c];
         system_block block = {0};
+        RITZ_OWN(hid_t) at = 0;
 
-        RITZ_CHECK_IN(system->component[c],
-                      read_block(group, system->component[c], first, &block));
+        RITZ_CHECK_IN(name, ritz_h5_enter(group, name, &at));
+        RITZ_CHECK_IN(name,
+                      ritz_schema_move(&(ritz_place){.at = at,
+                                                     .schema = &block_schema,
+                                                     .object = &block,
+                                                     .target = &block}));
+        RITZ_REFUSE_IF(block.first != first, RITZ_ERR_FORMAT,
+                       "%s: attribute 'first' is %" PRId64 ", not in %" PRId64
+                       "..%" PRId64,
+                       name, block.first, first, first);
         system->order[c] = block.order;
         system->order_full[c] = block.order_full;
         first += block.order;

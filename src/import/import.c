@@ -270,16 +270,6 @@ static ritz_status take_parts(const ritz_import_request *request,
     return read_parts(parts, request->sums);
 }
 
-/*
- * Digits of the stiffness: it is differences of stiffness that rounding spoils.
- * An identity as mass has one digit and tells nothing. Of the mass if there is
- * no stiffness: the parts come in that order.
- */
-static double source_digits(const ritz_parts *parts)
-{
-    return parts->count > 0 ? (double)parts->part[0].matrix.digits : 0.0;
-}
-
 ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 {
     RITZ_REFUSE_IF(strlen(text) >= RITZ_NAME_SIZE, RITZ_ERR_ARGUMENT,
@@ -327,46 +317,37 @@ static ritz_status settle_rows(const ritz_import_request *request,
     return place_grids(deck, &kept, component);
 }
 
-static bool has_ties(const ritz_import_request *request, const ritz_deck *deck)
-{
-    return deck->num_constraints > 0 || request->num_rigid_ports > 0 ||
-           request->num_averaged_ports > 0;
-}
-
-/* Elements whose grids are all there, out of the deck. */
-static void take_elements(ritz_deck *deck, ritz_component *component,
-                          ritz_import_report *report)
-{
-    const ritz_grids *grids = &component->grids;
-
-    component->elements = deck->elements;
-    deck->elements = (ritz_elements){0};
-    report->num_hidden =
-        deck->num_strange +
-        ritz_elements_keep(&component->elements, grids->count, grids->id);
-}
-
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
                                   ritz_parts *parts, ritz_deck *deck,
                                   ritz_component *component,
                                   ritz_import_report *report)
 {
+    const ritz_grids *grids = &component->grids;
     RITZ_OWN(ritz_row_names) names = {0};
 
     if (request->bulk)
         RITZ_CHECK(ritz_deck_read(request->bulk, deck));
     RITZ_REFUSE_IF(deck->imposed, RITZ_ERR_FORMAT, "%s", deck->imposed);
     RITZ_CHECK(ritz_names_find(request, deck, parts, &names));
-    if (has_ties(request, deck)) {
+    if (deck->num_constraints > 0 || request->num_rigid_ports > 0 ||
+        request->num_averaged_ports > 0) {
         RITZ_CHECK(
             settle_rows(request, parts, deck, &names, component, report));
     } else {
         RITZ_CHECK(settle_parts(parts, deck, &names, component, report));
         RITZ_CHECK(place_grids(deck, &names, component));
     }
-    take_elements(deck, component, report);
-    component->digits = source_digits(parts);
+    RITZ_MOVE(component->elements, deck->elements);
+    report->num_hidden =
+        deck->num_strange +
+        ritz_elements_keep(&component->elements, grids->count, grids->id);
+    /*
+     * Of the stiffness, which comes first, as it is differences of stiffness
+     * that rounding spoils; of the mass if there is none. An identity as mass
+     * has one digit and tells nothing.
+     */
+    component->digits = (double)parts->part[0].matrix.digits;
     if (request->units)
         RITZ_CHECK_IN("--units",
                       ritz_import_units(request->units, component->units));

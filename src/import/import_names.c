@@ -118,18 +118,6 @@ static ritz_status list_all(const ritz_deck *deck, ritz_row_names *out)
     return RITZ_OK;
 }
 
-/* Dofs that constraint elements eliminate, sorted. */
-static ritz_status list_dependents(const ritz_deck *deck, ritz_dof **out)
-{
-    const ritz_equations *equations = &deck->equations;
-
-    RITZ_CHECK_NEW(*out, equations->count);
-    for (int64_t k = 0; k < equations->count; k++)
-        (*out)[k] = equations->dependent[k];
-    qsort(*out, (size_t)equations->count, sizeof **out, ritz_dof_compare);
-    return RITZ_OK;
-}
-
 bool ritz_dof_among(ritz_dof dof, int64_t count, const ritz_dof *sorted)
 {
     return count > 0 && bsearch(&dof, sorted, (size_t)count, sizeof *sorted,
@@ -151,15 +139,19 @@ static void leave_out(int64_t count, const ritz_dof *sorted,
 static ritz_status list_less(const ritz_deck *deck, bool fixed, bool dependents,
                              ritz_row_names *out)
 {
-    RITZ_OWN_ARRAY ritz_dof *tied = NULL;
+    int64_t count = deck->equations.count;
+    RITZ_OWN_ARRAY ritz_dof *tied = NULL; /* dependent dofs, sorted */
 
     RITZ_CHECK(list_all(deck, out));
     out->whole = !dependents;
     if (fixed)
         leave_out(deck->num_fixed, deck->fixed, out);
     if (dependents) {
-        RITZ_CHECK(list_dependents(deck, &tied));
-        leave_out(deck->equations.count, tied, out);
+        RITZ_CHECK_NEW(tied, count);
+        for (int64_t k = 0; k < count; k++)
+            tied[k] = deck->equations.dependent[k];
+        qsort(tied, (size_t)count, sizeof *tied, ritz_dof_compare);
+        leave_out(count, tied, out);
     }
     snprintf(out->map, sizeof out->map, "grids less %s%s%s",
              fixed ? "SPCs" : "", fixed && dependents ? " and " : "",
@@ -278,22 +270,13 @@ static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
 static ritz_status take_line(const char *path, int64_t number, char *line,
                              ritz_row_names *names)
 {
-    const char *const blanks = " \t\r";
-    const char *field[3] = {NULL, NULL, NULL};
-    int count = 0;
+    char field[2][48] = {"", ""}, more[2] = "";
     ritz_dof dof = {0};
+    int count = 0;
 
     line[strcspn(line, "#")] = '\0';
-    for (char *at = line + strspn(line, blanks); *at && count < 3;) {
-        size_t length = strcspn(at, blanks);
-        bool last = at[length] == '\0';
-
-        field[count++] = at;
-        at[length] = '\0';
-        at += length + (last ? 0 : 1);
-        at += strspn(at, blanks);
-    }
-    if (count == 0)
+    count = sscanf(line, "%47s%47s%1s", field[0], field[1], more);
+    if (count < 1)
         return RITZ_OK;
     RITZ_REFUSE_IF(count != 2 || !ritz_text_whole(field[0], &dof.grid) ||
                        !ritz_text_whole(field[1], &dof.component),
@@ -445,15 +428,6 @@ static ritz_status name_by_file(const char *path, ritz_parts *parts,
     return RITZ_OK;
 }
 
-static ritz_status check_size(const ritz_part *part, int64_t due,
-                              const char *other)
-{
-    RITZ_REFUSE_IF(part->matrix.A.nrow != due, RITZ_ERR_FORMAT,
-                   "'%s' has %" PRId64 " rows, '%s' has %" PRId64, part->spec,
-                   part->matrix.A.nrow, other, due);
-    return RITZ_OK;
-}
-
 /* Parts whose files name the rows are placed by name, others as they are. */
 static ritz_status place_rows(ritz_part *part, const ritz_row_names *names,
                               const ritz_roster *roster, const ritz_dof *row)
@@ -500,10 +474,14 @@ ritz_status ritz_names_find(const ritz_import_request *request,
     RITZ_OWN(ritz_roster) roster = {0};
     const ritz_part *unnamed = first_unnamed(parts);
 
-    for (int64_t k = 0; unnamed && k < parts->count; k++)
-        if (!parts->part[k].matrix.row)
-            RITZ_CHECK(check_size(&parts->part[k], unnamed->matrix.A.nrow,
-                                  unnamed->spec));
+    for (int64_t k = 0; unnamed && k < parts->count; k++) {
+        const ritz_matrix *one = &parts->part[k].matrix;
+
+        RITZ_REFUSE_IF(
+            !one->row && one->A.nrow != unnamed->matrix.A.nrow, RITZ_ERR_FORMAT,
+            "'%s' has %" PRId64 " rows, '%s' has %" PRId64, parts->part[k].spec,
+            one->A.nrow, unnamed->spec, unnamed->matrix.A.nrow);
+    }
     RITZ_CHECK(choose_names(request, deck, parts, &names));
     RITZ_CHECK(ritz_roster_new(names.count, names.dof, &roster));
     for (int64_t k = 0; k < parts->count; k++) {

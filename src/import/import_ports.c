@@ -280,16 +280,6 @@ ritz_status ritz_import_port(const char *text, bool whole,
     return RITZ_OK;
 }
 
-/* The six dofs of a grid that was made for a port. */
-static ritz_status make_tied(const ritz_import_grid *grid,
-                             const ritz_extended *extended, ritz_port *out)
-{
-    char text[RITZ_NAME_SIZE + 32];
-
-    snprintf(text, sizeof text, "%s=%" PRId64 ":123456", grid->port, grid->id);
-    return ritz_import_port(text, true, extended, out);
-}
-
 /* Count the port that was put behind the others. */
 static ritz_status add_port(ritz_component *component)
 {
@@ -315,9 +305,14 @@ static ritz_status add_ports(const ritz_import_request *request,
         RITZ_CHECK(add_port(component));
     }
     for (int64_t k = 0; k < report->num_grids; k++) {
-        RITZ_CHECK_IN(report->grid[k].port,
-                      make_tied(&report->grid[k], extended,
-                                &component->port[component->num_ports]));
+        const ritz_import_grid *grid = &report->grid[k];
+        char text[RITZ_NAME_SIZE + 32];
+
+        snprintf(text, sizeof text, "%s=%" PRId64 ":123456", grid->port,
+                 grid->id);
+        RITZ_CHECK_IN(grid->port,
+                      ritz_import_port(text, true, extended,
+                                       &component->port[component->num_ports]));
         RITZ_CHECK(add_port(component));
     }
     return RITZ_OK;

@@ -99,17 +99,16 @@ static ritz_status sort_names(ritz_row_names *names, ritz_parts *parts)
 }
 
 /* Rows for dofs that only equations name; what is fixed and what is alive. */
-static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
-                             const ritz_component *component, ritz_tying *it)
+static ritz_status find_rows(const ritz_deck *deck, const ritz_roster *roster,
+                             ritz_parts *parts, const ritz_component *component,
+                             ritz_tying *it)
 {
     ritz_row_names *names = &it->names;
     bool sorted = is_ascending(names);
-    RITZ_OWN(ritz_roster) roster = {0};
     RITZ_OWN_ARRAY ritz_dof *missing = NULL;
     int64_t count = 0;
 
-    RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
-    RITZ_CHECK(list_missing(deck, &roster, &count, &missing));
+    RITZ_CHECK(list_missing(deck, roster, &count, &missing));
     RITZ_CHECK(ritz_tying_append(count, missing, it));
     if (sorted)
         RITZ_CHECK(sort_names(names, parts));
@@ -120,25 +119,13 @@ static ritz_status find_rows(const ritz_deck *deck, ritz_parts *parts,
     for (int64_t k = 0; k < names->count; k++) {
         if (ritz_dof_among(names->dof[k], deck->num_fixed, deck->fixed))
             it->mark[k] |= RITZ_TIED_FIXED;
-        if (!it->acts && ritz_roster_row(&roster, names->dof[k]) < 0)
+        if (!it->acts && ritz_roster_row(roster, names->dof[k]) < 0)
             it->mark[k] |= RITZ_TIED_OUTSIDE;
     }
     return RITZ_OK;
 }
 
 /* ---- whether constraints act -------------------------------------------- */
-
-static ritz_status find_action(const ritz_deck *deck, ritz_tying *it)
-{
-    const ritz_equations *eq = &deck->equations;
-    RITZ_OWN(ritz_roster) roster = {0};
-
-    it->acts = deck->num_constraints > 0 && it->names.whole;
-    RITZ_CHECK(ritz_roster_new(it->names.count, it->names.dof, &roster));
-    for (int64_t e = 0; e < eq->count && !it->acts; e++)
-        it->acts = ritz_roster_row(&roster, eq->dependent[e]) >= 0;
-    return RITZ_OK;
-}
 
 /* A constraint that is not understood is refused only if the matrices still
  * have its dofs. */
@@ -215,13 +202,18 @@ ritz_status ritz_tying_new(ritz_deck *deck, ritz_parts *parts,
                            const ritz_component *component,
                            ritz_import_report *report, ritz_tying *out)
 {
+    const ritz_equations *eq = &deck->equations;
     RITZ_OWN(ritz_tying) new = {.deck = deck, .names = *names};
+    RITZ_OWN(ritz_roster) roster = {0};
 
     *names = (ritz_row_names){0};
-    RITZ_CHECK(find_action(deck, &new));
+    new.acts = deck->num_constraints > 0 && new.names.whole;
+    RITZ_CHECK(ritz_roster_new(new.names.count, new.names.dof, &roster));
+    for (int64_t e = 0; e < eq->count && !new.acts; e++)
+        new.acts = ritz_roster_row(&roster, eq->dependent[e]) >= 0;
     RITZ_CHECK(pass_refusal(deck, &new, report));
     RITZ_CHECK_NEW(new.mark, new.names.count);
-    RITZ_CHECK(find_rows(deck, parts, component, &new));
+    RITZ_CHECK(find_rows(deck, &roster, parts, component, &new));
     if (new.acts)
         RITZ_CHECK(check_sets(deck));
     RITZ_CHECK(name_constraints(deck, report));
