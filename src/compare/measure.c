@@ -203,17 +203,18 @@ static void keep_rows(int64_t count, const int64_t *keep, ritz_dense *A)
 static void truncate_modes(int64_t count, const int64_t *keep,
                            ritz_configuration *c)
 {
-    ritz_dense *const columns[] = {&c->io.C, &c->io.Cv, &c->io.Ca, &c->momentum,
-                                   &c->K,    &c->M,     &c->D,     &c->K4};
-    ritz_dense *const rows[] = {&c->io.B, &c->dampers.B, &c->K,
-                                &c->M,    &c->D,         &c->K4};
+    ritz_dense *const columns[] = {&c->io.C, &c->io.Cv,    &c->io.Ca,
+                                   &c->K,    &c->M,        &c->D,
+                                   &c->K4,   &c->momentum, NULL};
+    ritz_dense *const rows[] = {&c->io.B, &c->dampers.B, &c->K, &c->M,
+                                &c->D,    &c->K4,        NULL};
 
     for (int64_t k = 0; k < c->num_blocks; k++)
         keep_columns(count, keep, &c->P[k]);
-    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++)
-        keep_columns(count, keep, columns[k]);
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-        keep_rows(count, keep, rows[k]);
+    for (ritz_dense *const *A = columns; *A; A++)
+        keep_columns(count, keep, *A);
+    for (ritz_dense *const *A = rows; *A; A++)
+        keep_rows(count, keep, *A);
     for (int64_t j = 0; j < count; j++)
         c->lambda[j] = c->lambda[keep[j]];
 }
