@@ -245,7 +245,8 @@ static void take_word(const cli_program *program, const cli_option *o,
     size_t used = 0;
     int length = 0;
 
-    for (const char *at = o->argument; *at; at += length + (at[length] != 0)) {
+    for (const char *at = o->argument; at && *at;
+         at += length + (at[length] != 0)) {
         const char *gap = "";
 
         length = (int)strcspn(at, "|");
@@ -328,8 +329,10 @@ static int take_long(cli_run *run, const cli_option *all, char **words)
         cli_refuse(run->program, "no argument goes with '--%s'", all[k].name);
     if (all[k].argument && !value && !words[1])
         cli_refuse(run->program, "no argument to '--%s'", all[k].name);
+    if (!all[k].argument)
+        value = "";
     take_option(run, all, &all[k], value ? value : words[1]);
-    return all[k].argument && !value ? 2 : 1;
+    return value ? 1 : 2;
 }
 
 /* "-q", "-qh", "-oFILE" or "-o FILE"; how many words that took. */
@@ -343,7 +346,7 @@ static int take_short(cli_run *run, const cli_option *all, char **words)
         if (o->kind == CLI_KIND_END)
             cli_refuse(run->program, "unknown option '-%c'", *c);
         if (!o->argument) {
-            take_option(run, all, o, NULL);
+            take_option(run, all, o, "");
             continue;
         }
         if (!c[1] && !words[1])

@@ -199,7 +199,7 @@ const ritz_stamp *cli_stamp(cli_run *run);
 /** Write all that was said, with --quiet and --json too, to a file. */
 ritz_status cli_save(cli_run *run, const char *path);
 
-/** A line on standard error, and in the report; not fatal. */
+/** A line on standard error, and in the report, once; not fatal. */
 [[gnu::format(printf, 2, 3)]] void cli_warn(cli_run *run, const char *format,
                                             ...);
 

@@ -171,6 +171,10 @@ void cli_warn(cli_run *run, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    for (size_t k = 0; k < json_array_size(run->warnings); k++)
+        if (strcmp(json_string_value(json_array_get(run->warnings, k)), text) ==
+            0)
+            return;
     json_array_append_new(run->warnings, cli_string(text));
     if (!run->quiet) {
         cli_watch_clear();

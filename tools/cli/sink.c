@@ -182,12 +182,11 @@ static json_t *find_target(const cli_run *run, const char *keys)
     return item;
 }
 
-/* End the line, and show what of the text is new. */
-static void end_line(const cli_run *run, long from)
+/* Show what of the text is new. */
+static void show_text(const cli_run *run, long from)
 {
     const cli_table *said = &run->said;
 
-    putc('\n', said->file);
     fflush(said->file);
     if (run->quiet || run->json || !said->text || from < 0)
         return;
@@ -204,7 +203,20 @@ static void tell_line(const cli_run *run, const char *title, const char *keys,
     if (title)
         fprintf(run->said.file, "  %-14s ", title);
     tell_values(&t, format, args);
-    end_line(run, from);
+    putc('\n', run->said.file);
+    show_text(run, from);
+}
+
+void sink_part(const cli_run *run, const char *format, ...)
+{
+    arguments args;
+    long from = ftell(run->said.file);
+    telling t = {run->said.file, "", sink_here(run)};
+
+    va_start(args.list, format);
+    tell_values(&t, format, &args);
+    va_end(args.list);
+    show_text(run, from);
 }
 
 void cli_say(const cli_run *run, const char *format, ...)

@@ -25,6 +25,10 @@
 [[gnu::format(printf, 3, 4)]] void sink_say(cli_run *run, const char *keys,
                                             const char *format, ...);
 
+/** Text of a line whose end is still to be said. */
+[[gnu::format(printf, 2, 3)]] void sink_part(const cli_run *run,
+                                             const char *format, ...);
+
 /** A line behind a title, in the column that all titles share. */
 [[gnu::format(printf, 4, 5)]] void sink_field(cli_run *run, const char *title,
                                               const char *keys,

@@ -3,7 +3,6 @@
 #include "base/tolerances.h"
 
 #include <complex.h>
-#include <inttypes.h>
 
 /* Relative size of an antisymmetric part that is rounding. */
 static const double skew_rounding = 1e-12;
@@ -297,11 +296,11 @@ static bool find_band(const ritz_columns *columns, double *low, double *high)
 /* "12 constraint, 8 normal". */
 static void describe_columns(cli_run *run, const ritz_columns *c)
 {
-    char text[160] = "";
     int64_t modes = 0;
-    double low = 0.0;
-    double high = 0.0;
+    double low = 0.0, high = 0.0;
+    bool any = false;
 
+    sink_part(run, "  %-14s ", "columns");
     sink_object(run, "columns");
     for (int kind = RITZ_COLUMN_RIGID; kind <= RITZ_COLUMN_BALANCED; kind++) {
         const char *name = ritz_column_name((ritz_column_kind)kind);
@@ -312,13 +311,13 @@ static void describe_columns(cli_run *run, const ritz_columns *c)
         if (count == 0)
             continue;
         sink_set(run, name, "%ld", count);
-        sink_append(text, sizeof text, "%s%ld %s", *text ? ", " : "", count,
-                    name);
+        sink_part(run, "%s%ld %s", any ? ", " : "", count, name);
+        any = true;
         modes += kind == RITZ_COLUMN_NORMAL ? count : 0;
     }
     sink_end(run);
     sink_set(run, "modes", "%ld", modes);
-    sink_field(run, "columns", "", "%s", text);
+    cli_say(run, "%s", "");
     if (find_band(c, &low, &high))
         sink_field(run, "normal modes", "", "%g to %g Hz", low, high);
 }
@@ -336,14 +335,12 @@ static void describe_origin(cli_run *run, const ritz_origin *o)
 /* Values of a balanced basis: some of them, and all in JSON. */
 static void describe_hankel(cli_run *run, const ritz_basis *b)
 {
-    enum { SHOWN = 10, ROOM = 12 };
-    char text[SHOWN * ROOM + 8] = "";
+    enum { SHOWN = 10 };
 
+    sink_part(run, "  %-14s", "Hankel values");
     for (int64_t k = 0; k < b->num_hankel && k < SHOWN; k++)
-        sink_append(text, sizeof text, "%s%.4g", k > 0 ? " " : "",
-                    b->hankel[k]);
-    sink_field(run, "Hankel values", "", "%s%s", text,
-               b->num_hankel > SHOWN ? " ..." : "");
+        sink_part(run, " %.4g", b->hankel[k]);
+    cli_say(run, "%s", b->num_hankel > SHOWN ? " ..." : "");
     sink_reals(run, "hankel_values", b->num_hankel, b->hankel);
 }
 
@@ -392,11 +389,10 @@ static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
     cli_say(run, "  %-14s %ld rigid, %ld flexible modes%s", title, rigid,
             (count - rigid), count > rigid ? ", Hz:" : "");
     for (int64_t k = rigid; k < count; k += 5) {
-        char line[5 * 14 + 1] = "";
-
+        sink_part(run, "  %-14s", "");
         for (int64_t i = k; i < k + 5 && i < count; i++)
-            sink_append(line, sizeof line, " %12.7g", hertz[i]);
-        cli_say(run, "  %-14s%s", "", line);
+            sink_part(run, " %12.7g", hertz[i]);
+        cli_say(run, "%s", "");
     }
     sink_reals(run, "frequencies_hz", count, hertz);
 }
@@ -415,26 +411,20 @@ static void describe_measures(cli_run *run, const char *key,
 /* A row a measure and a column an order, some orders at a time. */
 static void describe_nested_errors(cli_run *run, const ritz_nested *nested)
 {
-    enum { ACROSS = 6, WIDTH = 9 };
+    enum { ACROSS = 6 };
 
     for (int64_t k = 0; k < nested->count; k += ACROSS) {
         int64_t end = k + ACROSS < nested->count ? k + ACROSS : nested->count;
-        char line[ACROSS * WIDTH + 1] = "";
 
+        sink_part(run, "    %-35s", "errors of the first");
         for (int64_t i = k; i < end; i++)
-            sink_append(line, sizeof line, " %8" PRId64, nested->order[i]);
-        cli_say(run, "    %-35s%s", "errors of the first", line);
+            sink_part(run, " %8ld", nested->order[i]);
         for (int64_t j = 0; j < nested->num_errors; j++) {
-            const double *value = ritz_dense_col(&nested->value, j);
-
-            line[0] = '\0';
+            sink_part(run, "\n      %-33s", nested->error[j]);
             for (int64_t i = k; i < end; i++)
-                if (isnan(value[i])) /* it was not measured */
-                    sink_append(line, sizeof line, " %8s", "-");
-                else
-                    sink_append(line, sizeof line, " %8.1e", value[i]);
-            cli_say(run, "      %-33s%s", nested->error[j], line);
+                sink_part(run, " %8.1e", ritz_dense_col(&nested->value, j)[i]);
         }
+        cli_say(run, "%s", "");
     }
 }
 
@@ -446,8 +436,8 @@ static void describe_nested(cli_run *run, const ritz_nested *nested,
         return;
     sink_object(run, "nested");
     sink_field(run, "nested", "smallest",
-               "first %" PRId64 " to %" PRId64 " columns (--order N)",
-               nested->smallest, columns);
+               "first %ld to %ld columns (--order N)", nested->smallest,
+               columns);
     describe_nested_errors(run, nested);
     sink_wholes(run, "order", nested->count, nested->order);
     sink_object(run, "errors");

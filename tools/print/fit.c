@@ -191,7 +191,6 @@ static void say_candidate(const cli_run *run, const ritz_fit_candidate *c,
                           const char *name)
 {
     char modes[64] = "";
-    char cost[32] = "-"; /* of what is not met it is not measured */
     char error[32];
 
     if (!c) {
@@ -212,15 +211,15 @@ static void say_candidate(const cli_run *run, const ritz_fit_candidate *c,
         cli_say(run, "%-18s refused: %s", name, why);
         return;
     }
-    if (c->cost.order > 0)
-        snprintf(cost, sizeof cost, "%.2g", c->cost.seconds_per_second);
     snprintf(error, sizeof error, "%s%.2g", c->ruled_out ? ">" : "", c->ratio);
-    cli_say(run, "%-18s %6ld %8s  %8s %-10s %8.2g %9s  %s", c->method->name,
+    cli_say(run, "%-18s %6ld %8s  %8s %-10s %8.2g %9.2g  %s", c->method->name,
             c->order, *modes ? modes : "-", error,
             c->ruled_out   ? "frequency"
             : c->worst < 0 ? ""
                            : ritz_tolerance_word(c->errors.item[c->worst].name),
-            c->making.cpu, cost, c->feasible ? "" : "not met");
+            c->making.cpu,
+            c->cost.order > 0 ? c->cost.seconds_per_second : (double)NAN,
+            c->feasible ? "" : "not met");
 }
 
 static void say_head(const cli_run *run)
@@ -388,37 +387,20 @@ static void set_step(cli_run *run, const ritz_fitter *fitter,
     sink_end(run);
 }
 
-/* " %9ld" of each body, or its name in the head. */
-static void print_bodies(const ritz_fitter *fitter,
-                         const ritz_fit_candidate *row, size_t size, char *out)
-{
-    out[0] = '\0';
-    for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++) {
-        if (strlen(out) + 16 >= size)
-            return;
-        if (row)
-            sink_append(out, size, " %9ld", row->modes[k]);
-        else
-            sink_append(out, size, " %9.9s", ritz_fitter_body(fitter, k));
-    }
-}
-
 /* "        26        20        46     42      0.47 frequency" */
-static void say_step(const cli_run *run, const ritz_fitter *fitter,
-                     const ritz_fit_candidate *row)
+static void say_step(const cli_run *run, const ritz_fit_candidate *row)
 {
-    char orders[256];
     const char *word =
         row->worst < 0 ? ""
                        : ritz_tolerance_word(row->errors.item[row->worst].name);
 
-    print_bodies(fitter, row, sizeof orders, orders);
+    for (int64_t k = 0; k < row->num_bodies; k++)
+        sink_part(run, " %9ld", row->modes[k]);
     if (row->refusal[0])
-        cli_say(run, "%s  %8ld refused: %s", orders, row->columns,
-                row->refusal);
+        cli_say(run, "  %8ld refused: %s", row->columns, row->refusal);
     else
-        cli_say(run, "%s  %8ld %6ld  %8.2g %s%s", orders, row->columns,
-                row->order, row->ratio, word, row->feasible ? "" : ", not met");
+        cli_say(run, "  %8ld %6ld  %8.2g %s%s", row->columns, row->order,
+                row->ratio, word, row->feasible ? "" : ", not met");
 }
 
 /* The fewest columns that do, if they are not all. */
@@ -426,36 +408,35 @@ static void say_enough(cli_run *run, const ritz_fitter *fitter,
                        const ritz_fit_path *path)
 {
     int64_t last = 0;
-    char orders[256] = "";
 
     for (int64_t k = 0; k < path->count; k++)
         last = path->row[k].feasible ? k : last;
     if (last == 0)
         return;
-    for (int64_t k = 0;
-         k < path->num_bodies && strlen(orders) + 80 < sizeof orders; k++)
-        sink_append(orders, sizeof orders, "%s%s to %ld", k > 0 ? ", " : "",
-                    ritz_fitter_body(fitter, k), path->row[last].modes[k]);
-    cli_say(run, "\nThe tolerance holds down to order %ld: cut %s.",
-            path->row[last].order, orders);
+    sink_part(run, "\nThe tolerance holds down to order %ld: cut ",
+              path->row[last].order);
+    for (int64_t k = 0; k < path->num_bodies; k++)
+        sink_part(run, "%s%s to %ld", k > 0 ? ", " : "",
+                  ritz_fitter_body(fitter, k), path->row[last].modes[k]);
+    cli_say(run, ".");
 }
 
 static void say_path(cli_run *run, const ritz_fitter *fitter,
                      const ritz_fit_path *path)
 {
-    char bodies[256];
     /* some twenty lines, the first and the last among them */
     const int64_t step = (path->count + 19) / 20;
 
-    print_bodies(fitter, NULL, sizeof bodies, bodies);
     cli_say(run, "\nWith the first columns alone ('order: N' of a body's file "
                  "in a scene):\n");
-    cli_say(run, "%s  %8s %6s  %8s of", bodies, "columns", "order", "error");
+    for (int64_t k = 0; k < path->num_bodies; k++)
+        sink_part(run, " %9.9s", ritz_fitter_body(fitter, k));
+    cli_say(run, "  %8s %6s  %8s of", "columns", "order", "error");
     sink_list(run, "path");
     for (int64_t k = 0; k < path->count; k++) {
         set_step(run, fitter, &path->row[k]);
         if (k % step == 0 || k == path->count - 1)
-            say_step(run, fitter, &path->row[k]);
+            say_step(run, &path->row[k]);
     }
     sink_end(run);
     say_enough(run, fitter, path);
@@ -532,7 +513,7 @@ static ritz_status find_smallest(fit_run *f, const model *full,
         record_candidate(f, &fit.candidate[fit.runner_up], false, true, NULL);
     record_candidate(f, chosen, true, false, fit.why);
     RITZ_CHECK(f->recorded);
-    if (!f->scene)
+    if (full)
         warn_of_ports(run, &full->component, chosen);
     if (f->scene && (run->output || f->given->prefix)) {
         RITZ_CHECK(write_scene(f, fitter, chosen));

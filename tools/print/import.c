@@ -51,21 +51,22 @@ static ritz_status take_sums(cli_run *run, const ritz_file_sums *sums)
 static void say_removed(cli_run *run, const ritz_import_report *report)
 {
     enum { SHOWN = 8 };
-    char name[RITZ_DOF_NAME_SIZE];
-    char text[SHOWN * (RITZ_DOF_NAME_SIZE + 2) + 1] = "";
+    int64_t count = report->num_removed;
 
+    if (count > 0)
+        sink_part(run, "%ld rows empty in stiffness and mass removed: ", count);
     sink_list(run, "removed");
-    for (int64_t k = 0; k < report->num_removed; k++) {
+    for (int64_t k = 0; k < count; k++) {
+        char name[RITZ_DOF_NAME_SIZE];
+
         ritz_dof_name(report->removed[k], name);
         sink_add(run, "%s", name);
         if (k < SHOWN)
-            sink_append(text, sizeof text, "%s%s", k > 0 ? ", " : "", name);
+            sink_part(run, "%s%s", k > 0 ? ", " : "", name);
     }
     sink_end(run);
-    if (report->num_removed > 0)
-        cli_say(run, "%ld rows empty in stiffness and mass removed: %s%s",
-                report->num_removed, text,
-                report->num_removed > SHOWN ? ", ..." : "");
+    if (count > 0)
+        cli_say(run, "%s", count > SHOWN ? ", ..." : "");
 }
 
 /* "RBE2 600, MPC 12, ..." */

@@ -105,19 +105,6 @@ static double percent_of(double part, double whole)
     return whole != 0.0 ? 100.0 * part / whole : 0.0;
 }
 
-static void print_parts(const ritz_ranking *r, int64_t mode, size_t size,
-                        char *out)
-{
-    for (int64_t j = 0; j < r->num_parts; j++) {
-        double value = ritz_dense_col(&r->parts, j)[mode];
-
-        if (isnan(r->whole[j]))
-            sink_append(out, size, " %10.3g", value);
-        else
-            sink_append(out, size, " %9.2f%%", percent_of(value, r->whole[j]));
-    }
-}
-
 static bool shows_parts(const ritz_ranking *r)
 {
     return r->num_parts > 1 && r->num_parts <= MOST_PARTS;
@@ -125,12 +112,11 @@ static bool shows_parts(const ritz_ranking *r)
 
 static void say_heads(const cli_run *run, const ritz_ranking *r)
 {
-    char parts[MOST_PARTS * CELL] = "";
-
+    sink_part(run, "%4s %6s %14s %9s %7s %13.13s %7s", "rank", "mode", "Hz",
+              "zeta", "cluster", r->by, "share");
     for (int64_t j = 0; shows_parts(r) && j < r->num_parts; j++)
-        sink_append(parts, sizeof parts, " %10.10s", r->part[j]);
-    cli_say(run, "%4s %6s %14s %9s %7s %13.13s %7s%s%s", "rank", "mode", "Hz",
-            "zeta", "cluster", r->by, "share", parts,
+        sink_part(run, " %10.10s", r->part[j]);
+    cli_say(run, "%s",
             isnan(exact_at(r, 0))
                 ? ""
                 : "  exact Hankel values of the system  differs");
@@ -140,27 +126,29 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
                      const int64_t *track, int64_t k)
 {
     int64_t mode = r->order[k];
-    double total = sum_of(r);
+    double zeta = r->zeta[mode];
     double exact = exact_at(r, k);
-    char cluster[CELL], zeta[CELL] = "-";
-    char parts[MOST_PARTS * CELL] = "";
-    char beside[64] = "", differs[CELL] = "";
+    char cluster[CELL];
 
     name_cluster(r, track, mode, cluster);
-    if (r->zeta[mode] > 0.0)
-        snprintf(zeta, sizeof zeta, "%.3g", r->zeta[mode]);
-    if (shows_parts(r))
-        print_parts(r, mode, sizeof parts, parts);
+    sink_part(run, "%4ld %6ld %14.7g %9.3g %7s %13.5e %6.2f%%", k + 1,
+              number_of(track, mode), r->hertz[mode],
+              zeta > 0.0 ? zeta : nan(""), cluster, r->value[mode],
+              percent_of(r->value[mode], sum_of(r)));
+    for (int64_t j = 0; shows_parts(r) && j < r->num_parts; j++) {
+        double value = ritz_dense_col(&r->parts, j)[mode];
+
+        if (isnan(r->whole[j]))
+            sink_part(run, " %10.3g", value);
+        else
+            sink_part(run, " %9.2f%%", percent_of(value, r->whole[j]));
+    }
     if (!isnan(exact))
-        snprintf(beside, sizeof beside, "  %.5e %.5e", r->system_value[2 * k],
-                 r->system_value[2 * k + 1]);
+        sink_part(run, "  %.5e %.5e", r->system_value[2 * k],
+                  r->system_value[2 * k + 1]);
     if (exact > invisible * exact_at(r, 0))
-        snprintf(differs, sizeof differs, "          %+9.1e",
-                 r->value[mode] / exact - 1.0);
-    cli_say(run, "%4ld %6ld %14.7g %9s %7s %13.5e %6.2f%%%s%s%s", k + 1,
-            number_of(track, mode), r->hertz[mode], zeta, cluster,
-            r->value[mode], percent_of(r->value[mode], total), parts, beside,
-            differs);
+        sink_part(run, "          %+9.1e", r->value[mode] / exact - 1.0);
+    cli_say(run, "%s", "");
 }
 
 /* The sum over all modes of each part, in percent of the whole. */
@@ -195,17 +183,17 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
         cli_say(run, "all values add up to %.9g", r->total);
 }
 
-void rankings_append_place(const ritz_ranking *r, const int64_t *track,
-                           int64_t number, int width, size_t size, char *out)
+void rankings_say_place(const cli_run *run, const ritz_ranking *r,
+                        const int64_t *track, int64_t number, int width)
 {
     int64_t k = 0;
 
     while (k < r->count && number_of(track, r->order[k]) != number + 1)
         k++;
     if (k < r->count)
-        sink_append(out, size, " %*ld", width, k + 1);
+        sink_part(run, " %*ld", width, k + 1);
     else
-        sink_append(out, size, " %*s", width, "-");
+        sink_part(run, " %*s", width, "-");
 }
 
 void rankings_say_largest(const cli_run *run, const ranked *group)
@@ -213,7 +201,6 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
     enum { MOST_COLUMNS = 24 };
     const ritz_rankings *all = &group->all;
     const ritz_ranking *r = &group->largest;
-    char places[MOST_COLUMNS * 8] = "";
     char cluster[CELL];
 
     cli_say(run,
@@ -227,13 +214,13 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
         int64_t mode = r->order[k];
 
         name_cluster(r, group->track, mode, cluster);
-        places[0] = '\0';
+        sink_part(run, "%4ld %6ld %14.7g %7s %13.5e  %-24s ", k + 1,
+                  number_of(group->track, mode), r->hertz[mode], cluster,
+                  r->value[mode], all->item[group->where[mode]].at);
         for (int64_t c = 0; c < all->count && all->count <= MOST_COLUMNS; c++)
-            rankings_append_place(&all->item[c], ranked_numbers(all, c),
-                                  group->track[mode], 3, sizeof places, places);
-        cli_say(run, "%4ld %6ld %14.7g %7s %13.5e  %-24s %s", k + 1,
-                number_of(group->track, mode), r->hertz[mode], cluster,
-                r->value[mode], all->item[group->where[mode]].at, places);
+            rankings_say_place(run, &all->item[c], ranked_numbers(all, c),
+                               group->track[mode], 3);
+        cli_say(run, "%s", "");
     }
 }
 
@@ -307,22 +294,8 @@ void rankings_describe(cli_run *run, const ritz_rankings *all)
     }
 }
 
-/* Every ranking of one model would give the same warning: it is given once. */
-static bool was_warned(const cli_run *run, const char *text)
-{
-    for (size_t k = 0; k < json_array_size(run->warnings); k++) {
-        const char *before =
-            json_string_value(json_array_get(run->warnings, k));
-
-        if (before && strcmp(before, text) == 0)
-            return true;
-    }
-    return false;
-}
-
 void rankings_warn(cli_run *run, const ranked *group)
 {
-    char text[256];
     const ritz_ranking *worst = NULL;
     double differs = nan("");
 
@@ -345,13 +318,11 @@ void rankings_warn(cli_run *run, const ranked *group)
                 worst->by, differs);
     if (!(worst->coupling > coupled_limit) || isnan(differs))
         return;
-    snprintf(text, sizeof text,
+    cli_warn(run,
              "modes %ld and %ld couple by %.3g%s%s: values of single modes "
              "are rough there, trust the exact ones",
              worst->coupled[0] + 1, worst->coupled[1] + 1, worst->coupling,
              *worst->at ? " at " : "", worst->at);
-    if (!was_warned(run, text))
-        cli_warn(run, "%s", text);
 }
 
 void rankings_list_modes(int64_t count, const int64_t *mode, size_t size,

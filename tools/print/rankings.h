@@ -31,10 +31,10 @@ void ranked_free(ranked *group);
 void rankings_say(const cli_run *run, const ritz_ranking *ranking,
                   const int64_t *track, int64_t most);
 
-/** Append " 3", the place of the mode with that number, or " -" if it is not
- * there, in @p width letters. */
-void rankings_append_place(const ritz_ranking *ranking, const int64_t *track,
-                           int64_t number, int width, size_t size, char *out);
+/** " 3", the place of the mode with that number, as part of a line, or " -" if
+ * it is not there, in @p width letters. */
+void rankings_say_place(const cli_run *run, const ritz_ranking *ranking,
+                        const int64_t *track, int64_t number, int width);
 
 /** "1 2 5" of indices of modes, or "none". */
 void rankings_list_modes(int64_t count, const int64_t *mode, size_t size,

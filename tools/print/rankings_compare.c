@@ -3,7 +3,7 @@
 
 #include "cli/cli_table.h"
 
-enum { MOST_COLUMNS = 10, CELL = 16, LIST = 1024 };
+enum { MOST_COLUMNS = 10, LIST = 1024 };
 
 /* Frequencies of one mode in two rankings of one model agree to rounding. */
 static const double same_frequency = 1e-3;
@@ -103,22 +103,20 @@ static void say_names(cli_run *run, const contest *all)
 static void say_places(cli_run *run, const contest *all, int64_t most)
 {
     const ritz_ranking *r = all->ranking[0];
-    char line[MOST_COLUMNS * CELL] = "";
 
     if (all->count > MOST_COLUMNS)
         return;
+    sink_part(run, "%6s %14s  ", all->track[0] ? "track" : "mode", "Hz");
     for (int64_t c = 0; c < all->count; c++)
-        sink_append(line, sizeof line, " %5c", (int)('A' + c));
-    cli_say(run, "%6s %14s  %s", all->track[0] ? "track" : "mode", "Hz", line);
+        sink_part(run, " %5c", (int)('A' + c));
+    cli_say(run, "%s", "");
     for (int64_t k = 0; k < r->count && k < most; k++) {
         int64_t number = number_of(all, 0, r->order[k]);
 
-        line[0] = '\0';
+        sink_part(run, "%6ld %14.7g  ", number + 1, r->hertz[r->order[k]]);
         for (int64_t c = 0; c < all->count; c++)
-            rankings_append_place(all->ranking[c], all->track[c], number, 5,
-                                  sizeof line, line);
-        cli_say(run, "%6ld %14.7g  %s", number + 1, r->hertz[r->order[k]],
-                line);
+            rankings_say_place(run, all->ranking[c], all->track[c], number, 5);
+        cli_say(run, "%s", "");
     }
     if (r->count > most)
         cli_say(run, "       and %ld more", (r->count - most));
