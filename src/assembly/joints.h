@@ -3,7 +3,7 @@
 #ifndef RITZ_ASSEMBLY_JOINTS_H
 #define RITZ_ASSEMBLY_JOINTS_H
 
-#include <ritz/model.h>
+#include <ritz/assembly.h>
 #include <ritz/scene.h>
 
 /*
@@ -77,6 +77,18 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
                               ritz_relations *list);
 
 void ritz_relations_free(ritz_relations *relations);
+
+/**
+ * The neighbours of component @p k of a scene at its first configuration, by
+ * all its joints; the other components are read for it.
+ *
+ * @param[out] out  zero matrices if no joint holds the component
+ * @return RITZ_ERR_ARGUMENT if a neighbour is reduced already
+ */
+ritz_status ritz_scene_neighbour(const ritz_scene *scene, int64_t k,
+                                 const ritz_component *component,
+                                 const ritz_dofs *attached,
+                                 ritz_neighbour *out);
 
 /* Rotations and directions in space, 3 x 3 row by row. */
 

@@ -15,9 +15,8 @@
  *
  * so that q = Y u, M_n = Y'MY, K_n = Y'KY + sum k_s (Y'f - g)(Y'f - g)'.
  */
-#include "assembly/neighbour.h"
-
 #include "assembly/joints.h"
+
 #include "base/alloc.h"
 #include "base/tolerances.h"
 

@@ -1,5 +1,5 @@
 /* A scene's models, loaded and reduced: the bodies that are assembled. */
-#include "assembly/neighbour.h"
+#include "assembly/joints.h"
 #include "base/alloc.h"
 
 #include <ritz/assembly.h>
@@ -35,26 +35,44 @@ static ritz_status append_port(char **list, const char *port)
     return RITZ_OK;
 }
 
-/* The ports of body k that a joint holds or an input drives. */
+/* A place at which a joint, an input or an output names a port. */
+typedef struct port_user {
+    const ritz_scene_place *at;
+    const char *kind, *name;
+    int64_t line, column;
+} port_user;
+
+/* The t-th of them: joints, inputs, outputs; false: there are no more. */
+static bool find_user(const ritz_scene *scene, int64_t t, port_user *out)
+{
+    const int64_t k = t / 2 - scene->num_joints, j = k - scene->num_inputs;
+    const ritz_joint *joint = k < 0 ? &scene->joint[t / 2] : NULL;
+    const ritz_scene_io *io = NULL;
+
+    if (joint)
+        *out = (port_user){&joint->between[t % 2], "joint", joint->name,
+                           joint->line, joint->column};
+    if (joint || j >= scene->num_outputs)
+        return joint;
+    io = j < 0 ? &scene->input[k] : &scene->output[j];
+    *out =
+        (port_user){t % 2 == 0 ? &io->at : &io->against,
+                    j < 0 ? "input" : "output", io->name, io->line, io->column};
+    return true;
+}
+
+/* The ports of body k that a joint or an input names. */
 static ritz_status list_used_ports(const ritz_scene *scene, int64_t k,
                                    char **out)
 {
     RITZ_OWN_ARRAY char *list = NULL;
+    port_user user;
 
     RITZ_CHECK_NEW(list, 1);
-    for (int64_t j = 0; j < scene->num_joints; j++)
-        for (int end = 0; end < 2; end++)
-            if (scene->joint[j].between[end].component == k)
-                RITZ_CHECK(
-                    append_port(&list, scene->joint[j].between[end].port));
-    for (int64_t j = 0; j < scene->num_inputs; j++)
-        for (int end = 0; end < 2; end++) {
-            const ritz_scene_place *at =
-                end == 0 ? &scene->input[j].at : &scene->input[j].against;
-
-            if (at->component == k && *at->port)
-                RITZ_CHECK(append_port(&list, at->port));
-        }
+    for (int64_t t = 0; t < 2 * (scene->num_joints + scene->num_inputs); t++)
+        if (find_user(scene, t, &user) && user.at->component == k &&
+            *user.at->port)
+            RITZ_CHECK(append_port(&list, user.at->port));
     RITZ_MOVE(*out, list);
     return RITZ_OK;
 }
@@ -64,73 +82,45 @@ ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
                               const ritz_component *component,
                               ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_request request = RITZ_REQUEST_NONE;
     const ritz_method *method = ritz_method_find(item->basis);
-    ritz_neighbour neighbour = {0};
-    ritz_basis basis = {0};
-    char *ports = NULL;
+    ritz_request request = RITZ_REQUEST_NONE;
+    RITZ_OWN(ritz_dofs) attached = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN_ARRAY char *ports = NULL;
 
-    if (!method) {
-        status = RITZ_ERR_ARGUMENT;
-        goto done;
-    }
+    if (!method)
+        return RITZ_ERR_ARGUMENT;
     request.component = component;
     request.modes = item->modes;
     request.up_to_hz = item->up_to_hz;
     request.choice = item->choice;
     if (!item->attach)
-        RITZ_TRY(list_used_ports(scene, k, &ports));
-    RITZ_TRY(ritz_component_attached(
-        component, item->attach ? item->attach : ports, &request.attached));
+        RITZ_CHECK(list_used_ports(scene, k, &ports));
+    RITZ_CHECK(ritz_component_attached(
+        component, item->attach ? item->attach : ports, &attached));
+    request.attached = attached; /* borrowed */
     if (method->uses & RITZ_USES_NEIGHBOUR) {
-        RITZ_TRY(ritz_scene_neighbour(scene, k, component, &request.attached,
-                                      &neighbour));
+        RITZ_CHECK(
+            ritz_scene_neighbour(scene, k, component, &attached, &neighbour));
         request.neighbour = &neighbour;
     }
-    RITZ_TRY(ritz_basis_make(method, &request, &basis));
-    RITZ_TRY(ritz_reduce(component, &basis, out));
-done:
-    ritz_dofs_free(&request.attached);
-    ritz_neighbour_free(&neighbour);
-    ritz_basis_free(&basis);
-    free(ports);
-    return status;
-}
-
-static ritz_status check_io(const ritz_scene *scene, int64_t k,
-                            const ritz_component *component, int64_t count,
-                            const ritz_scene_io *io, const char *kind)
-{
-    for (int64_t j = 0; j < count; j++)
-        for (int end = 0; end < 2; end++) {
-            const ritz_scene_place *at = end == 0 ? &io[j].at : &io[j].against;
-
-            if (at->component == k && *at->port &&
-                !ritz_component_port(component, at->port))
-                return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, io[j].line,
-                                          io[j].column, kind, io[j].name);
-        }
-    return RITZ_OK;
+    RITZ_CHECK(ritz_basis_make(method, &request, &basis));
+    return ritz_reduce(component, &basis, out);
 }
 
 /* Check that the ports exist that joints, inputs and outputs name. */
 static ritz_status check_ports(const ritz_scene *scene, int64_t k,
                                const ritz_component *component)
 {
-    for (int64_t j = 0; j < scene->num_joints; j++) {
-        const ritz_joint *joint = &scene->joint[j];
+    port_user user;
 
-        for (int end = 0; end < 2; end++)
-            if (joint->between[end].component == k &&
-                !ritz_component_port(component, joint->between[end].port))
-                return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, joint->line,
-                                          joint->column, "joint", joint->name);
-    }
-    RITZ_CHECK(check_io(scene, k, component, scene->num_inputs, scene->input,
-                        "input"));
-    return check_io(scene, k, component, scene->num_outputs, scene->output,
-                    "output");
+    for (int64_t t = 0; find_user(scene, t, &user); t++)
+        if (user.at->component == k && *user.at->port &&
+            !ritz_component_port(component, user.at->port))
+            return ritz_scene_context(scene, RITZ_ERR_ARGUMENT, user.line,
+                                      user.column, user.kind, user.name);
+    return RITZ_OK;
 }
 
 /* A reduced model, or as many of its columns as the scene takes. */
@@ -150,53 +140,52 @@ static ritz_status load_columns(const ritz_source *source,
     return RITZ_OK;
 }
 
+/* The model of a component of the scene, full or reduced. */
+static ritz_status load_model(const ritz_source *source,
+                              const ritz_scene_component *item,
+                              ritz_component *full, ritz_reduced *reduced)
+{
+    char kind[RITZ_NAME_SIZE];
+
+    RITZ_CHECK(source->kind(source->state, item->model, kind));
+    if (strcmp(kind, "reduced") == 0) {
+        RITZ_REFUSE_IF(item->basis[0], RITZ_ERR_ARGUMENT,
+                       "'%s' is reduced already, so it takes no basis",
+                       item->model);
+        return load_columns(source, item, reduced);
+    }
+    RITZ_REFUSE_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
+                   "'%s' is a full model, so a basis is due", item->model);
+    return source->component(source->state, item->model, full);
+}
+
 ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
                             ritz_component *full, ritz_reduced *reduced)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene_component *item = &scene->component[k];
-    const ritz_source *source = scene->source;
-    char kind[RITZ_NAME_SIZE];
-    ritz_component component = {0};
-    bool known = false;
+    RITZ_OWN(ritz_component) component = {0};
 
-    RITZ_TRY(source->kind(source->state, item->model, kind));
-    if (strcmp(kind, "reduced") == 0) {
-        RITZ_FAIL_IF(item->basis[0], RITZ_ERR_ARGUMENT,
-                     "'%s' is reduced already, so it takes no basis",
-                     item->model);
-        RITZ_TRY(load_columns(source, item, reduced));
-        goto done;
-    }
-    RITZ_FAIL_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
-                 "'%s' is a full model, so a basis is due", item->model);
-    RITZ_TRY(source->component(source->state, item->model, &component));
-    status = check_ports(scene, k, &component);
-    known = status != RITZ_OK; /* refused where the port is named */
-    RITZ_TRY(status);
+    RITZ_CHECK(ritz_scene_context(
+        scene, load_model(scene->source, item, &component, reduced), item->line,
+        item->column, "component", item->name));
+    if (component.num_dofs > 0)
+        RITZ_CHECK(check_ports(scene, k, &component));
     RITZ_MOVE(*full, component);
-done:
-    ritz_component_free(&component);
-    return known ? status
-                 : ritz_scene_context(scene, status, item->line, item->column,
-                                      "component", item->name);
+    return RITZ_OK;
 }
 
 static ritz_status load_body(const ritz_scene *scene, int64_t k,
                              ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_scene_component *item = &scene->component[k];
-    ritz_component component = {0};
+    RITZ_OWN(ritz_component) component = {0};
 
-    RITZ_TRY(ritz_stage_load(scene, k, &component, out));
-    if (component.num_dofs > 0)
-        status = ritz_scene_context(
-            scene, ritz_stage_reduce(scene, k, item, &component, out),
-            item->line, item->column, "component", item->name);
-done:
-    ritz_component_free(&component);
-    return status;
+    RITZ_CHECK(ritz_stage_load(scene, k, &component, out));
+    if (component.num_dofs == 0)
+        return RITZ_OK;
+    return ritz_scene_context(
+        scene, ritz_stage_reduce(scene, k, item, &component, out), item->line,
+        item->column, "component", item->name);
 }
 
 /*

@@ -341,7 +341,7 @@ typedef enum ritz_fit_verdict {
 /* Whether all bodies have their T. */
 static bool has_bases(const ritz_stage *stage)
 {
-    bool all = true;
+    bool all = stage->count > 0;
 
     for (int64_t k = 0; k < stage->count; k++)
         all = all && stage->body[k].T.val;
@@ -576,7 +576,7 @@ ritz_status ritz_fit_try(ritz_fitter *f, ritz_fit_candidate *candidate)
     RITZ_OWN(ritz_fit_joined) joined = {0};
     ritz_status status = join_bodies(f, candidate, &joined);
 
-    if (status == RITZ_OK && !candidate->refusal[0])
+    if (status == RITZ_OK && joined.stage.body) /* no body is refused */
         status = ritz_fit_measure(f, &joined.stage, candidate);
     if (!f->scene) /* its candidates have no body in common */
         ritz_fit_forget(f, candidate->method);
@@ -590,7 +590,8 @@ ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
     if (!f->scene || !f->place[0].estimator || candidate->left_out > 0)
         return RITZ_OK;
     RITZ_CHECK(join_bodies(f, candidate, &joined));
-    return ritz_fit_bound_stage(f, &joined.stage, candidate);
+    return joined.stage.body ? ritz_fit_bound_stage(f, &joined.stage, candidate)
+                             : RITZ_OK;
 }
 
 ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,

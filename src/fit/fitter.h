@@ -266,9 +266,4 @@ ritz_status ritz_fit_enrich(ritz_fitter *fitter, ritz_fit_end *end);
 ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                             bool on);
 
-/* --- explain.c --------------------------------------------------------------- */
-
-/** Why the chosen one, in words; where nothing was met, what ended it. */
-ritz_status ritz_fit_explain(const ritz_fitter *fitter, ritz_fit *fit);
-
 #endif

@@ -20,7 +20,7 @@ static bool is_tracks(const char *path)
     return is;
 }
 
-/* What is known by the kind of a container, or by a look into a text. */
+/* Contents, by the kind of a container or by a test of a text file. */
 static const struct content {
     int holds, model;
     bool (*is)(const char *path);
@@ -51,7 +51,7 @@ static ritz_status refuse_content(const char *path, const char *noun, int holds)
                      list);
 }
 
-/* What is wrong with a file that is none of those. */
+/* Say what is wrong with a file without any of these contents. */
 static ritz_status refuse_file(const char *path)
 {
     struct stat file = {0};
@@ -165,12 +165,4 @@ int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
         if (strcmp(name[k], wanted) == 0)
             return k;
     return -1;
-}
-
-int chart_mark(int64_t series)
-{
-    static const int marks[] = {7, 5, 9, 13, 11};
-    static const int first[SVG_SERIES] = {0, 1, 2, 3, 4, 3, 1, 2};
-
-    return marks[(first[series % SVG_SERIES] + series / SVG_SERIES) % 5];
 }

@@ -1,6 +1,6 @@
 /*
- * Charts: what each is made from and who draws it. A kind is one file and one
- * line in the table of charts.c.
+ * Charts: the files that each kind draws, and the function that draws them. A
+ * kind is one file and one row of the table in charts.c.
  */
 #ifndef RITZ_TOOLS_CHART_CHART_H
 #define RITZ_TOOLS_CHART_CHART_H
@@ -10,7 +10,7 @@
 #include "cli/records.h"
 #include "print/rankings.h"
 
-/* What a file can hold, by its content. */
+/* Contents of files. */
 enum {
     CHART_RECORDS = 1,
     CHART_TRACKS = 2,
@@ -44,18 +44,18 @@ typedef struct chart_request {
     const char *against; /* "reduce", "simulate"; NULL: what is known */
     const char *error;   /* "relative", "decibels", "both" */
     double up_to_hz;     /* of tracks */
-    int64_t top;         /* so many modes at most */
+    int64_t top;         /* most modes of each ranking */
 } chart_request;
 
 typedef struct chart_kind {
     const char *name, *summary;
-    int holds; /* of files that it takes */
+    int holds; /* contents that it draws, CHART_... */
     const char *files;
     ritz_status (*draw)(const chart_sources *sources,
                         const chart_request *request, picture *out);
 } chart_kind;
 
-/** All kinds, ended by one without a name. */
+/** All kinds; the last row has no name. */
 extern const chart_kind chart_kinds[];
 
 ritz_status chart_pareto(const chart_sources *sources,
@@ -73,16 +73,16 @@ ritz_status chart_simulation(const chart_sources *sources,
 ritz_status chart_tracks(const chart_sources *sources,
                          const chart_request *request, picture *out);
 
-/** Read files, each by its content; one that is none of @p holds is refused. */
+/** Read files of some contents; others are refused. */
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
                        int holds, chart_sources *out);
 void chart_sources_free(chart_sources *sources);
 
 /**
- * Bars of values by mode, as SVG; data and script stay beside it as PATH.tsv
- * and PATH.gp.
+ * Draw the values of modes as bars: PATH, an SVG, with its data in PATH.tsv and
+ * its script in PATH.gp.
  *
- * @param[in] most  so many modes of each ranking
+ * @param[in] most  modes of each ranking
  * @return RITZ_ERR_FILE if gnuplot is not there or fails
  */
 ritz_status chart_rankings(const char *path, const char *title,
@@ -102,25 +102,20 @@ chart_word chart_say_seconds(double seconds);
 int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
                         const char *wanted);
 
-/** Whole decades around some values. */
 typedef struct chart_range {
     double low, high;
 } chart_range;
 
 /**
- * Of the finite ones of some values that are above @p floor_value. Where others
- * are not, and a logarithm cannot show zero, a decade is added below for them
- * to stand at its foot.
+ * Whole decades around the finite values that are above @p floor_value. A
+ * logarithm cannot show the others: a decade is added below, at whose foot they
+ * are drawn. If nothing is above the floor, it is the decade above the floor.
  *
  * @param[in]  floor_value  > 0
- * @param[out] lifted       how many do
- * @return the decade above the floor if nothing is above it
+ * @param[out] lifted       how many are drawn at the foot
  */
 chart_range chart_decades(int64_t count, const double *values,
                           double floor_value, int64_t *lifted);
-
-/** Mark of a series, as gnuplot numbers them; begin.gp has the same rule. */
-int chart_mark(int64_t series);
 
 /** The channel of singular values. */
 #define CHART_SINGULAR_WORD "singular-values"

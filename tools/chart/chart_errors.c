@@ -22,7 +22,7 @@ typedef struct form {
 /* Pixels, as errors.gp has them: of a cell, and of its panel. */
 enum { CELL_WIDE = 490, CELL_HIGH = 380, PANEL_WIDE = 376, PANEL_HIGH = 280 };
 
-/* Two marks nearer than this are one to the eye; pixels. */
+/* A reader cannot distinguish two marks that are nearer than this, in pixels. */
 static const double mark_apart = 5.0;
 
 /* The order of a point of the front is written if the point is this far from
@@ -55,7 +55,7 @@ typedef struct work {
     int64_t *group;      /* which series a point is of, for picture_thin */
     bool *front, *keep;
     int64_t *order;           /* records in the order of a line */
-    int64_t lifted, left_out; /* counted in the note */
+    int64_t lifted, left_out; /* errors drawn at the foot; not drawn */
     picture *picture;
 } work;
 
@@ -117,9 +117,9 @@ static void place_records(work *w, const measure *m, panel *p)
         p->x_high = most > 0.0 ? 1.05 * most : 1.0;
     if (m->tolerance > 0.0) {
         p->tolerance = m->tolerance;
-        if (m->tolerance < y.low)
+        if (m->tolerance < p->y_low)
             p->y_low = m->tolerance / 2.0;
-        if (m->tolerance >= y.high)
+        if (m->tolerance >= p->y_high)
             p->y_high = 2.0 * m->tolerance;
     }
     for (int64_t k = 0; k < w->s.all.count; k++)
@@ -162,7 +162,7 @@ static bool is_before(const work *w, int64_t a, int64_t b)
 }
 
 /* Records of the front (method -1), or the best of a method at each order, from
-   left to right; what misses modes is on neither. */
+   left to right; a model without all modes of the band is on neither. */
 static int64_t list_line(work *w, int64_t method)
 {
     int64_t count = 0, kept = 0;
@@ -208,7 +208,7 @@ static void say_point(work *w, const record *r, const measure *m)
                 record_error(r, m->name), costs);
 }
 
-/* A row; its word is the order, if it is to be written beside the point. */
+/* A row; with @p word the order is written next to the point. */
 static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
 {
     const record *r = &w->s.all.item[k];
@@ -306,13 +306,22 @@ static void put_table(const work *w)
 
 /* --- legend and note ------------------------------------------------------ */
 
-/* "chosen: compare, 34", in place of a word beside the point. */
+/* "chosen: compare, 34", instead of the order next to the point. */
 static void add_chosen(work *w, const record *r, bool chosen)
 {
     picture_add_sign(
         w->picture,
         (picture_sign){.colour = chosen ? "alarm" : "ink", .mark = 6},
         "%s: %.40s, %ld", chosen ? "chosen" : "runner-up", r->method, r->order);
+}
+
+/* Mark of a series, as gnuplot numbers them; begin.gp has the same rule. */
+static int find_mark(int64_t series)
+{
+    static const int marks[] = {7, 5, 9, 13, 11};
+    static const int first[SVG_SERIES] = {0, 1, 2, 3, 4, 3, 1, 2};
+
+    return marks[(first[series % SVG_SERIES] + series / SVG_SERIES) % 5];
 }
 
 static void add_signs(work *w)
@@ -323,7 +332,7 @@ static void add_signs(work *w)
     for (int64_t s = 0; s < w->s.num_methods && s < PICTURE_SIGNS - 7; s++)
         picture_add_sign(
             w->picture,
-            (picture_sign){.colour = svg_series(s), .mark = chart_mark(s)},
+            (picture_sign){.colour = svg_series(s), .mark = find_mark(s)},
             "%.60s", w->s.method[s]);
     for (int64_t k = w->s.all.count - 1; k >= 0; k--) {
         const record *r = &w->s.all.item[k];
@@ -410,7 +419,7 @@ static ritz_status compose_errors(work *w)
     return picture_draw(p, "errors.gp", w->form->title, w->form->xlabel);
 }
 
-/* No measure behind the first @p kept, which are taken, has that name. */
+/* Say why a name is not among the measures behind the first @p kept. */
 static ritz_status refuse_measure(const record_set *s, const char *asked,
                                   int64_t kept)
 {
@@ -427,7 +436,7 @@ static ritz_status refuse_measure(const record_set *s, const char *asked,
                      asked, names);
 }
 
-/* Measures that are asked for, or all of which any error is not rounding. */
+/* Measures of --measure, or all with an error that is more than rounding. */
 static ritz_status choose_measures(record_set *s, const cli_list *asked)
 {
     int64_t kept = 0;

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More modes would not be told apart. */
+/* A reader could not distinguish more modes. */
 enum {
     MOST_MODES = 60,
     MOST_FILES = 70,
@@ -158,8 +158,7 @@ static ritz_status stack_channels(const ritz_io *io, mac_shapes *out)
     return RITZ_OK;
 }
 
-/* What each input drives and each output senses of the modes of anything but a
-   basis. */
+/* Modes in the rows of inputs B and outputs C; a basis has none. */
 static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
 {
     const model *m = &side->file->model;

@@ -1,12 +1,12 @@
 /*
- * Responses over each other, and how far each is from the first: of a channel H
- * or of the singular values s of all of it
+ * Responses over each other, and the difference of each from the first: of a
+ * channel H, or of the singular values s of the transfer function,
  *
  *     |H_r - H| / max |H|      or      |s_r - s| / max s
  *     |20 log10(|H_r| / |H|)|  or      |20 log10(s_r / s)|
  *
- * at points that both have. Decibels have gaps where a value is 0, or a
- * singular value is nothing but rounding beside the largest.
+ * at frequencies that both have. Decibels have gaps where a value is 0, or a
+ * singular value is rounding relative to the largest.
  */
 #include "chart/chart.h"
 #include "chart/html.h"
@@ -51,14 +51,14 @@ typedef struct overlay {
     const char *name[MOST_RESPONSES];
     int64_t num_channels;
     channel channel[MOST_CHANNELS];
-    int64_t passed; /* channels that are not drawn */
+    int64_t passed; /* channels for which there is no room */
     bool strip[STRIPS];
     picture *picture;
 } overlay;
 
 /* --- what is drawn -------------------------------------------------------- */
 
-/* Refuse a response without one of some names of the first. */
+/* Refuse a response that lacks an input or output of the first. */
 static ritz_status check_names(const char *path, const char *kind,
                                int64_t count, char (*name)[RITZ_NAME_SIZE],
                                int64_t num_first, char (*first)[RITZ_NAME_SIZE])
@@ -306,8 +306,8 @@ typedef struct point {
 } point;
 
 /*
- * So many points of a line are in one column of pixels: of many the first, the
- * last, and the least and largest of magnitude and errors stay, and gaps.
+ * Thin the points of a line in one column of pixels: the first, the last, the
+ * least and largest of magnitude and errors are kept, and gaps.
  */
 static void keep_extremes(int64_t count, point *p)
 {
@@ -387,7 +387,8 @@ static int64_t find_peaks(const overlay *o, const channel *c,
     return count;
 }
 
-/* The row of a mark: in the data up to its tip, in the table up to errors. */
+/* Begin the rows of a mark: of the data up to its tooltip, of the table up to
+   errors. */
 static void begin_rows(const overlay *o, const channel *c, int which, int64_t w,
                        double hertz, double drawn, double value)
 {
@@ -438,7 +439,7 @@ static void put_peak(const overlay *o, const channel *c, int64_t k)
     end_rows(o);
 }
 
-/* The largest singular value between points, as stored beside them. */
+/* The largest singular value between points, which the file holds. */
 static void put_true_peak(const overlay *o, const channel *c, int64_t w)
 {
     const double *own = o->curve[w]->singular_peak;

@@ -1,19 +1,18 @@
-/* Text that others wrote, made fit for markup. */
+/* Text of users, written into markup. */
 #ifndef RITZ_TOOLS_CHART_HTML_H
 #define RITZ_TOOLS_CHART_HTML_H
 
 #include <stdio.h>
 
 /**
- * Write text into markup, between tags or in a quoted attribute: what markup
- * reads is escaped, control characters become spaces, and bytes that are not
- * UTF-8 question marks.
+ * Write text between tags or into a quoted attribute: characters that markup
+ * interprets are escaped, control characters become spaces, and bytes that are
+ * not UTF-8 question marks.
  */
 void html_text(FILE *file, const char *text);
 
 /**
- * Write markup with text in it, as printf would: only what stands for "%s" is
- * escaped. It knows "%s", "%ld", "%g", "%.3g" and "%%".
+ * Write markup as printf would, the texts of "%s" escaped. It knows "%s", "%ld", "%g", "%.3g" and "%%".
  */
 [[gnu::format(printf, 2, 3)]] void html_print(FILE *file, const char *format,
                                               ...);
@@ -21,10 +20,10 @@ void html_text(FILE *file, const char *text);
 /** Write one letter as markup. @return bytes of text it took */
 int html_symbol(FILE *file, const char *text);
 
-/** Write one letter, or what stands for it. @return bytes of text it took */
+/** Write one letter, ' ' or '?' for what is none. @return bytes of text it took */
 int html_letter(FILE *file, const char *text);
 
-/** Write text as one plain line: only control characters and wrong bytes go. */
+/** Write text as one plain line, without control characters and wrong bytes. */
 void html_line(FILE *file, const char *text);
 
 #endif

@@ -2,7 +2,6 @@
 
 #include "base/draft.h"
 #include "chart/html.h"
-#include "chart/text.h"
 
 #include <ritz/base.h>
 
@@ -41,7 +40,7 @@ ritz_status picture_new(const char *path, bool keep, picture *out)
     return cli_table_new(&out->table);
 }
 
-/* Rooms are a list; in front of each is the pointer to the one before. */
+/* Blocks of memory are a list: each begins with a pointer to the one before. */
 typedef union memory {
     union memory *before;
     max_align_t align;
@@ -71,7 +70,7 @@ void picture_add_sign(picture *p, picture_sign sign, const char *format, ...)
         p->sign[p->num_signs++] = sign;
 }
 
-/* Text in gnuplot's single quotes, where it reads nothing but ''. */
+/* Text in single quotes, where gnuplot interprets only ''. */
 static void quote_text(FILE *file, const char *text)
 {
     fputc('\'', file);
@@ -115,8 +114,8 @@ void picture_give_reals(picture *p, const char *name, int64_t count,
 }
 
 /*
- * gnuplot takes '\' and '"' of data for its own, so that they, and what markup
- * reads, are written as markup does; svg_copy reads it back.
+ * gnuplot interprets '\' and '"' in data. They are written as entities of
+ * markup, as are the characters that markup interprets; svg_copy reads them.
  */
 void picture_tip(picture *p, const char *format, ...)
 {
@@ -326,7 +325,7 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     return RITZ_OK;
 }
 
-/* Write a table beside the picture: as a file that stays, or as a draft. */
+/* Write a table next to the picture: as a file that is kept or a temporary one. */
 static ritz_status put_beside(const picture *p, cli_table *table,
                               const char *ending, ritz_draft *draft,
                               char out[PICTURE_PATH])

@@ -1,9 +1,9 @@
 /*
- * Pictures that gnuplot draws: numbers go into a table with tabs, what is to be
- * said of them into variables in front of a template, KIND.gp of this folder.
- * Table and script stay beside the picture, so that it can be drawn again:
- * `gnuplot PICTURE.svg.gp`. Text that others chose reaches gnuplot in single
- * quotes or in the table, and always `noenhanced`: it reads nothing into it.
+ * Pictures that gnuplot draws: a table of numbers with tabs between them, and a
+ * script, which sets variables before a template, KIND.gp of this folder. Both
+ * are kept, so that `gnuplot PICTURE.svg.gp` draws the picture again. Names that
+ * users chose are in single quotes or in the table, and always `noenhanced`, so
+ * that gnuplot does not interpret them.
  */
 #ifndef RITZ_TOOLS_CHART_PICTURE_H
 #define RITZ_TOOLS_CHART_PICTURE_H
@@ -21,7 +21,7 @@ enum {
     PICTURE_WIDE = 560, /* wider ones take the whole width of a page */
 };
 
-/* What a legend shows beside a name. */
+/* A line or a mark of the legend. */
 typedef struct picture_sign {
     char name[PICTURE_WORD];
     const char *role;   /* "the reference"; NULL: none */
@@ -37,10 +37,10 @@ typedef struct picture {
     double wide; /* pixels */
     double body; /* height in pixels, less that of the legend */
     char note[PICTURE_WORD]; /* below the legend */
-    cli_table data;          /* to be written to: what gnuplot reads */
-    cli_table given;         /* the same, variables of the template */
-    cli_table table; /* the same, what a reader may want to read; with tabs,
-                        names of columns first */
+    cli_table data;          /* numbers, which gnuplot reads */
+    cli_table given;         /* variables of the template */
+    cli_table
+        table; /* numbers for readers, with tabs, names of columns first */
     int num_signs;
     picture_sign sign[PICTURE_SIGNS];
     char *drawn; /* what gnuplot drew */
@@ -52,13 +52,13 @@ typedef struct picture {
 /**
  * Begin a picture.
  *
- * @param[in] path  where it appears, "NAME.svg"; with @p keep false it stays
- *                  in memory, without its legend, and only short-lived files
- *                  appear beside path
+ * @param[in] path  "NAME.svg"; with @p keep false the picture stays in memory,
+ *                  without its legend, and temporary files are made next to
+ *                  the path
  */
 ritz_status picture_new(const char *path, bool keep, picture *out);
 
-/** Zeroed memory that is freed with the picture; NULL, with a message: none. */
+/** Zeroed memory that is freed with the picture; NULL and a sentence: none. */
 void *picture_room(picture *p, int64_t count, size_t size);
 
 #define PICTURE_NEW(picture, pointer, count)                                   \
@@ -86,16 +86,16 @@ void picture_give_texts(picture *p, const char *name, int64_t count,
 void picture_give_reals(picture *p, const char *name, int64_t count,
                         const double *value, int64_t stride);
 
-/** What is said of a point, as a column of the data: lines of markup. */
+/** The tooltip of a point, as a column of the data. */
 [[gnu::format(printf, 2, 3)]] void picture_tip(picture *p, const char *format,
                                                ...);
 
 /**
- * Of points of one series at x, y in pixels, which a reader can tell apart: of
- * those in one square of @p cell pixels the lowest stays.
+ * Keep one point of each series in each square of @p cell pixels, the lowest: a
+ * reader cannot distinguish the others.
  *
- * @param[in]     group  which series a point is of; -1: it is none
- * @param[in,out] keep   those that must stay are true already
+ * @param[in]     group  series of each point; -1: it is not drawn
+ * @param[in,out] keep   true on entry for points that are kept anyway
  */
 ritz_status picture_thin(int64_t count, const double *x, const double *y,
                          double cell, const int64_t *group, bool *keep);
@@ -103,7 +103,7 @@ ritz_status picture_thin(int64_t count, const double *x, const double *y,
 /**
  * Draw it by a template and, with `keep`, write all three files.
  *
- * @param[in] title    its name for those who do not see it
+ * @param[in] title    read aloud in place of the picture
  * @param[in] summary  a sentence of what it shows, borrowed
  * @return RITZ_ERR_FILE if gnuplot is not there or fails
  */
@@ -111,5 +111,14 @@ ritz_status picture_draw(picture *p, const char *template, const char *title,
                          const char *summary);
 
 void picture_free(picture *p);
+
+/* Files of this folder that are part of the program, as CMake embeds them. */
+typedef struct chart_text {
+    const char *name;        /* "pareto.gp" */
+    const char *const *line; /* ended by NULL */
+} chart_text;
+
+/** Lines of the file of that name, which there is. */
+const char *const *chart_text_find(const char *name);
 
 #endif

@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "chart/html.h"
-#include "chart/text.h"
 
 #include <ritz/base.h>
 

@@ -13,7 +13,7 @@
 
 /* --- the verdict ---------------------------------------------------------- */
 
-/* Why a record is shown as the answer. */
+/* Why a record is shown in the verdict. */
 typedef enum reason { CHOSEN, SMALLEST, NEAREST } reason;
 
 /* How many times its tolerance the worst error is; infinite: not known. */
@@ -50,10 +50,10 @@ static bool is_better(const record *r, const record *than)
 }
 
 /*
- * What was chosen; else the smallest that meets the tolerance; else what comes
- * nearest to it; NULL: no tolerance is known.
+ * The chosen record; else the smallest that meets its tolerance; else the one
+ * nearest to its tolerance; NULL: no tolerance is known.
  */
-static const record *find_answer(const records *all, reason *why)
+static const record *find_shown(const records *all, reason *why)
 {
     const record *best = NULL;
 
@@ -212,10 +212,10 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                 count);
 }
 
-static void put_answer(FILE *file, const record_set *s)
+static void put_cards(FILE *file, const record_set *s)
 {
     reason why = NEAREST;
-    const record *r = find_answer(&s->all, &why);
+    const record *r = find_shown(&s->all, &why);
 
     if (!r) {
         fprintf(file,
@@ -302,8 +302,8 @@ typedef struct cell {
     chart_word text, small;
 } cell;
 
-/* What stands in a column: of an order the least error, of an error the fewest
-   coordinates. */
+/* A cell of a method: the least error at an order, or the fewest coordinates for
+   an error. */
 typedef cell (*find_cell)(const record_set *s, int64_t method, double column);
 
 static cell error_at_order(const record_set *s, int64_t method, double order)
@@ -520,7 +520,7 @@ ritz_status report_records(report_page *p)
                    "<section aria-labelledby=\"v%ld\">\n"
                    "<h2 id=\"v%ld\">%s</h2>\n",
                    k, k, *of ? of : "What was found");
-        put_answer(p->body.file, &s);
+        put_cards(p->body.file, &s);
         fprintf(p->body.file, "</section>\n");
     }
     return RITZ_OK;

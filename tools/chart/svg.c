@@ -36,8 +36,8 @@ static const char pointed[] =
     "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'";
 
 /*
- * A label of hypertext. It was markup when gnuplot read it (see picture_tip),
- * which escaped '&' once more and wrote ends of lines as "\n".
+ * A label of hypertext. picture_tip wrote it as markup; gnuplot has escaped '&'
+ * once more and written ends of lines as "\n".
  */
 static const char *copy_tip(FILE *file, const char *c)
 {
@@ -76,7 +76,7 @@ static const char *name_colour(const char *text)
     return rgb == 0 ? "ink" : NULL;
 }
 
-/* A value of an attribute; ids and what refers to them get their prefix. */
+/* A value of an attribute; ids and references to them get the prefix. */
 static void copy_value(FILE *file, const char *value, size_t length,
                        const char *prefix, bool is_id)
 {

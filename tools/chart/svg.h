@@ -1,4 +1,4 @@
-/* Pictures as gnuplot writes them, made fit for readers and for a page. */
+/* The SVG of gnuplot, with names, tooltips and the colours of a page. */
 #ifndef RITZ_TOOLS_CHART_SVG_H
 #define RITZ_TOOLS_CHART_SVG_H
 
@@ -6,9 +6,9 @@
 #include <stdio.h>
 
 /*
- * Colours of all pictures, "c1" to "c8" of series, told apart by colour-blind
- * readers and each with a contrast of 3 to white, and those of words and lines.
- * A page has a light and a dark one under each name, as "--c1".
+ * Colours of all pictures: "c1" to "c8" of series, which colour-blind readers
+ * can distinguish and which have a contrast of 3 to white, and those of words
+ * and lines. A page has a light and a dark one under each name, as "--c1".
  */
 typedef struct svg_colour {
     const char *name, *value;
@@ -16,7 +16,7 @@ typedef struct svg_colour {
 
 enum { SVG_SERIES = 8 };
 
-/** All colours, those of series first, ended by one without a name. */
+/** All colours, those of series first; the last row has no name. */
 extern const svg_colour svg_colours[];
 
 /** Name of the colour of a series. */
@@ -28,8 +28,8 @@ typedef struct svg_names {
 } svg_names;
 
 /**
- * Copy a picture of gnuplot's: it gets its name, and labels of hypertext become
- * titles of marks. On a page colours become those of the page.
+ * Copy a picture of gnuplot: title and summary are added, hypertext becomes the
+ * <title> of its mark, and on a page colours become those of the page.
  */
 void svg_copy(FILE *file, const char *drawn, const svg_names *names);
 
