@@ -161,34 +161,40 @@ typedef struct ritz_method {
     ritz_status (*make)(const ritz_request *request, ritz_basis *out);
 } ritz_method;
 
-/** All methods, ended by NULL. */
-extern const ritz_method *const ritz_methods[];
+/* Every method: ritz_method_NAME is in src/bases. */
+#define RITZ_EACH_METHOD(X)                                                    \
+    X(balanced)                                                                \
+    X(balanced_band)                                                           \
+    X(balanced_position)                                                       \
+    X(balanced_velocity)                                                       \
+    X(craig_bampton)                                                           \
+    X(dual_craig_bampton)                                                      \
+    X(full)                                                                    \
+    X(guyan)                                                                   \
+    X(inertia_relief)                                                          \
+    X(irs)                                                                     \
+    X(krylov)                                                                  \
+    X(krylov_cms_fixed)                                                        \
+    X(krylov_cms_free)                                                         \
+    X(krylov_damped)                                                           \
+    X(lanczos_one_sided)                                                       \
+    X(lanczos_two_sided)                                                       \
+    X(loaded_interface)                                                        \
+    X(macneal)                                                                 \
+    X(macneal_rubin)                                                           \
+    X(modal_balanced)                                                          \
+    X(normal_modes)                                                            \
+    X(rigid)                                                                   \
+    X(rubin)                                                                   \
+    X(serep)                                                                   \
+    X(tangential)
 
-extern const ritz_method ritz_method_balanced;
-extern const ritz_method ritz_method_balanced_band;
-extern const ritz_method ritz_method_balanced_position;
-extern const ritz_method ritz_method_balanced_velocity;
-extern const ritz_method ritz_method_craig_bampton;
-extern const ritz_method ritz_method_dual_craig_bampton;
-extern const ritz_method ritz_method_full;
-extern const ritz_method ritz_method_guyan;
-extern const ritz_method ritz_method_inertia_relief;
-extern const ritz_method ritz_method_irs;
-extern const ritz_method ritz_method_krylov;
-extern const ritz_method ritz_method_krylov_cms_fixed;
-extern const ritz_method ritz_method_krylov_cms_free;
-extern const ritz_method ritz_method_krylov_damped;
-extern const ritz_method ritz_method_lanczos_one_sided;
-extern const ritz_method ritz_method_lanczos_two_sided;
-extern const ritz_method ritz_method_loaded_interface;
-extern const ritz_method ritz_method_macneal;
-extern const ritz_method ritz_method_macneal_rubin;
-extern const ritz_method ritz_method_modal_balanced;
-extern const ritz_method ritz_method_normal_modes;
-extern const ritz_method ritz_method_rigid;
-extern const ritz_method ritz_method_rubin;
-extern const ritz_method ritz_method_serep;
-extern const ritz_method ritz_method_tangential;
+#define RITZ_DECLARE_METHOD(name) extern const ritz_method ritz_method_##name;
+RITZ_EACH_METHOD(RITZ_DECLARE_METHOD)
+#undef RITZ_DECLARE_METHOD
+
+/** All of them in this order, ended by NULL. */
+extern const ritz_method *const ritz_methods[];
 
 /** Method called @p name; NULL and a sentence with the nearest if none. */
 const ritz_method *ritz_method_find(const char *name);

@@ -115,16 +115,23 @@ typedef struct ritz_ranker {
                         ritz_ranking *ranking);
 } ritz_ranker;
 
-/** All rankings, ended by NULL. */
+/* Every ranking: ritz_ranker_NAME is in src/ranking. */
+#define RITZ_EACH_RANKER(X)                                                    \
+    X(gregory)                                                                 \
+    X(hankel)                                                                  \
+    X(hankel_band)                                                             \
+    X(modal_cost)                                                              \
+    X(h2)                                                                      \
+    X(effective_mass)                                                          \
+    X(effective_interface_mass)                                                \
+    X(participation)
+
+#define RITZ_DECLARE_RANKER(name) extern const ritz_ranker ritz_ranker_##name;
+RITZ_EACH_RANKER(RITZ_DECLARE_RANKER)
+#undef RITZ_DECLARE_RANKER
+
+/** All of them in this order, ended by NULL. */
 extern const ritz_ranker *const ritz_rankers[];
-extern const ritz_ranker ritz_ranker_effective_interface_mass;
-extern const ritz_ranker ritz_ranker_effective_mass;
-extern const ritz_ranker ritz_ranker_gregory;
-extern const ritz_ranker ritz_ranker_h2;
-extern const ritz_ranker ritz_ranker_hankel;
-extern const ritz_ranker ritz_ranker_hankel_band;
-extern const ritz_ranker ritz_ranker_modal_cost;
-extern const ritz_ranker ritz_ranker_participation;
 
 const ritz_ranker *ritz_ranker_find(const char *name);
 

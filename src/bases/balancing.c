@@ -81,32 +81,6 @@ ritz_status ritz_request_balance(const ritz_request *request,
     return RITZ_OK;
 }
 
-/* T contains rigid modes as positions or as velocities; other poles as both. */
-static bool is_rigid(const ritz_dense *T, int64_t j)
-{
-    const double *x = ritz_dense_col(T, j);
-    int64_t n = T->nrow / 2;
-    bool zero[2] = {true, true};
-
-    for (int64_t i = 0; i < 2 * n; i++)
-        zero[i >= n] = zero[i >= n] && x[i] == 0.0;
-    return zero[0] || zero[1];
-}
-
-static void name_columns(const ritz_request *request,
-                         const ritz_gramians *gramians, int64_t kept,
-                         ritz_columns *columns)
-{
-    int64_t first = gramians->T.ncol;
-
-    for (int64_t j = 0; j < columns->count; j++)
-        columns->kind[j] =
-            j < first + kept ? RITZ_COLUMN_STATE : RITZ_COLUMN_PERTURBED;
-    for (int64_t j = 0; j < first; j++)
-        if (request->component && is_rigid(&gramians->T, j))
-            ritz_columns_label_rigid(j, columns);
-}
-
 static void add_remark(const ritz_request *request,
                        const ritz_gramians *gramians,
                        const ritz_balanced *balanced, const char *what,
@@ -147,29 +121,5 @@ ritz_status ritz_balanced_note(const ritz_request *request,
     snprintf(basis->origin.engine, sizeof basis->origin.engine, "%s",
              gramians->engine);
     add_remark(request, gramians, balanced, what, basis);
-    return RITZ_OK;
-}
-
-ritz_status ritz_balanced_states(const ritz_request *request,
-                                 const ritz_gramians *gramians, bool bounded,
-                                 ritz_basis *out)
-{
-    RITZ_OWN(ritz_balanced) kept = {0}, all = {0};
-    const ritz_balanced *used = &kept;
-    RITZ_OWN(ritz_basis) basis = {.states = true};
-
-    RITZ_CHECK(ritz_request_balance(request, gramians, &kept));
-    if (request->choice.perturb) {
-        RITZ_CHECK(
-            ritz_gramians_balance(gramians, -1, request->tolerance, &all));
-        used = &all;
-    }
-    RITZ_CHECK(ritz_dense_beside(&gramians->T, &used->T, &basis.T));
-    RITZ_CHECK(ritz_dense_beside(&gramians->W, &used->W, &basis.W));
-    RITZ_CHECK(ritz_columns_new(basis.T.ncol, &basis.columns));
-    name_columns(request, gramians, kept.kept, &basis.columns);
-    RITZ_CHECK(ritz_balanced_note(request, gramians, &kept, bounded, "states",
-                                  &basis));
-    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

@@ -25,17 +25,6 @@ ritz_status ritz_request_balance(const ritz_request *request,
                                  const ritz_gramians *gramians,
                                  ritz_balanced *out);
 
-/**
- * T = [T_d, T_kept, T_rest] of states, and W likewise: states without
- * Gramian, balanced states that are kept and, if requested, those that respond
- * statically.
- *
- * @param[in] bounded  whether the rest of the values bounds the error
- */
-ritz_status ritz_balanced_states(const ritz_request *request,
-                                 const ritz_gramians *gramians, bool bounded,
-                                 ritz_basis *out);
-
 /** Add the values, and a remark on their reliability; @p what: "states". */
 ritz_status ritz_balanced_note(const ritz_request *request,
                                const ritz_gramians *gramians,

@@ -1,31 +1,7 @@
-/* The table of bases: a new one is a file with a descriptor, and a row. */
+/* The table of bases: a new one is a file with a descriptor, and a name in
+ * RITZ_EACH_METHOD. */
 #include <ritz/basis.h>
 
-const ritz_method *const ritz_methods[] = {
-    &ritz_method_balanced,
-    &ritz_method_balanced_band,
-    &ritz_method_balanced_position,
-    &ritz_method_balanced_velocity,
-    &ritz_method_craig_bampton,
-    &ritz_method_dual_craig_bampton,
-    &ritz_method_full,
-    &ritz_method_guyan,
-    &ritz_method_inertia_relief,
-    &ritz_method_irs,
-    &ritz_method_krylov,
-    &ritz_method_krylov_cms_fixed,
-    &ritz_method_krylov_cms_free,
-    &ritz_method_krylov_damped,
-    &ritz_method_lanczos_one_sided,
-    &ritz_method_lanczos_two_sided,
-    &ritz_method_loaded_interface,
-    &ritz_method_macneal,
-    &ritz_method_macneal_rubin,
-    &ritz_method_modal_balanced,
-    &ritz_method_normal_modes,
-    &ritz_method_rigid,
-    &ritz_method_rubin,
-    &ritz_method_serep,
-    &ritz_method_tangential,
-    NULL,
-};
+#define ROW(name) &ritz_method_##name,
+
+const ritz_method *const ritz_methods[] = {RITZ_EACH_METHOD(ROW) NULL};

@@ -98,8 +98,7 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
         if (size > 0.0)
             *change = fmax(*change, moved / size);
     }
-    ritz_dense_free(Psi);
-    RITZ_MOVE(*Psi, next);
+    ritz_dense_replace(Psi, &next);
     return RITZ_OK;
 }
 

@@ -26,6 +26,13 @@
 #include <stdio.h>
 #include <string.h>
 
+int ritz_krylov_loads(const ritz_request *request)
+{
+    return request->choice.loads
+               ? request->choice.loads
+               : RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
+}
+
 /*
  * The points ascend, so that 0 Hz is the first; it is the only one if none is
  * requested.
@@ -357,8 +364,7 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
 static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
 {
     const ritz_component *component = request->component;
-    int loads =
-        request->choice.loads ? request->choice.loads : RITZ_KRYLOV_LOADS;
+    int loads = ritz_krylov_loads(request);
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
     RITZ_OWN(ritz_elastic) body = {0};

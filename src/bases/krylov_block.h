@@ -7,11 +7,8 @@
 
 #include <ritz/basis.h>
 
-/* The loads of a Krylov basis where the request names none. */
-enum {
-    RITZ_KRYLOV_LOADS =
-        RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS,
-};
+/** The requested kinds of loads; without them attached dofs, inputs, outputs. */
+int ritz_krylov_loads(const ritz_request *request);
 
 /*
  * A point at which the response is expanded, and the state of its sequence of

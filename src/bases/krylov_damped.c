@@ -275,8 +275,7 @@ static ritz_status run_chains(recurrence *r, int loads)
 static ritz_status make_krylov_damped(const ritz_request *request,
                                       ritz_basis *out)
 {
-    int loads =
-        request->choice.loads ? request->choice.loads : RITZ_KRYLOV_LOADS;
+    int loads = ritz_krylov_loads(request);
     RITZ_OWN(recurrence) r = {.request = request};
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;

@@ -72,9 +72,7 @@ static ritz_status choose_operator(const ritz_dense *A, const ritz_dense *B,
         RITZ_CHECK(ritz_dense_copy(A, G));
         return ritz_dense_copy(B, b);
     }
-    RITZ_CHECK(ritz_dense_new(A->nrow, A->nrow, G));
-    for (int64_t k = 0; k < A->nrow; k++)
-        ritz_dense_col(G, k)[k] = 1.0;
+    RITZ_CHECK(ritz_dense_identity(A->nrow, G));
     status = ritz_general_solve(A, false, G);
     RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
                    "the matrix of states has no inverse: a motion that nothing "

@@ -91,8 +91,7 @@ static ritz_status add_modes(ritz_free_set *set)
             ritz_dense_col(&q, j)[k] *=
                 k < modes->num_rigid ? 0.0 : 1.0 / modes->lambda[k];
     RITZ_CHECK(ritz_dense_mul(&modes->Phi, &q, &part));
-    for (int64_t k = 0; k < part.nrow * part.ncol; k++)
-        set->Psi.val[k] += part.val[k];
+    ritz_dense_add(1.0, &part, &set->Psi);
     return RITZ_OK;
 }
 

@@ -67,24 +67,12 @@ static ritz_status read_groups(const ritz_request *request, int loads,
     return RITZ_OK;
 }
 
-/* M and K, then D and K4 if there are any. */
-static ritz_status start_impedance(ritz_rational *R)
-{
-    const ritz_component *component = R->component;
-    const ritz_sparse *A[4] = {&component->M, &component->K};
-    int64_t count = 2;
-
-    if (component->D.colptr)
-        A[count++] = &component->D;
-    if (component->K4.colptr)
-        A[count++] = &component->K4;
-    return ritz_zldl_new(count, A, &R->Z);
-}
-
 ritz_status ritz_rational_new(const ritz_request *request, int loads,
                               double scale, ritz_rational *out)
 {
     const ritz_component *component = request->component;
+    const ritz_sparse *A[4] = {&component->M, &component->K};
+    int64_t count = 2;
     RITZ_OWN(ritz_rational)
     R = {.component = component, .tolerance = request->tolerance};
 
@@ -96,7 +84,11 @@ ritz_status ritz_rational_new(const ritz_request *request, int loads,
     RITZ_CHECK(read_groups(request, loads, &R));
     RITZ_CHECK(
         ritz_sparse_add(1.0, &component->M, 1.0 / scale, &component->K, &R.P));
-    RITZ_CHECK(start_impedance(&R));
+    if (component->D.colptr)
+        A[count++] = &component->D;
+    if (component->K4.colptr)
+        A[count++] = &component->K4;
+    RITZ_CHECK(ritz_zldl_new(count, A, &R.Z));
     RITZ_MOVE(*out, R);
     return RITZ_OK;
 }
@@ -169,8 +161,7 @@ static ritz_status remove_span(const ritz_rational *R, const ritz_dense *Q,
     RITZ_CHECK(ritz_sparse_mul(&R->P, w, &Pw));
     RITZ_CHECK(ritz_dense_mul_tn(Q, &Pw, &q));
     RITZ_CHECK(ritz_dense_mul(Q, &q, &part));
-    for (int64_t i = 0; i < w->nrow; i++)
-        w->val[i] -= part.val[i];
+    ritz_dense_add(-1.0, &part, w);
     return RITZ_OK;
 }
 

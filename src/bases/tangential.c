@@ -51,8 +51,8 @@ typedef struct irka_search {
     ritz_damping damping;
     bool assumed;     /* the damping, of which nothing is known */
     ritz_pairs modes; /* where the search begins */
-    ritz_dense rigid;
-    int64_t most; /* vectors besides the rigid ones */
+    ritz_dense rigid; /* of the modes; borrowed */
+    int64_t most;     /* vectors besides the rigid ones */
     ritz_rational R;
     ritz_dense T;       /* rigid and interpolating */
     ritz_probes probes; /* those that T interpolates */
@@ -64,7 +64,6 @@ typedef struct irka_search {
 static void irka_search_free(irka_search *s)
 {
     ritz_pairs_free(&s->modes);
-    ritz_dense_free(&s->rigid);
     ritz_rational_free(&s->R);
     ritz_dense_free(&s->T);
     ritz_probes_free(&s->probes);
@@ -119,7 +118,8 @@ static ritz_status find_modes(irka_search *s)
         s->most = 0;
     RITZ_REFUSE_IF(s->most + modes->num_rigid == 0, RITZ_ERR_ARGUMENT,
                    "no vector is asked for, and there is no rigid mode");
-    return ritz_dense_columns(&modes->Phi, 0, modes->num_rigid, &s->rigid);
+    s->rigid = ritz_dense_part(&modes->Phi, 0, modes->num_rigid);
+    return RITZ_OK;
 }
 
 /* Each load to be interpolated, by itself, at each given point. */
@@ -165,8 +165,7 @@ static ritz_status span_probes(irka_search *s, ritz_probes *probes)
     probes->count = kept;
     ritz_probes_free(&s->probes);
     RITZ_MOVE(s->probes, *probes);
-    ritz_dense_free(&s->T);
-    RITZ_MOVE(s->T, T);
+    ritz_dense_replace(&s->T, &T);
     return RITZ_OK;
 }
 

@@ -35,8 +35,7 @@ ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
                   ritz_product_svd_new(
                       &gramians->Zo, descriptor_times(gramians), false, &svd));
     *count = svd.count;
-    *sigma = svd.s;
-    svd.s = NULL;
+    RITZ_MOVE(*sigma, svd.s);
     return RITZ_OK;
 }
 
@@ -70,7 +69,7 @@ static int64_t count_true(const ritz_gramians *gramians,
     return count;
 }
 
-/* Number of leading rows and columns of G that are close to I. */
+/* The number of leading rows and columns of G that are close to I. */
 static int64_t count_close(const ritz_dense *G)
 {
     double sum = 0.0;
@@ -88,9 +87,9 @@ static int64_t count_close(const ritz_dense *G)
     return G->ncol;
 }
 
-/* How many of them are kept. */
-static int64_t cut(int64_t count, const double *sigma, int64_t order,
-                   double tolerance)
+/* How many values are kept. */
+static int64_t cut_values(int64_t count, const double *sigma, int64_t order,
+                          double tolerance)
 {
     int64_t kept = 0;
 
@@ -124,10 +123,7 @@ static ritz_status correct_sides(const ritz_dense *W, const ritz_dense *G,
     RITZ_OWN(ritz_dense) leading = {0}, X = {0};
     ritz_dense part = ritz_dense_part(W, 0, count);
 
-    RITZ_CHECK(ritz_dense_new(count, count, &leading));
-    for (int64_t j = 0; j < count; j++)
-        for (int64_t i = 0; i < count; i++)
-            ritz_dense_col(&leading, j)[i] = ritz_dense_col(G, j)[i];
+    RITZ_CHECK(ritz_dense_block(G, 0, count, 0, count, &leading));
     RITZ_CHECK(ritz_general_transpose(&part, &X));
     RITZ_CHECK_IN("balancing", ritz_general_solve(&leading, true, &X));
     return ritz_general_transpose(&X, out);
@@ -150,7 +146,7 @@ static ritz_status project_balanced(const ritz_gramians *gramians,
         project_side(descriptor_times(gramians), &svd->V, svd->s, count, &ET));
     RITZ_CHECK(ritz_dense_mul_tn(&ET, &W, &G));
     out->count = count_close(&G);
-    out->kept = cut(out->count, svd->s, order, tolerance);
+    out->kept = cut_values(out->count, svd->s, order, tolerance);
     out->bound = ritz_hankel_bound(out->count, svd->s, out->kept);
     RITZ_CHECK(ritz_dense_columns(&T, 0, out->kept, &out->T));
     return correct_sides(&W, &G, out->kept, &out->W);
@@ -170,8 +166,7 @@ ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
                   ritz_product_svd_new(&gramians->Zo,
                                        descriptor_times(gramians), true, &svd));
     RITZ_CHECK(project_balanced(gramians, &svd, order, tolerance, &balanced));
-    balanced.sigma = svd.s;
-    svd.s = NULL;
+    RITZ_MOVE(balanced.sigma, svd.s);
     RITZ_MOVE(*out, balanced);
     return RITZ_OK;
 }

@@ -27,9 +27,125 @@
 
 #include <complex.h>
 #include <inttypes.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/*
+ * Columns of a factor Z, which grows, and is compressed now and then: with
+ * S Z = Q R, S the units of energy, and R = U s V', Z V has columns that are
+ * orthogonal and of the lengths s; the short ones are left out.
+ */
+
+/* Columns of a factor Z = [above; below], with room for more. */
+typedef struct factor_columns {
+    int64_t count, room;
+    int64_t settled; /* how many were left when they were compressed last */
+    double *val;     /* 2n x room */
+} factor_columns;
+
+/* Columns to begin with. */
+enum { ROOM = 64 };
+
+/* Room for `more` columns of 2n rows. */
+static ritz_status reserve_columns(int64_t n, int64_t more, factor_columns *Z)
+{
+    int64_t room = Z->room > 0 ? Z->room : ROOM;
+    double *val = NULL;
+
+    if (Z->count + more <= Z->room)
+        return RITZ_OK;
+    while (room < Z->count + more)
+        room += room / 2;
+    RITZ_REFUSE_IF((double)(2 * n) * (double)(Z->count + more) * 8.0 >
+                       RITZ_FACTOR_BYTES,
+                   RITZ_ERR_CONVERGENCE,
+                   "the Gramians have no low rank: %" PRId64
+                   " columns of a factor are more than memory shall hold, take "
+                   "engine 'modal' or fewer inputs and outputs",
+                   Z->count + more);
+    RITZ_CHECK_NEW(val, 2 * n * room);
+    if (Z->count > 0)
+        memcpy(val, Z->val, (size_t)(2 * n * Z->count) * sizeof *val);
+    free(Z->val);
+    Z->val = val;
+    Z->room = room;
+    return RITZ_OK;
+}
+
+/* R of S Z = Q R. */
+static ritz_status find_triangle(const ritz_low_rank_model *model, int side,
+                                 const factor_columns *Z, ritz_dense *R)
+{
+    int64_t rows = 2 * model->n;
+    int64_t k = Z->count;
+    RITZ_OWN_ARRAY double *S = NULL, *tau = NULL;
+    int info = 0;
+
+    RITZ_CHECK_NEW(S, rows * k);
+    RITZ_CHECK_NEW(tau, k);
+    for (int64_t i = 0; i < rows; i++) {
+        double by = ritz_low_rank_unit(model, side, i);
+
+        for (int64_t j = 0; j < k; j++)
+            S[i + j * rows] = by * Z->val[i + j * rows];
+    }
+    info =
+        LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)rows, (int)k, S, (int)rows, tau);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "a factor could not be compressed");
+    RITZ_CHECK(ritz_dense_new(rows < k ? rows : k, k, R));
+    for (int64_t j = 0; j < k; j++)
+        for (int64_t i = 0; i <= j && i < R->nrow; i++)
+            ritz_dense_col(R, j)[i] = S[i + j * rows];
+    return RITZ_OK;
+}
+
+/* V of the long columns, k x r, from R, which is overwritten. */
+static ritz_status find_long_columns(ritz_dense *R, ritz_dense *out)
+{
+    int m = (int)R->nrow;
+    int k = (int)R->ncol;
+    int64_t r = 0;
+    RITZ_OWN_ARRAY double *s = NULL, *super = NULL;
+    int info = 0;
+
+    RITZ_CHECK_NEW(s, m);
+    RITZ_CHECK_NEW(super, m);
+    info = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'O', m, k, R->val, m, s, NULL,
+                          1, NULL, 1, super);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "a factor could not be compressed");
+    while (r < m && s[r] > RITZ_SHORT_COLUMN * s[0])
+        r++;
+    RITZ_CHECK(ritz_dense_new(k, r, out));
+    for (int64_t j = 0; j < r; j++)
+        for (int64_t i = 0; i < k; i++)
+            ritz_dense_col(out, j)[i] = ritz_dense_col(R, i)[j];
+    return RITZ_OK;
+}
+
+/* Turn columns so that those beneath 1e-14 of the largest can be dropped. */
+static ritz_status compress_columns(const ritz_low_rank_model *model, int side,
+                                    factor_columns *Z)
+{
+    const ritz_dense all = {
+        .nrow = 2 * model->n, .ncol = Z->count, .val = Z->val};
+    RITZ_OWN(ritz_dense) R = {0}, V = {0}, turned = {0};
+
+    if (Z->count == 0)
+        return RITZ_OK;
+    RITZ_CHECK(find_triangle(model, side, Z, &R));
+    RITZ_CHECK(find_long_columns(&R, &V));
+    RITZ_CHECK(ritz_dense_mul(&all, &V, &turned));
+    free(Z->val);
+    Z->val = turned.val;
+    Z->count = Z->room = Z->settled = turned.ncol;
+    turned.val = NULL;
+    return RITZ_OK;
+}
 
 /*
  * One shift p, of both equations at once; a pair of shifts p and conj(p) where
@@ -53,7 +169,7 @@ typedef struct sweep_state {
     ritz_low_rank_model model;
     ritz_zldl *F;
     ritz_low_rank_window window;
-    ritz_low_rank_columns Z[RITZ_SIDES];
+    factor_columns Z[RITZ_SIDES];
     double first[RITZ_SIDES];    /* |W'W| of the start */
     double residual[RITZ_SIDES]; /* |W'W| over that */
     bool open[RITZ_SIDES];
@@ -184,8 +300,7 @@ static ritz_status solve_shifted(sweep_state *sweep, double _Complex p,
 
 /* Columns first .. of half a factor := f X */
 static void put_half(const ritz_low_rank_model *model, int half, double f,
-                     const ritz_dense *X, int64_t first,
-                     ritz_low_rank_columns *Z)
+                     const ritz_dense *X, int64_t first, factor_columns *Z)
 {
     int64_t n = model->n;
 
@@ -216,7 +331,7 @@ static ritz_status append_columns(sweep_state *sweep, int side,
                                   const ritz_dense v[static RITZ_HALVES])
 {
     ritz_low_rank_model *model = &sweep->model;
-    ritz_low_rank_columns *Z = &sweep->Z[side];
+    factor_columns *Z = &sweep->Z[side];
     bool pair = cimag(p) != 0.0;
     double d = pair ? creal(p) / cimag(p) : 0.0;
     double g = sqrt((pair ? -4.0 : -2.0) * creal(p));
@@ -225,13 +340,12 @@ static ritz_status append_columns(sweep_state *sweep, int side,
     const ritz_dense latest = ritz_dense_part(&v[solved_half(side)], 0, added);
     RITZ_OWN(ritz_dense_pair) plus = {0};
 
-    RITZ_CHECK(ritz_low_rank_reserve(model->n, added, Z));
+    RITZ_CHECK(reserve_columns(model->n, added, Z));
     for (int half = 0; half < RITZ_HALVES; half++) {
         const ritz_dense im = ritz_dense_part(&v[half], columns, columns);
 
         RITZ_CHECK(ritz_dense_columns(&v[half], 0, columns, &plus[half]));
-        for (int64_t k = 0; k < im.nrow * im.ncol; k++)
-            plus[half].val[k] += d * im.val[k];
+        ritz_dense_add(d, &im, &plus[half]);
         put_half(model, half, g, &plus[half], Z->count, Z);
         if (pair)
             put_half(model, half, g * sqrt(d * d + 1.0), &im,
@@ -315,7 +429,7 @@ static bool is_open(const sweep_state *sweep)
 static ritz_status update_residuals(sweep_state *sweep)
 {
     for (int side = 0; side < RITZ_SIDES; side++) {
-        ritz_low_rank_columns *Z = &sweep->Z[side];
+        factor_columns *Z = &sweep->Z[side];
         double size = 0.0;
 
         if (!sweep->open[side])
@@ -324,7 +438,7 @@ static ritz_status update_residuals(sweep_state *sweep)
         sweep->residual[side] = size / sweep->first[side];
         sweep->open[side] = sweep->residual[side] > sweep->tolerance;
         if (Z->count > 2 * Z->settled + GROWN_BY)
-            RITZ_CHECK(ritz_low_rank_compress(&sweep->model, side, Z));
+            RITZ_CHECK(compress_columns(&sweep->model, side, Z));
     }
     ritz_monitor_step("shifts", sweep->shifts, 0);
     return RITZ_OK;
@@ -400,14 +514,14 @@ static ritz_status run_sweep(sweep_state *sweep)
 /* Z as a matrix of its own columns. */
 static ritz_status take_factor(sweep_state *sweep, int side, ritz_dense *out)
 {
-    ritz_low_rank_columns *Z = &sweep->Z[side];
+    factor_columns *Z = &sweep->Z[side];
 
-    RITZ_CHECK(ritz_low_rank_compress(&sweep->model, side, Z));
+    RITZ_CHECK(compress_columns(&sweep->model, side, Z));
     if (!Z->val)
         return ritz_dense_new(2 * sweep->model.n, 0, out);
     *out = (ritz_dense){
         .nrow = 2 * sweep->model.n, .ncol = Z->count, .val = Z->val};
-    *Z = (ritz_low_rank_columns){0};
+    *Z = (factor_columns){0};
     return RITZ_OK;
 }
 

@@ -3,12 +3,13 @@
 #include "base/tolerances.h"
 #include "gramians/low_rank_parts.h"
 #include "gramians/modes.h"
+#include "linear/general.h"
 
 #include <ritz/matrix.h>
 
 #include <complex.h>
 #include <float.h>
-#include <inttypes.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -152,14 +153,70 @@ static ritz_status solve_free(const ritz_low_rank_model *model, ritz_factor *F,
     return F ? follow_rows(model, F, X) : RITZ_OK;
 }
 
+/* Y := Y - A X */
 static ritz_status subtract_product(const ritz_sparse *A, const ritz_dense *X,
-                                    ritz_dense *from)
+                                    ritz_dense *Y)
 {
     RITZ_OWN(ritz_dense) AX = {0};
 
     RITZ_CHECK(ritz_sparse_mul(A, X, &AX));
-    for (int64_t k = 0; k < AX.nrow * AX.ncol; k++)
-        from->val[k] -= AX.val[k];
+    ritz_dense_add(-1.0, &AX, Y);
+    return RITZ_OK;
+}
+
+/* Row i of the upper half: W_c has displacements there, W_o forces. */
+static double unit_above(const ritz_low_rank_model *model, int side, int64_t i)
+{
+    double stiff = model->stiff[i];
+
+    if (!(stiff > 0.0))
+        return 0.0;
+    return side == RITZ_CONTROLLABLE ? sqrt(stiff) : 1.0 / sqrt(stiff);
+}
+
+/* Row i of the lower half, velocities; of M times that, one over it. */
+static double unit_below(const ritz_low_rank_model *model, int64_t i)
+{
+    return sqrt(fmax(model->mass[i], 0.0));
+}
+
+double ritz_low_rank_unit(const ritz_low_rank_model *model, int side, int64_t i)
+{
+    int64_t n = model->n;
+
+    return i < n ? unit_above(model, side, i) : unit_below(model, i - n);
+}
+
+ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
+                               double *out)
+{
+    const ritz_dense *W = model->W[side];
+    RITZ_OWN(ritz_dense_pair) S = {0}, G = {0};
+    RITZ_OWN_ARRAY double *e = NULL;
+    int p = (int)W[0].ncol;
+    int info = 0;
+
+    RITZ_CHECK_NEW(e, p);
+    RITZ_CHECK(ritz_dense_copy(&W[RITZ_ABOVE], &S[RITZ_ABOVE]));
+    RITZ_CHECK(ritz_dense_copy(&W[RITZ_BELOW], &S[RITZ_BELOW]));
+    for (int64_t i = 0; i < model->n; i++) {
+        double above = unit_above(model, side, i);
+        double m = unit_below(model, i);
+
+        for (int64_t j = 0; j < p; j++) {
+            ritz_dense_col(&S[RITZ_ABOVE], j)[i] *= above;
+            ritz_dense_col(&S[RITZ_BELOW], j)[i] *= m > 0.0 ? 1.0 / m : 0.0;
+        }
+    }
+    for (int half = 0; half < RITZ_HALVES; half++)
+        RITZ_CHECK(ritz_dense_mul_tn(&S[half], &S[half], &G[half]));
+    ritz_dense_add(1.0, &G[1], &G[0]);
+    if (p > 0)
+        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', p, G[0].val, p, e);
+    RITZ_REFUSE_IF(info != 0 || (p > 0 && !isfinite(e[p - 1])),
+                   RITZ_ERR_CONVERGENCE,
+                   "a residual of a Gramian is not finite");
+    *out = p > 0 ? fmax(e[p - 1], 0.0) : 0.0;
     return RITZ_OK;
 }
 

@@ -42,20 +42,9 @@ void ritz_low_rank_model_free(ritz_low_rank_model *model);
 ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
                                double *out);
 
-/* Columns of a factor Z = [above; below], with room for more. */
-typedef struct ritz_low_rank_columns {
-    int64_t count, room;
-    int64_t settled; /* how many were left when they were compressed last */
-    double *val;     /* 2n x room */
-} ritz_low_rank_columns;
-
-/** Room for @p more columns of 2n rows. */
-ritz_status ritz_low_rank_reserve(int64_t n, int64_t more,
-                                  ritz_low_rank_columns *Z);
-
-/** Turn columns so that those beneath 1e-14 of the largest can be dropped. */
-ritz_status ritz_low_rank_compress(const ritz_low_rank_model *model, int side,
-                                   ritz_low_rank_columns *Z);
+/** What scales row @p i of 2n of a factor, or of W, to units of energy. */
+double ritz_low_rank_unit(const ritz_low_rank_model *model, int side,
+                          int64_t i);
 
 /* Latest displacements, and M, K and D between them. */
 typedef struct ritz_low_rank_window {

@@ -28,6 +28,7 @@
 typedef struct energy_model {
     int64_t count;   /* m */
     double *w, *d;   /* m */
+    double *inverse; /* m, 1 / w */
     ritz_dense F[2]; /* 2m x inputs, 2m x outputs: B and J C' */
 } energy_model;
 
@@ -35,6 +36,7 @@ static void energy_model_free(energy_model *model)
 {
     free(model->w);
     free(model->d);
+    free(model->inverse);
     ritz_dense_free(&model->F[0]);
     ritz_dense_free(&model->F[1]);
     *model = (energy_model){0};
@@ -49,6 +51,7 @@ static ritz_status create_energy_model(const ritz_modal *modal,
 
     RITZ_CHECK_NEW(model.w, m);
     RITZ_CHECK_NEW(model.d, m);
+    RITZ_CHECK_NEW(model.inverse, m);
     RITZ_CHECK(ritz_dense_new(2 * m, modal->B.ncol, &model.F[0]));
     RITZ_CHECK(ritz_dense_new(2 * m, modal->C.nrow, &model.F[1]));
     for (int64_t k = 0; k < m; k++) {
@@ -57,6 +60,7 @@ static ritz_status create_energy_model(const ritz_modal *modal,
         RITZ_REFUSE_IF(!(modal->zeta[k] > 0.0 && w > 0.0), RITZ_ERR_ARGUMENT,
                        "a mode without damping or stiffness has no Gramian");
         model.w[k] = w;
+        model.inverse[k] = 1.0 / w;
         model.d[k] = 2.0 * modal->zeta[k] * w;
         for (int64_t j = 0; j < modal->B.ncol; j++)
             ritz_dense_col(&model.F[0], j)[m + k] =
@@ -179,13 +183,9 @@ ritz_status ritz_modal_gramians_whole(const ritz_modal *modal, ritz_dense *Wc,
 {
     RITZ_OWN(energy_model) model = {0};
     RITZ_OWN(ritz_dense) X = {0}, Y = {0};
-    RITZ_OWN_ARRAY double *inverse = NULL;
 
     RITZ_CHECK(create_energy_model(modal, &model));
-    RITZ_CHECK_NEW(inverse, modal->count);
-    for (int64_t k = 0; k < modal->count; k++)
-        inverse[k] = 1.0 / modal->omega[k];
-    RITZ_CHECK(find_gramian(&model, &model.F[0], inverse, 1.0, &X));
+    RITZ_CHECK(find_gramian(&model, &model.F[0], model.inverse, 1.0, &X));
     RITZ_CHECK(find_gramian(&model, &model.F[1], modal->omega, -1.0, &Y));
     RITZ_MOVE(*Wc, X);
     RITZ_MOVE(*Wo, Y);
@@ -463,18 +463,13 @@ ritz_status ritz_modal_factors_whole(const ritz_modal *modal, ritz_dense *Zc,
 {
     RITZ_OWN(energy_model) model = {0};
     RITZ_OWN(ritz_dense) L = {0}, R = {0}, C = {0}, O = {0};
-    RITZ_OWN_ARRAY double *inverse = NULL;
 
     RITZ_CHECK(create_energy_model(modal, &model));
-    RITZ_CHECK_NEW(inverse, modal->count);
-    for (int64_t k = 0; k < modal->count; k++)
-        inverse[k] = 1.0 / modal->omega[k];
     RITZ_CHECK(find_factor(&model, &model.F[0], &L));
     RITZ_CHECK(find_factor(&model, &model.F[1], &R));
-    RITZ_CHECK(spread_rows(&L, inverse, 1.0, &C));
+    RITZ_CHECK(spread_rows(&L, model.inverse, 1.0, &C));
     RITZ_CHECK(spread_rows(&R, modal->omega, -1.0, &O));
-    *Zc = C;
-    *Zo = O;
-    C = O = (ritz_dense){0};
+    RITZ_MOVE(*Zc, C);
+    RITZ_MOVE(*Zo, O);
     return RITZ_OK;
 }

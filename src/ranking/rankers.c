@@ -1,14 +1,7 @@
-/* The table of rankings: a new one is a file with a descriptor, and a row. */
+/* The table of rankings: a new one is a file with a descriptor, and a name in
+ * RITZ_EACH_RANKER. */
 #include <ritz/ranking.h>
 
-const ritz_ranker *const ritz_rankers[] = {
-    &ritz_ranker_gregory,
-    &ritz_ranker_hankel,
-    &ritz_ranker_hankel_band,
-    &ritz_ranker_modal_cost,
-    &ritz_ranker_h2,
-    &ritz_ranker_effective_mass,
-    &ritz_ranker_effective_interface_mass,
-    &ritz_ranker_participation,
-    NULL,
-};
+#define ROW(name) &ritz_ranker_##name,
+
+const ritz_ranker *const ritz_rankers[] = {RITZ_EACH_RANKER(ROW) NULL};

@@ -193,8 +193,7 @@ static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
         RITZ_OWN(ritz_dense) own = {0};
 
         RITZ_CHECK(ritz_dense_block(outputs[k], 0, p, 0, m, &own));
-        ritz_dense_free(outputs[k]);
-        RITZ_MOVE(*outputs[k], own);
+        ritz_dense_replace(outputs[k], &own);
     }
     memcpy(out->rigid, s->rigid, sizeof out->rigid);
     return RITZ_OK;

@@ -254,7 +254,7 @@ static void bases_of_the_wrong_kind_are_refused(void **state)
     basis.states = true;
     basis.T.nrow = 18;
     assert_fails(ritz_reduce_states(&f->chain, &none, &basis, &model),
-                 RITZ_ERR_ARGUMENT, "has 18 rows");
+                 RITZ_ERR_ARGUMENT, "is for 18 states");
     basis.T.nrow = STATES;
     basis.W.ncol = 3;
     assert_fails(ritz_reduce_states(&f->chain, &none, &basis, &model),
