@@ -327,21 +327,22 @@ typedef struct ritz_pairs {
     char engine[RITZ_NAME_SIZE];
 } ritz_pairs;
 
-/* Which pairs: the lowest. Rigid modes are always found beside them. */
+/* How many of the lowest pairs. Rigid modes are always found in addition. */
 typedef struct ritz_span {
     int64_t modes;   /* so many flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
 } ritz_span;
 
 /**
- * Lowest pairs of a sparse pencil: all rigid ones and the flexible ones asked.
+ * Lowest pairs of a sparse pencil: all rigid ones and the requested flexible
+ * ones.
  *
  * K is positive semidefinite, M too, and K + M positive definite: massless
  * dofs are allowed, dofs with neither stiffness nor mass are not. K - sigma M
  * is factored with sigma < 0 chosen by scale. That none is missing is proven
  * by the inertia of K - tau M, tau above the last pair returned; a cluster
  * (relative gap below 1e-6) at the end is returned whole, so there may be more
- * than asked. If fewer flexible modes exist than asked, all are returned.
+ * than requested. If fewer flexible modes exist than asked, all are returned.
  *
  * @return RITZ_ERR_SINGULAR if K + M is singular (a mechanism without mass);
  *         RITZ_ERR_CONVERGENCE if a residual stays above its limit or the
@@ -371,7 +372,7 @@ ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
 
 /**
  * How many of @p count ascending eigenvalues are rigid-body motions. Only a gap
- * can tell rounding from a soft mode; the first of these that holds decides,
+ * can distinguish rounding from a soft mode; the first of these that holds decides,
  * with lambda_next the one above the gap:
  *
  * - six below 1e-9 lambda_max, and 1e4 |lambda| <= lambda_next: one free body,

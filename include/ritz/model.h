@@ -48,9 +48,9 @@ typedef struct ritz_component {
     ritz_elements elements; /* for pictures; {0}: none are known */
     int64_t num_ports;
     ritz_port *port;
-    ritz_io io;             /* for n coordinates */
-    ritz_recovery recovery; /* dofs that constraints eliminated */
-    ritz_dampers dampers;   /* beside K and D, which hold none of them */
+    ritz_io io;                      /* for n coordinates */
+    ritz_recovery recovery;          /* dofs that constraints eliminated */
+    ritz_dampers dampers;            /* K and D hold none of them */
     char damping[RITZ_DAMPING_SIZE]; /* as ritz_damping_parse reads; "" none */
     char units[RITZ_NAME_SIZE];      /* "kg m s" */
     double asymmetry; /* relative, that was found and averaged away */
@@ -125,22 +125,22 @@ void ritz_component_free(ritz_component *component);
 /* A method that makes another kind adds it here, and its name in basis.c. */
 typedef enum ritz_column_kind {
     RITZ_COLUMN_RIGID,      /* free rigid-body motion */
-    RITZ_COLUMN_CONSTRAINT, /* answers unit motion of one attached dof */
+    RITZ_COLUMN_CONSTRAINT, /* response to unit motion of an attached dof */
     RITZ_COLUMN_NORMAL,     /* eigenvector, interface clamped or free */
-    RITZ_COLUMN_RESIDUAL,   /* answers a unit force, less what is kept */
+    RITZ_COLUMN_RESIDUAL,   /* response to a unit force, less kept modes */
     RITZ_COLUMN_SYSTEM,     /* part of system modes, from the second stage */
     RITZ_COLUMN_KRYLOV, /* of a block Krylov sequence, any expansion point */
-    RITZ_COLUMN_STATIC, /* static Ritz vector: answers a load */
+    RITZ_COLUMN_STATIC, /* static Ritz vector: response to a load */
     RITZ_COLUMN_ATTACHMENT, /* inertia-relief attachment mode */
     RITZ_COLUMN_INTERFACE,  /* characteristic constraint mode */
     RITZ_COLUMN_MASSLESS,   /* residual flexibility, its mass left out */
     RITZ_COLUMN_FORCE,      /* residual flexibility of a dual interface force */
     RITZ_COLUMN_STATE,      /* of a first-order basis */
-    RITZ_COLUMN_PERTURBED,  /* a state that answers statically */
+    RITZ_COLUMN_PERTURBED,  /* a state that responds statically */
     RITZ_COLUMN_BALANCED,   /* balanced, of second order */
 } ritz_column_kind;
 
-/* What each of r columns is. */
+/* Kind and origin of each of r columns. */
 typedef struct ritz_columns {
     int64_t count;
     ritz_column_kind *kind;
@@ -160,7 +160,7 @@ typedef struct ritz_origin {
 /*
  * T, n x r, and of each of its columns what it is. Of states T has 2n rows, n
  * displacements and then n velocities, or the states of a state space; left
- * vectors W may stand beside: see ritz_reduce_states.
+ * vectors W may be given too: see ritz_reduce_states.
  */
 typedef struct ritz_basis {
     ritz_dense T;
@@ -221,7 +221,7 @@ typedef struct ritz_port_map {
 typedef struct ritz_measure {
     char name[RITZ_NAME_SIZE]; /* "frequency-relative" */
     double value;
-    double limit;               /* NaN: none was asked */
+    double limit;               /* NaN: none was requested */
     char where[RITZ_NAME_SIZE]; /* "mode 7, 3.41 Hz"; "" if nowhere special */
 } ritz_measure;
 
@@ -405,10 +405,10 @@ ritz_status ritz_nested_note(ritz_reduced *reduced, int64_t order,
 typedef struct ritz_configuration {
     char at[RITZ_NAME_SIZE]; /* "clock=60,cone=0" */
     int64_t num_settings;
-    double *setting;  /* one for each sweep of the scene, in its order */
-    int64_t rank;     /* of the constraints */
-    ritz_dense K, M;  /* e x e */
-    ritz_dense D, K4; /* e x e; {0}: none beside the damping of the system */
+    double *setting;      /* one for each sweep of the scene, in its order */
+    int64_t rank;         /* of the constraints */
+    ritz_dense K, M;      /* e x e */
+    ritz_dense D, K4;     /* e x e; {0}: none but the damping of the system */
     ritz_dampers dampers; /* of all bodies; K and D hold them */
     double *lambda; /* e, ascending; by size where a dual assembly has negative
                        ones  [rad^2/s^2] */
@@ -498,10 +498,9 @@ typedef struct ritz_state_space {
     double *limit;        /* num_outputs, largest tolerated |y|; NaN: none */
     ritz_columns columns; /* what each state is */
     ritz_origin origin;
-    char
-        damping[RITZ_DAMPING_SIZE]; /* beside matrices, that is in A; "" none */
-    ritz_measures estimates;        /* by ritz-reduce: stability, a bound */
-    ritz_measures errors;           /* by ritz-verify */
+    char damping[RITZ_DAMPING_SIZE]; /* that is in A, without D; "" none */
+    ritz_measures estimates;         /* by ritz-reduce: stability, a bound */
+    ritz_measures errors;            /* by ritz-verify */
     char units[RITZ_NAME_SIZE];
 } ritz_state_space;
 
@@ -519,14 +518,14 @@ ritz_status ritz_state_space_check(const ritz_state_space *model);
 
 /**
  * A component with its damping: that of its matrices and dampers, and
- * @p damping beside them, ratios by all its modes, a M + b K exactly.
+ * @p damping in addition, ratios by all its modes, a M + b K exactly.
  *
  * x = [u; u'] where M is definite. Where it is not, x = [q; q'] of the modes
- * that have mass, and what massless dofs answer at once is in D.
+ * that have mass, and the static response of massless dofs is in D.
  *
  * @return RITZ_ERR_ARGUMENT if there are more than RITZ_STATE_DOFS dofs, if
  *         there is structural damping, which is of harmonic motion alone, or if
- *         a massless dof is damped, or driven and seen by its velocity;
+ *         a massless dof is damped, or driven and observed by its velocity;
  *         RITZ_ERR_SINGULAR if K + M is
  * @cost   O(n^3), n dofs
  */
@@ -544,8 +543,8 @@ ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
  *
  *     W'E T x' = W'A T x + W'B u
  *
- * solved for x'. Massless dofs answer as above. Columns of kind perturbed
- * answer statically and are eliminated, and what bounds the error is noted as
+ * solved for x'. Massless dofs respond as above. Columns of kind perturbed
+ * respond statically and are eliminated, and a bound of the error is noted as
  * estimate "h-infinity-bound".
  *
  * Of more than RITZ_STATE_DOFS dofs nothing dense is made; damping ratios then
@@ -554,7 +553,7 @@ ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
  * @param[in] basis  of states, W {0}: T itself
  * @return RITZ_ERR_ARGUMENT if it is no such basis, or sizes disagree, or as
  *         above; RITZ_ERR_SINGULAR if W'E T is, or the columns that are to be
- *         eliminated have no static answer
+ *         eliminated have no static response
  */
 ritz_status ritz_reduce_states(const ritz_component *component,
                                const ritz_damping *damping,

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static void finish(struct sha256_ctx *sum, char out[RITZ_DIGEST_SIZE])
+static void write_digest(struct sha256_ctx *sum, char out[RITZ_DIGEST_SIZE])
 {
     uint8_t digest[SHA256_DIGEST_SIZE];
 
@@ -23,7 +23,7 @@ void ritz_digest_bytes(const void *bytes, size_t size,
 
     sha256_init(&sum);
     sha256_update(&sum, size, bytes);
-    finish(&sum, out);
+    write_digest(&sum, out);
 }
 
 ritz_status ritz_digest_file(const char *path, char out[RITZ_DIGEST_SIZE])
@@ -41,7 +41,7 @@ ritz_status ritz_digest_file(const char *path, char out[RITZ_DIGEST_SIZE])
         sha256_update(&sum, size, block);
     RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot read '%s': %s", path,
                  strerror(errno));
-    finish(&sum, out);
+    write_digest(&sum, out);
 done:
     if (file)
         fclose(file);

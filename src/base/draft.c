@@ -21,7 +21,7 @@
  */
 static _Atomic(const char *) unfinished[RITZ_MAX_DRAFTS];
 
-static bool enlist(const char *name)
+static bool enlist_name(const char *name)
 {
     for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
         const char *none = NULL;
@@ -32,7 +32,7 @@ static bool enlist(const char *name)
     return false;
 }
 
-static void strike(const char *name)
+static void strike_name(const char *name)
 {
     for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
         const char *expected = name;
@@ -46,7 +46,7 @@ static void strike(const char *name)
  * Create and enlist with signals held back: enlisted before it exists, a name
  * that turns out to be another process' would be removed by our handler.
  */
-static int create(const char *name, bool *enlisted)
+static int create_file(const char *name, bool *enlisted)
 {
     sigset_t all;
     sigset_t before;
@@ -57,7 +57,7 @@ static int create(const char *name, bool *enlisted)
     sigprocmask(SIG_BLOCK, &all, &before);
     file = open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
     error = errno;
-    *enlisted = file >= 0 && enlist(name);
+    *enlisted = file >= 0 && enlist_name(name);
     if (file >= 0 && !*enlisted)
         unlink(name);
     sigprocmask(SIG_SETMASK, &before, NULL);
@@ -66,7 +66,7 @@ static int create(const char *name, bool *enlisted)
 }
 
 /* Where a link leads, so that it stays one; else the path itself. */
-static ritz_status follow(const char *path, char **out)
+static ritz_status follow_link(const char *path, char **out)
 {
     RITZ_OWN_ARRAY char *real = realpath(path, NULL);
     const char *target = real ? real : path;
@@ -90,12 +90,12 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
 
     RITZ_FAIL_IF(stat(path, &there) == 0 && !S_ISREG(there.st_mode),
                  RITZ_ERR_FILE, "not a regular file");
-    RITZ_TRY(follow(path, &target));
+    RITZ_TRY(follow_link(path, &target));
     size += strlen(target);
     RITZ_NEW(name, (int64_t)size);
     for (int k = 0; file < 0; k++) {
         snprintf(name, size, "%s.%ld-%d.part", target, (long)getpid(), k);
-        file = create(name, &enlisted);
+        file = create_file(name, &enlisted);
         RITZ_FAIL_IF(file < 0 && (errno != EEXIST || k == 999999),
                      RITZ_ERR_FILE, "cannot create '%s': %s", path,
                      strerror(errno));
@@ -117,7 +117,7 @@ ritz_status ritz_draft_publish(ritz_draft *draft)
 {
     RITZ_REFUSE_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
                    "cannot replace '%s': %s", draft->path, strerror(errno));
-    strike(draft->name);
+    strike_name(draft->name);
     free(draft->name);
     free(draft->path);
     *draft = (ritz_draft){0};
@@ -128,7 +128,7 @@ void ritz_draft_free(ritz_draft *draft)
 {
     if (draft->name) {
         remove(draft->name);
-        strike(draft->name);
+        strike_name(draft->name);
     }
     free(draft->name);
     free(draft->path);

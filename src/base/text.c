@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 /* Move `used` bytes into a block of `size`, the rest of it zero. */
-static ritz_status grow(char **text, int64_t used, int64_t size)
+static ritz_status grow_text(char **text, int64_t used, int64_t size)
 {
     char *bigger = NULL;
 
@@ -22,7 +22,7 @@ static ritz_status grow(char **text, int64_t used, int64_t size)
     return RITZ_OK;
 }
 
-/* What a regular file says it holds; 0 for a pipe, and where nothing is said. */
+/* Size that the system states of a regular file; 0 of a pipe, or if unknown. */
 static int64_t stated_size(FILE *file)
 {
     struct stat about;
@@ -34,7 +34,7 @@ static int64_t stated_size(FILE *file)
 
 /*
  * The size that is stated is a first guess, good for reading at once; a byte
- * more than that is asked for, and doubled blocks follow if it comes.
+ * more than that is requested, and doubled blocks follow if it comes.
  */
 ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
 {
@@ -50,7 +50,7 @@ ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
     while (used == room) { /* full: there may be more */
         room = room > 0 ? 2 * room : stated_size(file) + 1;
         room = room < SMALLEST ? SMALLEST : room;
-        RITZ_TRY(grow(&bytes, used, room + 1));
+        RITZ_TRY(grow_text(&bytes, used, room + 1));
         used += (int64_t)fread(bytes + used, 1, (size_t)(room - used), file);
     }
     RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot read '%s': %s", path,

@@ -36,7 +36,7 @@ ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
 }
 
 /*
- * One way to tell: up to `limit` rounding may have left an eigenvalue, and the
+ * One criterion: up to `limit` rounding may have left an eigenvalue, and the
  * next one is at least `gap` times larger.
  */
 typedef struct cut {

@@ -8,7 +8,7 @@
  *              eigenvalues below tau
  *
  * sigma is a guess until modes are known. It should lie no further from the
- * lowest flexible mode than the modes asked for: further, and they look alike;
+ * lowest flexible mode than the requested modes: further, and they look alike;
  * too near to zero, and K - sigma M is singular.
  *
  * Held to: bars and membranes in closed form, free, clamped, with double modes
@@ -272,7 +272,7 @@ static bool is_clustered(double a, double b)
     return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
 }
 
-/* How many of the pairs were asked for. */
+/* How many of the pairs were requested. */
 static int64_t count_wanted(const ritz_pairs *P, const ritz_span *span,
                             double limit)
 {
@@ -388,7 +388,7 @@ static ritz_status find_pairs(search *s)
 /*
  * A shift far beyond the first flexible mode blurs it: come closer where that
  * is possible. Up to RITZ_SHIFT_BLURRED times beyond it Lanczos still tells
- * modes apart at its tolerance, and to begin anew would cost as much again
+ * modes apart at its tolerance, and a new start would cost as much again
  * (measured: half of all solves).
  */
 static ritz_status come_closer(search *s, bool *moved)
@@ -443,7 +443,7 @@ static ritz_status count_below(const search *s, int64_t k, int64_t *out)
     return status;
 }
 
-/* Ask for more, as so many were missed or are needed to see a gap behind. */
+/* Request more modes: so many were missed, or are needed to find a gap. */
 static ritz_status ask_more(search *s, int64_t more)
 {
     double hertz = ritz_eigen_hertz(s->found.lambda[s->found.Phi.ncol - 1]);
@@ -454,8 +454,7 @@ static ritz_status ask_more(search *s, int64_t more)
     return RITZ_OK;
 }
 
-/* Modes asked for by number: whether all are found, and none below them is
-   missed. */
+/* By number: whether all modes are found, and none below them is missed. */
 static ritz_status prove_number(search *s, int64_t *end, bool *done)
 {
     const ritz_pairs *P = &s->found;
@@ -504,7 +503,8 @@ static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
     return RITZ_OK;
 }
 
-/* Search until what was found is proven; *end of the pairs are wanted. */
+/* Search until the pairs that were found are proven to be all; *end of them
+   are requested. */
 static ritz_status search_proven(search *s, int64_t *end)
 {
     bool done = false;
@@ -574,7 +574,7 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* Every mode, which proves itself; then those that are wanted. */
+/* Every mode, so that none can be missing; the requested ones are kept. */
 static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
                              const ritz_span *span, ritz_pairs *out)
 {

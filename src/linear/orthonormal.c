@@ -6,8 +6,8 @@
  *     pivots stay strong;   Q = R_pivots L^-T                (twice)
  *
  * Columns whose pivot was weak go through all of it again, now against Q too,
- * until nothing of them is left: each round can tell only what rounding has
- * not blurred, and the energies of the rounds multiply. W R is made by a
+ * until nothing of them is left: a round resolves only directions that rounding
+ * has not blurred, and the energies of the rounds multiply. W R is made by a
  * product after every change of R: carried along by the same sums, it drifts
  * away from R, by the inverse of what is new in a column, at every block.
  */

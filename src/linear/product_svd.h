@@ -11,7 +11,7 @@ typedef struct ritz_product_svd {
     int64_t count; /* min of n, l and k */
     double *s;     /* count, descending */
     int64_t rank;  /* r: from here on they are below eps^2 of the largest, and
-                      are told as 0 */
+                      are given as 0 */
     ritz_dense U;  /* l x r, orthonormal columns */
     ritz_dense V;  /* k x r */
 } ritz_product_svd;

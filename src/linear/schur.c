@@ -211,9 +211,10 @@ ritz_status ritz_schur_order(ritz_schur *schur, const bool *first,
     for (int64_t k = 0; k < schur->count; k++)
         select[k] = first[k];
     if (schur->count > 0)
-        RITZ_REFUSE_IF(reorder_schur(schur, select, work, &count) != 0,
-                       RITZ_ERR_CONVERGENCE,
-                       "poles that must be told apart are too close to be");
+        RITZ_REFUSE_IF(
+            reorder_schur(schur, select, work, &count) != 0,
+            RITZ_ERR_CONVERGENCE,
+            "poles that must be separated are too close to each other");
     if (schur->T.val)
         RITZ_CHECK(divide_eigenvalues(schur, work));
     *moved = count;

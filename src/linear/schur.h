@@ -29,7 +29,7 @@ ritz_status ritz_schur_new(const ritz_dense *A, const ritz_dense *E,
                            ritz_schur *out);
 
 /**
- * Bring those that are wanted first; pairs stay together.
+ * Reorder so that the chosen eigenvalues come first; pairs stay together.
  *
  * @param[in] first  count, of either of a pair
  * @param[out] moved how many they are

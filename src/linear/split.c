@@ -28,7 +28,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* Whether no rounding of the matrices makes a pole unstable; all are left. */
+/* Whether no rounding of the matrices makes a pole unstable. All poles are left
+   of the axis. */
 static ritz_status prove_stable(const ritz_schur *schur, bool *proven)
 {
     RITZ_OWN(ritz_dense) one = {0}, F = {0};
@@ -86,7 +87,7 @@ static ritz_status decouple_blocks(const ritz_schur *schur, int64_t m,
              : LAPACKE_dtrsyl(LAPACK_COL_MAJOR, 'N', 'N', -1, (int)m, a, S, n,
                               S + at + m, n, R->val, (int)m, &scale);
     RITZ_REFUSE_IF(info != 0 || scale == 0.0, RITZ_ERR_CONVERGENCE,
-                   "stable poles and others are too close to be told apart");
+                   "stable poles and others are too close to be separated");
     for (int64_t k = 0; k < m * a; k++) {
         R->val[k] /= scale;
         G->val[k] = P ? G->val[k] / scale : R->val[k];

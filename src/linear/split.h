@@ -1,6 +1,6 @@
 /*
- * A linear system's poles told apart: those left of the imaginary axis by more
- * than rounding, in Schur form, and what is left.
+ * Spectral separation of a linear system: poles left of the imaginary axis by
+ * more than rounding, in Schur form, and the others.
  */
 #ifndef RITZ_LINEAR_SPLIT_H
 #define RITZ_LINEAR_SPLIT_H
@@ -16,7 +16,7 @@ typedef struct ritz_split {
 } ritz_split;
 
 /**
- * A pole stands apart if it is right of the axis or not further left of it than
+ * A pole is no stable one if it is right of the axis or not further left than
  * rounding may move it (eigenvalues.h), unless a Lyapunov equation proves that
  * rounding of A cannot make any pole unstable.
  *
@@ -25,7 +25,7 @@ typedef struct ritz_split {
  *
  * @param[in] E  invertible; {0}: the identity
  * @return RITZ_ERR_SINGULAR if E is, to rounding; RITZ_ERR_CONVERGENCE if
- *         poles to be told apart are too close to each other
+ *         poles to be separated are too close to each other
  * @cost   some 30 n^3, of a pair 70 n^3
  */
 ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,

@@ -42,22 +42,22 @@ static double mean_mass(const ritz_dense *A)
 
 /*
  * Two translations, j and k, give c_i; where only one of them is in the
- * model, as in a plane one, that one alone tells.
+ * model, as in a plane one, that one alone is used.
  */
 static double read_centre(const ritz_dense *A, double m, int i)
 {
     int j = (i + 1) % 3;
     int k = (i + 2) % 3;
-    bool see_j = ritz_dense_col(A, j)[j] > 0.0;
-    bool see_k = ritz_dense_col(A, k)[k] > 0.0;
-    double sum = (see_j ? ritz_dense_col(A, 3 + k)[j] : 0.0) -
-                 (see_k ? ritz_dense_col(A, 3 + j)[k] : 0.0);
+    bool has_j = ritz_dense_col(A, j)[j] > 0.0;
+    bool has_k = ritz_dense_col(A, k)[k] > 0.0;
+    double sum = (has_j ? ritz_dense_col(A, 3 + k)[j] : 0.0) -
+                 (has_k ? ritz_dense_col(A, 3 + j)[k] : 0.0);
 
-    return see_j || see_k ? sum / (m * (see_j + see_k)) : 0.0;
+    return has_j || has_k ? sum / (m * (has_j + has_k)) : 0.0;
 }
 
 /* Whether the model has the translations that inertia (i, j) is read from. */
-static bool is_seen(const ritz_dense *A, int i, int j)
+static bool has_translations(const ritz_dense *A, int i, int j)
 {
     for (int k = 0; k < 3; k++)
         if (k != i && k != j && !(ritz_dense_col(A, k)[k] > 0.0))
@@ -82,7 +82,7 @@ static void read_inertia(const ritz_dense *A, ritz_inertia *inertia)
     }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            if (is_seen(A, i, j))
+            if (has_translations(A, i, j))
                 inertia->tensor[3 * i + j] =
                     ritz_dense_col(A, 3 + j)[3 + i] -
                     m * ((i == j ? square : 0.0) - c[i] * c[j]);
@@ -231,8 +231,7 @@ static ritz_status find_products(const ritz_nodes *nodes, const ritz_sparse *m,
 {
     int64_t r = T->ncol;
     RITZ_OWN(ritz_dense)
-    X = {0},
-    T_b = {0}, mT = {0}, T_a = {0}, P = {0}, mirror = {0};
+    X = {0}, T_b = {0}, mT = {0}, T_a = {0}, P = {0}, mirror = {0};
 
     RITZ_CHECK(ritz_nodes_along(nodes, T, b, &T_b));
     RITZ_CHECK(ritz_sparse_mul(m, &T_b, &mT));

@@ -2,8 +2,8 @@
  * K Phi = M Phi Lambda, Phi'M Phi = I, of a dense model. Accelerations are
  * written out, u'' = Phi (B u - Lambda q - Delta q').
  *
- * Motion without mass has no modes here. Undamped, it answers at once: with R
- * the share of those infinite eigenvalues in the flexibility,
+ * Motion without mass has no modes here. Undamped, it responds statically: with R
+ * the part of those infinite eigenvalues in the flexibility,
  *
  *     (K + s M)^-1 = Phi (Lambda + s)^-1 Phi' + R     for every s,
  *
@@ -32,7 +32,7 @@ ritz_status ritz_structure_refuse(bool structural)
     return RITZ_OK;
 }
 
-/* K and D with the dampers that are kept apart. */
+/* K and D with discrete dampers. */
 static ritz_status install_dampers(const ritz_dampers *apart,
                                    ritz_structure *model)
 {
@@ -170,7 +170,7 @@ static ritz_status massless_share(const ritz_structure *model,
     return RITZ_OK;
 }
 
-/* Whether outputs see a derivative of what massless dofs answer at once. */
+/* Whether outputs contain a derivative of the response of massless dofs. */
 static ritz_status is_improper(const ritz_dense *C, const ritz_dense *RB,
                                double size, bool *out)
 {

@@ -1,6 +1,6 @@
 /*
- * All modes of a dense second-order model, its damping and what drives it and
- * is seen of it, in modal coordinates:
+ * All modes of a dense second-order model, its damping, inputs and outputs, in
+ * modal coordinates:
  *
  *     q'' + Delta q' + Lambda q = B u,    y = C q + Cv q' + feed u
  */
@@ -50,8 +50,8 @@ typedef struct ritz_modal_model {
  * With neither inputs nor outputs it is made for its poles alone, and what
  * damps massless dofs is left out.
  *
- * @return RITZ_ERR_ARGUMENT if a massless dof is damped, or driven and seen by
- *         its velocity or acceleration; RITZ_ERR_SINGULAR if K + M is
+ * @return RITZ_ERR_ARGUMENT if a massless dof is damped, or driven and observed
+ *         by its velocity or acceleration; RITZ_ERR_SINGULAR if K + M is
  */
 ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
                                  const ritz_damping *damping,
@@ -59,8 +59,8 @@ ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
 
 /**
  * The last steps of that, with modes found otherwise, which may be some of all:
- * @p damping goes into Delta ({0}: no other), and what drives and is seen is
- * projected. What massless dofs answer is left out.
+ * @p damping goes into Delta ({0}: no other), inputs and outputs are projected.
+ * The response of massless dofs is left out.
  *
  * @param[in,out] modes  with Phi, lambda, Delta and counts
  */
@@ -112,7 +112,7 @@ typedef struct ritz_modal_layout {
  *
  *     A = [0 S; -Lambda S^-1 -Delta],   B = [0; B],   C = [C S^-1 Cv]
  *
- * Scaled so, slow poles are not lost beside fast ones.
+ * Scaled so, slow poles keep their digits where there are fast ones.
  *
  * @param[out] B,C  NULL: not wanted
  */

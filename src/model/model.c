@@ -1,4 +1,4 @@
-/* References to models of any kind, and what all kinds are asked. */
+/* References to models of any kind. */
 #include <ritz/model.h>
 
 ritz_model ritz_model_of_component(const ritz_component *component,

@@ -175,7 +175,7 @@ static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
     return RITZ_OK;
 }
 
-/* What names the rows of T. */
+/* Names of the rows of T: dofs, grids, elements, recovered dofs. */
 static ritz_status copy_rows(int64_t n, const ritz_dof *dof,
                              const ritz_grids *grids,
                              const ritz_elements *elements,

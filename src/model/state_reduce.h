@@ -5,7 +5,7 @@
 #include <ritz/model.h>
 
 /**
- * W'E T, W'A T, W'B and what is seen of T, of a component of any size whose M
+ * W'E T, W'A T, W'B and the outputs of T, of a component of any size whose M
  * is definite or neither drives nor is driven where it is not:
  *
  *     W'E T = W_q'T_q + W_v'M T_v,   W'A T = W_q'T_v - W_v'(K T_q + D T_v)
@@ -26,7 +26,7 @@ ritz_status ritz_states_project(const ritz_component *component,
  *
  * @param[in] E  W'E T
  * @return RITZ_ERR_SINGULAR if E is, or what is to be eliminated has no static
- *         answer
+ *         response
  */
 ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
                                ritz_state_space *model);

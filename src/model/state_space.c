@@ -22,14 +22,14 @@
 #include <string.h>
 
 /*
- * States that answer statically, x2' = 0, are eliminated [LiuAnderson1989]:
+ * States that respond statically, x2' = 0, are eliminated [LiuAnderson1989]:
  *
  *     0 = A21 x1 + A22 x2 + B2 u
  *
  *     A := A11 - A12 A22^-1 A21,   B := B1 - A12 A22^-1 B2,
  *     C := C1 - C2 A22^-1 A21,     D := D - C2 A22^-1 B2
  *
- * so that the answer at 0 Hz is what it was. Of balanced states the bound of a
+ * so that the response at 0 Hz is unchanged. Of balanced states the bound of a
  * truncation holds for them too. All four are one Schur complement of
  * G = [A B; C D].
  */
@@ -62,9 +62,10 @@ static ritz_status eliminate_rest(const ritz_dense *G, const ritz_dofs *rows,
     RITZ_CHECK(ritz_dense_pick(&lower, cols->count, cols->at, &G21));
     RITZ_CHECK(ritz_dense_pick(&lower, rest->count, rest->at, &G22));
     status = ritz_general_solve(&G22, false, &G21);
-    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                   "the remainder has no static answer: a motion that nothing "
-                   "holds is among its states");
+    RITZ_REFUSE_IF(
+        status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+        "the remainder has no static response: a motion that nothing "
+        "holds is among its states");
     RITZ_CHECK(status);
     RITZ_CHECK(ritz_dense_mul(&G12, &G21, &change));
     ritz_dense_add(-1.0, &change, out);

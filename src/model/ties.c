@@ -219,7 +219,7 @@ ritz_status ritz_tie_rigid(const ritz_grids *grids, const ritz_ties *from,
  *     min_q |W^1/2 (S q - u)|,    q = A u,  A = V Sigma^-1 U' W^1/2
  *     W^1/2 S = U Sigma V'
  *
- * so that A S = I for all motions that the dofs can tell, and the forces A' f
+ * so that A S = I for all motions that the dofs determine, and the forces A' f
  * at them are those that a force f at the point is spread to: S' A' f = f.
  */
 

@@ -65,7 +65,7 @@ static void what_is_not_published_is_removed(void **state)
 
 static void permissions_are_those_of_any_new_file(void **state)
 {
-    ritz_draft draft = {0};
+    RITZ_OWN(ritz_draft) draft = {0};
     struct stat made = {0};
     mode_t before = umask(027);
 
@@ -74,7 +74,6 @@ static void permissions_are_those_of_any_new_file(void **state)
     umask(before);
     assert_int_equal(stat(draft.name, &made), 0);
     assert_int_equal(made.st_mode & 0777, 0640);
-    ritz_draft_free(&draft);
 }
 
 static void devices_and_folders_stay(void **state)

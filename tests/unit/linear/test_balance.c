@@ -59,7 +59,7 @@ static void small_values_of_a_product_are_as_good_as_its_factors(void **unused)
     const double X[] = {1.0, 0.0, 1.0, d}; /* columns */
     const double Y[] = {1.0, 1.0, 0.0, d};
     ritz_dense left = {2, 2, NULL}, right = {2, 2, NULL};
-    ritz_product_svd svd = {0};
+    RITZ_OWN(ritz_product_svd) svd = {0};
     double large = sqrt(1.0 + (1.0 + d) * (1.0 + d));
     double small = d * d / large;
 
@@ -73,7 +73,6 @@ static void small_values_of_a_product_are_as_good_as_its_factors(void **unused)
     assert_near(svd.s[0], large, 8 * DBL_EPSILON * large);
     /* large^2 is short of small^2 < eps; a few roundings of the factors */
     assert_near(svd.s[1], small, 16 * DBL_EPSILON * small);
-    ritz_product_svd_free(&svd);
     ritz_dense_free(&left);
     ritz_dense_free(&right);
 }
@@ -87,8 +86,8 @@ static void a_product_is_what_its_svd_says(void **unused)
 
     (void)unused;
     for (size_t t = 0; t < sizeof shape / sizeof *shape; t++) {
-        ritz_dense X = {0}, Y = {0}, P = {0}, PV = {0}, US = {0};
-        ritz_product_svd svd = {0};
+        RITZ_OWN(ritz_dense) X = {0}, Y = {0}, P = {0}, PV = {0}, US = {0};
+        RITZ_OWN(ritz_product_svd) svd = {0};
 
         fill(shape[t][0], shape[t][1], 3 + t, &X);
         fill(shape[t][0], shape[t][2], 30 + t, &Y);
@@ -106,21 +105,16 @@ static void a_product_is_what_its_svd_says(void **unused)
             assert_near(PV.val[k], US.val[k], 200 * DBL_EPSILON * svd.s[0]);
         for (int64_t k = 1; k < svd.count; k++)
             assert_true(svd.s[k] <= svd.s[k - 1]);
-        ritz_dense_free(&X);
-        ritz_dense_free(&Y);
-        ritz_dense_free(&P);
-        ritz_dense_free(&PV);
-        ritz_dense_free(&US);
-        ritz_product_svd_free(&svd);
     }
 }
 
 /* W'E T = I, and the Gramians W'E W_c E'W and T'W_o T, W_o for x, are S. */
 static void balancing_makes_both_gramians_equal_and_diagonal(void **unused)
 {
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
-    ritz_dense E = {0}, ET = {0}, c = {0}, o = {0}, cc = {0}, EtZo = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
+    RITZ_OWN(ritz_dense)
+    E = {0}, ET = {0}, c = {0}, o = {0}, cc = {0}, EtZo = {0};
 
     (void)unused;
     fill(9, 6, 1, &g.Zc);
@@ -140,14 +134,6 @@ static void balancing_makes_both_gramians_equal_and_diagonal(void **unused)
     assert_ok(ritz_dense_mul_tn(&EtZo, &b.T, &o));
     assert_near(off(&c, &c, b.sigma), 0.0, 1e-12 * b.sigma[0]);
     assert_near(off(&o, &o, b.sigma), 0.0, 1e-12 * b.sigma[0]);
-    ritz_dense_free(&E);
-    ritz_dense_free(&ET);
-    ritz_dense_free(&c);
-    ritz_dense_free(&o);
-    ritz_dense_free(&cc);
-    ritz_dense_free(&EtZo);
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
 }
 
 /* What is kept of values 8 4 4 4 2 1e-3. */
@@ -166,12 +152,12 @@ static void equal_values_are_kept_or_dropped_whole(void **unused)
         {99, 0, 6, 0},       {-1, 0.5, 4, 4.002}, {-1, 0.51, 1, 12.002},
         {2, 0.1, 1, 12.002}, {5, 1e-2, 5, 2e-3},
     };
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
     (void)unused;
     diagonal(6, c, one, &g);
     for (size_t k = 0; k < sizeof expected / sizeof *expected; k++) {
-        ritz_balanced b = {0};
+        RITZ_OWN(ritz_balanced) b = {0};
 
         assert_ok(ritz_gramians_balance(&g, expected[k].order,
                                         expected[k].tolerance, &b));
@@ -180,9 +166,7 @@ static void equal_values_are_kept_or_dropped_whole(void **unused)
         assert_int_equal(b.T.ncol, b.kept);
         assert_int_equal(b.W.ncol, b.kept);
         assert_near(b.bound, expected[k].bound, 1e-12);
-        ritz_balanced_free(&b);
     }
-    ritz_gramians_free(&g);
 }
 
 /* 1e-14 is above 4 eps, 1e-17 below; 0 is nothing. */
@@ -190,10 +174,10 @@ static void a_value_of_rounding_is_never_balanced(void **unused)
 {
     static const double c[] = {1, 1e-14, 1e-17, 0};
     static const double one[] = {1, 1, 1, 1};
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
     int64_t count = 0;
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
     (void)unused;
     diagonal(4, c, one, &g);
@@ -204,9 +188,6 @@ static void a_value_of_rounding_is_never_balanced(void **unused)
     assert_ok(ritz_gramians_balance(&g, -1, 0.0, &b));
     assert_int_equal(b.count, 2);
     assert_int_equal(b.kept, 2);
-    free(sigma);
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
 }
 
 /* The first value is huge in one factor, tiny in the other: W'E T still is I of
@@ -215,8 +196,8 @@ static void factors_that_hide_values_in_rounding_give_fewer(void **unused)
 {
     const double c[] = {1e8, 1e-8}, o[] = {1e-8, 1e8};
     const double s = sqrt(0.5);
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
     ritz_dense turn = {2, 2, NULL}, Zc = {0};
 
     (void)unused;
@@ -231,8 +212,6 @@ static void factors_that_hide_values_in_rounding_give_fewer(void **unused)
     assert_true(b.count >= 1);
     assert_near(off(&b.W, &b.T, NULL), 0.0, 1e-12);
     ritz_dense_free(&turn);
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
 }
 
 static void the_bound_counts_a_repeated_value_once(void **unused)
@@ -252,7 +231,7 @@ static void nothing_reached_is_nothing_balanced(void **unused)
 {
     static const double zero[] = {0, 0};
     ritz_gramians g = {0}, empty = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
 
     (void)unused;
     diagonal(2, zero, zero, &g);
@@ -264,7 +243,6 @@ static void nothing_reached_is_nothing_balanced(void **unused)
     assert_ok(ritz_gramians_balance(&empty, -1, 0.0, &b));
     assert_int_equal(b.count, 0);
     ritz_balanced_free(&b);
-    ritz_balanced_free(&b);
     ritz_gramians_free(&g);
     ritz_gramians_free(&g);
 }
@@ -272,9 +250,9 @@ static void nothing_reached_is_nothing_balanced(void **unused)
 static void what_cannot_be_balanced_is_refused_in_words(void **unused)
 {
     static const double one[] = {1, 1};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
     ritz_balanced b = {0};
-    ritz_dense longer = {0};
+    RITZ_OWN(ritz_dense) longer = {0};
     ritz_product_svd svd = {0};
 
     (void)unused;
@@ -289,34 +267,26 @@ static void what_cannot_be_balanced_is_refused_in_words(void **unused)
     g.Zo.val[1] = HUGE_VAL;
     assert_fails(ritz_gramians_balance(&g, -1, 0.0, &b), RITZ_ERR_ARGUMENT,
                  "balancing: a factor of a product is not finite");
-    ritz_dense_free(&longer);
-    ritz_gramians_free(&g);
 }
 
 static ritz_status balance_once(const ritz_gramians *g)
 {
-    ritz_status status = RITZ_OK;
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
     int64_t count = 0;
-    double *sigma = NULL;
+    RITZ_OWN_ARRAY double *sigma = NULL;
 
-    RITZ_TRY(ritz_gramians_hankel(g, &count, &sigma));
-    RITZ_TRY(ritz_gramians_balance(g, 2, 0.0, &b));
-done:
-    free(sigma);
-    ritz_balanced_free(&b);
-    return status;
+    RITZ_CHECK(ritz_gramians_hankel(g, &count, &sigma));
+    return ritz_gramians_balance(g, 2, 0.0, &b);
 }
 
 static void balancing_survives_every_allocation(void **unused)
 {
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
     (void)unused;
     fill(5, 3, 1, &g.Zc);
     fill(5, 4, 2, &g.Zo);
     assert_survives_every_allocation(balance_once(&g));
-    ritz_gramians_free(&g);
 }
 
 /* Inputs that reach nothing, or outputs that see nothing: no columns. */
@@ -324,9 +294,9 @@ static void a_factor_without_columns_has_no_values(void **state)
 {
     (void)state;
     for (int side = 0; side < 2; side++) {
-        ritz_gramians none = {0};
-        ritz_product_svd svd = {0};
-        double *sigma = NULL;
+        RITZ_OWN(ritz_gramians) none = {0};
+        RITZ_OWN(ritz_product_svd) svd = {0};
+        RITZ_OWN_ARRAY double *sigma = NULL;
         int64_t count = -1;
 
         fill(5, side == 0 ? 0 : 3, 1, &none.Zc);
@@ -337,9 +307,6 @@ static void a_factor_without_columns_has_no_values(void **state)
         assert_int_equal(svd.U.nrow, none.Zo.ncol);
         assert_int_equal(svd.V.nrow, none.Zc.ncol);
         assert_int_equal(svd.U.ncol + svd.V.ncol, 0);
-        free(sigma);
-        ritz_product_svd_free(&svd);
-        ritz_gramians_free(&none);
     }
 }
 

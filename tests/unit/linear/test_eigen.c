@@ -145,15 +145,13 @@ static double *membrane_eigenvalues(int64_t n)
 static void assert_orthonormal(const ritz_pairs *P, const ritz_sparse *M,
                                double bound)
 {
-    ritz_dense MPhi = {0}, G = {0};
+    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
 
     assert_ok(ritz_sparse_mul(M, &P->Phi, &MPhi));
     assert_ok(ritz_dense_mul_tn(&P->Phi, &MPhi, &G));
     for (int64_t j = 0; j < G.ncol; j++)
         for (int64_t i = 0; i < G.nrow; i++)
             assert_near(G.val[i + j * G.nrow], i == j ? 1.0 : 0.0, bound);
-    ritz_dense_free(&MPhi);
-    ritz_dense_free(&G);
 }
 
 /*
@@ -529,7 +527,7 @@ static void heavy_and_light_masses_keep_the_lowest_mode(void **state)
     double b = (s + 2.0 * k) * m + s * M;
     double high = (b + sqrt(b * b - 8.0 * m * M * k * s)) / (2.0 * m * M);
     double low = 2.0 * k * s / (m * M * high);
-    ritz_pairs P = {0};
+    RITZ_OWN(ritz_pairs) P = {0};
 
     (void)state;
     assert_ok(ritz_eigen_dense(&K_d, &M_d, &P));
@@ -537,7 +535,6 @@ static void heavy_and_light_masses_keep_the_lowest_mode(void **state)
     /* what rounding of K leaves: eps |x|'|K||x| = eps 4 s / 2 M */
     assert_near(P.lambda[1], low, 16.0 * DBL_EPSILON * s / M);
     assert_near(P.lambda[3], high, 16.0 * DBL_EPSILON * high);
-    ritz_pairs_free(&P);
 }
 
 static void hertz_keep_their_sign(void **state)
@@ -627,15 +624,13 @@ static void no_allocation_failure_leaks(void **state)
 
 static void nothing_has_no_modes(void **state)
 {
-    ritz_sparse A = {0};
-    ritz_pairs P = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_pairs) P = {0};
 
     (void)state;
     assert_ok(ritz_sparse_new(0, 0, 0, &A));
     assert_ok(ritz_eigen_sparse(&A, &A, &(ritz_span){.modes = 3}, &P));
     assert_int_equal(P.Phi.ncol, 0);
-    ritz_pairs_free(&P);
-    ritz_sparse_free(&A);
 }
 
 static const struct CMUnitTest tests[] = {

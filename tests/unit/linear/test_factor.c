@@ -42,9 +42,9 @@ static void chain_is_as_soft_as_its_springs_in_series(void **state)
 {
     enum { SIZE = 200, COLUMNS = 100 };
 
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
     double bound = 2.0 * SIZE * SIZE * DBL_EPSILON * SIZE;
 
     (void)state;
@@ -58,9 +58,6 @@ static void chain_is_as_soft_as_its_springs_in_series(void **state)
         for (int64_t i = 0; i < SIZE; i++)
             assert_near(ritz_dense_col(&X, j)[i] / (double)(j + 1),
                         (double)(i + 1), bound);
-    ritz_dense_free(&X);
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
 }
 
 /* Units make no matrix singular: 1e-40 N/m beside 1 N/m. */
@@ -70,8 +67,8 @@ static void units_do_not_matter(void **state)
     const double val[] = {1.0, 1e-40};
     double x[] = {3.0, 3.0};
     ritz_dense X = {2, 1, x};
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
 
     (void)state;
     assert_ok(ritz_sparse_from_triplets(2, 2, 2, at, at, val, &A));
@@ -79,8 +76,6 @@ static void units_do_not_matter(void **state)
     assert_ok(ritz_factor_solve(F, &X));
     assert_near(x[0], 3.0, 3.0 * DBL_EPSILON);
     assert_near(x[1], 3e40, 3e40 * 4.0 * DBL_EPSILON);
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
 }
 
 /* A dense block, so that CHOLMOD takes its supernodal path: n I + ones. */
@@ -103,9 +98,9 @@ static void full_matrices_are_solved(void **state)
 {
     enum { SIZE = 150 };
 
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
-    ritz_dense X = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
 
     (void)state;
     assert_ok(full(SIZE, 50.0, &A));
@@ -116,9 +111,6 @@ static void full_matrices_are_solved(void **state)
     assert_ok(ritz_factor_solve(F, &X));
     for (int64_t i = 0; i < SIZE; i++)
         assert_near(X.val[i], 1.0 / 200.0, SIZE * DBL_EPSILON * 4.0 / 200.0);
-    ritz_dense_free(&X);
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
 }
 
 /* Rounding makes the last pivot of a free chain zero, tiny or negative. */
@@ -129,7 +121,7 @@ static void free_bodies_are_refused(void **state)
 
     (void)state;
     for (size_t i = 0; i < 25; i++) {
-        ritz_sparse A = {0};
+        RITZ_OWN(ritz_sparse) A = {0};
         ritz_factor *F = NULL;
         int64_t weak = -1;
 
@@ -138,7 +130,6 @@ static void free_bodies_are_refused(void **state)
                      "is a rigid-body motion left free?");
         assert_null(F);
         assert_true(weak >= 0 && weak < n[i % 5]);
-        ritz_sparse_free(&A);
     }
 }
 
@@ -151,7 +142,7 @@ static void the_weak_row_is_named(void **state)
     (void)state;
     for (size_t k = 0; k < 2; k++) {
         const double val[] = {1.0, d[k], 2.0};
-        ritz_sparse A = {0};
+        RITZ_OWN(ritz_sparse) A = {0};
         ritz_factor *F = NULL;
         int64_t weak = -1;
 
@@ -159,30 +150,27 @@ static void the_weak_row_is_named(void **state)
         assert_fails(ritz_factor_spd_weak(&A, &F, &weak), RITZ_ERR_SINGULAR,
                      "not positive definite");
         assert_int_equal(weak, 1);
-        ritz_sparse_free(&A);
     }
 }
 
 /* n^2 = 1e10 is far from 1 / eps: a long chain is soft, not singular. */
 static void long_chains_are_not_singular(void **state)
 {
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
 
     (void)state;
     assert_ok(chain(100000, 1.0, 1, &A));
     assert_ok(ritz_factor_spd(&A, &F));
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
 }
 
 static void what_is_no_such_matrix_is_refused(void **state)
 {
     const int64_t at[] = {0, 1};
     const double val[] = {1.0, nan("")};
-    ritz_dense X = {0};
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
 
     (void)state;
     assert_ok(ritz_sparse_from_triplets(2, 3, 1, at, at, val, &A));
@@ -197,49 +185,38 @@ static void what_is_no_such_matrix_is_refused(void **state)
     assert_ok(ritz_dense_new(2, 1, &X));
     assert_fails(ritz_factor_solve(F, &X), RITZ_ERR_ARGUMENT,
                  "factor of 3 rows meets 2");
-    ritz_dense_free(&X);
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
 }
 
 static void nothing_is_factored_too(void **state)
 {
-    ritz_dense X = {0};
-    ritz_sparse A = {0};
-    ritz_factor *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
 
     (void)state;
     assert_ok(ritz_sparse_new(0, 0, 0, &A));
     assert_ok(ritz_factor_spd(&A, &F));
     assert_ok(ritz_dense_new(0, 2, &X));
     assert_ok(ritz_factor_solve(F, &X));
-    ritz_dense_free(&X);
-    ritz_factor_free(&F);
-    ritz_sparse_free(&A);
 }
 
 static ritz_status factor_and_solve(const ritz_sparse *A)
 {
-    ritz_status status = RITZ_OK;
     double x[5] = {1.0};
     ritz_dense X = {5, 1, x};
-    ritz_factor *F = NULL;
+    RITZ_OWN(ritz_factor) *F = NULL;
 
-    RITZ_TRY(ritz_factor_spd(A, &F));
-    RITZ_TRY(ritz_factor_solve(F, &X));
-done:
-    ritz_factor_free(&F);
-    return status;
+    RITZ_CHECK(ritz_factor_spd(A, &F));
+    return ritz_factor_solve(F, &X);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_sparse A = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
 
     (void)state;
     assert_ok(chain(5, 4.0, 1, &A));
     assert_survives_every_allocation(factor_and_solve(&A));
-    ritz_sparse_free(&A);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -17,8 +17,8 @@ static ritz_status indefinite(double corner, ritz_sparse *out)
 /* Eigenvalues: one of each sign in either block. */
 static void negative_pivots_are_counted(void **state)
 {
-    ritz_sparse A = {0};
-    ritz_ldl *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_ldl) *F = NULL;
     int64_t negative = -1;
 
     (void)state;
@@ -31,8 +31,6 @@ static void negative_pivots_are_counted(void **state)
     assert_ok(indefinite(3.0, &A));
     assert_ok(ritz_ldl_new(&A, &negative, &F));
     assert_int_equal(negative, 1);
-    ritz_ldl_free(&F);
-    ritz_sparse_free(&A);
 }
 
 /* A (1, 2, 3, 4)' = (4, -5, 4, 3)'; the condition number is below 4. */
@@ -40,8 +38,8 @@ static void solutions_are_exact_to_rounding(void **state)
 {
     double x[] = {4.0, -5.0, 4.0, 3.0, 8.0, -10.0, 8.0, 6.0};
     ritz_dense X = {4, 2, x};
-    ritz_sparse A = {0};
-    ritz_ldl *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_ldl) *F = NULL;
 
     (void)state;
     assert_ok(indefinite(-3.0, &A));
@@ -50,8 +48,6 @@ static void solutions_are_exact_to_rounding(void **state)
     for (int i = 0; i < 8; i++)
         assert_near(x[i], (i % 4 + 1) * (i < 4 ? 1.0 : 2.0),
                     64.0 * DBL_EPSILON);
-    ritz_ldl_free(&F);
-    ritz_sparse_free(&A);
 }
 
 /* [2 1; 1 1/2] exactly, and off by rounding either way. */
@@ -61,14 +57,13 @@ static void singular_matrices_are_refused(void **state)
 
     (void)state;
     for (size_t k = 0; k < 3; k++) {
-        ritz_sparse A = {0};
+        RITZ_OWN(ritz_sparse) A = {0};
         ritz_ldl *F = NULL;
 
         assert_ok(indefinite(corner[k], &A));
         assert_fails(ritz_ldl_new(&A, NULL, &F), RITZ_ERR_SINGULAR,
                      "the matrix is singular");
         assert_null(F);
-        ritz_sparse_free(&A);
     }
 }
 
@@ -80,8 +75,8 @@ static void units_do_not_matter(void **state)
     const double val[] = {2e-20, 1.0, 1.0, -3e20};
     double x[] = {0.0, 7e20};
     ritz_dense X = {2, 1, x};
-    ritz_sparse A = {0};
-    ritz_ldl *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_ldl) *F = NULL;
     int64_t negative = 0;
 
     (void)state;
@@ -91,8 +86,6 @@ static void units_do_not_matter(void **state)
     assert_ok(ritz_ldl_solve(F, &X)); /* (1e20, -2)' */
     assert_near(x[0], 1e20, 64.0 * DBL_EPSILON * 1e20);
     assert_near(x[1], -2.0, 64.0 * DBL_EPSILON * 2.0);
-    ritz_ldl_free(&F);
-    ritz_sparse_free(&A);
 }
 
 static void what_is_no_such_matrix_is_refused(void **state)
@@ -101,8 +94,8 @@ static void what_is_no_such_matrix_is_refused(void **state)
     const double val[] = {1.0, HUGE_VAL};
     double x[] = {1.0};
     ritz_dense X = {1, 1, x};
-    ritz_sparse A = {0};
-    ritz_ldl *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_ldl) *F = NULL;
 
     (void)state;
     assert_ok(ritz_sparse_from_triplets(2, 3, 1, at, at, val, &A));
@@ -120,8 +113,6 @@ static void what_is_no_such_matrix_is_refused(void **state)
     ritz_sparse_free(&A);
     assert_ok(ritz_sparse_new(0, 0, 0, &A));
     assert_ok(ritz_ldl_new(&A, NULL, &F));
-    ritz_ldl_free(&F);
-    ritz_sparse_free(&A);
 }
 
 static ritz_status factor(const ritz_sparse *A)
@@ -136,12 +127,11 @@ static ritz_status factor(const ritz_sparse *A)
 /* What MUMPS allocates for itself is not tested. */
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_sparse A = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
 
     (void)state;
     assert_ok(indefinite(-3.0, &A));
     assert_survives_every_allocation(factor(&A));
-    ritz_sparse_free(&A);
 }
 
 static const struct CMUnitTest tests[] = {

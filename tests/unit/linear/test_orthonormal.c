@@ -64,21 +64,19 @@ static double error_of(const ritz_orthonormal *set, const ritz_sparse *W)
 static void what_is_new_is_found_below_the_rounding_of_products(void **state)
 {
     fixture *f = *state;
-    ritz_orthonormal set = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
 
     assert_ok(ritz_orthonormal_new(DOFS, &f->beam.K, 1e-10, &set));
     for (int k = 0; k < 2; k++) {
-        ritz_dense R = {0};
+        RITZ_OWN(ritz_dense) R = {0};
 
         assert_ok(ritz_dense_new(DOFS, 1, &R));
         add_shape(1.0, 2, R.val);
         add_shape(k * 1e-6, 3, R.val);
         assert_ok(ritz_orthonormal_append(&set, &R, 1, NULL));
-        ritz_dense_free(&R);
     }
     assert_int_equal(set.count, 2);
     assert_near(error_of(&set, &f->beam.K), 0.0, 4e-4);
-    ritz_orthonormal_free(&set);
 }
 
 /* Columns a, 0, 2 a, b, a + b: a pair of them is all. */
@@ -86,8 +84,8 @@ static void what_depends_is_left_out_and_named(void **state)
 {
     static const double columns[5][3] = {
         {1, 1, 0}, {0, 0, 0}, {2, 2, 0}, {0, 1, -1}, {1, 2, -1}};
-    ritz_orthonormal set = {0};
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
+    RITZ_OWN(ritz_dense) R = {0};
     bool taken[5];
     int count = 0;
 
@@ -102,8 +100,6 @@ static void what_depends_is_left_out_and_named(void **state)
         count += taken[j];
     assert_int_equal(count, 2);
     assert_true(!taken[1]);
-    ritz_dense_free(&R);
-    ritz_orthonormal_free(&set);
 }
 
 /* Three columns and room for two: one is left, and then none. */
@@ -111,7 +107,7 @@ static void what_is_not_wanted_is_counted(void **state)
 {
     static const double columns[3][4] = {
         {1, 1, 0, 0}, {0, 1, 1, 0}, {0, 0, 1, 2}};
-    ritz_orthonormal set = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
     ritz_dense R = {0};
 
     (void)state;
@@ -124,14 +120,13 @@ static void what_is_not_wanted_is_counted(void **state)
         assert_int_equal(set.left, k == 0 ? 1 : 0);
         ritz_dense_free(&R);
     }
-    ritz_orthonormal_free(&set);
 }
 
 /* Nearly dependent columns, 1e-6 apart: both are kept, and orthonormal. */
 static void a_weak_column_is_as_orthonormal_as_a_strong_one(void **state)
 {
-    ritz_orthonormal set = {0};
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
     (void)state;
     assert_ok(ritz_orthonormal_new(50, NULL, 1e-10, &set));
@@ -151,25 +146,18 @@ static void a_weak_column_is_as_orthonormal_as_a_strong_one(void **state)
                     ritz_dense_col(&set.V, i)[k] * ritz_dense_col(&set.V, j)[k];
             assert_near(sum, i == j, 50 * DBL_EPSILON);
         }
-    ritz_dense_free(&R);
-    ritz_orthonormal_free(&set);
 }
 
 static ritz_status append_two(const ritz_sparse *W)
 {
-    ritz_status status = RITZ_OK;
-    ritz_orthonormal set = {0};
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_orthonormal) set = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
-    RITZ_TRY(ritz_orthonormal_new(DOFS, W, 1e-10, &set));
-    RITZ_TRY(ritz_dense_new(DOFS, 2, &R));
+    RITZ_CHECK(ritz_orthonormal_new(DOFS, W, 1e-10, &set));
+    RITZ_CHECK(ritz_dense_new(DOFS, 2, &R));
     add_shape(1.0, 2, R.val);
     add_shape(1.0, 3, ritz_dense_col(&R, 1));
-    RITZ_TRY(ritz_orthonormal_append(&set, &R, 2, NULL));
-done:
-    ritz_dense_free(&R);
-    ritz_orthonormal_free(&set);
-    return status;
+    return ritz_orthonormal_append(&set, &R, 2, NULL);
 }
 
 static void no_allocation_failure_leaks(void **state)

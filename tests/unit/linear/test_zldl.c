@@ -77,10 +77,10 @@ static void an_unsymmetric_matrix_is_solved_whole(void **state)
     const double _Complex s = 0.5 * (double _Complex)_Complex_I;
     const double _Complex c[] = {1.0, s};
     double _Complex x[] = {1.0, 0.0};
-    ritz_sparse G = {0};
-    ritz_dense K = {0};
+    RITZ_OWN(ritz_sparse) G = {0};
+    RITZ_OWN(ritz_dense) K = {0};
     const ritz_sparse *const A[] = {&p->K, &G};
-    ritz_zldl *F = NULL;
+    RITZ_OWN(ritz_zldl) *F = NULL;
     double _Complex det = 0.0;
 
     assert_ok(ritz_sparse_from_triplets(2, 2, 2, row, col, skew, &G));
@@ -91,9 +91,6 @@ static void an_unsymmetric_matrix_is_solved_whole(void **state)
     assert_ok(ritz_zldl_solve(F, 1, x));
     assert_near(cabs(x[0] - K.val[3] / det), 0.0, 1e-15);
     assert_near(cabs(x[1] + (K.val[1] - s) / det), 0.0, 1e-15);
-    ritz_zldl_free(&F);
-    ritz_dense_free(&K);
-    ritz_sparse_free(&G);
 }
 
 /* lambda = (3 - sqrt 5) / 2 is an eigenvalue; damped, it is none. */
@@ -103,7 +100,7 @@ static void undamped_resonance_is_refused(void **state)
     const ritz_sparse *A[] = {&p->K, &p->M};
     double _Complex c[] = {1.0, -(3.0 - sqrt(5.0)) / 2.0};
     double _Complex x[] = {1.0, 1.0};
-    ritz_zldl *F = NULL;
+    RITZ_OWN(ritz_zldl) *F = NULL;
 
     assert_ok(ritz_zldl_new(2, A, &F));
     assert_fails(ritz_zldl_factor(F, c), RITZ_ERR_SINGULAR,
@@ -115,13 +112,12 @@ static void undamped_resonance_is_refused(void **state)
     c[0] = nan("");
     assert_fails(ritz_zldl_factor(F, c), RITZ_ERR_ARGUMENT,
                  "coefficient 1 of the matrices is not finite");
-    ritz_zldl_free(&F);
 }
 
 static void matrices_of_different_size_are_refused(void **state)
 {
     const pencil *p = *state;
-    ritz_sparse B = {0};
+    RITZ_OWN(ritz_sparse) B = {0};
     const ritz_sparse *A[] = {&p->K, &B};
     ritz_zldl *F = NULL;
 
@@ -129,20 +125,15 @@ static void matrices_of_different_size_are_refused(void **state)
     assert_fails(ritz_zldl_new(2, A, &F), RITZ_ERR_ARGUMENT,
                  "3 x 3 matrix stands beside 2 rows");
     assert_fails(ritz_zldl_new(0, A, &F), RITZ_ERR_ARGUMENT, "no matrix");
-    ritz_sparse_free(&B);
 }
 
 static ritz_status factor(const ritz_sparse *const *A)
 {
-    ritz_status status = RITZ_OK;
     const double _Complex c[] = {1.0, 0.5};
-    ritz_zldl *F = NULL;
+    RITZ_OWN(ritz_zldl) *F = NULL;
 
-    RITZ_TRY(ritz_zldl_new(2, A, &F));
-    RITZ_TRY(ritz_zldl_factor(F, c));
-done:
-    ritz_zldl_free(&F);
-    return status;
+    RITZ_CHECK(ritz_zldl_new(2, A, &F));
+    return ritz_zldl_factor(F, c);
 }
 
 static void no_allocation_failure_leaks(void **state)

@@ -26,25 +26,24 @@ static const double pi = 3.14159265358979323846;
 static ritz_status two_masses(ritz_component *out)
 {
     static const double place[] = {1, 2, 3, 3, 2, 3};
-    ritz_status status = RITZ_OK;
-    ritz_component c = {.num_dofs = DOFS, .units = "kg m s"};
+    RITZ_OWN(ritz_component) c = {.num_dofs = DOFS, .units = "kg m s"};
     int64_t at[DOFS];
     double mass[DOFS];
     const double s = 0.5;
     const double k = cos(pi / 6.0);
     const double turned[] = {k, s, 0, -s, k, 0, 0, 0, 1};
 
-    RITZ_NEW(c.dof, DOFS);
+    RITZ_CHECK_NEW(c.dof, DOFS);
     for (int64_t i = 0; i < DOFS; i++) {
         c.dof[i] = (ritz_dof){10 + i / 6, i % 6 + 1};
         at[i] = i;
         mass[i] = i % 6 >= 3 ? 1.0 : i < 6 ? 2.0 : 3.0;
     }
-    RITZ_TRY(ritz_sparse_from_triplets(DOFS, DOFS, DOFS, at, at, mass, &c.M));
-    RITZ_NEW(c.grids.id, GRIDS);
-    RITZ_NEW(c.grids.position, 3 * GRIDS);
-    RITZ_NEW(c.grids.frame, GRIDS);
-    RITZ_NEW(c.grids.axes, 18);
+    RITZ_CHECK(ritz_sparse_from_triplets(DOFS, DOFS, DOFS, at, at, mass, &c.M));
+    RITZ_CHECK_NEW(c.grids.id, GRIDS);
+    RITZ_CHECK_NEW(c.grids.position, 3 * GRIDS);
+    RITZ_CHECK_NEW(c.grids.frame, GRIDS);
+    RITZ_CHECK_NEW(c.grids.axes, 18);
     c.grids.count = GRIDS;
     c.grids.num_frames = 2;
     memcpy(c.grids.position, place, sizeof place);
@@ -55,17 +54,15 @@ static ritz_status two_masses(ritz_component *out)
         c.grids.id[i] = 10 + i;
         c.grids.frame[i] = i;
     }
-    RITZ_TRY(ritz_component_settle(&c, false));
+    RITZ_CHECK(ritz_component_settle(&c, false));
     *out = c;
     c = (ritz_component){0};
-done:
-    ritz_component_free(&c);
-    return status;
+    return RITZ_OK;
 }
 
 static void missing_parts_are_completed(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
 
     (void)state;
     assert_ok(two_masses(&c));
@@ -73,12 +70,11 @@ static void missing_parts_are_completed(void **state)
     assert_int_equal(c.K.colptr[DOFS], 0);
     assert_int_equal(c.io.B.nrow, DOFS);
     assert_int_equal(c.io.num_inputs, 0);
-    ritz_component_free(&c);
 }
 
 static void what_is_no_component_is_refused(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
 
     (void)state;
     assert_ok(two_masses(&c));
@@ -105,7 +101,6 @@ static void what_is_no_component_is_refused(void **state)
     c.port[0].dofs.at[0] = DOFS;
     assert_fails(ritz_component_settle(&c, false), RITZ_ERR_FORMAT,
                  "which is not among the 12");
-    ritz_component_free(&c);
 }
 
 /* 1e-7 of the largest entry is averaged, 1e-5 is refused unless asked. */
@@ -139,7 +134,7 @@ static void a_little_asymmetry_is_averaged(void **state)
 
 static void a_port_is_found_or_the_nearest_named(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
     ritz_dofs set = {0};
 
     (void)state;
@@ -160,13 +155,12 @@ static void a_port_is_found_or_the_nearest_named(void **state)
                  "there is no port 'top'");
     assert_int_equal(row_of_dof(&c, (ritz_dof){11, 2}), 7);
     assert_int_equal(row_of_dof(&c, (ritz_dof){12, 2}), -1);
-    ritz_component_free(&c);
 }
 
 /* u_basic = A' u: a displacement along the turned x axis is (cos, sin, 0). */
 static void a_port_is_turned_into_basic_axes(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
     ritz_dense turn = {0};
     ritz_dof *label = NULL;
 
@@ -184,15 +178,14 @@ static void a_port_is_turned_into_basic_axes(void **state)
     c.port[0].dofs.count = 5; /* R3 is left out */
     assert_fails(ritz_port_turn(&c, &c.port[0], &turn, NULL), RITZ_ERR_ARGUMENT,
                  "brings only some of its rotations");
-    ritz_component_free(&c);
 }
 
 /* u = t + r x d, seen along the displacement axes of the grid. */
 static void rigid_geometry_follows_its_formula(void **state)
 {
     const double origin[] = {1, 2, 3};
-    ritz_component c = {0};
-    ritz_dense R = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
     (void)state;
     assert_ok(two_masses(&c));
@@ -203,14 +196,12 @@ static void rigid_geometry_follows_its_formula(void **state)
     assert_near(ritz_dense_col(&R, 5)[11], 1.0, 0.0);
     /* about y at d: u = (0, 0, -2) */
     assert_near(ritz_dense_col(&R, 4)[8], -2.0, 4 * DBL_EPSILON);
-    ritz_dense_free(&R);
-    ritz_component_free(&c);
 }
 
 /* m = 5, c = (11/5, 2, 3), J_c = 2 I + 6/5 * 4 diag(0, 1, 1). */
 static void mass_properties_are_those_of_two_points(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
     ritz_inertia inertia = {0};
     const double spread = 2.0 * 3.0 / 5.0 * 4.0;
 
@@ -227,13 +218,12 @@ static void mass_properties_are_those_of_two_points(void **state)
     assert_near(inertia.tensor[4], 2.0 + spread, 1e-12);
     assert_near(inertia.tensor[8], 2.0 + spread, 1e-12);
     assert_near(inertia.tensor[1], 0.0, 1e-12);
-    ritz_component_free(&c);
 }
 
 /* A beam of 20 kg and 2 m in the plane: J_zz = m L^2 / 12, nothing else seen. */
 static void a_plane_model_shows_its_inertia_in_the_plane(void **state)
 {
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) c = {0};
     ritz_inertia inertia = {0};
 
     (void)state;
@@ -246,7 +236,6 @@ static void a_plane_model_shows_its_inertia_in_the_plane(void **state)
     assert_near(inertia.tensor[8], 20.0 / 3.0, 1e-12);
     for (int k = 0; k < 8; k++)
         assert_near(inertia.tensor[k], 0.0, 1e-12);
-    ritz_component_free(&c);
 }
 
 static void fill_io(ritz_io *io, const char *name, double value)
@@ -262,8 +251,8 @@ static void fill_io(ritz_io *io, const char *name, double value)
 
 static void inputs_and_outputs_are_projected(void **state)
 {
-    ritz_io io = {0}, part = {0};
-    ritz_dense T = {0};
+    RITZ_OWN(ritz_io) io = {0}, part = {0};
+    RITZ_OWN(ritz_dense) T = {0};
 
     (void)state;
     assert_ok(ritz_io_new(3, 1, 1, &io));
@@ -276,16 +265,13 @@ static void inputs_and_outputs_are_projected(void **state)
     assert_near(part.limit[0], 5.0, 0.0);
     assert_near(part.B.val[0], 20.0, 0.0);
     assert_near(part.C.val[0], 25.0, 0.0);
-    ritz_io_free(&io);
-    ritz_io_free(&part);
-    ritz_dense_free(&T);
 }
 
 /* A free bar held at one end has no stiffness there: exactly none. */
 static void rigid_motion_costs_exactly_nothing(void **state)
 {
-    ritz_component bar = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     assert_ok(bar_component(11, &bar));
@@ -294,16 +280,14 @@ static void rigid_motion_costs_exactly_nothing(void **state)
     assert_int_equal(reduced.K.ncol, 1);
     assert_true(reduced.K.val[0] == 0.0);
     assert_near(reduced.M.val[0], 1.0, 11 * 121 * DBL_EPSILON);
-    ritz_reduced_free(&reduced);
-    ritz_component_free(&bar);
 }
 
 /* (T V)' K (T V) = V' (T'KT) V, and what the port and T become. */
 static void projecting_twice_is_projecting_by_the_product(void **state)
 {
-    ritz_component bar = {0};
-    ritz_reduced first = {0}, second = {0};
-    ritz_dense V = {0}, direct = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_reduced) first = {0}, second = {0};
+    RITZ_OWN(ritz_dense) V = {0}, direct = {0};
 
     (void)state;
     assert_ok(bar_component(8, &bar));
@@ -321,17 +305,12 @@ static void projecting_twice_is_projecting_by_the_product(void **state)
     for (int64_t j = 0; j < 2; j++)
         assert_near(second.port[0].map.val[j], ritz_dense_col(&second.T, j)[0],
                     4 * DBL_EPSILON);
-    ritz_dense_free(&V);
-    ritz_dense_free(&direct);
-    ritz_reduced_free(&first);
-    ritz_reduced_free(&second);
-    ritz_component_free(&bar);
 }
 
 static void a_basis_of_another_size_is_refused(void **state)
 {
-    ritz_component bar = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_reduced none = {0};
 
     (void)state;
@@ -339,8 +318,6 @@ static void a_basis_of_another_size_is_refused(void **state)
     assert_ok(ritz_basis_new(3, 1, &basis));
     assert_fails(ritz_reduce(&bar, &basis, &none), RITZ_ERR_ARGUMENT,
                  "the basis is for 3 dofs, the component has 5");
-    ritz_basis_free(&basis);
-    ritz_component_free(&bar);
 }
 
 static ritz_status reduce_anew(const ritz_component *bar)
@@ -355,16 +332,14 @@ static ritz_status reduce_anew(const ritz_component *bar)
 
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_component bar = {0};
-    ritz_component c = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_component) c = {0};
 
     (void)state;
     assert_ok(bar_component(4, &bar));
     assert_ok(add_port(&bar, "end", 1));
     assert_survives_every_allocation(reduce_anew(&bar));
     assert_survives_every_allocation(two_masses(&c));
-    ritz_component_free(&c);
-    ritz_component_free(&bar);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -86,7 +86,7 @@ static void projecting_and_installing_commute(void **state)
 {
     ritz_component c = chain();
     ritz_basis basis = some_basis(30, 4);
-    ritz_reduced after = {0}, before = {0};
+    RITZ_OWN(ritz_reduced) after = {0}, before = {0};
 
     (void)state;
     assert_ok(ritz_reduce(&c, &basis, &after));
@@ -99,8 +99,6 @@ static void projecting_and_installing_commute(void **state)
     assert_ok(ritz_reduce(&c, &basis, &before));
     assert_same(&after.K, &before.K, 1e-9);
     assert_same(&after.D, &before.D, 1e-10);
-    ritz_reduced_free(&after);
-    ritz_reduced_free(&before);
     ritz_basis_free(&basis);
     ritz_component_free(&c);
 }
@@ -110,8 +108,8 @@ static void projecting_once_more_takes_the_dampers_along(void **state)
     ritz_component c = chain();
     ritz_basis basis = some_basis(30, 4);
     ritz_basis V = some_basis(4, 2);
-    ritz_reduced once = {0}, twice = {0};
-    ritz_dense expected = {0};
+    RITZ_OWN(ritz_reduced) once = {0}, twice = {0};
+    RITZ_OWN(ritz_dense) expected = {0};
 
     (void)state;
     assert_ok(ritz_reduce(&c, &basis, &once));
@@ -120,9 +118,6 @@ static void projecting_once_more_takes_the_dampers_along(void **state)
     assert_same(&twice.dampers.B, &expected, 0.0);
     assert_string_equal(twice.dampers.name[2], "c");
     assert_near(twice.dampers.k[2], -200.0, 0.0);
-    ritz_dense_free(&expected);
-    ritz_reduced_free(&once);
-    ritz_reduced_free(&twice);
     ritz_basis_free(&basis);
     ritz_basis_free(&V);
     ritz_component_free(&c);
@@ -137,7 +132,7 @@ static void structural_and_gyroscopic_damping_are_projected(void **state)
     static const double loss[] = {1.0, 5.0};
     ritz_component c = chain();
     ritz_basis basis = some_basis(30, 2);
-    ritz_reduced r = {0}, again = {0};
+    RITZ_OWN(ritz_reduced) r = {0}, again = {0};
     const double *t = basis.T.val;
     double d = 0.0;
 
@@ -157,8 +152,6 @@ static void structural_and_gyroscopic_damping_are_projected(void **state)
         &r, &(ritz_dense){2, 2, (double[]){0.0, 1.0, 1.0, 0.0}}, &again));
     assert_near(again.D.val[2], -d, 1e-15);
     assert_near(again.K4.val[3], r.K4.val[0], 0.0);
-    ritz_reduced_free(&again);
-    ritz_reduced_free(&r);
     ritz_basis_free(&basis);
     ritz_component_free(&c);
 }
@@ -193,7 +186,7 @@ static void stiffness_must_be_symmetric_and_damping_need_not(void **state)
 static void bodies_are_told_apart_by_the_names_of_their_dampers(void **state)
 {
     ritz_component c = chain();
-    ritz_dampers all = {0};
+    RITZ_OWN(ritz_dampers) all = {0};
     char name[RITZ_NAME_SIZE];
 
     (void)state;
@@ -210,7 +203,6 @@ static void bodies_are_told_apart_by_the_names_of_their_dampers(void **state)
     assert_fails(ritz_dampers_append(&c.dampers, name, 30, 0, &all),
                  RITZ_ERR_ARGUMENT, "gets a name of more than 63 letters");
     assert_int_equal(all.count, 6);
-    ritz_dampers_free(&all);
     ritz_component_free(&c);
 }
 
@@ -278,24 +270,17 @@ static void dampers_of_another_model_are_refused(void **state)
 
 static ritz_status install_all(void)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component c = {0};
-    ritz_basis basis = {0};
-    ritz_reduced r = {0};
-    ritz_dampers all = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) r = {0};
+    RITZ_OWN(ritz_dampers) all = {0};
 
-    RITZ_TRY(chain_component(20, &c));
-    RITZ_TRY(ritz_basis_new(20, 2, &basis));
-    RITZ_TRY(ritz_reduce(&c, &basis, &r));
-    RITZ_TRY(ritz_reduced_install(&r));
-    RITZ_TRY(ritz_dampers_append(&c.dampers, "body", 30, 3, &all));
-    RITZ_TRY(ritz_component_install(&c));
-done:
-    ritz_dampers_free(&all);
-    ritz_reduced_free(&r);
-    ritz_basis_free(&basis);
-    ritz_component_free(&c);
-    return status;
+    RITZ_CHECK(chain_component(20, &c));
+    RITZ_CHECK(ritz_basis_new(20, 2, &basis));
+    RITZ_CHECK(ritz_reduce(&c, &basis, &r));
+    RITZ_CHECK(ritz_reduced_install(&r));
+    RITZ_CHECK(ritz_dampers_append(&c.dampers, "body", 30, 3, &all));
+    return ritz_component_install(&c);
 }
 
 static void no_allocation_is_forgotten(void **state)

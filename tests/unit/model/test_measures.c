@@ -13,7 +13,7 @@ static void three(ritz_measures *out)
 
 static void a_measure_is_found_by_its_whole_name(void **state)
 {
-    ritz_measures all = {0};
+    RITZ_OWN(ritz_measures) all = {0};
 
     (void)state;
     three(&all);
@@ -22,13 +22,12 @@ static void a_measure_is_found_by_its_whole_name(void **state)
     assert_null(ritz_measures_find(&all, "gain"));
     assert_true(isnan(ritz_measures_value(&all, "gain")));
     assert_null(ritz_measures_find(&(ritz_measures){0}, "mac"));
-    ritz_measures_free(&all);
 }
 
 static void a_copy_takes_the_place_of_what_was_there(void **state)
 {
-    ritz_measures all = {0};
-    ritz_measures copy = {0};
+    RITZ_OWN(ritz_measures) all = {0};
+    RITZ_OWN(ritz_measures) copy = {0};
 
     (void)state;
     three(&all);
@@ -40,20 +39,16 @@ static void a_copy_takes_the_place_of_what_was_there(void **state)
     assert_memory_equal(copy.item, all.item, 3 * sizeof *all.item);
     assert_ok(ritz_measures_copy(&(ritz_measures){0}, &copy));
     assert_int_equal(copy.count, 0);
-    ritz_measures_free(&copy);
-    ritz_measures_free(&all);
 }
 
 static void every_allocation_may_fail(void **state)
 {
-    ritz_measures all = {0};
-    ritz_measures copy = {0};
+    RITZ_OWN(ritz_measures) all = {0};
+    RITZ_OWN(ritz_measures) copy = {0};
 
     (void)state;
     three(&all);
     assert_survives_every_allocation(ritz_measures_copy(&all, &copy));
-    ritz_measures_free(&copy);
-    ritz_measures_free(&all);
 }
 
 static const struct CMUnitTest tests[] = {

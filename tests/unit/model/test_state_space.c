@@ -96,8 +96,8 @@ static void assert_states_serve(const ritz_request *request, const char *words,
                                 int64_t states, double bound)
 {
     ritz_damping damping = {0};
-    ritz_basis basis = {0};
-    ritz_state_space full = {0}, small = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, small = {0};
 
     assert_ok(ritz_basis_make(&ritz_method_lanczos_one_sided, request, &basis));
     assert_string_equal(basis.damping, words);
@@ -107,9 +107,6 @@ static void assert_states_serve(const ritz_request *request, const char *words,
         ritz_state_space_of_component(request->component, &damping, &full));
     assert_int_equal(small.A.nrow, states);
     assert_true(apart(&small, &full) < bound);
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&small);
-    ritz_basis_free(&basis);
 }
 
 /* Condition numbers here are below 1e3; the direct response nudges by 1e-9. */
@@ -123,9 +120,9 @@ static void responses_agree_with_second_order_ones(void **state)
 
     (void)state;
     for (size_t t = 0; t < sizeof cases / sizeof *cases; t++) {
-        ritz_component chain = {0};
-        ritz_state_space model = {0};
-        ritz_response due = {0}, got = {0};
+        RITZ_OWN(ritz_component) chain = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
+        RITZ_OWN(ritz_response) due = {0}, got = {0};
 
         set_chain(&chain);
         assert_ok(ritz_state_space_of_component(&chain, &cases[t], &model));
@@ -138,10 +135,6 @@ static void responses_agree_with_second_order_ones(void **state)
                                    &ritz_response_engine_direct, 9.0, 0.0,
                                    &grid, &due));
         assert_true(difference(&got, &due) < 1e-9);
-        ritz_response_free(&due);
-        ritz_response_free(&got);
-        ritz_state_space_free(&model);
-        ritz_component_free(&chain);
     }
 }
 
@@ -150,11 +143,11 @@ static void reduced_components_respond_as_components(void **state)
 {
     static const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL,
                                          .zeta = 0.03};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
-    ritz_state_space full = {0}, small = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, small = {0};
 
     (void)state;
     set_chain(&chain);
@@ -165,19 +158,14 @@ static void reduced_components_respond_as_components(void **state)
     assert_ok(ritz_state_space_of_reduced(&reduced, &damping, &small));
     assert_string_equal(small.damping, "modal 0.03");
     assert_true(apart(&small, &full) < 1e-12);
-    ritz_state_space_free(&full);
-    ritz_state_space_free(&small);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&chain);
 }
 
 /* E x' = A x with any E that is not singular is the same model. */
 static void a_descriptor_responds_as_its_states(void **state)
 {
-    ritz_component chain = {0};
-    ritz_state_space model = {0};
-    ritz_response due = {0}, got = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_response) due = {0}, got = {0};
     ritz_dense A = {0}, B = {0};
 
     (void)state;
@@ -202,10 +190,6 @@ static void a_descriptor_responds_as_its_states(void **state)
     ritz_dense_col(&model.E, 3)[3] = 0.0;
     assert_fails(ritz_state_space_check(&model), RITZ_ERR_FORMAT,
                  "'E' is singular");
-    ritz_response_free(&due);
-    ritz_response_free(&got);
-    ritz_state_space_free(&model);
-    ritz_component_free(&chain);
 }
 
 /* The last mass is nothing: its spring answers at once, 1 / 5, through D. */
@@ -213,7 +197,7 @@ static void massless_dofs_feed_through(void **state)
 {
     static const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL,
                                          .zeta = 0.03};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_state_space model = {0};
     ritz_response due = {0}, got = {0};
 
@@ -245,13 +229,12 @@ static void massless_dofs_feed_through(void **state)
     assert_ok(ritz_sparse_copy(&chain.K, &chain.D));
     assert_fails(ritz_state_space_of_component(&chain, &damping, &model),
                  RITZ_ERR_ARGUMENT, "dofs without mass are damped");
-    ritz_component_free(&chain);
 }
 
 /* A basis of states that holds all of them keeps what feeds through. */
 static void reduction_to_states_keeps_what_feeds_through(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = RITZ_REQUEST_NONE;
 
     (void)state;
@@ -260,14 +243,13 @@ static void reduction_to_states_keeps_what_feeds_through(void **state)
     request.component = &chain;
     request.modes = 8;
     assert_states_serve(&request, "modal 0.03", 8, 1e-9); /* measured: 5e-13 */
-    ritz_component_free(&chain);
 }
 
 /* The same of a M + b K, with a damper and outputs of every kind. */
 static void reduction_to_states_keeps_rayleigh_damping(void **state)
 {
     static const char words[] = "rayleigh 0.05 0.01";
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = RITZ_REQUEST_NONE;
 
     (void)state;
@@ -277,14 +259,13 @@ static void reduction_to_states_keeps_rayleigh_damping(void **state)
     request.choice.given = RITZ_USES_DAMPING;
     assert_ok(ritz_damping_parse(words, &request.choice.damping));
     assert_states_serve(&request, words, 10, 1e-9); /* measured: 3e-13 */
-    ritz_component_free(&chain);
 }
 
 /* Without W it is T that stands on the left: T all states, turned. */
 static void without_left_vectors_the_right_ones_serve(void **state)
 {
-    ritz_component chain = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_state_space full = {0}, turned = {0};
 
     (void)state;
@@ -303,8 +284,6 @@ static void without_left_vectors_the_right_ones_serve(void **state)
     assert_fails(ritz_reduce_states(&chain, &undamped, &basis, &turned),
                  RITZ_ERR_SINGULAR, "left against right vectors");
     ritz_state_space_free(&full);
-    ritz_basis_free(&basis);
-    ritz_component_free(&chain);
 }
 
 /* A grid that is refined has a point at the peak of each pole it spans. */
@@ -314,8 +293,8 @@ static void refined_grids_meet_the_poles(void **state)
     static const int64_t at[] = {0};
     const ritz_grid coarse = {
         .from_hz = 0.1, .to_hz = 1.0, .count = 4, .refine = true};
-    ritz_component mass = {0};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_component) mass = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_response r = {0};
     double peak = 0.0;
 
@@ -340,8 +319,6 @@ static void refined_grids_meet_the_poles(void **state)
                     (const double[]){3.0 / (2.0 * 3.14159265358979323846)}},
             &r),
         RITZ_ERR_SINGULAR, "is the frequency of a pole");
-    ritz_state_space_free(&model);
-    ritz_component_free(&mass);
 }
 
 static void structural_damping_and_great_size_are_refused(void **state)
@@ -361,8 +338,8 @@ static void structural_damping_and_great_size_are_refused(void **state)
 
 static void what_does_not_fit_is_no_model(void **state)
 {
-    ritz_component chain = {0};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
 
     (void)state;
     set_chain(&chain);
@@ -378,17 +355,15 @@ static void what_does_not_fit_is_no_model(void **state)
     model.D.val[0] = nan("");
     assert_fails(ritz_state_space_check(&model), RITZ_ERR_FORMAT,
                  "'D' is not finite");
-    ritz_state_space_free(&model);
-    ritz_component_free(&chain);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
     static const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL,
                                          .zeta = 0.03};
-    ritz_component chain = {0};
-    ritz_state_space model = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     set_chain(&chain);
@@ -397,9 +372,6 @@ static void no_allocation_failure_leaks(void **state)
     assert_ok(ritz_dense_copy(&model.A, &model.E));
     assert_survives_every_allocation(ritz_response_of(
         ritz_model_of_states(&model), NULL, 0.0, 0.0, &grid, &r));
-    ritz_response_free(&r);
-    ritz_state_space_free(&model);
-    ritz_component_free(&chain);
 }
 
 static const struct CMUnitTest tests[] = {
