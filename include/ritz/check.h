@@ -1,32 +1,9 @@
 /*
- * Audit of a component before it is reduced. Each check has a measured value,
- * a limit, a verdict, and the grids concerned. docs/check.md says what each
- * measures and where its limit comes from. They are, in this order:
- *
- *     finite                    values are finite; if not, the only one
- *     symmetry                  what is, or was, averaged away
- *     massless-dofs             empty rows of M
- *     unconnected-dofs          empty rows of K            (if there is K)
- *     separate-bodies           connected parts of K + M
- *     mass-definite             negative eigenvalues of M
- *     stiffness-definite        the same of K              (if there is K)
- *     positions                 dofs of grids without one
- *     rigid-modes-geometry      free motions by positions  (if there is K)
- *     rigid-modes-null-space    by the inertia of K        (if there is K)
- *     rigid-modes-eigenvectors  by eigenvectors
- *     rigid-modes-agree         angle between the two      (if there is K)
- *     grounding-translation     forces K r                 (if there is K)
- *     grounding-rotation        the same       (if there is K, positions)
- *     source-digits             and what they do           (if there is K)
- *     mass-translations         the same along all axes
- *     mass-coupling             none about the mass centre (if there is mass)
- *     inertia-tensor            that of a body   (if positions, all motions)
- *     rayleigh                  D = a M + b K?             (if there is D)
- *     port-dofs                 six or more                (if ports)
- *     port-collinear            no rotation is left loose  (if ports)
- *     port-dependent            no dof in two ports        (if ports)
- *     port-positions            no two grids in one place  (if ports)
- *     port-disconnected         ports are part of the body (if ports)
+ * Audit of a component before it is reduced, of a reduced component or of a
+ * state space. Each check has a measured value, a limit, a verdict, and the
+ * grids concerned. docs/check.md and docs/methods/stability.md list the checks,
+ * what each measures and where its limit comes from; a check that does not apply
+ * to a model is left out.
  */
 #ifndef RITZ_CHECK_H
 #define RITZ_CHECK_H
@@ -105,19 +82,7 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
                                     ritz_probe *out);
 
 /**
- * Whether any motion can grow, alone or in an assembly. docs/methods/stability.md
- * says what each check measures and where its limit comes from:
- *
- *     mass-definite         least eigenvalue of M, over the largest
- *     stiffness-definite    the same of K, beyond rigid motion
- *     damping-definite      of D's symmetric part             (if there is D)
- *     structural-definite   of K4                            (if there is K4)
- *     poles                 growth of the one that decides, over the radius
- *     energy-growth         largest energy of a free motion, over its first
- *     passivity             least Re of force to velocity, over its size
- *     interface-locked      growth with the interface held
- *     interface-sprung      the same on springs, and with masses on it
- *     interface-joined      joined by forces           (if there are such)
+ * Whether any motion can grow, alone or in an assembly.
  *
  * Where M, K and D are semidefinite, nothing can grow with any passive system
  * attached: the checks that follow say so and compute nothing. The interface are

@@ -142,17 +142,8 @@ ritz_status ritz_verify_system(const ritz_component *full,
 
 /**
  * Two models in first-order form, of the same inputs and outputs; outputs that
- * have a limit in @p full are divided by it.
- *
- *     h-infinity, h-infinity-relative, h2-relative
- *                            norms of the difference, and over those of the full
- *                            model. Poles that are not left of the axis, if both
- *                            have as many, are left out of all of them
- *     h-infinity-bound       the first again, held to the bound that the
- *                            reduced model has as estimate
- *     response-relative      largest |H - H_r| / max |H|, if a band is given
- *     static-gain-relative   of D - C A^-1 B, if neither has a pole at 0
- *     growth-relative        of the reduced model: see ritz_probe_record
+ * have a limit in @p full are divided by it. Poles that are not left of the axis
+ * are left out of norms if both models have as many.
  *
  * @return RITZ_ERR_ARGUMENT if names differ, or a limit is set for a measure
  *         that does not exist

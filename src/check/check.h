@@ -200,11 +200,11 @@ typedef struct ritz_sampler {
     const ritz_collocated *model;
 } ritz_sampler;
 
-ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler *out);
+ritz_status ritz_sampler_new(const ritz_collocated *model, ritz_sampler *s);
 
 /** G(i w), borrowed; NULL where it is infinite. */
-const double _Complex *ritz_sampler_at(ritz_sampler *sampler, double w);
-void ritz_sampler_free(ritz_sampler *sampler);
+const double _Complex *ritz_sampler_at(ritz_sampler *s, double w);
+void ritz_sampler_free(ritz_sampler *s);
 
 /**
  * Frequencies at which a response shows what it has: at every pole, around it,

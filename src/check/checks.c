@@ -1,6 +1,6 @@
 /*
- * The list of checks. A row may say several things: ritz/check.h names
- * them in this order. Each uses what those before it left.
+ * The list of checks. A row may say several things, which docs/check.md
+ * and docs/methods/stability.md explain. Each uses what those before it left.
  */
 #include "check/check.h"
 

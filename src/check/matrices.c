@@ -245,8 +245,7 @@ static int64_t find_bad_diagonal(const ritz_sparse *A, const double *diagonal)
 static ritz_status scale_matrix(const ritz_sparse *A, const double *diagonal,
                                 double tol, ritz_sparse *out, double *sum)
 {
-    RITZ_OWN(ritz_sparse) scaled = {0};
-    RITZ_OWN(ritz_sparse) shift = {0};
+    RITZ_OWN(ritz_sparse) scaled = {0}, shift = {0};
 
     RITZ_CHECK(ritz_sparse_copy(A, &scaled));
     RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol, A->ncol, &shift));

@@ -106,8 +106,7 @@ static ritz_status stack_vectors(const ritz_estimator *estimator,
 /* G = V'A^-1 V, Q = V'A^-1 M A^-1 V and the norms of V's columns. */
 static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
 {
-    RITZ_OWN(ritz_dense) V = {0};
-    RITZ_OWN(ritz_dense) E = {0};
+    RITZ_OWN(ritz_dense) V = {0}, E = {0};
 
     RITZ_CHECK(stack_vectors(estimator, r, &V));
     RITZ_CHECK(ritz_dense_copy(&V, &E));

@@ -73,8 +73,7 @@ done:
 static ritz_status take_ritz_pairs(const ritz_component *full,
                                    const ritz_dense *Y, ritz_lehmann *trial)
 {
-    RITZ_OWN(ritz_dense) K = {0};
-    RITZ_OWN(ritz_dense) M = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     RITZ_CHECK(ritz_sparse_condense(&full->K, Y, &K));
@@ -155,8 +154,7 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
                                  const ritz_pairs *pairs, ritz_lehmann *trial)
 {
     const ritz_dense Q = ritz_dense_part(&pairs->Phi, 0, trial->count);
-    RITZ_OWN(ritz_dense) K = {0};
-    RITZ_OWN(ritz_dense) M = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
 
     RITZ_CHECK_NEW(trial->reduced_rounding, trial->count);
     RITZ_CHECK_NEW(trial->reduced_low, trial->count);
@@ -322,8 +320,7 @@ static ritz_status solve_lehmann(const ritz_lehmann *trial, double rho,
 {
     int64_t m = trial->count;
     RITZ_OWN_ARRAY double *d = NULL;
-    RITZ_OWN(ritz_dense) L = {0};
-    RITZ_OWN(ritz_dense) LJL = {0};
+    RITZ_OWN(ritz_dense) L = {0}, LJL = {0};
 
     RITZ_CHECK_NEW(d, m);
     if (!take_offsets(trial, rho, d))

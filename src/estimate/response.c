@@ -255,8 +255,7 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
                       .count = EVEN_POINTS,
                       .refine = true};
     int64_t m = r->trial->count - r->num_rigid;
-    RITZ_OWN_ARRAY double *omega = NULL;
-    RITZ_OWN_ARRAY double *zeta = NULL;
+    RITZ_OWN_ARRAY double *omega = NULL, *zeta = NULL;
 
     if (r->num_rigid > 0)
         grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);

@@ -76,26 +76,14 @@ bool ritz_measure_holds(const ritz_measure *measure)
            ritz_measure_meets(measure->name, measure->value, measure->limit);
 }
 
-/* "frequency, mac": all words of tolerances. Cut to fit. */
-static void list_words(int64_t size, char *out)
-{
-    size_t used = 0;
-
-    out[0] = '\0';
-    for (int k = 0; k < RITZ_MEASURES && used < (size_t)size; k++)
-        if (is_tolerance(&ritz_measure_table[k]))
-            used += (size_t)snprintf(out + used, (size_t)size - used, "%s%s",
-                                     used > 0 ? ", " : "",
-                                     ritz_measure_table[k].word);
-}
-
 /* The row of a word; NULL and a sentence if there is none. */
 static const ritz_measure_kind *find_word(const char *word)
 {
     char known[RITZ_MEASURES][RITZ_NAME_SIZE];
-    char all[RITZ_MEASURES * RITZ_NAME_SIZE];
+    char all[RITZ_MEASURES * RITZ_NAME_SIZE] = "";
     const char *near = NULL;
     int64_t count = 0;
+    size_t used = 0;
 
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
@@ -105,9 +93,10 @@ static const ritz_measure_kind *find_word(const char *word)
         if (strcmp(kind->word, word) == 0)
             return kind;
         (void)snprintf(known[count++], sizeof *known, "%s", kind->word);
+        used += (size_t)snprintf(all + used, sizeof all - used, "%s%s",
+                                 used > 0 ? ", " : "", kind->word);
     }
     near = ritz_text_nearest(word, count, known[0], sizeof *known);
-    list_words(sizeof all, all);
     ritz_record("there is no measure '%s', %s%s%s", word,
                 near ? "is '" : "but ", near ? near : all,
                 near ? "' meant?" : "");

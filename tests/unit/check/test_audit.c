@@ -122,13 +122,12 @@ static void expect(ritz_component *c, const char *name, ritz_verdict verdict,
         fail_msg("%s: '%s' does not name '%s'", name, check->where, where);
 }
 
-static void a_sound_body_passes_every_check(void **state)
+static void a_sound_body_passes_every_check(void **)
 {
     const int64_t rows[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     ritz_component c = lattice(1);
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)state;
     add_port(&c, "base", 9, rows);
     assert_ok(ritz_audit_component(&c, &audit));
     for (int64_t k = 0; k < audit.count; k++)
@@ -146,12 +145,11 @@ static void a_sound_body_passes_every_check(void **state)
     ritz_component_free(&c);
 }
 
-static void values_that_are_not_finite_end_the_audit(void **state)
+static void values_that_are_not_finite_end_the_audit(void **)
 {
     ritz_component c = lattice(1);
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)state;
     *diagonal(&c.K, 4) = nan("");
     assert_ok(ritz_audit_component(&c, &audit));
     assert_int_equal(audit.count, 1);
@@ -160,11 +158,10 @@ static void values_that_are_not_finite_end_the_audit(void **state)
     ritz_component_free(&c);
 }
 
-static void averaged_asymmetry_is_remembered(void **state)
+static void averaged_asymmetry_is_remembered(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     c.asymmetry = 2e-7;
     expect(&c, "symmetry", RITZ_PASS, 2e-7, "");
     c.asymmetry = 2e-5;
@@ -172,11 +169,10 @@ static void averaged_asymmetry_is_remembered(void **state)
     ritz_component_free(&c);
 }
 
-static void indefinite_matrices_name_a_dof(void **state)
+static void indefinite_matrices_name_a_dof(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     *diagonal(&c.M, 7) = -1.0;
     expect(&c, "mass-definite", RITZ_FAIL, -1.0, "grid 13 T2");
     ritz_component_free(&c);
@@ -187,11 +183,10 @@ static void indefinite_matrices_name_a_dof(void **state)
     ritz_component_free(&c);
 }
 
-static void empty_rows_are_named(void **state)
+static void empty_rows_are_named(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     *diagonal(&c.M, 3) = 0.0;
     expect(&c, "massless-dofs", RITZ_WARN, 1.0, "grid 12 T1");
     expect(&c, "mass-translations", RITZ_FAIL, 0.2, ""); /* 4 of 5 along x */
@@ -202,12 +197,11 @@ static void empty_rows_are_named(void **state)
     ritz_component_free(&c);
 }
 
-static void separate_parts_are_counted_and_named(void **state)
+static void separate_parts_are_counted_and_named(void **)
 {
     const int64_t rows[] = {12, 13, 14};
     ritz_component c = lattice(2);
 
-    (void)state;
     expect(&c, "separate-bodies", RITZ_WARN, 2.0, "grid 15");
     add_port(&c, "loose", 3, rows);
     expect(&c, "port-disconnected", RITZ_FAIL, 3.0, "grid 15 T1");
@@ -216,11 +210,10 @@ static void separate_parts_are_counted_and_named(void **state)
 }
 
 /* One spring of 8 to the ground: a force of 8 meets a unit translation. */
-static void a_held_body_shows_where(void **state)
+static void a_held_body_shows_where(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     *diagonal(&c.K, 6) += 8.0;
     expect(&c, "grounding-translation", RITZ_WARN, 8.0, "grid 13 T1");
     expect(&c, "rigid-modes-geometry", RITZ_PASS, 5.0, "");
@@ -230,11 +223,10 @@ static void a_held_body_shows_where(void **state)
 }
 
 /* Moved in the list but not in the matrices: rotations are no longer free. */
-static void a_wrong_position_is_noticed(void **state)
+static void a_wrong_position_is_noticed(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     c.grids.position[12] = 2.5;
     expect(&c, "rigid-modes-eigenvectors", RITZ_PASS, 6.0, "");
     expect(&c, "rigid-modes-agree", RITZ_WARN, nan(""), "");
@@ -243,11 +235,10 @@ static void a_wrong_position_is_noticed(void **state)
     ritz_component_free(&c);
 }
 
-static void missing_positions_leave_the_translations(void **state)
+static void missing_positions_leave_the_translations(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     ritz_grids_free(&c.grids);
     expect(&c, "positions", RITZ_WARN, 15.0, "grid 11 T1");
     expect(&c, "rigid-modes-geometry", RITZ_PASS, 3.0, "");
@@ -256,14 +247,13 @@ static void missing_positions_leave_the_translations(void **state)
 }
 
 /* m_xy couples translations: no body has that about its own axes. */
-static void mass_that_couples_translations_is_refused(void **state)
+static void mass_that_couples_translations_is_refused(void **)
 {
     ritz_component c = lattice(1);
     int64_t row[ROWS + 2];
     int64_t col[ROWS + 2];
     double val[ROWS + 2];
 
-    (void)state;
     for (int k = 0; k < ROWS; k++) {
         row[k] = col[k] = k;
         val[k] = 1.0;
@@ -279,13 +269,12 @@ static void mass_that_couples_translations_is_refused(void **state)
 }
 
 /* Grids 12 and 13 are two points, and two points are a line. */
-static void ports_are_looked_at(void **state)
+static void ports_are_looked_at(void **)
 {
     const int64_t line[] = {3, 4, 5, 6, 7, 8};
     const int64_t more[] = {6, 7, 8, 9, 10, 11, 12, 13, 14};
     ritz_component c = lattice(1);
 
-    (void)state;
     add_port(&c, "line", 6, line);
     add_port(&c, "plane", 9, more);
     expect(&c, "port-collinear", RITZ_WARN, nan(""), "line");
@@ -298,11 +287,10 @@ static void ports_are_looked_at(void **state)
 }
 
 /* In the plane there are three rigid motions, of a clamped beam none. */
-static void beams_in_the_plane_have_three_motions(void **state)
+static void beams_in_the_plane_have_three_motions(void **)
 {
     RITZ_OWN(ritz_component) c = {0};
 
-    (void)state;
     assert_ok(frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &c));
     expect(&c, "rigid-modes-geometry", RITZ_PASS, 3.0, "");
     expect(&c, "rigid-modes-eigenvectors", RITZ_PASS, 3.0, "");
@@ -316,11 +304,10 @@ static void beams_in_the_plane_have_three_motions(void **state)
     expect(&c, "grounding-translation", RITZ_WARN, nan(""), "grid 2");
 }
 
-static void stiffness_that_was_forgotten_is_noticed(void **state)
+static void stiffness_that_was_forgotten_is_noticed(void **)
 {
     ritz_component c = lattice(1);
 
-    (void)state;
     ritz_sparse_free(&c.K);
     assert_ok(ritz_component_settle(&c, false));
     expect(&c, "rigid-modes-eigenvectors", RITZ_FAIL, 15.0, "");
@@ -335,12 +322,11 @@ static ritz_status audit_and_free(const ritz_component *c)
     return status;
 }
 
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
     const int64_t rows[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     ritz_component c = lattice(1);
 
-    (void)state;
     add_port(&c, "base", 9, rows);
     assert_survives_every_allocation(audit_and_free(&c));
     ritz_component_free(&c);
@@ -390,14 +376,13 @@ static void round_to(ritz_sparse *A, int digits)
  * Printed to one digit: 4e-2 at ten digits, 4e3 at five. Not one but the body
  * is free, and no verdict may call it so.
  */
-static void few_digits_hold_a_free_plate(void **state)
+static void few_digits_hold_a_free_plate(void **)
 {
     const struct {
         int digits;
         double force;
     } cases[] = {{10, 4e-2}, {5, 4e3}};
 
-    (void)state;
     for (size_t k = 0; k < 2; k++) {
         RITZ_OWN(ritz_component) c = {0};
         RITZ_OWN(ritz_audit) audit = {0};
@@ -424,12 +409,11 @@ static void few_digits_hold_a_free_plate(void **state)
 }
 
 /* Grids from single-precision input: nothing fails, SOURCE.md of the demo. */
-static void the_demo_does_not_fail(void **state)
+static void the_demo_does_not_fail(void **)
 {
     const char *where = getenv("RITZ_DATA");
     static const char *const names[] = {"rotor", "stator"};
 
-    (void)state;
     if (!where) {
         print_message("skipped: no RITZ_DATA\n");
         skip();

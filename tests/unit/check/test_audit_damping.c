@@ -23,23 +23,21 @@ static bool find(const ritz_component *component, ritz_check *out)
     return found;
 }
 
-static void without_damping_there_is_nothing_to_fit(void **state)
+static void without_damping_there_is_nothing_to_fit(void **)
 {
     RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
-    (void)state;
     assert_ok(chain_component(20, &chain));
     assert_false(find(&chain, &check));
 }
 
 /* a M + b K, some roundings of each entry. */
-static void proportional_damping_is_recognised(void **state)
+static void proportional_damping_is_recognised(void **)
 {
     RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
-    (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_sparse_add(0.3, &chain.M, 0.002, &chain.K, &chain.D));
     assert_true(find(&chain, &check));
@@ -50,14 +48,13 @@ static void proportional_damping_is_recognised(void **state)
 }
 
 /* One damper alone has few places in common with M and K. */
-static void damping_that_couples_is_no_fault(void **state)
+static void damping_that_couples_is_no_fault(void **)
 {
     static const int64_t at[] = {2};
     static const double one[] = {1.0};
     RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
-    (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_sparse_from_triplets(20, 20, 1, at, at, one, &chain.D));
     assert_true(find(&chain, &check));
@@ -66,14 +63,13 @@ static void damping_that_couples_is_no_fault(void **state)
     assert_non_null(strstr(check.says, "not proportional, it couples modes"));
 }
 
-static void a_gyroscopic_part_is_named(void **state)
+static void a_gyroscopic_part_is_named(void **)
 {
     static const int64_t row[] = {2, 3}, col[] = {3, 2};
     static const double skew[] = {1.0, -1.0};
     RITZ_OWN(ritz_component) chain = {0};
     ritz_check check = {0};
 
-    (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_sparse_from_triplets(20, 20, 2, row, col, skew, &chain.D));
     assert_true(find(&chain, &check));
@@ -82,7 +78,7 @@ static void a_gyroscopic_part_is_named(void **state)
 }
 
 /* LF10: D = 100 M + 0.01 K exactly. */
-static void a_published_model_is_proportional_to_rounding(void **state)
+static void a_published_model_is_proportional_to_rounding(void **)
 {
     const char *folder = getenv("RITZ_EXTERNAL_DATA");
     char path[3][512];
@@ -93,7 +89,6 @@ static void a_published_model_is_proportional_to_rounding(void **state)
     ritz_check check = {0};
     FILE *dofs = NULL;
 
-    (void)state;
     for (int k = 0; k < 3; k++)
         snprintf(path[k], sizeof path[k], "%s/second_order/LF10/%s.mtx",
                  folder ? folder : "../shared/data", file[k]);
@@ -126,11 +121,10 @@ static ritz_status audit(const ritz_component *component)
     return status;
 }
 
-static void no_allocation_is_forgotten(void **state)
+static void no_allocation_is_forgotten(void **)
 {
     RITZ_OWN(ritz_component) chain = {0};
 
-    (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_sparse_add(0.3, &chain.M, 0.002, &chain.K, &chain.D));
     assert_survives_every_allocation(audit(&chain));

@@ -51,48 +51,43 @@ static void assert_digits(int64_t n, const double *k, int64_t declared,
 }
 
 /* Held by 1 beside 200: half a unit of one digit, if these were rounded. */
-static void whole_numbers_are_what_they_say(void **state)
+static void whole_numbers_are_what_they_say(void **)
 {
     const double k[] = {1, 200, 400, 200, 300};
     const double tens[] = {20, 1070, 1530, 380};
 
-    (void)state;
     assert_digits(5, k, 3, NULL, RITZ_PASS, 17.0);
     assert_digits(4, tens, 4, NULL, RITZ_PASS, 17.0);
 }
 
-static void short_decimals_are_what_they_say(void **state)
+static void short_decimals_are_what_they_say(void **)
 {
     const double k[] = {0.5, 1.25, 2.75, 0.125};
 
-    (void)state;
     assert_digits(4, k, 4, NULL, RITZ_PASS, 17.0);
 }
 
 /* Sums of long and short whole numbers have all numbers of digits. */
-static void sums_of_whole_numbers_are_exact(void **state)
+static void sums_of_whole_numbers_are_exact(void **)
 {
     const double k[] = {2e6,  1e7, 15, 1070, 1530, 1e8, 380,
                         2500, 3e6, 70, 9e5,  12,   1e5, 4e4};
 
-    (void)state;
     assert_digits(MASSES, k, 9, NULL, RITZ_PASS, 17.0);
 }
 
 /* 12 345 and its double may be five digits of something: no harm is seen. */
-static void few_whole_numbers_of_five_digits_pass(void **state)
+static void few_whole_numbers_of_five_digits_pass(void **)
 {
     const double k[] = {12345, 12345, 12345};
 
-    (void)state;
     assert_digits(3, k, 5, NULL, RITZ_PASS, 5.0);
 }
 
-static void what_was_rounded_warns(void **state)
+static void what_was_rounded_warns(void **)
 {
     double k[MASSES];
 
-    (void)state;
     for (int i = 0; i < MASSES; i++) /* over two decades */
         k[i] = 1e4 * exp(2.0 + sin(1.0 + 7.0 * i) * 2.3);
     assert_digits(MASSES, k, 6, "%.5e", RITZ_WARN, 6.0);
@@ -102,11 +97,10 @@ static void what_was_rounded_warns(void **state)
 
 /* A reader that knows of few digits, as of single precision, is believed
    where the values do not contradict it. */
-static void digits_of_the_source_are_kept(void **state)
+static void digits_of_the_source_are_kept(void **)
 {
     double k[MASSES];
 
-    (void)state;
     for (int i = 0; i < MASSES; i++)
         k[i] = (double)(float)(1e4 * exp(2.0 + sin(1.0 + 7.0 * i) * 2.3));
     assert_digits(MASSES, k, 7, NULL, RITZ_WARN, 7.0);

@@ -21,7 +21,7 @@ static ritz_dense matrix(int64_t n, const double *val)
 }
 
 /* x'' + 2 zeta w x' + w^2 x = 0 with w = 5: poles -5 zeta +- i 5 sqrt(1-z^2) */
-static void an_oscillator_is_as_stable_as_its_damping(void **state)
+static void an_oscillator_is_as_stable_as_its_damping(void **)
 {
     static const struct {
         double zeta;
@@ -31,7 +31,6 @@ static void an_oscillator_is_as_stable_as_its_damping(void **state)
         {-1e-9, RITZ_UNSTABLE}, {-0.02, RITZ_UNSTABLE},
     };
 
-    (void)state;
     for (size_t t = 0; t < sizeof cases / sizeof *cases; t++) {
         double z = cases[t].zeta;
         ritz_dense K = matrix(1, &(double){50.0});
@@ -52,7 +51,7 @@ static void an_oscillator_is_as_stable_as_its_damping(void **state)
 }
 
 /* Two masses on one spring, and a ratio for the one mode that moves it. */
-static void rigid_motion_is_marginal(void **state)
+static void rigid_motion_is_marginal(void **)
 {
     static const double k[] = {1e6, -1e6, -1e6, 1e6}, m[] = {1, 0, 0, 3};
     static const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL,
@@ -63,7 +62,6 @@ static void rigid_motion_is_marginal(void **state)
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
 
-    (void)state;
     assert_ok(ritz_probe_second_order(&K, &M, &none, &damping, &probe));
     assert_int_equal(probe.verdict, RITZ_MARGINAL);
     assert_near(probe.pole[0], 0.0, 1e-9);
@@ -76,7 +74,7 @@ static void rigid_motion_is_marginal(void **state)
     ritz_dense_free(&M);
 }
 
-static void negative_mass_is_unstable_whatever_its_poles(void **state)
+static void negative_mass_is_unstable_whatever_its_poles(void **)
 {
     static const double k[] = {2, 0, 0, -3}, m[] = {1, 0, 0, -1};
     static const double nothing[] = {1, 0, 0, 0};
@@ -86,7 +84,6 @@ static void negative_mass_is_unstable_whatever_its_poles(void **state)
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
 
-    (void)state;
     assert_ok(ritz_probe_second_order(&K, &M, &none, NULL, &probe));
     assert_int_equal(probe.verdict, RITZ_UNSTABLE);
     ritz_probe_print(&probe, text);
@@ -102,7 +99,7 @@ static void negative_mass_is_unstable_whatever_its_poles(void **state)
 }
 
 /* A follower force, K unsymmetric to the eye of D alone: x'' + S x' + x = 0 */
-static void unsymmetric_damping_is_looked_at(void **state)
+static void unsymmetric_damping_is_looked_at(void **)
 {
     static const double one[] = {1, 0, 0, 1};
     static const double gyro[] = {0.1, 5, -5, 0.1};
@@ -112,7 +109,6 @@ static void unsymmetric_damping_is_looked_at(void **state)
     ritz_dense D = matrix(2, gyro);
     ritz_probe probe = {0};
 
-    (void)state;
     assert_ok(ritz_probe_second_order(&K, &M, &D, NULL, &probe));
     assert_int_equal(probe.verdict, RITZ_STABLE);
     memcpy(D.val, driving, sizeof driving); /* eigenvalues 1.1 and -0.9 */
@@ -129,13 +125,12 @@ static void unsymmetric_damping_is_looked_at(void **state)
  * the root of that, which the bound knows. Along the real axis or across it, as
  * rounding has it: of 40 bodies some poles are split to the right.
  */
-static void a_defective_pole_is_not_called_unstable(void **state)
+static void a_defective_pole_is_not_called_unstable(void **)
 {
     static const double m[] = {1, 2, 3};
     ritz_damping damping = {.kind = RITZ_DAMPING_RAYLEIGH, .b = 1e-4};
     int split = 0;
 
-    (void)state;
     for (int body = 0; body < 40; body++) {
         const double k[] = {0, 1.1e6 + 1e3 * body, 0.7e6};
         RITZ_OWN(ritz_component) masses = {0};
@@ -156,14 +151,13 @@ static void a_defective_pole_is_not_called_unstable(void **state)
  * The chain with dampers of 150: published w and zeta of its least damped
  * modes are far above its least damped pole, -1.2319e-4 (computed twice).
  */
-static void a_chain_with_dampers_is_stable(void **state)
+static void a_chain_with_dampers_is_stable(void **)
 {
     RITZ_OWN(ritz_component) chain = {0};
     RITZ_OWN(ritz_state_space) model = {0};
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
 
-    (void)state;
     assert_ok(chain_component(30, &chain));
     assert_ok(masses_io(&chain, 0, NULL, 0, NULL));
     assert_ok(ritz_state_space_of_component(&chain, &undamped, &model));
@@ -175,7 +169,7 @@ static void a_chain_with_dampers_is_stable(void **state)
     assert_non_null(strstr(text, "pole at -0.00012319 +- "));
 }
 
-static void the_verdict_is_an_estimate(void **state)
+static void the_verdict_is_an_estimate(void **)
 {
     const ritz_probe probe = {.verdict = RITZ_UNSTABLE,
                               .pole = {0.5, 10.0},
@@ -184,7 +178,6 @@ static void the_verdict_is_an_estimate(void **state)
                               .count = 4};
     RITZ_OWN(ritz_measures) estimates = {0};
 
-    (void)state;
     assert_ok(ritz_probe_record(&probe, &estimates));
     assert_int_equal(estimates.count, 1);
     assert_string_equal(estimates.item[0].name, "growth-relative");
@@ -194,7 +187,7 @@ static void the_verdict_is_an_estimate(void **state)
                         "unstable, pole at +0.5 +- 10i rad/s (1.5935 Hz)");
 }
 
-static void no_allocation_failure_leaks(void **state)
+static void no_allocation_failure_leaks(void **)
 {
     static const double k[] = {2, 1, 1, 3}, m[] = {1, 0, 0, 1};
     ritz_dense K = matrix(2, k);
@@ -202,7 +195,6 @@ static void no_allocation_failure_leaks(void **state)
     ritz_dense none = {0};
     ritz_probe probe = {0};
 
-    (void)state;
     assert_survives_every_allocation(
         ritz_probe_second_order(&K, &M, &none, NULL, &probe));
     ritz_dense_free(&K);

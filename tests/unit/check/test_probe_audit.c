@@ -104,11 +104,10 @@ static ritz_dense random_gram(int64_t n, int64_t rank, int64_t empty,
  * units over ten decades. What is said of definite models is a theorem: that
  * none of these is called otherwise is the test.
  */
-static void random_passive_models_pass(void **unused)
+static void random_passive_models_pass(void **)
 {
     uint64_t seed = 20;
 
-    (void)unused;
     for (int64_t k = 0; k < 400; k++) {
         int64_t n = 1 + k % 10;
         int64_t massless = k % 4 == 3 && n > 3 ? 2 : 0;
@@ -141,12 +140,11 @@ static void random_passive_models_pass(void **unused)
 }
 
 /* A free body turned by a random congruence: its six zeros become rounding. */
-static void rounding_of_rigid_motion_is_no_negative_stiffness(void **unused)
+static void rounding_of_rigid_motion_is_no_negative_stiffness(void **)
 {
     const double at[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}};
     uint64_t seed = 5;
 
-    (void)unused;
     for (uint64_t k = 0; k < 20; k++) {
         RITZ_OWN(ritz_component) body = {0};
         RITZ_OWN(ritz_basis) basis = {0};
@@ -168,13 +166,12 @@ static void rounding_of_rigid_motion_is_no_negative_stiffness(void **unused)
     }
 }
 
-static void without_an_interface_there_is_nothing_to_hold(void **unused)
+static void without_an_interface_there_is_nothing_to_hold(void **)
 {
     static const double one[] = {1.0};
     ritz_reduced model = model_of(1, one, one, NULL, -1);
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)unused;
     assert_ok(ritz_audit_reduced(&model, &audit));
     assert_passes(&audit, 0);
     assert_verdict(&audit, "passivity", RITZ_PASS, "not applicable");
@@ -191,7 +188,7 @@ static void without_an_interface_there_is_nothing_to_hold(void **unused)
  * the second is left, s^2 - 0.1 s + 6 = 0. By SciPy: energy grows 1.10779 times,
  * by a fine scan of expm; at the locked frequency G is real and negative.
  */
-static void a_negative_damper_shows_when_its_neighbour_is_held(void **unused)
+static void a_negative_damper_shows_when_its_neighbour_is_held(void **)
 {
     static const double K[] = {5, -4, -4, 6}, M[] = {1, 0, 0, 1};
     static const double D[] = {1, 0, 0, -0.1};
@@ -199,7 +196,6 @@ static void a_negative_damper_shows_when_its_neighbour_is_held(void **unused)
     RITZ_OWN(ritz_audit) audit = {0};
     const ritz_check *check = NULL;
 
-    (void)unused;
     assert_ok(ritz_audit_reduced(&model, &audit));
     assert_verdict(&audit, "poles", RITZ_PASS, "left of the axis");
     assert_verdict(&audit, "damping-definite", RITZ_WARN, "gains energy");
@@ -222,14 +218,13 @@ static void a_negative_damper_shows_when_its_neighbour_is_held(void **unused)
 }
 
 /* k + c s = 0 with c < 0 is a pole on the right that modes do not show. */
-static void a_negative_damper_without_mass_grows(void **unused)
+static void a_negative_damper_without_mass_grows(void **)
 {
     static const double K[] = {5, -1, -1, 3}, M[] = {1, 0, 0, 0};
     static const double D[] = {1, 0, 0, -0.5};
     ritz_reduced model = model_of(2, K, M, D, 0);
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)unused;
     assert_ok(ritz_audit_reduced(&model, &audit));
     assert_verdict(&audit, "damping-definite", RITZ_FAIL, "without mass");
     assert_string_equal(find_check(&audit, "damping-definite")->where,
@@ -238,13 +233,12 @@ static void a_negative_damper_without_mass_grows(void **unused)
     ritz_reduced_free(&model);
 }
 
-static void negative_mass_stiffness_and_loss_are_named(void **unused)
+static void negative_mass_stiffness_and_loss_are_named(void **)
 {
     static const double one[] = {1, 0, 0, 1}, bad[] = {1, 0, 0, -1e-6};
     ritz_reduced model = model_of(2, one, bad, NULL, 0);
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)unused;
     assert_ok(ritz_audit_reduced(&model, &audit));
     assert_verdict(&audit, "mass-definite", RITZ_FAIL,
                    "mass with a negative eigenvalue");
@@ -278,7 +272,7 @@ static double to_digits(int digits, double value)
  * than enough: its rigid motion is a matter of cancellation. Five digits, or
  * the seven of single precision, leave a negative stiffness.
  */
-static void few_digits_of_a_free_body_are_unstable(void **unused)
+static void few_digits_of_a_free_body_are_unstable(void **)
 {
     static const struct {
         int digits;
@@ -289,7 +283,6 @@ static void few_digits_of_a_free_body_are_unstable(void **unused)
     int64_t ends[] = {0, 1, 2, 12, 13, 14};
     RITZ_OWN(ritz_basis) basis = {0};
 
-    (void)unused;
     assert_ok(
         frame_component(4, 0.41, &frame_mcdaniel, false, false, 1, &beam));
     request.component = &beam;
@@ -317,12 +310,11 @@ static void few_digits_of_a_free_body_are_unstable(void **unused)
 }
 
 /* The same columns of kind residual are macneal-rubin's, and pass. */
-static void columns_for_forces_fail_where_they_are_joined(void **unused)
+static void columns_for_forces_fail_where_they_are_joined(void **)
 {
     static const ritz_method *const methods[] = {
         &ritz_method_dual_craig_bampton, &ritz_method_macneal_rubin};
 
-    (void)unused;
     for (int k = 0; k < 2; k++) {
         RITZ_OWN(ritz_component) beam = {0};
         RITZ_OWN(ritz_reduced) model = {0};
@@ -353,7 +345,7 @@ static void name_pair(ritz_state_space *model)
  * y / u = (1 - s / 2) / (s^2 + 0.1 s + 1): stable, and not a force's own
  * displacement. A spring k: s^2 + (0.1 - k / 2) s + 1 + k = 0; held: s = 2.
  */
-static void a_pair_that_is_not_passive_fails_on_a_spring(void **unused)
+static void a_pair_that_is_not_passive_fails_on_a_spring(void **)
 {
     static const double A[] = {0, 1, -1, -0.1}, B[] = {0, 1}, C[] = {1, -0.5};
     const spaces_rows rows = {
@@ -361,7 +353,6 @@ static void a_pair_that_is_not_passive_fails_on_a_spring(void **unused)
     RITZ_OWN(ritz_state_space) model = {0};
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)unused;
     assert_ok(spaces_make(&rows, &model));
     snprintf(model.input[0], RITZ_NAME_SIZE, "tip");
     snprintf(model.output[0], RITZ_NAME_SIZE, "other");
@@ -380,7 +371,7 @@ static void a_pair_that_is_not_passive_fails_on_a_spring(void **unused)
 }
 
 /* Its own displacement, velocity and acceleration, of a row of masses. */
-static void a_force_and_its_own_motion_pass(void **unused)
+static void a_force_and_its_own_motion_pass(void **)
 {
     static const double m[] = {1, 2, 3, 1}, k[] = {900, 700, 500, 800};
     static const char *const words[] = {"displacement", "velocity",
@@ -388,7 +379,6 @@ static void a_force_and_its_own_motion_pass(void **unused)
     static const int64_t at = 2;
     ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
 
-    (void)unused;
     for (int q = 0; q < 3; q++) {
         RITZ_OWN(ritz_component) row = {0};
         RITZ_OWN(ritz_state_space) model = {0};
@@ -415,7 +405,7 @@ static void a_force_and_its_own_motion_pass(void **unused)
 }
 
 /* The shipped row of test_balanced_band.c, whose reduction is unstable. */
-static void a_band_that_makes_growth_fails_by_its_pole(void **unused)
+static void a_band_that_makes_growth_fails_by_its_pole(void **)
 {
     static const double m[] = {1.2, 2.6, 1.8}, k[] = {1070, 1530, 380};
     static const int64_t in = 1, seen = 2;
@@ -424,7 +414,6 @@ static void a_band_that_makes_growth_fails_by_its_pole(void **unused)
     states_outcome got = {0};
     ritz_audit audit = {0};
 
-    (void)unused;
     assert_ok(masses_component(3, m, k, NULL, &row));
     assert_ok(masses_io(&row, 1, &in, 1, &seen));
     request.component = &row;
@@ -445,7 +434,7 @@ static void a_band_that_makes_growth_fails_by_its_pole(void **unused)
 /* ---- parts ------------------------------------------------------------------------ */
 
 /* G = 1/2 - 1/(s + 1): Re G = 1/2 - 1/(1 + w^2) is 0 at w = 1 and -1/2 at 0. */
-static void a_pencil_tells_where_energy_begins_to_come_out(void **unused)
+static void a_pencil_tells_where_energy_begins_to_come_out(void **)
 {
     double a = -1.0, b = 1.0, c = -1.0, d = 0.5;
     int power = 0;
@@ -460,7 +449,6 @@ static void a_pencil_tells_where_energy_begins_to_come_out(void **unused)
     double *w = NULL;
     int64_t count = 0;
 
-    (void)unused;
     assert_ok(ritz_passivity_crossings(&model, 0.0, &count, &w));
     assert_int_equal(count, 1);
     assert_near(w[0], 1.0, 1e-12);
@@ -474,7 +462,7 @@ static void a_pencil_tells_where_energy_begins_to_come_out(void **unused)
     assert_true(found.value > 0.0);
 }
 
-static void no_allocation_failure_leaks(void **unused)
+static void no_allocation_failure_leaks(void **)
 {
     static const double K[] = {5, -4, -4, 6}, M[] = {1, 0, 0, 1};
     static const double D[] = {1, 0, 0, -0.1};
@@ -485,7 +473,6 @@ static void no_allocation_failure_leaks(void **unused)
     RITZ_OWN(ritz_state_space) space = {0};
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)unused;
     assert_survives_every_allocation(ritz_audit_reduced(&model, &audit));
     ritz_audit_free(&audit);
     ritz_dense_free(&model.D);

@@ -57,13 +57,12 @@ static ritz_check of_states(int64_t n, const double *A)
  * of 1 and -0.1 to the ground. By SciPy's expm at the same moments:
  * 1.1072573859702 at 0.7045 s, square of the condition of eigenvectors 2.603.
  */
-static void energy_is_met_at_fourths_of_octaves(void **unused)
+static void energy_is_met_at_fourths_of_octaves(void **)
 {
     static const double K[] = {5, -4, -4, 6}, M[] = {1, 0, 0, 1};
     static const double D[] = {1, 0, 0, -0.1};
     ritz_check check = of_columns(2, K, M, D);
 
-    (void)unused;
     assert_int_equal(check.verdict, RITZ_WARN);
     /* e^(A h) to eps, squared ten times */
     assert_near(check.value, 1.1072573859702, 1e-12);
@@ -73,14 +72,13 @@ static void energy_is_met_at_fourths_of_octaves(void **unused)
 }
 
 /* The same beside a mode of 1e4 rad/s, 14 octaves faster. */
-static void slow_growth_is_met_beside_a_fast_mode(void **unused)
+static void slow_growth_is_met_beside_a_fast_mode(void **)
 {
     static const double K[] = {5, -4, 0, -4, 6, 0, 0, 0, 1e8};
     static const double M[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const double D[] = {1, 0, 0, 0, -0.1, 0, 0, 0, 10};
     ritz_check check = of_columns(3, K, M, D);
 
-    (void)unused;
     assert_int_equal(check.verdict, RITZ_WARN);
     /* by a fine scan of SciPy's expm the peak is 1.107791; fourths of octaves
        come within a factor of 2^(1/8) of its time, 0.5 % of what it is */
@@ -91,11 +89,10 @@ static void slow_growth_is_met_beside_a_fast_mode(void **unused)
  * [-1 c; 0 -4] turned by 45 degrees, which no units of states undo:
  * |e^(A t)| is c (e^-t - e^-4t) / 3 for large c, most at t = ln 4 / 3.
  */
-static void growth_that_poles_do_not_explain_warns(void **unused)
+static void growth_that_poles_do_not_explain_warns(void **)
 {
     const double c[] = {2e4, 3e5};
 
-    (void)unused;
     for (int k = 0; k < 2; k++) {
         const double A[] = {(-5 - c[k]) / 2, (3 + c[k]) / 2, (3 - c[k]) / 2,
                             (-5 + c[k]) / 2};
@@ -115,12 +112,11 @@ static void growth_that_poles_do_not_explain_warns(void **unused)
 }
 
 /* A motor that drives a load in other units, and the load not the motor. */
-static void a_coupling_one_way_is_a_matter_of_units(void **unused)
+static void a_coupling_one_way_is_a_matter_of_units(void **)
 {
     static const double A[] = {-1, 1e9, 0, -2};
     ritz_check check = of_states(2, A);
 
-    (void)unused;
     assert_int_equal(check.verdict, RITZ_PASS);
     assert_near(check.value, 1.0, 1e-6);
 }
@@ -130,7 +126,7 @@ static void a_coupling_one_way_is_a_matter_of_units(void **unused)
  * the ground, in displacements and velocities: a velocity of the slowest mode
  * displaces by 1 / w. |s|^2 = 4 sin^2(k pi / 2 (n + 1)).
  */
-static void wide_bands_explain_what_grows(void **unused)
+static void wide_bands_explain_what_grows(void **)
 {
     enum { N = 20, STATES = 2 * N };
     const double pi = 3.14159265358979323846;
@@ -139,7 +135,6 @@ static void wide_bands_explain_what_grows(void **unused)
     double slow = sin(pi / (2.0 * (N + 1)));
     ritz_check check;
 
-    (void)unused;
     assert_non_null(A);
     for (int i = 0; i < N; i++) {
         double *row = A + (size_t)(N + i) * STATES;
@@ -161,13 +156,12 @@ static void wide_bands_explain_what_grows(void **unused)
     free(A);
 }
 
-static void more_than_400_states_are_bounded_alone(void **unused)
+static void more_than_400_states_are_bounded_alone(void **)
 {
     enum { N = 401 };
     double *A = calloc((size_t)N * N, sizeof *A);
     ritz_check check;
 
-    (void)unused;
     assert_non_null(A);
     for (int i = 0; i < N; i++)
         A[i * (N + 1)] = -1.0 - i;
@@ -178,14 +172,13 @@ static void more_than_400_states_are_bounded_alone(void **unused)
     free(A);
 }
 
-static void growth_survives_every_allocation(void **unused)
+static void growth_survives_every_allocation(void **)
 {
     static const double rows[] = {-150002.5, 150001.5, -149998.5, 149997.5};
     static const double B[] = {1, 0};
     RITZ_OWN(ritz_state_space) model = {0};
     RITZ_OWN(ritz_audit) audit = {0};
 
-    (void)unused;
     assert_ok(
         spaces_make(&(spaces_rows){2, 1, 1, rows, B, B, NULL, NULL}, &model));
     assert_survives_every_allocation(ritz_audit_states(&model, &audit));

@@ -72,7 +72,7 @@ static void reduce_by(const ritz_method *method,
 }
 
 /* The bar's eigenvalues are known to all digits. */
-static void bounds_hold_on_the_bar_and_are_near(void **state)
+static void bounds_hold_on_the_bar_and_are_near(void **)
 {
     enum { ELEMENTS = 40, KNOWN = 20, METHODS = 4 };
     const ritz_method *const method[METHODS] = {
@@ -83,7 +83,6 @@ static void bounds_hold_on_the_bar_and_are_near(void **state)
     RITZ_OWN(ritz_component) bar = {0};
     double lambda[KNOWN];
 
-    (void)state;
     assert_ok(bar_component(ELEMENTS, &bar));
     for (int64_t k = 0; k < KNOWN; k++)
         lambda[k] = bar_eigenvalue(ELEMENTS, k);
@@ -106,7 +105,7 @@ static void bounds_hold_on_the_bar_and_are_near(void **state)
 }
 
 /* Free bodies, some of whose modes come in near pairs. */
-static void bounds_hold_on_the_spacecraft(void **state)
+static void bounds_hold_on_the_spacecraft(void **)
 {
     enum { METHODS = 3 };
     const ritz_method *const method[METHODS] = {&ritz_method_craig_bampton,
@@ -114,7 +113,6 @@ static void bounds_hold_on_the_spacecraft(void **state)
                                                 &ritz_method_macneal_rubin};
     const ritz_span span = {.modes = 12};
 
-    (void)state;
     dualspin_or_skip();
     for (int which = 0; which < 3; which++) {
         RITZ_OWN(ritz_component) body = {0};
@@ -153,7 +151,7 @@ static void open_beam(bool clamped, ritz_component *beam)
 }
 
 /* Exact modes 1, 2, 4, 5, 6, 7, 8 of the clamped beam, turned a little. */
-static void a_mode_that_is_missing_is_counted_and_skipped(void **state)
+static void a_mode_that_is_missing_is_counted_and_skipped(void **)
 {
     enum { MODES = 7, LEFT_OUT = 2 };
     const ritz_span span = {.modes = MODES + 1};
@@ -164,7 +162,6 @@ static void a_mode_that_is_missing_is_counted_and_skipped(void **state)
     RITZ_OWN(ritz_reduced) reduced = {0};
     const ritz_measures *found = &reduced.estimates;
 
-    (void)state;
     open_beam(true, &beam);
     assert_ok(ritz_eigen_sparse(&beam.K, &beam.M, &span, &full));
     assert_ok(ritz_basis_new(beam.num_dofs, MODES, &basis));
@@ -185,7 +182,7 @@ static void a_mode_that_is_missing_is_counted_and_skipped(void **state)
 }
 
 /* Against ritz-verify, which has all modes and looks at every peak. */
-static void responses_are_bounded(void **state)
+static void responses_are_bounded(void **)
 {
     /* bound over error; where modes are off by more than their half width both
        peaks count, and the form in A^-1 beside: measured 14 */
@@ -197,7 +194,6 @@ static void responses_are_bounded(void **state)
                    {"rayleigh 0.1 1e-5", 10.0}};
     int64_t attached[] = {0, 1, 2};
 
-    (void)state;
     for (int clamped = 0; clamped < 2; clamped++)
         for (size_t i = 0; i < sizeof damping / sizeof *damping; i++) {
             ritz_verify_request verify = RITZ_VERIFY_NONE;
@@ -225,7 +221,7 @@ static void responses_are_bounded(void **state)
 }
 
 /* Ratios by bands do not tell how modes near an edge are damped. */
-static void what_is_not_proven_is_called_an_estimate(void **state)
+static void what_is_not_proven_is_called_an_estimate(void **)
 {
     int64_t attached[] = {0, 1, 2};
     ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
@@ -233,7 +229,6 @@ static void what_is_not_proven_is_called_an_estimate(void **state)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     open_beam(true, &beam);
     reduce_by(&ritz_method_craig_bampton, &beam, (ritz_dofs){3, attached}, 12,
               &basis, &reduced);
@@ -245,7 +240,7 @@ static void what_is_not_proven_is_called_an_estimate(void **state)
 }
 
 /* The factor and the counts stay; what they say does not change. */
-static void one_estimator_serves_many_reductions(void **state)
+static void one_estimator_serves_many_reductions(void **)
 {
     enum { TIMES = 3 };
     int64_t attached[] = {0, 1, 2};
@@ -254,7 +249,6 @@ static void one_estimator_serves_many_reductions(void **state)
     RITZ_OWN(ritz_component) beam = {0};
     double first[TIMES];
 
-    (void)state;
     open_beam(true, &beam);
     assert_ok(ritz_estimator_new(&beam, &request, &estimator));
     for (int64_t pass = 0; pass < 2; pass++)
@@ -278,7 +272,7 @@ static void one_estimator_serves_many_reductions(void **state)
 }
 
 /* Rows 3, 4, 5 of the chain have no mass: M is singular. */
-static void massless_dofs_are_no_obstacle(void **state)
+static void massless_dofs_are_no_obstacle(void **)
 {
     enum { MASSES = 20 };
     const ritz_span span = {.modes = 8};
@@ -289,7 +283,6 @@ static void massless_dofs_are_no_obstacle(void **state)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     assert_ok(spring_chain(MASSES, false, &chain));
     for (int64_t j = 3; j < 6; j++)
         for (int64_t p = chain.M.colptr[j]; p < chain.M.colptr[j + 1]; p++)
@@ -302,7 +295,7 @@ static void massless_dofs_are_no_obstacle(void **state)
     hold_to(&reduced.estimates, &reduced, full.lambda, request.band_hz[1]);
 }
 
-static void bands_and_bases_that_do_not_fit_are_refused(void **state)
+static void bands_and_bases_that_do_not_fit_are_refused(void **)
 {
     int64_t attached[] = {0, 1, 2};
     ritz_estimate_request request = {.band_hz = {2.0, 1.0}};
@@ -310,7 +303,6 @@ static void bands_and_bases_that_do_not_fit_are_refused(void **state)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     open_beam(true, &beam);
     reduce_by(&ritz_method_craig_bampton, &beam, (ritz_dofs){3, attached}, 4,
               &basis, &reduced);
@@ -325,7 +317,7 @@ static void bands_and_bases_that_do_not_fit_are_refused(void **state)
     assert_int_equal(reduced.estimates.count, 0);
 }
 
-static void estimating_survives_every_allocation(void **state)
+static void estimating_survives_every_allocation(void **)
 {
     int64_t attached[] = {0, 1, 2};
     ritz_estimate_request request = {.band_hz = {0.0, 0.5}};
@@ -334,7 +326,6 @@ static void estimating_survives_every_allocation(void **state)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     assert_ok(frame_component(3, 0.5, &frame_mcdaniel, true, false, 1, &beam));
     assert_ok(frame_io(&beam, 1, &row, 1, &row));
     reduce_by(&ritz_method_craig_bampton, &beam, (ritz_dofs){3, attached}, 2,

@@ -145,9 +145,8 @@ static void hold(const edge_case *c, const ritz_measures *found,
                  said(bounds, "missing-modes-bound"));
 }
 
-static void bounds_are_of_what_verify_measures(void **state)
+static void bounds_are_of_what_verify_measures(void **)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const edge_case *c = &cases[i];
         ritz_estimate_request request = {0};
@@ -166,11 +165,10 @@ static void bounds_are_of_what_verify_measures(void **state)
 }
 
 /* The full mode is at the very end of the band, which belongs to it. */
-static void a_mode_at_the_end_of_the_band_is_in_it(void **state)
+static void a_mode_at_the_end_of_the_band_is_in_it(void **)
 {
     const double places[] = {1.0 - 1e-10, 1.0, 1.0 + 1e-10};
 
-    (void)state;
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         ritz_estimate_request request = {0};
         RITZ_OWN(ritz_component) full = {0};
@@ -186,7 +184,7 @@ static void a_mode_at_the_end_of_the_band_is_in_it(void **state)
 }
 
 /* What rounding leaves of a damper in a mode that it does not move. */
-static void damping_at_rounding_is_none(void **state)
+static void damping_at_rounding_is_none(void **)
 {
     enum { N = 3 };
     const double lambda[N] = {1.0, 2.0, 100.0};
@@ -194,7 +192,6 @@ static void damping_at_rounding_is_none(void **state)
     const int64_t at[N] = {0, 1, 2};
     const ritz_estimate_request request = {.band_hz = {0.0, 0.5}};
 
-    (void)state;
     for (int driven = 0; driven < 2; driven++) {
         RITZ_OWN(ritz_component) body = {0};
         RITZ_OWN(ritz_basis) basis = {0};
@@ -218,14 +215,13 @@ static void damping_at_rounding_is_none(void **state)
     }
 }
 
-static void judging_survives_every_allocation(void **state)
+static void judging_survives_every_allocation(void **)
 {
     ritz_estimate_request request = {0};
     RITZ_OWN(ritz_component) full = {0};
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     open_case(&cases[2], &full, &basis, &reduced);
     request.band_hz[1] = ritz_eigen_hertz(cases[2].end);
     assert_survives_every_allocation(

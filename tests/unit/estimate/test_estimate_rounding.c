@@ -27,7 +27,7 @@ static void diagonal(int64_t n, const double *lambda, ritz_component *out)
 }
 
 /* Rayleigh damping of a stiff row must not hide other damping of a soft one. */
-static void damping_of_soft_rows_is_looked_at_by_itself(void **state)
+static void damping_of_soft_rows_is_looked_at_by_itself(void **)
 {
     enum { N = 3 };
     const double lambda[N] = {1.0, 2.0, 1e13};
@@ -39,7 +39,6 @@ static void damping_of_soft_rows_is_looked_at_by_itself(void **state)
     const int64_t at[N] = {0, 1, 2};
     const ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
 
-    (void)state;
     for (size_t i = 0; i < 2; i++) {
         const double d[N] = {1e-3, kind[i].soft, 1e10};
         RITZ_OWN(ritz_component) body = {0};
@@ -96,7 +95,7 @@ static double coupled_error(const double *lambda, const double D[3][3],
     return error / *largest;
 }
 
-static void damping_that_couples_modes_is_not_left_out(void **state)
+static void damping_that_couples_modes_is_not_left_out(void **)
 {
     enum { N = 3 };
     const double lambda[N] = {1.0, 4.0, 100.0};
@@ -109,7 +108,6 @@ static void damping_that_couples_modes_is_not_left_out(void **state)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     diagonal(N, lambda, &body);
     body.io.B.val[2] = body.io.C.val[2] = 0.0;
     for (int64_t k = 0; k < (int64_t)N * N; k++) {
@@ -137,7 +135,7 @@ static void damping_that_couples_modes_is_not_left_out(void **state)
  * motion's stiffness: no frequency, and no mode that is wrong. Not every such
  * number hides it; of these some do.
  */
-static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **state)
+static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **)
 {
     enum { MASSES = 10, COLUMNS = 3 };
     const double mixed[] = {7460.0,  8070.0,  8720.0,  9430.0,
@@ -148,7 +146,6 @@ static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **state)
     RITZ_OWN(ritz_pairs) full = {0};
     ritz_estimate_request request = {0};
 
-    (void)state;
     assert_ok(spring_chain(MASSES, true, &chain));
     assert_ok(ritz_eigen_sparse(&chain.K, &chain.M, &span, &full));
     request.band_hz[1] = 1.1 * ritz_eigen_hertz(full.lambda[COLUMNS - 1]);
@@ -177,7 +174,7 @@ static void a_rigid_motion_hidden_by_rounding_is_no_mode(void **state)
  * comes out of the reduced matrices as three, moved by their rounding, and each
  * may be any of them.
  */
-static void modes_that_rounding_exchanges_share_it(void **state)
+static void modes_that_rounding_exchanges_share_it(void **)
 {
     enum { N = 6, TIMES = 12 };
     const double lambda[N] = {1.0, 3.0, 7.0, 7.0, 7.0, 40.0};
@@ -185,7 +182,6 @@ static void modes_that_rounding_exchanges_share_it(void **state)
     RITZ_OWN(ritz_component) body = {0};
     uint64_t seed = 5;
 
-    (void)state;
     diagonal(N, lambda, &body);
     request.band_hz[1] = 1.1 * ritz_eigen_hertz(lambda[4]);
     for (int times = 0; times < TIMES; times++) {

@@ -54,12 +54,11 @@ static void assert_listed(const char *part, bool states)
     assert_int_equal(rows, 0);
 }
 
-static void the_page_lists_every_row_of_the_table_and_no_other(void **state)
+static void the_page_lists_every_row_of_the_table_and_no_other(void **)
 {
     char path[1024];
     char *page = NULL, *modes = NULL, *states = NULL;
 
-    (void)state;
     (void)snprintf(path, sizeof path, "%s/../docs/methods/verify.md",
                    getenv("RITZ_DATA"));
     assert_ok(ritz_text_read(path, &page));
@@ -72,9 +71,8 @@ static void the_page_lists_every_row_of_the_table_and_no_other(void **state)
     free(states);
 }
 
-static void every_row_is_whole(void **state)
+static void every_row_is_whole(void **)
 {
-    (void)state;
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
 
@@ -87,9 +85,8 @@ static void every_row_is_whole(void **state)
     }
 }
 
-static void ratios_are_of_what_is_wrong(void **state)
+static void ratios_are_of_what_is_wrong(void **)
 {
-    (void)state;
     assert_near(ritz_measure_ratio("mac", 0.9, 0.95), 2.0, 1e-12);
     assert_near(ritz_measure_ratio("gain", 0.9, 0.45), 2.0, 0.0);
     assert_near(ritz_measure_ratio("missing-modes", 0.0, 0.0), 0.0, 0.0);
@@ -150,7 +147,7 @@ static const double two_vectors[] = {1.0, 0.7, 0.3, 0.0, 0.0, 0.3, 0.7, 1.0};
 
 /* |c b / (s^2 + 2 z w s + w^2)|_2^2 = (c b)^2 / (4 z w^3); of two masses apart
    one is left out. */
-static void the_h2_error_of_a_mode_left_out_is_its_norm(void **state)
+static void the_h2_error_of_a_mode_left_out_is_its_norm(void **)
 {
     static const double k[] = {9.0, 16.0}, c[] = {0.3, 0.2};
     static const double T[] = {1.0, 0.0};
@@ -159,7 +156,6 @@ static void the_h2_error_of_a_mode_left_out_is_its_norm(void **state)
     RITZ_OWN(ritz_component) masses = {0};
     double square[2];
 
-    (void)state;
     for (int i = 0; i < 2; i++) /* 4 z w^3 = 2 c k */
         square[i] = 1.0 / (2.0 * c[i] * k[i]);
     request.band_hz[1] = 0.5;
@@ -169,19 +165,18 @@ static void the_h2_error_of_a_mode_left_out_is_its_norm(void **state)
                 sqrt(square[1] / (square[0] + square[1])), 1e-13);
 }
 
-static void the_h2_error_is_that_of_scipy(void **state)
+static void the_h2_error_is_that_of_scipy(void **)
 {
     ritz_verify_request request = plain;
     ritz_component row = row_of_four();
 
-    (void)state;
     request.band_hz[1] = 0.45;
     assert_near(measured(&row, 2, two_vectors, request, RITZ_MEASURE_H2),
                 1.315847267990201, 1e-11);
     ritz_component_free(&row);
 }
 
-static void h2_errors_of_unequal_rigid_motion_are_refused(void **state)
+static void h2_errors_of_unequal_rigid_motion_are_refused(void **)
 {
     static const double m[] = {1.0, 2.0, 1.5}, k[] = {0.0, 50.0, 80.0};
     static const double c[] = {0.0, 0.1, 0.2};
@@ -193,7 +188,6 @@ static void h2_errors_of_unequal_rigid_motion_are_refused(void **state)
     RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_measures found = {0};
 
-    (void)state;
     request.band_hz[1] = 0.5;
     request.limit[RITZ_MEASURE_H2] = 1.0;
     assert_ok(masses_component(3, m, k, c, &row));
@@ -208,7 +202,7 @@ static void h2_errors_of_unequal_rigid_motion_are_refused(void **state)
 /* H = diag(h_1, h_2): below all resonances sigma_2 is the response of the
    stiffer mass. It rises with frequency; the error, of a model that is too stiff
    and too heavy, is largest at rest. */
-static void the_smallest_singular_value_is_of_the_stiffer_mass(void **state)
+static void the_smallest_singular_value_is_of_the_stiffer_mass(void **)
 {
     static const double k[] = {4.0, 100.0, 9.0}, c[] = {0.1, 0.2, 0.3};
     static const double T[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.5};
@@ -218,7 +212,6 @@ static void the_smallest_singular_value_is_of_the_stiffer_mass(void **state)
     RITZ_OWN(ritz_component) masses = {0};
     double largest = 0.0;
 
-    (void)state;
     request.band_hz[1] = 0.3;
     assert_ok(masses_apart(3, k, c, &masses));
     assert_ok(masses_io(&masses, 2, both, 2, both));
@@ -227,12 +220,11 @@ static void the_smallest_singular_value_is_of_the_stiffer_mass(void **state)
                 (1.0 / k[1] - 1.0 / (k[1] + 0.25 * k[2])) / largest, 1e-12);
 }
 
-static void the_smallest_singular_value_is_that_of_scipy(void **state)
+static void the_smallest_singular_value_is_that_of_scipy(void **)
 {
     ritz_verify_request request = plain;
     ritz_component row = row_of_four();
 
-    (void)state;
     request.band_hz[1] = 0.45;
     assert_near(measured(&row, 2, two_vectors, request, RITZ_MEASURE_SINGULAR),
                 0.14121453568614842, 1e-10);
@@ -241,7 +233,7 @@ static void the_smallest_singular_value_is_that_of_scipy(void **state)
 
 /* One column reaches both outputs from one input alone: the other singular
    value is zero everywhere and does not count. */
-static void singular_values_that_are_zero_do_not_count(void **state)
+static void singular_values_that_are_zero_do_not_count(void **)
 {
     static const int64_t seen[] = {1, 3};
     static const double T[] = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,
@@ -250,7 +242,6 @@ static void singular_values_that_are_zero_do_not_count(void **state)
     ritz_verify_request request = plain;
     ritz_component row = row_of_four();
 
-    (void)state;
     request.band_hz[1] = 0.45;
     assert_ok(masses_io(&row, 2, twice, 2, seen));
     assert_true(measured(&row, 4, T, request, RITZ_MEASURE_SINGULAR) < 1e-12);

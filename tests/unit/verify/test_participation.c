@@ -87,12 +87,11 @@ static void assert_mac(const oscillators *full, const oscillators *reduced,
 
 /* Mode 3, whose second output has the wrong sign, is [1, 1, 1/2] against
  * [1, 1, -1/2] where the largest are 1, 2 and 2: ((1/4 + 1 - 1/4) / (3/2))^2. */
-static void inputs_and_outputs_are_scaled_by_their_largest(void **state)
+static void inputs_and_outputs_are_scaled_by_their_largest(void **)
 {
     oscillators full = plain, reduced = plain;
     const double by_hand = 4.0 / 9.0;
 
-    (void)state;
     reduced.c[2][1] = -1.0;
     assert_mac(&full, &reduced, by_hand, "mode 3, 4 Hz");
     /* other units of the input and of one output */
@@ -109,7 +108,7 @@ static void inputs_and_outputs_are_scaled_by_their_largest(void **state)
  * The participations of mode 3 in both channels are multiplied by `part`, and the second output of
  * it has the wrong sign.
  */
-static void only_observable_modes_decide(void **state)
+static void only_observable_modes_decide(void **)
 {
     static const struct {
         double part, hertz, zeta;
@@ -123,7 +122,6 @@ static void only_observable_modes_decide(void **state)
         {0.0, 4.0, 0.01, false},
     };
 
-    (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         RITZ_OWN(ritz_component) component = {0};
         RITZ_OWN(ritz_pairs) pairs = {0};
@@ -152,11 +150,10 @@ static void only_observable_modes_decide(void **state)
 }
 
 /* What noise is left of a mode in both models may point anywhere. */
-static void noise_has_no_mac_and_is_counted(void **state)
+static void noise_has_no_mac_and_is_counted(void **)
 {
     oscillators full = plain, reduced = plain;
 
-    (void)state;
     full.b[1] = 3e-16;
     full.c[1][0] = 9e-17;
     full.c[1][1] = 1e-15;
@@ -172,11 +169,10 @@ static void noise_has_no_mac_and_is_counted(void **state)
 }
 
 /* An output in which no mode of the band takes part does not count. */
-static void an_output_of_rounding_counts_for_nothing(void **state)
+static void an_output_of_rounding_counts_for_nothing(void **)
 {
     oscillators full = plain, reduced = plain;
 
-    (void)state;
     full.count = reduced.count = 4;
     full.hertz[3] = reduced.hertz[3] =
         9.0; /* beyond the band, observable in y2 */
@@ -189,7 +185,7 @@ static void an_output_of_rounding_counts_for_nothing(void **state)
 }
 
 /* Two modes of different kinds have passed each other. */
-static void modes_that_have_changed_places_are_found(void **state)
+static void modes_that_have_changed_places_are_found(void **)
 {
     static const oscillators full = {
         2, {1.00, 1.03}, {1.0, 1.0}, {{1.0, 0.0}, {0.0, 1.0}}};
@@ -197,7 +193,6 @@ static void modes_that_have_changed_places_are_found(void **state)
         2, {1.01, 1.05}, {1.0, 1.0}, {{0.0, 1.0}, {1.0, 0.0}}};
     ritz_measures found = compare(&full, &reduced);
 
-    (void)state;
     assert_near(find_measure(&found, "mac")->value, 1.0, 1e-14);
     assert_near(find_measure(&found, "frequency-relative")->value, 0.05, 1e-12);
     assert_near(find_measure(&found, "missing-modes")->value, 0.0, 0.0);
@@ -205,11 +200,10 @@ static void modes_that_have_changed_places_are_found(void **state)
 }
 
 /* An observable mode without partner has a MAC of 0, another one none. */
-static void nothing_is_like_a_mode_that_is_missing(void **state)
+static void nothing_is_like_a_mode_that_is_missing(void **)
 {
     oscillators full = plain, reduced = plain;
 
-    (void)state;
     reduced.count = 2;
     assert_mac(&full, &reduced, 0.0, "mode 3, 4 Hz");
     full.c[2][0] = full.c[2][1] = 0.0;
@@ -229,12 +223,11 @@ done:
     return status;
 }
 
-static void verifying_a_system_survives_every_allocation(void **state)
+static void verifying_a_system_survives_every_allocation(void **)
 {
     RITZ_OWN(ritz_component) full = {0};
     RITZ_OWN(ritz_configuration) at = {0};
 
-    (void)state;
     open_full(&plain, &full);
     open_reduced(&plain, &at);
     assert_survives_every_allocation(verify_once(&full, &at));

@@ -38,9 +38,8 @@ static void truncate_beam(const ritz_component *beam, int64_t modes,
 }
 
 /* A basis of exact modes: all but what they leave out is exact. */
-static void exact_modes_have_no_error_but_in_the_gain(void **state)
+static void exact_modes_have_no_error_but_in_the_gain(void **)
 {
-    (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
         RITZ_OWN(ritz_component) beam = {0};
         RITZ_OWN(ritz_basis) basis = {0};
@@ -68,7 +67,7 @@ static void exact_modes_have_no_error_but_in_the_gain(void **state)
 }
 
 /* The identity is a basis without any error. */
-static void the_whole_space_has_no_error_at_all(void **state)
+static void the_whole_space_has_no_error_at_all(void **)
 {
     ritz_verify_request request = plain;
     RITZ_OWN(ritz_component) beam = {0};
@@ -76,7 +75,6 @@ static void the_whole_space_has_no_error_at_all(void **state)
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_measures) found = {0};
 
-    (void)state;
     open_beam(true, &beam);
     request.band_hz[1] = 0.3;
     request.damping = (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 1e-3};
@@ -94,7 +92,7 @@ static void the_whole_space_has_no_error_at_all(void **state)
 }
 
 /* Mode 2 is dropped: it is missing, named, and no other takes its place. */
-static void a_mode_that_was_left_out_is_missing_by_name(void **state)
+static void a_mode_that_was_left_out_is_missing_by_name(void **)
 {
     ritz_verify_request request = plain;
     RITZ_OWN(ritz_component) beam = {0};
@@ -102,7 +100,6 @@ static void a_mode_that_was_left_out_is_missing_by_name(void **state)
     ritz_reduced reduced = {0};
     ritz_measures found = {0};
 
-    (void)state;
     open_beam(true, &beam);
     truncate_beam(&beam, 6, &basis);
     memcpy(ritz_dense_col(&basis.T, 1), ritz_dense_col(&basis.T, 5),
@@ -128,7 +125,7 @@ static void a_mode_that_was_left_out_is_missing_by_name(void **state)
 }
 
 /* Two unit masses and a unit spring. */
-static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
+static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **)
 {
     double k[] = {1.0, -1.0, -1.0, 1.0};
     double m[] = {1.0, 0.0, 0.0, 1.0};
@@ -137,7 +134,6 @@ static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
     RITZ_OWN(ritz_io) io = {0};
     RITZ_OWN(ritz_dense) G = {0};
 
-    (void)s;
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = io.C.val[0] = 1.0;
     assert_ok(ritz_static_gain(&K, &M, &io, 0, &G));
@@ -154,14 +150,13 @@ static void the_gain_of_one_flexible_mode_is_one_over_its_stiffness(void **s)
 }
 
 /* |theta - lambda| <= eps (lambda - sigma): checked against the truth. */
-static void estimates_hold_and_vanish_for_exact_modes(void **state)
+static void estimates_hold_and_vanish_for_exact_modes(void **)
 {
     RITZ_OWN(ritz_component) beam = {0};
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_measures) found = {0};
 
-    (void)state;
     open_beam(true, &beam);
     truncate_beam(&beam, 6, &basis);
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
@@ -183,7 +178,7 @@ static void estimates_hold_and_vanish_for_exact_modes(void **state)
     assert_non_null(find_measure(&reduced.estimates, "mode-1"));
 }
 
-static void other_models_are_refused_in_words(void **state)
+static void other_models_are_refused_in_words(void **)
 {
     ritz_verify_request request = plain;
     RITZ_OWN(ritz_component) beam = {0};
@@ -191,7 +186,6 @@ static void other_models_are_refused_in_words(void **state)
     RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_measures found = {0};
 
-    (void)state;
     open_beam(true, &beam);
     truncate_beam(&beam, 4, &basis);
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
@@ -207,14 +201,13 @@ static void other_models_are_refused_in_words(void **state)
                  RITZ_ERR_ARGUMENT, "comes from 23 dofs");
 }
 
-static void limits_hold_from_the_right_side(void **state)
+static void limits_hold_from_the_right_side(void **)
 {
     const ritz_measure mac = {.name = "mac", .value = 0.9, .limit = 0.95};
     const ritz_measure off = {
         .name = "frequency-relative", .value = 0.9, .limit = 0.95};
     const ritz_measure none = {.name = "mac", .value = 0.1, .limit = nan("")};
 
-    (void)state;
     assert_false(ritz_measure_holds(&mac));
     assert_true(ritz_measure_holds(&off));
     assert_true(ritz_measure_holds(&none));
@@ -238,12 +231,11 @@ done:
     return status;
 }
 
-static void verifying_survives_every_allocation(void **state)
+static void verifying_survives_every_allocation(void **)
 {
     const int64_t row = 1;
     pair p = {0};
 
-    (void)state;
     assert_ok(
         frame_component(2, 0.5, &frame_mcdaniel, true, false, 1, &p.beam));
     assert_ok(frame_io(&p.beam, 1, &row, 1, &row));

@@ -50,7 +50,7 @@ static void measure(const fixture *f, int64_t first, int64_t count,
     assert_ok(ritz_verify_reduced(&f->beam, &reduced, request, out));
 }
 
-static void a_rigid_motion_that_is_not_there_is_missing(void **state)
+static void a_rigid_motion_that_is_not_there_is_missing(void **)
 {
     static const struct {
         int64_t first, count;
@@ -65,7 +65,6 @@ static void a_rigid_motion_that_is_not_there_is_missing(void **state)
     };
     fixture f;
 
-    (void)state;
     open_free(&f);
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
         ritz_verify_request request = RITZ_VERIFY_NONE;
@@ -89,13 +88,12 @@ static void a_rigid_motion_that_is_not_there_is_missing(void **state)
 
 /* The eigenvalue of a lone rigid motion is rounding, of either sign, and is
  * judged by the band: what is no rounding of that is refused. */
-static void rounding_of_a_lone_rigid_motion_is_no_instability(void **state)
+static void rounding_of_a_lone_rigid_motion_is_no_instability(void **)
 {
     static const double part[] = {2e-17, -2e-17, -1e-3}; /* of the first mode */
     ritz_verify_request request = RITZ_VERIFY_NONE;
     fixture f;
 
-    (void)state;
     open_free(&f);
     request.band_hz[1] = 0.9 * ritz_eigen_hertz(f.pairs.lambda[RIGID]);
     for (int k = 0; k < 3; k++) {
@@ -119,11 +117,10 @@ static void rounding_of_a_lone_rigid_motion_is_no_instability(void **state)
 }
 
 /* lambda of a rigid motion on a spring k is k, of unit modal mass. */
-static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
+static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **)
 {
     fixture f;
 
-    (void)s;
     open_free(&f);
     for (int soft = 0; soft < 2; soft++) {
         ritz_verify_request request = RITZ_VERIFY_NONE;
@@ -151,7 +148,7 @@ static void a_rigid_motion_on_a_spring_is_as_far_off_as_frequencies(void **s)
     close_free(&f);
 }
 
-static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **s)
+static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **)
 {
     static const struct {
         size_t offset;
@@ -169,7 +166,6 @@ static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **s)
     ritz_basis basis = {0};
     ritz_reduced reduced = {0};
 
-    (void)s;
     open_free(&f);
     assert_ok(ritz_basis_new(f.beam.num_dofs, 5, &basis));
     memcpy(basis.T.val, f.pairs.Phi.val,
@@ -190,7 +186,7 @@ static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **s)
 }
 
 /* Without rigid motion all of the response is flexible. */
-static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
+static void the_flexible_response_of_what_is_held_is_all_of_it(void **)
 {
     ritz_verify_request request = RITZ_VERIFY_NONE;
     RITZ_OWN(ritz_component) beam = {0};
@@ -199,7 +195,6 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
     RITZ_OWN(ritz_measures) found = {0};
     int64_t tip = 0;
 
-    (void)state;
     assert_ok(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
     tip = beam.num_dofs - 2;
     assert_ok(frame_io(&beam, 1, &tip, 1, &tip));
@@ -218,7 +213,7 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **state)
 
 /* Four masses on springs of their own, the first with a damper. What rounding
  * leaves of the others is not compared; a ratio that is none is. */
-static void rounding_of_a_ratio_is_no_ratio(void **state)
+static void rounding_of_a_ratio_is_no_ratio(void **)
 {
     static const double stiffness[] = {1.0, 4.0, 9.0, 16.0};
     static const double damper[] = {0.1, 1e-17, -3e-17, 2e-4};
@@ -226,7 +221,6 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
     ritz_verify_request request = RITZ_VERIFY_NONE;
     RITZ_OWN(ritz_component) c = {0};
 
-    (void)state;
     assert_ok(masses_apart(4, stiffness, damper, &c));
     assert_ok(ritz_io_new(4, 0, 0, &c.io));
     request.band_hz[1] = 1.0;
@@ -252,7 +246,7 @@ static void rounding_of_a_ratio_is_no_ratio(void **state)
 
 /* A free chain beside another: an input of one, an output of the other. Rigid
  * modes and equal ones are mixed by rounding, and that is no response. */
-static void what_cancels_is_no_response(void **state)
+static void what_cancels_is_no_response(void **)
 {
     enum { ELEMENTS = 3, ALL = 2 * (ELEMENTS + 1) };
     ritz_verify_request request = RITZ_VERIFY_NONE;
@@ -260,7 +254,6 @@ static void what_cancels_is_no_response(void **state)
     RITZ_OWN(ritz_basis) basis = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
-    (void)state;
     assert_ok(bar_component(ALL - 1, &c));
     for (int which = 0; which < 2; which++) {
         ritz_sparse *A = which ? &c.M : &c.K;

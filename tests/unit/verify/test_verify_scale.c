@@ -57,7 +57,7 @@ static double past_the_basis(void)
     return hertz;
 }
 
-static void errors_do_not_know_the_unit_of_time(void **state)
+static void errors_do_not_know_the_unit_of_time(void **)
 {
     static const char *const measures[] = {
         "frequency-relative", "response-relative", "flexible-response-relative",
@@ -66,7 +66,6 @@ static void errors_do_not_know_the_unit_of_time(void **state)
     RITZ_OWN(ritz_measures) once = {0};
     double to_hz = past_the_basis();
 
-    (void)state;
     verify(0, to_hz, &once);
     assert_true(find_measure(&once, "response-relative")->value > 1e-4);
     for (size_t p = 0; p < sizeof powers / sizeof *powers; p++) {

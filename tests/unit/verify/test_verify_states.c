@@ -38,13 +38,12 @@ static double value(const ritz_measures *all, const char *name)
 }
 
 /* G = 1/(s + 1), G_r = 0.9 G: every relative error is 0.1. */
-static void a_tenth_missing_is_a_tenth_by_every_measure(void **state)
+static void a_tenth_missing_is_a_tenth_by_every_measure(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_verify_request request = none;
     RITZ_OWN(ritz_measures) found = {0};
 
-    (void)state;
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     request.band_hz[1] = 1.0;
@@ -59,7 +58,7 @@ static void a_tenth_missing_is_a_tenth_by_every_measure(void **state)
     assert_null(ritz_measures_find(&found, "h-infinity-bound"));
 }
 
-static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
+static void the_error_is_held_to_the_bound_that_came_with_it(void **)
 {
     /* the error is 0.1; the slack is of 1e-8 */
     static const struct {
@@ -67,7 +66,6 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
         bool holds;
     } table[] = {{0.2, true}, {0.1, true}, {0.0999, false}};
 
-    (void)state;
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
         RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
         RITZ_OWN(ritz_measures) found = {0};
@@ -83,12 +81,11 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **state)
     }
 }
 
-static void outputs_are_divided_by_their_limits(void **state)
+static void outputs_are_divided_by_their_limits(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     RITZ_OWN(ritz_measures) found = {0};
 
-    (void)state;
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     full.limit[0] = 0.25;
@@ -97,13 +94,12 @@ static void outputs_are_divided_by_their_limits(void **state)
     assert_near(value(&found, "h-infinity-relative"), 0.1, 2.1e-8 * 0.1);
 }
 
-static void rigid_motions_of_both_are_left_out_of_norms(void **state)
+static void rigid_motions_of_both_are_left_out_of_norms(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0}, held = {0};
     ritz_verify_request request = none;
     ritz_measures found = {0};
 
-    (void)state;
     first_order(1.0, 5.0, &full);
     first_order(0.9, 5.0, &reduced);
     first_order(0.9, 0.0, &held);
@@ -126,13 +122,12 @@ static void rigid_motions_of_both_are_left_out_of_norms(void **state)
                  RITZ_ERR_ARGUMENT, "a pole is at 0");
 }
 
-static void what_reaches_an_output_at_once_has_no_h2_norm(void **state)
+static void what_reaches_an_output_at_once_has_no_h2_norm(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_verify_request request = none;
     ritz_measures found = {0};
 
-    (void)state;
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     reduced.D.val[0] = 0.1; /* which makes the gain that of the full model */
@@ -148,12 +143,11 @@ static void what_reaches_an_output_at_once_has_no_h2_norm(void **state)
                  RITZ_ERR_ARGUMENT, "there is no H2 norm");
 }
 
-static void growth_fails_unless_the_full_model_grows_too(void **state)
+static void growth_fails_unless_the_full_model_grows_too(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     RITZ_OWN(ritz_measures) found = {0};
 
-    (void)state;
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     reduced.A.val[0] = 1.0;
@@ -167,13 +161,12 @@ static void growth_fails_unless_the_full_model_grows_too(void **state)
         ritz_measure_holds(ritz_measures_find(&found, "growth-relative")));
 }
 
-static void models_of_other_names_are_refused(void **state)
+static void models_of_other_names_are_refused(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_verify_request request = none;
     ritz_measures found = {0};
 
-    (void)state;
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     request.limit[RITZ_MEASURE_RESPONSE] = 1.0;
@@ -201,11 +194,10 @@ static ritz_status verify_and_drop(const ritz_state_space *full,
     return status;
 }
 
-static void every_allocation_may_fail(void **state)
+static void every_allocation_may_fail(void **)
 {
     RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
 
-    (void)state;
     first_order(1.0, 5.0, &full);
     first_order(0.9, 5.0, &reduced);
     assert_survives_every_allocation(verify_and_drop(&full, &reduced));
