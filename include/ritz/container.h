@@ -1,7 +1,7 @@
 /*
  * Where the models that a scene names come from. Assembly and reduction ask a
- * source and open no file; ritz_container_source answers from containers, and
- * a program may answer from memory.
+ * source and open no file; ritz_container_source reads containers, and a
+ * program may return models from memory.
  */
 #ifndef RITZ_CONTAINER_H
 #define RITZ_CONTAINER_H

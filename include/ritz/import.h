@@ -16,7 +16,7 @@
 typedef struct ritz_matrix {
     char name[RITZ_NAME_SIZE]; /* "KGG"; "" where the format has none */
     ritz_sparse A;
-    double *imaginary; /* beside A.val; NULL if real */
+    double *imaginary; /* of each entry of A; NULL if real */
     bool symmetric;    /* the file says so */
     int64_t digits;    /* significant decimal digits of its values: 17 binary
                           double, 7 binary single, else as written */
@@ -93,7 +93,7 @@ ritz_status ritz_foreign_list(ritz_foreign *file);
 ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
                               ritz_matrix *out);
 
-/** Put the path of a file before what is wrong with it. */
+/** Put the path of a file before the sentence of a failure. */
 ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status);
 void ritz_foreign_free(ritz_foreign *file);
 
@@ -138,7 +138,7 @@ typedef struct ritz_wanted {
  * Select several matrices. Each file is read once, one file at a time, and of
  * its matrices only those that are wanted.
  *
- * @param[in,out] sums  gets the files; NULL: not asked
+ * @param[in,out] sums  gets the files; NULL: not wanted
  */
 ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,
                                  ritz_file_sums *sums);
@@ -259,7 +259,7 @@ typedef struct ritz_import_request {
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
     bool symmetrise;
-    ritz_file_sums *sums; /* gets the files of matrices; NULL: not asked */
+    ritz_file_sums *sums; /* gets the files of matrices; NULL: not wanted */
 } ritz_import_request;
 
 /* A grid that was made for a port. */
@@ -331,7 +331,7 @@ typedef struct ritz_import_space_request {
     const char *inputs;   /* "NAME,NAME"; u1, u2, ... */
     const char *outputs;  /* "NAME[@LIMIT],NAME"; y1, y2, ... */
     const char *units;
-    ritz_file_sums *sums; /* gets the files of matrices; NULL: not asked */
+    ritz_file_sums *sums; /* gets the files of matrices; NULL: not wanted */
 } ritz_import_space_request;
 
 /**

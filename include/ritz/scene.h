@@ -20,7 +20,7 @@ typedef struct ritz_scene_component {
     int64_t modes;   /* -1: none given */
     double up_to_hz; /* 0: none given */
     char *attach;    /* ports with commas between; NULL: those of the scene */
-    ritz_choice choice;   /* what the basis is told beside that */
+    ritz_choice choice;   /* further options of the basis */
     int64_t line, column; /* where it stands, for later refusals */
 } ritz_scene_component;
 
@@ -113,11 +113,11 @@ typedef enum ritz_augment {
     RITZ_AUGMENT_COMPONENT,
 } ritz_augment;
 
-/* The forces that static corrections answer; 0 is what the level implies. */
+/* The forces for which static corrections are made; 0: as the level implies. */
 enum {
     RITZ_ATTACHED_INPUTS = 1,
     RITZ_ATTACHED_INTERFACE = 2, /* each dof of the ports that joints hold */
-    RITZ_ATTACHED_OUTPUTS = 4,   /* what is read gives as many */
+    RITZ_ATTACHED_OUTPUTS = 4,   /* a unit force where each output measures */
     RITZ_ATTACHED_AUTO = 8,      /* the fewest whose response is near enough */
 };
 
@@ -157,7 +157,7 @@ typedef struct ritz_scene {
     int64_t *reference;    /* 0: union over all */
     ritz_augment augment;
     int attached; /* sum of RITZ_ATTACHED_...; 0: as the level implies */
-    int64_t num_attached_inputs; /* some inputs alone, beside those sets */
+    int64_t num_attached_inputs; /* single inputs, in addition to sets */
     int64_t *attached_input;
     double attached_tolerance; /* auto: of the largest singular value, 1e-3 */
     ritz_extraneous extraneous;

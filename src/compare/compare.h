@@ -149,7 +149,7 @@ ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
 typedef struct ritz_statics {
     ritz_dense rigid;    /* its rigid modes, M-orthonormal */
     ritz_dense massless; /* null space of M */
-    ritz_dense answers;  /* static, to unit forces, with inertia relief */
+    ritz_dense answers; /* static solutions for unit forces, inertia relieved */
 } ritz_statics;
 
 /**

@@ -142,7 +142,7 @@ static ritz_status factor_shifted(const ritz_reduced *body,
         r > 0 && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, L->val, r),
         RITZ_ERR_SINGULAR,
         "the stiffness of motions that are not rigid is not definite, "
-        "so it answers no static force");
+        "so there is no static solution");
     return RITZ_OK;
 }
 

@@ -198,9 +198,10 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
         for (int64_t j = 0; j < c->K.ncol - c->num_rigid; j++)
             largest = fmax(largest, value[j]);
     }
-    RITZ_REFUSE_IF(largest <= 0.0, RITZ_ERR_ARGUMENT,
-                   "no flexible mode answers any input at any output, so none "
-                   "can be chosen");
+    RITZ_REFUSE_IF(
+        largest <= 0.0, RITZ_ERR_ARGUMENT,
+        "no flexible mode is controllable by an input and observable "
+        "at an output, so none can be chosen");
     *least = scene->select_tolerance * largest;
     return RITZ_OK;
 }
@@ -292,10 +293,11 @@ static ritz_status count_vectors(const ritz_scene *scene,
                                   scene->select_outputs, &X,
                                   &row->num_moments));
     row->num_vectors = X.ncol;
-    RITZ_REFUSE_IF(X.ncol == 0, RITZ_ERR_ARGUMENT,
-                   "no flexible mode answers any input, so there is no Krylov "
-                   "vector%s%s",
-                   *c->at ? " at " : "", c->at);
+    RITZ_REFUSE_IF(
+        X.ncol == 0, RITZ_ERR_ARGUMENT,
+        "no flexible mode is controllable by an input, so there is no Krylov "
+        "vector%s%s",
+        *c->at ? " at " : "", c->at);
     return RITZ_OK;
 }
 

@@ -1,6 +1,6 @@
 /*
- * Data sets: how they are cut into chunks, what is believed of them, their
- * values, and matrices.
+ * Data sets: how they are cut into chunks, how they are checked before they are
+ * read, their values, and matrices; lists of texts.
  *
  * The checksum of a chunked data set: over 64-bit words w of the values as they
  * lie in memory (a dense matrix column by column, a last part of a word filled

@@ -22,7 +22,7 @@ static const ritz_schema *const shared[] = {
     &ritz_schema_origin,  &ritz_schema_measures, NULL,
 };
 
-/* NULL of a part, a list and what is read by hand: a row that says so itself. */
+/* NULL: a part or a list has no type, and a row read by hand states its own. */
 static const char *const types[BY_HAND + 1] = {
     [ATTRIBUTE_TEXT] = "text, attribute",
     [ATTRIBUTE_FLAG] = "i64, attribute",

@@ -1,5 +1,5 @@
 /*
- * Parts of ritz_import: matrices that were asked for, names of their rows,
+ * Parts of ritz_import: requested matrices, names of their rows,
  * ports, inputs and outputs. Not for users.
  */
 #ifndef RITZ_IMPORT_IMPORT_H
@@ -10,7 +10,7 @@
 #include <ritz/import.h>
 #include <ritz/model.h>
 
-/* A matrix that was asked for, and which one of the component it becomes. */
+/* A requested matrix, and which matrix of the component it becomes. */
 typedef struct ritz_part {
     const char *spec; /* "kgg.op4:KGG", for messages */
     char *owned;      /* the spec of a load, cut off its name; else NULL */
@@ -30,7 +30,7 @@ typedef struct ritz_row_names {
     int64_t count;
     ritz_dof *dof;
     char map[RITZ_NAME_SIZE]; /* where they come from */
-    bool whole; /* all that the deck has, and so its dependent dofs too */
+    bool whole; /* all dofs of the deck, its dependent ones among them */
 } ritz_row_names;
 
 /* Rows by name: sorted, so that a name is found in O(log n). */
@@ -54,7 +54,7 @@ int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof);
 /** First place whose grid is not below @p grid; count if there is none. */
 int64_t ritz_roster_from(const ritz_roster *roster, int64_t grid);
 
-/** Record that a dof is not there, and what is near; the status to return. */
+/** Refuse a dof that does not exist, and name the nearest one. */
 ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof);
 void ritz_roster_free(ritz_roster *roster);
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- rows and what follows from them ------------------------------------ */
+/* ---- rows and recovered dofs --------------------------------------------- */
 
 static ritz_status extend_rows(const ritz_component *component,
                                const ritz_equations *equations,
@@ -43,7 +43,7 @@ void ritz_extended_free(ritz_extended *extended)
 /* ---- ports "NAME=GRIDS[:COMPS]" ----------------------------------------- */
 
 /*
- * Take "NAME=REST" apart.
+ * Split "NAME=REST".
  *
  * @param[out] rest  points behind the '='
  * @return RITZ_ERR_ARGUMENT with @p form, what it should look like
@@ -66,7 +66,7 @@ static ritz_status ritz_import_split(const char *text, const char *form,
     return RITZ_OK;
 }
 
-/* One port as it is put together. */
+/* A port while it is read. */
 typedef struct draft {
     const ritz_extended *extended;
     bool whole;   /* grids bring all of their translations and rotations */

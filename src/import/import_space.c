@@ -6,7 +6,7 @@
  * "A=F,B=F,C=F[,D=F][,E=F]", F as any matrix; or one file, "FILE" or
  * "FILE:NAME", whose matrices are called so, NAME.A or A of a struct too. D is
  * zero and E the identity where they are not given. An E that is the identity
- * is left out, so that nobody solves with it.
+ * is left out, so that no solver factors it.
  */
 #include "import/import.h"
 

@@ -78,7 +78,7 @@ static bool is_ascending(const ritz_row_names *names)
     return true;
 }
 
-/* Names that ascend go on doing so: the rows of parts are placed anew. */
+/* Sort names that were ascending before more were added; place parts anew. */
 static ritz_status sort_names(ritz_row_names *names, ritz_parts *parts)
 {
     RITZ_OWN_ARRAY ritz_dof *before = NULL;
@@ -98,7 +98,7 @@ static ritz_status sort_names(ritz_row_names *names, ritz_parts *parts)
     return RITZ_OK;
 }
 
-/* Rows for dofs that only equations name; what is fixed and what is alive. */
+/* Add rows for dofs that only equations name, and mark all rows. */
 static ritz_status find_rows(const ritz_deck *deck, const ritz_roster *roster,
                              ritz_parts *parts, const ritz_component *component,
                              ritz_tying *it)
@@ -232,7 +232,7 @@ void ritz_tying_free(ritz_tying *tying)
 
 /* ---- constraints applied ------------------------------------------------ */
 
-/* A := G'AG, unsymmetric as it was: what is averaged away is to be reported. */
+/* A := G'AG, not symmetrised, as the asymmetry of A is to be reported. */
 static ritz_status project_matrix(const ritz_sparse *G, ritz_sparse *A)
 {
     RITZ_OWN(ritz_sparse) AG = {0}, turned = {0}, C = {0};

@@ -81,7 +81,7 @@ static const ritz_yaml_key keys[NUM_KEYS] = {
                 .take = take_attach},
 };
 
-/* [0, 5] is taken as "0,5", a scalar as it is. */
+/* [0, 5] is read as "0,5", a scalar as its text. */
 static ritz_status take_choice(const ritz_yaml *yaml, const yaml_node_t *node,
                                const ritz_choice_word *word,
                                ritz_choice *choice)
@@ -199,19 +199,13 @@ ritz_status ritz_scene_place_read(const ritz_yaml *yaml,
 
 /* ---- inputs and outputs ------------------------------------------------- */
 
-static ritz_status take_component(const ritz_yaml *yaml,
-                                  const yaml_node_t *node, void *field)
-{
-    int64_t component = 0;
-
-    RITZ_CHECK(ritz_yaml_whole(yaml, node, &component));
-    RITZ_REFUSE_AT(component < 1 || component > 6, yaml, node,
-                   "component %" PRId64 " is none of 1-3, along the axes, and "
-                   "4-6, about them",
-                   component);
-    *(int64_t *)field = component;
-    return RITZ_OK;
-}
+static const ritz_yaml_key direction = {
+    .kind = RITZ_YAML_WHOLE,
+    .least = 1,
+    .most = 6,
+    .before = "component ",
+    .after = " is none of 1-3, along the axes, and 4-6, about them",
+};
 
 /* One direction, or a list of directions in which a force acts at once. */
 static ritz_status take_directions(const ritz_yaml *yaml,
@@ -220,7 +214,7 @@ static ritz_status take_directions(const ritz_yaml *yaml,
     int64_t count = 0;
 
     if (node->type != YAML_SEQUENCE_NODE)
-        return take_component(yaml, node, &io->component);
+        return ritz_yaml_value(yaml, node, &direction, &io->component);
     RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
     RITZ_REFUSE_AT(count < 1 || count > 6, yaml, node,
                    "1 to 6 directions can be listed, not %" PRId64, count);
@@ -228,7 +222,7 @@ static ritz_status take_directions(const ritz_yaml *yaml,
         const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
         int64_t *into = k == 0 ? &io->component : &io->also[k - 1];
 
-        RITZ_CHECK(take_component(yaml, item, into));
+        RITZ_CHECK(ritz_yaml_value(yaml, item, &direction, into));
         for (int64_t j = 0; j < k; j++)
             RITZ_REFUSE_AT(*into == (j == 0 ? io->component : io->also[j - 1]),
                            yaml, item, "direction %" PRId64 " is listed before",
@@ -300,7 +294,8 @@ static ritz_status read_force(const ritz_yaml *yaml, const io_side *side,
                               const ritz_scene *scene, ritz_scene_io *io)
 {
     if (!side->drives)
-        return take_component(yaml, value[COMPONENT], &io->component);
+        return ritz_yaml_value(yaml, value[COMPONENT], &direction,
+                               &io->component);
     RITZ_CHECK(take_directions(yaml, value[COMPONENT], io));
     if (!value[AGAINST])
         return RITZ_OK;

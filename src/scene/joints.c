@@ -30,7 +30,7 @@ enum {
 typedef struct joint_kind {
     char name[16];      /* as scenes write it */
     const char *called; /* in sentences */
-    unsigned keys;      /* bits 1 << KEY_..., beside the first 3 */
+    unsigned keys;      /* bits 1 << KEY_..., in addition to the first 3 */
     unsigned required;  /* of those */
     int64_t freedoms;   /* relative motions that it leaves */
     int64_t sweeps;     /* of them are set in a configuration */

@@ -240,9 +240,10 @@ static void vectors_that_no_input_drives_are_refused(void **)
     make("select: {by: krylov, vectors: 3}\n", &scene, &stage);
     for (int64_t k = 0; k < stage.num_coordinates; k++)
         stage.io.B.val[k] = 0.0;
-    assert_fails(ritz_compare(&stage, &c), RITZ_ERR_ARGUMENT,
-                 "no flexible mode answers any input, so there is no Krylov "
-                 "vector");
+    assert_fails(
+        ritz_compare(&stage, &c), RITZ_ERR_ARGUMENT,
+        "no flexible mode is controllable by an input, so there is no Krylov "
+        "vector");
     free_all(&scene, &stage, &c);
 }
 
