@@ -220,24 +220,23 @@ static ritz_status take_cards(ritz_bulk_cards *all)
 static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
 {
     ritz_cards *cards = &all->cards;
-    int64_t given = cards->num_selected[which];
-    int64_t *list = NULL;
-    int64_t count = given;
+    int64_t count = cards->num_selected[which];
 
-    if (given == 0)
+    if (count == 0)
         return RITZ_OK;
-    qsort(cards->selected[which], (size_t)given, sizeof *cards->selected[which],
+    qsort(cards->selected[which], (size_t)count, sizeof count,
           ritz_cards_compare_ids);
-    RITZ_CHECK_NEW(list, given + all->num_sums);
-    memcpy(list, cards->selected[which], (size_t)given * sizeof *list);
-    for (int64_t k = 0; k < all->num_sums; k++)
-        if (all->sum[k].which == which &&
-            ritz_cards_select(cards, which, all->sum[k].set))
-            list[count++] = all->sum[k].member;
-    qsort(list, (size_t)count, sizeof *list, ritz_cards_compare_ids);
-    free(cards->selected[which]);
-    cards->selected[which] = list;
+    for (int64_t k = 0; k < all->num_sums; k++) {
+        if (all->sum[k].which != which ||
+            !ritz_cards_select(cards, which, all->sum[k].set))
+            continue;
+        RITZ_CHECK_ROOM(cards->selected[which], count,
+                        cards->selected_room[which]);
+        cards->selected[which][count++] = all->sum[k].member;
+    }
     cards->num_selected[which] = count;
+    qsort(cards->selected[which], (size_t)count, sizeof count,
+          ritz_cards_compare_ids);
     return RITZ_OK;
 }
 

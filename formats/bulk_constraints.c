@@ -14,9 +14,8 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "formats/bulk.h"
+#include "linear/general.h"
 #include "model/equations.h"
-
-#include <lapacke.h>
 
 #include <inttypes.h>
 #include <math.h>
@@ -85,23 +84,26 @@ static bool tying_is_real(const ritz_bulk_tying *it, int64_t k)
     return strchr(ritz_card_text(it->card, k), '.') != NULL;
 }
 
-/* Pairs of grid and directions behind UM, to the end or a thermal field. */
-static ritz_status tying_pairs(const ritz_bulk_tying *it, int64_t k,
+/* Pairs of grid and directions from field @p k on, to the end, to UM or to a
+ * thermal field; `k` is moved there. */
+static ritz_status tying_pairs(const ritz_bulk_tying *it, bool due, int64_t *k,
                                ritz_ties *out)
 {
-    ritz_tie tie_element = {.weight = 1.0};
+    ritz_tie tie = {.weight = 1.0};
 
-    while (k < it->card->count) {
-        if (!*ritz_card_text(it->card, k)) {
-            k++;
+    while (*k < it->card->count) {
+        const char *text = ritz_card_text(it->card, *k);
+
+        if (!*text) {
+            (*k)++;
             continue;
         }
-        if (tying_is_real(it, k)) /* thermal expansion */
+        if (tying_is_real(it, *k) || ritz_card_is_word(text, "UM"))
             break;
-        RITZ_CHECK(tying_grid(it, k, &tie_element.grid));
-        RITZ_CHECK(tying_mask(it, k + 1, true, &tie_element.mask));
-        RITZ_CHECK(ritz_ties_add(out, tie_element));
-        k += 2;
+        RITZ_CHECK(tying_grid(it, *k, &tie.grid));
+        RITZ_CHECK(tying_mask(it, *k + 1, due, &tie.mask));
+        RITZ_CHECK(ritz_ties_add(out, tie));
+        *k += 2;
     }
     return RITZ_OK;
 }
@@ -277,23 +279,13 @@ static ritz_status tie_rtrplt(const ritz_bulk_tying *it)
 static ritz_status tie_rbe1(const ritz_bulk_tying *it)
 {
     RITZ_OWN(ritz_ties) from = {0}, to = {0};
-    ritz_tie tie = {.weight = 1.0};
     int64_t k = 1;
 
-    while (k < it->card->count &&
-           !ritz_card_is_word(ritz_card_text(it->card, k), "UM")) {
-        if (!*ritz_card_text(it->card, k)) {
-            k++;
-            continue;
-        }
-        RITZ_CHECK(tying_grid(it, k, &tie.grid));
-        RITZ_CHECK(tying_mask(it, k + 1, false, &tie.mask));
-        RITZ_CHECK(ritz_ties_add(&from, tie));
-        k += 2;
-    }
-    if (k == it->card->count)
+    RITZ_CHECK(tying_pairs(it, false, &k, &from));
+    if (!ritz_card_is_word(ritz_card_text(it->card, k), "UM"))
         return tying_refuse(it, "names no dependent dofs by UM");
-    RITZ_CHECK(tying_pairs(it, k + 1, &to));
+    k++;
+    RITZ_CHECK(tying_pairs(it, true, &k, &to));
     return tie_all(it, &from, &to);
 }
 
@@ -362,8 +354,8 @@ static ritz_status take_average(const ritz_bulk_tying *it, average_card *out)
         if (ritz_card_is_word(text, "ALPHA"))
             break;
         if (ritz_card_is_word(text, "UM")) {
-            RITZ_CHECK(tying_pairs(it, k + 1, &out->moved));
-            break;
+            k++;
+            return tying_pairs(it, true, &k, &out->moved);
         }
         if (*text)
             RITZ_CHECK(take_group(it, &k, out));
@@ -484,24 +476,20 @@ static ritz_status move_front(const ritz_bulk_tying *it,
     return RITZ_OK;
 }
 
-/* E := -E_m^-1 E of the columns behind the first m. */
+/* E := E_m^-1 E of the columns behind the first m. */
 static ritz_status solve_moved(const ritz_bulk_tying *it, ritz_dense *E)
 {
-    lapack_int m = (lapack_int)E->nrow;
-    lapack_int rest = (lapack_int)E->ncol - m;
-    lapack_int pivot[6];
-    double size = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', m, m, E->val, m);
-    double rcond = 0.0;
+    int64_t m = E->nrow;
+    const ritz_dense moved = ritz_dense_part(E, 0, m);
+    ritz_dense rest = ritz_dense_part(E, m, E->ncol - m);
+    RITZ_OWN(ritz_dense) copy = {0};
+    double sigma[6] = {0};
 
-    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, m, m, E->val, m, pivot) == 0)
-        (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', m, E->val, m, size, &rcond);
-    if (!(rcond > RITZ_HALF_DIGITS))
+    RITZ_CHECK(ritz_dense_copy(&moved, &copy));
+    RITZ_CHECK(ritz_general_singular(&copy, sigma));
+    if (!(sigma[m - 1] > RITZ_HALF_DIGITS * sigma[0]))
         return tying_refuse(it, "cannot be solved for the dofs that UM names");
-    if (rest > 0)
-        RITZ_REFUSE_IF(LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', m, rest, E->val, m,
-                                      pivot, ritz_dense_col(E, m), m) != 0,
-                       RITZ_ERR_MEMORY, "no memory for the constraints");
-    return RITZ_OK;
+    return ritz_general_solve(&moved, false, &rest);
 }
 
 static ritz_status put_moved(const ritz_bulk_tying *it,

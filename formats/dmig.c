@@ -17,8 +17,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "formats/cards.h"
-#include "formats/lines.h"
+#include "formats/cards_lines.h"
 #include "formats/matrix.h"
 
 #include <ritz/import.h>
@@ -26,6 +25,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <strings.h>
 
 enum {
     RITZ_DMIG_SQUARE = 1,
@@ -80,11 +80,6 @@ static int64_t find_header(ritz_dmig_cards *all, const char *name)
     return -1;
 }
 
-static char upper_case(char letter)
-{
-    return (char)toupper((unsigned char)letter);
-}
-
 static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
 {
     const char *name = ritz_card_text(card, 0);
@@ -95,7 +90,7 @@ static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
     for (; name[k]; k++) {
         if (iscntrl((unsigned char)name[k]) || name[k] == '/')
             return ritz_card_refuse(card, 0, "the name of a matrix");
-        out[k] = upper_case(name[k]);
+        out[k] = ritz_card_upper(name[k]);
     }
     out[k] = '\0';
     return RITZ_OK;
@@ -393,13 +388,8 @@ static ritz_status read_matrix(const ritz_foreign *file,
 /* True if a line begins with the word DMIG, in any case. */
 static bool is_dmig(const char *line, int64_t length)
 {
-    static const char WORD[] = "DMIG";
-    int64_t k = 0;
-
-    for (; WORD[k]; k++)
-        if (k == length || toupper((unsigned char)line[k]) != WORD[k])
-            return false;
-    return k < length && strchr(" *,\t", line[k]) && line[k];
+    return length > 4 && strncasecmp(line, "DMIG", 4) == 0 && line[4] &&
+           strchr(" *,\t", line[4]);
 }
 
 static bool recognise_dmig(const char *bytes, int64_t size)

@@ -61,15 +61,14 @@ static bool read_fields(const char *at, const char *end, const int64_t *width,
 static bool take_integers(const ritz_output4_reader *t, int64_t count,
                           int64_t *out)
 {
-    static const int64_t widths[2][3] = {{8, 8, 8}, {16, 16, 16}};
+    int64_t each = (t->text.line_end - t->text.line) / count;
+    const int64_t widths[3] = {each, each, each};
 
     if (ritz_decimal_scan_row(t->text.line, t->text.line_end, count, out))
         return true;
-    for (int k = 0; k < 2; k++)
-        if (t->text.line_end - t->text.line == widths[k][0] * count &&
-            read_fields(t->text.line, t->text.line_end, widths[k], count, out))
-            return true;
-    return false;
+    return (each == 8 || each == 16) &&
+           t->text.line_end - t->text.line == each * count &&
+           read_fields(t->text.line, t->text.line_end, widths, count, out);
 }
 
 /* A whole number of at most 3 digits that must be followed by something. */

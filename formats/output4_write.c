@@ -158,11 +158,17 @@ static int64_t next_entry(const ritz_matrix *m, int64_t p, int64_t end)
     return p;
 }
 
-/* Behind the last entry of the run of consecutive rows that begins at `p`. */
-static int64_t end_of_run(const ritz_matrix *m, int64_t p, int64_t end)
+/* Behind the last entry of the run that begins at `p`: consecutive rows of a
+ * sparse column, all of a dense one. */
+static int64_t end_of_run(const ritz_output4_writer *w, int64_t p, int64_t end)
 {
+    const ritz_matrix *m = w->matrix;
     int64_t q = p + 1;
 
+    while (!w->style.sparse && is_zero(m, end - 1))
+        end--;
+    if (!w->style.sparse)
+        return end;
     while (q < end && m->A.rowind[q] == m->A.rowind[q - 1] + 1 &&
            !is_zero(m, q))
         q++;
@@ -182,45 +188,30 @@ static ritz_status begin_column(const ritz_output4_writer *w, int64_t j,
     return RITZ_OK;
 }
 
-static ritz_status write_dense(ritz_output4_writer *w, int64_t j, int64_t begin,
-                               int64_t end)
-{
-    const ritz_sparse *A = &w->matrix->A;
-    int64_t first = A->rowind[begin];
-    int64_t rows = 0;
-    int64_t words = 0;
-    int64_t p = begin;
-
-    while (is_zero(w->matrix, end - 1))
-        end--;
-    rows = A->rowind[end - 1] - first + 1;
-    words = rows * w->numbers * (w->style.text ? 1 : 2);
-    RITZ_CHECK(begin_column(w, j, first + 1, words));
-    for (int64_t i = first; i < first + rows; i++)
-        put_value(w, A->rowind[p] == i ? p++ : -1);
-    end_line(w);
-    put_mark(w, 4 * (words + 3));
-    return RITZ_OK;
-}
-
-static ritz_status write_sparse(ritz_output4_writer *w, int64_t j,
+/* The runs of a column, those of a sparse one behind L + 1 and IROW. */
+static ritz_status write_column(ritz_output4_writer *w, int64_t j,
                                 int64_t begin, int64_t end)
 {
     const ritz_matrix *m = w->matrix;
+    const int64_t *row = m->A.rowind;
+    bool sparse = w->style.sparse;
+    int64_t wide = w->numbers * (w->style.text && !sparse ? 1 : 2);
     int64_t words = 0;
 
     for (int64_t p = begin, q = 0; p < end; p = next_entry(m, q, end)) {
-        q = end_of_run(m, p, end);
-        words += 2 + 2 * w->numbers * (q - p);
+        q = end_of_run(w, p, end);
+        words += (sparse ? 2 : 0) + wide * (row[q - 1] - row[p] + 1);
     }
-    RITZ_CHECK(begin_column(w, j, 0, words));
+    RITZ_CHECK(begin_column(w, j, sparse ? 0 : row[begin] + 1, words));
     for (int64_t p = begin, q = 0; p < end; p = next_entry(m, q, end)) {
-        q = end_of_run(m, p, end);
-        put_integers(w, 2,
-                     (const int64_t[]){2 * w->numbers * (q - p) + 1,
-                                       m->A.rowind[p] + 1});
-        for (int64_t k = p; k < q; k++)
-            put_value(w, k);
+        int64_t first = row[p];
+
+        q = end_of_run(w, p, end);
+        if (sparse)
+            put_integers(w, 2,
+                         (const int64_t[]){wide * (q - p) + 1, first + 1});
+        for (int64_t i = first, k = p; i <= row[q - 1]; i++)
+            put_value(w, row[k] == i ? k++ : -1);
         end_line(w);
     }
     put_mark(w, 4 * (words + 3));
@@ -274,10 +265,8 @@ static ritz_status write_matrix(FILE *file, const ritz_matrix *m,
         int64_t end = m->A.colptr[j + 1];
         int64_t begin = next_entry(m, m->A.colptr[j], end);
 
-        if (begin < end && style->sparse)
-            RITZ_CHECK(write_sparse(&w, j, begin, end));
-        if (begin < end && !style->sparse)
-            RITZ_CHECK(write_dense(&w, j, begin, end));
+        if (begin < end)
+            RITZ_CHECK(write_column(&w, j, begin, end));
     }
     RITZ_CHECK(begin_column(&w, last, 1, style->text ? 1 : 2));
     put_number(&w, sqrt(2.0));
