@@ -6,9 +6,9 @@
  * another by the markers in the tenth field of the one and the first field of
  * the other; the line above is looked at first, then the whole deck.
  */
+#include "formats/cards.h"
 #include "base/alloc.h"
 #include "base/text.h"
-#include "formats/cards_lines.h"
 
 #include <ritz/base.h>
 

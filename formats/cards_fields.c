@@ -11,7 +11,7 @@
  * Two large lines count as one small: a small line that follows a single large
  * one leaves its four missing fields blank.
  */
-#include "formats/cards_lines.h"
+#include "formats/cards.h"
 #include "formats/decimal.h"
 
 #include <math.h>

@@ -270,15 +270,15 @@ bool ritz_decimal_is_inside(const char *at, const char *end)
     return at < end && at == ritz_decimal_skip(at, end);
 }
 
-bool ritz_decimal_scan_row(const char *at, const char *end, int64_t count,
-                           int64_t *out)
+bool ritz_decimal_scan_wholes(const char **at, const char *end, int64_t count,
+                              int64_t *out)
 {
-    at = ritz_decimal_skip(at, end);
     for (int64_t k = 0; k < count; k++) {
-        if (!ritz_decimal_scan_whole(&at, end, &out[k]) ||
-            ritz_decimal_is_inside(at, end))
+        *at = ritz_decimal_skip(*at, end);
+        if (!ritz_decimal_scan_whole(at, end, &out[k]) ||
+            ritz_decimal_is_inside(*at, end))
             return false;
-        at = ritz_decimal_skip(at, end);
     }
-    return at == end;
+    *at = ritz_decimal_skip(*at, end);
+    return true;
 }

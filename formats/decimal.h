@@ -27,8 +27,9 @@ const char *ritz_decimal_skip(const char *at, const char *end);
 /** True if @p at is neither the end nor a blank: a word goes on. */
 bool ritz_decimal_is_inside(const char *at, const char *end);
 
-/** @p count whole numbers and nothing else, apart by blanks. */
-bool ritz_decimal_scan_row(const char *at, const char *end, int64_t count,
-                           int64_t *out);
+/** @p count whole numbers apart by blanks; @p at is moved behind them and the
+ * blanks that follow. */
+bool ritz_decimal_scan_wholes(const char **at, const char *end, int64_t count,
+                              int64_t *out);
 
 #endif

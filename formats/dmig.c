@@ -17,7 +17,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "formats/cards_lines.h"
+#include "formats/cards.h"
 #include "formats/matrix.h"
 
 #include <ritz/import.h>

@@ -7,8 +7,12 @@
 #include <complex.h>
 #include <math.h>
 
-static void print_head(FILE *file, const ritz_response *response)
+static ritz_status print_response(FILE *file, const void *object)
 {
+    const ritz_response *response = object;
+    const double degree = 180.0 / RITZ_PI;
+    int64_t size = response->num_outputs * response->num_inputs;
+
     fprintf(file, "# hertz");
     for (int64_t i = 0; i < response->num_outputs; i++)
         for (int64_t j = 0; j < response->num_inputs; j++)
@@ -17,13 +21,6 @@ static void print_head(FILE *file, const ritz_response *response)
     for (int64_t k = 0; k < response->num_singular; k++)
         fprintf(file, "\tsigma%lld", (long long)k + 1);
     fputc('\n', file);
-}
-
-static void print_rows(FILE *file, const ritz_response *response)
-{
-    const double degree = 180.0 / RITZ_PI;
-    int64_t size = response->num_outputs * response->num_inputs;
-
     for (int64_t k = 0; k < response->count; k++) {
         fprintf(file, "%.15g", response->hertz[k]);
         for (int64_t i = 0; i < size; i++) {
@@ -36,12 +33,6 @@ static void print_rows(FILE *file, const ritz_response *response)
                     response->singular[k * response->num_singular + i]);
         fputc('\n', file);
     }
-}
-
-static ritz_status print_response(FILE *file, const void *object)
-{
-    print_head(file, object);
-    print_rows(file, object);
     return RITZ_OK;
 }
 

@@ -80,37 +80,22 @@ static void mirror_value(const ritz_market *m, double *re, double *im)
     }
 }
 
-static bool is_sorted(const ritz_market *m)
+/* By column, then row. */
+static int compare_entries(const void *left, const void *right)
 {
-    for (int64_t k = 1; k < m->count; k++) {
-        const ritz_market_entry *a = &m->entry[k - 1];
-        const ritz_market_entry *b = &m->entry[k];
+    const ritz_market_entry *a = left;
+    const ritz_market_entry *b = right;
+    int order = (a->col > b->col) - (a->col < b->col);
 
-        if (a->col > b->col || (a->col == b->col && a->row > b->row))
-            return false;
-    }
-    return true;
+    return order ? order : (a->row > b->row) - (a->row < b->row);
 }
 
-/* Stable counting sort of the entries, by row or by column. */
-static ritz_status sort_by(ritz_market *m, bool by_row)
+static bool is_sorted(const ritz_market *m)
 {
-    int64_t n = by_row ? m->nrow : m->ncol;
-    RITZ_OWN_ARRAY int64_t *start = NULL;
-    RITZ_OWN_ARRAY ritz_market_entry *sorted = NULL;
-
-    RITZ_CHECK_NEW(start, n + 1);
-    RITZ_CHECK_NEW(sorted, m->count);
-    for (int64_t k = 0; k < m->count; k++)
-        start[(by_row ? m->entry[k].row : m->entry[k].col) + 1]++;
-    for (int64_t j = 0; j < n; j++)
-        start[j + 1] += start[j];
-    for (int64_t k = 0; k < m->count; k++)
-        sorted[start[by_row ? m->entry[k].row : m->entry[k].col]++] =
-            m->entry[k];
-    free(m->entry);
-    RITZ_MOVE(m->entry, sorted);
-    return RITZ_OK;
+    for (int64_t k = 1; k < m->count; k++)
+        if (compare_entries(&m->entry[k - 1], &m->entry[k]) > 0)
+            return false;
+    return true;
 }
 
 /* Sort; of a mirrored pair that agrees keep one, refuse other repetitions. */
@@ -119,10 +104,8 @@ static ritz_status settle_entries(ritz_market *m)
     int64_t kept = 0;
     int64_t run = 0; /* entries at one place */
 
-    if (!is_sorted(m)) {
-        RITZ_CHECK(sort_by(m, true));
-        RITZ_CHECK(sort_by(m, false));
-    }
+    if (!is_sorted(m))
+        qsort(m->entry, (size_t)m->count, sizeof *m->entry, compare_entries);
     for (int64_t k = 0; k < m->count; k++) {
         const ritz_market_entry *e = &m->entry[k];
         const ritz_market_entry *last = kept > 0 ? &m->entry[kept - 1] : NULL;
@@ -236,19 +219,14 @@ static ritz_status read_entry(ritz_market *m)
 {
     ritz_market_entry e = {.re = 1.0};
     const char *at = m->text.line;
-    const char *second = NULL;
-    bool good = ritz_decimal_scan_whole(&at, m->text.line_end, &e.row);
+    int64_t n[2] = {0};
 
-    second = ritz_decimal_skip(at, m->text.line_end);
-    good = good && second > at;
-    at = second;
-    good = good && ritz_decimal_scan_whole(&at, m->text.line_end, &e.col);
-    RITZ_REFUSE_IF(!good || ritz_decimal_is_inside(at, m->text.line_end),
+    RITZ_REFUSE_IF(!ritz_decimal_scan_wholes(&at, m->text.line_end, 2, n),
                    RITZ_ERR_FORMAT, "'%.*s' is not an entry 'row column value'",
                    ritz_lines_quoted(m->text.line, m->text.line_end),
                    m->text.line);
-    e.row--;
-    e.col--;
+    e.row = n[0] - 1;
+    e.col = n[1] - 1;
     if (m->field != RITZ_MARKET_PATTERN)
         RITZ_CHECK(read_number(m, &at, &e.re));
     if (m->field == RITZ_MARKET_COMPLEX)
@@ -371,15 +349,17 @@ static ritz_status read_size(ritz_market *m)
 {
     int64_t n[3] = {0};
     int64_t bytes = 0;
+    const char *at = NULL;
 
     RITZ_REFUSE_IF(!next_line(m), RITZ_ERR_FORMAT, "ends before its size");
-    RITZ_REFUSE_IF(!ritz_decimal_scan_row(
-                       m->text.line, m->text.line_end,
-                       m->layout == RITZ_MARKET_COORDINATE ? 3 : 2, n) ||
-                       n[0] < 0 || n[1] < 0 || n[2] < 0,
-                   RITZ_ERR_FORMAT, "'%.*s' is not a size",
-                   ritz_lines_quoted(m->text.line, m->text.line_end),
-                   m->text.line);
+    at = m->text.line;
+    RITZ_REFUSE_IF(
+        !ritz_decimal_scan_wholes(&at, m->text.line_end,
+                                  m->layout == RITZ_MARKET_COORDINATE ? 3 : 2,
+                                  n) ||
+            at < m->text.line_end || n[0] < 0 || n[1] < 0 || n[2] < 0,
+        RITZ_ERR_FORMAT, "'%.*s' is not a size",
+        ritz_lines_quoted(m->text.line, m->text.line_end), m->text.line);
     m->nrow = n[0];
     m->ncol = n[1];
     bytes = m->text.end - m->text.at;

@@ -33,10 +33,11 @@ typedef struct ritz_output4_build {
     ritz_triplets entries;
     int64_t columns; /* that it may still declare */
     int64_t column;  /* the one being read, from 0; -1 before the first */
-    int64_t first;   /* entry of this column */
-    int64_t below;   /* rows up to here are taken in this column */
-    int64_t rule;    /* reading of the strings' headers, below */
-    int64_t wide;    /* words of a real by that reading */
+    char where[RITZ_NAME_SIZE + 32]; /* "column 1 of 'KAA'" */
+    int64_t first;                   /* entry of this column */
+    int64_t below; /* rows up to here are taken in this column */
+    int64_t rule;  /* reading of the strings' headers, below */
+    int64_t wide;  /* words of a real by that reading */
 } ritz_output4_build;
 
 /* A string of a sparse column: consecutive rows. */

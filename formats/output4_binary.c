@@ -174,10 +174,8 @@ static ritz_status take_string(ritz_output4_reader *b,
 
     load_integers(b, b->data, integers < left ? integers : left, n);
     RITZ_REFUSE_IF(!ritz_output4_decode(build, n, left, out), RITZ_ERR_FORMAT,
-                   "byte %td: strings of column %" PRId64
-                   " of '%s' do not add up to %" PRId64 " words",
-                   b->data - b->begin, build->column + 1, build->header.name,
-                   words);
+                   "byte %td: strings of %s do not add up to %" PRId64 " words",
+                   b->data - b->begin, build->where, words);
     b->data += integers * b->integer;
     return RITZ_OK;
 }
@@ -191,17 +189,15 @@ static ritz_status read_dense(ritz_output4_reader *b, ritz_output4_build *build,
     int64_t reals = size / b->real;
 
     RITZ_REFUSE_IF(n[1] < 0 || n[1] > build->header.nrow, RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' begins at row %" PRId64
-                   ", but the matrix has %" PRId64 " rows",
-                   n[0], build->header.name, n[1], build->header.nrow);
+                   "%s begins at row %" PRId64 ", but the matrix has %" PRId64
+                   " rows",
+                   build->where, n[1], build->header.nrow);
     RITZ_REFUSE_IF(size % (b->real * build->header.numbers) != 0,
-                   RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' holds part of a value", n[0],
-                   build->header.name);
+                   RITZ_ERR_FORMAT, "%s holds part of a value", build->where);
     RITZ_REFUSE_IF(n[2] != words && n[2] != reals, RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' is said to hold %" PRId64
+                   "%s is said to hold %" PRId64
                    " words, but its record %" PRId64,
-                   n[0], build->header.name, n[2], words);
+                   build->where, n[2], words);
     return read_numbers(b, build, n[1] - 1, reals);
 }
 

@@ -14,6 +14,7 @@
 #include "formats/output4.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ---- FORM --------------------------------------------------------------- */
@@ -130,6 +131,12 @@ bool ritz_output4_decode(const ritz_output4_build *build,
            row - 1 + words / value <= build->header.nrow;
 }
 
+static void name_column(ritz_output4_build *build)
+{
+    snprintf(build->where, sizeof build->where, "column %" PRId64 " of '%s'",
+             build->column + 1, build->header.name);
+}
+
 ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
                                ritz_output4_build *out)
 {
@@ -145,6 +152,7 @@ ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
         .column = -1,
         .rule = header->bigmat ? BIGMAT : WORDS,
     };
+    name_column(out);
     return RITZ_OK;
 }
 
@@ -157,6 +165,7 @@ ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column)
                    "column %" PRId64 " of '%s' follows column %" PRId64, column,
                    build->header.name, build->column + 1);
     build->column = column - 1;
+    name_column(build);
     build->first = build->entries.count;
     build->below = 0;
     return RITZ_OK;
@@ -172,15 +181,13 @@ ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
                               int64_t count)
 {
     RITZ_REFUSE_IF(row < build->below, RITZ_ERR_FORMAT,
-                   "rows of column %" PRId64 " of '%s' do not ascend",
-                   build->column + 1, build->header.name);
-    RITZ_REFUSE_IF(
-        count > build->header.nrow || row > build->header.nrow - count,
-        RITZ_ERR_FORMAT,
-        "column %" PRId64 " of '%s' has %" PRId64 " values from row %" PRId64
-        ", but the matrix %" PRId64 " rows",
-        build->column + 1, build->header.name, count, row + 1,
-        build->header.nrow);
+                   "rows of %s do not ascend", build->where);
+    RITZ_REFUSE_IF(count > build->header.nrow ||
+                       row > build->header.nrow - count,
+                   RITZ_ERR_FORMAT,
+                   "%s has %" PRId64 " values from row %" PRId64
+                   ", but the matrix %" PRId64 " rows",
+                   build->where, count, row + 1, build->header.nrow);
     build->below = row + count;
     return ritz_triplets_reserve(&build->entries, count);
 }
@@ -189,9 +196,8 @@ ritz_status ritz_output4_put(ritz_output4_build *build, int64_t row, double re,
                              double im)
 {
     RITZ_REFUSE_IF(!isfinite(re) || !isfinite(im), RITZ_ERR_FORMAT,
-                   "row %" PRId64 " of column %" PRId64
-                   " of '%s' is not finite",
-                   row + 1, build->column + 1, build->header.name);
+                   "row %" PRId64 " of %s is not finite", row + 1,
+                   build->where);
     ritz_triplets_put_value(&build->entries, row, build->column, re, im);
     return RITZ_OK;
 }

@@ -61,10 +61,12 @@ static bool read_fields(const char *at, const char *end, const int64_t *width,
 static bool take_integers(const ritz_output4_reader *t, int64_t count,
                           int64_t *out)
 {
-    int64_t each = (t->text.line_end - t->text.line) / count;
+    const char *at = t->text.line;
+    int64_t each = (t->text.line_end - at) / count;
     const int64_t widths[3] = {each, each, each};
 
-    if (ritz_decimal_scan_row(t->text.line, t->text.line_end, count, out))
+    if (ritz_decimal_scan_wholes(&at, t->text.line_end, count, out) &&
+        at == t->text.line_end)
         return true;
     return (each == 8 || each == 16) &&
            t->text.line_end - t->text.line == each * count &&
@@ -193,19 +195,17 @@ static ritz_status read_number(const ritz_output4_reader *t,
     const char *at = left;
 
     RITZ_REFUSE_IF(left >= t->text.line_end, RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": column %" PRId64
-                   " of '%s' wants more numbers than the %" PRId64 " here",
-                   t->text.number, build->column + 1, build->header.name, k);
+                   "line %" PRId64 ": %s wants more numbers than the %" PRId64
+                   " here",
+                   t->text.number, build->where, k);
     end =
         t->text.line_end - left > t->width ? left + t->width : t->text.line_end;
     at = ritz_decimal_skip(at, end);
     RITZ_REFUSE_IF(!ritz_decimal_scan(&at, end, &number) ||
                        ritz_decimal_skip(at, end) != end,
                    RITZ_ERR_FORMAT,
-                   "line %" PRId64 ": '%.*s' in column %" PRId64
-                   " of '%s' is not a number",
-                   t->text.number, (int)(end - left), left, build->column + 1,
-                   build->header.name);
+                   "line %" PRId64 ": '%.*s' in %s is not a number",
+                   t->text.number, (int)(end - left), left, build->where);
     *out = number.value;
     return RITZ_OK;
 }
@@ -220,18 +220,17 @@ static ritz_status read_numbers(ritz_output4_reader *t,
     int64_t numbers = build->header.numbers;
 
     RITZ_REFUSE_IF(reals / 2 > t->text.end - t->text.at, RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' wants %" PRId64
+                   "%s wants %" PRId64
                    " numbers, more than are left in the file",
-                   build->column + 1, build->header.name, reals);
+                   build->where, reals);
     RITZ_CHECK(ritz_output4_rows(build, row, reals / numbers));
     for (int64_t done_ = 0; done_ < reals;) {
         int64_t here =
             reals - done_ < t->per_line ? reals - done_ : t->per_line;
 
         RITZ_REFUSE_IF(!take_line(t), RITZ_ERR_FORMAT,
-                       "column %" PRId64 " of '%s' ends after %" PRId64
-                       " of %" PRId64 " numbers",
-                       build->column + 1, build->header.name, done_, reals);
+                       "%s ends after %" PRId64 " of %" PRId64 " numbers",
+                       build->where, done_, reals);
         for (int64_t k = 0; k < here; k++) {
             RITZ_CHECK(read_number(t, build, k, &number[held++]));
             if (held < numbers)
@@ -244,9 +243,8 @@ static ritz_status read_numbers(ritz_output4_reader *t,
                 ritz_decimal_skip(t->text.line + here * t->width,
                                   t->text.line_end) != t->text.line_end,
             RITZ_ERR_FORMAT,
-            "line %" PRId64 ": column %" PRId64
-            " of '%s' wants no more than %" PRId64 " numbers here",
-            t->text.number, build->column + 1, build->header.name, here);
+            "line %" PRId64 ": %s wants no more than %" PRId64 " numbers here",
+            t->text.number, build->where, here);
         done_ += here;
     }
     return RITZ_OK;
@@ -259,17 +257,16 @@ static ritz_status take_string(ritz_output4_reader *t,
     int64_t integers[2] = {0};
 
     RITZ_REFUSE_IF(!take_line(t), RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' ends after %" PRId64
-                   " of %" PRId64 " words",
-                   build->column + 1, build->header.name, words - left, words);
+                   "%s ends after %" PRId64 " of %" PRId64 " words",
+                   build->where, words - left, words);
     RITZ_REFUSE_IF(
         !take_integers(t, ritz_output4_integers(build), integers) ||
             !ritz_output4_decode(build, integers, left, out),
         RITZ_ERR_FORMAT,
-        "line %" PRId64 ": '%.*s' begins no string of column %" PRId64
-        " of '%s', of which %" PRId64 " words are to come",
+        "line %" PRId64 ": '%.*s' begins no string of %s, of which %" PRId64
+        " words are to come",
         t->text.number, ritz_lines_quoted(t->text.line, t->text.line_end),
-        t->text.line, build->column + 1, build->header.name, left);
+        t->text.line, build->where, left);
     return RITZ_OK;
 }
 
@@ -277,8 +274,7 @@ static ritz_status read_dense(ritz_output4_reader *t, ritz_output4_build *build,
                               const int64_t n[3])
 {
     RITZ_REFUSE_IF(n[2] % build->header.numbers != 0, RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' has half a complex value", n[0],
-                   build->header.name);
+                   "%s has half a complex value", build->where);
     return read_numbers(t, build, n[1] - 1, n[2]);
 }
 

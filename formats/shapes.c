@@ -96,7 +96,8 @@ static ritz_status choose_modes(const char *list, const char *what,
 /* ---- points, how they move, and cells between them ---------------------- */
 
 /* Grids with a dof, in ascending order; index[k]: point of grid k, or -1. */
-static ritz_status list_points(const body *m, int64_t *index, ritz_shapes *out)
+static ritz_status list_points(const body *m, int64_t *index, bool *turns,
+                               ritz_shapes *out)
 {
     const ritz_grids *grids = m->grids;
 
@@ -107,6 +108,7 @@ static ritz_status list_points(const body *m, int64_t *index, ritz_shapes *out)
                         ? ritz_grids_find(grids, m->dof[i].grid)
                         : -1;
 
+        *turns = *turns || m->dof[i].component > 3;
         if (k >= 0)
             index[k] = 0;
         else if (i == 0 || m->dof[i].grid != m->dof[i - 1].grid)
@@ -151,14 +153,6 @@ static void place_motion(const body *m, const ritz_dense *T,
     }
 }
 
-static bool has_rotations(const body *m)
-{
-    for (int64_t i = 0; i < m->num_dofs; i++)
-        if (m->dof[i].component > 3)
-            return true;
-    return false;
-}
-
 /* Elements by points; a cell for each point if there are none. */
 static ritz_status list_cells(const body *m, ritz_shapes *out)
 {
@@ -192,15 +186,16 @@ static ritz_status place_shapes(const body *own, const ritz_dense *T,
     RITZ_OWN_ARRAY ritz_dof *dof = NULL;
     RITZ_OWN(ritz_dense) shape = {0};
     body all = *own;
+    bool turns = false;
 
     RITZ_CHECK(ritz_recovery_extend(own->recovery, own->num_dofs, own->dof, T,
                                     &dof, &shape));
     all.num_dofs += own->recovery->count;
     all.dof = dof;
     RITZ_CHECK_NEW(index, all.grids->count);
-    RITZ_CHECK(list_points(&all, index, out));
+    RITZ_CHECK(list_points(&all, index, &turns, out));
     RITZ_CHECK(ritz_dense_new(3 * out->num_points, shape.ncol, &out->u));
-    if (has_rotations(&all))
+    if (turns)
         RITZ_CHECK(ritz_dense_new(3 * out->num_points, shape.ncol, &out->turn));
     place_motion(&all, &shape, index, out);
     return list_cells(&all, out);
