@@ -124,39 +124,11 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Eight digits at once: pairs, fours and eight by shifts and products. */
-static bool eight_digits(const char *at, uint64_t *out)
-{
-    const uint64_t ones = UINT64_C(0x0101010101010101);
-    const uint64_t every_other = UINT64_C(0x000000ff000000ff);
-    uint64_t x = 0;
-
-    for (int k = 0; k < 8; k++)
-        x |= (uint64_t)(unsigned char)at[k] << 8 * k;
-    if ((x & 0xf0 * ones) != 0x30 * ones ||
-        ((x + 0x06 * ones) & 0xf0 * ones) != 0x30 * ones)
-        return false;
-    x -= 0x30 * ones;
-    x = 10 * x + (x >> 8);
-    *out = ((x & every_other) * UINT64_C(0x000f424000000064) +
-            ((x >> 16) & every_other) * UINT64_C(0x0000271000000001)) >>
-           32;
-    return true;
-}
-
 /* Digits from `at`; more than fit the mantissa are only counted. */
 static const char *scan_digits(const char *at, const char *end, reading *r)
 {
-    uint64_t eight = 0;
-
     while (r->mantissa == 0 && at < end && *at == '0')
         at++;
-    while (end - at >= 8 && r->digits + 8 <= MOST_DIGITS &&
-           eight_digits(at, &eight)) {
-        r->mantissa = UINT64_C(100000000) * r->mantissa + eight;
-        r->digits += 8;
-        at += 8;
-    }
     for (; at < end && is_digit(*at); at++) {
         if (r->digits < MOST_DIGITS)
             r->mantissa = 10 * r->mantissa + (uint64_t)(*at - '0');
