@@ -63,28 +63,17 @@ static ritz_status take_points(ritz_bulk_cards *all, const ritz_card *card,
                      &all->points);
 }
 
-/* SPC cards have a set id in front of what those of other sets have. */
-static ritz_status take_sid(const ritz_card *card, int32_t how, int64_t *next,
-                            int64_t *out)
-{
-    *next = 0;
-    if (how != RITZ_BULK_SPC)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_card_id(card, 0, out));
-    *next = 1;
-    return RITZ_OK;
-}
-
 /* ASET: ID C, four times. SPC: SID, then G C D, twice. */
 static ritz_status take_pairs(ritz_bulk_cards *all, const ritz_card *card,
                               int32_t how)
 {
     ritz_bulk_range range = {.line = card->entry->line, .each = true};
     int64_t width = how == RITZ_BULK_SPC ? 3 : 2;
-    int64_t first = 0;
+    int64_t first = how == RITZ_BULK_SPC; /* behind the set's id */
     double motion = 0.0;
 
-    RITZ_CHECK(take_sid(card, how, &first, &range.set));
+    if (first > 0)
+        RITZ_CHECK(ritz_card_id(card, 0, &range.set));
     for (int64_t k = first; k < card->count; k += width) {
         if (!*ritz_card_text(card, k) && !*ritz_card_text(card, k + 1))
             continue;
@@ -104,9 +93,10 @@ static ritz_status take_set(ritz_bulk_cards *all, const ritz_card *card,
                             int32_t how)
 {
     ritz_bulk_range range = {.line = card->entry->line};
-    int64_t first = 0;
+    int64_t first = how == RITZ_BULK_SPC;
 
-    RITZ_CHECK(take_sid(card, how, &first, &range.set));
+    if (first > 0)
+        RITZ_CHECK(ritz_card_id(card, 0, &range.set));
     RITZ_CHECK(ritz_card_directions(card, first, &range.mask));
     return take_list(card, first + 1, range, &all->ranges[how]);
 }
@@ -179,8 +169,7 @@ static const char *const CONSTRAINTS[] = {
     "RBAR1",  "RBE1",    "RBE2",   "RBE2GS",   "RBE3",    "RJOINT",
     "RROD",   "RSPLINE", "RSSCON", "RTRPLT",   "RTRPLT1"};
 
-/* Of tables whose rows begin with a name. */
-static int compare_name(const void *name, const void *row)
+int ritz_bulk_compare_name(const void *name, const void *row)
 {
     const char *const *one = row;
 
@@ -193,10 +182,10 @@ static const struct kind *find_kind(const char *name)
     static const struct kind constraint = {"", take_constraint, false};
 
     if (bsearch(name, CONSTRAINTS, sizeof CONSTRAINTS / sizeof *CONSTRAINTS,
-                sizeof *CONSTRAINTS, compare_name))
+                sizeof *CONSTRAINTS, ritz_bulk_compare_name))
         return &constraint;
     return bsearch(name, KINDS, sizeof KINDS / sizeof *KINDS, sizeof *KINDS,
-                   compare_name);
+                   ritz_bulk_compare_name);
 }
 
 static ritz_status take_cards(ritz_bulk_cards *all)

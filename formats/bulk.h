@@ -113,6 +113,9 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_deck *built, int64_t *count,
                                ritz_dof **out);
 
+/** For bsearch in tables whose rows begin with a name. */
+int ritz_bulk_compare_name(const void *name, const void *row);
+
 /** Copy the sentence of the latest failure. */
 ritz_status ritz_bulk_keep_sentence(char **out);
 
@@ -126,14 +129,5 @@ ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out);
  */
 ritz_status ritz_bulk_list_equations(const ritz_bulk_cards *all,
                                      ritz_deck *built);
-
-/* A constraint element as it becomes equations. */
-typedef struct ritz_bulk_tying {
-    const ritz_bulk_cards *all;
-    const ritz_deck *built;
-    const ritz_card *card;
-    const char *name; /* "RBE2 600" */
-    ritz_equations *out;
-} ritz_bulk_tying;
 
 #endif

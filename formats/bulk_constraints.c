@@ -8,7 +8,7 @@
  * What an element says that is not understood is kept as a sentence: only
  * matrices that still hold the dependent dofs need it.
  *
- * [Nastran1986], section 2.4.
+ * [Nastran1986], section 2.4; [MSC2012].
  */
 #include "base/alloc.h"
 #include "base/search.h"
@@ -21,6 +21,15 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+
+/* A constraint element as it becomes equations. */
+typedef struct ritz_bulk_tying {
+    const ritz_bulk_cards *all;
+    const ritz_deck *built;
+    const ritz_card *card;
+    const char *name; /* "RBE2 600" */
+    ritz_equations *out;
+} ritz_bulk_tying;
 
 enum { ALL_SIX = 0x7e }; /* bits of directions 1 to 6 */
 
@@ -181,7 +190,7 @@ static ritz_status tie_mpc(const ritz_bulk_tying *it)
 /* ---- rigid elements ----------------------------------------------------- */
 
 /*
- * Rigid elements of bulk data. Dependent dofs follow six independent ones:
+ * Dependent dofs follow six independent ones:
  *
  *     RBE2    EID GN CM GM1 GM2 ...                    all six of GN
  *     RBAR    EID GA GB CNA CNB CMA CMB                six of two grids
@@ -193,8 +202,6 @@ static ritz_status tie_mpc(const ritz_bulk_tying *it)
  * Where CMA, CMB and CMC are all blank, every dof of these grids that is not
  * independent depends. A thermal expansion coefficient behind them is passed
  * over.
- *
- * [Nastran1986], section 2.4; [MSC2012].
  */
 
 static ritz_status tie_all(const ritz_bulk_tying *it, const ritz_ties *from,

@@ -47,13 +47,6 @@ static const ritz_bulk_cell cells[] = {
     {"PLOTEL", 1, 1, RITZ_CELL_LINE, 0},
 };
 
-static int compare_name(const void *name, const void *cell)
-{
-    const ritz_bulk_cell *one = cell;
-
-    return strcmp(name, one->name);
-}
-
 /* Grids of a card, up to `most`; how many there are without a gap. */
 static int64_t take_grids(const ritz_card *card, const ritz_bulk_cell *cell,
                           int64_t most, int64_t *grid)
@@ -125,7 +118,7 @@ ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out)
     for (int64_t k = 0; k < cards->num_entries; k++) {
         const ritz_bulk_cell *cell =
             bsearch(cards->entry[k].name, cells, sizeof cells / sizeof *cells,
-                    sizeof *cells, compare_name);
+                    sizeof *cells, ritz_bulk_compare_name);
         ritz_status status = RITZ_OK;
 
         if (!cell)

@@ -9,8 +9,6 @@
 /* ---- axes --------------------------------------------------------------- */
 
 /*
- * Coordinate systems of bulk data.
- *
  *     A origin, B on the z axis, C in the x-z plane:
  *     e_z = (B - A) / |B - A|,  e_y ~ e_z x (C - A),  e_x = e_y x e_z
  *
@@ -316,9 +314,6 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
 /* ---- coordinate systems ------------------------------------------------- */
 
 /*
- * Coordinate systems of bulk data: their cards, and the order in which they are
- * resolved.
- *
  * Frames and grids refer to each other in any order. They are resolved depth
  * first with a stack of their own, so that a chain of a million frames is no
  * deeper than the heap.

@@ -9,6 +9,7 @@
 #include "formats/cards.h"
 #include "base/alloc.h"
 #include "base/text.h"
+#include "formats/decimal.h"
 
 #include <ritz/base.h>
 
@@ -54,12 +55,8 @@ static ritz_status take_selection(const ritz_lines *text, const char *word,
     at = memchr(at, '=', (size_t)(end - at));
     if (!at)
         return RITZ_OK;
-    for (at++; at < end && ritz_card_is_blank(*at); at++)
-        ;
-    for (; at < end && isdigit((unsigned char)*at) && set < INT64_MAX / 100;
-         at++)
-        set = 10 * set + (*at - '0');
-    if (set == 0)
+    at = ritz_decimal_skip(at + 1, end);
+    if (!ritz_decimal_scan_whole(&at, end, &set) || set <= 0)
         return RITZ_OK;
     RITZ_CHECK_ROOM(cards->selected[which], cards->num_selected[which],
                     cards->selected_room[which]);
@@ -131,19 +128,19 @@ static ritz_status include_name(ritz_lines *text, const char *at, char *name,
         quote = *at++;
     for (;;) {
         const char *stop = NULL;
-        int64_t length = end - at;
+        ritz_piece part = {at, end - at};
 
         if (quote)
-            stop = memchr(at, quote, (size_t)length);
+            stop = memchr(at, quote, (size_t)part.length);
         else
-            ritz_card_uncomment(at, &length);
+            ritz_card_uncomment(at, &part.length);
         if (stop)
-            length = stop - at;
-        ritz_card_trim(&at, &length);
-        RITZ_REFUSE_IF(used + (size_t)length >= size, RITZ_ERR_FORMAT,
+            part.length = stop - at;
+        part = ritz_piece_trim(part);
+        RITZ_REFUSE_IF(used + (size_t)part.length >= size, RITZ_ERR_FORMAT,
                        "the name that INCLUDE gives is too long");
-        memcpy(name + used, at, (size_t)length);
-        used += (size_t)length;
+        memcpy(name + used, part.text, (size_t)part.length);
+        used += (size_t)part.length;
         if (stop || !quote)
             break;
         RITZ_REFUSE_IF(!ritz_lines_next(text), RITZ_ERR_FORMAT,
@@ -300,7 +297,7 @@ static void copy_marker(ritz_piece piece, int64_t skipped,
 
     piece.text += skipped;
     piece.length -= skipped;
-    ritz_card_trim(&piece.text, &piece.length);
+    piece = ritz_piece_trim(piece);
     for (; k < piece.length && k < RITZ_CARD_NAME; k++)
         out[k] = ritz_card_upper(piece.text[k]);
     out[k] = '\0';
@@ -324,7 +321,7 @@ static void trailing_marker(const ritz_view *line, char out[RITZ_CARD_NAME + 1])
     ritz_piece last = line->marker;
 
     if (last.length > 0 && ritz_card_is_blank(*last.text)) {
-        ritz_card_trim(&last.text, &last.length);
+        last = ritz_piece_trim(last);
     } else if (last.length > 0 && !line->free && !has_plus(last)) {
         last.text++;
         last.length--;

@@ -160,8 +160,14 @@ static inline char ritz_card_upper(char c)
     return (char)toupper((unsigned char)c);
 }
 
-/** Leave out the blanks at both ends. */
-void ritz_card_trim(const char **text, int64_t *length);
+/* Part of a line. */
+typedef struct ritz_piece {
+    const char *text;
+    int64_t length;
+} ritz_piece;
+
+/** The same without the blanks at both ends. */
+ritz_piece ritz_piece_trim(ritz_piece piece);
 
 /** Leave out what stands behind a '$'. */
 void ritz_card_uncomment(const char *line, int64_t *length);
@@ -169,12 +175,6 @@ void ritz_card_uncomment(const char *line, int64_t *length);
 /** True if a line begins with @p word, in capitals; *rest: the text behind. */
 bool ritz_card_begins(const char *line, int64_t length, const char *word,
                       const char **rest);
-
-/* Part of a line. */
-typedef struct ritz_piece {
-    const char *text;
-    int64_t length;
-} ritz_piece;
 
 /* A line of whichever layout, taken apart; parts may point into `buffer`. */
 typedef struct ritz_view {

@@ -15,15 +15,17 @@
 #include "formats/decimal.h"
 
 #include <math.h>
+#include <strings.h>
 
-void ritz_card_trim(const char **text, int64_t *length)
+ritz_piece ritz_piece_trim(ritz_piece piece)
 {
-    while (*length > 0 && ritz_card_is_blank((*text)[*length - 1]))
-        (*length)--;
-    while (*length > 0 && ritz_card_is_blank(**text)) {
-        (*text)++;
-        (*length)--;
+    while (piece.length > 0 && ritz_card_is_blank(piece.text[piece.length - 1]))
+        piece.length--;
+    while (piece.length > 0 && ritz_card_is_blank(*piece.text)) {
+        piece.text++;
+        piece.length--;
     }
+    return piece;
 }
 
 void ritz_card_uncomment(const char *line, int64_t *length)
@@ -37,24 +39,15 @@ void ritz_card_uncomment(const char *line, int64_t *length)
 bool ritz_card_begins(const char *line, int64_t length, const char *word,
                       const char **rest)
 {
-    int64_t k = 0;
+    ritz_piece piece = ritz_piece_trim((ritz_piece){line, length});
+    int64_t size = (int64_t)strlen(word);
 
-    ritz_card_trim(&line, &length);
-    for (; word[k]; k++)
-        if (k == length || ritz_card_upper(line[k]) != word[k])
-            return false;
-    if (k < length && isalnum((unsigned char)line[k]))
+    if (piece.length < size ||
+        strncasecmp(piece.text, word, (size_t)size) != 0 ||
+        (piece.length > size && isalnum((unsigned char)piece.text[size])))
         return false;
-    *rest = line + k;
+    *rest = piece.text + size;
     return true;
-}
-
-static ritz_piece trim_piece(const char *text, const char *end)
-{
-    ritz_piece piece = {text, end - text};
-
-    ritz_card_trim(&piece.text, &piece.length);
-    return piece;
 }
 
 /* The name says how the line is to be read. */
@@ -91,7 +84,8 @@ static void split_free(const ritz_line *line, ritz_view *out)
 
     do {
         comma = memchr(at, ',', (size_t)(end - at));
-        item[count] = trim_piece(at, comma ? comma : end);
+        item[count] =
+            ritz_piece_trim((ritz_piece){at, (comma ? comma : end) - at});
         if (count++ == 0)
             take_name(item[0], out);
         at = comma ? comma + 1 : end;
@@ -133,9 +127,9 @@ static ritz_piece cut_columns(const ritz_view *line, int64_t length,
 static void split_fixed(const ritz_line *line, ritz_view *out)
 {
     int64_t length = expand_tabs(line, out->buffer);
-    ritz_piece name = cut_columns(out, length, 0, RITZ_CARD_NAME);
 
-    take_name(trim_piece(name.text, name.text + name.length), out);
+    take_name(ritz_piece_trim(cut_columns(out, length, 0, RITZ_CARD_NAME)),
+              out);
     for (int64_t k = 0; k < out->width; k++) {
         int64_t size = (RITZ_CARD_DATA - RITZ_CARD_NAME) / out->width;
         int64_t from = RITZ_CARD_NAME + k * size;
@@ -284,7 +278,7 @@ static ritz_status add_field(ritz_card *card, int64_t line, ritz_piece piece)
 {
     ritz_field *field = NULL;
 
-    ritz_card_trim(&piece.text, &piece.length);
+    piece = ritz_piece_trim(piece);
     if (piece.length >= RITZ_CARD_FIELD_SIZE)
         return ritz_cards_refuse(card->cards, line,
                                  "'%.16s...' in %s is too long for a field",

@@ -11,16 +11,6 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/* "output4, matrix-market or dmig" would age: the list comes from the table. */
-static void list_formats(char *text, size_t size)
-{
-    size_t used = 0;
-
-    for (int k = 0; ritz_formats[k] && used < size; k++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s",
-                                 k > 0 ? ", " : "", ritz_formats[k]->name);
-}
-
 static const ritz_format *recognise_bytes(const char *bytes, int64_t size)
 {
     for (int k = 0; ritz_formats[k]; k++)
@@ -46,9 +36,12 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
 ritz_status ritz_foreign_list(ritz_foreign *file)
 {
     char known[128] = "";
+    size_t used = 0;
 
     RITZ_REFUSE_IF(file->size == 0, RITZ_ERR_FORMAT, "is empty");
-    list_formats(known, sizeof known);
+    for (int k = 0; ritz_formats[k] && used < sizeof known; k++)
+        used += (size_t)snprintf(known + used, sizeof known - used, "%s%s",
+                                 k > 0 ? ", " : "", ritz_formats[k]->name);
     RITZ_REFUSE_IF(!file->format, RITZ_ERR_FORMAT,
                    "holds no matrix in a format that is known: %s", known);
     if (file->listing.count > 0) /* it is there already */

@@ -199,11 +199,9 @@ static ritz_status read_vector(hid_t at, const char *name, int64_t bytes,
 /* Values as they stand in memory now. */
 static ritz_mat_values values_of(const double *values, int64_t count)
 {
-    static const uint16_t one = 1;
-    const unsigned char *first = (const unsigned char *)&one;
-
     return (ritz_mat_values){(const unsigned char *)values, values ? count : 0,
-                             RITZ_BYTES_DOUBLE, *first == 0};
+                             RITZ_BYTES_DOUBLE,
+                             __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__};
 }
 
 /* One number of an attribute; -1 if it is not there. */

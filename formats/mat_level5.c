@@ -252,23 +252,7 @@ static void queue_free(queue *waiting)
     free(waiting->item);
 }
 
-static ritz_status take_field(mat_reader *r, const mat_array *a,
-                              const char *name, int64_t length, pending *out)
-{
-    mat_element field = {0};
-    char whole[JOINED];
-
-    RITZ_CHECK(take_element(r, &field));
-    RITZ_REFUSE_IF(field.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
-                   "'%s': a field of type %d where an array is due", a->name,
-                   field.type);
-    RITZ_CHECK(join_names(a->name, name, length, whole));
-    snprintf(out->outer, sizeof out->outer, "%.*s", RITZ_NAME_SIZE - 1, whole);
-    out->inside =
-        (mat_reader){field.at, field.at, field.at + field.bytes, r->swap};
-    return RITZ_OK;
-}
-
+/* Queue the arrays of a struct under their joined names. */
 static ritz_status read_struct(mat_reader *r, const mat_array *a, int depth,
                                queue *fields)
 {
@@ -283,12 +267,22 @@ static ritz_status read_struct(mat_reader *r, const mat_array *a, int depth,
                    "'%s': %" PRId64 " bytes are no names of %" PRId64 " each",
                    a->name, names.bytes, length);
     for (int64_t k = 0; k < names.bytes / length; k++) {
-        pending field = {.depth = depth + 1};
+        pending *field = NULL;
+        mat_element e = {0};
+        char whole[JOINED];
 
-        RITZ_CHECK(take_field(r, a, (const char *)names.at + k * length, length,
-                              &field));
+        RITZ_CHECK(take_element(r, &e));
+        RITZ_REFUSE_IF(e.type != RITZ_MAT_MATRIX, RITZ_ERR_FORMAT,
+                       "'%s': a field of type %d where an array is due",
+                       a->name, e.type);
+        RITZ_CHECK(join_names(a->name, (const char *)names.at + k * length,
+                              length, whole));
         RITZ_CHECK_ROOM(fields->item, fields->count, fields->room);
-        fields->item[fields->count++] = field;
+        field = &fields->item[fields->count++];
+        *field = (pending){.inside = {e.at, e.at, e.at + e.bytes, r->swap},
+                           .depth = depth + 1};
+        snprintf(field->outer, sizeof field->outer, "%.*s", RITZ_NAME_SIZE - 1,
+                 whole);
     }
     return RITZ_OK;
 }
