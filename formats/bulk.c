@@ -169,23 +169,16 @@ static const char *const CONSTRAINTS[] = {
     "RBAR1",  "RBE1",    "RBE2",   "RBE2GS",   "RBE3",    "RJOINT",
     "RROD",   "RSPLINE", "RSSCON", "RTRPLT",   "RTRPLT1"};
 
-int ritz_bulk_compare_name(const void *name, const void *row)
-{
-    const char *const *one = row;
-
-    return strcmp(name, *one);
-}
-
 /* How a card is taken, if it says something of grids or sets. */
 static const struct kind *find_kind(const char *name)
 {
     static const struct kind constraint = {"", take_constraint, false};
 
     if (bsearch(name, CONSTRAINTS, sizeof CONSTRAINTS / sizeof *CONSTRAINTS,
-                sizeof *CONSTRAINTS, ritz_bulk_compare_name))
+                sizeof *CONSTRAINTS, ritz_cards_compare_name))
         return &constraint;
     return bsearch(name, KINDS, sizeof KINDS / sizeof *KINDS, sizeof *KINDS,
-                   ritz_bulk_compare_name);
+                   ritz_cards_compare_name);
 }
 
 static ritz_status take_cards(ritz_bulk_cards *all)

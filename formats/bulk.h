@@ -113,9 +113,6 @@ ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
                                const ritz_deck *built, int64_t *count,
                                ritz_dof **out);
 
-/** For bsearch in tables whose rows begin with a name. */
-int ritz_bulk_compare_name(const void *name, const void *row);
-
 /** Copy the sentence of the latest failure. */
 ritz_status ritz_bulk_keep_sentence(char **out);
 

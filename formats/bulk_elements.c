@@ -118,7 +118,7 @@ ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out)
     for (int64_t k = 0; k < cards->num_entries; k++) {
         const ritz_bulk_cell *cell =
             bsearch(cards->entry[k].name, cells, sizeof cells / sizeof *cells,
-                    sizeof *cells, ritz_bulk_compare_name);
+                    sizeof *cells, ritz_cards_compare_name);
         ritz_status status = RITZ_OK;
 
         if (!cell)

@@ -14,7 +14,6 @@
 #include <ritz/base.h>
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdio.h>
 
 enum { RITZ_CARDS_DEEPEST = 16 };
@@ -457,24 +456,6 @@ static ritz_status check_reach(const ritz_cards *cards)
 
 /* ---- decks -------------------------------------------------------------- */
 
-ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
-                              const char *format, ...)
-{
-    const ritz_line *at = &cards->line[line];
-    const char *path = cards->file[at->file].path;
-    char sentence[400];
-    va_list args;
-
-    va_start(args, format);
-    vsnprintf(sentence, sizeof sentence, format, args);
-    va_end(args);
-    if (path)
-        return ritz_fail(RITZ_ERR_FORMAT, "'%s', line %" PRId64 ": %s", path,
-                         at->number, sentence);
-    return ritz_fail(RITZ_ERR_FORMAT, "line %" PRId64 ": %s", at->number,
-                     sentence);
-}
-
 ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
                              const char *folder, ritz_cards *out)
 {
@@ -502,16 +483,6 @@ void ritz_cards_free(ritz_cards *cards)
     free(cards->selected[0]);
     free(cards->selected[1]);
     *cards = (ritz_cards){0};
-}
-
-/* ---- what the case control selects -------------------------------------- */
-
-int ritz_cards_compare_ids(const void *left, const void *right)
-{
-    const int64_t *a = left;
-    const int64_t *b = right;
-
-    return (*a > *b) - (*a < *b);
 }
 
 bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set)

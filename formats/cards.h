@@ -129,6 +129,9 @@ void ritz_cards_free(ritz_cards *cards);
 /** Order of two int64_t, and of structs that begin with an id. */
 int ritz_cards_compare_ids(const void *left, const void *right);
 
+/** For bsearch in tables whose rows begin with a name. */
+int ritz_cards_compare_name(const void *name, const void *row);
+
 /** True if a set of SPC or MPC cards acts; the selected sets are sorted. */
 bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set);
 

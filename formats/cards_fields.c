@@ -14,7 +14,10 @@
 #include "formats/cards.h"
 #include "formats/decimal.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <strings.h>
 
 ritz_piece ritz_piece_trim(ritz_piece piece)
@@ -155,6 +158,39 @@ void ritz_view_look(const ritz_line *line, ritz_view *out)
 }
 
 /* ---- values ------------------------------------------------------------- */
+
+int ritz_cards_compare_ids(const void *left, const void *right)
+{
+    const int64_t *a = left;
+    const int64_t *b = right;
+
+    return (*a > *b) - (*a < *b);
+}
+
+int ritz_cards_compare_name(const void *name, const void *row)
+{
+    const char *const *one = row;
+
+    return strcmp(name, *one);
+}
+
+ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
+                              const char *format, ...)
+{
+    const ritz_line *at = &cards->line[line];
+    const char *path = cards->file[at->file].path;
+    char sentence[400];
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    if (path)
+        return ritz_fail(RITZ_ERR_FORMAT, "'%s', line %" PRId64 ": %s", path,
+                         at->number, sentence);
+    return ritz_fail(RITZ_ERR_FORMAT, "line %" PRId64 ": %s", at->number,
+                     sentence);
+}
 
 const char *ritz_card_text(const ritz_card *card, int64_t k)
 {
