@@ -77,7 +77,7 @@ END
 expect 1 'the loop is unstable, pole at +0.028934' ritz-frf whole.h5 \
     --to-hz 0.5 --controller drive.h5 --connect tip=u1 --connect y1=tip \
     -o none.h5
-expect 0 'this is the response of nothing' ritz-frf whole.h5 --to-hz 0.5 \
+expect 0 'what is written is no steady response' ritz-frf whole.h5 --to-hz 0.5 \
     --controller drive.h5 --connect tip=u1 --connect y1=tip --force -o any.h5
 expect 0 'the loop is stable' ritz-frf chain.h5 --to-hz 0.5 \
     --controller drive.h5 --connect tip=u1 --connect y1=tip \

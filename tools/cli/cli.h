@@ -49,7 +49,7 @@ typedef struct cli_list {
 typedef struct cli_option {
     cli_kind kind;
     char letter; /* for -o, -q and -h alone */
-    union {      /* where the default is, and then the answer */
+    union {      /* where the default is, and then the value */
         void (*action)(void);
         bool *flag;
         int64_t *whole;
@@ -185,7 +185,7 @@ ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest);
 
 /**
  * Check that a file can be made at @p path, before the work that it is to hold:
- * one is, beside it, and removed. cli_input asks it of -o by itself.
+ * one is made in its folder and removed. cli_input checks -o by itself.
  */
 ritz_status cli_can_write(const char *path);
 

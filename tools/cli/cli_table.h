@@ -1,4 +1,4 @@
-/* A text that a tool writes beside its output, whole or not at all. */
+/* A text that a tool writes in addition to its output, whole or not at all. */
 #ifndef RITZ_TOOLS_CLI_CLI_TABLE_H
 #define RITZ_TOOLS_CLI_CLI_TABLE_H
 

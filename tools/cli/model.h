@@ -44,7 +44,7 @@ typedef struct model {
     ritz_state_space states;
     ritz_simulation simulation;
     ritz_configuration *at; /* of a system, once model_at has chosen */
-    ritz_damping damping;   /* beside that of matrices, as model_settle found */
+    ritz_damping damping;   /* added to that of matrices; by model_settle */
 } model;
 
 /* Options that choose or change a model before it is used. */

@@ -80,8 +80,7 @@ static void say_composite(cli_run *run, const ritz_stage *first,
             scene->composite_tolerance);
     if (completed > 0)
         cli_say(run,
-                "%ld modes are kept beside those chosen, as a cluster is "
-                "never split.",
+                "%ld modes are kept in addition, as a cluster is never split.",
                 completed);
     if (c->removed)
         return;
@@ -120,7 +119,7 @@ static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
     sink_end(run);
 }
 
-/* Static corrections by the forces that they answer; there may be none. */
+/* Static corrections, each for a set of forces; there may be none. */
 static void say_candidates(cli_run *run, const ritz_stage *first,
                            const ritz_comparison *c)
 {
@@ -130,8 +129,7 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
 
     sink_list(run, "candidates");
     if (c->num_candidates > 0) {
-        cli_say(run,
-                "\nStatic corrections of %s, by the forces that they answer",
+        cli_say(run, "\nStatic corrections of %s, for these forces",
                 c->candidate[0].level == RITZ_AUGMENT_COMPONENT
                     ? "each component, with its rigid modes, once for all "
                       "angles"

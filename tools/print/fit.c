@@ -292,7 +292,7 @@ static void say_bounds(const cli_run *run, const ritz_measures *estimates)
     }
 }
 
-static void say_answer(cli_run *run, const ritz_fitter *fitter,
+static void say_result(cli_run *run, const ritz_fitter *fitter,
                        const ritz_fit *fit)
 {
     const ritz_fit_candidate *c = &fit->candidate[fit->chosen];
@@ -320,7 +320,7 @@ static void say_answer(cli_run *run, const ritz_fitter *fitter,
     sink_end(run);
 }
 
-/* The search: tolerance, table of methods, answer, reason. */
+/* The search: tolerance, table of methods, result, reason. */
 static void say_fit(cli_run *run, const ritz_fitter *fitter,
                     const ritz_fit *fit)
 {
@@ -344,7 +344,7 @@ static void say_fit(cli_run *run, const ritz_fitter *fitter,
         say_item(run, find_best(fit, m), fit->method[m]->name);
     sink_end(run);
     if (fit->chosen >= 0)
-        say_answer(run, fitter, fit);
+        say_result(run, fitter, fit);
     sink_say(run, "why", "\nWhy: %s.", fit->why);
 }
 
@@ -369,7 +369,7 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
     sink_end(run);
 }
 
-/* Orders and errors of the answer with its bodies cut to first columns. */
+/* Orders and errors of the result with its bodies cut to first columns. */
 static void set_step(cli_run *run, const ritz_fitter *fitter,
                      const ritz_fit_candidate *row)
 {
@@ -542,28 +542,28 @@ static ritz_status fit_component(fit_run *f)
     return end_search(f, find_smallest(f, &full, fitter));
 }
 
-static ritz_status fit_scene(fit_run *f)
+static ritz_status fit_scene(fit_run *f, ritz_scene *scene)
 {
     const char *path = f->run->operand[0];
     const fit_options *given = f->given;
     RITZ_OWN(ritz_fitter) *fitter = NULL;
-    RITZ_OWN(ritz_scene) scene = {0};
 
     RITZ_REFUSE_IF(
         given->damper.count > 0 || given->request.attach, RITZ_ERR_ARGUMENT,
         "'%s' is a scene: --damper and --attach are for components", path);
-    RITZ_CHECK(model_scene(f->run, path, &scene));
-    f->scene = &scene;
+    RITZ_CHECK(model_scene(f->run, path, scene));
+    f->scene = scene;
     RITZ_CHECK(foresee_files(f));
-    if (*scene.name)
-        snprintf(f->subject, sizeof f->subject, "%s", scene.name);
-    RITZ_CHECK_IN(path, ritz_fitter_scene(&scene, &given->request, &fitter));
+    if (*scene->name)
+        snprintf(f->subject, sizeof f->subject, "%s", scene->name);
+    RITZ_CHECK_IN(path, ritz_fitter_scene(scene, &given->request, &fitter));
     return end_search(f, find_smallest(f, NULL, fitter));
 }
 
 ritz_status fit_search(cli_run *run, fit_options *given)
 {
     ritz_status status = RITZ_OK;
+    RITZ_OWN(ritz_scene) scene = {0};
     fit_run f = {.run = run, .given = given};
     const char *slash = strrchr(*run->operand, '/');
 
@@ -579,8 +579,8 @@ ritz_status fit_search(cli_run *run, fit_options *given)
         RITZ_CHECK_IN("--damping",
                       ritz_damping_parse(given->damping,
                                          &given->request.tolerance.damping));
-    status =
-        ritz_container_is(run->operand[0]) ? fit_component(&f) : fit_scene(&f);
+    status = ritz_container_is(run->operand[0]) ? fit_component(&f)
+                                                : fit_scene(&f, &scene);
     free(f.there);
     return status;
 }

@@ -36,7 +36,7 @@ static ritz_status join_signals(cli_run *run, const loop_options *given,
     return RITZ_OK;
 }
 
-/* A response of an unstable loop is the response of nothing. */
+/* An unstable loop has no steady response. */
 static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
                                  bool force)
 {
@@ -54,9 +54,10 @@ static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
         "it all the same with --force",
         text);
     if (probe.verdict == RITZ_UNSTABLE)
-        cli_warn(run,
-                 "the loop is unstable, %s: this is the response of nothing",
-                 text);
+        cli_warn(
+            run,
+            "the loop is unstable, %s: what is written is no steady response",
+            text);
     return RITZ_OK;
 }
 

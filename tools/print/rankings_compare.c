@@ -59,7 +59,9 @@ ritz_status contest_new(const rank_result *result, bool all, contest *out)
 
     for (int64_t g = 0; g < result->count; g++)
         count += result->group[g].all.count;
-    RITZ_CHECK_NEW(c.ranking, count);
+    c.ranking = ritz_zalloc(count, sizeof(void *));
+    if (!c.ranking)
+        return RITZ_ERR_MEMORY;
     RITZ_CHECK_NEW(c.track, count);
     RITZ_CHECK_NEW(c.name, count);
     for (int64_t g = 0; g < result->count; g++) {
