@@ -7,36 +7,17 @@
 
 # --- the spacecraft, at few angles so as to be quick ---------------------------
 
-expect 0 '' import_body rotor -q --port bearing=1 --port boom=33 \
-    --units 'kg m s' -o rotor.h5
-expect 0 '' import_body stator -q --port bearing=1 --port scan=5 \
-    --units 'kg m s' -o stator.h5
-expect 0 '' import_body platform -q --port scan=1 --units 'kg m s' \
-    -o platform.h5
+import_spacecraft --port boom=33
 
-# scene NAME KEYS...: a scene of the three, with these keys beside them.
+# scene NAME KEY...: one of these, with inputs and outputs.
 scene() {
-    file=$1.yaml
+    name=$1
     shift
-    cat >"$file" <<'END'
-scene: two bodies and a platform
-components:
-  rotor: {model: rotor.h5, basis: macneal-rubin, modes: 12}
-  stator: {model: stator.h5, basis: craig-bampton, modes: 4}
-  platform: {model: platform.h5, basis: rigid}
-joints:
-  - {name: clock, between: [rotor/bearing, stator/bearing], type: hinge, axis: [0, 0, 1], angles_deg: [0, 90]}
-  - {name: cone, between: [stator/scan, platform/scan], type: hinge, axis: [0, 1, 0], angles_deg: [0]}
-inputs:
-  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}
-  - {name: thruster, at: rotor/boom, component: [1, 3]}
-outputs:
-  - {name: gyro, at: platform/scan, component: 6}
-  - {name: tip, at: rotor/boom, component: 3}
-band_hz: [0, 2]
-damping: {modal: 0.002}
-END
-    for key in "$@"; do echo "$key" >>"$file"; done
+    spacecraft "$name" 'inputs:' \
+        '  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}' \
+        '  - {name: thruster, at: rotor/boom, component: [1, 3]}' 'outputs:' \
+        '  - {name: gyro, at: platform/scan, component: 6}' \
+        '  - {name: tip, at: rotor/boom, component: 3}' 'band_hz: [0, 2]' "$@"
 }
 
 # --- what stage two is made from ------------------------------------------------

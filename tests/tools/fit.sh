@@ -46,25 +46,10 @@ works '  leave nothing behind' test ! -e no.h5
 
 # --- a scene -------------------------------------------------------------------------
 
-expect 0 '' import_body rotor -q --port bearing=1 --units 'kg m s' -o rotor.h5
-expect 0 '' import_body stator -q --port bearing=1 --port scan=5 \
-    --units 'kg m s' -o stator.h5
-expect 0 '' import_body platform -q --port scan=1 --units 'kg m s' \
-    -o platform.h5
-cat >scene.yaml <<'END'
-scene: two bodies and a platform
-components:
-  rotor: {model: rotor.h5, basis: macneal-rubin, modes: 12}
-  stator: {model: stator.h5, basis: craig-bampton, modes: 4}
-  platform: {model: platform.h5, basis: rigid}
-joints:
-  - {name: clock, between: [rotor/bearing, stator/bearing], type: hinge, axis: [0, 0, 1], angles_deg: [0, 90]}
-  - {name: cone, between: [stator/scan, platform/scan], type: hinge, axis: [0, 1, 0], angles_deg: [0]}
-inputs: [{name: motor, at: rotor/bearing, component: 6, against: stator/bearing}]
-outputs: [{name: gyro, at: platform/scan, component: 6}]
-band_hz: [0, 5]
-damping: {modal: 0.002}
-END
+import_spacecraft
+spacecraft scene 'band_hz: [0, 5]' \
+    'inputs: [{name: motor, at: rotor/bearing, component: 6, against: stator/bearing}]' \
+    'outputs: [{name: gyro, at: platform/scan, component: 6}]'
 expect 0 'at 2 configurations, and 4 more at random' ritz-fit scene.yaml \
     --tolerance flexible=1e-1 --methods craig-bampton --components s- -o s.h5
 expect 0 'nested' ritz-info s-rotor.h5
