@@ -245,6 +245,27 @@ static ritz_status make_basis(const ritz_held *p, const ritz_dense *C,
                                      T);
 }
 
+/* A matrix of a body, by its offset in the component. */
+static const ritz_sparse *body_matrix(const ritz_component *body, size_t offset)
+{
+    return (const ritz_sparse *)(const void *)((const char *)body + offset);
+}
+
+/* Append a block of a block diagonal, rows from @p row, columns from @p col. */
+static void append_block(const ritz_sparse *part, int64_t row, int64_t col,
+                         ritz_sparse *A)
+{
+    for (int64_t j = 0; j < part->ncol; j++) {
+        int64_t at = A->colptr[col + j];
+
+        for (int64_t e = part->colptr[j]; e < part->colptr[j + 1]; e++) {
+            A->rowind[at] = row + part->rowind[e];
+            A->val[at++] = part->val[e];
+        }
+        A->colptr[col + j + 1] = at;
+    }
+}
+
 /*
  * A matrix of each body, by its offset in the component, on a block diagonal:
  * rows from @p first, columns those of the body; {0} if no body has it.
@@ -254,30 +275,27 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
                                   ritz_sparse *out)
 {
     RITZ_OWN(ritz_sparse) A = {0};
-    int64_t nnz = 0, at = 0;
+    int64_t nnz = 0;
     bool any = false;
 
-    for (int pass = 0; pass < 2; pass++) {
-        for (int64_t k = 0; k < p->count; k++) {
-            const ritz_sparse *part =
-                (const ritz_sparse *)(const void *)((const char *)&p->body[k] +
-                                                    offset);
+    for (int64_t k = 0; k < p->count; k++) {
+        const ritz_sparse *part = body_matrix(&p->body[k], offset);
 
-            any = any || part->colptr;
-            nnz += part->colptr ? part->colptr[part->ncol] : 0;
-            for (int64_t j = 0; j < p->body[k].num_dofs && pass == 1; j++) {
-                for (int64_t e = part->colptr ? part->colptr[j] : 0;
-                     part->colptr && e < part->colptr[j + 1]; e++) {
-                    A.rowind[at] = first[k] + part->rowind[e];
-                    A.val[at++] = part->val[e];
-                }
-                A.colptr[p->first[k] + j + 1] = at;
-            }
-        }
-        if (!any)
-            return RITZ_OK;
-        if (pass == 0)
-            RITZ_CHECK(ritz_sparse_new(rows, p->num_dofs, nnz, &A));
+        any = any || part->colptr;
+        nnz += part->colptr ? part->colptr[part->ncol] : 0;
+    }
+    if (!any)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_new(rows, p->num_dofs, nnz, &A));
+    for (int64_t k = 0; k < p->count; k++) {
+        const ritz_sparse *part = body_matrix(&p->body[k], offset);
+        const int64_t col = p->first[k];
+
+        if (part->colptr)
+            append_block(part, first[k], col, &A);
+        else
+            for (int64_t j = 0; j < p->body[k].num_dofs; j++)
+                A.colptr[col + j + 1] = A.colptr[col];
     }
     RITZ_MOVE(*out, A);
     return RITZ_OK;

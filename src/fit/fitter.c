@@ -286,6 +286,7 @@ static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
                    "a tolerance of 'mac' needs inputs or outputs: of a scene "
                    "it is that of what they see");
     f->largest = f->request.largest > 0 ? f->request.largest : INT64_MAX;
+    settle_limits(f->place[0].reference, limits);
     return RITZ_OK;
 }
 
@@ -313,38 +314,35 @@ static ritz_status open_component(const ritz_component *component,
     if (component->dampers.count == 0) /* bases do not see them */
         RITZ_CHECK(ritz_fit_estimator(f, component, &f->place[0]));
     f->largest = largest_order(f);
-    return RITZ_OK;
-}
-
-/* The full model of a component or of a scene, the other being NULL. */
-static ritz_status open_fitter(const ritz_component *component,
-                               const ritz_scene *scene,
-                               const ritz_fit_request *request,
-                               ritz_fitter **out)
-{
-    RITZ_OWN(ritz_fitter) *f = NULL;
-
-    RITZ_CHECK_NEW(f, 1);
-    f->request = *request;
-    f->component = component;
-    f->scene = scene;
-    RITZ_CHECK(scene ? open_scene(scene, f) : open_component(component, f));
-    settle_limits(f->place[0].reference, &f->request.tolerance);
-    RITZ_MOVE(*out, f);
+    settle_limits(f->place[0].reference, limits);
     return RITZ_OK;
 }
 
 ritz_status ritz_fitter_new(const ritz_component *component,
                             const ritz_fit_request *request, ritz_fitter **out)
 {
-    return open_fitter(component, NULL, request, out);
+    RITZ_OWN(ritz_fitter) *f = NULL;
+
+    RITZ_CHECK_NEW(f, 1);
+    f->request = *request;
+    f->component = component;
+    RITZ_CHECK(open_component(component, f));
+    RITZ_MOVE(*out, f);
+    return RITZ_OK;
 }
 
 ritz_status ritz_fitter_scene(const ritz_scene *scene,
                               const ritz_fit_request *request,
                               ritz_fitter **out)
 {
-    return open_fitter(NULL, scene, request, out);
+    RITZ_OWN(ritz_fitter) *f = NULL;
+
+    RITZ_CHECK_NEW(f, 1);
+    f->request = *request;
+    f->scene = scene;
+    RITZ_CHECK(open_scene(scene, f));
+    RITZ_MOVE(*out, f);
+    return RITZ_OK;
 }
 
 const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter)

@@ -566,6 +566,7 @@ static void give_channels(const overlay *o)
     const channel *all = o->channel;
     picture *p = o->picture;
     const int64_t n = o->num_channels, across = n > 1 ? 2 : 1;
+    const int64_t down = (n + across - 1) / across;
     const int strips = o->strip[RELATIVE] + o->strip[DECIBELS];
     const int tall = CELL_HIGH + (strips > 1 ? STRIP_HIGH : 0);
     const struct {
@@ -577,7 +578,7 @@ static void give_channels(const overlay *o)
                 {"decibel_low", &all->low[1]}, {"decibel_high", &all->high[1]}};
 
     p->wide = (double)(across * CELL_WIDE);
-    p->body = (double)((n + across - 1) / across * tall);
+    p->body = (double)(down * tall);
     fprintf(p->given.file,
             "channels = %ld\nacross = %ld\ntall = %d\ncurves = %ld\n"
             "strips = %d\ndecibels = %d\nx_low = %.9g\nx_high = %.9g\n"

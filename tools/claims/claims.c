@@ -79,11 +79,10 @@ static size_t count_room(const char *text)
 static ritz_status cut_line(const claims_state *state, const char *text,
                             claims_line *line)
 {
-    char *out = malloc(count_room(text));
+    char *out = NULL;
 
-    line->room = out;
-    line->count = 0;
-    RITZ_REFUSE_IF(!out, RITZ_ERR_MEMORY, "no memory for a line");
+    RITZ_CHECK_NEW(line->room, (int64_t)count_room(text));
+    out = line->room;
     for (text += strspn(text, " \t"); *text && *text != '#';
          text += strspn(text, " \t")) {
         RITZ_REFUSE_IF(line->count == CLAIMS_MOST_WORDS, RITZ_ERR_FORMAT,
