@@ -2,8 +2,8 @@
  * Audit of a component before it is reduced, of a reduced component or of a
  * state space. Each check has a measured value, a limit, a verdict, and the
  * grids concerned. docs/check.md and docs/methods/stability.md list the checks,
- * what each measures and where its limit comes from; a check that does not apply
- * to a model is left out.
+ * what each measures and where its limit comes from; a check that does not
+ * apply to a model is left out.
  */
 #ifndef RITZ_CHECK_H
 #define RITZ_CHECK_H
@@ -71,7 +71,8 @@ ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out);
 
 /**
  * M x'' + D x' + K x = 0: first M, which must have no negative eigenvalue, then
- * K, none of a motion that is not rigid, then the poles of the quadratic pencil.
+ * K, none of a motion that is not rigid, then the poles of the quadratic
+ * pencil.
  *
  * @param[in] D        may be {0}; need not be symmetric
  * @param[in] damping  ratios in addition to D, by modes; NULL: none
@@ -85,8 +86,8 @@ ritz_status ritz_probe_second_order(const ritz_dense *K, const ritz_dense *M,
  * Whether any motion can grow, alone or in an assembly.
  *
  * Where M, K and D are semidefinite, nothing can grow with any passive system
- * attached: the checks that follow say so and compute nothing. The interface are
- * the ports or, without ports, the inputs.
+ * attached: the checks that follow say so and compute nothing. The interface
+ * are the ports or, without ports, the inputs.
  *
  * @cost  an eigenproblem of M, K and D each; of others some fifty of 2r states
  */

@@ -1,8 +1,8 @@
 /*
- * Every error measure between a full and a reduced model, one row each. Options,
- * help, verification, fit, records and charts read this table; a new measure is
- * one name in RITZ_EACH_MEASURE, one row of src/verify/measures.c, its function
- * there, and one line in docs/methods/verify.md.
+ * Every error measure between a full and a reduced model, one row each.
+ * Options, help, verification, fit, records and charts read this table; a new
+ * measure is one name in RITZ_EACH_MEASURE, one row of src/verify/measures.c,
+ * its function there, and one line in docs/methods/verify.md.
  */
 #ifndef RITZ_VERIFY_H
 #define RITZ_VERIFY_H
@@ -142,8 +142,8 @@ ritz_status ritz_verify_system(const ritz_component *full,
 
 /**
  * Two models in first-order form, of the same inputs and outputs; outputs that
- * have a limit in @p full are divided by it. Poles that are not left of the axis
- * are left out of norms if both models have as many.
+ * have a limit in @p full are divided by it. Poles that are not left of the
+ * axis are left out of norms if both models have as many.
  *
  * @return RITZ_ERR_ARGUMENT if names differ, or a limit is set for a measure
  *         that does not exist
@@ -175,9 +175,9 @@ const char *ritz_tolerance_word(const char *measure);
 /**
  * Flexible static gain C Phi_f Lambda_f^-1 Phi_f' B of a dense model.
  *
- * @param[in] num_rigid  rigid modes of the full model, 0: not known. At least as
- *                       many of the lowest modes are left out: a reduction that
- *                       represents a rigid motion badly has it at some
+ * @param[in] num_rigid  rigid modes of the full model, 0: not known. As many at
+ *                       least of the lowest modes are left out: a reduction
+ *                       that represents a rigid motion badly has it at some
  *                       frequency, which is no compliance
  */
 ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
@@ -193,8 +193,8 @@ ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
 
 /*
  * A full model prepared once for comparison with many reductions of it: its
- * modes to three times the band, the static response of the modes above, and its
- * responses at every frequency of comparison.
+ * modes to three times the band, the static response of the modes above, and
+ * its responses at every frequency of comparison.
  */
 
 typedef struct ritz_reference ritz_reference;
@@ -242,7 +242,9 @@ ritz_status ritz_reference_measure_at(const ritz_reference *reference,
                                       const ritz_verify_request *limits,
                                       int where, ritz_measures *out);
 
-/** Number of flexible modes of the full model in the band, and of rigid ones. */
+/**
+ * Number of flexible modes of the full model in the band, and of rigid ones.
+ */
 int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid);
 
 /**
@@ -266,9 +268,9 @@ double ritz_random_next(uint64_t *state);
  *     frequency-relative-bound    upper bound of ritz-verify's measure
  *                                 frequency-relative; none without modes
  *     frequency-relative-least    lower bound of it; none if it may be 0
- *     missing-modes-bound         upper bound of its missing-modes: full modes in
- *                                 the band of which no reduced one is proven to
- *                                 hold half
+ *     missing-modes-bound         upper bound of its missing-modes: full modes
+ *                                 in the band of which no reduced one is proven
+ *                                 to hold half
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
  *                                 points too, for ratios common to all modes
  *                                 and for D = a M + b K

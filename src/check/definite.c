@@ -39,7 +39,8 @@ static void name_column(const ritz_reduced *reduced, int64_t j,
              ritz_column_name(columns->kind[j]), detail);
 }
 
-/* Participation of coordinate j: unlike lengths and angles, energies compare. */
+/* Participation of coordinate j: unlike lengths and angles, energies
+   compare. */
 static double share_of(const ritz_checker *it, const double *motion, int64_t j)
 {
     double m = fabs(ritz_dense_col(&it->model.M, j)[j]);
@@ -128,7 +129,8 @@ double ritz_least_rounding(const ritz_dense *A)
     return -RITZ_POLE_BOUND_FACTOR * (double)A->nrow * DBL_EPSILON;
 }
 
-/* Say that no eigenvalue is below a limit, or @p bad and where the motion is. */
+/* Say that no eigenvalue is below a limit, or @p bad and where the motion
+   is. */
 static void say_least(ritz_checker *it, const char *name,
                       const ritz_least_value *found, double limit,
                       ritz_verdict verdict, const char *bad)

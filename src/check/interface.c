@@ -67,7 +67,7 @@ static void say_trial(ritz_checker *it, const char *name,
                      *t->why ? t->why : "nothing is left that moves");
 }
 
-/* Middle of what |y_i / u_i| is over the grid; k_i is one over it. */
+/* k_i, one over the geometric mean of |y_i / u_i| over the grid. */
 static ritz_status find_gains(const ritz_collocated *pairs, double *gain)
 {
     RITZ_OWN(ritz_sampler) sampler = {0};
@@ -90,7 +90,7 @@ static ritz_status find_gains(const ritz_collocated *pairs, double *gain)
     return RITZ_OK;
 }
 
-/* A - B k (I + D k)^-1 C; a row alone, or all: -1. */
+/* A - B k (I + D k)^-1 C, k that of one pair alone or, if -1, of all. */
 static ritz_status attach_to_pairs(const ritz_collocated *pairs, int64_t only,
                                    double a, const double *gain,
                                    ritz_dense *out)
@@ -152,9 +152,10 @@ static ritz_status try_all_pairs(const ritz_collocated *pairs,
 }
 
 /*
- * The zero furthest right, over its size, among those that attachments reach
- * and that are not 0. What is read as acceleration has a double zero at 0,
- * which rounding of n eps splits by the root of that, of the largest pole.
+ * The zero with the largest real part, relative to its magnitude, among those
+ * that attachments reach and that are not 0. An acceleration output has a
+ * double zero at 0, which rounding of n eps moves by the square root of that,
+ * relative to the largest pole.
  */
 static int64_t worst_zero(const ritz_collocated *pairs, int64_t count,
                           const double _Complex *zero, double radius)
@@ -254,7 +255,7 @@ static ritz_status find_sizes(const ritz_checker *it, double *k, double *m)
     return RITZ_OK;
 }
 
-/* Springs and masses, at one row (or at all: -1). */
+/* Springs and masses at one row or, if -1, at all. */
 static ritz_status try_attached(const ritz_checker *it, const ritz_dense *D,
                                 int64_t only, const double *const own[2],
                                 attachment_trial *t)
@@ -280,7 +281,7 @@ static ritz_status try_attached(const ritz_checker *it, const ritz_dense *D,
     return RITZ_OK;
 }
 
-/* D of the model, with what damping ratios add to it. */
+/* D of the model and the matrix of its damping ratios. */
 static ritz_status find_damping(const ritz_checker *it, ritz_dense *out)
 {
     if (it->model.D.val)
@@ -369,7 +370,7 @@ ritz_status ritz_check_sprung(ritz_checker *it)
 /*
  * Columns of kind force, p, are made to join bodies by interface forces lambda,
  * to which they respond statically: C_q q + C_p p = 0, p = -K_pp^-1 C_p'
- * lambda, with C the rows of the ports. Held to the ground so, a body is
+ * lambda, with C the rows of the ports. Joined so to the ground, a body is
  *
  *     K = [ K_qq   C_q'               ]     M = [ M_qq   0         ]
  *         [ C_q   -C_p K_pp^-1 C_p'   ],        [ 0      H M_pp H' ],

@@ -18,14 +18,13 @@
 #include <string.h>
 
 /*
- * With how many digits K came: those that the source states, or fewer where
- * the values themselves are all decimal numbers of fewer digits.
+ * The significant digits of K: as the source states, or fewer where all values
+ * are decimal numbers of fewer digits.
  *
- * A file of few digits is not the only matrix of short numbers: springs of 200
- * and 0.5 are what they say. What d digits are left of has nine values in ten
- * that need all d, whatever their size, or, with a fixed number of decimals,
- * nine in ten that need the last of these. Sums and products of short numbers
- * have neither.
+ * A matrix of short numbers need not have been rounded: springs of 200 and 0.5
+ * are exact. Of values that were rounded to d digits nine in ten need all d,
+ * whatever their size, or, with a fixed number of decimals, nine in ten need
+ * the last of these. Sums and products of short numbers have neither property.
  */
 
 enum {
@@ -66,7 +65,7 @@ static int count_decimals(double value, int *place)
     return digits;
 }
 
-/* Some entries of K, magnitudes, each once and none of them 0. */
+/* Distinct magnitudes of some entries of K that are not 0. */
 static int64_t sample_entries(const ritz_sparse *K, double *value)
 {
     int64_t nnz = K->colptr[K->ncol], step = nnz / LOOKED_AT + 1;
@@ -108,7 +107,7 @@ static ritz_status count_digits(const ritz_sparse *K, decimals *out)
     return RITZ_OK;
 }
 
-/* Whether its numbers are short without having been made so. */
+/* Whether its numbers are short without having been rounded. */
 static bool is_exact(const decimals *d)
 {
     return d->digits < LEAST ||
@@ -175,7 +174,7 @@ static ritz_status check_finite(ritz_checker *it)
 static void check_symmetry(ritz_checker *it)
 {
     const ritz_component *c = it->component;
-    /* not D, whose gyroscopic part is not symmetric by right */
+    /* not D, which may have a gyroscopic part */
     const ritz_sparse *const all[3] = {&c->K, &c->M, &c->K4};
     ritz_verdict verdict = RITZ_PASS;
     double now = 0.0;

@@ -63,18 +63,17 @@ void ritz_sampler_free(ritz_sampler *s)
  *
  *     (G(i w) + G(i w)^*) / 2 >= 0     for all w
  *
- * [AndersonVongpanitlerd1973]. It is met at and around every pole and between
- * them, down from the lowest of these, and where the pencil below says that a
- * grid may have stepped over something.
+ * [AndersonVongpanitlerd1973]. It is evaluated at, around and between the
+ * poles, then minimised around the lowest of these points, and evaluated where
+ * the pencil below shows a change of sign that the grid may have missed.
  */
 
 /* Distances from a pole at which a frequency is placed, in units of |Re s|
    or, where that is less, of |s| / 1000. */
 static const double distances[] = {0.25, 1.0, 4.0};
-/* Of its upper end: the length of a bracket that is not divided any more. */
 enum { DESCENTS = 3, MOST_STATES = 200, PER_POLE = 9 };
 
-/* (G + G^*) / 2 and its eigenvalues, and where they were least. */
+/* The search for the least eigenvalue of (G + G^*) / 2. */
 typedef struct descent {
     ritz_sampler sampler;
     int p;
@@ -91,7 +90,7 @@ static void descent_free(descent *s)
     free(s->lambda);
 }
 
-/* Sort, leave out what is not positive or there twice; how many are left. */
+/* Sort positive frequencies, each once; returns how many are left. */
 static int64_t sort_frequencies(int64_t count, double *w)
 {
     int64_t kept = 0;
@@ -127,7 +126,7 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
     n = sort_frequencies(n, w);
     if (n == 0)
         w[n++] = 1.0;
-    w[n] = 0.1 * w[0]; /* below all, above all, and between neighbours */
+    w[n] = 0.1 * w[0]; /* below all, above all, and between adjacent ones */
     w[n + 1] = 10.0 * w[n - 1];
     alone = n;
     n += 2;
@@ -138,7 +137,7 @@ ritz_status ritz_probe_grid(const ritz_dense *A, int64_t *count, double **out)
     return RITZ_OK;
 }
 
-/* Least eigenvalue over |G| at w; positive where there is no response. */
+/* Least eigenvalue over |G| at w; 1 where there is no response. */
 static double meet_at(descent *s, double w)
 {
     const double _Complex *G = ritz_sampler_at(&s->sampler, w);
@@ -174,7 +173,7 @@ static ritz_status ease_at(void *state, double w, double *value)
     return RITZ_OK;
 }
 
-/* Golden section of what is least between two points. */
+/* Golden section for the least value between two points. */
 static ritz_status descend_between(descent *s, double low, double high)
 {
     const ritz_curve curve = {ease_at, s};
@@ -183,7 +182,7 @@ static ritz_status descend_between(descent *s, double low, double high)
     return ritz_curve_between(&curve, RITZ_PEAK_PLACED, &low, &high, &most);
 }
 
-/* The lowest points of the grid, each with its neighbours. */
+/* Around the lowest points of the grid, up to the adjacent points. */
 static ritz_status descend_all(descent *s, int64_t count, const double *w,
                                double *value)
 {
@@ -203,7 +202,7 @@ static ritz_status descend_all(descent *s, int64_t count, const double *w,
     return RITZ_OK;
 }
 
-/* Where two of these follow each other, and between. */
+/* At the crossings, and between each two of them. */
 static ritz_status meet_crossings(descent *s, const ritz_collocated *model)
 {
     RITZ_OWN_ARRAY double *w = NULL;
@@ -249,7 +248,7 @@ ritz_status ritz_passivity_of(const ritz_collocated *model, ritz_passivity *out)
  *     [ C  B'  D + D' ]     [ 0 0 0 ]
  */
 
-/* Velocities: C A and C B of what is a displacement. */
+/* Outputs as velocities: C A and C B of displacements. */
 static ritz_status take_velocities(const ritz_collocated *model, ritz_dense *C,
                                    ritz_dense *D)
 {
@@ -433,7 +432,7 @@ ritz_status ritz_collocated_of_space(const ritz_state_space *model,
 
 /* Whether energy can come out of the interface, and where it does. */
 
-/* From forces along the interface to its velocities, by the modes: A is there. */
+/* Add B, C and D to A: from interface forces to interface velocities. */
 static ritz_status take_rows(const ritz_checker *it, ritz_collocated *pairs)
 {
     const ritz_modal_model *modes = &it->modes;
@@ -449,7 +448,7 @@ static ritz_status take_rows(const ritz_checker *it, ritz_collocated *pairs)
 
         for (int64_t j = 0; j < m; j++)
             size = hypot(size, ritz_dense_col(&LPhi, j)[i]);
-        if (size == 0.0) /* moves without mass: it only stores */
+        if (size == 0.0) /* a motion without mass stores energy only */
             continue;
         for (int64_t j = 0; j < m; j++)
             ritz_dense_col(&pairs->B, p)[first + j] =
@@ -473,7 +472,7 @@ void ritz_collocated_free(ritz_collocated *model)
     *model = (ritz_collocated){0};
 }
 
-/* "tip as a displacement, root as a velocity": what pairs are taken for. */
+/* "tip (displacement), root (velocity)": the assumed quantities of pairs. */
 static void name_pairs(const ritz_collocated *pairs,
                        char where[RITZ_WHERE_SIZE])
 {

@@ -15,7 +15,7 @@
 
 /*
  * Rigid-body motions by geometry: R, and an M-orthonormal basis Phi of their
- * span in which Phi'K Phi = diag(mu). A motion without mass has no place in it.
+ * span in which Phi'K Phi = diag(mu), without motions that have no mass.
  */
 
 /* Dofs of grids without a position; scalar points need none. */
@@ -142,7 +142,7 @@ ritz_status ritz_check_geometry(ritz_checker *it)
 }
 
 /*
- * Grounding: forces K r that a rigid motion r meets, and what their size says.
+ * Grounding: forces K r on a rigid motion r, and what their size means.
  *
  * A relative error u of the entries of K, or of r, leaves in row i at most
  * u sum_j |K_ij| |r_j|: with u = 1024 eps for elements computed in double
@@ -177,7 +177,7 @@ static ritz_status find_forces(const ritz_checker *it, int64_t first,
     return RITZ_OK;
 }
 
-/* How much the rigid motions are held, of the first flexible eigenvalue. */
+/* Largest stiffness of a rigid motion over the first flexible eigenvalue. */
 static double worst_hold(const ritz_checker *it)
 {
     double worst = 0.0;
@@ -187,7 +187,7 @@ static double worst_hold(const ritz_checker *it)
     return isfinite(it->softest) ? worst / it->softest : 0.0;
 }
 
-/* Whether forces are more than rounding, and no more than few digits leave. */
+/* Whether forces exceed rounding, but not the effect of the source's digits. */
 static bool is_rounded(const ritz_checker *it, const ritz_rigid_forces *f)
 {
     return it->digits < 15.0 && f->largest > f->fine * f->bound &&
@@ -283,7 +283,7 @@ ritz_status ritz_check_grounding(ritz_checker *it)
  *     geometry       mu of the motions that positions give; free is one with
  *                    |mu| <= 1e-4 lambda_f, cleanly so below 1e-8 lambda_f
  *     null space     eigenvalues below lambda_f / 100 by the inertia of
- *                    K - tau M, which knows nothing of the eigensolver
+ *                    K - tau M, which does not use the eigensolver
  *     eigenvectors   rigid ones among the lowest pairs
  *
  * and the sine of the largest angle, in the inner product of M, by which the

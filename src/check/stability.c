@@ -3,8 +3,8 @@
  *
  *     [0 I; -Lambda -Delta],   Delta = Phi'D Phi + diag(2 zeta w)
  *
- * in its modes, once M and K are known to be no worse than semidefinite: a
- * negative eigenvalue of either is itself the verdict.
+ * in its modes, once M and K are known to be semidefinite: a model with a
+ * negative eigenvalue of either is unstable.
  */
 #include <ritz/check.h>
 
@@ -36,7 +36,7 @@ ritz_status ritz_probe_matrix(const ritz_dense *A, ritz_probe *out)
     if (k < 0)
         return RITZ_OK;
     error = RITZ_POLE_BOUND_FACTOR * poles.error[k];
-    out->pole[0] = poles.re[k] + 0.0; /* -0 reads as if it decayed */
+    out->pole[0] = poles.re[k] + 0.0; /* -0 would be printed as decay */
     out->pole[1] = fabs(poles.im[k]);
     out->tolerance = poles.radius > 0.0 ? error / poles.radius : 0.0;
     if (poles.re[k] >= -error)
@@ -176,25 +176,25 @@ ritz_status ritz_probe_record(const ritz_probe *probe, ritz_measures *estimates)
 }
 
 /*
- * How large a free motion becomes before it dies: the largest |e^(A t)|^2.
+ * How large a free motion becomes before it decays: the largest |e^(A t)|^2.
  *
  * In y = [w q; q'] of the modes |y|^2 is twice the energy, and
  *
  *     d/dt |y|^2 = y'(A + A')y = -2 q'' Delta q',
  *
  * so where D's symmetric part is semidefinite nothing grows. Otherwise e^(A t)
- * is met at t = h 2^(i/4) by squaring, which gives what is reached at least;
- * and with A V = V B, B of diagonal blocks [a b; -b a], a <= 0,
+ * is computed at t = h 2^(i/4) by squaring, which gives a lower bound; and with
+ * A V = V B, B of diagonal blocks [a b; -b a], a <= 0,
  *
  *     |e^(A t)| <= |V| |V^-1|
  *
- * gives what is reached at most.
+ * gives an upper bound.
  */
 
 /* The largest |e^(A t)|^2, t >= 0. */
 typedef struct growth {
-    double met, seconds; /* what was met, and when */
-    double most;         /* bound; HUGE_VAL: none is known */
+    double met, seconds; /* largest value found, and its time */
+    double most;         /* upper bound; HUGE_VAL: none is known */
     bool followed;       /* false: too many states, `met` is 1 */
 } growth;
 
@@ -308,9 +308,9 @@ static ritz_status forget_units(ritz_dense *A)
 }
 
 /*
- * (|s| of the fastest pole over that of the slowest)^2: what a structure that
- * does not grow shows in displacements and velocities of one unit of time, as
- * a unit velocity of the slowest mode displaces it by 1 / |s|.
+ * (|s| of the fastest pole over that of the slowest)^2: the growth that a
+ * passive structure can have in displacements and velocities, as a unit
+ * velocity of the slowest mode displaces it by 1 / |s|.
  */
 static ritz_status pole_spread(const ritz_dense *A, double *out)
 {
@@ -329,9 +329,9 @@ static ritz_status pole_spread(const ritz_dense *A, double *out)
 }
 
 /*
- * Energy of a reduced model. States have none, and non-normal growth is no
- * instability: of the sum of their squares, in units of this check's own
- * making, growth that the poles do not explain is said.
+ * Growth of the energy of a reduced model. States have no energy, and
+ * non-normal growth is no instability: for them it is the growth of the sum of
+ * squares of scaled states, and the limit is the growth that the poles explain.
  */
 ritz_status ritz_check_growth(ritz_checker *it)
 {

@@ -209,15 +209,15 @@ static double rounding_at(const ritz_bounder *r, double w, const ritz_side *in,
 }
 
 /*
- * Damping that couples modes: of D and K4 as matrices the reduced model's
- * response and what it leaves are exact,
+ * Damping that couples modes: with D and K4 as matrices the reduced model's
+ * response and residual are exact,
  *
  *     (Theta - w^2 + i w X'DX + i X'K4X) eta = X'b,
  *     r = b_o - R eta - i w D_o eta - i K4_o eta,
  *
- * D_o and K4_o being D X and K4 X without their M X X' of that, and X'r = 0.
- * Only what the full model makes of r is not: its modes are taken as if
- * uncoupled, hence no bound.
+ * D_o and K4_o being D X and K4 X without their parts M X X'D X and M X X'K4 X,
+ * so that X'r = 0. The response of the full model to r is not exact: its modes
+ * are taken as uncoupled, hence this is no bound.
  */
 
 /* X'A X; nothing of no A. */
@@ -243,7 +243,7 @@ static ritz_status open_coupled(const ritz_component *full, ritz_bounder *r)
     return RITZ_OK;
 }
 
-/* eta of one side, and alpha of what it leaves. */
+/* eta of one side, and the residual that it leaves. */
 static void fill_side(const ritz_bounder *r, double w,
                       const double _Complex *eta, ritz_side *s)
 {
@@ -259,7 +259,7 @@ static void fill_side(const ritz_bounder *r, double w,
     s->change = s->damping_part = s->defect_quarter = s->defect_three = 0.0;
 }
 
-/* eta and alpha of all sides at @p w, whose participations are there. */
+/* eta and residuals of all sides at @p w, whose participations are there. */
 static void solve_coupled(ritz_bounder *r, double w)
 {
     int m = (int)r->trial->count;
@@ -374,13 +374,13 @@ static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
 }
 
 /*
- * One side at w: modal shares, and alpha and slope of what is not modal, are
- * there. Within h of w
+ * One side at w, whose participations, and the parts of its residual and slope
+ * that are not modal, are there. Within h of w
  *
  *     |r(w + d) - r(w)| <= h |r'(w)| + h^2 / 2 max |r''|,
  *
- * where r' is known as a vector, in which large parts cancel; `bent` is what is
- * not modal of |r''|.
+ * where r' is known as a vector, in which large parts cancel; `bent` is the
+ * part of |r''| that is not modal.
  */
 static void solve_side(ritz_bounder *r, double w, double h, double bent,
                        ritz_side *s)
@@ -488,9 +488,9 @@ static double rest_of(const ritz_bounder *r, const frequency_interval *at,
 }
 
 /*
- * The rest, and what damping adds, summed over modes: the N lowest take part only
- * by what the trial space does not hold of them, sin^2; all others together. N
- * is the number that makes the bound least.
+ * The rest and the part of damping, summed over modes: of the N lowest only the
+ * part outside the trial space counts, sin^2; all others count fully. N is
+ * chosen so that the bound is least.
  *
  * @param[in] all, added  products of norms that either goes with
  */

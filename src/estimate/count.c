@@ -5,10 +5,11 @@
  *     k_k / (k_k - kappa_rho) = (rho - sigma) / (rho - theta_k)
  *
  * So the first is taken in a wide gap some way above the band. Let o be the
- * number of full modes less that of reduced ones below a count. If o is the same
- * in the next counts above and below reduced mode k, it is full mode k + o; if
- * not, modes are missing between these counts, and are located by halving. Then
- * counts move away from the mode as far as the next modes let them.
+ * number of full modes less that of reduced ones below a count. If o is the
+ * same in the next counts above and below reduced mode k, it is full mode k +
+ * o; if not, modes are missing between these counts, and are located by
+ * halving. Then counts move away from the mode as far as the next modes let
+ * them.
  */
 #include "base/tolerances.h"
 #include "estimate/estimator.h"

@@ -40,13 +40,15 @@
 enum { MOST_SHIFTS = 16 };
 
 /*
- * Ritz pairs of the full matrices in the range of T, anew: a reduced model's
- * own are theirs to rounding, unless some of its columns have lost their mass.
+ * Ritz pairs are computed anew from the full matrices in the range of T: those
+ * of the reduced model equal them to rounding, unless columns have lost their
+ * mass.
  *
  * Rounding. K x is a sum of the terms |K||x|: so x'Kx may be off by some eps
  * times |x|'|K||x|, in any program, and M x likewise. Pairs of a dense pencil
- * are off by eps times its largest eigenvalue in addition. Rounding may exchange
- * modes that are nearer to each other than that: they share one interval.
+ * are off by eps times its largest eigenvalue in addition. Rounding may
+ * exchange modes that are nearer to each other than that: they share one
+ * interval.
  */
 
 ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma)
@@ -130,7 +132,7 @@ static ritz_status take_residuals(const ritz_component *full,
     return RITZ_OK;
 }
 
-/* Between what each eigenvalue of the reduced pencil can be. */
+/* The interval of each eigenvalue of the reduced pencil. */
 static void bound_reduced(const ritz_pairs *pairs, ritz_lehmann *trial)
 {
     double least = HUGE_VAL;
@@ -147,8 +149,8 @@ static void bound_reduced(const ritz_pairs *pairs, ritz_lehmann *trial)
 }
 
 /*
- * Of eigenvalues of the reduced pencil as it is: its entries, which some
- * vectors take the difference of, and the largest eigenvalue.
+ * Rounding of the eigenvalues of the reduced pencil as it is: that of its
+ * entries, which may cancel in q'K q, and that of the largest eigenvalue.
  */
 static ritz_status round_reduced(const ritz_reduced *reduced,
                                  const ritz_pairs *pairs, ritz_lehmann *trial)
@@ -241,8 +243,8 @@ void ritz_lehmann_free(ritz_lehmann *trial)
 }
 
 /*
- * The Ritz values tau of Lehmann's method below, as their inverses. Rounding of a
- * dense problem is eps times its largest value, and tau is large where rho is
+ * The Ritz values tau of Lehmann's method below, as their inverses. Rounding of
+ * a dense problem is eps times its largest value, and tau is large where rho is
  * close to a mode: so nu = 1 / tau is sought, whose largest belong to the modes
  * furthest from rho. With J = sign D and z = |D|^-1/2 u
  *
@@ -272,7 +274,7 @@ static bool take_offsets(const ritz_lehmann *trial, double rho, double *d)
     return clear;
 }
 
-/* H; what rounding leaves of a residual is one more. */
+/* H; the rounding of a residual is added as one more residual. */
 static void fill_form(const ritz_lehmann *trial, const double *d, ritz_dense *H)
 {
     for (int64_t j = 0; j < trial->count; j++) {
@@ -350,7 +352,7 @@ static double rounding_at(const ritz_lehmann *trial, double rho)
     return most;
 }
 
-/* Of eigenvalues of a dense matrix. */
+/* Rounding of eigenvalues of a dense matrix. */
 static double rounding_of(const ritz_pairs *nu)
 {
     int64_t count = nu->Phi.ncol;
@@ -361,10 +363,9 @@ static double rounding_of(const ritz_pairs *nu)
 }
 
 /*
- * What one count says of the full modes below it, by the positive nu from the
- * least on, or of those above it, by the others from the last on. Each end is
- * carried on to the modes further away, as modes that rounding may exchange
- * share it.
+ * Bounds by one count: of the full modes below it, from the least positive nu
+ * on, or of those above it, from the largest other nu on. Each bound also holds
+ * for the modes further away, as rounding may exchange them.
  */
 static void enclose_side(const ritz_lehmann *trial, const ritz_pairs *nu,
                          double kappa_rho, int64_t below, bool above,
@@ -393,7 +394,7 @@ static void enclose_side(const ritz_lehmann *trial, const ritz_pairs *nu,
     }
 }
 
-/* What one count says of eigenvalues above it, or below it. */
+/* Bounds by one count, of the eigenvalues above it or of those below it. */
 static ritz_status use_count(const ritz_lehmann *trial,
                              const ritz_counted *counted, bool above,
                              ritz_enclosure *e)
@@ -410,7 +411,7 @@ static ritz_status use_count(const ritz_lehmann *trial,
     return RITZ_OK;
 }
 
-/* Upper bounds: of Ritz, and of one inverse iteration. */
+/* Upper bounds by Ritz values, and by those of one inverse iteration. */
 static ritz_status improve_from_above(const ritz_lehmann *trial,
                                       ritz_enclosure *e)
 {
@@ -442,7 +443,7 @@ static ritz_status improve_from_above(const ritz_lehmann *trial,
     return RITZ_OK;
 }
 
-/* What counts alone say, and that both ends ascend. */
+/* Bounds by counts alone; then both ends are made to ascend. */
 static void settle_ends(const ritz_estimator *estimator,
                         const ritz_lehmann *trial, ritz_enclosure *e)
 {
@@ -472,7 +473,7 @@ int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
     return below;
 }
 
-/* What a trial says with each count. */
+/* Bounds by a trial space and each count. */
 static ritz_status add_trial(const ritz_estimator *estimator,
                              const ritz_lehmann *trial, ritz_enclosure *e)
 {
@@ -548,8 +549,8 @@ void ritz_enclosure_free(ritz_enclosure *enclosure)
  *
  *     |kappa - 1/t| <= eps / t,   eps = |R|_(A^-1) / |x|_A
  *
- * which holds for some kappa of the full model, also of the same vector after an
- * inverse iteration, where eps is far smaller.
+ * which holds for some kappa of the full model, also of the same vector after
+ * an inverse iteration, where eps is far smaller.
  */
 
 /* Ends of what a reduced eigenvalue can be; of modes beyond the trial rounding

@@ -2,10 +2,10 @@
  * How far a reduced model can be off, found from one factor of the full
  * matrices, the residuals of its modes, and counts of full modes below some
  * frequencies. Counts and inverse iterations are spent first on the reduced
- * modes in the band, then on those that ritz-verify pairs with the full modes in
- * it; the bounds reached then are reported as named numbers. Enclosures are in
- * enclose.c, the choice of counts in count.c, partners in judge.c, responses in
- * response.c.
+ * modes in the band, then on those that ritz-verify pairs with the full modes
+ * in it; the bounds reached then are reported as named numbers. Enclosures are
+ * in enclose.c, the choice of counts in count.c, partners in judge.c, responses
+ * in response.c.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"

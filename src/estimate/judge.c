@@ -9,17 +9,18 @@
 
 /*
  * Partners. ritz-verify pairs a full mode with the reduced mode that holds most
- * of it, half at least, wherever that lies. Full modes closer than it tells
- * apart form a group, [low, high]. Of a vector u, u'Mu = 1, u = sum c_j phi_j,
- * theta = u'Ku, the squared residual G = |Ku - theta Mu|^2 in A^-1 is
+ * of it, half at least, at any frequency. Full modes that are too close to be
+ * distinguished form a group, [low, high]. For a vector u, u'Mu = 1, u = sum
+ * c_j phi_j, theta = u'Ku, the squared residual G = |Ku - theta Mu|^2 in A^-1
+ * is
  *
  *     G = sum c_j^2 (lambda_j - theta)^2 / (lambda_j - sigma)
  *
  * so modes beyond some lambda have at most G (lambda - sigma) / (lambda -
  * theta)^2 of |c|^2. Hence trial vectors near a group make an angle of at most
- * Delta with it, sin^2 Delta the sum of these. A reduced mode at the angle alpha
- * to the vectors is at most alpha + Delta from the group, and at least alpha -
- * Delta if there are as many vectors as modes.
+ * Delta with it, sin^2 Delta the sum of these. A reduced mode at the angle
+ * alpha to the vectors is at most alpha + Delta from the group, and at least
+ * alpha - Delta if there are as many vectors as modes.
  */
 
 /* Full modes first .. last - 1, not known to be separate. */
@@ -37,7 +38,7 @@ typedef struct ritz_partners {
     ritz_dense Q[2]; /* reduced modes times M times trial, polished vectors */
 } ritz_partners;
 
-/* Bounds of the |c|^2 that a reduced mode has of a group. */
+/* Bounds of the part |c|^2 of a reduced mode in a group. */
 typedef struct ritz_share {
     double least, most;
 } ritz_share;
@@ -63,7 +64,7 @@ static double residual_of(const ritz_lehmann *trial, int64_t s)
            square_of(trial->rounding[s]) / t;
 }
 
-/* Bound of the |c|^2 of vector s outside the group; 1 if nothing is known. */
+/* Upper bound of the part of vector s outside the group; 1: not known. */
 static double outside_group(const ritz_lehmann *trial, const ritz_enclosure *e,
                             const ritz_mode_group *g, int64_t s)
 {
@@ -150,7 +151,7 @@ static ritz_status take_overlap(const ritz_measuring *m,
     return ritz_dense_mul_tn(&m->pairs.Phi, &TMX, out);
 }
 
-/* Whether rounding of the reduced matrices may mix mode r with a neighbour. */
+/* Whether rounding of the reduced matrices may mix mode r with the next one. */
 static bool is_mixed(const ritz_measuring *m, int64_t r)
 {
     const ritz_lehmann *t = &m->trial;
@@ -159,7 +160,7 @@ static bool is_mixed(const ritz_measuring *m, int64_t r)
            (r + 1 < t->count && t->reduced_low[r + 1] <= t->reduced_high[r]);
 }
 
-/* Bound of the |c|^2 that reduced mode r has of a group, by its residual. */
+/* Upper bound of the part of reduced mode r in a group, by its residual. */
 static double most_by_residual(const ritz_measuring *m,
                                const ritz_mode_group *g, int64_t r)
 {
@@ -199,7 +200,7 @@ static ritz_share share_of(const ritz_partners *p, const ritz_mode_group *g,
     return share;
 }
 
-/* Whether reduced mode @p r can hold half of the group; whether it does. */
+/* Whether reduced mode @p r may hold half of the group. */
 static bool can_be_partner(const ritz_measuring *m, const ritz_partners *p,
                            const ritz_mode_group *g, int64_t r)
 {
@@ -242,9 +243,10 @@ static ritz_status group_modes(const ritz_measuring *m, int64_t first,
 }
 
 /*
- * The prediction: bounds of the worst frequency error and of the number of modes
- * without a partner, over all full modes that may be in the band and all their
- * possible partners. In a cluster ritz-verify takes partners in their order.
+ * The prediction: bounds of the worst frequency error and of the number of
+ * modes without a partner, over all full modes that may be in the band and all
+ * their possible partners. In a cluster ritz-verify takes partners in their
+ * order.
  */
 
 typedef struct ritz_judge {
@@ -307,7 +309,7 @@ static int64_t find_partners(ritz_judge *j, const ritz_mode_group *g,
     return must;
 }
 
-/* Of a single mode: one reduced mode that has more than half of it is its only
+/* A reduced mode that has more than half of a single mode is its only
    partner. */
 static int64_t keep_partner(ritz_judge *j, const ritz_mode_group *g,
                             int64_t can)

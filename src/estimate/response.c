@@ -49,7 +49,8 @@ enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };
  * it leaves, and then every entry is compared.
  */
 
-/* Entries of a soft row are compared with soft ones, however stiff others are. */
+/* Entries of a soft row are compared with soft ones, however stiff others
+   are. */
 static ritz_status is_negligible(const ritz_component *full, const double ab[2],
                                  const ritz_sparse *rest, bool *out)
 {
@@ -183,7 +184,8 @@ static bool is_at_odds(const ritz_bounder *r)
     return false;
 }
 
-/* Largest participation of mode j in some channels, over sqrt(theta_j - sigma). */
+/* Largest participation of mode j in some channels, over sqrt(theta_j -
+   sigma). */
 static double participation_of(const ritz_bounder *r, int which, int64_t j)
 {
     return ritz_dense_col_max(&r->channel[which], j) /

@@ -1,6 +1,7 @@
 /*
  * Which mode of a reduced model corresponds to which of the full one: the one
- * that holds most of its shape, half at least, or, without shapes, by alignment.
+ * that holds most of its shape, half at least, or, without shapes, by
+ * alignment.
  */
 #include "verify/match.h"
 #include "base/alloc.h"

@@ -7,8 +7,8 @@
 #include <ritz/model.h>
 
 /*
- * Two models without common coordinates are compared by how much each mode takes
- * part in their inputs and outputs, instead of by mode shapes.
+ * Two models without common coordinates are compared by how much each mode
+ * takes part in their inputs and outputs, instead of by mode shapes.
  */
 
 /** @return RITZ_ERR_ARGUMENT unless inputs and outputs have the same names */
@@ -32,13 +32,14 @@ typedef struct ritz_participation {
 /**
  * Scales that make units of inputs and outputs irrelevant, and which modes are
  * observable. Mode k is not observable from input j to output i if the product
- * p of its participations in both is rounding, or if for some mode m of the band
+ * p of its participations in both is rounding, or if for some mode m of the
+ * band
  *
  *     p_k max(1, (w_m / w_k)^2) max(1, zeta_m / zeta_k) <= 1e-6 p_m,
  *
  * so that its parts in the static response, in accelerations and at resonance
- * are at most a millionth of those of the other mode. Without inputs, or without
- * outputs, the participations in the others decide alone.
+ * are at most a millionth of those of the other mode. Without inputs, or
+ * without outputs, the participations in the others decide alone.
  *
  * @param[in] pairs  the modes of @p component that @p poles are of
  */
@@ -75,10 +76,10 @@ ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
                               const ritz_dense *Q, ritz_match *out);
 
 /**
- * By frequency and participations: the alignment of the two ascending lists that
- * costs least, and then exchanges of modes whose order differs between them. MAC
- * is ritz_participation_mac, 0 without partner; NaN of modes that are not
- * observable, and of those closer than 1e-3, which may be any mixture.
+ * By frequency and participations: the alignment of the two ascending lists
+ * that costs least, and then exchanges of modes whose order differs between
+ * them. MAC is ritz_participation_mac, 0 without partner; NaN of modes that are
+ * not observable, and of those closer than 1e-3, which may be any mixture.
  */
 ritz_status ritz_match_outputs(const ritz_poles *full,
                                const ritz_poles *reduced,

@@ -43,10 +43,10 @@ static double find_negligible(const ritz_sides *sides)
 }
 
 /*
- * Where D couples modes, the damped mode of the undamped partner need not be the
- * partner: the nearest pole is. The error is unknown (NaN) where the mode of the
- * full model does not oscillate, and 1 where that of the reduced one alone does
- * not.
+ * Where D couples modes, the damped mode of the undamped partner need not be
+ * the partner: the nearest pole is. The error is unknown (NaN) where the mode
+ * of the full model does not oscillate, and 1 where that of the reduced one
+ * alone does not.
  */
 static double damping_error(const ritz_sides *sides, double nothing, int64_t k,
                             int64_t r)

@@ -95,8 +95,8 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                             &out->count, &out->hertz);
 }
 
-/* The largest response without rigid motion: y = (C + i w Cv - w^2 Ca) q less the
- * rigid q = phi'b / (-w^2 + i w d). */
+/* The largest response without rigid motion: y = (C + i w Cv - w^2 Ca) q, less
+   the same of the rigid q = phi'b / (-w^2 + i w d). */
 static double flexible_part(const ritz_poles *poles,
                             const ritz_reference_sweep *s)
 {

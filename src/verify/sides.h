@@ -125,8 +125,8 @@ typedef struct ritz_state_pair {
 
 /**
  * @param[in] full,reduced,request  borrowed until free
- * @return RITZ_ERR_ARGUMENT if inputs or outputs differ, or if there are no norms
- *         and one has a limit
+ * @return RITZ_ERR_ARGUMENT if inputs or outputs differ, or if norms that have
+ *         a limit do not exist
  */
 ritz_status ritz_state_pair_new(const ritz_state_space *full,
                                 const ritz_state_space *reduced,

@@ -4,7 +4,7 @@
  *     |G - G_r|_inf, |G - G_r|_2, max over a band of |H - H_r|, |G(0) - G_r(0)|
  *
  * Rigid and other poles that are not left of the axis make norms infinite; a
- * reduction keeps them as they are, and norms are of what is left of both.
+ * reduction keeps them, and norms are those of the other parts of both models.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
