@@ -136,7 +136,7 @@ static void bounds_hold_on_the_spacecraft(void **)
     }
 }
 
-/* Beam of 12 elements, free or clamped, driven at its end and seen there. */
+/* Beam of 12 elements, free or clamped: force and displacement at its end. */
 static void open_beam(bool clamped, ritz_component *beam)
 {
     int64_t in = 0;

@@ -17,7 +17,7 @@
 
 enum { MOST = 12 };
 
-/* The pencil (diag lambda, I), seen and driven everywhere. */
+/* The pencil (diag lambda, I), each mode controllable and observable. */
 static void diagonal(int64_t n, const double *lambda, ritz_component *out)
 {
     assert_ok(masses_apart(n, lambda, NULL, out));
@@ -57,8 +57,8 @@ static void damping_of_soft_rows_is_looked_at_by_itself(void **)
 }
 
 /*
- * Two exact modes of three, which alone are driven and seen: all that is wrong
- * is what D does through the third one. Measured by the full equations at 2000
+ * Two exact modes of three, which alone are controllable and observable: the
+ * only error is the effect of D through the third one. Measured by the full equations at 2000
  * frequencies.
  */
 static double coupled_error(const double *lambda, const double D[3][3],
