@@ -125,7 +125,8 @@ enum { RITZ_ALL_CHANNELS = -1 };
 ritz_status ritz_zeros_of(ritz_model model, int64_t output, int64_t input,
                           int64_t *count, double _Complex **out);
 
-/* Norms of systems: how large a model, or the difference of two, can answer. */
+/* Norms of systems: how large the response of a model, or of the difference of
+ * two, can be. */
 
 typedef struct ritz_norm {
     double value;

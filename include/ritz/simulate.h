@@ -1,14 +1,14 @@
 /*
  * Time responses of linear models, and what they cost.
  *
- * Inputs are functions of time from t = 0 on. An integrator sees them at the
+ * Inputs are functions of time from t = 0 on. An integrator evaluates them at the
  * ends of its steps only: between them it takes them as linear
  * (RITZ_HOLD_FIRST) or as they were at the start (RITZ_HOLD_ZERO, what a
  * sampled controller commands). `modal` is exact for both; the others are
  * measured against it.
  *
  * Structural damping K4 is refused: i K4 is of harmonic motion alone, and read
- * as a time response it would answer before it is driven.
+ * as a time response it would respond before there is an input.
  */
 #ifndef RITZ_SIMULATE_H
 #define RITZ_SIMULATE_H
@@ -91,7 +91,7 @@ extern const ritz_integrator ritz_integrator_central_difference;
 /** Integrator called @p name; NULL and a sentence with the nearest if none. */
 const ritz_integrator *ritz_integrator_find(const char *name);
 
-/* What is asked of a simulation. Everything is borrowed. */
+/* A simulation that is wanted. Everything is borrowed. */
 typedef struct ritz_simulation_request {
     const ritz_integrator *integrator;
     double seconds, step; /* the last step ends at `seconds` or just beyond */
@@ -141,7 +141,7 @@ typedef struct ritz_simulation {
  * with Rayleigh damping or that of its D. A state space goes by the exponential
  * of A, or by the trapezoidal rule.
  *
- * An impulse moves a state at once; what an output sees of it directly, as an
+ * An impulse moves a state at once; what of it is in an output directly, as in an
  * acceleration does, is an impulse too and left out.
  *
  * @return RITZ_ERR_ARGUMENT if the step is beyond an explicit integrator's

@@ -77,7 +77,7 @@ static mode_rounding rounding_of(const ritz_modal_model *modes)
         .eps = ((double)modes->num_dofs + RITZ_BACKWARD_ERROR) * DBL_EPSILON};
 }
 
-/* a'phi_k of all modes; of equal poles only the sum is asked for. */
+/* a'phi_k of all modes; of equal poles only the sum matters. */
 static void project_rows(const mode_rounding *s, const double *a, double *value,
                          double *doubt)
 {
@@ -123,11 +123,11 @@ static bool is_coupled(const mode_rounding *s)
 
     for (int64_t j = 0; j < Delta->ncol; j++)
         for (int64_t i = 0; i < Delta->nrow; i++) {
-            double apart =
+            double gap =
                 fabs(ritz_dense_col(Delta, i)[i] - ritz_dense_col(Delta, j)[j]);
 
             if (i != j && fabs(ritz_dense_col(Delta, j)[i]) >
-                              mixing_of(s, i, j) * apart +
+                              mixing_of(s, i, j) * gap +
                                   s->eps * ritz_dense_col(&s->most, j)[i])
                 return true;
         }

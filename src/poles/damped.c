@@ -42,7 +42,7 @@ static double share_of(const ritz_spectrum *spectrum, int64_t k, int64_t j)
 
 /*
  * The pole that each flexible mode has become, -1 where it does not oscillate
- * any more. Each pole is of one mode: the largest share decides, then the
+ * any more. Each pole is of one mode: the largest part of its shape decides, then the
  * largest of what is left; else an overdamped mode would be given the ratio of
  * a neighbour.
  */
@@ -115,14 +115,6 @@ static bool in_band(const ritz_poles *poles, int64_t k, const double band_hz[2])
     return hertz >= band_hz[0] && hertz <= band_hz[1] * RITZ_RANGE_END;
 }
 
-/* s of ratio zeta and size |s|. */
-static double _Complex pole_of(double size, double zeta)
-{
-    return zeta < 1.0
-               ? ritz_complex(-zeta * size, size * sqrt(1.0 - zeta * zeta))
-               : ritz_complex(nan(""), 0.0);
-}
-
 /* Modes in the band, on the full matrices, from where the modal ones put s. */
 static ritz_status refine_band(const ritz_poles *poles,
                                const ritz_component *component,
@@ -147,7 +139,7 @@ static ritz_status refine_band(const ritz_poles *poles,
         ritz_dense_free(&x);
         zeta = ritz_spectrum_ratio(s) + given_ratio(poles, own, k);
         damped->zeta[k] = zeta;
-        damped->s[k] = pole_of(cabs(s), zeta);
+        damped->s[k] = ritz_pole_of(cabs(s), zeta);
         ritz_monitor_step("damped modes", k + 1, poles->count);
     }
     return RITZ_OK;
@@ -188,7 +180,7 @@ ritz_status ritz_damped_new(const ritz_poles *poles,
     RITZ_CHECK(ritz_poles_ratios(poles, &omega, &damped.zeta));
     RITZ_CHECK_NEW(damped.s, poles->count);
     for (int64_t k = 0; k < poles->count; k++)
-        damped.s[k] = omega[k] > 0.0 ? pole_of(omega[k], damped.zeta[k])
+        damped.s[k] = omega[k] > 0.0 ? ritz_pole_of(omega[k], damped.zeta[k])
                                      : ritz_complex(nan(""), 0.0);
     if (poles->coupled && poles->D.val)
         RITZ_CHECK(take_coupled(poles, component, pairs, band_hz, &damped));

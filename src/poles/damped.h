@@ -61,6 +61,9 @@ ritz_status ritz_refiner_residual(const ritz_refiner *refiner,
 
 void ritz_refiner_free(ritz_refiner *refiner);
 
+/** The pole above the axis of size |s| and a ratio; NaN of ratios from 1 on. */
+double _Complex ritz_pole_of(double size, double zeta);
+
 typedef struct ritz_damped {
     double *zeta;          /* of each undamped mode: NaN where it does not
                               oscillate any more, 0 where rigid */

@@ -195,14 +195,6 @@ static void stable_free(stable *s)
     ritz_dense_free(&s->D);
 }
 
-static double norm_of(const ritz_dense *A)
-{
-    if (A->nrow == 0 || A->ncol == 0)
-        return 0.0;
-    return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
-                          A->val, (int)A->nrow);
-}
-
 static void divide_by(double by, ritz_dense *A)
 {
     for (int64_t k = 0; k < A->nrow * A->ncol && by > 0.0; k++)
@@ -221,9 +213,9 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
     RITZ_CHECK(ritz_dense_mul_tn(&s->split.Y, &model->B, &s->B));
     RITZ_CHECK(ritz_dense_mul(&model->C, &s->split.X, &s->C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &s->D));
-    s->size = norm_of(&s->B) * norm_of(&s->C);
-    divide_by(norm_of(&s->B), &s->B);
-    divide_by(norm_of(&s->C), &s->C);
+    s->size = ritz_general_size(&s->B) * ritz_general_size(&s->C);
+    divide_by(ritz_general_size(&s->B), &s->B);
+    divide_by(ritz_general_size(&s->C), &s->C);
     if (s->size > 0.0)
         divide_by(s->size, &s->D);
     else
@@ -325,7 +317,7 @@ ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out)
     RITZ_CHECK_IN("H2 norm", ritz_general_hammarling(&s.split.S, &s.split.P,
                                                      false, &s.B, &F));
     RITZ_CHECK(ritz_dense_mul(&s.C, &F, &CF));
-    *out = (ritz_norm){.value = s.size * norm_of(&CF)};
+    *out = (ritz_norm){.value = s.size * ritz_general_size(&CF)};
     out->lower = out->value;
     snprintf(out->engine, sizeof out->engine, "SLICOT %s",
              s.split.P.val ? "SG03BD" : "SB03OD");

@@ -1,5 +1,5 @@
 /*
- * Some modes of a model with their share of its inputs and outputs, and the
+ * Some modes of a model with their participation in inputs and outputs, and the
  * response they make:
  *
  *     (Lambda - w^2 I + i w (d + D) + i K4) q = B u,
@@ -76,6 +76,12 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k);
 ritz_status ritz_poles_add(const ritz_poles *poles, double hertz,
                            double _Complex *H);
 
+/**
+ * Roots of s^2 + rate s + lambda: a pair, the one above the axis first, or two
+ * real ones without cancellation, the larger first.
+ */
+void ritz_poles_roots(double lambda, double rate, double _Complex s[static 2]);
+
 /** Damping ratio of each mode, from its rate; 0 where rigid. */
 ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
                               double **zeta);
@@ -137,7 +143,7 @@ ritz_status ritz_residual_new(const ritz_component *component,
                               const ritz_pairs *pairs, double to_hz,
                               double out_hz, ritz_residual *out);
 
-/** H += the residual's share. */
+/** H += the response of the residual. */
 void ritz_residual_add(const ritz_residual *residual, double hertz,
                        double _Complex *H);
 

@@ -102,9 +102,9 @@ ritz_status ritz_proportional(const ritz_component *component, double *a,
  * whose error falls by |sigma| / (lambda + |sigma|) a step, lambda being of the
  * first mode that is left out.
  *
- * Where no mass is left in the rest, M R_0 = 0: it answers by R_0 alone, and
+ * Where no mass is left in the rest, M R_0 = 0: R_0 is all its response, and
  * all other terms are rounding. So a term is held to what it adds at the end of
- * the range, of the whole answer there, and not to its own size.
+ * the range, relative to the whole response there, and not to its own size.
  */
 
 typedef struct rest_solver {
@@ -197,7 +197,7 @@ static ritz_status rest_solver_new(const ritz_component *component,
     RITZ_CHECK(ritz_sparse_mul(s->M, s->Phi, &s->MPhi));
     RITZ_CHECK(
         ritz_sparse_add(1.0, &component->K, -s->sigma, &component->M, &A));
-    RITZ_CHECK_IN("static answer", ritz_factor_spd(&A, &s->F));
+    RITZ_CHECK_IN("static solution", ritz_factor_spd(&A, &s->F));
     RITZ_CHECK_NEW(s->whole, B->ncol);
     return size_modes(pairs, B, to_hz, s->whole);
 }
@@ -205,17 +205,17 @@ static ritz_status rest_solver_new(const ritz_component *component,
 /*
  * Last change of a term, the worst of all inputs, relative to what is negligible
  * against its largest value or against the whole response at the end of the
- * range: @p change over what is wanted, @p apart over what is required.
+ * range: @p change over what is wanted, @p required over what is needed.
  */
 static void measure_change(const rest_solver *s, const ritz_dense *R,
                            const ritz_dense *last, double *change,
-                           double *apart)
+                           double *required)
 {
-    *change = *apart = 0.0;
+    *change = *required = 0.0;
     for (int64_t j = 0; j < R->ncol; j++) {
         double moved = 0.0;
         double size = ritz_dense_col_max(R, j);
-        double seen = s->whole[j];
+        double whole = s->whole[j];
 
         for (int64_t i = 0; i < R->nrow; i++)
             moved = fmax(moved, fabs(ritz_dense_col(R, j)[i] -
@@ -223,9 +223,9 @@ static void measure_change(const rest_solver *s, const ritz_dense *R,
         if (!(moved > 0.0))
             continue;
         *change = fmax(*change, moved / (RITZ_SERIES_SETTLED * size +
-                                         RITZ_SERIES_NEGLIGIBLE * seen));
-        *apart = fmax(*apart, moved / (RITZ_REFINED_NEARLY * size +
-                                       RITZ_SERIES_WITHIN * seen));
+                                         RITZ_SERIES_NEGLIGIBLE * whole));
+        *required = fmax(*required, moved / (RITZ_REFINED_NEARLY * size +
+                                             RITZ_SERIES_WITHIN * whole));
     }
 }
 
@@ -241,7 +241,7 @@ static ritz_status rest_solve(rest_solver *s, ritz_dense *f, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) R = {0};
     RITZ_OWN(ritz_dense) next = {0};
-    double change = HUGE_VAL, apart = HUGE_VAL;
+    double change = HUGE_VAL, required = HUGE_VAL;
 
     RITZ_CHECK(take_out_twice(&s->MPhi, s->Phi, f));
     RITZ_CHECK(ritz_dense_new(f->nrow, f->ncol, &R));
@@ -251,15 +251,15 @@ static ritz_status rest_solve(rest_solver *s, ritz_dense *f, ritz_dense *out)
             next.val[k] = f->val[k] - s->sigma * next.val[k];
         RITZ_CHECK(ritz_factor_solve(s->F, &next));
         RITZ_CHECK(take_out_twice(s->Phi, &s->MPhi, &next));
-        measure_change(s, &next, &R, &change, &apart);
+        measure_change(s, &next, &R, &change, &required);
         ritz_dense_free(&R);
         RITZ_MOVE(R, next);
     }
     RITZ_REFUSE_IF(
-        !(apart <= 1.0), RITZ_ERR_CONVERGENCE,
+        !(required <= 1.0), RITZ_ERR_CONVERGENCE,
         "what modes above the band answer did not settle in %d steps: "
         "the last one changed it by %.1e",
-        (int)MOST_STEPS, apart * RITZ_REFINED_NEARLY);
+        (int)MOST_STEPS, required * RITZ_REFINED_NEARLY);
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)
         s->whole[j] = fmax(s->whole[j], ritz_dense_col_max(&R, j));
     s->begun = true;
@@ -538,16 +538,16 @@ ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
                             double *out)
 {
-    RITZ_OWN(ritz_dense) G = {0}, apart = {0};
+    RITZ_OWN(ritz_dense) G = {0}, difference = {0};
     double size = 0.0;
     double error = 0.0;
 
     RITZ_CHECK(ritz_dense_copy(full, &G));
-    RITZ_CHECK(ritz_dense_copy(reduced, &apart));
+    RITZ_CHECK(ritz_dense_copy(reduced, &difference));
     for (int64_t k = 0; k < G.nrow * G.ncol; k++)
-        apart.val[k] -= G.val[k];
+        difference.val[k] -= G.val[k];
     RITZ_CHECK_IN("static gain", ritz_general_norm(&G, &size));
-    RITZ_CHECK_IN("static gain", ritz_general_norm(&apart, &error));
+    RITZ_CHECK_IN("static gain", ritz_general_norm(&difference, &error));
     *out = error == 0.0                  ? 0.0
            : size > RITZ_NO_GAIN * error ? error / size
                                          : nan("");

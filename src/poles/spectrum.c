@@ -408,26 +408,14 @@ double ritz_spectrum_ratio(double _Complex s)
     return creal(s) == 0.0 ? 0.0 : -creal(s) / cabs(s); /* never -0 */
 }
 
-/* Roots of s^2 + d s + lambda: a pair, or two real ones without cancellation;
- * p = 1, so that y = [W; s]. */
+/* Each mode by itself: p = 1, so that y = [W; s]. */
 static void solve_diagonal(const state_form *state, found *out)
 {
     int64_t m = state->m;
 
     for (int64_t j = 0; j < m; j++) {
-        double d = ritz_dense_col(&state->D, j)[j];
-        double lambda = state->lambda[j];
-        double square = 0.25 * d * d - lambda;
-        double root = sqrt(fabs(square));
-        double far = d < 0.0 ? -0.5 * d + root : -0.5 * d - root;
-
-        if (square < 0.0) {
-            out->s[2 * j] = ritz_complex(-0.5 * d, root);
-            out->s[2 * j + 1] = ritz_complex(-0.5 * d, -root);
-        } else {
-            out->s[2 * j] = far;
-            out->s[2 * j + 1] = far == 0.0 ? 0.0 : lambda / far;
-        }
+        ritz_poles_roots(state->lambda[j], ritz_dense_col(&state->D, j)[j],
+                         out->s + 2 * j);
         for (int64_t t = 2 * j; t < 2 * j + 2; t++) {
             out->y[j + t * 2 * m] = weight_of(state, j);
             out->y[m + j + t * 2 * m] = out->s[t];

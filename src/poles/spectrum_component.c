@@ -389,17 +389,22 @@ ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
 /* Beyond what is wanted, of modes and of frequencies. */
 enum { MORE_MODES = 8 };
 
+double _Complex ritz_pole_of(double size, double zeta)
+{
+    return zeta < 1.0
+               ? ritz_complex(-zeta * size, size * sqrt(1.0 - zeta * zeta))
+               : ritz_complex(nan(""), 0.0);
+}
+
 /* Add a given ratio to a pole: |s| stays. */
 static double _Complex add_ratio(double _Complex s, double ratio)
 {
     double size = cabs(s);
     double zeta = ritz_spectrum_ratio(s) + ratio;
-    double _Complex i = (double _Complex)_Complex_I;
 
     if (!(cimag(s) > 0.0) || ratio == 0.0)
         return s;
-    return zeta < 1.0 ? -zeta * size + i * (size * sqrt(1.0 - zeta * zeta))
-                      : -size;
+    return zeta < 1.0 ? ritz_pole_of(size, zeta) : -size;
 }
 
 /* |x^H y| / (|x||y|) of column j and y, real and imaginary part. */
@@ -467,7 +472,7 @@ static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
                                  &spectrum->residual[j]);
 }
 
-/* The first that are asked for. */
+/* The first that are wanted. */
 static void keep_first(const ritz_span *span, ritz_spectrum *spectrum)
 {
     double limit = sqrt(ritz_eigen_lambda(span->up_to_hz)) * (1.0 + RITZ_SAME);

@@ -69,8 +69,7 @@ void ritz_direct_free(ritz_direct *direct)
     *direct = (ritz_direct){0};
 }
 
-/* a and b of Rayleigh damping, else 0. */
-static void take_rayleigh(const ritz_direct *s, double *a, double *b)
+void ritz_direct_rayleigh(const ritz_direct *s, double *a, double *b)
 {
     bool rayleigh = ritz_damping_is_rayleigh(&s->damping);
 
@@ -84,7 +83,7 @@ static ritz_status factor_impedance(ritz_direct *s, double w, double w2)
     double a = 0.0, b = 0.0;
     double _Complex c[3] = {0.0, 0.0, ritz_complex(0.0, w)};
 
-    take_rayleigh(s, &a, &b);
+    ritz_direct_rayleigh(s, &a, &b);
     c[0] = ritz_complex(1.0, w * b);
     c[1] = ritz_complex(-w2, w * a);
     s->factors++;
@@ -280,7 +279,7 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
     int64_t n = direct->n;
     RITZ_OWN_ARRAY double *t = NULL;
 
-    take_rayleigh(direct, &a, &b);
+    ritz_direct_rayleigh(direct, &a, &b);
     RITZ_CHECK_NEW(t, n);
     for (int64_t j = 0; j < direct->inputs; j++) {
         const double _Complex *x = X + j * n;

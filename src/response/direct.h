@@ -52,6 +52,9 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
                               const double _Complex *X, int64_t outputs,
                               const double _Complex *Y, double *out);
 
+/** a and b of Rayleigh damping, else 0. */
+void ritz_direct_rayleigh(const ritz_direct *direct, double *a, double *b);
+
 void ritz_direct_free(ritz_direct *direct);
 
 #endif

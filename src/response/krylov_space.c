@@ -120,7 +120,7 @@ ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
          .MPhi = &direct->MPhi};
 
     RITZ_CHECK(ritz_sparse_add(1.0, &c->K, tau, &c->M, &s.A));
-    RITZ_CHECK_IN("static answer", ritz_factor_spd(&s.A, &s.F));
+    RITZ_CHECK_IN("static solution", ritz_factor_spd(&s.A, &s.F));
     if (c->D.colptr && ritz_sparse_asymmetry(&c->D) > 0.0)
         RITZ_CHECK(ritz_sparse_transpose(&c->D, &s.DT));
     RITZ_CHECK(append_columns(&s.V, &s.V_room, s.Phi));
@@ -136,12 +136,12 @@ static ritz_status orthogonalise(const ritz_krylov_space *s,
                                  const ritz_dense *X, ritz_dense *x,
                                  double *length)
 {
-    RITZ_OWN(ritz_dense) Ax = {0}, share = {0}, part = {0};
+    RITZ_OWN(ritz_dense) Ax = {0}, part_of = {0}, part = {0};
 
     RITZ_CHECK(ritz_dense_take_out(s->Phi, s->MPhi, x));
     RITZ_CHECK(ritz_sparse_mul(&s->A, x, &Ax));
-    RITZ_CHECK(ritz_dense_mul_tn(X, &Ax, &share));
-    RITZ_CHECK(ritz_dense_mul(X, &share, &part));
+    RITZ_CHECK(ritz_dense_mul_tn(X, &Ax, &part_of));
+    RITZ_CHECK(ritz_dense_mul(X, &part_of, &part));
     for (int64_t i = 0; i < x->nrow; i++)
         x->val[i] -= part.val[i];
     ritz_dense_free(&Ax);
@@ -296,10 +296,8 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
                                   ritz_krylov_small *out)
 {
     const ritz_io *io = &space->component->io;
-    RITZ_OWN(ritz_krylov_small)
-    small = {.outputs = io->num_outputs,
-             .inputs = io->num_inputs,
-             .r = space->V.ncol};
+    int64_t r = space->V.ncol, p = io->num_outputs, m = io->num_inputs;
+    RITZ_OWN(ritz_krylov_small) small = {0};
     RITZ_OWN(ritz_dense) K_x = {0}, M_x = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_reduced) a = {0}; /* in coordinates of V */
@@ -312,9 +310,9 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
     remove_ratios(direct, &small.poles);
     RITZ_CHECK(stack_outputs(&small.poles.io, &small.outputs_of));
     RITZ_MOVE(small.T, pairs.Phi);
-    RITZ_CHECK_NEW(small.q, small.r * small.inputs);
-    RITZ_CHECK_NEW(small.p, small.r * small.outputs);
-    RITZ_CHECK_NEW(small.z, small.r * (3 * small.outputs + small.inputs));
+    RITZ_CHECK_NEW(small.q, r * m);
+    RITZ_CHECK_NEW(small.p, r * p);
+    RITZ_CHECK_NEW(small.z, r * (3 * p + m));
     RITZ_MOVE(*out, small);
     return RITZ_OK;
 }
@@ -340,17 +338,18 @@ static void transform_back(const ritz_dense *T, int64_t columns,
 ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz)
 {
     double w = 2.0 * RITZ_PI * hertz;
-    int64_t rp = small->r * small->outputs;
+    const ritz_io *io = &small->poles.io;
+    int64_t rp = small->T.nrow * io->num_outputs;
     double _Complex *z = small->z;
 
     RITZ_CHECK(
         ritz_poles_solve(&small->poles, false, &small->poles.io.B, hertz, z));
-    transform_back(&small->T, small->inputs, z, small->q);
+    transform_back(&small->T, io->num_inputs, z, small->q);
     RITZ_CHECK(
         ritz_poles_solve(&small->poles, true, &small->outputs_of, hertz, z));
     for (int64_t k = 0; k < rp; k++)
         z[k] += ritz_complex(0.0, w) * z[rp + k] - w * w * z[2 * rp + k];
-    transform_back(&small->T, small->outputs, z, small->p);
+    transform_back(&small->T, io->num_outputs, z, small->p);
     return RITZ_OK;
 }
 
@@ -362,11 +361,10 @@ static void set_coefficients(const ritz_direct *direct,
                              const ritz_krylov_space *space, double w,
                              bool dual, double _Complex *f)
 {
-    bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
-    double a = rayleigh ? direct->damping.a : 0.0;
-    double b = rayleigh ? direct->damping.b : 0.0;
+    double a = 0.0, b = 0.0;
     const double _Complex iw = ritz_complex(0.0, w);
 
+    ritz_direct_rayleigh(direct, &a, &b);
     f[RITZ_KRYLOV_B] = dual ? 0.0 : 1.0;
     f[RITZ_KRYLOV_C] = dual ? 1.0 : 0.0;
     f[RITZ_KRYLOV_CV] = dual ? iw : 0.0;
@@ -383,7 +381,8 @@ void ritz_krylov_residual(const ritz_direct *direct,
                           const ritz_krylov_small *small, double hertz,
                           bool dual, int64_t index, double _Complex *y)
 {
-    const double _Complex *x = (dual ? small->p : small->q) + index * small->r;
+    const double _Complex *x =
+        (dual ? small->p : small->q) + index * small->T.nrow;
     double _Complex f[RITZ_KRYLOV_K4 + 1];
 
     set_coefficients(direct, space, 2.0 * RITZ_PI * hertz, dual, f);

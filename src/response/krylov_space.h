@@ -71,10 +71,9 @@ void ritz_krylov_space_free(ritz_krylov_space *space);
  * A component projected on a Krylov space, solved at one frequency at a time.
  */
 typedef struct ritz_krylov_small {
-    ritz_poles poles;      /* V'Z V q = V'B in modal coordinates */
-    ritz_dense outputs_of; /* C', Cv', Ca': loads of its transpose */
-    ritz_dense T;          /* r x r: from modal coordinates to V's */
-    int64_t outputs, inputs, r;
+    ritz_poles poles;           /* V'Z V q = V'B in modal coordinates */
+    ritz_dense outputs_of;      /* C', Cv', Ca': loads of its transpose */
+    ritz_dense T;               /* r x r: from modal coordinates to V's */
     double _Complex *q, *p, *z; /* r x inputs, r x outputs, 3 of those */
 } ritz_krylov_small;
 

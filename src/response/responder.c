@@ -366,22 +366,6 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
     return RITZ_OK;
 }
 
-/* Both roots of s^2 + rate s + lambda, the conjugate of a pair left out. */
-static void add_roots(double lambda, double rate, int64_t *count,
-                      double _Complex *s)
-{
-    double half = 0.5 * rate;
-    double gap = lambda - half * half;
-
-    if (gap > 0.0) {
-        s[(*count)++] = ritz_complex(-half, sqrt(gap));
-        return;
-    }
-    s[(*count)++] = -(half + sqrt(-gap));
-    s[*count] = s[*count - 1] != 0.0 ? lambda / s[*count - 1] : 0.0;
-    (*count)++;
-}
-
 /* Poles of the full matrices, or else of the modal ones. */
 static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
                                double _Complex **out)
@@ -438,8 +422,10 @@ ritz_status ritz_responder_poles(const ritz_responder *responder,
         return add_coupled(responder, count, out);
     RITZ_CHECK_NEW(s, 2 * poles->count);
     for (int64_t k = 0; k < poles->count; k++)
-        if (ritz_poles_matter(poles, k))
-            add_roots(poles->lambda[k], poles->rate[k], &n, s);
+        if (ritz_poles_matter(poles, k)) {
+            ritz_poles_roots(poles->lambda[k], poles->rate[k], s + n);
+            n += cimag(s[n]) > 0.0 ? 1 : 2;
+        }
     *count = n;
     *out = s;
     return RITZ_OK;

@@ -7,7 +7,7 @@
  *
  * so that no integrator has to carry them. Ratios of modes become the matrix
  * M Phi diag(2 zeta w) Phi'M. Where M is singular the model goes on in its
- * modes, with what motions without mass answer at once in `feed`.
+ * modes, with the static response of motions without mass in `feed`.
  */
 #include "simulate/motion.h"
 

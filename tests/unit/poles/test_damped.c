@@ -24,7 +24,7 @@ static void respond(double *K, double *M, double *D, const ritz_grid *grid,
                     ritz_response *out)
 {
     const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_io) io = {0};
 
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = io.C.val[0] = 1.0;
@@ -32,7 +32,6 @@ static void respond(double *K, double *M, double *D, const ritz_grid *grid,
         ritz_model_of_dense(
             &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL),
         NULL, 0.0, 0.0, grid, out));
-    ritz_io_free(&io);
 }
 
 /* Z = [k - w^2, -i w g; i w g, k - w^2]: H = (k - w^2) / ((k - w^2)^2 - g^2
@@ -43,7 +42,7 @@ static void a_gyroscopic_pair_answers_in_closed_form(void **state)
     double M[] = {1.0, 0.0, 0.0, 1.0};
     double D[] = {0.0, 1.0, -1.0, 0.0};
     const ritz_grid grid = {0.05, 1.0, 12, false, false, NULL};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     respond(K, M, D, &grid, &r);
@@ -56,7 +55,6 @@ static void a_gyroscopic_pair_answers_in_closed_form(void **state)
         assert_near(cabs(r.H[k] - z / det), 0.0,
                     40.0 * eps * 40.0 / (det * det) * fabs(z) + 8.0 * eps);
     }
-    ritz_response_free(&r);
 }
 
 /* D(2,1) = d alone: what moves 1 pushes 2, and 2 does not answer.
@@ -68,8 +66,8 @@ static void one_sided_coupling_counts(void **state)
     double D[] = {0.0, 0.5, 0.0, 0.0};
     const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
     const ritz_grid grid = {0.1, 0.2, 3, false, false, NULL};
-    ritz_io io = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     assert_ok(ritz_io_new(2, 1, 1, &io));
@@ -85,8 +83,6 @@ static void one_sided_coupling_counts(void **state)
         assert_near(creal(r.H[k]), 0.0, 1e-15);
         assert_near(cimag(r.H[k]), expected, 1e-15);
     }
-    ritz_response_free(&r);
-    ritz_io_free(&io);
 }
 
 /* w = 1 under d = 5 creeps, w = 3 under 0.6 swings with a ratio near 0.1: it is
@@ -98,9 +94,9 @@ static void a_mode_that_creeps_is_not_given_its_neighbour_s_ratio(void **state)
     double D[] = {5.0, 0.5, 0.5, 0.6};
     const double band[2] = {0.0, 1.0};
     const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
-    ritz_io io = {0};
-    ritz_poles poles = {0};
-    ritz_damped damped = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_poles) poles = {0};
+    RITZ_OWN(ritz_damped) damped = {0};
 
     (void)state;
     assert_ok(ritz_io_new(2, 0, 0, &io));
@@ -112,9 +108,6 @@ static void a_mode_that_creeps_is_not_given_its_neighbour_s_ratio(void **state)
     assert_true(isnan(creal(damped.s[0])));
     assert_near(damped.zeta[1], 0.1, 0.01);
     assert_int_equal(damped.listing.count, 3);
-    ritz_damped_free(&damped);
-    ritz_poles_free(&poles);
-    ritz_io_free(&io);
 }
 
 /* Maxwell element of test_spectrum.c: 1 / (1 - w^2 + 2 i w / (2 + i w)). */
@@ -124,7 +117,7 @@ static void damping_of_massless_points_is_in_the_response(void **state)
     double M[] = {1.0, 0.0, 0.0, 0.0};
     double D[] = {1.0, -1.0, -1.0, 1.0};
     const ritz_grid grid = {0.0, 1.0, 13, false, false, NULL};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     respond(K, M, D, &grid, &r);
@@ -135,7 +128,6 @@ static void damping_of_massless_points_is_in_the_response(void **state)
 
         assert_near(cabs(r.H[k] - H), 0.0, 100.0 * eps * cabs(H));
     }
-    ritz_response_free(&r);
 }
 
 /* The chain with K4, and dampers beside a skew part, at some springs. */
@@ -159,9 +151,9 @@ static void
 dense_and_direct_agree_with_skew_and_structural_damping(void **state)
 {
     const ritz_grid grid = {0.05, 3.0, 25, false, false, NULL};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_dense A[4] = {{0}};
-    ritz_response dense = {0}, direct = {0};
+    RITZ_OWN(ritz_response) dense = {0}, direct = {0};
     double largest = 0.0;
 
     (void)state;
@@ -184,17 +176,14 @@ dense_and_direct_agree_with_skew_and_structural_damping(void **state)
         assert_near(cabs(dense.H[k] - direct.H[k]), 0.0, 1e-11 * largest);
     for (int k = 0; k < 4; k++)
         ritz_dense_free(&A[k]);
-    ritz_response_free(&dense);
-    ritz_response_free(&direct);
-    ritz_component_free(&chain);
 }
 
 /* The skew part counts: without it the response is another. */
 static void direct_reads_both_triangles_of_the_damping(void **state)
 {
     const ritz_grid grid = {0.3, 3.0, 10, false, false, NULL};
-    ritz_component chain = {0};
-    ritz_response whole = {0}, half = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_response) whole = {0}, half = {0};
     double apart = 0.0;
 
     (void)state;
@@ -209,9 +198,6 @@ static void direct_reads_both_triangles_of_the_damping(void **state)
     for (int64_t k = 0; k < whole.count; k++)
         apart = fmax(apart, cabs(whole.H[k] - half.H[k]) / cabs(whole.H[k]));
     assert_true(apart > 1e-3);
-    ritz_response_free(&whole);
-    ritz_response_free(&half);
-    ritz_component_free(&chain);
 }
 
 static void verify(const ritz_component *full, const ritz_method *method,
@@ -219,9 +205,9 @@ static void verify(const ritz_component *full, const ritz_method *method,
 {
     ritz_verify_request request = RITZ_VERIFY_NONE;
     ritz_request wanted = RITZ_REQUEST_NONE;
-    ritz_component chain = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     request.band_hz[1] = 2.0;
     assert_ok(chain_component(full->num_dofs, &chain));
@@ -235,9 +221,6 @@ static void verify(const ritz_component *full, const ritz_method *method,
         reduced.dampers.c[j] = c;
     assert_ok(ritz_reduced_install(&reduced));
     assert_ok(ritz_verify_reduced(full, &reduced, &request, out));
-    ritz_component_free(&chain);
-    ritz_basis_free(&basis);
-    ritz_reduced_free(&reduced);
 }
 
 static void open_damped(double c, ritz_component *chain)
@@ -255,8 +238,8 @@ static void open_damped(double c, ritz_component *chain)
  */
 static void verification_sees_what_dampers_do(void **state)
 {
-    ritz_component full = {0};
-    ritz_measures ritz = {0}, truncated = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_measures) ritz = {0}, truncated = {0};
 
     (void)state;
     open_damped(150.0, &full);
@@ -272,17 +255,14 @@ static void verification_sees_what_dampers_do(void **state)
     assert_true(find_measure(&truncated, "frequency-relative")->value < 2e-3);
     assert_true(find_measure(&ritz, "response-relative")->value < 1e-3);
     assert_true(find_measure(&truncated, "response-relative")->value > 0.1);
-    ritz_measures_free(&ritz);
-    ritz_measures_free(&truncated);
-    ritz_component_free(&full);
 }
 
 /* c = 5000 locks the springs: three motions creep, and undamped partners are no
  * longer damped ones. All dofs kept: errors are those of eigenvalues. */
 static void overdamped_models_are_compared_pole_by_pole(void **state)
 {
-    ritz_component full = {0};
-    ritz_measures same = {0}, ritz = {0}, other = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_measures) same = {0}, ritz = {0}, other = {0};
 
     (void)state;
     open_damped(5000.0, &full);
@@ -294,20 +274,16 @@ static void overdamped_models_are_compared_pole_by_pole(void **state)
     assert_near(find_measure(&same, "response-relative")->value, 0.0, 1e-9);
     assert_true(find_measure(&ritz, "damping-relative")->value < 0.05);
     assert_true(find_measure(&other, "damping-relative")->value > 0.5);
-    ritz_measures_free(&same);
-    ritz_measures_free(&ritz);
-    ritz_measures_free(&other);
-    ritz_component_free(&full);
 }
 
 /* A model whose modes all creep has no damped mode to be compared. */
 static void what_creeps_in_one_model_alone_is_wholly_wrong(void **state)
 {
-    ritz_component full = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     (void)state;
     open_damped(150.0, &full);
@@ -320,17 +296,13 @@ static void what_creeps_in_one_model_alone_is_wholly_wrong(void **state)
     request.band_hz[1] = 2.0;
     assert_ok(ritz_verify_reduced(&full, &reduced, &request, &found));
     assert_near(find_measure(&found, "damping-relative")->value, 1.0, 0.0);
-    ritz_measures_free(&found);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&full);
 }
 
 /* Half of the cantilever with a damper, and K4, at its middle or its end. */
 static void store_half(const char *file, bool left)
 {
     frame_section section = frame_mcdaniel;
-    ritz_component half = {0};
+    RITZ_OWN(ritz_component) half = {0};
     int64_t at = 0;
     const double loss = 0.03;
 
@@ -348,7 +320,6 @@ static void store_half(const char *file, bool left)
                                         &at, &loss, &half.K4));
     assert_ok(ritz_component_settle(&half, false));
     folder_store(file, &half);
-    ritz_component_free(&half);
 }
 
 static const char halves[] =
@@ -363,7 +334,7 @@ static void assert_poles(const ritz_component *full,
 {
     const ritz_span all = {.modes = 100};
     const ritz_second_order model = {&c->K, &c->M, &c->D, &c->K4, NULL};
-    ritz_spectrum one = {0}, two = {0};
+    RITZ_OWN(ritz_spectrum) one = {0}, two = {0};
 
     assert_ok(
         ritz_spectrum_of(ritz_model_of_component(full, NULL), &all, &one));
@@ -372,17 +343,15 @@ static void assert_poles(const ritz_component *full,
     assert_int_equal(two.count, count);
     for (int64_t j = 0; j < count; j++) /* eps times the largest |s|, 27 */
         assert_near(cabs(one.s[j] - two.s[j]), 0.0, 12 * eps * 27.0 * 27.0);
-    ritz_spectrum_free(&one);
-    ritz_spectrum_free(&two);
 }
 
 /* The same poles from sparse elimination and from constraints' null space. */
 static void a_system_has_the_damping_of_its_bodies(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_component full = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     store_half("a.h5", true);
@@ -403,26 +372,19 @@ static void a_system_has_the_damping_of_its_bodies(void **state)
     assert_ok(ritz_dampers_tune(&c.dampers, "A/strut=0.5*0"));
     assert_ok(ritz_configuration_install(&c));
     assert_poles(&full, &c, 12);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_component_free(&full);
-    ritz_scene_free(&scene);
 }
 
 static ritz_status assemble(const ritz_scene *scene)
 {
     ritz_status status = RITZ_OK;
-    ritz_component full = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     RITZ_TRY(ritz_assemble_full(scene, NULL, &full));
     RITZ_TRY(ritz_stage_new(scene, &stage));
     RITZ_TRY(ritz_stage_assemble(&stage, NULL, &c));
 done:
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_component_free(&full);
     return status;
 }
 
@@ -434,8 +396,8 @@ static ritz_status respond_to_all(const ritz_component *chain)
     double D[] = {1.0, -1.0, -1.0, 1.0};
     const ritz_dense A[] = {{2, 2, K}, {2, 2, M}, {2, 2, D}};
     ritz_status status = RITZ_OK;
-    ritz_io io = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     RITZ_TRY(ritz_io_new(2, 1, 1, &io));
     RITZ_TRY(ritz_response_of(
@@ -446,8 +408,6 @@ static ritz_status respond_to_all(const ritz_component *chain)
     RITZ_TRY(ritz_response_of(ritz_model_of_component(chain, NULL),
                               &ritz_response_engine_direct, 0, 0.0, &grid, &r));
 done:
-    ritz_io_free(&io);
-    ritz_response_free(&r);
     return status;
 }
 
@@ -455,21 +415,20 @@ static ritz_status verify_once(const ritz_component *full,
                                const ritz_reduced *reduced)
 {
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_measures) found = {0};
     ritz_status status = RITZ_OK;
 
     request.band_hz[1] = 0.5;
     status = ritz_verify_reduced(full, reduced, &request, &found);
-    ritz_measures_free(&found);
     return status;
 }
 
 static void no_allocation_is_forgotten(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_component chain = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     (void)state;
     store_half("a.h5", true);
@@ -485,10 +444,6 @@ static void no_allocation_is_forgotten(void **state)
         basis.T.val[k] = sin((double)(k * k % 17));
     assert_ok(ritz_reduce(&chain, &basis, &reduced));
     assert_survives_every_allocation(verify_once(&chain, &reduced));
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&chain);
-    ritz_scene_free(&scene);
 }
 
 static const struct CMUnitTest tests[] = {

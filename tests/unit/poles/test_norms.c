@@ -24,7 +24,7 @@ static void slicot_publishes_this_peak(void **unused)
         0, 0, 0, 0, 0, 1, 0,    0,       0,  0,        -2, -0.000002};
     static const double B[] = {1, 0, 1, 0, 1, 0}, C[] = {1, 0, 1, 0, 1, 0};
     const spaces_rows rows = {6, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_norm norm = {0};
 
     (void)unused;
@@ -35,7 +35,6 @@ static void slicot_publishes_this_peak(void **unused)
     assert_true(norm.lower <= norm.value);
     assert_near(norm.lower, norm.value, 1e-8 * norm.value);
     assert_string_equal(norm.engine, "SLICOT AB13DD");
-    ritz_state_space_free(&model);
 }
 
 /* [s; -s]: of what is right of the axis, the mirror image. */
@@ -67,8 +66,8 @@ slicot_publishes_this_norm_of_stable_and_unstable_parts(void **unused)
                                0, 0, 0, 0, 1, 0, 0};
     const spaces_rows rows = {7, 2, 3, A, B, C, NULL, NULL};
     ritz_state_space model = {0}, part[2] = {0};
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
     ritz_norm norm[2] = {0};
 
     (void)unused;
@@ -87,8 +86,6 @@ slicot_publishes_this_norm_of_stable_and_unstable_parts(void **unused)
     assert_near(hypot(norm[0].value, norm[1].value), 7.93948, 5e-6);
     assert_fails(ritz_norm_two(&model, &norm[0]), RITZ_ERR_ARGUMENT,
                  "2 of 7 poles are not left of the imaginary axis");
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
     ritz_state_space_free(&model);
 }
 
@@ -108,7 +105,7 @@ static void a_mode_has_its_closed_forms(void **unused)
         const double B[] = {0, w * w}, C[] = {1, 0};
         const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
         double peak = 1.0 / (2.0 * z * sqrt(1.0 - z * z));
-        ritz_state_space model = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
         ritz_norm norm = {0};
 
         assert_ok(spaces_make(&rows, &model));
@@ -120,7 +117,6 @@ static void a_mode_has_its_closed_forms(void **unused)
         assert_ok(ritz_norm_two(&model, &norm));
         assert_near(norm.value, sqrt(w / (4.0 * z)),
                     16 * DBL_EPSILON / z * sqrt(w / z));
-        ritz_state_space_free(&model);
     }
 }
 
@@ -132,7 +128,7 @@ static void units_do_not_matter(void **unused)
     static const double one[] = {1, 0}, seen[] = {0, 1, 1, 0}, d[] = {0.1, 0};
     const spaces_rows small = {2, 1, 2, A, B, C, D, NULL};
     const spaces_rows plain = {2, 1, 2, A, one, seen, d, NULL};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_norm tiny = {0}, norm = {0};
 
     (void)unused;
@@ -141,7 +137,6 @@ static void units_do_not_matter(void **unused)
     ritz_state_space_free(&model);
     assert_ok(spaces_make(&plain, &model));
     assert_ok(ritz_norm_infinity(&model, 1e-9, &norm));
-    ritz_state_space_free(&model);
     assert_near(tiny.value * 1e21, norm.value, 2e-9 * norm.value);
 }
 
@@ -153,7 +148,7 @@ static void feedthrough_counts(void **unused)
                         minus[] = {-1};
     const spaces_rows gain = {0, 2, 2, D, D, D, D, NULL};
     const spaces_rows high = {1, 1, 1, A, one, minus, one, NULL};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_norm norm = {0};
 
     (void)unused;
@@ -166,7 +161,6 @@ static void feedthrough_counts(void **unused)
     assert_ok(spaces_make(&high, &model));
     assert_ok(ritz_norm_infinity(&model, 1e-9, &norm));
     assert_near(norm.value, 1.0, 2e-9);
-    ritz_state_space_free(&model);
 }
 
 /* Outside: SciPy 1.10, Lyapunov equation and a bounded search. */
@@ -185,7 +179,7 @@ static void collections_have_these_norms(void **unused)
 
     (void)unused;
     for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
-        ritz_state_space model = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
         ritz_norm norm = {0};
 
         if (!spaces_read(known[k].name, &model))
@@ -195,7 +189,6 @@ static void collections_have_these_norms(void **unused)
         assert_near(norm.hertz, known[k].hertz, 1e-6);
         assert_ok(ritz_norm_two(&model, &norm));
         assert_near(norm.value, known[k].two, 1e-9 * known[k].two);
-        ritz_state_space_free(&model);
     }
 }
 
@@ -213,7 +206,7 @@ static void large_models_get_a_value_that_is_met(void **unused)
         double *B = calloc((size_t)n, sizeof *B);
         double *C = calloc((size_t)n, sizeof *C);
         const spaces_rows rows = {n, 1, 1, A, B, C, NULL, NULL};
-        ritz_state_space model = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
 
         assert_non_null(A);
         assert_non_null(B);
@@ -229,7 +222,6 @@ static void large_models_get_a_value_that_is_met(void **unused)
         }
         assert_ok(spaces_make(&rows, &model));
         assert_ok(ritz_norm_infinity(&model, 1e-9, &norm[large]));
-        ritz_state_space_free(&model);
         free(A);
         free(B);
         free(C);
@@ -262,7 +254,7 @@ static void a_difference_is_what_both_answer_apart(void **unused)
     for (int k = 0; k < 2; k++) {
         ritz_grid grid = {.hertz = (const double[]){w / (2 * pi), 1.0},
                           .count = 2};
-        ritz_response response = {0};
+        RITZ_OWN(ritz_response) response = {0};
 
         assert_ok(ritz_state_space_difference(&model[k], &model[1 - k],
                                               &difference[k]));
@@ -271,7 +263,6 @@ static void a_difference_is_what_both_answer_apart(void **unused)
         assert_ok(ritz_response_of(ritz_model_of_states(&difference[k]), NULL,
                                    0.0, 0.0, &grid, &response));
         assert_near(cabs(response.H[0]), expected, 64 * DBL_EPSILON);
-        ritz_response_free(&response);
     }
     assert_near(difference[0].D.val[0], 0.5, 0.0);
     assert_near(difference[1].D.val[0], -0.5, 0.0);
@@ -296,9 +287,9 @@ static void models_that_differ_in_kind_have_no_difference(void **unused)
     ritz_state_space_free(&b);
     assert_ok(spaces_make(&one, &b));
     snprintf(b.output[0], RITZ_NAME_SIZE, "tip");
-    assert_fails(ritz_state_space_difference(&a, &b, &difference),
-                 RITZ_ERR_ARGUMENT,
-                 "output 1 is 'y1' in the full model and 'tip' in the reduced one");
+    assert_fails(
+        ritz_state_space_difference(&a, &b, &difference), RITZ_ERR_ARGUMENT,
+        "output 1 is 'y1' in the full model and 'tip' in the reduced one");
     ritz_state_space_free(&a);
     ritz_state_space_free(&b);
 }
@@ -307,7 +298,7 @@ static void infinite_norms_and_bad_tolerances_are_refused(void **unused)
 {
     static const double A[] = {0, 1, -4, 0}, B[] = {0, 1}, C[] = {1, 0};
     const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_norm norm = {0};
 
     (void)unused;
@@ -317,20 +308,18 @@ static void infinite_norms_and_bad_tolerances_are_refused(void **unused)
                  "axis: a norm of the response is infinite");
     assert_fails(ritz_norm_infinity(&model, 0.0, &norm), RITZ_ERR_ARGUMENT,
                  "the tolerance of a norm is 0, it must be between 0 and 1");
-    ritz_state_space_free(&model);
 }
 
 static ritz_status norms_once(const ritz_state_space *model)
 {
     ritz_status status = RITZ_OK;
-    ritz_state_space difference = {0};
+    RITZ_OWN(ritz_state_space) difference = {0};
     ritz_norm norm = {0};
 
     RITZ_TRY(ritz_state_space_difference(model, model, &difference));
     RITZ_TRY(ritz_norm_infinity(&difference, 1e-3, &norm));
     RITZ_TRY(ritz_norm_two(&difference, &norm));
 done:
-    ritz_state_space_free(&difference);
     return status;
 }
 

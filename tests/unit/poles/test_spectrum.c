@@ -252,7 +252,7 @@ static ritz_reduced truncate(const ritz_component *chain)
 static ritz_reduced with_ritz_vectors(const ritz_component *chain)
 {
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_reduced reduced = {0};
 
     request.component = chain;
@@ -262,7 +262,6 @@ static ritz_reduced with_ritz_vectors(const ritz_component *chain)
     assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
     assert_ok(ritz_reduce(chain, &basis, &reduced));
     assert_int_equal(reduced.K.ncol, 11);
-    ritz_basis_free(&basis);
     return reduced;
 }
 
@@ -274,7 +273,7 @@ static ritz_second_order view(const ritz_reduced *r)
 static void the_chain_has_its_published_poles(void **state)
 {
     const ritz_span twenty = {.modes = 20};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_reduced small[2];
     ritz_spectrum s[3] = {{0}};
 
@@ -302,7 +301,6 @@ static void the_chain_has_its_published_poles(void **state)
         ritz_spectrum_free(&s[k]);
     ritz_reduced_free(&small[0]);
     ritz_reduced_free(&small[1]);
-    ritz_component_free(&chain);
 }
 
 /* The optimum of the truncated model is off by four. */
@@ -311,7 +309,7 @@ static void scans_find_the_published_optima(void **state)
     static const int64_t all[] = {0, 1, 2};
     static const double best[2][3] = {{810, 810, 3270}, {260, 260, 970}};
     static const double zeta[3] = {2.793, 2.793, 10.11}; /* of mode 2, % */
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_reduced small[2];
 
     (void)state;
@@ -326,7 +324,7 @@ static void scans_find_the_published_optima(void **state)
             double c = best[mode][k];
             const ritz_scan_request request = {3,        all,  c - 60.0,
                                                c + 60.0, 10.0, mode};
-            ritz_scan scan = {0};
+            RITZ_OWN(ritz_scan) scan = {0};
 
             assert_ok(
                 k == 0
@@ -339,11 +337,9 @@ static void scans_find_the_published_optima(void **state)
             if (mode == 1)
                 assert_near(100.0 * ritz_spectrum_ratio(scan.s[scan.best]),
                             zeta[k], k < 2 ? 5.1e-4 : 5.1e-3);
-            ritz_scan_free(&scan);
         }
     ritz_reduced_free(&small[0]);
     ritz_reduced_free(&small[1]);
-    ritz_component_free(&chain);
 }
 
 /* From c = 0 to 150 three real poles come below mode 4, which is then the
@@ -352,8 +348,8 @@ static void a_mode_is_followed_past_poles_that_come_between(void **state)
 {
     static const int64_t all[] = {0, 1, 2};
     const ritz_scan_request request = {3, all, 0.0, 150.0, 10.0, 3};
-    ritz_component chain = {0};
-    ritz_scan scan = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_scan) scan = {0};
 
     (void)state;
     assert_ok(chain_component(30, &chain));
@@ -365,8 +361,6 @@ static void a_mode_is_followed_past_poles_that_come_between(void **state)
     assert_near(100.0 * ritz_spectrum_ratio(scan.s[15]), table[3].full[1],
                 5.1e-6);
     assert_near(creal(scan.s[0]), 0.0, 1e-13); /* undamped to begin with */
-    ritz_scan_free(&scan);
-    ritz_component_free(&chain);
 }
 
 static void bad_scans_are_refused_in_words(void **state)
@@ -382,7 +376,7 @@ static void bad_scans_are_refused_in_words(void **state)
         {{3, all, 0.0, 1e9, 1.0, 0}, "1000000000 steps of a scan are too many"},
         {{3, all, 0.0, 10.0, 1.0, 30}, "there is no mode 31, 30 poles"},
     };
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     assert_ok(chain_component(30, &chain));
@@ -393,7 +387,6 @@ static void bad_scans_are_refused_in_words(void **state)
                                   &cases[k].request, &scan),
                      RITZ_ERR_ARGUMENT, cases[k].words);
     }
-    ritz_component_free(&chain);
 }
 
 /* The same poles from 28 modes, static answers and inverse iteration as from
@@ -401,10 +394,10 @@ static void bad_scans_are_refused_in_words(void **state)
 static void a_large_component_has_the_poles_of_its_dense_matrices(void **state)
 {
     const ritz_span ten = {.modes = 10};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_dense A[3] = {{0}};
     const ritz_second_order model = {&A[0], &A[1], &A[2], NULL, NULL};
-    ritz_spectrum whole = {0}, part = {0};
+    RITZ_OWN(ritz_spectrum) whole = {0}, part = {0};
 
     (void)state;
     assert_ok(chain_component(60, &chain));
@@ -421,11 +414,8 @@ static void a_large_component_has_the_poles_of_its_dense_matrices(void **state)
         assert_near(cabs(part.s[j] - whole.s[j]), 0.0, 60 * eps * 90.0);
         assert_near(part.residual[j], 0.0, 1e-10); /* measured: 1e-12 */
     }
-    ritz_spectrum_free(&whole);
-    ritz_spectrum_free(&part);
     for (int k = 0; k < 3; k++)
         ritz_dense_free(&A[k]);
-    ritz_component_free(&chain);
 }
 
 /* Without D the pole of ratio zeta is known from the undamped frequency; of
@@ -434,9 +424,9 @@ static void a_large_component_heeds_given_damping(void **state)
 {
     const ritz_span few = {.modes = 4};
     ritz_damping modal = {0}, rayleigh = {0};
-    ritz_component chain = {0};
-    ritz_pairs pairs = {0};
-    ritz_spectrum s = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_spectrum) s = {0};
 
     (void)state;
     assert_ok(ritz_damping_parse("modes 0.01 0.02 0.03", &modal));
@@ -461,9 +451,6 @@ static void a_large_component_heeds_given_damping(void **state)
         assert_near(-2.0 * creal(s.s[j]), 0.001 + 0.02 * pairs.lambda[j],
                     1e-10);
     assert_pole(s.s[0], -0.001, 0.0, 1e-10);
-    ritz_spectrum_free(&s);
-    ritz_pairs_free(&pairs);
-    ritz_component_free(&chain);
 }
 
 static ritz_status scan_all(const ritz_component *chain)
@@ -472,15 +459,13 @@ static ritz_status scan_all(const ritz_component *chain)
     const ritz_scan_request request = {1, one, 0.0, 20.0, 10.0, 0};
     const ritz_span two = {.modes = 2};
     ritz_status status = RITZ_OK;
-    ritz_scan scan = {0};
-    ritz_spectrum s = {0};
+    RITZ_OWN(ritz_scan) scan = {0};
+    RITZ_OWN(ritz_spectrum) s = {0};
 
     RITZ_TRY(
         ritz_scan_of(ritz_model_of_component(chain, NULL), &request, &scan));
     RITZ_TRY(ritz_spectrum_of(ritz_model_of_component(chain, NULL), &two, &s));
 done:
-    ritz_scan_free(&scan);
-    ritz_spectrum_free(&s);
     return status;
 }
 
@@ -496,47 +481,43 @@ static ritz_status spectrum_of_everything(void)
     const ritz_second_order real = {&A[0], &A[1], &A[2], NULL, NULL};
     const ritz_second_order complex_ = {&A[0], &A[4], &A[2], &A[3], NULL};
     ritz_status status = RITZ_OK;
-    ritz_spectrum s = {0};
+    RITZ_OWN(ritz_spectrum) s = {0};
 
     RITZ_TRY(ritz_spectrum_of(ritz_model_of_dense(&real, NULL), NULL, &s));
     ritz_spectrum_free(&s);
     RITZ_TRY(ritz_spectrum_of(ritz_model_of_dense(&complex_, NULL), NULL, &s));
 done:
-    ritz_spectrum_free(&s);
     return status;
 }
 
 static void no_allocation_is_forgotten(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_component_install(&chain));
     assert_survives_every_allocation(spectrum_of_everything());
     assert_survives_every_allocation(scan_all(&chain));
-    ritz_component_free(&chain);
 }
 
 static ritz_status large_of(const ritz_component *chain)
 {
     const ritz_span two = {.modes = 2};
-    ritz_spectrum s = {0};
+    RITZ_OWN(ritz_spectrum) s = {0};
     ritz_status status = ritz_spectrum_large(chain, NULL, &two, &s);
 
-    ritz_spectrum_free(&s);
     return status;
 }
 
 static void no_allocation_of_a_large_one_is_forgotten(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     assert_ok(chain_component(20, &chain));
     assert_ok(ritz_component_install(&chain));
     assert_survives_every_allocation(large_of(&chain));
-    ritz_component_free(&chain);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -43,7 +43,7 @@ static void rigid_motion_is_told_behind_negative_eigenvalues(void **state)
     ritz_dense K = {0}, M = {0}, none = {0};
     const ritz_second_order model = {&K, &M, &none, &none, NULL};
     ritz_damping damping = {0};
-    ritz_spectrum found = {0};
+    RITZ_OWN(ritz_spectrum) found = {0};
     int64_t at = 0;
 
     (void)state;
@@ -63,7 +63,6 @@ static void rigid_motion_is_told_behind_negative_eigenvalues(void **state)
                         grows ? 1.0 : due[k][1], 1e-12);
         }
     }
-    ritz_spectrum_free(&found);
     ritz_dense_free(&K);
     ritz_dense_free(&M);
 }

@@ -17,6 +17,8 @@ typedef struct chain {
     ritz_component component;
     ritz_structure dense;
     ritz_second_order model;
+    int64_t count; /* of the zeros that were found last */
+    double _Complex *zero;
 } chain;
 
 static void chain_new(int64_t n, const double *m, const double *k,
@@ -39,8 +41,18 @@ static void chain_ends(chain *s, int64_t ins, const int64_t *in, int64_t outs,
     s->model.io = &s->component.io;
 }
 
+/* Of the first channel, or of all: @p due of them. */
+static void chain_zeros(chain *s, int64_t channel, int64_t due)
+{
+    free(s->zero);
+    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s->model, NULL), channel,
+                            channel, &s->count, &s->zero));
+    assert_int_equal(s->count, due);
+}
+
 static void chain_free_all(chain *s)
 {
+    free(s->zero);
     ritz_structure_free(&s->dense);
     ritz_component_free(&s->component);
 }
@@ -59,26 +71,18 @@ static void two_masses_have_the_zero_of_the_second_alone(void **state)
 {
     const double m[] = {2.0, 0.5}, k[] = {30.0, 8.0};
     const int64_t first = 0, second = 1;
-    double _Complex *zero = NULL;
-    int64_t count = 0;
     chain s;
 
     (void)state;
     chain_new(2, m, k, NULL, &s);
     chain_ends(&s, 1, &first, 1, &first);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 2);
+    chain_zeros(&s, 0, 2);
     /* a sum of two terms: a few roundings */
-    assert_near(cimag(zero[0]), 4.0, 16 * DBL_EPSILON * 4.0);
-    assert_near(creal(zero[0]), 0.0, 0.0);
-    assert_true(zero[1] == conj(zero[0]));
-    free(zero);
+    assert_near(cimag(s.zero[0]), 4.0, 16 * DBL_EPSILON * 4.0);
+    assert_near(creal(s.zero[0]), 0.0, 0.0);
+    assert_true(s.zero[1] == conj(s.zero[0]));
     chain_ends(&s, 1, &first, 1, &second);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 0);
-    free(zero);
+    chain_zeros(&s, 0, 0);
     chain_free_all(&s);
 }
 
@@ -87,27 +91,21 @@ static void a_damped_pair_has_the_zeros_of_its_link(void **state)
 {
     const double m[] = {2.0, 0.5}, k[] = {30.0, 8.0}, c[] = {0.3, 0.2};
     const int64_t first = 0, second = 1;
-    double _Complex *zero = NULL, due = 0.0;
-    int64_t count = 0;
+    double _Complex due = 0.0;
     chain s;
 
     (void)state;
     chain_new(2, m, k, c, &s);
     chain_ends(&s, 1, &first, 1, &second);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 1);
+    chain_zeros(&s, 0, 1);
     /* far beyond the poles, where two modes all but cancel: measured 1.2e-13 */
-    assert_near(cabs(zero[0] + 40.0), 0.0, 1e-12);
-    free(zero);
+    assert_near(cabs(s.zero[0] + 40.0), 0.0, 1e-12);
     chain_ends(&s, 1, &first, 1, &first);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 2);
+    chain_zeros(&s, 0, 2);
     due = -0.2 + (double _Complex)_Complex_I * sqrt(16.0 - 0.04);
-    assert_near(cabs(zero[0] - due), 0.0, 100 * DBL_EPSILON * cabs(due));
-    assert_near(cabs(zero[1] - conj(due)), 0.0, 100 * DBL_EPSILON * cabs(due));
-    free(zero);
+    assert_near(cabs(s.zero[0] - due), 0.0, 100 * DBL_EPSILON * cabs(due));
+    assert_near(cabs(s.zero[1] - conj(due)), 0.0,
+                100 * DBL_EPSILON * cabs(due));
     chain_free_all(&s);
 }
 
@@ -116,9 +114,9 @@ static double *held_frequencies(int64_t n, const double *m, const double *k,
                                 int64_t at)
 {
     double *w = calloc((size_t)n, sizeof *w);
-    ritz_structure left = {0};
-    ritz_component row = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_structure) left = {0};
+    RITZ_OWN(ritz_component) row = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t keep[MASSES_MOST], count = 0;
     ritz_dense K = {0}, M = {0};
 
@@ -140,11 +138,8 @@ static double *held_frequencies(int64_t n, const double *m, const double *k,
     assert_non_null(w);
     for (int64_t i = 0; i < count; i++)
         w[i] = sqrt(pairs.lambda[i]);
-    ritz_pairs_free(&pairs);
     ritz_dense_free(&K);
     ritz_dense_free(&M);
-    ritz_structure_free(&left);
-    ritz_component_free(&row);
     return w;
 }
 
@@ -157,7 +152,7 @@ static void collocated_zeros_are_poles_of_the_held_structure(void **state)
     double *held = NULL;
     double _Complex *zero = NULL;
     int64_t count = 0;
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     chain s;
 
     (void)state;
@@ -178,7 +173,6 @@ static void collocated_zeros_are_poles_of_the_held_structure(void **state)
         assert_true(sqrt(pairs.lambda[j]) < cimag(zero[2 * j]));
         assert_true(cimag(zero[2 * j]) < sqrt(pairs.lambda[j + 1]));
     }
-    ritz_pairs_free(&pairs);
     free(zero);
     free(held);
     chain_free_all(&s);
@@ -192,8 +186,6 @@ static void zeros_between_are_those_of_both_ends(void **state)
     double m[N], k[N], c[N];
     const int64_t a = 3, b = 7;
     double *before = NULL, *behind = NULL;
-    double _Complex *zero = NULL;
-    int64_t count = 0;
     chain s;
 
     (void)state;
@@ -202,21 +194,18 @@ static void zeros_between_are_those_of_both_ends(void **state)
     behind = held_frequencies(N - b, m + b, k + b, 0);
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 1, &a, 1, &b);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 2 * (a + N - 1 - b));
-    for (int64_t j = 0; j < count; j += 2) {
-        double w = cimag(zero[j]), nearest = HUGE_VAL;
+    chain_zeros(&s, 0, 2 * (a + N - 1 - b));
+    for (int64_t j = 0; j < s.count; j += 2) {
+        double w = cimag(s.zero[j]), nearest = HUGE_VAL;
 
         for (int64_t i = 0; i < a; i++)
             nearest = fmin(nearest, fabs(w - before[i]));
         for (int64_t i = 0; i < N - 1 - b; i++)
             nearest = fmin(nearest, fabs(w - behind[i]));
-        assert_near(creal(zero[j]), 0.0, 0.0);
+        assert_near(creal(s.zero[j]), 0.0, 0.0);
         /* twelve terms that cancel each other: measured 2.4e-15 w */
         assert_near(nearest, 0.0, 1e-13 * w);
     }
-    free(zero);
     free(before);
     free(behind);
     chain_free_all(&s);
@@ -228,8 +217,6 @@ static void a_wave_guide_has_no_zeros_of_rounding(void **state)
     enum { N = 60 };
     double m[N], k[N];
     const int64_t a = 0, b = N - 1;
-    double _Complex *zero = NULL;
-    int64_t count = 0;
     chain s;
 
     (void)state;
@@ -239,10 +226,7 @@ static void a_wave_guide_has_no_zeros_of_rounding(void **state)
     }
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 1, &a, 1, &b);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 0);
-    free(zero);
+    chain_zeros(&s, 0, 0);
     chain_free_all(&s);
 }
 
@@ -252,28 +236,19 @@ static void a_mode_that_is_not_seen_makes_no_zero(void **state)
 {
     const double m[] = {1.0, 2.0, 1.0}, k[] = {5.0, 3.0, 3.0};
     const int64_t middle = 1;
-    double _Complex *zero = NULL;
-    int64_t count = 0;
     chain s;
 
     (void)state;
     chain_new(3, m, k, NULL, &s);
     ritz_dense_col(&s.dense.K, 2)[2] += 5.0;
     chain_ends(&s, 1, &middle, 1, &middle);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0, &count,
-                            &zero));
-    assert_int_equal(count, 2);
-    assert_near(cimag(zero[0]), sqrt(8.0), 32 * DBL_EPSILON * sqrt(8.0));
-    free(zero);
+    chain_zeros(&s, 0, 2);
+    assert_near(cimag(s.zero[0]), sqrt(8.0), 32 * DBL_EPSILON * sqrt(8.0));
     /* of all channels it is an invariant zero too */
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL),
-                            RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
-                            &zero));
-    assert_int_equal(count, 4);
+    chain_zeros(&s, RITZ_ALL_CHANNELS, 4);
     for (int j = 0; j < 4; j++)
         /* measured 0; a few roundings */
-        assert_near(cabs(zero[j]), sqrt(8.0), 32 * DBL_EPSILON * sqrt(8.0));
-    free(zero);
+        assert_near(cabs(s.zero[j]), sqrt(8.0), 32 * DBL_EPSILON * sqrt(8.0));
     chain_free_all(&s);
 }
 
@@ -299,8 +274,8 @@ static void mirrored(int64_t n, ritz_dense *K, ritz_dense *M, ritz_dense *D)
 static void what_the_middle_does_not_see_is_not_summed(void **state)
 {
     enum { N = 191 };
-    ritz_structure row = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_structure) row = {0};
+    RITZ_OWN(ritz_io) io = {0};
     ritz_dense none = {0};
     ritz_second_order model = {.K = &row.K, .M = &row.M, .io = &io};
 
@@ -310,16 +285,13 @@ static void what_the_middle_does_not_see_is_not_summed(void **state)
     io.B.val[N / 2] = 1.0;
     io.C.val[N / 2] = 1.0;
     for (int damped = 0; damped < 2; damped++) {
-        ritz_channel channel = {0};
+        RITZ_OWN(ritz_channel) channel = {0};
 
         model.D = damped ? &row.D : &none;
         assert_ok(ritz_channel_dense(&model, NULL, 0, 0, &channel));
         assert_true(damped ? channel.blocks : channel.squared);
         assert_int_equal(channel.A.nrow, (1 + damped) * (N + 1) / 2);
-        ritz_channel_free(&channel);
     }
-    ritz_io_free(&io);
-    ritz_structure_free(&row);
 }
 
 /* Derivatives add zeros at rest; a free body's poles there cancel them. */
@@ -331,8 +303,7 @@ static void derivatives_have_zeros_at_rest(void **state)
     (void)state;
     for (int is_free = 0; is_free < 2; is_free++)
         for (int order = 0; order < 3; order++) {
-            double _Complex *zero = NULL;
-            int64_t count = 0, rest = is_free ? 0 : order;
+            int64_t rest = is_free ? 0 : order;
             ritz_dense kept;
             ritz_io *io = NULL;
             chain s;
@@ -348,13 +319,10 @@ static void derivatives_have_zeros_at_rest(void **state)
                 io->C = io->Ca;
                 io->Ca = kept;
             }
-            assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL), 0, 0,
-                                    &count, &zero));
-            assert_int_equal(count, 2 + rest);
+            chain_zeros(&s, 0, 2 + rest);
             for (int64_t j = 0; j < rest; j++)
-                assert_true(zero[j] == 0.0);
-            assert_near(cimag(zero[rest]), 4.0, 64 * DBL_EPSILON);
-            free(zero);
+                assert_true(s.zero[j] == 0.0);
+            assert_near(cimag(s.zero[rest]), 4.0, 64 * DBL_EPSILON);
             chain_free_all(&s);
         }
 }
@@ -409,9 +377,7 @@ static void all_channels_collocated_have_poles_of_what_is_held(void **state)
     double m[N], k[N], c[N];
     const int64_t at[] = {1, 3};
     double *before = NULL, *behind = NULL;
-    double _Complex *zero = NULL;
     double due[3];
-    int64_t count = 0;
     chain s;
 
     (void)state;
@@ -423,20 +389,16 @@ static void all_channels_collocated_have_poles_of_what_is_held(void **state)
     due[2] = behind[0];
     chain_new(N, m, k, NULL, &s);
     chain_ends(&s, 2, at, 2, at);
-    assert_ok(ritz_zeros_of(ritz_model_of_dense(&s.model, NULL),
-                            RITZ_ALL_CHANNELS, RITZ_ALL_CHANNELS, &count,
-                            &zero));
-    assert_int_equal(count, 6);
+    chain_zeros(&s, RITZ_ALL_CHANNELS, 6);
     for (int j = 0; j < 6; j++) {
         double nearest = HUGE_VAL;
 
         for (int i = 0; i < 3; i++)
-            nearest = fmin(nearest, fabs(fabs(cimag(zero[j])) - due[i]));
-        assert_near(creal(zero[j]), 0.0, 0.0);
+            nearest = fmin(nearest, fabs(fabs(cimag(s.zero[j])) - due[i]));
+        assert_near(creal(s.zero[j]), 0.0, 0.0);
         /* measured 0: they are well apart; a few roundings */
-        assert_near(nearest, 0.0, 32 * DBL_EPSILON * cabs(zero[j]));
+        assert_near(nearest, 0.0, 32 * DBL_EPSILON * cabs(s.zero[j]));
     }
-    free(zero);
     free(before);
     free(behind);
     chain_free_all(&s);
@@ -449,7 +411,7 @@ static void a_state_space_has_the_zeros_of_its_numerator(void **state)
     static const double B[] = {1, 0, 0};
     static const double C[] = {1, -1, -6};
     static const spaces_rows rows = {3, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     double _Complex *zero = NULL;
     int64_t count = 0;
 
@@ -460,7 +422,6 @@ static void a_state_space_has_the_zeros_of_its_numerator(void **state)
     assert_near(cabs(zero[0] + 2.0), 0.0, 1e-13); /* measured 2.7e-15 */
     assert_near(cabs(zero[1] - 3.0), 0.0, 1e-13);
     free(zero);
-    ritz_state_space_free(&model);
 }
 
 static void what_has_no_zeros_is_refused(void **state)
@@ -521,7 +482,7 @@ static void zeros_survive_every_allocation(void **state)
     const double m[] = {2.0, 0.5}, k[] = {30.0, 8.0}, c[] = {0.3, 0.2};
     const int64_t first = 0;
     const ritz_damping none = {0};
-    ritz_state_space states = {0};
+    RITZ_OWN(ritz_state_space) states = {0};
     chain s;
 
     (void)state;
@@ -529,7 +490,6 @@ static void zeros_survive_every_allocation(void **state)
     chain_ends(&s, 1, &first, 1, &first);
     assert_ok(ritz_state_space_of_component(&s.component, &none, &states));
     assert_survives_every_allocation(forget(&s, &states));
-    ritz_state_space_free(&states);
     chain_free_all(&s);
 }
 

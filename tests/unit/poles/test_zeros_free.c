@@ -288,7 +288,7 @@ static void a_rigid_plate_has_none(void **state)
     const double inertia[] = {3.0, 3.0, 0.4};
     const double push[] = {1.0, 0.0, 0.3}, across[] = {0.0, 1.0, 0.0};
     ritz_dense K = {0}, M = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_io) io = {0};
     ritz_second_order model = {.K = &K, .M = &M, .io = &io};
     double _Complex *zero = NULL;
     int64_t count = 1;
@@ -320,7 +320,6 @@ static void a_rigid_plate_has_none(void **state)
                  RITZ_ERR_SINGULAR, "nothing passes");
     ritz_dense_free(&K);
     ritz_dense_free(&M);
-    ritz_io_free(&io);
 }
 
 static ritz_status forget(const bodies *s, const ritz_component *row)
@@ -344,7 +343,7 @@ static void free_bodies_survive_every_allocation(void **state)
 {
     const double m[] = {2.0, 0.5}, k[] = {0.0, 8.0}, c[] = {0.0, 0.2};
     const int64_t root = 0;
-    ritz_component row = {0};
+    RITZ_OWN(ritz_component) row = {0};
     bodies s;
 
     (void)state;
@@ -353,7 +352,6 @@ static void free_bodies_survive_every_allocation(void **state)
     assert_ok(masses_component(2, m, k, c, &row));
     assert_ok(masses_io(&row, 1, &root, 1, &root));
     assert_survives_every_allocation(forget(&s, &row));
-    ritz_component_free(&row);
     bodies_free(&s);
 }
 

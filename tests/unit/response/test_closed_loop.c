@@ -105,7 +105,7 @@ static void a_loop_of_three_lags_has_the_margins_of_the_textbook(void **state)
                             .log = true,
                             .refine = true};
     ritz_margins m = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
     pair p = {0};
 
     (void)state;
@@ -131,7 +131,6 @@ static void a_loop_of_three_lags_has_the_margins_of_the_textbook(void **state)
                 90.0 - (atan(0.4457479596) + atan(0.2228739798)) * 180 / pi,
                 1e-5);
     part(&p);
-    ritz_response_free(&r);
 }
 
 static void a_gain_beyond_the_margin_makes_it_unstable(void **state)
@@ -168,7 +167,7 @@ static void velocity_feedback_is_a_damper(void **state)
     const spaces_rows rows = {2, 1, 2, A, B, C, NULL, NULL};
     const ritz_grid grid = {
         .from_hz = 0.1, .to_hz = 3.0, .count = 20, .refine = true};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
     double _Complex due = 0.0;
     pair p = {0};
 
@@ -191,7 +190,6 @@ static void velocity_feedback_is_a_damper(void **state)
     assert_int_equal(p.num_poles, 2);
     assert_near(cabs(p.pole[0] - due), 0.0, 1e-14 * 5);
     part(&p);
-    ritz_response_free(&r);
 }
 
 /* Numbers that look random between -1 and 1. */
@@ -231,7 +229,7 @@ static void both_ways_close_the_same_loop(void **state)
     (void)state;
     for (int k = 0; k < 4; k++) {
         const char *const out[] = {"a", "b", "c"}, *const in[] = {"p", "q"};
-        ritz_response by_loop = {0}, by_states = {0};
+        RITZ_OWN(ritz_response) by_loop = {0}, by_states = {0};
         pair p = {0};
 
         random_space(6, 2, 3, k & 1, 7, &p.plant);
@@ -255,8 +253,6 @@ static void both_ways_close_the_same_loop(void **state)
         assert_string_equal(by_loop.output[2], "c");
         assert_string_equal(by_states.input[1], "q");
         part(&p);
-        ritz_response_free(&by_loop);
-        ritz_response_free(&by_states);
     }
 }
 
@@ -289,7 +285,7 @@ static void loops_without_answer_are_refused(void **state)
     const spaces_rows rows = {0, 1, 1, NULL, NULL, NULL, &one, NULL};
     ritz_state_space plant = {0}, controller = {0}, closed = {0};
     ritz_io outer, inner;
-    ritz_loop loop = {0};
+    RITZ_OWN(ritz_loop) loop = {0};
     const char *const both[] = {"y=e"}, *const none[] = {"y=force"},
                       *const bad[] = {"y"}, *const twice[] = {"y=e", "y=e"};
 
@@ -315,7 +311,6 @@ static void loops_without_answer_are_refused(void **state)
     loop.measured[0] = 1;
     assert_fails(ritz_closed_loop(&plant, &controller, &loop, &closed),
                  RITZ_ERR_ARGUMENT, "the plant has no output 2");
-    ritz_loop_free(&loop);
     ritz_state_space_free(&plant);
     ritz_state_space_free(&controller);
 }
@@ -331,13 +326,13 @@ static void a_peak_is_found_between_points(void **state)
     const ritz_grid grids[] = {
         {.from_hz = 0.1, .to_hz = 3.0, .count = 20, .refine = true},
         {.from_hz = 0.1, .to_hz = 3.0, .count = 20}};
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
 
     (void)state;
     assert_ok(spaces_make(&rows, &model));
     for (int k = 0; k < 2; k++) {
-        ritz_responder *r = NULL;
-        ritz_response points = {0};
+        RITZ_OWN(ritz_responder) *r = NULL;
+        RITZ_OWN(ritz_response) points = {0};
         double hertz = 0.0, value = 0.0;
 
         responder(&model, 3.0, &r);
@@ -346,10 +341,7 @@ static void a_peak_is_found_between_points(void **state)
         assert_near(value * 2 * zeta * sqrt(1 - zeta * zeta), 1.0, 1e-9);
         /* flat on top: sqrt(eps) of its width; n = 2 states and eps / zeta */
         assert_near(hertz, sqrt(1 - 2 * zeta * zeta), 1e-10);
-        ritz_response_free(&points);
-        ritz_responder_free(&r);
     }
-    ritz_state_space_free(&model);
 }
 
 /* What scales make of a model of 6 states, 2 inputs and 3 outputs. */
@@ -378,9 +370,9 @@ static void the_peak_of_several_channels_is_the_h_infinity_norm(void **state)
 
     (void)state;
     for (int scaled = 0; scaled < 2; scaled++) {
-        ritz_state_space model = {0}, same = {0};
-        ritz_responder *r = NULL;
-        ritz_response points = {0};
+        RITZ_OWN(ritz_state_space) model = {0}, same = {0};
+        RITZ_OWN(ritz_responder) *r = NULL;
+        RITZ_OWN(ritz_response) points = {0};
         ritz_norm norm = {0};
         double hertz = 0.0, value = 0.0;
 
@@ -394,10 +386,6 @@ static void the_peak_of_several_channels_is_the_h_infinity_norm(void **state)
         assert_ok(ritz_norm_infinity(&same, 1e-10, &norm));
         /* it may lie at 0 Hz, where the range does not begin: flat there */
         assert_near(value, norm.value, 1e-6 * norm.value);
-        ritz_responder_free(&r);
-        ritz_state_space_free(&model);
-        ritz_state_space_free(&same);
-        ritz_response_free(&points);
     }
 }
 
@@ -405,8 +393,8 @@ static void the_peak_of_several_channels_is_the_h_infinity_norm(void **state)
 static void all_values_are_there_and_descend(void **state)
 {
     const ritz_grid grid = {.from_hz = 0.1, .to_hz = 5.0, .count = 7};
-    ritz_state_space model = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     random_space(6, 2, 3, false, 3, &model);
@@ -425,8 +413,6 @@ static void all_values_are_there_and_descend(void **state)
         assert_near(squares, sum, 32 * DBL_EPSILON * sum);
         assert_true(r.singular[2 * k] >= r.singular[2 * k + 1]);
     }
-    ritz_state_space_free(&model);
-    ritz_response_free(&r);
 }
 
 static void a_peak_that_nothing_damps_is_infinite(void **state)
@@ -434,9 +420,9 @@ static void a_peak_that_nothing_damps_is_infinite(void **state)
     static const double A[] = {0, 1, -39.0, 0}, B[] = {0, 1}, C[] = {1, 0};
     static const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
     const ritz_grid grid = {.from_hz = 0.1, .to_hz = 3.0, .count = 20};
-    ritz_state_space model = {0};
-    ritz_responder *r = NULL;
-    ritz_response points = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_responder) *r = NULL;
+    RITZ_OWN(ritz_response) points = {0};
     double hertz = 0.0, value = 0.0;
 
     (void)state;
@@ -448,9 +434,6 @@ static void a_peak_that_nothing_damps_is_infinite(void **state)
     assert_near(hertz, sqrt(39.0) / (2 * pi), 1e-8);
     assert_ok(ritz_singular_peak(&points, NULL, NULL, &hertz, &value));
     assert_true(isfinite(value));
-    ritz_response_free(&points);
-    ritz_responder_free(&r);
-    ritz_state_space_free(&model);
 }
 
 static ritz_status forget(pair *p)
@@ -459,10 +442,10 @@ static ritz_status forget(pair *p)
         .from_hz = 0.1, .to_hz = 1.0, .count = 5, .refine = true};
     ritz_status status = RITZ_OK;
     ritz_io plant = ends_of(&p->plant), control = ends_of(&p->controller);
-    ritz_loop loop = {0};
-    ritz_state_space closed = {0};
+    RITZ_OWN(ritz_loop) loop = {0};
+    RITZ_OWN(ritz_state_space) closed = {0};
     ritz_responder *H = NULL;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
     ritz_margins margins;
     double hertz, value;
 
@@ -474,10 +457,7 @@ static ritz_status forget(pair *p)
     RITZ_TRY(ritz_singular_peak(&r, NULL, NULL, &hertz, &value));
     RITZ_TRY(ritz_loop_margins(&loop, p->G, p->F, 2, r.hertz, &margins));
 done:
-    ritz_loop_free(&loop);
-    ritz_state_space_free(&closed);
     ritz_responder_free(&H);
-    ritz_response_free(&r);
     return status;
 }
 

@@ -29,14 +29,13 @@ static bool find(const char *name, char path[static 512])
 static bool read_sparse(const char *name, ritz_sparse *out)
 {
     char path[512];
-    ritz_matrix matrix = {0};
+    RITZ_OWN(ritz_matrix) matrix = {0};
 
     if (!find(name, path))
         return false;
     assert_ok(ritz_foreign_select(path, &matrix));
     *out = matrix.A;
     matrix.A = (ritz_sparse){0};
-    ritz_matrix_free(&matrix);
     return true;
 }
 
@@ -57,7 +56,7 @@ static void lund_has_its_eigenvalues(void **state)
     const double expected[] = {208.236649516, 574.256137708, 1399.127921942};
     const ritz_span span = {.modes = 3};
     ritz_sparse K = {0}, M = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     (void)state;
     if (!read_sparse("pairs/lund/lund_a.mtx", &K))
@@ -68,7 +67,6 @@ static void lund_has_its_eigenvalues(void **state)
     for (int64_t k = 0; k < 3; k++)
         assert_near(pairs.lambda[k], expected[k],
                     5e-10 /* printed */ + rounding(&K, &pairs.Phi, k));
-    ritz_pairs_free(&pairs);
     ritz_sparse_free(&K);
     ritz_sparse_free(&M);
 }
@@ -86,14 +84,13 @@ static bool import_lf10(ritz_component *out)
                                          .input = input,
                                          .num_outputs = 1,
                                          .output = output};
-    ritz_import_report report = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
 
     if (!find("second_order/LF10/K.mtx", K))
         return false;
     find("second_order/LF10/M.mtx", M);
     find("second_order/LF10/D.mtx", D);
     assert_ok(ritz_import(&request, out, &report));
-    ritz_import_report_free(&report);
     return true;
 }
 
@@ -101,8 +98,8 @@ static void lf10_has_its_frequencies(void **state)
 {
     const double omega[] = {1233.70659, 4935.12192, 11109.4949};
     const ritz_span span = {.modes = 3};
-    ritz_component c = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     (void)state;
     if (!import_lf10(&c))
@@ -115,16 +112,14 @@ static void lf10_has_its_frequencies(void **state)
 
         assert_near(w, omega[k], half + rounding(&c.K, &pairs.Phi, k) / w);
     }
-    ritz_pairs_free(&pairs);
-    ritz_component_free(&c);
 }
 
 static void lf10_gives_its_static_gain(void **state)
 {
     const ritz_damping none = {0};
     const ritz_grid grid = {.from_hz = 0.0, .to_hz = 1.0, .count = 2};
-    ritz_component c = {0};
-    ritz_response response = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_response) response = {0};
 
     (void)state;
     if (!import_lf10(&c))
@@ -134,16 +129,14 @@ static void lf10_gives_its_static_gain(void **state)
                                &response));
     assert_near(creal(response.H[0]), 2.06988240e-3, 5e-12);
     assert_near(cimag(response.H[0]), 0.0, 0.0);
-    ritz_response_free(&response);
-    ritz_component_free(&c);
 }
 
 /* Its three matrices were rounded to 17 digits: half an ulp each. */
 static void lf10_is_damped_in_proportion(void **state)
 {
-    ritz_component c = {0};
-    ritz_sparse rayleigh = {0}, rest = {0};
-    ritz_dense left = {0}, size = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_sparse) rayleigh = {0}, rest = {0};
+    RITZ_OWN(ritz_dense) left = {0}, size = {0};
 
     (void)state;
     if (!import_lf10(&c))
@@ -154,11 +147,6 @@ static void lf10_is_damped_in_proportion(void **state)
     assert_ok(ritz_sparse_dense(&c.D, &size));
     for (int64_t k = 0; k < left.nrow * left.ncol; k++)
         assert_near(left.val[k], 0.0, 2.0 * DBL_EPSILON * fabs(size.val[k]));
-    ritz_dense_free(&left);
-    ritz_dense_free(&size);
-    ritz_sparse_free(&rayleigh);
-    ritz_sparse_free(&rest);
-    ritz_component_free(&c);
 }
 
 static void dmig_pair_has_its_frequencies(void **state)
@@ -167,9 +155,9 @@ static void dmig_pair_has_its_frequencies(void **state)
     const ritz_span span = {.modes = 2};
     char K[512], M[512];
     const ritz_import_request request = {.stiffness = K, .mass = M};
-    ritz_import_report report = {0};
-    ritz_component c = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) c = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     (void)state;
     if (!find("nastran/pynastran/dmig.pch:KAAX", K))
@@ -180,9 +168,6 @@ static void dmig_pair_has_its_frequencies(void **state)
     for (int64_t k = 0; k < 2; k++)
         assert_near(ritz_eigen_hertz(pairs.lambda[pairs.num_rigid + k]),
                     hertz[k], 5e-7);
-    ritz_pairs_free(&pairs);
-    ritz_component_free(&c);
-    ritz_import_report_free(&report);
 }
 
 /* The rotor's rows 1 to 6 are two nodes on its axis, here grids 1 and 2. */

@@ -82,7 +82,7 @@ static double modal_apart(const ritz_component *bar,
 {
     const ritz_grid grid = {
         .from_hz = from_hz, .to_hz = to_hz, .count = POINTS};
-    ritz_response direct = {0}, modal = {0};
+    RITZ_OWN(ritz_response) direct = {0}, modal = {0};
     double found = 0.0;
 
     respond_directly(bar, damping, &direct);
@@ -90,8 +90,6 @@ static double modal_apart(const ritz_component *bar,
                                &ritz_response_engine_modal, 3.0 * to_hz, 0.0,
                                &grid, &modal));
     found = apart(&direct, modal.H);
-    ritz_response_free(&modal);
-    ritz_response_free(&direct);
     return found;
 }
 
@@ -101,8 +99,8 @@ static double reference_apart(const ritz_component *bar,
 {
     const ritz_reference_request request = {.band_hz = {from_hz, to_hz},
                                             .damping = *damping};
-    ritz_reference *reference = NULL;
-    ritz_response direct = {0};
+    RITZ_OWN(ritz_reference) *reference = NULL;
+    RITZ_OWN(ritz_response) direct = {0};
     ritz_reference_sweep sweep = {.count = POINTS};
     double found = 0.0;
 
@@ -114,8 +112,6 @@ static double reference_apart(const ritz_component *bar,
     *factors = ritz_reference_factors(reference);
     sweep.hertz = NULL;
     ritz_sweep_free(&sweep);
-    ritz_reference_free(&reference);
-    ritz_response_free(&direct);
     return found;
 }
 
@@ -131,7 +127,7 @@ static void modes_and_factors_agree_where_damping_is_proportional(void **state)
 {
     (void)state;
     for (int k = 0; k < DAMPINGS; k++) {
-        ritz_component bar = {0};
+        RITZ_OWN(ritz_component) bar = {0};
         ritz_damping rule = dampings[k], none = {0};
         bool factors = true;
 
@@ -149,7 +145,6 @@ static void modes_and_factors_agree_where_damping_is_proportional(void **state)
         rule.a *= 0.5;
         rule.b *= 0.5;
         assert_true(modal_apart(&bar, &rule) < within);
-        ritz_component_free(&bar);
     }
 }
 
@@ -159,14 +154,13 @@ static void damping_that_leaves_no_series_takes_factors(void **state)
 {
     const ritz_damping heavy = {
         .kind = RITZ_DAMPING_RAYLEIGH, .a = 145.0, .b = 1e-4};
-    ritz_component bar = {0};
+    RITZ_OWN(ritz_component) bar = {0};
     bool factors = false;
 
     (void)state;
     open_bar(&bar);
     assert_true(reference_apart(&bar, &heavy, &factors) < within);
     assert_true(factors);
-    ritz_component_free(&bar);
 }
 
 /*
@@ -179,7 +173,7 @@ static void damping_of_higher_powers_takes_factors(void **state)
     const ritz_damping none = {0};
     int64_t row[5 * DOFS], col[5 * DOFS], at = 0;
     double m[DOFS], val[5 * DOFS];
-    ritz_component bar = {0};
+    RITZ_OWN(ritz_component) bar = {0};
     ritz_dense K = {0}, Q = {0};
     bool factors = false;
 
@@ -206,7 +200,6 @@ static void damping_of_higher_powers_takes_factors(void **state)
     assert_true(factors);
     ritz_dense_free(&K);
     ritz_dense_free(&Q);
-    ritz_component_free(&bar);
 }
 
 static ritz_status respond_once(const ritz_component *bar)
@@ -214,13 +207,12 @@ static ritz_status respond_once(const ritz_component *bar)
     const ritz_grid grid = {.from_hz = 0.1, .to_hz = 0.3, .count = 2};
     const ritz_damping none = {0};
     ritz_status status = RITZ_OK;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     RITZ_TRY(ritz_response_of(ritz_model_of_component(bar, &none),
                               &ritz_response_engine_modal, 1.0, 0.0, &grid,
                               &r));
 done:
-    ritz_response_free(&r);
     return status;
 }
 
@@ -239,8 +231,8 @@ static void a_slow_body_answers_as_a_fast_one_does(void **state)
     const ritz_grid grid = {.from_hz = 0.1, .to_hz = 0.2, .count = MANY};
     const ritz_grid later = {
         .from_hz = 0.1 / slower, .to_hz = 0.2 / slower, .count = MANY};
-    ritz_component bar = {0};
-    ritz_response fast = {0}, slow = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_response) fast = {0}, slow = {0};
 
     (void)state;
     assert_ok(bar_component(ELEMENTS, &bar));
@@ -255,22 +247,18 @@ static void a_slow_body_answers_as_a_fast_one_does(void **state)
                                &later, &slow));
     for (int64_t k = 0; k < MANY; k++)
         assert_true(cabs(slow.H[k] - fast.H[k]) < within * cabs(fast.H[k]));
-    ritz_response_free(&fast);
-    ritz_response_free(&slow);
-    ritz_component_free(&bar);
 }
 
 static void the_rest_survives_every_allocation(void **state)
 {
     const int64_t end = 6;
-    ritz_component bar = {0};
+    RITZ_OWN(ritz_component) bar = {0};
 
     (void)state;
     assert_ok(bar_component(end, &bar));
     assert_ok(frame_io(&bar, 1, &end, 1, &end));
     (void)as_matrix(&dampings[0], &bar);
     assert_survives_every_allocation(respond_once(&bar));
-    ritz_component_free(&bar);
 }
 
 static const struct CMUnitTest tests[] = {

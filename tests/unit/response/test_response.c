@@ -36,8 +36,8 @@ static void one_dof_answers_as_the_textbook_says(void **state)
     const ritz_grid grid = {0.0, 3.0, 61, false, true, NULL};
     ritz_dense K = {0};
     ritz_dense M = {0};
-    ritz_io io = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_response) r = {0};
     double k = 0.0;
     double m = 0.0;
 
@@ -62,8 +62,6 @@ static void one_dof_answers_as_the_textbook_says(void **state)
         assert_true(cimag(r.H[3 * j]) <= 0.0);
     }
     assert_string_equal(r.damping, "modal 0.01");
-    ritz_response_free(&r);
-    ritz_io_free(&io);
 }
 
 /* |H| at its peak is 1 / (2 zeta sqrt(1 - zeta^2) w_0^2). */
@@ -73,8 +71,8 @@ static void a_peak_at_a_ratio_of_1e_4_is_not_missed(void **state)
     const ritz_damping faint = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
     ritz_dense K = {0};
     ritz_dense M = {0};
-    ritz_io io = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_response) r = {0};
     double largest = 0.0;
     double k = 0.0;
     double m = 0.0;
@@ -89,8 +87,6 @@ static void a_peak_at_a_ratio_of_1e_4_is_not_missed(void **state)
         largest = fmax(largest, cabs(r.H[3 * j]));
     /* the peak is flat: rounding of its place, 1e-16 / zeta, squared */
     assert_near(largest * k * 2e-4, 1.0, 1e-7);
-    ritz_response_free(&r);
-    ritz_io_free(&io);
 }
 
 static void a_grid_ascends_and_stays_in_its_range(void **state)
@@ -180,9 +176,9 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
 
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
-        ritz_component beam = {0};
-        ritz_response direct = {0};
-        ritz_response modal = {0};
+        RITZ_OWN(ritz_component) beam = {0};
+        RITZ_OWN(ritz_response) direct = {0};
+        RITZ_OWN(ritz_response) modal = {0};
 
         open_beam(clamped, &beam);
         assert_ok(ritz_response_of(ritz_model_of_component(&beam, &rayleigh),
@@ -202,9 +198,6 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
             assert_near(cabs(direct.H[k] - modal.H[k]), 0.0,
                         1e-9 * largest(&direct));
         }
-        ritz_response_free(&direct);
-        ritz_response_free(&modal);
-        ritz_component_free(&beam);
     }
 }
 
@@ -215,9 +208,9 @@ static void direct_and_modal_agree_with_ratios(void **state)
 
     (void)state;
     for (int clamped = 0; clamped < 2; clamped++) {
-        ritz_component beam = {0};
-        ritz_response direct = {0};
-        ritz_response modal = {0};
+        RITZ_OWN(ritz_component) beam = {0};
+        RITZ_OWN(ritz_response) direct = {0};
+        RITZ_OWN(ritz_response) modal = {0};
 
         open_beam(clamped, &beam);
         assert_ok(ritz_response_of(ritz_model_of_component(&beam, &light),
@@ -230,9 +223,6 @@ static void direct_and_modal_agree_with_ratios(void **state)
             /* the series ends at 1e-12, a nudge away from poles 1e-9 */
             assert_near(cabs(direct.H[k] - modal.H[k]), 0.0,
                         1e-8 * largest(&direct));
-        ritz_response_free(&direct);
-        ritz_response_free(&modal);
-        ritz_component_free(&beam);
     }
 }
 
@@ -252,9 +242,9 @@ static void add_dampers(ritz_component *beam, double d, double k4)
 static void dampers_and_ratios_act_together_exactly(void **state)
 {
     const ritz_grid grid = {0.01, 0.3, 12, false, false, NULL};
-    ritz_component beam = {0};
-    ritz_response direct = {0};
-    ritz_response modal = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_response) direct = {0};
+    RITZ_OWN(ritz_response) modal = {0};
 
     (void)state;
     open_beam(true, &beam);
@@ -269,17 +259,14 @@ static void dampers_and_ratios_act_together_exactly(void **state)
         /* all 24 modes are in: two exact ways; measured */
         assert_near(cabs(direct.H[k] - modal.H[k]), 0.0,
                     1e-9 * largest(&direct));
-    ritz_response_free(&direct);
-    ritz_response_free(&modal);
-    ritz_component_free(&beam);
 }
 
 /* D and K4 alone: the dense complex system solved by LAPACK. */
 static void dampers_alone_are_what_the_dense_system_says(void **state)
 {
     const ritz_grid grid = {0.01, 0.3, 12, false, false, NULL};
-    ritz_component beam = {0};
-    ritz_response direct = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_response) direct = {0};
 
     (void)state;
     open_beam(true, &beam);
@@ -300,8 +287,6 @@ static void dampers_alone_are_what_the_dense_system_says(void **state)
         assert_near(cabs(direct.H[k] - H), 0.0, 1e-10 * largest(&direct));
         free(extra);
     }
-    ritz_response_free(&direct);
-    ritz_component_free(&beam);
 }
 
 /* m = 2 and m = 2 joined by k: together 4, apart at w^2 = k; D couples them. */
@@ -314,8 +299,8 @@ static void rigid_motion_answers_with_its_mass(void **state)
     const ritz_grid low = {1e-5, 2e-5, 2, false, false, NULL};
     const ritz_grid zero = {0.0, 0.1, 3, false, false, NULL};
     double w = 2.0 * pi * 1e-5;
-    ritz_io io = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     assert_ok(ritz_io_new(2, 1, 1, &io));
@@ -350,8 +335,6 @@ static void rigid_motion_answers_with_its_mass(void **state)
                             &light),
         NULL, 0.0, 0.0, &zero, &r));
     assert_near(creal(r.H[0]), 0.25, 1e-14);
-    ritz_response_free(&r);
-    ritz_io_free(&io);
 }
 
 /* D = diag(c, 0) on two masses couples their modes: Cramer's rule. */
@@ -364,8 +347,8 @@ static void damping_that_couples_modes_is_solved_for(void **state)
     const ritz_dense M = {2, 2, m};
     const ritz_dense D = {2, 2, d};
     const ritz_grid grid = {0.05, 0.4, 15, false, true, NULL};
-    ritz_io io = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     (void)state;
     assert_ok(ritz_io_new(2, 1, 1, &io));
@@ -381,8 +364,6 @@ static void damping_that_couples_modes_is_solved_for(void **state)
 
         assert_near(cabs(r.H[j] - 1.0 / (first * z - 1.0)), 0.0, 1e-13);
     }
-    ritz_response_free(&r);
-    ritz_io_free(&io);
 }
 
 static void an_undamped_pole_is_refused_by_its_frequency(void **state)
@@ -390,7 +371,7 @@ static void an_undamped_pole_is_refused_by_its_frequency(void **state)
     const ritz_grid grid = {0.5, 1.5, 3, false, false, NULL};
     ritz_dense K = {0};
     ritz_dense M = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_io) io = {0};
     ritz_response r = {0};
     double k = 0.0;
     double m = 0.0;
@@ -402,7 +383,6 @@ static void an_undamped_pole_is_refused_by_its_frequency(void **state)
                          &(ritz_second_order){&K, &M, NULL, NULL, &io}, NULL),
                      NULL, 0.0, 0.0, &grid, &r),
                  RITZ_ERR_SINGULAR, "1 Hz is the frequency of an undamped");
-    ritz_io_free(&io);
 }
 
 static void a_range_that_is_none_is_refused(void **state)
@@ -418,7 +398,7 @@ static void a_range_that_is_none_is_refused(void **state)
         {{0.0, 1.0, 3, true, false, NULL}, "cannot begin at 0"},
         {{0.0, 1.0, INT64_MAX, false, true, NULL}, "too many"},
     };
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_response r = {0};
     int64_t count = 0;
     double *f = NULL;
@@ -438,14 +418,13 @@ static void a_range_that_is_none_is_refused(void **state)
                                   &(ritz_grid){0.0, 0.1, 3, false, false, NULL},
                                   &r),
                  RITZ_ERR_SINGULAR, "rigid-body motion");
-    ritz_component_free(&beam);
 }
 
 static ritz_status respond_once(const ritz_component *beam)
 {
     const ritz_grid grid = {0.01, 0.05, 2, false, false, NULL};
     ritz_status status = RITZ_OK;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     if (beam->D.colptr)
         RITZ_TRY(ritz_response_of(ritz_model_of_component(beam, &light),
@@ -456,14 +435,13 @@ static ritz_status respond_once(const ritz_component *beam)
                                   &ritz_response_engine_modal, 0, 0.0, &grid,
                                   &r));
 done:
-    ritz_response_free(&r);
     return status;
 }
 
 static void responses_survive_every_allocation(void **state)
 {
     const int64_t row = 1;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
     (void)state;
     assert_ok(frame_component(2, 0.5, &frame_mcdaniel, true, false, 1, &beam));
@@ -471,7 +449,6 @@ static void responses_survive_every_allocation(void **state)
     assert_survives_every_allocation(respond_once(&beam));
     add_dampers(&beam, 0.5, 0.02);
     assert_survives_every_allocation(respond_once(&beam));
-    ritz_component_free(&beam);
 }
 
 static const struct CMUnitTest tests[] = {

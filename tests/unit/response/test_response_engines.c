@@ -163,7 +163,7 @@ static void find_peaks(ritz_responder *responder, const ritz_component *c,
 {
     const ritz_span span = {.modes = -1, .up_to_hz = 0.3};
     double _Complex *H = calloc((size_t)values, sizeof *H);
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     assert_non_null(H);
     assert_ok(ritz_eigen_sparse(&c->K, &c->M, &span, &pairs));
@@ -179,7 +179,6 @@ static void find_peaks(ritz_responder *responder, const ritz_component *c,
         for (int64_t v = 0; v < values; v++)
             peak[v] = fmax(peak[v], cabs(H[v]));
     }
-    ritz_pairs_free(&pairs);
     free(H);
 }
 
@@ -212,8 +211,8 @@ static void agrees_with_direct(const char *name, double within)
 {
     for (int k = 0; k < SUBJECTS; k++) {
         const subject *s = &subjects[k];
-        ritz_component c = {0};
-        ritz_responder *direct = NULL, *other = NULL;
+        RITZ_OWN(ritz_component) c = {0};
+        RITZ_OWN(ritz_responder) *direct = NULL, *other = NULL;
         ritz_response_request request;
         double gap = 0.0;
 
@@ -228,9 +227,6 @@ static void agrees_with_direct(const char *name, double within)
         if (!(gap <= within))
             fail_msg("%s, %s: %.1e apart (%s)", name, s->name, gap,
                      ritz_responder_remark(other));
-        ritz_responder_free(&direct);
-        ritz_responder_free(&other);
-        ritz_component_free(&c);
     }
 }
 
@@ -266,7 +262,7 @@ static void interpolation_of_one_mode_takes_few_nodes(void **state)
     c.io.B.val[0] = c.io.C.val[0] = 1.0;
     request.model = ritz_model_of_component(&c, &light);
     for (int e = 0; ritz_response_engines[e]; e++) {
-        ritz_responder *responder = NULL;
+        RITZ_OWN(ritz_responder) *responder = NULL;
 
         if (!(ritz_response_engines[e]->takes & RITZ_MODEL_COMPONENT))
             continue;
@@ -282,7 +278,6 @@ static void interpolation_of_one_mode_takes_few_nodes(void **state)
             /* the largest is 50 / k; k of rounding over what is left of it */
             assert_near(cabs(H - 1.0 / z), 0.0, 1e-12 * 50.0 / k);
         }
-        ritz_responder_free(&responder);
     }
     ritz_component_free(&c);
 }
@@ -294,7 +289,7 @@ static void engines_refuse_what_they_are_not_for(void **state)
     ritz_response_request request = {.model = ritz_model_of_dense(&none, NULL),
                                      .to_hz = 1.0};
     ritz_responder *r = NULL;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
     (void)state;
     assert_fails(
@@ -323,7 +318,6 @@ static void engines_refuse_what_they_are_not_for(void **state)
     assert_fails(
         ritz_responder_new(ritz_response_engine_find("direct"), &request, &r),
         RITZ_ERR_ARGUMENT, "from 1 to 0.3 Hz has no range");
-    ritz_component_free(&beam);
 }
 
 /* Undamped, at its first frequency: every engine of components says so. */
@@ -331,8 +325,8 @@ static void every_engine_refuses_an_undamped_pole(void **state)
 {
     const ritz_span span = {.modes = 1};
     ritz_response_request request = {.from_hz = 0.002, .to_hz = 0.3};
-    ritz_component beam = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     double _Complex H[6];
 
     (void)state;
@@ -340,17 +334,14 @@ static void every_engine_refuses_an_undamped_pole(void **state)
     request.model = ritz_model_of_component(&beam, NULL);
     assert_ok(ritz_eigen_sparse(&beam.K, &beam.M, &span, &pairs));
     for (int e = 0; ritz_response_engines[e]; e++) {
-        ritz_responder *r = NULL;
+        RITZ_OWN(ritz_responder) *r = NULL;
 
         if (!(ritz_response_engines[e]->takes & RITZ_MODEL_COMPONENT))
             continue;
         assert_ok(ritz_responder_new(ritz_response_engines[e], &request, &r));
         assert_fails(ritz_responder_at(r, ritz_eigen_hertz(pairs.lambda[0]), H),
                      RITZ_ERR_SINGULAR, "is the frequency of an undamped mode");
-        ritz_responder_free(&r);
     }
-    ritz_pairs_free(&pairs);
-    ritz_component_free(&beam);
 }
 
 /* An output of accelerations sees a pole as well as one of displacements. */
@@ -361,7 +352,7 @@ static void an_acceleration_on_an_undamped_pole_is_refused(void **state)
     const ritz_dense K = {1, 1, k}, M = {1, 1, m};
     const ritz_grid grid = {0.5, 1.5, 3, false, false, NULL};
     ritz_response r = {0};
-    ritz_io io = {0};
+    RITZ_OWN(ritz_io) io = {0};
 
     (void)state;
     assert_ok(ritz_io_new(1, 1, 1, &io));
@@ -371,15 +362,14 @@ static void an_acceleration_on_an_undamped_pole_is_refused(void **state)
                          &(ritz_second_order){&K, &M, NULL, NULL, &io}, NULL),
                      NULL, 0.0, 0.0, &grid, &r),
                  RITZ_ERR_SINGULAR, "1 Hz is the frequency of an undamped");
-    ritz_io_free(&io);
 }
 
 /* Modes and spaces are of the range: beyond it nothing is known. */
 static void beyond_its_range_a_responder_says_nothing(void **state)
 {
     ritz_response_request request = {.from_hz = 0.002, .to_hz = 0.3};
-    ritz_component beam = {0};
-    ritz_responder *r = NULL;
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_responder) *r = NULL;
     double _Complex H[6];
 
     (void)state;
@@ -389,8 +379,6 @@ static void beyond_its_range_a_responder_says_nothing(void **state)
         ritz_responder_new(ritz_response_engine_find("krylov"), &request, &r));
     assert_fails(ritz_responder_at(r, 0.31, H), RITZ_ERR_ARGUMENT,
                  "0.31 Hz lies above 0.3 Hz");
-    ritz_responder_free(&r);
-    ritz_component_free(&beam);
 }
 
 static ritz_status respond_once(const ritz_component *c, const char *engine)
@@ -402,14 +390,13 @@ static ritz_status respond_once(const ritz_component *c, const char *engine)
         .to_hz = 0.1,
         .tolerance = 1e-3};
     ritz_status status = RITZ_OK;
-    ritz_responder *r = NULL;
+    RITZ_OWN(ritz_responder) *r = NULL;
     double _Complex H = 0.0;
 
     RITZ_TRY(
         ritz_responder_new(ritz_response_engine_find(engine), &request, &r));
     RITZ_TRY(ritz_responder_at(r, 0.07, &H));
 done:
-    ritz_responder_free(&r);
     return status;
 }
 
@@ -417,7 +404,7 @@ static void engines_survive_every_allocation(void **state)
 {
     const int64_t row = 4, at = 1;
     const double d = 0.02;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
     (void)state;
     assert_ok(frame_component(2, 0.5, &frame_mcdaniel, true, false, 1, &beam));
@@ -425,7 +412,6 @@ static void engines_survive_every_allocation(void **state)
     put(&beam, &beam.D, 1, &at, &at, &d);
     assert_survives_every_allocation(respond_once(&beam, "krylov"));
     assert_survives_every_allocation(respond_once(&beam, "rational"));
-    ritz_component_free(&beam);
 }
 
 static const struct CMUnitTest tests[] = {

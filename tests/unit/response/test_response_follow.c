@@ -93,7 +93,7 @@ static void the_tolerance_holds_at_a_thousand_frequencies(void **state)
     const ritz_damping faint = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
     const ritz_grid grid = {.from_hz = 0.0, .to_hz = 10.0, .count = 20};
     ritz_response_request request = {.to_hz = 10.0};
-    ritz_responder *responder = NULL;
+    RITZ_OWN(ritz_responder) *responder = NULL;
     oscillators o;
 
     (void)state;
@@ -102,7 +102,7 @@ static void the_tolerance_holds_at_a_thousand_frequencies(void **state)
     assert_ok(ritz_responder_new(ritz_response_engine_find("modal"), &request,
                                  &responder));
     for (size_t k = 0; k < sizeof tolerance / sizeof *tolerance; k++) {
-        ritz_response r = {0};
+        RITZ_OWN(ritz_response) r = {0};
 
         assert_ok(ritz_responder_follow(responder, &grid, tolerance[k], &r));
         assert_string_equal(r.interpolation, "cubic");
@@ -114,9 +114,7 @@ static void the_tolerance_holds_at_a_thousand_frequencies(void **state)
         assert_true(error_between(&r, responder) <= tolerance[k]);
         print_message("# tolerance %.0e: %d points, error %.1e\n", tolerance[k],
                       (int)r.count, error_between(&r, responder));
-        ritz_response_free(&r);
     }
-    ritz_responder_free(&responder);
     ritz_io_free(&o.io);
 }
 
@@ -129,8 +127,8 @@ static void a_zero_between_points_is_a_point(void **state)
     const ritz_damping faint = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
     const ritz_grid grid = {.from_hz = 0.5, .to_hz = 3.0, .count = 5};
     ritz_response_request request = {.from_hz = 0.5, .to_hz = 3.0};
-    ritz_responder *responder = NULL;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_responder) *responder = NULL;
+    RITZ_OWN(ritz_response) r = {0};
     oscillators o;
 
     (void)state;
@@ -141,8 +139,6 @@ static void a_zero_between_points_is_a_point(void **state)
     assert_ok(ritz_responder_follow(responder, &grid, 1e-3, &r));
     /* the dip is shifted by the square of the ratio */
     assert_true(has_point(&r, sqrt(2.5), 1e-7));
-    ritz_responder_free(&responder);
-    ritz_response_free(&r);
     ritz_io_free(&o.io);
 }
 
@@ -158,9 +154,9 @@ static void a_free_body_is_followed_by_krylov(void **state)
     (void)state;
     for (int damped = 0; damped < 2; damped++) {
         ritz_response_request request = {.from_hz = 0.002, .to_hz = 0.3};
-        ritz_component c = {0};
-        ritz_responder *direct = NULL;
-        ritz_response r = {0};
+        RITZ_OWN(ritz_component) c = {0};
+        RITZ_OWN(ritz_responder) *direct = NULL;
+        RITZ_OWN(ritz_response) r = {0};
 
         assert_ok(
             frame_component(8, 0.5, &frame_mcdaniel, false, false, 1, &c));
@@ -176,9 +172,6 @@ static void a_free_body_is_followed_by_krylov(void **state)
                                    1e-4, &grid, &r));
         assert_string_equal(r.method, "krylov");
         assert_true(error_between(&r, direct) <= 1e-4);
-        ritz_responder_free(&direct);
-        ritz_response_free(&r);
-        ritz_component_free(&c);
     }
 }
 
@@ -222,7 +215,7 @@ static void what_cannot_be_followed_is_refused(void **state)
     const ritz_grid points = {
         .from_hz = 0.5, .to_hz = 1.5, .count = 2, .hertz = given};
     ritz_response_request request = {.from_hz = 0.5, .to_hz = 1.7};
-    ritz_responder *responder = NULL;
+    RITZ_OWN(ritz_responder) *responder = NULL;
     ritz_response r = {0};
     oscillators o;
 
@@ -237,7 +230,6 @@ static void what_cannot_be_followed_is_refused(void **state)
                  RITZ_ERR_ARGUMENT, "not between 0 and 1");
     assert_fails(ritz_responder_follow(responder, &points, 1e-3, &r),
                  RITZ_ERR_ARGUMENT, "points that are given");
-    ritz_responder_free(&responder);
     ritz_io_free(&o.io);
 }
 
@@ -250,15 +242,13 @@ static ritz_status follow_once(const ritz_second_order *model)
         .from_hz = 0.5,
         .to_hz = 2.5};
     ritz_status status = RITZ_OK;
-    ritz_responder *responder = NULL;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_responder) *responder = NULL;
+    RITZ_OWN(ritz_response) r = {0};
 
     RITZ_TRY(ritz_responder_new(ritz_response_engine_find("modal"), &request,
                                 &responder));
     RITZ_TRY(ritz_responder_follow(responder, &grid, 0.1, &r));
 done:
-    ritz_responder_free(&responder);
-    ritz_response_free(&r);
     return status;
 }
 

@@ -108,20 +108,18 @@ static void a_rest_without_mass_answers_by_its_springs(void **state)
     const double up_to[] = {1.0, 1.7, 3.0, 100.0};
     const double hertz[] = {0.1, 0.33, 0.47, 0.5};
     const ritz_grid grid = {.hertz = hertz, .count = 4};
-    ritz_component row = {0};
+    RITZ_OWN(ritz_component) row = {0};
 
     (void)state;
     open_row(&row);
     for (size_t k = 0; k < sizeof up_to / sizeof *up_to; k++) {
-        ritz_response r = {0};
+        RITZ_OWN(ritz_response) r = {0};
 
         assert_ok(ritz_response_of(ritz_model_of_component(&row, NULL),
                                    &ritz_response_engine_modal, up_to[k], 0.0,
                                    &grid, &r));
         assert_true(row_apart(r.count, r.hertz, 0.0, 0.0, r.H) < 1e-11);
-        ritz_response_free(&r);
     }
-    ritz_component_free(&row);
 }
 
 /* What ritz-verify measures by, in bands at and beyond the last mode. */
@@ -130,7 +128,7 @@ static void a_reference_may_have_no_mass_left(void **state)
     const double bands[][2] = {
         {0.3, 0.6}, {1.0, 2.24}, {0.1, 2.24}, {3.0, 9.0}};
     const double hertz[] = {0.4, 1.3, 2.0, 4.1};
-    ritz_component row = {0};
+    RITZ_OWN(ritz_component) row = {0};
 
     (void)state;
     open_row(&row);
@@ -138,7 +136,7 @@ static void a_reference_may_have_no_mass_left(void **state)
         const ritz_reference_request request = {
             .band_hz = {bands[k][0], bands[k][1]},
             .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01}};
-        ritz_reference *reference = NULL;
+        RITZ_OWN(ritz_reference) *reference = NULL;
         double at = hertz[k];
         ritz_reference_sweep sweep = {.count = 1, .hertz = &at};
 
@@ -148,9 +146,7 @@ static void a_reference_may_have_no_mass_left(void **state)
                     1e-11);
         sweep.hertz = NULL;
         ritz_sweep_free(&sweep);
-        ritz_reference_free(&reference);
     }
-    ritz_component_free(&row);
 }
 
 enum { LENGTH = 30 };
@@ -207,7 +203,7 @@ static void whirl_response(double hertz, double _Complex H[2])
 static void a_small_gyroscopic_model_is_answered(void **state)
 {
     const double tolerance[] = {1e-5, 1e-7, 1e-9};
-    ritz_component whirl = {0};
+    RITZ_OWN(ritz_component) whirl = {0};
 
     (void)state;
     open_whirl(&whirl);
@@ -217,7 +213,7 @@ static void a_small_gyroscopic_model_is_answered(void **state)
             .from_hz = 0.05,
             .to_hz = 90.0,
             .tolerance = tolerance[t]};
-        ritz_responder *r = NULL;
+        RITZ_OWN(ritz_responder) *r = NULL;
         double worst = 0.0, largest = 0.0;
 
         assert_ok(ritz_responder_new(ritz_response_engine_find("krylov"),
@@ -238,9 +234,7 @@ static void a_small_gyroscopic_model_is_answered(void **state)
         assert_true(worst <= fmax(tolerance[t], 1e-8) * largest);
         /* one at the worst point, one beside the pole: nothing was amiss */
         assert_non_null(strstr(ritz_responder_remark(r), " 2 full answers"));
-        ritz_responder_free(&r);
     }
-    ritz_component_free(&whirl);
 }
 
 static ritz_status give_up(const ritz_response_request *request,
@@ -256,7 +250,7 @@ static void where_an_engine_gives_up_direct_answers(void **state)
 {
     const ritz_response_engine futile = {
         .name = "futile", .takes = RITZ_MODEL_COMPONENT, .make = give_up};
-    ritz_component row = {0};
+    RITZ_OWN(ritz_component) row = {0};
     ritz_response_request request = {
         .model = ritz_model_of_component(&row, NULL), .to_hz = 1.0};
     ritz_responder *r = NULL;
@@ -276,7 +270,6 @@ static void where_an_engine_gives_up_direct_answers(void **state)
         ritz_model_of_dense(&(ritz_second_order){.io = &row.io}, NULL);
     assert_fails(ritz_responder_or_direct(&futile, &request, &r),
                  RITZ_ERR_ARGUMENT, "not for");
-    ritz_component_free(&row);
 }
 
 enum { TWIN = 12 };
@@ -323,12 +316,12 @@ static void an_output_of_rounding_holds_up_nothing(void **state)
     const double tolerance = 1e-6;
     const ritz_damping modal = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
     const ritz_grid grid = {.from_hz = 1.0, .to_hz = 20.0, .count = 20};
-    ritz_component twins = {0};
+    RITZ_OWN(ritz_component) twins = {0};
 
     (void)state;
     open_twins(&twins);
     for (size_t e = 0; e < sizeof engines / sizeof *engines; e++) {
-        ritz_response r = {0};
+        RITZ_OWN(ritz_response) r = {0};
         double worst = 0.0, largest = 0.0, other = 0.0;
 
         assert_ok(ritz_response_of(ritz_model_of_component(&twins, &modal),
@@ -347,9 +340,7 @@ static void an_output_of_rounding_holds_up_nothing(void **state)
         assert_true(worst <= 0.1 * tolerance * largest);
         assert_true(other > 0.0 && other <= 1e-12 * largest);
         assert_true(r.count < 2000);
-        ritz_response_free(&r);
     }
-    ritz_component_free(&twins);
 }
 
 static ritz_status follow_twins(const ritz_component *twins)
@@ -357,23 +348,21 @@ static ritz_status follow_twins(const ritz_component *twins)
     const ritz_damping modal = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.05};
     const ritz_grid grid = {.from_hz = 1.0, .to_hz = 5.0, .count = 3};
     ritz_status status = RITZ_OK;
-    ritz_response r = {0};
+    RITZ_OWN(ritz_response) r = {0};
 
     RITZ_TRY(ritz_response_of(ritz_model_of_component(twins, &modal), NULL,
                               100.0, 0.4, &grid, &r));
 done:
-    ritz_response_free(&r);
     return status;
 }
 
 static void points_survive_every_allocation(void **state)
 {
-    ritz_component twins = {0};
+    RITZ_OWN(ritz_component) twins = {0};
 
     (void)state;
     open_twins(&twins);
     assert_survives_every_allocation(follow_twins(&twins));
-    ritz_component_free(&twins);
 }
 
 /*
@@ -390,8 +379,8 @@ static void a_faint_link_between_equals_shows_both_poles(void **state)
     const ritz_damping modal = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
     const ritz_grid grid = {.from_hz = 0.2, .to_hz = 3.0, .count = 50};
     double w1 = 2.0 * pi, w2 = sqrt(lambda + 2.0 * weak);
-    ritz_component pair = {0};
-    ritz_response r = {0};
+    RITZ_OWN(ritz_component) pair = {0};
+    RITZ_OWN(ritz_response) r = {0};
     double worst = 0.0, largest = 0.0;
 
     (void)state;
@@ -417,8 +406,6 @@ static void a_faint_link_between_equals_shows_both_poles(void **state)
     }
     print_message("# error %.1e of %.1e\n", worst / largest, largest);
     assert_true(worst < 1e-5 * largest);
-    ritz_response_free(&r);
-    ritz_component_free(&pair);
 }
 
 static const struct CMUnitTest tests[] = {

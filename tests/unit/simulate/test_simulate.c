@@ -32,14 +32,13 @@ static void oscillate(const ritz_integrator *integrator, double w, double step,
     const double m = 1.0, k = w * w, x0 = 1.0;
     ritz_simulation_request request =
         asking(integrator, (double)steps * step, step);
-    motions one = {0};
+    RITZ_OWN(motions) one = {0};
 
     assert_ok(motions_row(1, &m, &k, NULL, &one));
     request.signal = NULL;
     request.x0 = &x0;
     request.rho = rho;
     assert_ok(ritz_simulate(one.dense, &request, out));
-    motions_free(&one);
 }
 
 /* x_n = cos(n a): tan(a/2) = w h / 2, and sin(a/2) = w h / 2 of central
@@ -53,13 +52,12 @@ static void periods_err_as_the_scheme_says(void **state)
 
     (void)state;
     for (int k = 0; k < 2; k++) {
-        ritz_simulation r = {0};
+        RITZ_OWN(ritz_simulation) r = {0};
 
         oscillate(which[k], w, h, 0.0, 1000, &r);
         for (int64_t j = 0; j < r.count; j++) /* phase: eps a step, squared */
             assert_near(r.y[j], cos((double)j * a[k]),
                         4.0 * DBL_EPSILON * (double)(j + 4));
-        ritz_simulation_free(&r);
     }
     assert_near(w * h / a[0] - 1.0, w * h * w * h / 12.0, 1e-3);
     assert_near(w * h / a[1] - 1.0, -w * h * w * h / 24.0, 1e-3);
@@ -67,7 +65,7 @@ static void periods_err_as_the_scheme_says(void **state)
 
 static void the_trapezoidal_rule_keeps_energy(void **state)
 {
-    ritz_simulation r = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
 
     (void)state;
     oscillate(&ritz_integrator_trapezoidal, 40.0, 0.3, 0.0, 5000, &r);
@@ -75,7 +73,6 @@ static void the_trapezoidal_rule_keeps_energy(void **state)
         /* a step rounds h^2 K / 4, 36 times what M holds */
         assert_near(r.kinetic[j] + r.potential[j], 800.0,
                     2.0 * DBL_EPSILON * 37.0 * 800.0 * (double)(j + 1));
-    ritz_simulation_free(&r);
 }
 
 /* At w h = 1e4 a step shrinks all by rho, but for its powers' polynomials. */
@@ -84,28 +81,25 @@ static void generalised_alpha_damps_by_rho_a_step(void **state)
     (void)state;
     for (int k = 1; k < 4; k++) {
         double rho = 0.25 * k;
-        ritz_simulation r = {0};
+        RITZ_OWN(ritz_simulation) r = {0};
 
         oscillate(&ritz_integrator_generalised_alpha, 1e4, 1.0, rho, 200, &r);
         /* |x_n| ~ n^2 rho^n at most of three equal roots: by logarithm */
         assert_near(log(fabs(r.y[200]) / fabs(r.y[100])) / 100.0, log(rho),
                     0.02);
-        ritz_simulation_free(&r);
     }
 }
 
 /* Largest difference from modal at the same step and inputs. */
 static double error_of(ritz_model subject, ritz_simulation_request request)
 {
-    ritz_simulation made = {0}, exact = {0};
+    RITZ_OWN(ritz_simulation) made = {0}, exact = {0};
     double error = 0.0;
 
     assert_ok(ritz_simulate(subject, &request, &made));
     request.integrator = &ritz_integrator_modal;
     assert_ok(ritz_simulate(subject, &request, &exact));
     assert_ok(ritz_simulation_difference(&exact, &made, &error));
-    ritz_simulation_free(&made);
-    ritz_simulation_free(&exact);
     return error;
 }
 
@@ -118,7 +112,7 @@ static void orders_are_two_with_dampers_and_inputs(void **state)
 
     (void)state;
     for (int k = 1; ritz_integrators[k]; k++) {
-        motions m = {0};
+        RITZ_OWN(motions) m = {0};
         double error[3];
 
         assert_ok(motions_new(true, &m));
@@ -134,7 +128,6 @@ static void orders_are_two_with_dampers_and_inputs(void **state)
         /* the next term is of order h^2 relative: (w h)^2 = 0.02 */
         assert_near(log2(error[0] / error[1]), 2.0, 0.05);
         assert_near(log2(error[1] / error[2]), 2.0, 0.05);
-        motions_free(&m);
     }
 }
 
@@ -151,7 +144,7 @@ static void a_held_input_keeps_second_order(void **state)
 
     (void)state;
     for (int k = 1; ritz_integrators[k]; k++) {
-        motions m = {0};
+        RITZ_OWN(motions) m = {0};
         double error[2];
 
         assert_ok(motions_new(true, &m));
@@ -164,7 +157,6 @@ static void a_held_input_keeps_second_order(void **state)
             error[j] = error_of(m.dense, request);
         }
         assert_near(log2(error[0] / error[1]), 2.0, 0.15);
-        motions_free(&m);
     }
 }
 
@@ -176,7 +168,7 @@ static void the_trapezoidal_rule_balances_energies(void **state)
     ritz_simulation_request request =
         asking(&ritz_integrator_trapezoidal, 20.0, 0.05);
     ritz_model subjects[2];
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
@@ -184,7 +176,7 @@ static void the_trapezoidal_rule_balances_energies(void **state)
     subjects[0] = m.dense;
     subjects[1] = m.sparse;
     for (int k = 0; k < 2; k++) {
-        ritz_simulation r = {0};
+        RITZ_OWN(ritz_simulation) r = {0};
         double size = 0.0;
 
         assert_ok(ritz_simulate(subjects[k], &request, &r));
@@ -194,15 +186,13 @@ static void the_trapezoidal_rule_balances_energies(void **state)
                         16.0 * DBL_EPSILON * size * (double)(j + 1));
         }
         assert_true(r.dissipated[r.count - 1] > 0.01);
-        ritz_simulation_free(&r);
     }
-    motions_free(&m);
 }
 
 static void an_explicit_step_above_its_limit_is_refused_and_grows(void **state)
 {
-    ritz_simulation r = {0};
-    motions m = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
+    RITZ_OWN(motions) m = {0};
     double limit = 0.1555256079217896; /* 2 / omega_3, scipy.linalg.eigh */
     double below = 0.0, above = 0.0;
     ritz_simulation_request request =
@@ -214,7 +204,6 @@ static void an_explicit_step_above_its_limit_is_refused_and_grows(void **state)
                  "2.04667 Hz, limits it to 0.155526 s");
     request.step = limit * 0.9999;
     assert_ok(ritz_simulate(m.dense, &request, &r));
-    ritz_simulation_free(&r);
     assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
                                    request.integrator, 0.9 * limit, 3000, 2,
                                    &below));
@@ -223,7 +212,6 @@ static void an_explicit_step_above_its_limit_is_refused_and_grows(void **state)
                                    &above));
     assert_true(below < 20.0); /* its own energy is (1 - (w h / 2)^2) of E */
     assert_true(above > 1e10);
-    motions_free(&m);
 }
 
 /* Damping leaves the limit where it is; gyroscopic terms too. */
@@ -231,7 +219,7 @@ static void central_differences_stand_damping_to_their_limit(void **state)
 {
     double skew[9] = {0.0, 5.0, 0.0, -5.0, 0.0, 8.0, 0.0, -8.0, 0.0};
     const double limit = 0.1555256079217896;
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
     double damped = 0.0, gyroscopic = 0.0;
 
     (void)state;
@@ -247,14 +235,13 @@ static void central_differences_stand_damping_to_their_limit(void **state)
                                    0.9 * limit, 2000, 3, &gyroscopic));
     assert_true(damped < 3000.0); /* (1 - 0.999^2)^-1 and a start */
     assert_true(gyroscopic < 50.0);
-    motions_free(&m);
 }
 
 static void a_component_and_its_dense_matrices_answer_alike(void **state)
 {
     const ritz_integrator *const both[] = {&ritz_integrator_trapezoidal,
                                            &ritz_integrator_generalised_alpha};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
@@ -263,7 +250,7 @@ static void a_component_and_its_dense_matrices_answer_alike(void **state)
     for (int k = 0; k < 2; k++)
         for (int skew = 0; skew < 2; skew++) {
             ritz_simulation_request request = asking(both[k], 2.0, 0.02);
-            ritz_simulation dense = {0}, sparse = {0};
+            RITZ_OWN(ritz_simulation) dense = {0}, sparse = {0};
             double off = 1.0;
 
             if (skew) { /* one entry of D: unsymmetric, another factor */
@@ -275,14 +262,11 @@ static void a_component_and_its_dense_matrices_answer_alike(void **state)
             assert_ok(ritz_simulation_difference(&dense, &sparse, &off));
             assert_true(off < 1e-12); /* some eps a step, 100 steps */
             assert_string_equal(sparse.output[0], "y1");
-            ritz_simulation_free(&dense);
-            ritz_simulation_free(&sparse);
             if (skew) {
                 m.D.val[3] -= 0.5;
                 m.component.D.val[m.component.D.colptr[1]] -= 0.5;
             }
         }
-    motions_free(&m);
 }
 
 /* All modes are the model; and of some, statics are of all. */
@@ -290,8 +274,8 @@ static void a_component_goes_by_its_modes(void **state)
 {
     ritz_simulation_request request =
         asking(&ritz_integrator_modal, 4000.0, 5.0);
-    ritz_simulation all = {0}, dense = {0}, some = {0};
-    motions m = {0};
+    RITZ_OWN(ritz_simulation) all = {0}, dense = {0}, some = {0};
+    RITZ_OWN(motions) m = {0};
     double off = 1.0;
 
     (void)state;
@@ -306,10 +290,6 @@ static void a_component_goes_by_its_modes(void **state)
     assert_ok(ritz_simulate(m.dense, &request, &dense));
     assert_ok(ritz_simulation_difference(&dense, &all, &off));
     assert_true(off < 1e-11);
-    ritz_simulation_free(&all);
-    ritz_simulation_free(&dense);
-    ritz_simulation_free(&some);
-    motions_free(&m);
 }
 
 /* A spring of 50 to a dof without mass, which 1 N pulls: 1/50 at once. */
@@ -318,14 +298,14 @@ static void a_dof_without_mass_follows_at_once(void **state)
     const double mass[] = {2.0, 0.0}, k[] = {100.0, 50.0};
     const ritz_signal sine = {
         .kind = RITZ_SIGNAL_SINE, .amplitude = 1.0, .hertz = {0.3, 0.0}};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(2, mass, k, NULL, &m));
     m.component.io.C.val[0] = 0.0; /* the place of the second */
     m.component.io.C.val[1] = 1.0;
     for (int s = 0; s < 2; s++) {
-        ritz_simulation exact = {0};
+        RITZ_OWN(ritz_simulation) exact = {0};
         ritz_simulation_request request =
             asking(&ritz_integrator_modal, 3.0, 0.005);
 
@@ -333,7 +313,7 @@ static void a_dof_without_mass_follows_at_once(void **state)
         assert_ok(ritz_simulate(m.dense, &request, &exact));
         assert_near(exact.y[0], s == 0 ? 0.02 : 0.0, 1e-16);
         for (int j = 1; j < 4; j++) {
-            ritz_simulation r = {0};
+            RITZ_OWN(ritz_simulation) r = {0};
             double off = 1.0;
 
             request.integrator = ritz_integrators[j];
@@ -347,25 +327,22 @@ static void a_dof_without_mass_follows_at_once(void **state)
             assert_ok(ritz_simulate(m.sparse, &request, &r));
             assert_ok(ritz_simulation_difference(&exact, &r, &off));
             assert_true(off < 2e-3);
-            ritz_simulation_free(&r);
         }
-        ritz_simulation_free(&exact);
     }
-    motions_free(&m);
 }
 
 static void an_impulse_is_a_velocity(void **state)
 {
     const ritz_signal impulse = {.kind = RITZ_SIGNAL_IMPULSE, .amplitude = 3.0};
     const double v0[] = {0.0, 0.0, 2.0}; /* 3 N s on 1.5 kg */
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
     for (int k = 0; ritz_integrators[k]; k++) {
         ritz_simulation_request request =
             asking(ritz_integrators[k], 1.0, 0.02);
-        ritz_simulation pushed = {0}, started = {0};
+        RITZ_OWN(ritz_simulation) pushed = {0}, started = {0};
         double off = 1.0;
 
         request.signal = &impulse;
@@ -376,10 +353,7 @@ static void an_impulse_is_a_velocity(void **state)
         assert_ok(ritz_simulate(m.dense, &request, &started));
         assert_ok(ritz_simulation_difference(&started, &pushed, &off));
         assert_true(off < 1e-13);
-        ritz_simulation_free(&pushed);
-        ritz_simulation_free(&started);
     }
-    motions_free(&m);
 }
 
 /* x' = -a x + u, E = 2, y = x + u: (1 - exp(-a t / 2)) / a + 1 */
@@ -387,7 +361,7 @@ static void a_state_space_is_simulated(void **state)
 {
     static const double A = -3.0, B = 1.0, C = 1.0, D = 1.0, E = 2.0;
     const spaces_rows rows = {1, 1, 1, &A, &B, &C, &D, &E};
-    ritz_state_space space = {0};
+    RITZ_OWN(ritz_state_space) space = {0};
     const ritz_model subject = ritz_model_of_states(&space);
     ritz_simulation_request request = asking(&ritz_integrator_modal, 5.0, 0.5);
     ritz_simulation r = {0};
@@ -409,18 +383,17 @@ static void a_state_space_is_simulated(void **state)
     request.integrator = &ritz_integrator_central_difference;
     assert_fails(ritz_simulate(subject, &request, &r), RITZ_ERR_ARGUMENT,
                  "is of second-order models");
-    ritz_state_space_free(&space);
 }
 
 static void a_step_is_halved_until_it_is_accurate(void **state)
 {
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
     for (int k = 0; ritz_integrators[k]; k++) {
         ritz_simulation_request request = asking(ritz_integrators[k], 3.0, 0.0);
-        ritz_simulation r = {0};
+        RITZ_OWN(ritz_simulation) r = {0};
         ritz_accuracy reached = {.error = 1.0};
 
         assert_ok(
@@ -434,9 +407,7 @@ static void a_step_is_halved_until_it_is_accurate(void **state)
             if (request.step < 0.05)
                 assert_true(error_of(m.dense, request) > 1e-3);
         }
-        ritz_simulation_free(&r);
     }
-    motions_free(&m);
 }
 
 static void what_makes_no_sense_is_refused(void **state)
@@ -448,7 +419,7 @@ static void what_makes_no_sense_is_refused(void **state)
     ritz_simulation_request request = asking(&ritz_integrator_modal, 1.0, 0.1);
     ritz_simulation r = {0};
     ritz_model nothing = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
@@ -480,7 +451,6 @@ static void what_makes_no_sense_is_refused(void **state)
                  "no -1 seconds");
     assert_null(ritz_integrator_find("trapezoid"));
     assert_non_null(strstr(ritz_error_message(), "is 'trapezoidal' meant?"));
-    motions_free(&m);
 }
 
 static void damping_of_a_dof_without_mass_is_refused(void **state)
@@ -489,7 +459,7 @@ static void damping_of_a_dof_without_mass_is_refused(void **state)
     ritz_simulation_request request =
         asking(&ritz_integrator_trapezoidal, 1.0, 0.1);
     ritz_simulation r = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(2, mass, k, c, &m));
@@ -497,7 +467,6 @@ static void damping_of_a_dof_without_mass_is_refused(void **state)
                  "dofs without mass are damped");
     assert_fails(ritz_simulate(m.sparse, &request, &r), RITZ_ERR_ARGUMENT,
                  "grid 2 T1 has damping and no mass");
-    motions_free(&m);
 }
 
 static void an_unstable_model_leaves_all_bounds(void **state)
@@ -505,13 +474,12 @@ static void an_unstable_model_leaves_all_bounds(void **state)
     const double mass = 1.0, k = -1e6;
     ritz_simulation_request request = asking(&ritz_integrator_modal, 9.0, 0.01);
     ritz_simulation r = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, NULL, &m));
     assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_CONVERGENCE,
                  "left all bounds");
-    motions_free(&m);
 }
 
 static void signals_are_words_or_tables(void **state)
@@ -584,10 +552,9 @@ static ritz_status run(ritz_model subject, const ritz_integrator *integrator)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request request = asking(integrator, 0.3, 0.1);
-    ritz_simulation r = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
 
     status = ritz_simulate(subject, &request, &r);
-    ritz_simulation_free(&r);
     return status;
 }
 
@@ -597,7 +564,7 @@ static void integrators_survive_every_allocation(void **state)
                                        .zeta = 0.02};
     static const ritz_damping rayleigh = {
         .kind = RITZ_DAMPING_RAYLEIGH, .a = 0.1, .b = 0.001};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
@@ -608,7 +575,6 @@ static void integrators_survive_every_allocation(void **state)
         assert_survives_every_allocation(run(m.dense, ritz_integrators[k]));
     assert_survives_every_allocation(
         run(m.sparse, &ritz_integrator_generalised_alpha));
-    motions_free(&m);
 }
 
 static const struct CMUnitTest tests[] = {

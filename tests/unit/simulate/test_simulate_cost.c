@@ -12,7 +12,7 @@ static void steps_are_those_of_the_scheme(void **state)
 {
     const double band[] = {0.0, 1.0};
     ritz_cost cost = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(false, &m));
@@ -32,7 +32,6 @@ static void steps_are_those_of_the_scheme(void **state)
     assert_near(pow(2.0 * pi * cost.highest_hz * cost.step_accurate, 2.0) /
                     12.0,
                 1e-3, 1e-15);
-    motions_free(&m);
 }
 
 /* h = 2 (sqrt(1 + zeta^2) - zeta) / w of one dof; coupled, as numpy's
@@ -41,7 +40,7 @@ static void the_explicit_step_heeds_damping(void **state)
 {
     const double mass = 1.0, k = 9.0, c = 2.0 * 0.3 * 3.0;
     ritz_cost cost = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, &c, &m));
@@ -53,7 +52,6 @@ static void the_explicit_step_heeds_damping(void **state)
     assert_ok(
         ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), NULL, &cost));
     assert_near(cost.step_explicit, 1.4821065717397161e-01, 1e-14);
-    motions_free(&m);
 }
 
 static void a_rigid_body_has_no_explicit_limit(void **state)
@@ -61,7 +59,7 @@ static void a_rigid_body_has_no_explicit_limit(void **state)
     const double mass = 2.0, k = 0.0;
     const double band[] = {0.0, 10.0};
     ritz_cost cost = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, NULL, &m));
@@ -73,14 +71,13 @@ static void a_rigid_body_has_no_explicit_limit(void **state)
     assert_ok(
         ritz_simulate_cost(ritz_model_of_dense(&m.model, &none), NULL, &cost));
     assert_near(cost.step_accurate, sqrt(0.012) / (2.0 * pi), 1e-15);
-    motions_free(&m);
 }
 
 /* r^2 a step: of 64 masses more than of 3, by far. */
 static void more_coordinates_cost_more(void **state)
 {
     double mass[64], k[64];
-    motions small = {0}, large = {0};
+    RITZ_OWN(motions) small = {0}, large = {0};
     double few = 0.0, many = 0.0;
 
     (void)state;
@@ -100,15 +97,13 @@ static void more_coordinates_cost_more(void **state)
     assert_ok(ritz_simulate_refactor_cost(3, &few));
     assert_ok(ritz_simulate_refactor_cost(200, &many));
     assert_true(few > 0.0 && many > few);
-    motions_free(&small);
-    motions_free(&large);
 }
 
 static void costs_without_sense_are_refused(void **state)
 {
     const double band[] = {0.0, -1.0};
     ritz_cost cost = {0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
     double time = 0.0;
 
     (void)state;
@@ -121,13 +116,12 @@ static void costs_without_sense_are_refused(void **state)
                  RITZ_ERR_ARGUMENT, "no step");
     assert_fails(ritz_simulate_refactor_cost(0, &time), RITZ_ERR_ARGUMENT,
                  "no order");
-    motions_free(&m);
 }
 
 /* A negative dashpot: each way of integrating sees it grow. */
 static void growth_tells_an_unstable_model(void **state)
 {
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
@@ -148,7 +142,6 @@ static void growth_tells_an_unstable_model(void **state)
         for (int k = 0; k < 9; k++)
             m.D.val[k] = -m.D.val[k];
     }
-    motions_free(&m);
 }
 
 /* D = [0 d; 0 0] takes from one and gives to the other. */
@@ -158,7 +151,7 @@ static void growth_tells_an_unsymmetric_damping(void **state)
     double d[4] = {0.0, 0.0, 1.5, 0.0};
     const ritz_dense D = {2, 2, d};
     double growth = 0.0;
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(2, mass, k, NULL, &m));
@@ -167,7 +160,6 @@ static void growth_tells_an_unsymmetric_damping(void **state)
                                    &ritz_integrator_trapezoidal, 0.05, 4000, 2,
                                    &growth));
     assert_true(growth > 100.0);
-    motions_free(&m);
 }
 
 static ritz_status measure(const motions *m, int which)
@@ -185,13 +177,12 @@ static ritz_status measure(const motions *m, int which)
 
 static void costs_survive_every_allocation(void **state)
 {
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
     assert_survives_every_allocation(measure(&m, 0));
     assert_survives_every_allocation(measure(&m, 1));
-    motions_free(&m);
 }
 
 static const struct CMUnitTest tests[] = {

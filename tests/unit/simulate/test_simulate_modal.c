@@ -150,12 +150,12 @@ static void a_step_response_is_that_of_the_textbook_at_any_step(void **state)
     (void)state;
     for (int z = 0; z < 5; z++) {
         const double m = 1.0, k = w * w, c = 2.0 * zetas[z] * w;
-        motions one = {0};
+        RITZ_OWN(motions) one = {0};
 
         assert_ok(motions_row(1, &m, &k, c > 0.0 ? &c : NULL, &one));
         for (int s = 0; s < 3; s++) {
             ritz_simulation_request request = RITZ_SIMULATION_NONE;
-            ritz_simulation r = {0};
+            RITZ_OWN(ritz_simulation) r = {0};
 
             request.seconds = 6.0;
             request.step = steps[s];
@@ -165,9 +165,7 @@ static void a_step_response_is_that_of_the_textbook_at_any_step(void **state)
             for (int64_t j = 0; j < r.count; j++) /* each step some eps */
                 assert_near(r.y[j], one_dof_step(w, zetas[z], r.seconds[j]),
                             8.0 * DBL_EPSILON * (double)(j + 20) / k);
-            ritz_simulation_free(&r);
         }
-        motions_free(&one);
     }
 }
 
@@ -183,14 +181,14 @@ modes_that_damping_couples_go_together_as_scipy_has_them(void **state)
         {2.0, -7.6632067512873853e-05, -1.0680177195853031e-02},
     };
     const ritz_signal impulse = {.kind = RITZ_SIGNAL_IMPULSE, .amplitude = 1.0};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
     for (int k = 0; k < 3; k++)
         for (int steps = 1; steps <= 16; steps *= 16) {
             ritz_simulation_request request = RITZ_SIMULATION_NONE;
-            ritz_simulation r = {0};
+            RITZ_OWN(ritz_simulation) r = {0};
 
             request.seconds = expected[k].t;
             request.step = expected[k].t / steps;
@@ -203,9 +201,7 @@ modes_that_damping_couples_go_together_as_scipy_has_them(void **state)
             request.signal = &impulse;
             assert_ok(ritz_simulate(m.dense, &request, &r));
             assert_near(r.y[1], expected[k].impulse, 1e-14); /* of 0.1 */
-            ritz_simulation_free(&r);
         }
-    motions_free(&m);
 }
 
 static void an_input_is_held_or_linear_over_a_step_as_asked(void **state)
@@ -213,8 +209,8 @@ static void an_input_is_held_or_linear_over_a_step_as_asked(void **state)
     const ritz_signal sine = {
         .kind = RITZ_SIGNAL_SINE, .amplitude = 1.0, .hertz = {1.3, 0.0}};
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
-    ritz_simulation first = {0}, zero = {0};
-    motions m = {0};
+    RITZ_OWN(ritz_simulation) first = {0}, zero = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
@@ -229,9 +225,6 @@ static void an_input_is_held_or_linear_over_a_step_as_asked(void **state)
     assert_near(first.y[40], -1.4103876625323254e-03, 1e-15);
     assert_near(zero.y[40], -2.9868666747586421e-03, 1e-15);
     assert_string_equal(zero.hold, "zero");
-    ritz_simulation_free(&first);
-    ritz_simulation_free(&zero);
-    motions_free(&m);
 }
 
 /* x = t^2 / (2 m) and x' = t / m; with a dashpot c to ground alone, v tends to
@@ -240,8 +233,8 @@ static void a_free_body_is_accelerated(void **state)
 {
     const double m[] = {3.0, 1.0}, k[] = {0.0, 10.0};
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
-    ritz_simulation r = {0};
-    motions body = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
+    RITZ_OWN(motions) body = {0};
 
     (void)state;
     assert_ok(motions_row(2, m, k, NULL, &body));
@@ -257,8 +250,6 @@ static void a_free_body_is_accelerated(void **state)
 
         assert_near(r.y[j], 0.125 * t * t, 1e-14 * (double)(j + 1) * 125e3);
     }
-    ritz_simulation_free(&r);
-    motions_free(&body);
 }
 
 /* kinetic + potential + dissipated = work + what was there. */
@@ -279,9 +270,9 @@ static void energies_balance_with_coupled_damping_and_inputs(void **state)
         for (int s = 0; s < 3; s++)
             for (int hold = 0; hold < 2; hold++) {
                 ritz_simulation_request request = RITZ_SIMULATION_NONE;
-                ritz_simulation r = {0};
+                RITZ_OWN(ritz_simulation) r = {0};
                 double size = 0.0;
-                motions m = {0};
+                RITZ_OWN(motions) m = {0};
 
                 assert_ok(motions_new(damped, &m));
                 m.dense.damping = damped ? &none : &light;
@@ -301,8 +292,6 @@ static void energies_balance_with_coupled_damping_and_inputs(void **state)
                                 r.dissipated[j] >= r.dissipated[j - 1]);
                 }
                 assert_true(r.dissipated[r.count - 1] > 0.1);
-                ritz_simulation_free(&r);
-                motions_free(&m);
             }
 }
 
@@ -341,14 +330,13 @@ static ritz_status run(ritz_model subject)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request request = RITZ_SIMULATION_NONE;
-    ritz_simulation r = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
 
     request.seconds = 0.3;
     request.step = 0.1;
     request.up_to_hz = 1.8;
     request.signal = &motions_step;
     status = ritz_simulate(subject, &request, &r);
-    ritz_simulation_free(&r);
     return status;
 }
 
@@ -356,14 +344,13 @@ static void modal_survives_every_allocation(void **state)
 {
     static const ritz_damping light = {.kind = RITZ_DAMPING_MODAL,
                                        .zeta = 0.02};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_new(true, &m));
     m.dense.damping = m.sparse.damping = &light;
     assert_survives_every_allocation(run(m.dense));
     assert_survives_every_allocation(run(m.sparse));
-    motions_free(&m);
 }
 
 static const struct CMUnitTest tests[] = {

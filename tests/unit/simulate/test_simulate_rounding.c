@@ -61,7 +61,7 @@ static void check(ritz_model subject, const ritz_integrator *integrator,
                   double size)
 {
     ritz_simulation_request request = asking(integrator);
-    ritz_simulation r = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
     ritz_accuracy reached = {0};
 
     assert_ok(ritz_simulate_accurate(subject, &request, 1e-3, &reached, &r));
@@ -76,7 +76,6 @@ static void check(ritz_model subject, const ritz_integrator *integrator,
                     1e-3 / 200.0 * 1.4); /* a third more beyond half a step */
         assert_near(r.y[2 * k + 1], 0.0, 1e-14 * size);
     }
-    ritz_simulation_free(&r);
 }
 
 static void an_output_that_is_rounding_does_not_drive_the_step(void **state)
@@ -85,7 +84,7 @@ static void an_output_that_is_rounding_does_not_drive_the_step(void **state)
 
     (void)state;
     for (size_t s = 0; s < 3; s++) {
-        motions m = {0};
+        RITZ_OWN(motions) m = {0};
 
         turn(0.0, sizes[s], &m);
         for (int k = 0; ritz_integrators[k]; k++) {
@@ -93,7 +92,6 @@ static void an_output_that_is_rounding_does_not_drive_the_step(void **state)
             if (ritz_integrators[k]->takes_sparse)
                 check(m.sparse, ritz_integrators[k], sizes[s]);
         }
-        motions_free(&m);
     }
 }
 
@@ -108,35 +106,32 @@ static void nor_does_one_of_a_state_space(void **state)
     const double B[] = {0, 0, c, s};
     const double C[] = {c, s, 0, 0, -s, c, 0, 0};
     const spaces_rows rows = {4, 1, 2, A, B, C, NULL, NULL};
-    ritz_state_space space = {0};
+    RITZ_OWN(ritz_state_space) space = {0};
     const ritz_model subject = ritz_model_of_states(&space);
 
     (void)state;
     assert_ok(spaces_make(&rows, &space));
     check(subject, &ritz_integrator_modal, 1.0);
     check(subject, &ritz_integrator_trapezoidal, 1.0);
-    ritz_state_space_free(&space);
 }
 
 /* A coupling of 1e-8 of the stiffness is no rounding: both are held to it. */
 static void an_output_that_responds_weakly_is_held(void **state)
 {
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     turn(1e-5, 1.0, &m);
     for (int k = 0; ritz_integrators[k]; k++) {
         ritz_simulation_request request = asking(ritz_integrators[k]);
-        ritz_simulation r = {0};
+        RITZ_OWN(ritz_simulation) r = {0};
         ritz_accuracy reached = {0};
 
         assert_ok(
             ritz_simulate_accurate(m.dense, &request, 1e-3, &reached, &r));
         assert_int_equal(reached.num_left, 0);
         assert_int_equal(reached.left, -1);
-        ritz_simulation_free(&r);
     }
-    motions_free(&m);
 }
 
 /*
@@ -146,13 +141,13 @@ static void an_output_that_responds_weakly_is_held(void **state)
 static void what_a_step_does_not_resolve_is_no_rounding(void **state)
 {
     const double mass = 1.0, k = 500.0 * 500.0, x0 = 1.0;
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     assert_ok(motions_row(1, &mass, &k, NULL, &m));
     for (int i = 1; i < 3; i++) {
         ritz_simulation_request request = asking(ritz_integrators[i]);
-        ritz_simulation r = {0};
+        RITZ_OWN(ritz_simulation) r = {0};
         ritz_accuracy reached = {0};
 
         request.signal = NULL;
@@ -160,9 +155,7 @@ static void what_a_step_does_not_resolve_is_no_rounding(void **state)
         assert_ok(ritz_simulate_accurate(m.dense, &request, 0.5, &reached, &r));
         assert_int_equal(reached.num_left, 0);
         assert_true(r.step * 500.0 < 0.15);
-        ritz_simulation_free(&r);
     }
-    motions_free(&m);
 }
 
 /* A sine of 100 Hz is 0 at each fiftieth of a second. */
@@ -170,9 +163,9 @@ static void a_sine_is_seen_by_the_first_step(void **state)
 {
     static const ritz_signal sine = {
         .kind = RITZ_SIGNAL_SINE, .amplitude = 1.0, .hertz = {100.0, 0.0}};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
     ritz_simulation_request request = asking(&ritz_integrator_modal);
-    ritz_simulation r = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
 
     (void)state;
     turn(0.0, 1.0, &m);
@@ -188,8 +181,6 @@ static void a_sine_is_seen_by_the_first_step(void **state)
                 (p * p - 400.0),
             2e-2 * p / 20.0 / (p * p - 400.0));
     }
-    ritz_simulation_free(&r);
-    motions_free(&m);
 }
 
 /* Steps are counted before they are taken: 100 us of 1e6 s, none of it. */
@@ -197,7 +188,7 @@ static void more_steps_than_are_tried_are_refused(void **state)
 {
     static const ritz_signal sine = {
         .kind = RITZ_SIGNAL_SINE, .amplitude = 1.0, .hertz = {1e3, 0.0}};
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
     ritz_simulation_request request = asking(&ritz_integrator_modal);
     ritz_simulation r = {0};
 
@@ -214,30 +205,27 @@ static void more_steps_than_are_tried_are_refused(void **state)
     request.seconds = 1e9;
     assert_fails(ritz_simulate_accurate(m.dense, &request, 1e-3, NULL, &r),
                  RITZ_ERR_ARGUMENT, "more than 8388608 steps are not tried: ");
-    motions_free(&m);
 }
 
 static ritz_status ask(ritz_model subject)
 {
     ritz_status status = RITZ_OK;
     ritz_simulation_request request = asking(&ritz_integrator_trapezoidal);
-    ritz_simulation r = {0};
+    RITZ_OWN(ritz_simulation) r = {0};
 
     request.seconds = 0.05;
     status = ritz_simulate_accurate(subject, &request, 0.5, NULL, &r);
-    ritz_simulation_free(&r);
     return status;
 }
 
 static void a_search_survives_every_allocation(void **state)
 {
-    motions m = {0};
+    RITZ_OWN(motions) m = {0};
 
     (void)state;
     turn(0.0, 1.0, &m);
     assert_survives_every_allocation(ask(m.dense));
     assert_survives_every_allocation(ask(m.sparse));
-    motions_free(&m);
 }
 
 static const struct CMUnitTest tests[] = {
