@@ -241,23 +241,6 @@ ritz_status ritz_simulate_step_cost(ritz_model model,
  */
 ritz_status ritz_simulate_refactor_cost(int64_t order, double *out);
 
-/**
- * How an integrator's free motion grows: from @p starts random states (seeded,
- * the same in each run), each mode with as much energy, @p steps steps with no
- * input; the largest
- *
- *     E(t) / E(0),   E = sum over modes of (q'^2 + |lambda| q^2) / 2
- *
- * at any step. 1 or less for a passive model by an implicit integrator, but
- * for rounding; stops once it is above 1e12, and returns what it then is.
- * A gyroscopic D and an unsymmetric one are heeded.
- *
- * @param[in] step  s; of an explicit integrator any, above its limit too
- */
-ritz_status ritz_simulate_growth(ritz_model model,
-                                 const ritz_integrator *integrator, double step,
-                                 int64_t steps, int64_t starts, double *out);
-
 #pragma GCC visibility pop
 
 #endif

@@ -1,3 +1,4 @@
+#include "responses.h"
 #include "testing.h"
 
 #include "masses.h"
@@ -325,8 +326,7 @@ static void all_states_respond_as_the_chain(void **state)
     ritz_response due = {0};
 
     assert_ok(ritz_state_space_of_component(&f->chain, &none, &full));
-    assert_ok(ritz_response_of(ritz_model_of_states(&full), NULL, 0.0, 0.0,
-                               &grid, &due));
+    assert_ok(states_response(&full, &grid, &due));
     assert_near(creal(due.H[0]), 1.0, 1e-13); /* unit springs in a row */
     for (int t = 0; t < 2; t++) {
         ritz_request request =
@@ -335,8 +335,7 @@ static void all_states_respond_as_the_chain(void **state)
         states_outcome got = {0};
 
         states_run(methods[t], &request, &got);
-        assert_ok(ritz_response_of(ritz_model_of_states(&got.model), NULL, 0.0,
-                                   0.0, &grid, &r));
+        assert_ok(states_response(&got.model, &grid, &r));
         for (int k = 0; k < 5; k++) /* measured: 2e-10 */
             assert_true(cabs(r.H[k] - due.H[k]) < 1e-8);
         ritz_response_free(&r);

@@ -1,3 +1,4 @@
+#include "responses.h"
 #include "testing.h"
 
 #include "masses.h"
@@ -28,9 +29,7 @@ static void rigid_modes_stand_apart(void **state)
     assert_ok(masses_io(&chain, 1, ends, 1, ends + 1));
     snprintf(chain.damping, sizeof chain.damping, "modal 0.02");
     local.request.component = &chain;
-    assert_ok(ritz_response_of(ritz_model_of_component(&chain, &ratio),
-                               &ritz_response_engine_direct, 9.0, 0.0, &grid,
-                               &due));
+    assert_ok(direct_response(&chain, &ratio, 9.0, &grid, &due));
     for (int t = 0; t < 5; t++) {
         ritz_request request =
             states_asking(&local, 4, t % 2 == 0, (ritz_gramian)(t / 2 % 2));
@@ -45,8 +44,7 @@ static void rigid_modes_stand_apart(void **state)
         assert_int_equal(got.model.columns.kind[2], RITZ_COLUMN_STATE);
         assert_int_equal(got.probe.verdict, RITZ_MARGINAL);
         assert_near(got.probe.pole[0], 0.0, 1e-12);
-        assert_ok(ritz_response_of(ritz_model_of_states(&got.model), NULL, 0.0,
-                                   0.0, &grid, &r));
+        assert_ok(states_response(&got.model, &grid, &r));
         for (int i = 0; i < 3; i++) /* measured: 6e-11, of the direct one */
             assert_true(cabs(r.H[i] - due.H[i]) < 1e-9 * cabs(due.H[i]));
         ritz_response_free(&r);
@@ -120,10 +118,8 @@ static void unequal_numbers_of_inputs_and_outputs_are_joined(void **state)
     states_run(&ritz_method_lanczos_two_sided, &request, &got);
     assert_int_equal(got.model.A.nrow, STATES);
     assert_ok(ritz_state_space_of_component(&f->chain, &none, &full));
-    assert_ok(ritz_response_of(ritz_model_of_states(&full), NULL, 0.0, 0.0,
-                               &grid, &due));
-    assert_ok(ritz_response_of(ritz_model_of_states(&got.model), NULL, 0.0, 0.0,
-                               &grid, &r));
+    assert_ok(states_response(&full, &grid, &due));
+    assert_ok(states_response(&got.model, &grid, &r));
     for (int k = 0; k < 6; k++) /* measured: 1e-11 */
         assert_true(cabs(r.H[k] - due.H[k]) < 1e-8);
     ritz_response_free(&r);

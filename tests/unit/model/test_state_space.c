@@ -1,3 +1,4 @@
+#include "responses.h"
 #include "testing.h"
 
 #include "masses.h"
@@ -70,10 +71,8 @@ static double apart(const ritz_state_space *a, const ritz_state_space *b)
     ritz_response of_a = {0}, of_b = {0};
     double worst = 0.0;
 
-    assert_ok(ritz_response_of(ritz_model_of_states(a), NULL, 0.0, 0.0, &grid,
-                               &of_a));
-    assert_ok(ritz_response_of(ritz_model_of_states(b), NULL, 0.0, 0.0, &grid,
-                               &of_b));
+    assert_ok(states_response(a, &grid, &of_a));
+    assert_ok(states_response(b, &grid, &of_b));
     worst = difference(&of_a, &of_b);
     ritz_response_free(&of_a);
     ritz_response_free(&of_b);
@@ -127,13 +126,10 @@ static void responses_agree_with_second_order_ones(void **state)
         set_chain(&chain);
         assert_ok(ritz_state_space_of_component(&chain, &cases[t], &model));
         assert_int_equal(model.A.nrow, 10);
-        assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
-                                   &grid, &got));
+        assert_ok(states_response(&model, &grid, &got));
         assert_ok(
             ritz_dampers_install_sparse(&chain.dampers, &chain.K, &chain.D));
-        assert_ok(ritz_response_of(ritz_model_of_component(&chain, &cases[t]),
-                                   &ritz_response_engine_direct, 9.0, 0.0,
-                                   &grid, &due));
+        assert_ok(direct_response(&chain, &cases[t], 9.0, &grid, &due));
         assert_true(difference(&got, &due) < 1e-9);
     }
 }
@@ -171,8 +167,7 @@ static void a_descriptor_responds_as_its_states(void **state)
     (void)state;
     set_chain(&chain);
     assert_ok(ritz_state_space_of_component(&chain, &undamped, &model));
-    assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
-                               &grid, &due));
+    assert_ok(states_response(&model, &grid, &due));
     assert_ok(ritz_dense_new(10, 10, &model.E));
     for (int64_t j = 0; j < 10; j++)
         for (int64_t i = j; i < 10; i++)
@@ -184,8 +179,7 @@ static void a_descriptor_responds_as_its_states(void **state)
     model.A = A;
     model.B = B;
     assert_ok(ritz_state_space_check(&model));
-    assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
-                               &grid, &got));
+    assert_ok(states_response(&model, &grid, &got));
     assert_true(difference(&got, &due) < 1e-12);
     ritz_dense_col(&model.E, 3)[3] = 0.0;
     assert_fails(ritz_state_space_check(&model), RITZ_ERR_FORMAT,
@@ -207,11 +201,8 @@ static void massless_dofs_feed_through(void **state)
     assert_int_equal(model.A.nrow, 8);
     assert_near(model.D.val[0], 1.0 / 5.0, 64 * DBL_EPSILON);
     assert_near(model.D.val[1], 0.0, 64 * DBL_EPSILON);
-    assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
-                               &grid, &got));
-    assert_ok(ritz_response_of(ritz_model_of_component(&chain, &damping),
-                               &ritz_response_engine_direct, 9.0, 0.0, &grid,
-                               &due));
+    assert_ok(states_response(&model, &grid, &got));
+    assert_ok(direct_response(&chain, &damping, 9.0, &grid, &due));
     assert_true(difference(&got, &due) < 1e-9);
     ritz_response_free(&due);
     ritz_response_free(&got);
@@ -302,8 +293,7 @@ static void refined_grids_meet_the_poles(void **state)
     assert_ok(masses_component(1, one, k, c, &mass));
     assert_ok(masses_io(&mass, 1, at, 1, at));
     assert_ok(ritz_state_space_of_component(&mass, &undamped, &model));
-    assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
-                               &coarse, &r));
+    assert_ok(states_response(&model, &coarse, &r));
     for (int64_t i = 0; i < r.count; i++)
         peak = fmax(peak, cabs(r.H[i]));
     /* 1 / (2 zeta sqrt(1 - zeta^2) k), zeta = 0.01 */
@@ -311,8 +301,8 @@ static void refined_grids_meet_the_poles(void **state)
     ritz_response_free(&r);
     model.A.val[3] = 0.0; /* no damping */
     assert_fails(
-        ritz_response_of(
-            ritz_model_of_states(&model), NULL, 0.0, 0.0,
+        states_response(
+            &model,
             &(ritz_grid){
                 .count = 1,
                 .hertz =
@@ -370,8 +360,7 @@ static void no_allocation_failure_leaks(void **state)
     assert_survives_every_allocation(
         ritz_state_space_of_component(&chain, &damping, &model));
     assert_ok(ritz_dense_copy(&model.A, &model.E));
-    assert_survives_every_allocation(ritz_response_of(
-        ritz_model_of_states(&model), NULL, 0.0, 0.0, &grid, &r));
+    assert_survives_every_allocation(states_response(&model, &grid, &r));
 }
 
 static const struct CMUnitTest tests[] = {

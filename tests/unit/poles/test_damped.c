@@ -1,4 +1,5 @@
 /* Responses, errors and systems of models that D or K4 couples. */
+#include "responses.h"
 #include "testing.h"
 
 #include "folder.h"
@@ -28,10 +29,7 @@ static void respond(double *K, double *M, double *D, const ritz_grid *grid,
 
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = io.C.val[0] = 1.0;
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(
-            &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL),
-        NULL, 0.0, 0.0, grid, out));
+    assert_ok(dense_response(&A[0], &A[1], &A[2], &io, NULL, grid, out));
 }
 
 /* Z = [k - w^2, -i w g; i w g, k - w^2]: H = (k - w^2) / ((k - w^2)^2 - g^2
@@ -72,10 +70,7 @@ static void one_sided_coupling_counts(void **state)
     (void)state;
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = io.C.val[1] = 1.0;
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(
-            &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL),
-        NULL, 0.0, 0.0, &grid, &r));
+    assert_ok(dense_response(&A[0], &A[1], &A[2], &io, NULL, &grid, &r));
     for (int64_t k = 0; k < r.count; k++) {
         double w = 2.0 * pi * r.hertz[k];
         double expected = -0.5 * w / ((4.0 - w * w) * (9.0 - w * w));
@@ -167,9 +162,7 @@ dense_and_direct_agree_with_skew_and_structural_damping(void **state)
         ritz_model_of_dense(
             &(ritz_second_order){&A[0], &A[1], &A[2], &A[3], &chain.io}, NULL),
         NULL, 0.0, 0.0, &grid, &dense));
-    assert_ok(ritz_response_of(ritz_model_of_component(&chain, NULL),
-                               &ritz_response_engine_direct, 0, 0.0, &grid,
-                               &direct));
+    assert_ok(direct_response(&chain, NULL, 0, &grid, &direct));
     for (int64_t k = 0; k < dense.count; k++)
         largest = fmax(largest, cabs(dense.H[k]));
     for (int64_t k = 0; k < dense.count; k++)
@@ -188,13 +181,9 @@ static void direct_reads_both_triangles_of_the_damping(void **state)
 
     (void)state;
     open_chain(&chain);
-    assert_ok(ritz_response_of(ritz_model_of_component(&chain, NULL),
-                               &ritz_response_engine_direct, 0, 0.0, &grid,
-                               &whole));
+    assert_ok(direct_response(&chain, NULL, 0, &grid, &whole));
     assert_ok(ritz_sparse_symmetrise(&chain.D));
-    assert_ok(ritz_response_of(ritz_model_of_component(&chain, NULL),
-                               &ritz_response_engine_direct, 0, 0.0, &grid,
-                               &half));
+    assert_ok(direct_response(&chain, NULL, 0, &grid, &half));
     for (int64_t k = 0; k < whole.count; k++)
         apart = fmax(apart, cabs(whole.H[k] - half.H[k]) / cabs(whole.H[k]));
     assert_true(apart > 1e-3);
@@ -400,13 +389,9 @@ static ritz_status respond_to_all(const ritz_component *chain)
     RITZ_OWN(ritz_response) r = {0};
 
     RITZ_TRY(ritz_io_new(2, 1, 1, &io));
-    RITZ_TRY(ritz_response_of(
-        ritz_model_of_dense(
-            &(ritz_second_order){&A[0], &A[1], &A[2], NULL, &io}, NULL),
-        NULL, 0.0, 0.0, &grid, &r));
+    RITZ_TRY(dense_response(&A[0], &A[1], &A[2], &io, NULL, &grid, &r));
     ritz_response_free(&r);
-    RITZ_TRY(ritz_response_of(ritz_model_of_component(chain, NULL),
-                              &ritz_response_engine_direct, 0, 0.0, &grid, &r));
+    RITZ_TRY(direct_response(chain, NULL, 0, &grid, &r));
 done:
     return status;
 }

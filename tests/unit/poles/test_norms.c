@@ -1,3 +1,4 @@
+#include "responses.h"
 #include "testing.h"
 
 #include "spaces.h"
@@ -260,8 +261,7 @@ static void a_difference_is_what_both_answer_apart(void **unused)
                                               &difference[k]));
         assert_ok(ritz_state_space_check(&difference[k]));
         assert_int_equal(difference[k].A.nrow, 3);
-        assert_ok(ritz_response_of(ritz_model_of_states(&difference[k]), NULL,
-                                   0.0, 0.0, &grid, &response));
+        assert_ok(states_response(&difference[k], &grid, &response));
         assert_near(cabs(response.H[0]), expected, 64 * DBL_EPSILON);
     }
     assert_near(difference[0].D.val[0], 0.5, 0.0);

@@ -1,4 +1,5 @@
 /* Loops: closed forms, two ways to the same response, margins, refusals. */
+#include "responses.h"
 #include "spaces.h"
 #include "testing.h"
 
@@ -245,8 +246,7 @@ static void both_ways_close_the_same_loop(void **state)
         assert_int_equal(p.loop.measured[0], 2);
         assert_int_equal(p.loop.driven[0], 1);
         assert_ok(ritz_responder_sample(p.H, &grid, &by_loop));
-        assert_ok(ritz_response_of(ritz_model_of_states(&p.closed), NULL, 0.0,
-                                   0.0, &grid, &by_states));
+        assert_ok(states_response(&p.closed, &grid, &by_states));
         assert_int_equal(by_states.count, by_loop.count);
         for (int64_t j = 0; j < 6 * by_loop.count; j++) /* well conditioned */
             assert_near(cabs(by_loop.H[j] - by_states.H[j]), 0.0, 1e-12);
@@ -398,8 +398,7 @@ static void all_values_are_there_and_descend(void **state)
 
     (void)state;
     random_space(6, 2, 3, false, 3, &model);
-    assert_ok(ritz_response_of(ritz_model_of_states(&model), NULL, 0.0, 0.0,
-                               &grid, &r));
+    assert_ok(states_response(&model, &grid, &r));
     assert_ok(ritz_singular_of(NULL, &r));
     assert_ok(ritz_singular_of(NULL, &r)); /* once more: in their place */
     assert_int_equal(r.num_singular, 2);

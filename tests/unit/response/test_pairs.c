@@ -2,6 +2,7 @@
  * Pairs of matrices from elsewhere whose numbers are known: oracles.md section
  * 7 (third-party files, RITZ_EXTERNAL_DATA).
  */
+#include "responses.h"
 #include "testing.h"
 
 #include <ritz/basis.h>
@@ -124,9 +125,7 @@ static void lf10_gives_its_static_gain(void **state)
     (void)state;
     if (!import_lf10(&c))
         skip();
-    assert_ok(ritz_response_of(ritz_model_of_component(&c, &none),
-                               &ritz_response_engine_direct, 0.0, 0.0, &grid,
-                               &response));
+    assert_ok(direct_response(&c, &none, 0.0, &grid, &response));
     assert_near(creal(response.H[0]), 2.06988240e-3, 5e-12);
     assert_near(cimag(response.H[0]), 0.0, 0.0);
 }
@@ -174,7 +173,7 @@ static void dmig_pair_has_its_frequencies(void **state)
 static void an_interface_on_a_line_is_refused(void **state)
 {
     int64_t rows[] = {0, 1, 2, 3, 4, 5};
-    ritz_component c = {.num_dofs = 345};
+    RITZ_OWN(ritz_component) c = {.num_dofs = 345};
     ritz_request request = RITZ_REQUEST_NONE;
     ritz_basis none = {0};
 
@@ -193,7 +192,6 @@ static void an_interface_on_a_line_is_refused(void **state)
     assert_fails(ritz_basis_make(&ritz_method_craig_bampton, &request, &none),
                  RITZ_ERR_SINGULAR,
                  "1 motion(s) cost no energy; largest at grid ");
-    ritz_component_free(&c);
 }
 
 static const struct CMUnitTest tests[] = {

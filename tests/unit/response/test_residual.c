@@ -2,6 +2,7 @@
  * What modes above those that are summed answer where a M + b K damps them, on
  * a free bar of 331 dofs: more than are taken whole.
  */
+#include "responses.h"
 #include "testing.h"
 
 #include "bar.h"
@@ -55,9 +56,7 @@ static void respond_directly(const ritz_component *bar,
     const ritz_grid grid = {
         .from_hz = from_hz, .to_hz = to_hz, .count = POINTS};
 
-    assert_ok(ritz_response_of(ritz_model_of_component(bar, damping),
-                               &ritz_response_engine_direct, 3.0 * to_hz, 0.0,
-                               &grid, out));
+    assert_ok(direct_response(bar, damping, 3.0 * to_hz, &grid, out));
 }
 
 /* Largest difference over the largest |H| of its channel. */
@@ -86,9 +85,7 @@ static double modal_apart(const ritz_component *bar,
     double found = 0.0;
 
     respond_directly(bar, damping, &direct);
-    assert_ok(ritz_response_of(ritz_model_of_component(bar, damping),
-                               &ritz_response_engine_modal, 3.0 * to_hz, 0.0,
-                               &grid, &modal));
+    assert_ok(modal_response(bar, damping, 3.0 * to_hz, &grid, &modal));
     found = apart(&direct, modal.H);
     return found;
 }
@@ -209,9 +206,7 @@ static ritz_status respond_once(const ritz_component *bar)
     ritz_status status = RITZ_OK;
     RITZ_OWN(ritz_response) r = {0};
 
-    RITZ_TRY(ritz_response_of(ritz_model_of_component(bar, &none),
-                              &ritz_response_engine_modal, 1.0, 0.0, &grid,
-                              &r));
+    RITZ_TRY(modal_response(bar, &none, 1.0, &grid, &r));
 done:
     return status;
 }
@@ -237,14 +232,10 @@ static void a_slow_body_answers_as_a_fast_one_does(void **state)
     (void)state;
     assert_ok(bar_component(ELEMENTS, &bar));
     assert_ok(frame_io(&bar, 1, &end, 1, &end));
-    assert_ok(ritz_response_of(ritz_model_of_component(&bar, &rule),
-                               &ritz_response_engine_modal, 0.3, 0.0, &grid,
-                               &fast));
+    assert_ok(modal_response(&bar, &rule, 0.3, &grid, &fast));
     for (int64_t p = 0; p < bar.M.colptr[bar.M.ncol]; p++)
         bar.M.val[p] *= slower * slower;
-    assert_ok(ritz_response_of(ritz_model_of_component(&bar, &rule),
-                               &ritz_response_engine_modal, 0.3 / slower, 0.0,
-                               &later, &slow));
+    assert_ok(modal_response(&bar, &rule, 0.3 / slower, &later, &slow));
     for (int64_t k = 0; k < MANY; k++)
         assert_true(cabs(slow.H[k] - fast.H[k]) < within * cabs(fast.H[k]));
 }

@@ -1,3 +1,4 @@
+#include "responses.h"
 #include "testing.h"
 
 #include "frame.h"
@@ -43,10 +44,7 @@ static void one_dof_answers_as_the_textbook_says(void **state)
 
     (void)state;
     assert_ok(one_dof(&k, &m, &K, &M, &io));
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(&(ritz_second_order){&K, &M, NULL, NULL, &io},
-                            &light),
-        NULL, 0.0, 0.0, &grid, &r));
+    assert_ok(dense_response(&K, &M, NULL, &io, &light, &grid, &r));
     assert_int_equal(r.count, 61 + 13);
     for (int64_t j = 0; j < r.count; j++) {
         double w = 2.0 * pi * r.hertz[j];
@@ -79,10 +77,7 @@ static void a_peak_at_a_ratio_of_1e_4_is_not_missed(void **state)
 
     (void)state;
     assert_ok(one_dof(&k, &m, &K, &M, &io));
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(&(ritz_second_order){&K, &M, NULL, NULL, &io},
-                            &faint),
-        NULL, 0.0, 0.0, &grid, &r));
+    assert_ok(dense_response(&K, &M, NULL, &io, &faint, &grid, &r));
     for (int64_t j = 0; j < r.count; j++)
         largest = fmax(largest, cabs(r.H[3 * j]));
     /* the peak is flat: rounding of its place, 1e-16 / zeta, squared */
@@ -181,13 +176,9 @@ static void direct_and_modal_agree_with_rayleigh_damping(void **state)
         RITZ_OWN(ritz_response) modal = {0};
 
         open_beam(clamped, &beam);
-        assert_ok(ritz_response_of(ritz_model_of_component(&beam, &rayleigh),
-                                   &ritz_response_engine_direct, 0, 0.0, &grid,
-                                   &direct));
+        assert_ok(direct_response(&beam, &rayleigh, 0, &grid, &direct));
         /* every mode: the series of what is left out is not damped */
-        assert_ok(ritz_response_of(ritz_model_of_component(&beam, &rayleigh),
-                                   &ritz_response_engine_modal, 100, 0.0, &grid,
-                                   &modal));
+        assert_ok(modal_response(&beam, &rayleigh, 100, &grid, &modal));
         assert_int_equal(direct.count, modal.count);
         for (int64_t k = 0; k < direct.count; k++) {
             double _Complex H = 0.0;
@@ -213,12 +204,8 @@ static void direct_and_modal_agree_with_ratios(void **state)
         RITZ_OWN(ritz_response) modal = {0};
 
         open_beam(clamped, &beam);
-        assert_ok(ritz_response_of(ritz_model_of_component(&beam, &light),
-                                   &ritz_response_engine_direct, 0.6, 0.0,
-                                   &grid, &direct));
-        assert_ok(ritz_response_of(ritz_model_of_component(&beam, &light),
-                                   &ritz_response_engine_modal, 0.6, 0.0, &grid,
-                                   &modal));
+        assert_ok(direct_response(&beam, &light, 0.6, &grid, &direct));
+        assert_ok(modal_response(&beam, &light, 0.6, &grid, &modal));
         for (int64_t k = 0; k < direct.count; k++)
             /* the series ends at 1e-12, a nudge away from poles 1e-9 */
             assert_near(cabs(direct.H[k] - modal.H[k]), 0.0,
@@ -249,12 +236,8 @@ static void dampers_and_ratios_act_together_exactly(void **state)
     (void)state;
     open_beam(true, &beam);
     add_dampers(&beam, 0.5, 0.02);
-    assert_ok(ritz_response_of(ritz_model_of_component(&beam, &light),
-                               &ritz_response_engine_direct, 100, 0.0, &grid,
-                               &direct));
-    assert_ok(ritz_response_of(ritz_model_of_component(&beam, &light),
-                               &ritz_response_engine_modal, 100, 0.0, &grid,
-                               &modal));
+    assert_ok(direct_response(&beam, &light, 100, &grid, &direct));
+    assert_ok(modal_response(&beam, &light, 100, &grid, &modal));
     for (int64_t k = 0; k < direct.count; k++)
         /* all 24 modes are in: two exact ways; measured */
         assert_near(cabs(direct.H[k] - modal.H[k]), 0.0,
@@ -271,9 +254,7 @@ static void dampers_alone_are_what_the_dense_system_says(void **state)
     (void)state;
     open_beam(true, &beam);
     add_dampers(&beam, 0.5, 0.02);
-    assert_ok(ritz_response_of(ritz_model_of_component(&beam, NULL),
-                               &ritz_response_engine_direct, 0, 0.0, &grid,
-                               &direct));
+    assert_ok(direct_response(&beam, NULL, 0, &grid, &direct));
     for (int64_t k = 0; k < direct.count; k++) {
         int64_t n = beam.num_dofs;
         double _Complex *extra = calloc((size_t)(n * n), sizeof *extra);
@@ -306,34 +287,22 @@ static void rigid_motion_answers_with_its_mass(void **state)
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = 1.0;
     io.C.val[1] = 1.0;
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(&(ritz_second_order){&K, &M, NULL, NULL, &io},
-                            &light),
-        NULL, 0.0, 0.0, &low, &r));
+    assert_ok(dense_response(&K, &M, NULL, &io, &light, &low, &r));
     /* flexible share is 1/4: 1e-8 of 1 / (4 w^2) */
     assert_near(creal(r.H[0]) * w * w, -0.25, 2e-8);
     ritz_response_free(&r);
-    assert_fails(ritz_response_of(
-                     ritz_model_of_dense(
-                         &(ritz_second_order){&K, &M, NULL, NULL, &io}, &light),
-                     NULL, 0.0, 0.0, &zero, &r),
+    assert_fails(dense_response(&K, &M, NULL, &io, &light, &zero, &r),
                  RITZ_ERR_SINGULAR, "rigid-body motion");
     /* a pair of forces does not move it: flexible, -2/8 at rest */
     io.B.val[1] = -1.0;
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(&(ritz_second_order){&K, &M, NULL, NULL, &io},
-                            &light),
-        NULL, 0.0, 0.0, &zero, &r));
+    assert_ok(dense_response(&K, &M, NULL, &io, &light, &zero, &r));
     assert_near(creal(r.H[0]), -0.5, 1e-14);
     ritz_response_free(&r);
     /* an acceleration is finite: 1 / 4 of what is pushed */
     io.B.val[1] = 0.0;
     io.C.val[1] = 0.0;
     io.Ca.val[1] = 1.0;
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(&(ritz_second_order){&K, &M, NULL, NULL, &io},
-                            &light),
-        NULL, 0.0, 0.0, &zero, &r));
+    assert_ok(dense_response(&K, &M, NULL, &io, &light, &zero, &r));
     assert_near(creal(r.H[0]), 0.25, 1e-14);
 }
 
@@ -354,9 +323,7 @@ static void damping_that_couples_modes_is_solved_for(void **state)
     assert_ok(ritz_io_new(2, 1, 1, &io));
     io.B.val[0] = 1.0;
     io.C.val[1] = 1.0;
-    assert_ok(ritz_response_of(
-        ritz_model_of_dense(&(ritz_second_order){&K, &M, &D, NULL, &io}, NULL),
-        NULL, 0.0, 0.0, &grid, &r));
+    assert_ok(dense_response(&K, &M, &D, &io, NULL, &grid, &r));
     for (int64_t j = 0; j < r.count; j++) {
         double w = 2.0 * pi * r.hertz[j];
         double z = 2.0 - w * w;
@@ -378,10 +345,7 @@ static void an_undamped_pole_is_refused_by_its_frequency(void **state)
 
     (void)state;
     assert_ok(one_dof(&k, &m, &K, &M, &io));
-    assert_fails(ritz_response_of(
-                     ritz_model_of_dense(
-                         &(ritz_second_order){&K, &M, NULL, NULL, &io}, NULL),
-                     NULL, 0.0, 0.0, &grid, &r),
+    assert_fails(dense_response(&K, &M, NULL, &io, NULL, &grid, &r),
                  RITZ_ERR_SINGULAR, "1 Hz is the frequency of an undamped");
 }
 
@@ -408,15 +372,13 @@ static void a_range_that_is_none_is_refused(void **state)
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         assert_fails(ritz_grid_points(&bad[k].grid, 0, NULL, NULL, &count, &f),
                      RITZ_ERR_ARGUMENT, bad[k].words);
-    assert_fails(ritz_response_of(ritz_model_of_component(&beam, &light),
-                                  &ritz_response_engine_modal, 0.5, 0.0,
-                                  &(ritz_grid){0.1, 1.0, 3, false, false, NULL},
-                                  &r),
+    assert_fails(modal_response(&beam, &light, 0.5,
+                                &(ritz_grid){0.1, 1.0, 3, false, false, NULL},
+                                &r),
                  RITZ_ERR_ARGUMENT, "cannot give a response up to 1 Hz");
-    assert_fails(ritz_response_of(ritz_model_of_component(&beam, &light),
-                                  &ritz_response_engine_direct, 0, 0.0,
-                                  &(ritz_grid){0.0, 0.1, 3, false, false, NULL},
-                                  &r),
+    assert_fails(direct_response(&beam, &light, 0,
+                                 &(ritz_grid){0.0, 0.1, 3, false, false, NULL},
+                                 &r),
                  RITZ_ERR_SINGULAR, "rigid-body motion");
 }
 
@@ -427,13 +389,9 @@ static ritz_status respond_once(const ritz_component *beam)
     RITZ_OWN(ritz_response) r = {0};
 
     if (beam->D.colptr)
-        RITZ_TRY(ritz_response_of(ritz_model_of_component(beam, &light),
-                                  &ritz_response_engine_direct, 0, 0.0, &grid,
-                                  &r));
+        RITZ_TRY(direct_response(beam, &light, 0, &grid, &r));
     else
-        RITZ_TRY(ritz_response_of(ritz_model_of_component(beam, &light),
-                                  &ritz_response_engine_modal, 0, 0.0, &grid,
-                                  &r));
+        RITZ_TRY(modal_response(beam, &light, 0, &grid, &r));
 done:
     return status;
 }

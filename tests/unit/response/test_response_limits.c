@@ -2,6 +2,7 @@
  * Responses where there is little to find: a rest without mass, poles that are
  * not damped, channels that are rounding. All in closed form.
  */
+#include "responses.h"
 #include "testing.h"
 
 #include "masses.h"
@@ -115,9 +116,7 @@ static void a_rest_without_mass_answers_by_its_springs(void **state)
     for (size_t k = 0; k < sizeof up_to / sizeof *up_to; k++) {
         RITZ_OWN(ritz_response) r = {0};
 
-        assert_ok(ritz_response_of(ritz_model_of_component(&row, NULL),
-                                   &ritz_response_engine_modal, up_to[k], 0.0,
-                                   &grid, &r));
+        assert_ok(modal_response(&row, NULL, up_to[k], &grid, &r));
         assert_true(row_apart(r.count, r.hertz, 0.0, 0.0, r.H) < 1e-11);
     }
 }

@@ -1,4 +1,5 @@
 /* Integrators against closed forms and against the exact propagation. */
+#include "growth.h"
 #include "testing.h"
 
 #include "motions.h"
@@ -204,12 +205,10 @@ static void an_explicit_step_above_its_limit_is_refused_and_grows(void **state)
                  "2.04667 Hz, limits it to 0.155526 s");
     request.step = limit * 0.9999;
     assert_ok(ritz_simulate(m.dense, &request, &r));
-    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                   request.integrator, 0.9 * limit, 3000, 2,
-                                   &below));
-    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                   request.integrator, 1.01 * limit, 3000, 2,
-                                   &above));
+    assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                        request.integrator, 0.9 * limit, 3000, 2, &below));
+    assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                        request.integrator, 1.01 * limit, 3000, 2, &above));
     assert_true(below < 20.0); /* its own energy is (1 - (w h / 2)^2) of E */
     assert_true(above > 1e10);
 }
@@ -226,13 +225,13 @@ static void central_differences_stand_damping_to_their_limit(void **state)
     assert_ok(motions_new(true, &m));
     for (int k = 0; k < 9; k++)
         m.D.val[k] *= 30.0;
-    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                   &ritz_integrator_central_difference,
-                                   0.999 * limit, 2000, 3, &damped));
+    assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                        &ritz_integrator_central_difference, 0.999 * limit,
+                        2000, 3, &damped));
     memcpy(m.D.val, skew, sizeof skew);
-    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                   &ritz_integrator_central_difference,
-                                   0.9 * limit, 2000, 3, &gyroscopic));
+    assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                        &ritz_integrator_central_difference, 0.9 * limit, 2000,
+                        3, &gyroscopic));
     assert_true(damped < 3000.0); /* (1 - 0.999^2)^-1 and a start */
     assert_true(gyroscopic < 50.0);
 }

@@ -1,4 +1,5 @@
 /* Costs: their steps are closed forms; times are only held to make sense. */
+#include "growth.h"
 #include "testing.h"
 
 #include "motions.h"
@@ -128,16 +129,14 @@ static void growth_tells_an_unstable_model(void **state)
     for (int j = 0; ritz_integrators[j]; j++) {
         double stable = 0.0, unstable = 0.0;
 
-        assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                       ritz_integrators[j], 0.02, 2000, 3,
-                                       &stable));
+        assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                            ritz_integrators[j], 0.02, 2000, 3, &stable));
         /* generalised-alpha and explicit ones conserve an energy near E */
         assert_true(stable > 0.0 && stable < 1.05);
         for (int k = 0; k < 9; k++)
             m.D.val[k] = -m.D.val[k];
-        assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                       ritz_integrators[j], 0.02, 2000, 3,
-                                       &unstable));
+        assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                            ritz_integrators[j], 0.02, 2000, 3, &unstable));
         assert_true(unstable > 100.0);
         for (int k = 0; k < 9; k++)
             m.D.val[k] = -m.D.val[k];
@@ -156,9 +155,8 @@ static void growth_tells_an_unsymmetric_damping(void **state)
     (void)state;
     assert_ok(motions_row(2, mass, k, NULL, &m));
     m.model.D = &D;
-    assert_ok(ritz_simulate_growth(ritz_model_of_dense(&m.model, &none),
-                                   &ritz_integrator_trapezoidal, 0.05, 4000, 2,
-                                   &growth));
+    assert_ok(growth_of(ritz_model_of_dense(&m.model, &none),
+                        &ritz_integrator_trapezoidal, 0.05, 4000, 2, &growth));
     assert_true(growth > 100.0);
 }
 
@@ -170,9 +168,8 @@ static ritz_status measure(const motions *m, int which)
     return which == 0
                ? ritz_simulate_cost(ritz_model_of_dense(&m->model, &none), NULL,
                                     &cost)
-               : ritz_simulate_growth(ritz_model_of_dense(&m->model, &none),
-                                      &ritz_integrator_trapezoidal, 0.1, 2, 1,
-                                      &growth);
+               : growth_of(ritz_model_of_dense(&m->model, &none),
+                           &ritz_integrator_trapezoidal, 0.1, 2, 1, &growth);
 }
 
 static void costs_survive_every_allocation(void **state)
