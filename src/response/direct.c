@@ -69,12 +69,12 @@ void ritz_direct_free(ritz_direct *direct)
     *direct = (ritz_direct){0};
 }
 
-void ritz_direct_rayleigh(const ritz_direct *s, double *a, double *b)
+void ritz_direct_rayleigh(const ritz_direct *direct, double *a, double *b)
 {
-    bool rayleigh = ritz_damping_is_rayleigh(&s->damping);
+    bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
 
-    *a = rayleigh ? s->damping.a : 0.0;
-    *b = rayleigh ? s->damping.b : 0.0;
+    *a = rayleigh ? direct->damping.a : 0.0;
+    *b = rayleigh ? direct->damping.b : 0.0;
 }
 
 static ritz_status factor_impedance(ritz_direct *s, double w, double w2)

@@ -139,7 +139,8 @@ ritz_status ritz_response_new(const ritz_grid *grid, const ritz_poles *poles,
     RITZ_CHECK(ritz_poles_ratios(poles, &omega, &zeta));
     RITZ_CHECK(
         ritz_grid_points(grid, poles->count, omega, zeta, &r.count, &r.hertz));
-    RITZ_REFUSE_IF(r.num_inputs * r.num_outputs > most_values / r.count,
+    RITZ_REFUSE_IF(r.num_inputs * r.num_outputs >
+                       most_values / (r.count > 0 ? r.count : 1),
                    RITZ_ERR_ARGUMENT,
                    "%" PRId64 " frequencies of %" PRId64 " x %" PRId64
                    " responses are too many",

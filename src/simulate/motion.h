@@ -45,7 +45,7 @@ typedef struct ritz_motion {
 } ritz_motion;
 
 /** Modal if @p modal, else dense: of its modes where M is singular. */
-ritz_status ritz_motion_dense(ritz_model model, bool modal, ritz_motion *out);
+ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out);
 
 /** Whichever of them a subject and an integrator ask for. */
 ritz_status ritz_motion_new(ritz_model subject,
