@@ -81,12 +81,11 @@ static void hankel_values_are_those_of_another_program(void **state)
         0.000965766986, 0.000934667303, 0.000463717769, 0.000448135527};
     fixture *f = *state;
     ritz_request request = balancing_asking(&f->chain, 4);
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(ritz_basis_make(&ritz_method_balanced, &request, &basis));
     for (int64_t k = 0; k < 8; k++)
         assert_near(basis.hankel[k], expected[k], 1e-8 * expected[0]);
-    ritz_basis_free(&basis);
 }
 
 /* Both Gramians of the reduced model are diag(sigma_1 .. sigma_r). */
@@ -104,14 +103,13 @@ static void gramians_of_the_reduced_model_are_equal_and_diagonal(void **state)
     assert_ok(ritz_general_gramian(&got.model.A, &got.model.B, &U[0]));
     assert_ok(ritz_general_gramian(&At, &Ct, &U[1]));
     for (int k = 0; k < 2; k++) {
-        ritz_dense W = {0};
+        RITZ_OWN(ritz_dense) W = {0};
 
         assert_ok(ritz_dense_mul_nt(&U[k], &U[k], &W));
         for (int64_t j = 0; j < KEPT; j++)
             for (int64_t i = 0; i < KEPT; i++) /* measured: 1e-17 */
                 assert_near(at(&W, i, j), i == j ? got.basis.hankel[j] : 0.0,
                             1e-11 * got.basis.hankel[0]);
-        ritz_dense_free(&W);
         ritz_dense_free(&U[k]);
     }
     ritz_dense_free(&At);
@@ -145,7 +143,7 @@ static void engines_make_the_same_model(void **state)
  * of the first: 1e-8 is left. */
 static void low_rank_makes_the_same_model(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = {0};
     states_outcome dense = {0}, low = {0};
 
@@ -162,7 +160,6 @@ static void low_rank_makes_the_same_model(void **state)
                 1e-8 * dense.basis.hankel[0]);
     states_discard(&dense);
     states_discard(&low);
-    ritz_component_free(&chain);
 }
 
 /* Only modes below the highest two are chosen from. */
@@ -190,12 +187,12 @@ static void a_static_remainder_keeps_the_static_gain(void **state)
 {
     enum { KEPT = 4 };
     fixture *f = *state;
-    ritz_dense exact = balancing_static(&f->full);
+    RITZ_OWN(ritz_dense) exact = balancing_static(&f->full);
 
     for (int perturb = 0; perturb < 2; perturb++) {
         ritz_request request = balancing_asking(&f->chain, KEPT);
         states_outcome got = {0};
-        ritz_dense gain = {0};
+        RITZ_OWN(ritz_dense) gain = {0};
         double off = 0.0;
 
         request.choice.perturb = perturb == 1;
@@ -213,10 +210,8 @@ static void a_static_remainder_keeps_the_static_gain(void **state)
         assert_true(balancing_error(&f->full, &got.model) <=
                     got.basis.bound * (1.0 + norm_error));
         assert_int_equal(got.probe.verdict, RITZ_STABLE);
-        ritz_dense_free(&gain);
         states_discard(&got);
     }
-    ritz_dense_free(&exact);
 }
 
 static void the_bound_is_an_estimate_of_the_reduced_model(void **state)
@@ -250,8 +245,8 @@ static void rigid_motion_is_kept_as_it_is(void **state)
     (void)state;
     for (int engine = RITZ_ENGINE_DENSE; engine <= RITZ_ENGINE_MODAL;
          engine++) {
-        ritz_component chain = {0};
-        ritz_state_space full = {0};
+        RITZ_OWN(ritz_component) chain = {0};
+        RITZ_OWN(ritz_state_space) full = {0};
         ritz_request request = {0};
         states_outcome got = {0};
 
@@ -280,8 +275,6 @@ static void rigid_motion_is_kept_as_it_is(void **state)
             free(b);
         }
         states_discard(&got);
-        ritz_state_space_free(&full);
-        ritz_component_free(&chain);
     }
 }
 
@@ -305,8 +298,8 @@ static void an_unstable_pole_of_a_state_space_is_kept(void **state)
     static const double A[] = {2, 0.3, -0.2, 0, -1, 0.5, 0, 0, -5};
     static const double B[] = {1, 1, 1}, C[] = {1, 2, 0.1};
     const spaces_rows rows = {3, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space full = {0}, reduced = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     assert_ok(spaces_make(&rows, &full));
@@ -316,9 +309,6 @@ static void an_unstable_pole_of_a_state_space_is_kept(void **state)
     assert_near(at(&reduced.A, 0, 0), 2.0, 64 * DBL_EPSILON);
     assert_near(at(&reduced.A, 0, 1), 0.0, 64 * DBL_EPSILON);
     assert_near(at(&reduced.A, 1, 0), 0.0, 64 * DBL_EPSILON);
-    ritz_basis_free(&basis);
-    ritz_state_space_free(&reduced);
-    ritz_state_space_free(&full);
 }
 
 /* E x' = A x + B u reduces to what E^-1 A, E^-1 B do. */
@@ -356,7 +346,7 @@ static void a_descriptor_matrix_changes_nothing(void **state)
 static void the_building_is_reduced_within_its_bound(void **state)
 {
     static const int64_t orders[] = {2, 4, 11, 20, 30, 46};
-    ritz_state_space full = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
     double *stored = NULL;
 
     (void)state;
@@ -365,8 +355,8 @@ static void the_building_is_reduced_within_its_bound(void **state)
     assert_int_equal(
         spaces_numbers("building", "hsv_stored_by_authors.txt", &stored), 48);
     for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
-        ritz_basis basis = {0};
-        ritz_state_space reduced = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_state_space) reduced = {0};
         double error = 0.0;
 
         reduce(&full, orders[k], &basis, &reduced);
@@ -378,11 +368,8 @@ static void the_building_is_reduced_within_its_bound(void **state)
         error = balancing_error(&full, &reduced);
         assert_true(error <= basis.bound * (1.0 + norm_error));
         assert_true(error >= stored[orders[k]] * (1.0 - norm_error));
-        ritz_basis_free(&basis);
-        ritz_state_space_free(&reduced);
     }
     free(stored);
-    ritz_state_space_free(&full);
 }
 
 /* Two equal systems side by side: each value twice, never one of the two. */
@@ -393,9 +380,9 @@ static void equal_values_are_kept_whole(void **state)
     static const double B[] = {1, 0, 0, 1, 1, 0, 0, 1};
     static const double C[] = {1, 0, 1, 0, 0, 1, 0, 1};
     const spaces_rows rows = {4, 2, 2, A, B, C, NULL, NULL};
-    ritz_state_space full = {0}, reduced = {0};
+    RITZ_OWN(ritz_state_space) full = {0}, reduced = {0};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     assert_ok(spaces_make(&rows, &full));
@@ -406,9 +393,6 @@ static void equal_values_are_kept_whole(void **state)
     reduce(&full, 3, &basis, &reduced);
     assert_int_equal(basis.T.ncol, 2);
     assert_non_null(strstr(basis.remark, "3 were asked for"));
-    ritz_basis_free(&basis);
-    ritz_state_space_free(&reduced);
-    ritz_state_space_free(&full);
 }
 
 static void more_states_than_there_are_gives_all(void **state)
@@ -466,7 +450,7 @@ static void what_is_reached_but_not_seen_is_refused(void **state)
 {
     static const double A[] = {-1, 0, 0, -2}, B[] = {1, 0}, C[] = {0, 1};
     const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space full = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     ritz_basis none = {0};
 
@@ -477,7 +461,6 @@ static void what_is_reached_but_not_seen_is_refused(void **state)
     assert_fails(ritz_basis_make(&ritz_method_balanced, &request, &none),
                  RITZ_ERR_ARGUMENT,
                  "nothing is both controllable and observable");
-    ritz_state_space_free(&full);
 }
 
 static void no_allocation_failure_leaks(void **state)
@@ -539,9 +522,9 @@ static void slicot_publishes_this_perturbed_model(void **state)
                                 -0.0010, -0.0007, 0.0498};
     static const spaces_rows whole = {7, 2, 3, A7, B7, C7, NULL, NULL};
     static const spaces_rows printed = {5, 2, 3, A5, B5, C5, D5, NULL};
-    ritz_state_space model = {0}, theirs = {0}, ours = {0};
+    RITZ_OWN(ritz_state_space) model = {0}, theirs = {0}, ours = {0};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     assert_ok(spaces_make(&whole, &model));
@@ -554,10 +537,6 @@ static void slicot_publishes_this_perturbed_model(void **state)
     assert_ok(ritz_reduce_space(&model, &basis, &ours));
     assert_int_equal(ours.A.nrow, 5);
     assert_near(balancing_error(&ours, &theirs), 0.0, 1e-3);
-    ritz_basis_free(&basis);
-    ritz_state_space_free(&model);
-    ritz_state_space_free(&theirs);
-    ritz_state_space_free(&ours);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -26,7 +26,7 @@ static ritz_request asking(const ritz_component *chain, int64_t states,
 /* Over all frequencies the values are the Hankel values, and so is the model. */
 static void a_band_of_everything_is_balanced_truncation(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request all = {0}, plain = {0};
     states_outcome banded = {0}, whole = {0};
 
@@ -46,7 +46,6 @@ static void a_band_of_everything_is_balanced_truncation(void **state)
                 1e-9 * whole.basis.hankel[0]);
     states_discard(&banded);
     states_discard(&whole);
-    ritz_component_free(&chain);
 }
 
 /* Largest error between two frequencies. */
@@ -73,8 +72,8 @@ static double error_between(const ritz_state_space *a,
  */
 static void the_band_is_answered_better_than_by_all(void **state)
 {
-    ritz_component chain = {0};
-    ritz_state_space full = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
     ritz_request request = {0};
     states_outcome banded = {0}, whole = {0};
 
@@ -89,8 +88,6 @@ static void the_band_is_answered_better_than_by_all(void **state)
                 error_between(&full, &whole.model, 3.5, 6.0));
     states_discard(&banded);
     states_discard(&whole);
-    ritz_state_space_free(&full);
-    ritz_component_free(&chain);
 }
 
 /* A row of masses whose reduction is unstable, and the pole that says so. */
@@ -138,7 +135,7 @@ static void a_band_can_be_unstable_and_the_probe_says_so(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         const unstable_row *row = &rows[k];
-        ritz_component masses = {0};
+        RITZ_OWN(ritz_component) masses = {0};
         ritz_request request = {0};
         states_outcome got = {0};
 
@@ -155,13 +152,12 @@ static void a_band_can_be_unstable_and_the_probe_says_so(void **state)
         assert_int_equal(got.probe.verdict, RITZ_UNSTABLE);
         assert_true(got.probe.pole[0] > 0.0);
         states_discard(&got);
-        ritz_component_free(&masses);
     }
 }
 
 static void rigid_motion_stands_beside(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = {0};
     states_outcome got = {0};
 
@@ -172,14 +168,13 @@ static void rigid_motion_stands_beside(void **state)
     assert_int_equal(got.basis.T.ncol, 6);
     assert_int_equal(got.model.columns.kind[1], RITZ_COLUMN_RIGID);
     states_discard(&got);
-    ritz_component_free(&chain);
 }
 
 static void bands_that_cannot_be_are_refused(void **state)
 {
     const ritz_method *method = &ritz_method_balanced_band;
     static const int64_t in = 9, seen = 0;
-    ritz_component chain = {0}, coupled = {0};
+    RITZ_OWN(ritz_component) chain = {0}, coupled = {0};
     ritz_request request = {0};
     ritz_basis none = {0};
     double m[MASSES], k[MASSES], c[MASSES] = {[3] = 2.0};
@@ -200,23 +195,19 @@ static void bands_that_cannot_be_are_refused(void **state)
     request = asking(&coupled, 4, 0.01, 0.1);
     assert_fails(ritz_basis_make(method, &request, &none), RITZ_ERR_ARGUMENT,
                  "couples");
-    ritz_component_free(&chain);
-    ritz_component_free(&coupled);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     balancing_chain(5, true, 4, 0, "modal 0.05", &chain);
     request = asking(&chain, 2, 0.0, 4.0);
     assert_survives_every_allocation(
         ritz_method_balanced_band.make(&request, &basis));
-    ritz_basis_free(&basis);
-    ritz_component_free(&chain);
 }
 
 static const struct CMUnitTest tests[] = {

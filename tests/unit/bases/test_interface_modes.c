@@ -146,8 +146,8 @@ static double exact_eigenvalue(int64_t k)
 
 static void shapes_and_frequencies_of_the_lattice(void **state)
 {
-    ritz_component body = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     const ritz_columns *columns = &basis.columns;
 
     (void)state;
@@ -169,17 +169,15 @@ static void shapes_and_frequencies_of_the_lattice(void **state)
                             cos((double)k * pi * 0.5 / NY),
                         10.0 * solve_error);
     }
-    ritz_basis_free(&basis);
-    ritz_component_free(&body);
 }
 
 /* As many as there are, or more, are no reduction of the interface. */
 static void all_interface_modes_are_all_boundary_motion(void **state)
 {
-    ritz_component body = {0};
-    ritz_basis basis = {0}, plain = {0};
-    ritz_reduced some = {0}, all = {0};
-    ritz_pairs a = {0}, b = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0}, plain = {0};
+    RITZ_OWN(ritz_reduced) some = {0}, all = {0};
+    RITZ_OWN(ritz_pairs) a = {0}, b = {0};
 
     (void)state;
     lattice(false, 1.0, 1, &body);
@@ -191,21 +189,14 @@ static void all_interface_modes_are_all_boundary_motion(void **state)
     for (int64_t k = 0; k < NY + MODES; k++)
         assert_near(a.lambda[k], b.lambda[k],
                     solve_error * b.lambda[NY + MODES - 1]);
-    ritz_basis_free(&basis);
-    ritz_basis_free(&plain);
-    ritz_reduced_free(&some);
-    ritz_reduced_free(&all);
-    ritz_pairs_free(&a);
-    ritz_pairs_free(&b);
-    ritz_component_free(&body);
 }
 
 /* Frequencies only fall as interface modes are added, never below the full. */
 static void more_interface_modes_are_nearer(void **state)
 {
-    ritz_component body = {0};
-    ritz_dense K = {0}, M = {0};
-    ritz_pairs full = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
     double before = HUGE_VAL;
 
     (void)state;
@@ -214,9 +205,9 @@ static void more_interface_modes_are_nearer(void **state)
     assert_ok(ritz_sparse_dense(&body.M, &M));
     assert_ok(ritz_eigen_dense(&K, &M, &full));
     for (int64_t n = 1; n < NY; n += 2) {
-        ritz_basis basis = {0};
-        ritz_reduced reduced = {0};
-        ritz_pairs pairs = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(ritz_pairs) pairs = {0};
         double error = 0.0;
 
         reduce(&body, MODES, n, &basis, &reduced);
@@ -231,14 +222,7 @@ static void more_interface_modes_are_nearer(void **state)
         }
         assert_true(error < before);
         before = error;
-        ritz_basis_free(&basis);
-        ritz_reduced_free(&reduced);
-        ritz_pairs_free(&pairs);
     }
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_pairs_free(&full);
-    ritz_component_free(&body);
 }
 
 /* Two lattices joined at their edges, each with its own interface modes. */
@@ -252,8 +236,8 @@ static void join(bool even, int64_t left, int64_t right,
         "  B: {model: b.h5, basis: craig-bampton, modes: 10}\n"
         "joints:\n"
         "  - {name: seam, between: [A/edge, B/edge], type: fixed}\n";
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
     ritz_component half[2] = {{0}};
     ritz_reduced body[2] = {0};
 
@@ -261,16 +245,13 @@ static void join(bool even, int64_t left, int64_t right,
     lattice(true, -1.0, 1, &half[0]);
     lattice(even, 1.0, 101, &half[1]);
     for (int k = 0; k < 2; k++) {
-        ritz_basis basis = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
 
         reduce(&half[k], MODES, k == 0 ? left : right, &basis, &body[k]);
-        ritz_basis_free(&basis);
         ritz_component_free(&half[k]);
     }
     assert_ok(ritz_stage_from(&scene, body, &stage));
     assert_ok(ritz_stage_assemble(&stage, NULL, out));
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /*
@@ -280,7 +261,7 @@ static void join(bool even, int64_t left, int64_t right,
  */
 static void one_side_may_be_reduced(void **state)
 {
-    ritz_configuration full = {0}, one = {0};
+    RITZ_OWN(ritz_configuration) full = {0}, one = {0};
 
     (void)state;
     join(false, 0, 0, &full);
@@ -294,14 +275,12 @@ static void one_side_may_be_reduced(void **state)
         assert_true(one.lambda[k] >= full.lambda[k] * (1.0 - solve_error));
         assert_near(one.lambda[k] / full.lambda[k], 1.0, 1e-3);
     }
-    ritz_configuration_free(&full);
-    ritz_configuration_free(&one);
 }
 
 /* Both sides reduced to the same shapes are as one side reduced. */
 static void both_sides_with_the_same_shapes_do_not_lock(void **state)
 {
-    ritz_configuration one = {0}, both = {0};
+    RITZ_OWN(ritz_configuration) one = {0}, both = {0};
 
     (void)state;
     join(true, 4, 0, &one);
@@ -310,8 +289,6 @@ static void both_sides_with_the_same_shapes_do_not_lock(void **state)
     assert_int_equal(both.K.ncol, 5 + 2 * MODES);
     for (int64_t k = 1; k < both.K.ncol; k++)
         assert_near(both.lambda[k], one.lambda[k], 100.0 * solve_error);
-    ritz_configuration_free(&one);
-    ritz_configuration_free(&both);
 }
 
 static double worst_error(const ritz_configuration *full,
@@ -331,7 +308,7 @@ static double worst_error(const ritz_configuration *full,
  */
 static void both_sides_with_different_shapes_lock(void **state)
 {
-    ritz_configuration full = {0}, one = {0}, both = {0};
+    RITZ_OWN(ritz_configuration) full = {0}, one = {0}, both = {0};
 
     (void)state;
     join(false, 0, 0, &full);
@@ -342,9 +319,6 @@ static void both_sides_with_different_shapes_lock(void **state)
     assert_int_equal(both.num_rigid, 1);
     assert_near(worst_error(&full, &one), 6.2e-4, 1e-5);
     assert_near(worst_error(&full, &both), 0.53, 0.01);
-    ritz_configuration_free(&full);
-    ritz_configuration_free(&one);
-    ritz_configuration_free(&both);
 }
 
 /* One grid holds a plane beam: its three motions are rigid, and that is all. */
@@ -352,8 +326,8 @@ static void a_determinate_interface_has_rigid_modes_alone(void **state)
 {
     static int64_t dofs[] = {0, 1, 2};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_component beam = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     assert_ok(frame_component(6, 0.5, &frame_mcdaniel, false, false, 1, &beam));
@@ -365,8 +339,6 @@ static void a_determinate_interface_has_rigid_modes_alone(void **state)
     assert_int_equal(basis.T.ncol, 3);
     for (int64_t j = 0; j < 3; j++)
         assert_int_equal(basis.columns.kind[j], RITZ_COLUMN_RIGID);
-    ritz_basis_free(&basis);
-    ritz_component_free(&beam);
 }
 
 static void other_methods_have_none(void **state)
@@ -389,7 +361,7 @@ static void an_interface_without_mass_and_stiffness_is_refused(void **state)
     static const double mass[] = {1, 0, 0};
     static int64_t ends[] = {0, 1, 2};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_component loose = {.num_dofs = 3};
+    RITZ_OWN(ritz_component) loose = {.num_dofs = 3};
     ritz_basis none = {0};
 
     (void)state;
@@ -404,14 +376,13 @@ static void an_interface_without_mass_and_stiffness_is_refused(void **state)
     request.choice.interface_modes = 1;
     assert_fails(ritz_basis_make(&ritz_method_guyan, &request, &none),
                  RITZ_ERR_SINGULAR, "guyan: interface modes: ");
-    ritz_component_free(&loose);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_component body = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     lattice(true, 1.0, 1, &body);
@@ -422,8 +393,6 @@ static void no_allocation_failure_leaks(void **state)
     request.choice.interface_modes = 3;
     assert_survives_every_allocation(
         ritz_method_craig_bampton.make(&request, &basis));
-    ritz_basis_free(&basis);
-    ritz_component_free(&body);
 }
 
 static const struct CMUnitTest tests[] = {

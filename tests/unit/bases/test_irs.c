@@ -81,8 +81,8 @@ static void a_bar_of_two_elements_by_hand(void **state)
 {
     static int64_t at[] = {0, 1};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_component bar = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     assert_ok(bar_component(2, &bar));
@@ -91,8 +91,6 @@ static void a_bar_of_two_elements_by_hand(void **state)
     assert_ok(ritz_basis_make(&ritz_method_irs, &request, &basis));
     assert_near(ritz_dense_col(&basis.T, 0)[2], -0.6, 16 * DBL_EPSILON);
     assert_near(ritz_dense_col(&basis.T, 1)[2], 1.6, 16 * DBL_EPSILON);
-    ritz_basis_free(&basis);
-    ritz_component_free(&bar);
 }
 
 static void columns_are_the_attached_dofs(void **state)
@@ -117,9 +115,9 @@ static double error_of(const fixture *f, const ritz_method *method,
 {
     int64_t at[DOFS];
     ritz_request request = f->request;
-    ritz_basis basis = {0};
-    ritz_dense K = {0}, M = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
     double exact = bar_eigenvalue(ELEMENTS, 1);
     double error = 0.0;
 
@@ -131,10 +129,6 @@ static double error_of(const fixture *f, const ritz_method *method,
     M = project(&f->bar.M, &basis.T);
     assert_ok(ritz_eigen_dense(&K, &M, &pairs));
     error = pairs.lambda[1] / exact - 1.0;
-    ritz_basis_free(&basis);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_pairs_free(&pairs);
     return error;
 }
 
@@ -165,9 +159,9 @@ static void frequencies_are_right_to_third_order(void **state)
 static void stiffness_grows_by_what_is_added(void **state)
 {
     const fixture *f = *state;
-    ritz_dense guyan = project(&f->bar.K, &f->guyan.T);
-    ritz_dense irs = project(&f->bar.K, &f->irs.T);
-    ritz_dense C = {0}, more = {0};
+    RITZ_OWN(ritz_dense) guyan = project(&f->bar.K, &f->guyan.T);
+    RITZ_OWN(ritz_dense) irs = project(&f->bar.K, &f->irs.T);
+    RITZ_OWN(ritz_dense) C = {0}, more = {0};
 
     assert_ok(ritz_dense_copy(&f->irs.T, &C));
     for (int64_t k = 0; k < C.nrow * C.ncol; k++)
@@ -177,28 +171,21 @@ static void stiffness_grows_by_what_is_added(void **state)
         assert_near(irs.val[k], guyan.val[k] + more.val[k],
                     solve_error * ritz_dense_max(&irs));
     assert_true(more.val[0] > 1e-2 * guyan.val[0]);
-    ritz_dense_free(&guyan);
-    ritz_dense_free(&irs);
-    ritz_dense_free(&C);
-    ritz_dense_free(&more);
 }
 
 /* It is one projection: every reduced eigenvalue bounds its own from above. */
 static void eigenvalues_are_bounds(void **state)
 {
     const fixture *f = *state;
-    ritz_dense K = project(&f->bar.K, &f->irs.T);
-    ritz_dense M = project(&f->bar.M, &f->irs.T);
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) K = project(&f->bar.K, &f->irs.T);
+    RITZ_OWN(ritz_dense) M = project(&f->bar.M, &f->irs.T);
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     assert_ok(ritz_eigen_dense(&K, &M, &pairs));
     assert_int_equal(pairs.num_rigid, 1);
     for (int64_t k = 1; k < 5; k++)
         assert_true(pairs.lambda[k] >=
                     bar_eigenvalue(ELEMENTS, k) * (1.0 - solve_error));
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_pairs_free(&pairs);
 }
 
 /* K_R is nothing for three dofs that just hold a plane beam: T is T_G, whose
@@ -207,8 +194,8 @@ static void a_determinate_interface_moves_rigidly(void **state)
 {
     static int64_t at[] = {0, 1, 2};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_component beam = {0};
-    ritz_basis guyan = {0}, irs = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_basis) guyan = {0}, irs = {0};
 
     (void)state;
     assert_ok(frame_component(6, 0.5, &frame_mcdaniel, false, false, 1, &beam));
@@ -218,9 +205,6 @@ static void a_determinate_interface_moves_rigidly(void **state)
     assert_ok(ritz_basis_make(&ritz_method_irs, &request, &irs));
     for (int64_t k = 0; k < irs.T.nrow * irs.T.ncol; k++)
         assert_true(irs.T.val[k] == guyan.T.val[k]);
-    ritz_basis_free(&guyan);
-    ritz_basis_free(&irs);
-    ritz_component_free(&beam);
 }
 
 static void with_every_dof_attached_nothing_is_reduced(void **state)
@@ -228,7 +212,7 @@ static void with_every_dof_attached_nothing_is_reduced(void **state)
     const fixture *f = *state;
     int64_t at[DOFS];
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     for (int64_t i = 0; i < DOFS; i++)
         at[i] = i;
@@ -236,7 +220,6 @@ static void with_every_dof_attached_nothing_is_reduced(void **state)
     assert_ok(ritz_basis_make(&ritz_method_irs, &request, &basis));
     for (int64_t k = 0; k < DOFS * DOFS; k++)
         assert_true(basis.T.val[k] == (k % (DOFS + 1) == 0 ? 1.0 : 0.0));
-    ritz_basis_free(&basis);
 }
 
 static void bad_attached_dofs_are_refused(void **state)
@@ -266,7 +249,7 @@ static void a_mechanism_is_named(void **state)
     static const double mass[] = {1, 1, 1, 1};
     static int64_t at[] = {0, 1};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component loose = {0};
+    RITZ_OWN(ritz_component) loose = {0};
     ritz_basis none = {0};
 
     chain(4, mass, &loose);
@@ -280,7 +263,6 @@ static void a_mechanism_is_named(void **state)
     assert_fails(ritz_basis_make(&ritz_method_irs, &request, &none),
                  RITZ_ERR_SINGULAR, "irs: interior stiffness: singular");
     assert_non_null(strstr(ritz_error_message(), "grid 4 T1"));
-    ritz_component_free(&loose);
 }
 
 /*
@@ -311,10 +293,9 @@ static void attached_dofs_without_mass_are_named(void **state)
 static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_survives_every_allocation(ritz_method_irs.make(&f->request, &basis));
-    ritz_basis_free(&basis);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -58,7 +58,7 @@ static ritz_basis basis_of(const ritz_method *method, ritz_request request,
 /* Frequencies of a model of the truss; the full one with T {0}. */
 static ritz_pairs modes_of(const ritz_component *c, const ritz_dense *T)
 {
-    ritz_dense K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
     ritz_pairs out = {0};
 
     if (T) {
@@ -69,8 +69,6 @@ static ritz_pairs modes_of(const ritz_component *c, const ritz_dense *T)
         assert_ok(ritz_sparse_dense(&c->M, &M));
     }
     assert_ok(ritz_eigen_dense(&K, &M, &out));
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
     return out;
 }
 
@@ -84,20 +82,17 @@ static void compare(fixture *f, comparison *out)
     const ritz_method *const methods[] = {&ritz_method_krylov_cms_fixed,
                                           &ritz_method_craig_bampton};
     double *const errors[] = {out->krylov, out->craig};
-    ritz_pairs full = modes_of(&f->truss, NULL);
+    RITZ_OWN(ritz_pairs) full = modes_of(&f->truss, NULL);
 
     for (int m = 0; m < 2; m++) {
-        ritz_basis basis = basis_of(methods[m], f->request, 14);
-        ritz_pairs part = modes_of(&f->truss, &basis.T);
+        RITZ_OWN(ritz_basis) basis = basis_of(methods[m], f->request, 14);
+        RITZ_OWN(ritz_pairs) part = modes_of(&f->truss, &basis.T);
 
         assert_int_equal(basis.T.ncol, 18);
         assert_int_equal(part.num_rigid, RIGID);
         for (int k = RIGID; k < 10; k++)
             errors[m][k] = sqrt(part.lambda[k] / full.lambda[k]) - 1.0;
-        ritz_pairs_free(&part);
-        ritz_basis_free(&basis);
     }
-    ritz_pairs_free(&full);
 }
 
 /*
@@ -126,8 +121,9 @@ static void krylov_and_craig_bampton_compare_as_published(void **state)
 static void reduced_stiffness_is_block_diagonal(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = basis_of(&ritz_method_krylov_cms_fixed, f->request, 14);
-    ritz_dense K = project(&f->truss.K, &basis.T);
+    RITZ_OWN(ritz_basis)
+    basis = basis_of(&ritz_method_krylov_cms_fixed, f->request, 14);
+    RITZ_OWN(ritz_dense) K = project(&f->truss.K, &basis.T);
     double size = sqrt(ritz_dense_max(&K));
 
     for (int64_t j = PORT; j < K.ncol; j++) {
@@ -143,8 +139,6 @@ static void reduced_stiffness_is_block_diagonal(void **state)
         for (int64_t i = 0; i < PORT; i++)
             assert_true(ritz_dense_col(&basis.T, j)[middle[i]] == (i == j));
     }
-    ritz_dense_free(&K);
-    ritz_basis_free(&basis);
 }
 
 /* Forces and displacements at the port. */
@@ -165,13 +159,12 @@ static void both_keep_moments_of_the_interface(void **state)
     full = moments_full(&f->truss);
     for (int m = 0; m < 2; m++)
         for (int blocks = 1; blocks <= 2; blocks++) {
-            ritz_basis basis =
-                basis_of(methods[m], f->request, PORT * (int64_t)blocks);
+            RITZ_OWN(ritz_basis)
+            basis = basis_of(methods[m], f->request, PORT * (int64_t)blocks);
             moments_model part = moments_reduced(&f->truss, &basis.T);
 
             moments_agree(&full, &part, 0.0, 2 * blocks, solve_error);
             moments_free(&part);
-            ritz_basis_free(&basis);
         }
     moments_free(&full);
 }
@@ -189,7 +182,7 @@ static void loads_of_the_interior_are_answered(void **state)
     assert_ok(frame_io(&f->truss, 2, inside, 2, inside));
     full = moments_full(&f->truss);
     for (int m = 0; m < 2; m++) {
-        ritz_basis all = {0}, interface = {0};
+        RITZ_OWN(ritz_basis) all = {0}, interface = {0};
         moments_model part = {0};
 
         request.choice.loads = 0;
@@ -202,8 +195,6 @@ static void loads_of_the_interior_are_answered(void **state)
         part = moments_reduced(&f->truss, &interface.T);
         assert_true(moments_differ(&full, &part, 0.0, 0) > 1e3 * solve_error);
         moments_free(&part);
-        ritz_basis_free(&all);
-        ritz_basis_free(&interface);
     }
     moments_free(&full);
 }
@@ -222,7 +213,7 @@ static void moments_are_kept_about_other_points_too(void **state)
     request.choice.num_shifts = 1;
     request.choice.shift_hz[0] = 30.0;
     for (int m = 0; m < 2; m++) {
-        ritz_basis basis = basis_of(methods[m], request, 2 * PORT);
+        RITZ_OWN(ritz_basis) basis = basis_of(methods[m], request, 2 * PORT);
         moments_model part = moments_reduced(&f->truss, &basis.T);
 
         assert_non_null(strstr(basis.remark, "2 whole block(s) about 30 Hz"));
@@ -230,7 +221,6 @@ static void moments_are_kept_about_other_points_too(void **state)
         if (m == 1) /* attachment modes are of 0 Hz */
             moments_agree(&full, &part, 0.0, 1, solve_error);
         moments_free(&part);
-        ritz_basis_free(&basis);
     }
     moments_free(&full);
 }
@@ -239,8 +229,9 @@ static void moments_are_kept_about_other_points_too(void **state)
 static void free_interface_columns_come_in_their_order(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = basis_of(&ritz_method_krylov_cms_free, f->request, 11);
-    ritz_dense K = project(&f->truss.K, &basis.T);
+    RITZ_OWN(ritz_basis)
+    basis = basis_of(&ritz_method_krylov_cms_free, f->request, 11);
+    RITZ_OWN(ritz_dense) K = project(&f->truss.K, &basis.T);
 
     assert_int_equal(basis.T.ncol, RIGID + PORT + 11);
     for (int64_t j = 0; j < basis.T.ncol; j++)
@@ -259,31 +250,27 @@ static void free_interface_columns_come_in_their_order(void **state)
             assert_near(ritz_dense_col(&K, RIGID + j)[i], 0.0,
                         solve_error * sqrt(x[middle[j]]));
     }
-    ritz_dense_free(&K);
-    ritz_basis_free(&basis);
 }
 
 /* As MacNeal-Rubin to free modes: 18 columns, from above and rigid exact. */
 static void free_interface_frequencies_come_from_above(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = basis_of(&ritz_method_krylov_cms_free, f->request, 11);
-    ritz_pairs full = modes_of(&f->truss, NULL);
-    ritz_pairs part = modes_of(&f->truss, &basis.T);
+    RITZ_OWN(ritz_basis)
+    basis = basis_of(&ritz_method_krylov_cms_free, f->request, 11);
+    RITZ_OWN(ritz_pairs) full = modes_of(&f->truss, NULL);
+    RITZ_OWN(ritz_pairs) part = modes_of(&f->truss, &basis.T);
 
     assert_int_equal(part.num_rigid, RIGID);
     for (int64_t k = RIGID; k < part.Phi.ncol; k++)
         assert_true(part.lambda[k] >= full.lambda[k] * (1.0 - solve_error));
     assert_near(part.lambda[RIGID] / full.lambda[RIGID], 1.0, 1e-6);
-    ritz_pairs_free(&full);
-    ritz_pairs_free(&part);
-    ritz_basis_free(&basis);
 }
 
 /* Seven of eight free joints are attached: 2 interior dofs, and no more. */
 static void more_vectors_than_there_are_is_said(void **state)
 {
-    ritz_component small = {0};
+    RITZ_OWN(ritz_component) small = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     int64_t most[14];
     ritz_basis basis = {0};
@@ -301,16 +288,15 @@ static void more_vectors_than_there_are_is_said(void **state)
     basis = basis_of(&ritz_method_krylov_cms_free, request, 9);
     assert_int_equal(basis.T.ncol, 16);
     ritz_basis_free(&basis);
-    ritz_component_free(&small);
 }
 
 /* A dof of a body that is rigid has nothing to answer. */
 static void attachment_modes_of_nothing_are_left_out(void **state)
 {
-    ritz_component mass = {0};
+    RITZ_OWN(ritz_component) mass = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     int64_t zero = 0;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     (void)state;
     assert_ok(masses_component(1, &(double){4.0}, &(double){0.0}, NULL, &mass));
@@ -320,8 +306,6 @@ static void attachment_modes_of_nothing_are_left_out(void **state)
     assert_int_equal(basis.T.ncol, 1);
     assert_int_equal(basis.columns.kind[0], RITZ_COLUMN_RIGID);
     assert_non_null(strstr(basis.remark, "1 attachment mode(s) left out"));
-    ritz_basis_free(&basis);
-    ritz_component_free(&mass);
 }
 
 /* data/truss72 and the fixture, each rounded on its own way. */
@@ -331,8 +315,8 @@ static void the_data_set_is_this_truss(void **state)
     const char *folder = getenv("RITZ_DATA");
     char k[512], m[512], dofs[512];
     const ritz_import_request from = {.stiffness = k, .mass = m, .dofs = dofs};
-    ritz_component read = {0};
-    ritz_import_report report = {0};
+    RITZ_OWN(ritz_component) read = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
     ritz_sparse *const pairs[][2] = {{&read.K, &f->truss.K},
                                      {&read.M, &f->truss.M}};
 
@@ -347,22 +331,19 @@ static void the_data_set_is_this_truss(void **state)
     assert_int_equal(read.num_dofs, DOFS);
     assert_memory_equal(read.dof, f->truss.dof, DOFS * sizeof *read.dof);
     for (int i = 0; i < 2; i++) {
-        ritz_sparse difference = {0};
+        RITZ_OWN(ritz_sparse) difference = {0};
 
         assert_ok(
             ritz_sparse_add(1.0, pairs[i][0], -1.0, pairs[i][1], &difference));
         /* sums of at most six bars */
         assert_near(ritz_sparse_max(&difference), 0.0,
                     6 * DBL_EPSILON * ritz_sparse_max(pairs[i][1]));
-        ritz_sparse_free(&difference);
     }
-    ritz_import_report_free(&report);
-    ritz_component_free(&read);
 }
 
 static void every_dof_attached_is_the_body_itself(void **state)
 {
-    ritz_component small = {0};
+    RITZ_OWN(ritz_component) small = {0};
     ritz_request request = RITZ_REQUEST_NONE;
     int64_t all[16];
     ritz_basis basis = {0};
@@ -379,7 +360,6 @@ static void every_dof_attached_is_the_body_itself(void **state)
     basis = basis_of(&ritz_method_krylov_cms_free, request, 0);
     assert_int_equal(basis.T.ncol, 16);
     ritz_basis_free(&basis);
-    ritz_component_free(&small);
 }
 
 static void requests_that_make_no_sense_are_refused(void **state)
@@ -419,11 +399,10 @@ static void no_allocation_failure_leaks(void **state)
 
     for (int m = 0; m < 2; m++) {
         ritz_request request = f->request;
-        ritz_basis basis = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
 
         request.modes = 6;
         assert_survives_every_allocation(methods[m]->make(&request, &basis));
-        ritz_basis_free(&basis);
     }
 }
 

@@ -93,7 +93,7 @@ static ritz_basis basis_of(ritz_request request, int64_t vectors)
 static void check_moments(const fixture *f, const ritz_request *request,
                           int64_t vectors, int kept)
 {
-    ritz_basis basis = basis_of(*request, vectors);
+    RITZ_OWN(ritz_basis) basis = basis_of(*request, vectors);
     moments_model full = moments_full(request->component);
     moments_model part = moments_reduced(request->component, &basis.T);
 
@@ -102,7 +102,6 @@ static void check_moments(const fixture *f, const ritz_request *request,
     moments_agree(&full, &part, nan(""), kept, solve_error);
     moments_free(&full);
     moments_free(&part);
-    ritz_basis_free(&basis);
 }
 
 static void inputs_alone_keep_a_moment_a_block(void **state)
@@ -128,7 +127,7 @@ static void undamped_vectors_keep_fewer(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     moments_model full = moments_full(&f->truss), part = {0};
 
     request.modes = 2 * LOADS;
@@ -138,7 +137,6 @@ static void undamped_vectors_keep_fewer(void **state)
     assert_true(moments_differ(&full, &part, nan(""), 3) > 1e3 * solve_error);
     moments_free(&full);
     moments_free(&part);
-    ritz_basis_free(&basis);
 }
 
 /* Forty vectors of forty-eight: raw ones are one vector after some fifteen. */
@@ -146,8 +144,8 @@ static void long_chains_stay_independent(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
-    ritz_dense G = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_dense) G = {0};
 
     request.choice.loads = RITZ_LOADS_OUTPUTS;
     basis = basis_of(request, 40);
@@ -156,8 +154,6 @@ static void long_chains_stay_independent(void **state)
     for (int64_t j = 0; j < 40; j++)
         ritz_dense_col(&G, j)[j] -= 1.0;
     assert_near(ritz_dense_max(&G), 0.0, solve_error);
-    ritz_dense_free(&G);
-    ritz_basis_free(&basis);
 }
 
 static void without_damping_the_span_is_that_of_krylov(void **state)
@@ -165,7 +161,7 @@ static void without_damping_the_span_is_that_of_krylov(void **state)
     fixture *f = *state;
     ritz_component still = f->truss;
     ritz_request request = f->request;
-    ritz_basis damped = {0}, undamped = {0};
+    RITZ_OWN(ritz_basis) damped = {0}, undamped = {0};
 
     still.D = (ritz_sparse){0};
     request.component = &still;
@@ -174,8 +170,6 @@ static void without_damping_the_span_is_that_of_krylov(void **state)
     assert_ok(ritz_basis_make(&ritz_method_krylov, &request, &undamped));
     assert_near(outside(&still.K, &damped.T, &undamped.T), 0.0, solve_error);
     assert_non_null(strstr(damped.remark, "there is no damping"));
-    ritz_basis_free(&damped);
-    ritz_basis_free(&undamped);
 }
 
 /* Damping by words and by a matrix: one span. */
@@ -186,7 +180,7 @@ static void stated_rayleigh_damping_is_a_matrix(void **state)
     const double b = 1e-4;
     ritz_component stated = f->truss, matrix = f->truss;
     ritz_request request = f->request;
-    ritz_basis by_choice = {0}, by_text = {0}, by_matrix = {0};
+    RITZ_OWN(ritz_basis) by_choice = {0}, by_text = {0}, by_matrix = {0};
 
     stated.D = matrix.D = (ritz_sparse){0};
     assert_ok(ritz_sparse_add(a, &f->truss.M, b, &f->truss.K, &matrix.D));
@@ -203,9 +197,6 @@ static void stated_rayleigh_damping_is_a_matrix(void **state)
     assert_near(outside(&stated.K, &by_matrix.T, &by_text.T), 0.0, solve_error);
     assert_near(outside(&stated.K, &by_matrix.T, &by_choice.T), 0.0,
                 solve_error);
-    ritz_basis_free(&by_matrix);
-    ritz_basis_free(&by_text);
-    ritz_basis_free(&by_choice);
     ritz_sparse_free(&matrix.D);
 }
 
@@ -218,7 +209,7 @@ static void discrete_dampers_count(void **state)
     fixture *f = *state;
     ritz_component apart = f->truss, within = {0};
     ritz_request request = f->request;
-    ritz_basis one = {0}, other = {0};
+    RITZ_OWN(ritz_basis) one = {0}, other = {0};
 
     apart.D = (ritz_sparse){0};
     assert_ok(ritz_dampers_new(DOFS, 1, &apart.dampers));
@@ -241,8 +232,6 @@ static void discrete_dampers_count(void **state)
     other = basis_of(request, 9);
     assert_near(outside(&within.K, &other.T, &one.T), 0.0, solve_error);
     within.io = (ritz_io){0};
-    ritz_basis_free(&one);
-    ritz_basis_free(&other);
     ritz_dampers_free(&apart.dampers);
     ritz_component_free(&within);
 }
@@ -306,9 +295,9 @@ static double _Complex transfer(const moments_model *m, double _Complex s)
 static void damping_of_rigid_motion_is_answered(void **state)
 {
     static const int64_t tether[][2] = {{70, -1}, {10, -1}};
-    ritz_component body = {0};
+    RITZ_OWN(ritz_component) body = {0};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     moments_model full = {0}, part = {0};
     double error[2];
 
@@ -331,8 +320,6 @@ static void damping_of_rigid_motion_is_answered(void **state)
     assert_true(error[1] * 4.0 <= error[0] * 1.1);
     moments_free(&full);
     moments_free(&part);
-    ritz_basis_free(&basis);
-    ritz_component_free(&body);
 }
 
 static void requests_that_make_no_sense_are_refused(void **state)
@@ -362,12 +349,11 @@ static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = 7;
     assert_survives_every_allocation(
         ritz_method_krylov_damped.make(&request, &basis));
-    ritz_basis_free(&basis);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -59,8 +59,8 @@ static void vectors_are_orthonormal_in_the_gramian(void **state)
     static const double c[N] = {3.0, 1.0, 2.0};
     static const int64_t in[] = {2}, seen[] = {0, 1};
     states_fixture local = *(states_fixture *)*state;
-    ritz_component chain = {0};
-    ritz_state_space full = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
     const ritz_damping none = {0};
 
     assert_ok(masses_component(N, m, k, c, &chain));
@@ -69,7 +69,8 @@ static void vectors_are_orthonormal_in_the_gramian(void **state)
     local.request.component = &chain;
     for (int g = 0; g < 2; g++) {
         ritz_request request = states_asking(&local, 4, false, (ritz_gramian)g);
-        ritz_dense A = {0}, B = {0}, W = {0}, X = {0}, one = {0}, Q = {0};
+        RITZ_OWN(ritz_dense)
+        A = {0}, B = {0}, W = {0}, X = {0}, one = {0}, Q = {0};
         states_outcome got = {0};
 
         states_run(&ritz_method_lanczos_one_sided, &request, &got);
@@ -93,16 +94,8 @@ static void vectors_are_orthonormal_in_the_gramian(void **state)
         for (int64_t j = 0; j < 4; j++)
             for (int64_t i = 0; i < 4; i++)
                 assert_near(at(&one, i, j), i == j ? 1.0 : 0.0, 1e-10);
-        ritz_dense_free(&A);
-        ritz_dense_free(&B);
-        ritz_dense_free(&W);
-        ritz_dense_free(&X);
-        ritz_dense_free(&one);
-        ritz_dense_free(&Q);
         states_discard(&got);
     }
-    ritz_state_space_free(&full);
-    ritz_component_free(&chain);
 }
 
 /* W'E T = I, E = [I 0; 0 M] and M = I here; |W| |T| reaches 1e4. */
@@ -114,7 +107,7 @@ static void left_and_right_vectors_are_biorthogonal(void **state)
     for (int t = 0; t < 3; t++) {
         ritz_request request =
             states_asking(*state, 7, t > 0, RITZ_GRAMIAN_INPUTS);
-        ritz_dense one = {0};
+        RITZ_OWN(ritz_dense) one = {0};
         states_outcome got = {0};
 
         states_run(methods[t == 2], &request, &got);
@@ -124,7 +117,6 @@ static void left_and_right_vectors_are_biorthogonal(void **state)
             for (int64_t i = 0; i < 7; i++)
                 assert_near(at(&one, i, j), i == j ? 1.0 : 0.0,
                             STATES * DBL_EPSILON * 1e4);
-        ritz_dense_free(&one);
         states_discard(&got);
     }
 }
@@ -156,7 +148,7 @@ static void reduced_matrix_is_skew_and_block_tridiagonal(void **state)
     for (int g = 0; g < 2; g++) {
         ritz_request request = states_asking(f, 9, false, (ritz_gramian)g);
         states_outcome got = {0};
-        ritz_dense side = {0}, product = {0};
+        RITZ_OWN(ritz_dense) side = {0}, product = {0};
 
         states_run(&ritz_method_lanczos_one_sided, &request, &got);
         assert_block_tridiagonal(&got.model.A, 2, tolerance);
@@ -172,8 +164,6 @@ static void reduced_matrix_is_skew_and_block_tridiagonal(void **state)
                 assert_near(at(&got.model.A, i, j) + at(&got.model.A, j, i),
                             -at(&product, i, j), tolerance);
             }
-        ritz_dense_free(&side);
-        ritz_dense_free(&product);
         states_discard(&got);
     }
 }
@@ -183,7 +173,7 @@ static void on_the_inverse_the_inverse_is_so(void **state)
 {
     states_fixture *f = *state;
     ritz_request request = states_asking(f, 8, true, RITZ_GRAMIAN_INPUTS);
-    ritz_dense G = {0}, b = {0};
+    RITZ_OWN(ritz_dense) G = {0}, b = {0};
     states_outcome got = {0};
     const double tolerance = 1e-9; /* measured: 1e-11 of G */
 
@@ -198,8 +188,6 @@ static void on_the_inverse_the_inverse_is_so(void **state)
         for (int64_t i = 0; i < 8; i++)
             assert_near(at(&G, i, j) + at(&G, j, i), -b.val[i] * b.val[j],
                         tolerance * ritz_dense_max(&G));
-    ritz_dense_free(&G);
-    ritz_dense_free(&b);
     states_discard(&got);
 }
 
@@ -251,7 +239,7 @@ static void parameters_are_kept(void **state)
     static const int64_t tip[] = {9};
     states_fixture *f = *state;
     const ritz_damping none = {0};
-    ritz_state_space full = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
 
     assert_ok(masses_io(&f->chain, 1, tip, 1, tip));
     ritz_dense_col(&f->chain.io.C, 9)[0] = 0.3; /* both, or A^-1 B is 0 */
@@ -280,7 +268,6 @@ static void parameters_are_kept(void **state)
                                            (sign < 0 ? -1 : 0))) > 1e-6 * size);
         states_discard(&got);
     }
-    ritz_state_space_free(&full);
 }
 
 /*
@@ -322,8 +309,8 @@ static void all_states_respond_as_the_chain(void **state)
     const double hertz[] = {0.0, 0.02, 0.1, 0.3, 1.0};
     const ritz_grid grid = {.count = 5, .hertz = hertz};
     const ritz_damping none = {0};
-    ritz_state_space full = {0};
-    ritz_response due = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
+    RITZ_OWN(ritz_response) due = {0};
 
     assert_ok(ritz_state_space_of_component(&f->chain, &none, &full));
     assert_ok(states_response(&full, &grid, &due));
@@ -331,18 +318,15 @@ static void all_states_respond_as_the_chain(void **state)
     for (int t = 0; t < 2; t++) {
         ritz_request request =
             states_asking(f, STATES, true, RITZ_GRAMIAN_INPUTS);
-        ritz_response r = {0};
+        RITZ_OWN(ritz_response) r = {0};
         states_outcome got = {0};
 
         states_run(methods[t], &request, &got);
         assert_ok(states_response(&got.model, &grid, &r));
         for (int k = 0; k < 5; k++) /* measured: 2e-10 */
             assert_true(cabs(r.H[k] - due.H[k]) < 1e-8);
-        ritz_response_free(&r);
         states_discard(&got);
     }
-    ritz_response_free(&due);
-    ritz_state_space_free(&full);
 }
 
 static double uniform(uint32_t *seed)
@@ -364,7 +348,7 @@ static void a_thousand_random_chains_stay_stable(void **state)
         int64_t in[] = {(int64_t)((double)n * uniform(&seed)), n - 1};
         int64_t seen[] = {(int64_t)((double)n * uniform(&seed))};
         int64_t inputs = t % 3 == 0 && in[0] != in[1] ? 2 : 1;
-        ritz_component chain = {0};
+        RITZ_OWN(ritz_component) chain = {0};
         ritz_request request = {0};
         states_outcome got = {0};
 
@@ -384,7 +368,6 @@ static void a_thousand_random_chains_stay_stable(void **state)
             fail_msg("chain %d: %s, pole %g", t,
                      ritz_stability_name(got.probe.verdict), got.probe.pole[0]);
         states_discard(&got);
-        ritz_component_free(&chain);
     }
 }
 
@@ -396,7 +379,7 @@ static void a_semidefinite_gramian_is_worked_on_its_range(void **state)
 {
     static const int64_t tip[] = {29}, root[] = {0};
     states_fixture local = *(states_fixture *)*state;
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = {0};
 
     assert_ok(chain_component(30, &chain));
@@ -425,7 +408,6 @@ static void a_semidefinite_gramian_is_worked_on_its_range(void **state)
         assert_int_equal(got.probe.verdict, RITZ_STABLE);
         states_discard(&got);
     }
-    ritz_component_free(&chain);
 }
 
 #define TEST(name)                                                             \

@@ -22,8 +22,8 @@ static void rigid_modes_stand_apart(void **state)
     const double hertz[] = {0.05, 0.2, 0.5};
     const ritz_grid grid = {.count = 3, .hertz = hertz};
     const ritz_damping ratio = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.02};
-    ritz_component chain = {0};
-    ritz_response due = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_response) due = {0};
 
     assert_ok(masses_component(3, m, k, NULL, &chain));
     assert_ok(masses_io(&chain, 1, ends, 1, ends + 1));
@@ -33,7 +33,7 @@ static void rigid_modes_stand_apart(void **state)
     for (int t = 0; t < 5; t++) {
         ritz_request request =
             states_asking(&local, 4, t % 2 == 0, (ritz_gramian)(t / 2 % 2));
-        ritz_response r = {0};
+        RITZ_OWN(ritz_response) r = {0};
         states_outcome got = {0};
 
         states_run(t < 4 ? &ritz_method_lanczos_one_sided
@@ -47,11 +47,8 @@ static void rigid_modes_stand_apart(void **state)
         assert_ok(states_response(&got.model, &grid, &r));
         for (int i = 0; i < 3; i++) /* measured: 6e-11, of the direct one */
             assert_true(cabs(r.H[i] - due.H[i]) < 1e-9 * cabs(due.H[i]));
-        ritz_response_free(&r);
         states_discard(&got);
     }
-    ritz_response_free(&due);
-    ritz_component_free(&chain);
 }
 
 /* Oscillators beside each other, of 1, 2, ... rad/s and damping 0.02. */
@@ -84,7 +81,7 @@ static void breakdown_stops_with_the_vectors_there_are(void **state)
 {
     static const int64_t in[] = {0, 1}, seen[] = {0, 2};
     states_fixture local = *(states_fixture *)*state;
-    ritz_component own = {0};
+    RITZ_OWN(ritz_component) own = {0};
     ritz_request request = {0};
     states_outcome got = {0};
 
@@ -97,7 +94,6 @@ static void breakdown_stops_with_the_vectors_there_are(void **state)
     assert_non_null(strstr(got.basis.remark, "serious breakdown after 2"));
     assert_near(got.probe.pole[0], -0.01, 1e-14);
     states_discard(&got);
-    ritz_component_free(&own);
 }
 
 /* Two inputs and one output: one direction of the right waits each time. */
@@ -109,8 +105,8 @@ static void unequal_numbers_of_inputs_and_outputs_are_joined(void **state)
     const ritz_grid grid = {.count = 3, .hertz = hertz};
     const ritz_damping none = {0};
     ritz_request request = {0};
-    ritz_state_space full = {0};
-    ritz_response r = {0}, due = {0};
+    RITZ_OWN(ritz_state_space) full = {0};
+    RITZ_OWN(ritz_response) r = {0}, due = {0};
     states_outcome got = {0};
 
     assert_ok(masses_io(&f->chain, 2, in, 1, seen));
@@ -122,9 +118,6 @@ static void unequal_numbers_of_inputs_and_outputs_are_joined(void **state)
     assert_ok(states_response(&got.model, &grid, &r));
     for (int k = 0; k < 6; k++) /* measured: 1e-11 */
         assert_true(cabs(r.H[k] - due.H[k]) < 1e-8);
-    ritz_response_free(&r);
-    ritz_response_free(&due);
-    ritz_state_space_free(&full);
     states_discard(&got);
 }
 
@@ -134,7 +127,7 @@ static void a_shift_bounds_what_is_not_stable(void **state)
     static const double m[] = {1, 2, 1}, k[] = {0, 5, 5}, c[] = {0.1, 0, 0};
     static const int64_t ends[] = {0, 2};
     states_fixture local = *(states_fixture *)*state;
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = {0};
     ritz_basis none = {0};
 
@@ -169,7 +162,6 @@ static void a_shift_bounds_what_is_not_stable(void **state)
     assert_fails(
         ritz_basis_make(&ritz_method_lanczos_one_sided, &request, &none),
         RITZ_ERR_ARGUMENT, "a pole grows at");
-    ritz_component_free(&chain);
 }
 
 static void assert_refused(const ritz_method *method,
@@ -189,7 +181,7 @@ static void what_cannot_be_done_is_refused(void **state)
     const ritz_method *both = &ritz_method_lanczos_two_sided;
     ritz_request request = states_asking(f, 4, false, RITZ_GRAMIAN_INPUTS);
     ritz_component *chain = &f->chain;
-    ritz_component rigid = {0};
+    RITZ_OWN(ritz_component) rigid = {0};
     static const double mass[] = {2.0}, zero[] = {0.0};
 
     /* displacement outputs have no first Markov parameter */
@@ -227,7 +219,6 @@ static void what_cannot_be_done_is_refused(void **state)
     assert_ok(masses_io(&rigid, 1, one, 1, one));
     request.component = &rigid;
     assert_refused(single, &request, RITZ_ERR_ARGUMENT, "no flexible states");
-    ritz_component_free(&rigid);
 }
 
 /* States are no masses and stiffnesses, and displacements no states. */
@@ -236,7 +227,7 @@ static void bases_of_the_wrong_kind_are_refused(void **state)
     states_fixture *f = *state;
     ritz_request request = states_asking(f, 4, true, RITZ_GRAMIAN_INPUTS);
     const ritz_damping none = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     ritz_reduced reduced = {0};
     ritz_state_space model = {0};
 
@@ -255,7 +246,6 @@ static void bases_of_the_wrong_kind_are_refused(void **state)
     basis.W.ncol = 3;
     assert_fails(ritz_reduce_states(&f->chain, &none, &basis, &model),
                  RITZ_ERR_ARGUMENT, "do not fit");
-    ritz_basis_free(&basis);
 }
 
 static void no_allocation_failure_leaks(void **state)
@@ -267,14 +257,12 @@ static void no_allocation_failure_leaks(void **state)
         ritz_request request = states_asking(f, 5, t > 0, RITZ_GRAMIAN_OUTPUTS);
         const ritz_method *method = t < 2 ? &ritz_method_lanczos_one_sided
                                           : &ritz_method_lanczos_two_sided;
-        ritz_basis basis = {0};
-        ritz_state_space model = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
 
         assert_survives_every_allocation(method->make(&request, &basis));
         assert_survives_every_allocation(
             ritz_reduce_states(&f->chain, &none, &basis, &model));
-        ritz_basis_free(&basis);
-        ritz_state_space_free(&model);
     }
 }
 

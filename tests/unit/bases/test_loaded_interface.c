@@ -59,7 +59,7 @@ static void make(const fixture *f, ritz_basis *out)
 static void nothing_hung_on_gives_normal_modes(void **state)
 {
     fixture *f = *state;
-    ritz_basis one = {0}, two = {0};
+    RITZ_OWN(ritz_basis) one = {0}, two = {0};
 
     f->k = f->m = 0.0;
     make(f, &one);
@@ -71,8 +71,6 @@ static void nothing_hung_on_gives_normal_modes(void **state)
     assert_int_equal(one.T.ncol, 3);
     for (int64_t k = 0; k < 3 * MASSES; k++)
         assert_near(one.T.val[k], two.T.val[k], solve_error);
-    ritz_basis_free(&one);
-    ritz_basis_free(&two);
 }
 
 /*
@@ -83,8 +81,8 @@ static void one_mass_takes_up_what_hangs_on_it(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_component mass = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) mass = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     int64_t zero = 0;
 
     assert_ok(spring_chain(1, false, &mass));
@@ -96,16 +94,14 @@ static void one_mass_takes_up_what_hangs_on_it(void **state)
                 375.0 * 16 * DBL_EPSILON);
     assert_near(basis.T.val[0], 0.5, 4 * DBL_EPSILON);
     assert_string_equal(basis.origin.reference, "BenfieldHruda1971");
-    ritz_component_free(&mass);
-    ritz_basis_free(&basis);
 }
 
 /* Phi'(M + E M_n E')Phi = I, and the same of K. */
 static void modes_are_orthogonal_in_what_is_loaded(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = {0};
-    ritz_dense KT = {0}, MT = {0}, K = {0}, M = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_dense) KT = {0}, MT = {0}, K = {0}, M = {0};
 
     make(f, &basis);
     assert_ok(ritz_sparse_mul(&f->chain.K, &basis.T, &KT));
@@ -123,11 +119,6 @@ static void modes_are_orthogonal_in_what_is_loaded(void **state)
             assert_near(ritz_dense_col(&K, j)[i] + f->k * both,
                         i == j ? lambda : 0.0, 4000.0 * solve_error);
         }
-    ritz_dense_free(&KT);
-    ritz_dense_free(&MT);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_basis_free(&basis);
 }
 
 /* A 2-D beam of `elements`, from x = offset on, with a port at both ends. */
@@ -168,10 +159,10 @@ static const ritz_joint fixed = {
  */
 static void modes_with_an_exact_neighbour_are_those_of_the_system(void **state)
 {
-    ritz_component whole = {0}, near = {0}, far = {0};
-    ritz_neighbour neighbour = {0};
+    RITZ_OWN(ritz_component) whole = {0}, near = {0}, far = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
     ritz_request request = RITZ_REQUEST_NONE;
-    ritz_basis one = {0}, two = {0};
+    RITZ_OWN(ritz_basis) one = {0}, two = {0};
 
     (void)state;
     beam(4, 0.0, true, 0, &whole);
@@ -190,12 +181,6 @@ static void modes_with_an_exact_neighbour_are_those_of_the_system(void **state)
     for (int64_t k = 0; k < 5; k++)
         assert_near(one.columns.hertz[k], two.columns.hertz[k],
                     1e-9 * two.columns.hertz[k]); /* as in test_synthesis.c */
-    ritz_neighbour_free(&neighbour);
-    ritz_component_free(&whole);
-    ritz_component_free(&near);
-    ritz_component_free(&far);
-    ritz_basis_free(&one);
-    ritz_basis_free(&two);
 }
 
 /* A rigid mass of 2 kg with inertia I about its centre, at x = 1 + c. */
@@ -238,9 +223,9 @@ static void mass_point(double c, ritz_component *out)
 static void a_motion_that_is_free_follows_by_inertia(void **state)
 {
     const double c = 0.4, m = 2.0, turning = 0.3 + 2.0 * 0.4 * 0.4;
-    ritz_component near = {0}, far = {0};
-    ritz_neighbour neighbour = {0};
-    ritz_dofs attached = {0};
+    RITZ_OWN(ritz_component) near = {0}, far = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_dofs) attached = {0};
 
     (void)state;
     beam(2, 0.0, false, 0, &near);
@@ -254,10 +239,6 @@ static void a_motion_that_is_free_follows_by_inertia(void **state)
                 16 * DBL_EPSILON);
     for (int k = 0; k < 4; k++)
         assert_near(neighbour.K.val[k], 0.0, 0.0);
-    ritz_neighbour_free(&neighbour);
-    ritz_dofs_free(&attached);
-    ritz_component_free(&near);
-    ritz_component_free(&far);
 }
 
 /*
@@ -268,9 +249,9 @@ static void a_motion_that_is_free_goes_where_energy_is_least(void **state)
 {
     const frame_section *s = &frame_mcdaniel;
     const double b = s->modulus * s->inertia; /* EI / l^3, l = 1 */
-    ritz_component near = {0}, far = {0};
-    ritz_neighbour neighbour = {0};
-    ritz_dofs attached = {0};
+    RITZ_OWN(ritz_component) near = {0}, far = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_dofs) attached = {0};
 
     (void)state;
     beam(2, 0.0, false, 0, &near);
@@ -281,10 +262,6 @@ static void a_motion_that_is_free_goes_where_energy_is_least(void **state)
     assert_near(neighbour.K.val[3], 3.0 * b, 3.0 * b * 64 * DBL_EPSILON);
     assert_near(neighbour.K.val[0], s->modulus * s->area,
                 150.0 * 64 * DBL_EPSILON);
-    ritz_neighbour_free(&neighbour);
-    ritz_dofs_free(&attached);
-    ritz_component_free(&near);
-    ritz_component_free(&far);
 }
 
 /*
@@ -295,9 +272,9 @@ static void a_body_without_stiffness_hangs_on_as_a_whole(void **state)
 {
     static const double M[6] = {1.0, 1.0, 0.1, 2.0, 2.0, 0.2};
     const int64_t diagonal[6] = {0, 1, 2, 3, 4, 5};
-    ritz_component near = {0}, far = {0};
-    ritz_neighbour neighbour = {0};
-    ritz_dofs attached = {0};
+    RITZ_OWN(ritz_component) near = {0}, far = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_dofs) attached = {0};
 
     (void)state;
     beam(2, 0.0, false, 0, &near);
@@ -315,10 +292,6 @@ static void a_body_without_stiffness_hangs_on_as_a_whole(void **state)
     assert_near(ritz_dense_col(&neighbour.M, 2)[1], 2.0, 64 * DBL_EPSILON);
     assert_near(ritz_dense_col(&neighbour.M, 2)[2], 2.3, 64 * DBL_EPSILON);
     assert_near(ritz_dense_max(&neighbour.K), 0.0, 0.0);
-    ritz_neighbour_free(&neighbour);
-    ritz_dofs_free(&attached);
-    ritz_component_free(&near);
-    ritz_component_free(&far);
 }
 
 static const char pair[] =
@@ -335,21 +308,20 @@ static void join(const ritz_scene *scene, const ritz_joined side[2],
                  ritz_configuration *c)
 {
     ritz_reduced body[2] = {0};
-    ritz_stage stage = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
 
     for (int k = 0; k < 2; k++)
         assert_ok(
             reduce_with(side[k].component, &ritz_method_full, -1, &body[k]));
     assert_ok(ritz_stage_from(scene, body, &stage));
     assert_ok(ritz_stage_assemble(&stage, scene->setting, c));
-    ritz_stage_free(&stage);
 }
 
 /* Twelve modes of the first with the second hung on. */
 static void load(const ritz_scene *scene, const ritz_joined side[2],
                  ritz_basis *out)
 {
-    ritz_neighbour neighbour = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
     ritz_request request = RITZ_REQUEST_NONE;
 
     request.component = side[0].component;
@@ -362,7 +334,6 @@ static void load(const ritz_scene *scene, const ritz_joined side[2],
     request.neighbour = &neighbour;
     assert_ok(ritz_basis_make(&ritz_method_loaded_interface, &request, out));
     ritz_dofs_free(&request.attached);
-    ritz_neighbour_free(&neighbour);
 }
 
 /*
@@ -373,11 +344,11 @@ static void load(const ritz_scene *scene, const ritz_joined side[2],
  */
 static void a_rigid_body_on_a_hinge_is_an_exact_neighbour(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_component stator = {0}, platform = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_component) stator = {0}, platform = {0};
     const ritz_joined side[2] = {{"stator", &stator}, {"platform", &platform}};
-    ritz_basis loaded = {0};
-    ritz_configuration c = {0};
+    RITZ_OWN(ritz_basis) loaded = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
 
     (void)state;
     dualspin_or_skip();
@@ -395,11 +366,6 @@ static void a_rigid_body_on_a_hinge_is_an_exact_neighbour(void **state)
                     exact * DBL_EPSILON * 100.0 * c.lambda[c.K.ncol - 1] /
                         c.lambda[7 + k]);
     }
-    ritz_configuration_free(&c);
-    ritz_basis_free(&loaded);
-    ritz_component_free(&stator);
-    ritz_component_free(&platform);
-    ritz_scene_free(&scene);
 }
 
 static void requests_without_a_neighbour_are_refused(void **state)
@@ -428,9 +394,9 @@ static void requests_without_a_neighbour_are_refused(void **state)
 
 static void a_port_that_is_not_attached_is_refused(void **state)
 {
-    ritz_component near = {0}, far = {0};
-    ritz_neighbour neighbour = {0};
-    ritz_dofs attached = {0};
+    RITZ_OWN(ritz_component) near = {0}, far = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_dofs) attached = {0};
     ritz_joint joint = fixed;
     ritz_joined side[2];
 
@@ -448,24 +414,19 @@ static void a_port_that_is_not_attached_is_refused(void **state)
     assert_fails(
         ritz_joint_neighbour(&joint, NULL, side, 0, &attached, &neighbour),
         RITZ_ERR_ARGUMENT, "far: there is no port 'lift', is 'left' meant?");
-    ritz_neighbour_free(&neighbour);
-    ritz_dofs_free(&attached);
-    ritz_component_free(&near);
-    ritz_component_free(&far);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = {0};
-    ritz_component near = {0}, far = {0};
-    ritz_neighbour neighbour = {0};
-    ritz_dofs attached = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_component) near = {0}, far = {0};
+    RITZ_OWN(ritz_neighbour) neighbour = {0};
+    RITZ_OWN(ritz_dofs) attached = {0};
     ritz_joined side[2];
 
     assert_survives_every_allocation(
         ritz_method_loaded_interface.make(&f->request, &basis));
-    ritz_basis_free(&basis);
     beam(2, 0.0, false, 0, &near);
     beam(2, 1.0, false, 2, &far);
     near.port[1].dofs.count = 2;
@@ -475,10 +436,6 @@ static void no_allocation_failure_leaks(void **state)
     assert_ok(ritz_neighbour_new(2, &neighbour));
     assert_survives_every_allocation(
         ritz_joint_neighbour(&fixed, NULL, side, 0, &attached, &neighbour));
-    ritz_neighbour_free(&neighbour);
-    ritz_dofs_free(&attached);
-    ritz_component_free(&near);
-    ritz_component_free(&far);
 }
 
 static const struct CMUnitTest tests[] = {

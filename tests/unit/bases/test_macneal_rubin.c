@@ -72,8 +72,8 @@ static void columns_are_rigid_then_normal_then_residual(void **state)
 static void residual_modes_are_orthogonal_to_kept_ones(void **state)
 {
     fixture *f = *state;
-    ritz_dense Kr = project(&f->bar.K, &f->basis.T);
-    ritz_dense Mr = project(&f->bar.M, &f->basis.T);
+    RITZ_OWN(ritz_dense) Kr = project(&f->bar.K, &f->basis.T);
+    RITZ_OWN(ritz_dense) Mr = project(&f->bar.M, &f->basis.T);
 
     for (int64_t j = 1 + MODES; j < Kr.ncol; j++)
         for (int64_t i = 0; i <= MODES; i++) {
@@ -85,8 +85,6 @@ static void residual_modes_are_orthogonal_to_kept_ones(void **state)
             assert_near(ritz_dense_col(&Kr, j)[i], 0.0,
                         solve_error * (stiffness + mass));
         }
-    ritz_dense_free(&Kr);
-    ritz_dense_free(&Mr);
 }
 
 /*
@@ -96,8 +94,8 @@ static void residual_modes_are_orthogonal_to_kept_ones(void **state)
 static void find_by_the_book(const fixture *f, int64_t r, ritz_dense *out)
 {
     ritz_dofs support = {1, &r}, rest = {0};
-    ritz_sparse K_ii = {0};
-    ritz_factor *L = NULL;
+    RITZ_OWN(ritz_sparse) K_ii = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
     const ritz_dense *T = &f->basis.T;
     ritz_dense MT = {0}, X = {0};
 
@@ -134,8 +132,6 @@ static void find_by_the_book(const fixture *f, int64_t r, ritz_dense *out)
                           bar_eigenvalue(ELEMENTS, k);
     }
     ritz_dofs_free(&rest);
-    ritz_sparse_free(&K_ii);
-    ritz_factor_free(&L);
     ritz_dense_free(&MT);
 }
 
@@ -145,14 +141,13 @@ static void the_formula_with_any_support_gives_the_same(void **state)
     const int64_t supports[] = {0, 7, DOFS - 1};
 
     for (int s = 0; s < 3; s++) {
-        ritz_dense Psi = {0};
+        RITZ_OWN(ritz_dense) Psi = {0};
 
         find_by_the_book(f, supports[s], &Psi);
         for (int64_t j = 0; j < 3; j++)
             for (int64_t i = 0; i < DOFS; i++)
                 assert_near(ritz_dense_col(&f->basis.T, 1 + MODES + j)[i],
                             ritz_dense_col(&Psi, j)[i], solve_error);
-        ritz_dense_free(&Psi);
     }
 }
 
@@ -160,10 +155,10 @@ static void the_formula_with_any_support_gives_the_same(void **state)
 static void flexible_static_gain_is_exact(void **state)
 {
     fixture *f = *state;
-    ritz_dense K = {0}, M = {0}, full = {0}, reduced = {0};
-    ritz_io io = {0}, part = {0};
-    ritz_dense Kr = project(&f->bar.K, &f->basis.T);
-    ritz_dense Mr = project(&f->bar.M, &f->basis.T);
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, full = {0}, reduced = {0};
+    RITZ_OWN(ritz_io) io = {0}, part = {0};
+    RITZ_OWN(ritz_dense) Kr = project(&f->bar.K, &f->basis.T);
+    RITZ_OWN(ritz_dense) Mr = project(&f->bar.M, &f->basis.T);
 
     assert_ok(ritz_io_new(DOFS, 3, 3, &io));
     for (int64_t j = 0; j < 3; j++) {
@@ -178,14 +173,6 @@ static void flexible_static_gain_is_exact(void **state)
     for (int64_t k = 0; k < 9; k++)
         assert_near(reduced.val[k], full.val[k],
                     10.0 * solve_error * ritz_dense_max(&full));
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&Kr);
-    ritz_dense_free(&Mr);
-    ritz_dense_free(&full);
-    ritz_dense_free(&reduced);
-    ritz_io_free(&io);
-    ritz_io_free(&part);
 }
 
 /* With all modes kept nothing is left to answer: residual modes are dropped. */
@@ -193,14 +180,13 @@ static void residual_modes_of_nothing_are_left_out_and_named(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = DOFS - 1;
     assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
     assert_int_equal(basis.T.ncol, DOFS);
     assert_non_null(strstr(basis.remark, "3 residual mode(s) left out"));
     assert_non_null(strstr(basis.remark, "grid 1 T1"));
-    ritz_basis_free(&basis);
 }
 
 /* Two flexible modes are left out, so three residual modes are dependent. */
@@ -208,13 +194,12 @@ static void dependent_residual_modes_are_left_out(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = DOFS - 3;
     assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
     assert_int_equal(basis.T.ncol, DOFS);
     assert_non_null(strstr(basis.remark, "1 residual mode(s) left out"));
-    ritz_basis_free(&basis);
 }
 
 static void a_dof_attached_twice_is_refused(void **state)
@@ -233,9 +218,9 @@ static void a_dof_attached_twice_is_refused(void **state)
 static void a_rigid_body_keeps_its_mass(void **state)
 {
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component mass = {0};
+    RITZ_OWN(ritz_component) mass = {0};
     int64_t zero = 0;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(masses_component(1, &(double){4.0}, &(double){0.0}, NULL, &mass));
     request.component = &mass;
@@ -243,8 +228,6 @@ static void a_rigid_body_keeps_its_mass(void **state)
     assert_ok(ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
     assert_int_equal(basis.T.ncol, 1);
     assert_near(basis.T.val[0], 0.5, 4 * DBL_EPSILON);
-    ritz_basis_free(&basis);
-    ritz_component_free(&mass);
 }
 
 /*
@@ -262,8 +245,8 @@ static void without_flexible_modes_the_residual_is_all_flexibility(void **state)
     static const double one[] = {1, 1, 1, 1};
     static int64_t ends[] = {0, 3};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component chain = {.num_dofs = 4};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) chain = {.num_dofs = 4};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_non_null(chain.dof = calloc(4, sizeof *chain.dof));
     for (int64_t i = 0; i < 4; i++)
@@ -280,18 +263,15 @@ static void without_flexible_modes_the_residual_is_all_flexibility(void **state)
     assert_int_equal(basis.columns.dof[2], 0);
     assert_near(ritz_dense_col(&basis.T, 2)[0], 4.0 / 9.0,
                 1e-9 + 4 * DBL_EPSILON * 1e9);
-    ritz_basis_free(&basis);
-    ritz_component_free(&chain);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_survives_every_allocation(
         ritz_method_macneal_rubin.make(&f->request, &basis));
-    ritz_basis_free(&basis);
 }
 
 static const struct CMUnitTest tests[] = {

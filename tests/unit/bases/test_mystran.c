@@ -15,8 +15,8 @@
 static void measure_rounding(const ritz_sparse *K, const ritz_dense *T,
                              ritz_dense *G)
 {
-    ritz_sparse size = {0};
-    ritz_dense above = {0}, part = {0};
+    RITZ_OWN(ritz_sparse) size = {0};
+    RITZ_OWN(ritz_dense) above = {0}, part = {0};
 
     assert_ok(ritz_sparse_copy(K, &size));
     assert_ok(ritz_dense_copy(T, &above));
@@ -26,9 +26,6 @@ static void measure_rounding(const ritz_sparse *K, const ritz_dense *T,
         above.val[k] = fabs(above.val[k]);
     assert_ok(ritz_sparse_mul(&size, &above, &part));
     assert_ok(ritz_dense_mul_tn(&above, &part, G));
-    ritz_sparse_free(&size);
-    ritz_dense_free(&above);
-    ritz_dense_free(&part);
 }
 
 /* Largest of a column, and the sum of its sizes. */
@@ -98,9 +95,9 @@ static void find_signs(const ritz_dense *A, const ritz_dense *B, double *s)
  */
 static void mystran_reduces_to_the_same_matrices(void **state)
 {
-    ritz_component component = {0};
-    ritz_reduced ours = {0};
-    ritz_dense K = {0}, M = {0}, T = {0}, G = {0}, MT = {0};
+    RITZ_OWN(ritz_component) component = {0};
+    RITZ_OWN(ritz_reduced) ours = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, T = {0}, G = {0}, MT = {0};
     double s[40] = {0}, off[40] = {0};
 
     (void)state;
@@ -131,13 +128,6 @@ static void mystran_reduces_to_the_same_matrices(void **state)
                         ritz_dense_col(&M, j)[i],
                         off[i] * total(&MT, j) + off[j] * total(&MT, i));
         }
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&T);
-    ritz_dense_free(&G);
-    ritz_dense_free(&MT);
-    ritz_reduced_free(&ours);
-    ritz_component_free(&component);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -98,8 +98,8 @@ static void modes_and_static_vector_make_the_static_answer(void **state)
 static void matrices_are_block_diagonal(void **state)
 {
     fixture *f = *state;
-    ritz_dense Kr = project(&f->chain.K, &f->basis.T);
-    ritz_dense Mr = project(&f->chain.M, &f->basis.T);
+    RITZ_OWN(ritz_dense) Kr = project(&f->chain.K, &f->basis.T);
+    RITZ_OWN(ritz_dense) Mr = project(&f->chain.M, &f->basis.T);
 
     for (int64_t j = 0; j < MODES + DAMPERS; j++)
         for (int64_t i = 0; i < MODES && i < j; i++) {
@@ -111,8 +111,6 @@ static void matrices_are_block_diagonal(void **state)
             assert_near(ritz_dense_col(&Kr, j)[i], 0.0,
                         solve_error * stiffness);
         }
-    ritz_dense_free(&Kr);
-    ritz_dense_free(&Mr);
 }
 
 /* A model as the damped eigenproblem takes it: x = T q of the chain. */
@@ -124,10 +122,10 @@ typedef struct small_model {
 /* In the modes of the subspace, where the mass is one. */
 static void make_small(const fixture *f, const ritz_dense *T, small_model *out)
 {
-    ritz_dense K = project(&f->chain.K, T);
-    ritz_dense M = project(&f->chain.M, T);
-    ritz_dense X = {0}, B = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) K = project(&f->chain.K, T);
+    RITZ_OWN(ritz_dense) M = project(&f->chain.M, T);
+    RITZ_OWN(ritz_dense) X = {0}, B = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     assert_ok(ritz_eigen_dense(&K, &M, &pairs));
     assert_ok(ritz_dense_mul(T, &pairs.Phi, &X));
@@ -143,11 +141,6 @@ static void make_small(const fixture *f, const ritz_dense *T, small_model *out)
                 out->K[i + j * out->r] += f->chain.dampers.k[d] *
                                           out->B[i + d * out->r] *
                                           out->B[j + d * out->r];
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&X);
-    ritz_dense_free(&B);
-    ritz_pairs_free(&pairs);
 }
 
 /* Frequency and damping in % of the lowest oscillating modes, by |s|. */
@@ -242,7 +235,7 @@ static void static_vectors_get_the_damping_right(void **state)
     fixture *f = *state;
     small_model model;
     ritz_request request = f->request;
-    ritz_basis all = {0};
+    RITZ_OWN(ritz_basis) all = {0};
 
     make_small(f, &f->basis.T, &model);
     check_column(&model, &ritz);
@@ -250,7 +243,6 @@ static void static_vectors_get_the_damping_right(void **state)
     assert_ok(ritz_basis_make(&ritz_method_full, &request, &all));
     make_small(f, &all.T, &model);
     check_column(&model, &full);
-    ritz_basis_free(&all);
 }
 
 /* As many modes alone misplace the best damper four times over. */
@@ -264,7 +256,7 @@ static void modes_alone_get_it_wrong(void **state)
     fixture *f = *state;
     ritz_component plain = f->chain;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     small_model model;
 
     plain.dampers = (ritz_dampers){0};
@@ -274,7 +266,6 @@ static void modes_alone_get_it_wrong(void **state)
     assert_int_equal(basis.T.ncol, MODES + DAMPERS);
     make_small(f, &basis.T, &model);
     check_column(&model, &truncated);
-    ritz_basis_free(&basis);
 }
 
 /*
@@ -286,8 +277,8 @@ static void attached_loads_of_a_free_body_give_macneal_rubin(void **state)
     enum { ELEMENTS = 16 };
     int64_t attached[] = {0, 5, ELEMENTS};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component bar = {0};
-    ritz_basis one = {0}, two = {0};
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) one = {0}, two = {0};
 
     assert_ok(bar_component(ELEMENTS, &bar));
     request.component = &bar;
@@ -305,9 +296,6 @@ static void attached_loads_of_a_free_body_give_macneal_rubin(void **state)
     }
     assert_memory_equal(one.T.val, two.T.val,
                         (size_t)(one.T.nrow * one.T.ncol) * sizeof(double));
-    ritz_component_free(&bar);
-    ritz_basis_free(&one);
-    ritz_basis_free(&two);
 }
 
 /* Inputs and outputs are loads too; a row of zeros is none. */
@@ -338,8 +326,8 @@ static void a_damper_given_twice_has_one_vector(void **state)
 {
     const int64_t same[] = {9, 9};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component chain = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(spring_chain(MASSES, true, &chain));
     assert_ok(spring_chain_damp(&chain, 2, same, 1.0, 0.0));
@@ -348,21 +336,18 @@ static void a_damper_given_twice_has_one_vector(void **state)
     assert_int_equal(basis.T.ncol, 1 + MODES + 1);
     assert_non_null(strstr(basis.remark, "1 static mode(s) left out"));
     assert_non_null(strstr(basis.remark, "damper 'damper 9'"));
-    ritz_component_free(&chain);
-    ritz_basis_free(&basis);
 }
 
 /* More modes than there are: all, and no static vector beside them. */
 static void more_modes_than_there_are_leave_nothing_to_answer(void **state)
 {
     ritz_request request = ((fixture *)*state)->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = 2 * MASSES;
     assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
     assert_int_equal(basis.T.ncol, MASSES);
     assert_non_null(strstr(basis.remark, "3 static mode(s) left out"));
-    ritz_basis_free(&basis);
 }
 
 /* A force on a dof without mass is answered there, whatever modes are kept. */
@@ -371,8 +356,8 @@ static void a_load_on_a_massless_dof_is_answered(void **state)
     static const int64_t row[] = {0, 1, 0, 1}, col[] = {0, 0, 1, 1};
     static const double k[] = {3.0, -2.0, -2.0, 2.0};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component two = {.num_dofs = 2};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) two = {.num_dofs = 2};
+    RITZ_OWN(ritz_basis) basis = {0};
     int64_t zero = 0;
 
     /* ground -1- mass -2- dof without mass: u = [1, 1.5] / k of a unit force */
@@ -390,8 +375,6 @@ static void a_load_on_a_massless_dof_is_answered(void **state)
     assert_int_equal(basis.T.ncol, 2); /* w^2 = 1, phi = [1, 1] */
     assert_near(ritz_dense_col(&basis.T, 1)[0], 0.0, 8 * DBL_EPSILON);
     assert_near(ritz_dense_col(&basis.T, 1)[1], 0.5, 8 * DBL_EPSILON);
-    ritz_component_free(&two);
-    ritz_basis_free(&basis);
 }
 
 static void loads_that_are_not_there_are_refused(void **state)
@@ -419,11 +402,10 @@ static void loads_that_are_not_there_are_refused(void **state)
 static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_survives_every_allocation(
         ritz_method_normal_modes.make(&f->request, &basis));
-    ritz_basis_free(&basis);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -62,12 +62,10 @@ static int tear_down(void **state)
 static void solve(const ritz_component *component, const ritz_dense *T,
                   ritz_pairs *out)
 {
-    ritz_dense K = project(&component->K, T);
-    ritz_dense M = project(&component->M, T);
+    RITZ_OWN(ritz_dense) K = project(&component->K, T);
+    RITZ_OWN(ritz_dense) M = project(&component->M, T);
 
     assert_ok(ritz_eigen_dense(&K, &M, out));
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
 }
 
 /*
@@ -80,12 +78,12 @@ static void all_span_what_macneal_rubin_does(void **state)
     const ritz_method *const same_span[] = {&ritz_method_rubin,
                                             &ritz_method_inertia_relief};
     fixture *f = *state;
-    ritz_pairs expected = {0};
+    RITZ_OWN(ritz_pairs) expected = {0};
 
     solve(&f->bar, &f->reference.T, &expected);
     for (int n = 0; n < 2; n++) {
-        ritz_basis basis = {0};
-        ritz_pairs pairs = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_pairs) pairs = {0};
 
         assert_ok(ritz_basis_make(same_span[n], &f->request, &basis));
         solve(&f->bar, &basis.T, &pairs);
@@ -94,17 +92,14 @@ static void all_span_what_macneal_rubin_does(void **state)
         for (int64_t k = 0; k < pairs.Phi.ncol; k++)
             assert_near(pairs.lambda[k], expected.lambda[k],
                         625.0 * DBL_EPSILON * 12.0 * ELEMENTS * ELEMENTS);
-        ritz_basis_free(&basis);
-        ritz_pairs_free(&pairs);
     }
-    ritz_pairs_free(&expected);
 }
 
 /* The attached displacements are coordinates: T(b, :) = [I, 0] exactly. */
 static void rubin_keeps_the_attached_dofs(void **state)
 {
     fixture *f = *state;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(ritz_basis_make(&ritz_method_rubin, &f->request, &basis));
     assert_int_equal(basis.T.ncol, ATTACHED + 1 + MODES);
@@ -124,7 +119,6 @@ static void rubin_keeps_the_attached_dofs(void **state)
         assert_near(basis.columns.hertz[ATTACHED + k], exact,
                     solve_error * exact);
     }
-    ritz_basis_free(&basis);
 }
 
 /*
@@ -137,7 +131,7 @@ static void an_end_force_bends_the_bar_into_a_parabola(void **state)
 {
     ritz_request request = ((fixture *)*state)->request;
     const double h = 1.0 / ELEMENTS;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = 0;
     assert_ok(ritz_basis_make(&ritz_method_inertia_relief, &request, &basis));
@@ -150,7 +144,6 @@ static void an_end_force_bends_the_bar_into_a_parabola(void **state)
         assert_near(ritz_dense_col(&basis.T, 1)[i],
                     0.5 * x * x - x + 1.0 / 3.0 - h * h / 12.0, solve_error);
     }
-    ritz_basis_free(&basis);
 }
 
 /* The columns of attachment are the same however many modes stand beside. */
@@ -158,7 +151,7 @@ static void attachment_modes_do_not_depend_on_the_modes(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis one = {0}, two = {0};
+    RITZ_OWN(ritz_basis) one = {0}, two = {0};
 
     assert_ok(ritz_basis_make(&ritz_method_inertia_relief, &request, &one));
     request.modes = 0;
@@ -167,8 +160,6 @@ static void attachment_modes_do_not_depend_on_the_modes(void **state)
         for (int64_t i = 0; i < DOFS; i++)
             assert_near(ritz_dense_col(&one.T, 1 + MODES + j)[i],
                         ritz_dense_col(&two.T, 1 + j)[i], solve_error);
-    ritz_basis_free(&one);
-    ritz_basis_free(&two);
 }
 
 /* Of a body that is held, attachment modes are columns of K^-1. */
@@ -177,8 +168,8 @@ static void of_a_held_body_they_are_static_shapes(void **state)
     enum { MASSES = 6 };
     int64_t tip[] = {MASSES - 1};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component chain = {0};
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
     double u = 0.0;
 
     assert_ok(spring_chain(MASSES, false, &chain));
@@ -190,19 +181,16 @@ static void of_a_held_body_they_are_static_shapes(void **state)
         u += 1.0 / spring_chain_stiffness(i);
         assert_near(ritz_dense_col(&basis.T, 2)[i], u, solve_error * u);
     }
-    ritz_component_free(&chain);
-    ritz_basis_free(&basis);
 }
 
 static void reduce(const fixture *f, const ritz_method *method,
                    ritz_reduced *out)
 {
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(ritz_basis_make(method, &f->request, &basis));
     assert_ok(ritz_reduce(&f->bar, &basis, out));
     assert_ok(ritz_estimate(&f->bar, &basis, &usual, out));
-    ritz_basis_free(&basis);
 }
 
 /* Flexibility stays, inertia goes: K as of macneal-rubin, M of the modes. */
@@ -210,8 +198,8 @@ static void macneal_leaves_out_the_mass_of_residual_columns(void **state)
 {
     enum { KEPT = 1 + MODES };
     fixture *f = *state;
-    ritz_reduced with = {0}, without = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_reduced) with = {0}, without = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     reduce(f, &ritz_method_macneal_rubin, &with);
     reduce(f, &ritz_method_macneal, &without);
@@ -231,16 +219,13 @@ static void macneal_leaves_out_the_mass_of_residual_columns(void **state)
     for (int64_t k = 1; k < KEPT; k++)
         assert_near(pairs.lambda[k], bar_eigenvalue(ELEMENTS, k),
                     solve_error * bar_eigenvalue(ELEMENTS, k));
-    ritz_pairs_free(&pairs);
-    ritz_reduced_free(&with);
-    ritz_reduced_free(&without);
 }
 
 /* Rows and columns of D that belong to residual columns go as those of M. */
 static void macneal_leaves_out_their_damping_too(void **state)
 {
     fixture *f = *state;
-    ritz_reduced reduced = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
 
     assert_ok(ritz_sparse_copy(&f->bar.K, &f->bar.D));
     reduce(f, &ritz_method_macneal, &reduced);
@@ -250,7 +235,6 @@ static void macneal_leaves_out_their_damping_too(void **state)
                         ritz_dense_col(&reduced.D, i)[j] == 0.0);
     assert_true(ritz_dense_col(&reduced.D, 1)[1] > 1.0);
     ritz_sparse_free(&f->bar.D);
-    ritz_reduced_free(&reduced);
 }
 
 /*
@@ -263,8 +247,8 @@ static void macneal_answers_statically_what_it_left_out(void **state)
 {
     fixture *f = *state;
     ritz_verify_request request = RITZ_VERIFY_NONE;
-    ritz_reduced reduced = {0};
-    ritz_measures found = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) found = {0};
 
     assert_ok(frame_io(&f->bar, 1, attached, 2, attached + 1));
     reduce(f, &ritz_method_macneal, &reduced);
@@ -285,8 +269,6 @@ static void macneal_answers_statically_what_it_left_out(void **state)
     assert_true(found.count > 4);
     ritz_io_free(&f->bar.io);
     assert_ok(ritz_io_new(DOFS, 0, 0, &f->bar.io));
-    ritz_measures_free(&found);
-    ritz_reduced_free(&reduced);
 }
 
 /* Body `which` of the two halves of the beam, by a method with 3 modes. */
@@ -357,10 +339,10 @@ static const double system_error = 1e-8;
 
 static void macneal_joins_bodies_as_its_formula_says(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
-    ritz_pairs expected = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_pairs) expected = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -373,10 +355,6 @@ static void macneal_joins_bodies_as_its_formula_says(void **state)
     for (int64_t k = 0; k < 9; k++)
         assert_near(c.lambda[k], expected.lambda[k],
                     system_error * expected.lambda[k]);
-    ritz_pairs_free(&expected);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* The two halves by a method, 2 modes each; Hz by SciPy, nine decimals. */
@@ -396,9 +374,9 @@ static void systems_of_two_halves_are_those_of_scipy(void **state)
 {
     (void)state;
     for (size_t n = 0; n < sizeof joined / sizeof *joined; n++) {
-        ritz_scene scene = {0};
-        ritz_stage stage = {0};
-        ritz_configuration c = {0};
+        RITZ_OWN(ritz_scene) scene = {0};
+        RITZ_OWN(ritz_stage) stage = {0};
+        RITZ_OWN(ritz_configuration) c = {0};
 
         assert_ok(scene_of_two_beams(false, &scene));
         assert_ok(stage_of_two_beams(&scene, joined[n].method, 2, &stage));
@@ -406,18 +384,15 @@ static void systems_of_two_halves_are_those_of_scipy(void **state)
         for (int64_t k = 0; k < 5; k++)
             assert_near(ritz_eigen_hertz(c.lambda[k]), joined[n].hertz[k],
                         5e-10 + system_error);
-        ritz_configuration_free(&c);
-        ritz_stage_free(&stage);
-        ritz_scene_free(&scene);
     }
 }
 
 /* Both stages of COMPARE take bodies with a singular mass. */
 static void compare_takes_bodies_without_full_mass(void **state)
 {
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_comparison comparison = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_comparison) comparison = {0};
 
     (void)state;
     assert_ok(scene_of_two_beams(false, &scene));
@@ -426,9 +401,6 @@ static void compare_takes_bodies_without_full_mass(void **state)
     assert_ok(ritz_compare(&stage, &comparison));
     assert_int_equal(comparison.row[0].num_kept, 3);
     assert_near(comparison.row[0].frequency_error, 0.0, system_error);
-    ritz_comparison_free(&comparison);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /*
@@ -440,8 +412,8 @@ static void without_mass_stays_without_mass(void **state)
 {
     enum { R = 1 + MODES + ATTACHED };
     fixture *f = *state;
-    ritz_reduced reduced = {0}, second = {0};
-    ritz_dense V = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0}, second = {0};
+    RITZ_OWN(ritz_dense) V = {0};
 
     reduce(f, &ritz_method_macneal, &reduced);
     assert_ok(ritz_dense_new(R, 2, &V));
@@ -453,9 +425,6 @@ static void without_mass_stays_without_mass(void **state)
     assert_true(second.M.val[0] == 0.0);
     assert_true(second.M.val[1] == 0.0 && second.M.val[2] == 0.0);
     assert_near(second.M.val[3], 1e-4, 1e-4 * solve_error);
-    ritz_dense_free(&V);
-    ritz_reduced_free(&reduced);
-    ritz_reduced_free(&second);
 }
 
 /*
@@ -467,10 +436,10 @@ static void residual_modes_of_massless_dofs_have_no_mass(void **state)
     enum { MASSES = 12 };
     int64_t end[] = {MASSES - 1};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component chain = {0};
-    ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     assert_ok(spring_chain(MASSES, true, &chain));
     chain.M.val[MASSES - 1] = 0.0;
@@ -488,10 +457,6 @@ static void residual_modes_of_massless_dofs_have_no_mass(void **state)
     for (int64_t k = 1; k < MASSES - 1; k++)
         assert_near(ritz_eigen_hertz(pairs.lambda[k]), basis.columns.hertz[k],
                     solve_error * basis.columns.hertz[k]);
-    ritz_pairs_free(&pairs);
-    ritz_reduced_free(&reduced);
-    ritz_basis_free(&basis);
-    ritz_component_free(&chain);
 }
 
 /*
@@ -532,12 +497,11 @@ static void all_dofs_may_be_attached(void **state)
     request.attached = (ritz_dofs){DOFS, all};
     request.modes = 0;
     for (int n = 0; n < 3; n++) {
-        ritz_basis basis = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
 
         assert_ok(ritz_basis_make(methods[n], &request, &basis));
         assert_int_equal(basis.T.ncol, DOFS);
         assert_true(basis.remark[0] != '\0');
-        ritz_basis_free(&basis);
     }
 }
 
@@ -551,13 +515,12 @@ static void nothing_need_be_attached(void **state)
 
     request.attached = (ritz_dofs){0};
     for (int n = 0; n < 4; n++) {
-        ritz_basis basis = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
 
         assert_ok(ritz_basis_make(methods[n], &request, &basis));
         assert_int_equal(basis.T.ncol, 1 + MODES);
         assert_int_equal(basis.columns.kind[0], RITZ_COLUMN_RIGID);
         assert_string_equal(basis.remark, "");
-        ritz_basis_free(&basis);
     }
 }
 
@@ -589,8 +552,8 @@ static void no_allocation_failure_leaks(void **state)
                                           &ritz_method_inertia_relief};
     fixture *f = *state;
     ritz_basis basis = {0};
-    ritz_reduced reduced = {0};
-    ritz_dense gain = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_dense) gain = {0};
 
     for (int n = 0; n < 2; n++) {
         assert_survives_every_allocation(methods[n]->make(&f->request, &basis));
@@ -600,8 +563,6 @@ static void no_allocation_failure_leaks(void **state)
     assert_survives_every_allocation(ritz_reduce(&f->bar, &basis, &reduced));
     assert_survives_every_allocation(
         ritz_static_gain(&reduced.K, &reduced.M, &reduced.io, 0, &gain));
-    ritz_dense_free(&gain);
-    ritz_reduced_free(&reduced);
     ritz_basis_free(&basis);
 }
 

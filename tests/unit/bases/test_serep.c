@@ -47,9 +47,9 @@ static int tear_down(void **state)
 
 static void assert_modes_exact(const fixture *f, const ritz_basis *basis)
 {
-    ritz_dense K = project(&f->bar.K, &basis->T);
-    ritz_dense M = project(&f->bar.M, &basis->T);
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_dense) K = project(&f->bar.K, &basis->T);
+    RITZ_OWN(ritz_dense) M = project(&f->bar.M, &basis->T);
+    RITZ_OWN(ritz_pairs) pairs = {0};
     double highest = bar_eigenvalue(ELEMENTS, basis->T.ncol - 1);
 
     assert_ok(ritz_eigen_dense(&K, &M, &pairs));
@@ -58,9 +58,6 @@ static void assert_modes_exact(const fixture *f, const ritz_basis *basis)
     for (int64_t k = 0; k < pairs.Phi.ncol; k++)
         assert_near(pairs.lambda[k], bar_eigenvalue(ELEMENTS, k),
                     solve_error * highest);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_pairs_free(&pairs);
 }
 
 static void kept_frequencies_are_exact(void **state)
@@ -109,7 +106,7 @@ static void fewer_modes_than_dofs_choose_dofs(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = 2;
     assert_ok(ritz_basis_make(&ritz_method_serep, &request, &basis));
@@ -122,7 +119,6 @@ static void fewer_modes_than_dofs_choose_dofs(void **state)
     assert_non_null(strstr(basis.remark, "3 of 5 attached dofs are coordinates,"
                                          " which are enough: grid 1 T1, "
                                          "grid 9 T1, grid 17 T1"));
-    ritz_basis_free(&basis);
 }
 
 /*
@@ -133,9 +129,9 @@ static void fewer_modes_than_dofs_choose_dofs(void **state)
 static void badly_seen_modes_are_reported(void **state)
 {
     static int64_t near[] = {0, 1, 2};
-    ritz_component bar = {0};
+    RITZ_OWN(ritz_component) bar = {0};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     assert_ok(bar_component(64, &bar));
     request.component = &bar;
@@ -146,8 +142,6 @@ static void badly_seen_modes_are_reported(void **state)
         basis.remark,
         "a rigid-body motion is hardly observable at the attached dofs: "
         "condition 2.4e+06");
-    ritz_basis_free(&basis);
-    ritz_component_free(&bar);
 }
 
 static void more_modes_than_dofs_are_refused(void **state)
@@ -166,7 +160,7 @@ static void unseen_modes_are_refused_by_name(void **state)
 {
     static int64_t axial[] = {0, 3, 6};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_basis none = {0};
 
     assert_ok(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
@@ -178,14 +172,13 @@ static void unseen_modes_are_refused_by_name(void **state)
                  "serep: the attached dofs cannot distinguish the kept modes");
     assert_non_null(strstr(ritz_error_message(), "), mode "));
     assert_non_null(strstr(ritz_error_message(), " is least observable: "));
-    ritz_component_free(&beam);
 }
 
 static void requests_without_sense_are_refused(void **state)
 {
     static int64_t twice[] = {2, 2};
     ritz_request request = ((fixture *)*state)->request;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_basis none = {0};
 
     request.attached = (ritz_dofs){0};
@@ -200,7 +193,6 @@ static void requests_without_sense_are_refused(void **state)
     request.modes = 0;
     assert_fails(ritz_basis_make(&ritz_method_serep, &request, &none),
                  RITZ_ERR_ARGUMENT, "no mode is kept");
-    ritz_component_free(&beam);
 }
 
 /* With all dofs attached and all modes kept, T is I. */
@@ -208,7 +200,7 @@ static void all_modes_at_all_dofs_are_no_reduction(void **state)
 {
     int64_t at[DOFS];
     ritz_request request = ((fixture *)*state)->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     for (int64_t i = 0; i < DOFS; i++)
         at[i] = i;
@@ -218,17 +210,15 @@ static void all_modes_at_all_dofs_are_no_reduction(void **state)
     assert_int_equal(basis.T.ncol, DOFS);
     for (int64_t k = 0; k < DOFS * DOFS; k++)
         assert_true(basis.T.val[k] == (k % (DOFS + 1) == 0 ? 1.0 : 0.0));
-    ritz_basis_free(&basis);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
     ritz_request request = ((fixture *)*state)->request;
-    ritz_basis basis = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
 
     request.modes = 2;
     assert_survives_every_allocation(ritz_method_serep.make(&request, &basis));
-    ritz_basis_free(&basis);
 }
 
 static const struct CMUnitTest tests[] = {

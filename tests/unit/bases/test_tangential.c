@@ -220,7 +220,7 @@ static void one_driven_oscillator_by_hand(void **state)
     static const double m[] = {1, 1, 1}, k[] = {1, 1, 1};
     static const double lambda[] = {1, 9, 25};
     static const int64_t at[] = {0, 1, 2};
-    ritz_component three = {0};
+    RITZ_OWN(ritz_component) three = {0};
     ritz_request request = ask(&three, 2);
     answer got = {0};
 
@@ -241,7 +241,6 @@ static void one_driven_oscillator_by_hand(void **state)
     assert_string_equal(got.basis.remark, "points settled after 1 round(s); "
                                           "1 vector(s) fewer than asked");
     release(&got);
-    ritz_component_free(&three);
 }
 
 /*
@@ -267,7 +266,7 @@ static void with_ratios_every_vector_is_a_point(void **state)
 {
     static const double expected[] = {0.34385184020192994, 0.6772823585082353,
                                       0.9902249746303671, 1.2734766431854896};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = ask(&chain, 4);
     answer got = {0};
 
@@ -283,7 +282,6 @@ static void with_ratios_every_vector_is_a_point(void **state)
     assert_non_null(strstr(got.basis.remark, "points settled after "));
     assert_string_equal(got.basis.origin.options, "");
     release(&got);
-    ritz_component_free(&chain);
 }
 
 /*
@@ -293,7 +291,7 @@ static void with_ratios_every_vector_is_a_point(void **state)
 static void with_a_damping_matrix_points_mirror_poles(void **state)
 {
     const double _Complex i = (double _Complex)_Complex_I;
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = ask(&chain, 4);
     answer got = {0};
 
@@ -308,7 +306,6 @@ static void with_a_damping_matrix_points_mirror_poles(void **state)
     for (int64_t j = 0; j < 4; j++)
         assert_int_equal(got.basis.columns.kind[j], RITZ_COLUMN_KRYLOV);
     release(&got);
-    ritz_component_free(&chain);
 }
 
 /*
@@ -319,7 +316,7 @@ static void loads_are_answered_alone_and_together(void **state)
 {
     static const int loads[] = {RITZ_LOADS_INPUTS, RITZ_LOADS_OUTPUTS,
                                 RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     make_chain(true, &chain);
@@ -334,7 +331,6 @@ static void loads_are_answered_alone_and_together(void **state)
         assert_interpolates(&chain, &got.basis.T, &got.probes);
         release(&got);
     }
-    ritz_component_free(&chain);
 }
 
 /*
@@ -350,7 +346,7 @@ static void velocities_are_read_and_directions_found(void **state)
     static const double im[2][2] = {{0.347254009331603, 0.68400660736705},
                                     {0.34730040389324485, 0.6841315370672192}};
     static const int loads[] = {RITZ_LOADS_INPUTS, RITZ_LOADS_OUTPUTS};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     make_chain(true, &chain);
@@ -371,7 +367,6 @@ static void velocities_are_read_and_directions_found(void **state)
                          re[k][j] + (double _Complex)_Complex_I * im[k][j]);
         release(&got);
     }
-    ritz_component_free(&chain);
 }
 
 /* y = 3 u'' of the middle, with and without D. */
@@ -399,7 +394,7 @@ static void accelerations_are_read(void **state)
 /* K4 = 0.02 K: poles are w sqrt(-1 - 0.02 i), of a ratio of 0.01. */
 static void structural_damping_counts(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = ask(&chain, 4);
     answer got = {0};
 
@@ -413,7 +408,6 @@ static void structural_damping_counts(void **state)
         assert_near(creal(got.probes.item[k].s) / cabs(got.probes.item[k].s),
                     0.01, 1e-4);
     release(&got);
-    ritz_component_free(&chain);
 }
 
 /* Points that are given: static, real, and two of the damped chain. */
@@ -450,10 +444,10 @@ static void given_points_are_interpolated(void **state)
 static void rigid_motion_of_a_free_body_is_kept(void **state)
 {
     static const int64_t force[] = {1}, reads[] = {19};
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_request request = ask(&beam, 5);
     answer got = {0};
-    ritz_dense K = {0};
+    RITZ_OWN(ritz_dense) K = {0};
 
     (void)state;
     assert_ok(frame_component(6, 0.5, &frame_mcdaniel, false, false, 1, &beam));
@@ -470,9 +464,7 @@ static void rigid_motion_of_a_free_body_is_kept(void **state)
                         1e-10 * ritz_dense_max(&K)); /* measured */
     assert_interpolates(&beam, &got.basis.T, &got.probes);
     assert_non_null(strstr(got.basis.remark, "damping modal 0.01 assumed"));
-    ritz_dense_free(&K);
     release(&got);
-    ritz_component_free(&beam);
 }
 
 /* The modes of a pencil with what force and output see of each. */
@@ -485,7 +477,7 @@ static void add_modes(const ritz_dense *K, const ritz_dense *M,
                       const double *force, const double *reads, double sign,
                       modal *out)
 {
-    ritz_pairs pairs = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
 
     assert_ok(ritz_eigen_dense(K, M, &pairs));
     for (int64_t k = 0; k < pairs.Phi.ncol; k++) {
@@ -499,7 +491,6 @@ static void add_modes(const ritz_dense *K, const ritz_dense *M,
             out->c[at] += sign * ritz_dense_col(&pairs.Phi, k)[i] * reads[i];
         }
     }
-    ritz_pairs_free(&pairs);
 }
 
 /* |H|^2 = sum_ij c_i c_j b_i b_j S / (Delta^2 + S N): gramian.c. */
@@ -526,9 +517,9 @@ static double h2_norm(const modal *m, double zeta)
 static double h2_error(const ritz_component *full, const ritz_dense *T,
                        double zeta)
 {
-    ritz_dense K = {0}, M = {0}, b = {0}, c = {0};
-    ritz_dense K_r = project(&full->K, T);
-    ritz_dense M_r = project(&full->M, T);
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, b = {0}, c = {0};
+    RITZ_OWN(ritz_dense) K_r = project(&full->K, T);
+    RITZ_OWN(ritz_dense) M_r = project(&full->M, T);
     ritz_dense reads = {full->num_dofs, 1, full->io.C.val}; /* one row */
     modal m = {0};
     double norm = 0.0;
@@ -540,12 +531,6 @@ static double h2_error(const ritz_component *full, const ritz_dense *T,
     assert_ok(ritz_dense_mul_tn(T, &full->io.B, &b));
     assert_ok(ritz_dense_mul_tn(T, &reads, &c));
     add_modes(&K_r, &M_r, b.val, c.val, -1.0, &m);
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&K_r);
-    ritz_dense_free(&M_r);
-    ritz_dense_free(&b);
-    ritz_dense_free(&c);
     return h2_norm(&m, zeta) / norm;
 }
 
@@ -557,11 +542,11 @@ static double h2_error(const ritz_component *full, const ritz_dense *T,
 static void in_h2_it_is_no_worse_than_modes_and_krylov(void **state)
 {
     static const int64_t force[] = {28}, reads[] = {13};
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_request request = ask(&beam, 4);
-    ritz_basis tangential = {0}, krylov = {0};
+    RITZ_OWN(ritz_basis) tangential = {0}, krylov = {0};
     ritz_span span = {.modes = 4};
-    ritz_pairs modes = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
     double error[3];
 
     (void)state;
@@ -580,10 +565,6 @@ static void in_h2_it_is_no_worse_than_modes_and_krylov(void **state)
     assert_near(error[0], 1.528e-3, 1e-5);
     assert_near(error[1], 2.934e-3, 1e-5);
     assert_near(error[2], 1.245e-2, 1e-4);
-    ritz_basis_free(&tangential);
-    ritz_basis_free(&krylov);
-    ritz_pairs_free(&modes);
-    ritz_component_free(&beam);
 }
 
 enum { SMALL = 5, SEEDS = 1000 };
@@ -617,12 +598,11 @@ static void random_definite(uint64_t *seed, ritz_sparse *out)
 
 static void assert_definite(const ritz_sparse *A, const ritz_dense *T)
 {
-    ritz_dense Ar = project(A, T);
+    RITZ_OWN(ritz_dense) Ar = project(A, T);
 
     assert_int_equal(LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', (int)Ar.ncol, Ar.val,
                                     (int)Ar.ncol),
                      0);
-    ritz_dense_free(&Ar);
 }
 
 static void make_random(uint64_t seed, ritz_component *body)
@@ -656,16 +636,16 @@ static void make_small(ritz_component *out)
  */
 static void random_components_stay_definite(void **state)
 {
-    ritz_component body = {0};
+    RITZ_OWN(ritz_component) body = {0};
 
     (void)state;
     make_small(&body);
     for (uint64_t seed = 0; seed < SEEDS; seed++) {
         const ritz_dense none = {.nrow = SMALL};
         ritz_request request = ask(&body, 3);
-        ritz_rational R = {0};
-        ritz_probes probes = {0};
-        ritz_dense T = {0};
+        RITZ_OWN(ritz_rational) R = {0};
+        RITZ_OWN(ritz_probes) probes = {0};
+        RITZ_OWN(ritz_dense) T = {0};
         int64_t gave[2];
 
         make_random(seed, &body);
@@ -676,30 +656,24 @@ static void random_components_stay_definite(void **state)
         assert_ok(ritz_rational_span(&R, &probes, &none, 3, &T, gave));
         assert_int_equal(T.ncol, 3);
         assert_all_definite(&body, &T);
-        ritz_rational_free(&R);
-        ritz_probes_free(&probes);
-        ritz_dense_free(&T);
     }
-    ritz_component_free(&body);
 }
 
 /* The same where points are searched, settled or not. */
 static void searches_end_in_definite_components(void **state)
 {
-    ritz_component body = {0};
+    RITZ_OWN(ritz_component) body = {0};
 
     (void)state;
     make_small(&body);
     for (uint64_t seed = 0; seed < 10; seed++) {
         ritz_request request = ask(&body, 2 + (int64_t)(seed % 3));
-        ritz_basis basis = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
 
         make_random(seed, &body);
         assert_ok(ritz_basis_make(&ritz_method_tangential, &request, &basis));
         assert_all_definite(&body, &basis.T);
-        ritz_basis_free(&basis);
     }
-    ritz_component_free(&body);
 }
 
 /* With a mass of 0, and more vectors than there can be: all of the space. */
@@ -707,7 +681,7 @@ static void more_vectors_than_dofs_are_all_there_is(void **state)
 {
     static const double m[] = {1, 0, 2, 1}, k[] = {1, 2, 3, 4};
     static const int64_t at[] = {1, 3};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = ask(&chain, 20);
     answer got = {0};
 
@@ -719,13 +693,12 @@ static void more_vectors_than_dofs_are_all_there_is(void **state)
     assert_in_range(got.basis.T.ncol, 3, 4);
     assert_interpolates(&chain, &got.basis.T, &got.probes);
     release(&got);
-    ritz_component_free(&chain);
 }
 
 /* No damping is known below 0.1 Hz: points stay off the poles there. */
 static void modes_without_damping_have_points_too(void **state)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = ask(&chain, 3);
     answer got = {0};
 
@@ -735,7 +708,6 @@ static void modes_without_damping_have_points_too(void **state)
     got = find(&request);
     assert_int_equal(got.basis.T.ncol, 3);
     release(&got);
-    ritz_component_free(&chain);
 }
 
 static void requests_without_sense_are_refused(void **state)
@@ -782,7 +754,7 @@ static void a_point_on_a_pole_is_refused(void **state)
     static const double one[] = {1};
     static const int64_t at[] = {0};
     const double hertz[] = {1.0 / (2.0 * pi)};
-    ritz_component mass = {0};
+    RITZ_OWN(ritz_component) mass = {0};
     ritz_request request = ask(&mass, 1);
     ritz_basis none = {0};
 
@@ -792,7 +764,6 @@ static void a_point_on_a_pole_is_refused(void **state)
     shift(1, hertz, &request);
     assert_fails(ritz_basis_make(&ritz_method_tangential, &request, &none),
                  RITZ_ERR_SINGULAR, "0+1i rad/s is a pole of the component");
-    ritz_component_free(&mass);
 }
 
 /* The third mass is loose, and the only one that is driven. */
@@ -800,7 +771,7 @@ static void loads_that_drive_nothing_flexible_are_refused(void **state)
 {
     static const double m[] = {1, 1, 1}, k[] = {1, 1, 0};
     static const int64_t at[] = {2};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_request request = ask(&chain, 1);
     ritz_basis none = {0};
 
@@ -810,7 +781,6 @@ static void loads_that_drive_nothing_flexible_are_refused(void **state)
     assert_fails(ritz_basis_make(&ritz_method_tangential, &request, &none),
                  RITZ_ERR_ARGUMENT,
                  "no flexible mode is controllable by the loads");
-    ritz_component_free(&chain);
 }
 
 static void no_allocation_failure_leaks(void **state)
@@ -820,16 +790,14 @@ static void no_allocation_failure_leaks(void **state)
 
     (void)state;
     for (int damped = 0; damped < 2; damped++) {
-        ritz_component chain = {0};
+        RITZ_OWN(ritz_component) chain = {0};
         ritz_request request = ask(&chain, 2);
-        ritz_basis basis = {0};
+        RITZ_OWN(ritz_basis) basis = {0};
 
         assert_ok(masses_component(3, m, k, damped == 1 ? c : NULL, &chain));
         assert_ok(frame_io(&chain, 1, at, 1, at + 1));
         assert_survives_every_allocation(
             ritz_method_tangential.make(&request, &basis));
-        ritz_basis_free(&basis);
-        ritz_component_free(&chain);
     }
 }
 

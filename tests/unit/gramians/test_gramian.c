@@ -20,15 +20,14 @@ static double noise(uint64_t *seed)
 static ritz_status modal_model(int64_t modes, double zeta, double gap,
                                ritz_modal *out)
 {
-    ritz_status status = RITZ_OK;
     uint64_t seed = 7;
 
     out->count = modes;
-    RITZ_NEW(out->omega, modes);
-    RITZ_NEW(out->zeta, modes);
-    RITZ_TRY(ritz_dense_new(modes, INPUTS, &out->B));
-    RITZ_TRY(ritz_dense_new(OUTPUTS, modes, &out->C));
-    RITZ_TRY(ritz_dense_new(OUTPUTS, modes, &out->Cv));
+    RITZ_CHECK_NEW(out->omega, modes);
+    RITZ_CHECK_NEW(out->zeta, modes);
+    RITZ_CHECK(ritz_dense_new(modes, INPUTS, &out->B));
+    RITZ_CHECK(ritz_dense_new(OUTPUTS, modes, &out->C));
+    RITZ_CHECK(ritz_dense_new(OUTPUTS, modes, &out->Cv));
     for (int64_t k = 0; k < modes; k++) {
         out->omega[k] = 1.0 + gap * (double)k * (1.0 + 0.1 * noise(&seed));
         out->zeta[k] = zeta * (1.0 + 0.3 * noise(&seed));
@@ -39,8 +38,7 @@ static ritz_status modal_model(int64_t modes, double zeta, double gap,
         out->C.val[k] = noise(&seed);
         out->Cv.val[k] = noise(&seed);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 /* A of x' = A x + B u, in (q_1, q_1', q_2, ...). */
@@ -127,9 +125,9 @@ static void gramians_satisfy_their_lyapunov_equations(void **unused)
     (void)unused;
     for (int z = 0; z < 3; z++)
         for (int g = 0; g < 3; g++) {
-            ritz_modal modal = {0};
-            ritz_dense Wc = {0};
-            ritz_dense Wo = {0};
+            RITZ_OWN(ritz_modal) modal = {0};
+            RITZ_OWN(ritz_dense) Wc = {0};
+            RITZ_OWN(ritz_dense) Wo = {0};
             double worst[2];
 
             assert_ok(modal_model(MODES, zeta[z], gap[g], &modal));
@@ -139,18 +137,15 @@ static void gramians_satisfy_their_lyapunov_equations(void **unused)
                         2.0 * STATES * 2.2e-16 * 400.0 * largest(&Wc));
             assert_near(worst[1], 0.0,
                         2.0 * STATES * 2.2e-16 * 400.0 * largest(&Wo));
-            ritz_dense_free(&Wc);
-            ritz_dense_free(&Wo);
-            ritz_modal_free(&modal);
         }
 }
 
 /* |H|_2^2 = trace(C Wc C') = trace(B'Wo B). */
 static void both_gramians_give_one_h2_norm(void **unused)
 {
-    ritz_modal modal = {0};
-    ritz_dense Wc = {0};
-    ritz_dense Wo = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_dense) Wc = {0};
+    RITZ_OWN(ritz_dense) Wo = {0};
     double by_c = 0.0;
     double by_o = 0.0;
 
@@ -164,17 +159,14 @@ static void both_gramians_give_one_h2_norm(void **unused)
         }
     /* STATES^2 terms of either sign, cancelling by less than 100 */
     assert_near(by_c, by_o, 100.0 * STATES * 2.2e-16 * by_o);
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    ritz_modal_free(&modal);
 }
 
 /* One mode: Wc = b b' / (4 zeta w) diag(1/w^2, 1). */
 static void one_mode_has_the_textbook_gramian(void **unused)
 {
-    ritz_modal modal = {0};
-    ritz_dense Wc = {0};
-    ritz_dense Wo = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_dense) Wc = {0};
+    RITZ_OWN(ritz_dense) Wo = {0};
     double beta = 0.0;
 
     (void)unused;
@@ -186,14 +178,11 @@ static void one_mode_has_the_textbook_gramian(void **unused)
     assert_near(Wc.val[0], beta / (4 * 0.02 * 27.0), 4e-16 * Wc.val[0]);
     assert_near(Wc.val[3], beta / (4 * 0.02 * 3.0), 4e-16 * Wc.val[3]);
     assert_near(Wc.val[1], 0.0, 0.0);
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    ritz_modal_free(&modal);
 }
 
 static void a_mode_without_damping_has_no_gramian(void **unused)
 {
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     ritz_dense Wc = {0};
     ritz_dense Wo = {0};
 
@@ -202,7 +191,6 @@ static void a_mode_without_damping_has_no_gramian(void **unused)
     modal.zeta[1] = 0.0;
     assert_fails(ritz_modal_gramians(&modal, NULL, &Wc, &Wo), RITZ_ERR_ARGUMENT,
                  "without damping");
-    ritz_modal_free(&modal);
 }
 
 /*
@@ -216,7 +204,7 @@ static void factors_multiply_to_the_gramians(void **unused)
 
     (void)unused;
     for (int t = 0; t < 15; t++) {
-        ritz_modal modal = {0};
+        RITZ_OWN(ritz_modal) modal = {0};
         ritz_dense W[2] = {{0}, {0}}, Z[2] = {{0}, {0}};
 
         assert_ok(modal_model(MODES, zeta[t / 3], gap[t % 3], &modal));
@@ -224,7 +212,7 @@ static void factors_multiply_to_the_gramians(void **unused)
         assert_ok(ritz_modal_gramians(&modal, NULL, &W[0], &W[1]));
         assert_ok(ritz_modal_factors(&modal, NULL, &Z[0], &Z[1]));
         for (int k = 0; k < 2; k++) {
-            ritz_dense ZZ = {0};
+            RITZ_OWN(ritz_dense) ZZ = {0};
 
             assert_ok(ritz_dense_mul_nt(&Z[k], &Z[k], &ZZ));
             for (int e = 0; e < STATES * STATES; e++)
@@ -232,11 +220,9 @@ static void factors_multiply_to_the_gramians(void **unused)
                             2.0 * STATES * 2.2e-16 *
                                 sqrt(entry(&W[k], e % STATES, e % STATES) *
                                      entry(&W[k], e / STATES, e / STATES)));
-            ritz_dense_free(&ZZ);
             ritz_dense_free(&W[k]);
             ritz_dense_free(&Z[k]);
         }
-        ritz_modal_free(&modal);
     }
 }
 
@@ -275,9 +261,9 @@ static void small_values_are_those_of_hammarlings_factors(void **unused)
 
     (void)unused;
     for (int t = 0; t < 2; t++) {
-        ritz_modal modal = {0};
-        ritz_dense A = {0}, At = {0}, B = {0}, Ct = {0};
-        ritz_dense U = {0}, V = {0}, H = {0}, left = {0};
+        RITZ_OWN(ritz_modal) modal = {0};
+        RITZ_OWN(ritz_dense) A = {0}, At = {0}, B = {0}, Ct = {0};
+        RITZ_OWN(ritz_dense) U = {0}, V = {0}, H = {0}, left = {0};
         double sigma[2 * MANY];
         double *due = NULL;
 
@@ -292,41 +278,27 @@ static void small_values_are_those_of_hammarlings_factors(void **unused)
         for (int k = 0; k < 2 * MANY; k++) /* measured: 2e-15 */
             assert_near(sigma[k], due[k], 1e-12 * due[0]);
         free(due);
-        ritz_dense_free(&A);
-        ritz_dense_free(&At);
-        ritz_dense_free(&B);
-        ritz_dense_free(&Ct);
-        ritz_dense_free(&U);
-        ritz_dense_free(&V);
-        ritz_dense_free(&H);
-        ritz_dense_free(&left);
-        ritz_modal_free(&modal);
     }
 }
 
 static ritz_status gramians_once(const ritz_modal *modal)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense Wc = {0};
-    ritz_dense Wo = {0};
+    RITZ_OWN(ritz_dense) Wc = {0};
+    RITZ_OWN(ritz_dense) Wo = {0};
     double sigma[STATES];
 
-    RITZ_TRY(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
-    RITZ_TRY(ritz_modal_hankel(modal, NULL, sigma));
-done:
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    return status;
+    RITZ_CHECK(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
+    RITZ_CHECK(ritz_modal_hankel(modal, NULL, sigma));
+    return RITZ_OK;
 }
 
 static void gramians_survive_every_allocation(void **unused)
 {
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
 
     (void)unused;
     assert_ok(modal_model(MODES, 0.02, 1.0, &modal));
     assert_survives_every_allocation(gramians_once(&modal));
-    ritz_modal_free(&modal);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -65,7 +65,7 @@ static ritz_gramians_request asking(const ritz_component *component,
 static int64_t values(const ritz_gramians_request *request, double *sigma,
                       int64_t most)
 {
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
     double *found = NULL;
     int64_t count = 0;
 
@@ -74,7 +74,6 @@ static int64_t values(const ritz_gramians_request *request, double *sigma,
     for (int64_t k = 0; k < most; k++)
         sigma[k] = k < count ? found[k] : 0.0;
     free(found);
-    ritz_gramians_free(&gramians);
     return count;
 }
 
@@ -88,7 +87,7 @@ static void one_mass_has_the_closed_form_pair(void **unused)
                                          RITZ_ENGINE_AUTO};
     static const double m[] = {2.0}, k[] = {18.0};
     static const int64_t at[] = {0};
-    ritz_component mass = {0};
+    RITZ_OWN(ritz_component) mass = {0};
 
     (void)unused;
     assert_ok(masses_component(1, m, k, NULL, &mass));
@@ -104,7 +103,6 @@ static void one_mass_has_the_closed_form_pair(void **unused)
         assert_near(sigma[0], light * (sqrt(1.01) + 0.1), 1e-14 * light);
         assert_near(sigma[1], light * (sqrt(1.01) - 0.1), 1e-14 * light);
     }
-    ritz_component_free(&mass);
 }
 
 /* Both are backward stable, and move a pole by eps / zeta of its damping. */
@@ -124,7 +122,7 @@ static void dense_and_closed_form_agree(void **unused)
 
     (void)unused;
     for (int t = 0; t < 40; t++) {
-        ritz_component chain = {0};
+        RITZ_OWN(ritz_component) chain = {0};
         ritz_gramians_request request = {0};
         double dense[STATES], modal[STATES];
 
@@ -138,7 +136,6 @@ static void dense_and_closed_form_agree(void **unused)
         assert_true(dense[0] > 0.0);
         for (int k = 0; k < STATES; k++) /* measured: 9e-13, at 1e-4 */
             assert_near(modal[k], dense[k], 1e-11 * dense[0]);
-        ritz_component_free(&chain);
     }
 }
 
@@ -163,10 +160,10 @@ static void rigid_modes_stand_apart(void **unused)
 
     (void)unused;
     for (int t = 0; t < 4; t++) {
-        ritz_component chain = {0};
-        ritz_gramians g = {0};
+        RITZ_OWN(ritz_component) chain = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
         ritz_gramians_request request = {0};
-        ritz_dense WT = {0}, WZ = {0}, ZT = {0}, ET = {0};
+        RITZ_OWN(ritz_dense) WT = {0}, WZ = {0}, ZT = {0}, ET = {0};
         int64_t apart = t < 2 ? 2 : 4;
 
         set_chain(t < 2 ? FREE : REPEATED, &chain);
@@ -187,12 +184,6 @@ static void rigid_modes_stand_apart(void **unused)
             assert_near(WT.val[k], k % apart == k / apart ? 1.0 : 0.0, 1e-13);
         assert_near(ritz_dense_max(&WZ), 0.0, 1e-13 * largest(&g.W, &g.EZc));
         assert_near(ritz_dense_max(&ZT), 0.0, 1e-13 * largest(&g.Zo, &ET));
-        ritz_dense_free(&WT);
-        ritz_dense_free(&WZ);
-        ritz_dense_free(&ZT);
-        ritz_dense_free(&ET);
-        ritz_gramians_free(&g);
-        ritz_component_free(&chain);
     }
 }
 
@@ -232,7 +223,7 @@ done:
 static double residual(const ritz_dense *X, const ritz_dense *Y,
                        const ritz_dense *F)
 {
-    ritz_dense XY = {0}, FF = {0};
+    RITZ_OWN(ritz_dense) XY = {0}, FF = {0};
     double worst = 0.0, due = 0.0;
 
     assert_ok(ritz_dense_mul_nt(X, Y, &XY));
@@ -241,8 +232,6 @@ static double residual(const ritz_dense *X, const ritz_dense *Y,
     for (int64_t k = 0; k < STATES * STATES; k++)
         worst = fmax(worst, fabs(XY.val[k] + col(&XY, k / STATES, k % STATES) +
                                  FF.val[k]));
-    ritz_dense_free(&XY);
-    ritz_dense_free(&FF);
     return worst / due;
 }
 
@@ -254,8 +243,8 @@ static void factors_satisfy_the_lyapunov_equations(void **unused)
 
     (void)unused;
     for (int t = 0; t < 2; t++) {
-        ritz_component chain = {0};
-        ritz_gramians g = {0};
+        RITZ_OWN(ritz_component) chain = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
         ritz_gramians_request request = {0};
         ritz_dense AZ = {0}, EZ = {0}, B = {0}, C = {0};
 
@@ -290,8 +279,6 @@ static void factors_satisfy_the_lyapunov_equations(void **unused)
         ritz_dense_free(&EZ);
         ritz_dense_free(&B);
         ritz_dense_free(&C);
-        ritz_gramians_free(&g);
-        ritz_component_free(&chain);
     }
 }
 
@@ -301,10 +288,10 @@ static void auto_takes_the_engine_that_damping_allows(void **unused)
     static const int64_t row[] = {1, 1, 2, 2}, at[] = {1, 2, 1, 2};
     static const double d[] = {3.0, -3.0, -3.0, 3.0};
     const ritz_damping ratio = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_gramians_request request = {0};
     ritz_gramians g = {0};
-    ritz_state_space space = {0};
+    RITZ_OWN(ritz_state_space) space = {0};
     double *due = NULL;
     double sigma[STATES];
     int64_t count = 0;
@@ -329,12 +316,10 @@ static void auto_takes_the_engine_that_damping_allows(void **unused)
         assert_near(sigma[k], due[k], 1e-12 * due[0]);
     free(due);
     ritz_gramians_free(&g);
-    ritz_state_space_free(&space);
     request.engine = RITZ_ENGINE_MODAL;
     assert_fails(ritz_gramians_of_component(&request, &g), RITZ_ERR_ARGUMENT,
                  "couples the modes at");
     assert_non_null(strstr(ritz_error_message(), "engine 'dense' takes any"));
-    ritz_component_free(&chain);
 }
 
 /* Two equal masses, each on its spring, with a damper between them. */
@@ -360,7 +345,7 @@ static void set_twins(ritz_component *out)
  */
 static void a_damper_within_a_cluster_is_no_coupling(void **unused)
 {
-    ritz_component twins = {0};
+    RITZ_OWN(ritz_component) twins = {0};
     double sigma[3][4];
 
     (void)unused;
@@ -368,19 +353,17 @@ static void a_damper_within_a_cluster_is_no_coupling(void **unused)
     for (int t = 0; t < 3; t++) {
         ritz_gramians_request request = asking(
             &twins, t ? RITZ_ENGINE_AUTO : RITZ_ENGINE_DENSE, "modal 0.05");
-        ritz_gramians g = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
 
         request.among_hz = t == 2 ? 10.0 : 0.0;
         assert_ok(ritz_gramians_of_component(&request, &g));
         assert_string_equal(g.engine, t ? "closed form" : "SLICOT SB03OD");
-        ritz_gramians_free(&g);
         assert_int_equal(values(&request, sigma[t], 4), 4);
         for (int k = 0; k < 4; k++) /* measured: 1e-14 */
             assert_near(sigma[t][k], sigma[0][k], 1e-13 * sigma[0][0]);
     }
     /* less than of the one without the damper, b = 1 / 2, c = 1 / m */
     assert_true(sigma[0][0] < 0.5 / (4.0 * 0.05 * 9.0) * 1.06);
-    ritz_component_free(&twins);
 }
 
 /* A dashpot to ground holds nothing: where it comes to rest is a pole at 0. */
@@ -388,9 +371,9 @@ static void what_does_not_decay_stands_apart(void **unused)
 {
     static const int64_t row[] = {0};
     static const double d[] = {0.5};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_gramians_request request = {0};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
     (void)unused;
     set_chain(FREE, &chain);
@@ -405,8 +388,6 @@ static void what_does_not_decay_stands_apart(void **unused)
         assert_near(g.T.val[i], g.T.val[0], 1e-12 * fabs(g.T.val[0]));
         assert_near(g.T.val[MASSES + i], 0.0, 1e-12 * fabs(g.T.val[0]));
     }
-    ritz_gramians_free(&g);
-    ritz_component_free(&chain);
 }
 
 /* All modes by sparse matrices are all modes; some are fewer. */
@@ -450,7 +431,7 @@ static void modes_up_to_a_frequency_are_all_that_is_taken(void **unused)
 /* The same as of the modal model, through the component's coordinates. */
 static void a_band_is_heeded(void **unused)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_gramians_request request = {0};
     double full[STATES], wide[STATES], narrow[STATES];
 
@@ -470,7 +451,6 @@ static void a_band_is_heeded(void **unused)
         assert_true(narrow[k] < full[k] * (1.0 + 1e-9));
     }
     assert_true(narrow[0] > 0.0 && narrow[STATES - 3] < full[STATES - 3]);
-    ritz_component_free(&chain);
 }
 
 /* 100 M + 0.01 K: low modes are light, high ones overdamped. */
@@ -486,8 +466,8 @@ static void the_engines_agree_on_lf10(void **unused)
                                        .input = at,
                                        .num_outputs = 1,
                                        .output = at};
-    ritz_import_report report = {0};
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_gramians_request request = {0};
     double dense[36], modal[36];
     FILE *file = NULL;
@@ -509,8 +489,6 @@ static void the_engines_agree_on_lf10(void **unused)
     (void)values(&request, modal, 36);
     for (int k = 0; k < 36; k++)
         assert_near(modal[k], dense[k], 1e-8 * dense[0]); /* seen: 3e-12 */
-    ritz_import_report_free(&report);
-    ritz_component_free(&beam);
 }
 
 static void assert_refused(const ritz_gramians_request *request,
@@ -524,7 +502,7 @@ static void assert_refused(const ritz_gramians_request *request,
 
 static void what_does_not_fit_an_engine_is_refused(void **unused)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_gramians_request request = {0};
 
     (void)unused;
@@ -557,13 +535,12 @@ static void what_does_not_fit_an_engine_is_refused(void **unused)
     assert_refused(&request, "structural damping");
     request.among_hz = 2.0;
     assert_refused(&request, "structural damping");
-    ritz_component_free(&chain);
 }
 
 static void inputs_and_outputs_are_needed(void **unused)
 {
     static const int64_t at[] = {0};
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_gramians_request request = {0};
 
     (void)unused;
@@ -573,7 +550,6 @@ static void inputs_and_outputs_are_needed(void **unused)
     assert_refused(&request, "the component has no inputs");
     assert_ok(masses_io(&chain, 1, at, 0, at));
     assert_refused(&request, "the component has no outputs");
-    ritz_component_free(&chain);
 }
 
 /* A dof that nothing joins, and more of those than dense matrices take. */
@@ -581,7 +557,7 @@ static void rigid_and_large_components_are_refused(void **unused)
 {
     static const double m[] = {2.0}, k[] = {0.0};
     static const int64_t at[] = {0};
-    ritz_component mass = {0};
+    RITZ_OWN(ritz_component) mass = {0};
     ritz_gramians_request request = {0};
 
     (void)unused;
@@ -596,23 +572,19 @@ static void rigid_and_large_components_are_refused(void **unused)
                                      : "1501 dofs have too many modes");
         mass.num_dofs = 1;
     }
-    ritz_component_free(&mass);
 }
 
 static ritz_status once(const ritz_gramians_request *request)
 {
-    ritz_status status = RITZ_OK;
-    ritz_gramians gramians = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_TRY(ritz_gramians_of_component(request, &gramians));
-done:
-    ritz_gramians_free(&gramians);
-    return status;
+    RITZ_CHECK(ritz_gramians_of_component(request, &gramians));
+    return RITZ_OK;
 }
 
 static void engines_survive_every_allocation(void **unused)
 {
-    ritz_component chain = {0};
+    RITZ_OWN(ritz_component) chain = {0};
     ritz_gramians_request request = {0};
 
     (void)unused;
@@ -626,7 +598,6 @@ static void engines_survive_every_allocation(void **unused)
     assert_survives_every_allocation(once(&request));
     request.among_hz = 2.0;
     assert_survives_every_allocation(once(&request));
-    ritz_component_free(&chain);
 }
 
 static const struct CMUnitTest tests[] = {

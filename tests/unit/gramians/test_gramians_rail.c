@@ -23,8 +23,8 @@ static void the_rail_has_its_values(void **unused)
                  {2, 0.03244911947213},  {3, 0.01938916049019},
                  {4, 0.01550985149871},  {5, 0.01222226140857},
                  {40, 1.180314481336e-5}};
-    ritz_state_space model = {0};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
     int64_t count = 0;
     double *sigma = NULL;
 
@@ -41,8 +41,6 @@ static void the_rail_has_its_values(void **unused)
     for (size_t k = 0; k < sizeof known / sizeof *known; k++)
         assert_near(sigma[known[k].at], known[k].sigma, 1e-9 * known[k].sigma);
     free(sigma);
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -65,8 +65,8 @@ static void stored_hankel_values_are_found(void **unused)
 
     (void)unused;
     for (int k = 0; k < 3; k++) {
-        ritz_state_space model = {0};
-        ritz_gramians g = {0};
+        RITZ_OWN(ritz_state_space) model = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
         double *stored = NULL;
         double worst = 0.0, rest = 0.0;
         int64_t count = 0;
@@ -84,8 +84,6 @@ static void stored_hankel_values_are_found(void **unused)
         assert_near(worst, 0.0, 1e-9);
         assert_near(rest, 0.0, 1e-11);
         free(stored);
-        ritz_gramians_free(&g);
-        ritz_state_space_free(&model);
     }
 }
 
@@ -94,8 +92,8 @@ static void slicot_publishes_these_hankel_values(void **unused)
 {
     static const double printed[] = {2.5139, 2.0846, 1.9178, 0.7666,
                                      0.5473, 0.0253, 0.0246};
-    ritz_state_space model = {0};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
     int64_t count = 0;
     double *sigma = NULL;
 
@@ -108,8 +106,6 @@ static void slicot_publishes_these_hankel_values(void **unused)
         assert_near(sigma[k], printed[k], 5e-5);
     assert_near(sigma[0], 2.51388, 5e-6); /* AB13AD prints one more */
     free(sigma);
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
 }
 
 /* AB09AD's reduced model of order 5: every entry is rounded to 5e-5, and their
@@ -129,9 +125,9 @@ static void slicot_publishes_this_reduced_model(void **unused)
                                 0.6704,  -0.1828, -0.6582, 0.2222, 0.0104};
     static const spaces_rows printed = {
         .states = ORDER, .inputs = INPUTS, .outputs = OUTPUTS, A5, B5, C5};
-    ritz_state_space model = {0}, theirs = {0}, ours = {0};
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_state_space) model = {0}, theirs = {0}, ours = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
 
     (void)unused;
     assert_ok(spaces_make(&slicot, &model));
@@ -142,11 +138,6 @@ static void slicot_publishes_this_reduced_model(void **unused)
     assert_int_equal(b.count, STATES);
     assert_ok(spaces_project(&model, &b.W, &b.T, &ours));
     assert_near(balancing_error(&ours, &theirs), 0.0, 1e-3);
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
-    ritz_state_space_free(&theirs);
-    ritz_state_space_free(&ours);
 }
 
 /* b / (s + a) has b c / 2 a; a mode has |b||c|/(4 z w^2) (sqrt(1+z^2) +- z). */
@@ -194,9 +185,9 @@ static void an_all_pass_has_equal_values_and_meets_its_bound(void **unused)
     static const double A[] = {0, 1, -2, -3}, B[] = {0, 1}, C[] = {0, -6},
                         D[] = {1};
     const spaces_rows rows = {2, 1, 1, A, B, C, D, NULL};
-    ritz_state_space model = {0}, none = {0};
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_state_space) model = {0}, none = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
     ritz_norm norm = {0};
 
     (void)unused;
@@ -212,26 +203,22 @@ static void an_all_pass_has_equal_values_and_meets_its_bound(void **unused)
     assert_ok(spaces_project(&model, &b.W, &b.T, &none));
     assert_int_equal(none.A.nrow, 0);
     assert_near(balancing_error(&model, &none), 2.0, 1e-6);
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
-    ritz_state_space_free(&none);
 }
 
 /* [Moore1981]: sigma_(r+1) <= error <= 2 sum of the rest. */
 static void the_error_is_within_its_bound(void **unused)
 {
     static const int64_t order[] = {2, 4, 8, 15, 25, 40};
-    ritz_state_space model = {0};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
     (void)unused;
     if (!spaces_read("building", &model))
         skip();
     assert_ok(ritz_gramians_of_space(&model, &g));
     for (size_t k = 0; k < sizeof order / sizeof *order; k++) {
-        ritz_balanced b = {0};
-        ritz_state_space reduced = {0};
+        RITZ_OWN(ritz_balanced) b = {0};
+        RITZ_OWN(ritz_state_space) reduced = {0};
         double error = 0.0;
 
         assert_ok(ritz_gramians_balance(&g, order[k], 0.0, &b));
@@ -240,11 +227,7 @@ static void the_error_is_within_its_bound(void **unused)
         error = balancing_error(&model, &reduced);
         assert_true(error <= b.bound);
         assert_true(error >= b.sigma[b.kept] * (1.0 - 1e-6));
-        ritz_balanced_free(&b);
-        ritz_state_space_free(&reduced);
     }
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
 }
 
 enum { MIXED = 11, APART = 6 };
@@ -277,7 +260,7 @@ static void mix(bool with_E, ritz_state_space *out)
     uint64_t seed = 11;
     double zero[MIXED * MIXED] = {0}, B[MIXED * 2], C[2 * MIXED], D[4];
     spaces_rows rows = {MIXED, 2, 2, zero, B, C, D, zero};
-    ritz_dense R = {0}, L = {0}, J = {0}, JR = {0};
+    RITZ_OWN(ritz_dense) R = {0}, L = {0}, J = {0}, JR = {0};
 
     scatter(MIXED * 2, &seed, B);
     scatter(MIXED * 2, &seed, C);
@@ -308,10 +291,6 @@ static void mix(bool with_E, ritz_state_space *out)
         assert_ok(ritz_general_solve(&R, false, &JR));
         assert_ok(ritz_dense_copy(&JR, &out->A));
     }
-    ritz_dense_free(&R);
-    ritz_dense_free(&L);
-    ritz_dense_free(&J);
-    ritz_dense_free(&JR);
 }
 
 /* |model - (stable + apart - D)| over |model| at a few frequencies. */
@@ -344,7 +323,7 @@ static double parts_error(const ritz_state_space *model,
 static double biorthogonality(const ritz_state_space *model,
                               const ritz_dense *W, const ritz_dense *T)
 {
-    ritz_dense ET = {0};
+    RITZ_OWN(ritz_dense) ET = {0};
     double worst = 0.0;
 
     if (model->E.val)
@@ -355,7 +334,6 @@ static double biorthogonality(const ritz_state_space *model,
         for (int64_t j = 0; j < ET.ncol; j++)
             worst = fmax(worst, fabs(ritz_dense_dot(W, i, &ET, j) -
                                      (i == j ? 1.0 : 0.0)));
-    ritz_dense_free(&ET);
     return worst;
 }
 
@@ -365,9 +343,9 @@ static void what_is_not_stable_stands_apart_exactly(void **unused)
 {
     (void)unused;
     for (int with_E = 0; with_E < 2; with_E++) {
-        ritz_state_space model = {0}, stable = {0}, apart = {0};
-        ritz_gramians g = {0};
-        ritz_balanced b = {0};
+        RITZ_OWN(ritz_state_space) model = {0}, stable = {0}, apart = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
+        RITZ_OWN(ritz_balanced) b = {0};
 
         mix(with_E, &model);
         assert_ok(ritz_gramians_of_space(&model, &g));
@@ -382,11 +360,6 @@ static void what_is_not_stable_stands_apart_exactly(void **unused)
         assert_ok(spaces_project(&model, &b.W, &b.T, &stable));
         assert_ok(spaces_project(&model, &g.W, &g.T, &apart));
         assert_near(parts_error(&model, &stable, &apart), 0.0, 1e-10);
-        ritz_gramians_free(&g);
-        ritz_balanced_free(&b);
-        ritz_state_space_free(&model);
-        ritz_state_space_free(&stable);
-        ritz_state_space_free(&apart);
     }
 }
 
@@ -397,8 +370,8 @@ static void a_cascade_of_equal_stages_is_stable(void **unused)
     enum { N = 30 };
     static double A[N * N], B[N], C[N];
     static const spaces_rows rows = {N, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space model = {0};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
     (void)unused;
     for (int i = 0; i < N; i++) {
@@ -411,8 +384,6 @@ static void a_cascade_of_equal_stages_is_stable(void **unused)
     assert_ok(spaces_make(&rows, &model));
     assert_ok(ritz_gramians_of_space(&model, &g));
     assert_int_equal(g.T.ncol, 0);
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
 }
 
 /* Free masses: position and velocity of the whole, whatever the damping. */
@@ -422,9 +393,9 @@ static void a_rigid_motion_stands_apart(void **unused)
     static const double c[] = {0, 0.3, 0.1, 0.2};
     static const int64_t at[] = {0};
     const ritz_damping none = {0};
-    ritz_component free_body = {0};
-    ritz_state_space model = {0};
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_component) free_body = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
     (void)unused;
     assert_ok(masses_component(4, m, k, c, &free_body));
@@ -440,9 +411,6 @@ static void a_rigid_motion_stands_apart(void **unused)
             assert_near(t[4 + i], t[4], 1e-7);
         }
     }
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
-    ritz_component_free(&free_body);
 }
 
 /* The cantilever of [McDaniel2000] eq. 3.2.23, its inputs and outputs. */
@@ -465,7 +433,7 @@ static void with_mass(const ritz_component *beam, const ritz_state_space *plain,
                       ritz_state_space *out)
 {
     int64_t n = beam->M.nrow;
-    ritz_dense M = {0};
+    RITZ_OWN(ritz_dense) M = {0};
 
     dense(&beam->M, &M);
     assert_ok(ritz_state_space_new(2 * n, &beam->io, out));
@@ -481,7 +449,6 @@ static void with_mass(const ritz_component *beam, const ritz_state_space *plain,
     assert_ok(ritz_dense_mul(&out->E, &plain->A, &out->A));
     assert_ok(ritz_dense_mul(&out->E, &plain->B, &out->B));
     assert_ok(ritz_dense_copy(&plain->C, &out->C));
-    ritz_dense_free(&M);
 }
 
 /* oracles: 24-state Lyapunov equation, zeta = 0.01, to the digits shown. */
@@ -495,7 +462,7 @@ static void the_beam_has_its_published_pairs(void **unused)
                                    5e-6, 5e-6, 5e-6, 5e-6, 5e-6, 5e-6,
                                    5e-6, 5e-6, 5e-6, 5e-6};
     const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_state_space model[2] = {0};
 
     (void)unused;
@@ -503,7 +470,7 @@ static void the_beam_has_its_published_pairs(void **unused)
     assert_ok(ritz_state_space_of_component(&beam, &damping, &model[0]));
     with_mass(&beam, &model[0], &model[1]);
     for (int k = 0; k < 2; k++) {
-        ritz_gramians g = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
         int64_t count = 0;
         double *found = NULL;
 
@@ -513,10 +480,8 @@ static void the_beam_has_its_published_pairs(void **unused)
             assert_near(found[i], sigma[i], digit[i]);
         assert_near(found[16], 0.0, 1e-9 * found[0]); /* not seen: 4 modes */
         free(found);
-        ritz_gramians_free(&g);
         ritz_state_space_free(&model[k]);
     }
-    ritz_component_free(&beam);
 }
 
 /* The same beam of steel, with and without E, at zeta = 1e-4: entries of A from
@@ -526,9 +491,9 @@ static void a_stiff_beam_agrees_with_the_closed_form(void **unused)
     static const frame_section steel = {
         .rho = 7800.0, .area = 1e-4, .inertia = 8.3e-10, .modulus = 2.1e11};
     const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 1e-4};
-    ritz_component beam = {0};
-    ritz_dense K = {0}, M = {0};
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     ritz_state_space model[2] = {0};
     double sigma[24], rest = 0.0;
 
@@ -541,26 +506,21 @@ static void a_stiff_beam_agrees_with_the_closed_form(void **unused)
     assert_ok(ritz_state_space_of_component(&beam, &damping, &model[0]));
     with_mass(&beam, &model[0], &model[1]);
     for (int k = 0; k < 2; k++) {
-        ritz_gramians g = {0};
+        RITZ_OWN(ritz_gramians) g = {0};
 
         assert_ok(ritz_gramians_of_space(&model[k], &g));
         assert_int_equal(g.T.ncol, 0);
         assert_string_equal(g.engine, "SLICOT SB03OD");
         /* poles 1e-4 of their size away from the axis; measured: 2e-9 */
         assert_near(hankel_error(&g, 16, sigma, 1e-8, &rest), 0.0, 1e-8);
-        ritz_gramians_free(&g);
         ritz_state_space_free(&model[k]);
     }
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_modal_free(&modal);
-    ritz_component_free(&beam);
 }
 
 /* Outputs over limits: a limit of 1/8 of all outputs is 8 times as much. */
 static void outputs_are_divided_by_their_limits(void **unused)
 {
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_gramians g = {0};
     int64_t count = 0;
     double *sigma = NULL, *scaled = NULL;
@@ -579,20 +539,18 @@ static void outputs_are_divided_by_their_limits(void **unused)
     free(sigma);
     free(scaled);
     ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
 }
 
 static void expect_refusal(const spaces_rows *rows, double limit,
                            ritz_status code, const char *words)
 {
-    ritz_state_space model = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
     ritz_gramians g = {0};
 
     assert_ok(spaces_make(rows, &model));
     if (model.num_outputs > 0)
         model.limit[0] = limit;
     assert_fails(ritz_gramians_of_space(&model, &g), code, words);
-    ritz_state_space_free(&model);
 }
 
 static void what_has_no_gramians_is_refused_in_words(void **unused)
@@ -624,9 +582,9 @@ static void a_model_without_stable_poles_has_none_to_balance(void **unused)
 {
     static const double A[] = {0, 1, 0, 0}, B[] = {0, 1}, C[] = {1, 0};
     const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
-    ritz_state_space model = {0};
-    ritz_gramians g = {0};
-    ritz_balanced b = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    RITZ_OWN(ritz_balanced) b = {0};
 
     (void)unused;
     assert_ok(spaces_make(&rows, &model));
@@ -636,20 +594,14 @@ static void a_model_without_stable_poles_has_none_to_balance(void **unused)
     assert_near(biorthogonality(&model, &g.W, &g.T), 0.0, 8 * DBL_EPSILON);
     assert_ok(ritz_gramians_balance(&g, -1, 0.0, &b));
     assert_int_equal(b.count, 0);
-    ritz_balanced_free(&b);
-    ritz_gramians_free(&g);
-    ritz_state_space_free(&model);
 }
 
 static ritz_status gramians_once(const ritz_state_space *model)
 {
-    ritz_status status = RITZ_OK;
-    ritz_gramians g = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
 
-    RITZ_TRY(ritz_gramians_of_space(model, &g));
-done:
-    ritz_gramians_free(&g);
-    return status;
+    RITZ_CHECK(ritz_gramians_of_space(model, &g));
+    return RITZ_OK;
 }
 
 static void gramians_survive_every_allocation(void **unused)

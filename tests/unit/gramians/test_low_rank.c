@@ -52,7 +52,7 @@ static void an_oscillator_has_known_values(void **state)
 {
     const double m = 2.0;
     const double k = 50.0;
-    ritz_component one = {0};
+    RITZ_OWN(ritz_component) one = {0};
     ritz_gramians low = {0};
     int64_t count = 0;
     double *sigma = NULL;
@@ -78,16 +78,15 @@ static void an_oscillator_has_known_values(void **state)
         sigma = NULL;
         ritz_gramians_free(&low);
     }
-    ritz_component_free(&one);
 }
 
 /* A X E + E X A' + B B' with X = Z Z', entry by entry: 0 but for 1e-10. */
 static void the_equation_is_solved(void **state)
 {
-    ritz_component held = mass_row(100.0);
+    RITZ_OWN(ritz_component) held = mass_row(100.0);
     const ritz_gramians_request request = mass_row_rayleigh(&held, 0.2, 1e-3);
-    ritz_gramians low = {0};
-    ritz_dense A = {0}, AZ = {0}, R = {0}, E = {0};
+    RITZ_OWN(ritz_gramians) low = {0};
+    RITZ_OWN(ritz_dense) A = {0}, AZ = {0}, R = {0}, E = {0};
     double most = 0.0;
 
     (void)state;
@@ -119,17 +118,11 @@ static void the_equation_is_solved(void **state)
     /* residuals are told with 1 / mass, and masses are 1 to 2 */
     assert_near(most, 0.0, 2.0 * 1e-10 + 1e4 * DBL_EPSILON);
     assert_true(low.residual[0] <= 1e-10 && low.residual[1] <= 1e-10);
-    ritz_dense_free(&A);
-    ritz_dense_free(&AZ);
-    ritz_dense_free(&R);
-    ritz_dense_free(&E);
-    ritz_gramians_free(&low);
-    ritz_component_free(&held);
 }
 
 static void several_inputs_and_outputs_agree_with_slicot(void **state)
 {
-    ritz_component held = mass_row(100.0);
+    RITZ_OWN(ritz_component) held = mass_row(100.0);
     ritz_gramians low = {0};
 
     (void)state;
@@ -142,13 +135,12 @@ static void several_inputs_and_outputs_agree_with_slicot(void **state)
     low = agree(mass_row_rayleigh(&held, 0.0, 1.0),
                 agreement); /* beyond critical */
     ritz_gramians_free(&low);
-    ritz_component_free(&held);
 }
 
 static void velocities_accelerations_and_limits_count(void **state)
 {
-    ritz_component held = mass_row(100.0);
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_component) held = mass_row(100.0);
+    RITZ_OWN(ritz_gramians) low = {0};
 
     (void)state;
     ritz_dense_col(&held.io.Cv, 3)[0] = 0.7;
@@ -156,15 +148,13 @@ static void velocities_accelerations_and_limits_count(void **state)
     ritz_dense_col(&held.io.Ca, 2)[2] = 1.0;
     held.io.limit[0] = 0.1;
     low = agree(mass_row_rayleigh(&held, 0.2, 1e-3), agreement);
-    ritz_gramians_free(&low);
-    ritz_component_free(&held);
 }
 
 /* The same force twice, and one that is nothing: ranks do not double. */
 static void dependent_inputs_are_compressed(void **state)
 {
-    ritz_component twice = {0};
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_component) twice = {0};
+    RITZ_OWN(ritz_gramians) low = {0};
 
     (void)state;
     assert_ok(masses_component(
@@ -174,14 +164,12 @@ static void dependent_inputs_are_compressed(void **state)
     ritz_dense_col(&twice.io.B, 2)[7] = 0.0;
     low = agree(mass_row_rayleigh(&twice, 0.5, 0.05), agreement);
     assert_true(low.Zc.ncol <= 2L * MASS_ROW);
-    ritz_gramians_free(&low);
-    ritz_component_free(&twice);
 }
 
 /* Positions and velocities of the one rigid motion, and Z without it. */
 static void rigid_motion_stands_apart(void **state)
 {
-    ritz_component body = mass_row(0.0);
+    RITZ_OWN(ritz_component) body = mass_row(0.0);
     ritz_gramians low = {0};
     ritz_dense mine = {0};
 
@@ -209,15 +197,14 @@ static void rigid_motion_stands_apart(void **state)
         ritz_dense_free(&mine);
         ritz_gramians_free(&low);
     }
-    ritz_component_free(&body);
 }
 
 /* Forces in proportion to mass deform nothing. */
 static void rigid_motion_alone_has_no_columns(void **state)
 {
-    ritz_component body = mass_row(0.0);
+    RITZ_OWN(ritz_component) body = mass_row(0.0);
     const ritz_gramians_request request = mass_row_rayleigh(&body, 0.0, 2e-3);
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_gramians) low = {0};
     double *sigma = NULL;
     int64_t count = -1;
 
@@ -231,8 +218,6 @@ static void rigid_motion_alone_has_no_columns(void **state)
     assert_ok(ritz_gramians_hankel(&low, &count, &sigma));
     assert_int_equal(count, 0);
     free(sigma);
-    ritz_gramians_free(&low);
-    ritz_component_free(&body);
 }
 
 /* g (e_2 e_5' - e_5 e_2') beside dashpots, which couple modes. */
@@ -241,22 +226,20 @@ static void gyroscopes_agree_with_slicot(void **state)
     const int64_t at[] = {0, 2, 5, 11, 5, 2};
     const int64_t to[] = {0, 2, 5, 11, 2, 5};
     const double val[] = {1.0, 0.5, 2.0, 3.0, 4.0, -4.0};
-    ritz_component spun = mass_row(100.0);
+    RITZ_OWN(ritz_component) spun = mass_row(100.0);
     ritz_gramians_request request = {.component = &spun};
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_gramians) low = {0};
 
     (void)state;
     assert_ok(
         ritz_sparse_from_triplets(MASS_ROW, MASS_ROW, 6, at, to, val, &spun.D));
     low = agree(request, agreement);
-    ritz_gramians_free(&low);
-    ritz_component_free(&spun);
 }
 
 static void discrete_dampers_count(void **state)
 {
-    ritz_component held = mass_row(100.0);
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_component) held = mass_row(100.0);
+    RITZ_OWN(ritz_gramians) low = {0};
 
     (void)state;
     assert_ok(ritz_dampers_new(MASS_ROW, 1, &held.dampers));
@@ -268,13 +251,11 @@ static void discrete_dampers_count(void **state)
     low = agree(mass_row_rayleigh(&held, 0.05, 1e-3), agreement);
     assert_string_equal(low.damping, "rayleigh 0.05 0.001");
     assert_null(held.D.colptr); /* the component is as it was */
-    ritz_gramians_free(&low);
-    ritz_component_free(&held);
 }
 
 static void dofs_without_mass_follow(void **state)
 {
-    ritz_component held = mass_row_massless(3);
+    RITZ_OWN(ritz_component) held = mass_row_massless(3);
     ritz_gramians low = {0};
 
     (void)state;
@@ -284,7 +265,6 @@ static void dofs_without_mass_follow(void **state)
     ritz_dense_col(&held.io.Ca, 8)[0] = 0.1;
     low = agree(mass_row_rayleigh(&held, 0.3, 0.0), agreement);
     ritz_gramians_free(&low);
-    ritz_component_free(&held);
 }
 
 /* A diagonal model of 500 modes, 1 to 50 Hz, all of one ratio. */
@@ -334,10 +314,10 @@ static ritz_component spread(double zeta, ritz_modal *modal)
 /* An ADI in SciPy, apart from this one, takes 34 shifts; this one 32. */
 static void five_hundred_damped_modes_agree_with_closed_form(void **state)
 {
-    ritz_modal modal = {0};
-    ritz_component many = spread(0.3, &modal);
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_component) many = spread(0.3, &modal);
     const ritz_gramians_request request = {.component = &many};
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_gramians) low = {0};
     double *exact = calloc(2 * (size_t)MODES, sizeof *exact);
     double *sigma = NULL;
     int64_t count = 0;
@@ -352,15 +332,12 @@ static void five_hundred_damped_modes_agree_with_closed_form(void **state)
         assert_near(k < count ? sigma[k] : 0.0, exact[k], agreement * exact[0]);
     free(exact);
     free(sigma);
-    ritz_gramians_free(&low);
-    ritz_modal_free(&modal);
-    ritz_component_free(&many);
 }
 
 static void five_hundred_light_modes_are_refused(void **state)
 {
-    ritz_modal modal = {0};
-    ritz_component many = spread(1e-4, &modal);
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_component) many = spread(1e-4, &modal);
     const ritz_gramians_request request = {.component = &many};
     ritz_gramians low = {0};
     const char *said = NULL;
@@ -374,8 +351,6 @@ static void five_hundred_light_modes_are_refused(void **state)
     assert_near(strtod(said + 20, NULL), 7.5e-5, 2.6e-5);
     assert_non_null(strstr(said, "take engine 'modal'"));
     assert_null(low.Zc.val);
-    ritz_modal_free(&modal);
-    ritz_component_free(&many);
 }
 
 /* D = 100 M + 0.01 K, in the files as a matrix, and by words. */
@@ -387,8 +362,8 @@ static void lf10_agrees_with_slicot(void **state)
     char path[3][512], dofs[] = "/tmp/lf10.dofs.XXXXXX";
     ritz_import_request files = {
         .num_inputs = 1, .input = input, .num_outputs = 1, .output = output};
-    ritz_import_report report = {0};
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) beam = {0};
     ritz_gramians low = {0};
     FILE *file = NULL;
     int handle = -1;
@@ -418,8 +393,6 @@ static void lf10_agrees_with_slicot(void **state)
     ritz_sparse_free(&beam.D);
     low = agree(mass_row_rayleigh(&beam, 100.0, 0.01), agreement);
     ritz_gramians_free(&low);
-    ritz_import_report_free(&report);
-    ritz_component_free(&beam);
 }
 
 /* K + s G with G = [0 1; -1 0]: the transpose is K - s G. */
@@ -429,9 +402,9 @@ static void transposed_solves_are_of_the_transpose(void **state)
     const double k[] = {2.0, -1.5, -1.0, 1.0};
     const double _Complex c[] = {1.0 + 0.5 * (double _Complex)_Complex_I};
     double _Complex x[] = {1.0, 2.0};
-    ritz_sparse A = {0};
+    RITZ_OWN(ritz_sparse) A = {0};
     const ritz_sparse *const parts[] = {&A};
-    ritz_zldl *F = NULL;
+    RITZ_OWN(ritz_zldl) *F = NULL;
 
     (void)state;
     assert_ok(ritz_sparse_from_triplets(2, 2, 4, at, to, k, &A));
@@ -449,8 +422,6 @@ static void transposed_solves_are_of_the_transpose(void **state)
     assert_ok(ritz_zldl_solve(F, 1, x));
     assert_near(cabs(c[0] * (2.0 * x[0] - x[1]) - 2.0), 0.0,
                 64.0 * DBL_EPSILON);
-    ritz_zldl_free(&F);
-    ritz_sparse_free(&A);
 }
 
 static const struct CMUnitTest tests[] = {

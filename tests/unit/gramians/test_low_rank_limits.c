@@ -17,7 +17,7 @@ static void refuse(const ritz_gramians_request *request, ritz_status expected,
 
 static void damping_that_is_no_matrix_is_refused(void **state)
 {
-    ritz_component held = mass_row(100.0);
+    RITZ_OWN(ritz_component) held = mass_row(100.0);
     ritz_gramians_request request = mass_row_rayleigh(&held, 0.0, 0.0);
 
     (void)state;
@@ -31,13 +31,12 @@ static void damping_that_is_no_matrix_is_refused(void **state)
     request.tolerance = 0.0;
     assert_ok(ritz_sparse_copy(&held.K, &held.K4));
     refuse(&request, RITZ_ERR_ARGUMENT, "structural damping");
-    ritz_component_free(&held);
 }
 
 /* A dashpot that drives, one that leaves modes undamped, one to ground. */
 static void motion_that_does_not_decay_is_refused(void **state)
 {
-    ritz_component held = mass_row(100.0), body = mass_row(0.0);
+    RITZ_OWN(ritz_component) held = mass_row(100.0), body = mass_row(0.0);
     ritz_gramians_request request = {.component = &held};
     const int64_t at[] = {6};
     const double drive[] = {-1.0}, pull[] = {1.0};
@@ -51,13 +50,11 @@ static void motion_that_does_not_decay_is_refused(void **state)
     request.component = &body;
     refuse(&request, RITZ_ERR_ARGUMENT,
            "damping couples rigid motion to deformation");
-    ritz_component_free(&held);
-    ritz_component_free(&body);
 }
 
 static void what_has_no_states_is_refused(void **state)
 {
-    ritz_component held = mass_row_massless(8);
+    RITZ_OWN(ritz_component) held = mass_row_massless(8);
     ritz_gramians_request request = mass_row_rayleigh(&held, 0.1, 1e-3);
 
     (void)state;
@@ -66,15 +63,14 @@ static void what_has_no_states_is_refused(void **state)
     ritz_dense_col(&held.io.Cv, 8)[1] = 1.0;
     refuse(&request, RITZ_ERR_ARGUMENT,
            "an output is the velocity of a dof without mass");
-    ritz_component_free(&held);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
     const double m[] = {1.0, 0.0, 2.0}, k[] = {0.0, 3.0, 4.0};
-    ritz_component body = {0};
+    RITZ_OWN(ritz_component) body = {0};
     ritz_gramians_request request = {0};
-    ritz_gramians low = {0};
+    RITZ_OWN(ritz_gramians) low = {0};
 
     (void)state;
     assert_ok(masses_component(3, m, k, NULL, &body));
@@ -82,8 +78,6 @@ static void no_allocation_failure_leaks(void **state)
     ritz_dense_col(&body.io.Ca, 0)[0] = 1.0;
     request = mass_row_rayleigh(&body, 0.3, 0.0);
     assert_survives_every_allocation(ritz_gramians_low_rank(&request, &low));
-    ritz_gramians_free(&low);
-    ritz_component_free(&body);
 }
 
 static const struct CMUnitTest tests[] = {

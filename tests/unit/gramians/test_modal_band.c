@@ -139,7 +139,7 @@ static void band_gramians_are_integrals_over_frequency(void **unused)
     (void)unused;
     for (int t = 0; t < 15; t++) {
         const double *hz = band[t % 3];
-        ritz_modal modal = {0};
+        RITZ_OWN(ritz_modal) modal = {0};
         ritz_dense W[2] = {{0}, {0}};
 
         set_model(zeta[t / 3], &modal);
@@ -155,7 +155,6 @@ static void band_gramians_are_integrals_over_frequency(void **unused)
         }
         ritz_dense_free(&W[0]);
         ritz_dense_free(&W[1]);
-        ritz_modal_free(&modal);
     }
 }
 
@@ -167,7 +166,7 @@ static void bands_add_up_to_the_whole(void **unused)
 
     (void)unused;
     for (int z = 0; z < 4; z++) {
-        ritz_modal modal = {0};
+        RITZ_OWN(ritz_modal) modal = {0};
         ritz_dense full[2] = {{0}, {0}}, once[2] = {{0}, {0}};
         double sum[2][STATES * STATES] = {{0}};
 
@@ -196,7 +195,6 @@ static void bands_add_up_to_the_whole(void **unused)
             ritz_dense_free(&full[k]);
             ritz_dense_free(&once[k]);
         }
-        ritz_modal_free(&modal);
     }
 }
 
@@ -208,24 +206,22 @@ static void factors_multiply_to_the_gramians(void **unused)
 
     (void)unused;
     for (int t = 0; t < 9; t++) {
-        ritz_modal modal = {0};
+        RITZ_OWN(ritz_modal) modal = {0};
         ritz_dense W[2] = {{0}, {0}}, Z[2] = {{0}, {0}};
 
         set_model(zeta[t / 3], &modal);
         assert_ok(ritz_modal_gramians(&modal, band[t % 3], &W[0], &W[1]));
         assert_ok(ritz_modal_factors(&modal, band[t % 3], &Z[0], &Z[1]));
         for (int k = 0; k < 2; k++) {
-            ritz_dense ZZ = {0};
+            RITZ_OWN(ritz_dense) ZZ = {0};
 
             assert_ok(ritz_dense_mul_nt(&Z[k], &Z[k], &ZZ));
             for (int e = 0; e < STATES * STATES; e++) /* measured: 3e-15 */
                 assert_near(ZZ.val[e], W[k].val[e],
                             1e-13 * size(&W[k], e % STATES, e / STATES));
-            ritz_dense_free(&ZZ);
             ritz_dense_free(&W[k]);
             ritz_dense_free(&Z[k]);
         }
-        ritz_modal_free(&modal);
     }
 }
 
@@ -233,7 +229,7 @@ static void
 a_band_of_everything_has_the_hankel_values_of_everything(void **unused)
 {
     static const double all[] = {0.0, HUGE_VAL};
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     double sigma[STATES], band[STATES];
 
     (void)unused;
@@ -243,7 +239,6 @@ a_band_of_everything_has_the_hankel_values_of_everything(void **unused)
     for (int k = 0; k < STATES; k++) /* of squares: eps / relative value */
         assert_near(band[k], sigma[k],
                     1e-14 * sigma[0] * (sigma[0] / sigma[k]));
-    ritz_modal_free(&modal);
 }
 
 /*
@@ -272,7 +267,7 @@ static void what_is_no_band_is_refused(void **unused)
 {
     static const double wrong[][2] = {
         {2.0, 1.0}, {1.0, 1.0}, {-1.0, 1.0}, {HUGE_VAL, HUGE_VAL}};
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     ritz_dense X = {0}, Y = {0};
     double sigma[STATES];
 
@@ -287,13 +282,12 @@ static void what_is_no_band_is_refused(void **unused)
     modal.zeta[3] = 0.0;
     assert_fails(ritz_modal_factors(&modal, (double[]){0.0, 1.0}, &X, &Y),
                  RITZ_ERR_ARGUMENT, "without damping");
-    ritz_modal_free(&modal);
 }
 
 /* Inputs that reach nothing, and no inputs at all. */
 static void what_is_not_reached_has_no_values(void **unused)
 {
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     double sigma[STATES];
 
     (void)unused;
@@ -305,31 +299,25 @@ static void what_is_not_reached_has_no_values(void **unused)
     modal.B.ncol = 0;
     assert_ok(ritz_modal_hankel(&modal, (double[]){0.1, 1.0}, sigma));
     assert_near(sigma[0], 0.0, 0.0);
-    ritz_modal_free(&modal);
 }
 
 static ritz_status once(const ritz_modal *modal)
 {
-    ritz_status status = RITZ_OK;
-    ritz_dense X = {0}, Y = {0};
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
     double sigma[STATES];
 
-    RITZ_TRY(ritz_modal_gramians(modal, (double[]){0.1, 1.0}, &X, &Y));
-    RITZ_TRY(ritz_modal_hankel(modal, (double[]){0.1, 1.0}, sigma));
-done:
-    ritz_dense_free(&X);
-    ritz_dense_free(&Y);
-    return status;
+    RITZ_CHECK(ritz_modal_gramians(modal, (double[]){0.1, 1.0}, &X, &Y));
+    RITZ_CHECK(ritz_modal_hankel(modal, (double[]){0.1, 1.0}, sigma));
+    return RITZ_OK;
 }
 
 static void bands_survive_every_allocation(void **unused)
 {
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
 
     (void)unused;
     set_model(0.02, &modal);
     assert_survives_every_allocation(once(&modal));
-    ritz_modal_free(&modal);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -46,7 +46,7 @@ static void a_ranking_agrees_with_itself_and_not_with_its_reverse(void **state)
 {
     const double up[] = {1, 2, 3, 4, 5, 6, 7};
     const double down[] = {7, -6, 5, 4, 3, -2, 1};
-    ritz_ranking a = {0}, b = {0};
+    RITZ_OWN(ritz_ranking) a = {0}, b = {0};
     ritz_agreement g = {0};
 
     (void)state;
@@ -71,8 +71,6 @@ static void a_ranking_agrees_with_itself_and_not_with_its_reverse(void **state)
     assert_int_equal(g.left[0], 6);
     assert_int_equal(g.entered[0], 0);
     ritz_agreement_free(&g);
-    ritz_ranking_free(&a);
-    ritz_ranking_free(&b);
 }
 
 /*
@@ -154,8 +152,8 @@ static void clusters_are_cut_by_no_depth(void **state)
 {
     const double one[] = {5, 5, 1, 0.5};
     const double two[] = {3, 3, 6, 0.5};
-    ritz_ranking a = {0}, b = {0};
-    ritz_agreement g = {0};
+    RITZ_OWN(ritz_ranking) a = {0}, b = {0};
+    RITZ_OWN(ritz_agreement) g = {0};
 
     (void)state;
     assert_ok(make(4, one, &a));
@@ -167,17 +165,14 @@ static void clusters_are_cut_by_no_depth(void **state)
     assert_int_equal(g.num_left, 0);
     assert_int_equal(g.num_entered, 1);
     assert_int_equal(g.entered[0], 2);
-    ritz_agreement_free(&g);
-    ritz_ranking_free(&a);
-    ritz_ranking_free(&b);
 }
 
 static void what_has_nothing_in_common_is_refused(void **state)
 {
     const double value[] = {2, 1};
     const int64_t here[] = {0, 1}, there[] = {2, 3}, half[] = {1, 4};
-    ritz_ranking a = {0};
-    ritz_agreement g = {0};
+    RITZ_OWN(ritz_ranking) a = {0};
+    RITZ_OWN(ritz_agreement) g = {0};
 
     (void)state;
     assert_ok(make(2, value, &a));
@@ -190,8 +185,6 @@ static void what_has_nothing_in_common_is_refused(void **state)
     assert_int_equal(g.alone[0], 1);
     assert_int_equal(g.alone[1], 1);
     assert_true(isnan(g.spearman)); /* one place has no order */
-    ritz_agreement_free(&g);
-    ritz_ranking_free(&a);
 }
 
 /* --- over configurations ---------------------------------------------------- */
@@ -251,7 +244,7 @@ static void several_rankings_come_back_from_a_file(void **state)
     int64_t *track[] = {track_a, track_b};
     ritz_ranking item[2] = {0};
     const ritz_rankings all = {.count = 2, .item = item, .track = track};
-    ritz_rankings back = {0};
+    RITZ_OWN(ritz_rankings) back = {0};
     int file = mkstemp(path);
 
     (void)state;
@@ -266,7 +259,6 @@ static void several_rankings_come_back_from_a_file(void **state)
     assert_string_equal(back.item[1].at, "clock=60");
     assert_near(back.item[1].value[1], 7.0, 0.0);
     assert_int_equal(back.track[1][1], 3);
-    ritz_rankings_free(&back);
     ritz_ranking_free(&item[0]);
     ritz_ranking_free(&item[1]);
     unlink(path);
@@ -302,7 +294,7 @@ static void weights_that_oscillate_are_found_out(void **state)
     double c[] = {1.0, 0.0, 0.0, 5.19615242270663188, 0.0, 1.0};
     double none[6] = {0.0};
     const ritz_rank_request request = request_of(b, c, none, 2);
-    ritz_reweighing found = {0};
+    RITZ_OWN(ritz_reweighing) found = {0};
 
     (void)state;
     assert_ok(ritz_reweigh(&request, 1, &found));
@@ -312,7 +304,6 @@ static void weights_that_oscillate_are_found_out(void **state)
     assert_int_equal(found.kept[0] + found.other[0], 1);
     assert_near(found.cost[0], 25.0, 1e-9);
     assert_near(found.weight[0] + found.weight[1], 2.0, 1e-12);
-    ritz_reweighing_free(&found);
 }
 
 /* Either output has a mode of its own, and misses some of the third. */
@@ -322,7 +313,7 @@ static void weights_settle_on_what_is_missed(void **state)
     double c[] = {1.0, 0.0, 0.0, 5.0, 1.0, 1.5};
     double none[6] = {0.0};
     const ritz_rank_request request = request_of(b, c, none, 2);
-    ritz_reweighing found = {0};
+    RITZ_OWN(ritz_reweighing) found = {0};
     double sum = 0.0, missed = 0.0;
 
     (void)state;
@@ -340,7 +331,6 @@ static void weights_settle_on_what_is_missed(void **state)
      * rounds is below 1e-9 */
     for (int i = 0; i < 2; i++)
         assert_near(found.weight[i], 2.0 * found.missed[i] / missed, 1e-8);
-    ritz_reweighing_free(&found);
 }
 
 static void weights_for_nothing_are_refused(void **state)
@@ -374,8 +364,8 @@ static ritz_status all_once(void)
     ritz_ranking item[2] = {0}, largest = {0};
     const ritz_rankings all = {.count = 2, .item = item};
     int64_t *where = NULL, *number = NULL;
-    ritz_agreement g = {0};
-    ritz_reweighing found = {0};
+    RITZ_OWN(ritz_agreement) g = {0};
+    RITZ_OWN(ritz_reweighing) found = {0};
 
     RITZ_TRY(make(3, one, &item[0]));
     RITZ_TRY(make(3, two, &item[1]));
@@ -388,8 +378,6 @@ done:
     ritz_ranking_free(&largest);
     free(where);
     free(number);
-    ritz_agreement_free(&g);
-    ritz_reweighing_free(&found);
     return status;
 }
 

@@ -29,15 +29,14 @@ static ritz_status some_modes(ritz_modal *out)
 {
     static const double omega[MODES] = {1.0, 2.0, 2.01, 5.0, 5.0,
                                         7.0, 9.0, 11.0, 30.0};
-    ritz_status status = RITZ_OK;
     uint64_t seed = 5;
 
     out->count = MODES;
-    RITZ_NEW(out->omega, MODES);
-    RITZ_NEW(out->zeta, MODES);
-    RITZ_TRY(ritz_dense_new(MODES, INPUTS, &out->B));
-    RITZ_TRY(ritz_dense_new(OUTPUTS, MODES, &out->C));
-    RITZ_TRY(ritz_dense_new(OUTPUTS, MODES, &out->Cv));
+    RITZ_CHECK_NEW(out->omega, MODES);
+    RITZ_CHECK_NEW(out->zeta, MODES);
+    RITZ_CHECK(ritz_dense_new(MODES, INPUTS, &out->B));
+    RITZ_CHECK(ritz_dense_new(OUTPUTS, MODES, &out->C));
+    RITZ_CHECK(ritz_dense_new(OUTPUTS, MODES, &out->Cv));
     for (int k = 0; k < MODES; k++) {
         out->omega[k] = omega[k];
         out->zeta[k] = k == 5 ? 0.3 : 0.01;
@@ -48,8 +47,7 @@ static ritz_status some_modes(ritz_modal *out)
         out->C.val[k] = noise(&seed);
         out->Cv.val[k] = 0.2 * noise(&seed);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static int set_up(void **state)
@@ -129,22 +127,20 @@ static double driven(const ritz_modal *modal, int64_t a, int64_t b)
 /* trace(B' W_o B), which modal costs, made of W_c, do not use. */
 static double norm_squared(const ritz_modal *modal)
 {
-    ritz_dense Wc = {0}, Wo = {0};
+    RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0};
     double sum = 0.0;
 
     assert_ok(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
     for (int64_t a = 0; a < STATES; a++)
         for (int64_t b = 0; b < STATES; b++)
             sum += driven(modal, a, b) * ritz_dense_col(&Wo, b)[a];
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
     return sum;
 }
 
 static void modal_costs_sum_to_the_norm_squared(void **state)
 {
     const ritz_modal *modal = *state;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
     double h2 = norm_squared(modal);
     double sum = 0.0, parts = 0.0;
 
@@ -160,7 +156,6 @@ static void modal_costs_sum_to_the_norm_squared(void **state)
     /* a cluster shares evenly */
     assert_near(ranking.value[3], ranking.value[4], 0.0);
     assert_int_equal(ranking.cluster[4], 3);
-    ritz_ranking_free(&ranking);
 }
 
 /*
@@ -177,14 +172,13 @@ static void a_negative_cost_is_said_and_ranked_by_magnitude(void **state)
     double none[3] = {0.0};
     const ritz_modal modal = {3,         omega,     zeta,
                               {3, 1, b}, {1, 3, c}, {1, 3, none}};
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     (void)state;
     assert_ok(rank(&ritz_ranker_modal_cost, &modal, &ranking));
     assert_true(ranking.value[1] < 0.0);
     assert_true(ranking.total > 0.0);
     assert_int_equal(ranking.order[1], 1);
-    ritz_ranking_free(&ranking);
 }
 
 /* Apart and lightly damped, what modes share is gone: V_k = (h2 of k)^2. */
@@ -197,7 +191,7 @@ static void light_costs_are_the_squares_of_the_norms(void **state)
     double none[3] = {0.0};
     const ritz_modal modal = {3,         omega,     zeta,
                               {3, 1, b}, {1, 3, c}, {1, 3, none}};
-    ritz_ranking cost = {0}, norm = {0};
+    RITZ_OWN(ritz_ranking) cost = {0}, norm = {0};
 
     (void)state;
     assert_ok(rank(&ritz_ranker_modal_cost, &modal, &cost));
@@ -207,8 +201,6 @@ static void light_costs_are_the_squares_of_the_norms(void **state)
     for (int k = 0; k < 3; k++)
         assert_near(cost.value[k], norm.value[k] * norm.value[k],
                     1e-3 * cost.value[0]);
-    ritz_ranking_free(&cost);
-    ritz_ranking_free(&norm);
 }
 
 static void a_band_without_ends_gives_the_whole_value(void **state)
@@ -247,23 +239,20 @@ static ritz_status clamped_beam(ritz_reduced *out)
 {
     static const int64_t driven_row[] = {1};
     static const int64_t seen_row[] = {4};
-    ritz_status status = RITZ_OK;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
-    RITZ_TRY(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
-    RITZ_TRY(frame_io(&beam, 1, driven_row, 1, seen_row));
-    RITZ_TRY(reduce_with(&beam, &ritz_method_normal_modes, 12, out));
-done:
-    ritz_component_free(&beam);
-    return status;
+    RITZ_CHECK(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
+    RITZ_CHECK(frame_io(&beam, 1, driven_row, 1, seen_row));
+    RITZ_CHECK(reduce_with(&beam, &ritz_method_normal_modes, 12, out));
+    return RITZ_OK;
 }
 
 static void effective_masses_sum_to_the_mass_that_moves(void **state)
 {
     const ritz_rank_choice choice = {.damping = {0}};
-    ritz_reduced beam = {0};
-    ritz_rank_request request = {0};
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_reduced) beam = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
     static const int planar[] = {0, 1, 5};
 
     (void)state;
@@ -294,9 +283,6 @@ static void effective_masses_sum_to_the_mass_that_moves(void **state)
     assert_int_equal(ranking.num_system, 0);
     assert_near(ranking.zeta[0], 0.0, 0.0);
     assert_true(isnan(ranking.coupling));
-    ritz_ranking_free(&ranking);
-    ritz_rank_request_free(&request);
-    ritz_reduced_free(&beam);
 }
 
 /*
@@ -308,9 +294,9 @@ static void a_cantilever_has_the_effective_masses_of_the_books(void **state)
 {
     const ritz_rank_choice choice = {.damping = {0}};
     const double rho = frame_mcdaniel.rho * frame_mcdaniel.area * 2.0;
-    ritz_reduced beam = {0};
-    ritz_rank_request request = {0};
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_reduced) beam = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     (void)state;
     assert_ok(clamped_beam(&beam));
@@ -320,46 +306,38 @@ static void a_cantilever_has_the_effective_masses_of_the_books(void **state)
     /* four elements and a lumped support: measured 0.04 of the mass off */
     assert_near(ritz_dense_col(&ranking.parts, 1)[0] / rho, 0.613, 0.06);
     assert_near(ritz_dense_col(&ranking.parts, 1)[1] / rho, 0.188, 0.06);
-    ritz_ranking_free(&ranking);
-    ritz_rank_request_free(&request);
-    ritz_reduced_free(&beam);
 }
 
 /* The free beam with its left end as interface, all fixed-interface modes. */
 static ritz_status held_beam(int64_t modes, ritz_reduced *out)
 {
-    ritz_status status = RITZ_OK;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
-    RITZ_TRY(frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &beam));
-    RITZ_TRY(add_port(&beam, "root", 1));
-    RITZ_TRY(reduce_with(&beam, &ritz_method_craig_bampton, modes, out));
-done:
-    ritz_component_free(&beam);
-    return status;
+    RITZ_CHECK(
+        frame_component(4, 0.5, &frame_mcdaniel, false, false, 1, &beam));
+    RITZ_CHECK(add_port(&beam, "root", 1));
+    RITZ_CHECK(reduce_with(&beam, &ritz_method_craig_bampton, modes, out));
+    return RITZ_OK;
 }
 
 static ritz_status rank_held(const ritz_reduced *beam, ritz_ranking *out)
 {
     const ritz_rank_choice choice = {.damping = {0}};
     const ritz_ranker *ranker = &ritz_ranker_effective_interface_mass;
-    ritz_status status = RITZ_OK;
-    ritz_rank_request request = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
 
-    RITZ_TRY(
+    RITZ_CHECK(
         ritz_rank_request_of_reduced(beam, &choice, ranker->needs, &request));
-    RITZ_TRY(ritz_rank(ranker, &request, out));
-done:
-    ritz_rank_request_free(&request);
-    return status;
+    RITZ_CHECK(ritz_rank(ranker, &request, out));
+    return RITZ_OK;
 }
 
 /* trace(M_s^-1 (M_bb - M_bi M_ii^-1 M_ib)) of the beam, root rows first. */
 static double held_by_the_root(const ritz_reduced *reduced)
 {
     enum { ROOT = 3, REST = 12 };
-    ritz_component beam = {0};
-    ritz_dense M = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_dense) M = {0};
     double M_ii[REST * REST], X[REST * ROOT], own[ROOT * ROOT];
     double M_s[ROOT * ROOT];
 
@@ -385,8 +363,6 @@ static double held_by_the_root(const ritz_reduced *reduced)
     assert_int_equal(
         LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', ROOT, ROOT, M_s, ROOT, own, ROOT),
         0);
-    ritz_dense_free(&M);
-    ritz_component_free(&beam);
     return own[0] + own[4] + own[8];
 }
 
@@ -396,8 +372,8 @@ static double held_by_the_root(const ritz_reduced *reduced)
  */
 static void interface_masses_sum_to_what_the_interior_carries(void **state)
 {
-    ritz_reduced beam = {0};
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_reduced) beam = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
     double sum = 0.0;
 
     (void)state;
@@ -409,17 +385,15 @@ static void interface_masses_sum_to_what_the_interior_carries(void **state)
     assert_near(sum, ranking.total, 1e-14);
     /* the conditioning of M_s and of the eigenvectors: measured 1e-13 */
     assert_near(sum, 1.0 - held_by_the_root(&beam) / 3.0, 1e-11);
-    ritz_ranking_free(&ranking);
-    ritz_reduced_free(&beam);
 }
 
 /* The 12 effective masses of the beam clamped there, but for its origin. */
 static void held_modes_are_those_of_the_clamped_beam(void **state)
 {
     const ritz_rank_choice choice = {.damping = {0}};
-    ritz_reduced beam = {0}, clamped = {0};
-    ritz_rank_request request = {0};
-    ritz_ranking held = {0}, fixed = {0};
+    RITZ_OWN(ritz_reduced) beam = {0}, clamped = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_ranking) held = {0}, fixed = {0};
 
     (void)state;
     assert_ok(held_beam(12, &beam));
@@ -437,11 +411,6 @@ static void held_modes_are_those_of_the_clamped_beam(void **state)
             (ritz_dense_col(&held.parts, 0)[k] > 1e-9 * held.whole[0]) ==
             (ritz_dense_col(&fixed.parts, 0)[k] > 1e-9 * fixed.whole[0]));
     }
-    ritz_ranking_free(&held);
-    ritz_ranking_free(&fixed);
-    ritz_rank_request_free(&request);
-    ritz_reduced_free(&beam);
-    ritz_reduced_free(&clamped);
 }
 
 /*
@@ -452,10 +421,10 @@ static void held_modes_are_those_of_the_clamped_beam(void **state)
 static void a_joined_system_knows_its_mass_in_rigid_motion(void **state)
 {
     static const double setting[] = {60.0, 0.0};
-    ritz_scene scene = {0};
-    ritz_stage stage = {0};
-    ritz_configuration c = {0};
-    ritz_dense sum = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) c = {0};
+    RITZ_OWN(ritz_dense) sum = {0};
 
     (void)state;
     dualspin_or_skip();
@@ -465,10 +434,6 @@ static void a_joined_system_knows_its_mass_in_rigid_motion(void **state)
     assert_ok(ritz_dense_mul_nt(&c.momentum, &c.momentum, &sum));
     for (int k = 0; k < 36; k++) /* rounding of inertias: measured 3e-15 */
         assert_near(sum.val[k], c.rigid[k], 1e-10 * ritz_dense_max(&sum));
-    ritz_dense_free(&sum);
-    ritz_configuration_free(&c);
-    ritz_stage_free(&stage);
-    ritz_scene_free(&scene);
 }
 
 /* --- weights ---------------------------------------------------------------- */
@@ -479,7 +444,7 @@ static void weights_are_factors_of_costs(void **state)
     ritz_weights weights = {0};
     ritz_rank_choice choice = {
         .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01}};
-    ritz_reduced beam = {0};
+    RITZ_OWN(ritz_reduced) beam = {0};
     ritz_rank_request request = {0};
     ritz_ranking plain = {0}, weighed = {0};
 
@@ -513,7 +478,6 @@ static void weights_are_factors_of_costs(void **state)
     ritz_ranking_free(&weighed);
     ritz_rank_request_free(&request);
     ritz_weights_free(&weights);
-    ritz_reduced_free(&beam);
 }
 
 static void weights_are_refused_in_words(void **state)
@@ -530,9 +494,9 @@ static void weights_are_refused_in_words(void **state)
         {"", "'' is not NAME=WEIGHT"},
         {"=1", "weights of outputs"},
     };
-    ritz_weights weights = {0};
+    RITZ_OWN(ritz_weights) weights = {0};
     ritz_rank_choice choice = {.weights = &weights};
-    ritz_reduced beam = {0};
+    RITZ_OWN(ritz_reduced) beam = {0};
     ritz_rank_request request = {0};
 
     (void)state;
@@ -544,8 +508,6 @@ static void weights_are_refused_in_words(void **state)
     assert_fails(ritz_rank_request_of_reduced(&beam, &choice, 0, &request),
                  RITZ_ERR_ARGUMENT,
                  "there is no input 'u2' to weigh, is 'u1' meant?");
-    ritz_weights_free(&weights);
-    ritz_reduced_free(&beam);
 }
 
 /* --- refusals --------------------------------------------------------------- */
@@ -554,7 +516,7 @@ static void rankings_say_what_they_lack(void **state)
 {
     const ritz_modal *modal = *state;
     ritz_rank_request request = {.modal = *modal};
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     assert_fails(ritz_rank(&ritz_ranker_hankel_band, &request, &ranking),
                  RITZ_ERR_ARGUMENT, "hankel-band: there is no band");
@@ -568,7 +530,6 @@ static void rankings_say_what_they_lack(void **state)
                  RITZ_ERR_ARGUMENT, "modal-cost: the modes have no damping");
     assert_ok(ritz_rank(&ritz_ranker_participation, &request, &ranking));
     assert_int_equal(ranking.num_system, 0);
-    ritz_ranking_free(&ranking);
 }
 
 static void masses_of_other_models_are_refused(void **state)
@@ -576,8 +537,8 @@ static void masses_of_other_models_are_refused(void **state)
     const ritz_rank_choice choice = {
         .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01}};
     const ritz_configuration nothing = {0};
-    ritz_component beam = {0};
-    ritz_reduced free_beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_reduced) free_beam = {0};
     ritz_rank_request request = {0};
     ritz_ranking ranking = {0};
 
@@ -595,8 +556,6 @@ static void masses_of_other_models_are_refused(void **state)
                      &nothing, &choice,
                      ritz_ranker_effective_interface_mass.needs, &request),
                  RITZ_ERR_ARGUMENT, "a system has no interface to hold");
-    ritz_component_free(&beam);
-    ritz_reduced_free(&free_beam);
 }
 
 /* --- every allocation ------------------------------------------------------- */
@@ -604,62 +563,50 @@ static void masses_of_other_models_are_refused(void **state)
 static ritz_status rank_by_all(const ritz_modal *modal)
 {
     const ritz_rank_request request = {.modal = *modal, .band_hz = {0.1, 1.0}};
-    ritz_status status = RITZ_OK;
     ritz_ranking ranking = {0};
 
     for (int r = 0; ritz_rankers[r]; r++) {
         if (ritz_rankers[r]->needs & (RITZ_RANK_MOMENTUM | RITZ_RANK_INTERFACE))
             continue;
-        RITZ_TRY(ritz_rank(ritz_rankers[r], &request, &ranking));
+        RITZ_CHECK(ritz_rank(ritz_rankers[r], &request, &ranking));
         ritz_ranking_free(&ranking);
     }
-done:
-    return status;
+    return RITZ_OK;
 }
 
 static ritz_status rank_masses(const ritz_reduced *beam)
 {
-    ritz_weights weights = {0};
+    RITZ_OWN(ritz_weights) weights = {0};
     const ritz_rank_choice choice = {
         .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01},
         .weights = &weights};
-    ritz_status status = RITZ_OK;
-    ritz_rank_request request = {0};
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_rank_request) request = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
-    RITZ_TRY(ritz_weights_parse("u1=2", "y1=3", &weights));
-    RITZ_TRY(ritz_rank_request_of_reduced(
+    RITZ_CHECK(ritz_weights_parse("u1=2", "y1=3", &weights));
+    RITZ_CHECK(ritz_rank_request_of_reduced(
         beam, &choice, ritz_ranker_effective_mass.needs, &request));
-    RITZ_TRY(ritz_rank(&ritz_ranker_effective_mass, &request, &ranking));
-done:
-    ritz_weights_free(&weights);
-    ritz_rank_request_free(&request);
-    ritz_ranking_free(&ranking);
-    return status;
+    RITZ_CHECK(ritz_rank(&ritz_ranker_effective_mass, &request, &ranking));
+    return RITZ_OK;
 }
 
 static ritz_status rank_held_once(const ritz_reduced *beam)
 {
-    ritz_status status = RITZ_OK;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
-    RITZ_TRY(rank_held(beam, &ranking));
-done:
-    ritz_ranking_free(&ranking);
-    return status;
+    RITZ_CHECK(rank_held(beam, &ranking));
+    return RITZ_OK;
 }
 
 static void rankers_survive_every_allocation(void **state)
 {
-    ritz_reduced held = {0}, clamped = {0};
+    RITZ_OWN(ritz_reduced) held = {0}, clamped = {0};
 
     assert_ok(held_beam(4, &held));
     assert_ok(clamped_beam(&clamped));
     assert_survives_every_allocation(rank_by_all(*state));
     assert_survives_every_allocation(rank_masses(&clamped));
     assert_survives_every_allocation(rank_held_once(&held));
-    ritz_reduced_free(&held);
-    ritz_reduced_free(&clamped);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -23,19 +23,16 @@ static ritz_status mcdaniel(double zeta, ritz_dense *K, ritz_dense *M,
     static const int64_t in[INPUTS] = {1, 4, 6};
     static const int64_t seen[OUTPUTS] = {2, 5, 7, 8, 10, 11};
     const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = zeta};
-    ritz_status status = RITZ_OK;
-    ritz_component beam = {0};
+    RITZ_OWN(ritz_component) beam = {0};
 
-    RITZ_TRY(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
-    RITZ_TRY(frame_io(&beam, INPUTS, in, OUTPUTS, seen));
-    RITZ_TRY(ritz_sparse_dense(&beam.K, K));
-    RITZ_TRY(ritz_sparse_dense(&beam.M, M));
+    RITZ_CHECK(frame_component(4, 0.5, &frame_mcdaniel, true, false, 1, &beam));
+    RITZ_CHECK(frame_io(&beam, INPUTS, in, OUTPUTS, seen));
+    RITZ_CHECK(ritz_sparse_dense(&beam.K, K));
+    RITZ_CHECK(ritz_sparse_dense(&beam.M, M));
     *io = beam.io;
     beam.io = (ritz_io){0};
-    RITZ_TRY(ritz_modal_new(K, M, NULL, io, &damping, modal));
-done:
-    ritz_component_free(&beam);
-    return status;
+    RITZ_CHECK(ritz_modal_new(K, M, NULL, io, &damping, modal));
+    return RITZ_OK;
 }
 
 /* Rank modes of which nothing else is known. */
@@ -82,13 +79,12 @@ static void the_cantilever_has_the_published_frequencies(void **state)
                                        0.544552, 1.012841, 1.537065, 1.626627,
                                        2.578744, 2.792127, 4.037661, 4.231175};
     const fixture *f = *state;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     assert_int_equal(f->modal.count, DOFS);
     assert_ok(rank(&ritz_ranker_gregory, &f->modal, &ranking));
     for (int k = 0; k < DOFS; k++)
         assert_near(ranking.hertz[k], hertz[k], 0.6e-6);
-    ritz_ranking_free(&ranking);
 }
 
 /* zeta sigma of the modes that are seen; the others exactly are not. */
@@ -101,7 +97,7 @@ static void gregory_gives_the_published_values_in_order(void **state)
                                    1e-6, 1e-6, 1e-6, 1e-6};
     static const int64_t unseen[] = {4, 7, 10, 11};
     const fixture *f = *state;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     assert_ok(rank(&ritz_ranker_gregory, &f->modal, &ranking));
     assert_string_equal(ranking.by, "gregory");
@@ -114,7 +110,6 @@ static void gregory_gives_the_published_values_in_order(void **state)
     for (int k = 0; k < 4; k++)
         assert_near(ranking.value[unseen[k] - 1], 0.0,
                     1e-12 * ranking.value[0]);
-    ritz_ranking_free(&ranking);
 }
 
 /* 24-state Lyapunov equations, digits as printed. */
@@ -128,7 +123,7 @@ static void exact_hankel_values_are_the_published_pairs(void **state)
                                    1e-5, 1e-5, 1e-5, 1e-5, 1e-5, 1e-5,
                                    1e-5, 1e-5, 1e-5, 1e-5};
     const fixture *f = *state;
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
 
     assert_ok(rank(&ritz_ranker_hankel, &f->modal, &ranking));
     assert_int_equal(ranking.num_system, 2 * DOFS);
@@ -136,18 +131,16 @@ static void exact_hankel_values_are_the_published_pairs(void **state)
         assert_near(ranking.system_value[k], sigma[k], 0.6 * digit[k]);
     for (int k = 16; k < 2 * DOFS; k++)
         assert_near(ranking.system_value[k], 0.0, 1e-12 * sigma[0]);
-    ritz_ranking_free(&ranking);
 }
 
 /* The value of the only mode. */
 static double value_of(const ritz_ranker *ranker, const ritz_modal *modal)
 {
-    ritz_ranking ranking = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
     double value = 0.0;
 
     assert_ok(rank(ranker, modal, &ranking));
     value = ranking.value[0];
-    ritz_ranking_free(&ranking);
     return value;
 }
 
@@ -195,9 +188,9 @@ static void hankel_values_are_the_eigenvalues_of_the_product(void **state)
     double c[] = {0.7, 0.2, 0.4, 1.1};
     double cv[] = {0.1, -0.3, 0.2, 0.5};
     const ritz_modal modal = {2, omega, zeta, {2, 1, b}, {2, 2, c}, {2, 2, cv}};
-    ritz_dense Wc = {0};
-    ritz_dense Wo = {0};
-    ritz_dense W = {0};
+    RITZ_OWN(ritz_dense) Wc = {0};
+    RITZ_OWN(ritz_dense) Wo = {0};
+    RITZ_OWN(ritz_dense) W = {0};
     double sigma[4];
     double re[4];
     double im[4];
@@ -216,9 +209,6 @@ static void hankel_values_are_the_eigenvalues_of_the_product(void **state)
             nearest = fmin(nearest, fabs(sqrt(fabs(re[j])) - sigma[k]));
         assert_near(nearest, 0.0, k == 0 ? 1e-12 : 1e-8);
     }
-    ritz_dense_free(&Wc);
-    ritz_dense_free(&Wo);
-    ritz_dense_free(&W);
 }
 
 /* Two directions of one mode: any basis of them gives the same value. */
@@ -289,8 +279,8 @@ static void damping_limits_and_accelerations_are_taken_in(void **state)
     const ritz_dense M = {3, 3, m};
     const ritz_dense D = {3, 3, d};
     const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    ritz_io io = {0};
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
 
     (void)state;
     assert_ok(ritz_io_new(3, 1, 1, &io));
@@ -303,8 +293,6 @@ static void damping_limits_and_accelerations_are_taken_in(void **state)
     assert_near(modal.zeta[1], 0.01 + 0.01, 1e-15);
     assert_near(modal.C.val[0], -4.0 / 0.5, 1e-14);
     assert_near(modal.Cv.val[1], -2.0 * 0.02 * 3.0 / 0.5, 1e-14);
-    ritz_modal_free(&modal);
-    ritz_io_free(&io);
 }
 
 static void what_cannot_be_ranked_is_refused_in_words(void **state)
@@ -315,8 +303,8 @@ static void what_cannot_be_ranked_is_refused_in_words(void **state)
     const ritz_dense K = {2, 2, k};
     const ritz_dense M = {2, 2, m};
     const ritz_dense D = {2, 2, d};
-    ritz_io io = {0};
-    ritz_modal modal = {0};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
     ritz_ranking ranking = {0};
 
     (void)state;
@@ -329,8 +317,6 @@ static void what_cannot_be_ranked_is_refused_in_words(void **state)
     assert_ok(ritz_modal_new(&K, &M, &D, &io, NULL, &modal));
     assert_fails(rank(&ritz_ranker_hankel, &modal, &ranking), RITZ_ERR_ARGUMENT,
                  "at least one input and one output");
-    ritz_modal_free(&modal);
-    ritz_io_free(&io);
 }
 
 static void rankings_are_found_by_name_or_nearly(void **state)
@@ -345,19 +331,14 @@ static void rankings_are_found_by_name_or_nearly(void **state)
 static ritz_status rank_once(const fixture *f)
 {
     const ritz_damping damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    ritz_status status = RITZ_OK;
-    ritz_modal modal = {0};
-    ritz_ranking light = {0};
-    ritz_ranking exact = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_ranking) light = {0};
+    RITZ_OWN(ritz_ranking) exact = {0};
 
-    RITZ_TRY(ritz_modal_new(&f->K, &f->M, NULL, &f->io, &damping, &modal));
-    RITZ_TRY(rank(&ritz_ranker_gregory, &modal, &light));
-    RITZ_TRY(rank(&ritz_ranker_hankel, &modal, &exact));
-done:
-    ritz_modal_free(&modal);
-    ritz_ranking_free(&light);
-    ritz_ranking_free(&exact);
-    return status;
+    RITZ_CHECK(ritz_modal_new(&f->K, &f->M, NULL, &f->io, &damping, &modal));
+    RITZ_CHECK(rank(&ritz_ranker_gregory, &modal, &light));
+    RITZ_CHECK(rank(&ritz_ranker_hankel, &modal, &exact));
+    return RITZ_OK;
 }
 
 static void ranking_survives_every_allocation(void **state)
