@@ -105,9 +105,10 @@ typedef struct ritz_ranker {
                   modes; if not, it is the value of each of them */
     double (*exact)(const double pair[static 2]); /* what a value approaches, of
                    a pair of exact Hankel values; NULL: it is no Hankel value */
-    /* one of both: the value of a cluster, which is a model of its own, or ... */
-    ritz_status (*value)(const ritz_rank_request *request,
-                         const ritz_modal *cluster, double *out);
+    /* one of both: the value of a cluster, which is a model of its own, over a
+       band if the ranking needs one, or ... */
+    ritz_status (*value)(const double *band_hz, const ritz_modal *cluster,
+                         double *out);
     /** ... all values, and `total` and parts where it has any, by
      * ritz_ranking_parts; all modes of a cluster get the same value, or they are
      * summed up by the caller. */

@@ -16,8 +16,6 @@
 #include "bases/balancing.h"
 #include "bases/columns.h"
 
-#include <inttypes.h>
-
 /* T contains rigid modes as positions or as velocities; other poles as both. */
 static bool is_rigid(const ritz_dense *T, int64_t j)
 {

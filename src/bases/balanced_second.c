@@ -29,8 +29,6 @@
 #include "bases/columns.h"
 #include "linear/orthonormal.h"
 
-#include <ritz/matrix.h>
-
 /* Which half of the controllability Gramian of x = [u; u'] is balanced. */
 typedef enum ritz_half {
     RITZ_HALF_POSITION,

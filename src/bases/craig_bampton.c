@@ -22,8 +22,6 @@
 #include "bases/columns.h"
 #include "bases/partition.h"
 
-#include <ritz/matrix.h>
-
 #include <stdio.h>
 #include <string.h>
 

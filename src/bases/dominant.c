@@ -13,13 +13,10 @@
 #include "base/tolerances.h"
 #include "model/modal.h"
 
-#include <ritz/matrix.h>
-
 #include <complex.h>
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 typedef struct candidate {

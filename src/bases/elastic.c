@@ -19,8 +19,6 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/matrix.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,28 +140,18 @@ ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
-                       ritz_factor **L, ritz_elastic *out)
+/* X := X - left (right' X), twice, which is enough. */
+static ritz_status take_out_twice(const ritz_dense *left,
+                                  const ritz_dense *right, ritz_dense *X)
 {
-    *out = (ritz_elastic){.K = K, .M = M, .L = *L};
-    *L = NULL;
+    for (int k = 0; k < 2 && left->ncol > 0 && X->ncol > 0; k++)
+        RITZ_CHECK(ritz_dense_take_out(left, right, X));
+    return RITZ_OK;
 }
 
 ritz_status ritz_elastic_forces(const ritz_elastic *E, ritz_dense *F)
 {
-    if (E->Phi.ncol == 0 || F->ncol == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_take_out(&E->MPhi, &E->Phi, F));
-    RITZ_CHECK(ritz_dense_take_out(&E->MPhi, &E->Phi, F)); /* twice is enough */
-    return RITZ_OK;
-}
-
-static ritz_status take_out_motion(const ritz_elastic *E, ritz_dense *X)
-{
-    if (E->Phi.ncol == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
-    return ritz_dense_take_out(&E->Phi, &E->MPhi, X);
+    return take_out_twice(&E->MPhi, &E->Phi, F);
 }
 
 /* X := S X. */
@@ -191,7 +179,7 @@ ritz_status ritz_elastic_respond(const ritz_elastic *E, ritz_ldl *A,
         return RITZ_OK;
     RITZ_CHECK(ritz_elastic_forces(E, X));
     RITZ_CHECK(A ? ritz_ldl_solve(A, X) : solve_supported(E, X));
-    return take_out_motion(E, X);
+    return take_out_twice(&E->Phi, &E->MPhi, X);
 }
 
 void ritz_elastic_free(ritz_elastic *E)

@@ -5,7 +5,10 @@
 #include <ritz/matrix.h>
 #include <ritz/model.h>
 
-/* The elastic static response to forces, by one factorization. */
+/*
+ * The elastic static response to forces, by one factorization. Of a body that is
+ * held there are K, M and L alone.
+ */
 typedef struct ritz_elastic {
     const ritz_sparse *K, *M; /* borrowed */
     ritz_dense Phi;           /* rigid modes, n x r, M-orthonormal */
@@ -24,13 +27,6 @@ typedef struct ritz_elastic {
  */
 ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
                              ritz_elastic *out);
-
-/**
- * ritz_elastic_new where K is known to be definite and is factored: takes @p L
- * and leaves NULL.
- */
-void ritz_elastic_held(const ritz_sparse *K, const ritz_sparse *M,
-                       ritz_factor **L, ritz_elastic *out);
 
 /**
  * F := P F, P = I - M Phi Phi': the forces less those that cause rigid motion.

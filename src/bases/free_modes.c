@@ -20,8 +20,6 @@
 #include "bases/columns.h"
 #include "bases/loads.h"
 
-#include <ritz/matrix.h>
-
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -261,29 +259,21 @@ ritz_status ritz_free_set_find(const ritz_request *request, int loads,
         RITZ_CHECK_NEW(response, set.F.ncol);
         RITZ_CHECK(find_residual(request, &set, response));
         RITZ_CHECK(choose_independent(response, request->tolerance, &set));
+        for (int64_t j = 0; j < set.Psi.ncol; j++)
+            set.kept += set.keep[j];
     }
     RITZ_MOVE(*out, set);
     return RITZ_OK;
-}
-
-int64_t ritz_free_set_kept(const ritz_free_set *set)
-{
-    int64_t kept = 0;
-
-    for (int64_t j = 0; j < set->Psi.ncol; j++)
-        kept += set->keep[j];
-    return kept;
 }
 
 ritz_status ritz_free_set_join(const ritz_request *request,
                                const ritz_free_set *set, ritz_column_kind kind,
                                ritz_basis *out)
 {
-    int64_t kept = ritz_free_set_kept(set);
     int64_t k = set->modes.Phi.ncol;
     char name[RITZ_LOADS_NAME_SIZE] = "";
 
-    RITZ_CHECK(ritz_basis_of_modes(&set->modes, kept, out));
+    RITZ_CHECK(ritz_basis_of_modes(&set->modes, set->kept, out));
     for (int64_t j = 0; j < set->Psi.ncol; j++) {
         const ritz_dense column = ritz_dense_part(&set->Psi, j, 1);
 
@@ -295,11 +285,12 @@ ritz_status ritz_free_set_join(const ritz_request *request,
         out->columns.dof[k] = set->dof[j];
         ritz_dense_put(&column, 0, k++, &out->T);
     }
-    if (kept < set->Psi.ncol)
+    if (set->kept < set->Psi.ncol)
         ritz_remark_add(out, "; ",
                         "%" PRId64 " %s mode(s) left out, the first of %s: "
                         "dependent, or negligible relative to the kept modes",
-                        set->Psi.ncol - kept, ritz_column_name(kind), name);
+                        set->Psi.ncol - set->kept, ritz_column_name(kind),
+                        name);
     return RITZ_OK;
 }
 

@@ -10,6 +10,7 @@ typedef struct ritz_free_set {
     ritz_dense F, Psi; /* n x p, loads and residual modes; {0}: no load */
     int64_t *dof;      /* p, row of an attached dof, -1 of other loads */
     bool *keep;        /* p, false: dependent, or negligible (tolerance) */
+    int64_t kept;      /* how many columns of Psi are */
 } ritz_free_set;
 
 /**
@@ -34,9 +35,6 @@ ritz_status ritz_free_set_join(const ritz_request *request,
 /** Both steps: the basis of modes and of residual columns of a kind. */
 ritz_status ritz_free_basis(const ritz_request *request, int loads,
                             ritz_column_kind kind, ritz_basis *out);
-
-/** The number of columns of Psi that are kept. */
-int64_t ritz_free_set_kept(const ritz_free_set *set);
 
 void ritz_free_set_free(ritz_free_set *set);
 

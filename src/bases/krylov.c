@@ -18,8 +18,6 @@
 #include "bases/columns.h"
 #include "bases/loads.h"
 
-#include <ritz/matrix.h>
-
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>

@@ -78,7 +78,8 @@ static ritz_status make_krylov_fixed(const ritz_request *request,
     RITZ_CHECK(ritz_partition_boundary(&s, L, &boundary));
     RITZ_CHECK(ritz_dense_rows(&boundary.T, s.i.count, s.i.at, &Psi));
     RITZ_CHECK(find_loads(request, &s, &Psi, &F));
-    ritz_elastic_held(&s.K_ii, &s.M_ii, &L, &interior);
+    interior = (ritz_elastic){.K = &s.K_ii, .M = &s.M_ii};
+    RITZ_MOVE(interior.L, L);
     RITZ_CHECK(ritz_krylov_new(&interior, request, &S));
     RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
     V = ritz_dense_part(&S.set.V, 0, S.set.count);

@@ -34,8 +34,6 @@
 #include "linear/general.h"
 #include "linear/orthonormal.h"
 
-#include <ritz/matrix.h>
-
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>

@@ -12,8 +12,6 @@
 #include "base/alloc.h"
 #include "bases/columns.h"
 
-#include <ritz/matrix.h>
-
 #include <inttypes.h>
 
 /* A + E A_n E'. */

@@ -5,7 +5,6 @@
 #include <ritz/basis.h>
 
 #include <inttypes.h>
-#include <stdbool.h>
 #include <stdio.h>
 
 const ritz_method *ritz_method_find(const char *name)

@@ -14,9 +14,7 @@
 #include "base/alloc.h"
 #include "bases/balancing.h"
 #include "bases/columns.h"
-#include "gramians/modal.h"
-
-#include <ritz/matrix.h>
+#include "gramians/modes.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -3,13 +3,10 @@
 #include "base/tolerances.h"
 #include "bases/columns.h"
 
-#include <ritz/matrix.h>
-
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { NAMED = 3 };
 

@@ -112,4 +112,13 @@ ritz_status ritz_dominant_probes(const ritz_rational *R,
                                  const ritz_damping *damping,
                                  const ritz_dense *T, ritz_probes *out);
 
+/**
+ * The basis of the method `tangential`.
+ *
+ * @param[out] probes  the responses in its span: at each point s, in direction
+ *                     b of a group of loads; may be NULL
+ */
+ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
+                                 ritz_probes *probes);
+
 #endif

@@ -35,7 +35,7 @@ static ritz_status pick_columns(const ritz_free_set *set, ritz_dense *Psi,
 {
     int64_t k = 0;
 
-    RITZ_CHECK(ritz_dense_new(set->Psi.nrow, ritz_free_set_kept(set), Psi));
+    RITZ_CHECK(ritz_dense_new(set->Psi.nrow, set->kept, Psi));
     for (int64_t j = 0; j < set->Psi.ncol; j++) {
         const ritz_dense column = ritz_dense_part(&set->Psi, j, 1);
 
@@ -137,7 +137,7 @@ static ritz_status make_rubin(const ritz_request *request, ritz_basis *out)
     const ritz_pairs *modes = &set.modes;
 
     RITZ_CHECK(ritz_free_set_find(request, RITZ_LOADS_ATTACHED, &set));
-    if (ritz_free_set_kept(&set) == 0) { /* then the modes are all there is */
+    if (set.kept == 0) { /* then the modes are all there is */
         RITZ_CHECK(
             ritz_free_set_join(request, &set, RITZ_COLUMN_RESIDUAL, out));
         add_remark(request, &set, out);

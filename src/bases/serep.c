@@ -18,8 +18,6 @@
 #include "base/tolerances.h"
 #include "bases/columns.h"
 
-#include <ritz/matrix.h>
-
 #include <lapacke.h>
 
 #include <inttypes.h>
@@ -75,6 +73,13 @@ static double dof_weight(const selection *c, int64_t k)
     return size > 0.0 ? 1.0 / size : 1.0;
 }
 
+/* Mode j at attached dof k, relative to the size of its kind. */
+static double weighted_entry(const selection *c, int64_t k, int64_t j)
+{
+    return dof_weight(c, k) *
+           ritz_dense_col(&c->modes->Phi, j)[c->request->attached.at[k]];
+}
+
 static int compare_dofs(const void *left, const void *right)
 {
     const int64_t *a = left;
@@ -98,8 +103,7 @@ static ritz_status choose_dofs(selection *c)
     RITZ_CHECK(ritz_dense_new(m, a->count, &R));
     for (int64_t k = 0; k < a->count; k++)
         for (int64_t j = 0; j < m; j++)
-            ritz_dense_col(&R, k)[j] =
-                dof_weight(c, k) * ritz_dense_col(&c->modes->Phi, j)[a->at[k]];
+            ritz_dense_col(&R, k)[j] = weighted_entry(c, k, j);
     RITZ_REFUSE_IF(LAPACKE_dgeqp3(LAPACK_COL_MAJOR, (int)m, (int)a->count,
                                   R.val, (int)m, pivot, tau) != 0,
                    RITZ_ERR_MEMORY, "no memory to choose among attached dofs");
@@ -113,8 +117,7 @@ static ritz_status choose_dofs(selection *c)
 static ritz_status decompose_modes(const selection *c, ritz_dense *U,
                                    double *sigma, ritz_dense *Vt)
 {
-    const ritz_dense *Phi = &c->modes->Phi;
-    int m = (int)Phi->ncol;
+    int m = (int)c->modes->Phi.ncol;
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN_ARRAY double *work = NULL;
 
@@ -124,9 +127,7 @@ static ritz_status decompose_modes(const selection *c, ritz_dense *U,
     RITZ_CHECK(ritz_dense_new(m, m, Vt));
     for (int64_t j = 0; j < m; j++)
         for (int64_t k = 0; k < m; k++)
-            ritz_dense_col(&A, j)[k] =
-                dof_weight(c, c->at[k]) *
-                ritz_dense_col(Phi, j)[c->request->attached.at[c->at[k]]];
+            ritz_dense_col(&A, j)[k] = weighted_entry(c, c->at[k], j);
     RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'A', m, m, A.val, m,
                                   sigma, U->val, m, Vt->val, m, work) != 0,
                    RITZ_ERR_CONVERGENCE,

@@ -22,7 +22,7 @@
  * The search begins at the most dominant of twice as many modes. Rigid motion,
  * which has no H2 norm, is kept in addition.
  */
-#include "bases/tangential.h"
+#include "bases/rational.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -30,13 +30,10 @@
 #include "bases/columns.h"
 #include "bases/loads.h"
 
-#include <ritz/matrix.h>
-
 #include <complex.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {

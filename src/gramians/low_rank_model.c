@@ -5,8 +5,6 @@
 #include "gramians/modes.h"
 #include "linear/general.h"
 
-#include <ritz/matrix.h>
-
 #include <complex.h>
 #include <float.h>
 #include <lapacke.h>

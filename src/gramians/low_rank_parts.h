@@ -7,7 +7,6 @@
 #include <ritz/model.h>
 
 #include <complex.h>
-#include <stdbool.h>
 
 enum {
     RITZ_LOW_RANK_STARTS = 2,  /* shifts at the lowest modes */

@@ -9,12 +9,9 @@
  *
  * and the feedthrough Ca b u is left out: it is the same whatever is kept.
  */
-#include "gramians/modal.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"
-
-#include <ritz/matrix.h>
 
 #include <lapacke.h>
 #include <math.h>

@@ -21,14 +21,12 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "gramians/modal.h"
 #include "gramians/modes.h"
 #include "linear/general.h"
 
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* S of a mode, in states (q, q'). */
 typedef struct response {

@@ -28,7 +28,4 @@ ritz_status ritz_ranking_sort(int64_t count, const double *value,
 /** A ranking of so many modes, all zero; nothing of the whole is known. */
 ritz_status ritz_ranking_new(int64_t count, ritz_ranking *out);
 
-/** Number of a mode: its track, or its index without tracks. */
-int64_t ritz_mode_number(const int64_t *track, int64_t mode);
-
 #endif

@@ -7,13 +7,14 @@
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
 #include "base/alloc.h"
-#include "gramians/modal.h"
+#include "gramians/modes.h"
+#include "linear/general.h"
 #include "ranking/costs.h"
 
 #include <math.h>
 
-static ritz_status find_largest(const ritz_modal *cluster,
-                                const double *band_hz, double *out)
+static ritz_status hankel_value(const double *band_hz,
+                                const ritz_modal *cluster, double *out)
 {
     RITZ_OWN_ARRAY double *sigma = NULL;
 
@@ -23,14 +24,7 @@ static ritz_status find_largest(const ritz_modal *cluster,
     return RITZ_OK;
 }
 
-static ritz_status hankel_value(const ritz_rank_request *request,
-                                const ritz_modal *cluster, double *out)
-{
-    (void)request;
-    return find_largest(cluster, NULL, out);
-}
-
-static double approached_value(const double pair[static 2])
+static double larger_value(const double pair[static 2])
 {
     return pair[0];
 }
@@ -40,7 +34,7 @@ const ritz_ranker ritz_ranker_hankel = {
     .summary = "largest exact Hankel value of each mode (or cluster) alone",
     .reference = "Moore1981",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
-    .exact = approached_value,
+    .exact = larger_value,
     .value = hankel_value,
 };
 
@@ -56,19 +50,13 @@ const ritz_ranker ritz_ranker_hankel = {
  * [GawronskiJuang1990]
  */
 
-static ritz_status band_value(const ritz_rank_request *request,
-                              const ritz_modal *cluster, double *out)
-{
-    return find_largest(cluster, request->band_hz, out);
-}
-
 const ritz_ranker ritz_ranker_hankel_band = {
     .name = "hankel-band",
     .summary = "largest Hankel value of each mode alone within a band",
     .reference = "GawronskiJuang1990",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING |
              RITZ_RANK_BAND,
-    .value = band_value,
+    .value = hankel_value,
 };
 
 /*
@@ -83,13 +71,13 @@ const ritz_ranker ritz_ranker_hankel_band = {
  * [Skelton1982]
  */
 
-static ritz_status h2_value(const ritz_rank_request *request,
-                            const ritz_modal *cluster, double *out)
+static ritz_status h2_value(const double *band_hz, const ritz_modal *cluster,
+                            double *out)
 {
     RITZ_OWN(ritz_dense) V = {0};
     double sum = 0.0;
 
-    (void)request;
+    (void)band_hz;
     RITZ_CHECK(ritz_modal_costs(cluster, &V));
     for (int64_t k = 0; k < V.nrow * V.ncol; k++)
         sum += V.val[k];
@@ -103,4 +91,73 @@ const ritz_ranker ritz_ranker_h2 = {
     .reference = "Skelton1982",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .value = h2_value,
+};
+
+/*
+ * Hankel values in the limit of light damping and separate frequencies
+ *
+ *     sigma = sqrt(b b' (w^-2 c_d' c_d + c_v' c_v)) / (4 zeta w)
+ *
+ * with b a row, c_d and c_v columns. A cluster of modes at one frequency is
+ * ranked as a whole, so that the value does not depend on which vectors span
+ * it:
+ *
+ *     sigma = | [C_d/w; C_v] B |_2 / (4 zeta w),
+ *
+ * which is the same for a single mode.
+ *
+ * [Gregory1984], [McDaniel2000] eq. 3.2.22
+ */
+/* B / sqrt(4 zeta w) and [C_d / w; C_v] / sqrt(4 zeta w) of some modes. */
+static void scale_modes(const ritz_modal *modal, ritz_dense *B, ritz_dense *C)
+{
+    int64_t p = modal->C.nrow;
+
+    for (int64_t k = 0; k < modal->count; k++) {
+        double w = modal->omega[k];
+        double s = 1.0 / sqrt(4.0 * modal->zeta[k] * w);
+        const double *cd = ritz_dense_col(&modal->C, k);
+        const double *cv = ritz_dense_col(&modal->Cv, k);
+        double *c = ritz_dense_col(C, k);
+
+        for (int64_t j = 0; j < B->ncol; j++)
+            ritz_dense_col(B, j)[k] = s * ritz_dense_col(&modal->B, j)[k];
+        for (int64_t i = 0; i < p; i++) {
+            c[i] = s * cd[i] / w;
+            c[p + i] = s * cv[i];
+        }
+    }
+}
+
+static ritz_status gregory_value(const double *band_hz,
+                                 const ritz_modal *cluster, double *out)
+{
+    RITZ_OWN(ritz_dense) B = {0};
+    RITZ_OWN(ritz_dense) C = {0};
+    RITZ_OWN(ritz_dense) CB = {0};
+
+    (void)band_hz;
+    RITZ_CHECK(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
+    RITZ_CHECK(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
+    scale_modes(cluster, &B, &C);
+    RITZ_CHECK(ritz_dense_mul(&C, &B, &CB));
+    return ritz_general_norm(&CB, out);
+}
+
+/*
+ * The two exact values of one mode, sigma (sqrt(1 + zeta^2) +- zeta), have the
+ * product sigma^2.
+ */
+static double geometric_mean(const double pair[static 2])
+{
+    return sqrt(pair[0]) * sqrt(pair[1]);
+}
+
+const ritz_ranker ritz_ranker_gregory = {
+    .name = "gregory",
+    .summary = "Hankel values in the limit of light damping, mode by mode",
+    .reference = "Gregory1984",
+    .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
+    .exact = geometric_mean,
+    .value = gregory_value,
 };

@@ -16,7 +16,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "gramians/modal.h"
 #include "gramians/modes.h"
 
 #include <ritz/ranking.h>

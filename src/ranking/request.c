@@ -4,12 +4,12 @@
  */
 
 #include "base/alloc.h"
+#include "base/names.h"
 #include "base/tolerances.h"
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 
 #include <ritz/ranking.h>
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,13 +91,12 @@ static ritz_status find_name(const ritz_weight *weight, const char *kind,
                              int64_t count, char (*name)[RITZ_NAME_SIZE],
                              int64_t *out)
 {
+    const ritz_names names = {kind, count, name[0], RITZ_NAME_SIZE};
     const char *near = NULL;
 
-    for (int64_t k = 0; k < count; k++)
-        if (strcmp(name[k], weight->name) == 0) {
-            *out = k;
-            return RITZ_OK;
-        }
+    *out = ritz_names_index(&names, weight->name);
+    if (*out >= 0)
+        return RITZ_OK;
     if (count > 0)
         near = ritz_text_nearest(weight->name, count, name[0], RITZ_NAME_SIZE);
     return ritz_fail(RITZ_ERR_ARGUMENT, "there is no %s '%s' to weigh%s%s%s",

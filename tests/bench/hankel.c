@@ -9,7 +9,7 @@
  * with. What takes less than a second is the median of five.
  */
 #include "base/alloc.h"
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 #include "linear/general.h"
 
 #include <ritz/model.h>

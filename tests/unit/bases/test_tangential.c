@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "bases/tangential.h"
+#include "bases/rational.h"
 #include "frame.h"
 #include "masses.h"
 #include "project.h"

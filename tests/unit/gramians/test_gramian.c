@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 #include "linear/general.h"
 
 #include <ritz/model.h>

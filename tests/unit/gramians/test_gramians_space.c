@@ -5,7 +5,7 @@
 #include "masses.h"
 #include "spaces.h"
 
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 #include "linear/general.h"
 
 #include <ritz/basis.h>

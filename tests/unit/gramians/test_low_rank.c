@@ -1,6 +1,5 @@
 #include "testing.h"
 
-#include "gramians/modal.h"
 #include "gramians/modes.h"
 #include "mass_row.h"
 #include "masses.h"

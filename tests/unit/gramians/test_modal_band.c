@@ -1,4 +1,4 @@
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 #include "testing.h"
 
 #include <ritz/model.h>

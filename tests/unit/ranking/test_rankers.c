@@ -3,7 +3,7 @@
 
 #include "dualspin.h"
 #include "frame.h"
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 #include "scenes.h"
 
 #include <ritz/assembly.h>

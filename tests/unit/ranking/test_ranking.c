@@ -1,7 +1,7 @@
 #include "testing.h"
 
 #include "frame.h"
-#include "gramians/modal.h"
+#include "gramians/modes.h"
 
 #include <ritz/matrix.h>
 #include <ritz/ranking.h>

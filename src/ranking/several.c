@@ -1,4 +1,120 @@
 /*
+ * One ranking over several configurations, by the largest value at any of them.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "ranking/costs.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Number of a mode: its track, or its index without tracks. */
+static int64_t mode_number(const int64_t *track, int64_t mode)
+{
+    return track ? track[mode] : mode;
+}
+
+static int64_t number_of(const ritz_rankings *all, int64_t item, int64_t mode)
+{
+    return mode_number(all->track ? all->track[item] : NULL, mode);
+}
+
+static ritz_status check_rankings(const ritz_rankings *all, int64_t *numbers)
+{
+    const ritz_ranking *first = all->item;
+
+    RITZ_REFUSE_IF(all->count == 0, RITZ_ERR_ARGUMENT, "there is no ranking");
+    *numbers = 0;
+    for (int64_t k = 0; k < all->count; k++) {
+        const ritz_ranking *r = &all->item[k];
+
+        RITZ_REFUSE_IF(strcmp(r->by, first->by) != 0, RITZ_ERR_ARGUMENT,
+                       "values by '%s' and by '%s' have no largest one",
+                       first->by, r->by);
+        RITZ_REFUSE_IF(!all->track && r->count != first->count,
+                       RITZ_ERR_ARGUMENT,
+                       "%" PRId64 " modes at '%s' and %" PRId64
+                       " at '%s': only tracks say which is which",
+                       first->count, first->at, r->count, r->at);
+        for (int64_t i = 0; i < r->count; i++)
+            if (number_of(all, k, i) >= *numbers)
+                *numbers = number_of(all, k, i) + 1;
+    }
+    return RITZ_OK;
+}
+
+/*
+ * For each number that a ranking has, the ranking and the mode with its largest
+ * value; returns how many there are.
+ *
+ * @param[out] item,mode,number  of each, in order of numbers
+ */
+static int64_t find_largest(const ritz_rankings *all, int64_t numbers,
+                            int64_t *item, int64_t *mode, int64_t *number)
+{
+    int64_t count = 0;
+
+    for (int64_t n = 0; n < numbers; n++)
+        item[n] = -1;
+    for (int64_t k = 0; k < all->count; k++)
+        for (int64_t i = 0; i < all->item[k].count; i++) {
+            int64_t n = number_of(all, k, i);
+            double size = fabs(all->item[k].value[i]);
+
+            if (item[n] < 0 || size > fabs(all->item[item[n]].value[mode[n]])) {
+                item[n] = k;
+                mode[n] = i;
+            }
+        }
+    for (int64_t n = 0; n < numbers; n++)
+        if (item[n] >= 0) {
+            item[count] = item[n];
+            mode[count] = mode[n];
+            number[count++] = n;
+        }
+    return count;
+}
+
+ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
+                                  ritz_ranking *out, int64_t **where,
+                                  int64_t **track)
+{
+    const ritz_ranking *first = rankings->item;
+    RITZ_OWN(ritz_ranking) largest = {0};
+    RITZ_OWN_ARRAY int64_t *item = NULL, *mode = NULL, *number = NULL;
+    int64_t numbers = 0, count = 0;
+
+    RITZ_CHECK(check_rankings(rankings, &numbers));
+    RITZ_CHECK_NEW(item, numbers);
+    RITZ_CHECK_NEW(mode, numbers);
+    RITZ_CHECK_NEW(number, numbers);
+    count = find_largest(rankings, numbers, item, mode, number);
+    RITZ_CHECK(ritz_ranking_new(count, &largest));
+    memcpy(largest.by, first->by, sizeof largest.by);
+    memcpy(largest.reference, first->reference, sizeof largest.reference);
+    memcpy(largest.damping, first->damping, sizeof largest.damping);
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_ranking *r = &rankings->item[item[k]];
+
+        largest.hertz[k] = r->hertz[mode[k]];
+        largest.zeta[k] = r->zeta[mode[k]];
+        largest.value[k] = r->value[mode[k]];
+        largest.cluster[k] = k;
+        /* neighbours that were one cluster where they are largest remain one */
+        if (k > 0 && item[k] == item[k - 1] &&
+            r->cluster[mode[k]] == r->cluster[mode[k - 1]])
+            largest.cluster[k] = largest.cluster[k - 1];
+    }
+    RITZ_CHECK(ritz_ranking_sort(count, largest.value, largest.order));
+    RITZ_MOVE(*out, largest);
+    RITZ_MOVE(*where, item);
+    RITZ_MOVE(*track, number);
+    return RITZ_OK;
+}
+
+/*
  * With the ranks p and q of the m modes that both rankings have, equal values
  * sharing the mean of their ranks, Spearman's coefficient is the correlation of
  * p and q, and Kendall's
@@ -10,15 +126,6 @@
  *
  * [Kendall1948]
  */
-#include <ritz/ranking.h>
-
-#include "base/alloc.h"
-#include "base/tolerances.h"
-#include "ranking/costs.h"
-
-#include <math.h>
-#include <stdlib.h>
-
 /* A mode that both rankings have. */
 typedef struct shared {
     int64_t number;
@@ -125,7 +232,7 @@ static ritz_status correlate_rankings(const ranked_values s[static 2],
 
     RITZ_CHECK_NEW(all, a->count);
     for (int64_t k = 0; k < a->count; k++) {
-        int64_t number = ritz_mode_number(s[0].track, k);
+        int64_t number = mode_number(s[0].track, k);
         int64_t other = find_mode(&s[1], number);
 
         if (other < 0)
@@ -157,7 +264,7 @@ static int64_t extend_to_cluster(const ritz_ranking *r, int64_t k)
 static bool is_among(const ranked_values *s, int64_t n, int64_t number)
 {
     for (int64_t k = 0; k < n; k++)
-        if (ritz_mode_number(s->track, s->ranking->order[k]) == number)
+        if (mode_number(s->track, s->ranking->order[k]) == number)
             return true;
     return false;
 }
@@ -175,7 +282,7 @@ static int64_t list_difference(const ranked_values *s,
     int64_t count = 0;
 
     for (int64_t i = 0; i < n; i++) {
-        int64_t number = ritz_mode_number(s->track, s->ranking->order[i]);
+        int64_t number = mode_number(s->track, s->ranking->order[i]);
 
         if (is_among(other, m, number))
             continue;
