@@ -182,7 +182,7 @@ ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
                                    ritz_sparse *out);
 
 /**
- * T'AT, exactly symmetric: always, or (project) if A is, and {0} of an absent A.
+ * T'AT, exactly symmetric: always, or (project) if A is; {0} of an absent A.
  *
  * @cost O(r nnz + n r^2)
  */
@@ -372,7 +372,8 @@ ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
 
 /**
  * How many of @p count ascending eigenvalues are rigid-body motions. Only a gap
- * can distinguish rounding from a soft mode; the first of these that holds decides,
+ * can distinguish rounding from a soft mode; the first of these that holds
+ * decides,
  * with lambda_next the one above the gap:
  *
  * - six below 1e-9 lambda_max, and 1e4 |lambda| <= lambda_next: one free body,

@@ -182,7 +182,7 @@ typedef struct ritz_basis {
 /** @p r columns of kind normal, with neither dof nor hertz nor residual. */
 ritz_status ritz_columns_new(int64_t r, ritz_columns *out);
 
-/** Columns at[0], at[1], ... of some in place of @p out; @p at NULL: the first. */
+/** Columns at[0], at[1], ... in place of @p out; @p at NULL: the first ones. */
 ritz_status ritz_columns_pick(const ritz_columns *columns, int64_t count,
                               const int64_t *at, ritz_columns *out);
 
@@ -239,10 +239,10 @@ typedef struct ritz_inertia {
 } ritz_inertia;
 
 /*
- * Inertia of the body in a moving frame, beyond M_r. R (n x 6) holds unit rigid motions about the basic
- * origin; T_b (g x r) the translations of the g grids along basic axis b; X_b
- * (g) their positions; m (g x g) is the nodal mass, a third of the trace of
- * each 3 x 3 block of M that joins translations.
+ * Inertia of the body in a moving frame, beyond M_r. R (n x 6) holds unit rigid
+ * motions about the basic origin; T_b (g x r) the translations of the g grids
+ * along basic axis b; X_b (g) their positions; m (g x g) is the nodal mass, a
+ * third of the trace of each 3 x 3 block of M that joins translations.
  *
  * The first two are of all of M. The others are exact where those blocks are
  * multiples of I3, as of solids and of lumped masses, and where no constraint

@@ -133,7 +133,7 @@
 /* Of |L|: an imaginary part below this is 0, and a sign that changes through
    infinity is no crossing. */
 #define RITZ_REAL_CROSSING 1e-6
-/* Bisection of a frequency ends where its interval is this part of it: 50 eps. */
+/* Interval, relative to its frequency, at which bisection ends: 50 eps. */
 #define RITZ_BISECTION_END 1e-14
 /* Distance of a shift from an eigenvalue, relative: the matrix can be factored
    there. A pole that was projected out is itself in error by as much, and the
@@ -306,8 +306,8 @@
 /* A bracket of a peak, or of a dip, this short, relative to its upper end, is
    done: the curve is flat there to the square of it. */
 #define RITZ_PEAK_PLACED 1e-9
-/* A peak is infinite, for want of damping, if it grows by RITZ_PEAK_GROWTH while
-   its bracket shrinks from RITZ_PEAK_LATE to RITZ_PEAK_SHARP. */
+/* A peak is infinite, for want of damping, if it grows by RITZ_PEAK_GROWTH
+   while its bracket shrinks from RITZ_PEAK_LATE to RITZ_PEAK_SHARP. */
 #define RITZ_PEAK_SHARP  1e-10
 #define RITZ_PEAK_LATE   1e-8
 #define RITZ_PEAK_GROWTH 1.5
@@ -380,8 +380,8 @@
 #define RITZ_PROPORTIONAL_WITHIN 1e-6
 /* A step of inverse iteration this small, of |s|, is the last. */
 #define RITZ_REFINED 1e-12
-/* A step, or the term of a series, below this that no longer shrinks is the last
-   too: slow poles of stiff models err by eps |K| / |s|. */
+/* A step, or the term of a series, below this that no longer shrinks is the
+   last too: slow poles of stiff models err by eps |K| / |s|. */
 #define RITZ_REFINED_NEARLY 1e-6
 /* The series of modes that are left out is good to this part of the whole
    response at the end of the range. */

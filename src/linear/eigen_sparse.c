@@ -208,7 +208,8 @@ static ritz_status polish_vectors(const ritz_shifted *S, ritz_dense *X,
 }
 
 /*
- * All finite modes, where only the columns h of M are not zero. Only the rows h of M x are not zero, so
+ * All finite modes, where only the columns h of M are not zero, and so only the
+ * rows h of M x:
  *
  *     x = theta W M_hh x_h,   W = A^-1 E_h,   G = E_h' W = (A^-1)_hh
  *

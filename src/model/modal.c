@@ -2,8 +2,8 @@
  * K Phi = M Phi Lambda, Phi'M Phi = I, of a dense model. Accelerations are
  * written out, u'' = Phi (B u - Lambda q - Delta q').
  *
- * Motion without mass has no modes here. Undamped, it responds statically: with R
- * the part of those infinite eigenvalues in the flexibility,
+ * Motion without mass has no modes here. Undamped, it responds statically: with
+ * R the part of those infinite eigenvalues in the flexibility,
  *
  *     (K + s M)^-1 = Phi (Lambda + s)^-1 Phi' + R     for every s,
  *

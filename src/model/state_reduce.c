@@ -89,9 +89,9 @@ static double largest_terms(const ritz_dense *A, int64_t i, const ritz_dense *X,
 }
 
 /*
- * Columns of rigid motion are made of rigid modes and of no others. Rigid motion
- * of other columns that is rounding is set to 0: left as it is, it would couple
- * what is decoupled, by numbers so small that scaling goes astray.
+ * Columns of rigid motion are made of rigid modes and of no others. Rigid
+ * motion of other columns that is rounding is set to 0: left as it is, it would
+ * couple what is decoupled, by numbers so small that scaling goes astray.
  */
 static void settle_rigid(const ritz_modal_model *modes,
                          const ritz_columns *columns, const ritz_dense *A,
