@@ -10,7 +10,7 @@
  *
  *     %s           text      NULL: null
  *     %ld          integer   int64_t, which is long where Ritz builds
- *     %g %e %f     number    null, and '-' in the text, if it is none
+ *     %g %e %f     number    not finite: null; NaN is '-' in the text
  *     %d           boolean
  */
 #ifndef RITZ_TOOLS_CLI_SINK_H
@@ -60,7 +60,7 @@ void sink_end(cli_run *run);
 void sink_record(cli_run *run);
 ritz_status sink_end_record(cli_run *run);
 
-/** Open the line of this run that --record appends at its end. */
+/** Open the object of the line that --record appends when the run ends. */
 void sink_line(cli_run *run);
 
 /** The object or list that is open; borrowed. */

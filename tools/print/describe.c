@@ -96,9 +96,9 @@ static void describe_port(cli_run *run, const char *name, int64_t count,
                           const double *origin)
 {
     enum { SHOWN = 12 };
-    char text[SHOWN * 22] = "";
     int64_t grids = 0;
 
+    sink_part(run, "  port %-9s %ld dofs at grids", name, count);
     sink_list(run, "ports");
     sink_add(run, "%s", name);
     sink_end(run);
@@ -113,16 +113,15 @@ static void describe_port(cli_run *run, const char *name, int64_t count,
         if (k == 0 || grid != last) {
             sink_add(run, "%ld", grid);
             if (grids++ < SHOWN)
-                sink_append(text, sizeof text, " %ld", grid);
+                sink_part(run, " %ld", grid);
         }
         last = grid;
     }
     sink_end(run);
     sink_end(run);
     sink_end(run);
-    cli_say(run, "  port %-9s %ld dofs at grids%s%s, origin (%g, %g, %g)", name,
-            count, text, grids > SHOWN ? " ..." : "", origin[0], origin[1],
-            origin[2]);
+    cli_say(run, "%s, origin (%g, %g, %g)", grids > SHOWN ? " ..." : "",
+            origin[0], origin[1], origin[2]);
 }
 
 /* Lists of ports are there even where there is none. */
@@ -212,24 +211,25 @@ static int64_t print_grid(const ritz_recovery *r, int64_t k, size_t size,
 static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
 {
     enum { SHOWN = 5 };
-    char text[SHOWN * 64] = "";
-    int64_t grids = 0;
+    int64_t count = recovery->count, grids = 0;
 
-    sink_set(run, "recovered", "%ld", recovery->count);
+    sink_set(run, "recovered", "%ld", count);
+    if (count > 0)
+        sink_part(run,
+                  "  %-14s %ld dofs that follow from the others: ", "recovered",
+                  count);
     sink_list(run, "recovered_dofs");
-    for (int64_t k = 0; k < recovery->count; grids++) {
+    for (int64_t k = 0; k < count; grids++) {
         char one[64];
 
         k = print_grid(recovery, k, sizeof one, one);
         sink_add(run, "%s", one);
         if (grids < SHOWN)
-            sink_append(text, sizeof text, "%s%s", grids > 0 ? ", " : "", one);
+            sink_part(run, "%s%s", grids > 0 ? ", " : "", one);
     }
     sink_end(run);
-    if (recovery->count > 0)
-        cli_say(run, "  %-14s %ld dofs that follow from the others: %s%s",
-                "recovered", recovery->count, text,
-                grids > SHOWN ? ", ..." : "");
+    if (count > 0)
+        cli_say(run, "%s", grids > SHOWN ? ", ..." : "");
 }
 
 void describe_component(cli_run *run, const ritz_component *c)
