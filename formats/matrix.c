@@ -6,26 +6,34 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A longer copy of an array of eight-byte numbers; NULL: no memory. */
+static void *widen_array(const void *array, int64_t used, int64_t room)
+{
+    void *wide = ritz_zalloc(room, sizeof(double));
+
+    if (wide && array)
+        memcpy(wide, array, (size_t)used * sizeof(double));
+    return wide;
+}
+
 ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
 {
-    RITZ_OWN(ritz_triplets) wide = {.count = list->count, .room = list->room};
-    size_t used = (size_t)list->count;
+    int64_t used = list->count;
+    int64_t room = list->room + (more > list->room ? more : list->room);
+    ritz_triplets wide = {.count = used, .room = room};
 
-    if (more <= list->room - list->count)
+    if (more <= list->room - used)
         return RITZ_OK;
-    wide.room += more > list->room ? more : list->room;
-    RITZ_CHECK_NEW(wide.row, wide.room);
-    RITZ_CHECK_NEW(wide.col, wide.room);
-    RITZ_CHECK_NEW(wide.re, wide.room);
-    RITZ_CHECK_NEW(wide.im, wide.room);
-    if (used > 0) {
-        memcpy(wide.row, list->row, used * sizeof *wide.row);
-        memcpy(wide.col, list->col, used * sizeof *wide.col);
-        memcpy(wide.re, list->re, used * sizeof *wide.re);
-        memcpy(wide.im, list->im, used * sizeof *wide.im);
+    wide.row = widen_array(list->row, used, room);
+    wide.col = widen_array(list->col, used, room);
+    wide.re = widen_array(list->re, used, room);
+    wide.im = widen_array(list->im, used, room);
+    if (!wide.row || !wide.col || !wide.re || !wide.im) {
+        ritz_triplets_free(&wide);
+        return RITZ_ERR_MEMORY;
     }
     ritz_triplets_free(list);
-    RITZ_MOVE(*list, wide);
+    *list = wide;
     return RITZ_OK;
 }
 
@@ -43,16 +51,16 @@ static bool is_sorted(const ritz_triplets *list)
 static ritz_status move_entries(ritz_triplets *list, int64_t ncol,
                                 ritz_sparse *A, double **imaginary)
 {
-    if (!list->row)
-        RITZ_CHECK(ritz_triplets_reserve(list, 1));
     RITZ_CHECK_NEW(A->colptr, ncol + 1);
     for (int64_t k = 0; k < list->count; k++)
         A->colptr[list->col[k] + 1]++;
     for (int64_t j = 0; j < ncol; j++)
         A->colptr[j + 1] += A->colptr[j];
-    RITZ_MOVE(A->rowind, list->row);
-    RITZ_MOVE(A->val, list->re);
-    RITZ_MOVE(*imaginary, list->im);
+    A->rowind = list->row;
+    A->val = list->re;
+    *imaginary = list->im;
+    free(list->col);
+    *list = (ritz_triplets){0};
     return RITZ_OK;
 }
 
@@ -62,6 +70,8 @@ ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
     RITZ_OWN(ritz_sparse) A = {.nrow = nrow, .ncol = ncol}, imaginary = {0};
 
     if (is_sorted(list)) {
+        if (list->room == 0) /* arrays of nothing are arrays too */
+            RITZ_CHECK(ritz_triplets_reserve(list, 1));
         RITZ_CHECK(move_entries(list, ncol, &A, &imaginary.val));
     } else {
         RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
@@ -70,8 +80,8 @@ ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
             RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count,
                                                  list->row, list->col, list->im,
                                                  &imaginary));
+        ritz_triplets_free(list);
     }
-    ritz_triplets_free(list);
     RITZ_MOVE(m->A, A);
     if (complex) /* the pattern is the same */
         RITZ_MOVE(m->imaginary, imaginary.val);

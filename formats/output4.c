@@ -5,14 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static const ritz_output4_spelling *const spellings[] = {&ritz_output4_binary,
-                                                         &ritz_output4_text};
-enum { NUM_SPELLINGS = sizeof spellings / sizeof *spellings };
+static const ritz_output4_spelling *const spellings[] = {
+    &ritz_output4_binary, &ritz_output4_text, NULL};
 
 static bool open_bytes(const char *bytes, int64_t size,
                        ritz_output4_reader *out)
 {
-    for (int k = 0; k < NUM_SPELLINGS; k++) {
+    for (int k = 0; spellings[k]; k++) {
         *out = (ritz_output4_reader){
             .as = spellings[k],
             .begin = bytes,
@@ -87,7 +86,7 @@ static ritz_status read_columns(ritz_output4_reader *r,
     RITZ_OWN(ritz_output4_build) build = {0};
     RITZ_OWN(ritz_matrix) new = {.digits = r->digits};
     bool sparse = false;
-    int64_t n[3];
+    int64_t n[3] = {0};
 
     RITZ_CHECK(ritz_output4_begin(header, r->text.end - r->begin, &build));
     build.wide = r->wide;
@@ -123,7 +122,8 @@ static ritz_status read_matrix(const ritz_foreign *file,
     ritz_output4_header header = {0};
     bool found = false;
 
-    (void)open_bytes(file->bytes, file->size, &r);
+    RITZ_REFUSE_IF(!open_bytes(file->bytes, file->size, &r), RITZ_ERR_FORMAT,
+                   "holds no matrix");
     r.text.at = file->bytes + which->at;
     r.text.number = which->line - 1;
     RITZ_CHECK(r.as->take_header(&r, &header, &found));
@@ -138,7 +138,7 @@ static bool skip_columns(ritz_output4_reader *r,
 {
     const ritz_output4_build build = {.header = *header};
     int64_t column = 0;
-    int64_t n[3];
+    int64_t n[3] = {0};
 
     while (column <= header->ncol) {
         if (r->as->take_column(r, &build, n) != RITZ_OK || n[0] <= column ||
@@ -173,7 +173,8 @@ static ritz_status list_matrices(const ritz_foreign *file, bool check,
     ritz_output4_header header = {0};
     bool found = false;
 
-    (void)open_bytes(file->bytes, file->size, &r);
+    RITZ_REFUSE_IF(!open_bytes(file->bytes, file->size, &r), RITZ_ERR_FORMAT,
+                   "holds no matrix");
     for (;;) {
         ritz_listed item = {0};
 
