@@ -132,9 +132,9 @@ ritz_status ritz_krylov_space_new(const ritz_direct *direct, double tau,
 }
 
 /* x := x - X X'A x for the columns of X, and the norm of the result in A. */
-static ritz_status orthogonalise(const ritz_krylov_space *s,
-                                 const ritz_dense *X, ritz_dense *x,
-                                 double *length)
+static ritz_status orthogonalise_vector(const ritz_krylov_space *s,
+                                        const ritz_dense *X, ritz_dense *x,
+                                        double *length)
 {
     RITZ_OWN(ritz_dense) Ax = {0}, part_of = {0}, part = {0};
 
@@ -161,9 +161,9 @@ static ritz_status add_vector(ritz_krylov_space *s, ritz_dense *x, bool *added)
     *added = false;
     if (s->V.ncol >= x->nrow)
         return RITZ_OK;
-    RITZ_CHECK(orthogonalise(s, &none, x, &before));
+    RITZ_CHECK(orthogonalise_vector(s, &none, x, &before));
     for (int pass = 0; pass < 2; pass++) {
-        RITZ_CHECK(orthogonalise(s, &X, x, &length));
+        RITZ_CHECK(orthogonalise_vector(s, &X, x, &length));
         if (!(length > RITZ_DEPENDENT * before) || !isfinite(length))
             return RITZ_OK;
     }
