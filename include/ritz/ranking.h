@@ -54,15 +54,15 @@ typedef struct ritz_rank_choice {
 
 /* What is ranked. {0} parts are absent. */
 typedef struct ritz_rank_request {
-    ritz_modal modal;     /* the modes */
-    bool undamped;        /* they have no damping: ratios there mean nothing */
-    bool bare;            /* values and order alone, nothing exact beside */
-    double band_hz[2];    /* HUGE_VAL is infinity */
-    ritz_dense momentum;  /* 6 x m, R'M phi about the basic origin */
-    double rigid[36];     /* R'MR, symmetric */
-    ritz_dense coupling;  /* p x m, M_ib of fixed-interface modes */
-    ritz_dense interface; /* p x p, mass of the interface: Psi'M Psi */
-    char (*input)[RITZ_NAME_SIZE];  /* NULL: without names */
+    ritz_modal modal; /* the modes */
+    bool undamped;    /* they have no damping: ratios there mean nothing */
+    bool bare;        /* values and order alone, no exact values of the whole */
+    double band_hz[2];             /* HUGE_VAL is infinity */
+    ritz_dense momentum;           /* 6 x m, R'M phi about the basic origin */
+    double rigid[36];              /* R'MR, symmetric */
+    ritz_dense coupling;           /* p x m, M_ib of fixed-interface modes */
+    ritz_dense interface;          /* p x p, mass of the interface: Psi'M Psi */
+    char (*input)[RITZ_NAME_SIZE]; /* NULL: without names */
     char (*output)[RITZ_NAME_SIZE]; /* NULL: without names */
 } ritz_rank_request;
 
@@ -197,13 +197,13 @@ void ritz_rankings_free(ritz_rankings *rankings);
  *     d_i = |Y_i - Y_i(kept alone)|, what output i misses, in squared limits,
  *     q_i := (1 - a) p d_i / sum d + a q_i,    a = 1/2, q_i = 1 at first
  *
- * until weights and choice repeat: from round to round, or after several, which
- * is an oscillation and has no solution.
+ * until weights and choice repeat: from one round to the next, or after several
+ * rounds, which is an oscillation: then no weights suit their own choice.
  */
 
 typedef struct ritz_reweighing {
     int64_t num_outputs;
-    double *weight; /* q, beside those of the request; of the best round */
+    double *weight; /* q of the best round, times those of the request */
     double *cost;   /* Y, variance of each output for white inputs */
     double *missed; /* d of the best round: its largest is the least */
     int64_t num_kept;

@@ -108,7 +108,7 @@ ritz_status ritz_low_rank_window_add(const ritz_low_rank_model *model,
 }
 
 /* A = V diag(e) V', V over A. */
-static ritz_status diagonalise(ritz_dense *A, double *e)
+static ritz_status diagonalise_symmetric(ritz_dense *A, double *e)
 {
     int n = (int)A->nrow;
     int info = 0;
@@ -139,7 +139,7 @@ static ritz_status orthonormalise_window(const ritz_low_rank_window *window,
     }
     for (int64_t k = 0; k < c * c; k++)
         G.val[k] = size[k % c] * G.val[k] * size[k / c];
-    RITZ_CHECK(diagonalise(&G, e));
+    RITZ_CHECK(diagonalise_symmetric(&G, e));
     while (first < c && !(e[first] > RITZ_SQUARED_DEPENDENT * e[c - 1]))
         first++;
     RITZ_CHECK(ritz_dense_columns(&G, first, c - first, out));
@@ -178,7 +178,7 @@ static ritz_status find_window_modes(const ritz_low_rank_window *window,
     RITZ_CHECK(project_products(window, 1, &V, &K));
     RITZ_CHECK_NEW(w, K.nrow);
     ritz_dense_symmetrise(&K);
-    RITZ_CHECK(diagonalise(&K, w));
+    RITZ_CHECK(diagonalise_symmetric(&K, w));
     RITZ_CHECK(ritz_dense_mul(&V, &K, &modes));
     RITZ_CHECK(project_products(window, 2, &modes, Delta));
     for (int64_t k = 0; k < K.nrow; k++) /* the last one is exact enough */
