@@ -91,6 +91,7 @@ static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
     int64_t count = take_grids(card, cell, most, grid);
     int64_t kind = cell->full && count == most ? cell->full : cell->kind;
     int64_t *end = &all->first[all->count + 1];
+    int64_t held = *room;
 
     if (count == 1 && corners == 2)
         return RITZ_OK;
@@ -100,9 +101,10 @@ static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
     }
     *end = all->first[all->count];
     for (int64_t i = 0; i < ritz_cell_size(kind); i++) {
-        RITZ_CHECK_ROOM(all->grid, *end, *room);
+        RITZ_CHECK_ROOM(all->grid, *end, held);
         all->grid[(*end)++] = grid[place_of(kind, i)];
     }
+    *room = held;
     all->kind[all->count++] = kind;
     return RITZ_OK;
 }

@@ -105,7 +105,8 @@ static ritz_status add_file(ritz_cards *cards, const char *path, char *text)
     RITZ_CHECK_ROOM(cards->file, cards->num_files, cards->files_room);
     if (path)
         RITZ_CHECK_COPY(copy, path, (int64_t)strlen(path) + 1);
-    cards->file[cards->num_files++] = (ritz_cards_file){copy, text};
+    cards->file[cards->num_files].path = copy;
+    cards->file[cards->num_files++].text = text;
     return RITZ_OK;
 }
 
