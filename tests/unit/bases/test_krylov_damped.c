@@ -161,11 +161,11 @@ static void without_damping_the_span_is_that_of_krylov(void **state)
     fixture *f = *state;
     ritz_component still = f->truss;
     ritz_request request = f->request;
-    RITZ_OWN(ritz_basis) damped = {0}, undamped = {0};
+    RITZ_OWN(ritz_basis) undamped = {0};
 
     still.D = (ritz_sparse){0};
     request.component = &still;
-    damped = basis_of(request, 4 * LOADS);
+    RITZ_OWN(ritz_basis) damped = basis_of(request, 4 * LOADS);
     request.modes = 4 * LOADS;
     assert_ok(ritz_basis_make(&ritz_method_krylov, &request, &undamped));
     assert_near(outside(&still.K, &damped.T, &undamped.T), 0.0, solve_error);
@@ -180,20 +180,19 @@ static void stated_rayleigh_damping_is_a_matrix(void **state)
     const double b = 1e-4;
     ritz_component stated = f->truss, matrix = f->truss;
     ritz_request request = f->request;
-    RITZ_OWN(ritz_basis) by_choice = {0}, by_text = {0}, by_matrix = {0};
 
     stated.D = matrix.D = (ritz_sparse){0};
     assert_ok(ritz_sparse_add(a, &f->truss.M, b, &f->truss.K, &matrix.D));
     request.component = &matrix;
-    by_matrix = basis_of(request, 9);
+    RITZ_OWN(ritz_basis) by_matrix = basis_of(request, 9);
     request.component = &stated;
     (void)snprintf(stated.damping, sizeof stated.damping, "rayleigh 3 1e-4");
-    by_text = basis_of(request, 9);
+    RITZ_OWN(ritz_basis) by_text = basis_of(request, 9);
     (void)snprintf(stated.damping, sizeof stated.damping, "modal 0.01");
     request.choice.given = RITZ_USES_DAMPING;
     request.choice.damping =
         (ritz_damping){.kind = RITZ_DAMPING_RAYLEIGH, .a = a, .b = b};
-    by_choice = basis_of(request, 9);
+    RITZ_OWN(ritz_basis) by_choice = basis_of(request, 9);
     assert_near(outside(&stated.K, &by_matrix.T, &by_text.T), 0.0, solve_error);
     assert_near(outside(&stated.K, &by_matrix.T, &by_choice.T), 0.0,
                 solve_error);
@@ -209,7 +208,6 @@ static void discrete_dampers_count(void **state)
     fixture *f = *state;
     ritz_component apart = f->truss, within = {0};
     ritz_request request = f->request;
-    RITZ_OWN(ritz_basis) one = {0}, other = {0};
 
     apart.D = (ritz_sparse){0};
     assert_ok(ritz_dampers_new(DOFS, 1, &apart.dampers));
@@ -227,9 +225,9 @@ static void discrete_dampers_count(void **state)
     request.choice.damping =
         (ritz_damping){.kind = RITZ_DAMPING_RAYLEIGH, .a = 3.0, .b = 1e-2};
     request.component = &apart;
-    one = basis_of(request, 9);
+    RITZ_OWN(ritz_basis) one = basis_of(request, 9);
     request.component = &within;
-    other = basis_of(request, 9);
+    RITZ_OWN(ritz_basis) other = basis_of(request, 9);
     assert_near(outside(&within.K, &other.T, &one.T), 0.0, solve_error);
     within.io = (ritz_io){0};
     ritz_dampers_free(&apart.dampers);
