@@ -51,7 +51,7 @@ typedef enum ritz_gramian {
     RITZ_GRAMIAN_OUTPUTS, /* observability */
 } ritz_gramian;
 
-/* How Gramians are found: see gramians.h. */
+/* How Gramians are found. */
 typedef enum ritz_engine {
     RITZ_ENGINE_AUTO,
     RITZ_ENGINE_DENSE,

@@ -55,7 +55,8 @@ typedef struct ritz_export_request {
     const char *matrices; /* "K,M"; NULL: all that the format takes */
     bool text, dense;     /* output4 */
     int64_t digits;       /* text */
-    const char *modes;    /* of shapes, "1-6,9"; NULL: see shapes.h */
+    const char *modes;    /* of shapes, "1-6,9"; NULL: the first ten of a
+                             component, else all */
 } ritz_export_request;
 
 /* Lines for the user: what was written, and what was lost. */

@@ -244,7 +244,7 @@ typedef struct ritz_import_request {
     const char *stiffness, *mass, *damping, *structural_damping;
     int64_t num_loads;
     const char *const *load; /* "F@LOAD" */
-    const char *bulk;        /* file of a deck, see deck.h */
+    const char *bulk;        /* file of a deck */
     const char *dofs;        /* file of `GRID COMP` rows */
     int64_t num_ports;
     const char *const *port; /* "NAME=GRIDS[:COMPS]" */

@@ -25,7 +25,7 @@ typedef struct ritz_response {
     double tolerance;     /* between points, of the largest |H| of a channel; 0:
                          not kept */
     int64_t num_singular; /* values at each point; 0: not computed */
-    double *singular;     /* count x num_singular, descending: singular.h */
+    double *singular;     /* count x num_singular, descending */
     double singular_peak[2]; /* hertz and value of the largest, between the
                                 points too, HUGE_VAL where nothing damps it;
                                 0, 0: not looked for */

@@ -498,7 +498,7 @@ static ritz_status pair_joint(const ritz_joint *joint,
 
         RITZ_REFUSE_IF(
             joint_distance(end, a, b) > tolerance, RITZ_ERR_ARGUMENT,
-            "grid %" PRId64 " of '%s/%s' has no partner: the nearest, grid "
+            "grid %" PRId64 " of '%s/%s' has no counterpart: the nearest, grid "
             "%" PRId64 " of '%s/%s', lies %.3g away, %.3g is let pass",
             end[0].dof[a].grid, end[0].component, end[0].port,
             end[1].dof[b].grid, end[1].component, end[1].port,

@@ -494,7 +494,7 @@ static ritz_status choose_krylov(const ritz_scene *scene,
  * over all configurations. With the kept modes, the static solution in all
  * flexible modes spans the same space as that in the truncated ones. If
  * components are augmented, the second group consists of the body's own static
- * solutions, once for all angles: see statics.c.
+ * solutions, once for all angles.
  *
  * With M_c = L L' and Y = L' W, columns are made orthogonal in this order:
  * motions without mass, rigid modes and static solutions completely, so that no

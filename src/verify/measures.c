@@ -1,4 +1,4 @@
-/* The table of error measures: see ritz/measures.h. */
+/* The table of error measures: see ritz/verify.h. */
 #include "verify/sides.h"
 
 const ritz_measure_kind ritz_measure_table[RITZ_MEASURES] = {

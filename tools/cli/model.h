@@ -78,7 +78,7 @@ typedef struct model_options {
     AT_OPTION(&(given)->at), ORDER_OPTION(&(given)->order),                    \
         DAMPING_OPTION(&(given)->damping), DAMPERS_OPTION(&(given)->damper)
 
-/* The words of a choice (choice.h) as options. */
+/* The words of a choice as options. */
 enum { WORDS_MOST = 32, WORDS_NAME = 32 };
 
 typedef struct choice_words {

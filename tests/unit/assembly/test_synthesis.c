@@ -359,7 +359,7 @@ static void a_joint_without_partners_is_refused(void **state)
     scene.joint[0].type = RITZ_JOINT_FIXED;
     stage.body[1].port[0].position[0] += 0.5;
     assert_fails(ritz_stage_assemble(&stage, NULL, &none), RITZ_ERR_ARGUMENT,
-                 "has no partner");
+                 "has no counterpart");
 }
 
 static void a_missing_port_is_refused_with_its_line(void **state)
