@@ -32,7 +32,8 @@ static bool is_output4(const char *bytes, int64_t size)
 
 /* ---- one matrix --------------------------------------------------------- */
 
-/* The strings of a column, of so many words, by one reading of their headers. */
+/* The strings of a column, of so many words, by one reading of their
+   headers. */
 static ritz_status read_strings(ritz_output4_reader *r,
                                 ritz_output4_build *build, int64_t words)
 {

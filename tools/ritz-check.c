@@ -1,4 +1,5 @@
-/* ritz-check - audit a component before it is reduced, or probe a small model. */
+/* ritz-check - audit a component before it is reduced, or probe a small
+   model. */
 #include "print/print.h"
 
 int main(int argc, char **argv)

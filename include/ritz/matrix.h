@@ -66,8 +66,8 @@ ritz_status ritz_dense_terms(const ritz_dense *A, const ritz_dense *B,
                              ritz_dense *out);
 
 /**
- * X := X - left (right' X): of columns with right' left = I, the part of X along
- * them. Once leaves rounding; twice is enough.
+ * X := X - left (right' X): of columns with right' left = I, the part of X
+ * along them. Once leaves rounding; twice is enough.
  */
 ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
                                 ritz_dense *X);

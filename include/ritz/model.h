@@ -171,7 +171,7 @@ typedef struct ritz_basis {
     double bound; /* of the H-infinity error, outputs over their limits, where
                      there are Hankel values; NaN: they bound nothing */
     char damping[RITZ_DAMPING_SIZE]; /* of states, or with a W: what they were
-                                        made with, as ritz_damping_parse reads */
+                                        made with, by ritz_damping_parse */
     double among_hz; /* they are made of modes up to here alone; 0: of all */
     ritz_columns columns;
     ritz_origin origin;

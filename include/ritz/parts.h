@@ -187,8 +187,8 @@ int64_t ritz_dampers_find(const ritz_dampers *dampers, const char *name);
 ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text);
 
 /**
- * Install: D += sum (c - held_c) b b' and K likewise, dense or sparse. An absent
- * D, {0}, is made if there is anything to add.
+ * Install: D += sum (c - held_c) b b' and K likewise, dense or sparse. An
+ * absent D, {0}, is made if there is anything to add.
  *
  * @return RITZ_ERR_ARGUMENT if the sizes disagree
  */

@@ -110,7 +110,8 @@ typedef struct ritz_ranker {
     ritz_status (*value)(const double *band_hz, const ritz_modal *cluster,
                          double *out);
     /** ... all values, and `total` and parts where it has any, by
-     * ritz_ranking_parts; all modes of a cluster get the same value, or they are
+     * ritz_ranking_parts; all modes of a cluster get the same value, or they
+     * are
      * summed up by the caller. */
     ritz_status (*rank)(const ritz_rank_request *request,
                         ritz_ranking *ranking);

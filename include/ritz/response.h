@@ -90,15 +90,15 @@ extern const ritz_response_engine *const ritz_response_engines[];
 
 /**
  * The full matrices of a component at each point. Damping ratios act on the
- * modes up to `up_to_hz`, which are taken out of the load first; what lies above
- * them is then undamped but for D and K4. Rayleigh damping is exact. With D, K4
- * or Rayleigh damping a free body is refused at 0 Hz.
+ * modes up to `up_to_hz`, which are taken out of the load first; what lies
+ * above them is then undamped but for D and K4. Rayleigh damping is exact. With
+ * D, K4 or Rayleigh damping a free body is refused at 0 Hz.
  */
 extern const ritz_response_engine ritz_response_engine_direct;
 
 /**
- * A sum of modes. Of a dense model all of them, with ratios of given damping and
- * of Phi'D Phi; where D couples modes, they are solved for together at each
+ * A sum of modes. Of a dense model all of them, with ratios of given damping
+ * and of Phi'D Phi; where D couples modes, they are solved for together at each
  * point. Of a component those up to `up_to_hz`; modes above respond without
  * damping, as a series in w^2 that begins with their residual flexibility.
  *

@@ -1,8 +1,8 @@
 /*
  * Time responses of linear models, and what they cost.
  *
- * Inputs are functions of time from t = 0 on. An integrator evaluates them at the
- * ends of its steps only: between them it takes them as linear
+ * Inputs are functions of time from t = 0 on. An integrator evaluates them at
+ * the ends of its steps only: between them it takes them as linear
  * (RITZ_HOLD_FIRST) or as they were at the start (RITZ_HOLD_ZERO, what a
  * sampled controller commands). `modal` is exact for both; the others are
  * measured against it.
@@ -141,8 +141,8 @@ typedef struct ritz_simulation {
  * with Rayleigh damping or that of its D. A state space goes by the exponential
  * of A, or by the trapezoidal rule.
  *
- * An impulse moves a state at once; what of it is in an output directly, as in an
- * acceleration does, is an impulse too and left out.
+ * An impulse moves a state at once; what of it is in an output directly, as in
+ * an acceleration does, is an impulse too and left out.
  *
  * @return RITZ_ERR_ARGUMENT if the step is beyond an explicit integrator's
  *         limit (which it names), if there is structural damping, if a motion
@@ -172,11 +172,11 @@ typedef struct ritz_accuracy {
  * the same at half that step. Relative to the largest value of each output.
  *
  * An output that does not respond is rounding, and its own largest value tells
- * nothing. One that is not so accurate is left out if it is below 64 eps of what the motion could show
- * by it, or if its difference is below 1e-9 of that and three halvings in a
- * row have not halved it. What could be shown is |c| |x| + |cv| |x'| +
- * |ca| |x''|, |x|^2 = x'M x, |c|^2 = c M^-1 c' with the diagonal of M, so that
- * no unit matters; of a state space sum |c_j| |x_j|.
+ * nothing. One that is not so accurate is left out if it is below 64 eps of
+ * what the motion could show by it, or if its difference is below 1e-9 of that
+ * and three halvings in a row have not halved it. What could be shown is |c|
+ * |x| + |cv| |x'| + |ca| |x''|, |x|^2 = x'M x, |c|^2 = c M^-1 c' with the
+ * diagonal of M, so that no unit matters; of a state space sum |c_j| |x_j|.
  *
  * @param[out] reached  may be NULL
  * @return RITZ_ERR_CONVERGENCE if no step with which there are 2^23 of them,

@@ -6,8 +6,8 @@
 #include <ritz/model.h>
 
 /*
- * The elastic static response to forces, by one factorization. Of a body that is
- * held there are K, M and L alone.
+ * The elastic static response to forces, by one factorization. Of a body that
+ * is held there are K, M and L alone.
  */
 typedef struct ritz_elastic {
     const ritz_sparse *K, *M; /* borrowed */

@@ -32,8 +32,8 @@ static ritz_status refuse_mass(const ritz_partition *s, int64_t j)
 }
 
 /*
- * B(k,:) = d[p[k]] A(p[k],:), or back: B(p[k],:) = d[p[k]] A(k,:). LAPACK counts
- * pivots from 1.
+ * B(k,:) = d[p[k]] A(p[k],:), or back: B(p[k],:) = d[p[k]] A(k,:). LAPACK
+ * counts pivots from 1.
  */
 static void permute_rows(const ritz_dense *A, const int *p, const double *d,
                          bool back, ritz_dense *B)

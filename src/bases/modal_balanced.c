@@ -6,10 +6,10 @@
  *     sigma_k = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
  *
  * with a displacement output. For lightly damped modes of well separated
- * frequencies these are the Hankel values of the whole model, and the best modes
- * its balanced states; for close modes they are not. The error is at most the
- * response of all modes that are left out: twice the sum of all values of each
- * cluster alone.
+ * frequencies these are the Hankel values of the whole model, and the best
+ * modes its balanced states; for close modes they are not. The error is at most
+ * the response of all modes that are left out: twice the sum of all values of
+ * each cluster alone.
  */
 #include "base/alloc.h"
 #include "bases/balancing.h"

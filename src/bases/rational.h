@@ -67,9 +67,10 @@ ritz_status ritz_rational_new(const ritz_request *request, int loads,
 bool ritz_rational_damped(const ritz_rational *R);
 
 /**
- * The columns of @p first, and then real and imaginary parts of the responses at
- * the points, in their order, orthonormal in M + K / scale; dependent parts are
- * left out. A point whose response needs more columns than are left is skipped.
+ * The columns of @p first, and then real and imaginary parts of the responses
+ * at the points, in their order, orthonormal in M + K / scale; dependent parts
+ * are left out. A point whose response needs more columns than are left is
+ * skipped.
  *
  * @param[in]  first  n x r, orthonormal in the same product; may have no column
  * @param[in]  most   columns in addition to those of @p first

@@ -18,7 +18,8 @@
 /* Entries of T of all bodies that were made: half a gigabyte. */
 static const int64_t most_entries = INT64_C(1) << 26;
 
-/* --- judged -------------------------------------------------------------------- */
+/* --- judged
+   -------------------------------------------------------------------- */
 
 static void set_refusal(const char *why, ritz_fit_candidate *candidate)
 {
@@ -64,8 +65,8 @@ double ritz_fit_misses(const ritz_fit_candidate *c)
     return m && m->value > m->limit ? m->value : 0.0;
 }
 
-/* What was not measured is only known to be off by at least its ratio; errors of
- * the modes that were found say little where others are missing. */
+/* What was not measured is only known to be off by at least its ratio; errors
+ * of the modes that were found say little where others are missing. */
 bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
                         const ritz_fit_candidate *b)
 {
@@ -101,7 +102,8 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
     return RITZ_OK;
 }
 
-/* --- its bodies ------------------------------------------------------------------ */
+/* --- its bodies
+   ------------------------------------------------------------------ */
 
 /* Those of the options that this method uses; band and damping are those of the
    tolerance where no others are given. */
@@ -222,7 +224,8 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
     return RITZ_OK;
 }
 
-/* All bodies joined, and what they took; a refused one refuses the candidate. */
+/* All bodies joined, and what they took; a refused one refuses the
+   candidate. */
 static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
                                ritz_fit_joined *out)
 {
@@ -254,7 +257,8 @@ static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
     return ritz_fit_join(f, body, out);
 }
 
-/* --- a model at a place --------------------------------------------------------- */
+/* --- a model at a place
+   --------------------------------------------------------- */
 
 /* The reduced model at one place. */
 typedef struct ritz_fit_model {
@@ -325,7 +329,8 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
     return RITZ_OK;
 }
 
-/* --- bounds ---------------------------------------------------------------------- */
+/* --- bounds
+   ---------------------------------------------------------------------- */
 
 /*
  * What bounds decide before anything is measured. A candidate fails for certain
@@ -462,7 +467,8 @@ ritz_status ritz_fit_bound_stage(ritz_fitter *f, const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* --- a candidate ----------------------------------------------------------------- */
+/* --- a candidate
+   ----------------------------------------------------------------- */
 
 int ritz_fit_points(const ritz_reference *reference,
                     const ritz_measures *errors)

@@ -96,7 +96,8 @@ static ritz_status trim_candidate(ritz_fitter *fitter, int64_t at,
     return ritz_fit_append(fit, &less);
 }
 
-/* The same of every method that may still be the best then, and choose again. */
+/* The same of every method that may still be the best then, and choose
+   again. */
 static ritz_status trim_best(ritz_fitter *fitter, ritz_fit *fit)
 {
     double most = 0.0;
@@ -116,7 +117,8 @@ static ritz_status trim_best(ritz_fitter *fitter, ritz_fit *fit)
     return RITZ_OK;
 }
 
-/* --- why -------------------------------------------------------------------------- */
+/* --- why
+   -------------------------------------------------------------------------- */
 
 [[gnu::format(printf, 2, 3)]] static void add_why(ritz_fit *fit,
                                                   const char *format, ...)
@@ -330,7 +332,8 @@ static void explain_choice(const ritz_fitter *fitter, ritz_fit *fit)
                 caught == 1 ? "its own poles" : "their own poles");
 }
 
-/* --- the search ------------------------------------------------------------------- */
+/* --- the search
+   ------------------------------------------------------------------- */
 
 ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
 {

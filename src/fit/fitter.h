@@ -80,7 +80,8 @@ struct ritz_fitter {
     int64_t largest; /* order to be tried */
 };
 
-/* --- bodies.c ---------------------------------------------------------------- */
+/* --- bodies.c
+   ---------------------------------------------------------------- */
 
 /** A stop watch, and what it shows. */
 ritz_fit_watch ritz_fit_start(void);
@@ -114,7 +115,8 @@ void ritz_fit_joined_free(ritz_fit_joined *joined);
 ritz_status ritz_fit_rich(const ritz_fitter *fitter, double up_to_hz,
                           ritz_fit_joined *out);
 
-/* --- second.c ---------------------------------------------------------------- */
+/* --- second.c
+   ---------------------------------------------------------------- */
 
 /** Modes of each body after @p rung steps of a method's ladder; its length. */
 void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
@@ -136,7 +138,8 @@ ritz_status ritz_fit_second_body(ritz_fitter *fitter, int64_t k, int64_t count,
                                  ritz_reduced *out);
 void ritz_fit_second_free(ritz_fit_second *second);
 
-/* --- fitter.c ---------------------------------------------------------------- */
+/* --- fitter.c
+   ---------------------------------------------------------------- */
 
 /** How far beyond the band, times it: 8, and up to 32 for fine tolerances. */
 double ritz_fit_rich_to(const ritz_verify_request *limits);
@@ -146,7 +149,8 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                const ritz_component *full,
                                ritz_fit_place *place);
 
-/* --- candidate.c ------------------------------------------------------------- */
+/* --- candidate.c
+   ------------------------------------------------------------- */
 
 /** Record the sentence of a failure that is the candidate's own; pass on what
  * is not: memory. */
@@ -203,7 +207,8 @@ bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
 /** Modes that a candidate misses and may not. */
 double ritz_fit_misses(const ritz_fit_candidate *candidate);
 
-/* --- nest.c ------------------------------------------------------------------ */
+/* --- nest.c
+   ------------------------------------------------------------------ */
 
 /** Whether a column must stay: without it a body could not move rigidly, or
  * would not have its interface. */
@@ -229,7 +234,8 @@ ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
 ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
                           ritz_fit_candidate *out);
 
-/* --- search.c ---------------------------------------------------------------- */
+/* --- search.c
+   ---------------------------------------------------------------- */
 
 /* A candidate up to this factor larger than the smallest may still win once
    columns are left out. */

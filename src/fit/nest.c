@@ -50,7 +50,8 @@ static void nesting_free(nesting *n)
     free(n->some);
 }
 
-/* --- the model of some columns --------------------------------------------------- */
+/* --- the model of some columns
+   --------------------------------------------------- */
 
 /* The columns of body k among some, as the body numbers them, into `own`. */
 static int64_t take_own(const nesting *n, int64_t k, int64_t count,
@@ -146,7 +147,8 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
     return RITZ_OK;
 }
 
-/* --- the order ------------------------------------------------------------------- */
+/* --- the order
+   ------------------------------------------------------------------- */
 
 bool ritz_fit_stays(ritz_column_kind kind)
 {
@@ -161,7 +163,8 @@ bool ritz_fit_stays(ritz_column_kind kind)
     return false;
 }
 
-/* Columns j that take part in rigid motion, |x_j| sqrt(M_jj) of its x'M x = 1. */
+/* Columns j that take part in rigid motion, |x_j| sqrt(M_jj) of its x'M x =
+   1. */
 ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -265,7 +268,8 @@ static ritz_status order_alone(nesting *n)
     return RITZ_OK;
 }
 
-/* A body without columns that must stay keeps the one that matters most alone. */
+/* A body without columns that must stay keeps the one that matters most
+   alone. */
 static void keep_one_each(nesting *n)
 {
     for (int64_t k = 0; k < n->f->num_bodies; k++) {
@@ -315,7 +319,8 @@ static ritz_status order_columns(ritz_fitter *f, nesting *n)
     return RITZ_OK;
 }
 
-/* --- the path -------------------------------------------------------------------- */
+/* --- the path
+   -------------------------------------------------------------------- */
 
 /* A row of the path: the first columns of the order. */
 static ritz_status add_row(const nesting *n, int64_t count, ritz_fit_path *path)
@@ -367,7 +372,8 @@ void ritz_fit_path_free(ritz_fit_path *path)
     *path = (ritz_fit_path){0};
 }
 
-/* --- nested bodies --------------------------------------------------------------- */
+/* --- nested bodies
+   --------------------------------------------------------------- */
 
 /* "system-response-relative" of a scene's body of so many columns; no limit is
    its own. */
@@ -512,7 +518,8 @@ ritz_status ritz_fit_make_bodies(ritz_fitter *f,
     return cut_bodies(row, &nested, out);
 }
 
-/* --- columns left out -------------------------------------------------------------- */
+/* --- columns left out
+   -------------------------------------------------------------- */
 
 /* Cut bodies joined, measured like any other candidate, and bounded. */
 static ritz_status measure_cut(ritz_fitter *f, ritz_fit_joined *cut,
@@ -555,7 +562,8 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
     return RITZ_OK;
 }
 
-/* --- the answer --------------------------------------------------------------------- */
+/* --- the answer
+   --------------------------------------------------------------------- */
 
 ritz_status ritz_fitter_reduced(ritz_fitter *f,
                                 const ritz_fit_candidate *candidate,

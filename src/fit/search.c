@@ -14,7 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- candidates that were tried ---------------------------------------------------- */
+/* --- candidates that were tried
+   ---------------------------------------------------- */
 
 enum { PART = 4 };
 /* Richer first stages in a row that are no better, before they are given up. */
@@ -119,7 +120,8 @@ void ritz_fit_conclude(ritz_fit *fit, int64_t method)
     }
 }
 
-/* --- COMPARE's first stage ---------------------------------------------------------- */
+/* --- COMPARE's first stage
+   ---------------------------------------------------------- */
 
 /* How far COMPARE is off with nothing removed, whatever its order. */
 static ritz_status measure_uncut(ritz_fitter *f, double *out)
@@ -181,7 +183,8 @@ static ritz_status next_hz(ritz_fitter *f, double *hertz, ritz_fit_end *end)
 
 /*
  * Make COMPARE's first stage richer until, with nothing removed, it leaves at
- * most a tenth of the tolerance, or does not get better; `end` is what ended it.
+ * most a tenth of the tolerance, or does not get better; `end` is what ended
+ * it.
  */
 ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
 {
@@ -216,8 +219,8 @@ ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
 
 /*
  * Fewer modes than one cut for all bodies gives: from each body in turn one is
- * taken, that whose loss hurts least is gone for good; where none can go, bodies
- * exchange modes, several of one for fewer of another.
+ * taken, that whose loss hurts least is gone for good; where none can go,
+ * bodies exchange modes, several of one for fewer of another.
  */
 
 typedef struct thinning {
@@ -286,7 +289,8 @@ static ritz_status thin_modes(ritz_fitter *fitter, ritz_fit *fit,
     return RITZ_OK;
 }
 
-/* --- the ladder --------------------------------------------------------------------- */
+/* --- the ladder
+   --------------------------------------------------------------------- */
 
 /* One method on its ladder. */
 typedef struct ladder {

@@ -36,9 +36,9 @@ static ritz_status lift_gramians(const ritz_mode_states *states,
 }
 
 /*
- * By SLICOT, in states z = [S q; q'] of the modes. Rigid modes that damping does
- * not couple to others are decoupled first; whatever else does not decay is
- * split off by its poles.
+ * By SLICOT, in states z = [S q; q'] of the modes. Rigid modes that damping
+ * does not couple to others are decoupled first; whatever else does not decay
+ * is split off by its poles.
  */
 static ritz_status find_dense(const ritz_gramians_request *request,
                               ritz_gramians *out)
@@ -73,7 +73,8 @@ static ritz_status find_dense(const ritz_gramians_request *request,
 
 /*
  * A component's Gramians in closed form (modal_gramians.c, modal_band.c): of
- * all its modes by dense matrices, or of those up to a frequency by sparse ones.
+ * all its modes by dense matrices, or of those up to a frequency by sparse
+ * ones.
  */
 
 static ritz_status find_all_modes(const ritz_gramians_request *request,

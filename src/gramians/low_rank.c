@@ -11,8 +11,9 @@
  * so that |W_j'W_j| is the residual. Transposed, W_0 = [C'; Cv'], it is the
  * other Gramian, of the same factors. Shifts: low_rank_shifts.c.
  *
- * A mode whose poles are farther from all others than from the axis needs a shift of its own. Gramians of many such modes have
- * no low rank: the residuals so far show how many shifts it will take.
+ * A mode whose poles are farther from all others than from the axis needs a
+ * shift of its own. Gramians of many such modes have no low rank: the residuals
+ * so far show how many shifts it will take.
  *
  * [LiWhite2002], [BennerKuerschnerSaak2013], [BennerKuerschnerSaak2014]
  */

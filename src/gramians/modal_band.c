@@ -256,9 +256,9 @@ ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
 }
 
 /*
- * Exact Hankel singular values of a modal model are those of Z_o'Z_c, of factors
- * in closed form. Modes that are not controllable or not observable get zero
- * and not a failure.
+ * Exact Hankel singular values of a modal model are those of Z_o'Z_c, of
+ * factors in closed form. Modes that are not controllable or not observable get
+ * zero and not a failure.
  *
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */

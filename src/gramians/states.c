@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rigid modes are decoupled if Delta does not couple them with flexible ones. */
+/* Rigid modes are decoupled if Delta does not couple them with flexible
+   ones. */
 static int64_t count_decoupled(const ritz_modal_model *modes)
 {
     int64_t r = modes->num_rigid;

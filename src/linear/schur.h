@@ -10,8 +10,8 @@
 #include <stdbool.h>
 
 /*
- * Q'A Z = S quasi-triangular, Q'E Z = T triangular. Without E: T is the identity
- * and Z is Q, both {0}.
+ * Q'A Z = S quasi-triangular, Q'E Z = T triangular. Without E: T is the
+ * identity and Z is Q, both {0}.
  */
 typedef struct ritz_schur {
     int64_t count;

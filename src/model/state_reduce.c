@@ -77,7 +77,8 @@ static ritz_status project_outputs(const ritz_modal_model *modes,
     return RITZ_OK;
 }
 
-/* Sum of |A(k,i) X(first + k,j)|: n eps of it is rounding of what they add to. */
+/* Sum of |A(k,i) X(first + k,j)|: n eps of it is rounding of what they add
+   to. */
 static double largest_terms(const ritz_dense *A, int64_t i, const ritz_dense *X,
                             int64_t first, int64_t j)
 {

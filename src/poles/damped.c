@@ -42,9 +42,9 @@ static double share_of(const ritz_spectrum *spectrum, int64_t k, int64_t j)
 
 /*
  * The pole that each flexible mode has become, -1 where it does not oscillate
- * any more. Each pole is of one mode: the largest part of its shape decides, then the
- * largest of what is left; else an overdamped mode would be given the ratio of
- * a neighbour.
+ * any more. Each pole is of one mode: the largest part of its shape decides,
+ * then the largest of what is left; else an overdamped mode would be given the
+ * ratio of a neighbour.
  */
 static ritz_status assign_poles(const ritz_poles *poles,
                                 const ritz_spectrum *spectrum, int64_t *of)

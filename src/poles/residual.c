@@ -203,9 +203,9 @@ static ritz_status rest_solver_new(const ritz_component *component,
 }
 
 /*
- * Last change of a term, the worst of all inputs, relative to what is negligible
- * against its largest value or against the whole response at the end of the
- * range: @p change over what is wanted, @p required over what is needed.
+ * Last change of a term, the worst of all inputs, relative to what is
+ * negligible against its largest value or against the whole response at the end
+ * of the range: @p change over what is wanted, @p required over what is needed.
  */
 static void measure_change(const rest_solver *s, const ritz_dense *R,
                            const ritz_dense *last, double *change,

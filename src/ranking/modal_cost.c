@@ -87,7 +87,8 @@ const ritz_ranker ritz_ranker_modal_cost = {
     .rank = rank_modal_cost,
 };
 
-/* Iteration between output weights and the choice of modes: see ritz_reweigh. */
+/* Iteration between output weights and the choice of modes: see
+   ritz_reweigh. */
 
 enum { MOST_ROUNDS = 400, LONGEST = 12 };
 

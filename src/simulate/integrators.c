@@ -1,4 +1,5 @@
-/* The table of integrators: a new one is a file with a descriptor, and a row. */
+/* The table of integrators: a new one is a file with a descriptor, and a
+   row. */
 #include <ritz/simulate.h>
 
 const ritz_integrator *const ritz_integrators[] = {

@@ -22,7 +22,8 @@ typedef struct form {
 /* Pixels, as errors.gp has them: of a cell, and of its panel. */
 enum { CELL_WIDE = 490, CELL_HIGH = 380, PANEL_WIDE = 376, PANEL_HIGH = 280 };
 
-/* A reader cannot distinguish two marks that are nearer than this, in pixels. */
+/* A reader cannot distinguish two marks that are nearer than this, in
+   pixels. */
 static const double mark_apart = 5.0;
 
 /* The order of a point of the front is written if the point is this far from

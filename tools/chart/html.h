@@ -12,7 +12,8 @@
 void html_text(FILE *file, const char *text);
 
 /**
- * Write markup as printf would, the texts of "%s" escaped. It knows "%s", "%ld", "%g", "%.3g" and "%%".
+ * Write markup as printf would, the texts of "%s" escaped. It knows "%s",
+ * "%ld", "%g", "%.3g" and "%%".
  */
 [[gnu::format(printf, 2, 3)]] void html_print(FILE *file, const char *format,
                                               ...);
@@ -20,7 +21,8 @@ void html_text(FILE *file, const char *text);
 /** Write one letter as markup. @return bytes of text it took */
 int html_symbol(FILE *file, const char *text);
 
-/** Write one letter, ' ' or '?' for what is none. @return bytes of text it took */
+/** Write one letter, ' ' or '?' for what is none. @return bytes of text it
+ * took */
 int html_letter(FILE *file, const char *text);
 
 /** Write text as one plain line, without control characters and wrong bytes. */

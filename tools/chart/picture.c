@@ -325,7 +325,8 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     return RITZ_OK;
 }
 
-/* Write a table next to the picture: as a file that is kept or a temporary one. */
+/* Write a table next to the picture: as a file that is kept or a temporary
+   one. */
 static ritz_status put_beside(const picture *p, cli_table *table,
                               const char *ending, ritz_draft *draft,
                               char out[PICTURE_PATH])

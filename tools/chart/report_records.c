@@ -302,8 +302,8 @@ typedef struct cell {
     chart_word text, small;
 } cell;
 
-/* A cell of a method: the least error at an order, or the fewest coordinates for
-   an error. */
+/* A cell of a method: the least error at an order, or the fewest coordinates
+   for an error. */
 typedef cell (*find_cell)(const record_set *s, int64_t method, double column);
 
 static cell error_at_order(const record_set *s, int64_t method, double order)

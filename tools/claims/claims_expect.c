@@ -74,7 +74,8 @@ static const char *const forms[] = {"hertz", "omega", "lambda", "beta"};
 
 enum { NUM_FORMS = sizeof forms / sizeof *forms };
 
-/* The form of a claim that has "as NAME" behind its path; NUM_FORMS: unknown. */
+/* The form of a claim that has "as NAME" behind its path; NUM_FORMS:
+   unknown. */
 static size_t find_form(const claims_line *line)
 {
     size_t k = 0;

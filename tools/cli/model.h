@@ -155,8 +155,8 @@ int64_t model_order(const model *model);
    or zeros. */
 enum { MODEL_MOST_DOFS = 400 };
 
-/** Whether it is or can be made a state space: it has no structural damping, and
- * not too many dofs. */
+/** Whether it is or can be made a state space: it has no structural damping,
+ * and not too many dofs. */
 bool model_has_states(const model *model);
 
 /** Errors that ritz-verify measured. */

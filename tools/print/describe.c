@@ -24,7 +24,8 @@ static void add_part(char text[PARTS], const void *bytes, int64_t count,
     sink_append(text, PARTS, " %s", sum);
 }
 
-/* The sum of all parts; a name may have commas, by which sink.h would cut it. */
+/* The sum of all parts; a name may have commas, by which sink.h would cut
+   it. */
 static void set_checksum(cli_run *run, const char *name, const char text[PARTS],
                          char out[RITZ_DIGEST_SIZE])
 {

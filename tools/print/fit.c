@@ -280,7 +280,8 @@ static void say_cost(cli_run *run, const ritz_fitter *fitter,
     model_set_cost(run, cost);
 }
 
-/* How wrong it can be, where that is known; modes one by one are in the file. */
+/* How wrong it can be, where that is known; modes one by one are in the
+   file. */
 static void say_bounds(const cli_run *run, const ritz_measures *estimates)
 {
     for (int64_t k = 0; k < estimates->count; k++) {
@@ -480,8 +481,8 @@ static ritz_status compare_methods(cli_run *run, const fit_options *a,
     return RITZ_OK;
 }
 
-/* The tolerance was held from inputs to outputs. Forces and motions at ports were
-   not compared; only methods that keep ports are right there. */
+/* The tolerance was held from inputs to outputs. Forces and motions at ports
+   were not compared; only methods that keep ports are right there. */
 static void warn_of_ports(cli_run *run, const ritz_component *component,
                           const ritz_fit_candidate *chosen)
 {

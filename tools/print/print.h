@@ -1,7 +1,7 @@
 /*
- * What each tool does once its command line is read: the main fills the options,
- * NULL or NaN where one was not given, and one function reads, computes, writes
- * and reports. What several tools report follows at the end.
+ * What each tool does once its command line is read: the main fills the
+ * options, NULL or NaN where one was not given, and one function reads,
+ * computes, writes and reports. What several tools report follows at the end.
  */
 #ifndef RITZ_TOOLS_PRINT_PRINT_H
 #define RITZ_TOOLS_PRINT_PRINT_H

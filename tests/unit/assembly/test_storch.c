@@ -1,6 +1,6 @@
 /*
- * A cantilever with a rigid tip body [Storch1992], E I = rho A = l = 1: beam and
- * body are two components that meet in a port each. The body has mass m,
+ * A cantilever with a rigid tip body [Storch1992], E I = rho A = l = 1: beam
+ * and body are two components that meet in a port each. The body has mass m,
  * inertia J about the port and its centre c beyond it. omega_k = beta_k^2.
  */
 #include "testing.h"

@@ -23,7 +23,8 @@ static ritz_request asking(const ritz_component *chain, int64_t states,
     return request;
 }
 
-/* Over all frequencies the values are the Hankel values, and so is the model. */
+/* Over all frequencies the values are the Hankel values, and so is the
+   model. */
 static void a_band_of_everything_is_balanced_truncation(void **state)
 {
     RITZ_OWN(ritz_component) chain = {0};

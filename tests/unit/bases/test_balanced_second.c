@@ -105,8 +105,8 @@ static void a_model_that_is_its_own_dual_stays_symmetric(void **state)
 }
 
 /*
- * The same by the general way: W = L U S^-1/2 and T = Z V S^-1/2 of the Gramians
- * span the same, which is why one of them is left out.
+ * The same by the general way: W = L U S^-1/2 and T = Z V S^-1/2 of the
+ * Gramians span the same, which is why one of them is left out.
  */
 static void of_its_own_dual_left_vectors_are_right_ones(void **state)
 {

@@ -14,8 +14,8 @@
 
 /*
  * The lattice: NX x NY masses of 1 that move along z, a spring between
- * neighbours, the port 'edge' of NY masses at x = 0. Springs across y are 1 and,
- * if the lattice is even, those along x too.
+ * neighbours, the port 'edge' of NY masses at x = 0. Springs across y are 1
+ * and, if the lattice is even, those along x too.
  */
 enum { NX = 6, NY = 8, DOFS = NX * NY, MODES = 10 };
 

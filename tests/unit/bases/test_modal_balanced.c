@@ -48,7 +48,8 @@ static void the_best_modes_are_kept_in_order_of_frequency(void **state)
     ritz_request request = {0};
     RITZ_OWN(ritz_basis) basis = {0};
     static const int64_t kept[] = {0, 2, 4};
-    /* of modes 2 and 4: 2 (sigma_+ + sigma_-) = b / (zeta w^2) sqrt(1+zeta^2) */
+    /* of modes 2 and 4: 2 (sigma_+ + sigma_-) = b / (zeta w^2)
+       sqrt(1+zeta^2) */
     const double rest = (0.4 / 4.0 + 0.1 / 16.0) / 0.02 * sqrt(1.0004);
     const char *said = NULL;
 

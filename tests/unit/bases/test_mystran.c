@@ -60,8 +60,8 @@ static double rounding(const ritz_dense *G, int64_t i, int64_t j)
 
 /*
  * How far column i of T may be off that of another program: rounding dK turns
- * either towards mode j by x_i' dK x_j / (lambda_i - lambda_j); constraint modes
- * answer at lambda = 0.
+ * either towards mode j by x_i' dK x_j / (lambda_i - lambda_j); constraint
+ * modes answer at lambda = 0.
  */
 static double turn_of(const ritz_reduced *ours, const ritz_dense *G, int64_t i)
 {

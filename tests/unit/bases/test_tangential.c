@@ -245,8 +245,8 @@ static void one_driven_oscillator_by_hand(void **state)
 
 /*
  * A point of NumPy's, to the last digit, is among those that were found. Rounds
- * stop at a change of 1e-6, and each shrinks the error to less than half (seen):
- * no more than that again is left.
+ * stop at a change of 1e-6, and each shrinks the error to less than half
+ * (seen): no more than that again is left.
  */
 static void assert_point(const ritz_probes *probes, double _Complex expected)
 {
@@ -536,8 +536,8 @@ static double h2_error(const ritz_component *full, const ritz_dense *T,
 
 /*
  * A clamped beam of 10 elements, force at the tip, displacement of the middle,
- * ratio 0.02, four vectors. Measured: 1.5e-3, with the four lowest modes 2.9e-3,
- * with four Krylov vectors 1.2e-2.
+ * ratio 0.02, four vectors. Measured: 1.5e-3, with the four lowest modes
+ * 2.9e-3, with four Krylov vectors 1.2e-2.
  */
 static void in_h2_it_is_no_worse_than_modes_and_krylov(void **state)
 {

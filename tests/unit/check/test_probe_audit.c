@@ -22,7 +22,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- small models ----------------------------------------------------------- */
+/* ---- small models
+   ----------------------------------------------------------- */
 
 static ritz_dense matrix(int64_t n, const double *val)
 {
@@ -79,7 +80,8 @@ static void assert_passes(const ritz_audit *audit, int64_t which)
                      audit->check[k].says, audit->check[k].where);
 }
 
-/* ---- what is passive passes --------------------------------------------------- */
+/* ---- what is passive passes
+   --------------------------------------------------- */
 
 /* A = sum over @p rank random vectors of g g', the last @p empty entries 0. */
 static ritz_dense random_gram(int64_t n, int64_t rank, int64_t empty,
@@ -180,13 +182,15 @@ static void without_an_interface_there_is_nothing_to_hold(void **)
     ritz_reduced_free(&model);
 }
 
-/* ---- what is not is named ------------------------------------------------------- */
+/* ---- what is not is named
+   ------------------------------------------------------- */
 
 /*
  * Masses 1 and 1 on springs 1 and 2 to the ground and 4 between them; dashpots
  * of 1 and -0.1 to the ground. Alone both modes are damped. With the first held
- * the second is left, s^2 - 0.1 s + 6 = 0. By SciPy: energy grows 1.10779 times,
- * by a fine scan of expm; at the locked frequency G is real and negative.
+ * the second is left, s^2 - 0.1 s + 6 = 0. By SciPy: energy grows 1.10779
+ * times, by a fine scan of expm; at the locked frequency G is real and
+ * negative.
  */
 static void a_negative_damper_shows_when_its_neighbour_is_held(void **)
 {
@@ -333,7 +337,8 @@ static void columns_for_forces_fail_where_they_are_joined(void **)
     }
 }
 
-/* ---- state spaces --------------------------------------------------------------- */
+/* ---- state spaces
+   --------------------------------------------------------------- */
 
 static void name_pair(ritz_state_space *model)
 {
@@ -431,7 +436,8 @@ static void a_band_that_makes_growth_fails_by_its_pole(void **)
     states_discard(&got);
 }
 
-/* ---- parts ------------------------------------------------------------------------ */
+/* ---- parts
+   ------------------------------------------------------------------------ */
 
 /* G = 1/2 - 1/(s + 1): Re G = 1/2 - 1/(1 + w^2) is 0 at w = 1 and -1/2 at 0. */
 static void a_pencil_tells_where_energy_begins_to_come_out(void **)

@@ -1,4 +1,5 @@
-/* COMPARE on the dual-spin spacecraft, whose modes move with the clock angle. */
+/* COMPARE on the dual-spin spacecraft, whose modes move with the clock
+   angle. */
 #include "testing.h"
 
 #include "dualspin.h"

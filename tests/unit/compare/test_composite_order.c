@@ -53,8 +53,8 @@ static void cut(const ritz_stage *stage, const ritz_composite *composite,
 
 /*
  * At one configuration the directions of m modes are m at most, and the modes
- * are motions of the bodies in them: Rayleigh-Ritz returns their frequencies, to
- * what rounding allows, 20 e eps lambda_max / lambda (compare_measure.c).
+ * are motions of the bodies in them: Rayleigh-Ritz returns their frequencies,
+ * to what rounding allows, 20 e eps lambda_max / lambda (compare_measure.c).
  */
 static void the_modes_of_the_band_are_in_as_many_directions(void **)
 {

@@ -58,8 +58,8 @@ static void damping_of_soft_rows_is_looked_at_by_itself(void **)
 
 /*
  * Two exact modes of three, which alone are controllable and observable: the
- * only error is the effect of D through the third one. Measured by the full equations at 2000
- * frequencies.
+ * only error is the effect of D through the third one. Measured by the full
+ * equations at 2000 frequencies.
  */
 static double coupled_error(const double *lambda, const double D[3][3],
                             double to_hz, double *largest)

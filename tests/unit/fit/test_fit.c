@@ -195,8 +195,8 @@ static void a_free_truss_is_fitted_within_one(void **state)
 
 /*
  * Its dampers couple modes, and each point of the full model takes a factor.
- * Bases are told of inputs alone and of dampers too; ratios are no matrix, which
- * krylov-damped needs.
+ * Bases are told of inputs alone and of dampers too; ratios are no matrix,
+ * which krylov-damped needs.
  */
 static void a_chain_with_dampers_is_fitted_within_one(void **state)
 {

@@ -1,5 +1,5 @@
 /* Where the first ladder of a scene, or the first stage of COMPARE, is too
-   poor for a tolerance, it is made richer, and else it is said what ended it. */
+   poor for a tolerance, it is made richer, or the reason is said. */
 #include "testing.h"
 
 #include "answers.h"

@@ -86,8 +86,8 @@ static int64_t modes_at(const orders *o, int64_t at, int64_t body,
 }
 
 /*
- * More modes are no fewer columns: nothing is to be found above what is as large
- * as the least already. Nor where a body had none to add to one fewer.
+ * More modes are no fewer columns: nothing is to be found above what is as
+ * large as the least already. Nor where a body had none to add to one fewer.
  */
 static bool is_known(const orders *o, int64_t at, int64_t least)
 {

@@ -15,7 +15,8 @@ static ritz_status parse(const char *text, ritz_deck *out)
     return ritz_deck_parse("deck.bdf", text, (int64_t)strlen(text), NULL, out);
 }
 
-/* The sum of shares of a dof in the equation of another; NaN if there is none. */
+/* The sum of shares of a dof in the equation of another; NaN if there is
+   none. */
 static double share(const ritz_deck *bulk, ritz_dof dependent, ritz_dof on)
 {
     const ritz_equations *eq = &bulk->equations;

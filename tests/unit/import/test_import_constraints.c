@@ -1,4 +1,5 @@
-/* Constraints at import: elimination, recovery, ports of grids made for them. */
+/* Constraints at import: elimination, recovery, ports of grids made for
+   them. */
 #include "testing.h"
 
 #include "folder.h"

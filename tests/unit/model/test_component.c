@@ -220,7 +220,8 @@ static void mass_properties_are_those_of_two_points(void **state)
     assert_near(inertia.tensor[1], 0.0, 1e-12);
 }
 
-/* A beam of 20 kg and 2 m in the plane: J_zz = m L^2 / 12, nothing else seen. */
+/* A beam of 20 kg and 2 m in the plane: J_zz = m L^2 / 12, nothing else
+   seen. */
 static void a_plane_model_shows_its_inertia_in_the_plane(void **state)
 {
     RITZ_OWN(ritz_component) c = {0};

@@ -106,7 +106,8 @@ static void a_gyroscopic_pair_splits_and_is_not_damped(void **state)
 
 /*
  * A Maxwell element: mass 1 on a spring 1, and over a damper 1 and a spring 2,
- * between which there is no mass: (s^2 + 1)(2 + s) + 2 s = (s + 1)(s^2 + s + 2).
+ * between which there is no mass: (s^2 + 1)(2 + s) + 2 s = (s + 1)(s^2 + s +
+ * 2).
  */
 static void a_damper_between_massless_points_creeps(void **state)
 {

@@ -187,7 +187,8 @@ static void what_has_nothing_in_common_is_refused(void **state)
     assert_true(isnan(g.spearman)); /* one place has no order */
 }
 
-/* --- over configurations ---------------------------------------------------- */
+/* --- over configurations
+   ---------------------------------------------------- */
 
 static void the_largest_value_says_where_it_stands(void **state)
 {
@@ -265,7 +266,8 @@ static void several_rankings_come_back_from_a_file(void **state)
     close(file);
 }
 
-/* --- weights ---------------------------------------------------------------- */
+/* --- weights
+   ---------------------------------------------------------------- */
 
 /* Modes far apart, each seen by one output alone. */
 static const double omega[] = {1.0, 3.0, 10.0};
@@ -283,9 +285,9 @@ static ritz_rank_request request_of(double *b, double *c, double *none,
 }
 
 /*
- * Two outputs, each with a mode of one cost, and one to keep: whichever is kept,
- * the other output is missed and gains weight, so the next round keeps the
- * other, for ever.
+ * Two outputs, each with a mode of one cost, and one to keep: whichever is
+ * kept, the other output is missed and gains weight, so the next round keeps
+ * the other, for ever.
  */
 static void weights_that_oscillate_are_found_out(void **state)
 {
@@ -351,7 +353,8 @@ static void weights_for_nothing_are_refused(void **state)
                  "no inputs and outputs to weigh modes by");
 }
 
-/* --- every allocation ------------------------------------------------------- */
+/* --- every allocation
+   ------------------------------------------------------- */
 
 static ritz_status all_once(void)
 {

@@ -74,7 +74,8 @@ static ritz_status rank(const ritz_ranker *ranker, const ritz_modal *modal,
     return ritz_rank(ranker, &request, out);
 }
 
-/* --- closed forms ----------------------------------------------------------- */
+/* --- closed forms
+   ----------------------------------------------------------- */
 
 /* H2 squared of one mode is b^2 c^2 / (4 zeta w^3), however damped. */
 static void one_mode_has_its_cost_and_its_norm(void **state)
@@ -111,7 +112,8 @@ static void one_mode_has_its_cost_and_its_norm(void **state)
     }
 }
 
-/* --- identities ------------------------------------------------------------- */
+/* --- identities
+   ------------------------------------------------------------- */
 
 /* (B B')(a, b) in states (q_1, q_1', ...). */
 static double driven(const ritz_modal *modal, int64_t a, int64_t b)
@@ -232,7 +234,8 @@ static void a_band_without_ends_gives_the_whole_value(void **state)
     ritz_ranking_free(&all);
 }
 
-/* --- masses ----------------------------------------------------------------- */
+/* --- masses
+   ----------------------------------------------------------------- */
 
 /* The beam clamped at its left end, every mode of it. */
 static ritz_status clamped_beam(ritz_reduced *out)
@@ -436,7 +439,8 @@ static void a_joined_system_knows_its_mass_in_rigid_motion(void **state)
         assert_near(sum.val[k], c.rigid[k], 1e-10 * ritz_dense_max(&sum));
 }
 
-/* --- weights ---------------------------------------------------------------- */
+/* --- weights
+   ---------------------------------------------------------------- */
 
 /* Q replaces 1 / limit^2; W is of intensities; both enter a cost as factors. */
 static void weights_are_factors_of_costs(void **state)
@@ -510,7 +514,8 @@ static void weights_are_refused_in_words(void **state)
                  "there is no input 'u2' to weigh, is 'u1' meant?");
 }
 
-/* --- refusals --------------------------------------------------------------- */
+/* --- refusals
+   --------------------------------------------------------------- */
 
 static void rankings_say_what_they_lack(void **state)
 {
@@ -558,7 +563,8 @@ static void masses_of_other_models_are_refused(void **state)
                  RITZ_ERR_ARGUMENT, "a system has no interface to hold");
 }
 
-/* --- every allocation ------------------------------------------------------- */
+/* --- every allocation
+   ------------------------------------------------------- */
 
 static ritz_status rank_by_all(const ritz_modal *modal)
 {

@@ -200,8 +200,8 @@ static void h2_errors_of_unequal_rigid_motion_are_refused(void **)
 }
 
 /* H = diag(h_1, h_2): below all resonances sigma_2 is the response of the
-   stiffer mass. It rises with frequency; the error, of a model that is too stiff
-   and too heavy, is largest at rest. */
+   stiffer mass. It rises with frequency; the error, of a model that is too
+   stiff and too heavy, is largest at rest. */
 static void the_smallest_singular_value_is_of_the_stiffer_mass(void **)
 {
     static const double k[] = {4.0, 100.0, 9.0}, c[] = {0.1, 0.2, 0.3};

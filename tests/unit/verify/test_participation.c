@@ -86,7 +86,7 @@ static void assert_mac(const oscillators *full, const oscillators *reduced,
 }
 
 /* Mode 3, whose second output has the wrong sign, is [1, 1, 1/2] against
- * [1, 1, -1/2] where the largest are 1, 2 and 2: ((1/4 + 1 - 1/4) / (3/2))^2. */
+ * [1, 1, -1/2]; the largest are 1, 2 and 2: ((1/4 + 1 - 1/4) / (3/2))^2. */
 static void inputs_and_outputs_are_scaled_by_their_largest(void **)
 {
     oscillators full = plain, reduced = plain;
@@ -105,8 +105,8 @@ static void inputs_and_outputs_are_scaled_by_their_largest(void **)
 }
 
 /*
- * The participations of mode 3 in both channels are multiplied by `part`, and the second output of
- * it has the wrong sign.
+ * The participations of mode 3 in both channels are multiplied by `part`, and
+ * the second output of it has the wrong sign.
  */
 static void only_observable_modes_decide(void **)
 {
@@ -161,7 +161,8 @@ static void noise_has_no_mac_and_is_counted(void **)
     reduced.c[1][0] = 0.0;
     reduced.c[1][1] = -1e-15;
     reduced.c[2][1] = -1.0;
-    /* [1, 1, 1/2] as above: of the modes that are left the largest are 1, 1, 2 */
+    /* [1, 1, 1/2] as above: of the modes that are left the largest are 1, 1,
+       2 */
     assert_mac(&full, &reduced, (1.75 / 2.25) * (1.75 / 2.25),
                "mode 3, 4 Hz, 1 not observable");
     reduced.c[2][1] = 1.0;
