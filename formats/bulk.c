@@ -286,10 +286,7 @@ static ritz_status name_constraints(ritz_bulk_cards *all, ritz_deck *out)
 static void ritz_bulk_cards_free(ritz_bulk_cards *all)
 {
     ritz_cards_free(&all->cards);
-    free(all->grid);
-    free(all->frame);
-    free(all->sum);
-    free(all->constraint);
+    RITZ_FREE(all->grid, all->frame, all->sum, all->constraint);
     ritz_bulk_ranges_free(&all->points);
     for (int k = 0; k < RITZ_BULK_SETS; k++)
         ritz_bulk_ranges_free(&all->ranges[k]);

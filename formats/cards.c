@@ -475,14 +475,10 @@ ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
 void ritz_cards_free(ritz_cards *cards)
 {
     for (int64_t k = 0; k < cards->num_files; k++) {
-        free(cards->file[k].path);
-        free(cards->file[k].text);
+        RITZ_FREE(cards->file[k].path, cards->file[k].text);
     }
-    free(cards->file);
-    free(cards->line);
-    free(cards->entry);
-    free(cards->selected[0]);
-    free(cards->selected[1]);
+    RITZ_FREE(cards->file, cards->line, cards->entry, cards->selected[0],
+              cards->selected[1]);
     *cards = (ritz_cards){0};
 }
 

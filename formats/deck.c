@@ -6,7 +6,6 @@
 #include <ritz/import.h>
 
 #include <stdlib.h>
-#include <string.h>
 
 const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size)
 {
@@ -45,9 +44,7 @@ ritz_status ritz_deck_read(const char *path, ritz_deck *out)
 void ritz_deck_free(ritz_deck *deck)
 {
     ritz_grids_free(&deck->grids);
-    free(deck->point);
-    free(deck->dof);
-    free(deck->fixed);
+    RITZ_FREE(deck->point, deck->dof, deck->fixed);
     for (int k = 0; k < RITZ_NUM_SETS; k++)
         free(deck->set[k]);
     free(deck->constraint);

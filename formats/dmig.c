@@ -64,8 +64,7 @@ typedef struct ritz_dmig_cards {
 static void ritz_dmig_cards_free(ritz_dmig_cards *all)
 {
     ritz_cards_free(&all->cards);
-    free(all->header);
-    free(all->term);
+    RITZ_FREE(all->header, all->term);
 }
 
 /* The matrix of that name; -1 if there is none. */

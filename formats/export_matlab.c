@@ -13,7 +13,6 @@
 
 #include <math.h>
 #include <matio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A file that is being written. */

@@ -5,7 +5,6 @@
 #include "formats/sink.h"
 
 #include <complex.h>
-#include <math.h>
 
 static ritz_status print_response(FILE *file, const void *object)
 {

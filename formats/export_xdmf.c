@@ -7,7 +7,6 @@
 #include "formats/sink.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Numbers of cells in a mixed topology; lines bring their length along. */

@@ -70,10 +70,7 @@ ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status)
 
 void ritz_foreign_free(ritz_foreign *file)
 {
-    free(file->path);
-    free(file->folder);
-    free(file->owned);
-    free(file->listing.item);
+    RITZ_FREE(file->path, file->folder, file->owned, file->listing.item);
     *file = (ritz_foreign){0};
 }
 

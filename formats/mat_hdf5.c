@@ -12,7 +12,6 @@
 #include "base/alloc.h"
 #include "container/h5.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -147,8 +146,7 @@ typedef struct numbers {
 
 static void numbers_free(numbers *list)
 {
-    free(list->re);
-    free(list->im);
+    RITZ_FREE(list->re, list->im);
 }
 
 /* @param[in] part  of a pair of doubles; NULL: of one double */

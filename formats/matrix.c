@@ -90,19 +90,14 @@ ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
 
 void ritz_triplets_free(ritz_triplets *list)
 {
-    free(list->row);
-    free(list->col);
-    free(list->re);
-    free(list->im);
+    RITZ_FREE(list->row, list->col, list->re, list->im);
     *list = (ritz_triplets){0};
 }
 
 void ritz_matrix_free(ritz_matrix *matrix)
 {
     ritz_sparse_free(&matrix->A);
-    free(matrix->imaginary);
-    free(matrix->row);
-    free(matrix->col);
+    RITZ_FREE(matrix->imaginary, matrix->row, matrix->col);
     *matrix = (ritz_matrix){0};
 }
 

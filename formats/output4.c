@@ -1,7 +1,6 @@
 /* NASTRAN OUTPUT4, whichever way it is spelled. */
 #include "formats/output4.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -340,9 +340,7 @@ ritz_status ritz_shapes_of_basis(const ritz_basis *basis,
 
 void ritz_shapes_free(ritz_shapes *shapes)
 {
-    free(shapes->id);
-    free(shapes->position);
-    free(shapes->name);
+    RITZ_FREE(shapes->id, shapes->position, shapes->name);
     ritz_elements_free(&shapes->cells);
     ritz_dense_free(&shapes->u);
     ritz_dense_free(&shapes->turn);

@@ -9,7 +9,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,8 +123,7 @@ static void ritz_held_free(ritz_held *p)
 {
     RITZ_FREE_EACH(ritz_component, p->count, p->body);
     RITZ_FREE_EACH(ritz_dofs, p->count, p->held);
-    free(p->first);
-    free(p->row);
+    RITZ_FREE(p->first, p->row);
     ritz_stage_free(&p->stage);
 }
 

@@ -13,7 +13,6 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -141,8 +140,7 @@ typedef struct places {
 
 static void places_free(places *p)
 {
-    free(p->body);
-    free(p->pose);
+    RITZ_FREE(p->body, p->pose);
 }
 
 /* At the settings of a scene, as these say; a loop may not close. */
@@ -345,8 +343,7 @@ static ritz_status sort_grids(ritz_grids *grids)
         frame[k] = grids->frame[order[k].at];
         grids->id[k] = order[k].id;
     }
-    free(grids->position);
-    free(grids->frame);
+    RITZ_FREE(grids->position, grids->frame);
     RITZ_MOVE(grids->position, position);
     RITZ_MOVE(grids->frame, frame);
     return RITZ_OK;

@@ -382,8 +382,7 @@ void ritz_stage_free(ritz_stage *stage)
 {
     for (int64_t k = 0; stage->body && k < stage->count; k++)
         ritz_reduced_free(&stage->body[k]);
-    free(stage->body);
-    free(stage->first);
+    RITZ_FREE(stage->body, stage->first);
     ritz_io_free(&stage->io);
     ritz_dampers_free(&stage->dampers);
     *stage = (ritz_stage){0};

@@ -108,8 +108,7 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
 done:
     if (file >= 0)
         close(file);
-    free(target);
-    free(name);
+    RITZ_FREE(target, name);
     return status;
 }
 
@@ -118,8 +117,7 @@ ritz_status ritz_draft_publish(ritz_draft *draft)
     RITZ_REFUSE_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
                    "cannot replace '%s': %s", draft->path, strerror(errno));
     strike_name(draft->name);
-    free(draft->name);
-    free(draft->path);
+    RITZ_FREE(draft->name, draft->path);
     *draft = (ritz_draft){0};
     return RITZ_OK;
 }
@@ -130,8 +128,7 @@ void ritz_draft_free(ritz_draft *draft)
         remove(draft->name);
         strike_name(draft->name);
     }
-    free(draft->name);
-    free(draft->path);
+    RITZ_FREE(draft->name, draft->path);
     *draft = (ritz_draft){0};
 }
 

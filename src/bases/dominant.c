@@ -47,8 +47,7 @@ static void dominant_model_free(dominant_model *s)
     for (int g = 0; g < RITZ_RATIONAL_GROUPS; g++)
         for (int k = 0; k < 3; k++)
             ritz_dense_free(&s->F[g][k]);
-    free(s->pole);
-    free(s->vectors);
+    RITZ_FREE(s->pole, s->vectors);
 }
 
 /* Phi' (T'AT) Phi; zeros if there is no A. */

@@ -308,7 +308,6 @@ void ritz_free_set_free(ritz_free_set *set)
     ritz_pairs_free(&set->modes);
     ritz_dense_free(&set->F);
     ritz_dense_free(&set->Psi);
-    free(set->dof);
-    free(set->keep);
+    RITZ_FREE(set->dof, set->keep);
     *set = (ritz_free_set){0};
 }

@@ -7,7 +7,7 @@
 
 #include <ritz/basis.h>
 
-/** The requested kinds of loads; without them attached dofs, inputs, outputs. */
+/** The requested kinds of loads; else attached dofs, inputs and outputs. */
 int ritz_krylov_loads(const ritz_request *request);
 
 /*

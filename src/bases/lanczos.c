@@ -39,7 +39,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The component of the request in states, less the shift. */
 static ritz_status find_states(const ritz_request *request, ritz_states *out)

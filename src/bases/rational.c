@@ -14,7 +14,6 @@
 #include <complex.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* Columns are the rows of C, Cv, Ca, at powers 0, 1, 2 of s. */
 static ritz_status read_outputs(const ritz_io *io, ritz_rational_loads *out)
@@ -273,8 +272,7 @@ ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
 
 void ritz_probes_free(ritz_probes *probes)
 {
-    free(probes->item);
-    free(probes->b);
+    RITZ_FREE(probes->item, probes->b);
     *probes = (ritz_probes){0};
 }
 

@@ -29,8 +29,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double times_own[] = RITZ_ATTACHMENTS;
 enum { TIMES = sizeof times_own / sizeof *times_own };

@@ -86,8 +86,7 @@ typedef struct descent {
 static void descent_free(descent *s)
 {
     ritz_sampler_free(&s->sampler);
-    free(s->H);
-    free(s->lambda);
+    RITZ_FREE(s->H, s->lambda);
 }
 
 /* Sort positive frequencies, each once; returns how many are left. */
@@ -467,8 +466,7 @@ void ritz_collocated_free(ritz_collocated *model)
     ritz_dense_free(&model->B);
     ritz_dense_free(&model->C);
     ritz_dense_free(&model->D);
-    free(model->power);
-    free(model->name);
+    RITZ_FREE(model->power, model->name);
     *model = (ritz_collocated){0};
 }
 

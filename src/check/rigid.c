@@ -6,7 +6,6 @@
 
 #include <ritz/matrix.h>
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,5 @@
 /* Stage two by one plan, and by each composite tolerance in turn. */
 #include "base/alloc.h"
-#include "base/tolerances.h"
 
 #include "compare/compare.h"
 

@@ -335,14 +335,12 @@ void ritz_compare_suggest(const ritz_comparison *comparison,
 void ritz_comparison_free(ritz_comparison *comparison)
 {
     for (int64_t k = 0; comparison->row && k < comparison->num_rows; k++) {
-        free(comparison->row[k].setting);
-        free(comparison->row[k].kept);
-        free(comparison->row[k].stray);
+        RITZ_FREE(comparison->row[k].setting, comparison->row[k].kept,
+                  comparison->row[k].stray);
     }
     for (int64_t k = 0; comparison->V && k < comparison->num_bodies; k++)
         ritz_dense_free(&comparison->V[k]);
-    free(comparison->row);
-    free(comparison->V);
+    RITZ_FREE(comparison->row, comparison->V);
     ritz_candidates_free(comparison->num_candidates, &comparison->candidate);
     ritz_stage_free(&comparison->second);
     ritz_system_free(&comparison->first_system);

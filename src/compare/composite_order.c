@@ -13,7 +13,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* The groups of contributions, which differ from those of composite.c. */
 enum { GROUP_RIGID, GROUP_BAND, GROUP_STATIC, GROUP_REST };
@@ -296,8 +295,6 @@ void ritz_composite_free(ritz_composite *composite)
 {
     for (int64_t c = 0; composite->V && c < composite->num_bodies; c++)
         ritz_dense_free(&composite->V[c]);
-    free(composite->V);
-    free(composite->rigid);
-    free(composite->step);
+    RITZ_FREE(composite->V, composite->rigid, composite->step);
     *composite = (ritz_composite){0};
 }

@@ -16,7 +16,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool ritz_compare_responds(const ritz_scene *scene)

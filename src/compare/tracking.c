@@ -11,7 +11,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* One step of tracking: modes of a configuration and of the one before it. */
 
@@ -426,12 +425,8 @@ ritz_status ritz_track(const ritz_stage *stage, const ritz_system *system,
 
 void ritz_tracking_free(ritz_tracking *tracking)
 {
-    free(tracking->before);
-    free(tracking->first);
-    free(tracking->track);
-    free(tracking->cluster);
-    free(tracking->hertz);
-    free(tracking->mac);
-    free(tracking->event);
+    RITZ_FREE(tracking->before, tracking->first, tracking->track,
+              tracking->cluster, tracking->hertz, tracking->mac,
+              tracking->event);
     *tracking = (ritz_tracking){0};
 }

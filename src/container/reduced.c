@@ -4,7 +4,6 @@
 #include "base/alloc.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 
 /* Ports. */
 

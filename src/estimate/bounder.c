@@ -7,7 +7,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef double _Complex number;
@@ -295,12 +294,8 @@ static ritz_status open_side(const ritz_bounder *r, ritz_side *s)
 
 static void ritz_side_free(ritz_side *s)
 {
-    free(s->residual);
-    free(s->participation);
-    free(s->eta);
-    free(s->residual_slope);
-    free(s->participation_slope);
-    free(s->curvature);
+    RITZ_FREE(s->residual, s->participation, s->eta, s->residual_slope,
+              s->participation_slope, s->curvature);
 }
 
 void ritz_bounder_free(ritz_bounder *r)
@@ -310,16 +305,10 @@ void ritz_bounder_free(ritz_bounder *r)
     ritz_dense_free(&r->Q);
     for (int k = 0; k <= KINDS; k++)
         ritz_dense_free(&r->channel[k]);
-    free(r->rates);
-    free(r->vector_norm);
-    free(r->sin2);
-    free(r->GV);
-    free(r->QV);
+    RITZ_FREE(r->rates, r->vector_norm, r->sin2, r->GV, r->QV);
     ritz_dense_free(&r->D);
     ritz_dense_free(&r->K4);
-    free(r->Z);
-    free(r->responses);
-    free(r->pivot);
+    RITZ_FREE(r->Z, r->responses, r->pivot);
 }
 
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)

@@ -14,7 +14,6 @@
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 enum { MOST_TRIES = 4, GAPS_AROUND = 8, MOST_FOR_ONE = 16 };

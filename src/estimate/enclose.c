@@ -34,7 +34,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_SHIFTS = 16 };
@@ -233,12 +232,8 @@ void ritz_lehmann_free(ritz_lehmann *trial)
     ritz_dense_free(&trial->R);
     ritz_dense_free(&trial->E);
     ritz_dense_free(&trial->G);
-    free(trial->theta);
-    free(trial->rounding);
-    free(trial->mass_terms);
-    free(trial->reduced_rounding);
-    free(trial->reduced_low);
-    free(trial->reduced_high);
+    RITZ_FREE(trial->theta, trial->rounding, trial->mass_terms,
+              trial->reduced_rounding, trial->reduced_low, trial->reduced_high);
     *trial = (ritz_lehmann){0};
 }
 
@@ -536,10 +531,8 @@ ritz_status ritz_enclosure_new(const ritz_measuring *m, ritz_enclosure *out)
 
 void ritz_enclosure_free(ritz_enclosure *enclosure)
 {
-    free(enclosure->low);
-    free(enclosure->high);
-    free(enclosure->near_low);
-    free(enclosure->near_high);
+    RITZ_FREE(enclosure->low, enclosure->high, enclosure->near_low,
+              enclosure->near_high);
     *enclosure = (ritz_enclosure){0};
 }
 

@@ -39,7 +39,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { PASSES = 3 };
 enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };

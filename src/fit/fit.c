@@ -404,9 +404,6 @@ ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
 void ritz_fit_free(ritz_fit *fit)
 {
     RITZ_FREE_EACH(ritz_fit_candidate, fit->count, fit->candidate);
-    free(fit->method);
-    free(fit->best);
-    free(fit->reached);
-    free(fit->end);
+    RITZ_FREE(fit->method, fit->best, fit->reached, fit->end);
     *fit = (ritz_fit){0};
 }

@@ -400,11 +400,6 @@ void ritz_fitter_free(ritz_fitter **fitter)
         ritz_reduced_free(&f->made[k].reduced);
     ritz_fit_second_free(&f->second);
     ritz_dofs_free(&f->attached);
-    free(f->place);
-    free(f->body);
-    free(f->model);
-    free(f->step);
-    free(f->made);
-    free(f);
+    RITZ_FREE(f->place, f->body, f->model, f->step, f->made, f);
     *fitter = NULL;
 }

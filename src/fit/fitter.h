@@ -87,7 +87,7 @@ struct ritz_fitter {
 ritz_fit_watch ritz_fit_start(void);
 ritz_fit_watch ritz_fit_since(ritz_fit_watch start);
 
-/** Load the bodies of a scene and make the ladder of those that are flexible. */
+/** Load the bodies of a scene; make the ladder of those that are flexible. */
 ritz_status ritz_fit_bodies(ritz_fitter *fitter);
 
 /**
@@ -160,7 +160,7 @@ ritz_status ritz_fit_refuse(ritz_status status, ritz_fit_candidate *candidate);
 void ritz_fit_judge(const ritz_verify_request *limits,
                     ritz_fit_candidate *candidate);
 
-/** The worse of each measure, @p more's told with where it is, into @p worst. */
+/** The worse of each measure into @p worst; that of @p more with its place. */
 ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
                            ritz_measures *worst);
 

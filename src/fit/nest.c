@@ -43,11 +43,7 @@ typedef struct nesting {
 static void nesting_free(nesting *n)
 {
     ritz_bodies_free(&n->whole);
-    free(n->first);
-    free(n->column);
-    free(n->alone);
-    free(n->own);
-    free(n->some);
+    RITZ_FREE(n->first, n->column, n->alone, n->own, n->some);
 }
 
 /* --- the model of some columns

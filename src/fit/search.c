@@ -11,7 +11,6 @@
 #include <ritz/base.h>
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* --- candidates that were tried

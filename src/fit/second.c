@@ -18,7 +18,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A component by itself has no configurations. */
@@ -227,8 +226,7 @@ ritz_status ritz_fit_second_body(ritz_fitter *f, int64_t k, int64_t count,
 void ritz_fit_second_free(ritz_fit_second *second)
 {
     ritz_bodies_free(&second->body);
-    free(second->rigid);
-    free(second->step);
+    RITZ_FREE(second->rigid, second->step);
     *second = (ritz_fit_second){0};
 }
 

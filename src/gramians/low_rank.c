@@ -184,8 +184,7 @@ static void sweep_state_free(sweep_state *sweep)
     ritz_zldl_free(&sweep->F);
     ritz_low_rank_window_free(&sweep->window);
     ritz_low_rank_model_free(&sweep->model);
-    free(sweep->Z[RITZ_CONTROLLABLE].val);
-    free(sweep->Z[RITZ_OBSERVABLE].val);
+    RITZ_FREE(sweep->Z[RITZ_CONTROLLABLE].val, sweep->Z[RITZ_OBSERVABLE].val);
 }
 
 /*

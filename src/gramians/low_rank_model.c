@@ -9,7 +9,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 
 /*
  * What the iteration starts from: of inputs W = [0; B], of outputs
@@ -415,7 +414,6 @@ void ritz_low_rank_model_free(ritz_low_rank_model *model)
     for (int side = 0; side < RITZ_SIDES; side++)
         for (int half = 0; half < RITZ_HALVES; half++)
             ritz_dense_free(&model->W[side][half]);
-    free(model->stiff);
-    free(model->mass);
+    RITZ_FREE(model->stiff, model->mass);
     *model = (ritz_low_rank_model){0};
 }

@@ -21,7 +21,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /*
  * The latest displacements X that the iteration found, a ring of columns, and
@@ -211,9 +210,7 @@ static void small_free(small *s)
 {
     ritz_dense_free(&s->F);
     ritz_dense_free(&s->A);
-    free(s->omega);
-    free(s->re);
-    free(s->im);
+    RITZ_FREE(s->omega, s->re, s->im);
     ritz_dense_free(&s->left);
     ritz_dense_free(&s->right);
     ritz_dense_free(&s->w[RITZ_CONTROLLABLE]);

@@ -16,7 +16,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 ritz_status ritz_limits_check(int64_t count, const double *limit,
                               const char (*output)[RITZ_NAME_SIZE])
@@ -297,8 +296,7 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
 
 void ritz_modal_free(ritz_modal *modal)
 {
-    free(modal->omega);
-    free(modal->zeta);
+    RITZ_FREE(modal->omega, modal->zeta);
     ritz_dense_free(&modal->B);
     ritz_dense_free(&modal->C);
     ritz_dense_free(&modal->Cv);

@@ -23,7 +23,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct energy_model {
     int64_t count;   /* m */
@@ -34,9 +33,7 @@ typedef struct energy_model {
 
 static void energy_model_free(energy_model *model)
 {
-    free(model->w);
-    free(model->d);
-    free(model->inverse);
+    RITZ_FREE(model->w, model->d, model->inverse);
     ritz_dense_free(&model->F[0]);
     ritz_dense_free(&model->F[1]);
     *model = (energy_model){0};

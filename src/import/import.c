@@ -4,7 +4,6 @@
 #include "base/text.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -177,8 +176,7 @@ static void ritz_parts_free(ritz_parts *parts)
 {
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_matrix_free(&parts->part[k].matrix);
-        free(parts->part[k].place);
-        free(parts->part[k].owned);
+        RITZ_FREE(parts->part[k].place, parts->part[k].owned);
     }
     free(parts->part);
     *parts = (ritz_parts){0};
@@ -375,10 +373,7 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
 
 void ritz_import_report_free(ritz_import_report *report)
 {
-    free(report->removed);
-    free(report->fixed);
-    free(report->constraint);
-    free(report->unknown);
-    free(report->grid);
+    RITZ_FREE(report->removed, report->fixed, report->constraint,
+              report->unknown, report->grid);
     *report = (ritz_import_report){0};
 }

@@ -15,9 +15,7 @@
 #include <ritz/import.h>
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { PART_A, PART_B, PART_C, PART_D, PART_E, NUM_PARTS };

@@ -17,7 +17,6 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -97,11 +96,7 @@ static ritz_status allocate_lanczos(const ritz_shifted *S, int64_t k,
 
 static void lanczos_free(lanczos *L)
 {
-    free(L->resid);
-    free(L->workd);
-    free(L->workl);
-    free(L->d);
-    free(L->select);
+    RITZ_FREE(L->resid, L->workd, L->workl, L->d, L->select);
     ritz_dense_free(&L->V);
 }
 

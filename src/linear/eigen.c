@@ -8,7 +8,6 @@
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 
 ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
                               int64_t cols_M)
@@ -98,7 +97,6 @@ double ritz_eigen_lambda(double hertz)
 void ritz_pairs_free(ritz_pairs *pairs)
 {
     ritz_dense_free(&pairs->Phi);
-    free(pairs->lambda);
-    free(pairs->residual);
+    RITZ_FREE(pairs->lambda, pairs->residual);
     *pairs = (ritz_pairs){0};
 }

@@ -114,8 +114,6 @@ int64_t ritz_eigenvalues_worst(const ritz_eigenvalues *eigenvalues,
 
 void ritz_eigenvalues_free(ritz_eigenvalues *eigenvalues)
 {
-    free(eigenvalues->re);
-    free(eigenvalues->im);
-    free(eigenvalues->error);
+    RITZ_FREE(eigenvalues->re, eigenvalues->im, eigenvalues->error);
     *eigenvalues = (ritz_eigenvalues){0};
 }

@@ -18,8 +18,6 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* (1/2)^17 / 17! and 1 / 19! are below the rounding of 1. */
 enum { TERMS = 17, INTEGRAL_TERMS = 20, MOST_DOUBLINGS = 60 };

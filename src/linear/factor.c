@@ -17,7 +17,6 @@
 
 #include <suitesparse/cholmod.h>
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

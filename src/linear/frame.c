@@ -9,11 +9,9 @@
 #include "linear/general.h"
 
 #include <cblas.h>
-#include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* E = L L' in place, its lower triangle; false if it cannot be trusted. */
@@ -195,7 +193,6 @@ void ritz_frame_free(ritz_frame *f)
     ritz_dense_free(&f->A);
     ritz_dense_free(&f->E);
     ritz_dense_free(&f->L);
-    free(f->right);
-    free(f->left);
+    RITZ_FREE(f->right, f->left);
     *f = (ritz_frame){0};
 }

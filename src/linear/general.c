@@ -4,9 +4,7 @@
 
 #include <float.h>
 #include <lapacke.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X)

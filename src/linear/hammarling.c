@@ -6,8 +6,6 @@
 #include "base/alloc.h"
 #include "linear/general.h"
 
-#include <stdlib.h>
-
 /* Fortran names; character arguments bring their lengths at the end. */
 void sb03od_(/* NOLINT: its name */ const char *dico, const char *fact,
              const char *trans, const int *n, const int *m, double *A,
@@ -39,10 +37,7 @@ static void equation_free(equation *e)
     ritz_dense_free(&e->Q);
     ritz_dense_free(&e->Z);
     ritz_dense_free(&e->B);
-    free(e->re);
-    free(e->im);
-    free(e->beta);
-    free(e->work);
+    RITZ_FREE(e->re, e->im, e->beta, e->work);
 }
 
 static ritz_status copy_right_side(const ritz_dense *B, equation *e)

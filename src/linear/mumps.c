@@ -374,11 +374,7 @@ static void release_factor(mumps_factor *F)
 {
     if (F->started)
         call_mumps(F, END);
-    free(F->row);
-    free(F->col);
-    free(F->val);
-    free(F->A);
-    free(F->place);
+    RITZ_FREE(F->row, F->col, F->val, F->A, F->place);
 }
 
 ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,

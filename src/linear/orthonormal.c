@@ -20,7 +20,6 @@
 #include <cblas.h>
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* WR := W R; W NULL is the identity. */
@@ -124,9 +123,7 @@ typedef struct column_block {
 static void column_block_free(column_block *b)
 {
     ritz_dense_free(&b->WR); /* R is borrowed */
-    free(b->source);
-    free(b->energy);
-    free(b->least);
+    RITZ_FREE(b->source, b->energy, b->least);
 }
 
 static void scale_column(ritz_dense *A, int64_t j, double factor)

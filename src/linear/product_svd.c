@@ -18,7 +18,6 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,8 +33,7 @@ typedef struct pivoted {
 static void pivoted_free(pivoted *f)
 {
     ritz_dense_free(&f->A);
-    free(f->tau);
-    free(f->at);
+    RITZ_FREE(f->tau, f->at);
 }
 
 static ritz_status check_factor(const ritz_dense *A)

@@ -5,7 +5,6 @@
 #include <cblas.h>
 #include <complex.h>
 #include <lapacke.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A with complex entries, by column. */
@@ -128,11 +127,7 @@ bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
 
 void ritz_resolvent_free(ritz_resolvent *resolvent)
 {
-    free(resolvent->S);
-    free(resolvent->P);
-    free(resolvent->B);
-    free(resolvent->C);
-    free(resolvent->T);
-    free(resolvent->X);
+    RITZ_FREE(resolvent->S, resolvent->P, resolvent->B, resolvent->C,
+              resolvent->T, resolvent->X);
     *resolvent = (ritz_resolvent){0};
 }

@@ -14,7 +14,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 
 /* Eigenvectors of the Schur form itself: Q and Z leave their lengths as they
    are. */
@@ -227,8 +226,6 @@ void ritz_schur_free(ritz_schur *schur)
     ritz_dense_free(&schur->T);
     ritz_dense_free(&schur->Q);
     ritz_dense_free(&schur->Z);
-    free(schur->re);
-    free(schur->im);
-    free(schur->error);
+    RITZ_FREE(schur->re, schur->im, schur->error);
     *schur = (ritz_schur){0};
 }

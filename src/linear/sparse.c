@@ -7,7 +7,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
@@ -361,9 +360,7 @@ ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
 
 void ritz_sparse_free(ritz_sparse *A)
 {
-    free(A->colptr);
-    free(A->rowind);
-    free(A->val);
+    RITZ_FREE(A->colptr, A->rowind, A->val);
     *A = (ritz_sparse){0};
 }
 

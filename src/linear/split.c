@@ -26,7 +26,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 
 /* Whether no rounding of the matrices makes a pole unstable. All poles are left
    of the axis. */

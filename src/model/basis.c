@@ -86,10 +86,7 @@ bool ritz_column_find(const char *name, ritz_column_kind *out)
 
 void ritz_columns_free(ritz_columns *columns)
 {
-    free(columns->kind);
-    free(columns->dof);
-    free(columns->hertz);
-    free(columns->residual);
+    RITZ_FREE(columns->kind, columns->dof, columns->hertz, columns->residual);
     *columns = (ritz_columns){0};
 }
 

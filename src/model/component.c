@@ -236,8 +236,7 @@ void ritz_component_free(ritz_component *component)
     ritz_sparse_free(&component->K4);
     for (int64_t k = 0; k < component->num_loads; k++)
         ritz_sparse_free(&component->load[k].KG);
-    free(component->load);
-    free(component->dof);
+    RITZ_FREE(component->load, component->dof);
     ritz_grids_free(&component->grids);
     ritz_elements_free(&component->elements);
     for (int64_t k = 0; k < component->num_ports; k++)

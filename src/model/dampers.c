@@ -6,7 +6,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 ritz_status ritz_dampers_new(int64_t n, int64_t count, ritz_dampers *out)
@@ -175,11 +174,8 @@ ritz_status ritz_dampers_tune(ritz_dampers *dampers, const char *text)
 
 void ritz_dampers_free(ritz_dampers *dampers)
 {
-    free(dampers->name);
-    free(dampers->c);
-    free(dampers->k);
-    free(dampers->held_c);
-    free(dampers->held_k);
+    RITZ_FREE(dampers->name, dampers->c, dampers->k, dampers->held_c,
+              dampers->held_k);
     ritz_dense_free(&dampers->B);
     *dampers = (ritz_dampers){0};
 }

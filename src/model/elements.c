@@ -6,7 +6,6 @@
 
 #include <inttypes.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct shape {
@@ -133,8 +132,6 @@ ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
 
 void ritz_elements_free(ritz_elements *elements)
 {
-    free(elements->kind);
-    free(elements->first);
-    free(elements->grid);
+    RITZ_FREE(elements->kind, elements->first, elements->grid);
     *elements = (ritz_elements){0};
 }

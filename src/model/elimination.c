@@ -47,16 +47,11 @@ int64_t ritz_equations_find(const ritz_equations *equations, ritz_dof dof)
 
 void ritz_equations_free(ritz_equations *equations)
 {
-    free(equations->dependent);
-    free(equations->first);
-    free(equations->dof);
-    free(equations->share);
-    free(equations->source);
-    free(equations->from);
+    RITZ_FREE(equations->dependent, equations->first, equations->dof,
+              equations->share, equations->source, equations->from);
     for (int64_t k = 0; k < equations->num_files; k++)
         free(equations->file[k]);
-    free(equations->file);
-    free(equations->refused);
+    RITZ_FREE(equations->file, equations->refused);
     *equations = (ritz_equations){0};
 }
 
@@ -118,8 +113,7 @@ typedef struct elimination_row {
 
 static void elimination_row_free(elimination_row *row)
 {
-    free(row->col);
-    free(row->val);
+    RITZ_FREE(row->col, row->val);
 }
 
 RITZ_ARRAY_OF(elimination_row);
@@ -141,13 +135,9 @@ typedef struct eliminator {
 
 static void eliminator_free(eliminator *s)
 {
-    free(s->at);
-    free(s->equation);
+    RITZ_FREE(s->at, s->equation);
     elimination_row_array_free(&s->found);
-    free(s->sum);
-    free(s->used);
-    free(s->list);
-    free(s->member);
+    RITZ_FREE(s->sum, s->used, s->list, s->member);
 }
 
 enum {
@@ -437,12 +427,7 @@ typedef struct walk {
 
 static void walk_free(walk *w)
 {
-    free(w->index);
-    free(w->low);
-    free(w->next);
-    free(w->path);
-    free(w->stack);
-    free(w->waiting);
+    RITZ_FREE(w->index, w->low, w->next, w->path, w->stack, w->waiting);
 }
 
 static void enter_equation(const ritz_equations *eq, int64_t e, walk *w)

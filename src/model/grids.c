@@ -7,9 +7,6 @@
 #include <ritz/model.h>
 
 #include <inttypes.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 int64_t ritz_grids_find(const ritz_grids *grids, int64_t id)
 {
@@ -141,10 +138,7 @@ ritz_status ritz_rigid_geometry(const ritz_component *component,
 
 void ritz_grids_free(ritz_grids *grids)
 {
-    free(grids->id);
-    free(grids->position);
-    free(grids->frame);
-    free(grids->axes);
+    RITZ_FREE(grids->id, grids->position, grids->frame, grids->axes);
     *grids = (ritz_grids){0};
 }
 
@@ -216,7 +210,6 @@ ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
 
 void ritz_nodes_free(ritz_nodes *nodes)
 {
-    free(nodes->grid);
-    free(nodes->row);
+    RITZ_FREE(nodes->grid, nodes->row);
     *nodes = (ritz_nodes){0};
 }

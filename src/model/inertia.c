@@ -12,7 +12,6 @@
 #include <ritz/model.h>
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* R'MR, 6 x 6. */
@@ -144,9 +143,7 @@ typedef struct triplets {
 
 static void triplets_free(triplets *t)
 {
-    free(t->row);
-    free(t->col);
-    free(t->val);
+    RITZ_FREE(t->row, t->col, t->val);
 }
 
 /* place[i]: 3 node + direction of row i of the component, -1 if neither. */

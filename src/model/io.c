@@ -8,8 +8,6 @@
 
 #include <complex.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
                         ritz_io *out)
@@ -49,9 +47,7 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
 
 void ritz_io_free(ritz_io *io)
 {
-    free(io->input);
-    free(io->output);
-    free(io->limit);
+    RITZ_FREE(io->input, io->output, io->limit);
     ritz_dense_free(&io->B);
     ritz_dense_free(&io->C);
     ritz_dense_free(&io->Cv);

@@ -18,7 +18,6 @@
 #include <ritz/matrix.h>
 #include <ritz/model.h>
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

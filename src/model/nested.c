@@ -13,7 +13,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static ritz_status new_nested(int64_t smallest, int64_t count, int64_t errors,

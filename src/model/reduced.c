@@ -8,7 +8,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -346,8 +345,7 @@ const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
 
 void ritz_port_map_free(ritz_port_map *port)
 {
-    free(port->dof);
-    free(port->position);
+    RITZ_FREE(port->dof, port->position);
     ritz_dense_free(&port->map);
     *port = (ritz_port_map){0};
 }
@@ -376,8 +374,7 @@ void ritz_reduced_free(ritz_reduced *reduced)
 
 void ritz_nested_free(ritz_nested *nested)
 {
-    free(nested->order);
-    free(nested->error);
+    RITZ_FREE(nested->order, nested->error);
     ritz_dense_free(&nested->value);
     *nested = (ritz_nested){0};
 }

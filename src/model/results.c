@@ -16,38 +16,24 @@
 
 void ritz_response_free(ritz_response *response)
 {
-    free(response->hertz);
-    free(response->input);
-    free(response->output);
-    free(response->H);
-    free(response->singular);
+    RITZ_FREE(response->hertz, response->input, response->output, response->H,
+              response->singular);
     *response = (ritz_response){0};
 }
 
 void ritz_simulation_free(ritz_simulation *simulation)
 {
-    free(simulation->seconds);
-    free(simulation->input);
-    free(simulation->output);
-    free(simulation->u);
-    free(simulation->y);
-    free(simulation->kinetic);
-    free(simulation->potential);
-    free(simulation->dissipated);
-    free(simulation->work);
-    free(simulation->balance);
+    RITZ_FREE(simulation->seconds, simulation->input, simulation->output,
+              simulation->u, simulation->y, simulation->kinetic,
+              simulation->potential, simulation->dissipated, simulation->work,
+              simulation->balance);
     *simulation = (ritz_simulation){0};
 }
 
 void ritz_ranking_free(ritz_ranking *ranking)
 {
-    free(ranking->hertz);
-    free(ranking->zeta);
-    free(ranking->value);
-    free(ranking->order);
-    free(ranking->cluster);
-    free(ranking->part);
-    free(ranking->whole);
+    RITZ_FREE(ranking->hertz, ranking->zeta, ranking->value, ranking->order,
+              ranking->cluster, ranking->part, ranking->whole);
     ritz_dense_free(&ranking->parts);
     free(ranking->system_value);
     *ranking = (ritz_ranking){0};
@@ -60,8 +46,7 @@ void ritz_rankings_free(ritz_rankings *rankings)
         if (rankings->track)
             free(rankings->track[k]);
     }
-    free(rankings->item);
-    free(rankings->track);
+    RITZ_FREE(rankings->item, rankings->track);
     *rankings = (ritz_rankings){0};
 }
 

@@ -18,7 +18,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /*
@@ -375,9 +374,7 @@ void ritz_state_space_free(ritz_state_space *model)
     ritz_dense_free(&model->C);
     ritz_dense_free(&model->D);
     ritz_dense_free(&model->E);
-    free(model->input);
-    free(model->output);
-    free(model->limit);
+    RITZ_FREE(model->input, model->output, model->limit);
     ritz_columns_free(&model->columns);
     ritz_measures_free(&model->estimates);
     ritz_measures_free(&model->errors);

@@ -117,8 +117,7 @@ ritz_status ritz_configuration_install(ritz_configuration *configuration)
 void ritz_configuration_free(ritz_configuration *configuration)
 {
     RITZ_FREE_EACH(ritz_dense, configuration->num_blocks, configuration->P);
-    free(configuration->setting);
-    free(configuration->lambda);
+    RITZ_FREE(configuration->setting, configuration->lambda);
     ritz_dense_free(&configuration->K);
     ritz_dense_free(&configuration->M);
     ritz_dense_free(&configuration->D);
@@ -134,9 +133,7 @@ void ritz_system_free(ritz_system *system)
 {
     RITZ_FREE_EACH(ritz_configuration, system->num_configurations,
                    system->configuration);
-    free(system->component);
-    free(system->order);
-    free(system->order_full);
-    free(system->sweep);
+    RITZ_FREE(system->component, system->order, system->order_full,
+              system->sweep);
     *system = (ritz_system){0};
 }

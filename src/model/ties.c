@@ -11,7 +11,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 ritz_status ritz_ties_add(ritz_ties *list, ritz_tie tie)
 {

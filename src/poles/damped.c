@@ -12,8 +12,6 @@
 
 #include <complex.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The modal matrices as a model. */
 static ritz_status fill_modal(const ritz_poles *poles, ritz_reduced *out)
@@ -206,8 +204,7 @@ double _Complex ritz_damped_nearest(const ritz_damped *damped, int64_t count,
 
 void ritz_damped_free(ritz_damped *damped)
 {
-    free(damped->zeta);
-    free(damped->s);
+    RITZ_FREE(damped->zeta, damped->s);
     ritz_spectrum_free(&damped->listing);
     *damped = (ritz_damped){0};
 }

@@ -27,7 +27,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /*
  * Peaks lie near poles: they are where the search begins, and a golden section
@@ -49,9 +48,7 @@ enum { MOST_PEAKS = 8 };
 static void peak_free(peak *s)
 {
     ritz_resolvent_free(&s->resolvent);
-    free(s->H);
-    free(s->sigma);
-    free(s->spare);
+    RITZ_FREE(s->H, s->sigma, s->spare);
 }
 
 static ritz_status peak_at(peak *s, double w, double *value)

@@ -9,8 +9,6 @@
 #include <complex.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Z = Lambda - w^2 I + i (w D + K4), both triangles. */
 static void assemble_coupled(const ritz_poles *poles, bool transposed, double w,
@@ -319,9 +317,7 @@ ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
 
 void ritz_poles_free(ritz_poles *poles)
 {
-    free(poles->lambda);
-    free(poles->rate);
-    free(poles->q);
+    RITZ_FREE(poles->lambda, poles->rate, poles->q);
     ritz_dense_free(&poles->D);
     ritz_dense_free(&poles->K4);
     ritz_io_free(&poles->io);

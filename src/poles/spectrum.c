@@ -387,8 +387,7 @@ typedef struct found {
 
 static void found_free(found *f)
 {
-    free(f->s);
-    free(f->y);
+    RITZ_FREE(f->s, f->y);
     ritz_dense_free(&f->A);
 }
 
@@ -652,8 +651,7 @@ ritz_status ritz_spectrum_dense(const ritz_second_order *model,
 
 void ritz_spectrum_free(ritz_spectrum *spectrum)
 {
-    free(spectrum->s);
-    free(spectrum->residual);
+    RITZ_FREE(spectrum->s, spectrum->residual);
     ritz_dense_free(&spectrum->re);
     ritz_dense_free(&spectrum->im);
     *spectrum = (ritz_spectrum){0};

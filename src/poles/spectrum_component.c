@@ -12,7 +12,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Inverse iteration on the full matrices. */
@@ -288,8 +287,7 @@ static ritz_status scan_dense(ritz_model model,
 
 void ritz_scan_free(ritz_scan *scan)
 {
-    free(scan->c);
-    free(scan->s);
+    RITZ_FREE(scan->c, scan->s);
     *scan = (ritz_scan){0};
 }
 

@@ -228,13 +228,7 @@ static ritz_status fill_schur(const ritz_channel *channel, triangle *t)
 
 static void triangle_free(triangle *t)
 {
-    free(t->T);
-    free(t->b);
-    free(t->c);
-    free(t->cancelled);
-    free(t->x);
-    free(t->w);
-    free(t->two);
+    RITZ_FREE(t->T, t->b, t->c, t->cancelled, t->x, t->w, t->two);
     *t = (triangle){0};
 }
 

@@ -132,10 +132,7 @@ static ritz_status create_loop(const ritz_rank_request *request, int64_t keep,
 static void loop_free(loop *l)
 {
     ritz_dense_free(&l->V);
-    free(l->Y);
-    free(l->value);
-    free(l->order);
-    free(l->cluster);
+    RITZ_FREE(l->Y, l->value, l->order, l->cluster);
     ritz_dense_free(&l->q);
     ritz_dense_free(&l->d);
     free(l->taken);
@@ -286,10 +283,7 @@ ritz_status ritz_reweigh(const ritz_rank_request *request, int64_t keep,
 
 void ritz_reweighing_free(ritz_reweighing *reweighing)
 {
-    free(reweighing->weight);
-    free(reweighing->cost);
-    free(reweighing->missed);
-    free(reweighing->kept);
-    free(reweighing->other);
+    RITZ_FREE(reweighing->weight, reweighing->cost, reweighing->missed,
+              reweighing->kept, reweighing->other);
     *reweighing = (ritz_reweighing){0};
 }

@@ -81,8 +81,7 @@ ritz_status ritz_weights_parse(const char *inputs, const char *outputs,
 
 void ritz_weights_free(ritz_weights *weights)
 {
-    free(weights->input);
-    free(weights->output);
+    RITZ_FREE(weights->input, weights->output);
     *weights = (ritz_weights){0};
 }
 
@@ -366,7 +365,6 @@ void ritz_rank_request_free(ritz_rank_request *request)
     ritz_dense_free(&request->momentum);
     ritz_dense_free(&request->coupling);
     ritz_dense_free(&request->interface);
-    free(request->input);
-    free(request->output);
+    RITZ_FREE(request->input, request->output);
     *request = (ritz_rank_request){0};
 }

@@ -7,7 +7,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Number of a mode: its track, or its index without tracks. */
@@ -351,8 +350,6 @@ ritz_status ritz_rankings_agree(const ritz_ranking *a, const int64_t *track_a,
 
 void ritz_agreement_free(ritz_agreement *agreement)
 {
-    free(agreement->overlap);
-    free(agreement->left);
-    free(agreement->entered);
+    RITZ_FREE(agreement->overlap, agreement->left, agreement->entered);
     *agreement = (ritz_agreement){0};
 }

@@ -9,7 +9,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A response while its points are being chosen. */
@@ -42,14 +41,8 @@ static ritz_status evaluate_mesh(ritz_mesh *mesh, double hertz)
 
 static void ritz_mesh_free(ritz_mesh *mesh)
 {
-    free(mesh->hertz);
-    free(mesh->H);
-    free(mesh->open);
-    free(mesh->peak);
-    free(mesh->level);
-    free(mesh->scale);
-    free(mesh->row);
-    free(mesh->between);
+    RITZ_FREE(mesh->hertz, mesh->H, mesh->open, mesh->peak, mesh->level,
+              mesh->scale, mesh->row, mesh->between);
 }
 
 /*
@@ -139,8 +132,7 @@ typedef struct finds {
 
 static void finds_free(finds *f)
 {
-    free(f->hertz);
-    free(f->H);
+    RITZ_FREE(f->hertz, f->H);
 }
 
 /* Behind those of the same frequency. */
@@ -473,8 +465,7 @@ static ritz_status build_response(ritz_mesh *mesh, const ritz_grid *grid,
 
     RITZ_CHECK(ritz_response_new(&ends, responder->poles, &r));
     ritz_responder_sign(responder, &r);
-    free(r.hertz);
-    free(r.H);
+    RITZ_FREE(r.hertz, r.H);
     r.count = mesh->count;
     RITZ_MOVE(r.hertz, mesh->hertz);
     RITZ_MOVE(r.H, mesh->H);

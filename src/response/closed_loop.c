@@ -14,8 +14,6 @@
 
 #include <ritz/response.h>
 
-#include <inttypes.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* e and v as linear functions of [x; w; r], one row each. */

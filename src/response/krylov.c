@@ -414,16 +414,8 @@ static void free_krylov(void *state)
     ritz_direct_free(&k->full);
     ritz_krylov_space_free(&k->space);
     ritz_krylov_small_free(&k->small);
-    free(k->hertz);
-    free(k->size);
-    free(k->load);
-    free(k->error);
-    free(k->trial);
-    free(k->noise);
-    free(k->peak);
-    free(k->allowed);
-    free(k->y);
-    free(k->H);
+    RITZ_FREE(k->hertz, k->size, k->load, k->error, k->trial, k->noise, k->peak,
+              k->allowed, k->y, k->H);
 }
 
 /*

@@ -421,8 +421,6 @@ void ritz_krylov_small_free(ritz_krylov_small *small)
     ritz_poles_free(&small->poles);
     ritz_dense_free(&small->outputs_of);
     ritz_dense_free(&small->T);
-    free(small->q);
-    free(small->p);
-    free(small->z);
+    RITZ_FREE(small->q, small->p, small->z);
     *small = (ritz_krylov_small){0};
 }

@@ -11,7 +11,6 @@
 #include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -153,8 +152,7 @@ ritz_status ritz_loop_match(const ritz_io *plant, const ritz_io *controller,
 
 void ritz_loop_free(ritz_loop *loop)
 {
-    free(loop->measured);
-    free(loop->driven);
+    RITZ_FREE(loop->measured, loop->driven);
     *loop = (ritz_loop){0};
 }
 
@@ -188,8 +186,7 @@ static ritz_status respondents_new(const ritz_loop *loop, ritz_responder *plant,
 
 static void respondents_free(respondents *s)
 {
-    free(s->G);
-    free(s->F);
+    RITZ_FREE(s->G, s->F);
 }
 
 /* @param[out] H  of the closed loop; NULL: not wanted */
@@ -216,9 +213,7 @@ typedef struct prober {
 static void prober_free(prober *s)
 {
     respondents_free(&s->of);
-    free(s->largest);
-    free(s->sensitivity);
-    free(s->gain);
+    RITZ_FREE(s->largest, s->sensitivity, s->gain);
 }
 
 static ritz_status evaluate_size(void *state, double hertz, double *value)

@@ -5,7 +5,6 @@
 #include "base/alloc.h"
 #include "response/responder.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* `pairs` and `residual` are those of a component, else empty. */

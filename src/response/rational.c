@@ -76,12 +76,7 @@ static void free_interpolant(interpolant *f)
 {
     for (int64_t v = 0; f->zero && v < f->values; v++)
         free(f->zero[v]);
-    free(f->pole);
-    free(f->num_zeros);
-    free(f->zero);
-    free(f->node);
-    free(f->weight);
-    free(f->H);
+    RITZ_FREE(f->pole, f->num_zeros, f->zero, f->node, f->weight, f->H);
 }
 
 /* @param[in] pole  all, conjugates too  [rad/s] */
@@ -525,18 +520,8 @@ static void free_rational(void *state)
     ritz_direct_free(&s->full);
     ritz_reduced_free(&s->whole);
     free_interpolant(&s->f);
-    free(s->pole);
-    free(s->hertz);
-    free(s->used);
-    free(s->with_zeros);
-    free(s->missed);
-    free(s->miss);
-    free(s->peak);
-    free(s->level);
-    free(s->scale);
-    free(s->H);
-    free(s->guess);
-    free(s->other);
+    RITZ_FREE(s->pole, s->hertz, s->used, s->with_zeros, s->missed, s->miss,
+              s->peak, s->level, s->scale, s->H, s->guess, s->other);
 }
 
 static ritz_status start_rational(const ritz_response_request *request,

@@ -317,10 +317,7 @@ void ritz_responder_free(ritz_responder **responder)
         return;
     if (r->state)
         r->free(r->state);
-    free(r->state);
-    free(r->noise.output);
-    free(r->noise.input);
-    free(r);
+    RITZ_FREE(r->state, r->noise.output, r->noise.input, r);
     *responder = NULL;
 }
 

@@ -72,8 +72,7 @@ typedef struct sampler {
 
 static void sampler_free(sampler *s)
 {
-    free(s->H);
-    free(s->sigma);
+    RITZ_FREE(s->H, s->sigma);
 }
 
 static ritz_status largest_at(void *state, double hertz, double *value)

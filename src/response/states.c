@@ -15,7 +15,6 @@
 
 #include <complex.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,13 +79,7 @@ static void free_states(void *state)
     ritz_dense_free(&h->A);
     ritz_dense_free(&h->B);
     ritz_dense_free(&h->C);
-    free(h->iwork);
-    free(h->re);
-    free(h->im);
-    free(h->work);
-    free(h->G);
-    free(h->X);
-    free(h->zwork);
+    RITZ_FREE(h->iwork, h->re, h->im, h->work, h->G, h->X, h->zwork);
 }
 
 static ritz_status solve_hessenberg(state_responder *h, double hertz)

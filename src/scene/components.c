@@ -9,7 +9,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 ritz_status ritz_scene_count(const ritz_yaml *yaml, const yaml_node_t *node,

@@ -517,20 +517,12 @@ ritz_status ritz_scene_context(const ritz_scene *scene, ritz_status status,
 void ritz_scene_free(ritz_scene *scene)
 {
     for (int64_t k = 0; k < scene->num_components; k++) {
-        free(scene->component[k].model);
-        free(scene->component[k].attach);
+        RITZ_FREE(scene->component[k].model, scene->component[k].attach);
     }
     for (int64_t k = 0; k < scene->num_sweeps; k++)
         free(scene->sweep[k].setting);
-    free(scene->path);
-    free(scene->component);
-    free(scene->joint);
-    free(scene->sweep);
-    free(scene->setting);
-    free(scene->input);
-    free(scene->output);
-    free(scene->reference);
-    free(scene->select_mode);
-    free(scene->attached_input);
+    RITZ_FREE(scene->path, scene->component, scene->joint, scene->sweep,
+              scene->setting, scene->input, scene->output, scene->reference,
+              scene->select_mode, scene->attached_input);
     *scene = (ritz_scene){0};
 }

@@ -12,11 +12,9 @@
 #include "base/tolerances.h"
 #include "simulate/motion.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /* Steps, and values at all of them, that are worth trying: 2 GiB. */
 static const int64_t most_steps = INT64_C(1) << 23;
@@ -33,8 +31,7 @@ typedef struct halving_trial {
 
 static void halving_trial_free(halving_trial *t)
 {
-    free(t->before);
-    free(t->in_vain);
+    RITZ_FREE(t->before, t->in_vain);
 }
 
 /* Whether the difference of two runs is rounding of what the output could

@@ -18,7 +18,6 @@
 
 #include <ritz/matrix.h>
 
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -143,8 +142,7 @@ static bool couples_modes(const ritz_dense *D, double floor, int64_t i,
 
 static void groups_free(groups *g)
 {
-    free(g->first);
-    free(g->member);
+    RITZ_FREE(g->first, g->member);
     *g = (groups){0};
 }
 
@@ -206,11 +204,7 @@ static void release_modal(void *own)
     }
     free(s->group);
     groups_free(&s->parts);
-    free(s->f);
-    free(s->g);
-    free(s->z);
-    free(s->z1);
-    free(s);
+    RITZ_FREE(s->f, s->g, s->z, s->z1, s);
 }
 
 /* The matrix of z'; `forces` of a lone mode, whose input is its own force. */

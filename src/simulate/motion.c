@@ -18,7 +18,6 @@
 #include <ritz/matrix.h>
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Modes as a motion: of a dense model, or of a full component up to a band. */
 
@@ -389,8 +388,7 @@ void ritz_motion_free(ritz_motion *motion)
         &motion->K, &motion->M,  &motion->D,    &motion->A,    &motion->B,
         &motion->C, &motion->Cv, &motion->feed, &motion->push, &motion->to};
 
-    free(motion->lambda);
-    free(motion->massless);
+    RITZ_FREE(motion->lambda, motion->massless);
     for (int k = 0; k < MATRICES; k++)
         ritz_dense_free(dense[k]);
     ritz_sparse_free(&motion->sK);

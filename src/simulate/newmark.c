@@ -23,7 +23,6 @@
 
 #include "base/alloc.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,12 +41,7 @@ static void release_newmark(void *own)
     newmark *s = own;
 
     ritz_effective_free(&s->F);
-    free(s->a);
-    free(s->x0);
-    free(s->rhs);
-    free(s->work);
-    free(s->last);
-    free(s);
+    RITZ_FREE(s->a, s->x0, s->rhs, s->work, s->last, s);
 }
 
 /* a from equilibrium; dofs without mass have none. */

@@ -34,8 +34,7 @@ void ritz_march_free(ritz_march *march)
 {
     if (march->own)
         march->free(march->own);
-    free(march->x);
-    free(march->v);
+    RITZ_FREE(march->x, march->v);
     *march = (ritz_march){0};
 }
 
@@ -219,10 +218,7 @@ static void note_reach(ritz_reach *reach, const ritz_march *march,
 
 void ritz_reach_free(ritz_reach *reach)
 {
-    free(reach->weight);
-    free(reach->size);
-    free(reach->last);
-    free(reach->work);
+    RITZ_FREE(reach->weight, reach->size, reach->last, reach->work);
     *reach = (ritz_reach){0};
 }
 

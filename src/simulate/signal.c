@@ -218,7 +218,6 @@ double ritz_signal_at(const ritz_signal *signal, double t, double seconds)
 
 void ritz_signal_free(ritz_signal *signal)
 {
-    free(signal->time);
-    free(signal->value);
+    RITZ_FREE(signal->time, signal->value);
     *signal = (ritz_signal){0};
 }

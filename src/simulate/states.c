@@ -31,9 +31,7 @@ static void release_states(void *own)
     ritz_dense_free(&s->E);
     ritz_dense_free(&s->G);
     ritz_dense_free(&s->H);
-    free(s->x);
-    free(s->rise);
-    free(s);
+    RITZ_FREE(s->x, s->rise, s);
 }
 
 static ritz_status advance_states(ritz_march *march, const double *u0,

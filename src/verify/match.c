@@ -224,8 +224,7 @@ double ritz_participation_mac(const ritz_participation *part,
 
 void ritz_participation_free(ritz_participation *part)
 {
-    free(part->scale);
-    free(part->observable);
+    RITZ_FREE(part->scale, part->observable);
     *part = (ritz_participation){0};
 }
 
@@ -355,9 +354,7 @@ ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
 
 void ritz_match_free(ritz_match *match)
 {
-    free(match->partner);
-    free(match->mac);
-    free(match->taken);
+    RITZ_FREE(match->partner, match->mac, match->taken);
     *match = (ritz_match){0};
 }
 
@@ -378,10 +375,7 @@ typedef struct pairing {
 
 static void pairing_free(pairing *p)
 {
-    free(p->cost);
-    free(p->total);
-    free(p->of);
-    free(p->by);
+    RITZ_FREE(p->cost, p->total, p->of, p->by);
 }
 
 /* A mode that is not observable is known by its frequency alone. */

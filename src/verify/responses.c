@@ -70,8 +70,7 @@ static ritz_status find_significance(const ritz_poles *poles,
 
 void ritz_sweep_free(ritz_reference_sweep *sweep)
 {
-    free(sweep->hertz);
-    free(sweep->full);
+    RITZ_FREE(sweep->hertz, sweep->full);
     *sweep = (ritz_reference_sweep){0};
 }
 

@@ -15,7 +15,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Dofs up to which all modes are taken where D couples them, or acts on those
    above in a way that is not known. */

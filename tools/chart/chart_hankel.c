@@ -4,7 +4,6 @@
 #include "print/rankings.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A value below this part of the largest is left out of the picture. */

@@ -1,8 +1,6 @@
 /* The table of charts: a new one is a file, its template, and a row. */
 #include "chart/chart.h"
 
-#include <stddef.h>
-
 const chart_kind chart_kinds[] = {
     {"pareto", "errors against the time to reduce or to simulate",
      CHART_RECORDS, "run records", chart_pareto},

@@ -3,7 +3,6 @@
 #include <ritz/base.h>
 
 #include <fcntl.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -355,8 +355,7 @@ static void free_run(cli_run *run)
 {
     for (int64_t k = 0; k < run->num_inputs; k++)
         free(run->input[k]);
-    free(run->input);
-    free(run->operand);
+    RITZ_FREE(run->input, run->operand);
     cli_table_free(&run->said);
     json_decref(run->report);
     json_decref(run->warnings);

@@ -501,8 +501,6 @@ ritz_status record_set_new(const records *all, const char *subject,
 
 void record_set_free(record_set *s)
 {
-    free(s->all.item);
-    free(s->method);
-    free(s->which);
+    RITZ_FREE(s->all.item, s->method, s->which);
     *s = (record_set){0};
 }

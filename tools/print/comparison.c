@@ -1,6 +1,8 @@
 /* The report of ritz-compare: what was reduced, how far, how wrong it is. */
 #include "print/print.h"
 
+#include "base/alloc.h"
+
 #include "cli/cli_table.h"
 
 #include <float.h>
@@ -373,8 +375,7 @@ typedef struct mode_column {
 
 static void mode_column_free(mode_column *column)
 {
-    free(column->hertz);
-    free(column->kept);
+    RITZ_FREE(column->hertz, column->kept);
 }
 
 RITZ_ARRAY_OF(mode_column);

@@ -1,5 +1,7 @@
 #include "print/rankings.h"
 
+#include "base/alloc.h"
+
 /* Above this share of one mode in another's Gramian, Gregory's assumption of
  * modes that do not couple costs several percent. */
 static const double coupled_limit = 0.1;
@@ -32,8 +34,7 @@ void ranked_free(ranked *group)
 {
     ritz_rankings_free(&group->all);
     ritz_ranking_free(&group->largest);
-    free(group->where);
-    free(group->track);
+    RITZ_FREE(group->where, group->track);
     *group = (ranked){0};
 }
 

@@ -1,6 +1,8 @@
 /* Several rankings side by side: correlations, overlaps, what swaps. */
 #include "print/rankings.h"
 
+#include "base/alloc.h"
+
 #include "cli/cli_table.h"
 
 enum { MOST_COLUMNS = 10, LIST = 1024 };
@@ -83,9 +85,7 @@ ritz_status contest_new(const rank_result *result, bool all, contest *out)
 
 void contest_free(contest *all)
 {
-    free(all->ranking);
-    free(all->track);
-    free(all->name);
+    RITZ_FREE(all->ranking, all->track, all->name);
     *all = (contest){0};
 }
 

@@ -1,7 +1,5 @@
 #include "print/rankings.h"
 
-#include <inttypes.h>
-
 enum { FIELDS = 3, FIELD = 256 };
 
 /* "TRACK\tCONFIGURATION\tMODE\t..." of one line; false if it is none. */

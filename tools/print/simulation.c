@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include "base/alloc.h"
+
 #include "base/names.h"
 
 #include <inttypes.h>
@@ -161,8 +163,7 @@ static ritz_status take_initial(cli_run *run, const char *text, int64_t n,
 static void drive_free(drive *d)
 {
     RITZ_FREE_EACH(ritz_signal, d->io.num_inputs, d->signal);
-    free(d->x0);
-    free(d->v0);
+    RITZ_FREE(d->x0, d->v0);
 }
 
 /* Largest relative difference from the same by the modal integrator. */

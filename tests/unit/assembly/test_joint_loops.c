@@ -12,7 +12,6 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { MOST_BODIES = 4 };
 

@@ -15,7 +15,6 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /* The two in a basis, joined; modes of -1 where the method takes none. */
 static bool join(const solvers_source from[2], const ritz_method *method,

@@ -15,7 +15,6 @@
 
 #include <cblas.h>
 
-#include <float.h>
 #include <stdlib.h>
 
 /* cond(K) of the 12-dof beam is 4e4 and of its scaled mass below 1e3 */

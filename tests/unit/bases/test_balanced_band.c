@@ -7,7 +7,6 @@
 #include <ritz/check.h>
 
 #include <complex.h>
-#include <float.h>
 #include <stdlib.h>
 
 enum { MASSES = 10 };

@@ -10,10 +10,8 @@
 #include <ritz/matrix.h>
 #include <ritz/model.h>
 
-#include <complex.h>
 #include <float.h>
 #include <lapacke.h>
-#include <stdlib.h>
 
 static const ritz_method *const methods[] = {&ritz_method_balanced_position,
                                              &ritz_method_balanced_velocity};

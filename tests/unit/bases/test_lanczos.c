@@ -12,7 +12,6 @@
 #include <complex.h>
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 enum { MASSES = 10, STATES = 2 * MASSES };

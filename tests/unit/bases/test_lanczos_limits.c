@@ -7,7 +7,6 @@
 #include <ritz/response.h>
 
 #include <complex.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -17,7 +17,6 @@
 #include <lapacke.h>
 
 #include <float.h>
-#include <stdlib.h>
 
 static const ritz_estimate_request usual = {0};
 

@@ -11,7 +11,6 @@
 #include <complex.h>
 #include <float.h>
 #include <lapacke.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;

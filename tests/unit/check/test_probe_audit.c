@@ -17,7 +17,6 @@
 #include <ritz/basis.h>
 #include <ritz/check.h>
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

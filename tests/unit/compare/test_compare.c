@@ -8,7 +8,6 @@
 #include <ritz/matrix.h>
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 typedef struct fixture {

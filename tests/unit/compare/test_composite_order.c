@@ -8,7 +8,6 @@
 #include <ritz/matrix.h>
 
 #include <float.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* The clamped beam of two components, each with all of its modes. */

@@ -11,7 +11,6 @@
 #include <ritz/matrix.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 
 /*
  * One unit of the last digit printed: the first frequency is 0.09946050 in the

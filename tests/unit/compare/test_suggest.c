@@ -8,8 +8,6 @@
 
 #include "compare/compare.h"
 
-#include <stdlib.h>
-
 enum { LISTED = 2, ROWS = 4 };
 
 /* Two listed rows and two between, with no error at all. */

@@ -10,7 +10,6 @@
 #include <ritz/assembly.h>
 #include <ritz/matrix.h>
 
-#include <stdio.h>
 #include <stdlib.h>
 
 enum { MOST = 4 }; /* configurations, and modes */

@@ -7,7 +7,6 @@
 #include <hdf5.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { SEEDS = 600, CUTS = 60, MOST = 1 << 18 };
 

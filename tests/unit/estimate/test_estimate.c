@@ -11,9 +11,7 @@
 #include <ritz/matrix.h>
 #include <ritz/verify.h>
 
-#include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static double reported(const ritz_measures *m, const char *name)
 {

@@ -11,9 +11,7 @@
 #include <ritz/matrix.h>
 #include <ritz/verify.h>
 
-#include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
 enum { MOST = 6 };
 

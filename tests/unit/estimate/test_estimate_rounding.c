@@ -12,8 +12,6 @@
 
 #include <complex.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 enum { MOST = 12 };
 

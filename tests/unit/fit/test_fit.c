@@ -13,8 +13,6 @@
 #include <ritz/model.h>
 #include <ritz/verify.h>
 
-#include <stdlib.h>
-
 static const ritz_fit_request plain = RITZ_FIT_NONE;
 
 enum { SOME = 5 };

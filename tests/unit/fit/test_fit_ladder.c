@@ -8,8 +8,6 @@
 
 #include "fit/fitter.h"
 
-#include <stdlib.h>
-
 static const ritz_method *const fixed[] = {&ritz_method_craig_bampton};
 static const ritz_method *const compare[] = {&ritz_fit_compare};
 

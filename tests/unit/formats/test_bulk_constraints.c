@@ -8,7 +8,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 static ritz_status parse(const char *text, ritz_deck *out)
 {

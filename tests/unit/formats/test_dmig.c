@@ -9,7 +9,6 @@
 
 #include <lapacke.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /* All matrices of bytes that are taken for DMIG. */
 static ritz_status parse_bytes(const char *bytes, int64_t size,

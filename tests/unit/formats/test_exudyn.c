@@ -12,7 +12,6 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 enum { MODES = 3, PATH_SIZE = 64 };

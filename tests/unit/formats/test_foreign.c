@@ -6,7 +6,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #define ONE(name, value)                                                       \
     "       1       1       6       2" name "1P,1E9.1\n"                       \

@@ -6,7 +6,6 @@
 
 #include <ritz/import.h>
 
-#include <stdio.h>
 #include <stdlib.h>
 
 static void assert_full(const ritz_matrix *m, const char *name)

@@ -11,9 +11,6 @@
 #include <ritz/export.h>
 #include <ritz/import.h>
 
-#include <stdio.h>
-#include <stdlib.h>
-
 /* A free chain of three bodies, reduced to all of its modes. */
 typedef struct fixture {
     ritz_component body;

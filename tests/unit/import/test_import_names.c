@@ -3,7 +3,6 @@
 #include "testing.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static const char path[] = "test_import_names.txt";
 

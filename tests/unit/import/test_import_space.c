@@ -6,7 +6,6 @@
 
 #include <matio.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #define ARRAY "%%MatrixMarket matrix array real general\n"
 

@@ -5,7 +5,6 @@
 #include <ritz/basis.h>
 
 #include <float.h>
-#include <stdlib.h>
 
 /* A fixed sequence of numbers in (-1, 1), the same everywhere. */
 static double noise(uint64_t *seed)

@@ -7,7 +7,6 @@
 #include <ritz/model.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static ritz_component chain(void)
 {

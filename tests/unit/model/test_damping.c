@@ -2,8 +2,6 @@
 
 #include <ritz/model.h>
 
-#include <stdio.h>
-
 static const double two_pi = 6.28318530717958647692;
 
 static ritz_damping read(const char *text)

@@ -10,8 +10,6 @@
 #include <ritz/matrix.h>
 
 #include <float.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 enum { MASSES = 8, VECTORS = 5 };
 

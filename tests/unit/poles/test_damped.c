@@ -15,7 +15,6 @@
 
 #include <complex.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
 static const double eps = 2.2204460492503131e-16;

@@ -5,7 +5,6 @@
 #include "spring_chain.h"
 
 #include <complex.h>
-#include <stdlib.h>
 
 static const double eps = 2.2204460492503131e-16;
 

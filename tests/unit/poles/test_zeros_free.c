@@ -6,7 +6,6 @@
 #include <ritz/poles.h>
 
 #include <complex.h>
-#include <float.h>
 #include <stdlib.h>
 
 enum { N = 9, NONE = -1 };

@@ -12,7 +12,6 @@
 
 #include <lapacke.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MODES = 9, INPUTS = 2, OUTPUTS = 3, STATES = 2 * MODES };
 

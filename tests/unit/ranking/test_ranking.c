@@ -8,7 +8,6 @@
 #include <ritz/verify.h>
 
 #include <lapacke.h>
-#include <stdlib.h>
 
 enum { DOFS = 12, INPUTS = 3, OUTPUTS = 6 };
 

@@ -12,7 +12,6 @@
 #include <ritz/response.h>
 
 #include <complex.h>
-#include <string.h>
 
 enum { ELEMENTS = 330, DOFS = ELEMENTS + 1, POINTS = 8 };
 

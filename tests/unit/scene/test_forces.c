@@ -3,8 +3,6 @@
 
 #include "beams.h"
 
-#include <stdio.h>
-
 static void read(const char *inputs, ritz_scene *scene, ritz_stage *stage)
 {
     assert_ok(beams_stage(false, inputs, scene, stage));

@@ -9,7 +9,6 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
 static const ritz_damping none = {0};

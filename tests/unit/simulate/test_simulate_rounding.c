@@ -11,8 +11,6 @@
 
 #include <ritz/simulate.h>
 
-#include <stdlib.h>
-
 static const double turned = 1.0; /* radians */
 
 /* Both masses 1, stiffnesses 400 and 900 in axes turned: full 2 x 2. */

@@ -6,7 +6,6 @@
 #include "cli/records.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static ritz_status read_text(const char *text, records *out)
 {

@@ -10,8 +10,6 @@
 #include <ritz/model.h>
 #include <ritz/verify.h>
 
-#include <string.h>
-
 enum { MOST = 4, OUTPUTS = 2 };
 
 /* Mode k has w = hertz[k] 2 pi, phi'b = b[k] and c phi = c[k]. */

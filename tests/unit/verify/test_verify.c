@@ -6,8 +6,6 @@
 #include <ritz/matrix.h>
 #include <ritz/verify.h>
 
-#include <stdlib.h>
-
 static const ritz_verify_request plain = RITZ_VERIFY_NONE;
 static const ritz_estimate_request usual = {0};
 

@@ -10,8 +10,6 @@
 #include <ritz/matrix.h>
 #include <ritz/verify.h>
 
-#include <stdlib.h>
-
 /* Free beam of 8 elements of stiffness 2^power, by its lowest 7 modes. */
 static void open_beam(int power, ritz_component *beam, ritz_reduced *reduced)
 {

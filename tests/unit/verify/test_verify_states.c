@@ -3,7 +3,6 @@
 #include <ritz/verify.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 
 static const ritz_verify_request none = RITZ_VERIFY_NONE;
 
