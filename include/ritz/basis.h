@@ -33,7 +33,7 @@ enum {
     RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
 };
 
-/* Forces that vectors answer; what is read gives as many: H K^-1 F. */
+/* Forces whose static solutions are vectors: H K^-1 F. */
 enum {
     RITZ_LOADS_ATTACHED = 1, /* unit forces at the attached dofs */
     RITZ_LOADS_INPUTS = 2,

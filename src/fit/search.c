@@ -431,7 +431,7 @@ static int64_t top_of(const ladder *l)
     return top;
 }
 
-/* Up, as long as the ladder is by itself. */
+/* Climb the ladder as it was made, and set why it ended. */
 static ritz_status climb_first(ladder *l, int64_t *low, int64_t *high)
 {
     const ritz_method *method = l->fit->method[l->method];
@@ -464,7 +464,7 @@ static bool goes_on(const ladder *l)
     return in_reach(l, l->last);
 }
 
-/* Twice as long, of what is there or can be had. */
+/* Make the ladder twice as long, as far as more modes can be had. */
 static ritz_status lengthen_ladder(ladder *l)
 {
     const int64_t twice = 2 * l->length + BESIDE;

@@ -464,7 +464,7 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
 
     *end = count_wanted(P, s->span, 0.0);
     if (*end >= P->Phi.ncol && !s->all) {
-        s->ask += P->num_rigid + SPARE; /* there is no end of rigid modes yet */
+        s->ask += P->num_rigid + SPARE; /* no flexible mode was found yet */
         return RITZ_OK;
     }
     at = s->all ? *end : widest_gap(P, *end);

@@ -310,7 +310,7 @@ static ritz_status solve_factored(mumps_factor *F, int64_t k, double *x)
     return run_job(F, SOLVE);
 }
 
-/* Every entry counts, none equal: no eigenvector is likely to be missed. */
+/* Unequal entries, none 0: orthogonal to no eigenvector, most likely. */
 static void start_vector(int64_t count, double *y)
 {
     for (int64_t i = 0; i < count; i++)

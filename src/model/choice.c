@@ -90,7 +90,7 @@ const ritz_choice_word ritz_choice_words[] = {
     {"shift_hz", "F[,F]", "expansion points of Krylov vectors [0]",
      RITZ_USES_SHIFTS, RITZ_CHOICE_SHIFTS, FIELD(shift_hz), NULL, NULL, 0},
     {"loads", "WORD[,WORD]",
-     "forces that vectors answer: attached, inputs, outputs, dampers",
+     "forces whose responses are vectors: attached, inputs, outputs, dampers",
      RITZ_USES_LOADS, RITZ_CHOICE_SET, FIELD(loads), "load", WORDS(loads)},
     {"inner", "WORD", "inner product of Krylov vectors: stiffness or mass",
      RITZ_USES_INNER, RITZ_CHOICE_ENUM, FIELD(inner), "inner product",

@@ -206,9 +206,10 @@ bool ritz_poles_matter(const ritz_poles *poles, int64_t k)
 ritz_status ritz_refuse_pole(bool rigid, double hertz)
 {
     if (rigid)
-        return ritz_fail(RITZ_ERR_SINGULAR,
-                         "at 0 Hz the response is infinite: a rigid-body "
-                         "motion is driven and seen, begin above 0 Hz");
+        return ritz_fail(
+            RITZ_ERR_SINGULAR,
+            "at 0 Hz the response is infinite: a rigid-body "
+            "motion is controllable and observable, begin above 0 Hz");
     return ritz_fail(RITZ_ERR_SINGULAR,
                      "%.9g Hz is the frequency of an undamped mode: give it "
                      "damping or leave the point out",

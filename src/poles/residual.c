@@ -257,7 +257,7 @@ static ritz_status rest_solve(rest_solver *s, ritz_dense *f, ritz_dense *out)
     }
     RITZ_REFUSE_IF(
         !(required <= 1.0), RITZ_ERR_CONVERGENCE,
-        "what modes above the band answer did not settle in %d steps: "
+        "the response of modes above the band did not settle in %d steps: "
         "the last one changed it by %.1e",
         (int)MOST_STEPS, required * RITZ_REFINED_NEARLY);
     for (int64_t j = 0; !s->begun && j < R.ncol; j++)

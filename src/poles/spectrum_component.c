@@ -324,7 +324,7 @@ static ritz_status span_space(const ritz_component *component,
     if (component->dampers.count > 0) {
         ritz_dense_free(&X);
         RITZ_CHECK(ritz_dense_copy(&component->dampers.B, &X));
-        RITZ_CHECK_IN("static answer", ritz_factor_spd(&A, &F));
+        RITZ_CHECK_IN("static solution", ritz_factor_spd(&A, &F));
         RITZ_CHECK(ritz_factor_solve(F, &X));
         RITZ_CHECK(ritz_orthonormal_append(&set, &X, n - set.count, NULL));
     }

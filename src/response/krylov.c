@@ -571,7 +571,7 @@ static ritz_status make_krylov(const ritz_response_request *request,
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " modes and %" PRId64 " vectors more, of %" PRId64
                    " corrections and %" PRId64
-                   " full answers; error below %.1e",
+                   " full responses; error below %.1e",
                    k->full.m, k->space.V.ncol - k->full.m, k->corrections + 1,
                    k->points, k->worst * k->tolerance);
     ritz_krylov_space_free(&k->space); /* frees arrays of length n */
@@ -581,13 +581,13 @@ static ritz_status make_krylov(const ritz_response_request *request,
 
 const ritz_response_engine ritz_response_engine_krylov = {
     .name = "krylov",
-    .summary = "the full damped matrices projected on modes and answers",
+    .summary = "the full damped matrices projected on modes and responses",
     .reference = "Grimme1997",
     .when = "large components, many points; local dampers, D and K4",
     .cost = "modes, one real factor, and a complex one for each expansion "
             "point; then O(vectors) a point, O(vectors^3) with D or K4",
     .holds = "the tolerance: by a bound without D and K4, else by an indicator "
-             "that full answers confirm",
+             "that full responses confirm",
     .fails = "hundreds of inputs or outputs: each adds vectors",
     .takes = RITZ_MODEL_COMPONENT,
     .make = make_krylov,

@@ -27,7 +27,7 @@ static ritz_status refuse_structural(bool there)
     RITZ_REFUSE_IF(
         there, RITZ_ERR_ARGUMENT,
         "structural damping is of harmonic motion alone, in time it "
-        "would answer before it is driven: give it as a modal ratio");
+        "would respond before the force acts: give it as a modal ratio");
     return RITZ_OK;
 }
 

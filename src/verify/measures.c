@@ -34,7 +34,7 @@ const ritz_measure_kind ritz_measure_table[RITZ_MEASURES] = {
                                     .of_modes = ritz_modes_missing_rigid},
     [RITZ_MEASURE_MISSING] = {.name = "missing-modes",
                               .word = "missing",
-                              .help = "modes of the band without partner [0 "
+                              .help = "modes of the band without a pair [0 "
                                       "with a limit of frequency or damping]",
                               .unit = "modes",
                               .bound = "missing-modes-bound",

@@ -194,7 +194,7 @@ static void whirl_response(double hertz, double _Complex H[2])
 }
 
 /*
- * Nothing damps it: full answers at a pole are rounding. Poles come in pairs
+ * Nothing damps it: full responses at a pole are rounding. Poles come in pairs
  * 0.008 Hz apart, at 0.16, 53, 105 Hz; they are 1e-3 of their frequency off
  * these points or more. lambda_max / lambda = 4e7 of the first: rounding is
  * 4e7 eps / 1e-3 = 1e-5 at worst of what it answers; measured 2e-9.
@@ -232,7 +232,7 @@ static void a_small_gyroscopic_model_is_answered(void **state)
                       ritz_responder_remark(r), worst / largest);
         assert_true(worst <= fmax(tolerance[t], 1e-8) * largest);
         /* one at the worst point, one beside the pole: nothing was amiss */
-        assert_non_null(strstr(ritz_responder_remark(r), " 2 full answers"));
+        assert_non_null(strstr(ritz_responder_remark(r), " 2 full responses"));
     }
 }
 
