@@ -352,8 +352,7 @@
 /* Damping between two modes, over the root of their own, above which they are
    coupled: the closed forms err by its square. */
 #define RITZ_DAMPING_COUPLES 1e-6
-/* Roundings on the way to a band Gramian, of the magnitudes of its sum: 8
-   eps. */
+/* Roundings of a band Gramian, relative to the magnitudes it sums: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49
 /* Up to this ratio a mode is eliminated as a whole: eigenvectors of its two
    poles are no better than its block. */
@@ -594,8 +593,7 @@
 /* Roundings, in eps, of a sum of terms that cancel: one is due, the rest is
    room. */
 #define RITZ_CANCELLED_ROUNDINGS 4.0
-/* A count may be off by this multiple of the rounding of eigenvalues near
-   it. */
+/* A count may be off by so many times the rounding of eigenvalues near it. */
 #define RITZ_COUNT_MARGIN 2.0
 /* A ratio of bound to error that is good enough. */
 #define RITZ_GOOD_RATIO 3.0
@@ -619,8 +617,7 @@
 /* The full mode of the same number is named unless another one's bound is
    smaller by this factor. */
 #define RITZ_CLAIM_FAVOUR 4.0
-/* Largest sin^2 of the angle between a group and a vector that stands for
-   it. */
+/* Largest sin^2 of the angle between a group and the vector that means it. */
 #define RITZ_VECTOR_NEAR 0.1
 /* Rounding of |c|^2, here and in ritz-verify. */
 #define RITZ_SHARE_ROUNDING 1e-6
@@ -634,8 +631,7 @@
 /* Least and largest relative distance of a count from the mode it is for. */
 #define RITZ_COUNT_BESIDE  1e-7
 #define RITZ_COUNT_TOO_FAR 0.03
-/* A rigid motion is counted at this part of the limit of rigid ones at
-   least. */
+/* A rigid motion counts as at least this part of the limit of rigid ones. */
 #define RITZ_COUNT_LEAST 1e-3
 /* -sigma as a part of the band's end in lambda: a smaller one makes bounds at
    the end tighter, a larger one rounds less. */
@@ -648,8 +644,7 @@
 #define RITZ_RAYLEIGH_WITHIN 1e-13
 /* A participation below this part of the largest is rounding. */
 #define RITZ_NO_PART 1e-9
-/* Largest relative residual of a rigid mode: its square is far below
-   rounding. */
+/* Largest relative residual of a rigid mode; its square is below rounding. */
 #define RITZ_RIGID_RESIDUAL 1e-7
 /* An interval is split until its bound is within this factor of the points'. */
 #define RITZ_INTERVAL_SLACK 1.05
