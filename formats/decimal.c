@@ -52,26 +52,26 @@ static pair multiply_exactly(double a, double b)
 }
 
 /* hi + lo with |lo| <= ulp(hi) / 2, for |hi| > |lo|. */
-static pair renormalise(double hi, double lo)
+static pair renormalise_pair(double hi, double lo)
 {
     double sum = hi + lo;
 
     return (pair){sum, lo - (sum - hi)};
 }
 
-static pair multiply(pair a, double b)
+static pair multiply_pair(pair a, double b)
 {
     pair p = multiply_exactly(a.hi, b);
 
-    return renormalise(p.hi, p.lo + a.lo * b);
+    return renormalise_pair(p.hi, p.lo + a.lo * b);
 }
 
-static pair divide(pair a, double b)
+static pair divide_pair(pair a, double b)
 {
     double quotient = a.hi / b;
     pair p = multiply_exactly(quotient, b);
 
-    return renormalise(quotient, (((a.hi - p.hi) - p.lo) + a.lo) / b);
+    return renormalise_pair(quotient, (((a.hi - p.hi) - p.lo) + a.lo) / b);
 }
 
 /* m 10^e if it can be rounded for certain. */
@@ -88,9 +88,9 @@ static bool round_fast(uint64_t m, int64_t e, double *out)
     }
     x.lo = (double)(int64_t)(m - (uint64_t)x.hi);
     for (; e > 0; e -= e < STEP ? e : STEP)
-        x = multiply(x, power[e < STEP ? e : STEP]);
+        x = multiply_pair(x, power[e < STEP ? e : STEP]);
     for (; e < 0; e += -e < STEP ? -e : STEP)
-        x = divide(x, power[-e < STEP ? -e : STEP]);
+        x = divide_pair(x, power[-e < STEP ? -e : STEP]);
     doubt = x.hi * RITZ_DOUBLE_DOUBLE;
     *out = x.hi + (x.lo + doubt);
     return *out == x.hi + (x.lo - doubt);

@@ -36,8 +36,8 @@ enum {
 
 /* A header card. */
 typedef struct ritz_dmig_header {
+    int64_t line; /* in the deck: no two headers have the same */
     char name[RITZ_NAME_SIZE];
-    int64_t line; /* in the deck */
     int64_t form;
     bool complex, polar;
     int64_t digits;
@@ -55,9 +55,8 @@ typedef struct ritz_dmig_cards {
     ritz_cards cards;
     int64_t num_headers, headers_room;
     int64_t num_terms, terms_room;
-    int64_t wanted; /* the matrix whose terms are taken */
-    int64_t last;   /* that was found by name: cards of one come together */
-    ritz_dmig_header *header; /* in the order of the file */
+    int64_t wanted;           /* line of the header whose terms are taken */
+    ritz_dmig_header *header; /* sorted by name once all are taken */
     ritz_dmig_term *term;
 } ritz_dmig_cards;
 
@@ -67,16 +66,25 @@ static void ritz_dmig_cards_free(ritz_dmig_cards *all)
     RITZ_FREE(all->header, all->term);
 }
 
-/* The matrix of that name; -1 if there is none. */
-static int64_t find_header(ritz_dmig_cards *all, const char *name)
+static int compare_names(const void *a, const void *b)
 {
-    for (int64_t k = 0; k < all->num_headers; k++) {
-        int64_t at = (all->last + k) % all->num_headers;
+    const ritz_dmig_header *left = a;
+    const ritz_dmig_header *right = b;
 
-        if (strcmp(all->header[at].name, name) == 0)
-            return all->last = at;
-    }
-    return -1;
+    return strcmp(left->name, right->name);
+}
+
+static ritz_status sort_headers(ritz_dmig_cards *all)
+{
+    if (all->num_headers > 1)
+        qsort(all->header, (size_t)all->num_headers, sizeof *all->header,
+              compare_names);
+    for (int64_t k = 1; k < all->num_headers; k++)
+        if (compare_names(&all->header[k - 1], &all->header[k]) == 0)
+            return ritz_cards_refuse(&all->cards, all->header[k].line,
+                                     "DMIG '%s' has a second header",
+                                     all->header[k].name);
+    return RITZ_OK;
 }
 
 static ritz_status take_name(const ritz_card *card, char out[RITZ_NAME_SIZE])
@@ -122,9 +130,6 @@ static ritz_status add_header(ritz_dmig_cards *all, const ritz_card *card)
         return ritz_card_refuse(card, 5, "0 or 1 for POLAR");
     header.complex = type > 2;
     header.polar = polar == 1;
-    if (find_header(all, header.name) >= 0)
-        return ritz_cards_refuse(&all->cards, header.line,
-                                 "DMIG '%s' has a second header", header.name);
     RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
     all->header[all->num_headers++] = header;
     return RITZ_OK;
@@ -179,19 +184,21 @@ static ritz_status add_term(ritz_dmig_cards *all, ritz_dmig_header *owner,
 
 static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
 {
-    char name[RITZ_NAME_SIZE];
-    int64_t owner = 0;
+    ritz_dmig_header named = {0};
+    ritz_dmig_header *owner = NULL;
     ritz_dof col = {0};
 
-    RITZ_CHECK(take_name(card, name));
-    owner = find_header(all, name);
-    if (owner < 0)
+    RITZ_CHECK(take_name(card, named.name));
+    if (all->num_headers > 0)
+        owner = bsearch(&named, all->header, (size_t)all->num_headers,
+                        sizeof named, compare_names);
+    if (!owner)
         return ritz_cards_refuse(&all->cards, card->entry->line,
-                                 "DMIG '%s' has no header", name);
+                                 "DMIG '%s' has no header", named.name);
     RITZ_CHECK(take_dof(card, 1, &col));
-    for (int64_t k = 4; k < card->count && owner == all->wanted; k += 4)
+    for (int64_t k = 4; k < card->count && owner->line == all->wanted; k += 4)
         if (!is_empty_group(card, k))
-            RITZ_CHECK(add_term(all, &all->header[owner], card, k, col));
+            RITZ_CHECK(add_term(all, owner, card, k, col));
     return RITZ_OK;
 }
 
@@ -346,6 +353,7 @@ static ritz_status take_deck(const ritz_foreign *file, ritz_dmig_cards *all)
     RITZ_CHECK(ritz_cards_parse(NULL, file->bytes, file->size, file->folder,
                                 &all->cards));
     RITZ_CHECK(take_cards(all, true));
+    RITZ_CHECK(sort_headers(all));
     return take_cards(all, false);
 }
 
@@ -357,13 +365,15 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
     RITZ_CHECK(take_deck(file, &all));
     RITZ_REFUSE_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                    "there is no DMIG card in the bulk data");
+    qsort(all.header, (size_t)all.num_headers, sizeof *all.header,
+          ritz_cards_compare_ids); /* the order of the file */
     for (int64_t k = 0; k < all.num_headers; k++) {
         const ritz_dmig_header *header = &all.header[k];
         ritz_listed item = {.nrow = -1,
                             .ncol = -1,
                             .symmetric = header->form == RITZ_DMIG_SYMMETRIC,
                             .is_complex = header->complex,
-                            .at = k};
+                            .at = header->line};
 
         memcpy(item.name, header->name, sizeof item.name);
         RITZ_CHECK(ritz_listing_add(out, &item));
@@ -378,7 +388,8 @@ static ritz_status read_matrix(const ritz_foreign *file,
     const ritz_dmig_header *header = NULL;
 
     RITZ_CHECK(take_deck(file, &all));
-    header = &all.header[which->at];
+    for (header = all.header; header->line != which->at;)
+        header++;
     sort_terms(header, &all);
     RITZ_CHECK(check_terms(header, &all));
     return make_matrix(header, all.term, out);

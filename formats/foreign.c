@@ -170,14 +170,12 @@ static bool has_name(const ritz_listed *item, const spec *s)
 }
 
 /* Names are compared as they stand; if none is equal, without their case. */
-static bool is_named(const ritz_listing *all, const spec *s, int64_t k)
+static bool is_named(const ritz_listed *item, const spec *s, bool exact)
 {
     if (!s->name)
-        return !all->item[k].other[0];
-    for (int64_t i = 0; i < all->count; i++)
-        if (has_name(&all->item[i], s))
-            return has_name(&all->item[k], s);
-    return same_name(all->item[k].name, s->name, s->length);
+        return !item->other[0];
+    return exact ? has_name(item, s)
+                 : same_name(item->name, s->name, s->length);
 }
 
 static int64_t count_name(const ritz_listing *all, const char *name,
@@ -225,10 +223,13 @@ static ritz_status find_index(const ritz_listing *all, const spec *s,
     const char *base = strrchr(file, '/');
     int64_t found = -1;
     int64_t times = 0;
+    bool exact = false;
 
     base = base ? base + 1 : file;
+    for (int64_t k = 0; k < all->count && s->name && !exact; k++)
+        exact = has_name(&all->item[k], s);
     for (int64_t k = 0; k < all->count; k++) {
-        if (!is_named(all, s, k))
+        if (!is_named(&all->item[k], s, exact))
             continue;
         times++;
         if (times == 1 || times == s->which)

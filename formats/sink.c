@@ -12,6 +12,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+static ritz_status refuse_failure(const ritz_draft *draft, bool failed)
+{
+    RITZ_REFUSE_IF(failed, RITZ_ERR_FILE,
+                   "'%s' cannot be written to its end: %s", draft->path,
+                   strerror(errno));
+    return RITZ_OK;
+}
+
 ritz_status ritz_sink_fill(const ritz_draft *draft, ritz_sink_writer *write,
                            const void *what)
 {
@@ -25,10 +33,7 @@ ritz_status ritz_sink_fill(const ritz_draft *draft, ritz_sink_writer *write,
     failed = ferror(file);
     failed = fclose(file) != 0 || failed;
     RITZ_CHECK(status);
-    RITZ_REFUSE_IF(failed, RITZ_ERR_FILE,
-                   "'%s' cannot be written to its end, is the disk full?",
-                   draft->path);
-    return RITZ_OK;
+    return refuse_failure(draft, failed);
 }
 
 ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
@@ -42,10 +47,7 @@ ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
     status = write(file, what);
     closed = H5Fclose(file); /* what HDF5 held back may not fit */
     RITZ_CHECK(status);
-    RITZ_REFUSE_IF(closed < 0, RITZ_ERR_FILE,
-                   "'%s' cannot be written to its end, is the disk full?",
-                   draft->path);
-    return RITZ_OK;
+    return refuse_failure(draft, closed < 0);
 }
 
 ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,

@@ -75,6 +75,8 @@ for matrix in A B C D; do
         small.h5 -o $matrix.mtx
 done
 expect 0 'stable: pole at' ritz-export --to output4 small.h5 -o small.op4
+expect 1 'written to its end: File too large' \
+    sh -c 'ulimit -f 1; ritz-export -q --to output4 small.h5 -o none.op4'
 expect 0 'A ' ritz-info small.op4
 expect 1 "no matrix 'K', there are A, B, C, D and E" ritz-export --to output4 \
     --matrix K small.h5 -o none.op4
