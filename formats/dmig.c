@@ -256,7 +256,7 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     RITZ_OWN(ritz_matrix)
     new = {.symmetric = owner->form == RITZ_DMIG_SYMMETRIC,
            .digits = owner->digits};
-    RITZ_OWN(ritz_triplets) list = {0};
+    RITZ_OWN(ritz_triplets) list = {.is_complex = owner->complex};
     int64_t nrow = 0;
     int64_t ncol = 0;
 
@@ -270,17 +270,17 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     if (!square)
         RITZ_CHECK(
             collect_dofs(terms, owner->count, false, true, &ncol, &new.col));
-    RITZ_CHECK(ritz_triplets_reserve(&list, 2 * owner->count));
+    RITZ_CHECK(ritz_triplets_reserve(&list, owner->count));
     for (int64_t k = 0; k < owner->count; k++) {
         const ritz_dmig_term *one = &terms[k];
         int64_t i = find_position(one->row, nrow, new.row);
         int64_t j = find_position(one->col, ncol, square ? new.row : new.col);
 
         ritz_triplets_put(&list, i, j, one->re, one->im);
-        if (new.symmetric && i != j) /* one triangle is given */
-            ritz_triplets_put(&list, j, i, one->re, one->im);
     }
-    RITZ_CHECK(ritz_triplets_compress(&list, nrow, ncol, owner->complex, &new));
+    RITZ_CHECK(ritz_triplets_compress(&list, nrow, ncol, &new));
+    if (new.symmetric) /* one triangle is given */
+        RITZ_CHECK(ritz_matrix_mirror(&new, 1.0, 1.0));
     RITZ_MOVE(*out, new);
     return RITZ_OK;
 }

@@ -129,7 +129,7 @@ ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
 {
     bool single = e->re.type == RITZ_BYTES_SINGLE;
     char why[RITZ_NAME_SIZE] = "";
-    RITZ_OWN(ritz_triplets) t = {0};
+    RITZ_OWN(ritz_triplets) t = {.is_complex = e->im.at != NULL};
     RITZ_OWN(ritz_matrix) matrix = {.digits = single ? 7 : 17};
     int64_t kept = 0;
 
@@ -147,8 +147,7 @@ ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
     if (*why)
         return ritz_mat_add_other(list, name, why);
     kept = t.count;
-    RITZ_CHECK(ritz_triplets_compress(&t, e->nrow, e->ncol, e->im.at != NULL,
-                                      &matrix));
+    RITZ_CHECK(ritz_triplets_compress(&t, e->nrow, e->ncol, &matrix));
     RITZ_REFUSE_IF(matrix.A.colptr[e->ncol] < kept, RITZ_ERR_FORMAT,
                    "'%s' has an entry twice", name);
     snprintf(matrix.spelling, sizeof matrix.spelling, "%s, %s%s",

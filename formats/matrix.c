@@ -20,15 +20,17 @@ ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
 {
     int64_t used = list->count;
     int64_t room = list->room + (more > list->room ? more : list->room);
-    ritz_triplets wide = {.count = used, .room = room};
+    ritz_triplets wide = {
+        .count = used, .room = room, .is_complex = list->is_complex};
 
     if (more <= list->room - used)
         return RITZ_OK;
     wide.row = widen_array(list->row, used, room);
     wide.col = widen_array(list->col, used, room);
     wide.re = widen_array(list->re, used, room);
-    wide.im = widen_array(list->im, used, room);
-    if (!wide.row || !wide.col || !wide.re || !wide.im) {
+    if (wide.is_complex)
+        wide.im = widen_array(list->im, used, room);
+    if (!wide.row || !wide.col || !wide.re || (wide.is_complex && !wide.im)) {
         ritz_triplets_free(&wide);
         return RITZ_ERR_MEMORY;
     }
@@ -65,7 +67,7 @@ static ritz_status move_entries(ritz_triplets *list, int64_t ncol,
 }
 
 ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
-                                   int64_t ncol, bool complex, ritz_matrix *m)
+                                   int64_t ncol, ritz_matrix *m)
 {
     RITZ_OWN(ritz_sparse) A = {.nrow = nrow, .ncol = ncol}, imaginary = {0};
 
@@ -76,15 +78,61 @@ ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
     } else {
         RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count, list->row,
                                              list->col, list->re, &A));
-        if (complex)
+        if (list->is_complex)
             RITZ_CHECK(ritz_sparse_from_triplets(nrow, ncol, list->count,
                                                  list->row, list->col, list->im,
                                                  &imaginary));
         ritz_triplets_free(list);
     }
     RITZ_MOVE(m->A, A);
-    if (complex) /* the pattern is the same */
-        RITZ_MOVE(m->imaginary, imaginary.val);
+    RITZ_MOVE(m->imaginary, imaginary.val); /* the pattern is the same */
+    return RITZ_OK;
+}
+
+/* Ends of the columns of both triangles, of which one is stored. */
+static void count_mirrored(const ritz_sparse *A, int64_t *end)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            end[j + 1]++;
+            end[A->rowind[p] + 1] += A->rowind[p] != j;
+        }
+    for (int64_t j = 0; j < A->ncol; j++)
+        end[j + 1] += end[j];
+}
+
+/* Columns come in order: what is mirrored of those further left is in place
+ * when a column's own entries follow, and behind them what is of others. */
+ritz_status ritz_matrix_mirror(ritz_matrix *m, double re, double im)
+{
+    const ritz_sparse *half = &m->A;
+    int64_t n = half->ncol;
+    RITZ_OWN(ritz_matrix) both = {0};
+    RITZ_OWN_ARRAY int64_t *next = NULL;
+
+    RITZ_CHECK_NEW(next, n + 1);
+    count_mirrored(half, next);
+    RITZ_CHECK(ritz_sparse_new(n, n, next[n], &both.A));
+    memcpy(both.A.colptr, next, (size_t)(n + 1) * sizeof *next);
+    if (m->imaginary)
+        RITZ_CHECK_NEW(both.imaginary, next[n]);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t p = half->colptr[j]; p < half->colptr[j + 1]; p++) {
+            int64_t i = half->rowind[p];
+
+            for (int64_t turn = 0; turn < (i == j ? 1 : 2); turn++) {
+                int64_t q = next[turn ? i : j]++;
+
+                both.A.rowind[q] = turn ? j : i;
+                both.A.val[q] = (turn ? re : 1.0) * half->val[p];
+                if (both.imaginary)
+                    both.imaginary[q] = (turn ? im : 1.0) * m->imaginary[p];
+            }
+        }
+    ritz_sparse_free(&m->A);
+    free(m->imaginary);
+    RITZ_MOVE(m->A, both.A);
+    RITZ_MOVE(m->imaginary, both.imaginary);
     return RITZ_OK;
 }
 

@@ -8,7 +8,8 @@
 typedef struct ritz_triplets {
     int64_t count, room;
     int64_t *row, *col;
-    double *re, *im;
+    double *re, *im; /* no `im` of a real matrix */
+    bool is_complex; /* set before there is room */
 } ritz_triplets;
 
 /** Make sure of room for @p more entries. */
@@ -21,7 +22,9 @@ static inline void ritz_triplets_put(ritz_triplets *list, int64_t row,
     list->row[list->count] = row;
     list->col[list->count] = col;
     list->re[list->count] = re;
-    list->im[list->count++] = im;
+    if (list->im)
+        list->im[list->count] = im;
+    list->count++;
 }
 
 /** The same unless it is zero: patterns would differ between the spellings of
@@ -38,7 +41,11 @@ static inline void ritz_triplets_put_value(ritz_triplets *list, int64_t row,
  * left empty. Entries in the order of columns and rows are not copied.
  */
 ritz_status ritz_triplets_compress(ritz_triplets *list, int64_t nrow,
-                                   int64_t ncol, bool complex, ritz_matrix *m);
+                                   int64_t ncol, ritz_matrix *m);
+
+/** Complete a matrix of one triangle: A(j,i) has the real part of A(i,j) times
+ * @p re, and its imaginary part times @p im. */
+ritz_status ritz_matrix_mirror(ritz_matrix *m, double re, double im);
 
 void ritz_triplets_free(ritz_triplets *list);
 

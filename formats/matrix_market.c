@@ -129,24 +129,25 @@ static ritz_status settle_entries(ritz_market *m)
 }
 
 /* All entries of the matrix, both triangles of symmetric ones. */
-static ritz_status compress_entries(const ritz_market *m, ritz_matrix *out)
+static ritz_status compress_entries(ritz_market *m, ritz_matrix *out)
 {
-    bool mirrored = m->symmetry != RITZ_MARKET_GENERAL;
-    RITZ_OWN(ritz_triplets) list = {0};
+    ritz_market_entry sign = {.re = 1.0, .im = 1.0};
+    RITZ_OWN(ritz_triplets)
+    list = {.is_complex = m->field == RITZ_MARKET_COMPLEX};
 
-    RITZ_CHECK(
-        ritz_triplets_reserve(&list, mirrored ? 2 * m->count : m->count));
+    RITZ_CHECK(ritz_triplets_reserve(&list, m->count));
     for (int64_t k = 0; k < m->count; k++) {
-        ritz_market_entry e = m->entry[k];
+        const ritz_market_entry *e = &m->entry[k];
 
-        ritz_triplets_put_value(&list, e.row, e.col, e.re, e.im);
-        if (!mirrored || e.row == e.col)
-            continue;
-        mirror_value(m, &e.re, &e.im);
-        ritz_triplets_put_value(&list, e.col, e.row, e.re, e.im);
+        ritz_triplets_put_value(&list, e->row, e->col, e->re, e->im);
     }
-    return ritz_triplets_compress(&list, m->nrow, m->ncol,
-                                  m->field == RITZ_MARKET_COMPLEX, out);
+    ritz_market_free(m);
+    m->entry = NULL;
+    RITZ_CHECK(ritz_triplets_compress(&list, m->nrow, m->ncol, out));
+    mirror_value(m, &sign.re, &sign.im);
+    return m->symmetry == RITZ_MARKET_GENERAL
+               ? RITZ_OK
+               : ritz_matrix_mirror(out, sign.re, sign.im);
 }
 
 /* ---- lines of entries --------------------------------------------------- */

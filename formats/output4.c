@@ -90,6 +90,11 @@ static ritz_status read_columns(ritz_output4_reader *r,
 
     RITZ_CHECK(ritz_output4_begin(header, r->text.end - r->begin, &build));
     build.wide = r->wide;
+    RITZ_CHECK(ritz_triplets_reserve(/* of what is left, all in numbers */
+                                     &build.entries,
+                                     (r->text.end - r->text.at) /
+                                         (r->width > 0 ? r->width : r->real) /
+                                         header->numbers));
     for (;;) {
         RITZ_CHECK(r->as->take_column(r, &build, n));
         if (n[0] == header->ncol + 1) {

@@ -51,18 +51,14 @@ static ritz_status obey_form(ritz_output4_build *build)
     bool vector =
         h->form == DIAGONAL && (h->nrow == 1 || h->ncol == 1) && n > 1;
     bool unit = h->form == IDENTITY && square && count == 0;
-    bool half = h->symmetric && is_triangle(t);
 
     RITZ_REFUSE_IF((vector || unit) && n > build->columns, RITZ_ERR_FORMAT,
                    "'%s' is said to be a diagonal of %" PRId64
                    " rows, far more than its file can fill",
                    h->name, n);
-    RITZ_CHECK(ritz_triplets_reserve(t, unit ? n : half ? count : 0));
+    RITZ_CHECK(ritz_triplets_reserve(t, unit ? n : 0));
     for (int64_t k = 0; unit && k < n; k++)
         ritz_triplets_put(t, k, k, 1.0, 0.0);
-    for (int64_t k = 0; half && k < count; k++)
-        if (t->row[k] != t->col[k])
-            ritz_triplets_put(t, t->col[k], t->row[k], t->re[k], t->im[k]);
     for (int64_t k = 0; vector && k < count; k++)
         t->row[k] = t->col[k] += t->row[k]; /* one of them is 0 */
     if (vector)
@@ -151,6 +147,7 @@ ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
         .columns = most - header->ncol,
         .column = -1,
         .rule = header->bigmat ? BIGMAT : WORDS,
+        .entries.is_complex = header->numbers == 2,
     };
     name_column(out);
     return RITZ_OK;
@@ -205,10 +202,12 @@ ritz_status ritz_output4_put(ritz_output4_build *build, int64_t row, double re,
 ritz_status ritz_output4_end(ritz_output4_build *build, ritz_matrix *out)
 {
     const ritz_output4_header *h = &build->header;
+    bool half = h->symmetric && is_triangle(&build->entries);
 
     RITZ_CHECK(obey_form(build));
-    RITZ_CHECK(ritz_triplets_compress(&build->entries, h->nrow, h->ncol,
-                                      h->numbers == 2, out));
+    RITZ_CHECK(ritz_triplets_compress(&build->entries, h->nrow, h->ncol, out));
+    if (half)
+        RITZ_CHECK(ritz_matrix_mirror(out, 1.0, 1.0));
     memcpy(out->name, h->name, sizeof out->name);
     out->symmetric =
         h->nrow == h->ncol &&
