@@ -125,7 +125,7 @@ ritz_status ritz_matrix_mirror(ritz_matrix *m, double re, double im)
 
                 both.A.rowind[q] = turn ? j : i;
                 both.A.val[q] = (turn ? re : 1.0) * half->val[p];
-                if (both.imaginary)
+                if (m->imaginary)
                     both.imaginary[q] = (turn ? im : 1.0) * m->imaginary[p];
             }
         }

@@ -78,6 +78,17 @@ static ritz_status read_sparse(ritz_output4_reader *r,
     return try_strings(r, &start, build, rule, wide, words);
 }
 
+/* Entries that a matrix and what is left of its file can hold: with room for
+ * these at once nothing is copied, and memory counts only as it is filled. */
+static int64_t most_entries(const ritz_output4_reader *r,
+                            const ritz_output4_header *h)
+{
+    int64_t most = (r->text.end - r->text.at) /
+                   (r->width > 0 ? r->width : r->real) / h->numbers;
+
+    return h->nrow > 0 && most / h->nrow < h->ncol ? most : h->nrow * h->ncol;
+}
+
 /* The matrix whose header was taken. */
 static ritz_status read_columns(ritz_output4_reader *r,
                                 const ritz_output4_header *header,
@@ -90,11 +101,7 @@ static ritz_status read_columns(ritz_output4_reader *r,
 
     RITZ_CHECK(ritz_output4_begin(header, r->text.end - r->begin, &build));
     build.wide = r->wide;
-    RITZ_CHECK(ritz_triplets_reserve(/* of what is left, all in numbers */
-                                     &build.entries,
-                                     (r->text.end - r->text.at) /
-                                         (r->width > 0 ? r->width : r->real) /
-                                         header->numbers));
+    RITZ_CHECK(ritz_triplets_reserve(&build.entries, most_entries(r, header)));
     for (;;) {
         RITZ_CHECK(r->as->take_column(r, &build, n));
         if (n[0] == header->ncol + 1) {
