@@ -132,6 +132,7 @@ static ritz_status settle_entries(ritz_market *m)
 static ritz_status compress_entries(ritz_market *m, ritz_matrix *out)
 {
     ritz_market_entry sign = {.re = 1.0, .im = 1.0};
+    RITZ_OWN(ritz_matrix) new = {0};
     RITZ_OWN(ritz_triplets)
     list = {.is_complex = m->field == RITZ_MARKET_COMPLEX};
 
@@ -143,11 +144,12 @@ static ritz_status compress_entries(ritz_market *m, ritz_matrix *out)
     }
     ritz_market_free(m);
     m->entry = NULL;
-    RITZ_CHECK(ritz_triplets_compress(&list, m->nrow, m->ncol, out));
+    RITZ_CHECK(ritz_triplets_compress(&list, m->nrow, m->ncol, &new));
     mirror_value(m, &sign.re, &sign.im);
-    return m->symmetry == RITZ_MARKET_GENERAL
-               ? RITZ_OK
-               : ritz_matrix_mirror(out, sign.re, sign.im);
+    if (m->symmetry != RITZ_MARKET_GENERAL)
+        RITZ_CHECK(ritz_matrix_mirror(&new, sign.re, sign.im));
+    RITZ_MOVE(*out, new);
+    return RITZ_OK;
 }
 
 /* ---- lines of entries --------------------------------------------------- */
