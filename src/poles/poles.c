@@ -286,14 +286,15 @@ void ritz_poles_roots(double lambda, double rate, double _Complex s[static 2])
     double half = 0.5 * rate;
     double square = half * half - lambda;
     double root = sqrt(fabs(square));
+    double far = rate < 0.0 ? root - half : -(half + root);
 
     if (square < 0.0) {
         s[0] = ritz_complex(-half, root);
         s[1] = conj(s[0]);
         return;
     }
-    s[0] = rate < 0.0 ? root - half : -(half + root);
-    s[1] = s[0] != 0.0 ? lambda / s[0] : 0.0;
+    s[0] = far;
+    s[1] = far != 0.0 ? lambda / far : 0.0;
 }
 
 ritz_status ritz_poles_ratios(const ritz_poles *poles, double **omega,
