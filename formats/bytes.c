@@ -1,7 +1,5 @@
 #include "formats/bytes.h"
 
-#include <string.h>
-
 int64_t ritz_bytes_size(int type)
 {
     static const int64_t sizes[] = {
@@ -18,9 +16,6 @@ int64_t ritz_bytes_size(int type)
 double ritz_bytes_value(const unsigned char *at, int type, bool big_endian)
 {
     uint64_t bits = ritz_bytes_bits(at, ritz_bytes_size(type), big_endian);
-    uint32_t low = (uint32_t)bits;
-    double wide = 0.0;
-    float narrow = 0.0F;
 
     switch (type) {
     case RITZ_BYTES_INT8:
@@ -32,11 +27,9 @@ double ritz_bytes_value(const unsigned char *at, int type, bool big_endian)
     case RITZ_BYTES_INT64:
         return (double)(int64_t)bits;
     case RITZ_BYTES_SINGLE:
-        memcpy(&narrow, &low, sizeof narrow);
-        return (double)narrow;
+        return ritz_bytes_single(at, big_endian);
     case RITZ_BYTES_DOUBLE:
-        memcpy(&wide, &bits, sizeof wide);
-        return wide;
+        return ritz_bytes_double(at, big_endian);
     default:
         return (double)bits; /* unsigned */
     }

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 /* Types of numbers, by the numbers that MAT files give them. */
 enum {
@@ -33,6 +34,25 @@ static inline uint64_t ritz_bytes_bits(const unsigned char *at, int64_t size,
     return bits;
 }
 
+static inline double ritz_bytes_single(const unsigned char *at, bool big_endian)
+{
+    uint32_t bits = (uint32_t)ritz_bytes_bits(at, 4, big_endian);
+    float value = 0.0F;
+
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+static inline double ritz_bytes_double(const unsigned char *at, bool big_endian)
+{
+    uint64_t bits = ritz_bytes_bits(at, 8, big_endian);
+    double value = 0.0;
+
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/** A number of any of the types. */
 double ritz_bytes_value(const unsigned char *at, int type, bool big_endian);
 
 #endif

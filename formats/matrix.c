@@ -26,14 +26,17 @@ ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
     if (more <= list->room - used)
         return RITZ_OK;
     wide.row = widen_array(list->row, used, room);
-    wide.col = widen_array(list->col, used, room);
+    if (!list->counts)
+        wide.col = widen_array(list->col, used, room);
     wide.re = widen_array(list->re, used, room);
     if (wide.is_complex)
         wide.im = widen_array(list->im, used, room);
-    if (!wide.row || !wide.col || !wide.re || (wide.is_complex && !wide.im)) {
+    if (!wide.row || (!wide.col && !list->counts) || !wide.re ||
+        (wide.is_complex && !wide.im)) {
         ritz_triplets_free(&wide);
         return RITZ_ERR_MEMORY;
     }
+    RITZ_MOVE(wide.counts, list->counts);
     ritz_triplets_free(list);
     *list = wide;
     return RITZ_OK;
@@ -41,7 +44,7 @@ ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
 
 static bool is_sorted(const ritz_triplets *list)
 {
-    for (int64_t k = 1; k < list->count; k++)
+    for (int64_t k = 1; k < list->count && !list->counts; k++)
         if (list->col[k - 1] > list->col[k] ||
             (list->col[k - 1] == list->col[k] &&
              list->row[k - 1] >= list->row[k]))
@@ -53,9 +56,12 @@ static bool is_sorted(const ritz_triplets *list)
 static ritz_status move_entries(ritz_triplets *list, int64_t ncol,
                                 ritz_sparse *A, double **imaginary)
 {
-    RITZ_CHECK_NEW(A->colptr, ncol + 1);
-    for (int64_t k = 0; k < list->count; k++)
-        A->colptr[list->col[k] + 1]++;
+    RITZ_MOVE(A->colptr, list->counts);
+    if (!A->colptr) {
+        RITZ_CHECK_NEW(A->colptr, ncol + 1);
+        for (int64_t k = 0; k < list->count; k++)
+            A->colptr[list->col[k] + 1]++;
+    }
     for (int64_t j = 0; j < ncol; j++)
         A->colptr[j + 1] += A->colptr[j];
     A->rowind = list->row;
@@ -138,7 +144,7 @@ ritz_status ritz_matrix_mirror(ritz_matrix *m, double re, double im)
 
 void ritz_triplets_free(ritz_triplets *list)
 {
-    RITZ_FREE(list->row, list->col, list->re, list->im);
+    RITZ_FREE(list->row, list->col, list->counts, list->re, list->im);
     *list = (ritz_triplets){0};
 }
 

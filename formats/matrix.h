@@ -8,6 +8,9 @@
 typedef struct ritz_triplets {
     int64_t count, room;
     int64_t *row, *col;
+    int64_t *counts; /* column j has counts[j + 1] entries: set, zeroed, before
+                        there is room where entries come by columns and rows;
+                        `col` is then NULL */
     double *re, *im; /* no `im` of a real matrix */
     bool is_complex; /* set before there is room */
 } ritz_triplets;
@@ -20,7 +23,10 @@ static inline void ritz_triplets_put(ritz_triplets *list, int64_t row,
                                      int64_t col, double re, double im)
 {
     list->row[list->count] = row;
-    list->col[list->count] = col;
+    if (list->counts)
+        list->counts[col + 1]++;
+    else
+        list->col[list->count] = col;
     list->re[list->count] = re;
     if (list->im)
         list->im[list->count] = im;

@@ -78,14 +78,46 @@ static ritz_status read_sparse(ritz_output4_reader *r,
     return try_strings(r, &start, build, rule, wide, words);
 }
 
-/* Entries that a matrix and what is left of its file can hold: with room for
- * these at once nothing is copied, and memory counts only as it is filled. */
+/*
+ * Move behind a matrix by its counts alone; false if these do not fit.
+ *
+ * @param[out] size  bytes of the records that were passed, where columns are
+ *                   records
+ */
+static bool skip_columns(ritz_output4_reader *r,
+                         const ritz_output4_header *header, int64_t *size)
+{
+    const ritz_output4_build build = {.header = *header};
+    int64_t column = 0;
+    int64_t n[3] = {0};
+
+    *size = 0;
+    while (column <= header->ncol) {
+        if (r->as->take_column(r, &build, n) != RITZ_OK || n[0] <= column ||
+            n[0] > header->ncol + 1)
+            return false;
+        column = n[0];
+        *size += r->data_end - r->data;
+        if (column <= header->ncol && r->as->skip_column &&
+            !r->as->skip_column(r, n))
+            return false;
+    }
+    return !r->as->skip_last || r->as->skip_last(r, &build, n[2]) == RITZ_OK;
+}
+
+/* Entries that a matrix can hold, by its records or else by what is left of its
+ * file: with room for these at once nothing is copied. */
 static int64_t most_entries(const ritz_output4_reader *r,
                             const ritz_output4_header *h)
 {
-    int64_t most = (r->text.end - r->text.at) /
-                   (r->width > 0 ? r->width : r->real) / h->numbers;
+    ritz_output4_reader ahead = *r;
+    int64_t most = (r->text.end - r->text.at) / (r->width > 0 ? r->width : 1);
 
+    if (r->width == 0) {
+        (void)skip_columns(&ahead, h, &most);
+        most /= r->real;
+    }
+    most /= h->numbers;
     return h->nrow > 0 && most / h->nrow < h->ncol ? most : h->nrow * h->ncol;
 }
 
@@ -144,26 +176,6 @@ static ritz_status read_matrix(const ritz_foreign *file,
 
 /* ---- directory ---------------------------------------------------------- */
 
-/* Move behind a matrix by its counts alone; false if these do not fit. */
-static bool skip_columns(ritz_output4_reader *r,
-                         const ritz_output4_header *header)
-{
-    const ritz_output4_build build = {.header = *header};
-    int64_t column = 0;
-    int64_t n[3] = {0};
-
-    while (column <= header->ncol) {
-        if (r->as->take_column(r, &build, n) != RITZ_OK || n[0] <= column ||
-            n[0] > header->ncol + 1)
-            return false;
-        column = n[0];
-        if (column <= header->ncol && r->as->skip_column &&
-            !r->as->skip_column(r, n))
-            return false;
-    }
-    return !r->as->skip_last || r->as->skip_last(r, &build, n[2]) == RITZ_OK;
-}
-
 /* Where counts do not lead behind a matrix, or values are to be checked, it is
  * read. */
 static ritz_status pass_matrix(ritz_output4_reader *r,
@@ -171,8 +183,9 @@ static ritz_status pass_matrix(ritz_output4_reader *r,
 {
     RITZ_OWN(ritz_matrix) unused = {0};
     ritz_output4_reader ahead = *r;
+    int64_t size = 0;
 
-    if (check || !skip_columns(&ahead, header))
+    if (check || !skip_columns(&ahead, header, &size))
         return read_columns(r, header, &unused);
     *r = ahead;
     return RITZ_OK;

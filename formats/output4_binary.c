@@ -116,9 +116,10 @@ static ritz_status take_header(ritz_output4_reader *b, ritz_output4_header *out,
 
 static double load_real(const ritz_output4_reader *b, const char *at)
 {
-    return ritz_bytes_value(
-        (const unsigned char *)at,
-        b->real == 4 ? RITZ_BYTES_SINGLE : RITZ_BYTES_DOUBLE, b->big_endian);
+    const unsigned char *bytes = (const unsigned char *)at;
+
+    return b->real == 4 ? ritz_bytes_single(bytes, b->big_endian)
+                        : ritz_bytes_double(bytes, b->big_endian);
 }
 
 /* One record after the header. */

@@ -13,8 +13,11 @@
  */
 #include "formats/output4.h"
 
+#include "base/alloc.h"
+
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- FORM --------------------------------------------------------------- */
@@ -33,11 +36,28 @@ static bool is_triangle(const ritz_triplets *t)
     bool above = false;
     bool below = false;
 
-    for (int64_t k = 0; k < t->count; k++) {
-        above = above || t->row[k] < t->col[k];
-        below = below || t->row[k] > t->col[k];
-    }
+    for (int64_t k = 0, j = 0; k < t->count; j++)
+        for (int64_t end = k + t->counts[j + 1]; k < end; k++) {
+            above = above || t->row[k] < j;
+            below = below || t->row[k] > j;
+        }
     return above != below;
+}
+
+/* One row or one column becomes the diagonal of an n x n matrix. */
+static ritz_status spread_diagonal(ritz_triplets *t, int64_t n)
+{
+    int64_t *counts = NULL;
+
+    RITZ_CHECK_NEW(counts, n + 1);
+    for (int64_t k = 0, j = 0; k < t->count; j++)
+        for (int64_t end = k + t->counts[j + 1]; k < end; k++) {
+            t->row[k] += j; /* one of them is 0 */
+            counts[t->row[k] + 1] = 1;
+        }
+    free(t->counts);
+    t->counts = counts;
+    return RITZ_OK;
 }
 
 /* Give the entries the meaning that FORM says; nrow and ncol follow. */
@@ -46,11 +66,10 @@ static ritz_status obey_form(ritz_output4_build *build)
     ritz_output4_header *h = &build->header;
     ritz_triplets *t = &build->entries;
     int64_t n = h->nrow > h->ncol ? h->nrow : h->ncol;
-    int64_t count = t->count;
     bool square = h->nrow == h->ncol;
     bool vector =
         h->form == DIAGONAL && (h->nrow == 1 || h->ncol == 1) && n > 1;
-    bool unit = h->form == IDENTITY && square && count == 0;
+    bool unit = h->form == IDENTITY && square && t->count == 0;
 
     RITZ_REFUSE_IF((vector || unit) && n > build->columns, RITZ_ERR_FORMAT,
                    "'%s' is said to be a diagonal of %" PRId64
@@ -59,11 +78,10 @@ static ritz_status obey_form(ritz_output4_build *build)
     RITZ_CHECK(ritz_triplets_reserve(t, unit ? n : 0));
     for (int64_t k = 0; unit && k < n; k++)
         ritz_triplets_put(t, k, k, 1.0, 0.0);
-    for (int64_t k = 0; vector && k < count; k++)
-        t->row[k] = t->col[k] += t->row[k]; /* one of them is 0 */
-    if (vector)
-        h->nrow = h->ncol = n;
-    return RITZ_OK;
+    if (!vector)
+        return RITZ_OK;
+    h->nrow = h->ncol = n;
+    return spread_diagonal(t, n);
 }
 
 /* ---- columns ------------------------------------------------------------ */
@@ -150,6 +168,7 @@ ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
         .entries.is_complex = header->numbers == 2,
     };
     name_column(out);
+    RITZ_CHECK_NEW(out->entries.counts, header->ncol + 1);
     return RITZ_OK;
 }
 
@@ -171,6 +190,7 @@ ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column)
 void ritz_output4_rewind(ritz_output4_build *build)
 {
     build->entries.count = build->first;
+    build->entries.counts[build->column + 1] = 0;
     build->below = 0;
 }
 
