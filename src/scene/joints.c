@@ -70,7 +70,7 @@ static const joint_kind kinds[] = {
     [RITZ_JOINT_BUSHING] = {"bushing", "bushing",
                             AXES | STIFFNESS | DAMPING | TOLERANCE, STIFFNESS,
                             .freedoms = 6, .many = true},
-    [RITZ_JOINT_RIGID] = {"rigid", "rigid joint", OFFSET},
+    [RITZ_JOINT_RIGID] = {"rigid", "rigid joint", OFFSET, .freedoms = 0},
 };
 
 /* axis / |axis|, scaled first so that no square leaves the range. */

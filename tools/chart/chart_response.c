@@ -338,7 +338,7 @@ static ritz_status put_line(const overlay *o, const channel *c, int64_t w,
         const double _Complex H = value_of(o, c, w, k, line);
 
         all[k].value[0] = cabs(H);
-        all[k].value[1] = c->singular ? nan("") : carg(H) * 180.0 / M_PI;
+        all[k].value[1] = c->singular > 0.0 ? nan("") : carg(H) * 180.0 / M_PI;
         measure_errors(o, c, w, k, line, all[k].value + 2);
     }
     for (int64_t k = 0, end = 0; k < r->count; k = end) {
@@ -397,7 +397,7 @@ static void begin_rows(const overlay *o, const channel *c, int which, int64_t w,
 
     fprintf(o->picture->data.file, "%ld\t%d\t%ld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t",
             (c - o->channel), which, w, hertz, drawn);
-    if (c->singular) {
+    if (c->singular > 0.0) {
         fprintf(table, "singular values");
     } else {
         html_line(table, first->output[c->output]);
@@ -435,7 +435,8 @@ static void put_peak(const overlay *o, const channel *c, int64_t k)
                 error[DECIBELS]);
     }
     picture_tip(o->picture, "peak at %.6g Hz\n%.60s: %s = %.5g%s", hertz,
-                o->name[0], c->singular ? "largest" : "|H|", size, others);
+                o->name[0], c->singular > 0.0 ? "largest" : "|H|", size,
+                others);
     end_rows(o);
 }
 
@@ -478,7 +479,7 @@ static ritz_status put_channel(const overlay *o, const channel *c)
     for (int64_t p = 0; p < count; p++)
         put_peak(o, c, peak[p]);
     fputc('\n', o->picture->data.file);
-    for (int64_t w = 0; c->singular && w < o->count; w++)
+    for (int64_t w = 0; c->singular > 0.0 && w < o->count; w++)
         put_true_peak(o, c, w);
     fputc('\n', o->picture->data.file);
     return RITZ_OK;
@@ -522,7 +523,7 @@ static void add_signs(const overlay *o)
         many = many || o->curve[w]->num_singular > 1;
     }
     for (int64_t c = 0; c < o->num_channels; c++)
-        singular = singular || o->channel[c].singular;
+        singular = singular || o->channel[c].singular > 0.0;
     if (singular && many)
         picture_add_sign(o->picture,
                          (picture_sign){.colour = "muted", .wide = 0.8},
@@ -539,12 +540,12 @@ static void say_title(const overlay *o, channel *c)
     const ritz_response *r = o->curve[0];
     const bool relative = o->strip[RELATIVE], decibels = o->strip[DECIBELS];
 
-    if (c->singular)
+    if (c->singular > 0.0)
         snprintf(c->title, sizeof c->title, "singular values");
     else
         snprintf(c->title, sizeof c->title, "%s / %s", r->output[c->output],
                  r->input[c->input]);
-    if (!c->shared)
+    if (c->shared == 0.0)
         return;
     sink_append(c->title, sizeof c->title, ": %s at most %s%s",
                 relative ? "error" : "difference",

@@ -113,7 +113,7 @@ static void balancing_makes_both_gramians_equal_and_diagonal(void **unused)
     RITZ_OWN(ritz_gramians) g = {0};
     RITZ_OWN(ritz_balanced) b = {0};
     RITZ_OWN(ritz_dense)
-    E = {0}, ET = {0}, c = {0}, o = {0}, cc = {0}, EtZo = {0};
+    E = {0}, ET = {0}, c = {0}, o = {0}, EtZo = {0};
 
     (void)unused;
     fill(9, 6, 1, &g.Zc);
