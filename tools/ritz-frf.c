@@ -25,13 +25,11 @@ int main(int argc, char **argv)
     loop_options *loops = &given.loops;
     const cli_option options[] = {
         CLI_REAL("from-hz", &given.from_hz, "F", 0.0, 1e9,
-                 "lowest frequency [the band's, or a thousandth of the "
-                 "highest]"),
+                 "lowest frequency [the band's, or the highest / 1000]"),
         CLI_REAL("to-hz", &given.to_hz, "F", 1e-9, 1e9,
                  "highest frequency [that of the band of a system]"),
         CLI_INT("points", &given.points, "N", 2, 1000000,
-                "number of evenly spaced points [400; with --tolerance "
-                "20]"),
+                "number of evenly spaced points [400; with --tolerance 20]"),
         CLI_FLAG("log", &given.log,
                  "space points evenly in the logarithm of frequency"),
         CLI_FLAG("no-refine", &given.no_refine,
@@ -49,11 +47,9 @@ int main(int argc, char **argv)
         CLI_ACTION("list", responses_list, "list methods and what each is for"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("singular-values", &given.singular,
-                 "also singular values of H, with their largest between "
-                 "points"),
+                 "also singular values of H, and their peaks between points"),
         CLI_FLAG("over-limits", &given.over_limits,
-                 "divide outputs by their limits before taking singular "
-                 "values"),
+                 "divide outputs by their limits before singular values"),
         CLI_LIST("input-size", &given.input_size, "NAME=X",
                  "multiply this input by X before taking singular values"),
         CLI_FLAG("zeros", &given.zeros,
@@ -61,8 +57,7 @@ int main(int argc, char **argv)
         CLI_TEXT("controller", &loops->controller, "FILE",
                  "close a loop with this state space"),
         CLI_LIST("connect", &loops->connect, "OUT=IN",
-                 "join signals of plant and controller that have "
-                 "different names"),
+                 "join signals of plant and controller by these names"),
         CLI_WORD("feedback", &loops->feedback, "negative|positive",
                  "sign with which the loop is closed [negative]"),
         CLI_TEXT("closed-loop", &loops->states, "FILE",
@@ -78,8 +73,5 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv, &run);
     loops_check(&program, loops);
     responses_check(&program, &given);
-    if (given.points_of && !isnan(given.tolerance))
-        cli_refuse(&program, "--points-of gives the points, --tolerance "
-                             "chooses them: one of the two");
     return cli_finish(&run, responses_run(&run, &given));
 }

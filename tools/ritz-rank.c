@@ -31,8 +31,7 @@ int main(int argc, char **argv)
         CLI_INT("reweigh", &given.keep, "N", 1, 1e6,
                 "find the output weights that suit a choice of N modes"),
         CLI_TEXT("engine", &given.engine, "WORD",
-                 "method for Gramians of a component: auto, dense, modal, "
-                 "low-rank"),
+                 "Gramians of a component by auto, dense, modal or low-rank"),
         CLI_TEXT("among-hz", &given.among, "F",
                  "modes up to this frequency, for modal Gramians of a "
                  "component"),
@@ -42,8 +41,7 @@ int main(int argc, char **argv)
         CLI_FLAG("compare", &given.compare,
                  "compare rankings that files hold, each with the first"),
         CLI_INT("top", &given.top, "N", 1, 1e6,
-                "compare, draw and, of several rankings, print so many "
-                "modes"),
+                "compare, draw and, of several rankings, print so many modes"),
         CLI_TEXT("table", &given.table, "FILE",
                  "write all values as a table with tabs"),
         CLI_TEXT("chart", &given.chart, "FILE.svg",

@@ -29,6 +29,9 @@ void responses_check(const cli_program *program, const response_options *given)
     const char *names[MOST + 1] = {"auto"};
     int64_t count = 1;
 
+    if (given->points_of && !isnan(given->tolerance))
+        cli_refuse(program, "--points-of gives the points, --tolerance "
+                            "chooses them: one of the two");
     for (int k = 0; ritz_response_engines[k] && count <= MOST; k++)
         names[count++] = ritz_response_engines[k]->name;
     for (int64_t k = 0; k < count; k++)

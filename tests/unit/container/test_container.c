@@ -427,8 +427,8 @@ static void a_state_space_comes_back(void **)
 static void a_ranking_comes_back(void **)
 {
     RITZ_OWN(ritz_rankings) one = {0}, two = {0};
-    ritz_ranking a = {0};
-    ritz_ranking b = {0};
+    ritz_ranking a;
+    ritz_ranking b;
 
     assert_ok(sample_rankings(true, &one));
     assert_ok(ritz_container_write_rankings(path, &one, &stamp));
