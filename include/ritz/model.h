@@ -625,6 +625,8 @@ typedef struct ritz_model {
         ritz_second_order dense;
         const ritz_state_space *states;
     };
+    const ritz_reduced
+        *reduced; /* whose matrices `dense` are; NULL: no one's */
     const ritz_dampers *dampers; /* of second order; NULL: none */
     const ritz_damping *damping; /* in addition to that of matrices; NULL: none.
                                     Of a state space it is in A */

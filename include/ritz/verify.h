@@ -53,6 +53,13 @@ enum {
 struct ritz_sides;      /* two second-order models that are compared */
 struct ritz_state_pair; /* two state spaces that are compared */
 
+/* Set the value of a measure, its place and, where it is not the one of the
+   request, the limit; the value stays NaN where there is nothing to compare. */
+typedef ritz_status ritz_measure_modes(const struct ritz_sides *sides,
+                                       ritz_measure *out);
+typedef ritz_status ritz_measure_states(const struct ritz_state_pair *pair,
+                                        ritz_measure *out);
+
 typedef struct ritz_measure_kind {
     const char *name;  /* in files, records and JSON */
     const char *word;  /* of --tolerance and --limit-; NULL: takes no limit */
@@ -65,12 +72,8 @@ typedef struct ritz_measure_kind {
     const char *bound; /* estimate of ritz-reduce that bounds it; NULL */
     const char *other; /* measure that is held to this limit where this one
                               does not exist; NULL: none */
-    /* The value, its place and, where it is not the one of the request, the
-       limit; the value stays NaN where there is nothing to compare. NULL: does
-       not exist for such models. */
-    ritz_status (*of_modes)(const struct ritz_sides *sides, ritz_measure *out);
-    ritz_status (*of_states)(const struct ritz_state_pair *pair,
-                             ritz_measure *out);
+    ritz_measure_modes *of_modes; /* NULL: does not exist for such models */
+    ritz_measure_states *of_states;
 } ritz_measure_kind;
 
 /** By ritz_measure_id. */
@@ -119,40 +122,21 @@ typedef struct ritz_verify_request {
     }
 
 /**
- * A full component and its reduction. Dampers count as far as K and D hold
- * them: install them first.
+ * A full component and its reduction; a full-order assembled system and one
+ * reduced configuration; or two state spaces. Dampers count as far as K and D
+ * hold them: install them first.
  *
- * @return RITZ_ERR_ARGUMENT if the reduction is of another model, or a response
- *         or gain has a limit and there are no inputs or no outputs
- */
-ritz_status ritz_verify_reduced(const ritz_component *full,
-                                const ritz_reduced *reduced,
-                                const ritz_verify_request *request,
-                                ritz_measures *out);
-
-/**
- * A full-order assembled system and one reduced configuration: the same
- * measures, but MAC, for which there are no shapes, is of the participations of
- * observable modes in inputs and outputs: see docs/methods/verify.md.
- */
-ritz_status ritz_verify_system(const ritz_component *full,
-                               const ritz_configuration *reduced,
-                               const ritz_verify_request *request,
-                               ritz_measures *out);
-
-/**
- * Two models in first-order form, of the same inputs and outputs; outputs that
- * have a limit in @p full are divided by it. Poles that are not left of the
- * axis are left out of norms if both models have as many.
+ * MAC of systems, for which there are no shapes, is of the participations of
+ * observable modes in inputs and outputs: see docs/methods/verify.md. Outputs
+ * of state spaces that have a limit in @p full are divided by it; poles that
+ * are not left of the axis are left out of norms if both models have as many.
  *
- * @return RITZ_ERR_ARGUMENT if names differ, or a limit is set for a measure
- *         that does not exist
- * @cost   O(n^3), some fifty times
+ * @return RITZ_ERR_ARGUMENT if the reduction is of another model, names differ,
+ *         or a measure has a limit that does not exist for these models
+ * @cost   of state spaces O(n^3), some fifty times
  */
-ritz_status ritz_verify_states(const ritz_state_space *full,
-                               const ritz_state_space *reduced,
-                               const ritz_verify_request *request,
-                               ritz_measures *out);
+ritz_status ritz_verify(ritz_model full, ritz_model reduced,
+                        const ritz_verify_request *request, ritz_measures *out);
 
 /**
  * Take "frequency=1e-3,mac=0.99,gain=1e-6": words of measures and their
@@ -226,21 +210,16 @@ ritz_status ritz_reference_new(const ritz_component *full,
                                ritz_reference **out);
 
 /**
- * What ritz_verify_reduced measures.
+ * What ritz_verify measures.
  *
- * @param[in] limits  its limits alone are used
- * @param[in] where   sum of RITZ_AT_...
+ * @param[in] reduced  a reduced component or a configuration
+ * @param[in] limits   its limits alone are used
+ * @param[in] where    sum of RITZ_AT_...
  */
 ritz_status ritz_reference_measure(const ritz_reference *reference,
-                                   const ritz_reduced *reduced,
+                                   ritz_model reduced,
                                    const ritz_verify_request *limits, int where,
                                    ritz_measures *out);
-
-/** What ritz_verify_system measures. */
-ritz_status ritz_reference_measure_at(const ritz_reference *reference,
-                                      const ritz_configuration *reduced,
-                                      const ritz_verify_request *limits,
-                                      int where, ritz_measures *out);
 
 /**
  * Number of flexible modes of the full model in the band, and of rigid ones.
@@ -303,6 +282,11 @@ ritz_status ritz_estimator_new(const ritz_component *full,
  * first one, by its band; counts stay, and serve the next.
  *
  * @param[in]  basis  by which it was reduced; its T is used, and its hertz
+ * @param[in]  least  frequency-relative-least alone, as far as an inverse
+ *                    iteration of the reduced modes shows it: no mode is
+ *                    counted, so it is not known whether partners are there.
+ *                    The worst error is so large at least, or some mode is
+ *                    missing
  * @param[out] out    empty on entry
  * @return RITZ_ERR_ARGUMENT if the basis is not that of the reduction;
  *         RITZ_ERR_SINGULAR if K - s M is definite for no s < 0
@@ -312,20 +296,8 @@ ritz_status ritz_estimator_new(const ritz_component *full,
  */
 ritz_status ritz_estimator_measure(ritz_estimator *estimator,
                                    const ritz_basis *basis,
-                                   const ritz_reduced *reduced,
+                                   const ritz_reduced *reduced, bool least,
                                    ritz_measures *out);
-
-/**
- * frequency-relative-least alone, as far as an inverse iteration of the reduced
- * modes shows it: no mode is counted, and so it is not known whether partners
- * are there. The worst error is so large at least, or some mode is missing.
- *
- * @cost a factor once, a solve for each mode up to some way beyond the band
- */
-ritz_status ritz_estimator_least(ritz_estimator *estimator,
-                                 const ritz_basis *basis,
-                                 const ritz_reduced *reduced,
-                                 ritz_measures *out);
 
 void ritz_estimator_free(ritz_estimator **estimator);
 

@@ -429,15 +429,22 @@ static ritz_status open_measuring(const ritz_basis *basis,
 
 ritz_status ritz_estimator_measure(ritz_estimator *estimator,
                                    const ritz_basis *basis,
-                                   const ritz_reduced *reduced,
+                                   const ritz_reduced *reduced, bool least,
                                    ritz_measures *out)
 {
     RITZ_OWN(ritz_measuring) m = {.estimator = estimator};
     RITZ_OWN(ritz_measures) found = {0};
-    bool response = true;
+    ritz_estimator bare = {0}; /* the same, nothing being counted */
+    bool response = !least;
 
     RITZ_CHECK(open_measuring(basis, reduced, &response, &m));
-    if (m.band_hz[1] > 0.0) {
+    if (m.band_hz[1] > 0.0 && least) {
+        bare = *estimator;
+        bare.num_counts = 0;
+        m.estimator = &bare;
+        RITZ_CHECK(enclose_modes(&m));
+        RITZ_CHECK(report_least(&m, &found));
+    } else if (m.band_hz[1] > 0.0) {
         RITZ_CHECK(refine_all(response, &m));
         RITZ_CHECK(report_modes(&m, &found));
         RITZ_CHECK(report_missing(&m, &found));
@@ -448,25 +455,6 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
     return RITZ_OK;
 }
 
-ritz_status ritz_estimator_least(ritz_estimator *estimator,
-                                 const ritz_basis *basis,
-                                 const ritz_reduced *reduced,
-                                 ritz_measures *out)
-{
-    RITZ_OWN(ritz_measuring) m = {.estimator = estimator};
-    ritz_estimator bare = {0}; /* the same, nothing being counted */
-    bool response = false;
-
-    RITZ_CHECK(open_measuring(basis, reduced, &response, &m));
-    if (!(m.band_hz[1] > 0.0))
-        return RITZ_OK;
-    bare = *estimator;
-    bare.num_counts = 0;
-    m.estimator = &bare;
-    RITZ_CHECK(enclose_modes(&m));
-    return report_least(&m, out);
-}
-
 ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
                           const ritz_estimate_request *request,
                           ritz_reduced *reduced)
@@ -475,7 +463,8 @@ ritz_status ritz_estimate(const ritz_component *full, const ritz_basis *basis,
     RITZ_OWN(ritz_measures) found = {0};
 
     RITZ_CHECK(ritz_estimator_new(full, request, &estimator));
-    RITZ_CHECK(ritz_estimator_measure(estimator, basis, reduced, &found));
+    RITZ_CHECK(
+        ritz_estimator_measure(estimator, basis, reduced, false, &found));
     ritz_measures_free(&reduced->estimates);
     RITZ_MOVE(reduced->estimates, found);
     return RITZ_OK;

@@ -2,7 +2,6 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
-#include "verify/match.h"
 
 #include <math.h>
 #include <stdlib.h>

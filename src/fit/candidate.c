@@ -318,10 +318,11 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
     const ritz_reference *reference = m->place->reference;
     RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_CHECK(f->scene ? ritz_reference_measure_at(reference, &m->at, limits,
-                                                    points, &found)
-                        : ritz_reference_measure(reference, &m->lent, limits,
-                                                 points, &found));
+    RITZ_CHECK(ritz_reference_measure(
+        reference,
+        f->scene ? ritz_model_of_configuration(&m->at, NULL)
+                 : ritz_model_of_reduced(&m->lent, NULL),
+        limits, points, &found));
     RITZ_CHECK(ritz_fit_worst(&found, m->place->at, &candidate->errors));
     ritz_fit_judge(limits, candidate);
     if (candidate->feasible && points)
@@ -399,8 +400,7 @@ static ritz_status bound_model(const ritz_fitter *f, const ritz_fit_model *m,
         basis.T = T;
     }
     status =
-        least ? ritz_estimator_least(place->estimator, &basis, &m->lent, out)
-              : ritz_estimator_measure(place->estimator, &basis, &m->lent, out);
+        ritz_estimator_measure(place->estimator, &basis, &m->lent, least, out);
     return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
 }
 

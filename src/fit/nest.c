@@ -626,9 +626,10 @@ static ritz_status measure_system(ritz_fitter *f, ritz_system *system)
         ritz_configuration *at = &system->configuration[k];
 
         ritz_measures_free(&at->errors);
-        RITZ_CHECK(ritz_reference_measure_at(
-            f->place[k].reference, at, &f->request.tolerance,
-            RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM, &at->errors));
+        RITZ_CHECK(ritz_reference_measure(
+            f->place[k].reference, ritz_model_of_configuration(at, NULL),
+            &f->request.tolerance, RITZ_AT_OTHER_POLES | RITZ_AT_RANDOM,
+            &at->errors));
     }
     return RITZ_OK;
 }

@@ -24,6 +24,7 @@ ritz_model ritz_model_of_reduced(const ritz_reduced *reduced,
 
     return (ritz_model){.kind = RITZ_MODEL_DENSE,
                         .dense = {&r->K, &r->M, &r->D, &r->K4, &r->io},
+                        .reduced = reduced,
                         .dampers = &r->dampers,
                         .damping = damping};
 }

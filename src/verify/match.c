@@ -3,14 +3,13 @@
  * that holds most of its shape, half at least, or, without shapes, by
  * alignment.
  */
-#include "verify/match.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
+#include "verify/sides.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { KINDS = 3 }; /* C, Cv and Ca */
@@ -66,12 +65,14 @@ static ritz_status check_names(const char *what, int64_t full, int64_t reduced,
     return RITZ_OK;
 }
 
-ritz_status ritz_verify_signals(const ritz_io *full, const ritz_io *reduced)
+ritz_status ritz_verify_signals(ritz_model full, ritz_model reduced)
 {
-    RITZ_CHECK(check_names("input", full->num_inputs, reduced->num_inputs,
-                           full->input, reduced->input));
-    return check_names("output", full->num_outputs, reduced->num_outputs,
-                       full->output, reduced->output);
+    const ritz_io io = ritz_model_io(full), small = ritz_model_io(reduced);
+
+    RITZ_CHECK(check_names("input", io.num_inputs, small.num_inputs, io.input,
+                           small.input));
+    return check_names("output", io.num_outputs, small.num_outputs, io.output,
+                       small.output);
 }
 
 ritz_status ritz_verify_band(const double band_hz[2], bool may_be_zero)
@@ -96,46 +97,46 @@ static double norm_of(int64_t n, const double *x, int64_t stride)
 }
 
 /* Whether mode k is flexible and in the band. */
-static bool is_compared(const ritz_poles *poles, const double band_hz[2],
-                        int64_t k)
+static bool is_compared(const ritz_reference *r, int64_t k)
 {
-    return k >= poles->num_rigid && ritz_in_band(band_hz, poles->lambda[k]);
+    return k >= r->poles.num_rigid &&
+           ritz_in_band(r->band_hz, r->poles.lambda[k]);
 }
 
-static void take_scales(const ritz_component *component,
-                        const ritz_pairs *pairs, const ritz_poles *poles,
-                        const double band_hz[2], ritz_participation *part)
+static void take_scales(ritz_reference *r)
 {
-    int64_t n = component->num_dofs, stride = 0;
+    const ritz_poles *poles = &r->poles;
+    int64_t n = r->component->num_dofs, stride = 0;
     double shape = 0.0;
 
-    for (int64_t k = 0; k < part->num_modes; k++)
-        if (is_compared(poles, band_hz, k))
-            shape = fmax(shape, norm_of(n, ritz_dense_col(&pairs->Phi, k), 1));
+    for (int64_t k = 0; k < poles->count; k++)
+        if (is_compared(r, k))
+            shape =
+                fmax(shape, norm_of(n, ritz_dense_col(&r->pairs.Phi, k), 1));
     for (int64_t c = 0; c < count_channels(&poles->io); c++) {
         const double *row = NULL;
         double largest = 0.0, size = 0.0;
 
-        for (int64_t k = 0; k < part->num_modes; k++)
-            if (is_compared(poles, band_hz, k))
+        for (int64_t k = 0; k < poles->count; k++)
+            if (is_compared(r, k))
                 largest = fmax(largest,
                                fabs(*find_channel(&poles->io, c, k, &stride)));
-        row = find_channel(&component->io, c, 0, &stride);
+        row = find_channel(&r->component->io, c, 0, &stride);
         size = shape * norm_of(n, row, stride);
         if (largest > RITZ_PARTICIPATION_ROUNDING * size)
-            part->scale[c] = 1.0 / largest;
+            r->part.scale[c] = 1.0 / largest;
     }
 }
 
 /* p of mode k: of input j and output i or, where one of them is negative as
    there is none, of the other. */
-static double product_of(const ritz_participation *part,
-                         const ritz_poles *poles, int64_t j, int64_t i,
+static double product_of(const ritz_reference *r, int64_t j, int64_t i,
                          int64_t k)
 {
-    double in = j < 0 ? 1.0 : participation_of(part, poles, j, k);
+    int64_t inputs = r->poles.io.num_inputs;
+    double in = j < 0 ? 1.0 : participation_of(&r->part, &r->poles, j, k);
     double out =
-        i < 0 ? 1.0 : participation_of(part, poles, part->num_inputs + i, k);
+        i < 0 ? 1.0 : participation_of(&r->part, &r->poles, inputs + i, k);
 
     return fabs(in * out);
 }
@@ -154,64 +155,57 @@ static bool is_negligible(const ritz_poles *poles, int64_t m, double p_m,
            p_k * fmax(1.0, stiffer) <= RITZ_AUDIBLE * p_m;
 }
 
-static bool is_observable_in(const ritz_participation *part,
-                             const ritz_poles *poles, const double band_hz[2],
-                             int64_t j, int64_t i, int64_t k)
+static bool is_observable_in(const ritz_reference *r, int64_t j, int64_t i,
+                             int64_t k)
 {
-    double p_k = product_of(part, poles, j, i, k);
+    double p_k = product_of(r, j, i, k);
 
     if (p_k <= RITZ_PARTICIPATION_ROUNDING)
         return false;
-    for (int64_t m = 0; m < part->num_modes; m++)
-        if (is_compared(poles, band_hz, m) &&
-            is_negligible(poles, m, product_of(part, poles, j, i, m), k, p_k))
+    for (int64_t m = 0; m < r->poles.count; m++)
+        if (is_compared(r, m) &&
+            is_negligible(&r->poles, m, product_of(r, j, i, m), k, p_k))
             return false;
     return true;
 }
 
-static bool is_observable(const ritz_participation *part,
-                          const ritz_poles *poles, const double band_hz[2],
-                          int64_t k)
+static bool is_observable(const ritz_reference *r, int64_t k)
 {
-    int64_t columns = part->num_inputs, rows = KINDS * part->num_outputs;
+    const ritz_io *io = &r->poles.io;
+    int64_t columns = io->num_inputs, rows = KINDS * io->num_outputs;
 
     for (int64_t j = columns > 0 ? 0 : -1; j < columns; j++)
         for (int64_t i = rows > 0 ? 0 : -1; i < rows; i++)
-            if (is_observable_in(part, poles, band_hz, j, i, k))
+            if (is_observable_in(r, j, i, k))
                 return true;
     return false;
 }
 
-ritz_status ritz_participation_new(const ritz_component *component,
-                                   const ritz_pairs *pairs,
-                                   const ritz_poles *poles,
-                                   const double band_hz[2],
-                                   ritz_participation *out)
+ritz_status ritz_reference_observe(ritz_reference *r)
 {
-    RITZ_OWN(ritz_participation)
-    part = {.num_modes = poles->count,
-            .num_inputs = poles->io.num_inputs,
-            .num_outputs = poles->io.num_outputs};
+    int64_t channels = count_channels(&r->poles.io);
 
-    RITZ_CHECK_NEW(part.scale, count_channels(&poles->io));
-    RITZ_CHECK_NEW(part.observable, part.num_modes);
-    take_scales(component, pairs, poles, band_hz, &part);
-    if (count_channels(&poles->io) > 0)
-        for (int64_t k = poles->num_rigid; k < part.num_modes; k++)
-            part.observable[k] = is_observable(&part, poles, band_hz, k);
-    RITZ_MOVE(*out, part);
+    RITZ_CHECK_NEW(r->part.scale, channels);
+    RITZ_CHECK_NEW(r->part.observable, r->poles.count);
+    take_scales(r);
+    for (int64_t k = r->poles.num_rigid; k < r->poles.count && channels > 0;
+         k++)
+        r->part.observable[k] = is_observable(r, k);
     return RITZ_OK;
 }
 
-double ritz_participation_mac(const ritz_participation *part,
-                              const ritz_poles *full, int64_t k,
-                              const ritz_poles *reduced, int64_t r)
+/*
+ * Cosine squared of the angle between the participations of mode k of one model
+ * and of mode r of another; NaN where mode k has none.
+ */
+static double compare_modes(const ritz_sides *sides, int64_t k, int64_t r)
 {
+    const ritz_reference *full = sides->full;
     double fr = 0.0, ff = 0.0, rr = 0.0;
 
-    for (int64_t c = 0; c < count_channels(&full->io); c++) {
-        double a = participation_of(part, full, c, k);
-        double b = participation_of(part, reduced, c, r);
+    for (int64_t c = 0; c < count_channels(&full->poles.io); c++) {
+        double a = participation_of(&full->part, &full->poles, c, k);
+        double b = participation_of(&full->part, &sides->reduced, c, r);
 
         fr += a * b;
         ff += a * a;
@@ -222,26 +216,20 @@ double ritz_participation_mac(const ritz_participation *part,
     return ff > 0.0 ? 0.0 : nan("");
 }
 
-void ritz_participation_free(ritz_participation *part)
-{
-    RITZ_FREE(part->scale, part->observable);
-    *part = (ritz_participation){0};
-}
-
 /* Partners by shapes. */
 
 /* No partner for any mode, and no MAC. */
-static ritz_status match_none(const ritz_poles *full, const ritz_poles *reduced,
-                              ritz_match *out)
+static ritz_status match_none(ritz_sides *sides)
 {
-    out->count = full->count;
-    out->num_reduced = reduced->count;
-    RITZ_CHECK_NEW(out->partner, full->count);
-    RITZ_CHECK_NEW(out->mac, full->count);
-    RITZ_CHECK_NEW(out->taken, reduced->count);
-    for (int64_t k = 0; k < full->count; k++) {
-        out->partner[k] = -1;
-        out->mac[k] = nan("");
+    const int64_t count = sides->full->poles.count;
+    ritz_match *match = &sides->match;
+
+    RITZ_CHECK_NEW(match->partner, count);
+    RITZ_CHECK_NEW(match->mac, count);
+    RITZ_CHECK_NEW(match->taken, sides->reduced.count);
+    for (int64_t k = 0; k < count; k++) {
+        match->partner[k] = -1;
+        match->mac[k] = nan("");
     }
     return RITZ_OK;
 }
@@ -285,15 +273,16 @@ static ritz_status subspace_mac(const ritz_dense *Q, int64_t first,
 }
 
 /* The best free reduced mode for a cluster, -1 if none has half of it. */
-static int64_t choose_mode(const ritz_dense *Q, const ritz_poles *reduced,
-                           const bool *taken, const int64_t range[2],
-                           double *best)
+static int64_t choose_mode(const ritz_sides *sides, const ritz_dense *Q,
+                           int64_t first, int64_t last, double *best)
 {
+    const ritz_poles *reduced = &sides->reduced;
     int64_t chosen = -1;
 
     *best = 0.0;
     for (int64_t r = reduced->num_rigid; r < reduced->count; r++) {
-        double part = taken[r] ? 0.0 : sum_squares(Q, range[0], range[1], r);
+        double part =
+            sides->match.taken[r] ? 0.0 : sum_squares(Q, first, last, r);
 
         if (part > *best) {
             *best = part;
@@ -303,59 +292,54 @@ static int64_t choose_mode(const ritz_dense *Q, const ritz_poles *reduced,
     return *best >= RITZ_SAME_MODE ? chosen : -1;
 }
 
-static int compare_numbers(const void *left, const void *right)
+/* Its partners ascend. */
+static ritz_status match_cluster(ritz_sides *sides, const ritz_dense *Q,
+                                 int64_t first, int64_t last)
 {
-    int64_t a = *(const int64_t *)left;
-    int64_t b = *(const int64_t *)right;
-
-    return (a > b) - (a < b);
-}
-
-static ritz_status match_cluster(const ritz_dense *Q, const ritz_poles *reduced,
-                                 int64_t first, int64_t last, ritz_match *match)
-{
-    const int64_t range[2] = {first, last};
+    int64_t *partner = sides->match.partner;
     int64_t found = first;
     double best = 1.0;
 
     while (found < last) {
-        int64_t r = choose_mode(Q, reduced, match->taken, range, &best);
+        int64_t r = choose_mode(sides, Q, first, last, &best);
+        int64_t at = found;
 
         if (r < 0)
             break;
-        match->partner[found++] = r;
-        match->taken[r] = true;
+        for (; at > first && partner[at - 1] > r; at--)
+            partner[at] = partner[at - 1];
+        partner[at] = r;
+        sides->match.taken[r] = true;
+        found++;
     }
-    qsort(match->partner + first, (size_t)(found - first),
-          sizeof *match->partner, compare_numbers);
     if (found == last)
-        RITZ_CHECK(subspace_mac(Q, first, last, match->partner, &best));
+        RITZ_CHECK(subspace_mac(Q, first, last, partner, &best));
     for (int64_t k = first; k < last; k++)
-        match->mac[k] = fmin(best, 1.0);
+        sides->match.mac[k] = fmin(best, 1.0);
     return RITZ_OK;
 }
 
-ritz_status ritz_match_shapes(const ritz_poles *full, const ritz_poles *reduced,
-                              const ritz_dense *Q, ritz_match *out)
+/*
+ * With Q = Phi_full' M T Phi_reduced, both sides normalised. Full modes closer
+ * than 1e-3 are one cluster, whose MAC is that of subspaces: the least singular
+ * value of its block of Q, squared. Rigid modes have no partner.
+ */
+static ritz_status match_shapes(const ritz_dense *T, ritz_sides *sides)
 {
-    RITZ_OWN(ritz_match) match = {0};
+    const ritz_poles *full = &sides->full->poles;
+    RITZ_OWN(ritz_dense) shapes = {0}, MS = {0}, Q = {0};
     int64_t last = 0;
 
-    RITZ_CHECK(match_none(full, reduced, &match));
+    RITZ_CHECK(ritz_dense_mul(T, &sides->small.Phi, &shapes));
+    RITZ_CHECK(ritz_sparse_mul(&sides->full->component->M, &shapes, &MS));
+    RITZ_CHECK(ritz_dense_mul_tn(&sides->full->pairs.Phi, &MS, &Q));
     for (int64_t first = full->num_rigid; first < full->count; first = last) {
         last = first + 1;
         while (last < full->count && is_close(full, last - 1))
             last++;
-        RITZ_CHECK(match_cluster(Q, reduced, first, last, &match));
+        RITZ_CHECK(match_cluster(sides, &Q, first, last));
     }
-    RITZ_MOVE(*out, match);
     return RITZ_OK;
-}
-
-void ritz_match_free(ritz_match *match)
-{
-    RITZ_FREE(match->partner, match->mac, match->taken);
-    *match = (ritz_match){0};
 }
 
 /*
@@ -379,21 +363,21 @@ static void pairing_free(pairing *p)
 }
 
 /* A mode that is not observable is known by its frequency alone. */
-static double pair_cost(const ritz_participation *part, const ritz_poles *full,
-                        int64_t k, const ritz_poles *reduced, int64_t r)
+static double pair_cost(const ritz_sides *sides, int64_t k, int64_t r)
 {
-    double ratio = fabs(log(reduced->lambda[r] / full->lambda[k])) / 2.0;
+    double ratio =
+        fabs(log(sides->reduced.lambda[r] / sides->full->poles.lambda[k])) /
+        2.0;
 
-    if (!part->observable[k])
+    if (!sides->full->part.observable[k])
         return ratio;
-    return ratio + RITZ_UNLIKE_COST * (1.0 - ritz_participation_mac(
-                                                 part, full, k, reduced, r));
+    return ratio + RITZ_UNLIKE_COST * (1.0 - compare_modes(sides, k, r));
 }
 
-static ritz_status pairing_new(const ritz_participation *part,
-                               const ritz_poles *full,
-                               const ritz_poles *reduced, pairing *p)
+static ritz_status pairing_new(const ritz_sides *sides, pairing *p)
 {
+    const ritz_poles *full = &sides->full->poles, *reduced = &sides->reduced;
+
     p->m = full->count - full->num_rigid;
     p->n = reduced->count - reduced->num_rigid;
     RITZ_CHECK_NEW(p->cost, p->m * p->n);
@@ -402,8 +386,8 @@ static ritz_status pairing_new(const ritz_participation *part,
     RITZ_CHECK_NEW(p->by, p->n);
     for (int64_t k = 0; k < p->m; k++)
         for (int64_t r = 0; r < p->n; r++)
-            p->cost[k * p->n + r] = pair_cost(part, full, full->num_rigid + k,
-                                              reduced, reduced->num_rigid + r);
+            p->cost[k * p->n + r] =
+                pair_cost(sides, full->num_rigid + k, reduced->num_rigid + r);
     memset(p->of, -1, (size_t)p->m * sizeof *p->of);
     memset(p->by, -1, (size_t)p->n * sizeof *p->by);
     return RITZ_OK;
@@ -490,38 +474,44 @@ static void exchange_all(pairing *p)
 }
 
 /* The MAC of an observable mode without partner is 0. */
-static void take_partners(const pairing *p, const ritz_participation *part,
-                          const ritz_poles *full, const ritz_poles *reduced,
-                          ritz_match *match)
+static void take_partners(const pairing *p, ritz_sides *sides)
 {
+    const ritz_poles *full = &sides->full->poles;
+    ritz_match *match = &sides->match;
+
     for (int64_t j = 0; j < p->m; j++) {
         int64_t k = full->num_rigid + j;
-        int64_t r = reduced->num_rigid + p->of[j];
+        int64_t r = sides->reduced.num_rigid + p->of[j];
 
         if (p->of[j] >= 0) {
             match->partner[k] = r;
             match->taken[r] = true;
         }
-        if (part->observable[k] && !(k > 0 && is_close(full, k - 1)) &&
+        if (sides->full->part.observable[k] &&
+            !(k > 0 && is_close(full, k - 1)) &&
             !(k + 1 < full->count && is_close(full, k)))
-            match->mac[k] = p->of[j] < 0 ? 0.0
-                                         : ritz_participation_mac(part, full, k,
-                                                                  reduced, r);
+            match->mac[k] = p->of[j] < 0 ? 0.0 : compare_modes(sides, k, r);
     }
 }
 
-ritz_status ritz_match_outputs(const ritz_poles *full,
-                               const ritz_poles *reduced,
-                               const ritz_participation *part, ritz_match *out)
+/* MAC is NaN of modes that are not observable, and of those closer than 1e-3,
+   which may be any mixture. */
+static ritz_status match_outputs(ritz_sides *sides)
 {
-    RITZ_OWN(ritz_match) match = {0};
     RITZ_OWN(pairing) p = {0};
 
-    RITZ_CHECK(match_none(full, reduced, &match));
-    RITZ_CHECK(pairing_new(part, full, reduced, &p));
+    RITZ_CHECK(pairing_new(sides, &p));
     align_modes(&p);
     exchange_all(&p);
-    take_partners(&p, part, full, reduced, &match);
-    RITZ_MOVE(*out, match);
+    take_partners(&p, sides);
     return RITZ_OK;
+}
+
+ritz_status ritz_sides_match(ritz_sides *sides)
+{
+    const ritz_dense *T = sides->component ? &sides->component->T : NULL;
+
+    RITZ_CHECK(match_none(sides));
+    sides->shapes = T && T->val && T->nrow == sides->full->component->num_dofs;
+    return sides->shapes ? match_shapes(T, sides) : match_outputs(sides);
 }

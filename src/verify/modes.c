@@ -94,7 +94,7 @@ static void tell_worst(const ritz_sides *sides,
     const ritz_poles *full = &sides->full->poles;
     extreme found = {0.0, -1};
 
-    for (int64_t k = full->num_rigid; k < sides->match.count; k++)
+    for (int64_t k = full->num_rigid; k < full->count; k++)
         if (in_band(sides, full->lambda[k]) && sides->match.partner[k] >= 0)
             keep_larger(error(sides, nothing, k, sides->match.partner[k]), k,
                         &found);
@@ -130,14 +130,15 @@ static int64_t count_unobservable(const ritz_sides *sides)
 /* "mode 5, 0.1202 Hz, 1 not observable" */
 ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out)
 {
+    const ritz_poles *full = &sides->full->poles;
     int64_t unobservable = !sides->component ? count_unobservable(sides) : 0;
     extreme found = {0.0, -1};
     size_t used = 0;
 
     if (!sides->shapes && sides->component)
         return RITZ_OK;
-    for (int64_t k = sides->full->poles.num_rigid; k < sides->match.count; k++)
-        if (in_band(sides, sides->full->poles.lambda[k]))
+    for (int64_t k = full->num_rigid; k < full->count; k++)
+        if (in_band(sides, full->lambda[k]))
             keep_larger(-sides->match.mac[k], k, &found);
     found.value = -found.value;
     tell_mode(sides, found, out);
@@ -148,15 +149,25 @@ ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out)
     return RITZ_OK;
 }
 
-/* A count, and the first mode that was counted. */
-static void tell_count(int64_t count, int64_t first, const ritz_poles *poles,
-                       ritz_measure *out)
+/* The number of modes of a model in the band without partner, and the first. */
+static void tell_unpaired(const ritz_sides *sides, const ritz_poles *poles,
+                          ritz_measure *out)
 {
+    const ritz_match *match = &sides->match;
+    int64_t count = 0;
+
+    for (int64_t k = poles->num_rigid; k < poles->count; k++) {
+        bool paired =
+            poles == &sides->reduced ? match->taken[k] : match->partner[k] >= 0;
+
+        if (paired || !in_band(sides, poles->lambda[k]))
+            continue;
+        if (count++ == 0)
+            (void)snprintf(out->where, sizeof out->where,
+                           "first: mode %" PRId64 ", %.4g Hz", k + 1,
+                           ritz_eigen_hertz(poles->lambda[k]));
+    }
     out->value = (double)count;
-    if (count > 0)
-        (void)snprintf(out->where, sizeof out->where,
-                       "first: mode %" PRId64 ", %.4g Hz", first + 1,
-                       ritz_eigen_hertz(poles->lambda[first]));
 }
 
 /* A frequency or damping that is held to a limit must be there. */
@@ -173,28 +184,14 @@ static double missing_limit(const ritz_sides *sides)
 
 ritz_status ritz_modes_missing(const ritz_sides *sides, ritz_measure *out)
 {
-    const ritz_poles *full = &sides->full->poles;
-    int64_t count = 0;
-    int64_t first = -1;
-
-    for (int64_t k = full->num_rigid; k < sides->match.count; k++)
-        if (sides->match.partner[k] < 0 && in_band(sides, full->lambda[k]))
-            first = count++ == 0 ? k : first;
-    tell_count(count, first, full, out);
+    tell_unpaired(sides, &sides->full->poles, out);
     out->limit = missing_limit(sides);
     return RITZ_OK;
 }
 
 ritz_status ritz_modes_extra(const ritz_sides *sides, ritz_measure *out)
 {
-    const ritz_match *match = &sides->match;
-    int64_t count = 0;
-    int64_t first = -1;
-
-    for (int64_t r = sides->reduced.num_rigid; r < match->num_reduced; r++)
-        if (!match->taken[r] && in_band(sides, sides->reduced.lambda[r]))
-            first = count++ == 0 ? r : first;
-    tell_count(count, first, &sides->reduced, out);
+    tell_unpaired(sides, &sides->reduced, out);
     return RITZ_OK;
 }
 

@@ -132,42 +132,32 @@ bool ritz_reference_factors(const ritz_reference *reference)
 ritz_status ritz_reference_respond(const ritz_reference *reference,
                                    ritz_reference_sweep *s)
 {
-    ritz_status status = RITZ_OK;
     const ritz_poles *poles = &reference->poles;
     const ritz_grid grid = {.from_hz = s->hertz[0],
                             .to_hz = s->hertz[s->count - 1],
                             .count = s->count,
                             .hertz = s->hertz};
-    bool local = ritz_reference_factors(reference);
-    ritz_response direct = {0};
+    RITZ_OWN(ritz_response) direct = {0};
 
     s->values = poles->io.num_inputs * poles->io.num_outputs;
-    RITZ_NEW(s->full, s->count * s->values);
-    if (local) {
-        RITZ_TRY(ritz_response_of(
+    if (ritz_reference_factors(reference)) {
+        RITZ_CHECK(ritz_response_of(
             ritz_model_of_component(reference->component, &reference->damping),
             &ritz_response_engine_direct, reference->modes_hz, 0.0, &grid,
             &direct));
-        memcpy(s->full, direct.H,
-               (size_t)(s->count * s->values) * sizeof *s->full);
-    }
-    for (int64_t k = 0; !local && k < s->count; k++) {
-        RITZ_TRY(ritz_poles_add(poles, s->hertz[k], s->full + k * s->values));
-        ritz_residual_add(&reference->residual, s->hertz[k],
-                          s->full + k * s->values);
+        RITZ_MOVE(s->full, direct.H);
+    } else {
+        RITZ_CHECK_NEW(s->full, s->count * s->values);
+        for (int64_t k = 0; k < s->count; k++) {
+            double _Complex *H = s->full + k * s->values;
+
+            RITZ_CHECK(ritz_poles_add(poles, s->hertz[k], H));
+            ritz_residual_add(&reference->residual, s->hertz[k], H);
+        }
     }
     s->flexible = flexible_part(poles, s);
-    RITZ_TRY(find_significance(poles, s));
-done:
-    ritz_response_free(&direct);
-    return ritz_context(status, "full model");
+    return find_significance(poles, s);
 }
-
-/* Both models at some frequencies. */
-typedef struct sweep_pair {
-    const ritz_reference_sweep *full; /* NULL: none */
-    double _Complex *reduced;
-} sweep_pair;
 
 static void keep_larger(double value, double hertz, ritz_extreme *of)
 {
@@ -175,9 +165,8 @@ static void keep_larger(double value, double hertz, ritz_extreme *of)
         *of = (ritz_extreme){value, hertz};
 }
 
-/* One response of both models at a frequency. */
-static ritz_status compare_entry(double _Complex H, double _Complex H_r,
-                                 double hertz, ritz_gap *gap)
+ritz_status ritz_gap_add(double _Complex H, double _Complex H_r, double hertz,
+                         ritz_gap *gap)
 {
     double error = cabs(H - H_r);
 
@@ -192,21 +181,21 @@ static ritz_status compare_entry(double _Complex H, double _Complex H_r,
  * The reduced model at the points, and how far it is off. It is not compared at
  * rest where its rigid motion alone would make its response infinite.
  */
-static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
-                                 ritz_gap *gap)
+static ritz_status compare_sweep(const ritz_sides *sides,
+                                 ritz_reference_sweep *s, ritz_gap *gap)
 {
-    const int64_t values = s->full->values;
+    const int64_t values = s->values;
     double least =
         sides->reduced.num_rigid > 0
             ? RITZ_BAND_START * sides->full->band_hz[1] * (1.0 - RITZ_SAME)
             : 0.0;
 
-    gap->flexible = fmax(gap->flexible, s->full->flexible);
-    gap->significant = gap->significant || s->full->significant;
-    RITZ_CHECK_NEW(s->reduced, s->full->count * values);
-    for (int64_t k = 0; k < s->full->count; k++) {
-        double hertz = s->full->hertz[k];
-        const double _Complex *H = s->full->full + k * values;
+    gap->flexible = fmax(gap->flexible, s->flexible);
+    gap->significant = gap->significant || s->significant;
+    RITZ_CHECK_NEW(s->reduced, s->count * values);
+    for (int64_t k = 0; k < s->count; k++) {
+        double hertz = s->hertz[k];
+        const double _Complex *H = s->full + k * values;
         double _Complex *H_r = s->reduced + k * values;
 
         if (hertz < least) {
@@ -216,22 +205,20 @@ static ritz_status compare_sweep(const ritz_sides *sides, sweep_pair *s,
         RITZ_CHECK_IN("reduced model",
                       ritz_poles_add(&sides->reduced, hertz, H_r));
         for (int64_t i = 0; i < values; i++)
-            RITZ_CHECK(compare_entry(H[i], H_r[i], hertz, gap));
+            RITZ_CHECK(ritz_gap_add(H[i], H_r[i], hertz, gap));
     }
     return RITZ_OK;
 }
 
 /* Levels are compared where |H| is not negligible beside the largest. */
-static void compare_levels(const sweep_pair *s, ritz_gap *gap)
+static void compare_levels(const ritz_reference_sweep *s, ritz_gap *gap)
 {
-    const int64_t values = s->full->values;
-
-    for (int64_t k = 0; k < s->full->count * values; k++) {
-        double a = cabs(s->full->full[k]);
+    for (int64_t k = 0; k < s->count * s->values; k++) {
+        double a = cabs(s->full[k]);
         double b = fmax(cabs(s->reduced[k]), RITZ_LEAST_SCALE);
 
         if (a > RITZ_AUDIBLE * gap->largest)
-            keep_larger(fabs(20.0 * log10(b / a)), s->full->hertz[k / values],
+            keep_larger(fabs(20.0 * log10(b / a)), s->hertz[k / s->values],
                         &gap->db);
     }
 }
@@ -271,10 +258,11 @@ static int64_t count_nonzero(int64_t points, int64_t most, const double *sigma)
  * curve below in its plots of singular values over frequency.
  */
 static ritz_status compare_singular(const ritz_sides *sides,
-                                    const sweep_pair *s, ritz_gap *gap)
+                                    const ritz_reference_sweep *s,
+                                    ritz_gap *gap)
 {
     const ritz_io *io = &sides->full->component->io;
-    const int64_t points = s->full->count;
+    const int64_t points = s->count;
     const int64_t most =
         io->num_inputs < io->num_outputs ? io->num_inputs : io->num_outputs;
     RITZ_OWN_ARRAY double *sigma = NULL, *reduced = NULL;
@@ -282,59 +270,54 @@ static ritz_status compare_singular(const ritz_sides *sides,
 
     RITZ_CHECK_NEW(sigma, points * most);
     RITZ_CHECK_NEW(reduced, points * most);
-    RITZ_CHECK(take_singular(io, s->full, s->full->full, most, sigma));
-    RITZ_CHECK(take_singular(io, s->full, s->reduced, most, reduced));
+    RITZ_CHECK(take_singular(io, s, s->full, most, sigma));
+    RITZ_CHECK(take_singular(io, s, s->reduced, most, reduced));
     rank = count_nonzero(points, most, sigma);
     for (int64_t k = 0; k < points && rank > 0; k++) {
         double full = sigma[k * most + rank - 1];
         double error = fabs(full - reduced[k * most + rank - 1]);
 
         gap->singular = fmax(gap->singular, full);
-        keep_larger(error, s->full->hertz[k], &gap->singular_error);
+        keep_larger(error, s->hertz[k], &gap->singular_error);
     }
     return RITZ_OK;
 }
 
-/* Whatever is found at the points of all sweeps. */
-static ritz_status compare_sweeps(const ritz_sides *sides, sweep_pair *sweep,
-                                  ritz_gap *gap)
+/* The points of three sweeps; none where there are no points. */
+typedef struct sweeps {
+    ritz_reference_sweep at[SWEEPS];
+} sweeps;
+
+static void sweeps_free(sweeps *s)
 {
     for (int k = 0; k < SWEEPS; k++)
-        if (sweep[k].full)
-            RITZ_CHECK(compare_sweep(sides, &sweep[k], gap));
-    for (int k = 0; k < SWEEPS; k++) {
-        if (!sweep[k].full)
-            continue;
-        compare_levels(&sweep[k], gap);
-        if (!isnan(sides->limit[RITZ_MEASURE_SINGULAR]))
-            RITZ_CHECK(compare_singular(sides, &sweep[k], gap));
-    }
-    return RITZ_OK;
+        free(s->at[k].reduced);
+    ritz_sweep_free(&s->at[SWEEPS - 1]); /* the others are the reference's */
 }
 
 ritz_status ritz_sides_respond(ritz_sides *sides)
 {
-    ritz_status status = RITZ_OK;
     const ritz_reference *full = sides->full;
-    ritz_reference_sweep other = {0};
-    sweep_pair sweep[SWEEPS] = {{&full->own, NULL}};
+    RITZ_OWN(sweeps) s = {{full->own}};
+    ritz_reference_sweep *other = &s.at[SWEEPS - 1];
 
     if (full->own.count == 0)
         return RITZ_OK;
     if (sides->where & RITZ_AT_RANDOM)
-        sweep[1].full = &full->random;
+        s.at[1] = full->random;
     if (sides->where & RITZ_AT_OTHER_POLES) {
-        RITZ_TRY(ritz_sweep_points(full, &sides->reduced,
-                                   &sides->damped_reduced, 2, &other));
-        RITZ_TRY(ritz_reference_respond(full, &other));
-        sweep[2].full = &other;
+        RITZ_CHECK(ritz_sweep_points(full, &sides->reduced,
+                                     &sides->damped_reduced, 2, other));
+        RITZ_CHECK_IN("full model", ritz_reference_respond(full, other));
     }
-    RITZ_TRY(compare_sweeps(sides, sweep, &sides->gap));
-done:
     for (int k = 0; k < SWEEPS; k++)
-        free(sweep[k].reduced);
-    ritz_sweep_free(&other);
-    return status;
+        RITZ_CHECK(compare_sweep(sides, &s.at[k], &sides->gap));
+    for (int k = 0; k < SWEEPS; k++) {
+        compare_levels(&s.at[k], &sides->gap);
+        if (!isnan(sides->limit[RITZ_MEASURE_SINGULAR]))
+            RITZ_CHECK(compare_singular(sides, &s.at[k], &sides->gap));
+    }
+    return RITZ_OK;
 }
 
 /* The error over @p unit, and "3.41 Hz, modal 0.01 assumed". */

@@ -3,18 +3,45 @@
 #define RITZ_VERIFY_SIDES_H
 
 #include "poles/damped.h"
-#include "verify/match.h"
 
 #include <ritz/poles.h>
 #include <ritz/verify.h>
+
+/** @return RITZ_ERR_ARGUMENT unless inputs and outputs have the same names */
+ritz_status ritz_verify_signals(ritz_model full, ritz_model reduced);
+
+/** @return RITZ_ERR_ARGUMENT unless 0 <= low < high, or high is 0 if it may */
+ritz_status ritz_verify_band(const double band_hz[2], bool may_be_zero);
+
+/** Whether a mode is in a band, whose ends belong to it but for rounding. */
+bool ritz_in_band(const double band_hz[2], double lambda);
+
+/*
+ * Two models without common coordinates are compared by how much each mode
+ * takes part in their inputs and outputs, instead of by mode shapes. Mode k has
+ * the participations scale[c] phi'b_c, of outputs scale[c] c_c phi; c counts
+ * inputs, then rows of C, of Cv and of Ca.
+ */
+typedef struct ritz_participation {
+    double *scale;    /* one over the largest of the flexible modes in the band,
+                         0 where that is rounding */
+    bool *observable; /* of each mode, in any transfer function */
+} ritz_participation;
+
+typedef struct ritz_match {
+    /* of each mode of the full model */
+    int64_t *partner; /* mode of the reduced one; -1: it has none */
+    double *mac;      /* of the cluster it is in; NaN: not known */
+    bool *taken;      /* of each mode of the reduced one: it is a partner */
+} ritz_match;
 
 /* The full model's responses at some frequencies. */
 typedef struct ritz_reference_sweep {
     int64_t count, values; /* points; responses at each */
     double *hertz;
-    double _Complex *full;
-    double flexible;  /* largest |H| without rigid motion */
-    bool significant; /* any |H| is more than rounding */
+    double _Complex *full, *reduced; /* reduced: NULL unless it is compared */
+    double flexible;                 /* largest |H| without rigid motion */
+    bool significant;                /* any |H| is more than rounding */
 } ritz_reference_sweep;
 
 /* What of the full model serves every comparison. */
@@ -65,6 +92,29 @@ typedef struct ritz_sides {
     ritz_match match;
 } ritz_sides;
 
+/**
+ * Fill `part`: scales that make units of inputs and outputs irrelevant, and
+ * which modes are observable. Mode k is not observable from input j to output i
+ * if the product p of its participations in both is rounding, or if for some
+ * mode m of the band
+ *
+ *     p_k max(1, (w_m / w_k)^2) max(1, zeta_m / zeta_k) <= 1e-6 p_m,
+ *
+ * so that its parts in the static response, in accelerations and at resonance
+ * are at most a millionth of those of the other mode. Without inputs, or
+ * without outputs, the participations in the others decide alone.
+ */
+ritz_status ritz_reference_observe(ritz_reference *reference);
+
+/**
+ * Fill `match`: which mode of the full model is which of the reduced one. By
+ * shapes it is the one that holds half of it at least; without them, by
+ * frequency and participations, what the alignment of the two ascending lists
+ * that costs least says, and then exchanges of modes whose order differs
+ * between them.
+ */
+ritz_status ritz_sides_match(ritz_sides *sides);
+
 /** The full model at the points of a sweep, which has its hertz. */
 ritz_status ritz_reference_respond(const ritz_reference *reference,
                                    ritz_reference_sweep *sweep);
@@ -85,24 +135,23 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
 double ritz_highest_hertz(const ritz_columns *columns, int64_t count,
                           const double *lambda);
 
+/**
+ * Take one response of both models into a gap.
+ *
+ * @return RITZ_ERR_CONVERGENCE unless it is finite
+ */
+ritz_status ritz_gap_add(double _Complex H, double _Complex H_r, double hertz,
+                         ritz_gap *gap);
+
 /** Fill `gap`: responses of both models, at all points that were asked for. */
 ritz_status ritz_sides_respond(ritz_sides *sides);
 
-/* Functions of the table of measures: see ritz_measure_kind.of_modes. */
-ritz_status ritz_modes_frequency(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_modes_mac(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_modes_damping(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_modes_rigid_hertz(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_modes_missing_rigid(const ritz_sides *sides,
-                                     ritz_measure *out);
-ritz_status ritz_modes_missing(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_modes_extra(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_responses_error(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_responses_flexible(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out);
-ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out);
+/* Functions of the table of measures. */
+ritz_measure_modes ritz_modes_frequency, ritz_modes_mac, ritz_modes_damping,
+    ritz_modes_rigid_hertz, ritz_modes_missing_rigid, ritz_modes_missing,
+    ritz_modes_extra, ritz_modes_h2, ritz_responses_error,
+    ritz_responses_flexible, ritz_responses_level, ritz_responses_gain,
+    ritz_responses_singular;
 
 void ritz_sweep_free(ritz_reference_sweep *sweep);
 
@@ -112,7 +161,8 @@ void ritz_sweep_free(ritz_reference_sweep *sweep);
 typedef struct ritz_state_pair {
     const ritz_verify_request *request;
     const ritz_state_space *given[2]; /* as they came; borrowed */
-    ritz_state_space model[2];        /* with their outputs divided */
+    ritz_state_space model[2];        /* with their outputs divided: C and D
+                                         alone are their own */
     ritz_state_space stable[2];  /* what belongs to poles left of the axis */
     int64_t num_unstable[2];     /* poles that are not left of the axis */
     bool has_norms;              /* both have as many of those */
@@ -134,15 +184,8 @@ ritz_status ritz_state_pair_new(const ritz_state_space *full,
                                 ritz_state_pair *out);
 void ritz_state_pair_free(ritz_state_pair *p);
 
-/* Functions of the table of measures: see ritz_measure_kind.of_states. */
-ritz_status ritz_states_infinity(const ritz_state_pair *p, ritz_measure *out);
-ritz_status ritz_states_infinity_relative(const ritz_state_pair *p,
-                                          ritz_measure *out);
-ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
-                                       ritz_measure *out);
-ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out);
-ritz_status ritz_states_response(const ritz_state_pair *p, ritz_measure *out);
-ritz_status ritz_states_gain(const ritz_state_pair *p, ritz_measure *out);
-ritz_status ritz_states_growth(const ritz_state_pair *p, ritz_measure *out);
+ritz_measure_states ritz_states_infinity, ritz_states_infinity_relative,
+    ritz_states_infinity_bound, ritz_states_h2, ritz_states_response,
+    ritz_states_gain, ritz_states_growth;
 
 #endif

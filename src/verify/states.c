@@ -29,7 +29,8 @@ enum { EVEN_POINTS = 200 };
 void ritz_state_pair_free(ritz_state_pair *p)
 {
     for (int k = 0; k < 2; k++) {
-        ritz_state_space_free(&p->model[k]);
+        ritz_dense_free(&p->model[k].C);
+        ritz_dense_free(&p->model[k].D);
         ritz_state_space_free(&p->stable[k]);
         ritz_dense_free(&p->gain[k]);
     }
@@ -43,15 +44,6 @@ static ritz_status make_states(const ritz_state_space *model, int64_t states,
     const ritz_io io = ritz_model_io(ritz_model_of_states(model));
 
     return ritz_state_space_new(states, &io, out);
-}
-
-static ritz_status check_signals(const ritz_state_space *full,
-                                 const ritz_state_space *reduced)
-{
-    const ritz_io io = ritz_model_io(ritz_model_of_states(full));
-    const ritz_io io_r = ritz_model_io(ritz_model_of_states(reduced));
-
-    return ritz_verify_signals(&io, &io_r);
 }
 
 /* E of a model of n states, or the identity, from (first, first) on. */
@@ -72,7 +64,8 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
     int64_t n = a->A.nrow;
     int64_t m = b->A.nrow;
 
-    RITZ_CHECK(check_signals(a, b));
+    RITZ_CHECK(
+        ritz_verify_signals(ritz_model_of_states(a), ritz_model_of_states(b)));
     RITZ_CHECK(make_states(a, n + m, &both));
     memcpy(both.damping, a->damping, sizeof both.damping);
     memcpy(both.units, a->units, sizeof both.units);
@@ -93,22 +86,14 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
     return RITZ_OK;
 }
 
-/* Over a matrix of zeros; none of none. */
-static ritz_status copy_matrix(const ritz_dense *from, ritz_dense *to)
-{
-    ritz_dense_free(to);
-    return from->val ? ritz_dense_copy(from, to) : RITZ_OK;
-}
-
+/* C and D are the model's own, over the limits; all else is borrowed. */
 static ritz_status divide_outputs(const ritz_state_space *model,
                                   const double *limit, ritz_state_space *out)
 {
-    RITZ_CHECK(make_states(model, model->A.nrow, out));
-    RITZ_CHECK(copy_matrix(&model->A, &out->A));
-    RITZ_CHECK(copy_matrix(&model->B, &out->B));
-    RITZ_CHECK(copy_matrix(&model->C, &out->C));
-    RITZ_CHECK(copy_matrix(&model->D, &out->D));
-    RITZ_CHECK(copy_matrix(&model->E, &out->E));
+    *out = *model;
+    out->C = out->D = (ritz_dense){0};
+    RITZ_CHECK(ritz_dense_copy(&model->C, &out->C));
+    RITZ_CHECK(ritz_dense_copy(&model->D, &out->D));
     for (int64_t i = 0; i < model->num_outputs; i++) {
         if (isnan(limit[i]))
             continue;
@@ -129,9 +114,9 @@ static ritz_status take_stable(const ritz_state_space *model,
     RITZ_CHECK(ritz_split_new(&model->A, &model->E, &split));
     *num_unstable = split.T.ncol;
     RITZ_CHECK(make_states(model, split.X.ncol, out));
-    RITZ_CHECK(copy_matrix(&split.S, &out->A));
-    RITZ_CHECK(copy_matrix(&split.P, &out->E));
-    RITZ_CHECK(copy_matrix(&model->D, &out->D));
+    ritz_dense_replace(&out->A, &split.S);
+    ritz_dense_replace(&out->E, &split.P);
+    ritz_dense_put(&model->D, 0, 0, &out->D);
     ritz_dense_free(&out->B);
     ritz_dense_free(&out->C);
     RITZ_CHECK(ritz_dense_mul_tn(&split.Y, &model->B, &out->B));
@@ -171,7 +156,8 @@ static ritz_status open_pair(const ritz_state_space *full,
     p->request = request;
     p->given[0] = full;
     p->given[1] = reduced;
-    RITZ_CHECK(check_signals(full, reduced));
+    RITZ_CHECK(ritz_verify_signals(ritz_model_of_states(full),
+                                   ritz_model_of_states(reduced)));
     for (int k = 0; k < 2; k++) {
         RITZ_CHECK(divide_outputs(p->given[k], full->limit, &p->model[k]));
         RITZ_CHECK(
@@ -324,16 +310,11 @@ ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out)
     return ritz_states_h2(&p, out);
 }
 
-/* The largest difference, and the largest response of the full model. */
-typedef struct largest {
-    double error, full, hertz;
-} largest;
-
 RITZ_PAIR_OF(ritz_response);
 
 /* Both at the points that are refined at the poles of one of them. */
 static ritz_status compare_at(const ritz_state_pair *p, int refined,
-                              const ritz_grid *grid, largest *found)
+                              const ritz_grid *grid, ritz_gap *gap)
 {
     RITZ_OWN(ritz_response_pair) r = {0};
     ritz_grid same = *grid;
@@ -346,15 +327,9 @@ static ritz_status compare_at(const ritz_state_pair *p, int refined,
     RITZ_CHECK(ritz_response_of(ritz_model_of_states(&p->model[1 - refined]),
                                 NULL, 0.0, 0.0, &same, &r[1 - refined]));
     values = r[0].num_inputs * r[0].num_outputs;
-    for (int64_t k = 0; k < r[0].count * values; k++) {
-        double error = cabs(r[0].H[k] - r[1].H[k]);
-
-        found->full = fmax(found->full, cabs(r[0].H[k]));
-        if (error > found->error) {
-            found->error = error;
-            found->hertz = r[0].hertz[k / values];
-        }
-    }
+    for (int64_t k = 0; k < r[0].count * values; k++)
+        RITZ_CHECK(
+            ritz_gap_add(r[0].H[k], r[1].H[k], r[0].hertz[k / values], gap));
     return RITZ_OK;
 }
 
@@ -364,18 +339,18 @@ ritz_status ritz_states_response(const ritz_state_pair *p, ritz_measure *out)
                       .to_hz = p->request->band_hz[1],
                       .count = EVEN_POINTS,
                       .refine = true};
-    largest found = {0};
+    ritz_gap gap = {0};
 
     if (grid.to_hz == 0.0)
         return RITZ_OK;
     if (!p->has_gain)
         grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
     for (int k = 0; k < 2; k++)
-        RITZ_CHECK(compare_at(p, k, &grid, &found));
-    if (!(found.full > 0.0))
+        RITZ_CHECK(compare_at(p, k, &grid, &gap));
+    if (!(gap.largest > 0.0))
         return RITZ_OK;
-    out->value = found.error / found.full;
-    (void)snprintf(out->where, sizeof out->where, "%.6g Hz", found.hertz);
+    out->value = gap.error.value / gap.largest;
+    (void)snprintf(out->where, sizeof out->where, "%.6g Hz", gap.error.hertz);
     return RITZ_OK;
 }
 

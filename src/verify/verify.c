@@ -90,9 +90,7 @@ static ritz_status open_modes(ritz_reference *r)
     RITZ_CHECK_IN("full model",
                   ritz_damped_new(&r->poles, r->component, &r->pairs,
                                   r->band_hz, &r->damped));
-    RITZ_CHECK_IN("full model",
-                  ritz_participation_new(r->component, &r->pairs, &r->poles,
-                                         r->band_hz, &r->part));
+    RITZ_CHECK_IN("full model", ritz_reference_observe(r));
     RITZ_CHECK_IN("full model", full_gain(r));
     return RITZ_OK;
 }
@@ -108,7 +106,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
         return RITZ_OK;
     RITZ_CHECK(
         ritz_sweep_points(r, &r->poles, &r->damped, EVEN_POINTS, &r->own));
-    RITZ_CHECK(ritz_reference_respond(r, &r->own));
+    RITZ_CHECK_IN("full model", ritz_reference_respond(r, &r->own));
     if (request->num_random < 1)
         return RITZ_OK;
     if (r->poles.num_rigid > 0)
@@ -116,7 +114,7 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
     r->random.count = request->num_random;
     RITZ_CHECK_NEW(r->random.hertz, r->random.count);
     draw_hertz(request->seed, band, r->random.count, r->random.hertz);
-    return ritz_reference_respond(r, &r->random);
+    return ritz_context(ritz_reference_respond(r, &r->random), "full model");
 }
 
 /* With the damping of the request, which may be assumed. */
@@ -191,7 +189,7 @@ void ritz_reference_free(ritz_reference **reference)
     ritz_poles_free(&r->poles);
     ritz_residual_free(&r->residual);
     ritz_damped_free(&r->damped);
-    ritz_participation_free(&r->part);
+    RITZ_FREE(r->part.scale, r->part.observable);
     ritz_dense_free(&r->gain);
     ritz_sweep_free(&r->own);
     ritz_sweep_free(&r->random);
@@ -231,49 +229,37 @@ static void choose_band(const ritz_poles *reduced, double highest,
 }
 
 /* Its basis is dense and its modes are all there. */
-static ritz_status open_sides(const ritz_second_order *model,
-                              const ritz_damping *damping, double to_hz,
-                              ritz_sides *sides)
+static ritz_status open_sides(ritz_model reduced, const ritz_damping *damping,
+                              double to_hz, ritz_sides *sides)
 {
+    const ritz_second_order *model = &reduced.dense;
+
     sides->model = *model;
+    sides->component = reduced.reduced;
     RITZ_CHECK_IN("reduced model",
                   ritz_poles_of_dense(model, damping, to_hz, &sides->reduced));
     return ritz_context(ritz_eigen_dense(model->K, model->M, &sides->small),
                         "reduced model");
 }
 
-/* Which mode of the full model is which of the reduced one. */
-static ritz_status match_modes(ritz_sides *sides)
+/* Every row of the table that exists for one of both pairs of models. */
+static ritz_status measure_rows(const double *limit, const ritz_sides *sides,
+                                const ritz_state_pair *states,
+                                ritz_measures *out)
 {
-    const ritz_reference *full = sides->full;
-    const ritz_dense *T = sides->component ? &sides->component->T : NULL;
-    RITZ_OWN(ritz_dense) shapes = {0}, MS = {0}, Q = {0};
-
-    sides->shapes = T && T->val && T->nrow == full->component->num_dofs;
-    if (!sides->shapes)
-        return ritz_match_outputs(&full->poles, &sides->reduced, &full->part,
-                                  &sides->match);
-    RITZ_CHECK(ritz_dense_mul(T, &sides->small.Phi, &shapes));
-    RITZ_CHECK(ritz_sparse_mul(&full->component->M, &shapes, &MS));
-    RITZ_CHECK(ritz_dense_mul_tn(&full->pairs.Phi, &MS, &Q));
-    return ritz_match_shapes(&full->poles, &sides->reduced, &Q, &sides->match);
-}
-
-/* Every row of the table that exists for these models. */
-static ritz_status measure_rows(const ritz_sides *sides, ritz_measures *out)
-{
-    const ritz_io *io = &sides->full->component->io;
-    const bool channels = io->num_inputs > 0 && io->num_outputs > 0;
+    const ritz_io *io = sides ? sides->model.io : NULL;
 
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
-        ritz_measure m = {.value = nan(""), .limit = sides->limit[k]};
+        ritz_measure m = {.value = nan(""), .limit = limit[k]};
 
-        if (!kind->of_modes ||
-            (kind->needs & RITZ_NEEDS_CHANNELS && !channels) ||
-            (kind->needs & RITZ_NEEDS_LIMIT && isnan(m.limit)))
-            continue;
-        RITZ_CHECK(kind->of_modes(sides, &m));
+        if (states && kind->of_states)
+            RITZ_CHECK(kind->of_states(states, &m));
+        if (sides && kind->of_modes &&
+            !(kind->needs & RITZ_NEEDS_CHANNELS &&
+              (io->num_inputs == 0 || io->num_outputs == 0)) &&
+            !(kind->needs & RITZ_NEEDS_LIMIT && isnan(m.limit)))
+            RITZ_CHECK(kind->of_modes(sides, &m));
         if (!isnan(m.value))
             RITZ_CHECK(
                 ritz_measures_add(out, kind->name, m.value, m.limit, m.where));
@@ -291,7 +277,6 @@ static ritz_status measure_sides(const ritz_verify_request *limits,
                                  ritz_sides *sides, ritz_measures *out)
 {
     const ritz_reference *full = sides->full;
-    RITZ_OWN(ritz_measures) found = {0};
 
     sides->limit = limits->limit;
     RITZ_CHECK_IN("reduced model",
@@ -301,11 +286,9 @@ static ritz_status measure_sides(const ritz_verify_request *limits,
                   ritz_static_gain(sides->model.K, sides->model.M,
                                    sides->model.io, full->pairs.num_rigid,
                                    &sides->gain_reduced));
-    RITZ_CHECK(match_modes(sides));
+    RITZ_CHECK(ritz_sides_match(sides));
     RITZ_CHECK(ritz_sides_respond(sides));
-    RITZ_CHECK(measure_rows(sides, &found));
-    RITZ_MOVE(*out, found);
-    return RITZ_OK;
+    return measure_rows(limits->limit, sides, NULL, out);
 }
 
 static void ritz_sides_free(ritz_sides *sides)
@@ -313,55 +296,36 @@ static void ritz_sides_free(ritz_sides *sides)
     ritz_pairs_free(&sides->small);
     ritz_poles_free(&sides->reduced);
     ritz_dense_free(&sides->gain_reduced);
-    ritz_match_free(&sides->match);
     ritz_damped_free(&sides->damped_reduced);
+    RITZ_FREE(sides->match.partner, sides->match.mac, sides->match.taken);
 }
 
-static ritz_status check_dofs(const ritz_component *full,
-                              const ritz_reduced *reduced)
+/* It is of the same dofs, inputs and outputs. */
+static ritz_status check_reduced(const ritz_component *full, ritz_model reduced)
 {
-    RITZ_REFUSE_IF(reduced->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
+    const ritz_reduced *r = reduced.reduced;
+
+    RITZ_REFUSE_IF(r && r->num_dofs != full->num_dofs, RITZ_ERR_ARGUMENT,
                    "the reduced model comes from %" PRId64
                    " dofs, the full one has %" PRId64,
-                   reduced->num_dofs, full->num_dofs);
-    return RITZ_OK;
-}
-
-/* A reduced component, or a system, which has no shapes: NULL. */
-static ritz_status measure_dense(const ritz_reference *reference,
-                                 const ritz_second_order *model,
-                                 const ritz_reduced *reduced,
-                                 const ritz_verify_request *limits, int where,
-                                 ritz_measures *out)
-{
-    RITZ_OWN(ritz_sides)
-    sides = {.full = reference, .component = reduced, .where = where};
-
-    RITZ_CHECK(ritz_verify_signals(&reference->component->io, model->io));
-    RITZ_CHECK(
-        open_sides(model, &reference->damping, reference->band_hz[1], &sides));
-    return measure_sides(limits, &sides, out);
+                   r->num_dofs, full->num_dofs);
+    return ritz_verify_signals(ritz_model_of_component(full, NULL), reduced);
 }
 
 ritz_status ritz_reference_measure(const ritz_reference *reference,
-                                   const ritz_reduced *reduced,
+                                   ritz_model reduced,
                                    const ritz_verify_request *limits, int where,
                                    ritz_measures *out)
 {
-    const ritz_model model = ritz_model_of_reduced(reduced, NULL);
+    RITZ_OWN(ritz_sides) sides = {.full = reference, .where = where};
+    RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_CHECK(check_dofs(reference->component, reduced));
-    return measure_dense(reference, &model.dense, reduced, limits, where, out);
-}
-
-ritz_status ritz_reference_measure_at(const ritz_reference *reference,
-                                      const ritz_configuration *reduced,
-                                      const ritz_verify_request *limits,
-                                      int where, ritz_measures *out)
-{
-    const ritz_model model = ritz_model_of_configuration(reduced, NULL);
-
-    return measure_dense(reference, &model.dense, NULL, limits, where, out);
+    RITZ_CHECK(check_reduced(reference->component, reduced));
+    RITZ_CHECK(open_sides(reduced, &reference->damping, reference->band_hz[1],
+                          &sides));
+    RITZ_CHECK(measure_sides(limits, &sides, &found));
+    RITZ_MOVE(*out, found);
+    return RITZ_OK;
 }
 
 /* A measure that has a limit must exist. */
@@ -381,20 +345,17 @@ static ritz_status check_limits(const ritz_io *io,
 }
 
 /* The same with a reference of its own. */
-static ritz_status verify_dense(const ritz_component *full,
-                                const ritz_second_order *model,
-                                const ritz_reduced *reduced,
+static ritz_status verify_dense(const ritz_component *full, ritz_model model,
                                 const ritz_verify_request *request,
                                 ritz_measures *out)
 {
+    const ritz_reduced *reduced = model.reduced;
     ritz_reference_request asked = {0};
     RITZ_OWN(ritz_reference) *reference = NULL;
-    RITZ_OWN(ritz_sides)
-    sides = {.component = reduced, .where = RITZ_AT_OTHER_POLES};
+    RITZ_OWN(ritz_sides) sides = {.where = RITZ_AT_OTHER_POLES};
     bool is_assumed = false;
 
-    RITZ_CHECK(ritz_verify_signals(&full->io, model->io));
-    RITZ_CHECK(ritz_verify_band(request->band_hz, true));
+    RITZ_CHECK(check_reduced(full, model));
     RITZ_CHECK(check_limits(&full->io, request));
     RITZ_CHECK(choose_damping(full, reduced ? reduced->damping : "",
                               &request->damping, &asked.damping, &is_assumed));
@@ -408,66 +369,41 @@ static ritz_status verify_dense(const ritz_component *full,
     return measure_sides(request, &sides, out);
 }
 
-ritz_status ritz_verify_reduced(const ritz_component *full,
-                                const ritz_reduced *reduced,
-                                const ritz_verify_request *request,
-                                ritz_measures *out)
+static ritz_status verify_states(const ritz_state_space *full,
+                                 const ritz_state_space *reduced,
+                                 const ritz_verify_request *request,
+                                 ritz_measures *out)
 {
-    const ritz_model model = ritz_model_of_reduced(reduced, NULL);
-
-    RITZ_CHECK(check_dofs(full, reduced));
-    return verify_dense(full, &model.dense, reduced, request, out);
-}
-
-ritz_status ritz_verify_system(const ritz_component *full,
-                               const ritz_configuration *reduced,
-                               const ritz_verify_request *request,
-                               ritz_measures *out)
-{
-    const ritz_model model = ritz_model_of_configuration(reduced, NULL);
-
-    return verify_dense(full, &model.dense, NULL, request, out);
-}
-
-static ritz_status check_states(const ritz_state_space *full,
-                                const ritz_verify_request *request)
-{
-    const double *band = request->band_hz;
+    RITZ_OWN(ritz_state_pair) p = {0};
 
     RITZ_REFUSE_IF(full->num_inputs == 0 || full->num_outputs == 0,
                    RITZ_ERR_ARGUMENT,
                    "there are no %s, nothing can be compared",
                    full->num_inputs == 0 ? "inputs" : "outputs");
-    RITZ_CHECK(ritz_verify_band(band, true));
-    for (int k = 0; k < RITZ_MEASURES && band[1] == 0.0; k++)
+    for (int k = 0; k < RITZ_MEASURES && request->band_hz[1] == 0.0; k++)
         RITZ_REFUSE_IF(!isnan(request->limit[k]) &&
                            ritz_measure_table[k].needs & RITZ_NEEDS_BAND,
                        RITZ_ERR_ARGUMENT,
                        "--limit-%s of a state space needs --band-hz",
                        ritz_measure_table[k].word);
-    return RITZ_OK;
+    RITZ_CHECK(ritz_state_pair_new(full, reduced, request, &p));
+    return measure_rows(request->limit, NULL, &p, out);
 }
 
-ritz_status ritz_verify_states(const ritz_state_space *full,
-                               const ritz_state_space *reduced,
-                               const ritz_verify_request *request,
-                               ritz_measures *out)
+ritz_status ritz_verify(ritz_model full, ritz_model reduced,
+                        const ritz_verify_request *request, ritz_measures *out)
 {
+    const bool states = full.kind == RITZ_MODEL_STATES;
     RITZ_OWN(ritz_measures) found = {0};
-    RITZ_OWN(ritz_state_pair) p = {0};
 
-    RITZ_CHECK(check_states(full, request));
-    RITZ_CHECK(ritz_state_pair_new(full, reduced, request, &p));
-    for (int k = 0; k < RITZ_MEASURES; k++) {
-        const ritz_measure_kind *kind = &ritz_measure_table[k];
-        ritz_measure m = {.value = nan(""), .limit = request->limit[k]};
-
-        if (kind->of_states)
-            RITZ_CHECK(kind->of_states(&p, &m));
-        if (!isnan(m.value))
-            RITZ_CHECK(ritz_measures_add(&found, kind->name, m.value, m.limit,
-                                         m.where));
-    }
+    RITZ_REFUSE_IF(full.kind == RITZ_MODEL_DENSE ||
+                       reduced.kind !=
+                           (states ? RITZ_MODEL_STATES : RITZ_MODEL_DENSE),
+                   RITZ_ERR_ARGUMENT, "there is nothing to compare by");
+    RITZ_CHECK(ritz_verify_band(request->band_hz, true));
+    RITZ_CHECK(states
+                   ? verify_states(full.states, reduced.states, request, &found)
+                   : verify_dense(full.component, reduced, request, &found));
     RITZ_MOVE(*out, found);
     return RITZ_OK;
 }

@@ -71,14 +71,14 @@ static ritz_status keep_measures(cli_run *run, const verify_options *given,
 }
 
 /* The full model as states: as it is, or a component that is small enough. */
-static ritz_status find_states(const cli_run *run, model *full,
-                               const model *reduced,
-                               const verify_options *given)
+static ritz_status settle_states(cli_run *run, model *full, model *reduced,
+                                 verify_options *given)
 {
     const char *path = run->operand[0];
     const char *own = given->model.damping;
     ritz_damping damping = {0};
 
+    cli_record(run, reduced->states.origin.method, model_order(reduced));
     RITZ_REFUSE_IF(given->model.damper.count > 0, RITZ_ERR_ARGUMENT,
                    "'%s' holds its dampers in A: --damper cannot change them",
                    run->operand[1]);
@@ -97,20 +97,8 @@ static ritz_status find_states(const cli_run *run, model *full,
         ritz_damping_parse(own ? own : reduced->states.damping, &damping));
     RITZ_CHECK_IN(path, ritz_state_space_of_component(&full->component,
                                                       &damping, &full->states));
+    full->kind = MODEL_STATES;
     return RITZ_OK;
-}
-
-static ritz_status verify_states(cli_run *run, model *full, model *reduced,
-                                 const verify_options *given)
-{
-    RITZ_OWN(ritz_measures) measures = {0};
-
-    cli_record(run, reduced->states.origin.method, model_order(reduced));
-    RITZ_CHECK(find_states(run, full, reduced, given));
-    RITZ_CHECK_IN(run->operand[1],
-                  ritz_verify_states(&full->states, &reduced->states,
-                                     &given->verify, &measures));
-    return keep_measures(run, given, &measures, reduced);
 }
 
 /* A reduced component is written with its dampers apart, as it was read. */
@@ -127,12 +115,11 @@ static ritz_status take_apart(cli_run *run, const verify_options *given,
     return ritz_context(model_tune(reduced, &given->model.damper), path);
 }
 
-static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
+static ritz_status settle_matrices(cli_run *run, model *full, model *reduced,
                                    verify_options *given)
 {
     ritz_verify_request *request = &given->verify;
     const cli_list *damper = &given->model.damper;
-    RITZ_OWN(ritz_measures) measures = {0};
 
     RITZ_REFUSE_IF(
         full->kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
@@ -146,22 +133,14 @@ static ritz_status verify_matrices(cli_run *run, model *full, model *reduced,
     cli_record(run, reduced->at ? "system" : reduced->reduced.origin.method,
                model_order(reduced));
     RITZ_CHECK_IN(run->operand[0], model_install(full, damper));
-    RITZ_CHECK_IN(run->operand[1], model_install(reduced, damper));
-    RITZ_CHECK_IN(run->operand[1],
-                  reduced->at
-                      ? ritz_verify_system(&full->component, reduced->at,
-                                           request, &measures)
-                      : ritz_verify_reduced(&full->component, &reduced->reduced,
-                                            request, &measures));
-    RITZ_CHECK(take_apart(run, given, reduced));
-    return keep_measures(run, given, &measures, reduced);
+    return ritz_context(model_install(reduced, damper), run->operand[1]);
 }
 
 ritz_status verify_run(cli_run *run, verify_options *given)
 {
     const char *path = run->operand[1];
-    RITZ_OWN(model) full = {0};
-    RITZ_OWN(model) reduced = {0};
+    RITZ_OWN(model) full = {0}, reduced = {0};
+    RITZ_OWN(ritz_measures) measures = {0};
 
     RITZ_CHECK(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
                           &full));
@@ -170,7 +149,12 @@ ritz_status verify_run(cli_run *run, verify_options *given)
     RITZ_CHECK(model_prefix(&reduced, path, given->model.order));
     RITZ_CHECK(model_at(&reduced, path, given->model.at));
     RITZ_CHECK(check_limits(run, given, reduced.kind == MODEL_STATES));
-    return reduced.kind == MODEL_STATES
-               ? verify_states(run, &full, &reduced, given)
-               : verify_matrices(run, &full, &reduced, given);
+    RITZ_CHECK(reduced.kind == MODEL_STATES
+                   ? settle_states(run, &full, &reduced, given)
+                   : settle_matrices(run, &full, &reduced, given));
+    RITZ_CHECK_IN(path,
+                  ritz_verify(model_reference(&full), model_reference(&reduced),
+                              &given->verify, &measures));
+    RITZ_CHECK(take_apart(run, given, &reduced));
+    return keep_measures(run, given, &measures, &reduced);
 }

@@ -252,7 +252,7 @@ static void macneal_answers_statically_what_it_left_out(void **state)
     assert_ok(frame_io(&f->bar, 1, attached, 2, attached + 1));
     reduce(f, &ritz_method_macneal, &reduced);
     request.damping = (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    assert_ok(ritz_verify_reduced(&f->bar, &reduced, &request, &found));
+    assert_ok(verify_reduced(&f->bar, &reduced, &request, &found));
     for (int64_t k = 0; k < found.count; k++) {
         const ritz_measure *m = &found.item[k];
 

@@ -157,7 +157,7 @@ static void bounds_are_of_what_verify_measures(void **)
         open_case(c, &full, &basis, &reduced);
         request.band_hz[1] = verify.band_hz[1] = ritz_eigen_hertz(c->end);
         assert_ok(ritz_estimate(&full, &basis, &request, &reduced));
-        assert_ok(ritz_verify_reduced(&full, &reduced, &verify, &found));
+        assert_ok(verify_reduced(&full, &reduced, &verify, &found));
         hold(c, &found, &reduced.estimates);
     }
 }

@@ -208,7 +208,7 @@ static void verify(const ritz_component *full, const ritz_method *method,
     for (int64_t j = 0; j < 3; j++)
         reduced.dampers.c[j] = c;
     assert_ok(ritz_reduced_install(&reduced));
-    assert_ok(ritz_verify_reduced(full, &reduced, &request, out));
+    assert_ok(verify_reduced(full, &reduced, &request, out));
 }
 
 static void open_damped(double c, ritz_component *chain)
@@ -282,7 +282,7 @@ static void what_creeps_in_one_model_alone_is_wholly_wrong(void **state)
     for (int64_t k = 0; k < 30; k++)
         reduced.D.val[31 * k] += 1e4; /* and the couplings stay */
     request.band_hz[1] = 2.0;
-    assert_ok(ritz_verify_reduced(&full, &reduced, &request, &found));
+    assert_ok(verify_reduced(&full, &reduced, &request, &found));
     assert_near(find_measure(&found, "damping-relative")->value, 1.0, 0.0);
 }
 
@@ -403,7 +403,7 @@ static ritz_status verify_once(const ritz_component *full,
     ritz_status status = RITZ_OK;
 
     request.band_hz[1] = 0.5;
-    status = ritz_verify_reduced(full, reduced, &request, &found);
+    status = verify_reduced(full, reduced, &request, &found);
     return status;
 }
 

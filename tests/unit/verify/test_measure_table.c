@@ -113,14 +113,14 @@ static double measured(const ritz_component *full, int64_t columns,
     assert_ok(ritz_basis_new(full->num_dofs, columns, &basis));
     memcpy(basis.T.val, T, (size_t)(full->num_dofs * columns) * sizeof *T);
     assert_ok(ritz_reduce(full, &basis, &reduced));
-    assert_ok(ritz_verify_reduced(full, &reduced, &request, &found));
+    assert_ok(verify_reduced(full, &reduced, &request, &found));
     assert_null(ritz_measures_find(&found, name));
     ritz_measures_free(&found);
     request.limit[id] = 1.0;
-    assert_ok(ritz_verify_reduced(full, &reduced, &request, &found));
+    assert_ok(verify_reduced(full, &reduced, &request, &found));
     at = (ritz_configuration){
         .K = reduced.K, .M = reduced.M, .D = reduced.D, .io = reduced.io};
-    assert_ok(ritz_verify_system(full, &at, &request, &system));
+    assert_ok(verify_system(full, &at, &request, &system));
     value = find_measure(&found, name)->value;
     assert_near(find_measure(&found, name)->limit, 1.0, 0.0);
     assert_near(find_measure(&system, name)->value, value, 1e-13);
@@ -195,7 +195,7 @@ static void h2_errors_of_unequal_rigid_motion_are_refused(void **)
     assert_ok(ritz_basis_new(3, 1, &basis));
     memcpy(basis.T.val, T, sizeof T);
     assert_ok(ritz_reduce(&row, &basis, &reduced));
-    assert_fails(ritz_verify_reduced(&row, &reduced, &request, &found),
+    assert_fails(verify_reduced(&row, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "the norm of their difference is infinite");
 }
 

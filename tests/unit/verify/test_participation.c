@@ -5,7 +5,7 @@
 #include "testing.h"
 
 #include "project.h"
-#include "verify/match.h"
+#include "verify/sides.h"
 
 #include <ritz/model.h>
 #include <ritz/verify.h>
@@ -67,7 +67,7 @@ static ritz_measures compare(const oscillators *full,
     request.band_hz[1] = 5.0;
     open_full(full, &component);
     open_reduced(reduced, &at);
-    assert_ok(ritz_verify_system(&component, &at, &request, &found));
+    assert_ok(verify_system(&component, &at, &request, &found));
     return found;
 }
 
@@ -122,10 +122,7 @@ static void only_observable_modes_decide(void **)
 
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         RITZ_OWN(ritz_component) component = {0};
-        RITZ_OWN(ritz_pairs) pairs = {0};
-        RITZ_OWN(ritz_poles) poles = {0};
-        RITZ_OWN(ritz_participation) part = {0};
-        const double band[] = {0.0, 5.0};
+        RITZ_OWN(ritz_reference) *r = ritz_zalloc(1, sizeof *r);
         oscillators s = plain;
         int64_t at = 2;
 
@@ -133,16 +130,18 @@ static void only_observable_modes_decide(void **)
         s.c[2][0] *= cases[k].part;
         s.c[2][1] *= cases[k].part;
         open_full(&s, &component);
-        assert_ok(
-            ritz_poles_of_component(&component, NULL, 15.0, &pairs, &poles));
+        assert_non_null(r);
+        r->component = &component;
+        r->band_hz[1] = 5.0;
+        assert_ok(ritz_poles_of_component(&component, NULL, 15.0, &r->pairs,
+                                          &r->poles));
         at = cases[k].hertz < 1.0 ? 0 : 2;
         for (int64_t j = 0; j < 3; j++)
-            poles.rate[j] =
-                2.0 * sqrt(poles.lambda[j]) * (j == at ? cases[k].zeta : 0.01);
-        assert_ok(
-            ritz_participation_new(&component, &pairs, &poles, band, &part));
+            r->poles.rate[j] = 2.0 * sqrt(r->poles.lambda[j]) *
+                               (j == at ? cases[k].zeta : 0.01);
+        assert_ok(ritz_reference_observe(r));
         for (int64_t j = 0; j < 3; j++)
-            assert_int_equal(part.observable[j],
+            assert_int_equal(r->part.observable[j],
                              j == at ? cases[k].observable : true);
     }
 }
@@ -217,7 +216,7 @@ static ritz_status verify_once(const ritz_component *full,
     RITZ_OWN(ritz_measures) found = {0};
 
     request.band_hz[1] = 5.0;
-    RITZ_TRY(ritz_verify_system(full, at, &request, &found));
+    RITZ_TRY(verify_system(full, at, &request, &found));
 done:
     return status;
 }

@@ -47,7 +47,7 @@ static void exact_modes_have_no_error_but_in_the_gain(void **)
         open_beam(clamped, &beam);
         truncate_beam(&beam, 8, &basis);
         assert_ok(ritz_reduce(&beam, &basis, &reduced));
-        assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
+        assert_ok(verify_reduced(&beam, &reduced, &plain, &found));
         /* eps lambda_max / lambda_1 of this beam is 1e-9 */
         assert_near(find_measure(&found, "frequency-relative")->value, 0.0,
                     1e-8);
@@ -81,7 +81,7 @@ static void the_whole_space_has_no_error_at_all(void **)
     for (int64_t k = 0; k < beam.num_dofs; k++)
         ritz_dense_col(&basis.T, k)[k] = 1.0;
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
-    assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
+    assert_ok(verify_reduced(&beam, &reduced, &request, &found));
     /* frequencies to 1e-9, over zeta = 1e-3 at a peak */
     assert_near(find_measure(&found, "response-relative")->value, 0.0, 1e-6);
     assert_true(ritz_measure_holds(find_measure(&found, "response-relative")));
@@ -110,7 +110,7 @@ static void a_mode_that_was_left_out_is_missing_by_name(void **)
         assert_ok(ritz_reduce(&beam, &basis, &reduced));
         if (!with_shapes)
             ritz_dense_free(&reduced.T);
-        assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
+        assert_ok(verify_reduced(&beam, &reduced, &request, &found));
         assert_near(find_measure(&found, "missing-modes")->value, 1.0, 0.0);
         assert_non_null(
             strstr(find_measure(&found, "missing-modes")->where, "mode 2,"));
@@ -169,7 +169,7 @@ static void estimates_hold_and_vanish_for_exact_modes(void **)
             ritz_dense_col(&basis.T, j)[i] *= 1.0 + 0.01 * (double)(i % 3);
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
     assert_ok(ritz_estimate(&beam, &basis, &usual, &reduced));
-    assert_ok(ritz_verify_reduced(&beam, &reduced, &plain, &found));
+    assert_ok(verify_reduced(&beam, &reduced, &plain, &found));
     assert_true(
         find_measure(&reduced.estimates, "frequency-relative-bound")->value >=
         find_measure(&found, "frequency-relative")->value);
@@ -189,13 +189,13 @@ static void other_models_are_refused_in_words(void **)
     assert_ok(ritz_reduce(&beam, &basis, &reduced));
     request.band_hz[0] = 2.0;
     request.band_hz[1] = 1.0;
-    assert_fails(ritz_verify_reduced(&beam, &reduced, &request, &found),
+    assert_fails(verify_reduced(&beam, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "a band from 2 to 1 Hz");
     beam.io.input[0][0] = 'v';
-    assert_fails(ritz_verify_reduced(&beam, &reduced, &plain, &found),
+    assert_fails(verify_reduced(&beam, &reduced, &plain, &found),
                  RITZ_ERR_ARGUMENT, "input 1 is 'v1'");
     reduced.num_dofs--;
-    assert_fails(ritz_verify_reduced(&beam, &reduced, &plain, &found),
+    assert_fails(verify_reduced(&beam, &reduced, &plain, &found),
                  RITZ_ERR_ARGUMENT, "comes from 23 dofs");
 }
 
@@ -223,7 +223,7 @@ static ritz_status verify_once(pair *p)
     ritz_status status = RITZ_OK;
     RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_TRY(ritz_verify_reduced(&p->beam, &p->reduced, &plain, &found));
+    RITZ_TRY(verify_reduced(&p->beam, &p->reduced, &plain, &found));
     RITZ_TRY(ritz_estimate(&p->beam, &p->basis, &usual, &p->reduced));
 done:
     return status;

@@ -47,7 +47,7 @@ static void measure(const fixture *f, int64_t first, int64_t count,
            (size_t)(f->beam.num_dofs * count) * sizeof(double));
     assert_ok(ritz_reduce(&f->beam, &basis, &reduced));
     reduced.K.val[0] += spring; /* M is the identity */
-    assert_ok(ritz_verify_reduced(&f->beam, &reduced, request, out));
+    assert_ok(verify_reduced(&f->beam, &reduced, request, out));
 }
 
 static void a_rigid_motion_that_is_not_there_is_missing(void **)
@@ -107,11 +107,11 @@ static void rounding_of_a_lone_rigid_motion_is_no_instability(void **)
         assert_ok(ritz_reduce(&f.beam, &basis, &reduced));
         reduced.K.val[0] = part[k] * f.pairs.lambda[RIGID];
         if (k < 2)
-            assert_ok(ritz_verify_reduced(&f.beam, &reduced, &request, &found));
+            assert_ok(verify_reduced(&f.beam, &reduced, &request, &found));
         else
-            assert_fails(
-                ritz_verify_reduced(&f.beam, &reduced, &request, &found),
-                RITZ_ERR_ARGUMENT, "an unstable model has no steady response");
+            assert_fails(verify_reduced(&f.beam, &reduced, &request, &found),
+                         RITZ_ERR_ARGUMENT,
+                         "an unstable model has no steady response");
     }
     close_free(&f);
 }
@@ -177,7 +177,7 @@ static void a_response_that_does_not_exist_cannot_be_held_to_a_limit(void **)
 
         memcpy((char *)&request + table[k].offset, &(double){0.1},
                sizeof(double));
-        assert_fails(ritz_verify_reduced(&f.beam, &reduced, &request, &found),
+        assert_fails(verify_reduced(&f.beam, &reduced, &request, &found),
                      RITZ_ERR_ARGUMENT, table[k].words);
     }
     ritz_reduced_free(&reduced);
@@ -204,7 +204,7 @@ static void the_flexible_response_of_what_is_held_is_all_of_it(void **)
     request.band_hz[1] = 0.1;
     request.limit[RITZ_MEASURE_FLEXIBLE] = 0.1;
     request.limit[RITZ_MEASURE_RESPONSE] = 0.5;
-    assert_ok(ritz_verify_reduced(&beam, &reduced, &request, &found));
+    assert_ok(verify_reduced(&beam, &reduced, &request, &found));
     assert_true(find_measure(&found, "response-relative")->limit == 0.1);
     assert_false(ritz_measure_holds(find_measure(&found, "response-relative")));
     assert_null(ritz_measures_find(&found, "flexible-response-relative"));
@@ -238,7 +238,7 @@ static void rounding_of_a_ratio_is_no_ratio(void **)
         ritz_dense_col(&reduced.D, 2)[2] = 0.0;
         if (twice)
             ritz_dense_col(&reduced.D, 3)[3] *= 2.0;
-        assert_ok(ritz_verify_reduced(&c, &reduced, &request, &found));
+        assert_ok(verify_reduced(&c, &reduced, &request, &found));
         assert_near(find_measure(&found, "damping-relative")->value,
                     error[twice], 1e-12);
     }
@@ -289,7 +289,7 @@ static void what_cancels_is_no_response(void **)
             for (int64_t j = 0; j < ALL; j++)
                 reduced.io.C.val[j] += ritz_dense_col(&basis.T, j)[0];
         }
-        assert_ok(ritz_verify_reduced(&c, &reduced, &request, &found));
+        assert_ok(verify_reduced(&c, &reduced, &request, &found));
         response = ritz_measures_find(&found, "response-relative");
         assert_int_equal(response == NULL, across);
         /* cond(T)^2 eps of a full turn: measured, 1e-10 */

@@ -38,7 +38,7 @@ static void verify(int power, double to_hz, ritz_measures *found)
     open_beam(power, &beam, &reduced);
     request.band_hz[1] = ldexp(to_hz, power / 2);
     request.damping = (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
-    assert_ok(ritz_verify_reduced(&beam, &reduced, &request, found));
+    assert_ok(verify_reduced(&beam, &reduced, &request, found));
 }
 
 /* The fifth flexible mode, which the basis has not, is in the band. */

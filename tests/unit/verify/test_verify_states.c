@@ -1,5 +1,7 @@
 #include "testing.h"
 
+#include "project.h"
+
 #include <ritz/verify.h>
 
 #include <stdio.h>
@@ -46,7 +48,7 @@ static void a_tenth_missing_is_a_tenth_by_every_measure(void **)
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     request.band_hz[1] = 1.0;
-    assert_ok(ritz_verify_states(&full, &reduced, &request, &found));
+    assert_ok(verify_states(&full, &reduced, &request, &found));
     /* 1e-8, the tolerance of the norm, and rounding of 1 - 0.9 */
     assert_near(value(&found, "h-infinity"), 0.1, 1.1e-8 * 0.1);
     assert_near(value(&found, "h-infinity-relative"), 0.1, 2.1e-8 * 0.1);
@@ -73,7 +75,7 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **)
         first_order(0.9, 0.0, &reduced);
         assert_ok(ritz_measures_add(&reduced.estimates, "h-infinity-bound",
                                     table[k].bound, nan(""), NULL));
-        assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
+        assert_ok(verify_states(&full, &reduced, &none, &found));
         assert_int_equal(
             ritz_measure_holds(ritz_measures_find(&found, "h-infinity-bound")),
             table[k].holds);
@@ -88,7 +90,7 @@ static void outputs_are_divided_by_their_limits(void **)
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     full.limit[0] = 0.25;
-    assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
+    assert_ok(verify_states(&full, &reduced, &none, &found));
     assert_near(value(&found, "h-infinity"), 0.4, 1.1e-8 * 0.4);
     assert_near(value(&found, "h-infinity-relative"), 0.1, 2.1e-8 * 0.1);
 }
@@ -102,22 +104,22 @@ static void rigid_motions_of_both_are_left_out_of_norms(void **)
     first_order(1.0, 5.0, &full);
     first_order(0.9, 5.0, &reduced);
     first_order(0.9, 0.0, &held);
-    assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
+    assert_ok(verify_states(&full, &reduced, &none, &found));
     /* to tell poles apart rounds by some eps */
     assert_near(value(&found, "h-infinity"), 0.1, 2e-8 * 0.1);
     assert_non_null(strstr(ritz_measures_find(&found, "h-infinity")->where,
                            "less 2 poles"));
     assert_null(ritz_measures_find(&found, "static-gain-relative"));
     ritz_measures_free(&found);
-    assert_ok(ritz_verify_states(&full, &held, &none, &found));
+    assert_ok(verify_states(&full, &held, &none, &found));
     assert_null(ritz_measures_find(&found, "h-infinity"));
     ritz_measures_free(&found);
     request.limit[RITZ_MEASURE_INFINITY_RELATIVE] = 1.0;
-    assert_fails(ritz_verify_states(&full, &held, &request, &found),
+    assert_fails(verify_states(&full, &held, &request, &found),
                  RITZ_ERR_ARGUMENT, "2 poles of the full model and 0");
     request = none;
     request.limit[RITZ_MEASURE_GAIN] = 1.0;
-    assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
+    assert_fails(verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "a pole is at 0");
 }
 
@@ -130,7 +132,7 @@ static void what_reaches_an_output_at_once_has_no_h2_norm(void **)
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     reduced.D.val[0] = 0.1; /* which makes the gain that of the full model */
-    assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
+    assert_ok(verify_states(&full, &reduced, &none, &found));
     assert_null(ritz_measures_find(&found, "h2-relative"));
     assert_near(value(&found, "h-infinity"), 0.1, 1.1e-8 * 0.1);
     assert_non_null(
@@ -138,7 +140,7 @@ static void what_reaches_an_output_at_once_has_no_h2_norm(void **)
     assert_near(value(&found, "static-gain-relative"), 0.0, 1e-15);
     ritz_measures_free(&found);
     request.limit[RITZ_MEASURE_H2] = 1.0;
-    assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
+    assert_fails(verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "there is no H2 norm");
 }
 
@@ -150,12 +152,12 @@ static void growth_fails_unless_the_full_model_grows_too(void **)
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     reduced.A.val[0] = 1.0;
-    assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
+    assert_ok(verify_states(&full, &reduced, &none, &found));
     assert_false(
         ritz_measure_holds(ritz_measures_find(&found, "growth-relative")));
     ritz_measures_free(&found);
     full.A.val[0] = 1.0;
-    assert_ok(ritz_verify_states(&full, &reduced, &none, &found));
+    assert_ok(verify_states(&full, &reduced, &none, &found));
     assert_true(
         ritz_measure_holds(ritz_measures_find(&found, "growth-relative")));
 }
@@ -169,15 +171,15 @@ static void models_of_other_names_are_refused(void **)
     first_order(1.0, 0.0, &full);
     first_order(0.9, 0.0, &reduced);
     request.limit[RITZ_MEASURE_RESPONSE] = 1.0;
-    assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
+    assert_fails(verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT, "needs --band-hz");
     request.band_hz[0] = 3.0;
     request.band_hz[1] = 2.0;
-    assert_fails(ritz_verify_states(&full, &reduced, &request, &found),
+    assert_fails(verify_states(&full, &reduced, &request, &found),
                  RITZ_ERR_ARGUMENT,
                  "a band from 3 to 2 Hz is not a band of frequencies");
     snprintf(reduced.output[0], sizeof reduced.output[0], "z");
-    assert_fails(ritz_verify_states(&full, &reduced, &none, &found),
+    assert_fails(verify_states(&full, &reduced, &none, &found),
                  RITZ_ERR_ARGUMENT, "output 1 is 'y'");
 }
 
@@ -189,7 +191,7 @@ static ritz_status verify_and_drop(const ritz_state_space *full,
     ritz_status status = RITZ_OK;
 
     request.band_hz[1] = 1.0;
-    status = ritz_verify_states(full, reduced, &request, &found);
+    status = verify_states(full, reduced, &request, &found);
     return status;
 }
 
