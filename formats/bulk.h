@@ -3,7 +3,7 @@
 #define RITZ_FORMATS_BULK_H
 
 #include "formats/cards.h"
-#include "model/ties.h"
+#include "model/equations.h"
 
 #include <ritz/import.h>
 

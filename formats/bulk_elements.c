@@ -68,7 +68,7 @@ static int64_t take_grids(const ritz_card *card, const ritz_bulk_cell *cell,
 /* Where node i of VTK's order stands on the card. */
 static int64_t place_of(int64_t kind, int64_t i)
 {
-    int64_t corners = ritz_cell_corners(kind);
+    int64_t corners = ritz_cell_shape_of(kind)->corners;
     int64_t edges = 0; /* below, and as many upright and above */
 
     if (kind == RITZ_CELL_HEXA20)
@@ -86,8 +86,8 @@ static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
 {
     ritz_elements *all = &out->elements;
     int64_t grid[MOST_GRIDS];
-    int64_t corners = ritz_cell_size(cell->kind);
-    int64_t most = cell->full ? ritz_cell_size(cell->full) : corners;
+    int64_t corners = ritz_cell_shape_of(cell->kind)->size;
+    int64_t most = cell->full ? ritz_cell_shape_of(cell->full)->size : corners;
     int64_t count = take_grids(card, cell, most, grid);
     int64_t kind = cell->full && count == most ? cell->full : cell->kind;
     int64_t *end = &all->first[all->count + 1];
@@ -100,7 +100,7 @@ static ritz_status take_cell(const ritz_card *card, const ritz_bulk_cell *cell,
         return RITZ_OK;
     }
     *end = all->first[all->count];
-    for (int64_t i = 0; i < ritz_cell_size(kind); i++) {
+    for (int64_t i = 0; i < ritz_cell_shape_of(kind)->size; i++) {
         RITZ_CHECK_ROOM(all->grid, *end, held);
         all->grid[(*end)++] = grid[place_of(kind, i)];
     }

@@ -21,7 +21,7 @@ static const struct code {
 static int64_t code_of(int64_t kind)
 {
     for (size_t k = 0; k < sizeof codes / sizeof *codes; k++)
-        if ((int64_t)codes[k].kind == ritz_cell_linear(kind))
+        if (codes[k].kind == ritz_cell_shape_of(kind)->linear)
             return codes[k].code;
     return 0;
 }
@@ -32,7 +32,7 @@ static int64_t list_cells(const ritz_elements *cells, int64_t *out)
     int64_t at = 0;
 
     for (int64_t k = 0; k < cells->count; k++) {
-        int64_t corners = ritz_cell_corners(cells->kind[k]);
+        int64_t corners = ritz_cell_shape_of(cells->kind[k])->corners;
         int64_t code = code_of(cells->kind[k]);
         int64_t head[] = {code, corners};
         int64_t heads = code == 0 ? 0 : code == 2 ? 2 : 1;

@@ -2,7 +2,7 @@
 #ifndef RITZ_FORMATS_EXUDYN_H
 #define RITZ_FORMATS_EXUDYN_H
 
-#include "model/nodes.h"
+#include "model/equations.h"
 
 #include <ritz/export.h>
 

@@ -423,12 +423,17 @@ typedef struct ritz_configuration {
     ritz_measures errors; /* by ritz-verify or ritz-compare */
 } ritz_configuration;
 
+/* A component of a system: rows first .. first + order - 1 of q are its own. */
+typedef struct ritz_block {
+    char name[RITZ_NAME_SIZE];
+    int64_t first, order; /* r_c */
+    int64_t order_full;   /* n of the full component */
+} ritz_block;
+
 typedef struct ritz_system {
     char name[RITZ_NAME_SIZE];
     int64_t num_components;
-    char (*component)[RITZ_NAME_SIZE];
-    int64_t *order;      /* r_c of each */
-    int64_t *order_full; /* n of each full component */
+    ritz_block *component;
     int64_t num_sweeps;
     char (*sweep)[RITZ_NAME_SIZE];
     int64_t num_configurations;
@@ -532,11 +537,6 @@ ritz_status ritz_state_space_check(const ritz_state_space *model);
 ritz_status ritz_state_space_of_component(const ritz_component *component,
                                           const ritz_damping *damping,
                                           ritz_state_space *out);
-
-/** The same of a reduced component. */
-ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
-                                        const ritz_damping *damping,
-                                        ritz_state_space *out);
 
 /**
  * A component in a basis of states: with E = [I 0; 0 M] of its first-order form

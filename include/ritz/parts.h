@@ -225,6 +225,15 @@ ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
 ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
                             ritz_io *out);
 
+/**
+ * H += (C + i w Cv - w^2 Ca) X of a harmonic motion X, w = 2 pi hertz.
+ *
+ * @param[in]     X  n x num_inputs, column-major
+ * @param[in,out] H  num_outputs x num_inputs, row by row
+ */
+void ritz_io_respond(const ritz_io *io, double hertz, const double _Complex *X,
+                     double _Complex *H);
+
 void ritz_io_free(ritz_io *io);
 
 /* Where the grids are. Scalar points are not listed. */
@@ -272,12 +281,13 @@ typedef struct ritz_elements {
     int64_t *grid;  /* first[count], ids */
 } ritz_elements;
 
-/** Grids of a kind of cell, and those at its corners; 0 if there is none. */
-int64_t ritz_cell_size(int64_t kind);
-int64_t ritz_cell_corners(int64_t kind);
+typedef struct ritz_cell_shape {
+    ritz_cell kind, linear; /* with its corners alone: QUAD of QUAD8 */
+    int64_t size, corners;  /* grids, and those at its corners */
+} ritz_cell_shape;
 
-/** The kind that has its corners alone: QUAD of QUAD8. */
-int64_t ritz_cell_linear(int64_t kind);
+/** The shape of a kind of cell; all 0 if there is none. */
+const ritz_cell_shape *ritz_cell_shape_of(int64_t kind);
 
 ritz_status ritz_elements_copy(const ritz_elements *elements,
                                ritz_elements *out);

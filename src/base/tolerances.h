@@ -543,8 +543,6 @@
 #define RITZ_PERIOD_ERROR 1e-3
 /* Least processor time of one measurement of a step. */
 #define RITZ_MEASURED_SECONDS 2e-3
-/* A march whose states have grown by this factor is unstable. */
-#define RITZ_GROWN_ENOUGH 1e12
 /* More steps are a mistake in a step or an end. */
 #define RITZ_MOST_STEPS 1e10
 /* A step that ends within this part of itself of the end, ends there. */

@@ -62,12 +62,6 @@ static ritz_status settle_component(const ritz_place *place)
     ritz_component *component = place->target;
     double asymmetry = component->asymmetry;
 
-    RITZ_CHECK_IN("elements", ritz_elements_check(&component->elements,
-                                                  component->grids.count,
-                                                  component->grids.id));
-    RITZ_CHECK_IN("recovery",
-                  ritz_recovery_check(&component->recovery, component->num_dofs,
-                                      component->dof));
     RITZ_CHECK(ritz_component_settle(component, false));
     component->asymmetry = fmax(component->asymmetry, asymmetry);
     return RITZ_OK;

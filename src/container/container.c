@@ -1,4 +1,5 @@
-/* The attributes that every container begins with, and its temporary name. */
+/* The attributes that every container begins with, its temporary name, and
+   containers as the source of a scene's models. */
 #include "base/alloc.h"
 #include "base/draft.h"
 #include "container/schema.h"
@@ -169,3 +170,31 @@ void ritz_summary_free(ritz_summary *summary)
     ritz_texts_free(&(ritz_texts){summary->num_inputs, summary->input});
     *summary = (ritz_summary){0};
 }
+
+/* Models of a scene, read from the containers that it names. */
+
+static ritz_status name_kind(void *, const char *name,
+                             char kind[static RITZ_NAME_SIZE])
+{
+    RITZ_OWN(ritz_summary) summary = {0};
+
+    RITZ_CHECK(ritz_container_summary(name, &summary));
+    memcpy(kind, summary.kind, RITZ_NAME_SIZE);
+    return RITZ_OK;
+}
+
+static ritz_status read_component(void *, const char *name, ritz_component *out)
+{
+    return ritz_container_read_component(name, out);
+}
+
+static ritz_status read_reduced(void *, const char *name, ritz_reduced *out)
+{
+    return ritz_container_read_reduced(name, out);
+}
+
+const ritz_source ritz_container_source = {
+    .kind = name_kind,
+    .component = read_component,
+    .reduced = read_reduced,
+};

@@ -70,18 +70,6 @@ static bool has_always(const void *)
 
 /* Tracks: numbers by which modes are followed, of all rankings or of none. */
 
-static ritz_status write_track(const ritz_place *place, hid_t group)
-{
-    const ritz_ranking *ranking = place->object;
-    const ritz_rankings *all = place->outer->object;
-
-    if (!all->track)
-        return RITZ_OK;
-    return ritz_h5_write(group, "track", H5T_STD_I64LE,
-                         ritz_h5_vector(ranking->count),
-                         all->track[place->index]);
-}
-
 static const ritz_size sizes[] = {
     {'m', .offset = offsetof(ritz_ranking, count), "hertz"},
     {'p', .offset = offsetof(ritz_ranking, num_parts), "parts/names"},
@@ -89,23 +77,32 @@ static const ritz_size sizes[] = {
     {0},
 };
 
-static ritz_status read_track(const ritz_place *place, hid_t group)
-{
-    ritz_rankings *all = place->outer->target;
-    int64_t m = all->item[place->index].count;
-    bool there = ritz_h5_has(group, "track");
+static const ritz_member track_members[] = {
+    {"track", SET_WHOLE, .shape = "m", .range = "0..2147483647"},
+    {0},
+};
 
-    if (there && place->index == 0)
-        RITZ_CHECK_NEW(all->track, all->count);
+static const ritz_schema track_schema = {.members = track_members};
+
+static ritz_status move_track(const ritz_place *place, hid_t group)
+{
+    const ritz_rankings *all = place->outer->object;
+    ritz_rankings *read = place->outer->target;
+    bool there = read ? ritz_h5_has(group, "track") : !!all->track;
+
+    if (read && there && place->index == 0)
+        RITZ_CHECK_NEW(read->track, read->count);
     RITZ_REFUSE_IF(there != !!all->track, RITZ_ERR_FORMAT,
                    "some rankings have 'track' and some do not");
     if (!there)
         return RITZ_OK;
-    RITZ_CHECK_NEW(all->track[place->index], m);
-    RITZ_CHECK(ritz_h5_read(group, "track", H5T_STD_I64LE, ritz_h5_vector(m),
-                            all->track[place->index]));
-    return ritz_schema_check_whole("track", m, all->track[place->index], 0,
-                                   INT32_MAX);
+    return ritz_schema_move(&(ritz_place){
+        .at = group,
+        .schema = &track_schema,
+        .object = &all->track[place->index],
+        .target = read ? &read->track[place->index] : NULL,
+        .outer = place,
+    });
 }
 
 static const ritz_member members[] = {
@@ -139,7 +136,7 @@ static const ritz_member members[] = {
      .some = 'm'},
     {"track", BY_HAND, .type = "i64, optional", .shape = "m",
      .about = "number from 0 by which each mode is known in all rankings",
-     .write = write_track, .read = read_track},
+     .move = move_track},
     {"parts/names", SET_WORDS, RITZ_AT(ritz_ranking, part), "p",
      "names of the outputs, inputs or directions that add up to values",
      .optional = "parts", .some = 'p'},

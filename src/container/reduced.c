@@ -36,35 +36,32 @@ static const ritz_schema port_schema = {
 
 /* Prefixes of nested columns: a data set of errors for each measure. */
 
-static ritz_status write_errors(const ritz_place *place, hid_t group)
+static ritz_status move_errors(const ritz_place *place, hid_t group)
 {
     const ritz_nested *nested = place->object;
-    ritz_h5_shape shape = ritz_h5_vector(nested->count);
+    ritz_nested *read = place->target;
     ritz_name name = "";
 
-    for (int64_t j = 0; j < nested->num_errors; j++) {
-        RITZ_CHECK(ritz_name_copy(nested->error[j], name));
-        RITZ_CHECK(ritz_h5_write(group, name, H5T_IEEE_F64LE, shape,
-                                 ritz_dense_col(&nested->value, j)));
+    if (read) {
+        RITZ_CHECK(ritz_h5_list(group, &read->num_errors, &read->error));
+        RITZ_CHECK(ritz_dense_new(read->count, read->num_errors, &read->value));
     }
-    return RITZ_OK;
-}
-
-static ritz_status read_errors(const ritz_place *place, hid_t group)
-{
-    ritz_nested *nested = place->target;
-    ritz_h5_shape shape = ritz_h5_vector(nested->count);
-
-    RITZ_CHECK(ritz_h5_list(group, &nested->num_errors, &nested->error));
-    RITZ_CHECK(
-        ritz_dense_new(nested->count, nested->num_errors, &nested->value));
     for (int64_t j = 0; j < nested->num_errors; j++) {
         double *value = ritz_dense_col(&nested->value, j);
+        const ritz_member row[] = {
+            {name, SET_REAL, .shape = "k", .values = VALUES_OR_NAN},
+            {0},
+        };
+        const ritz_schema schema = {.members = row};
 
-        RITZ_CHECK(ritz_h5_read(group, nested->error[j], H5T_IEEE_F64LE, shape,
-                                value));
-        RITZ_CHECK(ritz_schema_check_real(nested->error[j], nested->count,
-                                          value, VALUES_OR_NAN));
+        RITZ_CHECK(ritz_name_copy(nested->error[j], name));
+        RITZ_CHECK(ritz_schema_move(&(ritz_place){
+            .at = group,
+            .schema = &schema,
+            .object = &value,
+            .target = read ? &value : NULL,
+            .outer = place,
+        }));
     }
     return RITZ_OK;
 }
@@ -96,7 +93,7 @@ static const ritz_member nested_members[] = {
     {"error/<measure>", BY_HAND, .type = "f64", .shape = "k",
      .about =
          "value of that measure at each order; NaN where it was not measured",
-     .write = write_errors, .read = read_errors},
+     .move = move_errors},
     {0},
 };
 

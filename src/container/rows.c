@@ -152,7 +152,7 @@ static void tell_members(const ritz_place *place, const char *prefix,
         else if (row->schema &&
                  (place->object ? row->kind == PART : !row->schema->shared))
             tell_part(place, prefix, row, to);
-        else if (*row->name || row->kind != BY_HAND)
+        else
             tell_row(place, prefix, row, to);
     }
 }

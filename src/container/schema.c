@@ -74,18 +74,6 @@ ritz_h5_shape ritz_schema_shape(const ritz_place *place, const ritz_member *row)
     return shape;
 }
 
-ritz_status ritz_schema_check_whole(const char *name, int64_t count,
-                                    const int64_t *values, int64_t least,
-                                    int64_t most)
-{
-    for (int64_t k = 0; k < count; k++)
-        RITZ_REFUSE_IF(values[k] < least || values[k] > most, RITZ_ERR_FORMAT,
-                       "value %" PRId64 " of '%s' is %" PRId64
-                       ", not in %" PRId64 "..%" PRId64,
-                       k + 1, name, values[k], least, most);
-    return RITZ_OK;
-}
-
 /* "0..n-1"; without an end every number on that side. */
 static void read_range(const ritz_place *place, const char *text,
                        int64_t *least, int64_t *most)
@@ -106,21 +94,17 @@ static bool is_allowed(double x, ritz_member_values values)
            (values == VALUES_OR_NAN && isnan(x));
 }
 
-ritz_status ritz_schema_check_real(const char *name, int64_t count,
-                                   const double *values,
-                                   ritz_member_values allowed)
-{
-    for (int64_t k = 0; k < count; k++)
-        RITZ_REFUSE_IF(!is_allowed(values[k], allowed), RITZ_ERR_FORMAT,
-                       "value %" PRId64 " of '%s' is not finite", k + 1, name);
-    return RITZ_OK;
-}
-
 /* Where members lie: in the file, and in memory. */
 
 static bool is_attribute(const ritz_member *row)
 {
     return row->kind <= ATTRIBUTE_REAL;
+}
+
+/* Whether the values are in the object itself, and not in an array. */
+static bool is_inside(const ritz_member *row)
+{
+    return row->inside || is_attribute(row);
 }
 
 static const char *name_of(const ritz_member *row)
@@ -216,11 +200,14 @@ static bool is_due(const ritz_place *place, const ritz_member *row)
     return has_link(place->at, *what ? what : row->name);
 }
 
-/* Arrays: gathered from the items of an object, and scattered to them. */
+/* Values: gathered from an object or its items, and scattered to them. */
 static size_t width_in_file(const ritz_member *row)
 {
-    return row->kind == SET_WHOLE || row->kind == SET_REAL ? sizeof(int64_t)
-                                                           : RITZ_NAME_SIZE;
+    if (row->kind == ATTRIBUTE_TEXT)
+        return row->size;
+    return is_attribute(row) || row->kind == SET_WHOLE || row->kind == SET_REAL
+               ? sizeof(int64_t)
+               : RITZ_NAME_SIZE;
 }
 
 static size_t width_of_item(const ritz_member *row)
@@ -231,13 +218,24 @@ static size_t width_of_item(const ritz_member *row)
     return row->size > 0 ? row->size : value;
 }
 
+static bool is_real(const ritz_member *row)
+{
+    return row->kind == ATTRIBUTE_REAL || row->kind == SET_REAL;
+}
+
+static bool is_whole(const ritz_member *row)
+{
+    return row->kind == ATTRIBUTE_FLAG || row->kind == ATTRIBUTE_WHOLE ||
+           row->kind == SET_WHOLE;
+}
+
 static hid_t type_of(const ritz_member *row)
 {
-    if (row->kind == SET_WHOLE)
+    if (is_whole(row))
         return H5Tcopy(H5T_STD_I64LE);
-    if (row->kind == SET_REAL)
+    if (is_real(row))
         return H5Tcopy(H5T_IEEE_F64LE);
-    return ritz_h5_string(RITZ_NAME_SIZE);
+    return ritz_h5_string(width_in_file(row));
 }
 
 /* Text is copied up to its NUL: bytes behind it would differ between runs. */
@@ -245,18 +243,20 @@ static void gather_values(const ritz_member *row, int64_t count,
                           const char *from, char *to)
 {
     size_t width = width_in_file(row), step = width_of_item(row);
+    const int64_t one = 1; /* of a flag */
 
     from += row->item;
     for (int64_t k = 0; k < count; k++, from += step, to += width) {
-        if (row->kind == SET_COLUMN_KINDS) {
-            const ritz_column_kind *kind = (const void *)from;
+        const ritz_column_kind *kind = (const void *)from;
 
+        if (row->kind == SET_COLUMN_KINDS)
             snprintf(to, width, "%s", ritz_column_name(*kind));
-        } else if (width == RITZ_NAME_SIZE) {
-            memcpy(to, from, strnlen(from, width - 1));
-        } else {
+        else if (row->kind == ATTRIBUTE_FLAG)
+            memcpy(to, &one, width);
+        else if (is_whole(row) || is_real(row))
             memcpy(to, from, width);
-        }
+        else
+            memcpy(to, from, strnlen(from, width - 1));
     }
 }
 
@@ -269,12 +269,14 @@ static ritz_status scatter_values(const ritz_member *row, int64_t count,
     for (int64_t k = 0; k < count; k++, from += width, to += step) {
         ritz_column_kind *kind = (void *)to;
 
-        if (row->kind != SET_COLUMN_KINDS)
-            memcpy(to, from, width);
-        else
+        if (row->kind == SET_COLUMN_KINDS)
             RITZ_REFUSE_IF(!ritz_column_find(from, kind), RITZ_ERR_FORMAT,
                            "column %" PRId64 " is of unknown kind '%s'", k + 1,
                            from);
+        else if (row->kind == ATTRIBUTE_FLAG)
+            *(bool *)to = true;
+        else
+            memcpy(to, from, width);
     }
     return RITZ_OK;
 }
@@ -301,8 +303,8 @@ static ritz_status check_names(int64_t count, const ritz_name *names)
     return RITZ_OK;
 }
 
-static ritz_status write_array(const ritz_place *place, hid_t at,
-                               const ritz_member *row)
+static ritz_status write_values(const ritz_place *place, hid_t at,
+                                const ritz_member *row)
 {
     ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
@@ -310,26 +312,54 @@ static ritz_status write_array(const ritz_place *place, hid_t at,
     RITZ_OWN(hid_t) type = type_of(row);
     RITZ_OWN_ARRAY char *values = NULL;
 
+    if (row->kind == ATTRIBUTE_TEXT) /* no longer than it is */
+        return ritz_h5_set_text(at, row->name, field);
     RITZ_CHECK_NEW(values, count * (int64_t)width_in_file(row));
-    gather_values(row, count, row->inside ? field : pointer_in(field), values);
+    gather_values(row, count, is_inside(row) ? field : pointer_in(field),
+                  values);
     if (row->kind == SET_NAMES)
         RITZ_CHECK_IN(name_of(row), check_names(count, (void *)values));
-    return ritz_h5_write(at, name_of(row), type, shape, values);
+    return is_attribute(row)
+               ? ritz_h5_set(at, row->name, type, shape, values)
+               : ritz_h5_write(at, name_of(row), type, shape, values);
+}
+
+/* "attribute 'bound'", "value 3 of 'hertz'" */
+static const char *name_value(const ritz_member *row, int64_t k,
+                              char out[2 * RITZ_NAME_SIZE])
+{
+    if (is_attribute(row))
+        snprintf(out, 2 * (size_t)RITZ_NAME_SIZE, "attribute '%s'", row->name);
+    else
+        snprintf(out, 2 * (size_t)RITZ_NAME_SIZE, "value %" PRId64 " of '%s'",
+                 k + 1, name_of(row));
+    return out;
 }
 
 static ritz_status check_values(const ritz_place *place, const ritz_member *row,
-                                int64_t count, const void *values)
+                                int64_t count, const char *values)
 {
-    int64_t least = 0, most = 0;
+    int64_t least = 1, most = 1, whole = 0; /* of a flag */
+    char name[2 * RITZ_NAME_SIZE];
+    double real = 0.0;
 
     if (row->kind == SET_NAMES)
-        return ritz_context(check_names(count, values), name_of(row));
-    if (row->kind == SET_REAL)
-        return ritz_schema_check_real(name_of(row), count, values, row->values);
-    if (row->kind != SET_WHOLE)
-        return RITZ_OK;
-    read_range(place, row->range, &least, &most);
-    return ritz_schema_check_whole(name_of(row), count, values, least, most);
+        return ritz_context(check_names(count, (const void *)values),
+                            name_of(row));
+    if (row->kind != ATTRIBUTE_FLAG)
+        read_range(place, row->range, &least, &most);
+    for (int64_t k = 0; k < count && is_real(row); k++) {
+        memcpy(&real, values + (size_t)k * sizeof real, sizeof real);
+        RITZ_REFUSE_IF(!is_allowed(real, row->values), RITZ_ERR_FORMAT,
+                       "%s is not finite", name_value(row, k, name));
+    }
+    for (int64_t k = 0; k < count && is_whole(row); k++) {
+        memcpy(&whole, values + (size_t)k * sizeof whole, sizeof whole);
+        RITZ_REFUSE_IF(whole < least || whole > most, RITZ_ERR_FORMAT,
+                       "%s is %" PRId64 ", not in %" PRId64 "..%" PRId64,
+                       name_value(row, k, name), whole, least, most);
+    }
+    return RITZ_OK;
 }
 
 /* Values in the object, or in an array that its first member allocates. */
@@ -338,7 +368,7 @@ static ritz_status find_room(const ritz_member *row, int64_t count, void *field,
 {
     char *array = field;
 
-    if (!row->inside) {
+    if (!is_inside(row)) {
         memcpy(&array, field, sizeof array);
         if (!array)
             RITZ_CHECK_NEW(array, count * (int64_t)width_of_item(row));
@@ -348,8 +378,8 @@ static ritz_status find_room(const ritz_member *row, int64_t count, void *field,
     return RITZ_OK;
 }
 
-static ritz_status read_array(const ritz_place *place, hid_t at,
-                              const ritz_member *row)
+static ritz_status read_values(const ritz_place *place, hid_t at,
+                               const ritz_member *row)
 {
     ritz_h5_shape shape = ritz_schema_shape(place, row);
     int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
@@ -357,75 +387,15 @@ static ritz_status read_array(const ritz_place *place, hid_t at,
     RITZ_OWN_ARRAY char *values = NULL;
     char *to = NULL;
 
-    RITZ_CHECK(ritz_h5_expect(at, name_of(row), shape));
+    if (!is_attribute(row))
+        RITZ_CHECK(ritz_h5_expect(at, name_of(row), shape));
     RITZ_CHECK_NEW(values, count * (int64_t)width_in_file(row));
     RITZ_CHECK(find_room(row, count, target_of(place, row), &to));
-    RITZ_CHECK(ritz_h5_read(at, name_of(row), type, shape, values));
+    RITZ_CHECK(is_attribute(row)
+                   ? ritz_h5_get(at, row->name, type, count, values)
+                   : ritz_h5_read(at, name_of(row), type, shape, values));
     RITZ_CHECK(check_values(place, row, count, values));
     return scatter_values(row, count, values, to);
-}
-
-/* Attributes. */
-
-static hid_t type_of_attribute(const ritz_member *row)
-{
-    return row->kind == ATTRIBUTE_REAL ? H5T_IEEE_F64LE : H5T_STD_I64LE;
-}
-
-static ritz_status write_attribute(const ritz_place *place, hid_t at,
-                                   const ritz_member *row)
-{
-    const void *field = field_of(place, row);
-    const int64_t one = 1; /* of a flag */
-
-    if (row->kind == ATTRIBUTE_TEXT)
-        return ritz_h5_set_text(at, row->name, field);
-    return ritz_h5_set(at, row->name, type_of_attribute(row),
-                       ritz_schema_shape(place, row),
-                       row->kind == ATTRIBUTE_FLAG ? &one : field);
-}
-
-static ritz_status check_attribute(const ritz_place *place,
-                                   const ritz_member *row, const void *value)
-{
-    int64_t least = 1, most = 1, whole = 0; /* of a flag */
-    double real = 0.0;
-
-    memcpy(&whole, value, sizeof whole);
-    memcpy(&real, value, sizeof real);
-    RITZ_REFUSE_IF(row->kind == ATTRIBUTE_REAL &&
-                       !is_allowed(real, row->values),
-                   RITZ_ERR_FORMAT, "attribute '%s' is not finite", row->name);
-    if (row->kind == ATTRIBUTE_WHOLE)
-        read_range(place, row->range, &least, &most);
-    RITZ_REFUSE_IF(
-        row->kind != ATTRIBUTE_REAL && (whole < least || whole > most),
-        RITZ_ERR_FORMAT,
-        "attribute '%s' is %" PRId64 ", not in %" PRId64 "..%" PRId64,
-        row->name, whole, least, most);
-    return RITZ_OK;
-}
-
-static ritz_status read_attribute(const ritz_place *place, hid_t at,
-                                  const ritz_member *row)
-{
-    ritz_h5_shape shape = ritz_schema_shape(place, row);
-    int64_t count = (int64_t)ritz_h5_volume(&shape, INT64_MAX);
-    bool is_flag = row->kind == ATTRIBUTE_FLAG;
-    void *field = target_of(place, row);
-    int64_t flag = 0;
-    char *values = is_flag ? (char *)&flag : field;
-
-    if (row->kind == ATTRIBUTE_TEXT)
-        return ritz_h5_get_text(at, row->name, row->size, field);
-    RITZ_CHECK(
-        ritz_h5_get(at, row->name, type_of_attribute(row), count, values));
-    for (int64_t k = 0; k < count; k++)
-        RITZ_CHECK(
-            check_attribute(place, row, values + (size_t)k * sizeof(int64_t)));
-    if (is_flag)
-        *(bool *)field = true;
-    return RITZ_OK;
 }
 
 /*
@@ -435,16 +405,11 @@ static ritz_status read_attribute(const ritz_place *place, hid_t at,
  */
 /* NOLINTBEGIN(misc-no-recursion) */
 
-static bool is_read(const ritz_place *place)
-{
-    return place->target;
-}
-
 static ritz_status open_group(const ritz_place *place, const char *name,
                               hid_t *out)
 {
-    return is_read(place) ? ritz_h5_enter(place->at, name, out)
-                          : ritz_h5_group(place->at, name, out);
+    return place->target ? ritz_h5_enter(place->at, name, out)
+                         : ritz_h5_group(place->at, name, out);
 }
 
 static ritz_status move_part(const ritz_place *place, const ritz_member *row)
@@ -452,7 +417,7 @@ static ritz_status move_part(const ritz_place *place, const ritz_member *row)
     RITZ_OWN(hid_t) group = 0;
     ritz_place part = ritz_schema_part(place, row);
 
-    if (is_read(place))
+    if (place->target)
         part.target = target_of(place, row);
     if (!*row->name)
         return ritz_schema_move(&part);
@@ -464,9 +429,8 @@ static ritz_status move_part(const ritz_place *place, const ritz_member *row)
 static ritz_status move_sparse(const ritz_place *place, hid_t at,
                                const char *name, const ritz_member *row)
 {
-    return is_read(place)
-               ? ritz_h5_read_sparse(at, name, target_of(place, row))
-               : ritz_h5_write_sparse(at, name, field_of(place, row));
+    return place->target ? ritz_h5_read_sparse(at, name, target_of(place, row))
+                         : ritz_h5_write_sparse(at, name, field_of(place, row));
 }
 
 /* An item whose one member has no name is a sparse matrix, itself a group. */
@@ -482,7 +446,7 @@ static ritz_status move_item(const ritz_place *item, const char *name)
     RITZ_CHECK_IN(name, is_matrix ? ritz_h5_enter(item->at, name, &group)
                                   : open_group(item, name, &group));
     inner.at = group;
-    if (!is_read(item))
+    if (!item->target)
         RITZ_CHECK_IN(name, ritz_h5_set(group, "index", H5T_STD_I64LE,
                                         ritz_h5_scalar(), &item->index));
     return is_matrix ? RITZ_OK : ritz_context(ritz_schema_move(&inner), name);
@@ -531,16 +495,16 @@ static ritz_status move_items(const ritz_place *place, const ritz_member *row,
     RITZ_OWN_ARRAY ritz_name *name = NULL;
     int64_t count = 0;
 
-    RITZ_CHECK(is_read(place) ? find_items(place, row, group, &count, &name)
-                              : ritz_schema_items(place, row, &count, &name));
+    RITZ_CHECK(place->target ? find_items(place, row, group, &count, &name)
+                             : ritz_schema_items(place, row, &count, &name));
     item.object = pointer_in(field_of(place, row));
-    if (is_read(place))
+    if (place->target)
         memcpy(&item.target, field_of(place, row), sizeof item.target);
     for (; item.index < count; item.index++) {
         RITZ_CHECK(group == place->at ? ritz_schema_move(&item)
                                       : move_item(&item, name[item.index]));
         item.object = (const char *)item.object + row->size;
-        if (is_read(place))
+        if (place->target)
             item.target = (char *)item.target + row->size;
     }
     return RITZ_OK;
@@ -551,8 +515,8 @@ static ritz_status move_list(const ritz_place *place, const ritz_member *row)
     RITZ_OWN(hid_t) group = 0;
 
     if (row->alone &&
-        (is_read(place) ? !has_link(place->at, row->name)
-                        : ritz_schema_size(place, *row->shape) == 1))
+        (place->target ? !has_link(place->at, row->name)
+                       : ritz_schema_size(place, *row->shape) == 1))
         return move_items(place, row, place->at);
     RITZ_CHECK_IN(row->name, open_group(place, row->name, &group));
     return ritz_context(move_items(place, row, group), row->name);
@@ -563,7 +527,7 @@ static ritz_status move_dense(const ritz_place *place, hid_t at,
 {
     ritz_h5_shape due = ritz_schema_shape(place, row);
 
-    if (!is_read(place))
+    if (!place->target)
         return ritz_h5_write_dense(at, name_of(row), field_of(place, row));
     return ritz_h5_read_dense(at, name_of(row), (int64_t)due.dims[0],
                               (int64_t)due.dims[1], target_of(place, row));
@@ -578,7 +542,7 @@ static ritz_status move_row(const ritz_place *place, hid_t at,
     case LIST:
         return move_list(place, row);
     case BY_HAND:
-        return is_read(place) ? row->read(place, at) : row->write(place, at);
+        return row->move(place, at);
     case MATRIX_DENSE:
         return move_dense(place, at, row);
     case MATRIX_SPARSE:
@@ -586,11 +550,8 @@ static ritz_status move_row(const ritz_place *place, hid_t at,
     default:
         break;
     }
-    if (is_attribute(row))
-        return is_read(place) ? read_attribute(place, at, row)
-                              : write_attribute(place, at, row);
-    return is_read(place) ? read_array(place, at, row)
-                          : write_array(place, at, row);
+    return place->target ? read_values(place, at, row)
+                         : write_values(place, at, row);
 }
 
 /* The group of the rows at hand, open as long as they share it. */
@@ -672,13 +633,13 @@ ritz_status ritz_schema_move(const ritz_place *place)
     RITZ_OWN(row_group) open = {0};
     const double none = nan(""); /* for what earlier releases did not write */
 
-    if (is_read(place))
+    if (place->target)
         RITZ_CHECK(read_sizes(place));
     for (const ritz_member *row = place->schema->members; row->name; row++) {
-        if (!(is_read(place) ? is_due(place, row)
-                             : ritz_schema_is_given(place, row))) {
-            if (is_read(place) && row->kind == ATTRIBUTE_REAL &&
-                row->optional && row->values == VALUES_OR_NAN)
+        if (!(place->target ? is_due(place, row)
+                            : ritz_schema_is_given(place, row))) {
+            if (place->target && row->kind == ATTRIBUTE_REAL && row->optional &&
+                row->values == VALUES_OR_NAN)
                 memcpy(target_of(place, row), &none, sizeof none);
             continue;
         }
@@ -686,7 +647,7 @@ ritz_status ritz_schema_move(const ritz_place *place)
         RITZ_CHECK(put_context(
             &open, move_row(place, open.id ? open.id : place->at, row)));
     }
-    if (is_read(place) && place->schema->settle)
+    if (place->target && place->schema->settle)
         RITZ_CHECK(place->schema->settle(place));
     return RITZ_OK;
 }

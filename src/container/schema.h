@@ -36,7 +36,7 @@ typedef enum ritz_member_kind {
     MATRIX_SPARSE,    /* ritz_sparse, whose size the object checks */
     PART,             /* a struct in the object, as a group of that name */
     LIST,             /* an array of structs, a group each in that group */
-    BY_HAND,          /* functions of its own */
+    BY_HAND,          /* a function of its own */
 } ritz_member_kind;
 
 /* Which numbers a member may hold; always finite otherwise. */
@@ -69,7 +69,7 @@ typedef struct ritz_member {
     const char *range; /* of whole numbers, "0..n-1"; either end may lack */
     const char *type;  /* of a row by hand, for docs/container.md */
     ritz_member_values values;
-    bool inside;   /* the array is in the object itself */
+    bool inside;   /* the array is in the object itself, as attributes are */
     bool numbered; /* items of a list are "0", "1", ... and have no names */
     bool alone; /* an only item of a list has its members in the list's place */
     char some;  /* a letter: see below */
@@ -82,8 +82,8 @@ typedef struct ritz_member {
     const char *optional;
     bool (*has)(const void *object);
     const ritz_schema *schema; /* of a part, or of the items of a list */
-    ritz_status (*write)(const ritz_place *place, hid_t group);
-    ritz_status (*read)(const ritz_place *place, hid_t group);
+    /* Writes by hand, or reads where there is a target. */
+    ritz_status (*move)(const ritz_place *place, hid_t group);
 } ritz_member;
 
 /* A letter of shapes, and the field of the object in which its value is. */
@@ -139,14 +139,6 @@ ritz_status ritz_schema_items(const ritz_place *place, const ritz_member *row,
 
 /** Value of a letter, of the object or of one that it is part of. */
 int64_t ritz_schema_size(const ritz_place *place, char letter);
-
-/** Values of a data set that a row by hand has read. */
-ritz_status ritz_schema_check_whole(const char *name, int64_t count,
-                                    const int64_t *values, int64_t least,
-                                    int64_t most);
-ritz_status ritz_schema_check_real(const char *name, int64_t count,
-                                   const double *values,
-                                   ritz_member_values allowed);
 
 /* One of each kind of file, and parts that several kinds share. */
 extern const ritz_schema ritz_schema_component, ritz_schema_basis,

@@ -4,22 +4,27 @@
 #include "base/alloc.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 
-/* Blocks: component c brings rows first .. first + order - 1 of q. */
+/* Blocks: components bring one row of q after the other. */
 
-typedef struct system_block {
-    int64_t index, first, order, order_full;
-} system_block;
+static ritz_status settle_block(const ritz_place *place)
+{
+    const ritz_block *block = place->target;
+    int64_t due = place->index > 0 ? block[-1].first + block[-1].order : 0;
+
+    RITZ_REFUSE_IF(block->first != due, RITZ_ERR_FORMAT,
+                   "attribute 'first' is %" PRId64 ", not in %" PRId64
+                   "..%" PRId64,
+                   block->first, due, due);
+    return RITZ_OK;
+}
 
 static const ritz_member block_members[] = {
-    {"index", ATTRIBUTE_WHOLE, RITZ_AT(system_block, index), "",
-     "position among the blocks, from 0"},
-    {"first", ATTRIBUTE_WHOLE, RITZ_AT(system_block, first), "",
+    {"first", ATTRIBUTE_WHOLE, RITZ_AT(ritz_block, first), "",
      "first row of the component's coordinates in q"},
-    {"order", ATTRIBUTE_WHOLE, RITZ_AT(system_block, order), "",
+    {"order", ATTRIBUTE_WHOLE, RITZ_AT(ritz_block, order), "",
      "number of these rows", "0..2147483647"},
-    {"order_full", ATTRIBUTE_WHOLE, RITZ_AT(system_block, order_full), "",
+    {"order_full", ATTRIBUTE_WHOLE, RITZ_AT(ritz_block, order_full), "",
      "number of dofs of the full component", "0.."},
     {0},
 };
@@ -27,88 +32,33 @@ static const ritz_member block_members[] = {
 static const ritz_schema block_schema = {
     .name = "block",
     .members = block_members,
+    .settle = settle_block,
 };
-
-static ritz_status write_blocks(const ritz_place *place, hid_t group)
-{
-    const ritz_system *system = place->object;
-    system_block block = {0};
-    ritz_name name = "";
-
-    for (int64_t c = 0; c < system->num_components; c++) {
-        RITZ_OWN(hid_t) at = 0;
-
-        block.index = c;
-        block.order = system->order[c];
-        block.order_full = system->order_full[c];
-        RITZ_CHECK(ritz_name_copy(system->component[c], name));
-        RITZ_CHECK(ritz_h5_group(group, name, &at));
-        RITZ_CHECK(ritz_schema_move(&(ritz_place){
-            .at = at, .schema = &block_schema, .object = &block}));
-        block.first += block.order;
-    }
-    return RITZ_OK;
-}
-
-static ritz_status read_blocks(const ritz_place *place, hid_t group)
-{
-    ritz_system *system = place->target;
-    int64_t first = 0;
-
-    RITZ_CHECK(
-        ritz_h5_list(group, &system->num_components, &system->component));
-    RITZ_CHECK_NEW(system->order, system->num_components);
-    RITZ_CHECK_NEW(system->order_full, system->num_components);
-    for (int64_t c = 0; c < system->num_components; c++) {
-        const char *name = system->component[c];
-        system_block block = {0};
-        RITZ_OWN(hid_t) at = 0;
-
-        RITZ_CHECK_IN(name, ritz_h5_enter(group, name, &at));
-        RITZ_CHECK_IN(name,
-                      ritz_schema_move(&(ritz_place){.at = at,
-                                                     .schema = &block_schema,
-                                                     .object = &block,
-                                                     .target = &block}));
-        RITZ_REFUSE_IF(block.first != first, RITZ_ERR_FORMAT,
-                       "%s: attribute 'first' is %" PRId64 ", not in %" PRId64
-                       "..%" PRId64,
-                       name, block.first, first, first);
-        system->order[c] = block.order;
-        system->order_full[c] = block.order_full;
-        first += block.order;
-    }
-    return RITZ_OK;
-}
 
 /* The way back from x to each component: q_c = P_c x. */
 
-static ritz_status write_maps(const ritz_place *place, hid_t group)
+static ritz_status move_maps(const ritz_place *place, hid_t group)
 {
     const ritz_configuration *configuration = place->object;
+    ritz_configuration *read = place->target;
     const ritz_system *system = place->outer->object;
 
+    if (read) {
+        RITZ_CHECK_NEW(read->P, system->num_components);
+        read->num_blocks = system->num_components;
+    }
     RITZ_REFUSE_IF(configuration->num_blocks != system->num_components,
                    RITZ_ERR_ARGUMENT,
                    "%" PRId64 " blocks for %" PRId64 " components",
                    configuration->num_blocks, system->num_components);
-    for (int64_t c = 0; c < system->num_components; c++)
-        RITZ_CHECK(ritz_h5_write_dense(group, system->component[c],
-                                       &configuration->P[c]));
-    return RITZ_OK;
-}
+    for (int64_t c = 0; c < system->num_components; c++) {
+        const ritz_block *block = &system->component[c];
 
-static ritz_status read_maps(const ritz_place *place, hid_t group)
-{
-    ritz_configuration *configuration = place->target;
-    const ritz_system *system = place->outer->object;
-
-    RITZ_CHECK_NEW(configuration->P, system->num_components);
-    configuration->num_blocks = system->num_components;
-    for (int64_t c = 0; c < system->num_components; c++)
-        RITZ_CHECK(ritz_h5_read_dense(group, system->component[c],
-                                      system->order[c], configuration->K.ncol,
-                                      &configuration->P[c]));
+        RITZ_CHECK(read ? ritz_h5_read_dense(group, block->name, block->order,
+                                             read->K.ncol, &read->P[c])
+                        : ritz_h5_write_dense(group, block->name,
+                                              &configuration->P[c]));
+    }
     return RITZ_OK;
 }
 
@@ -149,7 +99,7 @@ static const ritz_member configuration_members[] = {
     {"", PART, RITZ_AT(ritz_configuration, io), .schema = &ritz_schema_io},
     {"blocks/<component>", BY_HAND, .type = "f64", .shape = "order e",
      .about = "q = block x are the coordinates of the component",
-     .write = write_maps, .read = read_maps},
+     .move = move_maps},
     {"momentum", MATRIX_DENSE, RITZ_AT(ritz_configuration, momentum), "6 e",
      "R'M in the coordinates x, where R are the rigid motions about the origin "
      "of the first body's basic frame",
@@ -171,6 +121,7 @@ static const ritz_schema configuration_schema = {
 
 static const ritz_size sizes[] = {
     {'w', .offset = offsetof(ritz_system, num_sweeps), "sweeps"},
+    {'b', .offset = offsetof(ritz_system, num_components)},
     {'k', .offset = offsetof(ritz_system, num_configurations)},
     {0},
 };
@@ -184,8 +135,8 @@ static const ritz_member members[] = {
      "frequency band for which the system is made"},
     {"sweeps", SET_NAMES, RITZ_AT(ritz_system, sweep), "w",
      "names of the settings of joints, such as `clock`, `wrist`, `wrist.2`"},
-    {"blocks/<component>", BY_HAND, .schema = &block_schema,
-     .write = write_blocks, .read = read_blocks},
+    {"blocks", LIST, RITZ_LIST(ritz_system, component), "b",
+     .schema = &block_schema},
     {"configurations", LIST, RITZ_LIST(ritz_system, configuration), "k",
      .numbered = true, .schema = &configuration_schema},
     {0},

@@ -9,7 +9,6 @@
 #include "base/tolerances.h"
 #include "import/import.h"
 #include "model/equations.h"
-#include "model/ties.h"
 
 #include <lapacke.h>
 

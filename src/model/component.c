@@ -162,12 +162,14 @@ ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
     RITZ_CHECK(check_dofs(component));
     RITZ_CHECK(settle_matrices(component, symmetrise));
     RITZ_CHECK(check_grids(&component->grids));
-    RITZ_CHECK(ritz_elements_check(&component->elements, component->grids.count,
-                                   component->grids.id));
+    RITZ_CHECK_IN("elements", ritz_elements_check(&component->elements,
+                                                  component->grids.count,
+                                                  component->grids.id));
     RITZ_CHECK(check_ports(component));
     RITZ_CHECK(settle_io(component));
-    RITZ_CHECK(ritz_recovery_check(&component->recovery, component->num_dofs,
-                                   component->dof));
+    RITZ_CHECK_IN("recovery",
+                  ritz_recovery_check(&component->recovery, component->num_dofs,
+                                      component->dof));
     return ritz_dampers_check(&component->dampers, component->num_dofs);
 }
 

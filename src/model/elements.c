@@ -8,10 +8,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-static const struct shape {
-    ritz_cell kind, linear;
-    int64_t size, corners;
-} shapes[] = {
+static const ritz_cell_shape shapes[] = {
     {RITZ_CELL_POINT, RITZ_CELL_POINT, 1, 1},
     {RITZ_CELL_LINE, RITZ_CELL_LINE, 2, 2},
     {RITZ_CELL_TRIANGLE, RITZ_CELL_TRIANGLE, 3, 3},
@@ -26,33 +23,14 @@ static const struct shape {
     {RITZ_CELL_WEDGE15, RITZ_CELL_WEDGE, 15, 6},
 };
 
-static const struct shape *find_shape(int64_t kind)
+const ritz_cell_shape *ritz_cell_shape_of(int64_t kind)
 {
+    static const ritz_cell_shape none = {0};
+
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++)
         if ((int64_t)shapes[k].kind == kind)
             return &shapes[k];
-    return NULL;
-}
-
-int64_t ritz_cell_size(int64_t kind)
-{
-    const struct shape *shape = find_shape(kind);
-
-    return shape ? shape->size : 0;
-}
-
-int64_t ritz_cell_corners(int64_t kind)
-{
-    const struct shape *shape = find_shape(kind);
-
-    return shape ? shape->corners : 0;
-}
-
-int64_t ritz_cell_linear(int64_t kind)
-{
-    const struct shape *shape = find_shape(kind);
-
-    return shape ? (int64_t)shape->linear : kind;
+    return &none;
 }
 
 ritz_status ritz_elements_copy(const ritz_elements *elements,
@@ -114,15 +92,16 @@ ritz_status ritz_elements_check(const ritz_elements *elements, int64_t count,
                    "elements do not begin at their first grid");
     for (int64_t k = 0; k < elements->count; k++) {
         int64_t size = elements->first[k + 1] - elements->first[k];
+        int64_t due = ritz_cell_shape_of(elements->kind[k])->size;
 
-        RITZ_REFUSE_IF(ritz_cell_size(elements->kind[k]) == 0, RITZ_ERR_FORMAT,
+        RITZ_REFUSE_IF(due == 0, RITZ_ERR_FORMAT,
                        "element %" PRId64 " is of kind %" PRId64
                        ", which is not known",
                        k + 1, elements->kind[k]);
-        RITZ_REFUSE_IF(
-            size != ritz_cell_size(elements->kind[k]), RITZ_ERR_FORMAT,
-            "element %" PRId64 " has %" PRId64 " grids, its kind has %" PRId64,
-            k + 1, size, ritz_cell_size(elements->kind[k]));
+        RITZ_REFUSE_IF(size != due, RITZ_ERR_FORMAT,
+                       "element %" PRId64 " has %" PRId64
+                       " grids, its kind has %" PRId64,
+                       k + 1, size, due);
         RITZ_REFUSE_IF(!all_there(elements, k, count, id), RITZ_ERR_FORMAT,
                        "element %" PRId64 " has a grid without a position",
                        k + 1);

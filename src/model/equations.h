@@ -1,4 +1,7 @@
-/* Constraint equations: made term by term, and eliminated. */
+/*
+ * Constraint equations, made term by term and eliminated; the ties between dofs
+ * of rigid bodies and averages that state them; and grids as points.
+ */
 #ifndef RITZ_MODEL_EQUATIONS_H
 #define RITZ_MODEL_EQUATIONS_H
 
@@ -46,5 +49,115 @@ ritz_status ritz_elimination_new(const ritz_equations *equations, int64_t count,
                                  ritz_elimination *out);
 
 void ritz_elimination_free(ritz_elimination *elimination);
+
+/*
+ * How a dof follows a rigid motion [t; r] about a point, along basic axes, and
+ * the ties between dofs.
+ */
+
+/* Some dofs of one grid that has a position. */
+typedef struct ritz_tie {
+    int64_t grid; /* index in the grids */
+    uint8_t mask; /* bit c: direction c, 1 to 6 */
+    double weight;
+} ritz_tie;
+
+typedef struct ritz_ties {
+    int64_t count, room;
+    ritz_tie *tie;
+} ritz_ties;
+
+ritz_status ritz_ties_add(ritz_ties *list, ritz_tie tie);
+int64_t ritz_ties_dofs(const ritz_ties *list);
+void ritz_ties_free(ritz_ties *list);
+
+static inline bool ritz_tie_has(const ritz_tie *tie, int64_t c)
+{
+    return (((unsigned)tie->mask >> (unsigned)c) & 1U) != 0;
+}
+
+/** u(grid, c) = out . [t; r] of a motion about @p origin. */
+void ritz_tie_row(const ritz_grids *grids, int64_t grid, int64_t c,
+                  const double origin[static 3], double out[static 6]);
+
+/** Factor by which a dof is scaled, so that lengths cancel. */
+static inline double ritz_tie_scale(ritz_dof dof, double length)
+{
+    return dof.component > 3 ? length : 1.0;
+}
+
+/**
+ * Equations of a rigid body: dependents follow the independent dofs, six that
+ * hold it.
+ *
+ * @return RITZ_ERR_SINGULAR if these six leave it free to move
+ */
+ritz_status ritz_tie_rigid(const ritz_grids *grids, const ritz_ties *from,
+                           const ritz_ties *to, ritz_equations *equations);
+
+/*
+ * A weighted average over dofs u of ties,
+ *
+ *     [t; r] = A u,   A = argmin |W^1/2 (S q - u)|,   A S = I
+ *
+ * with S the rows of rigid motion about the point; weights of rotations are
+ * multiplied by the square of the mean distance, so that lengths may be in any
+ * unit. For the rows of A that are not determined see `loose`.
+ */
+typedef struct ritz_average {
+    int64_t num_loose; /* motions that leave all dofs as they are */
+    double loose[36];  /* these, 6 x num_loose, rotations times length */
+    double length;     /* by which rotations were multiplied */
+    ritz_dof *dof;     /* columns of A */
+    ritz_dense A;      /* 6 x dofs of the ties */
+} ritz_average;
+
+/** @return RITZ_ERR_MEMORY, RITZ_ERR_CONVERGENCE */
+ritz_status ritz_average_new(const ritz_grids *grids, const ritz_ties *over,
+                             const double origin[static 3], ritz_average *out);
+
+/** Whether the motion @p row . [t; r] is determined. */
+bool ritz_average_tells(const ritz_average *average,
+                        const double row[static 6]);
+
+void ritz_average_free(ritz_average *average);
+
+/* The grids of a body as points: where the translations of each one are. */
+typedef struct ritz_nodes {
+    const ritz_grids *grids; /* borrowed */
+    int64_t count;           /* of grids with at least one translation */
+    int64_t *grid;           /* count, index in grids, ascending */
+    int64_t *row;            /* count x 3, of each translation; -1: absent */
+} ritz_nodes;
+
+/**
+ * The nodes among @p n rows that @p dof names; rows of scalar points and of
+ * grids that are not in @p grids are passed over.
+ */
+ritz_status ritz_nodes_of(int64_t n, const ritz_dof *dof,
+                          const ritz_grids *grids, ritz_nodes *out);
+
+/** Displacement axes of a node, row by row. */
+const double *ritz_nodes_axes(const ritz_nodes *nodes, int64_t node);
+
+/** Whether axes, row by row, are the basic ones. */
+static inline bool ritz_axes_basic(const double *axes)
+{
+    for (int k = 0; k < 9; k++)
+        if (axes[k] != (k % 4 == 0 ? 1.0 : 0.0))
+            return false;
+    return true;
+}
+
+/**
+ * Translations of the nodes along basic axis @p b for each column of @p T; an
+ * absent translation is zero.
+ *
+ * @param[out] out  count x r
+ */
+ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
+                             int b, ritz_dense *out);
+
+void ritz_nodes_free(ritz_nodes *nodes);
 
 #endif

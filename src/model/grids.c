@@ -1,8 +1,7 @@
 /* Where grids are, along which axes they move, and rigid-body geometry. */
 #include "base/alloc.h"
 #include "base/search.h"
-#include "model/nodes.h"
-#include "model/ties.h"
+#include "model/equations.h"
 
 #include <ritz/model.h>
 

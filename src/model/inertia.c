@@ -7,23 +7,14 @@
  */
 #include "base/alloc.h"
 #include "linear/general.h"
-#include "model/nodes.h"
+#include "model/equations.h"
 
 #include <ritz/model.h>
 
 #include <math.h>
 #include <string.h>
 
-/* R'MR, 6 x 6. */
-static ritz_status condense_mass(const ritz_component *component,
-                                 ritz_dense *out)
-{
-    const double origin[3] = {0.0, 0.0, 0.0};
-    RITZ_OWN(ritz_dense) R = {0};
-
-    RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
-    return ritz_sparse_condense(&component->M, &R, out);
-}
+static const double origin[3];
 
 /* Mean over the translations of the model: a plane model has two. */
 static double mean_mass(const ritz_dense *A)
@@ -89,11 +80,12 @@ static void read_inertia(const ritz_dense *A, ritz_inertia *inertia)
 
 ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
 {
-    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_dense) R = {0}, A = {0};
 
     *out = (ritz_inertia){0};
     if (component->grids.count > 0) {
-        RITZ_CHECK(condense_mass(component, &A));
+        RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
+        RITZ_CHECK(ritz_sparse_condense(&component->M, &R, &A));
         read_inertia(&A, out);
     }
     return RITZ_OK;
@@ -162,13 +154,10 @@ static void gather_masses(const ritz_sparse *M, const ritz_nodes *nodes,
                                  ritz_nodes_axes(nodes, to / 3) + 3 * (to % 3));
             if (cosine == 0.0)
                 continue;
-            if (t->val) {
-                t->row[t->count] = at / 3;
-                t->col[t->count] = to / 3;
-                t->val[t->count] =
-                    M->val[e] * (cosine / count_common(nodes, at / 3, to / 3));
-            }
-            t->count++;
+            t->row[t->count] = at / 3;
+            t->col[t->count] = to / 3;
+            t->val[t->count++] =
+                M->val[e] * (cosine / count_common(nodes, at / 3, to / 3));
         }
 }
 
@@ -186,11 +175,9 @@ static ritz_status nodal_mass(const ritz_component *component,
     for (int64_t k = 0; k < 3 * nodes->count; k++)
         if (nodes->row[k] >= 0)
             place[nodes->row[k]] = k;
-    gather_masses(M, nodes, place, &t); /* counts them */
-    RITZ_CHECK_NEW(t.row, t.count);
-    RITZ_CHECK_NEW(t.col, t.count);
-    RITZ_CHECK_NEW(t.val, t.count);
-    t.count = 0;
+    RITZ_CHECK_NEW(t.row, M->colptr[M->ncol]);
+    RITZ_CHECK_NEW(t.col, M->colptr[M->ncol]);
+    RITZ_CHECK_NEW(t.val, M->colptr[M->ncol]);
     gather_masses(M, nodes, place, &t);
     return ritz_sparse_from_triplets(nodes->count, nodes->count, t.count, t.row,
                                      t.col, t.val, out);
@@ -200,7 +187,6 @@ static ritz_status nodal_mass(const ritz_component *component,
 static ritz_status find_momenta(const ritz_component *component,
                                 const ritz_dense *T, ritz_invariants *out)
 {
-    const double origin[3] = {0.0, 0.0, 0.0};
     RITZ_OWN(ritz_dense) R = {0}, MR = {0}, A = {0};
 
     RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));

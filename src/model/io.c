@@ -1,5 +1,3 @@
-#include "model/io.h"
-
 #include "base/alloc.h"
 #include "base/complex.h"
 #include "base/tolerances.h"

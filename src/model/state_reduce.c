@@ -12,8 +12,6 @@
  * once, when the modes are found. Of too many dofs for that the products are
  * those of sparse matrices.
  */
-#include "model/state_reduce.h"
-
 #include "base/alloc.h"
 #include "linear/general.h"
 #include "model/modal.h"
@@ -25,16 +23,124 @@
 #include <math.h>
 #include <string.h>
 
-/* A'(rows first..first + n - 1 of X) */
-static ritz_status take_rows(const ritz_dense *A, const ritz_dense *X,
-                             int64_t first, ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) part = {0};
+/*
+ * States that respond statically, x2' = 0, are eliminated [LiuAnderson1989]:
+ *
+ *     0 = A21 x1 + A22 x2 + B2 u
+ *
+ *     A := A11 - A12 A22^-1 A21,   B := B1 - A12 A22^-1 B2,
+ *     C := C1 - C2 A22^-1 A21,     D := D - C2 A22^-1 B2
+ *
+ * so that the response at 0 Hz is unchanged. Of balanced states the bound of a
+ * truncation holds for them too. All four are one Schur complement of
+ * G = [A B; C D].
+ */
 
-    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, &part));
-    ritz_dense_cut(X, first, 0, &part);
-    return ritz_dense_mul_tn(A, &part, out);
+/* Numbers below @p count of those that stay: states, and all that follow. */
+static ritz_status choose_states(const ritz_columns *columns, int64_t count,
+                                 bool perturbed, ritz_dofs *out)
+{
+    RITZ_CHECK_NEW(out->at, count);
+    for (int64_t k = 0; k < count; k++)
+        if (perturbed ==
+            (k < columns->count && columns->kind[k] == RITZ_COLUMN_PERTURBED))
+            out->at[out->count++] = k;
+    return RITZ_OK;
 }
+
+/* G11 - G12 G22^-1 G21, the first with `rows` and `cols`. */
+static ritz_status eliminate_rest(const ritz_dense *G, const ritz_dofs *rows,
+                                  const ritz_dofs *cols, const ritz_dofs *rest,
+                                  ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) upper = {0}, lower = {0}, change = {0};
+    RITZ_OWN(ritz_dense) G12 = {0}, G21 = {0}, G22 = {0};
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(ritz_dense_rows(G, rows->count, rows->at, &upper));
+    RITZ_CHECK(ritz_dense_rows(G, rest->count, rest->at, &lower));
+    RITZ_CHECK(ritz_dense_pick(&upper, cols->count, cols->at, out));
+    RITZ_CHECK(ritz_dense_pick(&upper, rest->count, rest->at, &G12));
+    RITZ_CHECK(ritz_dense_pick(&lower, cols->count, cols->at, &G21));
+    RITZ_CHECK(ritz_dense_pick(&lower, rest->count, rest->at, &G22));
+    status = ritz_general_solve(&G22, false, &G21);
+    RITZ_REFUSE_IF(
+        status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+        "the remainder has no static response: a motion that nothing "
+        "holds is among its states");
+    RITZ_CHECK(status);
+    RITZ_CHECK(ritz_dense_mul(&G12, &G21, &change));
+    ritz_dense_add(-1.0, &change, out);
+    return RITZ_OK;
+}
+
+/* Block of G that begins at (row, col), in place of A. */
+static ritz_status take_block(const ritz_dense *G, int64_t row, int64_t col,
+                              int64_t nrow, int64_t ncol, ritz_dense *A)
+{
+    ritz_dense_free(A);
+    return ritz_dense_block(G, row, nrow, col, ncol, A);
+}
+
+static ritz_status perturb_states(const ritz_columns *columns,
+                                  ritz_state_space *model)
+{
+    int64_t n = model->A.nrow, p = model->num_outputs, m = model->num_inputs;
+    RITZ_OWN(ritz_dofs) rows = {0}, cols = {0}, rest = {0};
+    RITZ_OWN(ritz_dense) whole = {0}, G = {0};
+    int64_t r = 0;
+
+    RITZ_CHECK(ritz_dense_new(n + p, n + m, &whole));
+    ritz_dense_put(&model->A, 0, 0, &whole);
+    ritz_dense_put(&model->B, 0, n, &whole);
+    ritz_dense_put(&model->C, n, 0, &whole);
+    ritz_dense_put(&model->D, n, n, &whole);
+    RITZ_CHECK(choose_states(columns, n + p, false, &rows));
+    RITZ_CHECK(choose_states(columns, n + m, false, &cols));
+    RITZ_CHECK(choose_states(columns, n, true, &rest));
+    RITZ_CHECK(eliminate_rest(&whole, &rows, &cols, &rest, &G));
+    r = G.nrow - p;
+    RITZ_CHECK(take_block(&G, 0, 0, r, r, &model->A));
+    RITZ_CHECK(take_block(&G, 0, r, r, m, &model->B));
+    RITZ_CHECK(take_block(&G, r, 0, p, r, &model->C));
+    ritz_dense_cut(&G, r, r, &model->D);
+    return ritz_columns_pick(columns, r, rows.at, &model->columns);
+}
+
+static ritz_status note_bound(const ritz_basis *basis, ritz_state_space *model)
+{
+    bool limited = false;
+
+    if (basis->num_hankel == 0 || isnan(basis->bound))
+        return RITZ_OK;
+    for (int64_t k = 0; k < model->num_outputs; k++)
+        limited = limited || !isnan(model->limit[k]);
+    return ritz_measures_add(&model->estimates, "h-infinity-bound",
+                             basis->bound, nan(""),
+                             limited ? "outputs over their limits" : NULL);
+}
+
+ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
+                               ritz_state_space *model)
+{
+    bool whole = true;
+
+    RITZ_CHECK_IN("left against right vectors",
+                  ritz_general_solve(E, false, &model->A));
+    RITZ_CHECK(ritz_general_solve(E, false, &model->B));
+    for (int64_t k = 0; k < basis->columns.count; k++)
+        whole = whole && basis->columns.kind[k] != RITZ_COLUMN_PERTURBED;
+    if (whole)
+        RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count,
+                                     NULL, &model->columns));
+    else
+        RITZ_CHECK(perturb_states(&basis->columns, model));
+    RITZ_CHECK(note_bound(basis, model));
+    model->origin = basis->origin;
+    return RITZ_OK;
+}
+
+/* Modal coordinates. */
 
 /* out = A'B + sign C'D */
 static ritz_status two_products(const ritz_dense *A, const ritz_dense *B,
@@ -62,18 +168,17 @@ static ritz_status find_restoring(const ritz_modal_model *modes,
     return RITZ_OK;
 }
 
-/* C T_q + Cv T_v, and what feeds through. */
-static ritz_status project_outputs(const ritz_modal_model *modes,
+/* C T_q + Cv T_v */
+static ritz_status project_outputs(const ritz_dense *C, const ritz_dense *Cv,
                                    const ritz_dense *T_q, const ritz_dense *T_v,
-                                   ritz_state_space *out)
+                                   ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) C = {0}, rate = {0};
+    RITZ_OWN(ritz_dense) rate = {0};
 
-    RITZ_CHECK(ritz_dense_mul(&modes->C, T_q, &C));
-    RITZ_CHECK(ritz_dense_mul(&modes->Cv, T_v, &rate));
-    ritz_dense_add(1.0, &rate, &C);
-    ritz_dense_replace(&out->C, &C);
-    ritz_dense_add(1.0, &modes->feed, &out->D);
+    ritz_dense_free(out);
+    RITZ_CHECK(ritz_dense_mul(C, T_q, out));
+    RITZ_CHECK(ritz_dense_mul(Cv, T_v, &rate));
+    ritz_dense_add(1.0, &rate, out);
     return RITZ_OK;
 }
 
@@ -112,13 +217,16 @@ static void settle_rigid(const ritz_modal_model *modes,
     }
 }
 
-/* A half of T or W in modal coordinates. */
-static ritz_status take_settled(const ritz_modal_model *modes,
-                                const ritz_columns *columns,
-                                const ritz_dense *A, const ritz_dense *X,
-                                int64_t first, ritz_dense *out)
+/* A'(half of T or W that begins at row `first`), in modal coordinates. */
+static ritz_status take_half(const ritz_modal_model *modes,
+                             const ritz_columns *columns, const ritz_dense *A,
+                             const ritz_dense *X, int64_t first,
+                             ritz_dense *out)
 {
-    RITZ_CHECK(take_rows(A, X, first, out));
+    RITZ_OWN(ritz_dense) half = {0};
+
+    RITZ_CHECK(ritz_dense_block(X, first, A->nrow, 0, X->ncol, &half));
+    RITZ_CHECK(ritz_dense_mul_tn(A, &half, out));
     settle_rigid(modes, columns, A, X, first, out);
     return RITZ_OK;
 }
@@ -140,15 +248,16 @@ static ritz_status project_modes(const ritz_component *component,
     RITZ_CHECK(ritz_modal_model_new(&model, &component->io, damping, &modes));
     ritz_dense_free(&out->A);
     ritz_dense_free(&out->B);
-    RITZ_CHECK(take_settled(&modes, columns, &modes.MPhi, &basis->T, 0, &T_q));
-    RITZ_CHECK(take_settled(&modes, columns, &modes.MPhi, &basis->T, n, &T_v));
-    RITZ_CHECK(take_settled(&modes, columns, &modes.Phi, W, 0, &W_q));
-    RITZ_CHECK(take_settled(&modes, columns, &modes.MPhi, W, n, &W_v));
+    RITZ_CHECK(take_half(&modes, columns, &modes.MPhi, &basis->T, 0, &T_q));
+    RITZ_CHECK(take_half(&modes, columns, &modes.MPhi, &basis->T, n, &T_v));
+    RITZ_CHECK(take_half(&modes, columns, &modes.Phi, W, 0, &W_q));
+    RITZ_CHECK(take_half(&modes, columns, &modes.MPhi, W, n, &W_v));
     RITZ_CHECK(find_restoring(&modes, &T_q, &T_v, &F));
     RITZ_CHECK(two_products(&W_q, &T_q, 1.0, &W_v, &T_v, E));
     RITZ_CHECK(two_products(&W_q, &T_v, -1.0, &W_v, &F, &out->A));
     RITZ_CHECK(ritz_dense_mul_tn(&W_v, &modes.B, &out->B));
-    return project_outputs(&modes, &T_q, &T_v, out);
+    ritz_dense_add(1.0, &modes.feed, &out->D);
+    return project_outputs(&modes.C, &modes.Cv, &T_q, &T_v, &out->C);
 }
 
 /*
@@ -191,17 +300,8 @@ static ritz_status take_halves(const ritz_dense *T, ritz_dense *upper,
 {
     int64_t n = T->nrow / 2;
 
-    RITZ_CHECK(ritz_dense_new(n, T->ncol, upper));
-    RITZ_CHECK(ritz_dense_new(n, T->ncol, lower));
-    ritz_dense_cut(T, 0, 0, upper);
-    ritz_dense_cut(T, n, 0, lower);
-    return RITZ_OK;
-}
-
-static ritz_status install_dampers(const ritz_component *component, large *m)
-{
-    RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
-    return ritz_structure_sparse(component, NULL, &m->K, &m->D);
+    RITZ_CHECK(ritz_dense_block(T, 0, n, 0, T->ncol, upper));
+    return ritz_dense_block(T, n, n, 0, T->ncol, lower);
 }
 
 static bool is_rigid(const large *m, int64_t j)
@@ -350,14 +450,10 @@ static ritz_status fill_accelerations(const large *m, ritz_state_space *out)
 static ritz_status fill_outputs(const large *m, ritz_state_space *out)
 {
     const ritz_io *io = &m->component->io;
-    RITZ_OWN(ritz_dense) rate = {0};
 
     ritz_dense_free(&out->B);
-    ritz_dense_free(&out->C);
     RITZ_CHECK(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
-    RITZ_CHECK(ritz_dense_mul(&io->C, &m->T_q, &out->C));
-    RITZ_CHECK(ritz_dense_mul(&io->Cv, &m->T_v, &rate));
-    ritz_dense_add(1.0, &rate, &out->C);
+    RITZ_CHECK(project_outputs(&io->C, &io->Cv, &m->T_q, &m->T_v, &out->C));
     return fill_accelerations(m, out);
 }
 
@@ -388,7 +484,8 @@ ritz_status ritz_states_project(const ritz_component *component,
     RITZ_OWN(ritz_dense) MT = {0}, inertia = {0};
 
     RITZ_CHECK(refuse_massless_inputs(component));
-    RITZ_CHECK(install_dampers(component, &m));
+    RITZ_CHECK(ritz_structure_refuse(component->K4.colptr != NULL));
+    RITZ_CHECK(ritz_structure_sparse(component, NULL, &m.K, &m.D));
     RITZ_CHECK(take_halves(&basis->T, &m.T_q, &m.T_v));
     RITZ_CHECK(take_halves(W, &m.W_q, &m.W_v));
     RITZ_CHECK(ritz_sparse_mul(&component->M, &m.T_v, &MT));

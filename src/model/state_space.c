@@ -12,132 +12,12 @@
 #include "linear/eigenvalues.h"
 #include "linear/general.h"
 #include "model/modal.h"
-#include "model/state_reduce.h"
 
 #include <ritz/model.h>
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
-
-/*
- * States that respond statically, x2' = 0, are eliminated [LiuAnderson1989]:
- *
- *     0 = A21 x1 + A22 x2 + B2 u
- *
- *     A := A11 - A12 A22^-1 A21,   B := B1 - A12 A22^-1 B2,
- *     C := C1 - C2 A22^-1 A21,     D := D - C2 A22^-1 B2
- *
- * so that the response at 0 Hz is unchanged. Of balanced states the bound of a
- * truncation holds for them too. All four are one Schur complement of
- * G = [A B; C D].
- */
-
-/* Numbers below @p count of those that stay: states, and all that follow. */
-static ritz_status choose_states(const ritz_columns *columns, int64_t count,
-                                 bool perturbed, ritz_dofs *out)
-{
-    RITZ_CHECK_NEW(out->at, count);
-    for (int64_t k = 0; k < count; k++)
-        if (perturbed ==
-            (k < columns->count && columns->kind[k] == RITZ_COLUMN_PERTURBED))
-            out->at[out->count++] = k;
-    return RITZ_OK;
-}
-
-/* G11 - G12 G22^-1 G21, the first with `rows` and `cols`. */
-static ritz_status eliminate_rest(const ritz_dense *G, const ritz_dofs *rows,
-                                  const ritz_dofs *cols, const ritz_dofs *rest,
-                                  ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) upper = {0}, lower = {0}, change = {0};
-    RITZ_OWN(ritz_dense) G12 = {0}, G21 = {0}, G22 = {0};
-    ritz_status status = RITZ_OK;
-
-    RITZ_CHECK(ritz_dense_rows(G, rows->count, rows->at, &upper));
-    RITZ_CHECK(ritz_dense_rows(G, rest->count, rest->at, &lower));
-    RITZ_CHECK(ritz_dense_pick(&upper, cols->count, cols->at, out));
-    RITZ_CHECK(ritz_dense_pick(&upper, rest->count, rest->at, &G12));
-    RITZ_CHECK(ritz_dense_pick(&lower, cols->count, cols->at, &G21));
-    RITZ_CHECK(ritz_dense_pick(&lower, rest->count, rest->at, &G22));
-    status = ritz_general_solve(&G22, false, &G21);
-    RITZ_REFUSE_IF(
-        status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-        "the remainder has no static response: a motion that nothing "
-        "holds is among its states");
-    RITZ_CHECK(status);
-    RITZ_CHECK(ritz_dense_mul(&G12, &G21, &change));
-    ritz_dense_add(-1.0, &change, out);
-    return RITZ_OK;
-}
-
-/* Block of G that begins at (row, col), in place of A. */
-static ritz_status take_block(const ritz_dense *G, int64_t row, int64_t col,
-                              int64_t nrow, int64_t ncol, ritz_dense *A)
-{
-    ritz_dense_free(A);
-    RITZ_CHECK(ritz_dense_new(nrow, ncol, A));
-    ritz_dense_cut(G, row, col, A);
-    return RITZ_OK;
-}
-
-static ritz_status perturb_states(const ritz_columns *columns,
-                                  ritz_state_space *model)
-{
-    int64_t n = model->A.nrow, p = model->num_outputs, m = model->num_inputs;
-    RITZ_OWN(ritz_dofs) rows = {0}, cols = {0}, rest = {0};
-    RITZ_OWN(ritz_dense) whole = {0}, G = {0};
-    int64_t r = 0;
-
-    RITZ_CHECK(ritz_dense_new(n + p, n + m, &whole));
-    ritz_dense_put(&model->A, 0, 0, &whole);
-    ritz_dense_put(&model->B, 0, n, &whole);
-    ritz_dense_put(&model->C, n, 0, &whole);
-    ritz_dense_put(&model->D, n, n, &whole);
-    RITZ_CHECK(choose_states(columns, n + p, false, &rows));
-    RITZ_CHECK(choose_states(columns, n + m, false, &cols));
-    RITZ_CHECK(choose_states(columns, n, true, &rest));
-    RITZ_CHECK(eliminate_rest(&whole, &rows, &cols, &rest, &G));
-    r = G.nrow - p;
-    RITZ_CHECK(take_block(&G, 0, 0, r, r, &model->A));
-    RITZ_CHECK(take_block(&G, 0, r, r, m, &model->B));
-    RITZ_CHECK(take_block(&G, r, 0, p, r, &model->C));
-    ritz_dense_cut(&G, r, r, &model->D);
-    return ritz_columns_pick(columns, r, rows.at, &model->columns);
-}
-
-static ritz_status note_bound(const ritz_basis *basis, ritz_state_space *model)
-{
-    bool limited = false;
-
-    if (basis->num_hankel == 0 || isnan(basis->bound))
-        return RITZ_OK;
-    for (int64_t k = 0; k < model->num_outputs; k++)
-        limited = limited || !isnan(model->limit[k]);
-    return ritz_measures_add(&model->estimates, "h-infinity-bound",
-                             basis->bound, nan(""),
-                             limited ? "outputs over their limits" : NULL);
-}
-
-ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
-                               ritz_state_space *model)
-{
-    bool whole = true;
-
-    RITZ_CHECK_IN("left against right vectors",
-                  ritz_general_solve(E, false, &model->A));
-    RITZ_CHECK(ritz_general_solve(E, false, &model->B));
-    for (int64_t k = 0; k < basis->columns.count; k++)
-        whole = whole && basis->columns.kind[k] != RITZ_COLUMN_PERTURBED;
-    if (whole)
-        RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count,
-                                     NULL, &model->columns));
-    else
-        RITZ_CHECK(perturb_states(&basis->columns, model));
-    RITZ_CHECK(note_bound(basis, model));
-    model->origin = basis->origin;
-    return RITZ_OK;
-}
 
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
                                  ritz_state_space *out)
@@ -311,20 +191,6 @@ ritz_status ritz_state_space_of_component(const ritz_component *component,
     RITZ_CHECK(ritz_structure_of_component(component, &model));
     RITZ_CHECK(convert_structure(&model, &component->io, damping, out));
     memcpy(out->units, component->units, sizeof out->units);
-    return RITZ_OK;
-}
-
-ritz_status ritz_state_space_of_reduced(const ritz_reduced *reduced,
-                                        const ritz_damping *damping,
-                                        ritz_state_space *out)
-{
-    RITZ_OWN(ritz_structure) model = {0};
-
-    RITZ_CHECK(ritz_structure_refuse(reduced->K4.val != NULL));
-    RITZ_CHECK(ritz_structure_of_reduced(reduced, &model));
-    RITZ_CHECK(convert_structure(&model, &reduced->io, damping, out));
-    memcpy(out->units, reduced->units, sizeof out->units);
-    out->origin = reduced->origin;
     return RITZ_OK;
 }
 

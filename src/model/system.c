@@ -133,7 +133,6 @@ void ritz_system_free(ritz_system *system)
 {
     RITZ_FREE_EACH(ritz_configuration, system->num_configurations,
                    system->configuration);
-    RITZ_FREE(system->component, system->order, system->order_full,
-              system->sweep);
+    RITZ_FREE(system->component, system->sweep);
     *system = (ritz_system){0};
 }

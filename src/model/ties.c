@@ -4,9 +4,9 @@
  *
  *     u = a . t + (d x a) . r,    a rotation about it is a . r
  */
-#include "model/ties.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "model/equations.h"
 
 #include <lapacke.h>
 #include <math.h>

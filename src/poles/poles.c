@@ -3,7 +3,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "model/io.h"
 #include "model/modal.h"
 
 #include <complex.h>

@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "model/io.h"
 #include "poles/damped.h"
 #include "response/responder.h"
 

@@ -451,7 +451,6 @@ ritz_status ritz_yaml_value(const ritz_yaml *yaml, const yaml_node_t *node,
         return ritz_yaml_name(yaml, node, field);
     case RITZ_YAML_TEXT:
         return take_text(yaml, node, field);
-    case RITZ_YAML_REAL:
     case RITZ_YAML_POSITIVE:
     case RITZ_YAML_FRACTION:
         return take_real(yaml, node, key->kind, field);

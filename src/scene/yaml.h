@@ -28,7 +28,6 @@ typedef enum ritz_yaml_kind {
     RITZ_YAML_LATER,    /* the caller looks at it */
     RITZ_YAML_NAME,     /* char[RITZ_NAME_SIZE] */
     RITZ_YAML_TEXT,     /* char *, the owner's */
-    RITZ_YAML_REAL,     /* double */
     RITZ_YAML_POSITIVE, /* double above 0 */
     RITZ_YAML_FRACTION, /* double between 0 and 1, neither of them */
     RITZ_YAML_REALS,    /* double[count] */

@@ -197,7 +197,7 @@ static ritz_status refuse_bodies(const mac_side *side, const char *why)
 
     for (int64_t c = 0; c < s->num_components; c++)
         sink_append(list, sizeof list, "%s'%.63s'", c > 0 ? ", " : "",
-                    s->component[c]);
+                    s->component[c].name);
     return ritz_fail(RITZ_ERR_ARGUMENT,
                      "the bodies of '%s' (%s) are not these: %s",
                      side->file->path, list, why);
@@ -220,12 +220,12 @@ static ritz_status assign_bodies(const mac_side *side, int64_t count,
     for (int64_t c = 0; c < count; c++) {
         int64_t k = 0;
 
-        while (k < count &&
-               (taken[k] || body[k]->model.reduced.K.ncol != s->order[c]))
+        while (k < count && (taken[k] || body[k]->model.reduced.K.ncol !=
+                                             s->component[c].order))
             k++;
         if (k == count) {
             snprintf(why, sizeof why, "none left has %ld coordinates",
-                     s->order[c]);
+                     s->component[c].order);
             return refuse_bodies(side, why);
         }
         taken[k] = true;
@@ -284,14 +284,14 @@ static ritz_status shapes_of_bodies(const mac_side *side, int64_t count,
 
     RITZ_CHECK(assign_bodies(side, count, body, of));
     for (int64_t c = 0; c < s->num_components; c++)
-        n += s->order[c];
+        n += s->component[c].order;
     RITZ_CHECK_IN(side->file->path,
                   count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->MU));
     for (int64_t c = 0; c < s->num_components; c++) {
         RITZ_CHECK(put_block(&at->P[c], &of[c]->M, at->num_rigid, first, out));
-        first += s->order[c];
+        first += s->component[c].order;
     }
     return check_mass(side, out);
 }

@@ -539,8 +539,8 @@ ritz_status describe_system(cli_run *run, const ritz_system *s)
     sink_list(run, "components");
     for (int64_t k = 0; k < s->num_components; k++)
         sink_field(run, k > 0 ? "" : "components", "name,dofs,dofs_full",
-                   "%-16s %ld coordinates for %ld dofs", s->component[k],
-                   s->order[k], s->order_full[k]);
+                   "%-16s %ld coordinates for %ld dofs", s->component[k].name,
+                   s->component[k].order, s->component[k].order_full);
     sink_end(run);
     if (s->band_hz[1] > 0.0)
         sink_field(run, "band", "", "%g to %g Hz", s->band_hz[0],

@@ -1,7 +1,5 @@
 #include "print/print.h"
 
-#include "model/arrays.h"
-
 #include <sys/stat.h>
 
 /* "craig-bampton,rubin", or "all" there are. */

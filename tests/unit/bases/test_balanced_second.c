@@ -158,10 +158,11 @@ static void all_vectors_give_the_whole_response(void **state)
             assert_ok(ritz_damping_parse(basis.damping, &damping));
             if (one_sided) {
                 RITZ_OWN(ritz_reduced) reduced = {0};
+                const ritz_state_space *states = NULL;
 
                 assert_ok(ritz_reduce(&chain, &basis, &reduced));
-                assert_ok(
-                    ritz_state_space_of_reduced(&reduced, &damping, &made));
+                assert_ok(ritz_model_states(
+                    ritz_model_of_reduced(&reduced, &damping), &made, &states));
             } else {
                 assert_ok(
                     ritz_reduce_companion(&chain, &damping, &basis, &made));

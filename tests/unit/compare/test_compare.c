@@ -45,12 +45,12 @@ static void the_first_stage_has_the_orders_of_its_bases(void **state)
     const ritz_system *system = &f->c.first_system;
 
     dualspin_or_skip();
-    assert_int_equal(system->order_full[0], 243);
-    assert_int_equal(system->order_full[1], 57);
-    assert_int_equal(system->order_full[2], 6);
-    assert_int_equal(system->order[0], 34);
-    assert_int_equal(system->order[1], 22);
-    assert_int_equal(system->order[2], 6);
+    assert_int_equal(system->component[0].order_full, 243);
+    assert_int_equal(system->component[1].order_full, 57);
+    assert_int_equal(system->component[2].order_full, 6);
+    assert_int_equal(system->component[0].order, 34);
+    assert_int_equal(system->component[1].order, 22);
+    assert_int_equal(system->component[2].order, 6);
     for (int k = 0; k < 6; k++) {
         assert_int_equal(system->configuration[k].rank, 10);
         assert_int_equal(system->configuration[k].num_rigid, 8);

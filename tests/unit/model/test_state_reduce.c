@@ -2,7 +2,7 @@
 
 #include "balancing.h"
 #include "masses.h"
-#include "model/state_reduce.h"
+#include "model/modal.h"
 #include "spaces.h"
 #include "spring_chain.h"
 
