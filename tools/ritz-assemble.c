@@ -32,7 +32,7 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
 
     RITZ_REFUSE_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
     RITZ_CHECK(ritz_scene_settings(scene, at ? at : "", setting));
-    RITZ_CHECK(ritz_assemble_full(scene, setting, &full));
+    RITZ_CHECK(ritz_assemble_full(scene, setting, &full, NULL));
     RITZ_CHECK(
         ritz_container_write_component(run->output, &full, cli_stamp(run)));
     cli_say(run, "%s:", run->output);

@@ -103,6 +103,11 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
 ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
                           ritz_system *out);
 
+/* Which dof of which body a dof of the full-order system is. */
+typedef struct ritz_master {
+    int64_t body, dof;
+} ritz_master;
+
 /**
  * The full-order system at some settings as one component: constraints
  * eliminated sparsely, dofs of all bodies side by side, in the basic frame of
@@ -111,24 +116,12 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
  *
  * Whatever basis the scene names, the full model is taken.
  *
+ * @param[out] where  out->num_dofs, the body and dof of each of its dofs,
+ *                    ascending; the caller's to free; NULL: not wanted
  * @return RITZ_ERR_ARGUMENT if a model is reduced already
  */
 ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
-                               ritz_component *out);
-
-/* Which dof of which body a dof of the full-order system is. */
-typedef struct ritz_master {
-    int64_t body, dof;
-} ritz_master;
-
-/**
- * ritz_assemble_full, and the body and dof of each of its dofs, ascending.
- *
- * @param[out] where  out->num_dofs; the caller's to free
- */
-ritz_status ritz_assemble_masters(const ritz_scene *scene,
-                                  const double *setting, ritz_component *out,
-                                  ritz_master **where);
+                               ritz_component *out, ritz_master **where);
 
 /**
  * T of the system at a configuration, n x e, over the dofs of the full-order

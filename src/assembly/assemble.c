@@ -9,14 +9,11 @@
  *
  * The system's modes Phi_e are put into P, so that its coordinates are modal.
  */
-#include "assembly/constraints.h"
+#include "assembly/assembly.h"
 
-#include "assembly/dual.h"
-#include "assembly/placement.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include <ritz/assembly.h>
 #include <ritz/base.h>
 #include <ritz/matrix.h>
 
@@ -24,49 +21,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows first..first+count-1 of P. */
-static ritz_status copy_rows(const ritz_dense *P, int64_t first, int64_t count,
-                             ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(count, P->ncol, out));
-    for (int64_t j = 0; j < P->ncol && count > 0; j++)
-        memcpy(ritz_dense_col(out, j), ritz_dense_col(P, j) + first,
-               (size_t)count * sizeof *P->val);
-    return RITZ_OK;
-}
-
 /* Sum of P_k' A_k P_k, A the matrix at an offset in each body; {0} if no body
    has it. */
 static ritz_status project_bodies(const ritz_stage *stage, size_t offset,
                                   const ritz_dense *P, ritz_dense *sum)
 {
     for (int64_t k = 0; k < stage->count; k++) {
-        const ritz_dense *A = ritz_body_matrix(&stage->body[k], offset);
+        const void *at = (const char *)&stage->body[k] + offset;
+        const ritz_dense *A = at;
         RITZ_OWN(ritz_dense) block = {0}, part = {0};
 
         if (!A->val)
             continue;
         if (!sum->val)
             RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, sum));
-        RITZ_CHECK(copy_rows(P, stage->first[k], A->ncol, &block));
+        RITZ_CHECK(
+            ritz_dense_block(P, stage->first[k], A->ncol, 0, P->ncol, &block));
         RITZ_CHECK(ritz_dense_project(A, &block, &part));
-        for (int64_t i = 0; i < part.nrow * part.ncol; i++)
-            sum->val[i] += part.val[i];
+        ritz_dense_add(1.0, &part, sum);
     }
     return RITZ_OK;
 }
 
-/* M, K and D of the system, sums over bodies and springs; {0} without D. */
-static ritz_status project_all(const ritz_stage *stage,
-                               const ritz_springs *springs, const ritz_dense *P,
-                               ritz_dense *K, ritz_dense *M, ritz_dense *D)
+/* K and M of the system, sums over bodies and springs. */
+static ritz_status project_pencil(const ritz_stage *stage,
+                                  const ritz_springs *springs,
+                                  const ritz_dense *P, ritz_dense *K,
+                                  ritz_dense *M)
 {
     RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K), P, K));
     RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, M), P, M));
-    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, D), P, D));
-    if (!D->val && ritz_springs_damp(springs))
-        RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, D));
-    return ritz_springs_add(springs, P, K, D);
+    return ritz_springs_add(springs, false, P, K);
 }
 
 /*
@@ -98,9 +83,9 @@ static ritz_status refine_modes(const ritz_stage *stage,
                                 double *lambda, ritz_dense *P)
 {
     int64_t e = P->ncol;
-    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, E = {0}, correction = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, E = {0}, correction = {0};
 
-    RITZ_CHECK(project_all(stage, springs, P, &K, &M, &D));
+    RITZ_CHECK(project_pencil(stage, springs, P, &K, &M));
     RITZ_CHECK(ritz_dense_new(e, e, &E));
     for (int64_t j = 0; j < e; j++)
         lambda[j] = ritz_dense_col(&K, j)[j] / ritz_dense_col(&M, j)[j];
@@ -116,67 +101,58 @@ static ritz_status refine_modes(const ritz_stage *stage,
                     : -0.5 * m;
         }
     RITZ_CHECK(ritz_dense_mul(P, &E, &correction));
-    for (int64_t k = 0; k < P->nrow * e; k++)
-        P->val[k] += correction.val[k];
+    ritz_dense_add(1.0, &correction, P);
     return RITZ_OK;
 }
 
-/* Transform the system from coordinates P to its modes; P becomes P Phi. */
+/* The modes of the system with coordinates P, which becomes P Phi. */
 static ritz_status make_modal(const ritz_stage *stage,
                               const ritz_springs *springs, ritz_dense *P,
                               ritz_configuration *c)
 {
-    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, Q = {0};
+    RITZ_OWN(ritz_dense) K = {0}, M = {0}, Q = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    int64_t e = 0;
 
-    RITZ_CHECK(project_all(stage, springs, P, &K, &M, &D));
+    RITZ_CHECK(project_pencil(stage, springs, P, &K, &M));
     RITZ_CHECK_IN("system modes", ritz_eigen_dense(&K, &M, &pairs));
-    e = pairs.Phi.ncol;
     RITZ_CHECK(ritz_dense_mul(P, &pairs.Phi, &Q));
     for (int pass = 0; pass < 2; pass++)
         RITZ_CHECK(
             refine_modes(stage, springs, pairs.num_rigid, pairs.lambda, &Q));
-    ritz_dense_free(&K);
-    ritz_dense_free(&M);
-    ritz_dense_free(&D);
-    RITZ_CHECK(project_all(stage, springs, &Q, &K, &M, &c->D));
-    RITZ_CHECK(ritz_dense_new(e, e, &c->K));
-    RITZ_CHECK(ritz_dense_new(e, e, &c->M));
-    RITZ_CHECK_NEW(c->lambda, e);
-    for (int64_t j = 0; j < e; j++) {
-        c->lambda[j] = ritz_dense_col(&c->K, j)[j] = pairs.lambda[j];
-        ritz_dense_col(&c->M, j)[j] = 1.0;
-    }
     c->num_rigid = pairs.num_rigid;
-    ritz_dense_free(P);
-    RITZ_MOVE(*P, Q);
+    RITZ_MOVE(c->lambda, pairs.lambda);
+    ritz_dense_replace(P, &Q);
     return RITZ_OK;
 }
 
-/* Name, settings, blocks and io of a configuration with modal P. */
+/* Name, settings, blocks, matrices and io of a configuration with modal P. */
 static ritz_status fill_configuration(const ritz_stage *stage,
                                       const double *setting,
+                                      const ritz_springs *springs,
                                       const ritz_dense *P,
                                       ritz_configuration *c)
 {
     const ritz_scene *scene = stage->scene;
 
-    RITZ_CHECK_NEW(c->setting, scene->num_sweeps);
+    RITZ_CHECK_COPY(c->setting, setting, scene->num_sweeps);
     c->num_settings = scene->num_sweeps;
-    for (int64_t k = 0; k < scene->num_sweeps; k++)
-        c->setting[k] = setting[k];
     ritz_configuration_name(scene->num_sweeps, (const char *)scene->sweep,
                             sizeof *scene->sweep, setting, c->at);
     RITZ_CHECK_NEW(c->P, stage->count);
     for (int64_t k = 0; k < stage->count; k++) {
         c->num_blocks++;
-        RITZ_CHECK(
-            copy_rows(P, stage->first[k], stage->body[k].K.ncol, &c->P[k]));
+        RITZ_CHECK(ritz_dense_block(P, stage->first[k], stage->body[k].K.ncol,
+                                    0, P->ncol, &c->P[k]));
     }
+    RITZ_CHECK(ritz_dense_identity(P->ncol, &c->M));
+    RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, &c->K));
+    for (int64_t j = 0; j < P->ncol; j++)
+        ritz_dense_col(&c->K, j)[j] = c->lambda[j];
+    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, D), P, &c->D));
+    RITZ_CHECK(ritz_springs_add(springs, true, P, &c->D));
+    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K4), P, &c->K4));
     RITZ_CHECK(ritz_io_project(&stage->io, P, &c->io));
     RITZ_CHECK(ritz_dampers_project(&stage->dampers, P, &c->dampers));
-    RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K4), P, &c->K4));
     return ritz_place_mass(stage, setting, c);
 }
 
@@ -196,12 +172,10 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
         RITZ_CHECK(ritz_dual_assemble(stage, &springs, &C, scale, &P, &c));
     } else {
         RITZ_CHECK(ritz_null_space(&C, &c.rank, &P));
-        for (int64_t j = 0; j < P.ncol; j++)
-            for (int64_t i = 0; i < P.nrow; i++)
-                ritz_dense_col(&P, j)[i] *= scale[i];
+        ritz_dense_scale_rows(scale, &P);
         RITZ_CHECK(make_modal(stage, &springs, &P, &c));
     }
-    RITZ_CHECK(fill_configuration(stage, setting, &P, &c));
+    RITZ_CHECK(fill_configuration(stage, setting, &springs, &P, &c));
     RITZ_MOVE(*out, c);
     return RITZ_OK;
 }

@@ -1,26 +1,19 @@
-#include "assembly/constraints.h"
+#include "assembly/assembly.h"
 
-#include "assembly/joints.h"
-#include "assembly/placement.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
-
-#include <ritz/assembly.h>
+#include "linear/general.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-const ritz_dense *ritz_body_matrix(const ritz_reduced *body, size_t offset)
-{
-    return (const ritz_dense *)(const void *)((const char *)body + offset);
-}
-
-bool ritz_springs_damp(const ritz_springs *springs)
+/* Whether there is anything to add to K, or to D. */
+static bool has_rates(const ritz_springs *springs, bool damping)
 {
     for (int64_t k = 0; k < springs->S.nrow; k++)
-        if (springs->hold[k].damping > 0.0)
+        if (!damping || springs->hold[k].damping > 0.0)
             return true;
     return false;
 }
@@ -40,82 +33,49 @@ static void add_rows(const ritz_dense *R, const ritz_freedom *hold,
         }
 }
 
-ritz_status ritz_springs_add(const ritz_springs *springs, const ritz_dense *P,
-                             ritz_dense *K, ritz_dense *D)
+ritz_status ritz_springs_add(const ritz_springs *springs, bool damping,
+                             const ritz_dense *P, ritz_dense *A)
 {
     RITZ_OWN(ritz_dense) R = {0};
 
-    if (springs->S.nrow == 0)
+    if (!has_rates(springs, damping))
         return RITZ_OK;
+    if (!A->val)
+        RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, A));
     RITZ_CHECK(ritz_dense_mul(&springs->S, P, &R));
-    add_rows(&R, springs->hold, false, K);
-    if (D->val)
-        add_rows(&R, springs->hold, true, D);
+    add_rows(&R, springs->hold, damping, A);
     return RITZ_OK;
-}
-
-/* The columns of the entries of a row that are not zero. */
-static int64_t list_entries(const ritz_dense *S, int64_t row, int64_t *column)
-{
-    int64_t count = 0;
-
-    for (int64_t j = 0; j < S->ncol; j++)
-        if (ritz_dense_col(S, j)[row] != 0.0)
-            column[count++] = j;
-    return count;
-}
-
-/* sum_k s[k] S(k,:)' S(k,:) over n. */
-static ritz_status make_matrix(const ritz_springs *springs, bool damping,
-                               int64_t n, const int64_t *at, ritz_sparse *out)
-{
-    const ritz_dense *S = &springs->S;
-    RITZ_OWN_ARRAY int64_t *column = NULL, *row = NULL, *col = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
-    int64_t count = 0, most = 0;
-
-    RITZ_CHECK_NEW(column, S->ncol);
-    for (int64_t k = 0; k < S->nrow; k++) {
-        int64_t entries = list_entries(S, k, column);
-
-        most += entries * entries;
-    }
-    RITZ_CHECK_NEW(row, most);
-    RITZ_CHECK_NEW(col, most);
-    RITZ_CHECK_NEW(val, most);
-    for (int64_t k = 0; k < S->nrow; k++) {
-        const ritz_freedom *hold = &springs->hold[k];
-        int64_t entries = list_entries(S, k, column);
-
-        for (int64_t e = 0; e < entries * entries; e++) {
-            int64_t i = column[e % entries];
-            int64_t j = column[e / entries];
-
-            row[count] = at[i];
-            col[count] = at[j];
-            val[count++] = (damping ? hold->damping : hold->stiffness) *
-                           (ritz_dense_col(S, i)[k] * ritz_dense_col(S, j)[k]);
-        }
-    }
-    return ritz_sparse_from_triplets(n, n, count, row, col, val, out);
 }
 
 ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
                                     int64_t n, const int64_t *at,
                                     ritz_sparse *A)
 {
-    RITZ_OWN(ritz_sparse) own = {0};
-    ritz_sparse sum = {0};
+    const int64_t Q = springs->S.ncol;
+    RITZ_OWN(ritz_dense) dense = {0};
+    RITZ_OWN(ritz_sparse) part = {0}, own = {0}, sum = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
 
-    if (springs->S.nrow == 0 || (damping && !ritz_springs_damp(springs)))
+    if (!has_rates(springs, damping))
         return RITZ_OK;
-    RITZ_CHECK(make_matrix(springs, damping, n, at, &own));
+    RITZ_CHECK(ritz_dense_new(Q, Q, &dense));
+    add_rows(&springs->S, springs->hold, damping, &dense);
+    RITZ_CHECK(ritz_sparse_from_dense(&dense, &part));
+    RITZ_CHECK_NEW(row, part.colptr[Q]);
+    RITZ_CHECK_NEW(col, part.colptr[Q]);
+    for (int64_t j = 0; j < Q; j++)
+        for (int64_t e = part.colptr[j]; e < part.colptr[j + 1]; e++) {
+            row[e] = at[part.rowind[e]];
+            col[e] = at[j];
+        }
+    RITZ_CHECK(ritz_sparse_from_triplets(n, n, part.colptr[Q], row, col,
+                                         part.val, &own));
     if (A->colptr)
         RITZ_CHECK(ritz_sparse_add(1.0, A, 1.0, &own, &sum));
     else
-        RITZ_CHECK(ritz_sparse_copy(&own, &sum));
+        RITZ_MOVE(sum, own);
     ritz_sparse_free(A);
-    *A = sum;
+    RITZ_MOVE(*A, sum);
     return RITZ_OK;
 }
 
@@ -134,13 +94,16 @@ void ritz_springs_free(ritz_springs *springs)
  */
 
 /* The ports that a joint holds. */
-static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
-                              const ritz_port_map *port[2])
+static ritz_status find_ends(const ritz_stage *stage, const ritz_joint *joint,
+                             ritz_joint_end end[2])
 {
     for (int k = 0; k < 2; k++) {
-        port[k] = ritz_reduced_port(&stage->body[joint->between[k].component],
-                                    joint->between[k].port);
-        if (!port[k])
+        const int64_t c = joint->between[k].component;
+
+        end[k].component = stage->scene->component[c].name;
+        end[k].port =
+            ritz_reduced_port(&stage->body[c], joint->between[k].port);
+        if (!end[k].port)
             return ritz_scene_context(stage->scene, RITZ_ERR_ARGUMENT,
                                       joint->line, joint->column, "joint",
                                       joint->name);
@@ -150,14 +113,11 @@ static ritz_status find_ports(const ritz_stage *stage, const ritz_joint *joint,
 
 /* Write a relation as a row over all coordinates, each times its scale. */
 static void fill_row(const ritz_stage *stage, const ritz_relation *r,
-                     const ritz_port_map *const port[2], const double *scale,
-                     int64_t row, ritz_dense *C)
+                     const double *scale, int64_t row, ritz_dense *C)
 {
-    const ritz_joint *joint = &stage->scene->joint[r->joint];
-
     for (int end = 0; end < 2; end++) {
-        int64_t first = stage->first[joint->between[end].component];
-        const ritz_dense *map = &port[end]->map;
+        int64_t first = stage->first[r->joint->between[end].component];
+        const ritz_dense *map = &r->port[end]->map;
 
         for (int64_t j = 0; j < map->ncol; j++) {
             double sum = 0.0;
@@ -214,20 +174,14 @@ static ritz_status list_relations(const ritz_stage *stage,
     RITZ_CHECK(ritz_place_joints(stage, setting, pose));
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
-        const ritz_port_map *port[2] = {NULL, NULL};
         int64_t kept = out->count;
         ritz_joint_end end[2];
 
-        RITZ_CHECK(find_ports(stage, joint, port));
-        for (int k = 0; k < 2; k++)
-            end[k] = ritz_joint_end_at(
-                scene->component[joint->between[k].component].name, port[k]);
+        RITZ_CHECK(find_ends(stage, joint, end));
         RITZ_CHECK(ritz_joint_relate(joint, end, &pose[j], out));
-        for (int64_t k = kept; k < out->count; k++) {
-            out->item[k].joint = j;
+        for (int64_t k = kept; k < out->count; k++)
             if (out->item[k].freedom.state == state)
                 out->item[kept++] = out->item[k];
-        }
         out->count = kept;
     }
     return RITZ_OK;
@@ -240,13 +194,8 @@ static ritz_status make_rows(const ritz_stage *stage, const double *setting,
 {
     RITZ_CHECK(list_relations(stage, setting, state, list));
     RITZ_CHECK(ritz_dense_new(list->count, stage->num_coordinates, C));
-    for (int64_t k = 0; k < list->count; k++) {
-        const ritz_port_map *port[2] = {NULL, NULL};
-
-        RITZ_CHECK(
-            find_ports(stage, &stage->scene->joint[list->item[k].joint], port));
-        fill_row(stage, &list->item[k], port, scale, k, C);
-    }
+    for (int64_t k = 0; k < list->count; k++)
+        fill_row(stage, &list->item[k], scale, k, C);
     return RITZ_OK;
 }
 
@@ -281,19 +230,7 @@ ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
  * The rank of the constraints has to be right: a row of rounding that is taken
  * for a constraint gives a wrong system [McDaniel2000, table 3.3]. The rank is
  * found from C' = Q_1 R and the singular values of the small R.
- */
-
-/* Number of singular values above rounding. */
-static int64_t count_rank(int64_t count, const double *sigma)
-{
-    int64_t rank = 0;
-
-    while (rank < count && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
-        rank++;
-    return rank;
-}
-
-/*
+ *
  * N = Q_1 [U_2, 0; 0, I] with C' = Q_1 [R; 0], R = U S W', U_2 the left
  * singular vectors of the value 0. N is orthonormal and spans the null space of
  * C.
@@ -304,16 +241,14 @@ ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
     int64_t c = C->nrow < n ? C->nrow : n;
     RITZ_OWN(ritz_dense) F = {0}, R = {0}, U = {0}, N = {0};
     RITZ_OWN_ARRAY double *tau = NULL, *sigma = NULL, *work = NULL;
+    ritz_dense U_2 = {0}; /* borrowed */
 
     RITZ_CHECK_NEW(tau, c);
     RITZ_CHECK_NEW(sigma, c);
     RITZ_CHECK_NEW(work, c);
-    RITZ_CHECK(ritz_dense_new(n, C->nrow, &F));
+    RITZ_CHECK(ritz_general_transpose(C, &F));
     RITZ_CHECK(ritz_dense_new(c, C->nrow, &R));
     RITZ_CHECK(ritz_dense_new(c, c, &U));
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < C->nrow; i++)
-            ritz_dense_col(&F, i)[j] = ritz_dense_col(C, j)[i];
     *rank = 0;
     if (c > 0) {
         RITZ_REFUSE_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)n, (int)C->nrow,
@@ -327,15 +262,14 @@ ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank, ritz_dense *out)
                                       (int)c, NULL, 1, work) != 0,
                        RITZ_ERR_CONVERGENCE,
                        "singular values of the constraints do not converge");
-        *rank = count_rank(c, sigma);
+        while (*rank < c && sigma[*rank] > RITZ_RANK_LOSS * sigma[0])
+            (*rank)++;
     }
     RITZ_CHECK(ritz_dense_new(n, n - *rank, &N));
-    for (int64_t j = *rank; j < n; j++)
-        if (j < c)
-            memcpy(ritz_dense_col(&N, j - *rank), ritz_dense_col(&U, j),
-                   (size_t)c * sizeof *N.val);
-        else
-            ritz_dense_col(&N, j - *rank)[j] = 1.0;
+    U_2 = ritz_dense_part(&U, *rank, c - *rank);
+    ritz_dense_put(&U_2, 0, 0, &N);
+    for (int64_t j = c; j < n; j++)
+        ritz_dense_col(&N, j - *rank)[j] = 1.0;
     if (c > 0 && N.ncol > 0)
         RITZ_REFUSE_IF(LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', (int)n,
                                       (int)N.ncol, (int)c, F.val, (int)n, tau,

@@ -1,11 +1,9 @@
+#include "assembly/assembly.h"
 
-#include "assembly/constraints.h"
-#include "assembly/placement.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include <ritz/matrix.h>
 
-#include <ritz/assembly.h>
+#include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>
@@ -28,8 +26,6 @@ typedef struct ritz_held {
     ritz_stage stage; /* whose coordinates are the held dofs */
     int64_t *row;     /* of each such coordinate among all N */
 } ritz_held;
-
-/* Slaves and masters of constraints. */
 
 /* Index of dof `dof` of a body among the held ones, those of its ports. */
 static int64_t find_held(const ritz_dofs *held, int64_t dof)
@@ -249,21 +245,6 @@ static const ritz_sparse *body_matrix(const ritz_component *body, size_t offset)
     return (const ritz_sparse *)(const void *)((const char *)body + offset);
 }
 
-/* Append a block of a block diagonal, rows from @p row, columns from @p col. */
-static void append_block(const ritz_sparse *part, int64_t row, int64_t col,
-                         ritz_sparse *A)
-{
-    for (int64_t j = 0; j < part->ncol; j++) {
-        int64_t at = A->colptr[col + j];
-
-        for (int64_t e = part->colptr[j]; e < part->colptr[j + 1]; e++) {
-            A->rowind[at] = row + part->rowind[e];
-            A->val[at++] = part->val[e];
-        }
-        A->colptr[col + j + 1] = at;
-    }
-}
-
 /*
  * A matrix of each body, by its offset in the component, on a block diagonal:
  * rows from @p first, columns those of the body; {0} if no body has it.
@@ -287,13 +268,18 @@ static ritz_status stack_matrices(const ritz_held *p, size_t offset,
     RITZ_CHECK(ritz_sparse_new(rows, p->num_dofs, nnz, &A));
     for (int64_t k = 0; k < p->count; k++) {
         const ritz_sparse *part = body_matrix(&p->body[k], offset);
-        const int64_t col = p->first[k];
 
-        if (part->colptr)
-            append_block(part, first[k], col, &A);
-        else
-            for (int64_t j = 0; j < p->body[k].num_dofs; j++)
-                A.colptr[col + j + 1] = A.colptr[col];
+        for (int64_t j = 0; j < p->body[k].num_dofs; j++) {
+            int64_t *end = &A.colptr[p->first[k] + j + 1];
+
+            *end = end[-1];
+            if (!part->colptr)
+                continue;
+            for (int64_t e = part->colptr[j]; e < part->colptr[j + 1]; e++) {
+                A.rowind[*end] = first[k] + part->rowind[e];
+                A.val[(*end)++] = part->val[e];
+            }
+        }
     }
     RITZ_MOVE(*out, A);
     return RITZ_OK;
@@ -377,15 +363,11 @@ static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
     return RITZ_OK;
 }
 
-/*
- * Recovery of dofs that constraints eliminated in the bodies, in the full-order
- * system.
- */
-
-/* diag(G_1, G_2, ...), and the names of its rows in the system. */
-static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
-                                  ritz_recovery *out)
+/* Recovery of dofs that constraints eliminated in the bodies: diag(G_k) T. */
+static ritz_status project_recovery(const ritz_held *p, const int64_t *add,
+                                    const ritz_sparse *T, ritz_recovery *out)
 {
+    RITZ_OWN(ritz_sparse) G = {0};
     RITZ_OWN_ARRAY int64_t *first = NULL;
     int64_t rows = 0;
 
@@ -394,6 +376,8 @@ static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
         first[k] = rows;
         rows += p->body[k].recovery.count;
     }
+    if (rows == 0)
+        return RITZ_OK;
     RITZ_CHECK_NEW(out->dof, rows);
     for (int64_t k = 0; k < p->count; k++) {
         const ritz_recovery *r = &p->body[k].recovery;
@@ -402,25 +386,9 @@ static ritz_status stack_recovery(const ritz_held *p, const int64_t *add,
             out->dof[out->count++] =
                 (ritz_dof){r->dof[i].grid + add[k], r->dof[i].component};
     }
-    return stack_matrices(p, offsetof(ritz_component, recovery.G), rows, first,
-                          &out->G);
-}
-
-/* Project the recovery of the bodies' eliminated dofs: diag(G_k) T. */
-static ritz_status project_recovery(const ritz_held *p, const int64_t *add,
-                                    const ritz_sparse *T, ritz_recovery *out)
-{
-    RITZ_OWN(ritz_recovery) all = {0};
-    RITZ_OWN(ritz_sparse) GT = {0};
-
-    RITZ_CHECK(stack_recovery(p, add, &all));
-    if (all.count == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_product(&all.G, T, &GT));
-    ritz_sparse_free(&all.G);
-    RITZ_MOVE(all.G, GT);
-    RITZ_MOVE(*out, all);
-    return RITZ_OK;
+    RITZ_CHECK(stack_matrices(p, offsetof(ritz_component, recovery.G), rows,
+                              first, &G));
+    return ritz_sparse_product(&G, T, &out->G);
 }
 
 /*
@@ -454,9 +422,8 @@ static ritz_status check_units(const ritz_scene *scene, const ritz_held *p)
     return RITZ_OK;
 }
 
-ritz_status ritz_assemble_masters(const ritz_scene *scene,
-                                  const double *setting, ritz_component *out,
-                                  ritz_master **where)
+ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
+                               ritz_component *out, ritz_master **where)
 {
     RITZ_OWN(ritz_component) system = {0};
     RITZ_OWN(ritz_held) p = {.scene = scene};
@@ -482,16 +449,9 @@ ritz_status ritz_assemble_masters(const ritz_scene *scene,
     memcpy(system.units, p.body[0].units, sizeof system.units);
     RITZ_CHECK(ritz_component_settle(&system, false));
     RITZ_MOVE(*out, system);
-    RITZ_MOVE(*where, master);
+    if (where)
+        RITZ_MOVE(*where, master);
     return RITZ_OK;
-}
-
-ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
-                               ritz_component *out)
-{
-    RITZ_OWN_ARRAY ritz_master *master = NULL;
-
-    return ritz_assemble_masters(scene, setting, out, &master);
 }
 
 /*
@@ -500,24 +460,6 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
  * (u_1, u_2, ...) satisfies the full-order constraints too and follows from its
  * masters.
  */
-/*
- * Append the rows of body k, whose coordinates are rows first .. first + count
- * - 1 of P.
- */
-static ritz_status add_rows(const ritz_reduced *body, const ritz_dense *P,
-                            int64_t first, int64_t count, const int64_t *row,
-                            ritz_dense *T)
-{
-    RITZ_OWN(ritz_dense) part = {0}, TP = {0};
-
-    RITZ_CHECK(ritz_dense_rows(&body->T, count, row, &part));
-    RITZ_CHECK(ritz_dense_mul(&part, P, &TP));
-    for (int64_t j = 0; j < T->ncol; j++)
-        memcpy(ritz_dense_col(T, j) + first, ritz_dense_col(&TP, j),
-               (size_t)count * sizeof *T->val);
-    return RITZ_OK;
-}
-
 ritz_status ritz_stage_basis(const ritz_stage *stage,
                              const ritz_configuration *at, int64_t n,
                              const ritz_master *master, ritz_dense *out)
@@ -530,6 +472,7 @@ ritz_status ritz_stage_basis(const ritz_stage *stage,
     for (int64_t first = 0, last = 0; first < n; first = last) {
         const int64_t k = master[first].body;
         const ritz_reduced *body = &stage->body[k];
+        RITZ_OWN(ritz_dense) part = {0}, TP = {0};
         int64_t most = 0;
 
         for (last = first; last < n && master[last].body == k; last++) {
@@ -539,8 +482,9 @@ ritz_status ritz_stage_basis(const ritz_stage *stage,
         RITZ_REFUSE_IF(!body->T.val || body->T.nrow <= most, RITZ_ERR_ARGUMENT,
                        "'%s' has no basis T for its %" PRId64 " dofs",
                        stage->scene->component[k].name, most + 1);
-        RITZ_CHECK(
-            add_rows(body, &at->P[k], first, last - first, row + first, &T));
+        RITZ_CHECK(ritz_dense_rows(&body->T, last - first, row + first, &part));
+        RITZ_CHECK(ritz_dense_mul(&part, &at->P[k], &TP));
+        ritz_dense_put(&TP, first, 0, &T);
     }
     RITZ_MOVE(*out, T);
     return RITZ_OK;

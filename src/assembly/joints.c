@@ -1,4 +1,4 @@
-#include "assembly/joints.h"
+#include "assembly/assembly.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -139,9 +139,8 @@ typedef void point(const ritz_joint *joint, const ritz_joint_pose *pose,
 
 static void fill_basic(double e[3][3])
 {
-    memset(e, 0, 9 * sizeof e[0][0]);
-    for (int i = 0; i < 3; i++)
-        e[i][i] = 1.0;
+    for (int i = 0; i < 9; i++)
+        e[i / 3][i % 3] = i % 4 == 0 ? 1.0 : 0.0;
 }
 
 static void point_basic(const ritz_joint *joint, const ritz_joint_pose *pose,
@@ -225,22 +224,6 @@ static const struct {
     [RITZ_JOINT_RIGID] = {"rigid joint", point_basic, {0}},
 };
 
-/*
- * A fixed joint: every grid of one port with the grid of the other that lies
- * at the same place, each measured from its port's origin.
- */
-
-ritz_joint_end ritz_joint_end_at(const char *component,
-                                 const ritz_port_map *port)
-{
-    return (ritz_joint_end){.component = component,
-                            .port = port->name,
-                            .origin = port->origin,
-                            .count = port->count,
-                            .dof = port->dof,
-                            .position = port->position};
-}
-
 ritz_status ritz_port_describe(const ritz_component *component,
                                const ritz_port *port, ritz_dense *turn,
                                ritz_port_map *out)
@@ -263,12 +246,12 @@ ritz_status ritz_port_describe(const ritz_component *component,
 }
 
 /* Row of a direction of the grid that starts at port row @p first, or -1. */
-static int64_t find_direction(const ritz_joint_end *end, int64_t first,
+static int64_t find_direction(const ritz_port_map *port, int64_t first,
                               int64_t direction)
 {
-    for (int64_t k = first; k < end->count; k++)
-        if (end->dof[k].grid == end->dof[first].grid &&
-            end->dof[k].component == direction)
+    for (int64_t k = first; k < port->count; k++)
+        if (port->dof[k].grid == port->dof[first].grid &&
+            port->dof[k].component == direction)
             return k;
     return -1;
 }
@@ -277,21 +260,22 @@ static int64_t find_direction(const ritz_joint_end *end, int64_t first,
 static ritz_status find_six(const ritz_joint_end *end, const char *called,
                             int64_t row[static 6])
 {
+    const ritz_port_map *port = end->port;
     static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
     int64_t others = 0;
     char missing[64] = "";
     size_t used = 0;
 
-    for (int64_t k = 0; k < end->count; k++)
-        others +=
-            end->dof[k].component < 1 || end->dof[k].grid != end->dof[0].grid;
-    RITZ_REFUSE_IF(end->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
+    for (int64_t k = 0; k < port->count; k++)
+        others += port->dof[k].component < 1 ||
+                  port->dof[k].grid != port->dof[0].grid;
+    RITZ_REFUSE_IF(port->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
                    "a %s holds one six-dof grid on each side, '%s/%s' has %s",
-                   called, end->component, end->port,
+                   called, end->component, port->name,
                    others > 0 ? "more than one grid, or a scalar point"
                               : "no grid");
     for (int64_t k = 0; k < 6; k++) {
-        row[k] = find_direction(end, 0, k + 1);
+        row[k] = find_direction(port, 0, k + 1);
         if (row[k] < 0)
             used += (size_t)snprintf(missing + used, sizeof missing - used,
                                      "%s%s", used > 0 ? ", " : "", words[k]);
@@ -299,7 +283,7 @@ static ritz_status find_six(const ritz_joint_end *end, const char *called,
     RITZ_REFUSE_IF(missing[0], RITZ_ERR_ARGUMENT,
                    "a %s holds one six-dof grid on each side, grid %" PRId64
                    " of '%s/%s' has no %s",
-                   called, end->dof[0].grid, end->component, end->port,
+                   called, port->dof[0].grid, end->component, port->name,
                    missing);
     return RITZ_OK;
 }
@@ -344,8 +328,9 @@ static void find_arms(const ritz_joint_end end[static 2],
                       const ritz_joint_pose *pose, double arm[2][3])
 {
     for (int i = 0; i < 3; i++) {
-        arm[0][i] = end[0].origin[i] + pose->d[i] - end[0].position[i];
-        arm[1][i] = end[1].origin[i] - end[1].position[i];
+        arm[0][i] =
+            end[0].port->origin[i] + pose->d[i] - end[0].port->position[i];
+        arm[1][i] = end[1].port->origin[i] - end[1].port->position[i];
     }
 }
 
@@ -353,32 +338,27 @@ static void find_arms(const ritz_joint_end end[static 2],
 static double joint_distance(const ritz_joint_end end[static 2], int64_t a,
                              int64_t b)
 {
-    double sum = 0.0;
+    const ritz_port_map *one = end[0].port, *two = end[1].port;
+    double gap[3];
 
-    for (int i = 0; i < 3; i++) {
-        double d = end[0].position[3 * a + i] - end[0].origin[i] -
-                   (end[1].position[3 * b + i] - end[1].origin[i]);
-
-        sum += d * d;
-    }
-    return sqrt(sum);
+    for (int i = 0; i < 3; i++)
+        gap[i] = one->position[3 * a + i] - one->origin[i] -
+                 (two->position[3 * b + i] - two->origin[i]);
+    return sqrt(ritz_dot(gap, gap));
 }
 
 /* 1e-5 of the largest distance of a port's grids from its origin. */
 static double joint_tolerance(const ritz_joint *joint,
-                              const ritz_joint_end *end)
+                              const ritz_port_map *port)
 {
     double most = 0.0;
 
-    for (int64_t k = 0; k < end->count; k++) {
-        double sum = 0.0;
+    for (int64_t k = 0; k < port->count; k++) {
+        double arm[3];
 
-        for (int i = 0; i < 3; i++) {
-            double d = end->position[3 * k + i] - end->origin[i];
-
-            sum += d * d;
-        }
-        most = fmax(most, sqrt(sum));
+        for (int i = 0; i < 3; i++)
+            arm[i] = port->position[3 * k + i] - port->origin[i];
+        most = fmax(most, sqrt(ritz_dot(arm, arm)));
     }
     return joint->tolerance > 0.0
                ? joint->tolerance
@@ -398,12 +378,13 @@ static ritz_status relate_six(const ritz_joint *joint,
         RITZ_CHECK(find_six(&end[k], kinds[joint->type].called, row[k]));
     RITZ_REFUSE_IF(joint->type == RITZ_JOINT_BUSHING &&
                        joint_distance(end, 0, 0) >
-                           joint_tolerance(joint, &end[0]),
+                           joint_tolerance(joint, end[0].port),
                    RITZ_ERR_ARGUMENT,
                    "a bushing lies between grids at one place, those of "
                    "'%s/%s' and '%s/%s' lie %.3g apart, %.3g is let pass",
-                   end[0].component, end[0].port, end[1].component, end[1].port,
-                   joint_distance(end, 0, 0), joint_tolerance(joint, &end[0]));
+                   end[0].component, end[0].port->name, end[1].component,
+                   end[1].port->name, joint_distance(end, 0, 0),
+                   joint_tolerance(joint, end[0].port));
     kinds[joint->type].point(joint, pose, e);
     find_arms(end, pose, arm);
     for (int k = 0; k < 6; k++) {
@@ -424,13 +405,13 @@ static ritz_status relate_six(const ritz_joint *joint,
  * List the rows at which a new grid begins, scalar points left out; returns
  * their number.
  */
-static int64_t list_grids(const ritz_joint_end *end, int64_t *first)
+static int64_t list_grids(const ritz_port_map *port, int64_t *first)
 {
     int64_t count = 0;
 
-    for (int64_t k = 0; k < end->count; k++)
-        if (end->dof[k].component > 0 &&
-            (k == 0 || end->dof[k].grid != end->dof[k - 1].grid))
+    for (int64_t k = 0; k < port->count; k++)
+        if (port->dof[k].component > 0 &&
+            (k == 0 || port->dof[k].grid != port->dof[k - 1].grid))
             first[count++] = k;
     return count;
 }
@@ -440,8 +421,8 @@ static ritz_status pair_grids(const ritz_joint_end end[static 2], int64_t a,
                               int64_t b, ritz_relations *list)
 {
     for (int64_t direction = 1; direction <= 6; direction++) {
-        int64_t i = find_direction(&end[0], a, direction);
-        int64_t j = find_direction(&end[1], b, direction);
+        int64_t i = find_direction(end[0].port, a, direction);
+        int64_t j = find_direction(end[1].port, b, direction);
 
         if (i < 0 || j < 0)
             continue;
@@ -472,24 +453,25 @@ static int64_t find_nearest(const ritz_joint_end end[static 2], int64_t grid,
     return near;
 }
 
-/* The relations of a fixed joint: its grids are paired. */
+/* The relations of a fixed joint: every grid of one port is paired with the grid
+   of the other that lies at the same place, from its port's origin. */
 static ritz_status pair_joint(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               ritz_relations *list)
 {
-    const double tolerance = joint_tolerance(joint, &end[0]);
+    const double tolerance = joint_tolerance(joint, end[0].port);
     RITZ_OWN_ARRAY int64_t *near_row = NULL, *far_row = NULL;
     RITZ_OWN_ARRAY bool *taken = NULL;
     int64_t count = 0, others = 0;
 
-    RITZ_CHECK_NEW(near_row, end[0].count);
-    RITZ_CHECK_NEW(far_row, end[1].count);
-    count = list_grids(&end[0], near_row);
-    others = list_grids(&end[1], far_row);
+    RITZ_CHECK_NEW(near_row, end[0].port->count);
+    RITZ_CHECK_NEW(far_row, end[1].port->count);
+    count = list_grids(end[0].port, near_row);
+    others = list_grids(end[1].port, far_row);
     RITZ_REFUSE_IF(count != others, RITZ_ERR_ARGUMENT,
                    "'%s/%s' has %" PRId64 " grids and '%s/%s' has %" PRId64,
-                   end[0].component, end[0].port, count, end[1].component,
-                   end[1].port, others);
+                   end[0].component, end[0].port->name, count, end[1].component,
+                   end[1].port->name, others);
     RITZ_CHECK_NEW(taken, count);
     for (int64_t k = 0; k < count; k++) {
         const int64_t a = near_row[k];
@@ -500,8 +482,8 @@ static ritz_status pair_joint(const ritz_joint *joint,
             joint_distance(end, a, b) > tolerance, RITZ_ERR_ARGUMENT,
             "grid %" PRId64 " of '%s/%s' has no counterpart: the nearest, grid "
             "%" PRId64 " of '%s/%s', lies %.3g away, %.3g is let pass",
-            end[0].dof[a].grid, end[0].component, end[0].port,
-            end[1].dof[b].grid, end[1].component, end[1].port,
+            end[0].port->dof[a].grid, end[0].component, end[0].port->name,
+            end[1].port->dof[b].grid, end[1].component, end[1].port->name,
             joint_distance(end, a, b), tolerance);
         taken[near] = true;
         RITZ_CHECK(pair_grids(end, a, b, list));
@@ -519,6 +501,11 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
                              ? pair_joint(joint, end, list)
                              : relate_six(joint, end, pose, list);
 
+    for (int64_t k = before; k < list->count; k++) {
+        list->item[k].joint = joint;
+        for (int i = 0; i < 2; i++)
+            list->item[k].port[i] = end[i].port;
+    }
     if (status == RITZ_OK && list->count == before)
         status = ritz_fail(RITZ_ERR_ARGUMENT,
                            "its ports have no direction in common");
@@ -532,40 +519,35 @@ void ritz_relations_free(ritz_relations *relations)
     *relations = (ritz_relations){0};
 }
 
-/*
- * The pose of the second body at the settings of a joint, as in the table
- * above.
- */
-
+/* As in the table above. */
 void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
                         ritz_joint_pose *out)
 {
     double s[2] = {0.0, 0.0};
     double first[9], second[9];
-    ritz_joint_pose pose = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
+    *out = (ritz_joint_pose){.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     for (int64_t k = 0; k < joint->num_sweeps && k < 2; k++)
         s[k] = setting[joint->sweep + k];
     switch (joint->type) {
     case RITZ_JOINT_HINGE:
-        ritz_turn_about(joint->axis[0], s[0], pose.R);
+        ritz_turn_about(joint->axis[0], s[0], out->R);
         break;
     case RITZ_JOINT_SLIDER:
         for (int i = 0; i < 3; i++)
-            pose.d[i] = s[0] * joint->axis[0][i];
+            out->d[i] = s[0] * joint->axis[0][i];
         break;
     case RITZ_JOINT_UNIVERSAL:
         ritz_turn_about(joint->axis[0], s[0], first);
         ritz_turn_about(joint->axis[1], s[1], second);
-        ritz_turn_product(first, second, pose.R);
+        ritz_turn_product(first, second, out->R);
         break;
     case RITZ_JOINT_RIGID:
-        memcpy(pose.d, joint->offset, sizeof pose.d);
+        memcpy(out->d, joint->offset, sizeof out->d);
         break;
     case RITZ_JOINT_FIXED:
     case RITZ_JOINT_SPHERICAL:
     case RITZ_JOINT_BUSHING:
         break;
     }
-    *out = pose;
 }

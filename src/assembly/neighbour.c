@@ -15,47 +15,25 @@
  *
  * so that q = Y u, M_n = Y'MY, K_n = Y'KY + sum k_s (Y'f - g)(Y'f - g)'.
  */
-#include "assembly/joints.h"
+#include "assembly/assembly.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Relations F q - G u of the far body's q and the near port's dofs u. */
-typedef struct ritz_link {
-    int64_t count;
-    ritz_dense F, G; /* count x r, count x p */
-    ritz_freedom *freedom;
-} ritz_link;
-
 /*
- * Rows of one state; a spring's row is multiplied by the root of its stiffness.
+ * Relations F q - G u of the far body's q and the near port's dofs u, by state;
+ * a spring's row is multiplied by the root of its stiffness.
  */
-static ritz_status select_rows(const ritz_dense *A, const ritz_link *of,
-                               ritz_freedom_state state, ritz_dense *out)
-{
-    int64_t count = 0;
-
-    for (int64_t k = 0; k < of->count; k++)
-        count += of->freedom[k].state == state;
-    RITZ_CHECK(ritz_dense_new(count, A->ncol, out));
-    count = 0;
-    for (int64_t k = 0; k < of->count; k++) {
-        const ritz_freedom *freedom = &of->freedom[k];
-        double factor = state == RITZ_CAGED ? sqrt(freedom->stiffness) : 1.0;
-
-        if (freedom->state != state)
-            continue;
-        for (int64_t j = 0; j < A->ncol; j++)
-            ritz_dense_col(out, j)[count] = factor * ritz_dense_col(A, j)[k];
-        count++;
-    }
-    return RITZ_OK;
-}
+typedef struct ritz_link {
+    ritz_dense locked_F, locked_G; /* rows x r, rows x p */
+    ritz_dense caged_F, caged_G;
+} ritz_link;
 
 /* K + f f' of the springs' rows, each times the root of its stiffness. */
 static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
@@ -65,25 +43,8 @@ static ritz_status add_springs(const ritz_dense *K, const ritz_dense *f,
 
     RITZ_CHECK(ritz_dense_mul_tn(f, f, &part));
     RITZ_CHECK(ritz_dense_copy(K, H));
-    for (int64_t k = 0; k < H->nrow * H->ncol; k++)
-        H->val[k] += part.val[k];
+    ritz_dense_add(1.0, &part, H);
     return RITZ_OK;
-}
-
-/* The stiffness K_n, condensed to the near port's dofs. */
-static ritz_status condense_stiffness(const ritz_reduced *far,
-                                      const ritz_link *of, const ritz_dense *Y,
-                                      ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) f = {0}, g = {0}, K = {0}, gap = {0};
-
-    RITZ_CHECK(select_rows(&of->F, of, RITZ_CAGED, &f));
-    RITZ_CHECK(select_rows(&of->G, of, RITZ_CAGED, &g));
-    RITZ_CHECK(ritz_dense_congruence(&far->K, Y, &K));
-    RITZ_CHECK(ritz_dense_mul(&f, Y, &gap));
-    for (int64_t k = 0; k < gap.nrow * gap.ncol; k++)
-        gap.val[k] -= g.val[k];
-    return add_springs(&K, &gap, out);
 }
 
 /*
@@ -93,37 +54,25 @@ static ritz_status condense_stiffness(const ritz_reduced *far,
 static ritz_status solve_locked(const ritz_link *of, ritz_dense *S,
                                 ritz_dense *Z)
 {
-    RITZ_OWN(ritz_dense) L = {0}, G = {0}, U = {0}, Vt = {0}, UG = {0};
+    const ritz_dense *L = &of->locked_F, *G = &of->locked_G;
+    const int64_t r = L->ncol, most = L->nrow < r ? L->nrow : r;
+    RITZ_OWN(ritz_dense) U = {0}, V = {0}, UG = {0};
     RITZ_OWN_ARRAY double *sigma = NULL;
-    int c = 0;
-    int r = (int)of->F.ncol;
     int64_t rank = 0;
 
-    RITZ_CHECK(select_rows(&of->F, of, RITZ_LOCKED, &L));
-    RITZ_CHECK(select_rows(&of->G, of, RITZ_LOCKED, &G));
-    c = (int)L.nrow;
-    RITZ_CHECK(ritz_dense_new(c, c, &U));
-    RITZ_CHECK(ritz_dense_new(r, r, &Vt));
-    RITZ_CHECK_NEW(sigma, c < r ? c : r);
-    for (int64_t j = 0; j < r && c == 0; j++)
-        ritz_dense_col(&Vt, j)[j] = 1.0;
-    RITZ_REFUSE_IF(c > 0 && LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', c, r, L.val,
-                                           c, sigma, U.val, c, Vt.val, r) != 0,
-                   RITZ_ERR_CONVERGENCE, "the joint's relations have no rank");
-    while (rank < c && rank < r && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
+    RITZ_CHECK_IN("the joint's relations", ritz_general_svd(L, &U, &sigma, &V));
+    for (int64_t j = 0; j < r && L->nrow == 0; j++)
+        ritz_dense_col(&V, j)[j] = 1.0;
+    while (rank < most && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
-    RITZ_CHECK(ritz_dense_mul_tn(&U, &G, &UG));
-    RITZ_CHECK(ritz_dense_new(r, G.ncol, S));
-    RITZ_CHECK(ritz_dense_new(r, r - rank, Z));
-    for (int64_t i = 0; i < r; i++) {
-        for (int64_t j = 0; j < G.ncol; j++)
+    RITZ_CHECK(ritz_dense_mul_tn(&U, G, &UG));
+    RITZ_CHECK(ritz_dense_new(r, G->ncol, S));
+    for (int64_t i = 0; i < r; i++)
+        for (int64_t j = 0; j < G->ncol; j++)
             for (int64_t k = 0; k < rank; k++)
-                ritz_dense_col(S, j)[i] += ritz_dense_col(&Vt, i)[k] *
+                ritz_dense_col(S, j)[i] += ritz_dense_col(&V, k)[i] *
                                            ritz_dense_col(&UG, j)[k] / sigma[k];
-        for (int64_t k = rank; k < r; k++)
-            ritz_dense_col(Z, k - rank)[i] = ritz_dense_col(&Vt, i)[k];
-    }
-    return RITZ_OK;
+    return ritz_dense_columns(&V, rank, r - rank, Z);
 }
 
 /*
@@ -185,8 +134,7 @@ static ritz_status reduce_energy(const ritz_dense *H, const ritz_dense *R,
     RITZ_CHECK(ritz_dense_mul_tn(Z, R, &B));
     RITZ_CHECK(minimise_energy(&A, &B, ritz_dense_max(H), &X, N));
     RITZ_CHECK(ritz_dense_mul(Z, &X, &more));
-    for (int64_t k = 0; k < S->nrow * S->ncol; k++)
-        S->val[k] += more.val[k];
+    ritz_dense_add(1.0, &more, S);
     return RITZ_OK;
 }
 
@@ -194,39 +142,40 @@ static ritz_status reduce_energy(const ritz_dense *H, const ritz_dense *R,
 static ritz_status map_far_body(const ritz_reduced *far, const ritz_link *of,
                                 ritz_dense *Y)
 {
-    RITZ_OWN(ritz_dense) Z = {0}, N = {0}, ZN = {0}, f = {0}, g = {0};
+    RITZ_OWN(ritz_dense) Z = {0}, N = {0}, ZN = {0};
     RITZ_OWN(ritz_dense) H = {0}, R = {0}, cross = {0}, MS = {0};
 
     RITZ_CHECK(solve_locked(of, Y, &Z));
-    RITZ_CHECK(select_rows(&of->F, of, RITZ_CAGED, &f));
-    RITZ_CHECK(select_rows(&of->G, of, RITZ_CAGED, &g));
-    RITZ_CHECK(add_springs(&far->K, &f, &H));
+    RITZ_CHECK(add_springs(&far->K, &of->caged_F, &H));
     RITZ_CHECK(ritz_dense_mul(&H, Y, &R));
-    RITZ_CHECK(ritz_dense_mul_tn(&f, &g, &cross));
-    for (int64_t k = 0; k < R.nrow * R.ncol; k++)
-        R.val[k] -= cross.val[k];
+    RITZ_CHECK(ritz_dense_mul_tn(&of->caged_F, &of->caged_G, &cross));
+    ritz_dense_add(-1.0, &cross, &R);
     RITZ_CHECK(reduce_energy(&H, &R, &Z, Y, &N));
     RITZ_CHECK(ritz_dense_mul(&Z, &N, &ZN));
     RITZ_CHECK(ritz_dense_mul(&far->M, Y, &MS));
     return reduce_energy(&far->M, &MS, &ZN, Y, NULL);
 }
 
-/* The far body's stiffness and mass, condensed to the near port. */
-static ritz_status condense_link(const ritz_reduced *far, const ritz_link *link,
+/* K_n and M_n, condensed to the near port's dofs. */
+static ritz_status condense_link(const ritz_reduced *far, const ritz_link *of,
                                  ritz_dense *K, ritz_dense *M)
 {
-    RITZ_OWN(ritz_dense) Y = {0};
+    RITZ_OWN(ritz_dense) Y = {0}, own = {0}, gap = {0};
 
-    RITZ_CHECK(map_far_body(far, link, &Y));
-    RITZ_CHECK(condense_stiffness(far, link, &Y, K));
+    RITZ_CHECK(map_far_body(far, of, &Y));
+    RITZ_CHECK(ritz_dense_congruence(&far->K, &Y, &own));
+    RITZ_CHECK(ritz_dense_mul(&of->caged_F, &Y, &gap));
+    ritz_dense_add(-1.0, &of->caged_G, &gap);
+    RITZ_CHECK(add_springs(&own, &gap, K));
     return ritz_dense_congruence(&far->M, &Y, M);
 }
 
 static void ritz_link_free(ritz_link *link)
 {
-    ritz_dense_free(&link->F);
-    ritz_dense_free(&link->G);
-    free(link->freedom);
+    ritz_dense_free(&link->locked_F);
+    ritz_dense_free(&link->locked_G);
+    ritz_dense_free(&link->caged_F);
+    ritz_dense_free(&link->caged_G);
 }
 
 /*
@@ -253,33 +202,33 @@ static ritz_status condense_body(const ritz_component *far,
     return ritz_reduce(far, &basis, out);
 }
 
-/* Row k of a matrix += factor times row i of another. */
-static void add_row(double factor, const ritz_dense *from, int64_t i,
-                    ritz_dense *to, int64_t k)
+/* Rows of one end of the joint's relations of one state. */
+static ritz_status fill_rows(const ritz_relations *list, int end,
+                             ritz_freedom_state state, const ritz_dense *map,
+                             ritz_dense *out)
 {
-    for (int64_t j = 0; j < from->ncol; j++)
-        ritz_dense_col(to, j)[k] += factor * ritz_dense_col(from, j)[i];
-}
+    int64_t count = 0;
 
-/* F and G of the joint's relations. */
-static ritz_status fill_rows(const ritz_relations *list, int near,
-                             const ritz_dense *turn, const ritz_dense *map,
-                             ritz_link *out)
-{
-    int far = 1 - near;
-
-    out->count = list->count;
-    RITZ_CHECK_NEW(out->freedom, list->count);
-    RITZ_CHECK(ritz_dense_new(list->count, map->ncol, &out->F));
-    RITZ_CHECK(ritz_dense_new(list->count, turn->ncol, &out->G));
+    for (int64_t k = 0; k < list->count; k++)
+        count += list->item[k].freedom.state == state;
+    RITZ_CHECK(ritz_dense_new(count, map->ncol, out));
+    count = 0;
     for (int64_t k = 0; k < list->count; k++) {
         const ritz_relation *r = &list->item[k];
+        const double root =
+            state == RITZ_CAGED ? sqrt(r->freedom.stiffness) : 1.0;
 
-        out->freedom[k] = r->freedom;
-        for (int64_t t = 0; t < r->num_terms[far]; t++)
-            add_row(r->factor[far][t], map, r->row[far][t], &out->F, k);
-        for (int64_t t = 0; t < r->num_terms[near]; t++)
-            add_row(r->factor[near][t], turn, r->row[near][t], &out->G, k);
+        if (r->freedom.state != state)
+            continue;
+        for (int64_t j = 0; j < map->ncol; j++) {
+            double sum = 0.0;
+
+            for (int64_t t = 0; t < r->num_terms[end]; t++)
+                sum +=
+                    r->factor[end][t] * ritz_dense_col(map, j)[r->row[end][t]];
+            ritz_dense_col(out, j)[count] = root * sum;
+        }
+        count++;
     }
     return RITZ_OK;
 }
@@ -301,11 +250,16 @@ static ritz_status link_bodies(const ritz_joint *joint, const double *setting,
     if (!port || !map)
         return RITZ_ERR_ARGUMENT;
     RITZ_CHECK(ritz_port_describe(side[near].component, port, &turn, &at));
-    end[near] = ritz_joint_end_at(side[near].name, &at);
-    end[1 - near] = ritz_joint_end_at(side[1 - near].name, map);
+    end[near] = (ritz_joint_end){side[near].name, &at};
+    end[1 - near] = (ritz_joint_end){side[1 - near].name, map};
     ritz_joint_pose_at(joint, setting, &pose);
     RITZ_CHECK(ritz_joint_relate(joint, end, &pose, &list));
-    return fill_rows(&list, near, &turn, &map->map, out);
+    RITZ_CHECK(
+        fill_rows(&list, 1 - near, RITZ_LOCKED, &map->map, &out->locked_F));
+    RITZ_CHECK(fill_rows(&list, near, RITZ_LOCKED, &turn, &out->locked_G));
+    RITZ_CHECK(
+        fill_rows(&list, 1 - near, RITZ_CAGED, &map->map, &out->caged_F));
+    return fill_rows(&list, near, RITZ_CAGED, &turn, &out->caged_G);
 }
 
 /* Indices of a port's dofs among the attached ones. */

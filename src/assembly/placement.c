@@ -8,7 +8,7 @@
  * only, and a gap of rounded digits would take a rigid motion from the system.
  * Its R and d are therefore those of the placements.
  */
-#include "assembly/placement.h"
+#include "assembly/assembly.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -16,6 +16,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* x_system = R x + t. */
+typedef struct placement {
+    bool known;
+    double R[9];
+    double t[3];
+} placement;
 
 /*
  * A joint's relation of its two bodies: x - near of the first is R (x - far).
@@ -57,9 +64,9 @@ static bool find_link(const ritz_stage *stage, int64_t j,
  * With R_A, t_A known: R_B = R_A R and t_B = R_A (o_A + d - R o_B) + t_A; with
  * the second body known the same holds with R' and the ends exchanged.
  */
-static void place_neighbour(const ritz_placement *known, const double *R,
+static void place_neighbour(const placement *known, const double *R,
                             const double *near, const double *far,
-                            ritz_placement *out)
+                            placement *out)
 {
     double turned[3], gap[3];
 
@@ -87,13 +94,13 @@ static void transpose_rotation(const double *R, double *out)
  */
 static bool place_through_joints(const ritz_stage *stage,
                                  const ritz_joint_pose *pose, bool turns_freely,
-                                 ritz_placement *place)
+                                 placement *place)
 {
     bool found = false;
 
     for (int64_t j = 0; j < stage->scene->num_joints; j++) {
         link at;
-        ritz_placement *a = NULL, *b = NULL;
+        placement *a = NULL, *b = NULL;
         double back[9];
 
         if (!find_link(stage, j, pose, &at) || at.turns_freely != turns_freely)
@@ -120,41 +127,26 @@ static bool place_through_joints(const ritz_stage *stage,
  * does.
  */
 static void place_bodies(const ritz_stage *stage, const ritz_joint_pose *pose,
-                         ritz_placement *place)
+                         placement *place)
 {
     for (int64_t k = 0; k < stage->count; k++) {
         if (place[k].known)
             continue;
-        place[k] = (ritz_placement){true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}};
+        place[k] = (placement){true, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}};
         while (place_through_joints(stage, pose, false, place) ||
                place_through_joints(stage, pose, true, place))
             ;
     }
 }
 
-/* Placements of all bodies of a stage, and poses of its joints. */
-typedef struct places {
-    ritz_placement *body;
-    ritz_joint_pose *pose;
-} places;
-
-static void places_free(places *p)
+/* Bodies and joints at settings of a scene, as these say; a loop may not
+   close. */
+static void find_places(const ritz_stage *stage, const double *setting,
+                        ritz_joint_pose *pose, placement *body)
 {
-    RITZ_FREE(p->body, p->pose);
-}
-
-/* At the settings of a scene, as these say; a loop may not close. */
-static ritz_status find_places(const ritz_stage *stage, const double *setting,
-                               places *out)
-{
-    const ritz_scene *scene = stage->scene;
-
-    RITZ_CHECK_NEW(out->body, stage->count);
-    RITZ_CHECK_NEW(out->pose, scene->num_joints);
-    for (int64_t j = 0; j < scene->num_joints; j++)
-        ritz_joint_pose_at(&scene->joint[j], setting, &out->pose[j]);
-    place_bodies(stage, out->pose, out->body);
-    return RITZ_OK;
+    for (int64_t j = 0; j < stage->scene->num_joints; j++)
+        ritz_joint_pose_at(&stage->scene->joint[j], setting, &pose[j]);
+    place_bodies(stage, pose, body);
 }
 
 static double vector_norm(const double *x)
@@ -170,13 +162,13 @@ typedef struct misfit {
 } misfit;
 
 /* The second body as placed by this joint, compared with its placement. */
-static misfit measure_misfit(const link *at, const ritz_placement *place)
+static misfit measure_misfit(const link *at, const placement *place)
 {
-    const ritz_placement *b = &place[at->body[1]];
+    const placement *b = &place[at->body[1]];
     misfit found = {
         0.0, vector_norm(at->near) + vector_norm(at->far) + vector_norm(b->t),
         0.0};
-    ritz_placement due = {0};
+    placement due = {0};
     double here[3], there[3];
 
     place_neighbour(&place[at->body[0]], at->R, at->near, at->far, &due);
@@ -194,11 +186,11 @@ static misfit measure_misfit(const link *at, const ritz_placement *place)
  * R = R_A'R_B, d = R_A'(R_B o_B + t_B - t_A) - o_A, from the bodies'
  * placements.
  */
-static void derive_pose(const link *at, const ritz_placement *place,
+static void derive_pose(const link *at, const placement *place,
                         ritz_joint_pose *pose)
 {
-    const ritz_placement *a = &place[at->body[0]];
-    const ritz_placement *b = &place[at->body[1]];
+    const placement *a = &place[at->body[0]];
+    const placement *b = &place[at->body[1]];
     double there[3], seen[3];
 
     ritz_turn_apply(b->R, at->far, there);
@@ -211,7 +203,7 @@ static void derive_pose(const link *at, const ritz_placement *place,
 }
 
 static ritz_status close_joint(const ritz_stage *stage, int64_t j,
-                               const link *at, const ritz_placement *place,
+                               const link *at, const placement *place,
                                ritz_joint_pose *pose)
 {
     const ritz_joint *joint = &stage->scene->joint[j];
@@ -240,18 +232,18 @@ ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
                               ritz_joint_pose *pose)
 {
     const ritz_scene *scene = stage->scene;
-    RITZ_OWN(places) all = {0};
+    RITZ_OWN_ARRAY placement *body = NULL;
 
-    RITZ_CHECK(find_places(stage, setting, &all));
+    RITZ_CHECK_NEW(body, stage->count);
+    find_places(stage, setting, pose, body);
     for (int64_t j = 0; j < scene->num_joints; j++) {
         const ritz_joint *joint = &scene->joint[j];
         link at;
 
-        if (find_link(stage, j, all.pose, &at))
+        if (find_link(stage, j, pose, &at))
             RITZ_CHECK(ritz_scene_context(
-                scene, close_joint(stage, j, &at, all.body, &all.pose[j]),
-                joint->line, joint->column, "joint", joint->name));
-        pose[j] = all.pose[j];
+                scene, close_joint(stage, j, &at, body, &pose[j]), joint->line,
+                joint->column, "joint", joint->name));
     }
     return RITZ_OK;
 }
@@ -290,18 +282,33 @@ static void renumber_grids(int64_t count, const ritz_component *body,
         add[k] = overlap ? k * power : 0;
 }
 
-/* Append the grids of one body. */
-static void append_grids(const ritz_grids *from, const ritz_placement *place,
-                         int64_t add, ritz_grids *to)
+/* Make room for a grid among those that are there, which ascend. */
+static int64_t insert_grid(int64_t id, ritz_grids *to)
+{
+    int64_t at = to->count++;
+
+    for (; at > 0 && to->id[at - 1] > id; at--) {
+        to->id[at] = to->id[at - 1];
+        to->frame[at] = to->frame[at - 1];
+        memcpy(to->position + 3 * at, to->position + 3 * (at - 1),
+               3 * sizeof *to->position);
+    }
+    to->id[at] = id;
+    return at;
+}
+
+/* Add the grids of one body. */
+static void add_grids(const ritz_grids *from, const placement *place,
+                      int64_t add, ritz_grids *to)
 {
     for (int64_t i = 0; i < from->count; i++) {
-        double *x = to->position + 3 * to->count;
+        const int64_t at = insert_grid(from->id[i] + add, to);
+        double *x = to->position + 3 * at;
 
         ritz_turn_apply(place->R, from->position + 3 * i, x);
         for (int64_t k = 0; k < 3; k++)
             x[k] += place->t[k];
-        to->id[to->count] = from->id[i] + add;
-        to->frame[to->count++] = to->num_frames + from->frame[i];
+        to->frame[at] = to->num_frames + from->frame[i];
     }
     for (int64_t f = 0; f < from->num_frames; f++)
         for (int64_t k = 0; k < 3; k++)
@@ -310,50 +317,12 @@ static void append_grids(const ritz_grids *from, const ritz_placement *place,
     to->num_frames += from->num_frames;
 }
 
-/* A grid and its index, to be sorted. */
-typedef struct grid_entry {
-    int64_t id, at;
-} grid_entry;
-
-static int compare_numbers(const void *left, const void *right)
-{
-    const grid_entry *a = left;
-    const grid_entry *b = right;
-
-    return (a->id > b->id) - (a->id < b->id);
-}
-
-/* Put grids in ascending order of number. */
-static ritz_status sort_grids(ritz_grids *grids)
-{
-    size_t n = (size_t)grids->count;
-    RITZ_OWN_ARRAY grid_entry *order = NULL;
-    RITZ_OWN_ARRAY double *position = NULL;
-    RITZ_OWN_ARRAY int64_t *frame = NULL;
-
-    RITZ_CHECK_NEW(order, grids->count);
-    RITZ_CHECK_NEW(position, 3 * grids->count);
-    RITZ_CHECK_NEW(frame, grids->count);
-    for (int64_t k = 0; k < grids->count; k++)
-        order[k] = (grid_entry){grids->id[k], k};
-    qsort(order, n, sizeof *order, compare_numbers);
-    for (int64_t k = 0; k < grids->count; k++) {
-        memcpy(position + 3 * k, grids->position + 3 * order[k].at,
-               3 * sizeof *position);
-        frame[k] = grids->frame[order[k].at];
-        grids->id[k] = order[k].id;
-    }
-    RITZ_FREE(grids->position, grids->frame);
-    RITZ_MOVE(grids->position, position);
-    RITZ_MOVE(grids->frame, frame);
-    return RITZ_OK;
-}
-
 ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t count, const ritz_component *body,
                              int64_t *add, ritz_grids *out)
 {
-    RITZ_OWN(places) place = {0};
+    RITZ_OWN_ARRAY placement *place = NULL;
+    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
     RITZ_OWN(ritz_grids) all = {0};
     int64_t grids = 0;
     int64_t frames = 1;
@@ -366,14 +335,15 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
     RITZ_CHECK_NEW(all.position, 3 * grids);
     RITZ_CHECK_NEW(all.frame, grids);
     RITZ_CHECK_NEW(all.axes, 9 * frames);
-    RITZ_CHECK(find_places(stage, setting, &place));
+    RITZ_CHECK_NEW(place, stage->count);
+    RITZ_CHECK_NEW(pose, stage->scene->num_joints);
+    find_places(stage, setting, pose, place);
     renumber_grids(count, body, add);
     all.num_frames = 1;
     for (int64_t k = 0; k < 3; k++)
         all.axes[4 * k] = 1.0;
     for (int64_t k = 0; k < count; k++)
-        append_grids(&body[k].grids, &place.body[k], add[k], &all);
-    RITZ_CHECK(sort_grids(&all));
+        add_grids(&body[k].grids, &place[k], add[k], &all);
     RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
@@ -391,7 +361,7 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
 enum { DIRECTIONS = 6, MASSES = 36 };
 
 /* X of a placement, 6 x 6. */
-static void fill_transport(const ritz_placement *place, ritz_dense *X)
+static void fill_transport(const placement *place, ritz_dense *X)
 {
     for (int64_t j = 0; j < 3; j++) {
         const double axis[3] = {place->R[j], place->R[3 + j], place->R[6 + j]};
@@ -419,8 +389,7 @@ static ritz_status add_body(const ritz_invariants *own, const ritz_dense *X,
     RITZ_CHECK(ritz_dense_mul(&XL, P, &L));
     RITZ_CHECK(ritz_dense_mul(X, &mass, &XM));
     RITZ_CHECK(ritz_dense_mul_nt(&XM, X, &all));
-    for (int64_t k = 0; k < DIRECTIONS * L.ncol; k++)
-        c->momentum.val[k] += L.val[k];
+    ritz_dense_add(1.0, &L, &c->momentum);
     for (int64_t k = 0; k < MASSES; k++)
         c->rigid[k] += all.val[k];
     return RITZ_OK;
@@ -429,21 +398,22 @@ static ritz_status add_body(const ritz_invariants *own, const ritz_dense *X,
 ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
                             ritz_configuration *configuration)
 {
-    RITZ_OWN(places) all = {0};
+    RITZ_OWN_ARRAY placement *body = NULL;
+    RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
     RITZ_OWN(ritz_dense) X = {0};
 
     for (int64_t k = 0; k < stage->count; k++)
         if (!stage->body[k].invariants.momentum.val)
             return RITZ_OK;
-    RITZ_CHECK(find_places(stage, setting, &all));
-    RITZ_CHECK(ritz_place_joints(stage, setting, all.pose));
-    memset(all.body, 0, (size_t)stage->count * sizeof *all.body);
-    place_bodies(stage, all.pose, all.body);
+    RITZ_CHECK_NEW(body, stage->count);
+    RITZ_CHECK_NEW(pose, stage->scene->num_joints);
+    RITZ_CHECK(ritz_place_joints(stage, setting, pose));
+    place_bodies(stage, pose, body);
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, DIRECTIONS, &X));
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
                               &configuration->momentum));
     for (int64_t k = 0; k < stage->count; k++) {
-        fill_transport(&all.body[k], &X);
+        fill_transport(&body[k], &X);
         RITZ_CHECK(add_body(&stage->body[k].invariants, &X,
                             &configuration->P[k], configuration));
     }

@@ -1,8 +1,8 @@
 /* A scene's models, loaded and reduced: the bodies that are assembled. */
-#include "assembly/joints.h"
+#include "assembly/assembly.h"
+
 #include "base/alloc.h"
 
-#include <ritz/assembly.h>
 #include <ritz/base.h>
 #include <ritz/basis.h>
 #include <ritz/model.h>
@@ -123,40 +123,30 @@ static ritz_status check_ports(const ritz_scene *scene, int64_t k,
     return RITZ_OK;
 }
 
-/* A reduced model, or as many of its columns as the scene takes. */
-static ritz_status load_columns(const ritz_source *source,
-                                const ritz_scene_component *item,
-                                ritz_reduced *out)
-{
-    RITZ_OWN(ritz_reduced) whole = {0};
-
-    RITZ_CHECK(source->reduced(source->state, item->model, &whole));
-    if (item->order > 0) {
-        RITZ_CHECK_IN(item->model,
-                      ritz_reduced_prefix(&whole, item->order, out));
-    } else {
-        RITZ_MOVE(*out, whole);
-    }
-    return RITZ_OK;
-}
-
-/* The model of a component of the scene, full or reduced. */
+/* The model of a component of the scene: full, or reduced to as many columns as
+   the scene takes. */
 static ritz_status load_model(const ritz_source *source,
                               const ritz_scene_component *item,
                               ritz_component *full, ritz_reduced *reduced)
 {
+    RITZ_OWN(ritz_reduced) whole = {0};
     char kind[RITZ_NAME_SIZE];
 
     RITZ_CHECK(source->kind(source->state, item->model, kind));
-    if (strcmp(kind, "reduced") == 0) {
-        RITZ_REFUSE_IF(item->basis[0], RITZ_ERR_ARGUMENT,
-                       "'%s' is reduced already, so it takes no basis",
-                       item->model);
-        return load_columns(source, item, reduced);
+    if (strcmp(kind, "reduced") != 0) {
+        RITZ_REFUSE_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
+                       "'%s' is a full model, so a basis is due", item->model);
+        return source->component(source->state, item->model, full);
     }
-    RITZ_REFUSE_IF(!item->basis[0], RITZ_ERR_ARGUMENT,
-                   "'%s' is a full model, so a basis is due", item->model);
-    return source->component(source->state, item->model, full);
+    RITZ_REFUSE_IF(item->basis[0], RITZ_ERR_ARGUMENT,
+                   "'%s' is reduced already, so it takes no basis",
+                   item->model);
+    RITZ_CHECK(source->reduced(source->state, item->model, &whole));
+    if (item->order > 0)
+        return ritz_context(ritz_reduced_prefix(&whole, item->order, reduced),
+                            item->model);
+    RITZ_MOVE(*reduced, whole);
+    return RITZ_OK;
 }
 
 ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
@@ -315,37 +305,34 @@ static ritz_status complete_stage(ritz_stage *stage)
 
 ritz_status ritz_stage_new(const ritz_scene *scene, ritz_stage *out)
 {
-    RITZ_OWN(ritz_stage) stage = {.scene = scene};
+    RITZ_OWN(ritz_bodies) body = {0};
 
-    RITZ_CHECK_NEW(stage.body, scene->num_components);
-    for (int64_t k = 0; k < scene->num_components; k++) {
-        ritz_monitor_step("component", k, scene->num_components);
-        RITZ_CHECK(load_body(scene, k, &stage.body[k]));
-        stage.count++;
+    RITZ_CHECK(ritz_bodies_new(scene->num_components, &body));
+    for (int64_t k = 0; k < body.count; k++) {
+        ritz_monitor_step("component", k, body.count);
+        RITZ_CHECK(load_body(scene, k, &body.item[k]));
     }
-    RITZ_CHECK(complete_stage(&stage));
-    RITZ_MOVE(*out, stage);
-    return RITZ_OK;
+    return ritz_stage_from(scene, body.item, out);
 }
 
 ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
                             ritz_stage *out)
 {
+    const size_t bytes = (size_t)scene->num_components * sizeof *body;
+    RITZ_OWN(ritz_stage) stage = {.scene = scene};
     ritz_status status = RITZ_OK;
-    ritz_stage stage = {.scene = scene};
 
-    RITZ_NEW(stage.body, scene->num_components);
+    RITZ_CHECK_NEW(stage.body, scene->num_components);
     stage.count = scene->num_components;
-    memcpy(stage.body, body, (size_t)stage.count * sizeof *body);
-    RITZ_TRY(complete_stage(&stage));
-    memset(body, 0, (size_t)stage.count * sizeof *body);
-    RITZ_MOVE(*out, stage);
-done:
-    if (stage.body && stage.count > 0) { /* return the bodies to the caller */
-        memcpy(body, stage.body, (size_t)stage.count * sizeof *body);
-        memset(stage.body, 0, (size_t)stage.count * sizeof *stage.body);
+    memcpy(stage.body, body, bytes);
+    status = complete_stage(&stage);
+    if (status == RITZ_OK) {
+        memset(body, 0, bytes);
+        RITZ_MOVE(*out, stage);
+    } else { /* return the bodies to the caller */
+        memcpy(body, stage.body, bytes);
+        memset(stage.body, 0, bytes);
     }
-    ritz_stage_free(&stage);
     return status;
 }
 
@@ -358,9 +345,7 @@ ritz_status ritz_bodies_new(int64_t count, ritz_bodies *out)
 
 void ritz_bodies_free(ritz_bodies *bodies)
 {
-    for (int64_t k = 0; k < bodies->count; k++)
-        ritz_reduced_free(&bodies->item[k]);
-    free(bodies->item);
+    RITZ_FREE_EACH(ritz_reduced, bodies->count, bodies->item);
     *bodies = (ritz_bodies){0};
 }
 
@@ -380,9 +365,8 @@ void ritz_stage_scale(const ritz_stage *stage, double *scale)
 
 void ritz_stage_free(ritz_stage *stage)
 {
-    for (int64_t k = 0; stage->body && k < stage->count; k++)
-        ritz_reduced_free(&stage->body[k]);
-    RITZ_FREE(stage->body, stage->first);
+    RITZ_FREE_EACH(ritz_reduced, stage->count, stage->body);
+    free(stage->first);
     ritz_io_free(&stage->io);
     ritz_dampers_free(&stage->dampers);
     *stage = (ritz_stage){0};

@@ -39,7 +39,8 @@ static void zero_entries(ritz_range range, ritz_dense *A)
 
 /* Project the bodies on the subspaces V. */
 static ritz_status project_bodies(const ritz_stage *stage,
-                                  const ritz_range *massless, ritz_trial *out)
+                                  const ritz_range *massless,
+                                  ritz_comparison *out)
 {
     RITZ_OWN(ritz_stage) made = {0};
 
@@ -62,38 +63,27 @@ static ritz_status project_bodies(const ritz_stage *stage,
 }
 
 ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
-                             ritz_trial *out)
+                             ritz_comparison *out)
 {
-    RITZ_OWN(ritz_trial) trial = {.count = rows->stage->count};
     RITZ_OWN_ARRAY ritz_range *massless = NULL;
 
-    RITZ_CHECK_NEW(massless, trial.count);
-    RITZ_CHECK_NEW(trial.V, trial.count);
+    out->num_bodies = rows->stage->count;
+    RITZ_CHECK_NEW(massless, out->num_bodies);
+    RITZ_CHECK_NEW(out->V, out->num_bodies);
     RITZ_CHECK_IN(
         "composite modes",
-        ritz_compare_composite(rows, plan, trial.V, massless, &trial.vectors));
-    RITZ_CHECK_IN("stage 2", project_bodies(rows->stage, massless, &trial));
-    RITZ_CHECK_IN("stage 2", ritz_assemble(&trial.second, NULL, &trial.system));
-    RITZ_MOVE(*out, trial);
-    return RITZ_OK;
-}
-
-void ritz_trial_free(ritz_trial *trial)
-{
-    for (int64_t c = 0; trial->V && c < trial->count; c++)
-        ritz_dense_free(&trial->V[c]);
-    free(trial->V);
-    ritz_stage_free(&trial->second);
-    ritz_system_free(&trial->system);
-    *trial = (ritz_trial){0};
+        ritz_compare_composite(rows, plan, out->V, massless, &out->composite));
+    RITZ_CHECK_IN("stage 2", project_bodies(rows->stage, massless, out));
+    return ritz_context(ritz_assemble(&out->second, NULL, &out->second_system),
+                        "stage 2");
 }
 
 /* Orders of the bodies of a trial, and their sum. */
-static ritz_status list_orders(const ritz_trial *trial, int64_t **order,
+static ritz_status list_orders(const ritz_comparison *trial, int64_t **order,
                                int64_t *total)
 {
-    RITZ_CHECK_NEW(*order, trial->count);
-    for (int64_t c = 0; c < trial->count; c++)
+    RITZ_CHECK_NEW(*order, trial->num_bodies);
+    for (int64_t c = 0; c < trial->num_bodies; c++)
         *total += (*order)[c] = trial->V[c].ncol;
     return RITZ_OK;
 }
@@ -102,7 +92,7 @@ static ritz_status list_orders(const ritz_trial *trial, int64_t **order,
 static ritz_status try_tolerance(const ritz_rows *rows, const ritz_plan *plan,
                                  ritz_tolerance_row *out)
 {
-    RITZ_OWN(ritz_trial) trial = {0};
+    RITZ_OWN(ritz_comparison) trial = {0};
 
     out->tolerance = plan->tolerance;
     out->frequency_error = out->gain_error = out->response_error = nan("");
@@ -117,7 +107,7 @@ static ritz_status try_tolerance(const ritz_rows *rows, const ritz_plan *plan,
         row.stray = NULL;
         status =
             ritz_compare_measure(rows->stage, trial.V, ritz_rows_first(rows, k),
-                                 &trial.system.configuration[k], &row);
+                                 &trial.second_system.configuration[k], &row);
         free(row.stray);
         RITZ_CHECK(status);
         out->largest = row.order > out->largest ? row.order : out->largest;
@@ -243,18 +233,19 @@ static ritz_status measure_deviation(const ritz_scene *scene,
 }
 
 /* Errors at listed configurations, and of the static gain between them. */
-static ritz_status measure_set(const ritz_rows *rows, const ritz_trial *trial,
+static ritz_status measure_set(const ritz_rows *rows,
+                               const ritz_comparison *trial,
                                ritz_candidate *out)
 {
     const ritz_scene *scene = rows->stage->scene;
     bool driven = scene->num_inputs > 0 && scene->num_outputs > 0;
-    int64_t listed = trial->system.num_configurations;
+    int64_t listed = trial->second_system.num_configurations;
 
     for (int64_t k = 0; k < (driven ? rows->num_rows : listed); k++) {
         const ritz_configuration *first = ritz_rows_first(rows, k);
         RITZ_OWN(ritz_configuration) between = {0};
         const ritz_configuration *second =
-            k < listed ? &trial->system.configuration[k] : &between;
+            k < listed ? &trial->second_system.configuration[k] : &between;
         double *gain = k < listed ? &out->gain_listed : &out->gain_between;
         double error = nan("");
 
@@ -275,7 +266,7 @@ static ritz_status measure_set(const ritz_rows *rows, const ritz_trial *trial,
 static ritz_status try_set(const ritz_rows *rows, const ritz_plan *plan,
                            ritz_candidate *out)
 {
-    RITZ_OWN(ritz_trial) trial = {0};
+    RITZ_OWN(ritz_comparison) trial = {0};
 
     out->level = plan->augment;
     out->attached = plan->attached;

@@ -4,7 +4,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
-#include "assembly/dual.h"
+#include "assembly/assembly.h"
 #include "compare/compare.h"
 
 #include <ritz/base.h>
@@ -35,10 +35,7 @@ static ritz_status add_row(const ritz_scene *scene, const double *setting,
     ritz_compare_row *row = &c->row[c->num_rows++];
 
     row->listed = listed;
-    RITZ_CHECK_NEW(row->setting, scene->num_sweeps);
-    if (scene->num_sweeps > 0)
-        memcpy(row->setting, setting,
-               (size_t)scene->num_sweeps * sizeof *row->setting);
+    RITZ_CHECK_COPY(row->setting, setting, scene->num_sweeps);
     return RITZ_OK;
 }
 
@@ -236,20 +233,11 @@ static ritz_status measure_rows(const ritz_rows *rows, ritz_comparison *c)
 static ritz_status reduce_bodies(const ritz_rows *rows, ritz_comparison *c)
 {
     ritz_plan plan = ritz_compare_plan(rows->stage->scene);
-    RITZ_OWN(ritz_trial) trial = {0};
 
     RITZ_CHECK_IN("attached dofs",
                   ritz_compare_candidates(rows, &plan, &c->num_candidates,
                                           &c->candidate));
-    RITZ_CHECK(ritz_compare_try(rows, &plan, &trial));
-    c->num_bodies = trial.count;
-    c->V = trial.V;
-    c->composite = trial.vectors;
-    c->removed = trial.removed;
-    c->second = trial.second;
-    c->second_system = trial.system;
-    memset(&trial, 0, sizeof trial);
-    return RITZ_OK;
+    return ritz_compare_try(rows, &plan, c);
 }
 
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
@@ -334,13 +322,11 @@ void ritz_compare_suggest(const ritz_comparison *comparison,
 
 void ritz_comparison_free(ritz_comparison *comparison)
 {
-    for (int64_t k = 0; comparison->row && k < comparison->num_rows; k++) {
+    for (int64_t k = 0; comparison->row && k < comparison->num_rows; k++)
         RITZ_FREE(comparison->row[k].setting, comparison->row[k].kept,
                   comparison->row[k].stray);
-    }
-    for (int64_t k = 0; comparison->V && k < comparison->num_bodies; k++)
-        ritz_dense_free(&comparison->V[k]);
-    RITZ_FREE(comparison->row, comparison->V);
+    RITZ_FREE_EACH(ritz_dense, comparison->num_bodies, comparison->V);
+    free(comparison->row);
     ritz_candidates_free(comparison->num_candidates, &comparison->candidate);
     ritz_stage_free(&comparison->second);
     ritz_system_free(&comparison->first_system);

@@ -12,18 +12,6 @@ typedef struct ritz_plan {
     bool inputs_too;      /* and inputs that only the scene names */
 } ritz_plan;
 
-/*
- * Stage two by one plan: its bodies, and the system at listed configurations.
- */
-typedef struct ritz_trial {
-    int64_t count;   /* of bodies */
-    ritz_dense *V;   /* of each body */
-    int64_t vectors; /* before dependent ones were removed */
-    bool removed;
-    ritz_stage second;
-    ritz_system system;
-} ritz_trial;
-
 /* Stage one at all rows: listed configurations, and those between them. */
 typedef struct ritz_rows {
     const ritz_stage *stage;
@@ -39,10 +27,14 @@ const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
 /** The plan that the scene requests; `attached` may still be AUTO. */
 ritz_plan ritz_compare_plan(const ritz_scene *scene);
 
-/** Build stage two by a plan. */
+/**
+ * Build stage two by a plan: its bodies with their V, and the second system at
+ * listed configurations.
+ *
+ * @param[in,out] out  has none of these yet
+ */
 ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
-                             ritz_trial *out);
-void ritz_trial_free(ritz_trial *trial);
+                             ritz_comparison *out);
 
 /**
  * The least value of a mode that matters: the scene's tolerance times the

@@ -172,8 +172,7 @@ static ritz_status relieve_inertia(const ritz_dense *R, const ritz_dense *MR,
         m += after > RITZ_FORCE_RELIEVED * before;
     }
     RITZ_CHECK(ritz_dense_columns(F, 0, m, &kept));
-    ritz_dense_free(F);
-    RITZ_MOVE(*F, kept);
+    ritz_dense_replace(F, &kept);
     return RITZ_OK;
 }
 
@@ -196,12 +195,9 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
     if (F.ncol > 0 && r > 0)
         (void)LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', r, (int)F.ncol, L.val, r,
                              F.val, r);
-    for (int64_t j = 0; j < F.ncol; j++)
-        for (int64_t i = 0; i < r; i++)
-            ritz_dense_col(&F, j)[i] *= scale[i];
-    out->rigid = R;
-    out->answers = F;
-    R = F = (ritz_dense){0};
+    ritz_dense_scale_rows(scale, &F);
+    RITZ_MOVE(out->rigid, R);
+    RITZ_MOVE(out->answers, F);
     return RITZ_OK;
 }
 
@@ -226,9 +222,7 @@ static ritz_status body_massless(const ritz_reduced *body, const double *scale,
     /* as in linear/eigen_dense.c */
     while (null < r && m[null] <= 4.0 * r * DBL_EPSILON * m[r - 1])
         null++;
-    for (int j = 0; j < null; j++)
-        for (int i = 0; i < r; i++)
-            ritz_dense_col(&Q, j)[i] *= scale[i];
+    ritz_dense_scale_rows(scale, &Q);
     return ritz_dense_columns(&Q, 0, null, out);
 }
 
@@ -319,9 +313,7 @@ void ritz_mass_return(const ritz_dense *L, const double *scale, bool limited,
                     CblasNonUnit, r, (int)U->ncol, 1.0, L->val, r, U->val, r);
     if (limited)
         scale_to_unit(true, U);
-    for (int64_t j = 0; j < U->ncol; j++)
-        for (int64_t i = 0; i < r; i++)
-            ritz_dense_col(U, j)[i] *= scale[i];
+    ritz_dense_scale_rows(scale, U);
 }
 
 ritz_status ritz_mass_transform(const ritz_dense *L, const double *scale,
@@ -345,8 +337,7 @@ static ritz_status append_columns(const ritz_dense *more, ritz_dense *W)
     if (more->ncol == 0)
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_beside(W, more, &both));
-    ritz_dense_free(W);
-    RITZ_MOVE(*W, both);
+    ritz_dense_replace(W, &both);
     return RITZ_OK;
 }
 
@@ -614,12 +605,9 @@ static ritz_status compose_body(composing *it, const double *scale,
     RITZ_CHECK(choose_directions(it, &L, scale, massless, &U));
     if (U.ncol == U.nrow) { /* nothing to remove: leave the body as it is */
         *massless = (ritz_range){0, 0};
-        memset(U.val, 0, (size_t)(U.nrow * U.ncol) * sizeof *U.val);
-        for (int64_t j = 0; j < U.ncol; j++)
-            ritz_dense_col(&U, j)[j] = 1.0;
-    } else {
-        ritz_mass_return(&L, scale, mixed, &U);
+        return ritz_dense_identity(U.nrow, V);
     }
+    ritz_mass_return(&L, scale, mixed, &U);
     RITZ_MOVE(*V, U);
     return RITZ_OK;
 }

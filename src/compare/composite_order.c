@@ -5,7 +5,7 @@
  */
 #include "compare/compare.h"
 
-#include "assembly/dual.h"
+#include "assembly/assembly.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 
@@ -86,14 +86,12 @@ static ritz_status list_contributions(const ordering *g, ritz_given *to)
                                      &plan, &answers));
     RITZ_CHECK(choose_modes(to->at, g->lambda, to->value, &band));
     RITZ_CHECK(choose_modes(to->at, HUGE_VAL, NULL, &to->X[GROUP_REST]));
-    if (scene->augment == RITZ_AUGMENT_NONE) {
-        to->X[GROUP_BAND] = band;
-        to->X[GROUP_STATIC] = answers;
-        band = answers = (ritz_dense){0};
-    } else {
+    if (scene->augment != RITZ_AUGMENT_NONE) {
         RITZ_CHECK(ritz_dense_beside(&band, &answers, &to->X[GROUP_BAND]));
-        RITZ_CHECK(ritz_dense_new(band.nrow, 0, &to->X[GROUP_STATIC]));
+        return ritz_dense_new(band.nrow, 0, &to->X[GROUP_STATIC]);
     }
+    RITZ_MOVE(to->X[GROUP_BAND], band);
+    RITZ_MOVE(to->X[GROUP_STATIC], answers);
     return RITZ_OK;
 }
 
@@ -293,8 +291,7 @@ ritz_status ritz_composite_new(const ritz_stage *stage, ritz_composite *out)
 
 void ritz_composite_free(ritz_composite *composite)
 {
-    for (int64_t c = 0; composite->V && c < composite->num_bodies; c++)
-        ritz_dense_free(&composite->V[c]);
-    RITZ_FREE(composite->V, composite->rigid, composite->step);
+    RITZ_FREE_EACH(ritz_dense, composite->num_bodies, composite->V);
+    RITZ_FREE(composite->rigid, composite->step);
     *composite = (ritz_composite){0};
 }

@@ -177,30 +177,23 @@ static ritz_status find_strays(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-/* Keep columns `keep` of A, in place; keep[j] >= j. */
-static void keep_columns(int64_t count, const int64_t *keep, ritz_dense *A)
+/* Keep columns `keep` of A, or rows. */
+static ritz_status keep_some(bool rows, int64_t count, const int64_t *keep,
+                             ritz_dense *A)
 {
+    RITZ_OWN(ritz_dense) kept = {0};
+
     if (!A->val)
-        return;
-    for (int64_t j = 0; j < count; j++)
-        memmove(ritz_dense_col(A, j), ritz_dense_col(A, keep[j]),
-                (size_t)A->nrow * sizeof *A->val);
-    A->ncol = count;
+        return RITZ_OK;
+    RITZ_CHECK(rows ? ritz_dense_rows(A, count, keep, &kept)
+                    : ritz_dense_pick(A, count, keep, &kept));
+    ritz_dense_replace(A, &kept);
+    return RITZ_OK;
 }
 
-static void keep_rows(int64_t count, const int64_t *keep, ritz_dense *A)
-{
-    if (!A->val)
-        return;
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t i = 0; i < count; i++)
-            A->val[j * count + i] = A->val[j * A->nrow + keep[i]];
-    A->nrow = count;
-}
-
-/* Keep the modes `keep` of a configuration and no others. */
-static void truncate_modes(int64_t count, const int64_t *keep,
-                           ritz_configuration *c)
+/* Keep the modes `keep` of a configuration and no others; keep[j] >= j. */
+static ritz_status truncate_modes(int64_t count, const int64_t *keep,
+                                  ritz_configuration *c)
 {
     ritz_dense *const columns[] = {&c->io.C, &c->io.Cv,    &c->io.Ca,
                                    &c->K,    &c->M,        &c->D,
@@ -209,13 +202,14 @@ static void truncate_modes(int64_t count, const int64_t *keep,
                                 &c->D,    &c->K4,        NULL};
 
     for (int64_t k = 0; k < c->num_blocks; k++)
-        keep_columns(count, keep, &c->P[k]);
+        RITZ_CHECK(keep_some(false, count, keep, &c->P[k]));
     for (ritz_dense *const *A = columns; *A; A++)
-        keep_columns(count, keep, *A);
+        RITZ_CHECK(keep_some(false, count, keep, *A));
     for (ritz_dense *const *A = rows; *A; A++)
-        keep_rows(count, keep, *A);
+        RITZ_CHECK(keep_some(true, count, keep, *A));
     for (int64_t j = 0; j < count; j++)
         c->lambda[j] = c->lambda[keep[j]];
+    return RITZ_OK;
 }
 
 /* Remove the modes marked `removed` from the second system. */
@@ -235,9 +229,8 @@ static ritz_status remove_strays(const ritz_compare_row *row,
             keep[count++] = j;
         next += stray;
     }
-    if (count < second->K.ncol)
-        truncate_modes(count, keep, second);
-    return RITZ_OK;
+    return count < second->K.ncol ? truncate_modes(count, keep, second)
+                                  : RITZ_OK;
 }
 
 /*

@@ -167,14 +167,11 @@ static ritz_status classify_mode(const ritz_track_step *step, int64_t i,
         event.other[k] = best[k];
         event.mac[k] = read_mac(step, i, best[k]);
     }
-    if (step->partner[i] < 0) {
-        event.kind = RITZ_TRACK_LOST;
-        RITZ_CHECK(add_event(step, &event, t));
-    } else if (best[1] >= 0 && event.mac[0] - event.mac[1] < RITZ_TRACK_CLEAR) {
-        event.kind = RITZ_TRACK_TIE;
-        RITZ_CHECK(add_event(step, &event, t));
-    }
-    return RITZ_OK;
+    event.kind = step->partner[i] < 0 ? RITZ_TRACK_LOST : RITZ_TRACK_TIE;
+    if (step->partner[i] >= 0 &&
+        (best[1] < 0 || event.mac[0] - event.mac[1] >= RITZ_TRACK_CLEAR))
+        return RITZ_OK;
+    return add_event(step, &event, t);
 }
 
 /*

@@ -239,8 +239,8 @@ static ritz_status full_systems(ritz_fitter *f)
 
         ritz_monitor_step("full system", k, f->num_places);
         RITZ_CHECK_IN(place->at,
-                      ritz_assemble_masters(f->scene, place->setting,
-                                            &place->full, &place->master));
+                      ritz_assemble_full(f->scene, place->setting, &place->full,
+                                         &place->master));
         RITZ_CHECK_IN(place->at, ritz_component_install(&place->full));
         if (k < f->num_listed)
             RITZ_CHECK(ritz_fit_estimator(f, &place->full, place));

@@ -23,7 +23,7 @@ static void assemble(const char *text, const double *setting,
     RITZ_OWN(ritz_scene) scene = {0};
 
     folder_parse(text, &scene);
-    assert_ok(ritz_assemble_full(&scene, setting, out));
+    assert_ok(ritz_assemble_full(&scene, setting, out, NULL));
 }
 
 /* Elements first..first + count - 1 of the beam of four; a port a node. */
@@ -260,7 +260,8 @@ static void a_reduced_model_is_refused(void **state)
     assert_ok(
         ritz_container_write_reduced(folder_path("b.h5"), &reduced, &stamp));
     folder_parse(halves, &scene);
-    assert_fails(ritz_assemble_full(&scene, NULL, &none), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_assemble_full(&scene, NULL, &none, NULL),
+                 RITZ_ERR_ARGUMENT,
                  "b.h5' is reduced already, its full model is wanted");
 }
 
@@ -268,7 +269,7 @@ static ritz_status assemble_and_free(const ritz_scene *scene)
 {
     RITZ_OWN(ritz_component) system = {0};
 
-    return ritz_assemble_full(scene, NULL, &system);
+    return ritz_assemble_full(scene, NULL, &system, NULL);
 }
 
 static void no_allocation_failure_leaks(void **state)

@@ -4,7 +4,7 @@
  */
 #include "testing.h"
 
-#include "assembly/joints.h"
+#include "assembly/assembly.h"
 #include "bodies.h"
 #include "folder.h"
 #include "scenes.h"
@@ -683,7 +683,7 @@ static ritz_component join_full(const rig *r, const char *joints,
     write_scene(r, joints, text);
     folder_parse(text, &scene);
     assert_ok(ritz_scene_settings(&scene, at, setting));
-    assert_ok(ritz_assemble_full(&scene, setting, &system));
+    assert_ok(ritz_assemble_full(&scene, setting, &system, NULL));
     return system;
 }
 
@@ -864,7 +864,7 @@ static ritz_status assemble_full_anew(const ritz_scene *scene)
 {
     RITZ_OWN(ritz_component) system = {0};
 
-    return ritz_assemble_full(scene, allocated, &system);
+    return ritz_assemble_full(scene, allocated, &system, NULL);
 }
 
 static void no_allocation_failure_leaks(void **state)

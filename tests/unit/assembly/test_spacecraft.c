@@ -115,7 +115,7 @@ static void assemble(const char *text, const double *setting,
     RITZ_OWN(ritz_scene) scene = {0};
 
     folder_parse(text, &scene);
-    assert_ok(ritz_assemble_full(&scene, setting, out));
+    assert_ok(ritz_assemble_full(&scene, setting, out, NULL));
 }
 
 static void find_modes(const ritz_component *system, ritz_pairs *out)

@@ -68,7 +68,7 @@ static void place_arm(int64_t left, int64_t right, double angle, placed *out)
     assert_ok(ritz_stage_new(&out->scene, &out->stage));
     assert_ok(ritz_stage_assemble(&out->stage, &angle, &out->at));
     assert_ok(
-        ritz_assemble_masters(&out->scene, &angle, &out->full, &out->master));
+        ritz_assemble_full(&out->scene, &angle, &out->full, &out->master));
 }
 
 static void placed_free(placed *p)

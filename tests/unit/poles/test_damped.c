@@ -345,7 +345,7 @@ static void a_system_has_the_damping_of_its_bodies(void **state)
     store_half("a.h5", true);
     store_half("b.h5", false);
     folder_parse(halves, &scene);
-    assert_ok(ritz_assemble_full(&scene, NULL, &full));
+    assert_ok(ritz_assemble_full(&scene, NULL, &full, NULL));
     assert_string_equal(full.dampers.name[1], "B/strut");
     assert_near(full.dampers.held_c[1], 0.0, 0.0);
     assert_ok(ritz_component_install(&full));
@@ -369,7 +369,7 @@ static ritz_status assemble(const ritz_scene *scene)
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_configuration) c = {0};
 
-    RITZ_TRY(ritz_assemble_full(scene, NULL, &full));
+    RITZ_TRY(ritz_assemble_full(scene, NULL, &full, NULL));
     RITZ_TRY(ritz_stage_new(scene, &stage));
     RITZ_TRY(ritz_stage_assemble(&stage, NULL, &c));
 done:

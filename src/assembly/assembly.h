@@ -1,0 +1,215 @@
+/*
+ * The steps of assembly: what a joint asks of two ports, where bodies are,
+ * constraints and springs, and the assembly of bodies with force columns.
+ */
+#ifndef RITZ_ASSEMBLY_ASSEMBLY_H
+#define RITZ_ASSEMBLY_ASSEMBLY_H
+
+#include <ritz/assembly.h>
+#include <ritz/scene.h>
+
+/* The relations of a joint between the motions of two ports. */
+
+/* One end of a joint; the port's map is not used. */
+typedef struct ritz_joint_end {
+    const char *component; /* name, for messages */
+    const ritz_port_map *port;
+} ritz_joint_end;
+
+/*
+ * The position of the second body: a point x_B of it is at o_A + d + R (x_B -
+ * o_B) in the basic axes of the first, o being the origins of the ports.
+ */
+typedef struct ritz_joint_pose {
+    double R[9]; /* row by row */
+    double d[3];
+} ritz_joint_pose;
+
+/*
+ * A relative motion, r = sum_k b[k] u_B[k] - sum_k a[k] u_A[k] over the port
+ * rows: zero where locked, the elongation of a spring where caged.
+ */
+typedef struct ritz_relation {
+    const ritz_joint *joint;
+    const ritz_port_map *port[2];
+    bool rotation;
+    ritz_freedom freedom;
+    int64_t num_terms[2];
+    int64_t row[2][6]; /* port rows of either end */
+    double factor[2][6];
+} ritz_relation;
+
+typedef struct ritz_relations {
+    int64_t count, room;
+    ritz_relation *item;
+} ritz_relations;
+
+/**
+ * Name, origin, dofs and positions of a port, and how its dofs turn into the
+ * motions along basic axes.
+ *
+ * @param[out] turn  p x p
+ * @param[out] out   without its map
+ */
+ritz_status ritz_port_describe(const ritz_component *component,
+                               const ritz_port *port, ritz_dense *turn,
+                               ritz_port_map *out);
+
+/** The pose that a joint's settings give, @p setting being all of the scene. */
+void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
+                        ritz_joint_pose *out);
+
+/**
+ * Append the relative motions that a joint locks or holds on springs.
+ *
+ * @return RITZ_ERR_ARGUMENT if the ports do not fit: a grid has no counterpart
+ *         within the tolerance, or a port is not the one six-dof grid that the
+ *         joint needs
+ */
+ritz_status ritz_joint_relate(const ritz_joint *joint,
+                              const ritz_joint_end end[static 2],
+                              const ritz_joint_pose *pose,
+                              ritz_relations *list);
+
+void ritz_relations_free(ritz_relations *relations);
+
+/* Rotations and directions in space, 3 x 3 row by row. */
+
+/** Rotation by @p degrees about a unit axis; quarter turns are exact. */
+void ritz_turn_about(const double axis[static 3], double degrees,
+                     double R[static 9]);
+
+/** C = A B. */
+void ritz_turn_product(const double A[static 9], const double B[static 9],
+                       double C[static 9]);
+
+/** C = A'B. */
+void ritz_turn_between(const double A[static 9], const double B[static 9],
+                       double C[static 9]);
+
+/** y = R x, and y = R'x. */
+void ritz_turn_apply(const double R[static 9], const double x[static 3],
+                     double y[static 3]);
+void ritz_turn_back(const double R[static 9], const double x[static 3],
+                    double y[static 3]);
+
+/** c = a x b. */
+void ritz_cross(const double a[static 3], const double b[static 3],
+                double c[static 3]);
+
+double ritz_dot(const double a[static 3], const double b[static 3]);
+
+/**
+ * The neighbours of component @p k of a scene at its first configuration, by
+ * all its joints; the other components are read for it.
+ *
+ * @param[out] out  zero matrices if no joint holds the component
+ * @return RITZ_ERR_ARGUMENT if a neighbour is reduced already
+ */
+ritz_status ritz_scene_neighbour(const ritz_scene *scene, int64_t k,
+                                 const ritz_component *component,
+                                 const ritz_dofs *attached,
+                                 ritz_neighbour *out);
+
+/* Positions of bodies at a configuration. */
+
+/**
+ * The pose of each joint of the scene at some settings; that of a joint which
+ * closes a loop follows from the other joints.
+ *
+ * A loop that does not close is refused: its two ways around place a body
+ * differently.
+ *
+ * @param[out] pose  one for each joint
+ * @return RITZ_ERR_ARGUMENT naming the joint that closes it, and the gap
+ */
+ritz_status ritz_place_joints(const ritz_stage *stage, const double *setting,
+                              ritz_joint_pose *pose);
+
+/**
+ * Grids of all bodies in the basic frame of the first (of each tree of joints).
+ *
+ * @param[in]  stage  of the same bodies: its ports have the joints' origins
+ * @param[out] add    count, what to add to the grid numbers of each body so
+ *                    that no two are the same
+ */
+ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
+                             int64_t count, const ritz_component *body,
+                             int64_t *add, ritz_grids *out);
+
+/**
+ * Momentum and mass of rigid motion of all bodies at their positions, for a
+ * configuration that has its P; empty where a body's own are unknown.
+ */
+ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
+                            ritz_configuration *configuration);
+
+/*
+ * The springs and dampers of caged directions. Spring k is stretched by row k of
+ * S q: it adds k_k s_k s_k' to K, and its damper c_k s_k s_k' to D.
+ */
+typedef struct ritz_springs {
+    ritz_dense S; /* springs x Q */
+    ritz_freedom *hold;
+} ritz_springs;
+
+/**
+ * The springs of all joints at some settings, in the coordinates of the stage.
+ */
+ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
+                               ritz_springs *out);
+
+/**
+ * K += P'S' k S P, or with @p damping D += P'S' c S P. An empty matrix stays
+ * {0} if there is nothing to add.
+ */
+ritz_status ritz_springs_add(const ritz_springs *springs, bool damping,
+                             const ritz_dense *P, ritz_dense *A);
+
+/**
+ * The same without P, where the coordinates are some of the n of a full model.
+ *
+ * @param[in] at  Q, the index of each coordinate among the n
+ */
+ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
+                                    int64_t n, const int64_t *at,
+                                    ritz_sparse *A);
+
+void ritz_springs_free(ritz_springs *springs);
+
+/**
+ * Orthonormal columns that span the null space of C, c x n.
+ *
+ * @param[out] rank  singular values above 1e-9 of the largest
+ * @param[out] out   n x (n - rank)
+ * @cost   O(n^2 c)
+ */
+ritz_status ritz_null_space(const ritz_dense *C, int64_t *rank,
+                            ritz_dense *out);
+
+/* Bodies with force columns, which are joined by interface forces. */
+
+/** Whether a body of the stage has columns of kind force. */
+bool ritz_dual_is_due(const ritz_stage *stage);
+
+/**
+ * RITZ_ERR_ARGUMENT naming the first body with force columns; for methods that
+ * choose modes.
+ */
+ritz_status ritz_dual_refuse(const ritz_stage *stage);
+
+/**
+ * A system with force columns in its modal coordinates: rank, lambda,
+ * num_rigid and, among the errors, the number of negative eigenvalues.
+ *
+ * @param[in]  C      constraints, columns of scaled coordinates
+ * @param[in]  scale  of the coordinates
+ * @param[out] P      Q x e, coordinates of the bodies by modes of the system
+ * @return RITZ_ERR_SINGULAR if force columns have no stiffness
+ */
+ritz_status ritz_dual_assemble(const ritz_stage *stage,
+                               const ritz_springs *springs, const ritz_dense *C,
+                               const double *scale, ritz_dense *P,
+                               ritz_configuration *c);
+
+#endif
