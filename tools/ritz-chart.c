@@ -38,7 +38,9 @@ static ritz_status draw_chart(cli_run *run, const chart_kind *kind,
     RITZ_OWN(picture) drawn = {0};
 
     RITZ_CHECK(chart_read(run, run->num_operands - 1, run->operand + 1,
-                          kind ? kind->holds : ~CHART_SYSTEM, &sources));
+                          kind ? kind->holds : CHART_REPORT, &sources));
+    if (kind)
+        RITZ_CHECK(picture_new(request->path, true, &drawn));
     RITZ_CHECK(kind ? kind->draw(&sources, request, &drawn)
                     : report_write(&sources, request));
     cli_say(run, "%s", run->output);
@@ -47,7 +49,7 @@ static ritz_status draw_chart(cli_run *run, const chart_kind *kind,
 
 int main(int argc, char **argv)
 {
-    chart_request request = {.keep = true, .top = 10, .up_to_hz = 1e12};
+    chart_request request = {.top = 10, .up_to_hz = 1e12};
     const cli_option options[] = {
         CLI_LIST("measure", &request.measure, "NAME",
                  "of records: errors to draw [all relative ones]"),

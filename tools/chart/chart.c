@@ -20,33 +20,27 @@ static bool is_tracks(const char *path)
     return is;
 }
 
-/* Contents, by the kind of a container or by a test of a text file. */
-static const struct content {
-    int holds, model;
+/* Texts, which are told by how they begin. */
+static const struct text_kind {
+    int holds;
     bool (*is)(const char *path);
     const char *noun;
-} contents[] = {
-    {CHART_RECORDS, 0, records_is, "run records"},
-    {CHART_TRACKS, 0, is_tracks, "a table of tracks"},
-    {CHART_RANKING, MODEL_RANKING, NULL, "a ranking"},
-    {CHART_RESPONSE, MODEL_RESPONSE, NULL, "a response"},
-    {CHART_SIMULATION, MODEL_SIMULATION, NULL, "a time response"},
-    {CHART_MODES, MODEL_REDUCED, NULL, "a reduced component"},
-    {CHART_MODES, MODEL_BASIS, NULL, "a basis"},
-    {CHART_MODES, MODEL_COMPONENT, NULL, "a component"},
-    {CHART_SYSTEM, MODEL_SYSTEM, NULL, "a system"},
+} texts[] = {
+    {CHART_RECORDS, records_is, "run records"},
+    {CHART_TRACKS, is_tracks, "a table of tracks"},
 };
 
-enum { NUM_CONTENTS = sizeof contents / sizeof *contents };
+enum { NUM_TEXTS = sizeof texts / sizeof *texts };
 
 static ritz_status refuse_content(const char *path, const char *noun, int holds)
 {
-    char list[160] = "";
+    char list[160];
 
-    for (int k = 0; k < NUM_CONTENTS; k++)
-        if (contents[k].holds & holds)
+    model_nouns(holds, list, sizeof list);
+    for (int k = 0; k < NUM_TEXTS; k++)
+        if (texts[k].holds & holds)
             sink_append(list, sizeof list, "%s%s", *list ? " or " : "",
-                        contents[k].noun);
+                        texts[k].noun);
     return ritz_fail(RITZ_ERR_FORMAT, "'%s' holds %s, not %s", path, noun,
                      list);
 }
@@ -71,27 +65,25 @@ static ritz_status refuse_file(const char *path)
 static ritz_status read_file(cli_run *run, const char *path, int holds,
                              chart_sources *out, chart_file *file)
 {
-    const bool container = ritz_container_is(path);
     model_kind kind = MODEL_ANY;
     const char *noun = NULL;
 
     file->path = path;
-    if (container)
+    if (ritz_container_is(path)) {
         RITZ_CHECK(model_peek(path, &kind, &noun));
-    for (int k = 0; k < NUM_CONTENTS; k++) {
-        const struct content *c = &contents[k];
-
-        if (container ? c->model != (int)kind : !c->is || !c->is(path))
-            continue;
-        file->holds = c->holds;
-        noun = container ? noun : c->noun;
+        file->holds = (int)kind;
     }
+    for (int k = 0; k < NUM_TEXTS && !noun; k++)
+        if (texts[k].is(path)) {
+            file->holds = texts[k].holds;
+            noun = texts[k].noun;
+        }
     if (!noun)
         return refuse_file(path);
     if (!(file->holds & holds))
         return refuse_content(path, noun, holds);
-    if (container)
-        return model_read(run, path, (int)kind, &file->model);
+    if (file->holds & MODEL_ANY)
+        return model_read(run, path, file->holds, &file->model);
     RITZ_CHECK(cli_input(run, path));
     return file->holds == CHART_RECORDS ? records_read(path, &out->runs)
                                         : ritz_text_read(path, &file->text);
@@ -165,4 +157,15 @@ int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
         if (strcmp(name[k], wanted) == 0)
             return k;
     return -1;
+}
+
+ritz_status chart_check_names(const char *path, const char *what, int64_t count,
+                              char (*name)[RITZ_NAME_SIZE], int64_t num_wanted,
+                              char (*wanted)[RITZ_NAME_SIZE])
+{
+    for (int64_t k = 0; k < num_wanted; k++)
+        RITZ_REFUSE_IF(chart_find_name(count, name, wanted[k]) < 0,
+                       RITZ_ERR_ARGUMENT, "'%s' has no %s '%s'", path, what,
+                       wanted[k]);
+    return RITZ_OK;
 }

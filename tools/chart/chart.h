@@ -10,15 +10,13 @@
 #include "cli/records.h"
 #include "print/rankings.h"
 
-/* Contents of files. */
+/* Contents of files: kinds of containers, or texts. */
 enum {
-    CHART_RECORDS = 1,
-    CHART_TRACKS = 2,
-    CHART_RANKING = 4,
-    CHART_RESPONSE = 8,
-    CHART_MODES = 16, /* a reduced component, a basis, a component */
-    CHART_SIMULATION = 32,
-    CHART_SYSTEM = 64,
+    CHART_RECORDS = MODEL_ANY + 1,
+    CHART_TRACKS = 2 * CHART_RECORDS,
+    CHART_MODES = MODEL_REDUCED | MODEL_BASIS | MODEL_COMPONENT,
+    CHART_REPORT = CHART_RECORDS | CHART_TRACKS | CHART_MODES | MODEL_RANKING |
+                   MODEL_RESPONSE | MODEL_SIMULATION,
 };
 
 typedef struct chart_file {
@@ -36,8 +34,7 @@ typedef struct chart_sources {
 } chart_sources;
 
 typedef struct chart_request {
-    const char *path; /* of the picture */
-    bool keep;        /* see picture_new */
+    const char *path; /* of the picture or page */
     cli_list measure, channel;
     cli_list at;         /* of systems: which configurations */
     const char *subject; /* NULL: the only one */
@@ -47,31 +44,22 @@ typedef struct chart_request {
     int64_t top;         /* most modes of each ranking */
 } chart_request;
 
+/* Draws files of its kind, one or more, into a new picture. */
+typedef ritz_status chart_draw(const chart_sources *sources,
+                               const chart_request *request, picture *out);
+
+chart_draw chart_pareto, chart_convergence, chart_hankel, chart_response,
+    chart_mac, chart_tracks, chart_simulation;
+
 typedef struct chart_kind {
     const char *name, *summary;
-    int holds; /* contents that it draws, CHART_... */
+    int holds; /* contents that it draws */
     const char *files;
-    ritz_status (*draw)(const chart_sources *sources,
-                        const chart_request *request, picture *out);
+    chart_draw *draw;
 } chart_kind;
 
 /** All kinds; the last row has no name. */
 extern const chart_kind chart_kinds[];
-
-ritz_status chart_pareto(const chart_sources *sources,
-                         const chart_request *request, picture *out);
-ritz_status chart_convergence(const chart_sources *sources,
-                              const chart_request *request, picture *out);
-ritz_status chart_hankel(const chart_sources *sources,
-                         const chart_request *request, picture *out);
-ritz_status chart_response(const chart_sources *sources,
-                           const chart_request *request, picture *out);
-ritz_status chart_mac(const chart_sources *sources,
-                      const chart_request *request, picture *out);
-ritz_status chart_simulation(const chart_sources *sources,
-                             const chart_request *request, picture *out);
-ritz_status chart_tracks(const chart_sources *sources,
-                         const chart_request *request, picture *out);
 
 /** Read files of some contents; others are refused. */
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
@@ -101,6 +89,11 @@ chart_word chart_say_seconds(double seconds);
 /** Index of a name in a list; -1: it is not there. */
 int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
                         const char *wanted);
+
+/** Refuse a file that lacks one of some names, such as its first "output"s. */
+ritz_status chart_check_names(const char *path, const char *what, int64_t count,
+                              char (*name)[RITZ_NAME_SIZE], int64_t num_wanted,
+                              char (*wanted)[RITZ_NAME_SIZE]);
 
 typedef struct chart_range {
     double low, high;

@@ -3,7 +3,8 @@
  * for each measure, a series for each method.
  */
 #include "chart/chart.h"
-#include "chart/html.h"
+
+#include "base/names.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,10 +14,9 @@ static const double uncertainty = 0.1;
 
 typedef struct form {
     const char *title, *xlabel;
-    bool seconds;                 /* x is a time, on a logarithmic axis */
-    double (*x)(const record *r); /* NaN: not known */
-    bool front;                   /* with the Pareto front */
-    bool lines;                   /* with a line for each method */
+    bool times;    /* pareto: x is a time, on a logarithmic axis, and there is a
+                   front; else an order, and a line for each method */
+    bool simulate; /* the time is that of a simulated second */
 } form;
 
 /* Pixels, as errors.gp has them: of a cell, and of its panel. */
@@ -49,12 +49,11 @@ typedef struct panel {
 /* A chart while it is composed; the picture owns the arrays. */
 typedef struct work {
     const form *form;
-    record_set s;
-    panel *panel;        /* of each measure */
-    double *x, *y;       /* of each record, as drawn; NaN: not in this panel */
-    double *at_x, *at_y; /* the same in pixels of the panel */
-    int64_t *group;      /* which series a point is of, for picture_thin */
-    bool *front, *keep;
+    record_set *s;
+    panel *panel;      /* of each measure */
+    double *x, *y;     /* of each record, as drawn; NaN: not in this panel */
+    picture_point *at; /* the same in pixels of the panel */
+    bool *front;
     int64_t *order;           /* records in the order of a line */
     int64_t lifted, left_out; /* errors drawn at the foot; not drawn */
     picture *picture;
@@ -85,6 +84,14 @@ chart_range chart_decades(int64_t count, const double *values,
     return range;
 }
 
+/* The abscissa of a record; NaN: it is not known. */
+static double x_of(const form *f, const record *r)
+{
+    if (!f->times)
+        return (double)r->order;
+    return f->simulate ? r->cost : r->cpu;
+}
+
 /* Coordinates of all records in the panel of a measure, and its axes. */
 static void place_records(work *w, const measure *m, panel *p)
 {
@@ -92,11 +99,11 @@ static void place_records(work *w, const measure *m, panel *p)
     chart_range y = {0.0, 0.0};
     int64_t lifted = 0;
 
-    for (int64_t k = 0; k < w->s.all.count; k++) {
-        w->x[k] = w->form->x(&w->s.all.item[k]);
-        w->y[k] = record_error(&w->s.all.item[k], m->name);
+    for (int64_t k = 0; k < w->s->all.count; k++) {
+        w->x[k] = x_of(w->form, &w->s->all.item[k]);
+        w->y[k] = record_error(&w->s->all.item[k], m->name);
         if (!isfinite(w->y[k]) || !isfinite(w->x[k]) ||
-            (w->form->seconds && !(w->x[k] > 0.0))) {
+            (w->form->times && !(w->x[k] > 0.0))) {
             w->left_out++;
             w->x[k] = w->y[k] = nan("");
             continue;
@@ -104,7 +111,7 @@ static void place_records(work *w, const measure *m, panel *p)
         least = fmin(least, w->x[k]);
         most = fmax(most, w->x[k]);
     }
-    y = chart_decades(w->s.all.count, w->y, RECORDS_ROUNDING, &lifted);
+    y = chart_decades(w->s->all.count, w->y, RECORDS_ROUNDING, &lifted);
     w->lifted += lifted;
     *p = (panel){.x_low = least > most ? 0.5 : 0.7 * least,
                  .x_high = least > most ? 2.0 : 1.3 * most,
@@ -114,7 +121,7 @@ static void place_records(work *w, const measure *m, panel *p)
         p->x_low *= sqrt(p->x_high / p->x_low / least_ratio);
         p->x_high = least_ratio * p->x_low;
     }
-    if (!w->form->seconds)
+    if (!w->form->times)
         p->x_high = most > 0.0 ? 1.05 * most : 1.0;
     if (m->tolerance > 0.0) {
         p->tolerance = m->tolerance;
@@ -123,15 +130,16 @@ static void place_records(work *w, const measure *m, panel *p)
         if (m->tolerance >= p->y_high)
             p->y_high = 2.0 * m->tolerance;
     }
-    for (int64_t k = 0; k < w->s.all.count; k++)
-        w->y[k] = isnan(w->y[k]) ? w->y[k] : fmax(w->y[k], p->y_low);
+    const double foot = p->y_low;
+
     p->y_low *= pow(p->y_low / p->y_high, foot_part);
-    for (int64_t k = 0; k < w->s.all.count; k++) {
-        w->at_x[k] = PANEL_WIDE *
-                     (w->form->seconds
+    for (int64_t k = 0; k < w->s->all.count; k++) {
+        w->y[k] = isnan(w->y[k]) ? w->y[k] : fmax(w->y[k], foot);
+        w->at[k].x = PANEL_WIDE *
+                     (w->form->times
                           ? log(w->x[k] / p->x_low) / log(p->x_high / p->x_low)
                           : w->x[k] / p->x_high);
-        w->at_y[k] =
+        w->at[k].y =
             PANEL_HIGH * log(w->y[k] / p->y_low) / log(p->y_high / p->y_low);
     }
 }
@@ -141,11 +149,11 @@ static void place_records(work *w, const measure *m, panel *p)
 /* A point is on the front if no other is as fast and as good, or better. */
 static void find_front(work *w)
 {
-    for (int64_t k = 0; k < w->s.all.count; k++) {
-        bool best = !isnan(w->x[k]) && !w->s.all.item[k].incomplete;
+    for (int64_t k = 0; k < w->s->all.count; k++) {
+        bool best = !isnan(w->x[k]) && !w->s->all.item[k].incomplete;
 
-        for (int64_t i = 0; best && i < w->s.all.count; i++) {
-            if (isnan(w->x[i]) || i == k || w->s.all.item[i].incomplete)
+        for (int64_t i = 0; best && i < w->s->all.count; i++) {
+            if (isnan(w->x[i]) || i == k || w->s->all.item[i].incomplete)
                 continue;
             best = !(w->x[i] <= w->x[k] && w->y[i] <= w->y[k] &&
                      (w->x[i] < w->x[k] || w->y[i] < w->y[k] || i < k));
@@ -168,11 +176,11 @@ static int64_t list_line(work *w, int64_t method)
 {
     int64_t count = 0, kept = 0;
 
-    for (int64_t k = 0; k < w->s.all.count; k++) {
+    for (int64_t k = 0; k < w->s->all.count; k++) {
         int64_t at = count;
 
-        if (isnan(w->x[k]) || w->s.all.item[k].incomplete ||
-            (method < 0 ? !w->front[k] : w->s.which[k] != method))
+        if (isnan(w->x[k]) || w->s->all.item[k].incomplete ||
+            (method < 0 ? !w->front[k] : w->s->which[k] != method))
             continue;
         for (; at > 0 && is_before(w, k, w->order[at - 1]); at--)
             w->order[at] = w->order[at - 1];
@@ -212,13 +220,13 @@ static void say_point(work *w, const record *r, const measure *m)
 /* A row; with @p word the order is written next to the point. */
 static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
 {
-    const record *r = &w->s.all.item[k];
+    const record *r = &w->s->all.item[k];
     FILE *file = w->picture->data.file;
 
-    fprintf(file, "%ld\t%ld\t%d\t%.9g\t%.9g\t", p, w->s.which[k], style,
+    fprintf(file, "%ld\t%ld\t%d\t%.9g\t%.9g\t", p, w->s->which[k], style,
             w->x[k], w->y[k]);
     if (style <= MISSES)
-        say_point(w, r, &w->s.measure[p]);
+        say_point(w, r, &w->s->measure[p]);
     fprintf(file, "\t%ld\t", r->order);
     html_line(file, r->method);
     fprintf(file, "\t");
@@ -239,15 +247,15 @@ static void put_line(work *w, int64_t p, int64_t method)
 
     for (int64_t i = 0; i < count; i++) {
         const int64_t k = w->order[i];
-        const record *r = &w->s.all.item[k];
+        const record *r = &w->s->all.item[k];
         /* the legend has the orders of what was chosen, which has a ring */
         const bool word =
             method < 0 && !r->chosen && !r->runner_up &&
-            (w->at_x[k] - x > word_wide || y - w->at_y[k] > word_high);
+            (w->at[k].x - x > word_wide || y - w->at[k].y > word_high);
 
         if (word) {
-            x = w->at_x[k];
-            y = w->at_y[k];
+            x = w->at[k].x;
+            y = w->at[k].y;
         }
         put_row(w, p, k, method < 0 ? ON_FRONT : ON_LINE, word);
     }
@@ -258,26 +266,25 @@ static void put_line(work *w, int64_t p, int64_t method)
 static ritz_status put_panel(work *w, int64_t p)
 {
     find_front(w);
-    for (int64_t k = 0; k < w->s.all.count; k++) {
-        const record *r = &w->s.all.item[k];
+    for (int64_t k = 0; k < w->s->all.count; k++) {
+        const record *r = &w->s->all.item[k];
 
-        w->keep[k] = w->front[k] || r->chosen || r->runner_up;
-        w->group[k] = isnan(w->x[k]) ? -1 : 2 * w->s.which[k] + r->feasible;
+        w->at[k].keep = w->front[k] || r->chosen || r->runner_up;
+        w->at[k].group = isnan(w->x[k]) ? -1 : 2 * w->s->which[k] + r->feasible;
     }
-    RITZ_CHECK(picture_thin(w->s.all.count, w->at_x, w->at_y, mark_apart,
-                            w->group, w->keep));
-    for (int64_t k = 0; k < w->s.all.count; k++) {
-        const record *r = &w->s.all.item[k];
+    RITZ_CHECK(picture_thin(w->s->all.count, w->at, mark_apart));
+    for (int64_t k = 0; k < w->s->all.count; k++) {
+        const record *r = &w->s->all.item[k];
 
-        if (w->group[k] < 0 || !w->keep[k])
+        if (w->at[k].group < 0 || !w->at[k].keep)
             continue;
         put_row(w, p, k, r->feasible ? MEETS : MISSES, false);
         if (r->chosen || r->runner_up)
             put_row(w, p, k, r->chosen ? CHOSEN : RUNNER_UP, false);
     }
-    if (w->form->front)
+    if (w->form->times)
         put_line(w, p, -1);
-    for (int64_t s = 0; w->form->lines && s < w->s.num_methods; s++)
+    for (int64_t s = 0; !w->form->times && s < w->s->num_methods; s++)
         put_line(w, p, s);
     return RITZ_OK;
 }
@@ -287,16 +294,16 @@ static void put_table(const work *w)
     FILE *file = w->picture->table.file;
 
     fprintf(file, "method\torder\tto reduce, s\tone simulated second, s");
-    for (int64_t m = 0; m < w->s.num_measures; m++)
-        fprintf(file, "\t%s", w->s.measure[m].title);
+    for (int64_t m = 0; m < w->s->num_measures; m++)
+        fprintf(file, "\t%s", w->s->measure[m].title);
     fprintf(file, "\tverdict\n");
-    for (int64_t k = 0; k < w->s.all.count; k++) {
-        const record *r = &w->s.all.item[k];
+    for (int64_t k = 0; k < w->s->all.count; k++) {
+        const record *r = &w->s->all.item[k];
 
         html_line(file, r->method);
         fprintf(file, "\t%ld\t%.4g\t%.4g", r->order, r->cpu, r->cost);
-        for (int64_t m = 0; m < w->s.num_measures; m++)
-            fprintf(file, "\t%.4g", record_error(r, w->s.measure[m].name));
+        for (int64_t m = 0; m < w->s->num_measures; m++)
+            fprintf(file, "\t%.4g", record_error(r, w->s->measure[m].name));
         fprintf(file, "\t%s\n",
                 r->chosen      ? "chosen"
                 : r->runner_up ? "runner-up"
@@ -330,19 +337,19 @@ static void add_signs(work *w)
     const record *chosen = NULL, *second = NULL;
     bool hollow = false, limit = false, uncertain = false;
 
-    for (int64_t s = 0; s < w->s.num_methods && s < PICTURE_SIGNS - 7; s++)
+    for (int64_t s = 0; s < w->s->num_methods && s < PICTURE_SIGNS - 7; s++)
         picture_add_sign(
             w->picture,
             (picture_sign){.colour = svg_series(s), .mark = find_mark(s)},
-            "%.60s", w->s.method[s]);
-    for (int64_t k = w->s.all.count - 1; k >= 0; k--) {
-        const record *r = &w->s.all.item[k];
+            "%.60s", w->s->method[s]);
+    for (int64_t k = w->s->all.count - 1; k >= 0; k--) {
+        const record *r = &w->s->all.item[k];
 
         chosen = r->chosen ? r : chosen;
         second = r->runner_up && !r->chosen ? r : second;
         hollow = hollow || !r->feasible;
     }
-    for (int64_t p = 0; p < w->s.num_measures; p++) {
+    for (int64_t p = 0; p < w->s->num_measures; p++) {
         limit = limit || w->panel[p].tolerance > 0.0;
         uncertain = uncertain || (w->panel[p].y_low <= uncertainty &&
                                   uncertainty <= w->panel[p].y_high);
@@ -361,7 +368,7 @@ static void add_signs(work *w)
          .dash = 2,
          .wide = 1.4},
     };
-    const bool there[] = {hollow, w->form->front, true, limit, uncertain};
+    const bool there[] = {hollow, w->form->times, true, limit, uncertain};
 
     for (size_t k = 0; k < sizeof there / sizeof *there; k++)
         if (there[k])
@@ -389,14 +396,14 @@ static void say_missing(work *w)
 static ritz_status compose_errors(work *w)
 {
     static const int64_t stride = sizeof(panel) / sizeof(double);
-    const int64_t n = w->s.num_measures, across = n > 1 ? 2 : 1;
+    const int64_t n = w->s->num_measures, across = n > 1 ? 2 : 1;
     picture *p = w->picture;
     const panel *first = w->panel;
 
     fprintf(p->data.file,
             "area\tseries\tstyle\tx\ty\ttip\torder\tmethod\tword\n");
     for (int64_t k = 0; k < n; k++) {
-        place_records(w, &w->s.measure[k], &w->panel[k]);
+        place_records(w, &w->s->measure[k], &w->panel[k]);
         RITZ_CHECK(put_panel(w, k));
     }
     p->wide = (double)(across * CELL_WIDE);
@@ -406,9 +413,9 @@ static ritz_status compose_errors(work *w)
     fprintf(p->given.file,
             "panels = %ld\nacross = %ld\nmethods = %ld\nseconds = %d\n"
             "lines = %d\n",
-            n, across, w->s.num_methods, w->form->seconds, w->form->lines);
+            n, across, w->s->num_methods, w->form->times, !w->form->times);
     picture_give_text(p, "xlabel", w->form->xlabel);
-    picture_give_texts(p, "title", n, w->s.measure->title, sizeof(measure));
+    picture_give_texts(p, "title", n, w->s->measure->title, sizeof(measure));
     picture_give_reals(p, "x_low", n, &first->x_low, stride);
     picture_give_reals(p, "x_high", n, &first->x_high, stride);
     picture_give_reals(p, "y_low", n, &first->y_low, stride);
@@ -420,39 +427,28 @@ static ritz_status compose_errors(work *w)
     return picture_draw(p, "errors.gp", w->form->title, w->form->xlabel);
 }
 
-/* Say why a name is not among the measures behind the first @p kept. */
-static ritz_status refuse_measure(const record_set *s, const char *asked,
-                                  int64_t kept)
-{
-    char names[16 * RITZ_NAME_SIZE] = "";
-
-    for (int64_t k = 0; k < s->num_measures; k++) {
-        RITZ_REFUSE_IF(k < kept && strcmp(s->measure[k].name, asked) == 0,
-                       RITZ_ERR_ARGUMENT, "--measure '%s' is given twice",
-                       asked);
-        sink_append(names, sizeof names, "%s%s", k > 0 ? ", " : "",
-                    s->measure[k].name);
-    }
-    return ritz_fail(RITZ_ERR_ARGUMENT, "no record has an error '%s', but %s",
-                     asked, names);
-}
-
 /* Measures of --measure, or all with an error that is more than rounding. */
 static ritz_status choose_measures(record_set *s, const cli_list *asked)
 {
+    const ritz_names all = {NULL, s->num_measures, s->measure->name,
+                            sizeof *s->measure};
+    char names[16 * RITZ_NAME_SIZE] = "";
     int64_t kept = 0;
 
+    for (int64_t m = 0; m < s->num_measures; m++)
+        sink_append(names, sizeof names, "%s%s", m > 0 ? ", " : "",
+                    s->measure[m].name);
     for (int64_t m = 0; asked->count == 0 && m < s->num_measures; m++)
         if (m == 0 || records_matter(&s->all, &s->measure[m]))
             s->measure[kept++] = s->measure[m];
     for (int a = 0; a < asked->count; a++) {
-        int64_t k = kept;
+        const int64_t k = ritz_names_index(&all, asked->text[a]);
 
-        while (k < s->num_measures &&
-               strcmp(s->measure[k].name, asked->text[a]) != 0)
-            k++;
-        if (k >= s->num_measures)
-            return refuse_measure(s, asked->text[a], kept);
+        RITZ_REFUSE_IF(k < 0, RITZ_ERR_ARGUMENT,
+                       "no record has an error '%s', but %s", asked->text[a],
+                       names);
+        RITZ_REFUSE_IF(k < kept, RITZ_ERR_ARGUMENT,
+                       "--measure '%s' is given twice", asked->text[a]);
         const measure found = s->measure[k];
 
         s->measure[k] = s->measure[kept];
@@ -467,72 +463,50 @@ static ritz_status draw_errors(const chart_sources *sources,
                                picture *out)
 {
     RITZ_OWN(record_set) set = {0};
-    work w = {.form = how, .picture = out};
-    int64_t n = 0;
+    work w = {.form = how, .s = &set, .picture = out};
     bool any = false;
 
     RITZ_CHECK(record_set_new(&sources->runs, request->subject, &set));
     RITZ_CHECK(choose_measures(&set, &request->measure));
-    n = set.all.count;
-    for (int64_t k = 0; k < n; k++)
-        any = any || isfinite(how->x(&set.all.item[k]));
+    for (int64_t k = 0; k < set.all.count; k++)
+        any = any || isfinite(x_of(how, &set.all.item[k]));
     RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
                    "no record says what its model cost");
-    RITZ_CHECK(picture_new(request->path, request->keep, out));
     PICTURE_NEW(out, w.panel, set.num_measures);
-    PICTURE_NEW(out, w.x, n);
-    PICTURE_NEW(out, w.y, n);
-    PICTURE_NEW(out, w.at_x, n);
-    PICTURE_NEW(out, w.at_y, n);
-    PICTURE_NEW(out, w.group, n);
-    PICTURE_NEW(out, w.front, n);
-    PICTURE_NEW(out, w.keep, n);
-    PICTURE_NEW(out, w.order, n);
-    w.s = set; /* borrowed */
+    PICTURE_NEW(out, w.x, set.all.count);
+    PICTURE_NEW(out, w.y, set.all.count);
+    PICTURE_NEW(out, w.at, set.all.count);
+    PICTURE_NEW(out, w.front, set.all.count);
+    PICTURE_NEW(out, w.order, set.all.count);
     return compose_errors(&w);
-}
-
-static double time_of(const record *r)
-{
-    return r->cpu;
-}
-
-static double cost_of(const record *r)
-{
-    return r->cost;
-}
-
-static double order_of(const record *r)
-{
-    return (double)r->order;
 }
 
 ritz_status chart_pareto(const chart_sources *sources,
                          const chart_request *request, picture *out)
 {
-    const bool simulate = request->against
-                              ? strcmp(request->against, "simulate") == 0
-                              : records_cost(&sources->runs);
-    const form how = {
-        .title = simulate ? "Errors against the cost of simulation"
-                          : "Errors against the time to reduce",
-        .xlabel = simulate ? "processor time for one simulated second"
-                           : "processor time to make basis and reduction",
-        .seconds = true,
-        .x = simulate ? cost_of : time_of,
-        .front = true,
+    static const form reduce = {
+        .title = "Errors against the time to reduce",
+        .xlabel = "processor time to make basis and reduction",
+        .times = true,
     };
+    static const form simulate = {
+        .title = "Errors against the cost of simulation",
+        .xlabel = "processor time for one simulated second",
+        .times = true,
+        .simulate = true,
+    };
+    const bool costs = request->against
+                           ? strcmp(request->against, "simulate") == 0
+                           : records_cost(&sources->runs);
 
-    return draw_errors(sources, request, &how, out);
+    return draw_errors(sources, request, costs ? &simulate : &reduce, out);
 }
 
 ritz_status chart_convergence(const chart_sources *sources,
                               const chart_request *request, picture *out)
 {
-    const form how = {.title = "Errors against order",
-                      .xlabel = "order of the reduced model",
-                      .x = order_of,
-                      .lines = true};
+    static const form orders = {.title = "Errors against order",
+                                .xlabel = "order of the reduced model"};
 
-    return draw_errors(sources, request, &how, out);
+    return draw_errors(sources, request, &orders, out);
 }

@@ -1,7 +1,5 @@
 /* Values of modes as bars, from rankings. */
 #include "chart/chart.h"
-#include "chart/html.h"
-#include "print/rankings.h"
 
 #include <math.h>
 #include <string.h>
@@ -165,8 +163,6 @@ static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
     for (int64_t k = 0; k < sources->count; k++) {
         const chart_file *file = &sources->file[k];
 
-        if (file->holds != CHART_RANKING)
-            continue;
         RITZ_REFUSE_IF(file->model.rankings.count == 0, RITZ_ERR_FORMAT,
                        "'%s' holds no ranking", file->path);
         out->group[out->count].all = file->model.rankings;
@@ -183,7 +179,6 @@ ritz_status chart_hankel(const chart_sources *sources,
     RITZ_OWN(contest) all = {0};
     char title[256];
 
-    RITZ_CHECK(picture_new(request->path, request->keep, out));
     RITZ_CHECK(borrow_rankings(sources, out, &result));
     RITZ_CHECK(contest_new(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,

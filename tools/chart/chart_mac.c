@@ -11,55 +11,48 @@
 #include "chart/chart.h"
 
 #include "base/alloc.h"
-#include "chart/html.h"
 
 #include <ritz/matrix.h>
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* A reader could not distinguish more modes. */
-enum {
-    MOST_MODES = 60,
-    MOST_FILES = 70,
-    MOST_BODIES = 64,
-    LABEL = RITZ_NAME_SIZE + 16,
-};
+enum { MOST_MODES = 60, MOST_BODIES = 64, LABEL = RITZ_NAME_SIZE + 16 };
 
 /* Masses agree if they differ by less than this part of the largest entry. */
 static const double rounding = 1e-6;
 
-/* One of the two models: a file and, if it is a system, a configuration. */
+/* One of the two models: shapes of its flexible modes, or columns of a basis,
+   and what their rows are. */
 typedef struct mac_side {
     const chart_file *file;
     const ritz_configuration *at; /* NULL: it is no system */
-} mac_side;
-
-/* Shapes of flexible modes, or columns of a basis, and what their rows are. */
-typedef struct mac_shapes {
-    ritz_dense U;  /* n x count */
+    ritz_dense U;                 /* n x count */
     ritz_dense MU; /* the same times the mass of bodies; {0}: U itself */
     double hertz[MOST_MODES]; /* NaN: none */
     int64_t count;
     const ritz_dof *dof;    /* n, borrowed; NULL: rows are not dofs */
     char (*channel)[LABEL]; /* n, inputs and outputs; NULL: rows are none */
     char name[2 * PICTURE_WORD]; /* "system.h5, clock=60" */
-} mac_shapes;
+} mac_side;
 
-/* Both models, and how many inputs and outputs they have in common, if they are
-   compared by these. */
 typedef struct mac_pair {
-    mac_shapes of[2];
-    int64_t num_common;
+    mac_side side[2];
+    int64_t num_bodies; /* whose masses are used */
+    const chart_file *body[MOST_BODIES];
+    int64_t num_common; /* inputs and outputs, if it is by these */
+    const char *how;    /* "by masses" */
 } mac_pair;
 
 static void mac_pair_free(mac_pair *pair)
 {
     for (int k = 0; k < 2; k++) {
-        ritz_dense_free(&pair->of[k].U);
-        ritz_dense_free(&pair->of[k].MU);
-        free(pair->of[k].channel);
+        ritz_dense_free(&pair->side[k].U);
+        ritz_dense_free(&pair->side[k].MU);
+        free(pair->side[k].channel);
     }
 }
 
@@ -67,7 +60,7 @@ static void mac_pair_free(mac_pair *pair)
 
 /* Number and frequencies of the flexible modes behind the rigid ones. */
 static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
-                               mac_shapes *out)
+                               mac_side *out)
 {
     out->count = all - rigid < MOST_MODES ? all - rigid : MOST_MODES;
     RITZ_REFUSE_IF(out->count < 1, RITZ_ERR_ARGUMENT,
@@ -78,11 +71,11 @@ static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
 }
 
 /* Modes in the coordinates of the model; a configuration is in modal ones. */
-static ritz_status find_modes(const mac_side *side, mac_shapes *out)
+static ritz_status find_modes(mac_side *out)
 {
     const ritz_span span = {.modes = MOST_MODES};
-    const ritz_configuration *at = side->at;
-    const model *m = &side->file->model;
+    const ritz_configuration *at = out->at;
+    const model *m = &out->file->model;
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     if (at) {
@@ -102,9 +95,9 @@ static ritz_status find_modes(const mac_side *side, mac_shapes *out)
 }
 
 /* Shapes at the dofs of a component, a reduced component or a basis. */
-static ritz_status shapes_at_dofs(const mac_side *side, mac_shapes *out)
+static ritz_status find_dof_shapes(mac_side *out)
 {
-    const model *m = &side->file->model;
+    const model *m = &out->file->model;
     const ritz_basis *b = &m->basis;
     RITZ_OWN(ritz_dense) Phi = {0};
 
@@ -117,7 +110,7 @@ static ritz_status shapes_at_dofs(const mac_side *side, mac_shapes *out)
     RITZ_REFUSE_IF(m->kind == MODEL_REDUCED && !m->reduced.dof,
                    RITZ_ERR_ARGUMENT,
                    "it was made without its basis, it has no shapes");
-    RITZ_CHECK(find_modes(side, out));
+    RITZ_CHECK(find_modes(out));
     out->dof = m->component.dof;
     if (m->kind != MODEL_REDUCED)
         return RITZ_OK;
@@ -127,42 +120,39 @@ static ritz_status shapes_at_dofs(const mac_side *side, mac_shapes *out)
 }
 
 /* Rows: inputs, then displacements, velocities and accelerations of outputs. */
-static ritz_status stack_channels(const ritz_io *io, mac_shapes *out)
+static ritz_status stack_channels(const ritz_io *io, mac_side *out)
 {
-    RITZ_OWN(ritz_dense) inputs = {0};
     const struct {
         const char *kind;
         const ritz_dense *C;
         int64_t count;
         char (*name)[RITZ_NAME_SIZE];
-    } parts[] = {{"input", &inputs, io->num_inputs, io->input},
+    } parts[] = {{"input", NULL, io->num_inputs, io->input},
                  {"output", &io->C, io->num_outputs, io->output},
                  {"velocity", &io->Cv, io->num_outputs, io->output},
                  {"acceleration", &io->Ca, io->num_outputs, io->output}};
     const int64_t n = io->num_inputs + 3 * io->num_outputs;
 
-    RITZ_CHECK(ritz_dense_new(io->num_inputs, out->count, &inputs));
-    for (int64_t j = 0; j < io->num_inputs; j++)
-        for (int64_t k = 0; k < out->count; k++)
-            ritz_dense_col(&inputs, k)[j] = ritz_dense_col(&io->B, j)[k];
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
     RITZ_CHECK_NEW(out->channel, n);
-    for (int64_t p = 0, row = 0; p < 4; p++)
-        for (int64_t i = 0; i < parts[p].count; i++, row++) {
-            snprintf(out->channel[row], LABEL, "%s %s", parts[p].kind,
+    for (int64_t j = 0; j < io->num_inputs; j++)
+        for (int64_t k = 0; k < out->count; k++)
+            ritz_dense_col(&out->U, k)[j] = ritz_dense_col(&io->B, j)[k];
+    for (int64_t p = 0, row = 0; p < 4; row += parts[p++].count) {
+        if (parts[p].C)
+            ritz_dense_put(parts[p].C, row, 0, &out->U);
+        for (int64_t i = 0; i < parts[p].count; i++)
+            snprintf(out->channel[row + i], LABEL, "%s %s", parts[p].kind,
                      parts[p].name[i]);
-            for (int64_t k = 0; k < out->count; k++)
-                ritz_dense_col(&out->U, k)[row] =
-                    ritz_dense_col(parts[p].C, k)[i];
-        }
+    }
     return RITZ_OK;
 }
 
 /* Modes in the rows of inputs B and outputs C; a basis has none. */
-static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
+static ritz_status find_channel_shapes(mac_side *out)
 {
-    const model *m = &side->file->model;
-    const ritz_io *io = side->at                   ? &side->at->io
+    const model *m = &out->file->model;
+    const ritz_io *io = out->at                    ? &out->at->io
                         : m->kind == MODEL_REDUCED ? &m->reduced.io
                                                    : &m->component.io;
     RITZ_OWN(ritz_io) own = {0};
@@ -172,7 +162,7 @@ static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
                    RITZ_ERR_ARGUMENT,
                    "it has no inputs and outputs, by which its modes could be "
                    "compared with those of a system");
-    RITZ_CHECK(find_modes(side, out));
+    RITZ_CHECK(find_modes(out));
     RITZ_CHECK(ritz_io_project(io, &out->U, &own));
     ritz_dense_free(&out->U);
     return stack_channels(&own, out);
@@ -190,11 +180,16 @@ static ritz_status shapes_by_channels(const mac_side *side, mac_shapes *out)
  * that it was assembled from, which sum_c P_c' M_c P_c = M of it shows.
  */
 
-static ritz_status refuse_bodies(const mac_side *side, const char *why)
+[[gnu::format(printf, 2, 3)]] static ritz_status
+refuse_bodies(const mac_side *side, const char *format, ...)
 {
     const ritz_system *s = &side->file->model.system;
-    char list[400] = "";
+    char list[400] = "", why[120];
+    va_list args;
 
+    va_start(args, format);
+    vsnprintf(why, sizeof why, format, args);
+    va_end(args);
     for (int64_t c = 0; c < s->num_components; c++)
         sink_append(list, sizeof list, "%s'%.63s'", c > 0 ? ", " : "",
                     s->component[c].name);
@@ -203,103 +198,79 @@ static ritz_status refuse_bodies(const mac_side *side, const char *why)
                      side->file->path, list, why);
 }
 
-/* The first file for each body that has as many coordinates. */
-static ritz_status assign_bodies(const mac_side *side, int64_t count,
-                                 const chart_file *const *body,
-                                 const ritz_reduced *of[MOST_BODIES])
+/* Bring the files into the order of the bodies: to each the first one left that
+   has as many coordinates. */
+static ritz_status sort_bodies(const mac_side *side, mac_pair *pair)
 {
     const ritz_system *s = &side->file->model.system;
-    bool taken[MOST_BODIES] = {false};
-    char why[120];
+    const chart_file **body = pair->body;
 
-    if (count != s->num_components || count > MOST_BODIES) {
-        snprintf(why, sizeof why, "%ld bodies, %ld named", s->num_components,
-                 count);
-        return refuse_bodies(side, why);
-    }
-    for (int64_t c = 0; c < count; c++) {
-        int64_t k = 0;
+    if (pair->num_bodies != s->num_components)
+        return refuse_bodies(side, "%ld bodies, %ld named", s->num_components,
+                             pair->num_bodies);
+    for (int64_t c = 0; c < pair->num_bodies; c++) {
+        const chart_file *found = NULL;
+        int64_t k = c;
 
-        while (k < count && (taken[k] || body[k]->model.reduced.K.ncol !=
-                                             s->component[c].order))
+        while (k < pair->num_bodies &&
+               body[k]->model.reduced.K.ncol != s->component[c].order)
             k++;
-        if (k == count) {
-            snprintf(why, sizeof why, "none left has %ld coordinates",
-                     s->component[c].order);
-            return refuse_bodies(side, why);
-        }
-        taken[k] = true;
-        of[c] = &body[k]->model.reduced;
+        if (k == pair->num_bodies)
+            return refuse_bodies(side, "none left has %ld coordinates",
+                                 s->component[c].order);
+        found = body[k];
+        for (; k > c; k--)
+            body[k] = body[k - 1];
+        body[c] = found;
     }
-    return RITZ_OK;
-}
-
-/* Flexible columns of P_c, and M_c times them, into their rows. */
-static ritz_status put_block(const ritz_dense *P, const ritz_dense *M,
-                             int64_t rigid, int64_t first, mac_shapes *out)
-{
-    const ritz_dense part = ritz_dense_part(P, rigid, out->count);
-    RITZ_OWN(ritz_dense) MP = {0};
-
-    RITZ_CHECK(ritz_dense_mul(M, &part, &MP));
-    for (int64_t k = 0; k < out->count; k++)
-        for (int64_t i = 0; i < P->nrow; i++) {
-            ritz_dense_col(&out->U, k)[first + i] = ritz_dense_col(&part, k)[i];
-            ritz_dense_col(&out->MU, k)[first + i] = ritz_dense_col(&MP, k)[i];
-        }
     return RITZ_OK;
 }
 
 /* Whether U'MU, with the masses of the files, is M of the configuration. */
-static ritz_status check_mass(const mac_side *side, const mac_shapes *s)
+static ritz_status check_mass(const mac_side *side)
 {
-    const ritz_dense *M = &side->at->M;
-    const int64_t rigid = side->at->num_rigid;
-    RITZ_OWN(ritz_dense) product = {0};
-    double apart = 0.0, most = 0.0;
+    const int64_t rigid = side->at->num_rigid, n = side->count;
+    RITZ_OWN(ritz_dense) product = {0}, due = {0};
 
-    RITZ_CHECK(ritz_dense_mul_tn(&s->U, &s->MU, &product));
-    for (int64_t j = 0; j < s->count; j++)
-        for (int64_t i = 0; i < s->count; i++) {
-            double due = ritz_dense_col(M, rigid + j)[rigid + i];
-
-            apart = fmax(apart, fabs(ritz_dense_col(&product, j)[i] - due));
-            most = fmax(most, fabs(due));
-        }
-    return apart <= rounding * most
-               ? RITZ_OK
-               : refuse_bodies(side, "their masses are not its mass");
+    RITZ_CHECK(ritz_dense_mul_tn(&side->U, &side->MU, &product));
+    RITZ_CHECK(ritz_dense_block(&side->at->M, rigid, n, rigid, n, &due));
+    ritz_dense_add(-1.0, &due, &product);
+    if (ritz_dense_max(&product) <= rounding * ritz_dense_max(&due))
+        return RITZ_OK;
+    return refuse_bodies(side, "their masses are not its mass");
 }
 
 /* Coordinates of all bodies of a configuration, and their masses times them;
    the bodies' files come in any order that fits. */
-static ritz_status shapes_of_bodies(const mac_side *side, int64_t count,
-                                    const chart_file *const *body,
-                                    mac_shapes *out)
+static ritz_status find_body_shapes(mac_pair *pair, mac_side *out)
 {
-    const ritz_system *s = &side->file->model.system;
-    const ritz_configuration *at = side->at;
-    const ritz_reduced *of[MOST_BODIES] = {NULL};
-    int64_t n = 0, first = 0;
+    const ritz_system *s = &out->file->model.system;
+    const ritz_configuration *at = out->at;
+    int64_t n = 0;
 
-    RITZ_CHECK(assign_bodies(side, count, body, of));
+    RITZ_CHECK(sort_bodies(out, pair));
     for (int64_t c = 0; c < s->num_components; c++)
         n += s->component[c].order;
-    RITZ_CHECK_IN(side->file->path,
+    RITZ_CHECK_IN(out->file->path,
                   count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->MU));
-    for (int64_t c = 0; c < s->num_components; c++) {
-        RITZ_CHECK(put_block(&at->P[c], &of[c]->M, at->num_rigid, first, out));
-        first += s->component[c].order;
+    n = 0;
+    for (int64_t c = 0; c < s->num_components; n += s->component[c++].order) {
+        const ritz_dense part =
+            ritz_dense_part(&at->P[c], at->num_rigid, out->count);
+        RITZ_OWN(ritz_dense) MP = {0};
+
+        RITZ_CHECK(ritz_dense_mul(&pair->body[c]->model.reduced.M, &part, &MP));
+        ritz_dense_put(&part, n, 0, &out->U);
+        ritz_dense_put(&MP, n, 0, &out->MU);
     }
-    return check_mass(side, out);
+    return check_mass(out);
 }
 
 /* --- rows in common, and MAC ---------------------------------------------- */
 
-static bool is_same(const mac_shapes *a, int64_t k, const mac_shapes *b,
-                    int64_t i)
+static bool is_same(const mac_side *a, int64_t k, const mac_side *b, int64_t i)
 {
     if (a->channel)
         return strcmp(a->channel[k], b->channel[i]) == 0;
@@ -307,25 +278,18 @@ static bool is_same(const mac_shapes *a, int64_t k, const mac_shapes *b,
            a->dof[k].component == b->dof[i].component;
 }
 
-/* Those rows of U and MU in place of all. */
-static ritz_status take_rows(int64_t count, const int64_t *row, mac_shapes *s)
+/* Those rows of U in place of all; where rows are matched there is no MU. */
+static ritz_status take_rows(int64_t count, const int64_t *row, mac_side *s)
 {
-    ritz_dense *const all[] = {&s->U, &s->MU};
+    RITZ_OWN(ritz_dense) some = {0};
 
-    for (int k = 0; k < 2; k++) {
-        RITZ_OWN(ritz_dense) some = {0};
-
-        if (!all[k]->val)
-            continue;
-        RITZ_CHECK(ritz_dense_rows(all[k], count, row, &some));
-        ritz_dense_free(all[k]);
-        RITZ_MOVE(*all[k], some);
-    }
+    RITZ_CHECK(ritz_dense_rows(&s->U, count, row, &some));
+    ritz_dense_replace(&s->U, &some);
     return RITZ_OK;
 }
 
 /* Keep the rows that both have, in the order of the first. */
-static ritz_status match_rows(mac_shapes *a, mac_shapes *b)
+static ritz_status match_rows(mac_side *a, mac_side *b)
 {
     const int64_t n = a->U.nrow, m = b->U.nrow;
     const bool named = (a->dof && b->dof) || (a->channel && b->channel);
@@ -358,11 +322,11 @@ static ritz_status match_rows(mac_shapes *a, mac_shapes *b)
 
 /* Divide each input and output by its largest value in both models, so that
    units do not matter; those without any tell nothing. */
-static ritz_status scale_channels(mac_shapes *a, mac_shapes *b, int64_t *count)
+static ritz_status scale_channels(mac_pair *pair)
 {
-    mac_shapes *const both[] = {a, b};
+    mac_side *const a = &pair->side[0], *const b = &pair->side[1];
+    mac_side *const both[] = {a, b};
 
-    *count = 0;
     for (int64_t i = 0; i < a->U.nrow; i++) {
         double most = 0.0;
 
@@ -372,20 +336,20 @@ static ritz_status scale_channels(mac_shapes *a, mac_shapes *b, int64_t *count)
         for (int t = 0; t < 2 && most > 0.0; t++)
             for (int64_t k = 0; k < both[t]->count; k++)
                 ritz_dense_col(&both[t]->U, k)[i] /= most;
-        *count += most > 0.0;
+        pair->num_common += most > 0.0;
     }
     RITZ_REFUSE_IF(
-        *count < 2, RITZ_ERR_ARGUMENT,
+        pair->num_common < 2, RITZ_ERR_ARGUMENT,
         "'%s' and '%s' have %s in common by which modes could be told "
         "apart; configurations of the same bodies can be compared by "
         "their masses: name their reduced components too",
         a->name, b->name,
-        *count == 0 ? "no input or output" : "but one input or output");
+        pair->num_common == 0 ? "no input or output"
+                              : "but one input or output");
     return RITZ_OK;
 }
 
-static double mac_of(const mac_shapes *a, const mac_shapes *b, int64_t i,
-                     int64_t j)
+static double mac_of(const mac_side *a, const mac_side *b, int64_t i, int64_t j)
 {
     const double *u = ritz_dense_col(&a->U, i), *v = ritz_dense_col(&b->U, j);
     const double *Mu = a->MU.val ? ritz_dense_col(&a->MU, i) : u;
@@ -402,122 +366,98 @@ static double mac_of(const mac_shapes *a, const mac_shapes *b, int64_t i,
 
 /* --- which two ------------------------------------------------------------ */
 
-/* The two models, and the bodies whose masses are used. */
-typedef struct choice {
-    mac_side side[2];
-    int64_t num_bodies;
-    const chart_file *body[MOST_FILES];
-} choice;
-
-/* A side that is a system at a configuration; NULL: its only one. */
-static ritz_status find_at(const chart_file *file, const char *at,
-                           mac_side *out)
+/* Systems, and the other files as bodies. */
+static ritz_status part_files(const chart_sources *sources, mac_pair *out,
+                              int64_t *num_systems)
 {
-    out->file = file;
-    RITZ_CHECK_IN(file->path,
-                  ritz_system_find(&file->model.system, at, &out->at));
-    return RITZ_OK;
-}
-
-/* One system: two configurations of it, or one and another model. */
-static ritz_status choose_one(const chart_file *system, const cli_list *at,
-                              choice *out)
-{
-    const ritz_system *s = &system->model.system;
-
-    if (out->num_bodies == 1) {
-        RITZ_CHECK(
-            find_at(system, at->count ? at->text[0] : NULL, &out->side[0]));
-        out->side[1] = (mac_side){.file = out->body[0]};
-        out->num_bodies = 0;
-        return RITZ_OK;
-    }
-    RITZ_REFUSE_IF(at->count == 1 || s->num_configurations != 2,
-                   RITZ_ERR_ARGUMENT,
-                   "MAC is of two: choose two configurations of '%s' by --at "
-                   "and --at again",
-                   system->path);
-    for (int k = 0; k < 2; k++)
-        out->side[k] = (mac_side){system, &s->configuration[k]};
-    return RITZ_OK;
-}
-
-static ritz_status choose_sides(const chart_sources *sources,
-                                const cli_list *at, choice *out)
-{
-    const chart_file *system[2] = {NULL, NULL};
-    int64_t num_systems = 0;
-
     for (int64_t k = 0; k < sources->count; k++) {
         const chart_file *file = &sources->file[k];
+        const bool system = file->holds == MODEL_SYSTEM;
 
-        if (file->holds != CHART_MODES && file->holds != CHART_SYSTEM)
-            continue;
         RITZ_REFUSE_IF(
-            file->holds == CHART_SYSTEM ? num_systems == 2
-                                        : out->num_bodies == MOST_FILES,
+            system ? *num_systems == 2 : out->num_bodies == MOST_BODIES,
             RITZ_ERR_ARGUMENT, "MAC is of two models, these are more");
-        if (file->holds == CHART_SYSTEM)
-            system[num_systems++] = file;
+        if (system)
+            out->side[(*num_systems)++].file = file;
         else
             out->body[out->num_bodies++] = file;
     }
+    return RITZ_OK;
+}
+
+/* Two models without bodies; or two systems, perhaps one at two configurations,
+   whose bodies the other files are. */
+static ritz_status choose_sides(const chart_sources *sources,
+                                const cli_list *at, mac_pair *out)
+{
+    mac_side *const side = out->side;
+    int64_t num_systems = 0;
+    bool both = false; /* configurations of the only system */
+
+    RITZ_CHECK(part_files(sources, out, &num_systems));
     RITZ_REFUSE_IF(at->count > 2, RITZ_ERR_ARGUMENT,
                    "MAC is of two: --at is there more than twice");
-    if (num_systems == 1 && at->count == 2) /* it is compared with itself */
-        system[num_systems++] = system[0];
-    for (int64_t k = 0; k < 2 && num_systems == 2; k++)
-        RITZ_CHECK(find_at(system[k],
-                           at->count ? at->text[k < at->count ? k : 0] : NULL,
-                           &out->side[k]));
-    if (num_systems == 2)
-        return RITZ_OK;
-    if (num_systems == 1)
-        return choose_one(system[0], at, out);
-    RITZ_REFUSE_IF(at->count > 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(num_systems == 0 && at->count > 0, RITZ_ERR_ARGUMENT,
                    "no file is a system, --at has nothing to choose from");
-    RITZ_REFUSE_IF(out->num_bodies != 2, RITZ_ERR_ARGUMENT,
-                   "MAC is of two models, %s",
-                   out->num_bodies < 2 ? "this is one" : "these are more");
-    for (int k = 0; k < 2; k++)
-        out->side[k] = (mac_side){.file = out->body[k]};
-    out->num_bodies = 0;
+    if (num_systems == 0 ||
+        (num_systems == 1 && at->count < 2 && out->num_bodies == 1)) {
+        RITZ_REFUSE_IF(num_systems + out->num_bodies != 2, RITZ_ERR_ARGUMENT,
+                       "MAC is of two models, %s",
+                       out->num_bodies < 2 ? "this is one" : "these are more");
+        for (int64_t k = num_systems; k < 2; k++)
+            side[k].file = out->body[k - num_systems];
+        out->num_bodies = 0;
+    } else if (num_systems == 1) {
+        side[1].file = side[0].file;
+        both = at->count == 0 &&
+               side[0].file->model.system.num_configurations == 2;
+        RITZ_REFUSE_IF(
+            at->count < 2 && !both, RITZ_ERR_ARGUMENT,
+            "MAC is of two: choose two configurations of '%s' by --at and --at "
+            "again",
+            side[0].file->path);
+    }
+    for (int k = 0; k < 2; k++) {
+        const ritz_system *system = &side[k].file->model.system;
+        const char *text = at->count ? at->text[k < at->count ? k : 0] : NULL;
+
+        if (both)
+            side[k].at = &system->configuration[k];
+        else if (side[k].file->holds == MODEL_SYSTEM)
+            RITZ_CHECK_IN(side[k].file->path,
+                          ritz_system_find(system, text, &side[k].at));
+    }
     return RITZ_OK;
 }
 
 /* Shapes of both sides, in rows that both have. */
-static ritz_status find_shapes(const choice *chosen, const char **how,
-                               mac_pair *pair)
+static ritz_status find_shapes(mac_pair *pair)
 {
-    mac_shapes *const set = pair->of;
-    const bool systems = chosen->side[0].at || chosen->side[1].at;
-    const bool masses = chosen->num_bodies > 0;
+    mac_side *const side = pair->side;
+    const bool systems = side[0].at || side[1].at;
+    const bool masses = pair->num_bodies > 0;
 
-    *how = masses ? "by masses" : systems ? "by inputs and outputs" : "by dofs";
-    for (int64_t k = 0; k < chosen->num_bodies; k++)
-        RITZ_REFUSE_IF(chosen->body[k]->model.kind != MODEL_REDUCED,
-                       RITZ_ERR_ARGUMENT,
+    pair->how = masses    ? "by masses"
+                : systems ? "by inputs and outputs"
+                          : "by dofs";
+    for (int64_t k = 0; k < pair->num_bodies; k++)
+        RITZ_REFUSE_IF(pair->body[k]->holds != MODEL_REDUCED, RITZ_ERR_ARGUMENT,
                        "'%s' is no reduced component, of which systems are "
                        "assembled",
-                       chosen->body[k]->path);
+                       pair->body[k]->path);
     for (int k = 0; k < 2; k++) {
-        const mac_side *side = &chosen->side[k];
-
-        snprintf(set[k].name, sizeof set[k].name, "%.80s%s%.80s",
-                 picture_base(side->file->path), side->at ? ", " : "",
-                 side->at ? side->at->at : "");
+        snprintf(side[k].name, sizeof side[k].name, "%.80s%s%.80s",
+                 picture_base(side[k].file->path), side[k].at ? ", " : "",
+                 side[k].at ? side[k].at->at : "");
         if (masses)
-            RITZ_CHECK(shapes_of_bodies(side, chosen->num_bodies, chosen->body,
-                                        &set[k]));
+            RITZ_CHECK(find_body_shapes(pair, &side[k]));
         else
-            RITZ_CHECK_IN(side->file->path,
-                          systems ? shapes_by_channels(side, &set[k])
-                                  : shapes_at_dofs(side, &set[k]));
+            RITZ_CHECK_IN(side[k].file->path,
+                          systems ? find_channel_shapes(&side[k])
+                                  : find_dof_shapes(&side[k]));
     }
-    RITZ_CHECK(match_rows(&set[0], &set[1]));
-    if (set[0].channel)
-        RITZ_CHECK(scale_channels(&set[0], &set[1], &pair->num_common));
-    return RITZ_OK;
+    RITZ_CHECK(match_rows(&side[0], &side[1]));
+    return side[0].channel ? scale_channels(pair) : RITZ_OK;
 }
 
 /* --- the picture ---------------------------------------------------------- */
@@ -525,7 +465,7 @@ static ritz_status find_shapes(const choice *chosen, const char **how,
 /* Up to this many modes there is a number in each cell. */
 enum { NUMBERED = 24 };
 
-static void say_mode(const mac_shapes *s, int64_t k, char out[32])
+static void say_mode(const mac_side *s, int64_t k, char out[32])
 {
     if (isnan(s->hertz[k]))
         snprintf(out, 32, "%ld", k + 1);
@@ -534,7 +474,7 @@ static void say_mode(const mac_shapes *s, int64_t k, char out[32])
 }
 
 /* Names of modes, as an array of the template. */
-static void give_modes(picture *p, const char *name, const mac_shapes *s)
+static void give_modes(picture *p, const char *name, const mac_side *s)
 {
     char word[MOST_MODES][32];
 
@@ -543,7 +483,7 @@ static void give_modes(picture *p, const char *name, const mac_shapes *s)
     picture_give_texts(p, name, s->count, word[0], sizeof word[0]);
 }
 
-static void put_data(const mac_shapes *a, const mac_shapes *b, picture *p)
+static void put_data(const mac_side *a, const mac_side *b, picture *p)
 {
     FILE *data = p->data.file, *table = p->table.file;
     char x[32], y[32];
@@ -572,27 +512,32 @@ static void put_data(const mac_shapes *a, const mac_shapes *b, picture *p)
     fprintf(table, "\n");
 }
 
-static ritz_status draw_mac(const mac_pair *pair, const char *how, picture *p)
+ritz_status chart_mac(const chart_sources *sources,
+                      const chart_request *request, picture *p)
 {
     enum { LEFT = 116, RIGHT = 64, HEAD = 40, FOOT = 100, LETTER = 8 };
-    const mac_shapes *a = &pair->of[0], *b = &pair->of[1];
-    const int64_t num_common = pair->num_common;
-    const int64_t most = a->count > b->count ? a->count : b->count;
-    const double cell = most <= NUMBERED ? 34.0 : 640.0 / (double)most;
+    RITZ_OWN(mac_pair) pair = {0};
+    const mac_side *a = &pair.side[0], *b = &pair.side[1];
     char title[4 * PICTURE_WORD];
-    size_t letters =
-        (size_t)snprintf(title, sizeof title, "MAC of %.160s and %.160s, %s",
-                         a->name, b->name, how);
+    int64_t most = 0;
+    double cell = 34.0, letters = 0.0;
 
-    p->wide = fmax(LEFT + RIGHT + cell * (double)b->count,
-                   (double)(LEFT + LETTER * letters));
+    RITZ_CHECK(choose_sides(sources, &request->at, &pair));
+    RITZ_CHECK(find_shapes(&pair));
+    most = a->count > b->count ? a->count : b->count;
+    if (most > NUMBERED)
+        cell = 640.0 / (double)most;
+    letters = snprintf(title, sizeof title, "MAC of %.160s and %.160s, %s",
+                       a->name, b->name, pair.how);
+    p->wide =
+        fmax(LEFT + RIGHT + cell * (double)b->count, LEFT + LETTER * letters);
     p->body = HEAD + FOOT + cell * (double)a->count;
     /* as many modes can be told apart as there are inputs and outputs */
-    if (num_common > 0 && (num_common < a->count || num_common < b->count))
+    if (pair.num_common > 0 && pair.num_common < most)
         snprintf(p->note, sizeof p->note,
                  "%ld inputs and outputs tell no more modes apart than that: "
                  "likeness can be chance",
-                 num_common);
+                 pair.num_common);
     fprintf(p->given.file,
             "across = %ld\ndown = %ld\ncell = %.6g\nleft = %d\n"
             "numbered = %d\n",
@@ -606,17 +551,4 @@ static ritz_status draw_mac(const mac_pair *pair, const char *how, picture *p)
     return picture_draw(p, "mac.gp", title,
                         "likeness of mode shapes: 1 the same, 0 nothing in "
                         "common");
-}
-
-ritz_status chart_mac(const chart_sources *sources,
-                      const chart_request *request, picture *out)
-{
-    RITZ_OWN(mac_pair) pair = {0};
-    choice chosen = {.num_bodies = 0};
-    const char *how = "";
-
-    RITZ_CHECK(choose_sides(sources, &request->at, &chosen));
-    RITZ_CHECK(find_shapes(&chosen, &how, &pair));
-    RITZ_CHECK(picture_new(request->path, request->keep, out));
-    return draw_mac(&pair, how, out);
 }

@@ -9,7 +9,6 @@
  * singular value is rounding relative to the largest.
  */
 #include "chart/chart.h"
-#include "chart/html.h"
 
 #include <complex.h>
 #include <math.h>
@@ -19,7 +18,6 @@ enum {
     MOST_RESPONSES = 12,
     MOST_CHANNELS = 4,
     MOST_PEAKS = 24,
-    SINGULAR = -1, /* in place of an output: singular values */
     CELL_WIDE = 490,
     CELL_HIGH = 470,  /* with one strip of errors or none */
     STRIP_HIGH = 153, /* what another strip adds */
@@ -34,8 +32,9 @@ static const double rounding = 1e-12;
 
 /* A channel, and the ends of its axes; the template is given the doubles. */
 typedef struct channel {
-    int64_t output, input; /* of the first response; SINGULAR */
+    int64_t output, input; /* of the first response */
     int64_t lines;         /* one, or as many as there are singular values */
+    int64_t place[MOST_RESPONSES]; /* in H of a point of each response */
     char title[2 * PICTURE_WORD];
     double singular;    /* whether it is that of singular values */
     double shared;      /* points in common with the first response */
@@ -58,18 +57,6 @@ typedef struct overlay {
 
 /* --- what is drawn -------------------------------------------------------- */
 
-/* Refuse a response that lacks an input or output of the first. */
-static ritz_status check_names(const char *path, const char *kind,
-                               int64_t count, char (*name)[RITZ_NAME_SIZE],
-                               int64_t num_first, char (*first)[RITZ_NAME_SIZE])
-{
-    for (int64_t i = 0; i < num_first; i++)
-        RITZ_REFUSE_IF(chart_find_name(count, name, first[i]) < 0,
-                       RITZ_ERR_ARGUMENT, "'%s' has no %s '%s'", path, kind,
-                       first[i]);
-    return RITZ_OK;
-}
-
 static ritz_status take_response(const chart_file *file, overlay *o)
 {
     const ritz_response *r = &file->model.response, *first = o->curve[0];
@@ -80,10 +67,10 @@ static ritz_status take_response(const chart_file *file, overlay *o)
     RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
                    "'%s' has fewer than two points", file->path);
     first = first ? first : r;
-    RITZ_CHECK(check_names(file->path, "output", r->num_outputs, r->output,
-                           first->num_outputs, first->output));
-    RITZ_CHECK(check_names(file->path, "input", r->num_inputs, r->input,
-                           first->num_inputs, first->input));
+    RITZ_CHECK(chart_check_names(file->path, "output", r->num_outputs,
+                                 r->output, first->num_outputs, first->output));
+    RITZ_CHECK(chart_check_names(file->path, "input", r->num_inputs, r->input,
+                                 first->num_inputs, first->input));
     o->name[o->count] = picture_base(file->path);
     o->curve[o->count++] = r;
     return RITZ_OK;
@@ -108,9 +95,26 @@ static ritz_status add_singular(overlay *o)
                        "singular values do not compare",
                        o->name[w], o->name[0]);
     }
-    o->channel[o->num_channels++] = (channel){
-        .output = SINGULAR, .lines = first->num_singular, .singular = 1.0};
+    o->channel[o->num_channels++] =
+        (channel){.lines = first->num_singular, .singular = 1.0};
     return RITZ_OK;
+}
+
+/* The channel of an output and an input of the first response; all have it. */
+static void add_pair(overlay *o, int64_t output, int64_t input)
+{
+    const ritz_response *first = o->curve[0];
+    channel *c = &o->channel[o->num_channels++];
+
+    *c = (channel){.output = output, .input = input, .lines = 1};
+    for (int64_t w = 0; w < o->count; w++) {
+        const ritz_response *r = o->curve[w];
+
+        c->place[w] =
+            chart_find_name(r->num_outputs, r->output, first->output[output]) *
+                r->num_inputs +
+            chart_find_name(r->num_inputs, r->input, first->input[input]);
+    }
 }
 
 static ritz_status add_channel(overlay *o, const char *text)
@@ -133,7 +137,7 @@ static ritz_status add_channel(overlay *o, const char *text)
                    "no channel '%s': say OUTPUT/INPUT, such as '%s/%s', or "
                    "'" CHART_SINGULAR_WORD "'",
                    text, r->output[0], r->input[0]);
-    o->channel[o->num_channels++] = (channel){i, j, .lines = 1};
+    add_pair(o, i, j);
     return RITZ_OK;
 }
 
@@ -141,20 +145,16 @@ static ritz_status choose_channels(const cli_list *asked, overlay *o)
 {
     const ritz_response *r = o->curve[0];
 
-    RITZ_REFUSE_IF(o->count == 0, RITZ_ERR_ARGUMENT, "there is no response");
     RITZ_REFUSE_IF(r->num_outputs < 1 || r->num_inputs < 1, RITZ_ERR_ARGUMENT,
                    "'%s' has no channel", o->name[0]);
     for (int k = 0; k < asked->count; k++)
         RITZ_CHECK(add_channel(o, asked->text[k]));
     for (int64_t c = 0; asked->count == 0 && c < r->num_outputs * r->num_inputs;
-         c++) {
-        if (o->num_channels == MOST_CHANNELS) {
+         c++)
+        if (o->num_channels == MOST_CHANNELS)
             o->passed++;
-            continue;
-        }
-        o->channel[o->num_channels++] =
-            (channel){c / r->num_inputs, c % r->num_inputs, .lines = 1};
-    }
+        else
+            add_pair(o, c / r->num_inputs, c % r->num_inputs);
     return RITZ_OK;
 }
 
@@ -164,14 +164,11 @@ static ritz_status choose_channels(const cli_list *asked, overlay *o)
 static double _Complex value_of(const overlay *o, const channel *c,
                                 int64_t which, int64_t k, int64_t line)
 {
-    const ritz_response *first = o->curve[0], *r = o->curve[which];
-    int64_t i = 0, j = 0;
+    const ritz_response *r = o->curve[which];
 
-    if (c->output == SINGULAR)
+    if (c->singular > 0.0)
         return r->singular[k * r->num_singular + line];
-    i = chart_find_name(r->num_outputs, r->output, first->output[c->output]);
-    j = chart_find_name(r->num_inputs, r->input, first->input[c->input]);
-    return r->H[(k * r->num_outputs + i) * r->num_inputs + j];
+    return r->H[k * r->num_outputs * r->num_inputs + c->place[which]];
 }
 
 static double size_of(const overlay *o, const channel *c, int64_t k)
@@ -182,7 +179,7 @@ static double size_of(const overlay *o, const channel *c, int64_t k)
 /* Values at point k of the first response are rounding up to this. */
 static double nothing_at(const overlay *o, const channel *c, int64_t k)
 {
-    return c->output == SINGULAR ? rounding * size_of(o, c, k) : 0.0;
+    return c->singular > 0.0 ? rounding * size_of(o, c, k) : 0.0;
 }
 
 /* Index of the point at a frequency; -1: the response has none there. */
@@ -222,23 +219,6 @@ static void measure_errors(const overlay *o, const channel *c, int64_t w,
         error[DECIBELS] = fabs(20.0 * log10(cabs(H_r) / cabs(H)));
 }
 
-static void widen_by_errors(const overlay *o, int64_t w, channel *c)
-{
-    double error[STRIPS];
-
-    for (int64_t line = 0; line < c->lines; line++)
-        for (int64_t k = 0; k < o->curve[w]->count; k++) {
-            measure_errors(o, c, w, k, line, error);
-            c->shared += !isnan(error[RELATIVE]);
-            for (int s = 0; s < STRIPS; s++) {
-                if (error[s] > 0.0)
-                    c->best[s] = fmin(c->best[s], error[s]);
-                if (error[s] > c->worst[s])
-                    c->worst[s] = error[s];
-            }
-        }
-}
-
 /* Whole decades that hold both ends, at most fourteen. */
 static void set_decades(double least, double most, double *low, double *high)
 {
@@ -248,6 +228,7 @@ static void set_decades(double least, double most, double *low, double *high)
     *high = pow(10.0, ceil(log10(1.01 * most)));
 }
 
+/* Magnitudes of the first response, by which errors are measured. */
 static void find_extent(const overlay *o, channel *c)
 {
     c->least = c->best[RELATIVE] = c->best[DECIBELS] = HUGE_VAL;
@@ -260,14 +241,9 @@ static void find_extent(const overlay *o, channel *c)
                 c->least = fmin(c->least, size);
         }
     c->top = c->most;
-    for (int64_t w = 0; c->output == SINGULAR && w < o->count; w++)
+    for (int64_t w = 0; c->singular > 0.0 && w < o->count; w++)
         if (isfinite(o->curve[w]->singular_peak[1]))
             c->top = fmax(c->top, o->curve[w]->singular_peak[1]);
-    for (int64_t w = 1; c->most > 0.0 && w < o->count; w++)
-        widen_by_errors(o, w, c);
-    set_decades(c->least, c->top, &c->y_low, &c->y_high);
-    for (int s = 0; s < STRIPS; s++)
-        set_decades(c->best[s], c->worst[s], &c->low[s], &c->high[s]);
 }
 
 /* --- data ----------------------------------------------------------------- */
@@ -326,7 +302,27 @@ static void keep_extremes(int64_t count, point *p)
     }
 }
 
-static ritz_status put_line(const overlay *o, const channel *c, int64_t w,
+/* The points of a line and, if anything is not 0, how far errors reach. */
+static void measure_line(const overlay *o, channel *c, int64_t w, int64_t line,
+                         point *all)
+{
+    for (int64_t k = 0; k < o->curve[w]->count; k++) {
+        const double _Complex H = value_of(o, c, w, k, line);
+        double *error = all[k].value + 2;
+
+        all[k].value[0] = cabs(H);
+        all[k].value[1] = c->singular > 0.0 ? nan("") : carg(H) * 180.0 / M_PI;
+        measure_errors(o, c, w, k, line, error);
+        c->shared += c->most > 0.0 && !isnan(error[RELATIVE]);
+        for (int s = 0; s < STRIPS && c->most > 0.0; s++) {
+            if (error[s] > 0.0)
+                c->best[s] = fmin(c->best[s], error[s]);
+            c->worst[s] = fmax(c->worst[s], error[s]);
+        }
+    }
+}
+
+static ritz_status put_line(const overlay *o, channel *c, int64_t w,
                             int64_t line)
 {
     const ritz_response *r = o->curve[w];
@@ -334,13 +330,7 @@ static ritz_status put_line(const overlay *o, const channel *c, int64_t w,
     point *all = NULL;
 
     PICTURE_NEW(o->picture, all, r->count);
-    for (int64_t k = 0; k < r->count; k++) {
-        const double _Complex H = value_of(o, c, w, k, line);
-
-        all[k].value[0] = cabs(H);
-        all[k].value[1] = c->singular > 0.0 ? nan("") : carg(H) * 180.0 / M_PI;
-        measure_errors(o, c, w, k, line, all[k].value + 2);
-    }
+    measure_line(o, c, w, line, all);
     for (int64_t k = 0, end = 0; k < r->count; k = end) {
         const int64_t column = column_of(o->curve[0], r->hertz[k]);
 
@@ -468,11 +458,12 @@ static void put_true_peak(const overlay *o, const channel *c, int64_t w)
     end_rows(o);
 }
 
-static ritz_status put_channel(const overlay *o, const channel *c)
+static ritz_status put_channel(const overlay *o, channel *c)
 {
     int64_t peak[MOST_PEAKS];
     const int64_t count = find_peaks(o, c, peak);
 
+    find_extent(o, c);
     for (int64_t w = 0; w < o->count; w++)
         for (int64_t line = 0; line < c->lines; line++)
             RITZ_CHECK(put_line(o, c, w, line));
@@ -482,6 +473,9 @@ static ritz_status put_channel(const overlay *o, const channel *c)
     for (int64_t w = 0; c->singular > 0.0 && w < o->count; w++)
         put_true_peak(o, c, w);
     fputc('\n', o->picture->data.file);
+    set_decades(c->least, c->top, &c->y_low, &c->y_high);
+    for (int s = 0; s < STRIPS; s++)
+        set_decades(c->best[s], c->worst[s], &c->low[s], &c->high[s]);
     return RITZ_OK;
 }
 
@@ -591,42 +585,32 @@ static void give_channels(const overlay *o)
         picture_give_reals(p, list[k].name, n, list[k].value, stride);
 }
 
-static ritz_status draw_overlay(overlay *o)
-{
-    picture *p = o->picture;
-
-    put_heads(o);
-    for (int64_t k = 0; k < o->num_channels; k++) {
-        channel *c = &o->channel[k];
-
-        find_extent(o, c);
-        say_title(o, c);
-        c->shared = c->shared > 0.0;
-        RITZ_CHECK(put_channel(o, c));
-    }
-    give_channels(o);
-    add_signs(o);
-    if (o->passed > 0)
-        snprintf(p->note, sizeof p->note,
-                 "%ld more channels are not drawn: choose by --channel",
-                 o->passed);
-    return picture_draw(p, "response.gp", "Frequency responses",
-                        "magnitudes or singular values over each other, and "
-                        "below them how far they are from the first");
-}
-
 ritz_status chart_response(const chart_sources *sources,
-                           const chart_request *request, picture *out)
+                           const chart_request *request, picture *p)
 {
-    overlay o = {.picture = out};
+    overlay o = {.picture = p};
     const char *error = request->error ? request->error : "relative";
 
     o.strip[RELATIVE] = strcmp(error, "decibels") != 0;
     o.strip[DECIBELS] = strcmp(error, "relative") != 0;
     for (int64_t k = 0; k < sources->count; k++)
-        if (sources->file[k].holds == CHART_RESPONSE)
-            RITZ_CHECK(take_response(&sources->file[k], &o));
+        RITZ_CHECK(take_response(&sources->file[k], &o));
     RITZ_CHECK(choose_channels(&request->channel, &o));
-    RITZ_CHECK(picture_new(request->path, request->keep, out));
-    return draw_overlay(&o);
+    put_heads(&o);
+    for (int64_t k = 0; k < o.num_channels; k++) {
+        channel *c = &o.channel[k];
+
+        RITZ_CHECK(put_channel(&o, c));
+        say_title(&o, c);
+        c->shared = c->shared > 0.0;
+    }
+    give_channels(&o);
+    add_signs(&o);
+    if (o.passed > 0)
+        snprintf(p->note, sizeof p->note,
+                 "%ld more channels are not drawn: choose by --channel",
+                 o.passed);
+    return picture_draw(p, "response.gp", "Frequency responses",
+                        "magnitudes or singular values over each other, and "
+                        "below them how far they are from the first");
 }

@@ -1,6 +1,5 @@
 /* Outputs over time, several simulations over each other. */
 #include "chart/chart.h"
-#include "chart/html.h"
 
 #include <math.h>
 
@@ -28,26 +27,21 @@ static ritz_status take_runs(const chart_sources *sources, runs *out)
         const chart_file *file = &sources->file[k];
         const ritz_simulation *s = &file->model.simulation;
 
-        if (file->holds != CHART_SIMULATION)
-            continue;
         RITZ_REFUSE_IF(out->count == MOST_RUNS, RITZ_ERR_ARGUMENT,
                        "more than %d simulations cannot be told apart",
                        (int)MOST_RUNS);
         RITZ_REFUSE_IF(s->count < 2 || s->num_outputs < 1, RITZ_ERR_ARGUMENT,
                        "'%s' has no output over time", file->path);
-        for (int64_t i = 0; i < out->num_outputs; i++)
-            RITZ_REFUSE_IF(chart_find_name(s->num_outputs, s->output,
-                                           out->run[0]->output[i]) < 0,
-                           RITZ_ERR_ARGUMENT, "'%s' has no output '%s'",
-                           file->path, out->run[0]->output[i]);
-        if (out->count == 0)
+        if (out->count > 0)
+            RITZ_CHECK(chart_check_names(file->path, "output", s->num_outputs,
+                                         s->output, out->num_outputs,
+                                         out->run[0]->output));
+        else
             out->num_outputs =
                 s->num_outputs < MOST_OUTPUTS ? s->num_outputs : MOST_OUTPUTS;
         out->name[out->count] = picture_base(file->path);
         out->run[out->count++] = s;
     }
-    RITZ_REFUSE_IF(out->count == 0, RITZ_ERR_ARGUMENT,
-                   "there is no time response");
     return RITZ_OK;
 }
 
@@ -89,55 +83,49 @@ static void put_line(runs *all, int64_t i, int64_t w)
             s->y[(s->count - 1) * n + output], s->integrator);
 }
 
-static ritz_status draw_runs(runs *all)
+ritz_status chart_simulation(const chart_sources *sources,
+                             const chart_request *request, picture *p)
 {
-    const ritz_simulation *first = all->run[0];
-    picture *p = all->picture;
+    runs all = {.picture = p};
+    const ritz_simulation *first = NULL;
 
-    for (int64_t w = 0; w < all->count; w++) {
-        const bool under = w == 0 && all->count > 1;
+    (void)request;
+    RITZ_CHECK(take_runs(sources, &all));
+    first = all.run[0];
+    for (int64_t w = 0; w < all.count; w++) {
+        const bool under = w == 0 && all.count > 1;
 
         picture_add_sign(
             p,
             (picture_sign){.colour = under ? "pale" : svg_series(w),
                            .dash = (int)w,
                            .wide = w == 0 ? 4.0 : 1.5,
-                           .role = all->run[w]->integrator},
-            "%.60s", all->name[w]);
+                           .role = all.run[w]->integrator},
+            "%.60s", all.name[w]);
     }
     p->wide = WIDE;
-    p->body = (double)(HIGH * all->num_outputs);
+    p->body = (double)(HIGH * all.num_outputs);
     fprintf(p->data.file, "output\tsimulation\tseconds\tvalue\n");
     fprintf(p->table.file,
             "output\tsimulation\tleast\tmost\tlast\tintegrator\n");
-    for (int64_t i = 0; i < all->num_outputs; i++) {
+    for (int64_t i = 0; i < all.num_outputs; i++) {
         double room = 0.0;
 
-        for (int64_t w = 0; w < all->count; w++)
-            put_line(all, i, w);
-        room = 0.05 * (all->high[i] - all->low[i]);
-        room = room > 0.0 ? room : fmax(0.05 * fabs(all->high[i]), 0.5);
-        all->low[i] -= room;
-        all->high[i] += room;
+        for (int64_t w = 0; w < all.count; w++)
+            put_line(&all, i, w);
+        room = 0.05 * (all.high[i] - all.low[i]);
+        room = room > 0.0 ? room : fmax(0.05 * fabs(all.high[i]), 0.5);
+        all.low[i] -= room;
+        all.high[i] += room;
     }
     fprintf(p->given.file,
             "outputs = %ld\nruns = %ld\nx_low = %.9g\nx_high = %.9g\n",
-            all->num_outputs, all->count, first->seconds[0],
+            all.num_outputs, all.count, first->seconds[0],
             first->seconds[first->count - 1]);
-    picture_give_texts(p, "title", all->num_outputs, first->output[0],
+    picture_give_texts(p, "title", all.num_outputs, first->output[0],
                        sizeof *first->output);
-    picture_give_reals(p, "y_low", all->num_outputs, all->low, 1);
-    picture_give_reals(p, "y_high", all->num_outputs, all->high, 1);
+    picture_give_reals(p, "y_low", all.num_outputs, all.low, 1);
+    picture_give_reals(p, "y_high", all.num_outputs, all.high, 1);
     return picture_draw(p, "simulation.gp", "Time responses",
                         "outputs over time, one below the other");
-}
-
-ritz_status chart_simulation(const chart_sources *sources,
-                             const chart_request *request, picture *out)
-{
-    runs all = {.picture = out};
-
-    RITZ_CHECK(take_runs(sources, &all));
-    RITZ_CHECK(picture_new(request->path, request->keep, out));
-    return draw_runs(&all);
 }

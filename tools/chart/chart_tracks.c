@@ -3,7 +3,6 @@
  * is the one setting that differs, or else the number of the configuration.
  */
 #include "chart/chart.h"
-#include "chart/html.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -228,18 +227,11 @@ ritz_status chart_tracks(const chart_sources *sources,
                          const chart_request *request, picture *out)
 {
     track_table t = {0};
-    const chart_file *file = NULL;
+    const chart_file *file = sources->file;
 
-    for (int64_t k = 0; k < sources->count; k++) {
-        if (sources->file[k].holds != CHART_TRACKS)
-            continue;
-        RITZ_REFUSE_IF(file, RITZ_ERR_ARGUMENT,
-                       "'%s' and '%s': a chart has one table of tracks",
-                       file->path, sources->file[k].path);
-        file = &sources->file[k];
-    }
-    RITZ_REFUSE_IF(!file, RITZ_ERR_ARGUMENT, "there is no table of tracks");
-    RITZ_CHECK(picture_new(request->path, request->keep, out));
+    RITZ_REFUSE_IF(sources->count > 1, RITZ_ERR_ARGUMENT,
+                   "'%s' and '%s': a chart has one table of tracks", file->path,
+                   file[1].path);
     RITZ_CHECK_IN(file->path,
                   read_table(file->text, request->up_to_hz, out, &t));
     place_configurations(&t);

@@ -1,7 +1,7 @@
 #include "chart/picture.h"
 
+#include "base/alloc.h"
 #include "base/draft.h"
-#include "chart/html.h"
 
 #include <ritz/base.h>
 
@@ -136,16 +136,10 @@ void picture_tip(picture *p, const char *format, ...)
     }
 }
 
-/* A point and the square of pixels in which it is. */
-typedef struct placed {
-    int64_t group, column, row, index;
-    double y;
-    bool keep;
-} placed;
-
 static int by_square(const void *a, const void *b)
 {
-    const placed *p = a, *q = b;
+    const picture_point *p = *(const picture_point *const *)a;
+    const picture_point *q = *(const picture_point *const *)b;
     const int64_t apart[] = {p->group - q->group, p->column - q->column,
                              p->row - q->row, q->keep - p->keep};
 
@@ -154,30 +148,28 @@ static int by_square(const void *a, const void *b)
             return apart[k] < 0 ? -1 : 1;
     if (p->y != q->y)
         return p->y < q->y ? -1 : 1;
-    return p->index < q->index ? -1 : 1;
+    return p < q ? -1 : 1;
 }
 
-ritz_status picture_thin(int64_t count, const double *x, const double *y,
-                         double cell, const int64_t *group, bool *keep)
+ritz_status picture_thin(int64_t count, picture_point *point, double cell)
 {
-    placed *all = calloc((size_t)count + 1, sizeof *all);
+    RITZ_OWN_ARRAY picture_point **all = NULL;
     int64_t n = 0;
 
-    RITZ_REFUSE_IF(!all, RITZ_ERR_MEMORY, "no memory for a chart");
-    for (int64_t k = 0; k < count; k++)
-        if (group[k] >= 0)
-            all[n++] = (placed){group[k],
-                                (int64_t)floor(x[k] / cell),
-                                (int64_t)floor(y[k] / cell),
-                                k,
-                                y[k],
-                                keep[k]};
-    qsort(all, (size_t)n, sizeof *all, by_square);
+    RITZ_CHECK_NEW(all, count); /* NOLINT: of pointers */
+    for (int64_t k = 0; k < count; k++) {
+        if (point[k].group < 0)
+            continue;
+        point[k].column = (int64_t)floor(point[k].x / cell);
+        point[k].row = (int64_t)floor(point[k].y / cell);
+        all[n++] = &point[k];
+    }
+    qsort(all, (size_t)n, sizeof *all, by_square); /* NOLINT: of pointers */
     for (int64_t i = 0; i < n; i++)
-        if (i == 0 || all[i].group != all[i - 1].group ||
-            all[i].column != all[i - 1].column || all[i].row != all[i - 1].row)
-            keep[all[i].index] = true;
-    free(all);
+        if (i == 0 || all[i]->group != all[i - 1]->group ||
+            all[i]->column != all[i - 1]->column ||
+            all[i]->row != all[i - 1]->row)
+            all[i]->keep = true;
     return RITZ_OK;
 }
 
@@ -343,11 +335,10 @@ static ritz_status put_beside(const picture *p, cli_table *table,
 
 static ritz_status publish_picture(const picture *p)
 {
-    const svg_names names = {p->title, p->summary, NULL};
     RITZ_OWN(cli_table) table = {0};
 
     RITZ_CHECK(cli_table_new(&table));
-    svg_copy(table.file, p->drawn, &names);
+    svg_copy(table.file, p->drawn, p->title, p->summary, NULL);
     return cli_table_save(&table, p->path);
 }
 

@@ -8,7 +8,7 @@
 #ifndef RITZ_TOOLS_CHART_PICTURE_H
 #define RITZ_TOOLS_CHART_PICTURE_H
 
-#include "chart/svg.h"
+#include "chart/markup.h"
 #include "cli/cli_table.h"
 
 #include <stdbool.h>
@@ -90,15 +90,19 @@ void picture_give_reals(picture *p, const char *name, int64_t count,
 [[gnu::format(printf, 2, 3)]] void picture_tip(picture *p, const char *format,
                                                ...);
 
+/* A point in pixels. */
+typedef struct picture_point {
+    double x, y;
+    int64_t group; /* its series; -1: it is not drawn */
+    bool keep;
+    int64_t column, row; /* of its square, by picture_thin */
+} picture_point;
+
 /**
  * Keep one point of each series in each square of @p cell pixels, the lowest: a
- * reader cannot distinguish the others.
- *
- * @param[in]     group  series of each point; -1: it is not drawn
- * @param[in,out] keep   true on entry for points that are kept anyway
+ * reader cannot distinguish the others. Those that are kept anyway stay.
  */
-ritz_status picture_thin(int64_t count, const double *x, const double *y,
-                         double cell, const int64_t *group, bool *keep);
+ritz_status picture_thin(int64_t count, picture_point *point, double cell);
 
 /**
  * Draw it by a template and, with `keep`, write all three files.

@@ -1,11 +1,9 @@
 #include "chart/report.h"
 
 #include "base/alloc.h"
-#include "chart/html.h"
 
 #include <ritz/base.h>
 
-#include <stdlib.h>
 #include <string.h>
 
 /* --- files other than records --------------------------------------------- */
@@ -34,17 +32,18 @@ static bool same_outputs(const chart_file *first, const chart_file *other)
    are `same` as the first; NULL: any. */
 static const struct part {
     int holds;
-    const char *kind, *title;
+    chart_draw *draw;
+    const char *title;
     int64_t least, most;
     bool (*same)(const chart_file *first, const chart_file *other);
 } parts[] = {
-    {CHART_RANKING, "hankel", "Which modes matter", 1, INT64_MAX, NULL},
-    {CHART_RESPONSE, "response", "Frequency responses", 1, INT64_MAX,
+    {MODEL_RANKING, chart_hankel, "Which modes matter", 1, INT64_MAX, NULL},
+    {MODEL_RESPONSE, chart_response, "Frequency responses", 1, INT64_MAX,
      same_points},
-    {CHART_SIMULATION, "simulation", "Time responses", 1, INT64_MAX,
+    {MODEL_SIMULATION, chart_simulation, "Time responses", 1, INT64_MAX,
      same_outputs},
-    {CHART_MODES, "mac", "Mode shapes", 2, 2, NULL},
-    {CHART_TRACKS, "tracks", "Modes over configurations", 1, 1, NULL},
+    {CHART_MODES, chart_mac, "Mode shapes", 2, 2, NULL},
+    {CHART_TRACKS, chart_tracks, "Modes over configurations", 1, 1, NULL},
 };
 
 /* Collect the files of one picture, from `first` on, and mark them as taken. */
@@ -55,7 +54,7 @@ static int64_t gather_files(const report_page *p, const struct part *part,
     int64_t count = 0;
 
     for (int64_t k = first; k < p->sources->count && count < part->most; k++) {
-        if (taken[k] || file[k].holds != part->holds ||
+        if (taken[k] || !(file[k].holds & part->holds) ||
             (part->same && !part->same(&file[first], &file[k])))
             continue;
         taken[k] = true;
@@ -70,7 +69,7 @@ static bool have_singular(int64_t count, const chart_file *file)
     for (int64_t k = 0; k < count; k++) {
         const ritz_response *r = &file[k].model.response;
 
-        if (file[k].holds != CHART_RESPONSE || r->num_singular == 0 ||
+        if (file[k].holds != MODEL_RESPONSE || r->num_singular == 0 ||
             r->num_inputs * r->num_outputs < 2)
             return false;
     }
@@ -88,12 +87,12 @@ static ritz_status put_picture(report_page *p, const struct part *part,
     for (int64_t k = 0; k < some->count; k++)
         sink_append(names, sizeof names, "%s%.60s", k > 0 ? ", " : "",
                     picture_base(some->file[k].path));
-    RITZ_CHECK(report_figure(p, part->kind, some, &request, names));
+    RITZ_CHECK(report_figure(p, part->draw, some, &request, names));
     if (request.channel.count > 0 || !have_singular(some->count, some->file))
         return RITZ_OK;
     request.channel = (cli_list){.count = 1, .text = {CHART_SINGULAR_WORD}};
     snprintf(caption, sizeof caption, "singular values: %s", names);
-    return report_figure(p, part->kind, some, &request, caption);
+    return report_figure(p, part->draw, some, &request, caption);
 }
 
 /* A section of pictures of one kind, if there are files for it. */
@@ -105,7 +104,7 @@ static ritz_status put_part(report_page *p, const struct part *part,
     for (int64_t k = 0; k < p->sources->count; k++) {
         chart_sources some = *p->sources;
 
-        if (taken[k] || p->sources->file[k].holds != part->holds)
+        if (taken[k] || !(p->sources->file[k].holds & part->holds))
             continue;
         some.file = room;
         some.count = gather_files(p, part, k, taken, room);
@@ -146,9 +145,8 @@ static ritz_status put_provenance(report_page *p)
                run->command, ritz_version());
     for (int64_t k = 0; k < run->num_inputs; k++)
         html_print(file, "<li><code>%s</code></li>\n", run->input[k]);
-    fprintf(file, "</ul>\n");
     if (all->count > 0)
-        fprintf(file, "<details><summary>Commands of the "
+        fprintf(file, "</ul>\n<details><summary>Commands of the "
                       "records</summary>\n<ul>\n");
     for (int64_t k = 0; k < all->count; k++) {
         const char *command =
@@ -159,133 +157,82 @@ static ritz_status put_provenance(report_page *p)
         last = command;
         html_print(file, "<li><code>%s</code></li>\n", command);
     }
-    if (all->count > 0)
-        fprintf(file, "</ul>\n</details>\n");
+    fprintf(file, all->count > 0 ? "</ul>\n</details>\n" : "</ul>\n");
     return report_end(p);
 }
 
 /* The title of the page, with the subject of the records. */
-static void put_title(FILE *file, const chart_sources *sources)
+static void put_title(report_page *p)
 {
+    const records *all = &p->sources->runs;
     const char *subject = NULL;
 
-    for (int64_t k = 0; k < sources->runs.count && !subject; k++)
-        if (sources->runs.item[k].errors && *sources->runs.item[k].subject)
-            subject = sources->runs.item[k].subject;
-    html_print(file, "%s%show small, how fast, how wrong",
+    for (int64_t k = 0; k < all->count && !subject; k++)
+        if (all->item[k].errors && *all->item[k].subject)
+            subject = all->item[k].subject;
+    html_print(p->title.file, "%s%show small, how fast, how wrong",
                subject ? subject : "", subject ? ": " : "");
 }
 
-static void put_lines(FILE *file, const char *name)
+/* The page is report.html, where a line has one "@NAME@" at most. */
+static ritz_status put_page(report_page *p)
 {
-    for (const char *const *line = chart_text_find(name); *line; line++)
-        fputs(*line, file);
-}
+    const struct {
+        const char *mark;
+        const cli_table *part;
+    } fields[] = {{"@title@", &p->title},
+                  {"@contents@", &p->links},
+                  {"@body@", &p->body}};
+    enum { FIELDS = sizeof fields / sizeof *fields };
 
-/* "sha256-..." in base 64, as a policy of contents names style and script:
-   three bytes are four letters, two are three and a '='. */
-static void put_hash(FILE *file, const char *name)
-{
-    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnop"
-                                  "qrstuvwxyz0123456789+/";
-    char digest[RITZ_DIGEST_SIZE];
-    unsigned char byte[33] = {0};
-    cli_table text = {0};
-
-    if (cli_table_new(&text) != RITZ_OK)
-        return;
-    put_lines(text.file, name);
-    fflush(text.file);
-    ritz_digest_bytes(text.text, text.size, digest);
-    cli_table_free(&text);
-    for (size_t k = 0; k < 32; k++) {
-        const char pair[] = {digest[2 * k], digest[2 * k + 1], '\0'};
-
-        byte[k] = (unsigned char)strtoul(pair, NULL, 16);
-    }
-    fputs("sha256-", file);
-    for (size_t k = 0; k < 33; k += 3) {
-        const unsigned word =
-            (unsigned)byte[k] << 16 | (unsigned)byte[k + 1] << 8 | byte[k + 2];
-
-        for (unsigned i = 0; i < 4; i++)
-            fputc(k + i < 33 ? letters[word >> (18 - 6 * i) & 63] : '=', file);
-    }
-}
-
-/* Write what takes the place of "@NAME@" in report.html. */
-static void put_field(FILE *file, const char *name, size_t length,
-                      const report_page *p)
-{
-    static const struct {
-        const char *name, *part;
-        void (*put)(FILE *file, const char *part);
-    } embedded[] = {{"style", "report.css", put_lines},
-                    {"script", "report.js", put_lines},
-                    {"style-hash", "report.css", put_hash},
-                    {"script-hash", "report.js", put_hash}};
-    char word[32] = "";
-
-    snprintf(word, sizeof word, "%.*s", (int)length, name);
-    for (size_t k = 0; k < sizeof embedded / sizeof *embedded; k++)
-        if (strcmp(word, embedded[k].name) == 0) {
-            embedded[k].put(file, embedded[k].part);
-            return;
-        }
-    if (strcmp(word, "title") == 0)
-        put_title(file, p->sources);
-    else
-        fputs(strcmp(word, "version") == 0 ? ritz_version()
-              : strcmp(word, "body") == 0  ? p->body.text
-                                           : p->links.text,
-              file);
-}
-
-static ritz_status put_page(FILE *file, const report_page *p)
-{
-    RITZ_REFUSE_IF(fflush(p->body.file) != 0 || fflush(p->links.file) != 0,
-                   RITZ_ERR_MEMORY, "no memory for the page");
+    for (int k = 0; k < FIELDS; k++)
+        RITZ_REFUSE_IF(fflush(fields[k].part->file) != 0, RITZ_ERR_MEMORY,
+                       "no memory for the page");
     for (const char *const *line = chart_text_find("report.html"); *line;
-         line++)
-        for (const char *c = *line; *c; c++) {
-            const size_t length = strcspn(c + 1, "@");
+         line++) {
+        const char *at = *line + strcspn(*line, "@");
+        int k = 0;
 
-            if (*c != '@') {
-                fputc(*c, file);
-                continue;
-            }
-            put_field(file, c + 1, length, p);
-            c += length + 1;
-        }
-    return RITZ_OK;
+        while (k < FIELDS &&
+               strncmp(at, fields[k].mark, strlen(fields[k].mark)) != 0)
+            k++;
+        if (k < FIELDS)
+            fprintf(p->whole.file, "%.*s%s%s", (int)(at - *line), *line,
+                    fields[k].part->text, at + strlen(fields[k].mark));
+        else
+            fputs(*line, p->whole.file);
+    }
+    return cli_table_save(&p->whole, p->request->path);
 }
 
 static void report_page_free(report_page *p)
 {
-    cli_table_free(&p->body);
+    cli_table_free(&p->title);
     cli_table_free(&p->links);
+    cli_table_free(&p->body);
     cli_table_free(&p->figures);
+    cli_table_free(&p->whole);
 }
 
 ritz_status report_write(const chart_sources *sources,
                          const chart_request *request)
 {
     RITZ_OWN(report_page) p = {.sources = sources, .request = request};
-    RITZ_OWN(cli_table) whole = {0};
     const size_t length = strlen(request->path);
 
     RITZ_REFUSE_IF(
         length >= 4 && strcmp(request->path + length - 4, ".svg") == 0,
         RITZ_ERR_ARGUMENT, "a report is a page, no picture: -o NAME.html");
-    RITZ_CHECK(cli_table_new(&p.body));
+    RITZ_CHECK(cli_table_new(&p.title));
     RITZ_CHECK(cli_table_new(&p.links));
+    RITZ_CHECK(cli_table_new(&p.body));
     RITZ_CHECK(cli_table_new(&p.figures));
-    RITZ_CHECK(cli_table_new(&whole));
+    RITZ_CHECK(cli_table_new(&p.whole));
+    put_title(&p);
     RITZ_CHECK(report_records(&p));
     RITZ_CHECK(put_pictures(&p));
     RITZ_REFUSE_IF(p.num_pictures == 0, RITZ_ERR_ARGUMENT,
                    "there is nothing to draw in these files");
     RITZ_CHECK(put_provenance(&p));
-    RITZ_CHECK(put_page(whole.file, &p));
-    return cli_table_save(&whole, request->path);
+    return put_page(&p);
 }

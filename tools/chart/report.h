@@ -8,8 +8,9 @@
 typedef struct report_page {
     const chart_sources *sources;
     const chart_request *request;
-    cli_table links, body; /* of the contents; sections */
-    cli_table figures;     /* of the section in the making */
+    cli_table title, links, body; /* links of the contents; sections */
+    cli_table figures;            /* of the section in the making */
+    cli_table whole;
     int64_t num_pictures, num_sections;
     int num_signs; /* of its legend */
     picture_sign sign[PICTURE_SIGNS];
@@ -26,11 +27,14 @@ ritz_status report_write(const chart_sources *sources,
 /** A section with its title, which the contents name. */
 void report_begin(report_page *p, const char *title);
 
+/** A table up to the row of its names of columns. */
+void report_begin_table(FILE *file, const char *caption);
+
 /** Its end: one legend of all its pictures, then these. */
 ritz_status report_end(report_page *p);
 
 /** Draw a chart for the section: picture, caption, and the same as a table. */
-ritz_status report_figure(report_page *p, const char *kind,
+ritz_status report_figure(report_page *p, chart_draw *draw,
                           const chart_sources *sources,
                           const chart_request *request, const char *caption);
 

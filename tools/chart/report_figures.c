@@ -1,5 +1,4 @@
 /* Sections of the page with their figures, and one legend for each section. */
-#include "chart/html.h"
 #include "chart/report.h"
 
 #include <stdlib.h>
@@ -39,6 +38,14 @@ static void add_signs(report_page *p, const picture *from)
         else if (own < end && !strstr(own->name, s->name))
             sink_append(own->name, sizeof own->name, ", %s", s->name);
     }
+}
+
+void report_begin_table(FILE *file, const char *caption)
+{
+    html_print(file,
+               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+               "aria-label=\"%s\"><table><caption>%s</caption>\n<thead>",
+               caption, caption);
 }
 
 /* Draw a sign of the legend: a line, or a mark by its number in gnuplot, where
@@ -93,63 +100,45 @@ ritz_status report_end(report_page *p)
 /* Turn a table with tabs, names of columns first, into one of markup. */
 static void put_table(FILE *file, const char *text, const char *caption)
 {
-    const char *cell = "th";
+    bool head = true;
 
-    html_print(file,
-               "<details><summary>The same as a table</summary>\n"
-               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-               "aria-label=\"%s\"><table><caption>%s</caption>\n<thead>",
-               caption, caption);
-    for (const char *c = text; *c; c += *c == '\n') {
-        fprintf(file, "<tr>");
-        for (bool more = true; more; c += more) {
-            const size_t length = strcspn(c, "\t\n");
-            char *word = strndup(c, length);
+    fprintf(file, "<details><summary>The same as a table</summary>\n");
+    report_begin_table(file, caption);
+    fprintf(file, "<tr>");
+    for (const char *c = text; *c; c++) {
+        const size_t length = strcspn(c, "\t\n");
+        char *word = strndup(c, length);
 
-            html_print(file,
-                       *cell == 't' && cell[1] == 'h'
-                           ? "<th scope=\"col\">%s</th>"
-                           : "<td>%s</td>",
-                       word ? word : "");
-            free(word);
-            c += length;
-            more = *c == '\t';
-        }
-        fprintf(file,
-                strcmp(cell, "th") == 0 ? "</tr></thead><tbody>\n" : "</tr>\n");
-        cell = "td";
+        html_print(file, head ? "<th scope=\"col\">%s</th>" : "<td>%s</td>",
+                   word ? word : "");
+        free(word);
+        c += length;
+        if (*c != '\n')
+            continue;
+        fprintf(file, head ? "</tr></thead><tbody>\n" : "</tr>\n");
+        fputs(c[1] ? "<tr>" : "", file);
+        head = false;
     }
     fprintf(file, "</tbody></table></div>\n</details>\n");
 }
 
-static const chart_kind *find_kind(const char *name)
-{
-    const chart_kind *kind = chart_kinds;
-
-    while (strcmp(kind->name, name) != 0)
-        kind++;
-    return kind;
-}
-
-ritz_status report_figure(report_page *p, const char *kind,
+ritz_status report_figure(report_page *p, chart_draw *draw,
                           const chart_sources *sources,
                           const chart_request *request, const char *caption)
 {
-    chart_request own = *request;
     FILE *file = p->figures.file;
     RITZ_OWN(picture) drawn = {0};
     char prefix[32];
 
-    own.keep = false;
-    RITZ_CHECK(find_kind(kind)->draw(sources, &own, &drawn));
+    RITZ_CHECK(picture_new(request->path, false, &drawn));
+    RITZ_CHECK(draw(sources, request, &drawn));
     RITZ_REFUSE_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
                    "no memory for a table");
     add_signs(p, &drawn);
     snprintf(prefix, sizeof prefix, "p%ld-", ++p->num_pictures);
     fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",
             drawn.wide > PICTURE_WIDE ? " class=\"whole\"" : "");
-    svg_copy(file, drawn.drawn,
-             &(svg_names){drawn.title, drawn.summary, prefix});
+    svg_copy(file, drawn.drawn, drawn.title, drawn.summary, prefix);
     html_print(file, "</div>\n<figcaption>%s%s%s</figcaption>\n", caption,
                *drawn.note ? ". " : "", drawn.note);
     put_table(file, drawn.table.text, caption);

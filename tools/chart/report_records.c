@@ -3,7 +3,6 @@
  * how wrong, how fast), charts, and methods side by side.
  */
 #include "base/alloc.h"
-#include "chart/html.h"
 #include "chart/report.h"
 
 #include <ritz/verify.h>
@@ -12,9 +11,6 @@
 #include <string.h>
 
 /* --- the verdict ---------------------------------------------------------- */
-
-/* Why a record is shown in the verdict. */
-typedef enum reason { CHOSEN, SMALLEST, NEAREST } reason;
 
 /* How many times its tolerance the worst error is; infinite: not known. */
 static double excess_of(const record *r)
@@ -53,32 +49,20 @@ static bool is_better(const record *r, const record *than)
  * The chosen record; else the smallest that meets its tolerance; else the one
  * nearest to its tolerance; NULL: no tolerance is known.
  */
-static const record *find_shown(const records *all, reason *why)
+static const record *find_shown(const records *all)
 {
     const record *best = NULL;
 
     for (int64_t k = 0; k < all->count; k++) {
         const record *r = &all->item[k];
 
-        if (r->chosen) {
-            *why = CHOSEN;
+        if (r->chosen)
             return r;
-        }
         if (r->tolerance && (r->feasible || excess_of(r) < HUGE_VAL) &&
             is_better(r, best))
             best = r;
     }
-    *why = best && best->feasible ? SMALLEST : NEAREST;
     return best;
-}
-
-static const record *find_second(const records *all)
-{
-    const record *r = all->item;
-
-    while (r < all->item + all->count && !r->runner_up)
-        r++;
-    return r < all->item + all->count ? r : NULL;
 }
 
 static void begin_card(FILE *file, const char *question, const char *answer)
@@ -92,10 +76,14 @@ static void end_card(FILE *file)
     fprintf(file, "</ul></dd></div>\n");
 }
 
-static void say_method(FILE *file, const record *r, const record *second)
+static void say_method(FILE *file, const records *all, const record *r)
 {
+    const record *second = all->item, *end = all->item + all->count;
+
+    while (second < end && !second->runner_up)
+        second++;
     begin_card(file, "Which method", r->method);
-    if (second)
+    if (second < end)
         html_print(file, "<li>runner-up: %s, order %ld</li>", second->method,
                    second->order);
     end_card(file);
@@ -115,9 +103,9 @@ static void say_size(FILE *file, const record *r)
     if (json_integer_value(full) > 0)
         fprintf(file, ", of %ld dofs of the full model",
                 (int64_t)json_integer_value(full));
-    fprintf(file, count > 0 ? "</li><li>" : "</li>");
+    fprintf(file, "</li>");
     for (size_t k = 0; k < count; k++)
-        fprintf(file, "%s%ld", k > 0 ? " + " : "",
+        fprintf(file, k > 0 ? " + %ld" : "<li>%ld",
                 (int64_t)json_integer_value(json_array_get(modes, k)));
     if (count > 0)
         fprintf(file, " modes asked for%s</li>",
@@ -188,7 +176,7 @@ static void say_cost(FILE *file, const record *r)
     end_card(file);
 }
 
-static void say_why(FILE *file, const record *r, reason why, int64_t count)
+static void say_why(FILE *file, const record *r, int64_t count)
 {
     const char *text = json_string_value(json_object_get(r->json, "why"));
 
@@ -199,12 +187,12 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
                             : "&#10007; It misses a tolerance.");
     if (text)
         html_print(file, "<p>Why: %s</p>\n", text);
-    if (why != CHOSEN)
+    if (!r->chosen)
         fprintf(file,
                 "<p class=\"note\">No record says which was chosen: this is "
                 "the %s.</p>\n",
-                why == SMALLEST ? "smallest that meets the tolerance"
-                                : "one that comes nearest to its tolerance");
+                r->feasible ? "smallest that meets the tolerance"
+                            : "one that comes nearest to its tolerance");
     if (count > 1)
         fprintf(file,
                 "<p class=\"note\">One of %ld models that were "
@@ -214,8 +202,7 @@ static void say_why(FILE *file, const record *r, reason why, int64_t count)
 
 static void put_cards(FILE *file, const record_set *s)
 {
-    reason why = NEAREST;
-    const record *r = find_shown(&s->all, &why);
+    const record *r = find_shown(&s->all);
 
     if (!r) {
         fprintf(file,
@@ -226,12 +213,12 @@ static void put_cards(FILE *file, const record_set *s)
         return;
     }
     fprintf(file, "<dl class=\"cards\">\n");
-    say_method(file, r, find_second(&s->all));
+    say_method(file, &s->all, r);
     say_size(file, r);
     say_errors(file, r, s->num_measures, s->measure);
     say_cost(file, r);
     fprintf(file, "</dl>\n");
-    say_why(file, r, why, s->all.count);
+    say_why(file, r, s->all.count);
 }
 
 /* --- methods side by side ------------------------------------------------- */
@@ -262,27 +249,40 @@ static int64_t pick_orders(const records *all, double out[MOST_COLUMNS])
     return kept;
 }
 
-/* Least error of a method with at most so many coordinates; NaN: none. */
-static double least_error(const record_set *s, int64_t method, int64_t order)
+/* One of a method and a column; less is better. */
+typedef struct cell {
+    double value; /* NaN: none */
+    chart_word text, small;
+} cell;
+
+/* A cell of a method: the least error at an order, or the fewest coordinates
+   for an error. */
+typedef cell (*find_cell)(const record_set *s, int64_t method, double column);
+
+static cell error_at_order(const record_set *s, int64_t method, double order)
 {
-    double least = nan("");
+    cell c = {.value = nan("")};
 
     for (int64_t k = 0; k < s->all.count; k++) {
         const record *r = &s->all.item[k];
         double error = record_error(r, s->measure->name);
 
-        if (s->which[k] == method && r->order <= order && !r->incomplete &&
-            !isnan(error) && !(least <= error))
-            least = error;
+        if (s->which[k] == method && (double)r->order <= order &&
+            !r->incomplete && !isnan(error) && !(c.value <= error))
+            c.value = error;
     }
-    return least < RECORDS_ROUNDING ? 0.5 * RECORDS_ROUNDING : least;
+    if (c.value < RECORDS_ROUNDING)
+        c.value = 0.5 * RECORDS_ROUNDING;
+    c.text = chart_say_error(c.value);
+    return c;
 }
 
-/* Smallest record of a method that is good enough; NULL: none. */
-static const record *find_smallest(const record_set *s, int64_t method,
-                                   double level)
+/* With a level of NaN the record has to meet its own tolerance. */
+static cell order_at_error(const record_set *s, int64_t method, double level)
 {
     const record *best = NULL;
+    cell c = {.value = nan("")};
+    double time = nan("");
 
     for (int64_t k = 0; k < s->all.count; k++) {
         const record *r = &s->all.item[k];
@@ -293,33 +293,11 @@ static const record *find_smallest(const record_set *s, int64_t method,
         if (s->which[k] == method && good && (!best || r->order < best->order))
             best = r;
     }
-    return best;
-}
-
-/* One of a method and a column; less is better. */
-typedef struct cell {
-    double value;
-    chart_word text, small;
-} cell;
-
-/* A cell of a method: the least error at an order, or the fewest coordinates
-   for an error. */
-typedef cell (*find_cell)(const record_set *s, int64_t method, double column);
-
-static cell error_at_order(const record_set *s, int64_t method, double order)
-{
-    const double value = least_error(s, method, (int64_t)order);
-
-    return (cell){value, chart_say_error(value), {""}};
-}
-
-static cell order_at_error(const record_set *s, int64_t method, double level)
-{
-    const record *r = find_smallest(s, method, level);
-    const double time = !r ? nan("") : records_cost(&s->all) ? r->cost : r->cpu;
-    cell c = {.value = r ? (double)r->order : nan("")};
-
-    snprintf(c.text.text, sizeof c.text, "%.0f", c.value);
+    if (!best)
+        return c;
+    c.value = (double)best->order;
+    snprintf(c.text.text, sizeof c.text, "%ld", best->order);
+    time = records_cost(&s->all) ? best->cost : best->cpu;
     if (isfinite(time))
         c.small = chart_say_seconds(time);
     return c;
@@ -332,11 +310,8 @@ static void put_methods(FILE *file, const record_set *s, const char *caption,
     double best[MOST_COLUMNS];
     char word[32];
 
-    html_print(file,
-               "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-               "aria-label=\"%s\"><table><caption>%s</caption><thead><tr>"
-               "<th scope=\"col\">method</th>",
-               caption, caption);
+    report_begin_table(file, caption);
+    fprintf(file, "<tr><th scope=\"col\">method</th>");
     for (int64_t k = 0; k < count; k++) {
         best[k] = HUGE_VAL;
         for (int64_t m = 0; m < s->num_methods; m++)
@@ -418,46 +393,45 @@ static ritz_status list_subjects(const records *all, int64_t *count,
     return RITZ_OK;
 }
 
-/*
- * A figure for each of the first four measures, as narrow pages need it; and
- * what simulators pay, where it is known of some models but not of all: of
- * others it is not worth measuring.
- */
+/* A figure for each of the first four measures, as narrow pages need it. */
 static ritz_status put_errors(report_page *p, const record_set *s,
-                              const char *kind, chart_request request)
+                              chart_draw *draw, chart_request request)
 {
-    const bool times = strcmp(kind, "pareto") == 0;
-    bool some = false;
     char text[200];
 
-    for (int64_t k = 0; k < s->all.count; k++)
-        some = some || isfinite(s->all.item[k].cost);
-    request.measure = (cli_list){.count = 1, .text = {s->measure[0].name}};
-    if (times && some && !records_cost(&p->sources->runs)) {
-        chart_request costs = request;
-
-        costs.against = "simulate";
-        RITZ_CHECK(report_figure(p, kind, p->sources, &costs,
-                                 "what simulating costs, of the models where "
-                                 "that was measured"));
-    }
     for (int64_t k = 0; k < s->num_measures && k < 4; k++) {
         if (k > 0 && !records_matter(&s->all, &s->measure[k]))
             continue;
-        request.measure.text[0] = s->measure[k].name;
+        request.measure = (cli_list){.count = 1, .text = {s->measure[k].name}};
         snprintf(text, sizeof text, "%.60s against %s, every method",
-                 s->measure[k].title, times ? "time" : "order");
-        RITZ_CHECK(report_figure(p, kind, p->sources, &request, text));
+                 s->measure[k].title, draw == chart_pareto ? "time" : "order");
+        RITZ_CHECK(report_figure(p, draw, p->sources, &request, text));
     }
     return RITZ_OK;
 }
 
-static bool knows_cost(const records *all)
+/*
+ * Figures of errors against time; and against what simulators pay, where it is
+ * known of some models but not of all: of others it is not worth measuring.
+ */
+static ritz_status put_times(report_page *p, const record_set *s, bool costs,
+                             chart_request request)
 {
-    for (int64_t k = 0; k < all->count; k++)
-        if (isfinite(all->item[k].cpu) || isfinite(all->item[k].cost))
-            return true;
-    return false;
+    chart_request simulate = request;
+
+    fprintf(p->body.file,
+            "<p>Left and low is better. Nothing beats what lies on the "
+            "grey stairs. Level lines are lines of equal error, which is "
+            "said at their right ends: the red one is the tolerance, and "
+            "below the dashed one models are themselves less certain than "
+            "their reductions. Numbers beside the stairs are orders.</p>\n");
+    simulate.measure = (cli_list){.count = 1, .text = {s->measure[0].name}};
+    simulate.against = "simulate";
+    if (costs && !records_cost(&p->sources->runs))
+        RITZ_CHECK(report_figure(p, chart_pareto, p->sources, &simulate,
+                                 "what simulating costs, of the models where "
+                                 "that was measured"));
+    return put_errors(p, s, chart_pareto, request);
 }
 
 /* A section whose title says the subject, if there are several. */
@@ -474,22 +448,20 @@ static ritz_status put_charts(report_page *p, const record_set *s,
                               const char *subject, const char *name)
 {
     chart_request request = *p->request;
+    bool times = false, costs = false;
 
     request.subject = subject;
-    if (knows_cost(&s->all)) {
+    for (int64_t k = 0; k < s->all.count; k++) {
+        times = times || isfinite(s->all.item[k].cpu);
+        costs = costs || isfinite(s->all.item[k].cost);
+    }
+    if (times || costs) {
         begin_section(p, "Speed against accuracy", name);
-        fprintf(p->body.file,
-                "<p>Left and low is better. Nothing beats what lies on the "
-                "grey stairs. Level lines are lines of equal error, which is "
-                "said at their right ends: the red one is the tolerance, and "
-                "below the dashed one models are themselves less certain than "
-                "their reductions. Numbers beside the stairs are orders.</p>"
-                "\n");
-        RITZ_CHECK(put_errors(p, s, "pareto", request));
+        RITZ_CHECK(put_times(p, s, costs, request));
         RITZ_CHECK(report_end(p));
     }
     begin_section(p, "Convergence", name);
-    RITZ_CHECK(put_errors(p, s, "convergence", request));
+    RITZ_CHECK(put_errors(p, s, chart_convergence, request));
     RITZ_CHECK(report_end(p));
     begin_section(p, "Methods side by side", name);
     put_tables(p->body.file, s);

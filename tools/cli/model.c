@@ -98,8 +98,7 @@ bool model_has_states(const model *m)
     return m->kind == MODEL_STATES || !model_reference(m).dense.K4->val;
 }
 
-/* "a component or a system" */
-static void list_kinds(int wanted, char *out, size_t room)
+void model_nouns(int wanted, char *out, size_t room)
 {
     size_t used = 0;
 
@@ -144,7 +143,7 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
     RITZ_CHECK(cli_input(run, path));
     RITZ_CHECK(ritz_container_summary(path, &summary));
     k = find_kind(&summary);
-    list_kinds(wanted, list, sizeof list);
+    model_nouns(wanted, list, sizeof list);
     RITZ_REFUSE_IF(k == NUM_KINDS, RITZ_ERR_FORMAT, "'%s' holds '%s', not %s",
                    path, summary.kind, list);
     RITZ_REFUSE_IF(!(wanted & (int)kinds[k].kind), RITZ_ERR_FORMAT,

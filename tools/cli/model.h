@@ -102,6 +102,9 @@ void words_take(const cli_program *program, const choice_words *all,
 /** The kind of a container, and how sentences call it: "a system". */
 ritz_status model_peek(const char *path, model_kind *kind, const char **noun);
 
+/** Those of some kinds in a sentence: "a component or a system". */
+void model_nouns(int wanted, char *out, size_t room);
+
 /**
  * Hash and read a container of one of some kinds.
  *

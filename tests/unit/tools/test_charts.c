@@ -2,7 +2,6 @@
 #include "testing.h"
 
 #include "chart/chart.h"
-#include "chart/html.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -49,18 +48,24 @@ static void nothing_above_the_floor_still_has_an_axis(void **state)
    series, square or picture are not asked. */
 static void points_that_hide_each_other_are_thinned(void **state)
 {
-    const double x[] = {1.0, 2.0, 3.0, 1.0, 9.0, 1.0, 2.5};
-    const double y[] = {3.0, 1.0, 2.0, 2.0, 1.0, 1.0, 0.5};
-    const int64_t series[] = {0, 0, 0, 1, 0, -1, 2};
-    bool keep[] = {true, false, false, false, false, false, false};
+    picture_point p[] = {
+        {.x = 1.0, .y = 3.0, .keep = true},
+        {.x = 2.0, .y = 1.0},
+        {.x = 3.0, .y = 2.0},
+        {.x = 1.0, .y = 2.0, .group = 1},
+        {.x = 9.0, .y = 1.0},
+        {.x = 1.0, .y = 1.0, .group = -1},
+        {.x = 2.5, .y = 0.5, .group = 2},
+    };
 
     (void)state;
-    assert_int_equal(picture_thin(7, x, y, 4.0, series, keep), RITZ_OK);
-    assert_true(keep[0] && !keep[1] && !keep[2]); /* what must, stays alone */
-    assert_true(keep[3] && keep[4] && keep[6] && !keep[5]);
-    keep[0] = false;
-    assert_int_equal(picture_thin(7, x, y, 4.0, series, keep), RITZ_OK);
-    assert_true(!keep[0] && keep[1] && !keep[2]);
+    assert_int_equal(picture_thin(7, p, 4.0), RITZ_OK);
+    /* what must, stays alone */
+    assert_true(p[0].keep && !p[1].keep && !p[2].keep);
+    assert_true(p[3].keep && p[4].keep && p[6].keep && !p[5].keep);
+    p[0].keep = false;
+    assert_int_equal(picture_thin(7, p, 4.0), RITZ_OK);
+    assert_true(!p[0].keep && p[1].keep && !p[2].keep);
 }
 
 /* --- text ----------------------------------------------------------------- */
@@ -130,21 +135,22 @@ static const char drawn[] =
     "<text fill=\"#5a6270\">a = 'b' &gt; #gpDot rgb(0,114,178)</text></g>"
     "</svg>\n";
 
-static char *copy_drawn(const svg_names *names)
+static char *copy_drawn(const char *title, const char *summary,
+                        const char *prefix)
 {
     char *got = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&got, &size);
 
     assert_non_null(file);
-    svg_copy(file, drawn, names);
+    svg_copy(file, drawn, title, summary, prefix);
     fclose(file);
     return got;
 }
 
 static void a_picture_is_named_and_its_points_are(void **state)
 {
-    char *svg = copy_drawn(&(svg_names){"A & B", "what <it> is", NULL});
+    char *svg = copy_drawn("A & B", "what <it> is", NULL);
 
     (void)state;
     assert_non_null(strstr(svg, "<title>A &amp; B</title>\n"
@@ -159,7 +165,7 @@ static void a_picture_is_named_and_its_points_are(void **state)
 
 static void a_page_gives_its_own_names_and_colours(void **state)
 {
-    char *got = copy_drawn(&(svg_names){"A", "B", "p7-"});
+    char *got = copy_drawn("A", "B", "p7-");
 
     (void)state;
     assert_null(strstr(got, "<?xml"));

@@ -1,10 +1,85 @@
-#include "chart/svg.h"
+#include "chart/markup.h"
 
-#include "chart/html.h"
+#include "base/text.h"
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* --- text ----------------------------------------------------------------- */
+
+int html_letter(FILE *file, const char *text)
+{
+    int length = ritz_letter_length(text);
+
+    if (length == 0) {
+        fputc((unsigned char)*text < 128 ? ' ' : '?', file);
+        return 1;
+    }
+    fprintf(file, "%.*s", length, text);
+    return length;
+}
+
+int html_symbol(FILE *file, const char *text)
+{
+    static const char special[] = "&<>\"'";
+    static const char *const entity[] = {"&amp;", "&lt;", "&gt;", "&quot;",
+                                         "&#39;"};
+    const char *found = *text ? strchr(special, *text) : NULL;
+
+    if (!found)
+        return html_letter(file, text);
+    fputs(entity[found - special], file);
+    return 1;
+}
+
+void html_text(FILE *file, const char *text)
+{
+    while (*text)
+        text += html_symbol(file, text);
+}
+
+void html_line(FILE *file, const char *text)
+{
+    while (*text)
+        text += html_letter(file, text);
+}
+
+/* One argument, as the conversion that ends with this letter asks. */
+static void put_argument(FILE *file, char letter, int precision, va_list *args)
+{
+    if (letter == 's')
+        html_text(file, va_arg(*args, const char *));
+    else if (letter == 'd')
+        fprintf(file, "%ld", va_arg(*args, long));
+    else
+        fprintf(file, "%.*g", precision, va_arg(*args, double));
+}
+
+void html_print(FILE *file, const char *format, ...)
+{
+    va_list args;
+
+    va_start(args, format);
+    for (const char *c = format; *c; c++) {
+        int precision = 6;
+
+        if (*c != '%' || *++c == '%') {
+            fputc(*c, file);
+            continue;
+        }
+        if (*c == '.') {
+            precision = c[1] - '0';
+            c += 2;
+        }
+        c += strspn(c, "l");
+        put_argument(file, *c, precision, &args);
+    }
+    va_end(args);
+}
+
+/* --- pictures ------------------------------------------------------------- */
 
 const svg_colour svg_colours[] = {
     {"c1", "#0072b2"},    {"c2", "#c44e00"},   {"c3", "#007a5a"},
@@ -129,9 +204,10 @@ static void put_name(FILE *file, const char *tag, char letter,
     fprintf(file, "</%s>\n", tag);
 }
 
-void svg_copy(FILE *file, const char *drawn, const svg_names *names)
+void svg_copy(FILE *file, const char *drawn, const char *title,
+              const char *summary, const char *prefix)
 {
-    const char *prefix = names->prefix, *c = drawn;
+    const char *c = drawn;
     bool named = false;
 
     if (prefix) {
@@ -143,8 +219,8 @@ void svg_copy(FILE *file, const char *drawn, const svg_names *names)
     }
     while (*c) {
         if (starts_with(c, "<title>") && !named) {
-            put_name(file, "title", 't', prefix, names->title);
-            put_name(file, "desc", 'd', prefix, names->summary);
+            put_name(file, "title", 't', prefix, title);
+            put_name(file, "desc", 'd', prefix, summary);
             named = true;
             c = skip_past(c, "</desc>");
         } else if (starts_with(c, "<title>")) {
