@@ -29,13 +29,6 @@ static ritz_status settle_basis(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size sizes[] = {
-    {'n', .offset = offsetof(ritz_basis, T.nrow), "T"},
-    {'r', .offset = offsetof(ritz_basis, T.ncol), "T"},
-    {'h', .offset = offsetof(ritz_basis, num_hankel), "hankel"},
-    {0},
-};
-
 static const ritz_member members[] = {
     {"", PART, RITZ_AT(ritz_basis, origin), .schema = &ritz_schema_origin},
     {"T", MATRIX_DENSE, RITZ_AT(ritz_basis, T), "n r",
@@ -65,7 +58,9 @@ static const ritz_member members[] = {
 const ritz_schema ritz_schema_basis = {
     .name = "basis",
     .units = offsetof(ritz_basis, units),
-    .sizes = sizes,
+    .sizes = {{'n', .offset = offsetof(ritz_basis, T.nrow), "T"},
+              {'r', .offset = offsetof(ritz_basis, T.ncol), "T"},
+              {'h', .offset = offsetof(ritz_basis, num_hankel), "hankel"}},
     .members = members,
     .settle = settle_basis,
 };

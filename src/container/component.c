@@ -26,11 +26,6 @@ static ritz_status settle_port(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size port_sizes[] = {
-    {'q', .offset = offsetof(ritz_port, dofs.count), "dofs"},
-    {0},
-};
-
 static const ritz_member port_members[] = {
     {"origin", ATTRIBUTE_REAL, RITZ_AT(ritz_port, origin), "3",
      "origin of the port in the basic frame"},
@@ -43,7 +38,7 @@ static const ritz_member port_members[] = {
 
 static const ritz_schema port_schema = {
     .name = "port of a component",
-    .sizes = port_sizes,
+    .sizes = {{'q', .offset = offsetof(ritz_port, dofs.count), "dofs"}},
     .members = port_members,
     .settle = settle_port,
 };
@@ -66,14 +61,6 @@ static ritz_status settle_component(const ritz_place *place)
     component->asymmetry = fmax(component->asymmetry, asymmetry);
     return RITZ_OK;
 }
-
-static const ritz_size sizes[] = {
-    {'n', .offset = offsetof(ritz_component, num_dofs), "dofs/grid"},
-    {'c', .offset = offsetof(ritz_component, num_dofs)},
-    {'l', .offset = offsetof(ritz_component, num_loads)},
-    {'b', .offset = offsetof(ritz_component, num_ports)},
-    {0},
-};
 
 static const ritz_member members[] = {
     {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_component, damping), "",
@@ -116,7 +103,10 @@ static const ritz_member members[] = {
 const ritz_schema ritz_schema_component = {
     .name = "component",
     .units = offsetof(ritz_component, units),
-    .sizes = sizes,
+    .sizes = {{'n', .offset = offsetof(ritz_component, num_dofs), "dofs/grid"},
+              {'c', .offset = offsetof(ritz_component, num_dofs)},
+              {'l', .offset = offsetof(ritz_component, num_loads)},
+              {'b', .offset = offsetof(ritz_component, num_ports)}},
     .members = members,
     .settle = settle_component,
 };

@@ -126,7 +126,7 @@ ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
 ritz_status ritz_h5_write_dense(hid_t at, const char *name,
                                 const ritz_dense *A);
 
-/** Read one, all finite; an expected size of -1 is any. */
+/** Read one of the expected size, all finite. */
 ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
                                int64_t ncol, ritz_dense *out);
 

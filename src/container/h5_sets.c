@@ -92,22 +92,21 @@ hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most)
 }
 
 static ritz_status create_set(hid_t at, const char *name, hid_t type,
-                              ritz_h5_shape shape, ritz_h5_shape *chunk,
-                              hid_t *out)
+                              ritz_h5_shape shape, hid_t *out)
 {
     hsize_t size = H5Tget_size(type);
     hsize_t count = ritz_h5_volume(&shape, INT64_MAX);
+    ritz_h5_shape chunk = {0};
     RITZ_OWN(hid_t)
     space = H5Screate_simple(shape.rank, shape.dims, NULL);
     RITZ_OWN(hid_t) plan = H5Pcreate(H5P_DATASET_CREATE);
 
     H5Pset_obj_track_times(plan, false);
-    *chunk = shape;
     if (count <= SMALL && count * size <= SMALL_BYTES) {
         H5Pset_layout(plan, H5D_COMPACT);
     } else {
-        *chunk = cut_chunks(&shape, smaller_of(CHUNK, CHUNK_BYTES / size + 1));
-        H5Pset_chunk(plan, shape.rank, chunk->dims);
+        chunk = cut_chunks(&shape, smaller_of(CHUNK, CHUNK_BYTES / size + 1));
+        H5Pset_chunk(plan, shape.rank, chunk.dims);
         H5Pset_fletcher32(plan);
     }
     *out = H5Dcreate2(at, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
@@ -300,12 +299,11 @@ static int64_t count_bytes(const ritz_h5_shape *shape, hid_t memory)
 ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
                           ritz_h5_shape shape, const void *values)
 {
-    ritz_h5_shape chunk = {0};
     RITZ_OWN(hid_t) memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
     RITZ_OWN(hid_t) set = 0;
     herr_t result = 0;
 
-    RITZ_CHECK(create_set(at, name, type, shape, &chunk, &set));
+    RITZ_CHECK(create_set(at, name, type, shape, &set));
     if (ritz_h5_volume(&shape, 1) > 0)
         result = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
     RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE, "cannot write '%s'", name);
@@ -397,17 +395,18 @@ static herr_t move_piece(hid_t set, const ritz_h5_shape *piece, bool reads,
 }
 
 /* Reads or writes a matrix chunk by chunk, so that each is decoded once. */
-static ritz_status move_pieces(hid_t set, const ritz_h5_shape *piece,
-                               bool reads, const ritz_dense *A)
+static ritz_status move_pieces(hid_t set, bool reads, const ritz_dense *A)
 {
+    const ritz_h5_shape shape = ritz_h5_table(A->nrow, A->ncol);
+    const ritz_h5_shape piece = find_pieces(set, &shape);
     RITZ_OWN_ARRAY double *rows = NULL;
 
     if (A->nrow == 0 || A->ncol == 0)
         return RITZ_OK;
-    RITZ_CHECK_NEW(rows, (int64_t)(piece->dims[0] * piece->dims[1]));
-    for (hsize_t i = 0; i < (hsize_t)A->nrow; i += piece->dims[0])
-        for (hsize_t j = 0; j < (hsize_t)A->ncol; j += piece->dims[1])
-            if (move_piece(set, piece, reads, i, j, A, rows) < 0)
+    RITZ_CHECK_NEW(rows, (int64_t)(piece.dims[0] * piece.dims[1]));
+    for (hsize_t i = 0; i < (hsize_t)A->nrow; i += piece.dims[0])
+        for (hsize_t j = 0; j < (hsize_t)A->ncol; j += piece.dims[1])
+            if (move_piece(set, &piece, reads, i, j, A, rows) < 0)
                 return RITZ_ERR_FILE;
     return RITZ_OK;
 }
@@ -419,13 +418,12 @@ static int64_t matrix_bytes(const ritz_dense *A)
 
 ritz_status ritz_h5_write_dense(hid_t at, const char *name, const ritz_dense *A)
 {
-    ritz_h5_shape shape = ritz_h5_table(A->nrow, A->ncol);
-    ritz_h5_shape chunk = {0};
     RITZ_OWN(hid_t) set = 0;
     ritz_status status = RITZ_OK;
 
-    RITZ_CHECK(create_set(at, name, H5T_IEEE_F64LE, shape, &chunk, &set));
-    status = move_pieces(set, &chunk, false, A);
+    RITZ_CHECK(create_set(at, name, H5T_IEEE_F64LE,
+                          ritz_h5_table(A->nrow, A->ncol), &set));
+    status = move_pieces(set, false, A);
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
                    "cannot write '%s', is the disk full?", name);
     RITZ_CHECK(status);
@@ -445,30 +443,26 @@ ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
                                int64_t ncol, ritz_dense *out)
 {
     ritz_h5_shape shape = {0};
-    ritz_h5_shape piece = {0};
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(hid_t) set = 0, on_file = 0, memory = 0;
     ritz_status status = RITZ_OK;
-    int64_t n = 0;
-    int64_t m = 0;
+    int64_t n = 0, m = 0;
 
     RITZ_CHECK(open_set(at, name, 2, &shape, &set));
     RITZ_REFUSE_IF(shape.dims[0] > INT_MAX || shape.dims[1] > INT_MAX,
                    RITZ_ERR_FORMAT, "'%s' is too large", name);
     n = (int64_t)shape.dims[0];
     m = (int64_t)shape.dims[1];
-    RITZ_REFUSE_IF(nrow >= 0 && nrow == ncol && n != m, RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(nrow == ncol && n != m, RITZ_ERR_FORMAT,
                    "'%s' is not square", name);
-    RITZ_REFUSE_IF((nrow >= 0 && nrow != n) || (ncol >= 0 && ncol != m),
-                   RITZ_ERR_FORMAT,
+    RITZ_REFUSE_IF(nrow != n || ncol != m, RITZ_ERR_FORMAT,
                    "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
                    " x %" PRId64 " is due",
-                   name, n, m, nrow < 0 ? n : nrow, ncol < 0 ? m : ncol);
+                   name, n, m, nrow, ncol);
     on_file = H5Dget_type(set);
     RITZ_CHECK(ritz_h5_match(name, on_file, H5T_IEEE_F64LE, &memory));
-    RITZ_CHECK(ritz_dense_new(n, m, &A));
-    piece = find_pieces(set, &shape);
-    status = move_pieces(set, &piece, true, &A);
+    RITZ_CHECK(ritz_dense_new(nrow, ncol, &A));
+    status = move_pieces(set, true, &A);
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FORMAT, "'%s' is damaged",
                    name);
     RITZ_CHECK(status);

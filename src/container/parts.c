@@ -23,12 +23,6 @@ static ritz_status settle_grids(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size grids_sizes[] = {
-    {'g', .offset = offsetof(ritz_grids, count), "id"},
-    {'f', .offset = offsetof(ritz_grids, num_frames), "frames"},
-    {0},
-};
-
 static const ritz_member grids_members[] = {
     {"id", SET_WHOLE, RITZ_AT(ritz_grids, id), "g",
      "numbers of the grids, ascending"},
@@ -47,7 +41,8 @@ static const ritz_member grids_members[] = {
 const ritz_schema ritz_schema_grids = {
     .name = "grids",
     .shared = "grids/",
-    .sizes = grids_sizes,
+    .sizes = {{'g', .offset = offsetof(ritz_grids, count), "id"},
+              {'f', .offset = offsetof(ritz_grids, num_frames), "frames"}},
     .members = grids_members,
     .settle = settle_grids,
 };
@@ -73,12 +68,6 @@ static ritz_status settle_elements(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size elements_sizes[] = {
-    {'e', .offset = offsetof(ritz_elements, count), "kind"},
-    {'t', .count = count_nodes},
-    {0},
-};
-
 static const ritz_member elements_members[] = {
     {"kind", SET_WHOLE, RITZ_AT(ritz_elements, kind), "e",
      "type of cell, as VTK numbers it", "1.."},
@@ -93,7 +82,8 @@ static const ritz_member elements_members[] = {
 const ritz_schema ritz_schema_elements = {
     .name = "elements",
     .shared = "elements/",
-    .sizes = elements_sizes,
+    .sizes = {{'e', .offset = offsetof(ritz_elements, count), "kind"},
+              {'t', .count = count_nodes}},
     .members = elements_members,
     .settle = settle_elements,
 };
@@ -108,11 +98,6 @@ static ritz_status settle_recovery(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size recovery_sizes[] = {
-    {'d', .offset = offsetof(ritz_recovery, count), "grid"},
-    {0},
-};
-
 static const ritz_member recovery_members[] = {
     {"grid", SET_WHOLE, RITZ_ITEM(ritz_recovery, dof, ritz_dof, grid), "d",
      "grid of each dof that constraints eliminated"},
@@ -126,7 +111,7 @@ static const ritz_member recovery_members[] = {
 const ritz_schema ritz_schema_recovery = {
     .name = "recovery",
     .shared = "recovery/",
-    .sizes = recovery_sizes,
+    .sizes = {{'d', .offset = offsetof(ritz_recovery, count), "grid"}},
     .members = recovery_members,
     .settle = settle_recovery,
 };
@@ -137,11 +122,6 @@ static ritz_status settle_dampers(const ritz_place *place)
 {
     return ritz_dampers_check(place->target, ritz_schema_size(place, 'c'));
 }
-
-static const ritz_size dampers_sizes[] = {
-    {'d', .offset = offsetof(ritz_dampers, count), "names"},
-    {0},
-};
 
 static const ritz_member dampers_members[] = {
     {"names", SET_WORDS, RITZ_AT(ritz_dampers, name), "d",
@@ -163,7 +143,7 @@ static const ritz_member dampers_members[] = {
 const ritz_schema ritz_schema_dampers = {
     .name = "dampers",
     .shared = "dampers/",
-    .sizes = dampers_sizes,
+    .sizes = {{'d', .offset = offsetof(ritz_dampers, count), "names"}},
     .members = dampers_members,
     .settle = settle_dampers,
 };
@@ -190,12 +170,6 @@ static ritz_status settle_io(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size io_sizes[] = {
-    {'m', .offset = offsetof(ritz_io, num_inputs), "inputs/names"},
-    {'p', .offset = offsetof(ritz_io, num_outputs), "outputs/names"},
-    {0},
-};
-
 static const ritz_member io_members[] = {
     {"inputs/names", SET_NAMES, RITZ_AT(ritz_io, input), "m",
      "distinct names of the inputs", .optional = "inputs", .some = 'm'},
@@ -220,17 +194,13 @@ static const ritz_member io_members[] = {
 const ritz_schema ritz_schema_io = {
     .name = "inputs and outputs",
     .shared = "",
-    .sizes = io_sizes,
+    .sizes = {{'m', .offset = offsetof(ritz_io, num_inputs), "inputs/names"},
+              {'p', .offset = offsetof(ritz_io, num_outputs), "outputs/names"}},
     .members = io_members,
     .settle = settle_io,
 };
 
 /* Columns of a basis. */
-
-static const ritz_size columns_sizes[] = {
-    {'r', .offset = offsetof(ritz_columns, count), "^"},
-    {0},
-};
 
 static const ritz_member columns_members[] = {
     {"columns/kind", SET_COLUMN_KINDS, RITZ_AT(ritz_columns, kind), "r",
@@ -252,7 +222,7 @@ static const ritz_member columns_members[] = {
 const ritz_schema ritz_schema_columns = {
     .name = "columns",
     .shared = "",
-    .sizes = columns_sizes,
+    .sizes = {{'r', .offset = offsetof(ritz_columns, count), "^"}},
     .members = columns_members,
 };
 
@@ -295,11 +265,6 @@ static ritz_status settle_measures(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size measures_sizes[] = {
-    {'k', .offset = offsetof(ritz_measures, count), "name"},
-    {0},
-};
-
 static const ritz_member measures_members[] = {
     {"name", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, name), "k",
      "name of each measure, such as `frequency-relative`; the group "
@@ -317,7 +282,7 @@ static const ritz_member measures_members[] = {
 const ritz_schema ritz_schema_measures = {
     .name = "measures",
     .shared = "errors/",
-    .sizes = measures_sizes,
+    .sizes = {{'k', .offset = offsetof(ritz_measures, count), "name"}},
     .members = measures_members,
     .settle = settle_measures,
 };

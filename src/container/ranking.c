@@ -70,13 +70,6 @@ static bool has_always(const void *)
 
 /* Tracks: numbers by which modes are followed, of all rankings or of none. */
 
-static const ritz_size sizes[] = {
-    {'m', .offset = offsetof(ritz_ranking, count), "hertz"},
-    {'p', .offset = offsetof(ritz_ranking, num_parts), "parts/names"},
-    {'s', .offset = offsetof(ritz_ranking, num_system), "system_value"},
-    {0},
-};
-
 static const ritz_member track_members[] = {
     {"track", SET_WHOLE, .shape = "m", .range = "0..2147483647"},
     {0},
@@ -153,17 +146,15 @@ static const ritz_member members[] = {
 
 const ritz_schema ritz_schema_ranking = {
     .name = "ranking",
-    .sizes = sizes,
+    .sizes = {{'m', .offset = offsetof(ritz_ranking, count), "hertz"},
+              {'p', .offset = offsetof(ritz_ranking, num_parts), "parts/names"},
+              {'s', .offset = offsetof(ritz_ranking, num_system),
+               "system_value"}},
     .members = members,
     .settle = settle_ranking,
 };
 
 /* One ranking or several. */
-
-static const ritz_size rankings_sizes[] = {
-    {'k', .offset = offsetof(ritz_rankings, count)},
-    {0},
-};
 
 static const ritz_member rankings_members[] = {
     {"rankings", LIST, RITZ_LIST(ritz_rankings, item), "k", .numbered = true,
@@ -173,6 +164,6 @@ static const ritz_member rankings_members[] = {
 
 const ritz_schema ritz_schema_rankings = {
     .name = "ranking",
-    .sizes = rankings_sizes,
+    .sizes = {{'k', .offset = offsetof(ritz_rankings, count)}},
     .members = rankings_members,
 };

@@ -7,11 +7,6 @@
 
 /* Ports. */
 
-static const ritz_size port_sizes[] = {
-    {'p', .offset = offsetof(ritz_port_map, count), "grid"},
-    {0},
-};
-
 static const ritz_member port_members[] = {
     {"origin", ATTRIBUTE_REAL, RITZ_AT(ritz_port_map, origin), "3",
      "origin of the port in the basic frame"},
@@ -30,7 +25,7 @@ static const ritz_member port_members[] = {
 
 static const ritz_schema port_schema = {
     .name = "port of a reduced component",
-    .sizes = port_sizes,
+    .sizes = {{'p', .offset = offsetof(ritz_port_map, count), "grid"}},
     .members = port_members,
 };
 
@@ -77,12 +72,6 @@ static ritz_status settle_nested(const ritz_place *place)
     return RITZ_OK;
 }
 
-static const ritz_size nested_sizes[] = {
-    {'s', .offset = offsetof(ritz_nested, smallest)},
-    {'k', .offset = offsetof(ritz_nested, count), "order"},
-    {0},
-};
-
 static const ritz_member nested_members[] = {
     {"smallest", ATTRIBUTE_WHOLE, RITZ_AT(ritz_nested, smallest), "",
      "least number of leading columns that are a reduced component of their "
@@ -99,7 +88,8 @@ static const ritz_member nested_members[] = {
 
 const ritz_schema ritz_schema_nested = {
     .name = "nested",
-    .sizes = nested_sizes,
+    .sizes = {{'s', .offset = offsetof(ritz_nested, smallest)},
+              {'k', .offset = offsetof(ritz_nested, count), "order"}},
     .members = nested_members,
     .settle = settle_nested,
 };
@@ -130,14 +120,6 @@ static ritz_status settle_reduced(const ritz_place *place)
                                             reduced->num_dofs, reduced->dof),
                         "recovery");
 }
-
-static const ritz_size sizes[] = {
-    {'n', .offset = offsetof(ritz_reduced, num_dofs)},
-    {'r', .offset = offsetof(ritz_reduced, K.ncol), "K"},
-    {'c', .offset = offsetof(ritz_reduced, K.ncol)},
-    {'b', .offset = offsetof(ritz_reduced, num_ports)},
-    {0},
-};
 
 static const ritz_member members[] = {
     {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_reduced, damping), "",
@@ -204,7 +186,10 @@ static const ritz_member members[] = {
 const ritz_schema ritz_schema_reduced = {
     .name = "reduced",
     .units = offsetof(ritz_reduced, units),
-    .sizes = sizes,
+    .sizes = {{'n', .offset = offsetof(ritz_reduced, num_dofs)},
+              {'r', .offset = offsetof(ritz_reduced, K.ncol), "K"},
+              {'c', .offset = offsetof(ritz_reduced, K.ncol)},
+              {'b', .offset = offsetof(ritz_reduced, num_ports)}},
     .members = members,
     .settle = settle_reduced,
 };

@@ -21,7 +21,7 @@
 
 static const ritz_size *find_size(const ritz_schema *schema, char letter)
 {
-    for (const ritz_size *s = schema->sizes; s && s->letter; s++)
+    for (const ritz_size *s = schema->sizes; s->letter; s++)
         if (s->letter == letter)
             return s;
     return NULL;
@@ -155,7 +155,7 @@ ritz_place ritz_schema_part(const ritz_place *place, const ritz_member *row)
     return (ritz_place){
         .at = place->at,
         .schema = row->schema,
-        .object = field_of(place, row),
+        .object = place->object ? field_of(place, row) : NULL,
         .outer = place,
     };
 }
@@ -611,7 +611,7 @@ static ritz_status measure_row(const ritz_place *place, char letter,
 
 static ritz_status read_sizes(const ritz_place *place)
 {
-    for (const ritz_size *s = place->schema->sizes; s && s->letter; s++) {
+    for (const ritz_size *s = place->schema->sizes; s->letter; s++) {
         const ritz_member *row = place->schema->members;
         int64_t size = 0;
 

@@ -96,12 +96,14 @@ typedef struct ritz_size {
     int64_t (*count)(const void *object); /* instead of a field */
 } ritz_size;
 
+enum { RITZ_MOST_SIZES = 6 };
+
 struct ritz_schema {
-    const char *name;       /* `ritz_kind`, or of a part */
-    const char *shared;     /* of a part of several kinds: the group it lies in,
+    const char *name;   /* `ritz_kind`, or of a part */
+    const char *shared; /* of a part of several kinds: the group it lies in,
                            with a slash, or "" */
-    const ritz_size *sizes; /* ended by letter 0; NULL: none */
-    const ritz_member *members; /* ended by name NULL */
+    ritz_size sizes[RITZ_MOST_SIZES]; /* ended by letter 0 */
+    const ritz_member *members;       /* ended by name NULL */
     size_t
         units; /* of a kind: offset of char[RITZ_NAME_SIZE], 0: it has none */
     /** Checks an object before it is written; NULL: nothing is to check. */

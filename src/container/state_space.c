@@ -27,14 +27,6 @@ static ritz_status check_model(const void *object)
     return ritz_state_space_check(object);
 }
 
-static const ritz_size sizes[] = {
-    {'r', .offset = offsetof(ritz_state_space, A.ncol), "A"},
-    {'m', .offset = offsetof(ritz_state_space, num_inputs), "inputs/names"},
-    {'p', .offset = offsetof(ritz_state_space, num_outputs), "outputs/names"},
-    {'n', .count = count_no_dofs},
-    {0},
-};
-
 static const ritz_member members[] = {
     {"damping", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_state_space, damping), "",
      "damping that A contains in addition to the component's matrices"},
@@ -67,7 +59,12 @@ static const ritz_member members[] = {
 const ritz_schema ritz_schema_state_space = {
     .name = "state-space",
     .units = offsetof(ritz_state_space, units),
-    .sizes = sizes,
+    .sizes = {{'r', .offset = offsetof(ritz_state_space, A.ncol), "A"},
+              {'m', .offset = offsetof(ritz_state_space, num_inputs),
+               "inputs/names"},
+              {'p', .offset = offsetof(ritz_state_space, num_outputs),
+               "outputs/names"},
+              {'n', .count = count_no_dofs}},
     .members = members,
     .check = check_model,
     .settle = settle_state_space,

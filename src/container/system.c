@@ -69,13 +69,6 @@ static bool has_momentum(const void *object)
     return ((const ritz_configuration *)object)->momentum.val;
 }
 
-static const ritz_size configuration_sizes[] = {
-    {'e', .offset = offsetof(ritz_configuration, K.ncol), "K"},
-    {'c', .offset = offsetof(ritz_configuration, K.ncol)},
-    {'w', .offset = offsetof(ritz_configuration, num_settings), "^"},
-    {0},
-};
-
 static const ritz_member configuration_members[] = {
     {"at", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_configuration, at), "",
      "settings of the joints, such as `clock=60,cone=0`"},
@@ -113,18 +106,13 @@ static const ritz_member configuration_members[] = {
 
 static const ritz_schema configuration_schema = {
     .name = "configuration",
-    .sizes = configuration_sizes,
+    .sizes = {{'e', .offset = offsetof(ritz_configuration, K.ncol), "K"},
+              {'c', .offset = offsetof(ritz_configuration, K.ncol)},
+              {'w', .offset = offsetof(ritz_configuration, num_settings), "^"}},
     .members = configuration_members,
 };
 
 /* The whole. */
-
-static const ritz_size sizes[] = {
-    {'w', .offset = offsetof(ritz_system, num_sweeps), "sweeps"},
-    {'b', .offset = offsetof(ritz_system, num_components)},
-    {'k', .offset = offsetof(ritz_system, num_configurations)},
-    {0},
-};
 
 static const ritz_member members[] = {
     {"name", ATTRIBUTE_TEXT, RITZ_TEXT(ritz_system, name), "",
@@ -145,6 +133,8 @@ static const ritz_member members[] = {
 const ritz_schema ritz_schema_system = {
     .name = "system",
     .units = offsetof(ritz_system, units),
-    .sizes = sizes,
+    .sizes = {{'w', .offset = offsetof(ritz_system, num_sweeps), "sweeps"},
+              {'b', .offset = offsetof(ritz_system, num_components)},
+              {'k', .offset = offsetof(ritz_system, num_configurations)}},
     .members = members,
 };

@@ -2,7 +2,7 @@
  * Components of a scene, COMPONENT/PORT, as joints and inputs name it, and
  * inputs and outputs.
  */
-#include "scene/scene_parts.h"
+#include "scene/yaml.h"
 
 #include "base/alloc.h"
 

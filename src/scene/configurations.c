@@ -4,7 +4,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "scene/scene_parts.h"
+#include "scene/yaml.h"
 
 #include <inttypes.h>
 #include <math.h>

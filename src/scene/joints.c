@@ -1,7 +1,7 @@
 /* Joints of a scene: a table says what each type of them takes. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "scene/scene_parts.h"
+#include "scene/yaml.h"
 
 #include <inttypes.h>
 #include <math.h>

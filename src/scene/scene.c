@@ -5,7 +5,7 @@
 #include "base/alloc.h"
 
 #include "base/tolerances.h"
-#include "scene/scene_parts.h"
+#include "scene/yaml.h"
 
 #include <ritz/container.h>
 #include <ritz/ranking.h>

@@ -256,55 +256,41 @@ ritz_status ritz_yaml_word(const ritz_yaml *yaml, const yaml_node_t *node,
     return ritz_yaml_at(yaml, node, ritz_words_find(names, text, out));
 }
 
-static bool has_key(const ritz_yaml *yaml, const yaml_node_t *node,
-                    const char *name)
-{
-    int64_t pairs =
-        node->data.mapping.pairs.top - node->data.mapping.pairs.start;
-
-    for (int64_t k = 0; k < pairs; k++) {
-        const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
-
-        if (word->type == YAML_SCALAR_NODE &&
-            strcmp((const char *)word->data.scalar.value, name) == 0)
-            return true;
-    }
-    return false;
-}
-
-/* Suggest a key that the mapping does not have yet, if one is near. */
-static ritz_status suggest_key(const ritz_yaml *yaml, const yaml_node_t *node,
-                               const ritz_names *names, const char *word)
+/* Suggest a key that the mapping does not have, if one is near. */
+static ritz_status suggest_key(const ritz_names *names, const char *word,
+                               const yaml_node_t *const *value)
 {
     enum { MOST_KEYS = 16 };
     char absent[MOST_KEYS][sizeof(((ritz_yaml_key *)0)->name)];
     ritz_names left = {names->what, 0, absent[0], sizeof *absent};
     int64_t at = 0;
 
-    for (int64_t k = 0; k < names->count && left.count < MOST_KEYS; k++) {
-        const char *name = names->first + (size_t)k * names->stride;
-
-        if (!has_key(yaml, node, name))
-            memcpy(absent[left.count++], name, sizeof *absent);
-    }
+    for (int64_t k = 0; k < names->count && left.count < MOST_KEYS; k++)
+        if (!value[k])
+            memcpy(absent[left.count++],
+                   names->first + (size_t)k * names->stride, sizeof *absent);
     if (ritz_text_nearest(word, left.count, left.first, left.stride))
         RITZ_CHECK(ritz_words_find(&left, word, &at));
     return ritz_words_find(names, word, &at);
 }
 
-/* Index of the key that a node of a mapping names. */
-static ritz_status find_key(const ritz_yaml *yaml, const yaml_node_t *node,
-                            const yaml_node_t *word, const ritz_names *names,
-                            int64_t *out)
+/* The values of all keys that are known, wherever they stand. */
+static void list_values(const ritz_yaml *yaml, const yaml_node_t *node,
+                        int64_t pairs, const ritz_names *names,
+                        const yaml_node_t **value)
 {
-    const char *text = NULL;
+    for (int64_t k = 0; k < names->count; k++)
+        value[k] = NULL;
+    for (int64_t k = 0; k < pairs; k++) {
+        const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
+        int64_t at = word->type != YAML_SCALAR_NODE
+                         ? -1
+                         : ritz_names_index(
+                               names, (const char *)word->data.scalar.value);
 
-    RITZ_CHECK(ritz_yaml_text(yaml, word, &text));
-    *out = ritz_names_index(names, text);
-    if (*out < 0)
-        RITZ_CHECK(
-            ritz_yaml_at(yaml, word, suggest_key(yaml, node, names, text)));
-    return RITZ_OK;
+        if (at >= 0)
+            value[at] = ritz_yaml_value_at(yaml, node, k);
+    }
 }
 
 ritz_status ritz_yaml_mapping(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -312,20 +298,25 @@ ritz_status ritz_yaml_mapping(const ritz_yaml *yaml, const yaml_node_t *node,
                               void *object, const yaml_node_t **value)
 {
     ritz_names names = {"key", count, keys->name, sizeof *keys};
+    uint64_t taken = 0; /* bits of keys */
     int64_t pairs = 0;
 
-    for (int64_t k = 0; k < count; k++)
-        value[k] = NULL;
     RITZ_CHECK(ritz_yaml_pairs(yaml, node, &pairs));
+    list_values(yaml, node, pairs, &names, value);
     for (int64_t k = 0; k < pairs; k++) {
         const yaml_node_t *word = ritz_yaml_key_at(yaml, node, k);
+        const char *text = NULL;
         int64_t at = 0;
 
-        RITZ_CHECK(find_key(yaml, node, word, &names, &at));
-        RITZ_REFUSE_AT(value[at], yaml, word, "key '%s' is given twice",
+        RITZ_CHECK(ritz_yaml_text(yaml, word, &text));
+        at = ritz_names_index(&names, text);
+        if (at < 0)
+            return ritz_yaml_at(yaml, word, suggest_key(&names, text, value));
+        RITZ_REFUSE_AT(taken >> at & 1U, yaml, word, "key '%s' is given twice",
                        keys[at].name);
-        value[at] = ritz_yaml_value_at(yaml, node, k);
-        RITZ_CHECK(ritz_yaml_value(yaml, value[at], &keys[at], object));
+        taken |= UINT64_C(1) << at;
+        RITZ_CHECK(ritz_yaml_value(yaml, ritz_yaml_value_at(yaml, node, k),
+                                   &keys[at], object));
     }
     for (int64_t k = 0; k < count; k++)
         RITZ_REFUSE_AT(keys[k].required && !value[k], yaml, node,
