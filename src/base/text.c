@@ -4,21 +4,35 @@
 
 #include <errno.h>
 #include <math.h>
+#include <nettle/sha2.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-/* Move `used` bytes into a block of `size`, the rest of it zero. */
-static ritz_status grow_text(char **text, int64_t used, int64_t size)
-{
-    char *bigger = NULL;
+/* A file that is read. */
+typedef struct input_file {
+    FILE *file;
+} input_file;
 
-    RITZ_CHECK_NEW(bigger, size);
-    if (used > 0)
-        memcpy(bigger, *text, (size_t)used);
-    free(*text);
-    *text = bigger;
+static void input_file_free(input_file *from)
+{
+    if (from->file)
+        fclose(from->file);
+}
+
+static ritz_status open_file(const char *path, input_file *out)
+{
+    out->file = fopen(path, "rb");
+    RITZ_REFUSE_IF(!out->file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                   strerror(errno));
+    return RITZ_OK;
+}
+
+static ritz_status check_file(const char *path, const input_file *from)
+{
+    RITZ_REFUSE_IF(ferror(from->file), RITZ_ERR_FILE, "cannot read '%s': %s",
+                   path, strerror(errno));
     return RITZ_OK;
 }
 
@@ -39,29 +53,23 @@ static int64_t stated_size(FILE *file)
 ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
 {
     enum { SMALLEST = 4096 };
-    ritz_status status = RITZ_OK;
-    char *bytes = NULL;
-    int64_t used = 0;
-    int64_t room = 0;
-    FILE *file = fopen(path, "rb");
+    RITZ_OWN(input_file) from = {0};
+    RITZ_OWN_ARRAY char *bytes = NULL;
+    int64_t used = 0, room = 0;
 
-    RITZ_FAIL_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
-                 strerror(errno));
-    while (used == room) { /* full: there may be more */
-        room = room > 0 ? 2 * room : stated_size(file) + 1;
-        room = room < SMALLEST ? SMALLEST : room;
-        RITZ_TRY(grow_text(&bytes, used, room + 1));
-        used += (int64_t)fread(bytes + used, 1, (size_t)(room - used), file);
-    }
-    RITZ_FAIL_IF(ferror(file), RITZ_ERR_FILE, "cannot read '%s': %s", path,
-                 strerror(errno));
+    RITZ_CHECK(open_file(path, &from));
+    room = stated_size(from.file) + 2; /* with the NUL behind */
+    room = room < SMALLEST ? SMALLEST : room;
+    RITZ_CHECK_NEW(bytes, room);
+    do {
+        RITZ_CHECK_ROOM(bytes, used + 1, room);
+        used += (int64_t)fread(bytes + used, 1, (size_t)(room - 1 - used),
+                               from.file);
+    } while (used == room - 1); /* full: there may be more */
+    RITZ_CHECK(check_file(path, &from));
     *size = used;
     RITZ_MOVE(*out, bytes);
-done:
-    if (file)
-        fclose(file);
-    free(bytes);
-    return status;
+    return RITZ_OK;
 }
 
 ritz_status ritz_text_read(const char *path, char **out)
@@ -73,6 +81,43 @@ ritz_status ritz_text_read(const char *path, char **out)
     RITZ_REFUSE_IF(strlen(text) != (size_t)size, RITZ_ERR_FORMAT,
                    "'%s' is not a text file", path);
     RITZ_MOVE(*out, text);
+    return RITZ_OK;
+}
+
+/* SHA-256 by nettle: what was read is named by content. */
+
+static void write_digest(struct sha256_ctx *sum, char out[RITZ_DIGEST_SIZE])
+{
+    uint8_t digest[SHA256_DIGEST_SIZE];
+
+    sha256_digest(sum, sizeof digest, digest);
+    for (size_t k = 0; k < sizeof digest; k++)
+        snprintf(out + 2 * k, 3, "%02x", (unsigned)digest[k]);
+}
+
+void ritz_digest_bytes(const void *bytes, size_t size,
+                       char out[RITZ_DIGEST_SIZE])
+{
+    struct sha256_ctx sum;
+
+    sha256_init(&sum);
+    sha256_update(&sum, size, bytes);
+    write_digest(&sum, out);
+}
+
+ritz_status ritz_digest_file(const char *path, char out[RITZ_DIGEST_SIZE])
+{
+    RITZ_OWN(input_file) from = {0};
+    struct sha256_ctx sum;
+    uint8_t block[1 << 16];
+    size_t size = 0;
+
+    RITZ_CHECK(open_file(path, &from));
+    sha256_init(&sum);
+    while ((size = fread(block, 1, sizeof block, from.file)) > 0)
+        sha256_update(&sum, size, block);
+    RITZ_CHECK(check_file(path, &from));
+    write_digest(&sum, out);
     return RITZ_OK;
 }
 
@@ -127,21 +172,6 @@ ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
     return RITZ_OK;
 }
 
-int ritz_letter_length(const char *text)
-{
-    const unsigned char *c = (const unsigned char *)text;
-    int more = c[0] >= 0xF0 ? 3 : c[0] >= 0xE0 ? 2 : 1;
-
-    if (c[0] < 0x80)
-        return c[0] >= ' ' && c[0] != 0x7F;
-    if (c[0] < 0xC2 || c[0] > 0xF4 || (c[0] == 0xC2 && c[1] < 0xA0))
-        return 0; /* no first byte, or a control character above 0x7F */
-    for (int k = 1; k <= more; k++)
-        if (c[k] >> 6 != 2)
-            return 0;
-    return 1 + more;
-}
-
 ritz_status ritz_path_folder(const char *path, char **out)
 {
     const char *slash = strrchr(path, '/');
@@ -154,4 +184,185 @@ ritz_status ritz_path_folder(const char *path, char **out)
     memcpy(folder, slash ? path : ".", length);
     *out = folder;
     return RITZ_OK;
+}
+
+/* Names. */
+
+enum { FAR = 1000, LONGEST = 64 };
+
+/* Edit distance of two short words, FAR if one is long. */
+static int count_edits(const char *a, const char *b)
+{
+    int row[LONGEST + 1];
+    int m = (int)strlen(a);
+    int n = (int)strlen(b);
+
+    if (m > LONGEST || n > LONGEST)
+        return FAR;
+    for (int j = 0; j <= n; j++)
+        row[j] = j;
+    for (int i = 1; i <= m; i++) {
+        int diagonal = row[0];
+
+        row[0] = i;
+        for (int j = 1; j <= n; j++) {
+            int best = diagonal + (a[i - 1] != b[j - 1]);
+
+            diagonal = row[j];
+            if (row[j] + 1 < best)
+                best = row[j] + 1;
+            if (row[j - 1] + 1 < best)
+                best = row[j - 1] + 1;
+            row[j] = best;
+        }
+    }
+    return row[n];
+}
+
+/* The name so far that is nearest to a word, and its distance. */
+typedef struct nearest {
+    const char *word, *name;
+    int edits;
+} nearest;
+
+static void try_name(nearest *near, const char *name)
+{
+    int edits = count_edits(near->word, name);
+
+    if (edits < near->edits) {
+        near->edits = edits;
+        near->name = name;
+    }
+}
+
+/* NULL if more than half of the letters differ. */
+static const char *accept_nearest(const nearest *near)
+{
+    return near->edits <= (int)(strlen(near->word) + 1) / 2 ? near->name : NULL;
+}
+
+const char *ritz_text_nearest(const char *word, int64_t count,
+                              const char *first, size_t stride)
+{
+    nearest near = {word, NULL, FAR};
+
+    for (int64_t k = 0; k < count; k++)
+        try_name(&near, first + (size_t)k * stride);
+    return accept_nearest(&near);
+}
+
+static void record_unknown(const char *kind, const char *name, const char *near,
+                           const char *otherwise)
+{
+    ritz_record("there is no %s '%.63s'%s%s%s", kind, name,
+                near ? ", is '" : "", near ? near : "",
+                near ? "' meant?" : otherwise);
+}
+
+/* Row k of a table of pointers to structs; the first member is the name. */
+static const char *name_row(const void *table, int64_t k, const void **row)
+{
+    const char *name = NULL;
+
+    memcpy(row, (const char *)table + (size_t)k * sizeof *row, sizeof *row);
+    if (*row)
+        memcpy(&name, *row, sizeof name);
+    return name;
+}
+
+const void *ritz_row_find(const void *table, const char *kind, const char *name)
+{
+    nearest near = {name, NULL, FAR};
+    const void *row = NULL;
+    const char *known = name_row(table, 0, &row);
+
+    for (int64_t k = 1; known; known = name_row(table, k++, &row)) {
+        if (strcmp(known, name) == 0)
+            return row;
+        try_name(&near, known);
+    }
+    record_unknown(kind, name, accept_nearest(&near), "");
+    return NULL;
+}
+
+static const char *name_at(const ritz_names *names, int64_t k)
+{
+    return names->first + (size_t)k * names->stride;
+}
+
+int64_t ritz_names_index(const ritz_names *names, const char *word)
+{
+    for (int64_t k = 0; k < names->count; k++)
+        if (strcmp(name_at(names, k), word) == 0)
+            return k;
+    return -1;
+}
+
+int64_t ritz_names_seek(const ritz_names *names, const char *word)
+{
+    int64_t at = ritz_names_index(names, word);
+
+    if (at < 0)
+        record_unknown(
+            names->what, word,
+            ritz_text_nearest(word, names->count, names->first, names->stride),
+            names->count > 0 ? "" : ", the model has none");
+    return at;
+}
+
+/* "model, basis, modes", as many as there is room for. */
+static const char *list_names(const ritz_names *names, char *out, size_t size)
+{
+    size_t used = 0;
+
+    snprintf(out, size, "none");
+    for (int64_t k = 0; k < names->count; k++) {
+        const char *name = name_at(names, k);
+
+        if (used + strlen(name) + sizeof ", ..." > size) {
+            snprintf(out + used, size - used, ", ...");
+            break;
+        }
+        used += (size_t)snprintf(out + used, size - used, "%s%s",
+                                 k > 0 ? ", " : "", name);
+    }
+    return out;
+}
+
+ritz_status ritz_words_find(const ritz_names *names, const char *word,
+                            int64_t *out)
+{
+    int64_t at = ritz_names_index(names, word);
+    const char *near = NULL;
+    char text[RITZ_SHORT_SIZE];
+    char all[200];
+
+    if (at < 0)
+        near =
+            ritz_text_nearest(word, names->count, names->first, names->stride);
+    RITZ_REFUSE_IF(near, RITZ_ERR_ARGUMENT, "unknown %s '%s', is '%s' meant?",
+                   names->what, ritz_text_short(word, text), near);
+    RITZ_REFUSE_IF(at < 0, RITZ_ERR_ARGUMENT, "unknown %s '%s', there is %s",
+                   names->what, ritz_text_short(word, text),
+                   list_names(names, all, sizeof all));
+    *out = at;
+    return RITZ_OK;
+}
+
+const char *ritz_text_short(const char *text, char out[RITZ_SHORT_SIZE])
+{
+    enum { MOST = 40 };
+    size_t length = strlen(text);
+    size_t kept = length <= MOST ? length : MOST;
+
+    /* never half a character of UTF-8, whose later bytes are 10xxxxxx */
+    while (kept < length && kept > 0 && ((unsigned char)text[kept] >> 6) == 2)
+        kept--;
+    memcpy(out, text, kept);
+    for (size_t k = 0; k < kept; k++)
+        if ((unsigned char)out[k] < ' ' || out[k] == 127)
+            out[k] = ' ';
+    snprintf(out + kept, RITZ_SHORT_SIZE - kept, "%s",
+             kept < length ? "..." : "");
+    return out;
 }

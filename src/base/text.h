@@ -1,4 +1,7 @@
-/* Text that others wrote: its letters, and paths. */
+/*
+ * Text that others wrote: its letters, and paths; names in sentences, looked up
+ * with a suggestion and cut to a readable length.
+ */
 #ifndef RITZ_BASE_TEXT_H
 #define RITZ_BASE_TEXT_H
 
@@ -13,5 +16,33 @@ int ritz_letter_length(const char *text);
 
 /** The folder of a path: "." if it names none. The caller frees @p out. */
 ritz_status ritz_path_folder(const char *path, char **out);
+
+/* Names of one sort: an array of structs that each begin with a name. */
+typedef struct ritz_names {
+    const char *what; /* "component", for sentences */
+    int64_t count;
+    const char *first;
+    size_t stride;
+} ritz_names;
+
+/**
+ * Index of @p word.
+ *
+ * @return RITZ_ERR_ARGUMENT "unknown WHAT 'modez', is 'modes' meant?", or with
+ *         all there are if none is near
+ */
+ritz_status ritz_words_find(const ritz_names *names, const char *word,
+                            int64_t *out);
+
+/** Index of @p word, without a sentence; -1 if it is not there. */
+int64_t ritz_names_index(const ritz_names *names, const char *word);
+
+/** The same with the sentence "there is no WHAT 'word', is 'ward' meant?". */
+int64_t ritz_names_seek(const ritz_names *names, const char *word);
+
+enum { RITZ_SHORT_SIZE = 48 };
+
+/** Beginning of a text on one line, for 'quotes'; returns @p out. */
+const char *ritz_text_short(const char *text, char out[RITZ_SHORT_SIZE]);
 
 #endif

@@ -4,7 +4,7 @@
  */
 #include <ritz/basis.h>
 
-#include "base/names.h"
+#include "base/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "base/alloc.h"
-#include "base/names.h"
+#include "base/text.h"
 #include "base/tolerances.h"
 
 #include <ritz/model.h>

@@ -1,6 +1,6 @@
 /* Reduced components: projection of a component on a basis. */
 #include "base/alloc.h"
-#include "base/names.h"
+#include "base/text.h"
 #include "base/tolerances.h"
 
 #include <ritz/model.h>

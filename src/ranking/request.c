@@ -4,7 +4,7 @@
  */
 
 #include "base/alloc.h"
-#include "base/names.h"
+#include "base/text.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"
 

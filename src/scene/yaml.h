@@ -9,7 +9,7 @@
 #ifndef RITZ_SCENE_YAML_H
 #define RITZ_SCENE_YAML_H
 
-#include "base/names.h"
+#include "base/text.h"
 
 #include <ritz/scene.h>
 

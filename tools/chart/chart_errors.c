@@ -4,7 +4,7 @@
  */
 #include "chart/chart.h"
 
-#include "base/names.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <string.h>

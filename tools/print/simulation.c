@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 
-#include "base/names.h"
+#include "base/text.h"
 
 #include <inttypes.h>
 
