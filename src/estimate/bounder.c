@@ -1,7 +1,7 @@
 /* The bound of a response at a frequency; its equations are in response.c. */
-#include "estimate/bounder.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "estimate/estimator.h"
 #include "linear/general.h"
 
 #include <float.h>
@@ -29,12 +29,6 @@ static double rate_at(const ritz_bounder *r, double lambda)
                        : 2.0 * r->zeta * sqrt(fmax(lambda, 0.0));
 }
 
-void ritz_bounder_take_rates(ritz_bounder *r)
-{
-    for (int64_t j = 0; j < r->trial->count; j++)
-        r->rates[j] = rate_at(r, stiffness_of(r, j));
-}
-
 /* The product of a real symmetric matrix and a complex vector. */
 static void multiply_real(const ritz_dense *G, const number *x, number *y)
 {
@@ -55,16 +49,15 @@ static double norm_of(const ritz_bounder *r, const number *x, number *work)
 }
 
 /* Put A X into V from column `at` on; zeros if there is no A. */
-static ritz_status multiply_damping(const ritz_sparse *A, const ritz_bounder *r,
-                                    int64_t at, ritz_dense *V)
+static ritz_status put_product(const ritz_sparse *A, const ritz_bounder *r,
+                               int64_t at, ritz_dense *V)
 {
     RITZ_OWN(ritz_dense) AX = {0};
 
     if (!A->colptr)
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_mul(A, &r->trial->X, &AX));
-    memcpy(ritz_dense_col(V, at), AX.val,
-           (size_t)(AX.nrow * AX.ncol) * sizeof *AX.val);
+    ritz_dense_put(&AX, 0, at, V);
     return RITZ_OK;
 }
 
@@ -72,30 +65,24 @@ static ritz_status multiply_damping(const ritz_sparse *A, const ritz_bounder *r,
 static ritz_status stack_vectors(const ritz_estimator *estimator,
                                  ritz_bounder *r, ritz_dense *V)
 {
-    const ritz_io *io = &estimator->component->io;
+    const ritz_component *full = estimator->component;
+    const ritz_io *io = &full->io;
     const ritz_dense *const C[KINDS] = {&io->C, &io->Cv, &io->Ca};
-    int64_t n = estimator->component->num_dofs;
     int64_t m = r->trial->count;
     RITZ_OWN(ritz_dense) MX = {0};
     ritz_dense part = {0};
 
-    RITZ_CHECK(ritz_dense_new(n, r->size, V));
-    memcpy(V->val, r->trial->R.val, (size_t)(n * m) * sizeof *V->val);
-    for (int64_t j = 0; j < io->num_inputs; j++)
-        memcpy(ritz_dense_col(V, m + j), ritz_dense_col(&io->B, j),
-               (size_t)n * sizeof *V->val);
+    RITZ_CHECK(ritz_dense_new(full->num_dofs, r->size, V));
+    ritz_dense_put(&r->trial->R, 0, 0, V);
+    ritz_dense_put(&io->B, 0, m, V);
     for (int64_t k = 0; k < KINDS; k++)
-        for (int64_t i = 0; i < io->num_outputs; i++)
-            for (int64_t d = 0; d < n; d++)
-                ritz_dense_col(V, m + io->num_inputs + k * io->num_outputs +
-                                      i)[d] = ritz_dense_col(C[k], d)[i];
+        ritz_general_place(1.0, C[k], true, 0,
+                           m + io->num_inputs + k * io->num_outputs, V);
     if (r->coupled) {
-        RITZ_CHECK(
-            multiply_damping(&estimator->component->D, r, r->size - 2 * m, V));
-        RITZ_CHECK(
-            multiply_damping(&estimator->component->K4, r, r->size - m, V));
+        RITZ_CHECK(put_product(&full->D, r, r->size - 2 * m, V));
+        RITZ_CHECK(put_product(&full->K4, r, r->size - m, V));
     }
-    RITZ_CHECK(ritz_sparse_mul(&estimator->component->M, &r->trial->X, &MX));
+    RITZ_CHECK(ritz_sparse_mul(&full->M, &r->trial->X, &MX));
     part = ritz_dense_part(V, m, r->size - m);
     for (int twice = 0; twice < 2; twice++)
         RITZ_CHECK(ritz_dense_take_out(&MX, &r->trial->X, &part));
@@ -320,6 +307,8 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
     r->num_sides = io->num_inputs + io->num_outputs;
     r->size = (r->coupled ? 3 : 1) * r->trial->count + io->num_inputs +
               KINDS * io->num_outputs;
+    for (int64_t j = 0; j < r->trial->count && !r->matrix_rates; j++)
+        r->rates[j] = rate_at(r, stiffness_of(r, j));
     RITZ_CHECK(take_forms(estimator, r));
     RITZ_CHECK(take_sines(r));
     RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &XB));
@@ -334,11 +323,6 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
     RITZ_CHECK_NEW(r->QV, r->size);
     return r->coupled ? open_coupled(estimator->component, r) : RITZ_OK;
 }
-
-/*
- * The bound of |H - H_r| of each pair of an input and an output, at a frequency
- * or anywhere in an interval; the equations are in response.c.
- */
 
 /* Bounds of |c eta_j| and of its second derivative within h of w. */
 static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
@@ -560,7 +544,6 @@ static frequency_interval interval_of(const ritz_bounder *r, double w, double h)
     return at;
 }
 
-/* The largest bound of all pairs within h of w; with h = 0 it tells |H_r|. */
 double ritz_bound_at(ritz_bounder *r, double w, double h)
 {
     const ritz_io *io = r->io;

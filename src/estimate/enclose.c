@@ -54,19 +54,18 @@ ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma)
 {
     ritz_status status = RITZ_ERR_SINGULAR;
     const ritz_component *full = estimator->component;
-    ritz_sparse A = {0};
 
     if (estimator->A)
         return RITZ_OK;
     for (int t = 0; t < MOST_SHIFTS && status == RITZ_ERR_SINGULAR; t++) {
-        ritz_sparse_free(&A);
+        RITZ_OWN(ritz_sparse) A = {0};
+
         estimator->sigma = t > 0 ? 10.0 * estimator->sigma : sigma;
-        RITZ_TRY(
+        RITZ_CHECK_IN(
+            "estimate",
             ritz_sparse_add(1.0, &full->K, -estimator->sigma, &full->M, &A));
         status = ritz_factor_spd(&A, &estimator->A);
     }
-done:
-    ritz_sparse_free(&A);
     return ritz_context(status, "estimate");
 }
 
@@ -102,10 +101,11 @@ static double sum_magnitudes(const ritz_sparse *K, const double *x)
     return sum;
 }
 
-/* R = K X - M X Theta; rounding of theta. */
-static ritz_status take_residuals(const ritz_component *full,
+/* R = K X - M X Theta, E = A^-1 R and G = R'E; rounding of theta. */
+static ritz_status take_residuals(const ritz_estimator *estimator,
                                   ritz_lehmann *trial)
 {
+    const ritz_component *full = estimator->component;
     RITZ_OWN(ritz_dense) MX = {0};
     double largest = 0.0;
 
@@ -128,6 +128,11 @@ static ritz_status take_residuals(const ritz_component *full,
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
     }
+    RITZ_CHECK(ritz_dense_copy(&trial->R, &trial->E));
+    if (trial->count > 0)
+        RITZ_CHECK(ritz_factor_solve(estimator->A, &trial->E));
+    RITZ_CHECK(ritz_dense_mul_tn(&trial->R, &trial->E, &trial->G));
+    ritz_dense_symmetrise(&trial->G);
     return RITZ_OK;
 }
 
@@ -174,18 +179,6 @@ static ritz_status round_reduced(const ritz_reduced *reduced,
     return RITZ_OK;
 }
 
-/* E = A^-1 R and G = R'E. */
-static ritz_status solve_residuals(ritz_estimator *estimator,
-                                   ritz_lehmann *trial)
-{
-    RITZ_CHECK(ritz_dense_copy(&trial->R, &trial->E));
-    if (trial->count > 0)
-        RITZ_CHECK(ritz_factor_solve(estimator->A, &trial->E));
-    RITZ_CHECK(ritz_dense_mul_tn(&trial->R, &trial->E, &trial->G));
-    ritz_dense_symmetrise(&trial->G);
-    return RITZ_OK;
-}
-
 ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
                              const ritz_reduced *reduced,
                              const ritz_pairs *pairs, int64_t count,
@@ -199,9 +192,8 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
     RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &trial));
     RITZ_REFUSE_IF(trial.count != count, RITZ_ERR_SINGULAR,
                    "estimate: columns of the basis depend on each other");
-    RITZ_CHECK(take_residuals(estimator->component, &trial));
+    RITZ_CHECK(take_residuals(estimator, &trial));
     RITZ_CHECK(round_reduced(reduced, pairs, &trial));
-    RITZ_CHECK(solve_residuals(estimator, &trial));
     RITZ_MOVE(*out, trial);
     return RITZ_OK;
 }
@@ -220,8 +212,7 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
     for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
         Y.val[k] -= trial->E.val[k];
     RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &polished));
-    RITZ_CHECK(take_residuals(estimator->component, &polished));
-    RITZ_CHECK(solve_residuals(estimator, &polished));
+    RITZ_CHECK(take_residuals(estimator, &polished));
     RITZ_MOVE(*out, polished);
     return RITZ_OK;
 }
@@ -468,6 +459,34 @@ int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
     return below;
 }
 
+bool ritz_counted_within(const ritz_estimator *estimator, double low,
+                         double high)
+{
+    const ritz_counted *c = estimator->count;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++)
+        if (c[s].rho > low && c[s].rho < high)
+            return true;
+    return false;
+}
+
+int64_t ritz_missing_modes(const ritz_measuring *m)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]);
+    int64_t least = -1;
+
+    for (int64_t s = 0; s < m->estimator->num_counts; s++) {
+        const ritz_counted *c = &m->estimator->count[s];
+        int64_t below =
+            ritz_count_below(m->pairs.Phi.ncol, m->pairs.lambda, c->rho);
+        int64_t more = c->below > below ? c->below - below : 0;
+
+        if (c->rho >= end && (least < 0 || more < least))
+            least = more;
+    }
+    return least;
+}
+
 /* Bounds by a trial space and each count. */
 static ritz_status add_trial(const ritz_estimator *estimator,
                              const ritz_lehmann *trial, ritz_enclosure *e)
@@ -503,7 +522,14 @@ static void add_near(const ritz_lehmann *trial, ritz_enclosure *e)
     }
 }
 
-ritz_status ritz_enclosure_new(const ritz_measuring *m, ritz_enclosure *out)
+void ritz_enclosure_free(ritz_enclosure *enclosure)
+{
+    RITZ_FREE(enclosure->low, enclosure->high, enclosure->near_low,
+              enclosure->near_high);
+    *enclosure = (ritz_enclosure){0};
+}
+
+ritz_status ritz_measuring_enclose(ritz_measuring *m)
 {
     const ritz_estimator *estimator = m->estimator;
     const ritz_lehmann *trial = &m->trial, *polished = &m->polished;
@@ -525,15 +551,9 @@ ritz_status ritz_enclosure_new(const ritz_measuring *m, ritz_enclosure *out)
     RITZ_CHECK(add_trial(estimator, trial, &e));
     RITZ_CHECK(add_trial(estimator, polished, &e));
     settle_ends(estimator, trial, &e);
-    RITZ_MOVE(*out, e);
+    ritz_enclosure_free(&m->enclosure);
+    RITZ_MOVE(m->enclosure, e);
     return RITZ_OK;
-}
-
-void ritz_enclosure_free(ritz_enclosure *enclosure)
-{
-    RITZ_FREE(enclosure->low, enclosure->high, enclosure->near_low,
-              enclosure->near_high);
-    *enclosure = (ritz_enclosure){0};
 }
 
 /*
@@ -546,42 +566,23 @@ void ritz_enclosure_free(ritz_enclosure *enclosure)
  * an inverse iteration, where eps is far smaller.
  */
 
-/* Ends of what a reduced eigenvalue can be; of modes beyond the trial rounding
-   is not known. */
-static void find_ends(const ritz_measuring *m, int64_t k, double *least,
-                      double *most)
+ritz_bounds ritz_error_of(const ritz_measuring *m, int64_t k, double low,
+                          double high)
 {
     double theta = m->pairs.lambda[k];
+    double least = theta, most = theta; /* rounding beyond the trial: unknown */
 
-    *least = *most = theta;
     if (k < m->trial.count) {
-        *least = fmin(theta, m->trial.reduced_low[k]);
-        *most = fmax(theta, m->trial.reduced_high[k]);
+        least = fmin(theta, m->trial.reduced_low[k]);
+        most = fmax(theta, m->trial.reduced_high[k]);
     }
-    *least = fmax(*least, 0.0);
-    *most = fmax(*most, 0.0);
-}
-
-double ritz_error_most(const ritz_measuring *m, int64_t k, double low,
-                       double high)
-{
-    double least = 0.0, most = 0.0;
-
-    find_ends(m, k, &least, &most);
+    least = fmax(least, 0.0);
+    most = fmax(most, 0.0);
     if (!(low > 0.0))
-        return HUGE_VAL;
-    return fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)));
-}
-
-double ritz_error_least(const ritz_measuring *m, int64_t k, double low,
-                        double high)
-{
-    double least = 0.0, most = 0.0;
-
-    find_ends(m, k, &least, &most);
-    if (!(low > 0.0))
-        return 0.0;
-    return fmax(0.0, fmax(sqrt(least / high) - 1.0, 1.0 - sqrt(most / low)));
+        return (ritz_bounds){0.0, HUGE_VAL};
+    return (ritz_bounds){
+        fmax(0.0, fmax(sqrt(least / high) - 1.0, 1.0 - sqrt(most / low))),
+        fmax(0.0, fmax(sqrt(most / low) - 1.0, 1.0 - sqrt(least / high)))};
 }
 
 ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
@@ -589,11 +590,11 @@ ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
     const ritz_lehmann *trial = &m->trial;
     const ritz_enclosure *e = &m->enclosure;
     ritz_claim claim = {.bound = HUGE_VAL, .full_mode = k};
-    double same = ritz_claim_same(m, k);
+    double same = ritz_error_of(m, k, e->low[k], e->high[k]).most;
     double some = HUGE_VAL;
 
     for (int64_t p = 0; p < e->count; p++) {
-        double bound = ritz_error_most(m, k, e->low[p], e->high[p]);
+        double bound = ritz_error_of(m, k, e->low[p], e->high[p]).most;
 
         if (bound < claim.bound) {
             claim.bound = bound;
@@ -605,8 +606,8 @@ ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
         claim.full_mode = k;
     }
     for (int64_t j = 0; j < e->num_near; j++)
-        some =
-            fmin(some, ritz_error_most(m, k, e->near_low[j], e->near_high[j]));
+        some = fmin(some,
+                    ritz_error_of(m, k, e->near_low[j], e->near_high[j]).most);
     if (RITZ_CLAIM_FAVOUR * some < claim.bound) {
         claim.bound = some;
         claim.full_mode = -1;
@@ -614,9 +615,4 @@ ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k)
     claim.least = 0.5 * ritz_dense_col(&trial->G, k)[k] /
                   ((trial->theta[k] - trial->sigma) * fabs(trial->theta[k]));
     return claim;
-}
-
-double ritz_claim_same(const ritz_measuring *m, int64_t k)
-{
-    return ritz_error_most(m, k, m->enclosure.low[k], m->enclosure.high[k]);
 }

@@ -4,8 +4,19 @@
  * frequencies. Counts and inverse iterations are spent first on the reduced
  * modes in the band, then on those that ritz-verify pairs with the full modes
  * in it; the bounds reached then are reported as named numbers. Enclosures are
- * in enclose.c, the choice of counts in count.c, partners in judge.c, responses
- * in response.c.
+ * in enclose.c, partners in judge.c, responses in response.c.
+ *
+ * A count at rho serves all modes well below it, as the bound of mode k exceeds
+ * its error by about
+ *
+ *     k_k / (k_k - kappa_rho) = (rho - sigma) / (rho - theta_k)
+ *
+ * So the first is taken in a wide gap some way above the band. Let o be the
+ * number of full modes less that of reduced ones below a count. If o is the
+ * same in the next counts above and below reduced mode k, it is full mode k +
+ * o; if not, modes are missing between these counts, and are located by
+ * halving. Then counts move away from the mode as far as the next modes let
+ * them.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -25,17 +36,38 @@ enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
 /* Most inverse iterations, and most counts next to modes, while partners are
    unclear. */
 enum { ITERATIONS = 4, MOST_BESIDE = 16 };
+/* Tries of a count that meets a mode; counts for one mode; gaps near it. */
+enum { MOST_TRIES = 4, MOST_FOR_ONE = 16, GAPS_AROUND = 8 };
 /* Most modes that are reported one by one. */
 enum { MOST_LISTED = 100 };
 enum { MORE = 10 };
 
-/* Take a count; `end` if K - rho M cannot be factored there. */
-static ritz_status count_at(const ritz_measuring *m, double rho, bool *end)
+/* Count the modes below about rho, which moves off a mode; `refused` if that
+   cannot be, or there is no room for one more count. */
+static ritz_status count_at(ritz_measuring *m, double rho)
 {
-    ritz_status status = ritz_estimator_count(m->estimator, rho);
+    ritz_estimator *estimator = m->estimator;
+    const ritz_component *full = estimator->component;
+    ritz_status status = RITZ_ERR_SINGULAR;
+    int64_t at = estimator->num_counts, below = 0;
 
-    *end = status == RITZ_ERR_SINGULAR;
-    return *end ? RITZ_OK : status;
+    for (int t = 0;
+         t < MOST_TRIES && at < RITZ_MOST_COUNTS && status == RITZ_ERR_SINGULAR;
+         t++) {
+        rho *= t > 0 ? 1.0 - RITZ_GAP_NARROW : 1.0;
+        status = ritz_eigen_count(&full->K, &full->M, rho, &below);
+    }
+    m->refused = status == RITZ_ERR_SINGULAR;
+    if (m->refused)
+        return RITZ_OK;
+    RITZ_CHECK_IN("estimate", status);
+    while (at > 0 && estimator->count[at - 1].rho > rho) {
+        estimator->count[at] = estimator->count[at - 1];
+        at--;
+    }
+    estimator->count[at] = (ritz_counted){rho, below};
+    estimator->num_counts++;
+    return RITZ_OK;
 }
 
 static bool has_room(const ritz_measuring *m)
@@ -43,107 +75,220 @@ static bool has_room(const ritz_measuring *m)
     return m->estimator->num_counts < RITZ_MOST_COUNTS;
 }
 
-static ritz_status enclose_modes(ritz_measuring *m)
+static int64_t count_trial_below(const ritz_measuring *m, double rho)
 {
-    ritz_enclosure_free(&m->enclosure);
-    return ritz_enclosure_new(m, &m->enclosure);
+    return ritz_count_below(m->trial.count, m->trial.theta, rho);
+}
+
+/* A point of a gap, nearer to its lower end: reduced modes are too high. */
+static double split_gap(double low, double high)
+{
+    return low + 0.3 * (high - low);
+}
+
+/* A point in the widest gap theta_i, theta_i+1 without a count, of first <= i <
+   last; NaN: none. */
+static double find_widest(const ritz_measuring *m, int64_t first, int64_t last)
+{
+    const ritz_lehmann *trial = &m->trial;
+    double best = RITZ_GAP_NARROW;
+    double rho = nan("");
+
+    for (int64_t i = first < 0 ? 0 : first; i < last && i + 1 < trial->count;
+         i++) {
+        double low = trial->theta[i];
+        double high = trial->theta[i + 1];
+        double gap = (high - low) / (high - trial->sigma);
+
+        if (gap > best && high > trial->rounding[i] && low >= 0.0 &&
+            !ritz_counted_within(m->estimator, low, high)) {
+            best = gap;
+            rho = split_gap(low, high);
+        }
+    }
+    return rho;
+}
+
+/* A point in the widest gap between `from` and `to`, which are above the band;
+   NaN if a count is there, or no gap. */
+static double find_above(const ritz_measuring *m, double from, double to)
+{
+    int64_t first = count_trial_below(m, from);
+
+    if (first == 0 || ritz_counted_within(m->estimator, from, to))
+        return nan("");
+    return find_widest(m, first - 1, count_trial_below(m, to));
+}
+
+static bool is_tight(const ritz_claim *claim, double rounding)
+{
+    return claim->full_mode >= 0 &&
+           claim->bound <=
+               2.0 * rounding +
+                   RITZ_GOOD_RATIO * fmin(claim->least, RITZ_COARSE_ERROR);
+}
+
+/* The counts next to a mode, and how many full modes each has more than the
+   reduced model. */
+typedef struct sides {
+    double low, high;          /* rho; HUGE_VAL: none above */
+    int64_t low_off, high_off; /* full less reduced modes */
+    int64_t first, last;       /* reduced modes between, last included */
+} sides;
+
+static sides find_sides(const ritz_measuring *m, int64_t k)
+{
+    const ritz_counted *c = m->estimator->count;
+    sides s = {.high = HUGE_VAL, .last = m->trial.count - 1};
+
+    for (int64_t i = 0; i < m->estimator->num_counts; i++) {
+        int64_t below = count_trial_below(m, c[i].rho);
+
+        if (below > k) {
+            s.high = c[i].rho;
+            s.high_off = c[i].below - below;
+            s.last = below - 1;
+            break;
+        }
+        s.low = c[i].rho;
+        s.low_off = c[i].below - below;
+        s.first = below;
+    }
+    return s;
+}
+
+/* A point between two ends; NaN if they are close compared with their distance
+   to theta. */
+static double split_ends(double low, double high, double theta)
+{
+    double off = fmin(fabs(low - theta), fabs(high - theta));
+
+    if (!(high > low * (1.0 + RITZ_GAP_NARROW)) ||
+        high - low <= RITZ_GAP_CLOSE * off)
+        return nan("");
+    return low > 0.0 ? sqrt(low * high) : 0.1 * high;
+}
+
+/* Where modes are missing between the counts around mode k: a count that tells
+   on which side of it. */
+static double locate_missing(const ritz_measuring *m, const sides *s, int64_t k,
+                             double least)
+{
+    double theta = m->trial.theta[k];
+    double about = fmax(4.0 * least * theta, RITZ_GAP_NARROW * theta);
+    int64_t middle = (s->first + s->last) / 2;
+
+    if (s->last > s->first)
+        return find_widest(m, middle, middle + 1);
+    if (s->high - theta > about)
+        return split_gap(theta, fmin(s->high, 4.0 * theta));
+    if (theta - s->low > about)
+        return theta - split_gap(0.0, theta - s->low);
+    return nan("");
+}
+
+/* Where mode k is known to be full mode p: a count in the gap above or below
+   it, further off than those there are. */
+static double move_away(const ritz_measuring *m, const sides *s, int64_t k,
+                        int64_t p)
+{
+    const ritz_enclosure *e = &m->enclosure;
+    double theta = m->trial.theta[k];
+    double reach = theta - m->trial.sigma;
+    double low = fmax(theta, e->low[p + 1]);
+    double high = fmin(e->high[p + 1], 4.0 * theta);
+    double rho = nan("");
+
+    if (low - m->trial.sigma < RITZ_COUNT_ENOUGH * reach)
+        rho = split_ends(low, high, theta);
+    if (isnan(rho) && p != k)
+        rho = split_ends(e->low[p - 1], fmin(e->high[p - 1], theta), theta);
+    if (isnan(rho) && s->low < theta)
+        rho = split_ends(fmax(e->low[p], s->low), fmin(e->high[p], theta), 0.0);
+    return rho;
+}
+
+/* Whether more than k full modes were counted at or below rho. */
+static bool has_counted(const ritz_estimator *estimator, int64_t k, double rho)
+{
+    const ritz_counted *c = estimator->count;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++)
+        if (c[s].below > k && c[s].rho <= rho)
+            return true;
+    return false;
+}
+
+/*
+ * Whether reduced mode k, with eigenvalue theta, is a rigid motion that the
+ * basis represents badly: it is far below the band, and a count shows the full
+ * mode of its number below half its eigenvalue.
+ */
+static bool is_rigid(const ritz_estimator *estimator, int64_t k, double theta,
+                     double band)
+{
+    return theta <= RITZ_MAY_BE_RIGID * band &&
+           has_counted(estimator, k, 0.5 * theta);
+}
+
+/* Where to count for one mode; NaN if its claim is tight enough. */
+static double propose_for(const ritz_measuring *m, int64_t k, double band)
+{
+    double theta = m->trial.theta[k];
+    ritz_claim claim = ritz_claim_of(m, k);
+    sides s = find_sides(m, k);
+    int64_t p = k + s.low_off;
+    double rho = nan("");
+
+    if (is_rigid(m->estimator, k, theta, band) ||
+        is_tight(&claim, m->trial.reduced_rounding[k] / theta))
+        return nan("");
+    if (theta <= RITZ_MAY_BE_RIGID * band)
+        return 0.1 * theta;
+    if (isinf(s.high))
+        rho = find_widest(m, k, k + GAPS_AROUND);
+    else if (s.low_off != s.high_off)
+        rho = locate_missing(m, &s, k, claim.least);
+    if (isnan(rho) && p >= 0 && p + 1 < m->enclosure.count)
+        rho = move_away(m, &s, k, p);
+    return rho;
+}
+
+/*
+ * Where a count would tighten the enclosures of modes first .. reach - 1 most;
+ * NaN if none helps.
+ *
+ * @param[in]  tries  counts that each of them has had
+ * @param[out] mode   the mode that it is for; -1: all of them
+ */
+static double propose_count(const ritz_measuring *m, const int64_t *tries,
+                            int64_t *mode)
+{
+    double band = m->reach > m->first ? m->trial.theta[m->reach - 1] : 0.0;
+    double rho = nan("");
+    int64_t fewest = MOST_FOR_ONE;
+
+    if (band > 0.0)
+        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_FAR * band);
+    *mode = -1;
+    for (int64_t k = m->reach - 1; k >= m->first && (isnan(rho) || *mode >= 0);
+         k--) {
+        int64_t tried = tries[k - m->first];
+        double next = tried < fewest ? propose_for(m, k, band) : nan("");
+
+        if (next > m->trial.rounding[k]) {
+            rho = next;
+            *mode = k;
+            fewest = tried;
+        }
+    }
+    return rho;
 }
 
 static ritz_status predict_errors(ritz_measuring *m)
 {
-    RITZ_CHECK(enclose_modes(m));
-    return ritz_measuring_predict(m, &m->prediction);
-}
-
-/*
- * Take counts where they help, until every mode's claim is good or enough is
- * spent. Before the first count for a single mode the trial gets an inverse
- * iteration.
- */
-static ritz_status refine_modes(ritz_measuring *m)
-{
-    int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->reach - m->first);
-    RITZ_OWN_ARRAY int64_t *tries = NULL;
-    bool end = false;
-
-    RITZ_CHECK_NEW(tries, m->reach - m->first);
-    while (!end) {
-        double rho = nan("");
-        int64_t mode = -1;
-
-        RITZ_CHECK(enclose_modes(m));
-        if (budget-- > 0 && has_room(m))
-            rho = ritz_propose_count(m, tries, &mode);
-        if (mode >= 0 && !m->polished.X.val) {
-            RITZ_CHECK(
-                ritz_lehmann_polish(m->estimator, &m->trial, &m->polished));
-            continue;
-        }
-        if (mode >= 0)
-            tries[mode - m->first]++;
-        end = isnan(rho);
-        if (!end)
-            RITZ_CHECK(count_at(m, rho, &end));
-    }
-    return RITZ_OK;
-}
-
-/* One count far above the band, for responses: the further modes are, the less
-   they respond. */
-static ritz_status count_above(ritz_measuring *m)
-{
-    double rho = ritz_propose_above(m);
-    bool end = false;
-
-    return isnan(rho) || !has_room(m) ? RITZ_OK : count_at(m, rho, &end);
-}
-
-/* Where to count for missing modes: at the band's end, or in a gap behind. */
-static double end_of_band(const ritz_measuring *m, int64_t gap)
-{
-    double end = ritz_eigen_lambda(m->band_hz[1]) * (1.0 + DBL_EPSILON);
-    int64_t above = m->last + gap;
-    double low = above > 0 ? m->pairs.lambda[above - 1] : 0.0;
-    double high = above < m->pairs.Phi.ncol ? m->pairs.lambda[above] : end;
-
-    return gap == 0 ? end : fmax(end, low + 0.3 * (high - low));
-}
-
-/*
- * Unless it is known that none is missing, count at the end of the band, and in
- * the next gaps, where the partners of the last modes may be.
- */
-static ritz_status count_band(ritz_measuring *m)
-{
-    bool end = false;
-
-    for (int64_t gap = 0; gap < GAPS && m->last + gap <= m->pairs.Phi.ncol &&
-                          ritz_missing_modes(m) != 0 && !end && has_room(m);
-         gap++)
-        RITZ_CHECK(count_at(m, end_of_band(m, gap), &end));
-    return RITZ_OK;
-}
-
-/* Where intervals do not tell which full modes are in the band, count at its
-   ends. */
-static ritz_status count_ends(ritz_measuring *m)
-{
-    double end = ritz_eigen_lambda(m->band_hz[1]);
-    bool none = false;
-
-    if ((!m->prediction.counted || m->prediction.edge_unclear) && has_room(m))
-        RITZ_CHECK(count_at(m, end * (1.0 + RITZ_COUNT_BEHIND), &none));
-    if (m->prediction.rigid_unclear && has_room(m))
-        RITZ_CHECK(count_at(m, RITZ_SURELY_RIGID * end, &none));
-    RITZ_CHECK(predict_errors(m));
-    if (m->prediction.num_full > m->reach)
-        m->reach = m->prediction.num_full;
-    if (m->reach > m->trial.count)
-        m->reach = m->trial.count;
-    if (m->reach <= m->last)
-        return RITZ_OK;
-    RITZ_CHECK(refine_modes(m));
-    return ritz_measuring_predict(m, &m->prediction);
+    RITZ_CHECK(ritz_measuring_enclose(m));
+    return ritz_measuring_predict(m);
 }
 
 /* One more inverse iteration, of what there is. */
@@ -156,6 +301,94 @@ static ritz_status iterate_trial(ritz_measuring *m)
     ritz_lehmann_free(&m->polished);
     RITZ_MOVE(m->polished, next);
     return RITZ_OK;
+}
+
+/*
+ * Take counts where they help, until every mode's claim is good or enough is
+ * spent. Before the first count for a single mode the trial gets an inverse
+ * iteration.
+ */
+static ritz_status refine_modes(ritz_measuring *m)
+{
+    int64_t budget = SOME_COUNTS + COUNTS_A_MODE * (m->reach - m->first);
+    RITZ_OWN_ARRAY int64_t *tries = NULL;
+
+    RITZ_CHECK_NEW(tries, m->reach - m->first);
+    for (m->refused = false; !m->refused;) {
+        double rho = nan("");
+        int64_t mode = -1;
+
+        RITZ_CHECK(ritz_measuring_enclose(m));
+        if (budget-- > 0 && has_room(m))
+            rho = propose_count(m, tries, &mode);
+        if (isnan(rho))
+            return RITZ_OK;
+        if (mode >= 0 && !m->polished.X.val) {
+            RITZ_CHECK(iterate_trial(m));
+            continue;
+        }
+        if (mode >= 0)
+            tries[mode - m->first]++;
+        RITZ_CHECK(count_at(m, rho));
+    }
+    return RITZ_OK;
+}
+
+/* One count far above the band, for responses: the further modes are, the less
+   they respond. */
+static ritz_status count_above(ritz_measuring *m)
+{
+    double band = ritz_eigen_lambda(m->band_hz[1]);
+    double rho =
+        find_above(m, RITZ_COUNT_FAR * band, RITZ_COUNT_FARTHEST * band);
+
+    return isnan(rho) ? RITZ_OK : count_at(m, rho);
+}
+
+/* Where to count for missing modes: at the band's end, or in a gap behind. */
+static double end_of_band(const ritz_measuring *m, int64_t gap)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]) * (1.0 + DBL_EPSILON);
+    int64_t above = m->last + gap;
+    double low = above > 0 ? m->pairs.lambda[above - 1] : 0.0;
+    double high = above < m->pairs.Phi.ncol ? m->pairs.lambda[above] : end;
+
+    return gap == 0 ? end : fmax(end, split_gap(low, high));
+}
+
+/*
+ * Unless it is known that none is missing, count at the end of the band, and in
+ * the next gaps, where the partners of the last modes may be.
+ */
+static ritz_status count_band(ritz_measuring *m)
+{
+    m->refused = false;
+    for (int64_t gap = 0; gap < GAPS && m->last + gap <= m->pairs.Phi.ncol &&
+                          ritz_missing_modes(m) != 0 && !m->refused;
+         gap++)
+        RITZ_CHECK(count_at(m, end_of_band(m, gap)));
+    return RITZ_OK;
+}
+
+/* Where intervals do not tell which full modes are in the band, count at its
+   ends. */
+static ritz_status count_ends(ritz_measuring *m)
+{
+    double end = ritz_eigen_lambda(m->band_hz[1]);
+
+    if (!m->prediction.counted || m->prediction.edge_unclear)
+        RITZ_CHECK(count_at(m, end * (1.0 + RITZ_COUNT_BEHIND)));
+    if (m->prediction.rigid_unclear)
+        RITZ_CHECK(count_at(m, RITZ_SURELY_RIGID * end));
+    RITZ_CHECK(predict_errors(m));
+    if (m->prediction.num_full > m->reach)
+        m->reach = m->prediction.num_full;
+    if (m->reach > m->trial.count)
+        m->reach = m->trial.count;
+    if (m->reach <= m->last)
+        return RITZ_OK;
+    RITZ_CHECK(refine_modes(m));
+    return ritz_measuring_predict(m);
 }
 
 /* Count and iterate until the modes of the band are known. */
@@ -171,11 +404,9 @@ static ritz_status refine_all(bool response, ritz_measuring *m)
     RITZ_CHECK(predict_errors(m));
     RITZ_CHECK(count_ends(m));
     while (m->prediction.loose || m->prediction.unmatched) {
-        bool none = false;
-
         if (!isnan(m->prediction.count_at) && counts++ < MOST_BESIDE &&
             has_room(m))
-            RITZ_CHECK(count_at(m, m->prediction.count_at, &none));
+            RITZ_CHECK(count_at(m, m->prediction.count_at));
         else if (iterations++ < ITERATIONS)
             RITZ_CHECK(iterate_trial(m));
         else
@@ -232,7 +463,7 @@ static ritz_status report_least(const ritz_measuring *m, ritz_measures *out)
         double least = least_of(m, k);
 
         if (least > most.value &&
-            !ritz_counted_rigid(m->estimator, k, m->pairs.lambda[k], band))
+            !is_rigid(m->estimator, k, m->pairs.lambda[k], band))
             most = (ritz_pair_error){least, k, k};
     }
     return most.value > 0.0 ? add_mode(m, "frequency-relative-least", most, out)
@@ -245,7 +476,7 @@ static void prefer_same(const ritz_measuring *m, ritz_pair_error *claim)
 {
     const ritz_enclosure *e = &m->enclosure;
     const int64_t p = claim->full_mode, k = claim->mode;
-    double same = ritz_claim_same(m, k);
+    double same = ritz_error_of(m, k, e->low[k], e->high[k]).most;
 
     if (isfinite(same) && (e->high[k] < e->low[p] || e->high[p] < e->low[k]))
         *claim = (ritz_pair_error){same, k, k};
@@ -262,7 +493,7 @@ static ritz_status list_modes(const ritz_measuring *m, ritz_measures *out)
         ritz_claim claim = ritz_claim_of(m, k);
         ritz_pair_error found = {claim.bound, k, claim.full_mode};
 
-        if (ritz_counted_rigid(m->estimator, k, m->pairs.lambda[k], band))
+        if (is_rigid(m->estimator, k, m->pairs.lambda[k], band))
             continue;
         if (complete && claim.full_mode >= 0 && claim.full_mode != k)
             prefer_same(m, &found);
@@ -385,7 +616,6 @@ static void ritz_measuring_free(ritz_measuring *m)
 static ritz_status skip_rounded_rigid(ritz_measuring *m)
 {
     double slowest = RITZ_MAY_BE_RIGID * ritz_eigen_lambda(m->band_hz[1]);
-    bool end = false;
 
     while (m->first < m->last) {
         double rounding = m->trial.reduced_rounding[m->first];
@@ -393,10 +623,9 @@ static ritz_status skip_rounded_rigid(ritz_measuring *m)
 
         if (m->pairs.lambda[m->first] > rounding || rho > slowest)
             break;
-        if (!ritz_counted_more(m->estimator, m->first, slowest))
-            RITZ_CHECK(
-                count_at(m, fmax(rho, RITZ_COUNT_LEAST * slowest), &end));
-        if (end || !ritz_counted_more(m->estimator, m->first, slowest))
+        if (!has_counted(m->estimator, m->first, slowest))
+            RITZ_CHECK(count_at(m, fmax(rho, RITZ_COUNT_LEAST * slowest)));
+        if (m->refused || !has_counted(m->estimator, m->first, slowest))
             break; /* the mode stays */
         m->first++;
     }
@@ -442,7 +671,7 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
         bare = *estimator;
         bare.num_counts = 0;
         m.estimator = &bare;
-        RITZ_CHECK(enclose_modes(&m));
+        RITZ_CHECK(ritz_measuring_enclose(&m));
         RITZ_CHECK(report_least(&m, &found));
     } else if (m.band_hz[1] > 0.0) {
         RITZ_CHECK(refine_all(response, &m));

@@ -9,10 +9,11 @@
 #ifndef RITZ_ESTIMATE_ESTIMATOR_H
 #define RITZ_ESTIMATE_ESTIMATOR_H
 
-#include <ritz/matrix.h>
+#include "poles/poles.h"
+
 #include <ritz/verify.h>
 
-#include <stdbool.h>
+#include <complex.h>
 
 enum { RITZ_MOST_COUNTS = 64 };
 
@@ -53,13 +54,6 @@ typedef struct ritz_lehmann {
 
 /** Factor K - sigma M if it is not yet; |sigma| grows if it must. */
 ritz_status ritz_estimator_open(ritz_estimator *estimator, double sigma);
-
-/**
- * Count the modes below about @p rho; it moves off a mode.
- *
- * @return RITZ_ERR_ARGUMENT if there is no room for one more
- */
-ritz_status ritz_estimator_count(ritz_estimator *estimator, double rho);
 
 /** Pairs of the space that the first @p count modes of @p reduced span. */
 ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
@@ -118,11 +112,17 @@ typedef struct ritz_measuring {
     ritz_lehmann trial, polished; /* polished: after an inverse iteration */
     ritz_enclosure enclosure;
     ritz_prediction prediction;
+    bool refused; /* the last count could not be taken */
 } ritz_measuring;
 
-/** Enclose by Lehmann's method, with every count that was taken. */
-ritz_status ritz_enclosure_new(const ritz_measuring *m, ritz_enclosure *out);
+/** Enclose anew by Lehmann's method, with every count that was taken. */
+ritz_status ritz_measuring_enclose(ritz_measuring *m);
 void ritz_enclosure_free(ritz_enclosure *enclosure);
+
+/* At least, and at most. */
+typedef struct ritz_bounds {
+    double least, most;
+} ritz_bounds;
 
 /* How far a reduced mode can be from a full one, and from which. */
 typedef struct ritz_claim {
@@ -131,49 +131,19 @@ typedef struct ritz_claim {
     int64_t full_mode; /* number from 0; -1: near one of unknown number */
 } ritz_claim;
 
-/** |f_k - f| / f at most, and at least, of a full mode in [low, high]. */
-double ritz_error_most(const ritz_measuring *m, int64_t k, double low,
-                       double high);
-double ritz_error_least(const ritz_measuring *m, int64_t k, double low,
-                        double high);
+/** |f_k - f| / f of reduced mode @p k and a full mode in [low, high]. */
+ritz_bounds ritz_error_of(const ritz_measuring *m, int64_t k, double low,
+                          double high);
 
 /** The claim on reduced mode @p k that has the least bound. */
 ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k);
-
-/** Bound of |f_k - f| / f for the full mode of the same number. */
-double ritz_claim_same(const ritz_measuring *m, int64_t k);
-
-/**
- * Whether reduced mode @p k, with eigenvalue @p theta, is a rigid motion that
- * the basis represents badly: it is far below the band, and a count shows the
- * full mode of its number below half its eigenvalue.
- */
-bool ritz_counted_rigid(const ritz_estimator *estimator, int64_t k,
-                        double theta, double band);
-
-/** Whether more than @p k full modes were counted at or below @p rho. */
-bool ritz_counted_more(const ritz_estimator *estimator, int64_t k, double rho);
 
 /** Whether modes were counted at some frequency inside (low, high). */
 bool ritz_counted_within(const ritz_estimator *estimator, double low,
                          double high);
 
-/**
- * Where a count would tighten the enclosures of modes first .. reach - 1 most.
- *
- * @param[in]  tries  counts that each of them has had
- * @param[out] mode   the mode that it is for; -1: all of them
- * @return NaN if no count helps
- */
-double ritz_propose_count(const ritz_measuring *m, const int64_t *tries,
-                          int64_t *mode);
-
-/** A gap to count in, far above the band; NaN: none. */
-double ritz_propose_above(const ritz_measuring *m);
-
 /** Predict what ritz-verify finds of the band, as far as enclosures tell. */
-ritz_status ritz_measuring_predict(const ritz_measuring *m,
-                                   ritz_prediction *out);
+ritz_status ritz_measuring_predict(ritz_measuring *m);
 
 /**
  * Fewest full modes less reduced ones below any count at or above the band's
@@ -196,5 +166,68 @@ bool ritz_response_boundable(const ritz_estimator *estimator,
 ritz_status ritz_bound_response(const ritz_measuring *m,
                                 const ritz_reduced *reduced,
                                 ritz_measures *out);
+
+/* The bound of a response, whose equations are at the head of response.c. */
+
+/* C, Cv and Ca of outputs. */
+enum { KINDS = 3 };
+
+/*
+ * One input or output at a frequency w: its vector b, or c + i w cv - w^2 ca,
+ * the reduced modes' response eta to it, and the residual r that the full
+ * equations leave of that, as a combination of the vectors V of the bounder.
+ */
+typedef struct ritz_side {
+    double _Complex *participation; /* X'b, or c'X */
+    double _Complex *eta;           /* response of each trial mode */
+    double _Complex *residual;      /* coordinates of r in V */
+    /* derivatives by w of the residual and of the participation, and a bound of
+       the second derivative of the latter */
+    double _Complex *residual_slope, *participation_slope;
+    double *curvature;
+    double residual_norm; /* |r|_(A^-1), without what damping adds */
+    double change;        /* bound of its change in the interval */
+    double damping_part;  /* bound of what damping ratios add to |r| */
+    /* sums over j of |eta_j||R_j| theta_j^(-1/4), and theta_j^(-3/4), that
+       bound the defect of reduced damping */
+    double defect_quarter, defect_three;
+} ritz_side;
+
+typedef struct ritz_bounder {
+    const ritz_lehmann *trial;
+    const ritz_enclosure *e;
+    const ritz_io *io;
+    int64_t num_rigid;
+    bool rayleigh; /* D = a M + b K; else the ratio zeta of all modes */
+    double zeta, a, b;
+    double *rates;                 /* damping of each trial mode */
+    int64_t size;                  /* columns of V = [R b_o c_o D_o K4_o] */
+    ritz_dense G, Q;               /* V'A^-1 V and V'A^-1 M A^-1 V */
+    double *vector_norm;           /* |V_j|_(A^-1) */
+    ritz_dense channel[1 + KINDS]; /* B'X, C X, Cv X, Ca X */
+    double *sin2; /* of each full mode to the trial space, at most */
+    int64_t num_sides;
+    ritz_side *side;          /* inputs, then outputs */
+    double _Complex *GV, *QV; /* G and Q times the residual of an input */
+    bool coupled;             /* D or K4 couples modes: an estimate, no bound */
+    const double *matrix_rates; /* the part of rates that is of D and K4; NULL:
+                                   rates are 2 zeta omega, or a + b lambda */
+    ritz_dense D, K4;           /* of trial modes */
+    double _Complex *Z, *responses;
+    int *pivot;
+    double largest; /* |H_r| at points */
+    double least;   /* largest |H_r| less its bound: |H| is at least this */
+} ritz_bounder;
+
+/** Fill the rates if need be, V's forms, angles and sides of a bounder that has
+ * the rest. */
+ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
+void ritz_bounder_free(ritz_bounder *r);
+
+/**
+ * The largest bound of all pairs anywhere within @p h of @p w rad/s; with h = 0
+ * it tells r->least and r->largest too.
+ */
+double ritz_bound_at(ritz_bounder *r, double w, double h);
 
 #endif

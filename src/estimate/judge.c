@@ -4,7 +4,6 @@
 #include "estimate/estimator.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /*
  * Partners. ritz-verify pairs a full mode with the reduced mode that holds most
@@ -31,16 +30,22 @@ typedef struct ritz_mode_group {
     double sin2; /* of the angle between vectors and group, at most */
 } ritz_mode_group;
 
-typedef struct ritz_partners {
+/* What is being predicted. */
+typedef struct ritz_judge {
+    ritz_measuring *m;
+    double low, high; /* the band, in lambda */
     int64_t count;
     ritz_mode_group *group;
     ritz_dense Q[2]; /* reduced modes times M times trial, polished vectors */
-} ritz_partners;
+    int64_t *found;  /* reduced modes that can be partners of a group */
+} ritz_judge;
 
-/* Bounds of the part |c|^2 of a reduced mode in a group. */
-typedef struct ritz_share {
-    double least, most;
-} ritz_share;
+static void ritz_judge_free(ritz_judge *j)
+{
+    RITZ_FREE(j->group, j->found);
+    ritz_dense_free(&j->Q[0]);
+    ritz_dense_free(&j->Q[1]);
+}
 
 static double square_of(double x)
 {
@@ -178,13 +183,14 @@ static double most_by_residual(const ritz_measuring *m,
     return 1.0;
 }
 
-static ritz_share share_of(const ritz_partners *p, const ritz_mode_group *g,
-                           int64_t r)
+/* Bounds of the part |c|^2 of reduced mode r in a group. */
+static ritz_bounds share_of(const ritz_judge *j, const ritz_mode_group *g,
+                            int64_t r)
 {
-    const ritz_dense *Q = &p->Q[g->vectors];
+    const ritz_dense *Q = &j->Q[g->vectors];
     double sum = 0.0;
     double alpha = 0.0, delta = 0.0;
-    ritz_share share = {0.0, 1.0};
+    ritz_bounds share = {0.0, 1.0};
 
     if (g->end_vector == g->first_vector || g->sin2 >= 1.0)
         return share;
@@ -200,45 +206,24 @@ static ritz_share share_of(const ritz_partners *p, const ritz_mode_group *g,
 }
 
 /* Whether reduced mode @p r may hold half of the group. */
-static bool can_be_partner(const ritz_measuring *m, const ritz_partners *p,
-                           const ritz_mode_group *g, int64_t r)
+static bool can_be_partner(const ritz_judge *j, const ritz_mode_group *g,
+                           int64_t r)
 {
-    ritz_share share = share_of(p, g, r);
     double elsewhere = 0.0;
 
-    if (share.most < RITZ_SAME_MODE - RITZ_SHARE_ROUNDING ||
-        most_by_residual(m, g, r) < RITZ_SAME_MODE)
+    if (share_of(j, g, r).most < RITZ_SAME_MODE - RITZ_SHARE_ROUNDING ||
+        most_by_residual(j->m, g, r) < RITZ_SAME_MODE)
         return false;
-    for (int64_t k = 0; k < p->count; k++)
-        if (&p->group[k] != g)
-            elsewhere += share_of(p, &p->group[k], r).least;
+    for (int64_t k = 0; k < j->count; k++)
+        if (&j->group[k] != g)
+            elsewhere += share_of(j, &j->group[k], r).least;
     return 1.0 - elsewhere >= RITZ_SAME_MODE - RITZ_SHARE_ROUNDING;
 }
 
-static bool must_be_partner(const ritz_partners *p, const ritz_mode_group *g,
+static bool must_be_partner(const ritz_judge *j, const ritz_mode_group *g,
                             int64_t r)
 {
-    return share_of(p, g, r).least > RITZ_SAME_MODE + RITZ_SHARE_ROUNDING;
-}
-
-static void ritz_partners_free(ritz_partners *partners)
-{
-    free(partners->group);
-    ritz_dense_free(&partners->Q[0]);
-    ritz_dense_free(&partners->Q[1]);
-}
-
-/* Groups of full modes first .. last - 1. */
-static ritz_status group_modes(const ritz_measuring *m, int64_t first,
-                               int64_t last, ritz_partners *p)
-{
-    RITZ_CHECK_NEW(p->group, last - first);
-    while (first < last) {
-        p->group[p->count] = group_of(m, first);
-        first = p->group[p->count++].last;
-    }
-    RITZ_CHECK(take_overlap(m, &m->trial, &p->Q[0]));
-    return take_overlap(m, &m->polished, &p->Q[1]);
+    return share_of(j, g, r).least > RITZ_SAME_MODE + RITZ_SHARE_ROUNDING;
 }
 
 /*
@@ -247,14 +232,6 @@ static ritz_status group_modes(const ritz_measuring *m, int64_t first,
  * their possible partners. In a cluster ritz-verify takes partners in their
  * order.
  */
-
-typedef struct ritz_judge {
-    const ritz_measuring *m;
-    const ritz_partners *partners;
-    double low, high; /* the band, in lambda */
-    int64_t *found;   /* reduced modes that can be partners of a group */
-    ritz_prediction v;
-} ritz_judge;
 
 static bool may_be_in(const ritz_judge *j, int64_t p)
 {
@@ -278,16 +255,17 @@ static void note_pair(ritz_judge *j, int64_t p, int64_t r, bool sure)
     const ritz_enclosure *e = &j->m->enclosure;
     double low = fmax(e->low[p], j->low * (1.0 - RITZ_BAND_EDGE_COUNTED));
     double high = fmin(e->high[p], j->high * (1.0 + RITZ_BAND_EDGE_COUNTED));
-    double most = ritz_error_most(j->m, r, low, high);
-    double least =
-        sure && surely_in(j, p) ? ritz_error_least(j->m, r, low, high) : 0.0;
+    ritz_bounds error = ritz_error_of(j->m, r, low, high);
+    double most = error.most;
+    double least = sure && surely_in(j, p) ? error.least : 0.0;
+    ritz_prediction *v = &j->m->prediction;
 
-    if (most > j->v.bound.value) {
-        j->v.bound = (ritz_pair_error){most, r, p};
-        j->v.loose = !(most <= RITZ_GOOD_RATIO * least + RITZ_NO_ERROR);
+    if (most > v->bound.value) {
+        v->bound = (ritz_pair_error){most, r, p};
+        v->loose = !(most <= RITZ_GOOD_RATIO * least + RITZ_NO_ERROR);
     }
-    if (least > j->v.least.value)
-        j->v.least = (ritz_pair_error){least, r, p};
+    if (least > v->least.value)
+        v->least = (ritz_pair_error){least, r, p};
 }
 
 /* List the `can` reduced modes that can be partners; returns how many of them
@@ -299,10 +277,10 @@ static int64_t find_partners(ritz_judge *j, const ritz_mode_group *g,
 
     *can = 0;
     for (int64_t r = j->m->pairs.num_rigid; r < j->m->pairs.Phi.ncol; r++)
-        if (must_be_partner(j->partners, g, r)) {
+        if (must_be_partner(j, g, r)) {
             must++;
             j->found[(*can)++] = r;
-        } else if (can_be_partner(j->m, j->partners, g, r)) {
+        } else if (can_be_partner(j, g, r)) {
             j->found[(*can)++] = r;
         }
     return must;
@@ -314,7 +292,7 @@ static int64_t keep_partner(ritz_judge *j, const ritz_mode_group *g,
                             int64_t can)
 {
     for (int64_t i = 0; i < can; i++)
-        if (must_be_partner(j->partners, g, j->found[i]))
+        if (must_be_partner(j, g, j->found[i]))
             j->found[0] = j->found[i];
     return 1;
 }
@@ -329,8 +307,9 @@ static void propose_count(ritz_judge *j, const ritz_mode_group *g)
         j->m->polished.X.val ? &j->m->polished : &j->m->trial;
     double low = j->m->enclosure.low[g->first];
     double high = j->m->enclosure.high[g->last - 1];
+    double *at = &j->m->prediction.count_at;
 
-    for (int64_t s = 0; s < trial->count && isnan(j->v.count_at); s++) {
+    for (int64_t s = 0; s < trial->count && isnan(*at); s++) {
         double theta = trial->theta[s];
         double t = theta - trial->sigma;
         double eps = sqrt(fmax(ritz_dense_col(&trial->G, s)[s], 0.0) / t);
@@ -342,15 +321,16 @@ static void propose_count(ritz_judge *j, const ritz_mode_group *g)
             continue;
         if (!ritz_counted_within(j->m->estimator, theta,
                                  theta * (1.0 + 2.0 * off)))
-            j->v.count_at = theta * (1.0 + off);
+            *at = theta * (1.0 + off);
         else if (!ritz_counted_within(j->m->estimator,
                                       theta * (1.0 - 2.0 * off), theta))
-            j->v.count_at = theta * (1.0 - off);
+            *at = theta * (1.0 - off);
     }
 }
 
 static void judge_group(ritz_judge *j, const ritz_mode_group *g)
 {
+    ritz_prediction *v = &j->m->prediction;
     int64_t size = g->last - g->first;
     int64_t can = 0, in = 0;
     int64_t must = find_partners(j, g, &can);
@@ -368,15 +348,15 @@ static void judge_group(ritz_judge *j, const ritz_mode_group *g)
         for (int64_t i = 0; i < can; i++)
             if (!sure || i == p - g->first)
                 note_pair(j, p, j->found[i], sure);
-        if (j->v.first_missing < 0 && must < size)
-            j->v.first_missing = p;
+        if (v->first_missing < 0 && must < size)
+            v->first_missing = p;
     }
-    j->v.any_in_band = j->v.any_in_band || in > 0;
+    v->any_in_band = v->any_in_band || in > 0;
     if (in > 0 && can > 0 && !sure) {
-        j->v.unmatched = true;
+        v->unmatched = true;
         propose_count(j, g);
     }
-    j->v.num_missing += in < size - must ? in : size - must;
+    v->num_missing += in < size - must ? in : size - must;
 }
 
 /* Number of the full model's first flexible mode. */
@@ -390,34 +370,44 @@ static int64_t first_flexible(const ritz_measuring *m, double band)
     return first;
 }
 
-ritz_status ritz_measuring_predict(const ritz_measuring *m,
-                                   ritz_prediction *out)
+/* Groups of the full modes from the first flexible one on. */
+static ritz_status group_modes(ritz_judge *j, int64_t first)
+{
+    const ritz_measuring *m = j->m;
+    int64_t last = m->enclosure.count;
+
+    RITZ_CHECK_NEW(j->found, m->pairs.Phi.ncol);
+    RITZ_CHECK_NEW(j->group, last - first);
+    while (first < last) {
+        j->group[j->count] = group_of(m, first);
+        first = j->group[j->count++].last;
+    }
+    RITZ_CHECK(take_overlap(m, &m->trial, &j->Q[0]));
+    return take_overlap(m, &m->polished, &j->Q[1]);
+}
+
+ritz_status ritz_measuring_predict(ritz_measuring *m)
 {
     const ritz_enclosure *e = &m->enclosure;
-    RITZ_OWN(ritz_partners) partners = {0};
-    RITZ_OWN_ARRAY int64_t *found = NULL;
-    ritz_judge j = {.m = m,
-                    .partners = &partners,
-                    .low = ritz_eigen_lambda(m->band_hz[0]),
-                    .high = ritz_eigen_lambda(m->band_hz[1]),
-                    .v = {.bound = {.value = -1.0},
-                          .first_missing = -1,
-                          .count_at = nan("")}};
+    ritz_prediction *v = &m->prediction;
+    RITZ_OWN(ritz_judge)
+    j = {.m = m,
+         .low = ritz_eigen_lambda(m->band_hz[0]),
+         .high = ritz_eigen_lambda(m->band_hz[1])};
     int64_t first = first_flexible(m, j.high);
 
-    while (j.v.num_full < e->count &&
-           e->low[j.v.num_full] <= j.high * (1.0 + RITZ_BAND_EDGE_COUNTED))
-        j.v.num_full++;
-    j.v.counted = j.v.num_full < e->count;
-    for (int64_t p = first; p < j.v.num_full; p++)
-        j.v.edge_unclear = j.v.edge_unclear || e->high[p] > j.high;
-    j.v.rigid_unclear = first < j.v.num_full && !(e->low[first] > 0.0);
-    RITZ_CHECK_NEW(found, m->pairs.Phi.ncol);
-    j.found = found;
-    RITZ_CHECK(group_modes(m, first, e->count, &partners));
-    for (int64_t k = 0; k < partners.count; k++)
-        if (partners.group[k].first < j.v.num_full)
-            judge_group(&j, &partners.group[k]);
-    *out = j.v;
+    *v = (ritz_prediction){
+        .bound = {.value = -1.0}, .first_missing = -1, .count_at = nan("")};
+    while (v->num_full < e->count &&
+           e->low[v->num_full] <= j.high * (1.0 + RITZ_BAND_EDGE_COUNTED))
+        v->num_full++;
+    v->counted = v->num_full < e->count;
+    for (int64_t p = first; p < v->num_full; p++)
+        v->edge_unclear = v->edge_unclear || e->high[p] > j.high;
+    v->rigid_unclear = first < v->num_full && !(e->low[first] > 0.0);
+    RITZ_CHECK(group_modes(&j, first));
+    for (int64_t k = 0; k < j.count; k++)
+        if (j.group[k].first < v->num_full)
+            judge_group(&j, &j.group[k]);
     return RITZ_OK;
 }

@@ -31,10 +31,8 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "estimate/bounder.h"
 #include "estimate/estimator.h"
 #include "model/modal.h"
-#include "poles/poles.h"
 
 #include <float.h>
 #include <math.h>
@@ -370,9 +368,7 @@ ritz_status ritz_bound_response(const ritz_measuring *m,
         RITZ_CHECK(fit_rayleigh(estimator->component, &r.a, &r.b, &r.rayleigh));
     known = known || r.rayleigh;
     sure = known && rigid_in_full(&m->trial, m->pairs.num_rigid);
-    if (known)
-        ritz_bounder_take_rates(&r);
-    else
+    if (!known)
         RITZ_CHECK(take_rates(estimator, &r, matrices));
     RITZ_CHECK(ritz_bounder_open(estimator, &r));
     RITZ_CHECK(bound_band(&r, m->band_hz, &bound, &at));

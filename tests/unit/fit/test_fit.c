@@ -448,7 +448,7 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
     RITZ_OWN(ritz_reduced) reduced = {0};
     RITZ_OWN(ritz_measures) grid = {0};
     RITZ_OWN(ritz_measures) all = {0};
-    ritz_model model = {0};
+    const ritz_model model = ritz_model_of_reduced(&reduced, NULL);
     double lambda = 0.0;
 
     (void)state;
@@ -461,7 +461,6 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
         if (ritz_dense_col(&reduced.K, k)[k] == lambda) /* 0.6531 Hz */
             ritz_dense_col(&reduced.K, k)[k] = ritz_eigen_lambda(0.6531);
     assert_ok(ritz_reference_new(&f.beam, &request, &reference));
-    model = ritz_model_of_reduced(&reduced, NULL);
     assert_ok(
         ritz_reference_measure(reference, model, &asked.tolerance, 0, &grid));
     assert_ok(ritz_reference_measure(reference, model, &asked.tolerance,
