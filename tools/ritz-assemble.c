@@ -10,34 +10,28 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
                              const char *at, const char *tracks)
 {
     RITZ_OWN(ritz_stage) stage = {0};
-    RITZ_OWN(ritz_system) system = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_SYSTEM};
 
     RITZ_CHECK(ritz_stage_new(scene, &stage));
-    RITZ_CHECK(ritz_assemble(&stage, at, &system));
-    RITZ_CHECK(
-        ritz_container_write_system(run->output, &system, cli_stamp(run)));
-    cli_say(run, "%s:", run->output);
-    RITZ_CHECK(describe_system(run, &system));
-    RITZ_CHECK(tracks_report(run, &stage, &system, tracks));
-    cli_record(run, "assemble", system.configuration[0].K.nrow);
+    RITZ_CHECK(ritz_assemble(&stage, at, &made.system));
+    RITZ_CHECK(describe_output(run, &made));
+    RITZ_CHECK(tracks_report(run, &stage, &made.system, tracks));
+    cli_record(run, "assemble", made.system.configuration[0].K.nrow);
     return RITZ_OK;
 }
 
 static ritz_status full_of(cli_run *run, const ritz_scene *scene,
                            const char *at)
 {
-    RITZ_OWN(ritz_component) full = {0};
+    RITZ_OWN(model) full = {.kind = MODEL_COMPONENT};
     RITZ_OWN_ARRAY double *setting =
         calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
 
     RITZ_REFUSE_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
     RITZ_CHECK(ritz_scene_settings(scene, at ? at : "", setting));
-    RITZ_CHECK(ritz_assemble_full(scene, setting, &full, NULL));
-    RITZ_CHECK(
-        ritz_container_write_component(run->output, &full, cli_stamp(run)));
-    cli_say(run, "%s:", run->output);
-    describe_component(run, &full);
-    cli_record(run, "full", full.num_dofs);
+    RITZ_CHECK(ritz_assemble_full(scene, setting, &full.component, NULL));
+    RITZ_CHECK(describe_output(run, &full));
+    cli_record(run, "full", full.component.num_dofs);
     return RITZ_OK;
 }
 

@@ -47,8 +47,7 @@ int main(int argc, char **argv)
 
     words_add(&choice, 0, options + NUM_OWN);
     cli_parse(&program, argc, argv, &run);
-    given.method =
-        cli_choose(&program, "no method", run.operand[0], ritz_methods);
+    given.method = cli_choose(&program, "method", run.operand[0], ritz_methods);
     if (given.ports && !(given.method->uses & RITZ_USES_ATTACHED))
         cli_refuse(&program,
                    "%s keeps no attached dofs, --attach is not for it",

@@ -54,7 +54,7 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv, &run);
     if (!to)
         cli_refuse(&program, "no format, name it with --to; --list shows all");
-    given.exporter = cli_choose(&program, "no format", to, ritz_exporters);
+    given.exporter = cli_choose(&program, "format", to, ritz_exporters);
     if (ritz_export_check(given.exporter, request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     request->output = run.output;

@@ -74,7 +74,6 @@ int main(int argc, char **argv)
 
     words_add(&choice, RITZ_USES_DAMPING | RITZ_USES_BAND, options + NUM_OWN);
     cli_parse(&program, argc, argv, &run);
-    fit_take(&program, &given);
     words_take(&program, &choice, &r->choice);
     return cli_finish(&run, fit_search(&run, &given));
 }

@@ -17,11 +17,7 @@ static const cli_program about = {
 
 int main(int argc, char **argv)
 {
-    response_options given = {.from_hz = (double)NAN,
-                              .to_hz = (double)NAN,
-                              .up_to_hz = (double)NAN,
-                              .tolerance = (double)NAN,
-                              .method = "auto"};
+    response_options given = {.from_hz = (double)NAN, .method = "auto"};
     loop_options *loops = &given.loops;
     const cli_option options[] = {
         CLI_REAL("from-hz", &given.from_hz, "F", 0.0, 1e9,
@@ -71,7 +67,5 @@ int main(int argc, char **argv)
 
     program.options = options;
     cli_parse(&program, argc, argv, &run);
-    loops_check(&program, loops);
-    responses_check(&program, &given);
     return cli_finish(&run, responses_run(&run, &given));
 }

@@ -1,56 +1,15 @@
 /* ritz-import - matrices and geometry of an FE code become a component. */
 #include "print/print.h"
 
-#include <string.h>
-
-/* A state space has neither rows with names nor ports. */
-static void refuse_others(const cli_program *program)
-{
-    static const char *const own[] = {"state-space", "input-names",
-                                      "output-names", "units"};
-
-    for (const cli_option *o = program->options; o->kind != CLI_KIND_END; o++) {
-        bool other = cli_given(o);
-
-        for (size_t k = 0; k < sizeof own / sizeof *own; k++)
-            other = other && strcmp(o->name, own[k]) != 0;
-        if (other)
-            cli_refuse(program,
-                       "--state-space is a whole model, --%s is not for it",
-                       o->name);
-    }
-}
-
-/* The options stand in main, which has room for nothing else. */
-static int import_files(const cli_option *options, int argc, char **argv,
-                        import_options *given)
-{
-    const cli_program program = {
-        .name = "ritz-import",
-        .summary = "Matrices and geometry of a finite-element code become a "
-                   "component.",
-        .example = "ritz-import --stiffness blade.op4:KGG --mass "
-                   "blade.op4:MGG --bulk blade.bdf \\\n"
-                   "      --port root=1-4:123 --units \"kg m s\" -o blade.h5",
-        .options = options,
-        .output = "the component or state space",
-    };
-    cli_run run;
-
-    cli_parse(&program, argc, argv, &run);
-    if (given->space.matrices) {
-        refuse_others(&program);
-        given->space.units = given->request.units;
-        return cli_finish(&run, import_states(&run, &given->space));
-    }
-    if (given->space.inputs || given->space.outputs)
-        cli_refuse(&program, "--input-names and --output-names are for "
-                             "--state-space");
-    if (!given->request.stiffness && !given->request.mass)
-        cli_refuse(&program, "nothing to import: name --stiffness, --mass or "
-                             "both, or --state-space");
-    return cli_finish(&run, import_component(&run, given));
-}
+static const cli_program about = {
+    .name = "ritz-import",
+    .summary = "Matrices and geometry of a finite-element code become a "
+               "component.",
+    .example = "ritz-import --stiffness blade.op4:KGG --mass "
+               "blade.op4:MGG --bulk blade.bdf \\\n"
+               "      --port root=1-4:123 --units \"kg m s\" -o blade.h5",
+    .output = "the component or state space",
+};
 
 int main(int argc, char **argv)
 {
@@ -94,6 +53,10 @@ int main(int argc, char **argv)
                  "average away any asymmetry, not only up to 1e-6"),
         {0},
     };
+    cli_program program = about;
+    cli_run run;
 
-    return import_files(options, argc, argv, &given);
+    program.options = options;
+    cli_parse(&program, argc, argv, &run);
+    return cli_finish(&run, import_run(&run, &given));
 }

@@ -36,8 +36,7 @@ static void list_members(void)
 /* Keys of a single file stand in the report itself too. */
 static ritz_status describe_files(cli_run *run, bool members, bool directory)
 {
-    sink_list(run, "files");
-    for (int k = 0; k < run->num_operands; k++) {
+    SINK_EACH(run, "files", k, run->num_operands) {
         const char *path = run->operand[k];
 
         sink_object(run, NULL);
@@ -46,12 +45,11 @@ static ritz_status describe_files(cli_run *run, bool members, bool directory)
         RITZ_CHECK(describe_file(run, path, members, directory));
         sink_end(run);
     }
-    sink_end(run);
     if (run->num_operands == 1)
         sink_lift(run,
                   json_array_get(json_object_get(run->report, "files"), 0));
     if (run->output)
-        RITZ_CHECK(cli_save(run, run->output));
+        RITZ_CHECK(cli_table_save(&run->said, run->output));
     return RITZ_OK;
 }
 

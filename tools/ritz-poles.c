@@ -1,11 +1,9 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
 #include "print/print.h"
 
-#include <math.h>
-
 int main(int argc, char **argv)
 {
-    poles_options given = {.mode = 1, .up_to_hz = (double)NAN};
+    poles_options given = {.mode = 1};
     const cli_option options[] = {
         CLI_INT("modes", &given.modes, "N", 1, 1e6,
                 "list the lowest N [all, of a component 20]"),
@@ -38,7 +36,7 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    if (given.modes > 0 && !isnan(given.up_to_hz))
+    if (given.modes > 0 && given.up_to_hz > 0.0)
         cli_refuse(&program, "--modes and --up-to-hz are two ways to say the "
                              "same");
     return cli_finish(&run, poles_report(&run, &given));

@@ -1,6 +1,6 @@
 /* ritz-rank - which modes of a model matter from its inputs to its outputs. */
 #include "chart/chart.h"
-#include "print/rankings.h"
+#include "print/print.h"
 
 static void list_rankers(void)
 {
@@ -68,6 +68,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, argc, argv, &run);
-    rank_take(&run, &given);
     return cli_finish(&run, rank_run(&run, &given));
 }

@@ -8,7 +8,7 @@
 #include "chart/picture.h"
 #include "cli/model.h"
 #include "cli/records.h"
-#include "print/rankings.h"
+#include "print/print.h"
 
 /* Contents of files: kinds of containers, or texts. */
 enum {

@@ -9,7 +9,7 @@
 #define RITZ_TOOLS_CHART_PICTURE_H
 
 #include "chart/markup.h"
-#include "cli/cli_table.h"
+#include "cli/cli.h"
 
 #include <stdbool.h>
 #include <stdint.h>

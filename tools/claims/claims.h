@@ -5,7 +5,6 @@
 #ifndef RITZ_TOOLS_CLAIMS_CLAIMS_H
 #define RITZ_TOOLS_CLAIMS_CLAIMS_H
 
-#include "cli/cli_table.h"
 #include "cli/sink.h"
 
 #include <limits.h>

@@ -156,22 +156,11 @@ void cli_refuse_name(const cli_program *program, const char *what,
 const void *cli_choose(const cli_program *program, const char *what,
                        const char *word, const void *table)
 {
-    enum { MOST = 64 };
-    const char *names[MOST];
-    int64_t count = 0;
+    const void *row = ritz_row_find(table, what, word);
 
-    for (; count < MOST; count++) {
-        const char *const *row = NULL;
-
-        memcpy(&row, (const char *)table + (size_t)count * sizeof row,
-               sizeof row);
-        if (!row)
-            break;
-        if (strcmp(*row, word) == 0)
-            return row;
-        names[count] = *row;
-    }
-    cli_refuse_name(program, what, word, count, names);
+    if (!row) /* without its "there is" */
+        cli_refuse(program, "%s", strstr(ritz_error_message(), "no "));
+    return row;
 }
 
 void cli_list_advice(const char *when, const char *cost, const char *holds,
@@ -195,13 +184,6 @@ bool cli_next(const char **list, char word[RITZ_NAME_SIZE])
     snprintf(word, RITZ_NAME_SIZE, "%.*s", length < 60 ? length : 60, at);
     *list = at[length] ? at + length + 1 : NULL;
     return true;
-}
-
-bool cli_given(const cli_option *option)
-{
-    return (option->kind == CLI_KIND_FLAG && *option->to.flag) ||
-           (option->kind == CLI_KIND_TEXT && *option->to.text) ||
-           (option->kind == CLI_KIND_LIST && option->to.list->count > 0);
 }
 
 /* A whole number or a real in its range, or no return. */
@@ -480,7 +462,6 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
     check_operands(run);
     if (run->output ? !*run->output : !program->output_optional)
         cli_refuse(program, "no output, name it with -o");
-    cli_watch_signals();
-    cli_watch_progress(run->quiet);
+    cli_watch(run->quiet);
     run->began = read_clock();
 }

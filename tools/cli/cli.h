@@ -8,14 +8,13 @@
 #ifndef RITZ_TOOLS_CLI_CLI_H
 #define RITZ_TOOLS_CLI_CLI_H
 
-#include "cli/cli_table.h"
-
 #include <ritz/base.h>
 #include <ritz/container.h>
 
 #include <jansson.h>
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -88,6 +87,23 @@ typedef struct cli_option {
 #define CLI_LIST(word, place, value, says)                                     \
     CLI_ROW(LIST, list, word, place, value, 0.0, 0.0, says)
 
+/* A text that is written whole or not at all. */
+typedef struct cli_table {
+    FILE *file; /* to write to, in memory */
+    char *text;
+    size_t size;
+} cli_table;
+
+ritz_status cli_table_new(cli_table *out);
+
+/** Write it under a name of its own, then give it this one. */
+ritz_status cli_table_save(cli_table *table, const char *path);
+
+/** Write it into a file that is the caller's own, such as a draft. */
+ritz_status cli_table_write(cli_table *table, const char *path);
+
+void cli_table_free(cli_table *table);
+
 typedef struct cli_operand {
     const char *name; /* "COMPONENT" */
     const char *help;
@@ -119,7 +135,7 @@ typedef struct cli_run {
     int depth;
     json_t *warnings;
     json_t *line;     /* of --record: method, order, errors */
-    cli_table said;   /* all that cli_say was told */
+    cli_table said;   /* all text, with --quiet and --json too */
     ritz_stamp stamp; /* command and inputs, as cli_stamp last gave them */
     int64_t num_inputs, room;
     char **input;  /* "SHA256  NAME" of each file read */
@@ -148,12 +164,8 @@ _Noreturn void cli_refuse_name(const cli_program *program, const char *what,
                                const char *word, int64_t count,
                                const char *const *names);
 
-/**
- * The row of a table that has that name, or the end of the program.
- *
- * @param[in] table  pointers, NULL at the end, to structs that begin with their
- *                   name
- */
+/** The row of a table that has that name, as ritz_row_find, or the end of the
+ * program. */
 const void *cli_choose(const cli_program *program, const char *what,
                        const char *word, const void *table);
 
@@ -163,9 +175,6 @@ void cli_list_advice(const char *when, const char *cost, const char *holds,
 
 /** The next word of "A,B,C", which is cut off; false if none is left. */
 bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
-
-/** True if the command line gave this flag, text or list. */
-bool cli_given(const cli_option *option);
 
 /**
  * Remember a file that is about to be read: its SHA-256 goes into what is
@@ -192,13 +201,6 @@ ritz_status cli_can_write(const char *path);
 /** Command and inputs so far, as containers take them; borrowed from run. */
 const ritz_stamp *cli_stamp(cli_run *run);
 
-/** A line for people, on standard output; not with --quiet or --json. */
-[[gnu::format(printf, 2, 3)]] void cli_say(const cli_run *run,
-                                           const char *format, ...);
-
-/** Write all that was said, with --quiet and --json too, to a file. */
-ritz_status cli_save(cli_run *run, const char *path);
-
 /** A line on standard error, and in the report, once; not fatal. */
 [[gnu::format(printf, 2, 3)]] void cli_warn(cli_run *run, const char *format,
                                             ...);
@@ -219,15 +221,11 @@ void cli_record_error(cli_run *run, const char *name, double value);
  */
 ritz_status cli_record_line(cli_run *run, json_t *line);
 
-/*
- * Signals and progress while a tool works, for this room.
+/**
+ * From now on SIGINT, SIGTERM and SIGHUP remove unfinished files first, and
+ * steps of the library are shown as one line if standard error is a terminal.
  */
-
-/** From now on SIGINT, SIGTERM and SIGHUP remove unfinished files first. */
-void cli_watch_signals(void);
-
-/** Show steps of the library as one line, if standard error is a terminal. */
-void cli_watch_progress(bool quiet);
+void cli_watch(bool quiet);
 
 /** Remove that line, before something else is written. */
 void cli_watch_clear(void);

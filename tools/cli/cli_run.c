@@ -1,5 +1,5 @@
-/* A run: files that it reads, and its reports: text for people, JSON, records,
-   exit status. */
+/* A run: files that it reads, its reports (text for people, JSON, records, exit
+   status), its progress, and what is left when a signal ends it. */
 #include "cli/cli.h"
 
 #include "base/alloc.h"
@@ -9,13 +9,91 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+/* --- signals and progress -------------------------------------------------- */
+
+/* Neither a handler nor an observer has an argument: state is kept here. */
+static volatile sig_atomic_t shown; /* a line of progress stands there */
+static struct timespec last;        /* when it was written */
+
+static const char erase[] = "\r\033[K";
+
+/* The signal is raised again with its own effect, so that whoever started the
+ * program sees what ended it; held back here, it comes on return. */
+static void end_program(int number)
+{
+    ritz_draft_discard_all();
+    if (shown && write(STDERR_FILENO, erase, sizeof erase - 1) < 0)
+        shown = 0;
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void watch_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction before;
+    struct sigaction action = {.sa_handler = end_program};
+
+    sigemptyset(&action.sa_mask);
+    signal(SIGXFSZ, SIG_IGN); /* a write past a limit fails, and is reported */
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        if (sigaction(numbers[k], NULL, &before) == 0 &&
+            before.sa_handler != SIG_IGN) /* as nohup leaves it */
+            sigaction(numbers[k], &action, NULL);
+}
+
+/* At most ten times a second, and not before a tenth has passed. */
+static void show_progress(const char *what, int64_t done, int64_t total)
+{
+    char line[80];
+    struct timespec now = {0};
+    int length = 0;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if ((double)(now.tv_sec - last.tv_sec) +
+            1e-9 * (double)(now.tv_nsec - last.tv_nsec) <
+        0.1)
+        return;
+    last = now;
+    if (total > 0)
+        length = snprintf(line, sizeof line, "%s: %" PRId64 " of %" PRId64,
+                          what, done, total);
+    else
+        length = snprintf(line, sizeof line, "%s: %" PRId64, what, done);
+    if (length > 0) {
+        shown = 1;
+        fprintf(stderr, "%s%s", erase, line);
+        fflush(stderr);
+    }
+}
+
+void cli_watch(bool quiet)
+{
+    watch_signals();
+    if (quiet || !isatty(STDERR_FILENO))
+        return;
+    clock_gettime(CLOCK_MONOTONIC, &last);
+    ritz_monitor_observe(show_progress);
+}
+
+void cli_watch_clear(void)
+{
+    if (shown)
+        fputs(erase, stderr);
+    shown = 0;
+}
+
+/* --- threads --------------------------------------------------------------- */
 
 /*
  * Bytes of input from which more threads than one are worth their price. Below
@@ -73,6 +151,8 @@ static void limit_threads(cli_run *run, const struct stat *file)
         setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
         execv(self, run->argv);
 }
+
+/* --- files that are read --------------------------------------------------- */
 
 /* The line of an input, "SUM  PATH"; NULL if it is none yet. */
 static char **find_input(const cli_run *run, const char *path)
@@ -158,10 +238,7 @@ const ritz_stamp *cli_stamp(cli_run *run)
     return &run->stamp;
 }
 
-ritz_status cli_save(cli_run *run, const char *path)
-{
-    return cli_table_save(&run->said, path);
-}
+/* --- reports --------------------------------------------------------------- */
 
 void cli_warn(cli_run *run, const char *format, ...)
 {
@@ -239,14 +316,6 @@ static void print_report(cli_run *run, ritz_status status)
     putchar('\n');
 }
 
-static void set_missing(json_t *object, const char *key, json_t *value)
-{
-    if (!json_object_get(object, key))
-        json_object_set_new(object, key, value);
-    else
-        json_decref(value);
-}
-
 /* Tool, version, command and inputs, which every recorded line has. */
 static void sign_line(const cli_run *run, json_t *line)
 {
@@ -267,9 +336,8 @@ static void fill_line(cli_run *run, ritz_status status)
 
     sign_line(run, line);
     json_object_set_new(line, "ok", json_boolean(status == RITZ_OK));
-    set_missing(line, "method", json_null());
-    set_missing(line, "order", json_null());
-    set_missing(line, "errors", json_object());
+    json_object_update_missing_new(
+        line, json_pack("{s:n, s:n, s:{}}", "method", "order", "errors"));
 }
 
 static json_int_t peak_bytes(void)
@@ -381,4 +449,50 @@ int cli_finish(cli_run *run, ritz_status status)
         status = RITZ_ERR_FILE;
     }
     return status == RITZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/* --- texts that are written whole or not at all ---------------------------- */
+
+ritz_status cli_table_new(cli_table *out)
+{
+    out->file = open_memstream(&out->text, &out->size);
+    RITZ_REFUSE_IF(!out->file, RITZ_ERR_MEMORY, "no memory for a table");
+    return RITZ_OK;
+}
+
+ritz_status cli_table_write(cli_table *table, const char *path)
+{
+    FILE *file = NULL;
+    bool whole = false;
+
+    RITZ_REFUSE_IF(ferror(table->file) || fflush(table->file) != 0,
+                   RITZ_ERR_MEMORY, "no memory for a table");
+    file = fopen(path, "w");
+    RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                   strerror(errno));
+    whole = fwrite(table->text, 1, table->size, file) == table->size;
+    whole = fclose(file) == 0 && whole;
+    RITZ_REFUSE_IF(!whole, RITZ_ERR_FILE, "cannot write: %s", strerror(errno));
+    return RITZ_OK;
+}
+
+ritz_status cli_table_save(cli_table *table, const char *path)
+{
+    ritz_status status = RITZ_OK;
+    ritz_draft draft = {0};
+
+    RITZ_TRY(ritz_draft_new(path, &draft));
+    RITZ_TRY(cli_table_write(table, draft.name));
+    RITZ_TRY(ritz_draft_publish(&draft));
+done:
+    ritz_draft_free(&draft);
+    return ritz_context(status, path);
+}
+
+void cli_table_free(cli_table *table)
+{
+    if (table->file)
+        fclose(table->file);
+    free(table->text);
+    *table = (cli_table){0};
 }

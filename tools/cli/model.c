@@ -8,66 +8,56 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Kinds of container. */
+/* Functions of a kind, to be called by its row. */
+#define DEFINE_KIND(KIND, type, member, name, noun)                            \
+    static ritz_status read_##type(const char *path, model *m)                 \
+    {                                                                          \
+        return ritz_container_read_##type(path, &m->member);                   \
+    }                                                                          \
+                                                                               \
+    static ritz_status write_##type(const char *path, const model *m,          \
+                                    const ritz_stamp *stamp)                   \
+    {                                                                          \
+        return ritz_container_write_##type(path, &m->member, stamp);           \
+    }
+
+MODEL_EACH_KIND(DEFINE_KIND)
+
 static const struct kind {
     const char *name; /* in files */
     const char *noun; /* in sentences */
     model_kind kind;
     size_t offset; /* of the object in a model */
+    ritz_status (*read)(const char *path, model *m);
+    ritz_status (*write)(const char *path, const model *m,
+                         const ritz_stamp *stamp);
 } kinds[] = {
-    {"component", "a component", MODEL_COMPONENT, offsetof(model, component)},
-    {"basis", "a basis", MODEL_BASIS, offsetof(model, basis)},
-    {"reduced", "a reduced component", MODEL_REDUCED, offsetof(model, reduced)},
-    {"system", "a system", MODEL_SYSTEM, offsetof(model, system)},
-    {"response", "a response", MODEL_RESPONSE, offsetof(model, response)},
-    {"ranking", "a ranking", MODEL_RANKING, offsetof(model, rankings)},
-    {"state-space", "a state space", MODEL_STATES, offsetof(model, states)},
-    {"simulation", "a time response", MODEL_SIMULATION,
-     offsetof(model, simulation)},
+#define KIND_ROW(KIND, type, member, name, noun)                               \
+    {name,        noun,        MODEL_##KIND, offsetof(model, member),          \
+     read_##type, write_##type},
+    MODEL_EACH_KIND(KIND_ROW)
+#undef KIND_ROW
 };
 
 enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
 
-static ritz_status read_object(const char *path, model *m)
-{
-    switch (m->kind) {
-    case MODEL_COMPONENT:
-        return ritz_container_read_component(path, &m->component);
-    case MODEL_BASIS:
-        return ritz_container_read_basis(path, &m->basis);
-    case MODEL_REDUCED:
-        return ritz_container_read_reduced(path, &m->reduced);
-    case MODEL_SYSTEM:
-        return ritz_container_read_system(path, &m->system);
-    case MODEL_RESPONSE:
-        return ritz_container_read_response(path, &m->response);
-    case MODEL_RANKING:
-        return ritz_container_read_rankings(path, &m->rankings);
-    case MODEL_STATES:
-        return ritz_container_read_state_space(path, &m->states);
-    default:
-        return ritz_container_read_simulation(path, &m->simulation);
-    }
-}
-
-ritz_status model_write(cli_run *run, const model *m)
-{
-    const ritz_stamp *stamp = cli_stamp(run);
-
-    if (m->kind == MODEL_STATES)
-        return ritz_container_write_state_space(run->output, &m->states, stamp);
-    return m->kind == MODEL_SYSTEM
-               ? ritz_container_write_system(run->output, &m->system, stamp)
-               : ritz_container_write_reduced(run->output, &m->reduced, stamp);
-}
-
-const void *model_object(const model *m)
+static const struct kind *kind_of(const model *m)
 {
     int k = 0;
 
     while (kinds[k].kind != m->kind)
         k++;
-    return (const char *)m + kinds[k].offset;
+    return &kinds[k];
+}
+
+ritz_status model_write(cli_run *run, const model *m)
+{
+    return kind_of(m)->write(run->output, m, cli_stamp(run));
+}
+
+const void *model_object(const model *m)
+{
+    return (const char *)m + kind_of(m)->offset;
 }
 
 ritz_model model_reference(const model *m)
@@ -80,16 +70,6 @@ ritz_model model_reference(const model *m)
                  : ritz_model_of_reduced(&m->reduced, &m->damping);
 }
 
-ritz_io model_io(const model *m)
-{
-    return ritz_model_io(model_reference(m));
-}
-
-int64_t model_order(const model *m)
-{
-    return ritz_model_order(model_reference(m));
-}
-
 bool model_has_states(const model *m)
 {
     if (m->kind == MODEL_COMPONENT)
@@ -100,13 +80,10 @@ bool model_has_states(const model *m)
 
 void model_nouns(int wanted, char *out, size_t room)
 {
-    size_t used = 0;
-
     out[0] = '\0';
-    for (int k = 0; k < NUM_KINDS && used < room; k++)
+    for (int k = 0; k < NUM_KINDS; k++)
         if (wanted & (int)kinds[k].kind)
-            used += (size_t)snprintf(out + used, room - used, "%s%s",
-                                     used > 0 ? " or " : "", kinds[k].noun);
+            sink_append(out, room, "%s%s", *out ? " or " : "", kinds[k].noun);
 }
 
 /* NUM_KINDS: one that is not known. */
@@ -149,7 +126,7 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
     RITZ_REFUSE_IF(!(wanted & (int)kinds[k].kind), RITZ_ERR_FORMAT,
                    "'%s' holds %s, not %s", path, kinds[k].noun, list);
     out->kind = kinds[k].kind;
-    RITZ_CHECK(read_object(path, out));
+    RITZ_CHECK(kinds[k].read(path, out));
     if (out->kind == MODEL_COMPONENT &&
         out->component.asymmetry > MODEL_ROUNDING)
         cli_warn(run,
@@ -209,13 +186,6 @@ ritz_status model_settle(model *m, const char *path, const model_options *given)
                    "ritz-basis");
     RITZ_CHECK_IN(path, model_install(m, &given->damper));
     return model_damping(m, given->damping, &m->damping);
-}
-
-ritz_measures *model_errors(model *m)
-{
-    if (m->kind == MODEL_STATES)
-        return &m->states.errors;
-    return m->at ? &m->at->errors : &m->reduced.errors;
 }
 
 ritz_dampers *model_dampers(model *m)
@@ -281,20 +251,7 @@ static const char *name_verdict(const ritz_measure *m, const char *known)
     return ritz_measure_holds(m) ? "pass" : "fail";
 }
 
-void model_set_measures(cli_run *run, const char *key,
-                        const ritz_measures *measures, const char *known)
-{
-    sink_list(run, key);
-    for (int64_t k = 0; k < measures->count; k++) {
-        const ritz_measure *m = &measures->item[k];
-
-        sink_set(run, "name,value,limit,verdict,where", "%s %g %g %s %s",
-                 m->name, m->value, m->limit, name_verdict(m, known), m->where);
-    }
-    sink_end(run);
-}
-
-void model_say_measures(cli_run *run, const char *key,
+void model_say_measures(cli_run *run, sink_text text, const char *key,
                         const ritz_measures *measures, const char *known)
 {
     int width = 28; /* more where a name is longer */
@@ -302,15 +259,16 @@ void model_say_measures(cli_run *run, const char *key,
     for (int64_t k = 0; k < measures->count; k++)
         if (strlen(measures->item[k].name) > (size_t)width)
             width = (int)strlen(measures->item[k].name);
-    cli_say(run, "%-*s %12s %12s  %-9s  %s", width, "measure", "value", "limit",
-            "verdict", "where");
-    for (int64_t k = 0; k < measures->count; k++) {
+    if (text != SINK_NONE && measures->count > 0)
+        cli_say(run, "%-*s %12s %12s  %-9s  %s", width, "measure", "value",
+                "limit", "verdict", "where");
+    SINK_EACH(run, key, k, measures->count) {
         const ritz_measure *m = &measures->item[k];
 
-        cli_say(run, "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
-                m->limit, name_verdict(m, known), m->where);
+        sink_tell(run, text, NULL, "name,value,limit,verdict,where",
+                  "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
+                  m->limit, name_verdict(m, known), m->where);
     }
-    model_set_measures(run, key, measures, known);
 }
 
 void model_record(cli_run *run, const ritz_measures *measures)
@@ -347,27 +305,20 @@ ritz_status model_write_bodies(cli_run *run, const char *prefix,
 {
     char path[MODEL_PATH];
 
-    sink_list(run, "component_files");
-    for (int64_t k = 0; prefix && k < scene->num_components; k++) {
+    SINK_EACH(run, "component_files", k, prefix ? scene->num_components : 0) {
         RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
         RITZ_CHECK(
             ritz_container_write_reduced(path, &body[k], cli_stamp(run)));
         sink_add(run, "%s", path);
     }
-    sink_end(run);
     return RITZ_OK;
 }
 
 void model_free(model *m)
 {
-    ritz_component_free(&m->component);
-    ritz_basis_free(&m->basis);
-    ritz_reduced_free(&m->reduced);
-    ritz_system_free(&m->system);
-    ritz_response_free(&m->response);
-    ritz_rankings_free(&m->rankings);
-    ritz_state_space_free(&m->states);
-    ritz_simulation_free(&m->simulation);
+#define FREE_KIND(KIND, type, member, name, noun)                              \
+    ritz_##type##_free(&m->member);
+    MODEL_EACH_KIND(FREE_KIND)
     *m = (model){0};
 }
 

@@ -32,17 +32,23 @@ enum {
         MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES
 };
 
-/* A container that was read: the object that `kind` names, others empty. */
+/* X(KIND, type, member of a model, name in files, noun of sentences) */
+#define MODEL_EACH_KIND(X)                                                     \
+    X(COMPONENT, component, component, "component", "a component")             \
+    X(BASIS, basis, basis, "basis", "a basis")                                 \
+    X(REDUCED, reduced, reduced, "reduced", "a reduced component")             \
+    X(SYSTEM, system, system, "system", "a system")                            \
+    X(RESPONSE, response, response, "response", "a response")                  \
+    X(RANKING, rankings, rankings, "ranking", "a ranking")                     \
+    X(STATES, state_space, states, "state-space", "a state space")             \
+    X(SIMULATION, simulation, simulation, "simulation", "a time response")
+
+/* A container: the object that `kind` names, others empty. */
 typedef struct model {
     model_kind kind;
-    ritz_component component;
-    ritz_basis basis;
-    ritz_reduced reduced;
-    ritz_system system;
-    ritz_response response;
-    ritz_rankings rankings;
-    ritz_state_space states;
-    ritz_simulation simulation;
+#define MODEL_MEMBER(KIND, type, member, name, noun) ritz_##type member;
+    MODEL_EACH_KIND(MODEL_MEMBER)
+#undef MODEL_MEMBER
     ritz_configuration *at; /* of a system, once model_at has chosen */
     ritz_damping damping;   /* added to that of matrices; by model_settle */
 } model;
@@ -147,13 +153,6 @@ const void *model_object(const model *model);
 /** As the library takes it, with that damping; borrowed. */
 ritz_model model_reference(const model *model);
 
-/** Names and limits of inputs and outputs, with matrices where it has them;
- * borrowed. */
-ritz_io model_io(const model *model);
-
-/** Coordinates, dofs or states. */
-int64_t model_order(const model *model);
-
 /* A component with more dofs is not made a first-order model just for its poles
    or zeros. */
 enum { MODEL_MOST_DOFS = 400 };
@@ -162,10 +161,7 @@ enum { MODEL_MOST_DOFS = 400 };
  * and not too many dofs. */
 bool model_has_states(const model *model);
 
-/** Errors that ritz-verify measured. */
-ritz_measures *model_errors(model *model);
-
-/** Write a reduced component, system or state space as the output. */
+/** Write it as the output. */
 ritz_status model_write(cli_run *run, const model *model);
 
 /** Dampers of a model, and the values that --damper gives them. */
@@ -187,13 +183,12 @@ ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
 ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 
 /**
- * Table of measures, and a list of them with verdicts; or the list alone.
+ * A list of measures with verdicts, and a table of them if there are any.
  *
+ * @param[in] text   SINK_NONE: the list alone
  * @param[in] known  the word for those without a limit: "measured", "estimated"
  */
-void model_say_measures(cli_run *run, const char *key,
-                        const ritz_measures *measures, const char *known);
-void model_set_measures(cli_run *run, const char *key,
+void model_say_measures(cli_run *run, sink_text text, const char *key,
                         const ritz_measures *measures, const char *known);
 
 /** Their values for the line of --record. */

@@ -111,11 +111,10 @@ static json_t *object_of(const json_t *line, const char *key)
     return json_object_size(object) > 0 ? object : NULL;
 }
 
-static ritz_status add_record(json_t *line, const char *path, int64_t number,
-                              records *all)
+static ritz_status add_record(json_t *line, records *all)
 {
     const json_t *order = json_object_get(line, "order");
-    record r = {.file = path, .line = number, .json = line};
+    record r = {.json = line};
 
     RITZ_CHECK(check_line(line));
     RITZ_REFUSE_IF(all->count == MOST_RECORDS, RITZ_ERR_FORMAT,
@@ -149,17 +148,14 @@ static ritz_status take_line(const char *text, size_t length, const char *path,
     snprintf(context, sizeof context, "'%.180s', line %lld", path,
              (long long)number);
     if (!line)
-        status =
-            ritz_fail(RITZ_ERR_FORMAT, "%s: no JSON: %s", context, error.text);
+        status = ritz_fail(RITZ_ERR_FORMAT, "no JSON: %s", error.text);
     else if (!json_is_object(line))
-        status = ritz_fail(RITZ_ERR_FORMAT,
-                           "%s: no record, which is a JSON "
-                           "object",
-                           context);
+        status =
+            ritz_fail(RITZ_ERR_FORMAT, "no record, which is a JSON object");
     else
-        status = ritz_context(add_record(line, path, number, all), context);
+        status = add_record(line, all);
     json_decref(line);
-    return status;
+    return ritz_context(status, context);
 }
 
 ritz_status records_read(const char *path, records *all)

@@ -15,8 +15,6 @@
 
 /* One line. Texts and values are borrowed from its JSON. */
 typedef struct record {
-    const char *file;
-    int64_t line;
     json_t *json;
     const char *tool, *method, *subject; /* "" where there is none */
     int64_t order;                       /* -1: none */
@@ -35,7 +33,6 @@ typedef struct records {
 /**
  * Read lines behind those that are there. Empty lines are passed over.
  *
- * @param[in] path  kept: it must outlive the records
  * @return RITZ_ERR_FORMAT naming the line that is no record
  */
 ritz_status records_read(const char *path, records *all);

@@ -175,7 +175,7 @@ static json_t *find_target(const cli_run *run, const char *keys)
     json_t *here = sink_here(run);
     json_t *item = NULL;
 
-    if (!json_is_array(here) || keys[strspn(keys, ",")] == '\0')
+    if (!json_is_array(here) || !keys || keys[strspn(keys, ",")] == '\0')
         return here;
     item = json_object();
     json_array_append_new(here, item);
@@ -194,80 +194,26 @@ static void show_text(const cli_run *run, long from)
     fwrite(said->text + from, 1, said->size - (size_t)from, stdout);
 }
 
-static void tell_line(const cli_run *run, const char *title, const char *keys,
-                      const char *format, arguments *args)
+void sink_tell(const cli_run *run, sink_text text, const char *title,
+               const char *keys, const char *format, ...)
 {
-    long from = ftell(run->said.file);
-    telling t = {run->said.file, keys, find_target(run, keys)};
+    FILE *said = text == SINK_NONE ? NULL : run->said.file;
+    long from = said ? ftell(said) : 0;
+    telling t = {said, keys, find_target(run, keys)};
+    arguments args;
 
     if (title)
-        fprintf(run->said.file, "  %-14s ", title);
-    tell_values(&t, format, args);
-    putc('\n', run->said.file);
-    show_text(run, from);
-}
-
-void sink_part(const cli_run *run, const char *format, ...)
-{
-    arguments args;
-    long from = ftell(run->said.file);
-    telling t = {run->said.file, "", sink_here(run)};
-
+        fprintf(said, "  %-14s ", title);
     va_start(args.list, format);
     tell_values(&t, format, &args);
     va_end(args.list);
-    show_text(run, from);
+    if (text == SINK_LINE)
+        putc('\n', said);
+    if (said)
+        show_text(run, from);
 }
 
-void cli_say(const cli_run *run, const char *format, ...)
-{
-    arguments args;
-
-    va_start(args.list, format);
-    tell_line(run, NULL, "", format, &args);
-    va_end(args.list);
-}
-
-void sink_say(cli_run *run, const char *keys, const char *format, ...)
-{
-    arguments args;
-
-    va_start(args.list, format);
-    tell_line(run, NULL, keys, format, &args);
-    va_end(args.list);
-}
-
-void sink_field(cli_run *run, const char *title, const char *keys,
-                const char *format, ...)
-{
-    arguments args;
-
-    va_start(args.list, format);
-    tell_line(run, title, keys, format, &args);
-    va_end(args.list);
-}
-
-void sink_set(cli_run *run, const char *keys, const char *format, ...)
-{
-    arguments args;
-    telling t = {NULL, keys, find_target(run, keys)};
-
-    va_start(args.list, format);
-    tell_values(&t, format, &args);
-    va_end(args.list);
-}
-
-void sink_add(cli_run *run, const char *format, ...)
-{
-    arguments args;
-    telling t = {NULL, NULL, sink_here(run)};
-
-    va_start(args.list, format);
-    tell_values(&t, format, &args);
-    va_end(args.list);
-}
-
-static void push_value(cli_run *run, json_t *value)
+void sink_open(cli_run *run, json_t *value)
 {
     if (run->depth == CLI_MAX_DEPTH || !value)
         abort();
@@ -288,7 +234,7 @@ static void open_value(cli_run *run, const char *key, json_t *value)
     } else {
         json_array_append_new(here, value);
     }
-    push_value(run, value);
+    sink_open(run, value);
 }
 
 void sink_object(cli_run *run, const char *key)
@@ -314,61 +260,28 @@ void sink_lift(cli_run *run, const json_t *from)
     json_decref(copy);
 }
 
-void sink_record(cli_run *run)
-{
-    push_value(run, json_object());
-}
-
-ritz_status sink_end_record(cli_run *run)
-{
-    return cli_record_line(run, run->open[--run->depth]);
-}
-
-void sink_line(cli_run *run)
-{
-    push_value(run, run->line);
-}
-
 void sink_reals(cli_run *run, const char *key, int64_t count,
                 const double *values)
 {
-    sink_list(run, key);
-    for (int64_t k = 0; k < count; k++)
+    SINK_EACH(run, key, k, count)
         sink_add(run, "%g", values[k]);
-    sink_end(run);
-}
-
-static void set_list(cli_run *run, const char *key, int64_t count,
-                     const int64_t *values, int64_t first)
-{
-    sink_list(run, key);
-    for (int64_t k = 0; k < count; k++)
-        sink_add(run, "%ld", first + values[k]);
-    sink_end(run);
 }
 
 void sink_wholes(cli_run *run, const char *key, int64_t count,
-                 const int64_t *values)
+                 const int64_t *values, int64_t first)
 {
-    set_list(run, key, count, values, 0);
-}
-
-void sink_numbers(cli_run *run, const char *key, int64_t count,
-                  const int64_t *indices)
-{
-    set_list(run, key, count, indices, 1);
+    SINK_EACH(run, key, k, count)
+        sink_add(run, "%ld", first + values[k]);
 }
 
 void sink_names(cli_run *run, const char *title, const char *key, int64_t count,
                 char (*name)[RITZ_NAME_SIZE])
 {
-    sink_list(run, key);
-    for (int64_t k = 0; k < count; k++) {
+    SINK_EACH(run, key, k, count) {
         sink_add(run, "%s", name[k]);
         if (title)
             sink_field(run, k > 0 ? "" : title, "", "%s", name[k]);
     }
-    sink_end(run);
 }
 
 void sink_append(char *text, size_t size, const char *format, ...)

@@ -21,26 +21,35 @@
 #include <ritz/base.h>
 #include <ritz/matrix.h>
 
-/** A line, and its values. */
-[[gnu::format(printf, 3, 4)]] void sink_say(cli_run *run, const char *keys,
-                                            const char *format, ...);
+/* What becomes of the text of a call. */
+typedef enum sink_text { SINK_NONE, SINK_PART, SINK_LINE } sink_text;
 
-/** Text of a line whose end is still to be said. */
-[[gnu::format(printf, 2, 3)]] void sink_part(const cli_run *run,
+/**
+ * All that a tool says, by one of the names below.
+ *
+ * @param[in] title  of a line, in the column that all titles share; NULL: none
+ * @param[in] keys   NULL: values are plain items of the list that is open
+ */
+[[gnu::format(printf, 5, 6)]] void sink_tell(const cli_run *run, sink_text text,
+                                             const char *title,
+                                             const char *keys,
                                              const char *format, ...);
 
-/** A line behind a title, in the column that all titles share. */
-[[gnu::format(printf, 4, 5)]] void sink_field(cli_run *run, const char *title,
-                                              const char *keys,
-                                              const char *format, ...);
-
-/** The values alone; blanks may stand between the conversions. */
-[[gnu::format(printf, 3, 4)]] void sink_set(cli_run *run, const char *keys,
-                                            const char *format, ...);
-
-/** Plain items of the list that is open, one for each conversion. */
-[[gnu::format(printf, 2, 3)]] void sink_add(cli_run *run, const char *format,
-                                            ...);
+/* A line, and its values. */
+#define sink_say(run, keys, ...)                                               \
+    sink_tell(run, SINK_LINE, NULL, keys, __VA_ARGS__)
+/* A line of text alone; like all text, not shown with --quiet or --json. */
+#define cli_say(run, ...) sink_say(run, "", __VA_ARGS__)
+/* A line behind a title. */
+#define sink_field(run, title, keys, ...)                                      \
+    sink_tell(run, SINK_LINE, title, keys, __VA_ARGS__)
+/* Text of a line whose end is still to be said. */
+#define sink_part(run, ...) sink_tell(run, SINK_PART, NULL, "", __VA_ARGS__)
+/* The values alone; blanks may stand between the conversions. */
+#define sink_set(run, keys, ...)                                               \
+    sink_tell(run, SINK_NONE, NULL, keys, __VA_ARGS__)
+/* Plain items of the list that is open, one for each conversion. */
+#define sink_add(run, ...) sink_set(run, NULL, __VA_ARGS__)
 
 /**
  * Open an object or a list, until the sink_end that belongs to it. One that
@@ -52,16 +61,14 @@ void sink_object(cli_run *run, const char *key);
 void sink_list(cli_run *run, const char *key);
 void sink_end(cli_run *run);
 
-/**
- * Open the object of a line of its own for the file of --record. Its
- * sink_end_record adds tool, command, inputs and memory, and appends it now;
- * without --record it is dropped.
- */
-void sink_record(cli_run *run);
-ritz_status sink_end_record(cli_run *run);
+/* A list, and a statement for each k below a count, after which the list is
+   ended; a statement that returns leaves it open, which only a failure may. */
+#define SINK_EACH(run, key, k, count)                                          \
+    for (int64_t k = (sink_list(run, key), 0);                                 \
+         (k) < (count) || (sink_end(run), false); (k)++)
 
-/** Open the object of the line that --record appends when the run ends. */
-void sink_line(cli_run *run);
+/** Open an object that is no part of the report; borrowed. */
+void sink_open(cli_run *run, json_t *value);
 
 /** The object or list that is open; borrowed. */
 json_t *sink_here(const cli_run *run);
@@ -69,13 +76,12 @@ json_t *sink_here(const cli_run *run);
 /** Give the object that is open those keys of another that it has not. */
 void sink_lift(cli_run *run, const json_t *from);
 
-/** Lists of plain values; numbers count from 1 where they are indices. */
+/** Lists of plain values; of whole ones @p first is added to each, 1 where they
+ * are indices. */
 void sink_reals(cli_run *run, const char *key, int64_t count,
                 const double *values);
 void sink_wholes(cli_run *run, const char *key, int64_t count,
-                 const int64_t *values);
-void sink_numbers(cli_run *run, const char *key, int64_t count,
-                  const int64_t *indices);
+                 const int64_t *values, int64_t first);
 
 /** Names as a list and, below each other behind @p title, as text; NULL: only
  * as a list. */

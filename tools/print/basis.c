@@ -1,29 +1,22 @@
 #include "print/print.h"
 
-enum { MAX_PATH = 4096 };
-
-/* One neighbour as it was typed. */
-typedef struct typed_neighbour {
-    char port[RITZ_NAME_SIZE], other[RITZ_NAME_SIZE];
-    char path[MAX_PATH];
-} typed_neighbour;
-
 /* "PORT=FILE:PORT": the last ':' ends the file's name. */
-static ritz_status split_neighbour(const char *text, typed_neighbour *out)
+static ritz_status split_neighbour(const char *text, ritz_joint *out,
+                                   char path[MODEL_PATH])
 {
     const char *equals = strchr(text, '=');
     const char *colon = strrchr(text, ':');
     size_t length = equals ? (size_t)(equals - text) : 0;
-    size_t path = equals && colon > equals ? (size_t)(colon - equals - 1) : 0;
+    size_t size = equals && colon > equals ? (size_t)(colon - equals) : 0;
 
-    RITZ_REFUSE_IF(length == 0 || path == 0 || colon[1] == '\0',
+    RITZ_REFUSE_IF(length == 0 || size <= 1 || colon[1] == '\0',
                    RITZ_ERR_ARGUMENT, "'%s' is not PORT=FILE:PORT", text);
-    RITZ_REFUSE_IF(length >= sizeof out->port || path >= sizeof out->path ||
-                       strlen(colon + 1) >= sizeof out->other,
+    RITZ_REFUSE_IF(length >= RITZ_NAME_SIZE || size > MODEL_PATH ||
+                       strlen(colon + 1) >= RITZ_NAME_SIZE,
                    RITZ_ERR_ARGUMENT, "'%.60s...' has too long a name", text);
-    snprintf(out->port, sizeof out->port, "%.*s", (int)length, text);
-    snprintf(out->path, sizeof out->path, "%.*s", (int)path, equals + 1);
-    snprintf(out->other, sizeof out->other, "%s", colon + 1);
+    snprintf(out->between[0].port, RITZ_NAME_SIZE, "%.*s", (int)length, text);
+    snprintf(out->between[1].port, RITZ_NAME_SIZE, "%s", colon + 1);
+    snprintf(path, size, "%s", equals + 1);
     return RITZ_OK;
 }
 
@@ -31,19 +24,16 @@ static ritz_status add_neighbour(cli_run *run, const char *text,
                                  const ritz_component *component,
                                  const ritz_dofs *attached, ritz_neighbour *sum)
 {
-    typed_neighbour of = {0};
+    char path[MODEL_PATH];
     RITZ_OWN(model) far = {0};
     ritz_joint joint = {.type = RITZ_JOINT_FIXED, .name = "neighbour"};
-    ritz_joined side[2] = {{run->operand[1], component}, {0}};
 
-    RITZ_CHECK(split_neighbour(text, &of));
-    RITZ_CHECK(model_read(run, of.path, MODEL_COMPONENT, &far));
-    side[1] = (ritz_joined){of.path, &far.component};
-    snprintf(joint.between[0].port, sizeof joint.between[0].port, "%s",
-             of.port);
-    snprintf(joint.between[1].port, sizeof joint.between[1].port, "%s",
-             of.other);
-    return ritz_joint_neighbour(&joint, NULL, side, 0, attached, sum);
+    RITZ_CHECK(split_neighbour(text, &joint, path));
+    RITZ_CHECK(model_read(run, path, MODEL_COMPONENT, &far));
+    return ritz_joint_neighbour(
+        &joint, NULL,
+        (ritz_joined[]){{run->operand[1], component}, {path, &far.component}},
+        0, attached, sum);
 }
 
 static ritz_status read_neighbours(cli_run *run, const cli_list *list,
@@ -67,16 +57,12 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
     const ritz_columns *c = &basis->columns;
     double worst = (double)NAN;
 
-    cli_say(run, "%s:", run->output);
-    describe_basis(run, basis);
-    sink_list(run, "residuals");
-    for (int64_t k = 0; k < c->count; k++) {
+    SINK_EACH(run, "residuals", k, c->count) {
         if (isnan(c->hertz[k]))
             continue;
         sink_add(run, "%g", c->residual[k]);
         worst = fmax(worst, c->residual[k]);
     }
-    sink_end(run);
     if (!isnan(worst)) {
         cli_say(run, "  %-14s %.1e relative, of the worst mode", "residual",
                 worst);
@@ -96,7 +82,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
     RITZ_OWN(model) m = {0};
     RITZ_OWN(ritz_dofs) attached = {0};
     RITZ_OWN(ritz_neighbour) neighbour = {0};
-    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_BASIS};
 
     cli_record(run, method->name, -1);
     RITZ_CHECK(model_read(
@@ -116,11 +102,12 @@ ritz_status basis_run(cli_run *run, basis_options *given)
                                    &attached, &neighbour));
         request->neighbour = &neighbour;
     }
-    RITZ_CHECK_IN(path, ritz_basis_make(method, request, &basis));
-    memcpy(basis.units, request->space ? m.states.units : m.component.units,
-           sizeof basis.units);
-    RITZ_CHECK(ritz_container_write_basis(run->output, &basis, cli_stamp(run)));
-    say_basis(run, &basis);
+    RITZ_CHECK_IN(path, ritz_basis_make(method, request, &made.basis));
+    memcpy(made.basis.units,
+           request->space ? m.states.units : m.component.units,
+           sizeof made.basis.units);
+    RITZ_CHECK(describe_output(run, &made));
+    say_basis(run, &made.basis);
     return RITZ_OK;
 }
 
@@ -135,37 +122,27 @@ static void drop_basis(ritz_reduced *reduced)
     reduced->dof = NULL;
 }
 
-static ritz_status say_reduced(cli_run *run, const ritz_reduced *reduced)
-{
-    const ritz_columns *c = &reduced->columns;
-
-    cli_say(run, "%s:", run->output);
-    RITZ_CHECK(describe_reduced(run, reduced));
-    sink_set(run, "vectors", "%ld", c->count);
-    sink_list(run, "residuals");
-    for (int64_t k = 0; k < c->count; k++)
-        if (!isnan(c->residual[k]))
-            sink_add(run, "%g", c->residual[k]);
-    sink_end(run);
-    cli_record(run, reduced->origin.method, reduced->K.nrow);
-    model_record(run, &reduced->estimates);
-    return RITZ_OK;
-}
-
 static ritz_status reduce_to_matrices(cli_run *run, const ritz_component *full,
                                       const ritz_basis *basis,
                                       const reduce_options *given)
 {
     const char *what = run->operand[1];
-    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_REDUCED};
+    ritz_reduced *reduced = &made.reduced;
+    const ritz_columns *c = &reduced->columns;
 
-    RITZ_CHECK_IN(what, ritz_reduce(full, basis, &reduced));
-    RITZ_CHECK_IN(what, ritz_estimate(full, basis, &given->estimate, &reduced));
+    RITZ_CHECK_IN(what, ritz_reduce(full, basis, reduced));
+    RITZ_CHECK_IN(what, ritz_estimate(full, basis, &given->estimate, reduced));
     if (given->without_basis)
-        drop_basis(&reduced);
-    RITZ_CHECK(
-        ritz_container_write_reduced(run->output, &reduced, cli_stamp(run)));
-    return say_reduced(run, &reduced);
+        drop_basis(reduced);
+    RITZ_CHECK(describe_output(run, &made));
+    sink_set(run, "vectors", "%ld", c->count);
+    SINK_EACH(run, "residuals", k, c->count)
+        if (!isnan(c->residual[k]))
+            sink_add(run, "%g", c->residual[k]);
+    cli_record(run, reduced->origin.method, reduced->K.nrow);
+    model_record(run, &reduced->estimates);
+    return RITZ_OK;
 }
 
 /* A model of either kind, in a basis that makes states of it. */
@@ -177,12 +154,8 @@ static ritz_status project_model(const model *full, const ritz_basis *basis,
     if (full->kind == MODEL_STATES)
         return ritz_reduce_space(&full->states, basis, out);
     RITZ_CHECK(ritz_damping_parse(basis->damping, &damping));
-    if (basis->states)
-        RITZ_CHECK(ritz_reduce_states(&full->component, &damping, basis, out));
-    else
-        RITZ_CHECK(
-            ritz_reduce_companion(&full->component, &damping, basis, out));
-    return RITZ_OK;
+    return (basis->states ? ritz_reduce_states : ritz_reduce_companion)(
+        &full->component, &damping, basis, out);
 }
 
 /* A reduced state space has its stability and, of some methods, an error bound
@@ -191,20 +164,18 @@ static ritz_status reduce_to_states(cli_run *run, const model *full,
                                     const ritz_basis *basis)
 {
     const char *what = run->operand[1];
-    RITZ_OWN(ritz_state_space) states = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_STATES};
+    ritz_state_space *states = &made.states;
     ritz_probe probe = {0};
     char text[2 * RITZ_NAME_SIZE];
 
-    RITZ_CHECK_IN(what, project_model(full, basis, &states));
-    RITZ_CHECK_IN(what, ritz_probe_states(&states, &probe));
-    RITZ_CHECK(ritz_probe_record(&probe, &states.estimates));
-    RITZ_CHECK(
-        ritz_container_write_state_space(run->output, &states, cli_stamp(run)));
-    cli_say(run, "%s:", run->output);
-    RITZ_CHECK(describe_states(run, &states));
-    sink_set(run, "vectors", "%ld", states.columns.count);
-    cli_record(run, states.origin.method, states.A.nrow);
-    model_record(run, &states.estimates);
+    RITZ_CHECK_IN(what, project_model(full, basis, states));
+    RITZ_CHECK_IN(what, ritz_probe_states(states, &probe));
+    RITZ_CHECK(ritz_probe_record(&probe, &states->estimates));
+    RITZ_CHECK(describe_output(run, &made));
+    sink_set(run, "vectors", "%ld", states->columns.count);
+    cli_record(run, states->origin.method, states->A.nrow);
+    model_record(run, &states->estimates);
     ritz_probe_print(&probe, text);
     if (probe.verdict == RITZ_UNSTABLE)
         cli_warn(run, "'%s' is unstable: %s", run->output, text);
@@ -216,7 +187,7 @@ static ritz_status check_rows(const cli_run *run, const model *full,
                               const ritz_basis *basis)
 {
     bool space = full->kind == MODEL_STATES;
-    int64_t due = model_order(full);
+    int64_t due = ritz_model_order(model_reference(full));
     int64_t rows = basis->T.nrow / (basis->states && !space ? 2 : 1);
 
     RITZ_REFUSE_IF(space && !basis->states, RITZ_ERR_ARGUMENT,
@@ -244,9 +215,6 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
         "a reduced state space keeps no basis, --without-basis is for "
         "components");
     if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
-        RITZ_CHECK(reduce_to_states(run, &full, &basis.basis));
-    else
-        RITZ_CHECK(
-            reduce_to_matrices(run, &full.component, &basis.basis, given));
-    return RITZ_OK;
+        return reduce_to_states(run, &full, &basis.basis);
+    return reduce_to_matrices(run, &full.component, &basis.basis, given);
 }

@@ -13,8 +13,7 @@ void checks_say(cli_run *run, const char *key, const ritz_audit *audit)
 {
     cli_say(run, "%-28s %12s %12s  %-7s  %s", "check", "measured", "limit",
             "verdict", "where");
-    sink_list(run, key);
-    for (int64_t k = 0; k < audit->count; k++) {
+    SINK_EACH(run, key, k, audit->count) {
         const ritz_check *c = &audit->check[k];
         const char *verdict = ritz_verdict_name(c->verdict);
 
@@ -27,7 +26,6 @@ void checks_say(cli_run *run, const char *key, const ritz_audit *audit)
             cli_say(run, "    %s", c->says);
         sink_end(run);
     }
-    sink_end(run);
     cli_say(run, "%ld pass, %ld warn, %ld fail", count_checks(audit, RITZ_PASS),
             count_checks(audit, RITZ_WARN), count_checks(audit, RITZ_FAIL));
 }
@@ -50,7 +48,7 @@ ritz_status checks_run(cli_run *run)
     RITZ_CHECK(model_read(run, path,
                           MODEL_COMPONENT | MODEL_REDUCED | MODEL_STATES, &m));
     cli_record(run, m.kind == MODEL_COMPONENT ? "audit" : "probe",
-               model_order(&m));
+               ritz_model_order(model_reference(&m)));
     RITZ_CHECK_IN(path, m.kind == MODEL_COMPONENT
                             ? ritz_audit_component(&m.component, &audit)
                         : m.kind == MODEL_STATES
@@ -60,7 +58,7 @@ ritz_status checks_run(cli_run *run)
     for (int64_t k = 0; k < audit.count; k++)
         cli_record_error(run, audit.check[k].name, audit.check[k].value);
     if (run->output)
-        RITZ_CHECK(cli_save(run, run->output));
+        RITZ_CHECK(cli_table_save(&run->said, run->output));
     first = checks_first(&audit);
     RITZ_REFUSE_IF(first, RITZ_ERR_FORMAT,
                    "'%s': %ld of %ld checks fail, first '%s'%s%s", path,

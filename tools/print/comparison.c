@@ -3,8 +3,6 @@
 
 #include "base/alloc.h"
 
-#include "cli/cli_table.h"
-
 #include <float.h>
 
 static void say_orders(cli_run *run, const ritz_stage *first,
@@ -14,8 +12,7 @@ static void say_orders(cli_run *run, const ritz_stage *first,
 
     cli_say(run, "%-20s %10s %10s %10s  %s", "component", "full dofs",
             "stage 1", "stage 2", "basis of stage 1");
-    sink_list(run, "components");
-    for (int64_t k = 0; k < first->count; k++) {
+    SINK_EACH(run, "components", k, first->count) {
         const ritz_reduced *body = &first->body[k];
         const ritz_reduced *last = &second->body[k];
         int64_t order[] = {body->num_dofs,
@@ -28,7 +25,6 @@ static void say_orders(cli_run *run, const ritz_stage *first,
                  "%-20s %10ld %10ld %10ld  %s", first->scene->component[k].name,
                  order[0], order[1], order[2], body->origin.method);
     }
-    sink_end(run);
     cli_say(run, "%-20s %10ld %10ld %10ld", "total", sum[0], sum[1], sum[2]);
     cli_record(run, "compare", sum[2]);
 }
@@ -37,7 +33,7 @@ static void say_orders(cli_run *run, const ritz_stage *first,
 static void describe_choice(const ritz_scene *scene, char out[160])
 {
     const size_t size = 160;
-    bool ranked = scene->num_inputs > 0 && scene->num_outputs > 0;
+    bool channels = scene->num_inputs > 0 && scene->num_outputs > 0;
 
     switch (scene->select) {
     case RITZ_SELECT_LISTED:
@@ -49,7 +45,7 @@ static void describe_choice(const ritz_scene *scene, char out[160])
                  scene->select_outputs ? "inputs and outputs" : "inputs");
         break;
     case RITZ_SELECT_RANKED:
-        if (ranked) {
+        if (channels) {
             snprintf(out, size, "modes by %s above %g of the largest value",
                      *scene->select_by ? scene->select_by : "hankel",
                      scene->select_tolerance);
@@ -100,7 +96,7 @@ static void print_orders(cli_run *run, int64_t count, const int64_t *order,
     out[0] = '\0';
     for (int64_t k = 0; k < count && strlen(out) < 72; k++)
         sink_append(out, 80, "%s%ld", k > 0 ? "+" : "", order[k]);
-    sink_wholes(run, "orders", count, order);
+    sink_wholes(run, "orders", count, order, 0);
 }
 
 static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
@@ -129,7 +125,6 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
     bool open = scene->attached == RITZ_ATTACHED_AUTO;
     double chosen = 0.0;
 
-    sink_list(run, "candidates");
     if (c->num_candidates > 0) {
         cli_say(run, "\nStatic corrections of %s, for these forces",
                 c->candidate[0].level == RITZ_AUGMENT_COMPONENT
@@ -139,12 +134,11 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
         cli_say(run, "  %-28s %-16s %6s %9s %9s %9s", "attached", "orders",
                 "system", "gain", "gain *", "sigma max");
     }
-    for (int64_t k = 0; k < c->num_candidates; k++) {
+    SINK_EACH(run, "candidates", k, c->num_candidates) {
         say_candidate(run, first->count, &c->candidate[k]);
         if (c->candidate[k].chosen)
             chosen = c->candidate[k].deviation;
     }
-    sink_end(run);
     if (c->num_candidates == 0)
         return;
     cli_say(run, "  worst relative errors: of the static gain at listed angles "
@@ -203,14 +197,12 @@ static ritz_status set_modes(cli_run *run, const ritz_compare_row *row,
 {
     RITZ_OWN_ARRAY double *hertz = NULL;
 
-    sink_list(run, "extraneous");
-    for (int64_t i = 0; i < row->num_strays; i++) {
+    SINK_EACH(run, "extraneous", i, row->num_strays) {
         const ritz_stray *s = &row->stray[i];
 
         sink_set(run, "mode,hertz,like,mac,removed", "%ld %g %ld %g %d",
                  s->mode + 1, s->hertz, s->like + 1, s->mac, s->removed);
     }
-    sink_end(run);
     if (!at)
         return RITZ_OK;
     RITZ_CHECK(model_hertz_at(at, &hertz));
@@ -255,8 +247,7 @@ static ritz_status say_rows(cli_run *run, const ritz_stage *stage,
     cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "#",
             "configuration", "rigid", "flex", "kept", "order", "frequency",
             "allowed", "rigid Hz", "gain", "response", "1 - MAC");
-    sink_list(run, "configurations");
-    for (int64_t k = 0; k < c->num_rows; k++) {
+    SINK_EACH(run, "configurations", k, c->num_rows) {
         const ritz_compare_row *row = &c->row[k];
         char at[RITZ_NAME_SIZE];
 
@@ -269,12 +260,9 @@ static ritz_status say_rows(cli_run *run, const ritz_stage *stage,
         sink_end(run);
         worst = fmax(worst, row->response_error);
     }
-    sink_end(run);
-    sink_list(run, "kept");
-    for (int64_t k = 0; k < c->num_rows; k++)
+    SINK_EACH(run, "kept", k, c->num_rows)
         if (c->row[k].listed)
-            sink_numbers(run, NULL, c->row[k].num_kept, c->row[k].kept);
-    sink_end(run);
+            sink_wholes(run, NULL, c->row[k].num_kept, c->row[k].kept, 1);
     say_legend(run, c);
     cli_record_error(run, "response", worst);
     return RITZ_OK;
@@ -535,8 +523,7 @@ static void say_tolerances(cli_run *run, const ritz_stage *first,
                  "listed configurations");
     cli_say(run, "%10s  %-16s %6s %6s %9s %9s %9s", "tolerance", "orders",
             "total", "system", "frequency", "gain", "response");
-    sink_list(run, "tolerances");
-    for (int64_t k = 0; k < rows->count; k++) {
+    SINK_EACH(run, "tolerances", k, rows->count) {
         const ritz_tolerance_row *row = &rows->at[k];
         char orders[80];
 
@@ -550,7 +537,6 @@ static void say_tolerances(cli_run *run, const ritz_stage *first,
                  row->removed ? "" : "  stage two removed nothing");
         sink_end(run);
     }
-    sink_end(run);
 }
 
 static ritz_status write_tolerances(const char *path, const ritz_stage *first,
@@ -605,6 +591,6 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
     if (given->tolerance_table)
         RITZ_CHECK(write_tolerances(given->tolerance_table, &stage, &rows));
     if (given->report)
-        RITZ_CHECK(cli_save(run, given->report));
+        RITZ_CHECK(cli_table_save(&run->said, given->report));
     return RITZ_OK;
 }

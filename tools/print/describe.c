@@ -128,8 +128,8 @@ static void describe_port(cli_run *run, const char *name, int64_t count,
 /* Lists of ports are there even where there is none. */
 static void start_ports(cli_run *run)
 {
-    sink_wholes(run, "ports", 0, NULL);
-    sink_wholes(run, "port_details", 0, NULL);
+    sink_wholes(run, "ports", 0, NULL, 0);
+    sink_wholes(run, "port_details", 0, NULL, 0);
 }
 
 void describe_damping(cli_run *run, const char *text)
@@ -155,8 +155,7 @@ void describe_damping(cli_run *run, const char *text)
 
 void describe_dampers(cli_run *run, const ritz_dampers *dampers)
 {
-    sink_list(run, "dampers");
-    for (int64_t j = 0; j < dampers->count; j++) {
+    SINK_EACH(run, "dampers", j, dampers->count) {
         bool held = dampers->held_c[j] == dampers->c[j] &&
                     dampers->held_k[j] == dampers->k[j];
 
@@ -164,7 +163,6 @@ void describe_dampers(cli_run *run, const ritz_dampers *dampers)
                    "%s, c = %g, k = %g%s", dampers->name[j], dampers->c[j],
                    dampers->k[j], held ? "" : ", not in D and K");
     }
-    sink_end(run);
 }
 
 /* The antisymmetric part of D, relative in the Frobenius norm. */
@@ -233,7 +231,7 @@ static void describe_recovery(cli_run *run, const ritz_recovery *recovery)
         cli_say(run, "%s", grids > SHOWN ? ", ..." : "");
 }
 
-void describe_component(cli_run *run, const ritz_component *c)
+ritz_status describe_component(cli_run *run, const ritz_component *c)
 {
     int64_t scalar = 0;
     int64_t grids = 0;
@@ -243,8 +241,8 @@ void describe_component(cli_run *run, const ritz_component *c)
         grids += c->dof[k].component != 0 &&
                  (k == 0 || c->dof[k].grid != c->dof[k - 1].grid);
     }
-    sink_set(run, "kind,scalar_points,digits,asymmetry", "%s %ld %g %g",
-             "component", scalar, c->digits, c->asymmetry);
+    sink_set(run, "scalar_points,digits,asymmetry", "%ld %g %g", scalar,
+             c->digits, c->asymmetry);
     sink_field(run, "kind", "dofs,grids", "component, %ld dofs at %ld grids%s",
                c->num_dofs, grids,
                c->grids.count > 0 ? "" : " without positions");
@@ -275,6 +273,7 @@ void describe_component(cli_run *run, const ritz_component *c)
         describe_port(run, c->port[k].name, c->port[k].dofs.count,
                       c->port[k].dofs.at, c->dof, c->port[k].origin);
     describe_io(run, &c->io);
+    return RITZ_OK;
 }
 
 /* Lowest and highest frequency of normal modes; false if none has one. */
@@ -345,9 +344,8 @@ static void describe_hankel(cli_run *run, const ritz_basis *b)
     sink_reals(run, "hankel_values", b->num_hankel, b->hankel);
 }
 
-void describe_basis(cli_run *run, const ritz_basis *b)
+ritz_status describe_basis(cli_run *run, const ritz_basis *b)
 {
-    sink_set(run, "kind", "%s", "basis");
     sink_field(run, "kind", "dofs,dofs_full", "basis of %ld columns for %ld %s",
                b->T.ncol, b->T.nrow, b->states ? "states" : "dofs");
     describe_origin(run, &b->origin);
@@ -358,11 +356,10 @@ void describe_basis(cli_run *run, const ritz_basis *b)
         describe_damping(run, b->damping);
     if (b->num_hankel > 0)
         describe_hankel(run, b);
-    sink_list(run, "frequencies_hz");
-    for (int64_t k = 0; k < b->columns.count; k++)
+    SINK_EACH(run, "frequencies_hz", k, b->columns.count)
         if (!isnan(b->columns.hertz[k]))
             sink_add(run, "%g", b->columns.hertz[k]);
-    sink_end(run);
+    return RITZ_OK;
 }
 
 /* Mass, centre and inertia; an empty object if they are not known. */
@@ -401,12 +398,9 @@ static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
 static void describe_measures(cli_run *run, const char *key,
                               const ritz_measures *m, const char *known)
 {
-    if (m->count == 0) {
-        model_set_measures(run, key, m, known);
-        return;
-    }
-    cli_say(run, "  %s:", key);
-    model_say_measures(run, key, m, known);
+    if (m->count > 0)
+        cli_say(run, "  %s:", key);
+    model_say_measures(run, SINK_LINE, key, m, known);
 }
 
 /* A row a measure and a column an order, some orders at a time. */
@@ -440,7 +434,7 @@ static void describe_nested(cli_run *run, const ritz_nested *nested,
                "first %ld to %ld columns (--order N)", nested->smallest,
                columns);
     describe_nested_errors(run, nested);
-    sink_wholes(run, "order", nested->count, nested->order);
+    sink_wholes(run, "order", nested->count, nested->order, 0);
     sink_object(run, "errors");
     for (int64_t j = 0; j < nested->num_errors; j++)
         sink_reals(run, nested->error[j], nested->count,
@@ -455,7 +449,6 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     int64_t rigid = 0;
     int64_t count = 0;
 
-    sink_set(run, "kind", "%s", "reduced");
     RITZ_CHECK(model_hertz(&r->K, &r->M, &rigid, &count, &hertz));
     sink_field(run, "kind", "dofs,dofs_full",
                "reduced component, %ld coordinates for %ld dofs", r->K.nrow,
@@ -529,19 +522,16 @@ static ritz_status describe_configurations(cli_run *run, const ritz_system *s)
 
 ritz_status describe_system(cli_run *run, const ritz_system *s)
 {
-    sink_set(run, "kind", "%s", "system");
     sink_names(run, NULL, "sweeps", s->num_sweeps, s->sweep);
     sink_list(run, "ports");
     sink_end(run);
     sink_field(run, "kind", "name", "system '%s' at %ld configurations",
                s->name, s->num_configurations);
     describe_units(run, s->units);
-    sink_list(run, "components");
-    for (int64_t k = 0; k < s->num_components; k++)
+    SINK_EACH(run, "components", k, s->num_components)
         sink_field(run, k > 0 ? "" : "components", "name,dofs,dofs_full",
                    "%-16s %ld coordinates for %ld dofs", s->component[k].name,
                    s->component[k].order, s->component[k].order_full);
-    sink_end(run);
     if (s->band_hz[1] > 0.0)
         sink_field(run, "band", "", "%g to %g Hz", s->band_hz[0],
                    s->band_hz[1]);
@@ -551,9 +541,8 @@ ritz_status describe_system(cli_run *run, const ritz_system *s)
     return describe_configurations(run, s);
 }
 
-void describe_response(cli_run *run, const ritz_response *r)
+ritz_status describe_response(cli_run *run, const ritz_response *r)
 {
-    sink_set(run, "kind", "%s", "response");
     sink_field(run, "kind", "points,from_hz,to_hz",
                "frequency response, %ld points, %g to %g Hz", r->count,
                r->count > 0 ? r->hertz[0] : (double)NAN,
@@ -563,6 +552,7 @@ void describe_response(cli_run *run, const ritz_response *r)
                *r->damping ? r->damping : "of the matrices");
     sink_names(run, "inputs", "inputs", r->num_inputs, r->input);
     sink_names(run, "outputs", "outputs", r->num_outputs, r->output);
+    return RITZ_OK;
 }
 
 /* Largest |value| of an output, and when. */
@@ -595,12 +585,11 @@ static double find_imbalance(const ritz_simulation *s)
     return size > 0.0 ? off / size : 0.0;
 }
 
-void describe_simulation(cli_run *run, const ritz_simulation *s)
+ritz_status describe_simulation(cli_run *run, const ritz_simulation *s)
 {
     double end = s->count > 0 ? s->seconds[s->count - 1] : 0.0;
 
-    sink_set(run, "kind,order,damping", "%s %ld %s", "simulation", s->order,
-             s->damping);
+    sink_set(run, "order,damping", "%ld %s", s->order, s->damping);
     sink_field(run, "kind", "points,seconds",
                "time response, %ld times to %g s", s->count, end);
     sink_field(run, "method", "method,step,hold",
@@ -609,8 +598,7 @@ void describe_simulation(cli_run *run, const ritz_simulation *s)
                *s->damping ? s->damping : "of the matrices");
     sink_names(run, "inputs", "inputs", s->num_inputs, s->input);
     sink_names(run, NULL, "outputs", s->num_outputs, s->output);
-    sink_list(run, "peaks");
-    for (int64_t i = 0; i < s->num_outputs; i++) {
+    SINK_EACH(run, "peaks", i, s->num_outputs) {
         double when = 0.0;
         double most = find_peak(s, i, &when);
 
@@ -618,10 +606,10 @@ void describe_simulation(cli_run *run, const ritz_simulation *s)
                 i > 0 ? "" : "outputs", s->output[i], most, when);
         sink_add(run, "%g", most);
     }
-    sink_end(run);
     if (s->balance)
         sink_field(run, "energies", "imbalance",
                    "balance to %.1e of the largest", find_imbalance(s));
+    return RITZ_OK;
 }
 
 /* The slowest first, of a pair one line. */
@@ -633,8 +621,7 @@ static void describe_poles(cli_run *run, int64_t count,
 
     sink_field(run, "poles", "", "%14s %14s %12s %10s", "real, rad/s",
                "imaginary", "Hz", "damping");
-    sink_list(run, "poles");
-    for (int64_t k = 0; k < count; k++) {
+    SINK_EACH(run, "poles", k, count) {
         double re = creal(pole[k]);
         double im = cimag(pole[k]);
         double w = hypot(re, im);
@@ -646,7 +633,6 @@ static void describe_poles(cli_run *run, int64_t count,
             sink_field(run, "", "", "%14.6g %14.6g %12.6g %10.4g", re, im,
                        w / (2.0 * RITZ_PI), w > 0.0 ? -re / w : 0.0);
     }
-    sink_end(run);
     if (shown > SHOWN)
         sink_field(run, "", "", "and %ld faster ones", (shown - SHOWN));
 }
@@ -661,7 +647,6 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
 
     RITZ_CHECK(ritz_probe_states(states, &probe));
     RITZ_CHECK(ritz_state_space_poles(states, &count, &pole));
-    sink_set(run, "kind", "%s", "state-space");
     sink_field(run, "kind", "states", "state space, %ld states",
                states->A.nrow);
     describe_units(run, states->units);

@@ -1,6 +1,5 @@
 /* Files: containers, and matrix files and decks of other codes. */
 #include "print/print.h"
-#include "print/rankings.h"
 
 /* One matrix of a file, of which one at a time is held: a line and an item. */
 static ritz_status describe_values(cli_run *run, const ritz_foreign *file,
@@ -103,14 +102,12 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
         if (deck->num_sets[k] > 0)
             cli_say(run, "  %-14s %ld dofs", title[k], deck->num_sets[k]);
     }
-    sink_list(run, "constraints");
-    for (int64_t k = 0; k < deck->num_constraints; k++) {
+    SINK_EACH(run, "constraints", k, deck->num_constraints) {
         sink_add(run, "%s", deck->constraint[k]);
         if (k < 10)
             cli_say(run, "  %-14s %s", k > 0 ? "" : "constraints",
                     deck->constraint[k]);
     }
-    sink_end(run);
     if (deck->num_constraints > 10)
         sink_field(run, "", "", "and %ld more", (deck->num_constraints - 10));
     if (deck->num_constraints > 0)
@@ -124,31 +121,22 @@ static void describe_deck(cli_run *run, const ritz_deck *deck)
 static ritz_status describe_model(cli_run *run, const model *m)
 {
     switch (m->kind) {
-    case MODEL_COMPONENT:
-        describe_component(run, &m->component);
-        return RITZ_OK;
-    case MODEL_BASIS:
-        describe_basis(run, &m->basis);
-        return RITZ_OK;
-    case MODEL_REDUCED:
-        return describe_reduced(run, &m->reduced);
-    case MODEL_SYSTEM:
-        return describe_system(run, &m->system);
-    case MODEL_RESPONSE:
-        describe_response(run, &m->response);
-        return RITZ_OK;
-    case MODEL_RANKING:
-        rankings_describe(run, &m->rankings);
-        return RITZ_OK;
-    case MODEL_STATES:
-        return describe_states(run, &m->states);
-    case MODEL_SIMULATION:
-        describe_simulation(run, &m->simulation);
-        return RITZ_OK;
+#define DESCRIBE_KIND(KIND, type, member, name, noun)                          \
+    case MODEL_##KIND:                                                         \
+        sink_set(run, "kind", "%s", name);                                     \
+        return describe_##member(run, &m->member);
+        MODEL_EACH_KIND(DESCRIBE_KIND)
     case MODEL_ANY:
         break;
     }
     return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
+}
+
+ritz_status describe_output(cli_run *run, const model *m)
+{
+    RITZ_CHECK(model_write(run, m));
+    cli_say(run, "%s:", run->output);
+    return describe_model(run, m);
 }
 
 static void describe_member(const ritz_container_row *row, void *data)
@@ -177,12 +165,10 @@ static ritz_status describe_container(cli_run *run, const char *path,
     }
     sink_field(run, "made by", "command", "%s", summary.command);
     sink_field(run, "version", "made_by_version", "ritz %s", summary.version);
-    sink_list(run, "made_from");
-    for (int64_t k = 0; k < summary.num_inputs; k++) {
+    SINK_EACH(run, "made_from", k, summary.num_inputs) {
         cli_say(run, "  %-14s %s", k > 0 ? "" : "from", summary.input[k]);
         sink_add(run, "%s", summary.input[k]);
     }
-    sink_end(run);
     return RITZ_OK;
 }
 

@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+RITZ_ARRAY_OF(ritz_dense);
+
 enum { SUM_SIZE = 2 * RITZ_WHERE_SIZE + RITZ_NAME_SIZE + 8 };
 
 /* A matrix as its text has it: a reader of the file integrates the rounded
@@ -21,37 +23,25 @@ static ritz_status copy_rounded(const ritz_export_request *request,
     return RITZ_OK;
 }
 
-/* Stability checks of what will be written. */
-static ritz_status audit_reduced(const ritz_reduced *reduced,
+/* Stability checks of what will be written, a reduced component or states. */
+static ritz_status audit_rounded(const model *m,
                                  const ritz_export_request *request,
                                  ritz_audit *out)
 {
-    RITZ_OWN(ritz_dense) K = {0}, M = {0}, D = {0}, K4 = {0};
-    ritz_reduced rounded = *reduced; /* borrowed but for these */
+    enum { PARTS = 6 };
+    model rounded = *m; /* borrowed but for these */
+    ritz_dense *const part[PARTS] = {&rounded.reduced.K, &rounded.reduced.M,
+                                     &rounded.reduced.D, &rounded.reduced.K4,
+                                     &rounded.states.A,  &rounded.states.E};
+    RITZ_OWN(ritz_dense_array) copy = {.count = PARTS};
 
-    RITZ_CHECK(copy_rounded(request, &reduced->K, &K));
-    RITZ_CHECK(copy_rounded(request, &reduced->M, &M));
-    RITZ_CHECK(copy_rounded(request, &reduced->D, &D));
-    RITZ_CHECK(copy_rounded(request, &reduced->K4, &K4));
-    rounded.K = K;
-    rounded.M = M;
-    rounded.D = D;
-    rounded.K4 = K4;
-    return ritz_audit_reduced(&rounded, out);
-}
-
-static ritz_status audit_states(const ritz_state_space *states,
-                                const ritz_export_request *request,
-                                ritz_audit *out)
-{
-    RITZ_OWN(ritz_dense) A = {0}, E = {0};
-    ritz_state_space rounded = *states; /* borrowed but for these */
-
-    RITZ_CHECK(copy_rounded(request, &states->A, &A));
-    RITZ_CHECK(copy_rounded(request, &states->E, &E));
-    rounded.A = A;
-    rounded.E = E;
-    return ritz_audit_states(&rounded, out);
+    RITZ_CHECK_NEW(copy.at, copy.count);
+    for (int64_t k = 0; k < copy.count; k++) {
+        RITZ_CHECK(copy_rounded(request, part[k], &copy.at[k]));
+        *part[k] = copy.at[k];
+    }
+    return m->kind == MODEL_STATES ? ritz_audit_states(&rounded.states, out)
+                                   : ritz_audit_reduced(&rounded.reduced, out);
 }
 
 /* "stable: pole at ...", or the first check that fails. */
@@ -76,17 +66,22 @@ static void sum_up(const ritz_audit *audit, const char **verdict,
 
 /* No simulator is handed a model that grows by itself or in an assembly, or one
    of a method that promises nothing, unless it is wanted. */
-static ritz_status check_stability(cli_run *run, const ritz_audit *audit,
-                                   const char *method, bool force)
+static ritz_status check_stability(cli_run *run, const model *m,
+                                   const export_options *given)
 {
     static const char unproven[] = "lanczos-two-sided";
-    bool fails = checks_first(audit) != NULL;
+    const char *method = m->kind == MODEL_STATES ? m->states.origin.method
+                                                 : m->reduced.origin.method;
+    RITZ_OWN(ritz_audit) audit = {0};
+    bool fails = false, force = given->force;
     const char *verdict = NULL;
     char text[SUM_SIZE];
 
-    sum_up(audit, &verdict, text);
+    RITZ_CHECK_IN(run->operand[0], audit_rounded(m, &given->request, &audit));
+    fails = checks_first(&audit) != NULL;
+    sum_up(&audit, &verdict, text);
     sink_set(run, "stability", "%s", verdict);
-    checks_say(run, "probe", audit);
+    checks_say(run, "probe", &audit);
     RITZ_REFUSE_IF(fails && !force, RITZ_ERR_ARGUMENT,
                    "'%s' is unstable: %s; export it all the same with --force",
                    run->operand[0], text);
@@ -98,10 +93,10 @@ static ritz_status check_stability(cli_run *run, const ritz_audit *audit,
         cli_warn(run, "'%s' is unstable: %s", run->operand[0], text);
     else
         cli_say(run, "%s: %s", verdict, text);
-    for (int64_t k = 0; k < audit->count; k++)
-        if (audit->check[k].verdict == RITZ_WARN)
-            cli_warn(run, "%s (%s, %s)", audit->check[k].says,
-                     audit->check[k].name, audit->check[k].where);
+    for (int64_t k = 0; k < audit.count; k++)
+        if (audit.check[k].verdict == RITZ_WARN)
+            cli_warn(run, "%s (%s, %s)", audit.check[k].says,
+                     audit.check[k].name, audit.check[k].where);
     return RITZ_OK;
 }
 
@@ -116,7 +111,7 @@ static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
 
     sink_set(run, "errors_rest_on", "%s", rests);
     if (known->count == 0)
-        model_set_measures(run, "errors", known, rests);
+        model_say_measures(run, SINK_NONE, "errors", known, rests);
     RITZ_REFUSE_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
                    "'%s' carries neither estimated nor measured errors: run "
                    "ritz-verify, or export it all the same with --force",
@@ -129,7 +124,7 @@ static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
     cli_say(run, "errors %s by %s:", rests,
             errors->count > 0 ? "ritz-verify or ritz-compare"
                               : "ritz-reduce, not verified");
-    model_say_measures(run, "errors", known, rests);
+    model_say_measures(run, SINK_LINE, "errors", known, rests);
     for (int64_t k = 0; k < known->count; k++) {
         cli_record_error(run, known->item[k].name, known->item[k].value);
         if (!ritz_measure_holds(&known->item[k]))
@@ -156,11 +151,11 @@ static ritz_status check_forces(cli_run *run, const ritz_columns *columns,
     return RITZ_OK;
 }
 
-static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
-                                  const export_options *given,
-                                  ritz_export_report *done)
+/* What is known of a reduced component, and whether it may be exported. */
+static ritz_status check_reduced(cli_run *run, const model *m,
+                                 const export_options *given)
 {
-    RITZ_OWN(ritz_audit) audit = {0};
+    const ritz_reduced *reduced = &m->reduced;
     bool force = given->force;
 
     for (int64_t j = 0; j < reduced->dampers.count; j++)
@@ -169,11 +164,7 @@ static ritz_status export_reduced(cli_run *run, const ritz_reduced *reduced,
                 reduced->dampers.k[j]);
     RITZ_CHECK(say_errors(run, &reduced->errors, &reduced->estimates, force));
     RITZ_CHECK(check_forces(run, &reduced->columns, force));
-    RITZ_CHECK_IN(run->operand[0],
-                  audit_reduced(reduced, &given->request, &audit));
-    RITZ_CHECK(check_stability(run, &audit, reduced->origin.method, force));
-    return given->exporter->write(&(ritz_export_object){.reduced = reduced},
-                                  &given->request, done);
+    return check_stability(run, m, given);
 }
 
 /* An imported state space is no reduction and has no errors; some reductions
@@ -193,21 +184,6 @@ static ritz_status say_state_errors(cli_run *run,
     cli_warn(run, "nothing is known of the errors of '%s' but its stability",
              run->operand[0]);
     return RITZ_OK;
-}
-
-static ritz_status export_states(cli_run *run, const ritz_state_space *states,
-                                 const export_options *given,
-                                 ritz_export_report *done)
-{
-    RITZ_OWN(ritz_audit) audit = {0};
-
-    RITZ_CHECK_IN(run->operand[0],
-                  audit_states(states, &given->request, &audit));
-    RITZ_CHECK(
-        check_stability(run, &audit, states->origin.method, given->force));
-    RITZ_CHECK(say_state_errors(run, states, given->force));
-    return given->exporter->write(&(ritz_export_object){.states = states},
-                                  &given->request, done);
 }
 
 static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
@@ -241,22 +217,6 @@ static ritz_status find_shapes(cli_run *run, const model *m,
                : ritz_shapes_of_reduced(&m->reduced, modes, out);
 }
 
-static ritz_status export_shapes(cli_run *run, const model *m,
-                                 const export_options *given,
-                                 ritz_export_report *done)
-{
-    RITZ_OWN(ritz_shapes) shapes = {0};
-
-    sink_list(run, "shapes");
-    RITZ_CHECK_IN(run->operand[0], find_shapes(run, m, given, &shapes));
-    cli_record(run, given->exporter->name, shapes.count);
-    for (int64_t k = 0; k < shapes.count; k++)
-        sink_add(run, "%s", shapes.name[k]);
-    sink_end(run);
-    return given->exporter->write(&(ritz_export_object){.shapes = &shapes},
-                                  &given->request, done);
-}
-
 /* Kinds of model that an exporter takes, summed. */
 static int kinds_of(const ritz_exporter *exporter)
 {
@@ -282,22 +242,33 @@ static ritz_status export_model(cli_run *run, model *m,
                                 ritz_export_report *done)
 {
     const ritz_exporter *exporter = given->exporter;
-    bool shapes = exporter->takes & RITZ_EXPORT_SHAPES;
+    ritz_export_object object = {0};
+    RITZ_OWN(ritz_shapes) shapes = {0};
 
-    if (m->kind == MODEL_RESPONSE)
-        return exporter->write(&(ritz_export_object){.response = &m->response},
-                               &given->request, done);
-    if (m->kind == MODEL_SIMULATION)
-        return exporter->write(
-            &(ritz_export_object){.simulation = &m->simulation},
-            &given->request, done);
-    if (!shapes)
-        cli_record(run, exporter->name, model_order(m));
-    if (m->kind == MODEL_STATES)
-        return export_states(run, &m->states, given, done);
-    RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
-    return shapes ? export_shapes(run, m, given, done)
-                  : export_reduced(run, &m->reduced, given, done);
+    if (m->kind == MODEL_RESPONSE) {
+        object.response = &m->response;
+    } else if (m->kind == MODEL_SIMULATION) {
+        object.simulation = &m->simulation;
+    } else if (m->kind == MODEL_STATES) {
+        cli_record(run, exporter->name, m->states.A.nrow);
+        RITZ_CHECK(check_stability(run, m, given));
+        RITZ_CHECK(say_state_errors(run, &m->states, given->force));
+        object.states = &m->states;
+    } else if (exporter->takes & RITZ_EXPORT_SHAPES) {
+        RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
+        sink_list(run, "shapes");
+        RITZ_CHECK_IN(run->operand[0], find_shapes(run, m, given, &shapes));
+        sink_end(run);
+        sink_names(run, NULL, "shapes", shapes.count, shapes.name);
+        cli_record(run, exporter->name, shapes.count);
+        object.shapes = &shapes;
+    } else {
+        cli_record(run, exporter->name, m->reduced.K.nrow);
+        RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
+        RITZ_CHECK(check_reduced(run, m, given));
+        object.reduced = &m->reduced;
+    }
+    return exporter->write(&object, &given->request, done);
 }
 
 ritz_status export_run(cli_run *run, const export_options *given)
@@ -314,11 +285,9 @@ ritz_status export_run(cli_run *run, const export_options *given)
     RITZ_CHECK(model_prefix(&m, path, given->order));
     RITZ_CHECK(export_model(run, &m, given, &done));
     cli_say(run, "%s: %s", run->output, given->exporter->summary);
-    sink_list(run, "said");
-    for (int64_t k = 0; k < done.count; k++) {
+    SINK_EACH(run, "said", k, done.count) {
         cli_say(run, "  %s", done.line[k]);
         sink_add(run, "%s", done.line[k]);
     }
-    sink_end(run);
     return RITZ_OK;
 }

@@ -28,7 +28,8 @@ static void read_methods(const cli_program *program, fit_options *given)
     }
 }
 
-void fit_take(const cli_program *program, fit_options *given)
+/* Take words of the command line into the request, or end the program. */
+static void take_options(const cli_program *program, fit_options *given)
 {
     ritz_verify_request *tolerance = &given->request.tolerance;
 
@@ -64,13 +65,11 @@ static void set_tolerance(cli_run *run, const ritz_verify_request *limits)
 /* Modes of each body; null where there is no number to choose. */
 static void set_modes(cli_run *run, const ritz_fit_candidate *c)
 {
-    sink_list(run, "modes");
-    for (int64_t k = 0; k < c->num_bodies; k++)
+    SINK_EACH(run, "modes", k, c->num_bodies)
         if (c->modes[k] < 0)
             sink_add(run, "%g", (double)NAN);
         else
             sink_add(run, "%ld", c->modes[k]);
-    sink_end(run);
 }
 
 /* An order, or null of what was refused. */
@@ -116,9 +115,10 @@ static void record_candidate(fit_run *fit, const ritz_fit_candidate *c,
                              bool chosen, bool runner_up, const char *why)
 {
     cli_run *run = fit->run;
+    json_t *line = json_object();
     ritz_status status = RITZ_OK;
 
-    sink_record(run);
+    sink_open(run, line);
     set_candidate(run, c);
     sink_set(run, "ok,subject,chosen,runner_up", "%d %s %d %d", !c->refusal[0],
              fit->subject, chosen, runner_up);
@@ -128,7 +128,8 @@ static void record_candidate(fit_run *fit, const ritz_fit_candidate *c,
     }
     if (why)
         sink_set(run, "why", "%s", why);
-    status = sink_end_record(run);
+    sink_end(run);
+    status = cli_record_line(run, line);
     if (fit->recorded == RITZ_OK)
         fit->recorded = status;
 }
@@ -303,13 +304,13 @@ static void say_result(cli_run *run, const ritz_fitter *fitter,
         if (c->modes[k] >= 0) /* there is a number to choose */
             cli_say(run, "  %-20s %ld mode%s", ritz_fitter_body(fitter, k),
                     c->modes[k], c->modes[k] == 1 ? "" : "s");
-    model_say_measures(run, "measures", &c->errors, "measured");
+    model_say_measures(run, SINK_LINE, "measures", &c->errors, "measured");
     say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);
     sink_set(run, "method,order,columns,error", "%s %ld %ld %g",
              c->method->name, c->order, c->columns, c->ratio);
     set_modes(run, c);
-    model_set_measures(run, "estimates", &c->estimates, "estimated");
+    model_say_measures(run, SINK_NONE, "estimates", &c->estimates, "estimated");
     if (!second) {
         sink_set(run, "runner_up", "%g", (double)NAN);
         return;
@@ -338,10 +339,8 @@ static void say_fit(cli_run *run, const ritz_fitter *fitter,
              "tolerance, > at least.\n",
              fit->count, fit->num_methods, fit->num_methods == 1 ? "" : "s");
     say_head(run);
-    sink_list(run, "methods");
-    for (int64_t m = 0; m < fit->num_methods; m++)
+    SINK_EACH(run, "methods", m, fit->num_methods)
         say_item(run, find_best(fit, m), fit->method[m]->name);
-    sink_end(run);
     if (fit->chosen >= 0)
         say_result(run, fitter, fit);
     sink_say(run, "why", "\nWhy: %s.", fit->why);
@@ -354,8 +353,7 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
     cli_say(run, "\nThe same at equal order, %ld or the nearest below:\n",
             order);
     say_head(run);
-    sink_list(run, "equal_order");
-    for (int64_t m = 0; m < fit->num_methods; m++) {
+    SINK_EACH(run, "equal_order", m, fit->num_methods) {
         const ritz_fit_candidate *c =
             equal[m] >= 0 ? &fit->candidate[equal[m]] : find_first(fit, m);
 
@@ -365,7 +363,6 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
         else
             say_item(run, c, fit->method[m]->name);
     }
-    sink_end(run);
 }
 
 /* Orders and errors of the result with its bodies cut to first columns. */
@@ -431,13 +428,11 @@ static void say_path(cli_run *run, const ritz_fitter *fitter,
     for (int64_t k = 0; k < path->num_bodies; k++)
         sink_part(run, " %9.9s", ritz_fitter_body(fitter, k));
     cli_say(run, "  %8s %6s  %8s of", "columns", "order", "error");
-    sink_list(run, "path");
-    for (int64_t k = 0; k < path->count; k++) {
+    SINK_EACH(run, "path", k, path->count) {
         set_step(run, fitter, &path->row[k]);
         if (k % step == 0 || k == path->count - 1)
             say_step(run, &path->row[k]);
     }
-    sink_end(run);
     say_enough(run, fitter, path);
 }
 
@@ -521,42 +516,39 @@ static ritz_status find_smallest(fit_run *f, const model *full,
         RITZ_CHECK(ritz_container_write_reduced(run->output, &reduced,
                                                 cli_stamp(run)));
     }
-    return f->given->report ? cli_save(run, f->given->report) : RITZ_OK;
+    return f->given->report ? cli_table_save(&run->said, f->given->report)
+                            : RITZ_OK;
 }
 
-static ritz_status fit_component(fit_run *f)
+/* Read a component or, into @p scene, a scene, and prepare the search. */
+static ritz_status fit_input(fit_run *f, ritz_scene *scene)
 {
     const char *path = f->run->operand[0];
     const fit_options *given = f->given;
+    const bool component = ritz_container_is(path);
     RITZ_OWN(ritz_fitter) *fitter = NULL;
     RITZ_OWN(model) full = {0};
 
-    RITZ_REFUSE_IF(given->prefix, RITZ_ERR_ARGUMENT,
-                   "'%s' is a component: --components is for scenes", path);
-    RITZ_CHECK(model_read(f->run, path, MODEL_COMPONENT, &full));
-    RITZ_CHECK_IN(path, model_tune(&full, &given->damper));
-    RITZ_CHECK(foresee_files(f));
-    RITZ_CHECK_IN(path,
-                  ritz_fitter_new(&full.component, &given->request, &fitter));
-    return end_search(f, find_smallest(f, &full, fitter));
-}
-
-static ritz_status fit_scene(fit_run *f, ritz_scene *scene)
-{
-    const char *path = f->run->operand[0];
-    const fit_options *given = f->given;
-    RITZ_OWN(ritz_fitter) *fitter = NULL;
-
-    RITZ_REFUSE_IF(
-        given->damper.count > 0 || given->request.attach, RITZ_ERR_ARGUMENT,
-        "'%s' is a scene: --damper and --attach are for components", path);
-    RITZ_CHECK(model_scene(f->run, path, scene));
-    f->scene = scene;
+    if (component) {
+        RITZ_REFUSE_IF(given->prefix, RITZ_ERR_ARGUMENT,
+                       "'%s' is a component: --components is for scenes", path);
+        RITZ_CHECK(model_read(f->run, path, MODEL_COMPONENT, &full));
+        RITZ_CHECK_IN(path, model_tune(&full, &given->damper));
+    } else {
+        RITZ_REFUSE_IF(
+            given->damper.count > 0 || given->request.attach, RITZ_ERR_ARGUMENT,
+            "'%s' is a scene: --damper and --attach are for components", path);
+        RITZ_CHECK(model_scene(f->run, path, scene));
+        f->scene = scene;
+    }
     RITZ_CHECK(foresee_files(f));
     if (*scene->name)
         snprintf(f->subject, sizeof f->subject, "%s", scene->name);
-    RITZ_CHECK_IN(path, ritz_fitter_scene(scene, &given->request, &fitter));
-    return end_search(f, find_smallest(f, NULL, fitter));
+    RITZ_CHECK_IN(
+        path, component
+                  ? ritz_fitter_new(&full.component, &given->request, &fitter)
+                  : ritz_fitter_scene(scene, &given->request, &fitter));
+    return end_search(f, find_smallest(f, component ? &full : NULL, fitter));
 }
 
 ritz_status fit_search(cli_run *run, fit_options *given)
@@ -566,6 +558,7 @@ ritz_status fit_search(cli_run *run, fit_options *given)
     fit_run f = {.run = run, .given = given};
     const char *slash = strrchr(*run->operand, '/');
 
+    take_options(run->program, given);
     given->request.observe = observe_candidate;
     given->request.thorough = given->all;
     given->request.context = &f;
@@ -578,8 +571,7 @@ ritz_status fit_search(cli_run *run, fit_options *given)
         RITZ_CHECK_IN("--damping",
                       ritz_damping_parse(given->damping,
                                          &given->request.tolerance.damping));
-    status = ritz_container_is(run->operand[0]) ? fit_component(&f)
-                                                : fit_scene(&f, &scene);
+    status = fit_input(&f, &scene);
     free(f.there);
     return status;
 }

@@ -55,8 +55,7 @@ static void say_removed(cli_run *run, const ritz_import_report *report)
 
     if (count > 0)
         sink_part(run, "%ld rows empty in stiffness and mass removed: ", count);
-    sink_list(run, "removed");
-    for (int64_t k = 0; k < count; k++) {
+    SINK_EACH(run, "removed", k, count) {
         char name[RITZ_DOF_NAME_SIZE];
 
         ritz_dof_name(report->removed[k], name);
@@ -64,7 +63,6 @@ static void say_removed(cli_run *run, const ritz_import_report *report)
         if (k < SHOWN)
             sink_part(run, "%s%s", k > 0 ? ", " : "", name);
     }
-    sink_end(run);
     if (count > 0)
         cli_say(run, "%s", count > SHOWN ? ", ..." : "");
 }
@@ -76,14 +74,12 @@ static void list_constraints(cli_run *run, const ritz_import_report *report,
     enum { SHOWN = 6 };
 
     text[0] = '\0';
-    sink_list(run, "constraints");
-    for (int64_t k = 0; k < report->num_constraints; k++) {
+    SINK_EACH(run, "constraints", k, report->num_constraints) {
         sink_add(run, "%s", report->constraint[k]);
         if (k < SHOWN)
             sink_append(text, size, "%s%s", k > 0 ? ", " : "",
                         report->constraint[k]);
     }
-    sink_end(run);
     if (report->num_constraints > SHOWN)
         sink_append(text, size, ", ...");
 }
@@ -117,8 +113,6 @@ static void say_constraints(cli_run *run, const ritz_import_report *report)
 static void say_import(cli_run *run, const ritz_component *component,
                        const ritz_import_report *done)
 {
-    cli_say(run, "%s:", run->output);
-    describe_component(run, component);
     sink_say(run, "map", "  rows named by  %s", done->map);
     say_removed(run, done);
     say_constraints(run, done);
@@ -165,21 +159,20 @@ static void take_lists(import_options *lists)
     request->damper = lists->damper.text;
 }
 
-ritz_status import_component(cli_run *run, import_options *given)
+static ritz_status import_component(cli_run *run, import_options *given)
 {
     ritz_import_request *request = &given->request;
     RITZ_OWN(ritz_file_sums) sums = {0};
-    RITZ_OWN(ritz_component) component = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_COMPONENT};
     RITZ_OWN(ritz_import_report) done = {0};
 
     take_lists(given);
     RITZ_CHECK(take_inputs(run, request));
     request->sums = &sums;
-    RITZ_CHECK(ritz_import(request, &component, &done));
+    RITZ_CHECK(ritz_import(request, &made.component, &done));
     RITZ_CHECK(take_sums(run, &sums));
-    RITZ_CHECK(ritz_container_write_component(run->output, &component,
-                                              cli_stamp(run)));
-    say_import(run, &component, &done);
+    RITZ_CHECK(describe_output(run, &made));
+    say_import(run, &made.component, &done);
     return RITZ_OK;
 }
 
@@ -194,19 +187,62 @@ static ritz_status take_space_inputs(cli_run *run, const char *matrices)
     return RITZ_OK;
 }
 
-ritz_status import_states(cli_run *run, ritz_import_space_request *request)
+static ritz_status import_states(cli_run *run,
+                                 ritz_import_space_request *request)
 {
-    RITZ_OWN(ritz_state_space) space = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_STATES};
     RITZ_OWN(ritz_file_sums) sums = {0};
 
     RITZ_CHECK(take_space_inputs(run, request->matrices));
     request->sums = &sums;
-    RITZ_CHECK_IN("--state-space", ritz_import_state_space(request, &space));
+    RITZ_CHECK_IN("--state-space",
+                  ritz_import_state_space(request, &made.states));
     RITZ_CHECK(take_sums(run, &sums));
-    RITZ_CHECK(
-        ritz_container_write_state_space(run->output, &space, cli_stamp(run)));
-    cli_say(run, "%s:", run->output);
-    RITZ_CHECK(describe_states(run, &space));
-    cli_record(run, "import", space.A.nrow);
+    RITZ_CHECK(describe_output(run, &made));
+    cli_record(run, "import", made.states.A.nrow);
     return RITZ_OK;
+}
+
+/* Whether the command line gave this flag, text or list. */
+static bool is_given(const cli_option *option)
+{
+    return (option->kind == CLI_KIND_FLAG && *option->to.flag) ||
+           (option->kind == CLI_KIND_TEXT && *option->to.text) ||
+           (option->kind == CLI_KIND_LIST && option->to.list->count > 0);
+}
+
+/* A state space has neither rows with names nor ports. */
+static void refuse_others(const cli_program *program)
+{
+    static const char *const own[] = {"state-space", "input-names",
+                                      "output-names", "units"};
+
+    for (const cli_option *o = program->options; o->kind != CLI_KIND_END; o++) {
+        bool other = is_given(o);
+
+        for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+            other = other && strcmp(o->name, own[k]) != 0;
+        if (other)
+            cli_refuse(program,
+                       "--state-space is a whole model, --%s is not for it",
+                       o->name);
+    }
+}
+
+ritz_status import_run(cli_run *run, import_options *given)
+{
+    const cli_program *program = run->program;
+
+    if (given->space.matrices) {
+        refuse_others(program);
+        given->space.units = given->request.units;
+        return import_states(run, &given->space);
+    }
+    if (given->space.inputs || given->space.outputs)
+        cli_refuse(program, "--input-names and --output-names are for "
+                            "--state-space");
+    if (!given->request.stiffness && !given->request.mass)
+        cli_refuse(program, "nothing to import: name --stiffness, --mass or "
+                            "both, or --state-space");
+    return import_component(run, given);
 }

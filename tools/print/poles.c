@@ -57,8 +57,7 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
     else
         cli_say(run, "%5s %13s %13s %12s %13s %13s %9s", "", "|s|/2pi Hz",
                 "|s| rad/s", "zeta %", "Re s", "Im s", "residual");
-    sink_list(run, "poles");
-    for (int64_t j = 0; j < spectrum->count; j++) {
+    SINK_EACH(run, "poles", j, spectrum->count) {
         double _Complex s = spectrum->s[j];
         double zeta = ritz_spectrum_ratio(s);
 
@@ -76,7 +75,6 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
                     note_of(s));
         sink_end(run);
     }
-    sink_end(run);
     sink_set(run, "zero,engine", "%ld %s", spectrum->num_zero,
              spectrum->engine);
     if (spectrum->num_zero > 0 && !tsv)
@@ -88,12 +86,9 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
 /* A table, and the best constant. */
 static void say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
 {
-    const json_t *scanned = NULL;
-
     cli_say(run, tsv ? "%s\t%s\t%s" : "%13s %13s %12s", "c",
             tsv ? "hertz" : "|s|/2pi Hz", tsv ? "zeta" : "zeta %");
-    sink_list(run, "scan");
-    for (int64_t k = 0; k < scan->count; k++) {
+    SINK_EACH(run, "scan", k, scan->count) {
         double hertz = hertz_of(scan->s[k]);
         double zeta = ritz_spectrum_ratio(scan->s[k]);
 
@@ -106,10 +101,9 @@ static void say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
                      100.0 * zeta, k == scan->best ? "  best" : "");
         sink_end(run);
     }
-    scanned = sink_here(run);
-    sink_end(run);
     json_object_set(run->report, "best",
-                    json_array_get(scanned, (size_t)scan->best));
+                    json_array_get(json_object_get(run->report, "scan"),
+                                   (size_t)scan->best));
     if (scan->best == 0 || scan->best == scan->count - 1)
         cli_warn(run, "the best c, %g, is at an end of the range",
                  scan->c[scan->best]);
@@ -185,7 +179,7 @@ static ritz_status find_poles(cli_run *run, const model *m,
                               const poles_options *given)
 {
     RITZ_OWN(ritz_spectrum) found = {0};
-    bool by_hertz = !isnan(given->up_to_hz);
+    bool by_hertz = given->up_to_hz > 0.0;
     double limit = 2.0 * RITZ_PI * given->up_to_hz * (1.0 + 1e-9);
     ritz_span span = {.modes = given->modes > 0 ? given->modes : SOME_MODES};
 
@@ -231,5 +225,5 @@ ritz_status poles_report(cli_run *run, const poles_options *given)
         say_damping(run, &m);
     RITZ_CHECK_IN(path, given->scan ? scan_dampers(run, &m, given)
                                     : find_poles(run, &m, given));
-    return run->output ? cli_save(run, run->output) : RITZ_OK;
+    return run->output ? cli_table_save(&run->said, run->output) : RITZ_OK;
 }

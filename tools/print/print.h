@@ -1,6 +1,6 @@
 /*
  * What each tool does once its command line is read: the main fills the
- * options, NULL or NaN where one was not given, and one function reads,
+ * options, NULL, 0 or NaN where one was not given, and one function reads,
  * computes, writes and reports. What several tools report follows at the end.
  */
 #ifndef RITZ_TOOLS_PRINT_PRINT_H
@@ -14,6 +14,7 @@
 #include <ritz/export.h>
 #include <ritz/fit.h>
 #include <ritz/import.h>
+#include <ritz/ranking.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -100,9 +101,6 @@ typedef struct fit_options {
     int64_t order; /* at which --all compares; 0: that of the result */
 } fit_options;
 
-/** Take words of the command line into the request, or end the program. */
-void fit_take(const cli_program *program, fit_options *given);
-
 /** Search, report, record every candidate, and write the smallest model. */
 ritz_status fit_search(cli_run *run, fit_options *given);
 
@@ -116,7 +114,7 @@ typedef struct loop_options {
 
 typedef struct response_options {
     double from_hz, to_hz, up_to_hz;
-    double tolerance; /* between points; NaN: a grid is enough */
+    double tolerance; /* between points; 0: a grid is enough */
     int64_t points;
     const char *method;    /* "auto", or a name of the table */
     const char *points_of; /* another response */
@@ -129,42 +127,8 @@ typedef struct response_options {
 /** Print the table of methods. */
 void responses_list(void);
 
-/** End the program if there is no such method. */
-void responses_check(const cli_program *program, const response_options *given);
-
 /** Compute the response, and report what other options ask for. */
 ritz_status responses_run(cli_run *run, const response_options *given);
-
-/** Options of a loop that exclude each other end the program. */
-void loops_check(const cli_program *program, const loop_options *given);
-
-/* A model made ready to respond, and the loop that is closed around it. */
-typedef struct loop_run {
-    ritz_responder *plant;
-    model controller;
-    ritz_loop loop;
-    ritz_responder *inner;  /* of the controller */
-    ritz_responder *closed; /* of both; NULL: there is no controller */
-} loop_run;
-
-/** Read the controller, before anything is said; nothing if there is none. */
-ritz_status loops_read(cli_run *run, const loop_options *given, loop_run *out);
-
-/**
- * Close the loop around a plant that is ready for a range, say whether it is
- * stable, and refuse an unstable one without --force; nothing if there is no
- * controller.
- *
- * @param[in] m  the model of the plant
- */
-ritz_status loops_close(cli_run *run, const loop_options *given, const model *m,
-                        const double range_hz[2], loop_run *out);
-
-/** Margins of a loop at the points of a response; nothing if there is none. */
-ritz_status loops_report(cli_run *run, const loop_run *loop,
-                         const ritz_response *response);
-
-void loop_run_free(loop_run *loop);
 
 /* --- ritz-import ---------------------------------------------------------- */
 
@@ -175,11 +139,8 @@ typedef struct import_options {
     ritz_import_space_request space;
 } import_options;
 
-/** Matrices and geometry become a component. */
-ritz_status import_component(cli_run *run, import_options *given);
-
-/** Matrices of a first-order model become a state space. */
-ritz_status import_states(cli_run *run, ritz_import_space_request *request);
+/** Matrices and geometry become a component, or matrices a state space. */
+ritz_status import_run(cli_run *run, import_options *given);
 
 /* --- ritz-poles ----------------------------------------------------------- */
 
@@ -194,10 +155,107 @@ typedef struct poles_options {
 /** Poles of a model, or one of them through a range of dampers. */
 ritz_status poles_report(cli_run *run, const poles_options *given);
 
+/* --- ritz-rank ------------------------------------------------------------ */
+
+/* Rankings of one kind over configurations, and the largest of each mode. */
+typedef struct ranked {
+    ritz_rankings all;
+    ritz_ranking largest;   /* of several configurations; else empty */
+    int64_t *where, *track; /* of the modes of the largest */
+} ranked;
+
+/** One ranking that stands for all: the largest, or the only one. */
+const ritz_ranking *ranked_whole(const ranked *group);
+int64_t *ranked_track(const ranked *group);
+
+/** Numbers of the modes of the k-th ranking; NULL: their index. */
+int64_t *ranked_numbers(const ritz_rankings *all, int64_t k);
+
+void ranked_free(ranked *group);
+
+/**
+ * Best first: mode, frequency, damping, cluster, value, share, parts, exact
+ * values and what a Hankel value differs by; at most @p most lines. Of a ranking
+ * without modes its exact values, each with the bound of cutting there.
+ *
+ * @param[in] track  numbers of modes; NULL: their index
+ */
+void rankings_say(const cli_run *run, const ritz_ranking *ranking,
+                  const int64_t *track, int64_t most);
+
+/** The largest over configurations, where it stands, and places at each. */
+void rankings_say_largest(const cli_run *run, const ranked *group);
+
+/** by, at, damping, order, values and all else, in the object that is open, or
+ * as an item of the list that is. */
+void rankings_set(cli_run *run, const ritz_ranking *ranking,
+                  const int64_t *track);
+
+/** Say and report that modes couple, of all of a group the worst. */
+void rankings_warn(cli_run *run, const ranked *group);
+
+/** Damping of a ranking: "modal 0.002", "of the matrices" or "none". */
+const char *rankings_damping(const ritz_ranking *ranking);
+
+void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
+                          const ritz_reweighing *found, int64_t keep);
+
+/* Several rankings of one set of modes, with names of what they differ by. */
+typedef struct contest {
+    int64_t count;
+    const ritz_ranking **ranking;
+    int64_t **track;
+    char (*name)[2 * RITZ_NAME_SIZE];
+    bool chain; /* each against the one before, not against the first */
+} contest;
+
+/* A group for each ranking and each damping, or for each file. */
+typedef struct rank_result {
+    int64_t count;
+    ranked *group;
+    char (*file)[RITZ_NAME_SIZE]; /* of groups that were read; else NULL */
+} rank_result;
+
+void rank_result_free(rank_result *result);
+
+/**
+ * Rankings to be compared: of several groups the whole of each, of a single one
+ * its configurations in a row; with @p all every ranking there is.
+ */
+ritz_status contest_new(const rank_result *result, bool all, contest *out);
+void contest_free(contest *all);
+
+/** Compare them: places, correlations, overlaps, what comes and goes. */
+ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top);
+
+/** All rankings as one table with tabs. */
+ritz_status rankings_write_table(const char *path, const contest *all);
+
+enum { RANK_MOST = 16 };
+
+/* Options of ritz-rank; NULL: not given. */
+typedef struct rank_options {
+    int64_t num_rankers;
+    const ritz_ranker *ranker[RANK_MOST];
+    cli_list damping;
+    const char *by, *engine, *among; /* words */
+    const char *at, *input_weights, *output_weights, *tracks, *table, *chart;
+    double band_hz[2]; /* [0, 0]: the model's */
+    int64_t keep, top; /* keep 0: weights stay */
+    int64_t order;     /* columns of a nested component; 0: all */
+    bool compare;
+    ritz_status (*draw)(const char *path, const char *title, const contest *all,
+                        int64_t most); /* for `chart` */
+    ritz_choice choice;                /* of a component's Gramians */
+} rank_options;
+
+/** Rank what the operand holds, or read rankings of --compare, and report. */
+ritz_status rank_run(cli_run *run, rank_options *given);
+
 /* --- ritz-simulate -------------------------------------------------------- */
 
 typedef struct simulation_options {
-    const char *method, *hold; /* words that simulation_take reads */
+    const char *method, *hold; /* words of the command line */
     const ritz_integrator *integrator;
     const char *initial; /* "mode:K*A" or a file; NULL: at rest */
     double seconds, step, accuracy, rho, up_to_hz;
@@ -208,12 +266,8 @@ typedef struct simulation_options {
     model_options model;
 } simulation_options;
 
-/** Take words of the command line, and refuse what makes no sense whatever the
- * model is. */
-void simulation_take(const cli_run *run, simulation_options *given);
-
 /** Compute the response, if there is an output, and costs, if asked for. */
-ritz_status simulation_run(cli_run *run, const simulation_options *given);
+ritz_status simulation_run(cli_run *run, simulation_options *given);
 
 /* --- ritz-verify ---------------------------------------------------------- */
 
@@ -231,14 +285,15 @@ ritz_status verify_run(cli_run *run, verify_options *given);
 
 /* --- ritz-info, and the tools that write what it describes ---------------- */
 
-/* Each says it in lines, whose values go to the object that is open. */
-void describe_component(cli_run *run, const ritz_component *component);
-void describe_basis(cli_run *run, const ritz_basis *basis);
-ritz_status describe_reduced(cli_run *run, const ritz_reduced *reduced);
-ritz_status describe_system(cli_run *run, const ritz_system *system);
-void describe_response(cli_run *run, const ritz_response *response);
-void describe_simulation(cli_run *run, const ritz_simulation *simulation);
-ritz_status describe_states(cli_run *run, const ritz_state_space *states);
+/* describe_component(run, &component), ...: each says it in lines, whose values
+   go to the object that is open. */
+#define DESCRIBE_ONE(KIND, type, member, name, noun)                           \
+    ritz_status describe_##member(cli_run *run, const ritz_##type *object);
+MODEL_EACH_KIND(DESCRIBE_ONE)
+#undef DESCRIBE_ONE
+
+/** Write an object of any kind as the output, and describe it. */
+ritz_status describe_output(cli_run *run, const model *m);
 
 /**
  * A container, a matrix file or a deck, and how it was made.

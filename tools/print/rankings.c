@@ -1,6 +1,4 @@
-#include "print/rankings.h"
-
-#include "base/alloc.h"
+#include "print/print.h"
 
 /* Above this share of one mode in another's Gramian, Gregory's assumption of
  * modes that do not couple costs several percent. */
@@ -12,8 +10,10 @@ static const double invisible = 1e-12;
 /* Only values above this part of the largest count in the sentence about the
    largest difference. */
 static const double significant = 1e-6;
+/* Frequencies of one mode in two rankings of one model agree to rounding. */
+static const double same_frequency = 1e-3;
 
-enum { MOST_PARTS = 6, CELL = 48 };
+enum { MOST_PARTS = 6, CELL = 48, MOST_COLUMNS = 10, LIST = 1024 };
 
 const ritz_ranking *ranked_whole(const ranked *group)
 {
@@ -87,7 +87,9 @@ const char *rankings_damping(const ritz_ranking *r)
     return r->count > 0 && !(r->zeta[0] > 0.0) ? "none" : "of the matrices";
 }
 
-double rankings_difference(const ritz_ranking *r)
+/* Largest relative difference between values and exact ones; NaN if they are no
+   Hankel values. */
+static double difference_of(const ritz_ranking *r)
 {
     double worst = nan("");
     double largest = r->count > 0 ? exact_at(r, 0) : nan("");
@@ -170,9 +172,24 @@ static void say_sums(const cli_run *run, const ritz_ranking *r)
     cli_say(run, "%4s %52s %13s%s", "sum", "", "", parts);
 }
 
+/* Exact values alone, with the bound of cutting there. */
+static void say_values(const cli_run *run, const ritz_ranking *r, int64_t most)
+{
+    cli_say(run, "%6s %15s %15s", "order", "Hankel value", "bound if cut");
+    for (int64_t k = 0; k < r->num_system && k < most; k++)
+        cli_say(run, "%6ld %15.7e %15.7e", k + 1, r->system_value[k],
+                ritz_hankel_bound(r->num_system, r->system_value, k + 1));
+    if (r->num_system > most)
+        cli_say(run, "       and %ld more", (r->num_system - most));
+}
+
 void rankings_say(const cli_run *run, const ritz_ranking *r,
                   const int64_t *track, int64_t most)
 {
+    if (r->count == 0 && r->num_system > 0) {
+        say_values(run, r, most);
+        return;
+    }
     say_heads(run, r);
     for (int64_t k = 0; k < r->count && k < most; k++)
         say_line(run, r, track, k);
@@ -184,12 +201,14 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
         cli_say(run, "all values add up to %.9g", r->total);
 }
 
-void rankings_say_place(const cli_run *run, const ritz_ranking *r,
-                        const int64_t *track, int64_t number, int width)
+/* " 3", the place of the mode with that number, as part of a line, or " -" if
+   it is not there, in so many letters. */
+static void say_place(const cli_run *run, const ritz_ranking *r,
+                      const int64_t *track, int64_t number, int width)
 {
     int64_t k = 0;
 
-    while (k < r->count && number_of(track, r->order[k]) != number + 1)
+    while (k < r->count && number_of(track, r->order[k]) != number)
         k++;
     if (k < r->count)
         sink_part(run, " %*ld", width, k + 1);
@@ -199,7 +218,7 @@ void rankings_say_place(const cli_run *run, const ritz_ranking *r,
 
 void rankings_say_largest(const cli_run *run, const ranked *group)
 {
-    enum { MOST_COLUMNS = 24 };
+    enum { MOST_PLACES = 24 };
     const ritz_rankings *all = &group->all;
     const ritz_ranking *r = &group->largest;
     char cluster[CELL];
@@ -218,22 +237,11 @@ void rankings_say_largest(const cli_run *run, const ranked *group)
         sink_part(run, "%4ld %6ld %14.7g %7s %13.5e  %-24s ", k + 1,
                   number_of(group->track, mode), r->hertz[mode], cluster,
                   r->value[mode], all->item[group->where[mode]].at);
-        for (int64_t c = 0; c < all->count && all->count <= MOST_COLUMNS; c++)
-            rankings_say_place(run, &all->item[c], ranked_numbers(all, c),
-                               group->track[mode], 3);
+        for (int64_t c = 0; c < all->count && all->count <= MOST_PLACES; c++)
+            say_place(run, &all->item[c], ranked_numbers(all, c),
+                      number_of(group->track, mode), 3);
         cli_say(run, "%s", "");
     }
-}
-
-void rankings_say_values(const cli_run *run, const ritz_ranking *r,
-                         int64_t most)
-{
-    cli_say(run, "%6s %15s %15s", "order", "Hankel value", "bound if cut");
-    for (int64_t k = 0; k < r->num_system && k < most; k++)
-        cli_say(run, "%6ld %15.7e %15.7e", k + 1, r->system_value[k],
-                ritz_hankel_bound(r->num_system, r->system_value, k + 1));
-    if (r->num_system > most)
-        cli_say(run, "       and %ld more", (r->num_system - most));
 }
 
 void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
@@ -244,15 +252,15 @@ void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
         sink_object(run, NULL);
     sink_set(run, "by,at,damping,total,coupling,difference",
              "%s %s %s %g %g %g", r->by, r->at, r->damping, r->total,
-             r->coupling, rankings_difference(r));
-    sink_numbers(run, "order", r->count, r->order);
+             r->coupling, difference_of(r));
+    sink_wholes(run, "order", r->count, r->order, 1);
     sink_reals(run, "frequencies_hz", r->count, r->hertz);
     sink_reals(run, "zeta", r->count, r->zeta);
     sink_reals(run, "values", r->count, r->value);
-    sink_numbers(run, "clusters", r->count, r->cluster);
+    sink_wholes(run, "clusters", r->count, r->cluster, 1);
     sink_reals(run, "system_values", r->num_system, r->system_value);
     if (track)
-        sink_numbers(run, "tracks", r->count, track);
+        sink_wholes(run, "tracks", r->count, track, 1);
     for (int64_t j = 0; j < r->num_parts; j++) {
         sink_list(run, "parts");
         sink_object(run, NULL);
@@ -266,33 +274,26 @@ void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
 }
 
 /* Every ranking; the object that is open has the keys of the first too. */
-void rankings_describe(cli_run *run, const ritz_rankings *all)
+ritz_status describe_rankings(cli_run *run, const ritz_rankings *all)
 {
-    const json_t *first = NULL;
-
-    sink_set(run, "kind", "%s", "ranking");
     cli_say(run, "  %-14s %ld ranking%s", "kind", all->count,
             all->count == 1 ? "" : "s");
-    sink_list(run, "rankings");
-    for (int64_t k = 0; k < all->count; k++) {
+    SINK_EACH(run, "rankings", k, all->count) {
         const ritz_ranking *r = &all->item[k];
         const int64_t *track = ranked_numbers(all, k);
 
         cli_say(run, "  %-14s of %ld flexible modes by %s [%s]%s%s, damping %s",
                 "ranking", r->count, r->by, r->reference, *r->at ? ", at " : "",
                 r->at, rankings_damping(r));
-        if (r->count > 0)
-            rankings_say(run, r, track, INT64_MAX);
-        else
-            rankings_say_values(run, r, INT64_MAX);
+        rankings_say(run, r, track, INT64_MAX);
         rankings_set(run, r, track);
     }
-    first = json_array_get(sink_here(run), 0);
-    sink_end(run);
-    if (first) {
-        sink_lift(run, first);
+    if (all->count > 0) {
+        sink_lift(run, json_array_get(
+                           json_object_get(sink_here(run), "rankings"), 0));
         sink_set(run, "modes", "%ld", all->item[0].count);
     }
+    return RITZ_OK;
 }
 
 void rankings_warn(cli_run *run, const ranked *group)
@@ -303,7 +304,7 @@ void rankings_warn(cli_run *run, const ranked *group)
     for (int64_t k = 0; k < group->all.count; k++) {
         const ritz_ranking *r = &group->all.item[k];
 
-        differs = fmax(differs, rankings_difference(r));
+        differs = fmax(differs, difference_of(r));
         if (!isnan(r->coupling) && (!worst || r->coupling > worst->coupling))
             worst = r;
     }
@@ -326,12 +327,12 @@ void rankings_warn(cli_run *run, const ranked *group)
              *worst->at ? " at " : "", worst->at);
 }
 
-void rankings_list_modes(int64_t count, const int64_t *mode, size_t size,
-                         char *out)
+/* "1 2 5" of indices of modes, or "none". */
+static void list_modes(int64_t count, const int64_t *mode, char out[LIST])
 {
-    snprintf(out, size, "%s", count > 0 ? "" : "none");
+    snprintf(out, LIST, "%s", count > 0 ? "" : "none");
     for (int64_t k = 0; k < count; k++)
-        sink_append(out, size, "%s%ld", k > 0 ? " " : "", mode[k] + 1);
+        sink_append(out, LIST, "%s%ld", k > 0 ? " " : "", mode[k] + 1);
 }
 
 static const char *outcome_of(const ritz_reweighing *found, char out[128])
@@ -350,10 +351,10 @@ static const char *outcome_of(const ritz_reweighing *found, char out[128])
 void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
                           const ritz_reweighing *found, int64_t keep)
 {
-    char kept[1024], other[1024], outcome[128];
+    char kept[LIST], other[LIST], outcome[128];
 
-    rankings_list_modes(found->num_kept, found->kept, sizeof kept, kept);
-    rankings_list_modes(found->num_other, found->other, sizeof other, other);
+    list_modes(found->num_kept, found->kept, kept);
+    list_modes(found->num_other, found->other, other);
     sink_object(run, "reweighting");
     sink_say(run, "keep", "\nReweighting outputs for %ld modes %s: modes %s.",
              keep, outcome_of(found, outcome), kept);
@@ -371,11 +372,278 @@ void rankings_say_weights(cli_run *run, const ritz_rank_request *request,
                  outcome, keep,
                  found->num_other > 0 ? ", others would keep modes " : "",
                  found->num_other > 0 ? other : "");
-    sink_numbers(run, "kept", found->num_kept, found->kept);
-    sink_numbers(run, "other", found->num_other, found->other);
+    sink_wholes(run, "kept", found->num_kept, found->kept, 1);
+    sink_wholes(run, "other", found->num_other, found->other, 1);
     sink_set(run, "rounds,period", "%ld %ld", found->rounds, found->period);
     sink_reals(run, "weights", found->num_outputs, found->weight);
     sink_reals(run, "costs", found->num_outputs, found->cost);
     sink_reals(run, "missed", found->num_outputs, found->missed);
     sink_end(run);
+}
+
+/* --- several side by side: correlations, overlaps, what swaps ------------- */
+
+static void add_ranking(const ritz_ranking *ranking, int64_t *track,
+                        const char *file, contest *out)
+{
+    out->ranking[out->count] = ranking;
+    out->track[out->count] = track;
+    snprintf(out->name[out->count++], sizeof *out->name, "%s", file);
+}
+
+/* " word", if there is one. */
+static void append_word(const char *word, char *name, size_t size)
+{
+    if (*word)
+        sink_append(name, size, "%s%.60s", *name ? " " : "", word);
+}
+
+/* True if the text `offset` bytes into a ranking differs among them. */
+static bool text_varies(const contest *c, size_t offset)
+{
+    for (int64_t k = 1; k < c->count; k++)
+        if (strcmp((const char *)c->ranking[k] + offset,
+                   (const char *)c->ranking[0] + offset) != 0)
+            return true;
+    return false;
+}
+
+/* By what differs; where nothing does, by ranking and number. */
+static void name_all(contest *c)
+{
+    static const size_t part[] = {offsetof(ritz_ranking, at),
+                                  offsetof(ritz_ranking, by),
+                                  offsetof(ritz_ranking, damping)};
+    size_t size = sizeof *c->name;
+
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++)
+        for (int64_t k = 0; text_varies(c, part[i]) && k < c->count; k++)
+            append_word((const char *)c->ranking[k] + part[i], c->name[k],
+                        size);
+    for (int64_t k = 0; k < c->count; k++)
+        if (!*c->name[k])
+            append_word(c->ranking[k]->by, c->name[k], size);
+}
+
+ritz_status contest_new(const rank_result *result, bool all, contest *out)
+{
+    RITZ_OWN(contest) c = {0};
+    int64_t count = 1;
+    bool files = result->file != NULL;
+    bool one = result->count == 1;
+
+    for (int64_t g = 0; g < result->count; g++)
+        count += result->group[g].all.count;
+    c.ranking = ritz_zalloc(count, sizeof(void *));
+    if (!c.ranking)
+        return RITZ_ERR_MEMORY;
+    RITZ_CHECK_NEW(c.track, count);
+    RITZ_CHECK_NEW(c.name, count);
+    for (int64_t g = 0; g < result->count; g++) {
+        const ranked *group = &result->group[g];
+
+        if (!all && !files && !one) {
+            add_ranking(ranked_whole(group), ranked_track(group), "", &c);
+            continue;
+        }
+        for (int64_t k = 0; k < group->all.count; k++)
+            add_ranking(&group->all.item[k], ranked_numbers(&group->all, k),
+                        files && !one ? result->file[g] : "", &c);
+    }
+    c.chain = one && !files;
+    name_all(&c);
+    RITZ_MOVE(*out, c);
+    return RITZ_OK;
+}
+
+void contest_free(contest *all)
+{
+    RITZ_FREE(all->ranking, all->track, all->name);
+    *all = (contest){0};
+}
+
+static void say_names(cli_run *run, const contest *all)
+{
+    cli_say(run, "\nRankings compared:");
+    for (int64_t k = 0; k < all->count; k++)
+        cli_say(run, "  %c  %s", (int)('A' + k % 26), all->name[k]);
+}
+
+/* Modes in the order of the first ranking, and their places in all. */
+static void say_places(cli_run *run, const contest *all, int64_t most)
+{
+    const ritz_ranking *r = all->ranking[0];
+
+    if (all->count > MOST_COLUMNS)
+        return;
+    sink_part(run, "%6s %14s  ", all->track[0] ? "track" : "mode", "Hz");
+    for (int64_t c = 0; c < all->count; c++)
+        sink_part(run, " %5c", (int)('A' + c));
+    cli_say(run, "%s", "");
+    for (int64_t k = 0; k < r->count && k < most; k++) {
+        int64_t number = number_of(all->track[0], r->order[k]);
+
+        sink_part(run, "%6ld %14.7g  ", number, r->hertz[r->order[k]]);
+        for (int64_t c = 0; c < all->count; c++)
+            say_place(run, all->ranking[c], all->track[c], number, 5);
+        cli_say(run, "%s", "");
+    }
+    if (r->count > most)
+        cli_say(run, "       and %ld more", (r->count - most));
+}
+
+static void say_pair(cli_run *run, const contest *all, int64_t a, int64_t b,
+                     const ritz_agreement *g)
+{
+    char text[LIST] = "", left[LIST], entered[LIST];
+
+    sink_object(run, NULL);
+    SINK_EACH(run, "overlap", k, g->num_overlaps) {
+        sink_set(run, "k,share", "%ld %g", g->overlap[k].k,
+                 g->overlap[k].share);
+        sink_append(text, sizeof text, "%s%ld: %.0f%%", k > 0 ? ", " : "",
+                    g->overlap[k].k, 100.0 * g->overlap[k].share);
+    }
+    sink_say(run, "from,to", "%s to %s:", all->name[a], all->name[b]);
+    sink_say(run, "spearman,kendall,modes",
+             "  rank correlation: Spearman %.4f, Kendall %.4f, of %ld modes",
+             g->spearman, g->kendall, g->common);
+    if (g->alone[0] + g->alone[1] > 0)
+        cli_say(run,
+                "  %ld modes of the first and %ld of the second are not "
+                "in the other",
+                g->alone[0], g->alone[1]);
+    cli_say(run, "  the first k in common, %s", text);
+    list_modes(g->num_left, g->left, left);
+    list_modes(g->num_entered, g->entered, entered);
+    sink_wholes(run, "left", g->num_left, g->left, 1);
+    sink_wholes(run, "entered", g->num_entered, g->entered, 1);
+    sink_set(run, "top,top_share", "%ld %g", g->top, g->top_share);
+    if (g->num_left + g->num_entered > 0)
+        cli_say(run, "  among the first %ld: %s leave, %s enter", g->top, left,
+                entered);
+    sink_end(run);
+}
+
+/* Largest relative difference of frequencies of modes of one number. */
+static double frequency_gap(const contest *all, int64_t a, int64_t b)
+{
+    const ritz_ranking *r = all->ranking[a];
+    const ritz_ranking *s = all->ranking[b];
+    double worst = 0.0;
+
+    for (int64_t k = 0; k < r->count && k < s->count; k++)
+        worst = fmax(worst, fabs(r->hertz[k] - s->hertz[k]) /
+                                fmax(r->hertz[k], s->hertz[k]));
+    return worst;
+}
+
+/* By number alone the same modes are meant only if frequencies say so. */
+static void warn_numbers(cli_run *run, const contest *all)
+{
+    double worst = 0.0;
+
+    for (int64_t k = 1; k < all->count; k++)
+        if (!all->track[0] || !all->track[k])
+            worst = fmax(worst, frequency_gap(all, all->chain ? k - 1 : 0, k));
+    if (worst > same_frequency)
+        cli_warn(run,
+                 "modes are matched by number, and their frequencies differ by "
+                 "%.2g: --tracks follows them by their shapes",
+                 worst);
+}
+
+static ritz_status check_contest(const contest *all)
+{
+    for (int64_t k = 0; k < all->count; k++) {
+        RITZ_REFUSE_IF(all->ranking[k]->count == 0, RITZ_ERR_ARGUMENT,
+                       "'%s' has exact values and no modes: nothing to compare",
+                       all->name[k]);
+        RITZ_REFUSE_IF(!all->track[k] != !all->track[0], RITZ_ERR_ARGUMENT,
+                       "'%s' has tracks and '%s' has none: modes cannot be "
+                       "matched",
+                       all->name[all->track[k] ? k : 0],
+                       all->name[all->track[k] ? 0 : k]);
+    }
+    return RITZ_OK;
+}
+
+ritz_status rankings_compare(cli_run *run, const contest *all, int64_t top)
+{
+    sink_list(run, "comparison");
+    RITZ_CHECK(check_contest(all));
+    say_names(run, all);
+    say_places(run, all, top);
+    warn_numbers(run, all);
+    for (int64_t b = 1; b < all->count; b++) {
+        int64_t a = all->chain ? b - 1 : 0;
+        RITZ_OWN(ritz_agreement) g = {0};
+
+        RITZ_CHECK(ritz_rankings_agree(all->ranking[a], all->track[a],
+                                       all->ranking[b], all->track[b], top,
+                                       &g));
+        say_pair(run, all, a, b, &g);
+    }
+    sink_end(run);
+    return RITZ_OK;
+}
+
+/* True if all rankings are made of the same parts, which then are columns. */
+static bool share_parts(const contest *all)
+{
+    const ritz_ranking *first = all->ranking[0];
+
+    for (int64_t k = 1; k < all->count; k++) {
+        const ritz_ranking *r = all->ranking[k];
+
+        if (r->num_parts != first->num_parts)
+            return false;
+        for (int64_t j = 0; j < r->num_parts; j++)
+            if (strcmp(r->part[j], first->part[j]) != 0)
+                return false;
+    }
+    return true;
+}
+
+static void write_ranking(FILE *file, const contest *all, int64_t which,
+                          bool parts)
+{
+    const ritz_ranking *r = all->ranking[which];
+    int64_t rows = r->count > 0 ? r->count : r->num_system;
+
+    for (int64_t k = 0; k < rows; k++) {
+        int64_t mode = r->count > 0 ? r->order[k] : -1;
+
+        fprintf(file, "%s\t%s\t%s\t%ld\t", r->by, r->at, r->damping, k + 1);
+        if (mode >= 0)
+            fprintf(file, "%ld\t%ld\t%ld\t%.12g\t%.6g\t%.12g", mode + 1,
+                    number_of(all->track[which], mode), r->cluster[mode] + 1,
+                    r->hertz[mode], r->zeta[mode], r->value[mode]);
+        else
+            fprintf(file, "nan\tnan\tnan\tnan\tnan\t%.12g", r->system_value[k]);
+        for (int64_t i = 2 * k; i < 2 * k + 2; i++)
+            if (mode >= 0 && i < r->num_system)
+                fprintf(file, "\t%.12g", r->system_value[i]);
+            else
+                fprintf(file, "\tnan");
+        for (int64_t j = 0; parts && j < r->num_parts; j++)
+            fprintf(file, "\t%.12g", ritz_dense_col(&r->parts, j)[mode]);
+        fprintf(file, "\n");
+    }
+}
+
+ritz_status rankings_write_table(const char *path, const contest *all)
+{
+    bool parts = share_parts(all);
+    RITZ_OWN(cli_table) table = {0};
+
+    RITZ_CHECK(cli_table_new(&table));
+    fprintf(table.file, "by\tat\tdamping\trank\tmode\ttrack\tcluster\thertz\t"
+                        "zeta\tvalue\texact_1\texact_2");
+    for (int64_t j = 0; parts && j < all->ranking[0]->num_parts; j++)
+        fprintf(table.file, "\t%s", all->ranking[0]->part[j]);
+    fprintf(table.file, "\n");
+    for (int64_t k = 0; k < all->count; k++)
+        write_ranking(table.file, all, k, parts);
+    return cli_table_save(&table, path);
 }

@@ -1,24 +1,4 @@
-#include "print/rankings.h"
-
-enum { FIELDS = 3, FIELD = 256 };
-
-/* "TRACK\tCONFIGURATION\tMODE\t..." of one line; false if it is none. */
-static bool cut_line(const char *line, char field[FIELDS][FIELD])
-{
-    for (int k = 0; k < FIELDS; k++) {
-        size_t length = strcspn(line, "\t\n");
-
-        if (length >= FIELD)
-            return false;
-        memcpy(field[k], line, length);
-        field[k][length] = '\0';
-        line += length;
-        if (*line != '\t')
-            return k == FIELDS - 1;
-        line++;
-    }
-    return true;
-}
+#include "print/print.h"
 
 /* Configuration of that name; systems without sweeps are "as joined". */
 static int64_t find_configuration(const ritz_rankings *all, const char *at)
@@ -29,24 +9,26 @@ static int64_t find_configuration(const ritz_rankings *all, const char *at)
     return -1;
 }
 
+/* "TRACK\tCONFIGURATION\tMODE\t..." of one line. */
 static ritz_status take_track(const char *line, int64_t most,
                               ritz_rankings *all)
 {
-    char field[FIELDS][FIELD];
+    char first[256], name[256], third[256];
     int64_t track = 0, mode = 0, at = -1;
 
     RITZ_REFUSE_IF(
-        !cut_line(line, field) || !ritz_text_whole(field[0], &track) ||
-            !ritz_text_whole(field[2], &mode) || track < 1 || track > most ||
-            mode < 1,
+        sscanf(line, "%255[^\t\n]%*1[\t]%255[^\t\n]%*1[\t]%255[^\t\n]", first,
+               name, third) != 3 ||
+            !ritz_text_whole(first, &track) || !ritz_text_whole(third, &mode) ||
+            track < 1 || track > most || mode < 1,
         RITZ_ERR_FORMAT, "'%.40s' is no line of a table of tracks", line);
-    at = find_configuration(all, field[1]);
+    at = find_configuration(all, name);
     if (at < 0)
         return RITZ_OK;
     RITZ_REFUSE_IF(mode > all->item[at].count, RITZ_ERR_FORMAT,
                    "mode %ld at '%s' is not there: the tracks are those of "
                    "another system",
-                   mode, field[1]);
+                   mode, name);
     all->track[at][mode - 1] = track - 1;
     return RITZ_OK;
 }
@@ -106,7 +88,8 @@ static void take_choice(const cli_program *program, const char *key,
             cli_refuse(program, "%s", ritz_error_message());
 }
 
-void rank_take(const cli_run *run, rank_options *given)
+/* Take words of the command line, or end the program. */
+static void take_options(const cli_run *run, rank_options *given)
 {
     const cli_program *program = run->program;
     const char *list = given->by;
@@ -125,7 +108,7 @@ void rank_take(const cli_run *run, rank_options *given)
         if (given->num_rankers == RANK_MOST)
             cli_refuse(program, "--by takes up to %d rankings", RANK_MOST);
         given->ranker[given->num_rankers++] =
-            cli_choose(program, "no ranking", word, ritz_rankers);
+            cli_choose(program, "ranking", word, ritz_rankers);
     }
     take_choice(program, "engine", given->engine, &given->choice);
     take_choice(program, "among_hz", given->among, &given->choice);
@@ -290,24 +273,20 @@ static void set_groups(cli_run *run, const rank_result *result)
 {
     const ranked *first = result->group;
 
-    sink_list(run, "rankings");
-    for (int64_t g = 0; g < result->count; g++) {
+    SINK_EACH(run, "rankings", g, result->count) {
         const ritz_rankings *all = &result->group[g].all;
 
         for (int64_t k = 0; k < all->count; k++)
             rankings_set(run, &all->item[k], ranked_numbers(all, k));
     }
-    sink_end(run);
     sink_object(run, "whole");
     rankings_set(run, ranked_whole(first), ranked_track(first));
     sink_end(run);
     sink_lift(run, json_object_get(run->report, "whole"));
     json_object_del(run->report, "whole");
     if (first->all.count > 1) {
-        sink_list(run, "where");
-        for (int64_t k = 0; k < first->largest.count; k++)
+        SINK_EACH(run, "where", k, first->largest.count)
             sink_add(run, "%s", first->all.item[first->where[k]].at);
-        sink_end(run);
     }
 }
 
@@ -410,7 +389,7 @@ static ritz_status rank_values(cli_run *run, const rank_options *given,
     if (gramians.residual[0] > 0.0 || gramians.residual[1] > 0.0)
         cli_say(run, "residuals of both Gramians %.1e and %.1e",
                 gramians.residual[0], gramians.residual[1]);
-    rankings_say_values(run, r, 40);
+    rankings_say(run, r, NULL, 40);
     set_groups(run, out);
     sink_set(run, "engine", "%s", gramians.engine);
     return RITZ_OK;
@@ -502,10 +481,11 @@ static ritz_status report_rankings(cli_run *run, const rank_options *given,
     return RITZ_OK;
 }
 
-ritz_status rank_run(cli_run *run, const rank_options *given)
+ritz_status rank_run(cli_run *run, rank_options *given)
 {
     RITZ_OWN(rank_result) result = {0};
 
+    take_options(run, given);
     if (given->compare)
         RITZ_CHECK(read_rankings(run, &result));
     else

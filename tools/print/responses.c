@@ -23,13 +23,20 @@ void responses_list(void)
     }
 }
 
-void responses_check(const cli_program *program, const response_options *given)
+/* End the program if options exclude each other, or there is no such method. */
+static void check_options(const cli_program *program,
+                          const response_options *given)
 {
     enum { MOST = 16 };
+    const loop_options *loop = &given->loops;
     const char *names[MOST + 1] = {"auto"};
     int64_t count = 1;
 
-    if (given->points_of && !isnan(given->tolerance))
+    if (!loop->controller && (loop->connect.count > 0 || loop->feedback ||
+                              loop->states || loop->force))
+        cli_refuse(program, "--connect, --feedback, --closed-loop and --force "
+                            "say how a loop is closed: give its --controller");
+    if (given->points_of && given->tolerance > 0.0)
         cli_refuse(program, "--points-of gives the points, --tolerance "
                             "chooses them: one of the two");
     for (int k = 0; ritz_response_engines[k] && count <= MOST; k++)
@@ -72,9 +79,8 @@ static ritz_status new_responder(cli_run *run, const model *m,
     const char *why = NULL; /* said before */
     ritz_response_request request = {
         .model = model_reference(m),
-        .up_to_hz = isnan(given->up_to_hz) ? 0.0 : given->up_to_hz,
-        .tolerance =
-            isnan(given->tolerance) ? 0.0 : engine_share * given->tolerance,
+        .up_to_hz = given->up_to_hz,
+        .tolerance = engine_share * given->tolerance,
         .from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz,
         .to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz};
 
@@ -104,9 +110,9 @@ static ritz_status place_points(const model *m, const response_options *given,
     double from = given->from_hz;
     double to = given->to_hz;
 
-    if (isnan(to) && m->kind == MODEL_SYSTEM && m->system.band_hz[1] > 0.0)
+    if (to == 0.0 && m->kind == MODEL_SYSTEM && m->system.band_hz[1] > 0.0)
         to = m->system.band_hz[1];
-    RITZ_REFUSE_IF(isnan(to), RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(to == 0.0, RITZ_ERR_ARGUMENT,
                    "the model states no band: give --to-hz");
     if (isnan(from) && m->kind == MODEL_SYSTEM && m->system.band_hz[0] > 0.0 &&
         m->system.band_hz[0] < to)
@@ -120,9 +126,9 @@ static ritz_status place_points(const model *m, const response_options *given,
                    "--log needs --from-hz above 0");
     *out = (ritz_grid){.from_hz = from,
                        .to_hz = to,
-                       .count = given->points > 0         ? given->points
-                                : isnan(given->tolerance) ? usual_points
-                                                          : first_points,
+                       .count = given->points > 0        ? given->points
+                                : given->tolerance > 0.0 ? first_points
+                                                         : usual_points,
                        .log = given->log,
                        .refine = !given->no_refine};
     return RITZ_OK;
@@ -171,7 +177,7 @@ static ritz_status find_scales(const response_options *given, const model *m,
                                const ritz_response *r, double *size,
                                ritz_scales *out)
 {
-    const double *limit = model_io(m).limit;
+    const double *limit = ritz_model_io(model_reference(m)).limit;
     bool any = false;
 
     for (int64_t j = 0; j < r->num_inputs; j++)
@@ -222,8 +228,7 @@ static ritz_status find_singular(cli_run *run, const response_options *given,
 
 static void say_zeros(cli_run *run, int64_t count, const double _Complex *zero)
 {
-    sink_list(run, "zeros");
-    for (int64_t k = 0; k < count; k++) {
+    SINK_EACH(run, "zeros", k, count) {
         double re = creal(zero[k]), im = cimag(zero[k]);
         double hertz = cabs(zero[k]) / (2.0 * RITZ_PI);
 
@@ -233,7 +238,6 @@ static void say_zeros(cli_run *run, int64_t count, const double _Complex *zero)
         cli_say(run, "  %14.7g Hz  %12.5g %s %.7g i rad/s", hertz, re,
                 im != 0.0 ? "+-" : "+", fabs(im));
     }
-    sink_end(run);
     if (count == 0)
         cli_say(run, "  none is finite");
 }
@@ -242,7 +246,7 @@ static void say_zeros(cli_run *run, int64_t count, const double _Complex *zero)
 static ritz_status find_zeros(cli_run *run, const model *m, int64_t output,
                               int64_t input)
 {
-    const ritz_io io = model_io(m);
+    const ritz_io io = ritz_model_io(model_reference(m));
     RITZ_OWN_ARRAY double _Complex *zero = NULL;
     int64_t count = 0;
     ritz_status status =
@@ -261,18 +265,16 @@ static ritz_status find_zeros(cli_run *run, const model *m, int64_t output,
 
 static ritz_status find_all_zeros(cli_run *run, const model *m)
 {
-    const ritz_io io = model_io(m);
+    const ritz_io io = ritz_model_io(model_reference(m));
 
     RITZ_REFUSE_IF(
         m->kind == MODEL_COMPONENT && !model_has_states(m), RITZ_ERR_ARGUMENT,
         "--zeros: of a component with structural damping, or of more "
         "than %d dofs, there are none to be had: reduce it",
         MODEL_MOST_DOFS);
-    sink_list(run, "zeros");
-    for (int64_t i = 0; i < io.num_outputs; i++)
+    SINK_EACH(run, "zeros", i, io.num_outputs)
         for (int64_t j = 0; j < io.num_inputs; j++)
             RITZ_CHECK(find_zeros(run, m, i, j));
-    sink_end(run);
     return RITZ_OK;
 }
 
@@ -308,6 +310,173 @@ static void say_peaks(cli_run *run, const ritz_response *r)
     cli_record(run, r->method, r->count);
 }
 
+/* --- the loop that is closed around a model ------------------------------- */
+
+/* A model made ready to respond, and the loop. */
+typedef struct loop_run {
+    ritz_responder *plant;
+    model controller;
+    ritz_loop loop;
+    ritz_responder *inner;  /* of the controller */
+    ritz_responder *closed; /* of both; NULL: there is no controller */
+} loop_run;
+
+static void loop_run_free(loop_run *loop)
+{
+    ritz_responder_free(&loop->closed);
+    ritz_responder_free(&loop->inner);
+    ritz_responder_free(&loop->plant);
+    ritz_loop_free(&loop->loop);
+    model_free(&loop->controller);
+    *loop = (loop_run){0};
+}
+
+static ritz_status join_signals(cli_run *run, const loop_options *given,
+                                const model *m, loop_run *out)
+{
+    const ritz_io plant = ritz_model_io(model_reference(m)),
+                  inner = ritz_model_io(model_reference(&out->controller));
+
+    RITZ_CHECK_IN(given->controller,
+                  ritz_loop_match(&plant, &inner, given->connect.count,
+                                  given->connect.text, &out->loop));
+    out->loop.positive =
+        given->feedback && strcmp(given->feedback, "positive") == 0;
+    cli_say(run, "loop with '%s', %s feedback:", given->controller,
+            out->loop.positive ? "positive" : "negative");
+    for (int64_t k = 0; k < out->loop.num_measured; k++)
+        cli_say(run, "  %s -> controller %s",
+                plant.output[out->loop.measured[k]], inner.input[k]);
+    for (int64_t k = 0; k < out->loop.num_driven; k++)
+        cli_say(run, "  controller %s -> %s", inner.output[k],
+                plant.input[out->loop.driven[k]]);
+    return RITZ_OK;
+}
+
+/* An unstable loop has no steady response. */
+static ritz_status say_stability(cli_run *run, const ritz_state_space *closed,
+                                 bool force)
+{
+    ritz_probe probe = {0};
+    char text[2 * RITZ_NAME_SIZE];
+    const char *verdict = NULL;
+
+    RITZ_CHECK(ritz_probe_states(closed, &probe));
+    ritz_probe_print(&probe, text);
+    verdict = ritz_stability_name(probe.verdict);
+    sink_say(run, "stability", "the loop is %s: %s", verdict, text);
+    RITZ_REFUSE_IF(
+        probe.verdict == RITZ_UNSTABLE && !force, RITZ_ERR_ARGUMENT,
+        "the loop is unstable, %s: it has no steady response; compute "
+        "it all the same with --force",
+        text);
+    if (probe.verdict == RITZ_UNSTABLE)
+        cli_warn(
+            run,
+            "the loop is unstable, %s: what is written is no steady response",
+            text);
+    return RITZ_OK;
+}
+
+/* Poles of the closed loop, if its plant has states. */
+static ritz_status find_poles(cli_run *run, const loop_options *given,
+                              const model *m, const loop_run *loop,
+                              int64_t *count, double _Complex **pole)
+{
+    RITZ_OWN(ritz_state_space) made = {0}, closed = {0};
+    const ritz_state_space *plant = NULL;
+    bool known = model_has_states(m);
+
+    RITZ_REFUSE_IF(!known && given->states, RITZ_ERR_ARGUMENT,
+                   "--closed-loop: the plant is too large for states, or has "
+                   "structural damping: reduce it");
+    if (!known) {
+        cli_warn(run, "whether the loop is stable is not known: the plant is "
+                      "too large for that, or has structural damping; reduce "
+                      "it");
+        sink_set(run, "stability", "%s", "unknown");
+        return RITZ_OK;
+    }
+    RITZ_CHECK(ritz_model_states(model_reference(m), &made, &plant));
+    RITZ_CHECK(ritz_closed_loop(plant, &loop->controller.states, &loop->loop,
+                                &closed));
+    RITZ_CHECK(say_stability(run, &closed, given->force));
+    RITZ_CHECK(ritz_state_space_poles(&closed, count, pole));
+    if (given->states) {
+        RITZ_CHECK(ritz_container_write_state_space(given->states, &closed,
+                                                    cli_stamp(run)));
+        cli_say(run, "%s: the closed loop, %ld states", given->states,
+                closed.A.nrow);
+    }
+    return RITZ_OK;
+}
+
+/*
+ * Close the loop around a plant that is ready for a range, say whether it is
+ * stable, and refuse an unstable one without --force; nothing if there is no
+ * controller.
+ */
+static ritz_status close_loop(cli_run *run, const loop_options *given,
+                              const model *m, const double range_hz[2],
+                              loop_run *out)
+{
+    RITZ_OWN_ARRAY double _Complex *pole = NULL;
+    int64_t count = 0;
+    const ritz_response_request request = {
+        .model = ritz_model_of_states(&out->controller.states),
+        .from_hz = range_hz[0],
+        .to_hz = range_hz[1]};
+
+    if (!given->controller)
+        return RITZ_OK;
+    RITZ_CHECK(join_signals(run, given, m, out));
+    RITZ_CHECK(find_poles(run, given, m, out, &count, &pole));
+    RITZ_CHECK_IN(given->controller,
+                  ritz_responder_new(ritz_response_engine_find("states"),
+                                     &request, &out->inner));
+    return ritz_loop_responder(&out->loop, out->plant, out->inner, count, pole,
+                               &out->closed);
+}
+
+/* One of the margins, and where it is. */
+static void say_margin(cli_run *run, const char *key, const char *text,
+                       double value, double hertz)
+{
+    sink_object(run, key);
+    if (isnan(value))
+        sink_set(run, "value,at_hz", "%g %g", value, hertz);
+    else
+        sink_say(run, ",value,at_hz", "  %-39s %14.6g %14.7g", text, value,
+                 hertz);
+    sink_end(run);
+}
+
+/* Margins of a loop at the points of a response. */
+static ritz_status say_margins(cli_run *run, const loop_run *loop,
+                               const ritz_response *response)
+{
+    ritz_margins m = {0};
+
+    if (!loop->closed)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_loop_margins(&loop->loop, loop->plant, loop->inner,
+                                 response->count, response->hertz, &m));
+    sink_object(run, "loop");
+    cli_say(run, "loop, in this range: %38s", "at Hz");
+    say_margin(run, "gain", "largest gain of the open loop", m.gain, m.gain_hz);
+    say_margin(run, "sensitivity", "largest sensitivity |(I + F G)^-1|",
+               m.sensitivity, m.sensitivity_hz);
+    say_margin(run, "gain_up", "gain margin, a factor of", m.gain_up,
+               m.gain_up_hz);
+    say_margin(run, "gain_down", "gain margin downwards, a factor of",
+               m.gain_down, m.gain_down_hz);
+    say_margin(run, "phase", "phase margin, degrees", m.phase, m.phase_hz);
+    sink_end(run);
+    return RITZ_OK;
+}
+
+/* --- the response --------------------------------------------------------- */
+
 /* The model, or the loop that is closed around it, at the points. */
 static ritz_status find_response(cli_run *run, const model *m,
                                  const response_options *given,
@@ -318,12 +487,12 @@ static ritz_status find_response(cli_run *run, const model *m,
     ritz_responder *whole = NULL;
 
     RITZ_CHECK(new_responder(run, m, given, grid, &loop->plant));
-    RITZ_CHECK(loops_close(run, &given->loops, m, range, loop));
+    RITZ_CHECK(close_loop(run, &given->loops, m, range, loop));
     whole = loop->closed ? loop->closed : loop->plant;
-    RITZ_CHECK(isnan(given->tolerance)
-                   ? ritz_responder_sample(whole, grid, out)
-                   : ritz_responder_follow(whole, grid, given->tolerance, out));
-    RITZ_CHECK(loops_report(run, loop, out));
+    RITZ_CHECK(given->tolerance > 0.0
+                   ? ritz_responder_follow(whole, grid, given->tolerance, out)
+                   : ritz_responder_sample(whole, grid, out));
+    RITZ_CHECK(say_margins(run, loop, out));
     say_peaks(run, out);
     if (given->singular)
         RITZ_CHECK(find_singular(run, given, m, whole, out));
@@ -340,14 +509,17 @@ ritz_status responses_run(cli_run *run, const response_options *given)
     RITZ_OWN(loop_run) loop = {0};
     ritz_io ends; /* borrowed */
 
+    check_options(run->program, given);
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
-    RITZ_CHECK(loops_read(run, &given->loops, &loop));
+    if (given->loops.controller)
+        RITZ_CHECK(model_read(run, given->loops.controller, MODEL_STATES,
+                              &loop.controller));
     RITZ_CHECK(model_settle(&m, path, &given->model));
     if (given->points_of)
         RITZ_CHECK(borrow_points(run, given, &other, &grid));
     else
         RITZ_CHECK_IN(path, place_points(&m, given, &grid));
-    ends = model_io(&m);
+    ends = ritz_model_io(model_reference(&m));
     RITZ_REFUSE_IF(ends.num_inputs == 0 || ends.num_outputs == 0,
                    RITZ_ERR_ARGUMENT, "'%s' has no %s, it responds to nothing",
                    path, ends.num_inputs == 0 ? "inputs" : "outputs");

@@ -11,20 +11,22 @@ static const double margin = 0.95;
 /* Steps of the band over which costs are told, where no time is given. */
 static const double default_steps = 1000.0;
 
-void simulation_take(const cli_run *run, simulation_options *given)
+/* Take words of the command line, and refuse what makes no sense whatever the
+   model is. */
+static void take_options(const cli_run *run, simulation_options *given)
 {
     const cli_program *program = run->program;
 
     given->integrator =
-        cli_choose(program, "no integrator", given->method, ritz_integrators);
+        cli_choose(program, "integrator", given->method, ritz_integrators);
     given->hold_zero = strcmp(given->hold, "zero") == 0;
     if (!run->output && !given->cost)
         cli_refuse(program, "nothing to do: give -o, or --cost");
-    if (run->output && isnan(given->seconds))
+    if (run->output && given->seconds == 0.0)
         cli_refuse(program, "how long? give --seconds");
-    if (!isnan(given->step) && !isnan(given->accuracy))
+    if (given->step > 0.0 && given->accuracy > 0.0)
         cli_refuse(program, "--step or --accuracy, one of them");
-    if (isnan(given->accuracy))
+    if (given->accuracy == 0.0)
         given->accuracy = 1e-3;
 }
 
@@ -244,7 +246,7 @@ static ritz_status record_cost(cli_run *run, ritz_model subject,
                                const double band_hz[2], ritz_cost *cost)
 {
     RITZ_CHECK(ritz_simulate_cost(subject, band_hz, cost));
-    sink_line(run);
+    sink_open(run, run->line);
     model_set_cost(run, cost);
     sink_end(run);
     return RITZ_OK;
@@ -268,8 +270,8 @@ static ritz_status say_costs(cli_run *run, const simulation_options *given,
     request.signal = d->signal;
     request.x0 = d->x0;
     request.v0 = d->v0;
-    request.seconds = isnan(given->seconds) ? default_steps * cost.step_accurate
-                                            : given->seconds;
+    request.seconds = given->seconds > 0.0 ? given->seconds
+                                           : default_steps * cost.step_accurate;
     sink_list(run, "integrators");
     for (const ritz_integrator *const *i = ritz_integrators; *i; i++) {
         request.integrator = *i;
@@ -281,7 +283,7 @@ static ritz_status say_costs(cli_run *run, const simulation_options *given,
     sink_end(run);
     RITZ_CHECK(say_refactored(run, &cost));
     cli_record(run, m->kind == MODEL_REDUCED ? m->reduced.origin.method : "",
-               model_order(m));
+               ritz_model_order(model_reference(m)));
     return RITZ_OK;
 }
 
@@ -308,42 +310,40 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
     ritz_simulation_request request = {
         .integrator = given->integrator,
         .seconds = given->seconds,
-        .step = isnan(given->step) ? 0.0 : given->step,
+        .step = given->step,
         .hold = given->hold_zero ? RITZ_HOLD_ZERO : RITZ_HOLD_FIRST,
         .rho = given->rho,
-        .up_to_hz = isnan(given->up_to_hz) ? 0.0 : given->up_to_hz,
+        .up_to_hz = given->up_to_hz,
         .every = given->every,
         .signal = d->signal,
         .x0 = d->x0,
         .v0 = d->v0,
     };
-    RITZ_OWN(ritz_simulation) s = {0};
+    RITZ_OWN(model) made = {.kind = MODEL_SIMULATION};
+    ritz_simulation *s = &made.simulation;
     ritz_accuracy reached = {.left = -1};
 
     RITZ_REFUSE_IF(given->input.count == 0 && !given->initial,
                    RITZ_ERR_ARGUMENT,
                    "nothing moves it: give --input NAME=SIGNAL or --initial");
-    if (isnan(given->step)) {
+    if (given->step == 0.0) {
         RITZ_CHECK(ritz_simulate_accurate(d->subject, &request, given->accuracy,
-                                          &reached, &s));
+                                          &reached, s));
         cli_record_error(run, "integration", reached.error);
-        warn_of_rounding(run, given->accuracy, &reached, &s);
+        warn_of_rounding(run, given->accuracy, &reached, s);
     } else {
-        RITZ_CHECK(ritz_simulate(d->subject, &request, &s));
+        RITZ_CHECK(ritz_simulate(d->subject, &request, s));
     }
-    RITZ_CHECK(
-        ritz_container_write_simulation(run->output, &s, cli_stamp(run)));
-    cli_say(run, "%s:", run->output);
-    describe_simulation(run, &s);
-    if (isnan(given->step))
+    RITZ_CHECK(describe_output(run, &made));
+    if (given->step == 0.0)
         sink_field(run, "accurate to", "error",
                    "%.1e of each output's largest, by half the step",
                    reached.error);
-    cli_record(run, s.integrator, s.order);
+    cli_record(run, s->integrator, s->order);
     return RITZ_OK;
 }
 
-ritz_status simulation_run(cli_run *run, const simulation_options *given)
+ritz_status simulation_run(cli_run *run, simulation_options *given)
 {
     const char *path = run->operand[0];
     const double *band_hz = given->band_hz;
@@ -351,14 +351,17 @@ ritz_status simulation_run(cli_run *run, const simulation_options *given)
     RITZ_OWN(drive) d = {0};
     ritz_cost cost = {0};
 
+    take_options(run, given);
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_CHECK(model_settle(&m, path, &given->model));
-    d.io = model_io(&m);
+    d.io = ritz_model_io(model_reference(&m));
     d.subject = model_reference(&m);
     if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))
         band_hz = m.system.band_hz;
     RITZ_CHECK_IN(path, take_inputs(run, &given->input, &d));
-    RITZ_CHECK_IN(path, take_initial(run, given->initial, model_order(&m), &d));
+    RITZ_CHECK_IN(path,
+                  take_initial(run, given->initial,
+                               ritz_model_order(model_reference(&m)), &d));
     if (run->output)
         RITZ_CHECK_IN(path, simulate_response(run, given, &d));
     if (given->cost)

@@ -1,7 +1,5 @@
 #include "print/print.h"
 
-#include "cli/cli_table.h"
-
 /* So many of each kind are said; JSON and the table have all. */
 enum { MOST_SAID = 12 };
 
@@ -88,23 +86,17 @@ static int64_t count_modes(const int64_t mode[2])
     return (mode[0] >= 0) + (mode[1] >= 0);
 }
 
-static void set_event(cli_run *run, const ritz_system *system,
-                      const ritz_track_event *e)
-{
-    sink_set(run, "from,to,hertz", "%s %s %g", at_of(system, e->from),
-             at_of(system, e->to), e->hertz);
-    sink_numbers(run, "modes", count_modes(e->mode), e->mode);
-    sink_numbers(run, "become", count_modes(e->other), e->other);
-    sink_reals(run, "mac", count_modes(e->other), e->mac);
-}
-
 /* An event as an item, and as a line if it is one of the first. */
 static void say_event(cli_run *run, const ritz_system *system,
                       const ritz_tracking *t, const ritz_track_event *e,
                       bool said)
 {
     sink_object(run, NULL);
-    set_event(run, system, e);
+    sink_set(run, "from,to,hertz", "%s %s %g", at_of(system, e->from),
+             at_of(system, e->to), e->hertz);
+    sink_wholes(run, "modes", count_modes(e->mode), e->mode, 1);
+    sink_wholes(run, "become", count_modes(e->other), e->other, 1);
+    sink_reals(run, "mac", count_modes(e->other), e->mac);
     if (kinds[e->kind].say && said) {
         kinds[e->kind].say(run, t, e);
     } else if (!kinds[e->kind].say) {
@@ -127,8 +119,7 @@ static void say_kind(cli_run *run, const ritz_system *system,
     int64_t count = 0;
     int64_t from = -1, to = -1;
 
-    sink_list(run, kinds[which].key);
-    for (int64_t k = 0; k < t->num_events; k++) {
+    SINK_EACH(run, kinds[which].key, k, t->num_events) {
         const ritz_track_event *e = &t->event[k];
         bool said = count < MOST_SAID;
 
@@ -142,7 +133,6 @@ static void say_kind(cli_run *run, const ritz_system *system,
         to = e->to;
         say_event(run, system, t, e, said);
     }
-    sink_end(run);
     if (count > MOST_SAID)
         cli_say(run, "  and %ld more %s", (count - MOST_SAID),
                 kinds[which].title);

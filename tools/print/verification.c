@@ -6,7 +6,7 @@ static ritz_status say_measures(cli_run *run, const ritz_measures *measures)
     int64_t failed = 0;
     int64_t limits = 0;
 
-    model_say_measures(run, "measures", measures, "measured");
+    model_say_measures(run, SINK_LINE, "measures", measures, "measured");
     for (int64_t k = 0; k < measures->count; k++) {
         const ritz_measure *m = &measures->item[k];
 
@@ -59,11 +59,13 @@ static ritz_status check_limits(const cli_run *run, const verify_options *given,
 static ritz_status keep_measures(cli_run *run, const verify_options *given,
                                  ritz_measures *measures, model *reduced)
 {
-    ritz_measures *place = model_errors(reduced);
+    ritz_measures *place = reduced->kind == MODEL_STATES
+                               ? &reduced->states.errors
+                           : reduced->at ? &reduced->at->errors
+                                         : &reduced->reduced.errors;
 
     ritz_measures_free(place);
-    *place = *measures;
-    *measures = (ritz_measures){0};
+    RITZ_MOVE(*place, *measures);
     model_record(run, place);
     RITZ_CHECK(model_write(run, reduced));
     warn_unmeasured(run, given, place);
@@ -78,7 +80,8 @@ static ritz_status settle_states(cli_run *run, model *full, model *reduced,
     const char *own = given->model.damping;
     ritz_damping damping = {0};
 
-    cli_record(run, reduced->states.origin.method, model_order(reduced));
+    cli_record(run, reduced->states.origin.method,
+               ritz_model_order(model_reference(reduced)));
     RITZ_REFUSE_IF(given->model.damper.count > 0, RITZ_ERR_ARGUMENT,
                    "'%s' holds its dampers in A: --damper cannot change them",
                    run->operand[1]);
@@ -131,7 +134,7 @@ static ritz_status settle_matrices(cli_run *run, model *full, model *reduced,
         memcpy(request->band_hz, reduced->system.band_hz,
                sizeof request->band_hz);
     cli_record(run, reduced->at ? "system" : reduced->reduced.origin.method,
-               model_order(reduced));
+               ritz_model_order(model_reference(reduced)));
     RITZ_CHECK_IN(run->operand[0], model_install(full, damper));
     return ritz_context(model_install(reduced, damper), run->operand[1]);
 }

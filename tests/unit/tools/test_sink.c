@@ -71,7 +71,7 @@ static void values_said_in_a_list_are_items(void **state)
     sink_say(&run, "k", "%ld", (int64_t)1);
     sink_object(&run, NULL);
     sink_set(&run, "k", "%ld", (int64_t)2);
-    sink_numbers(&run, "modes", 2, modes);
+    sink_wholes(&run, "modes", 2, modes, 1);
     sink_end(&run);
     sink_end(&run);
     sink_reals(&run, "reals", 2, reals);
