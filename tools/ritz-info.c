@@ -36,14 +36,12 @@ static void list_members(void)
 /* Keys of a single file stand in the report itself too. */
 static ritz_status describe_files(cli_run *run, bool members, bool directory)
 {
-    SINK_EACH(run, "files", k, run->num_operands) {
+    SINK_ITEMS(run, "files", k, run->num_operands) {
         const char *path = run->operand[k];
 
-        sink_object(run, NULL);
         sink_set(run, "file", "%s", path);
         cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
         RITZ_CHECK(describe_file(run, path, members, directory));
-        sink_end(run);
     }
     if (run->num_operands == 1)
         sink_lift(run,

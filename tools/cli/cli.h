@@ -64,28 +64,29 @@ typedef struct cli_option {
 
 /* Rows of a table: kind and place of a value, held to each other by the
    compiler. */
-#define CLI_ROW(KIND, member, word, place, value, low, high, says)             \
+#define CLI_ROW(KIND, member, sign, word, place, value, low, high, says)       \
     {                                                                          \
-        .kind = CLI_KIND_##KIND, .to.member = (place), .name = (word),         \
-        .argument = (value), .min = (low), .max = (high), .help = (says)       \
+        .kind = CLI_KIND_##KIND, .letter = (sign), .to.member = (place),       \
+        .name = (word), .argument = (value), .min = (low), .max = (high),      \
+        .help = (says)                                                         \
     }
 #define CLI_ACTION(word, function, says)                                       \
-    CLI_ROW(ACTION, action, word, function, NULL, 0.0, 0.0, says)
+    CLI_ROW(ACTION, action, 0, word, function, NULL, 0.0, 0.0, says)
 #define CLI_FLAG(word, place, says)                                            \
-    CLI_ROW(FLAG, flag, word, place, NULL, 0.0, 0.0, says)
+    CLI_ROW(FLAG, flag, 0, word, place, NULL, 0.0, 0.0, says)
 #define CLI_INT(word, place, value, low, high, says)                           \
-    CLI_ROW(INT, whole, word, place, value, low, high, says)
+    CLI_ROW(INT, whole, 0, word, place, value, low, high, says)
 #define CLI_REAL(word, place, value, low, high, says)                          \
-    CLI_ROW(REAL, real, word, place, value, low, high, says)
+    CLI_ROW(REAL, real, 0, word, place, value, low, high, says)
 /* "LOW,HIGH", ascending and not negative; [0, 0] as long as it is not given */
 #define CLI_PAIR(word, place, value, says)                                     \
-    CLI_ROW(PAIR, real, word, place, value, 0.0, 0.0, says)
+    CLI_ROW(PAIR, real, 0, word, place, value, 0.0, 0.0, says)
 #define CLI_TEXT(word, place, value, says)                                     \
-    CLI_ROW(TEXT, text, word, place, value, 0.0, 0.0, says)
+    CLI_ROW(TEXT, text, 0, word, place, value, 0.0, 0.0, says)
 #define CLI_WORD(word, place, words, says)                                     \
-    CLI_ROW(WORD, text, word, place, words, 0.0, 0.0, says)
+    CLI_ROW(WORD, text, 0, word, place, words, 0.0, 0.0, says)
 #define CLI_LIST(word, place, value, says)                                     \
-    CLI_ROW(LIST, list, word, place, value, 0.0, 0.0, says)
+    CLI_ROW(LIST, list, 0, word, place, value, 0.0, 0.0, says)
 
 /* A text that is written whole or not at all. */
 typedef struct cli_table {

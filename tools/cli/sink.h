@@ -67,6 +67,13 @@ void sink_end(cli_run *run);
     for (int64_t k = (sink_list(run, key), 0);                                 \
          (k) < (count) || (sink_end(run), false); (k)++)
 
+/* The same with an object for each k, which is an item of the list. */
+#define SINK_ITEMS(run, key, k, count)                                         \
+    for (int64_t k = (sink_list(run, key), 0);                                 \
+         (k) < (count) ? (sink_object(run, NULL), true)                        \
+                       : (sink_end(run), false);                               \
+         sink_end(run), (k)++)
+
 /** Open an object that is no part of the report; borrowed. */
 void sink_open(cli_run *run, json_t *value);
 

@@ -13,18 +13,16 @@ void checks_say(cli_run *run, const char *key, const ritz_audit *audit)
 {
     cli_say(run, "%-28s %12s %12s  %-7s  %s", "check", "measured", "limit",
             "verdict", "where");
-    SINK_EACH(run, key, k, audit->count) {
+    SINK_ITEMS(run, key, k, audit->count) {
         const ritz_check *c = &audit->check[k];
         const char *verdict = ritz_verdict_name(c->verdict);
 
-        sink_object(run, NULL);
         sink_say(run, "name,value,limit,,where",
                  "%-28s %12.4g %12.4g  %-7s  %s", c->name, c->value, c->limit,
                  c->verdict == RITZ_FAIL ? "FAIL" : verdict, c->where);
         sink_set(run, "verdict,says", "%s %s", verdict, c->says);
         if (*c->says)
             cli_say(run, "    %s", c->says);
-        sink_end(run);
     }
     cli_say(run, "%ld pass, %ld warn, %ld fail", count_checks(audit, RITZ_PASS),
             count_checks(audit, RITZ_WARN), count_checks(audit, RITZ_FAIL));

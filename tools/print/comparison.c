@@ -104,7 +104,6 @@ static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
     char orders[80];
     char where[RITZ_NAME_SIZE + 32] = "";
 
-    sink_object(run, NULL);
     print_orders(run, bodies, k->order, orders);
     if (!isnan(k->deviation) && k->deviation > 0.0)
         snprintf(where, sizeof where, "%.4g Hz%s%s", k->hertz,
@@ -114,7 +113,6 @@ static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
              k->name, orders, k->largest, k->gain_listed, k->gain_between,
              k->deviation, where);
     sink_set(run, "hertz,at,chosen", "%g %s %d", k->hertz, k->at, k->chosen);
-    sink_end(run);
 }
 
 /* Static corrections, each for a set of forces; there may be none. */
@@ -134,7 +132,7 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
         cli_say(run, "  %-28s %-16s %6s %9s %9s %9s", "attached", "orders",
                 "system", "gain", "gain *", "sigma max");
     }
-    SINK_EACH(run, "candidates", k, c->num_candidates) {
+    SINK_ITEMS(run, "candidates", k, c->num_candidates) {
         say_candidate(run, first->count, &c->candidate[k]);
         if (c->candidate[k].chosen)
             chosen = c->candidate[k].deviation;
@@ -247,17 +245,15 @@ static ritz_status say_rows(cli_run *run, const ritz_stage *stage,
     cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "#",
             "configuration", "rigid", "flex", "kept", "order", "frequency",
             "allowed", "rigid Hz", "gain", "response", "1 - MAC");
-    SINK_EACH(run, "configurations", k, c->num_rows) {
+    SINK_ITEMS(run, "configurations", k, c->num_rows) {
         const ritz_compare_row *row = &c->row[k];
         char at[RITZ_NAME_SIZE];
 
         name_row(stage, c, row, at);
-        sink_object(run, NULL);
         say_errors(run, row, k + 1, at);
         RITZ_CHECK(set_modes(
             run, row,
             k < system->num_configurations ? &system->configuration[k] : NULL));
-        sink_end(run);
         worst = fmax(worst, row->response_error);
     }
     SINK_EACH(run, "kept", k, c->num_rows)
@@ -523,11 +519,10 @@ static void say_tolerances(cli_run *run, const ritz_stage *first,
                  "listed configurations");
     cli_say(run, "%10s  %-16s %6s %6s %9s %9s %9s", "tolerance", "orders",
             "total", "system", "frequency", "gain", "response");
-    SINK_EACH(run, "tolerances", k, rows->count) {
+    SINK_ITEMS(run, "tolerances", k, rows->count) {
         const ritz_tolerance_row *row = &rows->at[k];
         char orders[80];
 
-        sink_object(run, NULL);
         print_orders(run, first->count, row->order, orders);
         sink_set(run, "removed", "%d", row->removed);
         sink_say(run, "tolerance,,,dofs,frequency,gain,response",
@@ -535,7 +530,6 @@ static void say_tolerances(cli_run *run, const ritz_stage *first,
                  orders, row->total, row->largest, row->frequency_error,
                  row->gain_error, row->response_error,
                  row->removed ? "" : "  stage two removed nothing");
-        sink_end(run);
     }
 }
 

@@ -92,20 +92,18 @@ static void describe_io(cli_run *run, const ritz_io *io)
 
 /* A port: its grids in order of first appearance, how many dofs, where.
    @p at names its dofs among all; NULL: they are its own. */
-static void describe_port(cli_run *run, const char *name, int64_t count,
-                          const int64_t *at, const ritz_dof *dof,
+static void describe_port(cli_run *run, char (*name)[RITZ_NAME_SIZE],
+                          int64_t count, const int64_t *at, const ritz_dof *dof,
                           const double *origin)
 {
     enum { SHOWN = 12 };
     int64_t grids = 0;
 
-    sink_part(run, "  port %-9s %ld dofs at grids", name, count);
-    sink_list(run, "ports");
-    sink_add(run, "%s", name);
-    sink_end(run);
+    sink_part(run, "  port %-9s %ld dofs at grids", *name, count);
+    sink_names(run, NULL, "ports", 1, name);
     sink_list(run, "port_details");
     sink_object(run, NULL);
-    sink_set(run, "name,dofs", "%s %ld", name, count);
+    sink_set(run, "name,dofs", "%s %ld", *name, count);
     sink_reals(run, "origin", 3, origin);
     sink_list(run, "grids");
     for (int64_t k = 0, last = 0; k < count; k++) {
@@ -270,7 +268,7 @@ ritz_status describe_component(cli_run *run, const ritz_component *c)
                 "asymmetry", c->asymmetry);
     start_ports(run);
     for (int64_t k = 0; k < c->num_ports; k++)
-        describe_port(run, c->port[k].name, c->port[k].dofs.count,
+        describe_port(run, &c->port[k].name, c->port[k].dofs.count,
                       c->port[k].dofs.at, c->dof, c->port[k].origin);
     describe_io(run, &c->io);
     return RITZ_OK;
@@ -469,7 +467,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_inertia(run, &r->inertia);
     start_ports(run);
     for (int64_t k = 0; k < r->num_ports; k++)
-        describe_port(run, r->port[k].name, r->port[k].count, NULL,
+        describe_port(run, &r->port[k].name, r->port[k].count, NULL,
                       r->port[k].dof, r->port[k].origin);
     describe_io(run, &r->io);
     describe_measures(run, "estimates", &r->estimates, "estimated");

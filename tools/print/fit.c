@@ -369,7 +369,6 @@ static void say_equal(cli_run *run, const ritz_fit *fit, int64_t order,
 static void set_step(cli_run *run, const ritz_fitter *fitter,
                      const ritz_fit_candidate *row)
 {
-    sink_object(run, NULL);
     sink_object(run, "orders");
     for (int64_t k = 0; k < ritz_fitter_bodies(fitter); k++)
         sink_set(run, ritz_fitter_body(fitter, k), "%ld", row->modes[k]);
@@ -380,7 +379,6 @@ static void set_step(cli_run *run, const ritz_fitter *fitter,
     set_values(run, "errors", &row->errors);
     if (row->refusal[0])
         sink_set(run, "refused", "%s", row->refusal);
-    sink_end(run);
 }
 
 /* "        26        20        46     42      0.47 frequency" */
@@ -428,7 +426,7 @@ static void say_path(cli_run *run, const ritz_fitter *fitter,
     for (int64_t k = 0; k < path->num_bodies; k++)
         sink_part(run, " %9.9s", ritz_fitter_body(fitter, k));
     cli_say(run, "  %8s %6s  %8s of", "columns", "order", "error");
-    SINK_EACH(run, "path", k, path->count) {
+    SINK_ITEMS(run, "path", k, path->count) {
         set_step(run, fitter, &path->row[k]);
         if (k % step == 0 || k == path->count - 1)
             say_step(run, &path->row[k]);

@@ -57,11 +57,10 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
     else
         cli_say(run, "%5s %13s %13s %12s %13s %13s %9s", "", "|s|/2pi Hz",
                 "|s| rad/s", "zeta %", "Re s", "Im s", "residual");
-    SINK_EACH(run, "poles", j, spectrum->count) {
+    SINK_ITEMS(run, "poles", j, spectrum->count) {
         double _Complex s = spectrum->s[j];
         double zeta = ritz_spectrum_ratio(s);
 
-        sink_object(run, NULL);
         set_pole(run, s);
         sink_set(run, "residual", "%g", spectrum->residual[j]);
         if (tsv)
@@ -73,7 +72,6 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
                     j + 1, hertz_of(s), cabs(s), 100.0 * zeta, creal(s),
                     cimag(s), spectrum->residual[j], *note_of(s) ? "  " : "",
                     note_of(s));
-        sink_end(run);
     }
     sink_set(run, "zero,engine", "%ld %s", spectrum->num_zero,
              spectrum->engine);
@@ -88,18 +86,16 @@ static void say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
 {
     cli_say(run, tsv ? "%s\t%s\t%s" : "%13s %13s %12s", "c",
             tsv ? "hertz" : "|s|/2pi Hz", tsv ? "zeta" : "zeta %");
-    SINK_EACH(run, "scan", k, scan->count) {
+    SINK_ITEMS(run, "scan", k, scan->count) {
         double hertz = hertz_of(scan->s[k]);
         double zeta = ritz_spectrum_ratio(scan->s[k]);
 
-        sink_object(run, NULL);
         set_pole(run, scan->s[k]);
         if (tsv)
             sink_say(run, "c", "%.12g\t%.12g\t%.12g", scan->c[k], hertz, zeta);
         else
             sink_say(run, "c", "%13g %13.7g %12.6g%s", scan->c[k], hertz,
                      100.0 * zeta, k == scan->best ? "  best" : "");
-        sink_end(run);
     }
     json_object_set(run->report, "best",
                     json_array_get(json_object_get(run->report, "scan"),
