@@ -96,28 +96,8 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
  * counts once. @cost O(n log n) */
 ritz_status ritz_bulk_place_grids(ritz_bulk_cards *all, ritz_grids *out);
 
-/** Append a range to a set. */
-ritz_status ritz_bulk_add_range(ritz_bulk_ranges *list, ritz_bulk_range range);
-void ritz_bulk_ranges_free(ritz_bulk_ranges *list);
-
-/** The scalar points, ascending. */
-ritz_status ritz_bulk_list_points(const ritz_bulk_cards *all, ritz_deck *out);
-
-/**
- * The dofs of some ranges, sorted, each once.
- *
- * @param[in] built  its grids and points are there already
- */
-ritz_status ritz_bulk_list_set(const ritz_bulk_cards *all,
-                               const ritz_bulk_ranges *list,
-                               const ritz_deck *built, int64_t *count,
-                               ritz_dof **out);
-
 /** Copy the sentence of the latest failure. */
 ritz_status ritz_bulk_keep_sentence(char **out);
-
-/** Append the elements, by the grids that they join. */
-ritz_status ritz_bulk_list_elements(const ritz_bulk_cards *all, ritz_deck *out);
 
 /**
  * The equations of all constraint elements that act.

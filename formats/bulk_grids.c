@@ -492,20 +492,12 @@ static ritz_status frame_of(const ritz_bulk_cards *all,
     return RITZ_OK;
 }
 
-static bool is_identity(const double axes[static 9])
-{
-    for (int k = 0; k < 9; k++)
-        if (axes[k] != (k % 4 == 0 ? 1.0 : 0.0))
-            return false;
-    return true;
-}
-
 static ritz_status add_axes(const double axes[static 9], int64_t *room,
                             ritz_grids *grids, int64_t *out)
 {
     double *more = NULL;
 
-    if (is_identity(axes))
+    if (ritz_axes_basic(axes))
         return RITZ_OK;
     more = ritz_array_grown(grids->axes, grids->num_frames, room,
                             9 * sizeof *axes);

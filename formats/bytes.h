@@ -6,23 +6,6 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Types of numbers, by the numbers that MAT files give them. */
-enum {
-    RITZ_BYTES_INT8 = 1,
-    RITZ_BYTES_UINT8,
-    RITZ_BYTES_INT16,
-    RITZ_BYTES_UINT16,
-    RITZ_BYTES_INT32,
-    RITZ_BYTES_UINT32,
-    RITZ_BYTES_SINGLE,
-    RITZ_BYTES_DOUBLE = 9,
-    RITZ_BYTES_INT64 = 12,
-    RITZ_BYTES_UINT64,
-};
-
-/** Bytes of a number; 0 if the type is none of these. */
-int64_t ritz_bytes_size(int type);
-
 /** An unsigned number of 1 to 8 bytes. */
 static inline uint64_t ritz_bytes_bits(const unsigned char *at, int64_t size,
                                        bool big_endian)
@@ -51,8 +34,5 @@ static inline double ritz_bytes_double(const unsigned char *at, bool big_endian)
     memcpy(&value, &bits, sizeof value);
     return value;
 }
-
-/** A number of any of the types. */
-double ritz_bytes_value(const unsigned char *at, int type, bool big_endian);
 
 #endif

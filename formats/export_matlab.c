@@ -148,17 +148,21 @@ static ritz_status sheet_open(const char *path, sheet *out)
 /* Whether the file holds the matrices that were to be written, to the bit. */
 static ritz_status compare_file(const char *path, const ritz_matrices *list)
 {
-    RITZ_OWN(ritz_matrices) back = {0};
+    RITZ_OWN(ritz_foreign) back = {0};
 
-    RITZ_CHECK_IN("reading back", ritz_foreign_read(path, &back));
-    RITZ_REFUSE_IF(back.count < list->count, RITZ_ERR_FILE,
+    RITZ_CHECK_IN("reading back", ritz_foreign_open(path, &back));
+    RITZ_CHECK_IN("reading back",
+                  ritz_foreign_context(&back, ritz_foreign_list(&back)));
+    RITZ_REFUSE_IF(back.listing.count < list->count, RITZ_ERR_FILE,
                    "only part of '%s' could be written", path);
     for (int64_t k = 0; k < list->count; k++) {
+        RITZ_OWN(ritz_matrix) read = {0};
         RITZ_OWN(ritz_dense) A = {0}, B = {0};
         bool same = true;
 
+        RITZ_CHECK_IN("reading back", ritz_foreign_take(&back, k, &read));
         RITZ_CHECK(ritz_sparse_dense(&list->matrix[k].A, &A));
-        RITZ_CHECK(ritz_sparse_dense(&back.matrix[k].A, &B));
+        RITZ_CHECK(ritz_sparse_dense(&read.A, &B));
         same = A.nrow == B.nrow && A.ncol == B.ncol;
         for (int64_t i = 0; same && i < A.nrow * A.ncol; i++)
             same = A.val[i] == B.val[i];

@@ -1,4 +1,5 @@
-/* Files of matrices: recognised by content, and what a user may ask of them. */
+/* Files of matrices and decks: recognised by content, and what a user may ask
+ * of them. */
 #include "base/alloc.h"
 #include "base/text.h"
 
@@ -11,14 +12,6 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-static const ritz_format *recognise_bytes(const char *bytes, int64_t size)
-{
-    for (int k = 0; ritz_formats[k]; k++)
-        if (ritz_formats[k]->recognise(bytes, size))
-            return ritz_formats[k];
-    return NULL;
-}
-
 ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
 {
     RITZ_OWN(ritz_foreign) file = {0};
@@ -28,7 +21,9 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
     RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
     file.bytes = file.owned;
     ritz_digest_bytes(file.bytes, (size_t)file.size, file.digest);
-    file.format = recognise_bytes(file.bytes, file.size);
+    for (int k = 0; ritz_formats[k] && !file.format; k++)
+        if (ritz_formats[k]->recognise(file.bytes, file.size))
+            file.format = ritz_formats[k];
     RITZ_MOVE(*out, file);
     return RITZ_OK;
 }
@@ -72,39 +67,6 @@ void ritz_foreign_free(ritz_foreign *file)
 {
     RITZ_FREE(file->path, file->folder, file->owned, file->listing.item);
     *file = (ritz_foreign){0};
-}
-
-/* ---- all matrices at once ----------------------------------------------- */
-
-static ritz_status take_all(ritz_foreign *file, ritz_matrices *out)
-{
-    RITZ_OWN(ritz_matrices) all = {0};
-
-    RITZ_CHECK(ritz_foreign_list(file));
-    RITZ_CHECK_NEW(all.matrix, file->listing.count);
-    for (; all.count < file->listing.count; all.count++)
-        RITZ_CHECK(ritz_foreign_take(file, all.count, &all.matrix[all.count]));
-    snprintf(all.format, sizeof all.format, "%s", file->format->name);
-    RITZ_MOVE(*out, all);
-    return RITZ_OK;
-}
-
-ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
-                               ritz_matrices *out)
-{
-    RITZ_OWN(ritz_foreign)
-    file = {
-        .bytes = bytes, .size = size, .format = recognise_bytes(bytes, size)};
-
-    return take_all(&file, out);
-}
-
-ritz_status ritz_foreign_read(const char *path, ritz_matrices *out)
-{
-    RITZ_OWN(ritz_foreign) file = {0};
-
-    RITZ_CHECK(ritz_foreign_open(path, &file));
-    return ritz_foreign_context(&file, take_all(&file, out));
 }
 
 /* ---- one by name -------------------------------------------------------- */
@@ -342,9 +304,51 @@ ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,
     return RITZ_OK;
 }
 
-ritz_status ritz_foreign_select(const char *spec_text, ritz_matrix *out)
-{
-    const ritz_wanted one = {.spec = spec_text, .into = out};
+/* ---- decks -------------------------------------------------------------- */
 
-    return ritz_foreign_collect(1, &one, NULL);
+const ritz_deck_format *ritz_deck_recognise(const char *bytes, int64_t size)
+{
+    for (int k = 0; ritz_decks[k]; k++)
+        if (ritz_decks[k]->recognise(bytes, size))
+            return ritz_decks[k];
+    return NULL;
+}
+
+ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
+                            const char *folder, ritz_deck *out)
+{
+    const ritz_deck_format *format = ritz_deck_recognise(bytes, size);
+    RITZ_OWN(ritz_deck) deck = {0};
+
+    RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
+                   "'%s' is not a text file, as all decks are that Ritz knows",
+                   path ? path : "the deck");
+    RITZ_CHECK(format->parse(path, bytes, size, folder, &deck));
+    deck.format = format;
+    RITZ_MOVE(*out, deck);
+    return RITZ_OK;
+}
+
+ritz_status ritz_deck_read(const char *path, ritz_deck *out)
+{
+    RITZ_OWN_ARRAY char *bytes = NULL;
+    RITZ_OWN_ARRAY char *folder = NULL;
+    int64_t size = 0;
+
+    RITZ_CHECK(ritz_path_folder(path, &folder));
+    RITZ_CHECK(ritz_bytes_read(path, &size, &bytes));
+    return ritz_deck_parse(path, bytes, size, folder, out);
+}
+
+void ritz_deck_free(ritz_deck *deck)
+{
+    ritz_grids_free(&deck->grids);
+    RITZ_FREE(deck->point, deck->dof, deck->fixed);
+    for (int k = 0; k < RITZ_NUM_SETS; k++)
+        free(deck->set[k]);
+    free(deck->constraint);
+    ritz_equations_free(&deck->equations);
+    ritz_elements_free(&deck->elements);
+    free(deck->imposed);
+    *deck = (ritz_deck){0};
 }

@@ -6,10 +6,23 @@
 
 #include <ritz/import.h>
 
+/* Types of elements, by the numbers that Level 5 gives them. */
 enum {
-    RITZ_MAT_MATRIX =
-        RITZ_BYTES_UINT64 + 1, /* types of elements, not numbers */
+    RITZ_MAT_INT8 = 1,
+    RITZ_MAT_UINT8,
+    RITZ_MAT_INT16,
+    RITZ_MAT_UINT16,
+    RITZ_MAT_INT32,
+    RITZ_MAT_UINT32,
+    RITZ_MAT_SINGLE,
+    RITZ_MAT_DOUBLE = 9,
+    RITZ_MAT_INT64 = 12,
+    RITZ_MAT_UINT64,
+    RITZ_MAT_MATRIX, /* no number, nor is the next */
     RITZ_MAT_COMPRESSED,
+};
+
+enum {
     RITZ_MAT_DEPTH = 8,         /* how deep structs in structs are followed */
     RITZ_MAT_MOST_RATIO = 1032, /* that deflate can reach */
 };
@@ -41,6 +54,8 @@ typedef struct ritz_mat_list {
     const char *spelling;  /* "MAT level 5" */
 } ritz_mat_list;
 
+/** Bytes of a number; 0 if the type is that of none. */
+int64_t ritz_mat_size(int type);
 double ritz_mat_value(const ritz_mat_values *values, int64_t k);
 
 /** Whether the next matrix is not wanted, so that its values need not be read
@@ -56,12 +71,10 @@ ritz_status ritz_mat_add_other(ritz_mat_list *list, const char *name,
 ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
                          const ritz_mat_entries *entries);
 
-/* Each level: whether bytes look like it, and all that they hold. */
-bool ritz_mat_is_level4(const char *bytes, int64_t size);
+/* The levels in files of their own: whether bytes look like them, and all that
+   they hold. */
 bool ritz_mat_is_level5(const char *bytes, int64_t size);
 bool ritz_mat_is_hdf5(const char *bytes, int64_t size);
-ritz_status ritz_mat_read_level4(const char *bytes, int64_t size,
-                                 ritz_mat_list *list);
 ritz_status ritz_mat_read_level5(const char *bytes, int64_t size,
                                  ritz_mat_list *list);
 ritz_status ritz_mat_read_hdf5(const char *bytes, int64_t size,

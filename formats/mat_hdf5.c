@@ -198,7 +198,7 @@ static ritz_status read_vector(hid_t at, const char *name, int64_t bytes,
 static ritz_mat_values values_of(const double *values, int64_t count)
 {
     return (ritz_mat_values){(const unsigned char *)values, values ? count : 0,
-                             RITZ_BYTES_DOUBLE,
+                             RITZ_MAT_DOUBLE,
                              __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__};
 }
 

@@ -145,7 +145,7 @@ static ritz_status take_values(mat_reader *r, ritz_mat_values *out)
     int64_t size = 0;
 
     RITZ_CHECK(take_element(r, &e));
-    size = ritz_bytes_size(e.type);
+    size = ritz_mat_size(e.type);
     RITZ_REFUSE_IF(size == 0, RITZ_ERR_FORMAT,
                    "values of type %d, which is none of numbers", e.type);
     *out = (ritz_mat_values){e.at, e.bytes / size, e.type, r->swap};
@@ -171,13 +171,13 @@ static ritz_status read_head(mat_reader *r, const char *outer, mat_array *out)
     mat_element e = {0};
     uint64_t flags = 0;
 
-    RITZ_CHECK(take_typed(r, "array flags", RITZ_BYTES_UINT32, 8, &e));
+    RITZ_CHECK(take_typed(r, "array flags", RITZ_MAT_UINT32, 8, &e));
     flags = ritz_bytes_bits(e.at, 4, r->swap);
     out->class = (int)(flags & 0xff);
     out->complex = flags & FLAG_COMPLEX;
     out->nrow = out->ncol = 1;
     if (out->class != CLASS_OPAQUE) {
-        RITZ_CHECK(take_typed(r, "dimensions", RITZ_BYTES_INT32, -1, &e));
+        RITZ_CHECK(take_typed(r, "dimensions", RITZ_MAT_INT32, -1, &e));
         out->num_dims = (int)(e.bytes / 4);
         RITZ_REFUSE_IF(out->num_dims < 2, RITZ_ERR_FORMAT,
                        "an array of %d dimensions", out->num_dims);
@@ -187,7 +187,7 @@ static ritz_status read_head(mat_reader *r, const char *outer, mat_array *out)
                        "an array of %" PRId64 " x %" PRId64, out->nrow,
                        out->ncol);
     }
-    RITZ_CHECK(take_typed(r, "a name's letters", RITZ_BYTES_INT8, -1, &e));
+    RITZ_CHECK(take_typed(r, "a name's letters", RITZ_MAT_INT8, -1, &e));
     return join_names(outer, (const char *)e.at, e.bytes, out->name);
 }
 
@@ -260,9 +260,9 @@ static ritz_status read_struct(mat_reader *r, const mat_array *a, int depth,
     mat_element size = {0};
     int64_t length = 0;
 
-    RITZ_CHECK(take_typed(r, "lengths of names", RITZ_BYTES_INT32, 4, &size));
+    RITZ_CHECK(take_typed(r, "lengths of names", RITZ_MAT_INT32, 4, &size));
     length = (int32_t)(uint32_t)ritz_bytes_bits(size.at, 4, r->swap);
-    RITZ_CHECK(take_typed(r, "names of fields", RITZ_BYTES_INT8, -1, &names));
+    RITZ_CHECK(take_typed(r, "names of fields", RITZ_MAT_INT8, -1, &names));
     RITZ_REFUSE_IF(length < 1 || names.bytes % length != 0, RITZ_ERR_FORMAT,
                    "'%s': %" PRId64 " bytes are no names of %" PRId64 " each",
                    a->name, names.bytes, length);

@@ -12,10 +12,40 @@
 /* Rows or columns that a file may declare beyond one for each byte. */
 enum { NULL_ROWS = 32000000 };
 
+int64_t ritz_mat_size(int type)
+{
+    static const int64_t sizes[] = {
+        [RITZ_MAT_INT8] = 1,   [RITZ_MAT_UINT8] = 1,  [RITZ_MAT_INT16] = 2,
+        [RITZ_MAT_UINT16] = 2, [RITZ_MAT_INT32] = 4,  [RITZ_MAT_UINT32] = 4,
+        [RITZ_MAT_SINGLE] = 4, [RITZ_MAT_DOUBLE] = 8, [RITZ_MAT_INT64] = 8,
+        [RITZ_MAT_UINT64] = 8,
+    };
+
+    return type >= 0 && type <= RITZ_MAT_UINT64 ? sizes[type] : 0;
+}
+
 double ritz_mat_value(const ritz_mat_values *values, int64_t k)
 {
-    return ritz_bytes_value(values->at + k * ritz_bytes_size(values->type),
-                            values->type, values->swap);
+    int64_t size = ritz_mat_size(values->type);
+    const unsigned char *at = values->at + k * size;
+    uint64_t bits = ritz_bytes_bits(at, size, values->swap);
+
+    switch (values->type) {
+    case RITZ_MAT_INT8:
+        return (double)(int8_t)bits;
+    case RITZ_MAT_INT16:
+        return (double)(int16_t)bits;
+    case RITZ_MAT_INT32:
+        return (double)(int32_t)bits;
+    case RITZ_MAT_INT64:
+        return (double)(int64_t)bits;
+    case RITZ_MAT_SINGLE:
+        return ritz_bytes_single(at, values->swap);
+    case RITZ_MAT_DOUBLE:
+        return ritz_bytes_double(at, values->swap);
+    default:
+        return (double)bits; /* unsigned */
+    }
 }
 
 bool ritz_mat_passes(const ritz_mat_list *list)
@@ -127,7 +157,7 @@ static void put_values(const ritz_mat_entries *e, ritz_triplets *t,
 ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
                          const ritz_mat_entries *e)
 {
-    bool single = e->re.type == RITZ_BYTES_SINGLE;
+    bool single = e->re.type == RITZ_MAT_SINGLE;
     char why[RITZ_NAME_SIZE] = "";
     RITZ_OWN(ritz_triplets) t = {.is_complex = e->im.at != NULL};
     RITZ_OWN(ritz_matrix) matrix = {.digits = single ? 7 : 17};

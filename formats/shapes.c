@@ -1,6 +1,7 @@
 /* Shapes of modes and of columns, at points. */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/text.h"
 
 #include <ritz/export.h>
 #include <ritz/matrix.h>
@@ -33,25 +34,6 @@ static void mode_choice_free(mode_choice *which)
     free(which->at);
 }
 
-/* "5" or "7-9" of so many letters. */
-static bool read_part(const char *text, size_t length, int64_t *from,
-                      int64_t *to)
-{
-    char part[48] = "";
-    char *dash = NULL;
-
-    if (length == 0 || length >= sizeof part)
-        return false;
-    memcpy(part, text, length);
-    dash = strchr(part, '-');
-    if (dash)
-        *dash++ = '\0';
-    if (!ritz_text_whole(part, from) || *from < 1)
-        return false;
-    *to = *from;
-    return !dash || (ritz_text_whole(dash, to) && *to >= *from);
-}
-
 /* Append the numbers of a list, which are at most @p most; `which` NULL: only
  * the largest is wanted. */
 static ritz_status walk_list(const char *list, const char *what, int64_t most,
@@ -63,9 +45,11 @@ static ritz_status walk_list(const char *list, const char *what, int64_t most,
         size_t length = strcspn(at, ",");
         int64_t from = 0, to = 0;
 
-        RITZ_REFUSE_IF(!read_part(at, length, &from, &to), RITZ_ERR_ARGUMENT,
+        RITZ_REFUSE_IF(!ritz_text_range(at, length, &from, &to),
+                       RITZ_ERR_ARGUMENT,
                        "'%.*s' is no part of a list of modes such as 1,5,10-20",
                        (int)(length % 64), at);
+        to = to > 0 ? to : from;
         RITZ_REFUSE_IF(to > most, RITZ_ERR_ARGUMENT,
                        "there is no %s %" PRId64 ", there are %" PRId64, what,
                        to, most);

@@ -30,7 +30,6 @@ typedef struct ritz_matrix {
 typedef struct ritz_matrices {
     int64_t count;
     ritz_matrix *matrix;
-    char format[RITZ_NAME_SIZE]; /* of the descriptor that read them */
 } ritz_matrices;
 
 /* An entry of the directory: a matrix whose values were not read. */
@@ -97,21 +96,6 @@ ritz_status ritz_foreign_take(const ritz_foreign *file, int64_t k,
 ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status);
 void ritz_foreign_free(ritz_foreign *file);
 
-/** All matrices of a file, or of bytes, at once. */
-ritz_status ritz_foreign_read(const char *path, ritz_matrices *out);
-ritz_status ritz_foreign_parse(const char *bytes, int64_t size,
-                               ritz_matrices *out);
-
-/**
- * The matrix that "FILE[:NAME[#K]]" names: without a name the only one; the
- * K-th of that name, from 1. Without K there must be one only.
- *
- * A file whose whole name holds a colon is tried first.
- *
- * @return RITZ_ERR_ARGUMENT listing what the file holds
- */
-ritz_status ritz_foreign_select(const char *spec, ritz_matrix *out);
-
 /* Files that were read, and their SHA-256. */
 typedef struct ritz_file_sum {
     char *path;
@@ -127,9 +111,11 @@ typedef struct ritz_file_sums {
 ritz_status ritz_file_sums_add(ritz_file_sums *sums, const ritz_foreign *file);
 void ritz_file_sums_free(ritz_file_sums *sums);
 
-/* A matrix that is wanted. */
+/* The matrix that "FILE[:NAME[#K]]" names: without a name the only one; the
+   K-th of that name, from 1. Without K there must be one only. A file whose
+   whole name holds a colon is tried first. */
 typedef struct ritz_wanted {
-    const char *spec; /* as of ritz_foreign_select */
+    const char *spec;
     const char *what; /* "stiffness", before messages; NULL: nothing is */
     ritz_matrix *into;
 } ritz_wanted;
@@ -139,6 +125,7 @@ typedef struct ritz_wanted {
  * its matrices only those that are wanted.
  *
  * @param[in,out] sums  gets the files; NULL: not wanted
+ * @return RITZ_ERR_ARGUMENT listing what a file holds
  */
 ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,
                                  ritz_file_sums *sums);

@@ -150,6 +150,32 @@ bool ritz_text_whole(const char *text, int64_t *out)
     return true;
 }
 
+bool ritz_text_part(const char *text, size_t length, char mark,
+                    char copy[RITZ_NAME_SIZE], char **rest)
+{
+    *rest = NULL;
+    if (length >= RITZ_NAME_SIZE)
+        return false;
+    memcpy(copy, text, length);
+    copy[length] = '\0';
+    *rest = strchr(copy, mark);
+    if (*rest)
+        *(*rest)++ = '\0';
+    return true;
+}
+
+bool ritz_text_range(const char *text, size_t length, int64_t *from,
+                     int64_t *to)
+{
+    char copy[RITZ_NAME_SIZE];
+    char *dash = NULL;
+
+    *to = 0;
+    return ritz_text_part(text, length, '-', copy, &dash) &&
+           ritz_text_whole(copy, from) && *from > 0 &&
+           (!dash || (ritz_text_whole(dash, to) && *to >= *from));
+}
+
 ritz_status ritz_name_copy(const char *name, char out[RITZ_NAME_SIZE])
 {
     size_t length = strlen(name);

@@ -268,7 +268,7 @@ static ritz_status list_deck_names(const ritz_deck *deck, int64_t n,
 
 /* `GRID COMP` of one line, which may be blank or end in a comment. */
 static ritz_status take_line(const char *path, int64_t number, char *line,
-                             ritz_row_names *names)
+                             ritz_roster *named)
 {
     char field[2][48] = {"", ""}, more[2] = "";
     ritz_dof dof = {0};
@@ -289,43 +289,43 @@ static ritz_status take_line(const char *path, int64_t number, char *line,
         "'%s', line %" PRId64 ": '%s %s' is no dof: grids are from 1 "
         "on, directions 1 to 6, and 0 for a scalar point",
         path, number, field[0], field[1]);
-    names->dof[names->count++] = dof;
+    named->place[named->count++] = (ritz_row_place){dof, number};
     return RITZ_OK;
 }
 
-/* Say at which lines a dof stands twice: lines hold the places of names. */
-static ritz_status check_distinct(const char *path, const ritz_row_names *names,
-                                  const int64_t *line)
+/* By dof, then line. */
+static int compare_lines(const void *left, const void *right)
 {
-    RITZ_OWN_ARRAY ritz_row_place *sorted = NULL;
-    int64_t again = -1;
-    int64_t first = -1;
+    const ritz_row_place *a = left;
+    const ritz_row_place *b = right;
+    int order = compare_places(a, b);
+
+    return order ? order : (a->row > b->row) - (a->row < b->row);
+}
+
+/* Say at which lines a dof stands twice. */
+static ritz_status check_distinct(const char *path, const ritz_roster *named)
+{
     char name[RITZ_DOF_NAME_SIZE];
 
-    RITZ_CHECK_NEW(sorted, names->count);
-    for (int64_t k = 0; k < names->count; k++)
-        sorted[k] = (ritz_row_place){names->dof[k], line[k]};
-    qsort(sorted, (size_t)names->count, sizeof *sorted, ritz_dof_compare);
-    for (int64_t k = 1; k < names->count && again < 0; k++)
-        if (ritz_dof_compare(&sorted[k - 1].dof, &sorted[k].dof) == 0) {
-            bool swap = sorted[k - 1].row > sorted[k].row;
-
-            first = sorted[swap ? k : k - 1].row;
-            again = sorted[swap ? k - 1 : k].row;
-            ritz_dof_name(sorted[k].dof, name);
-        }
-    RITZ_REFUSE_IF(again >= 0, RITZ_ERR_FORMAT,
-                   "'%s', line %" PRId64 ": '%s' was named at line %" PRId64
-                   " already",
-                   path, again, name, first);
+    qsort(named->place, (size_t)named->count, sizeof *named->place,
+          compare_lines);
+    for (int64_t k = 1; k < named->count; k++)
+        RITZ_REFUSE_IF(
+            compare_places(&named->place[k - 1], &named->place[k]) == 0,
+            RITZ_ERR_FORMAT,
+            "'%s', line %" PRId64 ": '%s' was named at line %" PRId64
+            " already",
+            path, named->place[k].row, ritz_dof_name(named->place[k].dof, name),
+            named->place[k - 1].row);
     return RITZ_OK;
 }
 
 ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
 {
     RITZ_OWN(ritz_row_names) names = {0};
+    RITZ_OWN(ritz_roster) named = {0}; /* at the numbers of their lines */
     RITZ_OWN_ARRAY char *text = NULL;
-    RITZ_OWN_ARRAY int64_t *line = NULL;
     int64_t lines = 1;
     int64_t number = 0;
 
@@ -333,19 +333,18 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
     RITZ_CHECK_NEW(names.dof, lines);
-    RITZ_CHECK_NEW(line, lines);
+    RITZ_CHECK_NEW(named.place, lines);
     for (char *at = text; at;) {
         char *end = strchr(at, '\n');
-        int64_t before = names.count;
 
         if (end)
             *end = '\0';
-        RITZ_CHECK(take_line(path, ++number, at, &names));
-        if (names.count > before)
-            line[before] = number;
+        RITZ_CHECK(take_line(path, ++number, at, &named));
         at = end ? end + 1 : NULL;
     }
-    RITZ_CHECK(check_distinct(path, &names, line));
+    for (; names.count < named.count; names.count++)
+        names.dof[names.count] = named.place[names.count].dof;
+    RITZ_CHECK(check_distinct(path, &named));
     snprintf(names.map, sizeof names.map, "--dofs");
     RITZ_MOVE(*out, names);
     return RITZ_OK;

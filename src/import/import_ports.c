@@ -1,5 +1,6 @@
 /* Ports, inputs, outputs and dampers: texts that name dofs of a component. */
 #include "base/alloc.h"
+#include "base/text.h"
 #include "import/import.h"
 #include "model/equations.h"
 
@@ -220,24 +221,14 @@ static ritz_status add_range(int64_t from, int64_t to, draft *it)
 /* "5" must exist; of "10-20" those are taken that do. */
 static ritz_status add_part(const char *text, size_t length, draft *it)
 {
-    char part[48] = "";
-    char *dash = NULL;
     int64_t from = 0;
     int64_t to = 0;
-    bool good = length > 0 && length < sizeof part;
 
-    if (good) {
-        memcpy(part, text, length);
-        dash = strchr(part, '-');
-        if (dash)
-            *dash++ = '\0';
-        good = ritz_text_whole(part, &from) && from > 0 &&
-               (!dash || (ritz_text_whole(dash, &to) && to >= from));
-    }
-    RITZ_REFUSE_IF(!good, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!ritz_text_range(text, length, &from, &to),
+                   RITZ_ERR_ARGUMENT,
                    "'%.*s' is no part of a list of grids such as 1,5,10-20",
                    (int)length, text);
-    return dash ? add_range(from, to, it) : add_grid(from, it);
+    return to > 0 ? add_range(from, to, it) : add_grid(from, it);
 }
 
 static ritz_status fill_port(const char *text, draft *it)
@@ -394,22 +385,15 @@ static void add_aim(const ritz_extended *extended, const aim *to, double scale,
 /* "GRID:COMP" of `length` letters. */
 static ritz_status take_dof(const char *text, size_t length, ritz_dof *out)
 {
-    char copy[48] = "";
-    char *colon = NULL;
-    bool good = length < sizeof copy;
+    char grid[RITZ_NAME_SIZE];
+    char *component = NULL;
 
-    if (good) {
-        memcpy(copy, text, length);
-        colon = strchr(copy, ':');
-        good = colon != NULL;
-    }
-    if (good) {
-        *colon = '\0';
-        good = ritz_text_whole(copy, &out->grid) && out->grid > 0 &&
-               ritz_text_whole(colon + 1, &out->component) &&
-               out->component >= 0 && out->component <= 6;
-    }
-    RITZ_REFUSE_IF(!good, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!ritz_text_part(text, length, ':', grid, &component) ||
+                       !component || !ritz_text_whole(grid, &out->grid) ||
+                       out->grid < 1 ||
+                       !ritz_text_whole(component, &out->component) ||
+                       out->component < 0 || out->component > 6,
+                   RITZ_ERR_ARGUMENT,
                    "'%.*s' is no grid and direction such as 101:3 (0 for a "
                    "scalar point)",
                    (int)length, text);
@@ -549,18 +533,13 @@ static const char form[] = "NAME=GRID:COMP[,GRID:COMP]*C[*K]";
 /* "C" or "C*K". */
 static ritz_status take_constants(const char *text, double *c, double *k)
 {
-    char copy[RITZ_NAME_SIZE] = "";
+    char copy[RITZ_NAME_SIZE];
     char *star = NULL;
-    bool good = strlen(text) < sizeof copy;
 
-    if (good) {
-        memcpy(copy, text, strlen(text) + 1);
-        star = strchr(copy, '*');
-        if (star)
-            *star++ = '\0';
-        good = ritz_text_real(copy, c) && (!star || ritz_text_real(star, k));
-    }
-    RITZ_REFUSE_IF(!good, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(!ritz_text_part(text, strlen(text), '*', copy, &star) ||
+                       !ritz_text_real(copy, c) ||
+                       (star && !ritz_text_real(star, k)),
+                   RITZ_ERR_ARGUMENT,
                    "'%.40s' is neither C nor C*K, two finite numbers", text);
     RITZ_REFUSE_IF(*c < 0.0, RITZ_ERR_ARGUMENT,
                    "a damper's c is not negative, '%g' is", *c);

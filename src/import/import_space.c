@@ -234,27 +234,6 @@ static ritz_status check_parts(const parts *p)
     return RITZ_OK;
 }
 
-/* The k-th of "a,b,c", or "u3" if there is no list; false: none so long. */
-static bool take_item(const char *list, char prefix, int64_t k, char *out,
-                      size_t room)
-{
-    size_t length = 0;
-
-    if (!list) {
-        snprintf(out, room, "%c%" PRId64, prefix, k + 1);
-        return true;
-    }
-    for (int64_t i = 0; i < k; i++) {
-        list += strcspn(list, ",");
-        if (!*list)
-            return false;
-        list++;
-    }
-    length = strcspn(list, ",");
-    snprintf(out, room, "%.*s", (int)(length < room ? length : room - 1), list);
-    return true;
-}
-
 static int64_t count_items(const char *list)
 {
     int64_t count = 1;
@@ -278,7 +257,8 @@ static ritz_status take_limit(char *item, double *limit)
     return RITZ_OK;
 }
 
-/* Names, each once; an output may end in "@LIMIT". */
+/* Names "a,b,c", each once, or "u1", "u2", ... if there is no list; an output
+ * may end in "@LIMIT". */
 static ritz_status name_ends(const char *list, char prefix, int64_t count,
                              char (*name)[RITZ_NAME_SIZE], double *limit)
 {
@@ -288,7 +268,14 @@ static ritz_status name_ends(const char *list, char prefix, int64_t count,
                    "%" PRId64 " names are given for %" PRId64,
                    count_items(list), count);
     for (int64_t k = 0; k < count; k++) {
-        (void)take_item(list, prefix, k, item, sizeof item);
+        if (list) {
+            size_t length = strcspn(list, ",");
+
+            snprintf(item, sizeof item, "%.*s", (int)length, list);
+            list += length + 1;
+        } else {
+            snprintf(item, sizeof item, "%c%" PRId64, prefix, k + 1);
+        }
         RITZ_CHECK(take_limit(item, limit ? &limit[k] : NULL));
         RITZ_CHECK(ritz_name_copy(item, name[k]));
         for (int64_t i = 0; i < k; i++)

@@ -2,6 +2,7 @@
 #include "model/equations.h"
 #include "testing.h"
 
+#include "foreign.h"
 #include "solvers.h"
 
 #include <ritz/import.h>
@@ -255,7 +256,7 @@ static void nastran_makes_the_same_of_the_outboard_deck(void **state)
     assert_int_equal(bulk.num_dofs, ALL);
     assert_ok(ritz_elimination_new(&bulk.equations, ALL, bulk.dof, NULL, &e));
     assert_int_equal(e.gone.count, DEPENDENT);
-    assert_ok(ritz_foreign_select(spec, &gm));
+    assert_ok(foreign_select(spec, &gm));
     assert_ok(ritz_sparse_dense(&gm.A, &GM));
     assert_ok(ritz_sparse_dense(&e.G, &G));
     assert_int_equal(GM.nrow, DEPENDENT);

@@ -3,6 +3,7 @@
 
 #include "damage.h"
 #include "folder.h"
+#include "foreign.h"
 #include "solvers.h"
 
 #include <ritz/import.h>
@@ -217,7 +218,7 @@ static bool external(const char *name, ritz_matrices *out)
 
     if (!solvers_find(name, path))
         return false;
-    assert_ok(ritz_foreign_read(path, out));
+    assert_ok(foreign_read(path, out));
     return out->matrix != NULL;
 }
 
@@ -304,13 +305,13 @@ static void included_columns_are_read(void **state)
     deck = folder_write(
         "deck.bdf", "DMIG,K,0,6,2\nDMIG,K,1,1,,1,1,4.0\nINCLUDE 'part.pch'\n");
     folder_write("part.pch", "DMIG,K,2,1,,2,1,9.0\n");
-    assert_ok(ritz_foreign_read(deck, &all));
+    assert_ok(foreign_read(deck, &all));
     assert_int_equal(all.count, 1);
     assert_int_equal(all.matrix[0].A.ncol, 2);
     assert_near(all.matrix[0].A.val[1], 9.0, 0.0);
     ritz_matrices_free(&all);
     remove(folder_path("part.pch"));
-    assert_fails(ritz_foreign_read(deck, &all), RITZ_ERR_FILE, "part.pch");
+    assert_fails(foreign_read(deck, &all), RITZ_ERR_FILE, "part.pch");
     assert_int_equal(folder_remove(state), 0);
 }
 

@@ -1,5 +1,6 @@
 #include "testing.h"
 
+#include "foreign.h"
 #include "solvers.h"
 
 #include <ritz/import.h>
@@ -29,7 +30,7 @@ static double select_value(const char *spec)
     ritz_matrix m = {0};
     double value = 0.0;
 
-    assert_ok(ritz_foreign_select(spec, &m));
+    assert_ok(foreign_select(spec, &m));
     value = m.A.val[0];
     ritz_matrix_free(&m);
     return value;
@@ -68,17 +69,17 @@ static void an_unclear_spec_lists_what_the_file_holds(void **state)
     (void)state;
 
     put("foreign.op4", several);
-    assert_fails(ritz_foreign_select("foreign.op4", &m), RITZ_ERR_ARGUMENT,
+    assert_fails(foreign_select("foreign.op4", &m), RITZ_ERR_ARGUMENT,
                  "'foreign.op4' holds KAA (3 times), MAA: name one, as "
                  "foreign.op4:KAA#1");
-    assert_fails(ritz_foreign_select("foreign.op4:KAA", &m), RITZ_ERR_ARGUMENT,
+    assert_fails(foreign_select("foreign.op4:KAA", &m), RITZ_ERR_ARGUMENT,
                  "say which, as foreign.op4:KAA#1");
-    assert_fails(ritz_foreign_select("foreign.op4:KGG", &m), RITZ_ERR_ARGUMENT,
+    assert_fails(foreign_select("foreign.op4:KGG", &m), RITZ_ERR_ARGUMENT,
                  "holds no 'KGG', but KAA (3 times), MAA");
-    assert_fails(ritz_foreign_select("foreign.op4:KAA#4", &m),
-                 RITZ_ERR_ARGUMENT, "KAA 3 times, so that #4");
-    assert_fails(ritz_foreign_select("foreign.op4:KAA#0", &m),
-                 RITZ_ERR_ARGUMENT, "holds no 'KAA#0'");
+    assert_fails(foreign_select("foreign.op4:KAA#4", &m), RITZ_ERR_ARGUMENT,
+                 "KAA 3 times, so that #4");
+    assert_fails(foreign_select("foreign.op4:KAA#0", &m), RITZ_ERR_ARGUMENT,
+                 "holds no 'KAA#0'");
     assert_null(m.A.colptr);
     remove("foreign.op4");
 }
@@ -96,13 +97,12 @@ static void files_that_are_none_are_refused(void **state)
         snprintf(refusal + used, sizeof refusal - used, "%s%s",
                  k > 0 ? ", " : "", ritz_formats[k]->name);
     }
-    assert_fails(ritz_foreign_read("no_such.op4", &all), RITZ_ERR_FILE,
+    assert_fails(foreign_read("no_such.op4", &all), RITZ_ERR_FILE,
                  "no_such.op4");
     put("foreign.txt", "hello\n");
-    assert_fails(ritz_foreign_read("foreign.txt", &all), RITZ_ERR_FORMAT,
-                 refusal);
+    assert_fails(foreign_read("foreign.txt", &all), RITZ_ERR_FORMAT, refusal);
     put("foreign.txt", "");
-    assert_fails(ritz_foreign_read("foreign.txt", &all), RITZ_ERR_FORMAT,
+    assert_fails(foreign_read("foreign.txt", &all), RITZ_ERR_FORMAT,
                  "'foreign.txt': is empty");
     remove("foreign.txt");
 }
@@ -242,7 +242,7 @@ static void files_are_read_once_for_all_that_is_wanted(void **state)
 static ritz_status select_and_drop(const char *spec)
 {
     ritz_matrix m = {0};
-    ritz_status status = ritz_foreign_select(spec, &m);
+    ritz_status status = foreign_select(spec, &m);
 
     ritz_matrix_free(&m);
     return status;
@@ -268,12 +268,11 @@ static void nas2cam_holds_three_components(void **state)
     if (!solvers_find(CSUPER "nas2cam.op4", path))
         skip();
     snprintf(spec, sizeof spec, "%s:KAA#2", path);
-    assert_ok(ritz_foreign_select(spec, &m));
+    assert_ok(foreign_select(spec, &m));
     assert_int_equal(m.A.ncol, 36);
     ritz_matrix_free(&m);
     spec[strlen(spec) - 2] = '\0';
-    assert_fails(ritz_foreign_select(spec, &m), RITZ_ERR_ARGUMENT,
-                 "KAA (3 times)");
+    assert_fails(foreign_select(spec, &m), RITZ_ERR_ARGUMENT, "KAA (3 times)");
 }
 
 static const struct CMUnitTest tests[] = {

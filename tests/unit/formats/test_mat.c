@@ -2,6 +2,7 @@
 
 #include "damage.h"
 #include "folder.h"
+#include "foreign.h"
 #include "mat_samples.h"
 
 #include <ritz/import.h>
@@ -38,8 +39,8 @@ static void what_libmatio_writes_is_read_to_the_bit(void **state)
     for (int k = 0; k < MAT_SAMPLES; k++) {
         RITZ_OWN(ritz_matrices) all = {0};
 
-        assert_ok(ritz_foreign_read(folder_path(mat_samples[k].path), &all));
-        assert_string_equal(all.format, "mat");
+        assert_ok(foreign_read(folder_path(mat_samples[k].path), &all));
+        assert_string_equal(foreign_format, "mat");
         assert_int_equal(all.count, 4);
         assert_full(&all.matrix[0], "A");
         assert_sparse(&all.matrix[1], "S");
@@ -91,7 +92,7 @@ static void level_four_is_read_in_either_byte_order(void **state)
 
         add_level4(&b, 0, 3, 2, mat_full, swap);
         add_level4(&b, 2, 6, 3, triplets, swap);
-        assert_ok(ritz_foreign_parse(b.at, b.size, &all));
+        assert_ok(foreign_parse(b.at, b.size, &all));
         assert_int_equal(all.count, 2);
         assert_full(&all.matrix[0], "A");
         assert_sparse(&all.matrix[1], "A");
@@ -141,11 +142,11 @@ static void what_is_no_matrix_is_said_by_name(void **state)
     mat_put(file, mat_real("A", mat_full, 3, 2), 0);
     assert_int_equal(Mat_Close(file), 0);
     for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
-        assert_fails(ritz_foreign_select(folder_path(table[k].spec), &m),
+        assert_fails(foreign_select(folder_path(table[k].spec), &m),
                      table[k].status, table[k].words);
     }
-    assert_ok(ritz_foreign_select(folder_path("other.mat"),
-                                  &m)); /* the only matrix */
+    assert_ok(
+        foreign_select(folder_path("other.mat"), &m)); /* the only matrix */
     assert_full(&m, "A");
 }
 
@@ -175,7 +176,7 @@ static void integers_singles_and_pairs_keep_what_they_are(void **state)
                           MAT_F_COMPLEX),
             0);
     assert_int_equal(Mat_Close(file), 0);
-    assert_ok(ritz_foreign_read(folder_path("types.mat"), &all));
+    assert_ok(foreign_read(folder_path("types.mat"), &all));
     assert_true(all.matrix[0].A.val[0] == -5.0);
     assert_true(all.matrix[1].A.val[0] == 65535.0);
     assert_true(all.matrix[2].A.val[0] == (double)0.1F);
@@ -192,7 +193,7 @@ static void a_wrong_checksum_of_compressed_data_is_found(void **state)
     (void)state;
     assert_ok(ritz_bytes_read(folder_path("packed.mat"), &size, &at));
     at[size - 1] ^= 1; /* the last byte of the Adler-32 */
-    assert_fails(ritz_foreign_parse(at, size, &all), RITZ_ERR_FORMAT,
+    assert_fails(foreign_parse(at, size, &all), RITZ_ERR_FORMAT,
                  "compressed data are damaged");
     free(at);
 }
@@ -212,23 +213,23 @@ static void sizes_are_held_against_the_bytes_present(void **state)
     memset(b.at, ' ', 128);
     memcpy(b.at + 124, "\0\1IM", 4);
     add_words(&b, 16, huge, false);
-    assert_fails(ritz_foreign_parse(b.at, b.size, &all), RITZ_ERR_FORMAT,
+    assert_fails(foreign_parse(b.at, b.size, &all), RITZ_ERR_FORMAT,
                  "'A' is 2000000000 x 2000000000 and has 1 values");
     b.size = 128;
     add_words(&b, 6, many, false);
-    assert_fails(ritz_foreign_parse(b.at, b.size, &all), RITZ_ERR_FORMAT,
+    assert_fails(foreign_parse(b.at, b.size, &all), RITZ_ERR_FORMAT,
                  "byte 128: an element of 2000000000 bytes begins, but 16");
     b.size = 0;
     add_level4(&b, 0, 0, 0, mat_full, false);
     memcpy(b.at + 4, (int32_t[]){2000000000, 2000000000}, 8);
-    assert_fails(ritz_foreign_parse(b.at, b.size, &all), RITZ_ERR_FORMAT,
+    assert_fails(foreign_parse(b.at, b.size, &all), RITZ_ERR_FORMAT,
                  "'A' is 2000000000 x 2000000000, but 0 bytes are left");
 }
 
 static ritz_status read_and_drop(const char *path)
 {
     ritz_matrices all = {0};
-    ritz_status status = ritz_foreign_read(path, &all);
+    ritz_status status = foreign_read(path, &all);
 
     ritz_matrices_free(&all);
     return status;

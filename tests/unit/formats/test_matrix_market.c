@@ -1,6 +1,7 @@
 #include "testing.h"
 
 #include "damage.h"
+#include "foreign.h"
 
 #include <ritz/import.h>
 
@@ -10,7 +11,7 @@
 
 static ritz_status parse(const char *text, ritz_matrices *out)
 {
-    return ritz_foreign_parse(text, (int64_t)strlen(text), out);
+    return foreign_parse(text, (int64_t)strlen(text), out);
 }
 
 static ritz_status read_text(const char *text)
@@ -179,7 +180,7 @@ static void assert_round_trip(const ritz_matrix *m, const char *spelling)
     int64_t nnz = m->A.colptr[m->A.ncol];
 
     assert_ok(ritz_matrix_market_write(path, m, "two\nlines"));
-    assert_ok(ritz_foreign_read(path, &all));
+    assert_ok(foreign_read(path, &all));
     assert_string_equal(all.matrix[0].spelling, spelling);
     assert_int_equal(all.matrix[0].A.colptr[m->A.ncol], nnz);
     assert_memory_equal(all.matrix[0].A.rowind, m->A.rowind,
@@ -254,7 +255,7 @@ static void third_party_files_are_read(void **state)
         char path[600];
 
         snprintf(path, sizeof path, "%s/%s", folder, cases[k].file);
-        assert_ok(ritz_foreign_read(path, &all));
+        assert_ok(foreign_read(path, &all));
         m = &all.matrix[0];
         assert_int_equal(m->A.nrow, cases[k].n);
         assert_true(ritz_sparse_asymmetry(&m->A) == 0.0);

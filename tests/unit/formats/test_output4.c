@@ -1,6 +1,7 @@
 #include "testing.h"
 
 #include "damage.h"
+#include "foreign.h"
 #include "formats/decimal.h"
 #include "solvers.h"
 
@@ -16,7 +17,7 @@ enum { PATH_SIZE = 512 };
 
 static void parse(const char *bytes, ritz_matrices *out)
 {
-    assert_ok(ritz_foreign_parse(bytes, (int64_t)strlen(bytes), out));
+    assert_ok(foreign_parse(bytes, (int64_t)strlen(bytes), out));
 }
 
 static double at(const ritz_matrix *m, int64_t i, int64_t j)
@@ -135,7 +136,7 @@ static void every_spelling_of_text_gives_the_same_matrix(void **state)
         m = &all.matrix[0];
         assert_int_equal(all.count, 1);
         assert_string_equal(m->name, "A");
-        assert_string_equal(all.format, "output4");
+        assert_string_equal(foreign_format, "output4");
         assert_int_equal(m->A.nrow, 3);
         assert_int_equal(m->A.ncol, 2);
         assert_int_equal(m->A.colptr[2], 4);
@@ -344,7 +345,7 @@ static void assert_round_trip(int64_t count, const ritz_matrix *m,
     RITZ_OWN(ritz_matrices) all = {0};
 
     assert_ok(ritz_output4_write(path, count, m, style));
-    assert_ok(ritz_foreign_read(path, &all));
+    assert_ok(foreign_read(path, &all));
     assert_int_equal(all.count, count);
     for (int64_t k = 0; k < count; k++) {
         assert_string_equal(all.matrix[k].name,
@@ -493,9 +494,9 @@ static void spellings_of_third_party_files_agree(void **state)
             RITZ_OWN(ritz_matrices) b = {0};
 
             solvers_find(families[k].file, path);
-            assert_ok(ritz_foreign_read(path, &a));
+            assert_ok(foreign_read(path, &a));
             solvers_find(families[k].other[o], path);
-            assert_ok(ritz_foreign_read(path, &b));
+            assert_ok(foreign_read(path, &b));
             assert_int_equal(a.count, b.count);
             for (int64_t m = 0; m < a.count; m++)
                 assert_same(&a.matrix[m], &b.matrix[m], families[k].digits);
@@ -527,12 +528,12 @@ static void all_third_party_files_are_read(void **state)
             if (!strstr(entry->d_name, ".op4"))
                 continue;
             snprintf(file, sizeof file, "%s/%s", path, entry->d_name);
-            assert_ok(ritz_foreign_read(file, &all));
+            assert_ok(foreign_read(file, &all));
             for (int64_t m = 0; m < all.count; m++)
                 assert_ok(ritz_sparse_check(
                     &all.matrix[m].A,
                     all.matrix[m].A.colptr[all.matrix[m].A.ncol]));
-            assert_string_equal(all.format, "output4");
+            assert_string_equal(foreign_format, "output4");
             files++;
         }
         closedir(folder);
@@ -671,7 +672,7 @@ static void records_of_no_bytes_are_skipped(void **state)
     spaced = calloc((size_t)size + 16, 1);
     memcpy(spaced, bytes, 32); /* the header, then two records of 0 bytes */
     memcpy(spaced + 32 + 16, bytes + 32, (size_t)size - 32);
-    assert_ok(ritz_foreign_parse(spaced, size + 16, &all));
+    assert_ok(foreign_parse(spaced, size + 16, &all));
     assert_same(&m, &all.matrix[0], 0);
     ritz_matrices_free(&all);
     ritz_matrix_free(&m);

@@ -2,6 +2,7 @@
  * Pairs of matrices from elsewhere whose numbers are known: oracles.md section
  * 7 (third-party files, RITZ_EXTERNAL_DATA).
  */
+#include "foreign.h"
 #include "responses.h"
 #include "testing.h"
 
@@ -34,7 +35,7 @@ static bool read_sparse(const char *name, ritz_sparse *out)
 
     if (!find(name, path))
         return false;
-    assert_ok(ritz_foreign_select(path, &matrix));
+    assert_ok(foreign_select(path, &matrix));
     *out = matrix.A;
     matrix.A = (ritz_sparse){0};
     return true;
