@@ -23,7 +23,7 @@ typedef struct chart_file {
     int holds;
     const char *path;
     model model; /* of a container */
-    char *text;  /* of tracks */
+    char *text;  /* of tracks, which are cut up where they are drawn */
 } chart_file;
 
 typedef struct chart_sources {

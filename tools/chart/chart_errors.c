@@ -4,6 +4,7 @@
  */
 #include "chart/chart.h"
 
+#include "base/alloc.h"
 #include "base/text.h"
 
 #include <math.h>
@@ -46,7 +47,7 @@ typedef struct panel {
     double x_low, x_high, y_low, y_high, tolerance;
 } panel;
 
-/* A chart while it is composed; the picture owns the arrays. */
+/* A chart while it is composed. */
 typedef struct work {
     const form *form;
     record_set *s;
@@ -58,6 +59,11 @@ typedef struct work {
     int64_t lifted, left_out; /* errors drawn at the foot; not drawn */
     picture *picture;
 } work;
+
+static void work_free(work *w)
+{
+    RITZ_FREE(w->panel, w->x, w->y, w->at, w->front, w->order);
+}
 
 /* --- scales --------------------------------------------------------------- */
 
@@ -395,10 +401,8 @@ static void say_missing(work *w)
 
 static ritz_status compose_errors(work *w)
 {
-    static const int64_t stride = sizeof(panel) / sizeof(double);
     const int64_t n = w->s->num_measures, across = n > 1 ? 2 : 1;
     picture *p = w->picture;
-    const panel *first = w->panel;
 
     fprintf(p->data.file,
             "area\tseries\tstyle\tx\ty\ttip\torder\tmethod\tword\n");
@@ -416,11 +420,8 @@ static ritz_status compose_errors(work *w)
             n, across, w->s->num_methods, w->form->times, !w->form->times);
     picture_give_text(p, "xlabel", w->form->xlabel);
     picture_give_texts(p, "title", n, w->s->measure->title, sizeof(measure));
-    picture_give_reals(p, "x_low", n, &first->x_low, stride);
-    picture_give_reals(p, "x_high", n, &first->x_high, stride);
-    picture_give_reals(p, "y_low", n, &first->y_low, stride);
-    picture_give_reals(p, "y_high", n, &first->y_high, stride);
-    picture_give_reals(p, "tolerance", n, &first->tolerance, stride);
+    picture_give_reals(p, "x_low,x_high,y_low,y_high,tolerance", n,
+                       &w->panel->x_low, sizeof *w->panel);
     add_signs(w);
     say_missing(w);
     put_table(w);
@@ -463,7 +464,7 @@ static ritz_status draw_errors(const chart_sources *sources,
                                picture *out)
 {
     RITZ_OWN(record_set) set = {0};
-    work w = {.form = how, .s = &set, .picture = out};
+    RITZ_OWN(work) w = {.form = how, .s = &set, .picture = out};
     bool any = false;
 
     RITZ_CHECK(record_set_new(&sources->runs, request->subject, &set));
@@ -472,12 +473,12 @@ static ritz_status draw_errors(const chart_sources *sources,
         any = any || isfinite(x_of(how, &set.all.item[k]));
     RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
                    "no record says what its model cost");
-    PICTURE_NEW(out, w.panel, set.num_measures);
-    PICTURE_NEW(out, w.x, set.all.count);
-    PICTURE_NEW(out, w.y, set.all.count);
-    PICTURE_NEW(out, w.at, set.all.count);
-    PICTURE_NEW(out, w.front, set.all.count);
-    PICTURE_NEW(out, w.order, set.all.count);
+    RITZ_CHECK_NEW(w.panel, set.num_measures);
+    RITZ_CHECK_NEW(w.x, set.all.count);
+    RITZ_CHECK_NEW(w.y, set.all.count);
+    RITZ_CHECK_NEW(w.at, set.all.count);
+    RITZ_CHECK_NEW(w.front, set.all.count);
+    RITZ_CHECK_NEW(w.order, set.all.count);
     return compose_errors(&w);
 }
 

@@ -1,6 +1,8 @@
 /* Values of modes as bars, from rankings. */
 #include "chart/chart.h"
 
+#include "base/alloc.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -47,15 +49,12 @@ static double height_of(const contest *all, int64_t c, int64_t number)
     return fabs(r->value[mode]) / (is_mixed(all) ? top : 1.0);
 }
 
-/* Numbers of the modes that are among the first few of any ranking; ascending
-   order. */
-static ritz_status pick_numbers(picture *p, const contest *all, int64_t most,
-                                int64_t *count, int64_t **out)
+/* Numbers of the modes that are among the first few of any ranking, in
+   ascending order; how many there are. */
+static int64_t pick_numbers(const contest *all, int64_t most, int64_t *number)
 {
-    int64_t *number = NULL;
     int64_t n = 0;
 
-    PICTURE_NEW(p, number, all->count * most);
     for (int64_t c = 0; c < all->count; c++)
         for (int64_t k = 0; k < all->ranking[c]->count && k < most; k++) {
             int64_t wanted = number_of(all, c, all->ranking[c]->order[k]);
@@ -70,9 +69,7 @@ static ritz_status pick_numbers(picture *p, const contest *all, int64_t most,
             number[at] = wanted;
             n++;
         }
-    *count = n;
-    *out = number;
-    return RITZ_OK;
+    return n;
 }
 
 static double hertz_of(const contest *all, int64_t number)
@@ -124,14 +121,15 @@ static ritz_status draw_rankings(picture *p, const char *title,
                                  const contest *all, int64_t most)
 {
     double largest = 0.0;
-    int64_t *number = NULL;
+    RITZ_OWN_ARRAY int64_t *number = NULL;
     int64_t count = 0;
 
     for (int64_t c = 0; c < all->count; c++)
         largest = fmax(largest, largest_of(all->ranking[c]));
     RITZ_REFUSE_IF(!(largest > 0.0), RITZ_ERR_ARGUMENT,
                    "no mode has a value that could be drawn");
-    RITZ_CHECK(pick_numbers(p, all, most, &count, &number));
+    RITZ_CHECK_NEW(number, all->count * most);
+    count = pick_numbers(all, most, number);
     put_data(p, all, count, number);
     p->wide = 220.0 + (double)(count * (14 + 7 * all->count));
     p->wide = fmin(fmax(p->wide, 640.0), 2400.0);
@@ -154,32 +152,27 @@ ritz_status chart_rankings(const char *path, const char *title,
     return draw_rankings(&p, title, all, most);
 }
 
-/* Rankings of all files as ritz-rank holds them, borrowed from the sources. */
-static ritz_status borrow_rankings(const chart_sources *sources, picture *p,
-                                   rank_result *out)
+ritz_status chart_hankel(const chart_sources *sources,
+                         const chart_request *request, picture *out)
 {
-    PICTURE_NEW(p, out->group, sources->count);
-    PICTURE_NEW(p, out->file, sources->count);
+    RITZ_OWN_ARRAY ranked *group = NULL;
+    RITZ_OWN_ARRAY char(*name)[RITZ_NAME_SIZE] = NULL;
+    rank_result result = {.count = sources->count};
+    RITZ_OWN(contest) all = {0};
+    char title[256];
+
+    RITZ_CHECK_NEW(group, sources->count);
+    RITZ_CHECK_NEW(name, sources->count);
     for (int64_t k = 0; k < sources->count; k++) {
         const chart_file *file = &sources->file[k];
 
         RITZ_REFUSE_IF(file->model.rankings.count == 0, RITZ_ERR_FORMAT,
                        "'%s' holds no ranking", file->path);
-        out->group[out->count].all = file->model.rankings;
-        snprintf(out->file[out->count++], RITZ_NAME_SIZE, "%.63s",
-                 picture_base(file->path));
+        group[k].all = file->model.rankings; /* borrowed */
+        snprintf(name[k], sizeof name[k], "%.63s", picture_base(file->path));
     }
-    return RITZ_OK;
-}
-
-ritz_status chart_hankel(const chart_sources *sources,
-                         const chart_request *request, picture *out)
-{
-    rank_result result = {0};
-    RITZ_OWN(contest) all = {0};
-    char title[256];
-
-    RITZ_CHECK(borrow_rankings(sources, out, &result));
+    result.group = group;
+    result.file = name;
     RITZ_CHECK(contest_new(&result, true, &all));
     snprintf(title, sizeof title, "%s, damping %.100s", all.ranking[0]->by,
              rankings_damping(all.ranking[0]));

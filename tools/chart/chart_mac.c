@@ -32,7 +32,8 @@ typedef struct mac_side {
     const ritz_configuration *at; /* NULL: it is no system */
     ritz_dense U;                 /* n x count */
     ritz_dense MU; /* the same times the mass of bodies; {0}: U itself */
-    double hertz[MOST_MODES]; /* NaN: none */
+    double hertz[MOST_MODES];  /* NaN: none */
+    char mode[MOST_MODES][32]; /* "3: 1.25", number and frequency */
     int64_t count;
     const ritz_dof *dof;    /* n, borrowed; NULL: rows are not dofs */
     char (*channel)[LABEL]; /* n, inputs and outputs; NULL: rows are none */
@@ -430,6 +431,13 @@ static ritz_status choose_sides(const chart_sources *sources,
     return RITZ_OK;
 }
 
+static void name_modes(mac_side *s)
+{
+    for (int64_t k = 0; k < s->count; k++)
+        snprintf(s->mode[k], sizeof s->mode[k],
+                 isnan(s->hertz[k]) ? "%ld" : "%ld: %.3g", k + 1, s->hertz[k]);
+}
+
 /* Shapes of both sides, in rows that both have. */
 static ritz_status find_shapes(mac_pair *pair)
 {
@@ -455,6 +463,7 @@ static ritz_status find_shapes(mac_pair *pair)
             RITZ_CHECK_IN(side[k].file->path,
                           systems ? find_channel_shapes(&side[k])
                                   : find_dof_shapes(&side[k]));
+        name_modes(&side[k]);
     }
     RITZ_CHECK(match_rows(&side[0], &side[1]));
     return side[0].channel ? scale_channels(pair) : RITZ_OK;
@@ -465,45 +474,22 @@ static ritz_status find_shapes(mac_pair *pair)
 /* Up to this many modes there is a number in each cell. */
 enum { NUMBERED = 24 };
 
-static void say_mode(const mac_side *s, int64_t k, char out[32])
-{
-    if (isnan(s->hertz[k]))
-        snprintf(out, 32, "%ld", k + 1);
-    else
-        snprintf(out, 32, "%ld: %.3g", k + 1, s->hertz[k]);
-}
-
-/* Names of modes, as an array of the template. */
-static void give_modes(picture *p, const char *name, const mac_side *s)
-{
-    char word[MOST_MODES][32];
-
-    for (int64_t k = 0; k < s->count; k++)
-        say_mode(s, k, word[k]);
-    picture_give_texts(p, name, s->count, word[0], sizeof word[0]);
-}
-
 static void put_data(const mac_side *a, const mac_side *b, picture *p)
 {
     FILE *data = p->data.file, *table = p->table.file;
-    char x[32], y[32];
 
     fprintf(data, "column\trow\tmac\ttip\n");
     html_line(table, a->name);
-    for (int64_t j = 0; j < b->count; j++) {
-        say_mode(b, j, x);
-        fprintf(table, "\t%s", x);
-    }
+    for (int64_t j = 0; j < b->count; j++)
+        fprintf(table, "\t%s", b->mode[j]);
     for (int64_t i = 0; i < a->count; i++) {
-        say_mode(a, i, y);
-        fprintf(table, "\n%s", y);
+        fprintf(table, "\n%s", a->mode[i]);
         for (int64_t j = 0; j < b->count; j++) {
             double mac = mac_of(a, b, i, j);
 
-            say_mode(b, j, x);
             fprintf(data, "%ld\t%ld\t%.6g\t", j, i, mac);
-            picture_tip(p, "%.60s %s Hz\n%.60s %s Hz\nMAC %.4f", a->name, y,
-                        b->name, x, mac);
+            picture_tip(p, "%.60s %s Hz\n%.60s %s Hz\nMAC %.4f", a->name,
+                        a->mode[i], b->name, b->mode[j], mac);
             fprintf(data, "\n");
             fprintf(table, "\t%.4f", mac);
         }
@@ -545,8 +531,9 @@ ritz_status chart_mac(const chart_sources *sources,
     picture_give_text(p, "head", title);
     picture_give_text(p, "xlabel", b->name);
     picture_give_text(p, "ylabel", a->name);
-    give_modes(p, "column_name", b);
-    give_modes(p, "row_name", a);
+    picture_give_texts(p, "column_name", b->count, b->mode[0],
+                       sizeof b->mode[0]);
+    picture_give_texts(p, "row_name", a->count, a->mode[0], sizeof a->mode[0]);
     put_data(a, b, p);
     return picture_draw(p, "mac.gp", title,
                         "likeness of mode shapes: 1 the same, 0 nothing in "

@@ -10,6 +10,8 @@
  */
 #include "chart/chart.h"
 
+#include "base/alloc.h"
+
 #include <complex.h>
 #include <math.h>
 #include <string.h>
@@ -36,12 +38,12 @@ typedef struct channel {
     int64_t lines;         /* one, or as many as there are singular values */
     int64_t place[MOST_RESPONSES]; /* in H of a point of each response */
     char title[2 * PICTURE_WORD];
-    double singular;    /* whether it is that of singular values */
-    double shared;      /* points in common with the first response */
+    double singular; /* whether it is that of singular values */
+    double shared;   /* points in common with the first response */
+    chart_range y, strip[STRIPS];
     double most, least; /* of magnitudes above 0 */
     double top;         /* the same as most, or a true peak above it */
     double worst[STRIPS], best[STRIPS]; /* of errors above 0 */
-    double y_low, y_high, low[STRIPS], high[STRIPS];
 } channel;
 
 typedef struct overlay {
@@ -220,12 +222,12 @@ static void measure_errors(const overlay *o, const channel *c, int64_t w,
 }
 
 /* Whole decades that hold both ends, at most fourteen. */
-static void set_decades(double least, double most, double *low, double *high)
+static chart_range find_decades(double least, double most)
 {
     most = most > 0.0 ? most : 1.0;
     least = least < most ? least : most / 10.0;
-    *low = pow(10.0, floor(log10(fmax(least, 1e-14 * most))));
-    *high = pow(10.0, ceil(log10(1.01 * most)));
+    return (chart_range){pow(10.0, floor(log10(fmax(least, 1e-14 * most)))),
+                         pow(10.0, ceil(log10(1.01 * most)))};
 }
 
 /* Magnitudes of the first response, by which errors are measured. */
@@ -327,9 +329,9 @@ static ritz_status put_line(const overlay *o, channel *c, int64_t w,
 {
     const ritz_response *r = o->curve[w];
     FILE *file = o->picture->data.file;
-    point *all = NULL;
+    RITZ_OWN_ARRAY point *all = NULL;
 
-    PICTURE_NEW(o->picture, all, r->count);
+    RITZ_CHECK_NEW(all, r->count);
     measure_line(o, c, w, line, all);
     for (int64_t k = 0, end = 0; k < r->count; k = end) {
         const int64_t column = column_of(o->curve[0], r->hertz[k]);
@@ -473,9 +475,9 @@ static ritz_status put_channel(const overlay *o, channel *c)
     for (int64_t w = 0; c->singular > 0.0 && w < o->count; w++)
         put_true_peak(o, c, w);
     fputc('\n', o->picture->data.file);
-    set_decades(c->least, c->top, &c->y_low, &c->y_high);
+    c->y = find_decades(c->least, c->top);
     for (int s = 0; s < STRIPS; s++)
-        set_decades(c->best[s], c->worst[s], &c->low[s], &c->high[s]);
+        c->strip[s] = find_decades(c->best[s], c->worst[s]);
     return RITZ_OK;
 }
 
@@ -555,7 +557,6 @@ static void say_title(const overlay *o, channel *c)
 /* Variables of the template: those of all channels, then of each. */
 static void give_channels(const overlay *o)
 {
-    static const int64_t stride = sizeof(channel) / sizeof(double);
     const ritz_response *r = o->curve[0];
     const double low = r->hertz[0], high = r->hertz[r->count - 1];
     const channel *all = o->channel;
@@ -564,13 +565,6 @@ static void give_channels(const overlay *o)
     const int64_t down = (n + across - 1) / across;
     const int strips = o->strip[RELATIVE] + o->strip[DECIBELS];
     const int tall = CELL_HIGH + (strips > 1 ? STRIP_HIGH : 0);
-    const struct {
-        const char *name;
-        const double *value;
-    } list[] = {{"singular", &all->singular},  {"shared", &all->shared},
-                {"y_low", &all->y_low},        {"y_high", &all->y_high},
-                {"error_low", &all->low[0]},   {"error_high", &all->high[0]},
-                {"decibel_low", &all->low[1]}, {"decibel_high", &all->high[1]}};
 
     p->wide = (double)(across * CELL_WIDE);
     p->body = (double)(down * tall);
@@ -581,8 +575,10 @@ static void give_channels(const overlay *o)
             n, across, tall, o->count, strips, o->strip[DECIBELS], low,
             high > low ? high : low + 1.0, is_decades(r));
     picture_give_texts(p, "title", n, all->title, sizeof *all);
-    for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-        picture_give_reals(p, list[k].name, n, list[k].value, stride);
+    picture_give_reals(p,
+                       "singular,shared,y_low,y_high,error_low,error_high,"
+                       "decibel_low,decibel_high",
+                       n, &all->singular, sizeof *all);
 }
 
 ritz_status chart_response(const chart_sources *sources,

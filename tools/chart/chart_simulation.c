@@ -17,7 +17,6 @@ typedef struct runs {
     const ritz_simulation *run[MOST_RUNS];
     const char *name[MOST_RUNS];
     int64_t num_outputs;
-    double low[MOST_OUTPUTS], high[MOST_OUTPUTS]; /* of all runs */
     picture *picture;
 } runs;
 
@@ -45,15 +44,16 @@ static ritz_status take_runs(const chart_sources *sources, runs *out)
     return RITZ_OK;
 }
 
-/* One output of one run; of each few points the least and the largest stay. */
-static void put_line(runs *all, int64_t i, int64_t w)
+/* One output of one run; of each few points the least and the largest stay.
+   Returns its extremes. */
+static chart_range put_line(runs *all, int64_t i, int64_t w)
 {
     const ritz_simulation *s = all->run[w];
     const int64_t few = 1 + 2 * s->count / MOST_POINTS, n = s->num_outputs;
     const int64_t output =
         chart_find_name(s->num_outputs, s->output, all->run[0]->output[i]);
     FILE *file = all->picture->data.file, *table = all->picture->table.file;
-    double low = HUGE_VAL, high = -HUGE_VAL;
+    chart_range y = {HUGE_VAL, -HUGE_VAL};
 
     for (int64_t k = 0; k < s->count; k += few) {
         int64_t least = k, most = k;
@@ -64,8 +64,8 @@ static void put_line(runs *all, int64_t i, int64_t w)
             if (s->y[p * n + output] > s->y[most * n + output])
                 most = p;
         }
-        low = fmin(low, s->y[least * n + output]);
-        high = fmax(high, s->y[most * n + output]);
+        y.low = fmin(y.low, s->y[least * n + output]);
+        y.high = fmax(y.high, s->y[most * n + output]);
         for (int64_t part = 0; part < (least == most ? 1 : 2); part++) {
             int64_t p = (part == 0) == (least <= most) ? least : most;
 
@@ -73,14 +73,13 @@ static void put_line(runs *all, int64_t i, int64_t w)
                     s->y[p * n + output]);
         }
     }
-    all->low[i] = w > 0 ? fmin(all->low[i], low) : low;
-    all->high[i] = w > 0 ? fmax(all->high[i], high) : high;
     fputc('\n', file);
     html_line(table, s->output[output]);
     fprintf(table, "\t");
     html_line(table, all->name[w]);
-    fprintf(table, "\t%.6g\t%.6g\t%.6g\t%s\n", low, high,
+    fprintf(table, "\t%.6g\t%.6g\t%.6g\t%s\n", y.low, y.high,
             s->y[(s->count - 1) * n + output], s->integrator);
+    return y;
 }
 
 ritz_status chart_simulation(const chart_sources *sources,
@@ -88,6 +87,7 @@ ritz_status chart_simulation(const chart_sources *sources,
 {
     runs all = {.picture = p};
     const ritz_simulation *first = NULL;
+    chart_range y[MOST_OUTPUTS];
 
     (void)request;
     RITZ_CHECK(take_runs(sources, &all));
@@ -111,12 +111,17 @@ ritz_status chart_simulation(const chart_sources *sources,
     for (int64_t i = 0; i < all.num_outputs; i++) {
         double room = 0.0;
 
-        for (int64_t w = 0; w < all.count; w++)
-            put_line(&all, i, w);
-        room = 0.05 * (all.high[i] - all.low[i]);
-        room = room > 0.0 ? room : fmax(0.05 * fabs(all.high[i]), 0.5);
-        all.low[i] -= room;
-        all.high[i] += room;
+        y[i] = (chart_range){HUGE_VAL, -HUGE_VAL};
+        for (int64_t w = 0; w < all.count; w++) {
+            const chart_range own = put_line(&all, i, w);
+
+            y[i].low = fmin(y[i].low, own.low);
+            y[i].high = fmax(y[i].high, own.high);
+        }
+        room = 0.05 * (y[i].high - y[i].low);
+        room = room > 0.0 ? room : fmax(0.05 * fabs(y[i].high), 0.5);
+        y[i].low -= room;
+        y[i].high += room;
     }
     fprintf(p->given.file,
             "outputs = %ld\nruns = %ld\nx_low = %.9g\nx_high = %.9g\n",
@@ -124,8 +129,7 @@ ritz_status chart_simulation(const chart_sources *sources,
             first->seconds[first->count - 1]);
     picture_give_texts(p, "title", all.num_outputs, first->output[0],
                        sizeof *first->output);
-    picture_give_reals(p, "y_low", all.num_outputs, all.low, 1);
-    picture_give_reals(p, "y_high", all.num_outputs, all.high, 1);
+    picture_give_reals(p, "y_low,y_high", all.num_outputs, &y->low, sizeof *y);
     return picture_draw(p, "simulation.gp", "Time responses",
                         "outputs over time, one below the other");
 }

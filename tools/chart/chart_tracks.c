@@ -4,6 +4,8 @@
  */
 #include "chart/chart.h"
 
+#include "base/alloc.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,15 +22,19 @@ typedef struct track_row {
     const char *name; /* of the configuration */
 } track_row;
 
-/* The table; the picture owns its memory. */
 typedef struct track_table {
     int64_t count, num_tracks, num_at;
     track_row *row;
-    const char **at;
-    double *x; /* of each configuration */
+    const char **at; /* each configuration, */
+    double *x;       /* and its place */
     char xlabel[RITZ_NAME_SIZE];
     bool swept; /* x is a setting; else only the number of its configuration */
 } track_table;
+
+static void track_table_free(track_table *t)
+{
+    RITZ_FREE(t->row, t->at, t->x);
+}
 
 /* --- reading -------------------------------------------------------------- */
 
@@ -55,55 +61,52 @@ static bool take_row(char *line, track_row *out)
             ritz_text_real(field[4], &out->mac));
 }
 
-/* Read the rows up to a frequency, and number the configurations. */
+/* Index of the configuration of a row, which may be a new one. */
+static int64_t find_configuration(const char *name, track_table *t)
+{
+    int64_t k = t->num_at - 1;
+
+    while (k >= 0 && strcmp(t->at[k], name) != 0)
+        k--;
+    if (k < 0)
+        t->at[k = t->num_at++] = name;
+    return k;
+}
+
+/* Read the rows up to a frequency, cutting up the text. */
 static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
 {
-    int64_t number = 1;
-    char *line = strchr(text, '\n'); /* behind the names of columns */
+    int64_t lines = 1, number = 1;
 
-    while (line && *++line) {
-        char *end = strchr(line, '\n');
+    for (const char *c = text; *c; c++)
+        lines += *c == '\n';
+    RITZ_REFUSE_IF(lines > MOST_ROWS, RITZ_ERR_FORMAT,
+                   "more than %d lines cannot be told apart", (int)MOST_ROWS);
+    RITZ_CHECK_NEW(t->row, lines + 1);
+    RITZ_CHECK_NEW(t->at, lines); /* NOLINT: of pointers */
+    RITZ_CHECK_NEW(t->x, lines);
+    /* behind the names of columns */
+    for (char *line = strchr(text, '\n'), *end = NULL; line && *++line;
+         line = end) {
         track_row *r = &t->row[t->count];
 
+        end = strchr(line, '\n');
         if (end)
             *end = '\0';
         number++;
         RITZ_REFUSE_IF(line[strspn(line, "\r")] && !take_row(line, r),
                        RITZ_ERR_FORMAT, "line %ld is no row of tracks", number);
-        if (r->name && r->hertz <= up_to_hz) {
-            r->at = t->num_at - 1;
-            while (r->at >= 0 && strcmp(t->at[r->at], r->name) != 0)
-                r->at--;
-            if (r->at < 0)
-                t->at[r->at = t->num_at++] = r->name;
-            t->num_tracks = r->track > t->num_tracks ? r->track : t->num_tracks;
-            t->count++;
-        }
-        line = end;
+        if (!r->name || r->hertz > up_to_hz)
+            continue;
+        r->at = find_configuration(r->name, t);
+        t->num_tracks = r->track > t->num_tracks ? r->track : t->num_tracks;
+        t->count++;
     }
     RITZ_REFUSE_IF(t->count == 0, RITZ_ERR_FORMAT, "no mode is in it");
     RITZ_REFUSE_IF(t->num_tracks > MOST_TRACKS, RITZ_ERR_FORMAT,
                    "%ld tracks, more than %d cannot be told apart",
                    t->num_tracks, (int)MOST_TRACKS);
     return RITZ_OK;
-}
-
-static ritz_status read_table(const char *text, double up_to_hz, picture *p,
-                              track_table *t)
-{
-    int64_t lines = 1;
-    char *copy = NULL;
-
-    for (const char *c = text; *c; c++)
-        lines += *c == '\n';
-    RITZ_REFUSE_IF(lines > MOST_ROWS, RITZ_ERR_FORMAT,
-                   "more than %d lines cannot be told apart", (int)MOST_ROWS);
-    PICTURE_NEW(p, copy, (int64_t)strlen(text) + 1);
-    PICTURE_NEW(p, t->row, lines + 1);
-    PICTURE_NEW(p, t->at, lines);
-    PICTURE_NEW(p, t->x, lines);
-    memcpy(copy, text, strlen(text) + 1);
-    return read_rows(copy, up_to_hz, t);
 }
 
 /* Value of "name=VALUE" at place k of "a=1,b=2"; false: there is none. */
@@ -226,14 +229,13 @@ static ritz_status draw_tracks(const track_table *t, picture *p)
 ritz_status chart_tracks(const chart_sources *sources,
                          const chart_request *request, picture *out)
 {
-    track_table t = {0};
+    RITZ_OWN(track_table) t = {0};
     const chart_file *file = sources->file;
 
     RITZ_REFUSE_IF(sources->count > 1, RITZ_ERR_ARGUMENT,
                    "'%s' and '%s': a chart has one table of tracks", file->path,
                    file[1].path);
-    RITZ_CHECK_IN(file->path,
-                  read_table(file->text, request->up_to_hz, out, &t));
+    RITZ_CHECK_IN(file->path, read_rows(file->text, request->up_to_hz, &t));
     place_configurations(&t);
     qsort(t.row, (size_t)t.count, sizeof *t.row, by_track);
     return draw_tracks(&t, out);

@@ -2,13 +2,13 @@
 
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "cli/cli.h"
 
 #include <ritz/base.h>
 
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -38,25 +38,6 @@ ritz_status picture_new(const char *path, bool keep, picture *out)
     RITZ_CHECK(cli_table_new(&out->data));
     RITZ_CHECK(cli_table_new(&out->given));
     return cli_table_new(&out->table);
-}
-
-/* Blocks of memory are a list: each begins with a pointer to the one before. */
-typedef union memory {
-    union memory *before;
-    max_align_t align;
-} memory;
-
-void *picture_room(picture *p, int64_t count, size_t size)
-{
-    memory *made = calloc(1, sizeof *made + (size_t)count * size + 1);
-
-    if (!made) {
-        (void)ritz_fail(RITZ_ERR_MEMORY, "no memory for a chart");
-        return NULL;
-    }
-    made->before = p->rooms;
-    p->rooms = made;
-    return made + 1;
 }
 
 void picture_add_sign(picture *p, picture_sign sign, const char *format, ...)
@@ -102,15 +83,19 @@ void picture_give_texts(picture *p, const char *name, int64_t count,
     fputs("]\n", file);
 }
 
-void picture_give_reals(picture *p, const char *name, int64_t count,
-                        const double *value, int64_t stride)
+void picture_give_reals(picture *p, const char *names, int64_t count,
+                        const double *value, size_t size)
 {
     FILE *file = p->given.file;
+    char name[RITZ_NAME_SIZE];
 
-    fprintf(file, "array %s[%ld] = [", name, count);
-    for (int64_t k = 0; k < count; k++)
-        fprintf(file, "%s%.9g", k > 0 ? ", " : "", value[k * stride]);
-    fputs("]\n", file);
+    for (; cli_next(&names, name); value++) {
+        fprintf(file, "array %s[%ld] = [", name, count);
+        for (int64_t k = 0; k < count; k++)
+            fprintf(file, "%s%.9g", k > 0 ? ", " : "",
+                    value[(size_t)k * (size / sizeof *value)]);
+        fputs("]\n", file);
+    }
 }
 
 /*
@@ -250,8 +235,7 @@ static ritz_status write_script(picture *p, const char *template,
                                 cli_table *out)
 {
     RITZ_CHECK(cli_table_new(out));
-    RITZ_REFUSE_IF(fflush(p->given.file) != 0, RITZ_ERR_MEMORY,
-                   "no memory for a chart");
+    RITZ_CHECK(cli_table_end(&p->given));
     fprintf(out->file, "# gnuplot ");
     html_line(out->file, picture_base(p->path));
     fprintf(out->file, ".gp\n");
@@ -372,10 +356,6 @@ ritz_status picture_draw(picture *p, const char *template, const char *title,
 
 void picture_free(picture *p)
 {
-    for (memory *r = p->rooms, *before = NULL; r; r = before) {
-        before = r->before;
-        free(r);
-    }
     free(p->drawn);
     cli_table_free(&p->data);
     cli_table_free(&p->given);

@@ -44,7 +44,6 @@ typedef struct picture {
     int num_signs;
     picture_sign sign[PICTURE_SIGNS];
     char *drawn; /* what gnuplot drew */
-    void *rooms; /* memory that is freed with it */
     char title[4 * PICTURE_WORD];
     const char *summary;
 } picture;
@@ -57,16 +56,6 @@ typedef struct picture {
  *                  the path
  */
 ritz_status picture_new(const char *path, bool keep, picture *out);
-
-/** Zeroed memory that is freed with the picture; NULL and a sentence: none. */
-void *picture_room(picture *p, int64_t count, size_t size);
-
-#define PICTURE_NEW(picture, pointer, count)                                   \
-    do {                                                                       \
-        (pointer) = picture_room((picture), (count), sizeof *(pointer));       \
-        if (!(pointer))                                                        \
-            return RITZ_ERR_MEMORY;                                            \
-    } while (0)
 
 /** "rotor.h5" of "build/rotor.h5". */
 const char *picture_base(const char *path);
@@ -82,9 +71,12 @@ void picture_give_text(picture *p, const char *name, const char *text);
 void picture_give_texts(picture *p, const char *name, int64_t count,
                         const char *text, size_t size);
 
-/** An array of numbers, the k-th at value + k * stride. */
-void picture_give_reals(picture *p, const char *name, int64_t count,
-                        const double *value, int64_t stride);
+/**
+ * Arrays of numbers that are members of structs of some @p size: "A,B" are
+ * neighbours, and the first A is at @p value.
+ */
+void picture_give_reals(picture *p, const char *names, int64_t count,
+                        const double *value, size_t size);
 
 /** The tooltip of a point, as a column of the data. */
 [[gnu::format(printf, 2, 3)]] void picture_tip(picture *p, const char *format,

@@ -186,8 +186,7 @@ static ritz_status put_page(report_page *p)
     enum { FIELDS = sizeof fields / sizeof *fields };
 
     for (int k = 0; k < FIELDS; k++)
-        RITZ_REFUSE_IF(fflush(fields[k].part->file) != 0, RITZ_ERR_MEMORY,
-                       "no memory for the page");
+        RITZ_CHECK(cli_table_end(fields[k].part));
     for (const char *const *line = chart_text_find("report.html"); *line;
          line++) {
         const char *at = *line + strcspn(*line, "@");

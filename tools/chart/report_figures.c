@@ -82,8 +82,7 @@ ritz_status report_end(report_page *p)
 {
     FILE *file = p->body.file;
 
-    RITZ_REFUSE_IF(fflush(p->figures.file) != 0, RITZ_ERR_MEMORY,
-                   "no memory for the page");
+    RITZ_CHECK(cli_table_end(&p->figures));
     if (p->num_signs > 0)
         fprintf(file, "<ul class=\"legend\">\n");
     for (int k = 0; k < p->num_signs; k++)
@@ -132,8 +131,7 @@ ritz_status report_figure(report_page *p, chart_draw *draw,
 
     RITZ_CHECK(picture_new(request->path, false, &drawn));
     RITZ_CHECK(draw(sources, request, &drawn));
-    RITZ_REFUSE_IF(fflush(drawn.table.file) != 0, RITZ_ERR_MEMORY,
-                   "no memory for a table");
+    RITZ_CHECK(cli_table_end(&drawn.table));
     add_signs(p, &drawn);
     snprintf(prefix, sizeof prefix, "p%ld-", ++p->num_pictures);
     fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",

@@ -230,86 +230,84 @@ static ritz_status write_rows(claims_state *state, const claims_line *line)
     return claims_save(state, line->word[1], "", &table);
 }
 
-static const struct statement {
-    const char *word;
-    ritz_status (*run)(claims_state *state, const claims_line *line);
-    bool always; /* even while claims are skipped */
-} statements[] = {
-    {"source", set_source, true},    {"need", need_file, true},
-    {"beam", claims_beam, false},    {"rows", write_rows, false},
-    {"run", run_tool, false},        {"try", try_tool, false},
-    {"expect", claims_expect, true},
-};
-
-static ritz_status run_line(claims_state *state, const claims_line *line)
+/* Cut the next line off the text that follows. */
+static char *take_line(claims_state *state)
 {
-    const size_t count = sizeof statements / sizeof *statements;
-    size_t k = 0;
-
-    while (k < count && strcmp(statements[k].word, line->word[0]) != 0)
-        k++;
-    RITZ_REFUSE_IF(
-        k == count, RITZ_ERR_FORMAT,
-        "'%.40s' is none of source, need, beam, rows, text, run, try, "
-        "expect",
-        line->word[0]);
-    if (statements[k].always || !state->skipping)
-        RITZ_CHECK(statements[k].run(state, line));
-    return RITZ_OK;
-}
-
-/* Cut the next line off a text, which is NULL behind the last. */
-static char *take_line(char **rest)
-{
-    char *line = *rest;
+    char *line = state->rest;
     char *end = strchr(line, '\n');
 
     if (end)
         *end = '\0';
-    *rest = end ? end + 1 : NULL;
+    state->rest = end ? end + 1 : NULL;
+    state->number++;
     return line;
 }
 
 /* "text NAME": the lines that follow, indented as the first of them, become
  * that file. */
-static ritz_status write_text(const claims_state *state,
-                              const claims_line *line, char **rest, int *number)
+static ritz_status write_text(claims_state *state, const claims_line *line)
 {
-    const size_t indent = *rest ? strspn(*rest, " \t") : 0;
+    const size_t indent = state->rest ? strspn(state->rest, " \t") : 0;
     RITZ_OWN(cli_table) table = {0};
 
     RITZ_REFUSE_IF(line->count != 2 || strchr(line->word[1], '/'),
                    RITZ_ERR_FORMAT, "a text has one name");
     RITZ_CHECK(cli_table_new(&table));
-    while (*rest && (**rest == ' ' || **rest == '\t')) {
-        const char *text = take_line(rest);
+    while (state->rest && (*state->rest == ' ' || *state->rest == '\t')) {
+        const char *text = take_line(state);
         const size_t blank = strspn(text, " \t");
 
         fprintf(table.file, "%s\n", text + (blank < indent ? blank : indent));
-        ++*number;
     }
     return claims_save(state, line->word[1], "", &table);
 }
 
-/* Run the next line, and take those that belong to it. */
-static ritz_status run_next(claims_state *state, const char *path, char **rest,
-                            int *number)
-{
-    RITZ_OWN(claims_line) line = {.file = path, .number = *number};
+static const struct statement {
+    const char *word;
+    ritz_status (*run)(claims_state *state, const claims_line *line);
+    bool always; /* even while claims are skipped */
+} statements[] = {
+    {"source", set_source, true}, {"need", need_file, true},
+    {"beam", claims_beam, false}, {"rows", write_rows, false},
+    {"text", write_text, true},   {"run", run_tool, false},
+    {"try", try_tool, false},     {"expect", claims_expect, true},
+};
 
-    RITZ_CHECK(cut_line(state, take_line(rest), &line));
+/* Run the next line, with those that belong to it. */
+static ritz_status run_line(claims_state *state)
+{
+    const size_t count = sizeof statements / sizeof *statements;
+    RITZ_OWN(claims_line) line = {0};
+    size_t k = 0;
+
+    RITZ_CHECK(cut_line(state, take_line(state), &line));
     if (line.count == 0)
         return RITZ_OK;
-    return strcmp(line.word[0], "text") == 0
-               ? write_text(state, &line, rest, number)
-               : run_line(state, &line);
+    while (k < count && strcmp(statements[k].word, line.word[0]) != 0)
+        k++;
+    RITZ_REFUSE_IF(
+        k == count, RITZ_ERR_FORMAT,
+        "'%.40s' is none of source, need, beam, rows, text, run, try, "
+        "expect",
+        line.word[0]);
+    return statements[k].always || !state->skipping
+               ? statements[k].run(state, &line)
+               : RITZ_OK;
+}
+
+ritz_status claims_save(const claims_state *state, const char *name,
+                        const char *ending, cli_table *table)
+{
+    char path[2 * PATH_MAX];
+
+    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
+    return cli_table_save(table, path);
 }
 
 ritz_status claims_file(claims_state *state, const char *path)
 {
     char where[PATH_MAX + 32];
     RITZ_OWN_ARRAY char *text = NULL, *folder = NULL;
-    int number = 0;
 
     RITZ_CHECK(ritz_path_folder(path, &folder));
     RITZ_REFUSE_IF(!realpath(folder, state->here), RITZ_ERR_FILE,
@@ -317,9 +315,12 @@ ritz_status claims_file(claims_state *state, const char *path)
     state->source[0] = '\0';
     state->skipping = false;
     RITZ_CHECK(ritz_text_read(path, &text));
-    for (char *rest = text; rest && *rest;) {
-        snprintf(where, sizeof where, "%s:%d", path, ++number);
-        RITZ_CHECK_IN(where, run_next(state, path, &rest, &number));
+    state->file = path;
+    state->number = 0;
+    state->rest = text;
+    while (state->rest && *state->rest) {
+        snprintf(where, sizeof where, "%s:%d", path, state->number + 1);
+        RITZ_CHECK_IN(where, run_line(state));
     }
     return RITZ_OK;
 }

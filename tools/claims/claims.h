@@ -13,8 +13,6 @@ enum { CLAIMS_MOST_WORDS = 128 };
 
 /* One line of a claims file, cut into words. */
 typedef struct claims_line {
-    const char *file;
-    int number;
     int count;
     char *word[CLAIMS_MOST_WORDS]; /* each of its own; of `room` */
     char *room;
@@ -27,9 +25,12 @@ typedef struct claims_state {
     char here[PATH_MAX];   /* the claims file is here */
     char data[PATH_MAX];   /* files of others: $DATA */
     char folder[PATH_MAX]; /* commands run here */
-    char source[256];      /* of the claims that follow */
-    char command[256];     /* the last one, as written */
-    bool skipping;         /* until the next 'need': a file is absent */
+    const char *file;      /* of claims, and a line of it */
+    int number;
+    char *rest;        /* what follows that line; NULL: nothing */
+    char source[256];  /* of the claims that follow */
+    char command[256]; /* the last one, as written */
+    bool skipping;     /* until the next 'need': a file is absent */
     char absent[256];
     int exit_code;  /* of the last command */
     json_t *answer; /* of the last command; NULL: none */
@@ -39,15 +40,6 @@ typedef struct claims_state {
 
 /** Run all lines of a file. @return RITZ_ERR_FORMAT if it is not understood */
 ritz_status claims_file(claims_state *state, const char *path);
-
-/**
- * The value at a path such as "configurations[1].frequencies_hz[6]" or
- * "measures[static-gain].value": an index, or the name of an item of a list.
- * @p more items further along where the path ends in an index.
- *
- * @return NULL if there is none
- */
-const json_t *claims_find(const json_t *answer, const char *path, int64_t more);
 
 /** Compare the answer with "expect PATH ..." and tell. */
 ritz_status claims_expect(claims_state *state, const claims_line *line);

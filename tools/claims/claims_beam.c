@@ -11,13 +11,14 @@
 
 #include <string.h>
 
-enum { NODE = 3, SIDE = 2 * NODE };
+enum { NODE = 3, SIDE = 2 * NODE, LEFT = 1, RIGHT = 2 };
 
 typedef struct beam {
     int64_t elements, first;
     double length, modulus, density, area, inertia, offset;
     double tip_mass, tip_inertia, tip_centre;
     const char *clamp, *directions;
+    int held; /* ends that are clamped */
 } beam;
 
 /* An option of a beam, and the member that it sets: one of three. */
@@ -71,7 +72,6 @@ static ritz_status take_option(const char *name, const char *value, beam *b)
 static ritz_status read_beam(const claims_line *line, beam *b)
 {
     static const char *const ends[] = {"none", "left", "right", "both"};
-    bool known = false;
 
     RITZ_REFUSE_IF(
         line->count < 2 || strchr(line->word[1], '/') || line->count % 2 != 0,
@@ -85,9 +85,9 @@ static ritz_status read_beam(const claims_line *line, beam *b)
                        strlen(b->directions) > NODE,
                    RITZ_ERR_FORMAT, "directions are some of 126, not '%.40s'",
                    b->directions);
-    for (size_t k = 0; k < sizeof ends / sizeof *ends; k++)
-        known = known || strcmp(b->clamp, ends[k]) == 0;
-    RITZ_REFUSE_IF(!known, RITZ_ERR_FORMAT,
+    while (b->held <= (LEFT | RIGHT) && strcmp(b->clamp, ends[b->held]) != 0)
+        b->held++;
+    RITZ_REFUSE_IF(b->held > (LEFT | RIGHT), RITZ_ERR_FORMAT,
                    "a beam is clamped none, left, right or both, not '%.40s'",
                    b->clamp);
     return RITZ_OK;
@@ -130,15 +130,13 @@ static int64_t row_of(const beam *b, int64_t dof)
 {
     static const char letters[] = "126";
     int64_t per_node = (int64_t)strlen(b->directions);
-    bool left = strcmp(b->clamp, "left") == 0 || strcmp(b->clamp, "both") == 0;
-    bool right =
-        strcmp(b->clamp, "right") == 0 || strcmp(b->clamp, "both") == 0;
     int64_t node = dof / NODE;
     const char *at = strchr(b->directions, letters[dof % NODE]);
 
-    if (!at || (left && node == 0) || (right && node == b->elements))
+    if (!at || (b->held & LEFT && node == 0) ||
+        (b->held & RIGHT && node == b->elements))
         return -1;
-    return (node - left) * per_node + (at - b->directions);
+    return (node - (b->held & LEFT)) * per_node + (at - b->directions);
 }
 
 /*
@@ -187,15 +185,6 @@ static int64_t put_entries(const beam *b, double *val, FILE *file)
                         row > col ? col + 1 : row + 1, *entry_at(val, i, j));
         }
     return count;
-}
-
-ritz_status claims_save(const claims_state *state, const char *name,
-                        const char *ending, cli_table *table)
-{
-    char path[2 * PATH_MAX];
-
-    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
-    return cli_table_save(table, path);
 }
 
 /* K or M as Matrix Market. */

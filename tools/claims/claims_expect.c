@@ -44,7 +44,14 @@ static const json_t *enter_list(const json_t *list, const char *inside,
     return index < 0 ? NULL : json_array_get(list, (size_t)index);
 }
 
-const json_t *claims_find(const json_t *answer, const char *path, int64_t more)
+/*
+ * The value at a path such as "configurations[1].frequencies_hz[6]" or
+ * "measures[static-gain].value": an index, or the name of an item of a list.
+ * `more` items further along where the path ends in an index; NULL: there is
+ * none.
+ */
+static const json_t *find_value(const json_t *answer, const char *path,
+                                int64_t more)
 {
     const json_t *at = answer;
 
@@ -73,19 +80,6 @@ const json_t *claims_find(const json_t *answer, const char *path, int64_t more)
 static const char *const forms[] = {"hertz", "omega", "lambda", "beta"};
 
 enum { NUM_FORMS = sizeof forms / sizeof *forms };
-
-/* The form of a claim that has "as NAME" behind its path; NUM_FORMS:
-   unknown. */
-static size_t find_form(const claims_line *line)
-{
-    size_t k = 0;
-
-    if (line->count < 4 || strcmp(line->word[2], "as") != 0)
-        return 0;
-    while (k < NUM_FORMS && strcmp(forms[k], line->word[3]) != 0)
-        k++;
-    return k;
-}
 
 /* omega = 2 pi f, lambda = omega^2; beta of a beam of E I = rho A = L = 1. */
 static double convert_hertz(double hertz, size_t form)
@@ -120,16 +114,16 @@ static bool is_within(double value, double expected, const bound *b)
 }
 
 /* Count a verdict and tell it: one line of TAP, one object of JSON. */
-static void tell_claim(claims_state *state, const claims_line *line, bool holds,
-                       const char *what, const char *found)
+static void tell_claim(claims_state *state, bool holds, const char *what,
+                       const char *found)
 {
     int64_t number = state->holds + state->fails + state->skipped + 1;
-    const char *slash = strrchr(line->file, '/');
-    const char *file = slash ? slash + 1 : line->file;
+    const char *slash = strrchr(state->file, '/');
+    const char *file = slash ? slash + 1 : state->file;
     bool skipped = state->skipping;
 
     cli_say(state->run, "%sok %ld - %s:%d %s: %s; %s%s%s",
-            skipped || holds ? "" : "not ", number, file, line->number, what,
+            skipped || holds ? "" : "not ", number, file, state->number, what,
             skipped ? "not looked at" : found, state->source,
             skipped ? " # skip there is no " : "",
             skipped ? state->absent : "");
@@ -140,7 +134,7 @@ static void tell_claim(claims_state *state, const claims_line *line, bool holds,
     state->fails += !holds && !skipped;
     json_array_append_new(
         state->list, json_pack("{s:s, s:i, s:s, s:s, s:s, s:b, s:b}", "file",
-                               file, "line", line->number, "what", what,
+                               file, "line", state->number, "what", what,
                                "found", found, "source", state->source, "holds",
                                holds && !skipped, "skipped", skipped));
 }
@@ -149,13 +143,13 @@ static void tell_claim(claims_state *state, const claims_line *line, bool holds,
 static ritz_status expect_failure(claims_state *state, const claims_line *line)
 {
     const char *sentence =
-        json_string_value(claims_find(state->answer, "error", 0));
+        json_string_value(find_value(state->answer, "error", 0));
 
     RITZ_REFUSE_IF(
         line->count != 3, RITZ_ERR_FORMAT,
         "'expect failure' takes the words of its sentence, in quotes");
     tell_claim(
-        state, line,
+        state,
         state->exit_code == 1 && sentence && strstr(sentence, line->word[2]),
         "failure", sentence ? sentence : "it did not fail with a sentence");
     return RITZ_OK;
@@ -164,7 +158,7 @@ static ritz_status expect_failure(claims_state *state, const claims_line *line)
 /* "expect PATH is TEXT": of texts, whole numbers and truths. */
 static void expect_text(claims_state *state, const claims_line *line)
 {
-    const json_t *at = claims_find(state->answer, line->word[1], 0);
+    const json_t *at = find_value(state->answer, line->word[1], 0);
     char text[256] = "nothing there";
 
     if (json_is_string(at))
@@ -174,8 +168,7 @@ static void expect_text(claims_state *state, const claims_line *line)
                  json_integer_value(at));
     else if (json_is_boolean(at))
         snprintf(text, sizeof text, "%s", json_is_true(at) ? "true" : "false");
-    tell_claim(state, line, strcmp(text, line->word[3]) == 0, line->word[1],
-               text);
+    tell_claim(state, strcmp(text, line->word[3]) == 0, line->word[1], text);
 }
 
 /* "frequencies_hz[6]" and 2 more: "frequencies_hz[8]". */
@@ -199,7 +192,7 @@ static ritz_status expect_number(claims_state *state, const claims_line *line,
                                  int64_t more, const char *text, size_t form,
                                  const bound *allowed)
 {
-    const json_t *at = claims_find(state->answer, line->word[1], more);
+    const json_t *at = find_value(state->answer, line->word[1], more);
     double expected = 0.0;
     double value = convert_hertz(json_number_value(at), form);
     char what[160], found[160];
@@ -217,9 +210,8 @@ static ritz_status expect_number(claims_state *state, const claims_line *line,
     else
         snprintf(found, sizeof found, "%.3e, to be %s %.1e", value,
                  allowed->kind == BELOW ? "below" : "above", allowed->size);
-    tell_claim(state, line,
-               json_is_number(at) && is_within(value, expected, allowed), what,
-               found);
+    tell_claim(state, json_is_number(at) && is_within(value, expected, allowed),
+               what, found);
     return RITZ_OK;
 }
 
@@ -254,17 +246,17 @@ static ritz_status read_bound(const claims_line *line, int count, bound *out)
 
 ritz_status claims_expect(claims_state *state, const claims_line *line)
 {
-    const size_t form = find_form(line);
-    bool named = line->count > 3 && strcmp(line->word[2], "as") == 0;
-    int first = named ? 4 : 2;
-    int count = line->count - 2 - first;
+    const bool named = line->count > 3 && strcmp(line->word[2], "as") == 0;
+    const int first = named ? 4 : 2;
+    const int count = line->count - 2 - first;
+    size_t form = 0;
     bound allowed = {0};
 
     RITZ_REFUSE_IF(!state->source[0], RITZ_ERR_FORMAT,
                    "a claim needs a 'source' before it");
     RITZ_REFUSE_IF(line->count < 3, RITZ_ERR_FORMAT, "nothing is expected");
     if (state->skipping) {
-        tell_claim(state, line, false, "expect", "");
+        tell_claim(state, false, "expect", "");
         return RITZ_OK;
     }
     if (strcmp(line->word[1], "failure") == 0)
@@ -273,6 +265,8 @@ ritz_status claims_expect(claims_state *state, const claims_line *line)
         expect_text(state, line);
         return RITZ_OK;
     }
+    while (named && form < NUM_FORMS && strcmp(forms[form], line->word[3]) != 0)
+        form++;
     RITZ_REFUSE_IF(form == NUM_FORMS, RITZ_ERR_FORMAT,
                    "'%.40s' is none of hertz, omega, lambda, beta",
                    line->word[3]);

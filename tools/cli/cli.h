@@ -97,6 +97,9 @@ typedef struct cli_table {
 
 ritz_status cli_table_new(cli_table *out);
 
+/** Make sure that `text` holds all that was written. @return RITZ_ERR_MEMORY */
+ritz_status cli_table_end(const cli_table *table);
+
 /** Write it under a name of its own, then give it this one. */
 ritz_status cli_table_save(cli_table *table, const char *path);
 

@@ -460,13 +460,19 @@ ritz_status cli_table_new(cli_table *out)
     return RITZ_OK;
 }
 
+ritz_status cli_table_end(const cli_table *table)
+{
+    RITZ_REFUSE_IF(ferror(table->file) || fflush(table->file) != 0,
+                   RITZ_ERR_MEMORY, "no memory for a table");
+    return RITZ_OK;
+}
+
 ritz_status cli_table_write(cli_table *table, const char *path)
 {
     FILE *file = NULL;
     bool whole = false;
 
-    RITZ_REFUSE_IF(ferror(table->file) || fflush(table->file) != 0,
-                   RITZ_ERR_MEMORY, "no memory for a table");
+    RITZ_CHECK(cli_table_end(table));
     file = fopen(path, "w");
     RITZ_REFUSE_IF(!file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
                    strerror(errno));
