@@ -68,7 +68,6 @@ static ritz_status take_response(const chart_file *file, overlay *o)
                    (int)MOST_RESPONSES);
     RITZ_REFUSE_IF(r->count < 2, RITZ_ERR_ARGUMENT,
                    "'%s' has fewer than two points", file->path);
-    first = first ? first : r;
     RITZ_CHECK(chart_check_names(file->path, "output", r->num_outputs,
                                  r->output, first->num_outputs, first->output));
     RITZ_CHECK(chart_check_names(file->path, "input", r->num_inputs, r->input,
@@ -584,7 +583,7 @@ static void give_channels(const overlay *o)
 ritz_status chart_response(const chart_sources *sources,
                            const chart_request *request, picture *p)
 {
-    overlay o = {.picture = p};
+    overlay o = {.curve = {&sources->file->model.response}, .picture = p};
     const char *error = request->error ? request->error : "relative";
 
     o.strip[RELATIVE] = strcmp(error, "decibels") != 0;

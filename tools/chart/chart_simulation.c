@@ -85,13 +85,12 @@ static chart_range put_line(runs *all, int64_t i, int64_t w)
 ritz_status chart_simulation(const chart_sources *sources,
                              const chart_request *request, picture *p)
 {
+    const ritz_simulation *first = &sources->file->model.simulation;
     runs all = {.picture = p};
-    const ritz_simulation *first = NULL;
     chart_range y[MOST_OUTPUTS];
 
     (void)request;
     RITZ_CHECK(take_runs(sources, &all));
-    first = all.run[0];
     for (int64_t w = 0; w < all.count; w++) {
         const bool under = w == 0 && all.count > 1;
 

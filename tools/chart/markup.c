@@ -82,11 +82,11 @@ void html_print(FILE *file, const char *format, ...)
 /* --- pictures ------------------------------------------------------------- */
 
 const svg_colour svg_colours[] = {
-    {"c1", "#0072b2"},    {"c2", "#c44e00"},   {"c3", "#007a5a"},
-    {"c4", "#a23b82"},    {"c5", "#8a6d00"},   {"c6", "#3f8fbf"},
-    {"c7", "#5b5b5b"},    {"c8", "#b2182b"},   {"ink", "#1b1f24"},
-    {"muted", "#5a6270"}, {"grid", "#d9dee5"}, {"paper", "#ffffff"},
-    {"alarm", "#b00020"}, {"pale", "#9fb0c3"}, {NULL, NULL},
+    {"c1", 0x0072b2},    {"c2", 0xc44e00},   {"c3", 0x007a5a},
+    {"c4", 0xa23b82},    {"c5", 0x8a6d00},   {"c6", 0x3f8fbf},
+    {"c7", 0x5b5b5b},    {"c8", 0xb2182b},   {"ink", 0x1b1f24},
+    {"muted", 0x5a6270}, {"grid", 0xd9dee5}, {"paper", 0xffffff},
+    {"alarm", 0xb00020}, {"pale", 0x9fb0c3}, {NULL, 0},
 };
 
 const char *svg_series(int64_t series)
@@ -135,7 +135,6 @@ static const char *name_colour(const char *text)
 {
     unsigned long rgb = 0;
     char *end = NULL;
-    char value[32];
 
     if (starts_with(text, "rgb("))
         for (const char *c = text + 3; *c == '(' || *c == ','; c = end)
@@ -144,9 +143,8 @@ static const char *name_colour(const char *text)
         rgb = strtoul(text + 1, NULL, 16);
     else if (strcmp(text, "black") != 0)
         return NULL;
-    snprintf(value, sizeof value, "#%06lx", rgb);
     for (const svg_colour *k = svg_colours; k->name; k++)
-        if (strcmp(k->value, value) == 0)
+        if (k->rgb == rgb)
             return k->name;
     return rgb == 0 ? "ink" : NULL;
 }

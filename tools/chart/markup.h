@@ -35,7 +35,8 @@ int html_letter(FILE *file, const char *text);
  * and lines. A page has a light and a dark one under each name, as "--c1".
  */
 typedef struct svg_colour {
-    const char *name, *value;
+    const char *name;
+    unsigned long rgb;
 } svg_colour;
 
 enum { SVG_SERIES = 8 };

@@ -242,7 +242,7 @@ static ritz_status write_script(picture *p, const char *template,
     put_name(out->file, "out", p->path, "");
     put_name(out->file, "data", p->path, ".tsv");
     for (const svg_colour *c = svg_colours; c->name; c++)
-        fprintf(out->file, "%s = '%s'\n", c->name, c->value);
+        fprintf(out->file, "%s = '#%06lx'\n", c->name, c->rgb);
     fprintf(out->file, "wide = %.0f\nbody = %.0f\nnote = ", p->wide, p->body);
     quote_text(out->file, p->keep ? p->note : "");
     fputc('\n', out->file);
@@ -317,20 +317,11 @@ static ritz_status put_beside(const picture *p, cli_table *table,
     return cli_table_write(table, out);
 }
 
-static ritz_status publish_picture(const picture *p)
-{
-    RITZ_OWN(cli_table) table = {0};
-
-    RITZ_CHECK(cli_table_new(&table));
-    svg_copy(table.file, p->drawn, p->title, p->summary, NULL);
-    return cli_table_save(&table, p->path);
-}
-
 static ritz_status draw_files(picture *p, const char *template)
 {
     char data[PICTURE_PATH], script[PICTURE_PATH];
     RITZ_OWN(ritz_draft) draft = {0}, data_draft = {0}, script_draft = {0};
-    RITZ_OWN(cli_table) text = {0};
+    RITZ_OWN(cli_table) text = {0}, named = {0};
 
     RITZ_CHECK(write_script(p, template, &text));
     RITZ_CHECK(put_beside(p, &p->data, ".tsv", &data_draft, data));
@@ -340,7 +331,11 @@ static ritz_status draw_files(picture *p, const char *template)
     RITZ_CHECK(ritz_text_read(draft.name, &p->drawn));
     RITZ_REFUSE_IF(!strstr(p->drawn, "</svg>"), RITZ_ERR_FILE,
                    "gnuplot drew no picture");
-    return p->keep ? publish_picture(p) : RITZ_OK;
+    if (!p->keep)
+        return RITZ_OK;
+    RITZ_CHECK(cli_table_new(&named));
+    svg_copy(named.file, p->drawn, p->title, p->summary, NULL);
+    return cli_table_save(&named, p->path);
 }
 
 ritz_status picture_draw(picture *p, const char *template, const char *title,

@@ -111,7 +111,7 @@ static ritz_status put_part(report_page *p, const struct part *part,
         if (some.count < part->least)
             continue;
         if (!begun)
-            report_begin(p, part->title);
+            report_begin(p, part->title, "");
         begun = true;
         RITZ_CHECK(put_picture(p, part, &some));
     }
@@ -140,7 +140,7 @@ static ritz_status put_provenance(report_page *p)
     const char *last = "";
     FILE *file = p->body.file;
 
-    report_begin(p, "How this was made");
+    report_begin(p, "How this was made", "");
     html_print(file, "<p><code>%s</code>, Ritz %s</p>\n<h3>Inputs</h3>\n<ul>\n",
                run->command, ritz_version());
     for (int64_t k = 0; k < run->num_inputs; k++)

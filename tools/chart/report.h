@@ -24,8 +24,9 @@ typedef struct report_page {
 ritz_status report_write(const chart_sources *sources,
                          const chart_request *request);
 
-/** A section with its title, which the contents name. */
-void report_begin(report_page *p, const char *title);
+/** A section, which the contents name by these words and, unless it is "", by a
+ * name. */
+void report_begin(report_page *p, const char *words, const char *name);
 
 /** A table up to the row of its names of columns. */
 void report_begin_table(FILE *file, const char *caption);

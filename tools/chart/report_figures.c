@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-void report_begin(report_page *p, const char *title)
+void report_begin(report_page *p, const char *words, const char *name)
 {
     const int64_t k = ++p->num_sections;
+    char title[200];
 
+    snprintf(title, sizeof title, "%s%s%.100s", words, *name ? ": " : "", name);
     p->num_signs = 0;
     html_print(p->links.file, "<li><a href=\"#s%ld\">%s</a></li>\n", k, title);
     html_print(p->body.file,

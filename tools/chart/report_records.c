@@ -282,7 +282,6 @@ static cell order_at_error(const record_set *s, int64_t method, double level)
 {
     const record *best = NULL;
     cell c = {.value = nan("")};
-    double time = nan("");
 
     for (int64_t k = 0; k < s->all.count; k++) {
         const record *r = &s->all.item[k];
@@ -297,7 +296,8 @@ static cell order_at_error(const record_set *s, int64_t method, double level)
         return c;
     c.value = (double)best->order;
     snprintf(c.text.text, sizeof c.text, "%ld", best->order);
-    time = records_cost(&s->all) ? best->cost : best->cpu;
+    const double time = records_cost(&s->all) ? best->cost : best->cpu;
+
     if (isfinite(time))
         c.small = chart_say_seconds(time);
     return c;
@@ -434,15 +434,6 @@ static ritz_status put_times(report_page *p, const record_set *s, bool costs,
     return put_errors(p, s, chart_pareto, request);
 }
 
-/* A section whose title says the subject, if there are several. */
-static void begin_section(report_page *p, const char *title, const char *name)
-{
-    char text[200];
-
-    snprintf(text, sizeof text, "%s%s%.100s", title, *name ? ": " : "", name);
-    report_begin(p, text);
-}
-
 /* Charts and tables of one subject; its name, if there are several. */
 static ritz_status put_charts(report_page *p, const record_set *s,
                               const char *subject, const char *name)
@@ -456,14 +447,14 @@ static ritz_status put_charts(report_page *p, const record_set *s,
         costs = costs || isfinite(s->all.item[k].cost);
     }
     if (times || costs) {
-        begin_section(p, "Speed against accuracy", name);
+        report_begin(p, "Speed against accuracy", name);
         RITZ_CHECK(put_times(p, s, costs, request));
         RITZ_CHECK(report_end(p));
     }
-    begin_section(p, "Convergence", name);
+    report_begin(p, "Convergence", name);
     RITZ_CHECK(put_errors(p, s, chart_convergence, request));
     RITZ_CHECK(report_end(p));
-    begin_section(p, "Methods side by side", name);
+    report_begin(p, "Methods side by side", name);
     put_tables(p->body.file, s);
     return report_end(p);
 }

@@ -36,40 +36,28 @@ static const char *replace_folder(const claims_state *state, const char *text,
  * quote within a word is a letter.
  */
 static const char *take_word(const claims_state *state, const char *text,
-                             char *out)
+                             FILE *out)
 {
     char quote = '\0';
 
     if (strchr("\"'", *text))
         quote = *text++;
-    for (; *text && (quote || !strchr(" \t", *text)); text++) {
+    for (; *text && (quote ? *text != quote : !strchr(" \t", *text)); text++) {
         size_t length = 0;
         const char *value =
             *text == '$' ? replace_folder(state, text, &length) : NULL;
 
-        if (value) {
-            memcpy(out, value, strlen(value));
-            out += strlen(value);
+        if (value)
             text += length - 1;
-        } else if (quote && *text == quote) {
-            *out = '\0';
-            return text + 1;
-        } else {
-            *out++ = *text;
-        }
+        if (value)
+            fputs(value, out);
+        else
+            fputc(*text, out);
     }
-    *out = '\0';
-    return quote ? NULL : text;
-}
-
-/* Room that every word fits, folders put in. */
-static size_t count_room(const char *text)
-{
-    size_t size = 2 * strlen(text) + 1;
-
-    for (const char *at = text; *at; at++)
-        size += *at == '$' ? PATH_MAX : 0;
-    return size;
+    fputc('\0', out);
+    if (!quote)
+        return text;
+    return *text ? text + 1 : NULL;
 }
 
 /*
@@ -79,25 +67,27 @@ static size_t count_room(const char *text)
 static ritz_status cut_line(const claims_state *state, const char *text,
                             claims_line *line)
 {
-    char *out = NULL;
+    char *word = NULL;
 
-    RITZ_CHECK_NEW(line->room, (int64_t)count_room(text));
-    out = line->room;
+    RITZ_CHECK(cli_table_new(&line->words));
     for (text += strspn(text, " \t"); *text && *text != '#';
          text += strspn(text, " \t")) {
         RITZ_REFUSE_IF(line->count == CLAIMS_MOST_WORDS, RITZ_ERR_FORMAT,
                        "more than %d words", CLAIMS_MOST_WORDS);
-        line->word[line->count] = out;
-        text = take_word(state, text, out);
+        text = take_word(state, text, line->words.file);
         RITZ_REFUSE_IF(!text, RITZ_ERR_FORMAT, "a quote is not closed");
-        out += strlen(line->word[line->count++]) + 1;
+        line->count++;
     }
+    RITZ_CHECK(cli_table_end(&line->words));
+    word = line->words.text;
+    for (int k = 0; k < line->count; word += strlen(word) + 1)
+        line->word[k++] = word;
     return RITZ_OK;
 }
 
 static void claims_line_free(claims_line *line)
 {
-    free(line->room);
+    cli_table_free(&line->words);
 }
 
 /* --- statements ----------------------------------------------------------- */
@@ -293,15 +283,6 @@ static ritz_status run_line(claims_state *state)
     return statements[k].always || !state->skipping
                ? statements[k].run(state, &line)
                : RITZ_OK;
-}
-
-ritz_status claims_save(const claims_state *state, const char *name,
-                        const char *ending, cli_table *table)
-{
-    char path[2 * PATH_MAX];
-
-    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
-    return cli_table_save(table, path);
 }
 
 ritz_status claims_file(claims_state *state, const char *path)

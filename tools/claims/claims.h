@@ -14,8 +14,8 @@ enum { CLAIMS_MOST_WORDS = 128 };
 /* One line of a claims file, cut into words. */
 typedef struct claims_line {
     int count;
-    char *word[CLAIMS_MOST_WORDS]; /* each of its own; of `room` */
-    char *room;
+    char *word[CLAIMS_MOST_WORDS]; /* of `words` */
+    cli_table words;               /* one behind the other, with NUL */
 } claims_line;
 
 /* State of a run through a claims file. */

@@ -187,6 +187,15 @@ static int64_t put_entries(const beam *b, double *val, FILE *file)
     return count;
 }
 
+ritz_status claims_save(const claims_state *state, const char *name,
+                        const char *ending, cli_table *table)
+{
+    char path[2 * PATH_MAX];
+
+    snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
+    return cli_table_save(table, path);
+}
+
 /* K or M as Matrix Market. */
 static ritz_status put_matrix(const claims_state *state, const char *name,
                               bool mass, const beam *b, double A[SIDE][SIDE])

@@ -9,68 +9,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Item of a list by its "name" or "at". */
-static const json_t *find_item(const json_t *list, const char *name,
-                               size_t length)
+/* The item of a list that "3" or "static-gain", its "name" or "at", names. */
+static const json_t *find_item(const json_t *list, const char *name)
 {
     static const char *const keys[] = {"name", "at"};
+    int64_t index = 0;
 
+    if (ritz_text_whole(name, &index))
+        return index < 0 ? NULL : json_array_get(list, (size_t)index);
     for (size_t i = 0; i < json_array_size(list); i++)
         for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
             const json_t *item = json_array_get(list, i);
             const char *text =
                 json_string_value(json_object_get(item, keys[k]));
 
-            if (text && strlen(text) == length &&
-                strncmp(text, name, length) == 0)
+            if (text && strcmp(text, name) == 0)
                 return item;
         }
     return NULL;
 }
 
-/* The item of a list that "[3]" or "[static-gain]" names. */
-static const json_t *enter_list(const json_t *list, const char *inside,
-                                size_t length, int64_t more)
-{
-    char text[64] = "";
-    int64_t index = 0;
-
-    if (length >= sizeof text)
-        return NULL;
-    memcpy(text, inside, length);
-    if (!ritz_text_whole(text, &index))
-        return find_item(list, inside, length);
-    index += more;
-    return index < 0 ? NULL : json_array_get(list, (size_t)index);
-}
-
 /*
  * The value at a path such as "configurations[1].frequencies_hz[6]" or
- * "measures[static-gain].value": an index, or the name of an item of a list.
- * `more` items further along where the path ends in an index; NULL: there is
- * none.
+ * "measures[static-gain].value"; NULL: there is none.
  */
-static const json_t *find_value(const json_t *answer, const char *path,
-                                int64_t more)
+static const json_t *find_value(const json_t *answer, const char *path)
 {
     const json_t *at = answer;
 
     while (at && *path) {
-        size_t length = strcspn(path, ".[");
+        const bool item = *path == '[';
+        const char *name = path + item;
+        const size_t length = strcspn(name, item ? "]" : ".[");
         char key[64] = "";
 
-        if (*path == '[') {
-            length = strcspn(path, "]");
-            at = enter_list(at, path + 1, length - 1,
-                            path[length] && !path[length + 1] ? more : 0);
-            path += length + (path[length] != '\0');
-        } else {
-            if (length >= sizeof key)
-                return NULL;
-            memcpy(key, path, length);
-            at = json_object_get(at, key);
-            path += length;
-        }
+        if (length >= sizeof key)
+            return NULL;
+        memcpy(key, name, length);
+        at = item ? find_item(at, key) : json_object_get(at, key);
+        path = name + length;
+        path += item && *path;
         path += *path == '.';
     }
     return at;
@@ -143,7 +121,7 @@ static void tell_claim(claims_state *state, bool holds, const char *what,
 static ritz_status expect_failure(claims_state *state, const claims_line *line)
 {
     const char *sentence =
-        json_string_value(find_value(state->answer, "error", 0));
+        json_string_value(find_value(state->answer, "error"));
 
     RITZ_REFUSE_IF(
         line->count != 3, RITZ_ERR_FORMAT,
@@ -158,7 +136,7 @@ static ritz_status expect_failure(claims_state *state, const claims_line *line)
 /* "expect PATH is TEXT": of texts, whole numbers and truths. */
 static void expect_text(claims_state *state, const claims_line *line)
 {
-    const json_t *at = find_value(state->answer, line->word[1], 0);
+    const json_t *at = find_value(state->answer, line->word[1]);
     char text[256] = "nothing there";
 
     if (json_is_string(at))
@@ -171,7 +149,8 @@ static void expect_text(claims_state *state, const claims_line *line)
     tell_claim(state, strcmp(text, line->word[3]) == 0, line->word[1], text);
 }
 
-/* "frequencies_hz[6]" and 2 more: "frequencies_hz[8]". */
+/* "frequencies_hz[6]" and 2 more: "frequencies_hz[8]"; a path that does not end
+   in an index is itself. */
 static void name_item(const char *path, int64_t more, size_t size, char *out)
 {
     const char *bracket = strrchr(path, '[');
@@ -179,10 +158,10 @@ static void name_item(const char *path, int64_t more, size_t size, char *out)
     int64_t index = 0;
 
     snprintf(out, size, "%s", path);
-    if (bracket)
-        snprintf(digits, sizeof digits, "%.*s", (int)strcspn(bracket + 1, "]"),
+    if (bracket && strcspn(bracket, "]") + 1 == strlen(bracket))
+        snprintf(digits, sizeof digits, "%.*s", (int)strlen(bracket) - 2,
                  bracket + 1);
-    if (more > 0 && ritz_text_whole(digits, &index))
+    if (ritz_text_whole(digits, &index))
         snprintf(out, size, "%.*s[%ld]", (int)(bracket - path), path,
                  index + more);
 }
@@ -192,14 +171,15 @@ static ritz_status expect_number(claims_state *state, const claims_line *line,
                                  int64_t more, const char *text, size_t form,
                                  const bound *allowed)
 {
-    const json_t *at = find_value(state->answer, line->word[1], more);
-    double expected = 0.0;
-    double value = convert_hertz(json_number_value(at), form);
-    char what[160], found[160];
+    const json_t *at = NULL;
+    double expected = 0.0, value = 0.0;
+    char what[512], found[160];
 
     RITZ_REFUSE_IF(text && !ritz_text_real(text, &expected), RITZ_ERR_FORMAT,
                    "'%.40s' is not a number", text);
     name_item(line->word[1], more, sizeof what, what);
+    at = find_value(state->answer, what);
+    value = convert_hertz(json_number_value(at), form);
     if (!json_is_number(at))
         snprintf(found, sizeof found, "nothing there, %s expected",
                  text ? text : "a number");
