@@ -33,7 +33,8 @@ typedef struct ritz_stage {
     ritz_reduced *body;      /* one for each component of the scene */
     int64_t num_coordinates; /* Q, of all bodies side by side */
     int64_t *first;          /* of each body's coordinates among them */
-    ritz_io io;              /* the scene's inputs and outputs, for Q */
+    double *scale; /* Q, 1 / sqrt(M_jj), or 1 / sqrt(K_jj) if it has no mass */
+    ritz_io io;    /* the scene's inputs and outputs, for Q */
     ritz_dampers
         dampers; /* "body/name", for Q; the bodies' D and K hold them */
 } ritz_stage;
@@ -73,9 +74,6 @@ ritz_status ritz_stage_reduce(const ritz_scene *scene, int64_t k,
 ritz_status ritz_stage_from(const ritz_scene *scene, ritz_reduced *body,
                             ritz_stage *out);
 
-/** 1 / sqrt(M_jj) of each coordinate, or 1 / sqrt(K_jj) if it has no mass. */
-void ritz_stage_scale(const ritz_stage *stage, double *scale);
-
 /**
  * Constraint rows C q = 0 of all that joints lock at some settings, c x Q.
  *
@@ -84,7 +82,7 @@ void ritz_stage_scale(const ritz_stage *stage, double *scale);
  * singular values tell rank apart from rounding.
  *
  * @param[in] setting  one for each sweep of the scene
- * @param[in] scale    Q, as ritz_stage_scale gives it; NULL: each is 1
+ * @param[in] scale    Q, as that of the stage; NULL: each is 1
  */
 ritz_status ritz_stage_constraints(const ritz_stage *stage,
                                    const double *setting, const double *scale,

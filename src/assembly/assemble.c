@@ -162,17 +162,14 @@ ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,
     RITZ_OWN(ritz_configuration) c = {0};
     RITZ_OWN(ritz_springs) springs = {0};
     RITZ_OWN(ritz_dense) C = {0}, P = {0};
-    RITZ_OWN_ARRAY double *scale = NULL;
 
-    RITZ_CHECK_NEW(scale, stage->num_coordinates);
-    ritz_stage_scale(stage, scale);
-    RITZ_CHECK(ritz_stage_constraints(stage, setting, scale, &C));
+    RITZ_CHECK(ritz_stage_constraints(stage, setting, stage->scale, &C));
     RITZ_CHECK(ritz_stage_springs(stage, setting, &springs));
     if (ritz_dual_is_due(stage)) {
-        RITZ_CHECK(ritz_dual_assemble(stage, &springs, &C, scale, &P, &c));
+        RITZ_CHECK(ritz_dual_assemble(stage, &springs, &C, &P, &c));
     } else {
         RITZ_CHECK(ritz_null_space(&C, &c.rank, &P));
-        ritz_dense_scale_rows(scale, &P);
+        ritz_dense_scale_rows(stage->scale, &P);
         RITZ_CHECK(make_modal(stage, &springs, &P, &c));
     }
     RITZ_CHECK(fill_configuration(stage, setting, &springs, &P, &c));

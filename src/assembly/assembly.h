@@ -202,14 +202,12 @@ ritz_status ritz_dual_refuse(const ritz_stage *stage);
  * A system with force columns in its modal coordinates: rank, lambda,
  * num_rigid and, among the errors, the number of negative eigenvalues.
  *
- * @param[in]  C      constraints, columns of scaled coordinates
- * @param[in]  scale  of the coordinates
- * @param[out] P      Q x e, coordinates of the bodies by modes of the system
+ * @param[in]  C  constraints, columns of scaled coordinates
+ * @param[out] P  Q x e, coordinates of the bodies by modes of the system
  * @return RITZ_ERR_SINGULAR if force columns have no stiffness
  */
 ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *C,
-                               const double *scale, ritz_dense *P,
-                               ritz_configuration *c);
+                               ritz_dense *P, ritz_configuration *c);
 
 #endif

@@ -216,8 +216,10 @@ ritz_status ritz_dual_refuse(const ritz_stage *stage)
 
 /* diag(A_1, A_2, ...) of K or M of the bodies, in scaled coordinates. */
 static ritz_status stack_blocks(const ritz_stage *stage, size_t offset,
-                                const double *scale, ritz_dense *out)
+                                ritz_dense *out)
 {
+    const double *scale = stage->scale;
+
     RITZ_CHECK(
         ritz_dense_new(stage->num_coordinates, stage->num_coordinates, out));
     for (int64_t k = 0; k < stage->count; k++) {
@@ -251,13 +253,13 @@ static ritz_status transform_pencil(const ritz_dense *Z, dual *d)
 /* K_z and M_z; on return P leads to coordinates that are not scaled. */
 static ritz_status make_pencil(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *C,
-                               const double *scale, dual *d, int64_t *rank)
+                               dual *d, int64_t *rank)
 {
     RITZ_OWN(ritz_dense) K = {0}, M = {0}, C_q = {0}, N = {0};
 
     RITZ_CHECK(list_coordinates(stage, d));
-    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, K), scale, &K));
-    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, M), scale, &M));
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, K), &K));
+    RITZ_CHECK(stack_blocks(stage, offsetof(ritz_reduced, M), &M));
     RITZ_CHECK(factor_flexibility(&K, d));
     RITZ_CHECK(decompose_constraints(C, d));
     RITZ_CHECK(ritz_dense_pick(C, d->num_modal, d->modal, &C_q));
@@ -267,7 +269,7 @@ static ritz_status make_pencil(const ritz_stage *stage,
     RITZ_CHECK(ritz_dense_congruence(&K, &d->P, &d->K));
     RITZ_CHECK(ritz_dense_congruence(&M, &d->P, &d->M));
     RITZ_CHECK(add_joint(&C_q, &N, d));
-    ritz_dense_scale_rows(scale, &d->P);
+    ritz_dense_scale_rows(stage->scale, &d->P);
     return ritz_springs_add(springs, false, &d->P, &d->K);
 }
 
@@ -378,15 +380,14 @@ static ritz_status report_negative(int64_t modes, ritz_configuration *c)
 
 ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *C,
-                               const double *scale, ritz_dense *P,
-                               ritz_configuration *c)
+                               ritz_dense *P, ritz_configuration *c)
 {
     RITZ_OWN(dual) d = {0};
     RITZ_OWN(ritz_dense) Z = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
     int64_t massless = 0;
 
-    RITZ_CHECK(make_pencil(stage, springs, C, scale, &d, &c->rank));
+    RITZ_CHECK(make_pencil(stage, springs, C, &d, &c->rank));
     RITZ_CHECK(diagonalise_forces(&d, &Z, &massless));
     RITZ_CHECK(transform_pencil(&Z, &d));
     if (massless > 0)

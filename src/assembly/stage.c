@@ -264,6 +264,21 @@ static ritz_status set_output(ritz_stage *stage, int64_t j)
     return RITZ_OK;
 }
 
+static void set_scale(ritz_stage *stage)
+{
+    for (int64_t k = 0; k < stage->count; k++) {
+        const ritz_reduced *body = &stage->body[k];
+
+        for (int64_t j = 0; j < body->K.ncol; j++) {
+            double m = ritz_dense_col(&body->M, j)[j];
+            double own = m > 0.0 ? m : ritz_dense_col(&body->K, j)[j];
+
+            stage->scale[stage->first[k] + j] =
+                own > 0.0 ? 1.0 / sqrt(own) : 1.0;
+        }
+    }
+}
+
 /*
  * Bodies are assembled with their dampers installed; the influence vectors are
  * kept, so that dampers of the system can be changed. This step is last, so
@@ -281,6 +296,7 @@ static ritz_status install_dampers(ritz_stage *stage)
         stage->dampers.held_c[j] = stage->dampers.c[j];
         stage->dampers.held_k[j] = stage->dampers.k[j];
     }
+    set_scale(stage);
     return RITZ_OK;
 }
 
@@ -294,6 +310,7 @@ static ritz_status complete_stage(ritz_stage *stage)
         stage->first[k] = stage->num_coordinates;
         stage->num_coordinates += stage->body[k].K.ncol;
     }
+    RITZ_CHECK_NEW(stage->scale, stage->num_coordinates);
     RITZ_CHECK(ritz_io_new(stage->num_coordinates, scene->num_inputs,
                            scene->num_outputs, &stage->io));
     for (int64_t j = 0; j < scene->num_inputs; j++)
@@ -349,24 +366,10 @@ void ritz_bodies_free(ritz_bodies *bodies)
     *bodies = (ritz_bodies){0};
 }
 
-void ritz_stage_scale(const ritz_stage *stage, double *scale)
-{
-    for (int64_t k = 0; k < stage->count; k++) {
-        const ritz_reduced *body = &stage->body[k];
-
-        for (int64_t j = 0; j < body->K.ncol; j++) {
-            double m = ritz_dense_col(&body->M, j)[j];
-            double own = m > 0.0 ? m : ritz_dense_col(&body->K, j)[j];
-
-            scale[stage->first[k] + j] = own > 0.0 ? 1.0 / sqrt(own) : 1.0;
-        }
-    }
-}
-
 void ritz_stage_free(ritz_stage *stage)
 {
     RITZ_FREE_EACH(ritz_reduced, stage->count, stage->body);
-    free(stage->first);
+    RITZ_FREE(stage->first, stage->scale);
     ritz_io_free(&stage->io);
     ritz_dampers_free(&stage->dampers);
     *stage = (ritz_stage){0};

@@ -588,11 +588,11 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
 }
 
 /* V of one body; *count grows by its own vectors. */
-static ritz_status compose_body(composing *it, const double *scale,
-                                ritz_dense *V, ritz_range *massless,
-                                int64_t *count)
+static ritz_status compose_body(composing *it, ritz_dense *V,
+                                ritz_range *massless, int64_t *count)
 {
     const ritz_reduced *body = &it->stage->body[it->body];
+    const double *scale = it->stage->scale + it->stage->first[it->body];
     RITZ_OWN(ritz_dense) L = {0}, U = {0};
     bool mixed = false;
 
@@ -651,17 +651,13 @@ ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
 {
     const ritz_stage *stage = rows->stage;
     RITZ_OWN(ritz_givens) givens = {0};
-    RITZ_OWN_ARRAY double *scale = NULL;
 
     *count = 0;
-    RITZ_CHECK_NEW(scale, stage->num_coordinates);
-    ritz_stage_scale(stage, scale);
     RITZ_CHECK(list_contributions(rows, plan, &givens, count));
     for (int64_t c = 0; c < stage->count; c++) {
         composing it = {
             .stage = stage, .body = c, .plan = plan, .givens = &givens};
-        ritz_status status = compose_body(&it, scale + stage->first[c], &V[c],
-                                          &massless[c], count);
+        ritz_status status = compose_body(&it, &V[c], &massless[c], count);
 
         ritz_statics_free(&it.own);
         RITZ_CHECK_IN(stage->scene->component[c].name, status);

@@ -21,7 +21,6 @@ enum { GROUP_RIGID, GROUP_BAND, GROUP_STATIC, GROUP_REST };
 typedef struct ordering {
     const ritz_stage *stage; /* borrowed */
     double lambda;           /* of the end of the band */
-    double *scale;           /* of all coordinates: ritz_stage_scale */
     ritz_system system;
     ritz_givens givens; /* of each configuration */
 } ordering;
@@ -29,7 +28,6 @@ typedef struct ordering {
 static void ordering_free(ordering *g)
 {
     ritz_givens_free(&g->givens);
-    free(g->scale);
     ritz_system_free(&g->system);
 }
 
@@ -104,8 +102,6 @@ static ritz_status assemble_ordering(const ritz_stage *stage, ordering *g)
                    "the scene has no band: which modes are to be kept");
     RITZ_CHECK_IN("stage 1", ritz_assemble(stage, NULL, &g->system));
     RITZ_CHECK_NEW(g->givens.each, g->system.num_configurations);
-    RITZ_CHECK_NEW(g->scale, stage->num_coordinates);
-    ritz_stage_scale(stage, g->scale);
     g->givens.count = g->system.num_configurations;
     for (int64_t k = 0; k < g->givens.count; k++)
         g->givens.each[k].at = &g->system.configuration[k];
@@ -156,7 +152,7 @@ typedef struct direction {
 static ritz_status rigid_motions(const ordering *g, int64_t body,
                                  ritz_dense *out)
 {
-    const double *scale = g->scale + g->stage->first[body];
+    const double *scale = g->stage->scale + g->stage->first[body];
     RITZ_OWN(ritz_dense) W = {0}, L = {0}, Y = {0};
     double largest = 0.0;
     bool mixed = false;

@@ -480,10 +480,9 @@ int ritz_fit_points(const ritz_reference *reference,
                : RITZ_AT_RANDOM;
 }
 
-/* What bounds leave open is measured. */
-static ritz_status look_at(ritz_fitter *f, const ritz_stage *stage,
-                           const ritz_fit_place *place, int points, bool bounds,
-                           ritz_fit_candidate *candidate)
+ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
+                                const ritz_fit_place *place, int points,
+                                bool bounds, ritz_fit_candidate *candidate)
 {
     RITZ_OWN(ritz_fit_model) m = {0};
     ritz_fit_verdict verdict = RITZ_FIT_OPEN;
@@ -502,13 +501,6 @@ static ritz_status look_at(ritz_fitter *f, const ritz_stage *stage,
     candidate->bounded = verdict == RITZ_FIT_HOLDS;
     candidate->feasible = candidate->feasible || candidate->bounded;
     return RITZ_OK;
-}
-
-ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
-                                const ritz_fit_place *place, int points,
-                                ritz_fit_candidate *candidate)
-{
-    return look_at(f, stage, place, points, false, candidate);
 }
 
 /* The cost of simulation at the first place; there may be none. */
@@ -542,12 +534,14 @@ static ritz_status meet_grid(ritz_fitter *f, const ritz_stage *stage,
                   !(f->scene && f->request.thorough);
     double worst = 0.0;
 
-    RITZ_CHECK(look_at(f, stage, &f->place[first], 0, bounds, candidate));
+    RITZ_CHECK(
+        ritz_fit_measure_at(f, stage, &f->place[first], 0, bounds, candidate));
     worst = candidate->ratio;
     for (int64_t k = 0; k < f->num_listed && !candidate->ruled_out; k++) {
         if (k == first)
             continue;
-        RITZ_CHECK(look_at(f, stage, &f->place[k], 0, false, candidate));
+        RITZ_CHECK(
+            ritz_fit_measure_at(f, stage, &f->place[k], 0, false, candidate));
         if (candidate->ratio > worst)
             f->hardest = k;
         worst = candidate->ratio;
@@ -568,25 +562,14 @@ ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_stage *stage,
     points = ritz_fit_points(f->place[0].reference, &candidate->errors);
     ritz_measures_free(&candidate->errors);
     for (int64_t k = 0; k < f->num_places && candidate->refusal[0] == '\0'; k++)
-        RITZ_CHECK(look_at(f, stage, &f->place[k], points, false, candidate));
+        RITZ_CHECK(ritz_fit_measure_at(f, stage, &f->place[k], points, false,
+                                       candidate));
     candidate->bounded = bounded;
     candidate->unconfirmed =
         !candidate->feasible && candidate->refusal[0] == '\0';
     return candidate->feasible && f->request.costs
                ? take_cost(f, stage, candidate)
                : RITZ_OK;
-}
-
-ritz_status ritz_fit_try(ritz_fitter *f, ritz_fit_candidate *candidate)
-{
-    RITZ_OWN(ritz_fit_joined) joined = {0};
-    ritz_status status = join_bodies(f, candidate, &joined);
-
-    if (status == RITZ_OK && joined.stage.body) /* no body is refused */
-        status = ritz_fit_measure(f, &joined.stage, candidate);
-    if (!f->scene) /* its candidates have no body in common */
-        ritz_fit_forget(f, candidate->method);
-    return ritz_fit_refuse(status, candidate);
 }
 
 ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
@@ -606,11 +589,18 @@ ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
     RITZ_OWN(ritz_fit_candidate)
     candidate = {
         .method = method, .num_bodies = fitter->num_bodies, .worst = -1};
+    RITZ_OWN(ritz_fit_joined) joined = {0};
+    ritz_status status = RITZ_OK;
 
     RITZ_CHECK_NEW(candidate.modes, fitter->num_bodies);
     for (int64_t k = 0; k < fitter->num_bodies; k++)
         candidate.modes[k] = method->uses & RITZ_USES_MODES ? modes[k] : -1;
-    RITZ_CHECK(ritz_fit_try(fitter, &candidate));
+    status = join_bodies(fitter, &candidate, &joined);
+    if (status == RITZ_OK && joined.stage.body) /* no body is refused */
+        status = ritz_fit_measure(fitter, &joined.stage, &candidate);
+    if (!fitter->scene) /* its candidates have no body in common */
+        ritz_fit_forget(fitter, method);
+    RITZ_CHECK(ritz_fit_refuse(status, &candidate));
     if (fitter->request.observe)
         fitter->request.observe(&candidate, fitter->request.context);
     RITZ_MOVE(*out, candidate);

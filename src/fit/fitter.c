@@ -59,14 +59,12 @@ static void free_copy(ritz_component *copy)
 static ritz_status install_copy(const ritz_component *component,
                                 ritz_component *out)
 {
-    const ritz_sparse *const K = &component->K, *const D = &component->D;
-
     *out = *component; /* all but what follows is borrowed */
     out->K = out->D = (ritz_sparse){0};
     out->dampers = (ritz_dampers){0};
-    RITZ_CHECK(ritz_sparse_add(1.0, K, 0.0, K, &out->K));
-    if (D->colptr)
-        RITZ_CHECK(ritz_sparse_add(1.0, D, 0.0, D, &out->D));
+    RITZ_CHECK(ritz_sparse_copy(&component->K, &out->K));
+    if (component->D.colptr)
+        RITZ_CHECK(ritz_sparse_copy(&component->D, &out->D));
     RITZ_CHECK(ritz_dampers_copy(&component->dampers, &out->dampers));
     return ritz_component_install(out);
 }
@@ -188,25 +186,21 @@ double ritz_fit_rich_to(const ritz_verify_request *limits)
                     fmax(1.0, sqrt(10.0 * RITZ_RICH_LEAVES / finest)));
 }
 
-/* Mass normalised modes of a rich first stage as a model to compare with. */
-static ritz_status copy_as_component(const ritz_configuration *from,
-                                     const ritz_scene *scene,
-                                     ritz_component *out)
+/* Mass normalised modes of a rich first stage as a model to compare with, which
+   takes over their inputs and outputs. */
+static ritz_status make_component(const ritz_scene *scene,
+                                  ritz_configuration *from, ritz_component *out)
 {
     enum { MATRICES = 4 };
     const ritz_dense *const matrix[MATRICES] = {&from->K, &from->M, &from->D,
                                                 &from->K4};
     RITZ_OWN(ritz_component) made = {.num_dofs = from->K.ncol};
     ritz_sparse *const into[MATRICES] = {&made.K, &made.M, &made.D, &made.K4};
-    RITZ_OWN(ritz_dense) eye = {0};
 
-    RITZ_CHECK(ritz_dense_new(made.num_dofs, made.num_dofs, &eye));
-    for (int64_t j = 0; j < made.num_dofs; j++)
-        ritz_dense_col(&eye, j)[j] = 1.0;
     for (int k = 0; k < MATRICES; k++)
         if (matrix[k]->val)
             RITZ_CHECK(ritz_sparse_from_dense(matrix[k], into[k]));
-    RITZ_CHECK(ritz_io_project(&from->io, &eye, &made.io));
+    RITZ_MOVE(made.io, from->io);
     RITZ_CHECK_NEW(made.dof, made.num_dofs);
     for (int64_t j = 0; j < made.num_dofs; j++)
         made.dof[j] = (ritz_dof){.grid = j + 1};
@@ -227,7 +221,7 @@ static ritz_status rich_systems(ritz_fitter *f)
 
         ritz_monitor_step("first stage", k, f->num_places);
         RITZ_CHECK(ritz_stage_assemble(&rich.stage, f->place[k].setting, &at));
-        RITZ_CHECK(copy_as_component(&at, f->scene, &f->place[k].full));
+        RITZ_CHECK(make_component(f->scene, &at, &f->place[k].full));
     }
     return RITZ_OK;
 }

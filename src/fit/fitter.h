@@ -178,11 +178,15 @@ ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
                           int64_t k, int64_t modes, ritz_reduced *out);
 void ritz_fit_forget(ritz_fitter *fitter, const ritz_method *method);
 
-/** Add the errors of a stage at a place to the worst so far; refuse what is
- * unstable where it is confirmed (@p points is not 0). */
+/**
+ * Add the errors of a stage at a place to the worst so far; refuse what is
+ * unstable where it is confirmed (@p points is not 0).
+ *
+ * @param[in] bounds  what bounds decide is not measured
+ */
 ritz_status ritz_fit_measure_at(ritz_fitter *fitter, const ritz_stage *stage,
                                 const ritz_fit_place *place, int points,
-                                ritz_fit_candidate *candidate);
+                                bool bounds, ritz_fit_candidate *candidate);
 
 /**
  * Measure and judge a stage: at every listed place, by bounds or on the grid;
@@ -195,8 +199,7 @@ ritz_status ritz_fit_measure(ritz_fitter *fitter, const ritz_stage *stage,
 ritz_status ritz_fit_bound_stage(ritz_fitter *fitter, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate);
 
-/** Make, measure and judge a candidate; bound one of a scene that was tried. */
-ritz_status ritz_fit_try(ritz_fitter *fitter, ritz_fit_candidate *candidate);
+/** Bound a candidate of a scene that was tried. */
 ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);
 
 /** Whether candidate @p a is nearer to the tolerance, as far as is known: it

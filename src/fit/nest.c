@@ -100,8 +100,8 @@ static ritz_status measure_ratio(nesting *n, int64_t count,
         const int64_t k = (from + t) % places;
         const double before = judged.ratio;
 
-        status = ritz_fit_measure_at(n->f, &joined.stage,
-                                     &n->f->place[k * n->every], 0, &judged);
+        status = ritz_fit_measure_at(
+            n->f, &joined.stage, &n->f->place[k * n->every], 0, false, &judged);
         if (status == RITZ_OK && judged.ratio > before)
             n->hardest = k;
     }
@@ -117,7 +117,8 @@ static ritz_status measure_places(ritz_fitter *f, const ritz_stage *stage,
     const int64_t places = points ? f->num_places : f->num_listed;
 
     for (int64_t k = 0; k < places && !out->refusal[0]; k++)
-        RITZ_CHECK(ritz_fit_measure_at(f, stage, &f->place[k], points, out));
+        RITZ_CHECK(
+            ritz_fit_measure_at(f, stage, &f->place[k], points, false, out));
     return RITZ_OK;
 }
 
@@ -541,8 +542,7 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
     RITZ_OWN(ritz_bodies) nested = {0};
     RITZ_OWN(ritz_fit_joined) cut = {0};
 
-    RITZ_CHECK_NEW(less.modes, f->num_bodies);
-    memcpy(less.modes, from->modes, (size_t)f->num_bodies * sizeof *less.modes);
+    RITZ_CHECK_COPY(less.modes, from->modes, f->num_bodies);
     RITZ_CHECK(nest_uncut(f, from, &path, &nested));
     for (int64_t t = 1; t < path.count; t++)
         if (path.row[t].feasible)

@@ -125,20 +125,20 @@ void ritz_fit_conclude(ritz_fit *fit, int64_t method)
 /* How far COMPARE is off with nothing removed, whatever its order. */
 static ritz_status measure_uncut(ritz_fitter *f, double *out)
 {
+    const ritz_method *method = &ritz_fit_compare;
     const ritz_fit_request request = f->request;
     const int64_t largest = f->largest;
-    RITZ_OWN(ritz_fit_candidate)
-    whole = {
-        .method = &ritz_fit_compare, .num_bodies = f->num_bodies, .worst = -1};
+    RITZ_OWN(ritz_fit_candidate) whole = {0};
+    RITZ_OWN_ARRAY int64_t *modes = NULL;
     ritz_status status = RITZ_OK;
 
-    RITZ_CHECK_NEW(whole.modes, f->num_bodies);
-    ritz_fit_rung(f, whole.method, ritz_fit_rungs(f, whole.method),
-                  whole.modes);
+    RITZ_CHECK_NEW(modes, f->num_bodies);
+    ritz_fit_rung(f, method, ritz_fit_rungs(f, method), modes);
     f->largest = INT64_MAX;
     f->request.thorough = true; /* measured, not bounded */
     f->request.costs = false;
-    status = ritz_fit_try(f, &whole);
+    f->request.observe = NULL;
+    status = ritz_fitter_try(f, method, modes, &whole);
     f->request = request;
     f->largest = largest;
     *out = whole.refusal[0] ? 0.0 : whole.ratio; /* its sentence is told */
@@ -216,78 +216,6 @@ ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
     return RITZ_OK;
 }
 
-/*
- * Fewer modes than one cut for all bodies gives: from each body in turn one is
- * taken, that whose loss hurts least is gone for good; where none can go,
- * bodies exchange modes, several of one for fewer of another.
- */
-
-typedef struct thinning {
-    ritz_fitter *fitter;
-    ritz_fit *fit;
-    int64_t method;
-    int64_t *from, *modes; /* of the best so far, and to work in */
-    int64_t best;          /* candidate */
-} thinning;
-
-/* Try `from` with @p less modes of one body and @p more of another. */
-static ritz_status move_modes(thinning *t, int64_t i, int64_t less, int64_t j,
-                              int64_t more)
-{
-    const ritz_fit_candidate *all = NULL;
-    int64_t at = 0;
-
-    if (t->from[i] < less)
-        return RITZ_OK;
-    memcpy(t->modes, t->from, (size_t)t->fitter->num_bodies * sizeof *t->modes);
-    t->modes[i] -= less;
-    t->modes[j] += more;
-    RITZ_CHECK(ritz_fit_visit(t->fitter, t->fit, t->method, t->modes, &at));
-    all = t->fit->candidate;
-    if (all[at].feasible && ritz_fit_is_better(&all[at], &all[t->best]))
-        t->best = at;
-    return RITZ_OK;
-}
-
-/* One mode of each body in turn; if none can go, exchanges between bodies. */
-static ritz_status move_all(thinning *t)
-{
-    const int64_t bodies = t->fitter->num_bodies, before = t->best;
-
-    for (int64_t i = 0; i < bodies; i++)
-        RITZ_CHECK(move_modes(t, i, 1, i, 0));
-    if (t->best != before)
-        return RITZ_OK;
-    for (int64_t given = 1; given <= MOST_GIVEN; given++)
-        for (int64_t i = 0; i < bodies; i++)
-            for (int64_t j = 0; j < bodies; j++)
-                if (i != j)
-                    RITZ_CHECK(move_modes(t, i, given + 1, j, given));
-    return RITZ_OK;
-}
-
-static ritz_status thin_modes(ritz_fitter *fitter, ritz_fit *fit,
-                              int64_t method)
-{
-    RITZ_OWN_ARRAY int64_t *from = NULL, *modes = NULL;
-    thinning t = {.fitter = fitter,
-                  .fit = fit,
-                  .method = method,
-                  .best = fit->best[method]};
-
-    RITZ_CHECK_NEW(from, fitter->num_bodies);
-    RITZ_CHECK_NEW(modes, fitter->num_bodies);
-    t.from = from;
-    t.modes = modes;
-    for (int64_t before = -1; before != t.best;) {
-        before = t.best;
-        memcpy(from, fit->candidate[before].modes,
-               (size_t)fitter->num_bodies * sizeof *from);
-        RITZ_CHECK(move_all(&t));
-    }
-    return RITZ_OK;
-}
-
 /* --- the ladder
    --------------------------------------------------------------------- */
 
@@ -298,7 +226,7 @@ typedef struct ladder {
     int64_t method, top;
     int64_t length; /* rungs of the scene's ladder as far as it is used */
     bool on; /* beyond the first ladder's end, and no farther than in reach */
-    int64_t *modes;        /* to work in */
+    int64_t *modes, *from; /* num_bodies each, to work in */
     int64_t last, earlier; /* candidates: the highest rungs that were made */
     ritz_fit_end end;      /* why there is no higher one; NONE: there is */
 } ladder;
@@ -544,6 +472,64 @@ static ritz_status measure_largest(const ladder *l)
     return RITZ_OK;
 }
 
+/*
+ * Fewer modes than one cut for all bodies gives: from each body in turn one is
+ * taken, that whose loss hurts least is gone for good; where none can go,
+ * bodies exchange modes, several of one for fewer of another.
+ */
+
+/* Try `from` with @p less modes of one body and @p more of another; it may be
+   better than the best so far. */
+static ritz_status move_modes(const ladder *l, int64_t i, int64_t less,
+                              int64_t j, int64_t more)
+{
+    int64_t *best = &l->fit->best[l->method];
+    const ritz_fit_candidate *all = NULL;
+    int64_t at = 0;
+
+    if (l->from[i] < less)
+        return RITZ_OK;
+    memcpy(l->modes, l->from, (size_t)l->fitter->num_bodies * sizeof *l->modes);
+    l->modes[i] -= less;
+    l->modes[j] += more;
+    RITZ_CHECK(ritz_fit_visit(l->fitter, l->fit, l->method, l->modes, &at));
+    all = l->fit->candidate;
+    if (all[at].feasible && ritz_fit_is_better(&all[at], &all[*best]))
+        *best = at;
+    return RITZ_OK;
+}
+
+/* One mode of each body in turn; if none can go, exchanges between bodies. */
+static ritz_status move_all(const ladder *l)
+{
+    const int64_t bodies = l->fitter->num_bodies;
+    const int64_t before = l->fit->best[l->method];
+
+    for (int64_t i = 0; i < bodies; i++)
+        RITZ_CHECK(move_modes(l, i, 1, i, 0));
+    if (l->fit->best[l->method] != before)
+        return RITZ_OK;
+    for (int64_t given = 1; given <= MOST_GIVEN; given++)
+        for (int64_t i = 0; i < bodies; i++)
+            for (int64_t j = 0; j < bodies; j++)
+                if (i != j)
+                    RITZ_CHECK(move_modes(l, i, given + 1, j, given));
+    return RITZ_OK;
+}
+
+static ritz_status thin_modes(const ladder *l)
+{
+    const int64_t *best = &l->fit->best[l->method];
+
+    for (int64_t before = -1; before != *best;) {
+        before = *best;
+        memcpy(l->from, l->fit->candidate[before].modes,
+               (size_t)l->fitter->num_bodies * sizeof *l->from);
+        RITZ_CHECK(move_all(l));
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                             bool on)
 {
@@ -551,8 +537,9 @@ ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
     ladder l = {.fitter = fitter, .fit = fit, .method = method};
     int64_t low = -1, high = -1;
 
-    RITZ_CHECK_NEW(modes, fitter->num_bodies);
+    RITZ_CHECK_NEW(modes, 2 * fitter->num_bodies);
     l.modes = modes;
+    l.from = modes + fitter->num_bodies;
     RITZ_CHECK(climb_first(&l, &low, &high));
     l.on = on;
     if (on)
@@ -567,7 +554,7 @@ ritz_status ritz_fit_search(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
     }
     if (fitter->scene && fit->best[method] >= 0 &&
         (!on || in_reach(&l, fit->best[method]))) {
-        RITZ_CHECK(thin_modes(fitter, fit, method));
+        RITZ_CHECK(thin_modes(&l));
         ritz_fit_conclude(fit, method);
     }
     return RITZ_OK;
