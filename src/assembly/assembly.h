@@ -145,8 +145,8 @@ ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
                             ritz_configuration *configuration);
 
 /*
- * The springs and dampers of caged directions. Spring k is stretched by row k of
- * S q: it adds k_k s_k s_k' to K, and its damper c_k s_k s_k' to D.
+ * The springs and dampers of caged directions. Spring k is stretched by row k
+ * of S q: it adds k_k s_k s_k' to K, and its damper c_k s_k s_k' to D.
  */
 typedef struct ritz_springs {
     ritz_dense S; /* springs x Q */

@@ -453,8 +453,8 @@ static int64_t find_nearest(const ritz_joint_end end[static 2], int64_t grid,
     return near;
 }
 
-/* The relations of a fixed joint: every grid of one port is paired with the grid
-   of the other that lies at the same place, from its port's origin. */
+/* The relations of a fixed joint: every grid of one port is paired with that of
+   the other that lies at the same place, from its port's origin. */
 static ritz_status pair_joint(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               ritz_relations *list)

@@ -24,18 +24,6 @@ typedef struct ritz_rows {
 /** The stage-1 configuration of row @p k, borrowed. */
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
 
-/** The plan that the scene requests; `attached` may still be AUTO. */
-ritz_plan ritz_compare_plan(const ritz_scene *scene);
-
-/**
- * Build stage two by a plan: its bodies with their V, and the second system at
- * listed configurations.
- *
- * @param[in,out] out  has none of these yet
- */
-ritz_status ritz_compare_try(const ritz_rows *rows, const ritz_plan *plan,
-                             ritz_comparison *out);
-
 /**
  * The least value of a mode that matters: the scene's tolerance times the
  * largest over all listed configurations. Where modes are not ranked this is
@@ -79,11 +67,6 @@ ritz_status ritz_system_statics(const ritz_configuration *configuration,
 ritz_status ritz_system_krylov(const ritz_configuration *configuration,
                                int64_t vectors, bool both, ritz_dense *out,
                                int64_t *moments);
-
-/* Columns first .. last - 1. */
-typedef struct ritz_range {
-    int64_t first, last;
-} ritz_range;
 
 /*
  * The groups of vectors that all configurations contribute to one body, r_c
@@ -130,11 +113,11 @@ ritz_status ritz_composite_choose(const ritz_scene *scene,
  *
  * @param[out] V      stage->count matrices, r_c x s_c, M-orthonormal where M is
  *                    definite; the identity where s_c would be r_c
- * @param[out] massless  of each body, its columns without mass
+ * @param[out] massless  of each body, how many first columns have no mass
  * @param[out] count     vectors before dependent ones were removed
  */
 ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
-                                   ritz_dense *V, ritz_range *massless,
+                                   ritz_dense *V, int64_t *massless,
                                    int64_t *count);
 
 /* The body's own contributions, r rows each. */
@@ -202,14 +185,6 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
 ritz_status ritz_compare_bode(const ritz_response *first,
                               const ritz_response *second, double *deviation,
                               double *hertz);
-
-/**
- * Errors for each set of attached dofs, where the scene augments components or
- * leaves the set open; plan->attached becomes the chosen set.
- */
-ritz_status ritz_compare_candidates(const ritz_rows *rows, ritz_plan *plan,
-                                    int64_t *count, ritz_candidate **out);
-void ritz_candidates_free(int64_t count, ritz_candidate **candidates);
 
 /**
  * The angle where errors between listed angles are largest, and the measure.

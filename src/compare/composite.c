@@ -561,7 +561,7 @@ static ritz_status gather_group(const composing *it, int group, ritz_dense *W)
 
 /* U: the groups in turn, each orthogonal to those before it. */
 static ritz_status choose_directions(const composing *it, const ritz_dense *L,
-                                     const double *scale, ritz_range *massless,
+                                     const double *scale, int64_t *massless,
                                      ritz_dense *U)
 {
     bool own = it->plan->augment == RITZ_AUGMENT_COMPONENT;
@@ -582,14 +582,14 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
             scale_to_unit(false, &Y);
         RITZ_CHECK(ritz_span_append(&Y, least, &largest, NULL, U));
         if (g == MASSLESS)
-            *massless = (ritz_range){0, U->ncol};
+            *massless = U->ncol;
     }
     return RITZ_OK;
 }
 
 /* V of one body; *count grows by its own vectors. */
-static ritz_status compose_body(composing *it, ritz_dense *V,
-                                ritz_range *massless, int64_t *count)
+static ritz_status compose_body(composing *it, ritz_dense *V, int64_t *massless,
+                                int64_t *count)
 {
     const ritz_reduced *body = &it->stage->body[it->body];
     const double *scale = it->stage->scale + it->stage->first[it->body];
@@ -604,7 +604,7 @@ static ritz_status compose_body(composing *it, ritz_dense *V,
     RITZ_CHECK(ritz_mass_factor(body, scale, &L, &mixed));
     RITZ_CHECK(choose_directions(it, &L, scale, massless, &U));
     if (U.ncol == U.nrow) { /* nothing to remove: leave the body as it is */
-        *massless = (ritz_range){0, 0};
+        *massless = 0;
         return ritz_dense_identity(U.nrow, V);
     }
     ritz_mass_return(&L, scale, mixed, &U);
@@ -646,7 +646,7 @@ static ritz_status list_contributions(const ritz_rows *rows,
 }
 
 ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
-                                   ritz_dense *V, ritz_range *massless,
+                                   ritz_dense *V, int64_t *massless,
                                    int64_t *count)
 {
     const ritz_stage *stage = rows->stage;

@@ -465,30 +465,33 @@ static ritz_status make_uncut(ritz_fitter *f,
     return RITZ_OK;
 }
 
-/* Those bodies nested, and the path of their cuts. */
-static ritz_status nest_uncut(ritz_fitter *f,
-                              const ritz_fit_candidate *candidate,
-                              ritz_fit_path *path, ritz_bodies *out)
+/* Those bodies, not nested, as a row of the path of their cuts says: that of so
+   many columns, or the last feasible one if @p columns is 0; found: how many it
+   has, 0 of none. */
+static ritz_status cut_candidate(ritz_fitter *f,
+                                 const ritz_fit_candidate *candidate,
+                                 int64_t columns, int64_t *found,
+                                 ritz_bodies *out)
 {
     RITZ_OWN(nesting) n = {0};
+    RITZ_OWN(ritz_fit_path) path = {0};
+    const ritz_fit_candidate *row = NULL;
 
     RITZ_CHECK(make_uncut(f, candidate, &n.whole));
     RITZ_CHECK(order_columns(f, &n));
-    RITZ_CHECK(walk_path(&n, f->scene ? INT64_MAX : COMPONENT_PATIENCE, path));
+    RITZ_CHECK(walk_path(&n, f->scene ? INT64_MAX : COMPONENT_PATIENCE, &path));
+    for (int64_t t = 0; t < path.count; t++)
+        if (columns > 0 ? path.row[t].columns == columns
+                        : t > 0 && path.row[t].feasible)
+            row = &path.row[t];
+    *found = row ? row->columns : 0;
+    if (!row)
+        return RITZ_OK;
     RITZ_CHECK(ritz_bodies_new(f->num_bodies, out));
-    for (int64_t k = 0; k < f->num_bodies; k++)
-        RITZ_CHECK(nest_body(&n, k, &out->item[k]));
-    return RITZ_OK;
-}
-
-/* Bodies as a row of the path cuts them, no longer nested. */
-static ritz_status cut_bodies(const ritz_fit_candidate *row,
-                              const ritz_bodies *nested, ritz_bodies *out)
-{
-    RITZ_CHECK(ritz_bodies_new(nested->count, out));
-    for (int64_t k = 0; k < nested->count; k++) {
-        RITZ_CHECK(ritz_reduced_prefix(&nested->item[k], row->modes[k],
-                                       &out->item[k]));
+    for (int64_t k = 0; k < f->num_bodies; k++) {
+        (void)take_own(&n, k, n.count, n.column);
+        RITZ_CHECK(ritz_reduced_nest(&n.whole.item[k], row->modes[k], n.own, 1,
+                                     &out->item[k]));
         ritz_nested_free(&out->item[k].nested);
     }
     return RITZ_OK;
@@ -498,21 +501,16 @@ ritz_status ritz_fit_make_bodies(ritz_fitter *f,
                                  const ritz_fit_candidate *candidate,
                                  ritz_bodies *out)
 {
-    RITZ_OWN(ritz_fit_path) path = {0};
-    RITZ_OWN(ritz_bodies) nested = {0};
-    const ritz_fit_candidate *row = NULL;
+    int64_t found = 0;
 
     if (candidate->left_out == 0)
         return make_uncut(f, candidate, out);
-    RITZ_CHECK(nest_uncut(f, candidate, &path, &nested));
-    for (int64_t t = 0; t < path.count; t++)
-        if (path.row[t].columns == candidate->columns)
-            row = &path.row[t];
-    RITZ_REFUSE_IF(!row, RITZ_ERR_ARGUMENT,
+    RITZ_CHECK(cut_candidate(f, candidate, candidate->columns, &found, out));
+    RITZ_REFUSE_IF(found == 0, RITZ_ERR_ARGUMENT,
                    "the candidate is none of this scene's: no cut of it has "
                    "%" PRId64 " columns",
                    candidate->columns);
-    return cut_bodies(row, &nested, out);
+    return RITZ_OK;
 }
 
 /* --- columns left out
@@ -537,21 +535,13 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
             .num_bodies = from->num_bodies,
             .worst = -1,
             .making = from->making};
-    const ritz_fit_candidate *row = NULL;
-    RITZ_OWN(ritz_fit_path) path = {0};
-    RITZ_OWN(ritz_bodies) nested = {0};
     RITZ_OWN(ritz_fit_joined) cut = {0};
 
     RITZ_CHECK_COPY(less.modes, from->modes, f->num_bodies);
-    RITZ_CHECK(nest_uncut(f, from, &path, &nested));
-    for (int64_t t = 1; t < path.count; t++)
-        if (path.row[t].feasible)
-            row = &path.row[t];
-    if (!row)
+    RITZ_CHECK(cut_candidate(f, from, 0, &less.columns, &cut.own));
+    if (less.columns == 0)
         return RITZ_OK;
-    RITZ_CHECK(cut_bodies(row, &nested, &cut.own));
-    less.columns = row->columns;
-    less.left_out = from->columns - row->columns;
+    less.left_out = from->columns - less.columns;
     RITZ_CHECK(ritz_fit_refuse(measure_cut(f, &cut, &less), &less));
     if (less.feasible)
         RITZ_MOVE(*out, less);
