@@ -88,9 +88,6 @@ extern const ritz_integrator ritz_integrator_trapezoidal;
 extern const ritz_integrator ritz_integrator_generalised_alpha;
 extern const ritz_integrator ritz_integrator_central_difference;
 
-/** Integrator called @p name; NULL and a sentence with the nearest if none. */
-const ritz_integrator *ritz_integrator_find(const char *name);
-
 /* A simulation that is wanted. Everything is borrowed. */
 typedef struct ritz_simulation_request {
     const ritz_integrator *integrator;

@@ -107,12 +107,6 @@ static double first_step(const ritz_simulation_request *request,
     return request->step > 0.0 ? request->step : step;
 }
 
-static int64_t most_tried(int64_t values)
-{
-    return values * most_steps > most_values ? most_values / values
-                                             : most_steps;
-}
-
 /* @p last is what kept the last step from being taken, if anything did. */
 static ritz_status refuse_steps(const ritz_simulation_request *request,
                                 int64_t most, const ritz_accuracy *found,
@@ -150,7 +144,8 @@ ritz_status ritz_simulate_accurate(ritz_model subject,
     if (subject.kind != 0)
         io = ritz_model_io(subject);
     asked.step = first_step(request, io.num_inputs);
-    most = most_tried(io.num_inputs + io.num_outputs + 1);
+    most = most_values / (io.num_inputs + io.num_outputs + 1);
+    most = most < most_steps ? most : most_steps;
     RITZ_CHECK(ritz_request_steps(&asked, &steps));
     t.num_outputs = io.num_outputs;
     RITZ_CHECK_NEW(t.before, t.num_outputs);

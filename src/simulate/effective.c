@@ -26,13 +26,15 @@ double ritz_motion_dot(int64_t n, const double *a, const double *b)
     return sum;
 }
 
-/* y += alpha A x with A of a sparse motion, or else of a dense one. */
-static void add_product(const ritz_motion *motion, const ritz_sparse *sparse,
-                        const ritz_dense *dense, double alpha, const double *x,
-                        double *y)
+void ritz_motion_add(const ritz_motion *motion, ritz_term term, double alpha,
+                     const double *x, double *y)
 {
+    const ritz_dense *const dense[] = {&motion->K, &motion->M, &motion->D};
+    const ritz_sparse *const all[] = {&motion->sK, &motion->sM, &motion->sD};
+    const ritz_sparse *sparse = all[term];
+
     if (motion->form != RITZ_FORM_SPARSE) {
-        ritz_motion_gemv(dense, alpha, x, y);
+        ritz_motion_gemv(dense[term], alpha, x, y);
         return;
     }
     for (int64_t j = 0; sparse->colptr && j < sparse->ncol; j++) {
@@ -44,22 +46,13 @@ static void add_product(const ritz_motion *motion, const ritz_sparse *sparse,
     }
 }
 
-void ritz_motion_stiffness(const ritz_motion *motion, double alpha,
-                           const double *x, double *y)
+double ritz_motion_form(const ritz_dense *A, const double *x)
 {
-    add_product(motion, &motion->sK, &motion->K, alpha, x, y);
-}
+    double sum = 0.0;
 
-void ritz_motion_mass(const ritz_motion *motion, double alpha, const double *x,
-                      double *y)
-{
-    add_product(motion, &motion->sM, &motion->M, alpha, x, y);
-}
-
-void ritz_motion_damping(const ritz_motion *motion, double alpha,
-                         const double *x, double *y)
-{
-    add_product(motion, &motion->sD, &motion->D, alpha, x, y);
+    for (int64_t j = 0; j < A->ncol; j++)
+        sum += x[j] * ritz_motion_dot(A->nrow, ritz_dense_col(A, j), x);
+    return sum;
 }
 
 static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
@@ -144,17 +137,6 @@ ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
     return factor_dense(motion, m, d, k, out);
 }
 
-/* A real right side of the complex factor. */
-static ritz_status solve_general(ritz_effective *F, double *x)
-{
-    for (int64_t k = 0; k < F->n; k++)
-        F->z[k] = x[k];
-    RITZ_CHECK(ritz_zldl_solve(F->general, 1, F->z));
-    for (int64_t k = 0; k < F->n; k++)
-        x[k] = creal(F->z[k]);
-    return RITZ_OK;
-}
-
 ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
 {
     int n = (int)F->n;
@@ -171,8 +153,13 @@ ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
                                   F->LU.val, n, F->pivot, x, n);
         return RITZ_OK;
     }
-    for (int64_t j = 0; j < columns; j++)
-        RITZ_CHECK(solve_general(F, x + j * F->n));
+    for (int64_t j = 0; j < columns; j++, x += F->n) { /* real right sides */
+        for (int64_t k = 0; k < F->n; k++)
+            F->z[k] = x[k];
+        RITZ_CHECK(ritz_zldl_solve(F->general, 1, F->z));
+        for (int64_t k = 0; k < F->n; k++)
+            x[k] = creal(F->z[k]);
+    }
     return RITZ_OK;
 }
 

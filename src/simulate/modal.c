@@ -280,20 +280,11 @@ static ritz_status prepare_group(const ritz_motion *m, double h,
     return ritz_exponential(&A, h, m->energies ? 2 : 0, Q, &part->E, part->W);
 }
 
-static double value_of_form(const ritz_dense *W, const double *z)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < W->ncol; j++)
-        sum += z[j] * ritz_motion_dot(W->nrow, ritz_dense_col(W, j), z);
-    return sum;
-}
-
 static void account_energy(const coupled_modes *part, const double *z,
                            ritz_march *march)
 {
-    march->dissipated += value_of_form(&part->W[0], z);
-    march->work += value_of_form(&part->W[1], z);
+    march->dissipated += ritz_motion_form(&part->W[0], z);
+    march->work += ritz_motion_form(&part->W[1], z);
 }
 
 /* A mode alone. */
@@ -366,12 +357,15 @@ static ritz_status advance_modal(ritz_march *march, const double *u0,
     return RITZ_OK;
 }
 
-static ritz_status start_modes(const ritz_motion *motion, double step,
-                               ritz_march *out)
+static ritz_status start_modal(const ritz_motion *motion, double step,
+                               double rho, ritz_march *out)
 {
     int64_t room = 2 * motion->n + 2 * motion->B.ncol;
     modal *s = NULL;
 
+    (void)rho;
+    if (motion->form == RITZ_FORM_STATES)
+        return ritz_states_start(motion, step, true, out);
     RITZ_CHECK_NEW(s, 1);
     out->own = s;
     out->advance = advance_modal;
@@ -389,15 +383,6 @@ static ritz_status start_modes(const ritz_motion *motion, double step,
         RITZ_CHECK(prepare_group(motion, step, &s->group[k]));
     }
     return RITZ_OK;
-}
-
-static ritz_status start_modal(const ritz_motion *motion, double step,
-                               double rho, ritz_march *out)
-{
-    (void)rho;
-    if (motion->form == RITZ_FORM_STATES)
-        return ritz_states_exact(motion, step, out);
-    return start_modes(motion, step, out);
 }
 
 const ritz_integrator ritz_integrator_modal = {

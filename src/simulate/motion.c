@@ -39,26 +39,14 @@ static ritz_status take_modes(ritz_modal_model *modes, ritz_motion *m)
     m->original = modes->num_dofs;
     m->num_rigid = modes->num_rigid;
     RITZ_CHECK(ritz_dense_copy(&modes->B, &m->push));
-    m->lambda = modes->lambda;
-    m->D = modes->Delta;
-    m->B = modes->B;
-    m->C = modes->C;
-    m->Cv = modes->Cv;
-    m->feed = modes->feed;
-    m->to = modes->MPhi;
-    modes->lambda = NULL;
-    modes->Delta = modes->B = modes->C = (ritz_dense){0};
-    modes->Cv = modes->feed = modes->MPhi = (ritz_dense){0};
+    RITZ_MOVE(m->lambda, modes->lambda);
+    RITZ_MOVE(m->D, modes->Delta);
+    RITZ_MOVE(m->B, modes->B);
+    RITZ_MOVE(m->C, modes->C);
+    RITZ_MOVE(m->Cv, modes->Cv);
+    RITZ_MOVE(m->feed, modes->feed);
+    RITZ_MOVE(m->to, modes->MPhi);
     return RITZ_OK;
-}
-
-/* The static response of modes above, the first term of their series. */
-static ritz_status find_rest(const ritz_component *component, double up_to_hz,
-                             const ritz_pairs *pairs, ritz_residual *out)
-{
-    if (pairs->Phi.ncol >= component->num_dofs)
-        return RITZ_OK;
-    return ritz_residual_new(component, NULL, pairs, 0.0, up_to_hz, out);
 }
 
 /* Modal, up to a frequency, with the static response of all above in `feed`. */
@@ -80,8 +68,10 @@ static ritz_status motion_of_modes(const ritz_component *component,
     RITZ_CHECK(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));
     RITZ_CHECK(ritz_sparse_mul(&component->M, &pairs.Phi, &modes.MPhi));
     RITZ_CHECK(ritz_sparse_project(&component->D, &pairs.Phi, &modes.Delta));
-    RITZ_CHECK_IN("what lies above the modes",
-                  find_rest(component, up_to_hz, &pairs, &rest));
+    if (pairs.Phi.ncol < component->num_dofs) /* the first term of a series */
+        RITZ_CHECK_IN(
+            "what lies above the modes",
+            ritz_residual_new(component, NULL, &pairs, 0.0, up_to_hz, &rest));
     ritz_modal_model_take(&pairs, component->num_dofs, &modes);
     RITZ_CHECK(ritz_modal_model_drive(&component->io, damping ? damping : &none,
                                       &modes));
@@ -100,16 +90,6 @@ static ritz_status motion_of_modes(const ritz_component *component,
  * Dofs without mass (rows empty in M) are in equilibrium at every step's end;
  * at the start they are put there by the simulation. D must leave them alone.
  */
-
-/* Rows in which A has nothing but zeros. */
-static void find_empty(const ritz_sparse *A, bool *out)
-{
-    for (int64_t j = 0; j < A->ncol; j++)
-        out[j] = true;
-    for (int64_t k = 0; k < A->colptr[A->ncol]; k++)
-        if (A->val[k] != 0.0)
-            out[A->rowind[k]] = false;
-}
 
 static ritz_status check_sparse(const ritz_component *component,
                                 const ritz_damping *damping,
@@ -164,7 +144,8 @@ static ritz_status write_out_sparse(const ritz_io *io, ritz_effective *mass,
                 ritz_motion_dot(m->n, z.val, ritz_dense_col(&m->B, j));
         for (int64_t k = 0; k < m->n; k++)
             row[k] = 0.0;
-        ritz_motion_stiffness(m, -1.0, z.val, row); /* K is symmetric */
+        ritz_motion_add(m, RITZ_STIFFNESS, -1.0, z.val,
+                        row); /* K is symmetric */
         for (int64_t k = 0; k < m->n; k++)
             ritz_dense_col(&m->C, k)[i] += row[k];
         for (int64_t k = 0; m->sD.colptr && k < m->n; k++)
@@ -195,7 +176,11 @@ static ritz_status fill_sparse(const ritz_component *component,
     RITZ_CHECK_NEW(m->massless, m->n);
     RITZ_CHECK(ritz_sparse_copy(&component->K, &m->sK));
     RITZ_CHECK(ritz_sparse_copy(&component->M, &m->sM));
-    find_empty(&m->sM, m->massless);
+    for (int64_t j = 0; j < m->n; j++)
+        m->massless[j] = true;
+    for (int64_t k = 0; k < m->sM.colptr[m->n]; k++)
+        if (m->sM.val[k] != 0.0)
+            m->massless[m->sM.rowind[k]] = false;
     if (ritz_damping_is_rayleigh(damping))
         RITZ_CHECK(ritz_damping_matrix(component, damping, &m->sD));
     else if (component->D.colptr)
@@ -228,54 +213,25 @@ static bool is_present(const ritz_dense *A)
     return A && A->val;
 }
 
-/* A += alpha X; A of zeros if it is {0}. */
-static ritz_status add_scaled(double alpha, const ritz_dense *X, ritz_dense *A)
-{
-    if (!A->val)
-        RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, A));
-    for (int64_t k = 0; k < X->nrow * X->ncol; k++)
-        A->val[k] += alpha * X->val[k];
-    return RITZ_OK;
-}
-
-/* C -= A X */
-static ritz_status subtract_product(const ritz_dense *A, const ritz_dense *X,
-                                    ritz_dense *C)
-{
-    RITZ_OWN(ritz_dense) AX = {0};
-
-    if (!X->val)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_mul(A, X, &AX));
-    return add_scaled(-1.0, &AX, C);
-}
-
 /* Accelerations out of the outputs, by W = Ca M^-1. */
 static ritz_status write_out(const ritz_dense *Ca, ritz_motion *m)
 {
-    RITZ_OWN(ritz_dense) X = {0}, W = {0}, feed = {0};
+    RITZ_OWN(ritz_dense) X = {0}, W = {0}, feed = {0}, WK = {0}, WD = {0};
 
     if (ritz_dense_max(Ca) == 0.0)
         return RITZ_OK;
     RITZ_CHECK(ritz_general_transpose(Ca, &X));
     RITZ_CHECK_IN("M", ritz_general_solve(&m->M, true, &X));
     RITZ_CHECK(ritz_general_transpose(&X, &W));
-    RITZ_CHECK(subtract_product(&W, &m->K, &m->C));
-    RITZ_CHECK(subtract_product(&W, &m->D, &m->Cv));
+    RITZ_CHECK(ritz_dense_mul(&W, &m->K, &WK));
+    ritz_dense_add(-1.0, &WK, &m->C);
+    if (m->D.val) {
+        RITZ_CHECK(ritz_dense_mul(&W, &m->D, &WD));
+        ritz_dense_add(-1.0, &WD, &m->Cv);
+    }
     RITZ_CHECK(ritz_dense_mul(&W, &m->B, &feed));
-    return add_scaled(1.0, &feed, &m->feed);
-}
-
-/* B, C, Cv, feed and push of full matrices. */
-static ritz_status drive_dense(const ritz_io *io, ritz_motion *m)
-{
-    RITZ_CHECK(ritz_dense_copy(&io->B, &m->B));
-    RITZ_CHECK(ritz_dense_copy(&io->C, &m->C));
-    RITZ_CHECK(ritz_dense_copy(&io->Cv, &m->Cv));
-    RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
-    RITZ_CHECK(ritz_dense_copy(&io->B, &m->push));
-    RITZ_CHECK_IN("M", ritz_general_solve(&m->M, false, &m->push));
-    return write_out(&io->Ca, m);
+    ritz_dense_add(1.0, &feed, &m->feed);
+    return RITZ_OK;
 }
 
 /* Lambda and I as matrices. */
@@ -303,7 +259,13 @@ static ritz_status fill_dense(const ritz_structure *s, const ritz_io *io,
     if (s->D.val)
         RITZ_CHECK(ritz_dense_copy(&s->D, &m->D));
     RITZ_CHECK(ritz_modal_damping(s, damping, &m->D));
-    return drive_dense(io, m);
+    RITZ_CHECK(ritz_dense_copy(&io->B, &m->B));
+    RITZ_CHECK(ritz_dense_copy(&io->C, &m->C));
+    RITZ_CHECK(ritz_dense_copy(&io->Cv, &m->Cv));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
+    RITZ_CHECK(ritz_dense_copy(&io->B, &m->push));
+    RITZ_CHECK_IN("M", ritz_general_solve(&m->M, false, &m->push));
+    return write_out(&io->Ca, m);
 }
 
 ritz_status ritz_motion_dense(ritz_model subject, bool modal, ritz_motion *out)

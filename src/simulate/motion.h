@@ -52,17 +52,22 @@ ritz_status ritz_motion_new(ritz_model subject,
                             const ritz_simulation_request *request,
                             ritz_motion *out);
 
-/** y += alpha K x, M x or D x, of a dense or sparse motion. */
-void ritz_motion_stiffness(const ritz_motion *motion, double alpha,
-                           const double *x, double *y);
-void ritz_motion_mass(const ritz_motion *motion, double alpha, const double *x,
-                      double *y);
-void ritz_motion_damping(const ritz_motion *motion, double alpha,
-                         const double *x, double *y);
+/* A matrix of a dense or sparse motion. */
+typedef enum ritz_term {
+    RITZ_STIFFNESS,
+    RITZ_MASS,
+    RITZ_DAMPING,
+} ritz_term;
 
-/** y += alpha A x and y += alpha A'x of a dense matrix; nothing of {0}. */
+/** y += alpha A x, A being that matrix. */
+void ritz_motion_add(const ritz_motion *motion, ritz_term term, double alpha,
+                     const double *x, double *y);
+
+/** y += alpha A x of a dense matrix; nothing of {0}. */
 void ritz_motion_gemv(const ritz_dense *A, double alpha, const double *x,
                       double *y);
+/** x'A x, without room for A x. */
+double ritz_motion_form(const ritz_dense *A, const double *x);
 double ritz_motion_dot(int64_t n, const double *a, const double *b);
 
 /* A factor of m M + d D + k K. */
@@ -155,33 +160,14 @@ void ritz_simulation_compare(const ritz_simulation *exact,
                              const ritz_simulation *other, int64_t output,
                              double *size, double *difference);
 
-/** A state space by the exponential of A: starts a march. */
-ritz_status ritz_states_exact(const ritz_motion *motion, double step,
-                              ritz_march *out);
-
 /**
- * A state space by the trapezoidal rule: starts a march.
+ * Starts a march of a state space, by the exponential of A if @p exact, else by
+ * the trapezoidal rule.
  *
- * @return RITZ_ERR_SINGULAR if 2 / step is an eigenvalue of A
+ * @return RITZ_ERR_SINGULAR if 2 / step is an eigenvalue of A, by that rule
  */
-ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
-                                    ritz_march *out);
-
-/*
- * The family of Newmark and generalised-alpha integrators: with z_b =
- * (1 - b) z_1 + b z_0,
- *
- *     M a_(alpha_m) + D v_(alpha_f) + K x_(alpha_f) = B u_(alpha_f)
- *     x_1 = x_0 + h v_0 + h^2 ((1/2 - beta) a_0 + beta a_1)
- *     v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1)
- */
-typedef struct ritz_newmark {
-    double alpha_m, alpha_f, beta, gamma;
-} ritz_newmark;
-
-/** Starts a march by these weights. @return RITZ_ERR_SINGULAR */
-ritz_status ritz_newmark_start(const ritz_motion *motion, double step,
-                               const ritz_newmark *weights, ritz_march *out);
+ritz_status ritz_states_start(const ritz_motion *motion, double step,
+                              bool exact, ritz_march *out);
 
 /*
  * One damped mode, q'' + d q' + lambda q = f, propagated exactly over h while f

@@ -1,4 +1,11 @@
 /*
+ * The family of Newmark and generalised-alpha integrators: with z_b =
+ * (1 - b) z_1 + b z_0,
+ *
+ *     M a_(alpha_m) + D v_(alpha_f) + K x_(alpha_f) = B u_(alpha_f)
+ *     x_1 = x_0 + h v_0 + h^2 ((1/2 - beta) a_0 + beta a_1)
+ *     v_1 = v_0 + h ((1 - gamma) a_0 + gamma a_1)
+ *
  * One step solves for the acceleration a_1 at its end: with predictors
  * x* = x_0 + h v_0 + h^2 (1/2 - beta) a_0 and v* = v_0 + h (1 - gamma) a_0
  *
@@ -22,12 +29,18 @@
 #include "simulate/motion.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct newmark_weights {
+    double alpha_m, alpha_f, beta, gamma;
+} newmark_weights;
+
 typedef struct newmark {
-    ritz_newmark w;
+    newmark_weights w;
     ritz_effective F;
     double *a;    /* n, at the end of the last step */
     double *x0;   /* n */
@@ -53,8 +66,8 @@ static ritz_status settle_start(ritz_march *march, const double *u)
 
     memset(s->a, 0, (size_t)m->n * sizeof *s->a);
     ritz_motion_gemv(&m->B, 1.0, u, s->a);
-    ritz_motion_stiffness(m, -1.0, march->x, s->a);
-    ritz_motion_damping(m, -1.0, march->v, s->a);
+    ritz_motion_add(m, RITZ_STIFFNESS, -1.0, march->x, s->a);
+    ritz_motion_add(m, RITZ_DAMPING, -1.0, march->v, s->a);
     for (int64_t k = 0; m->massless && k < m->n; k++)
         s->a[k] = m->massless[k] ? 0.0 : s->a[k];
     RITZ_CHECK_IN(
@@ -80,7 +93,7 @@ static void load_step(const ritz_march *march, const double *u0,
                       const double *u1, newmark *s)
 {
     const ritz_motion *m = march->motion;
-    const ritz_newmark *w = &s->w;
+    const newmark_weights *w = &s->w;
     double h = march->step;
     double f1 = 1.0 - w->alpha_f;
 
@@ -89,20 +102,20 @@ static void load_step(const ritz_march *march, const double *u0,
     if (w->alpha_f != 0.0)
         ritz_motion_gemv(&m->B, w->alpha_f, u0, s->rhs);
     if (w->alpha_m != 0.0)
-        ritz_motion_mass(m, -w->alpha_m, s->a, s->rhs);
+        ritz_motion_add(m, RITZ_MASS, -w->alpha_m, s->a, s->rhs);
     for (int64_t k = 0; k < m->n; k++)
         s->work[k] = march->x[k] +
                      f1 * h * (march->v[k] + h * (0.5 - w->beta) * s->a[k]);
-    ritz_motion_stiffness(m, -1.0, s->work, s->rhs);
+    ritz_motion_add(m, RITZ_STIFFNESS, -1.0, s->work, s->rhs);
     for (int64_t k = 0; k < m->n; k++)
         s->work[k] = march->v[k] + f1 * h * (1.0 - w->gamma) * s->a[k];
-    ritz_motion_damping(m, -1.0, s->work, s->rhs);
+    ritz_motion_add(m, RITZ_DAMPING, -1.0, s->work, s->rhs);
 }
 
 /* x, v and a at the end; a_1 is in rhs. */
 static void move_step(ritz_march *march, newmark *s)
 {
-    const ritz_newmark *w = &s->w;
+    const newmark_weights *w = &s->w;
     double h = march->step;
 
     for (int64_t k = 0; k < march->motion->n; k++) {
@@ -127,7 +140,7 @@ static void account_energy(ritz_march *march, const double *u0,
         march->work += 0.5 * (u0[j] + u1[j]) *
                        ritz_motion_dot(m->n, ritz_dense_col(&m->B, j), s->x0);
     memset(s->work, 0, (size_t)m->n * sizeof *s->work);
-    ritz_motion_damping(m, 1.0 / march->step, s->x0, s->work);
+    ritz_motion_add(m, RITZ_DAMPING, 1.0 / march->step, s->x0, s->work);
     march->dissipated += ritz_motion_dot(m->n, s->x0, s->work);
 }
 
@@ -149,10 +162,9 @@ static ritz_status advance_newmark(ritz_march *march, const double *u0,
     return RITZ_OK;
 }
 
-ritz_status ritz_newmark_start(const ritz_motion *motion, double step,
-                               const ritz_newmark *weights, ritz_march *out)
+static ritz_status start_newmark(const ritz_motion *motion, double step,
+                                 const newmark_weights *w, ritz_march *out)
 {
-    const ritz_newmark *w = weights;
     double f1 = 1.0 - w->alpha_f;
     newmark *s = NULL;
 
@@ -170,3 +182,111 @@ ritz_status ritz_newmark_start(const ritz_motion *motion, double step,
     return ritz_effective_new(motion, 1.0 - w->alpha_m, f1 * w->gamma * step,
                               f1 * w->beta * step * step, false, &s->F);
 }
+
+/*
+ * The trapezoidal rule, which in second order is Newmark's with gamma = 1/2,
+ * beta = 1/4, the average acceleration: unconditionally stable, and what it
+ * takes from energy is what D takes. Periods come out longer by (w h)^2 / 12.
+ */
+static ritz_status start_trapezoidal(const ritz_motion *motion, double step,
+                                     double rho, ritz_march *out)
+{
+    const newmark_weights weights = {0.0, 0.0, 0.25, 0.5};
+
+    (void)rho;
+    if (motion->form == RITZ_FORM_STATES)
+        return ritz_states_start(motion, step, false, out);
+    return start_newmark(motion, step, &weights, out);
+}
+
+const ritz_integrator ritz_integrator_trapezoidal = {
+    .name = "trapezoidal",
+    .summary = "average acceleration, implicit: one factor, a solve a step",
+    .accuracy = "second order: periods longer by (w h)^2 / 12",
+    .stability = "any step",
+    .dissipation = "none: the energy of an undamped model stays",
+    .fails = "modes above 1/h are kept alive as ringing",
+    .reference = "Newmark1959",
+    .takes_sparse = true,
+    .takes_states = true,
+    .start = start_trapezoidal,
+};
+
+/*
+ * Generalised-alpha: with rho the spectral radius at infinite frequency
+ *
+ *     alpha_m = (2 rho - 1) / (rho + 1),   alpha_f = rho / (rho + 1)
+ *     gamma = 1/2 - alpha_m + alpha_f
+ *     beta  = (1 - alpha_m + alpha_f)^2 / 4
+ *
+ * which is of second order, stable at any step, and of all such weights takes
+ * least from low frequencies [ChungHulbert1993]. rho = 1 takes nothing, rho = 0
+ * ends what it cannot resolve in one step.
+ */
+static ritz_status start_generalised_alpha(const ritz_motion *motion,
+                                           double step, double rho,
+                                           ritz_march *out)
+{
+    newmark_weights w = {0};
+
+    RITZ_REFUSE_IF(!(rho >= 0.0 && rho <= 1.0), RITZ_ERR_ARGUMENT,
+                   "the spectral radius at infinite frequency is between 0 and "
+                   "1, not %g",
+                   rho);
+    w.alpha_m = (2.0 * rho - 1.0) / (rho + 1.0);
+    w.alpha_f = rho / (rho + 1.0);
+    w.gamma = 0.5 - w.alpha_m + w.alpha_f;
+    w.beta =
+        0.25 * (1.0 - w.alpha_m + w.alpha_f) * (1.0 - w.alpha_m + w.alpha_f);
+    return start_newmark(motion, step, &w, out);
+}
+
+const ritz_integrator ritz_integrator_generalised_alpha = {
+    .name = "generalised-alpha",
+    .summary = "implicit, damps what the step does not resolve (--rho)",
+    .accuracy = "second order",
+    .stability = "any step",
+    .dissipation = "by design: rho a step at high frequency, little below 1/h",
+    .fails = "takes energy from modes that matter if steps are coarse",
+    .reference = "ChungHulbert1993",
+    .takes_sparse = true,
+    .start = start_generalised_alpha,
+};
+
+/*
+ * Central differences, Newmark's with gamma = 1/2, beta = 0:
+ *
+ *     M (x_+ - 2 x + x_-) / h^2 + D (x_+ - x_-) / (2 h) + K x = B u
+ *
+ * Damping forces are solved for, with M + h/2 D, so that the scheme is of
+ * second order, stands gyroscopic terms, and its limit stays 2 / omega_max:
+ * the energy v'M v / 2 + x'K x_+ / 2, v = (x_+ - x) / h, which is positive for
+ * h omega_max < 2, changes by -h v_c'D v_c alone, v_c = (x_+ - x_-) / (2 h)
+ * [Belytschko2014]. See simulate.h for that of damping forces half a step old.
+ */
+static ritz_status start_central_difference(const ritz_motion *motion,
+                                            double step, double rho,
+                                            ritz_march *out)
+{
+    const newmark_weights weights = {0.0, 0.0, 0.0, 0.5};
+    double omega = sqrt(motion->highest);
+
+    (void)rho;
+    RITZ_REFUSE_IF(!motion->any_step && step * omega >= 2.0, RITZ_ERR_ARGUMENT,
+                   "a step of %g s is not stable: the highest frequency, %.6g "
+                   "Hz, limits it to %.6g s",
+                   step, 0.5 * omega / RITZ_PI, 2.0 / omega);
+    return start_newmark(motion, step, &weights, out);
+}
+
+const ritz_integrator ritz_integrator_central_difference = {
+    .name = "central-difference",
+    .summary = "explicit: one factor of M + h/2 D, no stiffness in it",
+    .accuracy = "second order: periods shorter by (w h)^2 / 24",
+    .stability = "steps below 2 / omega_max, refused above",
+    .dissipation = "none",
+    .fails = "one stiff mode makes every step short",
+    .reference = "Belytschko2014",
+    .is_explicit = true,
+    .start = start_central_difference,
+};

@@ -51,16 +51,6 @@ static void see_outputs(const ritz_march *march, const double *u, double *y)
     ritz_motion_gemv(&m->feed, 1.0, u, y);
 }
 
-/* x'A x / 2 column by column, without room for A x. */
-static double quadratic_form(const ritz_dense *A, const double *x)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < A->ncol; j++)
-        sum += x[j] * ritz_motion_dot(A->nrow, ritz_dense_col(A, j), x);
-    return 0.5 * sum;
-}
-
 static double sparse_quadratic(const ritz_sparse *A, const double *x)
 {
     double sum = 0.0;
@@ -85,8 +75,8 @@ void ritz_march_energy(const ritz_march *march, double *kinetic,
         }
         break;
     case RITZ_FORM_DENSE:
-        *kinetic = quadratic_form(&m->M, march->v);
-        *potential = quadratic_form(&m->K, march->x);
+        *kinetic = 0.5 * ritz_motion_form(&m->M, march->v);
+        *potential = 0.5 * ritz_motion_form(&m->K, march->x);
         break;
     case RITZ_FORM_SPARSE:
         *kinetic = sparse_quadratic(&m->sM, march->v);
@@ -158,7 +148,7 @@ static double norm_of(const ritz_motion *motion, const double *x, double *work)
     if (motion->form == RITZ_FORM_MODAL)
         return sqrt(ritz_motion_dot(motion->n, x, x));
     memset(work, 0, (size_t)motion->n * sizeof *work);
-    ritz_motion_mass(motion, 1.0, x, work);
+    ritz_motion_add(motion, RITZ_MASS, 1.0, x, work);
     return sqrt(fmax(ritz_motion_dot(motion->n, x, work), 0.0));
 }
 
@@ -323,7 +313,7 @@ static ritz_status balance_massless(const ritz_motion *motion, const double *u,
     if (count == 0)
         return RITZ_OK;
     ritz_motion_gemv(&motion->B, 1.0, u, r);
-    ritz_motion_stiffness(motion, -1.0, x, r);
+    ritz_motion_add(motion, RITZ_STIFFNESS, -1.0, x, r);
     RITZ_CHECK(ritz_sparse_extract(&motion->sK, count, row, count, row, &K));
     RITZ_CHECK_IN("dofs without mass", ritz_factor_spd(&K, &F));
     RITZ_CHECK(ritz_dense_new(count, 1, &part));
@@ -406,15 +396,14 @@ static ritz_status begin_run(const ritz_motion *motion,
  */
 static ritz_status run_march(const ritz_motion *motion,
                              const ritz_simulation_request *request,
-                             ritz_reach *reach, ritz_simulation *s)
+                             int64_t steps, ritz_reach *reach,
+                             ritz_simulation *s)
 {
     RITZ_OWN(ritz_march) march = {0};
     RITZ_OWN_ARRAY double *u0 = NULL, *u1 = NULL;
-    int64_t steps = 0;
     int64_t every = request->every > 0 ? request->every : 1;
     double energy = 0.0;
 
-    RITZ_CHECK(ritz_request_steps(request, &steps));
     RITZ_CHECK(make_room(motion, request, steps, s));
     RITZ_CHECK_NEW(u0, s->num_inputs);
     RITZ_CHECK_NEW(u1, s->num_inputs);
@@ -448,25 +437,6 @@ static ritz_status run_march(const ritz_motion *motion,
     return RITZ_OK;
 }
 
-const ritz_integrator *ritz_integrator_find(const char *name)
-{
-    return ritz_row_find(ritz_integrators, "integrator", name);
-}
-
-static ritz_status check_subject(ritz_model subject,
-                                 const ritz_simulation_request *request)
-{
-    int64_t steps = 0;
-
-    RITZ_REFUSE_IF(subject.kind == 0, RITZ_ERR_ARGUMENT,
-                   "there is not one thing to simulate");
-    RITZ_CHECK(ritz_request_steps(request, &steps));
-    RITZ_REFUSE_IF(subject.kind == RITZ_MODEL_STATES && subject.damping &&
-                       subject.damping->kind != RITZ_DAMPING_NONE,
-                   RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
-    return RITZ_OK;
-}
-
 ritz_status ritz_simulate_noting(ritz_model subject,
                                  const ritz_simulation_request *request,
                                  bool energies, ritz_reach *reach,
@@ -476,14 +446,20 @@ ritz_status ritz_simulate_noting(ritz_model subject,
     RITZ_OWN(ritz_reach) found = {0};
     RITZ_OWN(ritz_simulation) s = {0};
     ritz_io io; /* borrowed */
+    int64_t steps = 0;
 
-    RITZ_CHECK(check_subject(subject, request));
+    RITZ_REFUSE_IF(subject.kind == 0, RITZ_ERR_ARGUMENT,
+                   "there is not one thing to simulate");
+    RITZ_CHECK(ritz_request_steps(request, &steps));
+    RITZ_REFUSE_IF(subject.kind == RITZ_MODEL_STATES && subject.damping &&
+                       subject.damping->kind != RITZ_DAMPING_NONE,
+                   RITZ_ERR_ARGUMENT, "a state space is damped as it was made");
     io = ritz_model_io(subject);
     RITZ_CHECK(ritz_motion_new(subject, request, &motion));
     motion.energies = energies && motion.form != RITZ_FORM_STATES;
     if (reach)
         RITZ_CHECK(reach_new(subject, &motion, &found));
-    RITZ_CHECK(run_march(&motion, request, reach ? &found : NULL, &s));
+    RITZ_CHECK(run_march(&motion, request, steps, reach ? &found : NULL, &s));
     RITZ_CHECK_COPY(s.input, io.input, s.num_inputs);
     RITZ_CHECK_COPY(s.output, io.output, s.num_outputs);
     if (subject.damping)

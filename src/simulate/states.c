@@ -50,45 +50,25 @@ static ritz_status advance_states(ritz_march *march, const double *u0,
     return RITZ_OK;
 }
 
-/* A march whose E, G and H are still to be found. */
-static ritz_status march_new(const ritz_motion *motion, ritz_march *out,
-                             states **s)
-{
-    RITZ_CHECK_NEW(*s, 1);
-    out->own = *s;
-    out->advance = advance_states;
-    out->free = release_states;
-    RITZ_CHECK_NEW((*s)->x, motion->n);
-    RITZ_CHECK_NEW((*s)->rise, motion->B.ncol);
-    return RITZ_OK;
-}
-
 /* Rows 0..n-1 of some columns, times a factor. */
 static ritz_status take_block(const ritz_dense *A, int64_t n, int64_t first,
                               int64_t count, double factor, ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(n, count, out));
-    for (int64_t j = 0; j < count; j++)
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(out, j)[i] =
-                factor * ritz_dense_col(A, first + j)[i];
+    RITZ_CHECK(ritz_dense_block(A, 0, n, first, count, out));
+    for (int64_t k = 0; k < n * count; k++)
+        out->val[k] *= factor;
     return RITZ_OK;
 }
 
-ritz_status ritz_states_exact(const ritz_motion *motion, double step,
-                              ritz_march *out)
+static ritz_status fill_exact(const ritz_motion *motion, double step, states *s)
 {
     int64_t n = motion->n;
     int64_t p = motion->B.ncol;
     double scale = fmax(ritz_dense_max(&motion->B), RITZ_LEAST_SCALE);
     RITZ_OWN(ritz_dense) A = {0}, E = {0};
-    states *s = NULL;
 
-    RITZ_CHECK(march_new(motion, out, &s));
     RITZ_CHECK(ritz_dense_new(n + 2 * p, n + 2 * p, &A));
-    for (int64_t j = 0; j < n; j++)
-        memcpy(ritz_dense_col(&A, j), ritz_dense_col(&motion->A, j),
-               (size_t)n * sizeof *A.val);
+    ritz_dense_put(&motion->A, 0, 0, &A);
     for (int64_t j = 0; j < p; j++) {
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(&A, n + j)[i] =
@@ -101,14 +81,12 @@ ritz_status ritz_states_exact(const ritz_motion *motion, double step,
     return take_block(&E, n, n + p, p, scale, &s->H);
 }
 
-ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
-                                    ritz_march *out)
+static ritz_status fill_trapezoidal(const ritz_motion *motion, double step,
+                                    states *s)
 {
     int64_t n = motion->n;
     RITZ_OWN(ritz_dense) left = {0};
-    states *s = NULL;
 
-    RITZ_CHECK(march_new(motion, out, &s));
     RITZ_CHECK(ritz_dense_copy(&motion->A, &left));
     RITZ_CHECK(ritz_dense_copy(&motion->A, &s->E));
     for (int64_t k = 0; k < n * n; k++) {
@@ -121,4 +99,19 @@ ritz_status ritz_states_trapezoidal(const ritz_motion *motion, double step,
     RITZ_CHECK(ritz_general_solve(&left, false, &s->E));
     RITZ_CHECK(ritz_general_solve(&left, false, &s->G));
     return take_block(&s->G, n, 0, s->G.ncol, 0.5, &s->H);
+}
+
+ritz_status ritz_states_start(const ritz_motion *motion, double step,
+                              bool exact, ritz_march *out)
+{
+    states *s = NULL;
+
+    RITZ_CHECK_NEW(s, 1);
+    out->own = s;
+    out->advance = advance_states;
+    out->free = release_states;
+    RITZ_CHECK_NEW(s->x, motion->n);
+    RITZ_CHECK_NEW(s->rise, motion->B.ncol);
+    return exact ? fill_exact(motion, step, s)
+                 : fill_trapezoidal(motion, step, s);
 }

@@ -447,7 +447,7 @@ static void what_makes_no_sense_is_refused(void **state)
     request.seconds = -1.0;
     assert_fails(ritz_simulate(m.dense, &request, &r), RITZ_ERR_ARGUMENT,
                  "no -1 seconds");
-    assert_null(ritz_integrator_find("trapezoid"));
+    assert_null(ritz_row_find(ritz_integrators, "integrator", "trapezoid"));
     assert_non_null(strstr(ritz_error_message(), "is 'trapezoidal' meant?"));
 }
 
