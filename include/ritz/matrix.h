@@ -95,6 +95,10 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
 ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
                             const int64_t *col, ritz_dense *out);
 
+/** A(at, at): rows at[0], at[1], ..., and the columns. */
+ritz_status ritz_dense_principal(const ritz_dense *A, int64_t count,
+                                 const int64_t *at, ritz_dense *out);
+
 /** Largest |A(i,j)|, of all or of a column; 0 if empty. */
 double ritz_dense_max(const ritz_dense *A);
 double ritz_dense_col_max(const ritz_dense *A, int64_t j);

@@ -23,7 +23,9 @@ typedef struct ritz_response {
     char damping[RITZ_DAMPING_SIZE];
     char interpolation[RITZ_NAME_SIZE]; /* "cubic": made for it; "" not said */
     double tolerance;     /* between points, of the largest |H| of a channel; 0:
-                         not kept */
+                         not kept. Each channel is the cubic through the four
+                         points around, two on either side, at the ends the
+                         outermost four; of fewer points, through all */
     int64_t num_singular; /* values at each point; 0: not computed */
     double *singular;     /* count x num_singular, descending */
     double singular_peak[2]; /* hertz and value of the largest, between the
@@ -48,17 +50,6 @@ typedef struct ritz_grid {
 ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out);
-
-/**
- * Between stored points: each channel is the cubic through the four points
- * around, two on either side, at the ends the outermost four; of fewer points,
- * through all. `tolerance` of a response refers to this interpolation.
- *
- * @param[out] out  num_outputs x num_inputs, row by row
- * @return RITZ_ERR_ARGUMENT outside the range of the points
- */
-ritz_status ritz_response_at(const ritz_response *response, double hertz,
-                             double _Complex *out);
 
 void ritz_response_free(ritz_response *response);
 
@@ -130,13 +121,12 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
                                ritz_responder **out);
 
 /**
- * Prepare a model by the engine that `auto` chooses or, if that cannot reach
- * its tolerance, by direct; the remark says so.
- *
- * @param[out] why  as above, of the engine that was chosen first
+ * The same or, if the engine does not converge on a component, by direct; the
+ * remark says so.
  */
-ritz_status ritz_responder_auto(const ritz_response_request *request,
-                                const char **why, ritz_responder **out);
+ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
+                                     const ritz_response_request *request,
+                                     ritz_responder **out);
 
 /**
  * H at one frequency.
@@ -157,8 +147,8 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out);
 
 /**
- * The points of a grid and as many more as it takes for ritz_response_at to be
- * within @p tolerance, relative to the largest |H| of each channel, at all
+ * The points of a grid and as many more as it takes for cubics between them to
+ * be within @p tolerance, relative to the largest |H| of each channel, at all
  * frequencies between; among them the peak of every pole and the dip of every
  * zero that is near enough to the axis to make one.
  *
@@ -176,7 +166,7 @@ void ritz_responder_free(ritz_responder **responder);
  * All at once: the points of @p grid if @p tolerance is 0, else those that keep
  * it.
  *
- * @param[in] engine    NULL: ritz_responder_auto
+ * @param[in] engine    NULL: the one that `auto` stands for, or direct
  * @param[in] up_to_hz  as in a request
  * @return RITZ_ERR_SINGULAR if a point lies on an undamped pole
  */

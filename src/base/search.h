@@ -3,6 +3,7 @@
 #define RITZ_BASE_SEARCH_H
 
 #include <stdint.h>
+#include <stdlib.h>
 
 /** First of @p count ascending numbers not below @p value; count if none. */
 static inline int64_t ritz_lower_bound(int64_t count, const int64_t *sorted,
@@ -37,6 +38,22 @@ static inline int ritz_ascending(const void *left, const void *right)
     double b = *(const double *)right;
 
     return (a > b) - (a < b);
+}
+
+/**
+ * Sort numbers; of those that differ by @p within, relative, or less, the first
+ * stays. How many are left.
+ */
+static inline int64_t ritz_sort_distinct(int64_t count, double *value,
+                                         double within)
+{
+    int64_t kept = 0;
+
+    qsort(value, (size_t)count, sizeof *value, ritz_ascending);
+    for (int64_t k = 0; k < count; k++)
+        if (kept == 0 || value[k] - value[kept - 1] > within * value[k])
+            value[kept++] = value[k];
+    return kept;
 }
 
 #endif

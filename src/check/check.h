@@ -130,10 +130,6 @@ void ritz_checker_flagged(ritz_checker *it, const char *name, const bool *flag,
 bool ritz_checker_settled(ritz_checker *it, const char *name,
                           const char *proof);
 
-/** A(rows, cols); NULL: all of them. */
-ritz_status ritz_check_pick(const ritz_dense *A, const ritz_dofs *rows,
-                            const ritz_dofs *cols, ritz_dense *out);
-
 /* Of S A S, S = diag(by)^-1/2. */
 typedef struct ritz_least_value {
     double value;   /* its least eigenvalue, over the largest magnitude */

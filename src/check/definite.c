@@ -161,34 +161,21 @@ ritz_status ritz_check_reduced_mass(ritz_checker *it)
     return RITZ_OK;
 }
 
-/* N'DN of motions without mass, entries that are rounding alone taken out. */
-static ritz_status project_massless(const ritz_dense *D, const ritz_dense *N,
-                                    ritz_dense *out)
-{
-    /* what an entry of N may err by, of its largest, squared */
-    double floor =
-        RITZ_MASSLESS_DAMPING * ritz_dense_max(D) * pow(ritz_dense_max(N), 2.0);
-    RITZ_OWN(ritz_dense) most = {0};
-
-    RITZ_CHECK(ritz_dense_project(D, N, out));
-    RITZ_CHECK(ritz_dense_terms(D, N, &most));
-    for (int64_t k = 0; k < out->nrow * out->ncol; k++)
-        if (fabs(out->val[k]) <= RITZ_SUM_ROUNDING * most.val[k] + floor)
-            out->val[k] = 0.0;
-    return RITZ_OK;
-}
-
 /* Least n'D n of motions without mass, N: k + c s = 0 grows if c < 0. */
 static ritz_status find_massless(const ritz_checker *it, ritz_least_value *out)
 {
     const ritz_second_order model = {.K = &it->model.K, .M = &it->model.M};
     RITZ_OWN(ritz_dense) N = {0}, D = {0}, unit = {0};
     RITZ_OWN(ritz_least_value) found = {0};
+    double floor = 0.0; /* what an entry of N may err by, of its largest,
+                           squared */
 
     if (it->modes.count == it->modes.num_dofs)
         return RITZ_OK;
     RITZ_CHECK(ritz_massless(&model, &it->modes.Phi, it->modes.lambda, &N));
-    RITZ_CHECK(project_massless(&it->model.D, &N, &D));
+    floor = RITZ_MASSLESS_DAMPING * ritz_dense_max(&it->model.D) *
+            pow(ritz_dense_max(&N), 2.0);
+    RITZ_CHECK(ritz_project_above(&it->model.D, &N, floor, &D));
     RITZ_CHECK(ritz_dense_new(N.ncol, N.ncol, &unit));
     RITZ_CHECK(ritz_least_value_new(&D, &unit, &found));
     if (found.value >= -RITZ_CONDENSATION_LOSS)

@@ -112,8 +112,7 @@ static ritz_status attach_to_pairs(const ritz_collocated *pairs, int64_t only,
                 only < 0 || i == only ? a * gain[i] : 0.0;
     RITZ_CHECK(ritz_dense_mul(&pairs->B, &X, &part));
     RITZ_CHECK(ritz_dense_copy(&pairs->A, &A));
-    for (int64_t k = 0; k < A.nrow * A.ncol; k++)
-        A.val[k] -= part.val[k];
+    ritz_dense_add(-1.0, &part, &A);
     RITZ_MOVE(*out, A);
     return RITZ_OK;
 }
@@ -402,8 +401,8 @@ static ritz_status take_rows(const ritz_dense *L, const ritz_dofs *force,
     int64_t rank = 0;
     int64_t most = L->nrow < force->count ? L->nrow : force->count;
 
-    RITZ_CHECK(ritz_check_pick(L, NULL, force, &L_p));
-    RITZ_CHECK(ritz_check_pick(L, NULL, other, &L_q));
+    RITZ_CHECK(ritz_dense_pick(L, force->count, force->at, &L_p));
+    RITZ_CHECK(ritz_dense_pick(L, other->count, other->at, &L_q));
     RITZ_CHECK(ritz_general_svd(&L_p, &U, &sigma, NULL));
     while (rank < most && sigma[rank] > RITZ_RANK_LOSS * sigma[0])
         rank++;
@@ -439,10 +438,14 @@ static ritz_status probe_joined(const ritz_checker *it, const ritz_dofs *force,
     RITZ_OWN(ritz_dense) mass = {0}, K = {0}, M = {0};
 
     RITZ_CHECK(take_rows(&it->L, force, other, &C_p, &C_q));
-    RITZ_CHECK(ritz_check_pick(&it->model.K, force, force, &K_pp));
-    RITZ_CHECK(ritz_check_pick(&it->model.M, force, force, &M_pp));
-    RITZ_CHECK(ritz_check_pick(&it->model.K, other, other, &K_qq));
-    RITZ_CHECK(ritz_check_pick(&it->model.M, other, other, &M_qq));
+    RITZ_CHECK(
+        ritz_dense_principal(&it->model.K, force->count, force->at, &K_pp));
+    RITZ_CHECK(
+        ritz_dense_principal(&it->model.M, force->count, force->at, &M_pp));
+    RITZ_CHECK(
+        ritz_dense_principal(&it->model.K, other->count, other->at, &K_qq));
+    RITZ_CHECK(
+        ritz_dense_principal(&it->model.M, other->count, other->at, &M_qq));
     RITZ_CHECK(ritz_general_transpose(&C_p, &H));
     RITZ_CHECK_IN("force columns", ritz_general_solve(&K_pp, false, &H));
     RITZ_CHECK(ritz_dense_mul(&C_p, &H, &soft));

@@ -140,26 +140,20 @@ static ritz_status check_parts(ritz_checker *it)
     return RITZ_OK;
 }
 
-/* Flag the rows of A that hold nothing but zeros. */
-static void flag_empty(const ritz_sparse *A, bool *flag)
-{
-    for (int64_t j = 0; j < A->ncol; j++) {
-        flag[j] = true;
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-            if (A->val[p] != 0.0)
-                flag[j] = false;
-    }
-}
-
+/* Rows of A that hold nothing but zeros. */
 static void check_rows(ritz_checker *it, const ritz_sparse *A, const char *name,
                        const char *meaning, bool *flag)
 {
     char some[RITZ_WHERE_SIZE];
     int64_t count = 0;
 
-    flag_empty(A, flag);
-    for (int64_t j = 0; j < A->ncol; j++)
+    for (int64_t j = 0; j < A->ncol; j++) {
+        flag[j] = true;
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            if (A->val[p] != 0.0)
+                flag[j] = false;
         count += flag[j];
+    }
     snprintf(some, sizeof some, "%" PRId64 " of %" PRId64 " dofs %s", count,
              A->ncol, meaning);
     ritz_checker_flagged(it, name, flag, RITZ_WARN, "there are none", some);
@@ -195,19 +189,6 @@ static ritz_verdict verdict_of(double value)
     if (value <= RITZ_MASS_AGREES)
         return RITZ_PASS;
     return value <= RITZ_MASS_BEARABLE ? RITZ_WARN : RITZ_FAIL;
-}
-
-/* R'MR, about the mass centre where positions are known. */
-static ritz_status condense_mass(const ritz_checker *it, const double *centre,
-                                 ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) R = {0};
-
-    if (it->placed)
-        RITZ_CHECK(ritz_rigid_geometry(it->component, centre, &R));
-    else
-        RITZ_CHECK(ritz_dense_copy(&it->R, &R));
-    return ritz_sparse_condense(&it->component->M, &R, out);
 }
 
 /* Whether any dof lies along a basic axis. */
@@ -252,6 +233,7 @@ static void check_coupling(ritz_checker *it, const ritz_dense *A, double mass,
                            const double *centre)
 {
     double worst = 0.0;
+    char text[RITZ_WHERE_SIZE];
 
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < 3; i++) {
@@ -263,35 +245,20 @@ static void check_coupling(ritz_checker *it, const ritz_dense *A, double mass,
             worst = fmax(worst, fabs(ritz_dense_col(A, j)[i]) / scale);
         }
     if (it->placed)
-        ritz_checker_say(it, "mass-coupling", worst, RITZ_MASS_AGREES,
-                         verdict_of(worst), NULL,
-                         "mass centre at %.6g %.6g %.6g", centre[0], centre[1],
-                         centre[2]);
+        snprintf(text, sizeof text, "mass centre at %.6g %.6g %.6g", centre[0],
+                 centre[1], centre[2]);
     else
-        ritz_checker_say(it, "mass-coupling", worst, RITZ_MASS_AGREES,
-                         verdict_of(worst), NULL,
-                         "translations are %scoupled by mass",
-                         worst <= RITZ_MASS_AGREES ? "not " : "");
-}
-
-/* Principal moments of inertia, ascending. */
-static ritz_status find_moments(const ritz_dense *A, double J[3])
-{
-    const ritz_dofs turns = {3, (int64_t[]){3, 4, 5}};
-    RITZ_OWN(ritz_dense) tensor = {0};
-    RITZ_OWN(ritz_pairs) pairs = {0};
-
-    RITZ_CHECK(ritz_check_pick(A, &turns, &turns, &tensor));
-    ritz_dense_symmetrise(&tensor);
-    RITZ_CHECK(ritz_general_symmetric(&tensor, &pairs));
-    for (int64_t k = 0; k < 3; k++)
-        J[k] = pairs.lambda[k];
-    return RITZ_OK;
+        snprintf(text, sizeof text, "translations are %scoupled by mass",
+                 worst <= RITZ_MASS_AGREES ? "not " : "");
+    ritz_checker_say(it, "mass-coupling", worst, RITZ_MASS_AGREES,
+                     verdict_of(worst), NULL, "%s", text);
 }
 
 static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
 {
-    double J[3] = {0.0, 0.0, 0.0};
+    RITZ_OWN(ritz_dense) tensor = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    const double *J = NULL; /* principal moments of inertia, ascending */
     double margin = 0.0;
     bool spatial = true;
 
@@ -299,7 +266,10 @@ static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
         spatial = spatial && has_direction(it, j);
     if (!spatial)
         return RITZ_OK;
-    RITZ_CHECK(find_moments(A, J));
+    RITZ_CHECK(ritz_dense_block(A, 3, 3, 3, 3, &tensor));
+    ritz_dense_symmetrise(&tensor);
+    RITZ_CHECK(ritz_general_symmetric(&tensor, &pairs));
+    J = pairs.lambda;
     margin = J[2] > 0.0 ? (J[0] + J[1] - J[2]) / J[2] : 0.0;
     ritz_checker_say(
         it, "inertia-tensor", margin, -RITZ_MASS_AGREES,
@@ -314,12 +284,15 @@ static ritz_status check_moments(ritz_checker *it, const ritz_dense *A)
 ritz_status ritz_check_mass(ritz_checker *it)
 {
     ritz_inertia inertia = {0};
-    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_dense) R = {0}, A = {0}; /* R'MR, about the mass centre */
     double mass = 0.0;
 
-    if (it->placed)
+    if (it->placed) {
         RITZ_CHECK(ritz_inertia_of(it->component, &inertia));
-    RITZ_CHECK(condense_mass(it, inertia.centre, &A));
+        RITZ_CHECK(ritz_rigid_geometry(it->component, inertia.centre, &R));
+    }
+    RITZ_CHECK(
+        ritz_sparse_condense(&it->component->M, it->placed ? &R : &it->R, &A));
     mass = check_masses(it, &A);
     if (mass > 0.0) {
         check_coupling(it, &A, mass, inertia.centre);

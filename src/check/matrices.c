@@ -69,17 +69,12 @@ static int count_decimals(double value, int *place)
 static int64_t sample_entries(const ritz_sparse *K, double *value)
 {
     int64_t nnz = K->colptr[K->ncol], step = nnz / LOOKED_AT + 1;
-    int64_t count = 0, kept = 0;
+    int64_t count = 0;
 
     for (int64_t p = 0; p < nnz; p += step)
         if (K->val[p] != 0.0)
             value[count++] = fabs(K->val[p]);
-    qsort(value, (size_t)count, sizeof *value, ritz_ascending);
-    for (int64_t k = 0; k < count; k++)
-        if (kept == 0 ||
-            value[k] - value[kept - 1] > 4.0 * DBL_EPSILON * value[k])
-            value[kept++] = value[k];
-    return kept;
+    return ritz_sort_distinct(count, value, 4.0 * DBL_EPSILON);
 }
 
 static ritz_status count_digits(const ritz_sparse *K, decimals *out)
@@ -297,16 +292,13 @@ static void say_negative(ritz_checker *it, const char *name, int64_t count,
     if (count == 0)
         ritz_checker_say(it, name, 0.0, 0.0, RITZ_PASS, NULL,
                          "no negative eigenvalue");
-    else if (explained)
-        ritz_checker_say(it, name, (double)count, 0.0, RITZ_WARN, dof,
-                         "%" PRId64 " negative eigenvalues, no larger than "
-                         "rounding of the source may leave",
-                         count);
     else
-        ritz_checker_say(it, name, (double)count, 0.0, RITZ_FAIL, dof,
-                         "%" PRId64 " negative eigenvalues: not positive "
-                         "semidefinite",
-                         count);
+        ritz_checker_say(it, name, (double)count, 0.0,
+                         explained ? RITZ_WARN : RITZ_FAIL, dof,
+                         "%" PRId64 " negative eigenvalues%s", count,
+                         explained ? ", no larger than rounding of the source "
+                                     "may leave"
+                                   : ": not positive semidefinite");
 }
 
 static ritz_status check_definite(ritz_checker *it, const ritz_sparse *A,

@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/complex.h"
 #include "base/search.h"
+#include "base/text.h"
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/eigenvalues.h"
@@ -332,39 +333,18 @@ ritz_status ritz_passivity_crossings(const ritz_collocated *model, double slack,
  * the displacement, velocity or acceleration of where it acts.
  */
 
-static int64_t find_output(const ritz_state_space *model, int64_t input)
-{
-    for (int64_t i = 0; i < model->num_outputs; i++)
-        if (strcmp(model->output[i], model->input[input]) == 0)
-            return i;
-    return -1;
-}
-
-ritz_status ritz_check_pick(const ritz_dense *A, const ritz_dofs *rows,
-                            const ritz_dofs *cols, ritz_dense *out)
-{
-    int64_t n = rows ? rows->count : A->nrow;
-    int64_t m = cols ? cols->count : A->ncol;
-
-    RITZ_CHECK(ritz_dense_new(n, m, out));
-    for (int64_t j = 0; j < m; j++) {
-        const double *col = ritz_dense_col(A, cols ? cols->at[j] : j);
-
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(out, j)[i] = col[rows ? rows->at[i] : i];
-    }
-    return RITZ_OK;
-}
-
 /* Some inputs and outputs of a model with D, in their order. */
 static ritz_status pick_pairs(const ritz_dense *A, const ritz_dense *B,
                               const ritz_dense *C, const ritz_dense *D,
                               const ritz_dofs at[2], ritz_collocated *out)
 {
+    RITZ_OWN(ritz_dense) rows = {0};
+
     RITZ_CHECK(ritz_dense_copy(A, &out->A));
-    RITZ_CHECK(ritz_check_pick(B, NULL, &at[0], &out->B));
-    RITZ_CHECK(ritz_check_pick(C, &at[1], NULL, &out->C));
-    RITZ_CHECK(ritz_check_pick(D, &at[1], &at[0], &out->D));
+    RITZ_CHECK(ritz_dense_pick(B, at[0].count, at[0].at, &out->B));
+    RITZ_CHECK(ritz_dense_rows(C, at[1].count, at[1].at, &out->C));
+    RITZ_CHECK(ritz_dense_rows(D, at[1].count, at[1].at, &rows));
+    RITZ_CHECK(ritz_dense_pick(&rows, at[0].count, at[0].at, &out->D));
     RITZ_CHECK_NEW(out->power, at[0].count);
     RITZ_CHECK_NEW(out->name, at[0].count);
     return RITZ_OK;
@@ -373,13 +353,16 @@ static ritz_status pick_pairs(const ritz_dense *A, const ritz_dense *B,
 static ritz_status take_pairs(const ritz_state_space *model,
                               ritz_collocated *out)
 {
+    const ritz_names outputs = {.count = model->num_outputs,
+                                .first = (const char *)model->output,
+                                .stride = sizeof *model->output};
     RITZ_OWN_ARRAY int64_t *in = NULL, *to = NULL;
     int64_t p = 0;
 
     RITZ_CHECK_NEW(in, model->num_inputs);
     RITZ_CHECK_NEW(to, model->num_inputs);
     for (int64_t j = 0; j < model->num_inputs; j++) {
-        to[p] = find_output(model, j);
+        to[p] = ritz_names_index(&outputs, model->input[j]);
         in[p] = j;
         p += to[p] >= 0;
     }

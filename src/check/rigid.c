@@ -246,18 +246,13 @@ static void check_digits(ritz_checker *it)
         it->digits);
 }
 
-static bool has_turned_axes(const ritz_grids *grids)
-{
-    for (int64_t k = 0; k < grids->count; k++)
-        if (grids->frame[k] != 0)
-            return true;
-    return false;
-}
-
 ritz_status ritz_check_forces(ritz_checker *it)
 {
-    bool turned = has_turned_axes(&it->component->grids);
+    const ritz_grids *grids = &it->component->grids;
+    bool turned = false; /* any displacement axes from basic ones */
 
+    for (int64_t k = 0; k < grids->count; k++)
+        turned = turned || grids->frame[k] != 0;
     RITZ_CHECK(find_forces(
         it, 0, turned ? RITZ_SINGLE_PRECISION : RITZ_ELEMENT_ROUNDING,
         &it->shift));

@@ -203,12 +203,6 @@ enum {
     FOURTHS = 4,       /* of an octave */
 };
 
-static double norm_of(const ritz_dense *A)
-{
-    return LAPACKE_dlange(LAPACK_COL_MAJOR, '1', (int)A->nrow, (int)A->ncol,
-                          A->val, (int)A->nrow);
-}
-
 /* e^(A h), e^(2 A h), e^(4 A h), ... until nothing is left, or t = most. */
 static ritz_status follow_powers(const ritz_dense *A, double h, double most,
                                  growth *out)
@@ -228,8 +222,7 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
             out->seconds = h * ldexp(1.0, k);
         }
         RITZ_CHECK(ritz_dense_mul(&E, &E, &next));
-        ritz_dense_free(&E);
-        RITZ_MOVE(E, next);
+        ritz_dense_replace(&E, &next);
     }
     return RITZ_OK;
 }
@@ -258,7 +251,8 @@ static ritz_status bound_growth(const ritz_dense *A, double *out)
 /* Growth of a stable A. @cost O(n^3), some hundred products up to 400 states */
 static ritz_status measure_growth(const ritz_dense *A, growth *out)
 {
-    double size = norm_of(A);
+    double size = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', (int)A->nrow,
+                                 (int)A->ncol, A->val, (int)A->nrow);
 
     *out = (growth){.met = 1.0, .most = HUGE_VAL, .followed = true};
     if (A->nrow == 0 || size == 0.0) {

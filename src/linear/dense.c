@@ -61,6 +61,15 @@ ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
     return RITZ_OK;
 }
 
+ritz_status ritz_dense_principal(const ritz_dense *A, int64_t count,
+                                 const int64_t *at, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) rows = {0};
+
+    RITZ_CHECK(ritz_dense_rows(A, count, at, &rows));
+    return ritz_dense_pick(&rows, count, at, out);
+}
+
 void ritz_dense_cut(const ritz_dense *A, int64_t row, int64_t col,
                     ritz_dense *out)
 {

@@ -14,7 +14,7 @@
  * what LAPACK was given with both: ritz_eigen_dense solves again what is far
  * below.
  */
-#include "poles/channel.h"
+#include "poles/poles.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -194,21 +194,6 @@ static int64_t sum_modes(const mode_rounding *s, channel_row *rows)
     return count;
 }
 
-static int64_t drop_unobserved(int64_t count, channel_row *rows)
-{
-    int64_t kept = 0;
-
-    for (int64_t k = 0; k < count; k++) {
-        channel_row r = rows[k];
-
-        r.c = fabs(r.c) <= r.doubt_c ? 0.0 : r.c;
-        r.cv = fabs(r.cv) <= r.doubt_cv ? 0.0 : r.cv;
-        if (r.c != 0.0 || r.cv != 0.0)
-            rows[kept++] = r;
-    }
-    return kept;
-}
-
 /*
  * Modes that are controllable and observable beyond rounding: *count of them,
  * -1 if damping couples modes.
@@ -222,10 +207,20 @@ static ritz_status channel_rows(const ritz_modal_model *modes,
 {
     RITZ_OWN_ARRAY channel_row *rows = NULL;
     RITZ_OWN(mode_rounding) s = {0};
+    int64_t summed = 0;
 
     RITZ_CHECK(project_channel(modes, D, io, &s));
     RITZ_CHECK_NEW(rows, modes->count);
-    *count = is_coupled(&s) ? -1 : drop_unobserved(sum_modes(&s, rows), rows);
+    *count = is_coupled(&s) ? -1 : 0;
+    summed = *count == 0 ? sum_modes(&s, rows) : 0;
+    for (int64_t k = 0; k < summed; k++) {
+        channel_row r = rows[k];
+
+        r.c = fabs(r.c) <= r.doubt_c ? 0.0 : r.c;
+        r.cv = fabs(r.cv) <= r.doubt_cv ? 0.0 : r.cv;
+        if (r.c != 0.0 || r.cv != 0.0)
+            rows[(*count)++] = r;
+    }
     RITZ_MOVE(*out, rows);
     return RITZ_OK;
 }
@@ -316,7 +311,8 @@ static ritz_status split_damped(const ritz_dense *D, sieve *s)
     return split_range(&G, noise, &s->loaded, &s->left, &smallest);
 }
 
-/* A column of rigid participations a'phi_k over its own doubt. */
+/* A column of rigid participations a'phi_k over its own doubt: each is known up
+   to 1. */
 static ritz_status weigh_rigid(const sieve *s, const double *a, double *out)
 {
     RITZ_OWN_ARRAY double *value = NULL, *doubt = NULL;
@@ -335,48 +331,22 @@ static ritz_status weigh_rigid(const sieve *s, const double *a, double *out)
     return RITZ_OK;
 }
 
-/* Restrict `left` to what the columns of A, r x ., reach; each entry of A is
-   known up to 1. */
+/* Restrict `left` to what some loads or outputs, columns of A, reach. */
 static ritz_status keep_reached(const ritz_dense *A, sieve *s)
 {
     double least = sqrt((double)A->ncol), smallest = 0.0;
-    RITZ_OWN(ritz_dense) within = {0}, range = {0}, kept = {0};
+    RITZ_OWN(ritz_dense) rigid = {0}, within = {0}, range = {0}, kept = {0};
 
-    RITZ_CHECK(ritz_dense_mul_tn(&s->left, A, &within));
+    RITZ_CHECK(ritz_dense_new(s->r, A->ncol, &rigid));
+    for (int64_t j = 0; j < A->ncol; j++)
+        RITZ_CHECK(
+            weigh_rigid(s, ritz_dense_col(A, j), ritz_dense_col(&rigid, j)));
+    RITZ_CHECK(ritz_dense_mul_tn(&s->left, &rigid, &within));
     RITZ_CHECK(split_range(&within, least, &range, NULL, &smallest));
     RITZ_CHECK(ritz_dense_mul(&s->left, &range, &kept));
     s->uncertainty += least / smallest;
-    ritz_dense_free(&s->left);
-    RITZ_MOVE(s->left, kept);
+    ritz_dense_replace(&s->left, &kept);
     return RITZ_OK;
-}
-
-static ritz_status keep_controllable(const ritz_io *io, sieve *s)
-{
-    RITZ_OWN(ritz_dense) A = {0};
-
-    RITZ_CHECK(ritz_dense_new(s->r, io->num_inputs, &A));
-    for (int64_t j = 0; j < io->num_inputs; j++)
-        RITZ_CHECK(
-            weigh_rigid(s, ritz_dense_col(&io->B, j), ritz_dense_col(&A, j)));
-    return keep_reached(&A, s);
-}
-
-static ritz_status keep_observable(const ritz_io *io, sieve *s)
-{
-    int64_t outs = io->num_outputs;
-    const ritz_dense *by[] = {&io->C, &io->Cv};
-    RITZ_OWN(ritz_dense) A = {0}, row = {0};
-
-    RITZ_CHECK(ritz_dense_new(s->r, 2 * outs, &A));
-    for (int64_t i = 0; i < 2 * outs; i++) {
-        int64_t at = i % outs;
-
-        ritz_dense_free(&row);
-        RITZ_CHECK(ritz_dense_rows(by[i / outs], 1, &at, &row));
-        RITZ_CHECK(weigh_rigid(s, row.val, ritz_dense_col(&A, i)));
-    }
-    return keep_reached(&A, s);
 }
 
 /* [L N 0; 0 0 I] */
@@ -387,10 +357,10 @@ static ritz_status basis_of(const sieve *s, ritz_dense *out)
     ritz_dense T = {0};
 
     RITZ_CHECK(ritz_dense_new(m, s->loaded.ncol + s->left.ncol + m - s->r, &T));
-    for (int k = 0; k < 2; k++)
-        for (int64_t j = 0; j < part[k]->ncol; j++)
-            memcpy(ritz_dense_col(&T, at++), ritz_dense_col(part[k], j),
-                   (size_t)s->r * sizeof *T.val);
+    for (int k = 0; k < 2; k++) {
+        ritz_dense_put(part[k], 0, at, &T);
+        at += part[k]->ncol;
+    }
     for (int64_t k = s->r; k < m; k++)
         ritz_dense_col(&T, at++)[k] = 1.0;
     *out = T;
@@ -441,11 +411,15 @@ static ritz_status drop_free_motions(const ritz_modal_model *modes,
 {
     RITZ_OWN(sieve)
     s = {.modes = modes, .rounding = rounding_of(modes), .r = modes->num_rigid};
+    RITZ_OWN(ritz_dense) C = {0}, Cv = {0}, seen = {0};
 
     if (s.r > 0) {
         RITZ_CHECK(split_damped(D, &s));
-        RITZ_CHECK(keep_controllable(io, &s));
-        RITZ_CHECK(keep_observable(io, &s));
+        RITZ_CHECK(keep_reached(&io->B, &s));
+        RITZ_CHECK(ritz_general_transpose(&io->C, &C));
+        RITZ_CHECK(ritz_general_transpose(&io->Cv, &Cv));
+        RITZ_CHECK(ritz_dense_beside(&C, &Cv, &seen));
+        RITZ_CHECK(keep_reached(&seen, &s));
     }
     return change_basis(&s, out);
 }
@@ -489,8 +463,7 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
     RITZ_CHECK(ritz_dense_rows(&all.C, 1, &output, &made.C));
     RITZ_CHECK(ritz_dense_new(1, 1, &made.D));
     made.D.val[0] = ritz_dense_col(&all.D, input)[output];
-    made.A = all.A;
-    all.A = (ritz_dense){0};
+    RITZ_MOVE(made.A, all.A);
     RITZ_MOVE(*out, made);
     return RITZ_OK;
 }

@@ -3,7 +3,7 @@
  * modes that were left out change what a local damper does, made exact on the
  * full ones.
  */
-#include "poles/damped.h"
+#include "poles/poles.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -20,8 +20,9 @@ static ritz_status fill_modal(const ritz_poles *poles, ritz_reduced *out)
 
     RITZ_CHECK(ritz_dense_new(m, m, &out->K));
     RITZ_CHECK(ritz_dense_new(m, m, &out->M));
-    RITZ_CHECK(ritz_leading(&poles->D, m, &out->D));
-    RITZ_CHECK(ritz_leading(&poles->K4, m, &out->K4));
+    RITZ_CHECK(ritz_dense_block(&poles->D, 0, m, 0, m, &out->D));
+    if (poles->K4.val)
+        RITZ_CHECK(ritz_dense_block(&poles->K4, 0, m, 0, m, &out->K4));
     for (int64_t k = 0; k < m; k++) {
         ritz_dense_col(&out->K, k)[k] = poles->lambda[k];
         ritz_dense_col(&out->M, k)[k] = 1.0;
@@ -72,12 +73,6 @@ static ritz_status assign_poles(const ritz_poles *poles,
     return RITZ_OK;
 }
 
-/* Damping ratio stated beside D: `rate` holds both, `own` that of D alone. */
-static double given_ratio(const ritz_poles *poles, const double *own, int64_t k)
-{
-    return (poles->rate[k] - own[k]) / (2.0 * sqrt(poles->lambda[k]));
-}
-
 /* Diagonal of Phi'D Phi; 0 without D. */
 static ritz_status own_rates(const ritz_sparse *D, const ritz_dense *Phi,
                              double **out)
@@ -95,49 +90,33 @@ static ritz_status own_rates(const ritz_sparse *D, const ritz_dense *Phi,
     return RITZ_OK;
 }
 
-/* x = Phi q, n x 2, of modal shape j. */
-static ritz_status shape_of(const ritz_dense *Phi,
-                            const ritz_spectrum *spectrum, int64_t j,
-                            ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) q = {0};
-
-    RITZ_CHECK(ritz_spectrum_shape(spectrum, j, &q));
-    return ritz_dense_mul(Phi, &q, out);
-}
-
-static bool in_band(const ritz_poles *poles, int64_t k, const double band_hz[2])
-{
-    double hertz = ritz_eigen_hertz(poles->lambda[k]);
-
-    return hertz >= band_hz[0] && hertz <= band_hz[1] * RITZ_RANGE_END;
-}
-
 /* Modes in the band, on the full matrices, from where the modal ones put s. */
 static ritz_status refine_band(const ritz_poles *poles,
                                const ritz_component *component,
                                const ritz_pairs *pairs, const double band_hz[2],
                                const int64_t *of, ritz_damped *damped)
 {
-    RITZ_OWN(ritz_refiner) refiner = {0};
-    RITZ_OWN(ritz_dense) x = {0};
-    RITZ_OWN_ARRAY double *own = NULL;
+    RITZ_OWN(ritz_zldl) *Z = NULL;
+    RITZ_OWN_ARRAY double *own = NULL; /* of D alone: `rate` has others too */
 
     RITZ_CHECK(own_rates(&component->D, &pairs->Phi, &own));
-    RITZ_CHECK(ritz_refiner_new(component, &refiner));
+    RITZ_CHECK(ritz_impedance_new(component, &Z));
     for (int64_t k = poles->num_rigid; k < poles->count; k++) {
+        RITZ_OWN(ritz_dense) q = {0}, x = {0};
         double _Complex s = 0.0;
-        double zeta = 0.0;
+        double hertz = ritz_eigen_hertz(poles->lambda[k]);
 
-        if (of[k] < 0 || !in_band(poles, k, band_hz))
+        if (of[k] < 0 || hertz < band_hz[0] ||
+            hertz > band_hz[1] * RITZ_RANGE_END)
             continue;
         s = damped->listing.s[of[k]];
-        RITZ_CHECK(shape_of(&pairs->Phi, &damped->listing, of[k], &x));
-        RITZ_CHECK(ritz_refine(&refiner, &x, &s));
-        ritz_dense_free(&x);
-        zeta = ritz_spectrum_ratio(s) + given_ratio(poles, own, k);
-        damped->zeta[k] = zeta;
-        damped->s[k] = ritz_pole_of(cabs(s), zeta);
+        RITZ_CHECK(ritz_spectrum_shape(&damped->listing, of[k], &q));
+        RITZ_CHECK(ritz_dense_mul(&pairs->Phi, &q, &x));
+        RITZ_CHECK(ritz_refine(component, Z, &x, &s));
+        damped->zeta[k] =
+            ritz_spectrum_ratio(s) +
+            (poles->rate[k] - own[k]) / (2.0 * sqrt(poles->lambda[k]));
+        damped->s[k] = ritz_pole_of(cabs(s), damped->zeta[k]);
         ritz_monitor_step("damped modes", k + 1, poles->count);
     }
     return RITZ_OK;
@@ -189,17 +168,9 @@ ritz_status ritz_damped_new(const ritz_poles *poles,
 double _Complex ritz_damped_nearest(const ritz_damped *damped, int64_t count,
                                     double _Complex s)
 {
-    bool listed = damped->listing.count > 0;
-    const double _Complex *all = listed ? damped->listing.s : damped->s;
-    double _Complex best = ritz_complex(nan(""), 0.0);
-    double least = HUGE_VAL;
-
-    for (int64_t k = 0; k < (listed ? damped->listing.count : count); k++)
-        if (cimag(all[k]) > 0.0 && cabs(all[k] - s) < least) {
-            least = cabs(all[k] - s);
-            best = all[k];
-        }
-    return best;
+    if (damped->listing.count == 0)
+        return ritz_nearest_pole(count, damped->s, true, s);
+    return ritz_nearest_pole(damped->listing.count, damped->listing.s, true, s);
 }
 
 void ritz_damped_free(ritz_damped *damped)

@@ -51,8 +51,9 @@ static void peak_free(peak *s)
     RITZ_FREE(s->H, s->sigma, s->spare);
 }
 
-static ritz_status peak_at(peak *s, double w, double *value)
+static ritz_status peak_at(void *state, double w, double *value)
 {
+    peak *s = state;
     int m = s->resolvent.m, p = s->resolvent.p;
     int info = 0;
 
@@ -90,25 +91,17 @@ static ritz_status choose_frequencies(const peak *s, int64_t *count,
 
         w[k + 1] = gap > 0.0 ? sqrt(gap) : cabs(pole);
     }
-    qsort(w, (size_t)n + 1, sizeof *w, ritz_ascending);
-    for (int64_t k = 0; k <= n; k++)
-        if (kept == 0 || w[k] - w[kept - 1] > RITZ_PEAK_PLACED * w[k])
-            w[kept++] = w[k];
+    kept = ritz_sort_distinct(n + 1, w, RITZ_PEAK_PLACED);
     w[kept] = 2.0 * w[kept - 1] + 1.0; /* the last bracket ends there */
     *count = kept;
     RITZ_MOVE(*out, w);
     return RITZ_OK;
 }
 
-static ritz_status value_at(void *state, double w, double *value)
-{
-    return peak_at(state, w, value);
-}
-
 /* The largest value so far is kept in the peak. */
 static ritz_status climb_between(peak *s, double low, double high)
 {
-    const ritz_curve curve = {value_at, s};
+    const ritz_curve curve = {peak_at, s};
     double most = 0.0;
 
     return ritz_curve_between(&curve, RITZ_PEAK_PLACED, &low, &high, &most);

@@ -215,29 +215,20 @@ ritz_status ritz_refuse_pole(bool rigid, double hertz)
                      hertz);
 }
 
-/* One over the pole's factor; 0 where it is infinite and does not matter. */
-static ritz_status invert_mode(const ritz_poles *poles, int64_t k, double hertz,
-                               double _Complex *out)
-{
-    double w = 2.0 * RITZ_PI * hertz;
-    double _Complex z =
-        ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
-    bool on_pole = cabs(z) <= RITZ_POLE_HIT * (poles->lambda[k] + w * w);
-
-    if (on_pole && ritz_poles_matter(poles, k))
-        return ritz_refuse_pole(k < poles->num_rigid, hertz);
-    *out = on_pole ? 0.0 : 1.0 / z;
-    return RITZ_OK;
-}
-
 static ritz_status solve_decoupled(const ritz_poles *poles,
                                    const ritz_dense *loads, double hertz,
                                    double _Complex *q)
 {
-    double _Complex g = 0.0;
+    double w = 2.0 * RITZ_PI * hertz;
 
     for (int64_t k = 0; k < poles->count; k++) {
-        RITZ_CHECK(invert_mode(poles, k, hertz, &g));
+        double _Complex z =
+            ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
+        bool on_pole = cabs(z) <= RITZ_POLE_HIT * (poles->lambda[k] + w * w);
+        double _Complex g = on_pole ? 0.0 : 1.0 / z;
+
+        if (on_pole && ritz_poles_matter(poles, k))
+            return ritz_refuse_pole(k < poles->num_rigid, hertz);
         for (int64_t j = 0; j < loads->ncol; j++)
             q[k + j * poles->count] = g * ritz_dense_col(loads, j)[k];
     }
@@ -410,10 +401,9 @@ static ritz_status take_massless(const ritz_second_order *model, bool beside,
     if (!damped)
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_beside(&pairs->Phi, &N, &X));
-    ritz_dense_free(&pairs->Phi);
-    pairs->Phi = X;
+    ritz_dense_replace(&pairs->Phi, &X);
     *count = N.ncol;
-    for (int64_t j = m; j < X.ncol; j++) /* lambda has room for all rows */
+    for (int64_t j = m; j < m + N.ncol; j++) /* lambda has room for all rows */
         pairs->lambda[j] = 1.0;
     return RITZ_OK;
 }

@@ -12,6 +12,7 @@
 
 #include <ritz/matrix.h>
 #include <ritz/model.h>
+#include <ritz/poles.h>
 #include <ritz/response.h>
 
 /*
@@ -168,6 +169,10 @@ ritz_status ritz_static_rest(const ritz_second_order *model,
 ritz_status ritz_massless(const ritz_second_order *model, const ritz_dense *Phi,
                           const double *lambda, ritz_dense *out);
 
+/** B'AB whose entries are 0 where they are rounding, or up to @p floor. */
+ritz_status ritz_project_above(const ritz_dense *A, const ritz_dense *B,
+                               double floor, ritz_dense *out);
+
 /**
  * The a and b for which |D - a M - b K| is least in the Frobenius norm.
  *
@@ -189,5 +194,99 @@ ritz_status ritz_impedance_new(const ritz_component *component,
 ritz_status ritz_impedance_factor(const ritz_component *component,
                                   const double _Complex c[static 3],
                                   ritz_zldl *Z);
+
+/* Components of so many dofs are taken whole, as dense: some seconds. */
+enum { RITZ_WHOLE_DOFS = 300 };
+
+/** All poles of a dense model; its io may be NULL. @cost O((2 n)^3) */
+ritz_status ritz_spectrum_dense(const ritz_second_order *model,
+                                const ritz_damping *damping,
+                                ritz_spectrum *out);
+
+/** Poles of a component of more dofs than that, by a projection. */
+ritz_status ritz_spectrum_large(const ritz_component *component,
+                                const ritz_damping *damping,
+                                const ritz_span *span, ritz_spectrum *out);
+
+/** K, M, D and K4 of a component as dense ones, and nothing else of it. */
+ritz_status ritz_whole_new(const ritz_component *component, ritz_reduced *out);
+
+/** Shape of pole j, n x 2: real and imaginary part. */
+ritz_status ritz_spectrum_shape(const ritz_spectrum *spectrum, int64_t j,
+                                ritz_dense *out);
+
+/*
+ * Damped eigenpairs of the full matrices, by inverse iteration for
+ * Z(s) = s^2 M + s D + K + i K4:
+ *
+ *     u = Z(s)^-1 Z'(s) x,    s_new = s - (x^H x) / (x^H u),   x_new = u
+ *
+ * [Ruhe1973]
+ */
+
+/**
+ * From an estimate to the pair nearest to it.
+ *
+ * @param[in]     Z  of ritz_impedance_new
+ * @param[in,out] x  n x 2, real and imaginary part
+ * @return RITZ_ERR_CONVERGENCE if s does not settle
+ */
+ritz_status ritz_refine(const ritz_component *component, ritz_zldl *Z,
+                        ritz_dense *x, double _Complex *s);
+
+/** The pole above the axis of size |s| and a ratio; NaN of ratios from 1 on. */
+double _Complex ritz_pole_of(double size, double zeta);
+
+typedef struct ritz_damped {
+    double *zeta;          /* of each undamped mode: NaN where it does not
+                              oscillate any more, 0 where rigid */
+    double _Complex *s;    /* of each: NaN where rigid, or not oscillating */
+    ritz_spectrum listing; /* all poles; {0} where D couples no modes */
+} ritz_damped;
+
+/**
+ * The damped mode that each undamped one has become.
+ *
+ * @param[in] component  may be NULL; else modes in `band_hz` are made exact by
+ *                       inverse iteration on its matrices
+ * @param[in] pairs      of the component; NULL with it
+ */
+ritz_status ritz_damped_new(const ritz_poles *poles,
+                            const ritz_component *component,
+                            const ritz_pairs *pairs, const double band_hz[2],
+                            ritz_damped *out);
+
+/** The pole nearest to @p s, of those above the axis if @p above; or NaN. */
+double _Complex ritz_nearest_pole(int64_t count, const double _Complex *pole,
+                                  bool above, double _Complex s);
+
+/** Oscillating pole nearest to @p s among those of a model; NaN if none. */
+double _Complex ritz_damped_nearest(const ritz_damped *damped, int64_t count,
+                                    double _Complex s);
+
+void ritz_damped_free(ritz_damped *damped);
+
+/*
+ * The transfer function whose zeros are sought: some inputs and outputs of
+ *
+ *     x' = A x + B u,    y = C x + D u
+ *
+ * or, if `squared`, of x'' = A x + B u, whose eigenvalues and zeros are s^2.
+ */
+typedef struct ritz_channel {
+    ritz_dense A, B, C, D;
+    bool squared;       /* then A is diagonal */
+    bool blocks;        /* A is [0 w; -l/w -d] of pairs of states k, k + n/2 */
+    int64_t derivative; /* y is that derivative of what is above: so many zeros
+                           at 0, but where poles are */
+} ritz_channel;
+
+ritz_status ritz_channel_dense(const ritz_second_order *model,
+                               const ritz_damping *damping, int64_t output,
+                               int64_t input, ritz_channel *out);
+ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
+                                int64_t input, ritz_channel *out);
+
+void ritz_channel_free(ritz_channel *channel);
 
 #endif

@@ -25,7 +25,6 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "model/modal.h"
-#include "poles/damped.h"
 #include "poles/poles.h"
 
 #include <ritz/matrix.h>
@@ -119,17 +118,16 @@ static ritz_status assemble_matrix(const state_form *s, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* X'AX whose entries are 0 where they are rounding alone. */
-static ritz_status project_above_rounding(const ritz_dense *A,
-                                          const ritz_dense *X, ritz_dense *out)
+ritz_status ritz_project_above(const ritz_dense *A, const ritz_dense *B,
+                               double floor, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) most = {0};
 
-    RITZ_CHECK(ritz_dense_project(A, X, out));
-    RITZ_CHECK(ritz_dense_terms(A, X, &most));
-    for (int64_t i = 0; i < out->nrow * out->ncol; i++)
-        if (fabs(out->val[i]) <= RITZ_SUM_ROUNDING * most.val[i])
-            out->val[i] = 0.0;
+    RITZ_CHECK(ritz_dense_project(A, B, out));
+    RITZ_CHECK(ritz_dense_terms(A, B, &most));
+    for (int64_t k = 0; k < out->nrow * out->ncol; k++)
+        if (fabs(out->val[k]) <= RITZ_SUM_ROUNDING * most.val[k] + floor)
+            out->val[k] = 0.0;
     return RITZ_OK;
 }
 
@@ -212,8 +210,7 @@ static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
         *count +=
             -delta[j] > fmax(floor, (double)k * RITZ_SUM_ROUNDING * largest);
     RITZ_CHECK(ritz_dense_mul(N, &V, &turned));
-    ritz_dense_free(N);
-    RITZ_MOVE(*N, turned);
+    ritz_dense_replace(N, &turned);
     return RITZ_OK;
 }
 
@@ -235,17 +232,6 @@ static ritz_status check_rest(const ritz_dense *D, int64_t from)
     return RITZ_OK;
 }
 
-ritz_status ritz_leading(const ritz_dense *A, int64_t m, ritz_dense *out)
-{
-    if (!A->val)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_new(m, m, out));
-    for (int64_t j = 0; j < m; j++)
-        for (int64_t i = 0; i < m; i++)
-            ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[i];
-    return RITZ_OK;
-}
-
 /* Put into N what D acts on, into X all that is kept, and D of that. */
 static ritz_status take_massless(const ritz_second_order *model,
                                  const ritz_damping *damping,
@@ -261,7 +247,7 @@ static ritz_status take_massless(const ritz_second_order *model,
         ritz_dense_free(&s->D);
         RITZ_CHECK(ritz_dense_beside(&pairs->Phi, &N, &s->X));
         if (is_present(model->D))
-            RITZ_CHECK(project_above_rounding(model->D, &s->X, &s->D));
+            RITZ_CHECK(ritz_project_above(model->D, &s->X, 0.0, &s->D));
         else
             RITZ_CHECK(ritz_dense_new(s->X.ncol, s->X.ncol, &s->D));
         add_given(damping, pairs, &s->D);
@@ -278,9 +264,9 @@ static ritz_status take_massless(const ritz_second_order *model,
     }
     RITZ_CHECK(check_rest(&s->D, m + s->k));
     RITZ_MOVE(all, s->D);
-    RITZ_CHECK(ritz_leading(&all, m + s->k, &s->D));
+    RITZ_CHECK(ritz_dense_block(&all, 0, m + s->k, 0, m + s->k, &s->D));
     if (is_present(model->K4)) {
-        RITZ_CHECK(project_above_rounding(model->K4, &s->X, &s->K4));
+        RITZ_CHECK(ritz_project_above(model->K4, &s->X, 0.0, &s->K4));
         RITZ_REFUSE_IF(
             N.ncol > 0 && ritz_dense_max(&s->K4) > 0.0, RITZ_ERR_ARGUMENT,
             "there are motions without mass beside structural damping: "
@@ -306,47 +292,39 @@ static bool is_free(const state_form *s, int64_t j)
     return true;
 }
 
-/* A := A without the rows and columns that are not kept. */
-static void keep_square(int64_t n, const bool *kept, ritz_dense *A)
+/* A := its rows and columns at[0], at[1], ... */
+static ritz_status keep_principal(int64_t count, const int64_t *at,
+                                  ritz_dense *A)
 {
-    int64_t at = 0;
-    int64_t count = 0;
+    RITZ_OWN(ritz_dense) kept = {0};
 
-    for (int64_t j = 0; j < n; j++)
-        count += kept[j];
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < n; i++)
-            if (kept[i] && kept[j])
-                A->val[at++] = A->val[i + j * n];
-    A->nrow = A->ncol = count;
+    RITZ_CHECK(ritz_dense_principal(A, count, at, &kept));
+    ritz_dense_replace(A, &kept);
+    return RITZ_OK;
 }
 
 /* Leave out rigid motions that nothing damps. */
 static ritz_status drop_free(state_form *s)
 {
-    int64_t all = s->m + s->k;
-    int64_t n = s->X.nrow;
-    int64_t at = 0;
-    RITZ_OWN_ARRAY bool *kept = NULL;
+    int64_t all = s->m + s->k, count = 0, modes = 0;
+    RITZ_OWN_ARRAY int64_t *kept = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
 
     RITZ_CHECK_NEW(kept, all);
-    for (int64_t j = 0; j < all; j++)
-        kept[j] = j >= s->m || !is_free(s, j);
     for (int64_t j = 0; j < all; j++) {
-        if (!kept[j])
+        if (j < s->m && is_free(s, j))
             continue;
         if (j < s->m)
-            s->lambda[at] = s->lambda[j];
-        memmove(s->X.val + at * n, s->X.val + j * n,
-                (size_t)n * sizeof *s->X.val);
-        at++;
+            s->lambda[modes++] = s->lambda[j];
+        kept[count++] = j;
     }
-    keep_square(all, kept, &s->D);
+    RITZ_CHECK(ritz_dense_pick(&s->X, count, kept, &X));
+    ritz_dense_replace(&s->X, &X);
+    RITZ_CHECK(keep_principal(count, kept, &s->D));
     if (s->K4.val)
-        keep_square(s->m, kept, &s->K4);
-    s->num_free = all - at;
-    s->m -= s->num_free;
-    s->X.ncol = at;
+        RITZ_CHECK(keep_principal(modes, kept, &s->K4));
+    s->num_free = all - count;
+    s->m = modes;
     return RITZ_OK;
 }
 
@@ -405,6 +383,20 @@ static ritz_status found_new(const state_form *state, found *out)
 double ritz_spectrum_ratio(double _Complex s)
 {
     return creal(s) == 0.0 ? 0.0 : -creal(s) / cabs(s); /* never -0 */
+}
+
+double _Complex ritz_nearest_pole(int64_t count, const double _Complex *pole,
+                                  bool above, double _Complex s)
+{
+    double _Complex best = ritz_complex(nan(""), 0.0);
+    double least = HUGE_VAL;
+
+    for (int64_t k = 0; k < count; k++)
+        if ((!above || cimag(pole[k]) > 0.0) && cabs(pole[k] - s) < least) {
+            least = cabs(pole[k] - s);
+            best = pole[k];
+        }
+    return best;
 }
 
 /* Each mode by itself: p = 1, so that y = [W; s]. */

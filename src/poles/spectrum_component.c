@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/orthonormal.h"
-#include "poles/damped.h"
+#include "poles/poles.h"
 
 #include <ritz/base.h>
 #include <ritz/matrix.h>
@@ -44,12 +44,6 @@ ritz_status ritz_impedance_factor(const ritz_component *component,
     return ritz_zldl_factor(Z, all);
 }
 
-ritz_status ritz_refiner_new(const ritz_component *component, ritz_refiner *out)
-{
-    out->component = component;
-    return ritz_impedance_new(component, &out->Z);
-}
-
 static double norm_of(const ritz_dense *x)
 {
     double sum = 0.0;
@@ -86,15 +80,17 @@ static void add_most(const ritz_sparse *A, double c, const ritz_dense *x,
                 c * fabs(A->val[p]) * hypot(x->val[j], x->val[n + j]);
 }
 
-static ritz_status factor_at(ritz_refiner *r, double _Complex s)
+static ritz_status factor_at(const ritz_component *component, double _Complex s,
+                             ritz_zldl *Z)
 {
     const double _Complex c[] = {1.0, s * s, s};
 
-    return ritz_impedance_factor(r->component, c, r->Z);
+    return ritz_impedance_factor(component, c, Z);
 }
 
 /* One step; how far it moved s, 0 where s is the eigenvalue. */
-static ritz_status take_step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
+static ritz_status take_step(const ritz_component *c, ritz_zldl *Z,
+                             ritz_dense *x, double _Complex *s,
                              double _Complex *u, double *move)
 {
     ritz_status status = RITZ_OK;
@@ -107,17 +103,17 @@ static ritz_status take_step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
         x->val[i] /= size;
     for (int64_t i = 0; i < n; i++)
         u[i] = 0.0;
-    RITZ_CHECK(add_product(&r->component->M, 2.0 * *s, x, u));
-    RITZ_CHECK(add_product(&r->component->D, 1.0, x, u));
-    status = factor_at(r, *s);
+    RITZ_CHECK(add_product(&c->M, 2.0 * *s, x, u));
+    RITZ_CHECK(add_product(&c->D, 1.0, x, u));
+    status = factor_at(c, *s, Z);
     *move = 0.0;
     last = status == RITZ_ERR_SINGULAR; /* s is the eigenvalue: x, beside it */
     if (last)
-        status = factor_at(r, *s * (1.0 + RITZ_NUDGE));
+        status = factor_at(c, *s * (1.0 + RITZ_NUDGE), Z);
     if (last && status == RITZ_ERR_SINGULAR)
         return RITZ_OK;
     RITZ_CHECK(status);
-    RITZ_CHECK(ritz_zldl_solve(r->Z, 1, u));
+    RITZ_CHECK(ritz_zldl_solve(Z, 1, u));
     for (int64_t i = 0; i < n; i++)
         xu += ritz_complex(x->val[i], -x->val[n + i]) * u[i];
     for (int64_t i = 0; i < n; i++) {
@@ -131,8 +127,8 @@ static ritz_status take_step(ritz_refiner *r, ritz_dense *x, double _Complex *s,
     return RITZ_OK;
 }
 
-ritz_status ritz_refine(ritz_refiner *refiner, ritz_dense *x,
-                        double _Complex *s)
+ritz_status ritz_refine(const ritz_component *component, ritz_zldl *Z,
+                        ritz_dense *x, double _Complex *s)
 {
     RITZ_OWN_ARRAY double _Complex *u = NULL;
     double before = HUGE_VAL;
@@ -141,7 +137,7 @@ ritz_status ritz_refine(ritz_refiner *refiner, ritz_dense *x,
 
     RITZ_CHECK_NEW(u, x->nrow);
     for (int t = 0; t < MOST_STEPS && !still; t++) {
-        RITZ_CHECK(take_step(refiner, x, s, u, &move));
+        RITZ_CHECK(take_step(component, Z, x, s, u, &move));
         still =
             move <= RITZ_REFINED * cabs(*s) ||
             (move <= RITZ_REFINED_NEARLY * cabs(*s) && move >= 0.5 * before);
@@ -153,18 +149,19 @@ ritz_status ritz_refine(ritz_refiner *refiner, ritz_dense *x,
     return RITZ_OK;
 }
 
-ritz_status ritz_refiner_residual(const ritz_refiner *refiner,
-                                  const ritz_dense *x, double _Complex s,
-                                  double *out)
+/* |Z(s) x| over the norm of what its terms add up to, taken as magnitudes. */
+static ritz_status measure_residual(const ritz_component *component,
+                                    const ritz_dense *x, double _Complex s,
+                                    double *out)
 {
     const struct {
         const ritz_sparse *A;
         double _Complex c;
     } terms[] = {
-        {&refiner->component->K, 1.0},
-        {&refiner->component->M, s * s},
-        {&refiner->component->D, s},
-        {&refiner->component->K4, ritz_complex(0.0, 1.0)},
+        {&component->K, 1.0},
+        {&component->M, s * s},
+        {&component->D, s},
+        {&component->K4, ritz_complex(0.0, 1.0)},
     };
     RITZ_OWN_ARRAY double _Complex *u = NULL;
     RITZ_OWN_ARRAY double *most = NULL;
@@ -182,12 +179,6 @@ ritz_status ritz_refiner_residual(const ritz_refiner *refiner,
     }
     *out = size > 0.0 ? gap / size : 0.0;
     return RITZ_OK;
-}
-
-void ritz_refiner_free(ritz_refiner *refiner)
-{
-    ritz_zldl_free(&refiner->Z);
-    *refiner = (ritz_refiner){0};
 }
 
 /* One mode followed while dampers change. */
@@ -232,20 +223,6 @@ static ritz_status begin_scan(const ritz_spectrum *spectrum, int64_t mode,
     return RITZ_OK;
 }
 
-static double _Complex nearest_pole(const ritz_spectrum *spectrum,
-                                    double _Complex s)
-{
-    double _Complex best = nan("");
-    double least = HUGE_VAL;
-
-    for (int64_t j = 0; j < spectrum->count; j++)
-        if (cabs(spectrum->s[j] - s) < least) {
-            least = cabs(spectrum->s[j] - s);
-            best = spectrum->s[j];
-        }
-    return best;
-}
-
 /* Of a dense model; K, D and the dampers are copied. */
 static ritz_status scan_dense(ritz_model model,
                               const ritz_scan_request *request, ritz_scan *out)
@@ -273,9 +250,9 @@ static ritz_status scan_dense(ritz_model model,
         if (k == 0)
             RITZ_CHECK(begin_scan(&spectrum, request->mode, &scan.s[0]));
         else
-            scan.s[k] = nearest_pole(&spectrum, k == 1 ? scan.s[0]
-                                                       : 2.0 * scan.s[k - 1] -
-                                                             scan.s[k - 2]);
+            scan.s[k] = ritz_nearest_pole(
+                spectrum.count, spectrum.s, false,
+                k == 1 ? scan.s[0] : 2.0 * scan.s[k - 1] - scan.s[k - 2]);
         if (ritz_spectrum_ratio(scan.s[k]) >
             ritz_spectrum_ratio(scan.s[scan.best]))
             scan.best = k;
@@ -329,10 +306,8 @@ static ritz_status span_space(const ritz_component *component,
         RITZ_CHECK(ritz_orthonormal_append(&set, &X, n - set.count, NULL));
     }
     RITZ_CHECK(ritz_basis_new(n, set.count, &basis));
-    ritz_dense_free(&basis.T);
-    basis.T = set.V;
-    basis.T.ncol = set.count;
-    set.V = (ritz_dense){0};
+    set.V.ncol = set.count;
+    ritz_dense_replace(&basis.T, &set.V);
     for (int64_t j = 0; j < pairs->num_rigid && j < set.count; j++)
         basis.columns.kind[j] = RITZ_COLUMN_RIGID;
     RITZ_MOVE(*out, basis);
@@ -445,8 +420,8 @@ ritz_status ritz_spectrum_shape(const ritz_spectrum *spectrum, int64_t j,
 }
 
 /* Pole j on the full matrices, where inverse iteration stays near. */
-static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
-                               ritz_spectrum *spectrum)
+static ritz_status refine_pole(const ritz_component *component, ritz_zldl *Z,
+                               int64_t j, ritz_spectrum *spectrum)
 {
     double _Complex s = spectrum->s[j];
     size_t size = (size_t)spectrum->re.nrow * sizeof(double);
@@ -455,7 +430,7 @@ static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
 
     RITZ_CHECK(ritz_spectrum_shape(spectrum, j, &x));
     RITZ_CHECK(ritz_dense_copy(&x, &start));
-    status = ritz_refine(refiner, &x, &s);
+    status = ritz_refine(component, Z, &x, &s);
     if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE)
         return status;
     if (status == RITZ_OK &&
@@ -466,8 +441,8 @@ static ritz_status refine_pole(ritz_refiner *refiner, int64_t j,
         memcpy(ritz_dense_col(&spectrum->im, j), ritz_dense_col(&x, 1), size);
         memcpy(start.val, x.val, 2 * size);
     }
-    return ritz_refiner_residual(refiner, &start, spectrum->s[j],
-                                 &spectrum->residual[j]);
+    return measure_residual(component, &start, spectrum->s[j],
+                            &spectrum->residual[j]);
 }
 
 /* The first that are wanted. */
@@ -489,8 +464,7 @@ static ritz_status expand_shapes(const ritz_dense *T, ritz_dense *shapes)
     ritz_dense x = {0};
 
     RITZ_CHECK(ritz_dense_mul(T, shapes, &x));
-    ritz_dense_free(shapes);
-    *shapes = x;
+    ritz_dense_replace(shapes, &x);
     return RITZ_OK;
 }
 
@@ -507,16 +481,16 @@ static ritz_status solve_projected(const ritz_component *component,
     };
     RITZ_OWN(ritz_reduced) small = {0};
     const ritz_second_order model = ritz_model_of_reduced(&small, NULL).dense;
-    RITZ_OWN(ritz_refiner) refiner = {0};
+    RITZ_OWN(ritz_zldl) *Z = NULL;
 
     RITZ_CHECK(reduce_space(component, &wide, &small));
     RITZ_CHECK(ritz_spectrum_dense(&model, NULL, out));
     keep_first(span, out);
     RITZ_CHECK(expand_shapes(&small.T, &out->re));
     RITZ_CHECK(expand_shapes(&small.T, &out->im));
-    RITZ_CHECK(ritz_refiner_new(component, &refiner));
+    RITZ_CHECK(ritz_impedance_new(component, &Z));
     for (int64_t j = 0; j < out->count; j++) {
-        RITZ_CHECK(refine_pole(&refiner, j, out));
+        RITZ_CHECK(refine_pole(component, Z, j, out));
         ritz_monitor_step("damped modes", j + 1, out->count);
     }
     (void)snprintf(out->engine, sizeof out->engine,

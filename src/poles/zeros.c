@@ -3,7 +3,6 @@
 #include "base/tolerances.h"
 #include "linear/resolvent.h"
 #include "model/modal.h"
-#include "poles/channel.h"
 #include "poles/poles.h"
 
 #include <ritz/poles.h>

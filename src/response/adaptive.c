@@ -1,6 +1,8 @@
+/* Points of a response, chosen so that cubics between them are near. */
 #include "response/responder.h"
 
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 
 #include <ritz/base.h>
@@ -9,6 +11,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A response while its points are being chosen. */
@@ -23,7 +26,7 @@ typedef struct ritz_mesh {
     double *peak;       /* values, largest |H| that was met */
     double *level;      /* values, of ritz_noise_heed */
     double *scale;      /* values, of ritz_noise_scales */
-    double _Complex *row, *between; /* values, to work in */
+    double _Complex *row; /* values, to work in */
 } ritz_mesh;
 
 /* H of more values than this is a mistake in the request. */
@@ -42,7 +45,7 @@ static ritz_status evaluate_mesh(ritz_mesh *mesh, double hertz)
 static void ritz_mesh_free(ritz_mesh *mesh)
 {
     RITZ_FREE(mesh->hertz, mesh->H, mesh->open, mesh->peak, mesh->level,
-              mesh->scale, mesh->row, mesh->between);
+              mesh->scale, mesh->row);
 }
 
 /*
@@ -94,21 +97,13 @@ static ritz_status insert_points(ritz_mesh *mesh, int64_t count,
     return RITZ_OK;
 }
 
-/* A mesh of given points, which ascend; every interval is still open. */
-static ritz_status fill_mesh(ritz_responder *responder, int64_t count,
-                             const double *hertz, ritz_mesh *mesh)
+/* Evaluate H at points, which ascend, and insert them. */
+static ritz_status evaluate_points(ritz_mesh *mesh, int64_t count,
+                                   const double *hertz)
 {
-    const ritz_io *io = &responder->poles->io;
-    int64_t n = io->num_outputs * io->num_inputs;
+    int64_t n = mesh->values;
     RITZ_OWN_ARRAY double _Complex *H = NULL;
 
-    mesh->responder = responder;
-    mesh->values = n;
-    RITZ_CHECK_NEW(mesh->peak, n);
-    RITZ_CHECK_NEW(mesh->level, n);
-    RITZ_CHECK_NEW(mesh->scale, n);
-    RITZ_CHECK_NEW(mesh->row, n);
-    RITZ_CHECK_NEW(mesh->between, n);
     RITZ_CHECK_NEW(H, count * n);
     for (int64_t k = 0; k < count; k++) {
         RITZ_CHECK(evaluate_mesh(mesh, hertz[k]));
@@ -117,87 +112,49 @@ static ritz_status fill_mesh(ritz_responder *responder, int64_t count,
     return insert_points(mesh, count, hertz, H);
 }
 
+/* Interpolation of a response between its points. */
+
+enum { CUBIC = 4 };
+
+/* The cubic of channel v at a frequency in interval k. */
+static double _Complex interpolate_channel(const ritz_mesh *mesh, int64_t v,
+                                           int64_t k, double hertz)
+{
+    int64_t points = mesh->count < CUBIC ? mesh->count : CUBIC;
+    int64_t first = k - 1;
+    double _Complex sum = 0.0;
+
+    if (first > mesh->count - points)
+        first = mesh->count - points;
+    if (first < 0)
+        first = 0;
+    for (int64_t i = first; i < first + points; i++) {
+        const double *x = mesh->hertz;
+        double weight = 1.0;
+
+        for (int64_t j = first; j < first + points; j++)
+            if (j != i)
+                weight *= (hertz - x[j]) / (x[i] - x[j]);
+        sum += weight * mesh->H[i * mesh->values + v];
+    }
+    return sum;
+}
+
 /*
  * Zeros of each channel that are close enough to the axis for |H| to dip there.
  */
 
 enum { PARTS = 8, MOST_STEPS = 5 };
 
-/* Points that were found, ascending. */
-typedef struct finds {
-    int64_t count, room, H_room;
+/* The frequencies where they were found. */
+typedef struct dips {
+    int64_t count, room;
     double *hertz;
-    double _Complex *H; /* count x values */
-} finds;
+} dips;
 
-static void finds_free(finds *f)
+static void dips_free(dips *f)
 {
-    RITZ_FREE(f->hertz, f->H);
-}
-
-/* Behind those of the same frequency. */
-static ritz_status keep_found(finds *f, double hertz, int64_t values,
-                              const double _Complex *H)
-{
-    int64_t at = f->count;
-
-    RITZ_CHECK_ROOM(f->hertz, f->count, f->room);
-    while (f->H_room < (f->count + 1) * values)
-        RITZ_CHECK_ROOM(f->H, f->H_room, f->H_room);
-    for (; at > 0 && f->hertz[at - 1] > hertz; at--) {
-        f->hertz[at] = f->hertz[at - 1];
-        memcpy(f->H + at * values, f->H + (at - 1) * values,
-               (size_t)values * sizeof *H);
-    }
-    f->hertz[at] = hertz;
-    memcpy(f->H + at * values, H, (size_t)values * sizeof *H);
-    f->count++;
-    return RITZ_OK;
-}
-
-/* Interpolation of a response between its points: see ritz_response_at. */
-
-enum { CUBIC = 4 };
-
-/*
- * Weights of the points first, first + 1, ... for the cubic at @p at, which
- * lies between points k and k + 1.
- *
- * @return how many, 4 or fewer
- */
-static int set_cubic_weights(int64_t count, const double *x, int64_t k,
-                             double at, int64_t *first, double weight[static 4])
-{
-    int points = count < CUBIC ? (int)count : CUBIC;
-    int64_t from = k - 1;
-
-    if (from > count - points)
-        from = count - points;
-    if (from < 0)
-        from = 0;
-    for (int i = 0; i < points; i++) {
-        weight[i] = 1.0;
-        for (int j = 0; j < points; j++)
-            if (j != i)
-                weight[i] *= (at - x[from + j]) / (x[from + i] - x[from + j]);
-    }
-    *first = from;
-    return points;
-}
-
-/* The cubic of channel v at a frequency in interval k. */
-static double _Complex interpolate_channel(const ritz_mesh *mesh, int64_t v,
-                                           int64_t k, double hertz)
-{
-    double _Complex sum = 0.0;
-    double weight[4];
-    int64_t first = 0;
-    int points =
-        set_cubic_weights(mesh->count, mesh->hertz, k, hertz, &first, weight);
-
-    for (int i = 0; i < points; i++)
-        sum += weight[i] * mesh->H[(first + i) * mesh->values + v];
-    return sum;
+    free(f->hertz);
 }
 
 /*
@@ -206,7 +163,7 @@ static double _Complex interpolate_channel(const ritz_mesh *mesh, int64_t v,
  * none.
  */
 static ritz_status pursue_zero(ritz_mesh *mesh, int64_t v, double low,
-                               double high, double _Complex slope, finds *f)
+                               double high, double _Complex slope, dips *f)
 {
     double w = 0.5 * (low + high);
     double before = 0.0;
@@ -230,10 +187,10 @@ static ritz_status pursue_zero(ritz_mesh *mesh, int64_t v, double low,
         if (!(w > low && w < high))
             return RITZ_OK;
     }
-    if (!still)
-        RITZ_CHECK(evaluate_mesh(mesh, w));
-    if (fabs(cimag(z)) <= high - low)
-        RITZ_CHECK(keep_found(f, w, mesh->values, mesh->row));
+    if (fabs(cimag(z)) <= high - low) {
+        RITZ_CHECK_ROOM(f->hertz, f->count, f->room);
+        f->hertz[f->count++] = w;
+    }
     return RITZ_OK;
 }
 
@@ -241,7 +198,7 @@ static ritz_status pursue_zero(ritz_mesh *mesh, int64_t v, double low,
  * Find the dips of one channel: where its cubics are smaller than at the
  * neighbours.
  */
-static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, finds *f)
+static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, dips *f)
 {
     double w[3] = {0.0, 0.0, 0.0};
     double size[3] = {0.0, 0.0, 0.0};
@@ -273,70 +230,14 @@ static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, finds *f)
  */
 static ritz_status add_dips(ritz_mesh *mesh)
 {
-    RITZ_OWN(finds) f = {0};
+    RITZ_OWN(dips) f = {0};
 
     for (int64_t v = 0; v < mesh->values; v++)
         if (mesh->peak[v] > RITZ_CHANNEL_HEARD * mesh->scale[v])
             RITZ_CHECK(find_channel_dips(mesh, v, &f));
-    return insert_points(mesh, f.count, f.hertz, f.H);
-}
-
-/* out = sum of weighted rows. */
-static void mix_rows(int points, const double *weight, int64_t values,
-                     const double _Complex *H, double _Complex *out)
-{
-    for (int64_t v = 0; v < values; v++) {
-        out[v] = 0.0;
-        for (int i = 0; i < points; i++)
-            out[v] += weight[i] * H[i * values + v];
-    }
-}
-
-/*
- * The interval of `hertz`: its last point at or before it, the last interval
- * for the end.
- */
-static int64_t find_interval(const ritz_response *r, double hertz)
-{
-    int64_t low = 0;
-    int64_t high = r->count - 1;
-
-    while (high - low > 1) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (r->hertz[middle] <= hertz)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-ritz_status ritz_response_at(const ritz_response *response, double hertz,
-                             double _Complex *out)
-{
-    const ritz_response *r = response;
-    int64_t values = r->num_outputs * r->num_inputs;
-    double weight[CUBIC];
-    int64_t first = 0;
-    int points = 0;
-    double beside = 0.0;
-
-    RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT,
-                   "the response has no points");
-    beside = RITZ_RANGE_ROUNDING * r->hertz[r->count - 1];
-    RITZ_REFUSE_IF(!(hertz >= r->hertz[0] - beside) ||
-                       !(hertz <= r->hertz[r->count - 1] + beside),
-                   RITZ_ERR_ARGUMENT,
-                   "%g Hz is outside the response, which is from %g to %g Hz",
-                   hertz, r->hertz[0], r->hertz[r->count - 1]);
-    points = set_cubic_weights(r->count, r->hertz, find_interval(r, hertz),
-                               hertz, &first, weight);
-    for (int i = 0; i < points; i++)
-        RITZ_REFUSE_IF(!isfinite(weight[i]), RITZ_ERR_ARGUMENT,
-                       "the response has %g Hz twice", hertz);
-    mix_rows(points, weight, values, r->H + first * values, out);
-    return RITZ_OK;
+    if (f.count > 0)
+        qsort(f.hertz, (size_t)f.count, sizeof *f.hertz, ritz_ascending);
+    return evaluate_points(mesh, f.count, f.hertz);
 }
 
 /*
@@ -351,7 +252,7 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
 
 enum { MOST_ROUNDS = 60 };
 
-/* A mesh of the points of a grid refined around all peaks. */
+/* The points of a grid refined around all peaks. */
 static ritz_status begin_mesh(const ritz_responder *responder,
                               const ritz_grid *grid, int64_t *count,
                               double **out)
@@ -377,17 +278,11 @@ static ritz_status begin_mesh(const ritz_responder *responder,
 }
 
 /* Whether the cubics of interval k agree with H in mesh->row. */
-static bool is_within(ritz_mesh *mesh, int64_t k, double hertz, double allowed)
+static bool is_within(const ritz_mesh *mesh, int64_t k, double hertz,
+                      double allowed)
 {
-    double weight[4];
-    int64_t first = 0;
-    int points =
-        set_cubic_weights(mesh->count, mesh->hertz, k, hertz, &first, weight);
-
-    mix_rows(points, weight, mesh->values, mesh->H + first * mesh->values,
-             mesh->between);
     for (int64_t v = 0; v < mesh->values; v++)
-        if (!(cabs(mesh->between[v] - mesh->row[v]) <=
+        if (!(cabs(interpolate_channel(mesh, v, k, hertz) - mesh->row[v]) <=
               allowed * mesh->scale[v]))
             return false;
     return true;
@@ -481,15 +376,19 @@ ritz_status ritz_responder_follow(ritz_responder *responder,
 {
     const ritz_io *io = &responder->poles->io;
     RITZ_OWN_ARRAY double *hertz = NULL;
-    int64_t count = 0, added = 1;
-    RITZ_OWN(ritz_mesh) mesh = {0};
+    int64_t count = 0, added = 1, values = io->num_outputs * io->num_inputs;
+    RITZ_OWN(ritz_mesh) mesh = {.responder = responder, .values = values};
 
     RITZ_REFUSE_IF(!(tolerance > 0.0) || !(tolerance < 1.0), RITZ_ERR_ARGUMENT,
                    "a tolerance of %g is not between 0 and 1", tolerance);
     RITZ_REFUSE_IF(grid->hertz, RITZ_ERR_ARGUMENT,
                    "points that are given cannot be chosen by a tolerance");
     RITZ_CHECK(begin_mesh(responder, grid, &count, &hertz));
-    RITZ_CHECK(fill_mesh(responder, count, hertz, &mesh));
+    RITZ_CHECK_NEW(mesh.peak, values);
+    RITZ_CHECK_NEW(mesh.level, values);
+    RITZ_CHECK_NEW(mesh.scale, values);
+    RITZ_CHECK_NEW(mesh.row, values);
+    RITZ_CHECK(evaluate_points(&mesh, count, hertz));
     for (int round = 0; round < MOST_ROUNDS && added > 0; round++) {
         ritz_noise_scales(io->num_outputs, io->num_inputs,
                           RITZ_SAMPLED_MARGIN * tolerance, mesh.peak,

@@ -16,17 +16,6 @@
 
 #include <string.h>
 
-/* e and v as linear functions of [x; w; r], one row each. */
-typedef struct signals {
-    ritz_dense e, v;
-} signals;
-
-static void signals_free(signals *s)
-{
-    ritz_dense_free(&s->e);
-    ritz_dense_free(&s->v);
-}
-
 /* to(row.., col..) += factor A */
 static void add_block(double factor, const ritz_dense *A, int64_t row,
                       int64_t col, ritz_dense *to)
@@ -69,9 +58,11 @@ static ritz_status multiply_q(double sign, const ritz_dense *D_yu,
     return status;
 }
 
+/* e and v as linear functions of [x; w; r], one row each. */
 static ritz_status find_signals(const ritz_state_space *p,
                                 const ritz_state_space *c,
-                                const ritz_loop *loop, signals *out)
+                                const ritz_loop *loop, ritz_dense *e,
+                                ritz_dense *v)
 {
     double sign = loop->positive ? 1.0 : -1.0;
     int64_t n = p->A.nrow, width = n + c->A.nrow + p->num_inputs;
@@ -83,21 +74,22 @@ static ritz_status find_signals(const ritz_state_space *p,
         ritz_dense_rows(&p->D, loop->num_measured, loop->measured, &D_y));
     RITZ_CHECK(ritz_dense_pick(&D_y, loop->num_driven, loop->driven, &D_yu));
     RITZ_CHECK(ritz_dense_mul(&D_yu, &c->C, &DC));
-    RITZ_CHECK(ritz_dense_new(loop->num_measured, width, &out->e));
-    add_block(1.0, &C_y, 0, 0, &out->e);
-    add_block(sign, &DC, 0, n, &out->e);
-    add_block(1.0, &D_y, 0, n + c->A.nrow, &out->e);
-    RITZ_CHECK(multiply_q(sign, &D_yu, &c->D, &out->e));
-    RITZ_CHECK(ritz_dense_mul(&c->D, &out->e, &out->v));
-    add_block(1.0, &c->C, 0, n, &out->v);
+    RITZ_CHECK(ritz_dense_new(loop->num_measured, width, e));
+    add_block(1.0, &C_y, 0, 0, e);
+    add_block(sign, &DC, 0, n, e);
+    add_block(1.0, &D_y, 0, n + c->A.nrow, e);
+    RITZ_CHECK(multiply_q(sign, &D_yu, &c->D, e));
+    RITZ_CHECK(ritz_dense_mul(&c->D, e, v));
+    add_block(1.0, &c->C, 0, n, v);
     return RITZ_OK;
 }
 
 /* [A B] of plant and controller, their own terms and those that couple them. */
 static ritz_status fill_first_order(const ritz_state_space *p,
                                     const ritz_state_space *c,
-                                    const ritz_loop *loop, const signals *s,
-                                    ritz_dense *rates, ritz_dense *seen)
+                                    const ritz_loop *loop, const ritz_dense *e,
+                                    const ritz_dense *v, ritz_dense *rates,
+                                    ritz_dense *seen)
 {
     double sign = loop->positive ? 1.0 : -1.0;
     int64_t n = p->A.nrow, m = c->A.nrow;
@@ -110,11 +102,11 @@ static ritz_status fill_first_order(const ritz_state_space *p,
     add_block(1.0, &p->A, 0, 0, rates);
     add_block(1.0, &c->A, n, n, rates);
     add_block(1.0, &p->B, 0, n + m, rates);
-    RITZ_CHECK(add_product(sign, &B_u, &s->v, 0, rates));
-    RITZ_CHECK(add_product(1.0, &c->B, &s->e, n, rates));
+    RITZ_CHECK(add_product(sign, &B_u, v, 0, rates));
+    RITZ_CHECK(add_product(1.0, &c->B, e, n, rates));
     add_block(1.0, &p->C, 0, 0, seen);
     add_block(1.0, &p->D, 0, n + m, seen);
-    return add_product(sign, &D_u, &s->v, 0, seen);
+    return add_product(sign, &D_u, v, 0, seen);
 }
 
 /* [E 0; 0 E_c]; {0} if both are the identity. */
@@ -161,16 +153,16 @@ ritz_status ritz_closed_loop(const ritz_state_space *plant,
                              const ritz_loop *loop, ritz_state_space *out)
 {
     RITZ_OWN(ritz_state_space) made = {0};
-    RITZ_OWN(ritz_dense) rates = {0}, seen = {0};
-    RITZ_OWN(signals) s = {0};
+    RITZ_OWN(ritz_dense) rates = {0}, seen = {0}, e = {0}, v = {0};
     const ritz_io plant_io = ritz_model_io(ritz_model_of_states(plant));
     const ritz_io controller_io =
         ritz_model_io(ritz_model_of_states(controller));
     int64_t states = plant->A.nrow + controller->A.nrow;
 
     RITZ_CHECK(ritz_loop_check(loop, &plant_io, &controller_io));
-    RITZ_CHECK(find_signals(plant, controller, loop, &s));
-    RITZ_CHECK(fill_first_order(plant, controller, loop, &s, &rates, &seen));
+    RITZ_CHECK(find_signals(plant, controller, loop, &e, &v));
+    RITZ_CHECK(
+        fill_first_order(plant, controller, loop, &e, &v, &rates, &seen));
     RITZ_CHECK(name_signals(plant, controller, &made));
     RITZ_CHECK(ritz_dense_columns(&rates, 0, states, &made.A));
     RITZ_CHECK(ritz_dense_columns(&rates, states, plant->num_inputs, &made.B));

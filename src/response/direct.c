@@ -46,6 +46,8 @@ ritz_status ritz_direct_new(const ritz_component *component,
     if (damping)
         s.damping = *damping;
     rayleigh = ritz_damping_is_rayleigh(&s.damping);
+    s.a = rayleigh ? s.damping.a : 0.0;
+    s.b = rayleigh ? s.damping.b : 0.0;
     s.ratios = !rayleigh && s.damping.kind != RITZ_DAMPING_NONE;
     s.apart = !component->D.colptr && !component->K4.colptr && !rayleigh;
     RITZ_CHECK(ritz_poles_of_component(component, damping, up_to_hz, &s.pairs,
@@ -68,25 +70,13 @@ void ritz_direct_free(ritz_direct *direct)
     *direct = (ritz_direct){0};
 }
 
-void ritz_direct_rayleigh(const ritz_direct *direct, double *a, double *b)
-{
-    bool rayleigh = ritz_damping_is_rayleigh(&direct->damping);
-
-    *a = rayleigh ? direct->damping.a : 0.0;
-    *b = rayleigh ? direct->damping.b : 0.0;
-}
-
 static ritz_status factor_impedance(ritz_direct *s, double w, double w2)
 {
-    ritz_status status = RITZ_OK;
-    double a = 0.0, b = 0.0;
-    double _Complex c[3] = {0.0, 0.0, ritz_complex(0.0, w)};
+    const double _Complex c[3] = {ritz_complex(1.0, w * s->b),
+                                  ritz_complex(-w2, w * s->a),
+                                  ritz_complex(0.0, w)};
+    const ritz_status status = ritz_impedance_factor(s->component, c, s->Z);
 
-    ritz_direct_rayleigh(s, &a, &b);
-    c[0] = ritz_complex(1.0, w * b);
-    c[1] = ritz_complex(-w2, w * a);
-    s->factors++;
-    status = ritz_impedance_factor(s->component, c, s->Z);
     RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
                    "the response at %.9g Hz is infinite: an undamped mode, or "
                    "at 0 Hz a rigid-body motion",
@@ -274,19 +264,17 @@ ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
 {
     const ritz_component *c = direct->component;
     double w = 2.0 * RITZ_PI * hertz;
-    double a = 0.0, b = 0.0;
     int64_t n = direct->n;
     RITZ_OWN_ARRAY double *t = NULL;
 
-    ritz_direct_rayleigh(direct, &a, &b);
     RITZ_CHECK_NEW(t, n);
     for (int64_t j = 0; j < direct->inputs; j++) {
         const double _Complex *x = X + j * n;
 
         for (int64_t k = 0; k < n; k++)
             t[k] = 0.0;
-        add_magnitudes(&c->K, 1.0 + w * fabs(b), x, t);
-        add_magnitudes(&c->M, w * w + w * fabs(a), x, t);
+        add_magnitudes(&c->K, 1.0 + w * fabs(direct->b), x, t);
+        add_magnitudes(&c->M, w * w + w * fabs(direct->a), x, t);
         add_magnitudes(&c->D, w, x, t);
         add_magnitudes(&c->K4, 1.0, x, t);
         for (int64_t i = 0; i < outputs; i++) {

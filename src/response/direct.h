@@ -12,6 +12,7 @@
 typedef struct ritz_direct {
     const ritz_component *component; /* borrowed */
     ritz_damping damping;
+    double a, b; /* of Rayleigh damping, else 0 */
     ritz_zldl *Z;
     ritz_pairs pairs;
     ritz_poles poles; /* of modes; with their response if `apart` */
@@ -20,7 +21,6 @@ typedef struct ritz_direct {
     bool apart; /* neither D nor K4 nor Rayleigh damping */
     bool ratios;
     double _Complex *X; /* n x inputs, to work in */
-    int64_t factors;    /* how many were computed */
 } ritz_direct;
 
 /** @param[in] up_to_hz  bound of the modes on which damping ratios act */
@@ -51,9 +51,6 @@ ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
 ritz_status ritz_direct_noise(const ritz_direct *direct, double hertz,
                               const double _Complex *X, int64_t outputs,
                               const double _Complex *Y, double *out);
-
-/** a and b of Rayleigh damping, else 0. */
-void ritz_direct_rayleigh(const ritz_direct *direct, double *a, double *b);
 
 void ritz_direct_free(ritz_direct *direct);
 

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "poles/damped.h"
+#include "poles/poles.h"
 #include "response/responder.h"
 
 #include <ritz/base.h>

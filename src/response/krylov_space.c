@@ -213,14 +213,10 @@ void ritz_krylov_space_free(ritz_krylov_space *space)
 static ritz_status join_diagonal(int64_t m, const double *leading,
                                  const ritz_dense *block, ritz_dense *out)
 {
-    int64_t r = m + block->nrow;
-
-    RITZ_CHECK(ritz_dense_new(r, m + block->ncol, out));
+    RITZ_CHECK(ritz_dense_new(m + block->nrow, m + block->ncol, out));
     for (int64_t k = 0; k < m; k++)
         ritz_dense_col(out, k)[k] = leading ? leading[k] : 1.0;
-    for (int64_t j = 0; j < block->ncol; j++)
-        memcpy(ritz_dense_col(out, m + j) + m, ritz_dense_col(block, j),
-               (size_t)block->nrow * sizeof *block->val);
+    ritz_dense_put(block, m, m, out);
     return RITZ_OK;
 }
 
@@ -361,16 +357,14 @@ static void set_coefficients(const ritz_direct *direct,
                              const ritz_krylov_space *space, double w,
                              bool dual, double _Complex *f)
 {
-    double a = 0.0, b = 0.0;
     const double _Complex iw = ritz_complex(0.0, w);
 
-    ritz_direct_rayleigh(direct, &a, &b);
     f[RITZ_KRYLOV_B] = dual ? 0.0 : 1.0;
     f[RITZ_KRYLOV_C] = dual ? 1.0 : 0.0;
     f[RITZ_KRYLOV_CV] = dual ? iw : 0.0;
     f[RITZ_KRYLOV_CA] = dual ? -w * w : 0.0;
-    f[RITZ_KRYLOV_K] = -(1.0 + b * iw);
-    f[RITZ_KRYLOV_M] = w * w - a * iw;
+    f[RITZ_KRYLOV_K] = -(1.0 + direct->b * iw);
+    f[RITZ_KRYLOV_M] = w * w - direct->a * iw;
     f[RITZ_KRYLOV_D] = dual && space->DT.colptr ? 0.0 : -iw;
     f[RITZ_KRYLOV_DT] = dual ? -iw : 0.0;
     f[RITZ_KRYLOV_K4] = ritz_complex(0.0, -1.0);

@@ -110,13 +110,10 @@ static ritz_status connect_equal_names(int64_t count,
         near = others > 0 ? ritz_text_nearest(name[k], others, other[0],
                                               RITZ_NAME_SIZE)
                           : NULL;
-        RITZ_REFUSE_IF(near != NULL, RITZ_ERR_ARGUMENT,
-                       "the plant has no %s '%s' for the controller, is '%s' "
-                       "meant?",
-                       what, name[k], near);
-        RITZ_REFUSE_IF(near == NULL, RITZ_ERR_ARGUMENT,
-                       "the plant has no %s '%s' for the controller", what,
-                       name[k]);
+        return ritz_fail(RITZ_ERR_ARGUMENT,
+                         "the plant has no %s '%s' for the controller%s%s%s",
+                         what, name[k], near ? ", is '" : "", near ? near : "",
+                         near ? "' meant?" : "");
     }
     return RITZ_OK;
 }
@@ -226,12 +223,6 @@ static ritz_status evaluate_size(void *state, double hertz, double *value)
     return RITZ_OK;
 }
 
-/* A gain margin is at a zero of Im L, a phase margin at a zero of |L| - 1. */
-static double phase_crossing(double _Complex L)
-{
-    return cimag(L);
-}
-
 static double size_crossing(double _Complex L)
 {
     return cabs(L) - 1.0;
@@ -305,23 +296,25 @@ static ritz_status closed_at(void *state, double hertz, double _Complex *H)
 static ritz_status find_crossings(prober *s, int64_t count, const double *hertz,
                                   ritz_margins *out)
 {
+    /* gain margins are at zeros of Im L, phase margins at those of |L| - 1 */
+    static const struct {
+        double (*zero)(double _Complex L);
+        void (*update)(double hertz, double _Complex L, ritz_margins *out);
+    } kinds[] = {{cimag, update_gain_margin},
+                 {size_crossing, update_phase_margin}};
     double at = 0.0;
     double _Complex L = 0.0;
 
-    for (int64_t k = 0; k + 1 < count; k++) {
-        double _Complex a = s->gain[k], b = s->gain[k + 1];
+    for (int64_t k = 0; k + 1 < count; k++)
+        for (int t = 0; t < 2; t++) {
+            double _Complex a = s->gain[k], b = s->gain[k + 1];
 
-        if (phase_crossing(a) * phase_crossing(b) < 0.0) {
-            RITZ_CHECK(bisect_crossing(s, phase_crossing, hertz[k],
-                                       hertz[k + 1], a, &at, &L));
-            update_gain_margin(at, L, out);
-        }
-        if (size_crossing(a) * size_crossing(b) < 0.0) {
-            RITZ_CHECK(bisect_crossing(s, size_crossing, hertz[k], hertz[k + 1],
+            if (!(kinds[t].zero(a) * kinds[t].zero(b) < 0.0))
+                continue;
+            RITZ_CHECK(bisect_crossing(s, kinds[t].zero, hertz[k], hertz[k + 1],
                                        a, &at, &L));
-            update_phase_margin(at, L, out);
+            kinds[t].update(at, L, out);
         }
-    }
     return RITZ_OK;
 }
 

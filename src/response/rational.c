@@ -1,24 +1,22 @@
-
+/* The rational engine: see the equations below. */
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "model/modal.h"
-#include "poles/damped.h"
+#include "poles/poles.h"
 #include "response/direct.h"
 #include "response/responder.h"
-#include <complex.h>
-#include <ritz/base.h>
-#include <stdint.h>
 
+#include <ritz/base.h>
 #include <ritz/poles.h>
 
+#include <complex.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The rational engine while its nodes are chosen: see the equations below. */
 
 /*
  * Rational interpolation with poles and zeros cancelled: through nodes s_m,
@@ -44,11 +42,6 @@ typedef struct interpolant {
     double _Complex *weight; /* D(s_m) / prod (s_m - s_l) */
     double _Complex *H;      /* count x values */
 } interpolant;
-
-/*
- * The number of successive nodes that must be within the tolerance at the end.
- */
-enum { RITZ_RATIONAL_ENOUGH = 3 };
 
 typedef struct rational_nodes {
     ritz_direct full;
@@ -77,22 +70,6 @@ static void free_interpolant(interpolant *f)
     for (int64_t v = 0; f->zero && v < f->values; v++)
         free(f->zero[v]);
     RITZ_FREE(f->pole, f->num_zeros, f->zero, f->node, f->weight, f->H);
-}
-
-/* @param[in] pole  all, conjugates too  [rad/s] */
-static ritz_status fill_interpolant(int64_t values, double unit,
-                                    int64_t num_poles,
-                                    const double _Complex *pole, interpolant *f)
-{
-    f->values = values;
-    f->unit = unit;
-    f->num_poles = num_poles;
-    RITZ_CHECK_NEW(f->pole, num_poles);
-    for (int64_t k = 0; k < num_poles; k++)
-        f->pole[k] = pole[k] / unit;
-    RITZ_CHECK_NEW(f->num_zeros, values);
-    RITZ_CHECK_NEW(f->zero, values);
-    return RITZ_OK;
 }
 
 /*
@@ -184,32 +161,23 @@ static double log_node_weight(const interpolant *f, double _Complex s)
  * the search.
  */
 
+/* So many nodes in a row must be within the tolerance at the end. */
+enum { ENOUGH = 3 };
 enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
 
 /* Distance of a candidate from its pole, in half-power widths. */
 static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
 
-/* At an undamped pole that was cancelled there is no response. */
-static ritz_status refuse_pole(const rational_nodes *s, double hertz)
-{
-    double w = 2.0 * RITZ_PI * hertz;
-
-    for (int64_t k = 0; k < s->num_poles; k++) {
-        bool on = cabs(ritz_complex(0.0, w) - s->pole[k]) <=
-                  RITZ_POLE_HIT * (w + cabs(s->pole[k]));
-
-        if (on)
-            return ritz_refuse_pole(s->pole[k] == 0.0, hertz);
-    }
-    return RITZ_OK;
-}
-
 static ritz_status rational_at(void *state, double hertz, double _Complex *H)
 {
     rational_nodes *s = state;
-    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+    double w = 2.0 * RITZ_PI * hertz;
+    const double _Complex at = ritz_complex(0.0, w);
 
-    RITZ_CHECK(refuse_pole(s, hertz));
+    /* at an undamped pole that was cancelled there is no response */
+    for (int64_t k = 0; k < s->num_poles; k++)
+        if (cabs(at - s->pole[k]) <= RITZ_POLE_HIT * (w + cabs(s->pole[k])))
+            return ritz_refuse_pole(s->pole[k] == 0.0, hertz);
     evaluate_interpolant(&s->f, at, false, s->guess);
     evaluate_interpolant(&s->f, at, true, s->other);
     for (int64_t v = 0; v < s->values; v++)
@@ -322,8 +290,8 @@ static bool measure_node(rational_nodes *s, double hertz, double tolerance)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
     const ritz_io *io = &s->full.component->io;
-    double *miss = s->miss + s->nodes % RITZ_RATIONAL_ENOUGH * 2 * s->values;
-    bool near = s->nodes >= RITZ_RATIONAL_ENOUGH;
+    double *miss = s->miss + s->nodes % ENOUGH * 2 * s->values;
+    bool near = s->nodes >= ENOUGH;
 
     evaluate_interpolant(&s->f, at, false, s->guess);
     evaluate_interpolant(&s->f, at, true, s->other);
@@ -338,7 +306,7 @@ static bool measure_node(rational_nodes *s, double hertz, double tolerance)
     }
     for (int64_t k = 0; k < 2 * s->values; k++) {
         s->missed[k] = 0.0;
-        for (int64_t t = 0; t < RITZ_RATIONAL_ENOUGH; t++)
+        for (int64_t t = 0; t < ENOUGH; t++)
             s->missed[k] = fmax(s->missed[k], s->miss[t * 2 * s->values + k]);
     }
     for (int64_t v = 0; v < s->values; v++) {
@@ -414,8 +382,7 @@ static ritz_status project_whole(rational_nodes *s)
     RITZ_CHECK(ritz_dense_mul_nt(&scaled, &full->MPhi, &given));
     if (!D->val)
         RITZ_CHECK(ritz_dense_new(full->n, full->n, D));
-    for (int64_t i = 0; i < full->n * full->n; i++)
-        D->val[i] += given.val[i];
+    ritz_dense_add(1.0, &given, D);
     return RITZ_OK;
 }
 
@@ -434,18 +401,12 @@ static ritz_status list_poles(const rational_nodes *s,
                               double _Complex **out)
 {
     RITZ_OWN(ritz_spectrum) all = {0};
-    double _Complex *found = NULL;
 
     if (!s->small || !s->full.poles.coupled)
         return ritz_responder_poles(responder, count, out);
     RITZ_CHECK(ritz_spectrum_of(
         ritz_model_of_dense(&s->view, remaining_damping(s)), NULL, &all));
-    RITZ_CHECK_NEW(found, all.count + all.num_zero);
-    for (int64_t k = 0; k < all.count; k++)
-        found[k] = all.s[k];
-    *count = all.count + all.num_zero;
-    *out = found;
-    return RITZ_OK;
+    return ritz_spectrum_list(&all, count, out);
 }
 
 /*
@@ -537,10 +498,16 @@ static ritz_status start_rational(const ritz_response_request *request,
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = RITZ_ABOVE_REST * request->to_hz;
     RITZ_CHECK(find_poles(s, out));
-    RITZ_CHECK(fill_interpolant(s->values, unit, s->num_poles, s->pole, &s->f));
+    s->f = (interpolant){
+        .values = s->values, .unit = unit, .num_poles = s->num_poles};
+    RITZ_CHECK_NEW(s->f.pole, s->num_poles);
+    for (int64_t k = 0; k < s->num_poles; k++)
+        s->f.pole[k] = s->pole[k] / unit;
+    RITZ_CHECK_NEW(s->f.num_zeros, s->values);
+    RITZ_CHECK_NEW(s->f.zero, s->values);
     RITZ_CHECK_NEW(s->with_zeros, s->values);
     RITZ_CHECK_NEW(s->missed, 2 * s->values);
-    RITZ_CHECK_NEW(s->miss, 2 * s->values * RITZ_RATIONAL_ENOUGH);
+    RITZ_CHECK_NEW(s->miss, 2 * s->values * ENOUGH);
     RITZ_CHECK_NEW(s->peak, s->values);
     RITZ_CHECK_NEW(s->level, s->values);
     RITZ_CHECK_NEW(s->scale, s->values);

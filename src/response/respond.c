@@ -33,13 +33,6 @@ ritz_response_engine_choose(const ritz_response_request *request,
     return &ritz_response_engine_modal;
 }
 
-ritz_status ritz_responder_auto(const ritz_response_request *request,
-                                const char **why, ritz_responder **out)
-{
-    return ritz_responder_or_direct(ritz_response_engine_choose(request, why),
-                                    request, out);
-}
-
 ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
                                      const ritz_response_request *request,
                                      ritz_responder **out)
@@ -70,11 +63,12 @@ ritz_status ritz_response_of(ritz_model model,
 
     RITZ_CHECK(ritz_grid_check(grid));
     request.from_hz = grid->hertz ? grid->hertz[0] : grid->from_hz;
-    request.to_hz = ritz_grid_end(grid);
+    request.to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz;
     if (engine)
         RITZ_CHECK(ritz_responder_new(engine, &request, &responder));
     else
-        RITZ_CHECK(ritz_responder_auto(&request, &why, &responder));
+        RITZ_CHECK(ritz_responder_or_direct(
+            ritz_response_engine_choose(&request, &why), &request, &responder));
     if (tolerance > 0.0)
         return ritz_responder_follow(responder, grid, tolerance, out);
     return ritz_responder_sample(responder, grid, out);

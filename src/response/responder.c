@@ -7,7 +7,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
-#include "poles/damped.h"
+#include "poles/poles.h"
 
 #include <ritz/base.h>
 
@@ -89,17 +89,6 @@ static void place_around(double omega, double zeta, double out[static AROUND])
     }
 }
 
-static int64_t remove_equal(int64_t count, double *f)
-{
-    int64_t kept = 0;
-
-    qsort(f, (size_t)count, sizeof *f, ritz_ascending);
-    for (int64_t k = 0; k < count; k++)
-        if (kept == 0 || f[k] - f[kept - 1] > RITZ_SAME_POINT * f[k])
-            f[kept++] = f[k];
-    return kept;
-}
-
 ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out)
@@ -120,7 +109,7 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
             if (extra[a] >= grid->from_hz && extra[a] <= grid->to_hz)
                 f[n++] = extra[a];
     }
-    *count = grid->hertz ? n : remove_equal(n, f);
+    *count = grid->hertz ? n : ritz_sort_distinct(n, f, RITZ_SAME_POINT);
     RITZ_MOVE(*out, f);
     return RITZ_OK;
 }
@@ -261,12 +250,6 @@ double ritz_response_highest(const ritz_response_request *request)
     return request->up_to_hz > 0.0 ? request->up_to_hz : 3.0 * request->to_hz;
 }
 
-double ritz_grid_end(const ritz_grid *grid)
-{
-    return grid->hertz && grid->count > 0 ? grid->hertz[grid->count - 1]
-                                          : grid->to_hz;
-}
-
 static ritz_status check_needs(const ritz_response_engine *engine,
                                const ritz_response_request *request)
 {
@@ -364,29 +347,32 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
     return RITZ_OK;
 }
 
-/* Poles of the full matrices, or else of the modal ones. */
-static ritz_status add_coupled(const ritz_responder *r, int64_t *count,
+ritz_status ritz_spectrum_list(const ritz_spectrum *all, int64_t *count,
                                double _Complex **out)
+{
+    *count = all->count + all->num_zero; /* those at 0 behind */
+    RITZ_CHECK_NEW(*out, *count);
+    for (int64_t k = 0; k < all->count; k++)
+        (*out)[k] = all->s[k];
+    return RITZ_OK;
+}
+
+/* Poles of the full matrices, or else of the modal ones. */
+static ritz_status list_coupled(const ritz_responder *r, int64_t *count,
+                                double _Complex **out)
 {
     const double band_hz[2] = {r->from_hz, r->to_hz};
     const ritz_span span = {.modes = -1,
                             .up_to_hz = RITZ_POLES_BEYOND * r->to_hz};
     RITZ_OWN(ritz_spectrum) own = {0};
     RITZ_OWN(ritz_damped) damped = {0};
-    const ritz_spectrum *all = r->pairs ? &own : &damped.listing;
-    double _Complex *s = NULL;
 
     if (r->pairs)
         RITZ_CHECK(ritz_spectrum_of(
             ritz_model_of_component(r->component, &r->given), &span, &own));
     else
         RITZ_CHECK(ritz_damped_new(r->poles, NULL, NULL, band_hz, &damped));
-    *count = all->count + all->num_zero; /* those at 0 behind */
-    RITZ_CHECK_NEW(s, *count);
-    for (int64_t k = 0; k < all->count; k++)
-        s[k] = all->s[k];
-    *out = s;
-    return RITZ_OK;
+    return ritz_spectrum_list(r->pairs ? &own : &damped.listing, count, out);
 }
 
 ritz_status ritz_poles_name(const ritz_io *io, ritz_poles *poles)
@@ -394,14 +380,11 @@ ritz_status ritz_poles_name(const ritz_io *io, ritz_poles *poles)
     ritz_io *to = &poles->io;
     int64_t n = poles->count;
 
-    to->num_inputs = io->num_inputs;
-    to->num_outputs = io->num_outputs;
-    RITZ_CHECK_COPY(to->input, io->input, io->num_inputs);
-    RITZ_CHECK_COPY(to->output, io->output, io->num_outputs);
-    RITZ_CHECK(ritz_dense_new(n, io->num_inputs, &to->B));
-    RITZ_CHECK(ritz_dense_new(io->num_outputs, n, &to->C));
-    RITZ_CHECK(ritz_dense_new(io->num_outputs, n, &to->Cv));
-    RITZ_CHECK(ritz_dense_new(io->num_outputs, n, &to->Ca));
+    RITZ_CHECK(ritz_io_new(n, io->num_inputs, io->num_outputs, to));
+    for (int64_t j = 0; j < io->num_inputs; j++)
+        memcpy(to->input[j], io->input[j], sizeof *to->input);
+    for (int64_t i = 0; i < io->num_outputs; i++)
+        memcpy(to->output[i], io->output[i], sizeof *to->output);
     for (int64_t k = 0; k < n * io->num_inputs; k++)
         to->B.val[k] = 1.0;
     for (int64_t k = 0; k < n * io->num_outputs; k++)
@@ -417,7 +400,7 @@ ritz_status ritz_responder_poles(const ritz_responder *responder,
     int64_t n = 0;
 
     if (poles->coupled && poles->D.val)
-        return add_coupled(responder, count, out);
+        return list_coupled(responder, count, out);
     RITZ_CHECK_NEW(s, 2 * poles->count);
     for (int64_t k = 0; k < poles->count; k++)
         if (ritz_poles_matter(poles, k)) {

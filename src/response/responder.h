@@ -62,22 +62,11 @@ extern const ritz_response_engine ritz_response_engine_krylov;
 extern const ritz_response_engine ritz_response_engine_rational;
 extern const ritz_response_engine ritz_response_engine_states;
 
-/**
- * Make a responder of an engine; if that does not converge on a component, one
- * of the direct engine, with a remark that says why.
- */
-ritz_status ritz_responder_or_direct(const ritz_response_engine *engine,
-                                     const ritz_response_request *request,
-                                     ritz_responder **out);
-
 /** Note the engine and the damping in a response. */
 void ritz_responder_sign(const ritz_responder *responder, ritz_response *r);
 
 /** The highest mode that a request needs of a component, Hz. */
 double ritz_response_highest(const ritz_response_request *request);
-
-/** The highest frequency of a grid of any kind, Hz. */
-double ritz_grid_end(const ritz_grid *grid);
 
 /**
  * Names of inputs and outputs for poles that are known alone: each counts as
@@ -94,6 +83,10 @@ ritz_status ritz_poles_name(const ritz_io *io, ritz_poles *poles);
  */
 ritz_status ritz_responder_poles(const ritz_responder *responder,
                                  int64_t *count, double _Complex **out);
+
+/** The poles of a spectrum, those at 0 behind. */
+ritz_status ritz_spectrum_list(const ritz_spectrum *all, int64_t *count,
+                               double _Complex **out);
 
 /**
  * The scale to which errors of each channel are relative: its largest |H|,

@@ -2,7 +2,7 @@
 #ifndef RITZ_VERIFY_SIDES_H
 #define RITZ_VERIFY_SIDES_H
 
-#include "poles/damped.h"
+#include "poles/poles.h"
 
 #include <ritz/poles.h>
 #include <ritz/verify.h>

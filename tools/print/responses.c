@@ -76,7 +76,6 @@ static ritz_status new_responder(cli_run *run, const model *m,
                                  const ritz_grid *grid, ritz_responder **out)
 {
     const ritz_response_engine *engine = NULL;
-    const char *why = NULL; /* said before */
     ritz_response_request request = {
         .model = model_reference(m),
         .up_to_hz = given->up_to_hz,
@@ -92,7 +91,7 @@ static ritz_status new_responder(cli_run *run, const model *m,
                  "summed alone, --method krylov leaves out nothing",
                  run->operand[0]);
     if (strcmp(given->method, "auto") == 0)
-        RITZ_CHECK(ritz_responder_auto(&request, &why, out));
+        RITZ_CHECK(ritz_responder_or_direct(engine, &request, out));
     else
         RITZ_CHECK(ritz_responder_new(engine, &request, out));
     if (ritz_responder_remark(*out)[0])

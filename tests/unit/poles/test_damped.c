@@ -4,7 +4,6 @@
 
 #include "folder.h"
 #include "frame.h"
-#include "poles/damped.h"
 #include "poles/poles.h"
 #include "project.h"
 #include "scenes.h"

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "poles/damped.h"
+#include "poles/poles.h"
 #include "scenes.h"
 #include "spring_chain.h"
 

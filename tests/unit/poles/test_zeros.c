@@ -1,7 +1,7 @@
 /* Zeros: closed forms, poles of held structures, cancellation, pencils. */
 #include "masses.h"
 #include "model/modal.h"
-#include "poles/channel.h"
+#include "poles/poles.h"
 #include "spaces.h"
 #include "testing.h"
 
