@@ -7,7 +7,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { MAX_OPTIONS = 32, EXIT_USAGE = 2, WORD = 32 };
@@ -406,14 +405,6 @@ static void keep_command(cli_run *run, int argc, char **argv)
         memcpy(run->command + CLI_MAX_COMMAND - 4, "...", 4);
 }
 
-static double read_clock(void)
-{
-    struct timespec now = {0};
-
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /*
  * A descriptor of a standard stream that came closed must not be given to the
  * next file that is opened. What is then printed still fails, and is reported.
@@ -453,5 +444,5 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
     if (run->output ? !*run->output : !program->output_optional)
         cli_refuse(program, "no output, name it with -o");
     cli_watch(run->quiet);
-    run->began = read_clock();
+    run->began = cli_clock();
 }

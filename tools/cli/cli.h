@@ -194,7 +194,7 @@ ritz_status cli_input(cli_run *run, const char *path);
 /** Remember a file whose reader knows its SHA-256 and gives it to
  * cli_input_sum. */
 ritz_status cli_input_unread(cli_run *run, const char *path);
-ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest);
+void cli_input_sum(cli_run *run, const char *path, const char *digest);
 
 /**
  * Check that a file can be made at @p path, before the work that it is to hold:
@@ -230,6 +230,9 @@ ritz_status cli_record_line(cli_run *run, json_t *line);
  * steps of the library are shown as one line if standard error is a terminal.
  */
 void cli_watch(bool quiet);
+
+/** Seconds, of the monotonic clock. */
+double cli_clock(void);
 
 /** Remove that line, before something else is written. */
 void cli_watch_clear(void);

@@ -23,9 +23,17 @@
 
 /* Neither a handler nor an observer has an argument: state is kept here. */
 static volatile sig_atomic_t shown; /* a line of progress stands there */
-static struct timespec last;        /* when it was written */
+static double last;                 /* when it was written, by the clock */
 
 static const char erase[] = "\r\033[K";
+
+double cli_clock(void)
+{
+    struct timespec now = {0};
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
 
 /* The signal is raised again with its own effect, so that whoever started the
  * program sees what ended it; held back here, it comes on return. */
@@ -56,13 +64,10 @@ static void watch_signals(void)
 static void show_progress(const char *what, int64_t done, int64_t total)
 {
     char line[80];
-    struct timespec now = {0};
+    const double now = cli_clock();
     int length = 0;
 
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    if ((double)(now.tv_sec - last.tv_sec) +
-            1e-9 * (double)(now.tv_nsec - last.tv_nsec) <
-        0.1)
+    if (now - last < 0.1)
         return;
     last = now;
     if (total > 0)
@@ -82,7 +87,7 @@ void cli_watch(bool quiet)
     watch_signals();
     if (quiet || !isatty(STDERR_FILENO))
         return;
-    clock_gettime(CLOCK_MONOTONIC, &last);
+    last = cli_clock();
     ritz_monitor_observe(show_progress);
 }
 
@@ -155,28 +160,19 @@ static void limit_threads(cli_run *run, const struct stat *file)
 /* --- files that are read --------------------------------------------------- */
 
 /* The line of an input, "SUM  PATH"; NULL if it is none yet. */
-static char **find_input(const cli_run *run, const char *path)
+static char *find_input(const cli_run *run, const char *path)
 {
     for (int64_t k = 0; k < run->num_inputs; k++)
         if (strcmp(strstr(run->input[k], "  ") + 2, path) == 0)
-            return &run->input[k];
+            return run->input[k];
     return NULL;
-}
-
-/* "SUM  PATH" */
-static ritz_status join_sum(const char *digest, const char *path, char **out)
-{
-    int64_t size = (int64_t)(strlen(digest) + strlen(path) + 3);
-
-    RITZ_CHECK_NEW(*out, size);
-    snprintf(*out, (size_t)size, "%s  %s", digest, path);
-    return RITZ_OK;
 }
 
 static ritz_status add_input(cli_run *run, const char *path, bool sum)
 {
     char digest[RITZ_DIGEST_SIZE] = "-";
     struct stat there = {0};
+    size_t size = sizeof digest + strlen(path) + 2; /* for any sum */
 
     if (find_input(run, path))
         return RITZ_OK;
@@ -191,8 +187,8 @@ static ritz_status add_input(cli_run *run, const char *path, bool sum)
     RITZ_REFUSE_IF(S_ISDIR(there.st_mode), RITZ_ERR_FILE, "'%s' is a folder",
                    path);
     RITZ_CHECK_ROOM(run->input, run->num_inputs, run->room);
-    RITZ_CHECK(join_sum(digest, path, &run->input[run->num_inputs]));
-    run->num_inputs++;
+    RITZ_CHECK_NEW(run->input[run->num_inputs], (int64_t)size);
+    snprintf(run->input[run->num_inputs++], size, "%s  %s", digest, path);
     if (run->output && run->program->threads && run->num_inputs == 1)
         RITZ_CHECK(cli_can_write(run->output));
     return RITZ_OK;
@@ -208,19 +204,15 @@ ritz_status cli_input_unread(cli_run *run, const char *path)
     return add_input(run, path, false);
 }
 
-ritz_status cli_input_sum(cli_run *run, const char *path, const char *digest)
+void cli_input_sum(cli_run *run, const char *path, const char *digest)
 {
-    char **line = find_input(run, path);
+    char *line = find_input(run, path);
     struct stat there = {0};
-    char *whole = NULL;
 
-    if (!line || (*line)[0] != '-' || stat(path, &there) != 0 ||
-        !S_ISREG(there.st_mode))
-        return RITZ_OK;
-    RITZ_CHECK(join_sum(digest, path, &whole));
-    free(*line);
-    *line = whole;
-    return RITZ_OK;
+    if (line && line[0] == '-' && stat(path, &there) == 0 &&
+        S_ISREG(there.st_mode))
+        snprintf(line, RITZ_DIGEST_SIZE + strlen(path) + 2, "%s  %s", digest,
+                 path);
 }
 
 ritz_status cli_can_write(const char *path)
@@ -268,18 +260,13 @@ json_t *cli_real(double value)
 json_t *cli_string(const char *text)
 {
     json_t *string = json_string(text);
-    char *copy = NULL;
+    /* not UTF-8: a file may be called so */
+    char *copy = string || !text ? NULL : strdup(text);
 
-    if (string || !text)
-        return string ? string : json_null();
-    copy = malloc(strlen(text) + 1); /* not UTF-8: a file may be called so */
-    if (!copy)
-        return json_null();
-    memcpy(copy, text, strlen(text) + 1);
-    for (char *c = copy; *c; c++)
+    for (char *c = copy; c && *c; c++)
         if ((unsigned char)*c > 127)
             *c = '?';
-    string = json_string(copy);
+    string = copy ? json_string(copy) : string;
     free(copy);
     return string ? string : json_null();
 }
@@ -329,51 +316,19 @@ static void sign_line(const cli_run *run, json_t *line)
     json_object_set_new(line, "inputs", inputs);
 }
 
-/* The line of this run, complete but for its time and memory. */
-static void fill_line(cli_run *run, ritz_status status)
-{
-    json_t *line = run->line;
-
-    sign_line(run, line);
-    json_object_set_new(line, "ok", json_boolean(status == RITZ_OK));
-    json_object_update_missing_new(
-        line, json_pack("{s:n, s:n, s:{}}", "method", "order", "errors"));
-}
-
-static json_int_t peak_bytes(void)
-{
-    struct rusage usage = {0};
-
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024 * (json_int_t)usage.ru_maxrss;
-}
-
-static void fill_cost(cli_run *run)
-{
-    struct rusage usage = {0};
-    struct timespec now = {0};
-    double cpu = 0.0;
-
-    getrusage(RUSAGE_SELF, &usage);
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-          1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-    json_object_set_new(
-        run->line, "seconds",
-        json_pack("{s:f, s:f}", "wall",
-                  (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - run->began,
-                  "cpu", cpu));
-    json_object_set_new(run->line, "peak_bytes", json_integer(peak_bytes()));
-}
-
-/* One line in one write, so that those of parallel tools do not mix. */
-static ritz_status append_line(const cli_run *run, const json_t *line)
+/* With the memory so far, and in one write, so that lines of parallel tools do
+   not mix. */
+static ritz_status append_line(const cli_run *run, json_t *line)
 {
     ritz_status status = RITZ_OK;
+    struct rusage usage = {0};
     char *text = NULL;
     size_t length = 0;
     int file = -1;
 
+    getrusage(RUSAGE_SELF, &usage);
+    json_object_set_new(line, "peak_bytes",
+                        json_integer(1024 * (json_int_t)usage.ru_maxrss));
     text = json_dumps(line, JSON_COMPACT | JSON_PRESERVE_ORDER);
     RITZ_FAIL_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
     length = strlen(text);
@@ -397,7 +352,6 @@ ritz_status cli_record_line(cli_run *run, json_t *line)
 
     if (run->record) {
         sign_line(run, line);
-        json_object_set_new(line, "peak_bytes", json_integer(peak_bytes()));
         status = append_line(run, line);
     }
     json_decref(line);
@@ -409,9 +363,19 @@ static ritz_status keep_record(cli_run *run, ritz_status outcome)
 {
     char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());
     ritz_status recorded = RITZ_OK;
+    struct rusage used = {0};
 
-    fill_line(run, outcome);
-    fill_cost(run);
+    getrusage(RUSAGE_SELF, &used);
+    sign_line(run, run->line);
+    json_object_set_new(run->line, "ok", json_boolean(outcome == RITZ_OK));
+    json_object_update_missing_new(
+        run->line, json_pack("{s:n, s:n, s:{}}", "method", "order", "errors"));
+    json_object_set_new(
+        run->line, "seconds",
+        json_pack("{s:f, s:f}", "wall", cli_clock() - run->began, "cpu",
+                  (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                      1e-6 * (double)(used.ru_utime.tv_usec +
+                                      used.ru_stime.tv_usec)));
     recorded = append_line(run, run->line);
     if (first)
         ritz_record("%s", first);
