@@ -17,6 +17,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <strings.h>
 
 /* ---- sets of dofs -------------------------------------------------------- */
 
@@ -211,7 +212,7 @@ static ritz_status take_list(const ritz_card *card, int64_t k,
     for (; k < card->count; k++) {
         if (!*ritz_card_text(card, k))
             continue;
-        range.each = !ritz_card_is_word(ritz_card_text(card, k), "ALL");
+        range.each = strcasecmp(ritz_card_text(card, k), "ALL") != 0;
         range.from = 1;
         range.to = INT64_MAX - 1;
         if (range.each) {
@@ -219,7 +220,7 @@ static ritz_status take_list(const ritz_card *card, int64_t k,
             range.to = range.from;
         }
         if (range.each &&
-            ritz_card_is_word(ritz_card_text(card, k + 1), "THRU")) {
+            strcasecmp(ritz_card_text(card, k + 1), "THRU") == 0) {
             range.each = false;
             k += 2;
             RITZ_CHECK(ritz_card_id(card, k, &range.to));
@@ -237,7 +238,7 @@ static ritz_status take_points(ritz_bulk_cards *all, const ritz_card *card,
 {
     (void)how;
     for (int64_t k = 0; k < card->count; k++)
-        if (ritz_card_is_word(ritz_card_text(card, k), "ALL"))
+        if (strcasecmp(ritz_card_text(card, k), "ALL") == 0)
             return ritz_card_refuse(card, k, "a positive whole number");
     return take_list(card, 0,
                      (ritz_bulk_range){.line = card->entry->line, .mask = 1},

@@ -21,6 +21,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <strings.h>
 
 /* A constraint element as it becomes equations. */
 typedef struct ritz_bulk_tying {
@@ -107,7 +108,7 @@ static ritz_status tying_pairs(const ritz_bulk_tying *it, bool due, int64_t *k,
             (*k)++;
             continue;
         }
-        if (tying_is_real(it, *k) || ritz_card_is_word(text, "UM"))
+        if (tying_is_real(it, *k) || strcasecmp(text, "UM") == 0)
             break;
         RITZ_CHECK(tying_grid(it, *k, &tie.grid));
         RITZ_CHECK(tying_mask(it, *k + 1, due, &tie.mask));
@@ -246,10 +247,12 @@ static ritz_status tie_rbe2(const ritz_bulk_tying *it)
     return tie_all(it, &from, &to);
 }
 
-/* A bar or a plate: grids, then CN of each, then CM of each at field `at`. */
-static ritz_status tie_corners(const ritz_bulk_tying *it, int64_t corners,
-                               int64_t at)
+/* RBAR or RTRPLT: grids, then CN of each, then CM of each from a field on. */
+static ritz_status tie_corners(const ritz_bulk_tying *it)
 {
+    bool plate = it->card->entry->name[1] == 'T';
+    int64_t corners = plate ? 3 : 2;
+    int64_t at = plate ? 8 : 5;
     RITZ_OWN(ritz_ties) from = {0}, to = {0};
     ritz_tie free[3] = {0};
     ritz_tie held[3] = {0};
@@ -273,23 +276,13 @@ static ritz_status tie_corners(const ritz_bulk_tying *it, int64_t corners,
     return tie_all(it, &from, &to);
 }
 
-static ritz_status tie_rbar(const ritz_bulk_tying *it)
-{
-    return tie_corners(it, 2, 5);
-}
-
-static ritz_status tie_rtrplt(const ritz_bulk_tying *it)
-{
-    return tie_corners(it, 3, 8);
-}
-
 static ritz_status tie_rbe1(const ritz_bulk_tying *it)
 {
     RITZ_OWN(ritz_ties) from = {0}, to = {0};
     int64_t k = 1;
 
     RITZ_CHECK(tying_pairs(it, false, &k, &from));
-    if (!ritz_card_is_word(ritz_card_text(it->card, k), "UM"))
+    if (strcasecmp(ritz_card_text(it->card, k), "UM") != 0)
         return tying_refuse(it, "names no dependent dofs by UM");
     k++;
     RITZ_CHECK(tying_pairs(it, true, &k, &to));
@@ -339,8 +332,8 @@ static ritz_status take_group(const ritz_bulk_tying *it, int64_t *k,
 
         if (!*text)
             continue;
-        if (tying_is_real(it, *k) || ritz_card_is_word(text, "UM") ||
-            ritz_card_is_word(text, "ALPHA"))
+        if (tying_is_real(it, *k) || strcasecmp(text, "UM") == 0 ||
+            strcasecmp(text, "ALPHA") == 0)
             break;
         RITZ_CHECK(tying_grid(it, *k, &tie.grid));
         if (tie.weight > 0.0)
@@ -358,9 +351,9 @@ static ritz_status take_average(const ritz_bulk_tying *it, average_card *out)
     while (k < it->card->count) {
         const char *text = ritz_card_text(it->card, k);
 
-        if (ritz_card_is_word(text, "ALPHA"))
+        if (strcasecmp(text, "ALPHA") == 0)
             break;
-        if (ritz_card_is_word(text, "UM")) {
+        if (strcasecmp(text, "UM") == 0) {
             k++;
             return tying_pairs(it, true, &k, &out->moved);
         }
@@ -556,8 +549,8 @@ static const struct kind {
     const char *name;
     ritz_status (*tie)(const ritz_bulk_tying *it);
 } KINDS[] = {
-    {"MPC", tie_mpc},   {"RBAR", tie_rbar}, {"RBE1", tie_rbe1},
-    {"RBE2", tie_rbe2}, {"RBE3", tie_rbe3}, {"RTRPLT", tie_rtrplt},
+    {"MPC", tie_mpc},   {"RBAR", tie_corners}, {"RBE1", tie_rbe1},
+    {"RBE2", tie_rbe2}, {"RBE3", tie_rbe3},    {"RTRPLT", tie_corners},
 };
 
 static ritz_status tie_element(const ritz_bulk_tying *it)

@@ -9,7 +9,6 @@
 #include "formats/cards.h"
 #include "base/alloc.h"
 #include "base/text.h"
-#include "formats/decimal.h"
 
 #include <ritz/base.h>
 

@@ -10,7 +10,7 @@
 
 #include "base/alloc.h"
 
-#include "formats/lines.h"
+#include "formats/decimal.h"
 
 #include <ritz/base.h>
 
@@ -134,9 +134,6 @@ int ritz_cards_compare_name(const void *name, const void *row);
 
 /** True if a set of SPC or MPC cards acts; the selected sets are sorted. */
 bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set);
-
-/** True if a field is @p word, which is in capitals. */
-bool ritz_card_is_word(const char *text, const char *word);
 
 /** Directions "123" as digits; @return false if they are not distinct 0-6 */
 bool ritz_card_mask(int64_t digits, uint8_t *out);

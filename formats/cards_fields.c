@@ -12,7 +12,6 @@
  * one leaves its four missing fields blank.
  */
 #include "formats/cards.h"
-#include "formats/decimal.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -271,14 +270,6 @@ int64_t ritz_card_digits(const char *text)
     ritz_decimal number = {0};
 
     return scan_number(text, &number) ? number.digits : 0;
-}
-
-bool ritz_card_is_word(const char *text, const char *word)
-{
-    for (; *text && *word; text++, word++)
-        if (*text != *word && *text - 'a' + 'A' != *word)
-            return false;
-    return *text == *word;
 }
 
 bool ritz_card_mask(int64_t digits, uint8_t *out)

@@ -6,39 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A longer copy of an array of eight-byte numbers; NULL: no memory. */
-static void *widen_array(const void *array, int64_t used, int64_t room)
-{
-    void *wide = ritz_zalloc(room, sizeof(double));
-
-    if (wide && array)
-        memcpy(wide, array, (size_t)used * sizeof(double));
-    return wide;
-}
-
 ritz_status ritz_triplets_reserve(ritz_triplets *list, int64_t more)
 {
     int64_t used = list->count;
     int64_t room = list->room + (more > list->room ? more : list->room);
-    ritz_triplets wide = {
-        .count = used, .room = room, .is_complex = list->is_complex};
+    int64_t longer = room - used;
 
     if (more <= list->room - used)
         return RITZ_OK;
-    wide.row = widen_array(list->row, used, room);
+    RITZ_CHECK(ritz_array_extend(&list->row, used, longer, sizeof *list->row));
     if (!list->counts)
-        wide.col = widen_array(list->col, used, room);
-    wide.re = widen_array(list->re, used, room);
-    if (wide.is_complex)
-        wide.im = widen_array(list->im, used, room);
-    if (!wide.row || (!wide.col && !list->counts) || !wide.re ||
-        (wide.is_complex && !wide.im)) {
-        ritz_triplets_free(&wide);
-        return RITZ_ERR_MEMORY;
-    }
-    RITZ_MOVE(wide.counts, list->counts);
-    ritz_triplets_free(list);
-    *list = wide;
+        RITZ_CHECK(
+            ritz_array_extend(&list->col, used, longer, sizeof *list->col));
+    RITZ_CHECK(ritz_array_extend(&list->re, used, longer, sizeof *list->re));
+    if (list->is_complex)
+        RITZ_CHECK(
+            ritz_array_extend(&list->im, used, longer, sizeof *list->im));
+    list->room = room;
     return RITZ_OK;
 }
 

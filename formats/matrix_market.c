@@ -18,7 +18,6 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "formats/decimal.h"
-#include "formats/lines.h"
 #include "formats/matrix.h"
 #include "formats/sink.h"
 

@@ -1,7 +1,10 @@
 /* NASTRAN OUTPUT4, whichever way it is spelled. */
 #include "formats/output4.h"
+#include "base/alloc.h"
 
+#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const ritz_output4_spelling *const spellings[] = {
@@ -29,6 +32,153 @@ static bool is_output4(const char *bytes, int64_t size)
     return open_bytes(bytes, size, &r);
 }
 
+/* ---- FORM --------------------------------------------------------------- */
+
+/*
+ * What FORM says of an OUTPUT4 matrix: 3 with one row or column is a diagonal;
+ * 6 symmetric, both triangles stored, a file with one only is completed; 8
+ * without entries the identity.
+ */
+
+enum { DIAGONAL = 3, IDENTITY = 8 };
+
+/* True if entries lie beside the diagonal, and all on one side of it. */
+static bool is_triangle(const ritz_triplets *t)
+{
+    bool above = false;
+    bool below = false;
+
+    for (int64_t k = 0, j = 0; k < t->count; j++)
+        for (int64_t end = k + t->counts[j + 1]; k < end; k++) {
+            above = above || t->row[k] < j;
+            below = below || t->row[k] > j;
+        }
+    return above != below;
+}
+
+/* One row or one column becomes the diagonal of an n x n matrix. */
+static ritz_status spread_diagonal(ritz_triplets *t, int64_t n)
+{
+    int64_t *counts = NULL;
+
+    RITZ_CHECK_NEW(counts, n + 1);
+    for (int64_t k = 0, j = 0; k < t->count; j++)
+        for (int64_t end = k + t->counts[j + 1]; k < end; k++) {
+            t->row[k] += j; /* one of them is 0 */
+            counts[t->row[k] + 1] = 1;
+        }
+    free(t->counts);
+    t->counts = counts;
+    return RITZ_OK;
+}
+
+/* Give the entries the meaning that FORM says; nrow and ncol follow. */
+static ritz_status obey_form(ritz_output4_build *build)
+{
+    ritz_output4_header *h = &build->header;
+    ritz_triplets *t = &build->entries;
+    int64_t n = h->nrow > h->ncol ? h->nrow : h->ncol;
+    bool square = h->nrow == h->ncol;
+    bool vector =
+        h->form == DIAGONAL && (h->nrow == 1 || h->ncol == 1) && n > 1;
+    bool unit = h->form == IDENTITY && square && t->count == 0;
+
+    RITZ_REFUSE_IF((vector || unit) && n > build->columns, RITZ_ERR_FORMAT,
+                   "'%s' is said to be a diagonal of %" PRId64
+                   " rows, far more than its file can fill",
+                   h->name, n);
+    RITZ_CHECK(ritz_triplets_reserve(t, unit ? n : 0));
+    for (int64_t k = 0; unit && k < n; k++)
+        ritz_triplets_put(t, k, k, 1.0, 0.0);
+    if (!vector)
+        return RITZ_OK;
+    h->nrow = h->ncol = n;
+    return spread_diagonal(t, n);
+}
+
+/* ---- columns ------------------------------------------------------------ */
+
+/*
+ * Columns that a file may declare beyond one for each of its bytes. A matrix of
+ * ten million columns, nearly all null, is legal and takes 150 bytes; a limit
+ * keeps such bytes from asking for all memory there is.
+ */
+enum { NULL_COLUMNS = 32000000 };
+
+static void name_column(ritz_output4_build *build)
+{
+    snprintf(build->where, sizeof build->where, "column %" PRId64 " of '%s'",
+             build->column + 1, build->header.name);
+}
+
+/* Begin a matrix of a file of so many bytes. */
+static ritz_status begin_matrix(const ritz_output4_header *header, int64_t size,
+                                ritz_output4_build *out)
+{
+    int64_t most = NULL_COLUMNS + size;
+
+    RITZ_REFUSE_IF(header->ncol > most, RITZ_ERR_FORMAT,
+                   "'%s' is said to have %" PRId64
+                   " columns, far more than its file can fill",
+                   header->name, header->ncol);
+    *out = (ritz_output4_build){
+        .header = *header,
+        .columns = most - header->ncol,
+        .column = -1,
+        .rule = header->bigmat ? RITZ_OUTPUT4_BIGMAT : RITZ_OUTPUT4_WORDS,
+        .entries.is_complex = header->numbers == 2,
+    };
+    name_column(out);
+    RITZ_CHECK_NEW(out->entries.counts, header->ncol + 1);
+    return RITZ_OK;
+}
+
+/* Begin a column, from 1; those between are null. */
+static ritz_status begin_column(ritz_output4_build *build, int64_t column)
+{
+    RITZ_REFUSE_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " columns, but one is numbered %" PRId64,
+                   build->header.name, build->header.ncol, column);
+    RITZ_REFUSE_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' follows column %" PRId64, column,
+                   build->header.name, build->column + 1);
+    build->column = column - 1;
+    name_column(build);
+    build->first = build->entries.count;
+    build->below = 0;
+    return RITZ_OK;
+}
+
+/* Forget what this column got so far. */
+static void rewind_column(ritz_output4_build *build)
+{
+    build->entries.count = build->first;
+    build->entries.counts[build->column + 1] = 0;
+    build->below = 0;
+}
+
+/* After the last column: obey FORM and hand the matrix over. */
+static ritz_status end_matrix(ritz_output4_build *build, ritz_matrix *out)
+{
+    const ritz_output4_header *h = &build->header;
+    bool half = h->symmetric && is_triangle(&build->entries);
+
+    RITZ_CHECK(obey_form(build));
+    RITZ_CHECK(ritz_triplets_compress(&build->entries, h->nrow, h->ncol, out));
+    if (half)
+        RITZ_CHECK(ritz_matrix_mirror(out, 1.0, 1.0));
+    memcpy(out->name, h->name, sizeof out->name);
+    out->symmetric =
+        h->nrow == h->ncol &&
+        (h->symmetric || h->form == DIAGONAL || h->form == IDENTITY);
+    return RITZ_OK;
+}
+
+static void ritz_output4_build_free(ritz_output4_build *build)
+{
+    ritz_triplets_free(&build->entries);
+}
+
 /* ---- one matrix --------------------------------------------------------- */
 
 /* The strings of a column, of so many words, by one reading of their
@@ -52,7 +202,7 @@ static ritz_status try_strings(ritz_output4_reader *r,
                                int64_t wide, int64_t words)
 {
     *r = *start;
-    ritz_output4_rewind(build);
+    rewind_column(build);
     build->rule = rule;
     build->wide = wide;
     return read_strings(r, build, words);
@@ -131,7 +281,7 @@ static ritz_status read_columns(ritz_output4_reader *r,
     bool sparse = false;
     int64_t n[3] = {0};
 
-    RITZ_CHECK(ritz_output4_begin(header, r->text.end - r->begin, &build));
+    RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, &build));
     build.wide = r->wide;
     RITZ_CHECK(ritz_triplets_reserve(&build.entries, most_entries(r, header)));
     for (;;) {
@@ -141,7 +291,7 @@ static ritz_status read_columns(ritz_output4_reader *r,
                 RITZ_CHECK(r->as->skip_last(r, &build, n[2]));
             break;
         }
-        RITZ_CHECK(ritz_output4_column(&build, n[0]));
+        RITZ_CHECK(begin_column(&build, n[0]));
         sparse = sparse || n[1] == 0;
         if (n[1] == 0)
             RITZ_CHECK(read_sparse(r, &build, n[2]));
@@ -154,7 +304,7 @@ static ritz_status read_columns(ritz_output4_reader *r,
              : header->bigmat ? "bigmat"
                               : "sparse",
              r->format);
-    RITZ_CHECK(ritz_output4_end(&build, &new));
+    RITZ_CHECK(end_matrix(&build, &new));
     RITZ_MOVE(*out, new);
     return RITZ_OK;
 }

@@ -5,10 +5,12 @@
 #ifndef RITZ_FORMATS_OUTPUT4_H
 #define RITZ_FORMATS_OUTPUT4_H
 
-#include "formats/lines.h"
+#include "formats/decimal.h"
 #include "formats/matrix.h"
 
 #include <math.h>
+
+enum { RITZ_OUTPUT4_SYMMETRIC = 6 }; /* FORM */
 
 /* The header of a matrix. */
 typedef struct ritz_output4_header {
@@ -21,11 +23,6 @@ typedef struct ritz_output4_header {
     int64_t at, line; /* where it begins, as in ritz_listed */
 } ritz_output4_header;
 
-/** The header that NCOL NROW FORM TYPE and a padded name state. @return false
- * if no matrix has such numbers */
-bool ritz_output4_header_of(const int64_t n[static 4], const char *name,
-                            int64_t length, ritz_output4_header *out);
-
 /* ---- a matrix while its columns arrive ---------------------------------- */
 
 typedef struct ritz_output4_build {
@@ -36,7 +33,7 @@ typedef struct ritz_output4_build {
     char where[RITZ_NAME_SIZE + 32]; /* "column 1 of 'KAA'" */
     int64_t first;                   /* entry of this column */
     int64_t below; /* rows up to here are taken in this column */
-    int64_t rule;  /* reading of the strings' headers, below */
+    int64_t rule;  /* RITZ_OUTPUT4_... of the strings' headers */
     int64_t wide;  /* words of a real by that reading */
 } ritz_output4_build;
 
@@ -47,41 +44,13 @@ typedef struct ritz_output4_string {
     int64_t words; /* of the column's count that it uses, header included */
 } ritz_output4_string;
 
-/* Number of readings of a string's header, and the integers in it. */
-enum { RITZ_OUTPUT4_RULES = 3 };
-int64_t ritz_output4_integers(const ritz_output4_build *build);
-
-/**
- * What a string's header says.
- *
- * @return false if that is not possible within @p left words
- */
-bool ritz_output4_decode(const ritz_output4_build *build,
-                         const int64_t *integers, int64_t left,
-                         ritz_output4_string *out);
-
-/** Begin a matrix of a file of @p size bytes. */
-ritz_status ritz_output4_begin(const ritz_output4_header *header, int64_t size,
-                               ritz_output4_build *out);
-
-/** Begin column @p column, from 1; those between are null. */
-ritz_status ritz_output4_column(ritz_output4_build *build, int64_t column);
-
-/** Forget what this column got so far. */
-void ritz_output4_rewind(ritz_output4_build *build);
-
-/** Make room for @p count values from @p row, from 0. */
-ritz_status ritz_output4_rows(ritz_output4_build *build, int64_t row,
-                              int64_t count);
-
-/** Append a value that there is room for; it must be finite. */
-ritz_status ritz_output4_put(ritz_output4_build *build, int64_t row, double re,
-                             double im);
-
-/** After the last column: obey FORM and hand the matrix over. */
-ritz_status ritz_output4_end(ritz_output4_build *build, ritz_matrix *out);
-
-void ritz_output4_build_free(ritz_output4_build *build);
+/* Readings of a string's header. */
+enum {
+    RITZ_OUTPUT4_WORDS,
+    RITZ_OUTPUT4_VALUES,
+    RITZ_OUTPUT4_BIGMAT,
+    RITZ_OUTPUT4_RULES
+};
 
 /* ---- spellings ---------------------------------------------------------- */
 

@@ -97,18 +97,14 @@ ritz_status ritz_export_check(const ritz_exporter *exporter,
 
 ritz_status ritz_export_say(ritz_export_report *report, const char *format, ...)
 {
-    char(*more)[256] = NULL;
     va_list args;
 
-    RITZ_CHECK_NEW(more, report->count + 1);
-    if (report->count > 0)
-        memcpy(more, report->line, (size_t)report->count * sizeof *more);
+    RITZ_CHECK(ritz_array_extend(&report->line, report->count, 1,
+                                 sizeof *report->line));
     va_start(args, format);
-    vsnprintf(more[report->count], sizeof *more, format, args);
+    vsnprintf(report->line[report->count++], sizeof *report->line, format,
+              args);
     va_end(args);
-    free(report->line);
-    report->line = more;
-    report->count++;
     return RITZ_OK;
 }
 

@@ -95,34 +95,22 @@ static ritz_status sort_rows(const unsigned char *mark, const ritz_deck *deck,
     return RITZ_OK;
 }
 
-/* Positions and frames of the grids that have rows in the matrices. */
-static ritz_status keep_grids(const ritz_grids *all, const ritz_roster *roster,
-                              ritz_grids *out)
+/* Of grids keep those that have rows in the matrices. */
+static void keep_grids(const ritz_roster *roster, ritz_grids *grids)
 {
-    RITZ_OWN(ritz_grids) grids = {.num_frames = all->num_frames};
-    int64_t count = 0;
+    int64_t kept = 0;
 
-    RITZ_CHECK_NEW(grids.id, all->count);
-    RITZ_CHECK_NEW(grids.position, 3 * all->count);
-    RITZ_CHECK_NEW(grids.frame, all->count);
-    RITZ_CHECK_NEW(grids.axes, 9 * all->num_frames);
-    if (all->num_frames > 0)
-        memcpy(grids.axes, all->axes,
-               9 * (size_t)all->num_frames * sizeof *all->axes);
-    for (int64_t k = 0; k < all->count; k++) {
-        int64_t at = ritz_roster_from(roster, all->id[k]);
+    for (int64_t k = 0; k < grids->count; k++) {
+        int64_t at = ritz_roster_from(roster, grids->id[k]);
 
-        if (at == roster->count || roster->place[at].dof.grid != all->id[k])
+        if (at == roster->count || roster->place[at].dof.grid != grids->id[k])
             continue;
-        grids.id[count] = all->id[k];
-        grids.frame[count] = all->frame[k];
-        memcpy(grids.position + 3 * count, all->position + 3 * k,
-               3 * sizeof *all->position);
-        count++;
+        grids->id[kept] = grids->id[k];
+        grids->frame[kept] = grids->frame[k];
+        memmove(grids->position + 3 * kept++, grids->position + 3 * k,
+                3 * sizeof *grids->position);
     }
-    grids.count = count;
-    RITZ_MOVE(*out, grids);
-    return RITZ_OK;
+    grids->count = kept;
 }
 
 /* One grid and no deck: wherever it is, that is the origin. */
@@ -282,8 +270,7 @@ ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
 
 /* Grids of rows and of recovered dofs; the origin for a single grid without a
  * deck. */
-static ritz_status place_grids(const ritz_deck *deck,
-                               const ritz_row_names *kept,
+static ritz_status place_grids(ritz_deck *deck, const ritz_row_names *kept,
                                ritz_component *component)
 {
     const ritz_recovery *recovery = &component->recovery;
@@ -295,7 +282,9 @@ static ritz_status place_grids(const ritz_deck *deck,
     if (deck->grids.count == 0)
         return place_alone(&all, &component->grids);
     RITZ_CHECK(ritz_roster_new(all.count, all.dof, &roster));
-    return keep_grids(&deck->grids, &roster, &component->grids);
+    RITZ_MOVE(component->grids, deck->grids);
+    keep_grids(&roster, &component->grids);
+    return RITZ_OK;
 }
 
 /* Rows, with the dofs eliminated that constraints make depend on others. */

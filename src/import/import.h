@@ -74,10 +74,6 @@ void ritz_part_mark(const ritz_part *part, unsigned char bit,
 /** Whether a dof is in a sorted list. */
 bool ritz_dof_among(ritz_dof dof, int64_t count, const ritz_dof *sorted);
 
-/** Make the array at the address @p array longer, by zeros. */
-ritz_status ritz_import_extend(void *array, int64_t before, int64_t more,
-                               size_t size);
-
 enum {
     RITZ_TIED_FIXED = 1,   /* u = 0 */
     RITZ_TIED_ALIVE = 2,   /* the dof has stiffness or mass of its own */

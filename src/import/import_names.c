@@ -109,9 +109,7 @@ void ritz_roster_free(ritz_roster *roster)
 /* All dofs of the deck, in its own order. */
 static ritz_status list_all(const ritz_deck *deck, ritz_row_names *out)
 {
-    RITZ_CHECK_NEW(out->dof, deck->num_dofs);
-    if (deck->num_dofs > 0)
-        memcpy(out->dof, deck->dof, (size_t)deck->num_dofs * sizeof *out->dof);
+    RITZ_CHECK_COPY(out->dof, deck->dof, deck->num_dofs);
     out->count = deck->num_dofs;
     snprintf(out->map, sizeof out->map, "grids ascending");
     out->whole = true;
@@ -147,9 +145,7 @@ static ritz_status list_less(const ritz_deck *deck, bool fixed, bool dependents,
     if (fixed)
         leave_out(deck->num_fixed, deck->fixed, out);
     if (dependents) {
-        RITZ_CHECK_NEW(tied, count);
-        for (int64_t k = 0; k < count; k++)
-            tied[k] = deck->equations.dependent[k];
+        RITZ_CHECK_COPY(tied, deck->equations.dependent, count);
         qsort(tied, (size_t)count, sizeof *tied, ritz_dof_compare);
         leave_out(count, tied, out);
     }

@@ -370,10 +370,10 @@ static ritz_status add_grid(ritz_tied *it)
     for (int64_t c = 1; c <= SIX; c++)
         dof[c - 1] = (ritz_dof){it->id, c};
     RITZ_CHECK(ritz_tying_append(SIX, dof, it->tying));
-    RITZ_CHECK(ritz_import_extend(&grids->id, n, 1, sizeof *grids->id));
-    RITZ_CHECK(ritz_import_extend(&grids->frame, n, 1, sizeof *grids->frame));
-    RITZ_CHECK(ritz_import_extend(&grids->position, 3 * n, 3,
-                                  sizeof *grids->position));
+    RITZ_CHECK(ritz_array_extend(&grids->id, n, 1, sizeof *grids->id));
+    RITZ_CHECK(ritz_array_extend(&grids->frame, n, 1, sizeof *grids->frame));
+    RITZ_CHECK(
+        ritz_array_extend(&grids->position, 3 * n, 3, sizeof *grids->position));
     grids->id[n] = it->id;
     memcpy(grids->position + 3 * n, it->port.origin, sizeof it->port.origin);
     grids->count = n + 1;

@@ -17,31 +17,15 @@
 
 /* ---- which rows there are ----------------------------------------------- */
 
-ritz_status ritz_import_extend(void *array, int64_t before, int64_t more,
-                               size_t size)
-{
-    void *old = NULL;
-    char *longer = ritz_zalloc(before + more, size);
-
-    if (!longer)
-        return RITZ_ERR_MEMORY;
-    memcpy(&old, array, sizeof old);
-    if (before > 0)
-        memcpy(longer, old, (size_t)before * size);
-    free(old);
-    memcpy(array, &longer, sizeof longer);
-    return RITZ_OK;
-}
-
 ritz_status ritz_tying_append(int64_t count, const ritz_dof *dof,
                               ritz_tying *tying)
 {
     ritz_row_names *names = &tying->names;
 
-    RITZ_CHECK(ritz_import_extend(&names->dof, names->count, count,
-                                  sizeof *names->dof));
-    RITZ_CHECK(ritz_import_extend(&tying->mark, names->count, count,
-                                  sizeof *tying->mark));
+    RITZ_CHECK(ritz_array_extend(&names->dof, names->count, count,
+                                 sizeof *names->dof));
+    RITZ_CHECK(ritz_array_extend(&tying->mark, names->count, count,
+                                 sizeof *tying->mark));
     if (count > 0)
         memcpy(names->dof + names->count, dof, (size_t)count * sizeof *dof);
     names->count += count;
@@ -84,9 +68,7 @@ static ritz_status sort_names(ritz_row_names *names, ritz_parts *parts)
     RITZ_OWN_ARRAY ritz_dof *before = NULL;
     RITZ_OWN(ritz_roster) roster = {0};
 
-    RITZ_CHECK_NEW(before, names->count);
-    if (names->count > 0)
-        memcpy(before, names->dof, (size_t)names->count * sizeof *before);
+    RITZ_CHECK_COPY(before, names->dof, names->count);
     names->count = ritz_dof_distinct(names->count, names->dof);
     RITZ_CHECK(ritz_roster_new(names->count, names->dof, &roster));
     for (int64_t k = 0; k < parts->count; k++)

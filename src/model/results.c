@@ -53,20 +53,15 @@ void ritz_rankings_free(ritz_rankings *rankings)
 ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
                               double value, double limit, const char *where)
 {
-    ritz_measure *more = NULL;
     ritz_measure *last = NULL;
 
-    RITZ_CHECK_NEW(more, measures->count + 1);
-    if (measures->count > 0)
-        memcpy(more, measures->item, (size_t)measures->count * sizeof *more);
-    last = &more[measures->count];
+    RITZ_CHECK(ritz_array_extend(&measures->item, measures->count, 1,
+                                 sizeof *measures->item));
+    last = &measures->item[measures->count++];
     snprintf(last->name, sizeof last->name, "%s", name);
     snprintf(last->where, sizeof last->where, "%s", where ? where : "");
     last->value = value;
     last->limit = limit;
-    free(measures->item);
-    measures->item = more;
-    measures->count++;
     return RITZ_OK;
 }
 
