@@ -310,12 +310,12 @@ void ritz_zldl_definite(ritz_zldl *F);
 /** Factor sum_k c[k] A_k. @return RITZ_ERR_SINGULAR */
 ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c);
 
-/** Overwrite @p X, n x k column-major, by the solution. */
-ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X);
-
-/** By the transposed matrix, which is the same of symmetric ones. */
-ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
-                                       double _Complex *X);
+/**
+ * Overwrite @p X, n x k column-major, by the solution; @p transposed: by the
+ * transposed matrix, which is the same of symmetric ones.
+ */
+ritz_status ritz_zldl_solve(ritz_zldl *F, bool transposed, int64_t k,
+                            double _Complex *X);
 void ritz_zldl_free(ritz_zldl **F);
 
 /* Eigenpairs of the symmetric pencil K x = lambda M x. */

@@ -1,8 +1,20 @@
 #include "bases/columns.h"
 
+#include "base/alloc.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+ritz_status ritz_request_damping(const ritz_request *request, ritz_damping *out)
+{
+    if (request->choice.given & RITZ_USES_DAMPING) {
+        *out = request->choice.damping;
+        return RITZ_OK;
+    }
+    return ritz_context(ritz_damping_parse(request->component->damping, out),
+                        "damping of the component");
+}
 
 ritz_status ritz_lowest_modes(const char *what, const char *name,
                               const ritz_sparse *K, const ritz_sparse *M,
@@ -67,4 +79,165 @@ void ritz_remark_add(ritz_basis *basis, const char *joint, const char *format,
     va_end(args);
     (void)snprintf(basis->remark + used, left, "%s%s", used > 0 ? joint : "",
                    text);
+}
+
+/* Kinds of loads, and what one of them is called. */
+static const struct {
+    int bit;
+    const char *word;
+} kinds[] = {
+    {RITZ_LOADS_ATTACHED, "attached"},
+    {RITZ_LOADS_INPUTS, "input"},
+    {RITZ_LOADS_OUTPUTS, "output"},
+    {RITZ_LOADS_DAMPERS, "damper"},
+};
+
+enum { NUM_KINDS = sizeof kinds / sizeof *kinds };
+
+/* One load vector: a unit force at a row, or entries that lie elsewhere. */
+typedef struct load_view {
+    const char *word; /* kind */
+    const char *name; /* NULL: of an attached dof */
+    int64_t row;      /* of an attached dof; -1 */
+    const double *val;
+    int64_t stride;
+} load_view;
+
+static double load_entry(const load_view *load, int64_t i)
+{
+    return load->val ? load->val[i * load->stride] : i == load->row;
+}
+
+/* An iterator over the loads that are not zero. */
+typedef struct load_walk {
+    const ritz_request *request;
+    int loads;
+    size_t kind;
+    int64_t at; /* of that kind: the next to be looked at */
+} load_walk;
+
+/* Load j of a kind; false past the last. */
+static bool find_load(const ritz_request *request, size_t kind, int64_t j,
+                      load_view *out)
+{
+    const ritz_io *io = &request->component->io;
+    const ritz_dampers *dampers = &request->component->dampers;
+    const ritz_dense *const reads[] = {&io->C, &io->Cv, &io->Ca};
+    const ritz_dofs *attached = &request->attached;
+    int64_t p = io->num_outputs;
+
+    *out = (load_view){kinds[kind].word, NULL, -1, NULL, 1};
+    switch (kinds[kind].bit) {
+    case RITZ_LOADS_ATTACHED:
+        out->row = j < attached->count ? attached->at[j] : -1;
+        return j < attached->count;
+    case RITZ_LOADS_INPUTS:
+        if (j >= io->num_inputs)
+            return false;
+        out->name = io->input[j];
+        out->val = ritz_dense_col(&io->B, j);
+        return true;
+    case RITZ_LOADS_OUTPUTS: /* rows of C, then those of Cv, then those of Ca */
+        if (j >= 3 * p)
+            return false;
+        out->name = io->output[j % p];
+        out->val = reads[j / p]->val + j % p;
+        out->stride = p;
+        return true;
+    default:
+        if (j >= dampers->count)
+            return false;
+        out->name = dampers->name[j];
+        out->val = ritz_dense_col(&dampers->B, j);
+        return true;
+    }
+}
+
+/* The next load that is not zero; false past the last. */
+static bool next_load(load_walk *w, load_view *out)
+{
+    for (; w->kind < NUM_KINDS; w->kind++, w->at = 0)
+        while ((w->loads & kinds[w->kind].bit) &&
+               find_load(w->request, w->kind, w->at, out)) {
+            w->at++;
+            for (int64_t i = 0; i < w->request->component->num_dofs; i++)
+                if (load_entry(out, i) != 0.0)
+                    return true;
+        }
+    return false;
+}
+
+int64_t ritz_loads_count(const ritz_request *request, int loads)
+{
+    load_walk w = {request, loads, 0, 0};
+    load_view load = {0};
+    int64_t count = 0;
+
+    while (next_load(&w, &load))
+        count++;
+    return count;
+}
+
+/* "attached dof or input": the requested kinds. */
+static const char *list_kinds(int loads, char text[64])
+{
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (size_t k = 0; k < NUM_KINDS; k++)
+        if (loads & kinds[k].bit)
+            used += (size_t)snprintf(
+                text + used, 64 - used, "%s%s%s", used > 0 ? " or " : "",
+                kinds[k].word,
+                kinds[k].bit == RITZ_LOADS_ATTACHED ? " dof" : "");
+    return text;
+}
+
+ritz_status ritz_loads_collect(const ritz_request *request, int loads,
+                               ritz_dense *F, int64_t **dof)
+{
+    int64_t n = request->component->num_dofs;
+    load_walk w = {request, loads, 0, 0};
+    load_view load = {0};
+    RITZ_OWN(ritz_dofs) rest = {0};
+    RITZ_OWN(ritz_dense) columns = {0};
+    RITZ_OWN_ARRAY int64_t *row = NULL;
+    int64_t count = 0;
+    char text[64];
+
+    if (loads & RITZ_LOADS_ATTACHED) /* refuses repeated or impossible ones */
+        RITZ_CHECK(ritz_dofs_complement(&request->attached, n, &rest));
+    count = ritz_loads_count(request, loads);
+    RITZ_REFUSE_IF(count == 0, RITZ_ERR_ARGUMENT,
+                   "there is no load to respond to, no %s",
+                   list_kinds(loads, text));
+    RITZ_CHECK(ritz_dense_new(n, count, &columns));
+    RITZ_CHECK_NEW(row, count);
+    for (int64_t k = 0; next_load(&w, &load); k++) {
+        row[k] = load.row;
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(&columns, k)[i] = load_entry(&load, i);
+    }
+    RITZ_MOVE(*F, columns);
+    RITZ_MOVE(*dof, row);
+    return RITZ_OK;
+}
+
+const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
+                            char text[RITZ_LOADS_NAME_SIZE])
+{
+    load_walk w = {request, loads, 0, 0};
+    load_view load = {0};
+    char name[RITZ_DOF_NAME_SIZE];
+
+    text[0] = '\0';
+    for (int64_t k = 0; k <= j; k++)
+        if (!next_load(&w, &load))
+            return text;
+    if (load.row >= 0)
+        snprintf(text, RITZ_LOADS_NAME_SIZE, "%s",
+                 ritz_dof_name(request->component->dof[load.row], name));
+    else if (load.name)
+        snprintf(text, RITZ_LOADS_NAME_SIZE, "%s '%s'", load.word, load.name);
+    return text;
 }

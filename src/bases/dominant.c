@@ -7,7 +7,7 @@
  * Without damping matrices the modes are decoupled; with them poles are
  * eigenvalues of [0, I; -Lambda - i K4, -W].
  */
-#include "bases/rational.h"
+#include "bases/tangential.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -18,6 +18,29 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
+
+bool ritz_rational_damped(const ritz_rational *R)
+{
+    return R->component->D.colptr || R->component->K4.colptr;
+}
+
+ritz_status ritz_probes_new(int64_t count, int64_t width, ritz_probes *out)
+{
+    RITZ_OWN(ritz_probes) probes = {.count = count};
+
+    RITZ_CHECK_NEW(probes.item, count);
+    RITZ_CHECK_NEW(probes.b, count * width);
+    for (int64_t k = 0; k < count; k++)
+        probes.item[k].b = probes.b + k * width;
+    RITZ_MOVE(*out, probes);
+    return RITZ_OK;
+}
+
+void ritz_probes_free(ritz_probes *probes)
+{
+    RITZ_FREE(probes->item, probes->b);
+    *probes = (ritz_probes){0};
+}
 
 typedef struct candidate {
     double _Complex s;

@@ -11,18 +11,212 @@
  * Galerkin model keeps as many moments about that point as it has whole blocks
  * there, and twice as many where inputs and outputs are both among the forces.
  */
-#include "bases/krylov_block.h"
+#include "bases/krylov.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
-#include "bases/loads.h"
 
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/*
+ * A free body responds to forces F by rigid motion and by deformation. With the
+ * rigid modes Phi, Phi' M Phi = I, and P = I - M Phi Phi', the deformation is
+ *
+ *     X = P' S P F,    S = | K_ww^-1  0 |  w: all dofs but the support r
+ *                          |    0     0 |  r: as many dofs as rigid modes
+ *
+ * and does not depend on r [LeeTsuha1992, eq. 6]: P F is in equilibrium, so
+ * that the support forces are zero, and P' removes the rigid motion that S
+ * implies. This costs one definite factorization and one solution a column.
+ * Away from 0 Hz, rigid and elastic motion are decoupled in A = K - sigma M; P
+ * only removes rounding.
+ *
+ * r is chosen so that Phi at r is far from singular, by the part that each dof
+ * has in the mass of rigid motion: rows of diag(M)^1/2 Phi, the largest first.
+ */
+
+/* Row of W, r columns and stored row by row, with the largest square. */
+static int64_t largest_row(int64_t n, int64_t r, const double *W)
+{
+    int64_t best = 0;
+    double most = -1.0;
+
+    for (int64_t i = 0; i < n; i++) {
+        double sum = 0.0;
+
+        for (int64_t k = 0; k < r; k++)
+            sum += W[i * r + k] * W[i * r + k];
+        if (sum > most * RITZ_TIE) {
+            most = sum;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Rows of W less their part along row `pivot`, which becomes zero. */
+static void deflate_rows(int64_t n, int64_t r, int64_t pivot, double *W)
+{
+    double size = 0.0;
+
+    for (int64_t k = 0; k < r; k++)
+        size += W[pivot * r + k] * W[pivot * r + k];
+    if (!(size > 0.0))
+        return;
+    for (int64_t i = 0; i < n; i++) {
+        double part = 0.0;
+
+        if (i == pivot)
+            continue;
+        for (int64_t k = 0; k < r; k++)
+            part += W[i * r + k] * W[pivot * r + k] / size;
+        for (int64_t k = 0; k < r; k++)
+            W[i * r + k] -= part * W[pivot * r + k];
+    }
+    for (int64_t k = 0; k < r; k++)
+        W[pivot * r + k] = 0.0;
+}
+
+/* As many dofs as there are rigid modes. */
+static ritz_status choose_support(ritz_elastic *E)
+{
+    int64_t n = E->Phi.nrow;
+    int64_t r = E->Phi.ncol;
+    RITZ_OWN_ARRAY double *W = NULL;
+
+    RITZ_CHECK_NEW(W, n * r);
+    RITZ_CHECK_NEW(E->held.at, r);
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t k = 0; k < r; k++)
+            W[i * r + k] = sqrt(fabs(ritz_sparse_diagonal(E->M, i))) *
+                           ritz_dense_col(&E->Phi, k)[i];
+    for (; E->held.count < r; E->held.count++) {
+        int64_t pivot = largest_row(n, r, W);
+
+        E->held.at[E->held.count] = pivot;
+        deflate_rows(n, r, pivot, W);
+    }
+    return ritz_dofs_complement(&E->held, n, &E->rest);
+}
+
+static ritz_status find_rigid(ritz_elastic *E)
+{
+    const ritz_span rigid_only = {.modes = 0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK_IN("rigid modes",
+                  ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
+    RITZ_MOVE(E->Phi, pairs.Phi);
+    RITZ_MOVE(E->residual, pairs.residual);
+    return ritz_sparse_mul(E->M, &E->Phi, &E->MPhi);
+}
+
+/* Why K has no factorization, apart from its rigid modes. */
+static ritz_status refuse_stiffness(const ritz_elastic *E)
+{
+    const ritz_span one = {.modes = 1};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK(ritz_eigen_sparse(E->K, E->M, &one, &pairs));
+    RITZ_REFUSE_IF(pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "K is not positive semidefinite: an eigenvalue is %.3g",
+                   pairs.lambda[0]);
+    return ritz_fail(RITZ_ERR_SINGULAR,
+                     "K is singular, but for no rigid motion that has mass");
+}
+
+static ritz_status factor_stiffness(ritz_elastic *E)
+{
+    const ritz_dofs *w = &E->rest;
+    RITZ_OWN(ritz_sparse) K_ww = {0};
+    ritz_status status = RITZ_OK;
+
+    if (w->count == 0)
+        return RITZ_OK;
+    RITZ_CHECK(
+        ritz_sparse_extract(E->K, w->count, w->at, w->count, w->at, &K_ww));
+    status = ritz_factor_spd(&K_ww, &E->L);
+    return status == RITZ_ERR_SINGULAR ? refuse_stiffness(E) : status;
+}
+
+ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
+                             ritz_elastic *out)
+{
+    RITZ_OWN(ritz_elastic) E = {.K = K, .M = M};
+
+    RITZ_CHECK(find_rigid(&E));
+    RITZ_CHECK(choose_support(&E));
+    RITZ_CHECK(factor_stiffness(&E));
+    RITZ_MOVE(*out, E);
+    return RITZ_OK;
+}
+
+/* X := X - left (right' X), twice, which is enough. */
+static ritz_status take_out_twice(const ritz_dense *left,
+                                  const ritz_dense *right, ritz_dense *X)
+{
+    for (int k = 0; k < 2 && left->ncol > 0 && X->ncol > 0; k++)
+        RITZ_CHECK(ritz_dense_take_out(left, right, X));
+    return RITZ_OK;
+}
+
+/* F := P F: the forces less those that cause rigid motion. */
+static ritz_status relieve_forces(const ritz_elastic *E, ritz_dense *F)
+{
+    return take_out_twice(&E->MPhi, &E->Phi, F);
+}
+
+/* X := S X. */
+static ritz_status solve_supported(const ritz_elastic *E, ritz_dense *X)
+{
+    const ritz_dofs *w = &E->rest;
+    RITZ_OWN(ritz_dense) X_w = {0};
+
+    if (E->held.count == 0)
+        return E->L ? ritz_factor_solve(E->L, X) : RITZ_OK;
+    RITZ_CHECK(ritz_dense_rows(X, w->count, w->at, &X_w));
+    if (E->L)
+        RITZ_CHECK(ritz_factor_solve(E->L, &X_w));
+    memset(X->val, 0, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t i = 0; i < w->count; i++)
+            ritz_dense_col(X, j)[w->at[i]] = ritz_dense_col(&X_w, j)[i];
+    return RITZ_OK;
+}
+
+/*
+ * X := P' S P X, without rigid modes K^-1 X; with a factor of A = K - sigma M
+ * P' A^-1 P X.
+ */
+static ritz_status respond_elastic(const ritz_elastic *E, ritz_ldl *A,
+                                   ritz_dense *X)
+{
+    if (X->ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(relieve_forces(E, X));
+    RITZ_CHECK(A ? ritz_ldl_solve(A, X) : solve_supported(E, X));
+    return take_out_twice(&E->Phi, &E->MPhi, X);
+}
+
+void ritz_elastic_free(ritz_elastic *E)
+{
+    ritz_dense_free(&E->Phi);
+    ritz_dense_free(&E->MPhi);
+    free(E->residual);
+    ritz_dofs_free(&E->held);
+    ritz_dofs_free(&E->rest);
+    ritz_factor_free(&E->L);
+    *E = (ritz_elastic){0};
+}
+
+/* Block Krylov vectors. */
 
 int ritz_krylov_loads(const ritz_request *request)
 {
@@ -158,9 +352,9 @@ ritz_status ritz_krylov_respond(const ritz_krylov *S,
     RITZ_CHECK(ritz_dense_copy(&forces->G, &PG));
     RITZ_CHECK(ritz_dense_copy(&forces->size, &size));
     RITZ_CHECK(add_rigid_size(S->body, &forces->G, &size));
-    RITZ_CHECK(ritz_elastic_forces(S->body, &PG));
+    RITZ_CHECK(relieve_forces(S->body, &PG));
     RITZ_CHECK(ritz_dense_copy(&PG, &X));
-    RITZ_CHECK(ritz_elastic_respond(S->body, point->A, &X));
+    RITZ_CHECK(respond_elastic(S->body, point->A, &X));
     clear_rounding(&PG, &size, &X);
     RITZ_MOVE(*R, X);
     return RITZ_OK;
@@ -198,7 +392,13 @@ static ritz_status append_block(ritz_krylov *S, const ritz_krylov_point *point,
     return ritz_orthonormal_append(&S->set, &R, most, taken);
 }
 
-ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken)
+/*
+ * The static response to the forces F becomes the first columns of V, in
+ * addition to the requested vectors; taken[j] is false where it depends on
+ * others.
+ */
+static ritz_status seed_vectors(ritz_krylov *S, const ritz_dense *F,
+                                bool *taken)
 {
     const ritz_krylov_point at_rest = {0};
     RITZ_OWN(ritz_forces) forces = {0};
@@ -351,32 +551,94 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
  * about every expansion point sigma [CraigSuKim1992, sec. 2; McDaniel2000, sec.
  * 3.2.3]. If the inputs B are among the loads, the moments C (A^-1 M)^j A^-1 B
  * of the first k blocks are kept, j < k; if the outputs are too, those of j < 2
- * k. About 0 Hz a free body has moments of its elastic part: elastic.c
- * decouples the rigid modes first.
+ * k. About 0 Hz a free body has moments of its elastic part: the rigid modes are
+ * decoupled first.
  *
  * tests/unit/bases/test_krylov.c holds the code to the published example of
  * [McDaniel2000], to moments about 0 Hz and elsewhere, and to the block
  * tridiagonal V'MV that full reorthogonalisation must leave.
  */
 
-static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
+/*
+ * Free-interface Krylov component modes: rigid modes, the elastic static
+ * response to unit forces F_a at the attached dofs, and the block Krylov
+ * vectors that follow from them [CraigHale1988; CraigSuKim1992, sec. 4],
+ *
+ *     T = [Phi_r, X_a, V],   X_a = P' S P F_a,
+ *     span [X_a, V] = span of (A^-1 M)^j A^-1 F,   F = [F_a, other loads]
+ *
+ * X_a are the inertia-relief attachment modes; V is K-orthogonal to them. The
+ * method relates to residual flexibility with free modes [Rubin1975] as
+ * fixed-interface Krylov vectors do to Craig and Bampton's. The elastic moments
+ * about 0 Hz between attached dofs are kept, two for each whole block.
+ */
+
+/*
+ * Replace the Krylov columns of the seeds by the static responses to F_a
+ * themselves.
+ */
+static ritz_status restore_attachment(const ritz_request *request,
+                                      const ritz_krylov *S,
+                                      const ritz_dense *F_a, const bool *taken,
+                                      ritz_basis *basis)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+    int64_t at = S->body->Phi.ncol;
+
+    RITZ_CHECK(ritz_dense_copy(F_a, &X));
+    RITZ_CHECK(respond_elastic(S->body, NULL, &X));
+    for (int64_t j = 0; j < X.ncol; j++) {
+        const ritz_dense x = ritz_dense_part(&X, j, 1);
+
+        if (!taken[j])
+            continue;
+        basis->columns.kind[at] = RITZ_COLUMN_ATTACHMENT;
+        basis->columns.dof[at] = request->attached.at[j];
+        ritz_dense_put(&x, 0, at++, &basis->T);
+    }
+    if (S->seeds < F_a->ncol)
+        ritz_remark_add(basis, "; ",
+                        "%" PRId64 " attachment mode(s) left out, dependent or "
+                        "nothing but rigid",
+                        F_a->ncol - S->seeds);
+    return RITZ_OK;
+}
+
+/* With @p attached, X_a come first, and F_a is the first part of F. */
+static ritz_status make_vectors(const ritz_request *request, bool attached,
+                                ritz_basis *out)
 {
     const ritz_component *component = request->component;
     int loads = ritz_krylov_loads(request);
+    int64_t seeds = attached ? request->attached.count : 0;
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
+    RITZ_OWN_ARRAY bool *taken = NULL;
     RITZ_OWN(ritz_elastic) body = {0};
     RITZ_OWN(ritz_krylov) S = {0};
     RITZ_OWN(ritz_basis) basis = {0};
+    ritz_dense F_a = {0};
 
-    RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof));
+    RITZ_CHECK(ritz_loads_collect(
+        request, loads | (attached ? RITZ_LOADS_ATTACHED : 0), &F, &dof));
+    F_a = ritz_dense_part(&F, 0, seeds);
+    RITZ_CHECK_NEW(taken, seeds);
     RITZ_CHECK(ritz_elastic_new(&component->K, &component->M, &body));
     RITZ_CHECK(ritz_krylov_new(&body, request, &S));
-    RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
+    if (attached)
+        RITZ_CHECK(seed_vectors(&S, &F_a, taken));
+    RITZ_CHECK(ritz_krylov_run(&S, &F, seeds));
     RITZ_CHECK(ritz_krylov_join(&S, &basis));
+    if (attached)
+        RITZ_CHECK(restore_attachment(request, &S, &F_a, taken, &basis));
     RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
+}
+
+static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
+{
+    return make_vectors(request, false, out);
 }
 
 const ritz_method ritz_method_krylov = {
@@ -390,4 +652,23 @@ const ritz_method ritz_method_krylov = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
     .make = make_krylov,
+};
+
+static ritz_status make_krylov_free(const ritz_request *request,
+                                    ritz_basis *out)
+{
+    return make_vectors(request, true, out);
+}
+
+const ritz_method ritz_method_krylov_cms_free = {
+    .name = "krylov-cms-free",
+    .summary = "rigid, attachment and free-interface block Krylov vectors",
+    .reference = "CraigHale1988",
+    .when = "as macneal-rubin, without flexible eigenvalues",
+    .cost = "a factor, one solve a vector, two an attached dof",
+    .holds = "flexible static gain and moments at the attached dofs",
+    .fails = "upper modes of the band: less exact than with normal modes",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
+            RITZ_USES_LOADS | RITZ_USES_INNER,
+    .make = make_krylov_free,
 };

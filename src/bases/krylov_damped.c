@@ -5,13 +5,11 @@
  * wide, orthonormal among themselves: the two-level orthogonal Arnoldi
  * procedure of [LuSuBai2016].
  */
-#include "bases/krylov_block.h"
+#include "bases/krylov.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "bases/balancing.h"
 #include "bases/columns.h"
-#include "bases/loads.h"
 #include "model/modal.h"
 
 #include <math.h>

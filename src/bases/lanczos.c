@@ -29,8 +29,8 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "bases/balancing.h"
-#include "linear/eigenvalues.h"
+#include "bases/columns.h"
+#include "gramians/modes.h"
 #include "linear/general.h"
 #include "linear/orthonormal.h"
 
@@ -441,21 +441,16 @@ static void two_sided_free(two_sided *t)
 /* All candidates, each of unit length or zero. */
 static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
 {
-    const ritz_dense *const parts[] = {&s->next, &s->waiting};
-    int64_t at = 0;
+    RITZ_CHECK(ritz_dense_beside(&s->next, &s->waiting, out));
+    for (int64_t j = 0; j < out->ncol; j++) {
+        double *x = ritz_dense_col(out, j);
+        double size = 0.0;
 
-    RITZ_CHECK(
-        ritz_dense_new(s->next.nrow, s->next.ncol + s->waiting.ncol, out));
-    for (int p = 0; p < 2; p++)
-        for (int64_t j = 0; j < parts[p]->ncol; j++, at++) {
-            const double *x = ritz_dense_col(parts[p], j);
-            double size = 0.0;
-
-            for (int64_t i = 0; i < out->nrow; i++)
-                size = hypot(size, x[i]);
-            for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
-                ritz_dense_col(out, at)[i] = x[i] / size;
-        }
+        for (int64_t i = 0; i < out->nrow; i++)
+            size = hypot(size, x[i]);
+        for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
+            x[i] /= size;
+    }
     return RITZ_OK;
 }
 

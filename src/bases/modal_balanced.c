@@ -12,7 +12,6 @@
  * each cluster alone.
  */
 #include "base/alloc.h"
-#include "bases/balancing.h"
 #include "bases/columns.h"
 #include "gramians/modes.h"
 

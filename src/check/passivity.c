@@ -10,7 +10,6 @@
 #include "base/text.h"
 #include "base/tolerances.h"
 #include "check/check.h"
-#include "linear/eigenvalues.h"
 #include "linear/general.h"
 #include "linear/search.h"
 

@@ -11,8 +11,6 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
-#include "linear/eigenvalues.h"
-#include "linear/exponential.h"
 #include "linear/general.h"
 #include "linear/split.h"
 

@@ -1,11 +1,194 @@
 /* Gramians of a component by the requested engine, or by one that fits. */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "gramians/modes.h"
 #include "linear/general.h"
 #include "linear/split.h"
 
+#include <ritz/basis.h>
+
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rigid modes are decoupled if Delta does not couple them with flexible
+   ones. */
+static int64_t count_decoupled(const ritz_modal_model *modes)
+{
+    int64_t r = modes->num_rigid;
+
+    for (int64_t j = r; j < modes->count; j++)
+        for (int64_t i = 0; i < r; i++)
+            if (ritz_dense_col(&modes->Delta, j)[i] != 0.0 ||
+                ritz_dense_col(&modes->Delta, i)[j] != 0.0)
+                return 0;
+    return r;
+}
+
+static ritz_status choose_scale(ritz_states *states)
+{
+    const ritz_modal_model *modes = &states->modes;
+    int64_t half = modes->count - states->num_decoupled;
+    double least = 0.0;
+
+    RITZ_CHECK_NEW(states->scale, half);
+    for (int64_t k = 0; k < half; k++) {
+        double w = sqrt(fabs(modes->lambda[states->num_decoupled + k]));
+
+        states->scale[k] = w;
+        if (w > 0.0 && (least == 0.0 || w < least))
+            least = w;
+    }
+    for (int64_t k = 0; k < half; k++)
+        if (states->scale[k] == 0.0)
+            states->scale[k] = least > 0.0 ? least : 1.0;
+    return RITZ_OK;
+}
+
+/* A - alpha I, B and C. */
+static ritz_status fill_states(ritz_states *states)
+{
+    int64_t r = states->num_decoupled;
+    const ritz_modal_layout layout = {r, r, states->scale};
+
+    RITZ_CHECK(ritz_modal_states(&states->modes, &layout, &states->A,
+                                 &states->B, &states->C));
+    states->count = states->A.nrow;
+    for (int64_t k = 0; k < states->count; k++)
+        ritz_dense_col(&states->A, k)[k] -= states->alpha;
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_new(const ritz_component *component,
+                            const ritz_damping *damping, double alpha,
+                            ritz_states *out)
+{
+    RITZ_OWN(ritz_states) states = {.alpha = alpha};
+    RITZ_OWN(ritz_structure) structure = {0};
+
+    RITZ_CHECK(ritz_structure_of_component(component, &structure));
+    RITZ_CHECK(ritz_modal_model_new(&structure, &component->io, damping,
+                                    &states.modes));
+    ritz_damping_print(damping, states.damping);
+    states.num_decoupled = count_decoupled(&states.modes);
+    RITZ_CHECK(choose_scale(&states));
+    RITZ_CHECK(fill_states(&states));
+    RITZ_REFUSE_IF(states.count == 0, RITZ_ERR_ARGUMENT,
+                   "the component has no flexible states: its rigid modes are "
+                   "all there is");
+    RITZ_MOVE(*out, states);
+    return RITZ_OK;
+}
+
+/*
+ * States of modes, without the first rigid ones, which are decoupled: q_k is
+ * row k * step, q_k' the next row, or row m + k of 2m.
+ */
+typedef struct mode_states {
+    const ritz_modal_model *modes;
+    int64_t num_decoupled;
+    int64_t step;        /* 1: all q before all q'; 2: each q before its q' */
+    const double *scale; /* m, rows are scale q and q'; NULL: q */
+} mode_states;
+
+/* Which vectors are lifted from states of modes to x = [u; u'], and by what. */
+typedef enum lift_kind {
+    LIFT_RIGHT,   /* [Phi S^-1 0; 0 Phi], of Z_c and T */
+    LIFT_MOMENTA, /* [Phi S^-1 0; 0 M Phi], of E Z_c */
+    LIFT_LEFT,    /* [M Phi S 0; 0 Phi], of Z_o and W */
+} lift_kind;
+
+/* Rows first, first + step, ... of Z, times the scale or over it; NULL: 1. */
+static ritz_status pick_rows(const ritz_dense *Z, int64_t first, int64_t step,
+                             const double *scale, bool over, ritz_dense *out)
+{
+    int64_t m = Z->nrow / 2;
+
+    RITZ_CHECK(ritz_dense_new(m, Z->ncol, out));
+    for (int64_t j = 0; j < Z->ncol; j++) {
+        const double *from = ritz_dense_col(Z, j) + first;
+        double *to = ritz_dense_col(out, j);
+
+        for (int64_t k = 0; k < m; k++) {
+            double s = scale ? scale[k] : 1.0;
+
+            to[k] = over ? from[k * step] / s : from[k * step] * s;
+        }
+    }
+    return RITZ_OK;
+}
+
+/*
+ * The vectors Z of states as those of x = [u; u'].
+ *
+ * @param[in] rigid  behind the same of the decoupled rigid modes, positions and
+ *                   then velocities
+ */
+static ritz_status lift_states(const mode_states *states, lift_kind kind,
+                               bool rigid, const ritz_dense *Z, ritz_dense *out)
+{
+    const ritz_modal_model *modes = states->modes;
+    const ritz_dense *const halves[] = {
+        kind == LIFT_LEFT ? &modes->MPhi : &modes->Phi,
+        kind == LIFT_MOMENTA ? &modes->MPhi : &modes->Phi};
+    int64_t n = modes->num_dofs, a = states->num_decoupled;
+    int64_t r = rigid ? a : 0;
+    RITZ_OWN(ritz_dense) x = {0};
+
+    RITZ_CHECK(ritz_dense_new(2 * n, 2 * r + Z->ncol, &x));
+    for (int half = 0; half < 2; half++) {
+        const ritz_dense first = ritz_dense_part(halves[half], 0, r);
+        const ritz_dense Phi =
+            ritz_dense_part(halves[half], a, modes->count - a);
+        int64_t row = states->step == 1 ? half * (Z->nrow / 2) : half;
+        RITZ_OWN(ritz_dense) part = {0}, lifted = {0};
+
+        ritz_dense_put(&first, half * n, half * r, &x);
+        if (Z->ncol == 0)
+            continue;
+        RITZ_CHECK(pick_rows(Z, row, states->step,
+                             half == 0 ? states->scale : NULL,
+                             kind != LIFT_LEFT, &part));
+        RITZ_CHECK(ritz_dense_mul(&Phi, &part, &lifted));
+        ritz_dense_put(&lifted, half * n, 2 * r, &x);
+    }
+    RITZ_MOVE(*out, x);
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
+                              const ritz_dense *W, ritz_basis *out)
+{
+    const mode_states layout = {&states->modes, states->num_decoupled, 1,
+                                states->scale};
+    int64_t r = 2 * states->num_decoupled;
+    RITZ_OWN(ritz_basis) basis = {.states = true};
+
+    RITZ_CHECK(lift_states(&layout, LIFT_RIGHT, true, T, &basis.T));
+    RITZ_CHECK(lift_states(&layout, LIFT_LEFT, true, W, &basis.W));
+    RITZ_CHECK(ritz_columns_new(basis.T.ncol, &basis.columns));
+    for (int64_t j = 0; j < basis.T.ncol; j++)
+        basis.columns.kind[j] = j < r ? RITZ_COLUMN_RIGID : RITZ_COLUMN_STATE;
+    for (int64_t j = 0; j < r; j++)
+        basis.columns.hertz[j] = 0.0;
+    memcpy(basis.damping, states->damping, sizeof basis.damping);
+    snprintf(basis.origin.engine, sizeof basis.origin.engine, "dense LAPACK");
+    RITZ_MOVE(*out, basis);
+    return RITZ_OK;
+}
+
+void ritz_states_free(ritz_states *states)
+{
+    ritz_modal_model_free(&states->modes);
+    free(states->scale);
+    ritz_dense_free(&states->A);
+    ritz_dense_free(&states->B);
+    ritz_dense_free(&states->C);
+    *states = (ritz_states){0};
+}
 
 /*
  * Gramians of modes as those of x = [u; u'] of the component,
@@ -16,20 +199,18 @@
  *
  * @param[in,out] gramians  in states; without E
  */
-static ritz_status lift_gramians(const ritz_mode_states *states,
+static ritz_status lift_gramians(const mode_states *states,
                                  ritz_gramians *gramians)
 {
     const ritz_dense *Zc = &gramians->Zc, *Zo = &gramians->Zo;
     RITZ_OWN(ritz_gramians) x = *gramians;
 
     x.Zc = x.Zo = x.T = x.W = (ritz_dense){0};
-    RITZ_CHECK(ritz_states_lift(states, RITZ_LIFT_RIGHT, false, Zc, &x.Zc));
-    RITZ_CHECK(ritz_states_lift(states, RITZ_LIFT_MOMENTA, false, Zc, &x.EZc));
-    RITZ_CHECK(ritz_states_lift(states, RITZ_LIFT_LEFT, false, Zo, &x.Zo));
-    RITZ_CHECK(
-        ritz_states_lift(states, RITZ_LIFT_RIGHT, true, &gramians->T, &x.T));
-    RITZ_CHECK(
-        ritz_states_lift(states, RITZ_LIFT_LEFT, true, &gramians->W, &x.W));
+    RITZ_CHECK(lift_states(states, LIFT_RIGHT, false, Zc, &x.Zc));
+    RITZ_CHECK(lift_states(states, LIFT_MOMENTA, false, Zc, &x.EZc));
+    RITZ_CHECK(lift_states(states, LIFT_LEFT, false, Zo, &x.Zo));
+    RITZ_CHECK(lift_states(states, LIFT_RIGHT, true, &gramians->T, &x.T));
+    RITZ_CHECK(lift_states(states, LIFT_LEFT, true, &gramians->W, &x.W));
     ritz_gramians_free(gramians);
     RITZ_MOVE(*gramians, x);
     return RITZ_OK;
@@ -46,7 +227,7 @@ static ritz_status find_dense(const ritz_gramians_request *request,
     RITZ_OWN(ritz_states) states = {0};
     RITZ_OWN(ritz_state_space) space = {0};
     RITZ_OWN(ritz_gramians) gramians = {0};
-    ritz_mode_states layout = {.step = 1};
+    mode_states layout = {.step = 1};
 
     RITZ_CHECK(
         ritz_states_new(request->component, &request->damping, 0.0, &states));
@@ -135,7 +316,7 @@ static ritz_status find_closed_form(const ritz_gramians_request *request,
     RITZ_OWN(ritz_modal_model) modes = {0};
     RITZ_OWN(ritz_modal) modal = {0};
     RITZ_OWN(ritz_gramians) gramians = {.engine = "closed form"};
-    ritz_mode_states layout = {.modes = &modes, .step = 2};
+    mode_states layout = {.modes = &modes, .step = 2};
 
     RITZ_CHECK(ritz_gramians_modes(request, &modes));
     if (coupled && (*coupled = ritz_modes_coupled(&modes)))
@@ -274,4 +455,185 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
     snprintf(gramians.damping, sizeof gramians.damping, "%s", model->damping);
     RITZ_MOVE(*out, gramians);
     return RITZ_OK;
+}
+
+/*
+ * Balancing by square roots. With the factors of both Gramians
+ *
+ *     Z_o'E Z_c = U S V',   T = Z_c V S^-1/2,   W = Z_o U S^-1/2,
+ *
+ *     W'E T = I,   T'... of W_c = T S T', W_o = W S W' in the kept states
+ *
+ * so that both Gramians of the states W'E x are S: what is controllable by
+ * little input and what is observable by little output stand in the same order.
+ * A value no larger than the rounding of the product has no direction of its
+ * own: T and W leave it out whatever was asked for. [Moore1981], [Tombs1987]
+ */
+
+static const ritz_dense *descriptor_times(const ritz_gramians *gramians)
+{
+    return gramians->EZc.val ? &gramians->EZc : &gramians->Zc;
+}
+
+ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
+                                 double **sigma)
+{
+    RITZ_OWN(ritz_product_svd) svd = {0};
+
+    RITZ_CHECK_IN("Hankel values",
+                  ritz_product_svd_new(
+                      &gramians->Zo, descriptor_times(gramians), false, &svd));
+    *count = svd.count;
+    RITZ_MOVE(*sigma, svd.s);
+    return RITZ_OK;
+}
+
+double ritz_hankel_bound(int64_t count, const double *sigma, int64_t kept)
+{
+    double sum = 0.0;
+    double last = 0.0;
+
+    for (int64_t k = 0; k < count; k++) {
+        if (k > 0 && last - sigma[k] <= RITZ_HANKEL_REPEATED * last)
+            continue;
+        last = sigma[k];
+        if (k >= kept)
+            sum += last;
+    }
+    return 2.0 * sum;
+}
+
+/* Values that rounding of the product leaves. */
+static int64_t count_true(const ritz_gramians *gramians,
+                          const ritz_product_svd *svd)
+{
+    int64_t k = gramians->Zc.ncol;
+    int64_t l = gramians->Zo.ncol;
+    double size = (double)(k > l ? k : l);
+    int64_t count = 0;
+
+    while (count < svd->rank && svd->s[count] > 0.0 &&
+           svd->s[count] > size * DBL_EPSILON * svd->s[0])
+        count++;
+    return count;
+}
+
+/* The number of leading rows and columns of G that are close to I. */
+static int64_t count_close(const ritz_dense *G)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < G->ncol; j++) {
+        for (int64_t i = 0; i <= j; i++) {
+            double upper = ritz_dense_col(G, j)[i] - (i == j ? 1.0 : 0.0);
+            double lower = ritz_dense_col(G, i)[j];
+
+            sum += upper * upper + (i < j ? lower * lower : 0.0);
+        }
+        if (!(sqrt(sum) <= RITZ_BALANCED_DEFECT))
+            return j;
+    }
+    return G->ncol;
+}
+
+/* How many values are kept. */
+static int64_t cut_values(int64_t count, const double *sigma, int64_t order,
+                          double tolerance)
+{
+    int64_t kept = 0;
+
+    while (kept < count && (order < 0 || kept < order) &&
+           sigma[kept] >= tolerance * sigma[0])
+        kept++;
+    while (kept > 0 && kept < count &&
+           sigma[kept - 1] - sigma[kept] <= RITZ_CLUSTER_GAP * sigma[kept - 1])
+        kept--;
+    return kept;
+}
+
+/* Z times columns of a side of the product, over the roots of s. */
+static ritz_status project_side(const ritz_dense *Z, const ritz_dense *vectors,
+                                const double *sigma, int64_t count,
+                                ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) V = {0};
+
+    RITZ_CHECK(ritz_dense_columns(vectors, 0, count, &V));
+    for (int64_t j = 0; j < count; j++)
+        for (int64_t i = 0; i < V.nrow; i++)
+            ritz_dense_col(&V, j)[i] /= sqrt(sigma[j]);
+    return ritz_dense_mul(Z, &V, out);
+}
+
+/* The leading columns of W times G^-1 of the leading rows and columns. */
+static ritz_status correct_sides(const ritz_dense *W, const ritz_dense *G,
+                                 int64_t count, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) leading = {0}, X = {0};
+    ritz_dense part = ritz_dense_part(W, 0, count);
+
+    RITZ_CHECK(ritz_dense_block(G, 0, count, 0, count, &leading));
+    RITZ_CHECK(ritz_general_transpose(&part, &X));
+    RITZ_CHECK_IN("balancing", ritz_general_solve(&leading, true, &X));
+    return ritz_general_transpose(&X, out);
+}
+
+/*
+ * T and W of as many values as there are, then cut. G = (E T)'W is I but for
+ * rounding, some eps |Z_o| |E Z_c| / sigma, and W := W G^-1 takes that away.
+ */
+static ritz_status project_balanced(const ritz_gramians *gramians,
+                                    const ritz_product_svd *svd, int64_t order,
+                                    double tolerance, ritz_balanced *out)
+{
+    int64_t count = count_true(gramians, svd);
+    RITZ_OWN(ritz_dense) T = {0}, ET = {0}, W = {0}, G = {0};
+
+    RITZ_CHECK(project_side(&gramians->Zc, &svd->V, svd->s, count, &T));
+    RITZ_CHECK(project_side(&gramians->Zo, &svd->U, svd->s, count, &W));
+    RITZ_CHECK(
+        project_side(descriptor_times(gramians), &svd->V, svd->s, count, &ET));
+    RITZ_CHECK(ritz_dense_mul_tn(&ET, &W, &G));
+    out->count = count_close(&G);
+    out->kept = cut_values(out->count, svd->s, order, tolerance);
+    out->bound = ritz_hankel_bound(out->count, svd->s, out->kept);
+    RITZ_CHECK(ritz_dense_columns(&T, 0, out->kept, &out->T));
+    return correct_sides(&W, &G, out->kept, &out->W);
+}
+
+ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
+                                  double tolerance, ritz_balanced *out)
+{
+    RITZ_OWN(ritz_product_svd) svd = {0};
+    RITZ_OWN(ritz_balanced) balanced = {0};
+
+    RITZ_REFUSE_IF(!(tolerance >= 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                   "a tolerance of Hankel values is %g, it must be at least 0 "
+                   "and below 1",
+                   tolerance);
+    RITZ_CHECK_IN("balancing",
+                  ritz_product_svd_new(&gramians->Zo,
+                                       descriptor_times(gramians), true, &svd));
+    RITZ_CHECK(project_balanced(gramians, &svd, order, tolerance, &balanced));
+    RITZ_MOVE(balanced.sigma, svd.s);
+    RITZ_MOVE(*out, balanced);
+    return RITZ_OK;
+}
+
+void ritz_gramians_free(ritz_gramians *gramians)
+{
+    ritz_dense_free(&gramians->Zc);
+    ritz_dense_free(&gramians->EZc);
+    ritz_dense_free(&gramians->Zo);
+    ritz_dense_free(&gramians->T);
+    ritz_dense_free(&gramians->W);
+    *gramians = (ritz_gramians){0};
+}
+
+void ritz_balanced_free(ritz_balanced *balanced)
+{
+    free(balanced->sigma);
+    ritz_dense_free(&balanced->T);
+    ritz_dense_free(&balanced->W);
+    *balanced = (ritz_balanced){0};
 }

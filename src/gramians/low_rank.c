@@ -83,7 +83,6 @@ static ritz_status find_triangle(const ritz_low_rank_model *model, int side,
     int64_t rows = 2 * model->n;
     int64_t k = Z->count;
     RITZ_OWN_ARRAY double *S = NULL, *tau = NULL;
-    int info = 0;
 
     RITZ_CHECK_NEW(S, rows * k);
     RITZ_CHECK_NEW(tau, k);
@@ -93,10 +92,9 @@ static ritz_status find_triangle(const ritz_low_rank_model *model, int side,
         for (int64_t j = 0; j < k; j++)
             S[i + j * rows] = by * Z->val[i + j * rows];
     }
-    info =
-        LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)rows, (int)k, S, (int)rows, tau);
-    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                   "a factor could not be compressed");
+    RITZ_REFUSE_IF(LAPACKE_dgeqrf(LAPACK_COL_MAJOR, (int)rows, (int)k, S,
+                                  (int)rows, tau) != 0,
+                   RITZ_ERR_CONVERGENCE, "a factor could not be compressed");
     RITZ_CHECK(ritz_dense_new(rows < k ? rows : k, k, R));
     for (int64_t j = 0; j < k; j++)
         for (int64_t i = 0; i <= j && i < R->nrow; i++)
@@ -111,14 +109,12 @@ static ritz_status find_long_columns(ritz_dense *R, ritz_dense *out)
     int k = (int)R->ncol;
     int64_t r = 0;
     RITZ_OWN_ARRAY double *s = NULL, *super = NULL;
-    int info = 0;
 
     RITZ_CHECK_NEW(s, m);
     RITZ_CHECK_NEW(super, m);
-    info = LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'O', m, k, R->val, m, s, NULL,
-                          1, NULL, 1, super);
-    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                   "a factor could not be compressed");
+    RITZ_REFUSE_IF(LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'O', m, k, R->val, m,
+                                  s, NULL, 1, NULL, 1, super) != 0,
+                   RITZ_ERR_CONVERGENCE, "a factor could not be compressed");
     while (r < m && s[r] > RITZ_SHORT_COLUMN * s[0])
         r++;
     RITZ_CHECK(ritz_dense_new(k, r, out));
@@ -289,9 +285,9 @@ static ritz_status solve_shifted(sweep_state *sweep, double _Complex p,
             RITZ_CHECK(load_side(model, side, p, of[side]));
     RITZ_CHECK(ritz_zldl_factor(sweep->F, (double _Complex[]){p * p, 1.0, -p}));
     RITZ_CHECK(ritz_zldl_solve(
-        sweep->F, symmetric ? columns[0] + columns[1] : columns[0], x));
+        sweep->F, false, symmetric ? columns[0] + columns[1] : columns[0], x));
     if (!symmetric)
-        RITZ_CHECK(ritz_zldl_solve_transposed(sweep->F, columns[1], of[1]));
+        RITZ_CHECK(ritz_zldl_solve(sweep->F, true, columns[1], of[1]));
     for (int side = 0; side < RITZ_SIDES; side++)
         if (columns[side] > 0)
             RITZ_CHECK(find_halves(model, side, p, of[side], v[side]));

@@ -191,7 +191,6 @@ ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
     RITZ_OWN(ritz_dense_pair) S = {0}, G = {0};
     RITZ_OWN_ARRAY double *e = NULL;
     int p = (int)W[0].ncol;
-    int info = 0;
 
     RITZ_CHECK_NEW(e, p);
     RITZ_CHECK(ritz_dense_copy(&W[RITZ_ABOVE], &S[RITZ_ABOVE]));
@@ -208,9 +207,9 @@ ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
     for (int half = 0; half < RITZ_HALVES; half++)
         RITZ_CHECK(ritz_dense_mul_tn(&S[half], &S[half], &G[half]));
     ritz_dense_add(1.0, &G[1], &G[0]);
-    if (p > 0)
-        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', p, G[0].val, p, e);
-    RITZ_REFUSE_IF(info != 0 || (p > 0 && !isfinite(e[p - 1])),
+    RITZ_REFUSE_IF((p > 0 && LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', p,
+                                           G[0].val, p, e) != 0) ||
+                       (p > 0 && !isfinite(e[p - 1])),
                    RITZ_ERR_CONVERGENCE,
                    "a residual of a Gramian is not finite");
     *out = p > 0 ? fmax(e[p - 1], 0.0) : 0.0;

@@ -110,11 +110,10 @@ ritz_status ritz_low_rank_window_add(const ritz_low_rank_model *model,
 static ritz_status diagonalise_symmetric(ritz_dense *A, double *e)
 {
     int n = (int)A->nrow;
-    int info = 0;
 
-    if (n > 0)
-        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, A->val, n, e);
-    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+    RITZ_REFUSE_IF(n > 0 && LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, A->val,
+                                          n, e) != 0,
+                   RITZ_ERR_CONVERGENCE,
                    "the latest displacements have no modes");
     return RITZ_OK;
 }
@@ -224,7 +223,6 @@ static ritz_status find_poles(const ritz_low_rank_window *window, small *s)
     RITZ_OWN(ritz_dense) Delta = {0};
     int64_t r = 0;
     int n = 0;
-    int info = 0;
 
     RITZ_CHECK(find_window_modes(window, &s->F, &s->omega, &Delta));
     r = s->F.ncol;
@@ -240,11 +238,10 @@ static ritz_status find_poles(const ritz_low_rank_window *window, small *s)
         for (int64_t i = 0; i < r; i++)
             ritz_dense_col(&s->A, r + j)[r + i] = -ritz_dense_col(&Delta, j)[i];
     }
-    if (n > 0)
-        info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n, s->A.val, n, s->re,
-                             s->im, s->left.val, n, s->right.val, n);
-    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                   "no poles were found for shifts");
+    RITZ_REFUSE_IF(n > 0 && LAPACKE_dgeev(LAPACK_COL_MAJOR, 'V', 'V', n,
+                                          s->A.val, n, s->re, s->im,
+                                          s->left.val, n, s->right.val, n) != 0,
+                   RITZ_ERR_CONVERGENCE, "no poles were found for shifts");
     return RITZ_OK;
 }
 

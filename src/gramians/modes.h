@@ -6,11 +6,10 @@
 
 #include <ritz/basis.h>
 
-/** RITZ_ERR_ARGUMENT if a limit of an output is not positive. */
-ritz_status ritz_limits_check(int64_t count, const double *limit,
-                              const char (*output)[RITZ_NAME_SIZE]);
-
-/** The same, or if @p what, "component" say, has no inputs or no outputs. */
+/**
+ * RITZ_ERR_ARGUMENT if a limit of an output is not positive, or if @p what,
+ * "component" say, has no inputs or no outputs.
+ */
 ritz_status ritz_ends_check(const char *what, int64_t inputs, int64_t outputs,
                             const double *limit,
                             const char (*output)[RITZ_NAME_SIZE]);
@@ -106,33 +105,6 @@ bool ritz_modes_coupled(const ritz_modal_model *modes);
 ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, const char *why,
                                 ritz_modal *out);
-
-/*
- * States of modes, without the first rigid ones, which are decoupled: q_k is
- * row k * step, q_k' the next row, or row m + k of 2m.
- */
-typedef struct ritz_mode_states {
-    const ritz_modal_model *modes;
-    int64_t num_decoupled;
-    int64_t step;        /* 1: all q before all q'; 2: each q before its q' */
-    const double *scale; /* m, rows are scale q and q'; NULL: q */
-} ritz_mode_states;
-
-/* Which vectors are lifted from states of modes to x = [u; u'], and by what. */
-typedef enum ritz_lift {
-    RITZ_LIFT_RIGHT,   /* [Phi S^-1 0; 0 Phi], of Z_c and T */
-    RITZ_LIFT_MOMENTA, /* [Phi S^-1 0; 0 M Phi], of E Z_c */
-    RITZ_LIFT_LEFT,    /* [M Phi S 0; 0 Phi], of Z_o and W */
-} ritz_lift;
-
-/**
- * The vectors Z of states as those of x = [u; u'].
- *
- * @param[in] rigid  behind the same of the decoupled rigid modes, positions and
- *                   then velocities
- */
-ritz_status ritz_states_lift(const ritz_mode_states *states, ritz_lift kind,
-                             bool rigid, const ritz_dense *Z, ritz_dense *out);
 
 /*
  * A component in well scaled states z = [S q; q'] of its modes, S = diag(w)

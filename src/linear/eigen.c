@@ -5,9 +5,14 @@
 
 #include <ritz/matrix.h>
 
+#include <cblas.h>
 #include <float.h>
 #include <inttypes.h>
+#include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
 
 ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
                               int64_t cols_M)
@@ -99,4 +104,297 @@ void ritz_pairs_free(ritz_pairs *pairs)
     ritz_dense_free(&pairs->Phi);
     RITZ_FREE(pairs->lambda, pairs->residual);
     *pairs = (ritz_pairs){0};
+}
+
+/*
+ * All pairs of a dense pencil. LAPACK errs in lambda by about eps lambda_max.
+ * What is far below is found anew within its own span X, where the largest
+ * eigenvalue is small:
+ *
+ *     X' K X y = lambda X' M X y,   x = X y.
+ *
+ * Held to: bars and membranes in closed form, masses of rank one, masses of
+ * 1 and 1e8 side by side.
+ */
+
+/*
+ * All pairs of a dense pencil, by LAPACK, once.
+ *
+ * Rows are first scaled so that the diagonal of M is one, as a pencil mixes kg
+ * with kg m^2. If M = C C' then is well conditioned,
+ *
+ *     C^-1 K C^-T y = lambda y,   x = C^-T y.
+ *
+ * Otherwise M = Q diag(m) Q'; the null space N of M is condensed out, as its
+ * eigenvalues are infinite, and what remains has a diagonal mass:
+ *
+ *     T = Q_r - N (N' K N)^-1 N' K Q_r,   T' K T y = lambda diag(m_r) y.
+ */
+
+/* out = S A S, exactly symmetric. */
+static ritz_status scale_pencil(const ritz_dense *A, const double *s,
+                                ritz_dense *out)
+{
+    int64_t n = A->nrow;
+
+    RITZ_CHECK(ritz_dense_new(n, n, out));
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++) {
+            double mean = (A->val[i + j * n] + A->val[j + i * n]) / 2.0;
+
+            RITZ_REFUSE_IF(!isfinite(mean), RITZ_ERR_ARGUMENT,
+                           "entry (%" PRId64 ", %" PRId64
+                           ") of a matrix is not finite",
+                           i, j);
+            out->val[i + j * n] = s[i] * mean * s[j];
+        }
+    return RITZ_OK;
+}
+
+/* s = M_jj^-1/2; where there is no mass, K_jj^-1/2 does as well. */
+static ritz_status choose_scale(const ritz_dense *K, const ritz_dense *M,
+                                double *s)
+{
+    for (int64_t j = 0; j < M->nrow; j++) {
+        double m = ritz_dense_col(M, j)[j];
+        double k = ritz_dense_col(K, j)[j];
+
+        RITZ_REFUSE_IF(m < 0.0, RITZ_ERR_SINGULAR,
+                       "mass is not positive definite: entry (%" PRId64
+                       ", %" PRId64 ") is %g",
+                       j, j, m);
+        s[j] = m > 0.0 ? 1.0 / sqrt(m) : 1.0 / sqrt(k > 0.0 ? k : 1.0);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status lapack_status(int info)
+{
+    RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR ||
+                       info == LAPACK_TRANSPOSE_MEMORY_ERROR,
+                   RITZ_ERR_MEMORY, "no memory for the eigenvectors");
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
+                   "dense eigenvalues did not converge, LAPACK says %d", info);
+    return RITZ_OK;
+}
+
+/* K := eigenvectors of K. */
+static ritz_status solve_standard(ritz_dense *K, double *lambda)
+{
+    int n = (int)K->nrow;
+
+    return n == 0 ? RITZ_OK
+                  : lapack_status(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n,
+                                                 K->val, n, lambda));
+}
+
+/* K := vectors x, from K and C. */
+static ritz_status by_cholesky(const ritz_dense *C, ritz_dense *K,
+                               double *lambda)
+{
+    int n = (int)K->nrow;
+
+    RITZ_CHECK(lapack_status(
+        LAPACKE_dsygst(LAPACK_COL_MAJOR, 1, 'L', n, K->val, n, C->val, n)));
+    RITZ_CHECK(solve_standard(K, lambda));
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit,
+                n, n, 1.0, C->val, n, K->val, n);
+    return RITZ_OK;
+}
+
+/* T, n x rank, written over the last columns of Q; see the head. */
+static ritz_status condense_massless(const ritz_dense *K, ritz_dense *N,
+                                     ritz_dense *Q_r)
+{
+    RITZ_OWN(ritz_dense) KN = {0}, NKN = {0}, NKQ = {0}, fall = {0};
+    int k = (int)N->ncol;
+    int r = (int)Q_r->ncol;
+
+    RITZ_CHECK(ritz_dense_mul(K, N, &KN));
+    RITZ_CHECK(ritz_dense_mul_tn(N, &KN, &NKN));
+    RITZ_REFUSE_IF(
+        !(ritz_general_cholesky(&NKN) > k * DBL_EPSILON), RITZ_ERR_SINGULAR,
+        "mass is not positive definite, and neither is the stiffness "
+        "of the motions without mass");
+    if (r == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_mul_tn(&KN, Q_r, &NKQ));
+    RITZ_CHECK(lapack_status(
+        LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', k, r, NKN.val, k, NKQ.val, k)));
+    RITZ_CHECK(ritz_dense_mul(N, &NKQ, &fall));
+    ritz_dense_add(-1.0, &fall, Q_r);
+    return RITZ_OK;
+}
+
+/* X := T diag(m)^-1/2 y, with y the eigenvectors of what is condensed. */
+static ritz_status solve_condensed(const ritz_dense *K, ritz_dense *T,
+                                   const double *m, double *lambda,
+                                   ritz_dense *X)
+{
+    RITZ_OWN(ritz_dense) KT = {0}, K_r = {0};
+
+    for (int64_t j = 0; j < T->ncol; j++)
+        for (int64_t i = 0; i < T->nrow; i++)
+            ritz_dense_col(T, j)[i] /= sqrt(m[j]);
+    RITZ_CHECK(ritz_dense_mul(K, T, &KT));
+    RITZ_CHECK(ritz_dense_mul_tn(T, &KT, &K_r));
+    RITZ_CHECK(solve_standard(&K_r, lambda));
+    return ritz_dense_mul(T, &K_r, X);
+}
+
+/* X from K and M, of which M is only semidefinite; M is lost. */
+static ritz_status by_condensing(const ritz_dense *K, ritz_dense *M,
+                                 double *lambda, ritz_dense *X)
+{
+    ritz_dense N = {0};
+    ritz_dense Q_r = {0};
+    int64_t n = M->nrow;
+    int64_t null = 0;
+    RITZ_OWN_ARRAY double *m = NULL;
+    double limit = 0.0;
+
+    RITZ_CHECK_NEW(m, n);
+    RITZ_CHECK(solve_standard(M, m));
+    limit = 4.0 * (double)n * DBL_EPSILON * fmax(m[n - 1], 0.0);
+    RITZ_REFUSE_IF(m[0] < -limit, RITZ_ERR_SINGULAR,
+                   "mass is not positive definite: it has the eigenvalue %.3e "
+                   "of %.3e",
+                   m[0], m[n - 1]);
+    while (null < n && m[null] <= limit)
+        null++;
+    N = ritz_dense_part(M, 0, null);
+    Q_r = ritz_dense_part(M, null, n - null);
+    if (null > 0)
+        RITZ_CHECK(condense_massless(K, &N, &Q_r));
+    return solve_condensed(K, &Q_r, m + null, lambda, X);
+}
+
+static ritz_status solve_scaled(const ritz_dense *K, const ritz_dense *M,
+                                double *lambda, ritz_dense *X)
+{
+    RITZ_OWN(ritz_dense) K_s = {0}, M_s = {0}, C = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
+
+    RITZ_CHECK_NEW(s, K->nrow);
+    RITZ_CHECK(choose_scale(K, M, s));
+    RITZ_CHECK(scale_pencil(K, s, &K_s));
+    RITZ_CHECK(scale_pencil(M, s, &M_s));
+    RITZ_CHECK(ritz_dense_copy(&M_s, &C));
+    if (ritz_general_cholesky(&C) > RITZ_WELL_CONDITIONED) {
+        RITZ_CHECK(by_cholesky(&C, &K_s, lambda));
+        RITZ_MOVE(*X, K_s);
+    } else {
+        RITZ_CHECK(by_condensing(&K_s, &M_s, lambda, X));
+    }
+    ritz_dense_scale_rows(s, X);
+    return RITZ_OK;
+}
+
+/* |a + t b| of columns j. */
+static double norm_of(double t, const ritz_dense *B, ritz_dense *A, int64_t j)
+{
+    int n = (int)A->nrow;
+    double *a = ritz_dense_col(A, j);
+
+    cblas_daxpy(n, t, ritz_dense_col(B, j), 1, a, 1);
+    return cblas_dnrm2(n, a, 1);
+}
+
+/* |K x - lambda M x| / ||K||x| + |lambda||M||x||, || taken entry by entry. */
+static ritz_status find_residuals(const ritz_dense *K, const ritz_dense *M,
+                                  ritz_pairs *pairs)
+{
+    const ritz_dense *const matrix[] = {K, M};
+    RITZ_OWN(ritz_dense_pair) gap = {0};
+    RITZ_OWN(ritz_dense_pair) size = {0};
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+
+    RITZ_CHECK(ritz_dense_abs(&pairs->Phi, &X));
+    for (int k = 0; k < 2; k++) {
+        RITZ_CHECK(ritz_dense_abs(matrix[k], &A));
+        RITZ_CHECK(ritz_dense_mul(matrix[k], &pairs->Phi, &gap[k]));
+        RITZ_CHECK(ritz_dense_mul(&A, &X, &size[k]));
+        ritz_dense_free(&A);
+    }
+    for (int64_t j = 0; j < X.ncol; j++) {
+        double lambda = pairs->lambda[j];
+        double most = norm_of(fabs(lambda), &size[1], &size[0], j);
+
+        pairs->residual[j] =
+            most > 0.0 ? norm_of(-lambda, &gap[1], &gap[0], j) / most : 0.0;
+    }
+    return RITZ_OK;
+}
+
+/* How many of the first @p count are far below the last of them. */
+static int64_t count_low(int64_t count, const double *lambda)
+{
+    int64_t low = 0;
+
+    while (low < count &&
+           fabs(lambda[low]) <= RITZ_EIGEN_FAR_BELOW * lambda[count - 1])
+        low++;
+    return low;
+}
+
+/* The first columns of X, and their eigenvalues, from K and M in their span. */
+static ritz_status project_pairs(const ritz_dense *K, const ritz_dense *M,
+                                 int64_t count, double *lambda, ritz_dense *X)
+{
+    ritz_dense first = ritz_dense_part(X, 0, count);
+    RITZ_OWN(ritz_dense) K_x = {0}, M_x = {0}, Y = {0}, XY = {0};
+
+    RITZ_CHECK(ritz_dense_congruence(K, &first, &K_x));
+    RITZ_CHECK(ritz_dense_congruence(M, &first, &M_x));
+    RITZ_CHECK(solve_scaled(&K_x, &M_x, lambda, &Y));
+    RITZ_CHECK(ritz_dense_mul(&first, &Y, &XY));
+    memcpy(first.val, XY.val, (size_t)(XY.nrow * XY.ncol) * sizeof *first.val);
+    return RITZ_OK;
+}
+
+static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
+                                double *lambda, ritz_dense *X)
+{
+    int64_t count = 0, low = 0;
+
+    RITZ_CHECK(solve_scaled(K, M, lambda, X));
+    count = X->ncol;
+    for (low = count_low(count, lambda); low > 0 && low < count;
+         low = count_low(count, lambda)) {
+        RITZ_CHECK(project_pairs(K, M, low, lambda, X));
+        count = low;
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
+                             ritz_pairs *out)
+{
+    RITZ_OWN(ritz_pairs) pairs = {.proven_to = HUGE_VAL};
+    int64_t n = K->nrow;
+
+    RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
+    RITZ_CHECK_NEW(pairs.lambda, n);
+    RITZ_CHECK_NEW(pairs.residual, n);
+    if (n > 0)
+        RITZ_CHECK(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
+    else
+        RITZ_CHECK(ritz_dense_new(0, 0, &pairs.Phi));
+    n = pairs.Phi.ncol;
+    ritz_dense_orient(&pairs.Phi);
+    RITZ_CHECK(find_residuals(K, M, &pairs));
+    pairs.num_rigid = ritz_eigen_rigid(
+        n, pairs.lambda, n > 0 ? fmax(pairs.lambda[n - 1], 0.0) : 0.0);
+    snprintf(pairs.engine, sizeof pairs.engine, "dense LAPACK");
+    RITZ_MOVE(*out, pairs);
+    return RITZ_OK;
+}
+
+ritz_status ritz_general_symmetric(const ritz_dense *A, ritz_pairs *out)
+{
+    RITZ_OWN(ritz_dense) unit = {0};
+
+    RITZ_CHECK(ritz_dense_identity(A->nrow, &unit));
+    return ritz_eigen_dense(A, &unit, out);
 }

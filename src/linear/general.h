@@ -1,4 +1,7 @@
-/* Dense matrices that need not be symmetric: what LAPACK and SLICOT do. */
+/*
+ * Dense matrices that need not be symmetric: what LAPACK and SLICOT do, and
+ * what is made of it.
+ */
 #ifndef RITZ_LINEAR_GENERAL_H
 #define RITZ_LINEAR_GENERAL_H
 
@@ -17,6 +20,12 @@ RITZ_PAIR_OF(ritz_dense);
  */
 ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X);
+
+/**
+ * A := L of A = L L', lower triangles. @return its reciprocal condition number,
+ * 0 if it is not definite
+ */
+double ritz_general_cholesky(ritz_dense *A);
 
 /**
  * A = U diag(s) V', of min(m, n) values, descending.
@@ -59,17 +68,6 @@ ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
                               int64_t cols_M);
 
 /**
- * K x = lambda M x by one call of LAPACK, M semidefinite; lambda ascending, in
- * error by few eps of the largest.
- *
- * @param[out] lambda  n
- * @param[out] X       n x r, X'MX = I, infinite ones left out
- * @return RITZ_ERR_SINGULAR if K + M is, or M has a negative eigenvalue
- */
-ritz_status ritz_eigen_dense_once(const ritz_dense *K, const ritz_dense *M,
-                                  double *lambda, ritz_dense *X);
-
-/**
  * Singular values of A, min(m, n) of them, descending; A is lost.
  *
  * @return RITZ_ERR_CONVERGENCE
@@ -91,5 +89,118 @@ void ritz_general_place(double sign, const ritz_dense *A, bool transposed,
 
 /** The transpose. */
 ritz_status ritz_general_transpose(const ritz_dense *A, ritz_dense *out);
+
+/* Eigenvalues of a general matrix, and how far rounding may move them. */
+typedef struct ritz_eigenvalues {
+    int64_t count;
+    double *re, *im;
+    double *error; /* eps |A| / s, s the cosine between left and right
+                      eigenvector: large where eigenvalues are defective */
+    double radius; /* largest magnitude; 0 if there is none */
+} ritz_eigenvalues;
+
+/**
+ * All eigenvalues, by magnitude ascending; of a pair the one with the positive
+ * imaginary part first. A is balanced first (LAPACK dgeevx).
+ *
+ * @return RITZ_ERR_ARGUMENT if A is not square or not finite;
+ *         RITZ_ERR_CONVERGENCE
+ * @cost   about 25 n^3
+ */
+ritz_status ritz_eigenvalues_of(const ritz_dense *A, ritz_eigenvalues *out);
+
+/**
+ * Index of the eigenvalue that decides on stability: the rightmost of those
+ * right of the imaginary axis by more than @p times their error; if there is
+ * none, of those nearer to it; else of all. -1 if there are none.
+ */
+int64_t ritz_eigenvalues_worst(const ritz_eigenvalues *eigenvalues,
+                               double times);
+
+void ritz_eigenvalues_free(ritz_eigenvalues *eigenvalues);
+
+/**
+ * E = exp(A h), and of each symmetric Q_k
+ *
+ *     W_k = integral from 0 to h of exp(A s)'Q_k exp(A s) ds
+ *
+ * by a power series over h / 2^j and j doublings, A balanced first. What it
+ * loses to rounding is about eps |A| h.
+ *
+ * @param[in]  Q  count, n x n
+ * @param[out] W  count
+ * @return RITZ_ERR_ARGUMENT if |A| h is beyond 2^60
+ */
+ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
+                             const ritz_dense *Q, ritz_dense *E, ritz_dense *W);
+
+/* X'Y = U diag(s) V' */
+typedef struct ritz_product_svd {
+    int64_t count; /* min of n, l and k */
+    double *s;     /* count, descending */
+    int64_t rank;  /* r: from here on they are below eps^2 of the largest, and
+                      are given as 0 */
+    ritz_dense U;  /* l x r, orthonormal columns */
+    ritz_dense V;  /* k x r */
+} ritz_product_svd;
+
+/**
+ * Small values are as accurate, relative to themselves, as X with rows of unit
+ * length and Y with rows of any scaling are well conditioned: the product is
+ * never formed and its values are found by Jacobi rotations.
+ *
+ * @param[in] X        n x l
+ * @param[in] Y        n x k
+ * @param[in] vectors  whether U and V are wanted
+ * @return RITZ_ERR_ARGUMENT if they are of different height or not finite;
+ *         RITZ_ERR_CONVERGENCE
+ * @cost   O((n + k + l) min(k, l)^2) and some n k l
+ * @see    [Drmac1998]
+ */
+ritz_status ritz_product_svd_new(const ritz_dense *X, const ritz_dense *Y,
+                                 bool vectors, ritz_product_svd *out);
+
+void ritz_product_svd_free(ritz_product_svd *svd);
+
+/*
+ * The transfer function of a linear system at many points,
+ *
+ *     C (z P - A)^-1 B
+ *
+ * A and P are brought to complex upper triangles once,
+ *
+ *     Q^H A Z = S,    Q^H P Z = P_z,    B := Q^H B,    C := C Z
+ *
+ * after which a point costs a triangular solve for each column of B.
+ */
+typedef struct ritz_resolvent {
+    int n, m, p;            /* states, inputs, outputs */
+    double _Complex *S, *P; /* n x n, upper triangles; P NULL: the identity */
+    double _Complex *B, *C; /* n x m, p x n, in coordinates of the triangles */
+    double _Complex *T, *X; /* n x n, n x m: to work in, of one thread */
+} ritz_resolvent;
+
+/**
+ * @param[in] P  {0}: the identity
+ * @return RITZ_ERR_CONVERGENCE if the eigenvalues are not found
+ * @cost   25 n^3 complex operations, 66 n^3 with P
+ */
+ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
+                               const ritz_dense *B, const ritz_dense *C,
+                               ritz_resolvent *out);
+
+/** Eigenvalue k of A x = s P x. */
+double _Complex ritz_resolvent_pole(const ritz_resolvent *resolvent, int64_t k);
+
+/**
+ * H += C (z P - A)^-1 B, p x m by columns.
+ *
+ * @return false, and nothing is added, where z is within @p near |z| of a pole
+ * @cost   O(n^2 m)
+ */
+bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
+                        double near, double _Complex *H);
+
+void ritz_resolvent_free(ritz_resolvent *resolvent);
 
 #endif

@@ -443,20 +443,15 @@ ritz_status ritz_zldl_factor(ritz_zldl *F, const double _Complex *c)
     return factor_values(&F->of);
 }
 
-ritz_status ritz_zldl_solve(ritz_zldl *F, int64_t k, double _Complex *X)
-{
-    RITZ_REFUSE_IF(!F->of.factored, RITZ_ERR_ARGUMENT,
-                   "a solve needs a factor first");
-    return solve_factored(&F->of, k, (double *)X);
-}
-
-ritz_status ritz_zldl_solve_transposed(ritz_zldl *F, int64_t k,
-                                       double _Complex *X)
+ritz_status ritz_zldl_solve(ritz_zldl *F, bool transposed, int64_t k,
+                            double _Complex *X)
 {
     ritz_status status = RITZ_OK;
 
-    F->of.id.z.icntl[TRANSPOSED] = 0;
-    status = ritz_zldl_solve(F, k, X);
+    RITZ_REFUSE_IF(!F->of.factored, RITZ_ERR_ARGUMENT,
+                   "a solve needs a factor first");
+    F->of.id.z.icntl[TRANSPOSED] = !transposed;
+    status = solve_factored(&F->of, k, (double *)X);
     F->of.id.z.icntl[TRANSPOSED] = 1;
     return status;
 }

@@ -37,25 +37,22 @@ static ritz_status weigh_columns(const ritz_sparse *W, const ritz_dense *R,
     return RITZ_OK;
 }
 
-/*
- * Pivoted Cholesky of G, which it destroys, diagonal one: order[] are its
- * strong pivots, at most @p most, the largest first; how many there are.
- */
-static int64_t find_pivots(ritz_dense *G, int64_t most, int64_t *order)
+int64_t ritz_pivots_find(ritz_dense *G, double least, double tie, int64_t most,
+                         int64_t *order)
 {
     int64_t p = G->ncol;
     int64_t count = 0;
 
     while (count < most && count < p) {
-        int64_t pivot = 0;
-        double d = 0.0;
+        int64_t pivot = -1;
+        double d = least;
 
-        for (int64_t j = 1; j < p; j++)
-            if (ritz_dense_col(G, j)[j] >
-                ritz_dense_col(G, pivot)[pivot] * RITZ_TIE)
+        for (int64_t j = 0; j < p; j++)
+            if (ritz_dense_col(G, j)[j] > (pivot < 0 ? d : tie * d)) {
                 pivot = j;
-        d = ritz_dense_col(G, pivot)[pivot];
-        if (!(d > RITZ_PIVOT_STRONG))
+                d = ritz_dense_col(G, j)[j];
+            }
+        if (pivot < 0)
             break;
         order[count++] = pivot;
         for (int64_t j = 0; j < p; j++) {
@@ -323,7 +320,9 @@ static ritz_status go_round(ritz_orthonormal *set, column_block *b,
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_mul_tn(&b->R, &b->WR, &G));
     ritz_dense_symmetrise(&G);
-    return take_columns(set, b, find_pivots(&G, most, order), order, taken);
+    return take_columns(
+        set, b, ritz_pivots_find(&G, RITZ_PIVOT_STRONG, RITZ_TIE, most, order),
+        order, taken);
 }
 
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,

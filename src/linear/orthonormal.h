@@ -38,4 +38,12 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
 
 void ritz_orthonormal_free(ritz_orthonormal *set);
 
+/**
+ * Pivoted Cholesky of G, which it destroys: order[] are its pivots above @p
+ * least, at most @p most, the largest first; how many there are. A pivot must
+ * exceed another by the factor @p tie to be the larger one.
+ */
+int64_t ritz_pivots_find(ritz_dense *G, double least, double tie, int64_t most,
+                         int64_t *order);
+
 #endif

@@ -13,7 +13,7 @@
  * then finds small values to a small relative error. Rows of R_F below eps^2 of
  * the first, which is the rounding of rounding, are left out. [Drmac1998]
  */
-#include "linear/product_svd.h"
+#include "linear/general.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"

@@ -336,23 +336,10 @@ double ritz_sparse_skew(const ritz_sparse *A)
 
 ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
 {
-    ritz_sparse mean = {0};
-    int64_t nnz = A->colptr[A->ncol];
-    RITZ_OWN_ARRAY int64_t *row = NULL;
-    RITZ_OWN_ARRAY int64_t *col = NULL;
-    RITZ_OWN_ARRAY double *half = NULL;
+    RITZ_OWN(ritz_sparse) turned = {0}, mean = {0};
 
-    RITZ_CHECK_NEW(row, 2 * nnz);
-    RITZ_CHECK_NEW(col, 2 * nnz);
-    RITZ_CHECK_NEW(half, 2 * nnz);
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            row[p] = col[nnz + p] = A->rowind[p];
-            col[p] = row[nnz + p] = j;
-            half[p] = half[nnz + p] = A->val[p] / 2.0;
-        }
-    RITZ_CHECK(ritz_sparse_from_triplets(A->nrow, A->ncol, 2 * nnz, row, col,
-                                         half, &mean));
+    RITZ_CHECK(ritz_sparse_transpose(A, &turned));
+    RITZ_CHECK(ritz_sparse_add(0.5, A, 0.5, &turned, &mean));
     ritz_sparse_free(A);
     RITZ_MOVE(*A, mean);
     return RITZ_OK;

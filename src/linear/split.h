@@ -17,8 +17,8 @@ typedef struct ritz_split {
 
 /**
  * A pole is no stable one if it is right of the axis or not further left than
- * rounding may move it (eigenvalues.h), unless a Lyapunov equation proves that
- * rounding of A cannot make any pole unstable.
+ * rounding may move it (ritz_eigenvalues), unless a Lyapunov equation proves
+ * that rounding of A cannot make any pole unstable.
  *
  * E that is symmetric and definite is reduced by its Cholesky factor; with
  * another one the pair is kept.
@@ -32,5 +32,17 @@ ritz_status ritz_split_new(const ritz_dense *A, const ritz_dense *E,
                            ritz_split *out);
 
 void ritz_split_free(ritz_split *split);
+
+/**
+ * E x' = A x + B u, y = C x in coordinates in which A is well scaled, E divided
+ * out.
+ *
+ * @param[in]  E                    {0}: the identity
+ * @param[out] out_A, out_B, out_C  the caller's to free, if it fails too
+ */
+ritz_status ritz_split_scaled(const ritz_dense *A, const ritz_dense *E,
+                              const ritz_dense *B, const ritz_dense *C,
+                              ritz_dense *out_A, ritz_dense *out_B,
+                              ritz_dense *out_C);
 
 #endif

@@ -9,7 +9,6 @@
  */
 #include "base/alloc.h"
 #include "base/complex.h"
-#include "linear/eigenvalues.h"
 #include "linear/general.h"
 #include "model/modal.h"
 

@@ -18,8 +18,8 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/frame.h"
 #include "linear/general.h"
+#include "linear/split.h"
 #include "model/modal.h"
 
 #include <float.h>
@@ -452,7 +452,7 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
 
     RITZ_CHECK(
         channel_check(model->num_outputs, model->num_inputs, output, input));
-    RITZ_CHECK(ritz_frame_system(&model->A, &model->E, &model->B, &model->C,
+    RITZ_CHECK(ritz_split_scaled(&model->A, &model->E, &model->B, &model->C,
                                  &all.A, &all.B, &all.C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &all.D));
     if (output == RITZ_ALL_CHANNELS) {

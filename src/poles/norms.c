@@ -14,7 +14,6 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
-#include "linear/resolvent.h"
 #include "linear/search.h"
 #include "linear/split.h"
 #include "poles/poles.h"

@@ -113,7 +113,7 @@ static ritz_status take_step(const ritz_component *c, ritz_zldl *Z,
     if (last && status == RITZ_ERR_SINGULAR)
         return RITZ_OK;
     RITZ_CHECK(status);
-    RITZ_CHECK(ritz_zldl_solve(Z, 1, u));
+    RITZ_CHECK(ritz_zldl_solve(Z, false, 1, u));
     for (int64_t i = 0; i < n; i++)
         xu += ritz_complex(x->val[i], -x->val[n + i]) * u[i];
     for (int64_t i = 0; i < n; i++) {

@@ -134,7 +134,7 @@ static ritz_status solve_decoupled(ritz_direct *s, double w, int64_t k,
     for (int64_t j = 0; j < k; j++)
         remove_modes(&s->MPhi, &s->pairs.Phi, X + j * s->n);
     RITZ_CHECK(factor_impedance(s, w, avoid_poles(s, w * w)));
-    RITZ_CHECK(ritz_zldl_solve(s->Z, k, X));
+    RITZ_CHECK(ritz_zldl_solve(s->Z, false, k, X));
     for (int64_t j = 0; j < k; j++)
         remove_modes(&s->pairs.Phi, &s->MPhi, X + j * s->n);
     return RITZ_OK;
@@ -194,8 +194,6 @@ static ritz_status correct_ratios(const ritz_direct *s, double w,
 static ritz_status solve_coupled(ritz_direct *s, double hertz, bool transposed,
                                  int64_t k, double _Complex *X)
 {
-    ritz_status (*solve)(ritz_zldl *, int64_t, double _Complex *) =
-        transposed ? ritz_zldl_solve_transposed : ritz_zldl_solve;
     double w = 2.0 * RITZ_PI * hertz;
     RITZ_OWN_ARRAY double _Complex *Y = NULL;
 
@@ -203,13 +201,13 @@ static ritz_status solve_coupled(ritz_direct *s, double hertz, bool transposed,
                    "at 0 Hz the response is infinite: the body is free, begin "
                    "above 0 Hz");
     RITZ_CHECK(factor_impedance(s, w, w * w));
-    RITZ_CHECK(solve(s->Z, k, X));
+    RITZ_CHECK(ritz_zldl_solve(s->Z, transposed, k, X));
     if (!s->ratios)
         return RITZ_OK;
     RITZ_CHECK_NEW(Y, s->n * s->m);
     for (int64_t i = 0; i < s->n * s->m; i++)
         Y[i] = s->MPhi.val[i];
-    RITZ_CHECK(solve(s->Z, s->m, Y));
+    RITZ_CHECK(ritz_zldl_solve(s->Z, transposed, s->m, Y));
     return correct_ratios(s, w, k, Y, X);
 }
 

@@ -8,7 +8,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/frame.h"
+#include "linear/split.h"
 #include "response/responder.h"
 
 #include <ritz/model.h>
@@ -59,7 +59,7 @@ static ritz_status start_hessenberg(state_responder *h)
     h->p = (int)model->num_outputs;
     h->room = at_least_one(3 * n + (n > h->m ? n : h->m) + h->p);
     h->zroom = at_least_one(n * n + 2 * n);
-    RITZ_CHECK(ritz_frame_system(&model->A, &model->E, &model->B, &model->C,
+    RITZ_CHECK(ritz_split_scaled(&model->A, &model->E, &model->B, &model->C,
                                  &h->A, &h->B, &h->C));
     RITZ_CHECK_NEW(h->iwork, n + 1);
     RITZ_CHECK_NEW(h->re, n + 1);

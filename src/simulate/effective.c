@@ -156,7 +156,7 @@ ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
     for (int64_t j = 0; j < columns; j++, x += F->n) { /* real right sides */
         for (int64_t k = 0; k < F->n; k++)
             F->z[k] = x[k];
-        RITZ_CHECK(ritz_zldl_solve(F->general, 1, F->z));
+        RITZ_CHECK(ritz_zldl_solve(F->general, false, 1, F->z));
         for (int64_t k = 0; k < F->n; k++)
             x[k] = creal(F->z[k]);
     }

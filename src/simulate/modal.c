@@ -13,7 +13,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/exponential.h"
+#include "linear/general.h"
 #include "simulate/motion.h"
 
 #include <ritz/matrix.h>
@@ -257,8 +257,6 @@ static ritz_status group_forms(const ritz_motion *m, const coupled_modes *part,
         }
     return RITZ_OK;
 }
-
-RITZ_PAIR_OF(ritz_dense);
 
 static ritz_status prepare_group(const ritz_motion *m, double h,
                                  coupled_modes *part)

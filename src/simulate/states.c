@@ -11,7 +11,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/exponential.h"
 #include "linear/general.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "bases/rational.h"
+#include "bases/tangential.h"
 #include "frame.h"
 #include "masses.h"
 #include "project.h"

@@ -411,7 +411,7 @@ static void transposed_solves_are_of_the_transpose(void **state)
     assert_ok(ritz_sparse_from_triplets(2, 2, 4, at, to, k, &A));
     assert_ok(ritz_zldl_new(1, parts, &F));
     assert_ok(ritz_zldl_factor(F, c));
-    assert_ok(ritz_zldl_solve_transposed(F, 1, x));
+    assert_ok(ritz_zldl_solve(F, true, 1, x));
     /* rows of A' are columns of A: (2, -1.5) and (-1, 1) */
     assert_near(cabs(c[0] * (2.0 * x[0] - 1.5 * x[1]) - 1.0), 0.0,
                 64.0 * DBL_EPSILON);
@@ -420,7 +420,7 @@ static void transposed_solves_are_of_the_transpose(void **state)
     assert_ok(ritz_zldl_factor(F, c));
     x[0] = 2.0;
     x[1] = -1.0;
-    assert_ok(ritz_zldl_solve(F, 1, x));
+    assert_ok(ritz_zldl_solve(F, false, 1, x));
     assert_near(cabs(c[0] * (2.0 * x[0] - x[1]) - 2.0), 0.0,
                 64.0 * DBL_EPSILON);
 }

@@ -1,6 +1,6 @@
 #include "testing.h"
 
-#include "linear/product_svd.h"
+#include "linear/general.h"
 
 #include <ritz/basis.h>
 

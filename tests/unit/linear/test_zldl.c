@@ -55,7 +55,7 @@ static void each_shift_solves_its_own_system(void **state)
         double bound = 64.0 * DBL_EPSILON / cabs(det) / cabs(det) * 9.0;
 
         assert_ok(ritz_zldl_factor(F, c));
-        assert_ok(ritz_zldl_solve(F, 2, x));
+        assert_ok(ritz_zldl_solve(F, false, 2, x));
         assert_near(cabs(x[0] - (d - b * (double _Complex)_Complex_I) / det),
                     0.0, bound);
         assert_near(cabs(x[1] - (a * (double _Complex)_Complex_I - b) / det),
@@ -88,7 +88,7 @@ static void an_unsymmetric_matrix_is_solved_whole(void **state)
     det = K.val[0] * K.val[3] - (K.val[2] + s) * (K.val[1] - s);
     assert_ok(ritz_zldl_new(2, A, &F));
     assert_ok(ritz_zldl_factor(F, c));
-    assert_ok(ritz_zldl_solve(F, 1, x));
+    assert_ok(ritz_zldl_solve(F, false, 1, x));
     assert_near(cabs(x[0] - K.val[3] / det), 0.0, 1e-15);
     assert_near(cabs(x[1] + (K.val[1] - s) / det), 0.0, 1e-15);
 }
@@ -105,7 +105,7 @@ static void undamped_resonance_is_refused(void **state)
     assert_ok(ritz_zldl_new(2, A, &F));
     assert_fails(ritz_zldl_factor(F, c), RITZ_ERR_SINGULAR,
                  "the matrix is singular");
-    assert_fails(ritz_zldl_solve(F, 1, x), RITZ_ERR_ARGUMENT,
+    assert_fails(ritz_zldl_solve(F, false, 1, x), RITZ_ERR_ARGUMENT,
                  "needs a factor first");
     c[0] += 0.01 * (double _Complex)_Complex_I;
     assert_ok(ritz_zldl_factor(F, c));

@@ -3,7 +3,7 @@
 
 #include "motions.h"
 
-#include "linear/exponential.h"
+#include "linear/general.h"
 #include "simulate/motion.h"
 
 #include <ritz/simulate.h>

@@ -1,11 +1,8 @@
-/* What several rankings share: costs, clusters, order. */
-#ifndef RITZ_RANKING_COSTS_H
-#define RITZ_RANKING_COSTS_H
+/* What several rankings share: clusters, order. */
+#ifndef RITZ_RANKING_CLUSTERS_H
+#define RITZ_RANKING_CLUSTERS_H
 
 #include <ritz/ranking.h>
-
-/** Modal costs of each output: m x p, row k that of mode k. */
-ritz_status ritz_modal_costs(const ritz_modal *modal, ritz_dense *out);
 
 /** Name k of a list or, without one, "y1". */
 void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
@@ -24,8 +21,5 @@ void ritz_ranking_share(int64_t count, const int64_t *cluster, double *value);
 /** Sort modes by magnitude of value; of equal ones the lower mode precedes. */
 ritz_status ritz_ranking_sort(int64_t count, const double *value,
                               int64_t *order);
-
-/** A ranking of so many modes, all zero; nothing of the whole is known. */
-ritz_status ritz_ranking_new(int64_t count, ritz_ranking *out);
 
 #endif

@@ -7,8 +7,8 @@
  * and the real basis that spans some of them. Damping that is given as ratios
  * is not in Z, which has the matrices alone.
  */
-#ifndef RITZ_BASES_RATIONAL_H
-#define RITZ_BASES_RATIONAL_H
+#ifndef RITZ_BASES_TANGENTIAL_H
+#define RITZ_BASES_TANGENTIAL_H
 
 #include <ritz/basis.h>
 #include <ritz/matrix.h>

@@ -1,11 +1,35 @@
 /* Block Krylov vectors of a structure, about one or several frequencies. */
-#ifndef RITZ_BASES_KRYLOV_BLOCK_H
-#define RITZ_BASES_KRYLOV_BLOCK_H
+#ifndef RITZ_BASES_KRYLOV_H
+#define RITZ_BASES_KRYLOV_H
 
-#include "bases/elastic.h"
 #include "linear/orthonormal.h"
 
 #include <ritz/basis.h>
+
+/*
+ * The elastic static response to forces, by one factorization. Of a body that
+ * is held there are K, M and L alone.
+ */
+typedef struct ritz_elastic {
+    const ritz_sparse *K, *M; /* borrowed */
+    ritz_dense Phi;           /* rigid modes, n x r, M-orthonormal */
+    ritz_dense MPhi;          /* M Phi */
+    double *residual;         /* r, of the rigid modes as ritz_pairs has it */
+    ritz_dofs held, rest;     /* a determinate support, and all others */
+    ritz_factor *L;           /* of K at `rest`; NULL where that is nothing */
+} ritz_elastic;
+
+/**
+ * Find the rigid modes, choose a support and factor K at the other dofs.
+ *
+ * @return RITZ_ERR_SINGULAR if K has a negative eigenvalue, or K + M is
+ *         singular; RITZ_ERR_CONVERGENCE
+ * @cost   the rigid modes, which an inertia count proves, and a CHOLMOD factor
+ */
+ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
+                             ritz_elastic *out);
+
+void ritz_elastic_free(ritz_elastic *E);
 
 /** The requested kinds of loads; else attached dofs, inputs and outputs. */
 int ritz_krylov_loads(const ritz_request *request);
@@ -50,14 +74,6 @@ typedef struct ritz_forces {
  */
 ritz_status ritz_krylov_new(const ritz_elastic *body,
                             const ritz_request *request, ritz_krylov *out);
-
-/**
- * The static response to the forces F becomes the first columns of V, in
- * addition to the requested vectors.
- *
- * @param[out] taken  one for each column: false where it depends on others
- */
-ritz_status ritz_krylov_seed(ritz_krylov *S, const ritz_dense *F, bool *taken);
 
 /**
  * Krylov sequences of all forces F about every point in turn, until there are

@@ -1,0 +1,571 @@
+/*
+ * Craig-Bampton reduction: constraint modes and fixed-interface normal modes.
+ *
+ * Split the dofs into boundary b, on which other bodies act, and interior i:
+ *
+ *     | u_b |   | I    0   | | u_b |      K_ii Psi = -K_ib
+ *     | u_i | = | Psi  Phi | | q   |      K_ii Phi =  M_ii Phi Lambda
+ *
+ * Psi is the static response to unit boundary motion, Phi the lowest modes with
+ * the boundary clamped, scaled to Phi' M_ii Phi = I. T' K T is then block
+ * diagonal, and no eigenvalue of (T' K T, T' M T) lies below its
+ * counterpart in (K, M): tests/unit/bases/test_craig_bampton.c tests both.
+ *
+ * A boundary of many dofs may move in a few characteristic constraint modes
+ * instead, u_b = Phi_c q_c [CastanierTanPierre2001].
+ *
+ * The same constraint modes begin the bases of irs and krylov-cms-fixed below.
+ *
+ * [CraigBampton1968] R. R. Craig and M. C. C. Bampton, Coupling of
+ * substructures for dynamic analyses, AIAA Journal 6 (1968) 1313-1319.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "bases/columns.h"
+#include "bases/krylov.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { NAMED = 3 };
+
+/* Boundary b, on which other bodies act, and interior i. */
+typedef struct partition {
+    const ritz_component *component; /* borrowed */
+    const ritz_dofs *b;              /* borrowed */
+    ritz_dofs i;
+    ritz_sparse K_ii, K_ib, M_ii;
+    ritz_factor *L;  /* of K_ii; NULL where there is no interior */
+    ritz_basis held; /* [I; Psi], Psi = -K_ii^-1 K_ib: constraint modes */
+} partition;
+
+static void partition_free(partition *s)
+{
+    ritz_dofs_free(&s->i);
+    ritz_sparse_free(&s->K_ii);
+    ritz_sparse_free(&s->K_ib);
+    ritz_sparse_free(&s->M_ii);
+    ritz_factor_free(&s->L);
+    ritz_basis_free(&s->held);
+}
+
+/* The largest entry of x that was not named before, the first of equals. */
+static int64_t largest_unnamed(int64_t n, const double *x, int64_t count,
+                               const int64_t *before)
+{
+    int64_t best = -1;
+
+    for (int64_t k = 0; k < n; k++) {
+        bool taken = false;
+
+        for (int64_t j = 0; j < count; j++)
+            taken = taken || before[j] == k;
+        if (!taken && (best < 0 || fabs(x[k]) > fabs(x[best]) * RITZ_TIE))
+            best = k;
+    }
+    return best;
+}
+
+/* "grid 3 R1, grid 7 R1": the dofs where a motion is largest. */
+static void name_dofs(const ritz_component *component, const ritz_dofs *i,
+                      const double *x, char text[static 160])
+{
+    int64_t named[NAMED];
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (int64_t k = 0; k < NAMED && k < i->count; k++) {
+        char name[RITZ_DOF_NAME_SIZE];
+
+        named[k] = largest_unnamed(i->count, x, k, named);
+        if (fabs(x[named[k]]) <= RITZ_NULL_VECTOR_SHARE * fabs(x[named[0]]))
+            break;
+        used += (size_t)snprintf(
+            text + used, 160 - used, "%s%s", k > 0 ? ", " : "",
+            ritz_dof_name(component->dof[i->at[named[k]]], name));
+    }
+}
+
+/*
+ * A sentence that names the dofs which move freely while the boundary is held.
+ *
+ * @param[in] weak  row of K_ii that gave way, -1 if not known
+ */
+static ritz_status refuse_mechanism(const partition *s, int64_t weak)
+{
+    const ritz_span rigid_only = {.modes = 0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    char text[160] = "";
+    char name[RITZ_DOF_NAME_SIZE];
+    ritz_status status =
+        ritz_eigen_sparse(&s->K_ii, &s->M_ii, &rigid_only, &pairs);
+
+    if (status == RITZ_ERR_MEMORY)
+        return status;
+    if (status == RITZ_OK && pairs.num_rigid > 0)
+        name_dofs(s->component, &s->i, ritz_dense_col(&pairs.Phi, 0), text);
+    else if (weak >= 0)
+        snprintf(text, sizeof text, "%s",
+                 ritz_dof_name(s->component->dof[s->i.at[weak]], name));
+    RITZ_REFUSE_IF(status == RITZ_OK && pairs.num_rigid == 0 &&
+                       pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "not positive definite: an eigenvalue is %.3g",
+                   pairs.lambda[0]);
+    return ritz_fail(
+        RITZ_ERR_SINGULAR,
+        "singular, is a rigid-body motion or mechanism left free? with "
+        "the attached dofs held, %" PRId64 " motion(s) cost no energy; "
+        "largest at %s",
+        pairs.num_rigid > 0 ? pairs.num_rigid : 1,
+        text[0] ? text : "no dof in particular");
+}
+
+/*
+ * T_b'KT_b and T_b'MT_b, exactly symmetric. For motions that store no energy
+ * the first is rounding of |T_b|'|K||T_b|, and is set to zero.
+ */
+static ritz_status condense_boundary(const ritz_component *component,
+                                     const ritz_dense *T_b, ritz_dense *K,
+                                     ritz_dense *M)
+{
+    /* sums of a few dozen terms in each of two products */
+    const double rounding = 64.0 * DBL_EPSILON;
+    RITZ_OWN(ritz_dense) stiffness = {0}, mass = {0}, most = {0};
+
+    RITZ_CHECK(ritz_sparse_condense(&component->K, T_b, &stiffness));
+    RITZ_CHECK(ritz_sparse_condense(&component->M, T_b, &mass));
+    RITZ_CHECK(ritz_sparse_terms(&component->K, T_b, &most));
+    for (int64_t k = 0; k < most.nrow * most.ncol; k++)
+        if (fabs(stiffness.val[k]) <= rounding * most.val[k])
+            stiffness.val[k] = 0.0;
+    RITZ_MOVE(*K, stiffness);
+    RITZ_MOVE(*M, mass);
+    return RITZ_OK;
+}
+
+/* Rows of X become the rows `to` of T, in columns from `first` on. */
+static void scatter_rows(const ritz_dense *X, const ritz_dofs *to,
+                         int64_t first, ritz_dense *T)
+{
+    for (int64_t j = 0; j < X->ncol; j++)
+        for (int64_t k = 0; k < X->nrow; k++)
+            ritz_dense_col(T, first + j)[to->at[k]] = ritz_dense_col(X, j)[k];
+}
+
+static ritz_status factor_interior(partition *s)
+{
+    int64_t weak = -1;
+    ritz_status status = RITZ_OK;
+
+    if (s->i.count > 0)
+        status = ritz_factor_spd_weak(&s->K_ii, &s->L, &weak);
+    if (status == RITZ_ERR_SINGULAR)
+        status = refuse_mechanism(s, weak);
+    return ritz_context(status, "interior stiffness");
+}
+
+static ritz_status find_constraint_modes(partition *s)
+{
+    const ritz_sparse *K_ib = &s->K_ib;
+    const ritz_dofs *b = s->b;
+    ritz_basis *held = &s->held;
+    RITZ_OWN(ritz_dense) Psi = {0};
+
+    RITZ_CHECK(ritz_dense_new(s->i.count, b->count, &Psi));
+    for (int64_t j = 0; j < b->count; j++)
+        for (int64_t p = K_ib->colptr[j]; p < K_ib->colptr[j + 1]; p++)
+            ritz_dense_col(&Psi, j)[K_ib->rowind[p]] = -K_ib->val[p];
+    if (s->i.count > 0)
+        RITZ_CHECK(ritz_factor_solve(s->L, &Psi));
+    RITZ_CHECK(ritz_basis_new(s->component->num_dofs, b->count, held));
+    scatter_rows(&Psi, &s->i, 0, &held->T);
+    for (int64_t j = 0; j < b->count; j++)
+        ritz_dense_col(&held->T, j)[b->at[j]] = 1.0;
+    ritz_columns_label_dofs(b->count, b->at, 0, &held->columns);
+    return RITZ_OK;
+}
+
+/* Matrices, the factor and the constraint modes. */
+static ritz_status hold_boundary(const ritz_request *request, partition *out)
+{
+    const ritz_sparse *K = &request->component->K;
+    const ritz_sparse *M = &request->component->M;
+    const ritz_dofs *b = &request->attached;
+    RITZ_OWN(partition) s = {.component = request->component, .b = b};
+    const ritz_dofs *i = &s.i;
+
+    RITZ_CHECK(ritz_dofs_complement(b, s.component->num_dofs, &s.i));
+    RITZ_CHECK(
+        ritz_sparse_extract(K, i->count, i->at, i->count, i->at, &s.K_ii));
+    RITZ_CHECK(
+        ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
+    RITZ_CHECK(
+        ritz_sparse_extract(M, i->count, i->at, i->count, i->at, &s.M_ii));
+    RITZ_CHECK(factor_interior(&s));
+    RITZ_CHECK(find_constraint_modes(&s));
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}
+
+/*
+ * The columns of the boundary, and then [0; X]; labels of the latter are the
+ * caller's to set.
+ */
+static ritz_status join_interior(const partition *s, const ritz_dense *X,
+                                 ritz_basis *out)
+{
+    const ritz_columns *from = &s->held.columns;
+
+    RITZ_CHECK(
+        ritz_basis_new(s->component->num_dofs, from->count + X->ncol, out));
+    for (int64_t j = 0; j < from->count; j++) {
+        out->columns.kind[j] = from->kind[j];
+        out->columns.dof[j] = from->dof[j];
+        out->columns.hertz[j] = from->hertz[j];
+        out->columns.residual[j] = from->residual[j];
+    }
+    ritz_dense_put(&s->held.T, 0, 0, &out->T);
+    scatter_rows(X, &s->i, from->count, &out->T);
+    return RITZ_OK;
+}
+
+/* The requested number of modes, or all up to the requested frequency. */
+static ritz_status find_normal_modes(const ritz_request *request,
+                                     const partition *s, ritz_pairs *out)
+{
+    const ritz_span span = {request->modes, request->up_to_hz};
+
+    RITZ_CHECK(ritz_eigen_sparse(&s->K_ii, &s->M_ii, &span, out));
+    return out->num_rigid > 0 ? refuse_mechanism(s, -1) : RITZ_OK;
+}
+
+/* The number of kept modes: a cluster at the end is kept whole. */
+static int64_t count_kept(const ritz_pairs *modes, int64_t wanted)
+{
+    int64_t all = modes->Phi.ncol;
+    int64_t kept = modes->num_rigid + wanted;
+
+    if (wanted >= all - modes->num_rigid)
+        return all;
+    while (kept > modes->num_rigid && kept < all &&
+           modes->lambda[kept] - modes->lambda[kept - 1] <=
+               RITZ_CLUSTER_GAP * modes->lambda[kept])
+        kept++;
+    return kept;
+}
+
+/*
+ * [I; Psi] Phi_c instead of T_b = [I; Psi], with the modes of the component
+ * condensed to its attached dofs,
+ *
+ *     (T_b'KT_b) Phi_c = (T_b'MT_b) Phi_c Lambda,
+ *
+ * all rigid ones and the lowest request->choice.interface_modes others.
+ */
+static ritz_status reduce_boundary(const ritz_request *request,
+                                   ritz_basis *boundary)
+{
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+
+    RITZ_CHECK(condense_boundary(request->component, &boundary->T, &K, &M));
+    RITZ_CHECK(ritz_eigen_dense(&K, &M, &modes));
+    modes.Phi.ncol = count_kept(&modes, request->choice.interface_modes);
+    RITZ_CHECK(ritz_columns_new(modes.Phi.ncol, &basis.columns));
+    RITZ_CHECK(ritz_dense_mul(&boundary->T, &modes.Phi, &basis.T));
+    ritz_columns_label(&modes, RITZ_COLUMN_INTERFACE, 0, &basis.columns);
+    ritz_basis_free(boundary);
+    RITZ_MOVE(*boundary, basis);
+    return RITZ_OK;
+}
+
+static ritz_status make_craig_bampton(const ritz_request *request,
+                                      ritz_basis *out)
+{
+    RITZ_OWN(partition) s = {0};
+    RITZ_OWN(ritz_pairs) modes = {0};
+
+    RITZ_CHECK(hold_boundary(request, &s));
+    ritz_factor_free(&s.L);
+    if (request->choice.interface_modes > 0 && s.b->count > 0)
+        RITZ_CHECK_IN("interface modes", reduce_boundary(request, &s.held));
+    if (request->modes != 0)
+        RITZ_CHECK_IN("fixed-interface modes",
+                      find_normal_modes(request, &s, &modes));
+    RITZ_CHECK(join_interior(&s, &modes.Phi, out));
+    ritz_columns_label(&modes, RITZ_COLUMN_NORMAL, s.held.T.ncol,
+                       &out->columns);
+    memcpy(out->origin.engine, modes.engine, sizeof out->origin.engine);
+    return RITZ_OK;
+}
+
+const ritz_method ritz_method_craig_bampton = {
+    .name = "craig-bampton",
+    .summary = "constraint modes and fixed-interface normal modes",
+    .reference = "CraigBampton1968",
+    .when = "components held by their neighbours; wide and stiff interfaces",
+    .cost = "a factor of the interior, a solve an attached dof, two a mode",
+    .holds = "statics of the interface, rigid motion; frequencies from above",
+    .fails = "an interior that moves with the interface held; loads within it",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
+    .make = make_craig_bampton,
+};
+
+/*
+ * Guyan (static) reduction: Craig-Bampton without modes.
+ *
+ * [Guyan1965] R. J. Guyan, Reduction of stiffness and mass matrices,
+ * AIAA Journal 3 (1965) 380.
+ */
+static ritz_status make_guyan(const ritz_request *request, ritz_basis *out)
+{
+    ritz_request without_modes = *request;
+
+    RITZ_REFUSE_IF(
+        request->attached.count == 0, RITZ_ERR_ARGUMENT,
+        "nothing is attached, so nothing would be kept: name a port");
+    without_modes.modes = 0;
+    RITZ_CHECK(make_craig_bampton(&without_modes, out));
+    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");
+    return RITZ_OK;
+}
+
+const ritz_method ritz_method_guyan = {
+    .name = "guyan",
+    .summary = "constraint modes only: static condensation",
+    .reference = "Guyan1965",
+    .when = "a first look; stiff components of little mass of their own",
+    .cost = "a factor of the interior, a solve an attached dof",
+    .holds = "statics of the interface, rigid motion; frequencies from above",
+    .fails = "modes of the interior, which are not there",
+    .uses = RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
+    .make = make_guyan,
+};
+
+/*
+ * Improved reduced system: Guyan's transformation, corrected by the static
+ * response to the inertia forces of its own motion. With attached (measured)
+ * dofs b,
+ *
+ *     u_i = Psi u_b + K_ii^-1 (M_ib + M_ii Psi) (-u_b''),
+ *     -u_b'' = M_R^-1 K_R u_b,    K_R = T_G'KT_G,  M_R = T_G'MT_G
+ *
+ *     T = T_G + [0; K_ii^-1 (M T_G)_i] M_R^-1 K_R,    T_G = [I; Psi]
+ *
+ * [OCallahan1989]. T is right to first order in lambda / lambda_i, lambda_i the
+ * eigenvalues with b clamped, where T_G is right to order zero; frequencies
+ * follow to the third and first power: tests/unit/bases/test_irs.c holds it to
+ * both.
+ */
+static ritz_status refuse_mass(const partition *s, int64_t j)
+{
+    char name[RITZ_DOF_NAME_SIZE];
+
+    return ritz_fail(RITZ_ERR_SINGULAR,
+                     "the condensed mass is singular: %s has none of its own "
+                     "beside the other attached dofs, leave it out",
+                     ritz_dof_name(s->component->dof[s->b->at[j]], name));
+}
+
+/*
+ * B(k,:) = d[p[k]] A(p[k],:), or back: B(p[k],:) = d[p[k]] A(k,:). LAPACK
+ * counts pivots from 1.
+ */
+static void permute_rows(const ritz_dense *A, const int *p, const double *d,
+                         bool back, ritz_dense *B)
+{
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t k = 0; k < A->nrow; k++) {
+            int64_t at = p[k] - 1;
+
+            ritz_dense_col(B, j)[back ? at : k] =
+                d[at] * ritz_dense_col(A, j)[back ? k : at];
+        }
+}
+
+/*
+ * X := M_R^-1 K_R by Cholesky with pivots, in coordinates that give M_R a unit
+ * diagonal, so that pivots are small relative to 1.
+ */
+static ritz_status solve_mass(const partition *s, double tolerance,
+                              ritz_dense *M_R, ritz_dense *X)
+{
+    int64_t a = M_R->ncol;
+    int n = (int)a;
+    int rank = 0;
+    RITZ_OWN(ritz_dense) Y = {0};
+    RITZ_OWN_ARRAY double *d = NULL;
+    RITZ_OWN_ARRAY int *pivot = NULL;
+
+    RITZ_CHECK_NEW(d, a);
+    RITZ_CHECK_NEW(pivot, a);
+    RITZ_CHECK(ritz_dense_new(a, a, &Y));
+    for (int64_t j = 0; j < a; j++) {
+        double own = ritz_dense_col(M_R, j)[j];
+
+        if (!(own > 0.0))
+            return refuse_mass(s, j);
+        d[j] = 1.0 / sqrt(own);
+    }
+    for (int64_t k = 0; k < a * a; k++)
+        M_R->val[k] *= d[k % a] * d[k / a];
+    if (LAPACKE_dpstrf(LAPACK_COL_MAJOR, 'L', n, M_R->val, n, pivot, &rank,
+                       tolerance) != 0)
+        return refuse_mass(s, pivot[rank] - 1);
+    permute_rows(X, pivot, d, false, &Y);
+    RITZ_REFUSE_IF(
+        LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, n, M_R->val, n, Y.val, n) != 0,
+        RITZ_ERR_MEMORY, "no memory for the condensed mass");
+    permute_rows(&Y, pivot, d, true, X);
+    return RITZ_OK;
+}
+
+/* T_i += K_ii^-1 (M T)_i X. */
+static ritz_status add_inertia(const partition *s, const ritz_dense *X,
+                               ritz_dense *T)
+{
+    RITZ_OWN(ritz_dense) MT = {0}, force = {0}, move = {0};
+
+    RITZ_CHECK(ritz_sparse_mul(&s->component->M, T, &MT));
+    RITZ_CHECK(ritz_dense_mul(&MT, X, &force));
+    RITZ_CHECK(ritz_dense_rows(&force, s->i.count, s->i.at, &move));
+    RITZ_CHECK(ritz_factor_solve(s->L, &move));
+    for (int64_t j = 0; j < T->ncol; j++)
+        for (int64_t k = 0; k < s->i.count; k++)
+            ritz_dense_col(T, j)[s->i.at[k]] += ritz_dense_col(&move, j)[k];
+    return RITZ_OK;
+}
+
+static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
+{
+    RITZ_OWN(partition) s = {0};
+    RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0};
+
+    RITZ_REFUSE_IF(
+        request->attached.count == 0, RITZ_ERR_ARGUMENT,
+        "nothing is attached, so nothing would be kept: name a port");
+    RITZ_CHECK(hold_boundary(request, &s));
+    if (s.i.count > 0) {
+        RITZ_CHECK(condense_boundary(s.component, &s.held.T, &K_R, &M_R));
+        RITZ_CHECK(solve_mass(&s, request->tolerance, &M_R, &K_R));
+        RITZ_CHECK(add_inertia(&s, &K_R, &s.held.T));
+    }
+    snprintf(s.held.origin.engine, sizeof s.held.origin.engine, "CHOLMOD");
+    RITZ_MOVE(*out, s.held);
+    return RITZ_OK;
+}
+
+const ritz_method ritz_method_irs = {
+    .name = "irs",
+    .summary = "static condensation improved by inertia (test-analysis models)",
+    .reference = "OCallahan1989",
+    .when = "test-analysis models on measured dofs, mass well covered",
+    .cost = "as guyan, and a second solve",
+    .holds = "rigid motion; shapes to first order; frequencies from above",
+    .fails = "statics, which guyan has exact; attached dofs without mass",
+    .uses = RITZ_USES_ATTACHED,
+    .make = make_irs,
+};
+
+/*
+ * Fixed-interface Krylov component modes: constraint modes and block Krylov
+ * vectors of the interior, started by the inertia forces of boundary motion
+ * [CraigSuKim1992, sec. 4, eq. 24 and 25],
+ *
+ *     | u_b |   | I    0 | | u_b |   K_ii Psi = -K_ib
+ *     | u_i | = | Psi  V | | q   |   span V = (A_ii^-1 M_ii)^j A_ii^-1 F_i
+ *
+ *     F_i = [M_ib + M_ii Psi, interior rows of other loads]
+ *
+ * with A = K - sigma M. Psi and V are K-orthogonal, so that T'KT is block
+ * diagonal as it is with normal modes; forces on the boundary, and the other
+ * loads, have their first moments kept, above all the static response.
+ */
+
+/* M_ib + M_ii Psi. */
+static ritz_status find_coupling(const partition *s, const ritz_dense *Psi,
+                                 ritz_dense *out)
+{
+    const ritz_dofs *i = &s->i;
+    const ritz_dofs *b = s->b;
+    RITZ_OWN(ritz_sparse) M_ib = {0};
+
+    RITZ_CHECK(ritz_sparse_extract(&s->component->M, i->count, i->at, b->count,
+                                   b->at, &M_ib));
+    RITZ_CHECK(ritz_sparse_mul(&s->M_ii, Psi, out));
+    for (int64_t j = 0; j < M_ib.ncol; j++)
+        for (int64_t p = M_ib.colptr[j]; p < M_ib.colptr[j + 1]; p++)
+            ritz_dense_col(out, j)[M_ib.rowind[p]] += M_ib.val[p];
+    return RITZ_OK;
+}
+
+/* F_i: the coupling columns first, if the attached dofs are among the loads. */
+static ritz_status find_loads(const ritz_request *request, const partition *s,
+                              const ritz_dense *Psi, ritz_dense *out)
+{
+    int loads = ritz_krylov_loads(request);
+    int others = loads & ~RITZ_LOADS_ATTACHED;
+    int64_t more = ritz_loads_count(request, others);
+    int64_t b = loads & RITZ_LOADS_ATTACHED ? Psi->ncol : 0;
+    RITZ_OWN(ritz_dense) coupling = {0}, F = {0}, F_i = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
+
+    if (more > 0 || b == 0) /* refuses none */
+        RITZ_CHECK(
+            ritz_loads_collect(request, more > 0 ? others : loads, &F, &dof));
+    RITZ_CHECK(ritz_dense_new(s->i.count, b + more, out));
+    if (b > 0)
+        RITZ_CHECK(find_coupling(s, Psi, &coupling));
+    ritz_dense_put(&coupling, 0, 0, out);
+    if (more > 0)
+        RITZ_CHECK(ritz_dense_rows(&F, s->i.count, s->i.at, &F_i));
+    ritz_dense_put(&F_i, 0, b, out);
+    return RITZ_OK;
+}
+
+static ritz_status make_krylov_fixed(const ritz_request *request,
+                                     ritz_basis *out)
+{
+    RITZ_OWN(partition) s = {0};
+    RITZ_OWN(ritz_dense) Psi = {0}, F = {0};
+    RITZ_OWN(ritz_elastic) interior = {0};
+    RITZ_OWN(ritz_krylov) S = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    ritz_dense V = {0};
+
+    RITZ_CHECK(hold_boundary(request, &s));
+    RITZ_CHECK(ritz_dense_rows(&s.held.T, s.i.count, s.i.at, &Psi));
+    RITZ_CHECK(find_loads(request, &s, &Psi, &F));
+    interior = (ritz_elastic){.K = &s.K_ii, .M = &s.M_ii};
+    RITZ_MOVE(interior.L, s.L);
+    RITZ_CHECK(ritz_krylov_new(&interior, request, &S));
+    RITZ_CHECK(ritz_krylov_run(&S, &F, 0));
+    V = ritz_dense_part(&S.set.V, 0, S.set.count);
+    RITZ_REFUSE_IF(s.b->count + V.ncol == 0, RITZ_ERR_ARGUMENT,
+                   "the basis would have no vectors");
+    RITZ_CHECK(join_interior(&s, &V, &basis));
+    for (int64_t j = s.b->count; j < basis.T.ncol; j++)
+        basis.columns.kind[j] = RITZ_COLUMN_KRYLOV;
+    RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
+    RITZ_MOVE(*out, basis);
+    return RITZ_OK;
+}
+
+const ritz_method ritz_method_krylov_cms_fixed = {
+    .name = "krylov-cms-fixed",
+    .summary = "constraint modes and fixed-interface block Krylov vectors",
+    .reference = "CraigSuKim1992",
+    .when = "as craig-bampton, without an eigenvalue problem",
+    .cost = "a factor of the interior, one solve a vector",
+    .holds = "statics and inertia of the interface; frequencies from above",
+    .fails = "upper modes of the band: less exact than with normal modes",
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
+            RITZ_USES_LOADS | RITZ_USES_INNER,
+    .make = make_krylov_fixed,
+};
