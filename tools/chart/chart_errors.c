@@ -54,15 +54,14 @@ typedef struct work {
     panel *panel;      /* of each measure */
     double *x, *y;     /* of each record, as drawn; NaN: not in this panel */
     picture_point *at; /* the same in pixels of the panel */
-    bool *front;
-    int64_t *order;           /* records in the order of a line */
+    int64_t *order;    /* records in the order of a line */
     int64_t lifted, left_out; /* errors drawn at the foot; not drawn */
     picture *picture;
 } work;
 
 static void work_free(work *w)
 {
-    RITZ_FREE(w->panel, w->x, w->y, w->at, w->front, w->order);
+    RITZ_FREE(w->panel, w->x, w->y, w->at, w->order);
 }
 
 /* --- scales --------------------------------------------------------------- */
@@ -152,22 +151,6 @@ static void place_records(work *w, const measure *m, panel *p)
 
 /* --- front and lines ------------------------------------------------------ */
 
-/* A point is on the front if no other is as fast and as good, or better. */
-static void find_front(work *w)
-{
-    for (int64_t k = 0; k < w->s->all.count; k++) {
-        bool best = !isnan(w->x[k]) && !w->s->all.item[k].incomplete;
-
-        for (int64_t i = 0; best && i < w->s->all.count; i++) {
-            if (isnan(w->x[i]) || i == k || w->s->all.item[i].incomplete)
-                continue;
-            best = !(w->x[i] <= w->x[k] && w->y[i] <= w->y[k] &&
-                     (w->x[i] < w->x[k] || w->y[i] < w->y[k] || i < k));
-        }
-        w->front[k] = best;
-    }
-}
-
 /* Whether record a stands before b: to the left of it, or there and lower. */
 static bool is_before(const work *w, int64_t a, int64_t b)
 {
@@ -176,8 +159,11 @@ static bool is_before(const work *w, int64_t a, int64_t b)
     return w->y[a] != w->y[b] ? w->y[a] < w->y[b] : a < b;
 }
 
-/* Records of the front (method -1), or the best of a method at each order, from
-   left to right; a model without all modes of the band is on neither. */
+/*
+ * Records of the front (method -1), each lower than all to the left of it, or
+ * the best of a method at each order; from left to right. A model without all
+ * modes of the band is on neither.
+ */
 static int64_t list_line(work *w, int64_t method)
 {
     int64_t count = 0, kept = 0;
@@ -186,16 +172,20 @@ static int64_t list_line(work *w, int64_t method)
         int64_t at = count;
 
         if (isnan(w->x[k]) || w->s->all.item[k].incomplete ||
-            (method < 0 ? !w->front[k] : w->s->which[k] != method))
+            (method >= 0 && w->s->which[k] != method))
             continue;
         for (; at > 0 && is_before(w, k, w->order[at - 1]); at--)
             w->order[at] = w->order[at - 1];
         w->order[at] = k;
         count++;
     }
-    for (int64_t i = 0; i < count; i++)
-        if (kept == 0 || w->x[w->order[i]] > w->x[w->order[kept - 1]])
-            w->order[kept++] = w->order[i];
+    for (int64_t i = 0; i < count; i++) {
+        const int64_t k = w->order[i], last = w->order[kept > 0 ? kept - 1 : 0];
+
+        if (kept == 0 ||
+            (method < 0 ? w->y[k] < w->y[last] : w->x[k] > w->x[last]))
+            w->order[kept++] = k;
+    }
     return kept;
 }
 
@@ -271,13 +261,16 @@ static void put_line(work *w, int64_t p, int64_t method)
 /* Rows of a panel: points, thinned, then its lines. */
 static ritz_status put_panel(work *w, int64_t p)
 {
-    find_front(w);
+    const int64_t count = list_line(w, -1);
+
     for (int64_t k = 0; k < w->s->all.count; k++) {
         const record *r = &w->s->all.item[k];
 
-        w->at[k].keep = w->front[k] || r->chosen || r->runner_up;
+        w->at[k].keep = r->chosen || r->runner_up;
         w->at[k].group = isnan(w->x[k]) ? -1 : 2 * w->s->which[k] + r->feasible;
     }
+    for (int64_t i = 0; i < count; i++)
+        w->at[w->order[i]].keep = true;
     RITZ_CHECK(picture_thin(w->s->all.count, w->at, mark_apart));
     for (int64_t k = 0; k < w->s->all.count; k++) {
         const record *r = &w->s->all.item[k];
@@ -477,7 +470,6 @@ static ritz_status draw_errors(const chart_sources *sources,
     RITZ_CHECK_NEW(w.x, set.all.count);
     RITZ_CHECK_NEW(w.y, set.all.count);
     RITZ_CHECK_NEW(w.at, set.all.count);
-    RITZ_CHECK_NEW(w.front, set.all.count);
     RITZ_CHECK_NEW(w.order, set.all.count);
     return compose_errors(&w);
 }

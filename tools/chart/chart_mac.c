@@ -32,7 +32,6 @@ typedef struct mac_side {
     const ritz_configuration *at; /* NULL: it is no system */
     ritz_dense U;                 /* n x count */
     ritz_dense MU; /* the same times the mass of bodies; {0}: U itself */
-    double hertz[MOST_MODES];  /* NaN: none */
     char mode[MOST_MODES][32]; /* "3: 1.25", number and frequency */
     int64_t count;
     const ritz_dof *dof;    /* n, borrowed; NULL: rows are not dofs */
@@ -59,6 +58,13 @@ static void mac_pair_free(mac_pair *pair)
 
 /* --- modes, at dofs and by inputs and outputs ----------------------------- */
 
+/* A column of a basis may have no frequency, NaN. */
+static void name_mode(mac_side *s, int64_t k, double hertz)
+{
+    snprintf(s->mode[k], sizeof s->mode[k], isnan(hertz) ? "%ld" : "%ld: %.3g",
+             k + 1, hertz);
+}
+
 /* Number and frequencies of the flexible modes behind the rigid ones. */
 static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
                                mac_side *out)
@@ -67,7 +73,7 @@ static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
     RITZ_REFUSE_IF(out->count < 1, RITZ_ERR_ARGUMENT,
                    "there is no flexible mode");
     for (int64_t k = 0; k < out->count; k++)
-        out->hertz[k] = ritz_eigen_hertz(lambda[rigid + k]);
+        name_mode(out, k, ritz_eigen_hertz(lambda[rigid + k]));
     return RITZ_OK;
 }
 
@@ -105,7 +111,7 @@ static ritz_status find_dof_shapes(mac_side *out)
     if (m->kind == MODEL_BASIS) {
         out->count = b->T.ncol < MOST_MODES ? b->T.ncol : MOST_MODES;
         for (int64_t k = 0; k < out->count; k++)
-            out->hertz[k] = b->columns.hertz[k];
+            name_mode(out, k, b->columns.hertz[k]);
         return ritz_dense_columns(&b->T, 0, out->count, &out->U);
     }
     RITZ_REFUSE_IF(m->kind == MODEL_REDUCED && !m->reduced.dof,
@@ -431,13 +437,6 @@ static ritz_status choose_sides(const chart_sources *sources,
     return RITZ_OK;
 }
 
-static void name_modes(mac_side *s)
-{
-    for (int64_t k = 0; k < s->count; k++)
-        snprintf(s->mode[k], sizeof s->mode[k],
-                 isnan(s->hertz[k]) ? "%ld" : "%ld: %.3g", k + 1, s->hertz[k]);
-}
-
 /* Shapes of both sides, in rows that both have. */
 static ritz_status find_shapes(mac_pair *pair)
 {
@@ -463,7 +462,6 @@ static ritz_status find_shapes(mac_pair *pair)
             RITZ_CHECK_IN(side[k].file->path,
                           systems ? find_channel_shapes(&side[k])
                                   : find_dof_shapes(&side[k]));
-        name_modes(&side[k]);
     }
     RITZ_CHECK(match_rows(&side[0], &side[1]));
     return side[0].channel ? scale_channels(pair) : RITZ_OK;

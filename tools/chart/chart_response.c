@@ -34,10 +34,10 @@ static const double rounding = 1e-12;
 
 /* A channel, and the ends of its axes; the template is given the doubles. */
 typedef struct channel {
-    int64_t output, input; /* of the first response */
-    int64_t lines;         /* one, or as many as there are singular values */
+    int64_t lines; /* one, or as many as there are singular values */
     int64_t place[MOST_RESPONSES]; /* in H of a point of each response */
-    char title[2 * PICTURE_WORD];
+    char title[2 * PICTURE_WORD];  /* "tip / torque", then errors */
+    double *size;    /* of the first response at each point, the largest */
     double singular; /* whether it is that of singular values */
     double shared;   /* points in common with the first response */
     chart_range y, strip[STRIPS];
@@ -96,8 +96,9 @@ static ritz_status add_singular(overlay *o)
                        "singular values do not compare",
                        o->name[w], o->name[0]);
     }
-    o->channel[o->num_channels++] =
-        (channel){.lines = first->num_singular, .singular = 1.0};
+    o->channel[o->num_channels++] = (channel){.lines = first->num_singular,
+                                              .title = "singular values",
+                                              .singular = 1.0};
     return RITZ_OK;
 }
 
@@ -107,7 +108,9 @@ static void add_pair(overlay *o, int64_t output, int64_t input)
     const ritz_response *first = o->curve[0];
     channel *c = &o->channel[o->num_channels++];
 
-    *c = (channel){.output = output, .input = input, .lines = 1};
+    *c = (channel){.lines = 1};
+    snprintf(c->title, sizeof c->title, "%s / %s", first->output[output],
+             first->input[input]);
     for (int64_t w = 0; w < o->count; w++) {
         const ritz_response *r = o->curve[w];
 
@@ -172,15 +175,10 @@ static double _Complex value_of(const overlay *o, const channel *c,
     return r->H[k * r->num_outputs * r->num_inputs + c->place[which]];
 }
 
-static double size_of(const overlay *o, const channel *c, int64_t k)
-{
-    return cabs(value_of(o, c, 0, k, 0));
-}
-
 /* Values at point k of the first response are rounding up to this. */
-static double nothing_at(const overlay *o, const channel *c, int64_t k)
+static double nothing_at(const channel *c, int64_t k)
 {
-    return c->singular > 0.0 ? rounding * size_of(o, c, k) : 0.0;
+    return c->singular > 0.0 ? rounding * c->size[k] : 0.0;
 }
 
 /* Index of the point at a frequency; -1: the response has none there. */
@@ -214,7 +212,7 @@ static void measure_errors(const overlay *o, const channel *c, int64_t w,
         return;
     H = value_of(o, c, 0, at, line);
     H_r = value_of(o, c, w, k, line);
-    least = nothing_at(o, c, at);
+    least = nothing_at(c, at);
     error[RELATIVE] = cabs(H_r - H) / (c->most > 0.0 ? c->most : 1.0);
     if (cabs(H) > least && cabs(H_r) > least)
         error[DECIBELS] = fabs(20.0 * log10(cabs(H_r) / cabs(H)));
@@ -232,13 +230,15 @@ static chart_range find_decades(double least, double most)
 /* Magnitudes of the first response, by which errors are measured. */
 static void find_extent(const overlay *o, channel *c)
 {
+    for (int64_t k = 0; k < o->curve[0]->count; k++)
+        c->size[k] = cabs(value_of(o, c, 0, k, 0));
     c->least = c->best[RELATIVE] = c->best[DECIBELS] = HUGE_VAL;
     for (int64_t line = 0; line < c->lines; line++)
         for (int64_t k = 0; k < o->curve[0]->count; k++) {
             double size = cabs(value_of(o, c, 0, k, line));
 
             c->most = fmax(c->most, size);
-            if (size > nothing_at(o, c, k))
+            if (size > nothing_at(c, k))
                 c->least = fmin(c->least, size);
         }
     c->top = c->most;
@@ -354,19 +354,17 @@ static ritz_status put_line(const overlay *o, channel *c, int64_t w,
 }
 
 /* Peaks of the first response, largest first. */
-static int64_t find_peaks(const overlay *o, const channel *c,
+static int64_t find_peaks(int64_t points, const double *size,
                           int64_t peak[MOST_PEAKS])
 {
     int64_t count = 0;
-    int64_t last = o->curve[0]->count - 1;
 
-    for (int64_t k = 1; k < last; k++) {
-        double size = size_of(o, c, k);
+    for (int64_t k = 1; k < points - 1; k++) {
         int64_t at = count;
 
-        if (size <= size_of(o, c, k - 1) || size < size_of(o, c, k + 1))
+        if (size[k] <= size[k - 1] || size[k] < size[k + 1])
             continue;
-        while (at > 0 && size_of(o, c, peak[at - 1]) < size)
+        while (at > 0 && size[peak[at - 1]] < size[k])
             at--;
         if (at == MOST_PEAKS)
             continue;
@@ -383,18 +381,11 @@ static int64_t find_peaks(const overlay *o, const channel *c,
 static void begin_rows(const overlay *o, const channel *c, int which, int64_t w,
                        double hertz, double drawn, double value)
 {
-    const ritz_response *first = o->curve[0];
     FILE *table = o->picture->table.file;
 
     fprintf(o->picture->data.file, "%ld\t%d\t%ld\t%.9g\t%.9g\tNaN\tNaN\tNaN\t",
             (c - o->channel), which, w, hertz, drawn);
-    if (c->singular > 0.0) {
-        fprintf(table, "singular values");
-    } else {
-        html_line(table, first->output[c->output]);
-        fprintf(table, "/");
-        html_line(table, first->input[c->input]);
-    }
+    html_line(table, c->title);
     fprintf(table, "\t%.6g\t%.5g", hertz, value);
 }
 
@@ -407,7 +398,7 @@ static void end_rows(const overlay *o)
 /* A peak of the first response and the errors of the others there. */
 static void put_peak(const overlay *o, const channel *c, int64_t k)
 {
-    const double hertz = o->curve[0]->hertz[k], size = size_of(o, c, k);
+    const double hertz = o->curve[0]->hertz[k], size = c->size[k];
     double error[STRIPS];
     char others[1000] = "";
 
@@ -461,10 +452,13 @@ static void put_true_peak(const overlay *o, const channel *c, int64_t w)
 
 static ritz_status put_channel(const overlay *o, channel *c)
 {
-    int64_t peak[MOST_PEAKS];
-    const int64_t count = find_peaks(o, c, peak);
+    RITZ_OWN_ARRAY double *size = NULL;
+    int64_t peak[MOST_PEAKS], count = 0;
 
+    RITZ_CHECK_NEW(size, o->curve[0]->count);
+    c->size = size;
     find_extent(o, c);
+    count = find_peaks(o->curve[0]->count, size, peak);
     for (int64_t w = 0; w < o->count; w++)
         for (int64_t line = 0; line < c->lines; line++)
             RITZ_CHECK(put_line(o, c, w, line));
@@ -532,14 +526,8 @@ static void add_signs(const overlay *o)
 /* "tip / torque: error at most 0.31 %, 0.027 dB" */
 static void say_title(const overlay *o, channel *c)
 {
-    const ritz_response *r = o->curve[0];
     const bool relative = o->strip[RELATIVE], decibels = o->strip[DECIBELS];
 
-    if (c->singular > 0.0)
-        snprintf(c->title, sizeof c->title, "singular values");
-    else
-        snprintf(c->title, sizeof c->title, "%s / %s", r->output[c->output],
-                 r->input[c->input]);
     if (c->shared == 0.0)
         return;
     sink_append(c->title, sizeof c->title, ": %s at most %s%s",

@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/draft.h"
-#include "cli/cli.h"
 
 #include <ritz/base.h>
 

@@ -28,9 +28,6 @@ ritz_status report_write(const chart_sources *sources,
  * name. */
 void report_begin(report_page *p, const char *words, const char *name);
 
-/** A table up to the row of its names of columns. */
-void report_begin_table(FILE *file, const char *caption);
-
 /** Its end: one legend of all its pictures, then these. */
 ritz_status report_end(report_page *p);
 
