@@ -96,7 +96,6 @@ static ritz_status create_set(hid_t at, const char *name, hid_t type,
 {
     hsize_t size = H5Tget_size(type);
     hsize_t count = ritz_h5_volume(&shape, INT64_MAX);
-    ritz_h5_shape chunk = {0};
     RITZ_OWN(hid_t)
     space = H5Screate_simple(shape.rank, shape.dims, NULL);
     RITZ_OWN(hid_t) plan = H5Pcreate(H5P_DATASET_CREATE);
@@ -105,7 +104,9 @@ static ritz_status create_set(hid_t at, const char *name, hid_t type,
     if (count <= SMALL && count * size <= SMALL_BYTES) {
         H5Pset_layout(plan, H5D_COMPACT);
     } else {
-        chunk = cut_chunks(&shape, smaller_of(CHUNK, CHUNK_BYTES / size + 1));
+        const ritz_h5_shape chunk =
+            cut_chunks(&shape, smaller_of(CHUNK, CHUNK_BYTES / size + 1));
+
         H5Pset_chunk(plan, shape.rank, chunk.dims);
         H5Pset_fletcher32(plan);
     }
@@ -220,23 +221,6 @@ static ritz_status open_set(hid_t at, const char *name, int rank,
                    "'%s' declares more values than the file holds", name);
     RITZ_MOVE(*out, set);
     return RITZ_OK;
-}
-
-/* The pieces in which a matrix is read: its chunks, or whole rows. */
-static ritz_h5_shape find_pieces(hid_t set, const ritz_h5_shape *shape)
-{
-    RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
-    ritz_h5_shape chunk = *shape;
-
-    if (H5Pget_layout(plan) == H5D_CHUNKED)
-        H5Pget_chunk(plan, shape->rank, chunk.dims);
-    else if (ritz_h5_volume(shape, CHUNK) > CHUNK)
-        chunk.dims[0] =
-            size_piece(shape->dims[0],
-                       shape->dims[1] < CHUNK ? CHUNK / shape->dims[1] : 1);
-    for (int k = 0; k < shape->rank; k++)
-        chunk.dims[k] = smaller_of(chunk.dims[k], shape->dims[k]);
-    return chunk;
 }
 
 ritz_status ritz_h5_shape_of(hid_t at, const char *name, int rank,
@@ -394,18 +378,29 @@ static herr_t move_piece(hid_t set, const ritz_h5_shape *piece, bool reads,
                             rows);
 }
 
-/* Reads or writes a matrix chunk by chunk, so that each is decoded once. */
+/*
+ * Reads or writes a matrix by its chunks, so that each is decoded once, or by
+ * whole rows where it has none.
+ */
 static ritz_status move_pieces(hid_t set, bool reads, const ritz_dense *A)
 {
+    RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
     const ritz_h5_shape shape = ritz_h5_table(A->nrow, A->ncol);
-    const ritz_h5_shape piece = find_pieces(set, &shape);
+    ritz_h5_shape piece = shape;
     RITZ_OWN_ARRAY double *rows = NULL;
 
     if (A->nrow == 0 || A->ncol == 0)
         return RITZ_OK;
+    if (H5Pget_layout(plan) == H5D_CHUNKED)
+        H5Pget_chunk(plan, shape.rank, piece.dims);
+    else if (ritz_h5_volume(&shape, CHUNK) > CHUNK)
+        piece.dims[0] = size_piece(
+            shape.dims[0], shape.dims[1] < CHUNK ? CHUNK / shape.dims[1] : 1);
+    for (int k = 0; k < shape.rank; k++)
+        piece.dims[k] = smaller_of(piece.dims[k], shape.dims[k]);
     RITZ_CHECK_NEW(rows, (int64_t)(piece.dims[0] * piece.dims[1]));
-    for (hsize_t i = 0; i < (hsize_t)A->nrow; i += piece.dims[0])
-        for (hsize_t j = 0; j < (hsize_t)A->ncol; j += piece.dims[1])
+    for (hsize_t i = 0; i < shape.dims[0]; i += piece.dims[0])
+        for (hsize_t j = 0; j < shape.dims[1]; j += piece.dims[1])
             if (move_piece(set, &piece, reads, i, j, A, rows) < 0)
                 return RITZ_ERR_FILE;
     return RITZ_OK;

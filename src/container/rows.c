@@ -91,6 +91,12 @@ static void tell_row(const ritz_place *place, const char *prefix,
         to->data);
 }
 
+static ritz_place enter_part(const ritz_place *place, const ritz_member *row)
+{
+    return place->object ? ritz_schema_part(place, row)
+                         : (ritz_place){.schema = row->schema, .outer = place};
+}
+
 /* NOLINTBEGIN(misc-no-recursion): as deep as the tables are */
 static void tell_members(const ritz_place *place, const char *prefix,
                          const row_teller *to);
@@ -99,7 +105,7 @@ static void tell_members(const ritz_place *place, const char *prefix,
 static void tell_items(const ritz_place *place, const char *prefix,
                        const ritz_member *row, const row_teller *to)
 {
-    ritz_place item = ritz_schema_part(place, row);
+    ritz_place item = enter_part(place, row);
     ritz_name *name = NULL;
     char path[PATH_SIZE];
     int64_t count = 0;
@@ -127,7 +133,7 @@ static void tell_items(const ritz_place *place, const char *prefix,
 static void tell_part(const ritz_place *place, const char *prefix,
                       const ritz_member *row, const row_teller *to)
 {
-    ritz_place part = ritz_schema_part(place, row);
+    ritz_place part = enter_part(place, row);
     char path[PATH_SIZE];
 
     snprintf(path, sizeof path, "%s%s%s", prefix, row->name,

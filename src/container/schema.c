@@ -155,7 +155,7 @@ ritz_place ritz_schema_part(const ritz_place *place, const ritz_member *row)
     return (ritz_place){
         .at = place->at,
         .schema = row->schema,
-        .object = place->object ? field_of(place, row) : NULL,
+        .object = field_of(place, row),
         .outer = place,
     };
 }

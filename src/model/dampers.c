@@ -233,49 +233,38 @@ ritz_status ritz_dampers_install(ritz_dampers *dampers, ritz_dense *K,
     return add_influence(dampers, dampers->k, dampers->held_k, K);
 }
 
-static int64_t count_entries(const ritz_dense *B, int64_t j)
-{
-    int64_t count = 0;
-
-    for (int64_t i = 0; i < B->nrow; i++)
-        count += ritz_dense_col(B, j)[i] != 0.0;
-    return count;
-}
-
 /* sum (value_j - held_j) b_j b_j', sparse, from the few entries of each b. */
 static ritz_status outer_product(const ritz_dampers *dampers,
                                  const double *value, const double *held,
                                  ritz_sparse *out)
 {
     int64_t n = dampers->B.nrow;
-    int64_t room = 0;
-    int64_t count = 0;
-    RITZ_OWN_ARRAY int64_t *row = NULL;
-    RITZ_OWN_ARRAY int64_t *col = NULL;
+    int64_t count = 0, room[3] = {0};
+    RITZ_OWN_ARRAY int64_t *list = NULL, *row = NULL, *col = NULL;
     RITZ_OWN_ARRAY double *val = NULL;
 
+    RITZ_CHECK_NEW(list, n);
     for (int64_t j = 0; j < dampers->count; j++) {
-        int64_t m = count_entries(&dampers->B, j);
+        const double *b = ritz_dense_col(&dampers->B, j);
+        int64_t m = 0;
 
+        for (int64_t i = 0; i < n; i++)
+            if (b[i] != 0.0)
+                list[m++] = i;
         RITZ_REFUSE_IF(m * m > most_entries, RITZ_ERR_ARGUMENT,
                        "damper '%s' moves with %" PRId64
                        " dofs: as a sparse matrix that is too many",
                        dampers->name[j], m);
-        room += m * m;
-    }
-    RITZ_CHECK_NEW(row, room);
-    RITZ_CHECK_NEW(col, room);
-    RITZ_CHECK_NEW(val, room);
-    for (int64_t j = 0; j < dampers->count; j++) {
-        const double *b = ritz_dense_col(&dampers->B, j);
+        for (int64_t k = 0; k < m * m; k++) {
+            int64_t r = list[k % m], c = list[k / m];
 
-        for (int64_t c = 0; c < n; c++)
-            for (int64_t r = 0; b[c] != 0.0 && r < n; r++)
-                if (b[r] != 0.0) {
-                    row[count] = r;
-                    col[count] = c;
-                    val[count++] = (value[j] - held[j]) * (b[r] * b[c]);
-                }
+            RITZ_CHECK_ROOM(row, count, room[0]);
+            RITZ_CHECK_ROOM(col, count, room[1]);
+            RITZ_CHECK_ROOM(val, count, room[2]);
+            row[count] = r;
+            col[count] = c;
+            val[count++] = (value[j] - held[j]) * (b[r] * b[c]);
+        }
     }
     return ritz_sparse_from_triplets(n, n, count, row, col, val, out);
 }

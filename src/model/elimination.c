@@ -176,32 +176,17 @@ static void substitute_known(eliminator *s, int64_t e, int64_t i, ritz_dense *A)
     }
 }
 
-static void clear_sum(eliminator *s)
-{
-    for (int64_t k = 0; k < s->num_used; k++) {
-        s->sum[s->list[k]] = 0.0;
-        s->used[s->list[k]] = false;
-    }
-    s->num_used = 0;
-}
-
-static ritz_status count_entries(eliminator *s, int64_t count)
-{
-    RITZ_REFUSE_IF(count > MOST_ENTRIES - s->num_kept, RITZ_ERR_FORMAT,
-                   "the constraints spread over more than %d entries: a chain "
-                   "of them sums up too much",
-                   MOST_ENTRIES);
-    s->num_kept += count;
-    return RITZ_OK;
-}
-
 /* Store `sum` as a row; of a circle, row i of X at the places in use. */
 static ritz_status keep_row(eliminator *s, const ritz_dense *X, int64_t i,
                             elimination_row *out)
 {
     RITZ_OWN(elimination_row) new = {0};
 
-    RITZ_CHECK(count_entries(s, s->num_used));
+    RITZ_REFUSE_IF(s->num_used > MOST_ENTRIES - s->num_kept, RITZ_ERR_FORMAT,
+                   "the constraints spread over more than %d entries: a chain "
+                   "of them sums up too much",
+                   MOST_ENTRIES);
+    s->num_kept += s->num_used;
     RITZ_CHECK_NEW(new.col, s->num_used);
     RITZ_CHECK_NEW(new.val, s->num_used);
     for (int64_t k = 0; k < s->num_used; k++) {
@@ -281,12 +266,15 @@ static ritz_status solve_circle(eliminator *s, int64_t count,
                    "%" PRId64 " dofs depend on each other in a circle, of at "
                    "most %d that is solved",
                    count, MOST_COUPLED);
+    for (int64_t i = 0; i < count; i++)
+        s->member[circle[i]] = i;
     RITZ_CHECK(ritz_dense_identity(count, &A));
     RITZ_CHECK(gather_circle(s, count, circle, &A, &X));
     RITZ_CHECK(solve_dense(s, circle, &A, &X));
-    for (int64_t i = 0; i < count; i++)
+    for (int64_t i = 0; i < count; i++) {
         RITZ_CHECK(keep_row(s, &X, i, &s->found.at[circle[i]]));
-    clear_sum(s);
+        s->member[circle[i]] = -1;
+    }
     return RITZ_OK;
 }
 
@@ -305,17 +293,17 @@ static bool needs_itself(const eliminator *s, int64_t e)
 static ritz_status settle_circle(eliminator *s, int64_t count,
                                  const int64_t *circle)
 {
-    if (count == 1 && !needs_itself(s, circle[0])) {
+    if (count > 1 || needs_itself(s, circle[0])) {
+        RITZ_CHECK(solve_circle(s, count, circle));
+    } else {
         substitute_known(s, circle[0], 0, NULL);
         RITZ_CHECK(keep_row(s, NULL, 0, &s->found.at[circle[0]]));
-        clear_sum(s);
-        return RITZ_OK;
     }
-    for (int64_t i = 0; i < count; i++)
-        s->member[circle[i]] = i;
-    RITZ_CHECK(solve_circle(s, count, circle));
-    for (int64_t i = 0; i < count; i++)
-        s->member[circle[i]] = -1;
+    for (int64_t k = 0; k < s->num_used; k++) {
+        s->sum[s->list[k]] = 0.0;
+        s->used[s->list[k]] = false;
+    }
+    s->num_used = 0;
     return RITZ_OK;
 }
 

@@ -142,40 +142,31 @@ void ritz_grids_free(ritz_grids *grids)
 }
 
 /* Rows of all grids, three each; grids without any are dropped afterwards. */
-static void place_rows(int64_t n, const ritz_dof *dof, ritz_nodes *nodes)
+ritz_status ritz_nodes_of(int64_t n, const ritz_dof *dof,
+                          const ritz_grids *grids, ritz_nodes *out)
 {
-    int64_t kept = 0;
+    RITZ_OWN(ritz_nodes) nodes = {.grids = grids};
 
-    for (int64_t k = 0; k < 3 * nodes->count; k++)
-        nodes->row[k] = -1;
+    RITZ_CHECK_NEW(nodes.grid, grids->count);
+    RITZ_CHECK_NEW(nodes.row, 3 * grids->count);
+    for (int64_t k = 0; k < 3 * grids->count; k++)
+        nodes.row[k] = -1;
     for (int64_t i = 0; i < n; i++) {
         int64_t c = dof[i].component;
-        int64_t k =
-            c < 1 || c > 3 ? -1 : ritz_grids_find(nodes->grids, dof[i].grid);
+        int64_t k = c < 1 || c > 3 ? -1 : ritz_grids_find(grids, dof[i].grid);
 
         if (k >= 0)
-            nodes->row[3 * k + c - 1] = i;
+            nodes.row[3 * k + c - 1] = i;
     }
-    for (int64_t k = 0; k < nodes->count; k++) {
-        const int64_t *row = nodes->row + 3 * k;
+    for (int64_t k = 0; k < grids->count; k++) {
+        const int64_t *row = nodes.row + 3 * k;
 
         if (row[0] < 0 && row[1] < 0 && row[2] < 0)
             continue;
         for (int p = 0; p < 3; p++)
-            nodes->row[3 * kept + p] = row[p];
-        nodes->grid[kept++] = k;
+            nodes.row[3 * nodes.count + p] = row[p];
+        nodes.grid[nodes.count++] = k;
     }
-    nodes->count = kept;
-}
-
-ritz_status ritz_nodes_of(int64_t n, const ritz_dof *dof,
-                          const ritz_grids *grids, ritz_nodes *out)
-{
-    RITZ_OWN(ritz_nodes) nodes = {.grids = grids, .count = grids->count};
-
-    RITZ_CHECK_NEW(nodes.grid, grids->count);
-    RITZ_CHECK_NEW(nodes.row, 3 * grids->count);
-    place_rows(n, dof, &nodes);
     RITZ_MOVE(*out, nodes);
     return RITZ_OK;
 }

@@ -126,26 +126,29 @@ static double count_common(const ritz_nodes *nodes, int64_t i, int64_t j)
     return fmax(sum, 1.0);
 }
 
-/* Contributions of entries of M to m. */
-typedef struct triplets {
-    int64_t count;
-    int64_t *row, *col;
-    double *val;
-} triplets;
-
-static void triplets_free(triplets *t)
+/* m, with a row for each node, from entries of M between translations. */
+static ritz_status nodal_mass(const ritz_component *component,
+                              const ritz_nodes *nodes, ritz_sparse *out)
 {
-    RITZ_FREE(t->row, t->col, t->val);
-}
+    const ritz_sparse *M = &component->M;
+    int64_t entries = M->colptr[M->ncol], count = 0;
+    RITZ_OWN_ARRAY int64_t *place = NULL; /* 3 node + direction of a dof, or
+                                             -1 */
+    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
+    RITZ_OWN_ARRAY double *val = NULL;
 
-/* place[i]: 3 node + direction of row i of the component, -1 if neither. */
-static void gather_masses(const ritz_sparse *M, const ritz_nodes *nodes,
-                          const int64_t *place, triplets *t)
-{
+    RITZ_CHECK_NEW(place, component->num_dofs);
+    RITZ_CHECK_NEW(row, entries);
+    RITZ_CHECK_NEW(col, entries);
+    RITZ_CHECK_NEW(val, entries);
+    for (int64_t i = 0; i < component->num_dofs; i++)
+        place[i] = -1;
+    for (int64_t k = 0; k < 3 * nodes->count; k++)
+        if (nodes->row[k] >= 0)
+            place[nodes->row[k]] = k;
     for (int64_t c = 0; c < M->ncol; c++)
         for (int64_t e = M->colptr[c]; e < M->colptr[c + 1]; e++) {
-            int64_t at = place[M->rowind[e]];
-            int64_t to = place[c];
+            int64_t at = place[M->rowind[e]], to = place[c];
             double cosine = 0.0;
 
             if (at < 0 || to < 0)
@@ -154,33 +157,13 @@ static void gather_masses(const ritz_sparse *M, const ritz_nodes *nodes,
                                  ritz_nodes_axes(nodes, to / 3) + 3 * (to % 3));
             if (cosine == 0.0)
                 continue;
-            t->row[t->count] = at / 3;
-            t->col[t->count] = to / 3;
-            t->val[t->count++] =
+            row[count] = at / 3;
+            col[count] = to / 3;
+            val[count++] =
                 M->val[e] * (cosine / count_common(nodes, at / 3, to / 3));
         }
-}
-
-/* m, with a row for each node. */
-static ritz_status nodal_mass(const ritz_component *component,
-                              const ritz_nodes *nodes, ritz_sparse *out)
-{
-    const ritz_sparse *M = &component->M;
-    RITZ_OWN_ARRAY int64_t *place = NULL;
-    RITZ_OWN(triplets) t = {0};
-
-    RITZ_CHECK_NEW(place, component->num_dofs);
-    for (int64_t i = 0; i < component->num_dofs; i++)
-        place[i] = -1;
-    for (int64_t k = 0; k < 3 * nodes->count; k++)
-        if (nodes->row[k] >= 0)
-            place[nodes->row[k]] = k;
-    RITZ_CHECK_NEW(t.row, M->colptr[M->ncol]);
-    RITZ_CHECK_NEW(t.col, M->colptr[M->ncol]);
-    RITZ_CHECK_NEW(t.val, M->colptr[M->ncol]);
-    gather_masses(M, nodes, place, &t);
-    return ritz_sparse_from_triplets(nodes->count, nodes->count, t.count, t.row,
-                                     t.col, t.val, out);
+    return ritz_sparse_from_triplets(nodes->count, nodes->count, count, row,
+                                     col, val, out);
 }
 
 /* R'MR and R'MT. */
@@ -261,15 +244,6 @@ ritz_status ritz_invariants_of(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* I3 (x) V: T V transforms each of the three blocks of columns by V. */
-static ritz_status repeat_blocks(const ritz_dense *V, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, out));
-    for (int b = 0; b < 3; b++)
-        ritz_dense_put(V, b * V->nrow, b * V->ncol, out);
-    return RITZ_OK;
-}
-
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out)
 {
@@ -279,7 +253,10 @@ ritz_status ritz_invariants_project(const ritz_invariants *invariants,
     if (!invariants->momentum.val)
         return RITZ_OK;
     memcpy(second.rigid, invariants->rigid, sizeof second.rigid);
-    RITZ_CHECK(repeat_blocks(V, &V3));
+    /* I3 (x) V: T V transforms each of the three blocks of columns by V */
+    RITZ_CHECK(ritz_dense_new(3 * V->nrow, 3 * V->ncol, &V3));
+    for (int b = 0; b < 3; b++)
+        ritz_dense_put(V, b * V->nrow, b * V->ncol, &V3);
     RITZ_CHECK(ritz_dense_mul(&invariants->momentum, V, &second.momentum));
     RITZ_CHECK(ritz_dense_mul(&invariants->position, &V3, &second.position));
     RITZ_CHECK(

@@ -137,13 +137,6 @@ double ritz_modal_rate(const ritz_damping *damping, int64_t flexible,
                         : 2.0 * w * ritz_damping_of_mode(damping, flexible, w);
 }
 
-static void add_damping(const ritz_damping *damping, ritz_modal_model *model)
-{
-    for (int64_t k = 0; k < model->count; k++)
-        ritz_dense_col(&model->Delta, k)[k] +=
-            ritz_modal_rate(damping, k - model->num_rigid, model->lambda[k]);
-}
-
 /* R X = (K + s M)^-1 X - Phi (Lambda + s)^-1 Phi'X, and |.| of the first. */
 static ritz_status massless_share(const ritz_structure *model,
                                   const ritz_modal_model *modes,
@@ -247,23 +240,15 @@ void ritz_modal_model_take(ritz_pairs *pairs, int64_t num_dofs,
         out->lambda[k] = 0.0;
 }
 
-static ritz_status find_modes(const ritz_structure *model,
-                              ritz_modal_model *modes)
-{
-    RITZ_OWN(ritz_pairs) pairs = {0};
-
-    RITZ_CHECK(ritz_eigen_dense(&model->K, &model->M, &pairs));
-    ritz_modal_model_take(&pairs, model->K.nrow, modes);
-    return ritz_dense_mul(&model->M, &modes->Phi, &modes->MPhi);
-}
-
 ritz_status ritz_modal_model_drive(const ritz_io *io,
                                    const ritz_damping *damping,
                                    ritz_modal_model *modes)
 {
     if (!modes->Delta.val)
         RITZ_CHECK(ritz_dense_new(modes->count, modes->count, &modes->Delta));
-    add_damping(damping, modes);
+    for (int64_t k = 0; k < modes->count; k++)
+        ritz_dense_col(&modes->Delta, k)[k] +=
+            ritz_modal_rate(damping, k - modes->num_rigid, modes->lambda[k]);
     return project_io(io, modes);
 }
 
@@ -271,9 +256,12 @@ ritz_status ritz_modal_model_new(const ritz_structure *model, const ritz_io *io,
                                  const ritz_damping *damping,
                                  ritz_modal_model *out)
 {
+    RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_modal_model) modes = {0};
 
-    RITZ_CHECK(find_modes(model, &modes));
+    RITZ_CHECK(ritz_eigen_dense(&model->K, &model->M, &pairs));
+    ritz_modal_model_take(&pairs, model->K.nrow, &modes);
+    RITZ_CHECK(ritz_dense_mul(&model->M, &modes.Phi, &modes.MPhi));
     if (model->D.val)
         RITZ_CHECK(project_damping(&model->D, &modes));
     RITZ_CHECK(ritz_modal_model_drive(io, damping, &modes));

@@ -174,19 +174,6 @@ ritz_status ritz_reduced_nest(const ritz_reduced *in, int64_t count,
     return RITZ_OK;
 }
 
-/* The rows of the table that a prefix keeps: orders up to its own. */
-static ritz_status shorten_table(const ritz_nested *in, int64_t order,
-                                 ritz_nested *out)
-{
-    int64_t count = 0;
-
-    while (count < in->count && in->order[count] <= order)
-        count++;
-    RITZ_CHECK(new_nested(in->smallest, count, in->num_errors, out));
-    copy_table(in, count, count, in->num_errors, out);
-    return RITZ_OK;
-}
-
 static bool is_bound(const char *name)
 {
     static const char ending[] = "-bound";
@@ -221,16 +208,21 @@ static ritz_status note_measures(int64_t order, ritz_reduced *reduced)
 ritz_status ritz_reduced_prefix(const ritz_reduced *in, int64_t order,
                                 ritz_reduced *out)
 {
+    const ritz_nested *n = &in->nested;
     RITZ_OWN(ritz_reduced) made = {0};
     RITZ_OWN_ARRAY int64_t *first = NULL;
+    int64_t count = 0;
 
     RITZ_CHECK(check_order(in, order));
     RITZ_CHECK_NEW(first, order);
     for (int64_t j = 0; j < order; j++)
         first[j] = j;
-    RITZ_CHECK(ritz_reduced_nest(in, order, first, in->nested.smallest, &made));
+    RITZ_CHECK(ritz_reduced_nest(in, order, first, n->smallest, &made));
     ritz_nested_free(&made.nested);
-    RITZ_CHECK(shorten_table(&in->nested, order, &made.nested));
+    while (count < n->count && n->order[count] <= order)
+        count++;
+    RITZ_CHECK(new_nested(n->smallest, count, n->num_errors, &made.nested));
+    copy_table(n, count, count, n->num_errors, &made.nested);
     if (order < in->K.ncol)
         RITZ_CHECK(note_measures(order, &made));
     RITZ_MOVE(*out, made);

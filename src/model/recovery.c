@@ -75,32 +75,21 @@ ritz_status ritz_recovery_copy(const ritz_recovery *recovery,
     return RITZ_OK;
 }
 
-/* [T; G T] */
-static ritz_status stack_rows(const ritz_recovery *recovery,
-                              const ritz_dense *T, ritz_dense *out)
-{
-    int64_t n = T->nrow;
-    int64_t m = recovery->count;
-    RITZ_OWN(ritz_dense) GT = {0}, all = {0};
-
-    if (m > 0)
-        RITZ_CHECK(ritz_sparse_mul(&recovery->G, T, &GT));
-    RITZ_CHECK(ritz_dense_new(n + m, T->ncol, &all));
-    ritz_dense_put(T, 0, 0, &all);
-    ritz_dense_put(&GT, n, 0, &all);
-    RITZ_MOVE(*out, all);
-    return RITZ_OK;
-}
-
 ritz_status ritz_recovery_extend(const ritz_recovery *recovery, int64_t n,
                                  const ritz_dof *dof, const ritz_dense *T,
                                  ritz_dof **names, ritz_dense *shape)
 {
     RITZ_OWN_ARRAY ritz_dof *all = NULL;
+    RITZ_OWN(ritz_dense) GT = {0};
 
     RITZ_CHECK(join_names(recovery, n, dof, &all));
-    if (shape)
-        RITZ_CHECK(stack_rows(recovery, T, shape));
+    if (shape && recovery->count > 0)
+        RITZ_CHECK(ritz_sparse_mul(&recovery->G, T, &GT));
+    if (shape) {
+        RITZ_CHECK(ritz_dense_new(n + recovery->count, T->ncol, shape));
+        ritz_dense_put(T, 0, 0, shape);
+        ritz_dense_put(&GT, n, 0, shape);
+    }
     RITZ_MOVE(*names, all);
     return RITZ_OK;
 }

@@ -63,29 +63,6 @@ static void clear_rounding(const fastest *f, const ritz_dense *K, ritz_dense *M)
     }
 }
 
-static void settle_mass(const ritz_component *component,
-                        const ritz_columns *columns, ritz_reduced *reduced)
-{
-    fastest f = {0.0, false};
-
-    for (int64_t j = 0; j < component->num_dofs; j++)
-        weigh_coordinate(ritz_sparse_diagonal(&component->K, j),
-                         ritz_sparse_diagonal(&component->M, j), &f);
-    clear_rounding(&f, &reduced->K, &reduced->M);
-    clear_massless(columns, &reduced->M);
-    clear_massless(columns, &reduced->D);
-}
-
-static void settle_mass_again(const ritz_reduced *from, ritz_reduced *to)
-{
-    fastest f = {0.0, false};
-
-    for (int64_t j = 0; j < from->M.ncol; j++)
-        weigh_coordinate(ritz_dense_col(&from->K, j)[j],
-                         ritz_dense_col(&from->M, j)[j], &f);
-    clear_rounding(&f, &to->K, &to->M);
-}
-
 /* Columns that are rigid-body motions, or combine to some. */
 static bool may_be_rigid(ritz_column_kind kind)
 {
@@ -247,6 +224,7 @@ ritz_status ritz_reduce(const ritz_component *component,
                         const ritz_basis *basis, ritz_reduced *out)
 {
     const ritz_dense *T = &basis->T;
+    fastest f = {0.0, false};
     RITZ_OWN(ritz_reduced) reduced = {0};
 
     RITZ_REFUSE_IF(basis->states, RITZ_ERR_ARGUMENT,
@@ -265,7 +243,12 @@ ritz_status ritz_reduce(const ritz_component *component,
     RITZ_CHECK(settle_rigid(&component->K, basis, &reduced.K));
     RITZ_CHECK(ritz_sparse_project(&component->M, T, &reduced.M));
     RITZ_CHECK(ritz_sparse_project(&component->D, T, &reduced.D));
-    settle_mass(component, &basis->columns, &reduced);
+    for (int64_t j = 0; j < component->num_dofs; j++)
+        weigh_coordinate(ritz_sparse_diagonal(&component->K, j),
+                         ritz_sparse_diagonal(&component->M, j), &f);
+    clear_rounding(&f, &reduced.K, &reduced.M);
+    clear_massless(&basis->columns, &reduced.M);
+    clear_massless(&basis->columns, &reduced.D);
     RITZ_CHECK(ritz_sparse_project(&component->K4, T, &reduced.K4));
     RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_CHECK(map_ports(component, T, &reduced));
@@ -301,6 +284,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
     second = {.origin = reduced->origin,
               .inertia = reduced->inertia,
               .num_dofs = reduced->num_dofs};
+    fastest f = {0.0, false};
 
     memcpy(second.units, reduced->units, sizeof second.units);
     memcpy(second.damping, reduced->damping, sizeof second.damping);
@@ -309,7 +293,10 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
         second.columns.kind[j] = RITZ_COLUMN_SYSTEM;
     RITZ_CHECK(ritz_dense_congruence(&reduced->K, V, &second.K));
     RITZ_CHECK(ritz_dense_congruence(&reduced->M, V, &second.M));
-    settle_mass_again(reduced, &second);
+    for (int64_t j = 0; j < reduced->M.ncol; j++)
+        weigh_coordinate(ritz_dense_col(&reduced->K, j)[j],
+                         ritz_dense_col(&reduced->M, j)[j], &f);
+    clear_rounding(&f, &second.K, &second.M);
     if (reduced->D.val)
         RITZ_CHECK(ritz_dense_project(&reduced->D, V, &second.D));
     if (reduced->K4.val)

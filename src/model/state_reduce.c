@@ -447,16 +447,6 @@ static ritz_status fill_accelerations(const large *m, ritz_state_space *out)
     return RITZ_OK;
 }
 
-static ritz_status fill_outputs(const large *m, ritz_state_space *out)
-{
-    const ritz_io *io = &m->component->io;
-
-    ritz_dense_free(&out->B);
-    RITZ_CHECK(ritz_dense_mul_tn(&m->W_v, &io->B, &out->B));
-    RITZ_CHECK(project_outputs(&io->C, &io->Cv, &m->T_q, &m->T_v, &out->C));
-    return fill_accelerations(m, out);
-}
-
 /* The static response of massless dofs would need more than the vectors. */
 static ritz_status refuse_massless_inputs(const ritz_component *component)
 {
@@ -480,6 +470,7 @@ ritz_status ritz_states_project(const ritz_component *component,
                                 ritz_dense *E)
 {
     const ritz_dense *W = basis->W.val ? &basis->W : &basis->T;
+    const ritz_io *io = &component->io;
     RITZ_OWN(large) m = {.component = component, .columns = &basis->columns};
     RITZ_OWN(ritz_dense) MT = {0}, inertia = {0};
 
@@ -492,7 +483,10 @@ ritz_status ritz_states_project(const ritz_component *component,
     RITZ_CHECK(stiffness_times(&m, &m.T_q, &m.KT));
     RITZ_CHECK(add_damping(damping, basis->among_hz, &MT, &m));
     RITZ_CHECK(project_forces(&m, &out->A));
-    RITZ_CHECK(fill_outputs(&m, out));
+    ritz_dense_free(&out->B);
+    RITZ_CHECK(ritz_dense_mul_tn(&m.W_v, &io->B, &out->B));
+    RITZ_CHECK(project_outputs(&io->C, &io->Cv, &m.T_q, &m.T_v, &out->C));
+    RITZ_CHECK(fill_accelerations(&m, out));
     RITZ_CHECK(ritz_dense_mul_tn(&m.W_q, &m.T_q, E));
     RITZ_CHECK(ritz_dense_mul_tn(&m.W_v, &MT, &inertia));
     ritz_dense_add(1.0, &inertia, E);
@@ -648,11 +642,7 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
 {
     const ritz_dense *T = &basis->T;
     const ritz_dense *W = basis->W.val ? &basis->W : T;
-    const ritz_io io = {.num_inputs = full->num_inputs,
-                        .num_outputs = full->num_outputs,
-                        .input = full->input,
-                        .output = full->output,
-                        .limit = full->limit};
+    const ritz_io io = ritz_model_io(ritz_model_of_states(full));
     RITZ_OWN(ritz_state_space) reduced = {0};
     RITZ_OWN(ritz_dense) E = {0};
 

@@ -86,12 +86,6 @@ static ritz_status mean_distance(const ritz_grids *grids, const ritz_ties *list,
 
 /* ---- rigid bodies ------------------------------------------------------ */
 
-/* All six dofs of one grid: with its axes as rows of A, [t; r] = A' u. */
-static bool is_whole(const ritz_ties *from)
-{
-    return from->count == 1 && from->tie[0].mask == 0x7e;
-}
-
 /* Factor of u(grid, i) in a dof that moves by `row` about the grid itself. */
 static double share_of(const ritz_grids *grids, int64_t grid, int64_t i,
                        const double row[static 6])
@@ -200,7 +194,8 @@ ritz_status ritz_tie_rigid(const ritz_grids *grids, const ritz_ties *from,
     ritz_dof leaders[6];
     RITZ_OWN_ARRAY ritz_dof *names = NULL;
 
-    if (is_whole(from))
+    /* all six dofs of one grid: with its axes as rows of A, [t; r] = A' u */
+    if (from->count == 1 && from->tie[0].mask == 0x7e)
         return follow_grid(grids, from->tie[0].grid, to, equations);
     RITZ_CHECK(mean_distance(grids, from, origin, &length));
     RITZ_CHECK_NEW(names, count);
