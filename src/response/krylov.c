@@ -102,15 +102,6 @@ static ritz_status place_points(krylov_responder *k,
     return RITZ_OK;
 }
 
-/* The residual `index`, inputs before outputs, of the last solution. */
-static void find_residual(krylov_responder *k, double hertz, int64_t index)
-{
-    bool dual = index >= k->inputs;
-
-    ritz_krylov_residual(&k->full, &k->space, &k->small, hertz, dual,
-                         dual ? index - k->inputs : index, k->y);
-}
-
 /* Norms of all residuals at a point, and of the load vectors they belong to. */
 static ritz_status measure_residuals(krylov_responder *k, double hertz,
                                      double *error)
@@ -121,7 +112,7 @@ static ritz_status measure_residuals(krylov_responder *k, double hertz,
 
     RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
     for (int64_t j = 0; j < k->inputs + k->outputs; j++) {
-        find_residual(k, hertz, j);
+        ritz_krylov_residual(&k->full, &k->space, &k->small, hertz, j, k->y);
         k->size[j] = ritz_krylov_space_norm(&k->space, k->y);
         for (int64_t c = 0; c < k->space.W.ncol; c++)
             if (k->space.column[c].kind > RITZ_KRYLOV_CA)
@@ -261,7 +252,8 @@ static ritz_status correct_worst(krylov_responder *k, int64_t *added)
     RITZ_CHECK(ritz_krylov_small_solve(&k->small, hertz));
     for (int64_t j = 0; j < loads; j++)
         if (is_responsible(k, j)) {
-            find_residual(k, hertz, j);
+            ritz_krylov_residual(&k->full, &k->space, &k->small, hertz, j,
+                                 k->y);
             append_correction(k, &X);
         }
     RITZ_CHECK(renew_projection(k, &X, added));

@@ -306,8 +306,7 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
     remove_ratios(direct, &small.poles);
     RITZ_CHECK(stack_outputs(&small.poles.io, &small.outputs_of));
     RITZ_MOVE(small.T, pairs.Phi);
-    RITZ_CHECK_NEW(small.q, r * m);
-    RITZ_CHECK_NEW(small.p, r * p);
+    RITZ_CHECK_NEW(small.x, r * (m + p));
     RITZ_CHECK_NEW(small.z, r * (3 * p + m));
     RITZ_MOVE(*out, small);
     return RITZ_OK;
@@ -340,12 +339,13 @@ ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz)
 
     RITZ_CHECK(
         ritz_poles_solve(&small->poles, false, &small->poles.io.B, hertz, z));
-    transform_back(&small->T, io->num_inputs, z, small->q);
+    transform_back(&small->T, io->num_inputs, z, small->x);
     RITZ_CHECK(
         ritz_poles_solve(&small->poles, true, &small->outputs_of, hertz, z));
     for (int64_t k = 0; k < rp; k++)
         z[k] += ritz_complex(0.0, w) * z[rp + k] - w * w * z[2 * rp + k];
-    transform_back(&small->T, io->num_outputs, z, small->p);
+    transform_back(&small->T, io->num_outputs, z,
+                   small->x + small->T.nrow * io->num_inputs);
     return RITZ_OK;
 }
 
@@ -373,19 +373,19 @@ static void set_coefficients(const ritz_direct *direct,
 void ritz_krylov_residual(const ritz_direct *direct,
                           const ritz_krylov_space *space,
                           const ritz_krylov_small *small, double hertz,
-                          bool dual, int64_t index, double _Complex *y)
+                          int64_t index, double _Complex *y)
 {
-    const double _Complex *x =
-        (dual ? small->p : small->q) + index * small->T.nrow;
+    const double _Complex *x = small->x + index * small->T.nrow;
+    const bool dual = index >= direct->inputs;
+    int64_t own = dual ? index - direct->inputs : index;
     double _Complex f[RITZ_KRYLOV_K4 + 1];
 
     set_coefficients(direct, space, 2.0 * RITZ_PI * hertz, dual, f);
     for (int64_t k = 0; k < space->W.ncol; k++) {
         ritz_krylov_column c = space->column[k];
-        bool load = c.kind <= RITZ_KRYLOV_CA;
 
-        if (load)
-            y[k] = c.index == index ? f[c.kind] : 0.0;
+        if (c.kind <= RITZ_KRYLOV_CA)
+            y[k] = c.index == own ? f[c.kind] : 0.0;
         else
             y[k] = f[c.kind] * x[c.index];
     }
@@ -415,6 +415,6 @@ void ritz_krylov_small_free(ritz_krylov_small *small)
     ritz_poles_free(&small->poles);
     ritz_dense_free(&small->outputs_of);
     ritz_dense_free(&small->T);
-    RITZ_FREE(small->q, small->p, small->z);
+    RITZ_FREE(small->x, small->z);
     *small = (ritz_krylov_small){0};
 }

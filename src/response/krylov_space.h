@@ -71,10 +71,11 @@ void ritz_krylov_space_free(ritz_krylov_space *space);
  * A component projected on a Krylov space, solved at one frequency at a time.
  */
 typedef struct ritz_krylov_small {
-    ritz_poles poles;           /* V'Z V q = V'B in modal coordinates */
-    ritz_dense outputs_of;      /* C', Cv', Ca': loads of its transpose */
-    ritz_dense T;               /* r x r: from modal coordinates to V's */
-    double _Complex *q, *p, *z; /* r x inputs, r x outputs, 3 of those */
+    ritz_poles poles;      /* V'Z V q = V'B in modal coordinates */
+    ritz_dense outputs_of; /* C', Cv', Ca': loads of its transpose */
+    ritz_dense T;          /* r x r: from modal coordinates to V's */
+    double _Complex *x;    /* q and p, r x inputs and r x outputs */
+    double _Complex *z;    /* r x (inputs + 3 outputs), to work in */
 } ritz_krylov_small;
 
 /**
@@ -92,13 +93,13 @@ ritz_status ritz_krylov_small_new(const ritz_direct *direct,
 ritz_status ritz_krylov_small_solve(ritz_krylov_small *small, double hertz);
 
 /**
- * y of the residual of input @p index, or of output @p index if @p dual, from
- * the q and p of the last solution.
+ * y of residual @p index, of inputs and then of outputs, from the q and p of
+ * the last solution.
  */
 void ritz_krylov_residual(const ritz_direct *direct,
                           const ritz_krylov_space *space,
                           const ritz_krylov_small *small, double hertz,
-                          bool dual, int64_t index, double _Complex *y);
+                          int64_t index, double _Complex *y);
 
 /** sqrt(y^H G y). */
 double ritz_krylov_space_norm(const ritz_krylov_space *space,

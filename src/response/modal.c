@@ -32,24 +32,11 @@ static ritz_status modal_at(void *state, double hertz, double _Complex *H)
     return RITZ_OK;
 }
 
-static ritz_status set_component(const ritz_response_request *request,
-                                 modal_responder *m)
-{
-    double highest = ritz_response_highest(request);
-
-    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                   "modes up to %g Hz cannot give a response up to %g Hz",
-                   highest, request->to_hz);
-    RITZ_CHECK(ritz_poles_of_component(request->model.component,
-                                       request->model.damping, highest,
-                                       &m->pairs, &m->poles));
-    return ritz_residual_new(request->model.component, request->model.damping,
-                             &m->pairs, request->to_hz, highest, &m->residual);
-}
-
 static ritz_status make_modal(const ritz_response_request *request,
                               ritz_responder *out)
 {
+    const ritz_model *model = &request->model;
+    double highest = ritz_response_highest(request);
     modal_responder *m = NULL;
 
     RITZ_CHECK_NEW(m, 1);
@@ -57,10 +44,16 @@ static ritz_status make_modal(const ritz_response_request *request,
     out->free = free_modal;
     out->poles = &m->poles;
     out->at = modal_at;
-    if (request->model.kind == RITZ_MODEL_COMPONENT)
-        return set_component(request, m);
-    return ritz_poles_of_dense(&request->model.dense, request->model.damping,
-                               request->to_hz, &m->poles);
+    if (model->kind != RITZ_MODEL_COMPONENT)
+        return ritz_poles_of_dense(&model->dense, model->damping,
+                                   request->to_hz, &m->poles);
+    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
+                   "modes up to %g Hz cannot give a response up to %g Hz",
+                   highest, request->to_hz);
+    RITZ_CHECK(ritz_poles_of_component(model->component, model->damping,
+                                       highest, &m->pairs, &m->poles));
+    return ritz_residual_new(model->component, model->damping, &m->pairs,
+                             request->to_hz, highest, &m->residual);
 }
 
 const ritz_response_engine ritz_response_engine_modal = {
