@@ -315,6 +315,16 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
 /** Add its dampers to its D and K: see ritz_dampers_install. */
 ritz_status ritz_reduced_install(ritz_reduced *reduced);
 
+/**
+ * How a port moves by its rows of @p T, turned into basic axes; NULL: by its own
+ * dofs.
+ *
+ * @return as ritz_port_turn
+ */
+ritz_status ritz_port_map_of(const ritz_component *component,
+                             const ritz_port *port, const ritz_dense *T,
+                             ritz_port_map *map);
+
 /** As ritz_component_port. */
 const ritz_port_map *ritz_reduced_port(const ritz_reduced *reduced,
                                        const char *name);

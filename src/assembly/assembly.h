@@ -44,17 +44,6 @@ typedef struct ritz_relations {
     ritz_relation *item;
 } ritz_relations;
 
-/**
- * Name, origin, dofs and positions of a port, and how its dofs turn into the
- * motions along basic axes.
- *
- * @param[out] turn  p x p
- * @param[out] out   without its map
- */
-ritz_status ritz_port_describe(const ritz_component *component,
-                               const ritz_port *port, ritz_dense *turn,
-                               ritz_port_map *out);
-
 /** The pose that a joint's settings give, @p setting being all of the scene. */
 void ritz_joint_pose_at(const ritz_joint *joint, const double *setting,
                         ritz_joint_pose *out);

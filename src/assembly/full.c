@@ -42,13 +42,16 @@ static ritz_status restrict_port(const ritz_component *component,
                                  const ritz_port *port, const ritz_dofs *held,
                                  ritz_port_map *map)
 {
-    RITZ_OWN(ritz_dense) turn = {0};
+    RITZ_OWN(ritz_dense) wide = {0};
 
-    RITZ_CHECK(ritz_port_describe(component, port, &turn, map));
-    RITZ_CHECK(ritz_dense_new(map->count, held->count, &map->map));
-    for (int64_t j = 0; j < map->count; j++)
-        memcpy(ritz_dense_col(&map->map, find_held(held, port->dofs.at[j])),
-               ritz_dense_col(&turn, j), (size_t)map->count * sizeof *turn.val);
+    RITZ_CHECK(ritz_port_map_of(component, port, NULL, map));
+    RITZ_CHECK(ritz_dense_new(map->count, held->count, &wide));
+    for (int64_t j = 0; j < map->count; j++) {
+        const ritz_dense one = ritz_dense_part(&map->map, j, 1);
+
+        ritz_dense_put(&one, 0, find_held(held, port->dofs.at[j]), &wide);
+    }
+    ritz_dense_replace(&map->map, &wide);
     return RITZ_OK;
 }
 

@@ -224,27 +224,6 @@ static const struct {
     [RITZ_JOINT_RIGID] = {"rigid joint", point_basic, {0}},
 };
 
-ritz_status ritz_port_describe(const ritz_component *component,
-                               const ritz_port *port, ritz_dense *turn,
-                               ritz_port_map *out)
-{
-    const ritz_grids *grids = &component->grids;
-
-    memcpy(out->name, port->name, sizeof out->name);
-    memcpy(out->origin, port->origin, sizeof out->origin);
-    out->count = port->dofs.count;
-    RITZ_CHECK(ritz_port_turn(component, port, turn, &out->dof));
-    RITZ_CHECK_NEW(out->position, 3 * out->count);
-    for (int64_t i = 0; i < out->count; i++) {
-        int64_t k = ritz_grids_find(grids, out->dof[i].grid);
-
-        if (k >= 0)
-            memcpy(out->position + 3 * i, grids->position + 3 * k,
-                   3 * sizeof *out->position);
-    }
-    return RITZ_OK;
-}
-
 /* Row of a direction of the grid that starts at port row @p first, or -1. */
 static int64_t find_direction(const ritz_port_map *port, int64_t first,
                               int64_t direction)

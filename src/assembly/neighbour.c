@@ -243,23 +243,22 @@ static ritz_status link_bodies(const ritz_joint *joint, const double *setting,
         ritz_reduced_port(far, joint->between[1 - near].port);
     RITZ_OWN(ritz_relations) list = {0};
     RITZ_OWN(ritz_port_map) at = {0};
-    RITZ_OWN(ritz_dense) turn = {0};
     ritz_joint_pose pose;
     ritz_joint_end end[2];
 
     if (!port || !map)
         return RITZ_ERR_ARGUMENT;
-    RITZ_CHECK(ritz_port_describe(side[near].component, port, &turn, &at));
+    RITZ_CHECK(ritz_port_map_of(side[near].component, port, NULL, &at));
     end[near] = (ritz_joint_end){side[near].name, &at};
     end[1 - near] = (ritz_joint_end){side[1 - near].name, map};
     ritz_joint_pose_at(joint, setting, &pose);
     RITZ_CHECK(ritz_joint_relate(joint, end, &pose, &list));
     RITZ_CHECK(
         fill_rows(&list, 1 - near, RITZ_LOCKED, &map->map, &out->locked_F));
-    RITZ_CHECK(fill_rows(&list, near, RITZ_LOCKED, &turn, &out->locked_G));
+    RITZ_CHECK(fill_rows(&list, near, RITZ_LOCKED, &at.map, &out->locked_G));
     RITZ_CHECK(
         fill_rows(&list, 1 - near, RITZ_CAGED, &map->map, &out->caged_F));
-    return fill_rows(&list, near, RITZ_CAGED, &turn, &out->caged_G);
+    return fill_rows(&list, near, RITZ_CAGED, &at.map, &out->caged_G);
 }
 
 /* Indices of a port's dofs among the attached ones. */

@@ -501,13 +501,6 @@ static ritz_status choose_krylov(const ritz_scene *scene,
  * stiff; after N is projected out of them, that is of the order of eps.
  */
 
-enum {
-    MASSLESS = RITZ_GIVEN_MASSLESS,
-    RIGID = RITZ_GIVEN_RIGID,
-    STATIC = RITZ_GIVEN_STATIC,
-    KEPT = RITZ_GIVEN_KEPT
-};
-
 ritz_status ritz_composite_choose(const ritz_scene *scene,
                                   const ritz_configuration *configuration,
                                   const ritz_compare_row *row, int group,
@@ -572,16 +565,16 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
         RITZ_OWN(ritz_dense) W = {0}, Y = {0};
         double least = tightest[g];
 
-        if (g == KEPT)
+        if (g == RITZ_GIVEN_KEPT)
             least = fmax(it->plan->tolerance, least);
-        if (g == STATIC && own)
+        if (g == RITZ_GIVEN_STATIC && own)
             least = RITZ_TIGHTEST_BODY;
         RITZ_CHECK(gather_group(it, g, &W));
         RITZ_CHECK(ritz_mass_transform(L, scale, &W, &Y));
-        if (g == MASSLESS || (g == STATIC && own))
+        if (g == RITZ_GIVEN_MASSLESS || (g == RITZ_GIVEN_STATIC && own))
             scale_to_unit(false, &Y);
         RITZ_CHECK(ritz_span_append(&Y, least, &largest, NULL, U));
-        if (g == MASSLESS)
+        if (g == RITZ_GIVEN_MASSLESS)
             *massless = U->ncol;
     }
     return RITZ_OK;

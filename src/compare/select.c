@@ -63,15 +63,12 @@ ritz_status ritz_system_statics(const ritz_configuration *configuration,
 /* diag(Lambda), 0 for rigid modes: the inner product of the vectors. */
 static ritz_status fill_weights(const ritz_configuration *c, ritz_sparse *out)
 {
-    int64_t n = c->K.ncol;
+    RITZ_OWN(ritz_dense) Lambda = {0};
 
-    RITZ_CHECK(ritz_sparse_new(n, n, n, out));
-    for (int64_t k = 0; k < n; k++) {
-        out->colptr[k + 1] = k + 1;
-        out->rowind[k] = k;
-        out->val[k] = k < c->num_rigid ? 0.0 : c->lambda[k];
-    }
-    return RITZ_OK;
+    RITZ_CHECK(ritz_dense_new(c->K.ncol, c->K.ncol, &Lambda));
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        ritz_dense_col(&Lambda, k)[k] = c->lambda[k];
+    return ritz_sparse_from_dense(&Lambda, out);
 }
 
 /*

@@ -163,10 +163,9 @@ static ritz_status copy_rows(int64_t n, const ritz_dof *dof,
     return ritz_recovery_copy(recovery, &out->recovery);
 }
 
-/* A port moves by its rows of T, turned into basic axes. */
-static ritz_status map_port(const ritz_component *component,
-                            const ritz_port *port, const ritz_dense *T,
-                            ritz_port_map *map)
+ritz_status ritz_port_map_of(const ritz_component *component,
+                             const ritz_port *port, const ritz_dense *T,
+                             ritz_port_map *map)
 {
     const ritz_grids *grids = &component->grids;
     RITZ_OWN(ritz_dense) turn = {0}, rows = {0};
@@ -176,8 +175,12 @@ static ritz_status map_port(const ritz_component *component,
     memcpy(map->axes, port->axes, sizeof map->axes);
     map->count = port->dofs.count;
     RITZ_CHECK(ritz_port_turn(component, port, &turn, &map->dof));
-    RITZ_CHECK(ritz_dense_rows(T, port->dofs.count, port->dofs.at, &rows));
-    RITZ_CHECK(ritz_dense_mul(&turn, &rows, &map->map));
+    if (T) {
+        RITZ_CHECK(ritz_dense_rows(T, port->dofs.count, port->dofs.at, &rows));
+        RITZ_CHECK(ritz_dense_mul(&turn, &rows, &map->map));
+    } else {
+        RITZ_MOVE(map->map, turn);
+    }
     RITZ_CHECK_NEW(map->position, 3 * map->count);
     for (int64_t i = 0; i < map->count; i++) {
         int64_t k = ritz_grids_find(grids, map->dof[i].grid);
@@ -195,8 +198,8 @@ static ritz_status map_ports(const ritz_component *component,
     RITZ_CHECK_NEW(reduced->port, component->num_ports);
     for (int64_t k = 0; k < component->num_ports; k++) {
         reduced->num_ports++;
-        RITZ_CHECK(
-            map_port(component, &component->port[k], T, &reduced->port[k]));
+        RITZ_CHECK(ritz_port_map_of(component, &component->port[k], T,
+                                    &reduced->port[k]));
     }
     return RITZ_OK;
 }
