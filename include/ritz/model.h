@@ -316,8 +316,8 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
 ritz_status ritz_reduced_install(ritz_reduced *reduced);
 
 /**
- * How a port moves by its rows of @p T, turned into basic axes; NULL: by its own
- * dofs.
+ * How a port moves by its rows of @p T, turned into basic axes; NULL: by its
+ * own dofs.
  *
  * @return as ritz_port_turn
  */

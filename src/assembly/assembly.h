@@ -72,10 +72,6 @@ void ritz_turn_about(const double axis[static 3], double degrees,
 void ritz_turn_product(const double A[static 9], const double B[static 9],
                        double C[static 9]);
 
-/** C = A'B. */
-void ritz_turn_between(const double A[static 9], const double B[static 9],
-                       double C[static 9]);
-
 /** y = R x, and y = R'x. */
 void ritz_turn_apply(const double R[static 9], const double x[static 3],
                      double y[static 3]);

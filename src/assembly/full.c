@@ -322,21 +322,19 @@ static ritz_status project_matrices(const ritz_held *p, const double *setting,
  * Expand B from held coordinates to all dofs, then project on the masters: B =
  * T' B.
  */
-static ritz_status project_io(const ritz_held *p, const ritz_sparse *T,
+static ritz_status project_io(const ritz_held *p, const ritz_sparse *turned,
                               ritz_io *out)
 {
     const int64_t Q = p->stage.num_coordinates;
-    RITZ_OWN(ritz_sparse) turned = {0};
     RITZ_OWN(ritz_dense) S = {0};
 
     /* S = E T, E picking the held coordinates out of all dofs */
-    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
-    RITZ_CHECK(ritz_dense_new(Q, T->ncol, &S));
+    RITZ_CHECK(ritz_dense_new(Q, turned->nrow, &S));
     for (int64_t j = 0; j < Q; j++) {
         int64_t c = p->row[j];
 
-        for (int64_t e = turned.colptr[c]; e < turned.colptr[c + 1]; e++)
-            ritz_dense_col(&S, turned.rowind[e])[j] = turned.val[e];
+        for (int64_t e = turned->colptr[c]; e < turned->colptr[c + 1]; e++)
+            ritz_dense_col(&S, turned->rowind[e])[j] = turned->val[e];
     }
     return ritz_io_project(&p->stage.io, &S, out);
 }
@@ -345,11 +343,10 @@ static ritz_status project_io(const ritz_held *p, const ritz_sparse *T,
  * Influence vectors of all bodies' dampers, expanded to all dofs and projected
  * on the masters.
  */
-static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
-                                   ritz_dampers *out)
+static ritz_status project_dampers(const ritz_held *p,
+                                   const ritz_sparse *turned, ritz_dampers *out)
 {
     RITZ_OWN(ritz_dampers) all = {0};
-    RITZ_OWN(ritz_sparse) turned = {0};
     RITZ_OWN(ritz_dense) B = {0};
 
     for (int64_t k = 0; k < p->count; k++)
@@ -358,10 +355,8 @@ static ritz_status project_dampers(const ritz_held *p, const ritz_sparse *T,
                                        p->first[k], &all));
     if (all.count == 0)
         return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
-    RITZ_CHECK(ritz_sparse_mul(&turned, &all.B, &B));
-    ritz_dense_free(&all.B);
-    RITZ_MOVE(all.B, B);
+    RITZ_CHECK(ritz_sparse_mul(turned, &all.B, &B));
+    ritz_dense_replace(&all.B, &B);
     RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
@@ -431,7 +426,7 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
     RITZ_OWN(ritz_component) system = {0};
     RITZ_OWN(ritz_held) p = {.scene = scene};
     RITZ_OWN(ritz_dense) C = {0};
-    RITZ_OWN(ritz_sparse) T = {0};
+    RITZ_OWN(ritz_sparse) T = {0}, turned = {0};
     RITZ_OWN_ARRAY ritz_master *master = NULL;
     RITZ_OWN_ARRAY int64_t *pivot_of = NULL;
 
@@ -445,8 +440,9 @@ ritz_status ritz_assemble_full(const ritz_scene *scene, const double *setting,
     RITZ_CHECK(make_basis(&p, &C, pivot_of, master, &T));
     system.num_dofs = T.ncol;
     RITZ_CHECK(project_matrices(&p, setting, &T, &system));
-    RITZ_CHECK(project_io(&p, &T, &system.io));
-    RITZ_CHECK(project_dampers(&p, &T, &system.dampers));
+    RITZ_CHECK(ritz_sparse_transpose(&T, &turned));
+    RITZ_CHECK(project_io(&p, &turned, &system.io));
+    RITZ_CHECK(project_dampers(&p, &turned, &system.dampers));
     RITZ_CHECK(name_dofs(&p, setting, master, &T, &system));
     ritz_damping_print(&scene->damping, system.damping);
     memcpy(system.units, p.body[0].units, sizeof system.units);

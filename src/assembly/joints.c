@@ -40,15 +40,6 @@ void ritz_turn_product(const double A[static 9], const double B[static 9],
                            A[3 * i + 2] * B[6 + j];
 }
 
-void ritz_turn_between(const double A[static 9], const double B[static 9],
-                       double C[static 9])
-{
-    for (int64_t i = 0; i < 3; i++)
-        for (int64_t j = 0; j < 3; j++)
-            C[3 * i + j] =
-                A[i] * B[j] + A[3 + i] * B[3 + j] + A[6 + i] * B[6 + j];
-}
-
 void ritz_turn_apply(const double R[static 9], const double x[static 3],
                      double y[static 3])
 {

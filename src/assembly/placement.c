@@ -191,7 +191,7 @@ static void derive_pose(const link *at, const placement *place,
 {
     const placement *a = &place[at->body[0]];
     const placement *b = &place[at->body[1]];
-    double there[3], seen[3];
+    double there[3], seen[3], back[9];
 
     ritz_turn_apply(b->R, at->far, there);
     for (int i = 0; i < 3; i++)
@@ -199,7 +199,8 @@ static void derive_pose(const link *at, const placement *place,
     ritz_turn_back(a->R, there, seen);
     for (int i = 0; i < 3; i++) /* near is o_A + d of the settings */
         pose->d[i] += seen[i] - at->near[i];
-    ritz_turn_between(a->R, b->R, pose->R);
+    transpose_rotation(a->R, back);
+    ritz_turn_product(back, b->R, pose->R);
 }
 
 static ritz_status close_joint(const ritz_stage *stage, int64_t j,

@@ -675,10 +675,10 @@ void ritz_comparison_free(ritz_comparison *comparison)
         RITZ_FREE(comparison->row[k].setting, comparison->row[k].kept,
                   comparison->row[k].stray);
     RITZ_FREE_EACH(ritz_dense, comparison->num_bodies, comparison->V);
-    RITZ_FREE(comparison->row, comparison->candidate);
     for (int64_t k = 0; comparison->candidate && k < comparison->num_candidates;
          k++)
         free(comparison->candidate[k].order);
+    RITZ_FREE(comparison->row, comparison->candidate);
     ritz_stage_free(&comparison->second);
     ritz_system_free(&comparison->first_system);
     ritz_system_free(&comparison->second_system);

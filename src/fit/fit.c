@@ -375,10 +375,10 @@ static ritz_status approach_order(ritz_fitter *fitter, int64_t order,
         ritz_fit_rung(fitter, asked, t, modes);
         RITZ_CHECK(ritz_fit_visit(fitter, fit, method, modes, &at));
         c = &fit->candidate[at];
-        if (ritz_fit_was_made(c) && c->order <= order) {
+        if (!c->refusal[0] && c->order <= order) {
             low = t;
             met = true;
-        } else if (ritz_fit_was_made(c) || met || c->order > fitter->largest) {
+        } else if (!c->refusal[0] || met || c->order > fitter->largest) {
             high = t;
         } else {
             low = t; /* refused for being too small, perhaps */

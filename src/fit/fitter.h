@@ -248,9 +248,6 @@ ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
 ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                            const int64_t *modes, int64_t *at);
 
-/** Whether it was made, and not refused. */
-bool ritz_fit_was_made(const ritz_fit_candidate *candidate);
-
 /** One candidate more, moved into the list. */
 ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate);
 

@@ -32,11 +32,6 @@ enum { MOST_REFUSED = 4 };
    is better has so much of the error, or less. */
 enum { MOST_FLAT = 2 };
 
-bool ritz_fit_was_made(const ritz_fit_candidate *c)
-{
-    return c->refusal[0] == '\0';
-}
-
 ritz_status ritz_fit_append(ritz_fit *fit, ritz_fit_candidate *candidate)
 {
     RITZ_CHECK_ROOM(fit->candidate, fit->count, fit->room);
@@ -90,7 +85,7 @@ int64_t ritz_fit_largest_of(const ritz_fit *fit, const ritz_method *method,
         const ritz_fit_candidate *c = &fit->candidate[k];
         const ritz_fit_candidate *b = best < 0 ? NULL : &fit->candidate[best];
 
-        if (c->method != method || !ritz_fit_was_made(c) || c->order > order)
+        if (c->method != method || c->refusal[0] || c->order > order)
             continue;
         if (!b || c->order > b->order ||
             (c->order == b->order && c->ratio < b->ratio))
@@ -113,7 +108,7 @@ void ritz_fit_conclude(ritz_fit *fit, int64_t method)
         if (c->feasible &&
             (best < 0 || ritz_fit_is_better(c, &fit->candidate[best])))
             fit->best[method] = k;
-        if (ritz_fit_was_made(c) &&
+        if (!c->refusal[0] &&
             (reached < 0 || ritz_fit_is_nearer(c, &fit->candidate[reached])))
             fit->reached[method] = k;
     }
@@ -290,7 +285,7 @@ static ritz_status climb_ladder(ladder *l, int64_t *low, int64_t *high)
         c = find_candidate(l, at);
         if (c->feasible) {
             *high = t;
-        } else if (ritz_fit_was_made(c)) {
+        } else if (!c->refusal[0]) {
             l->earlier = l->last;
             l->last = at;
             if (t > 4 && c->order == before) { /* it has no more to give */
@@ -320,7 +315,7 @@ static ritz_status climb_ladder(ladder *l, int64_t *low, int64_t *high)
         RITZ_CHECK(visit_rung(l, t, &at));
         if (find_candidate(l, at)->feasible)
             *high = t;
-        else if (ritz_fit_was_made(find_candidate(l, at)))
+        else if (!find_candidate(l, at)->refusal[0])
             *low = t;
         else
             wall = t;
