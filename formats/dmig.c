@@ -238,15 +238,6 @@ static ritz_status collect_dofs(const ritz_dmig_term *terms, int64_t count,
     return RITZ_OK;
 }
 
-static int64_t find_position(ritz_dof wanted, int64_t count,
-                             const ritz_dof *dof)
-{
-    const ritz_dof *found =
-        bsearch(&wanted, dof, (size_t)count, sizeof wanted, ritz_dof_compare);
-
-    return found - dof;
-}
-
 /* The matrix of a header and its sorted terms. */
 static ritz_status make_matrix(const ritz_dmig_header *owner,
                                const ritz_dmig_term *terms, ritz_matrix *out)
@@ -273,10 +264,13 @@ static ritz_status make_matrix(const ritz_dmig_header *owner,
     RITZ_CHECK(ritz_triplets_reserve(&list, owner->count));
     for (int64_t k = 0; k < owner->count; k++) {
         const ritz_dmig_term *one = &terms[k];
-        int64_t i = find_position(one->row, nrow, new.row);
-        int64_t j = find_position(one->col, ncol, square ? new.row : new.col);
+        const ritz_dof *cols = square ? new.row : new.col;
+        const ritz_dof *row = bsearch(&one->row, new.row, (size_t)nrow,
+                                      sizeof *row, ritz_dof_compare);
+        const ritz_dof *col = bsearch(&one->col, cols, (size_t)ncol,
+                                      sizeof *col, ritz_dof_compare);
 
-        ritz_triplets_put(&list, i, j, one->re, one->im);
+        ritz_triplets_put(&list, row - new.row, col - cols, one->re, one->im);
     }
     RITZ_CHECK(ritz_triplets_compress(&list, nrow, ncol, &new));
     if (new.symmetric) /* one triangle is given */
@@ -297,22 +291,19 @@ static int compare_terms(const void *a, const void *b)
     return order ? order : ritz_cards_compare_ids(&left->line, &right->line);
 }
 
-static void swap_to_lower(ritz_dmig_term *one)
-{
-    ritz_dof row = one->row;
-
-    if (ritz_dof_compare(&one->row, &one->col) < 0) {
-        one->row = one->col;
-        one->col = row;
-    }
-}
-
 /* Terms of a symmetric matrix all to the lower triangle; sorted. */
 static void sort_terms(const ritz_dmig_header *owner, ritz_dmig_cards *all)
 {
-    for (int64_t k = 0; k < all->num_terms; k++)
-        if (owner->form == RITZ_DMIG_SYMMETRIC)
-            swap_to_lower(&all->term[k]);
+    for (int64_t k = 0; k < all->num_terms; k++) {
+        ritz_dmig_term *one = &all->term[k];
+        ritz_dof row = one->row;
+
+        if (owner->form != RITZ_DMIG_SYMMETRIC ||
+            ritz_dof_compare(&one->row, &one->col) >= 0)
+            continue;
+        one->row = one->col;
+        one->col = row;
+    }
     if (all->num_terms > 1)
         qsort(all->term, (size_t)all->num_terms, sizeof *all->term,
               compare_terms);
@@ -395,19 +386,15 @@ static ritz_status read_matrix(const ritz_foreign *file,
     return make_matrix(header, all.term, out);
 }
 
-/* True if a line begins with the word DMIG, in any case. */
-static bool is_dmig(const char *line, int64_t length)
-{
-    return length > 4 && strncasecmp(line, "DMIG", 4) == 0 && line[4] &&
-           strchr(" *,\t", line[4]);
-}
-
+/* A line must begin with the word DMIG, in any case. */
 static bool recognise_dmig(const char *bytes, int64_t size)
 {
     ritz_lines text = {.at = bytes, .end = bytes + size};
 
     while (ritz_lines_next(&text))
-        if (is_dmig(text.line, text.line_end - text.line))
+        if (text.line_end - text.line > 4 && text.line[4] &&
+            strncasecmp(text.line, "DMIG", 4) == 0 &&
+            strchr(" *,\t", text.line[4]))
             return true;
     return false;
 }

@@ -73,22 +73,16 @@ static ritz_status write_table(const ritz_export_object *object,
                                const ritz_export_request *request,
                                ritz_export_report *report)
 {
-    const ritz_response *response = object->response;
-    const ritz_simulation *simulation = object->simulation;
+    const ritz_response *r = object->response;
+    const ritz_simulation *s = object->simulation;
 
-    if (simulation) {
-        RITZ_CHECK(
-            ritz_sink_write(request->output, print_simulation, simulation));
-        return ritz_export_say(report, "%lld times, %lld outputs, %lld inputs",
-                               (long long)simulation->count,
-                               (long long)simulation->num_outputs,
-                               (long long)simulation->num_inputs);
-    }
-    RITZ_CHECK(ritz_sink_write(request->output, print_response, response));
-    return ritz_export_say(
-        report, "%lld frequencies, %lld outputs, %lld inputs",
-        (long long)response->count, (long long)response->num_outputs,
-        (long long)response->num_inputs);
+    RITZ_CHECK(s ? ritz_sink_write(request->output, print_simulation, s)
+                 : ritz_sink_write(request->output, print_response, r));
+    return ritz_export_say(report, "%lld %s, %lld outputs, %lld inputs",
+                           (long long)(s ? s->count : r->count),
+                           s ? "times" : "frequencies",
+                           (long long)(s ? s->num_outputs : r->num_outputs),
+                           (long long)(s ? s->num_inputs : r->num_inputs));
 }
 
 const ritz_exporter ritz_exporter_tsv = {

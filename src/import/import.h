@@ -33,30 +33,8 @@ typedef struct ritz_row_names {
     bool whole; /* all dofs of the deck, its dependent ones among them */
 } ritz_row_names;
 
-/* Rows by name: sorted, so that a name is found in O(log n). */
-typedef struct ritz_row_place {
-    ritz_dof dof;
-    int64_t row;
-} ritz_row_place;
-
-typedef struct ritz_roster {
-    int64_t count;
-    ritz_row_place *place;
-} ritz_roster;
-
-/** Roster of @p count dofs; a repeated one is refused. */
-ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
-                            ritz_roster *out);
-
-/** Row of a dof, -1 if there is none. */
-int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof);
-
-/** First place whose grid is not below @p grid; count if there is none. */
-int64_t ritz_roster_from(const ritz_roster *roster, int64_t grid);
-
 /** Refuse a dof that does not exist, and name the nearest one. */
 ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof);
-void ritz_roster_free(ritz_roster *roster);
 
 /** Name the rows of all parts, and give each part its places. */
 ritz_status ritz_names_find(const ritz_import_request *request,

@@ -9,59 +9,6 @@
 
 /* ---- rows by name ------------------------------------------------------- */
 
-static int compare_places(const void *left, const void *right)
-{
-    const ritz_row_place *a = left;
-    const ritz_row_place *b = right;
-
-    return ritz_dof_compare(&a->dof, &b->dof);
-}
-
-ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
-                            ritz_roster *out)
-{
-    RITZ_OWN(ritz_roster) roster = {.count = count};
-    char name[RITZ_DOF_NAME_SIZE];
-
-    RITZ_CHECK_NEW(roster.place, count);
-    for (int64_t k = 0; k < count; k++)
-        roster.place[k] = (ritz_row_place){dof[k], k};
-    qsort(roster.place, (size_t)count, sizeof *roster.place, compare_places);
-    for (int64_t k = 1; k < count; k++)
-        RITZ_REFUSE_IF(compare_places(&roster.place[k - 1], &roster.place[k]) ==
-                           0,
-                       RITZ_ERR_FORMAT, "%s has two rows",
-                       ritz_dof_name(roster.place[k].dof, name));
-    RITZ_MOVE(*out, roster);
-    return RITZ_OK;
-}
-
-int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof)
-{
-    const ritz_row_place wanted = {.dof = dof};
-    const ritz_row_place *found =
-        bsearch(&wanted, roster->place, (size_t)roster->count,
-                sizeof *roster->place, compare_places);
-
-    return found ? found->row : -1;
-}
-
-int64_t ritz_roster_from(const ritz_roster *roster, int64_t grid)
-{
-    int64_t low = 0;
-    int64_t high = roster->count;
-
-    while (low < high) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (roster->place[middle].dof.grid < grid)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* Nearest grid by number; the roster is not empty. */
 static int64_t nearest_grid(const ritz_roster *roster, int64_t grid)
 {
@@ -88,12 +35,6 @@ ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof)
                          dof.grid, nearest_grid(roster, dof.grid));
     return ritz_fail(RITZ_ERR_ARGUMENT, "there is no '%s' among the dofs",
                      ritz_dof_name(dof, name));
-}
-
-void ritz_roster_free(ritz_roster *roster)
-{
-    free(roster->place);
-    *roster = (ritz_roster){0};
 }
 
 /* ---- names of a deck and of a file -------------------------------------- */
@@ -294,7 +235,7 @@ static int compare_lines(const void *left, const void *right)
 {
     const ritz_row_place *a = left;
     const ritz_row_place *b = right;
-    int order = compare_places(a, b);
+    int order = ritz_dof_compare(&a->dof, &b->dof);
 
     return order ? order : (a->row > b->row) - (a->row < b->row);
 }
@@ -308,7 +249,7 @@ static ritz_status check_distinct(const char *path, const ritz_roster *named)
           compare_lines);
     for (int64_t k = 1; k < named->count; k++)
         RITZ_REFUSE_IF(
-            compare_places(&named->place[k - 1], &named->place[k]) == 0,
+            ritz_dof_compare(&named->place[k - 1], &named->place[k]) == 0,
             RITZ_ERR_FORMAT,
             "'%s', line %" PRId64 ": '%s' was named at line %" PRId64
             " already",

@@ -1,6 +1,7 @@
 #include "base/alloc.h"
 #include "base/text.h"
 #include "base/tolerances.h"
+#include "model/equations.h"
 
 #include <ritz/model.h>
 
@@ -81,26 +82,18 @@ static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
 static ritz_status check_dofs(const ritz_component *component)
 {
     int64_t n = component->num_dofs;
-    RITZ_OWN_ARRAY ritz_dof *sorted = NULL;
-    char name[RITZ_DOF_NAME_SIZE];
+    RITZ_OWN(ritz_roster) roster = {0};
 
     RITZ_REFUSE_IF(n > 0 && !component->dof, RITZ_ERR_FORMAT,
                    "rows have no names");
-    RITZ_CHECK_NEW(sorted, n);
-    for (int64_t k = 0; k < n; k++) {
-        sorted[k] = component->dof[k];
-        RITZ_REFUSE_IF(sorted[k].component < 0 || sorted[k].component > 6,
+    for (int64_t k = 0; k < n; k++)
+        RITZ_REFUSE_IF(component->dof[k].component < 0 ||
+                           component->dof[k].component > 6,
                        RITZ_ERR_FORMAT,
                        "row %" PRId64 " has direction %" PRId64
                        ", which is not among 0 to 6",
-                       k + 1, sorted[k].component);
-    }
-    qsort(sorted, (size_t)n, sizeof *sorted, ritz_dof_compare);
-    for (int64_t k = 1; k < n; k++)
-        RITZ_REFUSE_IF(ritz_dof_compare(&sorted[k - 1], &sorted[k]) == 0,
-                       RITZ_ERR_FORMAT, "%s has two rows",
-                       ritz_dof_name(sorted[k], name));
-    return RITZ_OK;
+                       k + 1, component->dof[k].component);
+    return ritz_roster_new(n, component->dof, &roster);
 }
 
 static ritz_status check_grids(const ritz_grids *grids)

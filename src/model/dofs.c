@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "model/equations.h"
 
 #include <ritz/model.h>
 
@@ -77,4 +78,57 @@ void ritz_dofs_free(ritz_dofs *set)
 {
     free(set->at);
     *set = (ritz_dofs){0};
+}
+
+/* ---- rows by name ------------------------------------------------------- */
+
+ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
+                            ritz_roster *out)
+{
+    RITZ_OWN(ritz_roster) roster = {.count = count};
+    char name[RITZ_DOF_NAME_SIZE];
+
+    RITZ_CHECK_NEW(roster.place, count);
+    for (int64_t k = 0; k < count; k++)
+        roster.place[k] = (ritz_row_place){dof[k], k};
+    qsort(roster.place, (size_t)count, sizeof *roster.place, ritz_dof_compare);
+    for (int64_t k = 1; k < count; k++)
+        RITZ_REFUSE_IF(
+            ritz_dof_compare(&roster.place[k - 1], &roster.place[k]) == 0,
+            RITZ_ERR_FORMAT, "%s has two rows",
+            ritz_dof_name(roster.place[k].dof, name));
+    RITZ_MOVE(*out, roster);
+    return RITZ_OK;
+}
+
+int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof)
+{
+    const ritz_row_place wanted = {.dof = dof};
+    const ritz_row_place *found =
+        bsearch(&wanted, roster->place, (size_t)roster->count,
+                sizeof *roster->place, ritz_dof_compare);
+
+    return found ? found->row : -1;
+}
+
+int64_t ritz_roster_from(const ritz_roster *roster, int64_t grid)
+{
+    int64_t low = 0;
+    int64_t high = roster->count;
+
+    while (low < high) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (roster->place[middle].dof.grid < grid)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void ritz_roster_free(ritz_roster *roster)
+{
+    free(roster->place);
+    *roster = (ritz_roster){0};
 }

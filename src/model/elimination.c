@@ -309,33 +309,17 @@ static ritz_status settle_circle(eliminator *s, int64_t count,
 
 /* ---- names ------------------------------------------------------------- */
 
-typedef struct place {
-    ritz_dof dof;
-    int64_t row;
-} place;
-
-static int compare_places(const void *left, const void *right)
-{
-    const place *a = left;
-    const place *b = right;
-
-    return ritz_dof_compare(&a->dof, &b->dof);
-}
-
-static ritz_status find_place(const eliminator *s, const place *sorted,
+static ritz_status find_place(const eliminator *s, const ritz_roster *roster,
                               ritz_dof dof, int64_t source, int64_t *out)
 {
-    const place wanted = {.dof = dof};
-    const place *found = bsearch(&wanted, sorted, (size_t)s->num_all,
-                                 sizeof *sorted, compare_places);
     char name[RITZ_DOF_NAME_SIZE];
     char cited[RITZ_CITATION_SIZE];
 
-    RITZ_REFUSE_IF(!found, RITZ_ERR_FORMAT,
+    *out = ritz_roster_row(roster, dof);
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FORMAT,
                    "%s names '%s', which is not among the dofs",
                    ritz_equations_cite(s->equations, source, cited),
                    ritz_dof_name(dof, name));
-    *out = found->row;
     return RITZ_OK;
 }
 
@@ -358,7 +342,7 @@ static ritz_status refuse_second(const eliminator *s, int64_t first,
 }
 
 /* Each dof is dependent once, and is not held. */
-static ritz_status name_dependents(eliminator *s, const place *sorted,
+static ritz_status name_dependents(eliminator *s, const ritz_roster *roster,
                                    const bool *fixed)
 {
     const ritz_equations *eq = s->equations;
@@ -368,7 +352,7 @@ static ritz_status name_dependents(eliminator *s, const place *sorted,
     for (int64_t e = 0; e < eq->count; e++) {
         int64_t k = 0;
 
-        RITZ_CHECK(find_place(s, sorted, eq->dependent[e], eq->source[e], &k));
+        RITZ_CHECK(find_place(s, roster, eq->dependent[e], eq->source[e], &k));
         if (s->equation[k] >= 0)
             RITZ_CHECK(refuse_second(s, s->equation[k], e));
         RITZ_REFUSE_IF(fixed && fixed[k], RITZ_ERR_FORMAT,
@@ -384,19 +368,16 @@ static ritz_status name_dependents(eliminator *s, const place *sorted,
 static ritz_status name_terms(eliminator *s, const bool *fixed)
 {
     const ritz_equations *eq = s->equations;
-    RITZ_OWN_ARRAY place *sorted = NULL;
+    RITZ_OWN(ritz_roster) roster = {0};
 
-    RITZ_CHECK_NEW(sorted, s->num_all);
-    for (int64_t k = 0; k < s->num_all; k++) {
-        sorted[k] = (place){s->dof[k], k};
+    for (int64_t k = 0; k < s->num_all; k++)
         s->equation[k] = -1;
-    }
-    qsort(sorted, (size_t)s->num_all, sizeof *sorted, compare_places);
-    RITZ_CHECK(name_dependents(s, sorted, fixed));
+    RITZ_CHECK(ritz_roster_new(s->num_all, s->dof, &roster));
+    RITZ_CHECK(name_dependents(s, &roster, fixed));
     for (int64_t e = 0; e < eq->count; e++)
         for (int64_t k = eq->first[e]; k < eq->first[e + 1]; k++)
             RITZ_CHECK(
-                find_place(s, sorted, eq->dof[k], eq->source[e], &s->at[k]));
+                find_place(s, &roster, eq->dof[k], eq->source[e], &s->at[k]));
     return RITZ_OK;
 }
 

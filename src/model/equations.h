@@ -1,11 +1,33 @@
 /*
  * Constraint equations, made term by term and eliminated; the ties between dofs
- * of rigid bodies and averages that state them; and grids as points.
+ * of rigid bodies and averages that state them; grids as points; rows by name.
  */
 #ifndef RITZ_MODEL_EQUATIONS_H
 #define RITZ_MODEL_EQUATIONS_H
 
 #include <ritz/model.h>
+
+/* Rows by name: sorted, so that a name is found in O(log n). */
+typedef struct ritz_row_place {
+    ritz_dof dof; /* first: places are compared as dofs are */
+    int64_t row;
+} ritz_row_place;
+
+typedef struct ritz_roster {
+    int64_t count;
+    ritz_row_place *place;
+} ritz_roster;
+
+/** Roster of @p count dofs; a repeated one is refused. */
+ritz_status ritz_roster_new(int64_t count, const ritz_dof *dof,
+                            ritz_roster *out);
+
+/** Row of a dof, -1 if there is none. */
+int64_t ritz_roster_row(const ritz_roster *roster, ritz_dof dof);
+
+/** First place whose grid is not below @p grid; count if there is none. */
+int64_t ritz_roster_from(const ritz_roster *roster, int64_t grid);
+void ritz_roster_free(ritz_roster *roster);
 
 /** What follows is stated by @p from. */
 ritz_status ritz_equations_cite_next(ritz_equations *equations,
