@@ -460,7 +460,7 @@ static ritz_status take_cell(const ritz_card *card, const bulk_cell *cell,
                              int64_t *room, ritz_deck *out)
 {
     ritz_elements *all = &out->elements;
-    int64_t grid[MOST_GRIDS];
+    int64_t grid[MOST_GRIDS] = {0};
     int64_t corners = ritz_cell_shape_of(cell->kind)->size;
     int64_t most = cell->full ? ritz_cell_shape_of(cell->full)->size : corners;
     int64_t count = take_grids(card, cell, most, grid);

@@ -236,14 +236,15 @@ static ritz_status take_named(ritz_foreign *file, const char *spec_text,
 
 /* ---- several ------------------------------------------------------------ */
 
-ritz_status ritz_file_sums_add(ritz_file_sums *sums, const ritz_foreign *file)
+ritz_status ritz_file_sums_add(ritz_file_sums *sums, const char *path,
+                               const char digest[RITZ_DIGEST_SIZE])
 {
     ritz_file_sum *sum = NULL;
 
     RITZ_CHECK_ROOM(sums->sum, sums->count, sums->room);
     sum = &sums->sum[sums->count];
-    RITZ_CHECK_COPY(sum->path, file->path, (int64_t)strlen(file->path) + 1);
-    memcpy(sum->digest, file->digest, sizeof file->digest);
+    RITZ_CHECK_COPY(sum->path, path, (int64_t)strlen(path) + 1);
+    memcpy(sum->digest, digest, RITZ_DIGEST_SIZE);
     sums->count++;
     return RITZ_OK;
 }
@@ -257,12 +258,12 @@ void ritz_file_sums_free(ritz_file_sums *sums)
 }
 
 /* True if a spec names a matrix of the file that is open. */
-static bool is_of_file(const ritz_foreign *file, const char *spec_text)
+static bool is_of_file(const char *path, const char *spec_text)
 {
     spec s = split_spec(spec_text);
 
-    return strlen(file->path) == (size_t)s.path &&
-           memcmp(file->path, spec_text, (size_t)s.path) == 0;
+    return strlen(path) == (size_t)s.path &&
+           memcmp(path, spec_text, (size_t)s.path) == 0;
 }
 
 static ritz_status add_context(const char *what, ritz_status status)
@@ -281,9 +282,9 @@ static ritz_status take_of_file(int64_t k, int64_t count,
     RITZ_CHECK(ritz_foreign_path(wanted[k].spec, &path));
     RITZ_CHECK(add_context(wanted[k].what, ritz_foreign_open(path, &file)));
     if (sums)
-        RITZ_CHECK(ritz_file_sums_add(sums, &file));
+        RITZ_CHECK(ritz_file_sums_add(sums, path, file.digest));
     for (; k < count; k++) {
-        if (taken[k] || !is_of_file(&file, wanted[k].spec))
+        if (taken[k] || !is_of_file(path, wanted[k].spec))
             continue;
         taken[k] = true;
         RITZ_CHECK(add_context(

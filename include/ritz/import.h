@@ -108,7 +108,8 @@ typedef struct ritz_file_sums {
 } ritz_file_sums;
 
 /** Append a file. */
-ritz_status ritz_file_sums_add(ritz_file_sums *sums, const ritz_foreign *file);
+ritz_status ritz_file_sums_add(ritz_file_sums *sums, const char *path,
+                               const char digest[RITZ_DIGEST_SIZE]);
 void ritz_file_sums_free(ritz_file_sums *sums);
 
 /* The matrix that "FILE[:NAME[#K]]" names: without a name the only one; the

@@ -185,7 +185,7 @@ static ritz_status take_file(const char *text, ritz_file_sums *sums, parts *out)
     RITZ_CHECK(ritz_foreign_path(text, &path));
     RITZ_CHECK(ritz_foreign_open(path, &file));
     if (sums)
-        RITZ_CHECK(ritz_file_sums_add(sums, &file));
+        RITZ_CHECK(ritz_file_sums_add(sums, path, file.digest));
     RITZ_CHECK(ritz_foreign_context(&file, ritz_foreign_list(&file)));
     if (strlen(path) < strlen(text))
         snprintf(stem, sizeof stem, "%s", text + strlen(path) + 1);
