@@ -67,13 +67,12 @@ int main(int argc, char **argv)
         .summary = "Join the components of a scene, each reduced as the scene "
                    "says, at its configurations.",
         .example = "ritz-assemble scene.yaml --at clock=60,cone=0 -o at60.h5",
-        .options = options,
         .output = "the system; with --full a component",
         .threads = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     if (full && tracks)
         cli_refuse(&program, "--full makes one component, whose modes are not "
                              "followed by --tracks");

@@ -39,14 +39,13 @@ int main(int argc, char **argv)
                    "modes of a free component\nare kept in addition to the "
                    "flexible vectors.",
         .example = "ritz-basis craig-bampton --modes 12 blade.h5 -o basis.h5",
-        .options = options,
         .output = "the basis",
         .threads = true,
     };
     cli_run run;
 
     words_add(&choice, 0, options + NUM_OWN);
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     given.method = cli_choose(&program, "method", run.operand[0], ritz_methods);
     if (given.ports && !(given.method->uses & RITZ_USES_ATTACHED))
         cli_refuse(&program,

@@ -89,12 +89,11 @@ int main(int argc, char **argv)
                    "network.",
         .example = "ritz-chart report runs.jsonl ranking.h5 full.h5 "
                    "reduced.h5 -o report.html",
-        .options = options,
         .output = "the picture, NAME.svg, or the page, NAME.html",
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     request.path = run.output;
     return cli_finish(
         &run, draw_chart(&run, find_chart(&program, *run.operand), &request));

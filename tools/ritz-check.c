@@ -19,13 +19,12 @@ int main(int argc, char **argv)
                    "springs. Status 1 if one check fails; warnings do not "
                    "fail.",
         .example = "ritz-check blade.h5",
-        .options = options,
         .output = "write the table there too",
         .output_optional = true,
         .threads = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, checks_run(&run));
 }

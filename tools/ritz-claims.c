@@ -88,12 +88,11 @@ int main(int argc, char **argv)
                    "numbers, each with its tolerance\nand its source. A line "
                    "for each; status 1 if one does not hold.",
         .example = "ritz-claims tests/claims/*.claims",
-        .options = options,
         .output = "nothing: what is claimed is said, not written",
         .output_optional = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, run_files(&run, data));
 }

@@ -54,13 +54,12 @@ int main(int argc, char **argv)
                    "what\nwas reduced, how far, and how wrong it is.",
         .example = "ritz-compare scene.yaml --components small- --report "
                    "report.txt -o system.h5",
-        .options = options,
         .output = "the system of the second stage",
         .threads = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     if (given.tolerance_table && !tolerances)
         tolerances = "1e-12,1e-10,1e-8,1e-6,1e-5,1e-4,1e-3,1e-2";
     if (tolerances)

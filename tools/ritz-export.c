@@ -46,12 +46,11 @@ int main(int argc, char **argv)
                    "as a table, and say what\nis known of its errors and "
                    "whether it is stable.",
         .example = "ritz-export blade-verified.h5 --to exudyn -o blade.hdf5",
-        .options = options,
         .output = "the file in that format",
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     if (!to)
         cli_refuse(&program, "no format, name it with --to; --list shows all");
     given.exporter = cli_choose(&program, "format", to, ritz_exporters);

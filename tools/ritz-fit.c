@@ -65,7 +65,6 @@ int main(int argc, char **argv)
                    "frequencies and configurations; say why it is that one.",
         .example = "ritz-fit blade.h5 --tolerance response=1e-2,frequency=1e-3 "
                    "--band-hz 0,50 -o small.h5",
-        .options = options,
         .output = "the nested reduced component, or the system of a scene",
         .output_optional = true,
         .threads = true,
@@ -73,7 +72,7 @@ int main(int argc, char **argv)
     cli_run run;
 
     words_add(&choice, RITZ_USES_DAMPING | RITZ_USES_BAND, options + NUM_OWN);
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     words_take(&program, &choice, &r->choice);
     return cli_finish(&run, fit_search(&run, &given));
 }

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const cli_program about = {
+static const cli_program program = {
     .name = "ritz-frf",
     .operands = {{"FILE",
                   "a component, reduced component, system or state space",
@@ -62,10 +62,8 @@ int main(int argc, char **argv)
                  "compute the response even if the loop is unstable"),
         {0},
     };
-    cli_program program = about;
     cli_run run;
 
-    program.options = options;
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, responses_run(&run, &given));
 }

@@ -1,7 +1,7 @@
 /* ritz-import - matrices and geometry of an FE code become a component. */
 #include "print/print.h"
 
-static const cli_program about = {
+static const cli_program program = {
     .name = "ritz-import",
     .summary = "Matrices and geometry of a finite-element code become a "
                "component.",
@@ -53,10 +53,8 @@ int main(int argc, char **argv)
                  "average away any asymmetry, not only up to 1e-6"),
         {0},
     };
-    cli_program program = about;
     cli_run run;
 
-    program.options = options;
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, import_run(&run, &given));
 }

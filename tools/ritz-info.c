@@ -73,12 +73,11 @@ int main(int argc, char **argv)
         .summary = "What is in a file: sizes, names, frequencies, checksums, "
                    "how it was made.",
         .example = "ritz-info --json blade.h5",
-        .options = options,
         .output = "write the text there too",
         .output_optional = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, describe_files(&run, members, directory));
 }

@@ -28,14 +28,13 @@ int main(int argc, char **argv)
                    "and the best c of dampers.",
         .example = "ritz-poles chain.h5 --damper top=150*-200 --scan "
                    "top,middle=0:1000:10 --mode 2",
-        .options = options,
         .output = "write the text there too",
         .output_optional = true,
         .threads = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     if (given.modes > 0 && given.up_to_hz > 0.0)
         cli_refuse(&program, "--modes and --up-to-hz are two ways to say the "
                              "same");

@@ -60,13 +60,12 @@ int main(int argc, char **argv)
                    "the exact Hankel values of the whole model.",
         .example = "ritz-rank system.h5 --at clock=60,cone=0 --by "
                    "gregory,modal-cost --damping \"modal 0.002\"",
-        .options = options,
         .output = "the rankings, as a container",
         .output_optional = true,
         .threads = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, rank_run(&run, &given));
 }

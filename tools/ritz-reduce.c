@@ -20,13 +20,12 @@ int main(int argc, char **argv)
         .summary = "Project a component on a basis; estimate the errors; "
                    "state its mass properties.",
         .example = "ritz-reduce blade.h5 basis.h5 -o blade-reduced.h5",
-        .options = options,
         .output = "the reduced component; the state space, of states or of "
                   "vectors on two sides",
         .threads = true,
     };
     cli_run run;
 
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, reduce_run(&run, &given));
 }

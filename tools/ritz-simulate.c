@@ -10,7 +10,7 @@ static void list_integrators(void)
                (*i)->dissipation, (*i)->fails, (*i)->reference);
 }
 
-static const cli_program about = {
+static const cli_program program = {
     .name = "ritz-simulate",
     .operands = {{"FILE",
                   "a component, reduced component, system or state space",
@@ -63,11 +63,8 @@ int main(int argc, char **argv)
                    "fail"),
         {0},
     };
-    cli_program program = about;
-
     cli_run run;
 
-    program.options = options;
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, simulation_run(&run, &given));
 }

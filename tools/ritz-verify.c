@@ -43,13 +43,12 @@ int main(int argc, char **argv)
                    "not met (status 1), so that the file says so.",
         .example = "ritz-verify blade.h5 blade-reduced.h5 --limit-frequency "
                    "1e-3 -o blade-verified.h5",
-        .options = options,
         .output = "REDUCED with its errors",
         .threads = true,
     };
     cli_run run;
 
     add_limits(&given.verify, name, options + OWN_OPTIONS);
-    cli_parse(&program, argc, argv, &run);
+    cli_parse(&program, options, argc, argv, &run);
     return cli_finish(&run, verify_run(&run, &given));
 }

@@ -12,12 +12,11 @@
 enum { MAX_OPTIONS = 32, EXIT_USAGE = 2, WORD = 32 };
 
 /* The tool's own options, then those that every tool has; ended by {0}. */
-static void gather_options(const cli_program *program, cli_run *run,
-                           cli_option *all)
+static void gather_options(cli_run *run, cli_option *all)
 {
     const cli_option common[] = {
         CLI_ROW(TEXT, text, 'o', "output", &run->output, "FILE", 0.0, 0.0,
-                program->output),
+                run->program->output),
         CLI_ROW(FLAG, flag, 'q', "quiet", &run->quiet, NULL, 0.0, 0.0,
                 "print nothing but errors"),
         CLI_FLAG("json", &run->json, "print one JSON object instead of text"),
@@ -31,11 +30,11 @@ static void gather_options(const cli_program *program, cli_run *run,
     };
     int count = 0;
 
-    while (program->options[count].kind != CLI_KIND_END)
+    while (run->options[count].kind != CLI_KIND_END)
         count++;
     if (count + (int)(sizeof common / sizeof *common) > MAX_OPTIONS)
         abort();
-    memcpy(all, program->options, (size_t)count * sizeof *all);
+    memcpy(all, run->options, (size_t)count * sizeof *all);
     memcpy(all + count, common, sizeof common);
 }
 
@@ -420,13 +419,15 @@ static void occupy_streams(void)
         close(file);
 }
 
-void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
+void cli_parse(const cli_program *program, const cli_option *options, int argc,
+               char **argv, cli_run *run)
 {
     cli_option all[MAX_OPTIONS] = {{0}};
 
     occupy_streams();
     *run = (cli_run){
         .program = program,
+        .options = options,
         .argv = argv,
         .operand = calloc((size_t)argc + 1, sizeof *run->operand),
         .report = json_pack("{s:s, s:s}", "tool", program->name, "version",
@@ -438,7 +439,7 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run)
         cli_table_new(&run->said) != RITZ_OK)
         cli_refuse(program, "no memory");
     keep_command(run, argc, argv);
-    gather_options(program, run, all);
+    gather_options(run, all);
     take_all(run, all, argc, argv);
     check_operands(run);
     if (run->output ? !*run->output : !program->output_optional)

@@ -119,15 +119,15 @@ typedef struct cli_program {
     cli_operand operands[CLI_MAX_OPERANDS];
     const char *summary;
     const char *example;
-    const cli_option *options; /* its own, ended by {0} */
-    const char *output;        /* what -o is */
-    bool output_optional;      /* works without -o */
-    bool threads;              /* does long work: see cli_parse */
+    const char *output;   /* what -o is */
+    bool output_optional; /* works without -o */
+    bool threads;         /* does long work: see cli_parse */
 } cli_program;
 
 /* One run: what the command line said, and what is to be reported. */
 typedef struct cli_run {
     const cli_program *program;
+    const cli_option *options; /* of the program alone */
     int num_operands;
     char **operand;
     char **argv;
@@ -156,7 +156,8 @@ typedef struct cli_run {
  * signal that ends the program leaves no unfinished file, and long work shows
  * its progress on a terminal.
  */
-void cli_parse(const cli_program *program, int argc, char **argv, cli_run *run);
+void cli_parse(const cli_program *program, const cli_option *options, int argc,
+               char **argv, cli_run *run);
 
 /** End the program with status 2: the command line makes no sense. */
 [[gnu::format(printf, 2, 3)]] _Noreturn void

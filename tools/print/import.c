@@ -211,18 +211,18 @@ static bool is_given(const cli_option *option)
 }
 
 /* A state space has neither rows with names nor ports. */
-static void refuse_others(const cli_program *program)
+static void refuse_others(const cli_run *run)
 {
     static const char *const own[] = {"state-space", "input-names",
                                       "output-names", "units"};
 
-    for (const cli_option *o = program->options; o->kind != CLI_KIND_END; o++) {
+    for (const cli_option *o = run->options; o->kind != CLI_KIND_END; o++) {
         bool other = is_given(o);
 
         for (size_t k = 0; k < sizeof own / sizeof *own; k++)
             other = other && strcmp(o->name, own[k]) != 0;
         if (other)
-            cli_refuse(program,
+            cli_refuse(run->program,
                        "--state-space is a whole model, --%s is not for it",
                        o->name);
     }
@@ -233,7 +233,7 @@ ritz_status import_run(cli_run *run, import_options *given)
     const cli_program *program = run->program;
 
     if (given->space.matrices) {
-        refuse_others(program);
+        refuse_others(run);
         given->space.units = given->request.units;
         return import_states(run, &given->space);
     }
