@@ -11,7 +11,8 @@
  * which contracts by s / (lambda + s) for every mode lambda that was left out.
  * F' Psi = Psi' K Psi is the residual flexibility: columns that are dependent
  * by it, or negligible relative to the flexibility of the kept modes, are
- * removed.
+ * removed. With T = [Phi, Psi], T'KT and T'MT are block diagonal, and the
+ * flexible static response to F at the loaded dofs is exact.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -225,17 +226,6 @@ static ritz_status choose_independent(const double *response, double tolerance,
         set->keep[order[k]] = true;
     return RITZ_OK;
 }
-
-/*
- * The basis of free-interface methods: with the lowest modes of (K, M), rigid
- * ones first, and residual modes of loads F,
- *
- *     K Phi = M Phi Lambda,   Phi' M Phi = I,
- *     K Psi = (I - M Phi Phi') F,   Phi' M Psi = 0,   T = [Phi, Psi]
- *
- * so that T'KT and T'MT are block diagonal, and the flexible static response to
- * F at the loaded dofs is exact.
- */
 
 /*
  * The lowest modes as the request says, and residual modes of the loads, if

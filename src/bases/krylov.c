@@ -543,16 +543,9 @@ ritz_status ritz_krylov_join(const ritz_krylov *S, ritz_basis *out)
 }
 
 /*
- * Krylov reduction: rigid modes and block Krylov vectors of the undamped
- * structure, started by its static response to the loads F,
- *
- *     span V = span of (A^-1 M)^j A^-1 F,  j = 0, 1, ...,   A = K - sigma M
- *
- * about every expansion point sigma [CraigSuKim1992, sec. 2; McDaniel2000, sec.
- * 3.2.3]. If the inputs B are among the loads, the moments C (A^-1 M)^j A^-1 B
- * of the first k blocks are kept, j < k; if the outputs are too, those of j < 2
- * k. About 0 Hz a free body has moments of its elastic part: the rigid modes are
- * decoupled first.
+ * Krylov reduction: rigid modes and block Krylov vectors as above, with inputs
+ * B and outputs C among the loads F [McDaniel2000, sec. 3.2.3]. About 0 Hz a
+ * free body has moments of its elastic part: rigid modes are decoupled first.
  *
  * tests/unit/bases/test_krylov.c holds the code to the published example of
  * [McDaniel2000], to moments about 0 Hz and elsewhere, and to the block

@@ -458,16 +458,10 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
 }
 
 /*
- * Balancing by square roots. With the factors of both Gramians
- *
- *     Z_o'E Z_c = U S V',   T = Z_c V S^-1/2,   W = Z_o U S^-1/2,
- *
- *     W'E T = I,   T'... of W_c = T S T', W_o = W S W' in the kept states
- *
- * so that both Gramians of the states W'E x are S: what is controllable by
- * little input and what is observable by little output stand in the same order.
- * A value no larger than the rounding of the product has no direction of its
- * own: T and W leave it out whatever was asked for. [Moore1981], [Tombs1987]
+ * Balancing by square roots: both Gramians of the states W'E x are S, so that
+ * what is controllable by little input and what is observable by little output
+ * stand in the same order. A value no larger than the rounding of the product
+ * has no direction of its own: T and W leave it out whatever was asked for.
  */
 
 static const ritz_dense *descriptor_times(const ritz_gramians *gramians)

@@ -17,7 +17,6 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
-#include "linear/arpack.h"
 #include "linear/general.h"
 
 #include <float.h>
