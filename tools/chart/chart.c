@@ -1,5 +1,7 @@
 #include "chart/chart.h"
 
+#include "base/alloc.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -93,8 +95,7 @@ ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
                        int holds, chart_sources *out)
 {
     out->run = run;
-    out->file = calloc((size_t)count + 1, sizeof *out->file);
-    RITZ_REFUSE_IF(!out->file, RITZ_ERR_MEMORY, "no memory for files");
+    RITZ_CHECK_NEW(out->file, count);
     for (out->count = 0; out->count < count;) {
         chart_file *file = &out->file[out->count];
 

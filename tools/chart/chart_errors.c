@@ -477,17 +477,12 @@ static ritz_status draw_errors(const chart_sources *sources,
 ritz_status chart_pareto(const chart_sources *sources,
                          const chart_request *request, picture *out)
 {
-    static const form reduce = {
-        .title = "Errors against the time to reduce",
-        .xlabel = "processor time to make basis and reduction",
-        .times = true,
-    };
-    static const form simulate = {
-        .title = "Errors against the cost of simulation",
-        .xlabel = "processor time for one simulated second",
-        .times = true,
-        .simulate = true,
-    };
+    static const form reduce = {"Errors against the time to reduce",
+                                "processor time to make basis and reduction",
+                                true, false};
+    static const form simulate = {"Errors against the cost of simulation",
+                                  "processor time for one simulated second",
+                                  true, true};
     const bool costs = request->against
                            ? strcmp(request->against, "simulate") == 0
                            : records_cost(&sources->runs);
@@ -498,8 +493,8 @@ ritz_status chart_pareto(const chart_sources *sources,
 ritz_status chart_convergence(const chart_sources *sources,
                               const chart_request *request, picture *out)
 {
-    static const form orders = {.title = "Errors against order",
-                                .xlabel = "order of the reduced model"};
+    static const form orders = {"Errors against order",
+                                "order of the reduced model", false, false};
 
     return draw_errors(sources, request, &orders, out);
 }

@@ -358,16 +358,12 @@ static ritz_status scale_channels(mac_pair *pair)
 
 static double mac_of(const mac_side *a, const mac_side *b, int64_t i, int64_t j)
 {
-    const double *u = ritz_dense_col(&a->U, i), *v = ritz_dense_col(&b->U, j);
-    const double *Mu = a->MU.val ? ritz_dense_col(&a->MU, i) : u;
-    const double *Mv = b->MU.val ? ritz_dense_col(&b->MU, j) : v;
-    double uv = 0.0, uu = 0.0, vv = 0.0;
+    const ritz_dense *Ma = a->MU.val ? &a->MU : &a->U;
+    const ritz_dense *Mb = b->MU.val ? &b->MU : &b->U;
+    const double uv = ritz_dense_dot(&a->U, i, Mb, j);
+    const double uu = ritz_dense_dot(&a->U, i, Ma, i);
+    const double vv = ritz_dense_dot(&b->U, j, Mb, j);
 
-    for (int64_t k = 0; k < a->U.nrow; k++) {
-        uv += u[k] * Mv[k];
-        uu += u[k] * Mu[k];
-        vv += v[k] * Mv[k];
-    }
     return uu > 0.0 && vv > 0.0 ? uv * uv / (uu * vv) : nan("");
 }
 

@@ -203,34 +203,12 @@ static void put_data(const track_table *t, picture *p)
                          "MAC below 0.9 to where the mode comes from");
 }
 
-static ritz_status draw_tracks(const track_table *t, picture *p)
-{
-    double most = 0.0, least = t->x[0], last = t->x[0];
-
-    for (int64_t k = 0; k < t->count; k++)
-        most = fmax(most, t->row[k].hertz);
-    for (int64_t k = 0; k < t->num_at; k++) {
-        least = fmin(least, t->x[k]);
-        last = fmax(last, t->x[k]);
-    }
-    put_data(t, p);
-    p->wide = 720.0;
-    p->body = 460.0;
-    fprintf(p->given.file,
-            "tracks = %ld\nx_low = %.9g\nx_high = %.9g\ny_high = %.9g\n"
-            "swept = %d\ndoubt = %g\n",
-            t->num_tracks, least, last, most > 0.0 ? 1.04 * most : 1.0,
-            t->swept, doubt);
-    picture_give_text(p, "xlabel", t->xlabel);
-    return picture_draw(p, "tracks.gp", "Modes over configurations",
-                        "frequency of each mode, followed by its shape");
-}
-
 ritz_status chart_tracks(const chart_sources *sources,
-                         const chart_request *request, picture *out)
+                         const chart_request *request, picture *p)
 {
-    RITZ_OWN(track_table) t = {0};
     const chart_file *file = sources->file;
+    RITZ_OWN(track_table) t = {0};
+    double most = 0.0, least = HUGE_VAL, last = -HUGE_VAL;
 
     RITZ_REFUSE_IF(sources->count > 1, RITZ_ERR_ARGUMENT,
                    "'%s' and '%s': a chart has one table of tracks", file->path,
@@ -238,5 +216,21 @@ ritz_status chart_tracks(const chart_sources *sources,
     RITZ_CHECK_IN(file->path, read_rows(file->text, request->up_to_hz, &t));
     place_configurations(&t);
     qsort(t.row, (size_t)t.count, sizeof *t.row, by_track);
-    return draw_tracks(&t, out);
+    for (int64_t k = 0; k < t.count; k++)
+        most = fmax(most, t.row[k].hertz);
+    for (int64_t k = 0; k < t.num_at; k++) {
+        least = fmin(least, t.x[k]);
+        last = fmax(last, t.x[k]);
+    }
+    put_data(&t, p);
+    p->wide = 720.0;
+    p->body = 460.0;
+    fprintf(p->given.file,
+            "tracks = %ld\nx_low = %.9g\nx_high = %.9g\ny_high = %.9g\n"
+            "swept = %d\ndoubt = %g\n",
+            t.num_tracks, least, last, most > 0.0 ? 1.04 * most : 1.0, t.swept,
+            doubt);
+    picture_give_text(p, "xlabel", t.xlabel);
+    return picture_draw(p, "tracks.gp", "Modes over configurations",
+                        "frequency of each mode, followed by its shape");
 }

@@ -154,6 +154,7 @@ static void copy_value(FILE *file, const char *value, size_t length,
                        const char *prefix, bool is_id)
 {
     char text[40] = "";
+    const bool refers = starts_with(value, "#gp");
     const char *colour = NULL;
 
     if (length < sizeof text) {
@@ -162,12 +163,10 @@ static void copy_value(FILE *file, const char *value, size_t length,
     }
     if (colour)
         fprintf(file, "var(--%s)", colour);
-    else if (is_id)
-        fprintf(file, "%s%.*s", prefix, (int)length, value);
-    else if (starts_with(value, "#gp"))
-        fprintf(file, "#%s%.*s", prefix, (int)length - 1, value + 1);
     else
-        fprintf(file, "%.*s", (int)length, value);
+        fprintf(file, "%s%s%.*s", refers ? "#" : "",
+                refers || is_id ? prefix : "", (int)length - refers,
+                value + refers);
 }
 
 /* A tag from '<' to '>'. */
@@ -190,16 +189,17 @@ static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
     return tag;
 }
 
-/* "<title>" or "<desc>", whose id ends in that letter. */
-static void put_name(FILE *file, const char *tag, char letter,
-                     const char *prefix, const char *text)
+/* On a page both have ids, by which the picture is called. */
+static void put_names(FILE *file, const char *title, const char *summary,
+                      const char *prefix)
 {
     if (prefix)
-        fprintf(file, "<%s id=\"%s%c\">", tag, prefix, letter);
+        html_print(file,
+                   "<title id=\"%st\">%s</title>\n<desc id=\"%sd\">%s</desc>\n",
+                   prefix, title, prefix, summary);
     else
-        fprintf(file, "<%s>", tag);
-    html_text(file, text);
-    fprintf(file, "</%s>\n", tag);
+        html_print(file, "<title>%s</title>\n<desc>%s</desc>\n", title,
+                   summary);
 }
 
 void svg_copy(FILE *file, const char *drawn, const char *title,
@@ -217,8 +217,7 @@ void svg_copy(FILE *file, const char *drawn, const char *title,
     }
     while (*c) {
         if (starts_with(c, "<title>") && !named) {
-            put_name(file, "title", 't', prefix, title);
-            put_name(file, "desc", 'd', prefix, summary);
+            put_names(file, title, summary, prefix);
             named = true;
             c = skip_past(c, "</desc>");
         } else if (starts_with(c, "<title>")) {
