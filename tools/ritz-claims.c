@@ -48,21 +48,27 @@ static ritz_status make_folder(claims_state *state, const char *data)
     return RITZ_ERR_FILE;
 }
 
-static ritz_status run_files(cli_run *run, const char *data)
+static ritz_status run_files(claims_state *state, const char *data)
 {
-    ritz_status status = RITZ_OK;
-    claims_state state = {.run = run, .list = json_array()};
+    cli_run *run = state->run;
 
-    RITZ_TRY(make_folder(&state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
+    RITZ_CHECK(make_folder(state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
     for (int k = 0; k < run->num_operands; k++) {
-        RITZ_TRY(cli_input(run, run->operand[k]));
-        RITZ_TRY(claims_file(&state, run->operand[k]));
+        RITZ_CHECK(cli_input(run, run->operand[k]));
+        RITZ_CHECK(claims_file(state, run->operand[k]));
     }
-    cli_say(run, "1..%" PRId64, state.holds + state.fails + state.skipped);
-    RITZ_FAIL_IF(state.fails > 0, RITZ_ERR_CONVERGENCE,
-                 "%" PRId64 " of %" PRId64 " claims do not hold", state.fails,
-                 state.holds + state.fails);
-done:
+    cli_say(run, "1..%" PRId64, state->holds + state->fails + state->skipped);
+    RITZ_REFUSE_IF(state->fails > 0, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " of %" PRId64 " claims do not hold",
+                   state->fails, state->holds + state->fails);
+    return RITZ_OK;
+}
+
+static ritz_status run_claims(cli_run *run, const char *data)
+{
+    claims_state state = {.run = run, .list = json_array()};
+    ritz_status status = run_files(&state, data);
+
     if (state.folder[0])
         nftw(state.folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
     json_decref(state.answer);
@@ -94,5 +100,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    return cli_finish(&run, run_files(&run, data));
+    return cli_finish(&run, run_claims(&run, data));
 }

@@ -80,36 +80,30 @@ static ritz_status follow_link(const char *path, char **out)
 
 ritz_status ritz_draft_new(const char *path, ritz_draft *out)
 {
-    ritz_status status = RITZ_OK;
     size_t size = sizeof ".4294967295-999999.part";
-    char *target = NULL;
-    char *name = NULL;
+    RITZ_OWN_ARRAY char *target = NULL, *name = NULL;
     struct stat there;
     bool enlisted = false;
     int file = -1;
 
-    RITZ_FAIL_IF(stat(path, &there) == 0 && !S_ISREG(there.st_mode),
-                 RITZ_ERR_FILE, "not a regular file");
-    RITZ_TRY(follow_link(path, &target));
+    RITZ_REFUSE_IF(stat(path, &there) == 0 && !S_ISREG(there.st_mode),
+                   RITZ_ERR_FILE, "not a regular file");
+    RITZ_CHECK(follow_link(path, &target));
     size += strlen(target);
-    RITZ_NEW(name, (int64_t)size);
+    RITZ_CHECK_NEW(name, (int64_t)size);
     for (int k = 0; file < 0; k++) {
         snprintf(name, size, "%s.%ld-%d.part", target, (long)getpid(), k);
         file = create_file(name, &enlisted);
-        RITZ_FAIL_IF(file < 0 && (errno != EEXIST || k == 999999),
-                     RITZ_ERR_FILE, "cannot create '%s': %s", path,
-                     strerror(errno));
+        RITZ_REFUSE_IF(file < 0 && (errno != EEXIST || k == 999999),
+                       RITZ_ERR_FILE, "cannot create '%s': %s", path,
+                       strerror(errno));
     }
-    RITZ_FAIL_IF(!enlisted, RITZ_ERR_ARGUMENT,
-                 "more than %d files are being written", RITZ_MAX_DRAFTS);
-    *out = (ritz_draft){target, name};
-    target = NULL;
-    name = NULL;
-done:
-    if (file >= 0)
-        close(file);
-    RITZ_FREE(target, name);
-    return status;
+    close(file);
+    RITZ_REFUSE_IF(!enlisted, RITZ_ERR_ARGUMENT,
+                   "more than %d files are being written", RITZ_MAX_DRAFTS);
+    RITZ_MOVE(out->path, target);
+    RITZ_MOVE(out->name, name);
+    return RITZ_OK;
 }
 
 ritz_status ritz_draft_publish(ritz_draft *draft)

@@ -296,12 +296,11 @@ static ritz_plan chosen_plan(const ritz_stage *stage,
     return plan;
 }
 
-ritz_status ritz_compare_tolerances(const ritz_stage *stage,
-                                    const ritz_comparison *comparison,
-                                    int64_t count, const double *tolerance,
-                                    ritz_tolerance_row **out)
+static ritz_status try_tolerances(const ritz_stage *stage,
+                                  const ritz_comparison *comparison,
+                                  int64_t count, const double *tolerance,
+                                  ritz_tolerance_row *out)
 {
-    ritz_status status = RITZ_OK;
     const ritz_rows rows = {
         .stage = stage,
         .listed = &comparison->first_system,
@@ -309,19 +308,30 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
         .row = comparison->row,
     };
     ritz_plan plan = chosen_plan(stage, comparison);
-    ritz_tolerance_row *made = NULL;
 
-    RITZ_NEW(made, count);
     for (int64_t k = 0; k < count; k++) {
-        RITZ_FAIL_IF(
+        RITZ_REFUSE_IF(
             !(tolerance[k] > 0.0 && tolerance[k] < 1.0), RITZ_ERR_ARGUMENT,
             "the composite tolerance %g is not between 0 and 1", tolerance[k]);
         ritz_monitor_step("tolerances", k, count);
         plan.tolerance = tolerance[k];
-        RITZ_TRY(try_tolerance(&rows, &plan, &made[k]));
+        RITZ_CHECK(try_tolerance(&rows, &plan, &out[k]));
     }
-    RITZ_MOVE(*out, made);
-done:
+    return RITZ_OK;
+}
+
+ritz_status ritz_compare_tolerances(const ritz_stage *stage,
+                                    const ritz_comparison *comparison,
+                                    int64_t count, const double *tolerance,
+                                    ritz_tolerance_row **out)
+{
+    ritz_tolerance_row *made = NULL;
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK_NEW(made, count);
+    status = try_tolerances(stage, comparison, count, tolerance, made);
+    if (status == RITZ_OK)
+        RITZ_MOVE(*out, made);
     ritz_tolerances_free(count, &made);
     return status;
 }

@@ -3,6 +3,8 @@
  * the low-rank engine on one component, and its leading Hankel values beside
  * those of the modal engine, of modes up to a frequency. A table, no verdict.
  */
+#include "../unit/try.h"
+
 #include <ritz/base.h>
 #include <ritz/basis.h>
 #include <ritz/container.h>

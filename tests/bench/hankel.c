@@ -8,7 +8,7 @@
  * SLICOT gets A block by block, 2 x 2 each, which its QR iterations are quick
  * with. What takes less than a second is the median of five.
  */
-#include "base/alloc.h"
+#include "../unit/try.h"
 #include "gramians/modes.h"
 #include "linear/general.h"
 

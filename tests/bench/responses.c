@@ -5,6 +5,8 @@
  * the direct engine takes for 1000 points is scaled from those. A table, no
  * verdict; OMP_NUM_THREADS=1 for one thread.
  */
+#include "../unit/try.h"
+
 #include <ritz/container.h>
 #include <ritz/response.h>
 

@@ -320,9 +320,9 @@ static void sign_line(const cli_run *run, json_t *line)
    not mix. */
 static ritz_status append_line(const cli_run *run, json_t *line)
 {
+    RITZ_OWN_ARRAY char *text = NULL;
     ritz_status status = RITZ_OK;
     struct rusage usage = {0};
-    char *text = NULL;
     size_t length = 0;
     int file = -1;
 
@@ -330,19 +330,16 @@ static ritz_status append_line(const cli_run *run, json_t *line)
     json_object_set_new(line, "peak_bytes",
                         json_integer(1024 * (json_int_t)usage.ru_maxrss));
     text = json_dumps(line, JSON_COMPACT | JSON_PRESERVE_ORDER);
-    RITZ_FAIL_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
+    RITZ_REFUSE_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
     length = strlen(text);
     text[length] = '\n'; /* in the place of its NUL */
     file = open(run->record, O_WRONLY | O_CREAT | O_APPEND, 0666);
-    RITZ_FAIL_IF(file < 0, RITZ_ERR_FILE, "cannot open '%s': %s", run->record,
-                 strerror(errno));
-    RITZ_FAIL_IF(write(file, text, length + 1) != (ssize_t)(length + 1),
-                 RITZ_ERR_FILE, "cannot append to '%s': %s", run->record,
-                 strerror(errno));
-done:
-    if (file >= 0)
-        close(file);
-    free(text);
+    RITZ_REFUSE_IF(file < 0, RITZ_ERR_FILE, "cannot open '%s': %s", run->record,
+                   strerror(errno));
+    if (write(file, text, length + 1) != (ssize_t)(length + 1))
+        status = ritz_fail(RITZ_ERR_FILE, "cannot append to '%s': %s",
+                           run->record, strerror(errno));
+    close(file);
     return status;
 }
 
@@ -448,15 +445,11 @@ ritz_status cli_table_write(cli_table *table, const char *path)
 
 ritz_status cli_table_save(cli_table *table, const char *path)
 {
-    ritz_status status = RITZ_OK;
-    ritz_draft draft = {0};
+    RITZ_OWN(ritz_draft) draft = {0};
 
-    RITZ_TRY(ritz_draft_new(path, &draft));
-    RITZ_TRY(cli_table_write(table, draft.name));
-    RITZ_TRY(ritz_draft_publish(&draft));
-done:
-    ritz_draft_free(&draft);
-    return ritz_context(status, path);
+    RITZ_CHECK_IN(path, ritz_draft_new(path, &draft));
+    RITZ_CHECK_IN(path, cli_table_write(table, draft.name));
+    return ritz_context(ritz_draft_publish(&draft), path);
 }
 
 void cli_table_free(cli_table *table)
