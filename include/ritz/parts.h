@@ -119,13 +119,11 @@ bool ritz_damping_is_rayleigh(const ritz_damping *damping);
 double ritz_damping_misfit(const ritz_damping *damping, int64_t *at);
 
 /**
- * Damping ratio at @p omega rad/s; 0 outside all bands. An edge that two bands
- * share belongs to the upper one. Rayleigh: (a / omega + b omega) / 2 or, where
- * omega is 0 and no ratio stands for a, 0. Of modes: that of all above.
+ * Damping ratio of flexible mode @p mode, 0 being the first, at @p omega rad/s;
+ * of mode -1 that of all above those listed. 0 outside all bands; an edge that
+ * two bands share belongs to the upper one. Rayleigh: (a / omega + b omega) / 2
+ * or, where omega is 0 and no ratio stands for a, 0.
  */
-double ritz_damping_ratio(const ritz_damping *damping, double omega);
-
-/** Damping ratio of flexible mode @p mode, 0 being the first. */
 double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
                             double omega);
 

@@ -100,9 +100,6 @@ bool ritz_measure_meets(const char *name, double value, double limit);
 /** Whether a measure meets its limit; a NaN limit is always met. */
 bool ritz_measure_holds(const ritz_measure *measure);
 
-/** Whether value @p a is worse than value @p b. */
-bool ritz_measure_is_worse(const char *name, double a, double b);
-
 /* Full against reduced: every error measure, never one alone. */
 
 /* What is compared, and what it is held to. */

@@ -94,7 +94,7 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
         if (!old) {
             RITZ_CHECK(
                 ritz_measures_add(worst, m->name, m->value, m->limit, where));
-        } else if (ritz_measure_is_worse(m->name, m->value, old->value)) {
+        } else if (!ritz_measure_meets(m->name, m->value, old->value)) {
             old->value = m->value;
             memcpy(old->where, where, sizeof where);
         }

@@ -100,7 +100,7 @@ double ritz_damping_misfit(const ritz_damping *damping, int64_t *at)
          k++) {
         double w = 2.0 * RITZ_PI * damping->point[k][0];
         double off =
-            fabs(ritz_damping_ratio(damping, w) - damping->point[k][1]);
+            fabs(ritz_damping_of_mode(damping, -1, w) - damping->point[k][1]);
 
         if (off > worst) {
             worst = off;
@@ -110,7 +110,8 @@ double ritz_damping_misfit(const ritz_damping *damping, int64_t *at)
     return worst;
 }
 
-double ritz_damping_ratio(const ritz_damping *damping, double omega)
+double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
+                            double omega)
 {
     double hertz = omega / (2.0 * RITZ_PI);
 
@@ -131,18 +132,11 @@ double ritz_damping_ratio(const ritz_damping *damping, double omega)
             return 0.5 * (damping->a / omega + damping->b * omega);
         break;
     case RITZ_DAMPING_MODES:
-        return damping->ratio[damping->count - 1];
+        return damping
+            ->ratio[mode >= 0 && mode < damping->count ? mode
+                                                       : damping->count - 1];
     }
     return 0.0;
-}
-
-double ritz_damping_of_mode(const ritz_damping *damping, int64_t mode,
-                            double omega)
-{
-    if (damping->kind == RITZ_DAMPING_MODES && mode >= 0 &&
-        mode < damping->count)
-        return damping->ratio[mode];
-    return ritz_damping_ratio(damping, omega);
 }
 
 /* Damping in words. */

@@ -60,11 +60,6 @@ double ritz_measure_ratio(const char *name, double value, double limit)
     return error <= allowed ? 0.0 : 1.0 + error;
 }
 
-bool ritz_measure_is_worse(const char *name, double a, double b)
-{
-    return large_is_good(name) ? a < b : a > b;
-}
-
 bool ritz_measure_meets(const char *name, double value, double limit)
 {
     return large_is_good(name) ? value >= limit : value <= limit;

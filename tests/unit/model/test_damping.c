@@ -18,8 +18,8 @@ static void modal_damping_has_one_ratio(void **state)
 
     (void)state;
     assert_int_equal(damping.kind, RITZ_DAMPING_MODAL);
-    assert_near(ritz_damping_ratio(&damping, 0.0), 0.002, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 1e6), 0.002, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 0.0), 0.002, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 1e6), 0.002, 0.0);
 }
 
 static void bands_give_their_ratio_and_none_outside(void **state)
@@ -28,12 +28,12 @@ static void bands_give_their_ratio_and_none_outside(void **state)
 
     (void)state;
     assert_int_equal(damping.count, 2);
-    assert_near(ritz_damping_ratio(&damping, 0.0), 0.0, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 0.999 * two_pi), 0.0, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 3.0 * two_pi), 0.002, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 4.999 * two_pi), 0.002, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 5.001 * two_pi), 0.005, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 20.001 * two_pi), 0.0, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 0.0), 0.0, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 0.999 * two_pi), 0.0, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 3.0 * two_pi), 0.002, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 4.999 * two_pi), 0.002, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 5.001 * two_pi), 0.005, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 20.001 * two_pi), 0.0, 0.0);
 }
 
 /* 4 pi / (2 pi) and 2 * (2 pi) / (2 pi) are exact: 2 Hz is an edge of both. */
@@ -42,8 +42,8 @@ static void a_shared_edge_belongs_to_the_upper_band(void **state)
     ritz_damping damping = read("bands 0 2 0.1 2 4 0.2");
 
     (void)state;
-    assert_near(ritz_damping_ratio(&damping, 2.0 * two_pi), 0.2, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 4.0 * two_pi), 0.2, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 2.0 * two_pi), 0.2, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 4.0 * two_pi), 0.2, 0.0);
 }
 
 /* zeta = (a / omega + b omega) / 2, by hand: (3 / 2 + 0.5 * 2) / 2 = 1.25 */
@@ -52,8 +52,8 @@ static void rayleigh_damping_follows_its_hyperbola(void **state)
     ritz_damping damping = read("rayleigh 3 0.5");
 
     (void)state;
-    assert_near(ritz_damping_ratio(&damping, 2.0), 1.25, 0.0);
-    assert_near(ritz_damping_ratio(&damping, 0.0), 0.0, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 2.0), 1.25, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 0.0), 0.0, 0.0);
 }
 
 static void each_mode_has_its_ratio_and_the_last_is_of_all_above(void **state)
@@ -87,7 +87,7 @@ static void two_points_of_a_fit_are_met(void **state)
     assert_near(damping.b, (0.04 / w1 - 0.02 / w2) / det, 1e-17);
     assert_near(ritz_damping_misfit(&damping, &at), 0.0, 1e-16);
     assert_true(ritz_damping_is_rayleigh(&damping));
-    assert_near(ritz_damping_ratio(&damping, w2), 0.02, 1e-16);
+    assert_near(ritz_damping_of_mode(&damping, -1, w2), 0.02, 1e-16);
     assert_near(ritz_damping_of_mode(&damping, 3, w1), 0.01, 1e-16);
 }
 
@@ -125,7 +125,7 @@ static void no_text_is_no_damping(void **state)
 
     (void)state;
     assert_int_equal(damping.kind, RITZ_DAMPING_NONE);
-    assert_near(ritz_damping_ratio(&damping, 1.0), 0.0, 0.0);
+    assert_near(ritz_damping_of_mode(&damping, -1, 1.0), 0.0, 0.0);
     ritz_damping_print(&damping, text);
     assert_string_equal(text, "");
 }
