@@ -1,5 +1,5 @@
-/* Text that is gone through line by line, and its decimal numbers, read fast and
- * rounded as strtod rounds. */
+/* Text that is gone through line by line, and its decimal numbers, read fast
+ * and rounded as strtod rounds. */
 #ifndef RITZ_FORMATS_DECIMAL_H
 #define RITZ_FORMATS_DECIMAL_H
 

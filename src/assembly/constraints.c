@@ -7,7 +7,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Whether there is anything to add to K, or to D. */
 static bool has_rates(const ritz_springs *springs, bool damping)

@@ -14,7 +14,6 @@
 #include "base/tolerances.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* x_system = R x + t. */

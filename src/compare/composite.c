@@ -6,6 +6,7 @@
 
 #include "base/tolerances.h"
 #include "compare/compare.h"
+#include "linear/general.h"
 
 #include <ritz/matrix.h>
 
@@ -247,31 +248,29 @@ static void fill_mixed(const ritz_reduced *body, const double *scale,
 }
 
 /*
- * Factor L in place; false if it is not definite, or its condition exceeds the
- * limit.
+ * Factor L in place; not good if it is not definite, or its reciprocal
+ * condition is below the least.
  */
-static bool factor_checked(ritz_dense *L, double least)
+static ritz_status factor_checked(ritz_dense *L, double least, bool *good)
 {
-    int r = (int)L->ncol;
-    double norm = 0.0, rcond = 1.0;
+    double rcond = 1.0;
 
-    if (r == 0)
-        return true;
-    norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', r, L->val, r);
-    if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, L->val, r) != 0)
-        return false;
-    return LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, L->val, r, norm, &rcond) ==
-               0 &&
-           rcond > least;
+    if (L->ncol > 0)
+        RITZ_CHECK(ritz_general_cholesky(L, &rcond));
+    *good = rcond > least;
+    return RITZ_OK;
 }
 
 ritz_status ritz_mixed_factor(const ritz_reduced *body, const double *scale,
                               double lambda, ritz_dense *L)
 {
+    bool good = false;
+
     RITZ_CHECK(ritz_dense_new(body->M.ncol, body->M.ncol, L));
     fill_mixed(body, scale, 1.0 / lambda, L);
+    RITZ_CHECK(factor_checked(L, DBL_EPSILON, &good));
     RITZ_REFUSE_IF(
-        !factor_checked(L, DBL_EPSILON), RITZ_ERR_SINGULAR,
+        !good, RITZ_ERR_SINGULAR,
         "a motion has neither mass nor stiffness, or the reduced mass "
         "is not positive");
     return RITZ_OK;
@@ -281,11 +280,13 @@ ritz_status ritz_mass_factor(const ritz_reduced *body, const double *scale,
                              ritz_dense *L, bool *mixed)
 {
     int64_t r = body->M.ncol;
+    bool good = false;
 
     *mixed = false;
     RITZ_CHECK(ritz_dense_new(r, r, L));
     fill_mixed(body, scale, 0.0, L);
-    if (factor_checked(L, RITZ_MASS_CONDITION))
+    RITZ_CHECK(factor_checked(L, RITZ_MASS_CONDITION, &good));
+    if (good)
         return RITZ_OK;
     *mixed = true;
     ritz_dense_free(L);

@@ -13,7 +13,6 @@
 #include <lapacke.h>
 #include <limits.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -212,11 +211,13 @@ static ritz_status condense_massless(const ritz_dense *K, ritz_dense *N,
     RITZ_OWN(ritz_dense) KN = {0}, NKN = {0}, NKQ = {0}, fall = {0};
     int k = (int)N->ncol;
     int r = (int)Q_r->ncol;
+    double rcond = 0.0;
 
     RITZ_CHECK(ritz_dense_mul(K, N, &KN));
     RITZ_CHECK(ritz_dense_mul_tn(N, &KN, &NKN));
+    RITZ_CHECK(ritz_general_cholesky(&NKN, &rcond));
     RITZ_REFUSE_IF(
-        !(ritz_general_cholesky(&NKN) > k * DBL_EPSILON), RITZ_ERR_SINGULAR,
+        !(rcond > k * DBL_EPSILON), RITZ_ERR_SINGULAR,
         "mass is not positive definite, and neither is the stiffness "
         "of the motions without mass");
     if (r == 0)
@@ -277,13 +278,15 @@ static ritz_status solve_scaled(const ritz_dense *K, const ritz_dense *M,
 {
     RITZ_OWN(ritz_dense) K_s = {0}, M_s = {0}, C = {0};
     RITZ_OWN_ARRAY double *s = NULL;
+    double rcond = 0.0;
 
     RITZ_CHECK_NEW(s, K->nrow);
     RITZ_CHECK(choose_scale(K, M, s));
     RITZ_CHECK(scale_pencil(K, s, &K_s));
     RITZ_CHECK(scale_pencil(M, s, &M_s));
     RITZ_CHECK(ritz_dense_copy(&M_s, &C));
-    if (ritz_general_cholesky(&C) > RITZ_WELL_CONDITIONED) {
+    RITZ_CHECK(ritz_general_cholesky(&C, &rcond));
+    if (rcond > RITZ_WELL_CONDITIONED) {
         RITZ_CHECK(by_cholesky(&C, &K_s, lambda));
         RITZ_MOVE(*X, K_s);
     } else {

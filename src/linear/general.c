@@ -35,15 +35,18 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
     return RITZ_OK;
 }
 
-double ritz_general_cholesky(ritz_dense *A)
+ritz_status ritz_general_cholesky(ritz_dense *A, double *rcond)
 {
     int n = (int)A->nrow;
     double norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', n, A->val, n);
-    double rcond = 0.0;
+    int info = 0;
 
+    *rcond = 0.0;
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, A->val, n) == 0)
-        (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, A->val, n, norm, &rcond);
-    return rcond;
+        info = LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', n, A->val, n, norm, rcond);
+    RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR, RITZ_ERR_MEMORY,
+                   "no memory for the condition of a matrix");
+    return RITZ_OK;
 }
 
 double ritz_general_size(const ritz_dense *A)

@@ -22,10 +22,10 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X);
 
 /**
- * A := L of A = L L', lower triangles. @return its reciprocal condition number,
- * 0 if it is not definite
+ * A := L of A = L L', lower triangles, and A's reciprocal condition number, 0
+ * if it is not definite.
  */
-double ritz_general_cholesky(ritz_dense *A);
+ritz_status ritz_general_cholesky(ritz_dense *A, double *rcond);
 
 /**
  * A = U diag(s) V', of min(m, n) values, descending.

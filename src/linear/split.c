@@ -66,7 +66,7 @@ static ritz_status factor_cholesky(ritz_dense *E, bool *good)
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = 0; i < n; i++)
             ritz_dense_col(E, j)[i] /= root[i] * root[j];
-    rcond = ritz_general_cholesky(E);
+    RITZ_CHECK(ritz_general_cholesky(E, &rcond));
     for (int64_t j = 0; j < n; j++)
         for (int64_t i = j; i < n; i++)
             ritz_dense_col(E, j)[i] *= root[i];
@@ -233,8 +233,8 @@ ritz_status ritz_split_scaled(const ritz_dense *A, const ritz_dense *E,
 
 /*
  * Schur form of a matrix, or of a pair, and how far rounding may move each
- * eigenvalue where it stands on the diagonal: Q'A Z = S quasi-triangular, Q'E Z = T triangular. Without E: T is the
- * identity and Z is Q, both {0}.
+ * eigenvalue where it stands on the diagonal: Q'A Z = S quasi-triangular, Q'E Z
+ * = T triangular. Without E: T is the identity and Z is Q, both {0}.
  */
 typedef struct schur_form {
     int64_t count;

@@ -2,11 +2,11 @@
 #include "base/alloc.h"
 #include "base/text.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 
 #include <ritz/model.h>
 
 #include <float.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,7 +96,7 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
 static ritz_status nearly_depend(const ritz_dense *T, bool *out)
 {
     int r = (int)T->ncol;
-    double rcond = 0.0, norm = 0.0;
+    double rcond = 0.0;
     RITZ_OWN(ritz_dense) G = {0}, scaled = {0};
 
     *out = false;
@@ -108,10 +108,7 @@ static ritz_status nearly_depend(const ritz_dense *T, bool *out)
         for (int64_t i = 0; i < r; i++)
             ritz_dense_col(&scaled, j)[i] /=
                 sqrt(ritz_dense_col(&G, i)[i] * ritz_dense_col(&G, j)[j]);
-    norm = LAPACKE_dlansy(LAPACK_COL_MAJOR, '1', 'L', r, scaled.val, r);
-    if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', r, scaled.val, r) == 0)
-        (void)LAPACKE_dpocon(LAPACK_COL_MAJOR, 'L', r, scaled.val, r, norm,
-                             &rcond);
+    RITZ_CHECK(ritz_general_cholesky(&scaled, &rcond));
     *out = !(rcond > RITZ_SQUARED_DEPENDENT);
     return RITZ_OK;
 }

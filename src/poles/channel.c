@@ -24,7 +24,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 /* Modes of one channel as they are summed, c + s cv over s^2 + rate s +
    lambda; modes with equal poles are one row, their participation summed.

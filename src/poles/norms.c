@@ -25,7 +25,6 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /*
  * Peaks lie near poles: they are where the search begins, and a golden section

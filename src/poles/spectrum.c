@@ -35,7 +35,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 typedef struct state_form {
     int64_t m, k;     /* modes p; massless coordinates a */

@@ -16,7 +16,6 @@
 #include <ritz/poles.h>
 #include <ritz/verify.h>
 
-#include <complex.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>

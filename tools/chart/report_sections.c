@@ -517,7 +517,7 @@ static void put_tables(FILE *file, const record_set *s)
                   "Models that miss a mode of the band do not count.</p>\n");
 }
 
-/* --- records --------------------------------------------------------------- */
+/* --- records -------------------------------------------------------------- */
 
 /* Subjects of records that can be drawn, each once; borrowed names. */
 static ritz_status list_subjects(const records *all, int64_t *count,

@@ -19,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* --- signals and progress -------------------------------------------------- */
+/* --- signals and progress ------------------------------------------------- */
 
 /* Neither a handler nor an observer has an argument: state is kept here. */
 static volatile sig_atomic_t shown; /* a line of progress stands there */
@@ -98,7 +98,7 @@ void cli_watch_clear(void)
     shown = 0;
 }
 
-/* --- threads --------------------------------------------------------------- */
+/* --- threads -------------------------------------------------------------- */
 
 /*
  * Bytes of input from which more threads than one are worth their price. Below
@@ -157,7 +157,7 @@ static void limit_threads(cli_run *run, const struct stat *file)
         execv(self, run->argv);
 }
 
-/* --- files that are read --------------------------------------------------- */
+/* --- files that are read -------------------------------------------------- */
 
 /* The line of an input, "SUM  PATH"; NULL if it is none yet. */
 static char *find_input(const cli_run *run, const char *path)
@@ -230,7 +230,7 @@ const ritz_stamp *cli_stamp(cli_run *run)
     return &run->stamp;
 }
 
-/* --- reports --------------------------------------------------------------- */
+/* --- reports -------------------------------------------------------------- */
 
 void cli_warn(cli_run *run, const char *format, ...)
 {
@@ -412,7 +412,7 @@ int cli_finish(cli_run *run, ritz_status status)
     return status == RITZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-/* --- texts that are written whole or not at all ---------------------------- */
+/* --- texts that are written whole or not at all --------------------------- */
 
 ritz_status cli_table_new(cli_table *out)
 {

@@ -175,8 +175,8 @@ void ranked_free(ranked *group);
 
 /**
  * Best first: mode, frequency, damping, cluster, value, share, parts, exact
- * values and what a Hankel value differs by; at most @p most lines. Of a ranking
- * without modes its exact values, each with the bound of cutting there.
+ * values and what a Hankel value differs by; at most @p most lines. Of a
+ * ranking without modes its exact values, each with the bound of cutting there.
  *
  * @param[in] track  numbers of modes; NULL: their index
  */
