@@ -23,9 +23,7 @@ typedef struct ritz_response {
     char damping[RITZ_DAMPING_SIZE];
     char interpolation[RITZ_NAME_SIZE]; /* "cubic": made for it; "" not said */
     double tolerance;     /* between points, of the largest |H| of a channel; 0:
-                         not kept. Each channel is the cubic through the four
-                         points around, two on either side, at the ends the
-                         outermost four; of fewer points, through all */
+                         not kept */
     int64_t num_singular; /* values at each point; 0: not computed */
     double *singular;     /* count x num_singular, descending */
     double singular_peak[2]; /* hertz and value of the largest, between the
@@ -50,6 +48,17 @@ typedef struct ritz_grid {
 ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              const double *omega, const double *zeta,
                              int64_t *count, double **out);
+
+/**
+ * Between stored points: each channel is the cubic through the four points
+ * around, two on either side, at the ends the outermost four; of fewer points,
+ * through all. `tolerance` of a response refers to this interpolation.
+ *
+ * @param[out] out  num_outputs x num_inputs, row by row
+ * @return RITZ_ERR_ARGUMENT outside the range of the points
+ */
+ritz_status ritz_response_at(const ritz_response *response, double hertz,
+                             double _Complex *out);
 
 void ritz_response_free(ritz_response *response);
 
@@ -147,8 +156,8 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out);
 
 /**
- * The points of a grid and as many more as it takes for cubics between them to
- * be within @p tolerance, relative to the largest |H| of each channel, at all
+ * The points of a grid and as many more as it takes for ritz_response_at to be
+ * within @p tolerance, relative to the largest |H| of each channel, at all
  * frequencies between; among them the peak of every pole and the dip of every
  * zero that is near enough to the axis to make one.
  *

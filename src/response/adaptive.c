@@ -112,32 +112,95 @@ static ritz_status evaluate_points(ritz_mesh *mesh, int64_t count,
     return insert_points(mesh, count, hertz, H);
 }
 
-/* Interpolation of a response between its points. */
+/* Interpolation of a response between its points: see ritz_response_at. */
 
 enum { CUBIC = 4 };
 
-/* The cubic of channel v at a frequency in interval k. */
-static double _Complex interpolate_channel(const ritz_mesh *mesh, int64_t v,
-                                           int64_t k, double hertz)
+/* Points whose values are summed, each with its weight. */
+typedef struct cubic {
+    int64_t first, points;
+    double weight[CUBIC];
+} cubic;
+
+/* The cubic at a frequency between points k and k + 1. */
+static cubic find_cubic(int64_t count, const double *x, int64_t k, double hertz)
 {
-    int64_t points = mesh->count < CUBIC ? mesh->count : CUBIC;
-    int64_t first = k - 1;
+    cubic c = {.first = k - 1, .points = count < CUBIC ? count : CUBIC};
+
+    if (c.first > count - c.points)
+        c.first = count - c.points;
+    if (c.first < 0)
+        c.first = 0;
+    x += c.first;
+    for (int64_t i = 0; i < c.points; i++) {
+        c.weight[i] = 1.0;
+        for (int64_t j = 0; j < c.points; j++)
+            if (j != i)
+                c.weight[i] *= (hertz - x[j]) / (x[i] - x[j]);
+    }
+    return c;
+}
+
+/* Channel v of H, which has so many values at each point. */
+static double _Complex interpolate_channel(const cubic *c, int64_t values,
+                                           const double _Complex *H, int64_t v)
+{
     double _Complex sum = 0.0;
 
-    if (first > mesh->count - points)
-        first = mesh->count - points;
-    if (first < 0)
-        first = 0;
-    for (int64_t i = first; i < first + points; i++) {
-        const double *x = mesh->hertz;
-        double weight = 1.0;
-
-        for (int64_t j = first; j < first + points; j++)
-            if (j != i)
-                weight *= (hertz - x[j]) / (x[i] - x[j]);
-        sum += weight * mesh->H[i * mesh->values + v];
-    }
+    for (int64_t i = 0; i < c->points; i++)
+        sum += c->weight[i] * H[(c->first + i) * values + v];
     return sum;
+}
+
+/* Channel v at a frequency in interval k of a mesh. */
+static double _Complex interpolate_mesh(const ritz_mesh *mesh, int64_t v,
+                                        int64_t k, double hertz)
+{
+    cubic c = find_cubic(mesh->count, mesh->hertz, k, hertz);
+
+    return interpolate_channel(&c, mesh->values, mesh->H, v);
+}
+
+/* The interval that a frequency lies in, of ascending points. */
+static int64_t find_interval(int64_t count, const double *x, double hertz)
+{
+    int64_t low = 0;
+
+    for (int64_t high = count - 1; high - low > 1;) {
+        int64_t middle = low + (high - low) / 2;
+
+        if (x[middle] <= hertz)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+ritz_status ritz_response_at(const ritz_response *response, double hertz,
+                             double _Complex *out)
+{
+    const ritz_response *r = response;
+    int64_t values = r->num_outputs * r->num_inputs;
+    double beside = 0.0;
+    cubic c;
+
+    RITZ_REFUSE_IF(r->count < 1, RITZ_ERR_ARGUMENT,
+                   "the response has no points");
+    beside = RITZ_RANGE_ROUNDING * r->hertz[r->count - 1];
+    RITZ_REFUSE_IF(!(hertz >= r->hertz[0] - beside) ||
+                       !(hertz <= r->hertz[r->count - 1] + beside),
+                   RITZ_ERR_ARGUMENT,
+                   "%g Hz is outside the response, which is from %g to %g Hz",
+                   hertz, r->hertz[0], r->hertz[r->count - 1]);
+    c = find_cubic(r->count, r->hertz, find_interval(r->count, r->hertz, hertz),
+                   hertz);
+    for (int64_t i = 0; i < c.points; i++)
+        RITZ_REFUSE_IF(!isfinite(c.weight[i]), RITZ_ERR_ARGUMENT,
+                       "the response has %g Hz twice", hertz);
+    for (int64_t v = 0; v < values; v++)
+        out[v] = interpolate_channel(&c, values, r->H, v);
+    return RITZ_OK;
 }
 
 /*
@@ -212,7 +275,7 @@ static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, dips *f)
             w[0] = w[1], H[0] = H[1], size[0] = size[1];
             w[1] = w[2], H[1] = H[2], size[1] = size[2];
             w[2] = mesh->hertz[k] + part * step;
-            H[2] = interpolate_channel(mesh, v, k, w[2]);
+            H[2] = interpolate_mesh(mesh, v, k, w[2]);
             size[2] = cabs(H[2]);
             if (n < 2 || size[1] > size[0] || size[1] > size[2])
                 continue;
@@ -282,7 +345,7 @@ static bool is_within(const ritz_mesh *mesh, int64_t k, double hertz,
                       double allowed)
 {
     for (int64_t v = 0; v < mesh->values; v++)
-        if (!(cabs(interpolate_channel(mesh, v, k, hertz) - mesh->row[v]) <=
+        if (!(cabs(interpolate_mesh(mesh, v, k, hertz) - mesh->row[v]) <=
               allowed * mesh->scale[v]))
             return false;
     return true;

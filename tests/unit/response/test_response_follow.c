@@ -43,28 +43,6 @@ static void make_oscillators(int64_t count, const double *hertz,
         (ritz_second_order){.K = &out->K, .M = &out->M, .io = &out->io};
 }
 
-/* Each channel by the cubic through the four points around. */
-static void interpolate(const ritz_response *r, double hertz,
-                        double _Complex *out)
-{
-    int64_t values = r->num_outputs * r->num_inputs;
-    int64_t first = 0;
-
-    while (first + 4 < r->count && r->hertz[first + 2] <= hertz)
-        first++;
-    for (int64_t v = 0; v < values; v++)
-        out[v] = 0.0;
-    for (int64_t i = first; i < first + 4; i++) {
-        double weight = 1.0;
-
-        for (int64_t j = first; j < first + 4; j++)
-            if (j != i)
-                weight *= (hertz - r->hertz[j]) / (r->hertz[i] - r->hertz[j]);
-        for (int64_t v = 0; v < values; v++)
-            out[v] += weight * r->H[i * values + v];
-    }
-}
-
 /* Largest error between points, of the largest |H| of each channel. */
 static double error_between(const ritz_response *r, ritz_responder *exact)
 {
@@ -86,7 +64,7 @@ static double error_between(const ritz_response *r, ritz_responder *exact)
         if (t % 2) /* as many where points are close */
             at = r->hertz[near] +
                  random_part(&seed) * (r->hertz[near + 1] - r->hertz[near]);
-        interpolate(r, at, H);
+        assert_ok(ritz_response_at(r, at, H));
         assert_ok(ritz_responder_at(exact, at, H + values));
         for (int64_t v = 0; v < values; v++)
             if (peak[v] > 0.0)
@@ -197,6 +175,37 @@ static void a_free_body_is_followed_by_krylov(void **state)
     }
 }
 
+/* A cubic is what it interpolates; at either end too. */
+static void cubics_are_exact_for_cubics(void **state)
+{
+    double hertz[] = {1.0, 1.5, 2.5, 3.0, 4.5, 5.0};
+    double _Complex H[6], value = 0.0;
+    ritz_response r = {
+        .count = 6, .hertz = hertz, .num_inputs = 1, .num_outputs = 1, .H = H};
+
+    (void)state;
+    for (int k = 0; k < 6; k++)
+        H[k] = pow(hertz[k], 3.0) - 2.0 * hertz[k] + 1.0;
+    for (int j = 0; j <= 32; j++) {
+        double f = 1.0 + 0.125 * j;
+
+        assert_ok(ritz_response_at(&r, f, &value));
+        /* some ten roundings of 125 */
+        assert_near(creal(value), f * f * f - 2.0 * f + 1.0, 1e-13 * 125.0);
+    }
+    assert_fails(ritz_response_at(&r, 5.1, &value), RITZ_ERR_ARGUMENT,
+                 "5.1 Hz is outside the response, which is from 1 to 5 Hz");
+    r.count = 0;
+    assert_fails(ritz_response_at(&r, 1.0, &value), RITZ_ERR_ARGUMENT,
+                 "has no points");
+    r.count = 2; /* a line through two */
+    assert_ok(ritz_response_at(&r, 1.25, &value));
+    assert_near(creal(value), 0.5 * creal(H[0] + H[1]), 1e-15);
+    hertz[1] = 1.0;
+    assert_fails(ritz_response_at(&r, 1.0, &value), RITZ_ERR_ARGUMENT,
+                 "has 1 Hz twice");
+}
+
 static void what_cannot_be_followed_is_refused(void **state)
 {
     const double hertz[] = {1.0};
@@ -259,6 +268,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_tolerance_holds_at_a_thousand_frequencies),
     cmocka_unit_test(a_zero_between_points_is_a_point),
     cmocka_unit_test(a_free_body_is_followed_by_krylov),
+    cmocka_unit_test(cubics_are_exact_for_cubics),
     cmocka_unit_test(what_cannot_be_followed_is_refused),
     cmocka_unit_test(following_survives_every_allocation),
 };
