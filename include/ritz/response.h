@@ -50,12 +50,15 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              int64_t *count, double **out);
 
 /**
- * Between stored points: each channel is the cubic through the four points
- * around, two on either side, at the ends the outermost four; of fewer points,
- * through all. `tolerance` of a response refers to this interpolation.
+ * The response at a frequency between stored points. Each channel is a cubic in
+ * the frequency: through two points on either side, in the first and the last
+ * interval through the outermost four, and through all if there are fewer.
+ * `tolerance` of a response refers to this interpolation.
  *
- * @param[out] out  num_outputs x num_inputs, row by row
- * @return RITZ_ERR_ARGUMENT outside the range of the points
+ * @param[in] hertz  within the range of the points
+ * @param[out] out   num_outputs x num_inputs, row by row
+ * @return RITZ_ERR_ARGUMENT outside the range, without points, or if one of the
+ *         points used occurs twice
  */
 ritz_status ritz_response_at(const ritz_response *response, double hertz,
                              double _Complex *out);
@@ -156,10 +159,10 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out);
 
 /**
- * The points of a grid and as many more as it takes for ritz_response_at to be
- * within @p tolerance, relative to the largest |H| of each channel, at all
- * frequencies between; among them the peak of every pole and the dip of every
- * zero that is near enough to the axis to make one.
+ * H at the points of a grid, and at as many more as ritz_response_at needs to
+ * be within @p tolerance of H, relative to the largest |H| of each channel, at
+ * all frequencies between. Among the points are the peak of every pole and the
+ * dip of every zero that is near enough to the imaginary axis to make one.
  *
  * @return RITZ_ERR_SINGULAR as above; RITZ_ERR_CONVERGENCE if it would take
  *         more points than can be

@@ -1,4 +1,4 @@
-/* Order: searching ascending whole numbers, and sorting. */
+/* Order: searching ascending numbers, and sorting. */
 #ifndef RITZ_BASE_SEARCH_H
 #define RITZ_BASE_SEARCH_H
 
@@ -29,6 +29,23 @@ static inline int64_t ritz_search(int64_t count, const int64_t *sorted,
     int64_t k = ritz_lower_bound(count, sorted, value);
 
     return k < count && sorted[k] == value ? k : -1;
+}
+
+/** How many of @p count ascending numbers are at or below @p value. */
+static inline int64_t ritz_upper_bound(int64_t count, const double *sorted,
+                                       double value)
+{
+    int64_t low = 0;
+
+    while (low < count) {
+        int64_t middle = low + (count - low) / 2;
+
+        if (sorted[middle] <= value)
+            low = middle + 1;
+        else
+            count = middle;
+    }
+    return low;
 }
 
 /** For qsort: numbers in ascending order. */

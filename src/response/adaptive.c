@@ -112,17 +112,18 @@ static ritz_status evaluate_points(ritz_mesh *mesh, int64_t count,
     return insert_points(mesh, count, hertz, H);
 }
 
-/* Interpolation of a response between its points: see ritz_response_at. */
+/* Interpolation of a response between its points, as ritz_response_at states. */
 
 enum { CUBIC = 4 };
 
-/* Points whose values are summed, each with its weight. */
+/* A cubic at one frequency: the points that it goes through, and the weights
+   with which their values are summed. */
 typedef struct cubic {
     int64_t first, points;
     double weight[CUBIC];
 } cubic;
 
-/* The cubic at a frequency between points k and k + 1. */
+/* The cubic of the interval that begins at point k, at a frequency. */
 static cubic find_cubic(int64_t count, const double *x, int64_t k, double hertz)
 {
     cubic c = {.first = k - 1, .points = count < CUBIC ? count : CUBIC};
@@ -141,7 +142,7 @@ static cubic find_cubic(int64_t count, const double *x, int64_t k, double hertz)
     return c;
 }
 
-/* Channel v of H, which has so many values at each point. */
+/* The cubic's value for channel v; H has `values` channels at each point. */
 static double _Complex interpolate_channel(const cubic *c, int64_t values,
                                            const double _Complex *H, int64_t v)
 {
@@ -150,31 +151,6 @@ static double _Complex interpolate_channel(const cubic *c, int64_t values,
     for (int64_t i = 0; i < c->points; i++)
         sum += c->weight[i] * H[(c->first + i) * values + v];
     return sum;
-}
-
-/* Channel v at a frequency in interval k of a mesh. */
-static double _Complex interpolate_mesh(const ritz_mesh *mesh, int64_t v,
-                                        int64_t k, double hertz)
-{
-    cubic c = find_cubic(mesh->count, mesh->hertz, k, hertz);
-
-    return interpolate_channel(&c, mesh->values, mesh->H, v);
-}
-
-/* The interval that a frequency lies in, of ascending points. */
-static int64_t find_interval(int64_t count, const double *x, double hertz)
-{
-    int64_t low = 0;
-
-    for (int64_t high = count - 1; high - low > 1;) {
-        int64_t middle = low + (high - low) / 2;
-
-        if (x[middle] <= hertz)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
 }
 
 ritz_status ritz_response_at(const ritz_response *response, double hertz,
@@ -193,8 +169,8 @@ ritz_status ritz_response_at(const ritz_response *response, double hertz,
                    RITZ_ERR_ARGUMENT,
                    "%g Hz is outside the response, which is from %g to %g Hz",
                    hertz, r->hertz[0], r->hertz[r->count - 1]);
-    c = find_cubic(r->count, r->hertz, find_interval(r->count, r->hertz, hertz),
-                   hertz);
+    c = find_cubic(r->count, r->hertz,
+                   ritz_upper_bound(r->count, r->hertz, hertz) - 1, hertz);
     for (int64_t i = 0; i < c.points; i++)
         RITZ_REFUSE_IF(!isfinite(c.weight[i]), RITZ_ERR_ARGUMENT,
                        "the response has %g Hz twice", hertz);
@@ -267,6 +243,7 @@ static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, dips *f)
     double size[3] = {0.0, 0.0, 0.0};
     double _Complex H[3] = {0.0, 0.0, 0.0};
     int64_t n = 0;
+    cubic c;
 
     for (int64_t k = 0; k + 1 < mesh->count; k++) {
         double step = (mesh->hertz[k + 1] - mesh->hertz[k]) / PARTS;
@@ -275,7 +252,8 @@ static ritz_status find_channel_dips(ritz_mesh *mesh, int64_t v, dips *f)
             w[0] = w[1], H[0] = H[1], size[0] = size[1];
             w[1] = w[2], H[1] = H[2], size[1] = size[2];
             w[2] = mesh->hertz[k] + part * step;
-            H[2] = interpolate_mesh(mesh, v, k, w[2]);
+            c = find_cubic(mesh->count, mesh->hertz, k, w[2]);
+            H[2] = interpolate_channel(&c, mesh->values, mesh->H, v);
             size[2] = cabs(H[2]);
             if (n < 2 || size[1] > size[0] || size[1] > size[2])
                 continue;
@@ -344,10 +322,14 @@ static ritz_status begin_mesh(const ritz_responder *responder,
 static bool is_within(const ritz_mesh *mesh, int64_t k, double hertz,
                       double allowed)
 {
-    for (int64_t v = 0; v < mesh->values; v++)
-        if (!(cabs(interpolate_mesh(mesh, v, k, hertz) - mesh->row[v]) <=
-              allowed * mesh->scale[v]))
+    cubic c = find_cubic(mesh->count, mesh->hertz, k, hertz);
+
+    for (int64_t v = 0; v < mesh->values; v++) {
+        double _Complex at = interpolate_channel(&c, mesh->values, mesh->H, v);
+
+        if (!(cabs(at - mesh->row[v]) <= allowed * mesh->scale[v]))
             return false;
+    }
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include <ritz/simulate.h>
 
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 
 #include <ritz/base.h>
@@ -173,25 +174,18 @@ ritz_status ritz_signal_parse(const char *text, ritz_signal *out)
 static double look_up(const ritz_signal *signal, double t)
 {
     const double *x = signal->time;
-    int64_t low = 0, high = signal->count;
+    int64_t next = ritz_upper_bound(signal->count, x, t);
     double share = 0.0;
 
-    while (low < high) { /* how many times are at or before t */
-        int64_t middle = low + (high - low) / 2;
-
-        if (x[middle] <= t)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low == 0)
+    if (next == 0)
         return 0.0;
-    if (low == signal->count)
-        return t <= x[low - 1] * (1.0 + 4.0 * DBL_EPSILON)
-                   ? signal->value[low - 1]
+    if (next == signal->count)
+        return t <= x[next - 1] * (1.0 + 4.0 * DBL_EPSILON)
+                   ? signal->value[next - 1]
                    : 0.0;
-    share = (t - x[low - 1]) / (x[low] - x[low - 1]);
-    return (1.0 - share) * signal->value[low - 1] + share * signal->value[low];
+    share = (t - x[next - 1]) / (x[next] - x[next - 1]);
+    return (1.0 - share) * signal->value[next - 1] +
+           share * signal->value[next];
 }
 
 double ritz_signal_at(const ritz_signal *signal, double t, double seconds)
