@@ -42,9 +42,9 @@ if __name__ == "__main__":
     assert words(sys.argv[1])
 END
 
-# well NAME: XML, without scripts; no word covers another; drawn again, without
-# a warning, it is a picture too (in a locale of UTF-8: gnuplot remarks on its
-# degree sign in others)
+# well NAME: the picture is XML without scripts, and no word covers another. Its
+# script draws it again without a warning, in a locale with UTF-8: in others
+# gnuplot warns of its degree sign.
 well() {
     expect 0 '' /usr/bin/python3 -s well.py "$1"
     expect 0 '' /usr/bin/python3 -s words.py "$1"
