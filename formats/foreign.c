@@ -37,6 +37,8 @@ ritz_status ritz_foreign_list(ritz_foreign *file)
     for (int k = 0; ritz_formats[k] && used < sizeof known; k++)
         used += (size_t)snprintf(known + used, sizeof known - used, "%s%s",
                                  k > 0 ? ", " : "", ritz_formats[k]->name);
+    if (!file->format)
+        RITZ_CHECK(ritz_unread_refuse(file->bytes, file->size));
     RITZ_REFUSE_IF(!file->format, RITZ_ERR_FORMAT,
                    "holds no matrix in a format that is known: %s", known);
     if (file->listing.count > 0) /* it is there already */
@@ -321,6 +323,7 @@ ritz_status ritz_deck_parse(const char *path, const char *bytes, int64_t size,
     const ritz_deck_format *format = ritz_deck_recognise(bytes, size);
     RITZ_OWN(ritz_deck) deck = {0};
 
+    RITZ_CHECK_IN(path ? path : "the deck", ritz_unread_refuse(bytes, size));
     RITZ_REFUSE_IF(!format, RITZ_ERR_FORMAT,
                    "'%s' is not a text file, as all decks are that Ritz knows",
                    path ? path : "the deck");

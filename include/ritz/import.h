@@ -82,6 +82,23 @@ extern const ritz_format ritz_format_mat;
 extern const ritz_format ritz_format_matrix_market;
 extern const ritz_format ritz_format_output4;
 
+/* A kind of file of another program that is recognised and not read. */
+typedef struct ritz_unread {
+    const char *name;   /* "a Harwell-Boeing file" */
+    const char *advice; /* how to turn it into one that is read */
+    /** True if these bytes look like it. @p size may be 0. */
+    bool (*recognise)(const char *bytes, int64_t size);
+} ritz_unread;
+
+/** All of these, ended by a row without a name. */
+extern const ritz_unread ritz_unread_formats[];
+
+/** The row that these bytes look like; NULL: none. */
+const ritz_unread *ritz_unread_find(const char *bytes, int64_t size);
+
+/** @return RITZ_ERR_FORMAT if they look like a row, which the sentence names */
+ritz_status ritz_unread_refuse(const char *bytes, int64_t size);
+
 /** Read the bytes of a file once, sum them up and recognise their format. */
 ritz_status ritz_foreign_open(const char *path, ritz_foreign *out);
 

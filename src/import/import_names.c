@@ -267,6 +267,7 @@ ritz_status ritz_names_of_file(const char *path, ritz_row_names *out)
     int64_t number = 0;
 
     RITZ_CHECK(ritz_text_read(path, &text));
+    RITZ_CHECK_IN(path, ritz_unread_refuse(text, (int64_t)strlen(text)));
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
     RITZ_CHECK_NEW(names.dof, lines);

@@ -178,6 +178,7 @@ static ritz_status describe_text(cli_run *run, const ritz_foreign *file)
 
     RITZ_REFUSE_IF(file->size == 0, RITZ_ERR_FORMAT, "'%s' is empty",
                    file->path);
+    RITZ_CHECK_IN(file->path, ritz_unread_refuse(file->bytes, file->size));
     RITZ_REFUSE_IF(
         !ritz_deck_recognise(file->bytes, file->size), RITZ_ERR_FORMAT,
         "'%s' is neither a container nor a matrix file nor text", file->path);

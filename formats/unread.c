@@ -1,0 +1,244 @@
+/*
+ * Files of other programs that are recognised and not read. Each row says what
+ * such a file is and how to turn it into one that is read; docs/import.md has
+ * the commands.
+ */
+#include "formats/decimal.h"
+
+#include <ritz/import.h>
+
+#include <string.h>
+#include <strings.h>
+
+/* Lines that are looked at: a matrix of millions shows its form in these. */
+enum { MOST_LINES = 1000 };
+
+/* Take the next line that is not blank, without blanks around it. */
+static bool next_line(ritz_lines *text)
+{
+    while (ritz_lines_next(text)) {
+        text->line = ritz_decimal_skip(text->line, text->line_end);
+        while (text->line_end > text->line &&
+               (text->line_end[-1] == '\r' || text->line_end[-1] == ' '))
+            text->line_end--;
+        if (text->line < text->line_end)
+            return true;
+    }
+    return false;
+}
+
+static ritz_lines lines_of(const char *bytes, int64_t size)
+{
+    return (ritz_lines){.at = bytes, .end = bytes + size};
+}
+
+/* True if a text begins with one of these words, whatever their case. */
+static bool begins(const char *at, const char *end, const char *const *word)
+{
+    for (; *word; word++) {
+        size_t length = strlen(*word);
+
+        if ((size_t)(end - at) >= length && strncasecmp(at, *word, length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* "%MatrixMarket", or without any '%'. */
+static bool has_short_banner(const char *bytes, int64_t size)
+{
+    static const char *const word[] = {"%MatrixMarket", "MatrixMarket", NULL};
+
+    return begins(bytes, bytes + size, word);
+}
+
+/* Counts of cards in the second line; in the third the type, such as RSA, and
+   sizes. */
+static bool is_harwell_boeing(const char *bytes, int64_t size)
+{
+    enum { TYPE = 3, CARDS = 4, SIZES = 3 };
+    ritz_lines text = lines_of(bytes, size);
+    int64_t cards[CARDS], sizes[SIZES];
+    const char *at = NULL;
+
+    if (!ritz_lines_next(&text) || !ritz_lines_next(&text))
+        return false;
+    at = text.line;
+    if (!ritz_decimal_scan_wholes(&at, text.line_end, CARDS, cards) ||
+        cards[0] < cards[1] + cards[2] + cards[3] || !ritz_lines_next(&text) ||
+        text.line_end - text.line < TYPE)
+        return false;
+    at = text.line + TYPE;
+    return strchr("RCPIrcpi", text.line[0]) &&
+           strchr("SUHZRsuhzr", text.line[1]) && strchr("AEae", text.line[2]) &&
+           text.line[0] && text.line[1] && text.line[2] &&
+           ritz_decimal_scan_wholes(&at, text.line_end, SIZES, sizes);
+}
+
+/* A value with a point or an exponent, and nothing behind it. */
+static bool is_real(const char *at, const char *end)
+{
+    ritz_decimal number = {0};
+    const char *from = at;
+    bool point = false;
+
+    if (!ritz_decimal_scan(&at, end, &number) || at != end)
+        return false;
+    for (; from < end; from++)
+        point = point || *from == '.' || (*from | 32) == 'e';
+    return point;
+}
+
+/* Lines "row column value": 0 if there are others, 2 if entries stand on both
+   sides of the diagonal, else 1. */
+static int count_triangles(const char *bytes, int64_t size)
+{
+    ritz_lines text = lines_of(bytes, size);
+    bool above = false, below = false;
+    int64_t at_least = 0;
+
+    for (; at_least < MOST_LINES && next_line(&text); at_least++) {
+        const char *at = text.line;
+        int64_t place[2];
+
+        if (!ritz_decimal_scan_wholes(&at, text.line_end, 2, place) ||
+            place[0] < 1 || place[1] < 1 || !is_real(at, text.line_end))
+            return 0;
+        above = above || place[0] < place[1];
+        below = below || place[0] > place[1];
+    }
+    return at_least == 0 ? 0 : above && below ? 2 : 1;
+}
+
+static bool is_abaqus_matrix(const char *bytes, int64_t size)
+{
+    return count_triangles(bytes, size) == 2;
+}
+
+static bool is_calculix_matrix(const char *bytes, int64_t size)
+{
+    return count_triangles(bytes, size) == 1;
+}
+
+/* Lines "node.direction". */
+static bool is_calculix_dofs(const char *bytes, int64_t size)
+{
+    ritz_lines text = lines_of(bytes, size);
+    int64_t node = 0, count = 0;
+
+    for (; count < MOST_LINES && next_line(&text); count++) {
+        const char *at = text.line;
+
+        if (!ritz_decimal_scan_whole(&at, text.line_end, &node) || node < 1 ||
+            text.line_end - at != 2 || at[0] != '.' || at[1] < '1' ||
+            at[1] > '6')
+            return false;
+    }
+    return count > 0;
+}
+
+/* Lines "node,direction, node,direction, value" behind comments. */
+static bool is_matrix_input(const char *bytes, int64_t size)
+{
+    static const char *const comment[] = {"**", NULL};
+    ritz_lines text = lines_of(bytes, size);
+    const char *at = NULL;
+
+    do {
+        if (!next_line(&text))
+            return false;
+    } while (begins(text.line, text.line_end, comment));
+    at = text.line;
+    for (int k = 0; k < 4; k++) {
+        int64_t number = 0;
+
+        if (!ritz_decimal_scan_whole(&at, text.line_end, &number) ||
+            number < 1 || at == text.line_end || *at++ != ',')
+            return false;
+        at = ritz_decimal_skip(at, text.line_end);
+    }
+    return is_real(at, text.line_end);
+}
+
+/* The first line that is no comment is a keyword of its own. */
+static bool is_abaqus_deck(const char *bytes, int64_t size)
+{
+    static const char *const comment[] = {"**", NULL};
+    static const char *const word[] = {
+        "*Heading", "*Node",         "*Element",  "*Part",      "*Assembly",
+        "*Include", "*Material",     "*Preprint", "*Parameter", "*Nset",
+        "*Elset",   "*User Element", "*Matrix",   "*Model",     NULL};
+    ritz_lines text = lines_of(bytes, size);
+
+    while (next_line(&text))
+        if (!begins(text.line, text.line_end, comment))
+            return begins(text.line, text.line_end, word);
+    return false;
+}
+
+/* The header is a record of 100 whole numbers, of which the first says what the
+   file holds: 2 to 16, or 45. */
+static bool is_ansys_binary(const char *bytes, int64_t size)
+{
+    const unsigned char *b = (const unsigned char *)bytes;
+
+    if (size < 12)
+        return false;
+    if (b[0] == 100 && b[1] + b[2] + b[3] == 0)
+        return b[9] + b[10] + b[11] == 0 &&
+               ((b[8] >= 2 && b[8] <= 16) || b[8] == 45);
+    return b[3] == 100 && b[0] + b[1] + b[2] == 0 && b[8] + b[9] + b[10] == 0 &&
+           ((b[11] >= 2 && b[11] <= 16) || b[11] == 45);
+}
+
+static bool is_ansys_deck(const char *bytes, int64_t size)
+{
+    static const char *const word[] = {
+        "/COM",          "/PREP7",      "/BATCH",         "/TITLE",
+        "/UNITS",        "Node Number", "Element Number", "Knotennummer",
+        "Elementnummer", NULL};
+    ritz_lines text = lines_of(bytes, size);
+
+    return next_line(&text) && begins(text.line, text.line_end, word);
+}
+
+const ritz_unread ritz_unread_formats[] = {
+    {"a Matrix Market file whose first line does not begin with two '%'",
+     "write '%%MatrixMarket' there", has_short_banner},
+    {"a Harwell-Boeing file", "write it as Matrix Market", is_harwell_boeing},
+    {"a matrix of Abaqus, of both triangles and without a header",
+     "put the header of Matrix Market before it", is_abaqus_matrix},
+    {"a matrix of CalculiX, of one triangle and without a header",
+     "put the header of Matrix Market before it", is_calculix_matrix},
+    {"a list of dofs of CalculiX", "put blanks for its points, for --dofs",
+     is_calculix_dofs},
+    {"a matrix of Abaqus as it reads matrices",
+     "let Abaqus write it with FORMAT=COORDINATE", is_matrix_input},
+    {"an input file of Abaqus or CalculiX",
+     "let the program write matrices, and write the nodes as GRID",
+     is_abaqus_deck},
+    {"a binary file of ANSYS", "let ANSYS export matrices as Matrix Market",
+     is_ansys_binary},
+    {"an input file or a list of ANSYS",
+     "let ANSYS export matrices, and write the nodes as GRID", is_ansys_deck},
+    {0},
+};
+
+const ritz_unread *ritz_unread_find(const char *bytes, int64_t size)
+{
+    for (const ritz_unread *row = ritz_unread_formats; row->name; row++)
+        if (row->recognise(bytes, size))
+            return row;
+    return NULL;
+}
+
+ritz_status ritz_unread_refuse(const char *bytes, int64_t size)
+{
+    const ritz_unread *row = ritz_unread_find(bytes, size);
+
+    RITZ_REFUSE_IF(row, RITZ_ERR_FORMAT,
+                   "looks like %s, which is not read: %s, as docs/import.md "
+                   "shows",
+                   row->name, row->advice);
+    return RITZ_OK;
+}
