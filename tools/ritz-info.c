@@ -4,6 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Whether a member must exist, behind its type. */
+static void print_presence(const ritz_container_row *row)
+{
+    if (row->with)
+        printf(", with `%s`", row->with);
+    else if (row->optional)
+        printf(", optional");
+}
+
 /* One line of the tables of docs/container.md. */
 static void print_row(const ritz_container_row *row, void *data)
 {
@@ -20,9 +29,10 @@ static void print_row(const ritz_container_row *row, void *data)
                row->optional ? "; optional" : "");
         return;
     }
-    printf("| `%s` | %s%s | %s%s%s | %s%s%s%s |\n", row->name, row->type,
-           row->optional ? ", optional" : "", *row->shape ? "(" : "",
-           row->shape, *row->shape ? ")" : "", row->about, range ? "; in " : "",
+    printf("| `%s` | %s", row->name, row->type);
+    print_presence(row);
+    printf(" | %s%s%s | %s%s%s%s |\n", *row->shape ? "(" : "", row->shape,
+           *row->shape ? ")" : "", row->about, range ? "; in " : "",
            range ? range : "", row->nan ? "; NaN: none" : "");
 }
 

@@ -50,6 +50,7 @@ typedef struct ritz_summary {
     char *command;
     int64_t num_inputs;
     char **input;
+    int64_t num_loads; /* geometric stiffnesses of a component */
 } ritz_summary;
 
 /* Models by the paths of their containers. */
@@ -70,7 +71,9 @@ typedef struct ritz_container_row {
     const char *about; /* what it means */
     const char *range; /* of whole numbers, "0..n-1"; NULL: any */
     bool optional;
-    bool nan; /* NaN stands for none */
+    const char *with; /* of an optional one: the member with which it must be
+                         there; NULL: it may be absent by itself */
+    bool nan;         /* NaN stands for none */
 } ritz_container_row;
 
 /** All members of all kinds, from the tables that read and write them. */

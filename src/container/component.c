@@ -72,7 +72,7 @@ static const ritz_member members[] = {
     {"K", MATRIX_SPARSE, RITZ_AT(ritz_component, K), "n n",
      "stiffness matrix; without entries in a rigid component", .optional = ""},
     {"M", MATRIX_SPARSE, RITZ_AT(ritz_component, M), "n n", "mass matrix",
-     .optional = ""},
+     .optional = "", .must = true},
     {"D", MATRIX_SPARSE, RITZ_AT(ritz_component, D), "n n",
      "viscous damping matrix; the only one that need not be symmetric",
      .optional = ""},

@@ -138,6 +138,19 @@ bool ritz_container_is(const char *path)
            H5Aexists(file, "ritz_kind") > 0;
 }
 
+/* Number of members of the group `KG`, 0 if there is none. */
+static ritz_status count_loads(hid_t file, int64_t *out)
+{
+    H5G_info_t group = {0};
+
+    if (!ritz_h5_has(file, "KG"))
+        return RITZ_OK;
+    RITZ_REFUSE_IF(H5Gget_info_by_name(file, "KG", &group, H5P_DEFAULT) < 0,
+                   RITZ_ERR_FORMAT, "'KG' is no group");
+    *out = (int64_t)group.nlinks;
+    return RITZ_OK;
+}
+
 static ritz_status read_head(const char *path, ritz_summary *out)
 {
     RITZ_OWN(hid_t) file = 0;
@@ -152,6 +165,7 @@ static ritz_status read_head(const char *path, ritz_summary *out)
     RITZ_REFUSE_IF(command.count != 1, RITZ_ERR_FORMAT,
                    "'command' is not one text");
     RITZ_CHECK(ritz_h5_get_texts(file, "inputs", &inputs));
+    RITZ_CHECK(count_loads(file, &summary.num_loads));
     RITZ_MOVE(summary.command, command.text[0]);
     summary.num_inputs = inputs.count;
     RITZ_MOVE(summary.input, inputs.text);

@@ -63,6 +63,13 @@ static void print_shape(const ritz_place *place, const ritz_member *row,
         used += snprintf(out + used, 3, *c == ' ' ? ", " : "%c", *c);
 }
 
+/* Whether another member decides that this one must exist. */
+static bool is_with_another(const ritz_member *row)
+{
+    return row->optional && *row->optional &&
+           strcmp(row->optional, row->name) != 0;
+}
+
 /* A matrix that is an item of a list has no name but that of the item. */
 static void tell_row(const ritz_place *place, const char *prefix,
                      const ritz_member *row, const row_teller *to)
@@ -86,7 +93,8 @@ static void tell_row(const ritz_place *place, const char *prefix,
             .about = row->about ? row->about : "",
             .range = row->range,
             .nan = row->values == VALUES_OR_NAN,
-            .optional = row->optional || row->has || row->some,
+            .optional = (row->optional || row->has || row->some) && !row->must,
+            .with = is_with_another(row) ? row->optional : NULL,
         },
         to->data);
 }

@@ -80,6 +80,7 @@ typedef struct ritz_member {
      * Where only `has` or `some` is given, it decides of reading too.
      */
     const char *optional;
+    bool must; /* an optional member without which the object is refused */
     bool (*has)(const void *object);
     const ritz_schema *schema; /* of a part, or of the items of a list */
     /* Writes by hand, or reads where there is a target. */

@@ -1,0 +1,270 @@
+#!/usr/bin/python3 -s
+"""pages.py FOLDER-OF-THE-TOOLS - the commands of docs/import.md turn foreign
+files into what Ritz reads; the script of docs/container.md writes a component,
+of which those members must exist that the page does not call optional."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+try:
+    import h5py
+    import numpy
+    import scipy.io
+except ImportError as missing:
+    print("skipped:", missing)
+    sys.exit(77)
+
+DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
+BIN = pathlib.Path(sys.argv[1]).resolve()
+EXTERNAL = pathlib.Path(os.environ.get("RITZ_EXTERNAL_DATA", "absent"))
+# of two grids with three directions each, no entry of which is short
+K = numpy.diag([1000.5, 2000.25, 3000.125] * 2)
+K[0, 3] = K[3, 0] = -1000.0 / 3.0
+K[1, 2] = K[2, 1] = 1.0 / 7.0
+M = numpy.diag([2.0, 2.0, 2.0, 3.0, 3.0, 3.0])
+
+
+def section(page, heading):
+    text = (DOCS / page).read_text(encoding="utf-8")
+    return re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", text, re.M | re.S)[1]
+
+
+def blocks(text, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.M | re.S)
+
+
+def run(*command):
+    done = subprocess.run([str(word) for word in command], text=True,
+                          capture_output=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+def tool(name, *words):
+    return run(BIN / name, *words)
+
+
+def check(holds, sentence, figures=""):
+    check.count += 1
+    print("ok" if holds else "not ok", check.count, "-", sentence, flush=True)
+    if not holds:
+        sys.exit(f"# {figures}")
+
+
+check.count = 0
+
+
+# --- a component from a script ------------------------------------------------
+
+def members(text):
+    """Name, type and whether it is optional, of each row of a table."""
+    for row in re.findall(r"^\| `([^`]+)` \| ([^|]+) \|", text, re.M):
+        yield row[0], row[1], "optional" in row[1]
+
+
+def without(path, name, attribute):
+    """A copy of a container without one of its members."""
+    shutil.copy("two.h5", path)
+    with h5py.File(path, "a") as file:
+        del (file.attrs if attribute else file)[name]
+
+
+def write_component():
+    text, = blocks(section("container.md", "Writing one"), "python")
+    pathlib.Path("two.py").write_text(text, encoding="utf-8")
+    status, said = run("/usr/bin/python3", "-s", "two.py")
+    check(status == 0, "the script of the page writes a component", said)
+    status, said = tool("ritz-check", "two.h5")
+    check(status == 0, "ritz-check takes it", said)
+    status, said = tool("ritz-basis", "normal-modes", "--modes", 1, "two.h5",
+                        "-o", "basis.h5")
+    hertz = numpy.sqrt(200.0 * (1.0 + 0.5)) / (2.0 * numpy.pi)
+    check(status == 0, "it has modes", said)
+    with h5py.File("basis.h5") as file:
+        found = file["columns/hertz"][:]
+    check(abs(found - hertz).min() < 1e-9, "and its frequency", found)
+    with h5py.File("two.h5", "a") as file:
+        file.copy("K", "D")
+        file.copy("K", "K4")
+
+
+def drop_members():
+    head = section("container.md", "In every file")
+    component = section("container.md", "component")
+    shared = section("container.md", "Members that several kinds share")
+    ends = re.search(r"### inputs and outputs\n(.*?)\n###", shared, re.S)[1]
+    rows = [(name, True, False)
+            for name in re.findall(r"^\| `(\w+)` \|", head, re.M)]
+    rows += [(name, "attribute" in kind, optional)
+             for name, kind, optional in members(component) if "<" not in name]
+    rows += [(name, False, False) for name, _, _ in members(ends)]
+    rows += [("ports", False, False), ("inputs", False, True),
+             ("outputs", False, True)]
+    for name, attribute, optional in rows:
+        without("less.h5", name, attribute)
+        status, said = tool("ritz-info", "less.h5")
+        check((status == 0) == optional,
+              f"{name} {'may be absent' if optional else 'must exist'}", said)
+
+
+def change_types():
+    """Types are those of the page: others are refused, narrower ones read."""
+    for name, value, due in (("dofs/grid", [1.0, 2.0], 1),
+                             ("inputs/B", [[1], [0]], 1),
+                             ("inputs/names", ["push"], 1),
+                             ("dofs/component", numpy.zeros(2, "i4"), 0),
+                             ("inputs/B", numpy.array([[1], [0]], "f4"), 0)):
+        without("other.h5", name, False)
+        with h5py.File("other.h5", "a") as file:
+            file[name] = value
+        status, said = tool("ritz-info", "other.h5")
+        check(status == due, f"{name} of another type is "
+              f"{'refused' if due else 'read'}", said)
+
+
+# --- files that are recognised and not read -----------------------------------
+
+def entries(A, both):
+    return [(i + 1, j + 1, float(A[i, j])) for j in range(6) for i in range(6)
+            if A[i, j] != 0.0 and (both or i <= j)]
+
+
+def put(name, lines):
+    pathlib.Path(name).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def put_harwell_boeing(name, A):
+    lower = [(j, i, value) for i, j, value in entries(A, False)]  # by columns
+    lower.sort(key=lambda entry: (entry[1], entry[0]))
+    first = [1 + sum(j < column for _, j, _ in lower)
+             for column in range(1, 8)]
+    pieces = [[f"{x:4d}" for x in first], [f"{i:4d}" for i, _, _ in lower],
+              [f"{v:24.16E}".replace("E", "D") for _, _, v in lower]]
+    cards = [["".join(p[k:k + n]) for k in range(0, len(p), n)]
+             for p, n in zip(pieces, (5, 5, 3))]
+    counts = [len(part) for part in cards]
+    put(name, [f"{'A matrix of two grids':72}KEY     ",
+               "".join(f"{x:14d}" for x in [sum(counts), *counts, 0]),
+               f"RSA{'':11}" + "".join(f"{x:14d}" for x in (6, 6, len(lower), 0)),
+               f"{'(5I4)':16}{'(5I4)':16}{'(3D24.16)':20}{'':20}",
+               *cards[0], *cards[1], *cards[2]])
+
+
+def write_samples():
+    market = ["MatrixMarket matrix coordinate real general", "6 6 10"]
+    text = [f"{i} {j} {value!r}" for i, j, value in entries(K, True)]
+    put("header.mtx", ["%" + market[0], *market[1:], *text])
+    put_harwell_boeing("K.rsa", K)
+    put("both.txt", text)
+    put("one.txt", [f"{i} {j}  {v:.13e}" for i, j, v in entries(K, False)])
+    put("part.dof", [f"{n}.{c}" for n in (11, 12) for c in (1, 2, 3)])
+    put("input.mtx", ["** of Abaqus", "11,1, 11,1, 1000.5"])
+    put("part.inp", ["*Heading", "** two nodes", "*Node",
+                     "     11,  0.,  0.,  0.5", "12, 1.5, 0., 0.",
+                     "*Element, type=T3D2", "1, 11, 12", "*Node Output", "U"])
+    pathlib.Path("file.full").write_bytes(
+        bytes([100, 0, 0, 0, 0, 0, 0, 128, 4, 0, 0, 0]) + bytes(400))
+    put("part.cdb", ["/COM,ANSYS RELEASE 2021 R1", "/PREP7"])
+
+
+def recognise(path):
+    """What ritz-info and ritz-import take a file for."""
+    status, said = tool("ritz-info", path)
+    found = re.search(r"looks like (.*), which is not read: .* as "
+                      r"docs/import\.md shows", said)
+    check(status == 1 and found, f"{pathlib.Path(path).name} is recognised",
+          said)
+    option = "--dofs" if path == "part.dof" else "--stiffness"
+    status, again = tool("ritz-import", "--mass", "M.mtx", option, path, "-o",
+                         "none.h5")
+    check(status == 1 and found[1] in again, f"also by {option}", again)
+    return found[1]
+
+
+def check_matrix(sentence, allowed=0.0):
+    status, said = tool("ritz-info", "K.mtx")
+    check(status == 0, f"{sentence}: what was made is read", said)
+    error = abs(scipy.io.mmread("K.mtx").toarray() - K).max()
+    check(error <= allowed, "and is the matrix", error)
+    os.remove("K.mtx")
+
+
+def convert():
+    text = section("import.md", "Files that are recognised and not read")
+    header, coordinates, dofs, nodes = blocks(text, "sh")
+    python, = blocks(text, "python")
+    check(run("sh", "-c", header)[0] == 0, "a header gets its %")
+    check_matrix("header")
+    pathlib.Path("convert.py").write_text(python, encoding="utf-8")
+    done = run("/usr/bin/python3", "-s", "convert.py")
+    check(done[0] == 0, "Harwell-Boeing becomes Matrix Market", done[1])
+    check_matrix("Harwell-Boeing", 1e-12)  # sixteen digits of 3000
+    shutil.copy("both.txt", "K.txt")
+    check(run("sh", "-c", coordinates)[0] == 0, "Abaqus gets a header")
+    check_matrix("Abaqus")
+    shutil.copy("one.txt", "K.txt")
+    check(run("sh", "-c", coordinates.replace("general", "symmetric"))[0] == 0,
+          "CalculiX gets a header")
+    scipy.io.mmwrite("M.mtx", scipy.sparse.csc_matrix(M))
+    check(run("sh", "-c", nodes)[0] == 0, "nodes become grids")
+    named = pathlib.Path("part.map").read_text(encoding="utf-8")
+    check(run("sh", "-c", dofs)[0] == 0, "dofs are named")
+    check(pathlib.Path("part.map").read_text(encoding="utf-8") == named,
+          "as those of the nodes are")
+    command = re.search(r"^    (ritz-import .*)$", text, re.M)[1].split()
+    status, said = tool(*command)
+    check(status == 0, "all of it is imported", said)
+    with h5py.File("part.h5") as file:
+        check(list(file["grids/id"]) == [11, 12] and numpy.array_equal(
+            file["grids/position"][:], [[0, 0, 0.5], [1.5, 0, 0]]) and
+            list(file["dofs/component"]) == [1, 2, 3] * 2, "grid by grid")
+    check_matrix("CalculiX", 1e-9)  # fourteen digits of 3000
+
+
+def convert_external():
+    lund = EXTERNAL / "pairs" / "lund"
+    if not lund.exists():
+        print("# skipped: no external data")
+        return
+    shutil.copy(lund / "lund_a.rsa", "K.rsa")
+    done = run("/usr/bin/python3", "-s", "convert.py")
+    check(done[0] == 0, "lund_a.rsa is converted", done[1])
+    A, B = scipy.io.mmread("K.mtx"), scipy.io.mmread(lund / "lund_a.mtx")
+    check(abs(A - B).max() == 0.0, "and is lund_a.mtx")
+    for name, kind in (("calculix/conrod/conrod.sti", "CalculiX"),
+                       ("calculix/conrod/conrod.mas", "CalculiX"),
+                       ("calculix/conrod/conrod.dof", "dofs of CalculiX"),
+                       ("calculix/conrod/conrod.inp", "input file of Abaqus"),
+                       ("abaqus/blockC3D4_STIF1.mtx", "matrix of Abaqus"),
+                       ("abaqus/blockC3D10.inp", "input file of Abaqus"),
+                       ("pairs/bcsst01/bcsstk01.rsa", "Harwell-Boeing"),
+                       ("ansys/rotorAnsysNodalCoordinates.txt", "ANSYS")):
+        status, said = tool("ritz-info", EXTERNAL / name)
+        check(status == 1 and kind in said, f"{name} is recognised", said)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        write_component()
+        drop_members()
+        change_types()
+        scipy.io.mmwrite("M.mtx", scipy.sparse.csc_matrix(M))
+        write_samples()
+        known = {recognise(path) for path in (
+            "header.mtx", "K.rsa", "both.txt", "one.txt", "part.dof",
+            "input.mtx", "part.inp", "file.full", "part.cdb")}
+        text = section("import.md", "Files that are recognised and not read")
+        listed = set(re.findall(r"^\| (an? [^|]+) \|", text, re.M))
+        check(known == listed, "the page lists what is recognised",
+              known ^ listed)
+        convert()
+        convert_external()
+        os.chdir("/")
+    print(f"1..{check.count}")
+
+
+main()
