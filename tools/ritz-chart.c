@@ -41,8 +41,9 @@ static ritz_status draw_chart(cli_run *run, const chart_kind *kind,
                           kind ? kind->holds : CHART_REPORT, &sources));
     if (kind)
         RITZ_CHECK(picture_new(request->path, true, &drawn));
-    RITZ_CHECK(kind ? kind->draw(&sources, request, &drawn)
-                    : report_write(&sources, request));
+    RITZ_CHECK(chart_name_files(kind ? kind->draw(&sources, request, &drawn)
+                                     : report_write(&sources, request),
+                                &sources, CHART_REPORT | MODEL_ANY));
     cli_say(run, "%s", run->output);
     return RITZ_OK;
 }

@@ -265,6 +265,14 @@ for words in 'Speed against accuracy' Convergence 'At equal order' \
     'Modes over configurations' "$(sha256sum full.h5 | cut -d' ' -f1)"; do
     expect 0 "$words" cat all.html
 done
+# a file that stops a report is named
+expect 0 '' ritz-rank --damping 'modal 0.01' stator.h5 -o values.h5
+expect 1 "'values.h5': no mode has a value" ritz-chart report full.h5 \
+    values.h5 response.h5 -o none.html
+expect 1 "'values.h5': no mode has a value" ritz-chart hankel values.h5 \
+    -o none.svg
+expect 1 "'bare.jsonl': no record has a method" ritz-chart report full.h5 \
+    bare.jsonl -o none.html
 mv all.html before.html
 expect 0 '' ritz-chart report runs.jsonl full.h5 response.h5 reduced.h5 \
     stator.h5 ranking.h5 tracks.tsv -o all.html

@@ -105,6 +105,25 @@ ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
     return RITZ_OK;
 }
 
+ritz_status chart_name_files(ritz_status status, const chart_sources *sources,
+                             int holds)
+{
+    char names[400] = "";
+
+    if (status == RITZ_OK)
+        return RITZ_OK;
+    for (int64_t k = 0; k < sources->count; k++) {
+        const char *base = picture_base(sources->file[k].path);
+
+        if (strstr(ritz_error_message(), base))
+            return status;
+        if (sources->file[k].holds & holds)
+            sink_append(names, sizeof names, "%s'%.60s'", *names ? ", " : "",
+                        base);
+    }
+    return *names ? ritz_context(status, names) : status;
+}
+
 void chart_sources_free(chart_sources *sources)
 {
     for (int64_t k = 0; k < sources->count; k++) {

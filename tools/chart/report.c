@@ -87,12 +87,16 @@ static ritz_status put_picture(report_page *p, const struct part *part,
     for (int64_t k = 0; k < some->count; k++)
         sink_append(names, sizeof names, "%s%.60s", k > 0 ? ", " : "",
                     picture_base(some->file[k].path));
-    RITZ_CHECK(report_figure(p, part->draw, some, &request, names));
+    RITZ_CHECK(
+        chart_name_files(report_figure(p, part->draw, some, &request, names),
+                         some, part->holds));
     if (request.channel.count > 0 || !have_singular(some->count, some->file))
         return RITZ_OK;
     request.channel = (cli_list){.count = 1, .text = {CHART_SINGULAR_WORD}};
     snprintf(caption, sizeof caption, "singular values: %s", names);
-    return report_figure(p, part->draw, some, &request, caption);
+    return chart_name_files(
+        report_figure(p, part->draw, some, &request, caption), some,
+        part->holds);
 }
 
 /* A section of pictures of one kind, if there are files for it. */
@@ -228,7 +232,7 @@ ritz_status report_write(const chart_sources *sources,
     RITZ_CHECK(cli_table_new(&p.figures));
     RITZ_CHECK(cli_table_new(&p.whole));
     put_title(&p);
-    RITZ_CHECK(report_records(&p));
+    RITZ_CHECK(chart_name_files(report_records(&p), sources, CHART_RECORDS));
     RITZ_CHECK(put_pictures(&p));
     RITZ_REFUSE_IF(p.num_pictures == 0, RITZ_ERR_ARGUMENT,
                    "there is nothing to draw in these files");
