@@ -21,8 +21,10 @@ int main(int argc, char **argv)
         CLI_TEXT("damping", &given.request.damping, "F", "viscous damping D"),
         CLI_TEXT("structural-damping", &given.request.structural_damping, "F",
                  "structural damping K4, of K + i K4"),
-        CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
-                 "geometric stiffness for a unit of the load LOAD"),
+        CLI_LIST(
+            "geometric-stiffness", &given.load, "F@LOAD",
+            "geometric stiffness for a unit of the load LOAD; it is stored, "
+            "and no tool uses it yet"),
         CLI_TEXT("bulk", &given.request.bulk, "F",
                  "NASTRAN bulk data: grids, frames, sets"),
         CLI_TEXT("dofs", &given.request.dofs, "F",

@@ -136,14 +136,35 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
     return RITZ_OK;
 }
 
+void model_warn_loads(cli_run *run, const char *path, int64_t count)
+{
+    if (count > 0)
+        cli_warn(run,
+                 "'%s': geometric stiffness (of %ld load%s) is left out: a "
+                 "component stores it, and no tool uses it yet",
+                 path, count, count > 1 ? "s" : "");
+}
+
+/* A file that cannot be read is refused when the scene loads it, which names
+   its line. */
+static void warn_of_model(cli_run *run, const char *path)
+{
+    RITZ_OWN(ritz_summary) summary = {0};
+
+    if (ritz_container_summary(path, &summary) == RITZ_OK)
+        model_warn_loads(run, path, summary.num_loads);
+}
+
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
 {
     RITZ_OWN(ritz_scene) scene = {0};
 
     RITZ_CHECK(cli_input(run, path));
     RITZ_CHECK(ritz_scene_read(path, &scene));
-    for (int64_t k = 0; k < scene.num_components; k++)
+    for (int64_t k = 0; k < scene.num_components; k++) {
         RITZ_CHECK_IN(path, cli_input(run, scene.component[k].model));
+        warn_of_model(run, scene.component[k].model);
+    }
     RITZ_MOVE(*out, scene);
     return RITZ_OK;
 }
@@ -289,25 +310,13 @@ void model_set_cost(cli_run *run, const ritz_cost *cost)
     sink_end(run);
 }
 
-/* PREFIXname.h5 */
-static ritz_status name_body(const char *prefix, const char *name,
-                             char out[MODEL_PATH])
+ritz_status model_body_path(const char *prefix, const char *name,
+                            char out[MODEL_PATH])
 {
     int length = snprintf(out, MODEL_PATH, "%s%s.h5", prefix, name);
 
     RITZ_REFUSE_IF(length < 0 || length >= MODEL_PATH, RITZ_ERR_ARGUMENT,
                    "--components '%.40s...' is too long", prefix);
-    return RITZ_OK;
-}
-
-ritz_status model_foresee_bodies(const char *prefix, const ritz_scene *scene)
-{
-    char path[MODEL_PATH];
-
-    for (int64_t k = 0; prefix && k < scene->num_components; k++) {
-        RITZ_CHECK(name_body(prefix, scene->component[k].name, path));
-        RITZ_CHECK(cli_can_write(path));
-    }
     return RITZ_OK;
 }
 
@@ -318,7 +327,7 @@ ritz_status model_write_bodies(cli_run *run, const char *prefix,
     char path[MODEL_PATH];
 
     SINK_EACH(run, "component_files", k, prefix ? scene->num_components : 0) {
-        RITZ_CHECK(name_body(prefix, scene->component[k].name, path));
+        RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
         RITZ_CHECK(
             ritz_container_write_reduced(path, &body[k], cli_stamp(run)));
         sink_add(run, "%s", path);

@@ -118,7 +118,11 @@ void model_nouns(int wanted, char *out, size_t room);
  */
 ritz_status model_read(cli_run *run, const char *path, int wanted, model *out);
 
-/** Hash and read a scene, and hash the models that it names. */
+/** Warn that geometric stiffness of so many loads of a model is not used. */
+void model_warn_loads(cli_run *run, const char *path, int64_t count);
+
+/** Hash and read a scene, and hash the models that it names. Geometric
+ * stiffness that these have is not used, and that is said. */
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
 
 /** Choose the configuration of --at; @p at given for no system is refused. */
@@ -199,8 +203,9 @@ void model_set_cost(cli_run *run, const ritz_cost *cost);
 
 enum { MODEL_PATH = 4096 };
 
-/** Check, before long work, that model_write_bodies can make its files. */
-ritz_status model_foresee_bodies(const char *prefix, const ritz_scene *scene);
+/** PREFIXname.h5 @return RITZ_ERR_ARGUMENT if that is too long */
+ritz_status model_body_path(const char *prefix, const char *name,
+                            char out[MODEL_PATH]);
 
 /** Reduced components of a scene as PREFIXname.h5; NULL: none is written. */
 ritz_status model_write_bodies(cli_run *run, const char *prefix,

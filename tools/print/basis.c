@@ -74,6 +74,38 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
     cli_record(run, basis->origin.method, c->count);
 }
 
+/* A state space that the method does not take: name those that do. */
+static ritz_status refuse_space(const char *path, const ritz_method *method)
+{
+    char names[256] = "";
+
+    for (const ritz_method *const *m = ritz_methods; *m; m++)
+        if ((*m)->uses & RITZ_USES_SPACE)
+            sink_append(names, sizeof names, "%s%s", *names ? ", " : "",
+                        (*m)->name);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "'%s' holds a state space, not a component, which alone "
+                     "%s takes; methods that take a state space: %s",
+                     path, method->name, names);
+}
+
+/* The model to be reduced, of a kind that the method takes. */
+static ritz_status read_full(cli_run *run, const char *path,
+                             const ritz_method *method, model *out)
+{
+    bool space = method->uses & RITZ_USES_SPACE;
+    model_kind kind = MODEL_ANY;
+    const char *noun = NULL;
+
+    if (!space && ritz_container_is(path)) {
+        RITZ_CHECK(model_peek(path, &kind, &noun));
+        if (kind == MODEL_STATES)
+            return refuse_space(path, method);
+    }
+    return model_read(run, path, MODEL_COMPONENT | (space ? MODEL_STATES : 0),
+                      out);
+}
+
 ritz_status basis_run(cli_run *run, basis_options *given)
 {
     const char *path = run->operand[1];
@@ -85,10 +117,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
     RITZ_OWN(model) made = {.kind = MODEL_BASIS};
 
     cli_record(run, method->name, -1);
-    RITZ_CHECK(model_read(
-        run, path,
-        MODEL_COMPONENT | (method->uses & RITZ_USES_SPACE ? MODEL_STATES : 0),
-        &m));
+    RITZ_CHECK(read_full(run, path, method, &m));
     if (m.kind == MODEL_STATES)
         request->space = &m.states;
     else
@@ -209,6 +238,7 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
                           &full));
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
+    model_warn_loads(run, run->operand[0], full.component.num_loads);
     RITZ_CHECK(model_damping(&full, given->damping, &given->estimate.damping));
     RITZ_REFUSE_IF(
         given->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,

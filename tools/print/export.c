@@ -100,6 +100,36 @@ static ritz_status check_stability(cli_run *run, const model *m,
     return RITZ_OK;
 }
 
+/* Errors that are not those of a body against its full model: what they are of,
+   by what their names begin with. */
+typedef struct reference {
+    const char *prefix, *word, *by, *warning;
+} reference;
+
+static const reference references[] = {
+    {"stage1-", "stage-1", "ritz-compare",
+     "these are errors of stage two against stage one alone"},
+    {"system-", "system", "ritz-fit",
+     "these are errors of the scene's system, not of this body"},
+    {"", "full", "ritz-verify or ritz-fit", NULL},
+};
+
+/* The first row that all names of measures begin with. */
+static const reference *find_reference(const ritz_measures *errors)
+{
+    const reference *row = references;
+
+    for (int64_t k = 0; k < errors->count;)
+        if (strncmp(errors->item[k].name, row->prefix, strlen(row->prefix)) ==
+            0) {
+            k++;
+        } else {
+            row++;
+            k = 0;
+        }
+    return row;
+}
+
 /* Which errors are known of it: no number without its error. */
 static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
                               const ritz_measures *estimates, bool force)
@@ -108,6 +138,7 @@ static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
                         : estimates->count > 0 ? "estimated"
                                                : "unknown";
     const ritz_measures *known = errors->count > 0 ? errors : estimates;
+    const reference *of = find_reference(known);
 
     sink_set(run, "errors_rest_on", "%s", rests);
     if (known->count == 0)
@@ -121,15 +152,19 @@ static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
                  run->operand[0]);
         return RITZ_OK;
     }
+    sink_set(run, "errors_against", "%s", of->word);
     cli_say(run, "errors %s by %s:", rests,
-            errors->count > 0 ? "ritz-verify or ritz-compare"
-                              : "ritz-reduce, not verified");
+            errors->count > 0 ? of->by : "ritz-reduce, not verified");
     model_say_measures(run, SINK_LINE, "errors", known, rests);
     for (int64_t k = 0; k < known->count; k++) {
         cli_record_error(run, known->item[k].name, known->item[k].value);
         if (!ritz_measure_holds(&known->item[k]))
             cli_warn(run, "'%s' does not meet its limit", known->item[k].name);
     }
+    if (of->warning)
+        cli_warn(run,
+                 "%s: ritz-verify measures '%s' against its full component",
+                 of->warning, run->operand[0]);
     return RITZ_OK;
 }
 

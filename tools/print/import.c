@@ -126,6 +126,11 @@ static void say_import(cli_run *run, const ritz_component *component,
                 "%ld rows have mass but no stiffness, kept: they move "
                 "freely",
                 done->num_floating);
+    if (component->num_loads > 0)
+        cli_say(run,
+                "geometric stiffness of %ld loads is stored; no tool uses it "
+                "yet",
+                component->num_loads);
     if (component->elements.count + done->num_hidden > 0)
         cli_say(run,
                 "%ld elements for pictures; %ld left out, as not all of "
