@@ -28,7 +28,7 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
         calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
 
     RITZ_REFUSE_IF(!setting, RITZ_ERR_MEMORY, "no memory for settings");
-    RITZ_CHECK(ritz_scene_settings(scene, at ? at : "", setting));
+    RITZ_CHECK_IN("--at", ritz_scene_settings(scene, at ? at : "", setting));
     RITZ_CHECK(ritz_assemble_full(scene, setting, &full.component, NULL));
     RITZ_CHECK(describe_output(run, &full));
     cli_record(run, "full", full.component.num_dofs);
@@ -56,9 +56,9 @@ int main(int argc, char **argv)
         CLI_FLAG("full", &full,
                  "reduce nothing: make one component with the dofs of all "
                  "bodies"),
-        CLI_OUTPUT("tracks", &tracks, "FILE",
-                   "write which mode is which at each configuration, as a "
-                   "table with tabs"),
+        CLI_TEXT("tracks", &tracks, "FILE",
+                 "write which mode is which at each configuration, as a "
+                 "table with tabs"),
         {0},
     };
     const cli_program program = {

@@ -13,7 +13,7 @@ static const struct verb {
     char name[VERB_SIZE];
     const char *summary;
 } verbs[] = {
-    {"import", "matrices and geometry -> component"},
+    {"import", "matrices and geometry -> component; A, B, C -> state space"},
     {"info", "what is in a container, a matrix file or a bulk data deck"},
     {"check", "audit a component before it is reduced"},
     {"basis",
@@ -22,13 +22,13 @@ static const struct verb {
     {"assemble", "scene -> system at one or all configurations"},
     {"rank", "which modes matter from inputs to outputs"},
     {"compare", "scene -> two-stage reduction over all configurations"},
-    {"frf", "frequency response of a component, reduced component or system"},
+    {"frf", "frequency response of any model, zeros, closed loops"},
     {"simulate", "time response of any model, and what a second of it costs"},
     {"poles", "damped poles of any model, dampers retuned or scanned"},
     {"fit", "component or scene + tolerance -> the smallest model that holds"},
     {"verify", "full against reduced: every error, pass or fail"},
     {"chart", "pictures of records, rankings, responses; one page of them all"},
-    {"export", "reduced component or response -> file of a simulator"},
+    {"export", "reduced component, state space, response -> file of others"},
     {"claims", "published numbers held against what the tools answer"},
 };
 

@@ -226,7 +226,7 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
 
         ritz_monitor_step("configuration", k, count);
         if (at)
-            RITZ_CHECK(ritz_scene_settings(scene, at, setting));
+            RITZ_CHECK_IN("--at", ritz_scene_settings(scene, at, setting));
         else
             row = scene->setting + k * scene->num_sweeps;
         RITZ_CHECK(ritz_stage_assemble(stage, row, &system.configuration[k]));

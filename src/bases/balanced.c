@@ -30,9 +30,9 @@ static ritz_status check_request(const ritz_request *request)
 
     RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
                    "balanced vectors are asked for by their number, not by a "
-                   "frequency");
+                   "frequency: --modes, not --up-to-hz");
     RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                   "no vectors are asked for, one at least is needed");
+                   "no vectors are asked for, one at least is needed: --modes");
     RITZ_REFUSE_IF(request->space && (given & of_components), RITZ_ERR_ARGUMENT,
                    "a state space has neither modes nor any damping beside its "
                    "matrix");
@@ -543,9 +543,10 @@ static ritz_status find_ranked_modes(const ritz_request *request,
 
     RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
                    "the best modes are asked for by their number, not by a "
-                   "frequency: among-hz says which to choose from");
+                   "frequency: --modes, and --among-hz says which to choose "
+                   "from");
     RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                   "no modes are asked for, one at least is needed");
+                   "no modes are asked for, one at least is needed: --modes");
     RITZ_CHECK(ritz_ends_check("component", io->num_inputs, io->num_outputs,
                                io->limit, io->output));
     RITZ_CHECK(ritz_gramians_modes(&all, &s->modes));

@@ -278,7 +278,8 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
 
     RITZ_REFUSE_IF(
         request->modes < 0, RITZ_ERR_ARGUMENT,
-        "Krylov vectors have no frequency: ask for a number of them");
+        "Krylov vectors have no frequency: ask for a number of them by "
+        "--modes");
     S.vectors = request->modes < body->K->nrow ? request->modes : body->K->nrow;
     if (S.inner == RITZ_INNER_MASS && body->M->nrow > 0)
         RITZ_CHECK(check_mass(body->M));

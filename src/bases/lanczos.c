@@ -48,9 +48,10 @@ static ritz_status find_states(const ritz_request *request, ritz_states *out)
     double alpha = 0.0;
 
     RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                   "states are asked for by their number, not by a frequency");
+                   "states are asked for by their number, not by a frequency: "
+                   "--modes, not --up-to-hz");
     RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                   "no states are asked for, one at least is needed");
+                   "no states are asked for, one at least is needed: --modes");
     RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
                    "the states are shifted by one frequency, not by several");
     RITZ_CHECK(ritz_request_damping(request, &damping));

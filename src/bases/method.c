@@ -19,12 +19,16 @@ ritz_status ritz_request_check(const ritz_method *method,
     bool by_frequency = request->up_to_hz > 0.0;
 
     if (method->uses & RITZ_USES_MODES)
-        RITZ_REFUSE_IF(by_number == by_frequency, RITZ_ERR_ARGUMENT,
-                       "%s takes either a number of modes or a frequency",
-                       method->name);
+        RITZ_REFUSE_IF(
+            by_number == by_frequency, RITZ_ERR_ARGUMENT,
+            "%s takes either a number of modes or a frequency: --modes "
+            "or --up-to-hz (in a scene modes or up_to_hz)",
+            method->name);
     else
         RITZ_REFUSE_IF(by_number || by_frequency, RITZ_ERR_ARGUMENT,
-                       "%s has no modes to choose", method->name);
+                       "%s has no modes to choose: leave out --modes and "
+                       "--up-to-hz",
+                       method->name);
     for (const ritz_choice_word *word = ritz_choice_words; word->key; word++)
         RITZ_REFUSE_IF(request->choice.given & word->uses & ~method->uses,
                        RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",

@@ -86,7 +86,8 @@ static ritz_status check_limit(const ritz_component *full,
                    kind->word, io->num_inputs, io->num_outputs);
     RITZ_REFUSE_IF(
         kind->needs & RITZ_NEEDS_DAMPING && !damped, RITZ_ERR_ARGUMENT,
-        "a tolerance of '%s' needs a model that is damped", kind->word);
+        "a tolerance of '%s' needs a model that is damped: --damping",
+        kind->word);
     return RITZ_OK;
 }
 

@@ -242,7 +242,7 @@ static ritz_status find_dense(const ritz_gramians_request *request,
     RITZ_CHECK(ritz_gramians_of_space(&space, &gramians));
     RITZ_REFUSE_IF(gramians.T.ncol == states.count, RITZ_ERR_ARGUMENT,
                    "no motion of the component decays, and none has a Gramian: "
-                   "give it damping");
+                   "give it damping, as by --damping");
     layout.modes = &states.modes;
     layout.num_decoupled = states.num_decoupled;
     layout.scale = states.scale;
@@ -266,7 +266,8 @@ static ritz_status find_all_modes(const ritz_gramians_request *request,
 
     RITZ_REFUSE_IF(component->num_dofs > RITZ_STATE_DOFS, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " dofs have too many modes to take all of them: "
-                   "say up to which frequency, or ask engine 'low-rank'",
+                   "say up to which frequency by --among-hz, or take "
+                   "--engine low-rank",
                    component->num_dofs);
     RITZ_CHECK(ritz_structure_of_component(component, &structure));
     return ritz_modal_model_new(&structure, &component->io, &request->damping,

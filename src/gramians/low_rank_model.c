@@ -269,7 +269,7 @@ static ritz_status collect_matrices(const ritz_gramians_request *request,
     RITZ_REFUSE_IF(!model->D.colptr || ritz_sparse_max(&model->D) == 0.0,
                    RITZ_ERR_ARGUMENT,
                    "there is no damping, without which no motion decays and no "
-                   "Gramian is finite");
+                   "Gramian is finite: give it by --damping");
     if (ritz_sparse_asymmetry(&model->D) > 0.0)
         RITZ_CHECK(ritz_sparse_transpose(&model->D, &model->Dt));
     return RITZ_OK;

@@ -242,7 +242,7 @@ ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
         RITZ_REFUSE_IF(
             !(modal.zeta[k] > 0.0), RITZ_ERR_ARGUMENT,
             "the mode at %.6g Hz has %s damping: every flexible mode "
-            "needs a positive ratio",
+            "needs a positive ratio, from --damping or the scene",
             ritz_eigen_hertz(modes->lambda[r + k]),
             modal.zeta[k] < 0.0 ? "negative" : "no");
         put_mode(from, r + k, io->limit, &modal, k);

@@ -530,7 +530,8 @@ static ritz_status start_krylov(const ritz_response_request *request,
     double highest = highest_mode(request);
 
     RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                   "modes up to %g Hz cannot give a response up to %g Hz",
+                   "modes up to %g Hz cannot give a response up to %g Hz: "
+                   "raise --up-to-hz",
                    highest, request->to_hz);
     k->tolerance =
         request->tolerance > 0.0 ? request->tolerance : RITZ_ENGINE_TOLERANCE;

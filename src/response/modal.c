@@ -48,7 +48,8 @@ static ritz_status make_modal(const ritz_response_request *request,
         return ritz_poles_of_dense(&model->dense, model->damping,
                                    request->to_hz, &m->poles);
     RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                   "modes up to %g Hz cannot give a response up to %g Hz",
+                   "modes up to %g Hz cannot give a response up to %g Hz: "
+                   "raise --up-to-hz",
                    highest, request->to_hz);
     RITZ_CHECK(ritz_poles_of_component(model->component, model->damping,
                                        highest, &m->pairs, &m->poles));

@@ -62,7 +62,8 @@ static ritz_status motion_of_modes(const ritz_component *component,
     RITZ_OWN(ritz_motion) m = {0};
 
     RITZ_REFUSE_IF(!(up_to_hz > 0.0), RITZ_ERR_ARGUMENT,
-                   "no frequency is given up to which modes are to be found");
+                   "no frequency is given up to which modes are to be found: "
+                   "--up-to-hz");
     RITZ_CHECK(refuse_structural(component->K4.colptr &&
                                  ritz_sparse_max(&component->K4) > 0.0));
     RITZ_CHECK(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));

@@ -61,7 +61,7 @@ expect 0 '8 dofs' ritz-assemble caged.yaml --at slide=-2.5,clock=30 --full \
 expect 0 'clock=30,slide=-2.5' ritz-info one.h5
 expect 0 'pass' ritz-verify full.h5 one.h5 --band-hz 0,2 \
     --limit-frequency 1e-12 --limit-response 1e-9 -o verified.h5
-expect 1 "joint 'slide' has several settings and none is given here" \
+expect 1 "--at: joint 'slide' has several settings and none is given here" \
     ritz-assemble caged.yaml --at clock=30 -o none.h5
 expect 1 "unknown joint 'slid', is 'slide' meant?" \
     ritz-assemble caged.yaml --at clock=30,slid=1 -o none.h5

@@ -77,6 +77,12 @@ expect 1 'is of reduced components and systems' ritz-simulate --cost stator.h5
 
 expect 2 "no integrator 'trapezoid'" ritz-simulate --method trapezoid \
     --seconds 1 reduced.h5 -o none.h5
+expect 0 'needs --up-to-hz' ritz-simulate --list
+if ritz-simulate --list | grep -i 'loop' >log; then
+    report no 'no integrator closes a loop'
+else
+    report yes 'no integrator closes a loop'
+fi
 expect 2 'how long? give --seconds' ritz-simulate reduced.h5 -o none.h5
 expect 2 'nothing to do' ritz-simulate reduced.h5
 expect 2 "takes 'first' or 'zero', not 'second'" ritz-simulate --hold second --seconds 1 \
@@ -90,7 +96,7 @@ expect 1 'is given twice' ritz-simulate --seconds 1 --input torque=step \
     --input torque=step reduced.h5 -o none.h5
 expect 1 'Hz, limits it to' ritz-simulate --seconds 1 --step 0.1 \
     --method central-difference --input torque=step reduced.h5 -o none.h5
-expect 1 'up to which modes are to be found' ritz-simulate --seconds 1 \
+expect 1 'up to which modes are to be found: --up-to-hz' ritz-simulate --seconds 1 \
     --input torque=step stator.h5 -o none.h5
 expect 1 'damping ratios are of modes' ritz-simulate --seconds 1 \
     --method trapezoidal --damping 'modal 0.01' --input torque=step stator.h5 \

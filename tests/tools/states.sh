@@ -36,6 +36,10 @@ expect 0 'states response' ritz-frf two.h5 --to-hz 1 -o response.h5
 expect 0 'not applicable: no input and output of one name' ritz-check two.h5
 expect 1 'holds a state space, not a component' ritz-basis craig-bampton \
     --modes 1 two.h5 -o none.h5
+expect 1 'methods that take a state space: balanced' ritz-basis rubin \
+    --modes 1 two.h5 -o none.h5
+expect 1 'is a state space: --method direct is for components, here are auto' \
+    ritz-frf two.h5 --to-hz 1 --method direct -o none.h5
 
 # --- out again, to the bit -------------------------------------------------------------
 

@@ -47,6 +47,15 @@ static void check_options(const cli_program *program,
     cli_refuse_name(program, "no method", given->method, count, names);
 }
 
+/* "auto, modal" of the engines that take a kind of model. */
+static void list_engines(int kind, size_t size, char *out)
+{
+    snprintf(out, size, "auto");
+    for (int k = 0; ritz_response_engines[k]; k++)
+        if (ritz_response_engines[k]->takes & kind)
+            sink_append(out, size, ", %s", ritz_response_engines[k]->name);
+}
+
 /* The engine that is asked for, if it is for such a model. */
 static ritz_status choose_engine(cli_run *run, const char *method,
                                  const ritz_response_request *request,
@@ -54,17 +63,22 @@ static ritz_status choose_engine(cli_run *run, const char *method,
 {
     const char *why = NULL;
     int kind = (int)request->model.kind;
+    bool states = kind == (int)RITZ_MODEL_STATES;
+    char names[128];
 
+    list_engines(kind, sizeof names, names);
     *out = strcmp(method, "auto") == 0
                ? ritz_response_engine_choose(request, &why)
                : ritz_response_engine_find(method);
-    RITZ_REFUSE_IF(!((*out)->takes & kind) && kind == (int)RITZ_MODEL_COMPONENT,
-                   RITZ_ERR_ARGUMENT,
-                   "'%s' is a component: --method %s is not for it",
-                   run->operand[0], method);
+    RITZ_REFUSE_IF(
+        !((*out)->takes & kind) && kind == (int)RITZ_MODEL_COMPONENT,
+        RITZ_ERR_ARGUMENT,
+        "'%s' is a component: --method %s is not for it, here are %s",
+        run->operand[0], method, names);
     RITZ_REFUSE_IF(!((*out)->takes & kind), RITZ_ERR_ARGUMENT,
-                   "'%s' is small and dense: --method %s is for components",
-                   run->operand[0], method);
+                   "'%s' is %s: --method %s is for components, here are %s",
+                   run->operand[0], states ? "a state space" : "dense", method,
+                   names);
     if (why && kind == (int)RITZ_MODEL_COMPONENT)
         cli_say(run, "method %s: %s", (*out)->name, why);
     return RITZ_OK;
