@@ -70,7 +70,8 @@ typedef struct ritz_response_request {
     double from_hz, to_hz; /* the range of later requests */
     double up_to_hz;       /* modes of a component; 0: three times the end */
     double tolerance; /* of engines that approximate, relative to the largest
-                         |H| of a channel; 0: 1e-9 */
+                         |H| of a channel; 0: 1e-9, and modal remarks on its
+                         error alone */
 } ritz_response_request;
 
 /* A model made ready to respond at any frequency of its range: opaque. */
@@ -102,8 +103,12 @@ extern const ritz_response_engine ritz_response_engine_direct;
 /**
  * A sum of modes. Of a dense model all of them, with ratios of given damping
  * and of Phi'D Phi; where D couples modes, they are solved for together at each
- * point. Of a component those up to `up_to_hz`; modes above respond without
- * damping, as a series in w^2 that begins with their residual flexibility.
+ * point. Of a component those up to `up_to_hz`; modes above respond as a series
+ * in w^2 that begins with their residual flexibility, damped by a M + b K alone.
+ *
+ * Where other damping acts on a component, the sum is compared with direct at
+ * some resonances and between them. The remark says how much it is off; where
+ * that exceeds a tolerance the engine is refused, RITZ_ERR_CONVERGENCE.
  *
  * Rigid modes contribute 1/(-w^2): a point at 0 Hz is refused if they are
  * controllable and observable.

@@ -89,7 +89,9 @@ static ritz_status new_responder(cli_run *run, const model *m,
                                  const response_options *given,
                                  const ritz_grid *grid, ritz_responder **out)
 {
+    const bool modal = strcmp(given->method, "modal") == 0;
     const ritz_response_engine *engine = NULL;
+    const char *remark = NULL;
     ritz_response_request request = {
         .model = model_reference(m),
         .up_to_hz = given->up_to_hz,
@@ -98,18 +100,15 @@ static ritz_status new_responder(cli_run *run, const model *m,
         .to_hz = grid->hertz ? grid->hertz[grid->count - 1] : grid->to_hz};
 
     RITZ_CHECK(choose_engine(run, given->method, &request, &engine));
-    if (m->kind == MODEL_COMPONENT && strcmp(given->method, "modal") == 0 &&
-        (m->component.D.colptr || m->component.K4.colptr))
-        cli_warn(run,
-                 "the damping matrices of '%s' act on the modes that are "
-                 "summed alone, --method krylov leaves out nothing",
-                 run->operand[0]);
-    if (strcmp(given->method, "auto") == 0)
+    if (strcmp(given->method, "auto") == 0 || modal)
         RITZ_CHECK(ritz_responder_or_direct(engine, &request, out));
     else
         RITZ_CHECK(ritz_responder_new(engine, &request, out));
-    if (ritz_responder_remark(*out)[0])
-        sink_say(run, "note", "  %s", ritz_responder_remark(*out));
+    remark = ritz_responder_remark(*out);
+    if (remark[0] && modal && given->tolerance == 0.0)
+        cli_warn(run, "%s; --method krylov leaves nothing out", remark);
+    else if (remark[0])
+        sink_say(run, "note", "  %s", remark);
     return RITZ_OK;
 }
 

@@ -304,6 +304,28 @@ static void warn_of_rounding(cli_run *run, double accuracy,
              s->output[reached->left], reached->rounding, accuracy, more);
 }
 
+/*
+ * Modes of a component are simulated alone. How much D puts their responses off
+ * when it acts on the modes above too is measured in frequency, up to a third
+ * of the last mode.
+ */
+static ritz_status warn_of_damping(cli_run *run, ritz_model subject,
+                                   const ritz_simulation_request *request)
+{
+    const ritz_response_request asked = {.model = subject,
+                                         .to_hz = request->up_to_hz / 3.0,
+                                         .up_to_hz = request->up_to_hz};
+    RITZ_OWN(ritz_responder) *r = NULL;
+
+    if (subject.kind != RITZ_MODEL_COMPONENT ||
+        request->integrator != &ritz_integrator_modal)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_responder_new(&ritz_response_engine_modal, &asked, &r));
+    if (ritz_responder_remark(r)[0])
+        cli_warn(run, "%s, up to %g Hz", ritz_responder_remark(r), asked.to_hz);
+    return RITZ_OK;
+}
+
 static ritz_status
 simulate_response(cli_run *run, const simulation_options *given, const drive *d)
 {
@@ -334,6 +356,7 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
     } else {
         RITZ_CHECK(ritz_simulate(d->subject, &request, s));
     }
+    RITZ_CHECK(warn_of_damping(run, d->subject, &request));
     RITZ_CHECK(describe_output(run, &made));
     if (given->step == 0.0)
         sink_field(run, "accurate to", "error",
