@@ -257,9 +257,9 @@ typedef struct ritz_import_request {
     const char *const *rigid_port; /* "NAME=GRIDS[:COMPS]": a new grid that */
     const char *const *averaged_port; /* these follow, or that follows them */
     int64_t num_inputs;
-    const char *const *input; /* "NAME=GRID:COMP[*SCALE]" */
+    const char *const *input; /* "NAME=GRID:COMP[*SCALE][,...]" */
     int64_t num_outputs;
-    const char *const *output; /* "NAME=GRID:COMP[/vel|/acc][@LIMIT]" */
+    const char *const *output; /* the same, then [/vel|/acc][@LIMIT] */
     int64_t num_dampers;
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;

@@ -119,6 +119,20 @@ typedef struct ritz_extended {
     const ritz_equations *equations; /* for messages; NULL: there are none */
 } ritz_extended;
 
+/** @param[in] component, equations  borrowed by @p out */
+ritz_status ritz_extended_new(const ritz_component *component,
+                              const ritz_equations *equations,
+                              ritz_extended *out);
+
+/**
+ * Add @p value at @p row of the extended rows: a dof that follows, u = G u_n,
+ * puts G' there.
+ *
+ * @param[in,out] into  one number for each row of the component, @p stride
+ *                      apart
+ */
+void ritz_extended_add(const ritz_extended *extended, int64_t row, double value,
+                       int64_t stride, double *into);
 void ritz_extended_free(ritz_extended *extended);
 
 /**

@@ -37,6 +37,50 @@ ritz_status ritz_roster_miss(const ritz_roster *roster, ritz_dof dof)
                      ritz_dof_name(dof, name));
 }
 
+/* ---- rows and recovered dofs --------------------------------------------- */
+
+ritz_status ritz_extended_new(const ritz_component *component,
+                              const ritz_equations *equations,
+                              ritz_extended *out)
+{
+    RITZ_OWN(ritz_extended)
+    new = {.view = *component,
+           .num_rows = component->num_dofs,
+           .equations = equations};
+    const ritz_recovery *recovery = &component->recovery;
+
+    new.view.dof = NULL;
+    RITZ_CHECK(ritz_recovery_extend(recovery, component->num_dofs,
+                                    component->dof, NULL, &new.view.dof, NULL));
+    new.view.num_dofs += recovery->count;
+    RITZ_CHECK(ritz_roster_new(new.view.num_dofs, new.view.dof, &new.roster));
+    if (recovery->count > 0)
+        RITZ_CHECK(ritz_sparse_transpose(&recovery->G, &new.from));
+    RITZ_MOVE(*out, new);
+    return RITZ_OK;
+}
+
+void ritz_extended_add(const ritz_extended *extended, int64_t row, double value,
+                       int64_t stride, double *into)
+{
+    const ritz_sparse *from = &extended->from;
+    int64_t k = row - extended->num_rows;
+
+    if (k < 0)
+        into[stride * row] += value;
+    for (int64_t p = k < 0 ? 0 : from->colptr[k];
+         k >= 0 && p < from->colptr[k + 1]; p++)
+        into[stride * from->rowind[p]] += value * from->val[p];
+}
+
+void ritz_extended_free(ritz_extended *extended)
+{
+    free(extended->view.dof);
+    ritz_roster_free(&extended->roster);
+    ritz_sparse_free(&extended->from);
+    *extended = (ritz_extended){0};
+}
+
 /* ---- names of a deck and of a file -------------------------------------- */
 
 /*

@@ -10,37 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- rows and recovered dofs --------------------------------------------- */
-
-static ritz_status extend_rows(const ritz_component *component,
-                               const ritz_equations *equations,
-                               ritz_extended *out)
-{
-    RITZ_OWN(ritz_extended)
-    new = {.view = *component,
-           .num_rows = component->num_dofs,
-           .equations = equations};
-    const ritz_recovery *recovery = &component->recovery;
-
-    new.view.dof = NULL;
-    RITZ_CHECK(ritz_recovery_extend(recovery, component->num_dofs,
-                                    component->dof, NULL, &new.view.dof, NULL));
-    new.view.num_dofs += recovery->count;
-    RITZ_CHECK(ritz_roster_new(new.view.num_dofs, new.view.dof, &new.roster));
-    if (recovery->count > 0)
-        RITZ_CHECK(ritz_sparse_transpose(&recovery->G, &new.from));
-    RITZ_MOVE(*out, new);
-    return RITZ_OK;
-}
-
-void ritz_extended_free(ritz_extended *extended)
-{
-    free(extended->view.dof);
-    ritz_roster_free(&extended->roster);
-    ritz_sparse_free(&extended->from);
-    *extended = (ritz_extended){0};
-}
-
 /* ---- ports "NAME=GRIDS[:COMPS]" ----------------------------------------- */
 
 /*
@@ -312,8 +281,10 @@ static ritz_status add_ports(const ritz_import_request *request,
 /* ---- inputs and outputs ------------------------------------------------- */
 
 /*
- * Inputs "NAME=GRID:COMP[*SCALE]" and outputs
- * "NAME=GRID:COMP[/vel|/acc][@LIMIT]", along basic axes.
+ * Inputs "NAME=GRID:COMP[*SCALE][,...]" and outputs
+ * "NAME=GRID:COMP[*SCALE][,...][/vel|/acc][@LIMIT]", along basic axes. Terms
+ * between commas are added: "3:1,4:1*-1" is a pair of opposite forces, or a
+ * relative displacement.
  *
  * With u_b = t' u the displacement of a grid along a basic axis, a force along
  * it is the row vector t in B, as it does the work t' u; an output is t in C.
@@ -361,25 +332,14 @@ static ritz_status take_aim(const ritz_extended *extended, ritz_dof dof,
     return out->count == 0 ? ritz_roster_miss(roster, dof) : RITZ_OK;
 }
 
-/*
- * Add scale t to a column of B (stride 1) or a row of C (stride the number of
- * outputs); a dof that follows, u = G u_n, puts G' there.
- */
+/* Add scale t to a column of B (stride 1) or a row of C (stride the number of
+ * outputs). */
 static void add_aim(const ritz_extended *extended, const aim *to, double scale,
                     int64_t stride, double *into)
 {
-    const ritz_sparse *from = &extended->from;
-
-    for (int64_t i = 0; i < to->count; i++) {
-        int64_t k = to->row[i] - extended->num_rows;
-
-        if (k < 0)
-            into[stride * to->row[i]] += scale * to->share[i];
-        for (int64_t p = k < 0 ? 0 : from->colptr[k];
-             k >= 0 && p < from->colptr[k + 1]; p++)
-            into[stride * from->rowind[p]] +=
-                scale * to->share[i] * from->val[p];
-    }
+    for (int64_t i = 0; i < to->count; i++)
+        ritz_extended_add(extended, to->row[i], scale * to->share[i], stride,
+                          into);
 }
 
 /* "GRID:COMP" of `length` letters. */
@@ -414,18 +374,53 @@ static ritz_status add_direction(const char *text, size_t length,
     return RITZ_OK;
 }
 
-/* A number behind `mark`, if that is there; the text is cut before it. */
-static ritz_status take_number(const char *text, char mark, size_t *length,
-                               double *out)
+/* So many letters as a number. */
+static ritz_status take_number(const char *text, size_t length, double *out)
 {
-    const char *at = strchr(text, mark);
+    char copy[RITZ_NAME_SIZE];
+    char *more = NULL;
 
-    if (!at)
-        return RITZ_OK;
-    RITZ_REFUSE_IF(!ritz_text_real(at + 1, out) || *out == 0.0,
-                   RITZ_ERR_ARGUMENT, "'%s' is no number other than zero",
-                   at + 1);
-    *length = (size_t)(at - text);
+    RITZ_REFUSE_IF(!ritz_text_part(text, length, '*', copy, &more) || more ||
+                       !ritz_text_real(copy, out) || *out == 0.0,
+                   RITZ_ERR_ARGUMENT, "'%.*s' is no number other than zero",
+                   (int)length, text);
+    return RITZ_OK;
+}
+
+/* "GRID:COMP[*SCALE]" */
+static ritz_status add_term(const char *text, size_t length,
+                            const ritz_extended *extended, int64_t stride,
+                            double *into)
+{
+    const char *star = memchr(text, '*', length);
+    size_t before = star ? (size_t)(star - text) : length;
+    double scale = 1.0;
+
+    if (star)
+        RITZ_CHECK(take_number(star + 1, length - before - 1, &scale));
+    return add_direction(text, before, extended, scale, stride, into);
+}
+
+/* "GRID:COMP[*SCALE][,...]"; terms that cancel each other are refused. */
+static ritz_status add_terms(const char *text, size_t length,
+                             const ritz_extended *extended, int64_t stride,
+                             double *into)
+{
+    const char *end = text + length;
+    double largest = 0.0;
+
+    for (const char *at = text; at <= end;) {
+        const char *comma = memchr(at, ',', (size_t)(end - at));
+        size_t part = (size_t)((comma ? comma : end) - at);
+
+        RITZ_CHECK(add_term(at, part, extended, stride, into));
+        at += part + 1;
+    }
+    for (int64_t i = 0; i < extended->num_rows; i++)
+        largest = fmax(largest, fabs(into[stride * i]));
+    RITZ_REFUSE_IF(largest == 0.0 && memchr(text, ',', length),
+                   RITZ_ERR_ARGUMENT, "the terms of '%.*s' cancel each other",
+                   (int)length, text);
     return RITZ_OK;
 }
 
@@ -433,15 +428,25 @@ static ritz_status make_input(const char *text, const ritz_extended *extended,
                               int64_t k, ritz_io *io)
 {
     const char *rest = NULL;
-    size_t length = 0;
-    double scale = 1.0;
 
-    RITZ_CHECK(
-        ritz_import_split(text, "NAME=GRID:COMP[*SCALE]", io->input[k], &rest));
-    length = strlen(rest);
-    RITZ_CHECK(take_number(rest, '*', &length, &scale));
-    return add_direction(rest, length, extended, scale, 1,
-                         ritz_dense_col(&io->B, k));
+    RITZ_CHECK(ritz_import_split(text, "NAME=GRID:COMP[*SCALE][,...]",
+                                 io->input[k], &rest));
+    return add_terms(rest, strlen(rest), extended, 1,
+                     ritz_dense_col(&io->B, k));
+}
+
+/* "@LIMIT" at the end, if it is there. */
+static ritz_status take_limit(const char *text, size_t *length, double *limit)
+{
+    const char *at = strchr(text, '@');
+
+    if (!at)
+        return RITZ_OK;
+    RITZ_CHECK(take_number(at + 1, strlen(at + 1), limit));
+    RITZ_REFUSE_IF(*limit < 0.0, RITZ_ERR_ARGUMENT,
+                   "a limit is positive, '%g' is not", *limit);
+    *length = (size_t)(at - text);
+    return RITZ_OK;
 }
 
 /* The quantity of an output: displacement unless a word follows '/'. */
@@ -479,14 +484,13 @@ static ritz_status make_output(const char *text, const ritz_extended *extended,
     size_t length = 0;
     ritz_dense *C = NULL;
 
-    RITZ_CHECK(ritz_import_split(text, "NAME=GRID:COMP[/vel|/acc][@LIMIT]",
-                                 io->output[k], &rest));
+    RITZ_CHECK(ritz_import_split(
+        text, "NAME=GRID:COMP[*SCALE][,...][/vel|/acc][@LIMIT]", io->output[k],
+        &rest));
     length = strlen(rest);
-    RITZ_CHECK(take_number(rest, '@', &length, &io->limit[k]));
-    RITZ_REFUSE_IF(io->limit[k] < 0.0, RITZ_ERR_ARGUMENT,
-                   "a limit is positive, '%g' is not", io->limit[k]);
+    RITZ_CHECK(take_limit(rest, &length, &io->limit[k]));
     RITZ_CHECK(take_quantity(rest, &length, io, &C));
-    return add_direction(rest, length, extended, 1.0, C->nrow, C->val + k);
+    return add_terms(rest, length, extended, C->nrow, C->val + k);
 }
 
 static ritz_status check_new(const char (*name)[RITZ_NAME_SIZE], int64_t k,
@@ -598,7 +602,7 @@ ritz_status ritz_import_attach(const ritz_import_request *request,
 {
     RITZ_OWN(ritz_extended) extended = {0};
 
-    RITZ_CHECK(extend_rows(component, equations, &extended));
+    RITZ_CHECK(ritz_extended_new(component, equations, &extended));
     RITZ_CHECK_IN("port", add_ports(request, report, &extended, component));
     RITZ_CHECK(add_io(request, &extended, component));
     RITZ_CHECK_IN("damper", add_dampers(request, &extended, component));

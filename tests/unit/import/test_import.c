@@ -287,6 +287,43 @@ static void inputs_and_outputs_act_along_basic_axes(void **)
     assert_string_equal(c.io.input[0], "fx");
 }
 
+/* Column k of B and row k of the outputs, of grids 3, 7 (turned) and 9 and of
+ * point 5, are the sums of those of single dofs, times their scales. */
+static void terms_of_inputs_and_outputs_add_up(void **)
+{
+    const char *const inputs[] = {"a=3:1", "b=7:2", "c=5:0",
+                                  "u=3:1,7:2*-0.5,5:0*4,3:1*2"};
+    const char *const outputs[] = {"a=3:1/vel", "b=7:2/vel",
+                                   "gap=3:1,7:2*-1/vel@1e-3", "s=5:0*-3"};
+    const ritz_import_request request = {.mass =
+                                             put_diagonal("m.mtx", 19, full),
+                                         .bulk = folder_write("deck.bdf", deck),
+                                         .num_inputs = 4,
+                                         .input = inputs,
+                                         .num_outputs = 4,
+                                         .output = outputs};
+    RITZ_OWN(ritz_import_report) report = {0};
+    RITZ_OWN(ritz_component) c = {0};
+
+    assert_ok(ritz_import(&request, &c, &report));
+    for (int64_t i = 0; i < 19; i++) {
+        const double *Cv = ritz_dense_col(&c.io.Cv, i);
+
+        /* few terms, the scales powers of two: no rounding */
+        assert_near(ritz_dense_col(&c.io.B, 3)[i],
+                    3.0 * ritz_dense_col(&c.io.B, 0)[i] -
+                        0.5 * ritz_dense_col(&c.io.B, 1)[i] +
+                        4.0 * ritz_dense_col(&c.io.B, 2)[i],
+                    0.0);
+        assert_near(Cv[2], Cv[0] - Cv[1], 0.0);
+    }
+    assert_near(ritz_dense_col(&c.io.B, 3)[0], 3.0, 0.0);
+    assert_near(ritz_dense_col(&c.io.B, 3)[7], -0.5, 1e-15);
+    assert_near(ritz_dense_col(&c.io.C, 6)[3], -3.0, 0.0);
+    assert_near(c.io.limit[2], 1e-3, 0.0);
+    assert_string_equal(c.io.output[2], "gap");
+}
+
 /* Grid 7 is turned: its first axis is the second basic one. */
 static void dampers_lie_along_basic_axes(void **)
 {
@@ -364,15 +401,28 @@ static void wrong_ports_are_refused(void **)
 static void wrong_inputs_and_outputs_are_refused(void **)
 {
     static const refusal inputs[] = {
-        {"a=3", "no grid and direction"}, {"a=3:7", "no grid and direction"},
-        {"a=4:1", "the nearest is 3"},    {"a=3:1*x", "'x' is no number"},
-        {"a=3:1*0", "other than zero"},   {"a=5:2", "no 'grid 5 T2'"},
-        {"3:1", "form NAME=GRID:COMP"},
+        {"a=3", "no grid and direction"},
+        {"a=3:7", "no grid and direction"},
+        {"a=4:1", "the nearest is 3"},
+        {"a=3:1*x", "'x' is no number"},
+        {"a=3:1*0", "other than zero"},
+        {"a=5:2", "no 'grid 5 T2'"},
+        {"3:1", "form NAME=GRID:COMP[*SCALE][,...]"},
+        {"a=3:1,", "'' is no grid and direction"},
+        {"a=3:1,,7:1", "'' is no grid and direction"},
+        {"a=3:1,4:1", "the nearest is 3"},
+        {"a=3:1*2*3", "'2*3' is no number"},
+        {"a=3:1*2,7:1*x", "'x' is no number"},
+        {"a=3:1*,7:1", "'' is no number"},
+        {"a=7:1,3:2*2,7:1*-1,3:2*-2", "cancel each other"},
     };
     static const refusal outputs[] = {
         {"a=3:1/dis", "neither 'vel' nor 'acc'"},
         {"a=3:1@-1", "a limit is positive"},
         {"a=3:1@", "'' is no number"},
+        {"a=3:1/vel,7:1", "'vel,7:1' is neither 'vel' nor 'acc'"},
+        {"a=3:1,3:1*-1/acc", "the terms of '3:1,3:1*-1' cancel"},
+        {"3:1", "form NAME=GRID:COMP[*SCALE][,...][/vel|/acc][@LIMIT]"},
     };
     ritz_import_request request = {.mass = put_diagonal("m.mtx", 19, full),
                                    .bulk = folder_write("deck.bdf", deck)};
@@ -484,8 +534,8 @@ static ritz_status import_and_free(const ritz_import_request *request)
 static void no_allocation_failure_leaks(void **)
 {
     const char *const ports[] = {"a=3,7", "b=5"};
-    const char *const inputs[] = {"u=7:1"};
-    const char *const outputs[] = {"y=7:1/acc"};
+    const char *const inputs[] = {"u=7:1,9:2*3"};
+    const char *const outputs[] = {"y=7:1,5:0*-1/acc"};
     const char *const dampers[] = {"d=7:1,3:2*5*-6"};
     char load[300];
     const char *const loads[] = {load};
@@ -646,6 +696,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_file_of_names_rules),
     cmocka_unit_test(matrices_that_name_their_rows_are_united),
     cmocka_unit_test(inputs_and_outputs_act_along_basic_axes),
+    cmocka_unit_test(terms_of_inputs_and_outputs_add_up),
     cmocka_unit_test(dampers_lie_along_basic_axes),
     cmocka_unit_test(wrong_dampers_are_refused),
     cmocka_unit_test(wrong_ports_are_refused),
