@@ -251,6 +251,9 @@ typedef struct ritz_import_request {
     const char *const *load; /* "F@LOAD" */
     const char *bulk;        /* file of a deck */
     const char *dofs;        /* file of `GRID COMP` rows */
+    const char *rows; /* "126": each grid has these; "0": scalar points */
+    const char *frequencies; /* of a component in modal form  [Hz] */
+    const char *ratios;      /* of its damping, or one number */
     int64_t num_ports;
     const char *const *port; /* "NAME=GRIDS[:COMPS]" */
     int64_t num_rigid_ports, num_averaged_ports;
@@ -260,6 +263,9 @@ typedef struct ritz_import_request {
     const char *const *input; /* "NAME=GRID:COMP[*SCALE][,...]" */
     int64_t num_outputs;
     const char *const *output; /* the same, then [/vel|/acc][@LIMIT] */
+    const char *input_matrix;  /* B; its inputs follow those above */
+    const char *output_matrix, *velocity_matrix, *acceleration_matrix;
+    const char *input_names, *output_names; /* as of a state space */
     int64_t num_dampers;
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
@@ -283,7 +289,7 @@ typedef struct ritz_import_report {
     int64_t num_massless;     /* rows empty in M only: kept */
     int64_t num_floating;     /* rows empty in K only: kept */
     char map[RITZ_NAME_SIZE]; /* where the dofs come from: "file", "--dofs",
-                                 "grids ascending", "A-set",
+                                 "--rows", "modes", "grids ascending", "A-set",
                                  "grids less SPCs", "grids less dependents",
                                  "grids less SPCs and dependents" */
     int64_t num_constraints;  /* elements that make dofs depend on others */
@@ -305,8 +311,8 @@ typedef struct ritz_import_report {
  * Rows are named by, in this order: --dofs; the map in the file (DMIG); the
  * deck, if its dofs (of NASTRAN six for each grid, ascending, one for scalar
  * points) or its a-set, or its dofs without supports, fit the size; without a
- * deck a size that is a multiple of six: grids 1..n/6. A size that does not fit
- * is refused. Matrices that name their rows may hold different ones: the
+ * deck grids 1, 2, ... of the directions that `rows` lists, or of all six if
+ * the size is a multiple of six. A size that does not fit is refused. Matrices that name their rows may hold different ones: the
  * component has all of them.
  *
  * Whatever names them, rows that the deck fixes (ritz_deck.fixed) are taken
@@ -320,7 +326,19 @@ typedef struct ritz_import_report {
  * body. An averaged port is their average without weights, and to keep it six
  * of them depend on it and the others.
  *
- * Inputs and outputs act along basic axes. Positions are known from the deck
+ * Inputs and outputs of texts act along basic axes; matrices of them,
+ *
+ *     M u'' + D u' + K u = B f,    y = C u + Cv u' + Ca u'',
+ *
+ * have the rows of the mass, as displacement axes have them: B is n x m, and
+ * C, Cv and Ca are p x n (n x p where that alone fits, and in files that name
+ * rows). Constraints are applied to them; entries of fixed dofs are left out.
+ *
+ * Frequencies, with ratios if there are any, make a component in modal form
+ * instead: K = diag(omega^2), M = I and D = diag(2 zeta omega), its dofs the
+ * scalar points 1, 2, ...
+ *
+ * Positions are known from the deck
  * alone, but a single grid without a deck lies at the origin.
  *
  * @return RITZ_ERR_ARGUMENT, RITZ_ERR_FORMAT, RITZ_ERR_FILE; a constraint

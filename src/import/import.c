@@ -184,21 +184,22 @@ static ritz_status check_matrix(const ritz_part *part)
     return RITZ_OK;
 }
 
-/* Read the matrices of all parts: each file once. */
-static ritz_status read_parts(ritz_parts *parts, ritz_file_sums *sums)
+/* Read the matrices of all parts, and those of inputs and outputs: each file
+ * once. */
+static ritz_status read_parts(const ritz_import_request *request,
+                              ritz_parts *parts, ritz_io_files *files)
 {
+    int64_t count = parts->count;
     RITZ_OWN_ARRAY ritz_wanted *wanted = NULL;
 
-    RITZ_CHECK_NEW(wanted, parts->count);
+    RITZ_CHECK_NEW(wanted, count + RITZ_NUM_IO_FILES);
     for (int64_t k = 0; k < parts->count; k++) {
         ritz_part *part = &parts->part[k];
 
         wanted[k] = (ritz_wanted){part->spec, part->what, &part->matrix};
     }
-    RITZ_CHECK(ritz_foreign_collect(parts->count, wanted, sums));
-    for (int64_t k = 0; k < parts->count; k++)
-        RITZ_CHECK_IN(parts->part[k].what, check_matrix(&parts->part[k]));
-    return RITZ_OK;
+    count += ritz_io_files_want(request, files, wanted + count);
+    return ritz_foreign_collect(count, wanted, request->sums);
 }
 
 /* "F@LOAD": geometric stiffness of a unit load. */
@@ -226,7 +227,7 @@ static ritz_status take_load(const char *text, ritz_component *component,
     return RITZ_OK;
 }
 
-static ritz_status take_parts(const ritz_import_request *request,
+static ritz_status list_parts(const ritz_import_request *request,
                               ritz_component *component, ritz_parts *parts)
 {
     const struct {
@@ -253,7 +254,25 @@ static ritz_status take_parts(const ritz_import_request *request,
     for (int64_t k = 0; k < request->num_loads; k++)
         RITZ_CHECK_IN("geometric stiffness",
                       take_load(request->load[k], component, parts));
-    return read_parts(parts, request->sums);
+    return RITZ_OK;
+}
+
+static ritz_status take_parts(const ritz_import_request *request,
+                              ritz_component *component, ritz_parts *parts,
+                              ritz_io_files *files)
+{
+    RITZ_REFUSE_IF(request->ratios && !request->frequencies, RITZ_ERR_ARGUMENT,
+                   "ratios are given, but no frequencies");
+    if (request->frequencies)
+        RITZ_CHECK(ritz_modal_want(request, component, parts));
+    else
+        RITZ_CHECK(list_parts(request, component, parts));
+    RITZ_CHECK(read_parts(request, parts, files));
+    if (request->frequencies)
+        RITZ_CHECK(ritz_modal_make(request, component, parts));
+    for (int64_t k = 0; k < parts->count; k++)
+        RITZ_CHECK_IN(parts->part[k].what, check_matrix(&parts->part[k]));
+    return RITZ_OK;
 }
 
 ritz_status ritz_import_units(const char *text, char out[RITZ_NAME_SIZE])
@@ -307,6 +326,7 @@ static ritz_status settle_rows(const ritz_import_request *request,
 /* From matrices and a deck to a component without ports. */
 static ritz_status make_component(const ritz_import_request *request,
                                   ritz_parts *parts, ritz_deck *deck,
+                                  ritz_io_files *files,
                                   ritz_component *component,
                                   ritz_import_report *report)
 {
@@ -317,6 +337,7 @@ static ritz_status make_component(const ritz_import_request *request,
         RITZ_CHECK(ritz_deck_read(request->bulk, deck));
     RITZ_REFUSE_IF(deck->imposed, RITZ_ERR_FORMAT, "%s", deck->imposed);
     RITZ_CHECK(ritz_names_find(request, deck, parts, &names));
+    RITZ_CHECK(ritz_io_files_name(request, &names, files));
     if (deck->num_constraints > 0 || request->num_rigid_ports > 0 ||
         request->num_averaged_ports > 0) {
         RITZ_CHECK(
@@ -348,12 +369,14 @@ ritz_status ritz_import(const ritz_import_request *request, ritz_component *out,
     RITZ_OWN(ritz_import_report) done_what = {0};
     RITZ_OWN(ritz_parts) parts = {0};
     RITZ_OWN(ritz_deck) deck = {0};
+    RITZ_OWN(ritz_io_files) files = {0};
 
-    RITZ_CHECK(take_parts(request, &component, &parts));
-    RITZ_CHECK(make_component(request, &parts, &deck, &component, &done_what));
+    RITZ_CHECK(take_parts(request, &component, &parts, &files));
+    RITZ_CHECK(
+        make_component(request, &parts, &deck, &files, &component, &done_what));
     ritz_parts_free(&parts); /* the larger half of the memory, done with */
     RITZ_CHECK(
-        ritz_import_attach(request, &deck.equations, &done_what, &component));
+        ritz_import_attach(request, &deck, &done_what, &files, &component));
     RITZ_CHECK(ritz_component_settle(&component, request->symmetrise));
     RITZ_MOVE(*out, component);
     RITZ_MOVE(*report, done_what);

@@ -45,6 +45,9 @@ ritz_status ritz_names_find(const ritz_import_request *request,
 ritz_status ritz_names_of_file(const char *path, ritz_row_names *out);
 void ritz_row_names_free(ritz_row_names *names);
 
+/** Check directions: digits 1 to 6, each once, or 0 alone; @p want of each. */
+ritz_status ritz_import_directions(const char *text, bool want[static 7]);
+
 /** Set a bit for each row that has an entry other than zero. */
 void ritz_part_mark(const ritz_part *part, unsigned char bit,
                     unsigned char *mark);
@@ -135,15 +138,77 @@ void ritz_extended_add(const ritz_extended *extended, int64_t row, double value,
                        int64_t stride, double *into);
 void ritz_extended_free(ritz_extended *extended);
 
+enum {
+    RITZ_FILE_B,
+    RITZ_FILE_C,
+    RITZ_FILE_CV,
+    RITZ_FILE_CA,
+    RITZ_NUM_IO_FILES
+};
+
+/* Matrices of inputs and outputs as files state them. */
+typedef struct ritz_io_files {
+    const char *spec[RITZ_NUM_IO_FILES]; /* NULL: not given */
+    ritz_matrix matrix[RITZ_NUM_IO_FILES];
+    int64_t num_dofs; /* rows of mass and stiffness as they are read */
+    ritz_dof *dof;    /* of each */
+    bool in_order;    /* rows are these, whatever files call theirs */
+} ritz_io_files;
+
+/** What files are wanted of the request. @return how many */
+int64_t ritz_io_files_want(const ritz_import_request *request,
+                           ritz_io_files *files, ritz_wanted *wanted);
+
+/** Remember what rows are, before any of them is left out. */
+ritz_status ritz_io_files_name(const ritz_import_request *request,
+                               const ritz_row_names *names,
+                               ritz_io_files *files);
+
+/** How many inputs and outputs there are. @return RITZ_ERR_FORMAT */
+ritz_status ritz_io_files_size(const ritz_io_files *files, int64_t *inputs,
+                               int64_t *outputs);
+
+/** Fill the last inputs and outputs of @p io, and name them. */
+ritz_status ritz_io_files_add(const ritz_import_request *request,
+                              const ritz_deck *deck,
+                              const ritz_import_report *report,
+                              const ritz_extended *extended,
+                              const ritz_io_files *files, ritz_io *io);
+void ritz_io_files_free(ritz_io_files *files);
+
+/**
+ * Names "a,b,c", each once, of so many inputs or outputs; without a list
+ * "u1", "u2", ... of prefix u.
+ *
+ * @param[in,out] limit  of "NAME@LIMIT", else as it was; NULL: there are none
+ * @return RITZ_ERR_ARGUMENT
+ */
+ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
+                                 char (*name)[RITZ_NAME_SIZE], double *limit);
+
+/**
+ * The files of a component in modal form as parts.
+ *
+ * @return RITZ_ERR_ARGUMENT if the request has matrices or names of rows
+ */
+ritz_status ritz_modal_want(const ritz_import_request *request,
+                            ritz_component *component, ritz_parts *parts);
+
+/** What these files hold becomes stiffness, damping and mass. */
+ritz_status ritz_modal_make(const ritz_import_request *request,
+                            ritz_component *component, ritz_parts *parts);
+
 /**
  * Ports, those of grids made for ports too, inputs, outputs and dampers as the
  * request states them.
  *
- * @param[in] equations  for messages about dofs that depend on others
+ * @param[in] deck  its supports; its equations, for messages about dofs that
+ *                  depend on others
  */
 ritz_status ritz_import_attach(const ritz_import_request *request,
-                               const ritz_equations *equations,
+                               const ritz_deck *deck,
                                const ritz_import_report *report,
+                               const ritz_io_files *files,
                                ritz_component *component);
 
 /**

@@ -340,19 +340,67 @@ void ritz_row_names_free(ritz_row_names *names)
 
 /* ---- one list for all matrices ------------------------------------------ */
 
-/* Without a deck: grids 1, 2, ... with six rows each. */
-static ritz_status number_grids(int64_t n, const char *spec,
+ritz_status ritz_import_directions(const char *text, bool want[static 7])
+{
+    RITZ_REFUSE_IF(!*text, RITZ_ERR_ARGUMENT, "no directions follow ':'");
+    for (const char *c = text; *c; c++) {
+        int k = *c - '0';
+
+        RITZ_REFUSE_IF(
+            k < 0 || k > 6 || want[k], RITZ_ERR_ARGUMENT,
+            "'%s' are not directions: digits 1 to 6, each once, or 0 "
+            "for scalar points",
+            text);
+        want[k] = true;
+    }
+    RITZ_REFUSE_IF(want[0] && text[1], RITZ_ERR_ARGUMENT,
+                   "'%s' are not directions: 0, for scalar points, goes alone",
+                   text);
+    return RITZ_OK;
+}
+
+/* Without a deck: grids 1, 2, ... with a row for each of these directions, six
+ * unless --rows says which; 0: scalar points. */
+static ritz_status number_grids(int64_t n, const char *spec, const char *rows,
                                 ritz_row_names *out)
 {
-    RITZ_REFUSE_IF(n == 0 || n % 6 != 0, RITZ_ERR_FORMAT,
+    const char *directions = rows ? rows : "123456";
+    int64_t each = (int64_t)strlen(directions);
+
+    RITZ_REFUSE_IF(!rows && (n == 0 || n % 6 != 0), RITZ_ERR_FORMAT,
                    "'%s' has %" PRId64 " rows, which is not six for each grid: "
-                   "--dofs or --bulk must say what they are",
+                   "--rows, --dofs or --bulk must say what they are",
                    spec, n);
+    RITZ_REFUSE_IF(n == 0 || n % each != 0, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " rows, which is not %" PRId64
+                   " for each grid, as --rows %s has it",
+                   spec, n, each, rows);
     RITZ_CHECK_NEW(out->dof, n);
     out->count = n;
     for (int64_t k = 0; k < n; k++)
-        out->dof[k] = (ritz_dof){k / 6 + 1, k % 6 + 1};
-    snprintf(out->map, sizeof out->map, "grids ascending");
+        out->dof[k] = (ritz_dof){k / each + 1, directions[k % each] - '0'};
+    snprintf(out->map, sizeof out->map, "%s",
+             rows ? "--rows" : "grids ascending");
+    return RITZ_OK;
+}
+
+/* --rows are directions, and nothing else names the rows. */
+static ritz_status check_rows(const ritz_import_request *request,
+                              const ritz_part *unnamed)
+{
+    bool want[7] = {0};
+
+    if (!request->rows)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(!*request->rows, RITZ_ERR_ARGUMENT,
+                   "'' are not directions: digits 1 to 6, each once, or 0 for "
+                   "scalar points");
+    RITZ_CHECK(ritz_import_directions(request->rows, want));
+    RITZ_REFUSE_IF(request->dofs || request->bulk || !unnamed,
+                   RITZ_ERR_ARGUMENT, "%s names the rows already",
+                   request->dofs   ? "--dofs"
+                   : request->bulk ? "the deck"
+                                   : "the file of the matrices");
     return RITZ_OK;
 }
 
@@ -434,6 +482,7 @@ static ritz_status choose_names(const ritz_import_request *request,
     const ritz_part *unnamed = first_unnamed(parts);
     int64_t n = unnamed ? unnamed->matrix.A.nrow : 0;
 
+    RITZ_CHECK_IN("--rows", check_rows(request, unnamed));
     if (request->dofs)
         RITZ_CHECK(name_by_file(request->dofs, parts, out));
     else if (!unnamed)
@@ -441,7 +490,10 @@ static ritz_status choose_names(const ritz_import_request *request,
     else if (request->bulk)
         RITZ_CHECK(list_deck_names(deck, n, unnamed->spec, out));
     else
-        RITZ_CHECK(number_grids(n, unnamed->spec, out));
+        RITZ_CHECK(number_grids(
+            n, unnamed->spec, request->frequencies ? "0" : request->rows, out));
+    if (request->frequencies)
+        snprintf(out->map, sizeof out->map, "modes");
     if (request->bulk && (request->dofs || !unnamed))
         out->whole = out->count >= deck->num_dofs;
     return RITZ_OK;

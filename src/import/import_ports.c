@@ -53,27 +53,6 @@ static void draft_free(draft *it)
     ritz_dofs_free(&it->port.dofs);
 }
 
-/* The digits behind the last ':': 1 to 6, or 0 for scalar points. */
-static ritz_status take_components(const char *text, draft *it)
-{
-    RITZ_REFUSE_IF(!*text, RITZ_ERR_ARGUMENT, "no directions follow ':'");
-    for (const char *c = text; *c; c++) {
-        int k = *c - '0';
-
-        RITZ_REFUSE_IF(
-            k < 0 || k > 6 || it->want[k], RITZ_ERR_ARGUMENT,
-            "'%s' are not directions: digits 1 to 6, each once, or 0 "
-            "for scalar points",
-            text);
-        it->want[k] = true;
-    }
-    RITZ_REFUSE_IF(it->want[0] && text[1], RITZ_ERR_ARGUMENT,
-                   "'%s' are not directions: 0, for scalar points, goes alone",
-                   text);
-    it->choosy = true;
-    return RITZ_OK;
-}
-
 /* A dof that follows others cannot be held: say what it follows. */
 static ritz_status refuse_dependent(const ritz_extended *extended, ritz_dof dof)
 {
@@ -213,7 +192,8 @@ static ritz_status fill_port(const char *text, draft *it)
     colon = strchr(grids, ':');
     end = colon ? colon : grids + strlen(grids);
     if (colon)
-        RITZ_CHECK(take_components(colon + 1, it));
+        RITZ_CHECK(ritz_import_directions(colon + 1, it->want));
+    it->choosy = colon;
     for (const char *at = grids; at <= end;) {
         size_t length = strcspn(at, ",:");
 
@@ -493,36 +473,38 @@ static ritz_status make_output(const char *text, const ritz_extended *extended,
     return add_terms(rest, length, extended, C->nrow, C->val + k);
 }
 
-static ritz_status check_new(const char (*name)[RITZ_NAME_SIZE], int64_t k,
-                             const char *what)
+static ritz_status check_names(int64_t count, char (*name)[RITZ_NAME_SIZE],
+                               const char *what)
 {
-    for (int64_t j = 0; j < k; j++)
-        RITZ_REFUSE_IF(strcmp(name[j], name[k]) == 0, RITZ_ERR_ARGUMENT,
-                       "there are two %s '%s'", what, name[k]);
+    for (int64_t k = 1; k < count; k++)
+        for (int64_t j = 0; j < k; j++)
+            RITZ_REFUSE_IF(strcmp(name[j], name[k]) == 0, RITZ_ERR_ARGUMENT,
+                           "there are two %s '%s'", what, name[k]);
     return RITZ_OK;
 }
 
+/* Those of options, and behind them those of matrices. */
 static ritz_status add_io(const ritz_import_request *request,
+                          const ritz_deck *deck,
+                          const ritz_import_report *report,
                           const ritz_extended *extended,
-                          ritz_component *component)
+                          const ritz_io_files *files, ritz_io *io)
 {
-    ritz_io *io = &component->io;
+    int64_t inputs = 0;
+    int64_t outputs = 0;
 
-    RITZ_CHECK(ritz_io_new(component->num_dofs, request->num_inputs,
-                           request->num_outputs, io));
-    for (int64_t k = 0; k < request->num_inputs; k++) {
+    RITZ_CHECK(ritz_io_files_size(files, &inputs, &outputs));
+    RITZ_CHECK(ritz_io_new(extended->num_rows, request->num_inputs + inputs,
+                           request->num_outputs + outputs, io));
+    for (int64_t k = 0; k < request->num_inputs; k++)
         RITZ_CHECK_IN(request->input[k],
                       make_input(request->input[k], extended, k, io));
-        RITZ_CHECK(
-            check_new((const char(*)[RITZ_NAME_SIZE])io->input, k, "inputs"));
-    }
-    for (int64_t k = 0; k < request->num_outputs; k++) {
+    for (int64_t k = 0; k < request->num_outputs; k++)
         RITZ_CHECK_IN(request->output[k],
                       make_output(request->output[k], extended, k, io));
-        RITZ_CHECK(
-            check_new((const char(*)[RITZ_NAME_SIZE])io->output, k, "outputs"));
-    }
-    return RITZ_OK;
+    RITZ_CHECK(ritz_io_files_add(request, deck, report, extended, files, io));
+    RITZ_CHECK(check_names(io->num_inputs, io->input, "inputs"));
+    return check_names(io->num_outputs, io->output, "outputs");
 }
 
 /* ---- dampers ------------------------------------------------------------ */
@@ -596,15 +578,16 @@ static ritz_status add_dampers(const ritz_import_request *request,
 /* ---- all of them -------------------------------------------------------- */
 
 ritz_status ritz_import_attach(const ritz_import_request *request,
-                               const ritz_equations *equations,
+                               const ritz_deck *deck,
                                const ritz_import_report *report,
+                               const ritz_io_files *files,
                                ritz_component *component)
 {
     RITZ_OWN(ritz_extended) extended = {0};
 
-    RITZ_CHECK(ritz_extended_new(component, equations, &extended));
+    RITZ_CHECK(ritz_extended_new(component, &deck->equations, &extended));
     RITZ_CHECK_IN("port", add_ports(request, report, &extended, component));
-    RITZ_CHECK(add_io(request, &extended, component));
+    RITZ_CHECK(add_io(request, deck, report, &extended, files, &component->io));
     RITZ_CHECK_IN("damper", add_dampers(request, &extended, component));
     return RITZ_OK;
 }

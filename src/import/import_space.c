@@ -234,57 +234,6 @@ static ritz_status check_parts(const parts *p)
     return RITZ_OK;
 }
 
-static int64_t count_items(const char *list)
-{
-    int64_t count = 1;
-
-    for (; *list; list++)
-        count += *list == ',';
-    return count;
-}
-
-/* "NAME[@LIMIT]": the limit, cut off; where none may be NULL. */
-static ritz_status take_limit(char *item, double *limit)
-{
-    char *at = limit ? strrchr(item, '@') : NULL;
-
-    if (!at)
-        return RITZ_OK;
-    *at = '\0';
-    RITZ_REFUSE_IF(!ritz_text_real(at + 1, limit) || !(*limit > 0.0),
-                   RITZ_ERR_ARGUMENT,
-                   "'%s' is no limit, a positive number is due", at + 1);
-    return RITZ_OK;
-}
-
-/* Names "a,b,c", each once, or "u1", "u2", ... if there is no list; an output
- * may end in "@LIMIT". */
-static ritz_status name_ends(const char *list, char prefix, int64_t count,
-                             char (*name)[RITZ_NAME_SIZE], double *limit)
-{
-    char item[2 * RITZ_NAME_SIZE];
-
-    RITZ_REFUSE_IF(list && count_items(list) != count, RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " names are given for %" PRId64,
-                   count_items(list), count);
-    for (int64_t k = 0; k < count; k++) {
-        if (list) {
-            size_t length = strcspn(list, ",");
-
-            snprintf(item, sizeof item, "%.*s", (int)length, list);
-            list += length + 1;
-        } else {
-            snprintf(item, sizeof item, "%c%" PRId64, prefix, k + 1);
-        }
-        RITZ_CHECK(take_limit(item, limit ? &limit[k] : NULL));
-        RITZ_CHECK(ritz_name_copy(item, name[k]));
-        for (int64_t i = 0; i < k; i++)
-            RITZ_REFUSE_IF(strcmp(name[i], name[k]) == 0, RITZ_ERR_ARGUMENT,
-                           "'%s' is named twice", name[k]);
-    }
-    return RITZ_OK;
-}
-
 static bool is_identity(const ritz_dense *E)
 {
     for (int64_t j = 0; j < E->ncol; j++)
@@ -319,11 +268,12 @@ static ritz_status make_space(const ritz_import_space_request *request,
 
     RITZ_CHECK(ritz_io_new(0, p->matrix[PART_B].A.ncol,
                            p->matrix[PART_C].A.nrow, &io));
-    RITZ_CHECK_IN("--input-names", name_ends(request->inputs, 'u',
-                                             io.num_inputs, io.input, NULL));
-    RITZ_CHECK_IN(
-        "--output-names",
-        name_ends(request->outputs, 'y', io.num_outputs, io.output, io.limit));
+    RITZ_CHECK_IN("--input-names",
+                  ritz_import_channels(request->inputs, 'u', io.num_inputs,
+                                       io.input, NULL));
+    RITZ_CHECK_IN("--output-names",
+                  ritz_import_channels(request->outputs, 'y', io.num_outputs,
+                                       io.output, io.limit));
     RITZ_CHECK(ritz_state_space_new(n, &io, out));
     RITZ_CHECK(fill_matrices(p, out));
     RITZ_CHECK(ritz_state_space_check(out));

@@ -134,6 +134,14 @@ static ritz_status check_ports(const ritz_component *component)
     return RITZ_OK;
 }
 
+static ritz_status check_finite(const ritz_dense *A, const char *what)
+{
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
+        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
+                       "%s are not finite", what);
+    return RITZ_OK;
+}
+
 static ritz_status settle_io(ritz_component *component)
 {
     ritz_io *io = &component->io;
@@ -147,7 +155,10 @@ static ritz_status settle_io(ritz_component *component)
                        io->Cv.ncol != n || io->Cv.nrow != io->num_outputs ||
                        io->Ca.ncol != n || io->Ca.nrow != io->num_outputs,
                    RITZ_ERR_FORMAT, "outputs are of another size");
-    return RITZ_OK;
+    RITZ_CHECK(check_finite(&io->B, "inputs"));
+    RITZ_CHECK(check_finite(&io->C, "outputs"));
+    RITZ_CHECK(check_finite(&io->Cv, "outputs"));
+    return check_finite(&io->Ca, "outputs");
 }
 
 ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)

@@ -26,10 +26,23 @@ static ritz_status take_load(cli_run *run, const char *spec)
 
 static ritz_status take_inputs(cli_run *run, const ritz_import_request *request)
 {
-    RITZ_CHECK(take_matrix(run, request->stiffness));
-    RITZ_CHECK(take_matrix(run, request->mass));
-    RITZ_CHECK(take_matrix(run, request->damping));
-    RITZ_CHECK(take_matrix(run, request->structural_damping));
+    double number = 0.0;
+    const char *ratios = request->ratios;
+    const char *const matrices[] = {
+        request->stiffness,
+        request->mass,
+        request->damping,
+        request->structural_damping,
+        request->frequencies,
+        ratios && !ritz_text_real(ratios, &number) ? ratios : NULL,
+        request->input_matrix,
+        request->output_matrix,
+        request->velocity_matrix,
+        request->acceleration_matrix,
+    };
+
+    for (size_t k = 0; k < sizeof matrices / sizeof *matrices; k++)
+        RITZ_CHECK(take_matrix(run, matrices[k]));
     for (int64_t k = 0; k < request->num_loads; k++)
         RITZ_CHECK(take_load(run, request->load[k]));
     if (request->bulk)
@@ -236,17 +249,25 @@ static void refuse_others(const cli_run *run)
 ritz_status import_run(cli_run *run, import_options *given)
 {
     const cli_program *program = run->program;
+    const ritz_import_request *request = &given->request;
 
     if (given->space.matrices) {
         refuse_others(run);
-        given->space.units = given->request.units;
+        given->space.units = request->units;
+        given->space.inputs = request->input_names;
+        given->space.outputs = request->output_names;
         return import_states(run, &given->space);
     }
-    if (given->space.inputs || given->space.outputs)
+    if ((request->input_names && !request->input_matrix) ||
+        (request->output_names && !request->output_matrix &&
+         !request->velocity_matrix && !request->acceleration_matrix))
         cli_refuse(program, "--input-names and --output-names are for "
-                            "--state-space");
-    if (!given->request.stiffness && !given->request.mass)
+                            "--state-space, --input-matrix and "
+                            "--output-matrix");
+    if (request->ratios && !request->frequencies)
+        cli_refuse(program, "--ratios are those of --frequencies");
+    if (!request->stiffness && !request->mass && !request->frequencies)
         cli_refuse(program, "nothing to import: name --stiffness, --mass or "
-                            "both, or --state-space");
+                            "both, or --frequencies, or --state-space");
     return import_component(run, given);
 }
