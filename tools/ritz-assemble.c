@@ -56,9 +56,9 @@ int main(int argc, char **argv)
         CLI_FLAG("full", &full,
                  "reduce nothing: make one component with the dofs of all "
                  "bodies"),
-        CLI_TEXT("tracks", &tracks, "FILE",
-                 "write which mode is which at each configuration, as a "
-                 "table with tabs"),
+        CLI_OUTPUT("tracks", &tracks, "FILE",
+                   "write which mode is which at each configuration, as a "
+                   "table with tabs"),
         {0},
     };
     const cli_program program = {

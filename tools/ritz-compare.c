@@ -30,19 +30,19 @@ int main(int argc, char **argv)
     const cli_option options[] = {
         CLI_TEXT("components", &given.prefix, "PREFIX",
                  "also write the reduced components, as PREFIXname.h5"),
-        CLI_TEXT("report", &given.report, "FILE",
-                 "also write the report to this file"),
+        CLI_OUTPUT("report", &given.report, "FILE",
+                   "also write the report to this file"),
         CLI_TEXT("extraneous", &given.extraneous, "WORD",
                  "system modes that match no kept mode: keep, remove, "
                  "out-of-band [the scene's]"),
-        CLI_TEXT("tracks", &given.tracks, "FILE",
-                 "write which mode of stage 1 is which at each "
-                 "configuration, as a table with tabs"),
+        CLI_OUTPUT("tracks", &given.tracks, "FILE",
+                   "write which mode of stage 1 is which at each "
+                   "configuration, as a table with tabs"),
         CLI_TEXT("tolerances", &tolerances, "X[,X]",
                  "tabulate orders and errors against composite tolerances"),
-        CLI_TEXT("tolerance-table", &given.tolerance_table, "FILE",
-                 "write that table to a file, with tabs [tolerances 1e-12 "
-                 "to 1e-2]"),
+        CLI_OUTPUT("tolerance-table", &given.tolerance_table, "FILE",
+                   "write that table to a file, with tabs [tolerances 1e-12 "
+                   "to 1e-2]"),
         {0},
     };
     const cli_program program = {

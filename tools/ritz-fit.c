@@ -53,8 +53,8 @@ int main(int argc, char **argv)
         CLI_TEXT("components", &given.prefix, "PREFIX",
                  "for a scene: also write the reduced components, as "
                  "PREFIXname.h5"),
-        CLI_TEXT("report", &given.report, "FILE",
-                 "also write the report to this file"),
+        CLI_OUTPUT("report", &given.report, "FILE",
+                   "also write the report to this file"),
         DAMPING_OPTION(&given.damping),
     };
     const cli_program program = {

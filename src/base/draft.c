@@ -6,39 +6,66 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/*
- * Names of the files that a signal must not leave behind. A handler has no
- * argument, so this is the one place where the library keeps state.
- */
-static _Atomic(const char *) unfinished[RITZ_MAX_DRAFTS];
+/* --- names that a signal must not leave behind ---------------------------- */
 
-static bool enlist_name(const char *name)
+/*
+ * A handler has no argument, and a writer of the library does not know the
+ * program that it is part of: the library keeps state here, and only here. A
+ * place is used again and never freed, as a handler may be reading it.
+ */
+typedef struct place {
+    _Atomic(const char *) name; /* NULL: free; "": of a file about to be made */
+    struct place *next;
+} place;
+
+static _Atomic(place *) places;
+
+static ritz_status take_place(place **out)
 {
-    for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
+    place *made = NULL;
+
+    for (place *p = atomic_load(&places); p; p = p->next) {
         const char *none = NULL;
 
-        if (atomic_compare_exchange_strong(&unfinished[k], &none, name))
-            return true;
+        *out = p;
+        if (atomic_compare_exchange_strong(&p->name, &none, ""))
+            return RITZ_OK;
     }
-    return false;
+    RITZ_CHECK_NEW(made, 1);
+    atomic_init(&made->name, "");
+    made->next = atomic_load(&places);
+    while (!atomic_compare_exchange_weak(&places, &made->next, made))
+        ;
+    *out = made;
+    return RITZ_OK;
 }
 
 static void strike_name(const char *name)
 {
-    for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
+    for (place *p = atomic_load(&places); p; p = p->next) {
         const char *expected = name;
 
-        if (atomic_compare_exchange_strong(&unfinished[k], &expected, NULL))
+        if (atomic_compare_exchange_strong(&p->name, &expected, NULL))
             return;
+    }
+}
+
+void ritz_draft_discard_all(void)
+{
+    for (place *p = atomic_load(&places); p; p = p->next) {
+        const char *name = atomic_load(&p->name);
+
+        if (name && *name)
+            unlink(name);
     }
 }
 
@@ -46,7 +73,7 @@ static void strike_name(const char *name)
  * Create and enlist with signals held back: enlisted before it exists, a name
  * that turns out to be another process' would be removed by our handler.
  */
-static int create_file(const char *name, bool *enlisted)
+static int create_file(const char *name, mode_t mode, place *at)
 {
     sigset_t all;
     sigset_t before;
@@ -55,63 +82,222 @@ static int create_file(const char *name, bool *enlisted)
 
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &before);
-    file = open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
+    file = open(name, O_WRONLY | O_CREAT | O_EXCL, mode);
     error = errno;
-    *enlisted = file >= 0 && enlist_name(name);
-    if (file >= 0 && !*enlisted)
-        unlink(name);
+    if (file >= 0)
+        atomic_store(&at->name, name);
     sigprocmask(SIG_SETMASK, &before, NULL);
     errno = error;
     return file;
 }
 
-/* Where a link leads, so that it stays one; else the path itself. */
-static ritz_status follow_link(const char *path, char **out)
-{
-    RITZ_OWN_ARRAY char *real = realpath(path, NULL);
-    const char *target = real ? real : path;
-    char *copy = NULL;
+/* --- which file a path names ---------------------------------------------- */
 
-    RITZ_CHECK_NEW(copy, (int64_t)strlen(target) + 1);
-    memcpy(copy, target, strlen(target) + 1);
-    *out = copy;
+enum { MOST_LINKS = 40 };
+
+/* Follow one link, if it is one. */
+static bool follow_link(char path[PATH_MAX])
+{
+    char to[PATH_MAX];
+    const ssize_t length = readlink(path, to, sizeof to - 1);
+    char *slash = strrchr(path, '/');
+    size_t folder = 0;
+
+    if (length <= 0)
+        return false;
+    to[length] = '\0';
+    folder = slash && *to != '/' ? (size_t)(slash - path) + 1 : 0;
+    if (folder + (size_t)length >= PATH_MAX)
+        return false;
+    memcpy(path + folder, to, (size_t)length + 1);
+    return true;
+}
+
+/* Where links lead, so that they stay, even to a file that is not there yet. */
+static void follow_links(const char *path, char out[PATH_MAX])
+{
+    if (realpath(path, out))
+        return;
+    snprintf(out, PATH_MAX, "%s", path);
+    for (int k = 0; k < MOST_LINKS && follow_link(out); k++)
+        ;
+}
+
+static bool same_file(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+/* The folder of a path, and the name in it. */
+static const char *split_path(char path[PATH_MAX], struct stat *folder)
+{
+    char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    int outcome = 0;
+
+    if (slash)
+        *slash = '\0';
+    outcome = stat(!slash ? "." : slash == path ? "/" : path, folder);
+    return outcome == 0 ? name : NULL;
+}
+
+bool ritz_draft_same(const char *path, const char *other)
+{
+    char to[PATH_MAX], to_other[PATH_MAX];
+    struct stat here, there;
+    const bool is = stat(path, &here) == 0;
+    const char *name = NULL, *name_of_other = NULL;
+
+    if (is != (stat(other, &there) == 0))
+        return false;
+    if (is)
+        return same_file(&here, &there);
+    follow_links(path, to);
+    follow_links(other, to_other);
+    name = split_path(to, &here);
+    name_of_other = split_path(to_other, &there);
+    return name && name_of_other && same_file(&here, &there) &&
+           strcmp(name, name_of_other) == 0;
+}
+
+/* --- what a program holds back -------------------------------------------- */
+
+typedef struct input {
+    struct stat file;
+    char *path;
+} input;
+
+static struct {
+    bool active;
+    int64_t count, room;
+    ritz_draft *draft;
+    int64_t num_inputs, inputs_room;
+    input *input;
+} held;
+
+void ritz_draft_hold(void)
+{
+    held.active = true;
+}
+
+ritz_status ritz_draft_protect(const char *path)
+{
+    input file = {0};
+
+    if (!held.active || stat(path, &file.file) != 0 ||
+        !S_ISREG(file.file.st_mode))
+        return RITZ_OK;
+    for (int64_t k = 0; k < held.num_inputs; k++)
+        if (same_file(&file.file, &held.input[k].file))
+            return RITZ_OK;
+    RITZ_CHECK_ROOM(held.input, held.num_inputs, held.inputs_room);
+    RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
+    held.input[held.num_inputs++] = file;
     return RITZ_OK;
 }
 
-ritz_status ritz_draft_new(const char *path, ritz_draft *out)
+ritz_status ritz_draft_check(const char *path)
 {
-    size_t size = sizeof ".4294967295-999999.part";
-    RITZ_OWN_ARRAY char *target = NULL, *name = NULL;
     struct stat there;
-    bool enlisted = false;
+    const bool is = stat(path, &there) == 0;
+
+    for (int64_t k = 0; is && k < held.num_inputs; k++)
+        RITZ_REFUSE_IF(same_file(&there, &held.input[k].file),
+                       RITZ_ERR_ARGUMENT,
+                       "this would overwrite the input '%s': give the output "
+                       "another name",
+                       held.input[k].path);
+    for (int64_t k = 0; k < held.count; k++)
+        RITZ_REFUSE_IF(ritz_draft_same(path, held.draft[k].path),
+                       RITZ_ERR_ARGUMENT,
+                       "this file is written twice: give each output a name "
+                       "of its own");
+    return RITZ_OK;
+}
+
+/* --- drafts --------------------------------------------------------------- */
+
+/* An empty file under a name that is not taken, listed for a signal. */
+static ritz_status create_draft(const char *path, place *at, ritz_draft *draft)
+{
+    const size_t size = strlen(draft->path) + sizeof ".4294967295-999999.part";
+    const mode_t mode = draft->mode < 0 ? 0666 : 0600;
     int file = -1;
 
-    RITZ_REFUSE_IF(stat(path, &there) == 0 && !S_ISREG(there.st_mode),
-                   RITZ_ERR_FILE, "not a regular file");
-    RITZ_CHECK(follow_link(path, &target));
-    size += strlen(target);
-    RITZ_CHECK_NEW(name, (int64_t)size);
+    RITZ_CHECK_NEW(draft->name, (int64_t)size);
     for (int k = 0; file < 0; k++) {
-        snprintf(name, size, "%s.%ld-%d.part", target, (long)getpid(), k);
-        file = create_file(name, &enlisted);
+        snprintf(draft->name, size, "%s.%ld-%d.part", draft->path,
+                 (long)getpid(), k);
+        file = create_file(draft->name, mode, at);
         RITZ_REFUSE_IF(file < 0 && (errno != EEXIST || k == 999999),
                        RITZ_ERR_FILE, "cannot create '%s': %s", path,
                        strerror(errno));
     }
     close(file);
-    RITZ_REFUSE_IF(!enlisted, RITZ_ERR_ARGUMENT,
-                   "more than %d files are being written", RITZ_MAX_DRAFTS);
-    RITZ_MOVE(out->path, target);
-    RITZ_MOVE(out->name, name);
+    return RITZ_OK;
+}
+
+ritz_status ritz_draft_new(const char *path, ritz_draft *out)
+{
+    ritz_draft draft = {.mode = -1};
+    ritz_status status = RITZ_OK;
+    struct stat there;
+    place *at = NULL;
+    char target[PATH_MAX];
+
+    if (stat(path, &there) == 0) {
+        RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
+                       "not a regular file");
+        draft.mode = (int)(there.st_mode & 0777);
+    } else {
+        RITZ_REFUSE_IF(errno != ENOENT, RITZ_ERR_FILE, "cannot create '%s': %s",
+                       path, strerror(errno));
+    }
+    RITZ_CHECK(ritz_draft_check(path));
+    follow_links(path, target);
+    RITZ_CHECK_COPY(draft.path, target, (int64_t)strlen(target) + 1);
+    status = take_place(&at);
+    if (status == RITZ_OK)
+        status = create_draft(path, at, &draft);
+    if (status != RITZ_OK) {
+        if (at)
+            atomic_store(&at->name, NULL);
+        RITZ_FREE(draft.name, draft.path);
+        return status;
+    }
+    *out = draft;
+    return RITZ_OK;
+}
+
+/* Rename it; its path stays, for whoever takes it back. */
+static ritz_status name_draft(ritz_draft *draft)
+{
+    RITZ_REFUSE_IF(draft->mode >= 0 &&
+                       chmod(draft->name, (mode_t)draft->mode) != 0,
+                   RITZ_ERR_FILE, "cannot keep the permissions of '%s': %s",
+                   draft->path, strerror(errno));
+    RITZ_REFUSE_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
+                   "cannot replace '%s': %s", draft->path, strerror(errno));
+    strike_name(draft->name);
+    RITZ_FREE(draft->name);
+    draft->name = NULL;
+    return RITZ_OK;
+}
+
+ritz_status ritz_draft_publish_now(ritz_draft *draft)
+{
+    RITZ_CHECK(name_draft(draft));
+    ritz_draft_free(draft);
     return RITZ_OK;
 }
 
 ritz_status ritz_draft_publish(ritz_draft *draft)
 {
-    RITZ_REFUSE_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
-                   "cannot replace '%s': %s", draft->path, strerror(errno));
-    strike_name(draft->name);
-    RITZ_FREE(draft->name, draft->path);
+    if (!held.active)
+        return ritz_draft_publish_now(draft);
+    RITZ_CHECK(ritz_draft_check(draft->path));
+    RITZ_CHECK_ROOM(held.draft, held.count, held.room);
+    held.draft[held.count++] = *draft;
     *draft = (ritz_draft){0};
     return RITZ_OK;
 }
@@ -126,12 +312,27 @@ void ritz_draft_free(ritz_draft *draft)
     *draft = (ritz_draft){0};
 }
 
-void ritz_draft_discard_all(void)
+/* All of those that wait, or none. */
+static ritz_status name_held(void)
 {
-    for (int k = 0; k < RITZ_MAX_DRAFTS; k++) {
-        const char *name = atomic_load(&unfinished[k]);
+    ritz_status status = RITZ_OK;
+    int64_t done = 0;
 
-        if (name)
-            unlink(name);
-    }
+    while (done < held.count && status == RITZ_OK)
+        status = name_draft(&held.draft[done++]);
+    for (int64_t k = 0; status != RITZ_OK && k < done - 1; k++)
+        remove(held.draft[k].path);
+    return status;
+}
+
+ritz_status ritz_draft_settle(bool keep)
+{
+    const ritz_status status = keep ? name_held() : RITZ_OK;
+
+    RITZ_FREE_EACH(ritz_draft, held.count, held.draft);
+    for (int64_t k = 0; k < held.num_inputs; k++)
+        free(held.input[k].path);
+    free(held.input);
+    memset(&held, 0, sizeof held);
+    return status;
 }

@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include "base/alloc.h"
+#include "base/draft.h"
 
 #include <errno.h>
 #include <math.h>
@@ -26,7 +27,7 @@ static ritz_status open_file(const char *path, input_file *out)
     out->file = fopen(path, "rb");
     RITZ_REFUSE_IF(!out->file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
                    strerror(errno));
-    return RITZ_OK;
+    return ritz_draft_protect(path);
 }
 
 static ritz_status check_file(const char *path, const input_file *from)

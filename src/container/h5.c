@@ -2,6 +2,7 @@
 #include "container/h5.h"
 
 #include "base/alloc.h"
+#include "base/draft.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -33,7 +34,7 @@ ritz_status ritz_h5_open(const char *path, hid_t *out)
                    "not a regular file");
     *out = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FORMAT, "not an HDF5 file, or damaged");
-    return RITZ_OK;
+    return ritz_draft_protect(path);
 }
 
 /* Of more than 8 attributes HDF5 would move some to a heap, which has no

@@ -269,8 +269,9 @@ static ritz_status set_variable(const char *name, const char *value,
     return RITZ_OK;
 }
 
+/* @param[in] shown  what the script is called for the user */
 static ritz_status run_gnuplot(const char *script, const char *data,
-                               const char *out)
+                               const char *out, const char *shown)
 {
     static char program[] = "gnuplot", defaults[] = "-d", option[] = "-e";
     char set_out[PICTURE_PATH + 16], set_data[PICTURE_PATH + 16];
@@ -294,44 +295,62 @@ static ritz_status run_gnuplot(const char *script, const char *data,
         ;
     RITZ_REFUSE_IF(
         WIFEXITED(outcome) && WEXITSTATUS(outcome) == NO_PROGRAM, RITZ_ERR_FILE,
-        "gnuplot is not installed: '%s' is there to be drawn by it", script);
+        "gnuplot is not installed: '%s' is there to be drawn by it", shown);
     RITZ_REFUSE_IF(!WIFEXITED(outcome) || WEXITSTATUS(outcome) != 0,
-                   RITZ_ERR_FILE, "gnuplot could not draw '%s'", script);
+                   RITZ_ERR_FILE, "gnuplot could not draw '%s'", shown);
     return RITZ_OK;
 }
 
-/* Write a table next to the picture: as a file that is kept or a temporary
-   one. */
+/* Write a table next to the picture, as a draft: under a name of its own if it
+   is kept. */
 static ritz_status put_beside(const picture *p, cli_table *table,
                               const char *ending, ritz_draft *draft,
-                              char out[PICTURE_PATH])
+                              char path[PICTURE_PATH])
 {
-    if (p->keep) {
-        snprintf(out, PICTURE_PATH, "%.*s%s", PICTURE_PATH - 8, p->path,
-                 ending);
-        return cli_table_save(table, out);
-    }
-    RITZ_CHECK(ritz_draft_new(p->path, draft));
-    snprintf(out, PICTURE_PATH, "%s", draft->name);
-    return cli_table_write(table, out);
+    snprintf(path, PICTURE_PATH, "%.*s%s", PICTURE_PATH - 8, p->path,
+             p->keep ? ending : "");
+    RITZ_CHECK_IN(path, ritz_draft_new(path, draft));
+    return ritz_context(cli_table_write(table, draft->name), path);
+}
+
+/* What gnuplot makes of them; data and script of a picture that it cannot draw
+   stay, to be drawn elsewhere. */
+static ritz_status draw_drafts(picture *p, ritz_draft *data, ritz_draft *script,
+                               const char *shown)
+{
+    RITZ_OWN(ritz_draft) draft = {0};
+    RITZ_OWN_ARRAY char *why = NULL;
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(ritz_draft_new(p->path, &draft));
+    status = run_gnuplot(script->name, data->name, draft.name, shown);
+    if (status == RITZ_OK)
+        status = ritz_text_read(draft.name, &p->drawn);
+    if (status == RITZ_OK && !strstr(p->drawn, "</svg>"))
+        status = ritz_fail(RITZ_ERR_FILE, "gnuplot drew no picture");
+    if (status == RITZ_OK || !p->keep)
+        return status;
+    RITZ_CHECK_COPY(why, ritz_error_message(),
+                    (int64_t)strlen(ritz_error_message()) + 1);
+    RITZ_CHECK(ritz_draft_publish_now(data));
+    RITZ_CHECK(ritz_draft_publish_now(script));
+    return ritz_fail(status, "%s", why);
 }
 
 static ritz_status draw_files(picture *p, const char *template)
 {
-    char data[PICTURE_PATH], script[PICTURE_PATH];
-    RITZ_OWN(ritz_draft) draft = {0}, data_draft = {0}, script_draft = {0};
+    char data_path[PICTURE_PATH], script_path[PICTURE_PATH];
+    RITZ_OWN(ritz_draft) data = {0}, script = {0};
     RITZ_OWN(cli_table) text = {0}, named = {0};
 
     RITZ_CHECK(write_script(p, template, &text));
-    RITZ_CHECK(put_beside(p, &p->data, ".tsv", &data_draft, data));
-    RITZ_CHECK(put_beside(p, &text, ".gp", &script_draft, script));
-    RITZ_CHECK(ritz_draft_new(p->path, &draft));
-    RITZ_CHECK(run_gnuplot(script, data, draft.name));
-    RITZ_CHECK(ritz_text_read(draft.name, &p->drawn));
-    RITZ_REFUSE_IF(!strstr(p->drawn, "</svg>"), RITZ_ERR_FILE,
-                   "gnuplot drew no picture");
+    RITZ_CHECK(put_beside(p, &p->data, ".tsv", &data, data_path));
+    RITZ_CHECK(put_beside(p, &text, ".gp", &script, script_path));
+    RITZ_CHECK(draw_drafts(p, &data, &script, script_path));
     if (!p->keep)
         return RITZ_OK;
+    RITZ_CHECK(ritz_draft_publish(&data));
+    RITZ_CHECK(ritz_draft_publish(&script));
     RITZ_CHECK(cli_table_new(&named));
     svg_copy(named.file, p->drawn, p->title, p->summary, NULL);
     return cli_table_save(&named, p->path);

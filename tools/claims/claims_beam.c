@@ -193,7 +193,7 @@ ritz_status claims_save(const claims_state *state, const char *name,
     char path[2 * PATH_MAX];
 
     snprintf(path, sizeof path, "%s/%s%s", state->folder, name, ending);
-    return cli_table_save(table, path);
+    return ritz_context(cli_table_write(table, path), path);
 }
 
 /* K or M as Matrix Market. */

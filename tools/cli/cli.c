@@ -1,5 +1,7 @@
 #include "cli/cli.h"
 
+#include "base/draft.h"
+
 #include <ritz/base.h>
 
 #include <fcntl.h>
@@ -15,13 +17,19 @@ enum { MAX_OPTIONS = 32, EXIT_USAGE = 2, WORD = 32 };
 static void gather_options(cli_run *run, cli_option *all)
 {
     const cli_option common[] = {
-        CLI_ROW(TEXT, text, 'o', "output", &run->output, "FILE", 0.0, 0.0,
-                run->program->output),
+        {.kind = CLI_KIND_TEXT,
+         .letter = 'o',
+         .to.text = &run->output,
+         .name = "output",
+         .argument = "FILE",
+         .help = run->program->output,
+         .written = true},
         CLI_ROW(FLAG, flag, 'q', "quiet", &run->quiet, NULL, 0.0, 0.0,
                 "print nothing but errors"),
         CLI_FLAG("json", &run->json, "print one JSON object instead of text"),
-        CLI_TEXT("record", &run->record, "FILE",
-                 "append time, memory and errors of this run as one JSON line"),
+        CLI_OUTPUT(
+            "record", &run->record, "FILE",
+            "append time, memory and errors of this run as one JSON line"),
         CLI_ROW(VERSION, flag, 0, "version", NULL, NULL, 0.0, 0.0,
                 "print the version"),
         CLI_ROW(HELP, flag, 'h', "help", NULL, NULL, 0.0, 0.0,
@@ -419,6 +427,27 @@ static void occupy_streams(void)
         close(file);
 }
 
+/* Files that options name to be written, each of which is one of its own. */
+static void gather_outputs(cli_run *run, const cli_option *all)
+{
+    const cli_option *named[CLI_MAX_OUTPUTS];
+
+    for (const cli_option *o = all; o->kind != CLI_KIND_END; o++) {
+        const char *path = o->written ? *o->to.text : NULL;
+
+        if (!path)
+            continue;
+        for (int k = 0; k < run->num_written; k++)
+            if (ritz_draft_same(path, run->written[k]))
+                cli_refuse(run->program, "--%s and --%s name one file, '%s'",
+                           named[k]->name, o->name, path);
+        if (run->num_written == CLI_MAX_OUTPUTS)
+            abort();
+        named[run->num_written] = o;
+        run->written[run->num_written++] = path;
+    }
+}
+
 void cli_parse(const cli_program *program, const cli_option *options, int argc,
                char **argv, cli_run *run)
 {
@@ -444,6 +473,9 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
     check_operands(run);
     if (run->output ? !*run->output : !program->output_optional)
         cli_refuse(program, "no output, name it with -o");
+    gather_outputs(run, all);
+    ritz_draft_hold();
+    atexit(ritz_draft_discard_all); /* by whichever way it ends */
     cli_watch(run->quiet);
     run->began = cli_clock();
 }

@@ -22,6 +22,7 @@ enum {
     CLI_MAX_LIST = 256,
     CLI_MAX_COMMAND = 4096,
     CLI_MAX_OPERANDS = 3,
+    CLI_MAX_OUTPUTS = 8,
     CLI_MAX_DEPTH = 8
 };
 
@@ -60,6 +61,7 @@ typedef struct cli_option {
     const char *argument; /* what --help calls it; of a word all: "on|off" */
     double min, max;      /* range of a number; a default outside is none */
     const char *help;
+    bool written; /* a text that names a file which the tool writes */
 } cli_option;
 
 /* Rows of a table: kind and place of a value, held to each other by the
@@ -83,6 +85,13 @@ typedef struct cli_option {
     CLI_ROW(PAIR, real, 0, word, place, value, 0.0, 0.0, says)
 #define CLI_TEXT(word, place, value, says)                                     \
     CLI_ROW(TEXT, text, 0, word, place, value, 0.0, 0.0, says)
+/* The name of a file that is written: it is compared with all inputs and with
+   the other outputs, and made when all is done (see cli_finish) */
+#define CLI_OUTPUT(word, place, value, says)                                   \
+    {                                                                          \
+        .kind = CLI_KIND_TEXT, .to.text = (place), .name = (word),             \
+        .argument = (value), .help = (says), .written = true                   \
+    }
 #define CLI_WORD(word, place, words, says)                                     \
     CLI_ROW(WORD, text, 0, word, place, words, 0.0, 0.0, says)
 #define CLI_LIST(word, place, value, says)                                     \
@@ -132,7 +141,10 @@ typedef struct cli_run {
     char **operand;
     char **argv;
     const char *output, *record;
+    int num_written; /* of the files that options name, these among them */
+    const char *written[CLI_MAX_OUTPUTS];
     bool quiet, json;
+    bool kept;                     /* see cli_keep_outputs */
     char command[CLI_MAX_COMMAND]; /* for the file that it makes */
     json_t *report;                /* of --json; sink.h adds to it */
     json_t *open[CLI_MAX_DEPTH];   /* in it, where values go at present */
@@ -153,8 +165,9 @@ typedef struct cli_run {
  *
  * Answers --help, --version and actions itself, and ends the program with
  * status 2 on a command line that it does not understand. From then on a
- * signal that ends the program leaves no unfinished file, and long work shows
- * its progress on a terminal.
+ * signal that ends the program leaves no unfinished file, long work shows its
+ * progress on a terminal, and files that are written are held back until
+ * cli_finish. Two outputs under one name are refused.
  */
 void cli_parse(const cli_program *program, const cli_option *options, int argc,
                char **argv, cli_run *run);
@@ -184,7 +197,8 @@ bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
 /**
  * Remember a file that is about to be read: its SHA-256 goes into what is
  * written. One that is named again counts once. A pipe, which can be read only
- * once, has '-' for its sum.
+ * once, has '-' for its sum. An output that is the same file, by device and
+ * inode, is refused.
  *
  * A program with `threads` starts once more when its inputs are large and
  * OMP_THREAD_LIMIT is not set, with as many threads as there are cores. So call
@@ -199,7 +213,8 @@ void cli_input_sum(cli_run *run, const char *path, const char *digest);
 
 /**
  * Check that a file can be made at @p path, before the work that it is to hold:
- * one is made in its folder and removed. cli_input checks -o by itself.
+ * one is made in its folder and removed. cli_input checks outputs that options
+ * name by itself.
  */
 ritz_status cli_can_write(const char *path);
 
@@ -238,7 +253,17 @@ double cli_clock(void);
 /** Remove that line, before something else is written. */
 void cli_watch_clear(void);
 
-/** Exit status for main: report, say why it failed, check standard output. */
+/**
+ * The outputs are as documented though the status will tell of a limit that is
+ * not met: cli_finish gives them their names all the same.
+ */
+void cli_keep_outputs(cli_run *run);
+
+/**
+ * Exit status for main: record, report, say why it failed, check standard
+ * output; then all files that were written get their names or, after a failure
+ * of any of that, none does.
+ */
 int cli_finish(cli_run *run, ritz_status status);
 
 #endif

@@ -168,6 +168,37 @@ static char *find_input(const cli_run *run, const char *path)
     return NULL;
 }
 
+/* That a line can be appended to the file of --record. */
+static ritz_status open_record(const char *path, int *out)
+{
+    RITZ_CHECK_IN("--record", ritz_draft_check(path));
+    *out = open(path, O_WRONLY | O_CREAT | O_APPEND, 0666);
+    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                   strerror(errno));
+    return RITZ_OK;
+}
+
+/* That no output is an input so far and, once, before long work, that each can
+   be made. */
+static ritz_status check_outputs(const cli_run *run)
+{
+    const bool once = run->program->threads && run->num_inputs == 1;
+    int file = -1;
+
+    for (int k = 0; k < run->num_written; k++) {
+        const char *path = run->written[k];
+
+        RITZ_CHECK_IN(path, ritz_draft_check(path));
+        if (once && path != run->record)
+            RITZ_CHECK(cli_can_write(path));
+    }
+    if (once && run->record) {
+        RITZ_CHECK(open_record(run->record, &file));
+        close(file);
+    }
+    return RITZ_OK;
+}
+
 static ritz_status add_input(cli_run *run, const char *path, bool sum)
 {
     char digest[RITZ_DIGEST_SIZE] = "-";
@@ -189,9 +220,8 @@ static ritz_status add_input(cli_run *run, const char *path, bool sum)
     RITZ_CHECK_ROOM(run->input, run->num_inputs, run->room);
     RITZ_CHECK_NEW(run->input[run->num_inputs], (int64_t)size);
     snprintf(run->input[run->num_inputs++], size, "%s  %s", digest, path);
-    if (run->output && run->program->threads && run->num_inputs == 1)
-        RITZ_CHECK(cli_can_write(run->output));
-    return RITZ_OK;
+    RITZ_CHECK(ritz_draft_protect(path));
+    return check_outputs(run);
 }
 
 ritz_status cli_input(cli_run *run, const char *path)
@@ -333,9 +363,7 @@ static ritz_status append_line(const cli_run *run, json_t *line)
     RITZ_REFUSE_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
     length = strlen(text);
     text[length] = '\n'; /* in the place of its NUL */
-    file = open(run->record, O_WRONLY | O_CREAT | O_APPEND, 0666);
-    RITZ_REFUSE_IF(file < 0, RITZ_ERR_FILE, "cannot open '%s': %s", run->record,
-                   strerror(errno));
+    RITZ_CHECK(open_record(run->record, &file));
     if (write(file, text, length + 1) != (ssize_t)(length + 1))
         status = ritz_fail(RITZ_ERR_FILE, "cannot append to '%s': %s",
                            run->record, strerror(errno));
@@ -355,8 +383,9 @@ ritz_status cli_record_line(cli_run *run, json_t *line)
     return status;
 }
 
-/* A failure to record is told only if the work itself did not fail. */
-static ritz_status keep_record(cli_run *run, ritz_status outcome)
+/* A failure to record takes back the files that were written, and is told; but
+   not if the work itself failed. */
+static ritz_status keep_record(cli_run *run, ritz_status outcome, bool *keep)
 {
     char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());
     ritz_status recorded = RITZ_OK;
@@ -374,6 +403,9 @@ static ritz_status keep_record(cli_run *run, ritz_status outcome)
                       1e-6 * (double)(used.ru_utime.tv_usec +
                                       used.ru_stime.tv_usec)));
     recorded = append_line(run, run->line);
+    if (recorded != RITZ_OK && first && *keep)
+        fprintf(stderr, "%s: %s\n", run->program->name, ritz_error_message());
+    *keep = *keep && recorded == RITZ_OK;
     if (first)
         ritz_record("%s", first);
     free(first);
@@ -391,24 +423,48 @@ static void free_run(cli_run *run)
     json_decref(run->line);
 }
 
+void cli_keep_outputs(cli_run *run)
+{
+    run->kept = true;
+}
+
+/* Names for all files that were written, or for none. A record that said that
+   all went well is followed by one that does not. */
+static ritz_status settle_outputs(cli_run *run, bool keep, ritz_status status)
+{
+    if (ritz_draft_settle(keep) == RITZ_OK)
+        return status;
+    fprintf(stderr, "%s: %s\n", run->program->name, ritz_error_message());
+    if (run->record) {
+        json_object_set_new(run->line, "ok", json_false());
+        if (append_line(run, run->line) != RITZ_OK)
+            fprintf(stderr, "%s: %s\n", run->program->name,
+                    ritz_error_message());
+    }
+    return RITZ_ERR_FILE;
+}
+
 int cli_finish(cli_run *run, ritz_status status)
 {
     const char *name = run->program->name;
     bool worked = run->began > 0.0; /* not --help or the like */
+    bool keep = status == RITZ_OK || run->kept;
 
     cli_watch_clear();
     if (run->record && worked)
-        status = keep_record(run, status);
+        status = keep_record(run, status, &keep);
     if (status != RITZ_OK)
         fprintf(stderr, "%s: %s\n", name, ritz_error_message());
     if (run->json && worked)
         print_report(run, status);
-    free_run(run);
     if (ferror(stdout) || fclose(stdout) != 0) {
         fprintf(stderr, "%s: cannot write to standard output: %s\n", name,
                 strerror(errno));
         status = RITZ_ERR_FILE;
+        keep = false;
     }
+    status = settle_outputs(run, keep, status);
+    free_run(run);
     return status == RITZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -310,13 +310,25 @@ void model_set_cost(cli_run *run, const ritz_cost *cost)
     sink_end(run);
 }
 
-ritz_status model_body_path(const char *prefix, const char *name,
-                            char out[MODEL_PATH])
+/* PREFIXname.h5 */
+static ritz_status name_body(const char *prefix, const char *name,
+                             char out[MODEL_PATH])
 {
     int length = snprintf(out, MODEL_PATH, "%s%s.h5", prefix, name);
 
     RITZ_REFUSE_IF(length < 0 || length >= MODEL_PATH, RITZ_ERR_ARGUMENT,
                    "--components '%.40s...' is too long", prefix);
+    return RITZ_OK;
+}
+
+ritz_status model_foresee_bodies(const char *prefix, const ritz_scene *scene)
+{
+    char path[MODEL_PATH];
+
+    for (int64_t k = 0; prefix && k < scene->num_components; k++) {
+        RITZ_CHECK(name_body(prefix, scene->component[k].name, path));
+        RITZ_CHECK(cli_can_write(path));
+    }
     return RITZ_OK;
 }
 
@@ -327,7 +339,7 @@ ritz_status model_write_bodies(cli_run *run, const char *prefix,
     char path[MODEL_PATH];
 
     SINK_EACH(run, "component_files", k, prefix ? scene->num_components : 0) {
-        RITZ_CHECK(model_body_path(prefix, scene->component[k].name, path));
+        RITZ_CHECK(name_body(prefix, scene->component[k].name, path));
         RITZ_CHECK(
             ritz_container_write_reduced(path, &body[k], cli_stamp(run)));
         sink_add(run, "%s", path);

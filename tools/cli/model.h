@@ -203,9 +203,8 @@ void model_set_cost(cli_run *run, const ritz_cost *cost);
 
 enum { MODEL_PATH = 4096 };
 
-/** PREFIXname.h5 @return RITZ_ERR_ARGUMENT if that is too long */
-ritz_status model_body_path(const char *prefix, const char *name,
-                            char out[MODEL_PATH]);
+/** Check, before long work, that model_write_bodies can make its files. */
+ritz_status model_foresee_bodies(const char *prefix, const ritz_scene *scene);
 
 /** Reduced components of a scene as PREFIXname.h5; NULL: none is written. */
 ritz_status model_write_bodies(cli_run *run, const char *prefix,

@@ -57,6 +57,7 @@ ritz_status checks_run(cli_run *run)
         cli_record_error(run, audit.check[k].name, audit.check[k].value);
     if (run->output)
         RITZ_CHECK(cli_table_save(&run->said, run->output));
+    cli_keep_outputs(run);
     first = checks_first(&audit);
     RITZ_REFUSE_IF(first, RITZ_ERR_FORMAT,
                    "'%s': %ld of %ld checks fail, first '%s'%s%s", path,

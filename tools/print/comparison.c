@@ -565,6 +565,7 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
     RITZ_OWN(tolerance_rows) rows = {0};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
+    RITZ_CHECK(model_foresee_bodies(given->prefix, &scene));
     if (given->extraneous)
         RITZ_CHECK_IN("--extraneous",
                       ritz_scene_set_extraneous(&scene, given->extraneous));

@@ -1,7 +1,5 @@
 #include "print/print.h"
 
-#include <sys/stat.h>
-
 /* "craig-bampton,rubin", or "all" there are. */
 static void read_methods(const cli_program *program, fit_options *given)
 {
@@ -107,7 +105,6 @@ typedef struct fit_run {
     char subject[RITZ_NAME_SIZE];
     const ritz_verify_request *limits; /* NULL: not known yet */
     ritz_status recorded;              /* the first failure to append */
-    bool *there; /* of files that the result makes: they were there before */
 } fit_run;
 
 /* Append a candidate to the file of --record. */
@@ -138,51 +135,6 @@ static void observe_candidate(const ritz_fit_candidate *candidate,
                               void *context)
 {
     record_candidate(context, candidate, false, false, NULL);
-}
-
-/* Files that the result makes: the output, the report, and bodies. */
-static int64_t count_files(const fit_run *f)
-{
-    return 2 + (f->given->prefix && f->scene ? f->scene->num_components : 0);
-}
-
-/* The name of the k-th; "" if it is not made. */
-static ritz_status name_file(const fit_run *f, int64_t k, char out[MODEL_PATH])
-{
-    const char *path = k == 0 ? f->run->output : f->given->report;
-
-    if (k >= 2)
-        return model_body_path(f->given->prefix,
-                               f->scene->component[k - 2].name, out);
-    snprintf(out, MODEL_PATH, "%s", path ? path : "");
-    return RITZ_OK;
-}
-
-/* That they can be made is known before the search. */
-static ritz_status foresee_files(fit_run *f)
-{
-    char path[MODEL_PATH];
-    struct stat there;
-
-    RITZ_CHECK_NEW(f->there, count_files(f));
-    for (int64_t k = 0; k < count_files(f); k++) {
-        RITZ_CHECK(name_file(f, k, path));
-        if (*path)
-            RITZ_CHECK(cli_can_write(path));
-        f->there[k] = !*path || lstat(path, &there) == 0;
-    }
-    return RITZ_OK;
-}
-
-/* After a failure remove those that were not there before. */
-static ritz_status end_search(const fit_run *f, ritz_status status)
-{
-    char path[MODEL_PATH];
-
-    for (int64_t k = 0; status != RITZ_OK && k < count_files(f); k++)
-        if (!f->there[k] && name_file(f, k, path) == RITZ_OK)
-            (void)remove(path);
-    return status;
 }
 
 /* "1.2e-03" of the measure that decides, or what stood in the way. */
@@ -539,20 +491,19 @@ static ritz_status fit_input(fit_run *f, ritz_scene *scene)
             "'%s' is a scene: --damper and --attach are for components", path);
         RITZ_CHECK(model_scene(f->run, path, scene));
         f->scene = scene;
+        RITZ_CHECK(model_foresee_bodies(given->prefix, scene));
     }
-    RITZ_CHECK(foresee_files(f));
     if (*scene->name)
         snprintf(f->subject, sizeof f->subject, "%s", scene->name);
     RITZ_CHECK_IN(
         path, component
                   ? ritz_fitter_new(&full.component, &given->request, &fitter)
                   : ritz_fitter_scene(scene, &given->request, &fitter));
-    return end_search(f, find_smallest(f, component ? &full : NULL, fitter));
+    return find_smallest(f, component ? &full : NULL, fitter);
 }
 
 ritz_status fit_search(cli_run *run, fit_options *given)
 {
-    ritz_status status = RITZ_OK;
     RITZ_OWN(ritz_scene) scene = {0};
     fit_run f = {.run = run, .given = given};
     const char *slash = strrchr(*run->operand, '/');
@@ -570,7 +521,5 @@ ritz_status fit_search(cli_run *run, fit_options *given)
         RITZ_CHECK_IN("--damping",
                       ritz_damping_parse(given->damping,
                                          &given->request.tolerance.damping));
-    status = fit_input(&f, &scene);
-    free(f.there);
-    return status;
+    return fit_input(&f, &scene);
 }

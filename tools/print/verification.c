@@ -68,6 +68,7 @@ static ritz_status keep_measures(cli_run *run, const verify_options *given,
     RITZ_MOVE(*place, *measures);
     model_record(run, place);
     RITZ_CHECK(model_write(run, reduced));
+    cli_keep_outputs(run);
     warn_unmeasured(run, given, place);
     return say_measures(run, place);
 }

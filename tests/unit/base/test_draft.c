@@ -133,19 +133,224 @@ static void unfinished_drafts_are_discarded_at_once(void **state)
     remove(path);
 }
 
-static void no_more_drafts_than_can_be_discarded(void **state)
+static void as_many_drafts_as_are_wanted_are_discarded(void **state)
 {
-    ritz_draft drafts[RITZ_MAX_DRAFTS + 1] = {{0}};
+    enum { MANY = 40 };
+    ritz_draft drafts[MANY] = {{0}};
 
     (void)state;
-    for (int k = 0; k < RITZ_MAX_DRAFTS; k++)
+    for (int k = 0; k < MANY; k++)
         assert_ok(ritz_draft_new(path, &drafts[k]));
-    assert_fails(ritz_draft_new(path, &drafts[RITZ_MAX_DRAFTS]),
-                 RITZ_ERR_ARGUMENT, "more than 16 files");
     ritz_draft_free(&drafts[3]); /* leaves a place */
-    assert_ok(ritz_draft_new(path, &drafts[RITZ_MAX_DRAFTS]));
-    for (int k = 0; k <= RITZ_MAX_DRAFTS; k++)
+    assert_ok(ritz_draft_new(path, &drafts[3]));
+    ritz_draft_discard_all();
+    for (int k = 0; k < MANY; k++) {
+        assert_int_not_equal(access(drafts[k].name, F_OK), 0);
         ritz_draft_free(&drafts[k]);
+    }
+}
+
+static void permissions_of_a_replaced_file_stay(void **state)
+{
+    static const mode_t modes[] = {0600, 0640, 0444, 0755};
+    struct stat there = {0};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof modes / sizeof *modes; k++) {
+        ritz_draft draft = {0};
+
+        put(path, 'x');
+        assert_int_equal(chmod(path, modes[k]), 0);
+        assert_ok(ritz_draft_new(path, &draft));
+        assert_int_equal(stat(draft.name, &there), 0);
+        assert_int_equal(there.st_mode & 077, 0); /* while it is written */
+        put(draft.name, '1');
+        assert_ok(ritz_draft_publish(&draft));
+        assert_int_equal(stat(path, &there), 0);
+        assert_int_equal(there.st_mode & 0777, modes[k]);
+        assert_int_equal(get(path), '1');
+        remove(path);
+    }
+}
+
+/* Also one link that leads to another, in a folder. */
+static void a_link_to_nothing_stays_and_what_it_names_is_made(void **state)
+{
+    static const char link[] = "test_draft.link";
+    static const char folder[] = "test_draft.d";
+    static const char inner[] = "test_draft.d/link";
+    ritz_draft draft = {0};
+    struct stat there = {0};
+
+    (void)state;
+    mkdir(folder, 0777);
+    remove(path);
+    assert_int_equal(symlink("../test_draft.out", inner), 0);
+    assert_int_equal(symlink(inner, link), 0);
+    assert_true(ritz_draft_same(link, path));
+    assert_ok(ritz_draft_new(link, &draft));
+    put(draft.name, '1');
+    assert_ok(ritz_draft_publish(&draft));
+    assert_int_equal(lstat(link, &there), 0);
+    assert_true(S_ISLNK(there.st_mode));
+    assert_int_equal(lstat(inner, &there), 0);
+    assert_true(S_ISLNK(there.st_mode));
+    assert_int_equal(get(path), '1');
+    remove(inner);
+    assert_int_equal(symlink("link", inner), 0); /* to itself */
+    assert_fails(ritz_draft_new(inner, &draft), RITZ_ERR_FILE,
+                 "Too many levels");
+    remove(inner);
+    remove(link);
+    remove(folder);
+    remove(path);
+}
+
+static void one_file_has_many_names(void **state)
+{
+    static const char other[] = "test_draft.two";
+
+    (void)state;
+    remove(path);
+    remove(other);
+    assert_true(ritz_draft_same(path, "./test_draft.out"));
+    assert_false(ritz_draft_same(path, other));
+    assert_false(ritz_draft_same("nowhere/a", "nowhere/a"));
+    put(path, 'x');
+    assert_false(ritz_draft_same(path, other));
+    assert_int_equal(link(path, other), 0);
+    assert_true(ritz_draft_same(path, other));
+    remove(other);
+    put(other, 'x');
+    assert_false(ritz_draft_same(path, other));
+    remove(other);
+    remove(path);
+}
+
+/* Drafts of two paths, published while a program holds them back. */
+static void hold_two(const char *first, const char *second)
+{
+    const char *const paths[] = {first, second};
+
+    for (int k = 0; k < 2; k++) {
+        ritz_draft draft = {0};
+
+        assert_ok(ritz_draft_new(paths[k], &draft));
+        put(draft.name, (char)('1' + k));
+        assert_ok(ritz_draft_publish(&draft));
+        assert_null(draft.name);
+    }
+}
+
+static void held_drafts_appear_together_or_not_at_all(void **state)
+{
+    static const char other[] = "test_draft.two";
+    char name[64];
+
+    (void)state;
+    put(path, 'x');
+    for (int keep = 0; keep < 2; keep++) {
+        ritz_draft_hold();
+        hold_two(path, other);
+        assert_int_equal(get(path), 'x');
+        assert_int_equal(get(other), 0);
+        assert_ok(ritz_draft_settle(keep == 1));
+        assert_int_equal(get(path), keep == 1 ? '1' : 'x');
+        assert_int_equal(get(other), keep == 1 ? '2' : 0);
+        snprintf(name, sizeof name, "%s.%ld-0.part", path, (long)getpid());
+        assert_int_equal(get(name), 0);
+    }
+    ritz_draft_hold(); /* what a signal handler calls finds them, too */
+    hold_two(path, other);
+    ritz_draft_discard_all();
+    assert_fails(ritz_draft_settle(true), RITZ_ERR_FILE, "No such file");
+    assert_int_equal(get(path), '1');
+    remove(other);
+    remove(path);
+}
+
+static void of_names_that_cannot_all_be_given_none_is(void **state)
+{
+    static const char other[] = "test_draft.two";
+
+    (void)state;
+    ritz_draft_hold();
+    hold_two(path, other);
+    assert_int_equal(mkdir(other, 0777), 0);
+    assert_fails(ritz_draft_settle(true), RITZ_ERR_FILE, "cannot replace");
+    assert_int_equal(get(path), 0);
+    rmdir(other);
+}
+
+static void what_was_read_is_not_replaced(void **state)
+{
+    static const char other[] = "test_draft.two";
+    static const char sentence[] = "would overwrite the input 'test_draft.out'";
+    ritz_draft draft = {0};
+
+    (void)state;
+    put(path, 'x');
+    assert_ok(ritz_draft_protect(path)); /* not yet */
+    assert_ok(ritz_draft_check(path));
+    ritz_draft_hold();
+    assert_ok(ritz_draft_protect(path));
+    assert_ok(ritz_draft_protect(path));
+    assert_ok(ritz_draft_protect("/dev/null"));
+    assert_fails(ritz_draft_new(path, &draft), RITZ_ERR_ARGUMENT, sentence);
+    assert_int_equal(link(path, other), 0);
+    assert_fails(ritz_draft_new(other, &draft), RITZ_ERR_ARGUMENT, sentence);
+    remove(other);
+    assert_int_equal(symlink(path, other), 0);
+    assert_fails(ritz_draft_new(other, &draft), RITZ_ERR_ARGUMENT, sentence);
+    remove(other);
+    put(other, 'y');
+    assert_ok(ritz_draft_new(other, &draft));
+    assert_ok(ritz_draft_protect(other)); /* read while it is written */
+    assert_fails(ritz_draft_publish(&draft), RITZ_ERR_ARGUMENT,
+                 "would overwrite the input 'test_draft.two'");
+    ritz_draft_free(&draft);
+    assert_ok(ritz_draft_settle(true));
+    assert_ok(ritz_draft_check(path));
+    assert_int_equal(get(other), 'y');
+    remove(other);
+    remove(path);
+}
+
+static void no_file_is_written_twice_by_one_program(void **state)
+{
+    static const char other[] = "test_draft.two";
+    ritz_draft draft = {0};
+
+    (void)state;
+    ritz_draft_hold();
+    hold_two(path, other);
+    assert_fails(ritz_draft_new("./test_draft.two", &draft), RITZ_ERR_ARGUMENT,
+                 "written twice");
+    assert_ok(ritz_draft_settle(false));
+}
+
+static ritz_status hold_one(void)
+{
+    ritz_draft draft = {0};
+    ritz_status status = RITZ_OK;
+
+    ritz_draft_hold();
+    status = ritz_draft_protect("test_draft.two");
+    if (status == RITZ_OK)
+        status = ritz_draft_new(path, &draft);
+    if (status == RITZ_OK)
+        status = ritz_draft_publish(&draft);
+    ritz_draft_free(&draft);
+    assert_ok(ritz_draft_settle(false));
+    return status;
+}
+
+static void survives_every_allocation(void **state)
+{
+    (void)state;
+    put("test_draft.two", 'x');
+    assert_survives_every_allocation(hold_one());
+    remove("test_draft.two");
 }
 
 static const struct CMUnitTest tests[] = {
@@ -155,7 +360,15 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(devices_and_folders_stay),
     cmocka_unit_test(a_link_stays_and_what_it_names_is_replaced),
     cmocka_unit_test(unfinished_drafts_are_discarded_at_once),
-    cmocka_unit_test(no_more_drafts_than_can_be_discarded),
+    cmocka_unit_test(as_many_drafts_as_are_wanted_are_discarded),
+    cmocka_unit_test(permissions_of_a_replaced_file_stay),
+    cmocka_unit_test(a_link_to_nothing_stays_and_what_it_names_is_made),
+    cmocka_unit_test(one_file_has_many_names),
+    cmocka_unit_test(held_drafts_appear_together_or_not_at_all),
+    cmocka_unit_test(of_names_that_cannot_all_be_given_none_is),
+    cmocka_unit_test(what_was_read_is_not_replaced),
+    cmocka_unit_test(no_file_is_written_twice_by_one_program),
+    cmocka_unit_test(survives_every_allocation),
 };
 
 TEST_MODULE(draft, tests, NULL, NULL)
