@@ -19,11 +19,11 @@ static void gather_options(cli_run *run, cli_option *all)
     const cli_option common[] = {
         {.kind = CLI_KIND_TEXT,
          .letter = 'o',
+         .written = true,
          .to.text = &run->output,
          .name = "output",
          .argument = "FILE",
-         .help = run->program->output,
-         .written = true},
+         .help = run->program->output},
         CLI_ROW(FLAG, flag, 'q', "quiet", &run->quiet, NULL, 0.0, 0.0,
                 "print nothing but errors"),
         CLI_FLAG("json", &run->json, "print one JSON object instead of text"),
@@ -431,21 +431,23 @@ static void occupy_streams(void)
 static void gather_outputs(cli_run *run, const cli_option *all)
 {
     const cli_option *named[CLI_MAX_OUTPUTS];
+    int count = 0;
 
     for (const cli_option *o = all; o->kind != CLI_KIND_END; o++) {
         const char *path = o->written ? *o->to.text : NULL;
 
         if (!path)
             continue;
-        for (int k = 0; k < run->num_written; k++)
+        for (int k = 0; k < count; k++)
             if (ritz_draft_same(path, run->written[k]))
                 cli_refuse(run->program, "--%s and --%s name one file, '%s'",
                            named[k]->name, o->name, path);
-        if (run->num_written == CLI_MAX_OUTPUTS)
+        if (count == CLI_MAX_OUTPUTS)
             abort();
-        named[run->num_written] = o;
-        run->written[run->num_written++] = path;
+        named[count] = o;
+        run->written[count++] = path;
     }
+    run->num_written = count;
 }
 
 void cli_parse(const cli_program *program, const cli_option *options, int argc,

@@ -48,8 +48,9 @@ typedef struct cli_list {
 
 typedef struct cli_option {
     cli_kind kind;
-    char letter; /* for -o, -q and -h alone */
-    union {      /* where the default is, and then the value */
+    char letter;  /* for -o, -q and -h alone */
+    bool written; /* a text that names a file which the tool writes */
+    union {       /* where the default is, and then the value */
         void (*action)(void);
         bool *flag;
         int64_t *whole;
@@ -61,7 +62,6 @@ typedef struct cli_option {
     const char *argument; /* what --help calls it; of a word all: "on|off" */
     double min, max;      /* range of a number; a default outside is none */
     const char *help;
-    bool written; /* a text that names a file which the tool writes */
 } cli_option;
 
 /* Rows of a table: kind and place of a value, held to each other by the
@@ -89,8 +89,8 @@ typedef struct cli_option {
    the other outputs, and made when all is done (see cli_finish) */
 #define CLI_OUTPUT(word, place, value, says)                                   \
     {                                                                          \
-        .kind = CLI_KIND_TEXT, .to.text = (place), .name = (word),             \
-        .argument = (value), .help = (says), .written = true                   \
+        .kind = CLI_KIND_TEXT, .written = true, .to.text = (place),            \
+        .name = (word), .argument = (value), .help = (says)                    \
     }
 #define CLI_WORD(word, place, words, says)                                     \
     CLI_ROW(WORD, text, 0, word, place, words, 0.0, 0.0, says)
