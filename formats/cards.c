@@ -12,8 +12,10 @@
 
 #include <ritz/base.h>
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <sys/stat.h>
 
 enum { RITZ_CARDS_DEEPEST = 16 };
 
@@ -27,7 +29,8 @@ typedef struct card_text {
 /* The file on top, below it those whose INCLUDE led there. */
 typedef struct ritz_scanner {
     ritz_cards *cards;
-    bool ended; /* by ENDDATA */
+    const char *home; /* folder of the deck; NULL: INCLUDE is not followed */
+    bool ended;       /* by ENDDATA */
     int depth;
     card_text open[RITZ_CARDS_DEEPEST + 1];
 } ritz_scanner;
@@ -96,16 +99,15 @@ static ritz_status skip_control(const char *path, ritz_lines *text,
     return RITZ_OK;
 }
 
-/* Append a file; @p text becomes the deck's, unless the call fails. */
-static ritz_status add_file(ritz_cards *cards, const char *path, char *text)
+/* Append a file; its text becomes the deck's, unless the call fails. */
+static ritz_status add_file(ritz_cards *cards, const char *path,
+                            ritz_cards_file file)
 {
-    char *copy = NULL;
-
+    file.path = NULL;
     RITZ_CHECK_ROOM(cards->file, cards->num_files, cards->files_room);
     if (path)
-        RITZ_CHECK_COPY(copy, path, (int64_t)strlen(path) + 1);
-    cards->file[cards->num_files].path = copy;
-    cards->file[cards->num_files++].text = text;
+        RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
+    cards->file[cards->num_files++] = file;
     return RITZ_OK;
 }
 
@@ -167,27 +169,80 @@ static ritz_status join_path(const char *folder, const char *name, char **out)
     return RITZ_OK;
 }
 
-static const char *path_of(const ritz_scanner *scan, int level)
+static const ritz_cards_file *file_of(const ritz_scanner *scan, int level)
 {
-    return scan->cards->file[scan->open[level].file].path;
+    return &scan->cards->file[scan->open[level].file];
 }
 
-/* Go on with a file before the one that includes it. */
+static void identify_file(const struct stat *there, ritz_cards_file *file)
+{
+    file->known = true;
+    file->device = (uint64_t)there->st_dev;
+    file->inode = (uint64_t)there->st_ino;
+}
+
+static bool same_file(const ritz_cards_file *a, const ritz_cards_file *b)
+{
+    return a->known && b->known && a->device == b->device &&
+           a->inode == b->inode;
+}
+
+/* Whether a file may be included once more: it is none of those that are open,
+ * and few times so far. *earlier: NULL, or where its text is already. */
+static ritz_status check_repeats(const ritz_scanner *scan, const char *path,
+                                 const ritz_cards_file *file,
+                                 const ritz_cards_file **earlier)
+{
+    const ritz_cards *cards = scan->cards;
+    int64_t times = 0;
+
+    *earlier = NULL;
+    for (int k = 0; k < scan->depth; k++)
+        RITZ_REFUSE_IF(same_file(file_of(scan, k), file), RITZ_ERR_FORMAT,
+                       "'%s' includes itself", path);
+    for (int64_t k = 0; k < cards->num_files; k++) {
+        if (!same_file(&cards->file[k], file))
+            continue;
+        times++;
+        if (cards->file[k].text)
+            *earlier = &cards->file[k];
+    }
+    RITZ_REFUSE_IF(times >= RITZ_CARDS_REPEATED, RITZ_ERR_FORMAT,
+                   "'%s' is included more than %d times", path,
+                   RITZ_CARDS_REPEATED);
+    return RITZ_OK;
+}
+
+/*
+ * Go on with a file before the one that includes it. A deck is written by
+ * others: what it names must be a regular file, as a device may have no end and
+ * a pipe no writer, and a file that is named again is not read again.
+ */
 static ritz_status include_file(ritz_scanner *scan, const char *path)
 {
     card_text new = {.file = scan->cards->num_files};
+    ritz_cards_file file = {.outside = !ritz_path_within(path, scan->home)};
+    const ritz_cards_file *earlier = NULL;
+    const char *text = NULL;
     RITZ_OWN_ARRAY char *bytes = NULL;
+    struct stat there;
 
-    for (int k = 0; k < scan->depth; k++)
-        RITZ_REFUSE_IF(path_of(scan, k) && strcmp(path_of(scan, k), path) == 0,
-                       RITZ_ERR_FORMAT, "'%s' includes itself", path);
+    RITZ_REFUSE_IF(stat(path, &there) != 0, RITZ_ERR_FILE,
+                   "cannot open '%s': %s", path, strerror(errno));
+    RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
+                   "'%s' is not a regular file", path);
+    identify_file(&there, &file);
+    RITZ_CHECK(check_repeats(scan, path, &file, &earlier));
     RITZ_REFUSE_IF(scan->depth > RITZ_CARDS_DEEPEST, RITZ_ERR_FORMAT,
                    "INCLUDE is more than %d files deep", RITZ_CARDS_DEEPEST);
     RITZ_REFUSE_IF(scan->cards->num_files >= MOST_FILES, RITZ_ERR_FORMAT,
                    "INCLUDE reads more than %d files", MOST_FILES);
-    RITZ_CHECK(ritz_text_read(path, &bytes));
-    new.text = (ritz_lines){.at = bytes, .end = bytes + strlen(bytes)};
-    RITZ_CHECK(add_file(scan->cards, path, bytes));
+    if (!earlier)
+        RITZ_CHECK(ritz_text_read(path, &bytes));
+    text = earlier ? earlier->text : bytes;
+    new.text = (ritz_lines){.at = text, .end = text + strlen(text)};
+    file.text = bytes;
+    RITZ_CHECK(add_file(scan->cards, path, file));
     bytes = NULL;
     RITZ_CHECK(skip_control(path, &new.text, scan->cards));
     RITZ_CHECK(ritz_path_folder(path, &new.folder));
@@ -200,7 +255,7 @@ static ritz_status follow_include(ritz_scanner *scan, const char *rest)
 {
     enum { LONGEST = 4096 };
     card_text *top = &scan->open[scan->depth - 1];
-    const char *including = path_of(scan, scan->depth - 1);
+    const char *including = file_of(scan, scan->depth - 1)->path;
     int64_t number = top->text.number;
     char name[LONGEST] = "";
     char where[LONGEST + 40] = "";
@@ -264,10 +319,14 @@ static ritz_status take_line(ritz_scanner *scan)
 static ritz_status scan_text(const char *path, const char *folder,
                              ritz_lines text, ritz_cards *cards)
 {
-    RITZ_OWN(ritz_scanner) scan = {.cards = cards};
+    RITZ_OWN(ritz_scanner) scan = {.cards = cards, .home = folder};
+    ritz_cards_file file = {0};
+    struct stat there;
     char *copy = NULL;
 
-    RITZ_CHECK(add_file(cards, path, NULL));
+    if (path && folder && stat(path, &there) == 0)
+        identify_file(&there, &file);
+    RITZ_CHECK(add_file(cards, path, file));
     RITZ_CHECK(skip_control(path, &text, cards));
     if (folder)
         RITZ_CHECK_COPY(copy, folder, (int64_t)strlen(folder) + 1);

@@ -21,6 +21,7 @@
 #include <string.h>
 
 enum {
+    RITZ_CARDS_REPEATED = 16,  /* times that a deck may include a file */
     RITZ_CARD_NAME_SIZE = 12,  /* a name has up to 8 letters */
     RITZ_CARD_FIELD_SIZE = 36, /* a free field may be wider than 16 */
 };
@@ -36,7 +37,11 @@ typedef struct ritz_line {
 
 typedef struct ritz_cards_file {
     char *path;
-    char *text; /* NULL if borrowed */
+    char *text;      /* NULL if borrowed, from an earlier inclusion too */
+    bool known;      /* which file it is */
+    bool outside;    /* of the deck's folder: sentences do not quote it */
+    uint64_t device; /* with inode: the same by whatever name */
+    uint64_t inode;
 } ritz_cards_file;
 
 /* Where a card is and what it is called, "GRID" for GRID*. */
@@ -87,7 +92,9 @@ typedef struct ritz_card {
  * @param[in] text    borrowed as long as the deck lives
  * @param[in] folder  to which INCLUDE is relative; NULL: it is counted only
  * @return RITZ_ERR_FORMAT if a continuation has no card, or INCLUDE goes in a
- *         circle or too deep; RITZ_ERR_FILE if an included file is missing
+ *         circle or too deep, or names a file more than RITZ_CARDS_REPEATED
+ *         times; RITZ_ERR_FILE if an included file is missing, or is a folder,
+ *         a device or a pipe
  * @cost   O(size), and O(n log n) in continuations that are out of order
  */
 ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
@@ -114,7 +121,9 @@ bool ritz_card_number(const char *text, double *out);
 /** Significant digits that a number is written with; 0 for a zero. */
 int64_t ritz_card_digits(const char *text);
 
-/** Fail with file and line before the sentence. */
+/** Fail with file and line before the sentence. What it quotes of a file outside
+ * the deck's folder is left out: who writes a deck could else read by it what
+ * only the user of Ritz may read. */
 [[gnu::format(printf, 3, 4)]] ritz_status
 ritz_cards_refuse(const ritz_cards *cards, int64_t line, const char *format,
                   ...);

@@ -173,6 +173,21 @@ int ritz_cards_compare_name(const void *name, const void *row)
     return strcmp(name, *one);
 }
 
+/* Leave out of a sentence what stands in quotes, from the first quote to the
+ * last, as what is quoted may hold quotes; to the end if it was cut off. */
+static void hide_quotes(char *sentence, size_t size)
+{
+    char *first = strchr(sentence, '\'');
+    const char *last = strrchr(sentence, '\'');
+    char end[400] = "";
+
+    if (!first)
+        return;
+    if (last > first)
+        snprintf(end, sizeof end, "...%s", last);
+    snprintf(first + 1, size - (size_t)(first + 1 - sentence), "%s", end);
+}
+
 ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
                               const char *format, ...)
 {
@@ -184,6 +199,8 @@ ritz_status ritz_cards_refuse(const ritz_cards *cards, int64_t line,
     va_start(args, format);
     vsnprintf(sentence, sizeof sentence, format, args);
     va_end(args);
+    if (cards->file[at->file].outside)
+        hide_quotes(sentence, sizeof sentence);
     if (path)
         return ritz_fail(RITZ_ERR_FORMAT, "'%s', line %" PRId64 ": %s", path,
                          at->number, sentence);

@@ -1,3 +1,5 @@
+#define _XOPEN_SOURCE 700 /* NOLINT: realpath is declared only so */
+
 #include "base/text.h"
 
 #include "base/alloc.h"
@@ -211,6 +213,17 @@ ritz_status ritz_path_folder(const char *path, char **out)
     memcpy(folder, slash ? path : ".", length);
     *out = folder;
     return RITZ_OK;
+}
+
+bool ritz_path_within(const char *path, const char *folder)
+{
+    RITZ_OWN_ARRAY char *inner = realpath(path, NULL);
+    RITZ_OWN_ARRAY char *outer = realpath(folder, NULL);
+    size_t length = outer ? strlen(outer) : 0;
+
+    if (!inner || !outer || strncmp(inner, outer, length) != 0)
+        return false;
+    return outer[length - 1] == '/' || inner[length] == '/';
 }
 
 /* Names. */

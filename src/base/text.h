@@ -28,8 +28,20 @@ bool ritz_text_part(const char *text, size_t length, char mark,
 bool ritz_text_range(const char *text, size_t length, int64_t *from,
                      int64_t *to);
 
+/** Bytes of the letter of UTF-8 at @p text, which may be a control character;
+ * 0 at the end, or of what is not UTF-8. */
+int ritz_letter_size(const char *text);
+
+/** Replace what is no letter, byte by byte, by '?': control characters and what
+ * is not UTF-8, which a terminal could obey. */
+void ritz_text_clean(char *text);
+
 /** The folder of a path: "." if it names none. The caller frees @p out. */
 ritz_status ritz_path_folder(const char *path, char **out);
+
+/** Whether a file lies in a folder or below it, links followed; false if either
+ * cannot be found. */
+bool ritz_path_within(const char *path, const char *folder);
 
 /* Names of one sort: an array of structs that each begin with a name. */
 typedef struct ritz_names {

@@ -3,6 +3,7 @@
 
 #include "damage.h"
 #include "folder.h"
+#include "formats/cards.h"
 #include "solvers.h"
 
 #include <ritz/import.h>
@@ -310,6 +311,81 @@ static void includes_are_followed_sixteen_deep(void **state)
                  "d16', line 2: INCLUDE is more than 16 files deep");
 }
 
+/* What has no end, or no writer, is not read. */
+static void includes_are_regular_files(void **state)
+{
+    static const char *const names[] = {"/dev/null", ".", "p.blk"};
+    ritz_deck bulk = {0};
+
+    (void)state;
+    assert_int_equal(mkfifo(folder_path("p.blk"), 0600), 0);
+    for (int k = 0; k < 3; k++) {
+        char text[64];
+
+        snprintf(text, sizeof text, "GRID,1\nINCLUDE '%s'\n", names[k]);
+        folder_write("top.dat", text);
+        assert_fails(ritz_deck_read(folder_path("top.dat"), &bulk),
+                     RITZ_ERR_FILE, "is not a regular file");
+        assert_non_null(strstr(ritz_error_message(), "top.dat', line 2: "));
+    }
+    assert_int_equal(remove(folder_path("p.blk")), 0);
+}
+
+/* By whatever name, so that a deck cannot grow without bound. */
+static void a_file_is_included_sixteen_times(void **state)
+{
+    char text[512] = "";
+    size_t used = 0;
+    ritz_deck bulk = {0};
+
+    (void)state;
+    folder_write("one.blk", "GRID,2\n");
+    for (int k = 0; k < RITZ_CARDS_REPEATED; k++)
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "INCLUDE '%sone.blk'\n", k % 2 ? "./" : "");
+    folder_write("top.dat", text);
+    assert_ok(ritz_deck_read(folder_path("top.dat"), &bulk));
+    assert_int_equal(bulk.grids.count, 1);
+    ritz_deck_free(&bulk);
+    snprintf(text + used, sizeof text - used, "INCLUDE 'one.blk'\n");
+    folder_write("top.dat", text);
+    assert_fails(ritz_deck_read(folder_path("top.dat"), &bulk), RITZ_ERR_FORMAT,
+                 "one.blk' is included more than 16 times");
+    folder_write("loop.dat", "INCLUDE './loop.dat'\n");
+    assert_fails(ritz_deck_read(folder_path("loop.dat"), &bulk),
+                 RITZ_ERR_FORMAT, "loop.dat', line 1: ");
+    assert_non_null(strstr(ritz_error_message(), "/./loop.dat' includes"));
+}
+
+/* Who writes a deck does not learn from a refusal what other files hold. */
+static void files_outside_the_decks_folder_are_not_quoted(void **state)
+{
+    static const struct {
+        const char *text, *words;
+    } CASES[] = {
+        {"GRID,pass'word',1\n", "key', line 1: '...' in GRID is not"},
+        {"+secret of mine\n", "key', line 1: the continuation '...' belongs"},
+        {"GRID,12345678901234567890123456789012345678\n",
+         "key', line 1: '...' in GRID is too long"},
+    };
+    const char *inner = folder_path("in");
+    ritz_deck bulk = {0};
+
+    (void)state;
+    assert_int_equal(mkdir(inner, 0700), 0);
+    folder_write("in/top.dat", "INCLUDE '../key'\n");
+    for (size_t k = 0; k < sizeof CASES / sizeof *CASES; k++) {
+        folder_write("key", CASES[k].text);
+        assert_fails(ritz_deck_read(folder_path("in/top.dat"), &bulk),
+                     RITZ_ERR_FORMAT, CASES[k].words);
+    }
+    folder_write("top.dat", "INCLUDE key\n"); /* in the folder of this deck */
+    assert_fails(ritz_deck_read(folder_path("top.dat"), &bulk), RITZ_ERR_FORMAT,
+                 "'1234567890123456...' in GRID");
+    assert_int_equal(remove(folder_path("in/top.dat")), 0);
+    assert_int_equal(rmdir(inner), 0);
+}
+
 static void real_decks_are_read(void **state)
 {
     static const struct {
@@ -426,6 +502,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_a_deck_cannot_mean_is_refused),
     cmocka_unit_test(includes_are_relative_to_the_file_that_names_them),
     cmocka_unit_test(includes_are_followed_sixteen_deep),
+    cmocka_unit_test(includes_are_regular_files),
+    cmocka_unit_test(a_file_is_included_sixteen_times),
+    cmocka_unit_test(files_outside_the_decks_folder_are_not_quoted),
     cmocka_unit_test(real_decks_are_read),
     cmocka_unit_test(a_deck_cut_or_corrupted_anywhere_ends_well),
     cmocka_unit_test(a_long_chain_of_frames_needs_no_stack),
