@@ -209,7 +209,7 @@ def draw(free, held, out):
                      (5, 11, "#4e9a06")])
     text = (f"names = '{' '.join(METHODS)}'\n" + style + block("free", free) +
             block("held", held) + SCRIPT.format(out=out, states=CHOSEN))
-    subprocess.run(["gnuplot"], input=text, text=True, check=True)
+    subprocess.run(["gnuplot", "-d"], input=text, text=True, check=True)
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ def draw(it, folder):
             lines += [" ".join(f"{value:.5g}" for value in line)
                       for line in zip(*columns)]
             lines.append("END")
-        subprocess.run(["gnuplot"], input="\n".join(lines + [script, ""]),
+        subprocess.run(["gnuplot", "-d"], input="\n".join(lines + [script, ""]),
                        text=True, check=True)
         slim(folder / name)
 

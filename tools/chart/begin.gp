@@ -4,11 +4,13 @@
 foot = (keys > 0 ? 20 + 22 * ceil(keys / real(columns)) : 0) \
     + (strlen(note) > 0 ? 22 : 0)
 high = body + foot
+reset
 set encoding utf8
 set micro
 set terminal svg size wide, high dynamic enhanced font 'sans,13' \
     background paper
-set output out
+# without a name gnuplot writes to its standard output
+if (strlen(out) > 0) { set output out }
 set datafile separator tab
 set datafile missing 'nan'
 set datafile commentschars ''

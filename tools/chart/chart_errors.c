@@ -223,11 +223,12 @@ static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
             w->x[k], w->y[k]);
     if (style <= MISSES)
         say_point(w, r, &w->s->measure[p]);
-    fprintf(file, "\t%ld\t", r->order);
-    html_line(file, r->method);
-    fprintf(file, "\t");
+    fputc('\t', file);
     if (word)
         fprintf(file, "%ld", r->order);
+    /* the last column: a quote in it takes in what follows */
+    fprintf(file, "\t%ld\t", r->order);
+    html_line(file, r->method);
     fputc('\n', file);
 }
 
@@ -293,8 +294,10 @@ static void put_table(const work *w)
     FILE *file = w->picture->table.file;
 
     fprintf(file, "method\torder\tto reduce, s\tone simulated second, s");
-    for (int64_t m = 0; m < w->s->num_measures; m++)
-        fprintf(file, "\t%s", w->s->measure[m].title);
+    for (int64_t m = 0; m < w->s->num_measures; m++) {
+        fputc('\t', file);
+        html_line(file, w->s->measure[m].title);
+    }
     fprintf(file, "\tverdict\n");
     for (int64_t k = 0; k < w->s->all.count; k++) {
         const record *r = &w->s->all.item[k];
@@ -398,7 +401,7 @@ static ritz_status compose_errors(work *w)
     picture *p = w->picture;
 
     fprintf(p->data.file,
-            "area\tseries\tstyle\tx\ty\ttip\torder\tmethod\tword\n");
+            "area\tseries\tstyle\tx\ty\ttip\tword\torder\tmethod\n");
     for (int64_t k = 0; k < n; k++) {
         place_records(w, &w->s->measure[k], &w->panel[k]);
         RITZ_CHECK(put_panel(w, k));

@@ -77,8 +77,10 @@ static chart_range put_line(runs *all, int64_t i, int64_t w)
     html_line(table, s->output[output]);
     fprintf(table, "\t");
     html_line(table, all->name[w]);
-    fprintf(table, "\t%.6g\t%.6g\t%.6g\t%s\n", y.low, y.high,
-            s->y[(s->count - 1) * n + output], s->integrator);
+    fprintf(table, "\t%.6g\t%.6g\t%.6g\t", y.low, y.high,
+            s->y[(s->count - 1) * n + output]);
+    html_line(table, s->integrator);
+    fputc('\n', table);
     return y;
 }
 

@@ -1,7 +1,7 @@
 # --- pareto and convergence: errors against time or order ---
 # panels, title[], low and high of both axes, tolerance[] (0: none), xlabel,
 # seconds, lines (of each method), methods. Data: area series style x y tip
-# order method word, with styles 0 meets, 1 misses, 2 chosen, 3 runner-up, 4
+# word order method, with styles 0 meets, 1 misses, 2 chosen, 3 runner-up, 4
 # front, 5 line.
 percent(e) = e >= -5 && e <= 1 ? sprintf('%g %%%%', 10.0**(e + 2)) \
     : sprintf('1e%d', e)
@@ -84,6 +84,6 @@ do for [p=1:panels] {
         for [s=0:methods - 1] for [f=0:1] data skip 1 \
             using ($2 == s ? at(f) : NaN):5:6 with labels noenhanced \
             hypertext point pt mark(s) - f ps 1 lw 1.6 lc rgb colour(s), \
-        data skip 1 using (at(4)):5:9 with labels right noenhanced \
+        data skip 1 using (at(4)):5:7 with labels right noenhanced \
             offset -0.7,-0.6 font ',11' tc rgb muted
 }

@@ -169,14 +169,15 @@ static void copy_value(FILE *file, const char *value, size_t length,
                 value + refers);
 }
 
-/* A tag from '<' to '>'. */
+/* A tag to its end; with a prefix its values become those of the page. */
 static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
 {
     const char *begin = tag;
 
     while (*tag && *tag != '>') {
-        const char *end =
-            *tag == '"' || *tag == '\'' ? strchr(tag + 1, *tag) : NULL;
+        const char *end = prefix && (*tag == '"' || *tag == '\'')
+                              ? strchr(tag + 1, *tag)
+                              : NULL;
 
         if (end) {
             fputc(*tag, file);
@@ -186,7 +187,22 @@ static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
         }
         fputc(*tag++, file);
     }
+    if (*tag)
+        fputc(*tag++, file);
     return tag;
+}
+
+/* A letter between tags. gnuplot escapes neither '>', which must not follow
+   "]]", nor '&' before "#x", which would be a character of any number. */
+static const char *copy_letter(FILE *file, const char *c)
+{
+    if (*c == '>')
+        fputs("&gt;", file);
+    else if (starts_with(c, "&#x"))
+        fputs("&amp;", file);
+    else
+        fputc(*c, file);
+    return c + 1;
 }
 
 /* On a page both have ids, by which the picture is called. */
@@ -214,6 +230,7 @@ void svg_copy(FILE *file, const char *drawn, const char *title,
                 "<svg class=\"picture\" role=\"img\" "
                 "aria-labelledby=\"%st %sd\"",
                 prefix, prefix);
+        c = copy_tag(file, c, NULL);
     }
     while (*c) {
         if (starts_with(c, "<title>") && !named) {
@@ -224,10 +241,10 @@ void svg_copy(FILE *file, const char *drawn, const char *title,
             c = skip_past(c, "</title>"); /* of a plot, of no mark */
         } else if (starts_with(c, pointed)) {
             c = copy_tip(file, c);
-        } else if (prefix && *c == '<') {
+        } else if (*c == '<') {
             c = copy_tag(file, c, prefix);
         } else {
-            fputc(*c++, file);
+            c = copy_letter(file, c);
         }
     }
 }

@@ -2,20 +2,26 @@
 
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "base/text.h"
 
 #include <ritz/base.h>
 
 #include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 enum {
     NO_PROGRAM = 127,
     TIP_SIZE = 1000, /* a label of gnuplot's has 1024 bytes at most */
+    PIECE = 65536,   /* what a pipe holds */
 };
 
 /* Widths in the legend, pixels: a sign with the space beside it; a letter, as
@@ -36,6 +42,7 @@ ritz_status picture_new(const char *path, bool keep, picture *out)
     out->keep = keep;
     RITZ_CHECK(cli_table_new(&out->data));
     RITZ_CHECK(cli_table_new(&out->given));
+    RITZ_CHECK(cli_table_new(&out->drawn));
     return cli_table_new(&out->table);
 }
 
@@ -50,16 +57,38 @@ void picture_add_sign(picture *p, picture_sign sign, const char *format, ...)
         p->sign[p->num_signs++] = sign;
 }
 
-/* Text in single quotes, where gnuplot interprets only ''. */
+/*
+ * Texts are in single quotes, where gnuplot interprets nothing but quotes: of
+ * three in a row it takes two for a letter and the third for the end. Each is
+ * therefore a piece of its own, 'it' . "\047" . 's'.
+ */
+static void put_byte(FILE *file, char byte)
+{
+    fprintf(file, "' . \"\\%03o\" . '", (unsigned)(unsigned char)byte);
+}
+
 static void quote_text(FILE *file, const char *text)
 {
     fputc('\'', file);
-    while (*text) {
+    while (*text)
         if (*text == '\'')
-            fputc('\'', file);
-        text += html_letter(file, text);
-    }
+            put_byte(file, *text++);
+        else
+            text += html_letter(file, text);
     fputc('\'', file);
+}
+
+/* A file name keeps every byte. One that is relative gets a "./" in front:
+   gnuplot would run "|NAME" and "<NAME". */
+static void quote_path(FILE *file, const char *path, const char *ending)
+{
+    fprintf(file, "'%s", *path == '/' ? "" : "./");
+    while (*path)
+        if (*path == '\'' || ritz_letter_length(path) == 0)
+            put_byte(file, *path++);
+        else
+            path += html_letter(file, path);
+    fprintf(file, "%s'", ending);
 }
 
 void picture_give_text(picture *p, const char *name, const char *text)
@@ -164,15 +193,12 @@ const char *picture_base(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* Give a file name as "./NAME": gnuplot would run "|NAME" or "<NAME". */
+/* The name of a file of the folder that the script is in. */
 static void put_name(FILE *file, const char *variable, const char *path,
                      const char *ending)
 {
-    char name[PICTURE_PATH + 16];
-
-    snprintf(name, sizeof name, "./%s%s", picture_base(path), ending);
     fprintf(file, "if (!exists('%s')) %s = ", variable, variable);
-    quote_text(file, name);
+    quote_path(file, picture_base(path), ending);
     fputc('\n', file);
 }
 
@@ -235,9 +261,8 @@ static ritz_status write_script(picture *p, const char *template,
 {
     RITZ_CHECK(cli_table_new(out));
     RITZ_CHECK(cli_table_end(&p->given));
-    fprintf(out->file, "# gnuplot ");
-    html_line(out->file, picture_base(p->path));
-    fprintf(out->file, ".gp\n");
+    fprintf(out->file, "# Draw again, in this folder: gnuplot -d and the name "
+                       "of this file\n");
     put_name(out->file, "out", p->path, "");
     put_name(out->file, "data", p->path, ".tsv");
     for (const svg_colour *c = svg_colours; c->name; c++)
@@ -253,46 +278,90 @@ static ritz_status write_script(picture *p, const char *template,
     return RITZ_OK;
 }
 
-/* The command NAME='FILE' for -e; a relative name gets a "./" in front. */
-static ritz_status set_variable(const char *name, const char *value,
-                                size_t size, char *out)
+/* In the child: gnuplot ends with the tool, however that ends. What it writes
+   comes through a pipe: where there is no such call it ends at its next
+   write. */
+static void follow_parent(pid_t parent)
 {
-    size_t used =
-        (size_t)snprintf(out, size, "%s='%s", name, *value == '/' ? "" : "./");
-
-    for (; *value && used + 4 < size; value++)
-        used += (size_t)snprintf(out + used, size - used,
-                                 *value == '\'' ? "''" : "%c", *value);
-    RITZ_REFUSE_IF(*value, RITZ_ERR_ARGUMENT,
-                   "the name of a chart is too long");
-    snprintf(out + used, size - used, "'");
-    return RITZ_OK;
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    signal(SIGPIPE, SIG_DFL);
+    if (getppid() != parent)
+        _exit(NO_PROGRAM);
 }
 
-/* @param[in] shown  what the script is called for the user */
-static ritz_status run_gnuplot(const char *script, const char *data,
-                               const char *out, const char *shown)
+static void become_gnuplot(pid_t parent, const int ends[2], char *const argv[])
 {
-    static char program[] = "gnuplot", defaults[] = "-d", option[] = "-e";
-    char set_out[PICTURE_PATH + 16], set_data[PICTURE_PATH + 16];
-    char file[PICTURE_PATH + 16];
-    char *const argv[] = {program, defaults, option, set_out,
-                          option,  set_data, file,   NULL};
-    int outcome = 0;
+    follow_parent(parent);
+    dup2(ends[1], STDOUT_FILENO);
+    for (int k = 0; k < 2; k++)
+        if (ends[k] != STDOUT_FILENO) /* if the tool itself has none */
+            close(ends[k]);
+    execvp(argv[0], argv);
+    _exit(NO_PROGRAM);
+}
+
+static ritz_status read_pipe(int from, cli_table *out)
+{
+    RITZ_OWN_ARRAY char *piece = NULL;
+    ssize_t size = 0;
+
+    RITZ_CHECK_NEW(piece, PIECE);
+    do {
+        size = read(from, piece, PIECE);
+        RITZ_REFUSE_IF(size < 0 && errno != EINTR, RITZ_ERR_FILE,
+                       "cannot read from gnuplot: %s", strerror(errno));
+        if (size > 0)
+            fwrite(piece, 1, (size_t)size, out->file);
+    } while (size != 0);
+    return cli_table_end(out);
+}
+
+/* Run it until it ends; what it writes. */
+static ritz_status collect_gnuplot(char *const argv[], cli_table *out,
+                                   int *outcome)
+{
+    const pid_t parent = getpid();
+    ritz_status status = RITZ_OK;
+    int ends[2] = {-1, -1};
     pid_t child = -1;
 
-    snprintf(file, sizeof file, "%s%s", *script == '/' ? "" : "./", script);
-    RITZ_CHECK(set_variable("out", out, sizeof set_out, set_out));
-    RITZ_CHECK(set_variable("data", data, sizeof set_data, set_data));
-    child = fork();
-    if (child == 0) {
-        execvp(program, argv);
-        _exit(NO_PROGRAM);
-    }
-    RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE, "cannot start gnuplot: %s",
+    RITZ_REFUSE_IF(pipe(ends) != 0, RITZ_ERR_FILE, "cannot start gnuplot: %s",
                    strerror(errno));
-    while (waitpid(child, &outcome, 0) < 0 && errno == EINTR)
+    child = fork();
+    if (child == 0)
+        become_gnuplot(parent, ends, argv);
+    if (child < 0)
+        status = ritz_fail(RITZ_ERR_FILE, "cannot start gnuplot: %s",
+                           strerror(errno));
+    close(ends[1]);
+    if (child > 0)
+        status = read_pipe(ends[0], out);
+    close(ends[0]);
+    while (child > 0 && waitpid(child, outcome, 0) < 0 && errno == EINTR)
         ;
+    return status;
+}
+
+/* Draw by gnuplot, without a user's ~/.gnuplot.
+   @param[in] shown  what the script is called for the user */
+static ritz_status run_gnuplot(const char *script, const char *data,
+                               const char *shown, cli_table *out)
+{
+    static char program[] = "gnuplot", defaults[] = "-d", option[] = "-e";
+    RITZ_OWN(cli_table) command = {0};
+    char file[PICTURE_PATH + 16];
+    char *argv[] = {program, defaults, option, NULL, file, NULL};
+    int outcome = 0;
+
+    RITZ_CHECK(cli_table_new(&command));
+    fprintf(command.file, "out = ''; data = ");
+    quote_path(command.file, data, "");
+    RITZ_CHECK(cli_table_end(&command));
+    argv[3] = command.text;
+    snprintf(file, sizeof file, "%s%s", *script == '/' ? "" : "./", script);
+    RITZ_CHECK(collect_gnuplot(argv, out, &outcome));
     RITZ_REFUSE_IF(
         WIFEXITED(outcome) && WEXITSTATUS(outcome) == NO_PROGRAM, RITZ_ERR_FILE,
         "gnuplot is not installed: '%s' is there to be drawn by it", shown);
@@ -318,15 +387,11 @@ static ritz_status put_beside(const picture *p, cli_table *table,
 static ritz_status draw_drafts(picture *p, ritz_draft *data, ritz_draft *script,
                                const char *shown)
 {
-    RITZ_OWN(ritz_draft) draft = {0};
     RITZ_OWN_ARRAY char *why = NULL;
-    ritz_status status = RITZ_OK;
+    ritz_status status =
+        run_gnuplot(script->name, data->name, shown, &p->drawn);
 
-    RITZ_CHECK(ritz_draft_new(p->path, &draft));
-    status = run_gnuplot(script->name, data->name, draft.name, shown);
-    if (status == RITZ_OK)
-        status = ritz_text_read(draft.name, &p->drawn);
-    if (status == RITZ_OK && !strstr(p->drawn, "</svg>"))
+    if (status == RITZ_OK && !strstr(p->drawn.text, "</svg>"))
         status = ritz_fail(RITZ_ERR_FILE, "gnuplot drew no picture");
     if (status == RITZ_OK || !p->keep)
         return status;
@@ -340,20 +405,23 @@ static ritz_status draw_drafts(picture *p, ritz_draft *data, ritz_draft *script,
 static ritz_status draw_files(picture *p, const char *template)
 {
     char data_path[PICTURE_PATH], script_path[PICTURE_PATH];
-    RITZ_OWN(ritz_draft) data = {0}, script = {0};
+    RITZ_OWN(ritz_draft) draft = {0}, data = {0}, script = {0};
     RITZ_OWN(cli_table) text = {0}, named = {0};
 
     RITZ_CHECK(write_script(p, template, &text));
     RITZ_CHECK(put_beside(p, &p->data, ".tsv", &data, data_path));
     RITZ_CHECK(put_beside(p, &text, ".gp", &script, script_path));
+    if (p->keep)
+        RITZ_CHECK(ritz_draft_new(p->path, &draft));
     RITZ_CHECK(draw_drafts(p, &data, &script, script_path));
     if (!p->keep)
         return RITZ_OK;
     RITZ_CHECK(ritz_draft_publish(&data));
     RITZ_CHECK(ritz_draft_publish(&script));
     RITZ_CHECK(cli_table_new(&named));
-    svg_copy(named.file, p->drawn, p->title, p->summary, NULL);
-    return cli_table_save(&named, p->path);
+    svg_copy(named.file, p->drawn.text, p->title, p->summary, NULL);
+    RITZ_CHECK(cli_table_write(&named, draft.name));
+    return ritz_draft_publish(&draft);
 }
 
 ritz_status picture_draw(picture *p, const char *template, const char *title,
@@ -369,7 +437,7 @@ ritz_status picture_draw(picture *p, const char *template, const char *title,
 
 void picture_free(picture *p)
 {
-    free(p->drawn);
+    cli_table_free(&p->drawn);
     cli_table_free(&p->data);
     cli_table_free(&p->given);
     cli_table_free(&p->table);

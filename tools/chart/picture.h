@@ -1,7 +1,7 @@
 /*
  * Pictures that gnuplot draws: a table of numbers with tabs between them, and a
  * script, which sets variables before a template, KIND.gp of this folder. Both
- * are kept, so that `gnuplot PICTURE.svg.gp` draws the picture again. Names
+ * are kept, so that `gnuplot -d PICTURE.svg.gp` draws the picture again. Names
  * that users chose are in single quotes or in the table, and always
  * `noenhanced`, so that gnuplot does not interpret them.
  */
@@ -43,7 +43,7 @@ typedef struct picture {
         table; /* numbers for readers, with tabs, names of columns first */
     int num_signs;
     picture_sign sign[PICTURE_SIGNS];
-    char *drawn; /* what gnuplot drew */
+    cli_table drawn; /* what gnuplot drew */
     char title[4 * PICTURE_WORD];
     const char *summary;
 } picture;

@@ -149,7 +149,7 @@ ritz_status report_figure(report_page *p, chart_draw *draw,
     snprintf(prefix, sizeof prefix, "p%ld-", ++p->num_pictures);
     fprintf(file, "<figure%s>\n<div class=\"scroll\">\n",
             drawn.wide > PICTURE_WIDE ? " class=\"whole\"" : "");
-    svg_copy(file, drawn.drawn, drawn.title, drawn.summary, prefix);
+    svg_copy(file, drawn.drawn.text, drawn.title, drawn.summary, prefix);
     html_print(file, "</div>\n<figcaption>%s%s%s</figcaption>\n", caption,
                *drawn.note ? ". " : "", drawn.note);
     put_table(file, drawn.table.text, caption);

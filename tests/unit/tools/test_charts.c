@@ -90,7 +90,21 @@ static void hostile_text_is_text(void **state)
                 "&lt;b a=&quot;x&quot; b=&#39;y&#39;&gt;&amp;amp;");
     assert_text("a\tb\nc\x01", "a b c ");
     assert_text("\xc3\xa9\xff\xe2\x82", "\xc3\xa9???");
+    assert_text("]]>&#x0;", "]]&gt;&amp;#x0;");
     assert_text("", "");
+}
+
+/* A page or picture with one of them would not be read at all. */
+static void letters_that_xml_has_not_are_marked(void **state)
+{
+    (void)state;
+    assert_text("\xed\xa0\x80", "???"); /* half of a pair */
+    assert_text("\xef\xbf\xbe", "???"); /* U+FFFE */
+    assert_text("\xe0\x80\xaf", "???"); /* '/', longer than need be */
+    assert_text("\xf0\x80\x80\xaf", "????");
+    assert_text("\xf4\x90\x80\x80", "????"); /* above U+10FFFF */
+    assert_text("\xef\xbf\xbd\xed\x9f\xbf", "\xef\xbf\xbd\xed\x9f\xbf");
+    assert_text("\xf4\x8f\xbf\xbf", "\xf4\x8f\xbf\xbf");
 }
 
 static void only_arguments_are_escaped(void **state)
@@ -122,6 +136,21 @@ static void a_tip_is_one_field_of_markup(void **state)
     picture_free(&p);
 }
 
+/* gnuplot takes two quotes in a row for the end of a text. */
+static void a_quote_is_a_piece_of_its_own(void **state)
+{
+    picture p = {0};
+
+    (void)state;
+    assert_int_equal(picture_new("x.svg", true, &p), RITZ_OK);
+    picture_give_text(&p, "x", "'a''b`\\n\"");
+    fflush(p.given.file);
+    assert_string_equal(p.given.text,
+                        "x = '' . \"\\047\" . 'a' . \"\\047\" . '' . "
+                        "\"\\047\" . 'b`\\n\"'\n");
+    picture_free(&p);
+}
+
 static const char drawn[] =
     "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 9 9\">\n"
     "<title>Gnuplot</title>\n<desc>Produced</desc>\n"
@@ -132,8 +161,8 @@ static const char drawn[] =
     "onmouseout=\"gnuplot_svg.hideHypertext()\"><title> </title>\n"
     "<use xlink:href='#gpPt10' color='rgb(  0, 114, 178)'/></g>\n"
     "<path stroke='black' fill='rgb(1,2,3)'/>"
-    "<text fill=\"#5a6270\">a = 'b' &gt; #gpDot rgb(0,114,178)</text></g>"
-    "</svg>\n";
+    "<text fill=\"#5a6270\">a = 'b' &gt; #gpDot rgb(0,114,178)</text>"
+    "<text>a]]>&#x0;&amp;</text></g></svg>\n";
 
 static char *copy_drawn(const char *title, const char *summary,
                         const char *prefix)
@@ -160,6 +189,11 @@ static void a_picture_is_named_and_its_points_are(void **state)
     assert_null(strstr(svg, "onmouse"));
     assert_null(strstr(svg, "gnuplot_plot_1</title>"));
     assert_non_null(strstr(svg, "color='rgb(  0, 114, 178)'"));
+    assert_non_null(
+        strstr(svg, "<text>a]]&gt;&amp;#x0;&amp;</text></g></svg>"));
+    assert_memory_equal(svg, drawn,
+                        strlen("<?xml version=\"1.0\"?>\n<svg "
+                               "viewBox=\"0 0 9 9\">\n"));
     free(svg);
 }
 
@@ -177,6 +211,8 @@ static void a_page_gives_its_own_names_and_colours(void **state)
     assert_non_null(strstr(got, "stroke='var(--ink)' fill='rgb(1,2,3)'"));
     assert_non_null(strstr(got, "fill=\"var(--muted)\""));
     assert_non_null(strstr(got, ">a = 'b' &gt; #gpDot rgb(0,114,178)</text>"));
+    assert_non_null(strstr(got, "<text>a]]&gt;&amp;#x0;&amp;</text>"));
+    assert_non_null(strstr(got, "p7-d\" viewBox=\"0 0 9 9\">\n"));
     free(got);
 }
 
@@ -186,8 +222,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(nothing_above_the_floor_still_has_an_axis),
     cmocka_unit_test(points_that_hide_each_other_are_thinned),
     cmocka_unit_test(hostile_text_is_text),
+    cmocka_unit_test(letters_that_xml_has_not_are_marked),
     cmocka_unit_test(only_arguments_are_escaped),
     cmocka_unit_test(a_tip_is_one_field_of_markup),
+    cmocka_unit_test(a_quote_is_a_piece_of_its_own),
     cmocka_unit_test(a_picture_is_named_and_its_points_are),
     cmocka_unit_test(a_page_gives_its_own_names_and_colours),
 };
