@@ -18,7 +18,8 @@ static const char *tolerance_help(void)
                         kind->unit[0] ? " (" : "", kind->unit,
                         kind->unit[0] ? ")" : "");
     }
-    sink_append(help, sizeof help, "; a number alone is of the response");
+    sink_append(help, sizeof help,
+                "; a number alone is of flexible and frequency");
     return help;
 }
 
@@ -35,7 +36,8 @@ int main(int argc, char **argv)
         DAMPERS_OPTION(&given.damper),
         CLI_TEXT("methods", &given.methods, "M[,M]",
                  "methods to try, or all; for a scene compare too [those "
-                 "of second order with a number of modes]"),
+                 "of second order with a number of modes; of a component "
+                 "with ports those that keep its interface]"),
         CLI_TEXT("attach", &r->attach, "PORT[,PORT]",
                  "for a component: keep the dofs of these ports [all]"),
         CLI_INT("largest", &r->largest, "N", 1, 100000,

@@ -154,8 +154,10 @@ typedef struct ritz_method {
     /* what a newcomer chooses by, a line of --list each: for which components,
        at what cost, what is guaranteed, where it fails */
     const char *when, *cost, *holds, *fails;
-    int uses;       /* RITZ_USES_... */
-    int only_named; /* ritz-fit tries it only where it is named: sum of
+    int uses;             /* RITZ_USES_... */
+    bool keeps_interface; /* has columns for every attached dof, which stay
+                             however few others there are */
+    int only_named;       /* ritz-fit tries it only where it is named: sum of
                        RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
     ritz_status (*make)(const ritz_request *request, ritz_basis *out);

@@ -100,6 +100,13 @@ bool ritz_measure_meets(const char *name, double value, double limit);
 /** Whether a measure meets its limit; a NaN limit is always met. */
 bool ritz_measure_holds(const ritz_measure *measure);
 
+/**
+ * Whether a measure of which nothing was asked must be told beside the worst
+ * one that was: both are relative, and it is more than ten times as wrong.
+ */
+bool ritz_measure_is_beside(const char *name, double value,
+                            const ritz_measure *worst);
+
 /* Full against reduced: every error measure, never one alone. */
 
 /* What is compared, and what it is held to. */
@@ -137,11 +144,12 @@ ritz_status ritz_verify(ritz_model full, ritz_model reduced,
 
 /**
  * Take "frequency=1e-3,mac=0.99,gain=1e-6": words of measures and their
- * tolerances; a number alone is of the response. Others stay as they are.
+ * tolerances; a number alone is of the flexible response and of frequencies, as
+ * far as they are not named. Others stay as they are.
  *
  * @return RITZ_ERR_ARGUMENT for a word that names no measure of second-order
- *         models, naming the nearest, for one that is given twice, or for a
- *         tolerance that can be none
+ *         models, naming the nearest, for one that is given twice, for a number
+ *         alone where both are named, or for a tolerance that can be none
  */
 ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits);
 

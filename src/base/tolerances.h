@@ -577,7 +577,10 @@
 #define RITZ_EXCHANGE_GAIN 1e-9
 /* Largest tolerances of a relative measure, and of a count. */
 #define RITZ_MOST_RELATIVE 1.0
-#define RITZ_MOST_COUNT    1e9
+/* A relative error of which nothing was asked is told beside the worst one that
+   was, where it is more than so many times as large. */
+#define RITZ_BESIDE_WORST 10.0
+#define RITZ_MOST_COUNT   1e9
 /* Modes closer than this, relative, are one cluster to ritz-verify: reduction
    turns vectors within modes that lie closer than its own error. */
 #define RITZ_CLOSE 1e-3

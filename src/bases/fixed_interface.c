@@ -314,6 +314,7 @@ const ritz_method ritz_method_craig_bampton = {
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "an interior that moves with the interface held; loads within it",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
+    .keeps_interface = true,
     .make = make_craig_bampton,
 };
 
@@ -345,6 +346,7 @@ const ritz_method ritz_method_guyan = {
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "modes of the interior, which are not there",
     .uses = RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
+    .keeps_interface = true,
     .make = make_guyan,
 };
 
@@ -470,6 +472,7 @@ const ritz_method ritz_method_irs = {
     .holds = "rigid motion; shapes to first order; frequencies from above",
     .fails = "statics, which guyan has exact; attached dofs without mass",
     .uses = RITZ_USES_ATTACHED,
+    .keeps_interface = true,
     .make = make_irs,
 };
 
@@ -567,5 +570,6 @@ const ritz_method ritz_method_krylov_cms_fixed = {
     .fails = "upper modes of the band: less exact than with normal modes",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
+    .keeps_interface = true,
     .make = make_krylov_fixed,
 };

@@ -329,6 +329,7 @@ const ritz_method ritz_method_macneal_rubin = {
     .holds = "kept modes, flexible static gain, rigid motion; from above",
     .fails = "attached dofs that depend on each other: left out, and named",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .keeps_interface = true,
     .make = make_macneal_rubin,
 };
 
@@ -357,6 +358,7 @@ const ritz_method ritz_method_macneal = {
     .holds = "flexible static gain; kept modes",
     .fails = "frequencies need not come from above; M is singular",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .keeps_interface = true,
     .make = make_macneal,
 };
 
@@ -410,6 +412,7 @@ const ritz_method ritz_method_inertia_relief = {
     .holds = "spans what macneal-rubin spans",
     .fails = "columns that are nearly parallel once many modes are kept",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .keeps_interface = true,
     .make = make_inertia_relief,
 };
 
@@ -436,6 +439,7 @@ const ritz_method ritz_method_dual_craig_bampton = {
     .fails = "systems have a negative eigenvalue for each interface force",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
     .only_named = RITZ_NAMED_FOR_COMPONENTS | RITZ_NAMED_FOR_SCENES,
+    .keeps_interface = true,
     .make = make_dual,
 };
 
@@ -618,5 +622,6 @@ const ritz_method ritz_method_rubin = {
     .holds = "spans what macneal-rubin spans",
     .fails = "nearly all modes kept: what is left at the interface is rounding",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .keeps_interface = true,
     .make = make_rubin,
 };

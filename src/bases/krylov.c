@@ -664,5 +664,6 @@ const ritz_method ritz_method_krylov_cms_free = {
     .fails = "upper modes of the band: less exact than with normal modes",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
+    .keeps_interface = true,
     .make = make_krylov_free,
 };

@@ -93,5 +93,6 @@ const ritz_method ritz_method_loaded_interface = {
     .holds = "frequencies from above",
     .fails = "other neighbours; statics of the interface",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_NEIGHBOUR,
+    .keeps_interface = true,
     .make = make_loaded_interface,
 };

@@ -13,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Second-order models by a number of modes; others only if they are named. */
+/* Second-order models by a number of modes, of what has an interface those that
+   keep it; others only if they are named. */
 static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
 {
     const int special =
@@ -23,6 +24,8 @@ static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
     if (fitter->scene)
         return (method->uses & joined) == joined &&
                !(method->only_named & RITZ_NAMED_FOR_SCENES);
+    if (fitter->attached.count > 0 && !method->keeps_interface)
+        return false;
     return (method->uses & RITZ_USES_MODES) && !(method->uses & special) &&
            !(method->uses & RITZ_USES_NEIGHBOUR) &&
            !(method->only_named & RITZ_NAMED_FOR_COMPONENTS);

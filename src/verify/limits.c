@@ -71,6 +71,18 @@ bool ritz_measure_holds(const ritz_measure *measure)
            ritz_measure_meets(measure->name, measure->value, measure->limit);
 }
 
+bool ritz_measure_is_beside(const char *name, double value,
+                            const ritz_measure *worst)
+{
+    const ritz_measure_kind *kind = ritz_measure_kind_find(name);
+    const ritz_measure_kind *asked = ritz_measure_kind_find(worst->name);
+
+    return kind && asked && is_relative(kind) && is_relative(asked) &&
+           ritz_measure_error(name, value) >
+               RITZ_BESIDE_WORST *
+                   fmax(ritz_measure_error(worst->name, worst->value), 0.0);
+}
+
 /* The row of a word; NULL and a sentence if there is none. */
 static const ritz_measure_kind *find_word(const char *word)
 {
@@ -98,34 +110,69 @@ static const ritz_measure_kind *find_word(const char *word)
     return NULL;
 }
 
-static ritz_status take_item(const char *item, ritz_verify_request *limits)
+/* The number of a tolerance of some measure. */
+static ritz_status take_number(const char *text, const ritz_measure_kind *kind,
+                               double *out)
+{
+    double value = 0.0;
+
+    RITZ_REFUSE_IF(!ritz_text_real(text, &value) || value < 0.0 ||
+                       value > (is_relative(kind) ? RITZ_MOST_RELATIVE
+                                                  : RITZ_MOST_COUNT) ||
+                       (value == 0.0 && is_relative(kind)),
+                   RITZ_ERR_ARGUMENT, "'%s' is no tolerance of '%s'", text,
+                   kind->word);
+    *out = value;
+    return RITZ_OK;
+}
+
+/* "gain=1e-2" */
+static ritz_status take_named(const char *item, ritz_verify_request *limits)
 {
     const char *equals = strchr(item, '=');
-    char name[RITZ_NAME_SIZE] = "response";
+    char name[RITZ_NAME_SIZE];
     const ritz_measure_kind *kind = NULL;
-    double value = 0.0;
     double *limit = NULL;
 
-    if (equals)
-        (void)snprintf(name, sizeof name, "%.*s", (int)(equals - item), item);
+    (void)snprintf(name, sizeof name, "%.*s", (int)(equals - item), item);
     kind = find_word(name);
     if (!kind)
         return RITZ_ERR_ARGUMENT;
     limit = &limits->limit[kind - ritz_measure_table];
     RITZ_REFUSE_IF(!isnan(*limit), RITZ_ERR_ARGUMENT, "'%s' is given twice",
                    name);
-    RITZ_REFUSE_IF(!ritz_text_real(equals ? equals + 1 : item, &value) ||
-                       value < 0.0 ||
-                       value > (is_relative(kind) ? RITZ_MOST_RELATIVE
-                                                  : RITZ_MOST_COUNT) ||
-                       (value == 0.0 && is_relative(kind)),
-                   RITZ_ERR_ARGUMENT, "'%s' is no tolerance of '%s'",
-                   equals ? equals + 1 : item, name);
-    *limit = value;
+    return take_number(equals + 1, kind, limit);
+}
+
+/*
+ * "1e-2": of the response without rigid motion, which alone would meet a
+ * tolerance of the whole response near 0 Hz, and of frequencies; but not of
+ * those that are named.
+ */
+static ritz_status take_alone(const char *item, ritz_verify_request *limits)
+{
+    static const ritz_measure_id of[] = {RITZ_MEASURE_FLEXIBLE,
+                                         RITZ_MEASURE_FREQUENCY};
+    bool any = false;
+
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
+        double *limit = &limits->limit[of[k]];
+
+        if (!isnan(*limit))
+            continue;
+        RITZ_CHECK(take_number(item, &ritz_measure_table[of[k]], limit));
+        any = true;
+    }
+    RITZ_REFUSE_IF(!any, RITZ_ERR_ARGUMENT,
+                   "'%s' alone is of '%s' and '%s', and both have a tolerance",
+                   item, ritz_measure_table[of[0]].word,
+                   ritz_measure_table[of[1]].word);
     return RITZ_OK;
 }
 
-ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits)
+/* The items with a name, or those without. */
+static ritz_status take_items(const char *text, bool named,
+                              ritz_verify_request *limits)
 {
     char item[2 * RITZ_NAME_SIZE];
 
@@ -136,10 +183,18 @@ ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits)
                        "'%s' is no list of tolerances", text);
         memcpy(item, at, length);
         item[length] = '\0';
-        RITZ_CHECK(take_item(item, limits));
+        if (named == (strchr(item, '=') != NULL))
+            RITZ_CHECK(named ? take_named(item, limits)
+                             : take_alone(item, limits));
         at = at[length] ? at + length + 1 : NULL;
     }
     return RITZ_OK;
+}
+
+ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits)
+{
+    RITZ_CHECK(take_items(text, true, limits));
+    return take_items(text, false, limits);
 }
 
 void ritz_tolerance_print(const ritz_verify_request *limits, int64_t size,

@@ -30,6 +30,15 @@ holds '  compares all at equal order, none above' \
     'len(j["equal_order"]) == 3 and
      all(c["order"] <= 9 for c in j["equal_order"] if "refused" not in c)'
 
+json 0 "$@" --tolerance frequency=0.3
+holds '  says the worst that was asked for, and what is far worse' \
+    'j["worst"]["name"] == "frequency-relative" and j["not_asked_for"] and
+     all(1 - m["value"] > 10 * j["worst"]["value"] if m["name"] == "mac"
+         else m["value"] > 10 * j["worst"]["value"]
+         for m in j["not_asked_for"])'
+expect 0 'Not asked for, and more than ten times that: ' "$@" \
+    --tolerance frequency=0.3
+
 # --- refusals ----------------------------------------------------------------------
 
 expect 2 "there is no measure 'frequncy', is 'frequency' meant?" "$@" \
@@ -111,6 +120,8 @@ sed '/^band_hz/d' scene.yaml >bare.yaml
 expect 1 'the scene has no band' ritz-fit bare.yaml --tolerance 1e-2 -o s.h5
 sed '/^inputs/d' scene.yaml >still.yaml
 expect 1 "a tolerance of 'response' needs inputs and outputs" ritz-fit \
+    still.yaml --tolerance response=1e-2 -o s.h5
+expect 1 "a tolerance of 'flexible' needs inputs and outputs" ritz-fit \
     still.yaml --tolerance 1e-2 -o s.h5
 
 # --- where an answer goes is seen to before the search ---------------------------

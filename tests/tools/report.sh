@@ -83,6 +83,16 @@ expect 0 '' ritz-chart report unmet.jsonl -o unmet.html
 expect 0 '<div class="big">near</div>' cat unmet.html
 expect 0 'this is the one that comes nearest to its tolerance' cat unmet.html
 expect 0 'It misses a tolerance' cat unmet.html
+# the headline is of what was asked for; what is ten times worse stands beside
+printf '{"method": "near", "order": 9, "subject": "beam", "chosen": true,
+ "tolerance": {"frequency-relative": 0.01}, "seconds": {"cpu": 0.1},
+ "errors": {"response-relative": 0.5, "frequency-relative": 0.004,
+ "static-gain-relative": 0.03}}' | tr -d '\n' >asked.jsonl
+expect 0 '' ritz-chart report asked.jsonl -o asked.html
+expect 0 'How wrong</dt><dd><div class="big">0.4' cat asked.html
+expect 0 'the worst of what was asked for: frequency error' cat asked.html
+expect 0 'more than ten times that: response error 50' cat asked.html
+works '  and nothing that is not' sh -c '! grep -q "times that: static" asked.html'
 record lost 12 2 0.001 >lost.jsonl
 expect 0 '' ritz-chart report lost.jsonl -o lost.html
 expect 0 'none has a tolerance that its errors can be held against' cat lost.html

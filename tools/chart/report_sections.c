@@ -278,11 +278,72 @@ static void say_bounds(FILE *file, const record *r)
     }
 }
 
+/* The measure of a tolerance of which the error is the largest part; of no
+   name: none is known. */
+static ritz_measure find_worst(const record *r)
+{
+    ritz_measure worst = {.value = nan(""), .limit = nan("")};
+    const char *name = NULL;
+    json_t *limit = NULL;
+    double most = -1.0;
+
+    json_object_foreach(r->tolerance, name, limit)
+    {
+        const double value = record_value(r->errors, name);
+        const double allowed = json_number_value(limit);
+        const double times = ritz_measure_ratio(name, value, allowed);
+
+        if (!(times > most))
+            continue;
+        most = times;
+        snprintf(worst.name, sizeof worst.name, "%s", name);
+        worst.value = value;
+        worst.limit = allowed;
+    }
+    return worst;
+}
+
+/* What was not asked for and is far worse than what was. */
+static void say_beside(FILE *file, const record *r, const ritz_measure *worst)
+{
+    const char *name = NULL;
+    json_t *value = NULL;
+
+    json_object_foreach(r->errors, name, value)
+    {
+        if (json_object_get(r->tolerance, name) || !json_is_number(value) ||
+            !ritz_measure_is_beside(name, json_number_value(value), worst))
+            continue;
+        html_print(file,
+                   "<li class=\"misses\">not asked for, and more than ten "
+                   "times that: %s %s</li>",
+                   record_title(name),
+                   chart_say_error(record_error(r, name)).text);
+    }
+}
+
+/* Above all the worst measure that was asked for, if it is relative. */
+static void say_headline(FILE *file, const record *r, const measure *first)
+{
+    const ritz_measure worst = find_worst(r);
+    const ritz_measure_kind *kind = ritz_measure_kind_find(worst.name);
+    const bool known = kind && !*kind->unit;
+
+    begin_card(
+        file, "How wrong",
+        chart_say_error(record_error(r, known ? worst.name : first->name))
+            .text);
+    if (!known)
+        return;
+    html_print(file, "<li>the worst of what was asked for: %s</li>",
+               record_title(worst.name));
+    say_beside(file, r, &worst);
+}
+
 static void say_errors(FILE *file, const record *r, int64_t count,
                        const measure *m)
 {
-    begin_card(file, "How wrong",
-               chart_say_error(record_error(r, m->name)).text);
+    say_headline(file, r, m);
     for (int64_t k = 0; k < count; k++) {
         double error = record_error(r, m[k].name);
 

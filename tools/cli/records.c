@@ -369,7 +369,7 @@ static bool is_measured(const records *all, const char *name)
     return false;
 }
 
-static const char *title_of(const char *name)
+const char *record_title(const char *name)
 {
     const ritz_measure_kind *kind = ritz_measure_kind_find(name);
 
@@ -399,7 +399,7 @@ static void add_measure(const char *name, record_set *s)
         strlen(name) >= RITZ_NAME_SIZE)
         return;
     snprintf(m->name, RITZ_NAME_SIZE, "%s", name);
-    snprintf(m->title, RITZ_NAME_SIZE, "%s", title_of(name));
+    snprintf(m->title, RITZ_NAME_SIZE, "%s", record_title(name));
     m->tolerance = tolerance_of(&s->all, name);
     s->num_measures++;
 }

@@ -58,6 +58,9 @@ double record_value(const json_t *values, const char *name);
 /** An error as it is drawn: of MAC, what it lacks of one. */
 double record_error(const record *r, const char *name);
 
+/** What charts call a measure; its own name if they do not draw it. */
+const char *record_title(const char *name);
+
 enum { RECORD_SET_MEASURES = 12 };
 
 /* Those that a chart can show: with a method, an order and errors, of one

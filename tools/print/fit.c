@@ -244,6 +244,39 @@ static void say_bounds(const cli_run *run, const ritz_measures *estimates)
     }
 }
 
+/* The worst measure of those with a tolerance, and beside it what is far worse
+   and was not asked for. */
+static void say_worst(cli_run *run, const ritz_fit_candidate *c)
+{
+    const ritz_measure *worst = NULL;
+
+    if (c->worst < 0)
+        return;
+    worst = &c->errors.item[c->worst];
+    sink_object(run, "worst");
+    sink_set(run, "name", "%s", worst->name);
+    sink_say(run, ",value,limit,where",
+             "Worst of what was asked for: %s %.3g, allowed %g (%s)",
+             ritz_tolerance_word(worst->name), worst->value, worst->limit,
+             worst->where);
+    sink_end(run);
+    sink_list(run, "not_asked_for");
+    for (int64_t k = 0; k < c->errors.count; k++) {
+        const ritz_measure *m = &c->errors.item[k];
+
+        if (!isnan(m->limit) ||
+            !ritz_measure_is_beside(m->name, m->value, worst))
+            continue;
+        sink_object(run, NULL);
+        sink_set(run, "name", "%s", m->name);
+        sink_say(run, ",value,where",
+                 "Not asked for, and more than ten times that: %s %.3g (%s)",
+                 ritz_tolerance_word(m->name), m->value, m->where);
+        sink_end(run);
+    }
+    sink_end(run);
+}
+
 static void say_result(cli_run *run, const ritz_fitter *fitter,
                        const ritz_fit *fit)
 {
@@ -256,6 +289,7 @@ static void say_result(cli_run *run, const ritz_fitter *fitter,
         if (c->modes[k] >= 0) /* there is a number to choose */
             cli_say(run, "  %-20s %ld mode%s", ritz_fitter_body(fitter, k),
                     c->modes[k], c->modes[k] == 1 ? "" : "s");
+    say_worst(run, c);
     model_say_measures(run, SINK_LINE, "measures", &c->errors, "measured");
     say_bounds(run, &c->estimates);
     say_cost(run, fitter, &c->cost);
@@ -425,16 +459,16 @@ static ritz_status compare_methods(cli_run *run, const fit_options *a,
 }
 
 /* The tolerance was held from inputs to outputs. Forces and motions at ports
-   were not compared; only methods that keep ports are right there. */
+   were not compared; only methods that keep interfaces are right there. */
 static void warn_of_ports(cli_run *run, const ritz_component *component,
                           const ritz_fit_candidate *chosen)
 {
-    if (component->num_ports == 0 || chosen->method->uses & RITZ_USES_ATTACHED)
+    if (component->num_ports == 0 || chosen->method->keeps_interface)
         return;
     cli_warn(run,
              "%s keeps nothing for port '%s': the tolerance was held against "
              "inputs and outputs alone. Where other bodies are joined to it, "
-             "fit their scene, or name --methods that keep ports",
+             "fit their scene, or leave out --methods, which keeps interfaces",
              chosen->method->name, component->port[0].name);
 }
 

@@ -173,10 +173,12 @@ static void estimates_rule_out_candidates_and_change_no_answer(void **state)
 static void a_free_beam_is_fitted_within_one(void **state)
 {
     RITZ_OWN(ritz_component) beam = {0};
-    ritz_fit_request request = quick(1.0, 0.01, "1e-3,gain=1e-2");
+    ritz_fit_request request = quick(1.0, 0.01, "response=1e-3,gain=1e-2");
 
     (void)state;
     open_beam(false, &beam);
+    assert_within_one(&beam, &request);
+    request = quick(1.0, 0.01, "1e-3,gain=1e-2");
     assert_within_one(&beam, &request);
 }
 
@@ -259,17 +261,26 @@ static void random_chains_are_fitted_within_one(void **state)
 
 static void tolerances_are_taken_and_refused_in_words(void **state)
 {
-    ritz_verify_request limits = RITZ_VERIFY_NONE;
+    ritz_verify_request limits = RITZ_VERIFY_NONE, alone = RITZ_VERIFY_NONE;
     char text[128];
 
     (void)state;
     assert_ok(ritz_tolerance_take("1e-2,frequency=1e-3,mac=0.9", &limits));
     ritz_tolerance_print(&limits, sizeof text, text);
-    assert_string_equal(text, "frequency=0.001,mac=0.9,response=0.01");
+    assert_string_equal(text, "frequency=0.001,mac=0.9,flexible=0.01");
+    assert_ok(ritz_tolerance_take("1e-2", &alone));
+    ritz_tolerance_print(&alone, sizeof text, text);
+    assert_string_equal(text, "frequency=0.01,flexible=0.01");
     assert_fails(ritz_tolerance_take("gian=1", &limits), RITZ_ERR_ARGUMENT,
                  "there is no measure 'gian', is 'gain' meant?");
     assert_fails(ritz_tolerance_take("2e-2", &limits), RITZ_ERR_ARGUMENT,
-                 "'response' is given twice");
+                 "'2e-2' alone is of 'flexible' and 'frequency', and both have "
+                 "a tolerance");
+    assert_fails(ritz_tolerance_take("response=1,response=2", &limits),
+                 RITZ_ERR_ARGUMENT, "'response' is given twice");
+    alone = (ritz_verify_request)RITZ_VERIFY_NONE;
+    assert_fails(ritz_tolerance_take("-1", &alone), RITZ_ERR_ARGUMENT,
+                 "'-1' is no tolerance of 'flexible'");
     assert_fails(ritz_tolerance_take("gain=-1", &limits), RITZ_ERR_ARGUMENT,
                  "'-1' is no tolerance of 'gain'");
     assert_fails(ritz_tolerance_take("gain=0", &limits), RITZ_ERR_ARGUMENT,
