@@ -112,6 +112,9 @@ void ritz_damping_fit(ritz_damping *damping);
 /** Whether it is a M + b K, as stated or as fitted. */
 bool ritz_damping_is_rayleigh(const ritz_damping *damping);
 
+/** Whether it is ratios, each of a mode. @param[in] damping  may be NULL */
+bool ritz_damping_has_ratios(const ritz_damping *damping);
+
 /**
  * Largest |ratio of the fit - ratio asked| of its points, which is at point
  * @p at; 0 of another kind.

@@ -68,7 +68,8 @@ void ritz_response_free(ritz_response *response);
 typedef struct ritz_response_request {
     ritz_model model;      /* that responds */
     double from_hz, to_hz; /* the range of later requests */
-    double up_to_hz;       /* modes of a component; 0: three times the end */
+    double up_to_hz;       /* modes of a component; 0: three times the end.
+                              Ratios damp all modes of up to 2000 dofs */
     double tolerance; /* of engines that approximate, relative to the largest
                          |H| of a channel; 0: 1e-9, and modal remarks on its
                          error alone */
@@ -93,10 +94,10 @@ typedef struct ritz_response_engine {
 extern const ritz_response_engine *const ritz_response_engines[];
 
 /**
- * The full matrices of a component at each point. Damping ratios act on the
- * modes up to `up_to_hz`, which are taken out of the load first; what lies
- * above them is then undamped but for D and K4. Rayleigh damping is exact. With
- * D, K4 or Rayleigh damping a free body is refused at 0 Hz.
+ * The full matrices of a component at each point. Damping ratios act on all
+ * modes of up to 2000 dofs; of larger components on the modes up to `up_to_hz`,
+ * and what lies above them is undamped but for D and K4. Rayleigh damping is
+ * exact. With D, K4 or Rayleigh damping a free body is refused at 0 Hz.
  */
 extern const ritz_response_engine ritz_response_engine_direct;
 
@@ -104,7 +105,8 @@ extern const ritz_response_engine ritz_response_engine_direct;
  * A sum of modes. Of a dense model all of them, with ratios of given damping
  * and of Phi'D Phi; where D couples modes, they are solved for together at each
  * point. Of a component those up to `up_to_hz`; modes above respond as a series
- * in w^2 that begins with their residual flexibility, damped by a M + b K alone.
+ * in w^2 that begins with their residual flexibility, damped by a M + b K and,
+ * up to 2000 dofs, by ratios.
  *
  * Where other damping acts on a component, the sum is compared with direct at
  * some resonances and between them. The remark says how much it is off; where

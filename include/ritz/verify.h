@@ -207,8 +207,9 @@ enum {
  *                     them
  * @param[in] request  copied
  * @return RITZ_ERR_ARGUMENT if the band is none
- * @cost   the modes to three times the band; a factor a frequency where dampers
- *         couple modes of a model that is not small
+ * @cost   the modes to three times the band, or all of up to 2000 dofs with
+ *         ratios; a factor a frequency where dampers couple modes of a model
+ *         that is not small
  */
 ritz_status ritz_reference_new(const ritz_component *full,
                                const ritz_reference_request *request,

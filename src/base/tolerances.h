@@ -552,6 +552,9 @@
 
 /* A full model's modes are computed to this multiple of the band's end. */
 #define RITZ_REFERENCE_REACH 3.0
+/* Error of projected responses that stand for the full model, relative to the
+   largest |H| of a channel: below what is printed of any error. */
+#define RITZ_REFERENCE_TOLERANCE 1e-11
 /* Hz: no model has a mode above. */
 #define RITZ_ALL_MODES 1e100
 /* Singular values of a response are zero below this part of the largest. */

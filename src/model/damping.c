@@ -312,6 +312,12 @@ bool ritz_damping_is_rayleigh(const ritz_damping *damping)
            damping->kind == RITZ_DAMPING_FIT;
 }
 
+bool ritz_damping_has_ratios(const ritz_damping *damping)
+{
+    return damping && damping->kind != RITZ_DAMPING_NONE &&
+           !ritz_damping_is_rayleigh(damping);
+}
+
 /* Cut a text at its spaces; how many words there are, at most `most`. */
 static int64_t split_words(char *text, int64_t most, char *word[])
 {

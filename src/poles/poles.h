@@ -15,16 +15,29 @@
 #include <ritz/poles.h>
 #include <ritz/response.h>
 
+/* Components of so many dofs have all their modes damped by ratios: one dense
+   eigenproblem, a minute at most. Of larger ones only those that are summed. */
+enum { RITZ_RATIO_DOFS = 2000 };
+
 /*
  * Response of the modes that were left out, damped by a M + b K: with K^+ the
  * inverse of K where they live, R_0 = K^+ B and R_j = K^+ M R_(j-1),
  *
  *     X = sum_j mu^j R_j / (1 + i w b),    mu = (w^2 - i w a) / (1 + i w b)
  *
- * of which only the outputs are kept. Damping ratios do not act on it.
+ * of which only the outputs are kept. Damping ratios, of which mode k has the
+ * rate d_k, change its part of that by
+ *
+ *     1 / (z + i w d) - 1 / z = -i w d / (z (z + i w d)),
+ *     z = lambda (1 + i w b) + i w a - w^2
+ *
+ * which is summed over all of them.
  */
 typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
+    int64_t num_damped; /* modes that were left out and have a rate */
+    double *lambda, *rate;
+    ritz_io modes; /* for these */
     double a, b;
     bool known;      /* a and b are all that D and K4 do to them */
     double unit;     /* of mu: term j is kept times its power j */
@@ -130,10 +143,36 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
                                     ritz_poles *out);
 
 /**
+ * Whether ratios damp all modes of a component, rather than those that are
+ * summed: it has few enough dofs.
+ */
+bool ritz_ratios_act_on_all(const ritz_component *component,
+                            const ritz_damping *damping);
+
+/**
+ * The modes of a component that are not among known ones, M-orthogonal to
+ * these. @cost O(n^3)
+ *
+ * @param[in]  pairs  the lowest modes, all up to some frequency
+ * @param[out] Phi, lambda  all others that have mass, ascending
+ */
+ritz_status ritz_modes_above(const ritz_component *component,
+                             const ritz_pairs *pairs, ritz_dense *Phi,
+                             double **lambda);
+
+/**
+ * All modes of a component that have mass. Those up to a frequency are as exact
+ * as ritz_eigen_sparse has them.
+ */
+ritz_status ritz_modes_of_whole(const ritz_component *component,
+                                double up_to_hz, ritz_pairs *out);
+
+/**
  * Response of the modes that are not in @p pairs, damped by @p damping, if it
- * is a M + b K, and by D, if it is such a sum. Other damping of these modes is
- * neglected: by another D, by K4, and where a is so large that the series does
- * not converge.
+ * is a M + b K, and by D, if it is such a sum; by ratios if
+ * ritz_ratios_act_on_all. Other damping of these modes is neglected: by another
+ * D, by K4, by ratios of larger components, and where a is so large that the
+ * series does not converge.
  *
  * @param[in] damping  NULL: none beside D
  * @param[in] to_hz    where the series is to be good to 1e-12
@@ -143,6 +182,19 @@ ritz_status ritz_residual_new(const ritz_component *component,
                               const ritz_damping *damping,
                               const ritz_pairs *pairs, double to_hz,
                               double out_hz, ritz_residual *out);
+
+/**
+ * What ratios change in the response of the modes that are not in @p pairs,
+ * alone; nothing unless ritz_ratios_act_on_all.
+ */
+ritz_status ritz_residual_of_ratios(const ritz_component *component,
+                                    const ritz_damping *damping,
+                                    const ritz_pairs *pairs,
+                                    ritz_residual *out);
+
+/** H += that part of a residual. */
+void ritz_residual_add_ratios(const ritz_residual *residual, double hertz,
+                              double _Complex *H);
 
 /** H += the response of the residual. */
 void ritz_residual_add(const ritz_residual *residual, double hertz,

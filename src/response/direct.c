@@ -5,7 +5,10 @@
  *     Z_0 = K + i K4 + i w D - w^2 M,    Rayleigh: (1 + i w b) K, a M too
  *
  * Damping ratios act on modes Phi: Z = Z_0 + M Phi E Phi'M with E = i w diag(2
- * zeta w_k).
+ * zeta w_k), Phi being the modes up to a frequency. Those above, of a component
+ * of up to RITZ_RATIO_DOFS dofs, are damped too: where it has D or K4, M Phi E
+ * Phi'M of all modes is added to its D once, as a full matrix; where it has
+ * not, the residual says what ratios change.
  *
  * Without D and K4 the modes decouple from the rest exactly,
  *
@@ -33,6 +36,50 @@
 
 enum { MOST_NUDGES = 100 };
 
+ritz_status ritz_matrix_of_ratios(const ritz_component *component,
+                                  const ritz_damping *damping, double up_to_hz,
+                                  ritz_dense *out)
+{
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_dense) MPhi = {0}, scaled = {0};
+
+    RITZ_CHECK(ritz_modes_of_whole(component, up_to_hz, &pairs));
+    RITZ_CHECK(ritz_sparse_mul(&component->M, &pairs.Phi, &MPhi));
+    RITZ_CHECK(ritz_dense_copy(&MPhi, &scaled));
+    for (int64_t k = 0; k < scaled.ncol; k++) {
+        double rate =
+            ritz_modal_rate(damping, k - pairs.num_rigid, pairs.lambda[k]);
+
+        for (int64_t i = 0; i < scaled.nrow; i++)
+            ritz_dense_col(&scaled, k)[i] *= rate;
+    }
+    RITZ_CHECK(ritz_dense_mul_nt(&scaled, &MPhi, out));
+    ritz_dense_symmetrise(out);
+    return RITZ_OK;
+}
+
+/* The component with ratios as a part of D, which has no others then. */
+static ritz_status install_ratios(double up_to_hz, ritz_direct *s)
+{
+    const ritz_component *component = s->component;
+    RITZ_OWN(ritz_dense) given = {0};
+    RITZ_OWN(ritz_sparse) sum = {0};
+
+    RITZ_CHECK(ritz_matrix_of_ratios(component, &s->damping, up_to_hz, &given));
+    RITZ_CHECK(ritz_sparse_from_dense(&given, &s->own_D));
+    if (component->D.colptr) {
+        RITZ_CHECK(ritz_sparse_add(1.0, &component->D, 1.0, &s->own_D, &sum));
+        ritz_sparse_free(&s->own_D);
+        RITZ_MOVE(s->own_D, sum);
+    }
+    RITZ_CHECK_NEW(s->damped, 1);
+    *s->damped = *component;
+    s->damped->D = s->own_D;
+    s->component = s->damped;
+    s->damping = (ritz_damping){0};
+    return RITZ_OK;
+}
+
 ritz_status ritz_direct_new(const ritz_component *component,
                             const ritz_damping *damping, double up_to_hz,
                             ritz_direct *out)
@@ -40,6 +87,7 @@ ritz_status ritz_direct_new(const ritz_component *component,
     RITZ_OWN(ritz_direct)
     s = {.component = component,
          .n = component->num_dofs,
+         .up_to_hz = up_to_hz,
          .inputs = component->io.num_inputs};
     bool rayleigh = false;
 
@@ -48,13 +96,18 @@ ritz_status ritz_direct_new(const ritz_component *component,
     rayleigh = ritz_damping_is_rayleigh(&s.damping);
     s.a = rayleigh ? s.damping.a : 0.0;
     s.b = rayleigh ? s.damping.b : 0.0;
-    s.ratios = !rayleigh && s.damping.kind != RITZ_DAMPING_NONE;
     s.apart = !component->D.colptr && !component->K4.colptr && !rayleigh;
-    RITZ_CHECK(ritz_poles_of_component(component, damping, up_to_hz, &s.pairs,
-                                       &s.poles));
+    if (!s.apart && ritz_ratios_act_on_all(component, damping))
+        RITZ_CHECK(install_ratios(up_to_hz, &s));
+    s.ratios = ritz_damping_has_ratios(&s.damping);
+    RITZ_CHECK(ritz_poles_of_component(s.component, &s.damping, up_to_hz,
+                                       &s.pairs, &s.poles));
+    if (s.apart)
+        RITZ_CHECK(
+            ritz_residual_of_ratios(component, damping, &s.pairs, &s.rest));
     s.m = s.pairs.Phi.ncol;
     RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
-    RITZ_CHECK(ritz_impedance_new(component, &s.Z));
+    RITZ_CHECK(ritz_impedance_new(s.component, &s.Z));
     RITZ_CHECK_NEW(s.X, s.n * s.inputs);
     RITZ_MOVE(*out, s);
     return RITZ_OK;
@@ -66,7 +119,9 @@ void ritz_direct_free(ritz_direct *direct)
     ritz_pairs_free(&direct->pairs);
     ritz_poles_free(&direct->poles);
     ritz_dense_free(&direct->MPhi);
-    free(direct->X);
+    ritz_residual_free(&direct->rest);
+    ritz_sparse_free(&direct->own_D);
+    RITZ_FREE(direct->damped, direct->X);
     *direct = (ritz_direct){0};
 }
 
@@ -233,6 +288,7 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
     RITZ_CHECK(
         ritz_direct_solve(direct, hertz, false, direct->inputs, direct->X));
     ritz_io_respond(io, hertz, direct->X, H);
+    ritz_residual_add_ratios(&direct->rest, hertz, H);
     return RITZ_OK;
 }
 
@@ -319,8 +375,8 @@ const ritz_response_engine ritz_response_engine_direct = {
     .summary = "a sparse complex factor at each frequency",
     .when = "the reference; a handful of frequencies; anything that damps",
     .cost = "a factor for each point, and modes where ratios act on them",
-    .holds = "D, K4 and Rayleigh damping exactly, ratios on the modes up to "
-             "--up-to-hz",
+    .holds = "D, K4 and Rayleigh damping exactly; ratios on all modes to 2000 "
+             "dofs, beyond on the modes up to --up-to-hz",
     .fails = "many points of a large model take hours",
     .takes = RITZ_MODEL_COMPONENT,
     .make = make_direct,

@@ -10,23 +10,41 @@
 #include <ritz/matrix.h>
 
 typedef struct ritz_direct {
-    const ritz_component *component; /* borrowed */
+    const ritz_component *component; /* borrowed, or `damped` */
+    ritz_component *damped; /* its D is own_D, all else is borrowed; or NULL */
+    ritz_sparse own_D;      /* D and what ratios give all modes */
     ritz_damping damping;
-    double a, b; /* of Rayleigh damping, else 0 */
+    double a, b;     /* of Rayleigh damping, else 0 */
+    double up_to_hz; /* of modes */
     ritz_zldl *Z;
     ritz_pairs pairs;
     ritz_poles poles; /* of modes; with their response if `apart` */
     ritz_dense MPhi;  /* n x m */
     int64_t n, m, inputs;
-    bool apart; /* neither D nor K4 nor Rayleigh damping */
+    ritz_residual rest; /* for what ratios change above the modes, if `apart` */
+    bool apart;         /* neither D nor K4 nor Rayleigh damping */
     bool ratios;
     double _Complex *X; /* n x inputs, to work in */
 } ritz_direct;
 
-/** @param[in] up_to_hz  bound of the modes on which damping ratios act */
+/**
+ * Damping ratios act on all modes where ritz_ratios_act_on_all; beside D or K4
+ * they are then part of D.
+ *
+ * @param[in] up_to_hz  of modes; of larger components, of those on which
+ *                      damping ratios act
+ */
 ritz_status ritz_direct_new(const ritz_component *component,
                             const ritz_damping *damping, double up_to_hz,
                             ritz_direct *out);
+
+/**
+ * M Phi diag(2 zeta w) Phi'M of all modes, those up to a frequency as exact as
+ * ritz_eigen_sparse has them.
+ */
+ritz_status ritz_matrix_of_ratios(const ritz_component *component,
+                                  const ritz_damping *damping, double up_to_hz,
+                                  ritz_dense *out);
 
 /**
  * Add H at one frequency to an array of zeros. @cost a complex factorization
@@ -37,7 +55,7 @@ ritz_status ritz_direct_at(ritz_direct *direct, double hertz,
 /**
  * X := Z(i w)^-1 X, n x k, by one factorization; with Z' if @p transposed.
  * Where the modes are decoupled this is the response of the rest alone, without
- * the modes' part.
+ * the modes' part, and the rest without ratios.
  */
 ritz_status ritz_direct_solve(ritz_direct *direct, double hertz,
                               bool transposed, int64_t k, double _Complex *X);

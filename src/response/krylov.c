@@ -23,9 +23,10 @@ typedef struct krylov_responder {
     ritz_direct full;
     ritz_krylov_space space;
     ritz_krylov_small small;
-    double lambda_h;  /* every mode below is in the space */
-    double tolerance; /* of the largest |H| of a channel */
-    double amplify;   /* of errors that full responses showed */
+    ritz_residual rest; /* what ratios change above the modes */
+    double lambda_h;    /* every mode below is in the space */
+    double tolerance;   /* of the largest |H| of a channel */
+    double amplify;     /* of errors that full responses showed */
     int64_t outputs, inputs, values;
     int64_t count, num_even; /* of points; at the even ones H too */
     double *hertz;
@@ -154,7 +155,9 @@ static ritz_status krylov_at(void *state, double hertz, double _Complex *H)
 {
     const krylov_responder *k = state;
 
-    return ritz_poles_add(&k->small.poles, hertz, H);
+    RITZ_CHECK(ritz_poles_add(&k->small.poles, hertz, H));
+    ritz_residual_add_ratios(&k->rest, hertz, H);
+    return RITZ_OK;
 }
 
 /* Measure all points and find the largest ratio of error to allowed error. */
@@ -405,6 +408,7 @@ static void free_krylov(void *state)
     ritz_direct_free(&k->full);
     ritz_krylov_space_free(&k->space);
     ritz_krylov_small_free(&k->small);
+    ritz_residual_free(&k->rest);
     RITZ_FREE(k->hertz, k->size, k->load, k->error, k->trial, k->noise, k->peak,
               k->allowed, k->y, k->H);
 }
@@ -516,9 +520,7 @@ static double highest_mode(const ritz_response_request *request)
 {
     const ritz_damping *damping = request->model.damping;
 
-    if (request->up_to_hz > 0.0 ||
-        (damping && damping->kind != RITZ_DAMPING_NONE &&
-         !ritz_damping_is_rayleigh(damping)))
+    if (request->up_to_hz > 0.0 || ritz_damping_has_ratios(damping))
         return ritz_response_highest(request);
     return RITZ_POLES_BEYOND * request->to_hz;
 }
@@ -529,10 +531,7 @@ static ritz_status start_krylov(const ritz_response_request *request,
     const ritz_io *io = &request->model.component->io;
     double highest = highest_mode(request);
 
-    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                   "modes up to %g Hz cannot give a response up to %g Hz: "
-                   "raise --up-to-hz",
-                   highest, request->to_hz);
+    RITZ_CHECK(ritz_response_reach(request));
     k->tolerance =
         request->tolerance > 0.0 ? request->tolerance : RITZ_ENGINE_TOLERANCE;
     k->tolerance = fmax(k->tolerance, RITZ_PROJECTION_FLOOR);
@@ -567,6 +566,7 @@ static ritz_status make_krylov(const ritz_response_request *request,
                    k->full.m, k->space.V.ncol - k->full.m, k->corrections + 1,
                    k->points, k->worst * k->tolerance);
     ritz_krylov_space_free(&k->space); /* frees arrays of length n */
+    RITZ_MOVE(k->rest, k->full.rest);
     ritz_direct_free(&k->full);
     return RITZ_OK;
 }

@@ -261,10 +261,7 @@ static ritz_status make_modal(const ritz_response_request *request,
     if (model->kind != RITZ_MODEL_COMPONENT)
         return ritz_poles_of_dense(&model->dense, model->damping,
                                    request->to_hz, &m->poles);
-    RITZ_REFUSE_IF(highest < request->to_hz, RITZ_ERR_ARGUMENT,
-                   "modes up to %g Hz cannot give a response up to %g Hz: "
-                   "raise --up-to-hz",
-                   highest, request->to_hz);
+    RITZ_CHECK(ritz_response_reach(request));
     RITZ_CHECK(ritz_poles_of_component(model->component, model->damping,
                                        highest, &m->pairs, &m->poles));
     RITZ_CHECK(ritz_residual_new(model->component, model->damping, &m->pairs,
@@ -280,7 +277,7 @@ const ritz_response_engine ritz_response_engine_modal = {
     .cost = "the modes; then O(modes) a point, O(modes^3) where D or K4 "
             "couples them; for a component with these also a dozen factors",
     .holds = "exact for dense models; of components without K4, and with no D "
-             "but a M + b K, to 1e-12",
+             "but a M + b K, to 1e-12; ratios damp all modes to 2000 dofs",
     .fails = "of components, K4 and any other D act on the modes that are "
              "summed alone: the error is measured, and direct takes over where "
              "it exceeds the tolerance",

@@ -363,7 +363,7 @@ static ritz_status project_whole(rational_nodes *s)
 {
     const ritz_direct *full = &s->full;
     ritz_dense *D = &s->whole.D;
-    RITZ_OWN(ritz_dense) scaled = {0}, given = {0};
+    RITZ_OWN(ritz_dense) given = {0};
 
     RITZ_CHECK(ritz_whole_new(full->component, &s->whole));
     s->view = ritz_model_of_reduced(&s->whole, NULL).dense;
@@ -371,15 +371,8 @@ static ritz_status project_whole(rational_nodes *s)
     s->small = true;
     if (!full->ratios)
         return RITZ_OK;
-    RITZ_CHECK(ritz_dense_copy(&full->MPhi, &scaled));
-    for (int64_t k = 0; k < full->m; k++) {
-        double rate = ritz_modal_rate(&full->damping, k - full->poles.num_rigid,
-                                      full->poles.lambda[k]);
-
-        for (int64_t i = 0; i < full->n; i++)
-            ritz_dense_col(&scaled, k)[i] *= rate;
-    }
-    RITZ_CHECK(ritz_dense_mul_nt(&scaled, &full->MPhi, &given));
+    RITZ_CHECK(ritz_matrix_of_ratios(full->component, &full->damping,
+                                     full->up_to_hz, &given));
     if (!D->val)
         RITZ_CHECK(ritz_dense_new(full->n, full->n, D));
     ritz_dense_add(1.0, &given, D);

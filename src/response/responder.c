@@ -247,7 +247,24 @@ void ritz_noise_scales(int64_t num_outputs, int64_t num_inputs,
 
 double ritz_response_highest(const ritz_response_request *request)
 {
-    return request->up_to_hz > 0.0 ? request->up_to_hz : 3.0 * request->to_hz;
+    const double usual = 3.0 * request->to_hz;
+
+    if (request->model.kind == RITZ_MODEL_COMPONENT &&
+        ritz_ratios_act_on_all(request->model.component,
+                               request->model.damping))
+        return fmax(request->up_to_hz, usual);
+    return request->up_to_hz > 0.0 ? request->up_to_hz : usual;
+}
+
+ritz_status ritz_response_reach(const ritz_response_request *request)
+{
+    RITZ_REFUSE_IF(request->up_to_hz > 0.0 &&
+                       request->up_to_hz < request->to_hz,
+                   RITZ_ERR_ARGUMENT,
+                   "modes up to %g Hz cannot give a response up to %g Hz: "
+                   "raise --up-to-hz",
+                   request->up_to_hz, request->to_hz);
+    return RITZ_OK;
 }
 
 static ritz_status check_needs(const ritz_response_engine *engine,

@@ -65,7 +65,13 @@ extern const ritz_response_engine ritz_response_engine_states;
 /** Note the engine and the damping in a response. */
 void ritz_responder_sign(const ritz_responder *responder, ritz_response *r);
 
-/** The highest mode that a request needs of a component, Hz. */
+/** @return RITZ_ERR_ARGUMENT if the range ends above the modes of a request */
+ritz_status ritz_response_reach(const ritz_response_request *request);
+
+/**
+ * The highest mode that a request needs of a component, Hz. Where ratios act on
+ * all modes it is no lower than the series of the others needs.
+ */
 double ritz_response_highest(const ritz_response_request *request);
 
 /**

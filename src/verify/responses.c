@@ -4,6 +4,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "response/responder.h"
 #include "verify/sides.h"
 
 #include <ritz/response.h>
@@ -126,6 +127,30 @@ bool ritz_reference_factors(const ritz_reference *reference)
 }
 
 /*
+ * With ratios beside it, the damping of a component is a full matrix: a factor
+ * for each point would take hours, and a projection takes a few.
+ */
+static ritz_status respond_by_factors(const ritz_reference *reference,
+                                      const ritz_grid *grid, ritz_response *out)
+{
+    const bool full =
+        ritz_ratios_act_on_all(reference->component, &reference->damping);
+    const ritz_response_request request = {
+        .model =
+            ritz_model_of_component(reference->component, &reference->damping),
+        .from_hz = grid->from_hz,
+        .to_hz = grid->to_hz,
+        .up_to_hz = reference->modes_hz,
+        .tolerance = RITZ_REFERENCE_TOLERANCE};
+    RITZ_OWN(ritz_responder) *responder = NULL;
+
+    RITZ_CHECK(ritz_responder_or_direct(full ? &ritz_response_engine_krylov
+                                             : &ritz_response_engine_direct,
+                                        &request, &responder));
+    return ritz_responder_sample(responder, grid, out);
+}
+
+/*
  * Modes and the static response of the rest do not give the effect of a local
  * damper, through which the rest moves too: then each point takes a factor.
  */
@@ -141,10 +166,7 @@ ritz_status ritz_reference_respond(const ritz_reference *reference,
 
     s->values = poles->io.num_inputs * poles->io.num_outputs;
     if (ritz_reference_factors(reference)) {
-        RITZ_CHECK(ritz_response_of(
-            ritz_model_of_component(reference->component, &reference->damping),
-            &ritz_response_engine_direct, reference->modes_hz, 0.0, &grid,
-            &direct));
+        RITZ_CHECK(respond_by_factors(reference, &grid, &direct));
         RITZ_MOVE(s->full, direct.H);
     } else {
         RITZ_CHECK_NEW(s->full, s->count * s->values);
