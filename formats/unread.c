@@ -61,8 +61,9 @@ static bool is_harwell_boeing(const char *bytes, int64_t size)
     int64_t cards[CARDS], sizes[SIZES];
     const char *at = NULL;
 
-    if (!ritz_lines_next(&text) || !ritz_lines_next(&text))
-        return false;
+    for (int k = 0; k < 2; k++)
+        if (!ritz_lines_next(&text))
+            return false;
     at = text.line;
     if (!ritz_decimal_scan_wholes(&at, text.line_end, CARDS, cards) ||
         cards[0] < cards[1] + cards[2] + cards[3] || !ritz_lines_next(&text) ||

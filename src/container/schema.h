@@ -72,6 +72,7 @@ typedef struct ritz_member {
     bool inside;   /* the array is in the object itself, as attributes are */
     bool numbered; /* items of a list are "0", "1", ... and have no names */
     bool alone; /* an only item of a list has its members in the list's place */
+    bool must;  /* optional here, but what is read is refused without it */
     char some;  /* a letter: see below */
     /*
      * A member may be absent from a file if `optional` names what decides that,
@@ -80,7 +81,6 @@ typedef struct ritz_member {
      * Where only `has` or `some` is given, it decides of reading too.
      */
     const char *optional;
-    bool must; /* an optional member without which the object is refused */
     bool (*has)(const void *object);
     const ritz_schema *schema; /* of a part, or of the items of a list */
     /* Writes by hand, or reads where there is a target. */
