@@ -331,6 +331,10 @@
    below this it is rounding, above it both count, as the error of such a system
    is the sum of both. */
 #define RITZ_HANKEL_REPEATED 1e-9
+/* Relative gap of the last value kept and the first left out below which they
+   may be of one mode: its two states have values in the ratio 1 - 2 zeta, this
+   is zeta of 0.05. */
+#define RITZ_HANKEL_PAIR 0.1
 /* Distance of W'E T from I up to which a value still has a direction. */
 #define RITZ_BALANCED_DEFECT 0.1
 /* Residual of a low-rank Gramian, if none is asked for. */

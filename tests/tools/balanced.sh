@@ -30,6 +30,27 @@ done
 expect 2 "no 'band_hz'" ritz-basis balanced --modes 4 --band-hz 0,1 chain.h5 \
     -o none.h5
 
+# The two states of a mode of ratio zeta have values in the ratio 1 - 2 zeta;
+# one of them alone is a real pole.
+matrix() {
+    printf '%%%%MatrixMarket matrix array real general\n%s\n' "$2" >"$1"
+}
+matrix a.mtx '4 4
+0 -100 0 0 1 -0.02 0 0 0 0 0 -900 0 0 1 -0.06'
+matrix b.mtx '4 1
+0 1 0 1'
+matrix c.mtx '1 4
+1 0 1 0'
+expect 0 '' ritz-import -q --state-space A=a.mtx,B=b.mtx,C=c.mtx -o modes.h5
+for order in 1 3; do
+    expect 0 "of the two states of a mode are: --modes $order splits them" \
+        ritz-basis balanced --modes $order modes.h5 -o split.h5
+done
+for order in 2 4; do
+    expect 0 '' ritz-basis balanced --modes $order modes.h5 -o whole.h5
+    works "  $order states split nothing" test -z "$(grep splits log)"
+done
+
 # --- over a band ----------------------------------------------------------------
 
 expect 0 'balanced-band (modes 4 band-hz 0,0.1' ritz-basis balanced-band \

@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include "base/tolerances.h"
+
 /* "PORT=FILE:PORT": the last ':' ends the file's name. */
 static ritz_status split_neighbour(const char *text, ritz_joint *out,
                                    char path[MODEL_PATH])
@@ -106,6 +108,40 @@ static ritz_status read_full(cli_run *run, const char *path,
                       out);
 }
 
+/* Relative gap of value k to the one above it; 1 at either end. */
+static double gap_above(int64_t count, const double *value, int64_t k)
+{
+    return k > 0 && k < count ? 1.0 - value[k] / value[k - 1] : 1.0;
+}
+
+/*
+ * A lightly damped mode has two states of nearly equal value. A cut between
+ * them, which is narrower than the gaps on both of its sides, keeps half of the
+ * mode: a real pole. Equal values are never cut, and fewer than were asked for
+ * are kept then.
+ */
+static void warn_of_split(cli_run *run, const ritz_basis *basis, int64_t kept,
+                          double tolerance)
+{
+    const int64_t n = basis->num_hankel;
+    const double *s = basis->hankel;
+    const double gap = kept > 0 ? gap_above(n, s, kept) : 1.0;
+    int64_t first = kept - 1, end = kept + 1;
+
+    if (!basis->states || !(gap > RITZ_CLUSTER_GAP) || gap > RITZ_HANKEL_PAIR ||
+        s[kept - 1] < tolerance * s[0])
+        return;
+    while (first > 0 && gap_above(n, s, first) <= RITZ_CLUSTER_GAP)
+        first--;
+    while (end < n && gap_above(n, s, end) <= RITZ_CLUSTER_GAP)
+        end++;
+    if (gap < gap_above(n, s, first) && gap < gap_above(n, s, end))
+        cli_warn(run,
+                 "values %ld and %ld are nearly equal, %.4g and %.4g, as those "
+                 "of the two states of a mode are: --modes %ld splits them",
+                 kept, kept + 1, s[kept - 1], s[kept], kept);
+}
+
 ritz_status basis_run(cli_run *run, basis_options *given)
 {
     const char *path = run->operand[1];
@@ -137,6 +173,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
            sizeof made.basis.units);
     RITZ_CHECK(describe_output(run, &made));
     say_basis(run, &made.basis);
+    warn_of_split(run, &made.basis, request->modes, request->tolerance);
     return RITZ_OK;
 }
 
