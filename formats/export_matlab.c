@@ -4,8 +4,8 @@
  * text, limits, and what its columns are. Absent matrices are left out.
  *
  * The head says no time, so that the same run writes the same bytes. What was
- * written is read back by our own reader and compared, as libmatio does not say
- * whether a disk was full. [MathWorks2019]
+ * written is read back and compared, matrices by our own reader, as libmatio
+ * does not say whether a disk was full. [MathWorks2019]
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -15,28 +15,44 @@
 #include <matio.h>
 #include <string.h>
 
-/* A file that is being written. */
+/* A file that is being written, and what was put into it. */
 typedef struct sheet {
     ritz_draft draft;
     mat_t *file;
+    int64_t count, room;
+    matvar_t **variable;
 } sheet;
 
 static void sheet_free(sheet *s)
 {
     if (s->file)
         Mat_Close(s->file);
+    for (int64_t k = 0; k < s->count; k++)
+        Mat_VarFree(s->variable[k]);
+    RITZ_FREE(s->variable);
     ritz_draft_free(&s->draft);
+}
+
+static ritz_status keep_variable(sheet *s, matvar_t *variable)
+{
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): an array of pointers
+    RITZ_CHECK_ROOM(s->variable, s->count, s->room);
+    s->variable[s->count++] = variable;
+    return RITZ_OK;
 }
 
 /* Takes the variable. */
 static ritz_status put_variable(sheet *s, const char *name, matvar_t *variable)
 {
-    bool failed =
-        variable && Mat_VarWrite(s->file, variable, MAT_COMPRESSION_NONE) != 0;
+    ritz_status status = RITZ_OK;
 
     RITZ_REFUSE_IF(!variable, RITZ_ERR_MEMORY, "no memory for '%s'", name);
-    Mat_VarFree(variable);
-    RITZ_REFUSE_IF(failed, RITZ_ERR_FILE, "cannot write '%s'", name);
+    status = keep_variable(s, variable);
+    if (status != RITZ_OK)
+        Mat_VarFree(variable);
+    RITZ_CHECK(status);
+    RITZ_REFUSE_IF(Mat_VarWrite(s->file, variable, MAT_COMPRESSION_NONE) != 0,
+                   RITZ_ERR_FILE, "cannot write '%s'", name);
     return RITZ_OK;
 }
 
@@ -48,9 +64,9 @@ static ritz_status put_real(sheet *s, const char *name, int64_t nrow,
 
     RITZ_CHECK_NEW(copy, nrow * ncol);
     memcpy(copy, values, (size_t)(nrow * ncol) * sizeof *copy);
-    return put_variable(s, name,
-                        Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims,
-                                      copy, MAT_F_DONT_COPY_DATA));
+    return put_variable(
+        s, name,
+        Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, copy, 0));
 }
 
 /* The next letter of UTF-8 as one or two units of UTF-16. */
@@ -171,6 +187,47 @@ static ritz_status compare_file(const char *path, const ritz_matrices *list)
     return RITZ_OK;
 }
 
+static bool is_same_array(const matvar_t *a, const matvar_t *b)
+{
+    return a && b && a->class_type == b->class_type && a->rank == 2 &&
+           b->rank == 2 && a->dims[0] == b->dims[0] &&
+           a->dims[1] == b->dims[1] && a->nbytes == b->nbytes &&
+           (a->nbytes == 0 || a->class_type == MAT_C_CELL ||
+            (a->data && b->data && memcmp(a->data, b->data, a->nbytes) == 0));
+}
+
+/* An array, or a column of cells that are arrays. */
+static bool is_same(const matvar_t *a, const matvar_t *b)
+{
+    bool same = is_same_array(a, b) && strcmp(a->name, b->name) == 0;
+
+    for (size_t k = 0;
+         same && a->class_type == MAT_C_CELL && k < a->dims[0] * a->dims[1];
+         k++)
+        same = is_same_array(((matvar_t *const *)a->data)[k],
+                             ((matvar_t *const *)b->data)[k]);
+    return same;
+}
+
+/* Whether the file holds all variables that were put. */
+static ritz_status compare_variables(const sheet *s)
+{
+    mat_t *file = Mat_Open(s->draft.name, MAT_ACC_RDONLY);
+    bool whole = file != NULL;
+
+    for (int64_t k = 0; whole && k < s->count; k++) {
+        matvar_t *read = Mat_VarReadNext(file);
+
+        whole = is_same(s->variable[k], read);
+        Mat_VarFree(read);
+    }
+    if (file)
+        Mat_Close(file);
+    RITZ_REFUSE_IF(!whole, RITZ_ERR_FILE,
+                   "cannot be written to its end, is the disk full?");
+    return RITZ_OK;
+}
+
 static ritz_status sheet_publish(sheet *s, const ritz_matrices *list)
 {
     int failed = Mat_Close(s->file);
@@ -178,6 +235,7 @@ static ritz_status sheet_publish(sheet *s, const ritz_matrices *list)
     s->file = NULL;
     RITZ_REFUSE_IF(failed != 0, RITZ_ERR_FILE, "cannot write all of it");
     RITZ_CHECK(compare_file(s->draft.name, list));
+    RITZ_CHECK(compare_variables(s));
     return ritz_draft_publish(&s->draft);
 }
 

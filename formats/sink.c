@@ -39,15 +39,11 @@ ritz_status ritz_sink_fill(const ritz_draft *draft, ritz_sink_writer *write,
 ritz_status ritz_sink_fill_h5(const ritz_draft *draft,
                               ritz_sink_h5_writer *write, const void *what)
 {
-    hid_t file = 0;
-    ritz_status status = RITZ_OK;
-    herr_t closed = 0;
+    RITZ_OWN(hid_t) file = 0;
 
     RITZ_CHECK(ritz_h5_create(draft->name, &file));
-    status = write(file, what);
-    closed = H5Fclose(file); /* what HDF5 held back may not fit */
-    RITZ_CHECK(status);
-    return refuse_failure(draft, closed < 0);
+    RITZ_CHECK_IN(draft->path, write(file, what));
+    return ritz_context(ritz_h5_finish(&file), draft->path);
 }
 
 ritz_status ritz_sink_write(const char *path, ritz_sink_writer *write,

@@ -269,6 +269,66 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
     return RITZ_OK;
 }
 
+static bool is_synced(void)
+{
+    const char *text = getenv("RITZ_SYNC");
+
+    return !text || strcmp(text, "0") != 0;
+}
+
+/* fsync of what is opened so; the system's error, 0 for none. */
+static int sync_path(const char *path, int how)
+{
+    int file = open(path, how | O_CLOEXEC);
+    int error = 0;
+
+    if (file < 0)
+        return errno;
+    while (fsync(file) != 0) {
+        error = errno;
+        if (error != EINTR)
+            break;
+        error = 0;
+    }
+    close(file); /* nothing was written through it */
+    return error;
+}
+
+/* The bytes of a file, before it has its name. */
+static ritz_status sync_bytes(const ritz_draft *draft)
+{
+    int error = is_synced() ? sync_path(draft->name, O_WRONLY) : 0;
+
+    RITZ_REFUSE_IF(error != 0, RITZ_ERR_FILE,
+                   "'%s' cannot be brought to the disk: %s", draft->path,
+                   strerror(error));
+    return RITZ_OK;
+}
+
+/*
+ * The name of a file, which its folder holds. A folder into which one may write
+ * without reading it cannot be opened, and file systems that have no such call
+ * say EINVAL or EOPNOTSUPP: nothing failed there.
+ */
+static ritz_status sync_name(const ritz_draft *draft)
+{
+    const char *slash = strrchr(draft->path, '/');
+    int length = slash ? (int)(slash - draft->path) + 1 : 0;
+    RITZ_OWN_ARRAY char *folder = NULL;
+    int error = 0;
+
+    if (!is_synced())
+        return RITZ_OK;
+    RITZ_CHECK_NEW(folder, length + 2);
+    snprintf(folder, (size_t)length + 2, "%.*s.", length, draft->path);
+    error = sync_path(folder, O_RDONLY | O_DIRECTORY);
+    RITZ_REFUSE_IF(
+        error != 0 && error != EACCES && error != EINVAL && error != EOPNOTSUPP,
+        RITZ_ERR_FILE, "the name of '%s' cannot be brought to the disk: %s",
+        draft->path, strerror(error));
+    return RITZ_OK;
+}
+
 /* Rename it; its path stays, for whoever takes it back. */
 static ritz_status name_draft(ritz_draft *draft)
 {
@@ -284,9 +344,29 @@ static ritz_status name_draft(ritz_draft *draft)
     return RITZ_OK;
 }
 
+/*
+ * Each gets its name once the bytes of all are on the disk, or none does. What
+ * fails afterwards takes the names back: a power cut could take them, too.
+ */
+static ritz_status name_all(int64_t count, ritz_draft *draft)
+{
+    ritz_status status = RITZ_OK;
+    int64_t named = 0;
+
+    for (int64_t k = 0; k < count; k++)
+        RITZ_CHECK(sync_bytes(&draft[k]));
+    for (; named < count && status == RITZ_OK; named += status == RITZ_OK)
+        status = name_draft(&draft[named]);
+    for (int64_t k = 0; k < count && status == RITZ_OK; k++)
+        status = sync_name(&draft[k]);
+    for (int64_t k = 0; k < named && status != RITZ_OK; k++)
+        remove(draft[k].path);
+    return status;
+}
+
 ritz_status ritz_draft_publish_now(ritz_draft *draft)
 {
-    RITZ_CHECK(name_draft(draft));
+    RITZ_CHECK(name_all(1, draft));
     ritz_draft_free(draft);
     return RITZ_OK;
 }
@@ -312,22 +392,10 @@ void ritz_draft_free(ritz_draft *draft)
     *draft = (ritz_draft){0};
 }
 
-/* All of those that wait, or none. */
-static ritz_status name_held(void)
-{
-    ritz_status status = RITZ_OK;
-    int64_t done = 0;
-
-    while (done < held.count && status == RITZ_OK)
-        status = name_draft(&held.draft[done++]);
-    for (int64_t k = 0; status != RITZ_OK && k < done - 1; k++)
-        remove(held.draft[k].path);
-    return status;
-}
-
 ritz_status ritz_draft_settle(bool keep)
 {
-    const ritz_status status = keep ? name_held() : RITZ_OK;
+    const ritz_status status =
+        keep ? name_all(held.count, held.draft) : RITZ_OK;
 
     RITZ_FREE_EACH(ritz_draft, held.count, held.draft);
     for (int64_t k = 0; k < held.num_inputs; k++)

@@ -7,6 +7,11 @@
  * bits that it had; another name of that file (a hard link) keeps the old
  * content, because nothing is ever written into a file that is there.
  *
+ * A name is given once the bytes are on the disk, and is then brought there as
+ * well, so that a power cut leaves the old file or the new one; what fails then
+ * leaves no file. The environment's RITZ_SYNC=0 leaves this out, for tests and
+ * benchmarks.
+ *
  * A program holds its files back until it knows that all went well: between
  * ritz_draft_hold and ritz_draft_settle, ritz_draft_publish only keeps the
  * complete file; no input is replaced, and no file is written twice. This state

@@ -50,7 +50,6 @@ static ritz_status write_container(const char *path, const ritz_schema *schema,
     RITZ_OWN(hid_t) file = 0;
     const char *units =
         schema->units > 0 ? (const char *)object + schema->units : "";
-    herr_t closed = 0;
 
     if (schema->check)
         RITZ_CHECK(schema->check(object));
@@ -59,10 +58,7 @@ static ritz_status write_container(const char *path, const ritz_schema *schema,
     RITZ_CHECK(write_head(file, schema->name, units, stamp));
     RITZ_CHECK(ritz_schema_move(
         &(ritz_place){.at = file, .schema = schema, .object = object}));
-    closed = H5Fclose(file); /* what is buffered is written now */
-    file = 0;
-    RITZ_REFUSE_IF(closed < 0, RITZ_ERR_FILE,
-                   "cannot be written to its end, is the disk full?");
+    RITZ_CHECK(ritz_h5_finish(&file));
     return ritz_draft_publish(&draft);
 }
 

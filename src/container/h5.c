@@ -14,6 +14,12 @@
 enum { MANY_ATTRIBUTES = 64 }; /* that an object header holds */
 
 /*
+ * Whether an object of the file that is being written could not be closed: then
+ * something of it is lost. RITZ_OWN closes, and has no status to return.
+ */
+static _Thread_local bool lost;
+
+/*
  * A file that could not be closed, as where the disk is full, stays open inside
  * HDF5, which would try again on exit and crash. All others are closed by us.
  */
@@ -58,6 +64,18 @@ ritz_status ritz_h5_create(const char *path, hid_t *out)
     H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
     *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);
+    lost = false;
+    return RITZ_OK;
+}
+
+ritz_status ritz_h5_finish(hid_t *file)
+{
+    bool whole = H5Fflush(*file, H5F_SCOPE_GLOBAL) >= 0 && !lost;
+
+    whole = H5Fclose(*file) >= 0 && whole;
+    *file = 0;
+    RITZ_REFUSE_IF(!whole, RITZ_ERR_FILE,
+                   "cannot be written to its end, is the disk full?");
     return RITZ_OK;
 }
 
@@ -177,10 +195,28 @@ hid_t ritz_h5_string(size_t size)
     return type;
 }
 
+/*
+ * These three forget the object even if they fail; H5Idec_ref would keep an id
+ * of memory that is freed.
+ */
+static herr_t close_object(hid_t id)
+{
+    switch (H5Iget_type(id)) {
+    case H5I_DATASET:
+        return H5Dclose(id);
+    case H5I_GROUP:
+        return H5Gclose(id);
+    case H5I_ATTR:
+        return H5Aclose(id);
+    default:
+        return H5Idec_ref(id);
+    }
+}
+
 void ritz_h5_close(hid_t id)
 {
-    if (id > 0)
-        H5Idec_ref(id); /* whatever kind of object it is */
+    if (id > 0 && close_object(id) < 0)
+        lost = true;
 }
 
 ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,

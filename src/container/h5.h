@@ -49,8 +49,17 @@ void ritz_h5_begin(void);
 /** Open to read; begins HDF5. */
 ritz_status ritz_h5_open(const char *path, hid_t *out);
 
-/** Create or empty a file, to write; begins HDF5. */
+/** Create or empty a file, to write; begins HDF5. One at a time, a thread. */
 ritz_status ritz_h5_create(const char *path, hid_t *out);
+
+/**
+ * Write what HDF5 holds back of a file that was created, and close it, whole or
+ * not: @p file is then 0.
+ *
+ * @return RITZ_ERR_FILE if that fails, or if any object that was closed since
+ *         the file was created could not be closed
+ */
+ritz_status ritz_h5_finish(hid_t *file);
 
 /** Create a group. */
 ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out);
@@ -73,7 +82,8 @@ ritz_status ritz_h5_list(hid_t group, int64_t *count,
 /** Type of strings that take @p size bytes with their NUL. */
 hid_t ritz_h5_string(size_t size);
 
-/** Close any object of these functions; 0 or less is none. */
+/** Close any object of these functions; 0 or less is none. What fails is told
+ * by ritz_h5_finish(). */
 void ritz_h5_close(hid_t id);
 
 /** The same for RITZ_OWN(hid_t). */

@@ -275,6 +275,15 @@ static ritz_status verify_values(hid_t set, const char *name, int64_t bytes,
     return RITZ_OK;
 }
 
+/* What HDF5 holds back of a data set is written now: on its way out it would be
+   lost without a word. */
+static ritz_status flush_set(hid_t set, const char *name)
+{
+    RITZ_REFUSE_IF(H5Dflush(set) < 0, RITZ_ERR_FILE,
+                   "cannot write '%s', is the disk full?", name);
+    return RITZ_OK;
+}
+
 static int64_t count_bytes(const ritz_h5_shape *shape, hid_t memory)
 {
     return (int64_t)(ritz_h5_volume(shape, INT64_MAX) * H5Tget_size(memory));
@@ -290,8 +299,10 @@ ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
     RITZ_CHECK(create_set(at, name, type, shape, &set));
     if (ritz_h5_volume(&shape, 1) > 0)
         result = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
-    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE, "cannot write '%s'", name);
-    return seal_values(set, name, count_bytes(&shape, memory), values);
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE,
+                   "cannot write '%s', is the disk full?", name);
+    RITZ_CHECK(seal_values(set, name, count_bytes(&shape, memory), values));
+    return flush_set(set, name);
 }
 
 /* "3 x 4" */
@@ -422,7 +433,8 @@ ritz_status ritz_h5_write_dense(hid_t at, const char *name, const ritz_dense *A)
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
                    "cannot write '%s', is the disk full?", name);
     RITZ_CHECK(status);
-    return seal_values(set, name, matrix_bytes(A), A->val);
+    RITZ_CHECK(seal_values(set, name, matrix_bytes(A), A->val));
+    return flush_set(set, name);
 }
 
 static ritz_status check_dense(const ritz_dense *A)

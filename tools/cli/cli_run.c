@@ -168,11 +168,22 @@ static char *find_input(const cli_run *run, const char *path)
     return NULL;
 }
 
+/* To read as well where that is allowed: its end is looked at. */
+static int open_to_append(const char *path)
+{
+    const int how = O_CREAT | O_APPEND | O_CLOEXEC;
+    struct stat there;
+    bool plain = stat(path, &there) != 0 || S_ISREG(there.st_mode);
+    int file = plain ? open(path, O_RDWR | how, 0666) : -1;
+
+    return file >= 0 ? file : open(path, O_WRONLY | how, 0666);
+}
+
 /* That a line can be appended to the file of --record. */
 static ritz_status open_record(const char *path, int *out)
 {
     RITZ_CHECK_IN("--record", ritz_draft_check(path));
-    *out = open(path, O_WRONLY | O_CREAT | O_APPEND, 0666);
+    *out = open_to_append(path);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot open '%s': %s", path,
                    strerror(errno));
     return RITZ_OK;
@@ -346,8 +357,56 @@ static void sign_line(const cli_run *run, json_t *line)
     json_object_set_new(line, "inputs", inputs);
 }
 
-/* With the memory so far, and in one write, so that lines of parallel tools do
-   not mix. */
+static bool write_all(int file, const char *text, size_t length)
+{
+    while (length > 0) {
+        ssize_t written = write(file, text, length);
+
+        if (written == 0 || (written < 0 && errno != EINTR))
+            return false;
+        text += written > 0 ? written : 0;
+        length -= written > 0 ? (size_t)written : 0;
+    }
+    return true;
+}
+
+/* Whether a last line has no end, as that of a run that was killed. */
+static bool is_cut(int file, off_t size)
+{
+    char end = '\n';
+
+    return size > 0 && pread(file, &end, 1, size - 1) == 1 && end != '\n';
+}
+
+/*
+ * Of a line that does not fit nothing stays, and none is glued to half a line
+ * of another run. The lock keeps other tools from writing meanwhile; without
+ * it lines still do not mix, as each is written in one call.
+ */
+static ritz_status append_text(int file, const char *path, const char *text,
+                               size_t length)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    struct stat before = {0};
+    bool plain = false;
+    int error = 0;
+
+    while (fcntl(file, F_SETLKW, &whole) != 0 && errno == EINTR)
+        ;
+    plain = fstat(file, &before) == 0 && S_ISREG(before.st_mode);
+    if ((!plain || !is_cut(file, before.st_size) || write_all(file, "\n", 1)) &&
+        write_all(file, text, length))
+        return RITZ_OK;
+    error = errno;
+    if (plain && ftruncate(file, before.st_size) != 0)
+        return ritz_fail(RITZ_ERR_FILE,
+                         "cannot append to '%s', where half a line is left: %s",
+                         path, strerror(error));
+    return ritz_fail(RITZ_ERR_FILE, "cannot append to '%s': %s", path,
+                     strerror(error));
+}
+
+/* With the memory so far. */
 static ritz_status append_line(const cli_run *run, json_t *line)
 {
     RITZ_OWN_ARRAY char *text = NULL;
@@ -364,10 +423,10 @@ static ritz_status append_line(const cli_run *run, json_t *line)
     length = strlen(text);
     text[length] = '\n'; /* in the place of its NUL */
     RITZ_CHECK(open_record(run->record, &file));
-    if (write(file, text, length + 1) != (ssize_t)(length + 1))
+    status = append_text(file, run->record, text, length + 1);
+    if (close(file) != 0 && status == RITZ_OK)
         status = ritz_fail(RITZ_ERR_FILE, "cannot append to '%s': %s",
                            run->record, strerror(errno));
-    close(file);
     return status;
 }
 

@@ -1,8 +1,11 @@
 #include "testing.h"
 
+#include "faults.h"
+
 #include "base/draft.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -353,6 +356,79 @@ static void survives_every_allocation(void **state)
     remove("test_draft.two");
 }
 
+/* --- a disk that fails ---------------------------------------------------- */
+
+static ritz_status write_one(const void *)
+{
+    RITZ_OWN(ritz_draft) draft = {0};
+
+    RITZ_CHECK(ritz_draft_new(path, &draft));
+    put(draft.name, '1');
+    return ritz_draft_publish(&draft);
+}
+
+static ritz_status write_two(const void *)
+{
+    RITZ_OWN(ritz_draft) first = {0}, second = {0};
+
+    remove("test_draft.out.h5");
+    RITZ_CHECK(ritz_draft_new(path, &first));
+    RITZ_CHECK(ritz_draft_new("test_draft.out.h5", &second));
+    put(first.name, '1');
+    put(second.name, '2');
+    ritz_draft_hold();
+    assert_ok(ritz_draft_publish(&first));
+    assert_ok(ritz_draft_publish(&second));
+    return ritz_draft_settle(true);
+}
+
+/* fsync of the file, rename, fsync of the folder. */
+static void what_is_not_on_the_disk_is_not_published(void **)
+{
+    setenv("RITZ_SYNC", "1", 1);
+    assert_int_equal(faults_try_each(write_one, NULL, path), 3);
+}
+
+static void of_files_that_belong_together_all_stay_or_none(void **)
+{
+    setenv("RITZ_SYNC", "1", 1);
+    assert_int_equal(faults_try_each(write_two, NULL, path), 6);
+    remove("test_draft.out.h5");
+}
+
+static void a_failure_before_the_rename_leaves_the_old_file(void **)
+{
+    setenv("RITZ_SYNC", "1", 1);
+    for (int k = 1; k <= 2; k++) {
+        put(path, 'x');
+        faults_begin(k, false);
+        assert_fails(write_one(NULL), RITZ_ERR_FILE, "Input/output error");
+        assert_true(faults_end());
+        assert_int_equal(get(path), 'x');
+    }
+    remove(path);
+}
+
+/* Calls of fsync that one file takes. */
+static int count_syncs(void)
+{
+    faults_begin(1000, false);
+    assert_ok(write_one(NULL));
+    assert_false(faults_end());
+    return faults_syncs();
+}
+
+static void syncs_are_left_out_on_request(void **)
+{
+    setenv("RITZ_SYNC", "0", 1);
+    assert_int_equal(count_syncs(), 0);
+    setenv("RITZ_SYNC", "1", 1);
+    assert_int_equal(count_syncs(), 2);
+    unsetenv("RITZ_SYNC");
+    assert_int_equal(count_syncs(), 2);
+    remove(path);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_writers_do_not_meet),
     cmocka_unit_test(what_is_not_published_is_removed),
@@ -369,6 +445,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_was_read_is_not_replaced),
     cmocka_unit_test(no_file_is_written_twice_by_one_program),
     cmocka_unit_test(survives_every_allocation),
+    cmocka_unit_test(what_is_not_on_the_disk_is_not_published),
+    cmocka_unit_test(of_files_that_belong_together_all_stay_or_none),
+    cmocka_unit_test(a_failure_before_the_rename_leaves_the_old_file),
+    cmocka_unit_test(syncs_are_left_out_on_request),
 };
 
 TEST_MODULE(draft, tests, NULL, NULL)
