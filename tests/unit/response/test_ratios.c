@@ -58,7 +58,8 @@ static void add_damper(ritz_component *bar, double c)
 static void bar_response(int64_t N, const ritz_damping *damping, double hertz,
                          double _Complex *H)
 {
-    const double x[SIDES] = {1.0, (double)(2 * N / 5) / (double)N};
+    const int64_t inside = 2 * N / 5;
+    const double x[SIDES] = {1.0, (double)inside / (double)N};
     double w = 2.0 * pi * hertz;
 
     for (int v = 0; v < VALUES; v++)
