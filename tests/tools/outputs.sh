@@ -41,6 +41,15 @@ stays chain.h5 ritz-check chain.h5 -o chain.h5
 stays chain.h5 ritz-poles chain.h5 -o chain.h5
 stays chain.h5 ritz-info chain.h5 --record chain.h5
 stays small.h5 ritz-info chain.h5 small.h5 --record small.h5
+cp small.h5 kept
+expect 1 'none.h5' ritz-info none.h5 small.h5 --record small.h5
+same '  one that was not read yet stays' small.h5 kept
+expect 1 "'K.mtx' holds something else than records" ritz-basis balanced \
+    --modes 2 chain.h5 -o none.h5 --record K.mtx
+same '  what is no record stays' "$data/chain/chain.K.mtx" K.mtx
+printf '\n {"tool": "a"}\n' >old.jsonl
+expect 0 '' ritz-info small.h5 -q --record old.jsonl
+works '  a line behind another' grep -q '^{"tool":"ritz-info"' old.jsonl
 stays chain.h5 ritz-frf small.h5 --points-of chain.h5 -o chain.h5
 stays small.h5 ritz-rank small.h5 --table small.h5
 stays small.h5 ritz-export small.h5 --to matlab --force -o small.h5

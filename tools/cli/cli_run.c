@@ -179,14 +179,38 @@ static int open_to_append(const char *path)
     return file >= 0 ? file : open(path, O_WRONLY | how, 0666);
 }
 
-/* That a line can be appended to the file of --record. */
+/* Whether a regular file has a first letter, and none of a record; false where
+   it may not be read. */
+static bool holds_else(int file)
+{
+    char text[512];
+    struct stat there = {0};
+    const bool plain = fstat(file, &there) == 0 && S_ISREG(there.st_mode);
+    const ssize_t size = plain ? pread(file, text, sizeof text, 0) : 0;
+
+    for (ssize_t k = 0; k < size; k++)
+        if (!strchr(" \t\r\n", text[k]) || text[k] == '\0')
+            return text[k] != '{';
+    return false;
+}
+
+/* That a line can be appended to the file of --record. One that holds anything
+   else may be an input that a run which fails did not come to read. */
 static ritz_status open_record(const char *path, int *out)
 {
+    int file = -1;
+
     RITZ_CHECK_IN("--record", ritz_draft_check(path));
-    *out = open_to_append(path);
-    RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+    file = open_to_append(path);
+    RITZ_REFUSE_IF(file < 0, RITZ_ERR_FILE, "cannot open '%s': %s", path,
                    strerror(errno));
-    return RITZ_OK;
+    if (!holds_else(file)) {
+        *out = file;
+        return RITZ_OK;
+    }
+    close(file);
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "--record: '%s' holds something else than records", path);
 }
 
 /* That no output is an input so far and, once, before long work, that each can
