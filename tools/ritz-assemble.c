@@ -13,6 +13,8 @@ static ritz_status system_of(cli_run *run, const ritz_scene *scene,
     RITZ_OWN(model) made = {.kind = MODEL_SYSTEM};
 
     RITZ_CHECK(ritz_stage_new(scene, &stage));
+    if (!at)
+        RITZ_CHECK(model_foresee(run, &stage));
     RITZ_CHECK(ritz_assemble(&stage, at, &made.system));
     RITZ_CHECK(describe_output(run, &made));
     RITZ_CHECK(tracks_report(run, &stage, &made.system, tracks));

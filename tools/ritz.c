@@ -1,4 +1,6 @@
 /* ritz - list the tools, and start one: `ritz basis ...` is `ritz-basis ...` */
+#include "cli/cli.h"
+
 #include <ritz/base.h>
 
 #include <errno.h>
@@ -44,8 +46,8 @@ static int list_verbs(void)
     printf("\n'ritz VERB --help' says more. 'ritz VERB' is 'ritz-VERB'.\n");
     if (fclose(stdout) == 0)
         return EXIT_SUCCESS;
-    fprintf(stderr, "ritz: cannot write to standard output: %s\n",
-            strerror(errno));
+    cli_complain("ritz: cannot write to standard output: %s\n",
+                 strerror(errno));
     return EXIT_FAILURE;
 }
 
@@ -54,9 +56,9 @@ static int refuse_verb(const char *word)
     const char *nearest =
         ritz_text_nearest(word, NUM_VERBS, verbs[0].name, sizeof *verbs);
 
-    fprintf(stderr, "ritz: no tool '%s'%s%s%s\nTry 'ritz --help'.\n", word,
-            nearest ? ", is '" : "", nearest ? nearest : "",
-            nearest ? "' meant?" : "");
+    cli_complain("ritz: no tool '%s'%s%s%s\nTry 'ritz --help'.\n", word,
+                 nearest ? ", is '" : "", nearest ? nearest : "",
+                 nearest ? "' meant?" : "");
     return EXIT_USAGE;
 }
 
@@ -76,7 +78,7 @@ static int start_tool(const char *verb, char **argv)
     }
     snprintf(tool, sizeof tool, "ritz-%s", verb);
     execvp(tool, argv);
-    fprintf(stderr, "ritz: cannot start '%s': %s\n", tool, strerror(errno));
+    cli_complain("ritz: cannot start '%s': %s\n", tool, strerror(errno));
     return EXIT_FAILURE;
 }
 

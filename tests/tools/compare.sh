@@ -72,6 +72,30 @@ scene one 'select: {modes: [1]}' 'augment: {level: system, attached: [motor]}'
 expect 0 'Composite set: 20 vectors from 2 configurations' \
     ritz-compare one.yaml -o one.h5
 
+# --- more configurations than anybody waits for -------------------------------------
+
+grid=$(seq -s, 0 299)
+scene many
+sed -e "s/angles_deg: \[0, 90\]/angles_deg: [$grid]/" \
+    -e "s/angles_deg: \[0\]/angles_deg: [$grid]/" many.yaml >grid.yaml
+for tool in compare assemble; do
+    works "$tool says before how long 90000 configurations take" \
+        /usr/bin/python3 -s - "ritz-$tool" <<'END'
+import re, subprocess, sys
+run = subprocess.Popen([sys.argv[1], "grid.yaml", "-o", "grid.h5"],
+                       stderr=subprocess.PIPE, text=True)
+line = run.stderr.readline()
+run.terminate()
+run.wait(60)
+sys.exit(0 if re.search(r"90000 configurations: to assemble them takes about "
+                        r"[\d.e+]+ (s|min|h|days) and [\d.e+-]+ GB; list those",
+                        line) else line)
+END
+done
+works 'one of them by --at is no cause to warn' sh -c \
+    '! ritz-assemble grid.yaml --at clock=1,cone=2 -o grid.h5 2>&1 |
+        grep "configurations: to"'
+
 # --- extraneous modes --------------------------------------------------------------
 
 scene remove 'select: {modes: [1, 2, 4]}' 'extraneous: remove'

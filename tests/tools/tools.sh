@@ -391,6 +391,44 @@ ritz-basis guyan bar.h5 -q -o link.h5
 ritz-basis guyan bar.h5 -q -o link.h5
 works 'an output that is a link stays one' test -L link.h5
 
+# --- names that a terminal could obey ------------------------------------------
+
+# Escape sequences in a file's name and among its values, as an archive from
+# elsewhere may have them: shown as '?', and kept as they are in JSON.
+works 'no control character of a file leaves a tool' \
+    /usr/bin/python3 -s - <<'END'
+import json, h5py, numpy, shutil, subprocess, sys
+evil = "a\x1b]0;title\x07b\x9b2J\x7f\rc"
+shutil.copy("bar.h5", evil + ".h5")
+with h5py.File(evil + ".h5", "r+") as file:
+    file.attrs["units"] = numpy.bytes_(evil.encode())
+def run(*command):
+    return subprocess.run(command, capture_output=True)
+bad = [b"\x1b", b"\x07", b"\x7f", b"\r", "\x9b".encode()]
+made = run("ritz-basis", "guyan", evil + ".h5", "-o", "evil.h5",
+           "--record", "evil.jsonl")
+texts = {
+    "a basis": made.stdout + made.stderr,
+    "info": run("ritz-info", evil + ".h5", "evil.h5").stdout,
+    "json": run("ritz-info", "--json", "evil.h5").stdout,
+    "a record": open("evil.jsonl", "rb").read(),
+    "a refusal": run("ritz-info", evil).stderr,
+    "an option": run("ritz-info", "--" + evil).stderr,
+    "a verb": run("ritz", evil).stderr,
+    "too many": run("ritz-claims", "--record").stderr +
+                run("ritz-assemble", evil, evil).stderr,
+}
+run("ritz-info", evil + ".h5", "-o", "evil.txt")
+texts["a report"] = open("evil.txt", "rb").read()
+wrong = [name for name, text in texts.items()
+         if not text or any(c in text for c in bad)]
+inputs = json.loads(texts["a record"])["inputs"]
+if not any(evil + ".h5" in name for name in inputs):
+    wrong.append(f"not kept in JSON: {inputs}")
+sys.exit(", ".join(wrong) if wrong else 0)
+END
+rm -f evil* a*c.h5
+
 # A large bar keeps the tool busy until it is told to stop.
 bar 60000 K >big.k.mtx
 bar 60000 M >big.m.mtx

@@ -117,7 +117,7 @@ static void print_help(const cli_program *program, const cli_option *options)
 /* The last words of a program whose command line makes no sense. */
 static _Noreturn void give_up(const cli_program *program)
 {
-    fprintf(stderr, "\nTry '%s --help'.\n", program->name);
+    cli_complain("\nTry '%s --help'.\n", program->name);
     exit(EXIT_USAGE);
 }
 
@@ -125,9 +125,9 @@ void cli_refuse(const cli_program *program, const char *format, ...)
 {
     va_list args;
 
-    fprintf(stderr, "%s: ", program->name);
+    cli_complain("%s: ", program->name);
     va_start(args, format);
-    vfprintf(stderr, format, args);
+    cli_complain_list(format, args);
     va_end(args);
     give_up(program);
 }
@@ -142,9 +142,9 @@ void cli_refuse_name(const cli_program *program, const char *what,
         snprintf(known[k], sizeof known[k], "%s", names[k]);
     if (known && count > 0)
         nearest = ritz_text_nearest(word, count, known[0], sizeof known[0]);
-    fprintf(stderr, "%s: %s '%s'", program->name, what, word);
+    cli_complain("%s: %s '%s'", program->name, what, word);
     if (nearest)
-        fprintf(stderr, ", is '%s' meant?", nearest);
+        cli_complain(", is '%s' meant?", nearest);
     free(known);
     give_up(program);
 }
@@ -365,15 +365,15 @@ static void check_operands(const cli_run *run)
         many = many || operands[least++].many;
     if (run->num_operands >= least && (many || run->num_operands == least))
         return;
-    fprintf(stderr, "%s: ", run->program->name);
+    cli_complain("%s: ", run->program->name);
     if (least == 0) {
-        fprintf(stderr, "'%s' is no option, and there are no operands",
-                run->operand[0]);
+        cli_complain("'%s' is no option, and there are no operands",
+                     run->operand[0]);
     } else {
-        fprintf(stderr, "expected '");
+        cli_complain("expected '");
         print_operands(stderr, run->program);
-        fprintf(stderr, "', not %d operand%s", run->num_operands,
-                run->num_operands == 1 ? "" : "s");
+        cli_complain("', not %d operand%s", run->num_operands,
+                     run->num_operands == 1 ? "" : "s");
     }
     give_up(run->program);
 }
@@ -478,6 +478,6 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
     gather_outputs(run, all);
     ritz_draft_hold();
     atexit(ritz_draft_discard_all); /* by whichever way it ends */
-    cli_watch(run->quiet);
+    cli_watch(run);
     run->began = cli_clock();
 }

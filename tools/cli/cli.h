@@ -13,6 +13,7 @@
 
 #include <jansson.h>
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,7 +24,8 @@ enum {
     CLI_MAX_COMMAND = 4096,
     CLI_MAX_OPERANDS = 3,
     CLI_MAX_OUTPUTS = 8,
-    CLI_MAX_DEPTH = 8
+    CLI_MAX_DEPTH = 8,
+    CLI_DURATION = 32,
 };
 
 typedef enum cli_kind {
@@ -109,7 +111,8 @@ ritz_status cli_table_new(cli_table *out);
 /** Make sure that `text` holds all that was written. @return RITZ_ERR_MEMORY */
 ritz_status cli_table_end(const cli_table *table);
 
-/** Write it under a name of its own, then give it this one. */
+/** Write it under a name of its own, then give it this one. Control characters
+ * other than ends of lines and tabs become '?'. */
 ritz_status cli_table_save(cli_table *table, const char *path);
 
 /** Write it into a file that is the caller's own, such as a draft. */
@@ -229,6 +232,15 @@ const ritz_stamp *cli_stamp(cli_run *run);
 json_t *cli_real(double value);
 json_t *cli_string(const char *text);
 
+/** A value as JSON, with what a terminal could obey as \u009b. The caller frees
+ * it; NULL: no memory. */
+char *cli_json(const json_t *value, size_t flags);
+
+/** Write to standard error: all that tools say there goes this way, with '?'
+ * for what a terminal could obey, except the ends of lines. */
+[[gnu::format(printf, 1, 2)]] void cli_complain(const char *format, ...);
+void cli_complain_list(const char *format, va_list args);
+
 /** Method and order (-1: none) of the line that --record appends. */
 void cli_record(cli_run *run, const char *method, int64_t order);
 void cli_record_error(cli_run *run, const char *name, double value);
@@ -244,8 +256,13 @@ ritz_status cli_record_line(cli_run *run, json_t *line);
 /**
  * From now on SIGINT, SIGTERM and SIGHUP remove unfinished files first, and
  * steps of the library are shown as one line if standard error is a terminal.
+ * Steps that will take more than ten minutes are a warning, as soon as the
+ * first ones tell.
  */
-void cli_watch(bool quiet);
+void cli_watch(cli_run *run);
+
+/** "12.5 s", "3 min", "5.2 h" or "4 days"; returns @p out. */
+const char *cli_duration(double seconds, char out[CLI_DURATION]);
 
 /** Seconds, of the monotonic clock. */
 double cli_clock(void);

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "base/text.h"
 
 #include <cblas.h>
 
@@ -24,6 +25,8 @@
 /* Neither a handler nor an observer has an argument: state is kept here. */
 static volatile sig_atomic_t shown; /* a line of progress stands there */
 static double last;                 /* when it was written, by the clock */
+static cli_run *watched;            /* the run whose steps are observed */
+static bool on_terminal;            /* progress is shown */
 
 static const char erase[] = "\r\033[K";
 
@@ -82,13 +85,86 @@ static void show_progress(const char *what, int64_t done, int64_t total)
     }
 }
 
-void cli_watch(bool quiet)
+const char *cli_duration(double seconds, char out[CLI_DURATION])
 {
-    watch_signals();
-    if (quiet || !isatty(STDERR_FILENO))
+    static const struct unit {
+        const char *name;
+        double seconds;
+    } units[] = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"days", 86400.0}};
+    int k = 0;
+
+    while (k < 3 && seconds >= 2.0 * units[k + 1].seconds)
+        k++;
+    snprintf(out, CLI_DURATION, "%.3g %s", seconds / units[k].seconds,
+             units[k].name);
+    return out;
+}
+
+/* A kind of step of which it is known how many there will be. */
+typedef struct step_series {
+    const char *what; /* the library's text */
+    int64_t total;
+    int64_t first, done; /* steps at the start, and now */
+    double began;
+    bool told;
+} step_series;
+
+/* Some, as steps of one kind may consist of steps of another. */
+static step_series series[8];
+static int num_series;
+
+/* The series that a step belongs to; a new one at its first step. */
+static step_series *find_series(const char *what, int64_t done, int64_t total)
+{
+    enum { MOST = sizeof series / sizeof *series };
+    step_series *found = NULL;
+
+    for (int k = 0; k < MOST && !found; k++)
+        if (series[k].what == what)
+            found = &series[k];
+    if (found && found->total == total && done >= found->done)
+        return found;
+    if (!found)
+        found = &series[num_series++ % MOST];
+    *found = (step_series){what, total, done, done, cli_clock(), false};
+    return found;
+}
+
+/* Say how long work takes, once that is long and can be known. */
+static void foresee_end(const char *what, int64_t done, int64_t total)
+{
+    static const double long_work = 600.0, enough = 1.0; /* seconds */
+    step_series *w = find_series(what, done, total);
+    const double spent = cli_clock() - w->began;
+    double whole = 0.0;
+    char text[CLI_DURATION];
+
+    w->done = done;
+    if (w->told || done == w->first || spent < enough)
         return;
+    whole = spent / (double)(done - w->first) * (double)(total - w->first);
+    if (whole < long_work)
+        return;
+    w->told = true;
+    cli_warn(watched, "%s: all %" PRId64 " take about %s at this rate", what,
+             total, cli_duration(whole, text));
+}
+
+static void follow_step(const char *what, int64_t done, int64_t total)
+{
+    if (total > 0)
+        foresee_end(what, done, total);
+    if (on_terminal)
+        show_progress(what, done, total);
+}
+
+void cli_watch(cli_run *run)
+{
+    watched = run;
+    on_terminal = !run->quiet && isatty(STDERR_FILENO);
+    watch_signals();
     last = cli_clock();
-    ritz_monitor_observe(show_progress);
+    ritz_monitor_observe(follow_step);
 }
 
 void cli_watch_clear(void)
@@ -297,6 +373,38 @@ const ritz_stamp *cli_stamp(cli_run *run)
 
 /* --- reports -------------------------------------------------------------- */
 
+/* Clean what stands between some characters, which stay. */
+static void clean_between(char *text, const char *kept)
+{
+    while (*text) {
+        char *end = text + strcspn(text, kept);
+        char mark = *end;
+
+        *end = '\0';
+        ritz_text_clean(text);
+        *end = mark;
+        text = end + (mark != '\0');
+    }
+}
+
+void cli_complain_list(const char *format, va_list args)
+{
+    char text[2 * CLI_MAX_COMMAND]; /* for a sentence about a long path */
+
+    vsnprintf(text, sizeof text, format, args);
+    clean_between(text, "\n");
+    fputs(text, stderr);
+}
+
+void cli_complain(const char *format, ...)
+{
+    va_list args;
+
+    va_start(args, format);
+    cli_complain_list(format, args);
+    va_end(args);
+}
+
 void cli_warn(cli_run *run, const char *format, ...)
 {
     char text[512];
@@ -305,6 +413,7 @@ void cli_warn(cli_run *run, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    ritz_text_clean(text);
     for (size_t k = 0; k < json_array_size(run->warnings); k++)
         if (strcmp(json_string_value(json_array_get(run->warnings, k)), text) ==
             0)
@@ -313,7 +422,7 @@ void cli_warn(cli_run *run, const char *format, ...)
     if (!run->quiet) {
         cli_watch_clear();
         fflush(stdout);
-        fprintf(stderr, "%s: warning: %s\n", run->program->name, text);
+        cli_complain("%s: warning: %s\n", run->program->name, text);
     }
 }
 
@@ -334,6 +443,39 @@ json_t *cli_string(const char *text)
     string = copy ? json_string(copy) : string;
     free(copy);
     return string ? string : json_null();
+}
+
+/* A control character that JSON allows in strings, U+007F to U+009F. */
+static void put_letter(FILE *file, const char *letter, int size)
+{
+    const unsigned char *c = (const unsigned char *)letter;
+
+    if (ritz_letter_length(letter) > 0 || *letter == '\n')
+        fwrite(letter, 1, (size_t)size, file);
+    else
+        fprintf(file, "\\u%04x", (unsigned)(size == 1 ? c[0] : c[1]));
+}
+
+char *cli_json(const json_t *value, size_t flags)
+{
+    RITZ_OWN(cli_table) table = {0};
+    char *plain = json_dumps(value, flags);
+    char *text = NULL;
+
+    if (!plain || cli_table_new(&table) != RITZ_OK) {
+        free(plain);
+        return NULL;
+    }
+    for (const char *at = plain; *at;) {
+        int size = ritz_letter_size(at);
+
+        put_letter(table.file, at, size > 0 ? size : 1);
+        at += size > 0 ? size : 1;
+    }
+    free(plain);
+    if (cli_table_end(&table) == RITZ_OK)
+        text = strdup(table.text);
+    return text;
 }
 
 void cli_record(cli_run *run, const char *method, int64_t order)
@@ -358,14 +500,19 @@ void cli_record_error(cli_run *run, const char *name, double value)
 static void print_report(cli_run *run, ritz_status status)
 {
     json_t *report = run->report;
+    char *text = NULL;
 
     json_object_set_new(report, "ok", json_boolean(status == RITZ_OK));
     json_object_set_new(report, "output", cli_string(run->output));
     json_object_set(report, "warnings", run->warnings);
     if (status != RITZ_OK)
         json_object_set_new(report, "error", cli_string(ritz_error_message()));
-    json_dumpf(report, stdout, JSON_INDENT(2));
-    putchar('\n');
+    text = cli_json(report, JSON_INDENT(2));
+    if (text)
+        puts(text);
+    else
+        cli_complain("%s: no memory for the report\n", run->program->name);
+    free(text);
 }
 
 /* Tool, version, command and inputs, which every recorded line has. */
@@ -442,7 +589,7 @@ static ritz_status append_line(const cli_run *run, json_t *line)
     getrusage(RUSAGE_SELF, &usage);
     json_object_set_new(line, "peak_bytes",
                         json_integer(1024 * (json_int_t)usage.ru_maxrss));
-    text = json_dumps(line, JSON_COMPACT | JSON_PRESERVE_ORDER);
+    text = cli_json(line, JSON_COMPACT | JSON_PRESERVE_ORDER);
     RITZ_REFUSE_IF(!text, RITZ_ERR_MEMORY, "no memory for the record");
     length = strlen(text);
     text[length] = '\n'; /* in the place of its NUL */
@@ -487,7 +634,7 @@ static ritz_status keep_record(cli_run *run, ritz_status outcome, bool *keep)
                                       used.ru_stime.tv_usec)));
     recorded = append_line(run, run->line);
     if (recorded != RITZ_OK && first && *keep)
-        fprintf(stderr, "%s: %s\n", run->program->name, ritz_error_message());
+        cli_complain("%s: %s\n", run->program->name, ritz_error_message());
     *keep = *keep && recorded == RITZ_OK;
     if (first)
         ritz_record("%s", first);
@@ -517,12 +664,11 @@ static ritz_status settle_outputs(cli_run *run, bool keep, ritz_status status)
 {
     if (ritz_draft_settle(keep) == RITZ_OK)
         return status;
-    fprintf(stderr, "%s: %s\n", run->program->name, ritz_error_message());
+    cli_complain("%s: %s\n", run->program->name, ritz_error_message());
     if (run->record) {
         json_object_set_new(run->line, "ok", json_false());
         if (append_line(run, run->line) != RITZ_OK)
-            fprintf(stderr, "%s: %s\n", run->program->name,
-                    ritz_error_message());
+            cli_complain("%s: %s\n", run->program->name, ritz_error_message());
     }
     return RITZ_ERR_FILE;
 }
@@ -537,12 +683,12 @@ int cli_finish(cli_run *run, ritz_status status)
     if (run->record && worked)
         status = keep_record(run, status, &keep);
     if (status != RITZ_OK)
-        fprintf(stderr, "%s: %s\n", name, ritz_error_message());
+        cli_complain("%s: %s\n", name, ritz_error_message());
     if (run->json && worked)
         print_report(run, status);
     if (ferror(stdout) || fclose(stdout) != 0) {
-        fprintf(stderr, "%s: cannot write to standard output: %s\n", name,
-                strerror(errno));
+        cli_complain("%s: cannot write to standard output: %s\n", name,
+                     strerror(errno));
         status = RITZ_ERR_FILE;
         keep = false;
     }
@@ -586,6 +732,9 @@ ritz_status cli_table_save(cli_table *table, const char *path)
 {
     RITZ_OWN(ritz_draft) draft = {0};
 
+    RITZ_CHECK(cli_table_end(table));
+    if (table->text)
+        clean_between(table->text, "\n\t\r");
     RITZ_CHECK_IN(path, ritz_draft_new(path, &draft));
     RITZ_CHECK_IN(path, cli_table_write(table, draft.name));
     return ritz_context(ritz_draft_publish(&draft), path);

@@ -169,6 +169,42 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
     return RITZ_OK;
 }
 
+/* Bytes of what a system holds of a configuration. */
+static double count_bytes(const ritz_configuration *at)
+{
+    const ritz_dense *const parts[] = {&at->K,     &at->M,     &at->D,
+                                       &at->K4,    &at->io.B,  &at->io.C,
+                                       &at->io.Cv, &at->io.Ca, &at->momentum};
+    double numbers = (double)at->K.nrow;
+
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+        numbers += (double)parts[k]->nrow * (double)parts[k]->ncol;
+    for (int64_t k = 0; k < at->num_blocks; k++)
+        numbers += (double)at->P[k].nrow * (double)at->P[k].ncol;
+    return numbers * (double)sizeof(double);
+}
+
+ritz_status model_foresee(cli_run *run, const ritz_stage *stage)
+{
+    enum { MANY = 1000 };
+    const ritz_scene *scene = stage->scene;
+    RITZ_OWN(ritz_configuration) first = {0};
+    const double began = cli_clock();
+    const double count = (double)scene->num_configurations;
+    char text[CLI_DURATION];
+
+    if (scene->num_configurations <= MANY)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_stage_assemble(stage, scene->setting, &first));
+    cli_warn(run,
+             "the scene has %ld configurations: to assemble them takes about "
+             "%s and %.2g GB; list those wanted under 'configurations'",
+             scene->num_configurations,
+             cli_duration(count * (cli_clock() - began), text),
+             count * count_bytes(&first) * 1e-9);
+    return RITZ_OK;
+}
+
 ritz_status model_at(model *m, const char *path, const char *at)
 {
     const ritz_configuration *found = NULL;

@@ -4,6 +4,7 @@
 
 #include "cli/sink.h"
 
+#include <ritz/assembly.h>
 #include <ritz/check.h>
 #include <ritz/container.h>
 #include <ritz/poles.h>
@@ -124,6 +125,10 @@ void model_warn_loads(cli_run *run, const char *path, int64_t count);
 /** Hash and read a scene, and hash the models that it names. Geometric
  * stiffness that these have is not used, and that is said. */
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
+
+/** Of a scene with more than 1000 configurations, as a few lines of text make
+ * them: warn how long all of them take and how large they are, by the first. */
+ritz_status model_foresee(cli_run *run, const ritz_stage *stage);
 
 /** Choose the configuration of --at; @p at given for no system is refused. */
 ritz_status model_at(model *model, const char *path, const char *at);

@@ -1,5 +1,7 @@
 #include "cli/sink.h"
 
+#include "base/text.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -82,12 +84,32 @@ static void put_value(telling *t, const char *key, json_t *value)
         json_decref(value);
 }
 
+/* Text of a file may be anything: on a terminal, in a report and in a table it
+ * stays on its line, and is never obeyed. */
+static void put_text(FILE *file, conversion c, const char *value)
+{
+    char *copy =
+        c.precision < 0 ? strdup(value) : strndup(value, (size_t)c.precision);
+
+    if (copy)
+        ritz_text_clean(copy);
+    fprintf(file, "%*s", c.width, copy ? copy : "(no memory)");
+    free(copy);
+}
+
 static void tell_text(telling *t, conversion c, const char *key,
                       const char *value)
 {
     if (t->text)
-        fprintf(t->text, "%*.*s", c.width, c.precision, value ? value : "");
+        put_text(t->text, c, value ? value : "");
     put_value(t, key, cli_string(value));
+}
+
+static void tell_letter(const telling *t, conversion c, int letter)
+{
+    const char text[] = {(char)letter, '\0'};
+
+    put_text(t->text, c, text);
 }
 
 static void tell_real(telling *t, conversion c, const char *key, double value)
@@ -130,7 +152,7 @@ static void tell_one(telling *t, conversion c, arguments *args)
         tell_text(t, c, key, va_arg(args->list, const char *));
         break;
     case 'c':
-        fprintf(t->text, "%*c", c.width, va_arg(args->list, int));
+        tell_letter(t, c, va_arg(args->list, int));
         break;
     case 'd':
         tell_whole(t, c, key, args);
@@ -202,8 +224,11 @@ void sink_tell(const cli_run *run, sink_text text, const char *title,
     telling t = {said, keys, find_target(run, keys)};
     arguments args;
 
-    if (title)
-        fprintf(said, "  %-14s ", title);
+    if (title) {
+        fputs("  ", said);
+        put_text(said, (conversion){.width = -14, .precision = -1}, title);
+        putc(' ', said);
+    }
     va_start(args.list, format);
     tell_values(&t, format, &args);
     va_end(args.list);

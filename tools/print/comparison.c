@@ -570,6 +570,7 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
         RITZ_CHECK_IN("--extraneous",
                       ritz_scene_set_extraneous(&scene, given->extraneous));
     RITZ_CHECK(ritz_stage_new(&scene, &stage));
+    RITZ_CHECK(model_foresee(run, &stage));
     RITZ_CHECK(ritz_compare(&stage, &c));
     RITZ_CHECK(model_write_bodies(run, given->prefix, &scene, c.second.body));
     RITZ_CHECK(ritz_container_write_system(run->output, &c.second_system,
