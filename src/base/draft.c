@@ -1,9 +1,11 @@
-#define _XOPEN_SOURCE 700 /* NOLINT: realpath is declared only so */
+#define _GNU_SOURCE /* NOLINT: declares realpath, and locks of open files */
 
 #include "base/draft.h"
 
 #include "base/alloc.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -12,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -82,7 +85,7 @@ static int create_file(const char *name, mode_t mode, place *at)
 
     sigfillset(&all);
     sigprocmask(SIG_BLOCK, &all, &before);
-    file = open(name, O_WRONLY | O_CREAT | O_EXCL, mode);
+    file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     error = errno;
     if (file >= 0)
         atomic_store(&at->name, name);
@@ -177,7 +180,13 @@ static struct {
 
 void ritz_draft_hold(void)
 {
+    struct rlimit files;
+
     held.active = true;
+    if (getrlimit(RLIMIT_NOFILE, &files) == 0) {
+        files.rlim_cur = files.rlim_max; /* drafts stay open, for their locks */
+        (void)setrlimit(RLIMIT_NOFILE, &files);
+    }
 }
 
 ritz_status ritz_draft_protect(const char *path)
@@ -215,26 +224,131 @@ ritz_status ritz_draft_check(const char *path)
     return RITZ_OK;
 }
 
-/* --- drafts --------------------------------------------------------------- */
+/* --- drafts of writers that were killed ----------------------------------- */
 
-/* An empty file under a name that is not taken, listed for a signal. */
-static ritz_status create_draft(const char *path, place *at, ritz_draft *draft)
+/*
+ * A draft is locked as long as its writer lives, by a lock of the open file:
+ * unlike one of the process it outlives other descriptors of the file that are
+ * closed, and unlike flock it leaves HDF5 its own. Where the file system has no
+ * locks nothing is swept.
+ */
+static bool lock_file(int file)
 {
-    const size_t size = strlen(draft->path) + sizeof ".4294967295-999999.part";
-    const mode_t mode = draft->mode < 0 ? 0666 : 0600;
+    struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+
+    return fcntl(file, F_OFD_SETLK, &all) == 0;
+}
+
+/* Whether a name is that of an open file still, or again. */
+static bool is_named(const char *name, int file)
+{
+    struct stat open_one = {0}, there = {0};
+
+    return fstat(file, &open_one) == 0 && lstat(name, &there) == 0 &&
+           open_one.st_dev == there.st_dev && open_one.st_ino == there.st_ino;
+}
+
+/*
+ * Lock a draft of our own. A sweeper may have come first, between creation and
+ * lock: then it holds the lock, or the name is gone.
+ */
+static bool claim_file(const char *name, int file)
+{
+    struct stat there = {0};
+
+    if (!lock_file(file) && (errno == EAGAIN || errno == EACCES))
+        return false;
+    return lstat(name, &there) == 0;
+}
+
+static const char *skip_digits(const char *at)
+{
+    while (isdigit((unsigned char)*at))
+        at++;
+    return at;
+}
+
+/* "TARGET.PID-K.part", as drafts of @p target are called. */
+static bool is_draft_of(const char *target, const char *name)
+{
+    size_t length = strlen(target);
+    const char *pid = name + length + 1;
+    const char *end = NULL;
+
+    if (strncmp(name, target, length) != 0 || name[length] != '.')
+        return false;
+    end = skip_digits(pid);
+    if (end == pid || *end != '-' || !isdigit((unsigned char)end[1]))
+        return false;
+    return strcmp(skip_digits(end + 1), ".part") == 0;
+}
+
+/* Remove a draft of ours that no writer has locked. */
+static void sweep_file(const char *name)
+{
+    struct stat there = {0};
     int file = -1;
 
+    if (lstat(name, &there) != 0 || !S_ISREG(there.st_mode) ||
+        there.st_uid != geteuid())
+        return;
+    file = open(name, O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0)
+        return;
+    if (lock_file(file) && is_named(name, file))
+        unlink(name);
+    close(file);
+}
+
+/* Remove what killed writers of @p target left in its folder. */
+static void sweep_folder(const char *target)
+{
+    const char *slash = strrchr(target, '/');
+    const char *base = slash ? slash + 1 : target;
+    const int folder = (int)(base - target); /* letters, with the slash */
+    char name[PATH_MAX];
+    DIR *listing = NULL;
+
+    snprintf(name, sizeof name, "%.*s", folder, target);
+    listing = opendir(*name ? name : ".");
+    for (struct dirent *entry = listing ? readdir(listing) : NULL; entry;
+         entry = readdir(listing)) {
+        const int length = snprintf(name, sizeof name, "%.*s%s", folder, target,
+                                    entry->d_name);
+
+        if (is_draft_of(base, entry->d_name) && length < PATH_MAX)
+            sweep_file(name);
+    }
+    if (listing)
+        closedir(listing);
+}
+
+/* --- drafts --------------------------------------------------------------- */
+
+/* An empty, locked file of a name that no other writer has, listed for a
+ * signal. */
+static ritz_status create_draft(const char *path, place *at, ritz_draft *draft)
+{
+    enum { MOST = 999999 };
+    const size_t size = strlen(draft->path) + sizeof ".4294967295-999999.part";
+    const mode_t mode = draft->mode < 0 ? 0666 : 0600;
+
     RITZ_CHECK_NEW(draft->name, (int64_t)size);
-    for (int k = 0; file < 0; k++) {
+    for (int k = 0; k <= MOST; k++) {
         snprintf(draft->name, size, "%s.%ld-%d.part", draft->path,
                  (long)getpid(), k);
-        file = create_file(draft->name, mode, at);
-        RITZ_REFUSE_IF(file < 0 && (errno != EEXIST || k == 999999),
-                       RITZ_ERR_FILE, "cannot create '%s': %s", path,
-                       strerror(errno));
+        draft->file = create_file(draft->name, mode, at);
+        RITZ_REFUSE_IF(draft->file < 0 && errno != EEXIST, RITZ_ERR_FILE,
+                       "cannot create '%s': %s", path, strerror(errno));
+        if (draft->file < 0)
+            continue;
+        if (claim_file(draft->name, draft->file))
+            return RITZ_OK;
+        atomic_store(&at->name, ""); /* the file is a sweeper's */
+        close(draft->file);
     }
-    close(file);
-    return RITZ_OK;
+    return ritz_fail(RITZ_ERR_FILE, "cannot create '%s': no name is free",
+                     path);
 }
 
 ritz_status ritz_draft_new(const char *path, ritz_draft *out)
@@ -255,6 +369,7 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
     }
     RITZ_CHECK(ritz_draft_check(path));
     follow_links(path, target);
+    sweep_folder(target);
     RITZ_CHECK_COPY(draft.path, target, (int64_t)strlen(target) + 1);
     status = take_place(&at);
     if (status == RITZ_OK)
@@ -329,6 +444,15 @@ static ritz_status sync_name(const ritz_draft *draft)
     return RITZ_OK;
 }
 
+/* What is left to do once the file has its name, or is gone. */
+static void forget_name(ritz_draft *draft)
+{
+    strike_name(draft->name);
+    close(draft->file); /* and its lock with it */
+    free(draft->name);
+    draft->name = NULL;
+}
+
 /* Rename it; its path stays, for whoever takes it back. */
 static ritz_status name_draft(ritz_draft *draft)
 {
@@ -338,9 +462,7 @@ static ritz_status name_draft(ritz_draft *draft)
                    draft->path, strerror(errno));
     RITZ_REFUSE_IF(rename(draft->name, draft->path) != 0, RITZ_ERR_FILE,
                    "cannot replace '%s': %s", draft->path, strerror(errno));
-    strike_name(draft->name);
-    RITZ_FREE(draft->name);
-    draft->name = NULL;
+    forget_name(draft);
     return RITZ_OK;
 }
 
@@ -386,9 +508,9 @@ void ritz_draft_free(ritz_draft *draft)
 {
     if (draft->name) {
         remove(draft->name);
-        strike_name(draft->name);
+        forget_name(draft);
     }
-    RITZ_FREE(draft->name, draft->path);
+    free(draft->path);
     *draft = (ritz_draft){0};
 }
 

@@ -12,6 +12,9 @@
  * leaves no file. The environment's RITZ_SYNC=0 leaves this out, for tests and
  * benchmarks.
  *
+ * What a killed writer left is removed by the next writer of the same file: a
+ * draft is locked as long as its writer lives.
+ *
  * A program holds its files back until it knows that all went well: between
  * ritz_draft_hold and ritz_draft_settle, ritz_draft_publish only keeps the
  * complete file; no input is replaced, and no file is written twice. This state
@@ -29,11 +32,14 @@ typedef struct ritz_draft {
     char *path; /* where it will appear, which is what a link names */
     char *name; /* where it is written meanwhile */
     int mode;   /* permission bits of the file that it replaces; -1: none */
+    int file;   /* open and locked; of no meaning while name is NULL */
 } ritz_draft;
 
 /**
  * Create an empty draft of @p path; once published it has the permissions of
- * the file that it replaces, or of any new file.
+ * the file that it replaces, or of any new file. Before, drafts of it that have
+ * no living writer are removed; files of other users, links and what is no
+ * regular file stay, and all of them where the file system has no locks.
  *
  * @return RITZ_ERR_FILE if it cannot be created, or if @p path is a folder, a
  *         device or anything else that a rename must not replace;
@@ -50,7 +56,8 @@ ritz_status ritz_draft_publish_now(ritz_draft *draft);
 /** Remove the file of a draft that was not published. */
 void ritz_draft_free(ritz_draft *draft);
 
-/** From now on published drafts wait for ritz_draft_settle. */
+/** From now on published drafts wait for ritz_draft_settle, and the process may
+ * have as many files open as the system allows. */
 void ritz_draft_hold(void);
 
 /**

@@ -62,6 +62,8 @@ ritz_status ritz_h5_create(const char *path, hid_t *out)
     plan = plan_object(H5P_FILE_CREATE);
     bounds = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
+    /* a draft is locked by its writer; on NFS HDF5 would meet that lock */
+    H5Pset_file_locking(bounds, false, true);
     *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);
     lost = false;

@@ -466,6 +466,35 @@ sys.exit(0 if run.returncode == -signal.SIGTERM and not left
          else f"ended with {run.returncode}, left {left}")
 END
 
+# Killed, it cannot remove its draft; the next run does, and no other's.
+works 'a killed run leaves a draft, which the next run removes' \
+    /usr/bin/python3 -s - <<'END'
+import glob, os, signal, subprocess, sys
+tool = ["ritz-import", "-q", "--stiffness", "big.k.mtx", "--mass", "big.m.mtx",
+        "--dofs", "big.dofs", "-o", "big.out"]
+for attempt in range(50):
+    run = subprocess.Popen(tool)
+    while run.poll() is None and not glob.glob("big.out.*.part"):
+        pass
+    run.kill()
+    run.wait(30)
+    left = glob.glob("big.out.*.part")
+    if left:
+        break
+open("other.out.1-0.part", "w").close()
+subprocess.run(tool, check=True)
+after = glob.glob("*.part")
+os.remove("big.out")
+os.remove("other.out.1-0.part")
+sys.exit(0 if left and after == ["other.out.1-0.part"]
+         else f"left {left}, then {after}")
+END
+works 'parallel runs of one target remove no draft of each other' \
+    sh -c 'for k in 1 2 3 4; do
+        for i in 1 2 3 4 5; do ritz-basis -q guyan bar.h5 -o same.h5 || exit 1
+        done & p="$p $!"; done; for k in $p; do wait "$k" || exit 1; done
+    rm same.h5'
+
 # --- the demo's model --------------------------------------------------------------
 
 expect 0 'OUTPUT4' ritz-info "$data/dualspin/rotor.op4"

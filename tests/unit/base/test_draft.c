@@ -4,9 +4,11 @@
 
 #include "base/draft.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static const char path[] = "test_draft.out";
@@ -429,6 +431,110 @@ static void syncs_are_left_out_on_request(void **)
     remove(path);
 }
 
+/* --- drafts of killed writers --------------------------------------------- */
+
+/* The name of the first draft of another process. */
+static void name_draft(pid_t writer, char name[64])
+{
+    snprintf(name, 64, "%s.%ld-0.part", path, (long)writer);
+}
+
+static void drafts_of_killed_writers_are_swept(void **state)
+{
+    ritz_draft draft = {0};
+    char left[64];
+    int outcome = 0;
+    pid_t writer = fork();
+
+    (void)state;
+    if (writer == 0) {
+        if (ritz_draft_new(path, &draft) == RITZ_OK)
+            raise(SIGKILL);
+        _exit(1);
+    }
+    assert_int_equal(waitpid(writer, &outcome, 0), writer);
+    assert_true(WIFSIGNALED(outcome));
+    name_draft(writer, left);
+    assert_int_equal(get(left), EOF); /* empty, and there */
+    assert_ok(ritz_draft_new(path, &draft));
+    assert_int_equal(get(left), 0);
+    assert_int_equal(get(draft.name), EOF);
+    ritz_draft_free(&draft);
+}
+
+/* Two writers of one file, as of make -j: neither removes the other's draft. */
+static void drafts_of_living_writers_stay(void **state)
+{
+    ritz_draft draft = {0};
+    char theirs[64];
+    char letter = 'w';
+    int ready[2], done[2];
+    int outcome = 0;
+    pid_t writer = -1;
+
+    (void)state;
+    assert_int_equal(pipe(ready), 0);
+    assert_int_equal(pipe(done), 0);
+    writer = fork();
+    if (writer == 0) {
+        bool made = ritz_draft_new(path, &draft) == RITZ_OK;
+
+        close(done[1]); /* so that it does not wait for a test that failed */
+        made = write(ready[1], &letter, 1) == 1 && made;
+        made = read(done[0], &letter, 1) == 1 && made;
+        _exit(made && ritz_draft_publish(&draft) == RITZ_OK ? 0 : 1);
+    }
+    name_draft(writer, theirs);
+    assert_int_equal(read(ready[0], &letter, 1), 1);
+    assert_ok(ritz_draft_new(path, &draft));
+    ritz_draft_free(&draft);
+    assert_int_equal(get(theirs), EOF);
+    assert_int_equal(write(done[1], &letter, 1), 1);
+    assert_int_equal(waitpid(writer, &outcome, 0), writer);
+    assert_true(WIFEXITED(outcome) && WEXITSTATUS(outcome) == 0);
+    for (int k = 0; k < 2; k++) {
+        close(ready[k]);
+        close(done[k]);
+    }
+    assert_int_equal(remove(path), 0);
+}
+
+static void what_is_called_otherwise_is_not_swept(void **state)
+{
+    static const char *const names[] = {
+        "test_draft.out.part",         "test_draft.out.1.part",
+        "test_draft.out.x-0.part",     "test_draft.out.1-.part",
+        "test_draft.out.1-0.part.old", "test_draft.out2.1-0.part",
+        "Test_draft.out.1-0.part",     "test_draft.out.1-0x.part",
+    };
+    static const char linked[] = "test_draft.out.1-0.part";
+    static const char pipe_name[] = "test_draft.out.1-1.part";
+    static const char folder[] = "test_draft.out.1-2.part";
+    enum { COUNT = sizeof names / sizeof *names };
+    struct stat there = {0};
+    ritz_draft draft = {0};
+
+    (void)state;
+    for (int k = 0; k < COUNT; k++)
+        put(names[k], 'n');
+    remove(linked); /* what a run that failed may have left */
+    remove(pipe_name);
+    remove(folder);
+    assert_int_equal(symlink(names[0], linked), 0);
+    assert_int_equal(mkfifo(pipe_name, 0600), 0);
+    assert_int_equal(mkdir(folder, 0700), 0);
+    assert_ok(ritz_draft_new(path, &draft));
+    ritz_draft_free(&draft);
+    for (int k = 0; k < COUNT; k++) {
+        assert_int_equal(get(names[k]), 'n');
+        assert_int_equal(remove(names[k]), 0);
+    }
+    assert_int_equal(lstat(linked, &there), 0);
+    assert_int_equal(remove(linked), 0);
+    assert_int_equal(remove(pipe_name), 0);
+    assert_int_equal(remove(folder), 0);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(two_writers_do_not_meet),
     cmocka_unit_test(what_is_not_published_is_removed),
@@ -449,6 +555,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(of_files_that_belong_together_all_stay_or_none),
     cmocka_unit_test(a_failure_before_the_rename_leaves_the_old_file),
     cmocka_unit_test(syncs_are_left_out_on_request),
+    cmocka_unit_test(drafts_of_killed_writers_are_swept),
+    cmocka_unit_test(drafts_of_living_writers_stay),
+    cmocka_unit_test(what_is_called_otherwise_is_not_swept),
 };
 
 TEST_MODULE(draft, tests, NULL, NULL)
