@@ -474,7 +474,9 @@ char *cli_json(const json_t *value, size_t flags)
     }
     free(plain);
     if (cli_table_end(&table) == RITZ_OK)
-        text = strdup(table.text);
+        text = ritz_zalloc((int64_t)table.size + 1, 1);
+    if (text)
+        memcpy(text, table.text, table.size);
     return text;
 }
 

@@ -172,13 +172,13 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
 /* Bytes of what a system holds of a configuration. */
 static double count_bytes(const ritz_configuration *at)
 {
-    const ritz_dense *const parts[] = {&at->K,     &at->M,     &at->D,
-                                       &at->K4,    &at->io.B,  &at->io.C,
-                                       &at->io.Cv, &at->io.Ca, &at->momentum};
+    const ritz_dense parts[] = {at->K,     at->M,     at->D,
+                                at->K4,    at->io.B,  at->io.C,
+                                at->io.Cv, at->io.Ca, at->momentum};
     double numbers = (double)at->K.nrow;
 
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
-        numbers += (double)parts[k]->nrow * (double)parts[k]->ncol;
+        numbers += (double)parts[k].nrow * (double)parts[k].ncol;
     for (int64_t k = 0; k < at->num_blocks; k++)
         numbers += (double)at->P[k].nrow * (double)at->P[k].ncol;
     return numbers * (double)sizeof(double);
