@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/text.h"
+#include "base/tolerances.h"
 
 #include <ritz/export.h>
 #include <ritz/matrix.h>
@@ -244,6 +245,188 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     RITZ_CHECK(ritz_dense_mul(&reduced->T, &Phi, &T));
     RITZ_CHECK(place_shapes(&whole, &T, &shapes));
     RITZ_MOVE(*out, shapes);
+    return RITZ_OK;
+}
+
+/*
+ * The shapes of a system: with q_c = P_c x the coordinates of body c, its grids
+ * move by T_c P_c phi along its own axes and stand at R_c X + t_c.
+ */
+
+RITZ_ARRAY_OF(ritz_shapes);
+
+/* Whether these are the bodies: sum_c P_c' M_c P_c is the mass of the system.
+ */
+static ritz_status check_bodies(const ritz_system *system,
+                                const ritz_configuration *at,
+                                const ritz_reduced *const *bodies)
+{
+    RITZ_OWN(ritz_dense) sum = {0};
+
+    RITZ_CHECK(ritz_dense_copy(&at->M, &sum));
+    for (int64_t c = 0; c < system->num_components; c++) {
+        RITZ_OWN(ritz_dense) part = {0};
+
+        RITZ_REFUSE_IF(bodies[c]->K.ncol != at->P[c].nrow, RITZ_ERR_ARGUMENT,
+                       "'%s' has %" PRId64 " coordinates in the system and "
+                       "%" PRId64 " in its file",
+                       system->component[c].name, at->P[c].nrow,
+                       bodies[c]->K.ncol);
+        RITZ_REFUSE_IF(!bodies[c]->T.val || !bodies[c]->dof, RITZ_ERR_ARGUMENT,
+                       "'%s' was reduced --without-basis, which holds its "
+                       "shapes",
+                       system->component[c].name);
+        RITZ_CHECK(ritz_dense_congruence(&bodies[c]->M, &at->P[c], &part));
+        ritz_dense_add(-1.0, &part, &sum);
+    }
+    RITZ_REFUSE_IF(ritz_dense_max(&sum) >
+                       RITZ_SAME_MASS * ritz_dense_max(&at->M),
+                   RITZ_ERR_ARGUMENT,
+                   "the masses of these bodies are not the mass of the system: "
+                   "it was assembled of others");
+    return RITZ_OK;
+}
+
+/* What is added to the numbers of the grids of each body. */
+static void renumber_grids(ritz_shapes_array *part, int64_t *add)
+{
+    int64_t highest = -1, power = 1;
+    bool overlap = false;
+
+    for (int64_t c = 0; c < part->count; c++) {
+        const ritz_shapes *s = &part->at[c];
+
+        overlap = overlap || s->id[0] <= highest;
+        if (s->id[s->num_points - 1] > highest)
+            highest = s->id[s->num_points - 1];
+    }
+    while (highest >= power && power < INT64_MAX / 1000)
+        power *= 10;
+    for (int64_t c = 0; c < part->count; c++)
+        add[c] = overlap ? c * power : 0;
+}
+
+/* R x, R being columns 0 to 8 of row c. */
+static void turn_vector(const ritz_dense *places, int64_t c, const double *x,
+                        double *y)
+{
+    for (int64_t i = 0; i < 3; i++) {
+        y[i] = 0.0;
+        for (int64_t j = 0; j < 3; j++)
+            y[i] += ritz_dense_col(places, 3 * i + j)[c] * x[j];
+    }
+}
+
+/* Points of body c, and how they move, from point `first` on. */
+static void put_points(const ritz_shapes *part, const ritz_dense *places,
+                       int64_t c, int64_t add, int64_t first, ritz_shapes *all)
+{
+    for (int64_t k = 0; k < part->num_points; k++) {
+        double *x = all->position + 3 * (first + k);
+
+        all->id[first + k] = part->id[k] + add;
+        turn_vector(places, c, part->position + 3 * k, x);
+        for (int64_t i = 0; i < 3; i++)
+            x[i] += ritz_dense_col(places, 9 + i)[c];
+        for (int64_t j = 0; j < all->count; j++) {
+            turn_vector(places, c, ritz_dense_col(&part->u, j) + 3 * k,
+                        ritz_dense_col(&all->u, j) + 3 * (first + k));
+            if (part->turn.val)
+                turn_vector(places, c, ritz_dense_col(&part->turn, j) + 3 * k,
+                            ritz_dense_col(&all->turn, j) + 3 * (first + k));
+        }
+    }
+}
+
+/* Cells behind those that are there; their grids are points from `first` on. */
+static void put_cells(const ritz_elements *part, int64_t first,
+                      ritz_elements *all)
+{
+    int64_t used = all->first[all->count];
+
+    for (int64_t k = 0; k < part->count; k++) {
+        all->kind[all->count] = part->kind[k];
+        for (int64_t i = part->first[k]; i < part->first[k + 1]; i++)
+            all->grid[used++] = part->grid[i] + first;
+        all->first[++all->count] = used;
+    }
+}
+
+/* Room for all points and cells; names and count are there. */
+static ritz_status make_room(const ritz_shapes_array *part, ritz_shapes *all)
+{
+    int64_t cells = 0, corners = 0;
+    bool turns = false;
+
+    for (int64_t c = 0; c < part->count; c++) {
+        const ritz_shapes *s = &part->at[c];
+
+        all->num_points += s->num_points;
+        all->num_placeless += s->num_placeless;
+        all->meshed = all->meshed || s->meshed;
+        cells += s->cells.count;
+        corners += s->cells.first[s->cells.count];
+        turns = turns || s->turn.val;
+    }
+    RITZ_CHECK_NEW(all->id, all->num_points);
+    RITZ_CHECK_NEW(all->position, 3 * all->num_points);
+    RITZ_CHECK_NEW(all->cells.kind, cells);
+    RITZ_CHECK_NEW(all->cells.first, cells + 1);
+    RITZ_CHECK_NEW(all->cells.grid, corners);
+    RITZ_CHECK(ritz_dense_new(3 * all->num_points, all->count, &all->u));
+    if (turns)
+        RITZ_CHECK(ritz_dense_new(3 * all->num_points, all->count, &all->turn));
+    return RITZ_OK;
+}
+
+static ritz_status join_parts(ritz_shapes_array *part, const ritz_dense *places,
+                              ritz_shapes *all)
+{
+    RITZ_OWN_ARRAY int64_t *add = NULL;
+    int64_t first = 0;
+
+    RITZ_CHECK(make_room(part, all));
+    RITZ_CHECK_NEW(add, part->count);
+    renumber_grids(part, add);
+    for (int64_t c = 0; c < part->count; c++) {
+        put_points(&part->at[c], places, c, add[c], first, all);
+        put_cells(&part->at[c].cells, first, &all->cells);
+        first += part->at[c].num_points;
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_shapes_of_system(const ritz_system *system,
+                                  const ritz_configuration *at,
+                                  const ritz_reduced *const *bodies,
+                                  const char *list, ritz_shapes *out)
+{
+    RITZ_OWN(ritz_shapes) all = {0};
+    RITZ_OWN(ritz_shapes_array) part = {.count = system->num_components};
+    RITZ_OWN(ritz_dense) Phi = {0};
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(mode_choice) which = {0};
+
+    RITZ_REFUSE_IF(!at->places.val, RITZ_ERR_ARGUMENT,
+                   "it does not say where its bodies are: assemble it anew");
+    RITZ_CHECK(check_bodies(system, at, bodies));
+    RITZ_CHECK(ritz_eigen_dense(&at->K, &at->M, &pairs));
+    RITZ_CHECK(choose_modes(list, "mode", pairs.Phi.ncol, &which));
+    RITZ_CHECK(pick_modes(&pairs, &which, &Phi, &all));
+    RITZ_CHECK_NEW(part.at, part.count);
+    for (int64_t c = 0; c < part.count; c++) {
+        const ritz_reduced *b = bodies[c];
+        const body whole = {b->num_dofs, b->dof, &b->recovery, &b->grids,
+                            &b->elements};
+        RITZ_OWN(ritz_dense) q = {0}, U = {0};
+
+        RITZ_CHECK(ritz_dense_mul(&at->P[c], &Phi, &q));
+        RITZ_CHECK(ritz_dense_mul(&b->T, &q, &U));
+        RITZ_CHECK_IN(system->component[c].name,
+                      place_shapes(&whole, &U, &part.at[c]));
+    }
+    RITZ_CHECK(join_parts(&part, &at->places, &all));
+    RITZ_MOVE(*out, all);
     return RITZ_OK;
 }
 

@@ -8,11 +8,18 @@ static void list_methods(void)
                (*m)->summary, (*m)->reference);
         cli_list_advice((*m)->when, (*m)->cost, (*m)->holds, (*m)->fails);
     }
+    printf("\nAll take a component, a reduced component, whose coordinates are "
+           "then its dofs and\nwhose ports cannot be attached, and a system at "
+           "a configuration (--at).\nA state space is taken by");
+    for (const ritz_method *const *m = ritz_methods; *m; m++)
+        if ((*m)->uses & RITZ_USES_SPACE)
+            printf(" %s", (*m)->name);
+    printf(".\n");
 }
 
 int main(int argc, char **argv)
 {
-    enum { NUM_OWN = 6 };
+    enum { NUM_OWN = 8 };
     choice_words choice = {0};
     basis_options given = {.request = RITZ_REQUEST_NONE};
     ritz_request *request = &given.request;
@@ -28,16 +35,22 @@ int main(int argc, char **argv)
                  "drop columns that depend on others within X, relative"),
         CLI_LIST("neighbour", &given.neighbours, "PORT=FILE:PORT",
                  "load a port with another component, joined at its PORT"),
+        AT_OPTION(&given.model.at),
+        ORDER_OPTION(&given.model.order),
         CLI_ACTION("list", list_methods, "list methods and their papers"),
     };
     const cli_program program = {
         .name = "ritz-basis",
         .operands = {{"METHOD", "one of those that --list shows", false},
                      {"COMPONENT",
-                      "the component, or state space, to be reduced", false}},
+                      "the component to be reduced, or a state space, a "
+                      "reduced component or a system",
+                      false}},
         .summary = "Find the subspace in which a component is reduced. Rigid "
                    "modes of a free component\nare kept in addition to the "
-                   "flexible vectors.",
+                   "flexible vectors. A reduced component, and a system at a\n"
+                   "configuration, are reduced as components are: a low-order "
+                   "model for a controller.",
         .example = "ritz-basis craig-bampton --modes 12 blade.h5 -o basis.h5",
         .output = "the basis",
         .threads = true,

@@ -4,12 +4,17 @@
 
 int main(int argc, char **argv)
 {
-    const cli_option options[] = {{0}};
+    model_options given = {0};
+    const cli_option options[] = {
+        AT_OPTION(&given.at),
+        ORDER_OPTION(&given.order),
+        {0},
+    };
     const cli_program program = {
         .name = "ritz-check",
         .operands = {{"MODEL",
-                      "a component to audit, or a reduced component or state "
-                      "space to probe",
+                      "a component to audit, or a reduced component, system "
+                      "or state space to probe",
                       false}},
         .summary = "Audit a component before it is reduced: symmetry, "
                    "definiteness, rigid-body modes,\ngrounding, mass "
@@ -26,5 +31,5 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    return cli_finish(&run, checks_run(&run));
+    return cli_finish(&run, checks_run(&run, &given));
 }

@@ -6,6 +6,11 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
+    printf("\nreduced: a reduced component, a system at a configuration (--at) "
+           "or, but for exudyn,\na state space; with --states either of the "
+           "first two as a state space.\nshapes: modes of a component, reduced "
+           "component or system (--component names its\nbodies), columns of a "
+           "basis.\n");
 }
 
 int main(int argc, char **argv)
@@ -23,24 +28,27 @@ int main(int argc, char **argv)
                  "write every entry, zeros too (output4)"),
         CLI_INT("digits", &request->digits, "N", 1, 17,
                 "significant digits of text [17]"),
-        ORDER_OPTION(&given.order),
-        DAMPERS_OPTION(&given.damper),
+        MODEL_OPTIONS(&given.model),
+        CLI_FLAG("states", &given.states,
+                 "write x' = A x + B u, y = C x + D u, damping in A"),
         CLI_FLAG("force", &given.force,
                  "export even a model that is unstable or of unknown "
                  "errors"),
         CLI_TEXT("modes", &request->modes, "LIST",
                  "shapes of these modes or columns, as 1-6,9 (vtu, xdmf) "
                  "[all; 10 of a component]"),
-        CLI_TEXT("component", &given.component, "FILE",
-                 "component to which a basis belongs (vtu, xdmf)"),
+        CLI_LIST("component", &given.component, "[BODY=]FILE",
+                 "component to which a basis belongs; reduced component of a "
+                 "body of a system (vtu, xdmf)"),
         CLI_ACTION("list", list_formats, "list formats and what they take"),
         {0},
     };
     const cli_program program = {
         .name = "ritz-export",
         .operands = {{"FILE",
-                      "a reduced component, state space, response over hertz "
-                      "or seconds; for shapes also a component or a basis",
+                      "a reduced component, system, state space, response "
+                      "over hertz or seconds; for shapes also a component or a "
+                      "basis",
                       false}},
         .summary = "Write a reduced component for a simulator, or a response "
                    "as a table, and say what\nis known of its errors and "
@@ -57,7 +65,11 @@ int main(int argc, char **argv)
     if (ritz_export_check(given.exporter, request) != RITZ_OK)
         cli_refuse(&program, "%s", ritz_error_message());
     request->output = run.output;
-    if (given.component && !(given.exporter->takes & RITZ_EXPORT_SHAPES))
+    if (given.component.count > 0 &&
+        !(given.exporter->takes & RITZ_EXPORT_SHAPES))
         cli_refuse(&program, "--component is for shapes of a basis");
+    if (given.states && !(given.exporter->takes & RITZ_EXPORT_STATES))
+        cli_refuse(&program, "%s takes no state space, --states is not for it",
+                   to);
     return cli_finish(&run, export_run(&run, &given));
 }

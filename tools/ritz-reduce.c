@@ -8,14 +8,19 @@ int main(int argc, char **argv)
         CLI_PAIR("band-hz", given.estimate.band_hz, "F,F",
                  "band of the error estimates [up to half the highest "
                  "frequency of the basis]"),
-        DAMPING_OPTION(&given.damping),
+        AT_OPTION(&given.model.at),
+        ORDER_OPTION(&given.model.order),
+        DAMPING_OPTION(&given.model.damping),
         CLI_FLAG("without-basis", &given.without_basis,
                  "leave out T and the full mesh, for a smaller file"),
         {0},
     };
     const cli_program program = {
         .name = "ritz-reduce",
-        .operands = {{"COMPONENT", "the full component or state space", false},
+        .operands = {{"COMPONENT",
+                      "the full component or state space, or a reduced "
+                      "component or system of which the basis was made",
+                      false},
                      {"BASIS", "what ritz-basis made of it", false}},
         .summary = "Project a component on a basis; estimate the errors; "
                    "state its mass properties.",

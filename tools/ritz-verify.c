@@ -33,7 +33,8 @@ int main(int argc, char **argv)
         .name = "ritz-verify",
         .operands = {{"FULL",
                       "the full component (ritz-assemble --full of a "
-                      "system) or state space",
+                      "system) or state space; or a reduced component or "
+                      "system that was reduced further",
                       false},
                      {"REDUCED", "the reduced component, system or state space",
                       false}},

@@ -5,6 +5,7 @@
 #ifndef RITZ_EXPORT_H
 #define RITZ_EXPORT_H
 
+#include <ritz/container.h>
 #include <ritz/model.h>
 #include <ritz/response.h>
 #include <ritz/simulate.h>
@@ -36,6 +37,20 @@ typedef struct ritz_shapes {
 ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
                                    const char *list, ritz_shapes *out);
 
+/**
+ * Modes of a system at a configuration, as its K and M stand, at the grids of
+ * its bodies where they are placed. Grids are renumbered where two bodies use
+ * one number: those of body k, from 0, by k times the next power of ten.
+ *
+ * @param[in] bodies  of each component of the system, in its order
+ * @return RITZ_ERR_ARGUMENT if the system does not know where its bodies are,
+ *         these are not its bodies, or as above
+ */
+ritz_status ritz_shapes_of_system(const ritz_system *system,
+                                  const ritz_configuration *at,
+                                  const ritz_reduced *const *bodies,
+                                  const char *list, ritz_shapes *out);
+
 /** Lowest modes of a component. @param[in] list  NULL: the first ten */
 ritz_status ritz_shapes_of_component(const ritz_component *component,
                                      const char *list, ritz_shapes *out);
@@ -51,12 +66,13 @@ void ritz_shapes_free(ritz_shapes *shapes);
 
 /* Options of an exporter; zero where not given. */
 typedef struct ritz_export_request {
-    const char *output;   /* path */
-    const char *matrices; /* "K,M"; NULL: all that the format takes */
-    bool text, dense;     /* output4 */
-    int64_t digits;       /* text */
-    const char *modes;    /* of shapes, "1-6,9"; NULL: the first ten of a
+    const char *output;      /* path */
+    const char *matrices;    /* "K,M"; NULL: all that the format takes */
+    bool text, dense;        /* output4 */
+    int64_t digits;          /* text */
+    const char *modes;       /* of shapes, "1-6,9"; NULL: the first ten of a
                              component, else all */
+    const ritz_stamp *stamp; /* of a container; NULL: an empty one */
 } ritz_export_request;
 
 /* Lines for the user: what was written, and what was lost. */
@@ -99,6 +115,7 @@ typedef struct ritz_exporter {
 
 /** All exporters, ended by NULL. */
 extern const ritz_exporter *const ritz_exporters[];
+extern const ritz_exporter ritz_exporter_container;
 extern const ritz_exporter ritz_exporter_exudyn;
 extern const ritz_exporter ritz_exporter_matlab;
 extern const ritz_exporter ritz_exporter_matrix_market;

@@ -316,6 +316,16 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
 ritz_status ritz_reduced_install(ritz_reduced *reduced);
 
 /**
+ * A reduced component as one that can be reduced again: each coordinate is a
+ * dof, scalar point 1, 2, ... Ports, which move by several coordinates, are no
+ * part of it.
+ *
+ * @return RITZ_ERR_ARGUMENT if it has columns of kind force
+ */
+ritz_status ritz_component_of_reduced(const ritz_reduced *reduced,
+                                      ritz_component *out);
+
+/**
  * How a port moves by its rows of @p T, turned into basic axes; NULL: by its
  * own dofs.
  *
@@ -430,6 +440,8 @@ typedef struct ritz_configuration {
                              about the origin of the first body's basic frame;
                              {0}: not known of every body */
     double rigid[36];     /* R'MR, symmetric */
+    ritz_dense places;    /* num_blocks x 12, R row by row and t of each body,
+                             which is at R x + t; {0}: not known */
     ritz_measures errors; /* by ritz-verify or ritz-compare */
 } ritz_configuration;
 
@@ -472,6 +484,16 @@ void ritz_configuration_name(int64_t count, const char *sweep, size_t stride,
  * stays what it was.
  */
 ritz_status ritz_configuration_install(ritz_configuration *configuration);
+
+/**
+ * What a system is at one of its configurations, as a reduced component: its
+ * coordinates are the modes, rigid ones without stiffness. It has inputs and
+ * outputs, dampers, damping, mass properties and errors, and neither ports nor
+ * T: shapes are those of the bodies.
+ */
+ritz_status ritz_reduced_of_configuration(const ritz_system *system,
+                                          const ritz_configuration *at,
+                                          ritz_reduced *out);
 
 void ritz_configuration_free(ritz_configuration *configuration);
 void ritz_system_free(ritz_system *system);
@@ -596,6 +618,16 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
                                   const ritz_damping *damping,
                                   const ritz_basis *basis,
                                   ritz_state_space *out);
+
+/**
+ * A reduced component in first-order form, with its estimates and errors; its
+ * dampers act as far as they are installed.
+ *
+ * @return as ritz_state_space_of_component
+ */
+ritz_status ritz_states_of_reduced(const ritz_reduced *reduced,
+                                   const ritz_damping *damping,
+                                   ritz_state_space *out);
 
 /**
  * Poles: eigenvalues of A, or of E^-1 A, by magnitude ascending; of a pair the

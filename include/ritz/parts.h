@@ -222,6 +222,8 @@ typedef struct ritz_io {
 ritz_status ritz_io_new(int64_t n, int64_t num_inputs, int64_t num_outputs,
                         ritz_io *out);
 
+ritz_status ritz_io_copy(const ritz_io *io, ritz_io *out);
+
 /** In the subspace x = T q: T'B, C T, Cv T, Ca T; names and limits kept. */
 ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
                             ritz_io *out);

@@ -30,8 +30,17 @@ typedef struct ritz_scene_place {
     char port[RITZ_NAME_SIZE];
 } ritz_scene_place;
 
+/* The plane in which the bodies of a scene lie and move, by its normal. */
+typedef enum ritz_plane {
+    RITZ_PLANE_NONE, /* they move in space */
+    RITZ_PLANE_YZ,
+    RITZ_PLANE_XZ,
+    RITZ_PLANE_XY,
+} ritz_plane;
+
 /*
- * What joins two ports; all but fixed ones hold one six-dof grid on each side.
+ * What joins two ports; all but fixed ones hold one grid on each side, with six
+ * dofs, or in a plane those that the joint needs there.
  * src/assembly/joints.c has the equations.
  */
 typedef enum ritz_joint_type {
@@ -61,6 +70,7 @@ enum { RITZ_MOST_FREEDOMS = 6 };
 typedef struct ritz_joint {
     char name[RITZ_NAME_SIZE];
     ritz_joint_type type;
+    ritz_plane plane; /* the scene's */
     ritz_scene_place between[2];
     /* unit, basic axes of the first body; [1] of a universal joint: of the
        second. A bushing's first axis and one in its first plane */
@@ -131,6 +141,7 @@ typedef enum ritz_extraneous {
 typedef struct ritz_scene {
     char *path; /* of the file, for messages */
     char name[RITZ_NAME_SIZE];
+    ritz_plane plane;
     int64_t num_components;
     ritz_scene_component *component;
     int64_t num_joints;

@@ -153,7 +153,7 @@ static ritz_status fill_configuration(const ritz_stage *stage,
     RITZ_CHECK(project_bodies(stage, offsetof(ritz_reduced, K4), P, &c->K4));
     RITZ_CHECK(ritz_io_project(&stage->io, P, &c->io));
     RITZ_CHECK(ritz_dampers_project(&stage->dampers, P, &c->dampers));
-    return ritz_place_mass(stage, setting, c);
+    return ritz_place_configuration(stage, setting, c);
 }
 
 ritz_status ritz_stage_assemble(const ritz_stage *stage, const double *setting,

@@ -62,6 +62,24 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
 
 void ritz_relations_free(ritz_relations *relations);
 
+/* Plane models. */
+
+/** "xy"; "" of none. */
+const char *ritz_plane_name(ritz_plane plane);
+
+/** Whether a direction, 1-6, is a motion in the plane; all are in space. */
+bool ritz_plane_has(ritz_plane plane, int64_t component);
+
+/**
+ * Whether a model, or a port whose directions are basic, lies in the plane and
+ * moves in it alone; scalar points do.
+ *
+ * @return RITZ_ERR_ARGUMENT naming the dof or the grids
+ */
+ritz_status ritz_plane_check_dofs(ritz_plane plane, int64_t count,
+                                  const ritz_dof *dof, const ritz_grids *grids);
+ritz_status ritz_plane_check_port(ritz_plane plane, const ritz_port_map *port);
+
 /* Rotations and directions in space, 3 x 3 row by row. */
 
 /** Rotation by @p degrees about a unit axis; quarter turns are exact. */
@@ -123,11 +141,13 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t *add, ritz_grids *out);
 
 /**
- * Momentum and mass of rigid motion of all bodies at their positions, for a
- * configuration that has its P; empty where a body's own are unknown.
+ * Places of all bodies, and momentum and mass of their rigid motion there, for
+ * a configuration that has its P; the latter empty where a body's own are
+ * unknown.
  */
-ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
-                            ritz_configuration *configuration);
+ritz_status ritz_place_configuration(const ritz_stage *stage,
+                                     const double *setting,
+                                     ritz_configuration *configuration);
 
 /*
  * The springs and dampers of caged directions. Spring k is stretched by row k

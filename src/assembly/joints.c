@@ -107,6 +107,7 @@ static void find_normals(const double axis[static 3], double e[static 2][3])
  *
  * A joint is six directions e in the first body's axes, three for e'delta and
  * three for e'phi, each of them locked, free or caged: on a spring and damper.
+ * Of plane models two e'delta and one e'phi are left, those in the plane.
  *
  *     type        R                   d         free are
  *     hinge       R(a, angle)         0         a'phi
@@ -226,12 +227,20 @@ static int64_t find_direction(const ritz_port_map *port, int64_t first,
     return -1;
 }
 
-/* Port rows of the six directions of a joint's one grid. */
-static ritz_status find_six(const ritz_joint_end *end, const char *called,
+/* Rows of directions that a grid has not: that of a plane model's motion out of
+   its plane, which is zero, and of direction k another, ABSENT - k. */
+enum { OUT_OF_PLANE = -1, ABSENT = -2 };
+
+static const char directions[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
+
+/* Port rows of the six directions of a joint's one grid. In space all of them
+   are due, in a plane those that the joint's relations have. */
+static ritz_status find_six(const ritz_joint_end *end, const ritz_joint *joint,
                             int64_t row[static 6])
 {
     const ritz_port_map *port = end->port;
-    static const char words[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
+    const char *called = kinds[joint->type].called;
+    const bool plane = joint->plane != RITZ_PLANE_NONE;
     int64_t others = 0;
     char missing[64] = "";
     size_t used = 0;
@@ -240,15 +249,20 @@ static ritz_status find_six(const ritz_joint_end *end, const char *called,
         others += port->dof[k].component < 1 ||
                   port->dof[k].grid != port->dof[0].grid;
     RITZ_REFUSE_IF(port->count == 0 || others > 0, RITZ_ERR_ARGUMENT,
-                   "a %s holds one six-dof grid on each side, '%s/%s' has %s",
-                   called, end->component, port->name,
+                   "a %s holds one %sgrid on each side, '%s/%s' has %s", called,
+                   plane ? "" : "six-dof ", end->component, port->name,
                    others > 0 ? "more than one grid, or a scalar point"
                               : "no grid");
     for (int64_t k = 0; k < 6; k++) {
         row[k] = find_direction(port, 0, k + 1);
-        if (row[k] < 0)
-            used += (size_t)snprintf(missing + used, sizeof missing - used,
-                                     "%s%s", used > 0 ? ", " : "", words[k]);
+        if (row[k] >= 0)
+            continue;
+        row[k] =
+            ritz_plane_has(joint->plane, k + 1) ? ABSENT - k : OUT_OF_PLANE;
+        if (!plane)
+            used +=
+                (size_t)snprintf(missing + used, sizeof missing - used, "%s%s",
+                                 used > 0 ? ", " : "", directions[k]);
     }
     RITZ_REFUSE_IF(missing[0], RITZ_ERR_ARGUMENT,
                    "a %s holds one six-dof grid on each side, grid %" PRId64
@@ -258,12 +272,13 @@ static ritz_status find_six(const ritz_joint_end *end, const char *called,
     return RITZ_OK;
 }
 
-/* sum += v'x, x at three port rows; rows with coefficient zero are left out. */
+/* sum += v'x, x at three port rows; rows with coefficient zero are left out,
+   and motions out of the plane. */
 static void add_terms(ritz_relation *r, int end, const int64_t *row,
                       const double *v)
 {
     for (int i = 0; i < 3; i++)
-        if (v[i] != 0.0) {
+        if (v[i] != 0.0 && row[i] != OUT_OF_PLANE) {
             r->row[end][r->num_terms[end]] = row[i];
             r->factor[end][r->num_terms[end]++] = v[i];
         }
@@ -335,6 +350,27 @@ static double joint_tolerance(const ritz_joint *joint,
                : RITZ_PORT_MATCH * most + RITZ_PORT_MATCH_LEAST;
 }
 
+/* Whether a direction of a joint is a motion in the plane. */
+static bool is_in_plane(ritz_plane plane, const double *e, bool rotation)
+{
+    return plane == RITZ_PLANE_NONE || (e[plane - 1] != 0.0) == rotation;
+}
+
+/* A relation of plane models may need a direction that a grid has not. */
+static ritz_status check_rows(const ritz_relation *r, const ritz_joint *joint,
+                              const ritz_joint_end end[static 2])
+{
+    for (int k = 0; k < 2; k++)
+        for (int64_t t = 0; t < r->num_terms[k]; t++)
+            RITZ_REFUSE_IF(r->row[k][t] <= ABSENT, RITZ_ERR_ARGUMENT,
+                           "a %s holds one grid on each side, grid %" PRId64
+                           " of '%s/%s' has no %s",
+                           kinds[joint->type].called, end[k].port->dof[0].grid,
+                           end[k].component, end[k].port->name,
+                           directions[ABSENT - r->row[k][t]]);
+    return RITZ_OK;
+}
+
 /* The relations of a joint of one grid on each side. */
 static ritz_status relate_six(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
@@ -345,7 +381,7 @@ static ritz_status relate_six(const ritz_joint *joint,
     int64_t row[2][6];
 
     for (int k = 0; k < 2; k++)
-        RITZ_CHECK(find_six(&end[k], kinds[joint->type].called, row[k]));
+        RITZ_CHECK(find_six(&end[k], joint, row[k]));
     RITZ_REFUSE_IF(joint->type == RITZ_JOINT_BUSHING &&
                        joint_distance(end, 0, 0) >
                            joint_tolerance(joint, end[0].port),
@@ -361,11 +397,13 @@ static ritz_status relate_six(const ritz_joint *joint,
         int at = kinds[joint->type].freedom[k];
         ritz_freedom freedom = at > 0 ? joint->freedom[at - 1] : locked;
 
-        if (freedom.state == RITZ_FREE)
+        if (freedom.state == RITZ_FREE ||
+            !is_in_plane(joint->plane, e[k], k >= 3))
             continue;
         RITZ_CHECK_ROOM(list->item, list->count, list->room);
         list->item[list->count] =
             project_motion(e[k], k >= 3, pose->R, arm, row);
+        RITZ_CHECK(check_rows(&list->item[list->count], joint, end));
         list->item[list->count++].freedom = freedom;
     }
     return RITZ_OK;

@@ -395,20 +395,32 @@ static ritz_status add_body(const ritz_invariants *own, const ritz_dense *X,
     return RITZ_OK;
 }
 
-ritz_status ritz_place_mass(const ritz_stage *stage, const double *setting,
-                            ritz_configuration *configuration)
+static ritz_status keep_places(int64_t count, const placement *body,
+                               ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(count, 12, out));
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t j = 0; j < 12; j++)
+            ritz_dense_col(out, j)[k] = j < 9 ? body[k].R[j] : body[k].t[j - 9];
+    return RITZ_OK;
+}
+
+ritz_status ritz_place_configuration(const ritz_stage *stage,
+                                     const double *setting,
+                                     ritz_configuration *configuration)
 {
     RITZ_OWN_ARRAY placement *body = NULL;
     RITZ_OWN_ARRAY ritz_joint_pose *pose = NULL;
     RITZ_OWN(ritz_dense) X = {0};
 
-    for (int64_t k = 0; k < stage->count; k++)
-        if (!stage->body[k].invariants.momentum.val)
-            return RITZ_OK;
     RITZ_CHECK_NEW(body, stage->count);
     RITZ_CHECK_NEW(pose, stage->scene->num_joints);
     RITZ_CHECK(ritz_place_joints(stage, setting, pose));
     place_bodies(stage, pose, body);
+    RITZ_CHECK(keep_places(stage->count, body, &configuration->places));
+    for (int64_t k = 0; k < stage->count; k++)
+        if (!stage->body[k].invariants.momentum.val)
+            return RITZ_OK;
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, DIRECTIONS, &X));
     RITZ_CHECK(ritz_dense_new(DIRECTIONS, configuration->K.ncol,
                               &configuration->momentum));

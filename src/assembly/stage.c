@@ -123,6 +123,19 @@ static ritz_status check_ports(const ritz_scene *scene, int64_t k,
     return RITZ_OK;
 }
 
+/* A reduced model without its basis is known by its ports alone. */
+static ritz_status check_plane(const ritz_scene *scene,
+                               const ritz_component *full,
+                               const ritz_reduced *reduced)
+{
+    if (full->num_dofs > 0)
+        return ritz_plane_check_dofs(scene->plane, full->num_dofs, full->dof,
+                                     &full->grids);
+    return reduced->dof ? ritz_plane_check_dofs(scene->plane, reduced->num_dofs,
+                                                reduced->dof, &reduced->grids)
+                        : RITZ_OK;
+}
+
 /* The model of a component of the scene: full, or reduced to as many columns as
    the scene takes. */
 static ritz_status load_model(const ritz_source *source,
@@ -158,6 +171,9 @@ ritz_status ritz_stage_load(const ritz_scene *scene, int64_t k,
     RITZ_CHECK(ritz_scene_context(
         scene, load_model(scene->source, item, &component, reduced), item->line,
         item->column, "component", item->name));
+    RITZ_CHECK(
+        ritz_scene_context(scene, check_plane(scene, &component, reduced),
+                           item->line, item->column, "component", item->name));
     if (component.num_dofs > 0)
         RITZ_CHECK(check_ports(scene, k, &component));
     RITZ_MOVE(*full, component);
@@ -300,11 +316,27 @@ static ritz_status install_dampers(ritz_stage *stage)
     return RITZ_OK;
 }
 
+/* Bodies that were not loaded here are known by their ports. */
+static ritz_status check_planes(const ritz_stage *stage)
+{
+    const ritz_scene *scene = stage->scene;
+
+    for (int64_t k = 0; k < stage->count; k++)
+        for (int64_t p = 0; p < stage->body[k].num_ports; p++)
+            RITZ_CHECK(ritz_scene_context(
+                scene,
+                ritz_plane_check_port(scene->plane, &stage->body[k].port[p]),
+                scene->component[k].line, scene->component[k].column,
+                "component", scene->component[k].name));
+    return RITZ_OK;
+}
+
 /* Count coordinates and set up the scene's inputs and outputs. */
 static ritz_status complete_stage(ritz_stage *stage)
 {
     const ritz_scene *scene = stage->scene;
 
+    RITZ_CHECK(check_planes(stage));
     RITZ_CHECK_NEW(stage->first, stage->count);
     for (int64_t k = 0; k < stage->count; k++) {
         stage->first[k] = stage->num_coordinates;

@@ -151,6 +151,9 @@
 
 /* MAC from which on two modes are the same mode. */
 #define RITZ_SAME_MODE 0.5
+/* Masses of bodies are those of a system if they differ by less than this part
+   of the largest entry: what was assembled of others differs by some of it. */
+#define RITZ_SAME_MASS 1e-6
 /* A track is nearly a tie unless the second candidate's MAC is less by this. */
 #define RITZ_TRACK_CLEAR 0.1
 /* Two modes of which each has this MAC with the other turn within their plane;

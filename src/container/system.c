@@ -99,6 +99,10 @@ static const ritz_member configuration_members[] = {
      .optional = ""},
     {"rigid", SET_REAL, RITZ_AT(ritz_configuration, rigid), "6 6", "R'MR",
      .inside = true, .optional = "momentum", .has = has_momentum},
+    {"places", MATRIX_DENSE, RITZ_AT(ritz_configuration, places), "b 12",
+     "a point x of body k is at R x + t in the basic frame of the first body: "
+     "R row by row, then t",
+     .optional = ""},
     {"errors", PART, RITZ_AT(ritz_configuration, errors), .optional = "",
      .some = 'k', .schema = &ritz_schema_measures},
     {0},
@@ -108,7 +112,8 @@ static const ritz_schema configuration_schema = {
     .name = "configuration",
     .sizes = {{'e', .offset = offsetof(ritz_configuration, K.ncol), "K"},
               {'c', .offset = offsetof(ritz_configuration, K.ncol)},
-              {'w', .offset = offsetof(ritz_configuration, num_settings), "^"}},
+              {'w', .offset = offsetof(ritz_configuration, num_settings), "^"},
+              {'b', .offset = offsetof(ritz_configuration, num_blocks), "^"}},
     .members = configuration_members,
 };
 

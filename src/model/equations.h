@@ -1,6 +1,7 @@
 /*
  * Constraint equations, made term by term and eliminated; the ties between dofs
- * of rigid bodies and averages that state them; grids as points; rows by name.
+ * of rigid bodies and averages that state them; grids as points; rows by name;
+ * mass properties.
  */
 #ifndef RITZ_MODEL_EQUATIONS_H
 #define RITZ_MODEL_EQUATIONS_H
@@ -181,5 +182,8 @@ ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
                              int b, ritz_dense *out);
 
 void ritz_nodes_free(ritz_nodes *nodes);
+
+/** Mass properties from R'MR, R the rigid motions about the basic origin. */
+void ritz_inertia_read(const ritz_dense *A, ritz_inertia *inertia);
 
 #endif

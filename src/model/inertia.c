@@ -56,7 +56,7 @@ static bool has_translations(const ritz_dense *A, int i, int j)
 }
 
 /* Inertias that the model's translations do not determine stay zero. */
-static void read_inertia(const ritz_dense *A, ritz_inertia *inertia)
+void ritz_inertia_read(const ritz_dense *A, ritz_inertia *inertia)
 {
     double m = mean_mass(A);
     double *c = inertia->centre;
@@ -86,7 +86,7 @@ ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
     if (component->grids.count > 0) {
         RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
         RITZ_CHECK(ritz_sparse_condense(&component->M, &R, &A));
-        read_inertia(&A, out);
+        ritz_inertia_read(&A, out);
     }
     return RITZ_OK;
 }

@@ -43,6 +43,22 @@ ritz_status ritz_io_project(const ritz_io *io, const ritz_dense *T,
     return RITZ_OK;
 }
 
+ritz_status ritz_io_copy(const ritz_io *io, ritz_io *out)
+{
+    RITZ_OWN(ritz_io)
+    copy = {.num_inputs = io->num_inputs, .num_outputs = io->num_outputs};
+
+    RITZ_CHECK_COPY(copy.input, io->input, io->num_inputs);
+    RITZ_CHECK_COPY(copy.output, io->output, io->num_outputs);
+    RITZ_CHECK_COPY(copy.limit, io->limit, io->num_outputs);
+    RITZ_CHECK(ritz_dense_copy(&io->B, &copy.B));
+    RITZ_CHECK(ritz_dense_copy(&io->C, &copy.C));
+    RITZ_CHECK(ritz_dense_copy(&io->Cv, &copy.Cv));
+    RITZ_CHECK(ritz_dense_copy(&io->Ca, &copy.Ca));
+    RITZ_MOVE(*out, copy);
+    return RITZ_OK;
+}
+
 void ritz_io_free(ritz_io *io)
 {
     RITZ_FREE(io->input, io->output, io->limit);

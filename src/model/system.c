@@ -123,6 +123,7 @@ void ritz_configuration_free(ritz_configuration *configuration)
     ritz_dense_free(&configuration->D);
     ritz_dense_free(&configuration->K4);
     ritz_dense_free(&configuration->momentum);
+    ritz_dense_free(&configuration->places);
     ritz_dampers_free(&configuration->dampers);
     ritz_io_free(&configuration->io);
     ritz_measures_free(&configuration->errors);

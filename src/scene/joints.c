@@ -266,6 +266,62 @@ static ritz_status read_freedoms(const ritz_yaml *yaml, const yaml_node_t *node,
     return check_cage(yaml, node, value, joint);
 }
 
+/* ---- axes of plane models ----------------------------------------------- */
+
+/*
+ * A joint of plane models has its axis in the plane or normal to it. An axis
+ * that is off by no more than scenes' digits is put there, so that no motion in
+ * the plane is mixed with one out of it.
+ */
+static ritz_status settle_axis(const ritz_yaml *yaml, const yaml_node_t *node,
+                               const ritz_joint *joint, bool lies, bool normal,
+                               double *axis)
+{
+    static const char *const wanted[] = {"normal to it", "in it",
+                                         "in it or normal to it"};
+    const int n = (int)joint->plane - 1;
+    const double other[] = {n == 0, n == 1, n == 2};
+
+    if (lies && fabs(axis[n]) <= RITZ_PARALLEL_AXES) {
+        const double left = sqrt(1.0 - axis[n] * axis[n]);
+
+        axis[n] = 0.0;
+        for (int i = 0; i < 3; i++)
+            axis[i] /= left;
+        return RITZ_OK;
+    }
+    RITZ_REFUSE_AT(!normal || sine_between(axis, other) > RITZ_PARALLEL_AXES,
+                   yaml, node,
+                   "the models lie in a plane, and the axis of a %s must be %s",
+                   kinds[joint->type].called, wanted[lies + (lies && normal)]);
+    for (int i = 0; i < 3; i++)
+        axis[i] = i == n ? copysign(1.0, axis[i]) : 0.0;
+    return RITZ_OK;
+}
+
+/* A hinge turns about the normal, a slider moves in the plane. */
+static ritz_status settle_plane(const ritz_yaml *yaml, const yaml_node_t *node,
+                                const yaml_node_t *const *value,
+                                ritz_joint *joint)
+{
+    const yaml_node_t *axes = value[KEY_AXES] ? value[KEY_AXES] : node;
+
+    if (joint->plane == RITZ_PLANE_NONE)
+        return RITZ_OK;
+    RITZ_REFUSE_AT(joint->type == RITZ_JOINT_UNIVERSAL, yaml, node,
+                   "the models lie in a plane, where nothing turns about the "
+                   "two axes of a universal joint: a hinge is meant");
+    if (joint->type == RITZ_JOINT_HINGE)
+        return settle_axis(yaml, value[KEY_AXIS], joint, false, true,
+                           joint->axis[0]);
+    if (joint->type == RITZ_JOINT_SLIDER)
+        return settle_axis(yaml, value[KEY_AXIS], joint, true, false,
+                           joint->axis[0]);
+    for (int k = 0; k < 2 && joint->type == RITZ_JOINT_BUSHING; k++)
+        RITZ_CHECK(settle_axis(yaml, axes, joint, true, true, joint->axis[k]));
+    return RITZ_OK;
+}
+
 /* ---- a joint ------------------------------------------------------------ */
 
 static ritz_status read_between(const ritz_yaml *yaml, const yaml_node_t *node,
@@ -368,9 +424,11 @@ static ritz_status read_joint(const ritz_yaml *yaml, const yaml_node_t *node,
 
     ritz_yaml_locate(node, &joint->line, &joint->column);
     joint->axis[0][0] = joint->axis[1][1] = 1.0;
+    joint->plane = scene->plane;
     RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_KEYS, keys, joint, value));
     RITZ_CHECK(read_between(yaml, value[KEY_BETWEEN], scene, joint->between));
     RITZ_CHECK(check_keys(yaml, node, joint, value));
+    RITZ_CHECK(settle_plane(yaml, node, value, joint));
     joint->num_freedoms = kinds[joint->type].freedoms;
     RITZ_CHECK(read_freedoms(yaml, node, value, joint));
     return read_sweeps(yaml, node, value, joint, scene);

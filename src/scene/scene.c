@@ -404,6 +404,7 @@ static ritz_status take_damping(const ritz_yaml *yaml, const yaml_node_t *node,
 
 enum { /* in the order in which parts name each other */
        SCENE,
+       PLANE,
        COMPONENTS,
        JOINTS,
        CONFIGURATIONS,
@@ -418,7 +419,17 @@ enum { /* in the order in which parts name each other */
        NUM_KEYS
 };
 
+static const char planes[][8] = {
+    [RITZ_PLANE_NONE] = "none",
+    [RITZ_PLANE_YZ] = "yz",
+    [RITZ_PLANE_XZ] = "xz",
+    [RITZ_PLANE_XY] = "xy",
+};
+
 static const ritz_yaml_key keys[NUM_KEYS] = {
+    [PLANE] = {"plane", false, RITZ_YAML_WORD,
+               RITZ_YAML_FIELD(ritz_scene, plane),
+               RITZ_YAML_WORDS("plane", planes)},
     [SCENE] = {"scene", true, RITZ_YAML_NAME,
                .offset = offsetof(ritz_scene, name)},
     [BAND] = {"band_hz", false, RITZ_YAML_BY_HAND,

@@ -218,6 +218,31 @@ ritz_status model_at(model *m, const char *path, const char *at)
     return RITZ_OK;
 }
 
+ritz_status model_as_reduced(model *m, const char *path,
+                             const model_options *given)
+{
+    RITZ_CHECK(model_prefix(m, path, given->order));
+    RITZ_CHECK(model_at(m, path, given->at));
+    if (!m->at)
+        return RITZ_OK;
+    RITZ_CHECK_IN(
+        path, ritz_reduced_of_configuration(&m->system, m->at, &m->reduced));
+    m->kind = MODEL_REDUCED;
+    m->at = NULL;
+    return RITZ_OK;
+}
+
+ritz_status model_as_component(model *m, const char *path,
+                               const model_options *given)
+{
+    RITZ_CHECK(model_as_reduced(m, path, given));
+    if (m->kind != MODEL_REDUCED)
+        return RITZ_OK;
+    RITZ_CHECK_IN(path, ritz_component_of_reduced(&m->reduced, &m->component));
+    m->kind = MODEL_COMPONENT;
+    return RITZ_OK;
+}
+
 ritz_status model_prefix(model *m, const char *path, int64_t order)
 {
     ritz_reduced prefix = {0};

@@ -44,7 +44,8 @@ enum {
     X(STATES, state_space, states, "state-space", "a state space")             \
     X(SIMULATION, simulation, simulation, "simulation", "a time response")
 
-/* A container: the object that `kind` names, others empty. */
+/* A container: the object that `kind` names, others empty but for what it was
+   made of. */
 typedef struct model {
     model_kind kind;
 #define MODEL_MEMBER(KIND, type, member, name, noun) ritz_##type member;
@@ -132,6 +133,21 @@ ritz_status model_foresee(cli_run *run, const ritz_stage *stage);
 
 /** Choose the configuration of --at; @p at given for no system is refused. */
 ritz_status model_at(model *model, const char *path, const char *at);
+
+/**
+ * What a tool that takes a reduced component takes too: of a nested one the
+ * first columns, and a system at its configuration, which becomes the reduced
+ * component that it is there.
+ */
+ritz_status model_as_reduced(model *model, const char *path,
+                             const model_options *given);
+
+/**
+ * What a tool that takes a component takes too: a reduced component or system
+ * as above, whose coordinates become dofs; `reduced` stays beside it.
+ */
+ritz_status model_as_component(model *model, const char *path,
+                               const model_options *given);
 
 /**
  * Take the first @p order columns of what was read, before anything is made of

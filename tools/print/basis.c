@@ -93,8 +93,9 @@ static ritz_status refuse_space(const char *path, const ritz_method *method)
 
 /* The model to be reduced, of a kind that the method takes. */
 static ritz_status read_full(cli_run *run, const char *path,
-                             const ritz_method *method, model *out)
+                             const basis_options *given, model *out)
 {
+    const ritz_method *method = given->method;
     bool space = method->uses & RITZ_USES_SPACE;
     model_kind kind = MODEL_ANY;
     const char *noun = NULL;
@@ -104,8 +105,26 @@ static ritz_status read_full(cli_run *run, const char *path,
         if (kind == MODEL_STATES)
             return refuse_space(path, method);
     }
-    return model_read(run, path, MODEL_COMPONENT | (space ? MODEL_STATES : 0),
-                      out);
+    RITZ_CHECK(model_read(run, path,
+                          MODEL_COMPONENT | MODEL_REDUCED | MODEL_SYSTEM |
+                              (space ? MODEL_STATES : 0),
+                          out));
+    return model_as_component(out, path, &given->model);
+}
+
+/* A port of a reduced component moves by several coordinates, none of which
+   can be attached in its place. */
+static ritz_status check_ports(const char *path, const model *full,
+                               const basis_options *given)
+{
+    const bool attaches = given->method->uses & RITZ_USES_ATTACHED;
+    const bool refused = given->ports ? *given->ports != '\0' : attaches;
+
+    RITZ_REFUSE_IF(full->reduced.num_ports > 0 && refused, RITZ_ERR_ARGUMENT,
+                   "'%s' is a reduced component, whose ports are no dofs that "
+                   "%s could attach: --attach '' leaves them free",
+                   path, given->method->name);
+    return RITZ_OK;
 }
 
 /* Relative gap of value k to the one above it; 1 at either end. */
@@ -153,7 +172,8 @@ ritz_status basis_run(cli_run *run, basis_options *given)
     RITZ_OWN(model) made = {.kind = MODEL_BASIS};
 
     cli_record(run, method->name, -1);
-    RITZ_CHECK(read_full(run, path, method, &m));
+    RITZ_CHECK(read_full(run, path, given, &m));
+    RITZ_CHECK(check_ports(path, &m, given));
     if (m.kind == MODEL_STATES)
         request->space = &m.states;
     else
@@ -188,7 +208,24 @@ static void drop_basis(ritz_reduced *reduced)
     reduced->dof = NULL;
 }
 
-static ritz_status reduce_to_matrices(cli_run *run, const ritz_component *full,
+/* A component in a basis. What was reduced before is projected once more, so
+   that its ports and shapes follow; its coordinates are no dofs of theirs. */
+static ritz_status project_component(const model *full, const ritz_basis *basis,
+                                     ritz_reduced *out)
+{
+    if (full->reduced.num_ports == 0 && !full->reduced.T.val)
+        return ritz_reduce(&full->component, basis, out);
+    RITZ_CHECK(ritz_reduced_project(&full->reduced, &basis->T, out));
+    ritz_columns_free(&out->columns);
+    RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count, NULL,
+                                 &out->columns));
+    for (int64_t j = 0; j < out->columns.count; j++)
+        out->columns.dof[j] = -1;
+    out->origin = basis->origin;
+    return RITZ_OK;
+}
+
+static ritz_status reduce_to_matrices(cli_run *run, const model *full,
                                       const ritz_basis *basis,
                                       const reduce_options *given)
 {
@@ -197,8 +234,9 @@ static ritz_status reduce_to_matrices(cli_run *run, const ritz_component *full,
     ritz_reduced *reduced = &made.reduced;
     const ritz_columns *c = &reduced->columns;
 
-    RITZ_CHECK_IN(what, ritz_reduce(full, basis, reduced));
-    RITZ_CHECK_IN(what, ritz_estimate(full, basis, &given->estimate, reduced));
+    RITZ_CHECK_IN(what, project_component(full, basis, reduced));
+    RITZ_CHECK_IN(what, ritz_estimate(&full->component, basis, &given->estimate,
+                                      reduced));
     if (given->without_basis)
         drop_basis(reduced);
     RITZ_CHECK(describe_output(run, &made));
@@ -271,17 +309,18 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
     RITZ_OWN(model) full = {0};
     RITZ_OWN(model) basis = {0};
 
-    RITZ_CHECK(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
-                          &full));
+    RITZ_CHECK(model_read(run, run->operand[0], MODEL_DYNAMIC, &full));
+    RITZ_CHECK(model_as_component(&full, run->operand[0], &given->model));
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
     model_warn_loads(run, run->operand[0], full.component.num_loads);
-    RITZ_CHECK(model_damping(&full, given->damping, &given->estimate.damping));
+    RITZ_CHECK(
+        model_damping(&full, given->model.damping, &given->estimate.damping));
     RITZ_REFUSE_IF(
         given->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
         "a reduced state space keeps no basis, --without-basis is for "
         "components");
     if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
         return reduce_to_states(run, &full, &basis.basis);
-    return reduce_to_matrices(run, &full.component, &basis.basis, given);
+    return reduce_to_matrices(run, &full, &basis.basis, given);
 }

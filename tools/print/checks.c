@@ -36,15 +36,15 @@ const ritz_check *checks_first(const ritz_audit *audit)
     return NULL;
 }
 
-ritz_status checks_run(cli_run *run)
+ritz_status checks_run(cli_run *run, const model_options *given)
 {
     const char *path = run->operand[0];
     const ritz_check *first = NULL;
     RITZ_OWN(model) m = {0};
     RITZ_OWN(ritz_audit) audit = {0};
 
-    RITZ_CHECK(model_read(run, path,
-                          MODEL_COMPONENT | MODEL_REDUCED | MODEL_STATES, &m));
+    RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
+    RITZ_CHECK(model_as_reduced(&m, path, given));
     cli_record(run, m.kind == MODEL_COMPONENT ? "audit" : "probe",
                ritz_model_order(model_reference(&m)));
     RITZ_CHECK_IN(path, m.kind == MODEL_COMPONENT

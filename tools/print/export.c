@@ -1,6 +1,7 @@
 #include "print/print.h"
 
 RITZ_ARRAY_OF(ritz_dense);
+RITZ_ARRAY_OF(model);
 
 enum { SUM_SIZE = 2 * RITZ_WHERE_SIZE + RITZ_NAME_SIZE + 8 };
 
@@ -227,24 +228,74 @@ static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
 {
     RITZ_OWN(model) of = {0};
 
-    RITZ_REFUSE_IF(!given->component, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(given->component.count != 1, RITZ_ERR_ARGUMENT,
                    "'%s' is a basis, which knows no places: name its component "
                    "with --component",
                    run->operand[0]);
-    RITZ_CHECK(model_read(run, given->component, MODEL_COMPONENT, &of));
+    RITZ_CHECK(model_read(run, given->component.text[0], MODEL_COMPONENT, &of));
     return ritz_shapes_of_basis(basis, &of.component, given->request.modes,
                                 out);
 }
 
-/* Modes of a reduced component or of a component, or columns of a basis. */
+/* "BODY=FILE" among those that are given; NULL: there is none. */
+static const char *find_body(const export_options *given, const char *name)
+{
+    const size_t length = strlen(name);
+
+    for (int k = 0; k < given->component.count; k++) {
+        const char *text = given->component.text[k];
+
+        if (strncmp(text, name, length) == 0 && text[length] == '=')
+            return text + length + 1;
+    }
+    return NULL;
+}
+
+/* Modes of a system, whose bodies bring their grids. */
+static ritz_status find_system_shapes(cli_run *run, const model *m,
+                                      const export_options *given,
+                                      ritz_shapes *out)
+{
+    const ritz_system *system = &m->system;
+    RITZ_OWN(model_array) body = {.count = system->num_components};
+    RITZ_OWN_ARRAY const ritz_reduced **reduced = NULL;
+
+    RITZ_CHECK_NEW(body.at, body.count);
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): an array of pointers
+    RITZ_CHECK_NEW(reduced, body.count);
+    for (int64_t c = 0; c < body.count; c++) {
+        const char *name = system->component[c].name;
+        const char *path = find_body(given, name);
+
+        RITZ_REFUSE_IF(!path, RITZ_ERR_ARGUMENT,
+                       "a system holds no grids, its shapes are those of its "
+                       "bodies: name the reduced component of '%s' with "
+                       "--component %s=FILE",
+                       name, name);
+        RITZ_CHECK(model_read(run, path, MODEL_REDUCED, &body.at[c]));
+        reduced[c] = &body.at[c].reduced;
+    }
+    RITZ_REFUSE_IF(given->component.count != body.count, RITZ_ERR_ARGUMENT,
+                   "%d bodies are named by --component, there are %ld",
+                   given->component.count, body.count);
+    return ritz_shapes_of_system(system, m->at, reduced, given->request.modes,
+                                 out);
+}
+
+/* Modes of a reduced component, of a component or of a system, or columns of a
+   basis. */
 static ritz_status find_shapes(cli_run *run, const model *m,
                                const export_options *given, ritz_shapes *out)
 {
     const char *modes = given->request.modes;
 
-    RITZ_REFUSE_IF(
-        given->component && m->kind != MODEL_BASIS, RITZ_ERR_ARGUMENT,
-        "--component is for a basis, '%s' knows its places", run->operand[0]);
+    if (m->kind == MODEL_SYSTEM)
+        return find_system_shapes(run, m, given, out);
+    RITZ_REFUSE_IF(given->component.count > 0 && m->kind != MODEL_BASIS,
+                   RITZ_ERR_ARGUMENT,
+                   "--component is for a basis or a system, '%s' knows its "
+                   "places",
+                   run->operand[0]);
     if (m->kind == MODEL_BASIS)
         return find_basis_shapes(run, &m->basis, given, out);
     return m->kind == MODEL_COMPONENT
@@ -258,11 +309,12 @@ static int kinds_of(const ritz_exporter *exporter)
     static const struct {
         int takes, kinds;
     } rows[] = {
-        {RITZ_EXPORT_REDUCED, MODEL_REDUCED},
+        {RITZ_EXPORT_REDUCED, MODEL_REDUCED | MODEL_SYSTEM},
         {RITZ_EXPORT_STATES, MODEL_STATES},
         {RITZ_EXPORT_RESPONSE, MODEL_RESPONSE},
         {RITZ_EXPORT_SIMULATION, MODEL_SIMULATION},
-        {RITZ_EXPORT_SHAPES, MODEL_REDUCED | MODEL_COMPONENT | MODEL_BASIS},
+        {RITZ_EXPORT_SHAPES,
+         MODEL_REDUCED | MODEL_SYSTEM | MODEL_COMPONENT | MODEL_BASIS},
     };
     int kinds = 0;
 
@@ -278,6 +330,7 @@ static ritz_status export_model(cli_run *run, model *m,
 {
     const ritz_exporter *exporter = given->exporter;
     ritz_export_object object = {0};
+    ritz_export_request request = given->request;
     RITZ_OWN(ritz_shapes) shapes = {0};
 
     if (m->kind == MODEL_RESPONSE) {
@@ -290,7 +343,7 @@ static ritz_status export_model(cli_run *run, model *m,
         RITZ_CHECK(say_state_errors(run, &m->states, given->force));
         object.states = &m->states;
     } else if (exporter->takes & RITZ_EXPORT_SHAPES) {
-        RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
+        RITZ_CHECK_IN(run->operand[0], model_install(m, &given->model.damper));
         sink_list(run, "shapes");
         RITZ_CHECK_IN(run->operand[0], find_shapes(run, m, given, &shapes));
         sink_end(run);
@@ -299,11 +352,51 @@ static ritz_status export_model(cli_run *run, model *m,
         object.shapes = &shapes;
     } else {
         cli_record(run, exporter->name, m->reduced.K.nrow);
-        RITZ_CHECK_IN(run->operand[0], model_install(m, &given->damper));
+        RITZ_CHECK_IN(run->operand[0], model_install(m, &given->model.damper));
         RITZ_CHECK(check_reduced(run, m, given));
         object.reduced = &m->reduced;
     }
-    return exporter->write(&object, &given->request, done);
+    request.stamp = cli_stamp(run);
+    return exporter->write(&object, &request, done);
+}
+
+/* With --states, or as it stands with the damping that is asked for. */
+static ritz_status settle_damping(model *m, const char *path,
+                                  const export_options *given)
+{
+    const char *text = given->model.damping;
+
+    RITZ_REFUSE_IF((text || given->states) && m->kind != MODEL_REDUCED,
+                   RITZ_ERR_ARGUMENT,
+                   "'%s' is neither a reduced component nor a system: %s is "
+                   "not for it",
+                   path, given->states ? "--states" : "--damping");
+    if (m->kind != MODEL_REDUCED)
+        return RITZ_OK;
+    RITZ_CHECK(model_damping(m, text, &m->damping));
+    if (text)
+        ritz_damping_print(&m->damping, m->reduced.damping);
+    if (!given->states)
+        return RITZ_OK;
+    RITZ_CHECK_IN(path, model_install(m, &given->model.damper));
+    RITZ_CHECK_IN(path,
+                  ritz_states_of_reduced(&m->reduced, &m->damping, &m->states));
+    m->kind = MODEL_STATES;
+    return RITZ_OK;
+}
+
+/* Formats of matrices take a system, and viewers its bodies. */
+static ritz_status check_kind(const model *m, const char *path,
+                              const ritz_exporter *exporter)
+{
+    RITZ_REFUSE_IF(
+        m->kind == MODEL_SYSTEM &&
+            !(exporter->takes & (RITZ_EXPORT_STATES | RITZ_EXPORT_SHAPES)),
+        RITZ_ERR_ARGUMENT,
+        "'%s' is a system, and %s wants a body with its grids: export the "
+        "bodies, which ritz-compare and ritz-fit write by --components",
+        path, exporter->name);
+    return RITZ_OK;
 }
 
 ritz_status export_run(cli_run *run, const export_options *given)
@@ -317,7 +410,12 @@ ritz_status export_run(cli_run *run, const export_options *given)
     sink_end(run);
     cli_record(run, given->exporter->name, -1);
     RITZ_CHECK(model_read(run, path, kinds_of(given->exporter), &m));
-    RITZ_CHECK(model_prefix(&m, path, given->order));
+    RITZ_CHECK(check_kind(&m, path, given->exporter));
+    if (given->exporter->takes & RITZ_EXPORT_SHAPES && m.kind == MODEL_SYSTEM)
+        RITZ_CHECK(model_at(&m, path, given->model.at));
+    else
+        RITZ_CHECK(model_as_reduced(&m, path, &given->model));
+    RITZ_CHECK(settle_damping(&m, path, given));
     RITZ_CHECK(export_model(run, &m, given, &done));
     cli_say(run, "%s: %s", run->output, given->exporter->summary);
     SINK_EACH(run, "said", k, done.count) {

@@ -27,13 +27,14 @@ typedef struct basis_options {
     const char *ports;    /* "PORT[,PORT]"; NULL: all */
     cli_list neighbours;  /* "PORT=FILE:PORT" */
     ritz_request request; /* the component is taken from the operand */
+    model_options model;  /* configuration or columns of the operand */
 } basis_options;
 
 ritz_status basis_run(cli_run *run, basis_options *given);
 
 typedef struct reduce_options {
     bool without_basis;
-    const char *damping; /* NULL: the model's own */
+    model_options model; /* configuration or columns, and damping */
     ritz_estimate_request estimate;
 } reduce_options;
 
@@ -46,7 +47,7 @@ ritz_status reduce_run(cli_run *run, reduce_options *given);
  *
  * @return RITZ_ERR_FORMAT naming the first check that fails
  */
-ritz_status checks_run(cli_run *run);
+ritz_status checks_run(cli_run *run, const model_options *given);
 
 /** A table, the number of each verdict, and a list. */
 void checks_say(cli_run *run, const char *key, const ritz_audit *audit);
@@ -72,10 +73,10 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given);
 typedef struct export_options {
     const ritz_exporter *exporter;
     ritz_export_request request;
-    int64_t order;         /* columns of a nested component; 0: all */
-    const char *component; /* that a basis is of */
-    cli_list damper;
+    model_options model;
+    cli_list component; /* that a basis is of, or "BODY=FILE" of a system */
     bool force;
+    bool states; /* write a reduced component as a state space */
 } export_options;
 
 /**

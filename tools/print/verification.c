@@ -140,18 +140,30 @@ static ritz_status settle_matrices(cli_run *run, model *full, model *reduced,
     return ritz_context(model_install(reduced, damper), run->operand[1]);
 }
 
+/* --at is for whichever is a system, --order for the reduced model. */
+static ritz_status settle_configurations(const cli_run *run, model *full,
+                                         model *reduced,
+                                         const model_options *given)
+{
+    const bool placed = full->kind == MODEL_SYSTEM;
+    const model_options whole = {.at = placed ? given->at : NULL};
+    const bool also = !placed || reduced->kind == MODEL_SYSTEM;
+
+    RITZ_CHECK(model_as_component(full, run->operand[0], &whole));
+    RITZ_CHECK(model_prefix(reduced, run->operand[1], given->order));
+    return model_at(reduced, run->operand[1], also ? given->at : NULL);
+}
+
 ritz_status verify_run(cli_run *run, verify_options *given)
 {
     const char *path = run->operand[1];
     RITZ_OWN(model) full = {0}, reduced = {0};
     RITZ_OWN(ritz_measures) measures = {0};
 
-    RITZ_CHECK(model_read(run, run->operand[0], MODEL_COMPONENT | MODEL_STATES,
-                          &full));
+    RITZ_CHECK(model_read(run, run->operand[0], MODEL_DYNAMIC, &full));
     RITZ_CHECK(model_read(
         run, path, MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &reduced));
-    RITZ_CHECK(model_prefix(&reduced, path, given->model.order));
-    RITZ_CHECK(model_at(&reduced, path, given->model.at));
+    RITZ_CHECK(settle_configurations(run, &full, &reduced, &given->model));
     RITZ_CHECK(check_limits(run, given, reduced.kind == MODEL_STATES));
     RITZ_CHECK(reduced.kind == MODEL_STATES
                    ? settle_states(run, &full, &reduced, given)

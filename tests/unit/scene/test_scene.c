@@ -376,7 +376,7 @@ static void bad_keys_are_refused(void **)
          "s:3:6: key 'model' is missing"},
         {"[a]: b\n", "s:1:1: a word or number is expected here, not a list"},
         {"<<: {a: b}\n",
-         "s:1:1: unknown key '<<', there is scene, components, joints, "
+         "s:1:1: unknown key '<<', there is scene, plane, components, joints, "
          "configurations, inputs, outputs, band_hz, damping, select, "
          "composite, augment, extraneous"},
         {SMALL "joints: [{between: [a/x, b/x], type: fixed}]\n",

@@ -1,0 +1,133 @@
+/*
+ * What tools make of small models so that each may follow another: a
+ * configuration of a system as a reduced component, a reduced component as a
+ * component, and either as a state space.
+ */
+#include "base/alloc.h"
+#include "model/equations.h"
+
+#include <ritz/matrix.h>
+#include <ritz/model.h>
+
+#include <stdio.h>
+#include <string.h>
+
+/* Column @p j of a matrix has no entry but on its diagonal. */
+static bool is_decoupled(const ritz_dense *A, int64_t j)
+{
+    for (int64_t i = 0; i < A->nrow; i++)
+        if (i != j &&
+            (ritz_dense_col(A, j)[i] != 0.0 || ritz_dense_col(A, i)[j] != 0.0))
+            return false;
+    return true;
+}
+
+/*
+ * K of the modes. What is left of a rigid one's eigenvalue is rounding and
+ * becomes 0, unless springs have been installed since.
+ */
+static ritz_status copy_stiffness(const ritz_configuration *at, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_copy(&at->K, out));
+    for (int64_t j = 0; j < at->num_rigid; j++)
+        if (ritz_dense_col(out, j)[j] == at->lambda[j] && is_decoupled(out, j))
+            ritz_dense_col(out, j)[j] = 0.0;
+    return RITZ_OK;
+}
+
+/* Each column is a mode, the rigid ones first. */
+static ritz_status describe_modes(const ritz_configuration *at,
+                                  ritz_columns *out)
+{
+    RITZ_CHECK(ritz_columns_new(at->K.ncol, out));
+    for (int64_t j = 0; j < out->count; j++) {
+        const bool rigid = j < at->num_rigid;
+
+        out->kind[j] = rigid ? RITZ_COLUMN_RIGID : RITZ_COLUMN_NORMAL;
+        out->hertz[j] = rigid ? 0.0 : ritz_eigen_hertz(at->lambda[j]);
+    }
+    return RITZ_OK;
+}
+
+static ritz_status copy_optional(const ritz_dense *A, ritz_dense *out)
+{
+    return A->val ? ritz_dense_copy(A, out) : RITZ_OK;
+}
+
+ritz_status ritz_reduced_of_configuration(const ritz_system *system,
+                                          const ritz_configuration *at,
+                                          ritz_reduced *out)
+{
+    RITZ_OWN(ritz_reduced) made = {.origin = {.method = "system"}};
+    double mass[sizeof at->rigid / sizeof *at->rigid];
+    const ritz_dense rigid = {6, 6, mass};
+
+    memcpy(mass, at->rigid, sizeof mass);
+    snprintf(made.origin.options, sizeof made.origin.options, "%s", at->at);
+    snprintf(made.origin.reference, sizeof made.origin.reference,
+             "McDaniel2000");
+    memcpy(made.units, system->units, sizeof made.units);
+    memcpy(made.damping, system->damping, sizeof made.damping);
+    for (int64_t c = 0; c < system->num_components; c++)
+        made.num_dofs += system->component[c].order_full;
+    RITZ_CHECK(copy_stiffness(at, &made.K));
+    RITZ_CHECK(ritz_dense_copy(&at->M, &made.M));
+    RITZ_CHECK(copy_optional(&at->D, &made.D));
+    RITZ_CHECK(copy_optional(&at->K4, &made.K4));
+    RITZ_CHECK(ritz_dampers_copy(&at->dampers, &made.dampers));
+    RITZ_CHECK(ritz_io_copy(&at->io, &made.io));
+    RITZ_CHECK(describe_modes(at, &made.columns));
+    RITZ_CHECK(ritz_measures_copy(&at->errors, &made.errors));
+    if (at->momentum.val)
+        ritz_inertia_read(&rigid, &made.inertia);
+    RITZ_MOVE(*out, made);
+    return RITZ_OK;
+}
+
+ritz_status ritz_component_of_reduced(const ritz_reduced *reduced,
+                                      ritz_component *out)
+{
+    const int64_t n = reduced->K.nrow;
+    RITZ_OWN(ritz_component) made = {.num_dofs = n};
+
+    for (int64_t j = 0; j < reduced->columns.count; j++)
+        RITZ_REFUSE_IF(reduced->columns.kind[j] == RITZ_COLUMN_FORCE,
+                       RITZ_ERR_ARGUMENT,
+                       "column %lld is a force at an interface, which no "
+                       "displacement can stand for: take the same made by "
+                       "macneal-rubin",
+                       (long long)j + 1);
+    RITZ_CHECK_NEW(made.dof, n);
+    for (int64_t j = 0; j < n; j++)
+        made.dof[j] = (ritz_dof){.grid = j + 1};
+    RITZ_CHECK(ritz_sparse_from_dense(&reduced->K, &made.K));
+    RITZ_CHECK(ritz_sparse_from_dense(&reduced->M, &made.M));
+    if (reduced->D.val)
+        RITZ_CHECK(ritz_sparse_from_dense(&reduced->D, &made.D));
+    if (reduced->K4.val)
+        RITZ_CHECK(ritz_sparse_from_dense(&reduced->K4, &made.K4));
+    RITZ_CHECK(ritz_io_copy(&reduced->io, &made.io));
+    RITZ_CHECK(ritz_dampers_copy(&reduced->dampers, &made.dampers));
+    memcpy(made.damping, reduced->damping, sizeof made.damping);
+    memcpy(made.units, reduced->units, sizeof made.units);
+    RITZ_CHECK(ritz_component_settle(&made, false));
+    RITZ_MOVE(*out, made);
+    return RITZ_OK;
+}
+
+ritz_status ritz_states_of_reduced(const ritz_reduced *reduced,
+                                   const ritz_damping *damping,
+                                   ritz_state_space *out)
+{
+    RITZ_OWN(ritz_state_space) made = {0};
+    const ritz_state_space *same = NULL;
+
+    RITZ_CHECK(ritz_model_states(ritz_model_of_reduced(reduced, damping), &made,
+                                 &same));
+    made.origin = reduced->origin;
+    memcpy(made.units, reduced->units, sizeof made.units);
+    RITZ_CHECK(ritz_measures_copy(&reduced->estimates, &made.estimates));
+    RITZ_CHECK(ritz_measures_copy(&reduced->errors, &made.errors));
+    RITZ_MOVE(*out, made);
+    return RITZ_OK;
+}
