@@ -186,6 +186,8 @@ typedef struct ritz_compare_row {
                                between, they would have been */
     int64_t *kept;    /* num_kept indices into the flexible modes, ascending */
     int64_t num_completed; /* of those, kept only as a cluster is never split */
+    int64_t num_joined;    /* flexible modes that damping joins to others, with
+                              which they are ranked */
     int64_t num_vectors;   /* Krylov vectors in their place */
     int64_t order;         /* of the stage-2 system, strays removed */
     double frequency_error; /* worst relative, of those modes; NaN: no mode */

@@ -505,14 +505,23 @@ void ritz_system_free(ritz_system *system);
  *     y = sum_k c_k q_k + cv_k q_k' + ca_k q_k''
  */
 
-/* Flexible modes of a model, with their own share of inputs and outputs. */
+/*
+ * Flexible modes of a model, with their own share of inputs and outputs. Where
+ * damping couples modes, rigid ones that it couples to flexible ones follow
+ * them in rows of B and Delta and in columns of C, Cv and Delta.
+ */
 typedef struct ritz_modal {
-    int64_t count;    /* m */
-    double *omega;    /* m, ascending, positive  [rad/s] */
-    double *zeta;     /* m, positive where a ranking needs damping */
-    ritz_dense B;     /* m x inputs, inputs scaled by their weights */
-    ritz_dense C, Cv; /* outputs x m, divided by limits; acceleration outputs
-                          are folded into both, their feedthrough left out */
+    int64_t count;     /* m */
+    double *omega;     /* m, ascending, positive  [rad/s] */
+    double *zeta;      /* m, of the diagonal of damping; positive unless damping
+                         couples modes */
+    ritz_dense B;      /* m + r x inputs, inputs scaled by their weights */
+    ritz_dense C, Cv;  /* outputs x m + r, divided by limits; acceleration
+                          outputs are folded into both, their feedthrough left
+                          out */
+    int64_t num_rigid; /* r */
+    ritz_dense Delta;  /* m + r x m + r, Phi'D Phi; {0}: damping couples no
+                          modes, and is 2 zeta omega */
 } ritz_modal;
 
 /*

@@ -359,6 +359,12 @@
 /* Damping between two modes, over the root of their own, above which they are
    coupled: the closed forms err by its square. */
 #define RITZ_DAMPING_COUPLES 1e-6
+/* ... above which two modes are ranked as one: the value of each alone, damped
+   by its own part, errs by some of it where their frequencies are close. */
+#define RITZ_DAMPING_JOINS 0.1
+/* A pole nearer to 0 than this part of the lowest frequency, and not left of
+   the axis beyond rounding, is one of rigid motion at 0. */
+#define RITZ_POLE_AT_REST 1e-6
 /* Roundings of a band Gramian, relative to the magnitudes it sums: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49
 /* Up to this ratio a mode is eliminated as a whole: eigenvectors of its two

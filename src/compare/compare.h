@@ -34,11 +34,15 @@ const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
                                    const ritz_system *system, double *least);
 
-/** Value of each flexible mode in the scene's ranking; 1 where modes are not
- * ranked. */
+/**
+ * Value of each flexible mode in the scene's ranking; 1 where modes are not
+ * ranked.
+ *
+ * @param[out] joined  modes that damping joins to others; NULL: not wanted
+ */
 ritz_status ritz_compare_values(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
-                                double *value);
+                                double *value, int64_t *joined);
 
 /**
  * Choose the modes of one configuration that matter, or count the Krylov

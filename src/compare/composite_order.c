@@ -42,7 +42,7 @@ static ritz_status weigh_modes(ordering *g)
 
         RITZ_CHECK_NEW(given->value, flexible);
         RITZ_CHECK(
-            ritz_compare_values(g->stage->scene, given->at, given->value));
+            ritz_compare_values(g->stage->scene, given->at, given->value, NULL));
         for (int64_t j = 0; j < flexible; j++)
             largest = fmax(largest, given->value[j]);
     }

@@ -132,9 +132,21 @@ static bool is_ranked(const ritz_scene *scene)
            (scene->num_outputs > 0 || !(needs & RITZ_RANK_OUTPUTS));
 }
 
+/* Modes of another frequency than the first of their cluster. */
+static int64_t count_joined(const ritz_ranking *r)
+{
+    double gap = (double)r->count * RITZ_CLUSTER_GAP;
+    int64_t count = 0;
+
+    for (int64_t k = 0; k < r->count; k++)
+        count += r->hertz[k] - r->hertz[r->cluster[k]] > gap * r->hertz[k];
+    return count;
+}
+
 /* Put what one ranking says of the modes of one configuration into `value`. */
 static ritz_status rank_modes(const ritz_scene *scene,
-                              const ritz_configuration *c, double *value)
+                              const ritz_configuration *c, double *value,
+                              int64_t *joined)
 {
     const ritz_ranker *ranker = ritz_ranker_find(scene->select_by);
     const ritz_rank_choice choice = {
@@ -156,12 +168,14 @@ static ritz_status rank_modes(const ritz_scene *scene,
                    ranking.count, flexible);
     for (int64_t k = 0; k < flexible; k++)
         value[k] = fabs(ranking.value[k]);
+    if (joined)
+        *joined = count_joined(&ranking);
     return RITZ_OK;
 }
 
 ritz_status ritz_compare_values(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
-                                double *value)
+                                double *value, int64_t *joined)
 {
     const ritz_configuration *c = configuration;
 
@@ -169,7 +183,7 @@ ritz_status ritz_compare_values(const ritz_scene *scene,
         value[k] = 1.0;
     if (!is_ranked(scene))
         return RITZ_OK;
-    return ritz_context(rank_modes(scene, c, value), c->at);
+    return ritz_context(rank_modes(scene, c, value, joined), c->at);
 }
 
 ritz_status ritz_compare_threshold(const ritz_scene *scene,
@@ -191,7 +205,7 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
         RITZ_OWN_ARRAY double *value = NULL;
 
         RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
-        RITZ_CHECK(ritz_compare_values(scene, c, value));
+        RITZ_CHECK(ritz_compare_values(scene, c, value, NULL));
         for (int64_t j = 0; j < c->K.ncol - c->num_rigid; j++)
             largest = fmax(largest, value[j]);
     }
@@ -206,12 +220,12 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
 /* Mark the modes whose value is at least the threshold. */
 static ritz_status mark_ranked(const ritz_scene *scene,
                                const ritz_configuration *c, double least,
-                               bool *taken)
+                               bool *taken, int64_t *joined)
 {
     RITZ_OWN_ARRAY double *value = NULL;
 
     RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
-    RITZ_CHECK(ritz_compare_values(scene, c, value));
+    RITZ_CHECK(ritz_compare_values(scene, c, value, joined));
     for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
         taken[k] = value[k] >= least;
     return RITZ_OK;
@@ -311,7 +325,7 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
         return count_vectors(scene, c, row);
     RITZ_CHECK_NEW(taken, flexible);
     if (is_ranked(scene))
-        RITZ_CHECK(mark_ranked(scene, c, least, taken));
+        RITZ_CHECK(mark_ranked(scene, c, least, taken, &row->num_joined));
     else if (scene->select == RITZ_SELECT_LISTED)
         RITZ_CHECK(mark_listed(scene, c, taken));
     else

@@ -27,7 +27,7 @@ static ritz_status check_order(const ritz_ranking *ranking)
     return RITZ_OK;
 }
 
-/* Without clusters each mode is its own. Modes of a cluster are neighbours. */
+/* Without clusters each mode is its own. */
 static ritz_status settle_clusters(ritz_ranking *ranking)
 {
     int64_t m = ranking->count;
@@ -40,8 +40,7 @@ static ritz_status settle_clusters(ritz_ranking *ranking)
         ranking->cluster = cluster;
     }
     for (int64_t k = 0; k < m; k++)
-        RITZ_REFUSE_IF(cluster[k] != k &&
-                           (k == 0 || cluster[k] != cluster[k - 1]),
+        RITZ_REFUSE_IF(cluster[k] > k || cluster[cluster[k]] != cluster[k],
                        RITZ_ERR_FORMAT,
                        "'cluster' does not name the first "
                        "mode");

@@ -12,9 +12,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"
-#include "linear/general.h"
 
-#include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
@@ -149,24 +147,30 @@ typedef struct coupling {
     double ratio; /* of their own damping */
 } coupling;
 
+double ritz_damping_between(const ritz_dense *Delta, double largest, int64_t i,
+                            int64_t j)
+{
+    double own = sqrt(fabs(ritz_dense_col(Delta, i)[i]) *
+                      fabs(ritz_dense_col(Delta, j)[j]));
+    double off = fmax(fabs(ritz_dense_col(Delta, j)[i]),
+                      fabs(ritz_dense_col(Delta, i)[j])) -
+                 RITZ_NEGLIGIBLE * largest;
+
+    return off > 0.0 ? off / own : 0.0;
+}
+
 static bool find_coupling(const ritz_modal_model *modes, coupling *out)
 {
     const ritz_dense *d = &modes->Delta;
-    double largest = 0.0;
+    double largest = ritz_dense_max(d);
 
-    for (int64_t k = 0; k < d->ncol; k++)
-        largest = fmax(largest, fabs(ritz_dense_col(d, k)[k]));
     for (int64_t j = modes->num_rigid; j < d->ncol; j++)
         for (int64_t i = 0; i < j; i++) {
-            double own = sqrt(fabs(ritz_dense_col(d, i)[i]) *
-                              fabs(ritz_dense_col(d, j)[j]));
-            double off = fmax(fabs(ritz_dense_col(d, j)[i]),
-                              fabs(ritz_dense_col(d, i)[j]));
-            double rounding = RITZ_NEGLIGIBLE * largest;
+            double ratio = ritz_damping_between(d, largest, i, j);
 
-            if (off <= RITZ_DAMPING_COUPLES * own + rounding)
+            if (!(ratio > RITZ_DAMPING_COUPLES))
                 continue;
-            *out = (coupling){{i, j}, off / fmax(own, rounding)};
+            *out = (coupling){{i, j}, ratio};
             return true;
         }
     return false;
@@ -194,17 +198,17 @@ static ritz_status refuse_coupling(const ritz_modal_model *modes,
                      ritz_eigen_hertz(modes->lambda[found.mode[1]]), own, why);
 }
 
-/* A model of `count` modes, all zero. */
-static ritz_status create_modal(int64_t count, int64_t inputs, int64_t outputs,
-                                ritz_modal *out)
+/* A model of `count` modes and of `rigid` ones, all zero. */
+static ritz_status create_modal(int64_t count, int64_t rigid, int64_t inputs,
+                                int64_t outputs, ritz_modal *out)
 {
-    RITZ_OWN(ritz_modal) modal = {.count = count};
+    RITZ_OWN(ritz_modal) modal = {.count = count, .num_rigid = rigid};
 
     RITZ_CHECK_NEW(modal.omega, count);
     RITZ_CHECK_NEW(modal.zeta, count);
-    RITZ_CHECK(ritz_dense_new(count, inputs, &modal.B));
-    RITZ_CHECK(ritz_dense_new(outputs, count, &modal.C));
-    RITZ_CHECK(ritz_dense_new(outputs, count, &modal.Cv));
+    RITZ_CHECK(ritz_dense_new(count + rigid, inputs, &modal.B));
+    RITZ_CHECK(ritz_dense_new(outputs, count + rigid, &modal.C));
+    RITZ_CHECK(ritz_dense_new(outputs, count + rigid, &modal.Cv));
     RITZ_MOVE(*out, modal);
     return RITZ_OK;
 }
@@ -223,52 +227,143 @@ static void put_mode(const ritz_dense *const from[static 3], int64_t at,
     }
 }
 
+/* Whether damping couples a mode to one that is chosen. */
+static bool couples_chosen(const ritz_modal_model *modes, double largest,
+                           const ritz_dofs *chosen, int64_t mode)
+{
+    for (int64_t k = 0; k < chosen->count; k++)
+        if (chosen->at[k] == mode)
+            return false;
+    for (int64_t k = 0; k < chosen->count; k++)
+        if (ritz_damping_between(&modes->Delta, largest, chosen->at[k], mode) >
+            RITZ_DAMPING_COUPLES)
+            return true;
+    return false;
+}
+
+/* Flexible modes and, behind them, the rigid ones that damping couples to
+   them, in chains. */
+static ritz_status choose_modes(const ritz_modal_model *modes, bool coupled,
+                                ritz_dofs *out)
+{
+    double largest = ritz_dense_max(&modes->Delta);
+    bool more = coupled;
+
+    RITZ_CHECK_NEW(out->at, modes->count);
+    for (int64_t k = modes->num_rigid; k < modes->count; k++)
+        out->at[out->count++] = k;
+    while (more) {
+        more = false;
+        for (int64_t k = 0; k < modes->num_rigid; k++)
+            if (couples_chosen(modes, largest, out, k)) {
+                out->at[out->count++] = k;
+                more = true;
+            }
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_refuse_undamped(double omega, double zeta)
+{
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "the mode at %.6g Hz has %s damping: every flexible mode "
+                     "needs a positive ratio, from --damping or the scene",
+                     omega / (2.0 * RITZ_PI), zeta < 0.0 ? "negative" : "no");
+}
+
+/* Frequencies and ratios; without a coupling each ratio must be positive. */
+static ritz_status put_ratios(const ritz_modal_model *modes, bool coupled,
+                              ritz_modal *modal)
+{
+    int64_t r = modes->num_rigid;
+
+    for (int64_t k = 0; k < modal->count; k++) {
+        modal->omega[k] = sqrt(modes->lambda[r + k]);
+        modal->zeta[k] = ritz_dense_col(&modes->Delta, r + k)[r + k] /
+                         (2.0 * modal->omega[k]);
+        if (!coupled && !(modal->zeta[k] > 0.0))
+            return ritz_refuse_undamped(modal->omega[k], modal->zeta[k]);
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, const char *why,
                                 ritz_modal *out)
 {
     const ritz_dense *const from[] = {&modes->B, &modes->C, &modes->Cv};
     RITZ_OWN(ritz_modal) modal = {0};
-    int64_t r = modes->num_rigid;
+    RITZ_OWN(ritz_dofs) chosen = {0};
+    bool coupled = ritz_modes_coupled(modes);
+    int64_t m = modes->count - modes->num_rigid;
 
-    RITZ_CHECK(refuse_coupling(modes, why));
+    if (why)
+        RITZ_CHECK(refuse_coupling(modes, why));
     RITZ_CHECK(check_limits(io->num_outputs, io->limit, io->output));
-    RITZ_CHECK(
-        create_modal(modes->count - r, modes->B.ncol, modes->C.nrow, &modal));
-    for (int64_t k = 0; k < modal.count; k++) {
-        modal.omega[k] = sqrt(modes->lambda[r + k]);
-        modal.zeta[k] = ritz_dense_col(&modes->Delta, r + k)[r + k] /
-                        (2.0 * modal.omega[k]);
-        RITZ_REFUSE_IF(
-            !(modal.zeta[k] > 0.0), RITZ_ERR_ARGUMENT,
-            "the mode at %.6g Hz has %s damping: every flexible mode "
-            "needs a positive ratio, from --damping or the scene",
-            ritz_eigen_hertz(modes->lambda[r + k]),
-            modal.zeta[k] < 0.0 ? "negative" : "no");
-        put_mode(from, r + k, io->limit, &modal, k);
-    }
+    RITZ_CHECK(choose_modes(modes, coupled, &chosen));
+    RITZ_CHECK(create_modal(m, chosen.count - m, modes->B.ncol, modes->C.nrow,
+                            &modal));
+    RITZ_CHECK(put_ratios(modes, coupled, &modal));
+    for (int64_t k = 0; k < chosen.count; k++)
+        put_mode(from, chosen.at[k], io->limit, &modal, k);
+    if (coupled)
+        RITZ_CHECK(ritz_dense_principal(&modes->Delta, chosen.count, chosen.at,
+                                        &modal.Delta));
     RITZ_MOVE(*out, modal);
     return RITZ_OK;
 }
 
-ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
-                            int64_t last, const bool *taken, ritz_modal *out)
+/* Whether damping couples modes of a part, or a rigid mode is in it. */
+static bool is_part_coupled(const ritz_modal *part)
+{
+    double largest = ritz_dense_max(&part->Delta);
+
+    for (int64_t j = 0; j < part->Delta.ncol; j++)
+        for (int64_t i = 0; i < j; i++)
+            if (ritz_damping_between(&part->Delta, largest, i, j) >
+                RITZ_DAMPING_COUPLES)
+                return true;
+    return part->num_rigid > 0;
+}
+
+/* Damping of the modes `chosen` of a model, if it couples any of them. */
+static ritz_status put_damping(const ritz_modal *modal, const ritz_dofs *chosen,
+                               ritz_modal *part)
+{
+    if (!modal->Delta.val)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_principal(&modal->Delta, chosen->count, chosen->at,
+                                    &part->Delta));
+    if (!is_part_coupled(part))
+        ritz_dense_free(&part->Delta);
+    return RITZ_OK;
+}
+
+ritz_status ritz_modal_part(const ritz_modal *modal, const bool *taken,
+                            const bool *rigid, ritz_modal *out)
 {
     const ritz_dense *const from[] = {&modal->B, &modal->C, &modal->Cv};
     RITZ_OWN(ritz_modal) part = {0};
-    int64_t count = 0;
+    RITZ_OWN(ritz_dofs) chosen = {0};
+    int64_t m = modal->count, count = 0;
 
-    for (int64_t k = first; k < last; k++)
-        count += !taken || taken[k];
-    RITZ_CHECK(create_modal(count, modal->B.ncol, modal->C.nrow, &part));
-    count = 0;
-    for (int64_t k = first; k < last; k++) {
-        if (taken && !taken[k])
-            continue;
-        part.omega[count] = modal->omega[k];
-        part.zeta[count] = modal->zeta[k];
-        put_mode(from, k, NULL, &part, count++);
+    RITZ_CHECK_NEW(chosen.at, m + modal->num_rigid);
+    for (int64_t k = 0; k < m; k++)
+        if (taken[k])
+            chosen.at[chosen.count++] = k;
+    count = chosen.count;
+    for (int64_t k = 0; k < modal->num_rigid; k++)
+        if (!rigid || rigid[k])
+            chosen.at[chosen.count++] = m + k;
+    RITZ_CHECK(create_modal(count, chosen.count - count, modal->B.ncol,
+                            modal->C.nrow, &part));
+    for (int64_t k = 0; k < chosen.count; k++)
+        put_mode(from, chosen.at[k], NULL, &part, k);
+    for (int64_t k = 0; k < count; k++) {
+        part.omega[k] = modal->omega[chosen.at[k]];
+        part.zeta[k] = modal->zeta[chosen.at[k]];
     }
+    RITZ_CHECK(put_damping(modal, &chosen, &part));
     RITZ_MOVE(*out, part);
     return RITZ_OK;
 }
@@ -292,8 +387,7 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
         RITZ_CHECK(ritz_dense_project(D, &modes.Phi, &modes.Delta));
     RITZ_CHECK(ritz_modal_model_drive(io, damping ? damping : &none, &modes));
     RITZ_CHECK(ritz_modes_turn(&modes));
-    return ritz_modal_of_modes(&modes, io,
-                               "a ranking needs damping mode by mode", out);
+    return ritz_modal_of_modes(&modes, io, NULL, out);
 }
 
 void ritz_modal_free(ritz_modal *modal)
@@ -302,272 +396,6 @@ void ritz_modal_free(ritz_modal *modal)
     ritz_dense_free(&modal->B);
     ritz_dense_free(&modal->C);
     ritz_dense_free(&modal->Cv);
+    ritz_dense_free(&modal->Delta);
     *modal = (ritz_modal){0};
-}
-
-/*
- * Gramians of a band in closed form. With the full ones,
- *
- *     W_c(band) = S W_c + W_c S',    W_o(band) = S'W_o + W_o S,
- *     S = S(w2) - S(w1),    S(w) = i/2pi ln((A + i w)(A - i w)^-1)
- *
- * and of a mode, whose A is 2 x 2, S(w) = p I + g (A + d/2 I). Whether it is
- * under-, over- or critically damped: with h = w_k^2 + w^2,
- * beta^2 = w_k^2 - d^2/4 of either sign,
- *
- *     2 pi p = arg(w_k^2 - w^2 + i d w)
- *     2 pi g = (2 w / h) artanh(x) / x,    x = 2 w beta / h
- *
- * and the difference of two p is the angle between both arguments.
- *
- * Factors are from eigenvalues of Gramians scaled to a unit diagonal. What lies
- * within the rounding of S W + W S' is dropped; a negative one beyond it is an
- * error.
- *
- * [GawronskiJuang1990]
- */
-
-/* S of a mode, in states (q, q'). */
-typedef struct response {
-    double s[2][2];
-} response;
-
-/* 2 pi g at w */
-static double slope_at(double wk, double d, double w)
-{
-    double h = wk * wk + w * w;
-    double square = (wk - d / 2.0) * (wk + d / 2.0);
-    double beta = sqrt(fabs(square));
-    double x = 2.0 * w * beta / h;
-
-    if (isinf(w))
-        return 0.0;
-    if (!(x > 0.0))
-        return 2.0 * w / h;
-    if (square < 0.0)
-        return atan(x) / beta;
-    /* artanh(x) = log((h + 2 w beta) / (h - 2 w beta)) / 2, near resonance */
-    return log1p(4.0 * w * beta / (d * d / 4.0 + (w - beta) * (w - beta))) /
-           (2.0 * beta);
-}
-
-/* 2 pi (p(w2) - p(w1)) */
-static double turned_angle(double wk, double d, const double w[static 2])
-{
-    double below = (wk - w[0]) * (wk + w[0]);
-    double above = (wk - w[1]) * (wk + w[1]);
-
-    if (isinf(w[1]))
-        return atan2(d * w[0], -below);
-    return atan2(d * (w[1] - w[0]) * (wk * wk + w[0] * w[1]),
-                 above * below + d * d * w[0] * w[1]);
-}
-
-static response response_of(double wk, double zeta, const double w[static 2])
-{
-    double d = 2.0 * zeta * wk;
-    double p = turned_angle(wk, d, w) / (2.0 * RITZ_PI);
-    double g =
-        (slope_at(wk, d, w[1]) - slope_at(wk, d, w[0])) / (2.0 * RITZ_PI);
-
-    return (response){{{p + g * d / 2.0, g}, {-g * wk * wk, p - g * d / 2.0}}};
-}
-
-/* Row i of S W, or of S'W, at column j. */
-static double applied_at(const response *S, bool transposed,
-                         const ritz_dense *W, int64_t i, int64_t j)
-{
-    const double(*s)[2] = S[i / 2].s;
-    const double *x = ritz_dense_col(W, j) + 2 * (i / 2);
-    int a = (int)(i % 2);
-
-    return transposed ? s[0][a] * x[0] + s[1][a] * x[1]
-                      : s[a][0] * x[0] + s[a][1] * x[1];
-}
-
-/* S W + W S', exactly symmetric as W is. */
-static ritz_status filter_gramian(const response *S, bool transposed,
-                                  const ritz_dense *W, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(W->nrow, W->ncol, out));
-    for (int64_t j = 0; j < W->ncol; j++)
-        for (int64_t i = 0; i <= j; i++) {
-            double x = applied_at(S, transposed, W, i, j) +
-                       applied_at(S, transposed, W, j, i);
-
-            ritz_dense_col(out, j)[i] = x;
-            ritz_dense_col(out, i)[j] = x;
-        }
-    return RITZ_OK;
-}
-
-/* A band Gramian with the magnitudes that it is a sum of. */
-typedef struct filtered {
-    ritz_dense W, terms;
-} filtered;
-
-static void filtered_free(filtered *f)
-{
-    ritz_dense_free(&f->W);
-    ritz_dense_free(&f->terms);
-}
-
-RITZ_PAIR_OF(filtered);
-
-/* Both Gramians of a band. */
-static ritz_status filter_gramians(const ritz_modal *modal,
-                                   const double band_hz[static 2],
-                                   filtered out[static 2])
-{
-    const double w[2] = {2.0 * RITZ_PI * band_hz[0],
-                         2.0 * RITZ_PI * band_hz[1]};
-    RITZ_OWN(ritz_dense_pair) W = {0};
-    RITZ_OWN_ARRAY response *S = NULL, *size = NULL;
-
-    RITZ_REFUSE_IF(!(band_hz[0] >= 0.0 && band_hz[1] > band_hz[0]) ||
-                       isinf(band_hz[0]),
-                   RITZ_ERR_ARGUMENT,
-                   "a band is from 0 Hz or more to more, not from %g to %g",
-                   band_hz[0], band_hz[1]);
-    RITZ_CHECK(ritz_modal_gramians_whole(modal, &W[0], &W[1]));
-    RITZ_CHECK_NEW(S, modal->count);
-    RITZ_CHECK_NEW(size, modal->count);
-    for (int64_t k = 0; k < modal->count; k++) {
-        S[k] = response_of(modal->omega[k], modal->zeta[k], w);
-        for (int i = 0; i < 4; i++)
-            size[k].s[i / 2][i % 2] = fabs(S[k].s[i / 2][i % 2]);
-    }
-    for (int side = 0; side < 2; side++) {
-        RITZ_OWN(ritz_dense) terms = {0};
-
-        RITZ_CHECK(ritz_dense_abs(&W[side], &terms));
-        RITZ_CHECK(filter_gramian(S, side == 1, &W[side], &out[side].W));
-        RITZ_CHECK(filter_gramian(size, side == 1, &terms, &out[side].terms));
-    }
-    return RITZ_OK;
-}
-
-ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
-                                ritz_dense *Wc, ritz_dense *Wo)
-{
-    RITZ_OWN(filtered_pair) of = {0};
-
-    if (!band_hz)
-        return ritz_modal_gramians_whole(modal, Wc, Wo);
-    RITZ_CHECK(filter_gramians(modal, band_hz, of));
-    RITZ_MOVE(*Wc, of[0].W);
-    RITZ_MOVE(*Wo, of[1].W);
-    return RITZ_OK;
-}
-
-/* Roots of the diagonal, 0 where that is rounding. */
-static ritz_status find_roots(const filtered *f, double *root)
-{
-    for (int64_t k = 0; k < f->W.nrow; k++) {
-        double own = ritz_dense_col(&f->W, k)[k];
-        double rounding = RITZ_BAND_ROUNDING * ritz_dense_col(&f->terms, k)[k];
-
-        RITZ_REFUSE_IF(!(own >= -rounding), RITZ_ERR_CONVERGENCE,
-                       "the Gramian of a band is negative beyond rounding");
-        root[k] = own > rounding ? sqrt(own) : 0.0;
-    }
-    return RITZ_OK;
-}
-
-/* A(i,j) / (root_i root_j); returns its largest sum of a column. */
-static double scale_matrix(ritz_dense *A, const double *root)
-{
-    double largest = 0.0;
-
-    for (int64_t j = 0; j < A->ncol; j++) {
-        double sum = 0.0;
-
-        for (int64_t i = 0; i < A->nrow; i++) {
-            double by = root[i] * root[j];
-            double *x = ritz_dense_col(A, j) + i;
-
-            *x = by > 0.0 ? *x / by : 0.0;
-            sum += fabs(*x);
-        }
-        largest = fmax(largest, sum);
-    }
-    return largest;
-}
-
-/* root V s^1/2 of the eigenvalues s above what is rounding of others. */
-static ritz_status put_factor(const ritz_dense *V, const double *s,
-                              const double *root, ritz_dense *out)
-{
-    int64_t n = V->nrow;
-    int64_t first = 0;
-    double rounding = (double)n * DBL_EPSILON;
-
-    if (n > 0)
-        rounding = fmax(rounding, -s[0]);
-    while (first < n && s[first] <= rounding)
-        first++;
-    RITZ_CHECK(ritz_dense_new(n, n - first, out));
-    for (int64_t j = first; j < n; j++)
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(out, j - first)[i] =
-                root[i] * ritz_dense_col(V, j)[i] * sqrt(s[j]);
-    return RITZ_OK;
-}
-
-/* Overwrites both matrices. */
-static ritz_status factor_filtered(filtered *f, ritz_dense *out)
-{
-    int n = (int)f->W.nrow;
-    RITZ_OWN_ARRAY double *root = NULL, *s = NULL;
-    double rounding = 0.0;
-
-    RITZ_CHECK_NEW(root, n);
-    RITZ_CHECK_NEW(s, n);
-    RITZ_CHECK(find_roots(f, root));
-    (void)scale_matrix(&f->W, root);
-    rounding = RITZ_BAND_ROUNDING * scale_matrix(&f->terms, root);
-    RITZ_REFUSE_IF(n > 0 && LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n,
-                                           f->W.val, n, s) != 0,
-                   RITZ_ERR_CONVERGENCE,
-                   "eigenvalues of the Gramian of a band were not found");
-    RITZ_REFUSE_IF(n > 0 && s[0] < -rounding, RITZ_ERR_CONVERGENCE,
-                   "the Gramian of a band has an eigenvalue of %.1e of its "
-                   "diagonal, beyond rounding (%.1e)",
-                   s[0], rounding);
-    return put_factor(&f->W, s, root, out);
-}
-
-ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
-                               ritz_dense *Zc, ritz_dense *Zo)
-{
-    RITZ_OWN(filtered_pair) of = {0};
-    RITZ_OWN(ritz_dense_pair) Z = {0};
-
-    if (!band_hz)
-        return ritz_modal_factors_whole(modal, Zc, Zo);
-    RITZ_CHECK(filter_gramians(modal, band_hz, of));
-    RITZ_CHECK(factor_filtered(&of[0], &Z[0]));
-    RITZ_CHECK(factor_filtered(&of[1], &Z[1]));
-    RITZ_MOVE(*Zc, Z[0]);
-    RITZ_MOVE(*Zo, Z[1]);
-    return RITZ_OK;
-}
-
-/*
- * Exact Hankel singular values of a modal model are those of Z_o'Z_c, of
- * factors in closed form. Modes that are not controllable or not observable get
- * zero and not a failure.
- *
- * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
- */
-ritz_status ritz_modal_hankel(const ritz_modal *modal, const double *band_hz,
-                              double *sigma)
-{
-    RITZ_OWN(ritz_dense) Zc = {0}, Zo = {0}, H = {0};
-
-    RITZ_CHECK(ritz_modal_factors(modal, band_hz, &Zc, &Zo));
-    for (int64_t k = 0; k < 2 * modal->count; k++)
-        sigma[k] = 0.0;
-    RITZ_CHECK(ritz_dense_mul_tn(&Zo, &Zc, &H));
-    return ritz_context(ritz_general_singular(&H, sigma), "Hankel values");
 }

@@ -21,12 +21,16 @@ ritz_status ritz_outputs_scaled(const ritz_dense *C, const double *limit,
 /**
  * Modal model of symmetric dense matrices or of a configuration in modal form.
  *
+ * @param[in] D        may couple modes: then some may have no damping here
  * @param[in] damping  ratio of each mode, added to what D says on the diagonal
  * @return RITZ_ERR_ARGUMENT if a flexible mode has no damping
  */
 ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
                            const ritz_dense *D, const ritz_io *io,
                            const ritz_damping *damping, ritz_modal *out);
+
+/** States of a modal model: 2m, and the velocity of each rigid mode. */
+int64_t ritz_modal_order(const ritz_modal *modal);
 
 /**
  * Exact controllability and observability Gramians of the modal model in the
@@ -35,10 +39,12 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
  *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
  *
  * and W_o likewise, are semidefinite, rounding apart, and from 0 to infinity
- * those of all frequencies.
+ * those of all frequencies. Where damping couples modes they are those of
+ * ritz_coupled_factors.
  *
  * @param[in] band_hz  from and to, HUGE_VAL is infinity; NULL: all frequencies
- * @return RITZ_ERR_ARGUMENT if it is no band, or a mode has no damping
+ * @return RITZ_ERR_ARGUMENT if it is no band, a mode has no damping, or damping
+ *         couples modes over a band
  */
 ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
                                 ritz_dense *Wc, ritz_dense *Wo);
@@ -52,9 +58,18 @@ ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
 ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
                                ritz_dense *Zc, ritz_dense *Zo);
 
-/** Exact Hankel singular values, 2m, descending. @cost O(m^3) */
+/**
+ * Exact Hankel singular values, descending: ritz_modal_order numbers, of which
+ * the last are 0 where poles at 0 were deflated. @cost O(m^3)
+ */
 ritz_status ritz_modal_hankel(const ritz_modal *modal, const double *band_hz,
                               double *sigma);
+
+/**
+ * Outputs as columns in the states of ritz_modal_gramians, without what grows
+ * where poles at 0 were deflated.
+ */
+ritz_status ritz_modal_outputs(const ritz_modal *modal, ritz_dense *out);
 
 void ritz_modal_free(ritz_modal *modal);
 
@@ -62,13 +77,58 @@ void ritz_modal_free(ritz_modal *modal);
 int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first);
 
 /**
- * Modes first .. last - 1 as a model of their own.
+ * Some modes as a model of their own, damping restricted to them.
  *
- * @param[in] taken  one for each mode of @p modal, those that are wanted; NULL:
- *                   all
+ * @param[in] taken  one for each mode of @p modal, those that are wanted
+ * @param[in] rigid  one for each rigid mode; NULL: all
  */
-ritz_status ritz_modal_part(const ritz_modal *modal, int64_t first,
-                            int64_t last, const bool *taken, ritz_modal *out);
+ritz_status ritz_modal_part(const ritz_modal *modal, const bool *taken,
+                            const bool *rigid, ritz_modal *out);
+
+/**
+ * Damping that couples modes i and j, over the root of their own; 0 where it is
+ * rounding of @p largest, the largest entry.
+ */
+double ritz_damping_between(const ritz_dense *Delta, double largest, int64_t i,
+                            int64_t j);
+
+/*
+ * Modes that damping couples (coupled.c).
+ */
+
+/**
+ * Clusters that are ranked as one: modes of one frequency, and modes that
+ * damping couples by more than RITZ_DAMPING_JOINS, in chains. A cluster that
+ * does not decay by itself is joined with all that damping couples it to.
+ *
+ * @param[out] cluster  m + r: the first mode of each mode's cluster; of a rigid
+ *                      mode m or more where no flexible one is in it
+ * @return RITZ_ERR_ARGUMENT if a mode has no damping, and none that is coupled
+ *         to it damps it
+ */
+ritz_status ritz_coupled_clusters(const ritz_modal *modal, int64_t *cluster);
+
+/**
+ * Factors of both Gramians of what decays, in the states of
+ * ritz_modal_gramians, of as many columns as it has states.
+ *
+ * @return RITZ_ERR_ARGUMENT if a pole other than at 0 is not left of the axis
+ */
+ritz_status ritz_coupled_factors(const ritz_modal *modal, ritz_dense *Zc,
+                                 ritz_dense *Zo);
+
+/** Its Hankel values, descending; room for ritz_modal_order of them. */
+ritz_status ritz_coupled_hankel(const ritz_modal *modal, int64_t *count,
+                                double *sigma);
+
+/** ritz_modal_outputs of it. */
+ritz_status ritz_coupled_outputs(const ritz_modal *modal, ritz_dense *out);
+
+/** RITZ_ERR_ARGUMENT of a mode without damping. */
+ritz_status ritz_refuse_undamped(double omega, double zeta);
+
+/** RITZ_ERR_ARGUMENT that names the modes that damping couples most. */
+ritz_status ritz_coupled_refuse(const ritz_modal *modal, const char *why);
 
 /** ritz_modal_gramians and ritz_modal_factors over all frequencies. */
 ritz_status ritz_modal_gramians_whole(const ritz_modal *modal, ritz_dense *Wc,
@@ -95,10 +155,12 @@ ritz_status ritz_modes_turn(ritz_modal_model *modes);
 bool ritz_modes_coupled(const ritz_modal_model *modes);
 
 /**
- * The flexible modes, which damping must not couple.
+ * The flexible modes.
  *
  * @param[in] io   for the limits of its outputs
- * @param[in] why  end of the sentence if damping couples modes
+ * @param[in] why  end of the sentence if damping couples modes, which it must
+ *                 not; NULL: it may, and the rigid modes that it couples to
+ *                 these come with them
  * @return RITZ_ERR_ARGUMENT if it does, if a mode has no damping, or a limit is
  *         not positive
  */

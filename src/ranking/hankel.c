@@ -16,6 +16,9 @@
  *
  *     sigma = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
  *
+ * and for several, of one frequency or coupled by damping, that of all of them,
+ * the damping matrix restricted to them.
+ *
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
 static ritz_status hankel_value(const double *band_hz,
@@ -23,7 +26,7 @@ static ritz_status hankel_value(const double *band_hz,
 {
     RITZ_OWN_ARRAY double *sigma = NULL;
 
-    RITZ_CHECK_NEW(sigma, 2 * cluster->count);
+    RITZ_CHECK_NEW(sigma, ritz_modal_order(cluster));
     RITZ_CHECK(ritz_modal_hankel(cluster, band_hz, sigma));
     *out = sigma[0];
     return RITZ_OK;
@@ -40,6 +43,7 @@ const ritz_ranker ritz_ranker_hankel = {
     .reference = "Moore1981",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
     .exact = larger_value,
+    .joins = true,
     .value = hankel_value,
 };
 
@@ -60,6 +64,7 @@ const ritz_ranker ritz_ranker_hankel_band = {
     .reference = "GawronskiJuang1990",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING |
              RITZ_RANK_BAND,
+    .joins = true,
     .value = hankel_value,
 };
 
@@ -74,7 +79,8 @@ const ritz_ranker ritz_ranker_hankel_band = {
  *
  *     sigma = | [C_d/w; C_v] B |_2 / (4 zeta w),
  *
- * which is the same for a single mode.
+ * which is the same for a single mode. Damping that couples modes of different
+ * frequencies is of second order in this limit: zeta is of its diagonal.
  *
  * [Gregory1984], [McDaniel2000] eq. 3.2.22
  */
@@ -108,6 +114,9 @@ static ritz_status gregory_value(const double *band_hz,
     RITZ_OWN(ritz_dense) CB = {0};
 
     (void)band_hz;
+    for (int64_t k = 0; k < cluster->count; k++)
+        if (!(cluster->zeta[k] > 0.0))
+            return ritz_refuse_undamped(cluster->omega[k], cluster->zeta[k]);
     RITZ_CHECK(ritz_dense_new(cluster->B.nrow, cluster->B.ncol, &B));
     RITZ_CHECK(ritz_dense_new(2 * cluster->C.nrow, cluster->C.ncol, &C));
     scale_modes(cluster, &B, &C);

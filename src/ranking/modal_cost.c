@@ -25,32 +25,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* [c_i1 c_i2 ...]' of all outputs: 2m x p, states (q_1, q_1', q_2, ...). */
-static ritz_status transpose_outputs(const ritz_modal *modal, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_new(2 * modal->count, modal->C.nrow, out));
-    for (int64_t i = 0; i < out->ncol; i++)
-        for (int64_t k = 0; k < modal->count; k++) {
-            double *c = ritz_dense_col(out, i) + 2 * k;
-
-            c[0] = ritz_dense_col(&modal->C, k)[i];
-            c[1] = ritz_dense_col(&modal->Cv, k)[i];
-        }
-    return RITZ_OK;
-}
-
-/* Modal costs of each output: m x p, row k that of mode k. */
+/*
+ * Modal costs of each output: m + 1 x p, row k that of mode k, the last that of
+ * rigid motion that damping couples to modes.
+ */
 static ritz_status find_costs(const ritz_modal *modal, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) Wc = {0}, Wo = {0}, C = {0}, X = {0}, V = {0};
 
     RITZ_CHECK(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
-    RITZ_CHECK(transpose_outputs(modal, &C));
+    RITZ_CHECK(ritz_modal_outputs(modal, &C));
     RITZ_CHECK(ritz_dense_mul(&Wc, &C, &X));
-    RITZ_CHECK(ritz_dense_new(modal->count, modal->C.nrow, &V));
+    RITZ_CHECK(ritz_dense_new(modal->count + 1, modal->C.nrow, &V));
     for (int64_t i = 0; i < V.ncol; i++)
         for (int64_t a = 0; a < X.nrow; a++)
-            ritz_dense_col(&V, i)[a / 2] +=
+            ritz_dense_col(&V,
+                           i)[a < 2 * modal->count ? a / 2 : modal->count] +=
                 ritz_dense_col(&C, i)[a] * ritz_dense_col(&X, i)[a];
     RITZ_MOVE(*out, V);
     return RITZ_OK;
@@ -75,8 +65,11 @@ static ritz_status rank_modal_cost(const ritz_rank_request *request,
             ranking->whole[i] += v;
             ranking->value[k] += v;
         }
+        ranking->whole[i] += ritz_dense_col(&V, i)[modal->count];
         ranking->total += ranking->whole[i];
     }
+    if (modal->num_rigid > 0) /* a part of it belongs to no mode */
+        ranking->total = nan("");
     return RITZ_OK;
 }
 
@@ -98,7 +91,7 @@ enum { MOST_ROUNDS = 400, LONGEST = 12 };
 typedef struct loop {
     const ritz_modal *modal;
     int64_t m, p, keep;
-    ritz_dense V; /* m x p, costs */
+    ritz_dense V; /* m + 1 x p, costs */
     double *Y;    /* p */
     double *value;
     int64_t *order, *cluster;
@@ -124,7 +117,7 @@ static ritz_status create_loop(const ritz_rank_request *request, int64_t keep,
     RITZ_CHECK(ritz_dense_new(l->p, MOST_ROUNDS, &l->d));
     for (int64_t i = 0; i < l->p; i++) {
         l->q.val[i] = 1.0;
-        for (int64_t k = 0; k < l->m; k++)
+        for (int64_t k = 0; k < l->V.nrow; k++)
             l->Y[i] += ritz_dense_col(&l->V, i)[k];
     }
     ritz_ranking_clusters(l->modal, l->cluster);
@@ -169,8 +162,7 @@ static ritz_status measure_misses(loop *l, int64_t round)
     RITZ_OWN(ritz_modal) kept = {0};
     RITZ_OWN(ritz_dense) V = {0};
 
-    RITZ_CHECK(
-        ritz_modal_part(l->modal, 0, l->m, l->taken + round * l->m, &kept));
+    RITZ_CHECK(ritz_modal_part(l->modal, l->taken + round * l->m, NULL, &kept));
     RITZ_CHECK(find_costs(&kept, &V));
     for (int64_t i = 0; i < l->p; i++) {
         double alone = 0.0;
@@ -320,5 +312,6 @@ const ritz_ranker ritz_ranker_h2 = {
     .summary = "H2 norm of each mode (or cluster) alone",
     .reference = "Skelton1982",
     .needs = RITZ_RANK_INPUTS | RITZ_RANK_OUTPUTS | RITZ_RANK_DAMPING,
+    .joins = true,
     .value = h2_value,
 };

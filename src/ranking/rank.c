@@ -69,8 +69,11 @@ int64_t ritz_cluster_end(int64_t count, const int64_t *cluster, int64_t first)
     return last;
 }
 
-/* A ranking of so many modes, all zero; nothing of the whole is known. */
-static ritz_status create_zeros(int64_t count, ritz_ranking *out)
+/*
+ * A ranking of so many modes, all zero; nothing of the whole is known. Rigid
+ * modes have a cluster too, behind those of the others.
+ */
+static ritz_status create_zeros(int64_t count, int64_t rigid, ritz_ranking *out)
 {
     RITZ_OWN(ritz_ranking)
     ranking = {.count = count, .total = nan(""), .coupling = nan("")};
@@ -79,24 +82,26 @@ static ritz_status create_zeros(int64_t count, ritz_ranking *out)
     RITZ_CHECK_NEW(ranking.zeta, count);
     RITZ_CHECK_NEW(ranking.value, count);
     RITZ_CHECK_NEW(ranking.order, count);
-    RITZ_CHECK_NEW(ranking.cluster, count);
-    RITZ_CHECK_NEW(ranking.system_value, 2 * count);
+    RITZ_CHECK_NEW(ranking.cluster, count + rigid);
+    RITZ_CHECK_NEW(ranking.system_value, 2 * count + rigid);
     RITZ_MOVE(*out, ranking);
     return RITZ_OK;
 }
 
 void ritz_ranking_share(int64_t count, const int64_t *cluster, double *value)
 {
-    int64_t last = 0;
-
-    for (int64_t first = 0; first < count; first = last) {
+    for (int64_t first = 0; first < count; first++) {
+        int64_t members = 0;
         double sum = 0.0;
 
-        last = ritz_cluster_end(count, cluster, first);
-        for (int64_t k = first; k < last; k++)
-            sum += value[k];
-        for (int64_t k = first; last > first + 1 && k < last; k++)
-            value[k] = sum / (double)(last - first);
+        for (int64_t k = first; k < count && cluster[first] == first; k++)
+            if (cluster[k] == first) {
+                sum += value[k];
+                members++;
+            }
+        for (int64_t k = first; k < count && members > 1; k++)
+            if (cluster[k] == first)
+                value[k] = sum / (double)members;
     }
 }
 
@@ -130,9 +135,9 @@ static void find_coupling(const ritz_dense *W, ritz_ranking *ranking)
     const int64_t *cluster = ranking->cluster;
     double largest[2] = {0.0, 0.0};
 
-    for (int64_t a = 0; a < W->nrow; a++)
+    for (int64_t a = 0; a < 2 * ranking->count; a++)
         largest[a % 2] = fmax(largest[a % 2], ritz_dense_col(W, a)[a]);
-    for (int64_t b = 0; b < W->nrow; b++)
+    for (int64_t b = 0; b < 2 * ranking->count; b++)
         for (int64_t a = 0; a < b; a++) {
             double wa = ritz_dense_col(W, a)[a];
             double wb = ritz_dense_col(W, b)[b];
@@ -155,13 +160,15 @@ static ritz_status create_ranking(const ritz_ranker *ranker,
 {
     const ritz_modal *modal = &request->modal;
 
-    RITZ_CHECK(create_zeros(modal->count, out));
+    RITZ_CHECK(create_zeros(modal->count, modal->num_rigid, out));
     (void)snprintf(out->by, RITZ_NAME_SIZE, "%s", ranker->name);
     (void)snprintf(out->reference, RITZ_NAME_SIZE, "%s", ranker->reference);
     for (int64_t k = 0; k < out->count; k++) {
         out->hertz[k] = modal->omega[k] / (2.0 * RITZ_PI);
         out->zeta[k] = request->undamped ? 0.0 : modal->zeta[k];
     }
+    if (ranker->joins && modal->Delta.val)
+        return ritz_coupled_clusters(modal, out->cluster);
     ritz_ranking_clusters(modal, out->cluster);
     return RITZ_OK;
 }
@@ -174,17 +181,23 @@ static ritz_status rank_clusters(const ritz_ranker *ranker,
 {
     const double *band_hz =
         ranker->needs & RITZ_RANK_BAND ? request->band_hz : NULL;
-    int64_t last = 0;
+    int64_t all = ranking->count + request->modal.num_rigid;
+    RITZ_OWN_ARRAY bool *taken = NULL;
 
-    for (int64_t first = 0; first < ranking->count; first = last) {
+    RITZ_CHECK_NEW(taken, all);
+    for (int64_t first = 0; first < ranking->count; first++) {
         RITZ_OWN(ritz_modal) cluster = {0};
 
-        last = ritz_cluster_end(ranking->count, ranking->cluster, first);
-        RITZ_CHECK(
-            ritz_modal_part(&request->modal, first, last, NULL, &cluster));
+        if (ranking->cluster[first] != first)
+            continue;
+        for (int64_t k = 0; k < all; k++)
+            taken[k] = ranking->cluster[k] == first;
+        RITZ_CHECK(ritz_modal_part(&request->modal, taken,
+                                   taken + ranking->count, &cluster));
         RITZ_CHECK(ranker->value(band_hz, &cluster, &ranking->value[first]));
-        for (int64_t k = first + 1; k < last; k++)
-            ranking->value[k] = ranking->value[first];
+        for (int64_t k = first + 1; k < ranking->count; k++)
+            if (taken[k])
+                ranking->value[k] = ranking->value[first];
     }
     return RITZ_OK;
 }
@@ -235,8 +248,11 @@ static ritz_status add_whole_values(const ritz_rank_request *request,
     if (request->bare || request->undamped || modal->B.ncol == 0 ||
         modal->C.nrow == 0)
         return RITZ_OK;
-    RITZ_CHECK(ritz_modal_hankel(modal, NULL, ranking->system_value));
     ranking->num_system = 2 * modal->count;
+    RITZ_CHECK(modal->Delta.val
+                   ? ritz_coupled_hankel(modal, &ranking->num_system,
+                                         ranking->system_value)
+                   : ritz_modal_hankel(modal, NULL, ranking->system_value));
     RITZ_CHECK(ritz_modal_gramians(modal, NULL, &Wc, &Wo));
     ranking->coupling = 0.0;
     find_coupling(&Wc, ranking);
@@ -356,7 +372,7 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
     RITZ_CHECK_NEW(mode, numbers);
     RITZ_CHECK_NEW(number, numbers);
     count = find_largest(rankings, numbers, item, mode, number);
-    RITZ_CHECK(create_zeros(count, &largest));
+    RITZ_CHECK(create_zeros(count, 0, &largest));
     memcpy(largest.by, first->by, sizeof largest.by);
     memcpy(largest.reference, first->reference, sizeof largest.reference);
     memcpy(largest.damping, first->damping, sizeof largest.damping);
@@ -366,11 +382,12 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
         largest.hertz[k] = r->hertz[mode[k]];
         largest.zeta[k] = r->zeta[mode[k]];
         largest.value[k] = r->value[mode[k]];
+        /* modes that were one cluster where they are largest remain one */
         largest.cluster[k] = k;
-        /* neighbours that were one cluster where they are largest remain one */
-        if (k > 0 && item[k] == item[k - 1] &&
-            r->cluster[mode[k]] == r->cluster[mode[k - 1]])
-            largest.cluster[k] = largest.cluster[k - 1];
+        for (int64_t j = 0; j < k && largest.cluster[k] == k; j++)
+            if (item[k] == item[j] &&
+                r->cluster[mode[k]] == r->cluster[mode[j]])
+                largest.cluster[k] = largest.cluster[j];
     }
     RITZ_CHECK(ritz_ranking_sort(count, largest.value, largest.order));
     RITZ_MOVE(*out, largest);

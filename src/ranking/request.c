@@ -190,7 +190,8 @@ static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
     for (int k = 0; k < 2; k++) {
         RITZ_OWN(ritz_dense) own = {0};
 
-        RITZ_CHECK(ritz_dense_block(outputs[k], 0, p, 0, m, &own));
+        RITZ_CHECK(
+            ritz_dense_block(outputs[k], 0, p, 0, outputs[k]->ncol, &own));
         ritz_dense_replace(outputs[k], &own);
     }
     memcpy(out->rigid, s->rigid, sizeof out->rigid);

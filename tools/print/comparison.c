@@ -64,13 +64,18 @@ static void say_composite(cli_run *run, const ritz_stage *first,
     const ritz_scene *scene = first->scene;
     int64_t count = scene->num_reference > 0 ? scene->num_reference
                                              : scene->num_configurations;
-    int64_t completed = 0;
+    int64_t completed = 0, joined = 0;
     char choice[160];
 
     describe_choice(scene, choice);
     for (int64_t k = 0; k < c->num_rows; k++)
-        completed += c->row[k].listed ? c->row[k].num_completed : 0;
-    sink_set(run, "removed,completed", "%d %ld", c->removed, completed);
+        if (c->row[k].listed) {
+            completed += c->row[k].num_completed;
+            joined =
+                c->row[k].num_joined > joined ? c->row[k].num_joined : joined;
+        }
+    sink_set(run, "removed,completed,joined", "%d %ld %ld", c->removed,
+             completed, joined);
     sink_say(run, "composite",
              "Composite set: %ld vectors from %ld configurations, %s,",
              c->composite, count, choice);
@@ -80,6 +85,11 @@ static void say_composite(cli_run *run, const ritz_stage *first,
         cli_say(run,
                 "%ld modes are kept in addition, as a cluster is never split.",
                 completed);
+    if (joined > 0)
+        cli_say(run,
+                "Damping joins up to %ld flexible modes to others: they are "
+                "ranked as one, and kept or left out whole.",
+                joined);
     if (c->removed)
         return;
     cli_warn(run, "stage two removed nothing: every component kept its "

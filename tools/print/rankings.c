@@ -43,19 +43,53 @@ static int64_t number_of(const int64_t *track, int64_t mode)
     return (track ? track[mode] : mode) + 1;
 }
 
-/* "7-8" of a cluster, "-" of a mode by itself. */
+/* One past the last of the modes first, first + 1, ... of one cluster. */
+static int64_t end_of_run(const ritz_ranking *r, int64_t first)
+{
+    int64_t last = first + 1;
+
+    while (last < r->count && r->cluster[last] == r->cluster[first])
+        last++;
+    return last;
+}
+
+/* "7-8" or "2,5,7-8" of a cluster, "-" of a mode by itself; of a long one how
+   many more: "2,5,7-8+21". */
 static void name_cluster(const ritz_ranking *r, const int64_t *track,
                          int64_t mode, char out[CELL])
 {
-    int64_t first = r->cluster[mode];
-    int64_t last = mode;
+    enum { LONG = 12 };
+    int64_t members = 0, more = 0, last = 0;
 
-    while (last + 1 < r->count && r->cluster[last + 1] == first)
-        last++;
-    snprintf(out, CELL, "-");
-    if (last > first)
-        snprintf(out, CELL, "%ld-%ld", number_of(track, first),
-                 number_of(track, last));
+    out[0] = '\0';
+    for (int64_t k = r->cluster[mode]; k < r->count; k = last) {
+        last = end_of_run(r, k);
+        if (r->cluster[k] != r->cluster[mode])
+            continue;
+        members += last - k;
+        if (strlen(out) > LONG) {
+            more += last - k;
+            continue;
+        }
+        sink_append(out, CELL, "%s%ld", *out ? "," : "", number_of(track, k));
+        if (last > k + 1)
+            sink_append(out, CELL, "-%ld", number_of(track, last - 1));
+    }
+    if (more > 0)
+        sink_append(out, CELL, "+%ld", more);
+    if (members == 1)
+        snprintf(out, CELL, "-");
+}
+
+/* Modes that damping, not their frequency, puts into their cluster. */
+static int64_t count_joined(const ritz_ranking *r)
+{
+    int64_t joined = 0;
+
+    for (int64_t k = 0; k < r->count; k++)
+        joined += fabs(r->hertz[k] - r->hertz[r->cluster[k]]) >
+                  same_frequency * r->hertz[k];
+    return joined;
 }
 
 /* The total of which shares are given. */
@@ -88,13 +122,13 @@ const char *rankings_damping(const ritz_ranking *r)
 }
 
 /* Largest relative difference between values and exact ones; NaN if they are no
-   Hankel values. */
+   Hankel values, or if damping joins modes: then no pair is that of a value. */
 static double difference_of(const ritz_ranking *r)
 {
     double worst = nan("");
     double largest = r->count > 0 ? exact_at(r, 0) : nan("");
 
-    for (int64_t k = 0; k < r->count; k++) {
+    for (int64_t k = 0; k < r->count && count_joined(r) == 0; k++) {
         double exact = exact_at(r, k);
 
         if (exact > significant * largest)
@@ -149,7 +183,7 @@ static void say_line(const cli_run *run, const ritz_ranking *r,
     if (!isnan(exact))
         sink_part(run, "  %.5e %.5e", r->system_value[2 * k],
                   r->system_value[2 * k + 1]);
-    if (exact > invisible * exact_at(r, 0))
+    if (exact > invisible * exact_at(r, 0) && count_joined(r) == 0)
         sink_part(run, "          %+9.1e", r->value[mode] / exact - 1.0);
     cli_say(run, "%s", "");
 }
@@ -170,6 +204,17 @@ static void say_sums(const cli_run *run, const ritz_ranking *r)
                     percent_of(sum, r->whole[j]));
     }
     cli_say(run, "%4s %52s %13s%s", "sum", "", "", parts);
+}
+
+static void say_joined(const cli_run *run, const ritz_ranking *r)
+{
+    int64_t joined = count_joined(r);
+
+    if (joined > 0)
+        cli_say(run,
+                "damping joins %ld modes to others: a cluster has one value, "
+                "and is kept or left out whole",
+                joined);
 }
 
 /* Exact values alone, with the bound of cutting there. */
@@ -195,6 +240,7 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
         say_line(run, r, track, k);
     if (r->count > most)
         cli_say(run, "     and %ld more", (r->count - most));
+    say_joined(run, r);
     if (shows_parts(r))
         say_sums(run, r);
     if (!isnan(r->total))
@@ -258,6 +304,7 @@ void rankings_set(cli_run *run, const ritz_ranking *r, const int64_t *track)
     sink_reals(run, "zeta", r->count, r->zeta);
     sink_reals(run, "values", r->count, r->value);
     sink_wholes(run, "clusters", r->count, r->cluster, 1);
+    sink_set(run, "joined", "%ld", count_joined(r));
     sink_reals(run, "system_values", r->num_system, r->system_value);
     if (track)
         sink_wholes(run, "tracks", r->count, track, 1);
@@ -318,7 +365,7 @@ void rankings_warn(cli_run *run, const ranked *group)
     if (!isnan(differs))
         cli_say(run, "values by %s differ from the exact ones by %.2g at most",
                 worst->by, differs);
-    if (!(worst->coupling > coupled_limit) || isnan(differs))
+    if (!(worst->coupling > coupled_limit) || isnan(exact_at(worst, 0)))
         return;
     cli_warn(run,
              "modes %ld and %ld couple by %.3g%s%s: values of single modes "

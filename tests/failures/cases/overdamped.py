@@ -2,7 +2,7 @@
 
 A strong damper splits a mode into two real poles. Programs that give each mode a ratio project D on the undamped modes and take its diagonal: the first mode gets zeta = 2.8, and sqrt(1 - zeta^2) is not a number; with it held at one, the mode is gone. Lists that know complex pairs alone lose the slow real pole, which is the slowest motion that the structure has.
 
-Ritz finds poles of the quadratic problem, lists real ones as such, refuses ratios of one and more, and refuses rankings by mode where D couples modes.
+Ritz finds poles of the quadratic problem, lists real ones as such, refuses ratios of one and more, and ranks modes that D couples as one, by exact Hankel values with all of D.
 """
 import numpy as np
 import scipy.linalg as la
@@ -35,8 +35,14 @@ def run(it):
     it.says("overdamped, it must stay below 1", 1, "poles", "--damping",
             "modal 2", path)
     it.reduce(path, "full", out="row-full")
-    it.says("a ranking needs damping mode by mode", 1, "rank", "--by",
-            "gregory", "row-full.h5")
+    W_c, W_o = naive.gramians(*naive.first_order(row, naive.unit(3, 2),
+                                                 naive.unit(3, 0)))
+    exact = np.sqrt(np.abs(np.sort(la.eigvals(W_c @ W_o).real)[::-1]))
+    answer = it.tool("rank", "row-full.h5")
+    it.right("value of all three modes", np.array(answer["values"]),
+             np.full(3, exact[0]), 1e-9)
+    it.right("Hankel values", np.array(answer["system_values"])[:4], exact[:4],
+             1e-9)
     it.row(f"ratio {ratio[0]:.2g} at {omega[0]:.3g} rad/s",
            f"no such mode: poles at {real[1]:.3g} and {real[0]:.3g} rad/s",
            f"{found[1]:.3g} and {found[0]:.3g}, `real, does not oscillate`; "

@@ -193,7 +193,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
                  "no inputs");
     assert_ok(masses_io(&row, 1, &in, 1, &seen));
     assert_fails(ritz_basis_make(method, &request, &none), RITZ_ERR_ARGUMENT,
-                 "couples");
+                 ", and others that damping joins, are one cluster");
     ritz_sparse_free(&row.D);
     assert_fails(ritz_basis_make(method, &request, &none), RITZ_ERR_ARGUMENT,
                  "no damping");

@@ -155,8 +155,8 @@ static void one_mode_has_the_closed_form_pair(void **state)
     (void)state;
     for (int k = 0; k < 4; k++) {
         double z = zeta[k];
-        const ritz_modal modal = {1,         &omega,    &z,
-                                  {1, 2, b}, {3, 1, c}, {3, 1, none}};
+        const ritz_modal modal = {1,         &omega,       &z, {1, 2, b},
+                                  {3, 1, c}, {3, 1, none}, 0,  {0}};
         double light = 5.0 * 3.0 / (4.0 * z * omega * omega);
         double root = sqrt(1.0 + z * z);
         double sigma[2];
@@ -186,7 +186,8 @@ static void hankel_values_are_the_eigenvalues_of_the_product(void **state)
     double b[] = {1.0, -0.5};
     double c[] = {0.7, 0.2, 0.4, 1.1};
     double cv[] = {0.1, -0.3, 0.2, 0.5};
-    const ritz_modal modal = {2, omega, zeta, {2, 1, b}, {2, 2, c}, {2, 2, cv}};
+    const ritz_modal modal = {2,         omega,      zeta, {2, 1, b},
+                              {2, 2, c}, {2, 2, cv}, 0,    {0}};
     RITZ_OWN(ritz_dense) Wc = {0};
     RITZ_OWN(ritz_dense) Wo = {0};
     RITZ_OWN(ritz_dense) W = {0};
@@ -224,8 +225,8 @@ static void a_cluster_has_one_value_whatever_spans_it(void **state)
         double b[] = {3.0 * co, -3.0 * si, 1.0, si, co, 1.0};
         double c[] = {co, si, -si, co, 1.0, 1.0};
         double none[6] = {0.0};
-        const ritz_modal modal = {3,         omega,     zeta,
-                                  {3, 2, b}, {2, 3, c}, {2, 3, none}};
+        const ritz_modal modal = {3,         omega,        zeta, {3, 2, b},
+                                  {2, 3, c}, {2, 3, none}, 0,    {0}};
         ritz_ranking ranking = {0};
 
         for (int r = 0; r < 2; r++) {
@@ -252,8 +253,8 @@ static void near_modes_are_flagged_and_named(void **state)
     double zeta[] = {0.01, 0.01, 0.01};
     double one[] = {1.0, 1.0, 1.0};
     double none[3] = {0.0};
-    const ritz_modal modal = {3,           omega,       zeta,
-                              {3, 1, one}, {1, 3, one}, {1, 3, none}};
+    const ritz_modal modal = {3,           omega,        zeta, {3, 1, one},
+                              {1, 3, one}, {1, 3, none}, 0,    {0}};
     ritz_ranking ranking = {0};
 
     (void)state;
@@ -310,12 +311,54 @@ static void what_cannot_be_ranked_is_refused_in_words(void **state)
     assert_ok(ritz_io_new(2, 1, 0, &io));
     assert_fails(ritz_modal_new(&K, &M, NULL, &io, NULL, &modal),
                  RITZ_ERR_ARGUMENT, "0.31831 Hz has no damping");
+    d[1] = d[2] = d[3] = 0.0;
     assert_fails(ritz_modal_new(&K, &M, &D, &io, NULL, &modal),
-                 RITZ_ERR_ARGUMENT, "couples the modes at 0.31831 and");
-    d[1] = d[2] = 0.0;
+                 RITZ_ERR_ARGUMENT, "0.477465 Hz has no damping");
+    d[3] = 0.1;
     assert_ok(ritz_modal_new(&K, &M, &D, &io, NULL, &modal));
     assert_fails(rank(&ritz_ranker_hankel, &modal, &ranking), RITZ_ERR_ARGUMENT,
                  "at least one input and one output");
+}
+
+/*
+ * Modes 1 and 3 of four that damping couples by 0.5, and 2 and 3 by 0.05: one
+ * cluster of two that are no neighbours, with one value.
+ */
+static void modes_that_damping_couples_have_one_value(void **state)
+{
+    double omega[] = {1.0, 2.0, 3.0, 4.0};
+    double zeta[] = {0.1, 0.05, 1.0 / 30.0, 0.025};
+    double delta[] = {0.2, 0.0,  0.1,  0.0, 0.0, 0.2, 0.01, 0.0,
+                      0.1, 0.01, 0.20, 0.0, 0.0, 0.0, 0.00, 0.2};
+    double b[] = {1.0, 2.0, -1.0, 1.0}, c[] = {1.0, 1.0, 1.0, 0.5};
+    double none[4] = {0.0};
+    const ritz_modal modal = {4,         omega,        zeta, {4, 1, b},
+                              {1, 4, c}, {1, 4, none}, 0,    {4, 4, delta}};
+    static const bool both[] = {true, false, true, false};
+    RITZ_OWN(ritz_modal) pair = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0}, light = {0}, cost = {0};
+    double sigma[4];
+
+    (void)state;
+    assert_ok(ritz_modal_part(&modal, both, NULL, &pair));
+    assert_ok(ritz_modal_hankel(&pair, NULL, sigma));
+    assert_ok(rank(&ritz_ranker_hankel, &modal, &ranking));
+    assert_int_equal(ranking.cluster[2], 0);
+    assert_int_equal(ranking.cluster[1], 1);
+    assert_near(ranking.value[0], sigma[0], 0.0);
+    assert_near(ranking.value[2], sigma[0], 0.0);
+    assert_int_equal(ranking.num_system, 8);
+    /* alone, as its own damping is all it has: zeta of 0.05, then 0.025 */
+    assert_near(ranking.value[1], 2.0 / 0.8 * (sqrt(1.0025) + 0.05), 1e-14);
+    assert_near(ranking.value[3], 0.5 / 1.6 * (sqrt(1.000625) + 0.025), 1e-14);
+    /* light damping, and costs, are mode by mode */
+    assert_ok(rank(&ritz_ranker_gregory, &modal, &light));
+    assert_int_equal(light.cluster[2], 2);
+    assert_near(light.value[0], 1.0 / 0.4, 1e-14);
+    assert_ok(rank(&ritz_ranker_modal_cost, &modal, &cost));
+    assert_int_equal(cost.cluster[2], 2);
+    assert_near(cost.value[0] + cost.value[1] + cost.value[2] + cost.value[3],
+                cost.total, 1e-13 * cost.total);
 }
 
 static void rankings_are_found_by_name_or_nearly(void **state)
@@ -355,6 +398,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(near_modes_are_flagged_and_named),
     cmocka_unit_test(damping_limits_and_accelerations_are_taken_in),
     cmocka_unit_test(what_cannot_be_ranked_is_refused_in_words),
+    cmocka_unit_test(modes_that_damping_couples_have_one_value),
     cmocka_unit_test(rankings_are_found_by_name_or_nearly),
     cmocka_unit_test(ranking_survives_every_allocation),
 };
