@@ -97,7 +97,9 @@ ritz_status ritz_plane_check_dofs(ritz_plane plane, int64_t count,
     static const double basic[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     extent all = {.low = -1};
 
-    for (int64_t i = 0; plane != RITZ_PLANE_NONE && i < count; i++) {
+    if (plane == RITZ_PLANE_NONE)
+        return RITZ_OK;
+    for (int64_t i = 0; i < count; i++) {
         const int64_t k =
             dof[i].component > 0 ? ritz_grids_find(grids, dof[i].grid) : -1;
 
@@ -116,7 +118,9 @@ ritz_status ritz_plane_check_port(ritz_plane plane, const ritz_port_map *port)
     static const double basic[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     extent all = {.low = -1};
 
-    for (int64_t i = 0; plane != RITZ_PLANE_NONE && i < port->count; i++)
+    if (plane == RITZ_PLANE_NONE)
+        return RITZ_OK;
+    for (int64_t i = 0; i < port->count; i++)
         if (port->dof[i].component > 0) {
             RITZ_CHECK_IN(port->name, check_dof(plane, port->dof[i], basic));
             add_point(plane, port->dof[i].grid, port->position + 3 * i, &all);
