@@ -1,7 +1,11 @@
 #include "bases/columns.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
+#include "linear/orthonormal.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -240,4 +244,77 @@ const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
     else if (load.name)
         snprintf(text, RITZ_LOADS_NAME_SIZE, "%s '%s'", load.word, load.name);
     return text;
+}
+
+ritz_status ritz_loads_beside(const ritz_request *request, int usual,
+                              int *loads)
+{
+    const bool asked = request->choice.given & RITZ_USES_LOADS;
+    const int all = asked ? request->choice.loads : usual;
+    const int beside = all & ~RITZ_LOADS_ATTACHED;
+    char text[64];
+
+    RITZ_REFUSE_IF(asked && beside && ritz_loads_count(request, all) == 0,
+                   RITZ_ERR_ARGUMENT, "there is no load to respond to, no %s",
+                   list_kinds(all, text));
+    *loads = beside;
+    return RITZ_OK;
+}
+
+ritz_status ritz_statics_choose(const ritz_dense *F, const ritz_dense *Psi,
+                                const double *least, double tolerance,
+                                bool *keep, int64_t *kept)
+{
+    RITZ_OWN(ritz_dense) R = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
+    RITZ_OWN_ARRAY int64_t *order = NULL;
+
+    *kept = 0;
+    RITZ_CHECK_NEW(scale, Psi->ncol);
+    RITZ_CHECK_NEW(order, Psi->ncol);
+    RITZ_CHECK(ritz_dense_mul_tn(F, Psi, &R));
+    for (int64_t j = 0; j < R.ncol; j++) {
+        double own = ritz_dense_col(&R, j)[j];
+
+        if (own > least[j])
+            scale[j] = 1.0 / sqrt(own);
+    }
+    for (int64_t j = 0; j < R.ncol; j++)
+        for (int64_t i = 0; i < R.ncol; i++)
+            ritz_dense_col(&R, j)[i] *= scale[i] * scale[j];
+    ritz_dense_symmetrise(&R);
+    *kept = ritz_pivots_find(&R, tolerance, RITZ_PIVOT_TIE, R.ncol, order);
+    for (int64_t k = 0; k < *kept; k++)
+        keep[order[k]] = true;
+    return RITZ_OK;
+}
+
+void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
+                          int64_t count, const bool *keep,
+                          ritz_column_kind kind, ritz_basis *basis)
+{
+    char name[RITZ_LOADS_NAME_SIZE] = "";
+    int64_t left_out = 0;
+
+    for (int64_t j = 0; j < count; j++)
+        if (!keep[j] && left_out++ == 0)
+            ritz_loads_name(request, loads, first + j, name);
+    if (left_out > 0)
+        ritz_remark_add(basis, "; ",
+                        "%" PRId64 " %s mode(s) left out, the first of %s: "
+                        "dependent, or negligible relative to the kept modes",
+                        left_out, ritz_column_name(kind), name);
+}
+
+void ritz_remark_dampers(const ritz_request *request, int loads,
+                         ritz_basis *basis)
+{
+    const int64_t count = request->component->dampers.count;
+
+    if (count > 0 && !(loads & RITZ_LOADS_DAMPERS))
+        ritz_remark_add(basis, "; ",
+                        "%" PRId64 " damper(s) without a static vector: "
+                        "damping may be wrong where frequencies are right, "
+                        "take dampers among the loads",
+                        count);
 }

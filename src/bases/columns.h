@@ -74,4 +74,42 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
 const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
                             char text[RITZ_LOADS_NAME_SIZE]);
 
+/**
+ * The loads beside the attached dofs, which a method keeps in any case: the
+ * requested ones, or else @p usual.
+ *
+ * @param[out] loads  sum of RITZ_LOADS_..., without RITZ_LOADS_ATTACHED
+ * @return RITZ_ERR_ARGUMENT if some are requested and there is none
+ */
+ritz_status ritz_loads_beside(const ritz_request *request, int usual,
+                              int *loads);
+
+/**
+ * Which static vectors Psi, responses to F less what others have of them, are
+ * independent and more than rounding: by pivots of F'Psi scaled to a unit
+ * diagonal, of which the square of what is new in a column must exceed the
+ * tolerance. Of pivots that are equal to six digits the first is taken, so that
+ * the choice does not depend on a processor's rounding.
+ *
+ * @param[in]     least  p, what f'psi must exceed
+ * @param[in,out] keep   p, true for columns that are
+ */
+ritz_status ritz_statics_choose(const ritz_dense *F, const ritz_dense *Psi,
+                                const double *least, double tolerance,
+                                bool *keep, int64_t *kept);
+
+/**
+ * Say how many static vectors of a kind were left out, and the first of them.
+ *
+ * @param[in] first  of all loads, which is the first of these
+ * @param[in] keep   count
+ */
+void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
+                          int64_t count, const bool *keep,
+                          ritz_column_kind kind, ritz_basis *basis);
+
+/** Say that there are dampers, if they are not among the loads. */
+void ritz_remark_dampers(const ritz_request *request, int loads,
+                         ritz_basis *basis);
+
 #endif

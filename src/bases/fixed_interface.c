@@ -285,24 +285,125 @@ static ritz_status reduce_boundary(const ritz_request *request,
     return RITZ_OK;
 }
 
-static ritz_status make_craig_bampton(const ritz_request *request,
-                                      ritz_basis *out)
+/*
+ * Static vectors of other loads, of dampers above all [ChuMilman1992]: the
+ * response of the interior while the boundary is held, less its part in the
+ * modes,
+ *
+ *     X = K_ii^-1 F_i,   X := X - Phi Phi'M_ii X
+ *
+ * [0; X] is K-orthogonal to constraint modes and modes, with which it spans the
+ * response of the component however its boundary moves.
+ */
+typedef struct interior_statics {
+    int loads;       /* sum of RITZ_LOADS_... */
+    ritz_dense F, X; /* interior rows; {0}: no load */
+    double *least;   /* energy that is nothing of a whole response */
+    bool *keep;
+    int64_t kept;
+} interior_statics;
+
+static void interior_statics_free(interior_statics *a)
+{
+    ritz_dense_free(&a->F);
+    ritz_dense_free(&a->X);
+    RITZ_FREE(a->least, a->keep);
+}
+
+/* X before modes are taken out of it. */
+static ritz_status respond_interior(const ritz_request *request,
+                                    const partition *s, int usual,
+                                    interior_statics *out)
+{
+    const double part = fmax(request->tolerance, RITZ_FORCE_RELIEVED);
+    RITZ_OWN(ritz_dense) F = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
+
+    RITZ_CHECK(ritz_loads_beside(request, usual, &out->loads));
+    if (ritz_loads_count(request, out->loads) == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_loads_collect(request, out->loads, &F, &dof));
+    RITZ_CHECK(ritz_dense_rows(&F, s->i.count, s->i.at, &out->F));
+    RITZ_CHECK(ritz_dense_copy(&out->F, &out->X));
+    if (s->L)
+        RITZ_CHECK(ritz_factor_solve(s->L, &out->X));
+    RITZ_CHECK_NEW(out->least, F.ncol);
+    RITZ_CHECK_NEW(out->keep, F.ncol);
+    for (int64_t j = 0; j < F.ncol; j++)
+        out->least[j] = part * ritz_dense_dot(&out->F, j, &out->X, j);
+    return RITZ_OK;
+}
+
+/* The independent columns of X without their part in Phi beside Phi. */
+static ritz_status join_statics(const partition *s, double tolerance,
+                                const ritz_dense *Phi, interior_statics *a,
+                                ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) MPhi = {0}, X = {0};
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK(ritz_sparse_mul(&s->M_ii, Phi, &MPhi));
+    for (int pass = 0; pass < 2 && Phi->ncol > 0; pass++)
+        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &a->X));
+    RITZ_CHECK(ritz_statics_choose(&a->F, &a->X, a->least, tolerance, a->keep,
+                                   &a->kept));
+    RITZ_CHECK_NEW(at, a->kept);
+    for (int64_t j = 0; j < a->X.ncol; j++)
+        if (a->keep[j])
+            at[count++] = j;
+    RITZ_CHECK(ritz_dense_pick(&a->X, count, at, &X));
+    return ritz_dense_beside(Phi, &X, out);
+}
+
+/* Columns of the boundary, Phi and static vectors, the latter labelled. */
+static ritz_status join_columns(const ritz_request *request, const partition *s,
+                                const ritz_dense *Phi, interior_statics *a,
+                                ritz_basis *out)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+
+    if (a->F.ncol > 0)
+        RITZ_CHECK(join_statics(s, request->tolerance, Phi, a, &X));
+    RITZ_CHECK(join_interior(s, a->F.ncol > 0 ? &X : Phi, out));
+    for (int64_t j = out->T.ncol - a->kept; j < out->T.ncol; j++)
+        out->columns.kind[j] = RITZ_COLUMN_STATIC;
+    ritz_remark_left_out(request, a->loads, 0, a->F.ncol, a->keep,
+                         RITZ_COLUMN_STATIC, out);
+    ritz_remark_dampers(request, a->loads, out);
+    return RITZ_OK;
+}
+
+/* @param[in] usual  loads that have static vectors if none are requested */
+static ritz_status make_fixed(const ritz_request *request, int usual,
+                              ritz_basis *out)
 {
     RITZ_OWN(partition) s = {0};
+    RITZ_OWN(interior_statics) statics = {0};
     RITZ_OWN(ritz_pairs) modes = {0};
 
     RITZ_CHECK(hold_boundary(request, &s));
+    RITZ_CHECK_IN("static vectors",
+                  respond_interior(request, &s, usual, &statics));
     ritz_factor_free(&s.L);
     if (request->choice.interface_modes > 0 && s.b->count > 0)
         RITZ_CHECK_IN("interface modes", reduce_boundary(request, &s.held));
     if (request->modes != 0)
         RITZ_CHECK_IN("fixed-interface modes",
                       find_normal_modes(request, &s, &modes));
-    RITZ_CHECK(join_interior(&s, &modes.Phi, out));
+    else
+        RITZ_CHECK(ritz_dense_new(s.i.count, 0, &modes.Phi));
+    RITZ_CHECK(join_columns(request, &s, &modes.Phi, &statics, out));
     ritz_columns_label(&modes, RITZ_COLUMN_NORMAL, s.held.T.ncol,
                        &out->columns);
     memcpy(out->origin.engine, modes.engine, sizeof out->origin.engine);
     return RITZ_OK;
+}
+
+static ritz_status make_craig_bampton(const ritz_request *request,
+                                      ritz_basis *out)
+{
+    return make_fixed(request, RITZ_LOADS_DAMPERS, out);
 }
 
 const ritz_method ritz_method_craig_bampton = {
@@ -313,7 +414,8 @@ const ritz_method ritz_method_craig_bampton = {
     .cost = "a factor of the interior, a solve an attached dof, two a mode",
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "an interior that moves with the interface held; loads within it",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE |
+            RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_craig_bampton,
 };
@@ -332,7 +434,7 @@ static ritz_status make_guyan(const ritz_request *request, ritz_basis *out)
                    "nothing is attached, so nothing would be kept: name a port "
                    "by --attach");
     without_modes.modes = 0;
-    RITZ_CHECK(make_craig_bampton(&without_modes, out));
+    RITZ_CHECK(make_fixed(&without_modes, 0, out));
     snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");
     return RITZ_OK;
 }
@@ -345,7 +447,7 @@ const ritz_method ritz_method_guyan = {
     .cost = "a factor of the interior, a solve an attached dof",
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "modes of the interior, which are not there",
-    .uses = RITZ_USES_ATTACHED | RITZ_USES_INTERFACE,
+    .uses = RITZ_USES_ATTACHED | RITZ_USES_INTERFACE | RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_guyan,
 };
@@ -447,7 +549,8 @@ static ritz_status add_inertia(const partition *s, const ritz_dense *X,
 static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
 {
     RITZ_OWN(partition) s = {0};
-    RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0};
+    RITZ_OWN(interior_statics) statics = {0};
+    RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0}, none = {0};
 
     RITZ_REFUSE_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
                    "nothing is attached, so nothing would be kept: name a port "
@@ -458,8 +561,10 @@ static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
         RITZ_CHECK(solve_mass(&s, request->tolerance, &M_R, &K_R));
         RITZ_CHECK(add_inertia(&s, &K_R, &s.held.T));
     }
-    snprintf(s.held.origin.engine, sizeof s.held.origin.engine, "CHOLMOD");
-    RITZ_MOVE(*out, s.held);
+    RITZ_CHECK(respond_interior(request, &s, 0, &statics));
+    RITZ_CHECK(ritz_dense_new(s.i.count, 0, &none));
+    RITZ_CHECK(join_columns(request, &s, &none, &statics, out));
+    snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");
     return RITZ_OK;
 }
 
@@ -471,7 +576,7 @@ const ritz_method ritz_method_irs = {
     .cost = "as guyan, and a second solve",
     .holds = "rigid motion; shapes to first order; frequencies from above",
     .fails = "statics, which guyan has exact; attached dofs without mass",
-    .uses = RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_irs,
 };
@@ -512,7 +617,7 @@ static ritz_status find_coupling(const partition *s, const ritz_dense *Psi,
 static ritz_status find_loads(const ritz_request *request, const partition *s,
                               const ritz_dense *Psi, ritz_dense *out)
 {
-    int loads = ritz_krylov_loads(request);
+    int loads = ritz_krylov_loads(request, true);
     int others = loads & ~RITZ_LOADS_ATTACHED;
     int64_t more = ritz_loads_count(request, others);
     int64_t b = loads & RITZ_LOADS_ATTACHED ? Psi->ncol : 0;
@@ -556,6 +661,7 @@ static ritz_status make_krylov_fixed(const ritz_request *request,
     for (int64_t j = s.b->count; j < basis.T.ncol; j++)
         basis.columns.kind[j] = RITZ_COLUMN_KRYLOV;
     RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
+    ritz_remark_dampers(request, ritz_krylov_loads(request, true), &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

@@ -1,300 +1,33 @@
-/*
- * The static response of the modes that are left out to forces F. With the kept
- * modes Phi, Psi solves
- *
- *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
- *
- * and is found from one definite factor of A = K + s M, s > 0, by
- *
- *     Psi <- A^-1 (G + s M Psi),
- *
- * which contracts by s / (lambda + s) for every mode lambda that was left out.
- * F' Psi = Psi' K Psi is the residual flexibility: columns that are dependent
- * by it, or negligible relative to the flexibility of the kept modes, are
- * removed. With T = [Phi, Psi], T'KT and T'MT are block diagonal, and the
- * flexible static response to F at the loaded dofs is exact.
- */
+/* Methods of free-interface modes and of the static response of the rest. */
+#include "bases/free_set.h"
+
 #include "base/alloc.h"
-#include "base/tolerances.h"
-#include "bases/columns.h"
-#include "linear/orthonormal.h"
 
 #include <cblas.h>
 #include <inttypes.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum {
-    MOST_SWEEPS = 60,
-    NAMED = 3, /* dofs in a remark */
-};
+enum { NAMED = 3 }; /* dofs in a remark */
 
-/* Free-interface modes, and residual modes for some loads. */
-typedef struct free_set {
-    ritz_pairs modes;  /* that are kept, rigid ones first */
-    int loads;         /* RITZ_LOADS_..., of the columns below */
-    ritz_dense F, Psi; /* n x p, loads and residual modes; {0}: no load */
-    int64_t *dof;      /* p, row of an attached dof, -1 of other loads */
-    bool *keep;        /* p, false: dependent, or negligible (tolerance) */
-    int64_t kept;      /* how many columns of Psi are */
-} free_set;
-
-static void free_set_free(free_set *set)
+/* The set of a body that others hold at its attached dofs. */
+static ritz_status find_joined_set(const ritz_request *request,
+                                   ritz_free_set *out)
 {
-    ritz_pairs_free(&set->modes);
-    ritz_dense_free(&set->F);
-    ritz_dense_free(&set->Psi);
-    RITZ_FREE(set->dof, set->keep);
+    int beside = 0;
+
+    RITZ_CHECK(ritz_loads_beside(request, RITZ_LOADS_DAMPERS, &beside));
+    return ritz_free_set_new(request, RITZ_LOADS_ATTACHED | beside, true, out);
 }
 
-/*
- * A shift below the first flexible mode contracts fast and makes A well
- * conditioned. If that mode is not kept, it is found for this; if there is
- * none, the shift is of the scale of the matrices.
- */
-static ritz_status choose_shift(const ritz_component *component,
-                                const ritz_pairs *modes, double *out)
+static ritz_status make_joined_basis(const ritz_request *request,
+                                     ritz_column_kind kind, ritz_basis *out)
 {
-    const ritz_span one = {.modes = 1};
-    double K = ritz_sparse_max(&component->K);
-    double M = ritz_sparse_max(&component->M);
-    RITZ_OWN(ritz_pairs) first = {0};
-    const ritz_pairs *known = modes;
+    RITZ_OWN(ritz_free_set) set = {0};
 
-    if (modes->Phi.ncol == modes->num_rigid) {
-        RITZ_CHECK_IN(
-            "first flexible mode",
-            ritz_eigen_sparse(&component->K, &component->M, &one, &first));
-        known = &first;
-    }
-    if (known->Phi.ncol > known->num_rigid)
-        *out = RITZ_SHIFT_OF_FIRST * known->lambda[known->num_rigid];
-    else
-        *out = K > 0.0 && M > 0.0 ? RITZ_SHIFT_OF_SIZE * K / M : 1.0;
-    return RITZ_OK;
-}
-
-/* An upper bound of the kept flexible modes' static response to load j. */
-static double bound_response(const ritz_pairs *modes, const ritz_dense *F,
-                             int64_t j)
-{
-    double most = 0.0;
-
-    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
-        most = fmax(most, ritz_dense_col_max(&modes->Phi, k) *
-                              fabs(ritz_dense_dot(&modes->Phi, k, F, j)) /
-                              modes->lambda[k]);
-    return most;
-}
-
-/*
- * One step of the iteration; *change is the largest change of a column relative
- * to its size. A column smaller than least[j] is rounding, and its change is
- * relative to least[j].
- */
-static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
-                                    double s, const ritz_dense *G,
-                                    const double *least, ritz_dense *Psi,
-                                    double *change)
-{
-    RITZ_OWN(ritz_dense) next = {0};
-
-    RITZ_CHECK(ritz_sparse_mul(M, Psi, &next));
-    for (int64_t k = 0; k < G->nrow * G->ncol; k++)
-        next.val[k] = G->val[k] + s * next.val[k];
-    RITZ_CHECK(ritz_factor_solve(A, &next));
-    *change = 0.0;
-    for (int64_t j = 0; j < G->ncol; j++) {
-        const double *now = ritz_dense_col(&next, j);
-        const double *before = ritz_dense_col(Psi, j);
-        double moved = 0.0;
-        double size = least[j];
-
-        for (int64_t i = 0; i < G->nrow; i++) {
-            moved = fmax(moved, fabs(now[i] - before[i]));
-            size = fmax(size, fabs(now[i]));
-        }
-        if (size > 0.0)
-            *change = fmax(*change, moved / size);
-    }
-    ritz_dense_replace(Psi, &next);
-    return RITZ_OK;
-}
-
-/*
- * The response of A to each load at the load itself, and the size below which
- * its column is rounding.
- */
-static ritz_status find_scales(const free_set *set, double tolerance,
-                               ritz_factor *A, double *own, double *least)
-{
-    RITZ_OWN(ritz_dense) X = {0};
-
-    RITZ_CHECK(ritz_dense_copy(&set->F, &X));
-    RITZ_CHECK(ritz_factor_solve(A, &X));
-    for (int64_t j = 0; j < X.ncol; j++) {
-        own[j] = ritz_dense_dot(&set->F, j, &X, j);
-        least[j] = fmax(tolerance * bound_response(&set->modes, &set->F, j),
-                        RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
-    }
-    return RITZ_OK;
-}
-
-/* Psi, and the response of A to each load at the load itself. */
-static ritz_status find_residual(const ritz_request *request, free_set *set,
-                                 double *response)
-{
-    const ritz_sparse *M = &request->component->M;
-    const ritz_dense *Phi = &set->modes.Phi;
-    const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
-    double s = 0.0;
-    double change = 1.0, best = HUGE_VAL;
-    RITZ_OWN(ritz_sparse) A = {0};
-    RITZ_OWN(ritz_factor) *L = NULL;
-    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
-    RITZ_OWN_ARRAY double *least = NULL;
-
-    RITZ_CHECK_NEW(least, set->F.ncol);
-    RITZ_CHECK(choose_shift(request->component, &set->modes, &s));
-    RITZ_CHECK(ritz_sparse_add(1.0, &request->component->K, s, M, &A));
-    RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
-    RITZ_CHECK(find_scales(set, request->tolerance, L, response, least));
-    RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
-    RITZ_CHECK(ritz_dense_copy(&set->F, &G));
-    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G));
-    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* twice is enough */
-    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &set->Psi));
-    for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
-        RITZ_CHECK(iterate_residual(L, M, s, &G, least, &set->Psi, &change));
-        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &set->Psi));
-        if (k > 8 && change > 0.5 * best)
-            break; /* rounding, not contraction, is what is left */
-        best = fmin(best, change);
-    }
-    RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
-                   "residual attachment modes still change by %.1e", change);
-    return RITZ_OK;
-}
-
-/* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes for load j. */
-static double kept_flexibility(const free_set *set, int64_t j)
-{
-    const ritz_pairs *modes = &set->modes;
-    double sum = 0.0;
-
-    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
-        double x = ritz_dense_dot(&modes->Phi, k, &set->F, j);
-
-        sum += x * x / modes->lambda[k];
-    }
-    return sum;
-}
-
-/*
- * Mark the residual modes that are independent and more than rounding, by
- * pivots of R = F' Psi scaled to a unit diagonal: the square of what is new in
- * a column must exceed the tolerance. Of pivots that are equal to six digits
- * the first is taken, so that the choice does not depend on a processor's
- * rounding.
- */
-static ritz_status choose_independent(const double *response, double tolerance,
-                                      free_set *set)
-{
-    RITZ_OWN(ritz_dense) R = {0};
-    RITZ_OWN_ARRAY double *scale = NULL;
-    RITZ_OWN_ARRAY int64_t *order = NULL;
-
-    RITZ_CHECK_NEW(scale, set->Psi.ncol);
-    RITZ_CHECK_NEW(order, set->Psi.ncol);
-    RITZ_CHECK(ritz_dense_mul_tn(&set->F, &set->Psi, &R));
-    for (int64_t j = 0; j < R.ncol; j++) {
-        double own = ritz_dense_col(&R, j)[j];
-        double all = own + kept_flexibility(set, j);
-
-        if (own > tolerance * all && own > RITZ_FORCE_RELIEVED * response[j])
-            scale[j] = 1.0 / sqrt(own);
-    }
-    for (int64_t j = 0; j < R.ncol; j++)
-        for (int64_t i = 0; i < R.ncol; i++)
-            ritz_dense_col(&R, j)[i] *= scale[i] * scale[j];
-    ritz_dense_symmetrise(&R);
-    set->kept = ritz_pivots_find(&R, tolerance, RITZ_PIVOT_TIE, R.ncol, order);
-    for (int64_t k = 0; k < set->kept; k++)
-        set->keep[order[k]] = true;
-    return RITZ_OK;
-}
-
-/*
- * The lowest modes as the request says, and residual modes of the loads, if
- * there are any, M- and K-orthogonal to the kept modes.
- */
-static ritz_status find_free_set(const ritz_request *request, int loads,
-                                 free_set *out)
-{
-    const ritz_component *component = request->component;
-    const ritz_span span = {request->modes, request->up_to_hz};
-    RITZ_OWN(free_set) set = {.loads = loads};
-    RITZ_OWN(ritz_dofs) rest = {0};
-    RITZ_OWN_ARRAY double *response = NULL;
-
-    /* refuses attached dofs that are out of range or repeated */
-    RITZ_CHECK(
-        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
-    RITZ_CHECK(ritz_lowest_modes("free-interface modes", "K", &component->K,
-                                 &component->M, &span, &set.modes));
-    if (ritz_loads_count(request, loads) > 0) {
-        RITZ_CHECK(ritz_loads_collect(request, loads, &set.F, &set.dof));
-        RITZ_CHECK_NEW(set.keep, set.F.ncol);
-        RITZ_CHECK_NEW(response, set.F.ncol);
-        RITZ_CHECK(find_residual(request, &set, response));
-        RITZ_CHECK(choose_independent(response, request->tolerance, &set));
-    }
-    RITZ_MOVE(*out, set);
-    return RITZ_OK;
-}
-
-/*
- * T = [rigid, normal, Psi]; the Psi columns have a kind, and the remark names
- * those left out.
- */
-static ritz_status join_free_set(const ritz_request *request,
-                                 const free_set *set, ritz_column_kind kind,
-                                 ritz_basis *out)
-{
-    int64_t k = set->modes.Phi.ncol;
-    char name[RITZ_LOADS_NAME_SIZE] = "";
-
-    RITZ_CHECK(ritz_basis_of_modes(&set->modes, set->kept, out));
-    for (int64_t j = 0; j < set->Psi.ncol; j++) {
-        const ritz_dense column = ritz_dense_part(&set->Psi, j, 1);
-
-        if (!set->keep[j] && !name[0])
-            ritz_loads_name(request, set->loads, j, name);
-        if (!set->keep[j])
-            continue;
-        out->columns.kind[k] = kind;
-        out->columns.dof[k] = set->dof[j];
-        ritz_dense_put(&column, 0, k++, &out->T);
-    }
-    if (set->kept < set->Psi.ncol)
-        ritz_remark_add(out, "; ",
-                        "%" PRId64 " %s mode(s) left out, the first of %s: "
-                        "dependent, or negligible relative to the kept modes",
-                        set->Psi.ncol - set->kept, ritz_column_name(kind),
-                        name);
-    return RITZ_OK;
-}
-
-static ritz_status make_free_basis(const ritz_request *request, int loads,
-                                   ritz_column_kind kind, ritz_basis *out)
-{
-    RITZ_OWN(free_set) set = {0};
-
-    RITZ_CHECK(find_free_set(request, loads, &set));
-    return join_free_set(request, &set, kind, out);
+    RITZ_CHECK(find_joined_set(request, &set));
+    return ritz_free_set_join(request, &set, kind, out);
 }
 
 /*
@@ -316,8 +49,7 @@ static ritz_status make_free_basis(const ritz_request *request, int loads,
 static ritz_status make_macneal_rubin(const ritz_request *request,
                                       ritz_basis *out)
 {
-    return make_free_basis(request, RITZ_LOADS_ATTACHED, RITZ_COLUMN_RESIDUAL,
-                           out);
+    return make_joined_basis(request, RITZ_COLUMN_RESIDUAL, out);
 }
 
 const ritz_method ritz_method_macneal_rubin = {
@@ -328,7 +60,7 @@ const ritz_method ritz_method_macneal_rubin = {
     .cost = "a factor, two solves a mode, 3 to 10 an attached dof",
     .holds = "kept modes, flexible static gain, rigid motion; from above",
     .fails = "attached dofs that depend on each other: left out, and named",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_macneal_rubin,
 };
@@ -345,8 +77,7 @@ const ritz_method ritz_method_macneal_rubin = {
 
 static ritz_status make_macneal(const ritz_request *request, ritz_basis *out)
 {
-    return make_free_basis(request, RITZ_LOADS_ATTACHED, RITZ_COLUMN_MASSLESS,
-                           out);
+    return make_joined_basis(request, RITZ_COLUMN_MASSLESS, out);
 }
 
 const ritz_method ritz_method_macneal = {
@@ -357,7 +88,7 @@ const ritz_method ritz_method_macneal = {
     .cost = "as macneal-rubin",
     .holds = "flexible static gain; kept modes",
     .fails = "frequencies need not come from above; M is singular",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_macneal,
 };
@@ -377,30 +108,32 @@ const ritz_method ritz_method_macneal = {
  */
 
 /* Psi := X; columns of T are scaled like those that they replace. */
-static ritz_status add_modes(free_set *set)
+static ritz_status add_modes(ritz_free_set *set)
 {
     const ritz_pairs *modes = &set->modes;
+    const ritz_dense F = ritz_dense_part(&set->F, 0, set->interface);
+    ritz_dense X = ritz_dense_part(&set->Psi, 0, set->interface);
     RITZ_OWN(ritz_dense) q = {0}, part = {0};
 
-    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, &set->F, &q));
+    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, &F, &q));
     for (int64_t j = 0; j < q.ncol; j++)
         for (int64_t k = 0; k < q.nrow; k++)
             ritz_dense_col(&q, j)[k] *=
                 k < modes->num_rigid ? 0.0 : 1.0 / modes->lambda[k];
     RITZ_CHECK(ritz_dense_mul(&modes->Phi, &q, &part));
-    ritz_dense_add(1.0, &part, &set->Psi);
+    ritz_dense_add(1.0, &part, &X);
     return RITZ_OK;
 }
 
 static ritz_status make_inertia_relief(const ritz_request *request,
                                        ritz_basis *out)
 {
-    RITZ_OWN(free_set) set = {0};
+    RITZ_OWN(ritz_free_set) set = {0};
 
-    RITZ_CHECK(find_free_set(request, RITZ_LOADS_ATTACHED, &set));
+    RITZ_CHECK(find_joined_set(request, &set));
     if (set.Psi.ncol > 0)
         RITZ_CHECK(add_modes(&set));
-    return join_free_set(request, &set, RITZ_COLUMN_ATTACHMENT, out);
+    return ritz_free_set_join(request, &set, RITZ_COLUMN_ATTACHMENT, out);
 }
 
 const ritz_method ritz_method_inertia_relief = {
@@ -411,7 +144,7 @@ const ritz_method ritz_method_inertia_relief = {
     .cost = "as macneal-rubin",
     .holds = "spans what macneal-rubin spans",
     .fails = "columns that are nearly parallel once many modes are kept",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_inertia_relief,
 };
@@ -425,8 +158,7 @@ const ritz_method ritz_method_inertia_relief = {
 
 static ritz_status make_dual(const ritz_request *request, ritz_basis *out)
 {
-    return make_free_basis(request, RITZ_LOADS_ATTACHED, RITZ_COLUMN_FORCE,
-                           out);
+    return make_joined_basis(request, RITZ_COLUMN_FORCE, out);
 }
 
 const ritz_method ritz_method_dual_craig_bampton = {
@@ -437,7 +169,7 @@ const ritz_method ritz_method_dual_craig_bampton = {
     .cost = "as macneal-rubin",
     .holds = "nothing: interfaces are met weakly",
     .fails = "systems have a negative eigenvalue for each interface force",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .only_named = RITZ_NAMED_FOR_COMPONENTS | RITZ_NAMED_FOR_SCENES,
     .keeps_interface = true,
     .make = make_dual,
@@ -463,12 +195,14 @@ static ritz_status make_normal_modes(const ritz_request *request,
     const int usual = RITZ_LOADS_INPUTS | RITZ_LOADS_DAMPERS;
     bool asked = request->choice.given & RITZ_USES_LOADS;
     int loads = asked ? request->choice.loads : usual;
+    RITZ_OWN(ritz_free_set) set = {0};
     ritz_dense F = {0};
     int64_t *dof = NULL;
 
     if (asked && ritz_loads_count(request, loads) == 0)
         RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof)); /* says why */
-    return make_free_basis(request, loads, RITZ_COLUMN_STATIC, out);
+    RITZ_CHECK(ritz_free_set_new(request, loads, false, &set));
+    return ritz_free_set_join(request, &set, RITZ_COLUMN_STATIC, out);
 }
 
 const ritz_method ritz_method_normal_modes = {
@@ -499,40 +233,9 @@ const ritz_method ritz_method_normal_modes = {
  * are removed are no coordinates, and the remark names them.
  */
 
-/* G = Psi Psi_bb^-1, Psi_bb = S L L' S with a unit diagonal within. */
-static ritz_status divide_residual(const int64_t *b, ritz_dense *Psi)
-{
-    RITZ_OWN(ritz_dense) F = {0};
-    RITZ_OWN_ARRAY double *scale = NULL;
-    int n = (int)Psi->nrow;
-    int p = (int)Psi->ncol;
-
-    RITZ_CHECK_NEW(scale, p);
-    RITZ_CHECK(ritz_dense_rows(Psi, p, b, &F));
-    ritz_dense_symmetrise(&F);
-    for (int64_t j = 0; j < p; j++)
-        scale[j] = 1.0 / sqrt(ritz_dense_col(&F, j)[j]);
-    for (int64_t j = 0; j < p; j++)
-        for (int64_t i = 0; i < p; i++)
-            ritz_dense_col(&F, j)[i] *= scale[i] * scale[j];
-    RITZ_REFUSE_IF(LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', p, F.val, p) != 0,
-                   RITZ_ERR_SINGULAR,
-                   "residual flexibility of the attached dofs is singular: "
-                   "keep fewer modes, or a larger --tolerance");
-    for (int64_t j = 0; j < p; j++)
-        cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
-                n, p, 1.0, F.val, p, Psi->val, n);
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans,
-                CblasNonUnit, n, p, 1.0, F.val, p, Psi->val, n);
-    for (int64_t j = 0; j < p; j++)
-        cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
-    return RITZ_OK;
-}
-
 /*
- * T = [G, Phi - G Phi_b]. The rows of G are those of I, and those of
- * Phi - G Phi_b zero, where they are so exactly.
+ * T = [G, Phi - G Phi_b, ..]. The rows of G are those of I, and those of all
+ * other columns zero, where they are so exactly.
  */
 static ritz_status fill_basis(const ritz_dense *Phi, const int64_t *b,
                               ritz_dense *G, ritz_dense *T)
@@ -558,7 +261,7 @@ static ritz_status fill_basis(const ritz_dense *Phi, const int64_t *b,
 }
 
 /* Name the dofs that are no coordinates: "grid 3 T1, grid 7 T1". */
-static void add_remark(const ritz_request *request, const free_set *set,
+static void add_remark(const ritz_request *request, const ritz_free_set *set,
                        ritz_basis *basis)
 {
     char text[NAMED * (RITZ_LOADS_NAME_SIZE + 2)] = "";
@@ -566,7 +269,7 @@ static void add_remark(const ritz_request *request, const free_set *set,
     size_t used = 0;
     int64_t count = 0;
 
-    for (int64_t j = 0; j < set->Psi.ncol; j++)
+    for (int64_t j = 0; j < set->interface; j++)
         if (!set->keep[j] && count++ < NAMED)
             used += (size_t)snprintf(
                 text + used, sizeof text - used, "%s%s", used > 0 ? ", " : "",
@@ -580,34 +283,62 @@ static void add_remark(const ritz_request *request, const free_set *set,
                  count, text, count > NAMED ? ", ..." : "");
 }
 
+/* The columns of the set that are static, as the last ones of T. */
+static void put_statics(const ritz_basis *joined, const ritz_free_set *set,
+                        ritz_basis *basis)
+{
+    const int64_t count = set->kept - set->held;
+    const int64_t at = basis->T.ncol - count;
+    const ritz_dense statics =
+        ritz_dense_part(&joined->T, joined->T.ncol - count, count);
+
+    ritz_dense_put(&statics, 0, at, &basis->T);
+    for (int64_t j = at; j < basis->T.ncol; j++)
+        basis->columns.kind[j] = RITZ_COLUMN_STATIC;
+}
+
+/* [G, Phi - G Phi_b, statics] from [Phi, Psi, statics]. */
+static ritz_status turn_columns(const ritz_free_set *set,
+                                const ritz_basis *joined, ritz_basis *out)
+{
+    const ritz_pairs *modes = &set->modes;
+    const int64_t *b = joined->columns.dof + modes->Phi.ncol;
+    RITZ_OWN(ritz_dense) G = {0};
+
+    RITZ_CHECK(ritz_dense_columns(&joined->T, modes->Phi.ncol, set->held, &G));
+    RITZ_CHECK(ritz_residual_divide(b, &G));
+    RITZ_CHECK(ritz_basis_new(G.nrow, joined->T.ncol, out));
+    put_statics(joined, set, out);
+    RITZ_CHECK(fill_basis(&modes->Phi, b, &G, &out->T));
+    ritz_columns_label_dofs(G.ncol, b, 0, &out->columns);
+    ritz_columns_label(modes, RITZ_COLUMN_NORMAL, G.ncol, &out->columns);
+    for (int64_t j = G.ncol; j < G.ncol + modes->num_rigid; j++) {
+        out->columns.kind[j] = RITZ_COLUMN_NORMAL; /* and no longer rigid */
+        out->columns.hertz[j] = nan("");
+    }
+    memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);
+    return RITZ_OK;
+}
+
 static ritz_status make_rubin(const ritz_request *request, ritz_basis *out)
 {
-    RITZ_OWN(free_set) set = {0};
+    RITZ_OWN(ritz_free_set) set = {0};
     RITZ_OWN(ritz_basis) joined = {0}, basis = {0};
-    RITZ_OWN(ritz_dense) G = {0};
-    const ritz_pairs *modes = &set.modes;
-    const int64_t *b = NULL;
 
-    RITZ_CHECK(find_free_set(request, RITZ_LOADS_ATTACHED, &set));
-    RITZ_CHECK(join_free_set(request, &set, RITZ_COLUMN_RESIDUAL, &joined));
-    if (set.kept == 0) { /* then the modes are all there is */
-        add_remark(request, &set, &joined);
-        RITZ_MOVE(*out, joined);
-        return RITZ_OK;
-    }
-    b = joined.columns.dof + modes->Phi.ncol;
-    RITZ_CHECK(ritz_dense_columns(&joined.T, modes->Phi.ncol, set.kept, &G));
-    RITZ_CHECK(divide_residual(b, &G));
-    RITZ_CHECK(ritz_basis_new(G.nrow, G.ncol + modes->Phi.ncol, &basis));
-    RITZ_CHECK(fill_basis(&modes->Phi, b, &G, &basis.T));
-    ritz_columns_label_dofs(G.ncol, b, 0, &basis.columns);
-    ritz_columns_label(modes, RITZ_COLUMN_NORMAL, G.ncol, &basis.columns);
-    for (int64_t j = G.ncol; j < G.ncol + modes->num_rigid; j++) {
-        basis.columns.kind[j] = RITZ_COLUMN_NORMAL; /* and no longer rigid */
-        basis.columns.hertz[j] = nan("");
-    }
-    memcpy(basis.origin.engine, modes->engine, sizeof basis.origin.engine);
+    RITZ_CHECK(find_joined_set(request, &set));
+    RITZ_CHECK(
+        ritz_free_set_join(request, &set, RITZ_COLUMN_RESIDUAL, &joined));
+    if (set.held > 0)
+        RITZ_CHECK(turn_columns(&set, &joined, &basis));
+    else /* no attached dof becomes a coordinate */
+        RITZ_MOVE(basis, joined);
+    basis.remark[0] = '\0';
     add_remark(request, &set, &basis);
+    if (set.Psi.ncol > 0)
+        ritz_remark_left_out(
+            request, set.loads, set.interface, set.Psi.ncol - set.interface,
+            set.keep + set.interface, RITZ_COLUMN_STATIC, &basis);
+    ritz_remark_dampers(request, set.loads, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
@@ -621,7 +352,7 @@ const ritz_method ritz_method_rubin = {
     .cost = "as macneal-rubin",
     .holds = "spans what macneal-rubin spans",
     .fails = "nearly all modes kept: what is left at the interface is rounding",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_rubin,
 };

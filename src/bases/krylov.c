@@ -218,20 +218,20 @@ void ritz_elastic_free(ritz_elastic *E)
 
 /* Block Krylov vectors. */
 
-int ritz_krylov_loads(const ritz_request *request)
+int ritz_krylov_loads(const ritz_request *request, bool joined)
 {
-    return request->choice.loads
-               ? request->choice.loads
-               : RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
+    const int usual =
+        RITZ_LOADS_ATTACHED | RITZ_LOADS_INPUTS | RITZ_LOADS_OUTPUTS;
+
+    if (request->choice.loads)
+        return request->choice.loads;
+    return usual | (joined ? RITZ_LOADS_DAMPERS : 0);
 }
 
-/*
- * The points ascend, so that 0 Hz is the first; it is the only one if none is
- * requested.
- */
-static void set_points(const ritz_choice *choice, ritz_krylov *S)
+void ritz_krylov_points(const ritz_choice *choice, ritz_krylov *S)
 {
     S->num_points = choice->num_shifts > 0 ? choice->num_shifts : 1;
+    S->point[0] = (ritz_krylov_point){0};
     for (int64_t k = 0; k < choice->num_shifts; k++) {
         int64_t at = k;
 
@@ -283,7 +283,7 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
     S.vectors = request->modes < body->K->nrow ? request->modes : body->K->nrow;
     if (S.inner == RITZ_INNER_MASS && body->M->nrow > 0)
         RITZ_CHECK(check_mass(body->M));
-    set_points(choice, &S);
+    ritz_krylov_points(choice, &S);
     for (int64_t k = 0; k < S.num_points; k++)
         RITZ_CHECK(factor_point(body, &S.point[k]));
     RITZ_CHECK(ritz_orthonormal_new(
@@ -603,7 +603,7 @@ static ritz_status make_vectors(const ritz_request *request, bool attached,
                                 ritz_basis *out)
 {
     const ritz_component *component = request->component;
-    int loads = ritz_krylov_loads(request);
+    int loads = ritz_krylov_loads(request, attached);
     int64_t seeds = attached ? request->attached.count : 0;
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
@@ -626,6 +626,7 @@ static ritz_status make_vectors(const ritz_request *request, bool attached,
     if (attached)
         RITZ_CHECK(restore_attachment(request, &S, &F_a, taken, &basis));
     RITZ_CHECK(ritz_krylov_sign(&S, request->modes, &basis));
+    ritz_remark_dampers(request, loads, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

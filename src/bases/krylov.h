@@ -31,8 +31,9 @@ ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
 
 void ritz_elastic_free(ritz_elastic *E);
 
-/** The requested kinds of loads; else attached dofs, inputs and outputs. */
-int ritz_krylov_loads(const ritz_request *request);
+/** The requested kinds of loads; else attached dofs, inputs and outputs, and
+ * dampers too where the vectors are component modes of a body that is joined. */
+int ritz_krylov_loads(const ritz_request *request, bool joined);
 
 /*
  * A point at which the response is expanded, and the state of its sequence of
@@ -63,6 +64,12 @@ typedef struct ritz_krylov {
 typedef struct ritz_forces {
     ritz_dense G, size; /* n x p */
 } ritz_forces;
+
+/**
+ * The points of a choice, not factored, in place of those of S: they ascend, so
+ * that 0 Hz is the first; it is the only one if none is chosen.
+ */
+void ritz_krylov_points(const ritz_choice *choice, ritz_krylov *S);
 
 /**
  * Factors at the points that the request chooses, and an empty set.

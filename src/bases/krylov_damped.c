@@ -5,7 +5,7 @@
  * wide, orthonormal among themselves: the two-level orthogonal Arnoldi
  * procedure of [LuSuBai2016].
  */
-#include "bases/krylov.h"
+#include "bases/krylov_waves.h"
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -13,6 +13,7 @@
 #include "model/modal.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* States [d; v] of a damped structure, as coordinates in Krylov vectors. */
 
@@ -128,20 +129,28 @@ static ritz_status advance_chain(ritz_krylov *S, double omega,
  * D Phi_r joins the loads of a free body.
  */
 
-enum { MOST_CHAINS = 2 };
+enum { MOST_CHAINS = 2, MOST_WAVES = MOST_CHAINS * (int)RITZ_MOST_SHIFTS };
 
 typedef struct recurrence {
     const ritz_request *request;
     ritz_sparse K;              /* with the springs of discrete dampers */
     ritz_sparse D[MOST_CHAINS]; /* D, and D' if that is not the same */
+    const ritz_sparse *K4;      /* NULL: none */
     ritz_elastic body;
     ritz_krylov S;
-    int64_t num_chains;
+    int64_t num_chains; /* about 0 Hz, without K4 */
     state_chain chain[MOST_CHAINS];
+    ritz_wave_point point[RITZ_MOST_SHIFTS]; /* all others, as in S */
+    int64_t num_waves;
+    ritz_waves wave[MOST_WAVES];
 } recurrence;
 
 static void recurrence_free(recurrence *r)
 {
+    for (int64_t k = 0; k < MOST_WAVES; k++)
+        ritz_waves_free(&r->wave[k]);
+    for (int64_t k = 0; k < RITZ_MOST_SHIFTS; k++)
+        ritz_wave_point_free(&r->point[k]);
     for (int64_t k = 0; k < MOST_CHAINS; k++) {
         state_chain_free(&r->chain[k]);
         ritz_sparse_free(&r->D[k]);
@@ -164,6 +173,8 @@ static ritz_status collect_matrices(recurrence *r)
                    RITZ_ERR_ARGUMENT,
                    "ratios of modes make no matrix D, which moments need: give "
                    "rayleigh damping");
+    if (r->request->component->K4.colptr)
+        r->K4 = &r->request->component->K4;
     return ritz_structure_sparse(r->request->component, &damping, &r->K,
                                  &r->D[0]);
 }
@@ -233,19 +244,86 @@ static ritz_status start_chain(recurrence *r, const ritz_sparse *D, int loads)
     return append_state(&r->S, &forces, &at_rest, chain);
 }
 
+/* Begin a sequence about point k, which is none of rest without K4. */
+static ritz_status start_waves(recurrence *r, int64_t k, const ritz_sparse *D,
+                               int loads)
+{
+    ritz_waves *waves = &r->wave[r->num_waves++];
+    RITZ_OWN(ritz_dense) F = {0};
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
+
+    waves->point = &r->point[k];
+    waves->D = D;
+    waves->transposed = D && D == &r->D[1];
+    if (ritz_loads_count(r->request, loads) > 0)
+        RITZ_CHECK(ritz_loads_collect(r->request, loads, &F, &dof));
+    else
+        RITZ_CHECK(ritz_dense_new(r->K.nrow, 0, &F));
+    return ritz_waves_start(&r->S, &F, waves);
+}
+
+static ritz_status start_at(recurrence *r, int64_t k, const ritz_sparse *D,
+                            int loads)
+{
+    return r->S.point[k].hertz == 0.0 && !r->K4 ? start_chain(r, D, loads)
+                                                : start_waves(r, k, D, loads);
+}
+
 /*
- * The chain of inputs with D and that of outputs with D'; one chain if both are
- * the same.
+ * At each point the chain of inputs with D and that of outputs with D'; one
+ * chain if both are the same.
  */
 static ritz_status start_chains(recurrence *r, int loads)
 {
     const ritz_sparse *D = r->D[0].colptr ? &r->D[0] : NULL;
+    const bool one = !D || ritz_sparse_asymmetry(D) <= RITZ_SYMMETRIC;
 
-    if (!D || ritz_sparse_asymmetry(D) <= RITZ_SYMMETRIC)
-        return start_chain(r, D, loads);
-    RITZ_CHECK(ritz_sparse_transpose(D, &r->D[1]));
-    RITZ_CHECK(start_chain(r, D, loads & ~RITZ_LOADS_OUTPUTS));
-    return start_chain(r, &r->D[1], loads & ~RITZ_LOADS_INPUTS);
+    if (!one)
+        RITZ_CHECK(ritz_sparse_transpose(D, &r->D[1]));
+    for (int64_t k = 0; k < r->S.num_points; k++) {
+        double hertz = r->S.point[k].hertz;
+
+        if (hertz > 0.0 || r->K4)
+            RITZ_CHECK(
+                ritz_wave_point_new(&r->body, D, r->K4, hertz, &r->point[k]));
+        RITZ_CHECK(
+            start_at(r, k, D, one ? loads : loads & ~RITZ_LOADS_OUTPUTS));
+        if (!one)
+            RITZ_CHECK(start_at(r, k, &r->D[1], loads & ~RITZ_LOADS_INPUTS));
+    }
+    return RITZ_OK;
+}
+
+/* A block of each chain in turn; whether any brought something new. */
+static ritz_status advance_all(recurrence *r, double omega, bool *moving)
+{
+    const int64_t full = r->S.vectors;
+
+    *moving = false;
+    for (int64_t k = 0; k < r->num_chains && r->S.set.count < full; k++)
+        if (!r->chain[k].ended) {
+            RITZ_CHECK(advance_chain(&r->S, omega, &r->chain[k]));
+            *moving = *moving || !r->chain[k].ended;
+        }
+    for (int64_t k = 0; k < r->num_waves && r->S.set.count < full; k++)
+        if (!r->wave[k].ended) {
+            RITZ_CHECK(ritz_waves_advance(&r->S, omega, &r->wave[k]));
+            *moving = *moving || !r->wave[k].ended;
+        }
+    return RITZ_OK;
+}
+
+/* Whole blocks of each point: those of the chain from its inputs. */
+static void count_blocks(recurrence *r)
+{
+    for (int64_t k = 0; k < r->S.num_points; k++) {
+        int64_t whole = r->chain[0].whole;
+
+        for (int64_t j = r->num_waves - 1; j >= 0; j--)
+            if (r->wave[j].point == &r->point[k])
+                whole = r->wave[j].whole;
+        r->S.point[k].whole = whole;
+    }
 }
 
 static ritz_status run_chains(recurrence *r, int loads)
@@ -255,26 +333,29 @@ static ritz_status run_chains(recurrence *r, int loads)
 
     RITZ_CHECK(start_chains(r, loads));
     RITZ_CHECK(choose_unit(r, &omega));
-    while (moving && r->S.set.count < r->S.vectors) {
-        moving = false;
-        for (int64_t k = 0; k < r->num_chains; k++) {
-            state_chain *chain = &r->chain[k];
-
-            if (chain->ended || r->S.set.count == r->S.vectors)
-                continue;
-            RITZ_CHECK(advance_chain(&r->S, omega, chain));
-            moving = moving || !chain->ended;
-        }
-    }
-    r->S.point[0].whole = r->chain[0].whole;
+    while (moving && r->S.set.count < r->S.vectors)
+        RITZ_CHECK(advance_all(r, omega, &moving));
+    count_blocks(r);
     return RITZ_OK;
+}
+
+/* What the points are, and what is done at them. */
+static void sign_basis(const recurrence *r, ritz_basis *basis)
+{
+    if (r->num_waves > 0)
+        (void)snprintf(basis->origin.engine, sizeof basis->origin.engine,
+                       "CHOLMOD + MUMPS");
+    if (!r->D[0].colptr && !r->K4)
+        ritz_remark_add(basis, "; ",
+                        "there is no damping, krylov does the same");
 }
 
 static ritz_status make_krylov_damped(const ritz_request *request,
                                       ritz_basis *out)
 {
-    int loads = ritz_krylov_loads(request);
+    int loads = ritz_krylov_loads(request, false);
     RITZ_OWN(recurrence) r = {.request = request};
+    ritz_request at_rest = *request;
     RITZ_OWN(ritz_dense) F = {0};
     RITZ_OWN_ARRAY int64_t *dof = NULL;
     RITZ_OWN(ritz_basis) basis = {0};
@@ -282,13 +363,13 @@ static ritz_status make_krylov_damped(const ritz_request *request,
     RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof)); /* refuses none */
     RITZ_CHECK(collect_matrices(&r));
     RITZ_CHECK(ritz_elastic_new(&r.K, &request->component->M, &r.body));
-    RITZ_CHECK(ritz_krylov_new(&r.body, request, &r.S));
+    at_rest.choice.num_shifts = 0; /* no factors of K - sigma M */
+    RITZ_CHECK(ritz_krylov_new(&r.body, &at_rest, &r.S));
+    ritz_krylov_points(&request->choice, &r.S);
     RITZ_CHECK(run_chains(&r, loads));
     RITZ_CHECK(ritz_krylov_join(&r.S, &basis));
     RITZ_CHECK(ritz_krylov_sign(&r.S, request->modes, &basis));
-    if (!r.D[0].colptr)
-        ritz_remark_add(&basis, "; ",
-                        "there is no damping, krylov does the same");
+    sign_basis(&r, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }
@@ -298,10 +379,10 @@ const ritz_method ritz_method_krylov_damped = {
     .summary = "rigid modes and block Krylov vectors of the damped structure",
     .reference = "CraigSuKim1992",
     .when = "damping that is not small, or that couples modes",
-    .cost = "a factor, one solve a state: up to two a vector",
-    .holds = "moments of the damped model, statics first; symmetry",
+    .cost = "a factor a point, a solve a state: up to two a vector",
+    .holds = "moments of the damped model at each point; symmetry",
     .fails = "ratios of modes, which are no matrix D: refused",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
-            RITZ_USES_INNER | RITZ_USES_DAMPING,
+            RITZ_USES_INNER | RITZ_USES_DAMPING | RITZ_USES_SHIFTS,
     .make = make_krylov_damped,
 };

@@ -7,10 +7,11 @@
  *
  * normalised in the loaded mass. They have the shapes of the component in the
  * system, so that few are needed; if the condensed neighbour is exact, they are
- * too.
+ * too. Static vectors, of dampers and other loads, are those of the loaded
+ * component.
  */
 #include "base/alloc.h"
-#include "bases/columns.h"
+#include "bases/free_set.h"
 
 #include <inttypes.h>
 
@@ -68,11 +69,15 @@ static ritz_status make_loaded_interface(const ritz_request *request,
 {
     const ritz_component *component = request->component;
     const ritz_span span = {request->modes, request->up_to_hz};
+    ritz_component loaded = *component; /* borrowed but for K and M */
+    ritz_request with_neighbour = *request;
+    int loads = 0;
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_dofs) rest = {0};
 
     RITZ_CHECK(check_request(request));
+    RITZ_CHECK(ritz_loads_beside(request, RITZ_LOADS_DAMPERS, &loads));
     RITZ_CHECK(
         ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
     RITZ_CHECK(add_neighbour(&component->K, &request->neighbour->K,
@@ -81,7 +86,10 @@ static ritz_status make_loaded_interface(const ritz_request *request,
                              &request->attached, &M));
     RITZ_CHECK(ritz_lowest_modes("loaded modes", "K with its neighbour", &K, &M,
                                  &span, &pairs));
-    return ritz_basis_of_modes(&pairs, 0, out);
+    loaded.K = K;
+    loaded.M = M;
+    with_neighbour.component = &loaded;
+    return ritz_free_set_beside(&with_neighbour, loads, &pairs, out);
 }
 
 const ritz_method ritz_method_loaded_interface = {
@@ -92,7 +100,8 @@ const ritz_method ritz_method_loaded_interface = {
     .cost = "a factor, two solves a mode",
     .holds = "frequencies from above",
     .fails = "other neighbours; statics of the interface",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_NEIGHBOUR,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_NEIGHBOUR |
+            RITZ_USES_LOADS,
     .keeps_interface = true,
     .make = make_loaded_interface,
 };

@@ -309,6 +309,7 @@ typedef struct irka_search {
     ritz_rational R;
     ritz_dense T;       /* rigid and interpolating */
     ritz_probes probes; /* those that T interpolates */
+    int loads;          /* that are interpolated, sum of RITZ_LOADS_... */
     int64_t left_out;   /* fixed probes without room */
     int rounds;
     double change;
@@ -512,13 +513,13 @@ static int choose_loads(const ritz_request *request)
 static ritz_status interpolate_response(irka_search *s)
 {
     const ritz_request *request = s->request;
-    int loads = request->choice.loads;
 
+    s->loads = request->choice.loads;
     if (s->most == 0)
         return ritz_dense_copy(&s->rigid, &s->T);
-    if (loads == 0)
-        loads = choose_loads(request);
-    RITZ_CHECK(ritz_rational_new(request, loads,
+    if (s->loads == 0)
+        s->loads = choose_loads(request);
+    RITZ_CHECK(ritz_rational_new(request, s->loads,
                                  s->modes.lambda[s->modes.num_rigid], &s->R));
     RITZ_CHECK(request->choice.num_shifts > 0 ? take_given(s)
                                               : iterate_points(s));
@@ -560,6 +561,7 @@ static void add_remark(const irka_search *s, ritz_basis *basis)
     if (missing > 0)
         ritz_remark_add(basis, "; ", "%" PRId64 " vector(s) fewer than asked",
                         missing);
+    ritz_remark_dampers(s->request, s->loads, basis);
 }
 
 ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,

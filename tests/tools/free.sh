@@ -37,8 +37,10 @@ expect 0 "6 rigid, 3 normal" ritz-basis normal-modes --modes 3 stator.h5 \
     -o basis.h5
 expect 1 "there is no load to respond to, no damper" ritz-basis normal-modes \
     --modes 3 --loads dampers stator.h5 -o basis.h5
-expect 2 "rubin has no 'loads' to choose" ritz-basis rubin --modes 3 \
+expect 2 "serep has no 'loads' to choose" ritz-basis serep --modes 3 \
     --loads inputs rotor.h5 -o basis.h5
+expect 0 "2 static mode(s) left out, the first of input 'torque'" ritz-basis \
+    rubin --modes 22 --loads inputs,outputs rotor.h5 -o basis.h5
 expect 0 "attached dof(s) are no coordinates, grid 1" ritz-basis rubin \
     --modes 235 rotor.h5 -o basis.h5
 

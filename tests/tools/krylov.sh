@@ -38,6 +38,8 @@ reduce krylov '2 whole block(s) about 0 Hz, 2 whole block(s) about 30 Hz' \
 reduce krylov-damped 'krylov does the same' --modes 12 --attach ''
 reduce krylov-damped '4 whole block(s) about 0 Hz' --modes 12 --attach '' \
     --damping 'rayleigh 2 1e-5'
+reduce krylov-damped '2 whole block(s) about 0 Hz, 1 whole block(s) about 30 Hz' \
+    --modes 12 --attach '' --shift-hz 30,0 --damping 'rayleigh 2 1e-5'
 reduce krylov-cms-fixed '4 constraint, 14 krylov' --modes 14
 reduce krylov-cms-free '4 attachment' --modes 14
 expect 0 'krylov (modes 12 shift-hz 0,30 load inputs) [CraigSuKim1992]' \
@@ -52,7 +54,7 @@ expect 1 'there is no load to respond to' ritz-basis krylov --modes 4 --attach '
     --loads dampers truss.h5 -o none.h5
 expect 1 'ratios of modes make no matrix D' ritz-basis krylov-damped \
     --modes 4 --damping 'modal 0.01' truss.h5 -o none.h5
-expect 2 "krylov-damped has no 'shift_hz' to choose" ritz-basis krylov-damped \
+expect 2 "craig-bampton has no 'shift_hz' to choose" ritz-basis craig-bampton \
     --modes 4 --shift-hz 3 truss.h5 -o none.h5
 expect 1 '3 motion(s) cost no energy' ritz-basis krylov-cms-fixed --modes 4 \
     --attach '' truss.h5 -o none.h5

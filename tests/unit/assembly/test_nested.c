@@ -39,6 +39,8 @@ static void reduced_chain(ritz_reduced *out)
     request.modes = MODES;
     request.component = &body;
     request.attached = (ritz_dofs){12, attached};
+    request.choice.given = RITZ_USES_LOADS; /* no static vector of the damper */
+    request.choice.loads = RITZ_LOADS_ATTACHED;
     assert_ok(method->make(&request, &basis));
     assert_ok(ritz_reduce(&body, &basis, out));
     assert_ok(ritz_measures_add(&out->estimates, "mode-1", 1e-9, nan(""), ""));

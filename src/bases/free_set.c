@@ -1,0 +1,341 @@
+/*
+ * The static response of the modes that are left out to forces F. With the kept
+ * modes Phi, Psi solves
+ *
+ *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
+ *
+ * and is found from one definite factor of A = K + s M, s > 0, by
+ *
+ *     Psi <- A^-1 (G + s M Psi),
+ *
+ * which contracts by s / (lambda + s) for every mode lambda that was left out.
+ * F' Psi = Psi' K Psi is the residual flexibility: columns that are dependent
+ * by it, or negligible relative to the flexibility of the kept modes, are
+ * removed. With T = [Phi, Psi], T'KT and T'MT are block diagonal, and the
+ * flexible static response to F at the loaded dofs is exact.
+ */
+#include "bases/free_set.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+
+enum { MOST_SWEEPS = 60 };
+
+void ritz_free_set_free(ritz_free_set *set)
+{
+    ritz_pairs_free(&set->modes);
+    ritz_dense_free(&set->F);
+    ritz_dense_free(&set->Psi);
+    RITZ_FREE(set->dof, set->keep);
+}
+
+/*
+ * A shift below the first flexible mode contracts fast and makes A well
+ * conditioned. If that mode is not kept, it is found for this; if there is
+ * none, the shift is of the scale of the matrices.
+ */
+static ritz_status choose_shift(const ritz_component *component,
+                                const ritz_pairs *modes, double *out)
+{
+    const ritz_span one = {.modes = 1};
+    double K = ritz_sparse_max(&component->K);
+    double M = ritz_sparse_max(&component->M);
+    RITZ_OWN(ritz_pairs) first = {0};
+    const ritz_pairs *known = modes;
+
+    if (modes->Phi.ncol == modes->num_rigid) {
+        RITZ_CHECK_IN(
+            "first flexible mode",
+            ritz_eigen_sparse(&component->K, &component->M, &one, &first));
+        known = &first;
+    }
+    if (known->Phi.ncol > known->num_rigid)
+        *out = RITZ_SHIFT_OF_FIRST * known->lambda[known->num_rigid];
+    else
+        *out = K > 0.0 && M > 0.0 ? RITZ_SHIFT_OF_SIZE * K / M : 1.0;
+    return RITZ_OK;
+}
+
+/* An upper bound of the kept flexible modes' static response to load j. */
+static double bound_response(const ritz_pairs *modes, const ritz_dense *F,
+                             int64_t j)
+{
+    double most = 0.0;
+
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
+        most = fmax(most, ritz_dense_col_max(&modes->Phi, k) *
+                              fabs(ritz_dense_dot(&modes->Phi, k, F, j)) /
+                              modes->lambda[k]);
+    return most;
+}
+
+/*
+ * One step of the iteration; *change is the largest change of a column relative
+ * to its size. A column smaller than least[j] is rounding, and its change is
+ * relative to least[j].
+ */
+static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
+                                    double s, const ritz_dense *G,
+                                    const double *least, ritz_dense *Psi,
+                                    double *change)
+{
+    RITZ_OWN(ritz_dense) next = {0};
+
+    RITZ_CHECK(ritz_sparse_mul(M, Psi, &next));
+    for (int64_t k = 0; k < G->nrow * G->ncol; k++)
+        next.val[k] = G->val[k] + s * next.val[k];
+    RITZ_CHECK(ritz_factor_solve(A, &next));
+    *change = 0.0;
+    for (int64_t j = 0; j < G->ncol; j++) {
+        const double *now = ritz_dense_col(&next, j);
+        const double *before = ritz_dense_col(Psi, j);
+        double moved = 0.0;
+        double size = least[j];
+
+        for (int64_t i = 0; i < G->nrow; i++) {
+            moved = fmax(moved, fabs(now[i] - before[i]));
+            size = fmax(size, fabs(now[i]));
+        }
+        if (size > 0.0)
+            *change = fmax(*change, moved / size);
+    }
+    ritz_dense_replace(Psi, &next);
+    return RITZ_OK;
+}
+
+/*
+ * The response of A to each load at the load itself, and the size below which
+ * its column is rounding.
+ */
+static ritz_status find_scales(const ritz_free_set *set, double tolerance,
+                               ritz_factor *A, double *own, double *least)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+
+    RITZ_CHECK(ritz_dense_copy(&set->F, &X));
+    RITZ_CHECK(ritz_factor_solve(A, &X));
+    for (int64_t j = 0; j < X.ncol; j++) {
+        own[j] = ritz_dense_dot(&set->F, j, &X, j);
+        least[j] = fmax(tolerance * bound_response(&set->modes, &set->F, j),
+                        RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
+    }
+    return RITZ_OK;
+}
+
+/* Psi, and the response of A to each load at the load itself. */
+static ritz_status find_residual(const ritz_request *request,
+                                 ritz_free_set *set, double *response)
+{
+    const ritz_sparse *M = &request->component->M;
+    const ritz_dense *Phi = &set->modes.Phi;
+    const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
+    double s = 0.0;
+    double change = 1.0, best = HUGE_VAL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
+    RITZ_OWN_ARRAY double *least = NULL;
+
+    RITZ_CHECK_NEW(least, set->F.ncol);
+    RITZ_CHECK(choose_shift(request->component, &set->modes, &s));
+    RITZ_CHECK(ritz_sparse_add(1.0, &request->component->K, s, M, &A));
+    RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
+    RITZ_CHECK(find_scales(set, request->tolerance, L, response, least));
+    RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
+    RITZ_CHECK(ritz_dense_copy(&set->F, &G));
+    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G));
+    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* twice is enough */
+    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &set->Psi));
+    for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
+        RITZ_CHECK(iterate_residual(L, M, s, &G, least, &set->Psi, &change));
+        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &set->Psi));
+        if (k > 8 && change > 0.5 * best)
+            break; /* rounding, not contraction, is what is left */
+        best = fmin(best, change);
+    }
+    RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
+                   "residual attachment modes still change by %.1e", change);
+    return RITZ_OK;
+}
+
+/* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes for load j. */
+static double kept_flexibility(const ritz_free_set *set, int64_t j)
+{
+    const ritz_pairs *modes = &set->modes;
+    double sum = 0.0;
+
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
+        double x = ritz_dense_dot(&modes->Phi, k, &set->F, j);
+
+        sum += x * x / modes->lambda[k];
+    }
+    return sum;
+}
+
+/* Psi_bb = S L L' S with a unit diagonal within. */
+ritz_status ritz_residual_divide(const int64_t *b, ritz_dense *Psi)
+{
+    RITZ_OWN(ritz_dense) F = {0};
+    RITZ_OWN_ARRAY double *scale = NULL;
+    int n = (int)Psi->nrow;
+    int p = (int)Psi->ncol;
+
+    RITZ_CHECK_NEW(scale, p);
+    RITZ_CHECK(ritz_dense_rows(Psi, p, b, &F));
+    ritz_dense_symmetrise(&F);
+    for (int64_t j = 0; j < p; j++)
+        scale[j] = 1.0 / sqrt(ritz_dense_col(&F, j)[j]);
+    for (int64_t j = 0; j < p; j++)
+        for (int64_t i = 0; i < p; i++)
+            ritz_dense_col(&F, j)[i] *= scale[i] * scale[j];
+    RITZ_REFUSE_IF(LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', p, F.val, p) != 0,
+                   RITZ_ERR_SINGULAR,
+                   "residual flexibility of the attached dofs is singular: "
+                   "keep fewer modes, or a larger --tolerance");
+    for (int64_t j = 0; j < p; j++)
+        cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                n, p, 1.0, F.val, p, Psi->val, n);
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans,
+                CblasNonUnit, n, p, 1.0, F.val, p, Psi->val, n);
+    for (int64_t j = 0; j < p; j++)
+        cblas_dscal(n, scale[j], ritz_dense_col(Psi, j), 1);
+    return RITZ_OK;
+}
+
+/*
+ * Psi := Psi - G Psi_b of all loads that are not of the interface, with G of
+ * its kept columns: K-orthogonal to those, and zero at the attached dofs.
+ */
+static ritz_status clear_interface(ritz_free_set *set)
+{
+    ritz_dense beside = ritz_dense_part(&set->Psi, set->interface,
+                                        set->Psi.ncol - set->interface);
+    RITZ_OWN(ritz_dense) G = {0};
+    RITZ_OWN_ARRAY int64_t *at = NULL, *row = NULL;
+    int64_t count = 0;
+
+    if (set->held == 0 || beside.ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(at, set->held);
+    RITZ_CHECK_NEW(row, set->held);
+    for (int64_t j = 0; j < set->interface; j++)
+        if (set->keep[j]) {
+            at[count] = j;
+            row[count++] = set->dof[j];
+        }
+    RITZ_CHECK(ritz_dense_pick(&set->Psi, count, at, &G));
+    RITZ_CHECK(ritz_residual_divide(row, &G));
+    for (int pass = 0; pass < 2; pass++) {
+        RITZ_OWN(ritz_dense) Psi_b = {0}, part = {0};
+
+        RITZ_CHECK(ritz_dense_rows(&beside, count, row, &Psi_b));
+        RITZ_CHECK(ritz_dense_mul(&G, &Psi_b, &part));
+        ritz_dense_add(-1.0, &part, &beside);
+    }
+    for (int64_t j = 0; j < beside.ncol; j++)
+        for (int64_t k = 0; k < count; k++)
+            ritz_dense_col(&beside, j)[row[k]] = 0.0;
+    return RITZ_OK;
+}
+
+/* Mark the residual modes that are kept, those of the interface first. */
+static ritz_status choose_independent(const double *response, double tolerance,
+                                      ritz_free_set *set)
+{
+    const int64_t a = set->interface, b = set->Psi.ncol - a;
+    const ritz_dense F_a = ritz_dense_part(&set->F, 0, a);
+    const ritz_dense F_b = ritz_dense_part(&set->F, a, b);
+    const ritz_dense Psi_a = ritz_dense_part(&set->Psi, 0, a);
+    const ritz_dense Psi_b = ritz_dense_part(&set->Psi, a, b);
+    RITZ_OWN_ARRAY double *least = NULL;
+
+    RITZ_CHECK_NEW(least, a + b);
+    for (int64_t j = 0; j < a + b; j++) {
+        double own = ritz_dense_dot(&set->F, j, &set->Psi, j);
+
+        least[j] = fmax(tolerance * (own + kept_flexibility(set, j)),
+                        RITZ_FORCE_RELIEVED * response[j]);
+    }
+    RITZ_CHECK(ritz_statics_choose(&F_a, &Psi_a, least, tolerance, set->keep,
+                                   &set->held));
+    RITZ_CHECK(clear_interface(set));
+    RITZ_CHECK(ritz_statics_choose(&F_b, &Psi_b, least + a, tolerance,
+                                   set->keep + a, &set->kept));
+    set->kept += set->held;
+    return RITZ_OK;
+}
+
+/* Residual modes of the loads, if there are any, M- and K-orthogonal to the
+   modes of the set. */
+static ritz_status find_statics(const ritz_request *request, ritz_free_set *set)
+{
+    RITZ_OWN_ARRAY double *response = NULL;
+
+    if (ritz_loads_count(request, set->loads) == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_loads_collect(request, set->loads, &set->F, &set->dof));
+    RITZ_CHECK_NEW(set->keep, set->F.ncol);
+    RITZ_CHECK_NEW(response, set->F.ncol);
+    RITZ_CHECK(find_residual(request, set, response));
+    return choose_independent(response, request->tolerance, set);
+}
+
+ritz_status ritz_free_set_new(const ritz_request *request, int loads,
+                              bool joined, ritz_free_set *out)
+{
+    const ritz_component *component = request->component;
+    const ritz_span span = {request->modes, request->up_to_hz};
+    RITZ_OWN(ritz_free_set)
+    set = {.loads = loads, .interface = joined ? request->attached.count : 0};
+    RITZ_OWN(ritz_dofs) rest = {0};
+
+    /* refuses attached dofs that are out of range or repeated */
+    RITZ_CHECK(
+        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_CHECK(ritz_lowest_modes("free-interface modes", "K", &component->K,
+                                 &component->M, &span, &set.modes));
+    RITZ_CHECK(find_statics(request, &set));
+    RITZ_MOVE(*out, set);
+    return RITZ_OK;
+}
+
+ritz_status ritz_free_set_join(const ritz_request *request,
+                               const ritz_free_set *set, ritz_column_kind kind,
+                               ritz_basis *out)
+{
+    const int64_t a = set->interface;
+    int64_t k = set->modes.Phi.ncol;
+
+    RITZ_CHECK(ritz_basis_of_modes(&set->modes, set->kept, out));
+    for (int64_t j = 0; j < set->Psi.ncol; j++) {
+        const ritz_dense column = ritz_dense_part(&set->Psi, j, 1);
+
+        if (!set->keep[j])
+            continue;
+        out->columns.kind[k] = j < a ? kind : RITZ_COLUMN_STATIC;
+        out->columns.dof[k] = set->dof[j];
+        ritz_dense_put(&column, 0, k++, &out->T);
+    }
+    if (set->Psi.ncol > 0) {
+        ritz_remark_left_out(request, set->loads, 0, a, set->keep, kind, out);
+        ritz_remark_left_out(request, set->loads, a, set->Psi.ncol - a,
+                             set->keep + a, RITZ_COLUMN_STATIC, out);
+    }
+    ritz_remark_dampers(request, set->loads, out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_free_set_beside(const ritz_request *request, int loads,
+                                 ritz_pairs *modes, ritz_basis *out)
+{
+    RITZ_OWN(ritz_free_set) set = {.loads = loads};
+
+    RITZ_MOVE(set.modes, *modes);
+    RITZ_CHECK(find_statics(request, &set));
+    return ritz_free_set_join(request, &set, RITZ_COLUMN_STATIC, out);
+}
