@@ -196,6 +196,8 @@ typedef struct ritz_compare_row {
     double rigid_error;     /* largest |omega| of a rigid mode of stage 2, Hz */
     double gain_error;      /* relative, of the flexible static gain */
     double response_error;  /* relative to the largest |H|, in the band */
+    double damping_error;   /* worst relative, of the damping ratios of those
+                               modes; NaN: nothing damps them */
     double mac;             /* smallest, of those modes; NaN: no mode */
     int64_t num_moments;    /* Krylov: the first of them are kept, */
     double moment_error;    /* and this is the worst, relative; NaN: none */
@@ -225,7 +227,7 @@ typedef struct ritz_candidate {
  * if it is above 1e-3 and ten times the worst of its kind at listed ones. */
 typedef struct ritz_suggestion {
     int64_t row; /* between listed angles, with the worst error; -1: none */
-    const char *measure;  /* "response", "frequency" or "gain" */
+    const char *measure;  /* "response", "frequency", "gain" or "damping" */
     double error, listed; /* there, and worst at listed configurations */
     bool worth;           /* add it */
 } ritz_suggestion;
@@ -254,8 +256,8 @@ typedef struct ritz_tolerance_row {
     int64_t total;   /* of all bodies */
     int64_t largest; /* order of a system, at any configuration */
     bool removed;    /* whether stage two removed anything */
-    double frequency_error, gain_error, response_error; /* worst over all
-                                                          listed; NaN: none */
+    double frequency_error, gain_error, response_error,
+        damping_error; /* worst over all listed; NaN: none */
 } ritz_tolerance_row;
 
 /**

@@ -128,7 +128,8 @@ enum {
     RITZ_ATTACHED_INPUTS = 1,
     RITZ_ATTACHED_INTERFACE = 2, /* each dof of the ports that joints hold */
     RITZ_ATTACHED_OUTPUTS = 4,   /* a unit force where each output measures */
-    RITZ_ATTACHED_AUTO = 8,      /* the fewest whose response is near enough */
+    RITZ_ATTACHED_DAMPERS = 8,   /* along each damper, of bodies and joints */
+    RITZ_ATTACHED_AUTO = 16,     /* the fewest whose response is near enough */
 };
 
 /* What becomes of modes of the second system that stand for no kept one. */

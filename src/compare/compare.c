@@ -116,6 +116,8 @@ static const struct {
      false},
     {"stage1-response-relative", offsetof(ritz_compare_row, response_error), "",
      true},
+    {"stage1-damping-relative", offsetof(ritz_compare_row, damping_error),
+     "kept modes against the stage-1 system", true},
 };
 
 enum { NUM_ERRORS = sizeof errors / sizeof *errors };
@@ -173,7 +175,7 @@ static ritz_status record_comparison(ritz_comparison *comparison)
 /* Stage two by one plan, and by each composite tolerance in turn. */
 
 /* The plan that the scene requests; `attached` may still be AUTO. */
-static ritz_plan make_plan(const ritz_scene *scene)
+static ritz_plan make_plan(const ritz_stage *stage)
 {
     static const int implied[] = {
         [RITZ_AUGMENT_NONE] = 0,
@@ -181,12 +183,18 @@ static ritz_plan make_plan(const ritz_scene *scene)
         [RITZ_AUGMENT_COMPONENT] =
             RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_INTERFACE,
     };
+    const ritz_scene *scene = stage->scene;
     bool stated = scene->attached != 0 || scene->num_attached_inputs > 0;
+    int dampers =
+        scene->augment != RITZ_AUGMENT_NONE && ritz_stage_is_damped(stage)
+            ? RITZ_ATTACHED_DAMPERS
+            : 0;
 
     return (ritz_plan){
         .tolerance = scene->composite_tolerance,
         .augment = scene->augment,
-        .attached = stated ? scene->attached : implied[scene->augment],
+        .attached =
+            stated ? scene->attached : implied[scene->augment] | dampers,
         .inputs_too = scene->num_attached_inputs > 0,
     };
 }
@@ -258,7 +266,8 @@ static ritz_status try_tolerance(const ritz_rows *rows, const ritz_plan *plan,
     RITZ_OWN(ritz_comparison) trial = {0};
 
     out->tolerance = plan->tolerance;
-    out->frequency_error = out->gain_error = out->response_error = nan("");
+    out->frequency_error = out->gain_error = nan("");
+    out->response_error = out->damping_error = nan("");
     RITZ_CHECK(try_plan(rows, plan, &trial));
     RITZ_CHECK(list_orders(&trial, &out->order, &out->total));
     out->removed = trial.removed;
@@ -277,6 +286,7 @@ static ritz_status try_tolerance(const ritz_rows *rows, const ritz_plan *plan,
         out->frequency_error = fmax(out->frequency_error, row.frequency_error);
         out->gain_error = fmax(out->gain_error, row.gain_error);
         out->response_error = fmax(out->response_error, row.response_error);
+        out->damping_error = fmax(out->damping_error, row.damping_error);
     }
     return RITZ_OK;
 }
@@ -285,7 +295,7 @@ static ritz_status try_tolerance(const ritz_rows *rows, const ritz_plan *plan,
 static ritz_plan chosen_plan(const ritz_stage *stage,
                              const ritz_comparison *comparison)
 {
-    ritz_plan plan = make_plan(stage->scene);
+    ritz_plan plan = make_plan(stage);
 
     for (int64_t k = 0; k < comparison->num_candidates; k++)
         if (comparison->candidate[k].chosen) {
@@ -351,7 +361,8 @@ void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows)
  * singular value of the frequency response over the band.
  */
 
-/* The sets that are tried, fewest forces first. */
+/* The sets that are tried, fewest forces first; where there are dampers, then
+   the same with them. */
 static const int of_system[] = {0, RITZ_ATTACHED_INPUTS,
                                 RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_OUTPUTS};
 
@@ -363,17 +374,18 @@ static const int of_components[] = {
     RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_INTERFACE | RITZ_ATTACHED_OUTPUTS,
 };
 
-enum { MOST_SETS = sizeof of_components / sizeof *of_components + 1 };
+enum { MOST_SETS = 2 * (sizeof of_components / sizeof *of_components) + 1 };
 
 /* "inputs, interface" */
 static void name_set(const ritz_scene *scene, ritz_candidate *candidate)
 {
-    static const char *const words[] = {"inputs", "interface", "outputs"};
+    static const char *const words[] = {"inputs", "interface", "outputs",
+                                        "dampers"};
     char *out = candidate->name;
     size_t size = sizeof candidate->name;
     size_t used = 0;
 
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 4; k++)
         if (candidate->attached & (1 << k))
             used += (size_t)snprintf(out + used, size - used, "%s%s",
                                      used ? ", " : "", words[k]);
@@ -480,21 +492,23 @@ static int64_t choose_set(const ritz_scene *scene, int64_t count,
  * The sets to try: those of the level, and the requested one if it is another;
  * its index.
  */
-static int64_t list_sets(const ritz_plan *plan, ritz_plan sets[MOST_SETS],
-                         int64_t *requested)
+static int64_t list_sets(const ritz_stage *stage, const ritz_plan *plan,
+                         ritz_plan sets[MOST_SETS], int64_t *requested)
 {
     bool system = plan->augment == RITZ_AUGMENT_SYSTEM;
     const int *of = system ? of_system : of_components;
-    int64_t count =
+    int64_t alone =
         (int64_t)(system ? sizeof of_system : sizeof of_components) /
         (int64_t)sizeof *of;
+    int64_t count = ritz_stage_is_damped(stage) ? 2 * alone : alone;
 
     *requested = plan->attached == RITZ_ATTACHED_AUTO ? 0 : count;
     for (int64_t k = 0; k < count; k++) {
         sets[k] = *plan;
-        sets[k].attached = of[k];
+        sets[k].attached =
+            of[k % alone] | (k < alone ? 0 : RITZ_ATTACHED_DAMPERS);
         sets[k].inputs_too = false;
-        if (!plan->inputs_too && plan->attached == of[k])
+        if (!plan->inputs_too && plan->attached == sets[k].attached)
             *requested = k;
     }
     if (*requested == count)
@@ -511,7 +525,7 @@ static ritz_status try_sets(const ritz_rows *rows, ritz_plan *plan,
     bool open = plan->attached == RITZ_ATTACHED_AUTO;
     ritz_plan sets[MOST_SETS];
     int64_t chosen = 0;
-    int64_t most = list_sets(plan, sets, &chosen);
+    int64_t most = list_sets(rows->stage, plan, sets, &chosen);
 
     if (plan->augment != RITZ_AUGMENT_COMPONENT && !open)
         return RITZ_OK;
@@ -592,7 +606,7 @@ static ritz_status measure_rows(const ritz_rows *rows, ritz_comparison *c)
 /* Build stage two as planned and move it into the result. */
 static ritz_status reduce_bodies(const ritz_rows *rows, ritz_comparison *c)
 {
-    ritz_plan plan = make_plan(rows->stage->scene);
+    ritz_plan plan = make_plan(rows->stage);
 
     RITZ_CHECK_IN("attached dofs",
                   try_sets(rows, &plan, &c->num_candidates, &c->candidate));
@@ -617,66 +631,6 @@ ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
     RITZ_CHECK(record_comparison(&c));
     RITZ_MOVE(*out, c);
     return RITZ_OK;
-}
-
-/*
- * Which angle to add: one where an error between listed angles is large
- * relative to those at listed angles. Errors that would be invisible in a plot
- * suggest nothing, nor do errors that are as large at listed angles, where
- * another angle would not help.
- */
-
-static const struct measure {
-    const char *name;
-    size_t offset; /* in ritz_compare_row */
-} measures[] = {
-    {"response", offsetof(ritz_compare_row, response_error)},
-    {"frequency", offsetof(ritz_compare_row, frequency_error)},
-    {"gain", offsetof(ritz_compare_row, gain_error)},
-};
-
-/* The largest error of one measure between angles; row -1 if there is none. */
-static ritz_suggestion find_worst(const ritz_comparison *c,
-                                  const struct measure *m)
-{
-    ritz_suggestion worst = {.row = -1, .measure = m->name};
-
-    for (int64_t k = 0; k < c->num_rows; k++) {
-        double error = read_error(&c->row[k], m->offset);
-
-        if (c->row[k].listed)
-            worst.listed = fmax(worst.listed, error); /* fmax ignores NaN */
-        else if (!isnan(error) && (worst.row < 0 || error > worst.error)) {
-            worst.row = k;
-            worst.error = error;
-        }
-    }
-    return worst;
-}
-
-/* How prominent an error is: at one or less no angle is suggested. */
-static double rate_prominence(const ritz_suggestion *s)
-{
-    return s->row < 0 ? 0.0
-                      : s->error / fmax(RITZ_SUGGEST_VISIBLE,
-                                        RITZ_SUGGEST_FACTOR * s->listed);
-}
-
-void ritz_compare_suggest(const ritz_comparison *comparison,
-                          ritz_suggestion *out)
-{
-    ritz_suggestion best = {.row = -1};
-
-    for (size_t k = 0; k < sizeof measures / sizeof *measures; k++) {
-        ritz_suggestion one = find_worst(comparison, &measures[k]);
-
-        one.worth = rate_prominence(&one) > 1.0;
-        if (one.row >= 0 &&
-            (best.row < 0 ||
-             (one.worth && rate_prominence(&one) > rate_prominence(&best))))
-            best = one;
-    }
-    *out = best;
 }
 
 void ritz_comparison_free(ritz_comparison *comparison)

@@ -52,6 +52,22 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double least, ritz_compare_row *row);
 
+/** Whether bodies have dampers, or joints hold motions on them. */
+bool ritz_stage_is_damped(const ritz_stage *stage);
+
+/** Whether the plan has static corrections for input @p j. */
+bool ritz_plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
+                        int64_t j);
+
+/** Forces of the planned sets in the coordinates of body @p k, as columns. */
+ritz_status ritz_plan_forces(const ritz_stage *stage, int64_t k,
+                             const ritz_plan *plan, ritz_dense *out);
+
+/** Forces of all dampers, of bodies and joints, on a configuration's modes. */
+ritz_status ritz_damper_forces(const ritz_stage *stage,
+                               const ritz_configuration *configuration,
+                               ritz_dense *out);
+
 /**
  * Static solutions in modal coordinates, flexible part: Lambda^-1 B, and for
  * @p both Lambda^-1 [C', Cv', Ca'], where outputs measure.
@@ -105,7 +121,7 @@ void ritz_givens_free(ritz_givens *givens);
 /**
  * Modal coordinates of the vectors that a configuration contributes to a group.
  */
-ritz_status ritz_composite_choose(const ritz_scene *scene,
+ritz_status ritz_composite_choose(const ritz_stage *stage,
                                   const ritz_configuration *configuration,
                                   const ritz_compare_row *row, int group,
                                   const ritz_plan *plan, ritz_dense *out);

@@ -38,67 +38,6 @@
  * second.
  */
 
-/* Whether the plan has static corrections for input @p j. */
-static bool plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
-                          int64_t j)
-{
-    for (int64_t k = 0; plan->inputs_too && k < scene->num_attached_inputs; k++)
-        if (scene->attached_input[k] == j)
-            return true;
-    return plan->attached & RITZ_ATTACHED_INPUTS;
-}
-
-/* Whether a joint holds a port of body k. */
-static bool is_held(const ritz_scene *scene, int64_t k, const char *port)
-{
-    for (int64_t j = 0; j < scene->num_joints; j++)
-        for (int end = 0; end < 2; end++) {
-            const ritz_scene_place *at = &scene->joint[j].between[end];
-
-            if (at->component == k && strcmp(at->port, port) == 0)
-                return true;
-        }
-    return false;
-}
-
-/* Append rows of A, for the coordinates of one body, as columns m.. of F. */
-static int64_t append_rows(const ritz_dense *A, int64_t first, ritz_dense *F,
-                           int64_t m)
-{
-    for (int64_t i = 0; i < A->nrow; i++)
-        for (int64_t q = 0; q < F->nrow; q++)
-            ritz_dense_col(F, m + i)[q] = ritz_dense_col(A, first + q)[i];
-    return m + A->nrow;
-}
-
-/* Forces of the planned sets, in the coordinates of body k. */
-static ritz_status list_forces(const ritz_stage *stage, int64_t k,
-                               const ritz_plan *plan, ritz_dense *out)
-{
-    const ritz_reduced *body = &stage->body[k];
-    const ritz_io *io = &stage->io;
-    const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
-    int64_t most = io->num_inputs + 3 * io->num_outputs;
-    int64_t first = stage->first[k];
-    int64_t m = 0;
-    RITZ_OWN(ritz_dense) F = {0};
-
-    for (int64_t p = 0; p < body->num_ports; p++)
-        most += body->port[p].count;
-    RITZ_CHECK(ritz_dense_new(body->K.ncol, most, &F));
-    for (int64_t j = 0; j < io->num_inputs && F.nrow > 0; j++)
-        if (plan_attaches(stage->scene, plan, j))
-            memcpy(ritz_dense_col(&F, m++), ritz_dense_col(&io->B, j) + first,
-                   (size_t)F.nrow * sizeof *F.val);
-    for (int64_t p = 0; p < body->num_ports; p++)
-        if ((plan->attached & RITZ_ATTACHED_INTERFACE) &&
-            is_held(stage->scene, k, body->port[p].name))
-            m = append_rows(&body->port[p].map, 0, &F, m);
-    for (int c = 0; c < 3 && (plan->attached & RITZ_ATTACHED_OUTPUTS); c++)
-        m = append_rows(C[c], first, &F, m);
-    return ritz_dense_columns(&F, 0, m, out);
-}
-
 /*
  * A lambda of the body's own, the geometric mean of K_jj / M_jj: in K + lambda
  * M neither term is rounding relative to the other.
@@ -191,7 +130,7 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
     RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &R));
     RITZ_CHECK(ritz_dense_mul(&body->M, &R, &MR));
     RITZ_CHECK(factor_shifted(body, &MR, scale, &L));
-    RITZ_CHECK(list_forces(stage, k, plan, &F));
+    RITZ_CHECK(ritz_plan_forces(stage, k, plan, &F));
     RITZ_CHECK(relieve_inertia(&R, &MR, scale, &F));
     if (F.ncol > 0 && r > 0)
         (void)LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', r, (int)F.ncol, L.val, r,
@@ -430,19 +369,38 @@ static bool normalise_flexible(const ritz_configuration *c, double *x)
     return norm > 0.0;
 }
 
+/* Lambda^-1 F of the flexible part, for the forces of dampers. */
+static ritz_status answer_dampers(const ritz_stage *stage,
+                                  const ritz_configuration *c, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+
+    RITZ_CHECK(ritz_damper_forces(stage, c, &X));
+    for (int64_t j = 0; j < X.ncol; j++)
+        for (int64_t k = 0; k < X.nrow; k++)
+            ritz_dense_col(&X, j)[k] *=
+                k < c->num_rigid ? 0.0 : 1.0 / c->lambda[k];
+    RITZ_MOVE(*out, X);
+    return RITZ_OK;
+}
+
 /* Modal coordinates of the system's static solutions. */
-static ritz_status choose_statics(const ritz_scene *scene,
+static ritz_status choose_statics(const ritz_stage *stage,
                                   const ritz_configuration *c,
                                   const ritz_plan *plan, ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN(ritz_dense) X = {0}, of_io = {0}, of_dampers = {0};
     int64_t m = 0;
 
-    RITZ_CHECK(ritz_system_statics(c, true, &X));
+    RITZ_CHECK(ritz_system_statics(c, true, &of_io));
+    RITZ_CHECK(answer_dampers(stage, c, &of_dampers));
+    RITZ_CHECK(ritz_dense_beside(&of_io, &of_dampers, &X));
     for (int64_t j = 0; j < X.ncol; j++) {
+        int set =
+            j < of_io.ncol ? RITZ_ATTACHED_OUTPUTS : RITZ_ATTACHED_DAMPERS;
         bool attached = j < c->io.num_inputs
-                            ? plan_attaches(scene, plan, j)
-                            : plan->attached & RITZ_ATTACHED_OUTPUTS;
+                            ? ritz_plan_attaches(stage->scene, plan, j)
+                            : plan->attached & set;
 
         if (attached && normalise_flexible(c, ritz_dense_col(&X, j)))
             memmove(ritz_dense_col(&X, m++), ritz_dense_col(&X, j),
@@ -479,7 +437,8 @@ static ritz_status choose_krylov(const ritz_scene *scene,
  *
  *     P_c Phi_r                        rigid modes
  *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solution in all flexible modes
- *                                      for each force [LeeTsuha1992, eq. 37]
+ *                                      for each force [LeeTsuha1992, eq. 37],
+ *                                      along dampers too [ChuMilman1992]
  *     P_c Phi_k                        kept modes, or
  *     P_c Phi_f W                      Krylov vectors [McDaniel2000, 3.2.3]
  *
@@ -502,18 +461,19 @@ static ritz_status choose_krylov(const ritz_scene *scene,
  * stiff; after N is projected out of them, that is of the order of eps.
  */
 
-ritz_status ritz_composite_choose(const ritz_scene *scene,
+ritz_status ritz_composite_choose(const ritz_stage *stage,
                                   const ritz_configuration *configuration,
                                   const ritz_compare_row *row, int group,
                                   const ritz_plan *plan, ritz_dense *out)
 {
+    const ritz_scene *scene = stage->scene;
     const ritz_configuration *c = configuration;
     int64_t e = c->K.ncol;
 
     if (group == RITZ_GIVEN_RIGID)
         return unit_vectors(e, c->num_rigid, 0, NULL, out);
     if (group == RITZ_GIVEN_STATIC && plan->augment == RITZ_AUGMENT_SYSTEM)
-        return choose_statics(scene, c, plan, out);
+        return choose_statics(stage, c, plan, out);
     if (group == RITZ_GIVEN_KEPT && scene->select == RITZ_SELECT_KRYLOV)
         return choose_krylov(scene, c, out);
     if (group == RITZ_GIVEN_KEPT)
@@ -631,8 +591,8 @@ static ritz_status list_contributions(const ritz_rows *rows,
         out->count++;
         given->at = ritz_rows_first(rows, k);
         for (int g = 0; g < RITZ_GROUPS; g++) {
-            RITZ_CHECK(ritz_composite_choose(scene, given->at, &rows->row[k], g,
-                                             plan, &given->X[g]));
+            RITZ_CHECK(ritz_composite_choose(
+                rows->stage, given->at, &rows->row[k], g, plan, &given->X[g]));
             *count += given->X[g].ncol;
         }
     }

@@ -74,13 +74,14 @@ static ritz_status list_contributions(const ordering *g, ritz_given *to)
 {
     const ritz_scene *scene = g->stage->scene;
     const ritz_plan plan = {.augment = RITZ_AUGMENT_SYSTEM,
-                            .attached =
-                                RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_OUTPUTS};
+                            .attached = RITZ_ATTACHED_INPUTS |
+                                        RITZ_ATTACHED_OUTPUTS |
+                                        RITZ_ATTACHED_DAMPERS};
     RITZ_OWN(ritz_dense) band = {0}, answers = {0};
 
-    RITZ_CHECK(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_RIGID,
+    RITZ_CHECK(ritz_composite_choose(g->stage, to->at, NULL, RITZ_GIVEN_RIGID,
                                      &plan, &to->X[GROUP_RIGID]));
-    RITZ_CHECK(ritz_composite_choose(scene, to->at, NULL, RITZ_GIVEN_STATIC,
+    RITZ_CHECK(ritz_composite_choose(g->stage, to->at, NULL, RITZ_GIVEN_STATIC,
                                      &plan, &answers));
     RITZ_CHECK(choose_modes(to->at, g->lambda, to->value, &band));
     RITZ_CHECK(choose_modes(to->at, HUGE_VAL, NULL, &to->X[GROUP_REST]));
@@ -120,7 +121,7 @@ static ritz_status assemble_ordering(const ritz_stage *stage, ordering *g)
  *                                      value of mode k in the ranking over the
  *                                      largest at any configuration, or 1,
  *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solutions for inputs and forces
- *                                      where outputs read,
+ *                                      where outputs read and dampers act,
  *     P_c Phi_f                        all flexible modes of stage one
  *
  * in groups, each orthogonal to those before it. Within a group directions are

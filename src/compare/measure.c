@@ -390,6 +390,49 @@ static ritz_status measure_response(const ritz_scene *scene,
     return RITZ_OK;
 }
 
+/*
+ * The largest error of the damping ratios of the modes that matter. Where D
+ * couples modes, each is the pole that the mode has become, and its partner the
+ * nearest pole of the second system, as in verify/modes.c.
+ */
+static double damping_error(const ritz_damped *two, int64_t count,
+                            double _Complex s, double zeta)
+{
+    double other = ritz_spectrum_ratio(ritz_damped_nearest(two, count, s));
+
+    if (isnan(zeta) || other == zeta)
+        return isnan(zeta) ? zeta : 0.0;
+    return isnan(other) ? 1.0
+                        : fabs(other - zeta) / fmax(fabs(other), fabs(zeta));
+}
+
+static ritz_status measure_damping(const ritz_scene *scene,
+                                   const ritz_configuration *first,
+                                   const ritz_configuration *second,
+                                   ritz_compare_row *row)
+{
+    RITZ_OWN(ritz_poles) p = {0}, p2 = {0};
+    RITZ_OWN(ritz_damped) one = {0}, two = {0};
+    double largest = 0.0;
+
+    RITZ_CHECK(find_poles(scene, first, &p));
+    RITZ_CHECK(find_poles(scene, second, &p2));
+    RITZ_CHECK(ritz_damped_new(&p, NULL, NULL, scene->band_hz, &one));
+    RITZ_CHECK(ritz_damped_new(&p2, NULL, NULL, scene->band_hz, &two));
+    for (int64_t k = 0; k < p.count; k++)
+        largest = fmax(largest, fabs(one.zeta[k])); /* fmax ignores NaN */
+    for (int64_t i = 0; i < row->num_kept && largest > 0.0; i++) {
+        int64_t k = first->num_rigid + row->kept[i];
+
+        row->damping_error =
+            fmax(row->damping_error,
+                 fabs(one.zeta[k]) <= RITZ_NEGLIGIBLE * largest
+                     ? 0.0
+                     : damping_error(&two, p2.count, one.s[k], one.zeta[k]));
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  const ritz_configuration *first,
                                  ritz_configuration *second,
@@ -400,7 +443,7 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
 
     row->num_rigid = first->num_rigid;
     row->num_flexible = first->K.ncol - first->num_rigid;
-    row->gain_error = row->response_error = nan("");
+    row->gain_error = row->response_error = row->damping_error = nan("");
     RITZ_CHECK(ritz_modes_correlate(stage, V, false, first, second, &X));
     measure_modes(first, second, &X, row);
     row->rigid_error = 0.0;
@@ -414,6 +457,7 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
         RITZ_CHECK(ritz_compare_gain(first, second, &row->gain_error));
     RITZ_CHECK(
         measure_moments(first, second, row->num_moments, &row->moment_error));
+    RITZ_CHECK(measure_damping(scene, first, second, row));
     if (ritz_compare_responds(scene))
         RITZ_CHECK(measure_response(scene, first, second, row));
     return RITZ_OK;

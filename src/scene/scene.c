@@ -169,7 +169,8 @@ static const ritz_yaml_key augment_keys[NUM_AUGMENT_KEYS] = {
 };
 
 /* Sets of forces, in the order of their bits; names of inputs follow. */
-static const char sets[][RITZ_NAME_SIZE] = {"inputs", "interface", "outputs"};
+static const char sets[][RITZ_NAME_SIZE] = {"inputs", "interface", "outputs",
+                                            "dampers"};
 
 enum { NUM_SETS = sizeof sets / sizeof *sets };
 

@@ -133,6 +133,43 @@ holds '  a looser tolerance costs exactness and never gain' \
 expect 2 "--tolerances takes numbers between 0 and 1, not '2'" \
     ritz-compare list.yaml --tolerances 1e-3,2 -o list.h5
 
+# --- dampers in bodies and joints, against the full system ---------------------------
+
+mkdir damped
+cd damped || exit 1
+import_spacecraft --damper strut=33:3,54:3*12 --damper brace=23:1,27:1*400
+# damped NAME ROTOR-KEY KEY...: a rotor with dampers, the cone on a damper.
+damped() {
+    name=$1 rotor=$2
+    shift 2
+    spacecraft "$name" 'inputs:' \
+        '  - {name: motor, at: rotor/bearing, component: 6}' 'outputs:' \
+        '  - {name: gyro, at: platform/scan, component: 6}' 'band_hz: [0, 5]' \
+        'select: {by: band}' "$@"
+    sed -e "s/modes: 12/up_to_hz: 20$rotor/" \
+        -e 's/craig-bampton, modes: 4/craig-bampton, up_to_hz: 100/' \
+        -e 's/angles_deg: \[0\]/&, state: caged, stiffness: 50, damping: 8/' \
+        "$name.yaml" >part && mv part "$name.yaml"
+}
+damped with '' 'augment: system'
+damped without ', loads: [attached]' \
+    'augment: {level: system, attached: [inputs]}'
+expect 0 'damping   1 - MAC' ritz-compare without.yaml -o without.h5
+json 0 ritz-compare with.yaml -o with.h5
+holds '  damping is right to 1e-4 at all angles' \
+    'all(0 < c["errors"]["damping"] < 1e-4 for c in j["configurations"])'
+expect 0 'stage1-damping-relative' ritz-info with.h5
+ritz-assemble with.yaml --at clock=90 --full -q -o full.h5
+expect 0 'damping-relative' ritz-verify full.h5 with.h5 --at clock=90,cone=0 \
+    --band-hz 0,5 --limit-damping 1e-4 -o verified.h5
+expect 1 'damping-relative' ritz-verify full.h5 without.h5 \
+    --at clock=90,cone=0 --band-hz 0,5 --limit-damping 5e-3 -o verified.h5
+json 0 ritz-compare with.yaml --tolerances 1e-12 --tolerance-table t.tsv -o w.h5
+holds '  and the table of tolerances has it' \
+    '0 < j["tolerances"][0]["damping"] < 1e-4'
+expect 0 'platform	damping' head -n 1 t.tsv
+cd ..
+
 # --- an angle to add -------------------------------------------------------------------
 
 scene wide 'select: {modes: [1, 2, 3, 4, 5]}' 'augment: system' \

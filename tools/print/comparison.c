@@ -187,12 +187,13 @@ static void say_errors(cli_run *run, const ritz_compare_row *row,
              "%s %d %ld %ld %ld %ld %ld", at, row->listed, row->num_rigid,
              row->num_flexible, row->order, row->num_vectors, row->num_moments);
     sink_object(run, "errors");
-    sink_say(run, ",,,,,,frequency,frequency_allowed,rigid_hz,gain,response",
+    sink_say(run,
+             ",,,,,,frequency,frequency_allowed,rigid_hz,gain,response,damping",
              "%3s  %-28s %5ld %4ld %4s %5ld %9.1e %9.1e %9.1e %9.1e %9.1e "
-             "%9.1e",
+             "%9.1e %9.1e",
              first, at, row->num_rigid, row->num_flexible, chosen, row->order,
              row->frequency_error, row->allowed, row->rigid_error,
-             row->gain_error, row->response_error,
+             row->gain_error, row->response_error, row->damping_error,
              isnan(row->mac) ? row->mac : fmax(1.0 - row->mac, 0.0));
     sink_set(run, "mac,moments", "%g %g", row->mac, row->moment_error);
     sink_end(run);
@@ -235,7 +236,7 @@ static void say_legend(cli_run *run, const ritz_comparison *c)
             "stage-2 system; frequency of kept modes (and what",
             moments > 0 ? ", kept: Krylov vectors" : "");
     cli_say(run, "  rounding allows it), flexible static gain, response in the "
-                 "band: largest relative errors");
+                 "band, damping ratio: largest relative errors");
     if (between)
         cli_say(run, "  * between listed angles: errors of the modes (so many) "
                      "that would have been kept there");
@@ -252,9 +253,9 @@ static ritz_status say_rows(cli_run *run, const ritz_stage *stage,
     const ritz_system *system = &c->second_system;
     double worst = 0.0;
 
-    cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s", "#",
+    cli_say(run, "%3s  %-28s %5s %4s %4s %5s %9s %9s %9s %9s %9s %9s %9s", "#",
             "configuration", "rigid", "flex", "kept", "order", "frequency",
-            "allowed", "rigid Hz", "gain", "response", "1 - MAC");
+            "allowed", "rigid Hz", "gain", "response", "damping", "1 - MAC");
     SINK_ITEMS(run, "configurations", k, c->num_rows) {
         const ritz_compare_row *row = &c->row[k];
         char at[RITZ_NAME_SIZE];
@@ -527,18 +528,19 @@ static void say_tolerances(cli_run *run, const ritz_stage *first,
 {
     cli_say(run, "\nComposite tolerance against orders, and worst errors at "
                  "listed configurations");
-    cli_say(run, "%10s  %-16s %6s %6s %9s %9s %9s", "tolerance", "orders",
-            "total", "system", "frequency", "gain", "response");
+    cli_say(run, "%10s  %-16s %6s %6s %9s %9s %9s %9s", "tolerance", "orders",
+            "total", "system", "frequency", "gain", "response", "damping");
     SINK_ITEMS(run, "tolerances", k, rows->count) {
         const ritz_tolerance_row *row = &rows->at[k];
         char orders[80];
 
         print_orders(run, first->count, row->order, orders);
         sink_set(run, "removed", "%d", row->removed);
-        sink_say(run, "tolerance,,,dofs,frequency,gain,response",
-                 "%10.0e  %-16s %6ld %6ld %9.1e %9.1e %9.1e%s", row->tolerance,
-                 orders, row->total, row->largest, row->frequency_error,
-                 row->gain_error, row->response_error,
+        sink_say(run, "tolerance,,,dofs,frequency,gain,response,damping",
+                 "%10.0e  %-16s %6ld %6ld %9.1e %9.1e %9.1e %9.1e%s",
+                 row->tolerance, orders, row->total, row->largest,
+                 row->frequency_error, row->gain_error, row->response_error,
+                 row->damping_error,
                  row->removed ? "" : "  stage two removed nothing");
     }
 }
@@ -553,6 +555,7 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
                         "response");
     for (int64_t b = 0; b < first->count; b++)
         fprintf(table.file, "\t%s", first->scene->component[b].name);
+    fprintf(table.file, "\tdamping");
     for (int64_t k = 0; k < rows->count; k++) {
         const ritz_tolerance_row *row = &rows->at[k];
 
@@ -562,6 +565,7 @@ static ritz_status write_tolerances(const char *path, const ritz_stage *first,
                 row->gain_error, row->response_error);
         for (int64_t b = 0; b < first->count; b++)
             fprintf(table.file, "\t%ld", row->order[b]);
+        fprintf(table.file, "\t%.6e", row->damping_error);
     }
     fprintf(table.file, "\n");
     return cli_table_save(&table, path);

@@ -242,18 +242,22 @@ static void the_frequency_error_is_the_largest(void **state)
         assert_near(c.row[k].frequency_error, largest_error(&c, k), 1e-12);
 }
 
-/* No input: neither gain nor response, and no zero that stands for them. */
+/* No input and no damping: neither gain, response nor damping ratio, and no zero
+   that stands for them. */
 static void what_was_not_measured_is_not_recorded(void **state)
 {
     fixture *f = *state;
     RITZ_OWN(ritz_comparison) c = {0};
     int64_t inputs = f->scene.num_inputs;
+    ritz_damping_kind damping = f->scene.damping.kind;
 
     dualspin_or_skip();
-    assert_int_equal(f->c.second.body[0].errors.count, 3);
+    assert_int_equal(f->c.second.body[0].errors.count, 4);
     f->scene.num_inputs = 0;
+    f->scene.damping.kind = RITZ_DAMPING_NONE;
     assert_ok(ritz_compare(&f->stage, &c));
     f->scene.num_inputs = inputs;
+    f->scene.damping.kind = damping;
     for (int64_t k = 0; k < c.second.count; k++) {
         const ritz_measures *errors = &c.second.body[k].errors;
 

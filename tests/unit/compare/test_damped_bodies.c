@@ -1,0 +1,349 @@
+/*
+ * Dampers in stage two: two elastic bodies with dampers within, on a hinge with
+ * a spring and a damper. Kept modes are exact whatever is done; their damping
+ * is not, unless the static responses along the dampers are there too.
+ */
+#include "testing.h"
+
+#include "bodies.h"
+#include "scenes.h"
+
+#include "compare/compare.h"
+
+#include <ritz/basis.h>
+
+#include <complex.h>
+#include <lapacke.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { GRIDS = 7, MODES = 12 };
+
+static const char head[] =
+    "scene: dampers in bodies and joints\n"
+    "components:\n"
+    "  A: {model: a.h5, basis: macneal-rubin, modes: 12}\n"
+    "  B: {model: b.h5, basis: craig-bampton, modes: 12}\n"
+    "joints:\n"
+    "  - {name: hinge, between: [A/g7, B/g1], type: hinge, axis: [0, 0, 1],\n"
+    "     angles_deg: [0, 50], state: caged, stiffness: 2, damping: 1.5}\n"
+    "inputs:\n"
+    "  - {name: push, at: A/g7, component: 2}\n"
+    "band_hz: [0, 4]\n"
+    "select: {by: band}\n";
+
+typedef struct fixture {
+    ritz_scene scene;
+    ritz_stage stage;
+    ritz_comparison c;
+} fixture;
+
+/* A chain of grids with a damper between two of them, across. */
+static void damped_chain(int64_t first, int64_t a, int64_t b,
+                         ritz_component *out)
+{
+    double place[GRIDS][3];
+
+    for (int k = 0; k < GRIDS; k++) {
+        place[k][0] = (double)k;
+        place[k][1] = k % 2 ? 0.5 : 0.0;
+        place[k][2] = k % 3 ? 0.0 : 0.25;
+    }
+    assert_ok(body_chain(GRIDS, place, 1, (uint64_t)first + 5, out));
+    assert_ok(ritz_dampers_new(out->num_dofs, 1, &out->dampers));
+    memcpy(out->dampers.name[0], "strut", 6);
+    out->dampers.c[0] = 2.0;
+    ritz_dense_col(&out->dampers.B, 0)[6 * a + 1] = 1.0;
+    ritz_dense_col(&out->dampers.B, 0)[6 * b + 1] = -1.0;
+}
+
+static void reduce_chain(const ritz_component *chain, const char *port,
+                         const char *method, ritz_reduced *out)
+{
+    ritz_request request = RITZ_REQUEST_NONE;
+    RITZ_OWN(ritz_dofs) attached = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+
+    assert_ok(ritz_component_attached(chain, port, &attached));
+    request.component = chain;
+    request.attached = attached;
+    request.modes = MODES;
+    assert_ok(ritz_basis_make(ritz_method_find(method), &request, &basis));
+    assert_ok(ritz_reduce(chain, &basis, out));
+}
+
+static void prepare(fixture *f, const char *choice)
+{
+    char text[2048];
+    ritz_reduced body[2] = {0};
+
+    *f = (fixture){0};
+    (void)snprintf(text, sizeof text, "%s%s", head, choice);
+    assert_ok(ritz_scene_parse("dampers.yaml", text, &f->scene));
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(ritz_component) chain = {0};
+
+        damped_chain(k, k == 0 ? 1 : 2, k == 0 ? 4 : 5, &chain);
+        reduce_chain(&chain, k == 0 ? "g7" : "g1", f->scene.component[k].basis,
+                     &body[k]);
+    }
+    assert_ok(ritz_stage_from(&f->scene, body, &f->stage));
+    assert_ok(ritz_compare(&f->stage, &f->c));
+}
+
+static void release(fixture *f)
+{
+    ritz_comparison_free(&f->c);
+    ritz_stage_free(&f->stage);
+    ritz_scene_free(&f->scene);
+}
+
+/* Poles above the axis of x'' + D x' + Lambda x = 0, by dgeev. */
+static int64_t poles_of(const ritz_configuration *c, double _Complex *out)
+{
+    int64_t n = c->K.ncol, count = 0;
+    int size = (int)(2 * n);
+    double *A = calloc((size_t)(4 * n * n), sizeof *A);
+    double *re = calloc((size_t)size, sizeof *re);
+    double *im = calloc((size_t)size, sizeof *im);
+
+    assert_true(A && re && im);
+    for (int64_t j = 0; j < n; j++) {
+        A[j + (n + j) * 2 * n] = 1.0;
+        A[n + j + j * 2 * n] = -c->lambda[j];
+        for (int64_t i = 0; i < n; i++)
+            A[n + i + (n + j) * 2 * n] = -ritz_dense_col(&c->D, j)[i];
+    }
+    assert_int_equal(LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', size, A, size,
+                                   re, im, NULL, 1, NULL, 1),
+                     0);
+    for (int k = 0; k < size; k++)
+        if (im[k] > 0.0)
+            out[count++] = re[k] + im[k] * (double _Complex)_Complex_I;
+    free(A);
+    free(re);
+    free(im);
+    return count;
+}
+
+static double ratio(double _Complex s)
+{
+    return -creal(s) / cabs(s);
+}
+
+static double _Complex nearest(int64_t count, const double _Complex *pole,
+                               double _Complex s)
+{
+    double _Complex best = pole[0];
+
+    for (int64_t k = 1; k < count; k++)
+        if (cabs(pole[k] - s) < cabs(best - s))
+            best = pole[k];
+    return best;
+}
+
+/* The worst of the kept modes, each of which has the pole nearest to it. */
+static double worst_damping(const fixture *f, int64_t row)
+{
+    const ritz_configuration *one = &f->c.first_system.configuration[row];
+    const ritz_configuration *two = &f->c.second_system.configuration[row];
+    double _Complex of_one[128], of_two[128];
+    int64_t m = poles_of(one, of_one), n = poles_of(two, of_two);
+    double worst = 0.0;
+
+    assert_true(m > 0 && n > 0);
+    for (int64_t i = 0; i < f->c.row[row].num_kept; i++) {
+        double w = sqrt(one->lambda[one->num_rigid + f->c.row[row].kept[i]]);
+        double _Complex s = nearest(m, of_one, w * (double _Complex)_Complex_I);
+        double a = ratio(s), b = ratio(nearest(n, of_two, s));
+
+        worst = fmax(worst, fabs(a - b) / fmax(a, b));
+    }
+    return worst;
+}
+
+/* What is reported is what an eigenvalue solver says of both systems. */
+static void the_error_is_that_of_the_poles(void **state)
+{
+    fixture f;
+
+    (void)state;
+    prepare(&f, "augment: {level: system, attached: [inputs]}\n");
+    for (int64_t k = 0; k < 2; k++) {
+        double worst = worst_damping(&f, k);
+
+        assert_true(f.c.row[k].num_kept >= 3);
+        assert_true(worst > 1e-4);
+        assert_near(f.c.row[k].damping_error, worst, 1e-6 * worst);
+        assert_true(f.c.row[k].frequency_error <= f.c.row[k].allowed);
+    }
+    assert_true(f.c.row[2].damping_error > 1e-4); /* between them */
+    release(&f);
+}
+
+static double largest(const fixture *f)
+{
+    return fmax(f->c.row[0].damping_error, f->c.row[1].damping_error);
+}
+
+/* At either level, with what is implied, or with what is listed. */
+static void static_responses_along_dampers_mend_it(void **state)
+{
+    static const struct {
+        const char *without, *with, *listed;
+    } cases[] = {
+        {"augment: {level: system, attached: [inputs]}\n", "augment: system\n",
+         "augment: {level: system, attached: [inputs, dampers]}\n"},
+        {"augment: {level: component, attached: [inputs]}\n",
+         "augment: component\n",
+         "augment: {level: component, attached: [inputs, dampers]}\n"},
+    };
+
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        double error = 0.0;
+        fixture f;
+
+        prepare(&f, cases[k].without);
+        error = largest(&f);
+        assert_true(error > 1e-4);
+        release(&f);
+        prepare(&f, cases[k].with);
+        assert_true(largest(&f) < 0.05 * error);
+        release(&f);
+        prepare(&f, cases[k].listed);
+        assert_true(largest(&f) < 0.05 * error);
+        release(&f);
+    }
+}
+
+/* Forces along dampers: those of the bodies, and the joint's as it turns. */
+static void forces_are_those_of_dampers(void **state)
+{
+    fixture f;
+
+    (void)state;
+    prepare(&f, "augment: none\n");
+    assert_true(ritz_stage_is_damped(&f.stage));
+    for (int64_t k = 0; k < 2; k++) {
+        const ritz_configuration *c = &f.c.first_system.configuration[k];
+        RITZ_OWN(ritz_dense) F = {0}, D = {0};
+
+        assert_ok(ritz_damper_forces(&f.stage, c, &F));
+        assert_int_equal(F.ncol, 3);
+        assert_ok(ritz_dense_new(F.nrow, F.nrow, &D));
+        for (int64_t d = 0; d < 3; d++) /* D = sum c b b' */
+            for (int64_t j = 0; j < F.nrow; j++)
+                for (int64_t i = 0; i < F.nrow; i++)
+                    ritz_dense_col(&D, j)[i] += (d < 2 ? 2.0 : 1.5) *
+                                                ritz_dense_col(&F, d)[i] *
+                                                ritz_dense_col(&F, d)[j];
+        for (int64_t i = 0; i < F.nrow * F.nrow; i++)
+            assert_near(D.val[i], c->D.val[i], 1e-12 * ritz_dense_max(&D));
+    }
+    release(&f);
+}
+
+/* Without dampers nothing is tried that has none: see test_augment.c. */
+static void sets_are_tried_with_dampers_too(void **state)
+{
+    fixture f;
+
+    (void)state;
+    prepare(&f, "augment: component\n");
+    assert_int_equal(f.c.num_candidates, 10);
+    assert_string_equal(f.c.candidate[5].name, "dampers");
+    assert_string_equal(f.c.candidate[8].name, "inputs, interface, dampers");
+    assert_true(f.c.candidate[8].chosen);
+    release(&f);
+}
+
+/* The part of w that columns of V do not span, relative. */
+static double unspanned(const ritz_dense *V, int64_t count, const double *w)
+{
+    int n = (int)V->nrow, m = (int)count;
+    RITZ_OWN(ritz_dense) A = {0};
+    double x[64] = {0.0};
+    double left = 0.0, all = 0.0;
+
+    assert_true(n <= 64 && m < n);
+    assert_ok(ritz_dense_columns(V, 0, count, &A));
+    memcpy(x, w, (size_t)n * sizeof *x);
+    assert_int_equal(
+        LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', n, m, 1, A.val, n, x, n), 0);
+    for (int i = 0; i < n; i++) {
+        left = i < m ? left : hypot(left, x[i]);
+        all = hypot(all, w[i]);
+    }
+    return left / all;
+}
+
+/* The motion of body A as the system answers a force along its damper. */
+static void answer_of(const fixture *f, double *w)
+{
+    const ritz_configuration *c = &f->c.first_system.configuration[0];
+    RITZ_OWN(ritz_dense) F = {0};
+
+    assert_ok(ritz_damper_forces(&f->stage, c, &F));
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        for (int64_t i = 0; i < c->P[0].nrow; i++)
+            w[i] += ritz_dense_col(&c->P[0], k)[i] * F.val[k] / c->lambda[k];
+}
+
+/* Directions in the order of a search: modes and static responses first. */
+static void ordered_directions_have_them_early(void **state)
+{
+    RITZ_OWN(ritz_composite) composite = {0};
+    double w[64] = {0.0};
+    int64_t first = 0;
+    fixture f;
+
+    (void)state;
+    prepare(&f, "augment: system\nconfigurations: [{hinge: 0}]\n");
+    assert_ok(ritz_composite_new(&f.stage, &composite));
+    answer_of(&f, w);
+    first = composite.rigid[0] + f.c.row[0].num_kept;
+    assert_true(unspanned(&composite.V[0], first, w) > 1e-3);
+    first += f.scene.num_inputs + 3; /* and so many dampers */
+    assert_true(unspanned(&composite.V[0], first, w) < 1e-9);
+    release(&f);
+}
+
+static ritz_status measure_anew(const fixture *f)
+{
+    ritz_comparison c = {0};
+    ritz_status status = ritz_compare(&f->stage, &c);
+
+    ritz_comparison_free(&c);
+    return status;
+}
+
+static void no_allocation_failure_leaks(void **state)
+{
+    fixture f;
+
+    (void)state;
+    prepare(&f, "augment: system\n");
+    for (int64_t k = 0; k < 400; k += 1 + 7 * (TESTING_ALLOCATION_STEP > 1)) {
+        ritz_status status = RITZ_OK;
+
+        ritz_alloc_budget = 29 * k;
+        status = measure_anew(&f);
+        ritz_alloc_budget = -1;
+        if (status == RITZ_OK)
+            break;
+        assert_int_equal(status, RITZ_ERR_MEMORY);
+    }
+    release(&f);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_error_is_that_of_the_poles),
+    cmocka_unit_test(static_responses_along_dampers_mend_it),
+    cmocka_unit_test(forces_are_those_of_dampers),
+    cmocka_unit_test(sets_are_tried_with_dampers_too),
+    cmocka_unit_test(ordered_directions_have_them_early),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
+
+TEST_MODULE(damped_bodies, tests, NULL, NULL)
