@@ -10,7 +10,7 @@ static void list_kinds(void)
 {
     for (const chart_kind *k = chart_kinds; k->name; k++)
         printf("%-12s %-56s from %s\n", k->name, k->summary, k->files);
-    printf("%-12s %-56s from any but systems\n", "report",
+    printf("%-12s %-56s from any of these\n", "report",
            "all of these on one page, with tables and a verdict");
 }
 
@@ -65,11 +65,12 @@ int main(int argc, char **argv)
         CLI_WORD("error", &request.error, "relative|decibels|both",
                  "response: relative to the largest |H|, in decibels at "
                  "each point, or both [relative]"),
-        CLI_LIST("at", &request.at, "JOINT=SETTING[,...]",
-                 "mac: configuration of each system, or two of one [the "
-                 "only ones]; modes are compared by the masses of all "
-                 "bodies if their reduced components are named too, else "
-                 "by inputs and outputs"),
+        CLI_LIST(
+            "at", &request.at, "JOINT=SETTING[,...]",
+            "mac, report: configuration of each system, or two of one [the "
+            "only ones]; modes are compared by the masses of all "
+            "bodies if their reduced components are named too, else "
+            "by inputs and outputs"),
         CLI_INT("top", &request.top, "N", 1, 1000,
                 "hankel: number of modes of each ranking"),
         CLI_REAL("up-to-hz", &request.up_to_hz, "F", 0.0, 1e12,

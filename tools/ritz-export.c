@@ -6,11 +6,11 @@ static void list_formats(void)
     for (const ritz_exporter *const *e = ritz_exporters; *e; e++)
         printf("%-16s %-9s %-52s [%s]\n", (*e)->name, (*e)->kind, (*e)->summary,
                (*e)->reference);
-    printf("\nreduced: a reduced component, a system at a configuration (--at) "
-           "or, but for exudyn,\na state space; with --states either of the "
-           "first two as a state space.\nshapes: modes of a component, reduced "
-           "component or system (--component names its\nbodies), columns of a "
-           "basis.\n");
+    printf("\nreduced: a reduced component and, but for exudyn, a system at a "
+           "configuration (--at),\neither of which --states makes a state "
+           "space, or a state space.\nshapes: modes of a component, of a "
+           "reduced component, or of a system, whose bodies\n--component "
+           "names; columns of a basis.\n");
 }
 
 int main(int argc, char **argv)

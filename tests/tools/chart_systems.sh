@@ -194,5 +194,13 @@ expect 1 'basis.h5: it has no inputs and outputs, by which' ritz-chart mac \
     pair.h5 basis.h5 --at cone=0 -o x.svg
 expect 1 "have but one input or output in common" ritz-chart mac pair.h5 \
     one.h5 --at cone=0 -o x.svg
-expect 1 "'pair.h5' holds a system, not" ritz-chart report pair.h5 -o x.html
+expect 0 '' ritz-chart report pair.h5 --at cone=0 --at cone=60 -o pair.html
+works '  a report compares a system with itself' grep -q \
+    'MAC of pair.h5, .*cone=0 and pair.h5, .*cone=60' pair.html
+expect 0 '' ritz-chart report one.h5 two-reduced.h5 pair.h5 two.h5 --at cone=0 \
+    -o four.html
+works '  and with another model, --at being for systems alone' grep -q \
+    'MAC of pair.h5, .*cone=0 and two.h5, by inputs and outputs' four.html
+expect 1 'choose two configurations of' ritz-chart report pair.h5 --at cone=0 \
+    -o none.html
 echo "1..$count"

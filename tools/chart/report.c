@@ -42,7 +42,7 @@ static const struct part {
      same_points},
     {MODEL_SIMULATION, chart_simulation, "Time responses", 1, INT64_MAX,
      same_outputs},
-    {CHART_MODES, chart_mac, "Mode shapes", 2, 2, NULL},
+    {CHART_MODES | MODEL_SYSTEM, chart_mac, "Mode shapes", 2, 2, NULL},
     {CHART_TRACKS, chart_tracks, "Modes over configurations", 1, 1, NULL},
 };
 
@@ -76,6 +76,19 @@ static bool have_singular(int64_t count, const chart_file *file)
     return count > 0;
 }
 
+static bool is_system(const chart_file *file)
+{
+    return file->holds == MODEL_SYSTEM;
+}
+
+/* A system at two configurations is compared with itself. */
+static bool is_pair(const chart_sources *some, const chart_request *request)
+{
+    return some->count == 1 && is_system(some->file) &&
+           (request->at.count == 2 ||
+            some->file->model.system.num_configurations == 2);
+}
+
 /* A picture; and of responses their singular values, if they hold them and
    nothing else was asked for. */
 static ritz_status put_picture(report_page *p, const struct part *part,
@@ -83,7 +96,12 @@ static ritz_status put_picture(report_page *p, const struct part *part,
 {
     chart_request request = *p->request;
     char names[400] = "", caption[500];
+    bool systems = false;
 
+    for (int64_t k = 0; k < some->count; k++)
+        systems = systems || is_system(&some->file[k]);
+    if (!systems) /* --at is for others of the page */
+        request.at = (cli_list){0};
     for (int64_t k = 0; k < some->count; k++)
         sink_append(names, sizeof names, "%s%.60s", k > 0 ? ", " : "",
                     picture_base(some->file[k].path));
@@ -112,7 +130,7 @@ static ritz_status put_part(report_page *p, const struct part *part,
             continue;
         some.file = room;
         some.count = gather_files(p, part, k, taken, room);
-        if (some.count < part->least)
+        if (some.count < part->least && !is_pair(&some, p->request))
             continue;
         if (!begun)
             report_begin(p, part->title, "");
