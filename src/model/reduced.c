@@ -73,7 +73,8 @@ static bool may_be_rigid(ritz_column_kind kind)
  * Rigid-body motions cost no energy: what T'KT shows for them is rounding of
  * |T|'|K||T|, and is taken for the zero that it stands for. Left as it is, it
  * would be all the stiffness that a statically determinate interface has, and
- * mix flexible motion into the rigid modes of every system with this body.
+ * mix flexible motion into the rigid modes of every system with this body. Nor
+ * do they lose any: of T'K4T the same is true.
  */
 static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)
@@ -250,6 +251,8 @@ ritz_status ritz_reduce(const ritz_component *component,
     clear_massless(&basis->columns, &reduced.M);
     clear_massless(&basis->columns, &reduced.D);
     RITZ_CHECK(ritz_sparse_project(&component->K4, T, &reduced.K4));
+    if (reduced.K4.val)
+        RITZ_CHECK(settle_rigid(&component->K4, basis, &reduced.K4));
     RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_CHECK(map_ports(component, T, &reduced));
     RITZ_CHECK(ritz_io_project(&component->io, T, &reduced.io));

@@ -231,6 +231,23 @@ static ritz_status check_rest(const ritz_dense *D, int64_t from)
     return RITZ_OK;
 }
 
+/*
+ * A motion that nothing holds loses nothing, but for rounding of K4: s^2 = -i
+ * eps |K4| would be two poles near 0, one of them right of the axis.
+ */
+static void clear_rigid_loss(const ritz_pairs *pairs, ritz_dense *K4)
+{
+    const double floor = RITZ_SUM_ROUNDING * ritz_dense_max(K4);
+
+    for (int64_t j = 0; j < pairs->Phi.ncol; j++)
+        for (int64_t i = 0; i < K4->nrow && pairs->lambda[j] == 0.0; i++) {
+            if (fabs(ritz_dense_col(K4, j)[i]) <= floor)
+                ritz_dense_col(K4, j)[i] = 0.0;
+            if (fabs(ritz_dense_col(K4, i)[j]) <= floor)
+                ritz_dense_col(K4, i)[j] = 0.0;
+        }
+}
+
 /* Put into N what D acts on, into X all that is kept, and D of that. */
 static ritz_status take_massless(const ritz_second_order *model,
                                  const ritz_damping *damping,
@@ -266,6 +283,7 @@ static ritz_status take_massless(const ritz_second_order *model,
     RITZ_CHECK(ritz_dense_block(&all, 0, m + s->k, 0, m + s->k, &s->D));
     if (is_present(model->K4)) {
         RITZ_CHECK(ritz_project_above(model->K4, &s->X, 0.0, &s->K4));
+        clear_rigid_loss(pairs, &s->K4);
         RITZ_REFUSE_IF(
             N.ncol > 0 && ritz_dense_max(&s->K4) > 0.0, RITZ_ERR_ARGUMENT,
             "there are motions without mass beside structural damping: "

@@ -234,29 +234,35 @@ static void assert_row(const ritz_spectrum *s, int64_t pole,
     assert_near(100.0 * ritz_spectrum_ratio(s->s[j]), expected[1], 5.1e-6);
 }
 
-/* Kept: 11 modes alone, as from a free-interface method without attachments. */
-static ritz_reduced truncate(const ritz_component *chain)
-{
-    ritz_reduced reduced = {0};
-
-    assert_ok(reduce_with(chain, &ritz_method_macneal_rubin, 11, &reduced));
-    return reduced;
-}
-
-static ritz_reduced with_ritz_vectors(const ritz_component *chain)
+static ritz_reduced reduce_chain(const ritz_component *chain,
+                                 const ritz_method *method, int64_t modes,
+                                 int loads)
 {
     ritz_request request = RITZ_REQUEST_NONE;
     RITZ_OWN(ritz_basis) basis = {0};
     ritz_reduced reduced = {0};
 
     request.component = chain;
-    request.modes = 8;
-    request.choice.loads = RITZ_LOADS_DAMPERS;
+    request.modes = modes;
+    request.choice.loads = loads;
     request.choice.given = RITZ_USES_LOADS;
-    assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
+    assert_ok(ritz_basis_make(method, &request, &basis));
     assert_ok(ritz_reduce(chain, &basis, &reduced));
     assert_int_equal(reduced.K.ncol, 11);
     return reduced;
+}
+
+/* Kept: 11 modes alone, as from a free-interface method without attachments. */
+static ritz_reduced truncate(const ritz_component *chain)
+{
+    return reduce_chain(chain, &ritz_method_macneal_rubin, 11,
+                        RITZ_LOADS_ATTACHED);
+}
+
+static ritz_reduced with_ritz_vectors(const ritz_component *chain)
+{
+    return reduce_chain(chain, &ritz_method_normal_modes, 8,
+                        RITZ_LOADS_DAMPERS);
 }
 
 static ritz_second_order view(const ritz_reduced *r)
