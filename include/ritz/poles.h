@@ -130,8 +130,10 @@ ritz_status ritz_zeros_of(ritz_model model, int64_t output, int64_t input,
 
 typedef struct ritz_norm {
     double value;
-    double hertz; /* H-infinity: where it stands; HUGE_VAL: far out */
-    double lower; /* value is at least this, proven */
+    double hertz;    /* H-infinity: where it stands; HUGE_VAL: far out */
+    double lower;    /* value is at least this, proven */
+    double rounding; /* H-infinity: how far eps |A| may move the response
+                        there, to first order: far beside a slow pole */
     char engine[RITZ_NAME_SIZE];
 } ritz_norm;
 

@@ -258,7 +258,8 @@ double ritz_random_next(uint64_t *state);
  *                                 to hold half
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
  *                                 points too, for ratios common to all modes
- *                                 and for D = a M + b K
+ *                                 and for D = a M + b K; of each input and
+ *                                 output by itself, the worst
  *     response-relative-estimate  the same without proof, for other damping
  *
  * HUGE_VAL: nothing is known. Rounding is part of each bound.

@@ -580,6 +580,9 @@
  * tests/claims/states.claims comes near its bound by less.
  */
 #define RITZ_BOUND_ROUNDING 1e3
+/* ... and beside a slow pole by what the condition of the pole makes of eps
+   |A|, to first order, times the roundings of a Schur form and a projection. */
+#define RITZ_BOUND_CONDITION 1.0
 /* Participation below this part of |c_i| |phi|, or of the largest product of a
    channel, is rounding of products and eigenvectors. */
 #define RITZ_PARTICIPATION_ROUNDING 1e-10
@@ -643,6 +646,23 @@
 /* A count at the band's end lies this far behind it, in lambda: further than
    what ritz-verify takes to be in the band. */
 #define RITZ_COUNT_BEHIND 8e-9
+/* Part of a residual vector below which it is rounding, and least eigenvalue of
+   the Gram matrix of such vectors of length one, which keeps half of the
+   digits. */
+#define RITZ_ENRICH_LEAST       1e-10
+#define RITZ_ENRICH_INDEPENDENT 1e-8
+/* An input and an output whose response is nowhere more than this part of what
+   it could be have nothing to do with each other: positions in single precision
+   leave so much of symmetry. */
+#define RITZ_CHANNEL_COUPLED 1e-6
+/* A bound of a response that is more than this many times what is known of the
+   error is worth a richer trial. */
+#define RITZ_RESPONSE_LOOSE 2.0
+/* ... and with that still this many times: its cause is named. */
+#define RITZ_RESPONSE_FAR 10.0
+/* Of the largest eigenvalue of a dense pencil: its rounding, some thousand eps,
+   does not reach so far. */
+#define RITZ_WHOLE_CLEAR 1e-12
 /* A frequency error below this needs no tighter bound. */
 #define RITZ_NO_ERROR 1e-9
 /* Least and largest relative distance of a count from the mode it is for. */

@@ -609,5 +609,6 @@ const ritz_method ritz_method_tangential = {
     .fails = "light damping where all modes count: modes are better in H2",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_DAMPING,
+    .only_named = RITZ_NAMED_FOR_COMPONENTS | RITZ_NAMED_FOR_SCENES,
     .make = make_tangential,
 };

@@ -16,8 +16,7 @@ static double square_of(double x)
     return x * x;
 }
 
-/* The stiffness of a trial mode, 0 of a rigid one. */
-static double stiffness_of(const ritz_bounder *r, int64_t j)
+double ritz_bounder_stiffness(const ritz_bounder *r, int64_t j)
 {
     return j < r->num_rigid ? 0.0 : r->trial->theta[j];
 }
@@ -27,6 +26,20 @@ static double rate_at(const ritz_bounder *r, double lambda)
 {
     return r->rayleigh ? r->a + r->b * lambda
                        : 2.0 * r->zeta * sqrt(fmax(lambda, 0.0));
+}
+
+number ritz_bounder_z(const ritz_bounder *r, int64_t j, double w)
+{
+    return ritz_complex(ritz_bounder_stiffness(r, j) - w * w, w * r->rates[j]);
+}
+
+double ritz_bounder_least_z(const ritz_bounder *r, int64_t j, double w,
+                            double h)
+{
+    double d = r->rates[j];
+
+    return fmax(cabs(ritz_bounder_z(r, j, w)) - h * (2.0 * w + h) - h * d,
+                fmax(w - h, 0.0) * d);
 }
 
 /* The product of a real symmetric matrix and a complex vector. */
@@ -92,14 +105,12 @@ static ritz_status stack_vectors(const ritz_estimator *estimator,
 /* G = V'A^-1 V, Q = V'A^-1 M A^-1 V and the norms of V's columns. */
 static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
 {
-    RITZ_OWN(ritz_dense) V = {0}, E = {0};
-
-    RITZ_CHECK(stack_vectors(estimator, r, &V));
-    RITZ_CHECK(ritz_dense_copy(&V, &E));
-    RITZ_CHECK(ritz_factor_solve(estimator->A, &E));
-    RITZ_CHECK(ritz_dense_mul_tn(&V, &E, &r->G));
+    RITZ_CHECK(stack_vectors(estimator, r, &r->V));
+    RITZ_CHECK(ritz_dense_copy(&r->V, &r->E));
+    RITZ_CHECK(ritz_factor_solve(estimator->A, &r->E));
+    RITZ_CHECK(ritz_dense_mul_tn(&r->V, &r->E, &r->G));
     ritz_dense_symmetrise(&r->G);
-    RITZ_CHECK(ritz_sparse_condense(&estimator->component->M, &E, &r->Q));
+    RITZ_CHECK(ritz_sparse_condense(&estimator->component->M, &r->E, &r->Q));
     RITZ_CHECK_NEW(r->vector_norm, r->size);
     for (int64_t j = 0; j < r->size; j++)
         r->vector_norm[j] = sqrt(fmax(ritz_dense_col(&r->G, j)[j], 0.0));
@@ -243,6 +254,10 @@ static void fill_side(const ritz_bounder *r, double w,
         s->residual[last + m + j] = -ritz_complex(0.0, 1.0) * eta[j];
     }
     s->change = s->damping_part = s->defect_quarter = s->defect_three = 0.0;
+    s->self = 0.0;
+    for (int64_t j = 0; j < m; j++)
+        s->self += square_of(cabs(s->participation[j])) /
+                   cabs(ritz_bounder_z(r, j, w));
 }
 
 /* eta and residuals of all sides at @p w, whose participations are there. */
@@ -255,7 +270,7 @@ static void solve_coupled(ritz_bounder *r, double w)
     for (int64_t j = 0; j < m; j++)
         for (int64_t i = 0; i < m; i++)
             r->Z[i + j * m] = ritz_complex(
-                i == j ? stiffness_of(r, j) - w * w : 0.0,
+                i == j ? ritz_bounder_stiffness(r, j) - w * w : 0.0,
                 w * ritz_dense_col(&r->D, j)[i] + ritz_dense_col(&r->K4, j)[i]);
     for (int64_t k = 0; k < sides; k++)
         memcpy(at + k * m, r->side[k].participation, (size_t)m * sizeof *at);
@@ -276,6 +291,8 @@ static ritz_status open_side(const ritz_bounder *r, ritz_side *s)
     RITZ_CHECK_NEW(s->residual_slope, r->size);
     RITZ_CHECK_NEW(s->participation_slope, r->trial->count);
     RITZ_CHECK_NEW(s->curvature, r->trial->count);
+    for (int k = 0; k < 3; k++)
+        RITZ_CHECK_NEW(s->most[k], r->trial->count);
     return RITZ_OK;
 }
 
@@ -283,11 +300,14 @@ static void ritz_side_free(ritz_side *s)
 {
     RITZ_FREE(s->residual, s->participation, s->eta, s->residual_slope,
               s->participation_slope, s->curvature);
+    RITZ_FREE(s->most[0], s->most[1], s->most[2]);
 }
 
 void ritz_bounder_free(ritz_bounder *r)
 {
     RITZ_FREE_EACH(ritz_side, r->num_sides, r->side);
+    ritz_dense_free(&r->V);
+    ritz_dense_free(&r->E);
     ritz_dense_free(&r->G);
     ritz_dense_free(&r->Q);
     for (int k = 0; k <= KINDS; k++)
@@ -295,7 +315,7 @@ void ritz_bounder_free(ritz_bounder *r)
     RITZ_FREE(r->rates, r->vector_norm, r->sin2, r->GV, r->QV);
     ritz_dense_free(&r->D);
     ritz_dense_free(&r->K4);
-    RITZ_FREE(r->Z, r->responses, r->pivot);
+    RITZ_FREE(r->Z, r->responses, r->pivot, r->at);
 }
 
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
@@ -308,7 +328,7 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
     r->size = (r->coupled ? 3 : 1) * r->trial->count + io->num_inputs +
               KINDS * io->num_outputs;
     for (int64_t j = 0; j < r->trial->count && !r->matrix_rates; j++)
-        r->rates[j] = rate_at(r, stiffness_of(r, j));
+        r->rates[j] = rate_at(r, ritz_bounder_stiffness(r, j));
     RITZ_CHECK(take_forms(estimator, r));
     RITZ_CHECK(take_sines(r));
     RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &XB));
@@ -321,29 +341,30 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
         RITZ_CHECK(open_side(r, &r->side[k]));
     RITZ_CHECK_NEW(r->GV, r->size);
     RITZ_CHECK_NEW(r->QV, r->size);
+    RITZ_CHECK_NEW(r->at, io->num_inputs * io->num_outputs);
+    for (int64_t k = 0; k < io->num_inputs * io->num_outputs; k++)
+        r->at[k].weight = 1.0;
     return r->coupled ? open_coupled(estimator->component, r) : RITZ_OK;
 }
 
-/* Bounds of |c eta_j| and of its second derivative within h of w. */
-static void most_of(const ritz_bounder *r, const ritz_side *s, int64_t j,
-                    double w, double h, double out[2])
+/* Bounds of |eta_j|, of its derivative and of the second one of c eta_j, within
+   h of w. */
+static void fill_most(const ritz_bounder *r, int64_t j, double w, double h,
+                      ritz_side *s)
 {
-    double d = r->rates[j];
-    double theta = stiffness_of(r, j);
-    double off = h * (2.0 * w + h) + h * d;
-    double z = fmax(hypot(theta - w * w, w * d) - off, fmax(w - h, 0.0) * d);
-    double z1 = hypot(2.0 * (w + h), d);
+    double z = ritz_bounder_least_z(r, j, w, h);
+    double z1 = hypot(2.0 * (w + h), r->rates[j]);
     double second = s->curvature[j];
     double first = cabs(s->participation_slope[j]) + h * second;
     double share = cabs(s->participation[j]) + h * first;
     double b = r->rayleigh ? r->b : 0.0;
-    double eta1 = (first + share * z1 / z) / z;
     double eta2 = (second + 2.0 * first * z1 / z +
                    share * (2.0 * z1 * z1 / z + 2.0) / z) /
                   z;
 
-    out[0] = share / z;
-    out[1] = hypot(1.0, (w + h) * b) * eta2 + 2.0 * b * eta1;
+    s->most[0][j] = share / z;
+    s->most[1][j] = (first + share * z1 / z) / z;
+    s->most[2][j] = hypot(1.0, (w + h) * b) * eta2 + 2.0 * b * s->most[1][j];
 }
 
 /*
@@ -362,29 +383,28 @@ static void solve_side(ritz_bounder *r, double w, double h, double bent,
     number c = ritz_complex(1.0, w * b);
     double curve = bent;
 
-    s->damping_part = s->defect_quarter = s->defect_three = 0.0;
+    s->damping_part = s->defect_quarter = s->defect_three = s->self = 0.0;
     for (int64_t j = 0; j < r->trial->count; j++) {
-        double theta = stiffness_of(r, j);
-        double d = r->rates[j];
-        number z = ritz_complex(theta - w * w, w * d);
-        number z1 = ritz_complex(-2.0 * w, d);
+        double theta = ritz_bounder_stiffness(r, j);
+        number z = ritz_bounder_z(r, j, w);
+        number z1 = ritz_complex(-2.0 * w, r->rates[j]);
         double size = r->vector_norm[j];
-        double most[2];
 
         s->eta[j] = s->participation[j] / z;
         s->residual[j] = -c * s->eta[j];
         s->residual_slope[j] =
             -ritz_complex(0.0, b) * s->eta[j] -
             c * (s->participation_slope[j] - s->eta[j] * z1) / z;
-        most_of(r, s, j, w, h, most);
+        fill_most(r, j, w, h, s);
+        s->self += square_of(cabs(s->participation[j])) / cabs(z);
         if (h > 0.0)
-            curve += size * most[1];
+            curve += size * s->most[2][j];
         if (r->rayleigh || theta <= 0.0)
             continue;
-        s->damping_part +=
-            size * most[0] * 2.0 * r->zeta * (w + h) / sqrt(theta);
-        s->defect_quarter += size * most[0] / sqrt(sqrt(theta));
-        s->defect_three += size * most[0] / (sqrt(theta) * sqrt(sqrt(theta)));
+        size *= s->most[0][j];
+        s->damping_part += size * 2.0 * r->zeta * (w + h) / sqrt(theta);
+        s->defect_quarter += size / sqrt(sqrt(theta));
+        s->defect_three += size / (sqrt(theta) * sqrt(sqrt(theta)));
     }
     s->residual_norm = norm_of(r, s->residual, r->GV);
     s->change =
@@ -392,8 +412,7 @@ static void solve_side(ritz_bounder *r, double w, double h, double bent,
                 : 0.0;
 }
 
-/* Participation, response and residual of all inputs and outputs. */
-static void solve_all(ritz_bounder *r, double w, double h)
+void ritz_bounder_solve(ritz_bounder *r, double w, double h)
 {
     const ritz_dense *C = &r->channel[1];
     int64_t m = r->trial->count;
@@ -477,53 +496,18 @@ static double bound_rest(const ritz_bounder *r, const frequency_interval *at,
     double best = HUGE_VAL;
 
     for (int64_t N = 0; N < e->count; N++) {
-        double low = fmax(e->low[N], 0.0);
+        bool rigid = N < r->num_rigid; /* then both have it at 0 */
+        double low = rigid ? 0.0 : fmax(e->low[N], 0.0);
+        double high = rigid ? 0.0 : e->high[N];
         double first = 1.0 + at->most_s / (low - sigma);
         double far = all * rest_of(r, at, low, HUGE_VAL) + added * first;
-        double own = all * rest_of(r, at, low, e->high[N]) + added * first;
+        double own = all * rest_of(r, at, low, high) + added * first;
 
         best = fmin(best, fmin(sum, most) + far);
         sum += r->sin2[N] * own;
         most = fmax(most, own);
     }
     return best;
-}
-
-/* Bound of |H - H_r| of one input and output; *response is its |H_r|. */
-static double bound_pair(const ritz_bounder *r, const frequency_interval *at,
-                         double h, const ritz_side *in, const ritz_side *out,
-                         double *response)
-{
-    double sigma = -r->trial->sigma;
-    double c = cabs(at->c);
-    double P = in->residual_norm + in->change;
-    double D = out->residual_norm + out->change;
-    double varied = in->residual_norm * out->change + in->change * D;
-    double turned = r->rayleigh ? h * r->b : 0.0;
-    double moved = h * (2.0 * at->high + fabs(r->a + r->b * -sigma));
-    double all = (P + in->damping_part) * (D + out->damping_part);
-    double w = at->high;
-    double defect = 0.0;
-    number lead = 0.0;
-    number H = 0.0;
-
-    for (int64_t i = 0; i < r->size; i++)
-        lead += out->residual[i] *
-                (r->GV[i] / at->c + at->s * r->QV[i] / (at->c * at->c));
-    for (int64_t j = 0; j < r->trial->count; j++)
-        H += out->participation[j] * in->eta[j];
-    *response = cabs(H);
-    if (!r->rayleigh)
-        defect = r->zeta * w *
-                 (in->defect_quarter * out->defect_quarter +
-                  sigma * in->defect_three * out->defect_three);
-    return cabs(lead) + defect +
-           varied * (1.0 / c + cabs(at->s) / (c * c * sigma)) +
-           (turned + moved / sigma +
-            2.0 * turned * at->most_s / sigma / sqrt(at->least_c2)) /
-               at->least_c2 * P * D +
-           bound_rest(r, at, all, all - P * D) +
-           rounding_at(r, at->high, in, out);
 }
 
 static frequency_interval interval_of(const ritz_bounder *r, double w, double h)
@@ -544,28 +528,59 @@ static frequency_interval interval_of(const ritz_bounder *r, double w, double h)
     return at;
 }
 
-double ritz_bound_at(ritz_bounder *r, double w, double h)
+/* r_d' (A^-1 / c + s A^-1 M A^-1 / c^2) r_p, the input's products being there.
+ */
+static double lead_of(const ritz_bounder *r, const frequency_interval *at,
+                      const ritz_side *out)
 {
-    const ritz_io *io = r->io;
-    frequency_interval at = interval_of(r, w, h);
-    double largest = 0.0;
+    number lead = 0.0;
 
-    solve_all(r, w, h);
-    for (int64_t j = 0; j < io->num_inputs; j++) {
-        const ritz_side *in = &r->side[j], *out = &r->side[io->num_inputs];
+    for (int64_t i = 0; i < r->size; i++)
+        lead += out->residual[i] *
+                (r->GV[i] / at->c + at->s * r->QV[i] / (at->c * at->c));
+    return cabs(lead);
+}
 
-        multiply_real(&r->G, in->residual, r->GV);
-        multiply_real(&r->Q, in->residual, r->QV);
-        for (int64_t i = 0; i < io->num_outputs; i++) {
-            double response = 0.0;
-            double one = bound_pair(r, &at, h, in, &out[i], &response);
+void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
+                     int64_t output, double part[RITZ_PARTS])
+{
+    const ritz_side *in = &r->side[input];
+    const ritz_side *out = &r->side[r->io->num_inputs + output];
+    const frequency_interval at = interval_of(r, w, h);
+    double sigma = -r->trial->sigma;
+    double c = cabs(at.c);
+    double P = in->residual_norm + in->change;
+    double D = out->residual_norm + out->change;
+    double varied = in->residual_norm * out->change + in->change * D;
+    double turned = r->rayleigh ? h * r->b : 0.0;
+    double moved = h * (2.0 * at.high + fabs(r->a + r->b * -sigma));
+    double all = (P + in->damping_part) * (D + out->damping_part);
 
-            largest = fmax(largest, isnan(one) ? HUGE_VAL : one);
-            if (h == 0.0) {
-                r->least = fmax(r->least, response - one);
-                r->largest = fmax(r->largest, response);
-            }
-        }
-    }
-    return largest;
+    part[RITZ_PART_ERROR] = lead_of(r, &at, out);
+    part[RITZ_PART_DAMPING] = 0.0;
+    if (!r->rayleigh)
+        part[RITZ_PART_DAMPING] =
+            r->zeta * at.high *
+            (in->defect_quarter * out->defect_quarter +
+             sigma * in->defect_three * out->defect_three);
+    part[RITZ_PART_BETWEEN] =
+        varied * (1.0 / c + cabs(at.s) / (c * c * sigma)) +
+        (turned + moved / sigma +
+         2.0 * turned * at.most_s / sigma / sqrt(at.least_c2)) /
+            at.least_c2 * P * D;
+    part[RITZ_PART_REST] = bound_rest(r, &at, all, all - P * D);
+    part[RITZ_PART_ROUNDING] = rounding_at(r, at.high, in, out);
+}
+
+double ritz_rounding_of_pair(const ritz_bounder *r, double w, int64_t input,
+                             int64_t output)
+{
+    return rounding_at(r, w, &r->side[input],
+                       &r->side[r->io->num_inputs + output]);
+}
+
+void ritz_bounder_take_input(ritz_bounder *r, int64_t input)
+{
+    multiply_real(&r->G, r->side[input].residual, r->GV);
+    multiply_real(&r->Q, r->side[input].residual, r->QV);
 }

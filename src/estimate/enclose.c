@@ -198,6 +198,18 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
     return RITZ_OK;
 }
 
+ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, const ritz_dense *Y,
+                                 ritz_lehmann *out)
+{
+    RITZ_OWN(ritz_lehmann) trial = {.sigma = estimator->sigma};
+
+    RITZ_CHECK(take_ritz_pairs(estimator->component, Y, &trial));
+    RITZ_CHECK(take_residuals(estimator, &trial));
+    RITZ_CHECK_NEW(trial.reduced_rounding, trial.count);
+    RITZ_MOVE(*out, trial);
+    return RITZ_OK;
+}
+
 /*
  * A^-1 M X = (X - E) Theta_t^-1, as R = A X - M X Theta_t. Its columns are of
  * one size without the factor, and span the same.
@@ -205,16 +217,12 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
 ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out)
 {
-    RITZ_OWN(ritz_lehmann) polished = {.sigma = estimator->sigma};
     RITZ_OWN(ritz_dense) Y = {0};
 
     RITZ_CHECK(ritz_dense_copy(&trial->X, &Y));
     for (int64_t k = 0; k < Y.nrow * Y.ncol; k++)
         Y.val[k] -= trial->E.val[k];
-    RITZ_CHECK(take_ritz_pairs(estimator->component, &Y, &polished));
-    RITZ_CHECK(take_residuals(estimator, &polished));
-    RITZ_MOVE(*out, polished);
-    return RITZ_OK;
+    return ritz_lehmann_of_span(estimator, &Y, out);
 }
 
 void ritz_lehmann_free(ritz_lehmann *trial)
@@ -459,6 +467,28 @@ int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
     return below;
 }
 
+/*
+ * A basis of as many columns as the component has dofs has all modes: unless
+ * rounding may have moved one across rho, they are counted as they are.
+ */
+ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
+                                 int64_t *below)
+{
+    const ritz_component *full = m->estimator->component;
+    const ritz_pairs *pairs = &m->pairs;
+    int64_t count = pairs->Phi.ncol;
+    double off = 0.0;
+
+    if (count == full->num_dofs) {
+        off =
+            RITZ_WHOLE_CLEAR * pairs->lambda[count - 1] + RITZ_GAP_NARROW * rho;
+        *below = ritz_count_below(count, pairs->lambda, rho - off);
+        if (*below == ritz_count_below(count, pairs->lambda, rho + off))
+            return RITZ_OK;
+    }
+    return ritz_eigen_count(&full->K, &full->M, rho, below);
+}
+
 bool ritz_counted_within(const ritz_estimator *estimator, double low,
                          double high)
 {
@@ -532,24 +562,31 @@ void ritz_enclosure_free(ritz_enclosure *enclosure)
 ritz_status ritz_measuring_enclose(ritz_measuring *m)
 {
     const ritz_estimator *estimator = m->estimator;
-    const ritz_lehmann *trial = &m->trial, *polished = &m->polished;
+    const ritz_lehmann *trial = &m->trial;
+    const ritz_lehmann *const all[] = {trial, &m->polished, &m->rich};
     RITZ_OWN(ritz_enclosure) e = {.count = trial->count};
     const ritz_counted *counted = estimator->count;
+    int64_t num_near = 0;
 
     for (int64_t s = 0; s < estimator->num_counts; s++)
         if (counted[s].below > e.count)
             e.count = counted[s].below;
     e.count++; /* the next one, of which counts may say something */
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        num_near += all[k]->count;
+        e.count = all[k]->count >= e.count ? all[k]->count + 1 : e.count;
+    }
     RITZ_CHECK_NEW(e.low, e.count);
     RITZ_CHECK_NEW(e.high, e.count);
-    RITZ_CHECK_NEW(e.near_low, trial->count + polished->count);
-    RITZ_CHECK_NEW(e.near_high, trial->count + polished->count);
+    RITZ_CHECK_NEW(e.near_low, num_near);
+    RITZ_CHECK_NEW(e.near_high, num_near);
     for (int64_t p = 0; p < e.count; p++)
         e.high[p] = HUGE_VAL;
-    add_near(trial, &e);
-    add_near(polished, &e);
-    RITZ_CHECK(add_trial(estimator, trial, &e));
-    RITZ_CHECK(add_trial(estimator, polished, &e));
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        add_near(all[k], &e);
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        if (all[k]->count > 0)
+            RITZ_CHECK(add_trial(estimator, all[k], &e));
     settle_ends(estimator, trial, &e);
     ritz_enclosure_free(&m->enclosure);
     RITZ_MOVE(m->enclosure, e);

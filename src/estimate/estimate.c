@@ -43,11 +43,10 @@ enum { MOST_LISTED = 100 };
 enum { MORE = 10 };
 
 /* Count the modes below about rho, which moves off a mode; `refused` if that
-   cannot be, or there is no room for one more count. */
+   cannot be, or there is no room for more. */
 static ritz_status count_at(ritz_measuring *m, double rho)
 {
     ritz_estimator *estimator = m->estimator;
-    const ritz_component *full = estimator->component;
     ritz_status status = RITZ_ERR_SINGULAR;
     int64_t at = estimator->num_counts, below = 0;
 
@@ -55,7 +54,7 @@ static ritz_status count_at(ritz_measuring *m, double rho)
          t < MOST_TRIES && at < RITZ_MOST_COUNTS && status == RITZ_ERR_SINGULAR;
          t++) {
         rho *= t > 0 ? 1.0 - RITZ_GAP_NARROW : 1.0;
-        status = ritz_eigen_count(&full->K, &full->M, rho, &below);
+        status = ritz_measuring_count(m, rho, &below);
     }
     m->refused = status == RITZ_ERR_SINGULAR;
     if (m->refused)
@@ -235,13 +234,14 @@ static bool is_rigid(const ritz_estimator *estimator, int64_t k, double theta,
 static double propose_for(const ritz_measuring *m, int64_t k, double band)
 {
     double theta = m->trial.theta[k];
+    double rounding = m->trial.reduced_rounding[k] + m->trial.rounding[k];
     ritz_claim claim = ritz_claim_of(m, k);
     sides s = find_sides(m, k);
     int64_t p = k + s.low_off;
     double rho = nan("");
 
     if (is_rigid(m->estimator, k, theta, band) ||
-        is_tight(&claim, m->trial.reduced_rounding[k] / theta))
+        is_tight(&claim, rounding / theta))
         return nan("");
     if (theta <= RITZ_MAY_BE_RIGID * band)
         return 0.1 * theta;
@@ -605,6 +605,7 @@ static void ritz_measuring_free(ritz_measuring *m)
     ritz_pairs_free(&m->pairs);
     ritz_lehmann_free(&m->trial);
     ritz_lehmann_free(&m->polished);
+    ritz_lehmann_free(&m->rich);
     ritz_enclosure_free(&m->enclosure);
 }
 

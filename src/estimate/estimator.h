@@ -61,6 +61,10 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
                              const ritz_pairs *pairs, int64_t count,
                              ritz_lehmann *out);
 
+/** Pairs of the range of Y, whose columns are independent, of no reduction. */
+ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, const ritz_dense *Y,
+                                 ritz_lehmann *out);
+
 /** The same of A^-1 M X: one inverse iteration on, @p trial's errors shrink. */
 ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out);
@@ -110,6 +114,7 @@ typedef struct ritz_measuring {
     int64_t first, last; /* its flexible modes in the band: first .. last - 1 */
     int64_t reach;       /* at least last: modes that counts are spent on */
     ritz_lehmann trial, polished; /* polished: after an inverse iteration */
+    ritz_lehmann rich; /* of the trial and responses to its residuals */
     ritz_enclosure enclosure;
     ritz_prediction prediction;
     bool refused; /* the last count could not be taken */
@@ -134,6 +139,14 @@ typedef struct ritz_claim {
 /** |f_k - f| / f of reduced mode @p k and a full mode in [low, high]. */
 ritz_bounds ritz_error_of(const ritz_measuring *m, int64_t k, double low,
                           double high);
+
+/**
+ * Count the full modes below @p rho.
+ *
+ * @return RITZ_ERR_SINGULAR if a mode is there
+ */
+ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
+                                 int64_t *below);
 
 /** The claim on reduced mode @p k that has the least bound. */
 ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k);
@@ -163,8 +176,7 @@ bool ritz_response_boundable(const ritz_estimator *estimator,
  * Add "response-relative-bound" or, where modes are damped by no common ratio
  * and by no a M + b K, "response-relative-estimate". The trial holds all modes.
  */
-ritz_status ritz_bound_response(const ritz_measuring *m,
-                                const ritz_reduced *reduced,
+ritz_status ritz_bound_response(ritz_measuring *m, const ritz_reduced *reduced,
                                 ritz_measures *out);
 
 /* The bound of a response, whose equations are at the head of response.c. */
@@ -191,7 +203,30 @@ typedef struct ritz_side {
     /* sums over j of |eta_j||R_j| theta_j^(-1/4), and theta_j^(-3/4), that
        bound the defect of reduced damping */
     double defect_quarter, defect_three;
+    double self; /* sum of |participation|^2 / |z|, of the response to itself */
+    /* of each trial mode, most in the interval: |eta|, |eta'|, |(c eta)''| */
+    double *most[3];
 } ritz_side;
+
+/* What a bound of a response adds up from. */
+typedef enum ritz_bound_part {
+    RITZ_PART_ERROR,   /* the error, as far as it is known */
+    RITZ_PART_DAMPING, /* ratios act on full modes, known as far as these are */
+    RITZ_PART_REST,    /* modes that the trial does not hold */
+    RITZ_PART_BETWEEN, /* between points */
+    RITZ_PART_ROUNDING,
+    RITZ_PARTS
+} ritz_bound_part;
+
+/* The bound of one input and output. */
+typedef struct ritz_channel_bound {
+    double weight;           /* one over what it is relative to */
+    double response;         /* |H_r| */
+    double most;             /* no |H_r| is more: sqrt of both sides' `self` */
+    double part[RITZ_PARTS]; /* whose sum is the bound */
+} ritz_channel_bound;
+
+struct ritz_refinement;
 
 typedef struct ritz_bounder {
     const ritz_lehmann *trial;
@@ -202,6 +237,7 @@ typedef struct ritz_bounder {
     double zeta, a, b;
     double *rates;                 /* damping of each trial mode */
     int64_t size;                  /* columns of V = [R b_o c_o D_o K4_o] */
+    ritz_dense V, E;               /* these, and A^-1 V */
     ritz_dense G, Q;               /* V'A^-1 V and V'A^-1 M A^-1 V */
     double *vector_norm;           /* |V_j|_(A^-1) */
     ritz_dense channel[1 + KINDS]; /* B'X, C X, Cv X, Ca X */
@@ -215,8 +251,8 @@ typedef struct ritz_bounder {
     ritz_dense D, K4;           /* of trial modes */
     double _Complex *Z, *responses;
     int *pivot;
-    double largest; /* |H_r| at points */
-    double least;   /* largest |H_r| less its bound: |H| is at least this */
+    ritz_channel_bound *at;        /* outputs x inputs, at the last frequency */
+    struct ritz_refinement *finer; /* NULL: none; borrowed */
 } ritz_bounder;
 
 /** Fill the rates if need be, V's forms, angles and sides of a bounder that has
@@ -224,10 +260,75 @@ typedef struct ritz_bounder {
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
 void ritz_bounder_free(ritz_bounder *r);
 
+/** Responses and residuals of all sides anywhere within @p h of @p w rad/s. */
+void ritz_bounder_solve(ritz_bounder *r, double w, double h);
+
+/** Products with the residual of an input, for ritz_bound_pair. */
+void ritz_bounder_take_input(ritz_bounder *r, int64_t input);
+
 /**
- * The largest bound of all pairs anywhere within @p h of @p w rad/s; with h = 0
- * it tells r->least and r->largest too.
+ * The bound of |H - H_r| of one channel by residuals of its sides, which are
+ * solved, into its parts; the input has been taken.
  */
-double ritz_bound_at(ritz_bounder *r, double w, double h);
+void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
+                     int64_t output, double part[RITZ_PARTS]);
+
+/** How far rounding moves H_r of a channel. */
+double ritz_rounding_of_pair(const ritz_bounder *r, double w, int64_t input,
+                             int64_t output);
+
+/** The stiffness of a trial mode, 0 of a rigid one. */
+double ritz_bounder_stiffness(const ritz_bounder *r, int64_t j);
+
+/** z of a trial mode at w, or the least |z| within h of it. */
+double _Complex ritz_bounder_z(const ritz_bounder *r, int64_t j, double w);
+double ritz_bounder_least_z(const ritz_bounder *r, int64_t j, double w,
+                            double h);
+
+/* A richer trial, and how far its response is from that of the trial before:
+   the equations are at the head of refinement.c. */
+
+/* The residual of one side in the modes of the richer trial. */
+typedef struct ritz_finer_side {
+    double _Complex *r, *slope; /* of each, and its derivative by w */
+    double *curvature;          /* most |r''| in the interval */
+} ritz_finer_side;
+
+typedef struct ritz_refinement {
+    ritz_bounder fine; /* of the richer trial */
+    ritz_dense U, U_d; /* X_2'V and, of ratios, the part of damping; else {0} */
+    ritz_dense defect; /* W'D_2 W - D, of ratios; else {0} */
+    int64_t num_sides;
+    ritz_finer_side *side;
+} ritz_refinement;
+
+/**
+ * The trial and A^-1 V, of which small and dependent columns are left out.
+ *
+ * @param[in]  coarse  open
+ * @param[out] rich    count 0 where V is rounding
+ */
+ritz_status ritz_enrich(ritz_estimator *estimator, const ritz_bounder *coarse,
+                        ritz_lehmann *rich);
+
+/**
+ * @param[in] rich      borrowed until free, as enclosure and coarse's damping
+ */
+ritz_status ritz_refinement_new(ritz_estimator *estimator,
+                                const ritz_bounder *coarse,
+                                const ritz_lehmann *rich,
+                                const ritz_enclosure *enclosure,
+                                ritz_refinement *out);
+
+/** Both trials within @p h of @p w; the coarse one is solved. */
+void ritz_refinement_solve(const ritz_bounder *coarse, ritz_refinement *f,
+                           double w, double h);
+
+/** The bound of one channel, into its parts. */
+void ritz_refinement_bound(const ritz_bounder *coarse, const ritz_refinement *f,
+                           double w, double h, int64_t input, int64_t output,
+                           double part[RITZ_PARTS]);
+
+void ritz_refinement_free(ritz_refinement *f);
 
 #endif

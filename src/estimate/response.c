@@ -37,6 +37,8 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { PASSES = 3 };
 enum { EVEN_POINTS = 100, MOST_INTERVALS = 20000, DEEPEST = 200 };
@@ -213,6 +215,49 @@ static bool has_undamped(const ritz_bounder *r, const double band_hz[2])
     return false;
 }
 
+/* The bound of one channel, and what it is compared with. */
+static double bound_channel(const ritz_bounder *r, double w, double h,
+                            int64_t input, int64_t output)
+{
+    const ritz_side *in = &r->side[input];
+    const ritz_side *out = &r->side[r->io->num_inputs + output];
+    ritz_channel_bound *c = &r->at[output + input * r->io->num_outputs];
+    double sum = 0.0;
+    double _Complex H = 0.0;
+
+    for (int64_t j = 0; j < r->trial->count; j++)
+        H += out->participation[j] * in->eta[j];
+    c->response = cabs(H);
+    c->most = sqrt(in->self * out->self);
+    if (r->finer)
+        ritz_refinement_bound(r, r->finer, w, h, input, output, c->part);
+    else
+        ritz_bound_pair(r, w, h, input, output, c->part);
+    for (int k = 0; k < RITZ_PARTS; k++)
+        sum += c->part[k];
+    return isnan(sum) ? HUGE_VAL : sum;
+}
+
+/* The bounds of all channels anywhere within h of w rad/s, into r->at; returns
+   the largest, each times its weight. */
+static double bound_at(ritz_bounder *r, double w, double h)
+{
+    double largest = 0.0;
+
+    ritz_bounder_solve(r, w, h);
+    if (r->finer)
+        ritz_refinement_solve(r, r->finer, w, h);
+    for (int64_t j = 0; j < r->io->num_inputs; j++) {
+        ritz_bounder_take_input(r->finer ? &r->finer->fine : r, j);
+        for (int64_t i = 0; i < r->io->num_outputs; i++) {
+            double weight = r->at[i + j * r->io->num_outputs].weight;
+
+            largest = fmax(largest, weight * bound_channel(r, w, h, j, i));
+        }
+    }
+    return largest;
+}
+
 /* Between a and b, split until the bound is near the best of the points. */
 static double bound_interval(ritz_bounder *r, double a, double b, double *best,
                              int64_t *left)
@@ -228,7 +273,7 @@ static double bound_interval(ritz_bounder *r, double a, double b, double *best,
         double from = low[depth - 1];
         double to = high[depth - 1];
         double w = 0.5 * (from + to);
-        double U = ritz_bound_at(r, w, 0.5 * (to - from));
+        double U = bound_at(r, w, 0.5 * (to - from));
 
         depth--;
         if (U <= RITZ_INTERVAL_SLACK * *best || --*left < 0 ||
@@ -236,7 +281,7 @@ static double bound_interval(ritz_bounder *r, double a, double b, double *best,
             top = fmax(top, U);
             continue;
         }
-        *best = fmax(*best, ritz_bound_at(r, w, 0.0));
+        *best = fmax(*best, bound_at(r, w, 0.0));
         low[depth] = from;
         high[depth++] = w;
         low[depth] = w;
@@ -270,32 +315,232 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
     return ritz_grid_points(&grid, m, omega, zeta, count, hertz);
 }
 
-static ritz_status bound_band(ritz_bounder *r, const double band_hz[2],
-                              double *out, double *at)
+/* What is known of one channel over the points of the band. */
+typedef struct channel_found {
+    double bound, hertz;     /* the largest, and where */
+    double part[RITZ_PARTS]; /* of which that consists */
+    double error;            /* the largest that is known of the error */
+    double response;         /* the largest |H_r| */
+    double least;            /* the largest |H| is at least this */
+    double coupled;          /* the largest |H_r| over what could be there */
+    double most;             /* the largest of that */
+} channel_found;
+
+/* The whole answer. */
+typedef struct response_found {
+    int64_t count; /* channels, outputs by inputs */
+    channel_found *channel;
+    int64_t worst; /* channel */
+    double value;  /* its bound, relative; HUGE_VAL: nothing is known */
+    bool between;  /* it is so large between points only */
+} response_found;
+
+static void response_found_free(response_found *f)
 {
-    int64_t count = 0;
-    int64_t left = MOST_INTERVALS;
-    RITZ_OWN_ARRAY double *hertz = NULL;
-    double best = 0.0;
-    double top = 0.0;
+    free(f->channel);
+}
 
-    RITZ_CHECK(take_points(r, band_hz, &count, &hertz));
+static void note_channel(const ritz_channel_bound *at, double hertz,
+                         channel_found *c)
+{
+    double bound = 0.0;
+
+    for (int k = 0; k < RITZ_PARTS; k++)
+        bound += at->part[k];
+    bound = isnan(bound) ? HUGE_VAL : bound;
+    if (bound > c->bound) {
+        c->bound = bound;
+        c->hertz = hertz;
+        memcpy(c->part, at->part, sizeof c->part);
+    }
+    c->error = fmax(c->error, at->part[RITZ_PART_ERROR]);
+    c->response = fmax(c->response, at->response);
+    c->least = fmax(c->least, at->response - bound);
+    c->most = fmax(c->most, at->most);
+    if (at->most > 0.0)
+        c->coupled = fmax(c->coupled, at->response / at->most);
+}
+
+static void visit_points(ritz_bounder *r, int64_t count, const double *hertz,
+                         response_found *f)
+{
+    memset(f->channel, 0, (size_t)f->count * sizeof *f->channel);
     for (int64_t k = 0; k < count; k++) {
-        double one = ritz_bound_at(r, 2.0 * RITZ_PI * hertz[k], 0.0);
+        (void)bound_at(r, 2.0 * RITZ_PI * hertz[k], 0.0);
+        for (int64_t c = 0; c < f->count; c++)
+            note_channel(&r->at[c], hertz[k], &f->channel[c]);
+    }
+}
 
-        if (one > best) {
-            best = one;
-            *at = hertz[k];
+/*
+ * What a channel's bound is relative to: its own largest |H|, so that units do
+ * not matter. A channel between an input and an output that have next to
+ * nothing to do with each other is rounding: it is taken against what could be
+ * there.
+ */
+static double unit_of(const response_found *f, const channel_found *c)
+{
+    double largest = 0.0;
+
+    if (c->coupled > RITZ_CHANNEL_COUPLED)
+        return c->least;
+    for (int64_t k = 0; k < f->count; k++)
+        largest = fmax(largest, f->channel[k].response);
+    return fmin(largest, c->most);
+}
+
+/* The worst channel over the points, and the weights of all. */
+static void weigh_channels(ritz_bounder *r, response_found *f)
+{
+    f->worst = 0;
+    f->value = 0.0;
+    for (int64_t k = 0; k < f->count; k++) {
+        const channel_found *c = &f->channel[k];
+        double unit = unit_of(f, c);
+        double value = HUGE_VAL;
+
+        if (unit > 0.0)
+            value = c->bound / unit;
+        else if (c->bound == 0.0)
+            value = 0.0;
+        r->at[k].weight = unit > 0.0 ? 1.0 / unit : 0.0;
+        if (value > f->value) {
+            f->value = value;
+            f->worst = k;
         }
     }
-    best = fmax(best, RITZ_NEGLIGIBLE * r->largest);
-    top = best;
-    for (int64_t k = 0; k + 1 < count && !r->coupled; k++)
+}
+
+/* Whether any channel's bound is far above what is known of its error. */
+static bool is_loose(const response_found *f)
+{
+    for (int64_t k = 0; k < f->count; k++)
+        if (f->channel[k].bound > RITZ_RESPONSE_LOOSE * f->channel[k].error)
+            return true;
+    return false;
+}
+
+/* What a richer trial is made with. */
+typedef struct richer {
+    ritz_enclosure before; /* the intervals of the trial before */
+    ritz_refinement finer;
+} richer;
+
+static void richer_free(richer *all)
+{
+    ritz_enclosure_free(&all->before);
+    ritz_refinement_free(&all->finer);
+}
+
+/* A richer trial, if there is one, and the intervals that it tells. */
+static ritz_status refine_response(ritz_measuring *m, ritz_bounder *r,
+                                   richer *all)
+{
+    RITZ_CHECK(ritz_enrich(m->estimator, r, &m->rich));
+    if (m->rich.count == 0)
+        return RITZ_OK;
+    RITZ_MOVE(all->before, m->enclosure);
+    r->e = &all->before;
+    RITZ_CHECK(ritz_measuring_enclose(m));
+    RITZ_CHECK(ritz_refinement_new(m->estimator, r, &m->rich, &m->enclosure,
+                                   &all->finer));
+    r->finer = &all->finer;
+    return RITZ_OK;
+}
+
+/* Visit the points again with a richer trial, unless that says less: where
+   modes are missing it may. */
+static ritz_status visit_finer(ritz_measuring *m, int64_t count,
+                               const double *hertz, ritz_bounder *r,
+                               richer *all, response_found *f)
+{
+    RITZ_OWN(response_found) before = *f;
+
+    f->channel = NULL;
+    RITZ_CHECK(refine_response(m, r, all));
+    RITZ_CHECK_NEW(f->channel, f->count);
+    if (r->finer) {
+        visit_points(r, count, hertz, f);
+        weigh_channels(r, f);
+    }
+    if (r->finer && f->value <= before.value)
+        return RITZ_OK;
+    memcpy(f->channel, before.channel, (size_t)f->count * sizeof *f->channel);
+    r->finer = NULL;
+    return RITZ_OK;
+}
+
+/* Between the points. */
+static void bound_between(ritz_bounder *r, int64_t count, const double *hertz,
+                          response_found *f)
+{
+    int64_t left = MOST_INTERVALS;
+    double best = fmax(f->value, RITZ_NEGLIGIBLE);
+    double top = f->value;
+
+    for (int64_t k = 0; k + 1 < count; k++)
         top = fmax(top,
                    bound_interval(r, 2.0 * RITZ_PI * hertz[k],
                                   2.0 * RITZ_PI * hertz[k + 1], &best, &left));
-    *out = top;
+    f->between = top > RITZ_RESPONSE_LOOSE * f->value;
+    f->value = top;
+}
+
+static ritz_status bound_band(ritz_measuring *m, bool known, ritz_bounder *r,
+                              response_found *f)
+{
+    int64_t count = 0;
+    RITZ_OWN_ARRAY double *hertz = NULL;
+    RITZ_OWN(richer) all = {0};
+
+    RITZ_CHECK(take_points(r, m->band_hz, &count, &hertz));
+    f->count = r->io->num_inputs * r->io->num_outputs;
+    RITZ_CHECK_NEW(f->channel, f->count);
+    visit_points(r, count, hertz, f);
+    weigh_channels(r, f);
+    if (known && is_loose(f))
+        RITZ_CHECK(visit_finer(m, count, hertz, r, &all, f));
+    weigh_channels(r, f);
+    if (!r->coupled && isfinite(f->value))
+        bound_between(r, count, hertz, f);
     return RITZ_OK;
+}
+
+/* Why a bound is far above the error; "" if it is not. */
+static const char *cause_of(const ritz_measuring *m, const response_found *f)
+{
+    static const char *const names[RITZ_PARTS] = {
+        [RITZ_PART_DAMPING] = "damping of inexact modes",
+        [RITZ_PART_REST] = "modes not held",
+        [RITZ_PART_BETWEEN] = "between points",
+        [RITZ_PART_ROUNDING] = "rounding",
+    };
+    const channel_found *c = &f->channel[f->worst];
+    int most = RITZ_PART_DAMPING;
+
+    if (f->between)
+        return names[RITZ_PART_BETWEEN];
+    if (c->bound <= RITZ_RESPONSE_FAR * c->error)
+        return "";
+    for (int k = most + 1; k < RITZ_PARTS; k++)
+        if (c->part[k] > c->part[most] || isnan(c->part[k]))
+            most = k;
+    if (most == RITZ_PART_REST && m->prediction.num_missing > 0)
+        return "missing modes";
+    return names[most];
+}
+
+/* "12.5 Hz, force to tip: rounding" */
+static void say_where(const ritz_measuring *m, const response_found *f,
+                      char where[RITZ_NAME_SIZE])
+{
+    const ritz_io *io = &m->estimator->component->io;
+    const char *cause = cause_of(m, f);
+
+    (void)snprintf(
+        where, RITZ_NAME_SIZE, "%.5g Hz, %.10s to %.10s%s%s",
+        f->channel[f->worst].hertz, io->input[f->worst / io->num_outputs],
+        io->output[f->worst % io->num_outputs], cause[0] ? ": " : "", cause);
 }
 
 /* What can be said of a response. */
@@ -341,13 +586,45 @@ static bool rigid_in_full(const ritz_lehmann *trial, int64_t num_rigid)
     return all;
 }
 
-ritz_status ritz_bound_response(const ritz_measuring *m,
-                                const ritz_reduced *reduced, ritz_measures *out)
+/* What of a response's damping is not known at all; NULL: nothing. */
+static const char *unknown_damping(const ritz_measuring *m,
+                                   const ritz_bounder *r)
+{
+    if (r->coupled && ritz_missing_modes(m) != 0)
+        return "damping of missing modes is not known";
+    if (is_at_odds(r))
+        return "ratios differ within a pair of equal modes";
+    return has_undamped(r, m->band_hz) ? "a mode of the band is not damped"
+                                       : NULL;
+}
+
+/* Add the answer, unless it is that there is no error. */
+static ritz_status report_response(const ritz_measuring *m,
+                                   const ritz_bounder *r, bool sure,
+                                   const response_found *f, ritz_measures *out)
+{
+    const char *unknown = unknown_damping(m, r);
+    char where[RITZ_NAME_SIZE];
+
+    if (unknown)
+        (void)snprintf(where, sizeof where, "%s", unknown);
+    else
+        say_where(m, f, where);
+    if (f->value > 0.0 || unknown)
+        RITZ_CHECK(ritz_measures_add(
+            out,
+            sure ? "response-relative-bound" : "response-relative-estimate",
+            unknown ? HUGE_VAL : f->value, nan(""), where));
+    return RITZ_OK;
+}
+
+ritz_status ritz_bound_response(ritz_measuring *m, const ritz_reduced *reduced,
+                                ritz_measures *out)
 {
     ritz_estimator *estimator = m->estimator;
     const ritz_damping *damping = &estimator->request.damping;
     bool known = promise_of(estimator, reduced, m->pairs.Phi.ncol) == BOUND;
-    bool sure = false;
+    RITZ_OWN(response_found) found = {0};
     RITZ_OWN(ritz_bounder)
     r = {.trial = &m->trial,
          .e = &m->enclosure,
@@ -358,28 +635,17 @@ ritz_status ritz_bound_response(const ritz_measuring *m,
          .a = damping->a,
          .b = damping->b};
     RITZ_OWN_ARRAY double *matrices = NULL;
-    double bound = 0.0;
-    double at = 0.0;
-    char where[RITZ_NAME_SIZE];
 
     RITZ_CHECK_NEW(r.rates, m->trial.count);
     RITZ_CHECK_NEW(matrices, m->trial.count);
     if (!known && damping->kind == RITZ_DAMPING_NONE)
         RITZ_CHECK(fit_rayleigh(estimator->component, &r.a, &r.b, &r.rayleigh));
     known = known || r.rayleigh;
-    sure = known && rigid_in_full(&m->trial, m->pairs.num_rigid);
     if (!known)
         RITZ_CHECK(take_rates(estimator, &r, matrices));
     RITZ_CHECK(ritz_bounder_open(estimator, &r));
-    RITZ_CHECK(bound_band(&r, m->band_hz, &bound, &at));
-    if ((r.coupled && ritz_missing_modes(m) != 0) || is_at_odds(&r) ||
-        has_undamped(&r, m->band_hz))
-        bound = HUGE_VAL; /* of their damping nothing is known */
-    (void)snprintf(where, sizeof where, "%.6g Hz", at);
-    if (bound > 0.0)
-        RITZ_CHECK(ritz_measures_add(
-            out,
-            sure ? "response-relative-bound" : "response-relative-estimate",
-            r.least > 0.0 ? bound / r.least : HUGE_VAL, nan(""), where));
-    return RITZ_OK;
+    RITZ_CHECK(bound_band(m, known, &r, &found));
+    return report_response(
+        m, &r, known && rigid_in_full(&m->trial, m->pairs.num_rigid), &found,
+        out);
 }

@@ -544,6 +544,94 @@ static void turn_loads(const double _Complex *Q, const double _Complex *Z,
     }
 }
 
+/* Whether A is a real Schur form already, and P a triangle. */
+static bool is_schur(const ritz_dense *A, const ritz_dense *P)
+{
+    bool pair = false; /* the entry before stood below the diagonal */
+
+    for (int64_t j = 0; j < A->ncol; j++) {
+        const double *a = ritz_dense_col(A, j);
+        bool below = j + 1 < A->nrow && a[j + 1] != 0.0;
+
+        if (below && pair)
+            return false;
+        pair = below;
+        for (int64_t i = j + 1; i < A->nrow; i++)
+            if ((i > j + 1 && a[i] != 0.0) ||
+                (P->val && ritz_dense_col(P, j)[i] != 0.0))
+                return false;
+    }
+    return true;
+}
+
+/* Rows k and k + 1 of A, from column `first` on, times Q^H from the left. */
+static void turn_rows(const double _Complex Q[4], int64_t k, int64_t rows,
+                      int64_t first, int64_t last, double _Complex *A)
+{
+    for (int64_t j = first; j < last; j++) {
+        double _Complex *a = A + k + j * rows;
+        double _Complex top = a[0];
+
+        a[0] = conj(Q[0]) * top + conj(Q[1]) * a[1];
+        a[1] = conj(Q[2]) * top + conj(Q[3]) * a[1];
+    }
+}
+
+/* Columns k and k + 1 of A, down to row `last`, times Z from the right. */
+static void turn_columns(const double _Complex Z[4], int64_t k, int64_t rows,
+                         int64_t last, double _Complex *A)
+{
+    for (int64_t i = 0; i < last; i++) {
+        double _Complex *a = A + i + k * rows;
+        double _Complex left = a[0];
+
+        a[0] = left * Z[0] + a[rows] * Z[1];
+        a[rows] = left * Z[2] + a[rows] * Z[3];
+    }
+}
+
+/* The pair of complex poles of rows k and k + 1, made a triangle. */
+static ritz_status turn_block(int64_t k, ritz_resolvent *r)
+{
+    int64_t n = r->n;
+    double _Complex S[4], P[4], Q[4], Z[4], alpha[2], beta[2];
+    lapack_int none = 0;
+    int info = 0;
+
+    for (int64_t e = 0; e < 4; e++) {
+        S[e] = r->S[k + e % 2 + (k + e / 2) * n];
+        P[e] = r->P ? r->P[k + e % 2 + (k + e / 2) * n] : 0.0;
+    }
+    if (r->P)
+        info = LAPACKE_zgges(LAPACK_COL_MAJOR, 'V', 'V', 'N', NULL, 2, S, 2, P,
+                             2, &none, alpha, beta, Q, 2, Z, 2);
+    else
+        info = LAPACKE_zgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, 2, S, 2, &none,
+                             alpha, Q, 2);
+    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE, "poles were not found");
+    if (!r->P)
+        memcpy(Z, Q, sizeof Z);
+    turn_rows(Q, k, n, k, n, r->S);
+    turn_columns(Z, k, n, k + 2, r->S);
+    r->S[k + 1 + k * n] = 0.0;
+    if (r->P) {
+        turn_rows(Q, k, n, k, n, r->P);
+        turn_columns(Z, k, n, k + 2, r->P);
+        r->P[k + 1 + k * n] = 0.0;
+    }
+    turn_rows(Q, k, n, 0, r->m, r->B);
+    turn_columns(Z, k, r->p, r->p, r->C);
+    return RITZ_OK;
+}
+
+static ritz_status turn_blocks(ritz_resolvent *r)
+{
+    for (int64_t k = 0; k + 1 < r->n; k++)
+        if (r->S[k + 1 + k * r->n] != 0.0)
+            RITZ_CHECK(turn_block(k, r));
+    return RITZ_OK;
+}
+
 static ritz_status triangularise_pencil(ritz_resolvent *r)
 {
     int n = r->n;
@@ -583,7 +671,9 @@ ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
     RITZ_CHECK(widen_matrix(C, &r.C));
     RITZ_CHECK_NEW(r.T, (int64_t)r.n * r.n);
     RITZ_CHECK_NEW(r.X, (int64_t)r.n * r.m);
-    if (r.n > 0)
+    if (is_schur(A, P))
+        RITZ_CHECK(turn_blocks(&r));
+    else
         RITZ_CHECK(triangularise_pencil(&r));
     RITZ_MOVE(*out, r);
     return RITZ_OK;
@@ -632,6 +722,39 @@ bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
     cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, m, n, &one, r->C,
                 p, r->X, n, &one, H, p);
     return true;
+}
+
+/* Length of a vector of complex numbers. */
+static double complex_size(int64_t count, const double _Complex *x)
+{
+    double sum = 0.0;
+
+    for (int64_t k = 0; k < count; k++)
+        sum = hypot(sum, cabs(x[k]));
+    return sum;
+}
+
+ritz_status ritz_resolvent_sides(ritz_resolvent *resolvent, double _Complex z,
+                                 double *right, double *left)
+{
+    const double _Complex one = 1.0;
+    ritz_resolvent *r = resolvent;
+    int n = r->n, m = r->m, p = r->p;
+    RITZ_OWN_ARRAY double _Complex *C = NULL;
+
+    *right = *left = 0.0;
+    if (n == 0 || m == 0 || p == 0)
+        return RITZ_OK;
+    RITZ_CHECK_COPY(C, r->C, (int64_t)p * n);
+    (void)shift_triangle(r, z, 0.0);
+    memcpy(r->X, r->B, (size_t)n * (size_t)m * sizeof *r->X);
+    cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
+                CblasNonUnit, n, m, &one, r->T, n, r->X, n);
+    cblas_ztrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans,
+                CblasNonUnit, p, n, &one, r->T, n, C, p);
+    *right = complex_size((int64_t)n * m, r->X);
+    *left = complex_size((int64_t)p * n, C);
+    return RITZ_OK;
 }
 
 void ritz_resolvent_free(ritz_resolvent *resolvent)

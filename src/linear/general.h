@@ -206,7 +206,8 @@ typedef struct ritz_resolvent {
 /**
  * @param[in] P  {0}: the identity
  * @return RITZ_ERR_CONVERGENCE if the eigenvalues are not found
- * @cost   25 n^3 complex operations, 66 n^3 with P
+ * @cost   25 n^3 complex operations, 66 n^3 with P; n^2 where A is
+ *         quasi-triangular, and P triangular, as in a Schur form
  */
 ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
                                const ritz_dense *B, const ritz_dense *C,
@@ -223,6 +224,15 @@ double _Complex ritz_resolvent_pole(const ritz_resolvent *resolvent, int64_t k);
  */
 bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
                         double near, double _Complex *H);
+
+/**
+ * Frobenius norms of (z P - A)^-1 B and C (z P - A)^-1.
+ *
+ * @param[in] z  no pole
+ * @return RITZ_ERR_MEMORY
+ */
+ritz_status ritz_resolvent_sides(ritz_resolvent *resolvent, double _Complex z,
+                                 double *right, double *left);
 
 void ritz_resolvent_free(ritz_resolvent *resolvent);
 

@@ -21,6 +21,7 @@
 #include <ritz/poles.h>
 
 #include <complex.h>
+#include <float.h>
 #include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
@@ -189,6 +190,18 @@ static void divide_by(double by, ritz_dense *A)
         A->val[k] /= by;
 }
 
+/* B and C of length one. */
+static void divide_sides(stable *s)
+{
+    s->size = ritz_general_size(&s->B) * ritz_general_size(&s->C);
+    divide_by(ritz_general_size(&s->B), &s->B);
+    divide_by(ritz_general_size(&s->C), &s->C);
+    if (s->size > 0.0)
+        divide_by(s->size, &s->D);
+    else
+        s->size = 1.0;
+}
+
 static ritz_status take_stable(const ritz_state_space *model, stable *s)
 {
     RITZ_CHECK(ritz_state_space_check(model));
@@ -201,13 +214,20 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
     RITZ_CHECK(ritz_dense_mul_tn(&s->split.Y, &model->B, &s->B));
     RITZ_CHECK(ritz_dense_mul(&model->C, &s->split.X, &s->C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &s->D));
-    s->size = ritz_general_size(&s->B) * ritz_general_size(&s->C);
-    divide_by(ritz_general_size(&s->B), &s->B);
-    divide_by(ritz_general_size(&s->C), &s->C);
-    if (s->size > 0.0)
-        divide_by(s->size, &s->D);
-    else
-        s->size = 1.0;
+    divide_sides(s);
+    return RITZ_OK;
+}
+
+/* The same of a model that is in Schur form and stable. */
+static ritz_status copy_stable(const ritz_state_space *model, stable *s)
+{
+    RITZ_CHECK(ritz_dense_copy(&model->A, &s->split.S));
+    if (model->E.val)
+        RITZ_CHECK(ritz_dense_copy(&model->E, &s->split.P));
+    RITZ_CHECK(ritz_dense_copy(&model->B, &s->B));
+    RITZ_CHECK(ritz_dense_copy(&model->C, &s->C));
+    RITZ_CHECK(ritz_dense_copy(&model->D, &s->D));
+    divide_sides(s);
     return RITZ_OK;
 }
 
@@ -247,6 +267,26 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
     return RITZ_OK;
 }
 
+/*
+ * A change dA of the matrix moves the response by C R dA R B, R = (i w P -
+ * S)^-1: rounding by eps (|S| + w |P|) |C R| |R B|.
+ */
+static ritz_status find_rounding(peak *p, const stable *s, ritz_norm *out)
+{
+    double w = 2.0 * RITZ_PI * out->hertz,
+           size = ritz_general_size(&s->split.S);
+    double right = 0.0, left = 0.0;
+
+    if (!isfinite(w) || p->resolvent.n == 0)
+        return RITZ_OK;
+    if (s->split.P.val)
+        size += w * ritz_general_size(&s->split.P);
+    RITZ_CHECK(ritz_resolvent_sides(&p->resolvent, ritz_complex(0.0, w), &right,
+                                    &left));
+    out->rounding = DBL_EPSILON * s->size * size * right * left;
+    return RITZ_OK;
+}
+
 static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
 {
     RITZ_OWN(peak) p = {.D = s->D};
@@ -274,6 +314,24 @@ static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
         out->value = s->size * value;
         out->hertz = w / (2.0 * RITZ_PI);
     }
+    return find_rounding(&p, s, out);
+}
+
+static ritz_status check_tolerance(double tolerance)
+{
+    RITZ_REFUSE_IF(!(tolerance > 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
+                   "the tolerance of a norm is %g, it must be between 0 and 1",
+                   tolerance);
+    return RITZ_OK;
+}
+
+static ritz_status norm_infinity(const stable *s, double tolerance,
+                                 ritz_norm *out)
+{
+    ritz_norm norm = {0};
+
+    RITZ_CHECK_IN("H-infinity norm", find_peak(s, tolerance, &norm));
+    *out = norm;
     return RITZ_OK;
 }
 
@@ -281,33 +339,52 @@ ritz_status ritz_norm_infinity(const ritz_state_space *model, double tolerance,
                                ritz_norm *out)
 {
     RITZ_OWN(stable) s = {0};
-    ritz_norm norm = {0};
 
-    RITZ_REFUSE_IF(!(tolerance > 0.0 && tolerance < 1.0), RITZ_ERR_ARGUMENT,
-                   "the tolerance of a norm is %g, it must be between 0 and 1",
-                   tolerance);
+    RITZ_CHECK(check_tolerance(tolerance));
     RITZ_CHECK_IN("H-infinity norm", take_stable(model, &s));
-    RITZ_CHECK_IN("H-infinity norm", find_peak(&s, tolerance, &norm));
-    *out = norm;
+    return norm_infinity(&s, tolerance, out);
+}
+
+ritz_status ritz_norm_infinity_schur(const ritz_state_space *model,
+                                     double tolerance, ritz_norm *out)
+{
+    RITZ_OWN(stable) s = {0};
+
+    RITZ_CHECK(check_tolerance(tolerance));
+    RITZ_CHECK_IN("H-infinity norm", copy_stable(model, &s));
+    return norm_infinity(&s, tolerance, out);
+}
+
+static ritz_status norm_two(const stable *s, ritz_norm *out)
+{
+    RITZ_OWN(ritz_dense) F = {0}, CF = {0};
+
+    RITZ_REFUSE_IF(
+        ritz_dense_max(&s->D) > 0.0, RITZ_ERR_ARGUMENT,
+        "H2 norm: it is infinite, an input reaches an output at once "
+        "(D is not 0)");
+    RITZ_CHECK_IN("H2 norm", ritz_general_hammarling(&s->split.S, &s->split.P,
+                                                     false, &s->B, &F));
+    RITZ_CHECK(ritz_dense_mul(&s->C, &F, &CF));
+    *out = (ritz_norm){.value = s->size * ritz_general_size(&CF)};
+    out->lower = out->value;
+    snprintf(out->engine, sizeof out->engine, "SLICOT %s",
+             s->split.P.val ? "SG03BD" : "SB03OD");
     return RITZ_OK;
 }
 
 ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out)
 {
     RITZ_OWN(stable) s = {0};
-    RITZ_OWN(ritz_dense) F = {0}, CF = {0};
 
     RITZ_CHECK_IN("H2 norm", take_stable(model, &s));
-    RITZ_REFUSE_IF(
-        ritz_dense_max(&model->D) > 0.0, RITZ_ERR_ARGUMENT,
-        "H2 norm: it is infinite, an input reaches an output at once "
-        "(D is not 0)");
-    RITZ_CHECK_IN("H2 norm", ritz_general_hammarling(&s.split.S, &s.split.P,
-                                                     false, &s.B, &F));
-    RITZ_CHECK(ritz_dense_mul(&s.C, &F, &CF));
-    *out = (ritz_norm){.value = s.size * ritz_general_size(&CF)};
-    out->lower = out->value;
-    snprintf(out->engine, sizeof out->engine, "SLICOT %s",
-             s.split.P.val ? "SG03BD" : "SB03OD");
-    return RITZ_OK;
+    return norm_two(&s, out);
+}
+
+ritz_status ritz_norm_two_schur(const ritz_state_space *model, ritz_norm *out)
+{
+    RITZ_OWN(stable) s = {0};
+
+    RITZ_CHECK_IN("H2 norm", copy_stable(model, &s));
+    return norm_two(&s, out);
 }

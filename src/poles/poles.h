@@ -341,4 +341,17 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
 
 void ritz_channel_free(ritz_channel *channel);
 
+/*
+ * Norms of models in Schur form, A quasi-triangular and E, if there is one,
+ * triangular, all poles known to be left of the axis: what ritz_norm_infinity
+ * and ritz_norm_two find, without a further eigenproblem.
+ */
+
+/** @return RITZ_ERR_CONVERGENCE */
+ritz_status ritz_norm_infinity_schur(const ritz_state_space *model,
+                                     double tolerance, ritz_norm *out);
+
+/** @return RITZ_ERR_ARGUMENT if D is not 0 */
+ritz_status ritz_norm_two_schur(const ritz_state_space *model, ritz_norm *out);
+
 #endif

@@ -104,7 +104,8 @@ static ritz_status divide_outputs(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-/* The part of the poles left of the axis: Y'A X, Y'E X, Y'B, C X. */
+/* The part of the poles left of the axis, in Schur form: Y'A X, Y'E X, Y'B,
+   C X. */
 static ritz_status take_stable(const ritz_state_space *model,
                                ritz_state_space *out, int64_t *num_unstable)
 {
@@ -191,10 +192,10 @@ static ritz_status take_norms(ritz_state_pair *p)
         return RITZ_OK;
     RITZ_CHECK_IN(
         "full model",
-        ritz_norm_infinity(&p->stable[0], RITZ_NORM_TOLERANCE, &p->full));
-    RITZ_CHECK_IN(
-        "difference",
-        ritz_norm_infinity(&p->difference, RITZ_NORM_TOLERANCE, &p->error));
+        ritz_norm_infinity_schur(&p->stable[0], RITZ_NORM_TOLERANCE, &p->full));
+    RITZ_CHECK_IN("difference",
+                  ritz_norm_infinity_schur(&p->difference, RITZ_NORM_TOLERANCE,
+                                           &p->error));
     return RITZ_OK;
 }
 
@@ -262,7 +263,8 @@ ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
         return RITZ_OK;
     out->limit = bound + (RITZ_NORM_TOLERANCE * bound +
                           RITZ_BOUND_ROUNDING * (double)p->model[0].A.nrow *
-                              DBL_EPSILON * p->full.value);
+                              DBL_EPSILON * p->full.value +
+                          RITZ_BOUND_CONDITION * p->error.rounding);
     return tell_norm(p, 1.0, out);
 }
 
@@ -279,8 +281,8 @@ ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
                        "not 0), there is no H2 norm");
         return RITZ_OK;
     }
-    RITZ_CHECK_IN("full model", ritz_norm_two(&p->stable[0], &full));
-    RITZ_CHECK_IN("difference", ritz_norm_two(&p->difference, &error));
+    RITZ_CHECK_IN("full model", ritz_norm_two_schur(&p->stable[0], &full));
+    RITZ_CHECK_IN("difference", ritz_norm_two_schur(&p->difference, &error));
     if (full.value > 0.0)
         out->value = error.value / full.value;
     return RITZ_OK;

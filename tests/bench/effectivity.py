@@ -142,6 +142,34 @@ class Response:
         H_r = respond(value, Q.T @ B, [c @ Q for c in C], w)
         return abs(H - H_r).max() / abs(H).max()
 
+    def rounding(self, path, rigid):
+        """How far 4 eps of the sums behind K and M move H_r, over max |H_r|."""
+        with h5py.File(path) as file:
+            K, M, B = (file[k][()] for k in ("K", "M", "inputs/B"))
+            C = [file[f"outputs/{c}"][()] for c in ("C", "Cv", "Ca")]
+            D = file["D"][()] if "D" in file else None
+        value, floor = reduced_values(self.full, path)
+        _, Q = small_modes(K, M)
+        w = self.points(value)[:, None]
+        off = 2 * floor * abs(value)  # of an eigenvalue, not a frequency
+        value[:rigid] = 0
+        rate = ((D @ Q) * Q).sum(0) if D is not None \
+            else 2 * ZETA * numpy.sqrt(numpy.maximum(value, 0))
+        z = abs(value - w**2 + 1j * w * rate)
+        p = abs(Q.T @ B).max(1)
+        q = abs(C[0] @ Q).max(0) + w * abs(C[1] @ Q).max(0) \
+            + w**2 * abs(C[2] @ Q).max(0)
+        own = numpy.sqrt(off)
+        moved = (p / z * own).sum(1) * (q / z * own).sum(1) \
+            - (p / z * own)[:, :rigid].sum(1) \
+            * (q / z * own)[:, :rigid].sum(1) \
+            + 4 * EPS * w[:, 0]**2 * (p / z).sum(1) * (q / z).sum(1)
+        zeta = numpy.array([c @ Q for c in C])
+        H = (zeta[0] + 1j * w[:, :, None] * zeta[1]
+             - (w**2)[:, :, None] * zeta[2]) / (
+                 value - w**2 + 1j * w * rate)[:, None]
+        return moved.max() / abs(H @ (Q.T @ B)).max()
+
 
 def small_modes(K, M):
     """Pairs of a small pencil; coordinates without mass are condensed out."""
@@ -257,16 +285,18 @@ def line(bin_, case, full, truth, method, how, more):
                           estimates)
     mean = numpy.exp(numpy.mean([numpy.log(x[0]) for x in told])) if told \
         else float("nan")
-    response = ["", "", ""]
+    response = ["", "", "", ""]
     for kind in ("bound", "estimate"):
         if f"response-relative-{kind}" not in estimates:
             continue
-        bound = estimates[f"response-relative-{kind}"][0]
+        bound, where = estimates[f"response-relative-{kind}"]
         error = truth.error(reduced, rigid)
+        ratio = bound / max(error, truth.rounding(reduced, rigid))
         response = ["none" if bound == float("inf") else
                     f"{bound:.1e}" + ("*" if kind == "estimate" else ""),
-                    f"{error:.1e}", "" if bound == float("inf") else
-                    f"{bound / error:.2g}"]
+                    f"{error:.1e}",
+                    "" if bound == float("inf") else f"{ratio:.2g}",
+                    where.partition(": ")[2] if ratio > 10 else ""]
         if kind == "bound" and not bound >= error:
             low.append(("response", bound, error))
     name = re.match(r"mode (\d+)", worst[3])
@@ -281,7 +311,8 @@ def line(bin_, case, full, truth, method, how, more):
 
 
 TITLES = ["method", "columns", "modes", "missing", "bound", "error", "ratio",
-          "mean", "of mode", "over least", "response", "error", "ratio"]
+          "mean", "of mode", "over least", "response", "error", "ratio",
+          "cause"]
 
 
 def main():

@@ -1,6 +1,7 @@
 /* Bounds where rounding decides, and where nothing may be called proven. */
 #include "testing.h"
 
+#include "estimate/estimator.h"
 #include "masses.h"
 #include "poles/poles.h"
 #include "project.h"
@@ -208,11 +209,53 @@ static void modes_that_rounding_exchanges_share_it(void **)
     }
 }
 
+/*
+ * Where the basis holds the modes of the band to rounding, no count makes a
+ * bound better: a few are enough, of a full basis or of exact modes.
+ */
+static void exact_bases_need_few_counts(void **)
+{
+    enum { MASSES = 60, MODES = 50, FEW = 6 };
+    const ritz_span span = {.modes = MODES};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
+    ritz_estimate_request request = {0};
+
+    assert_ok(spring_chain(MASSES, false, &chain));
+    assert_ok(ritz_eigen_sparse(&chain.K, &chain.M, &span, &full));
+    request.band_hz[1] = 1.001 * ritz_eigen_hertz(full.lambda[30]);
+    for (int whole = 0; whole < 2; whole++) {
+        int64_t columns = whole ? MASSES : MODES;
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(ritz_measures) found = {0};
+        ritz_estimator *estimator = NULL;
+
+        assert_ok(ritz_basis_new(MASSES, columns, &basis));
+        for (int64_t j = 0; j < columns; j++)
+            for (int64_t i = 0; i < MASSES; i++)
+                ritz_dense_col(&basis.T, j)[i] =
+                    whole ? (double)(i == j) : ritz_dense_col(&full.Phi, j)[i];
+        assert_ok(ritz_reduce(&chain, &basis, &reduced));
+        assert_ok(ritz_estimator_new(&chain, &request, &estimator));
+        assert_ok(
+            ritz_estimator_measure(estimator, &basis, &reduced, false, &found));
+        if (estimator->num_counts > FEW)
+            fail_msg("%d columns: %d counts", (int)columns,
+                     (int)estimator->num_counts);
+        assert_true(find_measure(&found, "frequency-relative-bound")->value <
+                    1e-9);
+        assert_true(find_measure(&found, "missing-modes-bound")->value == 0.0);
+        ritz_estimator_free(&estimator);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(damping_of_soft_rows_is_looked_at_by_itself),
     cmocka_unit_test(damping_that_couples_modes_is_not_left_out),
     cmocka_unit_test(a_rigid_motion_hidden_by_rounding_is_no_mode),
     cmocka_unit_test(modes_that_rounding_exchanges_share_it),
+    cmocka_unit_test(exact_bases_need_few_counts),
 };
 
 TEST_MODULE(estimate_rounding, tests, NULL, NULL)

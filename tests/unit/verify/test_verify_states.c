@@ -1,12 +1,16 @@
 #include "testing.h"
 
+#include "base/alloc.h"
 #include "project.h"
 
 #include <ritz/verify.h>
 
+#include <float.h>
 #include <stdio.h>
 
 static const ritz_verify_request none = RITZ_VERIFY_NONE;
+
+RITZ_PAIR_OF(ritz_state_space);
 
 /* y = gain / (s + 1) u, and of `rigid` so much / s^2 beside, all diagonal. */
 static void first_order(double gain, double rigid, ritz_state_space *out)
@@ -79,6 +83,58 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **)
         assert_int_equal(
             ritz_measure_holds(ritz_measures_find(&found, "h-infinity-bound")),
             table[k].holds);
+    }
+}
+
+/*
+ * Poles at -0.01 +- 789 i beside entries of 3e4, behind a rotation of states:
+ * the resonance is known to eps |A| over 0.01, and an error of no more than
+ * that is none; one of a hundred times as much is.
+ */
+static void a_bound_is_not_missed_by_rounding_beside_a_slow_pole(void **)
+{
+    const double slow = 0.01, w = 789.0, fast = 3e4;
+    const double cosine = 0.6, sine = 0.8;
+    /* of the peak 1 / slow: A is about sqrt(2) fast */
+    const double rounding = DBL_EPSILON * fast / slow / slow;
+    static const struct {
+        double part;
+        bool holds;
+    } table[] = {{0.1, true}, {100.0, false}};
+
+    for (size_t k = 0; k < sizeof table / sizeof *table; k++) {
+        ritz_state_space_pair of = {0};
+        RITZ_OWN(ritz_measures) found = {0};
+
+        for (int which = 0; which < 2; which++) {
+            const double d = which * slow * table[k].part * rounding * slow;
+            const double S[3][3] = {
+                {-slow - d, w, 0.0}, {-w, -slow - d, 0.0}, {0.0, 0.0, -fast}};
+            const double Q[3][3] = {
+                {1.0, 0.0, 0.0}, {0.0, cosine, sine}, {0.0, -sine, cosine}};
+            ritz_io io = {0};
+
+            assert_ok(ritz_io_new(0, 1, 1, &io));
+            snprintf(io.input[0], sizeof io.input[0], "u");
+            snprintf(io.output[0], sizeof io.output[0], "y");
+            assert_ok(ritz_state_space_new(3, &io, &of[which]));
+            ritz_io_free(&io);
+            for (int64_t j = 0; j < 3; j++)
+                for (int64_t i = 0; i < 3; i++)
+                    for (int64_t e = 0; e < 9; e++)
+                        ritz_dense_col(&of[which].A, j)[i] +=
+                            Q[i][e / 3] * S[e / 3][e % 3] * Q[j][e % 3];
+            of[which].B.val[0] = of[which].C.val[0] = 1.0;
+        }
+        assert_ok(ritz_measures_add(&of[1].estimates, "h-infinity-bound", 1e-14,
+                                    nan(""), NULL));
+        assert_ok(verify_states(&of[0], &of[1], &none, &found));
+        if (ritz_measure_holds(ritz_measures_find(
+                &found, "h-infinity-bound")) != table[k].holds)
+            fail_msg("%g: %g where %g is asked", table[k].part,
+                     value(&found, "h-infinity"),
+                     ritz_measures_find(&found, "h-infinity-bound")->limit);
+        ritz_state_space_pair_free(&of);
     }
 }
 
@@ -207,6 +263,7 @@ static void every_allocation_may_fail(void **)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_tenth_missing_is_a_tenth_by_every_measure),
     cmocka_unit_test(the_error_is_held_to_the_bound_that_came_with_it),
+    cmocka_unit_test(a_bound_is_not_missed_by_rounding_beside_a_slow_pole),
     cmocka_unit_test(outputs_are_divided_by_their_limits),
     cmocka_unit_test(rigid_motions_of_both_are_left_out_of_norms),
     cmocka_unit_test(what_reaches_an_output_at_once_has_no_h2_norm),

@@ -1,0 +1,239 @@
+/* Bounds of responses: each input and output by itself, and why. */
+#include "testing.h"
+
+#include "frame.h"
+#include "masses.h"
+#include "project.h"
+#include "spring_chain.h"
+
+#include <ritz/basis.h>
+#include <ritz/matrix.h>
+#include <ritz/verify.h>
+
+#include <math.h>
+#include <string.h>
+
+/* The bound, or estimate, of a response by a method with so many modes. */
+static void bound_of(const ritz_component *full, const ritz_method *method,
+                     ritz_dofs attached, int64_t modes,
+                     const ritz_estimate_request *asked, ritz_reduced *reduced,
+                     ritz_measure *out)
+{
+    ritz_request request = RITZ_REQUEST_NONE;
+    RITZ_OWN(ritz_basis) basis = {0};
+
+    request.component = full;
+    request.attached = attached;
+    request.modes = modes;
+    assert_ok(ritz_basis_make(method, &request, &basis));
+    assert_ok(ritz_reduce(full, &basis, reduced));
+    assert_ok(ritz_estimate(full, &basis, asked, reduced));
+    *out = *find_measure(&reduced->estimates, "response-relative-bound");
+}
+
+/* Outputs are rows of C times this, which reduction has taken over. */
+static void scale_output(int64_t i, double by, ritz_io *io)
+{
+    for (int64_t j = 0; j < io->C.ncol; j++)
+        ritz_dense_col(&io->C, j)[i] *= by;
+}
+
+/* What verify measures of one output alone. */
+static double error_of_output(const ritz_component *full,
+                              const ritz_reduced *reduced, int64_t i,
+                              const ritz_damping *damping, double to_hz)
+{
+    ritz_verify_request request = RITZ_VERIFY_NONE;
+    RITZ_OWN(ritz_measures) found = {0};
+    ritz_component one = *full; /* borrowed */
+    ritz_reduced other = *reduced;
+
+    request.band_hz[1] = to_hz;
+    request.damping = *damping;
+    /* 1e-30 of the other outputs is nothing beside that one */
+    for (int64_t k = 0; k < one.io.num_outputs; k++)
+        if (k != i) {
+            scale_output(k, 1e-30, &one.io);
+            scale_output(k, 1e-30, &other.io);
+        }
+    assert_ok(verify_reduced(&one, &other, &request, &found));
+    for (int64_t k = 0; k < one.io.num_outputs; k++)
+        if (k != i) {
+            scale_output(k, 1e30, &one.io);
+            scale_output(k, 1e30, &other.io);
+        }
+    return find_measure(&found, "response-relative")->value;
+}
+
+/* A clamped beam pushed at its end: deflection and rotation there, and the
+   deflection near the clamp, which is small. */
+static void open_beam(ritz_component *beam)
+{
+    int64_t in = 0, seen[3];
+
+    assert_ok(frame_component(12, 0.5, &frame_mcdaniel, true, false, 1, beam));
+    in = beam->num_dofs - 2;
+    seen[0] = in;
+    seen[1] = in + 1;
+    seen[2] = 1;
+    assert_ok(frame_io(beam, 1, &in, 3, seen));
+}
+
+/* The bound is of the worst output by itself: units of one change nothing. */
+static void units_do_not_change_a_bound(void **)
+{
+    int64_t attached[] = {0, 1, 2};
+    ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
+    double bound[3];
+
+    assert_ok(ritz_damping_parse("modal 0.01", &request.damping));
+    for (int k = 0; k < 3; k++) {
+        RITZ_OWN(ritz_component) beam = {0};
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        ritz_measure found = {0};
+
+        open_beam(&beam);
+        scale_output(1, k == 1 ? 1e3 : 1.0, &beam.io);
+        scale_output(2, k == 2 ? 1e6 : 1.0, &beam.io);
+        bound_of(&beam, &ritz_method_craig_bampton, (ritz_dofs){3, attached},
+                 12, &request, &reduced, &found);
+        bound[k] = found.value;
+    }
+    /* rounding of a sum of modes, and where intervals are halved */
+    assert_near(bound[1], bound[0], 1e-6 * bound[0]);
+    assert_near(bound[2], bound[0], 1e-6 * bound[0]);
+}
+
+/* No output's own error is above the bound, and the worst is within ten. */
+static void a_bound_is_of_the_worst_channel(void **)
+{
+    int64_t attached[] = {0, 1, 2};
+    ritz_estimate_request request = {.band_hz = {0.0, 0.2}};
+    RITZ_OWN(ritz_component) beam = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    ritz_measure found = {0};
+    double worst = 0.0;
+
+    assert_ok(ritz_damping_parse("modal 0.01", &request.damping));
+    open_beam(&beam);
+    bound_of(&beam, &ritz_method_craig_bampton, (ritz_dofs){3, attached}, 12,
+             &request, &reduced, &found);
+    for (int64_t i = 0; i < 3; i++)
+        worst = fmax(
+            worst, error_of_output(&beam, &reduced, i, &request.damping, 0.2));
+    if (!(found.value >= worst) || !(found.value <= 10.0 * worst))
+        fail_msg("bound %.3e of %.3e", found.value, worst);
+}
+
+/*
+ * Input and output at both ends of a long chain: residuals that are large by
+ * themselves hardly couple. No mode is missing.
+ */
+static void far_channels_are_bounded_within_ten(void **)
+{
+    enum { MASSES = 40 };
+    static const char *const damping[] = {"modal 0.01", "modal 0.1",
+                                          "rayleigh 0.1 1e-4"};
+    int64_t attached[] = {MASSES - 1};
+    const ritz_span span = {.modes = 4};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
+    ritz_estimate_request request = {0};
+
+    assert_ok(spring_chain(MASSES, false, &chain));
+    assert_ok(ritz_io_new(MASSES, 1, 1, &chain.io));
+    chain.io.B.val[MASSES - 1] = 1.0;
+    chain.io.C.val[1] = 1.0;
+    assert_ok(ritz_eigen_sparse(&chain.K, &chain.M, &span, &full));
+    request.band_hz[1] = 1.01 * ritz_eigen_hertz(full.lambda[3]);
+    for (size_t k = 0; k < sizeof damping / sizeof *damping; k++) {
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        ritz_measure found = {0};
+        double error = 0.0;
+
+        assert_ok(ritz_damping_parse(damping[k], &request.damping));
+        bound_of(&chain, &ritz_method_macneal_rubin, (ritz_dofs){1, attached},
+                 10, &request, &reduced, &found);
+        error = error_of_output(&chain, &reduced, 0, &request.damping,
+                                request.band_hz[1]);
+        if (!(found.value >= error) || !(found.value <= 10.0 * error))
+            fail_msg("%s: bound %.3e of %.3e, %s", damping[k], found.value,
+                     error, found.where);
+    }
+}
+
+/* Two bodies that do not touch: no response between them is no error. */
+static void what_is_not_coupled_is_not_compared_with_itself(void **)
+{
+    enum { N = 4 };
+    const double lambda[N] = {1.0, 2.0, 30.0, 40.0};
+    ritz_estimate_request request = {.band_hz = {0.0, 0.3}};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    const ritz_measure *found = NULL;
+
+    assert_ok(ritz_damping_parse("modal 0.05", &request.damping));
+    assert_ok(masses_apart(N, lambda, NULL, &body));
+    assert_ok(ritz_io_new(N, 2, 2, &body.io));
+    for (int64_t i = 0; i < N; i++) { /* 0 and 2, 1 and 3 */
+        ritz_dense_col(&body.io.B, i % 2)[i] = 1.0;
+        ritz_dense_col(&body.io.C, i)[i % 2] = 1.0;
+    }
+    assert_ok(ritz_basis_new(N, 2, &basis));
+    for (int64_t j = 0; j < 2; j++)
+        ritz_dense_col(&basis.T, j)[j] = 1.0;
+    assert_ok(ritz_reduce(&body, &basis, &reduced));
+    assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
+    found = find_measure(&reduced.estimates, "response-relative-bound");
+    /* 1 / (30 - w^2) of 1 / 0.1: 0.004 */
+    assert_true(found->value > 1e-3 && found->value < 1e-2);
+}
+
+/* A bound that is far above the error says why. */
+static void causes_are_named(void **)
+{
+    enum { N = 3 };
+    const double lambda[N] = {1.0, 1.7, 9.0};
+    ritz_estimate_request request = {.band_hz = {0.0, 0.25}};
+    RITZ_OWN(ritz_component) body = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    const ritz_measure *found = NULL;
+
+    /* the second mode is missing, and hardly driven */
+    assert_ok(ritz_damping_parse("modal 0.01", &request.damping));
+    assert_ok(masses_apart(N, lambda, NULL, &body));
+    assert_ok(ritz_io_new(N, 1, 1, &body.io));
+    for (int64_t i = 0; i < N; i++)
+        body.io.B.val[i] = body.io.C.val[i] = i == 1 ? 1e-3 : 1.0;
+    assert_ok(ritz_basis_new(N, 2, &basis));
+    ritz_dense_col(&basis.T, 0)[0] = 1.0;
+    ritz_dense_col(&basis.T, 1)[2] = 1.0;
+    assert_ok(ritz_reduce(&body, &basis, &reduced));
+    assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
+    found = find_measure(&reduced.estimates, "response-relative-bound");
+    if (found->value > 1e-3 && !strstr(found->where, "missing modes"))
+        fail_msg("%.3e at %s", found->value, found->where);
+    /* exact modes, and all of them: what is left is rounding */
+    ritz_basis_free(&basis);
+    ritz_reduced_free(&reduced);
+    assert_ok(ritz_basis_new(N, N, &basis));
+    for (int64_t j = 0; j < N; j++)
+        ritz_dense_col(&basis.T, j)[j] = 1.0;
+    assert_ok(ritz_reduce(&body, &basis, &reduced));
+    assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
+    found = find_measure(&reduced.estimates, "response-relative-bound");
+    assert_true(found->value < 1e-11);
+    assert_non_null(strstr(found->where, "rounding"));
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(units_do_not_change_a_bound),
+    cmocka_unit_test(a_bound_is_of_the_worst_channel),
+    cmocka_unit_test(far_channels_are_bounded_within_ten),
+    cmocka_unit_test(what_is_not_coupled_is_not_compared_with_itself),
+    cmocka_unit_test(causes_are_named),
+};
+
+TEST_MODULE(estimate_channels, tests, NULL, NULL)
