@@ -1,19 +1,50 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
 #include "print/print.h"
 
+/* End the program if options exclude each other. */
+static void check_options(const cli_program *program,
+                          const poles_options *given)
+{
+    if (given->modes > 0 && given->up_to_hz > 0.0)
+        cli_refuse(program, "--modes and --up-to-hz are two ways to say the "
+                            "same");
+    if ((given->scan.count > 0) + (given->tune.count > 0) + given->norm > 1)
+        cli_refuse(program, "--scan, --tune and --norm: one of the three");
+    if (given->places > 0 && given->tune.count == 0)
+        cli_refuse(program, "--place chooses among what --tune names");
+    if (given->among > 0 && given->places == 0)
+        cli_refuse(program, "--among is of --place");
+    if (given->low_pass && given->tune.count == 0 && !given->norm)
+        cli_refuse(program, "--low-pass is of --norm and --tune");
+}
+
 int main(int argc, char **argv)
 {
     poles_options given = {.mode = 1};
     const cli_option options[] = {
         CLI_INT("modes", &given.modes, "N", 1, 1e6,
-                "list the lowest N [all, of a component 20]"),
+                "list the lowest N [all, of a component 20]; with --tune, "
+                "modes that a component is tuned with at first [20]"),
         CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
                  "list those with |s|/2pi up to this instead"),
         MODEL_OPTIONS(&given.model),
-        CLI_TEXT("scan", &given.scan, "NAME[,NAME]=FROM:TO:STEP",
-                 "vary the constant c of these dampers, all alike"),
+        CLI_LIST(
+            "scan", &given.scan, "NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]",
+            "vary c of these dampers, all alike, or k behind '*', or both"),
         CLI_INT("mode", &given.mode, "K", 1, 1e6,
                 "mode that a scan follows, by its number at FROM"),
+        CLI_FLAG("norm", &given.norm,
+                 "instead of poles the H2 norm, from noise at the inputs to "
+                 "the outputs over their limits"),
+        CLI_LIST("tune", &given.tune, "NAME[,NAME]=FROM:TO[*FROM:TO]",
+                 "find c of these dampers, all alike, and k behind '*', for "
+                 "the least H2 norm; 'each=...': every damper by itself"),
+        CLI_INT("place", &given.places, "N", 1, 1e3,
+                "take only N of what --tune names: those that do most"),
+        CLI_INT("among", &given.among, "N", 1, 1e6,
+                "combine the N best alone [five more than places]"),
+        CLI_TEXT("low-pass", &given.low_pass, "HZ[:ORDER]",
+                 "noise through a Butterworth filter [white; order 6]"),
         CLI_FLAG("tsv", &given.tsv,
                  "print columns separated by tabs, damping ratios not in "
                  "percent"),
@@ -24,8 +55,8 @@ int main(int argc, char **argv)
         .operands = {{"FILE",
                       "a component, reduced component, system or state space",
                       false}},
-        .summary = "Damped poles: frequency |s|/2pi and damping ratio of each, "
-                   "and the best c of dampers.",
+        .summary = "Damped poles: frequency |s|/2pi and damping ratio of each; "
+                   "the H2 norm; the best c, k and places of dampers.",
         .example = "ritz-poles chain.h5 --damper top=150*-200 --scan "
                    "top,middle=0:1000:10 --mode 2",
         .output = "write the text there too",
@@ -35,8 +66,6 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    if (given.modes > 0 && given.up_to_hz > 0.0)
-        cli_refuse(&program, "--modes and --up-to-hz are two ways to say the "
-                             "same");
+    check_options(&program, &given);
     return cli_finish(&run, poles_report(&run, &given));
 }

@@ -50,17 +50,25 @@ ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
 /** Damping ratio -Re s / |s|: 1 of real poles that decay. */
 double ritz_spectrum_ratio(double _Complex s);
 
-/* One value of c for some dampers at once, through a range. */
-typedef struct ritz_scan_request {
+/* One value, of c or of k, for some dampers at once, through a range. */
+typedef struct ritz_scan_axis {
     int64_t count;
     const int64_t *damper; /* indices of those that take the value */
-    double from, to, step; /* 0 <= from < to */
-    int64_t mode;          /* which oscillating pole at `from`, 0 the lowest */
+    bool of_k;             /* their k, not their c */
+    double from, to, step; /* from < to, of c not negative */
+} ritz_scan_axis;
+
+/* Every value of each axis with every one of the others. */
+typedef struct ritz_scan_request {
+    int64_t count;
+    const ritz_scan_axis *axis;
+    int64_t mode; /* which oscillating pole at the first point, 0 the lowest */
 } ritz_scan_request;
 
 typedef struct ritz_scan {
-    int64_t count;
-    double *c;
+    int64_t count, num_axes;
+    int64_t *size;      /* num_axes, points along each */
+    double *value;      /* num_axes x count; the last axis is the fastest */
     double _Complex *s; /* of the mode that is followed */
     int64_t best;       /* where its damping ratio is largest */
 } ritz_scan;
@@ -68,14 +76,16 @@ typedef struct ritz_scan {
 /**
  * Follow one mode while dampers change. The pole nearest to where the last two
  * steps point is taken for the same mode, as frequencies swap places: the step
- * must be small against the way between poles.
+ * must be small against the way between poles. Where an axis begins anew, the
+ * step is that of the next slower one.
  *
  * A large component is scanned in the space of some modes and static
  * responses: at what the scan finds, ask ritz_spectrum_of.
  *
  * @param[in] model  no state space; K and D as they stand, with what they hold
  *                   of its dampers
- * @return RITZ_ERR_ARGUMENT if the range is none, or has no such mode
+ * @return RITZ_ERR_ARGUMENT if a range is none, has no such mode, or a value is
+ *         scanned twice
  */
 ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
                          ritz_scan *out);

@@ -18,6 +18,7 @@
 #include <ritz/response.h>
 #include <ritz/scene.h>
 #include <ritz/simulate.h>
+#include <ritz/tuning.h>
 #include <ritz/verify.h>
 
 #endif

@@ -574,6 +574,30 @@
 #define RITZ_ZERO_SINGULAR 1e-10
 /* Relative tolerance of H-infinity norms. */
 #define RITZ_NORM_TOLERANCE 1e-8
+
+/* Dampers tuned for the least H2 norm */
+
+/* Twice as many modes change a norm by less than this, relative: it is known to
+   six digits, as a reduced model that knows its dampers has it
+   [ChuMilman1992]. */
+#define RITZ_H2_SETTLED 1e-6
+/* The norm of the full model may differ by this part from that of the model
+   that was tuned: near a minimum values are then known to its root, 1 %. */
+#define RITZ_TUNED_FULL 1e-4
+/* A search ends where a step changes the norm by this part, or each place in
+   its range by this: a norm is flat at its minimum. */
+#define RITZ_TUNED_NORM  1e-14
+#define RITZ_TUNED_PLACE 1e-9
+/* Places in a range of c are even in the logarithm of c plus 1/1000 of the
+   range: ln 1000, three decades. */
+#define RITZ_TUNED_DECADES 6.907755278982137
+/* d norm / d x over the norm, x from 0 to 1 over a range, above which a search
+   has not ended at a minimum. */
+#define RITZ_TUNED_SLOPE 1e-4
+/* Norms of two searches closer than this, relative, are one minimum. */
+#define RITZ_TUNED_SAME 1e-6
+/* Starts of searches are at least so far apart, of the width of a range. */
+#define RITZ_TUNED_STARTS 0.25
 /*
  * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
  * moves the response by some n eps |G|. The factor is a choice: no error of

@@ -260,6 +260,13 @@ ritz_status ritz_spectrum_large(const ritz_component *component,
                                 const ritz_damping *damping,
                                 const ritz_span *span, ritz_spectrum *out);
 
+/**
+ * The space in which they are sought, modes and static responses to dampers, as
+ * a model of its own with its dampers: T is kept.
+ */
+ritz_status ritz_spectrum_space(const ritz_component *component,
+                                const ritz_span *span, ritz_reduced *out);
+
 /** K, M, D and K4 of a component as dense ones, and nothing else of it. */
 ritz_status ritz_whole_new(const ritz_component *component, ritz_reduced *out);
 

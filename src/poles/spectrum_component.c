@@ -181,93 +181,6 @@ static ritz_status measure_residual(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* One mode followed while dampers change. */
-static const int64_t most_points = 100000;
-
-static ritz_status check_range(const ritz_scan_request *request, int64_t *count)
-{
-    double steps = (request->to - request->from) / request->step;
-
-    RITZ_REFUSE_IF(!(request->from >= 0.0) || !(request->to > request->from) ||
-                       !(request->step > 0.0) || !isfinite(request->to),
-                   RITZ_ERR_ARGUMENT,
-                   "a scan from %g to %g in steps of %g has no range",
-                   request->from, request->to, request->step);
-    RITZ_REFUSE_IF(!(steps < (double)most_points), RITZ_ERR_ARGUMENT,
-                   "%.0f steps of a scan are too many", steps);
-    /* an end that rounding puts a hair beyond the last step belongs to it */
-    *count =
-        (int64_t)floor(steps * (1.0 + RITZ_RANGE_ROUNDING) + RITZ_RANGE_STEPS) +
-        1;
-    return RITZ_OK;
-}
-
-/* The mode-th oscillating pole. */
-static ritz_status begin_scan(const ritz_spectrum *spectrum, int64_t mode,
-                              double _Complex *out)
-{
-    int64_t seen = 0;
-    bool found = false;
-
-    for (int64_t j = 0; j < spectrum->count && !found; j++) {
-        if (!(cimag(spectrum->s[j]) > 0.0))
-            continue;
-        found = seen == mode;
-        *out = spectrum->s[j];
-        seen++;
-    }
-    RITZ_REFUSE_IF(!found, RITZ_ERR_ARGUMENT,
-                   "there is no mode %" PRId64 ", %" PRId64
-                   " poles oscillate where the scan begins",
-                   mode + 1, seen);
-    return RITZ_OK;
-}
-
-/* Of a dense model; K, D and the dampers are copied. */
-static ritz_status scan_dense(ritz_model model,
-                              const ritz_scan_request *request, ritz_scan *out)
-{
-    RITZ_OWN(ritz_scan) scan = {0};
-    RITZ_OWN(ritz_spectrum) spectrum = {0};
-    RITZ_OWN(ritz_dampers) dampers = {0};
-    RITZ_OWN(ritz_dense) K = {0}, D = {0};
-
-    RITZ_CHECK(check_range(request, &scan.count));
-    RITZ_CHECK(ritz_dense_copy(model.dense.K, &K));
-    if (model.dense.D && model.dense.D->val)
-        RITZ_CHECK(ritz_dense_copy(model.dense.D, &D));
-    RITZ_CHECK(ritz_dampers_copy(model.dampers, &dampers));
-    model.dense.K = &K;
-    model.dense.D = &D;
-    RITZ_CHECK_NEW(scan.c, scan.count);
-    RITZ_CHECK_NEW(scan.s, scan.count);
-    for (int64_t k = 0; k < scan.count; k++) {
-        scan.c[k] = request->from + (double)k * request->step;
-        for (int64_t j = 0; j < request->count; j++)
-            dampers.c[request->damper[j]] = scan.c[k];
-        RITZ_CHECK(ritz_dampers_install(&dampers, &K, &D));
-        RITZ_CHECK(ritz_spectrum_dense(&model.dense, model.damping, &spectrum));
-        if (k == 0)
-            RITZ_CHECK(begin_scan(&spectrum, request->mode, &scan.s[0]));
-        else
-            scan.s[k] = ritz_nearest_pole(
-                spectrum.count, spectrum.s, false,
-                k == 1 ? scan.s[0] : 2.0 * scan.s[k - 1] - scan.s[k - 2]);
-        if (ritz_spectrum_ratio(scan.s[k]) >
-            ritz_spectrum_ratio(scan.s[scan.best]))
-            scan.best = k;
-        ritz_spectrum_free(&spectrum);
-    }
-    RITZ_MOVE(*out, scan);
-    return RITZ_OK;
-}
-
-void ritz_scan_free(ritz_scan *scan)
-{
-    RITZ_FREE(scan->c, scan->s);
-    *scan = (ritz_scan){0};
-}
-
 /*
  * The space in which damped poles of a large component are sought. Undamped
  * modes alone mislead where dampers are discrete: the motion that a truncated
@@ -278,9 +191,6 @@ void ritz_scan_free(ritz_scan *scan)
  *
  *     A = K - sigma M, sigma < 0,   A X = B,   T = [Phi X], T'AT = I
  */
-
-/* Undamped modes to scan with, at least; and for each mode before the one. */
-enum { LEAST_MODES = 20, EACH_MODE = 2 };
 
 /* T = [Phi X], its columns named. */
 static ritz_status span_space(const ritz_component *component,
@@ -314,8 +224,7 @@ static ritz_status span_space(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* That space as a model of its own, with its dampers projected: T is kept. */
-static ritz_status reduce_space(const ritz_component *component,
+ritz_status ritz_spectrum_space(const ritz_component *component,
                                 const ritz_span *span, ritz_reduced *out)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -335,28 +244,6 @@ ritz_status ritz_whole_new(const ritz_component *component, ritz_reduced *out)
     if (component->K4.colptr)
         RITZ_CHECK(ritz_sparse_dense(&component->K4, &out->K4));
     return RITZ_OK;
-}
-
-ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
-                         ritz_scan *out)
-{
-    const ritz_component *c = model.component;
-    RITZ_OWN(ritz_reduced) small = {0};
-    ritz_span span = {.modes = EACH_MODE * (request->mode + 1) + LEAST_MODES};
-    ritz_model scanned = model;
-
-    RITZ_REFUSE_IF(model.kind == RITZ_MODEL_STATES || !model.dampers,
-                   RITZ_ERR_ARGUMENT, "the model has no dampers to scan");
-    if (model.kind == RITZ_MODEL_COMPONENT) {
-        if (c->num_dofs > RITZ_WHOLE_DOFS)
-            RITZ_CHECK(reduce_space(c, &span, &small));
-        else
-            RITZ_CHECK(ritz_whole_new(c, &small));
-        scanned = ritz_model_of_reduced(&small, model.damping);
-        if (c->num_dofs <= RITZ_WHOLE_DOFS)
-            scanned.dampers = &c->dampers;
-    }
-    return scan_dense(scanned, request, out);
 }
 
 /* Beyond what is wanted, of modes and of frequencies. */
@@ -483,7 +370,7 @@ static ritz_status solve_projected(const ritz_component *component,
     const ritz_second_order model = ritz_model_of_reduced(&small, NULL).dense;
     RITZ_OWN(ritz_zldl) *Z = NULL;
 
-    RITZ_CHECK(reduce_space(component, &wide, &small));
+    RITZ_CHECK(ritz_spectrum_space(component, &wide, &small));
     RITZ_CHECK(ritz_spectrum_dense(&model, NULL, out));
     keep_first(span, out);
     RITZ_CHECK(expand_shapes(&small.T, &out->re));

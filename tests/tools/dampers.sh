@@ -77,10 +77,71 @@ holds "  with poles" 'abs(j["poles"][1]["zeta"] - 0.0238032) < 6e-8
 json 0 ritz-poles $full --scan low,middle,high=200:300:10 --mode 2
 holds "  with the best c" 'j["best"]["c"] == 260
     and abs(j["best"]["zeta"] - 0.02793) < 6e-6 and len(j["scan"]) == 11'
+json 0 ritz-poles $full --scan 'low=0:20:10*-200:0:100' --scan middle=9:10:1
+holds "  over c and k of one, and c of another" '
+    j["axes"] == ["c(low)", "k(low)", "c(middle)"] and len(j["scan"]) == 18
+    and j["scan"][7]["values"] == [10, -200, 10]
+    and j["best"] == max(j["scan"], key=lambda p: p["zeta"])'
+json 0 ritz-poles $full --scan 'low=*-200:0:100'
+holds "  and over k alone" 'j["axes"] == ["k"]
+    and [p["k"] for p in j["scan"]] == [-200, -100, 0]'
+expect 0 "the best k, -200, is at an end of the range" \
+    ritz-poles $full --scan 'low=*-200:0:100'
+expect 1 "is not of the form NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]" \
+    ritz-poles $full --scan 'low=0:10:1*3'
+expect 1 "c of damper 'low' is scanned twice" \
+    ritz-poles $full --scan low=0:10:1 --scan middle,low=0:10:1
 expect 0 "mode	hertz	rad_per_s	zeta" ritz-poles $full --tsv
 ritz-poles $full --modes 2 -q --tsv -o two.tsv
 expect 0 "3 two.tsv" wc -l two.tsv
 expect 0 "rayleigh 0.001 0.002" ritz-poles $full --damping "rayleigh 0.001 0.002"
+
+# the H2 norm, tuning and places
+expect 0 "white noise at the inputs" ritz-poles $full --norm
+expect 0 "H2 norm 0.1192920444 (dense, SLICOT SB03OD)" ritz-poles $full --norm
+json 0 ritz-poles $full --norm --low-pass 2:6
+holds "  of filtered noise" 'abs(j["h2"] - 0.1165942546) < 5e-11
+    and j["low_pass"] == 2 and j["order"] == 6 and j["change"] == 0'
+ritz-poles $full --norm --low-pass 2 -q --tsv -o norm.tsv
+expect 0 "0.1165942546" cat norm.tsv
+json 0 ritz-poles $full --tune each=0:4000 --low-pass 2
+holds "  tuned" 'abs(j["h2"] - 0.0708066201) < 1e-10
+    and [t["damper"] for t in j["tuned"]] == ["low", "middle", "high"]
+    and abs(j["tuned"][0]["c"] - 688.9067) < 1e-3
+    and j["tuned"][0]["k"] == -200 and j["modes"] == 0
+    and abs(j["before"] - 0.1165942546) < 5e-11'
+expect 0 "for other tools: --damper low=786.8655*-200 --damper middle=786.8655" \
+    ritz-poles $full --tune low,middle,high=0:4000 --low-pass 2
+expect 0 "the best k of 'low', -400, is at an end of its range" \
+    ritz-poles $full --tune 'low=0:4000*-400:0' --low-pass 2
+expect 0 "damper	c	k" ritz-poles $full --tune low=0:400 --low-pass 2 --tsv
+json 0 ritz-poles $full --tune each=0:4000*0:0 --place 1 --low-pass 2 \
+    --damping "modal 0.002"
+holds "  placed" 'len(j["alone"]) == 3 and len(j["tuned"]) == 1
+    and j["h2"] == min(a["h2"] for a in j["alone"]) < j["none"]
+    and j["combinations"] == 3 and len(j["next"]) == 2'
+expect 0 "H2 norm without any" ritz-poles $full --tune each=0:4000 --place 2 \
+    --among 2 --low-pass 2 --damping "modal 0.002"
+expect 1 "--tune: 'low=5' is not of the form NAME[,NAME]=FROM:TO[*FROM:TO]" \
+    ritz-poles $full --tune low=5
+expect 1 "c of damper 'low' cannot be from 9 to 0" ritz-poles $full \
+    --tune low=9:0
+expect 1 "damper 'low' is tuned twice" ritz-poles $full --tune low=0:9 \
+    --tune low=0:8
+expect 1 "there is no damper 'loww', is 'low' meant?" ritz-poles $full \
+    --tune loww=0:9
+expect 1 "--low-pass: 'x:2' is not of the form HZ[:ORDER]" ritz-poles $full \
+    --norm --low-pass x:2
+expect 1 "a low-pass of 2 Hz and order 99 is none" ritz-poles $full --norm \
+    --low-pass 2:99
+expect 1 "the H2 norm is infinite: of 60 poles 60 are not left" \
+    ritz-poles $full --norm --damper low=0 --damper middle=0 --damper high=0
+expect 1 "2 places of 1 candidates cannot be taken" ritz-poles $full \
+    --tune low=0:9 --place 2
+expect 2 "one of the three" ritz-poles $full --norm --tune low=0:9
+expect 2 "--place chooses among what --tune names" ritz-poles $full --place 1
+expect 2 "--among is of --place" ritz-poles $full --tune low=0:9 --among 1
+expect 2 "--low-pass is of --norm and --tune" ritz-poles $full --low-pass 2
 
 # a fit says what it came to: two points are met, three are not
 expect 0 "a = 0.101546, b = 0.000610898" \

@@ -81,95 +81,6 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
     warn_poles(run, spectrum);
 }
 
-/* A table, and the best constant. */
-static void say_scan(cli_run *run, const ritz_scan *scan, bool tsv)
-{
-    cli_say(run, tsv ? "%s\t%s\t%s" : "%13s %13s %12s", "c",
-            tsv ? "hertz" : "|s|/2pi Hz", tsv ? "zeta" : "zeta %");
-    SINK_ITEMS(run, "scan", k, scan->count) {
-        double hertz = hertz_of(scan->s[k]);
-        double zeta = ritz_spectrum_ratio(scan->s[k]);
-
-        set_pole(run, scan->s[k]);
-        if (tsv)
-            sink_say(run, "c", "%.12g\t%.12g\t%.12g", scan->c[k], hertz, zeta);
-        else
-            sink_say(run, "c", "%13g %13.7g %12.6g%s", scan->c[k], hertz,
-                     100.0 * zeta, k == scan->best ? "  best" : "");
-    }
-    json_object_set(run->report, "best",
-                    json_array_get(json_object_get(run->report, "scan"),
-                                   (size_t)scan->best));
-    if (scan->best == 0 || scan->best == scan->count - 1)
-        cli_warn(run, "the best c, %g, is at an end of the range",
-                 scan->c[scan->best]);
-}
-
-/* The names before '=', as indices. */
-static ritz_status take_names(char *names, const ritz_dampers *dampers,
-                              int64_t *count, int64_t *out)
-{
-    char *rest = NULL;
-
-    for (char *at = strtok_r(names, ",", &rest); at;
-         at = strtok_r(NULL, ",", &rest)) {
-        out[*count] = ritz_dampers_find(dampers, at);
-        if (out[(*count)++] < 0)
-            return RITZ_ERR_ARGUMENT;
-    }
-    return RITZ_OK;
-}
-
-/* "FROM:TO:STEP". */
-static bool take_range(char *text, ritz_scan_request *request)
-{
-    char *rest = NULL;
-    const char *from = strtok_r(text, ":", &rest);
-    const char *to = strtok_r(NULL, ":", &rest);
-    const char *step = strtok_r(NULL, ":", &rest);
-
-    return from && to && step && !*rest &&
-           ritz_text_real(from, &request->from) &&
-           ritz_text_real(to, &request->to) &&
-           ritz_text_real(step, &request->step);
-}
-
-/* "NAME[,NAME]=FROM:TO:STEP"; @p damper is to be freed. */
-static ritz_status parse_scan(const char *text, const ritz_dampers *dampers,
-                              ritz_scan_request *out, int64_t **damper)
-{
-    RITZ_OWN_ARRAY char *copy = NULL;
-    int64_t size = (int64_t)strlen(text) + 1;
-    char *equals = NULL;
-
-    RITZ_CHECK_COPY(copy, text, size);
-    RITZ_CHECK_NEW(*damper, size);
-    equals = strrchr(copy, '=');
-    if (equals)
-        *equals = '\0';
-    RITZ_REFUSE_IF(!equals || equals == copy || !take_range(equals + 1, out),
-                   RITZ_ERR_ARGUMENT,
-                   "'%s' is not of the form NAME[,NAME]=FROM:TO:STEP", text);
-    RITZ_CHECK(take_names(copy, dampers, &out->count, *damper));
-    out->damper = *damper;
-    return RITZ_OK;
-}
-
-static ritz_status scan_dampers(cli_run *run, model *m,
-                                const poles_options *given)
-{
-    ritz_scan_request request = {0};
-    RITZ_OWN_ARRAY int64_t *damper = NULL;
-    RITZ_OWN(ritz_scan) found = {0};
-
-    RITZ_CHECK_IN("--scan",
-                  parse_scan(given->scan, model_dampers(m), &request, &damper));
-    request.mode = given->mode - 1;
-    RITZ_CHECK(ritz_scan_of(model_reference(m), &request, &found));
-    say_scan(run, &found, given->tsv);
-    return RITZ_OK;
-}
-
 /* Those that are asked for, of what a small model gives. */
 static ritz_status find_poles(cli_run *run, const model *m,
                               const poles_options *given)
@@ -210,16 +121,19 @@ ritz_status poles_report(cli_run *run, const poles_options *given)
 
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_REFUSE_IF(
-        m.kind == MODEL_STATES && (given->model.damping || given->scan ||
-                                   given->model.damper.count > 0),
+        m.kind == MODEL_STATES &&
+            (given->model.damping || given->scan.count > 0 ||
+             given->tune.count > 0 || given->model.damper.count > 0),
         RITZ_ERR_ARGUMENT,
-        "'%s' is a state space, damped as it is: --damping, --damper "
-        "and --scan are not for it",
+        "'%s' is a state space, damped as it is: --damping, --damper, --scan "
+        "and --tune are not for it",
         path);
     RITZ_CHECK(model_settle(&m, path, &given->model));
     if (!given->tsv)
         say_damping(run, &m);
-    RITZ_CHECK_IN(path, given->scan ? scan_dampers(run, &m, given)
-                                    : find_poles(run, &m, given));
+    RITZ_CHECK_IN(path, given->scan.count > 0   ? dampers_scan(run, &m, given)
+                        : given->tune.count > 0 ? dampers_tune(run, &m, given)
+                        : given->norm           ? dampers_norm(run, &m, given)
+                                                : find_poles(run, &m, given));
     return run->output ? cli_table_save(&run->said, run->output) : RITZ_OK;
 }

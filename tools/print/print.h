@@ -148,13 +148,25 @@ ritz_status import_run(cli_run *run, import_options *given);
 typedef struct poles_options {
     int64_t modes, mode; /* the lowest, 0: all; the one that a scan follows */
     double up_to_hz;
-    const char *scan; /* "NAME[,NAME]=FROM:TO:STEP" */
+    cli_list scan; /* "NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]" */
+    cli_list tune; /* "NAME[,NAME]=FROM:TO[*FROM:TO]" */
+    int64_t places, among;
+    const char *low_pass; /* "HZ[:ORDER]" */
     model_options model;
-    bool tsv;
+    bool norm, tsv;
 } poles_options;
 
-/** Poles of a model, or one of them through a range of dampers. */
+/** Poles of a model, or what is made of its dampers. */
 ritz_status poles_report(cli_run *run, const poles_options *given);
+
+/** One pole through ranges of c and k, and where it is damped most. */
+ritz_status dampers_scan(cli_run *run, model *m, const poles_options *given);
+
+/** H2 norm. */
+ritz_status dampers_norm(cli_run *run, model *m, const poles_options *given);
+
+/** The c and k of the least H2 norm, and with --place in which places. */
+ritz_status dampers_tune(cli_run *run, model *m, const poles_options *given);
 
 /* --- ritz-rank ------------------------------------------------------------ */
 

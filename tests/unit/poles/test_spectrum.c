@@ -322,8 +322,9 @@ static void scans_find_the_published_optima(void **state)
     for (int64_t mode = 0; mode < 2; mode++)
         for (int k = 0; k < 3; k++) {
             double c = best[mode][k];
-            const ritz_scan_request request = {3,        all,  c - 60.0,
-                                               c + 60.0, 10.0, mode};
+            const ritz_scan_axis axis = {3,        all,      false,
+                                         c - 60.0, c + 60.0, 10.0};
+            const ritz_scan_request request = {1, &axis, mode};
             RITZ_OWN(ritz_scan) scan = {0};
 
             assert_ok(
@@ -333,7 +334,7 @@ static void scans_find_the_published_optima(void **state)
                     : ritz_scan_of(ritz_model_of_reduced(&small[k - 1], NULL),
                                    &request, &scan));
             assert_int_equal(scan.count, 13);
-            assert_near(scan.c[scan.best], c, 0.0);
+            assert_near(scan.value[scan.best], c, 0.0);
             if (mode == 1)
                 assert_near(100.0 * ritz_spectrum_ratio(scan.s[scan.best]),
                             zeta[k], k < 2 ? 5.1e-4 : 5.1e-3);
@@ -347,7 +348,8 @@ static void scans_find_the_published_optima(void **state)
 static void a_mode_is_followed_past_poles_that_come_between(void **state)
 {
     static const int64_t all[] = {0, 1, 2};
-    const ritz_scan_request request = {3, all, 0.0, 150.0, 10.0, 3};
+    const ritz_scan_axis axis = {3, all, false, 0.0, 150.0, 10.0};
+    const ritz_scan_request request = {1, &axis, 3};
     RITZ_OWN(ritz_component) chain = {0};
     RITZ_OWN(ritz_scan) scan = {0};
 
@@ -367,26 +369,93 @@ static void bad_scans_are_refused_in_words(void **state)
 {
     static const int64_t all[] = {0, 1, 2};
     const struct {
-        ritz_scan_request request;
+        ritz_scan_axis axis;
+        int64_t mode;
         const char *words;
     } cases[] = {
-        {{3, all, 10.0, 10.0, 1.0, 0}, "a scan from 10 to 10 in steps of 1"},
-        {{3, all, -1.0, 10.0, 1.0, 0}, "a scan from -1 to 10"},
-        {{3, all, 0.0, 10.0, 0.0, 0}, "in steps of 0 has no range"},
-        {{3, all, 0.0, 1e9, 1.0, 0}, "1000000000 steps of a scan are too many"},
-        {{3, all, 0.0, 10.0, 1.0, 30}, "there is no mode 31, 30 poles"},
+        {{3, all, false, 10.0, 10.0, 1.0},
+         0,
+         "a scan from 10 to 10 in steps of 1"},
+        {{3, all, false, -1.0, 10.0, 1.0}, 0, "a scan from -1 to 10"},
+        {{3, all, false, 0.0, 10.0, 0.0}, 0, "in steps of 0 has no range"},
+        {{3, all, false, 0.0, 1e9, 1.0},
+         0,
+         "1000000000 steps of a scan are too many"},
+        {{3, all, true, 10.0, -10.0, 1.0}, 0, "a scan from 10 to -10"},
+        {{3, all, true, -HUGE_VAL, 10.0, 1.0}, 0, "a scan from -inf to 10"},
+        {{3, all, false, 0.0, 10.0, 1.0}, 30, "there is no mode 31, 30 poles"},
+    };
+    const ritz_scan_axis wide = {1, all, true, 0.0, 1e3, 1.0};
+    const ritz_scan_axis axes[] = {wide, {1, all, false, 0.0, 1e3, 1.0}, wide};
+    const ritz_scan_request many[] = {{2, axes, 0}, {3, axes, 0}, {0, axes, 0}};
+    static const char *const says[] = {
+        "1002001 points of a scan are too many",
+        "k of damper 'a' is scanned twice",
+        "a scan has no values to go through",
     };
     RITZ_OWN(ritz_component) chain = {0};
 
     (void)state;
     assert_ok(chain_component(30, &chain));
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const ritz_scan_request request = {1, &cases[k].axis, cases[k].mode};
         ritz_scan scan = {0};
 
         assert_fails(ritz_scan_of(ritz_model_of_component(&chain, NULL),
-                                  &cases[k].request, &scan),
+                                  &request, &scan),
                      RITZ_ERR_ARGUMENT, cases[k].words);
     }
+    for (size_t k = 0; k < sizeof many / sizeof *many; k++) {
+        ritz_scan scan = {0};
+
+        assert_fails(ritz_scan_of(ritz_model_of_component(&chain, NULL),
+                                  &many[k], &scan),
+                     RITZ_ERR_ARGUMENT, says[k]);
+    }
+}
+
+/* Each point of a grid has the pole that its values have by themselves; the
+   grid of two is longer than any line in it. */
+static void a_grid_of_c_and_k_follows_its_mode_to_every_point(void **state)
+{
+    static const int64_t all[] = {0, 1, 2};
+    const ritz_scan_axis axes[] = {{2, all, true, -800.0, 0.0, 100.0},
+                                   {1, all + 2, false, 0.0, 400.0, 50.0}};
+    const ritz_scan_request request = {2, axes, 1};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_scan) scan = {0};
+    double most = 0.0;
+
+    (void)state;
+    assert_ok(chain_component(20, &chain));
+    assert_ok(
+        ritz_scan_of(ritz_model_of_component(&chain, NULL), &request, &scan));
+    assert_int_equal(scan.num_axes, 2);
+    assert_int_equal(scan.size[0], 9);
+    assert_int_equal(scan.size[1], 9);
+    assert_int_equal(scan.count, 81);
+    for (int64_t k = 0; k < scan.count; k += 8) {
+        RITZ_OWN(ritz_component) one = {0};
+        RITZ_OWN(ritz_spectrum) s = {0};
+        const ritz_span ten = {.modes = 10};
+        double least = HUGE_VAL;
+        int64_t slow = k / 9, fast = k % 9;
+
+        assert_near(scan.value[2 * k], -800.0 + 100.0 * (double)slow, 0.0);
+        assert_near(scan.value[2 * k + 1], 50.0 * (double)fast, 0.0);
+        assert_ok(chain_component(20, &one));
+        one.dampers.k[0] = one.dampers.k[1] = scan.value[2 * k];
+        one.dampers.c[2] = scan.value[2 * k + 1];
+        assert_ok(ritz_component_install(&one));
+        assert_ok(
+            ritz_spectrum_of(ritz_model_of_component(&one, NULL), &ten, &s));
+        for (int64_t j = 0; j < s.count; j++)
+            least = fmin(least, cabs(s.s[j] - scan.s[k]));
+        assert_near(least, 0.0, 1e-11); /* eps of the largest |s|, 70, thrice */
+    }
+    for (int64_t k = 0; k < scan.count; k++)
+        most = fmax(most, ritz_spectrum_ratio(scan.s[k]));
+    assert_near(ritz_spectrum_ratio(scan.s[scan.best]), most, 0.0);
 }
 
 /* The same poles from 28 modes, static answers and inverse iteration as from
@@ -456,7 +525,9 @@ static void a_large_component_heeds_given_damping(void **state)
 static ritz_status scan_all(const ritz_component *chain)
 {
     static const int64_t one[] = {1};
-    const ritz_scan_request request = {1, one, 0.0, 20.0, 10.0, 0};
+    const ritz_scan_axis axes[] = {{1, one, false, 0.0, 20.0, 10.0},
+                                   {1, one, true, -20.0, 0.0, 20.0}};
+    const ritz_scan_request request = {2, axes, 0};
     const ritz_span two = {.modes = 2};
     ritz_status status = RITZ_OK;
     RITZ_OWN(ritz_scan) scan = {0};
@@ -533,6 +604,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_chain_has_its_published_poles),
     cmocka_unit_test(scans_find_the_published_optima),
     cmocka_unit_test(a_mode_is_followed_past_poles_that_come_between),
+    cmocka_unit_test(a_grid_of_c_and_k_follows_its_mode_to_every_point),
     cmocka_unit_test(bad_scans_are_refused_in_words),
     cmocka_unit_test(a_large_component_has_the_poles_of_its_dense_matrices),
     cmocka_unit_test(a_large_component_heeds_given_damping),
