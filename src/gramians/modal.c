@@ -271,16 +271,23 @@ ritz_status ritz_refuse_undamped(double omega, double zeta)
                      omega / (2.0 * RITZ_PI), zeta < 0.0 ? "negative" : "no");
 }
 
-/* Frequencies and ratios; without a coupling each ratio must be positive. */
+/*
+ * Frequencies and ratios; without a coupling each ratio must be positive. A
+ * damper that moves some modes moves others by rounding: that is no damping.
+ */
 static ritz_status put_ratios(const ritz_modal_model *modes, bool coupled,
                               ritz_modal *modal)
 {
+    double rounding =
+        coupled ? RITZ_NEGLIGIBLE * ritz_dense_max(&modes->Delta) : 0.0;
     int64_t r = modes->num_rigid;
 
     for (int64_t k = 0; k < modal->count; k++) {
+        double own = ritz_dense_col(&modes->Delta, r + k)[r + k];
+
         modal->omega[k] = sqrt(modes->lambda[r + k]);
-        modal->zeta[k] = ritz_dense_col(&modes->Delta, r + k)[r + k] /
-                         (2.0 * modal->omega[k]);
+        modal->zeta[k] =
+            fabs(own) > rounding ? own / (2.0 * modal->omega[k]) : 0.0;
         if (!coupled && !(modal->zeta[k] > 0.0))
             return ritz_refuse_undamped(modal->omega[k], modal->zeta[k]);
     }

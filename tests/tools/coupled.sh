@@ -152,6 +152,14 @@ holds '  keeps what damping joins, exact at all angles' 'j["joined"] > 30 and
     all(c["errors"]["frequency"] <= c["errors"]["frequency_allowed"] and
         c["errors"]["response"] < 1e-9
         for c in j["configurations"] if c["listed"])'
+sed '/^damping/d' caged.yaml >bare.yaml
+expect 1 'has no damping: every flexible mode needs a positive ratio' \
+    ritz-compare bare.yaml -o bare.h5
+sed 's/stiffness: 974, //' caged.yaml >drag.yaml
+json 0 ritz-compare drag.yaml -o drag.h5
+holds '  a bearing with a damper and no spring is no reason to refuse' 'all(
+    c["rigid"] == 7 and c["errors"]["response"] < 1e-9
+    for c in j["configurations"] if c["listed"])'
 sed 's/by: hankel/by: modal-cost/' caged.yaml >cost.yaml
 json 0 ritz-compare cost.yaml -o cost.h5
 holds '  costs are mode by mode, and a smaller system has the response' '

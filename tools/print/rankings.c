@@ -357,11 +357,13 @@ void rankings_warn(cli_run *run, const ranked *group)
     }
     if (!worst)
         return;
-    sink_say(run, json_object_get(run->report, "coupling") ? "" : ",,coupling",
-             "coupling: modes %ld and %ld share %.3g of the exact "
-             "Gramian%s%s",
-             worst->coupled[0] + 1, worst->coupled[1] + 1, worst->coupling,
-             *worst->at ? " at " : "", worst->at);
+    if (worst->coupling > 0.0) /* or all modes are one cluster */
+        sink_say(run,
+                 json_object_get(run->report, "coupling") ? "" : ",,coupling",
+                 "coupling: modes %ld and %ld share %.3g of the exact "
+                 "Gramian%s%s",
+                 worst->coupled[0] + 1, worst->coupled[1] + 1, worst->coupling,
+                 *worst->at ? " at " : "", worst->at);
     if (!isnan(differs))
         cli_say(run, "values by %s differ from the exact ones by %.2g at most",
                 worst->by, differs);

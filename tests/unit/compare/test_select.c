@@ -7,6 +7,8 @@
 #include "beams.h"
 #include "project.h"
 
+#include "compare/compare.h"
+
 #include <ritz/assembly.h>
 #include <ritz/verify.h>
 
@@ -326,6 +328,38 @@ static void no_allocation_failure_leaks(void **)
     release(&f);
 }
 
+/*
+ * A dashpot between node 1 of body A and the ground damps what bends there,
+ * which is one cluster then. All of it is kept, or nothing.
+ */
+static void modes_that_damping_joins_are_kept_together(void **)
+{
+    const ritz_configuration *one = NULL;
+    double value[16] = {0.0}, largest = 0.0;
+    int64_t whole = 0, joined = 0;
+    fixture f;
+
+    prepare(&f, false, beams_io,
+            "damping: {modal: 0.001}\nselect: {by: hankel, tolerance: 0.5}\n");
+    assert_ok(ritz_dense_new(6, 6, &f.stage.body[0].D));
+    ritz_dense_col(&f.stage.body[0].D, 1)[1] = 0.05;
+    assert_ok(ritz_compare(&f.stage, &f.c));
+    one = &f.c.first_system.configuration[0];
+    assert_in_range(one->K.ncol - one->num_rigid, 8, 16);
+    assert_ok(ritz_compare_values(&f.scene, one, value, &joined));
+    for (int k = 0; k < 16; k++)
+        largest = fmax(largest, value[k]);
+    for (int k = 0; k < 16; k++)
+        whole += value[k] == largest;
+    assert_true(joined >= 4);
+    assert_int_equal(whole, joined + 1);
+    assert_int_equal(f.c.row[0].num_joined, joined);
+    assert_true(f.c.row[0].num_kept >= whole);
+    assert_true(f.c.row[0].num_kept < one->K.ncol - one->num_rigid);
+    assert_true(f.c.row[0].frequency_error <= f.c.row[0].allowed);
+    release(&f);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(modes_1_2_3_5_give_table_3_3),
     cmocka_unit_test(modes_1_2_3_4_bring_an_axial_constraint),
@@ -338,6 +372,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(choices_that_make_no_sense_are_refused),
     cmocka_unit_test(a_mode_that_is_not_there_is_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
+    cmocka_unit_test(modes_that_damping_joins_are_kept_together),
 };
 
 TEST_MODULE(select, tests, NULL, NULL)

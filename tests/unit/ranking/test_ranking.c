@@ -361,6 +361,30 @@ static void modes_that_damping_couples_have_one_value(void **state)
                 cost.total, 1e-13 * cost.total);
 }
 
+/* A damper that couples two modes leaves 1e-17 of itself to a third, which is
+   rounding and no damping. */
+static void rounding_of_a_damper_damps_nothing(void **state)
+{
+    double k[] = {4, 0, 0, 0, 9, 0, 0, 0, 16};
+    double m[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double d[] = {0.1, 0.05, 0, 0.05, 0.1, 0, 0, 0, 1e-17};
+    const ritz_dense K = {3, 3, k}, M = {3, 3, m}, D = {3, 3, d};
+    RITZ_OWN(ritz_io) io = {0};
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_ranking) ranking = {0};
+
+    (void)state;
+    assert_ok(ritz_io_new(3, 1, 1, &io));
+    for (int i = 0; i < 3; i++)
+        io.B.val[i] = io.C.val[i] = 1.0;
+    assert_ok(ritz_modal_new(&K, &M, &D, &io, NULL, &modal));
+    for (int by = 0; by < 2; by++)
+        assert_fails(rank(by ? &ritz_ranker_gregory : &ritz_ranker_hankel,
+                          &modal, &ranking),
+                     RITZ_ERR_ARGUMENT,
+                     "the mode at 0.63662 Hz has no damping");
+}
+
 static void rankings_are_found_by_name_or_nearly(void **state)
 {
     (void)state;
@@ -399,6 +423,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(damping_limits_and_accelerations_are_taken_in),
     cmocka_unit_test(what_cannot_be_ranked_is_refused_in_words),
     cmocka_unit_test(modes_that_damping_couples_have_one_value),
+    cmocka_unit_test(rounding_of_a_damper_damps_nothing),
     cmocka_unit_test(rankings_are_found_by_name_or_nearly),
     cmocka_unit_test(ranking_survives_every_allocation),
 };
