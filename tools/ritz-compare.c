@@ -34,7 +34,8 @@ int main(int argc, char **argv)
                    "also write the report to this file"),
         CLI_TEXT("extraneous", &given.extraneous, "WORD",
                  "system modes that match no kept mode: keep, remove, "
-                 "out-of-band [the scene's]"),
+                 "out-of-band, or compact: drop the vectors of components "
+                 "that make them [the scene's]"),
         CLI_OUTPUT("tracks", &given.tracks, "FILE",
                    "write which mode of stage 1 is which at each "
                    "configuration, as a table with tabs"),

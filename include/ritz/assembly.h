@@ -205,23 +205,37 @@ typedef struct ritz_compare_row {
     ritz_stray *stray;
 } ritz_compare_row;
 
+enum { RITZ_ATTACHED_SIZE = 4096 };
+
 /* Static corrections for one set of forces, and the errors with them. */
 typedef struct ritz_candidate {
     ritz_augment level;
-    int attached;              /* sum of RITZ_ATTACHED_... */
-    bool inputs_too;           /* and those that the scene names alone */
-    char name[RITZ_NAME_SIZE]; /* "inputs, interface" */
-    int64_t *order;            /* of each body */
-    int64_t total;             /* of all bodies */
-    int64_t largest;           /* order of a system, at any configuration */
+    int64_t num_forces;            /* of those that can be attached */
+    int64_t *force;                /* num_forces, ascending */
+    char name[RITZ_ATTACHED_SIZE]; /* "inputs, rotor/boom:3" */
+    int64_t *order;                /* of each body */
+    int64_t total;                 /* of all bodies */
+    int64_t largest;               /* order of a system, at any configuration */
     double gain_listed, gain_between; /* worst relative errors; NaN: none */
-    double deviation; /* of the largest singular value of H(i w), relative, the
-                         worst over the band at all listed configurations; NaN
-                         where there is no response */
-    double hertz;     /* where */
-    char at[RITZ_NAME_SIZE]; /* and at which configuration */
+    /* of the largest singular value of H(i w) and of the smallest that is not
+       zero, relative, the worst over the band at all listed configurations; NaN
+       where there is no response */
+    double deviation[2];
+    double hertz[2];            /* where */
+    char at[2][RITZ_NAME_SIZE]; /* and at which configuration */
     bool chosen;
 } ritz_candidate;
+
+/* The larger of its deviations; NaN where there is no response. */
+double ritz_candidate_worst(const ritz_candidate *candidate);
+
+/* How attached dofs were sought, one by one. */
+typedef struct ritz_attached_search {
+    int64_t pool;  /* forces to choose from, no two alike; 0: not sought */
+    int64_t tried; /* sets */
+    int64_t below; /* all sets of so many forces and of fewer were tried, and
+                      none is near enough */
+} ritz_attached_search;
 
 /* The largest error between listed angles, and whether to add that angle:
  * if it is above 1e-3 and ten times the worst of its kind at listed ones. */
@@ -243,6 +257,9 @@ typedef struct ritz_comparison {
     ritz_dense *V;          /* num_bodies, r_c x s_c */
     int64_t num_candidates; /* where components are augmented, or by choice */
     ritz_candidate *candidate;
+    ritz_attached_search search;
+    int64_t dropped;  /* vectors of bodies that made extraneous modes */
+    double next_drop; /* by what errors would grow for one more; NaN: none */
     ritz_suggestion suggestion;
 } ritz_comparison;
 

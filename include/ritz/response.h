@@ -214,6 +214,10 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
                                  const double _Complex *H,
                                  const ritz_scales *scales, double *sigma);
 
+/** How many of them are not zero, beside the largest of all, at some of
+ * @p points; @p most of each, descending. */
+int64_t ritz_singular_rank(int64_t points, int64_t most, const double *sigma);
+
 /**
  * At every point of a response; kept in it, in place of others.
  *

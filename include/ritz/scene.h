@@ -129,14 +129,24 @@ enum {
     RITZ_ATTACHED_INTERFACE = 2, /* each dof of the ports that joints hold */
     RITZ_ATTACHED_OUTPUTS = 4,   /* a unit force where each output measures */
     RITZ_ATTACHED_DAMPERS = 8,   /* along each damper, of bodies and joints */
-    RITZ_ATTACHED_AUTO = 16,     /* the fewest whose response is near enough */
+    RITZ_ATTACHED_AUTO = 16,     /* the fewest whose response is near enough, of
+                                    those that are named too, or of all */
 };
+
+/* A force that a scene attaches by name: one input, one output, or unit forces
+   at a place: "PORT", "PORT:DIRECTION" or "GRID:DIRECTION" of a component. */
+typedef struct ritz_scene_force {
+    int64_t input, output; /* its index; -1: it is none */
+    ritz_scene_place at;
+    int64_t line, column;
+} ritz_scene_force;
 
 /* What becomes of modes of the second system that stand for no kept one. */
 typedef enum ritz_extraneous {
     RITZ_EXTRANEOUS_KEEP,
     RITZ_EXTRANEOUS_REMOVE,
     RITZ_EXTRANEOUS_OUT_OF_BAND, /* removed outside band_hz alone */
+    RITZ_EXTRANEOUS_COMPACT,     /* bodies lose the vectors that make them */
 } ritz_extraneous;
 
 typedef struct ritz_scene {
@@ -169,11 +179,13 @@ typedef struct ritz_scene {
     int64_t *reference;    /* 0: union over all */
     ritz_augment augment;
     int attached; /* sum of RITZ_ATTACHED_...; 0: as the level implies */
-    int64_t num_attached_inputs; /* single inputs, in addition to sets */
-    int64_t *attached_input;
-    double attached_tolerance; /* auto: of the largest singular value, 1e-3 */
+    int64_t num_attached_forces; /* named, in addition to sets */
+    ritz_scene_force *attached_force;
+    double attached_tolerance; /* auto: of the largest and of the smallest
+                                  singular value that is not zero, 1e-3 */
     ritz_extraneous extraneous;
-    const ritz_source *source; /* of the models; containers after reading */
+    double extraneous_tolerance; /* compact: by what errors may grow, 1e-3 */
+    const ritz_source *source;   /* of the models; containers after reading */
 } ritz_scene;
 
 /**
@@ -202,7 +214,8 @@ ritz_status ritz_scene_settings(const ritz_scene *scene, const char *at,
                                 double *setting);
 
 /**
- * What becomes of extraneous modes: "keep", "remove" or "out-of-band".
+ * What becomes of extraneous modes: "keep", "remove", "out-of-band" or
+ * "compact".
  *
  * @return RITZ_ERR_ARGUMENT if it is none of them, or there is no band
  */

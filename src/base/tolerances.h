@@ -750,9 +750,16 @@
    that are equal to six digits the first is taken. */
 #define RITZ_PIVOT_TIE (1.0 + 1e-6)
 /* Defaults of a scene: of `select: {tolerance}`, as a part of the largest value
-   of all configurations, and of `attached: auto`, as a part of the largest
-   singular value of the static gain. */
+   of all configurations; of `attached: auto`, as a part of the largest singular
+   value of the response and of the smallest; of `extraneous: compact`, as a part
+   of frequencies and of the largest |H|. */
 #define RITZ_SCENE_SELECT   1e-3
 #define RITZ_SCENE_ATTACHED 1e-3
+#define RITZ_SCENE_COMPACT  1e-3
+/* Forces whose columns differ by less than this part of them are one. */
+#define RITZ_SAME_FORCE 1e-9
+/* A motion of a body of which all modes of a system have less than this part of
+   the largest takes part in none. */
+#define RITZ_NO_MOTION 1e-12
 
 #endif

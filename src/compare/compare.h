@@ -3,13 +3,33 @@
 #define RITZ_COMPARE_COMPARE_H
 
 #include <ritz/assembly.h>
+#include <ritz/response.h>
+
+enum { RITZ_FORCE_SIZE = 2 * RITZ_NAME_SIZE + 32 };
+
+/* A force whose static solutions may be added to the composite set. */
+typedef struct ritz_unit_force {
+    char name[RITZ_FORCE_SIZE]; /* "torque", "rotor/boom:3" */
+    int sets;                   /* of RITZ_ATTACHED_..., to which it belongs */
+    bool named;                 /* the scene attaches it by its name */
+    double *f; /* over the coordinates of all bodies of the stage; NULL: along
+                  the damper of a joint, which turns with it */
+    int64_t spring; /* that one, among the springs of joints with dampers */
+} ritz_unit_force;
+
+typedef struct ritz_unit_forces {
+    int64_t count, room;
+    ritz_unit_force *each;
+} ritz_unit_forces;
 
 /* What is decided before stage two is built. */
 typedef struct ritz_plan {
     double tolerance;     /* of the composite set */
-    ritz_augment augment; /* level of static corrections */
-    int attached;         /* sum of RITZ_ATTACHED_... */
-    bool inputs_too;      /* and inputs that only the scene names */
+    ritz_augment augment; /* level of static corrections, */
+    int sets;             /* for these sets and what is named, which are */
+    const ritz_unit_forces *forces; /* for these of all forces; borrowed */
+    int64_t count;
+    const int64_t *force; /* count, ascending; borrowed */
 } ritz_plan;
 
 /* Stage one at all rows: listed configurations, and those between them. */
@@ -19,10 +39,52 @@ typedef struct ritz_rows {
     ritz_system between; /* its configurations alone */
     int64_t num_rows;
     ritz_compare_row *row;
+    int64_t num_responses;
+    ritz_response *response; /* of the listed ones; NULL until it is wanted */
 } ritz_rows;
 
 /** The stage-1 configuration of row @p k, borrowed. */
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
+
+/** Make the responses of stage one at listed configurations, once. */
+ritz_status ritz_rows_respond(ritz_rows *rows);
+void ritz_rows_free(ritz_rows *rows);
+
+/**
+ * Inputs, outputs, the dofs that joints hold, and what the scene attaches by
+ * name; of `attached: auto` alone the dofs of all other ports too, and every
+ * force is named.
+ *
+ * @return RITZ_ERR_ARGUMENT if a place of the scene is not there
+ */
+ritz_status ritz_unit_forces_new(const ritz_stage *stage,
+                                 ritz_unit_forces *out);
+
+/** Inputs, outputs and the dampers of bodies and joints alone. */
+ritz_status ritz_unit_forces_of_channels(const ritz_stage *stage,
+                                         ritz_unit_forces *out);
+
+/** Indices of those of some sets, and, if wanted, of those that are named. */
+ritz_status ritz_unit_forces_select(const ritz_unit_forces *forces, int sets,
+                                    bool named, int64_t *count, int64_t **out);
+void ritz_unit_forces_free(ritz_unit_forces *forces);
+
+/** Whether bodies have dampers, or joints hold motions on them. */
+bool ritz_stage_is_damped(const ritz_stage *stage);
+
+/** Forces of all dampers, of bodies and joints, on a configuration's modes. */
+ritz_status ritz_damper_forces(const ritz_stage *stage,
+                               const ritz_configuration *configuration,
+                               ritz_dense *out);
+
+/** The planned forces as columns: of one body, r_c rows. */
+ritz_status ritz_plan_body(const ritz_stage *stage, int64_t k,
+                           const ritz_plan *plan, ritz_dense *out);
+
+/** The same in the modal coordinates of a configuration. */
+ritz_status ritz_plan_system(const ritz_stage *stage,
+                             const ritz_configuration *at,
+                             const ritz_plan *plan, ritz_dense *out);
 
 /**
  * The least value of a mode that matters: the scene's tolerance times the
@@ -51,22 +113,6 @@ ritz_status ritz_compare_values(const ritz_scene *scene,
 ritz_status ritz_compare_select(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 double least, ritz_compare_row *row);
-
-/** Whether bodies have dampers, or joints hold motions on them. */
-bool ritz_stage_is_damped(const ritz_stage *stage);
-
-/** Whether the plan has static corrections for input @p j. */
-bool ritz_plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
-                        int64_t j);
-
-/** Forces of the planned sets in the coordinates of body @p k, as columns. */
-ritz_status ritz_plan_forces(const ritz_stage *stage, int64_t k,
-                             const ritz_plan *plan, ritz_dense *out);
-
-/** Forces of all dampers, of bodies and joints, on a configuration's modes. */
-ritz_status ritz_damper_forces(const ritz_stage *stage,
-                               const ritz_configuration *configuration,
-                               ritz_dense *out);
 
 /**
  * Static solutions in modal coordinates, flexible part: Lambda^-1 B, and for
@@ -126,19 +172,55 @@ ritz_status ritz_composite_choose(const ritz_stage *stage,
                                   const ritz_compare_row *row, int group,
                                   const ritz_plan *plan, ritz_dense *out);
 
+/* The subspace of each body in which stage two reduces it. */
+typedef struct ritz_subspaces {
+    int64_t count;     /* of bodies */
+    ritz_dense *V;     /* r_c x s_c, M-orthonormal where M is definite; the
+                          identity where s_c would be r_c */
+    int64_t *massless; /* of each, how many first columns have no mass, */
+    int64_t *firm;     /* and how many hold these, rigid motion and statics */
+    int64_t vectors;   /* before dependent ones were removed */
+} ritz_subspaces;
+
 /**
  * The composite set on each body: rigid modes, static corrections as planned,
  * kept modes or Krylov vectors of all configurations that count; dependent
  * columns removed by SVD in the M inner product.
- *
- * @param[out] V      stage->count matrices, r_c x s_c, M-orthonormal where M is
- *                    definite; the identity where s_c would be r_c
- * @param[out] massless  of each body, how many first columns have no mass
- * @param[out] count     vectors before dependent ones were removed
  */
 ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
-                                   ritz_dense *V, int64_t *massless,
-                                   int64_t *count);
+                                   ritz_subspaces *out);
+void ritz_subspaces_free(ritz_subspaces *subspaces);
+
+/** Stage two: the bodies in those subspaces; no configuration yet. */
+ritz_status ritz_compare_project(const ritz_stage *stage,
+                                 const ritz_subspaces *subspaces,
+                                 ritz_comparison *out);
+
+/** Orders of the bodies of stage two, and their sum. */
+ritz_status ritz_compare_orders(const ritz_comparison *trial, int64_t **order,
+                                int64_t *total);
+
+/**
+ * Stage two with the static corrections of each of some sets of forces, where
+ * the scene augments components or leaves the set open.
+ *
+ * @param[in,out] plan  as the scene says; becomes the one that is chosen
+ * @param[out] out      its candidates, and how they were sought
+ * @param[out] force    what its forces are borrowed from; unless it is chosen
+ *                      otherwise untouched
+ */
+ritz_status ritz_attached_choose(ritz_rows *rows, ritz_plan *plan,
+                                 ritz_comparison *out, int64_t **force);
+void ritz_candidate_free(ritz_candidate *candidate);
+
+/**
+ * Drop vectors of bodies that make extraneous modes, as long as no error of a
+ * kept mode or of a response grows by more than the scene's tolerance.
+ *
+ * @param[in,out] subspaces  before and after
+ */
+ritz_status ritz_compact(ritz_rows *rows, ritz_subspaces *subspaces,
+                         ritz_comparison *out);
 
 /* The body's own contributions, r rows each. */
 typedef struct ritz_statics {
@@ -160,15 +242,24 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
 void ritz_statics_free(ritz_statics *statics);
 
 /**
+ * Relieve forces on body @p k of the inertia of its rigid motion, and scale
+ * their rows as the stage does; a force that does not deform it becomes 0.
+ */
+ritz_status ritz_body_relieve(const ritz_stage *stage, int64_t k,
+                              ritz_dense *F);
+
+/**
  * Compare the second system with the first at one configuration: stray modes
  * are found and, if the scene says so, removed from @p second; then errors are
  * measured.
  *
- * @param[in]     V    of every body
- * @param[in,out] row  kept modes; errors are filled in
+ * @param[in]     V         of every body
+ * @param[in]     response  of the first, NULL: made here
+ * @param[in,out] row       kept modes; errors are filled in
  */
 ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  const ritz_configuration *first,
+                                 const ritz_response *response,
                                  ritz_configuration *second,
                                  ritz_compare_row *row);
 
@@ -191,20 +282,33 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
 /** Whether a scene has a response: inputs, outputs, a band and damping. */
 bool ritz_compare_responds(const ritz_scene *scene);
 
-/** Responses of two systems at the frequencies of the first. */
+/** Response over the band, at points around every resonance. */
 ritz_status ritz_compare_respond(const ritz_scene *scene,
-                                 const ritz_configuration *first,
-                                 const ritz_configuration *second,
-                                 ritz_response *one, ritz_response *two);
+                                 const ritz_configuration *configuration,
+                                 ritz_response *out);
+
+/** Response at the points of another. */
+ritz_status ritz_compare_follow(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                const ritz_response *points,
+                                ritz_response *out);
+
+/* How far two MIMO Bode plots are apart: the largest singular value of H(i w)
+   and the smallest that is not zero. */
+typedef struct ritz_bode_gap {
+    double deviation[2], hertz[2];
+} ritz_bode_gap;
 
 /**
- * Worst deviation of the largest singular value of H(i w), relative to it at
- * each point; at points more than 60 dB below the mean level of the plot it is
- * relative to that level.
+ * Worst deviations of both, relative to the value of the first at each point;
+ * at points more than 60 dB below the mean level of the plot they are relative
+ * to that level. The smallest is the last that is not zero at some point.
+ *
+ * @param[in] scales  of inputs and outputs, NULL: none
  */
-ritz_status ritz_compare_bode(const ritz_response *first,
-                              const ritz_response *second, double *deviation,
-                              double *hertz);
+ritz_status ritz_compare_bode(const ritz_scales *scales,
+                              const ritz_response *first,
+                              const ritz_response *second, ritz_bode_gap *out);
 
 /**
  * The angle where errors between listed angles are largest, and the measure.

@@ -87,14 +87,14 @@ static ritz_status factor_shifted(const ritz_reduced *body,
 }
 
 /*
- * F := F - M R R' F. Columns that become rounding are left out: those of a
- * force that accelerates the body as a rigid one and does not deform it.
+ * F := S (F - M R R' F), S scaling its rows. Columns that are rounding become
+ * zero: those of a force that accelerates the body as a rigid one and does not
+ * deform it.
  */
 static ritz_status relieve_inertia(const ritz_dense *R, const ritz_dense *MR,
                                    const double *scale, ritz_dense *F)
 {
-    RITZ_OWN(ritz_dense) share = {0}, gone = {0}, kept = {0};
-    int64_t m = 0;
+    RITZ_OWN(ritz_dense) share = {0}, gone = {0};
 
     RITZ_CHECK(ritz_dense_mul_tn(R, F, &share));
     RITZ_CHECK(ritz_dense_mul(MR, &share, &gone));
@@ -107,13 +107,48 @@ static ritz_status relieve_inertia(const ritz_dense *R, const ritz_dense *MR,
 
             before = hypot(before, scale[i] * f);
             after = hypot(after, scale[i] * e);
-            ritz_dense_col(F, m)[i] = scale[i] * e;
+            ritz_dense_col(F, j)[i] = scale[i] * e;
         }
-        m += after > RITZ_FORCE_RELIEVED * before;
+        for (int64_t i = 0;
+             i < F->nrow && !(after > RITZ_FORCE_RELIEVED * before); i++)
+            ritz_dense_col(F, j)[i] = 0.0;
     }
-    RITZ_CHECK(ritz_dense_columns(F, 0, m, &kept));
+    return RITZ_OK;
+}
+
+/* Remove the columns of a matrix that are zero. */
+static ritz_status remove_zeros(ritz_dense *F)
+{
+    RITZ_OWN(ritz_dense) kept = {0};
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK_NEW(at, F->ncol);
+    for (int64_t j = 0; j < F->ncol; j++)
+        if (F->nrow > 0 && ritz_dense_col_max(F, j) > 0.0)
+            at[count++] = j;
+    RITZ_CHECK(ritz_dense_pick(F, count, at, &kept));
     ritz_dense_replace(F, &kept);
     return RITZ_OK;
+}
+
+/* Rigid modes of a body and M times these. */
+static ritz_status find_rigid(const ritz_reduced *body, ritz_dense *R,
+                              ritz_dense *MR)
+{
+    RITZ_OWN(ritz_pairs) pairs = {0};
+
+    RITZ_CHECK(ritz_eigen_dense(&body->K, &body->M, &pairs));
+    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, R));
+    return ritz_dense_mul(&body->M, R, MR);
+}
+
+ritz_status ritz_body_relieve(const ritz_stage *stage, int64_t k, ritz_dense *F)
+{
+    RITZ_OWN(ritz_dense) R = {0}, MR = {0};
+
+    RITZ_CHECK(find_rigid(&stage->body[k], &R, &MR));
+    return relieve_inertia(&R, &MR, stage->scale + stage->first[k], F);
 }
 
 ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
@@ -121,17 +156,15 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
 {
     const ritz_reduced *body = &stage->body[k];
     int r = (int)body->K.ncol;
-    RITZ_OWN(ritz_pairs) pairs = {0};
     RITZ_OWN(ritz_dense) R = {0}, MR = {0}, F = {0}, L = {0};
     RITZ_OWN_ARRAY double *scale = NULL;
 
     RITZ_CHECK_NEW(scale, r);
-    RITZ_CHECK(ritz_eigen_dense(&body->K, &body->M, &pairs));
-    RITZ_CHECK(ritz_dense_columns(&pairs.Phi, 0, pairs.num_rigid, &R));
-    RITZ_CHECK(ritz_dense_mul(&body->M, &R, &MR));
+    RITZ_CHECK(find_rigid(body, &R, &MR));
     RITZ_CHECK(factor_shifted(body, &MR, scale, &L));
-    RITZ_CHECK(ritz_plan_forces(stage, k, plan, &F));
+    RITZ_CHECK(ritz_plan_body(stage, k, plan, &F));
     RITZ_CHECK(relieve_inertia(&R, &MR, scale, &F));
+    RITZ_CHECK(remove_zeros(&F));
     if (F.ncol > 0 && r > 0)
         (void)LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', r, (int)F.ncol, L.val, r,
                              F.val, r);
@@ -369,19 +402,20 @@ static bool normalise_flexible(const ritz_configuration *c, double *x)
     return norm > 0.0;
 }
 
-/* Lambda^-1 F of the flexible part, for the forces of dampers. */
-static ritz_status answer_dampers(const ritz_stage *stage,
-                                  const ritz_configuration *c, ritz_dense *out)
+/* Divide by lambda; false if the force moves the system as a rigid one. */
+static bool divide_by_lambda(const ritz_configuration *c, double *x)
 {
-    RITZ_OWN(ritz_dense) X = {0};
+    double rigid = 0.0, flexible = 0.0;
 
-    RITZ_CHECK(ritz_damper_forces(stage, c, &X));
-    for (int64_t j = 0; j < X.ncol; j++)
-        for (int64_t k = 0; k < X.nrow; k++)
-            ritz_dense_col(&X, j)[k] *=
-                k < c->num_rigid ? 0.0 : 1.0 / c->lambda[k];
-    RITZ_MOVE(*out, X);
-    return RITZ_OK;
+    for (int64_t k = 0; k < c->num_rigid; k++) {
+        rigid = hypot(rigid, x[k]);
+        x[k] = 0.0;
+    }
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++) {
+        flexible = hypot(flexible, x[k]);
+        x[k] /= c->lambda[k];
+    }
+    return flexible > RITZ_FORCE_RELIEVED * rigid;
 }
 
 /* Modal coordinates of the system's static solutions. */
@@ -389,23 +423,15 @@ static ritz_status choose_statics(const ritz_stage *stage,
                                   const ritz_configuration *c,
                                   const ritz_plan *plan, ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) X = {0}, of_io = {0}, of_dampers = {0};
+    RITZ_OWN(ritz_dense) X = {0};
     int64_t m = 0;
 
-    RITZ_CHECK(ritz_system_statics(c, true, &of_io));
-    RITZ_CHECK(answer_dampers(stage, c, &of_dampers));
-    RITZ_CHECK(ritz_dense_beside(&of_io, &of_dampers, &X));
-    for (int64_t j = 0; j < X.ncol; j++) {
-        int set =
-            j < of_io.ncol ? RITZ_ATTACHED_OUTPUTS : RITZ_ATTACHED_DAMPERS;
-        bool attached = j < c->io.num_inputs
-                            ? ritz_plan_attaches(stage->scene, plan, j)
-                            : plan->attached & set;
-
-        if (attached && normalise_flexible(c, ritz_dense_col(&X, j)))
+    RITZ_CHECK(ritz_plan_system(stage, c, plan, &X));
+    for (int64_t j = 0; j < X.ncol; j++)
+        if (divide_by_lambda(c, ritz_dense_col(&X, j)) &&
+            normalise_flexible(c, ritz_dense_col(&X, j)))
             memmove(ritz_dense_col(&X, m++), ritz_dense_col(&X, j),
                     (size_t)X.nrow * sizeof *X.val);
-    }
     return ritz_dense_columns(&X, 0, m, out);
 }
 
@@ -513,10 +539,11 @@ static ritz_status gather_group(const composing *it, int group, ritz_dense *W)
     return append_columns(own[group], W);
 }
 
-/* U: the groups in turn, each orthogonal to those before it. */
+/* U: the groups in turn, each orthogonal to those before it; where each begins
+   in it. */
 static ritz_status choose_directions(const composing *it, const ritz_dense *L,
-                                     const double *scale, int64_t *massless,
-                                     ritz_dense *U)
+                                     const double *scale,
+                                     int64_t first[RITZ_GROUPS], ritz_dense *U)
 {
     bool own = it->plan->augment == RITZ_AUGMENT_COMPONENT;
     double largest = 0.0;
@@ -526,6 +553,7 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
         RITZ_OWN(ritz_dense) W = {0}, Y = {0};
         double least = tightest[g];
 
+        first[g] = U->ncol;
         if (g == RITZ_GIVEN_KEPT)
             least = fmax(it->plan->tolerance, least);
         if (g == RITZ_GIVEN_STATIC && own)
@@ -535,34 +563,36 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
         if (g == RITZ_GIVEN_MASSLESS || (g == RITZ_GIVEN_STATIC && own))
             scale_to_unit(false, &Y);
         RITZ_CHECK(ritz_span_append(&Y, least, &largest, NULL, U));
-        if (g == RITZ_GIVEN_MASSLESS)
-            *massless = U->ncol;
     }
     return RITZ_OK;
 }
 
-/* V of one body; *count grows by its own vectors. */
-static ritz_status compose_body(composing *it, ritz_dense *V, int64_t *massless,
-                                int64_t *count)
+/* V of one body; the count of vectors grows by its own. */
+static ritz_status compose_body(composing *it, ritz_subspaces *out)
 {
     const ritz_reduced *body = &it->stage->body[it->body];
     const double *scale = it->stage->scale + it->stage->first[it->body];
+    const bool compact =
+        it->stage->scene->extraneous == RITZ_EXTRANEOUS_COMPACT;
     RITZ_OWN(ritz_dense) L = {0}, U = {0};
+    int64_t first[RITZ_GROUPS] = {0};
     bool mixed = false;
 
     if (it->plan->augment != RITZ_AUGMENT_NONE)
         RITZ_CHECK(body_massless(body, scale, &it->own.massless));
     if (it->plan->augment == RITZ_AUGMENT_COMPONENT)
         RITZ_CHECK(ritz_body_statics(it->stage, it->body, it->plan, &it->own));
-    *count += it->own.answers.ncol;
+    out->vectors += it->own.answers.ncol;
     RITZ_CHECK(ritz_mass_factor(body, scale, &L, &mixed));
-    RITZ_CHECK(choose_directions(it, &L, scale, massless, &U));
-    if (U.ncol == U.nrow) { /* nothing to remove: leave the body as it is */
-        *massless = 0;
-        return ritz_dense_identity(U.nrow, V);
+    RITZ_CHECK(choose_directions(it, &L, scale, first, &U));
+    out->massless[it->body] = first[RITZ_GIVEN_RIGID];
+    out->firm[it->body] = first[RITZ_GIVEN_KEPT];
+    if (U.ncol == U.nrow && !compact) { /* nothing is removed: leave it */
+        out->massless[it->body] = 0;
+        return ritz_dense_identity(U.nrow, &out->V[it->body]);
     }
     ritz_mass_return(&L, scale, mixed, &U);
-    RITZ_MOVE(*V, U);
+    RITZ_MOVE(out->V[it->body], U);
     return RITZ_OK;
 }
 
@@ -600,21 +630,31 @@ static ritz_status list_contributions(const ritz_rows *rows,
 }
 
 ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
-                                   ritz_dense *V, int64_t *massless,
-                                   int64_t *count)
+                                   ritz_subspaces *out)
 {
     const ritz_stage *stage = rows->stage;
     RITZ_OWN(ritz_givens) givens = {0};
+    RITZ_OWN(ritz_subspaces) made = {.count = stage->count};
 
-    *count = 0;
-    RITZ_CHECK(list_contributions(rows, plan, &givens, count));
+    RITZ_CHECK_NEW(made.V, stage->count);
+    RITZ_CHECK_NEW(made.massless, stage->count);
+    RITZ_CHECK_NEW(made.firm, stage->count);
+    RITZ_CHECK(list_contributions(rows, plan, &givens, &made.vectors));
     for (int64_t c = 0; c < stage->count; c++) {
         composing it = {
             .stage = stage, .body = c, .plan = plan, .givens = &givens};
-        ritz_status status = compose_body(&it, &V[c], &massless[c], count);
+        ritz_status status = compose_body(&it, &made);
 
         ritz_statics_free(&it.own);
         RITZ_CHECK_IN(stage->scene->component[c].name, status);
     }
+    RITZ_MOVE(*out, made);
     return RITZ_OK;
+}
+
+void ritz_subspaces_free(ritz_subspaces *subspaces)
+{
+    RITZ_FREE_EACH(ritz_dense, subspaces->count, subspaces->V);
+    RITZ_FREE(subspaces->massless, subspaces->firm);
+    *subspaces = (ritz_subspaces){0};
 }

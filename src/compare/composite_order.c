@@ -22,13 +22,18 @@ typedef struct ordering {
     const ritz_stage *stage; /* borrowed */
     double lambda;           /* of the end of the band */
     ritz_system system;
-    ritz_givens givens; /* of each configuration */
+    ritz_givens givens;      /* of each configuration */
+    ritz_unit_forces forces; /* inputs, outputs and dampers */
+    int64_t *force;
+    ritz_plan plan;
 } ordering;
 
 static void ordering_free(ordering *g)
 {
     ritz_givens_free(&g->givens);
     ritz_system_free(&g->system);
+    ritz_unit_forces_free(&g->forces);
+    free(g->force);
 }
 
 /* The value of each mode, relative to the largest of all. */
@@ -41,8 +46,8 @@ static ritz_status weigh_modes(ordering *g)
         int64_t flexible = given->at->K.ncol - given->at->num_rigid;
 
         RITZ_CHECK_NEW(given->value, flexible);
-        RITZ_CHECK(
-            ritz_compare_values(g->stage->scene, given->at, given->value, NULL));
+        RITZ_CHECK(ritz_compare_values(g->stage->scene, given->at, given->value,
+                                       NULL));
         for (int64_t j = 0; j < flexible; j++)
             largest = fmax(largest, given->value[j]);
     }
@@ -73,16 +78,12 @@ static ritz_status choose_modes(const ritz_configuration *at, double highest,
 static ritz_status list_contributions(const ordering *g, ritz_given *to)
 {
     const ritz_scene *scene = g->stage->scene;
-    const ritz_plan plan = {.augment = RITZ_AUGMENT_SYSTEM,
-                            .attached = RITZ_ATTACHED_INPUTS |
-                                        RITZ_ATTACHED_OUTPUTS |
-                                        RITZ_ATTACHED_DAMPERS};
     RITZ_OWN(ritz_dense) band = {0}, answers = {0};
 
     RITZ_CHECK(ritz_composite_choose(g->stage, to->at, NULL, RITZ_GIVEN_RIGID,
-                                     &plan, &to->X[GROUP_RIGID]));
+                                     &g->plan, &to->X[GROUP_RIGID]));
     RITZ_CHECK(ritz_composite_choose(g->stage, to->at, NULL, RITZ_GIVEN_STATIC,
-                                     &plan, &answers));
+                                     &g->plan, &answers));
     RITZ_CHECK(choose_modes(to->at, g->lambda, to->value, &band));
     RITZ_CHECK(choose_modes(to->at, HUGE_VAL, NULL, &to->X[GROUP_REST]));
     if (scene->augment != RITZ_AUGMENT_NONE) {
@@ -91,6 +92,18 @@ static ritz_status list_contributions(const ordering *g, ritz_given *to)
     }
     RITZ_MOVE(to->X[GROUP_BAND], band);
     RITZ_MOVE(to->X[GROUP_STATIC], answers);
+    return RITZ_OK;
+}
+
+static ritz_status plan_statics(ordering *g)
+{
+    g->plan = (ritz_plan){.augment = RITZ_AUGMENT_SYSTEM, .forces = &g->forces};
+    RITZ_CHECK(ritz_unit_forces_of_channels(g->stage, &g->forces));
+    RITZ_CHECK(ritz_unit_forces_select(
+        &g->forces,
+        RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_OUTPUTS | RITZ_ATTACHED_DAMPERS,
+        false, &g->plan.count, &g->force));
+    g->plan.force = g->force;
     return RITZ_OK;
 }
 
@@ -107,6 +120,7 @@ static ritz_status assemble_ordering(const ritz_stage *stage, ordering *g)
     for (int64_t k = 0; k < g->givens.count; k++)
         g->givens.each[k].at = &g->system.configuration[k];
     RITZ_CHECK_IN("selection", weigh_modes(g));
+    RITZ_CHECK(plan_statics(g));
     for (int64_t k = 0; k < g->givens.count; k++)
         RITZ_CHECK(list_contributions(g, &g->givens.each[k]));
     return RITZ_OK;

@@ -1,18 +1,115 @@
-/* Forces for which static corrections are made: what a plan asks for. */
+/*
+ * The forces whose static solutions may be added to the composite set, each a
+ * vector over the coordinates of all bodies: inputs, unit forces at the dofs
+ * that joints hold, where outputs measure, and at dofs that the scene names,
+ * and forces along dampers. Dampers of joints turn with them: in a system their
+ * forces belong to a configuration, and of components they are those of the
+ * dofs that these joints hold.
+ */
 #include "compare/compare.h"
 
 #include "assembly/assembly.h"
 #include "base/alloc.h"
 
+#include <ritz/base.h>
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-bool ritz_plan_attaches(const ritz_scene *scene, const ritz_plan *plan,
-                        int64_t j)
+/* Append a force of no body yet; *f is its vector. */
+static ritz_status add_force(const ritz_stage *stage, int sets, bool named,
+                             ritz_unit_forces *forces, double **f)
 {
-    for (int64_t k = 0; plan->inputs_too && k < scene->num_attached_inputs; k++)
-        if (scene->attached_input[k] == j)
+    ritz_unit_force *force = NULL;
+
+    RITZ_CHECK_ROOM(forces->each, forces->count, forces->room);
+    force = &forces->each[forces->count++];
+    *force = (ritz_unit_force){.sets = sets, .named = named};
+    RITZ_CHECK_NEW(force->f, stage->num_coordinates);
+    *f = force->f;
+    return RITZ_OK;
+}
+
+/* Whether the scene names input or output @p j alone. */
+static bool is_named(const ritz_scene *scene, bool input, int64_t j)
+{
+    for (int64_t k = 0; k < scene->num_attached_forces; k++) {
+        const ritz_scene_force *force = &scene->attached_force[k];
+
+        if ((input ? force->input : force->output) == j)
             return true;
-    return plan->attached & RITZ_ATTACHED_INPUTS;
+    }
+    return false;
+}
+
+static ritz_status add_inputs(const ritz_stage *stage, ritz_unit_forces *forces)
+{
+    for (int64_t j = 0; j < stage->io.num_inputs; j++) {
+        double *f = NULL;
+
+        RITZ_CHECK(add_force(stage, RITZ_ATTACHED_INPUTS,
+                             is_named(stage->scene, true, j), forces, &f));
+        memcpy(f, ritz_dense_col(&stage->io.B, j),
+               (size_t)stage->num_coordinates * sizeof *f);
+        snprintf(forces->each[forces->count - 1].name, RITZ_FORCE_SIZE, "%s",
+                 stage->io.input[j]);
+    }
+    return RITZ_OK;
+}
+
+/* A unit force where an output measures, whatever quantity it is. */
+static ritz_status add_outputs(const ritz_stage *stage,
+                               ritz_unit_forces *forces)
+{
+    const ritz_dense *const C[] = {&stage->io.C, &stage->io.Cv, &stage->io.Ca};
+
+    for (int64_t j = 0; j < stage->io.num_outputs; j++) {
+        double *f = NULL;
+
+        RITZ_CHECK(add_force(stage, RITZ_ATTACHED_OUTPUTS,
+                             is_named(stage->scene, false, j), forces, &f));
+        for (int64_t q = 0; q < stage->num_coordinates; q++)
+            for (int c = 0; c < 3; c++)
+                f[q] += ritz_dense_col(C[c], q)[j];
+        snprintf(forces->each[forces->count - 1].name, RITZ_FORCE_SIZE, "%s",
+                 stage->io.output[j]);
+    }
+    return RITZ_OK;
+}
+
+/* Whether a port has the dofs of one grid alone. */
+static bool has_one_grid(const ritz_port_map *port)
+{
+    for (int64_t i = 1; i < port->count; i++)
+        if (port->dof[i].grid != port->dof[0].grid)
+            return false;
+    return true;
+}
+
+/* A unit force at one row of a port of body k: "rotor/boom:3", as scenes name
+   it, or "rotor/33:3" where the port has several grids. */
+static ritz_status add_row(const ritz_stage *stage, int64_t k,
+                           const ritz_port_map *port, int64_t row, int sets,
+                           bool named, ritz_unit_forces *forces)
+{
+    const char *body = stage->scene->component[k].name;
+    const ritz_dof dof = port->dof[row];
+    double *f = NULL;
+    char *name = NULL;
+
+    RITZ_CHECK(add_force(stage, sets, named, forces, &f));
+    name = forces->each[forces->count - 1].name;
+    for (int64_t q = 0; q < port->map.ncol; q++)
+        f[stage->first[k] + q] = ritz_dense_col(&port->map, q)[row];
+    if (has_one_grid(port))
+        snprintf(name, RITZ_FORCE_SIZE, "%s/%s:%" PRId64, body, port->name,
+                 dof.component);
+    else
+        snprintf(name, RITZ_FORCE_SIZE, "%s/%" PRId64 ":%" PRId64, body,
+                 dof.grid, dof.component);
+    return RITZ_OK;
 }
 
 /* Whether a joint has a damper in a motion that it leaves. */
@@ -34,61 +131,272 @@ bool ritz_stage_is_damped(const ritz_stage *stage)
     return damped;
 }
 
-/* Whether a joint that is among the planned forces holds a port of body k. */
-static bool is_attached(const ritz_scene *scene, const ritz_plan *plan,
-                        int64_t k, const char *port)
+/* The sets to which the dofs of a port of body k belong: of those that a joint
+   holds, of those whose joint has a damper. */
+static int sets_of_port(const ritz_scene *scene, int64_t k, const char *port)
 {
+    int sets = 0;
+
     for (int64_t j = 0; j < scene->num_joints; j++)
         for (int end = 0; end < 2; end++) {
             const ritz_joint *joint = &scene->joint[j];
             const ritz_scene_place *at = &joint->between[end];
 
-            if (at->component == k && strcmp(at->port, port) == 0 &&
-                (plan->attached & RITZ_ATTACHED_INTERFACE ||
-                 (plan->attached & RITZ_ATTACHED_DAMPERS && has_damper(joint))))
-                return true;
+            if (at->component != k || strcmp(at->port, port) != 0)
+                continue;
+            sets |= RITZ_ATTACHED_INTERFACE;
+            if (has_damper(joint) && scene->augment == RITZ_AUGMENT_COMPONENT)
+                sets |= RITZ_ATTACHED_DAMPERS;
         }
-    return false;
+    return sets;
 }
 
-/* Append rows of A, for the coordinates of one body, as columns m.. of F. */
-static int64_t append_rows(const ritz_dense *A, int64_t first, ritz_dense *F,
-                           int64_t m)
+/* Every dof of the ports that joints hold, or of those that none does. */
+static ritz_status add_ports(const ritz_stage *stage, bool held,
+                             ritz_unit_forces *forces)
 {
-    for (int64_t i = 0; i < A->nrow; i++)
-        for (int64_t q = 0; q < F->nrow; q++)
-            ritz_dense_col(F, m + i)[q] = ritz_dense_col(A, first + q)[i];
-    return m + A->nrow;
+    for (int64_t k = 0; k < stage->count; k++)
+        for (int64_t p = 0; p < stage->body[k].num_ports; p++) {
+            const ritz_port_map *port = &stage->body[k].port[p];
+            int sets = sets_of_port(stage->scene, k, port->name);
+
+            if ((sets != 0) != held)
+                continue;
+            for (int64_t row = 0; row < port->count; row++)
+                RITZ_CHECK(add_row(stage, k, port, row, sets, false, forces));
+        }
+    return RITZ_OK;
 }
 
-ritz_status ritz_plan_forces(const ritz_stage *stage, int64_t k,
-                             const ritz_plan *plan, ritz_dense *out)
+static ritz_status add_damper(const ritz_stage *stage, int64_t j, int sets,
+                              bool named, ritz_unit_forces *forces)
 {
-    const ritz_reduced *body = &stage->body[k];
-    const ritz_io *io = &stage->io;
-    const ritz_dense *const C[] = {&io->C, &io->Cv, &io->Ca};
-    int64_t most = io->num_inputs + 3 * io->num_outputs + body->dampers.count;
-    int64_t first = stage->first[k];
-    int64_t m = 0;
-    RITZ_OWN(ritz_dense) F = {0};
+    double *f = NULL;
 
+    RITZ_CHECK(add_force(stage, sets, named, forces, &f));
+    memcpy(f, ritz_dense_col(&stage->dampers.B, j),
+           (size_t)stage->num_coordinates * sizeof *f);
+    snprintf(forces->each[forces->count - 1].name, RITZ_FORCE_SIZE, "%s",
+             stage->dampers.name[j]);
+    return RITZ_OK;
+}
+
+/* Forces along the dampers of bodies, and of joints in a system. */
+static ritz_status add_dampers(const ritz_stage *stage, bool of_joints,
+                               ritz_unit_forces *forces)
+{
+    const ritz_scene *scene = stage->scene;
+    int64_t springs = 0;
+
+    for (int64_t j = 0; j < stage->dampers.count; j++)
+        RITZ_CHECK(add_damper(stage, j, RITZ_ATTACHED_DAMPERS, false, forces));
+    for (int64_t j = 0; of_joints && j < scene->num_joints; j++)
+        for (int64_t k = 0; k < scene->joint[j].num_freedoms; k++) {
+            const ritz_freedom *freedom = &scene->joint[j].freedom[k];
+            ritz_unit_force *force = NULL;
+            double *f = NULL;
+
+            if (freedom->state != RITZ_CAGED || !(freedom->damping > 0.0))
+                continue;
+            RITZ_CHECK(
+                add_force(stage, RITZ_ATTACHED_DAMPERS, false, forces, &f));
+            force = &forces->each[forces->count - 1];
+            force->f = NULL;
+            free(f);
+            force->spring = springs++;
+            snprintf(force->name, RITZ_FORCE_SIZE, "damper %" PRId64 " of %s",
+                     k + 1, scene->joint[j].name);
+        }
+    return RITZ_OK;
+}
+
+/* The only row of a direction; else a sentence. */
+static ritz_status find_direction(const ritz_port_map *port, int64_t direction,
+                                  int64_t *row)
+{
+    int64_t matches = 0;
+
+    for (int64_t i = 0; i < port->count; i++)
+        if (port->dof[i].component == direction) {
+            *row = i;
+            matches++;
+        }
+    RITZ_REFUSE_IF(matches == 0, RITZ_ERR_ARGUMENT,
+                   "'%s' has no direction %" PRId64, port->name, direction);
+    RITZ_REFUSE_IF(matches > 1, RITZ_ERR_ARGUMENT,
+                   "port '%s' has %" PRId64 " grids with direction %" PRId64
+                   ": name the grid in place of the port",
+                   port->name, matches, direction);
+    return RITZ_OK;
+}
+
+/* How a grid of the full model moves, as if it were a port of its own. */
+static ritz_status map_grid(const ritz_reduced *body, int64_t grid,
+                            ritz_port_map *out)
+{
+    /* borrowed; read alone */
+    const ritz_component full = {
+        .num_dofs = body->num_dofs, .dof = body->dof, .grids = body->grids};
+    ritz_port port = {0};
+    RITZ_OWN(ritz_dofs) dofs = {0};
+    RITZ_OWN(ritz_port_map) map = {0};
+
+    RITZ_REFUSE_IF(!body->T.val || !body->dof, RITZ_ERR_ARGUMENT,
+                   "only its ports are known of this component");
+    RITZ_CHECK_NEW(dofs.at, body->num_dofs);
+    for (int64_t i = 0; i < body->num_dofs; i++)
+        if (body->dof[i].grid == grid)
+            dofs.at[dofs.count++] = i;
+    RITZ_REFUSE_IF(dofs.count == 0, RITZ_ERR_ARGUMENT,
+                   "there is no port and no grid '%" PRId64 "'", grid);
+    snprintf(port.name, sizeof port.name, "%" PRId64, grid);
+    port.dofs = dofs;
+    RITZ_CHECK(ritz_port_map_of(&full, &port, &body->T, &map));
+    RITZ_MOVE(*out, map);
+    return RITZ_OK;
+}
+
+/* "33:3" into a text before the last colon, and a direction; false if it does
+   not end in one. */
+static bool split_direction(const char *text, char place[RITZ_NAME_SIZE],
+                            int64_t *direction)
+{
+    const char *colon = strrchr(text, ':');
+
+    if (!colon || colon[1] < '0' || colon[1] > '6' || colon[2] != '\0')
+        return false;
+    *direction = colon[1] - '0';
+    memcpy(place, text, (size_t)(colon - text));
+    place[colon - text] = '\0';
+    return true;
+}
+
+/* Index of a port, without a sentence; -1 if there is none. */
+static int64_t find_port(const ritz_reduced *body, const char *name)
+{
     for (int64_t p = 0; p < body->num_ports; p++)
-        most += body->port[p].count;
-    RITZ_CHECK(ritz_dense_new(body->K.ncol, most, &F));
-    for (int64_t j = 0; j < io->num_inputs && F.nrow > 0; j++)
-        if (ritz_plan_attaches(stage->scene, plan, j))
-            memcpy(ritz_dense_col(&F, m++), ritz_dense_col(&io->B, j) + first,
-                   (size_t)F.nrow * sizeof *F.val);
-    for (int64_t p = 0; p < body->num_ports; p++)
-        if (is_attached(stage->scene, plan, k, body->port[p].name))
-            m = append_rows(&body->port[p].map, 0, &F, m);
-    for (int c = 0; c < 3 && (plan->attached & RITZ_ATTACHED_OUTPUTS); c++)
-        m = append_rows(C[c], first, &F, m);
-    if (plan->attached & RITZ_ATTACHED_DAMPERS) {
-        ritz_dense_put(&body->dampers.B, 0, m, &F);
-        m += body->dampers.count;
+        if (strcmp(body->port[p].name, name) == 0)
+            return p;
+    return -1;
+}
+
+/* Whether a place has the name of a damper, "rotor/strut". */
+static bool is_damper(const ritz_stage *stage, const ritz_scene_place *at,
+                      const char *damper)
+{
+    const char *body = stage->scene->component[at->component].name;
+    size_t length = strlen(body);
+
+    return strncmp(damper, body, length) == 0 && damper[length] == '/' &&
+           strcmp(damper + length + 1, at->port) == 0;
+}
+
+/* Unit forces at a place that the scene names. */
+static ritz_status add_place(const ritz_stage *stage,
+                             const ritz_scene_place *at,
+                             ritz_unit_forces *forces)
+{
+    const ritz_reduced *body = &stage->body[at->component];
+    RITZ_OWN(ritz_port_map) map = {0};
+    char place[RITZ_NAME_SIZE];
+    char *end = NULL;
+    int64_t direction = 0, row = 0, grid = 0;
+    int64_t p = find_port(body, at->port);
+
+    for (int64_t i = 0; p >= 0 && i < body->port[p].count; i++)
+        RITZ_CHECK(
+            add_row(stage, at->component, &body->port[p], i, 0, true, forces));
+    if (p >= 0)
+        return RITZ_OK;
+    for (int64_t j = 0; j < stage->dampers.count; j++)
+        if (is_damper(stage, at, stage->dampers.name[j]))
+            return add_damper(stage, j, 0, true, forces);
+    if (!split_direction(at->port, place, &direction))
+        return ritz_reduced_port(body, at->port) ? RITZ_OK : RITZ_ERR_ARGUMENT;
+    p = find_port(body, place);
+    grid = strtoll(place, &end, 10);
+    if (p < 0 && (end == place || *end != '\0'))
+        return ritz_reduced_port(body, place) ? RITZ_OK : RITZ_ERR_ARGUMENT;
+    if (p < 0)
+        RITZ_CHECK(map_grid(body, grid, &map));
+    RITZ_CHECK(find_direction(p < 0 ? &map : &body->port[p], direction, &row));
+    return add_row(stage, at->component, p < 0 ? &map : &body->port[p], row, 0,
+                   true, forces);
+}
+
+static ritz_status add_places(const ritz_stage *stage, ritz_unit_forces *forces)
+{
+    const ritz_scene *scene = stage->scene;
+
+    for (int64_t k = 0; k < scene->num_attached_forces; k++) {
+        const ritz_scene_force *force = &scene->attached_force[k];
+
+        if (force->input < 0 && force->output < 0)
+            RITZ_CHECK(ritz_scene_context(
+                scene, add_place(stage, &force->at, forces), force->line,
+                force->column, "attached dof", force->at.port));
     }
-    return ritz_dense_columns(&F, 0, m, out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_unit_forces_of_channels(const ritz_stage *stage,
+                                         ritz_unit_forces *out)
+{
+    RITZ_OWN(ritz_unit_forces) forces = {0};
+
+    RITZ_CHECK(add_inputs(stage, &forces));
+    RITZ_CHECK(add_outputs(stage, &forces));
+    RITZ_CHECK(add_dampers(stage, true, &forces));
+    RITZ_MOVE(*out, forces);
+    return RITZ_OK;
+}
+
+ritz_status ritz_unit_forces_new(const ritz_stage *stage, ritz_unit_forces *out)
+{
+    const ritz_scene *scene = stage->scene;
+    const bool open = scene->attached & RITZ_ATTACHED_AUTO;
+    const bool all = scene->attached == RITZ_ATTACHED_AUTO &&
+                     scene->num_attached_forces == 0;
+    RITZ_OWN(ritz_unit_forces) forces = {0};
+
+    RITZ_CHECK(add_inputs(stage, &forces));
+    RITZ_CHECK(add_outputs(stage, &forces));
+    RITZ_CHECK(
+        add_dampers(stage, scene->augment == RITZ_AUGMENT_SYSTEM, &forces));
+    if (open || scene->augment == RITZ_AUGMENT_COMPONENT)
+        RITZ_CHECK(add_ports(stage, true, &forces));
+    RITZ_CHECK(add_places(stage, &forces));
+    if (all)
+        RITZ_CHECK(add_ports(stage, false, &forces));
+    for (int64_t k = 0; k < forces.count; k++)
+        forces.each[k].named = forces.each[k].named || all;
+    RITZ_MOVE(*out, forces);
+    return RITZ_OK;
+}
+
+ritz_status ritz_unit_forces_select(const ritz_unit_forces *forces, int sets,
+                                    bool named, int64_t *count, int64_t **out)
+{
+    RITZ_CHECK_NEW(*out, forces->count);
+    *count = 0;
+    for (int64_t k = 0; k < forces->count; k++)
+        if ((forces->each[k].sets & sets) || (named && forces->each[k].named))
+            (*out)[(*count)++] = k;
+    return RITZ_OK;
+}
+
+ritz_status ritz_plan_body(const ritz_stage *stage, int64_t k,
+                           const ritz_plan *plan, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_new(stage->body[k].K.ncol, plan->count, out));
+    for (int64_t j = 0; j < plan->count && out->nrow > 0; j++) {
+        const double *f = plan->forces->each[plan->force[j]].f;
+
+        if (f)
+            memcpy(ritz_dense_col(out, j), f + stage->first[k],
+                   (size_t)out->nrow * sizeof *out->val);
+    }
+    return RITZ_OK;
 }
 
 /* (S P)' of one spring, its elongations as the modes move. */
@@ -120,4 +428,55 @@ ritz_status ritz_damper_forces(const ritz_stage *stage,
         if (springs.hold[k].damping > 0.0)
             add_spring(stage, c, &springs, k, ritz_dense_col(&F, m++));
     return ritz_dense_columns(&F, 0, m, out);
+}
+
+/* Put forces along the dampers of joints into their columns. */
+static ritz_status put_springs(const ritz_stage *stage,
+                               const ritz_configuration *at,
+                               const ritz_plan *plan, ritz_dense *B)
+{
+    RITZ_OWN(ritz_dense) D = {0};
+
+    for (int64_t j = 0; j < plan->count; j++) {
+        const ritz_unit_force *force = &plan->forces->each[plan->force[j]];
+
+        if (force->f)
+            continue;
+        if (!D.val)
+            RITZ_CHECK(ritz_damper_forces(stage, at, &D));
+        memcpy(ritz_dense_col(B, j),
+               ritz_dense_col(&D, at->dampers.count + force->spring),
+               (size_t)B->nrow * sizeof *B->val);
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_plan_system(const ritz_stage *stage,
+                             const ritz_configuration *at,
+                             const ritz_plan *plan, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) B = {0};
+
+    RITZ_CHECK(ritz_dense_new(at->K.ncol, plan->count, &B));
+    for (int64_t k = 0; k < stage->count; k++) {
+        RITZ_OWN(ritz_dense) F = {0}, part = {0};
+
+        RITZ_CHECK(ritz_plan_body(stage, k, plan, &F));
+        RITZ_CHECK(ritz_dense_mul_tn(&at->P[k], &F, &part));
+        ritz_dense_add(1.0, &part, &B);
+    }
+    RITZ_CHECK(put_springs(stage, at, plan, &B));
+    RITZ_MOVE(*out, B);
+    return RITZ_OK;
+}
+
+static void ritz_unit_force_free(ritz_unit_force *force)
+{
+    free(force->f);
+}
+
+void ritz_unit_forces_free(ritz_unit_forces *forces)
+{
+    RITZ_FREE_EACH(ritz_unit_force, forces->count, forces->each);
+    *forces = (ritz_unit_forces){0};
 }

@@ -14,9 +14,7 @@
 
 #include <complex.h>
 #include <float.h>
-#include <lapacke.h>
 #include <math.h>
-#include <string.h>
 
 bool ritz_compare_responds(const ritz_scene *scene)
 {
@@ -33,10 +31,26 @@ static ritz_status find_poles(const ritz_scene *scene,
     return ritz_poles_of_dense(&model, &scene->damping, scene->band_hz[1], out);
 }
 
+static ritz_status respond_at(const ritz_scene *scene,
+                              const ritz_configuration *c,
+                              const ritz_grid *grid, ritz_response *out)
+{
+    RITZ_OWN(ritz_poles) poles = {0};
+    RITZ_OWN(ritz_response) made = {0};
+
+    RITZ_CHECK(find_poles(scene, c, &poles));
+    RITZ_CHECK(ritz_response_new(grid, &poles, &made));
+    for (int64_t k = 0; k < made.count; k++)
+        RITZ_CHECK(
+            ritz_poles_add(&poles, made.hertz[k],
+                           made.H + k * made.num_inputs * made.num_outputs));
+    RITZ_MOVE(*out, made);
+    return RITZ_OK;
+}
+
 ritz_status ritz_compare_respond(const ritz_scene *scene,
-                                 const ritz_configuration *first,
-                                 const ritz_configuration *second,
-                                 ritz_response *one, ritz_response *two)
+                                 const ritz_configuration *configuration,
+                                 ritz_response *out)
 {
     const ritz_grid grid = {
         .from_hz = fmax(scene->band_hz[0], RITZ_BAND_START * scene->band_hz[1]),
@@ -44,73 +58,98 @@ ritz_status ritz_compare_respond(const ritz_scene *scene,
         .count = 200,
         .refine = true,
     };
-    int64_t size = first->io.num_inputs * first->io.num_outputs;
-    RITZ_OWN(ritz_poles) p = {0}, p2 = {0};
 
-    RITZ_CHECK(find_poles(scene, first, &p));
-    RITZ_CHECK(find_poles(scene, second, &p2));
-    RITZ_CHECK(ritz_response_new(&grid, &p, one));
-    RITZ_CHECK(ritz_response_new(&grid, &p, two));
-    for (int64_t k = 0; k < one->count; k++) {
-        RITZ_CHECK(ritz_poles_add(&p, one->hertz[k], one->H + k * size));
-        RITZ_CHECK(ritz_poles_add(&p2, one->hertz[k], two->H + k * size));
-    }
+    return respond_at(scene, configuration, &grid, out);
+}
+
+ritz_status ritz_compare_follow(const ritz_scene *scene,
+                                const ritz_configuration *configuration,
+                                const ritz_response *points, ritz_response *out)
+{
+    const ritz_grid grid = {.count = points->count, .hertz = points->hertz};
+
+    return respond_at(scene, configuration, &grid, out);
+}
+
+ritz_status ritz_rows_respond(ritz_rows *rows)
+{
+    const ritz_scene *scene = rows->stage->scene;
+
+    if (rows->response || !ritz_compare_responds(scene))
+        return RITZ_OK;
+    RITZ_CHECK_NEW(rows->response, rows->listed->num_configurations);
+    rows->num_responses = rows->listed->num_configurations;
+    for (int64_t k = 0; k < rows->num_responses; k++)
+        RITZ_CHECK(ritz_compare_respond(scene, ritz_rows_first(rows, k),
+                                        &rows->response[k]));
     return RITZ_OK;
 }
 
-/* Largest singular value at each point of a response. */
-static ritz_status largest_singular(const ritz_response *r, double *out)
+void ritz_rows_free(ritz_rows *rows)
 {
-    int64_t m = r->num_outputs, n = r->num_inputs;
-    int64_t least = m < n ? m : n;
-    RITZ_OWN_ARRAY double _Complex *A = NULL;
-    RITZ_OWN_ARRAY double *sigma = NULL, *work = NULL;
+    RITZ_FREE_EACH(ritz_response, rows->num_responses, rows->response);
+    ritz_system_free(&rows->between);
+}
 
-    RITZ_CHECK_NEW(A, m * n);
-    RITZ_CHECK_NEW(sigma, least);
-    RITZ_CHECK_NEW(work, least);
-    for (int64_t k = 0; k < r->count; k++) {
-        memcpy(A, r->H + k * m * n, (size_t)(m * n) * sizeof *A);
-        RITZ_REFUSE_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)n,
-                                      (int)m, A, (int)n, sigma, NULL, 1, NULL,
-                                      1, work) != 0,
-                       RITZ_ERR_CONVERGENCE,
-                       "singular values of a response do not converge");
-        out[k] = sigma[0];
-    }
+/* All singular values at each point of a response, descending. */
+static ritz_status list_singular(const ritz_scales *scales,
+                                 const ritz_response *r, int64_t width,
+                                 double *sigma)
+{
+    for (int64_t k = 0; k < r->count; k++)
+        RITZ_CHECK(
+            ritz_singular_values(r->num_outputs, r->num_inputs,
+                                 r->H + k * r->num_outputs * r->num_inputs,
+                                 scales, sigma + k * width));
     return RITZ_OK;
 }
 
-ritz_status ritz_compare_bode(const ritz_response *first,
-                              const ritz_response *second, double *deviation,
-                              double *hertz)
+/* The worst deviation of singular value @p i of two responses. */
+static void compare_curve(const ritz_response *r, int64_t width, int64_t i,
+                          const double *one, const double *two,
+                          double *deviation, double *hertz)
 {
-    const ritz_response *r = first;
-    RITZ_OWN_ARRAY double *one = NULL, *two = NULL;
     double mean = 0.0;
     int64_t nonzero = 0;
 
-    RITZ_CHECK_NEW(one, r->count);
-    RITZ_CHECK_NEW(two, r->count);
-    RITZ_CHECK(largest_singular(first, one));
-    RITZ_CHECK(largest_singular(second, two));
     for (int64_t k = 0; k < r->count; k++)
-        if (one[k] > 0.0) {
-            mean += log(one[k]);
+        if (one[k * width + i] > 0.0) {
+            mean += log(one[k * width + i]);
             nonzero++;
         }
     mean = nonzero > 0 ? exp(mean / (double)nonzero) : 0.0;
     *deviation = 0.0;
     *hertz = r->count > 0 ? r->hertz[0] : 0.0;
     for (int64_t k = 0; k < r->count; k++) {
-        double level = fmax(one[k], RITZ_BODE_FLOOR * mean);
-        double error = level > 0.0 ? fabs(two[k] - one[k]) / level : 0.0;
+        double first = one[k * width + i], second = two[k * width + i];
+        double level = fmax(first, RITZ_BODE_FLOOR * mean);
+        double error = level > 0.0 ? fabs(second - first) / level : 0.0;
 
         if (error > *deviation) {
             *deviation = error;
             *hertz = r->hertz[k];
         }
     }
+}
+
+ritz_status ritz_compare_bode(const ritz_scales *scales,
+                              const ritz_response *first,
+                              const ritz_response *second, ritz_bode_gap *out)
+{
+    const ritz_response *r = first;
+    const int64_t width =
+        r->num_inputs < r->num_outputs ? r->num_inputs : r->num_outputs;
+    RITZ_OWN_ARRAY double *one = NULL, *two = NULL;
+    int64_t rank = 0;
+
+    RITZ_CHECK_NEW(one, r->count * width);
+    RITZ_CHECK_NEW(two, r->count * width);
+    RITZ_CHECK(list_singular(scales, first, width, one));
+    RITZ_CHECK(list_singular(scales, second, width, two));
+    rank = ritz_singular_rank(r->count, width, one);
+    for (int k = 0; k < 2; k++)
+        compare_curve(r, width, k == 0 || rank == 0 ? 0 : rank - 1, one, two,
+                      &out->deviation[k], &out->hertz[k]);
     return RITZ_OK;
 }
 
@@ -288,14 +327,19 @@ static int64_t find_paired_mode(const ritz_configuration *second,
 /*
  * The smallest MAC and the largest error in frequency of the modes that matter.
  * Where modes were kept, one whose error exceeds its rounding limit precedes
- * any that is within it, lest a larger error that is allowed hide it.
+ * any that is within it, lest a larger error that is allowed hide it. Where
+ * bodies were made compact, the scene's tolerance is allowed.
  */
-static void measure_modes(const ritz_configuration *first,
+static void measure_modes(const ritz_scene *scene,
+                          const ritz_configuration *first,
                           const ritz_configuration *second, const ritz_dense *X,
                           ritz_compare_row *row)
 {
     int64_t e = first->K.ncol;
     double c = RITZ_EIGENVALUE_ROUNDING * (double)e;
+    double least = scene->extraneous == RITZ_EXTRANEOUS_COMPACT
+                       ? scene->extraneous_tolerance
+                       : 0.0;
     bool any = false, broken = false;
 
     row->frequency_error = row->mac = row->allowed = nan("");
@@ -309,7 +353,8 @@ static void measure_modes(const ritz_configuration *first,
             continue;
         j = find_paired_mode(second, X, k, &mac);
         error = fabs(sqrt(fabs(second->lambda[j] / first->lambda[k])) - 1.0);
-        allowed = c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k];
+        allowed = fmax(
+            c * DBL_EPSILON * first->lambda[e - 1] / first->lambda[k], least);
         row->mac = fmin(row->mac, mac); /* fmin ignores NaN */
         beyond = row->listed && error > allowed;
         if (!any || beyond > broken ||
@@ -375,16 +420,20 @@ static ritz_status measure_moments(const ritz_configuration *first,
  */
 static ritz_status measure_response(const ritz_scene *scene,
                                     const ritz_configuration *first,
+                                    const ritz_response *given,
                                     const ritz_configuration *second,
                                     ritz_compare_row *row)
 {
-    RITZ_OWN(ritz_response) one = {0}, two = {0};
+    RITZ_OWN(ritz_response) made = {0}, two = {0};
+    const ritz_response *one = given ? given : &made;
     double largest = 0.0, gap = 0.0;
 
-    RITZ_CHECK(ritz_compare_respond(scene, first, second, &one, &two));
-    for (int64_t k = 0; k < one.count * one.num_inputs * one.num_outputs; k++) {
-        largest = fmax(largest, cabs(one.H[k]));
-        gap = fmax(gap, cabs(one.H[k] - two.H[k]));
+    if (!given)
+        RITZ_CHECK(ritz_compare_respond(scene, first, &made));
+    RITZ_CHECK(ritz_compare_follow(scene, second, one, &two));
+    for (int64_t k = 0; k < two.count * two.num_inputs * two.num_outputs; k++) {
+        largest = fmax(largest, cabs(one->H[k]));
+        gap = fmax(gap, cabs(one->H[k] - two.H[k]));
     }
     row->response_error = largest > 0.0 ? gap / largest : 0.0;
     return RITZ_OK;
@@ -435,6 +484,7 @@ static ritz_status measure_damping(const ritz_scene *scene,
 
 ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  const ritz_configuration *first,
+                                 const ritz_response *response,
                                  ritz_configuration *second,
                                  ritz_compare_row *row)
 {
@@ -445,7 +495,7 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     row->num_flexible = first->K.ncol - first->num_rigid;
     row->gain_error = row->response_error = row->damping_error = nan("");
     RITZ_CHECK(ritz_modes_correlate(stage, V, false, first, second, &X));
-    measure_modes(first, second, &X, row);
+    measure_modes(scene, first, second, &X, row);
     row->rigid_error = 0.0;
     for (int64_t j = 0; j < second->num_rigid; j++)
         row->rigid_error =
@@ -459,6 +509,6 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
         measure_moments(first, second, row->num_moments, &row->moment_error));
     RITZ_CHECK(measure_damping(scene, first, second, row));
     if (ritz_compare_responds(scene))
-        RITZ_CHECK(measure_response(scene, first, second, row));
+        RITZ_CHECK(measure_response(scene, first, response, second, row));
     return RITZ_OK;
 }

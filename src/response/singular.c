@@ -2,6 +2,7 @@
 #include "linear/search.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 
 #include <ritz/response.h>
 
@@ -42,6 +43,20 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
                    "singular values of a response were not found");
     return RITZ_OK;
+}
+
+int64_t ritz_singular_rank(int64_t points, int64_t most, const double *sigma)
+{
+    double largest = 0.0;
+    int64_t rank = 0;
+
+    for (int64_t k = 0; k < points && most > 0; k++)
+        largest = fmax(largest, sigma[k * most]);
+    for (int64_t k = 0; k < points; k++)
+        while (rank < most &&
+               sigma[k * most + rank] > RITZ_ZERO_SINGULAR * largest)
+            rank++;
+    return rank;
 }
 
 ritz_status ritz_singular_of(const ritz_scales *scales, ritz_response *r)

@@ -151,7 +151,7 @@ static ritz_status read_selection(const ritz_yaml *yaml,
 
 /* ---- static corrections ------------------------------------------------- */
 
-enum { LEVEL, ATTACHED, AUGMENT_TOLERANCE, NUM_AUGMENT_KEYS };
+enum { LEVEL, ATTACHED, AMONG, AUGMENT_TOLERANCE, NUM_AUGMENT_KEYS };
 
 static const char levels[][16] = {
     [RITZ_AUGMENT_NONE] = "none",
@@ -164,54 +164,88 @@ static const ritz_yaml_key augment_keys[NUM_AUGMENT_KEYS] = {
                RITZ_YAML_FIELD(ritz_scene, augment),
                RITZ_YAML_WORDS("augmentation", levels)},
     [ATTACHED] = {.name = "attached"},
+    [AMONG] = {.name = "among"},
     [AUGMENT_TOLERANCE] = {"tolerance", false, RITZ_YAML_FRACTION,
                            .offset = offsetof(ritz_scene, attached_tolerance)},
 };
 
-/* Sets of forces, in the order of their bits; names of inputs follow. */
+/* Sets of forces, in the order of their bits; names of inputs and of outputs
+   follow. */
 static const char sets[][RITZ_NAME_SIZE] = {"inputs", "interface", "outputs",
                                             "dampers"};
 
 enum { NUM_SETS = sizeof sets / sizeof *sets };
 
-static ritz_status take_attached(const ritz_yaml *yaml, const yaml_node_t *node,
-                                 ritz_scene *scene)
+/* A force that one item names, unless it names a set. */
+static ritz_status read_force(const ritz_yaml *yaml, const yaml_node_t *item,
+                              const ritz_names *names, ritz_scene *scene)
 {
-    const int64_t num_words = NUM_SETS + scene->num_inputs;
+    ritz_scene_force force = {.input = -1, .output = -1};
+    const char *text = NULL;
+    int64_t at = 0;
+
+    ritz_yaml_locate(item, &force.line, &force.column);
+    RITZ_CHECK(ritz_yaml_text(yaml, item, &text));
+    if (strchr(text, '/')) {
+        RITZ_CHECK(ritz_scene_place_read(yaml, item, scene, &force.at));
+    } else {
+        RITZ_CHECK(ritz_yaml_word(yaml, item, names, &at));
+        if (at < NUM_SETS) {
+            RITZ_REFUSE_AT(scene->attached & (1 << at), yaml, item,
+                           "'%s' is listed before", text);
+            scene->attached |= 1 << at;
+            return RITZ_OK;
+        }
+        if (at < NUM_SETS + scene->num_inputs)
+            force.input = at - NUM_SETS;
+        else
+            force.output = at - NUM_SETS - scene->num_inputs;
+    }
+    for (int64_t k = 0; k < scene->num_attached_forces; k++) {
+        const ritz_scene_force *other = &scene->attached_force[k];
+
+        RITZ_REFUSE_AT(other->input == force.input &&
+                           other->output == force.output &&
+                           other->at.component == force.at.component &&
+                           strcmp(other->at.port, force.at.port) == 0,
+                       yaml, item, "'%s' is listed before", text);
+    }
+    scene->attached_force[scene->num_attached_forces++] = force;
+    return RITZ_OK;
+}
+
+/* A list of sets and names. */
+static ritz_status take_forces(const ritz_yaml *yaml, const yaml_node_t *node,
+                               ritz_scene *scene)
+{
+    const int64_t num_words = NUM_SETS + scene->num_inputs + scene->num_outputs;
     RITZ_OWN_ARRAY char(*words)[RITZ_NAME_SIZE] = NULL;
-    RITZ_OWN_ARRAY bool *taken = NULL;
     int64_t count = 0;
 
-    RITZ_CHECK(ritz_yaml_list(yaml, node, &count));
+    RITZ_CHECK(ritz_scene_count(yaml, node, &count));
     RITZ_REFUSE_AT(count == 0, yaml, node,
                    "nothing is attached: 'augment: none' says so");
     RITZ_CHECK_NEW(words, num_words);
-    memcpy(words, sets, sizeof sets); /* then the names of inputs */
+    memcpy(words, sets, sizeof sets);
     for (int64_t j = 0; j < scene->num_inputs; j++)
         memcpy(words[NUM_SETS + j], scene->input[j].name, RITZ_NAME_SIZE);
-    RITZ_CHECK_NEW(taken, num_words);
-    RITZ_CHECK_NEW(scene->attached_input, scene->num_inputs);
+    for (int64_t j = 0; j < scene->num_outputs; j++)
+        memcpy(words[NUM_SETS + scene->num_inputs + j], scene->output[j].name,
+               RITZ_NAME_SIZE);
+    RITZ_CHECK_NEW(scene->attached_force, count);
     for (int64_t k = 0; k < count; k++) {
         const ritz_names names = {"attached set", num_words, words[0],
                                   sizeof *words};
-        const yaml_node_t *item = ritz_yaml_item(yaml, node, k);
-        int64_t at = 0;
 
-        RITZ_CHECK(ritz_yaml_word(yaml, item, &names, &at));
-        RITZ_REFUSE_AT(taken[at], yaml, item, "'%s' is listed before",
-                       words[at]);
-        taken[at] = true;
-        if (at < NUM_SETS)
-            scene->attached |= 1 << at;
-        else
-            scene->attached_input[scene->num_attached_inputs++] = at - NUM_SETS;
+        RITZ_CHECK(
+            read_force(yaml, ritz_yaml_item(yaml, node, k), &names, scene));
     }
     return RITZ_OK;
 }
 
-/* The word 'auto', or a list of sets. */
-static ritz_status take_sets(const ritz_yaml *yaml, const yaml_node_t *node,
-                             ritz_scene *scene)
+/* The word 'auto', or a list. */
+static ritz_status take_attached(const ritz_yaml *yaml, const yaml_node_t *node,
+                                 ritz_scene *scene)
 {
     static const char words[][8] = {"auto"};
     const ritz_names names = {"choice of attached dofs", 1, words[0],
@@ -219,9 +253,9 @@ static ritz_status take_sets(const ritz_yaml *yaml, const yaml_node_t *node,
     int64_t at = 0;
 
     if (node->type != YAML_SCALAR_NODE)
-        return take_attached(yaml, node, scene);
+        return take_forces(yaml, node, scene);
     RITZ_CHECK(ritz_yaml_word(yaml, node, &names, &at));
-    scene->attached = RITZ_ATTACHED_AUTO;
+    scene->attached |= RITZ_ATTACHED_AUTO;
     return RITZ_OK;
 }
 
@@ -229,7 +263,8 @@ static ritz_status check_augmentation(const ritz_yaml *yaml,
                                       const yaml_node_t *const *value,
                                       const ritz_scene *scene)
 {
-    bool automatic = scene->attached == RITZ_ATTACHED_AUTO;
+    bool automatic = scene->attached & RITZ_ATTACHED_AUTO;
+    const yaml_node_t *listed = value[AMONG] ? value[AMONG] : value[ATTACHED];
 
     RITZ_REFUSE_AT(scene->augment == RITZ_AUGMENT_NONE && value[ATTACHED], yaml,
                    value[ATTACHED],
@@ -237,9 +272,11 @@ static ritz_status check_augmentation(const ritz_yaml *yaml,
                    "augmented");
     RITZ_REFUSE_AT(scene->augment == RITZ_AUGMENT_SYSTEM &&
                        (scene->attached & RITZ_ATTACHED_INTERFACE),
-                   yaml, value[ATTACHED],
+                   yaml, listed,
                    "in a system the forces at an interface cancel: attach "
                    "'interface' with 'level: component'");
+    RITZ_REFUSE_AT(value[AMONG] && !automatic, yaml, value[AMONG],
+                   "'among' goes with 'attached: auto' alone");
     RITZ_REFUSE_AT(value[AUGMENT_TOLERANCE] && !automatic, yaml,
                    value[AUGMENT_TOLERANCE],
                    "a tolerance goes with 'attached: auto' alone");
@@ -264,19 +301,42 @@ static ritz_status read_augmentation(const ritz_yaml *yaml,
     RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_AUGMENT_KEYS, augment_keys,
                                  scene, value));
     if (value[ATTACHED])
-        RITZ_CHECK(take_sets(yaml, value[ATTACHED], scene));
+        RITZ_CHECK(take_attached(yaml, value[ATTACHED], scene));
+    if (value[AMONG] && (scene->attached & RITZ_ATTACHED_AUTO))
+        RITZ_CHECK(take_forces(yaml, value[AMONG], scene));
     return check_augmentation(yaml, value, scene);
 }
+
+/* ---- extraneous modes --------------------------------------------------- */
+
+enum { FATE, EXTRANEOUS_TOLERANCE, NUM_EXTRANEOUS_KEYS };
+
+static const ritz_yaml_key extraneous_keys[NUM_EXTRANEOUS_KEYS] = {
+    [FATE] = {.name = "fate", .required = true},
+    [EXTRANEOUS_TOLERANCE] = {"tolerance", false, RITZ_YAML_FRACTION,
+                              .offset =
+                                  offsetof(ritz_scene, extraneous_tolerance)},
+};
 
 static ritz_status read_extraneous(const ritz_yaml *yaml,
                                    const yaml_node_t *node, ritz_scene *scene)
 {
+    const yaml_node_t *value[NUM_EXTRANEOUS_KEYS] = {node};
     const char *text = NULL;
 
     if (!node)
         return RITZ_OK;
-    RITZ_CHECK(ritz_yaml_text(yaml, node, &text));
-    return ritz_yaml_at(yaml, node, ritz_scene_set_extraneous(scene, text));
+    if (node->type != YAML_SCALAR_NODE)
+        RITZ_CHECK(ritz_yaml_mapping(yaml, node, NUM_EXTRANEOUS_KEYS,
+                                     extraneous_keys, scene, value));
+    RITZ_CHECK(ritz_yaml_text(yaml, value[FATE], &text));
+    RITZ_CHECK(ritz_yaml_at(yaml, value[FATE],
+                            ritz_scene_set_extraneous(scene, text)));
+    RITZ_REFUSE_AT(value[EXTRANEOUS_TOLERANCE] &&
+                       scene->extraneous != RITZ_EXTRANEOUS_COMPACT,
+                   yaml, value[EXTRANEOUS_TOLERANCE],
+                   "a tolerance goes with 'fate: compact' alone");
+    return RITZ_OK;
 }
 
 ritz_status ritz_scene_set_extraneous(ritz_scene *scene, const char *word)
@@ -285,8 +345,10 @@ ritz_status ritz_scene_set_extraneous(ritz_scene *scene, const char *word)
         [RITZ_EXTRANEOUS_KEEP] = "keep",
         [RITZ_EXTRANEOUS_REMOVE] = "remove",
         [RITZ_EXTRANEOUS_OUT_OF_BAND] = "out-of-band",
+        [RITZ_EXTRANEOUS_COMPACT] = "compact",
     };
-    const ritz_names names = {"fate of extraneous modes", 3, words[0],
+    const ritz_names names = {"fate of extraneous modes",
+                              sizeof words / sizeof *words, words[0],
                               sizeof *words};
     int64_t at = 0;
 
@@ -470,7 +532,8 @@ ritz_status ritz_scene_parse(const char *path, const char *text,
              .select_by = "hankel",
              .select_tolerance = RITZ_SCENE_SELECT,
              .composite_tolerance = RITZ_NEGLIGIBLE,
-             .attached_tolerance = RITZ_SCENE_ATTACHED};
+             .attached_tolerance = RITZ_SCENE_ATTACHED,
+             .extraneous_tolerance = RITZ_SCENE_COMPACT};
 
     RITZ_CHECK_NEW(scene.path, (int64_t)strlen(path) + 1);
     memcpy(scene.path, path, strlen(path));
@@ -535,6 +598,6 @@ void ritz_scene_free(ritz_scene *scene)
         free(scene->sweep[k].setting);
     RITZ_FREE(scene->path, scene->component, scene->joint, scene->sweep,
               scene->setting, scene->input, scene->output, scene->reference,
-              scene->select_mode, scene->attached_input);
+              scene->select_mode, scene->attached_force);
     *scene = (ritz_scene){0};
 }

@@ -260,21 +260,6 @@ static ritz_status take_singular(const ritz_io *io,
     return RITZ_OK;
 }
 
-/* How many singular values of the full model are not zero at some point. */
-static int64_t count_nonzero(int64_t points, int64_t most, const double *sigma)
-{
-    double largest = 0.0;
-    int64_t rank = 0;
-
-    for (int64_t k = 0; k < points; k++)
-        largest = fmax(largest, sigma[k * most]);
-    for (int64_t k = 0; k < points; k++)
-        while (rank < most &&
-               sigma[k * most + rank] > RITZ_ZERO_SINGULAR * largest)
-            rank++;
-    return rank;
-}
-
 /*
  * sigma_r of both models, r the rank of the full one [McDaniel2000, 3.3]: the
  * curve below in its plots of singular values over frequency.
@@ -294,7 +279,7 @@ static ritz_status compare_singular(const ritz_sides *sides,
     RITZ_CHECK_NEW(reduced, points * most);
     RITZ_CHECK(take_singular(io, s, s->full, most, sigma));
     RITZ_CHECK(take_singular(io, s, s->reduced, most, reduced));
-    rank = count_nonzero(points, most, sigma);
+    rank = ritz_singular_rank(points, most, sigma);
     for (int64_t k = 0; k < points && rank > 0; k++) {
         double full = sigma[k * most + rank - 1];
         double error = fabs(full - reduced[k * most + rank - 1]);

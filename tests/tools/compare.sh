@@ -60,10 +60,33 @@ holds '  is exact at every angle with all attached, and with fewer is not' \
 scene auto 'select: {by: band}' \
     'augment: {level: component, attached: auto, tolerance: 1e-3}'
 json 0 ritz-compare auto.yaml -o auto.h5
-holds '  chooses the smallest set that is near enough' \
+holds '  chooses the smallest set that is near enough by both singular values' \
     'min((sum(c["orders"]), c["attached"]) for c in j["candidates"]
-         if c["singular_value"] <= 1e-3)[0] ==
-     [sum(c["orders"]) for c in j["candidates"] if c["chosen"]][0]'
+         if max(c["singular_value"], c["smallest_singular_value"]) <= 1e-3)[0]
+     == [sum(c["orders"]) for c in j["candidates"] if c["chosen"]][0]'
+holds '  shows each force alone, and how many smaller sets are excluded' \
+    'sum(c["forces"] == 1 for c in j["candidates"]) ==
+         j["attached_search"]["pool"] > 20 and
+     j["attached_search"]["none_up_to"] >= 1 and
+     all(max(c["singular_value"], c["smallest_singular_value"]) > 1e-3
+         for c in j["candidates"]
+         if c["forces"] <= j["attached_search"]["none_up_to"]) and
+     [c["forces"] - j["attached_search"]["none_up_to"] - 1
+      for c in j["candidates"] if c["chosen"]] == [j["attached_search"]["gap"]]'
+scene few 'select: {by: band}' \
+    'augment: {level: system, attached: auto, among: [outputs, rotor/boom:3]}'
+json 0 ritz-compare few.yaml -o few.h5
+holds '  may choose from what the scene names' \
+    'j["attached_search"]["pool"] == 2 and
+     {c["attached"] for c in j["candidates"] if c["forces"] == 1} ==
+         {"gyro", "tip"}'
+scene named 'select: {modes: [1]}' \
+    'augment: {level: component, attached: [motor, tip, rotor/boom, stator/5:2]}'
+expect 0 '> motor, tip, rotor/boom:1' ritz-compare named.yaml -o named.h5
+scene astray 'select: {modes: [1]}' \
+    'augment: {level: system, attached: [rotor/bom:3]}'
+expect 1 "astray.yaml:18:37: attached dof 'bom:3': there is no port 'bom'" \
+    ritz-compare astray.yaml -o astray.h5
 scene tight 'select: {modes: [1]}' \
     'augment: {level: system, attached: auto, tolerance: 1e-9}'
 expect 0 'warning: no set of attached dofs brings the largest singular value' \
@@ -106,6 +129,19 @@ holds '  leaves eight rigid modes and those that were kept' \
     'all(len(c["frequencies_hz"]) == 11 for c in j["configurations"])'
 expect 0 'extraneous_removed' ritz-compare list.yaml --extraneous out-of-band \
     --json -o list.h5
+json 0 ritz-compare component.yaml -o component.h5
+whole=$(/usr/bin/python3 -s -c 'import json
+print(sum(c["dofs"] for c in json.load(open("log.json"))["components"]))')
+scene compact 'select: {by: band}' 'augment: component' 'extraneous: compact'
+expect 0 'vectors of components that made extraneous modes are dropped' \
+    ritz-compare compact.yaml --components c- -o compact.h5
+json 0 ritz-compare compact.yaml -o compact.h5
+holds '  drops vectors of components and keeps modes within the tolerance' \
+    'j["dropped"] > 0 and j["next_drop"] > 1e-3 and
+     sum(c["dofs"] for c in j["components"]) + j["dropped"] == '"$whole"' and
+     all(c["errors"]["frequency"] <= 1e-3 and c["errors"]["response"] <= 2e-3
+         and c["errors"]["gain"] < 1e-8
+         for c in j["configurations"] if c["listed"])'
 expect 1 "--extraneous: unknown fate of extraneous modes 'drop'" \
     ritz-compare list.yaml --extraneous drop -o list.h5
 

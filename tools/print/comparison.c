@@ -111,18 +111,55 @@ static void print_orders(cli_run *run, int64_t count, const int64_t *order,
 
 static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
 {
+    int worse = k->deviation[1] > k->deviation[0];
     char orders[80];
     char where[RITZ_NAME_SIZE + 32] = "";
 
     print_orders(run, bodies, k->order, orders);
-    if (!isnan(k->deviation) && k->deviation > 0.0)
-        snprintf(where, sizeof where, "%.4g Hz%s%s", k->hertz,
-                 *k->at ? ", " : "", k->at);
-    sink_say(run, ",attached,,dofs,gain_listed,gain_between,singular_value",
-             "%c %-28s %-16s %6ld %9.1e %9.1e %9.1e  %s", k->chosen ? '>' : ' ',
-             k->name, orders, k->largest, k->gain_listed, k->gain_between,
-             k->deviation, where);
-    sink_set(run, "hertz,at,chosen", "%g %s %d", k->hertz, k->at, k->chosen);
+    if (!isnan(k->deviation[worse]) && k->deviation[worse] > 0.0)
+        snprintf(where, sizeof where, "%.4g Hz%s%s", k->hertz[worse],
+                 *k->at[worse] ? ", " : "", k->at[worse]);
+    sink_say(run,
+             ",attached,,dofs,gain_listed,gain_between,singular_value,"
+             "smallest_singular_value",
+             "%c %-28s %-16s %6ld %9.1e %9.1e %9.1e %9.1e  %s",
+             k->chosen ? '>' : ' ', k->name, orders, k->largest, k->gain_listed,
+             k->gain_between, k->deviation[0], k->deviation[1], where);
+    sink_set(run, "hertz,at,smallest_hertz,smallest_at,forces,chosen",
+             "%g %s %g %s %ld %d", k->hertz[0], k->at[0], k->hertz[1], k->at[1],
+             k->num_forces, k->chosen);
+}
+
+/* How the chosen set was found among all that the pool allows. */
+static void say_search(cli_run *run, const ritz_scene *scene,
+                       const ritz_comparison *c, const ritz_candidate *chosen)
+{
+    const ritz_attached_search *s = &c->search;
+    bool fits = ritz_candidate_worst(chosen) <= scene->attached_tolerance;
+    int64_t gap = fits ? chosen->num_forces - s->below - 1 : 0;
+
+    gap = gap > 0 ? gap : 0;
+    sink_object(run, "attached_search");
+    sink_set(run, "pool,tried,none_up_to,gap", "%ld %ld %ld %ld", s->pool,
+             s->tried, s->below, gap);
+    sink_end(run);
+    cli_say(run, "  chosen from %ld forces, no two alike; %ld sets were tried",
+            s->pool, s->tried);
+    if (s->below > 0)
+        cli_say(run,
+                "  all sets of up to %ld are among them, and none is near "
+                "enough",
+                s->below);
+    if (gap > 0)
+        cli_say(run,
+                "  the set with the mark was found by steps: at most %ld of "
+                "its %ld forces could be spared",
+                gap, chosen->num_forces);
+    if (!fits)
+        cli_warn(run,
+                 "no set of attached dofs brings the largest singular value "
+                 "and the smallest within %g: the nearest is %.1e off",
+                 scene->attached_tolerance, ritz_candidate_worst(chosen));
 }
 
 /* Static corrections, each for a set of forces; there may be none. */
@@ -130,8 +167,8 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
                            const ritz_comparison *c)
 {
     const ritz_scene *scene = first->scene;
-    bool open = scene->attached == RITZ_ATTACHED_AUTO;
-    double chosen = 0.0;
+    bool open = scene->attached & RITZ_ATTACHED_AUTO;
+    const ritz_candidate *chosen = NULL;
 
     if (c->num_candidates > 0) {
         cli_say(run, "\nStatic corrections of %s, for these forces",
@@ -139,25 +176,44 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
                     ? "each component, with its rigid modes, once for all "
                       "angles"
                     : "the system");
-        cli_say(run, "  %-28s %-16s %6s %9s %9s %9s", "attached", "orders",
-                "system", "gain", "gain *", "sigma max");
+        cli_say(run, "  %-28s %-16s %6s %9s %9s %9s %9s", "attached", "orders",
+                "system", "gain", "gain *", "sigma max", "sigma min");
     }
     SINK_ITEMS(run, "candidates", k, c->num_candidates) {
         say_candidate(run, first->count, &c->candidate[k]);
         if (c->candidate[k].chosen)
-            chosen = c->candidate[k].deviation;
+            chosen = &c->candidate[k];
     }
-    if (c->num_candidates == 0)
+    if (!chosen)
         return;
     cli_say(run, "  worst relative errors: of the static gain at listed angles "
                  "and between them (*), of the largest singular");
-    cli_say(run, "  value of H(i w) in the band at listed angles, and where; > "
-                 "is what stage 2 was made with");
-    if (open && !(chosen <= scene->attached_tolerance))
-        cli_warn(run,
-                 "no set of attached dofs brings the largest singular value "
-                 "within %g: the nearest is %.1e off",
-                 scene->attached_tolerance, chosen);
+    cli_say(run, "  value of H(i w) and of the smallest that is not zero, in "
+                 "the band at listed angles, and where the worse");
+    cli_say(run, "  one is; > is what stage 2 was made with");
+    if (open)
+        say_search(run, scene, c, chosen);
+}
+
+/* What became of the vectors that made extraneous modes. */
+static void say_compact(cli_run *run, const ritz_stage *first,
+                        const ritz_comparison *c)
+{
+    double tolerance = first->scene->extraneous_tolerance;
+
+    if (first->scene->extraneous != RITZ_EXTRANEOUS_COMPACT)
+        return;
+    sink_set(run, "dropped,next_drop", "%ld %g", c->dropped, c->next_drop);
+    cli_say(run,
+            "%ld vectors of components that made extraneous modes are dropped: "
+            "errors of kept frequencies",
+            c->dropped);
+    cli_say(run,
+            "and shapes (1 - MAC), of response, static gain and damping grow "
+            "by at most %g for it.",
+            tolerance);
+    if (!isnan(c->next_drop))
+        cli_say(run, "For one more they would grow by %.1e.", c->next_drop);
 }
 
 /* "clock=60,cone=0" of a row. */
@@ -505,6 +561,7 @@ static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
     say_orders(run, first, &c->second);
     cli_say(run, "%s", "");
     say_composite(run, first, c);
+    say_compact(run, first, c);
     say_candidates(run, first, c);
     cli_say(run, "\nErrors of the stage-2 system against the stage-1 system");
     RITZ_CHECK(say_rows(run, first, c));

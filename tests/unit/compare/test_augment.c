@@ -125,7 +125,7 @@ static void components_with_all_attached_keep_the_gain(void **)
         assert_int_equal(k->total, cases[i].total);
         assert_near(k->gain_listed, cases[i].gain, cases[i].bound);
         assert_true(isnan(k->gain_between)); /* there is one configuration */
-        assert_true(isnan(k->deviation));    /* and no band */
+        assert_true(isnan(ritz_candidate_worst(k))); /* and no band */
         assert_true(k->chosen == (i == 3));
     }
     assert_true(f.c.row[0].gain_error < 1e-11);
@@ -152,8 +152,9 @@ static ritz_dense forces_at(const ritz_reduced *body, const char *port)
  */
 static void attachment_modes_relieve_inertia(void **)
 {
-    const ritz_plan plan = {.augment = RITZ_AUGMENT_COMPONENT,
-                            .attached = RITZ_ATTACHED_INTERFACE};
+    ritz_unit_forces forces = {0};
+    ritz_plan plan = {.augment = RITZ_AUGMENT_COMPONENT, .forces = &forces};
+    int64_t *force = NULL;
     const double bound = 1e-9;
     ritz_statics own = {0};
     ritz_dense F = {0}, MR = {0}, RF = {0}, gone = {0}, KA = {0}, MA = {0};
@@ -163,6 +164,10 @@ static void attachment_modes_relieve_inertia(void **)
 
     prepare(&f, "select: {modes: [1]}\naugment: component\n");
     B = &f.stage.body[1];
+    assert_ok(ritz_unit_forces_new(&f.stage, &forces));
+    assert_ok(ritz_unit_forces_select(&forces, RITZ_ATTACHED_INTERFACE, false,
+                                      &plan.count, &force));
+    plan.force = force;
     assert_ok(ritz_body_statics(&f.stage, 1, &plan, &own));
     assert_int_equal(own.rigid.ncol, 3);
     assert_int_equal(own.answers.ncol, 3);
@@ -176,6 +181,8 @@ static void attachment_modes_relieve_inertia(void **)
     assert_ok(ritz_dense_mul(&B->M, &own.answers, &MA));
     assert_ok(ritz_dense_mul_tn(&own.rigid, &MA, &none));
     assert_near(ritz_dense_max(&none), 0.0, bound);
+    free(force);
+    ritz_unit_forces_free(&forces);
     ritz_statics_free(&own);
     ritz_dense_free(&F);
     ritz_dense_free(&MR);
@@ -297,7 +304,7 @@ static int64_t find_chosen(const ritz_comparison *c)
 static void the_fewest_forces_whose_response_fits_are_chosen(void **)
 {
     static const char *const levels[] = {"component", "system"};
-    static const char *const names[] = {"interface", "inputs"};
+    static const int64_t named[] = {5, 3}, alone[] = {25, 25};
 
     dualspin_or_skip();
     for (int l = 0; l < 2; l++) {
@@ -311,29 +318,41 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **)
                  levels[l]);
         prepare_thruster(&f, choice);
         assert_ok(ritz_compare(&f.stage, &f.c));
-        assert_int_equal(f.c.num_candidates, l == 0 ? 5 : 3);
+        assert_int_equal(f.c.search.pool, alone[l]);
+        assert_true(f.c.num_candidates > named[l] + alone[l]);
+        assert_true(f.c.search.below >= 1);
         k = f.c.candidate;
         at = find_chosen(&f.c);
-        assert_string_equal(k[at].name, names[l]);
-        assert_true(k[at].deviation <= 1e-3);
-        for (int64_t i = 0; i < f.c.num_candidates; i++)
-            if (k[i].total < k[at].total)
-                assert_true(k[i].deviation > 1e-3);
+        assert_true(ritz_candidate_worst(&k[at]) <= 1e-3);
+        assert_true(k[at].num_forces > f.c.search.below);
+        for (int64_t i = 0; i < f.c.num_candidates; i++) {
+            bool fits = ritz_candidate_worst(&k[i]) <= 1e-3;
+
+            assert_false(fits && k[i].total < k[at].total);
+            assert_false(fits && k[i].num_forces <= f.c.search.below);
+        }
+        /* 'interface' is off by 9.8e-3 in the smallest singular value alone,
+           and with inputs it takes six coordinates more */
+        assert_true(l != 0 ||
+                    (k[2].deviation[0] < 1e-4 && k[2].deviation[1] > 9e-3 &&
+                     k[at].total <= k[3].total - 6));
         assert_int_equal(f.c.second.num_coordinates, k[at].total);
         release(&f);
     }
 }
 
 /*
- * sigma_max of a 1 x 1 response is |H|, of a diagonal one the larger entry:
- * one point is off by a fifth, one is far below all others.
+ * Singular values of a diagonal 2 x 2 response are |its entries|. Of the larger
+ * one point is off by a fifth, one is far below all others; the smaller is off
+ * by half at the first point. Outputs are divided by their limits.
  */
-static void a_deviation_is_that_of_the_largest_singular_value(void **)
+static void a_deviation_is_that_of_both_singular_values(void **)
 {
     double hertz[] = {1.0, 2.0, 3.0};
+    double limit[] = {1.0, 10.0};
     double _Complex one[] = {3.0, 0.0, 0.0,  1.0, 2.0, 0.0,
                              0.0, 1.0, 1e-9, 0.0, 0.0, 1e-9};
-    double _Complex two[] = {3.0, 0.0, 0.0,  2.0, 0.0, 1.6,
+    double _Complex two[] = {3.0, 0.0, 0.0,  1.5, 0.0, 1.6,
                              1.0, 0.0, 2e-9, 0.0, 0.0, 1e-9};
     ritz_response first = {.count = 3,
                            .num_inputs = 2,
@@ -341,13 +360,41 @@ static void a_deviation_is_that_of_the_largest_singular_value(void **)
                            .hertz = hertz,
                            .H = one};
     ritz_response second = first;
-    double deviation = 0.0, at = 0.0;
+    const ritz_scales scales = {.output = limit};
+    ritz_bode_gap gap = {0};
 
     second.H = two;
-    assert_ok(ritz_compare_bode(&first, &second, &deviation, &at));
+    assert_ok(ritz_compare_bode(NULL, &first, &second, &gap));
     /* 2 -> 1.6; 1e-9 is held to 1e-3 of the mean level, (6e-9)^(1/3) */
-    assert_near(deviation, 0.2, 1e-14);
-    assert_near(at, 2.0, 0.0);
+    assert_near(gap.deviation[0], 0.2, 1e-14);
+    assert_near(gap.hertz[0], 2.0, 0.0);
+    assert_near(gap.deviation[1], 0.5, 1e-14);
+    assert_near(gap.hertz[1], 1.0, 0.0);
+    /* 2, 0.1 -> 1.6, 0.1 in the exchanged rows of the second point */
+    assert_ok(ritz_compare_bode(&scales, &first, &second, &gap));
+    assert_near(gap.deviation[0], 0.2, 1e-14);
+    assert_near(gap.deviation[1], 0.5, 1e-14);
+}
+
+/* Where the second value is zero at all points, the smallest that is not is the
+   first. */
+static void a_singular_value_of_zero_is_none(void **)
+{
+    double hertz[] = {1.0, 2.0};
+    double _Complex one[] = {3.0, 0.0, 6.0, 1e-13, 2.0, 0.0, 4.0, 0.0};
+    double _Complex two[] = {3.3, 0.0, 6.6, 1e-3, 2.0, 0.0, 4.0, 1e-3};
+    ritz_response first = {.count = 2,
+                           .num_inputs = 2,
+                           .num_outputs = 2,
+                           .hertz = hertz,
+                           .H = one};
+    ritz_response second = first;
+    ritz_bode_gap gap = {0};
+
+    second.H = two;
+    assert_ok(ritz_compare_bode(NULL, &first, &second, &gap));
+    assert_near(gap.deviation[0], 0.1, 1e-6);
+    assert_near(gap.deviation[1], 0.1, 1e-6);
 }
 
 static void augmentations_that_make_no_sense_are_refused(void **)
@@ -368,6 +415,20 @@ static void augmentations_that_make_no_sense_are_refused(void **)
          "in a system the forces at an interface cancel"},
         {"augment: {level: system, attached: [inputs], tolerance: 0.1}\n",
          "a tolerance goes with 'attached: auto' alone"},
+        {"augment: {level: component, attached: [A/n1:2, A/n1:2]}\n",
+         "'A/n1:2' is listed before"},
+        {"augment: {level: component, attached: [C/n1]}\n",
+         "unknown component 'C'"},
+        {"augment: {level: component, attached: [A/]}\n",
+         "'A/' is not COMPONENT/PORT"},
+        {"augment: {level: component, attached: [u1], among: [u2]}\n",
+         "'among' goes with 'attached: auto' alone"},
+        {"band_hz: [0, 1]\n"
+         "augment: {level: system, attached: auto, among: [interface]}\n",
+         "in a system the forces at an interface cancel"},
+        {"band_hz: [0, 1]\n"
+         "augment: {level: system, attached: auto, among: []}\n",
+         "nothing is attached"},
         {"augment: {level: component, attached: automatic}\n",
          "unknown choice of attached dofs 'automatic'"},
         {"augment: {level: component, attached: auto}\n",
@@ -445,17 +506,27 @@ static void no_allocation_failure_leaks(void **)
 
     prepare(&f, "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
                 "select: {modes: [1, 3]}\n"
-                "augment: {level: system, attached: auto}\n");
+                "augment: {level: system, attached: auto, among: [u1]}\n");
     assert_survives_most_allocations(&f.stage);
     release(&f);
 }
 
 static ritz_status statics_anew(const ritz_stage *stage)
 {
-    const ritz_plan plan = {.augment = RITZ_AUGMENT_COMPONENT, .attached = 7};
+    ritz_unit_forces forces = {0};
+    ritz_plan plan = {.augment = RITZ_AUGMENT_COMPONENT, .forces = &forces};
+    int64_t *force = NULL;
     ritz_statics own = {0};
-    ritz_status status = ritz_body_statics(stage, 1, &plan, &own);
+    ritz_status status = ritz_unit_forces_new(stage, &forces);
 
+    if (status == RITZ_OK)
+        status =
+            ritz_unit_forces_select(&forces, 7, false, &plan.count, &force);
+    plan.force = force;
+    if (status == RITZ_OK)
+        status = ritz_body_statics(stage, 1, &plan, &own);
+    free(force);
+    ritz_unit_forces_free(&forces);
     ritz_statics_free(&own);
     return status;
 }
@@ -477,7 +548,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_gain_is_exact_at_every_angle_with_all_attached),
     cmocka_unit_test(answers_of_the_system_are_exact_where_they_were_made),
     cmocka_unit_test(the_fewest_forces_whose_response_fits_are_chosen),
-    cmocka_unit_test(a_deviation_is_that_of_the_largest_singular_value),
+    cmocka_unit_test(a_deviation_is_that_of_both_singular_values),
+    cmocka_unit_test(a_singular_value_of_zero_is_none),
     cmocka_unit_test(augmentations_that_make_no_sense_are_refused),
     cmocka_unit_test(a_choice_without_damping_is_refused),
     cmocka_unit_test(a_body_without_stiffness_or_mass_is_refused),

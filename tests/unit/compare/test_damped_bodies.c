@@ -258,6 +258,24 @@ static void sets_are_tried_with_dampers_too(void **state)
     release(&f);
 }
 
+/* By its name a body's damper is attached alone: a coordinate more. */
+static void a_damper_can_be_attached_by_its_name(void **state)
+{
+    int64_t total = 0;
+    fixture f;
+
+    (void)state;
+    prepare(&f, "augment: {level: component, attached: [inputs]}\n");
+    total = f.c.second.num_coordinates;
+    release(&f);
+    prepare(&f, "augment: {level: component, attached: [inputs, A/strut]}\n");
+    assert_int_equal(f.c.second.num_coordinates, total + 1);
+    assert_int_equal(f.c.num_candidates, 11);
+    assert_string_equal(f.c.candidate[10].name, "inputs, A/strut");
+    assert_true(f.c.candidate[10].chosen);
+    release(&f);
+}
+
 /* The part of w that columns of V do not span, relative. */
 static double unspanned(const ritz_dense *V, int64_t count, const double *w)
 {
@@ -342,6 +360,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(static_responses_along_dampers_mend_it),
     cmocka_unit_test(forces_are_those_of_dampers),
     cmocka_unit_test(sets_are_tried_with_dampers_too),
+    cmocka_unit_test(a_damper_can_be_attached_by_its_name),
     cmocka_unit_test(ordered_directions_have_them_early),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

@@ -1,0 +1,284 @@
+/*
+ * COMPACT: bodies without the vectors that make extraneous modes. Kept modes,
+ * responses, rigid motion and static gain stay what the scene allows, at fewer
+ * coordinates, and what is dropped does not come back in another assembly.
+ */
+#include "testing.h"
+
+#include "beams.h"
+#include "dualspin.h"
+#include "matrices.h"
+
+#include <ritz/assembly.h>
+#include <ritz/matrix.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct fixture {
+    ritz_scene scene;
+    ritz_stage stage;
+    ritz_comparison kept, compact; /* without and with it */
+} fixture;
+
+static int set_up(void **state)
+{
+    static fixture f;
+
+    *state = &f;
+    if (!dualspin_is_there())
+        return 0;
+    assert_ok(dualspin_stage(&f.scene, &f.stage));
+    assert_ok(ritz_compare(&f.stage, &f.kept));
+    f.scene.extraneous = RITZ_EXTRANEOUS_COMPACT;
+    f.scene.extraneous_tolerance = 1e-3;
+    assert_ok(ritz_compare(&f.stage, &f.compact));
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+
+    ritz_comparison_free(&f->kept);
+    ritz_comparison_free(&f->compact);
+    ritz_stage_free(&f->stage);
+    ritz_scene_free(&f->scene);
+    return 0;
+}
+
+static void bodies_and_systems_lose_as_many_coordinates(void **state)
+{
+    fixture *f = *state;
+    int64_t dropped = f->compact.dropped;
+
+    dualspin_or_skip();
+    assert_true(dropped >= 6); /* measured: 8 */
+    assert_int_equal(f->kept.dropped, 0);
+    assert_int_equal(f->compact.second.num_coordinates,
+                     f->kept.second.num_coordinates - dropped);
+    for (int64_t k = 0; k < 6; k++) {
+        const ritz_compare_row *before = &f->kept.row[k];
+        const ritz_compare_row *after = &f->compact.row[k];
+
+        assert_int_equal(after->num_kept, before->num_kept);
+        assert_int_equal(after->order, before->order - dropped);
+        assert_int_equal(after->num_strays, before->num_strays - dropped);
+        for (int64_t i = 0; i < after->num_strays; i++)
+            assert_false(after->stray[i].removed);
+    }
+}
+
+static void what_is_kept_changes_within_the_tolerance(void **state)
+{
+    fixture *f = *state;
+    double worst = 0.0;
+
+    dualspin_or_skip();
+    for (int64_t k = 0; k < 6; k++) {
+        const ritz_compare_row *row = &f->compact.row[k];
+
+        assert_true(row->frequency_error <= 1e-3);
+        assert_true(row->response_error <= 1e-3);
+        assert_near(row->allowed, 1e-3, 1e-15);
+        assert_true(row->mac >= 1.0 - 1e-3);
+        worst = fmax(worst, row->response_error);
+    }
+    assert_true(worst > 1e-5); /* something was paid */
+    assert_true(f->compact.next_drop > 1e-3);
+}
+
+static void rigid_motion_and_static_gain_are_not_touched(void **state)
+{
+    fixture *f = *state;
+
+    dualspin_or_skip();
+    for (int64_t k = 0; k < 6; k++) {
+        assert_int_equal(f->compact.second_system.configuration[k].num_rigid,
+                         8);
+        assert_true(f->compact.row[k].rigid_error < 1e-4);
+        assert_true(f->compact.row[k].gain_error < 1e-9);
+    }
+}
+
+/* V'MV = I still, and every V is in the span of the one before. */
+static void smaller_subspaces_lie_in_the_larger_ones(void **state)
+{
+    fixture *f = *state;
+
+    dualspin_or_skip();
+    for (int64_t c = 0; c < 2; c++) {
+        const ritz_dense *before = &f->kept.V[c], *after = &f->compact.V[c];
+        ritz_dense MV = {0}, gram = {0}, share = {0};
+
+        assert_ok(ritz_dense_mul(&f->stage.body[c].M, after, &MV));
+        assert_ok(ritz_dense_mul_tn(after, &MV, &gram));
+        assert_ok(ritz_dense_mul_tn(before, &MV, &share));
+        for (int64_t j = 0; j < gram.ncol; j++) {
+            double length = 0.0;
+
+            for (int64_t i = 0; i < gram.nrow; i++)
+                assert_near(ritz_dense_col(&gram, j)[i], i == j, 1e-9);
+            for (int64_t i = 0; i < share.nrow; i++)
+                length = hypot(length, ritz_dense_col(&share, j)[i]);
+            assert_near(length, 1.0, 1e-9);
+        }
+        ritz_dense_free(&MV);
+        ritz_dense_free(&gram);
+        ritz_dense_free(&share);
+    }
+}
+
+/* Another system of the bodies, at an angle that is not listed, has none of
+   what was dropped: its order is that of the bodies less the joints'. */
+static void what_is_dropped_does_not_come_back(void **state)
+{
+    fixture *f = *state;
+    const double setting[] = {37.0, 0.0};
+    ritz_configuration at = {0};
+
+    dualspin_or_skip();
+    assert_ok(ritz_stage_assemble(&f->compact.second, setting, &at));
+    assert_int_equal(at.K.ncol, f->compact.second.num_coordinates - at.rank);
+    assert_int_equal(at.K.ncol, f->compact.row[0].order);
+    ritz_configuration_free(&at);
+}
+
+/* Looser composite tolerances are made compact too, each from where it is. */
+static void composite_tolerances_are_made_compact(void **state)
+{
+    static const double tolerance[] = {1e-6, 1e-3};
+    fixture *f = *state;
+    ritz_tolerance_row *row = NULL;
+
+    dualspin_or_skip();
+    assert_ok(
+        ritz_compare_tolerances(&f->stage, &f->compact, 2, tolerance, &row));
+    assert_true(row[0].total <= f->compact.second.num_coordinates);
+    assert_true(row[1].total <= row[0].total);
+    assert_true(row[0].response_error <= 1e-3);
+    ritz_tolerances_free(2, &row);
+}
+
+static void open_beams(fixture *f, const char *choice)
+{
+    char tail[2048];
+
+    *f = (fixture){0};
+    snprintf(tail, sizeof tail, "%s%s", beams_io, choice);
+    assert_ok(beams_stage(false, tail, &f->scene, &f->stage));
+    assert_ok(ritz_compare(&f->stage, &f->compact));
+}
+
+static void close_beams(fixture *f)
+{
+    ritz_comparison_free(&f->compact);
+    ritz_stage_free(&f->stage);
+    ritz_scene_free(&f->scene);
+}
+
+/*
+ * Four vectors of either half of [McDaniel2000]'s beam carry four kept modes:
+ * without any of them one kept mode is gone, and its frequency with it.
+ */
+static void what_kept_modes_need_is_not_dropped(void **)
+{
+    fixture f;
+
+    open_beams(&f, "band_hz: [0, 2]\nselect: {modes: [1, 2, 3, 5]}\n"
+                   "extraneous: {fate: compact, tolerance: 0.01}\n");
+    assert_int_equal(f.compact.dropped, 0);
+    assert_true(f.compact.next_drop > 0.01);
+    assert_int_equal(f.compact.row[0].order, 6);
+    assert_int_equal(f.compact.row[0].num_strays, 2);
+    close_beams(&f);
+}
+
+/* Two modes of a scene without a response; all vectors are in the composite
+   set, and the bodies stay as they are. */
+static void frequencies_alone_are_compared_without_a_response(void **)
+{
+    fixture f;
+
+    open_beams(&f, "select: {modes: [1, 2, 3, 4, 5, 6, 7, 8, 9]}\n"
+                   "extraneous: compact\n");
+    assert_near(f.scene.extraneous_tolerance, 1e-3, 1e-18);
+    assert_true(f.compact.row[0].frequency_error <= 1e-3);
+    assert_true(isnan(f.compact.row[0].response_error));
+    assert_true(f.compact.dropped > 0 || f.compact.next_drop > 1e-3);
+    assert_int_equal(f.compact.row[0].order, 9 + f.compact.row[0].num_strays);
+    close_beams(&f);
+}
+
+static void fates_that_make_no_sense_are_refused(void **)
+{
+    static const struct {
+        const char *choice, *words;
+    } cases[] = {
+        {"extraneous: {tolerance: 0.1}\n", "key 'fate' is missing"},
+        {"extraneous: {fate: remove, tolerance: 0.1}\n",
+         "a tolerance goes with 'fate: compact' alone"},
+        {"extraneous: {fate: compact, tolerance: 1}\n", "between 0 and 1"},
+        {"extraneous: compcat\n",
+         "unknown fate of extraneous modes 'compcat', is 'compact' meant?"},
+        {"select: {by: krylov, vectors: 2}\nextraneous: compact\n",
+         "Krylov vectors keep moments, not modes, so no mode is extraneous"},
+    };
+
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        ritz_scene scene = {0};
+        ritz_stage stage = {0};
+        char tail[1024];
+
+        snprintf(tail, sizeof tail, "%s%s", beams_io, cases[k].choice);
+        assert_fails(beams_stage(false, tail, &scene, &stage), RITZ_ERR_FORMAT,
+                     cases[k].words);
+    }
+}
+
+static ritz_status compare_anew(const ritz_stage *stage)
+{
+    ritz_comparison c = {0};
+    ritz_status status = ritz_compare(stage, &c);
+
+    ritz_comparison_free(&c);
+    return status;
+}
+
+static void no_allocation_failure_leaks(void **)
+{
+    enum { TRIALS = 200 };
+    int64_t count = INT64_MAX;
+    fixture f;
+
+    open_beams(&f, "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
+                   "select: {modes: [1, 3]}\nextraneous: compact\n");
+    ritz_alloc_budget = count;
+    assert_ok(compare_anew(&f.stage));
+    count -= ritz_alloc_budget;
+    for (int64_t k = 0; k < TRIALS; k++) {
+        ritz_status status = RITZ_OK;
+
+        ritz_alloc_budget = k * count / TRIALS;
+        status = compare_anew(&f.stage);
+        ritz_alloc_budget = -1;
+        assert_int_equal(status, RITZ_ERR_MEMORY);
+    }
+    close_beams(&f);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(bodies_and_systems_lose_as_many_coordinates),
+    cmocka_unit_test(what_is_kept_changes_within_the_tolerance),
+    cmocka_unit_test(rigid_motion_and_static_gain_are_not_touched),
+    cmocka_unit_test(smaller_subspaces_lie_in_the_larger_ones),
+    cmocka_unit_test(what_is_dropped_does_not_come_back),
+    cmocka_unit_test(composite_tolerances_are_made_compact),
+    cmocka_unit_test(what_kept_modes_need_is_not_dropped),
+    cmocka_unit_test(frequencies_alone_are_compared_without_a_response),
+    cmocka_unit_test(fates_that_make_no_sense_are_refused),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
+
+TEST_MODULE(compact, tests, set_up, tear_down)
