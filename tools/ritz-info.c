@@ -50,7 +50,9 @@ static ritz_status describe_files(cli_run *run, bool members, bool directory)
         const char *path = run->operand[k];
 
         sink_set(run, "file", "%s", path);
-        cli_say(run, "%s%s:", k > 0 ? "\n" : "", path);
+        if (k > 0)
+            cli_say(run, "%s", "");
+        cli_say(run, "%s:", path);
         RITZ_CHECK(describe_file(run, path, members, directory));
     }
     if (run->num_operands == 1)

@@ -17,6 +17,8 @@ expect 0 '' import_body platform --port scan=1 --units 'kg m s' \
 expect 0 '' ritz-assemble scene.yaml --tracks tracks.tsv -o system.h5
 
 expect 0 'modes are followed by number' ritz-rank system.h5
+works '  a blank line is between configurations' \
+    sh -c "ritz-rank system.h5 | grep -qx '44 flexible modes of .*clock=60.*'"
 expect 0 'modes are followed by track' ritz-rank system.h5 --tracks tracks.tsv \
     --by modal-cost --table all.tsv -o all.h5
 expect 0 'modal-cost	clock=60,cone=0	modal 0.002	1	' cat all.tsv
@@ -35,6 +37,8 @@ holds '  compares its configurations' '
         [("clock=0,cone=0", "clock=60,cone=0")] and
     0.5 < j["comparison"][0]["spearman"] < 1'
 expect 0 '2 rankings' ritz-info all.h5
+works '  and between files' \
+    sh -c "ritz-info system.h5 all.h5 | grep -qx 'all.h5:'"
 json 0 ritz-rank system.h5 --at clock=60 --by gregory -o gregory.h5
 holds '  has the keys of before' 'j["by"] == "gregory" and
     sorted(j["order"]) == list(range(1, len(j["values"]) + 1)) and

@@ -184,11 +184,11 @@ static void say_group(const subject *s, const ranked *group)
     for (int64_t k = 0; k < group->all.count; k++) {
         const ritz_ranking *r = &group->all.item[k];
 
-        cli_say(s->run,
-                "%s%ld flexible modes of '%s'%s%s by %s [%s], damping %s",
-                k > 0 ? "\n" : "", r->count, s->run->operand[0],
-                *r->at ? " at " : "", r->at, r->by, r->reference,
-                rankings_damping(r));
+        if (k > 0)
+            cli_say(s->run, "%s", "");
+        cli_say(s->run, "%ld flexible modes of '%s'%s%s by %s [%s], damping %s",
+                r->count, s->run->operand[0], *r->at ? " at " : "", r->at,
+                r->by, r->reference, rankings_damping(r));
         rankings_say(s->run, r, ranked_numbers(&group->all, k),
                      several ? given->top : INT64_MAX);
     }
