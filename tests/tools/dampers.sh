@@ -216,4 +216,24 @@ expect 0 "response-relative" ritz-verify other.h5 other-reduced.h5 \
 expect 0 "zeta %" ritz-poles other-reduced.h5 --modes 3
 ritz-export -q --to output4 --force other-reduced.h5 -o other.op4
 expect 0 "K4" ritz-info other.op4
+
+# losses and dampers in one recurrence, about 0 Hz and elsewhere
+printf '%s\n' '%%MatrixMarket matrix coordinate real symmetric' '30 30 3' \
+    '4 4 90' '15 15 400' '25 25 200' >losses.mtx
+import -q --structural-damping losses.mtx --damper low=3:0,2:0*150 \
+    --damper middle=10:0,9:0*150 --input push=30:0 --output-at tip=30:0 >log
+# krylov LIMIT WORDS OPTION...: response up to 2 Hz with 16 vectors
+krylov() {
+    limit=$1 words=$2
+    shift 2
+    expect 0 "$words" ritz-basis krylov-damped --modes 16 "$@" other.h5 \
+        -o other-basis.h5
+    ritz-reduce -q other.h5 other-basis.h5 -o other-reduced.h5
+    expect 0 "response-relative" ritz-verify other.h5 other-reduced.h5 \
+        --band-hz 0,2 --limit-response "$limit" -o verified.h5
+}
+krylov 2e-3 "8 whole block(s) about 0 Hz"
+krylov 5e-7 "8 whole block(s) about 1.2 Hz" --shift-hz 1.2
+krylov 1e-5 "4 whole block(s) about 0 Hz, 4 whole block(s) about 2 Hz" \
+    --shift-hz 0,2
 printf '1..%d\n' "$count"

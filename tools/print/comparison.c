@@ -122,7 +122,7 @@ static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
     sink_say(run,
              ",attached,,dofs,gain_listed,gain_between,singular_value,"
              "smallest_singular_value",
-             "%c %-28s %-16s %6ld %9.1e %9.1e %9.1e %9.1e  %s",
+             "%c %-35s %-16s %6ld %9.1e %9.1e %9.1e %9.1e  %s",
              k->chosen ? '>' : ' ', k->name, orders, k->largest, k->gain_listed,
              k->gain_between, k->deviation[0], k->deviation[1], where);
     sink_set(run, "hertz,at,smallest_hertz,smallest_at,forces,chosen",
@@ -176,7 +176,7 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
                     ? "each component, with its rigid modes, once for all "
                       "angles"
                     : "the system");
-        cli_say(run, "  %-28s %-16s %6s %9s %9s %9s %9s", "attached", "orders",
+        cli_say(run, "  %-35s %-16s %6s %9s %9s %9s %9s", "attached", "orders",
                 "system", "gain", "gain *", "sigma max", "sigma min");
     }
     SINK_ITEMS(run, "candidates", k, c->num_candidates) {
