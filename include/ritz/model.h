@@ -320,7 +320,8 @@ ritz_status ritz_reduced_install(ritz_reduced *reduced);
  * dof, scalar point 1, 2, ... Ports, which move by several coordinates, are no
  * part of it.
  *
- * @return RITZ_ERR_ARGUMENT if it has columns of kind force
+ * @return RITZ_ERR_ARGUMENT if it has columns of kind force, or modes of
+ *         negative eigenvalue, which these leave in a system
  */
 ritz_status ritz_component_of_reduced(const ritz_reduced *reduced,
                                       ritz_component *out);

@@ -84,19 +84,32 @@ ritz_status ritz_reduced_of_configuration(const ritz_system *system,
     return RITZ_OK;
 }
 
+/* Forces at an interface, and the modes of negative eigenvalue that they leave
+   in a system, are none of a component. */
+static ritz_status check_columns(const ritz_columns *columns)
+{
+    for (int64_t j = 0; j < columns->count; j++) {
+        RITZ_REFUSE_IF(columns->kind[j] == RITZ_COLUMN_FORCE, RITZ_ERR_ARGUMENT,
+                       "column %lld is a force at an interface, which no "
+                       "displacement can stand for: take the same made by "
+                       "macneal-rubin",
+                       (long long)j + 1);
+        RITZ_REFUSE_IF(columns->hertz[j] < 0.0, RITZ_ERR_ARGUMENT,
+                       "column %lld is a mode of negative eigenvalue, %.4g Hz, "
+                       "as bodies of dual-craig-bampton leave them: no "
+                       "component has such, take macneal-rubin",
+                       (long long)j + 1, columns->hertz[j]);
+    }
+    return RITZ_OK;
+}
+
 ritz_status ritz_component_of_reduced(const ritz_reduced *reduced,
                                       ritz_component *out)
 {
     const int64_t n = reduced->K.nrow;
     RITZ_OWN(ritz_component) made = {.num_dofs = n};
 
-    for (int64_t j = 0; j < reduced->columns.count; j++)
-        RITZ_REFUSE_IF(reduced->columns.kind[j] == RITZ_COLUMN_FORCE,
-                       RITZ_ERR_ARGUMENT,
-                       "column %lld is a force at an interface, which no "
-                       "displacement can stand for: take the same made by "
-                       "macneal-rubin",
-                       (long long)j + 1);
+    RITZ_CHECK(check_columns(&reduced->columns));
     RITZ_CHECK_NEW(made.dof, n);
     for (int64_t j = 0; j < n; j++)
         made.dof[j] = (ritz_dof){.grid = j + 1};

@@ -200,8 +200,11 @@ END
 works 'Hankel values are those of Lyapunov equations by SciPy' \
     /usr/bin/python3 -s hankel.py
 expect 0 '' ritz-reduce --at clock=90 system.h5 basis.h5 -o twelve.h5
+expect 0 'balanced (modes 12, at clock=90,cone=0)' ritz-info twelve.h5
 expect 0 'h-infinity-bound' ritz-verify --at clock=90 system.h5 twelve.h5 \
     -o verified.h5
+expect 1 "'basis.h5' was made at clock=90,cone=0, not at clock=0,cone=0" \
+    ritz-reduce --at clock=0 system.h5 basis.h5 -o none.h5
 expect 0 'rank' ritz-rank --at clock=90 --by hankel system.h5
 expect 0 '' ritz-basis -q normal-modes --modes 6 --at clock=90 system.h5 \
     -o modes.h5
@@ -211,6 +214,9 @@ expect 0 'mac' ritz-verify --at clock=90 system.h5 six.h5 --limit-frequency 1e-9
     -o verified.h5
 expect 0 '' ritz-export --to matrix-market --matrix K six.h5 -o six.mtx
 works '  and says what reduced it' grep -q 'reduced by normal-modes' six.mtx
+
+expect 0 'at clock=90,cone=0' ritz-basis full --at clock=90 system.h5 -o all.h5
+expect 1 'was made at clock=90' ritz-reduce --at clock=0 system.h5 all.h5 -o x.h5
 
 # --- a reduced component likewise ---------------------------------------------------------
 

@@ -161,6 +161,53 @@ static void warn_of_split(cli_run *run, const ritz_basis *basis, int64_t kept,
                  kept, kept + 1, s[kept - 1], s[kept], kept);
 }
 
+/* The configuration of a system that a model is; NULL: it is none. */
+static const char *name_configuration(const model *full)
+{
+    const ritz_origin *origin = &full->reduced.origin;
+
+    return strcmp(origin->method, "system") == 0 ? origin->options : NULL;
+}
+
+/* A basis says at which configuration it was made: "modes 12, at clock=60";
+   one whose options leave no room for it does not. */
+static const char configuration_mark[] = ", at ";
+
+static void sign_configuration(const model *full, ritz_origin *origin)
+{
+    const char *at = name_configuration(full);
+    const size_t used = strlen(origin->options);
+    const size_t room = sizeof origin->options - used;
+    const char *mark = configuration_mark + (used > 0 ? 0 : strlen(", "));
+
+    if (at && strlen(mark) + strlen(at) < room)
+        snprintf(origin->options + used, room, "%s%s", mark, at);
+}
+
+/* The configuration that a basis was made at; NULL: it does not say. */
+static const char *find_configuration(const char *options)
+{
+    const char *mark = strstr(options, configuration_mark);
+    const char *alone = configuration_mark + strlen(", ");
+
+    if (mark)
+        return mark + strlen(configuration_mark);
+    return strncmp(options, alone, strlen(alone)) == 0 ? options + strlen(alone)
+                                                       : NULL;
+}
+
+/* A basis of one configuration fits every other in size, and no other. */
+static ritz_status check_configuration(const cli_run *run, const model *full,
+                                       const ritz_basis *basis)
+{
+    const char *at = name_configuration(full);
+    const char *made = find_configuration(basis->origin.options);
+
+    RITZ_REFUSE_IF(at && made && strcmp(at, made) != 0, RITZ_ERR_ARGUMENT,
+                   "'%s' was made at %s, not at %s", run->operand[1], made, at);
+    return RITZ_OK;
+}
+
 ritz_status basis_run(cli_run *run, basis_options *given)
 {
     const char *path = run->operand[1];
@@ -191,6 +238,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
     memcpy(made.basis.units,
            request->space ? m.states.units : m.component.units,
            sizeof made.basis.units);
+    sign_configuration(&m, &made.basis.origin);
     RITZ_CHECK(describe_output(run, &made));
     say_basis(run, &made.basis);
     warn_of_split(run, &made.basis, request->modes, request->tolerance);
@@ -313,6 +361,7 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
     RITZ_CHECK(model_as_component(&full, run->operand[0], &given->model));
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
+    RITZ_CHECK(check_configuration(run, &full, &basis.basis));
     model_warn_loads(run, run->operand[0], full.component.num_loads);
     RITZ_CHECK(
         model_damping(&full, given->model.damping, &given->estimate.damping));

@@ -171,6 +171,11 @@ static void force_columns_are_no_dofs(void **state)
     reduced.columns.kind[4] = RITZ_COLUMN_FORCE;
     assert_fails(ritz_component_of_reduced(&reduced, &component),
                  RITZ_ERR_ARGUMENT, "column 5 is a force at an interface");
+    reduced.columns.kind[4] = RITZ_COLUMN_NORMAL;
+    reduced.columns.hertz[4] = -201.6;
+    assert_fails(ritz_component_of_reduced(&reduced, &component),
+                 RITZ_ERR_ARGUMENT,
+                 "column 5 is a mode of negative eigenvalue, -201.6 Hz");
 }
 
 static ritz_status convert_all(const ritz_system *system)
