@@ -239,7 +239,8 @@ char *cli_json(const json_t *value, size_t flags);
 /** Write to standard error: all that tools say there goes this way, with '?'
  * for what a terminal could obey, except the ends of lines. */
 [[gnu::format(printf, 1, 2)]] void cli_complain(const char *format, ...);
-void cli_complain_list(const char *format, va_list args);
+[[gnu::format(printf, 1, 0)]] void cli_complain_list(const char *format,
+                                                     va_list args);
 
 /** Method and order (-1: none) of the line that --record appends. */
 void cli_record(cli_run *run, const char *method, int64_t order);
