@@ -25,6 +25,7 @@ enum {
 /* A group that is to be gone through. */
 typedef struct group {
     hid_t id;
+    haddr_t at; /* of the file */
     int depth;
     char name[RITZ_NAME_SIZE];
 } group;
@@ -58,7 +59,7 @@ static ritz_status open_image(const char *bytes, int64_t size, hid_t *out)
     RITZ_OWN_ARRAY char *copy = NULL; /* HDF5 wants what it may write to */
     RITZ_OWN(hid_t) plan = 0;
 
-    ritz_h5_begin();
+    RITZ_CHECK(ritz_h5_begin());
     RITZ_CHECK_NEW(copy, size);
     memcpy(copy, bytes, (size_t)size);
     plan = H5Pcreate(H5P_FILE_ACCESS);
@@ -114,6 +115,8 @@ static ritz_status take_shape(hid_t set, const char *name, int64_t bytes,
     H5Sget_simple_extent_dims(space, out->dims, NULL);
     RITZ_REFUSE_IF(!is_plain(set, &chunk), RITZ_ERR_FORMAT,
                    "'%s' is stored in a way that is not known", name);
+    RITZ_REFUSE_IF(H5Tget_size(type) == 0, RITZ_ERR_FORMAT,
+                   "values of '%s' are of no size", name);
     most = H5Dget_storage_size(set);
     most = most < (hsize_t)bytes ? most : (hsize_t)bytes;
     most = most * RITZ_MAT_MOST_RATIO / H5Tget_size(type);
@@ -288,15 +291,23 @@ static ritz_status add_set(hdf5_walk *w, hid_t set, const char *name)
                                             .im = values_of(value.im, count)});
 }
 
-/* A struct waits, and keeps its object open. */
+/* A struct waits, and keeps its object open. One that is its own member, or
+   that of many, is gone through once: else there would be no end. */
 static ritz_status add_group(hdf5_walk *w, hid_t object, const char *whole,
                              int depth)
 {
+    H5O_info_t info = {0};
     group *g = NULL;
 
+    RITZ_REFUSE_IF(H5Oget_info(object, &info) < 0, RITZ_ERR_FORMAT,
+                   "'%s' is damaged", whole);
+    for (int64_t k = 0; k < w->count; k++)
+        if (w->group[k].at == info.addr)
+            return ritz_mat_add_other(w->list, whole,
+                                      "a struct of another name, too");
     RITZ_CHECK_ROOM(w->group, w->count, w->room);
     g = &w->group[w->count++];
-    *g = (group){.id = object, .depth = depth};
+    *g = (group){.id = object, .at = info.addr, .depth = depth};
     H5Iinc_ref(object);
     snprintf(g->name, sizeof g->name, "%.*s", (int)sizeof g->name - 1, whole);
     return RITZ_OK;

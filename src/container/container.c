@@ -94,8 +94,9 @@ static ritz_status read_container(const char *path, const ritz_schema *schema,
     if (schema->units > 0)
         RITZ_CHECK(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE,
                                     (char *)object + schema->units));
-    return ritz_schema_move(&(ritz_place){
-        .at = file, .schema = schema, .object = object, .target = object});
+    RITZ_CHECK(ritz_schema_move(&(ritz_place){
+        .at = file, .schema = schema, .object = object, .target = object}));
+    return ritz_h5_seen();
 }
 
 /* The functions of a kind of container: its pair, declared in the header. */
@@ -162,6 +163,7 @@ static ritz_status read_head(const char *path, ritz_summary *out)
                    "'command' is not one text");
     RITZ_CHECK(ritz_h5_get_texts(file, "inputs", &inputs));
     RITZ_CHECK(count_loads(file, &summary.num_loads));
+    RITZ_CHECK(ritz_h5_seen());
     RITZ_MOVE(summary.command, command.text[0]);
     summary.num_inputs = inputs.count;
     RITZ_MOVE(summary.input, inputs.text);

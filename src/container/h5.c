@@ -19,25 +19,31 @@ enum { MANY_ATTRIBUTES = 64 }; /* that an object header holds */
  */
 static _Thread_local bool lost;
 
+/* What was taken for absent and is not, since a file was opened. */
+static _Thread_local char unseen[RITZ_NAME_SIZE];
+
 /*
  * A file that could not be closed, as where the disk is full, stays open inside
  * HDF5, which would try again on exit and crash. All others are closed by us.
  */
-void ritz_h5_begin(void)
+ritz_status ritz_h5_begin(void)
 {
     (void)H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    RITZ_REFUSE_IF(H5open() < 0 || H5Eset_auto2(H5E_DEFAULT, NULL, NULL) < 0,
+                   RITZ_ERR_MEMORY, "no memory to start HDF5");
+    return RITZ_OK;
 }
 
 ritz_status ritz_h5_open(const char *path, hid_t *out)
 {
     struct stat there;
 
-    ritz_h5_begin();
+    RITZ_CHECK(ritz_h5_begin());
     RITZ_REFUSE_IF(stat(path, &there) != 0 || access(path, R_OK) != 0,
                    RITZ_ERR_FILE, "%s", strerror(errno));
     RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
                    "not a regular file");
+    unseen[0] = '\0';
     *out = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FORMAT, "not an HDF5 file, or damaged");
     return ritz_draft_protect(path);
@@ -58,7 +64,7 @@ ritz_status ritz_h5_create(const char *path, hid_t *out)
 {
     RITZ_OWN(hid_t) plan = 0, bounds = 0;
 
-    ritz_h5_begin();
+    RITZ_CHECK(ritz_h5_begin());
     plan = plan_object(H5P_FILE_CREATE);
     bounds = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
@@ -90,13 +96,40 @@ ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out)
     return RITZ_OK;
 }
 
+static void note_unseen(const char *name)
+{
+    if (!*unseen)
+        snprintf(unseen, sizeof unseen, "%s", name);
+}
+
 bool ritz_h5_has(hid_t at, const char *name)
 {
     H5L_info_t info = {0};
+    const htri_t there = H5Lexists(at, name, H5P_DEFAULT);
+    const bool hard = there > 0 &&
+                      H5Lget_info(at, name, &info, H5P_DEFAULT) >= 0 &&
+                      info.type == H5L_TYPE_HARD;
 
-    return H5Lexists(at, name, H5P_DEFAULT) > 0 &&
-           H5Lget_info(at, name, &info, H5P_DEFAULT) >= 0 &&
-           info.type == H5L_TYPE_HARD;
+    if (there != 0 && !hard)
+        note_unseen(name);
+    return hard;
+}
+
+bool ritz_h5_has_attribute(hid_t at, const char *name)
+{
+    const htri_t there = H5Aexists(at, name);
+
+    if (there < 0)
+        note_unseen(name);
+    return there > 0;
+}
+
+ritz_status ritz_h5_seen(void)
+{
+    RITZ_REFUSE_IF(*unseen, RITZ_ERR_FORMAT,
+                   "'%s' is a link to elsewhere, or cannot be looked up",
+                   unseen);
+    return RITZ_OK;
 }
 
 ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out)
@@ -147,7 +180,7 @@ static ritz_status read_index(hid_t group, const char *name, int64_t *out)
                    "'%s' is a link to elsewhere", name);
     member = H5Oopen(group, name, H5P_DEFAULT);
     RITZ_REFUSE_IF(member < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
-    if (H5Aexists(member, "index") > 0)
+    if (ritz_h5_has_attribute(member, "index"))
         RITZ_CHECK_IN(name,
                       ritz_h5_get(member, "index", H5T_STD_I64LE, 1, out));
     return RITZ_OK;

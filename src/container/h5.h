@@ -43,8 +43,9 @@ ritz_h5_shape ritz_h5_table(int64_t n, int64_t m);
 /** Number of values, @p most + 1 if it is larger. */
 hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most);
 
-/** Before HDF5 is first used: its messages are silenced, and its exit. */
-void ritz_h5_begin(void);
+/** Before HDF5 is first used: its messages are silenced, and its exit.
+ * @return RITZ_ERR_MEMORY if it does not start */
+[[nodiscard]] ritz_status ritz_h5_begin(void);
 
 /** Open to read; begins HDF5. */
 ritz_status ritz_h5_open(const char *path, hid_t *out);
@@ -67,8 +68,14 @@ ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out);
 /** Open a group to read. */
 ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out);
 
-/** Whether there is a group or data set of that name. */
+/** Whether there is a group or data set of that name, or such an attribute. One
+ * that is a link, or that HDF5 cannot look up, is remembered. */
 bool ritz_h5_has(hid_t at, const char *name);
+bool ritz_h5_has_attribute(hid_t at, const char *name);
+
+/** Call it when a file has been read: @return RITZ_ERR_FORMAT if anything that
+ * was taken for absent since ritz_h5_open is not. Of one thread. */
+ritz_status ritz_h5_seen(void);
 
 /**
  * Names of all members of a group: in the order of their attributes `index`,

@@ -250,9 +250,11 @@ static ritz_status seal_values(hid_t set, const char *name, int64_t bytes,
                                const void *values)
 {
     RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
+    const H5D_layout_t layout = H5Pget_layout(plan);
     int64_t checksum = 0;
 
-    if (H5Pget_layout(plan) != H5D_CHUNKED)
+    RITZ_REFUSE_IF(layout < 0, RITZ_ERR_MEMORY, "no memory for '%s'", name);
+    if (layout != H5D_CHUNKED)
         return RITZ_OK;
     checksum = sum_words(bytes, values);
     return ritz_context(ritz_h5_set(set, "checksum", H5T_STD_I64LE,
@@ -266,7 +268,7 @@ static ritz_status verify_values(hid_t set, const char *name, int64_t bytes,
 {
     int64_t checksum = 0;
 
-    if (H5Aexists(set, "checksum") <= 0)
+    if (!ritz_h5_has_attribute(set, "checksum"))
         return RITZ_OK;
     RITZ_CHECK_IN(name,
                   ritz_h5_get(set, "checksum", H5T_STD_I64LE, 1, &checksum));
@@ -573,7 +575,7 @@ ritz_status ritz_h5_set_texts(hid_t at, const char *name, int64_t count,
 static ritz_status measure_texts(hid_t at, const char *name, int64_t *count,
                                  size_t *size)
 {
-    bool short_ones = H5Aexists(at, name) > 0;
+    bool short_ones = ritz_h5_has_attribute(at, name);
     RITZ_OWN(hid_t) texts = 0, space = 0, type = 0, file = 0;
     hsize_t present = 0;
     ritz_h5_shape shape = {0};
@@ -628,7 +630,7 @@ ritz_status ritz_h5_get_texts(hid_t at, const char *name, ritz_texts *out)
     RITZ_CHECK(measure_texts(at, name, &count, &size));
     RITZ_CHECK_NEW(block, count * (int64_t)size);
     type = ritz_h5_string(size);
-    if (H5Aexists(at, name) > 0)
+    if (ritz_h5_has_attribute(at, name))
         RITZ_CHECK(ritz_h5_get(at, name, type, count, block));
     else
         RITZ_CHECK(ritz_h5_read(at, name_long(name, other), type,

@@ -33,7 +33,7 @@ static ritz_status settle_response(const ritz_place *place)
                    "'singular_values' is not hertz x the fewer of outputs and "
                    "inputs");
     RITZ_REFUSE_IF(
-        H5Aexists(place->at, "singular_peak") > 0 &&
+        ritz_h5_has_attribute(place->at, "singular_peak") &&
             (!(peak[0] >= 0.0) || isinf(peak[0]) || !(peak[1] > 0.0)),
         RITZ_ERR_FORMAT,
         "'singular_peak' is no frequency and no value above 0");

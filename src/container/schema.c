@@ -196,7 +196,7 @@ static bool is_due(const ritz_place *place, const ritz_member *row)
     if (!what)
         return ritz_schema_is_given(place, row);
     if (is_attribute(row) && !*what)
-        return H5Aexists(place->at, row->name) > 0;
+        return ritz_h5_has_attribute(place->at, row->name);
     return has_link(place->at, *what ? what : row->name);
 }
 
@@ -245,7 +245,8 @@ static void gather_values(const ritz_member *row, int64_t count,
     size_t width = width_in_file(row), step = width_of_item(row);
     const int64_t one = 1; /* of a flag */
 
-    from += row->item;
+    if (count > 0) /* else there may be no array */
+        from += row->item;
     for (int64_t k = 0; k < count; k++, from += step, to += width) {
         const ritz_column_kind *kind = (const void *)from;
 
@@ -265,7 +266,8 @@ static ritz_status scatter_values(const ritz_member *row, int64_t count,
 {
     size_t width = width_in_file(row), step = width_of_item(row);
 
-    to += row->item;
+    if (count > 0) /* else there may be no array */
+        to += row->item;
     for (int64_t k = 0; k < count; k++, from += width, to += step) {
         ritz_column_kind *kind = (void *)to;
 

@@ -471,6 +471,30 @@ static void what_is_read_and_written_again_has_the_same_bytes(void **)
     }
 }
 
+/* Else a damping, or a stiffness, would be zero without a word. */
+static void a_member_that_is_a_link_is_not_absent(void **)
+{
+    ritz_component component = {0};
+    ritz_summary summary = {0};
+    hid_t file = 0;
+
+    assert_ok(sample_kinds[0].make(path, &stamp));
+    file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(H5Ldelete(file, "D", H5P_DEFAULT) >= 0);
+    assert_true(H5Lcreate_soft("M", file, "D", H5P_DEFAULT, H5P_DEFAULT) >= 0);
+    assert_true(H5Fclose(file) >= 0);
+    assert_fails(ritz_container_read_component(path, &component),
+                 RITZ_ERR_FORMAT, "'D' is a link to elsewhere");
+    ritz_component_free(&component);
+    file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, "KG", H5P_DEFAULT);
+    assert_true(H5Lcreate_soft("M", file, "KG", H5P_DEFAULT, H5P_DEFAULT) >= 0);
+    assert_true(H5Fclose(file) >= 0);
+    assert_fails(ritz_container_summary(path, &summary), RITZ_ERR_FORMAT,
+                 "'KG' is a link to elsewhere");
+    ritz_summary_free(&summary);
+}
+
 /* Stops at an object with a time, which a later second would change. */
 static herr_t find_time(hid_t at, const char *name, const H5O_info_t *info,
                         void *unused)
@@ -603,6 +627,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_ranking_comes_back),
     cmocka_unit_test(a_state_space_comes_back),
     cmocka_unit_test(what_is_read_and_written_again_has_the_same_bytes),
+    cmocka_unit_test(a_member_that_is_a_link_is_not_absent),
     cmocka_unit_test(no_object_has_a_time),
     cmocka_unit_test(no_library_object_stays_open),
     cmocka_unit_test(every_container_says_how_it_was_made),

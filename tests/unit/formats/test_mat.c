@@ -7,6 +7,9 @@
 
 #include <ritz/import.h>
 
+#include <hdf5.h>
+
+#include <stdio.h>
 #include <stdlib.h>
 
 static void assert_full(const ritz_matrix *m, const char *name)
@@ -235,6 +238,44 @@ static ritz_status read_and_drop(const char *path)
     return status;
 }
 
+static void copy_sample(const mat_sample *sample, const char *name)
+{
+    RITZ_OWN_ARRAY char *content = NULL;
+    int64_t size = 0;
+    FILE *file = NULL;
+
+    assert_ok(ritz_bytes_read(folder_path(sample->path), &size, &content));
+    file = fopen(folder_path(name), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(content, 1, (size_t)size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A struct with a member that is the struct itself. */
+static void a_struct_is_gone_through_once(void **state)
+{
+    enum { OWN = 4 };
+    static const char loop[] = "loop.mat";
+    RITZ_OWN(ritz_foreign) file = {0};
+    hid_t copy = -1;
+
+    (void)state;
+    for (int k = 0; k < MAT_SAMPLES; k++)
+        if (mat_samples[k].level == MAT_FT_MAT73)
+            copy_sample(&mat_samples[k], loop);
+    copy = H5Fopen(folder_path(loop), H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(copy >= 0);
+    assert_true(H5Lcreate_hard(copy, "sys", copy, "sys/same", H5P_DEFAULT,
+                               H5P_DEFAULT) >= 0);
+    assert_true(H5Fclose(copy) >= 0);
+    assert_ok(ritz_foreign_open(folder_path(loop), &file));
+    assert_ok(ritz_foreign_list(&file));
+    assert_int_equal(file.listing.count, OWN + 1);
+    assert_string_equal(file.listing.item[OWN].name, "sys.same");
+    assert_string_equal(file.listing.item[OWN].other,
+                        "a struct of another name, too");
+}
+
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -252,6 +293,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(integers_singles_and_pairs_keep_what_they_are),
     cmocka_unit_test(a_wrong_checksum_of_compressed_data_is_found),
     cmocka_unit_test(sizes_are_held_against_the_bytes_present),
+    cmocka_unit_test(a_struct_is_gone_through_once),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
