@@ -353,7 +353,8 @@ static void copy_marker(ritz_piece piece, int64_t skipped,
 {
     int64_t k = 0;
 
-    piece.text += skipped;
+    if (skipped > 0) /* of an absent marker there is no text */
+        piece.text += skipped;
     piece.length -= skipped;
     piece = ritz_piece_trim(piece);
     for (; k < piece.length && k < RITZ_CARD_NAME; k++)

@@ -210,12 +210,13 @@ ritz_status ritz_choice_take(const ritz_choice_word *word, const char *text,
 static void append_word(int64_t size, char *out, const char *key,
                         const char *value)
 {
+    const size_t room = (size_t)size;
     size_t used = strlen(out);
-    size_t from = used + (used > 0);
+    size_t from = used + (used > 0); /* beyond the end if there is no room */
 
-    snprintf(out + used, (size_t)size - used, "%s%s %s", used > 0 ? " " : "",
-             key, value);
-    for (size_t k = from; out[k] && out[k] != ' '; k++)
+    snprintf(out + used, room - used, "%s%s %s", used > 0 ? " " : "", key,
+             value);
+    for (size_t k = from; k < room && out[k] && out[k] != ' '; k++)
         if (out[k] == '_')
             out[k] = '-';
 }

@@ -71,6 +71,22 @@ static void a_print_that_does_not_fit_is_cut(void **state)
     assert_string_equal(text, "shift-hz 1,2,3,");
 }
 
+/* Where nothing more fits, what stands behind the text stays. */
+static void a_print_keeps_to_its_room(void **state)
+{
+    struct {
+        char text[16], after[16];
+    } room = {"", "a_b_c"};
+    ritz_choice c = {0};
+
+    (void)state;
+    assert_ok(take("shift_hz", "1,2,3,4,5,6,7,8,9", &c));
+    assert_ok(take("interface_modes", "8", &c));
+    ritz_choice_print(&c, sizeof room.text, room.text);
+    assert_string_equal(room.text, "shift-hz 1,2,3,");
+    assert_string_equal(room.after, "a_b_c");
+}
+
 static void bad_values_are_refused(void **state)
 {
     static const struct {
@@ -115,6 +131,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(words_set_what_they_name),
     cmocka_unit_test(what_was_given_is_remembered_and_printed),
     cmocka_unit_test(a_print_that_does_not_fit_is_cut),
+    cmocka_unit_test(a_print_keeps_to_its_room),
     cmocka_unit_test(bad_values_are_refused),
 };
 
