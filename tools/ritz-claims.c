@@ -1,21 +1,10 @@
 /* ritz-claims - hold published numbers against what the tools answer. */
 #include "claims/claims.h"
 
-#include <errno.h>
-#include <ftw.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static int remove_one(const char *path, const struct stat *what, int kind,
-                      struct FTW *where)
-{
-    (void)what;
-    (void)kind;
-    (void)where;
-    return remove(path);
-}
 
 /* The folder of this program, where the other tools are. */
 static ritz_status find_tools(claims_state *state)
@@ -31,28 +20,20 @@ static ritz_status find_tools(claims_state *state)
 }
 
 /* An empty folder in which commands run; a data folder that moves with them. */
-static ritz_status make_folder(claims_state *state, const char *data)
+static ritz_status prepare_run(claims_state *state, const char *data)
 {
-    const char *parent = getenv("TMPDIR");
-
+    RITZ_CHECK(claims_level());
     RITZ_CHECK(find_tools(state));
     if (data && !realpath(data, state->data))
         snprintf(state->data, sizeof state->data, "%s", data);
-    snprintf(state->folder, sizeof state->folder, "%s/ritz-claims-XXXXXX",
-             parent && *parent ? parent : "/tmp");
-    if (mkdtemp(state->folder))
-        return RITZ_OK;
-    ritz_record("cannot make a folder '%s': %s", state->folder,
-                strerror(errno));
-    state->folder[0] = '\0';
-    return RITZ_ERR_FILE;
+    return claims_folder_new(state);
 }
 
 static ritz_status run_files(claims_state *state, const char *data)
 {
     cli_run *run = state->run;
 
-    RITZ_CHECK(make_folder(state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
+    RITZ_CHECK(prepare_run(state, data ? data : getenv("RITZ_EXTERNAL_DATA")));
     for (int k = 0; k < run->num_operands; k++) {
         RITZ_CHECK(cli_input(run, run->operand[k]));
         RITZ_CHECK(claims_file(state, run->operand[k]));
@@ -69,8 +50,7 @@ static ritz_status run_claims(cli_run *run, const char *data)
     claims_state state = {.run = run, .list = json_array()};
     ritz_status status = run_files(&state, data);
 
-    if (state.folder[0])
-        nftw(state.folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+    claims_folder_free(&state);
     json_decref(state.answer);
     json_object_set_new(run->report, "claims", state.list);
     sink_set(run, "holds,fails,skipped", "%ld %ld %ld", state.holds,

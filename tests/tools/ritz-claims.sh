@@ -57,12 +57,45 @@ said "x.claims:1: directions are some of 126, not '3'" 'beam b --elements 1 --di
 said "x.claims:1: a beam is clamped none, left, right or both, not 'top'" 'beam b --elements 1 --clamp top'
 said "x.claims:1: a beam has a name" 'beam b --elements'
 said "x.claims:1: rows are NAME" 'rows r 0'
+said "x.claims:1: rows have at most 1000000 grids" 'rows r 1000001'
+said "x.claims:1: '11' are not directions" 'rows r 1 11'
+said "x.claims:1: the grids of a beam count from 1 or more, not from 9223372036854775807" 'beam b --elements 1 --first-grid 9223372036854775807'
 said "x.claims:1: a text has one name" 'text a b'
 said "x.claims:1: a source is not named" 'source'
 expect 1 "absent.claims" ritz-claims absent.claims
 expect 2 'FILE' ritz-claims
 printf '\000' >x.claims
 expect 1 'x.claims' ritz-claims x.claims
+
+# A claims file is a program; it runs others of its kind, and no third level.
+printf 'source me\nrun ritz-claims $HERE/a.claims\nexpect holds is 1\n' >outer.claims
+expect 0 'ok 1 - outer.claims:3 holds' ritz-claims outer.claims
+printf 'source me\ntry ritz-claims $HERE/endless.claims\nexpect failure "may not be run"\n' \
+    >endless.claims
+printf 'source me\nrun ritz-claims $HERE/endless.claims\nexpect holds is 1\n' >top.claims
+expect 0 'ok 1 - top.claims:3 holds' ritz-claims top.claims
+printf 'source a\nexpect x[9223372036854775807] 1 1 rel 1\n' >x.claims
+expect 1 'x[9223372036854775807]: nothing there' ritz-claims x.claims
+
+# Whatever ends it, its commands end too, and their folder is gone.
+printf 'source nobody\nbeam b --elements 100000\nrun ritz-import --stiffness b.k.mtx --mass b.m.mtx --bulk b.bdf --dofs b.dofs -o b.h5\n' >long.claims
+works 'no folder outlives a signal' /usr/bin/python3 -s - <<'END'
+import glob, os, signal, subprocess, sys, time
+def wait_for(what):
+    for attempt in range(3000):
+        if what():
+            return
+        time.sleep(0.01)
+    sys.exit("it takes too long")
+for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL:
+    run = subprocess.Popen(["ritz-claims", "long.claims"],
+                           stdout=subprocess.DEVNULL)
+    wait_for(lambda: glob.glob("folders/*/answer.json"))
+    run.send_signal(number)
+    if run.wait(60) != -number:
+        sys.exit(f"{number}: status {run.returncode}")
+    wait_for(lambda: not os.listdir("folders"))
+END
 ls -A folders | grep . >log && report no 'no folder is left' ||
     report yes 'no folder is left'
 printf '1..%d\n' "$count"

@@ -3,13 +3,18 @@
 
 #include "base/alloc.h"
 #include "base/text.h"
+#include "import/import.h"
 
 #include <ritz/base.h>
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -122,12 +127,18 @@ static ritz_status need_file(claims_state *state, const claims_line *line)
     return RITZ_OK;
 }
 
-/* In the child: the tool with --json, its words to the answer. */
-static _Noreturn void become(const claims_state *state, const char *tool,
-                             char **argv)
+/* In the child: the tool with --json, its words to the answer. It ends with
+   this program, however that ends. */
+static _Noreturn void become(const claims_state *state, pid_t parent,
+                             const char *tool, char **argv)
 {
     int out = -1;
 
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
+    if (getppid() != parent)
+        _exit(127);
     if (chdir(state->folder) == 0)
         out = open(answer_name, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     if (out >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
@@ -161,6 +172,7 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
     char tool[2 * PATH_MAX];
     char *argv[CLAIMS_MOST_WORDS + 2] = {NULL};
     static char json[] = "--json";
+    const pid_t parent = getpid();
     int outcome = 0;
     pid_t child = -1;
 
@@ -179,7 +191,7 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
     fflush(stdout);
     child = fork();
     if (child == 0)
-        become(state, tool, argv);
+        become(state, parent, tool, argv);
     RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE, "cannot start '%.40s': %s",
                    line->word[1], strerror(errno));
     while (waitpid(child, &outcome, 0) < 0 && errno == EINTR)
@@ -206,6 +218,7 @@ static ritz_status write_rows(claims_state *state, const claims_line *line)
 {
     const char *directions = line->count == 4 ? line->word[3] : "0";
     RITZ_OWN(cli_table) table = {0};
+    bool want[7] = {false};
     int64_t count = 0;
 
     RITZ_REFUSE_IF(line->count < 3 || line->count > 4 ||
@@ -213,6 +226,9 @@ static ritz_status write_rows(claims_state *state, const claims_line *line)
                        !ritz_text_whole(line->word[2], &count) || count < 1,
                    RITZ_ERR_FORMAT,
                    "rows are NAME, a number of grids and their directions");
+    RITZ_REFUSE_IF(count > CLAIMS_MOST_ROWS, RITZ_ERR_FORMAT,
+                   "rows have at most %d grids", (int)CLAIMS_MOST_ROWS);
+    RITZ_CHECK(ritz_import_directions(directions, want));
     RITZ_CHECK(cli_table_new(&table));
     for (int64_t k = 1; k <= count; k++)
         for (const char *at = directions; *at; at++)

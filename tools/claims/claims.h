@@ -8,8 +8,13 @@
 #include "cli/sink.h"
 
 #include <limits.h>
+#include <sys/types.h>
 
-enum { CLAIMS_MOST_WORDS = 128 };
+enum {
+    CLAIMS_MOST_WORDS = 128,
+    CLAIMS_MOST_ROWS = 1000000, /* grids of `rows` */
+    CLAIMS_MOST_LEVELS = 2,     /* claims that run ritz-claims, and those */
+};
 
 /* One line of a claims file, cut into words. */
 typedef struct claims_line {
@@ -24,7 +29,9 @@ typedef struct claims_state {
     char bin[PATH_MAX];    /* the tools are here */
     char here[PATH_MAX];   /* the claims file is here */
     char data[PATH_MAX];   /* files of others: $DATA */
-    char folder[PATH_MAX]; /* commands run here */
+    char folder[PATH_MAX]; /* commands run here; "": there is none */
+    pid_t keeper;          /* the process that removes it */
+    int held;              /* as long as this is open, it does not */
     const char *file;      /* of claims, and a line of it */
     int number;
     char *rest;        /* what follows that line; NULL: nothing */
@@ -37,6 +44,17 @@ typedef struct claims_state {
     json_t *list;   /* of all claims, for --json */
     int64_t holds, fails, skipped;
 } claims_state;
+
+/** Make the folder of the commands; it is gone when all are that use it, by
+ * whichever way they end. */
+ritz_status claims_folder_new(claims_state *state);
+
+/** Let go of it, and wait until it is gone. */
+void claims_folder_free(claims_state *state);
+
+/** Claims may run ritz-claims, but not without end: count a level.
+ * @return RITZ_ERR_FORMAT beyond CLAIMS_MOST_LEVELS */
+ritz_status claims_level(void);
 
 /** Run all lines of a file. @return RITZ_ERR_FORMAT if it is not understood */
 ritz_status claims_file(claims_state *state, const char *path);

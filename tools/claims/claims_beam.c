@@ -80,6 +80,9 @@ static ritz_status read_beam(const claims_line *line, beam *b)
         RITZ_CHECK(take_option(line->word[k], line->word[k + 1], b));
     RITZ_REFUSE_IF(b->elements < 1 || b->elements > 100000, RITZ_ERR_FORMAT,
                    "a beam has 1 to 100000 elements");
+    RITZ_REFUSE_IF(b->first < 1 || b->first > INT32_MAX, RITZ_ERR_FORMAT,
+                   "the grids of a beam count from 1 or more, not from %ld",
+                   b->first);
     RITZ_REFUSE_IF(!b->directions[0] ||
                        strspn(b->directions, "126") != strlen(b->directions) ||
                        strlen(b->directions) > NODE,

@@ -161,7 +161,8 @@ static void name_item(const char *path, int64_t more, size_t size, char *out)
     if (bracket && strcspn(bracket, "]") + 1 == strlen(bracket))
         snprintf(digits, sizeof digits, "%.*s", (int)strlen(bracket) - 2,
                  bracket + 1);
-    if (ritz_text_whole(digits, &index))
+    if (ritz_text_whole(digits, &index) && index >= 0 &&
+        index < INT64_MAX - more)
         snprintf(out, size, "%.*s[%ld]", (int)(bracket - path), path,
                  index + more);
 }
