@@ -466,9 +466,11 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
         .warnings = json_array(),
         .line = json_object(),
     };
-    if (!run->operand || !run->report || !run->line ||
-        cli_table_new(&run->said) != RITZ_OK)
-        cli_refuse(program, "no memory");
+    if (!run->operand || !run->report || !run->warnings || !run->line ||
+        cli_table_new(&run->said) != RITZ_OK) {
+        cli_complain("%s: no memory\n", program->name);
+        exit(EXIT_FAILURE);
+    }
     keep_command(run, argc, argv);
     gather_options(run, all);
     take_all(run, all, argc, argv);

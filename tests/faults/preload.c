@@ -1,0 +1,244 @@
+/*
+ * Loaded before the C library: one call of a tool fails. RITZ_FAULT is
+ * "CALL:K", the K-th call from 1 on of a kind:
+ *
+ *     memory   malloc, calloc, realloc: no memory
+ *     write    write, pwrite, ftruncate, fsync, rename, fwrite's own: no room
+ *     kill     the K-th call that writes is the last: SIGKILL
+ *
+ * How many calls there were, and whose call failed, is appended to the file
+ * RITZ_FAULT_LOG: "calls N", "failed OBJECT", and "signal OBJECT" for the code
+ * in which a signal caught the program.
+ */
+#define _GNU_SOURCE /* NOLINT: dladdr, and where a signal struck */
+#include <dlfcn.h>
+#include <errno.h>
+#include <execinfo.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+enum fault_kind { FAULT_NONE, FAULT_MEMORY, FAULT_WRITE, FAULT_KILL };
+
+static enum fault_kind kind;
+static long wanted; /* 0: calls are only counted */
+static atomic_long calls;
+static bool ready;
+
+void *__libc_malloc(size_t size);               /* NOLINT: glibc's own */
+void *__libc_calloc(size_t count, size_t size); /* NOLINT */
+void *__libc_realloc(void *block, size_t size); /* NOLINT */
+
+/* A line of the log, without the streams of the C library. */
+static void put_line(const char *what, const char *more)
+{
+    char line[512];
+    const char *path = getenv("RITZ_FAULT_LOG");
+    int file = -1;
+    size_t length = 0;
+
+    if (!path)
+        return;
+    file = (int)syscall(SYS_open, path, O_WRONLY | O_CREAT | O_APPEND, 0600);
+    if (file < 0)
+        return;
+    length = (size_t)snprintf(line, sizeof line, "%s %s\n", what, more);
+    (void)syscall(SYS_write, file, line,
+                  length < sizeof line ? length : sizeof line - 1);
+    (void)syscall(SYS_close, file);
+}
+
+/* The object that code belongs to. */
+static void put_object(const char *what, const void *code)
+{
+    Dl_info info = {0};
+
+    put_line(what, dladdr(code, &info) != 0 && info.dli_fname ? info.dli_fname
+                                                              : "unknown");
+}
+
+/* The C library asks for others: the first of them that is another object. */
+static const void *find_asker(const void *from)
+{
+    enum { MOST = 24 };
+    void *frames[MOST] = {NULL};
+    Dl_info here = {0}, info = {0};
+    int count = 0, k = 0;
+
+    if (dladdr(from, &info) == 0 || !info.dli_fname ||
+        !strstr(info.dli_fname, "/libc.so"))
+        return from;
+    count = backtrace(frames, MOST);
+    dladdr((const void *)frames[0], &here);
+    for (k = 0; k < count; k++)
+        if (dladdr(frames[k], &info) != 0 && info.dli_fbase != here.dli_fbase &&
+            !strstr(info.dli_fname, "/libc.so"))
+            return frames[k];
+    return from;
+}
+
+/* Whether this call is the one; `from`: who called. */
+static bool is_to_fail(enum fault_kind asked, const void *from)
+{
+    if (!ready || kind != asked || atomic_fetch_add(&calls, 1) + 1 != wanted)
+        return false;
+    ready = false; /* what reports it shall not fail */
+    put_object("failed", find_asker(from));
+    ready = true;
+    return true;
+}
+
+static void note_signal(int number, siginfo_t *info, void *context)
+{
+    const ucontext_t *at = context;
+    char text[24];
+
+    (void)info;
+    ready = false;
+    (void)snprintf(text, sizeof text, "%d", number);
+    put_line("number", text);
+    put_object("signal",
+               (const void *)at->uc_mcontext.gregs[REG_RIP]); /* NOLINT */
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+[[gnu::constructor]] static void begin_faults(void)
+{
+    static const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+    static const char *const words[] = {[FAULT_MEMORY] = "memory:",
+                                        [FAULT_WRITE] = "write:",
+                                        [FAULT_KILL] = "kill:"};
+    static char room[65536]; /* a stack that is full is a cause, too */
+    const stack_t other = {.ss_sp = room, .ss_size = sizeof room};
+    struct sigaction action = {
+        .sa_sigaction = note_signal,
+        .sa_flags = (int)(SA_SIGINFO | SA_RESETHAND | SA_ONSTACK)};
+    const char *text = getenv("RITZ_FAULT");
+    void *first = NULL;
+
+    for (int k = FAULT_MEMORY; text && k <= FAULT_KILL; k++)
+        if (strncmp(text, words[k], strlen(words[k])) == 0) {
+            kind = (enum fault_kind)k;
+            wanted = strtol(text + strlen(words[k]), NULL, 10);
+        }
+    sigaltstack(&other, NULL);
+    (void)backtrace(&first, 1); /* it takes memory once */
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        sigaction(numbers[k], &action, NULL);
+    ready = kind != FAULT_NONE;
+}
+
+[[gnu::destructor]] static void end_faults(void)
+{
+    char text[24];
+
+    if (!ready)
+        return;
+    ready = false;
+    (void)snprintf(text, sizeof text, "%ld", atomic_load(&calls));
+    put_line("calls", text);
+}
+
+/* NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): glibc's */
+
+/* --- memory --------------------------------------------------------------- */
+
+void *malloc(size_t size)
+{
+    if (is_to_fail(FAULT_MEMORY, __builtin_return_address(0))) {
+        errno = ENOMEM;
+        return NULL;
+    }
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size)
+{
+    if (is_to_fail(FAULT_MEMORY, __builtin_return_address(0))) {
+        errno = ENOMEM;
+        return NULL;
+    }
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *block, size_t size)
+{
+    if (is_to_fail(FAULT_MEMORY, __builtin_return_address(0))) {
+        errno = ENOMEM;
+        return NULL;
+    }
+    return __libc_realloc(block, size);
+}
+
+/* --- writes --------------------------------------------------------------- */
+
+/* Standard output and errors are the user's: only files fail. */
+static bool is_file(int file)
+{
+    struct stat there;
+
+    return fstat(file, &there) == 0 && S_ISREG(there.st_mode);
+}
+
+static bool writes_fail(bool counts, const void *from)
+{
+    if (!counts)
+        return false;
+    if (is_to_fail(FAULT_KILL, from))
+        kill(getpid(), SIGKILL);
+    if (!is_to_fail(FAULT_WRITE, from))
+        return false;
+    errno = ENOSPC;
+    return true;
+}
+
+ssize_t write(int file, const void *bytes, size_t size)
+{
+    if (writes_fail(ready && is_file(file), __builtin_return_address(0)))
+        return -1;
+    return syscall(SYS_write, file, bytes, size);
+}
+
+ssize_t pwrite(int file, const void *bytes, size_t size, off_t at)
+{
+    if (writes_fail(ready && is_file(file), __builtin_return_address(0)))
+        return -1;
+    return syscall(SYS_pwrite64, file, bytes, size, at);
+}
+
+ssize_t pwrite64(int file, const void *bytes, size_t size, off_t at)
+{
+    return pwrite(file, bytes, size, at);
+}
+
+int ftruncate(int file, off_t size)
+{
+    if (writes_fail(true, __builtin_return_address(0)))
+        return -1;
+    return (int)syscall(SYS_ftruncate, file, size);
+}
+
+int fsync(int file)
+{
+    if (writes_fail(true, __builtin_return_address(0)))
+        return -1;
+    return (int)syscall(SYS_fsync, file);
+}
+
+int rename(const char *from, const char *to)
+{
+    if (writes_fail(true, __builtin_return_address(0)))
+        return -1;
+    return (int)syscall(SYS_rename, from, to);
+}
+
+/* NOLINTEND(readability-inconsistent-declaration-parameter-name) */

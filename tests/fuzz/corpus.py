@@ -1,0 +1,341 @@
+"""Makes the corpus of the fuzzer: a few small sound inputs for each target.
+
+Usage: corpus.py FOLDER. FOLDER/TARGET/NAME is written; binary files are made
+here, so that the repository holds none.
+"""
+import pathlib
+import struct
+import sys
+import zlib
+
+# --- matrices -------------------------------------------------------------------
+
+OUTPUT4 = """\
+       2       2       2       2KGG     1P,3E23.16
+       1       1       2
+ 1.0000000000000000E+00-1.0000000000000000E+00
+       2       1       2
+-1.0000000000000000E+00 2.0000000000000000E+00
+       3       1       1
+ 1.0000000000000000E+00
+"""
+OUTPUT4_SPARSE = """\
+       2       2       2       2KGG     1P,3E23.16
+       1       0       3
+   65537
+ 1.0000000000000000E+00
+       2       0       5
+  131073
+-1.0000000000000000E+00 2.0000000000000000E+00
+       3       1       1
+ 1.0000000000000000E+00
+"""
+OUTPUT4_BIG = """\
+       2      -2       6       1MGG     1P,5E16.9
+       1       0       3
+       2       1
+ 1.000000000E+00
+       2       0       4
+       3       1
+ 2.000000000E+00 0.000000000E+00
+       3       1       1
+ 1.000000000E+00
+"""
+
+
+def output4_binary(swapped=False, complex_=False):
+    order = ">" if swapped else "<"
+    width = 2 if complex_ else 1
+
+    def record(*parts):
+        body = b"".join(parts)
+        mark = struct.pack(order + "i", len(body))
+        return mark + body + mark
+    out = record(struct.pack(order + "4i", 2, 2, 2, 4 if complex_ else 2),
+                 b"KGG     ")
+    for column in (1, 2):
+        values = [1.0 * column] * (2 * width)
+        out += record(struct.pack(order + "3i", column, 1, 4 * width),
+                      struct.pack(f"{order}{2 * width}d", *values))
+    return out + record(struct.pack(order + "3i", 3, 1, 2),
+                        struct.pack(order + "d", 1.0))
+
+
+MARKET = {
+    "symmetric": "%%MatrixMarket matrix coordinate real symmetric\n"
+                 "% masses\n3 3 4\n1 1 2.5\n2 1 -1\n2 2 1e3\n3 3 4D0\n",
+    "general": "%%MatrixMarket matrix coordinate integer general\n"
+               "2 3 2\n1 3 7\n2 1 -1\n",
+    "skew": "%%MatrixMarket matrix coordinate real skew-symmetric\n"
+            "2 2 1\n2 1 3\n",
+    "hermitian": "%%MatrixMarket matrix coordinate complex hermitian\n"
+                 "2 2 2\n1 1 1 0\n2 1 1 -2\n",
+    "pattern": "%%MatrixMarket matrix coordinate pattern general\n"
+               "2 2 1\n2 2\n",
+    "array": "%%MatrixMarket matrix array real general\n2 2\n1\n2\n3\n4\n",
+    "lower": "%%MatrixMarket matrix array real symmetric\n2 2\n1\n2\n4\n",
+}
+DMIG = {
+    "small": "DMIG,KAAX,0,6,2,0\n"
+             "DMIG    KAAX           7       1               7       1    1.5\n"
+             "DMIG    KAAX           7       2               7       1   -1.\n"
+             "               7       2    2.5+3\n",
+    "large": "DMIG    KAAX           0       6       2       0\n"
+             "DMIG*   KAAX                           8               1\n"
+             "*                      8               1         1.0D+03\n",
+    "complex": "DMIG,B2PP,0,1,3,0\nDMIG,B2PP,1,1,,1,1,2.0,-1.0\n",
+    "rectangular": "BEGIN BULK\nDMIG,PIN,0,9,1,0,,,2\nDMIG,PIN,1,,,3,1,1.0\n"
+                   "DMIG,PIN,2,,,3,2,-1.0,,+A\n+A,4,1,2.0\nENDDATA\n",
+}
+
+
+def mat_tag(kind, body):
+    return struct.pack("<II", kind, len(body)) + body + b"\0" * (-len(body) % 8)
+
+
+def mat_array(name, kind, dims, *parts, complex_=False, nzmax=0):
+    flags = struct.pack("<II", kind | (0x800 if complex_ else 0), nzmax)
+    return mat_tag(14, mat_tag(6, flags) +
+                   mat_tag(5, struct.pack(f"<{len(dims)}i", *dims)) +
+                   mat_tag(1, name) + b"".join(parts))
+
+
+def mat_doubles(*values):
+    return mat_tag(9, struct.pack(f"<{len(values)}d", *values))
+
+
+def mat_wholes(*values):
+    return mat_tag(5, struct.pack(f"<{len(values)}i", *values))
+
+
+def mat_files():
+    head = b"MATLAB 5.0 MAT-file".ljust(116) + b"\0" * 8 + b"\0\1IM"
+    full = mat_array(b"A", 6, (2, 2), mat_doubles(1, 2, 3, 4))
+    sparse = mat_array(b"S", 5, (3, 3), mat_wholes(0, 2, 1),
+                       mat_wholes(0, 1, 2, 3), mat_doubles(1, 2, 3), nzmax=3)
+    complex_ = mat_array(b"Z", 6, (1, 2), mat_doubles(1, 2),
+                         mat_doubles(3, 4), complex_=True)
+    small = mat_array(b"I", 8, (1, 2), mat_tag(1, b"\1\2"))
+    names = mat_tag(5, struct.pack("<i", 8)) + mat_tag(1, b"A".ljust(8, b"\0"))
+    struct_ = mat_array(b"sys", 2, (1, 1), names,
+                        mat_array(b"", 6, (1, 1), mat_doubles(5)))
+    text = mat_array(b"note", 4, (1, 2), mat_tag(16, b"hi"))
+    return {
+        "full": head + full,
+        "sparse": head + sparse,
+        "all": head + full + sparse + complex_ + small + struct_ + text,
+        "packed": head + mat_tag(15, zlib.compress(full))[:8 + len(
+            zlib.compress(full))] + sparse,
+        "packed-struct": head + struct.pack("<II", 15, len(
+            zlib.compress(struct_))) + zlib.compress(struct_),
+    }
+
+
+FOREIGN = {
+    "abaqus": "*HEADING\n*NODE\n1, 0., 0., 0.\n*ELEMENT, TYPE=B31\n1, 1, 2\n",
+    "harwell-boeing": "title".ljust(72) + "key     \n" +
+                      "             3             1             1\n"
+                      "RSA                        2             2\n",
+    "numpy": "\x93NUMPY\x01\x00v\x00{'descr': '<f8'}\n",
+    "market": "%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 1\n",
+    "html": "<!DOCTYPE html>\n<html></html>\n",
+    "ansys": "/PREP7\nN,1,0,0,0\nET,1,BEAM188\n",
+}
+
+# --- decks ------------------------------------------------------------------------
+
+DECK = {
+    "grids": "SOL 103\nCEND\nSPC = 7\nMPC = 8\nBEGIN BULK\n"
+             "GRDSET,,,,,,,6\n"
+             "CORD2R,1,0,0.,0.,0.,0.,0.,1.,+\n+,1.,0.,0.\n"
+             "CORD2C,2,1,0.,0.,0.,0.,0.,1.,+C\n+C,1.,0.,0.\n"
+             "GRID,1,,0.,0.,0.\nGRID,2,2,1.,30.,0.,1\n"
+             "GRID*                  3               1             2.5\n"
+             "*                    0.0\n"
+             "SPOINT,11,12\nSPOINT,20,THRU,22\n"
+             "SPC1,7,123,1\nSPC,7,2,4,0.0\nSPCADD,9,7\n"
+             "ASET1,126,2,THRU,3\nQSET1,0,11,12\nENDDATA\n",
+    "constraints": "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\n"
+                   "GRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\n"
+                   "RBE2,10,1,123456,2\n"
+                   "RBE3,11,,4,123456,1.0,123,1,2,+\n+,3\n"
+                   "RBAR,12,1,3,123456,,,123456\n"
+                   "MPC,8,2,1,1.0,3,1,-1.0\nMPCADD,5,8\n"
+                   "RBE1,13,1,123456,,,,,+\n+,UM,3,123\n"
+                   "RROD,14,1,4,1\nENDDATA\n",
+    "elements": "BEGIN BULK\nGRID,1\nGRID,2,,1.\nGRID,3,,1.,1.\n"
+                "CBAR,1,1,1,2,0.,1.,0.\nCQUAD4,2,1,1,2,3,3\n"
+                "CELAS2,3,10.,1,1,2,1\nCTRIA3,4,1,1,2,3\n"
+                "CONM2,5,1,0,2.0\nCHEXA,6,1,1,2,3,1,2,3,+\n+,1,2\nENDDATA\n",
+    "frames": "BEGIN BULK\nCORD1R,1,1,2,3\nCORD1S,4,3,2,1\n"
+              "CORD2S,5,4,1.,0.,0.,0.,1.,0.,+\n+,0.,0.,1.\n"
+              "GRID,1,,0.,0.,0.\nGRID,2,,0.,0.,1.\nGRID,3,,1.,0.,0.\n"
+              "GRID,4,1,1.,1.,1.,5\nINCLUDE 'more.bdf'\nENDDATA\n",
+}
+
+# --- options of ritz-import, and their files ------------------------------------
+
+K = MARKET["symmetric"]
+IMPORT = {
+    "dofs": "stiffness K\nmass K\ndofs D\nport tip=3:1\nport foot=1,2\n"
+            "input u=3:1,2:1*-0.5\noutput y=3:1*2/vel@1e-3\n"
+            "damper strut=1:1,3:1*4*0.5\nunits N/mm\n"
+            f">K\n{K}>D\n# grid, direction\n1 1\n2 1\n3 1\n",
+    "rows": f"stiffness K\nrows 1\ninput u=1:1\n>K\n{K}",
+    "deck": "stiffness K\nmass K\nbulk B\ndofs D\nport tip=3\n"
+            "averaged-port mean=1-2\nrigid-port hub=2,3\n"
+            f">K\n{K}>D\n1 1\n2 1\n3 1\n>B\nBEGIN BULK\nGRID,1,,0.,0.,0.\n"
+            "GRID,2,,1.,0.,0.\nGRID,3,,0.,1.,1.\nSPC1,1,1,1\nENDDATA\n",
+    "tied": f"stiffness K\ndofs D\nbulk B\n>K\n{K}>D\n1 1\n2 1\n3 1\n"
+            ">B\nSOL 103\nCEND\nMPC=8\nBEGIN BULK\nGRID,1\nGRID,2,,1.\n"
+            "GRID,3,,2.\nMPC,8,2,1,1.0,3,1,-1.0\nENDDATA\n",
+    "modal": "frequencies F\nratios R\ninput u=1:0*0.3,2:0*-1.2\n"
+             "output-matrix C\noutput-names tip@1e-3\n"
+             ">F\n%%MatrixMarket matrix array real general\n2 1\n0\n1.5\n"
+             ">R\n%%MatrixMarket matrix array real general\n2 1\n0\n0.02\n"
+             ">C\n%%MatrixMarket matrix array real general\n1 2\n1\n-1\n",
+    "ratio": "frequencies F\nratios 0.02\n"
+             ">F\n%%MatrixMarket matrix array real general\n1 3\n1\n2\n3\n",
+    "matrices": f"stiffness K\nmass K\nrows 0\ninput-matrix B\n"
+                "input-names a,b\noutput-matrix C\nvelocity-matrix C\n"
+                f">K\n{K}>B\n%%MatrixMarket matrix array real general\n3 2\n"
+                "1\n0\n0\n0\n1\n-1\n"
+                ">C\n%%MatrixMarket matrix array real general\n1 3\n1\n1\n1\n",
+    "named": f"stiffness P:KAAX\nport tip=7:12\n>P\n{DMIG['small']}",
+}
+STATE_SPACE = {
+    "five": "matrices A=A,B=B,C=C,D=D,E=A\ninputs u\noutputs y@0.1\nunits m\n"
+            ">A\n%%MatrixMarket matrix array real general\n2 2\n0\n-1\n1\n-2\n"
+            ">B\n%%MatrixMarket matrix array real general\n2 1\n0\n1\n"
+            ">C\n%%MatrixMarket matrix array real general\n1 2\n1\n0\n"
+            ">D\n%%MatrixMarket matrix array real general\n1 1\n0\n",
+    "output4": f"matrices A=P:KGG,B=P:KGG,C=P:KGG\n>P\n{OUTPUT4}",
+}
+
+# --- scenes, signals, options -----------------------------------------------------
+
+SCENE = {
+    "hinge": "# at: clock=30,slide.2=0.5\n"
+             "scene: rotor and stator\ncomponents:\n"
+             "  stator: {model: stator.h5, basis: craig-bampton, modes: 6}\n"
+             "  rotor: {model: rotor.h5, basis: rubin, up_to_hz: 30, "
+             "attach: bearing, shift_hz: [0, 5], damping: modal 0.01}\n"
+             "joints:\n"
+             "  - {name: clock, between: [stator/top, rotor/bearing], "
+             "type: hinge, axis: [0, 0, 1], angles_deg: [0, 60, 120]}\n"
+             "inputs: [{name: torque, at: rotor/bearing, component: 6, "
+             "against: stator/top}]\n"
+             "outputs: [{name: gyro, at: stator/top, component: 6, "
+             "limit: 1.0e-3}]\n"
+             "band_hz: [0, 10]\ndamping: {modal: 0.002}\n"
+             "select: {by: hankel, tolerance: 1.0e-3}\n"
+             "augment: {level: system, attached: [torque]}\n"
+             "extraneous: out-of-band\n",
+    "many": "scene: arms\ncomponents:\n  a: {model: a.h5}\n"
+            "  b: {model: b.h5, basis: rigid}\njoints:\n"
+            "  - {name: wrist, between: [a/p, b/p], type: universal, "
+            "axis: [[1, 0, 0], [0, 1, 0]], angles_deg: [[0, 1], [0, 2]]}\n"
+            "  - {name: slide, between: [a/q, b/q], type: slider, "
+            "axis: [1, 0, 0], positions: [0, 0.5]}\n"
+            "  - {name: mount, between: [a/r, b/r], type: bushing, "
+            "stiffness: [1, 1, 1, 1, 1, 1], damping: [0, 0, 0, 0, 0, 0]}\n"
+            "  - {name: weld, between: [a/s, b/s], type: rigid, "
+            "offset: [0, 0, 1]}\n"
+            "configurations:\n  - {slide: 0.5, wrist: [0, 2]}\n"
+            "select: {modes: [1, 2, 4]}\n"
+            "composite: {tolerance: 1e-9, reference: [{slide: 0}]}\n",
+    "anchors": "scene: &x s\ncomponents: {a: {model: *x}}\n",
+}
+SIGNAL = {
+    "step": "= step", "sine": "= sine:3*2.5", "chirp": "= chirp:0.1,20*-1",
+    "table": "# t, u\n0\t0\n0.05, 1\n0.05 2\n1e0;-1\r\n",
+}
+TEXTS = {
+    "damping": "damping modal 0.01\ndamping modes 0.01 0.02 0.005\n"
+               "damping bands 0 10 0.01 10 20 0.02\ndamping rayleigh 0.1 1e-5\n"
+               "damping fit 1 0.01 10 0.02\n",
+    "choice": "choice shift_hz 0,5\nchoice loads inputs,outputs\n"
+              "choice inner mass\nchoice interface_modes 8\n"
+              "choice gramian inputs\nchoice damping modal 0.01\n"
+              "choice engine low-rank\nchoice among_hz 50\n"
+              "choice band_hz 0,10\nchoice remainder static\nchoice sides two\n",
+    "others": "tolerance frequency=1e-3,mac=0.99,gain=1e-6\ntolerance 0.01\n"
+              "weights torque=1,gyro=0.5\nchannels a,b,c@0.5\n"
+              "damper strut=4*0.5\ndamper strut=1e3\nunits kg m s\nunits 126\n",
+}
+
+# --- tools ----------------------------------------------------------------------------
+
+CLAIMS = {
+    "all": "source [Key2000] table 1\n"
+           "beam b --elements 4 --clamp left --directions 26 --tip-mass 1 # b\n"
+           "rows r 3 126\ntext scene.yaml\n  scene: x\n    indented\n"
+           "expect frequencies_hz[0] 0.5 rel 1e-6\n"
+           "expect frequencies_hz[1] as beta 1.0 2.0 abs 0.1\n"
+           "expect measures[static-gain-relative].value below 1e-6\n"
+           "expect ok is true\nexpect order is 12\n"
+           "expect failure \"rigid-body motion\"\n",
+    "skip": "source '$HERE x'\nneed $DATA/lund/k.mtx\nexpect order is 12\n"
+            "try ritz-basis --list\n",
+}
+RECORDS = {
+    "fit": '{"tool": "ritz-fit", "method": "rubin", "subject": "a", "order": 8,'
+           ' "errors": {"frequency-relative": 1e-4, "missing-modes": 0},'
+           ' "tolerance": {"frequency-relative": 1e-3}, "chosen": true}\n'
+           '{"tool": "ritz-fit", "method": "guyan", "subject": "a", "order": 4,'
+           ' "errors": {"frequency-relative": 1e-2}, "feasible": false,'
+           ' "cost": {"seconds_per_second": 0.5, "integrator": "rk"}}\n',
+    "verify": '{"tool": "ritz-reduce", "command": "ritz-reduce a.h5 b.h5 -o '
+              'r.h5", "method": "rubin", "order": 8, "seconds": {"cpu": 0.25}}\n'
+              '{"tool": "ritz-verify", "command": "ritz-verify a.h5 r.h5", '
+              '"inputs": ["12  a.h5", "34  r.h5"], "method": "rubin", "order": '
+              '8, "errors": {"response-relative": 1e-3}, "estimates": {}}\n\n',
+}
+HEAD = "track\tconfiguration\tmode\thertz\tmac\n"
+TRACKS = {
+    "sweep": HEAD + "1\tclock=0\t1\t0.5\tnan\n1\tclock=60\t1\t0.6\t0.99\n"
+                    "2\tclock=0\t2\t1.5\tnan\n2\tclock=60\t2\t1.25\t0.5\n",
+    "two": HEAD + "1\ta=0,b=1\t1\t0.5\tnan\n1\ta=1,b=2\t1\t0.6\t1\n",
+}
+
+# --- HDF5: a letter for the kind, then commands ------------------------------------
+
+CONTAINER = {letter: letter.encode() for letter in "abcdefghABCDEFGH"}
+CONTAINER.update({
+    f"{letter}-{what}": letter.encode() + edits for letter in "abcdefgh"
+    for what, edits in {
+        "value": b"\x05\x00\x00\x01\x00\x09",
+        "attribute": b"\x00\x01\x02\x01\x01\x00\x01\x0a",
+        "member": b"\x04\x02\x00\x02\x03\x03\x04\x01\x02\x03\x04",
+        "absent": b"\x06\x03", "other": b"\x03\x04\x07"}.items()})
+MAT_HDF5 = {
+    "sound": b"", "value": b"\x05\x00\x00\x01\x00\x09",
+    "member": b"\x04\x02\x00\x02\x03\x03\x04\x01\x02\x03\x04",
+    "attribute": b"\x02\x01\x00\x01\x09\x00\x01\x0a", "absent": b"\x03\x03",
+}
+
+CORPUS = {
+    "output4": {"dense": OUTPUT4, "sparse": OUTPUT4_SPARSE, "big": OUTPUT4_BIG,
+                "two": OUTPUT4 + OUTPUT4_BIG, "binary": output4_binary(),
+                "swapped": output4_binary(True),
+                "complex": output4_binary(False, True)},
+    "matrix-market": MARKET, "dmig": DMIG, "mat": mat_files(),
+    "mat-hdf5": MAT_HDF5,
+    "matrices": {**FOREIGN, **MARKET, **DMIG, "output4": OUTPUT4},
+    "deck": DECK, "import": IMPORT, "state-space": STATE_SPACE,
+    "container": CONTAINER, "scene": SCENE, "signal": SIGNAL, "texts": TEXTS,
+    "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,
+}
+
+
+def main():
+    for target, inputs in CORPUS.items():
+        folder = pathlib.Path(sys.argv[1]) / target
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in inputs.items():
+            if isinstance(content, str):
+                content = content.encode("latin-1")
+            (folder / name).write_bytes(content)
+
+
+main()

@@ -1,0 +1,99 @@
+/* The program: libFuzzer's two functions, and the table of targets. */
+#include "fuzz.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* NOLINTBEGIN(readability-identifier-naming, readability-non-const-parameter) */
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+static const fuzz_target targets[] = {
+    {"output4", "NASTRAN OUTPUT4, text and binary", fuzz_output4},
+    {"matrix-market", "Matrix Market", fuzz_matrix_market},
+    {"dmig", "DMIG and punch files", fuzz_dmig},
+    {"mat", "MAT level 5, compressed too", fuzz_mat},
+    {"mat-hdf5", "MAT 7.3, sound HDF5 with any content", fuzz_mat_hdf5},
+    {"matrices", "any file of matrices, and what is not read", fuzz_matrices},
+    {"deck", "NASTRAN bulk data", fuzz_deck},
+    {"import", "options and files of ritz-import", fuzz_import},
+    {"state-space", "the same of a state space", fuzz_state_space},
+    {"container", "containers, sound HDF5 with any content", fuzz_container},
+    {"scene", "scenes, and settings of --at", fuzz_scene},
+    {"signal", "signals of ritz-simulate, and their tables", fuzz_signal},
+    {"texts", "values of options", fuzz_texts},
+    {"claims", "claims files; no tool is run", fuzz_claims},
+    {"records", "files of --record", fuzz_records},
+    {"tracks", "tables of --tracks, as charts draw them", fuzz_tracks},
+};
+
+enum { NUM_TARGETS = sizeof targets / sizeof *targets };
+
+static const fuzz_target *chosen;
+
+void fuzz_judge(ritz_status status)
+{
+    if (status == RITZ_OK || *ritz_error_message())
+        return;
+    fprintf(stderr, "status %d without a sentence\n", (int)status);
+    abort();
+}
+
+void fuzz_store(const char *name, const char *bytes, int64_t size)
+{
+    FILE *file = fopen(name, "wb");
+    bool good = file && fwrite(bytes, 1, (size_t)size, file) == (size_t)size;
+
+    if (file && fclose(file) == 0 && good)
+        return;
+    fprintf(stderr, "cannot write '%s'\n", name);
+    exit(1);
+}
+
+static void list_targets(void)
+{
+    for (int k = 0; k < NUM_TARGETS; k++)
+        printf("%-14s %s\n", targets[k].name, targets[k].about);
+    exit(0);
+}
+
+/* "--target=NAME", which libFuzzer passes over; "--list" alone. */
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+    static const char option[] = "--target=";
+    const size_t length = sizeof option - 1;
+    const char *name = "";
+
+    for (int k = 1; k < *argc; k++) {
+        if (strcmp((*argv)[k], "--list") == 0)
+            list_targets();
+        if (strncmp((*argv)[k], option, length) == 0)
+            name = (*argv)[k] + length;
+    }
+    for (int k = 0; k < NUM_TARGETS && !chosen; k++)
+        if (strcmp(targets[k].name, name) == 0)
+            chosen = &targets[k];
+    if (chosen)
+        return 0;
+    fprintf(stderr, "there is no target '%s': --list has all\n", name);
+    exit(2);
+}
+
+/* The copy ends where the bytes do, so that every overrun is seen. */
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    char *copy = malloc(size + 1);
+
+    if (!copy)
+        return 0;
+    if (size > 0)
+        memcpy(copy, bytes, size);
+    copy[size] = '\0';
+    ritz_record("%s", "");
+    chosen->run(copy, (int64_t)size);
+    free(copy);
+    return 0;
+}
+/* NOLINTEND(readability-identifier-naming, readability-non-const-parameter) */

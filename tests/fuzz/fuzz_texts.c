@@ -1,0 +1,189 @@
+/* Scenes, signals and values of options. */
+#include "fuzz.h"
+
+#include "base/alloc.h"
+#include "import/import.h"
+
+#include <ritz/basis.h>
+#include <ritz/parts.h>
+#include <ritz/ranking.h>
+#include <ritz/scene.h>
+#include <ritz/simulate.h>
+#include <ritz/verify.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- scenes --------------------------------------------------------------- */
+
+/* A first line "# at: TEXT" is taken as --at. */
+static void read_settings(const ritz_scene *scene, const char *bytes)
+{
+    static const char mark[] = "# at: ";
+    const size_t length = sizeof mark - 1;
+    double *setting = NULL;
+    char *at = NULL;
+
+    if (strncmp(bytes, mark, length) != 0)
+        return;
+    at = strndup(bytes + length, strcspn(bytes + length, "\n"));
+    setting = calloc((size_t)scene->num_sweeps + 1, sizeof *setting);
+    if (at && setting)
+        fuzz_judge(ritz_scene_settings(scene, at, setting));
+    free(setting);
+    free(at);
+}
+
+void fuzz_scene(const char *bytes, int64_t size)
+{
+    ritz_scene scene = {0};
+    ritz_status status = RITZ_OK;
+
+    (void)size; /* text ends at its NUL */
+    status = ritz_scene_parse("scene.yaml", bytes, &scene);
+    fuzz_judge(status);
+    if (status == RITZ_OK)
+        read_settings(&scene, bytes);
+    ritz_scene_free(&scene);
+}
+
+/* --- signals -------------------------------------------------------------- */
+
+static void read_signal(const char *text)
+{
+    static const double times[] = {-1.0, 0.0, 0.01, 0.5, 1.0, 1e300};
+    RITZ_OWN(ritz_signal) signal = {0};
+    ritz_status status = ritz_signal_parse(text, &signal);
+
+    fuzz_judge(status);
+    for (size_t k = 0; status == RITZ_OK && k < sizeof times / sizeof *times;
+         k++)
+        (void)ritz_signal_at(&signal, times[k], 1.0);
+}
+
+/* "= WORDS", or the lines of a table. */
+void fuzz_signal(const char *bytes, int64_t size)
+{
+    if (strncmp(bytes, "= ", 2) != 0) {
+        fuzz_store("table", bytes, size);
+        read_signal("table");
+    } else if (!strchr(bytes, '/')) { /* it may be the name of a file */
+        read_signal(bytes + 2);
+    }
+}
+
+/* --- values of options ---------------------------------------------------- */
+
+static void read_damping(const char *text)
+{
+    char printed[RITZ_DAMPING_SIZE];
+    ritz_damping damping = {0};
+    ritz_status status = ritz_damping_parse(text, &damping);
+
+    fuzz_judge(status);
+    if (status != RITZ_OK)
+        return;
+    ritz_damping_print(&damping, printed);
+    for (int mode = -1; mode < 3; mode++)
+        (void)ritz_damping_of_mode(&damping, mode, 1.0);
+}
+
+static void read_tolerance(const char *text)
+{
+    char printed[64];
+    ritz_verify_request request = {0};
+
+    for (int k = 0; k < RITZ_MEASURES; k++)
+        request.limit[k] = nan("");
+    fuzz_judge(ritz_tolerance_take(text, &request));
+    ritz_tolerance_print(&request, sizeof printed, printed);
+}
+
+/* "shift-hz 0,5" */
+static void read_choice(const char *text)
+{
+    const size_t length = strcspn(text, " ");
+    char printed[64];
+    ritz_choice choice = {0};
+
+    for (const ritz_choice_word *word = ritz_choice_words; word->key; word++)
+        if (strlen(word->key) == length &&
+            strncmp(word->key, text, length) == 0) {
+            fuzz_judge(ritz_choice_take(
+                word, text + length + (text[length] != '\0'), &choice));
+            ritz_choice_print(&choice, sizeof printed, printed);
+        }
+}
+
+static void read_weights(const char *text)
+{
+    RITZ_OWN(ritz_weights) weights = {0};
+
+    fuzz_judge(ritz_weights_parse(text, text, &weights));
+}
+
+static void read_channels(const char *text)
+{
+    enum { COUNT = 3 };
+    char name[COUNT][RITZ_NAME_SIZE] = {""};
+    double limit[COUNT] = {0.0};
+
+    fuzz_judge(ritz_import_channels(text, 'u', COUNT, name, NULL));
+    fuzz_judge(ritz_import_channels(text, 'y', COUNT, name, limit));
+}
+
+static void read_damper(const char *text)
+{
+    double c[] = {1.0}, k[] = {2.0}, held_c[] = {0.0}, held_k[] = {0.0};
+    char name[][RITZ_NAME_SIZE] = {"strut"};
+    ritz_dampers dampers = {.count = 1,
+                            .name = name,
+                            .c = c,
+                            .k = k,
+                            .held_c = held_c,
+                            .held_k = held_k};
+
+    fuzz_judge(ritz_dampers_tune(&dampers, text));
+}
+
+static void read_units(const char *text)
+{
+    char units[RITZ_NAME_SIZE];
+    bool want[7] = {false};
+
+    fuzz_judge(ritz_import_units(text, units));
+    fuzz_judge(ritz_import_directions(text, want));
+}
+
+static const struct option_reader {
+    const char *word;
+    void (*read)(const char *text);
+} readers[] = {
+    {"damping ", read_damping},   {"tolerance ", read_tolerance},
+    {"choice ", read_choice},     {"weights ", read_weights},
+    {"channels ", read_channels}, {"damper ", read_damper},
+    {"units ", read_units},
+};
+
+/* Lines "READER TEXT". */
+void fuzz_texts(const char *bytes, int64_t size)
+{
+    char *text = strndup(bytes, (size_t)size);
+    char *line = text;
+
+    while (line) {
+        char *end = strchr(line, '\n');
+
+        if (end)
+            *end = '\0';
+        for (size_t k = 0; k < sizeof readers / sizeof *readers; k++) {
+            const size_t length = strlen(readers[k].word);
+
+            if (strncmp(line, readers[k].word, length) == 0)
+                readers[k].read(line + length);
+        }
+        line = end ? end + 1 : NULL;
+    }
+    free(text);
+}

@@ -1,0 +1,118 @@
+/* Texts that tools read: claims, records, tables of tracks. */
+#include "fuzz.h"
+
+#include "base/alloc.h"
+#include "chart/chart.h"
+#include "claims/claims.h"
+#include "cli/records.h"
+
+#include <dirent.h>
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* --- claims --------------------------------------------------------------- */
+
+/* The folder of commands, which claims write files into. */
+static const char folder[] = "claims";
+
+static void empty_folder(void)
+{
+    char path[PATH_MAX];
+    DIR *listing = opendir(folder);
+    const struct dirent *entry = NULL;
+
+    while (listing && (entry = readdir(listing))) {
+        (void)snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        unlink(path);
+    }
+    if (listing)
+        closedir(listing);
+}
+
+/* The answer of the last command, as if one had been run. */
+static json_t *make_answer(void)
+{
+    return json_pack("{s:[f,f,f], s:s, s:b, s:i, s:[{s:s, s:f}]}",
+                     "frequencies_hz", 0.5, 1.875104, 4.694091, "error",
+                     "a rigid-body motion is left free", "ok", 1, "order", 12,
+                     "measures", "name", "static-gain-relative", "value", 1e-9);
+}
+
+/* No tool is where commands look for them, so that none is run. */
+void fuzz_claims(const char *bytes, int64_t size)
+{
+    cli_run run = {.quiet = true};
+    claims_state state = {.run = &run,
+                          .bin = "/no-tools",
+                          .data = "data",
+                          .exit_code = 1,
+                          .list = json_array(),
+                          .answer = make_answer()};
+
+    mkdir(folder, 0700);
+    (void)snprintf(state.folder, sizeof state.folder, "%s", folder);
+    fuzz_store("a.claims", bytes, size);
+    fuzz_judge(cli_table_new(&run.said));
+    fuzz_judge(claims_file(&state, "a.claims"));
+    cli_table_free(&run.said);
+    json_decref(state.list);
+    json_decref(state.answer);
+    empty_folder();
+}
+
+/* --- records -------------------------------------------------------------- */
+
+void fuzz_records(const char *bytes, int64_t size)
+{
+    records all = {0};
+    record_set set = {0};
+    ritz_status status = RITZ_OK;
+
+    fuzz_store("runs.jsonl", bytes, size);
+    (void)records_is("runs.jsonl");
+    status = records_read("runs.jsonl", &all);
+    fuzz_judge(status);
+    if (status == RITZ_OK) {
+        records_join(&all);
+        (void)records_cost(&all);
+        status = record_set_new(&all, NULL, &set);
+        fuzz_judge(status);
+        for (int64_t k = 0; status == RITZ_OK && k < set.num_measures; k++)
+            (void)records_matter(&set.all, &set.measure[k]);
+        record_set_free(&set);
+    }
+    records_free(&all);
+}
+
+/* --- tracks --------------------------------------------------------------- */
+
+ritz_status __wrap_picture_draw(picture *p, const char *template, /* NOLINT */
+                                const char *title, const char *summary);
+
+/* What has been read is not drawn: gnuplot is no reader of ours. */
+ritz_status __wrap_picture_draw(picture *p, const char *template, /* NOLINT */
+                                const char *title, const char *summary)
+{
+    (void)p;
+    (void)template;
+    (void)title;
+    (void)summary;
+    return RITZ_OK;
+}
+
+void fuzz_tracks(const char *bytes, int64_t size)
+{
+    chart_file file = {.holds = CHART_TRACKS,
+                       .path = "tracks.tsv",
+                       .text = strndup(bytes, (size_t)size)};
+    const chart_sources sources = {.count = 1, .file = &file};
+    const chart_request request = {.up_to_hz = DBL_MAX};
+    RITZ_OWN(picture) drawn = {0};
+
+    if (file.text && picture_new("tracks.svg", false, &drawn) == RITZ_OK)
+        fuzz_judge(chart_tracks(&sources, &request, &drawn));
+    free(file.text);
+}
