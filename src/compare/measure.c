@@ -455,6 +455,15 @@ static double damping_error(const ritz_damped *two, int64_t count,
                         : fabs(other - zeta) / fmax(fabs(other), fabs(zeta));
 }
 
+/* Whether every flexible mode swings. */
+static bool is_stable(const ritz_configuration *c)
+{
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        if (!(c->lambda[k] > 0.0))
+            return false;
+    return true;
+}
+
 static ritz_status measure_damping(const ritz_scene *scene,
                                    const ritz_configuration *first,
                                    const ritz_configuration *second,
@@ -464,6 +473,8 @@ static ritz_status measure_damping(const ritz_scene *scene,
     RITZ_OWN(ritz_damped) one = {0}, two = {0};
     double largest = 0.0;
 
+    if (row->num_kept == 0 || !is_stable(first) || !is_stable(second))
+        return RITZ_OK;
     RITZ_CHECK(find_poles(scene, first, &p));
     RITZ_CHECK(find_poles(scene, second, &p2));
     RITZ_CHECK(ritz_damped_new(&p, NULL, NULL, scene->band_hz, &one));

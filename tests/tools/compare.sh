@@ -206,6 +206,32 @@ holds '  and the table of tolerances has it' \
 expect 0 'platform	damping' head -n 1 t.tsv
 cd ..
 
+# --- structural damping: K4 of a body is in every system and not in a ranking ---------
+
+cat >loss.py <<'END'
+import h5py, shutil
+shutil.copy("rotor.h5", "lossy.h5")
+with h5py.File("lossy.h5", "r+") as f:
+    f.copy("K", "K4")
+    data = f["K4/data"][()]
+    del f["K4/data"]
+    f["K4/data"] = 0.02 * data
+END
+/usr/bin/python3 -s loss.py
+scene lossy 'select: {by: band}' 'augment: system'
+sed 's/rotor.h5/lossy.h5/' lossy.yaml >part && mv part lossy.yaml
+json 0 ritz-compare lossy.yaml -o lossy.h5.system
+holds '  losses of kept modes are right' \
+    'all(0 < c["errors"]["damping"] < 1e-7 for c in j["configurations"]
+         if c["listed"])'
+json 0 ritz-poles lossy.h5.system --at clock=90,cone=0 --modes 3
+holds '  no rigid motion among the poles, and each decays' \
+    'len(j["poles"]) == 3 and all(p["hertz"] > 0.1 and p["real"] < 0
+         for p in j["poles"])'
+sed 's/{by: band}/{by: hankel}/' lossy.yaml >ranked.yaml
+expect 0 "the structural damping of 'ranked.yaml' is left out of its ranking" \
+    ritz-compare ranked.yaml -o ranked.h5
+
 # --- an angle to add -------------------------------------------------------------------
 
 scene wide 'select: {modes: [1, 2, 3, 4, 5]}' 'augment: system' \

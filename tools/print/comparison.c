@@ -58,6 +58,18 @@ static void describe_choice(const ritz_scene *scene, char out[160])
     }
 }
 
+/* Whether modes were chosen by a ranking, of which K4 has no part. */
+static bool ranks_without_loss(const ritz_stage *first)
+{
+    const ritz_scene *scene = first->scene;
+    bool structural = false;
+
+    for (int64_t k = 0; k < first->count; k++)
+        structural = structural || first->body[k].K4.val;
+    return structural && scene->select == RITZ_SELECT_RANKED &&
+           scene->num_inputs > 0 && scene->num_outputs > 0;
+}
+
 static void say_composite(cli_run *run, const ritz_stage *first,
                           const ritz_comparison *c)
 {
@@ -90,6 +102,11 @@ static void say_composite(cli_run *run, const ritz_stage *first,
                 "Damping joins up to %ld flexible modes to others: they are "
                 "ranked as one, and kept or left out whole.",
                 joined);
+    if (ranks_without_loss(first))
+        cli_warn(run,
+                 "the structural damping of '%s' is left out of its "
+                 "ranking",
+                 run->operand[0]);
     if (c->removed)
         return;
     cli_warn(run, "stage two removed nothing: every component kept its "

@@ -38,8 +38,8 @@ typedef struct fixture {
     ritz_comparison c;
 } fixture;
 
-/* A chain of grids with a damper between two of them, across. */
-static void damped_chain(int64_t first, int64_t a, int64_t b,
+/* A chain of grids with a damper between two of them, across, on a spring. */
+static void damped_chain(int64_t first, const int64_t between[2], double spring,
                          ritz_component *out)
 {
     double place[GRIDS][3];
@@ -53,8 +53,9 @@ static void damped_chain(int64_t first, int64_t a, int64_t b,
     assert_ok(ritz_dampers_new(out->num_dofs, 1, &out->dampers));
     memcpy(out->dampers.name[0], "strut", 6);
     out->dampers.c[0] = 2.0;
-    ritz_dense_col(&out->dampers.B, 0)[6 * a + 1] = 1.0;
-    ritz_dense_col(&out->dampers.B, 0)[6 * b + 1] = -1.0;
+    out->dampers.k[0] = spring;
+    ritz_dense_col(&out->dampers.B, 0)[6 * between[0] + 1] = 1.0;
+    ritz_dense_col(&out->dampers.B, 0)[6 * between[1] + 1] = -1.0;
 }
 
 static void reduce_chain(const ritz_component *chain, const char *port,
@@ -72,8 +73,9 @@ static void reduce_chain(const ritz_component *chain, const char *port,
     assert_ok(ritz_reduce(chain, &basis, out));
 }
 
-static void prepare(fixture *f, const char *choice)
+static void prepare_sprung(fixture *f, const char *choice, double spring)
 {
+    static const int64_t between[2][2] = {{1, 4}, {2, 5}};
     char text[2048];
     ritz_reduced body[2] = {0};
 
@@ -83,12 +85,17 @@ static void prepare(fixture *f, const char *choice)
     for (int k = 0; k < 2; k++) {
         RITZ_OWN(ritz_component) chain = {0};
 
-        damped_chain(k, k == 0 ? 1 : 2, k == 0 ? 4 : 5, &chain);
+        damped_chain(k, between[k], spring, &chain);
         reduce_chain(&chain, k == 0 ? "g7" : "g1", f->scene.component[k].basis,
                      &body[k]);
     }
     assert_ok(ritz_stage_from(&f->scene, body, &f->stage));
     assert_ok(ritz_compare(&f->stage, &f->c));
+}
+
+static void prepare(fixture *f, const char *choice)
+{
+    prepare_sprung(f, choice, 0.0);
 }
 
 static void release(fixture *f)
@@ -276,6 +283,19 @@ static void a_damper_can_be_attached_by_its_name(void **state)
     release(&f);
 }
 
+/* Springs that push: no mode of that system has a ratio, and none is told. */
+static void a_system_that_falls_over_has_no_damping_error(void **state)
+{
+    fixture f;
+
+    (void)state;
+    prepare_sprung(&f, "augment: none\n", -1e4);
+    assert_true(f.c.first_system.configuration[0].lambda[0] < -1.0);
+    for (int64_t k = 0; k < f.c.num_rows; k++)
+        assert_true(isnan(f.c.row[k].damping_error));
+    release(&f);
+}
+
 /* The part of w that columns of V do not span, relative. */
 static double unspanned(const ritz_dense *V, int64_t count, const double *w)
 {
@@ -361,6 +381,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(forces_are_those_of_dampers),
     cmocka_unit_test(sets_are_tried_with_dampers_too),
     cmocka_unit_test(a_damper_can_be_attached_by_its_name),
+    cmocka_unit_test(a_system_that_falls_over_has_no_damping_error),
     cmocka_unit_test(ordered_directions_have_them_early),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
