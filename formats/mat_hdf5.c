@@ -4,8 +4,9 @@
  * is a group of data, ir, jc with its rows in the attribute MATLAB_sparse; a
  * struct is a group too. Attribute MATLAB_class says what it is.
  *
- * Only hard links are followed, and only filters that HDF5 itself brings are
- * taken: a file neither leads into others nor declares more than it can hold.
+ * Links to other objects are refused, and only filters that HDF5 itself brings
+ * are taken, deflate once: a file neither leads into others nor declares more
+ * than it can hold.
  */
 #include "formats/mat.h"
 
@@ -19,7 +20,8 @@
 enum {
     BLOCK = 512, /* where HDF5 begins */
     MOST_MEMBERS = 65536,
-    PIECE = 65536, /* bytes by which an image grows: it never does */
+    PIECE = 65536,     /* bytes by which an image grows: it never does */
+    SPARE = 8 * PIECE, /* bytes of a chunk that may be declared in vain */
 };
 
 /* A group that is to be gone through. */
@@ -71,8 +73,9 @@ static ritz_status open_image(const char *bytes, int64_t size, hid_t *out)
     return RITZ_OK;
 }
 
-/* True if all filters are known ones: their output is bounded. `chunk` gets the
- * values of a chunk, as many as HDF5 takes memory for; 0: there are none. */
+/* True if all filters are known ones, and one at most inflates: their output is
+ * bounded. `chunk` gets the values of a chunk, as many as HDF5 takes memory for;
+ * 0: there are none. */
 static bool is_plain(hid_t set, hsize_t *chunk)
 {
     static const H5Z_filter_t known[] = {H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE,
@@ -81,6 +84,7 @@ static bool is_plain(hid_t set, hsize_t *chunk)
     bool plain = plan >= 0 && H5Pget_external_count(plan) == 0 &&
                  H5Pget_layout(plan) != H5D_VIRTUAL;
     int filters = plan < 0 ? 0 : H5Pget_nfilters(plan);
+    int inflating = 0;
     ritz_h5_shape cut = {0};
 
     for (int k = 0; plain && k < filters; k++) {
@@ -89,7 +93,9 @@ static bool is_plain(hid_t set, hsize_t *chunk)
         H5Z_filter_t is = H5Pget_filter2(plan, (unsigned)k, &flags, &none, NULL,
                                          0, NULL, NULL);
 
-        plain = is == known[0] || is == known[1] || is == known[2];
+        inflating += is == H5Z_FILTER_DEFLATE;
+        plain = inflating <= 1 &&
+                (is == known[0] || is == known[1] || is == known[2]);
     }
     if (H5Pget_layout(plan) == H5D_CHUNKED)
         cut.rank = H5Pget_chunk(plan, RITZ_H5_RANK, cut.dims);
@@ -105,11 +111,13 @@ static ritz_status take_shape(hid_t set, const char *name, int64_t bytes,
 {
     RITZ_OWN(hid_t) space = H5Dget_space(set);
     RITZ_OWN(hid_t) type = H5Dget_type(set);
-    hsize_t most = 0;
+    const hsize_t size = type < 0 ? 0 : H5Tget_size(type);
+    hsize_t most = 0; /* bytes */
     hsize_t chunk = 0;
 
     out->rank = H5Sget_simple_extent_ndims(space);
-    RITZ_REFUSE_IF(out->rank < 0, RITZ_ERR_FORMAT, "'%s' has no size", name);
+    RITZ_REFUSE_IF(out->rank < 0 || size == 0, RITZ_ERR_FORMAT,
+                   "'%s' has no size", name);
     if (out->rank > RITZ_H5_RANK)
         return RITZ_OK; /* refused by its rank */
     H5Sget_simple_extent_dims(space, out->dims, NULL);
@@ -119,8 +127,9 @@ static ritz_status take_shape(hid_t set, const char *name, int64_t bytes,
                    "values of '%s' are of no size", name);
     most = H5Dget_storage_size(set);
     most = most < (hsize_t)bytes ? most : (hsize_t)bytes;
-    most = most * RITZ_MAT_MOST_RATIO / H5Tget_size(type);
-    RITZ_REFUSE_IF(ritz_h5_volume(out, most) > most || chunk > most + PIECE,
+    most *= RITZ_MAT_MOST_RATIO;
+    RITZ_REFUSE_IF(ritz_h5_volume(out, most / size) > most / size ||
+                       chunk > (most + SPARE) / size,
                    RITZ_ERR_FORMAT, "'%s' declares more than the file holds",
                    name);
     return RITZ_OK;
@@ -225,6 +234,7 @@ static ritz_status add_sparse(hdf5_walk *w, hid_t at, const char *name)
     double nrow = read_attribute(at, "MATLAB_sparse");
     int64_t bytes = w->list->bytes;
 
+    RITZ_CHECK_IN(name, ritz_h5_refuse_links(at));
     RITZ_CHECK_IN(name, read_vector(at, "ir", bytes, &row));
     RITZ_CHECK_IN(name, read_vector(at, "jc", bytes, &start));
     RITZ_CHECK_IN(name, read_vector(at, "data", bytes, &value));

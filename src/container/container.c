@@ -77,6 +77,7 @@ static ritz_status open_container(const char *path, char kind[RITZ_NAME_SIZE],
     RITZ_REFUSE_IF(format != FORMAT, RITZ_ERR_FORMAT,
                    "is of format %" PRId64 ", this release reads %d", format,
                    FORMAT);
+    RITZ_CHECK(ritz_h5_refuse_links(file));
     RITZ_MOVE(*out, file);
     return RITZ_OK;
 }

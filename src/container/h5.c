@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/draft.h"
+#include "base/text.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -132,13 +133,37 @@ ritz_status ritz_h5_seen(void)
     return RITZ_OK;
 }
 
+/* Stop at the first link that is no member; its name begins in @p data. */
+static herr_t find_link(hid_t, const char *name, const H5L_info_t *info,
+                        void *data)
+{
+    if (info->type != H5L_TYPE_HARD)
+        (void)ritz_text_short(name, data);
+    return info->type != H5L_TYPE_HARD;
+}
+
+ritz_status ritz_h5_refuse_links(hid_t group)
+{
+    char name[RITZ_SHORT_SIZE] = "";
+    herr_t result =
+        H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, find_link, name);
+
+    RITZ_REFUSE_IF(result < 0, RITZ_ERR_FORMAT, "list of members is damaged");
+    RITZ_REFUSE_IF(result > 0, RITZ_ERR_FORMAT, "'%s' is a link to elsewhere",
+                   name);
+    return RITZ_OK;
+}
+
 ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out)
 {
-    hid_t group = ritz_h5_has(at, name) ? H5Gopen2(at, name, H5P_DEFAULT) : -1;
+    RITZ_OWN(hid_t) group = 0;
 
-    RITZ_REFUSE_IF(group < 0, RITZ_ERR_FORMAT,
+    if (ritz_h5_has(at, name))
+        group = H5Gopen2(at, name, H5P_DEFAULT);
+    RITZ_REFUSE_IF(group <= 0, RITZ_ERR_FORMAT,
                    "no group '%s', or it is damaged", name);
-    *out = group;
+    RITZ_CHECK_IN(name, ritz_h5_refuse_links(group));
+    RITZ_MOVE(*out, group);
     return RITZ_OK;
 }
 

@@ -65,7 +65,13 @@ ritz_status ritz_h5_finish(hid_t *file);
 /** Create a group. */
 ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out);
 
-/** Open a group to read. */
+/**
+ * Refuse a group with a link to another object or file among its members: what
+ * it leads to is not read, and the member is not taken as absent.
+ */
+ritz_status ritz_h5_refuse_links(hid_t group);
+
+/** Open a group to read, without such links. */
 ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out);
 
 /** Whether there is a group or data set of that name, or such an attribute. One

@@ -284,7 +284,30 @@ static void links_to_elsewhere_are_not_followed(void **)
                                    H5P_DEFAULT) >= 0);
     H5Fclose(file);
     assert_fails(ritz_container_read_basis(path, &none), RITZ_ERR_FORMAT,
-                 "no data set 'T'");
+                 "'T' is a link to elsewhere");
+}
+
+/* A matrix that is a link is not a matrix that is absent, which would be read
+   as 0; nor is a part of one. */
+static void a_member_that_is_a_link_is_not_absent(void **)
+{
+    static const char *const members[] = {"K",        "D",    "dampers",
+                                          "K/values", "dofs", "unknown"};
+
+    for (size_t k = 0; k < sizeof members / sizeof *members; k++) {
+        ritz_component none = {0};
+        hid_t file = 0;
+
+        assert_ok(sample_kinds[0].make(path, &stamp));
+        file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+        if (H5Lexists(file, members[k], H5P_DEFAULT) > 0)
+            assert_true(H5Ldelete(file, members[k], H5P_DEFAULT) >= 0);
+        assert_true(H5Lcreate_soft("/M", file, members[k], H5P_DEFAULT,
+                                   H5P_DEFAULT) >= 0);
+        H5Fclose(file);
+        assert_fails(ritz_container_read_component(path, &none),
+                     RITZ_ERR_FORMAT, "is a link to elsewhere");
+    }
 }
 
 static void other_files_are_refused(void **)
@@ -337,11 +360,12 @@ static void no_allocation_failure_leaks(void **)
 }
 
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(links_to_elsewhere_are_not_followed),
+    cmocka_unit_test(a_member_that_is_a_link_is_not_absent),
     cmocka_unit_test(damage_is_found_or_harmless),
     cmocka_unit_test(a_file_cut_short_is_refused),
     cmocka_unit_test(a_small_file_cut_at_any_byte_is_refused),
     cmocka_unit_test(what_does_not_fit_is_refused_with_its_sentence),
-    cmocka_unit_test(links_to_elsewhere_are_not_followed),
     cmocka_unit_test(other_files_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
