@@ -16,8 +16,9 @@ static ritz_status write_container(const ritz_export_object *object,
     if (object->states) {
         RITZ_CHECK(ritz_container_write_state_space(request->output,
                                                     object->states, stamp));
-        return ritz_export_say(report, "state space, %lld states",
-                               (long long)object->states->A.nrow);
+        return ritz_export_say(
+            report, "state space, %lld states",
+            (long long)ritz_state_space_order(object->states));
     }
     RITZ_CHECK(
         ritz_container_write_reduced(request->output, object->reduced, stamp));

@@ -301,11 +301,20 @@ static ritz_status fill_sheet(const ritz_export_object *object,
                                    "y = C q + Cv q' + Ca q''");
 }
 
+/* Sparse A and E are written as dense ones. */
 static ritz_status write_sheet(const ritz_export_object *object,
                                const ritz_export_request *request,
                                ritz_export_report *report)
 {
-    return ritz_context(fill_sheet(object, request, report), request->output);
+    ritz_export_object dense = *object;
+    RITZ_OWN(ritz_state_space) made = {0};
+
+    if (object->states)
+        RITZ_CHECK_IN(
+            "matrix-market and output4 write sparse matrices, matlab "
+            "none",
+            ritz_state_space_dense(object->states, &made, &dense.states));
+    return ritz_context(fill_sheet(&dense, request, report), request->output);
 }
 
 const ritz_exporter ritz_exporter_matlab = {

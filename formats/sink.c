@@ -152,6 +152,7 @@ typedef struct entry {
     const char *name;
     size_t offset;  /* of the dense matrix in its object */
     bool symmetric; /* if its values are: a gyroscopic D is not */
+    size_t sparse;  /* of a sparse one that may be in its place; 0: never */
 } entry;
 
 /* Matrices of one kind of object; the table ends in one without a name. */
@@ -165,11 +166,13 @@ typedef struct matrix_kind {
 static const matrix_kind states = {
     .entry =
         (const entry[]){
-            {"A", offsetof(ritz_state_space, A), false},
-            {"B", offsetof(ritz_state_space, B), false},
-            {"C", offsetof(ritz_state_space, C), false},
-            {"D", offsetof(ritz_state_space, D), false},
-            {"E", offsetof(ritz_state_space, E), false},
+            {"A", offsetof(ritz_state_space, A), false,
+             offsetof(ritz_state_space, sA)},
+            {"B", offsetof(ritz_state_space, B), false, 0},
+            {"C", offsetof(ritz_state_space, C), false, 0},
+            {"D", offsetof(ritz_state_space, D), false, 0},
+            {"E", offsetof(ritz_state_space, E), false,
+             offsetof(ritz_state_space, sE)},
             {0},
         },
     .noun = "state space",
@@ -180,15 +183,15 @@ static const matrix_kind states = {
 static const matrix_kind reduced = {
     .entry =
         (const entry[]){
-            {"K", offsetof(ritz_reduced, K), true},
-            {"M", offsetof(ritz_reduced, M), true},
-            {"D", offsetof(ritz_reduced, D), true},
-            {"K4", offsetof(ritz_reduced, K4), true},
-            {"T", offsetof(ritz_reduced, T), false},
-            {"B", offsetof(ritz_reduced, io.B), false},
-            {"C", offsetof(ritz_reduced, io.C), false},
-            {"Cv", offsetof(ritz_reduced, io.Cv), false},
-            {"Ca", offsetof(ritz_reduced, io.Ca), false},
+            {"K", offsetof(ritz_reduced, K), true, 0},
+            {"M", offsetof(ritz_reduced, M), true, 0},
+            {"D", offsetof(ritz_reduced, D), true, 0},
+            {"K4", offsetof(ritz_reduced, K4), true, 0},
+            {"T", offsetof(ritz_reduced, T), false, 0},
+            {"B", offsetof(ritz_reduced, io.B), false, 0},
+            {"C", offsetof(ritz_reduced, io.C), false, 0},
+            {"Cv", offsetof(ritz_reduced, io.Cv), false, 0},
+            {"Ca", offsetof(ritz_reduced, io.Ca), false, 0},
             {0},
         },
     .noun = "reduced component",
@@ -199,6 +202,24 @@ static const matrix_kind reduced = {
 static const ritz_dense *dense_of(const void *object, const entry *e)
 {
     return (const ritz_dense *)(const void *)((const char *)object + e->offset);
+}
+
+/* The sparse matrix in the place of a dense one; NULL if there is none. */
+static const ritz_sparse *sparse_of(const void *object, const entry *e)
+{
+    const ritz_sparse *A =
+        (const ritz_sparse *)(const void *)((const char *)object + e->sparse);
+
+    return e->sparse > 0 && A->colptr ? A : NULL;
+}
+
+static ritz_status copy_matrix(const entry *e, const ritz_sparse *A,
+                               ritz_matrix *out)
+{
+    RITZ_CHECK(ritz_sparse_copy(A, &out->A));
+    snprintf(out->name, sizeof out->name, "%s", e->name);
+    out->digits = 17;
+    return RITZ_OK;
 }
 
 /* Every entry stored, zeros too. */
@@ -240,6 +261,7 @@ static ritz_status list_matrices(const matrix_kind *kind, const void *object,
         size_t length = strcspn(at, ",");
         const entry *e = find_entry(kind->entry, at, length);
         const ritz_dense *A = NULL;
+        const ritz_sparse *sparse = NULL;
 
         RITZ_REFUSE_IF(!e, RITZ_ERR_ARGUMENT,
                        "there is no matrix '%.*s', there are %s", (int)length,
@@ -248,9 +270,12 @@ static ritz_status list_matrices(const matrix_kind *kind, const void *object,
             RITZ_REFUSE_IF(strcmp(out->matrix[k].name, e->name) == 0,
                            RITZ_ERR_ARGUMENT, "'%s' is named twice", e->name);
         A = dense_of(object, e);
-        RITZ_REFUSE_IF(asked && !A->val, RITZ_ERR_ARGUMENT,
+        sparse = sparse_of(object, e);
+        RITZ_REFUSE_IF(asked && !A->val && !sparse, RITZ_ERR_ARGUMENT,
                        "this %s has no '%s'", kind->noun, e->name);
-        if (asked || (A->val && A->nrow > 0 && A->ncol > 0)) {
+        if (sparse)
+            RITZ_CHECK(copy_matrix(e, sparse, &out->matrix[out->count++]));
+        else if (asked || (A->val && A->nrow > 0 && A->ncol > 0)) {
             RITZ_CHECK(fill_matrix(e, A, &out->matrix[out->count]));
             out->count++;
         }

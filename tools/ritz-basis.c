@@ -7,6 +7,9 @@ static void list_methods(void)
         printf("%s%-18s %s [%s]\n", m > ritz_methods ? "\n" : "", (*m)->name,
                (*m)->summary, (*m)->reference);
         cli_list_advice((*m)->when, (*m)->cost, (*m)->holds, (*m)->fails);
+        printf("  takes  %s\n", (*m)->uses & RITZ_USES_SPACE
+                                    ? "components and state spaces"
+                                    : "components");
     }
     printf("\nAll take a component, a reduced component, whose coordinates are "
            "then its dofs and\nwhose ports cannot be attached, and a system at "

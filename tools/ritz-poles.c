@@ -1,6 +1,8 @@
 /* ritz-poles - damped poles, and what dampers make of them. */
 #include "print/print.h"
 
+#include <math.h>
+
 /* End the program if options exclude each other. */
 static void check_options(const cli_program *program,
                           const poles_options *given)
@@ -8,6 +10,9 @@ static void check_options(const cli_program *program,
     if (given->modes > 0 && given->up_to_hz > 0.0)
         cli_refuse(program, "--modes and --up-to-hz are two ways to say the "
                             "same");
+    if (given->up_to_hz > 0.0 && !isnan(given->near_hz))
+        cli_refuse(program, "--up-to-hz counts from 0, --near-hz from a "
+                            "frequency: one of the two");
     if ((given->scan.count > 0) + (given->tune.count > 0) + given->norm > 1)
         cli_refuse(program, "--scan, --tune and --norm: one of the three");
     if (given->places > 0 && given->tune.count == 0)
@@ -20,13 +25,17 @@ static void check_options(const cli_program *program,
 
 int main(int argc, char **argv)
 {
-    poles_options given = {.mode = 1};
+    poles_options given = {.mode = 1, .near_hz = (double)NAN};
     const cli_option options[] = {
         CLI_INT("modes", &given.modes, "N", 1, 1e6,
-                "list the lowest N [all, of a component 20]; with --tune, "
+                "list the lowest N [all, of a component or sparse states 20]; "
+                "with --tune, "
                 "modes that a component is tuned with at first [20]"),
         CLI_REAL("up-to-hz", &given.up_to_hz, "F", 1e-9, 1e9,
                  "list those with |s|/2pi up to this instead"),
+        CLI_REAL("near-hz", &given.near_hz, "F", 0.0, 1e9,
+                 "list those nearest to this frequency, of a state space "
+                 "[the lowest]"),
         MODEL_OPTIONS(&given.model),
         CLI_LIST(
             "scan", &given.scan, "NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]",

@@ -263,7 +263,7 @@ typedef struct ritz_balanced {
 } ritz_balanced;
 
 /**
- * Dense, of a state space, E or not. Poles that are right of the axis, or left
+ * Of a state space, E or not; dense. Poles that are right of the axis, or left
  * of it by no more than eight times their rounding, are decoupled; those of a
  * model of which rounding provably makes none unstable do not. E that is
  * symmetric and definite is reduced by its Cholesky factor (SLICOT SB03OD),
@@ -277,6 +277,21 @@ typedef struct ritz_balanced {
  */
 ritz_status ritz_gramians_of_space(const ritz_state_space *model,
                                    ritz_gramians *out);
+
+/**
+ * The same by an engine: `dense` as above; `low-rank`, by ADI with sparse
+ * factors, of models without a pole that is not left of the axis; `auto`: of a
+ * dense model dense, of a sparse one low-rank or, where that does not converge
+ * and the model is small enough, dense.
+ *
+ * @param[in] band_hz  from and to: over this band alone, by quadrature; NULL:
+ *                     over all frequencies
+ * @return RITZ_ERR_ARGUMENT also if the engine is `modal`;
+ *         RITZ_ERR_CONVERGENCE if the Gramians have no low rank
+ */
+ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
+                                      ritz_engine engine, const double *band_hz,
+                                      ritz_gramians *out);
 
 /* The request for a component's Gramians. */
 typedef struct ritz_gramians_request {

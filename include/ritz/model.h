@@ -530,15 +530,23 @@ typedef struct ritz_modal {
  *
  *     E x' = A x + B u,    y = C x + D u
  *
- * small and dense. Second-order models are brought into it by x = [u; u'].
+ * small and dense, or with sparse A and E. Second-order models are brought into
+ * it by x = [u; u'].
  */
 
-/* Of more dofs than this no dense first-order model is made. */
+/* Of more dofs than this no dense first-order model is made, nor of twice as
+   many states. */
 enum { RITZ_STATE_DOFS = 1500 };
+
+/* What is imported with more states than this stays sparse, if at most a tenth
+   of A and E is not zero. */
+enum { RITZ_SPARSE_STATES = 600 };
 
 typedef struct ritz_state_space {
     ritz_dense A, B, C, D; /* D is always there */
     ritz_dense E;          /* invertible; {0}: the identity */
+    ritz_sparse sA, sE; /* in the place of A and E, which are {0} then; sE {0}:
+                           the identity. {0}: it is dense */
     int64_t num_inputs, num_outputs;
     char (*input)[RITZ_NAME_SIZE];
     char (*output)[RITZ_NAME_SIZE];
@@ -554,6 +562,27 @@ typedef struct ritz_state_space {
 /** Zero matrices (E the identity), names and limits taken from @p io. */
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
                                  ritz_state_space *out);
+
+/** The same with sparse A and E, which are copied; E {0}: the identity. */
+ritz_status ritz_state_space_of_sparse(const ritz_sparse *A,
+                                       const ritz_sparse *E, const ritz_io *io,
+                                       ritz_state_space *out);
+
+/** Number of states. */
+int64_t ritz_state_space_order(const ritz_state_space *model);
+
+/** Whether A and E are sparse. */
+bool ritz_state_space_is_sparse(const ritz_state_space *model);
+
+/**
+ * The model with dense A and E: @p model itself, or one that is written to
+ * @p made and is the caller's to free.
+ *
+ * @return RITZ_ERR_ARGUMENT if it has more than 2 RITZ_STATE_DOFS sparse states
+ */
+ritz_status ritz_state_space_dense(const ritz_state_space *model,
+                                   ritz_state_space *made,
+                                   const ritz_state_space **out);
 
 /**
  * Whether all parts fit each other, values are finite and E, if there is one,
@@ -643,7 +672,7 @@ ritz_status ritz_states_of_reduced(const ritz_reduced *reduced,
  * Poles: eigenvalues of A, or of E^-1 A, by magnitude ascending; of a pair the
  * one above the axis first. To be freed.
  *
- * @return RITZ_ERR_CONVERGENCE
+ * @return RITZ_ERR_CONVERGENCE, or as ritz_state_space_dense
  */
 ritz_status ritz_state_space_poles(const ritz_state_space *model,
                                    int64_t *count, double _Complex **out);
@@ -701,10 +730,10 @@ int64_t ritz_model_order(ritz_model model);
 ritz_io ritz_model_io(ritz_model model);
 
 /**
- * The model in first-order form: that of @p model itself if it is a state
- * space, else one that is written to @p made and is the caller's to free.
+ * The model in dense first-order form: that of @p model itself if it is a dense
+ * state space, else one that is written to @p made and is the caller's to free.
  *
- * @return as ritz_state_space_of_component
+ * @return as ritz_state_space_of_component, or as ritz_state_space_dense
  */
 ritz_status ritz_model_states(ritz_model model, ritz_state_space *made,
                               const ritz_state_space **out);

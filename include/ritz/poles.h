@@ -23,8 +23,10 @@ typedef struct ritz_spectrum {
 } ritz_spectrum;
 
 /**
- * Poles of a model: all of a dense one (its io may be NULL) and of a state
- * space, which has neither shapes nor residuals; the lowest of a component.
+ * Poles of a model: all of a dense one (its io may be NULL) and of a dense state
+ * space, which has neither shapes nor residuals; the lowest of a component; of
+ * a sparse state space those nearest to 0, without shapes, of which nothing
+ * proves that none is missing.
  *
  * M may be singular: coordinates without mass respond statically, or with a
  * real pole where D acts on them. Damping ratios act on the undamped modes,
@@ -37,7 +39,7 @@ typedef struct ritz_spectrum {
  * the residual says how exact. Damping ratios are then added to what matrices
  * give.
  *
- * @param[in] span  of a component: so many poles beside those at 0, or those
+ * @param[in] span  of a component or sparse states: so many poles beside those at 0, or those
  *                  up to |s| / (2 pi); not read of other models
  * @return RITZ_ERR_SINGULAR if neither mass nor stiffness holds a motion;
  *         RITZ_ERR_ARGUMENT if K4, or a skew part of D, acts on coordinates
@@ -46,6 +48,16 @@ typedef struct ritz_spectrum {
  */
 ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
                              ritz_spectrum *out);
+
+/**
+ * The poles of a state space nearest to i 2 pi @p near_hz, on and above the real
+ * axis, by Arnoldi iterations on sparse factors.
+ *
+ * @param[out] out  at most @p count, by ascending |s|, without shapes
+ * @return RITZ_ERR_SINGULAR if a pole lies there itself
+ */
+ritz_status ritz_spectrum_near(const ritz_state_space *model, double near_hz,
+                               int64_t count, ritz_spectrum *out);
 
 /** Damping ratio -Re s / |s|: 1 of real poles that decay. */
 double ritz_spectrum_ratio(double _Complex s);

@@ -208,6 +208,9 @@
 #define RITZ_SEREP_CONDITION 1e3
 /* Rounding of a Gramian above this part of the least damping is not small. */
 #define RITZ_LANCZOS_SMALL 1e-3
+/* Residual of a low-rank Gramian in whose inverse vectors are measured: it is
+   divided by the square of the least value that is kept. */
+#define RITZ_LANCZOS_RESIDUAL 1e-13
 /* A pole must be left of the axis by this many times its rounding. */
 #define RITZ_LANCZOS_SAFE 10.0
 /* A pole may be off by this many times its first-order bound. */
@@ -254,6 +257,14 @@
 /* Asymmetry that a few sums of products leave: 8 eps. A matrix within it is
    taken as symmetric, which saves work and digits. */
 #define RITZ_SYMMETRIC_SUMS 0x1p-49
+/* Relative error of a pole that Arnoldi iterations found: a hundred times what
+   they settle to. */
+#define RITZ_POLE_FOUND 1e-10
+/* A pole at 0 is looked at from beside it: from this part of |A| / |E| off the
+   axis, which is above what rounding makes singular, and where that is singular
+   too from this much further off. */
+#define RITZ_SHIFT_ASIDE   1e-10
+#define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
 /* Entries of a vector this near to its largest are as large: the first of them
@@ -352,6 +363,12 @@
 /* Rigid motion that sparse products leave, of the same product in magnitudes,
    where there is none. */
 #define RITZ_RIGID_LOAD 1e-10
+/* Points of first-order tangential interpolation move less than this, relative:
+   the H2 error, which is stationary there, by its square. */
+#define RITZ_SPACE_POINTS_SETTLED 1e-4
+/* Two rules of a panel that agree so far, of all that has been met: the finer
+   one is then good to rounding, and Hankel values to half of its digits. */
+#define RITZ_BAND_QUADRATURE 1e-9
 /* An imaginary part below this of the real one makes a shift real. */
 #define RITZ_SHIFT_REAL 1e-3
 /* Least |Re p| / |p| of a shift that can be told from none: 64 eps. */

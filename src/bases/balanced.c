@@ -36,11 +36,9 @@ static ritz_status check_request(const ritz_request *request)
     RITZ_REFUSE_IF(request->space && (given & of_components), RITZ_ERR_ARGUMENT,
                    "a state space has neither modes nor any damping beside its "
                    "matrix");
-    RITZ_REFUSE_IF(request->space && engine > RITZ_ENGINE_DENSE,
-                   RITZ_ERR_ARGUMENT,
-                   "a state space is balanced by the dense engine alone");
     RITZ_REFUSE_IF(
-        modal && engine != RITZ_ENGINE_AUTO && engine != RITZ_ENGINE_MODAL,
+        !request->space && modal && engine != RITZ_ENGINE_AUTO &&
+            engine != RITZ_ENGINE_MODAL,
         RITZ_ERR_ARGUMENT,
         "a choice of modes, or a band, is of the modal engine alone");
     return RITZ_OK;
@@ -59,7 +57,9 @@ static ritz_status request_gramians(const ritz_request *request,
 
     RITZ_CHECK(check_request(request));
     if (request->space)
-        return ritz_gramians_of_space(request->space, out);
+        return ritz_gramians_of_space_by(
+            request->space, choice->engine,
+            choice->given & RITZ_USES_BAND ? choice->band_hz : NULL, out);
     RITZ_CHECK(ritz_request_damping(request, &wanted.damping));
     if (choice->given & (RITZ_USES_AMONG | RITZ_USES_BAND))
         wanted.engine = RITZ_ENGINE_MODAL;
@@ -230,12 +230,12 @@ const ritz_method ritz_method_balanced_band = {
     .name = "balanced-band",
     .summary = "states balanced over a band of frequencies alone",
     .reference = "GawronskiJuang1990",
-    .when = "a response over one band, modal damping, in states",
-    .cost = "all modes, or those up to a frequency; O(m^3)",
+    .when = "a response over one band, modal damping, in states; state spaces",
+    .cost = "all modes, or those up to a frequency; O(m^3); a factor a point",
     .holds = "nothing: stability is checked, the error measured",
     .fails = "one reduction in ten is unstable; coupled damping",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |
-            RITZ_USES_AMONG | RITZ_USES_BAND,
+            RITZ_USES_AMONG | RITZ_USES_BAND | RITZ_USES_SPACE,
     .only_named = RITZ_NAMED_FOR_COMPONENTS,
     .make = make_balanced_band,
 };

@@ -16,6 +16,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
+#include "bases/space.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -633,6 +634,11 @@ static ritz_status make_vectors(const ritz_request *request, bool attached,
 
 static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
 {
+    if (request->space)
+        return ritz_krylov_of_space(request, out);
+    RITZ_REFUSE_IF(request->choice.given & RITZ_USES_SIDES, RITZ_ERR_ARGUMENT,
+                   "vectors of a component serve on both sides, sides are "
+                   "chosen of a state space");
     return make_vectors(request, false, out);
 }
 
@@ -645,7 +651,8 @@ const ritz_method ritz_method_krylov = {
     .holds = "moments of the response at each point; static gain at 0 Hz",
     .fails = "interfaces with many dofs: a block is as wide as they are many",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
-            RITZ_USES_LOADS | RITZ_USES_INNER,
+            RITZ_USES_LOADS | RITZ_USES_INNER | RITZ_USES_SIDES |
+            RITZ_USES_SPACE,
     .make = make_krylov,
 };
 

@@ -27,57 +27,21 @@
  * has one pole far out).
  */
 
+#include "bases/lanczos.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
-#include "gramians/modes.h"
+#include "bases/space.h"
+#include "gramians/space.h"
 #include "linear/general.h"
 #include "linear/orthonormal.h"
 
+#include <complex.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-/* The component of the request in states, less the shift. */
-static ritz_status find_states(const ritz_request *request, ritz_states *out)
-{
-    const ritz_choice *choice = &request->choice;
-    ritz_damping damping = {0};
-    double alpha = 0.0;
-
-    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                   "states are asked for by their number, not by a frequency: "
-                   "--modes, not --up-to-hz");
-    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                   "no states are asked for, one at least is needed: --modes");
-    RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
-                   "the states are shifted by one frequency, not by several");
-    RITZ_CHECK(ritz_request_damping(request, &damping));
-    if (choice->num_shifts > 0)
-        alpha = 2.0 * RITZ_PI * choice->shift_hz[0];
-    return ritz_states_new(request->component, &damping, alpha, out);
-}
-
-/* G = A and b = B, or G = A^-1 and b = G B if @p inverse. */
-static ritz_status choose_operator(const ritz_dense *A, const ritz_dense *B,
-                                   bool inverse, ritz_dense *G, ritz_dense *b)
-{
-    ritz_status status = RITZ_OK;
-
-    if (!inverse) {
-        RITZ_CHECK(ritz_dense_copy(A, G));
-        return ritz_dense_copy(B, b);
-    }
-    RITZ_CHECK(ritz_dense_identity(A->nrow, G));
-    status = ritz_general_solve(A, false, G);
-    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                   "the matrix of states has no inverse: a motion that nothing "
-                   "holds, give a shift above 0 Hz");
-    RITZ_CHECK(status);
-    return ritz_dense_mul(G, B, b);
-}
 
 /*
  * A system, or its dual (A', C') as (A, B), and its reduction. With the Gramian
@@ -85,6 +49,7 @@ static ritz_status choose_operator(const ritz_dense *A, const ritz_dense *B,
  */
 typedef struct one_sided {
     ritz_dense A, B;
+    int64_t states;      /* of the system */
     double damping;      /* least -Re s of A */
     int64_t reached;     /* values of U above the tolerance */
     ritz_dense Q, V;     /* n x r, r <= reached: as rounding allows */
@@ -109,6 +74,7 @@ static ritz_status start_one_sided(const ritz_request *request,
 {
     bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
 
+    s->states = states->A.nrow;
     RITZ_REFUSE_IF(
         (outputs ? states->C.nrow : states->B.ncol) == 0, RITZ_ERR_ARGUMENT,
         "the component has no %s, and the Gramian of %s is none",
@@ -341,7 +307,7 @@ static void add_remark(const ritz_request *request, const one_sided *s,
                  "%" PRId64 " states asked for: the %s %" PRId64 " of %" PRId64
                  "%s; there are %" PRId64 "%s",
                  request->modes, outputs ? "outputs observe" : "inputs control",
-                 s->reached, s->A.nrow, rounding, s->P.ncol, uncertain);
+                 s->reached, s->states, rounding, s->P.ncol, uncertain);
     else if (s->uncertain > 0)
         snprintf(basis->remark, sizeof basis->remark,
                  "the last %" PRId64 " state(s) left out: rounding would "
@@ -349,23 +315,225 @@ static void add_remark(const ritz_request *request, const one_sided *s,
                  s->uncertain);
 }
 
-static ritz_status make_one_sided(const ritz_request *request, ritz_basis *out)
+/* Operator, vectors and bases of a system whose range is known. */
+static ritz_status finish_one_sided(const ritz_request *request, one_sided *s,
+                                    ritz_dense *own, ritz_dense *other)
 {
     bool inverse = request->choice.inverse;
+    RITZ_OWN(ritz_dense) Gr = {0};
+
+    RITZ_CHECK(ritz_lanczos_operator(&s->A_r, &s->B_r, inverse, &s->G, &s->b));
+    (void)count_accurate(&s->G, &s->b, HUGE_VAL, &s->rounding);
+    RITZ_CHECK(find_vectors(request, s));
+    RITZ_CHECK(drop_uncertain(s, &Gr));
+    return find_bases(s, inverse, &Gr, own, other);
+}
+
+/*
+ * State spaces: with z' = E^-1 A z + E^-1 B u of a dense one, W := E^-T W in the
+ * end. Of a sparse one the Gramian has a factor of low rank (gramians/space.h),
+ *
+ *     A W E' + E W A' + B B' = R,   W = Z Z',   Z = U Sigma
+ *     Q = U Sigma,   V = E^-T U Sigma^-1,   V'E Q = I,
+ *     V'A Q + (V'A Q)' + V'B B'V = V'R V
+ *
+ * so that what its residual R does is measured as rounding is.
+ */
+
+/* E^-1 A - alpha I, E^-1 B and C of a dense state space. */
+static ritz_status take_space(const ritz_state_space *model, double alpha,
+                              ritz_states *out)
+{
+    out->alpha = alpha;
+    out->count = model->A.nrow;
+    RITZ_CHECK(ritz_dense_copy(&model->A, &out->A));
+    RITZ_CHECK(ritz_dense_copy(&model->B, &out->B));
+    RITZ_CHECK(ritz_dense_copy(&model->C, &out->C));
+    if (model->E.val) {
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &out->A));
+        RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &out->B));
+    }
+    for (int64_t k = 0; k < out->count; k++)
+        ritz_dense_col(&out->A, k)[k] -= alpha;
+    return RITZ_OK;
+}
+
+static ritz_status find_dense_bases(const ritz_request *request, double alpha,
+                                    one_sided *s, ritz_dense *own,
+                                    ritz_dense *other)
+{
+    const ritz_state_space *model = request->space;
+    bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
+    RITZ_OWN(ritz_states) states = {0};
+
+    RITZ_CHECK(take_space(model, alpha, &states));
+    RITZ_CHECK(start_one_sided(request, &states, s));
+    RITZ_CHECK(check_poles(&states, s));
+    RITZ_CHECK(find_range(request->tolerance, s));
+    RITZ_CHECK(finish_one_sided(request, s, own, other));
+    if (!model->E.val)
+        return RITZ_OK;
+    return ritz_general_solve(&model->E, true, outputs ? own : other);
+}
+
+/* A - alpha E in the place of A. */
+static ritz_status shift_space(const ritz_state_space *model, double alpha,
+                               const ritz_pencil *pencil, ritz_state_space *out)
+{
+    RITZ_OWN(ritz_sparse) A = {0};
+    const ritz_io io = ritz_model_io(ritz_model_of_states(model));
+
+    RITZ_CHECK(ritz_sparse_add(1.0, &pencil->A, -alpha, &pencil->E, &A));
+    RITZ_CHECK(ritz_state_space_of_sparse(&A, &model->sE, &io, out));
+    ritz_dense_put(&model->B, 0, 0, &out->B);
+    ritz_dense_put(&model->C, 0, 0, &out->C);
+    return RITZ_OK;
+}
+
+/* X := E^-1 X, or E^-T X. */
+static ritz_status divide_descriptor(const ritz_pencil *pencil, bool transposed,
+                                     ritz_dense *X)
+{
+    const ritz_sparse *const E[] = {&pencil->E};
+    const double _Complex one[] = {1.0};
+    RITZ_OWN(ritz_zldl) *F = NULL;
+    RITZ_OWN_ARRAY double _Complex *x = NULL;
+    int64_t size = X->nrow * X->ncol;
+
+    if (pencil->plain)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(x, size);
+    for (int64_t k = 0; k < size; k++)
+        x[k] = X->val[k];
+    RITZ_CHECK(ritz_zldl_new(1, E, &F));
+    RITZ_CHECK_IN("E", ritz_zldl_factor(F, one));
+    RITZ_CHECK(ritz_zldl_solve(F, transposed, X->ncol, x));
+    for (int64_t k = 0; k < size; k++)
+        X->val[k] = creal(x[k]);
+    return RITZ_OK;
+}
+
+/* Q, V, A_r and B_r from the columns of Z, orthogonal, the longest first. */
+static ritz_status take_low_rank(const ritz_state_space *model,
+                                 const ritz_pencil *pencil, bool outputs,
+                                 double tolerance, const ritz_dense *Z,
+                                 one_sided *s)
+{
+    RITZ_OWN(ritz_dense) AQ = {0}, B = {0};
+    double longest = 0.0;
+
+    RITZ_CHECK(ritz_dense_copy(Z, &s->V));
+    for (int64_t j = 0; j < Z->ncol; j++) {
+        double square = ritz_dense_dot(Z, j, Z, j);
+
+        longest = fmax(longest, sqrt(square));
+        if (!(sqrt(square) > tolerance * longest))
+            break;
+        for (int64_t i = 0; i < Z->nrow; i++)
+            ritz_dense_col(&s->V, j)[i] /= square;
+        s->reached++;
+    }
+    RITZ_REFUSE_IF(s->reached == 0, RITZ_ERR_ARGUMENT,
+                   "no state is controllable, the Gramian is zero");
+    s->V.ncol = s->reached;
+    RITZ_CHECK(ritz_dense_columns(Z, 0, s->reached, &s->Q));
+    RITZ_CHECK(divide_descriptor(pencil, !outputs, &s->V));
+    RITZ_CHECK(ritz_sparse_mul(ritz_pencil_A(pencil, outputs), &s->Q, &AQ));
+    RITZ_CHECK(ritz_dense_mul_tn(&s->V, &AQ, &s->A_r));
+    RITZ_CHECK(outputs ? ritz_general_transpose(&model->C, &B)
+                       : ritz_dense_copy(&model->B, &B));
+    return ritz_dense_mul_tn(&s->V, &B, &s->B_r);
+}
+
+/* The leading columns in which the residual is small against the damping of the
+   poles nearest to 0. */
+static ritz_status cut_range(ritz_pencil *pencil, one_sided *s)
+{
+    enum { LOOKED_AT = 20 };
+    RITZ_OWN(ritz_pencil_pairs) slow = {0};
+    RITZ_OWN(ritz_dense) A = {0}, B = {0};
+    double norm = 0.0;
+    int64_t r = 0;
+
+    RITZ_CHECK(ritz_space_slowest(pencil, LOOKED_AT, &slow));
+    s->damping = HUGE_VAL;
+    for (int64_t k = 0; k < slow.count; k++)
+        s->damping = fmin(s->damping, -creal(slow.s[k]));
+    r = count_accurate(&s->A_r, &s->B_r, RITZ_LANCZOS_SMALL * s->damping,
+                       &norm);
+    RITZ_REFUSE_IF(r == 0, RITZ_ERR_CONVERGENCE,
+                   "what is left of the Gramian's equation is as large as the "
+                   "least damping");
+    RITZ_CHECK(ritz_dense_block(&s->A_r, 0, r, 0, r, &A));
+    RITZ_CHECK(ritz_dense_block(&s->B_r, 0, r, 0, s->B_r.ncol, &B));
+    ritz_dense_replace(&s->A_r, &A);
+    ritz_dense_replace(&s->B_r, &B);
+    s->Q.ncol = s->V.ncol = r;
+    return RITZ_OK;
+}
+
+static ritz_status find_sparse_bases(const ritz_request *request, double alpha,
+                                     one_sided *s, ritz_dense *own,
+                                     ritz_dense *other)
+{
+    bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
+    RITZ_OWN(ritz_pencil) pencil = {0}, shifted = {0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+
+    RITZ_CHECK(ritz_pencil_of_space(request->space, &pencil));
+    RITZ_CHECK(shift_space(request->space, alpha, &pencil, &model));
+    RITZ_CHECK(ritz_pencil_of_space(&model, &shifted));
+    RITZ_CHECK(ritz_gramians_space_low_rank(&model, RITZ_LANCZOS_RESIDUAL, &g));
+    s->states = shifted.n;
+    RITZ_CHECK(take_low_rank(&model, &shifted, outputs, request->tolerance,
+                             outputs ? &g.Zo : &g.Zc, s));
+    RITZ_CHECK(cut_range(&shifted, s));
+    return finish_one_sided(request, s, own, other);
+}
+
+static ritz_status make_of_space(const ritz_request *request, ritz_basis *out)
+{
+    enum { USES = RITZ_USES_SHIFTS | RITZ_USES_GRAMIAN | RITZ_USES_OPERATOR };
+    const ritz_choice *choice = &request->choice;
+    const ritz_state_space *model = request->space;
+    bool outputs = choice->gramian == RITZ_GRAMIAN_OUTPUTS;
+    double alpha =
+        choice->num_shifts > 0 ? 2.0 * RITZ_PI * choice->shift_hz[0] : 0.0;
+    RITZ_OWN(one_sided) s = {0};
+    RITZ_OWN(ritz_dense) own = {0}, other = {0};
+
+    RITZ_CHECK(ritz_space_request(request, USES));
+    RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
+                   "the states are shifted by one frequency, not by several");
+    RITZ_CHECK(ritz_ends_check("model", model->num_inputs, model->num_outputs,
+                               model->limit, model->output));
+    RITZ_CHECK((ritz_state_space_is_sparse(model)
+                    ? find_sparse_bases
+                    : find_dense_bases)(request, alpha, &s, &own, &other));
+    RITZ_CHECK(ritz_space_basis(model, outputs ? &other : &own,
+                                outputs ? &own : &other, out));
+    snprintf(out->origin.engine, sizeof out->origin.engine,
+             ritz_state_space_is_sparse(model) ? "ADI + MUMPS"
+                                               : "dense LAPACK + SLICOT");
+    add_remark(request, &s, out);
+    return RITZ_OK;
+}
+
+static ritz_status make_one_sided(const ritz_request *request, ritz_basis *out)
+{
     bool outputs = request->choice.gramian == RITZ_GRAMIAN_OUTPUTS;
     RITZ_OWN(ritz_states) states = {0};
     RITZ_OWN(one_sided) s = {0};
-    RITZ_OWN(ritz_dense) Gr = {0}, own = {0}, other = {0};
+    RITZ_OWN(ritz_dense) own = {0}, other = {0};
 
-    RITZ_CHECK(find_states(request, &states));
+    if (request->space)
+        return make_of_space(request, out);
+    RITZ_CHECK(ritz_lanczos_states(request, &states));
     RITZ_CHECK(start_one_sided(request, &states, &s));
     RITZ_CHECK(check_poles(&states, &s));
     RITZ_CHECK(find_range(request->tolerance, &s));
-    RITZ_CHECK(choose_operator(&s.A_r, &s.B_r, inverse, &s.G, &s.b));
-    (void)count_accurate(&s.G, &s.b, HUGE_VAL, &s.rounding);
-    RITZ_CHECK(find_vectors(request, &s));
-    RITZ_CHECK(drop_uncertain(&s, &Gr));
-    RITZ_CHECK(find_bases(&s, inverse, &Gr, &own, &other));
+    RITZ_CHECK(finish_one_sided(request, &s, &own, &other));
     RITZ_CHECK(ritz_states_basis(&states, outputs ? &other : &own,
                                  outputs ? &own : &other, out));
     snprintf(out->origin.engine, sizeof out->origin.engine,
@@ -378,271 +546,11 @@ const ritz_method ritz_method_lanczos_one_sided = {
     .name = "lanczos-one-sided",
     .summary = "Lanczos vectors of states, stable by construction",
     .reference = "CraigSuKim1992",
-    .when = "small damped models for control, in states",
-    .cost = "a dense Gramian: O(n^3), 1500 states",
+    .when = "small damped models for control, in states; state spaces",
+    .cost = "a dense Gramian: O(n^3), 1500 states; of sparse ones by ADI",
     .holds = "stability, whatever the order",
     .fails = "free bodies; states that are not controllable",
     .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_GRAMIAN |
-            RITZ_USES_OPERATOR | RITZ_USES_DAMPING,
+            RITZ_USES_OPERATOR | RITZ_USES_DAMPING | RITZ_USES_SPACE,
     .make = make_one_sided,
-};
-
-/*
- * Two-sided block Lanczos: right vectors from B and left ones from C',
- *
- *     W'V = I,   W'A V block tridiagonal,
- *
- * spanning [B, A B, ...] and [C', A'C', ...] [KimCraig1988], [CraigSuKim1992,
- * section 5]. Of k full blocks on both sides the first 2k Markov parameters are
- * kept; on A^-1 the first 2k moments about 0 Hz, the reduced model being
- * (W'A^-1 V)^-1, with left vectors to that end.
- *
- * The reduced model may be unstable: this method is kept to show that, and the
- * stability check reports it. So that failures are due to the method alone,
- * vectors are biorthogonalised against all others, twice.
- *
- * A step joins candidates X and Y, orthonormal, by Y'X = L diag(s) R': vectors
- * are X R s^-1/2 and Y L s^-1/2 where s is above the tolerance. Directions of
- * either side that are not paired wait for the next block. If none is paired
- * the method ends: this is a serious breakdown, unless one side is exhausted.
- */
-/* How a sequence of blocks ends. */
-typedef enum ending {
-    COMPLETE,  /* as many vectors as were asked for */
-    EXHAUSTED, /* the controllable, or the observable states are spanned */
-    BREAKDOWN, /* both have more, but orthogonal to each other */
-} ending;
-
-/* One side: vectors so far, and candidates for the next block. */
-typedef struct lanczos_side {
-    ritz_dense vectors; /* as many columns as are asked for */
-    ritz_dense next;    /* operator times the last block; the start at first */
-    ritz_dense waiting; /* candidates that were not paired */
-} lanczos_side;
-
-typedef struct two_sided {
-    ritz_dense G; /* A or A^-1 */
-    lanczos_side right, left;
-    int64_t used; /* columns of both sides' vectors */
-    ending end;
-} two_sided;
-
-static void two_sided_free(two_sided *t)
-{
-    lanczos_side *const sides[] = {&t->right, &t->left};
-
-    ritz_dense_free(&t->G);
-    for (int k = 0; k < 2; k++) {
-        ritz_dense_free(&sides[k]->vectors);
-        ritz_dense_free(&sides[k]->next);
-        ritz_dense_free(&sides[k]->waiting);
-    }
-}
-
-/* All candidates, each of unit length or zero. */
-static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_beside(&s->next, &s->waiting, out));
-    for (int64_t j = 0; j < out->ncol; j++) {
-        double *x = ritz_dense_col(out, j);
-        double size = 0.0;
-
-        for (int64_t i = 0; i < out->nrow; i++)
-            size = hypot(size, x[i]);
-        for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
-            x[i] /= size;
-    }
-    return RITZ_OK;
-}
-
-/*
- * Candidates, orthogonal to the vectors so far and orthonormal; dependent ones
- * left out.
- */
-static ritz_status prepare_candidates(const lanczos_side *own,
-                                      const lanczos_side *other, int64_t used,
-                                      double tolerance, ritz_dense *out)
-{
-    const ritz_dense V = ritz_dense_part(&own->vectors, 0, used);
-    const ritz_dense W = ritz_dense_part(&other->vectors, 0, used);
-    RITZ_OWN(ritz_dense) X = {0}, U = {0};
-    RITZ_OWN_ARRAY double *s = NULL;
-    int64_t rank = 0;
-
-    RITZ_CHECK(gather_candidates(own, &X));
-    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X));
-    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
-    RITZ_CHECK(ritz_general_svd(&X, &U, &s, NULL));
-    while (rank < U.ncol && s[rank] > tolerance)
-        rank++;
-    return ritz_dense_columns(&U, 0, rank, out);
-}
-
-/* X R s^-1/2 of the first columns become vectors, the others wait. */
-static ritz_status accept_vectors(const ritz_dense *X, const ritz_dense *R,
-                                  const double *s, int64_t joined, int64_t used,
-                                  lanczos_side *own)
-{
-    RITZ_OWN(ritz_dense) turned = {0};
-
-    RITZ_CHECK(ritz_dense_mul(X, R, &turned));
-    for (int64_t j = 0; j < joined; j++)
-        for (int64_t i = 0; i < turned.nrow; i++)
-            ritz_dense_col(&own->vectors, used + j)[i] =
-                ritz_dense_col(&turned, j)[i] / sqrt(s[j]);
-    ritz_dense_free(&own->waiting);
-    return ritz_dense_columns(&turned, joined, turned.ncol - joined,
-                              &own->waiting);
-}
-
-/* Pair candidates X of the right and Y of the left; possibly none. */
-static ritz_status pair_candidates(const ritz_dense *X, const ritz_dense *Y,
-                                   double tolerance, two_sided *t,
-                                   int64_t *joined)
-{
-    int64_t most = t->right.vectors.ncol - t->used;
-    RITZ_OWN(ritz_dense) YX = {0}, L = {0}, R = {0};
-    RITZ_OWN_ARRAY double *s = NULL;
-
-    *joined = 0;
-    RITZ_CHECK(ritz_dense_mul_tn(Y, X, &YX));
-    RITZ_CHECK(ritz_general_svd(&YX, &L, &s, &R));
-    while (*joined < most && *joined < L.ncol && *joined < R.ncol &&
-           s[*joined] > tolerance)
-        ++*joined;
-    RITZ_CHECK(accept_vectors(X, &R, s, *joined, t->used, &t->right));
-    return accept_vectors(Y, &L, s, *joined, t->used, &t->left);
-}
-
-/* G times the last block, on either side. */
-static ritz_status advance_blocks(two_sided *t, int64_t joined)
-{
-    const ritz_dense right =
-        ritz_dense_part(&t->right.vectors, t->used, joined);
-    const ritz_dense left = ritz_dense_part(&t->left.vectors, t->used, joined);
-
-    ritz_dense_free(&t->right.next);
-    ritz_dense_free(&t->left.next);
-    RITZ_CHECK(ritz_dense_mul(&t->G, &right, &t->right.next));
-    RITZ_CHECK(ritz_dense_mul_tn(&t->G, &left, &t->left.next));
-    t->used += joined;
-    return RITZ_OK;
-}
-
-static ritz_status advance_step(double tolerance, two_sided *t, bool *going)
-{
-    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
-    int64_t joined = 0;
-
-    RITZ_CHECK(prepare_candidates(&t->right, &t->left, t->used, tolerance, &X));
-    RITZ_CHECK(prepare_candidates(&t->left, &t->right, t->used, tolerance, &Y));
-    *going = X.ncol > 0 && Y.ncol > 0;
-    t->end = EXHAUSTED;
-    if (!*going)
-        return RITZ_OK;
-    RITZ_CHECK(pair_candidates(&X, &Y, tolerance, t, &joined));
-    RITZ_CHECK(advance_blocks(t, joined));
-    t->end = joined > 0 ? COMPLETE : BREAKDOWN;
-    *going = joined > 0 && t->used < t->right.vectors.ncol;
-    return RITZ_OK;
-}
-
-/* Right start B, or A^-1 B; left start C'. */
-static ritz_status start_blocks(const ritz_request *request,
-                                const ritz_states *states, two_sided *t)
-{
-    int64_t n = states->count;
-    int64_t most = request->modes < n ? request->modes : n;
-
-    RITZ_REFUSE_IF(states->B.ncol == 0 || states->C.nrow == 0,
-                   RITZ_ERR_ARGUMENT,
-                   "the component has no %s, vectors of both sides need some",
-                   states->B.ncol == 0 ? "inputs" : "outputs");
-    RITZ_CHECK(choose_operator(&states->A, &states->B, request->choice.inverse,
-                               &t->G, &t->right.next));
-    RITZ_CHECK(ritz_general_transpose(&states->C, &t->left.next));
-    RITZ_CHECK(ritz_dense_new(n, most, &t->right.vectors));
-    return ritz_dense_new(n, most, &t->left.vectors);
-}
-
-/* A first block is required. */
-static ritz_status check_start(const ritz_request *request, const two_sided *t)
-{
-    RITZ_REFUSE_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
-                   "no flexible state is both controllable and observable");
-    RITZ_REFUSE_IF(
-        t->used == 0 && !request->choice.inverse, RITZ_ERR_SINGULAR,
-        "serious breakdown at the first block: C B is zero, no output "
-        "moves at once, as those of displacement never do; the "
-        "inverse operator begins with the static response");
-    RITZ_REFUSE_IF(t->used == 0, RITZ_ERR_SINGULAR,
-                   "serious breakdown at the first block: C A^-1 B is zero, no "
-                   "output has a static response");
-    return RITZ_OK;
-}
-
-/* On A^-1: W := G'W (W'G V)^-T, with which W'A V = (W'G V)^-1. */
-static ritz_status invert_left(two_sided *t)
-{
-    RITZ_OWN(ritz_dense) WG = {0}, Gr = {0};
-    ritz_status status = RITZ_OK;
-
-    RITZ_CHECK(ritz_dense_mul_tn(&t->left.vectors, &t->G, &WG));
-    RITZ_CHECK(ritz_dense_mul(&WG, &t->right.vectors, &Gr));
-    status = ritz_general_solve(&Gr, false, &WG);
-    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                   "breakdown: with %" PRId64
-                   " states the reduced A^-1 is singular, ask for another "
-                   "number",
-                   t->used);
-    RITZ_CHECK(status);
-    ritz_dense_free(&t->left.vectors);
-    return ritz_general_transpose(&WG, &t->left.vectors);
-}
-
-static void add_end(const ritz_request *request, const two_sided *t,
-                    ritz_basis *basis)
-{
-    if (t->used >= request->modes)
-        return;
-    snprintf(basis->remark, sizeof basis->remark,
-             t->end == BREAKDOWN
-                 ? "%" PRId64 " states asked for: serious breakdown after "
-                   "%" PRId64 ", what is left on both sides is orthogonal"
-                 : "%" PRId64 " states asked for: %" PRId64
-                   " are controllable and observable",
-             request->modes, t->used);
-}
-
-static ritz_status make_two_sided(const ritz_request *request, ritz_basis *out)
-{
-    RITZ_OWN(ritz_states) states = {0};
-    RITZ_OWN(two_sided) t = {0};
-    bool going = true;
-
-    RITZ_CHECK(find_states(request, &states));
-    RITZ_CHECK(start_blocks(request, &states, &t));
-    while (going)
-        RITZ_CHECK(advance_step(request->tolerance, &t, &going));
-    RITZ_CHECK(check_start(request, &t));
-    t.right.vectors.ncol = t.left.vectors.ncol = t.used;
-    if (request->choice.inverse)
-        RITZ_CHECK(invert_left(&t));
-    RITZ_CHECK(
-        ritz_states_basis(&states, &t.right.vectors, &t.left.vectors, out));
-    add_end(request, &t, out);
-    return RITZ_OK;
-}
-
-const ritz_method ritz_method_lanczos_two_sided = {
-    .name = "lanczos-two-sided",
-    .summary = "left and right Lanczos vectors of states; often unstable",
-    .reference = "KimCraig1988",
-    .when = "to compare with",
-    .cost = "as lanczos-one-sided",
-    .holds = "moments, twice as many as one-sided",
-    .fails = "instability and breakdown, often with outputs elsewhere",
-    .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_OPERATOR |
-            RITZ_USES_DAMPING,
-    .make = make_two_sided,
 };

@@ -27,6 +27,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
+#include "bases/space.h"
 #include "linear/general.h"
 
 #include <complex.h>
@@ -595,6 +596,8 @@ ritz_status ritz_tangential_find(const ritz_request *request, ritz_basis *out,
 
 static ritz_status make_tangential(const ritz_request *request, ritz_basis *out)
 {
+    if (request->space)
+        return ritz_tangential_of_space(request, out);
     return ritz_tangential_find(request, out, NULL);
 }
 
@@ -608,7 +611,7 @@ const ritz_method ritz_method_tangential = {
     .holds = "the response at its points, in its directions; from above",
     .fails = "light damping where all modes count: modes are better in H2",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
-            RITZ_USES_LOADS | RITZ_USES_DAMPING,
+            RITZ_USES_LOADS | RITZ_USES_DAMPING | RITZ_USES_SPACE,
     .only_named = RITZ_NAMED_FOR_COMPONENTS | RITZ_NAMED_FOR_SCENES,
     .make = make_tangential,
 };

@@ -141,8 +141,14 @@ ritz_status ritz_audit_reduced(const ritz_reduced *reduced, ritz_audit *out)
 
 ritz_status ritz_audit_states(const ritz_state_space *model, ritz_audit *out)
 {
-    RITZ_OWN(ritz_checker) it = {.space = model};
+    RITZ_OWN(ritz_state_space) made = {0};
+    RITZ_OWN(ritz_checker) it = {0};
 
-    RITZ_CHECK(ritz_collocated_of_space(model, &it.pairs));
+    it.space = model;
+    if (ritz_state_space_is_sparse(model) &&
+        ritz_state_space_order(model) > 2 * (int64_t)RITZ_STATE_DOFS)
+        return run_checks(&it, RITZ_OF_SPARSE, out);
+    RITZ_CHECK(ritz_state_space_dense(model, &made, &it.space));
+    RITZ_CHECK(ritz_collocated_of_space(it.space, &it.pairs));
     return run_checks(&it, RITZ_OF_STATES, out);
 }

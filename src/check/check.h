@@ -16,6 +16,7 @@ enum {
     RITZ_OF_COMPONENT = 1,
     RITZ_OF_REDUCED = 2,
     RITZ_OF_STATES = 4,
+    RITZ_OF_SPARSE = 8, /* states, too many for dense matrices */
 };
 
 /* Features without which a check is left out. */
@@ -107,6 +108,9 @@ typedef struct ritz_check_row {
 
 /** All checks, in order; the last has no function. */
 extern const ritz_check_row ritz_checks[];
+
+/** ritz_probe_states of a sparse model. @cost three factors, some solves */
+ritz_status ritz_probe_sparse(const ritz_state_space *model, ritz_probe *out);
 
 /** Append what a check found; @p where may be NULL. */
 [[gnu::format(printf, 7, 8)]] void

@@ -23,7 +23,7 @@ const ritz_check_row ritz_checks[] = {
     {RITZ_OF_REDUCED, 0, ritz_check_reduced_stiffness},
     {RITZ_OF_REDUCED, RITZ_NEEDS_DAMPING, ritz_check_reduced_damping},
     {RITZ_OF_REDUCED, RITZ_NEEDS_STRUCTURAL, ritz_check_reduced_structural},
-    {BOTH, 0, ritz_check_poles},
+    {BOTH | RITZ_OF_SPARSE, 0, ritz_check_poles},
     {BOTH, 0, ritz_check_growth},
     {BOTH, 0, ritz_check_passivity},
     {BOTH, 0, ritz_check_locked},

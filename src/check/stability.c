@@ -15,6 +15,7 @@
 #include "linear/split.h"
 
 #include <float.h>
+#include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
@@ -49,6 +50,8 @@ ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out)
     ritz_probe probe = {0};
     RITZ_OWN(ritz_dense) A = {0};
 
+    if (ritz_state_space_is_sparse(model))
+        return ritz_probe_sparse(model, out);
     RITZ_CHECK(ritz_dense_copy(&model->A, &A));
     if (model->E.val)
         RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &A));
@@ -116,13 +119,18 @@ ritz_status ritz_check_poles(ritz_checker *it)
     if (it->reduced)
         RITZ_CHECK(
             ritz_modal_states(&it->modes, &layout, &it->pairs.A, NULL, NULL));
-    RITZ_CHECK(ritz_probe_matrix(&it->pairs.A, &probe));
+    if (it->space && ritz_state_space_is_sparse(it->space))
+        RITZ_CHECK(ritz_probe_sparse(it->space, &probe));
+    else
+        RITZ_CHECK(ritz_probe_matrix(&it->pairs.A, &probe));
     it->stable = probe.verdict != RITZ_UNSTABLE;
     ritz_probe_print(&probe, text);
     ritz_checker_say(it, "poles", ritz_probe_growth(&probe), probe.tolerance,
                      it->stable ? RITZ_PASS : RITZ_FAIL, it->stable ? text : "",
                      "%s",
                      !it->stable ? text
+                     : probe.verdict == RITZ_STABLE && probe.unseen > 0
+                         ? "those looked at are left of the axis"
                      : probe.verdict == RITZ_STABLE
                          ? "all are left of the axis"
                          : "on the axis: rigid motion, or no damping");
@@ -147,7 +155,7 @@ const char *ritz_stability_name(ritz_stability verdict)
 
 void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
 {
-    char imaginary[RITZ_NAME_SIZE] = "";
+    char imaginary[RITZ_NAME_SIZE] = "", unseen[RITZ_NAME_SIZE] = "";
 
     if (probe->why[0] || probe->count == 0) {
         snprintf(out, (size_t)2 * RITZ_NAME_SIZE, "%s",
@@ -156,9 +164,13 @@ void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
     }
     if (probe->pole[1] > 0.0)
         snprintf(imaginary, sizeof imaginary, " +- %.5gi", probe->pole[1]);
-    snprintf(out, (size_t)2 * RITZ_NAME_SIZE, "pole at %+.5g%s rad/s (%.5g Hz)",
-             probe->pole[0], imaginary,
-             hypot(probe->pole[0], probe->pole[1]) / (2.0 * RITZ_PI));
+    if (probe->unseen > 0)
+        snprintf(unseen, sizeof unseen,
+                 ", rightmost of %" PRId64 " near 0; %" PRId64 " not looked at",
+                 probe->count, probe->unseen);
+    snprintf(out, (size_t)2 * RITZ_NAME_SIZE,
+             "pole at %+.5g%s rad/s (%.5g Hz)%s", probe->pole[0], imaginary,
+             hypot(probe->pole[0], probe->pole[1]) / (2.0 * RITZ_PI), unseen);
 }
 
 ritz_status ritz_probe_record(const ritz_probe *probe, ritz_measures *estimates)

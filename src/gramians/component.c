@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"
+#include "gramians/space.h"
 #include "linear/general.h"
 #include "linear/split.h"
 
@@ -415,7 +416,7 @@ ritz_status ritz_gramians_of_component(const ritz_gramians_request *request,
 static ritz_status check_space(const ritz_state_space *model)
 {
     RITZ_CHECK(ritz_state_space_check(model));
-    RITZ_REFUSE_IF(model->A.nrow == 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(ritz_state_space_order(model) == 0, RITZ_ERR_ARGUMENT,
                    "the model has no states, and no Gramians");
     return ritz_ends_check("model", model->num_inputs, model->num_outputs,
                            model->limit, model->output);
@@ -440,13 +441,14 @@ static ritz_status factor_stable(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-ritz_status ritz_gramians_of_space(const ritz_state_space *model,
-                                   ritz_gramians *out)
+static ritz_status find_space_dense(const ritz_state_space *model,
+                                    ritz_gramians *out)
 {
+    RITZ_OWN(ritz_state_space) made = {0};
     RITZ_OWN(ritz_split) split = {0};
     RITZ_OWN(ritz_gramians) gramians = {0};
 
-    RITZ_CHECK(check_space(model));
+    RITZ_CHECK(ritz_state_space_dense(model, &made, &model));
     RITZ_CHECK(ritz_split_new(&model->A, &model->E, &split));
     RITZ_CHECK(factor_stable(model, &split, &gramians));
     RITZ_MOVE(gramians.T, split.T);
@@ -456,6 +458,46 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
     snprintf(gramians.damping, sizeof gramians.damping, "%s", model->damping);
     RITZ_MOVE(*out, gramians);
     return RITZ_OK;
+}
+
+/* Of low rank where that is to be had, and cheaper. */
+static ritz_status find_space_any(const ritz_state_space *model,
+                                  ritz_gramians *out)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!ritz_state_space_is_sparse(model))
+        return find_space_dense(model, out);
+    status = ritz_gramians_space_low_rank(model, 0.0, out);
+    if (status == RITZ_ERR_CONVERGENCE &&
+        ritz_state_space_order(model) <= 2 * (int64_t)RITZ_STATE_DOFS)
+        return find_space_dense(model, out);
+    return status;
+}
+
+ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
+                                      ritz_engine engine, const double *band_hz,
+                                      ritz_gramians *out)
+{
+    RITZ_CHECK(check_space(model));
+    RITZ_REFUSE_IF(engine == RITZ_ENGINE_MODAL, RITZ_ERR_ARGUMENT,
+                   "a state space has no modes: its engines are dense and "
+                   "low-rank");
+    RITZ_REFUSE_IF(band_hz && engine != RITZ_ENGINE_AUTO, RITZ_ERR_ARGUMENT,
+                   "Gramians of a state space over a band have one engine: "
+                   "leave out --engine");
+    if (band_hz)
+        return ritz_gramians_space_band(model, band_hz, out);
+    if (engine == RITZ_ENGINE_LOW_RANK)
+        return ritz_gramians_space_low_rank(model, 0.0, out);
+    return engine == RITZ_ENGINE_DENSE ? find_space_dense(model, out)
+                                       : find_space_any(model, out);
+}
+
+ritz_status ritz_gramians_of_space(const ritz_state_space *model,
+                                   ritz_gramians *out)
+{
+    return ritz_gramians_of_space_by(model, RITZ_ENGINE_AUTO, NULL, out);
 }
 
 /*

@@ -6,7 +6,7 @@
  * "A=F,B=F,C=F[,D=F][,E=F]", F as any matrix; or one file, "FILE" or
  * "FILE:NAME", whose matrices are called so, NAME.A or A of a struct too. D is
  * zero and E the identity where they are not given. An E that is the identity
- * is left out, so that no solver factors it.
+ * is left out, so that no solver factors it. Large sparse A and E stay sparse.
  */
 #include "import/import.h"
 
@@ -197,7 +197,6 @@ static ritz_status take_file(const char *text, ritz_file_sums *sums, parts *out)
 /* A, B and C are there, all are real, and they are as large as A says. */
 static ritz_status check_parts(const parts *p)
 {
-    const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
     const int64_t n = p->matrix[PART_A].A.nrow;
     const int64_t sizes[NUM_PARTS][2] = {
         {n, n},
@@ -225,47 +224,90 @@ static ritz_status check_parts(const parts *p)
                        " x %" PRId64 " is due",
                        letters[k], m->A.nrow, m->A.ncol, sizes[k][0],
                        sizes[k][1]);
-        RITZ_REFUSE_IF(m->A.nrow > most || m->A.ncol > most, RITZ_ERR_ARGUMENT,
-                       "'%c' is %" PRId64 " x %" PRId64
-                       ": state spaces are dense, of at most %" PRId64
-                       " states, inputs and outputs",
-                       letters[k], m->A.nrow, m->A.ncol, most);
     }
     return RITZ_OK;
 }
 
-static bool is_identity(const ritz_dense *E)
+static int64_t count_entries(const ritz_sparse *A)
 {
-    for (int64_t j = 0; j < E->ncol; j++)
-        for (int64_t i = 0; i < E->nrow; i++)
-            if (ritz_dense_col(E, j)[i] != (i == j ? 1.0 : 0.0))
-                return false;
-    return true;
+    int64_t count = 0;
+
+    for (int64_t p = 0; A->colptr && p < A->colptr[A->ncol]; p++)
+        count += A->val[p] != 0.0;
+    return count;
 }
 
-/* Dense matrices in the place of those that are zero. */
-static ritz_status fill_matrices(const parts *p, ritz_state_space *model)
+static bool is_identity(const ritz_sparse *E)
+{
+    for (int64_t j = 0; j < E->ncol; j++)
+        if (ritz_sparse_diagonal(E, j) != 1.0)
+            return false;
+    return count_entries(E) == E->ncol;
+}
+
+/* Whether A and E stay sparse. @return RITZ_ERR_ARGUMENT if they are too large
+   to be dense, and full */
+static ritz_status choose_form(const parts *p, bool *sparse)
+{
+    const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
+    const ritz_sparse *A = &p->matrix[PART_A].A, *E = &p->matrix[PART_E].A;
+    double entries = (double)count_entries(A) + (double)count_entries(E);
+    double all = (double)A->nrow * (double)A->nrow * (p->there[PART_E] ? 2 : 1);
+
+    *sparse = A->nrow > RITZ_SPARSE_STATES && entries <= all / 10.0;
+    RITZ_REFUSE_IF(!*sparse && A->nrow > most, RITZ_ERR_ARGUMENT,
+                   "'A' is %" PRId64 " x %" PRId64
+                   ": state spaces are dense, of at most %" PRId64
+                   " states, or sparse, with at most a tenth of A and E not "
+                   "zero",
+                   A->nrow, A->nrow, most);
+    for (int k = PART_B; k <= PART_C; k++)
+        RITZ_REFUSE_IF(p->matrix[k].A.nrow > most && p->matrix[k].A.ncol > most,
+                       RITZ_ERR_ARGUMENT,
+                       "'%c' is %" PRId64 " x %" PRId64 ": at most %" PRId64
+                       " inputs and outputs are taken",
+                       letters[k], p->matrix[k].A.nrow, p->matrix[k].A.ncol,
+                       most);
+    return RITZ_OK;
+}
+
+/* Matrices in the place of those that are zero. */
+static ritz_status fill_matrices(const parts *p, bool sparse,
+                                 ritz_state_space *model)
 {
     ritz_dense *const into[NUM_PARTS] = {&model->A, &model->B, &model->C,
                                          &model->D, &model->E};
 
     for (int k = 0; k < NUM_PARTS; k++) {
-        if (!p->there[k])
+        if (!p->there[k] || (sparse && (k == PART_A || k == PART_E)))
+            continue;
+        if (k == PART_E && is_identity(&p->matrix[k].A))
             continue;
         ritz_dense_free(into[k]);
         RITZ_CHECK(ritz_sparse_dense(&p->matrix[k].A, into[k]));
     }
-    if (model->E.val && is_identity(&model->E))
-        ritz_dense_free(&model->E);
     return RITZ_OK;
+}
+
+static ritz_status start_space(const parts *p, bool sparse, const ritz_io *io,
+                               ritz_state_space *out)
+{
+    static const ritz_sparse none = {0};
+    const ritz_sparse *E = &p->matrix[PART_E].A;
+    bool plain = !p->there[PART_E] || is_identity(E);
+
+    return sparse ? ritz_state_space_of_sparse(&p->matrix[PART_A].A,
+                                               plain ? &none : E, io, out)
+                  : ritz_state_space_new(p->matrix[PART_A].A.nrow, io, out);
 }
 
 static ritz_status make_space(const ritz_import_space_request *request,
                               const parts *p, ritz_state_space *out)
 {
-    int64_t n = p->matrix[PART_A].A.nrow;
     RITZ_OWN(ritz_io) io = {0};
+    bool sparse = false;
 
+    RITZ_CHECK(choose_form(p, &sparse));
     RITZ_CHECK(ritz_io_new(0, p->matrix[PART_B].A.ncol,
                            p->matrix[PART_C].A.nrow, &io));
     RITZ_CHECK_IN("--input-names",
@@ -274,8 +316,8 @@ static ritz_status make_space(const ritz_import_space_request *request,
     RITZ_CHECK_IN("--output-names",
                   ritz_import_channels(request->outputs, 'y', io.num_outputs,
                                        io.output, io.limit));
-    RITZ_CHECK(ritz_state_space_new(n, &io, out));
-    RITZ_CHECK(fill_matrices(p, out));
+    RITZ_CHECK(start_space(p, sparse, &io, out));
+    RITZ_CHECK(fill_matrices(p, sparse, out));
     RITZ_CHECK(ritz_state_space_check(out));
     if (request->units)
         RITZ_CHECK_IN("--units", ritz_import_units(request->units, out->units));

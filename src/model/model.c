@@ -45,6 +45,16 @@ ritz_model ritz_model_of_states(const ritz_state_space *states)
     return (ritz_model){.kind = RITZ_MODEL_STATES, .states = states};
 }
 
+int64_t ritz_state_space_order(const ritz_state_space *model)
+{
+    return model->sA.colptr ? model->sA.nrow : model->A.nrow;
+}
+
+bool ritz_state_space_is_sparse(const ritz_state_space *model)
+{
+    return model->sA.colptr != NULL;
+}
+
 int64_t ritz_model_order(ritz_model model)
 {
     switch (model.kind) {
@@ -55,7 +65,7 @@ int64_t ritz_model_order(ritz_model model)
     case RITZ_MODEL_STATES:
         break;
     }
-    return model.states->A.nrow;
+    return ritz_state_space_order(model.states);
 }
 
 ritz_io ritz_model_io(ritz_model model)

@@ -624,16 +624,18 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
 
 /* A state space in a basis of its states: see ritz_reduce_states. */
 
-/* W'A T */
+/* W'A T, of a dense or sparse A or, if there is neither, of the identity. */
 static ritz_status product_between(const ritz_dense *W, const ritz_dense *A,
-                                   const ritz_dense *T, ritz_dense *out)
+                                   const ritz_sparse *sA, const ritz_dense *T,
+                                   ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) AT = {0};
 
     ritz_dense_free(out);
-    if (A->val == NULL)
+    if (!A->val && !sA->colptr)
         return ritz_dense_mul_tn(W, T, out);
-    RITZ_CHECK(ritz_dense_mul(A, T, &AT));
+    RITZ_CHECK(A->val ? ritz_dense_mul(A, T, &AT)
+                      : ritz_sparse_mul(sA, T, &AT));
     return ritz_dense_mul_tn(W, &AT, out);
 }
 
@@ -646,10 +648,10 @@ ritz_status ritz_reduce_space(const ritz_state_space *full,
     RITZ_OWN(ritz_state_space) reduced = {0};
     RITZ_OWN(ritz_dense) E = {0};
 
-    RITZ_CHECK(check_basis(basis, full->A.nrow));
+    RITZ_CHECK(check_basis(basis, ritz_state_space_order(full)));
     RITZ_CHECK(ritz_state_space_new(T->ncol, &io, &reduced));
-    RITZ_CHECK(product_between(W, &full->A, T, &reduced.A));
-    RITZ_CHECK(product_between(W, &full->E, T, &E));
+    RITZ_CHECK(product_between(W, &full->A, &full->sA, T, &reduced.A));
+    RITZ_CHECK(product_between(W, &full->E, &full->sE, T, &E));
     ritz_dense_free(&reduced.B);
     RITZ_CHECK(ritz_dense_mul_tn(W, &full->B, &reduced.B));
     ritz_dense_free(&reduced.C);

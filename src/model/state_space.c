@@ -18,23 +18,89 @@
 #include <math.h>
 #include <string.h>
 
+/* All but A and E. */
+static ritz_status start_space(int64_t states, const ritz_io *io,
+                               ritz_state_space *model)
+{
+    model->num_inputs = io->num_inputs;
+    model->num_outputs = io->num_outputs;
+    RITZ_CHECK(ritz_dense_new(states, io->num_inputs, &model->B));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, states, &model->C));
+    RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &model->D));
+    RITZ_CHECK_COPY(model->input, io->input, io->num_inputs);
+    RITZ_CHECK_COPY(model->output, io->output, io->num_outputs);
+    RITZ_CHECK_COPY(model->limit, io->limit, io->num_outputs);
+    RITZ_CHECK(ritz_columns_new(states, &model->columns));
+    for (int64_t k = 0; k < states; k++)
+        model->columns.kind[k] = RITZ_COLUMN_STATE;
+    return RITZ_OK;
+}
+
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
                                  ritz_state_space *out)
 {
-    RITZ_OWN(ritz_state_space)
-    model = {.num_inputs = io->num_inputs, .num_outputs = io->num_outputs};
+    RITZ_OWN(ritz_state_space) model = {0};
 
     RITZ_CHECK(ritz_dense_new(states, states, &model.A));
-    RITZ_CHECK(ritz_dense_new(states, io->num_inputs, &model.B));
-    RITZ_CHECK(ritz_dense_new(io->num_outputs, states, &model.C));
-    RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &model.D));
-    RITZ_CHECK_COPY(model.input, io->input, io->num_inputs);
-    RITZ_CHECK_COPY(model.output, io->output, io->num_outputs);
-    RITZ_CHECK_COPY(model.limit, io->limit, io->num_outputs);
-    RITZ_CHECK(ritz_columns_new(states, &model.columns));
-    for (int64_t k = 0; k < states; k++)
-        model.columns.kind[k] = RITZ_COLUMN_STATE;
+    RITZ_CHECK(start_space(states, io, &model));
     RITZ_MOVE(*out, model);
+    return RITZ_OK;
+}
+
+ritz_status ritz_state_space_of_sparse(const ritz_sparse *A,
+                                       const ritz_sparse *E, const ritz_io *io,
+                                       ritz_state_space *out)
+{
+    RITZ_OWN(ritz_state_space) model = {0};
+
+    RITZ_CHECK(ritz_sparse_copy(A, &model.sA));
+    if (E->colptr)
+        RITZ_CHECK(ritz_sparse_copy(E, &model.sE));
+    RITZ_CHECK(start_space(A->nrow, io, &model));
+    RITZ_MOVE(*out, model);
+    return RITZ_OK;
+}
+
+/* All of a model but A and E. */
+static ritz_status copy_space(const ritz_state_space *model,
+                              ritz_state_space *out)
+{
+    const ritz_io io = ritz_model_io(ritz_model_of_states(model));
+    int64_t n = ritz_state_space_order(model);
+
+    RITZ_CHECK(start_space(n, &io, out));
+    ritz_dense_put(&model->B, 0, 0, &out->B);
+    ritz_dense_put(&model->C, 0, 0, &out->C);
+    ritz_dense_put(&model->D, 0, 0, &out->D);
+    RITZ_CHECK(ritz_columns_pick(&model->columns, n, NULL, &out->columns));
+    RITZ_CHECK(ritz_measures_copy(&model->estimates, &out->estimates));
+    RITZ_CHECK(ritz_measures_copy(&model->errors, &out->errors));
+    out->origin = model->origin;
+    memcpy(out->damping, model->damping, sizeof out->damping);
+    memcpy(out->units, model->units, sizeof out->units);
+    return RITZ_OK;
+}
+
+ritz_status ritz_state_space_dense(const ritz_state_space *model,
+                                   ritz_state_space *made,
+                                   const ritz_state_space **out)
+{
+    const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
+    RITZ_OWN(ritz_state_space) dense = {0};
+
+    *out = model;
+    if (!model->sA.colptr)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(model->sA.nrow > most, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " sparse states are more than %" PRId64
+                   ", of which dense matrices are made: reduce the model first",
+                   model->sA.nrow, most);
+    RITZ_CHECK(copy_space(model, &dense));
+    RITZ_CHECK(ritz_sparse_dense(&model->sA, &dense.A));
+    if (model->sE.colptr)
+        RITZ_CHECK(ritz_sparse_dense(&model->sE, &dense.E));
+    RITZ_MOVE(*made, dense);
+    *out = made;
     return RITZ_OK;
 }
 
@@ -51,12 +117,60 @@ static ritz_status check_matrix(const char *name, const ritz_dense *A,
     return RITZ_OK;
 }
 
-ritz_status ritz_state_space_check(const ritz_state_space *model)
+static ritz_status check_sparse(const char *name, const ritz_sparse *A,
+                                int64_t n)
 {
-    int64_t n = model->A.nrow;
+    RITZ_REFUSE_IF(A->nrow != n || A->ncol != n, RITZ_ERR_FORMAT,
+                   "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
+                   " x %" PRId64 " is due",
+                   name, A->nrow, A->ncol, n, n);
+    for (int64_t k = 0; k < A->colptr[n]; k++)
+        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
+                       "'%s' is not finite", name);
+    return RITZ_OK;
+}
+
+static ritz_status refuse_singular(ritz_status status)
+{
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_FORMAT,
+                   "'E' is singular");
+    return status;
+}
+
+/* A and E of either form. */
+static ritz_status check_pencil(const ritz_state_space *model, int64_t n)
+{
+    const ritz_sparse *const E[] = {&model->sE};
+    const double _Complex c[] = {1.0};
+    RITZ_OWN(ritz_zldl) *F = NULL;
     RITZ_OWN(ritz_dense) one = {0};
 
+    if (model->sA.colptr) {
+        RITZ_CHECK(check_sparse("A", &model->sA, n));
+        if (!model->sE.colptr)
+            return RITZ_OK;
+        RITZ_CHECK(check_sparse("E", &model->sE, n));
+        RITZ_CHECK(refuse_singular(ritz_zldl_new(1, E, &F)));
+        return refuse_singular(ritz_zldl_factor(F, c));
+    }
     RITZ_CHECK(check_matrix("A", &model->A, n, n));
+    if (!model->E.val)
+        return RITZ_OK;
+    RITZ_CHECK(check_matrix("E", &model->E, n, n));
+    RITZ_CHECK(ritz_dense_new(n, n > 0, &one));
+    return refuse_singular(ritz_general_solve(&model->E, false, &one));
+}
+
+ritz_status ritz_state_space_check(const ritz_state_space *model)
+{
+    int64_t n = ritz_state_space_order(model);
+
+    RITZ_REFUSE_IF(!model->A.val && !model->sA.colptr, RITZ_ERR_FORMAT,
+                   "there is no 'A'");
+    RITZ_REFUSE_IF(model->sA.colptr ? model->A.val || model->E.val
+                                    : model->sE.colptr != NULL,
+                   RITZ_ERR_FORMAT,
+                   "'A' and 'E' are both dense or both sparse");
     RITZ_CHECK(check_matrix("B", &model->B, n, model->num_inputs));
     RITZ_CHECK(check_matrix("C", &model->C, model->num_outputs, n));
     RITZ_CHECK(
@@ -64,14 +178,7 @@ ritz_status ritz_state_space_check(const ritz_state_space *model)
     RITZ_REFUSE_IF(model->columns.count != n, RITZ_ERR_FORMAT,
                    "%" PRId64 " states are described of %" PRId64,
                    model->columns.count, n);
-    if (model->E.val) {
-        RITZ_CHECK(check_matrix("E", &model->E, n, n));
-        RITZ_CHECK(ritz_dense_new(n, n > 0, &one));
-        RITZ_REFUSE_IF(ritz_general_solve(&model->E, false, &one) ==
-                           RITZ_ERR_SINGULAR,
-                       RITZ_ERR_FORMAT, "'E' is singular");
-    }
-    return RITZ_OK;
+    return check_pencil(model, n);
 }
 
 /* C(:, first..) += sign A B */
@@ -201,9 +308,9 @@ ritz_status ritz_model_states(ritz_model model, ritz_state_space *made,
     const ritz_second_order *m = &model.dense;
     ritz_structure structure = {0}; /* borrowed */
 
-    *out = model.kind == RITZ_MODEL_STATES ? model.states : made;
     if (model.kind == RITZ_MODEL_STATES)
-        return RITZ_OK;
+        return ritz_state_space_dense(model.states, made, out);
+    *out = made;
     if (model.kind == RITZ_MODEL_COMPONENT)
         return ritz_state_space_of_component(model.component, damping, made);
     RITZ_CHECK(ritz_structure_refuse(m->K4 && m->K4->val));
@@ -216,10 +323,12 @@ ritz_status ritz_model_states(ritz_model model, ritz_state_space *made,
 ritz_status ritz_state_space_poles(const ritz_state_space *model,
                                    int64_t *count, double _Complex **out)
 {
+    RITZ_OWN(ritz_state_space) made = {0};
     RITZ_OWN(ritz_dense) A = {0};
     RITZ_OWN(ritz_eigenvalues) found = {0};
     double _Complex *poles = NULL;
 
+    RITZ_CHECK(ritz_state_space_dense(model, &made, &model));
     RITZ_CHECK(ritz_dense_copy(&model->A, &A));
     if (model->E.val)
         RITZ_CHECK_IN("E", ritz_general_solve(&model->E, false, &A));
@@ -239,6 +348,8 @@ void ritz_state_space_free(ritz_state_space *model)
     ritz_dense_free(&model->C);
     ritz_dense_free(&model->D);
     ritz_dense_free(&model->E);
+    ritz_sparse_free(&model->sA);
+    ritz_sparse_free(&model->sE);
     RITZ_FREE(model->input, model->output, model->limit);
     ritz_columns_free(&model->columns);
     ritz_measures_free(&model->estimates);

@@ -448,7 +448,9 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
                                 int64_t input, ritz_channel *out)
 {
     RITZ_OWN(ritz_channel) all = {0}, made = {0};
+    RITZ_OWN(ritz_state_space) dense = {0};
 
+    RITZ_CHECK(ritz_state_space_dense(model, &dense, &model));
     RITZ_CHECK(
         channel_check(model->num_outputs, model->num_inputs, output, input));
     RITZ_CHECK(ritz_split_scaled(&model->A, &model->E, &model->B, &model->C,

@@ -204,7 +204,10 @@ static void divide_sides(stable *s)
 
 static ritz_status take_stable(const ritz_state_space *model, stable *s)
 {
+    RITZ_OWN(ritz_state_space) made = {0};
+
     RITZ_CHECK(ritz_state_space_check(model));
+    RITZ_CHECK(ritz_state_space_dense(model, &made, &model));
     RITZ_CHECK(ritz_split_new(&model->A, &model->E, &s->split));
     RITZ_REFUSE_IF(s->split.T.ncol > 0, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " of %" PRId64

@@ -255,6 +255,10 @@ ritz_status ritz_spectrum_dense(const ritz_second_order *model,
                                 const ritz_damping *damping,
                                 ritz_spectrum *out);
 
+/** Poles of a state space: all of a dense one, of a sparse one as @p span. */
+ritz_status ritz_spectrum_of_space(const ritz_state_space *model,
+                                   const ritz_span *span, ritz_spectrum *out);
+
 /** Poles of a component of more dofs than that, by a projection. */
 ritz_status ritz_spectrum_large(const ritz_component *component,
                                 const ritz_damping *damping,

@@ -439,24 +439,6 @@ static ritz_status spectrum_of_component(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* One pole of each pair; a state space has no shapes and so no residuals. */
-static ritz_status spectrum_of_states(const ritz_state_space *model,
-                                      ritz_spectrum *out)
-{
-    int64_t count = 0;
-
-    RITZ_CHECK(ritz_state_space_poles(model, &count, &out->s));
-    RITZ_CHECK_NEW(out->residual, count);
-    for (int64_t k = 0; k < count; k++) {
-        if (cimag(out->s[k]) < 0.0)
-            continue;
-        out->residual[out->count] = nan("");
-        out->s[out->count++] = out->s[k];
-    }
-    (void)snprintf(out->engine, sizeof out->engine, "dense LAPACK");
-    return RITZ_OK;
-}
-
 ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
                              ritz_spectrum *out)
 {
@@ -471,7 +453,7 @@ ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
         RITZ_CHECK(ritz_spectrum_dense(&model.dense, model.damping, &found));
         break;
     case RITZ_MODEL_STATES:
-        RITZ_CHECK(spectrum_of_states(model.states, &found));
+        RITZ_CHECK(ritz_spectrum_of_space(model.states, span, &found));
         break;
     }
     RITZ_MOVE(*out, found);

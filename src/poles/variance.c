@@ -552,9 +552,11 @@ ritz_status ritz_variance_of_states(const ritz_state_space *model,
     RITZ_OWN(first_order) f = {0};
     RITZ_OWN(gramians) g = {0};
     RITZ_OWN(ritz_dense) feed = {0};
+    RITZ_OWN(ritz_state_space) made = {0};
 
     RITZ_CHECK(check_noise(noise, &io));
     RITZ_CHECK(ritz_state_space_check(model));
+    RITZ_CHECK(ritz_state_space_dense(model, &made, &model));
     RITZ_CHECK(ritz_split_scaled(&model->A, &model->E, &model->B, &model->C,
                                  &f.A, &f.B, &f.C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &feed));

@@ -2,7 +2,11 @@
 #include "response/responder.h"
 
 const ritz_response_engine *const ritz_response_engines[] = {
-    &ritz_response_engine_direct, &ritz_response_engine_krylov,
-    &ritz_response_engine_modal,  &ritz_response_engine_rational,
-    &ritz_response_engine_states, NULL,
+    &ritz_response_engine_direct,
+    &ritz_response_engine_krylov,
+    &ritz_response_engine_modal,
+    &ritz_response_engine_rational,
+    &ritz_response_engine_sparse,
+    &ritz_response_engine_states,
+    NULL,
 };

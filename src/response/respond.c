@@ -16,8 +16,11 @@ ritz_response_engine_choose(const ritz_response_request *request,
     const ritz_damping *damping = request->model.damping;
 
     if (request->model.kind == RITZ_MODEL_STATES) {
-        *why = "a state space has no other";
-        return &ritz_response_engine_states;
+        bool sparse = ritz_state_space_is_sparse(request->model.states);
+
+        *why = sparse ? "A and E are sparse" : "A is small and dense";
+        return sparse ? &ritz_response_engine_sparse
+                      : &ritz_response_engine_states;
     }
     if (request->model.kind == RITZ_MODEL_DENSE) {
         *why = "all modes of a small dense model cost little";

@@ -60,6 +60,7 @@ struct ritz_responder {
 
 extern const ritz_response_engine ritz_response_engine_krylov;
 extern const ritz_response_engine ritz_response_engine_rational;
+extern const ritz_response_engine ritz_response_engine_sparse;
 extern const ritz_response_engine ritz_response_engine_states;
 
 /** Note the engine and the damping in a response. */

@@ -34,7 +34,8 @@ void tb05ad_(/* NOLINT: its name */ const char *baleig, const char *inita,
  */
 typedef struct state_responder {
     ritz_poles poles;
-    const ritz_state_space *model; /* borrowed */
+    const ritz_state_space *model; /* borrowed, or `made` */
+    ritz_state_space made;         /* of a sparse model */
     int n, m, p;
     bool begun;
     ritz_dense A, B, C;
@@ -76,6 +77,7 @@ static void free_states(void *state)
     state_responder *h = state;
 
     ritz_poles_free(&h->poles);
+    ritz_state_space_free(&h->made);
     ritz_dense_free(&h->A);
     ritz_dense_free(&h->B);
     ritz_dense_free(&h->C);
@@ -147,7 +149,8 @@ static ritz_status make_states(const ritz_response_request *request,
     out->free = free_states;
     out->poles = &s->poles;
     out->at = states_at;
-    s->model = request->model.states;
+    RITZ_CHECK(
+        ritz_state_space_dense(request->model.states, &s->made, &s->model));
     memcpy(out->damping, s->model->damping, sizeof out->damping);
     RITZ_CHECK(find_poles(s->model, &s->poles));
     return start_hessenberg(s);

@@ -303,7 +303,9 @@ static ritz_status motion_of_states(const ritz_state_space *model,
                                     ritz_motion *out)
 {
     RITZ_OWN(ritz_motion) m = {.form = RITZ_FORM_STATES, .highest = nan("")};
+    RITZ_OWN(ritz_state_space) made = {0};
 
+    RITZ_CHECK(ritz_state_space_dense(model, &made, &model));
     m.n = m.original = model->A.nrow;
     RITZ_CHECK(ritz_dense_copy(&model->A, &m.A));
     RITZ_CHECK(ritz_dense_copy(&model->B, &m.B));

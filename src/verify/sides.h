@@ -160,12 +160,14 @@ void ritz_sweep_free(ritz_reference_sweep *sweep);
 /* Outputs are divided by their limits; 0 is the full model, 1 the reduced. */
 typedef struct ritz_state_pair {
     const ritz_verify_request *request;
-    const ritz_state_space *given[2]; /* as they came; borrowed */
+    const ritz_state_space *given[2]; /* as they came; borrowed, or `dense` */
+    ritz_state_space dense[2];        /* of sparse ones */
     ritz_state_space model[2];        /* with their outputs divided: C and D
                                          alone are their own */
-    ritz_state_space stable[2];  /* what belongs to poles left of the axis */
-    int64_t num_unstable[2];     /* poles that are not left of the axis */
-    bool has_norms;              /* both have as many of those */
+    ritz_state_space stable[2]; /* what belongs to poles left of the axis */
+    int64_t num_unstable[2];    /* poles that are not left of the axis */
+    bool large;     /* sparse, and too many states for dense matrices */
+    bool has_norms; /* both have as many of those; not if large */
     ritz_state_space difference; /* of the stable ones, if has_norms */
     bool has_gain;               /* neither has a pole at 0 */
     ritz_dense gain[2];          /* static */

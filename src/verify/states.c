@@ -10,12 +10,14 @@
 #include "base/tolerances.h"
 #include "linear/general.h"
 #include "linear/split.h"
+#include "model/space.h"
 #include "verify/sides.h"
 
 #include <ritz/check.h>
 #include <ritz/poles.h>
 #include <ritz/verify.h>
 
+#include <complex.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -25,9 +27,12 @@
 /* Points before those at the poles are added. */
 enum { EVEN_POINTS = 200 };
 
+RITZ_PAIR_OF(ritz_state_space);
+
 void ritz_state_pair_free(ritz_state_pair *p)
 {
     for (int k = 0; k < 2; k++) {
+        ritz_state_space_free(&p->dense[k]);
         ritz_dense_free(&p->model[k].C);
         ritz_dense_free(&p->model[k].D);
         ritz_state_space_free(&p->stable[k]);
@@ -59,10 +64,13 @@ ritz_status ritz_state_space_difference(const ritz_state_space *a,
                                         const ritz_state_space *b,
                                         ritz_state_space *out)
 {
+    RITZ_OWN(ritz_state_space_pair) made = {0};
     RITZ_OWN(ritz_state_space) both = {0};
-    int64_t n = a->A.nrow;
-    int64_t m = b->A.nrow;
+    int64_t n = ritz_state_space_order(a);
+    int64_t m = ritz_state_space_order(b);
 
+    RITZ_CHECK(ritz_state_space_dense(a, &made[0], &a));
+    RITZ_CHECK(ritz_state_space_dense(b, &made[1], &b));
     RITZ_CHECK(
         ritz_verify_signals(ritz_model_of_states(a), ritz_model_of_states(b)));
     RITZ_CHECK(make_states(a, n + m, &both));
@@ -123,11 +131,31 @@ static ritz_status take_stable(const ritz_state_space *model,
     return ritz_dense_mul(&model->C, &split.X, &out->C);
 }
 
+/* The same of a sparse model. */
+static ritz_status sparse_gain(const ritz_state_space *model, ritz_dense *out)
+{
+    RITZ_OWN(ritz_pencil) pencil = {0};
+    RITZ_OWN(ritz_dense) gain = {0};
+    RITZ_OWN_ARRAY double _Complex *H = NULL;
+
+    RITZ_CHECK_NEW(H, model->num_outputs * model->num_inputs);
+    RITZ_CHECK(ritz_pencil_of_space(model, &pencil));
+    RITZ_CHECK(ritz_space_transfer(model, &pencil, 0.0, H));
+    RITZ_CHECK(ritz_dense_new(model->num_outputs, model->num_inputs, &gain));
+    for (int64_t i = 0; i < gain.nrow; i++)
+        for (int64_t j = 0; j < gain.ncol; j++)
+            ritz_dense_col(&gain, j)[i] = creal(H[i * gain.ncol + j]);
+    RITZ_MOVE(*out, gain);
+    return RITZ_OK;
+}
+
 /* D - C A^-1 B; RITZ_ERR_SINGULAR if there is a pole at 0. */
 static ritz_status static_gain(const ritz_state_space *model, ritz_dense *out)
 {
     RITZ_OWN(ritz_dense) X = {0};
 
+    if (ritz_state_space_is_sparse(model))
+        return sparse_gain(model, out);
     RITZ_CHECK(ritz_dense_copy(&model->B, &X));
     RITZ_CHECK(ritz_general_solve(&model->A, false, &X));
     RITZ_CHECK(ritz_dense_mul(&model->C, &X, out));
@@ -148,21 +176,39 @@ static ritz_status take_gains(ritz_state_pair *p)
     return RITZ_OK;
 }
 
+/* Both models as they are compared: dense, unless one is too large for it. */
+static ritz_status take_models(const ritz_state_space *full,
+                               const ritz_state_space *reduced,
+                               ritz_state_pair *p)
+{
+    p->given[0] = full;
+    p->given[1] = reduced;
+    for (int k = 0; k < 2; k++)
+        p->large =
+            p->large || (ritz_state_space_is_sparse(p->given[k]) &&
+                         ritz_state_space_order(p->given[k]) > RITZ_STATE_DOFS);
+    for (int k = 0; k < 2 && !p->large; k++)
+        RITZ_CHECK(
+            ritz_state_space_dense(p->given[k], &p->dense[k], &p->given[k]));
+    for (int k = 0; k < 2; k++)
+        RITZ_CHECK(divide_outputs(p->given[k], full->limit, &p->model[k]));
+    return RITZ_OK;
+}
+
 static ritz_status open_pair(const ritz_state_space *full,
                              const ritz_state_space *reduced,
                              const ritz_verify_request *request,
                              ritz_state_pair *p)
 {
     p->request = request;
-    p->given[0] = full;
-    p->given[1] = reduced;
     RITZ_CHECK(ritz_verify_signals(ritz_model_of_states(full),
                                    ritz_model_of_states(reduced)));
-    for (int k = 0; k < 2; k++) {
-        RITZ_CHECK(divide_outputs(p->given[k], full->limit, &p->model[k]));
+    RITZ_CHECK(take_models(full, reduced, p));
+    if (p->large)
+        return RITZ_OK;
+    for (int k = 0; k < 2; k++)
         RITZ_CHECK(
             take_stable(&p->model[k], &p->stable[k], &p->num_unstable[k]));
-    }
     p->has_norms = p->num_unstable[0] == p->num_unstable[1];
     if (p->has_norms)
         RITZ_CHECK(ritz_state_space_difference(&p->stable[0], &p->stable[1],
@@ -173,6 +219,10 @@ static ritz_status open_pair(const ritz_state_space *full,
 /* A limit of a norm that is infinite cannot be held. */
 static ritz_status check_norms(const ritz_state_pair *p)
 {
+    RITZ_REFUSE_IF(p->large, RITZ_ERR_ARGUMENT,
+                   "norms need dense matrices, and the full model has %" PRId64
+                   " sparse states: compare responses over a band",
+                   ritz_state_space_order(p->given[0]));
     RITZ_REFUSE_IF(!p->has_norms, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " poles of the full model and %" PRId64
                    " of the reduced one are not left of the axis: the norm "
@@ -262,7 +312,8 @@ ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
     if (isnan(bound))
         return RITZ_OK;
     out->limit = bound + (RITZ_NORM_TOLERANCE * bound +
-                          RITZ_BOUND_ROUNDING * (double)p->model[0].A.nrow *
+                          RITZ_BOUND_ROUNDING *
+                              (double)ritz_state_space_order(&p->model[0]) *
                               DBL_EPSILON * p->full.value +
                           RITZ_BOUND_CONDITION * p->error.rounding);
     return tell_norm(p, 1.0, out);
@@ -287,8 +338,6 @@ ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
         out->value = error.value / full.value;
     return RITZ_OK;
 }
-
-RITZ_PAIR_OF(ritz_state_space);
 
 /* Second-order models in first-order form. */
 ritz_status ritz_modes_h2(const ritz_sides *sides, ritz_measure *out)

@@ -326,7 +326,7 @@ static ritz_status reduce_to_states(cli_run *run, const model *full,
     RITZ_CHECK(ritz_probe_record(&probe, &states->estimates));
     RITZ_CHECK(describe_output(run, &made));
     sink_set(run, "vectors", "%ld", states->columns.count);
-    cli_record(run, states->origin.method, states->A.nrow);
+    cli_record(run, states->origin.method, ritz_state_space_order(states));
     model_record(run, &states->estimates);
     ritz_probe_print(&probe, text);
     if (probe.verdict == RITZ_UNSTABLE)

@@ -644,9 +644,10 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
     char text[2 * RITZ_NAME_SIZE];
 
     RITZ_CHECK(ritz_probe_states(states, &probe));
-    RITZ_CHECK(ritz_state_space_poles(states, &count, &pole));
+    if (!ritz_state_space_is_sparse(states))
+        RITZ_CHECK(ritz_state_space_poles(states, &count, &pole));
     sink_field(run, "kind", "states", "state space, %ld states",
-               states->A.nrow);
+               ritz_state_space_order(states));
     describe_units(run, states->units);
     if (*states->origin.method)
         describe_origin(run, &states->origin);
@@ -656,9 +657,12 @@ ritz_status describe_states(cli_run *run, const ritz_state_space *states)
     describe_dense(run, "C", &states->C);
     describe_dense(run, "D", &states->D);
     describe_dense(run, "E", &states->E);
+    describe_sparse(run, "A", &states->sA);
+    describe_sparse(run, "E", &states->sE);
     describe_damping(run, states->damping);
     describe_io(run, &io);
-    describe_poles(run, count, pole);
+    if (!ritz_state_space_is_sparse(states))
+        describe_poles(run, count, pole);
     ritz_probe_print(&probe, text);
     sink_field(run, "stability", "stability", "%s: %s",
                ritz_stability_name(probe.verdict), text);

@@ -338,7 +338,7 @@ static ritz_status export_model(cli_run *run, model *m,
     } else if (m->kind == MODEL_SIMULATION) {
         object.simulation = &m->simulation;
     } else if (m->kind == MODEL_STATES) {
-        cli_record(run, exporter->name, m->states.A.nrow);
+        cli_record(run, exporter->name, ritz_state_space_order(&m->states));
         RITZ_CHECK(check_stability(run, m, given));
         RITZ_CHECK(say_state_errors(run, &m->states, given->force));
         object.states = &m->states;

@@ -216,7 +216,7 @@ static ritz_status import_states(cli_run *run,
                   ritz_import_state_space(request, &made.states));
     take_sums(run, &sums);
     RITZ_CHECK(describe_output(run, &made));
-    cli_record(run, "import", made.states.A.nrow);
+    cli_record(run, "import", ritz_state_space_order(&made.states));
     return RITZ_OK;
 }
 

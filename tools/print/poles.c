@@ -92,7 +92,12 @@ static ritz_status find_poles(cli_run *run, const model *m,
 
     if (by_hertz)
         span = (ritz_span){.modes = -1, .up_to_hz = given->up_to_hz};
-    RITZ_CHECK(ritz_spectrum_of(model_reference(m), &span, &found));
+    RITZ_REFUSE_IF(!isnan(given->near_hz) && m->kind != MODEL_STATES,
+                   RITZ_ERR_ARGUMENT, "--near-hz is for state spaces");
+    RITZ_CHECK(isnan(given->near_hz)
+                   ? ritz_spectrum_of(model_reference(m), &span, &found)
+                   : ritz_spectrum_near(&m->states, given->near_hz, span.modes,
+                                        &found));
     while (m->kind != MODEL_COMPONENT && found.count > 0 &&
            ((given->modes > 0 && found.count > given->modes) ||
             (by_hertz && cabs(found.s[found.count - 1]) > limit)))

@@ -147,9 +147,9 @@ ritz_status import_run(cli_run *run, import_options *given);
 
 typedef struct poles_options {
     int64_t modes, mode; /* the lowest, 0: all; the one that a scan follows */
-    double up_to_hz;
-    cli_list scan; /* "NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]" */
-    cli_list tune; /* "NAME[,NAME]=FROM:TO[*FROM:TO]" */
+    double up_to_hz, near_hz; /* near_hz NaN: not given */
+    cli_list scan;            /* "NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]" */
+    cli_list tune;            /* "NAME[,NAME]=FROM:TO[*FROM:TO]" */
     int64_t places, among;
     const char *low_pass; /* "HZ[:ORDER]" */
     model_options model;

@@ -324,11 +324,12 @@ static ritz_status make_gramians(const rank_options *given, const model *m,
                                      .among_hz = given->choice.among_hz};
 
     if (m->kind == MODEL_STATES) {
-        RITZ_REFUSE_IF(given->damping.count > 0 || given->choice.given,
+        RITZ_REFUSE_IF(given->damping.count > 0 ||
+                           (given->choice.given & ~RITZ_USES_ENGINE),
                        RITZ_ERR_ARGUMENT,
-                       "a state space has its damping, and one engine for its "
-                       "Gramians");
-        return ritz_gramians_of_space(&m->states, gramians);
+                       "a state space has its damping, and no modes to choose");
+        return ritz_gramians_of_space_by(&m->states, given->choice.engine, NULL,
+                                         gramians);
     }
     RITZ_CHECK(model_damping(
         m, given->damping.count > 0 ? given->damping.text[0] : NULL,

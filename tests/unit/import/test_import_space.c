@@ -6,8 +6,29 @@
 
 #include <matio.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define ARRAY "%%MatrixMarket matrix array real general\n"
+
+/* 3001 x 3001 with @p value on the diagonal, or with so many in all. */
+static void write_many(const char *name, int value, int columns)
+{
+    const int n = 3001, count = columns > 0 ? columns * n : n;
+    size_t size = 64 + 16 * (size_t)count, used = 0;
+    char *text = malloc(size);
+
+    assert_non_null(text);
+    used = (size_t)snprintf(text, size,
+                            "%%%%MatrixMarket matrix coordinate real general\n"
+                            "%d %d %d\n",
+                            n, n, count);
+    for (int k = 0; k < count; k++)
+        used +=
+            (size_t)snprintf(text + used, size - used, "%d %d %d\n", k % n + 1,
+                             (columns > 0 ? k / n : k) + 1, value);
+    folder_write(name, text);
+    free(text);
+}
 
 /* Two states, one input, two outputs. */
 static int set_up(void **state)
@@ -26,8 +47,9 @@ static int set_up(void **state)
     folder_write("wide.mtx", ARRAY "3 1\n1\n1\n1\n");
     folder_write("pairs.mtx", "%%MatrixMarket matrix array complex general\n"
                               "2 2\n1 1\n0 0\n0 0\n1 0\n");
-    folder_write("many.mtx", "%%MatrixMarket matrix coordinate real general\n"
-                             "3001 3001 1\n1 1 -1\n");
+    write_many("many.mtx", -1, 0);
+    write_many("ones.mtx", 1, 0);
+    write_many("full.mtx", -1, 301);
     folder_write("tall.mtx", "%%MatrixMarket matrix coordinate real general\n"
                              "3001 1 1\n1 1 1\n");
     folder_write("long.mtx", "%%MatrixMarket matrix coordinate real general\n"
@@ -95,6 +117,21 @@ static void an_identity_is_no_e(void **)
     assert_null(s.E.val);
 }
 
+static void what_is_large_and_sparse_stays_so(void **)
+{
+    RITZ_OWN(ritz_state_space) s = {0}, plain = {0};
+
+    assert_ok(import(list("A=many.mtx,B=tall.mtx,C=long.mtx,E=many.mtx"), NULL,
+                     NULL, &s));
+    assert_true(ritz_state_space_is_sparse(&s));
+    assert_int_equal(ritz_state_space_order(&s), 3001);
+    assert_true(s.sA.colptr[3001] == 3001 && s.sE.val[0] == -1.0);
+    assert_true(s.B.val[0] == 1.0 && s.columns.count == 3001);
+    assert_ok(import(list("A=many.mtx,B=tall.mtx,C=long.mtx,E=ones.mtx"), NULL,
+                     NULL, &plain));
+    assert_null(plain.sE.colptr);
+}
+
 static void what_makes_no_state_space_is_refused(void **)
 {
     static const struct {
@@ -109,7 +146,7 @@ static void what_makes_no_state_space_is_refused(void **)
         {"A=A.mtx,B=B.mtx,C=C.mtx,D=C.mtx", 0, 0,
          "'D' is 2 x 2 where 2 x 1 is due"},
         {"A=pairs.mtx,B=B.mtx,C=C.mtx", 0, 0, "'A' is complex"},
-        {"A=many.mtx,B=tall.mtx,C=long.mtx", 0, 0, "at most 3000 states"},
+        {"A=full.mtx,B=tall.mtx,C=long.mtx", 0, 0, "at most 3000 states"},
         {"A=A.mtx,B=B.mtx,C=C.mtx", "u,v", 0, "2 names are given for 1"},
         {"A=A.mtx,B=B.mtx,C=C.mtx", 0, "y,y", "'y' is named twice"},
         {"A=A.mtx,B=B.mtx,C=C.mtx", 0, "y@0,z", "'0' is no limit"},
@@ -205,6 +242,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_matrix_for_each_letter_makes_a_state_space),
     cmocka_unit_test(d_e_names_and_limits_are_taken),
     cmocka_unit_test(an_identity_is_no_e),
+    cmocka_unit_test(what_is_large_and_sparse_stays_so),
     cmocka_unit_test(what_makes_no_state_space_is_refused),
     cmocka_unit_test(one_file_names_the_matrices_itself),
     cmocka_unit_test(every_allocation_may_fail),

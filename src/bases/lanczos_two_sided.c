@@ -1,0 +1,309 @@
+/*
+ * Two-sided block Lanczos: right vectors from B and left ones from C',
+ *
+ *     W'V = I,   W'A V block tridiagonal,
+ *
+ * spanning [B, A B, ...] and [C', A'C', ...] [KimCraig1988], [CraigSuKim1992,
+ * section 5]. Of k full blocks on both sides the first 2k Markov parameters are
+ * kept; on A^-1 the first 2k moments about 0 Hz, the reduced model being
+ * (W'A^-1 V)^-1, with left vectors to that end.
+ *
+ * The reduced model may be unstable: this method is kept to show that, and the
+ * stability check reports it. So that failures are due to the method alone,
+ * vectors are biorthogonalised against all others, twice.
+ *
+ * A step joins candidates X and Y, orthonormal, by Y'X = L diag(s) R': vectors
+ * are X R s^-1/2 and Y L s^-1/2 where s is above the tolerance. Directions of
+ * either side that are not paired wait for the next block. If none is paired
+ * the method ends: this is a serious breakdown, unless one side is exhausted.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "bases/columns.h"
+#include "bases/lanczos.h"
+#include "linear/general.h"
+#include "linear/orthonormal.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+ritz_status ritz_lanczos_states(const ritz_request *request, ritz_states *out)
+{
+    const ritz_choice *choice = &request->choice;
+    ritz_damping damping = {0};
+    double alpha = 0.0;
+
+    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                   "states are asked for by their number, not by a frequency: "
+                   "--modes, not --up-to-hz");
+    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                   "no states are asked for, one at least is needed: --modes");
+    RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
+                   "the states are shifted by one frequency, not by several");
+    RITZ_CHECK(ritz_request_damping(request, &damping));
+    if (choice->num_shifts > 0)
+        alpha = 2.0 * RITZ_PI * choice->shift_hz[0];
+    return ritz_states_new(request->component, &damping, alpha, out);
+}
+
+ritz_status ritz_lanczos_operator(const ritz_dense *A, const ritz_dense *B,
+                                  bool inverse, ritz_dense *G, ritz_dense *b)
+{
+    ritz_status status = RITZ_OK;
+
+    if (!inverse) {
+        RITZ_CHECK(ritz_dense_copy(A, G));
+        return ritz_dense_copy(B, b);
+    }
+    RITZ_CHECK(ritz_dense_identity(A->nrow, G));
+    status = ritz_general_solve(A, false, G);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "the matrix of states has no inverse: a motion that nothing "
+                   "holds, give a shift above 0 Hz");
+    RITZ_CHECK(status);
+    return ritz_dense_mul(G, B, b);
+}
+
+/* How a sequence of blocks ends. */
+typedef enum ending {
+    COMPLETE,  /* as many vectors as were asked for */
+    EXHAUSTED, /* the controllable, or the observable states are spanned */
+    BREAKDOWN, /* both have more, but orthogonal to each other */
+} ending;
+
+/* One side: vectors so far, and candidates for the next block. */
+typedef struct lanczos_side {
+    ritz_dense vectors; /* as many columns as are asked for */
+    ritz_dense next;    /* operator times the last block; the start at first */
+    ritz_dense waiting; /* candidates that were not paired */
+} lanczos_side;
+
+typedef struct two_sided {
+    ritz_dense G; /* A or A^-1 */
+    lanczos_side right, left;
+    int64_t used; /* columns of both sides' vectors */
+    ending end;
+} two_sided;
+
+static void two_sided_free(two_sided *t)
+{
+    lanczos_side *const sides[] = {&t->right, &t->left};
+
+    ritz_dense_free(&t->G);
+    for (int k = 0; k < 2; k++) {
+        ritz_dense_free(&sides[k]->vectors);
+        ritz_dense_free(&sides[k]->next);
+        ritz_dense_free(&sides[k]->waiting);
+    }
+}
+
+/* All candidates, each of unit length or zero. */
+static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
+{
+    RITZ_CHECK(ritz_dense_beside(&s->next, &s->waiting, out));
+    for (int64_t j = 0; j < out->ncol; j++) {
+        double *x = ritz_dense_col(out, j);
+        double size = 0.0;
+
+        for (int64_t i = 0; i < out->nrow; i++)
+            size = hypot(size, x[i]);
+        for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
+            x[i] /= size;
+    }
+    return RITZ_OK;
+}
+
+/*
+ * Candidates, orthogonal to the vectors so far and orthonormal; dependent ones
+ * left out.
+ */
+static ritz_status prepare_candidates(const lanczos_side *own,
+                                      const lanczos_side *other, int64_t used,
+                                      double tolerance, ritz_dense *out)
+{
+    const ritz_dense V = ritz_dense_part(&own->vectors, 0, used);
+    const ritz_dense W = ritz_dense_part(&other->vectors, 0, used);
+    RITZ_OWN(ritz_dense) X = {0}, U = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
+    int64_t rank = 0;
+
+    RITZ_CHECK(gather_candidates(own, &X));
+    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X));
+    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
+    RITZ_CHECK(ritz_general_svd(&X, &U, &s, NULL));
+    while (rank < U.ncol && s[rank] > tolerance)
+        rank++;
+    return ritz_dense_columns(&U, 0, rank, out);
+}
+
+/* X R s^-1/2 of the first columns become vectors, the others wait. */
+static ritz_status accept_vectors(const ritz_dense *X, const ritz_dense *R,
+                                  const double *s, int64_t joined, int64_t used,
+                                  lanczos_side *own)
+{
+    RITZ_OWN(ritz_dense) turned = {0};
+
+    RITZ_CHECK(ritz_dense_mul(X, R, &turned));
+    for (int64_t j = 0; j < joined; j++)
+        for (int64_t i = 0; i < turned.nrow; i++)
+            ritz_dense_col(&own->vectors, used + j)[i] =
+                ritz_dense_col(&turned, j)[i] / sqrt(s[j]);
+    ritz_dense_free(&own->waiting);
+    return ritz_dense_columns(&turned, joined, turned.ncol - joined,
+                              &own->waiting);
+}
+
+/* Pair candidates X of the right and Y of the left; possibly none. */
+static ritz_status pair_candidates(const ritz_dense *X, const ritz_dense *Y,
+                                   double tolerance, two_sided *t,
+                                   int64_t *joined)
+{
+    int64_t most = t->right.vectors.ncol - t->used;
+    RITZ_OWN(ritz_dense) YX = {0}, L = {0}, R = {0};
+    RITZ_OWN_ARRAY double *s = NULL;
+
+    *joined = 0;
+    RITZ_CHECK(ritz_dense_mul_tn(Y, X, &YX));
+    RITZ_CHECK(ritz_general_svd(&YX, &L, &s, &R));
+    while (*joined < most && *joined < L.ncol && *joined < R.ncol &&
+           s[*joined] > tolerance)
+        ++*joined;
+    RITZ_CHECK(accept_vectors(X, &R, s, *joined, t->used, &t->right));
+    return accept_vectors(Y, &L, s, *joined, t->used, &t->left);
+}
+
+/* G times the last block, on either side. */
+static ritz_status advance_blocks(two_sided *t, int64_t joined)
+{
+    const ritz_dense right =
+        ritz_dense_part(&t->right.vectors, t->used, joined);
+    const ritz_dense left = ritz_dense_part(&t->left.vectors, t->used, joined);
+
+    ritz_dense_free(&t->right.next);
+    ritz_dense_free(&t->left.next);
+    RITZ_CHECK(ritz_dense_mul(&t->G, &right, &t->right.next));
+    RITZ_CHECK(ritz_dense_mul_tn(&t->G, &left, &t->left.next));
+    t->used += joined;
+    return RITZ_OK;
+}
+
+static ritz_status advance_step(double tolerance, two_sided *t, bool *going)
+{
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
+    int64_t joined = 0;
+
+    RITZ_CHECK(prepare_candidates(&t->right, &t->left, t->used, tolerance, &X));
+    RITZ_CHECK(prepare_candidates(&t->left, &t->right, t->used, tolerance, &Y));
+    *going = X.ncol > 0 && Y.ncol > 0;
+    t->end = EXHAUSTED;
+    if (!*going)
+        return RITZ_OK;
+    RITZ_CHECK(pair_candidates(&X, &Y, tolerance, t, &joined));
+    RITZ_CHECK(advance_blocks(t, joined));
+    t->end = joined > 0 ? COMPLETE : BREAKDOWN;
+    *going = joined > 0 && t->used < t->right.vectors.ncol;
+    return RITZ_OK;
+}
+
+/* Right start B, or A^-1 B; left start C'. */
+static ritz_status start_blocks(const ritz_request *request,
+                                const ritz_states *states, two_sided *t)
+{
+    int64_t n = states->count;
+    int64_t most = request->modes < n ? request->modes : n;
+
+    RITZ_REFUSE_IF(states->B.ncol == 0 || states->C.nrow == 0,
+                   RITZ_ERR_ARGUMENT,
+                   "the component has no %s, vectors of both sides need some",
+                   states->B.ncol == 0 ? "inputs" : "outputs");
+    RITZ_CHECK(ritz_lanczos_operator(&states->A, &states->B,
+                                     request->choice.inverse, &t->G,
+                                     &t->right.next));
+    RITZ_CHECK(ritz_general_transpose(&states->C, &t->left.next));
+    RITZ_CHECK(ritz_dense_new(n, most, &t->right.vectors));
+    return ritz_dense_new(n, most, &t->left.vectors);
+}
+
+/* A first block is required. */
+static ritz_status check_start(const ritz_request *request, const two_sided *t)
+{
+    RITZ_REFUSE_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
+                   "no flexible state is both controllable and observable");
+    RITZ_REFUSE_IF(
+        t->used == 0 && !request->choice.inverse, RITZ_ERR_SINGULAR,
+        "serious breakdown at the first block: C B is zero, no output "
+        "moves at once, as those of displacement never do; the "
+        "inverse operator begins with the static response");
+    RITZ_REFUSE_IF(t->used == 0, RITZ_ERR_SINGULAR,
+                   "serious breakdown at the first block: C A^-1 B is zero, no "
+                   "output has a static response");
+    return RITZ_OK;
+}
+
+/* On A^-1: W := G'W (W'G V)^-T, with which W'A V = (W'G V)^-1. */
+static ritz_status invert_left(two_sided *t)
+{
+    RITZ_OWN(ritz_dense) WG = {0}, Gr = {0};
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(ritz_dense_mul_tn(&t->left.vectors, &t->G, &WG));
+    RITZ_CHECK(ritz_dense_mul(&WG, &t->right.vectors, &Gr));
+    status = ritz_general_solve(&Gr, false, &WG);
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "breakdown: with %" PRId64
+                   " states the reduced A^-1 is singular, ask for another "
+                   "number",
+                   t->used);
+    RITZ_CHECK(status);
+    ritz_dense_free(&t->left.vectors);
+    return ritz_general_transpose(&WG, &t->left.vectors);
+}
+
+static void add_end(const ritz_request *request, const two_sided *t,
+                    ritz_basis *basis)
+{
+    if (t->used >= request->modes)
+        return;
+    snprintf(basis->remark, sizeof basis->remark,
+             t->end == BREAKDOWN
+                 ? "%" PRId64 " states asked for: serious breakdown after "
+                   "%" PRId64 ", what is left on both sides is orthogonal"
+                 : "%" PRId64 " states asked for: %" PRId64
+                   " are controllable and observable",
+             request->modes, t->used);
+}
+
+static ritz_status make_two_sided(const ritz_request *request, ritz_basis *out)
+{
+    RITZ_OWN(ritz_states) states = {0};
+    RITZ_OWN(two_sided) t = {0};
+    bool going = true;
+
+    RITZ_CHECK(ritz_lanczos_states(request, &states));
+    RITZ_CHECK(start_blocks(request, &states, &t));
+    while (going)
+        RITZ_CHECK(advance_step(request->tolerance, &t, &going));
+    RITZ_CHECK(check_start(request, &t));
+    t.right.vectors.ncol = t.left.vectors.ncol = t.used;
+    if (request->choice.inverse)
+        RITZ_CHECK(invert_left(&t));
+    RITZ_CHECK(
+        ritz_states_basis(&states, &t.right.vectors, &t.left.vectors, out));
+    add_end(request, &t, out);
+    return RITZ_OK;
+}
+
+const ritz_method ritz_method_lanczos_two_sided = {
+    .name = "lanczos-two-sided",
+    .summary = "left and right Lanczos vectors of states; often unstable",
+    .reference = "KimCraig1988",
+    .when = "to compare with",
+    .cost = "as lanczos-one-sided",
+    .holds = "moments, twice as many as one-sided",
+    .fails = "instability and breakdown, often with outputs elsewhere",
+    .uses = RITZ_USES_MODES | RITZ_USES_SHIFTS | RITZ_USES_OPERATOR |
+            RITZ_USES_DAMPING,
+    .make = make_two_sided,
+};

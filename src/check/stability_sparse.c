@@ -1,0 +1,104 @@
+/*
+ * Stability of a large sparse E x' = A x, of which nobody has all poles. With
+ * E = E' positive definite, V = x'E x falls along every motion if A + A' is
+ * negative definite, as V' = x'(A + A')x: no pole is right of the axis.
+ * With A = A' inertia says how many are. Otherwise the poles nearest to 0 are
+ * looked at, and how many were not is said.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "check/check.h"
+#include "model/space.h"
+
+#include <complex.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+enum { LOOKED_AT = 20 };
+
+/* The rightmost pole of those found, above the axis. */
+static void take_rightmost(const ritz_pencil *pencil,
+                           const ritz_pencil_pairs *near, ritz_probe *out)
+{
+    const double least = RITZ_POLE_BOUND_FACTOR * DBL_EPSILON *
+                         ritz_sparse_max(&pencil->A) /
+                         ritz_sparse_max(&pencil->E);
+    int64_t worst = 0;
+
+    for (int64_t k = 0; k < near->count; k++) {
+        out->radius = fmax(out->radius, cabs(near->s[k]));
+        if (creal(near->s[k]) > creal(near->s[worst]))
+            worst = k;
+    }
+    out->count = near->count;
+    if (near->count == 0)
+        return;
+    out->pole[0] = creal(near->s[worst]) + 0.0;
+    out->pole[1] = fabs(cimag(near->s[worst]));
+    out->tolerance = fmax(RITZ_POLE_FOUND * cabs(near->s[worst]), least) /
+                     fmax(out->radius, RITZ_LEAST_SCALE);
+}
+
+/*
+ * Of a symmetric pencil with definite E as many poles are right of the axis as A
+ * has positive eigenvalues: its inertia says how many.
+ */
+static ritz_status count_unstable(const ritz_pencil *pencil, bool *known,
+                                  int64_t *count, bool *singular)
+{
+    RITZ_OWN(ritz_factor) *L = NULL;
+    RITZ_OWN(ritz_ldl) *F = NULL;
+    ritz_status status = RITZ_OK;
+    int64_t negative = 0;
+
+    *known = false;
+    if (!ritz_pencil_is_symmetric(pencil))
+        return RITZ_OK;
+    status = ritz_factor_spd(&pencil->E, &L);
+    if (status != RITZ_OK)
+        return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
+    status = ritz_ldl_new(&pencil->A, &negative, &F);
+    *singular = status == RITZ_ERR_SINGULAR;
+    if (status != RITZ_OK && !*singular)
+        return status;
+    *known = true;
+    *count = *singular ? 0 : pencil->n - negative;
+    return RITZ_OK;
+}
+
+/* What poles nearest to 0 say, where nothing is proven. */
+static void judge_found(double error, ritz_probe *probe)
+{
+    if (probe->pole[0] >= -error)
+        probe->verdict = probe->pole[0] > error ? RITZ_UNSTABLE : RITZ_MARGINAL;
+}
+
+ritz_status ritz_probe_sparse(const ritz_state_space *model, ritz_probe *out)
+{
+    RITZ_OWN(ritz_pencil) pencil = {0};
+    RITZ_OWN(ritz_pencil_pairs) near = {0};
+    ritz_probe probe = {.verdict = RITZ_STABLE};
+    bool proven = false, known = false, singular = false;
+    int64_t unstable = 0;
+
+    RITZ_CHECK(ritz_pencil_of_space(model, &pencil));
+    RITZ_CHECK(ritz_pencil_is_dissipative(&pencil, &proven));
+    if (!proven)
+        RITZ_CHECK(count_unstable(&pencil, &known, &unstable, &singular));
+    RITZ_CHECK(ritz_space_slowest(&pencil, LOOKED_AT, &near));
+    take_rightmost(&pencil, &near, &probe);
+    judge_found(probe.tolerance * probe.radius, &probe);
+    if ((proven || singular) && probe.verdict == RITZ_UNSTABLE)
+        probe.verdict = RITZ_MARGINAL;
+    if (known && unstable > 0) {
+        probe.verdict = RITZ_UNSTABLE;
+        (void)snprintf(probe.why, sizeof probe.why,
+                       "%" PRId64 " real poles are right of the axis",
+                       unstable);
+    }
+    probe.unseen = proven || known ? 0 : pencil.n - near.count;
+    *out = probe;
+    return RITZ_OK;
+}

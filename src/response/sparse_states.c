@@ -1,0 +1,149 @@
+/*
+ * Response of a state space with sparse A and E,
+ *
+ *     H = C (i w E - A)^-1 B + D,
+ *
+ * by a sparse complex factor of A - i w E at each point; the pattern is analysed
+ * once. Where inputs are more than outputs, rows of C are solved for.
+ *
+ * A grid is refined around the poles that are nearest to some frequencies of the
+ * range. Of a symmetric pencil with definite E all poles are real, and nothing
+ * is refined.
+ */
+#include "base/alloc.h"
+#include "base/complex.h"
+#include "base/tolerances.h"
+#include "model/space.h"
+#include "response/responder.h"
+
+#include <complex.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    PLACES = 5, /* frequencies of the range near which poles are sought */
+    NEAR = 16,  /* poles near each */
+};
+
+typedef struct sparse_responder {
+    ritz_poles poles;
+    const ritz_state_space *model; /* borrowed */
+    ritz_pencil pencil;
+} sparse_responder;
+
+static void free_sparse(void *state)
+{
+    sparse_responder *h = state;
+
+    ritz_poles_free(&h->poles);
+    ritz_pencil_free(&h->pencil);
+}
+
+/* Whether all poles are known to be real: A = A', E = E' definite. */
+static ritz_status is_overdamped(const ritz_pencil *pencil, bool *out)
+{
+    RITZ_OWN(ritz_factor) *L = NULL;
+    ritz_status status = RITZ_OK;
+
+    *out = false;
+    if (!ritz_pencil_is_symmetric(pencil))
+        return RITZ_OK;
+    status = ritz_factor_spd(&pencil->E, &L);
+    *out = status == RITZ_OK;
+    return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
+}
+
+/* Add a pole above the axis, unless it is known already. */
+static void add_pole(double _Complex s, ritz_poles *out)
+{
+    double lambda = pow(cabs(s), 2.0);
+
+    for (int64_t k = 0; k < out->count; k++)
+        if (fabs(out->lambda[k] - lambda) <= RITZ_SAME * lambda)
+            return;
+    out->lambda[out->count] = lambda;
+    out->rate[out->count++] = fmax(-2.0 * creal(s), 0.0);
+}
+
+/* Poles near a frequency, but for real ones; none if it is one itself. */
+static ritz_status find_around(sparse_responder *h, double hertz,
+                               ritz_poles *out)
+{
+    RITZ_OWN(ritz_pencil_pairs) near = {0};
+    ritz_status status = ritz_pencil_nearest(
+        &h->pencil, ritz_complex(0.0, 2.0 * RITZ_PI * hertz), NEAR, &near);
+
+    if (status != RITZ_OK)
+        return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
+    for (int64_t k = 0; k < near.count; k++)
+        if (cimag(near.s[k]) > RITZ_SAME * cabs(near.s[k]))
+            add_pole(near.s[k], out);
+    return RITZ_OK;
+}
+
+static ritz_status find_poles(sparse_responder *h,
+                              const ritz_response_request *request)
+{
+    const ritz_io io = ritz_model_io(request->model); /* borrowed */
+    double width = request->to_hz - request->from_hz;
+    bool overdamped = false;
+
+    RITZ_CHECK(is_overdamped(&h->pencil, &overdamped));
+    RITZ_CHECK_NEW(h->poles.lambda, (int64_t)PLACES * NEAR);
+    RITZ_CHECK_NEW(h->poles.rate, (int64_t)PLACES * NEAR);
+    for (int k = 0; k < PLACES && !overdamped && h->pencil.n > 0; k++)
+        RITZ_CHECK(find_around(h, request->from_hz + width * (k + 0.5) / PLACES,
+                               &h->poles));
+    return ritz_poles_name(&io, &h->poles);
+}
+
+static ritz_status sparse_at(void *state, double hertz, double _Complex *H)
+{
+    sparse_responder *h = state;
+    ritz_status status = ritz_space_transfer(
+        h->model, &h->pencil, ritz_complex(0.0, 2.0 * RITZ_PI * hertz), H);
+
+    RITZ_REFUSE_IF(
+        status == RITZ_ERR_SINGULAR, status,
+        "%.9g Hz is the frequency of a pole: an undamped mode, or at "
+        "0 Hz a rigid-body motion",
+        hertz);
+    return status;
+}
+
+static ritz_status make_sparse(const ritz_response_request *request,
+                               ritz_responder *out)
+{
+    sparse_responder *s = NULL;
+
+    RITZ_CHECK_NEW(s, 1);
+    out->state = s;
+    out->free = free_sparse;
+    out->poles = &s->poles;
+    out->at = sparse_at;
+    s->model = request->model.states;
+    memcpy(out->damping, s->model->damping, sizeof out->damping);
+    RITZ_CHECK(ritz_pencil_of_space(s->model, &s->pencil));
+    RITZ_CHECK(find_poles(s, request));
+    if (s->poles.count > 0)
+        (void)snprintf(out->remark, sizeof out->remark,
+                       "points are added around %" PRId64
+                       " poles, the nearest to %d frequencies of the range",
+                       s->poles.count, (int)PLACES);
+    return RITZ_OK;
+}
+
+const ritz_response_engine ritz_response_engine_sparse = {
+    .name = "sparse",
+    .summary = "of a state space, by a sparse factor at each point",
+    .reference = "AmestoyDuffLExcellentKoster2001",
+    .when = "state spaces whose A and E are large and sparse",
+    .cost = "a complex sparse factor a point, a solve an input or output",
+    .holds = "exact to rounding",
+    .fails = "a point on a pole is refused; narrow peaks between its points",
+    .takes = RITZ_MODEL_STATES,
+    .make = make_sparse,
+};

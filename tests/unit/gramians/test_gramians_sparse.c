@@ -1,0 +1,209 @@
+/*
+ * Gramians of sparse state spaces: ADI against SLICOT, the residual that it
+ * states against the equation, bands against closed forms, refusals.
+ */
+#include "testing.h"
+
+#include "spaces.h"
+
+#include "linear/general.h"
+
+#include <ritz/basis.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static double frobenius(const ritz_dense *A)
+{
+    return ritz_general_size(A);
+}
+
+/* |A W E' + E W A' + B B'| / |B B'|, W = Z Z', of the dense model. */
+static double residual_of(const ritz_state_space *m, const ritz_dense *Z)
+{
+    RITZ_OWN(ritz_dense) AZ = {0}, EZ = {0}, sum = {0}, BB = {0}, back = {0};
+
+    assert_ok(ritz_dense_mul(&m->A, Z, &AZ));
+    assert_ok(m->E.val ? ritz_dense_mul(&m->E, Z, &EZ)
+                       : ritz_dense_copy(Z, &EZ));
+    assert_ok(ritz_dense_mul_nt(&AZ, &EZ, &sum));
+    assert_ok(ritz_dense_mul_nt(&EZ, &AZ, &back));
+    assert_ok(ritz_dense_mul_nt(&m->B, &m->B, &BB));
+    ritz_dense_add(1.0, &back, &sum);
+    ritz_dense_add(1.0, &BB, &sum);
+    return frobenius(&sum) / frobenius(&BB);
+}
+
+/* Symmetric and not, with E and without. */
+static void low_rank_values_are_those_of_dense_ones(void **)
+{
+    for (int k = 0; k < 4; k++) {
+        RITZ_OWN(ritz_state_space) rod = {0}, made = {0};
+        RITZ_OWN(ritz_gramians) thin = {0}, full = {0};
+        const ritz_state_space *dense = NULL;
+        double *a = NULL, *b = NULL;
+        int64_t count_a = 0, count_b = 0;
+
+        assert_ok(spaces_rod(150, k & 1 ? 0.05 : 0.0, k & 2, &rod));
+        assert_ok(ritz_state_space_dense(&rod, &made, &dense));
+        assert_ok(
+            ritz_gramians_of_space_by(&rod, RITZ_ENGINE_LOW_RANK, NULL, &thin));
+        assert_ok(
+            ritz_gramians_of_space_by(dense, RITZ_ENGINE_DENSE, NULL, &full));
+        assert_non_null(strstr(thin.engine, "ADI"));
+        assert_true(thin.Zc.ncol < 100 && thin.residual[0] <= 1e-10 &&
+                    thin.residual[1] <= 1e-10);
+        /* what it states is of largest singular values, this of all */
+        assert_near(residual_of(dense, &thin.Zc), 0.0, 4e-10);
+        assert_ok(ritz_gramians_hankel(&thin, &count_a, &a));
+        assert_ok(ritz_gramians_hankel(&full, &count_b, &b));
+        for (int i = 0; i < 8; i++)
+            assert_near(a[i], b[i], 1e-8 * b[0]);
+        free(a);
+        free(b);
+    }
+}
+
+static void a_sparse_model_takes_adi_by_itself(void **)
+{
+    RITZ_OWN(ritz_state_space) rod = {0}, made = {0};
+    RITZ_OWN(ritz_gramians) thin = {0}, full = {0};
+    const ritz_state_space *dense = NULL;
+
+    assert_ok(spaces_rod(60, 0.0, true, &rod));
+    assert_ok(ritz_gramians_of_space(&rod, &thin));
+    assert_non_null(strstr(thin.engine, "ADI"));
+    assert_ok(ritz_state_space_dense(&rod, &made, &dense));
+    assert_ok(ritz_gramians_of_space(dense, &full));
+    assert_non_null(strstr(full.engine, "SLICOT"));
+}
+
+/* A pole at 0: no low rank, so that the dense engine splits it off. */
+static void a_pole_on_the_axis_goes_to_the_dense_engine(void **)
+{
+    RITZ_OWN(ritz_state_space) rod = {0};
+    RITZ_OWN(ritz_gramians) g = {0}, none = {0};
+
+    assert_ok(spaces_rod(60, 0.0, false, &rod));
+    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[60] - 1] = -1.0;
+    assert_int_equal(
+        ritz_gramians_of_space_by(&rod, RITZ_ENGINE_LOW_RANK, NULL, &none),
+        RITZ_ERR_CONVERGENCE);
+    assert_ok(ritz_gramians_of_space(&rod, &g));
+    assert_int_equal(g.T.ncol, 1);
+}
+
+/* x' = -a x + b u: b^2 / (pi a) (atan(w2 / a) - atan(w1 / a)). */
+static void a_band_of_one_state_has_its_closed_form(void **)
+{
+    static const double a[] = {-3.0}, b[] = {2.0}, c[] = {5.0};
+    static const spaces_rows rows = {1, 1, 1, a, b, c, NULL, NULL};
+    const double pi = acos(-1.0), band[] = {0.2, 1.5};
+    const double arc =
+        (atan(2.0 * pi * 1.5 / 3.0) - atan(2.0 * pi * 0.2 / 3.0)) / (3.0 * pi);
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    double *sigma = NULL;
+    int64_t count = 0;
+
+    assert_ok(spaces_make(&rows, &model));
+    assert_ok(ritz_gramians_of_space_by(&model, RITZ_ENGINE_AUTO, band, &g));
+    assert_ok(ritz_gramians_hankel(&g, &count, &sigma));
+    assert_near(sigma[0], 2.0 * 5.0 * arc, 1e-8);
+    free(sigma);
+}
+
+/* One mode of 1 % in the middle of a wide band has nearly all of its Gramian
+   there: closed form b^2 / (4 zeta w^3) of a displacement. */
+static void a_narrow_peak_within_a_band_is_found(void **)
+{
+    const double pi = acos(-1.0), w = 2.0 * pi, zeta = 1e-3;
+    const double A[] = {0.0, 1.0, -w * w, -2.0 * zeta * w};
+    static const double B[] = {0.0, 1.0}, C[] = {1.0, 0.0};
+    const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
+    static const double band[] = {0.0, 50.0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) g = {0};
+    double sum = 0.0;
+
+    assert_ok(spaces_make(&rows, &model));
+    assert_ok(ritz_gramians_of_space_by(&model, RITZ_ENGINE_AUTO, band, &g));
+    for (int64_t j = 0; j < g.Zc.ncol; j++)
+        sum += ritz_dense_col(&g.Zc, j)[0] * ritz_dense_col(&g.Zc, j)[0];
+    /* beyond the band there is 2 / (3 pi) (w / 50 w)^3 4 zeta of it */
+    assert_near(sum * 4.0 * zeta * w * w * w, 1.0, 1e-7);
+}
+
+static void all_frequencies_are_the_limit_of_a_band(void **)
+{
+    static const double band[] = {0.0, 400.0};
+    RITZ_OWN(ritz_state_space) rod = {0};
+    RITZ_OWN(ritz_gramians) all = {0}, part = {0};
+    double *a = NULL, *b = NULL;
+    int64_t count = 0;
+
+    assert_ok(spaces_rod(40, 0.05, true, &rod));
+    assert_ok(ritz_gramians_of_space(&rod, &all));
+    assert_ok(ritz_gramians_of_space_by(&rod, RITZ_ENGINE_AUTO, band, &part));
+    assert_ok(ritz_gramians_hankel(&all, &count, &a));
+    assert_ok(ritz_gramians_hankel(&part, &count, &b));
+    for (int i = 0; i < 4; i++)
+        assert_near(a[i], b[i], 1e-3 * a[0]);
+    free(a);
+    free(b);
+}
+
+static void what_makes_no_sense_is_refused(void **)
+{
+    static const double A[] = {0.0, 1.0, -4.0, 0.0};
+    static const double B[] = {0.0, 1.0}, C[] = {1.0, 0.0};
+    static const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
+    static const double none_at_all[] = {2.0, 1.0}, wide[] = {0.0, 5.0};
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_gramians) none = {0};
+
+    assert_ok(spaces_make(&rows, &model));
+    assert_fails(
+        ritz_gramians_of_space_by(&model, RITZ_ENGINE_MODAL, NULL, &none),
+        RITZ_ERR_ARGUMENT, "its engines are dense and low-rank");
+    assert_fails(
+        ritz_gramians_of_space_by(&model, RITZ_ENGINE_DENSE, wide, &none),
+        RITZ_ERR_ARGUMENT, "leave out --engine");
+    assert_fails(
+        ritz_gramians_of_space_by(&model, RITZ_ENGINE_AUTO, none_at_all, &none),
+        RITZ_ERR_ARGUMENT, "a band is from 0 Hz");
+    assert_int_equal(
+        ritz_gramians_of_space_by(&model, RITZ_ENGINE_AUTO, wide, &none),
+        RITZ_ERR_CONVERGENCE); /* undamped, at 0.318 Hz */
+}
+
+static ritz_status make(const ritz_state_space *model, const double *band)
+{
+    RITZ_OWN(ritz_gramians) g = {0};
+
+    return ritz_gramians_of_space_by(
+        model, band ? RITZ_ENGINE_AUTO : RITZ_ENGINE_LOW_RANK, band, &g);
+}
+
+static void every_allocation_may_fail(void **)
+{
+    static const double band[] = {0.0, 0.01};
+    RITZ_OWN(ritz_state_space) rod = {0};
+
+    assert_ok(spaces_rod(8, 0.1, true, &rod));
+    assert_survives_every_allocation(make(&rod, NULL));
+    assert_survives_every_allocation(make(&rod, band));
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(low_rank_values_are_those_of_dense_ones),
+    cmocka_unit_test(a_sparse_model_takes_adi_by_itself),
+    cmocka_unit_test(a_pole_on_the_axis_goes_to_the_dense_engine),
+    cmocka_unit_test(a_band_of_one_state_has_its_closed_form),
+    cmocka_unit_test(a_narrow_peak_within_a_band_is_found),
+    cmocka_unit_test(all_frequencies_are_the_limit_of_a_band),
+    cmocka_unit_test(what_makes_no_sense_is_refused),
+    cmocka_unit_test(every_allocation_may_fail),
+};
+
+TEST_MODULE(gramians_sparse, tests, NULL, NULL)
