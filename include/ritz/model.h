@@ -508,7 +508,7 @@ void ritz_system_free(ritz_system *system);
 
 /*
  * Flexible modes of a model, with their own share of inputs and outputs. Where
- * damping couples modes, rigid ones that it couples to flexible ones follow
+ * damping couples modes, rigid ones, if it couples them to flexible ones, follow
  * them in rows of B and Delta and in columns of C, Cv and Delta.
  */
 typedef struct ritz_modal {
@@ -523,6 +523,8 @@ typedef struct ritz_modal {
     int64_t num_rigid; /* r */
     ritz_dense Delta;  /* m + r x m + r, Phi'D Phi; {0}: damping couples no
                           modes, and is 2 zeta omega */
+    ritz_dense Ca;     /* outputs x m + r, accelerations that are in C and Cv;
+                          {0} without such a Delta */
 } ritz_modal;
 
 /*

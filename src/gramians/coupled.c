@@ -238,7 +238,7 @@ static void merge_clusters(joining *j, int64_t a, int64_t b)
             j->cluster[k] = to;
 }
 
-/* By frequency, and by damping. */
+/* Flexible modes by frequency, and by damping. */
 static void join_modes(joining *j)
 {
     const ritz_modal *modal = j->modal;
@@ -249,7 +249,7 @@ static void join_modes(joining *j)
         for (int64_t k = first; k < last; k++)
             j->cluster[k] = first;
     }
-    for (int64_t b = 0; b < modal->Delta.ncol; b++)
+    for (int64_t b = 0; modal->Delta.val && b < modal->count; b++)
         for (int64_t a = 0; a < b; a++)
             if (j->cluster[a] != j->cluster[b] &&
                 ritz_damping_between(&modal->Delta, j->largest, a, b) >
@@ -341,7 +341,7 @@ ritz_status ritz_coupled_clusters(const ritz_modal *modal, int64_t *cluster)
     bool settled = false;
 
     for (int64_t k = 0; k < j.count; k++)
-        cluster[k] = k;
+        cluster[k] = k < modal->count ? k : modal->count;
     join_modes(&j);
     while (!settled) {
         settled = true;

@@ -116,8 +116,8 @@ static ritz_status find_axes(const ritz_dense *Delta, int64_t first,
 
 ritz_status ritz_modes_turn(ritz_modal_model *modes)
 {
-    ritz_dense *const columns[5] = {&modes->Phi, &modes->MPhi, &modes->C,
-                                    &modes->Cv, &modes->Delta};
+    ritz_dense *const columns[6] = {&modes->Phi, &modes->MPhi, &modes->C,
+                                    &modes->Cv,  &modes->Ca,   &modes->Delta};
     RITZ_OWN_ARRAY double *omega = NULL;
     int64_t last = 0;
 
@@ -133,7 +133,7 @@ ritz_status ritz_modes_turn(ritz_modal_model *modes)
             RITZ_CHECK(find_axes(&modes->Delta, k, last, &V, &needed));
         if (!needed)
             continue;
-        for (int i = 0; i < 5; i++)
+        for (int i = 0; i < 6; i++)
             RITZ_CHECK(turn_columns(columns[i], k, &V));
         RITZ_CHECK(turn_rows(&modes->Delta, k, &V));
         RITZ_CHECK(turn_rows(&modes->B, k, &V));
@@ -227,39 +227,28 @@ static void put_mode(const ritz_dense *const from[static 3], int64_t at,
     }
 }
 
-/* Whether damping couples a mode to one that is chosen. */
-static bool couples_chosen(const ritz_modal_model *modes, double largest,
-                           const ritz_dofs *chosen, int64_t mode)
+/* Whether damping couples a rigid mode to a flexible one. */
+static bool is_rigid_coupled(const ritz_modal_model *modes)
 {
-    for (int64_t k = 0; k < chosen->count; k++)
-        if (chosen->at[k] == mode)
-            return false;
-    for (int64_t k = 0; k < chosen->count; k++)
-        if (ritz_damping_between(&modes->Delta, largest, chosen->at[k], mode) >
-            RITZ_DAMPING_COUPLES)
-            return true;
+    double largest = ritz_dense_max(&modes->Delta);
+
+    for (int64_t j = modes->num_rigid; j < modes->count; j++)
+        for (int64_t i = 0; i < modes->num_rigid; i++)
+            if (ritz_damping_between(&modes->Delta, largest, i, j) >
+                RITZ_DAMPING_COUPLES)
+                return true;
     return false;
 }
 
-/* Flexible modes and, behind them, the rigid ones that damping couples to
-   them, in chains. */
-static ritz_status choose_modes(const ritz_modal_model *modes, bool coupled,
-                                ritz_dofs *out)
+/* Flexible modes and, behind them, the rigid ones if damping couples any of
+   them to these: all, since any basis of rigid motion is as good. */
+static ritz_status choose_modes(const ritz_modal_model *modes, ritz_dofs *out)
 {
-    double largest = ritz_dense_max(&modes->Delta);
-    bool more = coupled;
-
     RITZ_CHECK_NEW(out->at, modes->count);
     for (int64_t k = modes->num_rigid; k < modes->count; k++)
         out->at[out->count++] = k;
-    while (more) {
-        more = false;
-        for (int64_t k = 0; k < modes->num_rigid; k++)
-            if (couples_chosen(modes, largest, out, k)) {
-                out->at[out->count++] = k;
-                more = true;
-            }
-    }
+    for (int64_t k = 0; is_rigid_coupled(modes) && k < modes->num_rigid; k++)
+        out->at[out->count++] = k;
     return RITZ_OK;
 }
 
@@ -294,6 +283,22 @@ static ritz_status put_ratios(const ritz_modal_model *modes, bool coupled,
     return RITZ_OK;
 }
 
+/* Delta, and the accelerations that are written out by it, over limits. */
+static ritz_status put_coupling(const ritz_modal_model *modes,
+                                const ritz_io *io, const ritz_dofs *chosen,
+                                ritz_modal *modal)
+{
+    RITZ_CHECK(ritz_dense_principal(&modes->Delta, chosen->count, chosen->at,
+                                    &modal->Delta));
+    RITZ_CHECK(
+        ritz_dense_pick(&modes->Ca, chosen->count, chosen->at, &modal->Ca));
+    for (int64_t k = 0; k < modal->Ca.ncol; k++)
+        for (int64_t i = 0; i < modal->Ca.nrow; i++)
+            if (!isnan(io->limit[i]))
+                ritz_dense_col(&modal->Ca, k)[i] /= io->limit[i];
+    return RITZ_OK;
+}
+
 ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, const char *why,
                                 ritz_modal *out)
@@ -307,15 +312,14 @@ ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
     if (why)
         RITZ_CHECK(refuse_coupling(modes, why));
     RITZ_CHECK(check_limits(io->num_outputs, io->limit, io->output));
-    RITZ_CHECK(choose_modes(modes, coupled, &chosen));
+    RITZ_CHECK(choose_modes(modes, &chosen));
     RITZ_CHECK(create_modal(m, chosen.count - m, modes->B.ncol, modes->C.nrow,
                             &modal));
     RITZ_CHECK(put_ratios(modes, coupled, &modal));
     for (int64_t k = 0; k < chosen.count; k++)
         put_mode(from, chosen.at[k], io->limit, &modal, k);
     if (coupled)
-        RITZ_CHECK(ritz_dense_principal(&modes->Delta, chosen.count, chosen.at,
-                                        &modal.Delta));
+        RITZ_CHECK(put_coupling(modes, io, &chosen, &modal));
     RITZ_MOVE(*out, modal);
     return RITZ_OK;
 }
@@ -333,16 +337,46 @@ static bool is_part_coupled(const ritz_modal *part)
     return part->num_rigid > 0;
 }
 
+/*
+ * Accelerations of a part have its own damping alone: of Cv, which has
+ * -sum_j ca_j Delta_jk of all modes j, those that are not in it are taken out.
+ */
+static void restrict_accelerations(const ritz_modal *modal,
+                                   const ritz_dofs *chosen, ritz_modal *part)
+{
+    int64_t all = modal->Delta.ncol;
+
+    for (int64_t k = 0; modal->Ca.val && k < chosen->count; k++) {
+        const double *delta = ritz_dense_col(&modal->Delta, chosen->at[k]);
+        double *cv = ritz_dense_col(&part->Cv, k);
+        int64_t next = 0;
+
+        for (int64_t j = 0; j < all; j++) {
+            bool there = next < chosen->count && chosen->at[next] == j;
+
+            next += there;
+            for (int64_t i = 0; !there && i < part->Cv.nrow; i++)
+                cv[i] += ritz_dense_col(&modal->Ca, j)[i] * delta[j];
+        }
+    }
+}
+
 /* Damping of the modes `chosen` of a model, if it couples any of them. */
 static ritz_status put_damping(const ritz_modal *modal, const ritz_dofs *chosen,
                                ritz_modal *part)
 {
     if (!modal->Delta.val)
         return RITZ_OK;
+    restrict_accelerations(modal, chosen, part);
     RITZ_CHECK(ritz_dense_principal(&modal->Delta, chosen->count, chosen->at,
                                     &part->Delta));
-    if (!is_part_coupled(part))
+    if (!is_part_coupled(part)) {
         ritz_dense_free(&part->Delta);
+        return RITZ_OK;
+    }
+    if (modal->Ca.val)
+        RITZ_CHECK(
+            ritz_dense_pick(&modal->Ca, chosen->count, chosen->at, &part->Ca));
     return RITZ_OK;
 }
 
@@ -404,5 +438,6 @@ void ritz_modal_free(ritz_modal *modal)
     ritz_dense_free(&modal->C);
     ritz_dense_free(&modal->Cv);
     ritz_dense_free(&modal->Delta);
+    ritz_dense_free(&modal->Ca);
     *modal = (ritz_modal){0};
 }

@@ -97,12 +97,13 @@ double ritz_damping_between(const ritz_dense *Delta, double largest, int64_t i,
  */
 
 /**
- * Clusters that are ranked as one: modes of one frequency, and modes that
- * damping couples by more than RITZ_DAMPING_JOINS, in chains. A cluster that
- * does not decay by itself is joined with all that damping couples it to.
+ * Clusters that are ranked as one: flexible modes of one frequency, and those
+ * that damping couples by more than RITZ_DAMPING_JOINS, in chains. A cluster
+ * that does not decay by itself is joined with all that damping couples it to,
+ * rigid motion too.
  *
- * @param[out] cluster  m + r: the first mode of each mode's cluster; of a rigid
- *                      mode m or more where no flexible one is in it
+ * @param[out] cluster  m + r: the first mode of each mode's cluster; of rigid
+ *                      modes m where they are in none
  * @return RITZ_ERR_ARGUMENT if a mode has no damping, and none that is coupled
  *         to it damps it
  */

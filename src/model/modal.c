@@ -225,6 +225,7 @@ static ritz_status project_io(const ritz_io *io, ritz_modal_model *model)
     RITZ_MOVE(model->B, part.B);
     RITZ_MOVE(model->C, part.C);
     RITZ_MOVE(model->Cv, part.Cv);
+    RITZ_MOVE(model->Ca, part.Ca);
     return RITZ_OK;
 }
 
@@ -366,6 +367,7 @@ void ritz_modal_model_free(ritz_modal_model *model)
     ritz_dense_free(&model->B);
     ritz_dense_free(&model->C);
     ritz_dense_free(&model->Cv);
+    ritz_dense_free(&model->Ca);
     ritz_dense_free(&model->feed);
     *model = (ritz_modal_model){0};
 }

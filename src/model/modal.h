@@ -43,6 +43,7 @@ typedef struct ritz_modal_model {
     ritz_dense Delta;     /* m x m, all damping */
     ritz_dense B;         /* m x inputs */
     ritz_dense C, Cv;     /* outputs x m, accelerations written out */
+    ritz_dense Ca;        /* outputs x m, as they were */
     ritz_dense feed;      /* outputs x inputs */
 } ritz_modal_model;
 

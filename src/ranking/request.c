@@ -179,7 +179,8 @@ static ritz_status extend_io(const ranked_model *s, const ritz_weights *weights,
 /* Take the additional outputs out of the modal model. */
 static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
 {
-    ritz_dense *const outputs[] = {&out->modal.C, &out->modal.Cv};
+    ritz_dense *const outputs[] = {&out->modal.C, &out->modal.Cv,
+                                   &out->modal.Ca};
     int64_t p = s->io->num_outputs;
     int64_t m = out->modal.count;
 
@@ -187,9 +188,11 @@ static ritz_status take_momentum(const ranked_model *s, ritz_rank_request *out)
         return RITZ_OK;
     RITZ_CHECK(
         ritz_dense_block(&out->modal.C, p, DIRECTIONS, 0, m, &out->momentum));
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         RITZ_OWN(ritz_dense) own = {0};
 
+        if (!outputs[k]->val)
+            continue;
         RITZ_CHECK(
             ritz_dense_block(outputs[k], 0, p, 0, outputs[k]->ncol, &own));
         ritz_dense_replace(outputs[k], &own);

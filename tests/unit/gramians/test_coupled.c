@@ -46,9 +46,9 @@ static ritz_modal set_model(int rigid, numbers *at)
         if (j < MODES)
             at->zeta[j] = delta[j][j] / (2.0 * omega[j]);
     }
-    return (ritz_modal){MODES,         at->omega,        at->zeta,
-                        {n, 2, at->b}, {2, n, at->c},    {2, n, at->cv},
-                        rigid,         {n, n, at->delta}};
+    return (ritz_modal){MODES,         at->omega,         at->zeta,
+                        {n, 2, at->b}, {2, n, at->c},     {2, n, at->cv},
+                        rigid,         {n, n, at->delta}, {0}};
 }
 
 /* A of the states (q_1, q_1', ..., v). */
@@ -180,16 +180,17 @@ static void a_rotor_that_nothing_brakes_is_not_refused(void **state)
     double omega[] = {2.0}, zeta[] = {0.05};
     double delta[] = {0.2, -0.7, 0.7, 0.0};
     double b[] = {1.0, 0.5}, c[] = {1.0, 0.3}, none[] = {0.0, 0.0};
-    const ritz_modal modal = {1,         omega,        zeta, {2, 1, b},
-                              {1, 2, c}, {1, 2, none}, 1,    {2, 2, delta}};
+    const ritz_modal modal = {1,         omega,         zeta,
+                              {2, 1, b}, {1, 2, c},     {1, 2, none},
+                              1,         {2, 2, delta}, {0}};
     double r = -0.35 / 4.49;  /* of q at 0 */
     double x = 1.0 - 0.2 * r; /* q: (x - r s) / p */
     double t = x / 4.49;      /* of that, integrated */
     double seen[] = {x + 0.21 * (-r - 0.2 * t)};
     double rate[] = {-r - 0.21 * t};
     double w[] = {sqrt(4.49)}, z[] = {0.1 / sqrt(4.49)};
-    const ritz_modal left = {1, w,  z, {1, 1, b}, {1, 1, seen}, {1, 1, rate},
-                             0, {0}};
+    const ritz_modal left = {1, w,   z,  {1, 1, b}, {1, 1, seen}, {1, 1, rate},
+                             0, {0}, {0}};
     double sigma[3] = {0}, exact[2] = {0};
     int64_t count = 0;
 
@@ -220,8 +221,11 @@ static void clusters_are_chains_of_couplings(void **state)
     assert_int_equal(cluster[3], 0);
 }
 
-/* A rigid mode joins two flexible ones; one by itself is no cluster of them. */
-static void rigid_modes_join_clusters(void **state)
+/*
+ * Rigid motion is always kept: it joins no modes, and is in a cluster only where
+ * nothing else damps it. Then all of it is, as any basis of it is as good.
+ */
+static void rigid_motion_joins_no_modes(void **state)
 {
     double omega[] = {1.0, 2.0}, zeta[] = {0.5, 0.25};
     double delta[] = {1.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.3, 0.0,
@@ -235,9 +239,16 @@ static void rigid_modes_join_clusters(void **state)
 
     (void)state;
     assert_ok(ritz_coupled_clusters(&modal, cluster));
-    assert_int_equal(cluster[1], 0);
+    for (int k = 0; k < 4; k++)
+        assert_int_equal(cluster[k], k < 2 ? k : 2);
+    /* no damping of its own, and a gyroscopic term to rigid motion */
+    delta[0] = zeta[0] = 0.0;
+    delta[2] = -0.3;
+    assert_ok(ritz_coupled_clusters(&modal, cluster));
+    assert_int_equal(cluster[0], 0);
+    assert_int_equal(cluster[1], 1);
     assert_int_equal(cluster[2], 0);
-    assert_int_equal(cluster[3], 3);
+    assert_int_equal(cluster[3], 0);
 }
 
 enum { MANY = 151 };
@@ -303,13 +314,47 @@ static void a_part_has_its_own_damping(void **state)
     assert_near(ritz_dense_col(&all.C, 1)[0], 0.7, 0.0);
 }
 
+/* An acceleration is b u - Lambda q - Delta q' of the part, not of the whole. */
+static void accelerations_of_a_part_have_its_damping(void **state)
+{
+    const bool taken[] = {true, false, true};
+    const bool rigid[] = {false, true};
+    double ca[2 * ALL];
+    numbers own;
+    ritz_modal modal = set_model(RIGID, &own);
+    RITZ_OWN(ritz_modal) part = {0};
+
+    (void)state;
+    for (int k = 0; k < 2 * ALL; k++)
+        ca[k] = 0.3 - 0.1 * k;
+    modal.Ca = (ritz_dense){2, ALL, ca};
+    for (int k = 0; k < ALL; k++)
+        for (int i = 0; i < 2; i++)
+            for (int j = 0; j < ALL; j++)
+                ritz_dense_col(&modal.Cv, k)[i] -=
+                    ritz_dense_col(&modal.Ca, j)[i] *
+                    ritz_dense_col(&modal.Delta, k)[j];
+    assert_ok(ritz_modal_part(&modal, taken, rigid, &part));
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++) {
+            int mode = k < 2 ? 2 * k : 4; /* of the whole */
+            double left = ritz_dense_col(&part.Cv, k)[i];
+
+            for (int j = 0; j < 3; j++)
+                left += ritz_dense_col(&part.Ca, j)[i] *
+                        ritz_dense_col(&part.Delta, k)[j];
+            assert_near(left, i == 1 ? 0.1 * own.b[mode] : 0.0, 1e-14);
+        }
+}
+
 static void motions_that_do_not_decay_are_refused(void **state)
 {
     double omega[] = {1.0, 2.0}, zeta[] = {0.0, 0.25};
     double delta[] = {0.0, 0.0, 0.0, 1.0};
     double b[] = {1.0, 1.0}, none[] = {0.0, 0.0};
-    ritz_modal modal = {2,         omega,        zeta, {2, 1, b},
-                        {1, 2, b}, {1, 2, none}, 0,    {2, 2, delta}};
+    ritz_modal modal = {2,         omega,         zeta,
+                        {2, 1, b}, {1, 2, b},     {1, 2, none},
+                        0,         {2, 2, delta}, {0}};
     int64_t cluster[2], count = 0;
     double sigma[4];
     RITZ_OWN(ritz_dense) X = {0}, Y = {0};
@@ -357,9 +402,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(hankel_values_are_those_of_scipy),
     cmocka_unit_test(a_rotor_that_nothing_brakes_is_not_refused),
     cmocka_unit_test(clusters_are_chains_of_couplings),
-    cmocka_unit_test(rigid_modes_join_clusters),
+    cmocka_unit_test(rigid_motion_joins_no_modes),
     cmocka_unit_test(what_decays_as_a_whole_is_not_refused),
     cmocka_unit_test(a_part_has_its_own_damping),
+    cmocka_unit_test(accelerations_of_a_part_have_its_damping),
     cmocka_unit_test(motions_that_do_not_decay_are_refused),
     cmocka_unit_test(coupled_modes_survive_every_allocation),
 };

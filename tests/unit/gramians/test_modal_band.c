@@ -250,7 +250,8 @@ static void a_band_around_one_mode_keeps_its_values(void **unused)
 {
     double omega = two_pi, zeta = 1e-3, one = 1.0, none = 0.0;
     const ritz_modal modal = {
-        1, &omega, &zeta, {1, 1, &one}, {1, 1, &one}, {1, 1, &none}, 0, {0}};
+        1, &omega, &zeta, {1, 1, &one}, {1, 1, &one}, {1, 1, &none},
+        0, {0},    {0}};
     double sigma[2], in[2], out[2];
 
     (void)unused;

@@ -89,8 +89,8 @@ static void one_mode_has_its_cost_and_its_norm(void **state)
     for (int k = 0; k < 4; k++) {
         double z = zeta[k];
         double cost = 25.0 * 9.0 / (4.0 * z * pow(omega, 3.0));
-        const ritz_modal modal = {1,         &omega,       &z, {1, 2, b},
-                                  {3, 1, c}, {3, 1, none}, 0,  {0}};
+        const ritz_modal modal = {
+            1, &omega, &z, {1, 2, b}, {3, 1, c}, {3, 1, none}, 0, {0}, {0}};
         ritz_ranking ranking = {0};
 
         /* a few roundings of positive terms */
@@ -171,8 +171,8 @@ static void a_negative_cost_is_said_and_ranked_by_magnitude(void **state)
     double b[] = {1.0, -0.2, 1e-3};
     double c[] = {1.0, 1.0, 1e-3};
     double none[3] = {0.0};
-    const ritz_modal modal = {3,         omega,        zeta, {3, 1, b},
-                              {1, 3, c}, {1, 3, none}, 0,    {0}};
+    const ritz_modal modal = {
+        3, omega, zeta, {3, 1, b}, {1, 3, c}, {1, 3, none}, 0, {0}, {0}};
     RITZ_OWN(ritz_ranking) ranking = {0};
 
     (void)state;
@@ -190,8 +190,8 @@ static void light_costs_are_the_squares_of_the_norms(void **state)
     double b[] = {1.0, -2.0, 3.0};
     double c[] = {1.0, 1.0, 0.5};
     double none[3] = {0.0};
-    const ritz_modal modal = {3,         omega,        zeta, {3, 1, b},
-                              {1, 3, c}, {1, 3, none}, 0,    {0}};
+    const ritz_modal modal = {
+        3, omega, zeta, {3, 1, b}, {1, 3, c}, {1, 3, none}, 0, {0}, {0}};
     RITZ_OWN(ritz_ranking) cost = {0}, norm = {0};
 
     (void)state;

@@ -155,8 +155,8 @@ static void one_mode_has_the_closed_form_pair(void **state)
     (void)state;
     for (int k = 0; k < 4; k++) {
         double z = zeta[k];
-        const ritz_modal modal = {1,         &omega,       &z, {1, 2, b},
-                                  {3, 1, c}, {3, 1, none}, 0,  {0}};
+        const ritz_modal modal = {
+            1, &omega, &z, {1, 2, b}, {3, 1, c}, {3, 1, none}, 0, {0}, {0}};
         double light = 5.0 * 3.0 / (4.0 * z * omega * omega);
         double root = sqrt(1.0 + z * z);
         double sigma[2];
@@ -186,8 +186,8 @@ static void hankel_values_are_the_eigenvalues_of_the_product(void **state)
     double b[] = {1.0, -0.5};
     double c[] = {0.7, 0.2, 0.4, 1.1};
     double cv[] = {0.1, -0.3, 0.2, 0.5};
-    const ritz_modal modal = {2,         omega,      zeta, {2, 1, b},
-                              {2, 2, c}, {2, 2, cv}, 0,    {0}};
+    const ritz_modal modal = {2,          omega, zeta, {2, 1, b}, {2, 2, c},
+                              {2, 2, cv}, 0,     {0},  {0}};
     RITZ_OWN(ritz_dense) Wc = {0};
     RITZ_OWN(ritz_dense) Wo = {0};
     RITZ_OWN(ritz_dense) W = {0};
@@ -225,8 +225,8 @@ static void a_cluster_has_one_value_whatever_spans_it(void **state)
         double b[] = {3.0 * co, -3.0 * si, 1.0, si, co, 1.0};
         double c[] = {co, si, -si, co, 1.0, 1.0};
         double none[6] = {0.0};
-        const ritz_modal modal = {3,         omega,        zeta, {3, 2, b},
-                                  {2, 3, c}, {2, 3, none}, 0,    {0}};
+        const ritz_modal modal = {
+            3, omega, zeta, {3, 2, b}, {2, 3, c}, {2, 3, none}, 0, {0}, {0}};
         ritz_ranking ranking = {0};
 
         for (int r = 0; r < 2; r++) {
@@ -253,8 +253,8 @@ static void near_modes_are_flagged_and_named(void **state)
     double zeta[] = {0.01, 0.01, 0.01};
     double one[] = {1.0, 1.0, 1.0};
     double none[3] = {0.0};
-    const ritz_modal modal = {3,           omega,        zeta, {3, 1, one},
-                              {1, 3, one}, {1, 3, none}, 0,    {0}};
+    const ritz_modal modal = {
+        3, omega, zeta, {3, 1, one}, {1, 3, one}, {1, 3, none}, 0, {0}, {0}};
     ritz_ranking ranking = {0};
 
     (void)state;
@@ -332,8 +332,9 @@ static void modes_that_damping_couples_have_one_value(void **state)
                       0.1, 0.01, 0.20, 0.0, 0.0, 0.0, 0.00, 0.2};
     double b[] = {1.0, 2.0, -1.0, 1.0}, c[] = {1.0, 1.0, 1.0, 0.5};
     double none[4] = {0.0};
-    const ritz_modal modal = {4,         omega,        zeta, {4, 1, b},
-                              {1, 4, c}, {1, 4, none}, 0,    {4, 4, delta}};
+    const ritz_modal modal = {4,         omega,         zeta,
+                              {4, 1, b}, {1, 4, c},     {1, 4, none},
+                              0,         {4, 4, delta}, {0}};
     static const bool both[] = {true, false, true, false};
     RITZ_OWN(ritz_modal) pair = {0};
     RITZ_OWN(ritz_ranking) ranking = {0}, light = {0}, cost = {0};
