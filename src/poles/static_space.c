@@ -72,6 +72,17 @@ static ritz_status project_component(const ritz_component *component,
     return ritz_dampers_project(&component->dampers, W, &space->dampers);
 }
 
+/* 0, or where rigid motion is free, -lambda of the lowest mode that is not. */
+static double choose_shift(const ritz_pairs *pairs)
+{
+    int64_t r = pairs->num_rigid;
+
+    if (r == 0)
+        return 0.0;
+    return r < pairs->Phi.ncol && pairs->lambda[r] > 0.0 ? -pairs->lambda[r]
+                                                         : -1.0;
+}
+
 ritz_status ritz_static_space_new(ritz_model model, int64_t modes,
                                   const ritz_disturbance *noise,
                                   ritz_static_space *out)
@@ -86,7 +97,7 @@ ritz_status ritz_static_space_new(ritz_model model, int64_t modes,
     RITZ_CHECK(ritz_eigen_sparse(&component->K, &component->M, &span, &pairs));
     space.num_modes = pairs.Phi.ncol;
     space.num_inputs = component->io.num_inputs;
-    space.sigma = pairs.num_rigid > 0 ? fmin(pairs.sigma, 0.0) : 0.0;
+    space.sigma = choose_shift(&pairs);
     RITZ_CHECK(find_responses(component, &pairs, space.sigma, &X));
     RITZ_CHECK(ritz_dense_beside(&pairs.Phi, &X, &W));
     RITZ_CHECK(project_component(component, &W, &space));
