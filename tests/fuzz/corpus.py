@@ -267,7 +267,7 @@ TEXTS = {
 # --- tools ----------------------------------------------------------------------------
 
 CLAIMS = {
-    "all": "source [Key2000] table 1\n"
+    "all": "source [Blevins2016] table 1\n"
            "beam b --elements 4 --clamp left --directions 26 --tip-mass 1 # b\n"
            "rows r 3 126\ntext scene.yaml\n  scene: x\n    indented\n"
            "expect frequencies_hz[0] 0.5 rel 1e-6\n"
