@@ -6,18 +6,26 @@
 
 #include <stdlib.h>
 
+/* NULL: not given. */
+typedef struct assemble_options {
+    const char *at, *tracks, *prefix;
+    bool full;
+} assemble_options;
+
 static ritz_status system_of(cli_run *run, const ritz_scene *scene,
-                             const char *at, const char *tracks)
+                             const assemble_options *given)
 {
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(model) made = {.kind = MODEL_SYSTEM};
 
+    RITZ_CHECK(model_foresee_bodies(given->prefix, scene));
     RITZ_CHECK(ritz_stage_new(scene, &stage));
-    if (!at)
+    if (!given->at)
         RITZ_CHECK(model_foresee(run, &stage));
-    RITZ_CHECK(ritz_assemble(&stage, at, &made.system));
+    RITZ_CHECK(ritz_assemble(&stage, given->at, &made.system));
+    RITZ_CHECK(model_write_bodies(run, given->prefix, scene, stage.body));
     RITZ_CHECK(describe_output(run, &made));
-    RITZ_CHECK(tracks_report(run, &stage, &made.system, tracks));
+    RITZ_CHECK(tracks_report(run, &stage, &made.system, given->tracks));
     cli_record(run, "assemble", made.system.configuration[0].K.nrow);
     return RITZ_OK;
 }
@@ -37,28 +45,28 @@ static ritz_status full_of(cli_run *run, const ritz_scene *scene,
     return RITZ_OK;
 }
 
-static ritz_status assemble_scene(cli_run *run, const char *at, bool full,
-                                  const char *tracks)
+static ritz_status assemble_scene(cli_run *run, const assemble_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
-    return full ? full_of(run, &scene, at) : system_of(run, &scene, at, tracks);
+    return given->full ? full_of(run, &scene, given->at)
+                       : system_of(run, &scene, given);
 }
 
 int main(int argc, char **argv)
 {
-    const char *at = NULL;
-    const char *tracks = NULL;
-    bool full = false;
+    assemble_options given = {0};
     const cli_option options[] = {
-        CLI_TEXT("at", &at, "JOINT=SETTING[,JOINT=SETTING]",
+        CLI_TEXT("at", &given.at, "JOINT=SETTING[,JOINT=SETTING]",
                  "one configuration, in degrees and lengths [all of the "
                  "scene's]"),
-        CLI_FLAG("full", &full,
+        CLI_FLAG("full", &given.full,
                  "reduce nothing: make one component with the dofs of all "
                  "bodies"),
-        CLI_OUTPUT("tracks", &tracks, "FILE",
+        CLI_TEXT("components", &given.prefix, "PREFIX",
+                 "write the reduced components as PREFIXname.h5"),
+        CLI_OUTPUT("tracks", &given.tracks, "FILE",
                    "write which mode is which at each configuration, as a "
                    "table with tabs"),
         {0},
@@ -75,8 +83,11 @@ int main(int argc, char **argv)
     cli_run run;
 
     cli_parse(&program, options, argc, argv, &run);
-    if (full && tracks)
+    if (given.full && given.tracks)
         cli_refuse(&program, "--full makes one component, whose modes are not "
                              "followed by --tracks");
-    return cli_finish(&run, assemble_scene(&run, at, full, tracks));
+    if (given.full && given.prefix)
+        cli_refuse(&program, "--full reduces no component, there are none to "
+                             "write by --components");
+    return cli_finish(&run, assemble_scene(&run, &given));
 }

@@ -169,6 +169,22 @@ END
 works 'joints hold and outputs measure what the shapes show' \
     /usr/bin/python3 -s shapes.py
 
+# Bodies of an assembled system, written with it.
+expect 2 'there are none to write by --components' ritz-assemble --full \
+    --components none- scene.yaml -o none.h5
+expect 1 "'no/where-rotor.h5" ritz-assemble --components no/where- scene.yaml \
+    -o none.h5
+expect 0 '' ritz-assemble --components one- scene.yaml -o system1.h5
+json 0 ritz-assemble --components one- scene.yaml -o system1.h5
+holds '  and named' 'j["component_files"] == ["one-rotor.h5", "one-stator.h5",
+    "one-platform.h5"]'
+expect 0 '4 shapes at 52 points' ritz-export --to vtu --at clock=0 --modes 9-12 \
+    --component rotor=one-rotor.h5 --component stator=one-stator.h5 \
+    --component platform=one-platform.h5 system1.h5 -o shapes.vtu
+expect 1 "'rotor' has" ritz-export --to vtu --at clock=0 system1.h5 \
+    --component rotor=small-rotor.h5 --component stator=one-stator.h5 \
+    --component platform=one-platform.h5 -o none.vtu
+
 # --- a low-order model for the controller -----------------------------------------------
 
 expect 0 '' ritz-basis -q balanced --modes 12 --at clock=90 system.h5 -o basis.h5

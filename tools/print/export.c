@@ -394,7 +394,8 @@ static ritz_status check_kind(const model *m, const char *path,
             !(exporter->takes & (RITZ_EXPORT_STATES | RITZ_EXPORT_SHAPES)),
         RITZ_ERR_ARGUMENT,
         "'%s' is a system, and %s wants a body with its grids: export the "
-        "bodies, which ritz-compare and ritz-fit write by --components",
+        "bodies, which ritz-compare, ritz-assemble and ritz-fit write by "
+        "--components",
         path, exporter->name);
     return RITZ_OK;
 }
