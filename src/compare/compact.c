@@ -34,6 +34,7 @@
 /* Stage two at some point of the search. */
 typedef struct trial {
     ritz_subspaces subspaces;
+    int64_t count;  /* of bodies that H and T are of */
     double change;  /* the worst error of kept frequencies and shapes, 1 - MAC,
                        and by how much those of responses, static gains and
                        damping have grown */
@@ -44,8 +45,8 @@ typedef struct trial {
 
 static void trial_free(trial *t)
 {
-    RITZ_FREE_EACH(ritz_dense, t->subspaces.count, t->H);
-    RITZ_FREE_EACH(ritz_dense, t->subspaces.count, t->T);
+    RITZ_FREE_EACH(ritz_dense, t->count, t->H);
+    RITZ_FREE_EACH(ritz_dense, t->count, t->T);
     t->H = t->T = NULL;
     ritz_subspaces_free(&t->subspaces);
 }
@@ -134,6 +135,7 @@ static ritz_status measure_trial(compactor *it, double enough, trial *t)
     const int64_t count = t->subspaces.count;
     RITZ_OWN(ritz_comparison) second = {0};
 
+    t->count = count;
     RITZ_CHECK_NEW(t->H, count);
     RITZ_CHECK_NEW(t->T, count);
     for (int64_t c = 0; c < count; c++) {

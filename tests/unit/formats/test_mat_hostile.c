@@ -48,8 +48,7 @@ static void put_zeros(hid_t at, const char *name, hid_t type, hsize_t rows,
     hid_t space = H5Screate_simple(2, dims, NULL);
     hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
     hid_t set = -1;
-    void *values =
-        calloc((size_t)(rows * cols), H5Tget_size(type) + sizeof(double));
+    void *values = calloc((size_t)(rows * cols) + 1, H5Tget_size(type));
 
     assert_non_null(values);
     if (deflates > 0)
