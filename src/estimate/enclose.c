@@ -37,6 +37,8 @@
 #include <string.h>
 
 enum { MOST_SHIFTS = 16 };
+/* Of which intervals are made: the trial, iterated, and richer. */
+enum { TRIALS = 3 };
 
 /*
  * Ritz pairs are computed anew from the full matrices in the range of T: those
@@ -563,7 +565,7 @@ ritz_status ritz_measuring_enclose(ritz_measuring *m)
 {
     const ritz_estimator *estimator = m->estimator;
     const ritz_lehmann *trial = &m->trial;
-    const ritz_lehmann *const all[] = {trial, &m->polished, &m->rich};
+    const ritz_lehmann *const all[TRIALS] = {trial, &m->polished, &m->rich};
     RITZ_OWN(ritz_enclosure) e = {.count = trial->count};
     const ritz_counted *counted = estimator->count;
     int64_t num_near = 0;
@@ -572,7 +574,7 @@ ritz_status ritz_measuring_enclose(ritz_measuring *m)
         if (counted[s].below > e.count)
             e.count = counted[s].below;
     e.count++; /* the next one, of which counts may say something */
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+    for (int k = 0; k < TRIALS; k++) {
         num_near += all[k]->count;
         e.count = all[k]->count >= e.count ? all[k]->count + 1 : e.count;
     }
@@ -582,9 +584,9 @@ ritz_status ritz_measuring_enclose(ritz_measuring *m)
     RITZ_CHECK_NEW(e.near_high, num_near);
     for (int64_t p = 0; p < e.count; p++)
         e.high[p] = HUGE_VAL;
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    for (int k = 0; k < TRIALS; k++)
         add_near(all[k], &e);
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    for (int k = 0; k < TRIALS; k++)
         if (all[k]->count > 0)
             RITZ_CHECK(add_trial(estimator, all[k], &e));
     settle_ends(estimator, trial, &e);

@@ -486,12 +486,11 @@ static void bound_between(ritz_bounder *r, int64_t count, const double *hertz,
     f->value = top;
 }
 
-static ritz_status bound_band(ritz_measuring *m, bool known, ritz_bounder *r,
-                              response_found *f)
+static ritz_status bound_band(ritz_measuring *m, bool known, richer *all,
+                              ritz_bounder *r, response_found *f)
 {
     int64_t count = 0;
     RITZ_OWN_ARRAY double *hertz = NULL;
-    RITZ_OWN(richer) all = {0};
 
     RITZ_CHECK(take_points(r, m->band_hz, &count, &hertz));
     f->count = r->io->num_inputs * r->io->num_outputs;
@@ -499,7 +498,7 @@ static ritz_status bound_band(ritz_measuring *m, bool known, ritz_bounder *r,
     visit_points(r, count, hertz, f);
     weigh_channels(r, f);
     if (known && is_loose(f))
-        RITZ_CHECK(visit_finer(m, count, hertz, r, &all, f));
+        RITZ_CHECK(visit_finer(m, count, hertz, r, all, f));
     weigh_channels(r, f);
     if (!r->coupled && isfinite(f->value))
         bound_between(r, count, hertz, f);
@@ -625,6 +624,7 @@ ritz_status ritz_bound_response(ritz_measuring *m, const ritz_reduced *reduced,
     const ritz_damping *damping = &estimator->request.damping;
     bool known = promise_of(estimator, reduced, m->pairs.Phi.ncol) == BOUND;
     RITZ_OWN(response_found) found = {0};
+    RITZ_OWN(richer) all = {0}; /* outlives what borrows it */
     RITZ_OWN(ritz_bounder)
     r = {.trial = &m->trial,
          .e = &m->enclosure,
@@ -644,7 +644,7 @@ ritz_status ritz_bound_response(ritz_measuring *m, const ritz_reduced *reduced,
     if (!known)
         RITZ_CHECK(take_rates(estimator, &r, matrices));
     RITZ_CHECK(ritz_bounder_open(estimator, &r));
-    RITZ_CHECK(bound_band(m, known, &r, &found));
+    RITZ_CHECK(bound_band(m, known, &all, &r, &found));
     return report_response(
         m, &r, known && rigid_in_full(&m->trial, m->pairs.num_rigid), &found,
         out);

@@ -687,22 +687,50 @@ double _Complex ritz_resolvent_pole(const ritz_resolvent *resolvent, int64_t k)
                         : resolvent->S[at];
 }
 
-/* T = z P - S, upper triangle; false if its diagonal is near 0. */
-static bool shift_triangle(ritz_resolvent *r, double _Complex z, double near)
+/* Diagonal entry j of z P - S. */
+static double _Complex shifted_pivot(const ritz_resolvent *r, double _Complex z,
+                                     int64_t j)
+{
+    int64_t at = j + j * r->n;
+
+    return z * (r->P ? r->P[at] : 1.0) - r->S[at];
+}
+
+static bool is_near_pole(const ritz_resolvent *r, double _Complex z,
+                         double near)
 {
     double least = near * cabs(z);
 
-    for (int64_t j = 0; j < r->n; j++) {
-        for (int64_t i = 0; i <= j; i++) {
-            int64_t at = i + j * r->n;
-            double _Complex p = i == j ? 1.0 : 0.0;
+    for (int64_t j = 0; j < r->n; j++)
+        if (cabs(shifted_pivot(r, z, j)) <= least)
+            return true;
+    return false;
+}
 
-            r->T[at] = z * (r->P ? r->P[at] : p) - r->S[at];
+/*
+ * X = (z P - S)^-1 B, by columns of the triangles from the last: each is read
+ * once, and none is copied, which is what a point costs.
+ */
+static void solve_shifted(ritz_resolvent *r, double _Complex z)
+{
+    int n = r->n, m = r->m;
+
+    memcpy(r->X, r->B, (size_t)n * (size_t)m * sizeof *r->X);
+    for (int j = n - 1; j >= 0; j--) {
+        const double _Complex *S = r->S + (int64_t)j * n;
+        double _Complex pivot = shifted_pivot(r, z, j);
+
+        for (int k = 0; k < m; k++) {
+            double _Complex *x = r->X + (int64_t)k * n;
+            double _Complex shifted = 0.0;
+
+            x[j] /= pivot;
+            cblas_zaxpy(j, &x[j], S, 1, x, 1);
+            shifted = -z * x[j];
+            if (r->P)
+                cblas_zaxpy(j, &shifted, r->P + (int64_t)j * n, 1, x, 1);
         }
-        if (cabs(r->T[j + j * r->n]) <= least)
-            return false;
     }
-    return true;
 }
 
 bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
@@ -714,14 +742,24 @@ bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
 
     if (n == 0 || m == 0 || p == 0)
         return true;
-    if (!shift_triangle(r, z, near))
+    if (is_near_pole(r, z, near))
         return false;
-    memcpy(r->X, r->B, (size_t)n * (size_t)m * sizeof *r->X);
-    cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
-                CblasNonUnit, n, m, &one, r->T, n, r->X, n);
+    solve_shifted(r, z);
     cblas_zgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, p, m, n, &one, r->C,
                 p, r->X, n, &one, H, p);
     return true;
+}
+
+/* T = z P - S, its upper triangle. */
+static void shift_triangle(ritz_resolvent *r, double _Complex z)
+{
+    for (int64_t j = 0; j < r->n; j++)
+        for (int64_t i = 0; i <= j; i++) {
+            int64_t at = i + j * r->n;
+            double _Complex p = i == j ? 1.0 : 0.0;
+
+            r->T[at] = z * (r->P ? r->P[at] : p) - r->S[at];
+        }
 }
 
 /* Length of a vector of complex numbers. */
@@ -746,10 +784,8 @@ ritz_status ritz_resolvent_sides(ritz_resolvent *resolvent, double _Complex z,
     if (n == 0 || m == 0 || p == 0)
         return RITZ_OK;
     RITZ_CHECK_COPY(C, r->C, (int64_t)p * n);
-    (void)shift_triangle(r, z, 0.0);
-    memcpy(r->X, r->B, (size_t)n * (size_t)m * sizeof *r->X);
-    cblas_ztrsm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
-                CblasNonUnit, n, m, &one, r->T, n, r->X, n);
+    shift_triangle(r, z);
+    solve_shifted(r, z);
     cblas_ztrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans,
                 CblasNonUnit, p, n, &one, r->T, n, C, p);
     *right = complex_size((int64_t)n * m, r->X);

@@ -420,7 +420,8 @@ ritz_status ritz_states_growth(const ritz_state_pair *p, ritz_measure *out)
     ritz_probe probe[2] = {0};
     RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_CHECK_IN("full model", ritz_probe_states(p->given[0], &probe[0]));
+    if (p->num_unstable[0] > 0) /* else all are known to be stable */
+        RITZ_CHECK_IN("full model", ritz_probe_states(p->given[0], &probe[0]));
     RITZ_CHECK_IN("reduced model", ritz_probe_states(p->given[1], &probe[1]));
     RITZ_CHECK(ritz_probe_record(&probe[1], &found));
     *out = found.item[0];
