@@ -155,7 +155,7 @@ const char *ritz_stability_name(ritz_stability verdict)
 
 void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
 {
-    char imaginary[RITZ_NAME_SIZE] = "", unseen[RITZ_NAME_SIZE] = "";
+    char imaginary[20] = "", unseen[RITZ_NAME_SIZE] = "";
 
     if (probe->why[0] || probe->count == 0) {
         snprintf(out, (size_t)2 * RITZ_NAME_SIZE, "%s",
