@@ -280,8 +280,15 @@ static ritz_rank_request request_of(double *b, double *c, double *none,
 
     memcpy(w, omega, sizeof w);
     memcpy(z, zeta, sizeof z);
-    return (ritz_rank_request){
-        .modal = {3, w, z, {3, 1, b}, {outputs, 3, c}, {outputs, 3, none}}};
+    return (ritz_rank_request){.modal = {3,
+                                         w,
+                                         z,
+                                         {3, 1, b},
+                                         {outputs, 3, c},
+                                         {outputs, 3, none},
+                                         0,
+                                         {0},
+                                         {0}}};
 }
 
 /*
