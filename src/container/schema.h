@@ -69,11 +69,11 @@ typedef struct ritz_member {
     const char *range; /* of whole numbers, "0..n-1"; either end may lack */
     const char *type;  /* of a row by hand, for docs/container.md */
     ritz_member_values values;
-    bool inside;   /* the array is in the object itself, as attributes are */
-    bool numbered; /* items of a list are "0", "1", ... and have no names */
-    bool alone; /* an only item of a list has its members in the list's place */
-    bool must;  /* optional here, but what is read is refused without it */
-    char some;  /* a letter: see below */
+    bool inside : 1; /* the array is in the object itself, as attributes are */
+    bool numbered : 1; /* items of a list are "0", "1", ... and have no names */
+    bool alone : 1; /* members of an only item stand in the place of its list */
+    bool must : 1;  /* optional here, but what is read is refused without it */
+    char some;      /* a letter: see below */
     /*
      * A member may be absent from a file if `optional` names what decides that,
      * "" the member itself. It is written if `has` says so, or if the size
