@@ -529,8 +529,10 @@ static hid_t text_type(void)
 {
     hid_t type = ritz_h5_string(1);
 
-    H5Tset_size(type, H5T_VARIABLE);
-    return type;
+    if (H5Tset_size(type, H5T_VARIABLE) >= 0)
+        return type;
+    ritz_h5_close(type);
+    return -1;
 }
 
 static ritz_status label_object(hid_t at, const char *datatype)

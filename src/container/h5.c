@@ -56,9 +56,11 @@ static hid_t plan_object(hid_t kind)
 {
     hid_t plan = H5Pcreate(kind);
 
-    H5Pset_obj_track_times(plan, false);
-    H5Pset_attr_phase_change(plan, MANY_ATTRIBUTES, 0);
-    return plan;
+    if (H5Pset_obj_track_times(plan, false) >= 0 &&
+        H5Pset_attr_phase_change(plan, MANY_ATTRIBUTES, 0) >= 0)
+        return plan;
+    ritz_h5_close(plan); /* half a plan would make another file */
+    return -1;
 }
 
 ritz_status ritz_h5_create(const char *path, hid_t *out)
@@ -68,7 +70,9 @@ ritz_status ritz_h5_create(const char *path, hid_t *out)
     RITZ_CHECK(ritz_h5_begin());
     plan = plan_object(H5P_FILE_CREATE);
     bounds = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110);
+    RITZ_REFUSE_IF(
+        H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110) < 0,
+        RITZ_ERR_MEMORY, "no memory to create '%s'", path);
     /* a draft is locked by its writer; on NFS HDF5 would meet that lock */
     H5Pset_file_locking(bounds, false, true);
     *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
@@ -250,9 +254,10 @@ hid_t ritz_h5_string(size_t size)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
 
-    H5Tset_size(type, size);
-    H5Tset_cset(type, H5T_CSET_UTF8);
-    return type;
+    if (H5Tset_size(type, size) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0)
+        return type;
+    ritz_h5_close(type);
+    return -1;
 }
 
 /*
@@ -299,8 +304,9 @@ ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
                    RITZ_ERR_FORMAT, "'%s' is not text of fixed length, or long",
                    name);
     *memory = H5Tcopy(on_file); /* its character set is not converted */
-    H5Tset_size(*memory, H5Tget_size(type));
-    H5Tset_strpad(*memory, H5T_STR_NULLTERM);
+    RITZ_REFUSE_IF(H5Tset_size(*memory, H5Tget_size(type)) < 0 ||
+                       H5Tset_strpad(*memory, H5T_STR_NULLTERM) < 0,
+                   RITZ_ERR_MEMORY, "no memory for '%s'", name);
     return RITZ_OK;
 }
 

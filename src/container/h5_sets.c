@@ -99,17 +99,18 @@ static ritz_status create_set(hid_t at, const char *name, hid_t type,
     RITZ_OWN(hid_t)
     space = H5Screate_simple(shape.rank, shape.dims, NULL);
     RITZ_OWN(hid_t) plan = H5Pcreate(H5P_DATASET_CREATE);
+    bool planned = H5Pset_obj_track_times(plan, false) >= 0;
 
-    H5Pset_obj_track_times(plan, false);
     if (count <= SMALL && count * size <= SMALL_BYTES) {
-        H5Pset_layout(plan, H5D_COMPACT);
+        planned = H5Pset_layout(plan, H5D_COMPACT) >= 0 && planned;
     } else {
         const ritz_h5_shape chunk =
             cut_chunks(&shape, smaller_of(CHUNK, CHUNK_BYTES / size + 1));
 
-        H5Pset_chunk(plan, shape.rank, chunk.dims);
-        H5Pset_fletcher32(plan);
+        planned = H5Pset_chunk(plan, shape.rank, chunk.dims) >= 0 &&
+                  H5Pset_fletcher32(plan) >= 0 && planned;
     }
+    RITZ_REFUSE_IF(!planned, RITZ_ERR_MEMORY, "no memory to create '%s'", name);
     *out = H5Dcreate2(at, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", name);
     return RITZ_OK;

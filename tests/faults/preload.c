@@ -99,14 +99,15 @@ static bool is_to_fail(enum fault_kind asked, const void *from)
 static void note_signal(int number, siginfo_t *info, void *context)
 {
     const ucontext_t *at = context;
+    const void *code =
+        (const void *)at->uc_mcontext.gregs[REG_RIP]; /* NOLINT */
     char text[24];
 
     (void)info;
     ready = false;
     (void)snprintf(text, sizeof text, "%d", number);
     put_line("number", text);
-    put_object("signal",
-               (const void *)at->uc_mcontext.gregs[REG_RIP]); /* NOLINT */
+    put_object("signal", find_asker(code));
     signal(number, SIG_DFL);
     raise(number);
 }

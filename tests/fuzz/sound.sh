@@ -26,7 +26,7 @@ select:  {by: hankel, tolerance: 1.0e-3}
 YAML
 ritz-basis -q macneal-rubin --modes 4 stator.h5 -o basis.h5
 ritz-reduce -q stator.h5 basis.h5 -o reduced.h5
-ritz-assemble -q scene.yaml -o system.h5
+ritz-assemble -q --tracks tracks.tsv scene.yaml -o system.h5
 ritz-assemble -q --full --at cone=0 scene.yaml -o full.h5
 ritz-rank -q --at cone=0 system.h5 -o ranking.h5
 ritz-frf -q --at cone=0 --points 5 --no-refine system.h5 -o response.h5
@@ -42,6 +42,7 @@ ritz-export -q --to matrix-market --matrix K reduced.h5 -o k.mtx
 ritz-export -q --to matlab space.h5 -o space.mat
 rows=$(awk '!/^%/ { print $1; exit }' k.mtx)
 awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print i, 0 }' >k.dofs
+awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print "1e-3 0" }' >values.tsv
 
 # one matrix as DMIG, in small fields and large
 {
@@ -104,5 +105,7 @@ run.h5       ritz-info @
 run.h5       ritz-export --to tsv @ -o OUT
 system.h5    ritz-simulate --at cone=0 --seconds 0.1 --step 0.01 --input torque=step @ -o OUT
 space.h5     ritz-simulate --seconds 0.1 --step 0.01 --input torque=step @ -o OUT
+values.tsv   ritz-simulate --initial @ --seconds 0.1 --step 0.01 reduced.h5 -o OUT
+tracks.tsv   ritz-rank --tracks @ system.h5 -o OUT
 pulse.tsv    ritz-simulate --seconds 0.1 --step 0.01 --input torque=@ reduced.h5 -o OUT
 CASES

@@ -118,6 +118,7 @@ static void print_help(const cli_program *program, const cli_option *options)
 static _Noreturn void give_up(const cli_program *program)
 {
     cli_complain("\nTry '%s --help'.\n", program->name);
+    cli_unwatch();
     exit(EXIT_USAGE);
 }
 
@@ -456,6 +457,7 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
     cli_option all[MAX_OPTIONS] = {{0}};
 
     occupy_streams();
+    cli_prepare();
     *run = (cli_run){
         .program = program,
         .options = options,
@@ -479,7 +481,6 @@ void cli_parse(const cli_program *program, const cli_option *options, int argc,
         cli_refuse(program, "no output, name it with -o");
     gather_outputs(run, all);
     ritz_draft_hold();
-    atexit(ritz_draft_discard_all); /* by whichever way it ends */
     cli_watch(run);
     run->began = cli_clock();
 }

@@ -262,6 +262,13 @@ ritz_status cli_record_line(cli_run *run, json_t *line);
  */
 void cli_watch(cli_run *run);
 
+/** From now on the program ends with status 1 where JSON has no memory. */
+void cli_prepare(void);
+
+/** The program is about to end by itself; that of cli_watch which ends before is
+ * ended by a library, and fails. */
+void cli_unwatch(void);
+
 /** "12.5 s", "3 min", "5.2 h" or "4 days"; returns @p out. */
 const char *cli_duration(double seconds, char out[CLI_DURATION]);
 

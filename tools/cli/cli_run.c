@@ -158,9 +158,45 @@ static void follow_step(const char *what, int64_t done, int64_t total)
         show_progress(what, done, total);
 }
 
+/* Some libraries end a program that they cannot serve, with any status: Fortran
+   does with 0. Without its output it has failed. */
+static void end_early(void)
+{
+    ritz_draft_discard_all();
+    if (!watched)
+        return;
+    cli_complain("%s: ended by a library, perhaps for want of memory\n",
+                 watched->program->name);
+    _exit(EXIT_FAILURE);
+}
+
+void cli_unwatch(void)
+{
+    watched = NULL;
+}
+
+/* A report that lacks a part is none, and who builds it asks for no status. */
+static void *allocate_json(size_t size)
+{
+    void *block = malloc(size);
+
+    if (block)
+        return block;
+    cli_complain("%s: no memory for the report\n",
+                 watched ? watched->program->name : "ritz");
+    cli_unwatch();
+    exit(EXIT_FAILURE);
+}
+
+void cli_prepare(void)
+{
+    json_set_alloc_funcs(allocate_json, free);
+}
+
 void cli_watch(cli_run *run)
 {
     watched = run;
+    atexit(end_early);
     on_terminal = !run->quiet && isatty(STDERR_FILENO);
     watch_signals();
     last = cli_clock();
@@ -695,6 +731,7 @@ int cli_finish(cli_run *run, ritz_status status)
         keep = false;
     }
     status = settle_outputs(run, keep, status);
+    cli_unwatch();
     free_run(run);
     return status == RITZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -88,13 +88,23 @@ static void put_value(telling *t, const char *key, json_t *value)
  * stays on its line, and is never obeyed. */
 static void put_text(FILE *file, conversion c, const char *value)
 {
-    char *copy =
-        c.precision < 0 ? strdup(value) : strndup(value, (size_t)c.precision);
+    const size_t size =
+        c.precision < 0 ? strlen(value) : strnlen(value, (size_t)c.precision);
+    const char *end = value + size;
+    const int blanks = abs(c.width) > (int)size ? abs(c.width) - (int)size : 0;
 
-    if (copy)
-        ritz_text_clean(copy);
-    fprintf(file, "%*s", c.width, copy ? copy : "(no memory)");
-    free(copy);
+    fprintf(file, "%*s", c.width > 0 ? blanks : 0, "");
+    for (const char *at = value; at < end;) {
+        const int length = ritz_letter_length(at);
+
+        if (length > 0 && length <= end - at)
+            at += fwrite(at, 1, (size_t)length, file);
+        else
+            at += putc('?', file) == '?';
+        if (ferror(file))
+            return; /* as whoever made the file will see */
+    }
+    fprintf(file, "%*s", c.width < 0 ? blanks : 0, "");
 }
 
 static void tell_text(telling *t, conversion c, const char *key,
