@@ -636,7 +636,9 @@ static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
 {
     if (request->space)
         return ritz_krylov_of_space(request, out);
-    RITZ_REFUSE_IF(request->choice.given & RITZ_USES_SIDES, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(request->choice.given & RITZ_USES_SIDES &&
+                       !request->choice.one_sided,
+                   RITZ_ERR_ARGUMENT,
                    "vectors of a component serve on both sides, sides are "
                    "chosen of a state space");
     return make_vectors(request, false, out);
