@@ -93,7 +93,7 @@ static ritz_status advance_block(const ritz_space_span *span, bool first,
         for (int64_t k = 0; k < a->n * m; k++)
             X[k] = span->F->val[k];
     else
-        ritz_pencil_times(ritz_pencil_E(span->pencil, span->left), m,
+        ritz_pencil_times(ritz_pencil_descriptor(span->pencil, span->left), m,
                           a->Q + a->last * a->n, X);
     RITZ_CHECK(ritz_pencil_solve(span->pencil, span->left, m, X));
     return append_complex(span->tolerance, m, X, a);

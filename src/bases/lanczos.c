@@ -438,7 +438,8 @@ static ritz_status take_low_rank(const ritz_state_space *model,
     s->V.ncol = s->reached;
     RITZ_CHECK(ritz_dense_columns(Z, 0, s->reached, &s->Q));
     RITZ_CHECK(divide_descriptor(pencil, !outputs, &s->V));
-    RITZ_CHECK(ritz_sparse_mul(ritz_pencil_A(pencil, outputs), &s->Q, &AQ));
+    RITZ_CHECK(
+        ritz_sparse_mul(ritz_pencil_system(pencil, outputs), &s->Q, &AQ));
     RITZ_CHECK(ritz_dense_mul_tn(&s->V, &AQ, &s->A_r));
     RITZ_CHECK(outputs ? ritz_general_transpose(&model->C, &B)
                        : ritz_dense_copy(&model->B, &B));

@@ -307,13 +307,14 @@ static ritz_status span_start(irka *s)
                             .most = 2 * s->request->modes,
                             .tolerance = s->request->tolerance};
     double _Complex at = 0.0;
+    double shift = RITZ_SHIFT_ASIDE * size;
     ritz_status status = RITZ_ERR_SINGULAR;
 
-    for (double f = RITZ_SHIFT_ASIDE; status == RITZ_ERR_SINGULAR && f < 1.0;
-         f *= RITZ_SHIFT_FARTHER) {
+    while (status == RITZ_ERR_SINGULAR && shift < size) {
         status = ritz_space_krylov(&span, 1, &at, &s->T, NULL);
         if (status == RITZ_ERR_SINGULAR)
-            at = f * size;
+            at = shift;
+        shift *= RITZ_SHIFT_FARTHER;
     }
     RITZ_CHECK(status);
     span.F = &s->Ct;

@@ -109,6 +109,11 @@ typedef struct band_panel {
     double rule[2][SIDES];
 } band_panel;
 
+static void band_panel_free(band_panel *p)
+{
+    free(p->x);
+}
+
 static int64_t values_of(const quadrature *q)
 {
     return q->pencil.n * (q->F[0].ncol + q->F[1].ncol);
@@ -170,6 +175,20 @@ static ritz_status reserve_columns(quadrature *q, int k, int64_t more)
     return RITZ_OK;
 }
 
+/* sqrt(weight / pi) [Re x, Im x] as the next two columns of a factor. */
+static void append_pair(double f, int64_t n, const double _Complex *x,
+                        ritz_dense *Z)
+{
+    double *re = ritz_dense_col(Z, Z->ncol);
+    double *im = re + n;
+
+    for (int64_t i = 0; i < n; i++) {
+        re[i] = f * creal(x[i]);
+        im[i] = f * cimag(x[i]);
+    }
+    Z->ncol += 2;
+}
+
 /* Columns of a panel that is fine enough. */
 static ritz_status accept_panel(quadrature *q, const band_panel *p)
 {
@@ -180,22 +199,11 @@ static ritz_status accept_panel(quadrature *q, const band_panel *p)
         const double _Complex *first = p->x + (k == 0 ? 0 : n * q->F[0].ncol);
 
         q->sum[k] += p->rule[1][k];
-        RITZ_CHECK(reserve_columns(q, k, 2 * NODES * m));
-        for (int at = 0; at < NODES; at++) {
-            double f = sqrt(weight_of(p, kronrod, at) / RITZ_PI);
-
-            for (int64_t j = 0; j < m; j++) {
-                const double _Complex *x = first + at * values + j * n;
-                double *re = ritz_dense_col(&q->Z[k], q->Z[k].ncol);
-                double *im = re + n;
-
-                for (int64_t i = 0; i < n; i++) {
-                    re[i] = f * creal(x[i]);
-                    im[i] = f * cimag(x[i]);
-                }
-                q->Z[k].ncol += 2;
-            }
-        }
+        RITZ_CHECK(reserve_columns(q, k, 2 * (int64_t)NODES * m));
+        for (int at = 0; at < NODES; at++)
+            for (int64_t j = 0; j < m; j++)
+                append_pair(sqrt(weight_of(p, kronrod, at) / RITZ_PI), n,
+                            first + at * values + j * n, &q->Z[k]);
     }
     return RITZ_OK;
 }
@@ -220,12 +228,9 @@ static ritz_status integrate_panel(quadrature *q, double from, double to)
     int depth = 0;
 
     while (depth >= 0) {
-        band_panel p = {.from = from, .to = end[depth]};
-        RITZ_OWN_ARRAY double _Complex *x = NULL;
-        ritz_status status = fill_panel(q, &p);
+        RITZ_OWN(band_panel) p = {.from = from, .to = end[depth]};
 
-        x = p.x;
-        RITZ_CHECK(status);
+        RITZ_CHECK(fill_panel(q, &p));
         if (is_fine(q, &p)) {
             RITZ_CHECK(accept_panel(q, &p));
             from = end[depth--];

@@ -333,8 +333,8 @@ static ritz_status append_columns(adi *a, int k, double _Complex p,
                                  : g * sqrt(d * d + 1.0) * cimag(v[i + j * n]);
             enter_window(a, z);
         }
-    RITZ_CHECK(
-        ritz_sparse_mul(ritz_pencil_E(&a->pencil, k == 1), &plus, &Eplus));
+    RITZ_CHECK(ritz_sparse_mul(ritz_pencil_descriptor(&a->pencil, k == 1),
+                               &plus, &Eplus));
     ritz_dense_add(g * g, &Eplus, &side->W);
     return RITZ_OK;
 }

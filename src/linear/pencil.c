@@ -37,12 +37,14 @@ bool ritz_pencil_is_symmetric(const ritz_pencil *pencil)
     return !pencil->At.colptr;
 }
 
-const ritz_sparse *ritz_pencil_A(const ritz_pencil *pencil, bool transposed)
+const ritz_sparse *ritz_pencil_system(const ritz_pencil *pencil,
+                                      bool transposed)
 {
     return transposed && pencil->At.colptr ? &pencil->At : &pencil->A;
 }
 
-const ritz_sparse *ritz_pencil_E(const ritz_pencil *pencil, bool transposed)
+const ritz_sparse *ritz_pencil_descriptor(const ritz_pencil *pencil,
+                                          bool transposed)
 {
     return transposed && pencil->Et.colptr ? &pencil->Et : &pencil->E;
 }

@@ -31,8 +31,10 @@ ritz_status ritz_pencil_new(const ritz_sparse *A, const ritz_sparse *E,
 bool ritz_pencil_is_symmetric(const ritz_pencil *pencil);
 
 /** A and E, or their transposes. */
-const ritz_sparse *ritz_pencil_A(const ritz_pencil *pencil, bool transposed);
-const ritz_sparse *ritz_pencil_E(const ritz_pencil *pencil, bool transposed);
+const ritz_sparse *ritz_pencil_system(const ritz_pencil *pencil,
+                                      bool transposed);
+const ritz_sparse *ritz_pencil_descriptor(const ritz_pencil *pencil,
+                                          bool transposed);
 
 /**
  * Factor A - s E, unless that is what is factored.

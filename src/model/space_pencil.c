@@ -41,7 +41,7 @@ ritz_status ritz_pencil_is_dissipative(const ritz_pencil *pencil, bool *out)
     if (!*out)
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_add(-1.0, &pencil->A, -1.0,
-                               ritz_pencil_A(pencil, true), &sum));
+                               ritz_pencil_system(pencil, true), &sum));
     return is_definite(&sum, out);
 }
 
@@ -80,10 +80,12 @@ ritz_status ritz_space_slowest(ritz_pencil *pencil, int64_t count,
 {
     const double size =
         ritz_sparse_max(&pencil->A) / ritz_sparse_max(&pencil->E);
+    double shift = RITZ_SHIFT_ASIDE * size;
     ritz_status status = ritz_pencil_nearest(pencil, 0.0, count, out);
 
-    for (double s = RITZ_SHIFT_ASIDE * size;
-         status == RITZ_ERR_SINGULAR && s < size; s *= RITZ_SHIFT_FARTHER)
-        status = ritz_pencil_nearest(pencil, s, count, out);
+    while (status == RITZ_ERR_SINGULAR && shift < size) {
+        status = ritz_pencil_nearest(pencil, shift, count, out);
+        shift *= RITZ_SHIFT_FARTHER;
+    }
     return status;
 }

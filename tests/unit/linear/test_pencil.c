@@ -27,8 +27,8 @@ static double left_over(const ritz_pencil *p, bool transposed,
     double worst = 0.0;
 
     assert_true(Ax && Ex);
-    ritz_pencil_times(ritz_pencil_A(p, transposed), 1, x, Ax);
-    ritz_pencil_times(ritz_pencil_E(p, transposed), 1, x, Ex);
+    ritz_pencil_times(ritz_pencil_system(p, transposed), 1, x, Ax);
+    ritz_pencil_times(ritz_pencil_descriptor(p, transposed), 1, x, Ex);
     for (int64_t i = 0; i < p->n; i++)
         worst = fmax(worst, cabs(Ax[i] - s * Ex[i] - b[i]));
     free(Ax);
