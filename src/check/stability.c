@@ -169,8 +169,9 @@ void ritz_probe_print(const ritz_probe *probe, char out[2 * RITZ_NAME_SIZE])
                  ", rightmost of %" PRId64 " near 0; %" PRId64 " not looked at",
                  probe->count, probe->unseen);
     snprintf(out, (size_t)2 * RITZ_NAME_SIZE,
-             "pole at %+.5g%s rad/s (%.5g Hz)%s", probe->pole[0], imaginary,
-             hypot(probe->pole[0], probe->pole[1]) / (2.0 * RITZ_PI), unseen);
+             "pole at %+.5g%.20s rad/s (%.5g Hz)%.50s", probe->pole[0],
+             imaginary, hypot(probe->pole[0], probe->pole[1]) / (2.0 * RITZ_PI),
+             unseen);
 }
 
 ritz_status ritz_probe_record(const ritz_probe *probe, ritz_measures *estimates)

@@ -51,7 +51,7 @@ static void without_proof_what_was_not_looked_at_is_said(void **)
 static void growth_and_rest_are_found(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
-    ritz_probe probe = {0};
+    ritz_probe probe;
 
     assert_ok(spaces_rod(200, 0.0, true, &rod));
     rod.sA.val[0] = rod.sA.val[rod.sA.colptr[200] - 1] = -1.0;

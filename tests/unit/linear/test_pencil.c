@@ -99,7 +99,8 @@ static void of_a_pair_the_one_above_the_axis_is_first(void **)
     pencil_of(300, 100.0, false, &p);
     assert_ok(ritz_pencil_nearest(&p, -1.0, 4, &pairs));
     for (int64_t k = 0; k < 4; k++) {
-        double im = size * cos((double)(150 - k / 2) * acos(-1.0) / 301.0);
+        int64_t which = 150 - k / 2;
+        double im = size * cos((double)which * acos(-1.0) / 301.0);
 
         assert_near(creal(pairs.s[k]), -2.0, 1e-9);
         assert_near(cimag(pairs.s[k]), k % 2 ? -im : im, 1e-9);
