@@ -141,6 +141,7 @@ static void far_channels_are_bounded_within_ten(void **)
     ritz_estimate_request request = {0};
 
     assert_ok(spring_chain(MASSES, false, &chain));
+    ritz_io_free(&chain.io);
     assert_ok(ritz_io_new(MASSES, 1, 1, &chain.io));
     chain.io.B.val[MASSES - 1] = 1.0;
     chain.io.C.val[1] = 1.0;
@@ -175,6 +176,7 @@ static void what_is_not_coupled_is_not_compared_with_itself(void **)
 
     assert_ok(ritz_damping_parse("modal 0.05", &request.damping));
     assert_ok(masses_apart(N, lambda, NULL, &body));
+    ritz_io_free(&body.io);
     assert_ok(ritz_io_new(N, 2, 2, &body.io));
     for (int64_t i = 0; i < N; i++) { /* 0 and 2, 1 and 3 */
         ritz_dense_col(&body.io.B, i % 2)[i] = 1.0;
@@ -204,6 +206,7 @@ static void causes_are_named(void **)
     /* the second mode is missing, and hardly driven */
     assert_ok(ritz_damping_parse("modal 0.01", &request.damping));
     assert_ok(masses_apart(N, lambda, NULL, &body));
+    ritz_io_free(&body.io);
     assert_ok(ritz_io_new(N, 1, 1, &body.io));
     for (int64_t i = 0; i < N; i++)
         body.io.B.val[i] = body.io.C.val[i] = i == 1 ? 1e-3 : 1.0;
