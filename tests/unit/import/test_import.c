@@ -2,32 +2,13 @@
 #include "testing.h"
 
 #include "folder.h"
+#include "matrix_files.h"
 
 #include <ritz/import.h>
 #include <ritz/matrix.h>
 
 #include <stdio.h>
 #include <stdlib.h>
-
-/* Diagonal matrix in Matrix Market; 0 stands for a row without entry. */
-static const char *put_diagonal(const char *name, int n, const double *value)
-{
-    char text[4096];
-    int used = 0;
-    int count = 0;
-
-    for (int k = 0; k < n; k++)
-        count += value[k] != 0.0;
-    used = snprintf(text, sizeof text,
-                    "%%%%MatrixMarket matrix coordinate real symmetric\n"
-                    "%d %d %d\n",
-                    n, n, count);
-    for (int k = 0; k < n; k++)
-        if (value[k] != 0.0)
-            used += snprintf(text + used, sizeof text - (size_t)used,
-                             "%d %d %g\n", k + 1, k + 1, value[k]);
-    return folder_write(name, text);
-}
 
 /* A file of somebody else; NULL and a word if it is not there. */
 static const char *external(const char *variable, const char *name)

@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "folder.h"
+#include "matrix_files.h"
 
 #include <ritz/import.h>
 #include <ritz/matrix.h>
@@ -10,21 +11,6 @@
 #include <stdlib.h>
 
 #define ARRAY "%%MatrixMarket matrix array real general\n"
-
-/* n x n, diagonal 1, 2, 3, ... */
-static const char *put_diagonal(const char *name, int n)
-{
-    char text[4096];
-    int used = snprintf(text, sizeof text,
-                        "%%%%MatrixMarket matrix coordinate real symmetric\n"
-                        "%d %d %d\n",
-                        n, n, n);
-
-    for (int k = 1; k <= n; k++)
-        used += snprintf(text + used, sizeof text - (size_t)used, "%d %d %d\n",
-                         k, k, k);
-    return folder_write(name, text);
-}
 
 /* Entries "row column value\n..." of a matrix of this size. */
 static const char *put_entries(const char *name, int nrow, int ncol, int count,
@@ -54,7 +40,7 @@ static void matrices_do_what_texts_do(void **)
     const char *const inputs[] = {"a=3:1,7:2*2", "b=5:0*-4"};
     const char *const outputs[] = {"a=3:1,7:1*-3", "b=9:6/vel", "c=5:0/acc@2"};
     const ritz_import_request request = {
-        .mass = put_diagonal("m.mtx", 19),
+        .mass = put_diagonal("m.mtx", 19, NULL),
         .bulk = folder_write("deck.bdf", deck),
         .num_inputs = 2,
         .input = inputs,
@@ -102,7 +88,7 @@ static void matrices_do_what_texts_do(void **)
 static void outputs_lie_either_way(void **)
 {
     ritz_import_request request = {
-        .mass = put_diagonal("m.mtx", 3),
+        .mass = put_diagonal("m.mtx", 3, NULL),
         .rows = "0",
         .output_matrix =
             folder_write("c.mtx", ARRAY "2 3\n1\n2\n3\n4\n5\n6\n")};
@@ -135,7 +121,7 @@ static void constraints_act_on_them(void **)
     const char *const inputs[] = {"a=4:2*5"};
     const char *const outputs[] = {"a=4:2"};
     const ritz_import_request request = {
-        .mass = put_diagonal("m.mtx", 12),
+        .mass = put_diagonal("m.mtx", 12, NULL),
         .bulk = folder_write("deck.bdf", "GRID,3,,1.,0.,0.\nGRID,4,,3.,0.,0.\n"
                                          "RBE2,600,3,123456,4\n"),
         .num_inputs = 1,
@@ -163,8 +149,8 @@ static void constraints_act_on_them(void **)
 static void entries_of_fixed_dofs_are_left_out(void **)
 {
     const ritz_import_request request = {
-        .stiffness = put_diagonal("k.mtx", 6),
-        .mass = put_diagonal("m.mtx", 6),
+        .stiffness = put_diagonal("k.mtx", 6, NULL),
+        .mass = put_diagonal("m.mtx", 6, NULL),
         .bulk = folder_write("deck.bdf", "GRID,3,,1.,0.,0.,,156\n"),
         .input_matrix = put_entries("b.mtx", 6, 1, 3, "1 1 9\n2 1 7\n6 1 9\n"),
         .output_matrix = put_entries("c.mtx", 1, 6, 2, "1 5 9\n1 4 8\n")};
@@ -187,7 +173,8 @@ static void files_that_name_rows_are_placed_by_name(void **)
                                              "DMIG,B,1,0,,2,3,5.\n"
                                              "DMIG,B,1,0,,1,1,7.\n");
     char spec[300];
-    const ritz_import_request request = {.mass = put_diagonal("m.mtx", 12),
+    const ritz_import_request request = {.mass =
+                                             put_diagonal("m.mtx", 12, NULL),
                                          .input_matrix = spec,
                                          .output_matrix = spec};
     RITZ_OWN(ritz_import_report) report = {0};
@@ -262,8 +249,9 @@ static void wrong_matrices_are_refused(void **)
 static void inputs_that_are_not_finite_are_refused(void **)
 {
     const char *const input[] = {"f=1:1*1e308,1:1*1e308"};
-    const ritz_import_request request = {
-        .mass = put_diagonal("m.mtx", 6), .num_inputs = 1, .input = input};
+    const ritz_import_request request = {.mass = put_diagonal("m.mtx", 6, NULL),
+                                         .num_inputs = 1,
+                                         .input = input};
     ritz_import_report report = {0};
     ritz_component c = {0};
 
@@ -282,7 +270,7 @@ static void rows_are_directions_of_grids(void **)
     } cases[] = {{"0", {6, 0}, 0},   {"1", {6, 1}, 0},     {"12", {3, 2}, 0},
                  {"126", {2, 6}, 0}, {"612", {2, 2}, 0},   {"345", {2, 5}, 0},
                  {"16", {3, 6}, 0},  {"123456", {1, 6}, 1}};
-    ritz_import_request request = {.mass = put_diagonal("m.mtx", 6)};
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 6, NULL)};
 
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         RITZ_OWN(ritz_import_report) report = {0};
@@ -300,7 +288,7 @@ static void rows_are_directions_of_grids(void **)
 
 static void wrong_rows_are_refused(void **)
 {
-    ritz_import_request request = {.mass = put_diagonal("m.mtx", 7),
+    ritz_import_request request = {.mass = put_diagonal("m.mtx", 7, NULL),
                                    .rows = "126"};
     ritz_import_report report = {0};
     ritz_component c = {0};
@@ -377,7 +365,7 @@ static ritz_status import_and_free(const ritz_import_request *request)
 static void no_allocation_failure_leaks(void **)
 {
     const ritz_import_request request = {
-        .mass = put_diagonal("m.mtx", 6),
+        .mass = put_diagonal("m.mtx", 6, NULL),
         .rows = "126",
         .input_matrix = put_entries("b.mtx", 6, 2, 2, "1 1 9\n2 2 1\n"),
         .output_matrix = put_entries("c.mtx", 1, 6, 1, "1 2 9\n"),
