@@ -5,7 +5,7 @@
 #ifndef RITZ_CHECK_CHECK_H
 #define RITZ_CHECK_CHECK_H
 
-#include "linear/general.h"
+#include "linear/resolvent.h"
 #include "model/modal.h"
 
 #include <ritz/check.h>

@@ -11,6 +11,7 @@
 #include "base/tolerances.h"
 #include "check/check.h"
 #include "linear/general.h"
+#include "linear/resolvent.h"
 #include "linear/search.h"
 
 #include <lapacke.h>

@@ -1,5 +1,6 @@
 #include "linear/search.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -54,6 +55,85 @@ ritz_status ritz_curve_between(const ritz_curve *curve, double within,
         }
     }
     *most = fmax(at_a, at_b);
+    return RITZ_OK;
+}
+
+/* The golden sections of a bracket. */
+static double lower_section(const ritz_bracket *s)
+{
+    return s->high - RITZ_GOLDEN * (s->high - s->low);
+}
+
+static double upper_section(const ritz_bracket *s)
+{
+    return s->low + RITZ_GOLDEN * (s->high - s->low);
+}
+
+/* Where the next value is needed; false if the bracket is short enough. */
+static bool advance_bracket(ritz_bracket *s, double within, double **at,
+                            double **value)
+{
+    const bool left = s->at_a > s->at_b;
+
+    if (!(s->high - s->low > within * s->high))
+        return false;
+    if (left) {
+        s->high = s->b;
+        s->b = s->a;
+        s->at_b = s->at_a;
+        s->a = lower_section(s);
+    } else {
+        s->low = s->a;
+        s->a = s->b;
+        s->at_a = s->at_b;
+        s->b = upper_section(s);
+    }
+    *at = left ? &s->a : &s->b;
+    *value = left ? &s->at_a : &s->at_b;
+    return true;
+}
+
+/* The first values, at both sections of each. */
+static ritz_status begin_brackets(const ritz_curves *curves, int64_t count,
+                                  ritz_bracket *bracket, double *at,
+                                  double *value)
+{
+    for (int64_t k = 0; k < count; k++) {
+        at[2 * k] = bracket[k].a = lower_section(&bracket[k]);
+        at[2 * k + 1] = bracket[k].b = upper_section(&bracket[k]);
+    }
+    RITZ_CHECK(curves->at(curves->state, 2 * count, at, value));
+    for (int64_t k = 0; k < count; k++) {
+        bracket[k].at_a = value[2 * k];
+        bracket[k].at_b = value[2 * k + 1];
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_curves_between(const ritz_curves *curves, double within,
+                                int64_t count, ritz_bracket *bracket)
+{
+    RITZ_OWN_ARRAY double *at = NULL, *value = NULL;
+    RITZ_OWN_ARRAY double **to = NULL;
+    int64_t due = 0;
+
+    RITZ_CHECK_NEW(at, 2 * count);
+    RITZ_CHECK_NEW(value, 2 * count);
+    RITZ_CHECK_NEW(to, count);
+    RITZ_CHECK(begin_brackets(curves, count, bracket, at, value));
+    do {
+        due = 0;
+        for (int64_t k = 0; k < count; k++) {
+            double *next = NULL;
+
+            if (!advance_bracket(&bracket[k], within, &next, &to[due]))
+                continue;
+            at[due++] = *next;
+        }
+        RITZ_CHECK(curves->at(curves->state, due, at, value));
+        for (int64_t k = 0; k < due; k++)
+            *to[k] = value[k];
+    } while (due > 0);
     return RITZ_OK;
 }
 

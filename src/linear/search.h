@@ -22,6 +22,27 @@ typedef struct ritz_curve {
 ritz_status ritz_curve_between(const ritz_curve *curve, double within,
                                double *low, double *high, double *most);
 
+/* Values at some frequencies, all at once. */
+typedef struct ritz_curves {
+    ritz_status (*at)(void *state, int64_t count, const double *hertz,
+                      double *value);
+    void *state;
+} ritz_curves;
+
+/* Two frequencies between which a peak is sought. */
+typedef struct ritz_bracket {
+    double low, high;
+    double a, b, at_a, at_b; /* inner points and their values: to work in */
+} ritz_bracket;
+
+/**
+ * As ritz_curve_between, of many brackets: a point of each at a time.
+ *
+ * @param[in,out] bracket  low and high; count of them
+ */
+ritz_status ritz_curves_between(const ritz_curves *curves, double within,
+                                int64_t count, ritz_bracket *bracket);
+
 /**
  * Among points and, by golden sections between neighbours, around those that
  * are higher than theirs and no lower than half the highest.

@@ -14,8 +14,9 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
-#include "linear/search.h"
+#include "linear/resolvent.h"
 #include "linear/split.h"
+#include "poles/peak.h"
 #include "poles/poles.h"
 
 #include <ritz/poles.h>
@@ -27,132 +28,51 @@
 #include <math.h>
 #include <stdio.h>
 
-/*
- * Peaks lie near poles: they are where the search begins, and a golden section
- * between neighbours ends it.
- */
-
 /* C (i w P - S)^-1 B + D. */
-typedef struct peak {
+typedef struct axis_response {
     ritz_resolvent resolvent;
-    ritz_dense D;       /* borrowed */
-    double _Complex *H; /* p x m, to work in */
-    double *sigma, *spare;
-    double w, value; /* the largest that was met, and where */
-} peak;
+    ritz_dense D; /* borrowed */
+} axis_response;
 
-/* Peaks that are followed between points, at most. */
-enum { MOST_PEAKS = 8 };
-
-static void peak_free(peak *s)
+static void axis_response_free(axis_response *r)
 {
-    ritz_resolvent_free(&s->resolvent);
-    RITZ_FREE(s->H, s->sigma, s->spare);
+    ritz_resolvent_free(&r->resolvent);
 }
 
-static ritz_status peak_at(void *state, double w, double *value)
+/* At points on the axis; those at infinity are last. */
+static ritz_status respond_at(void *state, int64_t count, const double *w,
+                              double _Complex *H)
 {
-    peak *s = state;
-    int m = s->resolvent.m, p = s->resolvent.p;
-    int info = 0;
+    const axis_response *r = state;
+    const int64_t size = r->D.nrow * r->D.ncol;
+    int64_t finite = 0;
+    RITZ_OWN_ARRAY double _Complex *z = NULL;
 
-    *value = 0.0;
-    if (m == 0 || p == 0)
-        return RITZ_OK;
-    for (int64_t k = 0; k < (int64_t)p * m; k++)
-        s->H[k] = s->D.val[k];
-    if (isfinite(w))
-        ritz_resolvent_add(&s->resolvent, ritz_complex(0.0, w), 0.0, s->H);
-    info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', p, m, s->H, p, s->sigma,
-                          NULL, 1, NULL, 1, s->spare);
-    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                   "singular values of a response were not found");
-    *value = s->sigma[0];
-    if (*value > s->value) {
-        s->value = *value;
-        s->w = w;
+    RITZ_CHECK_NEW(z, count);
+    for (int64_t k = 0; k < count * size; k++)
+        H[k] = r->D.val[k % size];
+    while (finite < count && isfinite(w[finite])) {
+        z[finite] = ritz_complex(0.0, w[finite]);
+        finite++;
     }
-    return RITZ_OK;
+    return ritz_resolvent_many(&r->resolvent, finite, z, H);
 }
 
-/* 0 and, for every pole, the frequency at which its own response peaks, or
-   its magnitude if it has no peak. */
-static ritz_status choose_frequencies(const peak *s, int64_t *count,
-                                      double **out)
+/* 0 and, for every pole, where its own response peaks. */
+static ritz_status search_peak(axis_response *r, ritz_peak *out)
 {
+    int64_t n = r->resolvent.n;
     RITZ_OWN_ARRAY double *w = NULL;
-    int64_t n = s->resolvent.n, kept = 0;
 
-    RITZ_CHECK_NEW(w, n + 2);
-    for (int64_t k = 0; k < n; k++) {
-        double _Complex pole = ritz_resolvent_pole(&s->resolvent, k);
-        double gap = cimag(pole) * cimag(pole) - creal(pole) * creal(pole);
-
-        w[k + 1] = gap > 0.0 ? sqrt(gap) : cabs(pole);
-    }
-    kept = ritz_sort_distinct(n + 1, w, RITZ_PEAK_PLACED);
-    w[kept] = 2.0 * w[kept - 1] + 1.0; /* the last bracket ends there */
-    *count = kept;
-    RITZ_MOVE(*out, w);
-    return RITZ_OK;
-}
-
-/* The largest value so far is kept in the peak. */
-static ritz_status climb_between(peak *s, double low, double high)
-{
-    const ritz_curve curve = {peak_at, s};
-    double most = 0.0;
-
-    return ritz_curve_between(&curve, RITZ_PEAK_PLACED, &low, &high, &most);
-}
-
-/* Index of the largest that was not yet taken, -1 if there is none. */
-static int64_t next_highest_point(int64_t count, const double *value)
-{
-    int64_t best = -1;
-
-    for (int64_t k = 0; k < count; k++)
-        if (value[k] >= 0.0 && (best < 0 || value[k] > value[best]))
-            best = k;
-    return best;
-}
-
-/*
- * Between a point and a neighbour on either side; a narrow peak is in the half
- * width around the point, whatever is between it and the next.
- */
-static ritz_status climb_around(peak *s, const double *w, int64_t k)
-{
-    double low = k > 0 ? w[k - 1] : w[k];
-    double high = w[k + 1];
-
-    RITZ_CHECK(climb_between(s, low, w[k]));
-    RITZ_CHECK(climb_between(s, w[k], high));
-    low = fmax(low, w[k] * 0.99);
-    high = fmin(high, w[k] * 1.01);
-    return climb_between(s, low, high);
-}
-
-static ritz_status peak_search(peak *s)
-{
-    RITZ_OWN_ARRAY double *w = NULL, *value = NULL;
-    double at_infinity = 0.0;
-    int64_t count = 0;
-
-    RITZ_CHECK(choose_frequencies(s, &count, &w));
-    RITZ_CHECK_NEW(value, count);
-    for (int64_t k = 0; k < count; k++)
-        RITZ_CHECK(peak_at(s, w[k], &value[k]));
-    RITZ_CHECK(peak_at(s, HUGE_VAL, &at_infinity));
-    for (int t = 0; t < MOST_PEAKS; t++) {
-        int64_t k = next_highest_point(count, value);
-
-        if (k < 0 || value[k] < RITZ_PEAK_WORTH * s->value)
-            break;
-        value[k] = -1.0;
-        RITZ_CHECK(climb_around(s, w, k));
-    }
-    return RITZ_OK;
+    *out = (ritz_peak){.outputs = r->D.nrow,
+                       .inputs = r->D.ncol,
+                       .respond = respond_at,
+                       .state = r};
+    RITZ_CHECK_NEW(w, n + 1);
+    for (int64_t k = 0; k < n; k++)
+        w[k + 1] = ritz_peak_of_pole(ritz_resolvent_pole(&r->resolvent, k));
+    return ritz_peak_find(out, ritz_sort_distinct(n + 1, w, RITZ_PEAK_PLACED),
+                          w);
 }
 
 /* Beyond this many states no Hamiltonian is made. */
@@ -274,17 +194,18 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
  * A change dA of the matrix moves the response by C R dA R B, R = (i w P -
  * S)^-1: rounding by eps (|S| + w |P|) |C R| |R B|.
  */
-static ritz_status find_rounding(peak *p, const stable *s, ritz_norm *out)
+static ritz_status find_rounding(axis_response *r, const stable *s,
+                                 ritz_norm *out)
 {
     double w = 2.0 * RITZ_PI * out->hertz,
            size = ritz_general_size(&s->split.S);
     double right = 0.0, left = 0.0;
 
-    if (!isfinite(w) || p->resolvent.n == 0)
+    if (!isfinite(w) || r->resolvent.n == 0)
         return RITZ_OK;
     if (s->split.P.val)
         size += w * ritz_general_size(&s->split.P);
-    RITZ_CHECK(ritz_resolvent_sides(&p->resolvent, ritz_complex(0.0, w), &right,
+    RITZ_CHECK(ritz_resolvent_sides(&r->resolvent, ritz_complex(0.0, w), &right,
                                     &left));
     out->rounding = DBL_EPSILON * s->size * size * right * left;
     return RITZ_OK;
@@ -292,22 +213,19 @@ static ritz_status find_rounding(peak *p, const stable *s, ritz_norm *out)
 
 static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
 {
-    RITZ_OWN(peak) p = {.D = s->D};
-    int64_t least = s->B.ncol < s->C.nrow ? s->B.ncol : s->C.nrow;
+    RITZ_OWN(axis_response) r = {.D = s->D};
+    ritz_peak p = {0};
     double direct = 0.0, w = 0.0, value = 0.0;
     bool found = false;
 
     RITZ_CHECK(ritz_resolvent_new(&s->split.S, &s->split.P, &s->B, &s->C,
-                                  &p.resolvent));
-    RITZ_CHECK_NEW(p.H, s->B.ncol * s->C.nrow);
-    RITZ_CHECK_NEW(p.sigma, least);
-    RITZ_CHECK_NEW(p.spare, least);
-    RITZ_CHECK(peak_search(&p));
+                                  &r.resolvent));
+    RITZ_CHECK(search_peak(&r, &p));
     w = p.w;
-    if (p.resolvent.n > 0 && p.resolvent.n <= MOST_STATES && p.value > 0.0)
+    if (r.resolvent.n > 0 && r.resolvent.n <= MOST_STATES && p.value > 0.0)
         RITZ_CHECK(bisect_peak(s, tolerance, &w, &value, &found));
     if (found && isfinite(w))
-        RITZ_CHECK(peak_at(&p, w, &direct));
+        RITZ_CHECK(ritz_peak_at(&p, 1, &w, &direct));
     snprintf(out->engine, sizeof out->engine,
              found ? "SLICOT AB13DD" : "search at poles, a lower bound");
     out->lower = s->size * p.value;
@@ -317,7 +235,7 @@ static ritz_status find_peak(const stable *s, double tolerance, ritz_norm *out)
         out->value = s->size * value;
         out->hertz = w / (2.0 * RITZ_PI);
     }
-    return find_rounding(&p, s, out);
+    return find_rounding(&r, s, out);
 }
 
 static ritz_status check_tolerance(double tolerance)
@@ -358,9 +276,23 @@ ritz_status ritz_norm_infinity_schur(const ritz_state_space *model,
     return norm_infinity(&s, tolerance, out);
 }
 
-static ritz_status norm_two(const stable *s, ritz_norm *out)
+static void tell_two(const stable *s, const ritz_dense *CF, ritz_norm *out)
 {
-    RITZ_OWN(ritz_dense) F = {0}, CF = {0};
+    *out = (ritz_norm){.value = s->size * ritz_general_size(CF)};
+    out->lower = out->value;
+    snprintf(out->engine, sizeof out->engine, "SLICOT %s",
+             s->split.P.val ? "SG03BD" : "SB03OD");
+}
+
+/*
+ * F is an upper triangle: of blocks side by side, its last part is that of the
+ * last block alone.
+ */
+static ritz_status norm_two(const stable *s, int64_t last, ritz_norm *out,
+                            ritz_norm *part)
+{
+    const int64_t n = s->B.nrow, p = s->C.nrow;
+    RITZ_OWN(ritz_dense) F = {0}, CF = {0}, C2 = {0}, F2 = {0}, CF2 = {0};
 
     RITZ_REFUSE_IF(
         ritz_dense_max(&s->D) > 0.0, RITZ_ERR_ARGUMENT,
@@ -369,10 +301,13 @@ static ritz_status norm_two(const stable *s, ritz_norm *out)
     RITZ_CHECK_IN("H2 norm", ritz_general_hammarling(&s->split.S, &s->split.P,
                                                      false, &s->B, &F));
     RITZ_CHECK(ritz_dense_mul(&s->C, &F, &CF));
-    *out = (ritz_norm){.value = s->size * ritz_general_size(&CF)};
-    out->lower = out->value;
-    snprintf(out->engine, sizeof out->engine, "SLICOT %s",
-             s->split.P.val ? "SG03BD" : "SB03OD");
+    tell_two(s, &CF, out);
+    if (!part)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_block(&s->C, 0, p, n - last, last, &C2));
+    RITZ_CHECK(ritz_dense_block(&F, n - last, last, n - last, last, &F2));
+    RITZ_CHECK(ritz_dense_mul(&C2, &F2, &CF2));
+    tell_two(s, &CF2, part);
     return RITZ_OK;
 }
 
@@ -381,13 +316,14 @@ ritz_status ritz_norm_two(const ritz_state_space *model, ritz_norm *out)
     RITZ_OWN(stable) s = {0};
 
     RITZ_CHECK_IN("H2 norm", take_stable(model, &s));
-    return norm_two(&s, out);
+    return norm_two(&s, 0, out, NULL);
 }
 
-ritz_status ritz_norm_two_schur(const ritz_state_space *model, ritz_norm *out)
+ritz_status ritz_norm_two_schur(const ritz_state_space *model, int64_t last,
+                                ritz_norm *out, ritz_norm *part)
 {
     RITZ_OWN(stable) s = {0};
 
     RITZ_CHECK_IN("H2 norm", copy_stable(model, &s));
-    return norm_two(&s, out);
+    return norm_two(&s, last, out, part);
 }

@@ -362,7 +362,13 @@ void ritz_channel_free(ritz_channel *channel);
 ritz_status ritz_norm_infinity_schur(const ritz_state_space *model,
                                      double tolerance, ritz_norm *out);
 
-/** @return RITZ_ERR_ARGUMENT if D is not 0 */
-ritz_status ritz_norm_two_schur(const ritz_state_space *model, ritz_norm *out);
+/**
+ * @param[in]  last  states at the end that no other state acts on or is acted
+ *                   on by
+ * @param[out] part  the norm of what these alone respond; may be NULL
+ * @return RITZ_ERR_ARGUMENT if D is not 0
+ */
+ritz_status ritz_norm_two_schur(const ritz_state_space *model, int64_t last,
+                                ritz_norm *out, ritz_norm *part);
 
 #endif

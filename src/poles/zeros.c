@@ -1,7 +1,7 @@
 /* Zeros: found from the pencil, made exact where the model says more. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "linear/general.h"
+#include "linear/resolvent.h"
 #include "model/modal.h"
 #include "poles/poles.h"
 

@@ -168,7 +168,8 @@ typedef struct ritz_state_pair {
     int64_t num_unstable[2];    /* poles that are not left of the axis */
     bool large;     /* sparse, and too many states for dense matrices */
     bool has_norms; /* both have as many of those; not if large */
-    ritz_state_space difference; /* of the stable ones, if has_norms */
+    ritz_state_space difference; /* of the stable ones, the full model's states
+                                    last, if has_norms */
     bool has_gain;               /* neither has a pole at 0 */
     ritz_dense gain[2];          /* static */
     ritz_norm full,

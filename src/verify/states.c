@@ -211,7 +211,7 @@ static ritz_status open_pair(const ritz_state_space *full,
             take_stable(&p->model[k], &p->stable[k], &p->num_unstable[k]));
     p->has_norms = p->num_unstable[0] == p->num_unstable[1];
     if (p->has_norms)
-        RITZ_CHECK(ritz_state_space_difference(&p->stable[0], &p->stable[1],
+        RITZ_CHECK(ritz_state_space_difference(&p->stable[1], &p->stable[0],
                                                &p->difference));
     return RITZ_OK;
 }
@@ -332,8 +332,10 @@ ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
                        "not 0), there is no H2 norm");
         return RITZ_OK;
     }
-    RITZ_CHECK_IN("full model", ritz_norm_two_schur(&p->stable[0], &full));
-    RITZ_CHECK_IN("difference", ritz_norm_two_schur(&p->difference, &error));
+    RITZ_CHECK_IN("difference",
+                  ritz_norm_two_schur(&p->difference,
+                                      ritz_state_space_order(&p->stable[0]),
+                                      &error, &full));
     if (full.value > 0.0)
         out->value = error.value / full.value;
     return RITZ_OK;
