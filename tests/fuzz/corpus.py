@@ -215,11 +215,11 @@ STATE_SPACE = {
 # --- scenes, signals, options -----------------------------------------------------
 
 SCENE = {
-    "hinge": "# at: clock=30,slide.2=0.5\n"
+    "hinge": "# at: clock=30\n"
              "scene: rotor and stator\ncomponents:\n"
              "  stator: {model: stator.h5, basis: craig-bampton, modes: 6}\n"
              "  rotor: {model: rotor.h5, basis: rubin, up_to_hz: 30, "
-             "attach: bearing, shift_hz: [0, 5], damping: modal 0.01}\n"
+             "attach: [bearing], damping: modal 0.01}\n"
              "joints:\n"
              "  - {name: clock, between: [stator/top, rotor/bearing], "
              "type: hinge, axis: [0, 0, 1], angles_deg: [0, 60, 120]}\n"
@@ -231,19 +231,35 @@ SCENE = {
              "select: {by: hankel, tolerance: 1.0e-3}\n"
              "augment: {level: system, attached: [torque]}\n"
              "extraneous: out-of-band\n",
-    "many": "scene: arms\ncomponents:\n  a: {model: a.h5}\n"
+    "many": "# at: wrist=1,wrist.2=2,slide=0.5\n"
+            "scene: arms\ncomponents:\n  a: {model: a.h5}\n"
             "  b: {model: b.h5, basis: rigid}\njoints:\n"
             "  - {name: wrist, between: [a/p, b/p], type: universal, "
-            "axis: [[1, 0, 0], [0, 1, 0]], angles_deg: [[0, 1], [0, 2]]}\n"
+            "axes: [[1, 0, 0], [0, 1, 0]], angles_deg: [0, 1], "
+            "angles2_deg: [0, 2], state: [caged, free], stiffness: [1, 0]}\n"
             "  - {name: slide, between: [a/q, b/q], type: slider, "
             "axis: [1, 0, 0], positions: [0, 0.5]}\n"
             "  - {name: mount, between: [a/r, b/r], type: bushing, "
             "stiffness: [1, 1, 1, 1, 1, 1], damping: [0, 0, 0, 0, 0, 0]}\n"
             "  - {name: weld, between: [a/s, b/s], type: rigid, "
             "offset: [0, 0, 1]}\n"
-            "configurations:\n  - {slide: 0.5, wrist: [0, 2]}\n"
+            "configurations:\n  - {slide: 0.5, wrist: 1, wrist.2: 2}\n"
+            "inputs: [{name: torque, at: a/p, component: [1, 2]}]\n"
+            "outputs: [{name: tip, at: b/q, component: 3, quantity: velocity}]\n"
+            "band_hz: [0, 10]\n"
+            "damping: {bands: [[0, 5, 0.002], [5, 20, 0.005]]}\n"
             "select: {modes: [1, 2, 4]}\n"
-            "composite: {tolerance: 1e-9, reference: [{slide: 0}]}\n",
+            "augment: {level: component, attached: auto, "
+            "among: [outputs, a/p:3], tolerance: 0.01}\n"
+            "extraneous: {fate: compact, tolerance: 1.0e-3}\n"
+            "composite: {tolerance: 1.0e-9, reference: "
+            "[{slide: 0.5, wrist: 1, wrist.2: 2}]}\n",
+    "plane": "scene: arm\nplane: xy\ncomponents: {a: {model: a.h5}, "
+             "b: {model: b.h5, basis: krylov, modes: 4}}\njoints: [{name: "
+             "elbow, between: [a/p, b/p], type: hinge, axis: [0, 0, 1]}]\n"
+             "damping: {rayleigh_fit: [[1, 0.01], [10, 0.02]]}\n"
+             "inputs: [{name: u, at: a/p, component: 6}]\n"
+             "select: {by: krylov, vectors: 6, start: both}\n",
     "anchors": "scene: &x s\ncomponents: {a: {model: *x}}\n",
 }
 SIGNAL = {
@@ -298,6 +314,114 @@ TRACKS = {
     "two": HEAD + "1\ta=0,b=1\t1\t0.5\tnan\n1\ta=1,b=2\t1\t0.6\t1\n",
 }
 
+# --- command lines: words, then files; models are samples, see fuzz_commands.c ----
+
+ROWS = "".join(f"{k}\t{0.5 * k}\n" for k in range(40))
+INITIAL = {
+    "mode": "mode:3*0.1\ntorque=step*2\n",
+    "file": f"F\nforce at the tip=sine:3*1e-3\n>F\n# value, rate\n{ROWS}",
+    "values": "F\n>F\n" + "1.5;\r\n" * 40,
+    "signal": "mode:1\ntorque=S\nforce at the tip=chirp:0.1,20\n"
+              ">S\n0 0\n0.5 1\n",
+}
+TRACK_ROWS = "".join(
+    f"{m}\tclock={60 * c},cone=0\t{m}\t{m}.5\t{'nan' if c == 0 else 0.99}\n"
+    for m in (1, 2, 3) for c in (0, 1, 2))
+RANK_TRACKS = {
+    "all": HEAD + TRACK_ROWS,
+    "missing": HEAD + TRACK_ROWS[:120],
+    "other": HEAD + "1\tclock=0,cone=0\t1\t0.5\tnan\n7\tat\t9\t1\t1\n",
+}
+
+
+def command(*words, **files):
+    lines = [*words, *(f">{name}\n{text}" for name, text in files.items())]
+    return "\n".join(lines) + "\n"
+
+
+COMMANDS = {
+    "simulate": command("ritz-simulate", "r.h5", "--seconds=10", "-o", "o",
+                        "--input", "torque=step", "--damping", "modal 0.01",
+                        "--damper", "strut=10*3", "--band-hz", "0,10",
+                        "--hold=zero", "--every", "4"),
+    "poles-scan": command("ritz-poles", "c.h5", "--scan",
+                          "strut=0:10:0.5*1:2:1", "--mode", "3", "--tsv"),
+    "poles-scan-one": command("ritz-poles", "c.h5", "--scan=strut=0:10:1",
+                              "--scan=strut=*0:1e3:10"),
+    "poles-tune": command("ritz-poles", "c.h5", "--tune", "each=0.1:10*1:20",
+                          "--place", "2", "--among", "3", "--low-pass",
+                          "10:6"),
+    "poles-norm": command("ritz-poles", "s.h5", "--at", "clock=60,cone=0",
+                          "--norm", "--low-pass=10:6", "--json"),
+    "rank": command("ritz-rank", "s.h5", "--by=gregory,hankel", "--at",
+                    "clock=120,cone=0", "--input-weights", "torque=4",
+                    "--output-weights", "gyro=2,encoder=1", "--damping",
+                    "modal 0.01", "--damping", "bands 0 5 0.01 5 20 0.02",
+                    "--record", "R"),
+    "rank-compare": command("ritz-rank", "--compare", "k.h5", "k.h5",
+                            "--top", "3"),
+    "frf": command("ritz-frf", "r.h5", "--to-hz", "20", "--log", "-o", "o",
+                   "--singular-values", "--input-size", "torque=2",
+                   "--points", "50"),
+    "frf-loop": command("ritz-frf", "r.h5", "--to-hz", "20", "-o", "o",
+                        "--controller", "x.h5", "--connect", "gyro=torque",
+                        "--connect", "encoder=force at the tip",
+                        "--feedback=positive"),
+    "basis": command("ritz-basis", "loaded-interface", "c.h5",
+                     "--attach", "tip,base", "--neighbour",
+                     "tip=c.h5:base", "--modes", "6", "-o", "o"),
+    "basis-attach": command("ritz-basis", "-oo", "rubin", "c.h5", "--attach=",
+                            "--up-to-hz=30", "--loads", "inputs,outputs"),
+    "export": command("ritz-export", "c.h5", "--to=vtu", "--modes", "1-6,9",
+                      "-o", "o"),
+    "export-matrix": command("ritz-export", "r.h5", "--to", "matrix-market",
+                             "--matrix", "K,M", "-oo"),
+    "export-bodies": command("ritz-export", "s.h5", "--to", "xdmf", "--at",
+                             "clock=0,cone=0", "--component", "stator=r.h5",
+                             "--component", "rotor=r.h5", "-oo"),
+    "verify": command("ritz-verify", "c.h5", "r.h5", "-o", "o",
+                      "--limit-frequency", "1e-3", "--band-hz", "0,10"),
+    "reduce": command("ritz-reduce", "c.h5", "b.h5", "-qoo", "--without-basis"),
+    "fit": command("ritz-fit", "F", "--tolerance",
+                   "frequency=1e-3,mac=0.99", "--methods",
+                   "craig-bampton,rubin,compare", "-oo", F=SCENE["hinge"]),
+    "compare": command("ritz-compare", "F", "--tolerances", "1e-9,1e-6",
+                       "--extraneous=out-of-band", "-oo", "--components", "p-",
+                       "--report", "R", F=SCENE["hinge"]),
+    "assemble": command("ritz-assemble", "F", "--at", "slide=0.5,wrist=1",
+                        "-oo", F=SCENE["many"]),
+    "import": command("ritz-import", "--stiffness=K", "--mass", "K", "--rows",
+                      "1", "--input", "u=3:1,2:1*-0.5", "--output-at",
+                      "y=3:1*2@1e-3", "--port", "tip=3:1", "--damper",
+                      "strut=1:1,3:1*4*0.5", "--units", "N mm", "-oo", K=K),
+    "info": command("ritz-info", "--json", "F", "--", "c.h5", F=OUTPUT4),
+    "check": command("ritz-check", "r.h5", "--order=3"),
+    "list": command("ritz-basis", "--list"),
+    "help": command("ritz-frf", "--help"),
+    "wrong": command("ritz-poles", "--dampr", "x"),
+    "long-low-pass": command("ritz-poles", "c.h5", "--norm", "--low-pass",
+                             100 * "1" + ":" + 100 * "2"),
+    "long-scan": command("ritz-poles", "c.h5", "--scan",
+                         "strut=1:2:3:4:5:6:7*" + 9 * "8:" + "9"),
+    "long-neighbour": command("ritz-basis", "loaded-interface", "c.h5",
+                              "--neighbour",
+                              80 * "p" + "=c.h5:" + 80 * "q", "-oo",
+                              "--modes=6"),
+    "long-names": command("ritz-rank", "s.h5", "--by", 80 * "n" + ",hankel",
+                          "--at", 70 * "c" + "=" + 70 * "0",
+                          "--input-weights", 80 * "t" + "=1"),
+    "long-loop": command("ritz-frf", "r.h5", "--to-hz", "20", "-o", "o",
+                         "--controller", "x.h5", "--connect",
+                         80 * "g" + "=" + 80 * "t"),
+    "long-bodies": command("ritz-compare", "F", "-oo", "--components",
+                           300 * "p", "--extraneous", 80 * "k",
+                           F=SCENE["hinge"]),
+    "long-input": command("ritz-import", "--stiffness=K", "--rows", "1",
+                          "--input", 80 * "u" + "=" + "1:1*2,9999:6*-1e300",
+                          "-oo", K=K),
+    "short": command("ritz-poles", "c.h5", "-qhx", "--modes=1e3"),
+}
+
 # --- HDF5: a letter for the kind, then commands ------------------------------------
 
 CONTAINER = {letter: letter.encode() for letter in "abcdefghABCDEFGH"}
@@ -308,11 +432,12 @@ CONTAINER.update({
         "attribute": b"\x00\x01\x02\x01\x01\x00\x01\x0a",
         "member": b"\x04\x02\x00\x02\x03\x03\x04\x01\x02\x03\x04",
         "absent": b"\x06\x03", "other": b"\x03\x04\x07"}.items()})
-MAT_HDF5 = {
+MAT_HDF5 = {f"{name}-{k}": bytes([k]) + edits for k in range(5)
+            for name, edits in {
     "sound": b"", "value": b"\x05\x00\x00\x01\x00\x09",
     "member": b"\x04\x02\x00\x02\x03\x03\x04\x01\x02\x03\x04",
     "attribute": b"\x02\x01\x00\x01\x09\x00\x01\x0a", "absent": b"\x03\x03",
-}
+}.items()}
 
 CORPUS = {
     "output4": {"dense": OUTPUT4, "sparse": OUTPUT4_SPARSE, "big": OUTPUT4_BIG,
@@ -325,6 +450,7 @@ CORPUS = {
     "deck": DECK, "import": IMPORT, "state-space": STATE_SPACE,
     "container": CONTAINER, "scene": SCENE, "signal": SIGNAL, "texts": TEXTS,
     "claims": CLAIMS, "records": RECORDS, "tracks": TRACKS,
+    "commands": COMMANDS, "initial": INITIAL, "rank-tracks": RANK_TRACKS,
 }
 
 

@@ -27,6 +27,11 @@ static const fuzz_target targets[] = {
     {"claims", "claims files; no tool is run", fuzz_claims},
     {"records", "files of --record", fuzz_records},
     {"tracks", "tables of --tracks, as charts draw them", fuzz_tracks},
+    {"commands", "command lines, with files that they name", fuzz_commands},
+    {"initial", "values of --initial and --input, and their files",
+     fuzz_initial},
+    {"rank-tracks", "tables of --tracks, as ritz-rank takes them",
+     fuzz_rank_tracks},
 };
 
 enum { NUM_TARGETS = sizeof targets / sizeof *targets };
@@ -39,17 +44,6 @@ void fuzz_judge(ritz_status status)
         return;
     fprintf(stderr, "status %d without a sentence\n", (int)status);
     abort();
-}
-
-void fuzz_store(const char *name, const char *bytes, int64_t size)
-{
-    FILE *file = fopen(name, "wb");
-    bool good = file && fwrite(bytes, 1, (size_t)size, file) == (size_t)size;
-
-    if (file && fclose(file) == 0 && good)
-        return;
-    fprintf(stderr, "cannot write '%s'\n", name);
-    exit(1);
 }
 
 static void list_targets(void)

@@ -28,11 +28,20 @@ fuzz_run fuzz_import, fuzz_state_space;
 fuzz_run fuzz_scene, fuzz_signal, fuzz_texts;
 fuzz_run fuzz_claims, fuzz_records, fuzz_tracks;
 fuzz_run fuzz_container, fuzz_mat_hdf5;
+fuzz_run fuzz_commands, fuzz_initial, fuzz_rank_tracks;
 
 /** A reader ended so: abort unless it worked or says why not. */
 void fuzz_judge(ritz_status status);
 
 /** Write a file into the working folder, which replaces one of that name. */
 void fuzz_store(const char *name, const char *bytes, int64_t size);
+
+/** Write the files of a text that begins with '>', and take away those of a text
+ * again: they are no part of the next input. */
+void fuzz_store_files(const char *text);
+void fuzz_remove_files(const char *text);
+
+/** Remove the files of a folder. */
+void fuzz_empty(const char *folder);
 
 #endif

@@ -27,7 +27,6 @@ enum {
     MOST_BYTES = 4096, /* of values that are written */
     PATH_SIZE = 256,
     MOST_RANK = 4,
-    MOST_READ = 8,    /* matrices of one file */
     USER_BLOCK = 512, /* of MAT 7.3 */
 };
 
@@ -237,14 +236,11 @@ static void replace_attribute(fuzz_tape *tape, hid_t file, const char *path)
         H5Oclose(object);
 }
 
-static void edit_file(fuzz_tape *tape, hid_t file)
+static void edit_file(fuzz_tape *tape, const fuzz_objects *all, hid_t file)
 {
-    static fuzz_objects all;
-    const char *path = NULL, *other = NULL;
+    const char *path = take_object(tape, all);
+    const char *other = NULL;
 
-    all.count = 0;
-    H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, add_object, &all);
-    path = take_object(tape, &all);
     switch (take_byte(tape) % 7) {
     case 0:
         patch_values(tape, file, path);
@@ -259,12 +255,12 @@ static void edit_file(fuzz_tape *tape, hid_t file)
         H5Ldelete(file, path, H5P_DEFAULT);
         break;
     case 4: /* another member in its place */
-        other = take_object(tape, &all);
+        other = take_object(tape, all);
         H5Ldelete(file, path, H5P_DEFAULT);
         H5Lcreate_hard(file, other, file, path, H5P_DEFAULT, H5P_DEFAULT);
         break;
     case 5:
-        other = take_object(tape, &all);
+        other = take_object(tape, all);
         H5Ldelete(file, path, H5P_DEFAULT);
         H5Lcreate_soft(other, file, path, H5P_DEFAULT, H5P_DEFAULT);
         break;
@@ -274,15 +270,47 @@ static void edit_file(fuzz_tape *tape, hid_t file)
     }
 }
 
-/* Do with a file what the tape says. */
-static void edit(fuzz_tape *tape, const char *path)
+/* --- sound files ---------------------------------------------------------- */
+
+/* A file as HDF5 wrote it once: that takes longer than to read it. */
+typedef struct fuzz_image {
+    int64_t size;
+    char *bytes; /* NULL: not written yet */
+    fuzz_objects objects;
+} fuzz_image;
+
+/*
+ * HDF5 takes blocks of half a megabyte and more for each file and each
+ * conversion, and frees them at once: to map and clear them took most of the
+ * time. Without limits it keeps them.
+ */
+static bool keep_image(const char *path, fuzz_image *image)
 {
     hid_t file = -1;
 
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    H5set_free_list_limits(-1, -1, -1, -1, -1, -1);
+    file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (file < 0)
+        return false;
+    H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, add_object, &image->objects);
+    H5Fclose(file);
+    return image->objects.count > 0 &&
+           ritz_bytes_read(path, &image->size, &image->bytes) == RITZ_OK;
+}
+
+/* The file, with which is done what the tape says. */
+static void put_edited(fuzz_tape *tape, const fuzz_image *image,
+                       const char *path)
+{
+    hid_t file = -1;
+
+    fuzz_store(path, image->bytes, image->size);
+    if (tape->at == tape->end)
+        return;
     file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     for (int k = 0; file >= 0 && k < MOST_EDITS && tape->at < tape->end; k++)
-        edit_file(tape, file);
+        edit_file(tape, &image->objects, file);
     if (file >= 0)
         H5Fclose(file);
 }
@@ -303,15 +331,20 @@ static void judge_ids(void)
 void fuzz_container(const char *bytes, int64_t size)
 {
     static const char path[] = "container.h5", again[] = "again.h5";
+    static fuzz_image images[2][SAMPLE_KINDS];
     const ritz_stamp stamp = {.command = "ritz-verb"};
-    const sample_kind *kind = &sample_kinds[(*bytes & 31) % SAMPLE_KINDS];
+    const int which = (*bytes & 31) % SAMPLE_KINDS;
+    const sample_kind *kind = &sample_kinds[which];
+    const bool full = *bytes & 32;
+    fuzz_image *image = &images[full][which];
     fuzz_tape tape = {bytes + (size > 0), bytes + size};
     RITZ_OWN(ritz_summary) summary = {0};
 
-    remove(path);
-    if ((*bytes & 32 ? kind->make : kind->make_bare)(path, &stamp) != RITZ_OK)
+    if (!image->bytes &&
+        ((full ? kind->make : kind->make_bare)(path, &stamp) != RITZ_OK ||
+         !keep_image(path, image)))
         return;
-    edit(&tape, path);
+    put_edited(&tape, image, path);
     fuzz_judge(ritz_container_summary(path, &summary));
     judge_ids();
     fuzz_judge(kind->copy(path, again, &stamp));
@@ -395,7 +428,8 @@ static void make_mat(const char *path)
     H5Pclose(plan);
 }
 
-static void read_mat(const char *path)
+/* What the file holds, and one matrix of it: each is another pass. */
+static void read_mat(const char *path, unsigned which)
 {
     ritz_foreign file = {0};
     ritz_status status = ritz_foreign_open(path, &file);
@@ -403,29 +437,31 @@ static void read_mat(const char *path)
     if (status == RITZ_OK)
         status = ritz_foreign_list(&file);
     fuzz_judge(status);
-    for (int64_t k = 0;
-         status == RITZ_OK && k < file.listing.count && k < MOST_READ; k++) {
+    if (status == RITZ_OK && file.listing.count > 0) {
         RITZ_OWN(ritz_matrix) matrix = {0};
 
-        fuzz_judge(ritz_foreign_take(&file, k, &matrix));
+        fuzz_judge(
+            ritz_foreign_take(&file, which % file.listing.count, &matrix));
     }
     ritz_foreign_free(&file);
 }
 
+/* The first byte says which matrix is read. */
 void fuzz_mat_hdf5(const char *bytes, int64_t size)
 {
     static const char path[] = "v73.mat";
     static const char head[] = "MATLAB 7.3 MAT-file";
+    static fuzz_image image;
     fuzz_tape tape = {bytes, bytes + size};
-    FILE *file = NULL;
+    const unsigned which = take_byte(&tape);
 
-    make_mat(path);
-    edit(&tape, path);
-    file = fopen(path, "r+b");
-    if (!file)
-        return;
-    (void)fwrite(head, 1, sizeof head - 1, file);
-    (void)fclose(file);
-    read_mat(path);
+    if (!image.bytes) {
+        make_mat(path);
+        if (!keep_image(path, &image))
+            return;
+        memcpy(image.bytes, head, sizeof head - 1);
+    }
+    put_edited(&tape, &image, path);
+    read_mat(path, which);
     judge_ids();
 }

@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_FILES = 6, MOST_TEXTS = 8, NAME_SIZE = 16 };
+enum { MOST_TEXTS = 8 };
 
 /* An option; texts of a list are counted. */
 typedef struct fuzz_option {
@@ -89,7 +89,6 @@ typedef struct fuzz_reading {
     const fuzz_option *options;
     int num_lists;
     const char *list[MOST_TEXTS][MOST_TEXTS];
-    int num_files;
 } fuzz_reading;
 
 static void take_list(fuzz_reading *reading, const fuzz_option *option,
@@ -127,29 +126,6 @@ static void take_option(fuzz_reading *reading, char *line)
     }
 }
 
-/* ">NAME", then what the file holds; returns what follows it. */
-static char *take_file(fuzz_reading *reading, char *line)
-{
-    char name[NAME_SIZE + 1] = "";
-    size_t length = strspn(line + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmno"
-                                     "pqrstuvwxyz0123456789");
-    char *text = strchr(line, '\n');
-    char *end = text ? strstr(text, "\n>") : NULL;
-
-    if (!text)
-        return NULL;
-    memcpy(name, line + 1, length < NAME_SIZE ? length : NAME_SIZE);
-    text++;
-    end = end ? end + 1 : text + strlen(text);
-    if (end < text)
-        end = text;
-    if (*name && reading->num_files < MOST_FILES) {
-        reading->num_files++;
-        fuzz_store(name, text, end - text);
-    }
-    return *end ? end : NULL;
-}
-
 static void take_text(fuzz_reading *reading, char *text)
 {
     char *line = text;
@@ -162,25 +138,8 @@ static void take_text(fuzz_reading *reading, char *text)
         take_option(reading, line);
         line = end ? end + 1 : NULL;
     }
-    while (line)
-        line = take_file(reading, line);
-}
-
-/* Files of the input before are no part of this one. */
-static void remove_files(const char *text)
-{
-    char name[NAME_SIZE + 1];
-
-    for (const char *at = strchr(text, '>'); at; at = strchr(at + 1, '>')) {
-        size_t length = strcspn(at + 1, "\n");
-
-        if (length > NAME_SIZE)
-            length = NAME_SIZE;
-        memcpy(name, at + 1, length);
-        name[length] = '\0';
-        if (*name && !strchr(name, '/') && *name != '.')
-            remove(name);
-    }
+    if (line)
+        fuzz_store_files(line);
 }
 
 void fuzz_import(const char *bytes, int64_t size)
@@ -196,7 +155,7 @@ void fuzz_import(const char *bytes, int64_t size)
         return;
     take_text(&reading, text);
     fuzz_judge(ritz_import(&request, &component, &report));
-    remove_files(bytes);
+    fuzz_remove_files(bytes);
     free(text);
 }
 
@@ -212,6 +171,6 @@ void fuzz_state_space(const char *bytes, int64_t size)
     take_text(&reading, text);
     if (request.matrices)
         fuzz_judge(ritz_import_state_space(&request, &space));
-    remove_files(bytes);
+    fuzz_remove_files(bytes);
     free(text);
 }

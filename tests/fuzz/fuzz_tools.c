@@ -6,31 +6,15 @@
 #include "claims/claims.h"
 #include "cli/records.h"
 
-#include <dirent.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* --- claims --------------------------------------------------------------- */
 
 /* The folder of commands, which claims write files into. */
 static const char folder[] = "claims";
-
-static void empty_folder(void)
-{
-    char path[PATH_MAX];
-    DIR *listing = opendir(folder);
-    const struct dirent *entry = NULL;
-
-    while (listing && (entry = readdir(listing))) {
-        (void)snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        unlink(path);
-    }
-    if (listing)
-        closedir(listing);
-}
 
 /* The answer of the last command, as if one had been run. */
 static json_t *make_answer(void)
@@ -60,7 +44,7 @@ void fuzz_claims(const char *bytes, int64_t size)
     cli_table_free(&run.said);
     json_decref(state.list);
     json_decref(state.answer);
-    empty_folder();
+    fuzz_empty(folder);
 }
 
 /* --- records -------------------------------------------------------------- */

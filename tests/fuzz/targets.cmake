@@ -9,20 +9,34 @@ check_c_source_compiles("
 unset(CMAKE_REQUIRED_FLAGS)
 set(script ${CMAKE_CURRENT_LIST_DIR}/fuzz.sh)
 if(NOT compiler_has_fuzzer)
+    add_custom_target(ritz_fuzz) # asked for by bootstrap; the script says more
     ritz_test(fuzz fuzz sh ${script} ${PROJECT_BINARY_DIR} 0)
     return()
 endif()
 
 add_subdirectory(fuzz)
 file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.c)
+# rows of targets and names of stand-ins are read from them
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
 add_executable(ritz_fuzz ${files} $<TARGET_OBJECTS:ritz_readers>)
 target_include_directories(ritz_fuzz PRIVATE ${PROJECT_SOURCE_DIR}
     unit unit/fixtures)
 target_compile_options(ritz_fuzz PRIVATE -g -O1
     -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
-# what tracks are read for is not drawn
+# What is read is neither drawn nor computed with, and a tool that exits comes
+# back: each __wrap_NAME of these files stands in for a NAME.
+set(wrapped)
+foreach(file ${files})
+    file(STRINGS ${file} lines REGEX "__wrap_[a-z]|^(PASSES|REFUSES)")
+    foreach(line ${lines})
+        if(line MATCHES "(__wrap_|^PASSES.|^REFUSES.)([a-z_0-9]+)")
+            list(APPEND wrapped -Wl,--wrap=${CMAKE_MATCH_2})
+        endif()
+    endforeach()
+endforeach()
+list(REMOVE_DUPLICATES wrapped)
 target_link_options(ritz_fuzz PRIVATE -fsanitize=fuzzer,address,undefined
-    -Wl,--wrap=picture_draw -fuse-ld=bfd) # gold warns of the sanitizer
+    ${wrapped} -fuse-ld=bfd) # gold warns of the sanitizer
 target_link_libraries(ritz_fuzz PRIVATE ritz_flags ritz_cli ritz hdf5::hdf5 m)
 
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/fuzz.c rows REGEX "^    {\"[a-z0-9-]+\",")
