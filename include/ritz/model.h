@@ -223,6 +223,8 @@ typedef struct ritz_measure {
     double value;
     double limit;               /* NaN: none was requested */
     char where[RITZ_NAME_SIZE]; /* "mode 7, 3.41 Hz"; "" if nowhere special */
+    char cause[RITZ_NAME_SIZE]; /* of a bound far above what is known of the
+                                   error: "rounding"; else "" */
 } ritz_measure;
 
 typedef struct ritz_measures {
@@ -356,6 +358,9 @@ ritz_status ritz_invariants_of(const ritz_component *component,
 /** Invariants of T V, with V r x s; none of none. */
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out);
+
+/** Why the measure added last, a bound, is so large; "": it is not. */
+void ritz_measures_name_cause(ritz_measures *measures, const char *cause);
 
 /** Append a measure; @p where may be NULL. */
 ritz_status ritz_measures_add(ritz_measures *measures, const char *name,

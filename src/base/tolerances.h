@@ -699,8 +699,9 @@
 /* A bound of a response that is more than this many times what is known of the
    error is worth a richer trial. */
 #define RITZ_RESPONSE_LOOSE 2.0
-/* ... and with that still this many times: its cause is named. */
-#define RITZ_RESPONSE_FAR 10.0
+/* A bound that is more than this many times what is known of the error names
+   its cause. */
+#define RITZ_BOUND_FAR 10.0
 /* Of the largest eigenvalue of a dense pencil: its rounding, some thousand eps,
    does not reach so far. */
 #define RITZ_WHOLE_CLEAR 1e-12

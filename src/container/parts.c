@@ -265,6 +265,16 @@ static ritz_status settle_measures(const ritz_place *place)
     return RITZ_OK;
 }
 
+static bool has_cause(const void *object)
+{
+    const ritz_measures *measures = object;
+
+    for (int64_t k = 0; k < measures->count; k++)
+        if (measures->item[k].cause[0])
+            return true;
+    return false;
+}
+
 static const ritz_member measures_members[] = {
     {"name", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, name), "k",
      "name of each measure, such as `frequency-relative`; the group "
@@ -276,6 +286,11 @@ static const ritz_member measures_members[] = {
      "k", "requested tolerance", .values = VALUES_OR_NAN},
     {"where", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, where),
      "k", "mode, channel or frequency where it was found; may be empty"},
+    {"cause", SET_WORDS, RITZ_ITEM(ritz_measures, item, ritz_measure, cause),
+     "k",
+     "why a bound is more than ten times what is known of the error, such as "
+     "`rounding`; empty where it is not",
+     .optional = "", .has = has_cause},
     {0},
 };
 

@@ -530,7 +530,7 @@ static frequency_interval interval_of(const ritz_bounder *r, double w, double h)
 
 /* r_d' (A^-1 / c + s A^-1 M A^-1 / c^2) r_p, the input's products being there.
  */
-static double lead_of(const ritz_bounder *r, const frequency_interval *at,
+static number lead_of(const ritz_bounder *r, const frequency_interval *at,
                       const ritz_side *out)
 {
     number lead = 0.0;
@@ -538,12 +538,13 @@ static double lead_of(const ritz_bounder *r, const frequency_interval *at,
     for (int64_t i = 0; i < r->size; i++)
         lead += out->residual[i] *
                 (r->GV[i] / at->c + at->s * r->QV[i] / (at->c * at->c));
-    return cabs(lead);
+    return lead;
 }
 
 void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
-                     int64_t output, double part[RITZ_PARTS])
+                     int64_t output, ritz_channel_bound *result)
 {
+    double *part = result->part;
     const ritz_side *in = &r->side[input];
     const ritz_side *out = &r->side[r->io->num_inputs + output];
     const frequency_interval at = interval_of(r, w, h);
@@ -556,7 +557,8 @@ void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
     double moved = h * (2.0 * at.high + fabs(r->a + r->b * -sigma));
     double all = (P + in->damping_part) * (D + out->damping_part);
 
-    part[RITZ_PART_ERROR] = lead_of(r, &at, out);
+    result->known = lead_of(r, &at, out);
+    part[RITZ_PART_ERROR] = cabs(result->known);
     part[RITZ_PART_DAMPING] = 0.0;
     if (!r->rayleigh)
         part[RITZ_PART_DAMPING] =

@@ -503,6 +503,26 @@ static ritz_status list_modes(const ritz_measuring *m, ritz_measures *out)
     return RITZ_OK;
 }
 
+/* Why the bound of the worst frequency is far above what is known of its error;
+   "" if it is not. */
+static const char *cause_of(const ritz_measuring *m)
+{
+    const ritz_prediction *v = &m->prediction;
+    const ritz_lehmann *trial = &m->trial;
+    int64_t k = v->bound.mode;
+    double rounding = 0.0;
+
+    if (v->bound.value <= RITZ_BOUND_FAR * fmax(v->least.value, 0.0))
+        return "";
+    if (v->num_missing > 0)
+        return "missing modes";
+    if (k < trial->count)
+        rounding = 0.5 * (trial->rounding[k] + trial->reduced_rounding[k]) /
+                   m->pairs.lambda[k];
+    return v->bound.value <= RITZ_BOUND_FAR * rounding ? "rounding"
+                                                       : "close modes";
+}
+
 /* Report the worst mode of the band, then each. */
 static ritz_status report_modes(const ritz_measuring *m, ritz_measures *out)
 {
@@ -510,11 +530,14 @@ static ritz_status report_modes(const ritz_measuring *m, ritz_measures *out)
     RITZ_OWN(ritz_measures) each = {0};
 
     RITZ_CHECK(list_modes(m, &each));
-    if (!v->counted && (v->any_in_band || each.count > 0))
+    if (!v->counted && (v->any_in_band || each.count > 0)) {
         RITZ_CHECK(ritz_measures_add(out, "frequency-relative-bound", HUGE_VAL,
-                                     nan(""), "modes are not counted"));
-    else if (v->bound.value >= 0.0)
+                                     nan(""), ""));
+        ritz_measures_name_cause(out, "modes are not counted");
+    } else if (v->bound.value >= 0.0) {
         RITZ_CHECK(add_mode(m, "frequency-relative-bound", v->bound, out));
+        ritz_measures_name_cause(out, cause_of(m));
+    }
     if (v->least.value > 0.0)
         RITZ_CHECK(add_mode(m, "frequency-relative-least", v->least, out));
     for (int64_t k = 0; k < each.count; k++)

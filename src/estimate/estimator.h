@@ -221,9 +221,10 @@ typedef enum ritz_bound_part {
 /* The bound of one input and output. */
 typedef struct ritz_channel_bound {
     double weight;           /* one over what it is relative to */
-    double response;         /* |H_r| */
-    double most;             /* no |H_r| is more: sqrt of both sides' `self` */
+    double _Complex known;   /* H - H_r, as far as it is known */
     double part[RITZ_PARTS]; /* whose sum is the bound */
+    double response;         /* |H_r + known| */
+    double most;             /* no |H_r| is more: sqrt of both sides' `self` */
 } ritz_channel_bound;
 
 struct ritz_refinement;
@@ -268,10 +269,10 @@ void ritz_bounder_take_input(ritz_bounder *r, int64_t input);
 
 /**
  * The bound of |H - H_r| of one channel by residuals of its sides, which are
- * solved, into its parts; the input has been taken.
+ * solved: its parts, and what is known; the input has been taken.
  */
 void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
-                     int64_t output, double part[RITZ_PARTS]);
+                     int64_t output, ritz_channel_bound *out);
 
 /** How far rounding moves H_r of a channel. */
 double ritz_rounding_of_pair(const ritz_bounder *r, double w, int64_t input,
@@ -324,10 +325,10 @@ ritz_status ritz_refinement_new(ritz_estimator *estimator,
 void ritz_refinement_solve(const ritz_bounder *coarse, ritz_refinement *f,
                            double w, double h);
 
-/** The bound of one channel, into its parts. */
+/** The same by a richer trial. */
 void ritz_refinement_bound(const ritz_bounder *coarse, const ritz_refinement *f,
                            double w, double h, int64_t input, int64_t output,
-                           double part[RITZ_PARTS]);
+                           ritz_channel_bound *out);
 
 void ritz_refinement_free(ritz_refinement *f);
 

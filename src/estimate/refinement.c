@@ -344,17 +344,20 @@ static double vary_defect(const ritz_refinement *f, double w, double h,
 
 void ritz_refinement_bound(const ritz_bounder *coarse, const ritz_refinement *f,
                            double w, double h, int64_t input, int64_t output,
-                           double part[RITZ_PARTS])
+                           ritz_channel_bound *result)
 {
     int64_t row = coarse->io->num_inputs + output;
     const ritz_side *from = &coarse->side[input], *to = &coarse->side[row];
     const ritz_finer_side *in = &f->side[input], *out = &f->side[row];
     double _Complex product[2];
-    double left[RITZ_PARTS];
+    ritz_channel_bound rest = {0};
+    const double *left = rest.part;
+    double *part = result->part;
 
     multiply_sides(f, w, in, out, product);
-    ritz_bound_pair(&f->fine, w, h, input, output, left);
-    part[RITZ_PART_ERROR] = cabs(product[0] - multiply_defect(f, w, from, to));
+    ritz_bound_pair(&f->fine, w, h, input, output, &rest);
+    result->known = product[0] - multiply_defect(f, w, from, to);
+    part[RITZ_PART_ERROR] = cabs(result->known);
     part[RITZ_PART_DAMPING] = left[RITZ_PART_DAMPING];
     part[RITZ_PART_REST] = left[RITZ_PART_ERROR] + left[RITZ_PART_REST];
     part[RITZ_PART_BETWEEN] = left[RITZ_PART_BETWEEN];

@@ -227,12 +227,12 @@ static double bound_channel(const ritz_bounder *r, double w, double h,
 
     for (int64_t j = 0; j < r->trial->count; j++)
         H += out->participation[j] * in->eta[j];
-    c->response = cabs(H);
     c->most = sqrt(in->self * out->self);
     if (r->finer)
-        ritz_refinement_bound(r, r->finer, w, h, input, output, c->part);
+        ritz_refinement_bound(r, r->finer, w, h, input, output, c);
     else
-        ritz_bound_pair(r, w, h, input, output, c->part);
+        ritz_bound_pair(r, w, h, input, output, c);
+    c->response = cabs(H + c->known);
     for (int k = 0; k < RITZ_PARTS; k++)
         sum += c->part[k];
     return isnan(sum) ? HUGE_VAL : sum;
@@ -320,9 +320,8 @@ typedef struct channel_found {
     double bound, hertz;     /* the largest, and where */
     double part[RITZ_PARTS]; /* of which that consists */
     double error;            /* the largest that is known of the error */
-    double response;         /* the largest |H_r| */
     double least;            /* the largest |H| is at least this */
-    double coupled;          /* the largest |H_r| over what could be there */
+    double coupled;          /* the largest known |H| over what could be */
     double most;             /* the largest of that */
 } channel_found;
 
@@ -354,8 +353,8 @@ static void note_channel(const ritz_channel_bound *at, double hertz,
         memcpy(c->part, at->part, sizeof c->part);
     }
     c->error = fmax(c->error, at->part[RITZ_PART_ERROR]);
-    c->response = fmax(c->response, at->response);
-    c->least = fmax(c->least, at->response - bound);
+    c->least =
+        fmax(c->least, at->response - (bound - at->part[RITZ_PART_ERROR]));
     c->most = fmax(c->most, at->most);
     if (at->most > 0.0)
         c->coupled = fmax(c->coupled, at->response / at->most);
@@ -376,7 +375,8 @@ static void visit_points(ritz_bounder *r, int64_t count, const double *hertz,
  * What a channel's bound is relative to: its own largest |H|, so that units do
  * not matter. A channel between an input and an output that have next to
  * nothing to do with each other is rounding: it is taken against what could be
- * there.
+ * there, but no more than some |H|, which is what ritz-verify compares with. 0:
+ * it is not known to be anything.
  */
 static double unit_of(const response_found *f, const channel_found *c)
 {
@@ -385,7 +385,7 @@ static double unit_of(const response_found *f, const channel_found *c)
     if (c->coupled > RITZ_CHANNEL_COUPLED)
         return c->least;
     for (int64_t k = 0; k < f->count; k++)
-        largest = fmax(largest, f->channel[k].response);
+        largest = fmax(largest, f->channel[k].least);
     return fmin(largest, c->most);
 }
 
@@ -505,7 +505,7 @@ static ritz_status bound_band(ritz_measuring *m, bool known, richer *all,
     return RITZ_OK;
 }
 
-/* Why a bound is far above the error; "" if it is not. */
+/* Why a bound is far above the error, or infinite; "" if it is not. */
 static const char *cause_of(const ritz_measuring *m, const response_found *f)
 {
     static const char *const names[RITZ_PARTS] = {
@@ -519,8 +519,8 @@ static const char *cause_of(const ritz_measuring *m, const response_found *f)
 
     if (f->between)
         return names[RITZ_PART_BETWEEN];
-    if (c->bound <= RITZ_RESPONSE_FAR * c->error)
-        return "";
+    if (c->bound <= RITZ_BOUND_FAR * c->error)
+        return unit_of(f, c) > 0.0 ? "" : "response may be zero";
     for (int k = most + 1; k < RITZ_PARTS; k++)
         if (c->part[k] > c->part[most] || isnan(c->part[k]))
             most = k;
@@ -529,17 +529,16 @@ static const char *cause_of(const ritz_measuring *m, const response_found *f)
     return names[most];
 }
 
-/* "12.5 Hz, force to tip: rounding" */
+/* "12.5 Hz, force to tip" */
 static void say_where(const ritz_measuring *m, const response_found *f,
                       char where[RITZ_NAME_SIZE])
 {
     const ritz_io *io = &m->estimator->component->io;
-    const char *cause = cause_of(m, f);
 
-    (void)snprintf(
-        where, RITZ_NAME_SIZE, "%.5g Hz, %.10s to %.10s%s%s",
-        f->channel[f->worst].hertz, io->input[f->worst / io->num_outputs],
-        io->output[f->worst % io->num_outputs], cause[0] ? ": " : "", cause);
+    (void)snprintf(where, RITZ_NAME_SIZE, "%.5g Hz, %.20s to %.20s",
+                   f->channel[f->worst].hertz,
+                   io->input[f->worst / io->num_outputs],
+                   io->output[f->worst % io->num_outputs]);
 }
 
 /* What can be said of a response. */
@@ -603,17 +602,16 @@ static ritz_status report_response(const ritz_measuring *m,
                                    const response_found *f, ritz_measures *out)
 {
     const char *unknown = unknown_damping(m, r);
-    char where[RITZ_NAME_SIZE];
+    char where[RITZ_NAME_SIZE] = "";
 
-    if (unknown)
-        (void)snprintf(where, sizeof where, "%s", unknown);
-    else
+    if (!(f->value > 0.0) && !unknown)
+        return RITZ_OK;
+    if (!unknown)
         say_where(m, f, where);
-    if (f->value > 0.0 || unknown)
-        RITZ_CHECK(ritz_measures_add(
-            out,
-            sure ? "response-relative-bound" : "response-relative-estimate",
-            unknown ? HUGE_VAL : f->value, nan(""), where));
+    RITZ_CHECK(ritz_measures_add(
+        out, sure ? "response-relative-bound" : "response-relative-estimate",
+        unknown ? HUGE_VAL : f->value, nan(""), where));
+    ritz_measures_name_cause(out, unknown ? unknown : cause_of(m, f));
     return RITZ_OK;
 }
 

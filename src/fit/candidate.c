@@ -94,9 +94,11 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
         if (!old) {
             RITZ_CHECK(
                 ritz_measures_add(worst, m->name, m->value, m->limit, where));
+            ritz_measures_name_cause(worst, m->cause);
         } else if (!ritz_measure_meets(m->name, m->value, old->value)) {
             old->value = m->value;
             memcpy(old->where, where, sizeof where);
+            memcpy(old->cause, m->cause, sizeof old->cause);
         }
     }
     return RITZ_OK;

@@ -65,6 +65,13 @@ ritz_status ritz_measures_add(ritz_measures *measures, const char *name,
     return RITZ_OK;
 }
 
+void ritz_measures_name_cause(ritz_measures *measures, const char *cause)
+{
+    ritz_measure *last = &measures->item[measures->count - 1];
+
+    snprintf(last->cause, sizeof last->cause, "%s", cause);
+}
+
 ritz_measure *ritz_measures_find(const ritz_measures *measures,
                                  const char *name)
 {

@@ -148,10 +148,9 @@ class Response:
             K, M, B = (file[k][()] for k in ("K", "M", "inputs/B"))
             C = [file[f"outputs/{c}"][()] for c in ("C", "Cv", "Ca")]
             D = file["D"][()] if "D" in file else None
-        value, floor = reduced_values(self.full, path)
+        value, off = reduced_values(self.full, path)
         _, Q = small_modes(K, M)
         w = self.points(value)[:, None]
-        off = 2 * floor * abs(value)  # of an eigenvalue, not a frequency
         value[:rigid] = 0
         rate = ((D @ Q) * Q).sum(0) if D is not None \
             else 2 * ZETA * numpy.sqrt(numpy.maximum(value, 0))
@@ -196,20 +195,28 @@ def estimates_of(path):
                 in zip(told["name"], told["value"], told["where"])}
 
 
+def cause_of(path, name):
+    """Why a bound is far above what is known of the error; "" if it is not."""
+    with h5py.File(path) as file:
+        told = file["estimates"]
+        causes = told["cause"] if "cause" in told else []
+        return {key.decode(): cause.decode() for key, cause
+                in zip(told["name"], causes)}.get(name, "")
+
+
 def reduced_values(full, path):
-    """Eigenvalues of a reduced model, and their rounding."""
+    """Eigenvalues of a reduced model, and their rounding, absolute: that of a
+    rigid mode is no part of it, as it may be 0."""
     with h5py.File(path) as file:
         K, M, T = (file[k][()] for k in ("K", "M", "T"))
     value, Q = small_modes(K, M)
     _, terms = precise(full.K, full.M, T @ Q)
     Q = abs(Q)
     terms += (Q * (abs(K) @ Q)).sum(0) + abs(value) * (Q * (abs(M) @ Q)).sum(0)
-    floor = 4 * EPS * (terms + abs(value[-1])) / numpy.maximum(
-        abs(value), 1e-300) / 2
-    return value, floor
+    return value, 4 * EPS * (terms + abs(value[-1]))
 
 
-def judge(full, value, floor, estimates):
+def judge(full, value, off, estimates):
     """Of each mode: bound, true error, rounding."""
     found = []
     for name, (bound, where) in estimates.items():
@@ -224,7 +231,7 @@ def judge(full, value, floor, estimates):
         else:
             true = abs(f / hertz(full.value[int(which[1]) - 1
                                             if which else k]) - 1)
-        found.append((bound, true, floor[k], where))
+        found.append((bound, true, off[k] / abs(value[k]) / 2, where))
     return found
 
 
@@ -270,9 +277,9 @@ def line(bin_, case, full, truth, method, how, more):
         words += ["--damping", "modal 0.01"]
     answer = methods.run(bin_, *words)
     rigid = sum(f == 0 for f in answer["frequencies_hz"])
-    value, floor = reduced_values(full, reduced)
+    value, off = reduced_values(full, reduced)
     estimates = estimates_of(reduced)
-    modes = judge(full, value, floor, estimates)
+    modes = judge(full, value, off, estimates)
     low = [m for m in modes if not m[0] >= m[1]]
     told = [(b / max(t, r), b, t, w) for b, t, r, w in modes]
     worst = max(told, default=(0, 0, 0, ""))
@@ -289,14 +296,15 @@ def line(bin_, case, full, truth, method, how, more):
     for kind in ("bound", "estimate"):
         if f"response-relative-{kind}" not in estimates:
             continue
-        bound, where = estimates[f"response-relative-{kind}"]
+        bound, _ = estimates[f"response-relative-{kind}"]
         error = truth.error(reduced, rigid)
         ratio = bound / max(error, truth.rounding(reduced, rigid))
         response = ["none" if bound == float("inf") else
                     f"{bound:.1e}" + ("*" if kind == "estimate" else ""),
                     f"{error:.1e}",
                     "" if bound == float("inf") else f"{ratio:.2g}",
-                    where.partition(": ")[2] if ratio > 10 else ""]
+                    cause_of(reduced, f"response-relative-{kind}")
+                    if ratio > 10 else ""]
         if kind == "bound" and not bound >= error:
             low.append(("response", bound, error))
     name = re.match(r"mode (\d+)", worst[3])

@@ -207,11 +207,12 @@ def table(bin_, case):
 def line(name, kind, method, H, damped, reduced, ratio):
     """One line; 1 if the estimate is dangerous."""
     found = effectivity.estimates_of(reduced)
-    told = found.get("response-relative-estimate",
-                     found.get("response-relative-bound"))
-    if told is None:
+    told = [key for key in ("response-relative-estimate",
+                            "response-relative-bound") if key in found]
+    if not told:
         return 0
-    value = told[0]
+    value = found[told[0]][0]
+    cause = effectivity.cause_of(reduced, told[0])
     error = abs(H - reduced_response(damped, reduced, ratio)).max() \
         / abs(H).max()
     over = value / max(error, ROUNDING)
@@ -219,15 +220,16 @@ def line(name, kind, method, H, damped, reduced, ratio):
           + ("none" if numpy.isinf(value) else f"{value:.1e}")
           + f" | {error:.1e} | "
           + ("" if numpy.isinf(value) else f"{over:.2g}")
-          + (" **below** |" if value < error else " |"), flush=True)
+          + (" **below** |" if value < error else " |")
+          + f" {cause if over > 10 else ''} |", flush=True)
     return value < 0.1 * error and error > ROUNDING
 
 
 def main():
     """Parse and run."""
     asked = methods.parser_of(__doc__).parse_args()
-    print("| set | damping | method | estimate | error | ratio |\n"
-          + "|" + "---|" * 6)
+    print("| set | damping | method | estimate | error | ratio | cause |\n"
+          + "|" + "---|" * 7)
     low = sum(table(asked.bin, case)
               for case in methods.cases(asked.bin, asked.only, most=DOFS))
     return 1 if low else 0

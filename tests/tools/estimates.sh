@@ -31,6 +31,29 @@ expect 0 'response-relative-bound' ritz-reduce truss.h5 basis.h5 -o r.h5 \
     --band-hz 0,140 --damping 'modal 0.01'
 expect 0 'response-relative-estimate' ritz-reduce truss.h5 basis.h5 -o r.h5 \
     --band-hz 0,140 --damping 'bands 0 50 0.01 50 900 0.02'
+
+# Exact modes: what is left is rounding, in text, JSON, file, record and report.
+ritz-basis macneal-rubin --modes 14 truss.h5 -o exact.h5 >log
+json 0 ritz-reduce truss.h5 exact.h5 -o r.h5 --band-hz 0,140 \
+    --record runs.jsonl
+holds '  a bound far above the error has a cause' 'any(
+    e["name"] == "frequency-relative-bound" and e["cause"] == "rounding" and
+    "rounding" not in e["where"] for e in j["estimates"])'
+expect 0 ' Hz: rounding' ritz-info r.h5
+expect 0 '"causes":{"frequency-relative-bound":"rounding"' cat runs.jsonl
+cat >fitted.jsonl <<'END'
+{"tool": "ritz-fit", "method": "krylov", "order": 12, "chosen": true, "errors": {"response-relative": 1e-9}, "estimates": {"response-relative-bound": 0.02, "frequency-relative-bound": 0.03}, "causes": {"response-relative-bound": "damping of inexact modes"}}
+END
+ritz-chart report fitted.jsonl -o report.html >log
+expect 0 'far above the error by damping of inexact modes' cat report.html
+works '  and no cause where there is none' \
+    test "$(grep -c 'far above the error' report.html)" = 1
+
+# No bound is below the error of any channel, nor what ritz-verify measures.
+expect 0 ', 0 below the error' /usr/bin/python3 -s "$here/../bench/bounds.py" \
+    "$bin" --only 'dual-spin stator' --cases 8
+expect 0 ', 0 below the error' /usr/bin/python3 -s "$here/../bench/bounds.py" \
+    "$bin" --only truss72 --cases 6
 expect 2 'two ascending numbers' ritz-reduce truss.h5 basis.h5 \
     -o r.h5 --band-hz 9,3
 echo "1..$count"

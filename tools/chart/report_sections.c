@@ -264,6 +264,8 @@ static void say_size(FILE *file, const record *r)
 static void say_bounds(FILE *file, const record *r)
 {
     const json_t *estimates = json_object_get(r->json, "estimates");
+    const json_t *causes = json_object_get(r->json, "causes");
+    const char *cause = NULL;
 
     for (int k = 0; k < RITZ_MEASURES; k++) {
         const ritz_measure_kind *kind = &ritz_measure_table[k];
@@ -273,8 +275,11 @@ static void say_bounds(FILE *file, const record *r)
 
         if (!(bound <= 1.0))
             continue;
-        html_print(file, "<li>proven: %s at most %s</li>", kind->label,
-                   chart_say_error(bound).text);
+        cause = json_string_value(json_object_get(causes, kind->bound));
+        html_print(file, "<li>proven: %s at most %s%s%s</li>", kind->label,
+                   chart_say_error(bound).text,
+                   cause ? ", far above the error by " : "",
+                   cause ? cause : "");
     }
 }
 

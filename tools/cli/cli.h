@@ -245,6 +245,8 @@ char *cli_json(const json_t *value, size_t flags);
 /** Method and order (-1: none) of the line that --record appends. */
 void cli_record(cli_run *run, const char *method, int64_t order);
 void cli_record_error(cli_run *run, const char *name, double value);
+/** Why an error that is recorded, a bound, is so large; "": it is not. */
+void cli_record_cause(cli_run *run, const char *name, const char *cause);
 
 /**
  * Append one further line to the file of --record, now: tool, command and

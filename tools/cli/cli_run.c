@@ -524,15 +524,28 @@ void cli_record(cli_run *run, const char *method, int64_t order)
         json_object_set_new(run->line, "order", json_integer(order));
 }
 
+/* An object of the line that --record appends. */
+static json_t *find_recorded(cli_run *run, const char *key)
+{
+    json_t *found = json_object_get(run->line, key);
+
+    if (!found) {
+        found = json_object();
+        json_object_set_new(run->line, key, found);
+    }
+    return found;
+}
+
 void cli_record_error(cli_run *run, const char *name, double value)
 {
-    json_t *errors = json_object_get(run->line, "errors");
+    json_object_set_new(find_recorded(run, "errors"), name, cli_real(value));
+}
 
-    if (!errors) {
-        errors = json_object();
-        json_object_set_new(run->line, "errors", errors);
-    }
-    json_object_set_new(errors, name, cli_real(value));
+void cli_record_cause(cli_run *run, const char *name, const char *cause)
+{
+    if (*cause)
+        json_object_set_new(find_recorded(run, "causes"), name,
+                            cli_string(cause));
 }
 
 static void print_report(cli_run *run, ritz_status status)

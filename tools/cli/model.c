@@ -347,16 +347,23 @@ void model_say_measures(cli_run *run, sink_text text, const char *key,
     SINK_EACH(run, key, k, measures->count) {
         const ritz_measure *m = &measures->item[k];
 
-        sink_tell(run, text, NULL, "name,value,limit,verdict,where",
-                  "%-*s %12.4e %12.4g  %-9s  %s", width, m->name, m->value,
-                  m->limit, name_verdict(m, known), m->where);
+        sink_tell(run, text, NULL, "name,value,limit,verdict,where,,cause",
+                  "%-*s %12.4e %12.4g  %-9s  %s%s%s", width, m->name, m->value,
+                  m->limit, name_verdict(m, known), m->where,
+                  m->where[0] && m->cause[0] ? ": " : "", m->cause);
     }
+}
+
+void model_record_measure(cli_run *run, const ritz_measure *measure)
+{
+    cli_record_error(run, measure->name, measure->value);
+    cli_record_cause(run, measure->name, measure->cause);
 }
 
 void model_record(cli_run *run, const ritz_measures *measures)
 {
     for (int64_t k = 0; k < measures->count; k++)
-        cli_record_error(run, measures->item[k].name, measures->item[k].value);
+        model_record_measure(run, &measures->item[k]);
 }
 
 void model_set_cost(cli_run *run, const ritz_cost *cost)

@@ -216,7 +216,8 @@ ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 void model_say_measures(cli_run *run, sink_text text, const char *key,
                         const ritz_measures *measures, const char *known);
 
-/** Their values for the line of --record. */
+/** Its value, and their values, for the line of --record; causes of bounds. */
+void model_record_measure(cli_run *run, const ritz_measure *measure);
 void model_record(cli_run *run, const ritz_measures *measures);
 
 /** Steps and time of a simulator, as the object `cost`. */

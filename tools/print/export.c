@@ -158,7 +158,7 @@ static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
             errors->count > 0 ? of->by : "ritz-reduce, not verified");
     model_say_measures(run, SINK_LINE, "errors", known, rests);
     for (int64_t k = 0; k < known->count; k++) {
-        cli_record_error(run, known->item[k].name, known->item[k].value);
+        model_record_measure(run, &known->item[k]);
         if (!ritz_measure_holds(&known->item[k]))
             cli_warn(run, "'%s' does not meet its limit", known->item[k].name);
     }

@@ -50,6 +50,17 @@ static void set_values(cli_run *run, const char *key,
     sink_end(run);
 }
 
+/* Why bounds are far above what is known of the errors, where they are. */
+static void set_causes(cli_run *run, const ritz_measures *measures)
+{
+    sink_object(run, "causes");
+    for (int64_t k = 0; k < measures->count; k++)
+        if (measures->item[k].cause[0])
+            sink_set(run, measures->item[k].name, "%s",
+                     measures->item[k].cause);
+    sink_end(run);
+}
+
 /* "response-relative": 0.01 of each measure that has a tolerance. */
 static void set_tolerance(cli_run *run, const ritz_verify_request *limits)
 {
@@ -91,6 +102,7 @@ static void set_candidate(cli_run *run, const ritz_fit_candidate *c)
     sink_end(run);
     set_values(run, "errors", &c->errors);
     set_values(run, "estimates", &c->estimates);
+    set_causes(run, &c->estimates);
     if (c->cost.order > 0)
         model_set_cost(run, &c->cost);
     if (c->refusal[0])
@@ -239,8 +251,9 @@ static void say_bounds(const cli_run *run, const ritz_measures *estimates)
         const ritz_measure *m = &estimates->item[k];
 
         if (strncmp(m->name, "mode-", 5) != 0)
-            cli_say(run, "%-28s %12.4e %12s  %-9s  %s", m->name, m->value, "-",
-                    "estimated", m->where);
+            cli_say(run, "%-28s %12.4e %12s  %-9s  %s%s%s", m->name, m->value,
+                    "-", "estimated", m->where,
+                    m->where[0] && m->cause[0] ? ": " : "", m->cause);
     }
 }
 

@@ -138,6 +138,7 @@ static void same_measures(const ritz_measures *a, const ritz_measures *b)
     for (int64_t k = 0; k < a->count; k++) {
         assert_string_equal(a->item[k].name, b->item[k].name);
         assert_string_equal(a->item[k].where, b->item[k].where);
+        assert_string_equal(a->item[k].cause, b->item[k].cause);
         assert_memory_equal(&a->item[k].value, &b->item[k].value, 8);
         assert_memory_equal(&a->item[k].limit, &b->item[k].limit, 8);
     }

@@ -4,6 +4,7 @@
 #include "answers.h"
 #include "bar.h"
 #include "bodies.h"
+#include "fit/fitter.h"
 #include "fit_scenes.h"
 #include "folder.h"
 #include "project.h"
@@ -13,6 +14,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const ritz_method *const two[] = {&ritz_method_craig_bampton,
                                          &ritz_method_macneal_rubin};
@@ -327,7 +329,36 @@ static void bounds_are_of_the_same_mode_where_none_is_missing(void **state)
     ritz_sparse_free(&full.M);
 }
 
+/* Of several places the worst bound stays, with its place and its cause. */
+static void the_cause_of_the_worst_place_stays(void **)
+{
+    static const struct {
+        const char *at, *where, *cause;
+        double value;
+    } place[] = {
+        {"clock=0,cone=0,slide=0.125", "1234.5 Hz, force to tip", "", 0.5},
+        {"clock=60,cone=0,slide=0.125", "15 Hz, force_of_the_arm to tip",
+         "damping of inexact modes", 2.0},
+        {"clock=90,cone=0,slide=0.125", "15 Hz, force to tip", "rounding", 1.0},
+    };
+    RITZ_OWN(ritz_measures) worst = {0};
+
+    for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
+        RITZ_OWN(ritz_measures) one = {0};
+
+        assert_ok(ritz_measures_add(&one, "response-relative-bound",
+                                    place[k].value, nan(""), place[k].where));
+        ritz_measures_name_cause(&one, place[k].cause);
+        assert_ok(ritz_fit_worst(&one, place[k].at, &worst));
+    }
+    assert_int_equal(worst.count, 1);
+    assert_true(worst.item[0].value == 2.0);
+    assert_non_null(strstr(worst.item[0].where, "15 Hz, force_of_the_arm"));
+    assert_string_equal(worst.item[0].cause, "damping of inexact modes");
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_cause_of_the_worst_place_stays),
     cmocka_unit_test(the_system_s_basis_condenses_the_full_system),
     cmocka_unit_test(a_body_without_its_basis_is_refused),
     cmocka_unit_test(every_allocation_of_the_basis_may_fail),
