@@ -317,7 +317,53 @@ static bool measure_node(rational_nodes *s, double hertz, double tolerance)
     return near;
 }
 
-/* Add nodes until the last ones were within the tolerance. */
+/*
+ * The candidate where the interpolants without and with zeros differ most, in
+ * the channels that take the second; -1 if none does or no candidate is left.
+ */
+static int64_t find_doubtful(rational_nodes *s)
+{
+    double most = 0.0;
+    int64_t doubtful = -1;
+
+    for (int64_t k = 0; k < s->count; k++) {
+        const double _Complex at =
+            ritz_complex(0.0, 2.0 * RITZ_PI * s->hertz[k]);
+
+        if (s->used[k])
+            continue;
+        evaluate_interpolant(&s->f, at, false, s->guess);
+        evaluate_interpolant(&s->f, at, true, s->other);
+        for (int64_t v = 0; v < s->values; v++) {
+            double gap = cabs(s->guess[v] - s->other[v]);
+
+            if (!s->with_zeros[v] || gap <= most * s->scale[v])
+                continue;
+            most = gap / s->scale[v];
+            doubtful = k;
+        }
+    }
+    return doubtful;
+}
+
+/* Measure the errors at candidate k, then take it for a node. */
+static ritz_status take_candidate(rational_nodes *s, int64_t k,
+                                  double tolerance, bool *near)
+{
+    s->used[k] = true;
+    memset(s->H, 0, (size_t)s->values * sizeof *s->H);
+    RITZ_CHECK(ritz_direct_at(&s->full, s->hertz[k], s->H));
+    *near = measure_node(s, s->hertz[k], tolerance);
+    RITZ_CHECK(add_node(s, s->hertz[k]));
+    ritz_monitor_step("nodes", s->nodes, 0);
+    return RITZ_OK;
+}
+
+/*
+ * Add nodes until the last ones were within the tolerance. Nodes are where the
+ * interpolant without zeros errs most. With zeros that are known to a few
+ * digits only, the other one errs elsewhere: it is tried there too.
+ */
 static ritz_status converge_nodes(rational_nodes *s, double tolerance)
 {
     bool near = false;
@@ -329,12 +375,10 @@ static ritz_status converge_nodes(rational_nodes *s, double tolerance)
                        "%" PRId64 " nodes do not interpolate to %.1e of the "
                        "largest response: krylov may",
                        s->nodes, tolerance);
-        s->used[k] = true;
-        memset(s->H, 0, (size_t)s->values * sizeof *s->H);
-        RITZ_CHECK(ritz_direct_at(&s->full, s->hertz[k], s->H));
-        near = measure_node(s, s->hertz[k], tolerance);
-        RITZ_CHECK(add_node(s, s->hertz[k]));
-        ritz_monitor_step("nodes", s->nodes, 0);
+        RITZ_CHECK(take_candidate(s, k, tolerance, &near));
+        k = near ? find_doubtful(s) : -1;
+        if (k >= 0)
+            RITZ_CHECK(take_candidate(s, k, tolerance, &near));
     }
     return RITZ_OK;
 }
@@ -459,7 +503,8 @@ static ritz_status find_zeros(rational_nodes *s, int64_t v)
  * The next node is where prod |s - s_m| / prod |s - pole| is largest: near
  * resonances, but never at a pole or zero: candidates keep a half-power width
  * from them. The interpolant's error at a node is measured before the node is
- * added; three successive nodes within the tolerance end the search.
+ * added; three successive nodes within the tolerance end the search. Where
+ * zeros are cancelled, one more lies where that changes the interpolant most.
  */
 
 /*

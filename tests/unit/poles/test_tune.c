@@ -164,6 +164,8 @@ static void what_only_falls_ends_at_the_end(void **state)
 static const ritz_disturbance low = {2.0, 6};
 static const double best_c[3] = {688.90667744, 913.97088458, 876.47812947};
 static const double best_norm = 0.0708066201363;
+/* norm(c (1 + h)) = norm(c) (1 + curvature h^2 / 2), the least of the three */
+static const double curvature = 0.0724;
 static const double alike_c = 786.86550522, alike_norm = 0.0710585979998;
 /* of 12 modes alone: what they promise, and what they give */
 static const double truncated_c[3] = {2427.12, 3637.51, 6088.26};
@@ -181,6 +183,8 @@ static void a_chain_is_tuned_in_full_and_in_its_space(void **state)
     RITZ_OWN(ritz_component) chain = {0};
     ritz_tuning_request request = {
         .noise = low, .count = 3, .tuned = each, .modes = 8};
+    /* what the norm may be off moves its minimum by h */
+    const double off = 1e-12, h = sqrt(2.0 * off / best_norm / curvature);
 
     (void)state;
     assert_ok(chain_component(30, &chain));
@@ -194,8 +198,8 @@ static void a_chain_is_tuned_in_full_and_in_its_space(void **state)
         assert_near(found.before, k == 0 ? 0.1165942546 : 0.1165941394,
                     5.1e-11);
         for (int j = 0; j < 3; j++)
-            assert_near(found.c[j], best_c[j], k == 0 ? 1e-4 : 0.1);
-        assert_near(found.norm, best_norm, k == 0 ? 1e-12 : 1e-10);
+            assert_near(found.c[j], best_c[j], k == 0 ? h * best_c[j] : 0.1);
+        assert_near(found.norm, best_norm, k == 0 ? off : 1e-10);
         assert_near(found.tuned, k == 0 ? best_norm : 0.07080524664, 1e-11);
     }
 }
