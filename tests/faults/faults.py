@@ -1,10 +1,10 @@
 """Faults in the tools, as faults.sh prepares them.
 
-Usage: faults.py FOLDER PRELOAD TRIES, the tools being on the PATH.
+Usage: faults.py FOLDER PRELOAD TRIES [KIND]..., the tools being on the PATH.
 
 FOLDER/cases has one case a line, as of tests/fuzz/damage.py; nothing is damaged
 here. Each command runs once undisturbed, then TRIES times with a fault of each
-kind, spread over its run:
+kind, or of those named, spread over its run:
 
     memory   an allocation fails, of Ritz or of a library
     write    a call that writes to a file fails
@@ -146,10 +146,14 @@ class Case:
 def main():
     folder, preload = pathlib.Path(sys.argv[1]), sys.argv[2]
     tries = int(sys.argv[3])
+    kinds = sys.argv[4:] or KINDS
+    for kind in kinds:
+        if kind not in KINDS:
+            sys.exit(f"no kind '{kind}', there are {', '.join(KINDS)}")
     lines = (folder / "cases").read_text().splitlines()
     (folder / "cases").unlink()
     rng = random.Random(1)
-    total = {kind: [0, 0, 0] for kind in KINDS}
+    total = {kind: [0, 0, 0] for kind in kinds}
     for number, line in enumerate(lines):
         name, *words = shlex.split(line)
         words = [word.replace("@", name) for word in words]
@@ -158,7 +162,7 @@ def main():
             print(f"passed over, as it fails without a fault: "
                   f"{shlex.join(words)}: {case.sound.sentences}", flush=True)
             continue
-        for kind in KINDS:
+        for kind in kinds:
             calls = case.count(kind)
             if calls == 0:
                 continue

@@ -1,12 +1,14 @@
 #!/bin/sh
 # Faults in every tool: allocations and calls that write fail, disks are full,
 # runs are killed.
-# Usage: faults.sh BUILD-FOLDER [TRIES]
-# TRIES faults of each kind for each case; 1 is for check, 50 for a night. Ends
-# with a table; status 1 if there is a finding.
+# Usage: faults.sh BUILD-FOLDER [TRIES] [KIND]...
+# TRIES faults of each kind for each case; 1 is for check, 50 for a night. Kinds
+# are memory, write, disk and kill, all by default. Ends with a table; status 1 if
+# there is a finding.
 set -eu
 build=$(cd "$1" && pwd)
 tries=${2:-1}
+shift $(($# < 2 ? $# : 2))
 here=$(cd "$(dirname "$0")" && pwd)
 data=${RITZ_DATA:-$here/../../data}/dualspin
 preload=$build/tests/libritz_faults.so
@@ -24,4 +26,5 @@ export OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 RITZ_SYNC=1
 mkdir "$dir/good"
 cd "$dir/good"
 . "$here/../fuzz/sound.sh"
-/usr/bin/python3 -s -B "$here/faults.py" "$dir/good" "$preload" "$tries"
+/usr/bin/python3 -s -B "$here/faults.py" "$dir/good" "$preload" \
+    "$tries" "$@"
