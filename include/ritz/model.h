@@ -115,6 +115,41 @@ ritz_status ritz_port_turn(const ritz_component *component,
 ritz_status ritz_rigid_geometry(const ritz_component *component,
                                 const double origin[static 3], ritz_dense *out);
 
+/*
+ * Rigid motions of a free body whose stiffness was rounded: K R is not 0, and K
+ * and M have them at some frequencies, real or imaginary.
+ */
+typedef struct ritz_rounded {
+    int64_t motions; /* of them; 0: rounding does nothing to responses */
+    bool hidden;     /* they do not stand apart from flexible modes, and do not
+                        all count as rigid ones */
+    double rigid_hz; /* the largest |f| among them */
+    double flexible_hz; /* of the mode above */
+} ritz_rounded;
+
+/**
+ * What rounding of K does to responses of a component. Without positions, or
+ * where a translation meets more force than rounding of K leaves, only rigid
+ * modes count as rigid motions.
+ *
+ * @param[in] pairs        lowest modes of the component; a few more are found
+ *                         if all of them are rigid
+ * @param[in] by_matrices  K makes the responses, and not modes, of which rigid
+ *                         ones respond without stiffness: then motions that
+ *                         are not hidden do no harm
+ */
+ritz_status ritz_rounded_of(const ritz_component *component,
+                            const ritz_pairs *pairs, bool by_matrices,
+                            ritz_rounded *out);
+
+/**
+ * Frequency in Hz above which rounding of the rigid stiffness changes flexible
+ * responses by less than a part @p tolerance, where rigid and flexible modes
+ * take part alike: r / sqrt(e) of the rigid frequency r, or sqrt(f r / sqrt(e))
+ * if the first flexible one, f, lies above that.
+ */
+double ritz_rounded_ends(const ritz_rounded *rounded, double tolerance);
+
 void ritz_component_free(ritz_component *component);
 
 /*

@@ -161,6 +161,10 @@ ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
 /** Remark on the preparation of a responder: "" if there is none. */
 const char *ritz_responder_remark(const ritz_responder *responder);
 
+/** What rounding of a component's stiffness does to its responses, or no
+ * motions. */
+ritz_rounded ritz_responder_rounded(const ritz_responder *responder);
+
 /** The points of a grid, which must lie in the range that was asked for. */
 ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out);

@@ -32,6 +32,7 @@
     X(LEVEL)                                                                   \
     X(GAIN)                                                                    \
     X(SINGULAR)                                                                \
+    X(ROUNDING)                                                                \
     X(GROWTH)
 
 typedef enum ritz_measure_id {
@@ -189,8 +190,11 @@ ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
 typedef struct ritz_reference ritz_reference;
 
 typedef struct ritz_reference_request {
-    double band_hz[2];    /* not [0, 0] */
+    double band_hz[2];    /* not [0, 0]. From 0 on, responses start where
+                             rounding of a free body's stiffness rules no more */
     ritz_damping damping; /* none: as the model says, or else modal 0.01 */
+    double tolerance;     /* of flexible responses, that such rounding is held
+                             to; 0: 1e-3 */
     int64_t num_random;   /* further frequencies, anywhere in the band */
     uint64_t seed;        /* of those; one seed always gives the same */
 } ritz_reference_request;

@@ -170,6 +170,9 @@
 #define RITZ_BODE_FLOOR 1e-3
 /* A response over a band from 0 Hz starts at this part of its end. */
 #define RITZ_BAND_START 1e-3
+/* Part of a flexible response that rounding of the rigid stiffness may change
+   where a band starts, unless a tolerance is given. */
+#define RITZ_START_ROUNDING 1e-3
 /* An eigenvalue of a dense pencil of order e is in error by up to e eps
    lambda_max; two are compared, and P and V add their own: this many times
    e eps lambda_max, measured 3 to 8. */
@@ -486,6 +489,8 @@
 /* Forces of a rigid motion that elements computed in double precision leave:
    1024 eps; a commercial code left 290 in a solid, measured. */
 #define RITZ_ELEMENT_ROUNDING 0x1p-42
+/* A source of so many digits is as good as binary. */
+#define RITZ_MOST_DIGITS 15.0
 /* Rounding of positions and frames kept in single precision, or as eight
    letters of a card. */
 #define RITZ_SINGLE_PRECISION 0x1p-24

@@ -7,6 +7,7 @@
 
 #include "linear/resolvent.h"
 #include "model/modal.h"
+#include "model/rounding.h"
 
 #include <ritz/check.h>
 #include <ritz/matrix.h>
@@ -26,14 +27,6 @@ enum {
     RITZ_NEEDS_STRUCTURAL = 4,
     RITZ_NEEDS_PORTS = 8,
 };
-
-/* Forces K r of rigid motions, and what an error of size 1 leaves of them. */
-typedef struct ritz_rigid_forces {
-    double largest;
-    int64_t row; /* where; -1: there is none */
-    double bound;
-    double fine; /* relative error that is no fault */
-} ritz_rigid_forces;
 
 /*
  * A square model from forces to the velocities of what they act on,

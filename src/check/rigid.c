@@ -154,25 +154,11 @@ ritz_status ritz_check_geometry(ritz_checker *it)
 static ritz_status find_forces(const ritz_checker *it, int64_t first,
                                double fine, ritz_rigid_forces *out)
 {
-    const ritz_sparse *K = &it->component->K;
-    RITZ_OWN(ritz_dense) R = {0}, F = {0};
+    RITZ_OWN(ritz_dense) R = {0};
 
     RITZ_CHECK(ritz_dense_columns(&it->R, first, 3, &R));
-    RITZ_CHECK(ritz_sparse_mul(K, &R, &F));
-    *out = (ritz_rigid_forces){.row = -1, .fine = fine};
-    for (int64_t j = 0; j < 3; j++)
-        for (int64_t i = 0; i < K->ncol; i++) {
-            double force = fabs(ritz_dense_col(&F, j)[i]);
-            double sum = 0.0;
-
-            for (int64_t p = K->colptr[i]; p < K->colptr[i + 1]; p++)
-                sum += fabs(K->val[p] * ritz_dense_col(&R, j)[K->rowind[p]]);
-            out->bound = fmax(out->bound, sum);
-            if (force > out->largest) {
-                out->largest = force;
-                out->row = i;
-            }
-        }
+    RITZ_CHECK(ritz_rigid_forces_of(&it->component->K, &R, out));
+    out->fine = fine;
     return RITZ_OK;
 }
 
@@ -189,8 +175,8 @@ static double worst_hold(const ritz_checker *it)
 /* Whether forces exceed rounding, but not the effect of the source's digits. */
 static bool is_rounded(const ritz_checker *it, const ritz_rigid_forces *f)
 {
-    return it->digits < 15.0 && f->largest > f->fine * f->bound &&
-           f->largest <= 0.5 * pow(10.0, 1.0 - it->digits) * f->bound;
+    return it->digits < RITZ_MOST_DIGITS && f->largest > f->fine * f->bound &&
+           f->largest <= ritz_digits_rounding(it->digits) * f->bound;
 }
 
 static void say_grounding(ritz_checker *it, const char *name,

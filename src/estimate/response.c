@@ -292,7 +292,7 @@ static double bound_interval(ritz_bounder *r, double a, double b, double *best,
 
 /* Points of the band, refined at the reduced model's poles. */
 static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
-                               int64_t *count, double **hertz)
+                               double rules_hz, int64_t *count, double **hertz)
 {
     ritz_grid grid = {.from_hz = band_hz[0],
                       .to_hz = band_hz[1],
@@ -301,8 +301,10 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
     int64_t m = r->trial->count - r->num_rigid;
     RITZ_OWN_ARRAY double *omega = NULL, *zeta = NULL;
 
-    if (r->num_rigid > 0)
+    if (r->num_rigid > 0 || rules_hz > 0.0)
         grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
+    if (!(band_hz[0] > 0.0) && rules_hz < band_hz[1])
+        grid.from_hz = fmax(grid.from_hz, rules_hz);
     RITZ_CHECK_NEW(omega, m);
     RITZ_CHECK_NEW(zeta, m);
     for (int64_t k = 0; k < m; k++) {
@@ -329,9 +331,11 @@ typedef struct channel_found {
 typedef struct response_found {
     int64_t count; /* channels, outputs by inputs */
     channel_found *channel;
-    int64_t worst; /* channel */
-    double value;  /* its bound, relative; HUGE_VAL: nothing is known */
-    bool between;  /* it is so large between points only */
+    int64_t worst;        /* channel */
+    double value;         /* its bound, relative; HUGE_VAL: nothing is known */
+    bool between;         /* it is so large between points only */
+    ritz_rounded rounded; /* what rounding of K does to the full response */
+    double rules_hz;      /* and up to where; 0: nothing */
 } response_found;
 
 static void response_found_free(response_found *f)
@@ -492,7 +496,7 @@ static ritz_status bound_band(ritz_measuring *m, bool known, richer *all,
     int64_t count = 0;
     RITZ_OWN_ARRAY double *hertz = NULL;
 
-    RITZ_CHECK(take_points(r, m->band_hz, &count, &hertz));
+    RITZ_CHECK(take_points(r, m->band_hz, f->rules_hz, &count, &hertz));
     f->count = r->io->num_inputs * r->io->num_outputs;
     RITZ_CHECK_NEW(f->channel, f->count);
     visit_points(r, count, hertz, f);
@@ -596,6 +600,39 @@ static const char *unknown_damping(const ritz_measuring *m,
                                        : NULL;
 }
 
+/* As ritz-verify finds it, of the trial's lowest modes. */
+static ritz_status find_rounding(const ritz_measuring *m, const ritz_bounder *r,
+                                 response_found *f)
+{
+    const ritz_component *full = m->estimator->component;
+    const ritz_pairs lowest = {.Phi = m->trial.X,
+                               .lambda = m->trial.theta,
+                               .num_rigid = m->pairs.num_rigid}; /* borrowed */
+    const bool factors =
+        r->coupled &&
+        !ritz_ratios_act_on_all(full, &m->estimator->request.damping);
+
+    RITZ_CHECK(ritz_rounded_of(full, &lowest, factors, &f->rounded));
+    if (f->rounded.motions > 0)
+        f->rules_hz = ritz_rounded_ends(&f->rounded, RITZ_START_ROUNDING);
+    return RITZ_OK;
+}
+
+/* Where the response is that of rounding. */
+static ritz_status report_rounding(const ritz_measuring *m,
+                                   const response_found *f, ritz_measures *out)
+{
+    char where[RITZ_NAME_SIZE];
+
+    if (f->rules_hz <= fmax(m->band_hz[0], RITZ_BAND_START * m->band_hz[1]))
+        return RITZ_OK;
+    (void)snprintf(where, sizeof where,
+                   "rigid eigenvalues of rounded K, %.3g Hz",
+                   f->rounded.rigid_hz);
+    return ritz_measures_add(out, "rounding-to-hz", f->rules_hz, nan(""),
+                             where);
+}
+
 /* Add the answer, unless it is that there is no error. */
 static ritz_status report_response(const ritz_measuring *m,
                                    const ritz_bounder *r, bool sure,
@@ -642,8 +679,10 @@ ritz_status ritz_bound_response(ritz_measuring *m, const ritz_reduced *reduced,
     if (!known)
         RITZ_CHECK(take_rates(estimator, &r, matrices));
     RITZ_CHECK(ritz_bounder_open(estimator, &r));
+    RITZ_CHECK(find_rounding(m, &r, &found));
     RITZ_CHECK(bound_band(m, known, &all, &r, &found));
-    return report_response(
+    RITZ_CHECK(report_response(
         m, &r, known && rigid_in_full(&m->trial, m->pairs.num_rigid), &found,
-        out);
+        out));
+    return report_rounding(m, &found, out);
 }

@@ -40,6 +40,7 @@ static ritz_status refer_place(const ritz_fit_request *request,
         .band_hz = {request->tolerance.band_hz[0],
                     request->tolerance.band_hz[1]},
         .damping = request->tolerance.damping,
+        .tolerance = request->tolerance.limit[RITZ_MEASURE_FLEXIBLE],
         .num_random = request->num_random,
         .seed = request->seed,
     };

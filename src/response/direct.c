@@ -366,8 +366,10 @@ static ritz_status make_direct(const ritz_response_request *request,
     out->poles = &s->poles;
     out->pairs = &s->pairs;
     out->at = direct_at;
-    return ritz_direct_new(request->model.component, request->model.damping,
-                           ritz_response_highest(request), s);
+    RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
+                               ritz_response_highest(request), s));
+    return ritz_rounded_of(request->model.component, &s->pairs, !s->apart,
+                           &out->rounded);
 }
 
 const ritz_response_engine ritz_response_engine_direct = {

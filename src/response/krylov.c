@@ -559,6 +559,8 @@ static ritz_status make_krylov(const ritz_response_request *request,
     out->poles = &k->small.poles;
     out->at = krylov_at;
     RITZ_CHECK(start_krylov(request, k));
+    RITZ_CHECK(ritz_rounded_of(request->model.component, &k->full.pairs, false,
+                               &out->rounded));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " modes and %" PRId64 " vectors more, of %" PRId64
                    " corrections and %" PRId64

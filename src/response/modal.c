@@ -264,6 +264,8 @@ static ritz_status make_modal(const ritz_response_request *request,
     RITZ_CHECK(ritz_response_reach(request));
     RITZ_CHECK(ritz_poles_of_component(model->component, model->damping,
                                        highest, &m->pairs, &m->poles));
+    RITZ_CHECK(
+        ritz_rounded_of(model->component, &m->pairs, false, &out->rounded));
     RITZ_CHECK(ritz_residual_new(model->component, model->damping, &m->pairs,
                                  request->to_hz, highest, &m->residual));
     return m->residual.known ? RITZ_OK : judge_sum(request, m, out);

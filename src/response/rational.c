@@ -574,6 +574,8 @@ static ritz_status make_rational(const ritz_response_request *request,
     out->at = rational_at;
     RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
                                ritz_response_highest(request), &s->full));
+    RITZ_CHECK(ritz_rounded_of(request->model.component, &s->full.pairs,
+                               !s->full.apart, &out->rounded));
     RITZ_CHECK(start_rational(request, out, s));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " factors at nodes, %" PRId64 " poles cancelled",

@@ -326,6 +326,11 @@ const char *ritz_responder_remark(const ritz_responder *responder)
     return responder->remark;
 }
 
+ritz_rounded ritz_responder_rounded(const ritz_responder *responder)
+{
+    return responder->rounded;
+}
+
 ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
                               double _Complex *H)
 {

@@ -51,7 +51,8 @@ struct ritz_responder {
     ritz_damping given;              /* in addition to that of matrices */
     char damping[RITZ_DAMPING_SIZE]; /* the same in words, or the model's */
     char remark[RITZ_REMARK_SIZE];
-    ritz_noise noise; /* rounding of the responses */
+    ritz_noise noise;     /* rounding of the responses */
+    ritz_rounded rounded; /* what rounding of K does to them */
     void *state;
     /** Add H at a frequency to an array of zeros. */
     ritz_status (*at)(void *state, double hertz, double _Complex *H);

@@ -74,15 +74,24 @@ static void keep_larger(double value, int64_t mode, extreme *of)
     of->mode = mode;
 }
 
+/* Whether a mode is a rigid motion that rounding of K has given a frequency. */
+static bool is_hidden(const ritz_sides *sides, int64_t k)
+{
+    const ritz_rounded *rounded = &sides->full->rounded;
+
+    return rounded->hidden && k < rounded->motions;
+}
+
 /* The value and "mode 5, 0.1202 Hz". */
 static void tell_mode(const ritz_sides *sides, extreme found, ritz_measure *out)
 {
     if (found.mode < 0)
         return;
     out->value = found.value;
-    (void)snprintf(out->where, sizeof out->where, "mode %" PRId64 ", %.4g Hz",
+    (void)snprintf(out->where, sizeof out->where, "mode %" PRId64 ", %.4g Hz%s",
                    found.mode + 1,
-                   ritz_eigen_hertz(sides->full->poles.lambda[found.mode]));
+                   ritz_eigen_hertz(sides->full->poles.lambda[found.mode]),
+                   is_hidden(sides, found.mode) ? ", rigid of rounded K" : "");
 }
 
 /* The largest error of modes in the band that have a partner. */
@@ -95,7 +104,8 @@ static void tell_worst(const ritz_sides *sides,
     extreme found = {0.0, -1};
 
     for (int64_t k = full->num_rigid; k < full->count; k++)
-        if (in_band(sides, full->lambda[k]) && sides->match.partner[k] >= 0)
+        if (in_band(sides, full->lambda[k]) && sides->match.partner[k] >= 0 &&
+            full->lambda[k] > 0.0)
             keep_larger(error(sides, nothing, k, sides->match.partner[k]), k,
                         &found);
     tell_mode(sides, found, out);

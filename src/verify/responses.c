@@ -75,18 +75,31 @@ void ritz_sweep_free(ritz_reference_sweep *sweep)
     *sweep = (ritz_reference_sweep){0};
 }
 
+double ritz_reference_start(const ritz_reference *reference)
+{
+    const double *band = reference->band_hz;
+    const ritz_rounded *rounded = &reference->rounded;
+    double start = band[0];
+
+    if (reference->poles.num_rigid > 0 || rounded->hidden)
+        start = fmax(start, RITZ_BAND_START * band[1]);
+    return !(band[0] > 0.0) && reference->rules_hz < band[1]
+               ? fmax(start, reference->rules_hz)
+               : start;
+}
+
 ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_poles *poles,
                               const ritz_damped *damped, int64_t even,
                               ritz_reference_sweep *out)
 {
     RITZ_OWN_ARRAY double *omega = NULL;
-    ritz_grid grid = {.from_hz = reference->band_hz[0],
+    ritz_grid grid = {.from_hz = ritz_reference_start(reference),
                       .to_hz = reference->band_hz[1],
                       .count = even,
                       .refine = true};
 
-    if (poles->num_rigid + reference->poles.num_rigid > 0)
+    if (poles->num_rigid > 0)
         grid.from_hz = fmax(grid.from_hz, RITZ_BAND_START * grid.to_hz);
     RITZ_CHECK_NEW(omega, poles->count);
     for (int64_t k = 0; k < poles->count; k++)
@@ -327,6 +340,45 @@ ritz_status ritz_sides_respond(ritz_sides *sides)
     return RITZ_OK;
 }
 
+/* The largest |f| of rigid motions that the reduced model alone holds; 0:
+   it holds none. */
+static double find_held(const ritz_sides *sides)
+{
+    int64_t rigid = sides->full->poles.num_rigid;
+    double held = 0.0;
+
+    for (int64_t k = sides->reduced.num_rigid;
+         k < rigid && k < sides->small.Phi.ncol; k++)
+        held = fmax(held, fabs(ritz_eigen_hertz(sides->small.lambda[k])));
+    return held;
+}
+
+/* Whether an error is of rigid motions that are held, "9 Hz: rigid eigenvalues
+   of rounded K, 0.0338 Hz". */
+static bool tell_rigid(const ritz_sides *sides, double hertz,
+                       char where[RITZ_NAME_SIZE])
+{
+    const ritz_reference *full = sides->full;
+    const ritz_rounded reduced = {
+        .rigid_hz = find_held(sides),
+        .flexible_hz =
+            ritz_eigen_hertz(full->poles.num_rigid < full->poles.count
+                                 ? full->poles.lambda[full->poles.num_rigid]
+                                 : 0.0)};
+
+    if (hertz < full->rules_hz)
+        (void)snprintf(where, RITZ_NAME_SIZE,
+                       "%.6g Hz: rigid eigenvalues of rounded K, %.3g Hz",
+                       hertz, full->rounded.rigid_hz);
+    else if (hertz < ritz_rounded_ends(&reduced, RITZ_START_ROUNDING))
+        (void)snprintf(where, RITZ_NAME_SIZE,
+                       "%.6g Hz: reduced K holds rigid motion, %.3g Hz", hertz,
+                       reduced.rigid_hz);
+    else
+        return false;
+    return true;
+}
+
 /* The error over @p unit, and "3.41 Hz, modal 0.01 assumed". */
 static void tell_error(const ritz_sides *sides, ritz_extreme found, double unit,
                        ritz_measure *out)
@@ -337,6 +389,8 @@ static void tell_error(const ritz_sides *sides, ritz_extreme found, double unit,
     if (!sides->gap.significant)
         return;
     out->value = found.value / unit;
+    if (tell_rigid(sides, found.hertz, out->where))
+        return;
     ritz_damping_print(&full->damping, damping);
     (void)snprintf(out->where, sizeof out->where, "%.6g Hz%s%.30s%s",
                    found.hertz, damping[0] ? ", " : "", damping,
@@ -365,6 +419,21 @@ ritz_status ritz_responses_flexible(const ritz_sides *sides, ritz_measure *out)
 ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out)
 {
     tell_error(sides, sides->gap.db, 1.0, out);
+    return RITZ_OK;
+}
+
+/* The end of what rounding rules, where the band reaches below it. */
+ritz_status ritz_responses_rounding(const ritz_sides *sides, ritz_measure *out)
+{
+    const ritz_reference *full = sides->full;
+    double start = fmax(full->band_hz[0], RITZ_BAND_START * full->band_hz[1]);
+
+    if (full->rules_hz <= start)
+        return RITZ_OK;
+    out->value = full->rules_hz;
+    (void)snprintf(out->where, sizeof out->where,
+                   "rigid eigenvalues of rounded K, %.3g Hz",
+                   full->rounded.rigid_hz);
     return RITZ_OK;
 }
 

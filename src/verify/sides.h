@@ -50,8 +50,10 @@ struct ritz_reference {
     double band_hz[2];
     double modes_hz; /* its modes are known up to here */
     ritz_damping damping;
-    bool assumed;     /* nobody had said how it is damped */
-    ritz_pairs pairs; /* to three times the band */
+    bool assumed;         /* nobody had said how it is damped */
+    ritz_rounded rounded; /* what rounding of K does to its responses, */
+    double rules_hz;      /* and below which frequency; 0: nothing */
+    ritz_pairs pairs;     /* to three times the band */
     ritz_poles poles;
     ritz_residual residual;
     ritz_damped damped;
@@ -128,6 +130,16 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_damped *damped, int64_t even,
                               ritz_reference_sweep *out);
 
+/** Rigid motions of the full model, hidden ones too. */
+int64_t ritz_reference_rigid(const ritz_reference *reference);
+
+/**
+ * Where responses over the band start: above 0 where a rigid motion responds,
+ * and above what rounding of the stiffness rules, unless the band itself starts
+ * above 0 or ends below.
+ */
+double ritz_reference_start(const ritz_reference *reference);
+
 /**
  * The highest frequency of the modes that a basis was made with, or else of its
  * own modes. @param[in] columns  may be NULL
@@ -151,7 +163,7 @@ ritz_measure_modes ritz_modes_frequency, ritz_modes_mac, ritz_modes_damping,
     ritz_modes_rigid_hertz, ritz_modes_missing_rigid, ritz_modes_missing,
     ritz_modes_extra, ritz_modes_h2, ritz_responses_error,
     ritz_responses_flexible, ritz_responses_level, ritz_responses_gain,
-    ritz_responses_singular;
+    ritz_responses_singular, ritz_responses_rounding;
 
 void ritz_sweep_free(ritz_reference_sweep *sweep);
 

@@ -46,6 +46,13 @@ static void draw_hertz(uint64_t seed, const double band_hz[2], int64_t count,
     qsort(out, (size_t)count, sizeof *out, ritz_ascending);
 }
 
+int64_t ritz_reference_rigid(const ritz_reference *reference)
+{
+    const ritz_rounded *rounded = &reference->rounded;
+
+    return rounded->hidden ? rounded->motions : reference->poles.num_rigid;
+}
+
 /* The flexible gain C Phi Lambda^-1 Phi'B of the modes, and of the rest. */
 static ritz_status full_gain(ritz_reference *r)
 {
@@ -58,7 +65,7 @@ static ritz_status full_gain(ritz_reference *r)
             double *g = &ritz_dense_col(&r->gain, j)[i];
 
             *g = r->residual.count > 0 ? r->residual.part[0][i + j * p] : 0.0;
-            for (int64_t k = poles->num_rigid; k < poles->count; k++)
+            for (int64_t k = ritz_reference_rigid(r); k < poles->count; k++)
                 *g += ritz_dense_col(&poles->io.C, k)[i] *
                       ritz_dense_col(&poles->io.B, j)[k] / poles->lambda[k];
         }
@@ -77,7 +84,22 @@ static ritz_status take_modes(double up_to_hz, ritz_reference *r)
                         "full model");
 }
 
-static ritz_status open_modes(ritz_reference *r)
+/* Factors of the full matrices hold rounding of its rigid stiffness; modes, and
+   what krylov adds to them, only that of motions that do not count as rigid. */
+static ritz_status find_rounding(double tolerance, ritz_reference *r)
+{
+    const bool factors = ritz_reference_factors(r) &&
+                         !ritz_ratios_act_on_all(r->component, &r->damping);
+
+    RITZ_CHECK(ritz_rounded_of(r->component, &r->pairs, factors, &r->rounded));
+    if (r->rounded.motions > 0)
+        r->rules_hz = ritz_rounded_ends(
+            &r->rounded, tolerance > 0.0 ? fmin(tolerance, RITZ_START_ROUNDING)
+                                         : RITZ_START_ROUNDING);
+    return RITZ_OK;
+}
+
+static ritz_status open_modes(double tolerance, ritz_reference *r)
 {
     r->modes_hz = RITZ_REFERENCE_REACH * r->band_hz[1];
     RITZ_CHECK(take_modes(r->modes_hz, r));
@@ -91,6 +113,7 @@ static ritz_status open_modes(ritz_reference *r)
                   ritz_damped_new(&r->poles, r->component, &r->pairs,
                                   r->band_hz, &r->damped));
     RITZ_CHECK_IN("full model", ritz_reference_observe(r));
+    RITZ_CHECK_IN("full model", find_rounding(tolerance, r));
     RITZ_CHECK_IN("full model", full_gain(r));
     return RITZ_OK;
 }
@@ -99,7 +122,7 @@ static ritz_status open_modes(ritz_reference *r)
 static ritz_status open_sweeps(const ritz_reference_request *request,
                                ritz_reference *r)
 {
-    double band[2] = {r->band_hz[0], r->band_hz[1]};
+    const double band[2] = {ritz_reference_start(r), r->band_hz[1]};
 
     if (r->poles.io.num_inputs == 0 || r->poles.io.num_outputs == 0 ||
         !(band[1] > band[0]))
@@ -109,8 +132,6 @@ static ritz_status open_sweeps(const ritz_reference_request *request,
     RITZ_CHECK_IN("full model", ritz_reference_respond(r, &r->own));
     if (request->num_random < 1)
         return RITZ_OK;
-    if (r->poles.num_rigid > 0)
-        band[0] = fmax(band[0], RITZ_BAND_START * band[1]);
     r->random.count = request->num_random;
     RITZ_CHECK_NEW(r->random.hertz, r->random.count);
     draw_hertz(request->seed, band, r->random.count, r->random.hertz);
@@ -130,7 +151,7 @@ static ritz_status open_reference(const ritz_component *full,
     r->band_hz[1] = request->band_hz[1];
     r->damping = request->damping;
     r->assumed = assumed;
-    RITZ_CHECK(open_modes(r));
+    RITZ_CHECK(open_modes(request->tolerance, r));
     RITZ_CHECK(open_sweeps(request, r));
     RITZ_MOVE(*out, r);
     return RITZ_OK;
@@ -284,7 +305,7 @@ static ritz_status measure_sides(const ritz_verify_request *limits,
                                   &sides->damped_reduced));
     RITZ_CHECK_IN("reduced model",
                   ritz_static_gain(sides->model.K, sides->model.M,
-                                   sides->model.io, full->pairs.num_rigid,
+                                   sides->model.io, ritz_reference_rigid(full),
                                    &sides->gain_reduced));
     RITZ_CHECK(ritz_sides_match(sides));
     RITZ_CHECK(ritz_sides_respond(sides));
@@ -350,7 +371,8 @@ static ritz_status verify_dense(const ritz_component *full, ritz_model model,
                                 ritz_measures *out)
 {
     const ritz_reduced *reduced = model.reduced;
-    ritz_reference_request asked = {0};
+    const double flexible = request->limit[RITZ_MEASURE_FLEXIBLE];
+    ritz_reference_request asked = {.tolerance = flexible};
     RITZ_OWN(ritz_reference) *reference = NULL;
     RITZ_OWN(ritz_sides) sides = {.where = RITZ_AT_OTHER_POLES};
     bool is_assumed = false;

@@ -489,16 +489,53 @@ static ritz_status say_margins(cli_run *run, const loop_run *loop,
 
 /* --- the response --------------------------------------------------------- */
 
+/*
+ * A range that is not asked for begins above what rounding of a free body's
+ * stiffness rules: a thousandth of flexible responses, and the tolerance of the
+ * largest one.
+ */
+static void heed_rounding(cli_run *run, const response_options *given,
+                          const ritz_responder *plant, ritz_grid *grid)
+{
+    const ritz_rounded rounded = ritz_responder_rounded(plant);
+    const double rigid = rounded.rigid_hz;
+    double begin = grid->hertz ? grid->hertz[0] : grid->from_hz;
+    double ends = ritz_rounded_ends(&rounded, RITZ_START_ROUNDING);
+
+    if (given->tolerance > 0.0)
+        ends = fmax(ends, rigid / sqrt(given->tolerance));
+    if (rounded.motions == 0 || ends <= begin)
+        return;
+    sink_object(run, "rounding");
+    sink_set(run, "rigid_hz,to_hz", "%g %g", rigid, ends);
+    sink_end(run);
+    if (isnan(given->from_hz) && !grid->hertz && ends < grid->to_hz) {
+        grid->from_hz = ends;
+        cli_say(
+            run,
+            "begins at %.4g Hz: below, rigid eigenvalues of rounded K rule, "
+            "at %.3g Hz",
+            ends, rigid);
+    } else {
+        cli_warn(run,
+                 "up to %.4g Hz the response is one of rigid eigenvalues of "
+                 "rounded K, at %.3g Hz, and not of the body",
+                 ends, rigid);
+    }
+}
+
 /* The model, or the loop that is closed around it, at the points. */
 static ritz_status find_response(cli_run *run, const model *m,
                                  const response_options *given,
-                                 const ritz_grid *grid, loop_run *loop,
+                                 const ritz_grid *points, loop_run *loop,
                                  ritz_response *out)
 {
-    const double range[2] = {grid->from_hz, grid->to_hz};
+    const double range[2] = {points->from_hz, points->to_hz};
     ritz_responder *whole = NULL;
+    ritz_grid own = *points, *grid = &own;
 
     RITZ_CHECK(new_responder(run, m, given, grid, &loop->plant));
+    heed_rounding(run, given, loop->plant, grid);
     RITZ_CHECK(close_loop(run, &given->loops, m, range, loop));
     whole = loop->closed ? loop->closed : loop->plant;
     RITZ_CHECK(given->tolerance > 0.0
