@@ -63,7 +63,7 @@ static ritz_status merge_ranges(const ritz_bulk_ranges *given, int64_t c,
             out->range[out->count++] = given->range[k];
     if (out->count > 1)
         qsort(out->range, (size_t)out->count, sizeof *out->range,
-              ritz_cards_compare_ids);
+              ritz_ascending_index);
     for (int64_t k = 0; k < out->count; k++) {
         ritz_bulk_range *last = &out->range[kept > 0 ? kept - 1 : 0];
 
@@ -522,7 +522,7 @@ static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
     if (count == 0)
         return RITZ_OK;
     qsort(cards->selected[which], (size_t)count, sizeof count,
-          ritz_cards_compare_ids);
+          ritz_ascending_index);
     for (int64_t k = 0; k < all->num_sums; k++) {
         if (all->sum[k].which != which ||
             !ritz_cards_select(cards, which, all->sum[k].set))
@@ -533,7 +533,7 @@ static ritz_status complete_selection(ritz_bulk_cards *all, int64_t which)
     }
     cards->num_selected[which] = count;
     qsort(cards->selected[which], (size_t)count, sizeof count,
-          ritz_cards_compare_ids);
+          ritz_ascending_index);
     return RITZ_OK;
 }
 

@@ -1,5 +1,6 @@
 /* Grids of bulk data, and the coordinate systems that place and turn them. */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "formats/bulk.h"
 
@@ -240,9 +241,9 @@ static int compare_items(const void *left, const void *right)
 {
     const int64_t *a = left;
     const int64_t *b = right;
-    int order = ritz_cards_compare_ids(a, b);
+    int order = ritz_ascending_index(a, b);
 
-    return order ? order : ritz_cards_compare_ids(a + 1, b + 1);
+    return order ? order : ritz_ascending_index(a + 1, b + 1);
 }
 
 /* Sort such structs and keep each id once; what `same` finds to be another
@@ -262,7 +263,7 @@ static ritz_status settle_items(const ritz_cards *cards, const char *noun,
         int64_t key[2];
 
         memcpy(key, item, sizeof key);
-        if (kept > 0 && ritz_cards_compare_ids(last, item) == 0) {
+        if (kept > 0 && ritz_ascending_index(last, item) == 0) {
             if (!same(last, item))
                 return ritz_cards_refuse(
                     cards, key[1], "%s %" PRId64 " is defined otherwise before",
@@ -308,7 +309,7 @@ const ritz_bulk_grid *ritz_bulk_find_grid(const ritz_bulk_cards *all,
     if (all->num_grids == 0)
         return NULL;
     return bsearch(&id, all->grid, (size_t)all->num_grids, sizeof *all->grid,
-                   ritz_cards_compare_ids);
+                   ritz_ascending_index);
 }
 
 /* ---- coordinate systems ------------------------------------------------- */
@@ -378,7 +379,7 @@ static ritz_bulk_frame *find_frame(const ritz_bulk_cards *all, int64_t id)
     if (all->num_frames == 0)
         return NULL;
     return bsearch(&id, all->frame, (size_t)all->num_frames, sizeof *all->frame,
-                   ritz_cards_compare_ids);
+                   ritz_ascending_index);
 }
 
 /* ---- resolving ---------------------------------------------------------- */

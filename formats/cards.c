@@ -8,6 +8,7 @@
  */
 #include "formats/cards.h"
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/text.h"
 
 #include <ritz/base.h>
@@ -546,5 +547,5 @@ bool ritz_cards_select(const ritz_cards *cards, int64_t which, int64_t set)
     return cards->num_selected[which] == 0 ||
            bsearch(&set, cards->selected[which],
                    (size_t)cards->num_selected[which], sizeof set,
-                   ritz_cards_compare_ids);
+                   ritz_ascending_index);
 }

@@ -135,9 +135,6 @@ ritz_status ritz_card_refuse(const ritz_card *card, int64_t k,
 void ritz_card_free(ritz_card *card);
 void ritz_cards_free(ritz_cards *cards);
 
-/** Order of two int64_t, and of structs that begin with an id. */
-int ritz_cards_compare_ids(const void *left, const void *right);
-
 /** For bsearch in tables whose rows begin with a name. */
 int ritz_cards_compare_name(const void *name, const void *row);
 

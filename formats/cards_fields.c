@@ -158,14 +158,6 @@ void ritz_view_look(const ritz_line *line, ritz_view *out)
 
 /* ---- values ------------------------------------------------------------- */
 
-int ritz_cards_compare_ids(const void *left, const void *right)
-{
-    const int64_t *a = left;
-    const int64_t *b = right;
-
-    return (*a > *b) - (*a < *b);
-}
-
 int ritz_cards_compare_name(const void *name, const void *row)
 {
     const char *const *one = row;

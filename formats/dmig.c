@@ -16,6 +16,7 @@
  * [Nastran1986], entry DMIG.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "formats/cards.h"
 #include "formats/matrix.h"
@@ -288,7 +289,7 @@ static int compare_terms(const void *a, const void *b)
 
     if (!order)
         order = ritz_dof_compare(&left->row, &right->row);
-    return order ? order : ritz_cards_compare_ids(&left->line, &right->line);
+    return order ? order : ritz_ascending_index(&left->line, &right->line);
 }
 
 /* Terms of a symmetric matrix all to the lower triangle; sorted. */
@@ -357,7 +358,7 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
     RITZ_REFUSE_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                    "there is no DMIG card in the bulk data");
     qsort(all.header, (size_t)all.num_headers, sizeof *all.header,
-          ritz_cards_compare_ids); /* the order of the file */
+          ritz_ascending_index); /* the order of the file */
     for (int64_t k = 0; k < all.num_headers; k++) {
         const ritz_dmig_header *header = &all.header[k];
         ritz_listed item = {.nrow = -1,

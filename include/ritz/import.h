@@ -358,11 +358,12 @@ typedef struct ritz_import_space_request {
 } ritz_import_space_request;
 
 /**
- * Read A, B and C, and D and E if they are given, as dense matrices.
+ * Read A, B and C, and D and E if they are given. A and E stay sparse if there
+ * are more than RITZ_SPARSE_STATES states and at most a tenth is not zero.
  *
  * @return RITZ_ERR_ARGUMENT if one is missing, or there are more than
- *         2 RITZ_STATE_DOFS states, inputs or outputs; RITZ_ERR_FORMAT if sizes
- *         disagree, one is complex or not finite, or E is singular
+ *         2 RITZ_STATE_DOFS dense states, inputs or outputs; RITZ_ERR_FORMAT if
+ *         sizes disagree, one is complex or not finite, or E is singular
  */
 ritz_status ritz_import_state_space(const ritz_import_space_request *request,
                                     ritz_state_space *out);

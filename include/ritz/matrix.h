@@ -38,6 +38,9 @@ void ritz_dense_scale_rows(const double *factor, ritz_dense *A);
 /** A := B, which is left empty. */
 void ritz_dense_replace(ritz_dense *A, ritz_dense *B);
 
+/** A := A B. */
+ritz_status ritz_dense_times(const ritz_dense *B, ritz_dense *A);
+
 /** The block of @p out's size whose first entry is A(row, col). */
 void ritz_dense_cut(const ritz_dense *A, int64_t row, int64_t col,
                     ritz_dense *out);
@@ -54,6 +57,9 @@ void ritz_dense_symmetrise(ritz_dense *A);
 
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, of a square matrix. */
 double ritz_dense_asymmetry(const ritz_dense *A);
+
+/** |A - A'| / (2 |A|) in the Frobenius norm: how much of A is antisymmetric. */
+double ritz_dense_skew(const ritz_dense *A);
 
 /** B'AB of a square A, exactly symmetric: always, or (project) if A is. */
 ritz_status ritz_dense_congruence(const ritz_dense *A, const ritz_dense *B,
@@ -94,6 +100,9 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
                             const int64_t *row, ritz_dense *out);
 ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
                             const int64_t *col, ritz_dense *out);
+
+/** A := 0 but for rows row[0], row[1], ..., which become those of @p B. */
+void ritz_dense_spread(const ritz_dense *B, const int64_t *row, ritz_dense *A);
 
 /** A(at, at): rows at[0], at[1], ..., and the columns. */
 ritz_status ritz_dense_principal(const ritz_dense *A, int64_t count,
@@ -242,7 +251,7 @@ double ritz_sparse_max(const ritz_sparse *A);
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, for a square matrix. */
 double ritz_sparse_asymmetry(const ritz_sparse *A);
 
-/** |A - A'| / (2 |A|) in the Frobenius norm: how much of A is antisymmetric. */
+/** See ritz_dense_skew. */
 double ritz_sparse_skew(const ritz_sparse *A);
 
 /** A := (A + A') / 2, exactly symmetric in values and in pattern. */

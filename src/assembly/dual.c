@@ -333,7 +333,7 @@ static ritz_status order_modes(const ritz_pairs *pairs, ritz_dense *P,
                                ritz_configuration *c)
 {
     const int64_t e = pairs->Phi.ncol;
-    RITZ_OWN(ritz_dense) Phi = {0}, Q = {0};
+    RITZ_OWN(ritz_dense) Phi = {0};
     RITZ_OWN_ARRAY int64_t *order = NULL;
     RITZ_OWN_ARRAY double *size = NULL;
 
@@ -354,9 +354,7 @@ static ritz_status order_modes(const ritz_pairs *pairs, ritz_dense *P,
         c->lambda[j] = pairs->lambda[order[j]];
     c->num_rigid = ritz_eigen_rigid(e, size, e > 0 ? size[e - 1] : 0.0);
     RITZ_CHECK(ritz_dense_pick(&pairs->Phi, e, order, &Phi));
-    RITZ_CHECK(ritz_dense_mul(P, &Phi, &Q));
-    ritz_dense_replace(P, &Q);
-    return RITZ_OK;
+    return ritz_dense_times(&Phi, P);
 }
 
 /* Report the number of negative eigenvalues and the one nearest to 0. */

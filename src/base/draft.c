@@ -245,7 +245,7 @@ static bool is_named(const char *name, int file)
     struct stat open_one = {0}, there = {0};
 
     return fstat(file, &open_one) == 0 && lstat(name, &there) == 0 &&
-           open_one.st_dev == there.st_dev && open_one.st_ino == there.st_ino;
+           same_file(&open_one, &there);
 }
 
 /*

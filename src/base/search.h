@@ -1,7 +1,8 @@
-/* Order: searching ascending numbers, and sorting. */
+/* Order: searching ascending numbers, sorting, and choices of some of many. */
 #ifndef RITZ_BASE_SEARCH_H
 #define RITZ_BASE_SEARCH_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -55,6 +56,33 @@ static inline int ritz_ascending(const void *left, const void *right)
     double b = *(const double *)right;
 
     return (a > b) - (a < b);
+}
+
+/** The same of indices, and of structs that begin with one. */
+static inline int ritz_ascending_index(const void *left, const void *right)
+{
+    int64_t a = *(const int64_t *)left;
+    int64_t b = *(const int64_t *)right;
+
+    return (a > b) - (a < b);
+}
+
+/**
+ * The next of the choices of @p k among @p n, each ascending: the first is 0,
+ * 1, ..., k - 1. False after the last.
+ */
+static inline bool ritz_next_choice(int64_t n, int64_t k, int64_t *at)
+{
+    int64_t i = k - 1;
+
+    while (i >= 0 && at[i] == n - k + i)
+        i--;
+    if (i < 0)
+        return false;
+    at[i]++;
+    for (int64_t j = i + 1; j < k; j++)
+        at[j] = at[j - 1] + 1;
+    return true;
 }
 
 /**

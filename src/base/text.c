@@ -338,6 +338,34 @@ int64_t ritz_names_index(const ritz_names *names, const char *word)
     return -1;
 }
 
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+ritz_status ritz_names_repeated(int64_t count,
+                                const char (*name)[RITZ_NAME_SIZE],
+                                char out[RITZ_NAME_SIZE])
+{
+    RITZ_OWN_ARRAY char(*sorted)[RITZ_NAME_SIZE] = NULL;
+
+    out[0] = '\0';
+    RITZ_CHECK_COPY(sorted, name, count);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_names);
+    for (int64_t k = 1; k < count && !*out; k++)
+        if (strcmp(sorted[k - 1], sorted[k]) == 0)
+            memcpy(out, sorted[k], sizeof *sorted);
+    return RITZ_OK;
+}
+
+int64_t ritz_name_index(int64_t count, char (*name)[RITZ_NAME_SIZE],
+                        const char *word)
+{
+    const ritz_names names = {"", count, (char *)name, sizeof *name};
+
+    return ritz_names_index(&names, word);
+}
+
 int64_t ritz_names_seek(const ritz_names *names, const char *word)
 {
     int64_t at = ritz_names_index(names, word);

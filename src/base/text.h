@@ -63,7 +63,16 @@ ritz_status ritz_words_find(const ritz_names *names, const char *word,
 /** Index of @p word, without a sentence; -1 if it is not there. */
 int64_t ritz_names_index(const ritz_names *names, const char *word);
 
-/** The same with the sentence "there is no WHAT 'word', is 'ward' meant?". */
+/** A name that is there twice, "" if each is there once; by sorting. */
+ritz_status ritz_names_repeated(int64_t count,
+                                const char (*name)[RITZ_NAME_SIZE],
+                                char out[RITZ_NAME_SIZE]);
+
+/** Index of @p word among names that stand alone; -1 if it is not there. */
+int64_t ritz_name_index(int64_t count, char (*name)[RITZ_NAME_SIZE],
+                        const char *word);
+
+/** Index with the sentence "there is no WHAT 'word', is 'ward' meant?". */
 int64_t ritz_names_seek(const ritz_names *names, const char *word);
 
 enum { RITZ_SHORT_SIZE = 48 };

@@ -185,10 +185,7 @@ static ritz_status solve_supported(const ritz_elastic *E, ritz_dense *X)
     RITZ_CHECK(ritz_dense_rows(X, w->count, w->at, &X_w));
     if (E->L)
         RITZ_CHECK(ritz_factor_solve(E->L, &X_w));
-    memset(X->val, 0, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < w->count; i++)
-            ritz_dense_col(X, j)[w->at[i]] = ritz_dense_col(&X_w, j)[i];
+    ritz_dense_spread(&X_w, w->at, X);
     return RITZ_OK;
 }
 

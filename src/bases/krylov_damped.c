@@ -41,14 +41,10 @@ static ritz_status append_state(ritz_krylov *S, const ritz_forces *forces,
                                 const ritz_dense *v, state_chain *c)
 {
     ritz_orthonormal *set = &S->set;
-    RITZ_OWN(ritz_dense) R = {0}, raw = {0}, d = {0}, Z = {0};
-    ritz_dense WV = {0};
+    RITZ_OWN(ritz_dense) R = {0}, d = {0}, Z = {0};
 
     RITZ_CHECK(ritz_krylov_respond(S, &S->point[0], forces, &R));
-    RITZ_CHECK(ritz_dense_copy(&R, &raw));
-    RITZ_CHECK(ritz_orthonormal_append(set, &R, S->vectors - set->count, NULL));
-    WV = ritz_dense_part(&set->WV, 0, set->count);
-    RITZ_CHECK(ritz_dense_mul_tn(&WV, &raw, &d));
+    RITZ_CHECK(ritz_orthonormal_express(set, &R, S->vectors - set->count, &d));
     RITZ_CHECK(ritz_dense_new(2 * c->room, d.ncol, &Z));
     ritz_dense_put(&d, 0, 0, &Z);
     ritz_dense_put(v, c->room, 0, &Z);

@@ -165,6 +165,16 @@ ritz_status ritz_space_krylov(const ritz_space_span *span, int64_t count,
     return ritz_dense_columns(&set.V, 0, set.count, out);
 }
 
+ritz_status ritz_states_asked(const ritz_request *request)
+{
+    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
+                   "states are asked for by their number, not by a frequency: "
+                   "--modes, not --up-to-hz");
+    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
+                   "no states are asked for, one at least is needed: --modes");
+    return RITZ_OK;
+}
+
 ritz_status ritz_space_request(const ritz_request *request, int uses)
 {
     for (const ritz_choice_word *word = ritz_choice_words; word->key; word++)
@@ -173,12 +183,7 @@ ritz_status ritz_space_request(const ritz_request *request, int uses)
                        "of a state space there is no '%s' "
                        "to choose",
                        word->key);
-    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                   "states are asked for by their number, not by a frequency: "
-                   "--modes, not --up-to-hz");
-    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                   "no states are asked for, one at least is needed: --modes");
-    return RITZ_OK;
+    return ritz_states_asked(request);
 }
 
 void ritz_space_pair(ritz_dense *T, ritz_dense *W)

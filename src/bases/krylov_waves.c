@@ -126,10 +126,7 @@ static ritz_status solve_relieved(const ritz_wave_point *p, ritz_dense *X)
         RITZ_CHECK(ritz_dense_take_out(&E->MPhi, &E->Phi, X));
     RITZ_CHECK(ritz_dense_rows(X, w->count, w->at, &X_w));
     RITZ_CHECK(solve_complex(p, false, &X_w));
-    memset(X->val, 0, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < w->count; i++)
-            ritz_dense_col(X, j)[w->at[i]] = ritz_dense_col(&X_w, j)[i];
+    ritz_dense_spread(&X_w, w->at, X);
     for (int pass = 0; pass < 2; pass++)
         RITZ_CHECK(ritz_dense_take_out(&E->Phi, &E->MPhi, X));
     return RITZ_OK;
@@ -219,14 +216,10 @@ static ritz_status append_states(ritz_krylov *S, const ritz_dense *G,
 {
     ritz_orthonormal *set = &S->set;
     const int64_t p = G->ncol / 2, room = waves->room;
-    RITZ_OWN(ritz_dense) q = {0}, X = {0}, raw = {0}, d = {0};
-    ritz_dense WV = {0};
+    RITZ_OWN(ritz_dense) q = {0}, X = {0}, d = {0};
 
     RITZ_CHECK(respond(waves, G, &q, &X));
-    RITZ_CHECK(ritz_dense_copy(&X, &raw));
-    RITZ_CHECK(ritz_orthonormal_append(set, &X, S->vectors - set->count, NULL));
-    WV = ritz_dense_part(&set->WV, 0, set->count);
-    RITZ_CHECK(ritz_dense_mul_tn(&WV, &raw, &d));
+    RITZ_CHECK(ritz_orthonormal_express(set, &X, S->vectors - set->count, &d));
     waves->first = waves->kept.count;
     for (int64_t j = 0; j < p; j++) {
         RITZ_OWN(ritz_dense) z = {0};

@@ -499,14 +499,12 @@ static ritz_status make_of_space(const ritz_request *request, ritz_basis *out)
     const ritz_choice *choice = &request->choice;
     const ritz_state_space *model = request->space;
     bool outputs = choice->gramian == RITZ_GRAMIAN_OUTPUTS;
-    double alpha =
-        choice->num_shifts > 0 ? 2.0 * RITZ_PI * choice->shift_hz[0] : 0.0;
+    double alpha = 0.0;
     RITZ_OWN(one_sided) s = {0};
     RITZ_OWN(ritz_dense) own = {0}, other = {0};
 
     RITZ_CHECK(ritz_space_request(request, USES));
-    RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
-                   "the states are shifted by one frequency, not by several");
+    RITZ_CHECK(ritz_lanczos_shift(choice, &alpha));
     RITZ_CHECK(ritz_ends_check("model", model->num_inputs, model->num_outputs,
                                model->limit, model->output));
     RITZ_CHECK((ritz_state_space_is_sparse(model)

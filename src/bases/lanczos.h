@@ -6,6 +6,9 @@
 
 #include <ritz/basis.h>
 
+/** The shift of the states, 0 without one. @return RITZ_ERR_ARGUMENT */
+ritz_status ritz_lanczos_shift(const ritz_choice *choice, double *alpha);
+
 /** The component of the request in states, less the shift. */
 ritz_status ritz_lanczos_states(const ritz_request *request, ritz_states *out);
 

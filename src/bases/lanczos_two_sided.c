@@ -21,6 +21,7 @@
 #include "base/tolerances.h"
 #include "bases/columns.h"
 #include "bases/lanczos.h"
+#include "bases/space.h"
 #include "linear/general.h"
 #include "linear/orthonormal.h"
 
@@ -29,22 +30,22 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+ritz_status ritz_lanczos_shift(const ritz_choice *choice, double *alpha)
+{
+    RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
+                   "the states are shifted by one frequency, not by several");
+    *alpha = choice->num_shifts > 0 ? 2.0 * RITZ_PI * choice->shift_hz[0] : 0.0;
+    return RITZ_OK;
+}
+
 ritz_status ritz_lanczos_states(const ritz_request *request, ritz_states *out)
 {
-    const ritz_choice *choice = &request->choice;
     ritz_damping damping = {0};
     double alpha = 0.0;
 
-    RITZ_REFUSE_IF(request->up_to_hz > 0.0, RITZ_ERR_ARGUMENT,
-                   "states are asked for by their number, not by a frequency: "
-                   "--modes, not --up-to-hz");
-    RITZ_REFUSE_IF(request->modes < 1, RITZ_ERR_ARGUMENT,
-                   "no states are asked for, one at least is needed: --modes");
-    RITZ_REFUSE_IF(choice->num_shifts > 1, RITZ_ERR_ARGUMENT,
-                   "the states are shifted by one frequency, not by several");
+    RITZ_CHECK(ritz_states_asked(request));
+    RITZ_CHECK(ritz_lanczos_shift(&request->choice, &alpha));
     RITZ_CHECK(ritz_request_damping(request, &damping));
-    if (choice->num_shifts > 0)
-        alpha = 2.0 * RITZ_PI * choice->shift_hz[0];
     return ritz_states_new(request->component, &damping, alpha, out);
 }
 
@@ -103,15 +104,8 @@ static void two_sided_free(two_sided *t)
 static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_beside(&s->next, &s->waiting, out));
-    for (int64_t j = 0; j < out->ncol; j++) {
-        double *x = ritz_dense_col(out, j);
-        double size = 0.0;
-
-        for (int64_t i = 0; i < out->nrow; i++)
-            size = hypot(size, x[i]);
-        for (int64_t i = 0; size > 0.0 && i < out->nrow; i++)
-            x[i] /= size;
-    }
+    for (int64_t j = 0; j < out->ncol; j++)
+        (void)ritz_general_unit(out->nrow, ritz_dense_col(out, j));
     return RITZ_OK;
 }
 

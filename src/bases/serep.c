@@ -15,6 +15,7 @@
  * tests/unit/bases/test_serep.c.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
 
@@ -80,14 +81,6 @@ static double weighted_entry(const selection *c, int64_t k, int64_t j)
            ritz_dense_col(&c->modes->Phi, j)[c->request->attached.at[k]];
 }
 
-static int compare_dofs(const void *left, const void *right)
-{
-    const int64_t *a = left;
-    const int64_t *b = right;
-
-    return (*a > *b) - (*a < *b);
-}
-
 /* The first m pivots of the weighted Phi_a', in the order of attachment. */
 static ritz_status choose_dofs(selection *c)
 {
@@ -109,7 +102,7 @@ static ritz_status choose_dofs(selection *c)
                    RITZ_ERR_MEMORY, "no memory to choose among attached dofs");
     for (int64_t k = 0; k < m; k++)
         c->at[k] = pivot[k] - 1;
-    qsort(c->at, (size_t)m, sizeof *c->at, compare_dofs);
+    qsort(c->at, (size_t)m, sizeof *c->at, ritz_ascending_index);
     return RITZ_OK;
 }
 

@@ -43,6 +43,9 @@ ritz_status ritz_space_krylov(const ritz_space_span *span, int64_t count,
  */
 ritz_status ritz_space_request(const ritz_request *request, int uses);
 
+/** Refuse a request that does not ask for states by their number. */
+ritz_status ritz_states_asked(const ritz_request *request);
+
 /** Basis of states from @p T and @p W, which are taken; W {0}: T itself. */
 ritz_status ritz_space_basis(const ritz_state_space *model, ritz_dense *T,
                              ritz_dense *W, ritz_basis *out);

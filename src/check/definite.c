@@ -188,29 +188,12 @@ static ritz_status find_massless(const ritz_checker *it, ritz_least_value *out)
     return RITZ_OK;
 }
 
-/* Share of D that is antisymmetric, in the Frobenius norm. */
-static double skew_of(const ritz_dense *D)
-{
-    double whole = 0.0;
-    double skew = 0.0;
-
-    for (int64_t j = 0; j < D->ncol; j++)
-        for (int64_t i = 0; i < D->nrow; i++) {
-            double a = ritz_dense_col(D, j)[i];
-            double b = ritz_dense_col(D, i)[j];
-
-            whole = hypot(whole, a);
-            skew = hypot(skew, 0.5 * (a - b));
-        }
-    return whole > 0.0 ? skew / whole : 0.0;
-}
-
 ritz_status ritz_check_reduced_damping(ritz_checker *it)
 {
     static const char name[] = "damping-definite";
     const ritz_dense *D = &it->model.D;
     double limit = RITZ_POLE_BOUND_FACTOR * ritz_least_rounding(D);
-    double skew = skew_of(D);
+    double skew = ritz_dense_skew(D);
     RITZ_OWN(ritz_least_value) found = {0}, massless = {0};
 
     RITZ_CHECK(find_massless(it, &massless));

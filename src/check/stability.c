@@ -232,8 +232,7 @@ static ritz_status follow_powers(const ritz_dense *A, double h, double most,
             out->met = size * size;
             out->seconds = h * ldexp(1.0, k);
         }
-        RITZ_CHECK(ritz_dense_mul(&E, &E, &next));
-        ritz_dense_replace(&E, &next);
+        RITZ_CHECK(ritz_dense_times(&E, &E));
     }
     return RITZ_OK;
 }

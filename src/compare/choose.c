@@ -13,7 +13,9 @@
 #include "compare/compare.h"
 
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 
 #include <ritz/base.h>
 #include <ritz/matrix.h>
@@ -266,22 +268,6 @@ static ritz_status try_better(chooser *it, const force_set *set,
     return RITZ_OK;
 }
 
-/* The set after @p place, `count` places of n in lexicographic order; false
-   after the last. */
-static bool step_places(int64_t n, int64_t count, int64_t *place)
-{
-    int64_t k = count - 1;
-
-    while (k >= 0 && place[k] == n - count + k)
-        k--;
-    if (k < 0)
-        return false;
-    place[k]++;
-    for (int64_t j = k + 1; j < count; j++)
-        place[j] = place[j - 1] + 1;
-    return true;
-}
-
 /* Try all sets of so many forces of the pool. */
 static ritz_status try_size(chooser *it, int64_t size, ritz_candidate *best)
 {
@@ -296,7 +282,7 @@ static ritz_status try_size(chooser *it, int64_t size, ritz_candidate *best)
         for (int64_t k = 0; k < size; k++)
             set.at[k] = it->pool.at[place[k]];
         RITZ_CHECK(try_better(it, &set, best));
-    } while (step_places(it->pool.count, size, place));
+    } while (ritz_next_choice(it->pool.count, size, place));
     return RITZ_OK;
 }
 
@@ -313,14 +299,6 @@ static bool is_small(const chooser *it, int64_t size)
         work += pow((double)ritz_rows_first(it->rows, k)->K.ncol, 3.0);
     sets += (double)it->tried;
     return sets <= MOST_SETS && sets * work <= most_work;
-}
-
-static int compare_places(const void *left, const void *right)
-{
-    const int64_t *a = left;
-    const int64_t *b = right;
-
-    return (*a > *b) - (*a < *b);
 }
 
 static bool holds(const ritz_candidate *set, int64_t force)
@@ -343,7 +321,7 @@ static ritz_status try_one_more(chooser *it, const ritz_candidate *with,
             continue;
         memcpy(set.at, with->force, (size_t)with->num_forces * sizeof *set.at);
         set.at[set.count - 1] = it->pool.at[k];
-        qsort(set.at, (size_t)set.count, sizeof *set.at, compare_places);
+        qsort(set.at, (size_t)set.count, sizeof *set.at, ritz_ascending_index);
         RITZ_CHECK(try_better(it, &set, best));
     }
     return RITZ_OK;
@@ -508,18 +486,6 @@ static bool is_alike(int64_t n, const double *y, const double *x)
     return rest <= RITZ_SAME_FORCE;
 }
 
-/* Scale to unit length; false if there is none. */
-static bool set_length(int64_t n, double *x)
-{
-    double length = 0.0;
-
-    for (int64_t i = 0; i < n; i++)
-        length = hypot(length, x[i]);
-    for (int64_t i = 0; i < n && length > 0.0; i++)
-        x[i] /= length;
-    return length > 0.0;
-}
-
 /* The pool: forces that do something, and of those that do the same the
    first. */
 static ritz_status fill_pool(chooser *it, const force_set *from)
@@ -530,7 +496,7 @@ static ritz_status fill_pool(chooser *it, const force_set *from)
     RITZ_CHECK(measure_forces(it, from, &X));
     for (int64_t k = 0; k < from->count; k++) {
         double *x = ritz_dense_col(&X, k);
-        bool new = set_length(X.nrow, x);
+        bool new = ritz_general_unit(X.nrow, x);
 
         for (int64_t j = 0; j < it->pool.count && new; j++)
             new = !is_alike(X.nrow, ritz_dense_col(&X, j), x);

@@ -90,7 +90,7 @@ typedef struct compactor {
     const ritz_rows *rows; /* borrowed, with the responses of stage one */
     double (*before)[3];   /* of each listed configuration, errors of the
                             response, the static gain and the damping */
-    bool dropped;          /* whether that is known */
+    bool known;            /* whether these are */
 } compactor;
 
 static void compactor_free(compactor *it)
@@ -103,15 +103,12 @@ static ritz_status measure_at(compactor *it, const ritz_comparison *second,
                               int64_t k, trial *t)
 {
     RITZ_OWN(ritz_configuration) at = {0};
-    ritz_compare_row row = it->rows->row[k]; /* borrowed but for its strays */
+    ritz_compare_row row = {0};
     ritz_status status = RITZ_OK;
 
-    row.num_strays = 0;
-    row.stray = NULL;
-    RITZ_CHECK(ritz_stage_assemble(&second->second, row.setting, &at));
-    status = ritz_compare_measure(
-        it->rows->stage, second->V, ritz_rows_first(it->rows, k),
-        it->rows->response ? &it->rows->response[k] : NULL, &at, &row);
+    RITZ_CHECK(
+        ritz_stage_assemble(&second->second, it->rows->row[k].setting, &at));
+    status = ritz_rows_measure(it->rows, k, second->V, &at, &row);
     if (status == RITZ_OK) {
         add_modes(&at, &row, t);
         t->change = fmax(t->change, fmax(row.frequency_error, 1.0 - row.mac));
@@ -119,7 +116,7 @@ static ritz_status measure_at(compactor *it, const ritz_comparison *second,
                                  row.damping_error};
 
         for (int e = 0; e < 3; e++) {
-            if (!it->dropped)
+            if (!it->known)
                 it->before[k][e] = errors[e];
             t->change = fmax(t->change, errors[e] - it->before[k][e]);
         }
@@ -181,7 +178,7 @@ static ritz_status find_direction(const trial *t, int64_t body, bool relative,
 static ritz_status leave_out(const ritz_dense *v, int64_t firm, ritz_dense *V)
 {
     const int64_t s = V->ncol;
-    RITZ_OWN(ritz_dense) Q = {0}, less = {0}, less_V = {0};
+    RITZ_OWN(ritz_dense) Q = {0}, less = {0};
     RITZ_OWN_ARRAY double *w = NULL;
     double length = 0.0, square = 0.0;
 
@@ -198,9 +195,7 @@ static ritz_status leave_out(const ritz_dense *v, int64_t firm, ritz_dense *V)
         for (int64_t i = 0; i < s; i++)
             ritz_dense_col(&Q, j)[i] -= 2.0 * w[i] * w[j] / square;
     RITZ_CHECK(ritz_dense_columns(&Q, 0, s - 1, &less));
-    RITZ_CHECK(ritz_dense_mul(V, &less, &less_V));
-    ritz_dense_replace(V, &less_V);
-    return RITZ_OK;
+    return ritz_dense_times(&less, V);
 }
 
 static ritz_status copy_subspaces(const ritz_subspaces *from,
@@ -265,7 +260,7 @@ ritz_status ritz_compact(ritz_rows *rows, ritz_subspaces *subspaces,
     RITZ_CHECK(ritz_rows_respond(rows));
     RITZ_CHECK(copy_subspaces(subspaces, &now.subspaces));
     RITZ_CHECK(measure_trial(&it, HUGE_VAL, &now));
-    it.dropped = true;
+    it.known = true;
     while (now.strays > 0) {
         RITZ_OWN(trial) best = {0};
 

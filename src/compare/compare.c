@@ -245,14 +245,10 @@ static ritz_status try_tolerance(ritz_rows *rows, const ritz_plan *plan,
     RITZ_CHECK(ritz_compare_orders(&trial, &out->order, &out->total));
     out->removed = trial.removed;
     for (int64_t k = 0; k < rows->num_rows; k++) {
-        ritz_compare_row row = rows->row[k]; /* borrowed but for its strays */
-        ritz_status status = RITZ_OK;
+        ritz_compare_row row = {0};
+        ritz_status status = ritz_rows_measure(
+            rows, k, trial.V, &trial.second_system.configuration[k], &row);
 
-        row.num_strays = 0;
-        row.stray = NULL;
-        status = ritz_compare_measure(
-            rows->stage, trial.V, ritz_rows_first(rows, k), NULL,
-            &trial.second_system.configuration[k], &row);
         free(row.stray);
         RITZ_CHECK(status);
         out->largest = row.order > out->largest ? row.order : out->largest;
@@ -278,6 +274,7 @@ static ritz_status try_tolerances(const ritz_stage *stage,
         .row = comparison->row,
     };
 
+    RITZ_CHECK(ritz_rows_respond(&rows));
     RITZ_CHECK(make_plan(stage, &p));
     for (int64_t k = 0; k < comparison->num_candidates; k++)
         if (comparison->candidate[k].chosen) {

@@ -115,13 +115,6 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
                                 double least, ritz_compare_row *row);
 
 /**
- * Static solutions in modal coordinates, flexible part: Lambda^-1 B, and for
- * @p both Lambda^-1 [C', Cv', Ca'], where outputs measure.
- */
-ritz_status ritz_system_statics(const ritz_configuration *configuration,
-                                bool both, ritz_dense *out);
-
-/**
  * Krylov vectors of a configuration in its modal coordinates, flexible part:
  * span of Lambda^-1 R, Lambda^-2 R, ... with R = B, or [B, C'] for @p both;
  * K-orthonormal, dependent ones deflated.
@@ -264,6 +257,16 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  ritz_compare_row *row);
 
 /**
+ * The same of a trial at listed configuration @p k.
+ *
+ * @param[out] row  that of @p rows with the errors of the trial: its setting
+ *                  and kept modes are borrowed, its strays the caller's
+ */
+ritz_status ritz_rows_measure(const ritz_rows *rows, int64_t k,
+                              const ritz_dense *V, ritz_configuration *second,
+                              ritz_compare_row *row);
+
+/**
  * X = sum_c P_c' M_c V_c P2_c: M-products of the modes of two systems of unit
  * mass, whose squares are their MAC.
  *
@@ -281,11 +284,6 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
 
 /** Whether a scene has a response: inputs, outputs, a band and damping. */
 bool ritz_compare_responds(const ritz_scene *scene);
-
-/** Response over the band, at points around every resonance. */
-ritz_status ritz_compare_respond(const ritz_scene *scene,
-                                 const ritz_configuration *configuration,
-                                 ritz_response *out);
 
 /** Response at the points of another. */
 ritz_status ritz_compare_follow(const ritz_scene *scene,

@@ -393,13 +393,7 @@ ritz_status ritz_span_of(ritz_dense *Y, double tolerance, double *largest,
 /* Scale the flexible part of x to unit norm; false if there is none. */
 static bool normalise_flexible(const ritz_configuration *c, double *x)
 {
-    double norm = 0.0;
-
-    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
-        norm = hypot(norm, x[k]);
-    for (int64_t k = c->num_rigid; k < c->K.ncol && norm > 0.0; k++)
-        x[k] /= norm;
-    return norm > 0.0;
+    return ritz_general_unit(c->K.ncol - c->num_rigid, x + c->num_rigid);
 }
 
 /* Divide by lambda; false if the force moves the system as a rigid one. */

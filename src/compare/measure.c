@@ -48,9 +48,10 @@ static ritz_status respond_at(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-ritz_status ritz_compare_respond(const ritz_scene *scene,
-                                 const ritz_configuration *configuration,
-                                 ritz_response *out)
+/* Response over the band, at points around every resonance. */
+static ritz_status respond_over_band(const ritz_scene *scene,
+                                     const ritz_configuration *configuration,
+                                     ritz_response *out)
 {
     const ritz_grid grid = {
         .from_hz = fmax(scene->band_hz[0], RITZ_BAND_START * scene->band_hz[1]),
@@ -80,8 +81,8 @@ ritz_status ritz_rows_respond(ritz_rows *rows)
     RITZ_CHECK_NEW(rows->response, rows->listed->num_configurations);
     rows->num_responses = rows->listed->num_configurations;
     for (int64_t k = 0; k < rows->num_responses; k++)
-        RITZ_CHECK(ritz_compare_respond(scene, ritz_rows_first(rows, k),
-                                        &rows->response[k]));
+        RITZ_CHECK(respond_over_band(scene, ritz_rows_first(rows, k),
+                                     &rows->response[k]));
     return RITZ_OK;
 }
 
@@ -429,7 +430,7 @@ static ritz_status measure_response(const ritz_scene *scene,
     double largest = 0.0, gap = 0.0;
 
     if (!given)
-        RITZ_CHECK(ritz_compare_respond(scene, first, &made));
+        RITZ_CHECK(respond_over_band(scene, first, &made));
     RITZ_CHECK(ritz_compare_follow(scene, second, one, &two));
     for (int64_t k = 0; k < two.count * two.num_inputs * two.num_outputs; k++) {
         largest = fmax(largest, cabs(one->H[k]));
@@ -522,4 +523,16 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
     if (ritz_compare_responds(scene))
         RITZ_CHECK(measure_response(scene, first, response, second, row));
     return RITZ_OK;
+}
+
+ritz_status ritz_rows_measure(const ritz_rows *rows, int64_t k,
+                              const ritz_dense *V, ritz_configuration *second,
+                              ritz_compare_row *row)
+{
+    *row = rows->row[k];
+    row->num_strays = 0;
+    row->stray = NULL;
+    return ritz_compare_measure(rows->stage, V, ritz_rows_first(rows, k),
+                                rows->response ? &rows->response[k] : NULL,
+                                second, row);
 }

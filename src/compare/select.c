@@ -40,7 +40,11 @@ static void divide_by_lambda(const ritz_configuration *c, const double *r,
         v[k] = r[k * stride] / c->lambda[k];
 }
 
-ritz_status ritz_system_statics(const ritz_configuration *configuration,
+/*
+ * Static solutions in modal coordinates, flexible part: Lambda^-1 B, and for
+ * @p both Lambda^-1 [C', Cv', Ca'], where outputs measure.
+ */
+static ritz_status find_statics(const ritz_configuration *configuration,
                                 bool both, ritz_dense *out)
 {
     const ritz_configuration *c = configuration;
@@ -103,7 +107,7 @@ ritz_status ritz_system_krylov(const ritz_configuration *configuration,
 
     RITZ_CHECK(fill_weights(c, &weights));
     RITZ_CHECK(ritz_orthonormal_new(c->K.ncol, &weights, RITZ_DEPENDENT, &set));
-    RITZ_CHECK(ritz_system_statics(c, both, &W));
+    RITZ_CHECK(find_statics(c, both, &W));
     RITZ_CHECK(append_block(&W, most, &set, &fits));
     while (fits) {
         blocks++;

@@ -1,17 +1,11 @@
 /* Containers of components. */
 #include "container/schema.h"
 
+#include "base/search.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-static int compare_rows(const void *a, const void *b)
-{
-    const int64_t *left = a;
-    const int64_t *right = b;
-
-    return (*left > *right) - (*left < *right);
-}
 
 static ritz_status settle_port(const ritz_place *place)
 {
@@ -19,7 +13,8 @@ static ritz_status settle_port(const ritz_place *place)
     RITZ_OWN(ritz_dofs) sorted = {0};
 
     RITZ_CHECK(ritz_dofs_copy(&port->dofs, &sorted));
-    qsort(sorted.at, (size_t)sorted.count, sizeof *sorted.at, compare_rows);
+    qsort(sorted.at, (size_t)sorted.count, sizeof *sorted.at,
+          ritz_ascending_index);
     for (int64_t k = 1; k < sorted.count; k++)
         RITZ_REFUSE_IF(sorted.at[k - 1] == sorted.at[k], RITZ_ERR_FORMAT,
                        "row %" PRId64 " is in 'dofs' twice", sorted.at[k]);

@@ -9,6 +9,7 @@
 #include "container/schema.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -283,25 +284,17 @@ static ritz_status scatter_values(const ritz_member *row, int64_t count,
     return RITZ_OK;
 }
 
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(a, b);
-}
-
 /* Each can be the name of a link, and no two are the same. */
 static ritz_status check_names(int64_t count, const ritz_name *names)
 {
-    RITZ_OWN_ARRAY ritz_name *sorted = NULL;
+    ritz_name name;
 
-    RITZ_CHECK_NEW(sorted, count);
     for (int64_t k = 0; k < count; k++)
         RITZ_REFUSE_IF(
-            ritz_name_copy(names[k], sorted[k]) != RITZ_OK, RITZ_ERR_FORMAT,
+            ritz_name_copy(names[k], name) != RITZ_OK, RITZ_ERR_FORMAT,
             "name %" PRId64 ", '%.40s', cannot be one", k + 1, names[k]);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare_names);
-    for (int64_t k = 1; k < count; k++)
-        RITZ_REFUSE_IF(strcmp(sorted[k - 1], sorted[k]) == 0, RITZ_ERR_FORMAT,
-                       "'%s' is there twice", sorted[k]);
+    RITZ_CHECK(ritz_names_repeated(count, names, name));
+    RITZ_REFUSE_IF(*name, RITZ_ERR_FORMAT, "'%s' is there twice", name);
     return RITZ_OK;
 }
 

@@ -15,20 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rigid modes are decoupled if Delta does not couple them with flexible
-   ones. */
-static int64_t count_decoupled(const ritz_modal_model *modes)
-{
-    int64_t r = modes->num_rigid;
-
-    for (int64_t j = r; j < modes->count; j++)
-        for (int64_t i = 0; i < r; i++)
-            if (ritz_dense_col(&modes->Delta, j)[i] != 0.0 ||
-                ritz_dense_col(&modes->Delta, i)[j] != 0.0)
-                return 0;
-    return r;
-}
-
 static ritz_status choose_scale(ritz_states *states)
 {
     const ritz_modal_model *modes = &states->modes;
@@ -74,7 +60,7 @@ ritz_status ritz_states_new(const ritz_component *component,
     RITZ_CHECK(ritz_modal_model_new(&structure, &component->io, damping,
                                     &states.modes));
     ritz_damping_print(damping, states.damping);
-    states.num_decoupled = count_decoupled(&states.modes);
+    states.num_decoupled = ritz_modal_decoupled(&states.modes);
     RITZ_CHECK(choose_scale(&states));
     RITZ_CHECK(fill_states(&states));
     RITZ_REFUSE_IF(states.count == 0, RITZ_ERR_ARGUMENT,

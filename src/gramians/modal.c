@@ -12,6 +12,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"
+#include "linear/general.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -38,15 +39,22 @@ ritz_status ritz_ends_check(const char *what, int64_t inputs, int64_t outputs,
     return check_limits(outputs, limit, output);
 }
 
+void ritz_outputs_weigh(const double *limit, ritz_dense *C)
+{
+    for (int64_t j = 0; j < C->ncol; j++)
+        for (int64_t i = 0; i < C->nrow; i++)
+            if (!isnan(limit[i]))
+                ritz_dense_col(C, j)[i] /= limit[i];
+}
+
 ritz_status ritz_outputs_scaled(const ritz_dense *C, const double *limit,
                                 ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(C->ncol, C->nrow, out));
-    for (int64_t i = 0; i < C->nrow; i++)
-        for (int64_t j = 0; j < C->ncol; j++)
-            ritz_dense_col(out, i)[j] =
-                ritz_dense_col(C, j)[i] / (isnan(limit[i]) ? 1.0 : limit[i]);
-    return RITZ_OK;
+    RITZ_OWN(ritz_dense) weighed = {0};
+
+    RITZ_CHECK(ritz_dense_copy(C, &weighed));
+    ritz_outputs_weigh(limit, &weighed);
+    return ritz_general_transpose(&weighed, out);
 }
 
 /* One past the last mode at the frequency of mode `first`. */
@@ -292,10 +300,7 @@ static ritz_status put_coupling(const ritz_modal_model *modes,
                                     &modal->Delta));
     RITZ_CHECK(
         ritz_dense_pick(&modes->Ca, chosen->count, chosen->at, &modal->Ca));
-    for (int64_t k = 0; k < modal->Ca.ncol; k++)
-        for (int64_t i = 0; i < modal->Ca.nrow; i++)
-            if (!isnan(io->limit[i]))
-                ritz_dense_col(&modal->Ca, k)[i] /= io->limit[i];
+    ritz_outputs_weigh(io->limit, &modal->Ca);
     return RITZ_OK;
 }
 

@@ -14,6 +14,9 @@ ritz_status ritz_ends_check(const char *what, int64_t inputs, int64_t outputs,
                             const double *limit,
                             const char (*output)[RITZ_NAME_SIZE]);
 
+/** Rows of C over the limits of the outputs, where they have any. */
+void ritz_outputs_weigh(const double *limit, ritz_dense *C);
+
 /** C', its columns over the limits of the outputs, where they have any. */
 ritz_status ritz_outputs_scaled(const ritz_dense *C, const double *limit,
                                 ritz_dense *out);

@@ -148,7 +148,7 @@ static ritz_status take_limit(char *item, double *limit)
 ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
                                  char (*name)[RITZ_NAME_SIZE], double *limit)
 {
-    char item[2 * RITZ_NAME_SIZE];
+    char item[2 * RITZ_NAME_SIZE], twice[RITZ_NAME_SIZE];
 
     RITZ_REFUSE_IF(list && count_items(list) != count, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " names are given for %" PRId64,
@@ -164,10 +164,10 @@ ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
         }
         RITZ_CHECK(take_limit(item, limit ? &limit[k] : NULL));
         RITZ_CHECK(ritz_name_copy(item, name[k]));
-        for (int64_t i = 0; i < k; i++)
-            RITZ_REFUSE_IF(strcmp(name[i], name[k]) == 0, RITZ_ERR_ARGUMENT,
-                           "'%s' is named twice", name[k]);
     }
+    RITZ_CHECK(
+        ritz_names_repeated(count, (const char(*)[RITZ_NAME_SIZE])name, twice));
+    RITZ_REFUSE_IF(*twice, RITZ_ERR_ARGUMENT, "'%s' is named twice", twice);
     return RITZ_OK;
 }
 

@@ -73,7 +73,8 @@ static ritz_status take_lambda(const ritz_part *part, vector *lambda)
     for (int64_t k = 0; k < lambda->count; k++) {
         RITZ_REFUSE_IF(
             !(lambda->at[k] >= 0.0) || isinf(lambda->at[k]), RITZ_ERR_FORMAT,
-            "frequencies: '%s': one is finite and not negative, '%g' is",
+            "frequencies: '%s': each is finite and not negative, '%g' is "
+            "not",
             part->spec, lambda->at[k]);
         lambda->at[k] = ritz_eigen_lambda(lambda->at[k]);
     }
@@ -107,7 +108,7 @@ static ritz_status take_ratios(const char *text, const ritz_part *part,
     for (int64_t k = 0; k < count; k++)
         RITZ_REFUSE_IF(!(zeta->at[k] >= 0.0 && zeta->at[k] < 1.0),
                        RITZ_ERR_FORMAT,
-                       "ratios: '%s': one is 0 or more and below 1, '%g' "
+                       "ratios: '%s': each is 0 or more and below 1, '%g' "
                        "is not",
                        text, zeta->at[k]);
     return RITZ_OK;

@@ -476,10 +476,12 @@ static ritz_status make_output(const char *text, const ritz_extended *extended,
 static ritz_status check_names(int64_t count, char (*name)[RITZ_NAME_SIZE],
                                const char *what)
 {
-    for (int64_t k = 1; k < count; k++)
-        for (int64_t j = 0; j < k; j++)
-            RITZ_REFUSE_IF(strcmp(name[j], name[k]) == 0, RITZ_ERR_ARGUMENT,
-                           "there are two %s '%s'", what, name[k]);
+    char twice[RITZ_NAME_SIZE];
+
+    RITZ_CHECK(
+        ritz_names_repeated(count, (const char(*)[RITZ_NAME_SIZE])name, twice));
+    RITZ_REFUSE_IF(*twice, RITZ_ERR_ARGUMENT, "there are two %s '%s'", what,
+                   twice);
     return RITZ_OK;
 }
 

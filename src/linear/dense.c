@@ -61,6 +61,14 @@ ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
     return RITZ_OK;
 }
 
+void ritz_dense_spread(const ritz_dense *B, const int64_t *row, ritz_dense *A)
+{
+    memset(A->val, 0, (size_t)(A->nrow * A->ncol) * sizeof *A->val);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < B->nrow; i++)
+            ritz_dense_col(A, j)[row[i]] = ritz_dense_col(B, j)[i];
+}
+
 ritz_status ritz_dense_principal(const ritz_dense *A, int64_t count,
                                  const int64_t *at, ritz_dense *out)
 {
@@ -137,6 +145,15 @@ void ritz_dense_replace(ritz_dense *A, ritz_dense *B)
     RITZ_MOVE(*A, *B);
 }
 
+ritz_status ritz_dense_times(const ritz_dense *B, ritz_dense *A)
+{
+    RITZ_OWN(ritz_dense) AB = {0};
+
+    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
+    ritz_dense_replace(A, &AB);
+    return RITZ_OK;
+}
+
 ritz_status ritz_dense_abs(const ritz_dense *A, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_copy(A, out));
@@ -165,6 +182,20 @@ double ritz_dense_asymmetry(const ritz_dense *A)
             gap = fmax(gap,
                        fabs(ritz_dense_col(A, j)[i] - ritz_dense_col(A, i)[j]));
     return gap > 0.0 ? gap / ritz_dense_max(A) : 0.0;
+}
+
+double ritz_dense_skew(const ritz_dense *A)
+{
+    double all = 0.0, skew = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t i = 0; i < A->nrow; i++) {
+            double a = ritz_dense_col(A, j)[i];
+
+            all = hypot(all, a);
+            skew = hypot(skew, 0.5 * (a - ritz_dense_col(A, i)[j]));
+        }
+    return all > 0.0 ? skew / all : 0.0;
 }
 
 double ritz_dense_max(const ritz_dense *A)

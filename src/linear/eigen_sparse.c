@@ -183,7 +183,7 @@ static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
 static ritz_status polish_vectors(const ritz_shifted *S, ritz_dense *X,
                                   double *lambda)
 {
-    RITZ_OWN(ritz_dense) MX = {0}, MY = {0}, XQ = {0};
+    RITZ_OWN(ritz_dense) MX = {0}, MY = {0};
     RITZ_OWN(ritz_dense) A_r = {0}, M_r = {0};
     RITZ_OWN(ritz_pairs) small = {0};
 
@@ -198,8 +198,7 @@ static ritz_status polish_vectors(const ritz_shifted *S, ritz_dense *X,
     RITZ_REFUSE_IF(small.Phi.ncol < X->ncol, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " eigenvectors depend on each other",
                    X->ncol - small.Phi.ncol);
-    RITZ_CHECK(ritz_dense_mul(X, &small.Phi, &XQ));
-    ritz_dense_replace(X, &XQ);
+    RITZ_CHECK(ritz_dense_times(&small.Phi, X));
     RITZ_CHECK(find_quotients(&A_r, &small.Phi, lambda));
     for (int64_t j = 0; j < X->ncol; j++)
         lambda[j] += S->sigma;

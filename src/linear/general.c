@@ -49,6 +49,17 @@ ritz_status ritz_general_cholesky(ritz_dense *A, double *rcond)
     return RITZ_OK;
 }
 
+bool ritz_general_unit(int64_t n, double *x)
+{
+    double length = 0.0;
+
+    for (int64_t i = 0; i < n; i++)
+        length = hypot(length, x[i]);
+    for (int64_t i = 0; i < n && length > 0.0; i++)
+        x[i] /= length;
+    return length > 0.0;
+}
+
 double ritz_general_size(const ritz_dense *A)
 {
     return LAPACKE_dlange(LAPACK_COL_MAJOR, 'F', (int)A->nrow, (int)A->ncol,
@@ -464,7 +475,6 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
     double size =
         n > 0 ? h * LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, A->val, n)
               : 0.0;
-    RITZ_OWN(ritz_dense) square = {0};
     int doublings = 0;
 
     (void)frexp(2.0 * size, &doublings);
@@ -480,8 +490,7 @@ static ritz_status propagate_doubling(ritz_dense *A, double h, int count,
     for (int j = 0; j < doublings; j++) {
         for (int k = 0; k < count; k++)
             RITZ_CHECK(double_integral(E, &W[k]));
-        RITZ_CHECK(ritz_dense_mul(E, E, &square));
-        ritz_dense_replace(E, &square);
+        RITZ_CHECK(ritz_dense_times(E, E));
     }
     return RITZ_OK;
 }

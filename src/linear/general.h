@@ -100,6 +100,9 @@ ritz_status ritz_general_singular(ritz_dense *A, double *sigma);
 /** The largest of them, 0 of an empty matrix; A is lost. */
 ritz_status ritz_general_norm(ritz_dense *A, double *out);
 
+/** x := x / |x|; false, and x as it was, if that is zero. */
+bool ritz_general_unit(int64_t n, double *x);
+
 /** Frobenius norm. */
 double ritz_general_size(const ritz_dense *A);
 

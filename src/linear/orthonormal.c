@@ -365,6 +365,18 @@ ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
     return RITZ_OK;
 }
 
+ritz_status ritz_orthonormal_express(ritz_orthonormal *set, ritz_dense *R,
+                                     int64_t most, ritz_dense *at)
+{
+    RITZ_OWN(ritz_dense) raw = {0};
+    ritz_dense WV = {0};
+
+    RITZ_CHECK(ritz_dense_copy(R, &raw));
+    RITZ_CHECK(ritz_orthonormal_append(set, R, most, NULL));
+    WV = ritz_dense_part(&set->WV, 0, set->count);
+    return ritz_dense_mul_tn(&WV, &raw, at);
+}
+
 void ritz_orthonormal_free(ritz_orthonormal *set)
 {
     ritz_dense_free(&set->V);

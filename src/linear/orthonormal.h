@@ -36,6 +36,14 @@ ritz_status ritz_orthonormal_new(int64_t n, const ritz_sparse *W,
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
                                     int64_t most, bool *taken);
 
+/**
+ * The same, and what the block was in the columns that V then has: (WV)'R.
+ *
+ * @param[out] at  count x p
+ */
+ritz_status ritz_orthonormal_express(ritz_orthonormal *set, ritz_dense *R,
+                                     int64_t most, ritz_dense *at);
+
 void ritz_orthonormal_free(ritz_orthonormal *set);
 
 /**

@@ -309,6 +309,18 @@ ritz_status ritz_modal_damping(const ritz_structure *model,
     return RITZ_OK;
 }
 
+int64_t ritz_modal_decoupled(const ritz_modal_model *modes)
+{
+    int64_t r = modes->num_rigid;
+
+    for (int64_t j = r; j < modes->count; j++)
+        for (int64_t i = 0; i < r; i++)
+            if (ritz_dense_col(&modes->Delta, j)[i] != 0.0 ||
+                ritz_dense_col(&modes->Delta, i)[j] != 0.0)
+                return 0;
+    return r;
+}
+
 double ritz_modal_scale(double lambda)
 {
     return lambda != 0.0 ? sqrt(fabs(lambda)) : 1.0;

@@ -125,6 +125,9 @@ ritz_status ritz_states_project(const ritz_component *component,
 ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
                                ritz_state_space *model);
 
+/** The number of rigid modes if Delta couples none with a flexible one; else 0. */
+int64_t ritz_modal_decoupled(const ritz_modal_model *modes);
+
 /** |lambda|^1/2, or 1 where lambda is 0: it makes states well scaled. */
 double ritz_modal_scale(double lambda);
 

@@ -104,30 +104,37 @@ ritz_status ritz_state_space_dense(const ritz_state_space *model,
     return RITZ_OK;
 }
 
+static ritz_status check_size(const char *name, int64_t rows, int64_t cols,
+                              int64_t nrow, int64_t ncol)
+{
+    RITZ_REFUSE_IF(rows != nrow || cols != ncol, RITZ_ERR_FORMAT,
+                   "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
+                   " x %" PRId64 " is due",
+                   name, rows, cols, nrow, ncol);
+    return RITZ_OK;
+}
+
+static ritz_status check_finite(const char *name, int64_t count,
+                                const double *val)
+{
+    for (int64_t k = 0; k < count; k++)
+        RITZ_REFUSE_IF(!isfinite(val[k]), RITZ_ERR_FORMAT, "'%s' is not finite",
+                       name);
+    return RITZ_OK;
+}
+
 static ritz_status check_matrix(const char *name, const ritz_dense *A,
                                 int64_t nrow, int64_t ncol)
 {
-    RITZ_REFUSE_IF(A->nrow != nrow || A->ncol != ncol, RITZ_ERR_FORMAT,
-                   "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
-                   " x %" PRId64 " is due",
-                   name, A->nrow, A->ncol, nrow, ncol);
-    for (int64_t k = 0; k < nrow * ncol; k++)
-        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
-                       "'%s' is not finite", name);
-    return RITZ_OK;
+    RITZ_CHECK(check_size(name, A->nrow, A->ncol, nrow, ncol));
+    return check_finite(name, nrow * ncol, A->val);
 }
 
 static ritz_status check_sparse(const char *name, const ritz_sparse *A,
                                 int64_t n)
 {
-    RITZ_REFUSE_IF(A->nrow != n || A->ncol != n, RITZ_ERR_FORMAT,
-                   "'%s' is %" PRId64 " x %" PRId64 " where %" PRId64
-                   " x %" PRId64 " is due",
-                   name, A->nrow, A->ncol, n, n);
-    for (int64_t k = 0; k < A->colptr[n]; k++)
-        RITZ_REFUSE_IF(!isfinite(A->val[k]), RITZ_ERR_FORMAT,
-                       "'%s' is not finite", name);
-    return RITZ_OK;
+    RITZ_CHECK(check_size(name, A->nrow, A->ncol, n, n));
+    return check_finite(name, A->colptr[n], A->val);
 }
 
 static ritz_status refuse_singular(ritz_status status)

@@ -187,7 +187,7 @@ static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
                                  ritz_dense *N, int64_t *count)
 {
     int64_t k = N->ncol;
-    RITZ_OWN(ritz_dense) V = {0}, turned = {0};
+    RITZ_OWN(ritz_dense) V = {0};
     RITZ_OWN_ARRAY double *delta = NULL;
     double largest = 0.0;
     int info = 0;
@@ -208,9 +208,7 @@ static ritz_status turn_massless(const ritz_dense *D, int64_t m, double floor,
     for (int64_t j = 0; j < k; j++)
         *count +=
             -delta[j] > fmax(floor, (double)k * RITZ_SUM_ROUNDING * largest);
-    RITZ_CHECK(ritz_dense_mul(N, &V, &turned));
-    ritz_dense_replace(N, &turned);
-    return RITZ_OK;
+    return ritz_dense_times(&V, N);
 }
 
 /* The rest of N, columns `from` on of D, must be left alone. */

@@ -1,6 +1,7 @@
 /* Lowest damped poles of a component, made exact on its full matrices. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 #include "linear/orthonormal.h"
 #include "poles/poles.h"
 
@@ -44,15 +45,6 @@ ritz_status ritz_impedance_factor(const ritz_component *component,
     return ritz_zldl_factor(Z, all);
 }
 
-static double norm_of(const ritz_dense *x)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < x->nrow * x->ncol; i++)
-        sum = hypot(sum, x->val[i]);
-    return sum;
-}
-
 /* u += c A x. */
 static ritz_status add_product(const ritz_sparse *A, double _Complex c,
                                const ritz_dense *x, double _Complex *u)
@@ -94,7 +86,7 @@ static ritz_status take_step(const ritz_component *c, ritz_zldl *Z,
                              double _Complex *u, double *move)
 {
     ritz_status status = RITZ_OK;
-    double size = norm_of(x);
+    double size = ritz_general_size(x);
     double _Complex xu = 0.0;
     int64_t n = x->nrow;
     bool last = false;

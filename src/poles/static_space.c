@@ -192,9 +192,7 @@ ritz_status ritz_static_space_plant(const ritz_static_space *space,
     RITZ_CHECK(
         project_columns(&space->whole.D, count, column, &V, &plant.base.D));
     RITZ_CHECK(ritz_dense_new(space->whole.K.nrow, V.ncol, &all));
-    for (int64_t j = 0; j < V.ncol; j++)
-        for (int64_t i = 0; i < count; i++)
-            ritz_dense_col(&all, j)[column[i]] = ritz_dense_col(&V, j)[i];
+    ritz_dense_spread(&V, column, &all);
     RITZ_CHECK(ritz_io_project(&space->io, &all, &plant.io));
     RITZ_CHECK(ritz_dampers_project(&space->dampers, &all, &plant.dampers));
     RITZ_MOVE(*out, plant);

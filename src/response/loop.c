@@ -1,6 +1,7 @@
 /* Which signals of a plant and of a controller are connected. */
 #include "base/alloc.h"
 
+#include "base/text.h"
 #include "base/tolerances.h"
 #include "linear/search.h"
 #include "response/responder.h"
@@ -13,15 +14,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int64_t find_signal(int64_t count, char (*name)[RITZ_NAME_SIZE],
-                           const char *word)
-{
-    for (int64_t k = 0; k < count; k++)
-        if (strcmp(name[k], word) == 0)
-            return k;
-    return -1;
-}
 
 ritz_status ritz_loop_check(const ritz_loop *loop, const ritz_io *plant,
                             const ritz_io *controller)
@@ -71,10 +63,10 @@ static ritz_status connect_pair(const ritz_io *plant, const ritz_io *control,
         !equals || equals == pair || !*in || equals - pair >= RITZ_NAME_SIZE,
         RITZ_ERR_ARGUMENT, "'%.80s' is not of the form OUT=IN", pair);
     memcpy(out, pair, (size_t)(equals - pair));
-    from = find_signal(plant->num_outputs, plant->output, out);
-    to = find_signal(control->num_inputs, control->input, in);
-    back_from = find_signal(control->num_outputs, control->output, out);
-    back_to = find_signal(plant->num_inputs, plant->input, in);
+    from = ritz_name_index(plant->num_outputs, plant->output, out);
+    to = ritz_name_index(control->num_inputs, control->input, in);
+    back_from = ritz_name_index(control->num_outputs, control->output, out);
+    back_to = ritz_name_index(plant->num_inputs, plant->input, in);
     RITZ_REFUSE_IF(from >= 0 && to >= 0 && back_from >= 0 && back_to >= 0,
                    RITZ_ERR_ARGUMENT,
                    "'%s' can be read both ways: plant and controller have both "
@@ -104,7 +96,7 @@ static ritz_status connect_equal_names(int64_t count,
     for (int64_t k = 0; k < count; k++) {
         if (place[k] >= 0)
             continue;
-        place[k] = find_signal(others, other, name[k]);
+        place[k] = ritz_name_index(others, other, name[k]);
         if (place[k] >= 0)
             continue;
         near = others > 0 ? ritz_text_nearest(name[k], others, other[0],

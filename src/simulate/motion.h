@@ -115,10 +115,6 @@ ritz_status ritz_march_new(const ritz_motion *motion,
                            double rho, ritz_march *out);
 void ritz_march_free(ritz_march *march);
 
-/** Kinetic and potential energy now. */
-void ritz_march_energy(const ritz_march *march, double *kinetic,
-                       double *potential);
-
 /*
  * The largest value that a motion could give an output; its rounding is
  * relative to that: with |x|^2 = x'M x, and M in M^-1 by its diagonal alone,

@@ -61,8 +61,9 @@ static double sparse_quadratic(const ritz_sparse *A, const double *x)
     return 0.5 * sum;
 }
 
-void ritz_march_energy(const ritz_march *march, double *kinetic,
-                       double *potential)
+/* Kinetic and potential energy now. */
+static void find_energy(const ritz_march *march, double *kinetic,
+                        double *potential)
 {
     const ritz_motion *m = march->motion;
 
@@ -192,7 +193,7 @@ static void note_reach(ritz_reach *reach, const ritz_march *march,
         note_states(reach, march);
         return;
     }
-    ritz_march_energy(march, &kinetic, &potential);
+    find_energy(march, &kinetic, &potential);
     size[BY_PLACE] = norm_of(march->motion, march->x, reach->work);
     size[BY_RATE] = sqrt(2.0 * fmax(kinetic, 0.0));
     size[BY_ACCELERATION] = acceleration_of(reach, march, seconds);
@@ -333,7 +334,7 @@ static void push_impulses(const ritz_motion *motion,
     double *moved = march->v ? march->v : march->x;
     double before = 0.0, after = 0.0, potential = 0.0;
 
-    ritz_march_energy(march, &before, &potential);
+    find_energy(march, &before, &potential);
     for (int64_t j = 0; request->signal && j < motion->push.ncol; j++) {
         const double *jump = ritz_dense_col(&motion->push, j);
         const ritz_signal *signal = &request->signal[j];
@@ -342,7 +343,7 @@ static void push_impulses(const ritz_motion *motion,
              signal->kind == RITZ_SIGNAL_IMPULSE && k < motion->n; k++)
             moved[k] += signal->amplitude * jump[k];
     }
-    ritz_march_energy(march, &after, &potential);
+    find_energy(march, &after, &potential);
     march->work += after - before;
 }
 
@@ -354,7 +355,7 @@ static void note_energy(const ritz_march *march, double start, int64_t k,
     see_outputs(march, u, s->y + k * s->num_outputs);
     if (!s->balance)
         return;
-    ritz_march_energy(march, &s->kinetic[k], &s->potential[k]);
+    find_energy(march, &s->kinetic[k], &s->potential[k]);
     s->dissipated[k] = march->dissipated;
     s->work[k] = march->work;
     s->balance[k] = s->kinetic[k] + s->potential[k] + march->dissipated -
@@ -381,7 +382,7 @@ static ritz_status begin_run(const ritz_motion *motion,
     if (march->v)
         transform_start(motion, request->v0, march->v);
     RITZ_CHECK(balance_massless(motion, u, march->x));
-    ritz_march_energy(march, &kinetic, &potential);
+    find_energy(march, &kinetic, &potential);
     *energy = kinetic + potential;
     push_impulses(motion, request, march);
     if (march->settle)

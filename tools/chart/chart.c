@@ -1,6 +1,7 @@
 #include "chart/chart.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -170,21 +171,12 @@ chart_word chart_say_seconds(double seconds)
     return out;
 }
 
-int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
-                        const char *wanted)
-{
-    for (int64_t k = 0; k < count; k++)
-        if (strcmp(name[k], wanted) == 0)
-            return k;
-    return -1;
-}
-
 ritz_status chart_check_names(const char *path, const char *what, int64_t count,
                               char (*name)[RITZ_NAME_SIZE], int64_t num_wanted,
                               char (*wanted)[RITZ_NAME_SIZE])
 {
     for (int64_t k = 0; k < num_wanted; k++)
-        RITZ_REFUSE_IF(chart_find_name(count, name, wanted[k]) < 0,
+        RITZ_REFUSE_IF(ritz_name_index(count, name, wanted[k]) < 0,
                        RITZ_ERR_ARGUMENT, "'%s' has no %s '%s'", path, what,
                        wanted[k]);
     return RITZ_OK;

@@ -91,10 +91,6 @@ typedef struct chart_word {
 chart_word chart_say_error(double error);
 chart_word chart_say_seconds(double seconds);
 
-/** Index of a name in a list; -1: it is not there. */
-int64_t chart_find_name(int64_t count, char (*name)[RITZ_NAME_SIZE],
-                        const char *wanted);
-
 /** Refuse a file that lacks one of some names, such as its first "output"s. */
 ritz_status chart_check_names(const char *path, const char *what, int64_t count,
                               char (*name)[RITZ_NAME_SIZE], int64_t num_wanted,

@@ -11,6 +11,7 @@
 #include "chart/chart.h"
 
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <complex.h>
 #include <math.h>
@@ -115,9 +116,9 @@ static void add_pair(overlay *o, int64_t output, int64_t input)
         const ritz_response *r = o->curve[w];
 
         c->place[w] =
-            chart_find_name(r->num_outputs, r->output, first->output[output]) *
+            ritz_name_index(r->num_outputs, r->output, first->output[output]) *
                 r->num_inputs +
-            chart_find_name(r->num_inputs, r->input, first->input[input]);
+            ritz_name_index(r->num_inputs, r->input, first->input[input]);
     }
 }
 
@@ -130,8 +131,8 @@ static ritz_status add_channel(overlay *o, const char *text)
 
     if (slash && slash - text < RITZ_NAME_SIZE) {
         snprintf(output, sizeof output, "%.*s", (int)(slash - text), text);
-        i = chart_find_name(r->num_outputs, r->output, output);
-        j = chart_find_name(r->num_inputs, r->input, slash + 1);
+        i = ritz_name_index(r->num_outputs, r->output, output);
+        j = ritz_name_index(r->num_inputs, r->input, slash + 1);
     }
     RITZ_REFUSE_IF(o->num_channels == MOST_CHANNELS, RITZ_ERR_ARGUMENT,
                    "more than %d channels do not fit", (int)MOST_CHANNELS);

@@ -1,6 +1,8 @@
 /* Outputs over time, several simulations over each other. */
 #include "chart/chart.h"
 
+#include "base/text.h"
+
 #include <math.h>
 
 enum {
@@ -51,7 +53,7 @@ static chart_range put_line(runs *all, int64_t i, int64_t w)
     const ritz_simulation *s = all->run[w];
     const int64_t few = 1 + 2 * s->count / MOST_POINTS, n = s->num_outputs;
     const int64_t output =
-        chart_find_name(s->num_outputs, s->output, all->run[0]->output[i]);
+        ritz_name_index(s->num_outputs, s->output, all->run[0]->output[i]);
     FILE *file = all->picture->data.file, *table = all->picture->table.file;
     chart_range y = {HUGE_VAL, -HUGE_VAL};
 

@@ -68,8 +68,9 @@ static bool take_ranges(char *text, int numbers, damper_ranges *out)
            (out->has[0] || out->has[1]);
 }
 
-static ritz_status parse_ranges(const char *text, const ritz_dampers *dampers,
-                                int numbers, damper_ranges *out)
+/* All but the dampers, whose names are left in @p names. */
+static ritz_status parse_values(const char *text, int numbers, char **names,
+                                damper_ranges *out)
 {
     RITZ_OWN_ARRAY char *copy = NULL;
     int64_t size = (int64_t)strlen(text) + 1;
@@ -84,7 +85,17 @@ static ritz_status parse_ranges(const char *text, const ritz_dampers *dampers,
         !equals || equals == copy || !take_ranges(equals + 1, numbers, out),
         RITZ_ERR_ARGUMENT, "'%s' is not of the form NAME[,NAME]=%s", text,
         numbers == 3 ? "FROM:TO:STEP[*FROM:TO:STEP]" : "FROM:TO[*FROM:TO]");
-    return take_names(copy, dampers, out);
+    RITZ_MOVE(*names, copy);
+    return RITZ_OK;
+}
+
+static ritz_status parse_ranges(const char *text, const ritz_dampers *dampers,
+                                int numbers, damper_ranges *out)
+{
+    RITZ_OWN_ARRAY char *names = NULL;
+
+    RITZ_CHECK(parse_values(text, numbers, &names, out));
+    return take_names(names, dampers, out);
 }
 
 /* "low, middle" */
@@ -318,14 +329,14 @@ static bool is_each(const char *text, const ritz_dampers *dampers)
 static ritz_status take_groups(const char *text, const ritz_dampers *dampers,
                                damper_ranges_array *out)
 {
-    char one[2 * RITZ_NAME_SIZE + LABEL_SIZE];
-
     if (!is_each(text, dampers))
         return parse_ranges(text, dampers, 2, &out->at[out->count++]);
     for (int64_t j = 0; j < dampers->count; j++) {
-        (void)snprintf(one, sizeof one, "%s%s", dampers->name[j],
-                       text + strlen("each"));
-        RITZ_CHECK(parse_ranges(one, dampers, 2, &out->at[out->count++]));
+        damper_ranges *one = &out->at[out->count++];
+        RITZ_OWN_ARRAY char *names = NULL;
+
+        RITZ_CHECK(parse_values(text, 2, &names, one));
+        one->damper[one->count++] = j;
     }
     return RITZ_OK;
 }

@@ -173,21 +173,6 @@ static void describe_skew(cli_run *run, double share)
                    100.0 * share);
 }
 
-static double measure_skew(const ritz_dense *D)
-{
-    double all = 0.0;
-    double skew = 0.0;
-
-    for (int64_t j = 0; j < D->ncol; j++)
-        for (int64_t i = 0; i < D->nrow; i++) {
-            double d = ritz_dense_col(D, j)[i];
-
-            all = hypot(all, d);
-            skew = hypot(skew, 0.5 * (d - ritz_dense_col(D, i)[j]));
-        }
-    return all > 0.0 ? skew / all : 0.0;
-}
-
 /* "grid 7: 123456": directions of a grid; the first dof of the next one. */
 static int64_t print_grid(const ritz_recovery *r, int64_t k, size_t size,
                           char *text)
@@ -458,7 +443,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_dense(run, "K", &r->K);
     describe_dense(run, "M", &r->M);
     describe_dense(run, "D", &r->D);
-    describe_skew(run, measure_skew(&r->D));
+    describe_skew(run, ritz_dense_skew(&r->D));
     describe_dense(run, "K4", &r->K4);
     describe_dense(run, "T", &r->T);
     describe_damping(run, r->damping);

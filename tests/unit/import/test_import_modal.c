@@ -163,9 +163,9 @@ static void what_is_no_modal_form_is_refused(void **)
     } cases[] = {
         {f, z, 0, "ratios: '"},
         {f, z, 0, "has 3 for 2 frequencies"},
-        {f, high, 0, "one is 0 or more and below 1, '1' is not"},
-        {f, "-0.1", 0, "ratios: '-0.1': one is 0 or more"},
-        {minus, 0, 0, "one is finite and not negative, '-3' is"},
+        {f, high, 0, "each is 0 or more and below 1, '1' is not"},
+        {f, "-0.1", 0, "ratios: '-0.1': each is 0 or more"},
+        {minus, 0, 0, "each is finite and not negative, '-3' is not"},
         {square, 0, 0, "is 2 x 2, one row or one column is due"},
         {pairs, 0, 0, "is complex, real numbers are due"},
         {f, pairs, 0, "ratios: '"},
