@@ -33,11 +33,25 @@ typedef struct ritz_relation {
     const ritz_joint *joint;
     const ritz_port_map *port[2];
     bool rotation;
-    ritz_freedom freedom;
+    const ritz_freedom
+        *freedom; /* of the joint; or a locked one, where its type has
+                                    none */
     int64_t num_terms[2];
     int64_t row[2][6]; /* port rows of either end */
     double factor[2][6];
 } ritz_relation;
+
+/** The relation's row of one end, in coordinate @p j of its body. */
+static inline double ritz_relation_at(const ritz_relation *relation, int end,
+                                      int64_t j)
+{
+    const double *map = ritz_dense_col(&relation->port[end]->map, j);
+    double sum = 0.0;
+
+    for (int64_t k = 0; k < relation->num_terms[end]; k++)
+        sum += relation->factor[end][k] * map[relation->row[end][k]];
+    return sum;
+}
 
 typedef struct ritz_relations {
     int64_t count, room;
@@ -63,9 +77,6 @@ ritz_status ritz_joint_relate(const ritz_joint *joint,
 void ritz_relations_free(ritz_relations *relations);
 
 /* Plane models. */
-
-/** "xy"; "" of none. */
-const char *ritz_plane_name(ritz_plane plane);
 
 /** Whether a direction, 1-6, is a motion in the plane; all are in space. */
 bool ritz_plane_has(ritz_plane plane, int64_t component);
@@ -155,7 +166,7 @@ ritz_status ritz_place_configuration(const ritz_stage *stage,
  */
 typedef struct ritz_springs {
     ritz_dense S; /* springs x Q */
-    ritz_freedom *hold;
+    ritz_relations of;
 } ritz_springs;
 
 /**

@@ -12,22 +12,25 @@
 static bool has_rates(const ritz_springs *springs, bool damping)
 {
     for (int64_t k = 0; k < springs->S.nrow; k++)
-        if (!damping || springs->hold[k].damping > 0.0)
+        if (!damping || springs->of.item[k].freedom->damping > 0.0)
             return true;
     return false;
 }
 
 /* A += sum_k s[k] R(k,:)' R(k,:), s the stiffnesses or the dampings. */
-static void add_rows(const ritz_dense *R, const ritz_freedom *hold,
+static void add_rows(const ritz_dense *R, const ritz_relations *of,
                      bool damping, ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < A->nrow; i++) {
             double sum = 0.0;
 
-            for (int64_t k = 0; k < R->nrow; k++)
-                sum += (damping ? hold[k].damping : hold[k].stiffness) *
+            for (int64_t k = 0; k < R->nrow; k++) {
+                const ritz_freedom *hold = of->item[k].freedom;
+
+                sum += (damping ? hold->damping : hold->stiffness) *
                        (ritz_dense_col(R, i)[k] * ritz_dense_col(R, j)[k]);
+            }
             ritz_dense_col(A, j)[i] += sum;
         }
 }
@@ -42,7 +45,7 @@ ritz_status ritz_springs_add(const ritz_springs *springs, bool damping,
     if (!A->val)
         RITZ_CHECK(ritz_dense_new(P->ncol, P->ncol, A));
     RITZ_CHECK(ritz_dense_mul(&springs->S, P, &R));
-    add_rows(&R, springs->hold, damping, A);
+    add_rows(&R, &springs->of, damping, A);
     return RITZ_OK;
 }
 
@@ -58,7 +61,7 @@ ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
     if (!has_rates(springs, damping))
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_new(Q, Q, &dense));
-    add_rows(&springs->S, springs->hold, damping, &dense);
+    add_rows(&springs->S, &springs->of, damping, &dense);
     RITZ_CHECK(ritz_sparse_from_dense(&dense, &part));
     RITZ_CHECK_NEW(row, part.colptr[Q]);
     RITZ_CHECK_NEW(col, part.colptr[Q]);
@@ -81,7 +84,7 @@ ritz_status ritz_springs_add_sparse(const ritz_springs *springs, bool damping,
 void ritz_springs_free(ritz_springs *springs)
 {
     ritz_dense_free(&springs->S);
-    free(springs->hold);
+    ritz_relations_free(&springs->of);
     *springs = (ritz_springs){0};
 }
 
@@ -116,16 +119,12 @@ static void fill_row(const ritz_stage *stage, const ritz_relation *r,
 {
     for (int end = 0; end < 2; end++) {
         int64_t first = stage->first[r->joint->between[end].component];
-        const ritz_dense *map = &r->port[end]->map;
 
-        for (int64_t j = 0; j < map->ncol; j++) {
-            double sum = 0.0;
+        for (int64_t j = 0; j < r->port[end]->map.ncol; j++) {
+            double value = ritz_relation_at(r, end, j);
 
-            for (int64_t k = 0; k < r->num_terms[end]; k++)
-                sum +=
-                    r->factor[end][k] * ritz_dense_col(map, j)[r->row[end][k]];
             ritz_dense_col(C, first + j)[row] +=
-                (end == 0 ? sum : -sum) * (scale ? scale[first + j] : 1.0);
+                (end == 0 ? value : -value) * (scale ? scale[first + j] : 1.0);
         }
     }
 }
@@ -179,7 +178,7 @@ static ritz_status list_relations(const ritz_stage *stage,
         RITZ_CHECK(find_ends(stage, joint, end));
         RITZ_CHECK(ritz_joint_relate(joint, end, &pose[j], out));
         for (int64_t k = kept; k < out->count; k++)
-            if (out->item[k].freedom.state == state)
+            if (out->item[k].freedom->state == state)
                 out->item[kept++] = out->item[k];
         out->count = kept;
     }
@@ -214,13 +213,10 @@ ritz_status ritz_stage_constraints(const ritz_stage *stage,
 ritz_status ritz_stage_springs(const ritz_stage *stage, const double *setting,
                                ritz_springs *out)
 {
-    RITZ_OWN(ritz_relations) list = {0};
     RITZ_OWN(ritz_springs) springs = {0};
 
-    RITZ_CHECK(make_rows(stage, setting, RITZ_CAGED, NULL, &list, &springs.S));
-    RITZ_CHECK_NEW(springs.hold, list.count);
-    for (int64_t k = 0; k < list.count; k++)
-        springs.hold[k] = list.item[k].freedom;
+    RITZ_CHECK(
+        make_rows(stage, setting, RITZ_CAGED, NULL, &springs.of, &springs.S));
     RITZ_MOVE(*out, springs);
     return RITZ_OK;
 }

@@ -371,12 +371,14 @@ static ritz_status check_rows(const ritz_relation *r, const ritz_joint *joint,
     return RITZ_OK;
 }
 
+/* What a type locks, whatever the scene says. */
+static const ritz_freedom locked = {.state = RITZ_LOCKED};
+
 /* The relations of a joint of one grid on each side. */
 static ritz_status relate_six(const ritz_joint *joint,
                               const ritz_joint_end end[static 2],
                               const ritz_joint_pose *pose, ritz_relations *list)
 {
-    const ritz_freedom locked = {.state = RITZ_LOCKED};
     double e[6][3], arm[2][3];
     int64_t row[2][6];
 
@@ -395,9 +397,10 @@ static ritz_status relate_six(const ritz_joint *joint,
     find_arms(end, pose, arm);
     for (int k = 0; k < 6; k++) {
         int at = kinds[joint->type].freedom[k];
-        ritz_freedom freedom = at > 0 ? joint->freedom[at - 1] : locked;
+        const ritz_freedom *freedom =
+            at > 0 ? &joint->freedom[at - 1] : &locked;
 
-        if (freedom.state == RITZ_FREE ||
+        if (freedom->state == RITZ_FREE ||
             !is_in_plane(joint->plane, e[k], k >= 3))
             continue;
         RITZ_CHECK_ROOM(list->item, list->count, list->room);
@@ -437,7 +440,7 @@ static ritz_status pair_grids(const ritz_joint_end end[static 2], int64_t a,
         RITZ_CHECK_ROOM(list->item, list->count, list->room);
         list->item[list->count++] = (ritz_relation){
             .rotation = direction > 3,
-            .freedom = {.state = RITZ_LOCKED},
+            .freedom = &locked,
             .num_terms = {1, 1},
             .row = {{i}, {j}},
             .factor = {{1.0}, {1.0}},

@@ -210,24 +210,18 @@ static ritz_status fill_rows(const ritz_relations *list, int end,
     int64_t count = 0;
 
     for (int64_t k = 0; k < list->count; k++)
-        count += list->item[k].freedom.state == state;
+        count += list->item[k].freedom->state == state;
     RITZ_CHECK(ritz_dense_new(count, map->ncol, out));
     count = 0;
     for (int64_t k = 0; k < list->count; k++) {
         const ritz_relation *r = &list->item[k];
         const double root =
-            state == RITZ_CAGED ? sqrt(r->freedom.stiffness) : 1.0;
+            state == RITZ_CAGED ? sqrt(r->freedom->stiffness) : 1.0;
 
-        if (r->freedom.state != state)
+        if (r->freedom->state != state)
             continue;
-        for (int64_t j = 0; j < map->ncol; j++) {
-            double sum = 0.0;
-
-            for (int64_t t = 0; t < r->num_terms[end]; t++)
-                sum +=
-                    r->factor[end][t] * ritz_dense_col(map, j)[r->row[end][t]];
-            ritz_dense_col(out, j)[count] = root * sum;
-        }
+        for (int64_t j = 0; j < out->ncol; j++)
+            ritz_dense_col(out, j)[count] = root * ritz_relation_at(r, end, j);
         count++;
     }
     return RITZ_OK;

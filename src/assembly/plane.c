@@ -11,7 +11,8 @@
 #include <inttypes.h>
 #include <math.h>
 
-const char *ritz_plane_name(ritz_plane plane)
+/* "xy"; "" of none. */
+static const char *name_plane(ritz_plane plane)
 {
     static const char *const names[] = {[RITZ_PLANE_NONE] = "",
                                         [RITZ_PLANE_YZ] = "yz",
@@ -50,7 +51,7 @@ static ritz_status check_dof(ritz_plane plane, ritz_dof dof, const double *axes)
         stray_of(plane, axis, dof.component > 3) > RITZ_PARALLEL_AXES,
         RITZ_ERR_ARGUMENT,
         "%s moves out of the plane %s, in which all models of the scene lie",
-        ritz_dof_name(dof, name), ritz_plane_name(plane));
+        ritz_dof_name(dof, name), name_plane(plane));
     return RITZ_OK;
 }
 
@@ -87,7 +88,7 @@ static ritz_status check_extent(ritz_plane plane, const extent *all)
     RITZ_REFUSE_IF(across > RITZ_PORT_MATCH * size, RITZ_ERR_ARGUMENT,
                    "grids %" PRId64 " and %" PRId64
                    " lie %.3g apart across the plane %s",
-                   all->low, all->high, across, ritz_plane_name(plane));
+                   all->low, all->high, across, name_plane(plane));
     return RITZ_OK;
 }
 

@@ -10,6 +10,7 @@
 
 #include "assembly/assembly.h"
 #include "base/alloc.h"
+#include "base/text.h"
 
 #include <ritz/base.h>
 
@@ -18,17 +19,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Append a force of no body yet; *f is its vector. */
+/* Append a force along the damper of a joint, or, of no body yet, a vector. */
 static ritz_status add_force(const ritz_stage *stage, int sets, bool named,
-                             ritz_unit_forces *forces, double **f)
+                             const char *name, ritz_unit_forces *forces,
+                             double **vector)
 {
     ritz_unit_force *force = NULL;
 
     RITZ_CHECK_ROOM(forces->each, forces->count, forces->room);
     force = &forces->each[forces->count++];
     *force = (ritz_unit_force){.sets = sets, .named = named};
+    snprintf(force->name, sizeof force->name, "%s", name);
+    if (!vector)
+        return RITZ_OK;
     RITZ_CHECK_NEW(force->f, stage->num_coordinates);
-    *f = force->f;
+    *vector = force->f;
+    return RITZ_OK;
+}
+
+/* Append column j of B. */
+static ritz_status add_column(const ritz_stage *stage, int sets, bool named,
+                              const char *name, const ritz_dense *B, int64_t j,
+                              ritz_unit_forces *forces)
+{
+    double *f = NULL;
+
+    RITZ_CHECK(add_force(stage, sets, named, name, forces, &f));
+    memcpy(f, ritz_dense_col(B, j), (size_t)B->nrow * sizeof *f);
     return RITZ_OK;
 }
 
@@ -46,16 +63,10 @@ static bool is_named(const ritz_scene *scene, bool input, int64_t j)
 
 static ritz_status add_inputs(const ritz_stage *stage, ritz_unit_forces *forces)
 {
-    for (int64_t j = 0; j < stage->io.num_inputs; j++) {
-        double *f = NULL;
-
-        RITZ_CHECK(add_force(stage, RITZ_ATTACHED_INPUTS,
-                             is_named(stage->scene, true, j), forces, &f));
-        memcpy(f, ritz_dense_col(&stage->io.B, j),
-               (size_t)stage->num_coordinates * sizeof *f);
-        snprintf(forces->each[forces->count - 1].name, RITZ_FORCE_SIZE, "%s",
-                 stage->io.input[j]);
-    }
+    for (int64_t j = 0; j < stage->io.num_inputs; j++)
+        RITZ_CHECK(add_column(stage, RITZ_ATTACHED_INPUTS,
+                              is_named(stage->scene, true, j),
+                              stage->io.input[j], &stage->io.B, j, forces));
     return RITZ_OK;
 }
 
@@ -69,12 +80,11 @@ static ritz_status add_outputs(const ritz_stage *stage,
         double *f = NULL;
 
         RITZ_CHECK(add_force(stage, RITZ_ATTACHED_OUTPUTS,
-                             is_named(stage->scene, false, j), forces, &f));
+                             is_named(stage->scene, false, j),
+                             stage->io.output[j], forces, &f));
         for (int64_t q = 0; q < stage->num_coordinates; q++)
             for (int c = 0; c < 3; c++)
                 f[q] += ritz_dense_col(C[c], q)[j];
-        snprintf(forces->each[forces->count - 1].name, RITZ_FORCE_SIZE, "%s",
-                 stage->io.output[j]);
     }
     return RITZ_OK;
 }
@@ -96,19 +106,18 @@ static ritz_status add_row(const ritz_stage *stage, int64_t k,
 {
     const char *body = stage->scene->component[k].name;
     const ritz_dof dof = port->dof[row];
+    char name[RITZ_FORCE_SIZE];
     double *f = NULL;
-    char *name = NULL;
 
-    RITZ_CHECK(add_force(stage, sets, named, forces, &f));
-    name = forces->each[forces->count - 1].name;
-    for (int64_t q = 0; q < port->map.ncol; q++)
-        f[stage->first[k] + q] = ritz_dense_col(&port->map, q)[row];
     if (has_one_grid(port))
-        snprintf(name, RITZ_FORCE_SIZE, "%s/%s:%" PRId64, body, port->name,
+        snprintf(name, sizeof name, "%s/%s:%" PRId64, body, port->name,
                  dof.component);
     else
-        snprintf(name, RITZ_FORCE_SIZE, "%s/%" PRId64 ":%" PRId64, body,
-                 dof.grid, dof.component);
+        snprintf(name, sizeof name, "%s/%" PRId64 ":%" PRId64, body, dof.grid,
+                 dof.component);
+    RITZ_CHECK(add_force(stage, sets, named, name, forces, &f));
+    for (int64_t q = 0; q < port->map.ncol; q++)
+        f[stage->first[k] + q] = ritz_dense_col(&port->map, q)[row];
     return RITZ_OK;
 }
 
@@ -171,13 +180,34 @@ static ritz_status add_ports(const ritz_stage *stage, bool held,
 static ritz_status add_damper(const ritz_stage *stage, int64_t j, int sets,
                               bool named, ritz_unit_forces *forces)
 {
-    double *f = NULL;
+    return add_column(stage, sets, named, stage->dampers.name[j],
+                      &stage->dampers.B, j, forces);
+}
 
-    RITZ_CHECK(add_force(stage, sets, named, forces, &f));
-    memcpy(f, ritz_dense_col(&stage->dampers.B, j),
-           (size_t)stage->num_coordinates * sizeof *f);
-    snprintf(forces->each[forces->count - 1].name, RITZ_FORCE_SIZE, "%s",
-             stage->dampers.name[j]);
+/*
+ * Forces along the dampers of joints, in the order of ritz_stage_springs: which
+ * motions they have does not depend on the configuration, and in a plane they
+ * are fewer than the joint's freedoms.
+ */
+static ritz_status add_joint_dampers(const ritz_stage *stage,
+                                     ritz_unit_forces *forces)
+{
+    RITZ_OWN(ritz_springs) springs = {0};
+    int64_t dampers = 0;
+
+    RITZ_CHECK(ritz_stage_springs(stage, stage->scene->setting, &springs));
+    for (int64_t k = 0; k < springs.of.count; k++) {
+        const ritz_relation *of = &springs.of.item[k];
+        char name[RITZ_FORCE_SIZE];
+
+        if (!(of->freedom->damping > 0.0))
+            continue;
+        snprintf(name, sizeof name, "damper %d of %s",
+                 (int)(of->freedom - of->joint->freedom) + 1, of->joint->name);
+        RITZ_CHECK(
+            add_force(stage, RITZ_ATTACHED_DAMPERS, false, name, forces, NULL));
+        forces->each[forces->count - 1].spring = dampers++;
+    }
     return RITZ_OK;
 }
 
@@ -185,29 +215,9 @@ static ritz_status add_damper(const ritz_stage *stage, int64_t j, int sets,
 static ritz_status add_dampers(const ritz_stage *stage, bool of_joints,
                                ritz_unit_forces *forces)
 {
-    const ritz_scene *scene = stage->scene;
-    int64_t springs = 0;
-
     for (int64_t j = 0; j < stage->dampers.count; j++)
         RITZ_CHECK(add_damper(stage, j, RITZ_ATTACHED_DAMPERS, false, forces));
-    for (int64_t j = 0; of_joints && j < scene->num_joints; j++)
-        for (int64_t k = 0; k < scene->joint[j].num_freedoms; k++) {
-            const ritz_freedom *freedom = &scene->joint[j].freedom[k];
-            ritz_unit_force *force = NULL;
-            double *f = NULL;
-
-            if (freedom->state != RITZ_CAGED || !(freedom->damping > 0.0))
-                continue;
-            RITZ_CHECK(
-                add_force(stage, RITZ_ATTACHED_DAMPERS, false, forces, &f));
-            force = &forces->each[forces->count - 1];
-            force->f = NULL;
-            free(f);
-            force->spring = springs++;
-            snprintf(force->name, RITZ_FORCE_SIZE, "damper %" PRId64 " of %s",
-                     k + 1, scene->joint[j].name);
-        }
-    return RITZ_OK;
+    return of_joints ? add_joint_dampers(stage, forces) : RITZ_OK;
 }
 
 /* The only row of a direction; else a sentence. */
@@ -271,15 +281,6 @@ static bool split_direction(const char *text, char place[RITZ_NAME_SIZE],
     return true;
 }
 
-/* Index of a port, without a sentence; -1 if there is none. */
-static int64_t find_port(const ritz_reduced *body, const char *name)
-{
-    for (int64_t p = 0; p < body->num_ports; p++)
-        if (strcmp(body->port[p].name, name) == 0)
-            return p;
-    return -1;
-}
-
 /* Whether a place has the name of a damper, "rotor/strut". */
 static bool is_damper(const ritz_stage *stage, const ritz_scene_place *at,
                       const char *damper)
@@ -301,7 +302,9 @@ static ritz_status add_place(const ritz_stage *stage,
     char place[RITZ_NAME_SIZE];
     char *end = NULL;
     int64_t direction = 0, row = 0, grid = 0;
-    int64_t p = find_port(body, at->port);
+    const ritz_names ports = {"port", body->num_ports, (char *)body->port,
+                              sizeof *body->port};
+    int64_t p = ritz_names_index(&ports, at->port);
 
     for (int64_t i = 0; p >= 0 && i < body->port[p].count; i++)
         RITZ_CHECK(
@@ -313,7 +316,7 @@ static ritz_status add_place(const ritz_stage *stage,
             return add_damper(stage, j, 0, true, forces);
     if (!split_direction(at->port, place, &direction))
         return ritz_reduced_port(body, at->port) ? RITZ_OK : RITZ_ERR_ARGUMENT;
-    p = find_port(body, place);
+    p = ritz_names_index(&ports, place);
     grid = strtoll(place, &end, 10);
     if (p < 0 && (end == place || *end != '\0'))
         return ritz_reduced_port(body, place) ? RITZ_OK : RITZ_ERR_ARGUMENT;
@@ -425,7 +428,7 @@ ritz_status ritz_damper_forces(const ritz_stage *stage,
     RITZ_CHECK(ritz_dense_new(c->K.ncol, own + springs.S.nrow, &F));
     ritz_dense_put(&c->dampers.B, 0, 0, &F);
     for (int64_t k = 0; k < springs.S.nrow; k++)
-        if (springs.hold[k].damping > 0.0)
+        if (springs.of.item[k].freedom->damping > 0.0)
             add_spring(stage, c, &springs, k, ritz_dense_col(&F, m++));
     return ritz_dense_columns(&F, 0, m, out);
 }

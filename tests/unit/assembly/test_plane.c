@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include "assembly/assembly.h"
+#include "bodies.h"
 #include "folder.h"
 #include "scenes.h"
 
@@ -28,39 +29,12 @@ static const struct {
     {"xy", "[0, 0, 1]", "[4, 0, 0]", 1, 2, 6, 1.0},
 };
 
-/*
- * A rigid link: grid 1 at the origin with mass m and inertia J about its
- * centre, which lies at (cu, cv) in the plane.
- *
- *     M = [m, 0, -m cv; 0, m, m cu; ., ., J + m c^2], the turn from u to v
- */
 static ritz_status link_body(int p, double m, double J, double cu, double cv,
                              ritz_component *out)
 {
-    const double s = planes[p].sign;
-    const int64_t row[] = {0, 1, 2, 0, 2, 1, 2}, col[] = {0, 1, 2, 2, 0, 2, 1};
-    const double val[] = {m,           m,           J + m * (cu * cu + cv * cv),
-                          -s * m * cv, -s * m * cv, s * m * cu,
-                          s * m * cu};
-    RITZ_OWN(ritz_component) body = {.num_dofs = 3};
+    const int64_t direction[] = {planes[p].u, planes[p].v, planes[p].w};
 
-    RITZ_CHECK_NEW(body.dof, 3);
-    body.dof[0] = (ritz_dof){1, planes[p].u};
-    body.dof[1] = (ritz_dof){1, planes[p].v};
-    body.dof[2] = (ritz_dof){1, planes[p].w};
-    RITZ_CHECK(ritz_sparse_from_triplets(3, 3, 7, row, col, val, &body.M));
-    RITZ_CHECK_NEW(body.grids.id, 1);
-    RITZ_CHECK_NEW(body.grids.position, 3);
-    RITZ_CHECK_NEW(body.grids.frame, 1);
-    RITZ_CHECK_NEW(body.grids.axes, 9);
-    body.grids.count = body.grids.num_frames = 1;
-    body.grids.id[0] = 1;
-    for (int k = 0; k < 3; k++)
-        body.grids.axes[4 * k] = 1.0;
-    RITZ_CHECK(add_port(&body, "g1", 1));
-    RITZ_CHECK(ritz_component_settle(&body, false));
-    RITZ_MOVE(*out, body);
-    return RITZ_OK;
+    return body_link(direction, planes[p].sign, (double[]){m, J, cu, cv}, out);
 }
 
 /* Links A and B, and the joint p between them, at some settings. */

@@ -13,6 +13,7 @@
 #include <ritz/basis.h>
 
 #include <complex.h>
+#include <float.h>
 #include <lapacke.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -375,7 +376,59 @@ static void no_allocation_failure_leaks(void **state)
     release(&f);
 }
 
+/*
+ * Of plane models a joint has the motions in the plane alone, and so have its
+ * dampers: D of the system is the sum of c b b' over their forces b.
+ */
+static void dampers_out_of_a_plane_are_no_forces(void **)
+{
+    static const char text[] =
+        "scene: plane\nplane: xy\ncomponents:\n"
+        "  A: {model: a.h5, basis: full}\n"
+        "  B: {model: b.h5, basis: full}\njoints:\n"
+        "  - {name: p, between: [A/g1, B/g1], type: bushing,\n"
+        "     stiffness: [1, 1, 1, 1, 1, 1], damping: [1, 2, 3, 4, 5, 6]}\n";
+    static const char *const names[] = {"damper 1 of p", "damper 2 of p",
+                                        "damper 6 of p"};
+    static const double c[] = {1.0, 2.0, 6.0};
+    static const int64_t all[] = {0, 1, 2};
+    ritz_reduced body[2] = {0};
+    RITZ_OWN(ritz_scene) scene = {0};
+    RITZ_OWN(ritz_stage) stage = {0};
+    RITZ_OWN(ritz_configuration) at = {0};
+    RITZ_OWN(ritz_unit_forces) forces = {0};
+    RITZ_OWN(ritz_dense) B = {0};
+    ritz_plan plan = {.forces = &forces, .count = 3, .force = all};
+
+    assert_ok(ritz_scene_parse("plane.yaml", text, &scene));
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(ritz_component) link = {0};
+
+        assert_ok(body_link((int64_t[]){1, 2, 6}, 1.0,
+                            (double[]){2.0 + k, 0.5, 0.6, 0.2}, &link));
+        assert_ok(reduce_with(&link, &ritz_method_full, -1, &body[k]));
+    }
+    assert_ok(ritz_stage_from(&scene, body, &stage));
+    assert_ok(ritz_stage_assemble(&stage, NULL, &at));
+    assert_ok(ritz_unit_forces_of_channels(&stage, &forces));
+    assert_int_equal(forces.count, 3);
+    for (int k = 0; k < 3; k++)
+        assert_string_equal(forces.each[k].name, names[k]);
+    assert_ok(ritz_plan_system(&stage, &at, &plan, &B));
+    for (int64_t j = 0; j < at.D.ncol; j++)
+        for (int64_t i = 0; i < at.D.nrow; i++) {
+            double sum = 0.0;
+
+            for (int64_t k = 0; k < 3; k++)
+                sum +=
+                    c[k] * ritz_dense_col(&B, k)[i] * ritz_dense_col(&B, k)[j];
+            assert_near(ritz_dense_col(&at.D, j)[i], sum,
+                        20.0 * DBL_EPSILON * ritz_dense_max(&at.D));
+        }
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(dampers_out_of_a_plane_are_no_forces),
     cmocka_unit_test(the_error_is_that_of_the_poles),
     cmocka_unit_test(static_responses_along_dampers_mend_it),
     cmocka_unit_test(forces_are_those_of_dampers),
