@@ -261,13 +261,15 @@ static ritz_status choose_form(const parts *p, bool *sparse)
                    " states, or sparse, with at most a tenth of A and E not "
                    "zero",
                    A->nrow, A->nrow, most);
-    for (int k = PART_B; k <= PART_C; k++)
-        RITZ_REFUSE_IF(p->matrix[k].A.nrow > most && p->matrix[k].A.ncol > most,
+    for (int k = PART_B; k <= PART_C; k++) {
+        const ritz_sparse *part = &p->matrix[k].A;
+
+        RITZ_REFUSE_IF((k == PART_B ? part->ncol : part->nrow) > most,
                        RITZ_ERR_ARGUMENT,
                        "'%c' is %" PRId64 " x %" PRId64 ": at most %" PRId64
                        " inputs and outputs are taken",
-                       letters[k], p->matrix[k].A.nrow, p->matrix[k].A.ncol,
-                       most);
+                       letters[k], part->nrow, part->ncol, most);
+    }
     return RITZ_OK;
 }
 

@@ -44,6 +44,8 @@ static int set_up(void **state)
     folder_write("E.mtx", ARRAY "2 2\n2\n0\n0\n3\n");
     folder_write("one.mtx", ARRAY "2 2\n1\n0\n0\n1\n");
     folder_write("flat.mtx", ARRAY "2 2\n1\n2\n2\n4\n");
+    folder_write("loads.mtx", "%%MatrixMarket matrix coordinate real general\n"
+                              "2 3001 1\n1 1 1\n");
     folder_write("wide.mtx", ARRAY "3 1\n1\n1\n1\n");
     folder_write("pairs.mtx", "%%MatrixMarket matrix array complex general\n"
                               "2 2\n1 1\n0 0\n0 0\n1 0\n");
@@ -147,6 +149,8 @@ static void what_makes_no_state_space_is_refused(void **)
          "'D' is 2 x 2 where 2 x 1 is due"},
         {"A=pairs.mtx,B=B.mtx,C=C.mtx", 0, 0, "'A' is complex"},
         {"A=full.mtx,B=tall.mtx,C=long.mtx", 0, 0, "at most 3000 states"},
+        {"A=A.mtx,B=loads.mtx,C=C.mtx", 0, 0,
+         "'B' is 2 x 3001: at most 3000 inputs and outputs are taken"},
         {"A=A.mtx,B=B.mtx,C=C.mtx", "u,v", 0, "2 names are given for 1"},
         {"A=A.mtx,B=B.mtx,C=C.mtx", 0, "y,y", "'y' is named twice"},
         {"A=A.mtx,B=B.mtx,C=C.mtx", 0, "y@0,z", "'0' is no limit"},
