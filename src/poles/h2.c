@@ -55,11 +55,12 @@ static ritz_status measure_large(ritz_model model,
         RITZ_CHECK(ritz_static_space_new(model, modes, noise, &space));
         RITZ_CHECK(ritz_static_space_plant(&space, NULL, &plant));
         RITZ_CHECK(measure_plant(c, k, &plant, out));
-        out->change = fabs(out->value - before) / out->value;
+        out->change =
+            out->value > 0.0 ? fabs(out->value - before) / out->value : 0.0;
         (void)snprintf(out->engine, sizeof out->engine,
                        "%" PRId64 " modes and static responses",
                        space.num_modes);
-        if (out->value == 0.0 || out->change <= RITZ_H2_SETTLED)
+        if (out->change <= RITZ_H2_SETTLED)
             return RITZ_OK;
         before = out->value;
     }

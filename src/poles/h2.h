@@ -37,7 +37,10 @@ ritz_status ritz_plant_new(ritz_model model, const ritz_disturbance *noise,
  */
 ritz_status ritz_variance_of(const ritz_plant *plant, ritz_variance *out);
 
-/** The same of a state space; no derivatives. */
+/** The norm as the dampers are set; HUGE_VAL: infinite. */
+ritz_status ritz_plant_norm(const ritz_plant *plant, double *out);
+
+/** ritz_variance_of of a state space; no derivatives. */
 ritz_status ritz_variance_of_states(const ritz_state_space *model,
                                     const ritz_disturbance *noise,
                                     ritz_variance *out);
@@ -56,13 +59,13 @@ ritz_status ritz_h2_with(ritz_model model, const ritz_disturbance *noise,
                          const double *c, const double *k, ritz_h2 *out);
 
 /* A search for the values of some dampers. */
-typedef struct ritz_search {
+typedef struct ritz_tuning_search {
     int64_t count;
     const ritz_tuned *tuned;
     const double *c, *k; /* of each group: one more start; NULL: none */
     int64_t starts;      /* of its own, at most */
     int64_t most;        /* evaluations from each start */
-} ritz_search;
+} ritz_tuning_search;
 
 /**
  * Tune a plant: `c`, `k`, `norm`, `slope`, evaluations and starts of the result
@@ -70,7 +73,7 @@ typedef struct ritz_search {
  *
  * @param[in,out] plant  its dampers have those values after it
  */
-ritz_status ritz_tune_plant(ritz_plant *plant, const ritz_search *search,
+ritz_status ritz_tune_plant(ritz_plant *plant, const ritz_tuning_search *search,
                             ritz_tuning *out);
 
 /** ritz_tuning_of with one more start; NULL: without. */

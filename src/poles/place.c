@@ -3,6 +3,7 @@
  * tuned alone, and of the best all combinations are tuned together.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
 #include "poles/h2.h"
 
@@ -99,7 +100,7 @@ static ritz_status make_plant(field *f, int64_t count, const ritz_tuned *tuned,
 }
 
 /* The norm of a choice, HUGE_VAL where it is infinite. */
-static ritz_status tune_choice(field *f, const ritz_search *search,
+static ritz_status tune_choice(field *f, const ritz_tuning_search *search,
                                ritz_tuning *out)
 {
     RITZ_OWN(ritz_plant) plant = {0};
@@ -108,27 +109,16 @@ static ritz_status tune_choice(field *f, const ritz_search *search,
     return ritz_tune_plant(&plant, search, out);
 }
 
-static ritz_status measure_none(field *f, double *out)
-{
-    RITZ_OWN(ritz_plant) plant = {0};
-    ritz_variance variance = {0};
-
-    RITZ_CHECK(make_plant(f, 0, NULL, &plant));
-    RITZ_CHECK(ritz_variance_of(&plant, &variance));
-    *out = variance.finite ? sqrt(variance.square) : HUGE_VAL;
-    return RITZ_OK;
-}
-
 static ritz_status tune_alone(field *f, ritz_placing *out)
 {
     const ritz_tuning_request *tuning = &f->request->tuning;
 
     for (int64_t g = 0; g < out->count; g++) {
-        const ritz_search search = {.count = 1,
-                                    .tuned = &tuning->tuned[g],
-                                    .starts = STARTS_ALONE,
-                                    .most = tuning->most > 0 ? tuning->most
-                                                             : EVALUATIONS};
+        const ritz_tuning_search search = {
+            .count = 1,
+            .tuned = &tuning->tuned[g],
+            .starts = STARTS_ALONE,
+            .most = tuning->most > 0 ? tuning->most : EVALUATIONS};
         RITZ_OWN(ritz_tuning) found = {0};
 
         RITZ_CHECK(tune_choice(f, &search, &found));
@@ -160,27 +150,18 @@ static ritz_status rank_candidates(const ritz_placing *placing, int64_t **out)
     return RITZ_OK;
 }
 
-/* The next of the ascending choices of k among n; false: there is none. */
-static bool next_choice(int64_t n, int64_t k, int64_t *at)
-{
-    int64_t i = k - 1;
-
-    while (i >= 0 && at[i] == n - k + i)
-        i--;
-    if (i < 0)
-        return false;
-    at[i]++;
-    for (int64_t j = i + 1; j < k; j++)
-        at[j] = at[j - 1] + 1;
-    return true;
-}
-
 /* A choice, its norm and its values. */
 typedef struct choice {
     double norm;
     int64_t *group;
     double *c, *k;
 } choice;
+
+static void choice_free(choice *one)
+{
+    RITZ_FREE(one->group, one->c, one->k);
+    *one = (choice){0};
+}
 
 typedef struct choices {
     int64_t count; /* the best so far, ascending; NEXT + 1 at most */
@@ -190,14 +171,7 @@ typedef struct choices {
 static void choices_free(choices *all)
 {
     for (int64_t j = 0; j < NEXT + 2; j++)
-        RITZ_FREE(all->at[j].group, all->at[j].c, all->at[j].k);
-}
-
-static int compare_groups(const void *left, const void *right)
-{
-    const int64_t *a = left, *b = right;
-
-    return (*a > *b) - (*a < *b);
+        choice_free(&all->at[j]);
 }
 
 /* Put a choice where it belongs, and drop the last if there are too many. */
@@ -210,17 +184,8 @@ static void keep_choice(choices *all, choice *one)
         at--;
     }
     RITZ_MOVE(all->at[at], *one);
-    if (all->count > NEXT + 1) {
-        choice *last = &all->at[--all->count];
-
-        RITZ_FREE(last->group, last->c, last->k);
-        *last = (choice){0};
-    }
-}
-
-static void choice_free(choice *one)
-{
-    RITZ_FREE(one->group, one->c, one->k);
+    if (all->count > NEXT + 1)
+        choice_free(&all->at[--all->count]);
 }
 
 /* One combination: tuned from what its dampers were alone, too. */
@@ -234,10 +199,10 @@ static ritz_status try_choice(field *f, const ritz_placing *placing,
     RITZ_OWN(ritz_tuning) found = {0};
     RITZ_OWN_ARRAY ritz_tuned *tuned = NULL;
     RITZ_OWN_ARRAY double *c = NULL, *k = NULL;
-    ritz_search search = {.count = places,
-                          .starts = STARTS_TOGETHER,
-                          .most =
-                              tuning->most > 0 ? tuning->most : EVALUATIONS};
+    ritz_tuning_search search = {.count = places,
+                                 .starts = STARTS_TOGETHER,
+                                 .most = tuning->most > 0 ? tuning->most
+                                                          : EVALUATIONS};
 
     RITZ_CHECK_NEW(one.group, places);
     RITZ_CHECK_NEW(tuned, places);
@@ -245,7 +210,7 @@ static ritz_status try_choice(field *f, const ritz_placing *placing,
     RITZ_CHECK_NEW(k, places);
     for (int64_t j = 0; j < places; j++)
         one.group[j] = order[at[j]];
-    qsort(one.group, (size_t)places, sizeof *one.group, compare_groups);
+    qsort(one.group, (size_t)places, sizeof *one.group, ritz_ascending_index);
     for (int64_t j = 0; j < places; j++) {
         tuned[j] = tuning->tuned[one.group[j]];
         c[j] = placing->c[one.group[j]];
@@ -275,7 +240,7 @@ static ritz_status try_choices(field *f, ritz_placing *placing,
     do {
         RITZ_CHECK(try_choice(f, placing, order, at, all));
         ritz_monitor_step("places, combined", ++placing->num_choices, total);
-    } while (next_choice(n, places, at));
+    } while (ritz_next_choice(n, places, at));
     return RITZ_OK;
 }
 
@@ -334,6 +299,7 @@ ritz_status ritz_placing_of(const ritz_placing_request *request,
     int64_t count = request->tuning.count;
     RITZ_OWN(field) f = {0};
     RITZ_OWN(choices) all = {0};
+    RITZ_OWN(ritz_plant) none = {0};
     RITZ_OWN(ritz_placing)
     placing = {.count = count,
                .places = request->places,
@@ -345,7 +311,8 @@ ritz_status ritz_placing_of(const ritz_placing_request *request,
     RITZ_CHECK_NEW(placing.c, count);
     RITZ_CHECK_NEW(placing.k, count);
     RITZ_CHECK(field_new(request, &f));
-    RITZ_CHECK(measure_none(&f, &placing.none));
+    RITZ_CHECK(make_plant(&f, 0, NULL, &none));
+    RITZ_CHECK(ritz_plant_norm(&none, &placing.none));
     RITZ_CHECK(tune_alone(&f, &placing));
     RITZ_CHECK(rank_candidates(&placing, &order));
     RITZ_CHECK(try_choices(&f, &placing, order, &all));

@@ -29,7 +29,7 @@ typedef struct variable {
 } variable;
 
 typedef struct tuner {
-    const ritz_search *search;
+    const ritz_tuning_search *search;
     ritz_plant *plant;
     int64_t count; /* variables */
     variable *variable;
@@ -100,7 +100,7 @@ static void set_group(const ritz_tuned *tuned, bool of_k, double value,
 }
 
 /* Values that have no choice; NaN: each damper keeps its own. */
-static void set_fixed(const ritz_search *search, ritz_dampers *dampers)
+static void set_fixed(const ritz_tuning_search *search, ritz_dampers *dampers)
 {
     for (int64_t g = 0; g < search->count; g++) {
         const ritz_tuned *tuned = &search->tuned[g];
@@ -173,16 +173,17 @@ static ritz_status measure_at(tuner *t, const double *place, double *gradient,
     set_variables(t, x);
     t->evaluations++;
     RITZ_CHECK(ritz_variance_of(t->plant, &t->variance));
-    *norm = t->variance.finite ? sqrt(t->variance.square) : HUGE_VAL;
+    *norm = sqrt(t->variance.square);
     for (int64_t i = 0; i < t->count; i++)
         gradient[i] = 0.0;
-    if (!t->variance.finite || *norm == 0.0)
+    if (!t->variance.finite)
         return RITZ_OK;
-    fill_gradient(t, x, *norm, gradient);
+    if (*norm > 0.0)
+        fill_gradient(t, x, *norm, gradient);
     t->found = fmin(t->found, *norm);
     if (*norm < t->best) {
         t->best = *norm;
-        t->slope = slope_of(t, x, *norm, gradient);
+        t->slope = *norm > 0.0 ? slope_of(t, x, *norm, gradient) : 0.0;
         memcpy(t->best_x, x, (size_t)t->count * sizeof *x);
     }
     return RITZ_OK;
@@ -341,7 +342,7 @@ static ritz_status run_search(tuner *t, const double *start, double *found,
 
 static ritz_status run_searches(tuner *t, ritz_tuning *out)
 {
-    const ritz_search *search = t->search;
+    const ritz_tuning_search *search = t->search;
     grid_point point[GRID] = {0};
     int64_t count = 0;
     RITZ_OWN_ARRAY double *x = NULL, *found = NULL;
@@ -370,8 +371,8 @@ static ritz_status run_searches(tuner *t, ritz_tuning *out)
 
 /* --- A plant -------------------------------------------------------------- */
 
-static ritz_status tuner_new(ritz_plant *plant, const ritz_search *search,
-                             tuner *t)
+static ritz_status tuner_new(ritz_plant *plant,
+                             const ritz_tuning_search *search, tuner *t)
 {
     t->plant = plant;
     t->search = search;
@@ -390,8 +391,8 @@ static ritz_status tuner_new(ritz_plant *plant, const ritz_search *search,
 }
 
 /* Values of a group as its first damper has them; NaN: each has its own. */
-static void read_values(const ritz_search *search, const ritz_dampers *dampers,
-                        ritz_tuning *out)
+static void read_values(const ritz_tuning_search *search,
+                        const ritz_dampers *dampers, ritz_tuning *out)
 {
     for (int64_t g = 0; g < search->count; g++) {
         const ritz_tuned *tuned = &search->tuned[g];
@@ -403,7 +404,7 @@ static void read_values(const ritz_search *search, const ritz_dampers *dampers,
     }
 }
 
-ritz_status ritz_tune_plant(ritz_plant *plant, const ritz_search *search,
+ritz_status ritz_tune_plant(ritz_plant *plant, const ritz_tuning_search *search,
                             ritz_tuning *out)
 {
     RITZ_OWN(tuner) t = {0};
@@ -536,19 +537,9 @@ static ritz_status make_plant(const ritz_tuning_request *request, int64_t modes,
     return ritz_static_space_plant(&space, used, out);
 }
 
-/* The norm as the model's dampers are; HUGE_VAL: infinite. */
-static ritz_status measure_before(const ritz_plant *plant, double *out)
-{
-    ritz_variance variance = {0};
-
-    RITZ_CHECK(ritz_variance_of(plant, &variance));
-    *out = variance.finite ? sqrt(variance.square) : HUGE_VAL;
-    return RITZ_OK;
-}
-
 /* One round: tune, and measure the full model with what was found. */
 static ritz_status tune_once(const ritz_tuning_request *request,
-                             const ritz_search *search, int64_t modes,
+                             const ritz_tuning_search *search, int64_t modes,
                              ritz_tuning *out)
 {
     bool in_space = ritz_tuned_in_space(request, modes);
@@ -558,11 +549,14 @@ static ritz_status tune_once(const ritz_tuning_request *request,
     double before = 0.0;
 
     RITZ_CHECK(make_plant(request, modes, &plant));
-    RITZ_CHECK(measure_before(&plant, &before));
+    RITZ_CHECK(ritz_plant_norm(&plant, &before));
     RITZ_CHECK(ritz_tune_plant(&plant, search, &tuning));
     RITZ_REFUSE_IF(!isfinite(tuning.norm), RITZ_ERR_ARGUMENT,
                    "the H2 norm is infinite wherever it was tried: a motion "
                    "that is driven and observed is damped by nothing");
+    RITZ_REFUSE_IF(tuning.norm == 0.0, RITZ_ERR_ARGUMENT,
+                   "the H2 norm is 0 whatever the dampers do: no output "
+                   "observes what the inputs drive");
     tuning.before = before;
     tuning.modes = in_space ? modes : 0;
     if (in_space) {
@@ -579,12 +573,13 @@ static ritz_status tune_once(const ritz_tuning_request *request,
 ritz_status ritz_tune_from(const ritz_tuning_request *request, const double *c,
                            const double *k, ritz_tuning *out)
 {
-    ritz_search search = {request->count,
-                          request->tuned,
-                          c,
-                          k,
-                          STARTS,
-                          request->most > 0 ? request->most : MOST_EVALUATIONS};
+    ritz_tuning_search search = {request->count,
+                                 request->tuned,
+                                 c,
+                                 k,
+                                 STARTS,
+                                 request->most > 0 ? request->most
+                                                   : MOST_EVALUATIONS};
     int64_t modes = ritz_tuning_modes(request);
     RITZ_OWN(ritz_tuning) tuning = {0};
 

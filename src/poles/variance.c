@@ -26,6 +26,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "gramians/modes.h"
 #include "linear/general.h"
 #include "linear/split.h"
 #include "poles/poles.h"
@@ -184,16 +185,6 @@ static double divide_size(ritz_dense *A)
     return size > 0.0 ? size : 1.0;
 }
 
-/* A := A B */
-static ritz_status multiply_by(const ritz_dense *B, ritz_dense *A)
-{
-    ritz_dense AB = {0};
-
-    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
-    ritz_dense_replace(A, &AB);
-    return RITZ_OK;
-}
-
 /*
  * Whether poles that are not left of the axis are both driven and observed:
  * C T (W'A T)^k W'B, k = 0, 1, ..., which are 0 where they are not.
@@ -217,7 +208,7 @@ static ritz_status transmits_rest(const first_order *f, const ritz_split *split,
 
         RITZ_CHECK(ritz_dense_mul(&CT, &WB, &markov));
         *out = ritz_dense_max(&markov) > RITZ_UNOBSERVED * size;
-        RITZ_CHECK(multiply_by(&A, &CT));
+        RITZ_CHECK(ritz_dense_times(&A, &CT));
         size *= fmax(ritz_general_size(&A), RITZ_LEAST_SCALE);
     }
     return RITZ_OK;
@@ -292,18 +283,6 @@ static void modal_form_free(modal_form *form)
     first_order_free(&form->f);
 }
 
-/* Each output over its limit. */
-static ritz_status weigh_outputs(const ritz_io *io, ritz_dense *C)
-{
-    RITZ_OWN_ARRAY double *weight = NULL;
-
-    RITZ_CHECK_NEW(weight, io->num_outputs);
-    for (int64_t i = 0; i < io->num_outputs; i++)
-        weight[i] = isnan(io->limit[i]) ? 1.0 : 1.0 / io->limit[i];
-    ritz_dense_scale_rows(weight, C);
-    return RITZ_OK;
-}
-
 static ritz_status install_plant(const ritz_plant *plant, ritz_structure *out)
 {
     RITZ_OWN(ritz_dampers) dampers = {0};
@@ -314,19 +293,6 @@ static ritz_status install_plant(const ritz_plant *plant, ritz_structure *out)
         RITZ_CHECK(ritz_dense_copy(&plant->base.D, &out->D));
     RITZ_CHECK(ritz_dampers_copy(&plant->dampers, &dampers));
     return ritz_dampers_install(&dampers, &out->K, &out->D);
-}
-
-/* Whether nothing couples rigid modes with others. */
-static bool is_rigid_apart(const ritz_modal_model *modes)
-{
-    int64_t r = modes->num_rigid;
-
-    for (int64_t j = r; j < modes->count; j++)
-        for (int64_t i = 0; i < r; i++)
-            if (ritz_dense_col(&modes->Delta, j)[i] != 0.0 ||
-                ritz_dense_col(&modes->Delta, i)[j] != 0.0)
-                return false;
-    return true;
 }
 
 /* Whether outputs observe what inputs drive of the first `count` modes. */
@@ -385,19 +351,20 @@ static ritz_status modal_form_new(const ritz_plant *plant, modal_form *form,
     RITZ_CHECK(install_plant(plant, &model));
     RITZ_CHECK(
         ritz_modal_model_new(&model, &plant->io, &plant->damping, modes));
-    form->first = is_rigid_apart(modes) ? modes->num_rigid : 0;
+    form->first = ritz_modal_decoupled(modes);
     *infinite = transmits_rigid(modes, form->first);
     layout.first = layout.position = form->first;
     RITZ_CHECK(
         ritz_modal_states(modes, &layout, &form->f.A, &form->f.B, &form->f.C));
-    RITZ_CHECK(weigh_outputs(&plant->io, &form->f.C));
-    RITZ_CHECK(weigh_outputs(&plant->io, &modes->feed));
+    ritz_outputs_weigh(plant->io.limit, &form->f.C);
+    ritz_outputs_weigh(plant->io.limit, &modes->feed);
     RITZ_CHECK(add_noise(&plant->noise, &modes->feed, &form->f));
     if (plant->dampers.count > 0)
         RITZ_CHECK(
             ritz_dense_mul_tn(&modes->Phi, &plant->dampers.B, &form->beta));
     RITZ_CHECK(ritz_dense_mul(&plant->io.Ca, &modes->Phi, &form->CaPhi));
-    return weigh_outputs(&plant->io, &form->CaPhi);
+    ritz_outputs_weigh(plant->io.limit, &form->CaPhi);
+    return RITZ_OK;
 }
 
 /* d(lambda_i) of stated damping. */
@@ -491,6 +458,15 @@ ritz_status ritz_variance_of(const ritz_plant *plant, ritz_variance *out)
                                     : RITZ_OK;
 }
 
+ritz_status ritz_plant_norm(const ritz_plant *plant, double *out)
+{
+    ritz_variance variance = {0};
+
+    RITZ_CHECK(ritz_variance_of(plant, &variance));
+    *out = sqrt(variance.square);
+    return RITZ_OK;
+}
+
 ritz_status ritz_refuse_infinite(const ritz_variance *variance)
 {
     return ritz_fail(RITZ_ERR_ARGUMENT,
@@ -560,8 +536,8 @@ ritz_status ritz_variance_of_states(const ritz_state_space *model,
     RITZ_CHECK(ritz_split_scaled(&model->A, &model->E, &model->B, &model->C,
                                  &f.A, &f.B, &f.C));
     RITZ_CHECK(ritz_dense_copy(&model->D, &feed));
-    RITZ_CHECK(weigh_outputs(&io, &f.C));
-    RITZ_CHECK(weigh_outputs(&io, &feed));
+    ritz_outputs_weigh(io.limit, &f.C);
+    ritz_outputs_weigh(io.limit, &feed);
     RITZ_CHECK(add_noise(noise, &feed, &f));
     return find_gramians(&f, false, &g, out);
 }

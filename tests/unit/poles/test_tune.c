@@ -423,6 +423,11 @@ static void what_cannot_be_tuned_is_refused_in_words(void **state)
     request.model = a.model;
     assert_fails(ritz_tuning_of(&request, &found), RITZ_ERR_ARGUMENT,
                  "the H2 norm is infinite wherever it was tried");
+    a.io.C.val[0] = a.io.C.val[1] = 0.0;
+    request.tuned = (const ritz_tuned[]){{1, first, {0.5, 2.0}, {3.0, 3.0}}};
+    assert_fails(ritz_tuning_of(&request, &found), RITZ_ERR_ARGUMENT,
+                 "the H2 norm is 0 whatever the dampers do: no output "
+                 "observes what the inputs drive");
 }
 
 static void too_many_combinations_are_refused(void **state)
