@@ -287,8 +287,9 @@ static ritz_status check_bodies(const ritz_system *system,
     return RITZ_OK;
 }
 
-/* What is added to the numbers of the grids of each body. */
-static void renumber_grids(ritz_shapes_array *part, int64_t *add)
+/* What is added to the numbers of the grids of each body, where any are alike.
+ */
+static ritz_status renumber_grids(const ritz_shapes_array *part, int64_t *add)
 {
     int64_t highest = -1, power = 1;
     bool overlap = false;
@@ -300,10 +301,19 @@ static void renumber_grids(ritz_shapes_array *part, int64_t *add)
         if (s->id[s->num_points - 1] > highest)
             highest = s->id[s->num_points - 1];
     }
-    while (highest >= power && power < INT64_MAX / 1000)
+    if (!overlap)
+        return RITZ_OK;
+    while (highest >= power && power < INT64_MAX / 10)
         power *= 10;
+    RITZ_REFUSE_IF(highest >= power ||
+                       part->count - 1 > (INT64_MAX - highest) / power,
+                   RITZ_ERR_ARGUMENT,
+                   "numbers of grids up to %" PRId64 " leave no others for "
+                   "those of %" PRId64 " bodies",
+                   highest, part->count);
     for (int64_t c = 0; c < part->count; c++)
-        add[c] = overlap ? c * power : 0;
+        add[c] = c * power;
+    return RITZ_OK;
 }
 
 /* R x, R being columns 0 to 8 of row c. */
@@ -387,7 +397,7 @@ static ritz_status join_parts(ritz_shapes_array *part, const ritz_dense *places,
 
     RITZ_CHECK(make_room(part, all));
     RITZ_CHECK_NEW(add, part->count);
-    renumber_grids(part, add);
+    RITZ_CHECK(renumber_grids(part, add));
     for (int64_t c = 0; c < part->count; c++) {
         put_points(&part->at[c], places, c, add[c], first, all);
         put_cells(&part->at[c].cells, first, &all->cells);

@@ -142,6 +142,37 @@ static void bodies_that_are_others_are_refused(void **state)
     RITZ_MOVE(at->places, kept);
 }
 
+static void rename_grid(fixture *f, int64_t from, int64_t to)
+{
+    for (int c = 0; c < 2; c++) {
+        const ritz_reduced *body = &f->bodies.item[c];
+
+        for (int64_t k = 0; k < body->grids.count; k++)
+            if (body->grids.id[k] == from)
+                body->grids.id[k] = to;
+        for (int64_t i = 0; i < body->num_dofs; i++)
+            if (body->dof[i].grid == from)
+                body->dof[i].grid = to;
+    }
+}
+
+/* The last grid of the bodies, which have the same numbers. */
+static void numbers_that_leave_no_others_are_refused(void **state)
+{
+    static const int64_t huge[] = {INT64_MAX / 2, 999999999999999999};
+    fixture *f = *state;
+    int64_t last = f->bodies.item[0].grids.id[GRIDS - 1];
+    RITZ_OWN(ritz_shapes) s = {0};
+
+    rename_grid(f, last, huge[0]);
+    assert_fails(shape_once(f, "8", &s), RITZ_ERR_ARGUMENT,
+                 "leave no others for those of 2 bodies");
+    rename_grid(f, huge[0], huge[1]);
+    assert_ok(shape_once(f, "8", &s));
+    assert_int_equal(s.id[2 * GRIDS - 1], 1999999999999999999);
+    rename_grid(f, huge[1], last);
+}
+
 static ritz_status write_once(const fixture *f, bool states, const char *path)
 {
     const ritz_export_request request = {.output = path};
@@ -195,6 +226,7 @@ static void no_allocation_failure_leaks(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bodies_stand_where_joints_put_them),
     cmocka_unit_test(bodies_that_are_others_are_refused),
+    cmocka_unit_test(numbers_that_leave_no_others_are_refused),
     cmocka_unit_test(a_container_holds_what_was_exported),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
