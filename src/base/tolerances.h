@@ -701,6 +701,9 @@
    it could be have nothing to do with each other: positions in single precision
    leave so much of symmetry. */
 #define RITZ_CHANNEL_COUPLED 1e-6
+/* ... nor if it is not proven to be more than that, and proven to be nowhere
+   more than this part. */
+#define RITZ_CHANNEL_WEAK 1e-2
 /* A bound of a response that is more than this many times what is known of the
    error is worth a richer trial. */
 #define RITZ_RESPONSE_LOOSE 2.0

@@ -167,36 +167,81 @@ static ritz_status take_sines(ritz_bounder *r)
     return RITZ_OK;
 }
 
-/* d(w d_j) / d theta: how a change of a stiffness changes its damping. */
-static double damping_over(const ritz_bounder *r, double w, double theta)
+/*
+ * Rounding of each eigenvalue, in the full matrices and in the reduced ones.
+ * Modes that it may exchange are not the same vectors in both: they share the
+ * largest.
+ */
+static ritz_status take_roundings(ritz_bounder *r)
 {
-    return r->rayleigh ? w * r->b : w * r->zeta / sqrt(theta);
+    const ritz_lehmann *trial = r->trial;
+    const double *theta = trial->theta;
+    bool grown = true;
+
+    RITZ_CHECK_NEW(r->rounding, trial->count);
+    for (int64_t j = 0; j < trial->count; j++)
+        r->rounding[j] = trial->rounding[j] + trial->reduced_rounding[j];
+    while (grown) {
+        grown = false;
+        for (int64_t j = 0; j + 1 < trial->count; j++) {
+            double *at = &r->rounding[j];
+            double most = fmax(at[0], at[1]);
+
+            if (theta[j + 1] - theta[j] > at[0] + at[1] ||
+                fmin(at[0], at[1]) == most)
+                continue;
+            at[0] = at[1] = most;
+            grown = true;
+        }
+    }
+    return RITZ_OK;
+}
+
+/* Whether rounding cannot turn rigid motions among flexible ones. */
+static bool rigid_is_apart(const ritz_bounder *r)
+{
+    const double *theta = r->trial->theta;
+    int64_t n = r->num_rigid;
+
+    return n == 0 || n >= r->trial->count ||
+           theta[n] - theta[n - 1] > r->rounding[n] + r->rounding[n - 1];
+}
+
+/* How far w d of a mode goes where its stiffness is off: most where it falls,
+   2 zeta w (sqrt(theta) - sqrt(theta - off)). */
+static double damping_off(const ritz_bounder *r, double w, double theta,
+                          double off)
+{
+    double top = fmax(theta, off);
+
+    return r->rayleigh ? w * r->b * off
+                       : 2.0 * r->zeta * w * (sqrt(top) - sqrt(top - off));
 }
 
 /*
  * How far rounding moves a reduced response at @p w rad/s: K_ij off by
  * sqrt(r_i r_j), r the rounding of eigenvalues, moves it by p_i eta_j K_ij, and
  * what damping is made of K too; M_ij moves it as well. Among rigid motions
- * only M does: their stiffness is set to 0.
+ * only M does: their stiffness is set to 0, if both models have the same.
  */
 static double rounding_at(const ritz_bounder *r, double w, const ritz_side *in,
                           const ritz_side *out)
 {
+    bool apart = rigid_is_apart(r);
     double all[2] = {0.0, 0.0};
     double rigid[2] = {0.0, 0.0};
     double mass[2] = {0.0, 0.0};
 
     for (int64_t j = 0; j < r->trial->count; j++) {
-        double off = r->trial->rounding[j] + r->trial->reduced_rounding[j];
+        double off = r->rounding[j];
         double own = w * sqrt(r->trial->mass_terms[j]);
-        double each = sqrt(
-            off * (1.0 + damping_over(r, w, fmax(r->trial->theta[j], off))));
+        double each = sqrt(off + damping_off(r, w, r->trial->theta[j], off));
 
         mass[0] += own * cabs(in->eta[j]);
         mass[1] += own * cabs(out->eta[j]);
         all[0] += cabs(in->eta[j]) * each;
         all[1] += cabs(out->eta[j]) * each;
-        if (j + 1 == r->num_rigid) {
+        if (j + 1 == r->num_rigid && apart) {
             rigid[0] = all[0];
             rigid[1] = all[1];
         }
@@ -312,7 +357,7 @@ void ritz_bounder_free(ritz_bounder *r)
     ritz_dense_free(&r->Q);
     for (int k = 0; k <= KINDS; k++)
         ritz_dense_free(&r->channel[k]);
-    RITZ_FREE(r->rates, r->vector_norm, r->sin2, r->GV, r->QV);
+    RITZ_FREE(r->rates, r->rounding, r->vector_norm, r->sin2, r->GV, r->QV);
     ritz_dense_free(&r->D);
     ritz_dense_free(&r->K4);
     RITZ_FREE(r->Z, r->responses, r->pivot, r->at);
@@ -331,6 +376,7 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
         r->rates[j] = rate_at(r, ritz_bounder_stiffness(r, j));
     RITZ_CHECK(take_forms(estimator, r));
     RITZ_CHECK(take_sines(r));
+    RITZ_CHECK(take_roundings(r));
     RITZ_CHECK(ritz_dense_mul_tn(X, &io->B, &XB));
     RITZ_CHECK(ritz_general_transpose(&XB, &r->channel[0]));
     RITZ_CHECK(ritz_dense_mul(&io->C, X, &r->channel[1]));

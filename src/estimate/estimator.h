@@ -237,6 +237,7 @@ typedef struct ritz_bounder {
     bool rayleigh; /* D = a M + b K; else the ratio zeta of all modes */
     double zeta, a, b;
     double *rates;                 /* damping of each trial mode */
+    double *rounding;              /* of each theta, in both models */
     int64_t size;                  /* columns of V = [R b_o c_o D_o K4_o] */
     ritz_dense V, E;               /* these, and A^-1 V */
     ritz_dense G, Q;               /* V'A^-1 V and V'A^-1 M A^-1 V */

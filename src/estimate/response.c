@@ -323,8 +323,9 @@ typedef struct channel_found {
     double part[RITZ_PARTS]; /* of which that consists */
     double error;            /* the largest that is known of the error */
     double least;            /* the largest |H| is at least this */
-    double coupled;          /* the largest known |H| over what could be */
-    double most;             /* the largest of that */
+    /* the largest |H| over what could be there is at least, and at most */
+    double coupled[2];
+    double most; /* the largest of what could be there */
 } channel_found;
 
 /* The whole answer. */
@@ -346,22 +347,24 @@ static void response_found_free(response_found *f)
 static void note_channel(const ritz_channel_bound *at, double hertz,
                          channel_found *c)
 {
-    double bound = 0.0;
+    double bound = 0.0, rest = 0.0;
 
     for (int k = 0; k < RITZ_PARTS; k++)
         bound += at->part[k];
     bound = isnan(bound) ? HUGE_VAL : bound;
+    rest = bound - at->part[RITZ_PART_ERROR];
     if (bound > c->bound) {
         c->bound = bound;
         c->hertz = hertz;
         memcpy(c->part, at->part, sizeof c->part);
     }
     c->error = fmax(c->error, at->part[RITZ_PART_ERROR]);
-    c->least =
-        fmax(c->least, at->response - (bound - at->part[RITZ_PART_ERROR]));
+    c->least = fmax(c->least, at->response - rest);
     c->most = fmax(c->most, at->most);
-    if (at->most > 0.0)
-        c->coupled = fmax(c->coupled, at->response / at->most);
+    if (!(at->most > 0.0))
+        return;
+    c->coupled[0] = fmax(c->coupled[0], (at->response - rest) / at->most);
+    c->coupled[1] = fmax(c->coupled[1], (at->response + rest) / at->most);
 }
 
 static void visit_points(ritz_bounder *r, int64_t count, const double *hertz,
@@ -375,6 +378,14 @@ static void visit_points(ritz_bounder *r, int64_t count, const double *hertz,
     }
 }
 
+/* Whether an input and an output have next to nothing to do with each other, as
+   far as is known. */
+static bool is_hardly_coupled(const channel_found *c)
+{
+    return c->coupled[0] <= RITZ_CHANNEL_COUPLED &&
+           c->coupled[1] <= RITZ_CHANNEL_WEAK;
+}
+
 /*
  * What a channel's bound is relative to: its own largest |H|, so that units do
  * not matter. A channel between an input and an output that have next to
@@ -386,7 +397,7 @@ static double unit_of(const response_found *f, const channel_found *c)
 {
     double largest = 0.0;
 
-    if (c->coupled > RITZ_CHANNEL_COUPLED)
+    if (!is_hardly_coupled(c))
         return c->least;
     for (int64_t k = 0; k < f->count; k++)
         largest = fmax(largest, f->channel[k].least);
@@ -401,12 +412,8 @@ static void weigh_channels(ritz_bounder *r, response_found *f)
     for (int64_t k = 0; k < f->count; k++) {
         const channel_found *c = &f->channel[k];
         double unit = unit_of(f, c);
-        double value = HUGE_VAL;
+        double value = c->bound > 0.0 ? c->bound / unit : 0.0;
 
-        if (unit > 0.0)
-            value = c->bound / unit;
-        else if (c->bound == 0.0)
-            value = 0.0;
         r->at[k].weight = unit > 0.0 ? 1.0 / unit : 0.0;
         if (value > f->value) {
             f->value = value;
@@ -539,10 +546,14 @@ static void say_where(const ritz_measuring *m, const response_found *f,
 {
     const ritz_io *io = &m->estimator->component->io;
 
-    (void)snprintf(where, RITZ_NAME_SIZE, "%.5g Hz, %.20s to %.20s",
-                   f->channel[f->worst].hertz,
-                   io->input[f->worst / io->num_outputs],
-                   io->output[f->worst % io->num_outputs]);
+    const channel_found *c = &f->channel[f->worst];
+    bool hardly = is_hardly_coupled(c);
+    int room = hardly ? 12 : 20; /* of each name */
+
+    (void)snprintf(where, RITZ_NAME_SIZE, "%.5g Hz, %.*s to %.*s%s", c->hertz,
+                   room, io->input[f->worst / io->num_outputs], room,
+                   io->output[f->worst % io->num_outputs],
+                   hardly ? ", hardly coupled" : "");
 }
 
 /* What can be said of a response. */

@@ -25,6 +25,9 @@ POINTS = {  # dofs that a signal may be of: components, grids
     "rotorAnsys": ("123", 115), "nas2cam outboard": ("123456", 26),
     "dual-spin rotor": ("123456", 79), "dual-spin stator": ("123456", 11)}
 LEFT_OUT = {"macneal", "tangential"}  # no response; too slow
+# Cases whose bound was too low: data set, signals, method, ratio, band
+FOUND = [("truss72", ["--input", "i0=8:2", "--output-at", "o0=3:2"], "irs",
+          0.03, 0, 30.863727)]  # a rigid motion is a mode by rounding
 COUPLED = 1e-6  # of what could be there: less has nothing to do with it
 PEAK = 1e-3  # of the largest |H|: a peak is not met better by the points
 ROUNDING = 1e-10  # of ritz-verify's own measurement
@@ -106,11 +109,10 @@ def worst_channel(full, rigid, model, reduced, num_rigid, asked):
     return (abs(H - H_r).max(0) / numpy.maximum(size, 1e-300)).max()
 
 
-def estimate(bin_, case, model, asked):
-    """The bound of a reduction that is drawn; None if there is none."""
+def estimate(bin_, case, model, method, asked):
+    """The bound of a reduction of some order; None if there is none."""
     zeta, low, high = asked
-    method, how, more = random.choice(
-        [m for m in methods.METHODS if m[0] not in LEFT_OUT])
+    method, how, more = method
     order = int(case["order"] * random.choice([0.5, 0.75, 1, 1.5]))
     basis, reduced = case["folder"] / "basis.h5", case["folder"] / "small.h5"
     columns = methods.make_basis(bin_, method, how, more, model, order,
@@ -145,13 +147,24 @@ def draw_band(hertz):
     return random.choice(RATIOS), low, high
 
 
-def compare(bin_, case):
+def draw(case):
+    """Signals, a method, and a ratio and a band."""
+    return (signals(case["name"]), random.choice(
+        [m for m in methods.METHODS if m[0] not in LEFT_OUT]),
+        draw_band(case["hertz"]))
+
+
+def found_before(case):
+    """The same of those that were too low once."""
+    return [(words, methods.some_methods([method])[0], asked)
+            for name, words, method, *asked in FOUND if name == case["name"]]
+
+
+def compare(bin_, case, words, method, asked):
     """One case; 1 if its bound is too low, None if there is none."""
     model = case["folder"] / "model.h5"
-    methods.run(bin_, "ritz-import", *case["bare"], *signals(case["name"]),
-                "-o", model)
-    asked = draw_band(case["hertz"])
-    made = estimate(bin_, case, model, asked)
+    methods.run(bin_, "ritz-import", *case["bare"], *words, "-o", model)
+    made = estimate(bin_, case, model, method, asked)
     if made is None:
         return None
     reduced, num_rigid, what, bound, where, cause = made
@@ -194,9 +207,10 @@ def main():
     for case in methods.cases(asked.bin, asked.only, most=400):
         if prepare(asked.bin, case) is None:
             continue
-        for _ in range(asked.cases):
+        for one in found_before(case) + [draw(case)
+                                         for _ in range(asked.cases)]:
             try:
-                found = compare(asked.bin, case)
+                found = compare(asked.bin, case, *one)
             except methods.Refused:  # drawn, so it may be nothing to reduce
                 continue
             count += found is not None
