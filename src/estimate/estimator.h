@@ -273,7 +273,7 @@ void ritz_bounder_take_input(ritz_bounder *r, int64_t input);
  * solved: its parts, and what is known; the input has been taken.
  */
 void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
-                     int64_t output, ritz_channel_bound *out);
+                     int64_t output, ritz_channel_bound *result);
 
 /** How far rounding moves H_r of a channel. */
 double ritz_rounding_of_pair(const ritz_bounder *r, double w, int64_t input,
@@ -329,7 +329,7 @@ void ritz_refinement_solve(const ritz_bounder *coarse, ritz_refinement *f,
 /** The same by a richer trial. */
 void ritz_refinement_bound(const ritz_bounder *coarse, const ritz_refinement *f,
                            double w, double h, int64_t input, int64_t output,
-                           ritz_channel_bound *out);
+                           ritz_channel_bound *result);
 
 void ritz_refinement_free(ritz_refinement *f);
 
