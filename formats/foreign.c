@@ -24,6 +24,9 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
     for (int k = 0; ritz_formats[k] && !file.format; k++)
         if (ritz_formats[k]->recognise(file.bytes, file.size))
             file.format = ritz_formats[k];
+    if (file.format && file.format->admit)
+        RITZ_CHECK(ritz_foreign_context(
+            &file, file.format->admit(file.bytes, file.size)));
     RITZ_MOVE(*out, file);
     return RITZ_OK;
 }

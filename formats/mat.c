@@ -188,6 +188,12 @@ static bool is_mat(const char *bytes, int64_t size)
     return find_level(bytes, size) != NULL;
 }
 
+static ritz_status admit_file(const char *bytes, int64_t size)
+{
+    return ritz_mat_is_hdf5(bytes, size) ? ritz_mat_admit_hdf5(bytes, size)
+                                         : RITZ_OK;
+}
+
 /* Values are read too: a matrix with NaN is listed as unusable. */
 static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
 {
@@ -217,6 +223,7 @@ const ritz_format ritz_format_mat = {
     .summary = "MAT files of MATLAB, levels 4, 5 and 7.3",
     .reference = "MathWorks2019",
     .recognise = is_mat,
+    .admit = admit_file,
     .list = list_file,
     .read = read_matrix,
 };

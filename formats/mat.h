@@ -58,6 +58,10 @@ typedef struct ritz_mat_list {
 int64_t ritz_mat_size(int type);
 double ritz_mat_value(const ritz_mat_values *values, int64_t k);
 
+/** @return RITZ_ERR_FORMAT if so many values of a file of @p bytes take more
+ * memory than deflate can stand for, and a GiB */
+ritz_status ritz_mat_fits(int64_t bytes, const char *name, int64_t count);
+
 /** Whether the next matrix is not wanted, so that its values need not be read
  * before it is added. */
 bool ritz_mat_passes(const ritz_mat_list *list);
@@ -75,6 +79,7 @@ ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
    they hold. */
 bool ritz_mat_is_level5(const char *bytes, int64_t size);
 bool ritz_mat_is_hdf5(const char *bytes, int64_t size);
+ritz_status ritz_mat_admit_hdf5(const char *bytes, int64_t size);
 ritz_status ritz_mat_read_level5(const char *bytes, int64_t size,
                                  ritz_mat_list *list);
 ritz_status ritz_mat_read_hdf5(const char *bytes, int64_t size,

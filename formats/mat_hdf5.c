@@ -8,14 +8,19 @@
  * are taken, deflate once: a file neither leads into others nor declares more
  * than it can hold.
  */
+#define _GNU_SOURCE /* NOLINT: declares memfd_create */
+
 #include "formats/mat.h"
 
 #include "base/alloc.h"
 #include "container/h5.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 enum {
     BLOCK = 512, /* where HDF5 begins */
@@ -53,6 +58,33 @@ bool ritz_mat_is_hdf5(const char *bytes, int64_t size)
 
     return size > BLOCK + 8 && memcmp(bytes, "MATLAB", 6) == 0 &&
            memcmp(bytes + BLOCK, mark, 8) == 0;
+}
+
+/* Write them to a file without a name. */
+static ritz_status store_bytes(int file, const char *bytes, int64_t size)
+{
+    for (ssize_t more = 0; size > 0; bytes += more, size -= more) {
+        more = write(file, bytes, (size_t)size);
+        RITZ_REFUSE_IF(more < 0 && errno != EINTR, RITZ_ERR_MEMORY,
+                       "no memory for a copy of the file: %s", strerror(errno));
+        more = more < 0 ? 0 : more;
+    }
+    return RITZ_OK;
+}
+
+/* What was read is shown, and not what the path names by now. */
+ritz_status ritz_mat_admit_hdf5(const char *bytes, int64_t size)
+{
+    const int file = memfd_create("mat", MFD_CLOEXEC);
+    ritz_status status = RITZ_OK;
+
+    RITZ_REFUSE_IF(file < 0, RITZ_ERR_MEMORY,
+                   "no memory for a copy of the file: %s", strerror(errno));
+    status = store_bytes(file, bytes, size);
+    if (status == RITZ_OK)
+        status = ritz_h5_admit(file);
+    close(file);
+    return status;
 }
 
 /* The bytes as a file that is open. */
@@ -177,11 +209,13 @@ static ritz_status read_part(hid_t set, const char *name, const char *part,
     return RITZ_OK;
 }
 
-static ritz_status read_numbers(hid_t set, const char *name, int64_t count,
-                                numbers *out)
+/* @param[in] bytes  of the file */
+static ritz_status read_numbers(hid_t set, const char *name, int64_t bytes,
+                                int64_t count, numbers *out)
 {
     bool real = kind_of(set) == 'r';
 
+    RITZ_CHECK(ritz_mat_fits(bytes, name, count));
     out->count = count;
     RITZ_CHECK(read_part(set, name, real ? NULL : "real", count, &out->re));
     return real ? RITZ_OK : read_part(set, name, "imag", count, &out->im);
@@ -202,8 +236,8 @@ static ritz_status read_vector(hid_t at, const char *name, int64_t bytes,
     RITZ_CHECK(take_shape(set, name, bytes, &shape));
     RITZ_REFUSE_IF(shape.rank > RITZ_H5_RANK, RITZ_ERR_FORMAT,
                    "'%s' is no list of numbers", name);
-    return read_numbers(set, name, (int64_t)ritz_h5_volume(&shape, INT64_MAX),
-                        out);
+    return read_numbers(set, name, bytes,
+                        (int64_t)ritz_h5_volume(&shape, INT64_MAX), out);
 }
 
 /* Values as they stand in memory now. */
@@ -292,7 +326,7 @@ static ritz_status add_set(hdf5_walk *w, hid_t set, const char *name)
     if (why || ritz_mat_passes(w->list))
         return ritz_mat_add_other(w->list, name, why);
     count = (int64_t)(shape.dims[0] * shape.dims[1]);
-    RITZ_CHECK(read_numbers(set, name, count, &value));
+    RITZ_CHECK(read_numbers(set, name, w->list->bytes, count, &value));
     return ritz_mat_add(w->list, name,
                         &(ritz_mat_entries){.nrow = (int64_t)shape.dims[1],
                                             .ncol = (int64_t)shape.dims[0],
@@ -310,7 +344,7 @@ static ritz_status add_group(hdf5_walk *w, hid_t object, const char *whole,
     group *g = NULL;
 
     RITZ_REFUSE_IF(H5Oget_info(object, &info) < 0, RITZ_ERR_FORMAT,
-                   "'%s' is damaged", whole);
+                   "'%s' is damaged", *whole ? whole : "/");
     for (int64_t k = 0; k < w->count; k++)
         if (w->group[k].at == info.addr)
             return ritz_mat_add_other(w->list, whole,

@@ -154,6 +154,21 @@ static void put_values(const ritz_mat_entries *e, ritz_triplets *t,
     }
 }
 
+ritz_status ritz_mat_fits(int64_t bytes, const char *name, int64_t count)
+{
+    enum { MEBI = 1 << 20, EACH = 32 }; /* row, column, value, and it as read */
+    const int64_t by_file = bytes / MEBI * RITZ_MAT_MOST_RATIO;
+    const int64_t most = by_file > 1024 ? by_file : 1024; /* MiB */
+
+    RITZ_REFUSE_IF(count / (MEBI / EACH) > most, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " values, for which the file of %" PRId64
+                   " bytes is given %" PRId64
+                   " MiB of memory, not enough: if most are zero, write it as "
+                   "a sparse matrix",
+                   name, count, bytes, most);
+    return RITZ_OK;
+}
+
 ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
                          const ritz_mat_entries *e)
 {
@@ -171,6 +186,7 @@ ritz_status ritz_mat_add(ritz_mat_list *list, const char *name,
                    "'%s', %" PRId64 " x %" PRId64
                    ", is far more than the file can fill",
                    name, e->nrow, e->ncol);
+    RITZ_CHECK(ritz_mat_fits(list->bytes, name, e->count));
     RITZ_CHECK(ritz_triplets_reserve(&t, e->count > 0 ? e->count : 1));
     RITZ_CHECK(find_places(name, e, &t));
     put_values(e, &t, why);

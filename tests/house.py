@@ -29,7 +29,7 @@ LEVELS = [
     ['cli'],
     ['print', 'claims'],
     ['chart'],
-    ['tools'],
+    ['tools', 'libexec'],
 ]
 LEVEL = {room: k for k, rooms in enumerate(LEVELS) for room in rooms}
 
@@ -70,7 +70,7 @@ def bare(text):
 
 def read_tree(root):
     files = {}
-    for top in ('include', 'src', 'formats', 'tools'):
+    for top in ('include', 'src', 'formats', 'tools', 'libexec'):
         for folder, _, names in os.walk(os.path.join(root, top)):
             for name in names:
                 if name.endswith(('.c', '.h')):

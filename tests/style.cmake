@@ -10,6 +10,7 @@ if(NOT CLANG_FORMAT OR NOT CLANG_TIDY OR NOT CMAKE_GENERATOR MATCHES Ninja)
 endif()
 set(quietly sh ${CMAKE_CURRENT_SOURCE_DIR}/quietly.sh)
 set(stamps "")
+set(seen "")
 
 # style_stamp(FOLDER FILE INPUTS COMMAND...)
 macro(style_stamp folder file inputs)
@@ -38,6 +39,10 @@ foreach(folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
             endif()
             cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${folder}
                 OUTPUT_VARIABLE name)
+            if(${file} IN_LIST seen)
+                continue() # a file of two programs is looked at once
+            endif()
+            list(APPEND seen ${file})
             style_stamp(tidy ${file}
                 "${PROJECT_SOURCE_DIR}/.clang-tidy;\
 ${binary}/CMakeFiles/${target}.dir/${name}.o"
@@ -58,7 +63,8 @@ endforeach()
 file(GLOB_RECURSE files CONFIGURE_DEPENDS
     ${PROJECT_SOURCE_DIR}/include/*.h ${PROJECT_SOURCE_DIR}/examples/*.[ch]
     ${PROJECT_SOURCE_DIR}/src/*.[ch] ${PROJECT_SOURCE_DIR}/formats/*.[ch]
-    ${PROJECT_SOURCE_DIR}/tools/*.[ch] ${PROJECT_SOURCE_DIR}/tests/*.[ch])
+    ${PROJECT_SOURCE_DIR}/tools/*.[ch] ${PROJECT_SOURCE_DIR}/libexec/*.c
+    ${PROJECT_SOURCE_DIR}/tests/*.[ch])
 foreach(file ${files})
     style_stamp(format ${file} ${PROJECT_SOURCE_DIR}/.clang-format
         ${CLANG_FORMAT} --dry-run -Werror ${file})

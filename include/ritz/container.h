@@ -35,6 +35,35 @@ typedef struct ritz_source {
  * twice it has the same bytes.
  */
 
+/*
+ * HDF5 trusts its files, and so does this library: a damaged or hostile one can
+ * end the program that reads it, lead HDF5 in circles, or have it ask for any
+ * amount of memory, before the library can check anything. Read files of
+ * strangers with a guard.
+ */
+
+/** What looks at a regular file before HDF5 opens it, by a descriptor. It may
+ * leave the place in the file changed. @return RITZ_OK, or why it is refused */
+typedef ritz_status (*ritz_guard)(int file);
+
+/**
+ * From now on each HDF5 file, container or MAT 7.3, is shown to @p guard before
+ * it is opened, and that same file is opened, whatever has its name by then.
+ * Of the whole process. The tools' guard has another process read it first
+ * (tools/cli/walk.h).
+ *
+ * @param[in] guard  NULL: none, as it is at the start
+ */
+void ritz_container_guard(ritz_guard guard);
+
+/**
+ * Open a container now, and read all of it from this open file: until
+ * ritz_container_release, the functions below that get this @p path do not open
+ * it again. One file for each thread; of no use beyond saving that.
+ */
+ritz_status ritz_container_keep(const char *path);
+void ritz_container_release(void);
+
 /* What every file says about how it was made. */
 typedef struct ritz_stamp {
     const char *command; /* that made it */
@@ -56,8 +85,9 @@ typedef struct ritz_summary {
 /* Models by the paths of their containers. */
 extern const ritz_source ritz_container_source;
 
-/** Whether a file is a container at all (HDF5 with a `ritz_kind`). */
-bool ritz_container_is(const char *path);
+/** Whether a regular file begins as containers do, that is as HDF5; it is not
+ * opened by HDF5, and may yet be damaged, or of somebody else. */
+bool ritz_container_seems(const char *path);
 
 ritz_status ritz_container_summary(const char *path, ritz_summary *out);
 void ritz_summary_free(ritz_summary *summary);

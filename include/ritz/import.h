@@ -1,7 +1,8 @@
 /*
  * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market,
  * MAT.
- * A format is recognised by content, never by name.
+ * A format is recognised by content, never by name. MAT 7.3 files are HDF5's,
+ * which trusts them: see ritz_container_guard.
  */
 #ifndef RITZ_IMPORT_H
 #define RITZ_IMPORT_H
@@ -65,6 +66,9 @@ typedef struct ritz_format {
     const char *reference; /* key in docs/references.bib */
     /** True if these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
+    /** Before anything is read, once: whether another library may have these
+     * bytes, as ritz_container_guard says; NULL: none gets them. */
+    ritz_status (*admit)(const char *bytes, int64_t size);
     /**
      * Append what the file holds, without its values where the format allows
      * that. @return RITZ_ERR_FORMAT naming line or byte

@@ -126,6 +126,28 @@ static void follow_links(const char *path, char out[PATH_MAX])
         ;
 }
 
+/*
+ * Whether a path leads to what a process has open, as /dev/stdout and /dev/fd/3
+ * do: a rename would not write to that, but put another file in the place of the
+ * one that it is, which whoever opened it would never see.
+ */
+static bool is_descriptor(const char *path)
+{
+    char at[PATH_MAX], folder[PATH_MAX], real[PATH_MAX];
+    int links = 0;
+
+    snprintf(at, sizeof at, "%s", path);
+    do {
+        const char *slash = strrchr(at, '/');
+
+        snprintf(folder, sizeof folder, "%.*s",
+                 slash ? (int)(slash - at) + 1 : 1, slash ? at : ".");
+        if (realpath(folder, real) && strncmp(real, "/proc/", 6) == 0)
+            return true;
+    } while (links++ < MOST_LINKS && follow_link(at));
+    return false;
+}
+
 static bool same_file(const struct stat *a, const struct stat *b)
 {
     return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
@@ -222,6 +244,18 @@ ritz_status ritz_draft_check(const char *path)
                        "this file is written twice: give each output a name "
                        "of its own");
     return RITZ_OK;
+}
+
+/* Standard output and error of the program, if these are regular files: what it
+   says would go to a file that has no name any more. */
+static bool is_spoken_to(const struct stat *file)
+{
+    struct stat there;
+
+    for (int k = STDOUT_FILENO; k <= STDERR_FILENO && held.active; k++)
+        if (fstat(k, &there) == 0 && same_file(file, &there))
+            return true;
+    return false;
 }
 
 /* --- drafts of writers that were killed ----------------------------------- */
@@ -359,9 +393,16 @@ ritz_status ritz_draft_new(const char *path, ritz_draft *out)
     place *at = NULL;
     char target[PATH_MAX];
 
+    RITZ_REFUSE_IF(
+        is_descriptor(path), RITZ_ERR_FILE,
+        "an open file, such as standard output: an output is written "
+        "under a name of its own");
     if (stat(path, &there) == 0) {
         RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
                        "not a regular file");
+        RITZ_REFUSE_IF(is_spoken_to(&there), RITZ_ERR_FILE,
+                       "standard output or error goes there already: an output "
+                       "is written under a name of its own");
         draft.mode = (int)(there.st_mode & 0777);
     } else {
         RITZ_REFUSE_IF(errno != ENOENT, RITZ_ERR_FILE, "cannot create '%s': %s",

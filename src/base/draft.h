@@ -42,7 +42,8 @@ typedef struct ritz_draft {
  * regular file stay, and all of them where the file system has no locks.
  *
  * @return RITZ_ERR_FILE if it cannot be created, or if @p path is a folder, a
- *         device or anything else that a rename must not replace;
+ *         device, a pipe, what a process has open (/dev/stdout), or anything
+ *         else that a rename must not replace;
  *         RITZ_ERR_ARGUMENT as ritz_draft_check
  */
 ritz_status ritz_draft_new(const char *path, ritz_draft *out);

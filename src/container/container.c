@@ -6,10 +6,11 @@
 
 #include <ritz/base.h>
 
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 enum { FORMAT = 1 };
 
@@ -128,12 +129,27 @@ DEFINE_KIND(response)
 DEFINE_KIND(simulation)
 DEFINE_KIND(rankings)
 
-bool ritz_container_is(const char *path)
+bool ritz_container_seems(const char *path)
 {
-    RITZ_OWN(hid_t) file = 0;
+    static const char mark[] = "\211HDF\r\n\032\n";
+    char begins[sizeof mark - 1] = "";
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    const bool read_all =
+        file >= 0 && pread(file, begins, sizeof begins, 0) == sizeof begins;
 
-    return ritz_h5_open(path, &file) == RITZ_OK &&
-           H5Aexists(file, "ritz_kind") > 0;
+    if (file >= 0)
+        close(file);
+    return read_all && memcmp(begins, mark, sizeof begins) == 0;
+}
+
+ritz_status ritz_container_keep(const char *path)
+{
+    return ritz_context(ritz_h5_keep(path), path);
+}
+
+void ritz_container_release(void)
+{
+    ritz_h5_release();
 }
 
 /* Number of members of the group `KG`, 0 if there is none. */

@@ -4,9 +4,14 @@
 #include "base/alloc.h"
 #include "base/draft.h"
 #include "base/text.h"
+#include "container/descriptor.h"
+
+#include <ritz/container.h>
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -35,20 +40,109 @@ ritz_status ritz_h5_begin(void)
     return RITZ_OK;
 }
 
-ritz_status ritz_h5_open(const char *path, hid_t *out)
-{
-    struct stat there;
+/* --- files that are read ---------------------------------------------------- */
 
-    RITZ_CHECK(ritz_h5_begin());
-    RITZ_REFUSE_IF(stat(path, &there) != 0 || access(path, R_OK) != 0,
-                   RITZ_ERR_FILE, "%s", strerror(errno));
+static _Atomic(ritz_guard) asked;
+
+/* Bytes of memory that were filled since a file was opened. */
+static _Thread_local hsize_t taken;
+
+/* A file that is open for whoever asks for its path next. */
+static _Thread_local struct {
+    char *path;
+    hid_t file;
+} kept;
+
+void ritz_container_guard(ritz_guard guard)
+{
+    atomic_store(&asked, guard);
+}
+
+ritz_status ritz_h5_admit(int file)
+{
+    const ritz_guard guard = atomic_load(&asked);
+
+    return guard ? guard(file) : RITZ_OK;
+}
+
+/* What the guard has looked at is opened, whatever has the path by now. */
+static ritz_status open_admitted(int file, hid_t *out)
+{
+    struct stat there = {0};
+
+    RITZ_REFUSE_IF(fstat(file, &there) != 0, RITZ_ERR_FILE, "%s",
+                   strerror(errno));
     RITZ_REFUSE_IF(!S_ISREG(there.st_mode), RITZ_ERR_FILE,
                    "not a regular file");
-    unseen[0] = '\0';
-    *out = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    RITZ_CHECK(ritz_h5_admit(file));
+    *out = ritz_descriptor_open(file);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FORMAT, "not an HDF5 file, or damaged");
+    return RITZ_OK;
+}
+
+ritz_status ritz_h5_open(const char *path, hid_t *out)
+{
+    ritz_status status = RITZ_OK;
+    int file = -1;
+
+    RITZ_CHECK(ritz_h5_begin());
+    unseen[0] = '\0';
+    taken = 0;
+    if (kept.path && strcmp(kept.path, path) == 0) {
+        RITZ_REFUSE_IF(H5Iinc_ref(kept.file) < 0, RITZ_ERR_FILE,
+                       "cannot be opened again");
+        *out = kept.file;
+        return RITZ_OK;
+    }
+    /* a pipe is opened without a wait, to be refused */
+    file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    RITZ_REFUSE_IF(file < 0, RITZ_ERR_FILE, "%s", strerror(errno));
+    status = open_admitted(file, out);
+    close(file);
+    RITZ_CHECK(status);
     return ritz_draft_protect(path);
 }
+
+/* Eight bytes stand for one that is stored at most; names, which take 64, are
+   few. */
+ritz_status ritz_h5_take(hid_t at, const char *name, hsize_t bytes, bool read)
+{
+    enum { WIDEST = 8, MEBI = 1 << 20, SPARE = 64 };
+    RITZ_OWN(hid_t) file = H5Iget_file_id(at);
+    hsize_t present = 0, most = 0;
+
+    H5Fget_filesize(file, &present);
+    most = WIDEST * present + (hsize_t)SPARE * MEBI;
+    RITZ_REFUSE_IF(bytes > most || taken > most - bytes, RITZ_ERR_FORMAT,
+                   "'%s' takes %" PRIuHSIZE " MiB of memory, in all more than "
+                   "a file of %" PRIuHSIZE " bytes may",
+                   name, bytes / MEBI, present);
+    taken += read ? bytes : 0;
+    return RITZ_OK;
+}
+
+ritz_status ritz_h5_keep(const char *path)
+{
+    RITZ_OWN(hid_t) file = 0;
+    RITZ_OWN_ARRAY char *copy = NULL;
+
+    ritz_h5_release();
+    RITZ_CHECK(ritz_h5_open(path, &file));
+    RITZ_CHECK_COPY(copy, path, (int64_t)strlen(path) + 1);
+    RITZ_MOVE(kept.path, copy);
+    RITZ_MOVE(kept.file, file);
+    return RITZ_OK;
+}
+
+void ritz_h5_release(void)
+{
+    if (kept.file > 0)
+        ritz_h5_close(kept.file);
+    free(kept.path);
+    memset(&kept, 0, sizeof kept);
+}
+
+/* --- files that are written, groups ----------------------------------------- */
 
 /* Of more than 8 attributes HDF5 would move some to a heap, which has no
    checksum of its own, so the limit is raised. */
@@ -305,7 +399,7 @@ ritz_status ritz_h5_match(const char *name, hid_t on_file, hid_t type,
                    name);
     *memory = H5Tcopy(on_file); /* its character set is not converted */
     RITZ_REFUSE_IF(H5Tset_size(*memory, H5Tget_size(type)) < 0 ||
-                       H5Tset_strpad(*memory, H5T_STR_NULLTERM) < 0,
+                       H5Tset_strpad(*memory, H5Tget_strpad(type)) < 0,
                    RITZ_ERR_MEMORY, "no memory for '%s'", name);
     return RITZ_OK;
 }

@@ -47,8 +47,24 @@ hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most);
  * @return RITZ_ERR_MEMORY if it does not start */
 [[nodiscard]] ritz_status ritz_h5_begin(void);
 
-/** Open to read; begins HDF5. */
+/** Ask the guard of ritz_container_guard, if there is one, of an open file. */
+ritz_status ritz_h5_admit(int file);
+
+/** Open to read what the guard admits; begins HDF5. The file of
+ * ritz_container_keep is open already. */
 ritz_status ritz_h5_open(const char *path, hid_t *out);
+
+/**
+ * Count bytes of memory that values of an open file take, once they are read.
+ *
+ * @return RITZ_ERR_FORMAT if all so far take far more than a file of its size
+ *         holds, as many links to one data set do, or letters of texts
+ */
+ritz_status ritz_h5_take(hid_t at, const char *name, hsize_t bytes, bool read);
+
+/** Keep a file open, for each ritz_h5_open of that path until the release. */
+ritz_status ritz_h5_keep(const char *path);
+void ritz_h5_release(void);
 
 /** Create or empty a file, to write; begins HDF5. One at a time, a thread. */
 ritz_status ritz_h5_create(const char *path, hid_t *out);

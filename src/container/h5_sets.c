@@ -198,6 +198,18 @@ static bool is_borne_out(hid_t set, hid_t plan, const ritz_h5_shape *shape)
            is_whole(set, shape, &chunk);
 }
 
+/* Bytes of memory for its values: numbers are widened, names have room. */
+static hsize_t measure_values(hid_t set, const ritz_h5_shape *shape)
+{
+    RITZ_OWN(hid_t) type = H5Dget_type(set);
+    const hsize_t size = H5Tget_size(type);
+    const hsize_t least =
+        H5Tget_class(type) == H5T_STRING ? RITZ_NAME_SIZE : sizeof(double);
+
+    return ritz_h5_volume(shape, INT64_MAX / RITZ_NAME_SIZE) *
+           (size > least ? size : least);
+}
+
 /* Open a data set of @p rank, once the file holds as much as it declares. */
 static ritz_status open_set(hid_t at, const char *name, int rank,
                             ritz_h5_shape *shape, hid_t *out)
@@ -220,6 +232,7 @@ static ritz_status open_set(hid_t at, const char *name, int rank,
                    "'%s' is compressed, or lies in another file", name);
     RITZ_REFUSE_IF(!is_borne_out(set, plan, shape), RITZ_ERR_FORMAT,
                    "'%s' declares more values than the file holds", name);
+    RITZ_CHECK(ritz_h5_take(set, name, measure_values(set, shape), false));
     RITZ_MOVE(*out, set);
     return RITZ_OK;
 }
@@ -354,6 +367,7 @@ ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
     RITZ_CHECK(open_due(at, name, &shape, &set));
     on_file = H5Dget_type(set);
     RITZ_CHECK(ritz_h5_match(name, on_file, type, &memory));
+    RITZ_CHECK(ritz_h5_take(set, name, measure_values(set, &shape), true));
     if (ritz_h5_volume(&shape, 1) > 0)
         result = H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
     RITZ_REFUSE_IF(result < 0, RITZ_ERR_FORMAT, "'%s' is damaged", name);
@@ -471,6 +485,7 @@ ritz_status ritz_h5_read_dense(hid_t at, const char *name, int64_t nrow,
                    name, n, m, nrow, ncol);
     on_file = H5Dget_type(set);
     RITZ_CHECK(ritz_h5_match(name, on_file, H5T_IEEE_F64LE, &memory));
+    RITZ_CHECK(ritz_h5_take(set, name, measure_values(set, &shape), true));
     RITZ_CHECK(ritz_dense_new(nrow, ncol, &A));
     status = move_pieces(set, true, &A);
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FORMAT, "'%s' is damaged",
@@ -631,6 +646,9 @@ ritz_status ritz_h5_get_texts(hid_t at, const char *name, ritz_texts *out)
     RITZ_CHECK(measure_texts(at, name, &count, &size));
     RITZ_CHECK_NEW(block, count * (int64_t)size);
     type = ritz_h5_string(size);
+    /* the longest may fill its room, and have no NUL */
+    RITZ_REFUSE_IF(H5Tset_strpad(type, H5T_STR_NULLPAD) < 0, RITZ_ERR_MEMORY,
+                   "no memory for '%s'", name);
     if (ritz_h5_has_attribute(at, name))
         RITZ_CHECK(ritz_h5_get(at, name, type, count, block));
     else

@@ -37,6 +37,16 @@ works 'response: |H| is that of a free rod' awk 'NR == 2 {
     d = $2 * w * sin(200 * w) / cos(200 * w) - 1
     exit !(d * d < 1e-6) }' response.txt
 
+# the tools find the process that reads HDF5 files first, wherever they are
+"$bin/ritz-import" -q --stiffness "$data/chain/chain.K.mtx" \
+    --mass "$data/chain/chain.M.mtx" --dofs "$data/chain/chain.dofs" -o chain.h5
+works 'an installed tool reads a container' there/bin/ritz-info chain.h5
+cp -r there moved
+works 'and does where it was moved to' moved/bin/ritz-info chain.h5
+rm -r moved/libexec
+expect 1 'ritz-walk'"'"', which a tool is installed with, is not there' \
+    moved/bin/ritz-info chain.h5
+
 works 'CMake finds ritz::ritz' cmake -S "$here" -B cmake \
     -DCMAKE_PREFIX_PATH="$dir/there"
 works 'and builds the examples' cmake --build cmake

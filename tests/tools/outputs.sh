@@ -126,6 +126,27 @@ expect 0 '' ritz-reduce -q chain.h5 basis.h5 -o link.h5
 works '  a link to nothing yet stays a link' test -L link.h5
 works '  and what it names is made' test -s made.h5
 
+# --- what is no place for a file --------------------------------------------------
+
+mkfifo fifo
+for name in /dev/stdout /dev/stderr /dev/fd/1 /proc/self/fd/1; do
+    expect 1 'an open file, such as standard output' \
+        ritz-reduce -q chain.h5 basis.h5 -o "$name"
+    expect 1 'an open file, such as standard output' sh -c \
+        "ritz-reduce -q chain.h5 basis.h5 -o $name >plain"
+done
+ln -s /dev/stdout spoken
+expect 1 'an open file, such as standard output' \
+    ritz-rank -q small.h5 --table spoken
+for name in fifo /dev/null /dev/full; do
+    expect 1 'not a regular file' \
+        ritz-reduce -q chain.h5 basis.h5 -o "$name"
+done
+works '  fifo is a pipe yet' test -p fifo
+expect 1 'standard output or error goes there already' sh -c \
+    'ritz-reduce chain.h5 basis.h5 -o plain >plain'
+expect 0 '' sh -c 'ritz-info -q small.h5 --record /dev/stdout | grep -q tool'
+
 ls -A | grep -F .part >log && report no 'no leftovers' ||
     report yes 'no leftovers'
 echo "1..$count"

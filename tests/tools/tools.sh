@@ -449,22 +449,27 @@ END
 done
 
 # Told to stop while it writes: tried until the signal meets a draft.
-works 'a tool that is stopped while it writes leaves no file' \
-    /usr/bin/python3 -s - <<'END'
+for number in TERM XCPU PIPE ABRT; do
+    works "a tool that SIG$number ends while it writes leaves no file" \
+        sh -c \
+        'ulimit -c 0; exec /usr/bin/python3 -s - "$1"' - "SIG$number" <<'END'
 import glob, signal, subprocess, sys
+number = signal.Signals[sys.argv[1]]
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
 for attempt in range(50):
     run = subprocess.Popen(["ritz-import", "-q", "--stiffness", "big.k.mtx",
                             "--mass", "big.m.mtx", "--dofs", "big.dofs",
                             "-o", "big.out"])
     while run.poll() is None and not glob.glob("big.out.*.part"):
         pass
-    run.send_signal(signal.SIGTERM)
-    if run.wait(30) == -signal.SIGTERM:
+    run.send_signal(number)
+    if run.wait(30) == -number:
         break
 left = glob.glob("big.out*")
-sys.exit(0 if run.returncode == -signal.SIGTERM and not left
+sys.exit(0 if run.returncode == -number and not left
          else f"ended with {run.returncode}, left {left}")
 END
+done
 
 # Killed, it cannot remove its draft; the next run does, and no other's.
 works 'a killed run leaves a draft, which the next run removes' \

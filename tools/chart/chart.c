@@ -72,7 +72,7 @@ static ritz_status read_file(cli_run *run, const char *path, int holds,
     const char *noun = NULL;
 
     file->path = path;
-    if (ritz_container_is(path)) {
+    if (ritz_container_seems(path)) {
         RITZ_CHECK(model_peek(path, &kind, &noun));
         file->holds = (int)kind;
     }

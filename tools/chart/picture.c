@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/draft.h"
 #include "base/text.h"
+#include "cli/child.h"
 
 #include <ritz/base.h>
 
@@ -14,12 +15,8 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 
 enum {
-    NO_PROGRAM = 127,
     TIP_SIZE = 1000, /* a label of gnuplot's has 1024 bytes at most */
     PIECE = 65536,   /* what a pipe holds */
 };
@@ -278,28 +275,16 @@ static ritz_status write_script(picture *p, const char *template,
     return RITZ_OK;
 }
 
-/* In the child: gnuplot ends with the tool, however that ends. What it writes
-   comes through a pipe: where there is no such call it ends at its next
-   write. */
-static void follow_parent(pid_t parent)
+/* gnuplot ends with the tool, however that ends. What it writes comes through a
+   pipe: where the system cannot do so it ends at its next write. */
+static void become_gnuplot(const int ends[2], char *const argv[])
 {
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
-    signal(SIGPIPE, SIG_DFL);
-    if (getppid() != parent)
-        _exit(NO_PROGRAM);
-}
-
-static void become_gnuplot(pid_t parent, const int ends[2], char *const argv[])
-{
-    follow_parent(parent);
     dup2(ends[1], STDOUT_FILENO);
     for (int k = 0; k < 2; k++)
         if (ends[k] != STDOUT_FILENO) /* if the tool itself has none */
             close(ends[k]);
     execvp(argv[0], argv);
-    _exit(NO_PROGRAM);
+    _exit(CHILD_NO_PROGRAM);
 }
 
 static ritz_status read_pipe(int from, cli_table *out)
@@ -322,16 +307,15 @@ static ritz_status read_pipe(int from, cli_table *out)
 static ritz_status collect_gnuplot(char *const argv[], cli_table *out,
                                    int *outcome)
 {
-    const pid_t parent = getpid();
     ritz_status status = RITZ_OK;
     int ends[2] = {-1, -1};
     pid_t child = -1;
 
     RITZ_REFUSE_IF(pipe(ends) != 0, RITZ_ERR_FILE, "cannot start gnuplot: %s",
                    strerror(errno));
-    child = fork();
+    child = child_start(SIGKILL);
     if (child == 0)
-        become_gnuplot(parent, ends, argv);
+        become_gnuplot(ends, argv);
     if (child < 0)
         status = ritz_fail(RITZ_ERR_FILE, "cannot start gnuplot: %s",
                            strerror(errno));
@@ -339,8 +323,8 @@ static ritz_status collect_gnuplot(char *const argv[], cli_table *out,
     if (child > 0)
         status = read_pipe(ends[0], out);
     close(ends[0]);
-    while (child > 0 && waitpid(child, outcome, 0) < 0 && errno == EINTR)
-        ;
+    if (child > 0)
+        (void)child_wait(child, outcome);
     return status;
 }
 
@@ -363,7 +347,8 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     snprintf(file, sizeof file, "%s%s", *script == '/' ? "" : "./", script);
     RITZ_CHECK(collect_gnuplot(argv, out, &outcome));
     RITZ_REFUSE_IF(
-        WIFEXITED(outcome) && WEXITSTATUS(outcome) == NO_PROGRAM, RITZ_ERR_FILE,
+        WIFEXITED(outcome) && WEXITSTATUS(outcome) == CHILD_NO_PROGRAM,
+        RITZ_ERR_FILE,
         "gnuplot is not installed: '%s' is there to be drawn by it", shown);
     RITZ_REFUSE_IF(!WIFEXITED(outcome) || WEXITSTATUS(outcome) != 0,
                    RITZ_ERR_FILE, "gnuplot could not draw '%s'", shown);

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/text.h"
+#include "cli/child.h"
 #include "import/import.h"
 
 #include <ritz/base.h>
@@ -12,9 +13,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -129,22 +127,17 @@ static ritz_status need_file(claims_state *state, const claims_line *line)
 
 /* In the child: the tool with --json, its words to the answer. It ends with
    this program, however that ends. */
-static _Noreturn void become(const claims_state *state, pid_t parent,
-                             const char *tool, char **argv)
+static _Noreturn void become(const claims_state *state, const char *tool,
+                             char **argv)
 {
     int out = -1;
 
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-#endif
-    if (getppid() != parent)
-        _exit(127);
     if (chdir(state->folder) == 0)
         out = open(answer_name, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     if (out >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
         dup2(out, STDERR_FILENO) >= 0)
         execv(tool, argv);
-    _exit(127);
+    _exit(CHILD_NO_PROGRAM);
 }
 
 /* The JSON object that the tool printed, after any warnings. */
@@ -172,7 +165,6 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
     char tool[2 * PATH_MAX];
     char *argv[CLAIMS_MOST_WORDS + 2] = {NULL};
     static char json[] = "--json";
-    const pid_t parent = getpid();
     int outcome = 0;
     pid_t child = -1;
 
@@ -189,13 +181,12 @@ static ritz_status try_tool(claims_state *state, const claims_line *line)
     json_decref(state->answer);
     state->answer = NULL;
     fflush(stdout);
-    child = fork();
+    child = child_start(SIGTERM);
     if (child == 0)
-        become(state, parent, tool, argv);
+        become(state, tool, argv);
     RITZ_REFUSE_IF(child < 0, RITZ_ERR_FILE, "cannot start '%.40s': %s",
                    line->word[1], strerror(errno));
-    while (waitpid(child, &outcome, 0) < 0 && errno == EINTR)
-        ;
+    (void)child_wait(child, &outcome);
     state->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
     return read_answer(state);
 }

@@ -257,7 +257,8 @@ void cli_record_cause(cli_run *run, const char *name, const char *cause);
 ritz_status cli_record_line(cli_run *run, json_t *line);
 
 /**
- * From now on SIGINT, SIGTERM and SIGHUP remove unfinished files first, and
+ * From now on signals that end the program remove unfinished files first, HDF5
+ * files are read by another process before HDF5 opens them (cli/walk.h), and
  * steps of the library are shown as one line if standard error is a terminal.
  * Steps that will take more than ten minutes are a warning, as soon as the
  * first ones tell.

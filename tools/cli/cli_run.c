@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "base/draft.h"
 #include "base/text.h"
+#include "cli/walk.h"
 
 #include <cblas.h>
 
@@ -49,17 +50,27 @@ static void end_program(int number)
     raise(number);
 }
 
+/* All that end a program, by others or by a defect of its own or of a library:
+   the handler has a stack of its own, as that may be what is at its end. What is
+   ignored, as nohup leaves it, or has a handler already, stays so. */
 static void watch_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    static const int numbers[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGXCPU,
+                                  SIGPIPE,   SIGALRM, SIGUSR1, SIGUSR2, SIGPROF,
+                                  SIGVTALRM, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,
+                                  SIGILL,    SIGSYS,  SIGTRAP};
+    static char room[1 << 16];
+    const stack_t other = {.ss_sp = room, .ss_size = sizeof room};
     struct sigaction before;
     struct sigaction action = {.sa_handler = end_program};
 
     sigemptyset(&action.sa_mask);
+    if (sigaltstack(&other, NULL) == 0)
+        action.sa_flags = SA_ONSTACK;
     signal(SIGXFSZ, SIG_IGN); /* a write past a limit fails, and is reported */
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         if (sigaction(numbers[k], NULL, &before) == 0 &&
-            before.sa_handler != SIG_IGN) /* as nohup leaves it */
+            before.sa_handler == SIG_DFL)
             sigaction(numbers[k], &action, NULL);
 }
 
@@ -196,6 +207,7 @@ void cli_prepare(void)
 void cli_watch(cli_run *run)
 {
     watched = run;
+    ritz_container_guard(walk_file);
     atexit(end_early);
     on_terminal = !run->quiet && isatty(STDERR_FILENO);
     watch_signals();

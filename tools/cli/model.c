@@ -111,13 +111,13 @@ ritz_status model_peek(const char *path, model_kind *kind, const char **noun)
     return RITZ_OK;
 }
 
-ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
+/* Of the file that is kept open. */
+static ritz_status read_kept(const char *path, int wanted, model *out)
 {
     RITZ_OWN(ritz_summary) summary = {0};
     char list[160];
     int k = 0;
 
-    RITZ_CHECK(cli_input(run, path));
     RITZ_CHECK(ritz_container_summary(path, &summary));
     k = find_kind(&summary);
     model_nouns(wanted, list, sizeof list);
@@ -126,7 +126,18 @@ ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
     RITZ_REFUSE_IF(!(wanted & (int)kinds[k].kind), RITZ_ERR_FORMAT,
                    "'%s' holds %s, not %s", path, kinds[k].noun, list);
     out->kind = kinds[k].kind;
-    RITZ_CHECK(kinds[k].read(path, out));
+    return kinds[k].read(path, out);
+}
+
+ritz_status model_read(cli_run *run, const char *path, int wanted, model *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(cli_input(run, path));
+    RITZ_CHECK(ritz_container_keep(path));
+    status = read_kept(path, wanted, out);
+    ritz_container_release();
+    RITZ_CHECK(status);
     if (out->kind == MODEL_COMPONENT &&
         out->component.asymmetry > MODEL_ROUNDING)
         cli_warn(run,

@@ -100,7 +100,7 @@ static ritz_status read_full(cli_run *run, const char *path,
     model_kind kind = MODEL_ANY;
     const char *noun = NULL;
 
-    if (!space && ritz_container_is(path)) {
+    if (!space && ritz_container_seems(path)) {
         RITZ_CHECK(model_peek(path, &kind, &noun));
         if (kind == MODEL_STATES)
             return refuse_space(path, method);

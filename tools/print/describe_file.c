@@ -214,6 +214,6 @@ static ritz_status describe_foreign(cli_run *run, const char *path,
 ritz_status describe_file(cli_run *run, const char *path, bool members,
                           bool directory)
 {
-    return ritz_container_is(path) ? describe_container(run, path, members)
+    return ritz_container_seems(path) ? describe_container(run, path, members)
                                    : describe_foreign(run, path, directory);
 }

@@ -522,7 +522,7 @@ static ritz_status fit_input(fit_run *f, ritz_scene *scene)
 {
     const char *path = f->run->operand[0];
     const fit_options *given = f->given;
-    const bool component = ritz_container_is(path);
+    const bool component = ritz_container_seems(path);
     RITZ_OWN(ritz_fitter) *fitter = NULL;
     RITZ_OWN(model) full = {0};
 

@@ -1,5 +1,6 @@
 #include "testing.h"
 
+#include "container/h5.h"
 #include "samples.h"
 
 #include <ritz/container.h>
@@ -7,6 +8,9 @@
 #include <hdf5.h>
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 enum { SEEDS = 600, CUTS = 60, MOST = 1 << 18 };
 
@@ -310,6 +314,124 @@ static void a_member_that_is_a_link_is_not_absent(void **)
     }
 }
 
+static void store_letters(hid_t set, hsize_t count)
+{
+    char *letters = malloc(count);
+
+    assert_non_null(letters);
+    memset(letters, 'a', count);
+    assert_true(
+        H5Dwrite(set, H5T_C_S1, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters) >= 0);
+    free(letters);
+}
+
+/* A name of one letter takes 64 bytes of memory: 128 MB of a file of 2 MB. */
+static void texts_are_limited_in_memory(void **)
+{
+    const hsize_t count = 2000000;
+    ritz_component none = {0};
+    hid_t space = H5Screate_simple(1, &count, NULL);
+    hid_t file = 0, set = 0;
+
+    assert_ok(sample_kinds[0].make(path, &stamp));
+    file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(H5Ldelete(file, "inputs/names", H5P_DEFAULT) >= 0);
+    set = H5Dcreate2(file, "inputs/names", H5T_C_S1, space, H5P_DEFAULT,
+                     H5P_DEFAULT, H5P_DEFAULT);
+    assert_true(set >= 0);
+    store_letters(set, count);
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Fclose(file);
+    assert_fails(ritz_container_read_component(path, &none), RITZ_ERR_FORMAT,
+                 "'names' takes 122 MiB of memory, in all more than a file of");
+}
+
+/* As many links to one data set do, for which it is read each time: 8 times 8
+   MB and 64 MiB are 16 times. */
+static void a_file_is_limited_in_memory(void **)
+{
+    enum { COUNT = 1000000, TIMES = 15 };
+    const ritz_h5_shape shape = ritz_h5_vector(COUNT);
+    const hsize_t count = COUNT;
+    double *values = calloc(COUNT, sizeof *values);
+    hid_t space = H5Screate_simple(1, &count, NULL);
+    hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t set = H5Dcreate2(file, "x", H5T_IEEE_F64LE, space, H5P_DEFAULT,
+                           H5P_DEFAULT, H5P_DEFAULT);
+
+    assert_non_null(values);
+    assert_true(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                         values) >= 0);
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Fclose(file);
+    for (int round = 0; round < 2; round++) { /* opened again, from the start */
+        assert_ok(ritz_h5_open(path, &file));
+        for (int k = 0; k < TIMES; k++)
+            assert_ok(ritz_h5_read(file, "x", H5T_IEEE_F64LE, shape, values));
+        H5Fclose(file);
+    }
+    assert_ok(ritz_h5_open(path, &file));
+    for (int k = 0; k <= TIMES; k++)
+        assert_ok(ritz_h5_read(file, "x", H5T_IEEE_F64LE, shape, values));
+    assert_fails(ritz_h5_read(file, "x", H5T_IEEE_F64LE, shape, values),
+                 RITZ_ERR_FORMAT, "of memory, in all more than a file of");
+    H5Fclose(file);
+    free(values);
+}
+
+/* What a guard refuses is not opened, and what it admits is what is read, though
+   another file has its name by then. */
+static int64_t num_guarded;
+static bool refusing;
+
+static ritz_status guard_file(int file)
+{
+    char begins[8] = "";
+
+    num_guarded++;
+    assert_int_equal(pread(file, begins, sizeof begins, 0), sizeof begins);
+    assert_memory_equal(begins, "\211HDF\r\n\032\n", sizeof begins);
+    if (!refusing) /* meanwhile it is replaced */
+        assert_int_equal(rename(again, path), 0);
+    RITZ_REFUSE_IF(refusing, RITZ_ERR_FORMAT, "not by this guard");
+    return RITZ_OK;
+}
+
+static void a_guard_sees_what_is_read(void **)
+{
+    ritz_summary summary = {0};
+
+    ritz_container_guard(guard_file);
+    for (int k = 0; k < 2; k++) {
+        refusing = k > 0;
+        assert_ok(sample_kinds[1].make(path, &stamp));
+        assert_ok(sample_kinds[2].make(again, &stamp));
+        num_guarded = 0;
+        if (refusing) {
+            assert_fails(ritz_container_summary(path, &summary),
+                         RITZ_ERR_FORMAT, "not by this guard");
+            assert_fails(ritz_container_keep(path), RITZ_ERR_FORMAT,
+                         "not by this guard");
+            continue;
+        }
+        assert_ok(ritz_container_keep(path));
+        assert_ok(ritz_container_summary(path, &summary));
+        assert_string_equal(summary.kind, sample_kinds[1].name);
+        assert_int_equal(num_guarded, 1);
+        ritz_container_release();
+        ritz_summary_free(&summary);
+        refusing = true; /* it would be another file now */
+        assert_fails(ritz_container_summary(path, &summary), RITZ_ERR_FORMAT,
+                     "not by this guard");
+    }
+    ritz_container_guard(NULL);
+    assert_ok(ritz_container_summary(path, &summary));
+    assert_string_equal(summary.kind, sample_kinds[1].name);
+    ritz_summary_free(&summary);
+}
+
 static void other_files_are_refused(void **)
 {
     ritz_component none = {0};
@@ -319,17 +441,17 @@ static void other_files_are_refused(void **)
 
     assert_fails(ritz_container_read_component("nowhere", &none), RITZ_ERR_FILE,
                  "nowhere: No such file");
-    assert_false(ritz_container_is("nowhere"));
+    assert_false(ritz_container_seems("nowhere"));
     assert_fails(ritz_container_read_component("/dev/null", &none),
                  RITZ_ERR_FILE, "/dev/null: not a regular file");
-    assert_false(ritz_container_is("/dev/null"));
+    assert_false(ritz_container_seems("/dev/null"));
     store((const unsigned char *)"text", 4);
-    assert_false(ritz_container_is(path));
+    assert_false(ritz_container_seems(path));
     assert_fails(ritz_container_read_component(path, &none), RITZ_ERR_FORMAT,
                  "not an HDF5 file");
     file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     H5Fclose(file);
-    assert_false(ritz_container_is(path));
+    assert_true(ritz_container_seems(path)); /* until it is opened */
     assert_fails(ritz_container_summary(path, &summary), RITZ_ERR_FORMAT,
                  "no container");
     assert_ok(sample_kinds[1].make(path, &stamp));
@@ -366,6 +488,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_file_cut_short_is_refused),
     cmocka_unit_test(a_small_file_cut_at_any_byte_is_refused),
     cmocka_unit_test(what_does_not_fit_is_refused_with_its_sentence),
+    cmocka_unit_test(texts_are_limited_in_memory),
+    cmocka_unit_test(a_file_is_limited_in_memory),
+    cmocka_unit_test(a_guard_sees_what_is_read),
     cmocka_unit_test(other_files_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

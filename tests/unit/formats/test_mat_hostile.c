@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 /* A file of HDF5 1.8 behind a block of 512 bytes, as MATLAB's are. */
 static hid_t begin(const char *path)
@@ -183,11 +184,47 @@ static void a_chunk_is_limited_in_bytes(void **state)
     assert_refused(path, "'A' declares more than the file holds");
 }
 
+/* Values of a byte take 32 in memory: these zeros, 36 million in 36 kB of the
+   file, more than a GiB. */
+static void values_are_limited_as_they_are_in_memory(void **state)
+{
+    enum { CHUNKS = 36, WIDE = 1000000, ROOM = 4096 };
+    const char *path = folder_path("wide.mat");
+    const hsize_t dims[] = {1, (hsize_t)CHUNKS * WIDE}, chunk[] = {1, WIDE};
+    hid_t file = begin(path);
+    hid_t space = H5Screate_simple(2, dims, NULL);
+    hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+    hid_t set = -1;
+    unsigned char *zeros = calloc(WIDE, 1);
+    unsigned char packed[ROOM];
+    uLongf size = ROOM;
+
+    (void)state;
+    assert_non_null(zeros);
+    assert_int_equal(compress2(packed, &size, zeros, WIDE, 9), Z_OK);
+    assert_true(H5Pset_chunk(plan, 2, chunk) >= 0);
+    assert_true(H5Pset_deflate(plan, 9) >= 0);
+    set = H5Dcreate2(file, "A", H5T_STD_I8LE, space, H5P_DEFAULT, plan,
+                     H5P_DEFAULT);
+    assert_true(set >= 0);
+    for (hsize_t k = 0; k < CHUNKS; k++)
+        assert_true(H5Dwrite_chunk(set, H5P_DEFAULT, 0,
+                                   (const hsize_t[]){0, k * WIDE}, size,
+                                   packed) >= 0);
+    free(zeros);
+    H5Dclose(set);
+    H5Pclose(plan);
+    H5Sclose(space);
+    end(path, file);
+    assert_refused(path, "'A' has 36000000 values");
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(one_deflate_is_read_and_two_are_refused),
     cmocka_unit_test(a_link_in_a_sparse_matrix_is_refused),
     cmocka_unit_test(elements_of_no_size_are_refused),
     cmocka_unit_test(a_chunk_is_limited_in_bytes),
+    cmocka_unit_test(values_are_limited_as_they_are_in_memory),
 };
 
 TEST_MODULE(mat_hostile, tests, folder_make, folder_remove)

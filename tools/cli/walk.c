@@ -1,0 +1,200 @@
+/* The process that reads an HDF5 file before the tool does. */
+#define _GNU_SOURCE /* NOLINT: declares syscall */
+
+#include "cli/walk.h"
+
+#include "base/alloc.h"
+#include "cli/child.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* --- files that were read --------------------------------------------------- */
+
+enum { REMEMBERED = 64 };
+
+/* A tool opens a file more than once; what changes it changes these. */
+static struct stat sound[REMEMBERED];
+static int64_t num_sound;
+
+static bool same_time(const struct timespec *a, const struct timespec *b)
+{
+    return a->tv_sec == b->tv_sec && a->tv_nsec == b->tv_nsec;
+}
+
+static bool is_remembered(const struct stat *file)
+{
+    for (int64_t k = 0; k < num_sound && k < REMEMBERED; k++)
+        if (sound[k].st_dev == file->st_dev &&
+            sound[k].st_ino == file->st_ino &&
+            sound[k].st_size == file->st_size &&
+            same_time(&sound[k].st_mtim, &file->st_mtim) &&
+            same_time(&sound[k].st_ctim, &file->st_ctim))
+            return true;
+    return false;
+}
+
+/* --- the process ------------------------------------------------------------ */
+
+/* The program lies where it was installed beside the tool, or was built: it is
+   no question of the environment, nor of the folder in which the tool runs. */
+static ritz_status find_program(char out[PATH_MAX])
+{
+    static const char from_tools[] = "/" RITZ_WALKER;
+    char self[PATH_MAX];
+    const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+    char *slash = NULL;
+
+    RITZ_REFUSE_IF(length <= 0, RITZ_ERR_FILE,
+                   "cannot be checked, as there is no /proc: %s",
+                   strerror(errno));
+    self[length] = '\0';
+    slash = strrchr(self, '/');
+    RITZ_REFUSE_IF(!slash ||
+                       (size_t)(slash - self) + sizeof from_tools > PATH_MAX,
+                   RITZ_ERR_FILE, "cannot be checked: no path to ritz-walk");
+    *slash = '\0';
+    snprintf(out, PATH_MAX, "%.*s%s", (int)(PATH_MAX - sizeof from_tools), self,
+             from_tools);
+    RITZ_REFUSE_IF(
+        access(out, X_OK) != 0, RITZ_ERR_FILE,
+        "cannot be checked: '%s', which a tool is installed with, is "
+        "not there to be run: %s",
+        out, strerror(errno));
+    return RITZ_OK;
+}
+
+/* Never more than whoever started the tool allows. What is above the limit that
+   a process hears of kills it: one second of the processor later. */
+static bool limit_use(int what, rlim_t most, rlim_t above)
+{
+    struct rlimit limit = {0};
+
+    if (getrlimit(what, &limit) != 0)
+        return false;
+    if (limit.rlim_max > most + above)
+        limit.rlim_max = most + above;
+    if (limit.rlim_cur > most)
+        limit.rlim_cur = most;
+    return setrlimit(what, &limit) == 0;
+}
+
+static rlim_t count_seconds(off_t size)
+{
+    const rlim_t most = WALK_SECONDS + (rlim_t)size / WALK_BYTES_A_SECOND;
+    struct rlimit limit = {0};
+
+    if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur > most)
+        return most;
+    return limit.rlim_cur;
+}
+
+/* In the child: the file, and nothing else that the tool has open. */
+static bool pass_file(int file)
+{
+    const int copy = fcntl(file, F_DUPFD_CLOEXEC, WALK_FILE + 1);
+    const int nothing = open("/dev/null", O_RDWR);
+
+    for (int k = 0; k < WALK_FILE; k++)
+        if (dup2(nothing, k) < 0)
+            return false;
+    if (dup2(copy, WALK_FILE) < 0)
+        return false;
+    (void)syscall(SYS_close_range, WALK_FILE + 1, ~0U, 0); /* since Linux 5.9 */
+    return true;
+}
+
+/* By the clock a sound file takes what its disk takes: ten times as long. */
+static bool set_limits(off_t size)
+{
+    const rlim_t seconds = count_seconds(size);
+    sigset_t none;
+
+    sigemptyset(&none);
+    signal(SIGXCPU, SIG_DFL); /* though the tool ignores them */
+    signal(SIGALRM, SIG_DFL);
+    sigprocmask(SIG_SETMASK, &none, NULL);
+    alarm((unsigned)(seconds < 100000 ? 10 * seconds : 1000000));
+    return limit_use(RLIMIT_CPU, seconds, 1) &&
+           limit_use(RLIMIT_DATA, WALK_BYTES, 0) &&
+           limit_use(RLIMIT_FSIZE, 0, 0) && limit_use(RLIMIT_CORE, 0, 0);
+}
+
+static _Noreturn void become_walker(const char *program, int file, off_t size)
+{
+    static char name[] = "ritz-walk";
+    char *const argv[] = {name, NULL};
+
+    if (pass_file(file) && set_limits(size))
+        execv(program, argv);
+    _exit(CHILD_NO_PROGRAM);
+}
+
+/* --- what its end says ------------------------------------------------------ */
+
+static ritz_status explain_signal(int number, off_t size)
+{
+    if (number == SIGXCPU || number == SIGALRM)
+        return ritz_fail(RITZ_ERR_FORMAT,
+                         "damaged, or made to take long: HDF5 has not read its "
+                         "%" PRId64 " bytes after %" PRId64 " s",
+                         (int64_t)size, (int64_t)count_seconds(size));
+    return ritz_fail(RITZ_ERR_FORMAT,
+                     "damaged: HDF5 ends by '%s' as it reads the file",
+                     strsignal(number));
+}
+
+static ritz_status explain_end(int outcome, off_t size)
+{
+    const int end = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
+
+    if (WIFSIGNALED(outcome))
+        return explain_signal(WTERMSIG(outcome), size);
+    RITZ_REFUSE_IF(end == WALK_UNOPENED, RITZ_ERR_FORMAT,
+                   "not an HDF5 file, or damaged");
+    RITZ_REFUSE_IF(end == WALK_MEMORY, RITZ_ERR_FORMAT,
+                   "damaged, or made to take memory: HDF5 asks for more than "
+                   "%d MiB to read its %" PRId64 " bytes",
+                   WALK_BYTES >> 20, (int64_t)size);
+    RITZ_REFUSE_IF(end == CHILD_NO_PROGRAM, RITZ_ERR_FILE,
+                   "cannot be checked: ritz-walk cannot be started");
+    RITZ_REFUSE_IF(end != WALK_WHOLE, RITZ_ERR_FORMAT,
+                   "damaged: HDF5 ends with status %d as it reads the file",
+                   end);
+    return RITZ_OK;
+}
+
+ritz_status walk_file(int file)
+{
+    char program[PATH_MAX];
+    struct stat before = {0};
+    pid_t child = -1;
+    int outcome = 0;
+
+    RITZ_REFUSE_IF(fstat(file, &before) != 0, RITZ_ERR_FILE, "%s",
+                   strerror(errno));
+    if (is_remembered(&before))
+        return RITZ_OK;
+    RITZ_CHECK(find_program(program));
+    signal(SIGCHLD, SIG_DFL); /* ignored, it would take the outcome away */
+    child = child_start(SIGKILL);
+    if (child == 0)
+        become_walker(program, file, before.st_size);
+    RITZ_REFUSE_IF(child < 0 || child_wait(child, &outcome) != 0, RITZ_ERR_FILE,
+                   "cannot be checked by a process of its own: %s",
+                   strerror(errno));
+    RITZ_CHECK(explain_end(outcome, before.st_size));
+    sound[num_sound++ % REMEMBERED] = before;
+    return RITZ_OK;
+}
