@@ -1,13 +1,13 @@
 /*
- * ritz-walk - read an HDF5 file to its end, so that whoever started this process
- * need not find out what HDF5 makes of it (tools/cli/walk.h). The file is open
- * as descriptor 3; nothing is said but by the status.
+ * ritz-walk - read an HDF5 file to its end, so that whoever started this
+ * process need not find out what HDF5 makes of it (tools/cli/walk.h). The file
+ * is open as descriptor 3; nothing is said but by the status.
  *
- * Objects are met as the tools meet them: by the names of hard links, attributes
- * and values converted to the types of memory, filters and storage that the
- * tools accept. What they refuse is not read here either: links, other files,
- * other filters, more values than the file can hold. Errors that HDF5 reports
- * are passed over, since the tools will meet them, too.
+ * Objects are met as the tools meet them: by the names of hard links,
+ * attributes and values converted to the types of memory, filters and storage
+ * that the tools accept. What they refuse is not read here either: links, other
+ * files, other filters, more values than the file can hold. Errors that HDF5
+ * reports are passed over, since the tools will meet them, too.
  */
 #define _GNU_SOURCE /* NOLINT: declares tdestroy */
 
@@ -32,7 +32,7 @@ static struct {
     bool scanty; /* there was not enough memory */
 } course;
 
-/* --- memory ----------------------------------------------------------------- */
+/* --- memory --------------------------------------------------------------- */
 
 static void *take_memory(size_t size)
 {
@@ -54,7 +54,7 @@ static herr_t note_error(hid_t stack, void *)
     return H5Ewalk2(stack, H5E_WALK_UPWARD, look_for_memory, NULL);
 }
 
-/* --- values ----------------------------------------------------------------- */
+/* --- values --------------------------------------------------------------- */
 
 /* The type in memory that a tool would convert to, -1 if it would not. */
 static hid_t find_memory_type(hid_t on_file)
@@ -128,7 +128,7 @@ static herr_t read_attribute(hid_t at, const char *name, const H5A_info_t *,
     return 0;
 }
 
-/* --- data sets -------------------------------------------------------------- */
+/* --- data sets ------------------------------------------------------------ */
 
 typedef struct data_set {
     hid_t id, plan, space, on_file, memory;
@@ -279,7 +279,7 @@ static void read_set(hid_t id)
     H5Pclose(s.plan);
 }
 
-/* --- objects ---------------------------------------------------------------- */
+/* --- objects -------------------------------------------------------------- */
 
 static int compare_addresses(const void *a, const void *b)
 {

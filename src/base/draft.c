@@ -128,8 +128,8 @@ static void follow_links(const char *path, char out[PATH_MAX])
 
 /*
  * Whether a path leads to what a process has open, as /dev/stdout and /dev/fd/3
- * do: a rename would not write to that, but put another file in the place of the
- * one that it is, which whoever opened it would never see.
+ * do: a rename would not write to that, but put another file in the place of
+ * the one that it is, which whoever opened it would never see.
  */
 static bool is_descriptor(const char *path)
 {

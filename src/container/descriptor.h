@@ -1,5 +1,5 @@
-/* HDF5 files to be read by a descriptor that is open, whatever has their name by
-   now. Of HDF5 and the system alone: libexec/ritz-walk.c uses it, too. */
+/* HDF5 files to be read by a descriptor that is open, whatever has their name
+   by now. Of HDF5 and the system alone: libexec/ritz-walk.c uses it, too. */
 #ifndef RITZ_CONTAINER_DESCRIPTOR_H
 #define RITZ_CONTAINER_DESCRIPTOR_H
 

@@ -40,7 +40,7 @@ ritz_status ritz_h5_begin(void)
     return RITZ_OK;
 }
 
-/* --- files that are read ---------------------------------------------------- */
+/* --- files that are read -------------------------------------------------- */
 
 static _Atomic(ritz_guard) asked;
 
@@ -142,7 +142,7 @@ void ritz_h5_release(void)
     memset(&kept, 0, sizeof kept);
 }
 
-/* --- files that are written, groups ----------------------------------------- */
+/* --- files that are written, groups --------------------------------------- */
 
 /* Of more than 8 attributes HDF5 would move some to a heap, which has no
    checksum of its own, so the limit is raised. */

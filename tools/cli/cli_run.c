@@ -51,8 +51,8 @@ static void end_program(int number)
 }
 
 /* All that end a program, by others or by a defect of its own or of a library:
-   the handler has a stack of its own, as that may be what is at its end. What is
-   ignored, as nohup leaves it, or has a handler already, stays so. */
+   the handler has a stack of its own, as that may be what is at its end. What
+   is ignored, as nohup leaves it, or has a handler already, stays so. */
 static void watch_signals(void)
 {
     static const int numbers[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGXCPU,

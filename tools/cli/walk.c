@@ -1,5 +1,5 @@
 /* The process that reads an HDF5 file before the tool does. */
-#define _GNU_SOURCE /* NOLINT: declares syscall */
+#define _DEFAULT_SOURCE /* NOLINT: declares syscall */
 
 #include "cli/walk.h"
 
@@ -20,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* --- files that were read --------------------------------------------------- */
+/* --- files that were read ------------------------------------------------- */
 
 enum { REMEMBERED = 64 };
 
@@ -45,7 +45,7 @@ static bool is_remembered(const struct stat *file)
     return false;
 }
 
-/* --- the process ------------------------------------------------------------ */
+/* --- the process ---------------------------------------------------------- */
 
 /* The program lies where it was installed beside the tool, or was built: it is
    no question of the environment, nor of the folder in which the tool runs. */
@@ -141,7 +141,7 @@ static _Noreturn void become_walker(const char *program, int file, off_t size)
     _exit(CHILD_NO_PROGRAM);
 }
 
-/* --- what its end says ------------------------------------------------------ */
+/* --- what its end says ---------------------------------------------------- */
 
 static ritz_status explain_signal(int number, off_t size)
 {

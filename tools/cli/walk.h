@@ -1,8 +1,8 @@
 /*
- * HDF5 trusts its files: one that is damaged, or made to, can end a program that
- * reads it, lead it in circles or have it ask for all memory. So another process
- * reads each file first, libexec/ritz-walk.c, which may die of it. Here is what
- * the two sides agree on.
+ * HDF5 trusts its files: one that is damaged, or made to, can end a program
+ * that reads it, lead it in circles or have it ask for all memory. So another
+ * process reads each file first, libexec/ritz-walk.c, which may die of it. Here
+ * is what the two sides agree on.
  */
 #ifndef RITZ_TOOLS_CLI_WALK_H
 #define RITZ_TOOLS_CLI_WALK_H
@@ -28,8 +28,8 @@ typedef enum walk_end {
 
 /**
  * Have an open file read by a process of its own, with limits on its time, its
- * memory and what it may write; a file that was read so, and was not changed, is
- * not read again. For ritz_container_guard.
+ * memory and what it may write; a file that was read so, and was not changed,
+ * is not read again. For ritz_container_guard.
  *
  * @return RITZ_ERR_FORMAT if that process does not come to its end, and
  *         RITZ_ERR_FILE if it cannot be started
