@@ -170,6 +170,39 @@ static void copy_mode(const subset_search *s, int64_t mode, int64_t column,
         ritz_columns_label_rigid(column, &basis->columns);
 }
 
+/* Whether two groups have one value, or one frequency and values of a size. */
+static bool is_tie(const subset_search *s, const mode_group *kept,
+                   const mode_group *left)
+{
+    double w = s->modal.omega[kept->first];
+
+    return left->value >= (1.0 - RITZ_CLUSTER_GAP) * kept->value ||
+           (fabs(s->modal.omega[left->first] - w) <= RITZ_CLOSE * w &&
+            left->value >= RITZ_HANKEL_PAIR * kept->value);
+}
+
+/* Remark on the first pair that the choice cuts. */
+static void add_tie(const subset_search *s, ritz_basis *basis)
+{
+    for (int64_t i = 0; i < s->count; i++)
+        for (int64_t j = 0; j < s->count; j++) {
+            const mode_group *kept = &s->groups[i], *left = &s->groups[j];
+
+            if (!kept->keep || left->keep || !is_tie(s, kept, left))
+                continue;
+            ritz_remark_add(
+                basis, "; ",
+                "the modes at %.6g and %.6g Hz are a pair, of values %.4g and "
+                "%.4g: keeping %" PRId64 " splits them",
+                ritz_eigen_hertz(
+                    s->modes.lambda[kept->first + s->modes.num_rigid]),
+                ritz_eigen_hertz(
+                    s->modes.lambda[left->first + s->modes.num_rigid]),
+                kept->value, left->value, s->kept);
+            return;
+        }
+}
+
 static void add_choice(const ritz_request *request, const subset_search *s,
                        const ritz_damping *damping, ritz_basis *basis)
 {
@@ -224,6 +257,7 @@ static ritz_status make_modal_balanced(const ritz_request *request,
             copy_mode(&s, s.modes.num_rigid + k, column++, &basis);
     snprintf(basis.origin.engine, sizeof basis.origin.engine,
              s.modal.Delta.val ? "SLICOT SB03OD" : "closed form");
+    add_tie(&s, &basis);
     add_choice(request, &s, &damping, &basis);
     RITZ_MOVE(*out, basis);
     return RITZ_OK;

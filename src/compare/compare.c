@@ -382,12 +382,31 @@ static ritz_status reduce_bodies(ritz_rows *rows, ritz_comparison *c)
     return try_plan(rows, &p.plan, c);
 }
 
+/* Bodies that are joined by forces: how many negative squares the forces leave
+   at the first configuration, and that there are no modes to choose from. */
+static ritz_status refuse_forces(const ritz_stage *stage)
+{
+    RITZ_OWN(ritz_system) system = {0};
+    const ritz_measure *negative = NULL;
+    char count[2 * RITZ_NAME_SIZE + 64];
+
+    if (!ritz_dual_is_due(stage))
+        return RITZ_OK;
+    RITZ_CHECK_IN("stage 1", ritz_assemble(stage, NULL, &system));
+    negative = ritz_measures_find(&system.configuration[0].errors,
+                                  "negative-eigenvalues");
+    (void)snprintf(
+        count, sizeof count, "%.0f negative squares of interface forces, %s",
+        negative ? negative->value : 0.0, negative ? negative->where : "");
+    return ritz_context(ritz_dual_refuse(stage), count);
+}
+
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
 {
     RITZ_OWN(ritz_comparison) c = {.next_drop = nan("")};
     RITZ_OWN(ritz_rows) rows = {.stage = stage, .listed = &c.first_system};
 
-    RITZ_CHECK(ritz_dual_refuse(stage));
+    RITZ_CHECK(refuse_forces(stage));
     RITZ_CHECK(list_rows(stage->scene, &c));
     rows.num_rows = c.num_rows;
     rows.row = c.row;

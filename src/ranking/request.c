@@ -10,6 +10,8 @@
 
 #include <ritz/ranking.h>
 
+#include <inttypes.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -358,6 +360,13 @@ ritz_rank_request_of_configuration(const ritz_configuration *configuration,
     const ranked_model s = {&c->K,  &c->M,        &c->D,
                             &c->io, &c->momentum, c->rigid};
 
+    for (int64_t k = c->num_rigid; k < c->K.ncol; k++)
+        RITZ_REFUSE_IF(
+            c->lambda[k] < 0.0, RITZ_ERR_ARGUMENT,
+            "mode %" PRId64 ", %.4g Hz, is a negative square: forces that join "
+            "bodies of dual-craig-bampton leave such, which have no rank; "
+            "macneal-rubin has the same columns",
+            k + 1, ritz_eigen_hertz(c->lambda[k]));
     RITZ_REFUSE_IF(needs & RITZ_RANK_INTERFACE, RITZ_ERR_ARGUMENT,
                    "a system has no interface to hold: rank its components");
     return make_request(&s, choice, needs, out);

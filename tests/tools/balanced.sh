@@ -46,6 +46,25 @@ for order in 1 3; do
     expect 0 "of the two states of a mode are: --modes $order splits them" \
         ritz-basis balanced --modes $order modes.h5 -o split.h5
 done
+# Two modes of equal values, of different frequencies: one of them is arbitrary.
+matrix K.mtx '3 3
+1 0 0 0 4 0 0 0 100'
+matrix M.mtx '3 3
+1 0 0 0 1 0 0 0 1'
+printf '1 0\n2 0\n3 0\n' >dofs
+expect 0 '' ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \
+    --input a=1:0 --input b=2:0*4 --input c=3:0 --output-at x=1:0 \
+    --output-at y=2:0 --output-at z=3:0 -o twins.h5
+expect 0 "warning: the modes at 0." ritz-basis modal-balanced --modes 1 \
+    --damping "modal 0.01" twins.h5 -o twin.h5
+expect 0 ' Hz are a pair, of values 25.25 and 25.25: keeping 1 splits them' \
+    ritz-basis modal-balanced --modes 1 --damping "modal 0.01" twins.h5 \
+    -o twin.h5
+expect 0 '' ritz-basis modal-balanced --modes 2 --damping "modal 0.01" \
+    twins.h5 -o twin.h5
+works "  two modes split nothing" test -z "$(grep splits log)"
+expect 1 "the first values are equal, and are kept whole or not at all" \
+    ritz-basis balanced --modes 1 --damping "modal 0.01" twins.h5 -o twin.h5
 for order in 2 4; do
     expect 0 '' ritz-basis balanced --modes $order modes.h5 -o whole.h5
     works "  $order states split nothing" test -z "$(grep splits log)"

@@ -85,8 +85,25 @@ json 0 ritz-poles dual.h5
 holds '  and none of the unstable ones is rounding' \
     'sum(p["real"] > 0 for p in j["poles"]) == 10
      and all(p["hertz"] > 1e-2 for p in j["poles"])'
+expect 0 "10 poles are negative squares of the forces" ritz-poles dual.h5
+works "  and no pole is only called unstable" \
+    test -z "$(grep -E 'is unstable: it grows|unstable$' log)"
+expect 0 "8 rigid, 36 flexible modes" ritz-info dual.h5
+expect 0 "10 negative squares of the forces that join bodies" ritz-info dual.h5
+json 0 ritz-info dual.h5
+holds "  which stand apart" 'j["configurations"][0]["negative_squares"] == 10'
 expect 1 "an unstable model has no steady response" ritz-frf --from-hz 0.1 \
     --to-hz 10 dual.h5 -o none.h5
+expect 1 "10 negative squares from 27.9" ritz-frf --from-hz 0.1 --to-hz 10 \
+    dual.h5 -o none.h5
+expect 0 "296 dofs" ritz-assemble --full scene-dual-craig-bampton.yaml \
+    --at clock=60 -o full.h5
+expect 1 "10 negative squares from 27.9" ritz-verify full.h5 dual.h5 -o none.h5
+expect 1 "is a negative square: forces that join bodies" ritz-rank dual.h5
+expect 1 "10 negative squares of the forces" ritz-simulate dual.h5 --seconds 5 \
+    --step 0.01 --input torque=step -o none.h5
+expect 1 "negative squares of interface forces, first: mode 41" \
+    ritz-compare scene-dual-craig-bampton.yaml -o none.h5
 expect 1 "component 'rotor' is reduced by dual-craig-bampton" \
     ritz-compare scene-dual-craig-bampton.yaml -o none.h5
 expect 1 "has columns for a joint by forces" ritz-export --to output4 \

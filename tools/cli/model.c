@@ -337,6 +337,36 @@ ritz_status model_hertz_at(const ritz_configuration *at, double **out)
     return RITZ_OK;
 }
 
+int64_t model_negative_squares(const ritz_configuration *at, double *first_hz)
+{
+    int64_t count = 0;
+
+    if (!at || !ritz_measures_find(&at->errors, "negative-eigenvalues"))
+        return 0;
+    for (int64_t k = at->K.nrow - 1; k >= at->num_rigid; k--) {
+        if (!(at->lambda[k] < 0.0))
+            continue;
+        count++;
+        if (first_hz)
+            *first_hz = fabs(ritz_eigen_hertz(at->lambda[k]));
+    }
+    return count;
+}
+
+ritz_status model_refuse_forces(const model *m, const char *path)
+{
+    double first_hz = 0.0;
+    int64_t count = model_negative_squares(m->at, &first_hz);
+
+    RITZ_REFUSE_IF(count > 0, RITZ_ERR_ARGUMENT,
+                   "'%s' has %ld negative squares from %.4g Hz on, of the "
+                   "forces that join bodies of dual-craig-bampton: an unstable "
+                   "model has no steady response; macneal-rubin has the same "
+                   "columns",
+                   path, (long)count, first_hz);
+    return RITZ_OK;
+}
+
 static const char *name_verdict(const ritz_measure *m, const char *known)
 {
     if (isnan(m->limit))

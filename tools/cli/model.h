@@ -204,6 +204,17 @@ ritz_status model_damping(const model *model, const char *given,
 ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
                         int64_t *num_rigid, int64_t *count, double **out);
 
+/**
+ * Modes of negative eigenvalue at the configuration of a system whose bodies
+ * are joined by forces: spurious, since no body has such. 0 of other models.
+ *
+ * @param[out] first_hz  |f| of the one nearest to 0; NULL: not wanted
+ */
+int64_t model_negative_squares(const ritz_configuration *at, double *first_hz);
+
+/** Refuse a model that has such: it has no steady response. */
+ritz_status model_refuse_forces(const model *m, const char *path);
+
 /** Frequencies of a configuration, Hz, rigid modes as 0; caller frees. */
 ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 

@@ -208,6 +208,16 @@ static ritz_status check_configuration(const cli_run *run, const model *full,
     return RITZ_OK;
 }
 
+/* What a choice of modes remarks first, if it cuts a pair. */
+static void warn_of_pair(cli_run *run, const ritz_basis *basis)
+{
+    static const char cut[] = " splits them";
+    const char *end = strstr(basis->remark, cut);
+
+    if (end)
+        cli_warn(run, "%.*s%s", (int)(end - basis->remark), basis->remark, cut);
+}
+
 ritz_status basis_run(cli_run *run, basis_options *given)
 {
     const char *path = run->operand[1];
@@ -242,6 +252,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
     RITZ_CHECK(describe_output(run, &made));
     say_basis(run, &made.basis);
     warn_of_split(run, &made.basis, request->modes, request->tolerance);
+    warn_of_pair(run, &made.basis);
     return RITZ_OK;
 }
 

@@ -363,17 +363,47 @@ static void describe_inertia(cli_run *run, const ritz_inertia *i)
     sink_end(run);
 }
 
-/* Frequencies, five a line, rigid modes as their number. */
+/* Five a line, without those that @p negative leaves out. */
+static void list_hertz(cli_run *run, int64_t first, int64_t count,
+                       const double *hertz, bool negative)
+{
+    int64_t listed = 0;
+
+    for (int64_t k = first; k < count; k++) {
+        if ((hertz[k] < 0.0) != negative)
+            continue;
+        if (listed % 5 == 0)
+            sink_part(run, "  %-14s", "");
+        sink_part(run, " %12.7g", negative ? -hertz[k] : hertz[k]);
+        if (++listed % 5 == 0)
+            cli_say(run, "%s", "");
+    }
+    if (listed % 5 != 0)
+        cli_say(run, "%s", "");
+}
+
+/* Frequencies, rigid modes as their number; @p squares of negative eigenvalue
+   stand apart. */
 static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
-                           int64_t count, const double *hertz)
+                           int64_t count, int64_t squares, const double *hertz)
 {
     cli_say(run, "  %-14s %ld rigid, %ld flexible modes%s", title, rigid,
-            (count - rigid), count > rigid ? ", Hz:" : "");
-    for (int64_t k = rigid; k < count; k += 5) {
-        sink_part(run, "  %-14s", "");
-        for (int64_t i = k; i < k + 5 && i < count; i++)
-            sink_part(run, " %12.7g", hertz[i]);
-        cli_say(run, "%s", "");
+            count - rigid - squares, count - squares > rigid ? ", Hz:" : "");
+    if (squares == 0) { /* a negative one is of rounding, or a mistake */
+        for (int64_t k = rigid; k < count; k += 5) {
+            sink_part(run, "  %-14s", "");
+            for (int64_t i = k; i < k + 5 && i < count; i++)
+                sink_part(run, " %12.7g", hertz[i]);
+            cli_say(run, "%s", "");
+        }
+    } else {
+        list_hertz(run, rigid, count, hertz, false);
+        cli_say(run,
+                "  %-14s %ld negative squares of the forces that join bodies, "
+                "no modes of these; they grow by e^(2 pi f t), f in Hz:",
+                "", squares);
+        list_hertz(run, rigid, count, hertz, true);
+        sink_set(run, "negative_squares", "%ld", squares);
     }
     sink_reals(run, "frequencies_hz", count, hertz);
 }
@@ -439,7 +469,7 @@ ritz_status describe_reduced(cli_run *run, const ritz_reduced *r)
     describe_units(run, r->units);
     describe_origin(run, &r->origin);
     describe_columns(run, &r->columns);
-    describe_hertz(run, "frequencies", rigid, count, hertz);
+    describe_hertz(run, "frequencies", rigid, count, 0, hertz);
     describe_dense(run, "K", &r->K);
     describe_dense(run, "M", &r->M);
     describe_dense(run, "D", &r->D);
@@ -470,7 +500,7 @@ static ritz_status describe_configuration(cli_run *run,
     sink_object(run, NULL);
     sink_set(run, "at,dofs,rank", "%s %ld %ld", c->at, c->K.nrow, c->rank);
     describe_hertz(run, *c->at ? c->at : "as joined", c->num_rigid, c->K.nrow,
-                   hertz);
+                   model_negative_squares(c, NULL), hertz);
     describe_measures(run, "errors", &c->errors, "measured");
     sink_end(run);
     return RITZ_OK;

@@ -17,8 +17,25 @@ static double hertz_of(double _Complex s)
     return cabs(s) / (2.0 * RITZ_PI);
 }
 
-static const char *note_of(double _Complex s)
+/* Whether a pole is of an interface force: such grow without oscillation, and
+   there are @p squares of them. */
+static bool is_force(const ritz_spectrum *spectrum, int64_t squares, int64_t j)
 {
+    int64_t growing = 0;
+
+    for (int64_t k = 0; squares > 0 && k < spectrum->count; k++)
+        growing += creal(spectrum->s[k]) > neutral * cabs(spectrum->s[k]);
+    return growing > 0 && growing <= squares && cimag(spectrum->s[j]) == 0.0 &&
+           creal(spectrum->s[j]) > 0.0;
+}
+
+static const char *note_of(const ritz_spectrum *spectrum, int64_t squares,
+                           int64_t j)
+{
+    double _Complex s = spectrum->s[j];
+
+    if (is_force(spectrum, squares, j))
+        return "unstable: negative square of a force";
     if (creal(s) > neutral * cabs(s))
         return "unstable";
     return cimag(s) == 0.0 ? "real, does not oscillate" : "";
@@ -31,14 +48,39 @@ static void set_pole(cli_run *run, double _Complex s)
              ritz_spectrum_ratio(s), creal(s), cimag(s));
 }
 
-static void warn_poles(cli_run *run, const ritz_spectrum *spectrum)
+/* One line for all of them. */
+static void warn_of_forces(cli_run *run, const ritz_spectrum *spectrum,
+                           int64_t squares)
+{
+    int64_t count = 0;
+    double slowest = HUGE_VAL, fastest = 0.0;
+
+    for (int64_t j = 0; j < spectrum->count; j++)
+        if (is_force(spectrum, squares, j)) {
+            count++;
+            slowest = fmin(slowest, creal(spectrum->s[j]));
+            fastest = fmax(fastest, creal(spectrum->s[j]));
+        }
+    if (count > 0)
+        cli_warn(
+            run,
+            "%ld poles are negative squares of the forces that join bodies "
+            "of dual-craig-bampton, and of no motion of these: they grow "
+            "by %.3g to %.3g/s; macneal-rubin has the same columns",
+            count, slowest, fastest);
+}
+
+static void warn_poles(cli_run *run, const ritz_spectrum *spectrum,
+                       int64_t squares)
 {
     int64_t rough = 0;
+
+    warn_of_forces(run, spectrum, squares);
 
     for (int64_t j = 0; j < spectrum->count; j++) {
         double _Complex s = spectrum->s[j];
 
-        if (creal(s) > neutral * cabs(s))
+        if (creal(s) > neutral * cabs(s) && !is_force(spectrum, squares, j))
             cli_warn(run, "pole %ld, %.6g Hz, is unstable: it grows by %.3g/s",
                      j + 1, hertz_of(s), creal(s));
         rough += spectrum->residual[j] > exact; /* NaN: it has none */
@@ -50,7 +92,8 @@ static void warn_poles(cli_run *run, const ritz_spectrum *spectrum)
 }
 
 /* A table, and a warning for each pole that is unstable or not exact. */
-static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
+static void say_poles(cli_run *run, const ritz_spectrum *spectrum,
+                      int64_t squares, bool tsv)
 {
     if (tsv)
         cli_say(run, "mode\thertz\trad_per_s\tzeta\treal\timaginary\tresidual");
@@ -60,6 +103,7 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
     SINK_ITEMS(run, "poles", j, spectrum->count) {
         double _Complex s = spectrum->s[j];
         double zeta = ritz_spectrum_ratio(s);
+        const char *note = note_of(spectrum, squares, j);
 
         set_pole(run, s);
         sink_set(run, "residual", "%g", spectrum->residual[j]);
@@ -70,15 +114,14 @@ static void say_poles(cli_run *run, const ritz_spectrum *spectrum, bool tsv)
         else
             cli_say(run, "%5ld %13.7g %13.7g %12.6g %13.6g %13.7g %9.1e%s%s",
                     j + 1, hertz_of(s), cabs(s), 100.0 * zeta, creal(s),
-                    cimag(s), spectrum->residual[j], *note_of(s) ? "  " : "",
-                    note_of(s));
+                    cimag(s), spectrum->residual[j], *note ? "  " : "", note);
     }
     sink_set(run, "zero,engine", "%ld %s", spectrum->num_zero,
              spectrum->engine);
     if (spectrum->num_zero > 0 && !tsv)
         cli_say(run, "%ld poles at 0 are not listed: rigid-body motion",
                 spectrum->num_zero);
-    warn_poles(run, spectrum);
+    warn_poles(run, spectrum, squares);
 }
 
 /* Those that are asked for, of what a small model gives. */
@@ -102,7 +145,7 @@ static ritz_status find_poles(cli_run *run, const model *m,
            ((given->modes > 0 && found.count > given->modes) ||
             (by_hertz && cabs(found.s[found.count - 1]) > limit)))
         found.count--;
-    say_poles(run, &found, given->tsv);
+    say_poles(run, &found, model_negative_squares(m->at, NULL), given->tsv);
     cli_record(run, "poles", found.count);
     return RITZ_OK;
 }

@@ -564,6 +564,7 @@ ritz_status responses_run(cli_run *run, const response_options *given)
         RITZ_CHECK(model_read(run, given->loops.controller, MODEL_STATES,
                               &loop.controller));
     RITZ_CHECK(model_settle(&m, path, &given->model));
+    RITZ_CHECK(model_refuse_forces(&m, path));
     if (given->points_of)
         RITZ_CHECK(borrow_points(run, given, &other, &grid));
     else

@@ -1,8 +1,8 @@
 #include "print/print.h"
 
 #include "base/alloc.h"
-
 #include "base/text.h"
+#include "base/tolerances.h"
 
 #include <inttypes.h>
 
@@ -366,6 +366,20 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
     return RITZ_OK;
 }
 
+/* Spurious motions that grow by e^(2 pi f t). */
+static void warn_of_forces(cli_run *run, const model *m)
+{
+    double first_hz = 0.0;
+    int64_t count = model_negative_squares(m->at, &first_hz);
+
+    if (count > 0)
+        cli_warn(run,
+                 "%ld negative squares of the forces that join bodies of "
+                 "dual-craig-bampton grow without bound, from %.3g/s on: no "
+                 "motion of the bodies; macneal-rubin has the same columns",
+                 count, 2.0 * RITZ_PI * first_hz);
+}
+
 ritz_status simulation_run(cli_run *run, simulation_options *given)
 {
     const char *path = run->operand[0];
@@ -377,6 +391,7 @@ ritz_status simulation_run(cli_run *run, simulation_options *given)
     take_options(run, given);
     RITZ_CHECK(model_read(run, path, MODEL_DYNAMIC, &m));
     RITZ_CHECK(model_settle(&m, path, &given->model));
+    warn_of_forces(run, &m);
     d.io = ritz_model_io(model_reference(&m));
     d.subject = model_reference(&m);
     if (m.kind == MODEL_SYSTEM && !(band_hz[1] > 0.0))

@@ -175,6 +175,7 @@ ritz_status verify_run(cli_run *run, verify_options *given)
     RITZ_CHECK(model_read(
         run, path, MODEL_REDUCED | MODEL_SYSTEM | MODEL_STATES, &reduced));
     RITZ_CHECK(settle_configurations(run, &full, &reduced, &given->model));
+    RITZ_CHECK(model_refuse_forces(&reduced, path));
     RITZ_CHECK(check_limits(run, given, reduced.kind == MODEL_STATES));
     RITZ_CHECK(reduced.kind == MODEL_STATES
                    ? settle_states(run, &full, &reduced, given)

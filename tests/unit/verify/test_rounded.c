@@ -91,10 +91,11 @@ static double flexible_gain(const ritz_component *bar)
 }
 
 /*
- * At the end of a free bar rigid motion takes part with 4 / m, the first bending
- * mode too, whose gain at rest is 4 / (m lambda_1): what rounding adds where its
- * rule ends is a thousandth of that at most. At a tenth of the frequency it is
- * 1e4 times as much, of motions held at least a hundredth as much as the worst.
+ * At the end of a free bar rigid motion takes part with 4 / m, and so does the
+ * first bending mode, whose gain at rest is 4 / (m lambda_1): what rounding
+ * adds where its rule ends is a thousandth of that at most. At a tenth of the
+ * frequency it is 1e4 times as much, of motions held at least a hundredth as
+ * much as the worst.
  */
 static void rounding_rules_up_to_there(void **)
 {
