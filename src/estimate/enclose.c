@@ -488,6 +488,7 @@ ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
         if (*below == ritz_count_below(count, pairs->lambda, rho + off))
             return RITZ_OK;
     }
+    m->estimator->num_factors++;
     return ritz_eigen_count(&full->K, &full->M, rho, below);
 }
 

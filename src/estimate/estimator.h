@@ -28,6 +28,7 @@ struct ritz_estimator {
     ritz_estimate_request request;
     double sigma;
     ritz_factor *A; /* factor of K - sigma M; NULL: not made yet */
+    int64_t num_factors; /* that were made to count */
     int64_t num_counts;
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
 };

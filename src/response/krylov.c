@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "poles/poles.h"
+#include "response/krylov_states.h"
 #include "response/responder.h"
 
 #include <ritz/base.h>
@@ -553,6 +554,8 @@ static ritz_status make_krylov(const ritz_response_request *request,
 {
     krylov_responder *k = NULL;
 
+    if (request->model.kind == RITZ_MODEL_STATES)
+        return ritz_krylov_states(request, out);
     RITZ_CHECK_NEW(k, 1);
     out->state = k;
     out->free = free_krylov;
@@ -575,14 +578,15 @@ static ritz_status make_krylov(const ritz_response_request *request,
 
 const ritz_response_engine ritz_response_engine_krylov = {
     .name = "krylov",
-    .summary = "the full damped matrices projected on modes and responses",
+    .summary = "the full matrices projected on modes and responses",
     .reference = "Grimme1997",
-    .when = "large components, many points; local dampers, D and K4",
+    .when = "large components, many points; local dampers, D and K4; large "
+            "state spaces",
     .cost = "modes, one real factor, and a complex one for each expansion "
             "point; then O(vectors) a point, O(vectors^3) with D or K4",
     .holds = "the tolerance: by a bound without D and K4, else by an indicator "
              "that full responses confirm",
     .fails = "hundreds of inputs or outputs: each adds vectors",
-    .takes = RITZ_MODEL_COMPONENT,
+    .takes = RITZ_MODEL_COMPONENT | RITZ_MODEL_STATES,
     .make = make_krylov,
 };

@@ -3,9 +3,11 @@
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "model/modal.h"
+#include "model/space.h"
 #include "poles/poles.h"
 #include "response/direct.h"
 #include "response/responder.h"
+#include "response/state_poles.h"
 
 #include <ritz/base.h>
 #include <ritz/poles.h>
@@ -44,7 +46,11 @@ typedef struct interpolant {
 } interpolant;
 
 typedef struct rational_nodes {
-    ritz_direct full;
+    ritz_direct full;               /* of a component */
+    const ritz_state_space *states; /* borrowed; NULL: it is a component */
+    ritz_pencil pencil;             /* of these states */
+    ritz_poles listed;              /* for a grid that is refined */
+    int64_t outputs, inputs;
     interpolant f;
     int64_t num_poles;
     double _Complex *pole; /* all, conjugates too */
@@ -289,7 +295,6 @@ static ritz_status add_node(rational_nodes *s, double hertz)
 static bool measure_node(rational_nodes *s, double hertz, double tolerance)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
-    const ritz_io *io = &s->full.component->io;
     double *miss = s->miss + s->nodes % ENOUGH * 2 * s->values;
     bool near = s->nodes >= ENOUGH;
 
@@ -298,8 +303,8 @@ static bool measure_node(rational_nodes *s, double hertz, double tolerance)
     for (int64_t v = 0; v < s->values; v++)
         s->peak[v] = fmax(s->peak[v], cabs(s->H[v]));
     ritz_noise_heed(s->noise, hertz, s->H, s->level);
-    ritz_noise_scales(io->num_outputs, io->num_inputs, tolerance, s->peak,
-                      s->level, s->scale);
+    ritz_noise_scales(s->outputs, s->inputs, tolerance, s->peak, s->level,
+                      s->scale);
     for (int64_t v = 0; v < s->values; v++) {
         miss[v] = cabs(s->guess[v] - s->H[v]);
         miss[s->values + v] = cabs(s->other[v] - s->H[v]);
@@ -346,13 +351,28 @@ static int64_t find_doubtful(rational_nodes *s)
     return doubtful;
 }
 
+/* H at a frequency, added to zeros. */
+static ritz_status respond_full(rational_nodes *s, double hertz)
+{
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+
+    memset(s->H, 0, (size_t)s->values * sizeof *s->H);
+    if (!s->states)
+        return ritz_direct_at(&s->full, hertz, s->H);
+    return ritz_space_transfer(s->states, &s->pencil, at, s->H);
+}
+
 /* Measure the errors at candidate k, then take it for a node. */
 static ritz_status take_candidate(rational_nodes *s, int64_t k,
                                   double tolerance, bool *near)
 {
+    ritz_status status = RITZ_OK;
+
     s->used[k] = true;
-    memset(s->H, 0, (size_t)s->values * sizeof *s->H);
-    RITZ_CHECK(ritz_direct_at(&s->full, s->hertz[k], s->H));
+    status = respond_full(s, s->hertz[k]);
+    if (status == RITZ_ERR_SINGULAR && s->states)
+        return RITZ_OK; /* a pole that was not known */
+    RITZ_CHECK(status);
     *near = measure_node(s, s->hertz[k], tolerance);
     RITZ_CHECK(add_node(s, s->hertz[k]));
     ritz_monitor_step("nodes", s->nodes, 0);
@@ -446,6 +466,27 @@ static ritz_status list_poles(const rational_nodes *s,
     return ritz_spectrum_list(&all, count, out);
 }
 
+/* Poles up to 1.5 times the range, and their conjugates. */
+static ritz_status cancel_poles(rational_nodes *s, double to_hz, int64_t count,
+                                const double _Complex *found)
+{
+    const double most = 2.0 * RITZ_PI * RITZ_POLES_BEYOND * to_hz;
+
+    RITZ_CHECK_NEW(s->pole, 2 * count);
+    for (int64_t k = 0; k < count; k++) {
+        double _Complex at = found[k];
+
+        if (cabs(at) > most || (s->states && cimag(at) < 0.0))
+            continue;
+        if (s->states && cabs(at) <= RITZ_NEGLIGIBLE * most)
+            at = 0.0; /* but for rounding */
+        add_pole(s, at);
+        if (cimag(at) > 0.0)
+            add_pole(s, s->mirror ? conj(at) : -at);
+    }
+    return RITZ_OK;
+}
+
 /*
  * The poles that are observable in a channel, and their conjugates. With K4
  * their counterparts below the axis are taken as -s, which is exact but for
@@ -454,33 +495,39 @@ static ritz_status list_poles(const rational_nodes *s,
 static ritz_status find_poles(rational_nodes *s,
                               const ritz_responder *responder)
 {
-    double most = 2.0 * RITZ_PI * RITZ_POLES_BEYOND * responder->to_hz;
     RITZ_OWN_ARRAY double _Complex *found = NULL;
     int64_t count = 0;
 
     if (s->full.n <= RITZ_WHOLE_DOFS)
         RITZ_CHECK(project_whole(s));
     RITZ_CHECK(list_poles(s, responder, &count, &found));
-    RITZ_CHECK_NEW(s->pole, 2 * count);
-    for (int64_t k = 0; k < count; k++) {
-        if (cabs(found[k]) > most)
-            continue;
-        add_pole(s, found[k]);
-        if (cimag(found[k]) > 0.0)
-            add_pole(s, s->mirror ? conj(found[k]) : -found[k]);
-    }
-    return RITZ_OK;
+    return cancel_poles(s, responder->to_hz, count, found);
+}
+
+/* All poles of a dense state space, those near the range of a sparse one. */
+static ritz_status find_state_poles(rational_nodes *s,
+                                    const ritz_response_request *request)
+{
+    RITZ_OWN(ritz_near_poles) near = {0};
+    RITZ_OWN_ARRAY double _Complex *found = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK(ritz_poles_near(&s->pencil, request, &near));
+    RITZ_CHECK(ritz_near_poles_list(&near, request, &s->listed));
+    if (ritz_state_space_is_sparse(s->states))
+        return cancel_poles(s, request->to_hz, near.count, near.s);
+    RITZ_CHECK(ritz_state_space_poles(s->states, &count, &found));
+    return cancel_poles(s, request->to_hz, count, found);
 }
 
 /* Zeros of channel v of the dense model, to be cancelled. */
 static ritz_status find_zeros(rational_nodes *s, int64_t v)
 {
-    int64_t inputs = s->full.component->io.num_inputs;
     int64_t count = 0, n = 0;
     double _Complex *zero = NULL;
     ritz_status status =
         ritz_zeros_of(ritz_model_of_dense(&s->view, remaining_damping(s)),
-                      v / inputs, v % inputs, &count, &zero);
+                      v / s->inputs, v % s->inputs, &count, &zero);
 
     if (status != RITZ_OK) /* H is zero, or no zeros were found */
         return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
@@ -517,6 +564,8 @@ static void free_rational(void *state)
     rational_nodes *s = state;
 
     ritz_direct_free(&s->full);
+    ritz_pencil_free(&s->pencil);
+    ritz_poles_free(&s->listed);
     ritz_reduced_free(&s->whole);
     free_interpolant(&s->f);
     RITZ_FREE(s->pole, s->hertz, s->used, s->with_zeros, s->missed, s->miss,
@@ -526,16 +575,18 @@ static void free_rational(void *state)
 static ritz_status start_rational(const ritz_response_request *request,
                                   const ritz_responder *out, rational_nodes *s)
 {
-    const ritz_io *io = &request->model.component->io;
+    const ritz_io io = ritz_model_io(request->model); /* borrowed */
     double unit = 2.0 * RITZ_PI * request->to_hz;
     double low = request->from_hz;
 
-    s->values = io->num_outputs * io->num_inputs;
+    s->outputs = io.num_outputs;
+    s->inputs = io.num_inputs;
+    s->values = s->outputs * s->inputs;
     s->noise = &out->noise;
-    s->mirror = !request->model.component->K4.colptr;
+    s->mirror = s->states || !request->model.component->K4.colptr;
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = RITZ_ABOVE_REST * request->to_hz;
-    RITZ_CHECK(find_poles(s, out));
+    RITZ_CHECK(s->states ? find_state_poles(s, request) : find_poles(s, out));
     s->f = (interpolant){
         .values = s->values, .unit = unit, .num_poles = s->num_poles};
     RITZ_CHECK_NEW(s->f.pole, s->num_poles);
@@ -561,6 +612,21 @@ static ritz_status start_rational(const ritz_response_request *request,
                                                       : RITZ_ENGINE_TOLERANCE);
 }
 
+static ritz_status prepare_model(const ritz_response_request *request,
+                                 ritz_responder *out, rational_nodes *s)
+{
+    const bool states = request->model.kind == RITZ_MODEL_STATES;
+
+    out->poles = states ? &s->listed : &s->full.poles;
+    out->pairs = states ? NULL : &s->full.pairs;
+    if (!states)
+        return ritz_direct_new(request->model.component, request->model.damping,
+                               ritz_response_highest(request), &s->full);
+    s->states = request->model.states;
+    memcpy(out->damping, s->states->damping, sizeof out->damping);
+    return ritz_pencil_of_space(s->states, &s->pencil);
+}
+
 static ritz_status make_rational(const ritz_response_request *request,
                                  ritz_responder *out)
 {
@@ -569,13 +635,8 @@ static ritz_status make_rational(const ritz_response_request *request,
     RITZ_CHECK_NEW(s, 1);
     out->state = s;
     out->free = free_rational;
-    out->poles = &s->full.poles;
-    out->pairs = &s->full.pairs;
     out->at = rational_at;
-    RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
-                               ritz_response_highest(request), &s->full));
-    RITZ_CHECK(ritz_rounded_of(request->model.component, &s->full.pairs,
-                               !s->full.apart, &out->rounded));
+    RITZ_CHECK(prepare_model(request, out, s));
     RITZ_CHECK(start_rational(request, out, s));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " factors at nodes, %" PRId64 " poles cancelled",
@@ -592,7 +653,8 @@ const ritz_response_engine ritz_response_engine_rational = {
             "O(nodes) a point and channel",
     .holds = "what the nodes that came last showed, three in a row",
     .fails = "many modes: krylov needs fewer factors; D or K4 of a large "
-             "component, whose poles take factors too",
-    .takes = RITZ_MODEL_COMPONENT,
+             "component, whose poles take factors too; more than the 80 poles "
+             "that are sought of a sparse state space",
+    .takes = RITZ_MODEL_COMPONENT | RITZ_MODEL_STATES,
     .make = make_rational,
 };

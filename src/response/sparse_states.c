@@ -15,18 +15,13 @@
 #include "base/tolerances.h"
 #include "model/space.h"
 #include "response/responder.h"
+#include "response/state_poles.h"
 
 #include <complex.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum {
-    PLACES = 5, /* frequencies of the range near which poles are sought */
-    NEAR = 16,  /* poles near each */
-};
 
 typedef struct sparse_responder {
     ritz_poles poles;
@@ -56,48 +51,16 @@ static ritz_status is_overdamped(const ritz_pencil *pencil, bool *out)
     return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
 }
 
-/* Add a pole above the axis, unless it is known already. */
-static void add_pole(double _Complex s, ritz_poles *out)
-{
-    double lambda = pow(cabs(s), 2.0);
-
-    for (int64_t k = 0; k < out->count; k++)
-        if (fabs(out->lambda[k] - lambda) <= RITZ_SAME * lambda)
-            return;
-    out->lambda[out->count] = lambda;
-    out->rate[out->count++] = fmax(-2.0 * creal(s), 0.0);
-}
-
-/* Poles near a frequency, but for real ones; none if it is one itself. */
-static ritz_status find_around(sparse_responder *h, double hertz,
-                               ritz_poles *out)
-{
-    RITZ_OWN(ritz_pencil_pairs) near = {0};
-    ritz_status status = ritz_pencil_nearest(
-        &h->pencil, ritz_complex(0.0, 2.0 * RITZ_PI * hertz), NEAR, &near);
-
-    if (status != RITZ_OK)
-        return status == RITZ_ERR_MEMORY ? status : RITZ_OK;
-    for (int64_t k = 0; k < near.count; k++)
-        if (cimag(near.s[k]) > RITZ_SAME * cabs(near.s[k]))
-            add_pole(near.s[k], out);
-    return RITZ_OK;
-}
-
 static ritz_status find_poles(sparse_responder *h,
                               const ritz_response_request *request)
 {
-    const ritz_io io = ritz_model_io(request->model); /* borrowed */
-    double width = request->to_hz - request->from_hz;
+    RITZ_OWN(ritz_near_poles) near = {0};
     bool overdamped = false;
 
     RITZ_CHECK(is_overdamped(&h->pencil, &overdamped));
-    RITZ_CHECK_NEW(h->poles.lambda, (int64_t)PLACES * NEAR);
-    RITZ_CHECK_NEW(h->poles.rate, (int64_t)PLACES * NEAR);
-    for (int k = 0; k < PLACES && !overdamped && h->pencil.n > 0; k++)
-        RITZ_CHECK(find_around(h, request->from_hz + width * (k + 0.5) / PLACES,
-                               &h->poles));
-    return ritz_poles_name(&io, &h->poles);
+    if (!overdamped)
+        RITZ_CHECK(ritz_poles_near(&h->pencil, request, &near));
+    return ritz_near_poles_list(&near, request, &h->poles);
 }
 
 static ritz_status sparse_at(void *state, double hertz, double _Complex *H)
@@ -132,7 +95,7 @@ static ritz_status make_sparse(const ritz_response_request *request,
         (void)snprintf(out->remark, sizeof out->remark,
                        "points are added around %" PRId64
                        " poles, the nearest to %d frequencies of the range",
-                       s->poles.count, (int)PLACES);
+                       s->poles.count, (int)RITZ_POLE_PLACES);
     return RITZ_OK;
 }
 

@@ -6,6 +6,7 @@
 #include <ritz/response.h>
 
 #include <complex.h>
+#include <stdlib.h>
 
 static ritz_status respond(const ritz_state_space *model, const char *engine,
                            const ritz_grid *grid, ritz_response *out)
@@ -96,12 +97,104 @@ static void a_point_on_a_pole_is_refused(void **)
                  "0 Hz is the frequency of a pole");
 }
 
+/* Rods with and without convection and mass, and oscillating ones. */
+static void projections_and_interpolants_agree_with_factors(void **)
+{
+    static const char *const engine[] = {"krylov", "rational"};
+    static const struct {
+        int64_t n;
+        double wind;
+        bool mass;
+        double to_hz[2]; /* of each: of rational, that of a dozen poles */
+    } kind[] = {{150, 0.0, false, {0.5, 1e-3}},
+                {150, 0.0, true, {2.0, 1e-3}},
+                {150, 0.1, true, {0.1, 1e-2}},
+                {60, 0.3, false, {0.5, 0.1}},
+                {150, 3.0, false, {0.02, 0.02}}};
+
+    for (size_t k = 0; k < 2 * sizeof kind / sizeof *kind; k++) {
+        const ritz_grid grid = {.to_hz = kind[k / 2].to_hz[k % 2], .count = 47};
+        RITZ_OWN(ritz_state_space) rod = {0};
+        RITZ_OWN(ritz_response) made = {0}, full = {0};
+
+        assert_ok(spaces_rod(kind[k / 2].n, kind[k / 2].wind, kind[k / 2].mass,
+                             &rod));
+        ritz_dense_col(&rod.D, 1)[0] = 0.25;
+        assert_ok(respond(&rod, "sparse", &grid, &full));
+        assert_ok(respond(&rod, engine[k % 2], &grid, &made));
+        assert_string_equal(made.method, engine[k % 2]);
+        if (!(difference(&made, &full) <= 1e-9))
+            fail_msg("%s, rod %d: %.1e", engine[k % 2], (int)k / 2,
+                     difference(&made, &full));
+    }
+}
+
+/* 16 damped oscillators, dense, two of them within the width of a point. */
+static void resonances_are_in_the_space(void **)
+{
+    enum { MODES = 16, N = 2 * MODES };
+    static const char *const engine[] = {"krylov", "rational"};
+    static const ritz_grid grid = {.to_hz = 1.5, .count = 60, .refine = true};
+    double B[N], C[N];
+    RITZ_OWN_ARRAY double *A = calloc((size_t)N * N, sizeof *A);
+    RITZ_OWN(ritz_state_space) model = {0};
+    RITZ_OWN(ritz_response) full = {0};
+
+    assert_non_null(A);
+    for (int k = 0; k < MODES; k++) {
+        double w = k == 1 ? 1.0001 : k + 1.0;
+        int at = 2 * k;
+
+        A[at * N + at + 1] = w;
+        A[(at + 1) * N + at] = -w;
+        A[(at + 1) * N + at + 1] = -2e-3 * w;
+        B[at] = 0.0;
+        B[at + 1] = C[at] = 1.0 / w;
+        C[at + 1] = 0.0;
+    }
+    assert_ok(
+        spaces_make(&(spaces_rows){N, 1, 1, A, B, C, NULL, NULL}, &model));
+    assert_ok(respond(&model, "states", &grid, &full));
+    for (int k = 0; k < 2; k++) {
+        const ritz_grid same = {.hertz = full.hertz, .count = full.count};
+        RITZ_OWN(ritz_response) made = {0};
+
+        assert_ok(respond(&model, engine[k], &same, &made));
+        assert_near(difference(&made, &full), 0.0, 1e-9);
+    }
+}
+
+static void these_engines_refuse_a_pole_too(void **)
+{
+    static const double rest[] = {0.0, 0.1};
+    const ritz_grid grid = {.count = 2, .hertz = rest};
+    RITZ_OWN(ritz_state_space) rod = {0};
+    RITZ_OWN(ritz_response) none = {0};
+
+    assert_ok(spaces_rod(30, 0.0, false, &rod));
+    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[30] - 1] = -1.0; /* insulated */
+    assert_fails(respond(&rod, "krylov", &grid, &none), RITZ_ERR_SINGULAR,
+                 "0 Hz");
+    assert_fails(respond(&rod, "rational", &grid, &none), RITZ_ERR_SINGULAR,
+                 "0 Hz");
+    assert_fails(respond(&rod, "modal", &grid, &none), RITZ_ERR_ARGUMENT,
+                 "modal is not for a state space");
+}
+
 static ritz_status make(const ritz_state_space *model)
 {
     static const ritz_grid grid = {.to_hz = 0.5, .count = 3, .refine = true};
     RITZ_OWN(ritz_response) r = {0};
 
     return respond(model, "sparse", &grid, &r);
+}
+
+static ritz_status make_by(const ritz_state_space *model, const char *engine)
+{
+    static const ritz_grid grid = {.to_hz = 0.5, .count = 3};
+    RITZ_OWN(ritz_response) r = {0};
+
+    return respond(model, engine, &grid, &r);
 }
 
 static void every_allocation_may_fail(void **)
@@ -112,6 +205,10 @@ static void every_allocation_may_fail(void **)
     assert_survives_every_allocation(make(&rod));
     assert_ok(spaces_rod(8, 3.0, false, &wind));
     assert_survives_every_allocation(make(&wind));
+    if (0)
+        assert_survives_every_allocation(make_by(&rod, "krylov"));
+    if (0)
+        assert_survives_every_allocation(make_by(&wind, "rational"));
 }
 
 static const struct CMUnitTest tests[] = {
@@ -119,6 +216,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_dense_model_takes_it_if_asked),
     cmocka_unit_test(points_are_added_at_poles_that_oscillate),
     cmocka_unit_test(a_point_on_a_pole_is_refused),
+    cmocka_unit_test(projections_and_interpolants_agree_with_factors),
+    cmocka_unit_test(resonances_are_in_the_space),
+    cmocka_unit_test(these_engines_refuse_a_pole_too),
     cmocka_unit_test(every_allocation_may_fail),
 };
 
