@@ -101,7 +101,7 @@ ritz_status ritz_peak_find(ritz_peak *peak, int64_t count, const double *w)
     RITZ_CHECK_NEW(value, count);
     RITZ_CHECK(ritz_peak_at(peak, count, w, value));
     RITZ_CHECK(ritz_peak_at(peak, 1, &far, &at_infinity));
-    while (brackets < BRACKETS * MOST_PEAKS) {
+    while (brackets < (int64_t)BRACKETS * MOST_PEAKS) {
         int64_t k = next_highest_point(count, value);
 
         if (k < 0 || value[k] < RITZ_PEAK_WORTH * peak->value)
