@@ -423,8 +423,18 @@ static void what_cannot_be_tuned_is_refused_in_words(void **state)
     request.model = a.model;
     assert_fails(ritz_tuning_of(&request, &found), RITZ_ERR_ARGUMENT,
                  "the H2 norm is infinite wherever it was tried");
-    a.io.C.val[0] = a.io.C.val[1] = 0.0;
-    request.tuned = (const ritz_tuned[]){{1, first, {0.5, 2.0}, {3.0, 3.0}}};
+}
+
+static void a_norm_of_zero_is_not_tuned(void **)
+{
+    static const ritz_tuned tuned[] = {{1, first, {0.5, 2.0}, {3.0, 3.0}}};
+    RITZ_OWN(absorber) a = {0};
+    ritz_tuning_request request = {.count = 1, .tuned = tuned};
+    ritz_tuning found = {0};
+
+    make_absorber(0.5, &a);
+    a.io.C.val[0] = 0.0;
+    request.model = a.model;
     assert_fails(ritz_tuning_of(&request, &found), RITZ_ERR_ARGUMENT,
                  "the H2 norm is 0 whatever the dampers do: no output "
                  "observes what the inputs drive");
@@ -499,6 +509,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_space_that_misleads_is_doubled),
     cmocka_unit_test(places_are_those_of_an_exhaustive_search),
     cmocka_unit_test(what_cannot_be_tuned_is_refused_in_words),
+    cmocka_unit_test(a_norm_of_zero_is_not_tuned),
     cmocka_unit_test(too_many_combinations_are_refused),
     cmocka_unit_test(no_allocation_is_forgotten),
 };
