@@ -10,13 +10,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* LU := its factors; the reciprocal condition, 0 if it is singular. */
+static ritz_status factor_in_place(ritz_dense *LU, int *pivot, double *rcond)
+{
+    int n = (int)LU->nrow, info = 0;
+    double norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, LU->val, n);
+
+    *rcond = 0.0;
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, LU->val, n, pivot) == 0)
+        info =
+            LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, LU->val, n, norm, rcond);
+    RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR, RITZ_ERR_MEMORY,
+                   "no memory for the condition of a matrix");
+    return RITZ_OK;
+}
+
 ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X)
 {
     int n = (int)A->nrow;
     RITZ_OWN(ritz_dense) LU = {0};
     RITZ_OWN_ARRAY lapack_int *pivot = NULL;
-    double norm = 0.0;
     double rcond = 0.0;
 
     RITZ_REFUSE_IF(A->nrow != A->ncol || X->nrow != A->nrow, RITZ_ERR_ARGUMENT,
@@ -25,13 +39,91 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_copy(A, &LU));
     RITZ_CHECK_NEW(pivot, n);
-    norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, LU.val, n);
-    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, LU.val, n, pivot) == 0)
-        (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, LU.val, n, norm, &rcond);
+    RITZ_CHECK(factor_in_place(&LU, pivot, &rcond));
     RITZ_REFUSE_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
                    "a matrix is singular to working accuracy");
     (void)LAPACKE_dgetrs(LAPACK_COL_MAJOR, transposed ? 'T' : 'N', n,
                          (int)X->ncol, LU.val, n, pivot, X->val, n);
+    return RITZ_OK;
+}
+
+void ritz_general_factor_free(ritz_general_factor *F)
+{
+    ritz_dense_free(&F->LU);
+    RITZ_FREE(F->pivot, F->row, F->col);
+    *F = (ritz_general_factor){0};
+}
+
+/* Rows and columns of one size; false where one of them is zero. */
+static bool equilibrate(ritz_dense *A, double *row, double *col)
+{
+    int n = (int)A->nrow;
+    double row_spread = 0.0, col_spread = 0.0, largest = 0.0;
+
+    if (LAPACKE_dgeequb(LAPACK_COL_MAJOR, n, n, A->val, n, row, col,
+                        &row_spread, &col_spread, &largest) != 0)
+        return false;
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++)
+            ritz_dense_col(A, j)[i] *= row[i] * col[j];
+    return true;
+}
+
+ritz_status ritz_general_factor_new(const ritz_dense *A,
+                                    ritz_general_factor *out)
+{
+    RITZ_OWN(ritz_general_factor) F = {0};
+    double rcond = 0.0;
+
+    RITZ_REFUSE_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
+                   "a system of equations is not square");
+    RITZ_CHECK(ritz_dense_copy(A, &F.LU));
+    RITZ_CHECK_NEW(F.pivot, A->nrow);
+    if (A->nrow > 0)
+        RITZ_CHECK(factor_in_place(&F.LU, F.pivot, &rcond));
+    if (A->nrow > 0 && !(rcond > DBL_EPSILON)) {
+        ritz_dense_free(&F.LU);
+        RITZ_CHECK(ritz_dense_copy(A, &F.LU));
+        RITZ_CHECK_NEW(F.row, A->nrow);
+        RITZ_CHECK_NEW(F.col, A->nrow);
+        if (equilibrate(&F.LU, F.row, F.col))
+            RITZ_CHECK(factor_in_place(&F.LU, F.pivot, &rcond));
+    }
+    RITZ_REFUSE_IF(A->nrow > 0 && !(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
+                   "a matrix is singular to working accuracy");
+    RITZ_MOVE(*out, F);
+    return RITZ_OK;
+}
+
+static void scale_rows(const double *by, ritz_dense *X)
+{
+    for (int64_t j = 0; by && j < X->ncol; j++)
+        for (int64_t i = 0; i < X->nrow; i++)
+            ritz_dense_col(X, j)[i] *= by[i];
+}
+
+void ritz_general_factor_solve(const ritz_general_factor *F, bool transposed,
+                               ritz_dense *X)
+{
+    int n = (int)X->nrow;
+
+    if (n == 0 || X->ncol == 0)
+        return;
+    scale_rows(transposed ? F->col : F->row, X);
+    (void)LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, transposed ? 'T' : 'N', n,
+                              (int)X->ncol, F->LU.val, n, F->pivot, X->val, n);
+    scale_rows(transposed ? F->row : F->col, X);
+}
+
+ritz_status ritz_general_solve_scaled(const ritz_dense *A, bool transposed,
+                                      ritz_dense *X)
+{
+    RITZ_OWN(ritz_general_factor) F = {0};
+
+    if (A->nrow == 0 || X->ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_general_factor_new(A, &F));
+    ritz_general_factor_solve(&F, transposed, X);
     return RITZ_OK;
 }
 

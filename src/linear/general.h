@@ -22,6 +22,33 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X);
 
 /**
+ * LU factor of a matrix whose rows and columns have units of their own, as
+ * coordinates of a reduced model do: where it looks singular, they are scaled
+ * by powers of two before it is called so.
+ */
+typedef struct ritz_general_factor {
+    ritz_dense LU;
+    int *pivot;
+    double *row, *col; /* scales; NULL: none */
+} ritz_general_factor;
+
+/** @return RITZ_ERR_SINGULAR if A is singular to working accuracy */
+ritz_status ritz_general_factor_new(const ritz_dense *A,
+                                    ritz_general_factor *out);
+
+/** X := A^-1 X; X := A'^-1 X if @p transposed. */
+void ritz_general_factor_solve(const ritz_general_factor *F, bool transposed,
+                               ritz_dense *X);
+
+void ritz_general_factor_free(ritz_general_factor *F);
+
+RITZ_PAIR_OF(ritz_general_factor);
+
+/** As ritz_general_solve, of such a matrix. */
+ritz_status ritz_general_solve_scaled(const ritz_dense *A, bool transposed,
+                                      ritz_dense *X);
+
+/**
  * A := L of A = L L', lower triangles, and A's reciprocal condition number, 0
  * if it is not definite.
  */

@@ -150,7 +150,8 @@ static ritz_status massless_share(const ritz_structure *model,
     RITZ_CHECK(ritz_dense_copy(&model->K, &A));
     ritz_dense_add(s, &model->M, &A);
     RITZ_CHECK(ritz_dense_copy(X, &Y));
-    RITZ_CHECK_IN("motion without mass", ritz_general_solve(&A, false, &Y));
+    RITZ_CHECK_IN("motion without mass",
+                  ritz_general_solve_scaled(&A, false, &Y));
     *size = ritz_dense_max(&Y);
     RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, X, &q));
     for (int64_t j = 0; j < q.ncol; j++)

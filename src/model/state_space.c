@@ -231,7 +231,7 @@ static ritz_status divide_mass(const ritz_structure *model, const ritz_dense *B,
                                ritz_dense *X)
 {
     RITZ_CHECK(ritz_dense_copy(B, X));
-    return ritz_general_solve(&model->M, false, X);
+    return ritz_general_solve_scaled(&model->M, false, X);
 }
 
 /* x = [u; u']; RITZ_ERR_SINGULAR if M is. */

@@ -5,8 +5,6 @@
 
 #include <cblas.h>
 #include <complex.h>
-#include <float.h>
-#include <lapacke.h>
 #include <stdlib.h>
 
 void ritz_motion_gemv(const ritz_dense *A, double alpha, const double *x,
@@ -58,22 +56,13 @@ double ritz_motion_form(const ritz_dense *A, const double *x)
 static ritz_status factor_dense(const ritz_motion *motion, double m, double d,
                                 double k, ritz_effective *F)
 {
-    int n = (int)F->n;
-    double norm = 0.0, rcond = 0.0;
+    RITZ_OWN(ritz_dense) sum = {0};
 
-    if (n == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_new(n, n, &F->LU));
-    RITZ_CHECK_NEW(F->pivot, n);
+    RITZ_CHECK(ritz_dense_new(F->n, F->n, &sum));
     for (int64_t i = 0; i < F->n * F->n; i++)
-        F->LU.val[i] = m * motion->M.val[i] + k * motion->K.val[i] +
-                       (motion->D.val ? d * motion->D.val[i] : 0.0);
-    norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', n, n, F->LU.val, n);
-    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, F->LU.val, n, F->pivot) == 0)
-        (void)LAPACKE_dgecon(LAPACK_COL_MAJOR, '1', n, F->LU.val, n, norm,
-                             &rcond);
-    RITZ_REFUSE_IF(!(rcond > DBL_EPSILON), RITZ_ERR_SINGULAR,
-                   "the matrix of a step is singular to working accuracy");
+        sum.val[i] = m * motion->M.val[i] + k * motion->K.val[i] +
+                     (motion->D.val ? d * motion->D.val[i] : 0.0);
+    RITZ_CHECK_IN("a step", ritz_general_factor_new(&sum, &F->dense));
     return RITZ_OK;
 }
 
@@ -139,18 +128,16 @@ ritz_status ritz_effective_new(const ritz_motion *motion, double m, double d,
 
 ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
 {
-    int n = (int)F->n;
     ritz_dense X = {F->n, columns, x}; /* borrowed */
 
-    if (n == 0 || columns == 0)
+    if (F->n == 0 || columns == 0)
         return RITZ_OK;
     if (F->spd)
         return ritz_factor_solve(F->spd, &X);
     if (F->ldl)
         return ritz_ldl_solve(F->ldl, &X);
     if (!F->general) {
-        (void)LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, (int)columns,
-                                  F->LU.val, n, F->pivot, x, n);
+        ritz_general_factor_solve(&F->dense, false, &X);
         return RITZ_OK;
     }
     for (int64_t j = 0; j < columns; j++, x += F->n) { /* real right sides */
@@ -165,8 +152,7 @@ ritz_status ritz_effective_solve(ritz_effective *F, int64_t columns, double *x)
 
 void ritz_effective_free(ritz_effective *F)
 {
-    ritz_dense_free(&F->LU);
-    free(F->pivot);
+    ritz_general_factor_free(&F->dense);
     ritz_factor_free(&F->spd);
     ritz_ldl_free(&F->ldl);
     ritz_zldl_free(&F->general);

@@ -222,7 +222,7 @@ static ritz_status write_out(const ritz_dense *Ca, ritz_motion *m)
     if (ritz_dense_max(Ca) == 0.0)
         return RITZ_OK;
     RITZ_CHECK(ritz_general_transpose(Ca, &X));
-    RITZ_CHECK_IN("M", ritz_general_solve(&m->M, true, &X));
+    RITZ_CHECK_IN("M", ritz_general_solve_scaled(&m->M, true, &X));
     RITZ_CHECK(ritz_general_transpose(&X, &W));
     RITZ_CHECK(ritz_dense_mul(&W, &m->K, &WK));
     ritz_dense_add(-1.0, &WK, &m->C);
@@ -265,7 +265,7 @@ static ritz_status fill_dense(const ritz_structure *s, const ritz_io *io,
     RITZ_CHECK(ritz_dense_copy(&io->Cv, &m->Cv));
     RITZ_CHECK(ritz_dense_new(io->num_outputs, io->num_inputs, &m->feed));
     RITZ_CHECK(ritz_dense_copy(&io->B, &m->push));
-    RITZ_CHECK_IN("M", ritz_general_solve(&m->M, false, &m->push));
+    RITZ_CHECK_IN("M", ritz_general_solve_scaled(&m->M, false, &m->push));
     return write_out(&io->Ca, m);
 }
 

@@ -11,6 +11,7 @@
 #ifndef RITZ_SIMULATE_MOTION_H
 #define RITZ_SIMULATE_MOTION_H
 
+#include "linear/general.h"
 #include "model/modal.h"
 
 #include <ritz/matrix.h>
@@ -73,8 +74,7 @@ double ritz_motion_dot(int64_t n, const double *a, const double *b);
 /* A factor of m M + d D + k K. */
 typedef struct ritz_effective {
     int64_t n;
-    ritz_dense LU;
-    int *pivot;
+    ritz_general_factor dense;
     ritz_factor *spd;
     ritz_ldl *ldl;
     ritz_zldl *general; /* of the sparse matrix below, which it borrows */

@@ -55,6 +55,29 @@ works 'a table is interpolated' awk -F '\t' \
 expect 0 '3 times to 0.4 s' ritz-simulate --seconds 0.4 --step 0.05 --every 4 \
     --input torque=impulse reduced.h5 -o few.h5
 
+# Springs of 1e9 N/m: static responses are columns of 1e-9, and M of these is
+# 1e-18 beside the 1 of modes. That is no singular matrix.
+awk 'BEGIN {
+    n = 8; k = 1e9
+    head = "%%MatrixMarket matrix coordinate real symmetric"
+    print head >"K.mtx"; print n, n, 2 * n - 1 >"K.mtx"
+    print head >"M.mtx"; print n, n, n >"M.mtx"
+    for (i = 1; i <= n; i++) {
+        print i, i, i == 1 || i == n ? k : 2 * k >"K.mtx"
+        if (i > 1)
+            print i, i - 1, -k >"K.mtx"
+        print i, i, 1 >"M.mtx"
+    }
+}'
+ritz-import -q --stiffness K.mtx --mass M.mtx --rows 0 --port end=8 \
+    --input push=1:0 --output-at tip=8:0,1:0*-1 -o stiff.h5
+for name in normal-modes macneal macneal-rubin; do
+    ritz-basis -q "$name" --modes 4 stiff.h5 -o basis.h5
+    ritz-reduce -q stiff.h5 basis.h5 -o soft.h5
+    expect 0 'trapezoidal, step' ritz-simulate --method trapezoidal \
+        --seconds 0.01 --input push=step soft.h5 -o soft-run.h5
+done
+
 # --- what it costs -----------------------------------------------------------
 
 json 0 ritz-simulate --cost --band-hz 0,10 --damping 'modal 0.01' \

@@ -267,6 +267,50 @@ static void a_component_and_its_dense_matrices_answer_alike(void **state)
         }
 }
 
+/* The same dense model with its last coordinate in another unit. */
+static void change_unit(motions *m, double by)
+{
+    ritz_dense *const square[] = {&m->K, &m->M, &m->D};
+    ritz_io *io = &m->component.io;
+    ritz_dense *const wide[] = {&io->C, &io->Cv, &io->Ca};
+
+    for (int k = 0; k < 3; k++) {
+        for (int64_t i = 0; i < 3; i++) {
+            ritz_dense_col(square[k], 2)[i] *= by;
+            ritz_dense_col(square[k], i)[2] *= by;
+        }
+        ritz_dense_col(wide[k], 2)[0] *= by;
+    }
+    io->B.val[2] *= by;
+}
+
+/*
+ * A static response to a unit force is a column of 1e-9 on steel, of M 1e-18
+ * beside the 1 of a mode: no reason to call M singular.
+ */
+static void coordinates_may_have_any_units(void **state)
+{
+    static const ritz_integrator *const all[] = {
+        &ritz_integrator_trapezoidal, &ritz_integrator_generalised_alpha,
+        &ritz_integrator_central_difference};
+
+    (void)state;
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        ritz_simulation_request request = asking(all[k], 2.0, 0.02);
+        RITZ_OWN(motions) m = {0};
+        RITZ_OWN(ritz_simulation) plain = {0}, scaled = {0};
+        double off = 1.0;
+
+        assert_ok(motions_new(true, &m));
+        m.component.io.Ca.val[1] = 0.1;
+        assert_ok(ritz_simulate(m.dense, &request, &plain));
+        change_unit(&m, 1e-10);
+        assert_ok(ritz_simulate(m.dense, &request, &scaled));
+        assert_ok(ritz_simulation_difference(&plain, &scaled, &off));
+        assert_true(off < 1e-12);
+    }
+}
+
 /* All modes are the model; and of some, statics are of all. */
 static void a_component_goes_by_its_modes(void **state)
 {
@@ -585,6 +629,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(an_explicit_step_above_its_limit_is_refused_and_grows),
     cmocka_unit_test(central_differences_stand_damping_to_their_limit),
     cmocka_unit_test(a_component_and_its_dense_matrices_answer_alike),
+    cmocka_unit_test(coordinates_may_have_any_units),
     cmocka_unit_test(a_component_goes_by_its_modes),
     cmocka_unit_test(a_dof_without_mass_follows_at_once),
     cmocka_unit_test(an_impulse_is_a_velocity),
