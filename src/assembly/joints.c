@@ -233,6 +233,23 @@ enum { OUT_OF_PLANE = -1, ABSENT = -2 };
 
 static const char directions[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
 
+/* Words for a model that lies in a plane: it has two translations. */
+static const char *guess_plane(const int64_t row[static 6])
+{
+    static const char *const words[] = {
+        "", ": models in a plane are joined where the scene says 'plane: yz'",
+        ": models in a plane are joined where the scene says 'plane: xz'",
+        ": models in a plane are joined where the scene says 'plane: xy'"};
+    int missing = 0, across = 0;
+
+    for (int k = 0; k < 3; k++)
+        if (row[k] < 0) {
+            missing++;
+            across = k + 1;
+        }
+    return words[missing == 1 ? across : 0];
+}
+
 /* Port rows of the six directions of a joint's one grid. In space all of them
    are due, in a plane those that the joint's relations have. */
 static ritz_status find_six(const ritz_joint_end *end, const ritz_joint *joint,
@@ -266,9 +283,9 @@ static ritz_status find_six(const ritz_joint_end *end, const ritz_joint *joint,
     }
     RITZ_REFUSE_IF(missing[0], RITZ_ERR_ARGUMENT,
                    "a %s holds one six-dof grid on each side, grid %" PRId64
-                   " of '%s/%s' has no %s",
+                   " of '%s/%s' has no %s%s",
                    called, port->dof[0].grid, end->component, port->name,
-                   missing);
+                   missing, guess_plane(row));
     return RITZ_OK;
 }
 

@@ -83,7 +83,7 @@ static ritz_status check_limit(const ritz_component *full,
                        (io->num_inputs == 0 || io->num_outputs == 0),
                    RITZ_ERR_ARGUMENT,
                    "a tolerance of '%s' needs inputs and outputs, and there "
-                   "are %" PRId64 " and %" PRId64,
+                   "are %" PRId64 " and %" PRId64 ": 'frequency=X' needs none",
                    kind->word, io->num_inputs, io->num_outputs);
     RITZ_REFUSE_IF(
         kind->needs & RITZ_NEEDS_DAMPING && !damped, RITZ_ERR_ARGUMENT,

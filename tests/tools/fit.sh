@@ -123,6 +123,7 @@ expect 1 "a tolerance of 'response' needs inputs and outputs" ritz-fit \
     still.yaml --tolerance response=1e-2 -o s.h5
 expect 1 "a tolerance of 'flexible' needs inputs and outputs" ritz-fit \
     still.yaml --tolerance 1e-2 -o s.h5
+expect 1 "'frequency=X' needs none" ritz-fit still.yaml --tolerance 1e-2 -o s.h5
 
 # --- where an answer goes is seen to before the search ---------------------------
 

@@ -186,6 +186,8 @@ expect 0 'mac' ritz-verify --at elbow=45 --band-hz 0,20 --limit-frequency 1e-2 \
 sed '/^plane/d' free.yaml >space.yaml
 expect 1 'holds one six-dof grid on each side, grid 7 of '\''upper/tip'\'' has no T3' \
     ritz-assemble space.yaml -o none.h5
+expect 1 "are joined where the scene says 'plane: xy'" ritz-assemble space.yaml \
+    -o none.h5
 sed 's/^plane: xy/plane: xz/' free.yaml >wrong.yaml
 expect 1 'wrong.yaml:7:71: the models lie in a plane, and the axis of a hinge must be' \
     ritz-assemble wrong.yaml -o none.h5

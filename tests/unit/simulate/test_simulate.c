@@ -290,12 +290,13 @@ static void change_unit(motions *m, double by)
  */
 static void coordinates_may_have_any_units(void **state)
 {
-    static const ritz_integrator *const all[] = {
+    enum { ALL = 3 };
+    const ritz_integrator *const all[ALL] = {
         &ritz_integrator_trapezoidal, &ritz_integrator_generalised_alpha,
         &ritz_integrator_central_difference};
 
     (void)state;
-    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+    for (int k = 0; k < ALL; k++) {
         ritz_simulation_request request = asking(all[k], 2.0, 0.02);
         RITZ_OWN(motions) m = {0};
         RITZ_OWN(ritz_simulation) plain = {0}, scaled = {0};
