@@ -69,7 +69,8 @@ typedef struct ritz_response_request {
     ritz_model model;      /* that responds */
     double from_hz, to_hz; /* the range of later requests */
     double up_to_hz;       /* modes of a component; 0: three times the end.
-                              Ratios damp all modes of up to 2000 dofs */
+                              Ratios damp all modes in any case, unless of
+                              more than 2000 dofs with D or K4 */
     double tolerance; /* of engines that approximate, relative to the largest
                          |H| of a channel; 0: 1e-9, and modal remarks on its
                          error alone */
@@ -95,9 +96,8 @@ extern const ritz_response_engine *const ritz_response_engines[];
 
 /**
  * The full matrices of a component at each point. Damping ratios act on all
- * modes of up to 2000 dofs; of larger components on the modes up to `up_to_hz`,
- * and what lies above them is undamped but for D and K4. Rayleigh damping is
- * exact. With D, K4 or Rayleigh damping a free body is refused at 0 Hz.
+ * modes; of components of more than 2000 dofs that have D or K4 on the modes up
+ * to `up_to_hz` alone. Rayleigh damping is exact. With D, K4 or Rayleigh damping a free body is refused at 0 Hz.
  */
 extern const ritz_response_engine ritz_response_engine_direct;
 
@@ -105,8 +105,8 @@ extern const ritz_response_engine ritz_response_engine_direct;
  * A sum of modes. Of a dense model all of them, with ratios of given damping
  * and of Phi'D Phi; where D couples modes, they are solved for together at each
  * point. Of a component those up to `up_to_hz`; modes above respond as a series
- * in w^2 that begins with their residual flexibility, damped by a M + b K and,
- * up to 2000 dofs, by ratios.
+ * in w^2 that begins with their residual flexibility, damped by a M + b K and
+ * by ratios.
  *
  * Where other damping acts on a component, the sum is compared with direct at
  * some resonances and between them. The remark says how much it is off; where
@@ -164,6 +164,13 @@ const char *ritz_responder_remark(const ritz_responder *responder);
 /** What rounding of a component's stiffness does to its responses, or no
  * motions. */
 ritz_rounded ritz_responder_rounded(const ritz_responder *responder);
+
+/**
+ * How much of H, relative to the largest |H| of a channel, is not known of what
+ * damping ratios do to the modes above those that are summed; 0 where these are
+ * all found, up to 2000 dofs.
+ */
+double ritz_responder_uncertainty(const ritz_responder *responder);
 
 /** The points of a grid, which must lie in the range that was asked for. */
 ritz_status ritz_responder_sample(ritz_responder *responder,

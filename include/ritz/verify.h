@@ -212,7 +212,7 @@ enum {
  * @param[in] request  copied
  * @return RITZ_ERR_ARGUMENT if the band is none
  * @cost   the modes to three times the band, or all of up to 2000 dofs with
- *         ratios; a factor a frequency where dampers couple modes of a model
+ *         ratios, of more some factors; a factor a frequency where dampers couple modes of a model
  *         that is not small
  */
 ritz_status ritz_reference_new(const ritz_component *full,

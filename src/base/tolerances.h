@@ -430,6 +430,16 @@
 /* A shift below this part of the largest K_jj / M_jj is lost in the rounding
    of K. */
 #define RITZ_SHIFT_LOST 1e-10
+/* What ratios change above the modes is settled where twice as many poles of
+   its space change it by less, of the largest |H|. */
+#define RITZ_RATIO_SETTLED 1e-9
+/* Of the same, relative to the largest |H|: beyond, it is said. */
+#define RITZ_RATIO_UNCERTAIN 1e-6
+/* Eigenvalues beyond one over this of the first are those of motions without
+   mass, for that space. */
+#define RITZ_RATIO_REACH 1e-13
+/* What is new in a vector of that space, relative. */
+#define RITZ_RATIO_INDEPENDENT 1e-10
 /* Terms must fall by this factor each: forty of them reach
    RITZ_SERIES_WITHIN. */
 #define RITZ_SERIES_FALLS 0.5

@@ -15,8 +15,9 @@
 #include <ritz/poles.h>
 #include <ritz/response.h>
 
-/* Components of so many dofs have all their modes damped by ratios: one dense
-   eigenproblem, a minute at most. Of larger ones only those that are summed. */
+/* Components of so many dofs have all their modes found where ratios damp them:
+   one dense eigenproblem, a minute at most. Of larger ones Ritz vectors take the
+   place of those that are not summed. */
 enum { RITZ_RATIO_DOFS = 2000 };
 
 /*
@@ -31,13 +32,15 @@ enum { RITZ_RATIO_DOFS = 2000 };
  *     1 / (z + i w d) - 1 / z = -i w d / (z (z + i w d)),
  *     z = lambda (1 + i w b) + i w a - w^2
  *
- * which is summed over all of them.
+ * which is summed over all of them, or over the Ritz vectors of ritz_ratio_space.
  */
 typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
-    int64_t num_damped; /* modes that were left out and have a rate */
+    int64_t num_damped; /* modes that were left out and have a rate; or Ritz
+                           vectors for these */
     double *lambda, *rate;
-    ritz_io modes; /* for these */
+    ritz_io modes;    /* for these */
+    double uncertain; /* what ratios change, relative to |H|; 0: rounding */
     double a, b;
     bool known;      /* a and b are all that D and K4 do to them */
     double unit;     /* of mu: term j is kept times its power j */
@@ -125,6 +128,17 @@ ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
                                 const ritz_damping *damping, bool beside,
                                 ritz_pairs *pairs, ritz_poles *out);
 
+/**
+ * The scale to which errors of each channel are relative: its largest |H|,
+ * but at least a billionth of the geometric mean of the largest in its row and
+ * in its column, below which a channel is rounding.
+ *
+ * @param[in]  peak   num_outputs x num_inputs, largest |H| of each channel
+ * @param[out] scale  of that size; may be @p peak
+ */
+void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
+                         const double *peak, double *scale);
+
 /** Whether a grid is one. @return RITZ_ERR_ARGUMENT */
 ritz_status ritz_grid_check(const ritz_grid *grid);
 
@@ -144,7 +158,7 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
 
 /**
  * Whether ratios damp all modes of a component, rather than those that are
- * summed: it has few enough dofs.
+ * summed: it has up to RITZ_RATIO_DOFS dofs, or neither D nor K4.
  */
 bool ritz_ratios_act_on_all(const ritz_component *component,
                             const ritz_damping *damping);
@@ -189,8 +203,21 @@ ritz_status ritz_residual_new(const ritz_component *component,
  */
 ritz_status ritz_residual_of_ratios(const ritz_component *component,
                                     const ritz_damping *damping,
-                                    const ritz_pairs *pairs,
+                                    const ritz_pairs *pairs, double out_hz,
                                     ritz_residual *out);
+
+/**
+ * The same for components of so many dofs that their modes cannot be found: Ritz
+ * pairs in the place of these, as many as settle what ratios change up to a
+ * third of @p out_hz, and `uncertain`.
+ *
+ * @param[in,out] r  with its terms, if it has any
+ * @cost a factor for each of up to 33 poles, n x 800 numbers at most
+ */
+ritz_status ritz_ratio_space(const ritz_component *component,
+                             const ritz_damping *damping,
+                             const ritz_pairs *pairs, double out_hz,
+                             ritz_residual *r);
 
 /** H += that part of a residual. */
 void ritz_residual_add_ratios(const ritz_residual *residual, double hertz,

@@ -1,16 +1,22 @@
 /*
  * Damping ratios act on every mode: D = 2 zeta M (M^-1 K)^1/2 of one ratio. Of
  * components that are not too large all modes are found; the lowest of them by
- * the sparse eigensolver, which has them to more digits.
+ * the sparse eigensolver, which has them to more digits. Of larger ones Ritz
+ * vectors take the place of the others (ratio_space.c), unless D or K4 couples
+ * them.
  */
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "poles/poles.h"
+
+#include <math.h>
 
 bool ritz_ratios_act_on_all(const ritz_component *component,
                             const ritz_damping *damping)
 {
     return ritz_damping_has_ratios(damping) &&
-           component->num_dofs <= RITZ_RATIO_DOFS;
+           (component->num_dofs <= RITZ_RATIO_DOFS ||
+            (!component->D.colptr && !component->K4.colptr));
 }
 
 ritz_status ritz_modes_above(const ritz_component *component,
@@ -55,4 +61,21 @@ ritz_status ritz_modes_of_whole(const ritz_component *component,
     all.sigma = low.sigma;
     RITZ_MOVE(*out, all);
     return RITZ_OK;
+}
+
+void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
+                         const double *peak, double *scale)
+{
+    for (int64_t i = 0; i < num_outputs; i++)
+        for (int64_t j = 0; j < num_inputs; j++) {
+            double row = 0.0, column = 0.0;
+
+            for (int64_t k = 0; k < num_inputs; k++)
+                row = fmax(row, peak[i * num_inputs + k]);
+            for (int64_t k = 0; k < num_outputs; k++)
+                column = fmax(column, peak[k * num_inputs + j]);
+            scale[i * num_inputs + j] =
+                fmax(peak[i * num_inputs + j],
+                     RITZ_CHANNEL_LEAST * sqrt(row * column));
+        }
 }

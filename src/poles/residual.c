@@ -12,7 +12,8 @@
  * by |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the
  * |mu| at the end of the range: powers of rad^2/s^2 would overflow.
  *
- * What ratios change is a sum over these modes, where all of them are known.
+ * What ratios change is a sum over these modes where all of them are known, and
+ * over Ritz vectors in their place where they are too many.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -352,11 +353,14 @@ static int64_t count_terms(double to_hz, double out_hz, ritz_residual *r)
 /* The modes above, with the rates of given ratios. */
 static ritz_status take_ratios(const ritz_component *component,
                                const ritz_damping *damping,
-                               const ritz_pairs *pairs, ritz_residual *r)
+                               const ritz_pairs *pairs, double out_hz,
+                               ritz_residual *r)
 {
     const int64_t first = pairs->Phi.ncol - pairs->num_rigid;
     RITZ_OWN(ritz_dense) Phi = {0};
 
+    if (component->num_dofs > RITZ_RATIO_DOFS)
+        return ritz_ratio_space(component, damping, pairs, out_hz, r);
     RITZ_CHECK_IN("modes above the band",
                   ritz_modes_above(component, pairs, &Phi, &r->lambda));
     r->num_damped = Phi.ncol;
@@ -391,81 +395,23 @@ ritz_status ritz_residual_new(const ritz_component *component,
         RITZ_CHECK(add_terms(component, &s, &r));
     }
     if (r.count > 0 && ritz_ratios_act_on_all(component, damping))
-        RITZ_CHECK(take_ratios(component, damping, pairs, &r));
+        RITZ_CHECK(take_ratios(component, damping, pairs, out_hz, &r));
     RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
 
 ritz_status ritz_residual_of_ratios(const ritz_component *component,
                                     const ritz_damping *damping,
-                                    const ritz_pairs *pairs, ritz_residual *out)
+                                    const ritz_pairs *pairs, double out_hz,
+                                    ritz_residual *out)
 {
     RITZ_OWN(ritz_residual) r = {.known = true, .unit = 1.0};
 
     if (ritz_ratios_act_on_all(component, damping) &&
         pairs->Phi.ncol < component->num_dofs)
-        RITZ_CHECK(take_ratios(component, damping, pairs, &r));
+        RITZ_CHECK(take_ratios(component, damping, pairs, out_hz, &r));
     RITZ_MOVE(*out, r);
     return RITZ_OK;
-}
-
-void ritz_residual_add_ratios(const ritz_residual *r, double hertz,
-                              double _Complex *H)
-{
-    const ritz_io *io = &r->modes;
-    const double w2 = ritz_eigen_lambda(hertz);
-    const double w = sqrt(w2);
-
-    for (int64_t k = 0; k < r->num_damped; k++) {
-        double lambda = r->lambda[k];
-        double _Complex z =
-            ritz_complex(lambda - w2, w * (r->a + r->b * lambda));
-        double _Complex iwd = ritz_complex(0.0, w * r->rate[k]);
-        double _Complex change = -iwd / (z * (z + iwd));
-
-        for (int64_t i = 0; i < io->num_outputs; i++) {
-            double _Complex c =
-                change * ritz_complex(ritz_dense_col(&io->C, k)[i] -
-                                          w2 * ritz_dense_col(&io->Ca, k)[i],
-                                      w * ritz_dense_col(&io->Cv, k)[i]);
-
-            for (int64_t j = 0; j < io->num_inputs; j++)
-                H[i * io->num_inputs + j] += c * ritz_dense_col(&io->B, j)[k];
-        }
-    }
-}
-
-void ritz_residual_add(const ritz_residual *residual, double hertz,
-                       double _Complex *H)
-{
-    const double *C = residual->part[0], *Cv = residual->part[1],
-                 *Ca = residual->part[2];
-    double w2 = ritz_eigen_lambda(hertz);
-    double w = sqrt(w2);
-    double _Complex stiff = ritz_complex(1.0, w * residual->b);
-    double _Complex mu = ritz_complex(w2, -w * residual->a) / stiff;
-    double _Complex power = 1.0 / stiff;
-    int64_t p = residual->num_outputs;
-    int64_t k = 0;
-
-    for (int64_t term = 0; term < residual->count; term++) {
-        for (int64_t j = 0; j < residual->num_inputs; j++)
-            for (int64_t i = 0; i < p; i++, k++)
-                H[i * residual->num_inputs + j] +=
-                    power * ritz_complex(C[k] - w2 * Ca[k], w * Cv[k]);
-        if (term + 1 < residual->count)
-            power *= mu / residual->unit;
-    }
-    ritz_residual_add_ratios(residual, hertz, H);
-}
-
-void ritz_residual_free(ritz_residual *residual)
-{
-    for (int k = 0; k < 3; k++)
-        free(residual->part[k]);
-    RITZ_FREE(residual->lambda, residual->rate);
-    ritz_io_free(&residual->modes);
-    *residual = (ritz_residual){0};
 }
 
 /*

@@ -5,10 +5,10 @@
  *     Z_0 = K + i K4 + i w D - w^2 M,    Rayleigh: (1 + i w b) K, a M too
  *
  * Damping ratios act on modes Phi: Z = Z_0 + M Phi E Phi'M with E = i w diag(2
- * zeta w_k), Phi being the modes up to a frequency. Those above, of a component
- * of up to RITZ_RATIO_DOFS dofs, are damped too: where it has D or K4, M Phi E
- * Phi'M of all modes is added to its D once, as a full matrix; where it has
- * not, the residual says what ratios change.
+ * zeta w_k), Phi being the modes up to a frequency. Those above are damped too:
+ * where a component has no D or K4, the residual says what ratios change; where
+ * it has, and up to RITZ_RATIO_DOFS dofs, M Phi E Phi'M of all modes is added to
+ * its D once, as a full matrix.
  *
  * Without D and K4 the modes decouple from the rest exactly,
  *
@@ -103,8 +103,8 @@ ritz_status ritz_direct_new(const ritz_component *component,
     RITZ_CHECK(ritz_poles_of_component(s.component, &s.damping, up_to_hz,
                                        &s.pairs, &s.poles));
     if (s.apart)
-        RITZ_CHECK(
-            ritz_residual_of_ratios(component, damping, &s.pairs, &s.rest));
+        RITZ_CHECK(ritz_residual_of_ratios(component, damping, &s.pairs,
+                                           up_to_hz, &s.rest));
     s.m = s.pairs.Phi.ncol;
     RITZ_CHECK(ritz_sparse_mul(&component->M, &s.pairs.Phi, &s.MPhi));
     RITZ_CHECK(ritz_impedance_new(s.component, &s.Z));
@@ -368,6 +368,7 @@ static ritz_status make_direct(const ritz_response_request *request,
     out->at = direct_at;
     RITZ_CHECK(ritz_direct_new(request->model.component, request->model.damping,
                                ritz_response_highest(request), s));
+    out->uncertain = s->rest.uncertain;
     return ritz_rounded_of(request->model.component, &s->pairs, !s->apart,
                            &out->rounded);
 }
@@ -377,8 +378,10 @@ const ritz_response_engine ritz_response_engine_direct = {
     .summary = "a sparse complex factor at each frequency",
     .when = "the reference; a handful of frequencies; anything that damps",
     .cost = "a factor for each point, and modes where ratios act on them",
-    .holds = "D, K4 and Rayleigh damping exactly; ratios on all modes to 2000 "
-             "dofs, beyond on the modes up to --up-to-hz",
+    .holds =
+        "D, K4 and Rayleigh damping exactly; ratios on all modes, beyond "
+        "2000 dofs to an uncertainty that is stated, or beside D and K4 on "
+        "the modes up to --up-to-hz",
     .fails = "many points of a large model take hours",
     .takes = RITZ_MODEL_COMPONENT,
     .make = make_direct,

@@ -571,6 +571,7 @@ static ritz_status make_krylov(const ritz_response_request *request,
                    k->full.m, k->space.V.ncol - k->full.m, k->corrections + 1,
                    k->points, k->worst * k->tolerance);
     ritz_krylov_space_free(&k->space); /* frees arrays of length n */
+    out->uncertain = k->full.rest.uncertain;
     RITZ_MOVE(k->rest, k->full.rest);
     ritz_direct_free(&k->full);
     return RITZ_OK;

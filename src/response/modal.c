@@ -268,6 +268,7 @@ static ritz_status make_modal(const ritz_response_request *request,
         ritz_rounded_of(model->component, &m->pairs, false, &out->rounded));
     RITZ_CHECK(ritz_residual_new(model->component, model->damping, &m->pairs,
                                  request->to_hz, highest, &m->residual));
+    out->uncertain = m->residual.uncertain;
     return m->residual.known ? RITZ_OK : judge_sum(request, m, out);
 }
 
@@ -279,7 +280,8 @@ const ritz_response_engine ritz_response_engine_modal = {
     .cost = "the modes; then O(modes) a point, O(modes^3) where D or K4 "
             "couples them; for a component with these also a dozen factors",
     .holds = "exact for dense models; of components without K4, and with no D "
-             "but a M + b K, to 1e-12; ratios damp all modes to 2000 dofs",
+             "but a M + b K, to 1e-12; ratios damp all modes, beyond 2000 "
+             "dofs to an uncertainty that is stated",
     .fails = "of components, K4 and any other D act on the modes that are "
              "summed alone: the error is measured, and direct takes over where "
              "it exceeds the tolerance",

@@ -637,6 +637,7 @@ static ritz_status make_rational(const ritz_response_request *request,
     out->free = free_rational;
     out->at = rational_at;
     RITZ_CHECK(prepare_model(request, out, s));
+    out->uncertain = s->full.rest.uncertain;
     RITZ_CHECK(start_rational(request, out, s));
     (void)snprintf(out->remark, sizeof out->remark,
                    "%" PRId64 " factors at nodes, %" PRId64 " poles cancelled",

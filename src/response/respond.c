@@ -31,12 +31,8 @@ ritz_response_engine_choose(const ritz_response_request *request,
         *why = "damping matrices act on all modes, which a sum of some misses";
         return &ritz_response_engine_krylov;
     }
-    if (ritz_damping_has_ratios(damping) && !ritz_ratios_act_on_all(c, damping))
-        *why = "without damping matrices modes are exact; those above the ones "
-               "that are summed respond without damping";
-    else
-        *why = "without damping matrices modes and the series of the rest are "
-               "exact";
+    *why = "without damping matrices modes and the series of the rest are "
+           "exact";
     return &ritz_response_engine_modal;
 }
 

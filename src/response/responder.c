@@ -287,6 +287,20 @@ static ritz_status check_needs(const ritz_response_engine *engine,
     return RITZ_OK;
 }
 
+/* Beside D or K4 of a large component ratios do not damp all modes. */
+static void remark_ratios(const ritz_response_request *request,
+                          ritz_responder *r)
+{
+    const size_t used = strlen(r->remark);
+
+    if (!r->component || !ritz_damping_has_ratios(&r->given) ||
+        ritz_ratios_act_on_all(r->component, &r->given))
+        return;
+    (void)snprintf(r->remark + used, sizeof r->remark - used,
+                   "%sratios damp the modes up to %g Hz alone",
+                   used > 0 ? "; " : "", ritz_response_highest(request));
+}
+
 ritz_status ritz_responder_new(const ritz_response_engine *engine,
                                const ritz_response_request *request,
                                ritz_responder **out)
@@ -305,6 +319,13 @@ ritz_status ritz_responder_new(const ritz_response_engine *engine,
     ritz_damping_print(&r->given, r->damping);
     RITZ_CHECK(new_noise(request, &r->noise));
     RITZ_CHECK(engine->make(request, r));
+    RITZ_REFUSE_IF(request->tolerance > 0.0 &&
+                       r->uncertain > request->tolerance,
+                   RITZ_ERR_CONVERGENCE,
+                   "what ratios do to the modes above is known to %.1e of the "
+                   "largest |H|, not %.1e: raise --up-to-hz",
+                   r->uncertain, request->tolerance);
+    remark_ratios(request, r);
     RITZ_MOVE(*out, r);
     return RITZ_OK;
 }
@@ -319,6 +340,11 @@ void ritz_responder_free(ritz_responder **responder)
         r->free(r->state);
     RITZ_FREE(r->state, r->noise.output, r->noise.input, r);
     *responder = NULL;
+}
+
+double ritz_responder_uncertainty(const ritz_responder *responder)
+{
+    return responder->uncertain;
 }
 
 const char *ritz_responder_remark(const ritz_responder *responder)
@@ -432,21 +458,4 @@ ritz_status ritz_responder_poles(const ritz_responder *responder,
     *count = n;
     *out = s;
     return RITZ_OK;
-}
-
-void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
-                         const double *peak, double *scale)
-{
-    for (int64_t i = 0; i < num_outputs; i++)
-        for (int64_t j = 0; j < num_inputs; j++) {
-            double row = 0.0, column = 0.0;
-
-            for (int64_t k = 0; k < num_inputs; k++)
-                row = fmax(row, peak[i * num_inputs + k]);
-            for (int64_t k = 0; k < num_outputs; k++)
-                column = fmax(column, peak[k * num_inputs + j]);
-            scale[i * num_inputs + j] =
-                fmax(peak[i * num_inputs + j],
-                     RITZ_CHANNEL_LEAST * sqrt(row * column));
-        }
 }

@@ -51,6 +51,7 @@ struct ritz_responder {
     ritz_damping given;              /* in addition to that of matrices */
     char damping[RITZ_DAMPING_SIZE]; /* the same in words, or the model's */
     char remark[RITZ_REMARK_SIZE];
+    double uncertain;     /* what ratios change above the modes, of |H| */
     ritz_noise noise;     /* rounding of the responses */
     ritz_rounded rounded; /* what rounding of K does to them */
     void *state;
@@ -95,16 +96,5 @@ ritz_status ritz_responder_poles(const ritz_responder *responder,
 /** The poles of a spectrum, those at 0 behind. */
 ritz_status ritz_spectrum_list(const ritz_spectrum *all, int64_t *count,
                                double _Complex **out);
-
-/**
- * The scale to which errors of each channel are relative: its largest |H|,
- * but at least a billionth of the geometric mean of the largest in its row and
- * in its column, below which a channel is rounding.
- *
- * @param[in]  peak   num_outputs x num_inputs, largest |H| of each channel
- * @param[out] scale  of that size; may be @p peak
- */
-void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
-                         const double *peak, double *scale);
 
 #endif

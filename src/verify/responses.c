@@ -379,12 +379,17 @@ static bool tell_rigid(const ritz_sides *sides, double hertz,
     return true;
 }
 
-/* The error over @p unit, and "3.41 Hz, modal 0.01 assumed". */
+/*
+ * The error over @p unit, and "3.41 Hz, modal 0.01 assumed"; behind it what is
+ * not known of the full response.
+ */
 static void tell_error(const ritz_sides *sides, ritz_extreme found, double unit,
                        ritz_measure *out)
 {
     const ritz_reference *full = sides->full;
+    const double uncertain = full->residual.uncertain;
     char damping[RITZ_DAMPING_SIZE] = "";
+    size_t used = 0;
 
     if (!sides->gap.significant)
         return;
@@ -395,6 +400,10 @@ static void tell_error(const ritz_sides *sides, ritz_extreme found, double unit,
     (void)snprintf(out->where, sizeof out->where, "%.6g Hz%s%.30s%s",
                    found.hertz, damping[0] ? ", " : "", damping,
                    full->assumed ? " assumed" : "");
+    used = strlen(out->where);
+    if (uncertain > RITZ_RATIO_SETTLED)
+        (void)snprintf(out->where + used, sizeof out->where - used,
+                       " (to %.0e)", uncertain);
 }
 
 /* Models without rigid motion have one response, and it is the flexible one. */

@@ -84,6 +84,21 @@ static ritz_status choose_engine(cli_run *run, const char *method,
     return RITZ_OK;
 }
 
+/* Of components whose modes are too many to be found. */
+static void say_uncertainty(cli_run *run, const ritz_responder *r)
+{
+    const double uncertain = ritz_responder_uncertainty(r);
+
+    if (uncertain > 0.0)
+        sink_field(run, "ratios above", "ratios_uncertain",
+                   "known to %.1e of the largest |H|", uncertain);
+    if (uncertain > RITZ_RATIO_UNCERTAIN)
+        cli_warn(run,
+                 "what damping ratios do to the modes above is known to "
+                 "%.1e of the largest |H| alone: raise --up-to-hz",
+                 uncertain);
+}
+
 /* Make a model ready for the range of a grid. */
 static ritz_status new_responder(cli_run *run, const model *m,
                                  const response_options *given,
@@ -109,6 +124,7 @@ static ritz_status new_responder(cli_run *run, const model *m,
         cli_warn(run, "%s; --method krylov leaves nothing out", remark);
     else if (remark[0])
         sink_say(run, "note", "  %s", remark);
+    say_uncertainty(run, *out);
     return RITZ_OK;
 }
 

@@ -9,12 +9,15 @@
 #include "frame.h"
 #include "model/modal.h"
 #include "project.h"
+#include "response/responder.h"
 #include "verify/sides.h"
 
 #include <ritz/response.h>
 
 #include <complex.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -93,9 +96,12 @@ static double apart(const double _Complex *exact, const double _Complex *H)
     return worst / largest;
 }
 
-static void respond(const char *engine, const ritz_component *bar,
-                    const ritz_damping *damping, double end_hz,
-                    double _Complex *H)
+static char remark[RITZ_REMARK_SIZE]; /* of the last responder */
+
+/* The uncertainty that the engine states. */
+static double respond(const char *engine, const ritz_component *bar,
+                      const ritz_damping *damping, double end_hz,
+                      double _Complex *H)
 {
     const ritz_response_request request = {
         .model = ritz_model_of_component(bar, damping),
@@ -107,6 +113,8 @@ static void respond(const char *engine, const ritz_component *bar,
         ritz_responder_new(ritz_response_engine_find(engine), &request, &r));
     for (int k = 0; k < POINTS; k++)
         assert_ok(ritz_responder_at(r, hertz_of(k), H + k * VALUES));
+    (void)snprintf(remark, sizeof remark, "%s", ritz_responder_remark(r));
+    return ritz_responder_uncertainty(r);
 }
 
 /* What ritz-verify and ritz-fit compare with. */
@@ -226,6 +234,7 @@ static void engines_agree_on_a_damper_and_ratios_of_large_components(void **s)
     open_bar(RITZ_RATIO_DOFS, &bar);
     add_damper(&bar, 0.3);
     respond("direct", &bar, &dampings[1], to_hz, direct);
+    assert_string_equal(remark, "ratios damp the modes up to 6.6 Hz alone");
     respond("krylov", &bar, &dampings[1], to_hz, H);
     assert_true(apart(direct, H) <= 1e-8);
 }
@@ -263,6 +272,80 @@ static void the_identity_is_exact_at_any_ratio(void **state)
     }
 }
 
+/* What ratios change above the modes of a bar up to 6.6 Hz. */
+static ritz_status change_by_space(const ritz_component *bar,
+                                   const ritz_damping *damping,
+                                   ritz_residual *exact, ritz_residual *found)
+{
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    RITZ_OWN(ritz_poles) poles = {0};
+
+    RITZ_CHECK(
+        ritz_poles_of_component(bar, damping, 3.0 * to_hz, &pairs, &poles));
+    if (exact)
+        RITZ_CHECK(
+            ritz_residual_of_ratios(bar, damping, &pairs, 3.0 * to_hz, exact));
+    return ritz_ratio_space(bar, damping, &pairs, 3.0 * to_hz, found);
+}
+
+/* Ritz vectors in the place of all modes above, which are known too. */
+static void few_vectors_hold_what_ratios_change(void **state)
+{
+    (void)state;
+    for (int d = 0; d < DAMPINGS; d++) {
+        double _Complex H[POINTS * VALUES] = {0}, exact[POINTS * VALUES] = {0};
+        RITZ_OWN(ritz_component) bar = {0};
+        RITZ_OWN(ritz_residual) all = {0}, found = {0};
+        double worst = 0.0;
+
+        open_bar(4 * FEW, &bar);
+        assert_ok(change_by_space(&bar, &dampings[d], &all, &found));
+        assert_true(found.num_damped < all.num_damped);
+        for (int k = 0; k < POINTS; k++) {
+            ritz_residual_add_ratios(&all, hertz_of(k), exact + k * VALUES);
+            ritz_residual_add_ratios(&found, hertz_of(k), H + k * VALUES);
+        }
+        for (int k = 0; k < POINTS * VALUES; k++)
+            worst = fmax(worst, cabs(H[k] - exact[k]));
+        if (!(worst <= fmax(found.uncertain, 1e-12)))
+            fail_msg("damping %d: %.1e where %.1e is stated", d, worst,
+                     found.uncertain);
+        /* the step at the end of the last band, 40 Hz, is no smooth function */
+        assert_true(found.uncertain <=
+                    (dampings[d].kind == RITZ_DAMPING_BANDS ? 1e-4 : 1e-6));
+    }
+}
+
+/* The rest undamped was 2e-2 off. What is stated is no less than the error. */
+static void ratios_damp_all_modes_of_large_components(void **state)
+{
+    static const char *const engines[] = {"modal", "direct"};
+    const int64_t elements = RITZ_RATIO_DOFS;
+    double _Complex exact[POINTS * VALUES], H[POINTS * VALUES];
+    RITZ_OWN(ritz_component) bar = {0};
+
+    (void)state;
+    open_bar(elements, &bar);
+    for (int k = 0; k < POINTS; k++)
+        bar_response(elements, &dampings[2], hertz_of(k), exact + k * VALUES);
+    for (size_t k = 0; k < sizeof engines / sizeof *engines; k++) {
+        double stated = respond(engines[k], &bar, &dampings[2], to_hz, H);
+
+        if (!(stated > 0.0 && stated <= 1e-6 && apart(exact, H) <= stated))
+            fail_msg("%s: %.1e where %.1e is stated", engines[k],
+                     apart(exact, H), stated);
+    }
+    refer(&bar, &dampings[2], H);
+    assert_true(apart(exact, H) <= 1e-8);
+}
+
+static ritz_status find_space(const ritz_component *bar)
+{
+    RITZ_OWN(ritz_residual) found = {0};
+
+    return change_by_space(bar, &dampings[4], NULL, &found);
+}
+
 static ritz_status respond_once(const ritz_component *bar, const char *engine)
 {
     const ritz_response_request request = {
@@ -285,6 +368,7 @@ static void ratios_survive_every_allocation(void **state)
     open_bar(6, &bar);
     assert_survives_every_allocation(respond_once(&bar, "modal"));
     assert_survives_every_allocation(respond_once(&bar, "direct"));
+    assert_survives_every_allocation(find_space(&bar));
     add_damper(&bar, 0.3);
     assert_survives_every_allocation(respond_once(&bar, "direct"));
 }
@@ -295,6 +379,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_ratio_beside_a_damper_damps_all_modes),
     cmocka_unit_test(engines_agree_on_a_damper_and_ratios_of_large_components),
     cmocka_unit_test(the_identity_is_exact_at_any_ratio),
+    cmocka_unit_test(few_vectors_hold_what_ratios_change),
+    cmocka_unit_test(ratios_damp_all_modes_of_large_components),
     cmocka_unit_test(ratios_survive_every_allocation),
 };
 

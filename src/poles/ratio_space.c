@@ -1,0 +1,354 @@
+/*
+ * Damping ratios of the modes above those of `pairs`, where these are too many
+ * to be found. What the rates d of these modes change in a response,
+ *
+ *     sum_k -i w d_k / (z_k (z_k + i w d_k)) c phi_k phi_k'b,
+ *
+ * is a function of the eigenvalue, as smooth as lambda^(-3/2): c f(A) b with A
+ * = M^-1 K on what the known modes leave. It is taken by the Ritz pairs of A on
+ * the rational Krylov space of all loads and outputs,
+ *
+ *     V = [(K + t_1 M)^-1 W, (K + t_2 M)^-1 W, ...],
+ *     W = (I - M Phi Phi') [B, C', Cv', Ca'],
+ *
+ * in the place of its modes. Poles -t_j that are spread evenly in log(t) from
+ * the first eigenvalue to the largest make the error fall by a factor with each
+ * of them, as in rational approximations of the square root, and twice as fast
+ * since b and c are both in the space. Each level halves the distances between
+ * the poles. The difference of two levels is the error of the former: it is
+ * what is stated of the latter.
+ */
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "linear/general.h"
+#include "linear/orthonormal.h"
+#include "model/modal.h"
+#include "poles/poles.h"
+
+#include <ritz/base.h>
+
+#include <complex.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Poles at the ends, then 2^(level - 1) between those that are there. */
+enum { LEVELS = 6, MOST_COLUMNS = 800, SAMPLES = 6 };
+
+/* A ratio for every mode that no ratio of a list is of. */
+enum { BEYOND_LISTED = RITZ_MOST_RATIOS };
+
+typedef struct ratio_space {
+    const ritz_component *component;
+    const ritz_damping *damping;
+    const ritz_pairs *pairs;
+    ritz_dense MPhi;
+    ritz_dense loads;      /* W, columns of zeros left out */
+    ritz_sparse A;         /* K + low M: of what V is orthonormal in */
+    ritz_orthonormal set;  /* V */
+    double low, high;      /* of t_j */
+    ritz_io modes;         /* for the known modes */
+    double hertz[SAMPLES]; /* where levels are compared */
+    int64_t values;
+    double _Complex *H, *last; /* SAMPLES x values: what ratios change */
+    double *scale;             /* values */
+} ratio_space;
+
+static void ratio_space_free(ratio_space *s)
+{
+    ritz_dense_free(&s->MPhi);
+    ritz_dense_free(&s->loads);
+    ritz_orthonormal_free(&s->set);
+    ritz_sparse_free(&s->A);
+    ritz_io_free(&s->modes);
+    RITZ_FREE(s->H, s->last, s->scale);
+}
+
+/* Columns of X that are not zero, without the part of the modes, appended. */
+static ritz_status add_loads(const ratio_space *s, const ritz_dense *X,
+                             ritz_dense *loads)
+{
+    RITZ_OWN(ritz_dense) part = {0}, both = {0};
+
+    if (ritz_dense_max(X) == 0.0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_copy(X, &part));
+    RITZ_CHECK(ritz_dense_take_out(&s->MPhi, &s->pairs->Phi, &part));
+    RITZ_CHECK(ritz_dense_beside(loads, &part, &both));
+    ritz_dense_free(loads);
+    RITZ_MOVE(*loads, both);
+    return RITZ_OK;
+}
+
+static ritz_status gather_loads(ratio_space *s)
+{
+    const ritz_io *io = &s->component->io;
+    const ritz_dense *const rows[] = {&io->C, &io->Cv, &io->Ca};
+
+    RITZ_CHECK(ritz_sparse_mul(&s->component->M, &s->pairs->Phi, &s->MPhi));
+    RITZ_CHECK(ritz_dense_new(s->component->num_dofs, 0, &s->loads));
+    RITZ_CHECK(add_loads(s, &io->B, &s->loads));
+    for (int k = 0; k < 3; k++) {
+        RITZ_OWN(ritz_dense) columns = {0};
+
+        RITZ_CHECK(ritz_general_transpose(rows[k], &columns));
+        RITZ_CHECK(add_loads(s, &columns, &s->loads));
+    }
+    return RITZ_OK;
+}
+
+/*
+ * From the last eigenvalue that is known to about the largest, which is no
+ * smaller than any K_jj / M_jj.
+ */
+static void place_ends(double out_hz, ratio_space *s)
+{
+    const ritz_component *c = s->component;
+    const int64_t m = s->pairs->Phi.ncol;
+
+    s->low = m > s->pairs->num_rigid ? s->pairs->lambda[m - 1]
+                                     : ritz_eigen_lambda(out_hz);
+    s->high = s->low;
+    for (int64_t j = 0; j < c->num_dofs; j++) {
+        double mass = ritz_sparse_diagonal(&c->M, j);
+
+        if (mass > 0.0)
+            s->high =
+                fmax(s->high, 2.0 * ritz_sparse_diagonal(&c->K, j) / mass);
+    }
+    s->high = fmin(s->high, s->low / RITZ_RATIO_REACH);
+}
+
+/* The response of the known modes, to which errors are relative. */
+static void respond_modes(const ratio_space *s, double hertz,
+                          double _Complex *H)
+{
+    const ritz_io *io = &s->modes;
+    const double w2 = ritz_eigen_lambda(hertz);
+    const double w = sqrt(w2);
+
+    for (int64_t k = 0; k < s->pairs->Phi.ncol; k++) {
+        double lambda = s->pairs->lambda[k];
+        int64_t flexible = k - s->pairs->num_rigid;
+        double _Complex z = ritz_complex(
+            lambda - w2, w * ritz_modal_rate(s->damping, flexible, lambda));
+
+        for (int64_t i = 0; i < io->num_outputs; i++) {
+            double _Complex c =
+                ritz_complex(ritz_dense_col(&io->C, k)[i] -
+                                 w2 * ritz_dense_col(&io->Ca, k)[i],
+                             w * ritz_dense_col(&io->Cv, k)[i]);
+
+            for (int64_t j = 0; cabs(z) > 0.0 && j < io->num_inputs; j++)
+                H[i * io->num_inputs + j] +=
+                    c / z * ritz_dense_col(&io->B, j)[k];
+        }
+    }
+}
+
+/*
+ * Largest |H| of each channel in the upper half of the range, which is the least
+ * that its largest |H| may be. Modes are known to three times the end of a range
+ * or more.
+ */
+static ritz_status find_scales(double out_hz, const ritz_residual *r,
+                               ratio_space *s)
+{
+    const ritz_io *io = &s->component->io;
+    const double to_hz = out_hz / 3.0;
+    RITZ_OWN_ARRAY double _Complex *H = NULL;
+
+    s->values = io->num_outputs * io->num_inputs;
+    RITZ_CHECK(ritz_io_project(io, &s->pairs->Phi, &s->modes));
+    RITZ_CHECK_NEW(s->H, SAMPLES * s->values);
+    RITZ_CHECK_NEW(s->last, SAMPLES * s->values);
+    RITZ_CHECK_NEW(s->scale, s->values);
+    RITZ_CHECK_NEW(H, s->values);
+    for (int k = 0; k < SAMPLES; k++) {
+        s->hertz[k] = to_hz * (0.5 + 0.5 * (k + 1) / SAMPLES);
+        memset(H, 0, (size_t)s->values * sizeof *H);
+        respond_modes(s, s->hertz[k], H);
+        ritz_residual_add(r, s->hertz[k], H);
+        for (int64_t v = 0; v < s->values; v++)
+            s->scale[v] = fmax(s->scale[v], cabs(H[v]));
+    }
+    ritz_channel_scales(io->num_outputs, io->num_inputs, s->scale, s->scale);
+    return RITZ_OK;
+}
+
+/* (K + t M)^-1 W joins V, as far as there is room. */
+static ritz_status add_pole(ratio_space *s, double t)
+{
+    const ritz_component *c = s->component;
+    const int64_t room = MOST_COLUMNS - s->set.count;
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+
+    if (room <= 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_add(1.0, &c->K, t, &c->M, &A));
+    RITZ_CHECK_IN("modes above the band", ritz_factor_spd(&A, &F));
+    RITZ_CHECK(ritz_dense_copy(&s->loads, &X));
+    RITZ_CHECK(ritz_factor_solve(F, &X));
+    for (int pass = 0; pass < 2; pass++)
+        RITZ_CHECK(ritz_dense_take_out(&s->pairs->Phi, &s->MPhi, &X));
+    return ritz_orthonormal_append(&s->set, &X, room, NULL);
+}
+
+/* Poles of one level: even in log(t). */
+static ritz_status add_level(ratio_space *s, int level)
+{
+    const double reach = log(s->high / s->low);
+    const int parts = 1 << level;
+
+    if (level == 0)
+        RITZ_CHECK(add_pole(s, s->low));
+    for (int k = 1; k <= parts; k += 2)
+        RITZ_CHECK(add_pole(s, s->low * exp(reach * k / parts)));
+    return RITZ_OK;
+}
+
+/*
+ * Ritz pairs: V'MV y = kappa y with V'(K + low M)V = I, lambda = 1 / kappa -
+ * low. Motions without mass have none.
+ */
+static ritz_status find_pairs(const ratio_space *s, ritz_dense *X,
+                              double **lambda)
+{
+    RITZ_OWN(ritz_dense) V = {0}, MV = {0}, G = {0}, Y = {0};
+    RITZ_OWN_ARRAY double *kappa = NULL;
+    int64_t first = 0;
+
+    RITZ_CHECK(ritz_dense_columns(&s->set.V, 0, s->set.count, &V));
+    RITZ_CHECK(ritz_sparse_mul(&s->component->M, &V, &MV));
+    RITZ_CHECK(ritz_dense_mul_tn(&V, &MV, &G));
+    ritz_dense_symmetrise(&G);
+    RITZ_CHECK_NEW(kappa, G.ncol);
+    RITZ_REFUSE_IF(G.ncol > 0 &&
+                       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)G.ncol,
+                                      G.val, (int)G.ncol, kappa) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "Ritz values of the modes above the band were not found");
+    while (first < G.ncol &&
+           kappa[first] <= RITZ_RATIO_REACH * kappa[G.ncol - 1])
+        first++;
+    RITZ_CHECK(ritz_dense_columns(&G, first, G.ncol - first, &Y));
+    RITZ_CHECK_NEW(*lambda, Y.ncol);
+    for (int64_t k = 0; k < Y.ncol; k++) {
+        double found = kappa[first + k];
+
+        (*lambda)[k] = 1.0 / found - s->low;
+        for (int64_t i = 0; i < Y.nrow; i++)
+            ritz_dense_col(&Y, k)[i] /= sqrt(found);
+    }
+    return ritz_dense_mul(&V, &Y, X);
+}
+
+/* What a residual says of the rates of this level. */
+static ritz_status take_rates(const ratio_space *s, ritz_residual *r)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+
+    RITZ_FREE(r->lambda, r->rate);
+    r->lambda = r->rate = NULL;
+    ritz_io_free(&r->modes);
+    RITZ_CHECK(find_pairs(s, &X, &r->lambda));
+    r->num_damped = X.ncol;
+    RITZ_CHECK_NEW(r->rate, r->num_damped);
+    for (int64_t k = 0; k < r->num_damped; k++)
+        r->rate[k] = ritz_modal_rate(s->damping, BEYOND_LISTED, r->lambda[k]);
+    return ritz_io_project(&s->component->io, &X, &r->modes);
+}
+
+static void respond_rates(const ratio_space *s, const ritz_residual *r,
+                          double _Complex *H)
+{
+    memset(H, 0, (size_t)(SAMPLES * s->values) * sizeof *H);
+    for (int k = 0; k < SAMPLES; k++)
+        ritz_residual_add_ratios(r, s->hertz[k], H + k * s->values);
+}
+
+/* The largest difference of two responses, relative to |H| of its channel. */
+static double compare_levels(const ratio_space *s)
+{
+    double worst = 0.0;
+
+    for (int64_t e = 0; e < SAMPLES * s->values; e++) {
+        double change = cabs(s->H[e] - s->last[e]);
+
+        if (change > 0.0)
+            worst = fmax(worst, change / s->scale[e % s->values]);
+    }
+    return worst;
+}
+
+/*
+ * A list may have more ratios than modes are known. Which of the modes above
+ * have these is not known: at most what all of them with the largest and all
+ * with the smallest make different.
+ */
+static double spread_of_list(ratio_space *s, ritz_residual *r)
+{
+    const ritz_damping *damping = s->damping;
+    const int64_t first = s->pairs->Phi.ncol - s->pairs->num_rigid;
+    const double last = damping->ratio[damping->count - 1];
+    double least = last, most = last;
+
+    for (int64_t k = first; k < damping->count; k++) {
+        least = fmin(least, damping->ratio[k]);
+        most = fmax(most, damping->ratio[k]);
+    }
+    if (!(most > least))
+        return 0.0;
+    for (int64_t k = 0; k < r->num_damped; k++)
+        r->rate[k] = 2.0 * least * sqrt(r->lambda[k]);
+    respond_rates(s, r, s->last);
+    for (int64_t k = 0; k < r->num_damped; k++)
+        r->rate[k] = 2.0 * most * sqrt(r->lambda[k]);
+    respond_rates(s, r, s->H);
+    for (int64_t k = 0; k < r->num_damped; k++)
+        r->rate[k] = 2.0 * last * sqrt(r->lambda[k]);
+    return compare_levels(s);
+}
+
+/* An empty space, and what levels of it are compared by. */
+static ritz_status begin_space(double out_hz, const ritz_residual *r,
+                               ratio_space *s)
+{
+    const ritz_component *c = s->component;
+
+    place_ends(out_hz, s);
+    RITZ_CHECK(ritz_sparse_add(1.0, &c->K, s->low, &c->M, &s->A));
+    RITZ_CHECK(ritz_orthonormal_new(c->num_dofs, &s->A, RITZ_RATIO_INDEPENDENT,
+                                    &s->set));
+    return find_scales(out_hz, r, s);
+}
+
+ritz_status ritz_ratio_space(const ritz_component *component,
+                             const ritz_damping *damping,
+                             const ritz_pairs *pairs, double out_hz,
+                             ritz_residual *r)
+{
+    RITZ_OWN(ratio_space)
+    s = {.component = component, .damping = damping, .pairs = pairs};
+
+    RITZ_CHECK(gather_loads(&s));
+    if (s.loads.ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK(begin_space(out_hz, r, &s));
+    for (int level = 0; level < LEVELS; level++) {
+        RITZ_CHECK(add_level(&s, level));
+        RITZ_CHECK(take_rates(&s, r));
+        memcpy(s.last, s.H, (size_t)(SAMPLES * s.values) * sizeof *s.H);
+        respond_rates(&s, r, s.H);
+        r->uncertain = compare_levels(&s);
+        ritz_monitor_step("ratios of modes above", s.set.count, 0);
+        if (level > 0 && r->uncertain <= RITZ_RATIO_SETTLED)
+            break;
+    }
+    if (damping->kind == RITZ_DAMPING_MODES)
+        r->uncertain += spread_of_list(&s, r);
+    return RITZ_OK;
+}

@@ -1,0 +1,277 @@
+#!/usr/bin/python3 -s
+"""ratios.py FOLDER-OF-THE-TOOLS [--only SET] - damping `modal Z`, Z from 0.001 to
+0.9, on components of data/ and of others: the table of docs/methods/damping.md,
+on standard output.
+
+The reference is D = 2 Z M (M^-1 K)^1/2, the sum of all modes by SciPy. Compared
+with it are the engines of ritz-frf; an identity basis, and Craig-Bampton with its
+bound, by ritz-reduce and ritz-verify. Status 1 if an engine is off by more than
+1e-10 of the largest |H| (krylov and rational 1e-9; of more than 2000 dofs 1e-6),
+an identity by more than that, or a bound is below what ritz-verify measures.
+Files of others come from RITZ_EXTERNAL_DATA.
+"""
+import pathlib
+import sys
+
+import h5py
+import numpy
+import scipy.linalg
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import effectivity  # noqa: E402
+import methods  # noqa: E402
+
+RATIOS = [0.001, 0.01, 0.1, 0.5, 0.9]
+ENGINES = {"modal": 1e-10, "direct": 1e-10, "krylov": 1e-9, "rational": 1e-9}
+LARGE = 2000  # dofs, beyond which not all modes are found
+LARGE_WITHIN = 1e-6
+IDENTITY = 1e-10
+DENSE = 2000  # dofs of an identity basis
+LOW = 0.05  # of the band, of a free body: below, rounding of K rules
+POINTS = 61
+
+
+def tetrahedra(external, folder):
+    """A free solid on a mesh of ANSYS, linear tetrahedra of steel made here."""
+    p = external / "ansys"
+
+    def table(name, first, last):
+        lines = (p / name).read_text(encoding="latin-1").splitlines()[1:]
+        return [line.replace(",", ".").split()[first:last]
+                for line in lines if line.strip()]
+    x = numpy.array([[float(v.rstrip(".")) for v in row] for row in
+                     table("NodalCoordinatesAnsysTet4Elements.txt", 1, 4)])
+    elements = numpy.array(table("ElementConnectivityAnsysTet4Elements.txt",
+                                 2, 6), int) - 1
+    used = numpy.unique(elements)
+    place = numpy.zeros(len(x), int)
+    place[used] = numpy.arange(len(used))
+    x, elements = x[used], place[elements]
+    n = 3 * len(x)
+    K, M = numpy.zeros((n, n)), numpy.zeros((n, n))
+    young, nu, rho = 2.1e11, 0.3, 7800.0
+    E = numpy.diag(3 * [1 - nu] + 3 * [0.5 - nu])
+    E[:3, :3] += nu * (1 - numpy.eye(3))
+    E *= young / (1 + nu) / (1 - 2 * nu)
+    for nodes in elements:
+        A = numpy.column_stack([numpy.ones(4), x[nodes]])
+        volume = abs(numpy.linalg.det(A)) / 6
+        g = numpy.linalg.inv(A)[1:]  # gradients of the four shapes
+        S = numpy.zeros((6, 12))
+        for k in range(4):
+            a, b, c = g[:, k]
+            S[:, 3 * k:3 * k + 3] = [[a, 0, 0], [0, b, 0], [0, 0, c],
+                                     [b, a, 0], [0, c, b], [c, 0, a]]
+        rows = numpy.repeat(3 * nodes, 3) + numpy.tile([0, 1, 2], 4)
+        K[numpy.ix_(rows, rows)] += volume * S.T @ E @ S
+        M[numpy.ix_(rows, rows)] += rho * volume / 20 * numpy.kron(
+            numpy.ones((4, 4)) + numpy.eye(4), numpy.eye(3))
+    last = len(x)
+    return dict(order=40, options=[
+        "--stiffness", methods.write(folder, "tet4.k", (K + K.T) / 2),
+        "--mass", methods.write(folder, "tet4.m", (M + M.T) / 2), "--dofs",
+        methods.rows(folder, "tet4", last, "123"), "--port",
+        "face=1,2,3,4:123", "--input", f"in={last}:1", "--output-at",
+        f"out={last // 2}:1"])
+
+
+def linear_block(external, folder, _):
+    """A free solid of linear tetrahedra, masses lumped."""
+    p = external / "abaqus"
+    K, M = (methods.abaqus(p / f"blockC3D4_{name}1.mtx")
+            for name in ("STIF", "MASS"))
+    n = K.shape[0] // 3
+    return dict(order=40, options=[
+        "--stiffness", methods.write(folder, "block.k", K), "--mass",
+        methods.write(folder, "block.m", M), "--dofs",
+        methods.rows(folder, "block", n, "123"), "--port", "face=1,2,3,4:123",
+        "--input", f"in={n}:1", "--output-at", f"out={n // 2}:1"])
+
+
+def conrod(external, folder, _):
+    """A free connecting rod of quadratic tetrahedra."""
+    p = external / "calculix/conrod"
+    dofs = [line.split(".") for line in
+            (p / "conrod.dof").read_text().split()]
+    options = []
+    for name, end in (("stiffness", "sti"), ("mass", "mas")):
+        t = numpy.loadtxt(p / f"conrod.{end}")
+        A = methods.scipy.sparse.coo_matrix(
+            (t[:, 2], (t[:, 0].astype(int) - 1, t[:, 1].astype(int) - 1)))
+        A = A + A.T - methods.scipy.sparse.diags(A.diagonal())
+        options += [f"--{name}", methods.write(folder, f"conrod.{end}", A)]
+    names = folder / "conrod.dofs"
+    names.write_text("".join(f"{g} {c}\n" for g, c in dofs))
+    grids = list(dict.fromkeys(g for g, _ in dofs))
+    return dict(order=40, options=[
+        *options, "--dofs", names, "--port",
+        f"end={','.join(grids[:4])}:123", "--input", f"in={grids[-1]}:1",
+        "--output-at", f"out={grids[len(grids) // 2]}:1"])
+
+
+def bare_lf10(external, folder, n):
+    """A beam, without its own damping."""
+    case = methods.lf10(external, folder, n)
+    at = case["options"].index("--damping")
+    del case["options"][at:at + 2], case["damping"]
+    return case
+
+
+SETS = [row if row[0] != "LF10" else (row[0], bare_lf10, row[2])
+        for row in methods.SETS] + [
+    ("blockC3D4", linear_block, "abaqus/blockC3D4_STIF1.mtx"),
+    ("Tet4 mesh", lambda external, folder, _: tetrahedra(external, folder),
+     "ansys/NodalCoordinatesAnsysTet4Elements.txt"),
+    ("conrod", conrod, "calculix/conrod/conrod.sti"),
+]
+
+
+def all_modes(path, rigid, soft):
+    """Of a component with many dofs, in doubles; `soft` is an eigenvalue."""
+    with h5py.File(path) as file:
+        K, M = (effectivity.sparse(file[key]).toarray() for key in "KM")
+        B, C = file["inputs/B"][()], file["outputs/C"][()]
+    K, M = (K + K.T) / 2, (M + M.T) / 2
+    kappa, X = scipy.linalg.eigh(M, K + soft * M, overwrite_a=True,
+                                 overwrite_b=True)
+    X, kappa = X[:, ::-1], kappa[::-1]
+    return 1 / kappa - soft, X / numpy.sqrt(kappa), B, C
+
+
+class Reference:
+    """The sum of all modes of a component."""
+
+    def __init__(self, case):
+        path, rigid = case["component"], case["rigid"]
+        self.band = case["band"]
+        self.low = (LOW if rigid else 0.001) * self.band
+        if case["dofs"] > LARGE:
+            self.value, X, B, C = all_modes(
+                path, rigid, (2 * numpy.pi * self.band / 3)**2)
+        else:
+            full = effectivity.Full(path, rigid)
+            self.value, X, B, C = full.value, full.X, full.B, full.C[0]
+        self.value = self.value.copy()
+        self.value[:rigid] = 0
+        self.B, self.C = X.T @ B, C @ X
+
+    def largest(self, ratio):
+        """max |H|, at resonances too."""
+        hertz = numpy.concatenate([numpy.linspace(self.low, self.band, 500),
+                                   numpy.sqrt(self.value) / 2 / numpy.pi])
+        return abs(self.respond(ratio, hertz[(hertz >= self.low) & (
+            hertz <= self.band)])).max()
+
+    def respond(self, ratio, hertz):
+        """H at some frequencies, of outputs that are displacements."""
+        w = 2 * numpy.pi * hertz[:, None]
+        own = self.value[None]
+        Z = own - w**2 + 2j * ratio * w * numpy.sqrt(own)
+        return (self.C[None] / Z[:, None]) @ self.B
+
+
+def response_of(path):
+    """Frequencies and H of a file of ritz-frf."""
+    with h5py.File(path) as file:
+        return (file["hertz"][()],
+                file["H/real"][()] + 1j * file["H/imag"][()])
+
+
+def engines_of(bin_, case, reference, ratio):
+    """By engine, the largest error over the largest |H|; what was stated."""
+    out = case["folder"] / "response.h5"
+    largest = reference.largest(ratio)
+    found = {}
+    for engine in ENGINES:
+        said = methods.run(
+            bin_, "ritz-frf", case["component"], "--method", engine,
+            "--from-hz", f"{reference.low:.9g}", "--to-hz", f"{case['band']:.9g}",
+            "--points", POINTS, "--no-refine", "--damping", f"modal {ratio}",
+            "-o", out)
+        hertz, H = response_of(out)
+        exact = reference.respond(ratio, hertz)
+        found[engine] = (abs(H.reshape(exact.shape) - exact).max()
+                         / largest, said.get("ratios_uncertain"))
+    return found
+
+
+def reduction_of(bin_, case, method, more, ratio):
+    """Columns, error of the response by ritz-verify, bound of ritz-reduce."""
+    folder, component = case["folder"], case["component"]
+    basis, reduced = folder / "basis.h5", folder / "reduced.h5"
+    damping = ["--damping", f"modal {ratio}"]
+    low = LOW * case["band"] if case["rigid"] else 0
+    band = ["--band-hz", f"{low:.9g},{case['band']:.9g}"]
+    made = methods.run(bin_, "ritz-basis", method, *more, component, "-o",
+                       basis)
+    methods.run(bin_, "ritz-reduce", component, basis, "-o", reduced, *band,
+                *damping)
+    told = effectivity.estimates_of(reduced)
+    measured = {m["name"]: m["value"] for m in methods.run(
+        bin_, "ritz-verify", component, reduced, "-o", folder / "verified.h5",
+        *band, *damping)["measures"]}
+    bound = told.get("response-relative-bound", (float("nan"),))[0]
+    return made["vectors"], measured["response-relative"], bound
+
+
+def cell(value):
+    """A number of the table; a mark for what there is not."""
+    return "" if value is None or numpy.isnan(value) else (
+        "none" if numpy.isinf(value) else f"{value:.1e}")
+
+
+def line(bin_, case, reference, ratio):
+    """One line; how many numbers of it are not as they must be."""
+    wrong = []
+    found = engines_of(bin_, case, reference, ratio)
+    large = case["dofs"] > LARGE
+    for engine, within in ENGINES.items():
+        error, stated = found[engine]
+        if not error <= max(within, LARGE_WITHIN if large else 0):
+            wrong.append(f"{engine} is off by {error:.1e}")
+        if large and not (stated is not None and error <= max(stated, 1e-9)
+                          and stated <= LARGE_WITHIN):
+            wrong.append(f"{engine} states {stated} and is off by {error:.1e}")
+    cells = [case["name"], str(case["dofs"]), f"{ratio:g}",
+             *(cell(found[engine][0]) for engine in ENGINES),
+             cell(found["modal"][1])]
+    if case["dofs"] <= DENSE:
+        _, error, bound = reduction_of(bin_, case, "full", [], ratio)
+        if not error <= IDENTITY:
+            wrong.append(f"the identity is off by {error:.1e}")
+        if not error <= bound:
+            wrong.append(f"identity: {error:.1e} above {bound:.1e}")
+        cells += [cell(error), cell(bound)]
+    else:
+        cells += ["", ""]
+    _, error, bound = reduction_of(
+        bin_, case, "craig-bampton", ["--modes", case["order"]], ratio)
+    if not error <= bound:
+        wrong.append(f"craig-bampton: {error:.1e} above {bound:.1e}")
+    print("| " + " | ".join([*cells, cell(error), cell(bound)]) + " |",
+          flush=True)
+    for what in wrong:
+        print(f"{case['name']}, modal {ratio:g}: {what}", file=sys.stderr)
+    return len(wrong)
+
+
+TITLES = ["set", "dofs", "Z", *ENGINES, "stated", "identity", "bound",
+          "craig-bampton", "bound"]
+
+
+def main():
+    """Parse and run."""
+    asked = methods.parser_of(__doc__).parse_args()
+    methods.SETS[:] = SETS
+    print("| " + " | ".join(TITLES) + " |\n|" + "---|" * len(TITLES),
+          flush=True)
+    wrong = 0
+    for case in methods.cases(asked.bin, asked.only):
+        reference = Reference(case)
+        for ratio in RATIOS:
+            wrong += line(asked.bin, case, reference, ratio)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
