@@ -89,6 +89,27 @@ static ritz_status take_independent(const ritz_component *full, double sigma,
     return ritz_dense_mul(Y, &kept, out);
 }
 
+/*
+ * A column whose residual is little more than rounding holds as much of the
+ * trial as of anything new: its part in the trial is taken off again, in A.
+ */
+static ritz_status take_trial_out(const ritz_component *full,
+                                  const ritz_lehmann *trial, ritz_dense *Y)
+{
+    RITZ_OWN(ritz_dense) X = {0}, AX = {0}, MX = {0};
+
+    RITZ_CHECK(ritz_dense_copy(&trial->X, &X));
+    RITZ_CHECK(ritz_sparse_mul(&full->K, &X, &AX));
+    RITZ_CHECK(ritz_sparse_mul(&full->M, &X, &MX));
+    ritz_dense_add(-trial->sigma, &MX, &AX);
+    for (int64_t j = 0; j < X.ncol; j++)
+        for (int64_t i = 0; i < X.nrow; i++)
+            ritz_dense_col(&X, j)[i] /= trial->theta[j] - trial->sigma;
+    for (int pass = 0; pass < 2; pass++)
+        RITZ_CHECK(ritz_dense_take_out(&X, &AX, Y));
+    return RITZ_OK;
+}
+
 ritz_status ritz_enrich(ritz_estimator *estimator, const ritz_bounder *coarse,
                         ritz_lehmann *rich)
 {
@@ -98,8 +119,11 @@ ritz_status ritz_enrich(ritz_estimator *estimator, const ritz_bounder *coarse,
     RITZ_CHECK(take_long(coarse, &more));
     if (more.ncol == 0)
         return RITZ_OK;
+    RITZ_CHECK(take_trial_out(estimator->component, trial, &more));
     RITZ_CHECK(
         take_independent(estimator->component, trial->sigma, &more, &apart));
+    if (apart.ncol == 0)
+        return RITZ_OK;
     RITZ_CHECK(ritz_dense_beside(&trial->X, &apart, &Y));
     for (int64_t j = 0; j < trial->count; j++)
         for (int64_t i = 0; i < Y.nrow; i++)

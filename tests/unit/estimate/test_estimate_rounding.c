@@ -1,7 +1,9 @@
 /* Bounds where rounding decides, and where nothing may be called proven. */
 #include "testing.h"
 
+#include "dualspin.h"
 #include "estimate/estimator.h"
+#include "frame.h"
 #include "masses.h"
 #include "poles/poles.h"
 #include "project.h"
@@ -280,6 +282,34 @@ static void a_full_basis_is_counted_without_factors(void **)
     ritz_estimator_free(&estimator);
 }
 
+/*
+ * All dofs kept, what a richer trial would gain is rounding: it has a part along
+ * what is known already, which no vectors may repeat. The rotor has motions
+ * without mass.
+ */
+static void what_rounding_leaves_is_no_richer_trial(void **)
+{
+    const ritz_estimate_request request = {
+        .band_hz = {0.1, 2.15},
+        .damping = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.5}};
+    const int64_t at[2] = {60, 3 * 60};
+    RITZ_OWN(ritz_component) rotor = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+
+    dualspin_or_skip();
+    assert_ok(dualspin_component(0, &rotor));
+    ritz_io_free(&rotor.io);
+    assert_ok(frame_io(&rotor, 1, at, 1, at + 1));
+    assert_ok(ritz_basis_new(rotor.num_dofs, rotor.num_dofs, &basis));
+    for (int64_t j = 0; j < rotor.num_dofs; j++)
+        ritz_dense_col(&basis.T, j)[j] = 1.0;
+    assert_ok(ritz_reduce(&rotor, &basis, &reduced));
+    assert_ok(ritz_estimate(&rotor, &basis, &request, &reduced));
+    assert_true(ritz_measures_value(&reduced.estimates,
+                                    "response-relative-bound") < 1e-4);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(damping_of_soft_rows_is_looked_at_by_itself),
     cmocka_unit_test(damping_that_couples_modes_is_not_left_out),
@@ -287,6 +317,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(modes_that_rounding_exchanges_share_it),
     cmocka_unit_test(exact_bases_need_few_counts),
     cmocka_unit_test(a_full_basis_is_counted_without_factors),
+    cmocka_unit_test(what_rounding_leaves_is_no_richer_trial),
 };
 
 TEST_MODULE(estimate_rounding, tests, NULL, NULL)
