@@ -8,7 +8,8 @@ with it are the engines of ritz-frf; an identity basis, and Craig-Bampton with i
 bound, by ritz-reduce and ritz-verify. Status 1 if an engine is off by more than
 1e-10 of the largest |H| (krylov and rational 1e-9; twice that of a free body,
 whose rigid stiffness is rounding; of more than 2000 dofs 1e-6), an identity by
-more than 1e-10, or a bound is below what ritz-verify measures.
+more than 1e-10 (1e-9 at Z = 0.001, where a resonance makes 500 times as much of
+the rounding of its eigenvalue), or a bound is below what ritz-verify measures.
 Files of others come from RITZ_EXTERNAL_DATA.
 """
 import pathlib
@@ -40,14 +41,12 @@ def tetrahedra(external, folder):
         lines = (p / name).read_text(encoding="latin-1").splitlines()[1:]
         return [line.replace(",", ".").split()[first:last]
                 for line in lines if line.strip()]
-    x = numpy.array([[float(v.rstrip(".")) for v in row] for row in
-                     table("NodalCoordinatesAnsysTet4Elements.txt", 1, 4)])
-    elements = numpy.array(table("ElementConnectivityAnsysTet4Elements.txt",
-                                 2, 6), int) - 1
-    used = numpy.unique(elements)
-    place = numpy.zeros(len(x), int)
-    place[used] = numpy.arange(len(used))
-    x, elements = x[used], place[elements]
+    nodes = table("NodalCoordinatesAnsysTet4Elements.txt", 0, 4)
+    row_of = {node[0].rstrip("."): k for k, node in enumerate(nodes)}
+    x = numpy.array([[float(v.rstrip(".")) for v in node[1:]]
+                     for node in nodes])
+    elements = numpy.array([[row_of[v] for v in row] for row in table(
+        "ElementConnectivityAnsysTet4Elements.txt", 2, 6)])
     n = 3 * len(x)
     K, M = numpy.zeros((n, n)), numpy.zeros((n, n))
     young, nu, rho = 2.1e11, 0.3, 7800.0
@@ -239,7 +238,7 @@ def line(bin_, case, reference, ratio):
              cell(found["modal"][1])]
     if case["dofs"] <= DENSE:
         _, error, bound = reduction_of(bin_, case, "full", [], ratio)
-        if not error <= IDENTITY:
+        if not error <= IDENTITY / min(1, 100 * ratio):
             wrong.append(f"the identity is off by {error:.1e}")
         if error > bound:  # massless motions have none
             wrong.append(f"identity: {error:.1e} above {bound:.1e}")
