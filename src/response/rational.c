@@ -619,9 +619,13 @@ static ritz_status prepare_model(const ritz_response_request *request,
 
     out->poles = states ? &s->listed : &s->full.poles;
     out->pairs = states ? NULL : &s->full.pairs;
-    if (!states)
-        return ritz_direct_new(request->model.component, request->model.damping,
-                               ritz_response_highest(request), &s->full);
+    if (!states) {
+        RITZ_CHECK(ritz_direct_new(request->model.component,
+                                   request->model.damping,
+                                   ritz_response_highest(request), &s->full));
+        return ritz_rounded_of(request->model.component, &s->full.pairs,
+                               !s->full.apart, &out->rounded);
+    }
     s->states = request->model.states;
     memcpy(out->damping, s->states->damping, sizeof out->damping);
     return ritz_pencil_of_space(s->states, &s->pencil);
