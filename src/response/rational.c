@@ -65,6 +65,7 @@ typedef struct rational_nodes {
     const ritz_noise *noise; /* of the responder */
     double *peak, *level, *scale;
     double _Complex *H, *guess, *other;
+    double _Complex *before; /* count x values: before the last node */
     int64_t nodes;
     bool small;         /* `whole` holds the model */
     ritz_reduced whole; /* of which `view` is a view, with inputs and outputs */
@@ -169,10 +170,21 @@ static double log_node_weight(const interpolant *f, double _Complex s)
 
 /* So many nodes in a row must be within the tolerance at the end. */
 enum { ENOUGH = 3 };
-enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3 };
+enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3, SWEPT = 500 };
 
 /* Distance of a candidate from its pole, in half-power widths. */
 static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
+
+/* The interpolant of each channel, by what errs less there. */
+static void evaluate_best(rational_nodes *s, double hertz, double _Complex *H)
+{
+    const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
+
+    evaluate_interpolant(&s->f, at, false, s->guess);
+    evaluate_interpolant(&s->f, at, true, s->other);
+    for (int64_t v = 0; v < s->values; v++)
+        H[v] = s->with_zeros[v] ? s->other[v] : s->guess[v];
+}
 
 static ritz_status rational_at(void *state, double hertz, double _Complex *H)
 {
@@ -184,10 +196,7 @@ static ritz_status rational_at(void *state, double hertz, double _Complex *H)
     for (int64_t k = 0; k < s->num_poles; k++)
         if (cabs(at - s->pole[k]) <= RITZ_POLE_HIT * (w + cabs(s->pole[k])))
             return ritz_refuse_pole(s->pole[k] == 0.0, hertz);
-    evaluate_interpolant(&s->f, at, false, s->guess);
-    evaluate_interpolant(&s->f, at, true, s->other);
-    for (int64_t v = 0; v < s->values; v++)
-        H[v] = s->with_zeros[v] ? s->other[v] : s->guess[v];
+    evaluate_best(s, hertz, H);
     return RITZ_OK;
 }
 
@@ -253,6 +262,7 @@ static ritz_status place_nodes(rational_nodes *s, double low, double high)
                 add_candidate(s, at[k] + (at[k + 1] - at[k]) * part / BETWEEN,
                               low, high);
     RITZ_CHECK_NEW(s->used, s->count);
+    RITZ_CHECK_NEW(s->before, s->count * s->values);
     return RITZ_OK;
 }
 
@@ -332,13 +342,9 @@ static int64_t find_doubtful(rational_nodes *s)
     int64_t doubtful = -1;
 
     for (int64_t k = 0; k < s->count; k++) {
-        const double _Complex at =
-            ritz_complex(0.0, 2.0 * RITZ_PI * s->hertz[k]);
-
         if (s->used[k])
             continue;
-        evaluate_interpolant(&s->f, at, false, s->guess);
-        evaluate_interpolant(&s->f, at, true, s->other);
+        evaluate_best(s, s->hertz[k], s->H);
         for (int64_t v = 0; v < s->values; v++) {
             double gap = cabs(s->guess[v] - s->other[v]);
 
@@ -362,6 +368,37 @@ static ritz_status respond_full(rational_nodes *s, double hertz)
     return ritz_space_transfer(s->states, &s->pencil, at, s->H);
 }
 
+/* Keep what candidates have, before another node. */
+static void keep_candidates(rational_nodes *s)
+{
+    for (int64_t k = 0; k < s->count; k += s->count / SWEPT + 1)
+        if (!s->used[k])
+            evaluate_best(s, s->hertz[k], s->before + k * s->values);
+}
+
+/*
+ * The candidate that the last node has changed most, -1 if none by more than is
+ * tolerated: nodes that are right tell nothing of what lies between others.
+ */
+static int64_t find_changed(rational_nodes *s, double tolerance)
+{
+    double most = tolerance;
+    int64_t changed = -1;
+
+    for (int64_t k = 0; k < s->count; k += s->count / SWEPT + 1) {
+        const double _Complex *before = s->before + k * s->values;
+
+        if (!s->used[k])
+            evaluate_best(s, s->hertz[k], s->H);
+        for (int64_t v = 0; !s->used[k] && v < s->values; v++)
+            if (cabs(s->H[v] - before[v]) > most * s->scale[v]) {
+                most = cabs(s->H[v] - before[v]) / s->scale[v];
+                changed = k;
+            }
+    }
+    return changed;
+}
+
 /* Measure the errors at candidate k, then take it for a node. */
 static ritz_status take_candidate(rational_nodes *s, int64_t k,
                                   double tolerance, bool *near)
@@ -374,6 +411,8 @@ static ritz_status take_candidate(rational_nodes *s, int64_t k,
         return RITZ_OK; /* a pole that was not known */
     RITZ_CHECK(status);
     *near = measure_node(s, s->hertz[k], tolerance);
+    if (*near)
+        keep_candidates(s);
     RITZ_CHECK(add_node(s, s->hertz[k]));
     ritz_monitor_step("nodes", s->nodes, 0);
     return RITZ_OK;
@@ -382,14 +421,16 @@ static ritz_status take_candidate(rational_nodes *s, int64_t k,
 /*
  * Add nodes until the last ones were within the tolerance. Nodes are where the
  * interpolant without zeros errs most. With zeros that are known to a few
- * digits only, the other one errs elsewhere: it is tried there too.
+ * digits only, the other one errs elsewhere: it is tried there too. And the
+ * last node must have moved nothing.
  */
 static ritz_status converge_nodes(rational_nodes *s, double tolerance)
 {
     bool near = false;
+    int64_t changed = -1;
 
-    while (!near) {
-        int64_t k = find_next(s);
+    while (!near || changed >= 0) {
+        int64_t k = changed >= 0 ? changed : find_next(s);
 
         RITZ_REFUSE_IF(k < 0 || s->nodes >= MOST_NODES, RITZ_ERR_CONVERGENCE,
                        "%" PRId64 " nodes do not interpolate to %.1e of the "
@@ -399,6 +440,7 @@ static ritz_status converge_nodes(rational_nodes *s, double tolerance)
         k = near ? find_doubtful(s) : -1;
         if (k >= 0)
             RITZ_CHECK(take_candidate(s, k, tolerance, &near));
+        changed = near ? find_changed(s, tolerance) : -1;
     }
     return RITZ_OK;
 }
@@ -550,13 +592,10 @@ static ritz_status find_zeros(rational_nodes *s, int64_t v)
  * The next node is where prod |s - s_m| / prod |s - pole| is largest: near
  * resonances, but never at a pole or zero: candidates keep a half-power width
  * from them. The interpolant's error at a node is measured before the node is
- * added; three successive nodes within the tolerance end the search. Where
- * zeros are cancelled, one more lies where that changes the interpolant most.
+ * added; three successive nodes within the tolerance end the search.
  */
 
-/*
- * Largest number of channels: for more, finding zeros takes longer than nodes.
- */
+/* Largest number of channels: of more, zeros take longer than nodes. */
 static const int64_t most_channels = 9;
 
 static void free_rational(void *state)
@@ -569,7 +608,7 @@ static void free_rational(void *state)
     ritz_reduced_free(&s->whole);
     free_interpolant(&s->f);
     RITZ_FREE(s->pole, s->hertz, s->used, s->with_zeros, s->missed, s->miss,
-              s->peak, s->level, s->scale, s->H, s->guess, s->other);
+              s->peak, s->level, s->scale, s->H, s->guess, s->other, s->before);
 }
 
 static ritz_status start_rational(const ritz_response_request *request,
