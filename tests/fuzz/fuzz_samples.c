@@ -9,6 +9,7 @@
 #include "samples.h"
 
 #include <ritz/ranking.h>
+#include <ritz/response.h>
 
 #include <string.h>
 
@@ -23,6 +24,8 @@ ritz_status __wrap_ritz_responder_sample(void *responder, const void *grid,
 ritz_status __wrap_ritz_responder_follow(void *responder, const void *grid,
                                          double tolerance, ritz_response *out);
 const char *__wrap_ritz_responder_remark(const void *responder);
+ritz_rounded __wrap_ritz_responder_rounded(const void *responder);
+double __wrap_ritz_responder_uncertainty(const void *responder);
 
 /* --- models --------------------------------------------------------------- */
 
@@ -110,6 +113,18 @@ const char *__wrap_ritz_responder_remark(const void *responder)
 {
     (void)responder;
     return "";
+}
+
+ritz_rounded __wrap_ritz_responder_rounded(const void *responder)
+{
+    (void)responder;
+    return (ritz_rounded){0};
+}
+
+double __wrap_ritz_responder_uncertainty(const void *responder)
+{
+    (void)responder;
+    return 0.0;
 }
 
 /* Nothing is made, and that is well. */
