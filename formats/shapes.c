@@ -3,6 +3,7 @@
 #include "base/search.h"
 #include "base/text.h"
 #include "base/tolerances.h"
+#include "model/squares.h"
 
 #include <ritz/export.h>
 #include <ritz/matrix.h>
@@ -201,9 +202,10 @@ static ritz_status pick_shapes(const ritz_dense *from, const mode_choice *which,
     return RITZ_OK;
 }
 
-/* "mode 7, 12.3 Hz" */
-static ritz_status pick_modes(const ritz_pairs *pairs, const mode_choice *which,
-                              ritz_dense *Phi, ritz_shapes *out)
+/* "mode 7, 12.3 Hz"; a square is no mode: "negative square 41, -27.9 Hz" */
+static ritz_status pick_modes(const ritz_pairs *pairs, bool squares,
+                              const mode_choice *which, ritz_dense *Phi,
+                              ritz_shapes *out)
 {
     RITZ_CHECK(pick_shapes(&pairs->Phi, which, Phi, out));
     for (int64_t j = 0; j < which->count; j++) {
@@ -211,8 +213,9 @@ static ritz_status pick_modes(const ritz_pairs *pairs, const mode_choice *which,
         double hertz =
             k < pairs->num_rigid ? 0.0 : ritz_eigen_hertz(pairs->lambda[k]);
 
-        snprintf(out->name[j], RITZ_NAME_SIZE, "mode %" PRId64 ", %.4g Hz",
-                 k + 1, hertz);
+        snprintf(out->name[j], RITZ_NAME_SIZE, "%s %" PRId64 ", %.4g Hz",
+                 squares && hertz < 0.0 ? "negative square" : "mode", k + 1,
+                 hertz);
     }
     return RITZ_OK;
 }
@@ -241,7 +244,7 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
     RITZ_CHECK(ritz_dampers_install(&dampers, &K, &D));
     RITZ_CHECK(ritz_eigen_dense(&K, &reduced->M, &pairs));
     RITZ_CHECK(choose_modes(list, "mode", pairs.Phi.ncol, &which));
-    RITZ_CHECK(pick_modes(&pairs, &which, &Phi, &shapes));
+    RITZ_CHECK(pick_modes(&pairs, false, &which, &Phi, &shapes));
     RITZ_CHECK(ritz_dense_mul(&reduced->T, &Phi, &T));
     RITZ_CHECK(place_shapes(&whole, &T, &shapes));
     RITZ_MOVE(*out, shapes);
@@ -411,6 +414,7 @@ ritz_status ritz_shapes_of_system(const ritz_system *system,
                                   const ritz_reduced *const *bodies,
                                   const char *list, ritz_shapes *out)
 {
+    const bool squares = ritz_measures_find(&at->errors, RITZ_NEGATIVE_SQUARES);
     RITZ_OWN(ritz_shapes) all = {0};
     RITZ_OWN(ritz_shapes_array) part = {.count = system->num_components};
     RITZ_OWN(ritz_dense) Phi = {0};
@@ -421,8 +425,10 @@ ritz_status ritz_shapes_of_system(const ritz_system *system,
                    "it does not say where its bodies are: assemble it anew");
     RITZ_CHECK(check_bodies(system, at, bodies));
     RITZ_CHECK(ritz_eigen_dense(&at->K, &at->M, &pairs));
+    if (squares)
+        RITZ_CHECK(ritz_pairs_by_size(&pairs));
     RITZ_CHECK(choose_modes(list, "mode", pairs.Phi.ncol, &which));
-    RITZ_CHECK(pick_modes(&pairs, &which, &Phi, &all));
+    RITZ_CHECK(pick_modes(&pairs, squares, &which, &Phi, &all));
     RITZ_CHECK_NEW(part.at, part.count);
     for (int64_t c = 0; c < part.count; c++) {
         const ritz_reduced *b = bodies[c];
@@ -466,7 +472,7 @@ ritz_status ritz_shapes_of_component(const ritz_component *component,
     if (!list && most > pairs.num_rigid + span.modes)
         most = pairs.num_rigid + span.modes;
     RITZ_CHECK(choose_modes(list, "mode", most, &which));
-    RITZ_CHECK(pick_modes(&pairs, &which, &Phi, &shapes));
+    RITZ_CHECK(pick_modes(&pairs, false, &which, &Phi, &shapes));
     RITZ_CHECK(place_shapes(&whole, &Phi, &shapes));
     RITZ_MOVE(*out, shapes);
     return RITZ_OK;

@@ -26,6 +26,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
+#include "model/squares.h"
 
 #include <ritz/matrix.h>
 
@@ -329,32 +330,13 @@ static ritz_status condense_massless(int64_t massless, dual *d)
 }
 
 /* Fill lambda and num_rigid of the configuration; P becomes P Phi. */
-static ritz_status order_modes(const ritz_pairs *pairs, ritz_dense *P,
+static ritz_status order_modes(ritz_pairs *pairs, ritz_dense *P,
                                ritz_configuration *c)
 {
-    const int64_t e = pairs->Phi.ncol;
-    RITZ_OWN(ritz_dense) Phi = {0};
-    RITZ_OWN_ARRAY int64_t *order = NULL;
-    RITZ_OWN_ARRAY double *size = NULL;
-
-    RITZ_CHECK_NEW(order, e);
-    RITZ_CHECK_NEW(size, e);
-    RITZ_CHECK_NEW(c->lambda, e);
-    for (int64_t j = 0; j < e; j++) {
-        int64_t k = j;
-
-        for (; k > 0 && size[k - 1] > fabs(pairs->lambda[j]); k--) {
-            size[k] = size[k - 1];
-            order[k] = order[k - 1];
-        }
-        size[k] = fabs(pairs->lambda[j]);
-        order[k] = j;
-    }
-    for (int64_t j = 0; j < e; j++)
-        c->lambda[j] = pairs->lambda[order[j]];
-    c->num_rigid = ritz_eigen_rigid(e, size, e > 0 ? size[e - 1] : 0.0);
-    RITZ_CHECK(ritz_dense_pick(&pairs->Phi, e, order, &Phi));
-    return ritz_dense_times(&Phi, P);
+    RITZ_CHECK(ritz_pairs_by_size(pairs));
+    RITZ_CHECK_COPY(c->lambda, pairs->lambda, pairs->Phi.ncol);
+    c->num_rigid = pairs->num_rigid;
+    return ritz_dense_times(&pairs->Phi, P);
 }
 
 /* Report the number of negative eigenvalues and the one nearest to 0. */
@@ -372,7 +354,7 @@ static ritz_status report_negative(int64_t modes, ritz_configuration *c)
     if (count > 0)
         snprintf(where, sizeof where, "first: mode %" PRId64 ", %.4g Hz",
                  first + 1, ritz_eigen_hertz(c->lambda[first]));
-    return ritz_measures_add(&c->errors, "negative-eigenvalues", (double)count,
+    return ritz_measures_add(&c->errors, RITZ_NEGATIVE_SQUARES, (double)count,
                              0.0, where);
 }
 

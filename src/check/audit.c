@@ -48,7 +48,7 @@ static ritz_status run_checks(ritz_checker *it, unsigned of, ritz_audit *out)
 static void ritz_checker_free(ritz_checker *it)
 {
     ritz_audit_free(&it->audit);
-    RITZ_FREE(it->part, it->mu);
+    RITZ_FREE(it->part, it->mu, it->moves);
     ritz_dense_free(&it->R);
     ritz_dense_free(&it->Phi);
     ritz_structure_free(&it->model);

@@ -74,6 +74,7 @@ typedef struct ritz_checker {
     ritz_structure model; /* with dampers installed */
     ritz_damping damping;
     ritz_modal_model modes;
+    bool *moves;  /* whether a mode is a rigid motion; NULL: not known */
     ritz_dense L; /* p x r, rows of the interface; velocities are L q' */
     char (*row)[RITZ_NAME_SIZE]; /* p */
 
@@ -139,6 +140,9 @@ void ritz_least_value_free(ritz_least_value *found);
 
 /** The least value that rounding leaves of a semidefinite A. */
 double ritz_least_rounding(const ritz_dense *A);
+
+/** Tell rigid motions among all modes, by mass properties that are known. */
+ritz_status ritz_check_motions(ritz_checker *it);
 
 /** All modes; or that M and K are singular together. */
 ritz_status ritz_check_modes(const ritz_structure *model,

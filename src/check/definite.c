@@ -9,6 +9,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "check/check.h"
+#include "model/squares.h"
 #include "poles/poles.h"
 
 #include <float.h>
@@ -17,6 +18,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Columns that a line names, at most. */
 enum { SHOWN = 3 };
@@ -302,6 +304,88 @@ static ritz_status say_rigid(ritz_checker *it, bool *said)
     return RITZ_OK;
 }
 
+/* The first mode, of those that do not count as rigid, that is no rigid
+   motion. */
+static double find_softest(const ritz_checker *it)
+{
+    const ritz_modal_model *modes = &it->modes;
+    int64_t k = modes->num_rigid;
+
+    while (k < modes->count && it->moves && it->moves[k])
+        k++;
+    return k < modes->count ? modes->lambda[k] : HUGE_VAL;
+}
+
+/* Negative squares of forces, as systems of dual-craig-bampton have them. */
+static void say_squares(ritz_checker *it, double value)
+{
+    const ritz_modal_model *modes = &it->modes;
+    const ritz_measure *measure =
+        ritz_measures_find(&it->reduced->errors, RITZ_NEGATIVE_SQUARES);
+    int64_t k = modes->num_rigid;
+
+    while (k < modes->count && modes->lambda[k] < 0.0)
+        k++;
+    ritz_checker_say(
+        it, "stiffness-definite", value, 0.0, RITZ_FAIL,
+        measure->where + strcspn(measure->where, "m"), /* "mode 41, -28 Hz" */
+        "%" PRId64 " negative squares of the forces that join bodies of "
+        "dual-craig-bampton, and of no motion of these: they grow by %.3g to "
+        "%.3g/s; macneal-rubin has the same columns",
+        k - modes->num_rigid, sqrt(-modes->lambda[k - 1]),
+        sqrt(-modes->lambda[modes->num_rigid]));
+}
+
+static void say_negative(ritz_checker *it, double value)
+{
+    static const char name[] = "stiffness-definite";
+    const ritz_modal_model *modes = &it->modes;
+    const int64_t r = modes->num_rigid;
+    const double least = modes->lambda[r], softest = find_softest(it);
+    char where[RITZ_WHERE_SIZE] = "";
+
+    if (ritz_measures_find(&it->reduced->errors, RITZ_NEGATIVE_SQUARES)) {
+        say_squares(it, value);
+        return;
+    }
+    name_columns(it, ritz_dense_col(&modes->Phi, r), where);
+    if (it->moves && it->moves[r])
+        ritz_checker_say(it, name, least / softest, 0.0, RITZ_FAIL, where,
+                         "negative stiffness of a rigid motion, %.2g of the "
+                         "softest flexible one, %.4g Hz: too few digits, a "
+                         "free body is not free",
+                         least / softest, ritz_eigen_hertz(least));
+    else
+        ritz_checker_say(it, name, value, 0.0, RITZ_FAIL, where,
+                         "stiffness with a negative eigenvalue, %.4g "
+                         "rad^2/s^2",
+                         least);
+}
+
+/* Rigid motions with positive stiffness: supports, or too few digits. */
+static bool say_held(ritz_checker *it, double value)
+{
+    const ritz_modal_model *modes = &it->modes;
+    int64_t held = 0, last = modes->num_rigid;
+    char where[RITZ_WHERE_SIZE];
+
+    for (int64_t k = modes->num_rigid; it->moves && k < modes->count; k++)
+        if (it->moves[k]) {
+            held++;
+            last = k;
+        }
+    if (held == 0)
+        return false;
+    snprintf(where, sizeof where, "%" PRId64 " rigid, %" PRId64 " held",
+             modes->num_rigid, held);
+    ritz_checker_say(it, "stiffness-definite", value, 0.0, RITZ_PASS, where,
+                     "no negative eigenvalue; rigid motions are held, at up "
+                     "to %.4g Hz: by supports, or by a stiffness of too few "
+                     "digits",
+                     ritz_eigen_hertz(modes->lambda[last]));
+    return true;
+}
+
 static ritz_status say_stiffness(ritz_checker *it)
 {
     static const char name[] = "stiffness-definite";
@@ -318,16 +402,13 @@ static ritz_status say_stiffness(ritz_checker *it)
     value = most > 0.0 ? least / most : 0.0;
     it->usable = least >= 0.0;
     it->definite = it->definite && it->usable;
+    RITZ_CHECK(ritz_check_motions(it));
     if (least < 0.0) {
-        name_columns(it, ritz_dense_col(&modes->Phi, r), where);
-        ritz_checker_say(it, name, value, 0.0, RITZ_FAIL, where,
-                         "stiffness with a negative eigenvalue, %.4g "
-                         "rad^2/s^2",
-                         least);
+        say_negative(it, value);
         return RITZ_OK;
     }
     RITZ_CHECK(say_rigid(it, &said));
-    if (said)
+    if (said || say_held(it, value))
         return RITZ_OK;
     snprintf(where, sizeof where, "%" PRId64 " rigid", r);
     if (massless > 0)

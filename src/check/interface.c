@@ -467,6 +467,7 @@ ritz_status ritz_check_joined(ritz_checker *it)
     RITZ_CHECK(probe_joined(it, &force, &other, &probe));
     keep_worst(&probe, "", &t);
     say_trial(it, "interface-joined", &t,
-              "joined by interface forces, as its columns are made for");
+              "joined by interface forces, which leave negative squares "
+              "(macneal-rubin has the same columns)");
     return RITZ_OK;
 }

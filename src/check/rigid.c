@@ -391,10 +391,13 @@ static ritz_status check_null_space(ritz_checker *it, int64_t eigen)
 
     if (status == RITZ_OK)
         ritz_checker_say(it, name, (double)count, (double)eigen,
-                         count == eigen ? RITZ_PASS : RITZ_FAIL, NULL,
+                         count == eigen ? RITZ_PASS : RITZ_FAIL, NULL, "%s",
                          count == eigen
                              ? "stiffness lets as many motions free as there "
                                "are rigid eigenvectors"
+                         : it->rounded && count == it->Phi.ncol
+                             ? "all rigid motions, to some of which rounding "
+                               "of the stiffness gives a frequency"
                              : "not as many as rigid eigenvectors");
     if (status != RITZ_ERR_SINGULAR)
         return status;
@@ -403,14 +406,23 @@ static ritz_status check_null_space(ritz_checker *it, int64_t eigen)
     return RITZ_OK;
 }
 
+/* Rigid motions that have a frequency by rounding of the stiffness, and are no
+   rigid modes; without positions all six are taken to be there. */
+static int64_t count_rounded(const ritz_checker *it, const ritz_pairs *pairs)
+{
+    const int64_t all = it->placed ? it->Phi.ncol : (int64_t)RITZ_BODY_MOTIONS;
+
+    return it->rounded && pairs->num_rigid < all ? all - pairs->num_rigid : 0;
+}
+
 /*
  * First flexible eigenvalue. Where rounding holds the body its rigid modes are
- * not distinguished from others by size, and the first six are taken as rigid.
+ * not distinguished from others by size, and as many as there are rigid motions
+ * are taken as rigid.
  */
 static double find_softest(const ritz_checker *it, const ritz_pairs *pairs)
 {
-    int64_t rigid = pairs->num_rigid;
-    int64_t k = it->rounded && rigid < 6 ? 6 : rigid;
+    int64_t k = pairs->num_rigid + count_rounded(it, pairs);
 
     return k < pairs->Phi.ncol && pairs->lambda[k] > 0.0 ? pairs->lambda[k]
                                                          : nan("");
@@ -419,16 +431,25 @@ static double find_softest(const ritz_checker *it, const ritz_pairs *pairs)
 static void say_eigenvectors(ritz_checker *it, const ritz_pairs *pairs)
 {
     int64_t count = pairs->num_rigid;
+    int64_t rounded = count_rounded(it, pairs);
+    char held[RITZ_NAME_SIZE * 2] = "";
 
+    if (rounded > 0 && count + rounded <= pairs->Phi.ncol)
+        snprintf(held, sizeof held,
+                 "; by rounding of the stiffness %" PRId64 " rigid motion%s "
+                 "%.4g to %.4g Hz",
+                 rounded, rounded == 1 ? " has" : "s have",
+                 ritz_eigen_hertz(pairs->lambda[count]),
+                 ritz_eigen_hertz(pairs->lambda[count + rounded - 1]));
     ritz_checker_say(
         it, "rigid-modes-eigenvectors", (double)count, 6.0,
         count > 6 || (count == 0 && pairs->lambda[0] < 0.0) ? RITZ_WARN
                                                             : RITZ_PASS,
         NULL,
         isfinite(it->softest)
-            ? "%" PRId64 " rigid modes, the first flexible one at %.6g Hz"
+            ? "%" PRId64 " rigid modes, the first flexible one at %.6g Hz%s"
             : "%" PRId64 " rigid modes and no flexible one",
-        count, ritz_eigen_hertz(it->softest));
+        count, ritz_eigen_hertz(it->softest), held);
 }
 
 /* No stiffness at all: everything with mass is free. */

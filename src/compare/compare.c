@@ -14,6 +14,7 @@
 #include "assembly/assembly.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "model/squares.h"
 
 #include <ritz/base.h>
 
@@ -394,7 +395,7 @@ static ritz_status refuse_forces(const ritz_stage *stage)
         return RITZ_OK;
     RITZ_CHECK_IN("stage 1", ritz_assemble(stage, NULL, &system));
     negative = ritz_measures_find(&system.configuration[0].errors,
-                                  "negative-eigenvalues");
+                                  RITZ_NEGATIVE_SQUARES);
     (void)snprintf(
         count, sizeof count, "%.0f negative squares of interface forces, %s",
         negative ? negative->value : 0.0, negative ? negative->where : "");

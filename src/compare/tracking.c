@@ -5,6 +5,7 @@
 #include "base/tolerances.h"
 
 #include "compare/compare.h"
+#include "model/squares.h"
 
 #include <ritz/base.h>
 #include <ritz/matrix.h>
@@ -15,7 +16,8 @@
 /* One step of tracking: modes of a configuration and of the one before it. */
 
 typedef struct ritz_track_step {
-    int64_t from, to;          /* configurations */
+    int64_t from, to; /* configurations */
+    const ritz_configuration *at[2];
     int64_t num_from, num_to;  /* flexible modes */
     const double *hertz[2];    /* of both */
     const int64_t *cluster[2]; /* first mode of each one's cluster */
@@ -27,6 +29,15 @@ static void ritz_track_step_free(ritz_track_step *step)
 {
     free(step->partner);
     ritz_dense_free(&step->mac);
+}
+
+/* Whether flexible mode i of `from`, 0, or of `to`, 1, is a negative square of
+   forces. */
+static bool is_square(const ritz_track_step *step, int side, int64_t i)
+{
+    const ritz_configuration *c = step->at[side];
+
+    return ritz_configuration_is_square(c, c->num_rigid + i);
 }
 
 /* One past the last mode of the cluster of mode i. */
@@ -76,7 +87,7 @@ static int64_t find_paired_mode(const ritz_track_step *step, const bool *taken,
     for (int64_t j = 0; j < step->num_to; j++) {
         double mac = ritz_dense_col(&step->mac, j)[i];
 
-        if (!taken[j] && mac >= RITZ_SAME_MODE &&
+        if (!taken[j] && mac >= RITZ_SAME_MODE && !is_square(step, 1, j) &&
             (best < 0 || mac > ritz_dense_col(&step->mac, best)[i]))
             best = j;
     }
@@ -84,19 +95,18 @@ static int64_t find_paired_mode(const ritz_track_step *step, const bool *taken,
 }
 
 /* MAC values and pairs of one step; cluster and hertz are set. */
-static ritz_status match_modes(const ritz_stage *stage,
-                               const ritz_configuration *from,
-                               const ritz_configuration *to,
-                               ritz_track_step *step)
+static ritz_status match_modes(const ritz_stage *stage, ritz_track_step *step)
 {
     RITZ_OWN_ARRAY bool *taken = NULL;
 
     RITZ_CHECK_NEW(taken, step->num_to);
     RITZ_CHECK_NEW(step->partner, step->num_from);
-    RITZ_CHECK(ritz_modes_correlate(stage, NULL, true, from, to, &step->mac));
+    RITZ_CHECK(ritz_modes_correlate(stage, NULL, true, step->at[0], step->at[1],
+                                    &step->mac));
     average_clusters(step);
     for (int64_t i = 0; i < step->num_from; i++) {
-        step->partner[i] = find_paired_mode(step, taken, i);
+        step->partner[i] =
+            is_square(step, 0, i) ? -1 : find_paired_mode(step, taken, i);
         if (step->partner[i] >= 0)
             taken[step->partner[i]] = true;
     }
@@ -143,11 +153,12 @@ static void find_two_best(const ritz_track_step *step, int64_t i,
     best[0] = step->partner[i];
     best[1] = -1;
     for (int64_t j = 0; j < step->num_to && step->partner[i] < 0; j++)
-        if (read_mac(step, i, j) > read_mac(step, i, best[0]))
+        if (!is_square(step, 1, j) &&
+            read_mac(step, i, j) > read_mac(step, i, best[0]))
             best[0] = j;
     for (int64_t j = 0; j < step->num_to; j++)
         if (best[0] >= 0 && step->cluster[1][j] != step->cluster[1][best[0]] &&
-            !is_of_pair(step, i, j) &&
+            !is_of_pair(step, i, j) && !is_square(step, 1, j) &&
             read_mac(step, i, j) > read_mac(step, i, best[1]))
             best[1] = j;
 }
@@ -213,6 +224,8 @@ static ritz_status append_events(const ritz_track_step *step, double up_to_hz,
     for (int64_t i = 0; i < step->num_from; i++) {
         if (step->hertz[0][i] > most)
             break;
+        if (is_square(step, 0, i))
+            continue;
         RITZ_CHECK(classify_mode(step, i, tracking));
         for (int64_t j = i + 1; j < step->num_from; j++) {
             int64_t p = step->partner[i], q = step->partner[j];
@@ -293,7 +306,8 @@ static ritz_status allocate_tracking(const ritz_system *system,
         for (int64_t j = 0; j < t->first[k + 1] - t->first[k]; j++) {
             hertz[j] = ritz_eigen_hertz(c->lambda[c->num_rigid + j]);
             cluster[j] = j;
-            if (j > 0 && hertz[j] - hertz[j - 1] <= RITZ_CLUSTER_GAP * hertz[j])
+            if (j > 0 && fabs(hertz[j] - hertz[j - 1]) <=
+                             RITZ_CLUSTER_GAP * fabs(hertz[j]))
                 cluster[j] = cluster[j - 1];
         }
     }
@@ -327,7 +341,7 @@ static void continue_tracks(const ritz_track_step *step, ritz_tracking *t)
                 ritz_dense_col(&step->mac, step->partner[i])[i];
         }
     for (int64_t j = 0; j < step->num_to; j++)
-        if (to[j] < 0)
+        if (to[j] < 0 && !is_square(step, 1, j))
             to[j] = t->num_tracks++;
 }
 
@@ -348,6 +362,9 @@ static ritz_status number_tracks(ritz_tracking *t)
     }
     for (int64_t k = 0; k < t->num_configurations; k++)
         for (int64_t i = t->first[k]; i < t->first[k + 1]; i++) {
+            if (t->track[i] < 0)
+                continue;
+
             int64_t p = find_root(joined, t->track[i]);
             int64_t q =
                 find_root(joined, t->track[t->first[k] + t->cluster[i]]);
@@ -355,6 +372,9 @@ static ritz_status number_tracks(ritz_tracking *t)
             joined[p > q ? p : q] = p < q ? p : q; /* the older one remains */
         }
     for (int64_t i = 0; i < t->first[t->num_configurations]; i++) {
+        if (t->track[i] < 0)
+            continue;
+
         int64_t root = find_root(joined, t->track[i]);
 
         if (number[root] < 0)
@@ -388,6 +408,10 @@ static ritz_status track_step(const ritz_stage *stage,
 {
     int64_t before = t->before[k];
     RITZ_OWN(ritz_track_step) step = {.from = before, .to = k};
+    const ritz_configuration *all = system->configuration;
+
+    step.at[0] = before < 0 ? NULL : &all[before];
+    step.at[1] = &all[k];
 
     step.num_to = t->first[k + 1] - t->first[k];
     if (before >= 0) {
@@ -396,8 +420,7 @@ static ritz_status track_step(const ritz_stage *stage,
         step.hertz[1] = t->hertz + t->first[k];
         step.cluster[0] = t->cluster + t->first[before];
         step.cluster[1] = t->cluster + t->first[k];
-        RITZ_CHECK(match_modes(stage, &system->configuration[before],
-                               &system->configuration[k], &step));
+        RITZ_CHECK(match_modes(stage, &step));
         RITZ_CHECK(append_events(&step, up_to_hz, t));
     }
     continue_tracks(&step, t);

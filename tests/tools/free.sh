@@ -100,6 +100,34 @@ expect 0 "296 dofs" ritz-assemble --full scene-dual-craig-bampton.yaml \
     --at clock=60 -o full.h5
 expect 1 "10 negative squares from 27.9" ritz-verify full.h5 dual.h5 -o none.h5
 expect 1 "is a negative square: forces that join bodies" ritz-rank dual.h5
+expect 1 "10 negative squares of the forces that join bodies" ritz-check dual.h5
+expect 1 "(stiffness-definite, mode 41, -27.92 Hz)" ritz-export --to matlab \
+    dual.h5 -o none.mat
+expect 0 "10 negative squares of the forces that join bodies, no modes of" \
+    ritz-assemble scene-dual-craig-bampton.yaml --tracks dual.tsv \
+    --components dual- -o swept.h5
+works "  they have no track, nor are others taken for them" /usr/bin/python3 -s - \
+    <<'END'
+rows = [line.split("\t") for line in open("dual.tsv")][1:]
+there = [r for r in rows if r[1] == "clock=0,cone=0"]
+assert len(there) == 46
+assert all((r[0] == "0") == (float(r[3]) < 0) for r in rows)
+tracks = [r[0] for r in there if r[0] != "0"]
+assert len(tracks) == 36 and len(set(tracks)) == 36, tracks
+END
+expect 0 "10 negative squares of the forces that join bodies of dual-craig" \
+    ritz-chart tracks dual.tsv -o tracks.svg
+expect 0 "10 negative squares of interface forces, no modes, are left" \
+    cat tracks.svg
+expect 0 "10 negative squares of the forces that join bodies of dual-craig" \
+    ritz-chart mac swept.h5 dual-rotor.h5 dual-stator.h5 dual-platform.h5 \
+    -o mac.svg
+works "  and is of 36 modes" test "$(wc -l <mac.svg.tsv)" -ge $((36 * 36))
+works "  none of them a square" test -z "$(grep -e ': -[0-9.]* Hz' mac.svg.tsv)"
+expect 0 "54 shapes" ritz-export --to vtu swept.h5 --at clock=60 -o shapes.vtu \
+    --component rotor=dual-rotor.h5 --component stator=dual-stator.h5 \
+    --component platform=dual-platform.h5
+expect 0 'Name="negative square 41, -27.92 Hz"' cat shapes.vtu
 expect 1 "10 negative squares of the forces" ritz-simulate dual.h5 --seconds 5 \
     --step 0.01 --input torque=step -o none.h5
 expect 1 "negative squares of interface forces, first: mode 41" \

@@ -53,11 +53,22 @@ expect 0 "and not of the body" ritz-frf bar.h5 --from-hz 20 --to-hz 20000 \
 json 0 ritz-frf bar.h5 --to-hz 20000 --damping "modal 0.01" -o modal.h5
 holds "  a sum of modes is not ruled by it" '"rounding" not in j'
 
+works "a bar of 7 digits" bar 7
+expect 1 "1 rigid modes, the first flexible one at 10066.4 Hz; by rounding" \
+    ritz-check bar.h5
+expect 1 "2 rigid motions have 81.12 to 94.61 Hz" ritz-check bar.h5
+expect 1 "to some of which rounding of the stiffness gives a" ritz-check bar.h5
+expect 0 "" ritz-basis craig-bampton --modes 4 bar.h5 -o basis.h5
+expect 0 "" ritz-reduce bar.h5 basis.h5 -o reduced.h5
+expect 0 "rigid motions are held, at up to 94.61 Hz" ritz-check reduced.h5
+
 works "a bar of 6 digits" bar 6
 expect 0 "rigid eigenvalues of rounded K rule" ritz-frf bar.h5 --to-hz 90000 \
     --damping "modal 0.01" -o modal.h5
 expect 0 "" ritz-basis craig-bampton --modes 4 bar.h5 -o basis.h5
 expect 0 "rigid eigenvalues of rounded K" ritz-reduce bar.h5 basis.h5 \
     --band-hz 0,50000 --damping "modal 0.01" -o reduced.h5
+expect 1 "negative stiffness of a rigid motion, -0.0022 of the softest" \
+    ritz-check reduced.h5
 
 printf '1..%d\n' "$count"

@@ -136,6 +136,23 @@ void chart_sources_free(chart_sources *sources)
     *sources = (chart_sources){0};
 }
 
+void chart_leave_squares(const chart_sources *sources, const char *name,
+                         int64_t count, picture *out)
+{
+    if (count == 0)
+        return;
+    cli_warn(sources->run,
+             "'%s': %ld negative squares of the forces that join bodies of "
+             "dual-craig-bampton, no modes of these, are left out; "
+             "macneal-rubin has the same columns",
+             name, count);
+    if (!strstr(out->note, "negative squares"))
+        sink_append(out->note, sizeof out->note,
+                    "%s%ld negative squares of interface forces, no modes, are "
+                    "left out",
+                    *out->note ? "; " : "", count);
+}
+
 chart_word chart_say_error(double error)
 {
     chart_word out = {"not measured"};

@@ -71,6 +71,11 @@ ritz_status chart_name_files(ritz_status status, const chart_sources *sources,
                              int holds);
 void chart_sources_free(chart_sources *sources);
 
+/** Say, and note below the picture, that the negative squares of a system are
+ * left out, if it has any: see model_negative_squares. */
+void chart_leave_squares(const chart_sources *sources, const char *name,
+                         int64_t count, picture *out);
+
 /**
  * Draw the values of modes as bars: PATH, an SVG, with its data in PATH.tsv and
  * its script in PATH.gp.

@@ -11,6 +11,7 @@
 #include "chart/chart.h"
 
 #include "base/alloc.h"
+#include "model/squares.h"
 
 #include <ritz/matrix.h>
 
@@ -32,8 +33,9 @@ typedef struct mac_side {
     const ritz_configuration *at; /* NULL: it is no system */
     ritz_dense U;                 /* n x count */
     ritz_dense MU; /* the same times the mass of bodies; {0}: U itself */
-    char mode[MOST_MODES][32]; /* "3: 1.25", number and frequency */
-    int64_t count;
+    char mode[MOST_MODES][32];          /* "3: 1.25", number and frequency */
+    int64_t count, mode_at[MOST_MODES]; /* of all modes, from 0 */
+    int64_t num_squares;    /* negative squares of forces, which are left out */
     const ritz_dof *dof;    /* n, borrowed; NULL: rows are not dofs */
     char (*channel)[LABEL]; /* n, inputs and outputs; NULL: rows are none */
     char name[2 * PICTURE_WORD]; /* "system.h5, clock=60" */
@@ -58,22 +60,27 @@ static void mac_pair_free(mac_pair *pair)
 
 /* --- modes, at dofs and by inputs and outputs ----------------------------- */
 
-/* A column of a basis may have no frequency, NaN. */
+/* The next one is mode k. A column of a basis may have no frequency, NaN. */
 static void name_mode(mac_side *s, int64_t k, double hertz)
 {
-    snprintf(s->mode[k], sizeof s->mode[k], isnan(hertz) ? "%ld" : "%ld: %.3g",
-             k + 1, hertz);
+    snprintf(s->mode[s->count], sizeof *s->mode,
+             isnan(hertz) ? "%ld" : "%ld: %.3g", k + 1, hertz);
 }
 
-/* Number and frequencies of the flexible modes behind the rigid ones. */
-static ritz_status count_modes(int64_t all, int64_t rigid, const double *lambda,
-                               mac_side *out)
+/* The flexible modes behind the rigid ones, and their frequencies. */
+static ritz_status list_modes(int64_t all, int64_t rigid, const double *lambda,
+                              mac_side *out)
 {
-    out->count = all - rigid < MOST_MODES ? all - rigid : MOST_MODES;
+    for (int64_t k = rigid; k < all; k++) {
+        if (out->at && ritz_configuration_is_square(out->at, k)) {
+            out->num_squares++;
+        } else if (out->count < MOST_MODES) {
+            name_mode(out, k - rigid, ritz_eigen_hertz(lambda[k]));
+            out->mode_at[out->count++] = k;
+        }
+    }
     RITZ_REFUSE_IF(out->count < 1, RITZ_ERR_ARGUMENT,
                    "there is no flexible mode");
-    for (int64_t k = 0; k < out->count; k++)
-        name_mode(out, k, ritz_eigen_hertz(lambda[rigid + k]));
     return RITZ_OK;
 }
 
@@ -86,10 +93,10 @@ static ritz_status find_modes(mac_side *out)
     RITZ_OWN(ritz_pairs) pairs = {0};
 
     if (at) {
-        RITZ_CHECK(count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
+        RITZ_CHECK(list_modes(at->K.ncol, at->num_rigid, at->lambda, out));
         RITZ_CHECK(ritz_dense_new(at->K.ncol, out->count, &out->U));
         for (int64_t k = 0; k < out->count; k++)
-            ritz_dense_col(&out->U, k)[at->num_rigid + k] = 1.0;
+            ritz_dense_col(&out->U, k)[out->mode_at[k]] = 1.0;
         return RITZ_OK;
     }
     if (m->kind == MODEL_REDUCED)
@@ -97,7 +104,7 @@ static ritz_status find_modes(mac_side *out)
     else
         RITZ_CHECK(
             ritz_eigen_sparse(&m->component.K, &m->component.M, &span, &pairs));
-    RITZ_CHECK(count_modes(pairs.Phi.ncol, pairs.num_rigid, pairs.lambda, out));
+    RITZ_CHECK(list_modes(pairs.Phi.ncol, pairs.num_rigid, pairs.lambda, out));
     return ritz_dense_columns(&pairs.Phi, pairs.num_rigid, out->count, &out->U);
 }
 
@@ -109,9 +116,8 @@ static ritz_status find_dof_shapes(mac_side *out)
     RITZ_OWN(ritz_dense) Phi = {0};
 
     if (m->kind == MODEL_BASIS) {
-        out->count = b->T.ncol < MOST_MODES ? b->T.ncol : MOST_MODES;
-        for (int64_t k = 0; k < out->count; k++)
-            name_mode(out, k, b->columns.hertz[k]);
+        for (; out->count < b->T.ncol && out->count < MOST_MODES; out->count++)
+            name_mode(out, out->count, b->columns.hertz[out->count]);
         return ritz_dense_columns(&b->T, 0, out->count, &out->U);
     }
     RITZ_REFUSE_IF(m->kind == MODEL_REDUCED && !m->reduced.dof,
@@ -236,11 +242,11 @@ static ritz_status sort_bodies(const mac_side *side, mac_pair *pair)
 /* Whether U'MU, with the masses of the files, is M of the configuration. */
 static ritz_status check_mass(const mac_side *side)
 {
-    const int64_t rigid = side->at->num_rigid, n = side->count;
     RITZ_OWN(ritz_dense) product = {0}, due = {0};
 
     RITZ_CHECK(ritz_dense_mul_tn(&side->U, &side->MU, &product));
-    RITZ_CHECK(ritz_dense_block(&side->at->M, rigid, n, rigid, n, &due));
+    RITZ_CHECK(
+        ritz_dense_principal(&side->at->M, side->count, side->mode_at, &due));
     ritz_dense_add(-1.0, &due, &product);
     if (ritz_dense_max(&product) <= rounding * ritz_dense_max(&due))
         return RITZ_OK;
@@ -259,15 +265,14 @@ static ritz_status find_body_shapes(mac_pair *pair, mac_side *out)
     for (int64_t c = 0; c < s->num_components; c++)
         n += s->component[c].order;
     RITZ_CHECK_IN(out->file->path,
-                  count_modes(at->K.ncol, at->num_rigid, at->lambda, out));
+                  list_modes(at->K.ncol, at->num_rigid, at->lambda, out));
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->U));
     RITZ_CHECK(ritz_dense_new(n, out->count, &out->MU));
     n = 0;
     for (int64_t c = 0; c < s->num_components; n += s->component[c++].order) {
-        const ritz_dense part =
-            ritz_dense_part(&at->P[c], at->num_rigid, out->count);
-        RITZ_OWN(ritz_dense) MP = {0};
+        RITZ_OWN(ritz_dense) part = {0}, MP = {0};
 
+        RITZ_CHECK(ritz_dense_pick(&at->P[c], out->count, out->mode_at, &part));
         RITZ_CHECK(ritz_dense_mul(&pair->body[c]->model.reduced.M, &part, &MP));
         ritz_dense_put(&part, n, 0, &out->U);
         ritz_dense_put(&MP, n, 0, &out->MU);
@@ -512,12 +517,15 @@ ritz_status chart_mac(const chart_sources *sources,
     p->wide =
         fmax(LEFT + RIGHT + cell * (double)b->count, LEFT + LETTER * letters);
     p->body = HEAD + FOOT + cell * (double)a->count;
+    for (int k = 0; k < 2; k++)
+        chart_leave_squares(sources, pair.side[k].name,
+                            pair.side[k].num_squares, p);
     /* as many modes can be told apart as there are inputs and outputs */
     if (pair.num_common > 0 && pair.num_common < most)
-        snprintf(p->note, sizeof p->note,
-                 "%ld inputs and outputs tell no more modes apart than that: "
-                 "likeness can be chance",
-                 pair.num_common);
+        sink_append(p->note, sizeof p->note,
+                    "%s%ld inputs and outputs tell no more modes apart than "
+                    "that: likeness can be chance",
+                    *p->note ? "; " : "", pair.num_common);
     fprintf(p->given.file,
             "across = %ld\ndown = %ld\ncell = %.6g\nleft = %d\n"
             "numbered = %d\n",

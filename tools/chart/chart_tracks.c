@@ -29,6 +29,8 @@ typedef struct track_table {
     double *x;       /* and its place */
     char xlabel[RITZ_NAME_SIZE];
     bool swept; /* x is a setting; else only the number of its configuration */
+    int64_t num_squares; /* negative squares of forces, which are left out; most
+                            of them at one configuration */
 } track_table;
 
 static void track_table_free(track_table *t)
@@ -54,9 +56,10 @@ static bool take_row(char *line, track_row *out)
     field[4][strcspn(field[4], "\t\r")] = '\0';
     out->mac = nan("");
     out->name = field[1];
-    return ritz_text_whole(field[0], &out->track) && out->track >= 1 &&
+    return ritz_text_whole(field[0], &out->track) && out->track >= 0 &&
            ritz_text_whole(field[2], &out->mode) &&
-           ritz_text_real(field[3], &out->hertz) && out->hertz >= 0.0 &&
+           ritz_text_real(field[3], &out->hertz) &&
+           (out->hertz < 0.0) == (out->track == 0) &&
            (strcmp(field[4], "nan") == 0 || strcmp(field[4], "-nan") == 0 ||
             ritz_text_real(field[4], &out->mac));
 }
@@ -73,10 +76,21 @@ static int64_t find_configuration(const char *name, track_table *t)
     return k;
 }
 
+/* Count a negative square, which has no track. */
+static void count_square(const track_row *r, const char **at, int64_t *squares,
+                         track_table *t)
+{
+    *squares = *at && strcmp(*at, r->name) == 0 ? *squares + 1 : 1;
+    *at = r->name;
+    if (*squares > t->num_squares)
+        t->num_squares = *squares;
+}
+
 /* Read the rows up to a frequency, cutting up the text. */
 static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
 {
-    int64_t lines = 1, number = 1;
+    int64_t lines = 1, number = 1, squares = 0;
+    const char *squared = NULL;
 
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
@@ -96,8 +110,13 @@ static ritz_status read_rows(char *text, double up_to_hz, track_table *t)
         number++;
         RITZ_REFUSE_IF(line[strspn(line, "\r")] && !take_row(line, r),
                        RITZ_ERR_FORMAT, "line %ld is no row of tracks", number);
-        if (!r->name || r->hertz > up_to_hz)
+        if (!r->name || fabs(r->hertz) > up_to_hz)
             continue;
+        if (r->track == 0) {
+            count_square(r, &squared, &squares, t);
+            *r = (track_row){0};
+            continue;
+        }
         r->at = find_configuration(r->name, t);
         t->num_tracks = r->track > t->num_tracks ? r->track : t->num_tracks;
         t->count++;
@@ -225,6 +244,7 @@ ritz_status chart_tracks(const chart_sources *sources,
     put_data(&t, p);
     p->wide = 720.0;
     p->body = 460.0;
+    chart_leave_squares(sources, file->path, t.num_squares, p);
     fprintf(p->given.file,
             "tracks = %ld\nx_low = %.9g\nx_high = %.9g\ny_high = %.9g\n"
             "swept = %d\ndoubt = %g\n",

@@ -1,6 +1,7 @@
 #include "cli/model.h"
 
 #include "base/alloc.h"
+#include "model/squares.h"
 
 #include <ritz/matrix.h>
 
@@ -341,10 +342,8 @@ int64_t model_negative_squares(const ritz_configuration *at, double *first_hz)
 {
     int64_t count = 0;
 
-    if (!at || !ritz_measures_find(&at->errors, "negative-eigenvalues"))
-        return 0;
-    for (int64_t k = at->K.nrow - 1; k >= at->num_rigid; k--) {
-        if (!(at->lambda[k] < 0.0))
+    for (int64_t k = at ? at->K.nrow - 1 : -1; k >= 0; k--) {
+        if (!ritz_configuration_is_square(at, k))
             continue;
         count++;
         if (first_hz)

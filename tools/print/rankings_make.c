@@ -20,10 +20,10 @@ static ritz_status take_track(const char *line, int64_t most,
         sscanf(line, "%255[^\t\n]%*1[\t]%255[^\t\n]%*1[\t]%255[^\t\n]", first,
                name, third) != 3 ||
             !ritz_text_whole(first, &track) || !ritz_text_whole(third, &mode) ||
-            track < 1 || track > most || mode < 1,
+            track < 0 || track > most || mode < 1,
         RITZ_ERR_FORMAT, "'%.40s' is no line of a table of tracks", line);
     at = find_configuration(all, name);
-    if (at < 0)
+    if (at < 0 || track == 0) /* a negative square of forces has no track */
         return RITZ_OK;
     RITZ_REFUSE_IF(mode > all->item[at].count, RITZ_ERR_FORMAT,
                    "mode %ld at '%s' is not there: the tracks are those of "

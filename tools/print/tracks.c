@@ -138,7 +138,26 @@ static void say_kind(cli_run *run, const ritz_system *system,
                 kinds[which].title);
 }
 
-/* Track, configuration, mode, Hz, MAC with the mode it goes on from. */
+/* Negative squares of the first configuration: others have about as many. */
+static void say_squares(cli_run *run, const ritz_system *system,
+                        const ritz_tracking *t)
+{
+    int64_t count =
+        t->num_configurations > 0
+            ? model_negative_squares(&system->configuration[0], NULL)
+            : 0;
+
+    if (count == 0)
+        return;
+    sink_set(run, "negative_squares", "%ld", count);
+    cli_say(run,
+            "  %ld negative squares of the forces that join bodies, no modes "
+            "of these, have no track",
+            count);
+}
+
+/* Track, configuration, mode, Hz, MAC with the mode it goes on from; track 0 is
+   of negative squares. */
 static ritz_status write_table(const char *path, const ritz_system *system,
                                const ritz_tracking *t)
 {
@@ -172,6 +191,7 @@ ritz_status tracks_report(cli_run *run, const ritz_stage *stage,
                 t.num_events == 0 ? "; none changes places, ties or is lost"
                                   : "; events",
                 system->band_hz[1] > 0.0 ? " in the band" : "");
+    say_squares(run, system, &t);
     for (int k = 0; k < NUM_KINDS; k++)
         say_kind(run, system, &t, k);
     sink_end(run);

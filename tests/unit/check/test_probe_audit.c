@@ -304,9 +304,7 @@ static void few_digits_of_a_free_body_are_unstable(void **)
         assert_ok(ritz_audit_reduced(&model, &audit));
         if (cases[k].fails)
             assert_verdict(&audit, "stiffness-definite", RITZ_FAIL,
-                           cases[k].digits == 5
-                               ? "stiffness with a negative eigenvalue"
-                               : "negative stiffness of a rigid motion");
+                           "negative stiffness of a rigid motion");
         else
             assert_passes(&audit, cases[k].digits);
     }
@@ -330,7 +328,8 @@ static void columns_for_forces_fail_where_they_are_joined(void **)
         assert_ok(ritz_audit_reduced(&model, &audit));
         if (k == 0)
             assert_verdict(&audit, "interface-joined", RITZ_FAIL,
-                           "stiffness with a negative eigenvalue");
+                           "negative squares (macneal-rubin has the same "
+                           "columns): stiffness with a negative eigenvalue");
         else
             assert_passes(&audit, 0);
     }
