@@ -1,13 +1,13 @@
 /*
- * ritz-walk - read an HDF5 file to its end, so that whoever started this
- * process need not find out what HDF5 makes of it (tools/cli/walk.h). The file
- * is open as descriptor 3; nothing is said but by the status.
+ * ritz-walk - read a whole HDF5 file, as descriptor 3, in a process of its own,
+ * so that a file that crashes or stalls HDF5 does no harm to the tool that
+ * started this process (tools/cli/walk.h). The exit status is the only output.
  *
- * Objects are met as the tools meet them: by the names of hard links,
- * attributes and values converted to the types of memory, filters and storage
- * that the tools accept. What they refuse is not read here either: links, other
- * files, other filters, more values than the file can hold. Errors that HDF5
- * reports are passed over, since the tools will meet them, too.
+ * Files are read as the tools read them: through hard links, with the same
+ * conversions of attributes and values, filters and storage layouts. What the
+ * tools refuse is skipped: other links, external files, other filters, more
+ * values than the file can hold. Errors that HDF5 reports are ignored, since
+ * the tool will get the same ones.
  */
 #define _GNU_SOURCE /* NOLINT: declares tdestroy */
 
@@ -23,13 +23,14 @@
 
 enum { RANK = H5S_MAX_RANK, PIECE = 1 << 20, NAME = 64 };
 
-/* Groups that are still to be gone through, and all objects that were met. */
+/* State of the walk: groups that are still to be read, and all objects that
+   were found so far. */
 static struct {
     hsize_t bytes; /* of the file */
     haddr_t *group;
     size_t count, room;
-    void *met;   /* of search.h, by address */
-    bool scanty; /* there was not enough memory */
+    void *met;   /* addresses of these objects, a tree of tsearch */
+    bool scanty; /* memory was not sufficient */
 } course;
 
 /* --- memory --------------------------------------------------------------- */
@@ -48,7 +49,7 @@ static herr_t look_for_memory(unsigned, const H5E_error2_t *error, void *)
     return 0;
 }
 
-/* Called with each error: whether it is one of memory. */
+/* Called by HDF5 for each error: notes whether memory was not sufficient. */
 static herr_t note_error(hid_t stack, void *)
 {
     return H5Ewalk2(stack, H5E_WALK_UPWARD, look_for_memory, NULL);
@@ -56,7 +57,7 @@ static herr_t note_error(hid_t stack, void *)
 
 /* --- values --------------------------------------------------------------- */
 
-/* The type in memory that a tool would convert to, -1 if it would not. */
+/* The type in memory to which a tool would convert; -1 if none. */
 static hid_t find_memory_type(hid_t on_file)
 {
     hid_t type = -1;
@@ -87,7 +88,7 @@ static hid_t find_memory_type(hid_t on_file)
     }
 }
 
-/* Number of values, @p most + 1 if it is larger. */
+/* Number of values; @p most + 1 if there are more than @p most. */
 static hsize_t count_values(int rank, const hsize_t *dims, hsize_t most)
 {
     hsize_t count = 1;
@@ -113,7 +114,8 @@ static herr_t read_attribute(hid_t at, const char *name, const H5A_info_t *,
     const size_t size = memory < 0 ? 0 : H5Tget_size(memory);
     void *values = NULL;
 
-    /* as many as the header of an object, or the heap of the file, holds */
+    /* no more values than the header of an object, or the heap of the file, can
+       hold */
     if (size > 0 && count > 0 && H5Tget_size(on_file) > 0 &&
         (hsize_t)count <= course.bytes / H5Tget_size(on_file) + 1)
         values = take_memory((size_t)count * size);
@@ -133,11 +135,11 @@ static herr_t read_attribute(hid_t at, const char *name, const H5A_info_t *,
 typedef struct data_set {
     hid_t id, plan, space, on_file, memory;
     int rank;
-    hsize_t dims[RANK], piece[RANK]; /* a piece is what is read at once */
+    hsize_t dims[RANK], piece[RANK]; /* part that is read at once */
     bool chunked;
 } data_set;
 
-/* Storage and filters that the tools accept. */
+/* Whether tools accept the storage layout and the filters. */
 static bool is_accepted(const data_set *s)
 {
     const H5D_layout_t layout = H5Pget_layout(s->plan);
@@ -161,7 +163,8 @@ static bool is_accepted(const data_set *s)
     return accepted;
 }
 
-/* Whether the file can hold as many values, and a chunk as many bytes. */
+/* Whether the file is large enough for the declared values, and for those of a
+   chunk, at the best ratio of deflate. */
 static bool is_borne_out(data_set *s)
 {
     const hsize_t size = H5Tget_size(s->on_file);
@@ -178,7 +181,7 @@ static bool is_borne_out(data_set *s)
             count_values(s->rank, s->piece, most / size) <= most / size);
 }
 
-/* Where the first chunk and the last lie: a search of the whole index. */
+/* Look up the first and the last chunk, which searches the whole index. */
 static void look_up_chunks(const data_set *s)
 {
     hsize_t first[RANK] = {0}, last[RANK] = {0};
@@ -192,7 +195,8 @@ static void look_up_chunks(const data_set *s)
     H5Dget_chunk_info_by_coord(s->id, last, &skipped, &place, &size);
 }
 
-/* Pieces of whole chunks, each of a megabyte of memory or one chunk. */
+/* Pieces of whole chunks; each takes up to a megabyte of memory, or is one
+   chunk. */
 static hsize_t choose_piece(data_set *s)
 {
     const hsize_t size = H5Tget_size(s->memory);
@@ -210,7 +214,7 @@ static hsize_t choose_piece(data_set *s)
     return count;
 }
 
-/* The piece from @p start on; false where it cannot be read. */
+/* Read the piece that begins at @p start; false where HDF5 reports an error. */
 static bool read_piece(const data_set *s, const hsize_t *start, hid_t type,
                        void *values)
 {
@@ -230,7 +234,8 @@ static bool read_piece(const data_set *s, const hsize_t *start, hid_t type,
     return read;
 }
 
-/* Go on to the next piece, the last dimension first; false after the last. */
+/* Advance to the next piece, last dimension first; false after the last
+   piece. */
 static bool advance_piece(const data_set *s, hsize_t *start)
 {
     for (int k = s->rank - 1; k >= 0; k--) {
@@ -288,7 +293,7 @@ static int compare_addresses(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Whether it is the first time that this object is met. */
+/* Whether this object is found for the first time. */
 static bool is_new(haddr_t at)
 {
     haddr_t *key = take_memory(sizeof *key);
@@ -368,7 +373,8 @@ static int walk_file_of_tool(void)
     if (H5dont_atexit() < 0 || H5open() < 0)
         return WALK_MEMORY;
     H5Eset_auto2(H5E_DEFAULT, note_error, NULL);
-    H5PLset_loading_state(0); /* filters of others are not read */
+    H5PLset_loading_state(0); /* no plugins: filters of third parties are not
+                                 loaded */
     file = ritz_descriptor_open(WALK_FILE);
     if (file < 0)
         return course.scanty ? WALK_MEMORY : WALK_UNOPENED;

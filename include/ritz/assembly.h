@@ -186,9 +186,9 @@ typedef struct ritz_compare_row {
                                between, they would have been */
     int64_t *kept;    /* num_kept indices into the flexible modes, ascending */
     int64_t num_completed; /* of those, kept only as a cluster is never split */
-    int64_t num_joined;    /* flexible modes that damping joins to others, with
-                              which they are ranked */
-    int64_t num_vectors;   /* Krylov vectors in their place */
+    int64_t num_joined;    /* flexible modes that damping couples to others and
+                              that are ranked with them as one cluster */
+    int64_t num_vectors;   /* Krylov vectors kept instead of modes */
     int64_t order;         /* of the stage-2 system, strays removed */
     double frequency_error; /* worst relative, of those modes; NaN: no mode */
     double allowed;         /* what rounding allows it, c eps lambda_max /
@@ -196,8 +196,8 @@ typedef struct ritz_compare_row {
     double rigid_error;     /* largest |omega| of a rigid mode of stage 2, Hz */
     double gain_error;      /* relative, of the flexible static gain */
     double response_error;  /* relative to the largest |H|, in the band */
-    double damping_error;   /* worst relative, of the damping ratios of those
-                               modes; NaN: nothing damps them */
+    double damping_error;   /* worst relative error of the damping ratios of
+                               those modes; NaN: nothing damps them */
     double mac;             /* smallest, of those modes; NaN: no mode */
     int64_t num_moments;    /* Krylov: the first of them are kept, */
     double moment_error;    /* and this is the worst, relative; NaN: none */
@@ -210,31 +210,33 @@ enum { RITZ_ATTACHED_SIZE = 4096 };
 /* Static corrections for one set of forces, and the errors with them. */
 typedef struct ritz_candidate {
     ritz_augment level;
-    int64_t num_forces;            /* of those that can be attached */
-    int64_t *force;                /* num_forces, ascending */
+    int64_t num_forces;            /* number of attached forces */
+    int64_t *force;                /* num_forces indices among all forces that
+                                      can be attached, ascending */
     char name[RITZ_ATTACHED_SIZE]; /* "inputs, rotor/boom:3" */
     int64_t *order;                /* of each body */
     int64_t total;                 /* of all bodies */
     int64_t largest;               /* order of a system, at any configuration */
-    double gain_listed, gain_between; /* worst relative errors; NaN: none */
-    /* of the largest singular value of H(i w) and of the smallest that is not
-       zero, relative, the worst over the band at all listed configurations; NaN
-       where there is no response */
+    double gain_listed, gain_between; /* worst relative errors of the static
+                                         gain; NaN: none */
+    /* [0] worst relative error of the largest singular value of H(i w), [1] of
+       the smallest one that is not zero, over the band and all listed
+       configurations; NaN where there is no response */
     double deviation[2];
-    double hertz[2];            /* where */
-    char at[2][RITZ_NAME_SIZE]; /* and at which configuration */
+    double hertz[2];            /* frequency of each worst error  [Hz] */
+    char at[2][RITZ_NAME_SIZE]; /* and its configuration */
     bool chosen;
 } ritz_candidate;
 
-/* The larger of its deviations; NaN where there is no response. */
+/* The larger of the two deviations; NaN where there is no response. */
 double ritz_candidate_worst(const ritz_candidate *candidate);
 
-/* How attached dofs were sought, one by one. */
+/* The search for the fewest attached forces that are accurate enough. */
 typedef struct ritz_attached_search {
-    int64_t pool;  /* forces to choose from, no two alike; 0: not sought */
-    int64_t tried; /* sets */
-    int64_t below; /* all sets of so many forces and of fewer were tried, and
-                      none is near enough */
+    int64_t pool;  /* distinct forces to choose from; 0: no search */
+    int64_t tried; /* sets of forces that were tried */
+    int64_t below; /* every set of at most this many forces was tried, and none
+                      meets the tolerance */
 } ritz_attached_search;
 
 /* The largest error between listed angles, and whether to add that angle:
@@ -258,8 +260,10 @@ typedef struct ritz_comparison {
     int64_t num_candidates; /* where components are augmented, or by choice */
     ritz_candidate *candidate;
     ritz_attached_search search;
-    int64_t dropped;  /* vectors of bodies that made extraneous modes */
-    double next_drop; /* by what errors would grow for one more; NaN: none */
+    int64_t dropped;  /* vectors that were removed from bodies because they made
+                         extraneous modes */
+    double next_drop; /* increase of the relative errors if one more vector were
+                         removed; NaN: none need be removed, or none can be */
     ritz_suggestion suggestion;
 } ritz_comparison;
 
@@ -274,7 +278,7 @@ typedef struct ritz_tolerance_row {
     int64_t largest; /* order of a system, at any configuration */
     bool removed;    /* whether stage two removed anything */
     double frequency_error, gain_error, response_error,
-        damping_error; /* worst over all listed; NaN: none */
+        damping_error; /* worst over all listed configurations; NaN: none */
 } ritz_tolerance_row;
 
 /**

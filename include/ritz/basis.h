@@ -154,11 +154,11 @@ typedef struct ritz_method {
     /* what a newcomer chooses by, a line of --list each: for which components,
        at what cost, what is guaranteed, where it fails */
     const char *when, *cost, *holds, *fails;
-    int uses;             /* RITZ_USES_... */
-    bool keeps_interface; /* has columns for every attached dof, which stay
-                             however few others there are */
-    int only_named;       /* ritz-fit tries it only where it is named: sum of
-                       RITZ_NAMED_FOR_... */
+    int uses;             /* sum of RITZ_USES_... */
+    bool keeps_interface; /* has a column for every attached dof, however few
+                             others are kept */
+    int only_named;       /* ritz-fit tries the method only if the user names
+                             it: sum of RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
     ritz_status (*make)(const ritz_request *request, ritz_basis *out);
 } ritz_method;
@@ -263,31 +263,33 @@ typedef struct ritz_balanced {
 } ritz_balanced;
 
 /**
- * Of a state space, E or not; dense. Poles that are right of the axis, or left
- * of it by no more than eight times their rounding, are decoupled; those of a
- * model of which rounding provably makes none unstable do not. E that is
- * symmetric and definite is reduced by its Cholesky factor (SLICOT SB03OD),
- * another one is kept (SG03BD).
+ * Gramians of a state space with or without E, by dense matrices. Poles right
+ * of the imaginary axis, or left of it by no more than eight times their
+ * rounding error, are decoupled; none is if the model is provably stable in
+ * spite of rounding. A symmetric definite E is reduced by its Cholesky factor
+ * (SLICOT SB03OD); any other E is kept (SG03BD).
  *
  * @return RITZ_ERR_ARGUMENT if it has no states, no inputs or no outputs, or a
  *         limit is not positive; RITZ_ERR_FORMAT as ritz_state_space_check;
- *         RITZ_ERR_CONVERGENCE if poles that must be told apart are too close
- * @cost   some 60 n^3, a third where A and E are symmetric, thrice with SG03BD
+ *         RITZ_ERR_CONVERGENCE if poles that must be separated are too close
+ * @cost   some 60 n^3, a third where A and E are symmetric, three times as much
+ *         with SG03BD
  * @see    [Hammarling1982], [Penzl1998]
  */
 ritz_status ritz_gramians_of_space(const ritz_state_space *model,
                                    ritz_gramians *out);
 
 /**
- * The same by an engine: `dense` as above; `low-rank`, by ADI with sparse
- * factors, of models without a pole that is not left of the axis; `auto`: of a
- * dense model dense, of a sparse one low-rank or, where that does not converge
- * and the model is small enough, dense.
+ * Gramians of a state space by an engine: `dense` as above; `low-rank`, by ADI
+ * with sparse factors, for models whose poles are all left of the imaginary
+ * axis; `auto`, which takes `dense` for a dense model, and for a sparse one
+ * `low-rank` or, where ADI does not converge and the model is small enough,
+ * `dense`.
  *
- * @param[in] band_hz  from and to: over this band alone, by quadrature; NULL:
- *                     over all frequencies
- * @return RITZ_ERR_ARGUMENT also if the engine is `modal`;
- *         RITZ_ERR_CONVERGENCE if the Gramians have no low rank
+ * @param[in] band_hz  the two ends of a band, whose Gramians are found by
+ *                     quadrature; NULL: all frequencies
+ * @return RITZ_ERR_ARGUMENT also if the engine is `modal`; RITZ_ERR_CONVERGENCE
+ *         if the Gramians have no low rank
  */
 ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
                                       ritz_engine engine, const double *band_hz,

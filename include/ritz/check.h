@@ -59,18 +59,18 @@ typedef struct ritz_probe {
     double radius;    /* largest |pole| [rad/s] */
     double tolerance; /* of `pole`, of rounding, relative to the radius */
     int64_t count;    /* of poles; 0: none was looked for */
-    int64_t unseen;   /* poles that were not looked at, of a sparse model of
-                         which nothing is proven */
+    int64_t unseen;   /* poles of a sparse model that were not computed, where
+                         no proof covers them */
     char why[RITZ_NAME_SIZE]; /* a defect of M or K; "" if poles decided */
 } ritz_probe;
 
 /**
- * Poles of A, or of E^-1 A. A pole is on the axis if |Re s| is within
- * 8 eps |A| / cos, the bound of first order on what rounding does to it, cos
- * being that between its left and right eigenvectors.
+ * Poles of A, or of E^-1 A. A pole is on the axis if |Re s| is within 8 eps |A|
+ * / cos, the bound of first order on what rounding does to it, cos being that
+ * between its left and right eigenvectors.
  *
- * Of a sparse model all poles are known to be stable where E and -(A + A') are
- * definite; otherwise those nearest to 0 are looked at.
+ * A sparse model is proven stable where E and -(A + A') are definite; otherwise
+ * only the poles nearest to 0 are computed.
  */
 ritz_status ritz_probe_states(const ritz_state_space *model, ritz_probe *out);
 

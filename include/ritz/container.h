@@ -36,30 +36,32 @@ typedef struct ritz_source {
  */
 
 /*
- * HDF5 trusts its files, and so does this library: a damaged or hostile one can
- * end the program that reads it, lead HDF5 in circles, or have it ask for any
- * amount of memory, before the library can check anything. Read files of
- * strangers with a guard.
+ * HDF5 does not validate the files that it reads, and this library reads
+ * containers by HDF5: a damaged or hostile file can crash the program, make
+ * HDF5 loop forever, or make it allocate any amount of memory, before the
+ * library can check anything. Install a guard before you read files from an
+ * untrusted source.
  */
 
-/** What looks at a regular file before HDF5 opens it, by a descriptor. It may
- * leave the place in the file changed. @return RITZ_OK, or why it is refused */
+/** Examines a regular file, given as a descriptor, before HDF5 opens it; may
+ * move the file offset.
+ * @return RITZ_OK, or why the file is refused */
 typedef ritz_status (*ritz_guard)(int file);
 
 /**
- * From now on each HDF5 file, container or MAT 7.3, is shown to @p guard before
- * it is opened, and that same file is opened, whatever has its name by then.
- * Of the whole process. The tools' guard has another process read it first
- * (tools/cli/walk.h).
+ * Have each HDF5 file, container or MAT 7.3, examined by @p guard before it is
+ * opened. The file that was examined is the one that is opened, even if its
+ * name points to another file by then. The guard holds for the whole process.
+ * The tools' guard has another process read the file first (tools/cli/walk.h).
  *
- * @param[in] guard  NULL: none, as it is at the start
+ * @param[in] guard  NULL: none, the initial state
  */
 void ritz_container_guard(ritz_guard guard);
 
 /**
- * Open a container now, and read all of it from this open file: until
- * ritz_container_release, the functions below that get this @p path do not open
- * it again. One file for each thread; of no use beyond saving that.
+ * Open a container now and keep it open: until ritz_container_release, the
+ * functions below that get this @p path read from the open file instead of
+ * opening it again. Each thread can keep one file. This only saves time.
  */
 ritz_status ritz_container_keep(const char *path);
 void ritz_container_release(void);
@@ -85,8 +87,8 @@ typedef struct ritz_summary {
 /* Models by the paths of their containers. */
 extern const ritz_source ritz_container_source;
 
-/** Whether a regular file begins as containers do, that is as HDF5; it is not
- * opened by HDF5, and may yet be damaged, or of somebody else. */
+/** Whether a regular file begins with the signature of HDF5, as containers do.
+ * The file is not opened by HDF5, and may be damaged or no container. */
 bool ritz_container_seems(const char *path);
 
 ritz_status ritz_container_summary(const char *path, ritz_summary *out);
@@ -101,9 +103,9 @@ typedef struct ritz_container_row {
     const char *about; /* what it means */
     const char *range; /* of whole numbers, "0..n-1"; NULL: any */
     bool optional;
-    const char *with; /* of an optional one: the member with which it must be
-                         there; NULL: it may be absent by itself */
-    bool nan;         /* NaN stands for none */
+    const char *with; /* an optional member must be there if the member of this
+                         name is; NULL: it may be absent by itself */
+    bool nan;         /* NaN means that there is no value */
 } ritz_container_row;
 
 /** All members of all kinds, from the tables that read and write them. */

@@ -38,13 +38,14 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
                                    const char *list, ritz_shapes *out);
 
 /**
- * Modes of a system at a configuration, as its K and M stand, at the grids of
- * its bodies where they are placed. Grids are renumbered where two bodies use
- * one number: those of body k, from 0, by k times the next power of ten.
+ * Modes of a system at a configuration, by its stored K and M, at the grids of
+ * its placed bodies. Where two bodies use the same grid number, all grids of
+ * body k (k = 0, 1, ...) are renumbered by adding k times the next power of
+ * ten.
  *
- * @param[in] bodies  of each component of the system, in its order
- * @return RITZ_ERR_ARGUMENT if the system does not know where its bodies are,
- *         these are not its bodies, or as above
+ * @param[in] bodies  bodies of the system, in its order
+ * @return RITZ_ERR_ARGUMENT if the system does not store where its bodies are,
+ *         @p bodies are others, or as ritz_shapes_of_reduced
  */
 ritz_status ritz_shapes_of_system(const ritz_system *system,
                                   const ritz_configuration *at,
@@ -70,9 +71,9 @@ typedef struct ritz_export_request {
     const char *matrices;    /* "K,M"; NULL: all that the format takes */
     bool text, dense;        /* output4 */
     int64_t digits;          /* text */
-    const char *modes;       /* of shapes, "1-6,9"; NULL: the first ten of a
-                             component, else all */
-    const ritz_stamp *stamp; /* of a container; NULL: an empty one */
+    const char *modes;       /* shapes: which modes, "1-6,9"; NULL: the first
+                                ten of a component, all of anything else */
+    const ritz_stamp *stamp; /* container: its stamp; NULL: an empty one */
 } ritz_export_request;
 
 /* Lines for the user: what was written, and what was lost. */

@@ -56,9 +56,10 @@ typedef void ritz_fit_observer(const ritz_fit_candidate *candidate,
 
 typedef struct ritz_fit_request {
     ritz_verify_request tolerance; /* band, damping, limits */
-    int64_t num_methods; /* 0: every one that makes reduced components by a
-                            number of modes, of a component with ports those
-                            that keep its interface, of a scene `compare` too */
+    int64_t num_methods; /* 0: every method that makes reduced components and
+                            takes a number of modes; for a component with ports
+                            only those that keep its interface; for a scene
+                            `compare` as well */
     const ritz_method *const *methods; /* borrowed */
     ritz_choice choice;                /* options of methods that have them */
     const char *attach;                /* ports of a component; NULL: all */

@@ -1,8 +1,7 @@
 /*
  * Matrices in foreign files: NASTRAN OUTPUT4, DMIG and punch, Matrix Market,
- * MAT.
- * A format is recognised by content, never by name. MAT 7.3 files are HDF5's,
- * which trusts them: see ritz_container_guard.
+ * MAT. A format is recognised by content, never by name. MAT 7.3 files are HDF5
+ * files, which ritz_container_guard protects against.
  */
 #ifndef RITZ_IMPORT_H
 #define RITZ_IMPORT_H
@@ -66,8 +65,9 @@ typedef struct ritz_format {
     const char *reference; /* key in docs/references.bib */
     /** True if these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
-    /** Before anything is read, once: whether another library may have these
-     * bytes, as ritz_container_guard says; NULL: none gets them. */
+    /** Called once before anything is read, by formats that another library
+     * parses: whether that library may have these bytes (ritz_container_guard).
+     * NULL: no other library gets them. */
     ritz_status (*admit)(const char *bytes, int64_t size);
     /**
      * Append what the file holds, without its values where the format allows
@@ -86,21 +86,23 @@ extern const ritz_format ritz_format_mat;
 extern const ritz_format ritz_format_matrix_market;
 extern const ritz_format ritz_format_output4;
 
-/* A kind of file of another program that is recognised and not read. */
+/* A file format of another program that is recognised but not read. */
 typedef struct ritz_unread {
     const char *name;   /* "a Harwell-Boeing file" */
-    const char *advice; /* how to turn it into one that is read */
-    /** True if these bytes look like it. @p size may be 0. */
+    const char *advice; /* how to convert it to a format that is read */
+    /** True if these bytes look like the format. @p size may be 0. */
     bool (*recognise)(const char *bytes, int64_t size);
 } ritz_unread;
 
-/** All of these, ended by a row without a name. */
+/** All formats that are recognised but not read, ended by a row without a
+ * name. */
 extern const ritz_unread ritz_unread_formats[];
 
-/** The row that these bytes look like; NULL: none. */
+/** The format of that table which these bytes look like; NULL: none. */
 const ritz_unread *ritz_unread_find(const char *bytes, int64_t size);
 
-/** @return RITZ_ERR_FORMAT if they look like a row, which the sentence names */
+/** @return RITZ_ERR_FORMAT if the bytes look like one of these formats, which
+ *         the sentence names */
 ritz_status ritz_unread_refuse(const char *bytes, int64_t size);
 
 /** Read the bytes of a file once, sum them up and recognise their format. */
@@ -255,9 +257,10 @@ typedef struct ritz_import_request {
     const char *const *load; /* "F@LOAD" */
     const char *bulk;        /* file of a deck */
     const char *dofs;        /* file of `GRID COMP` rows */
-    const char *rows; /* "126": each grid has these; "0": scalar points */
-    const char *frequencies; /* of a component in modal form  [Hz] */
-    const char *ratios;      /* of its damping, or one number */
+    const char *rows; /* directions of every grid, "126"; "0": scalar points */
+    const char *frequencies; /* of a component in modal form: file of its
+                                natural frequencies  [Hz] */
+    const char *ratios;      /* file of its damping ratios, or one number */
     int64_t num_ports;
     const char *const *port; /* "NAME=GRIDS[:COMPS]" */
     int64_t num_rigid_ports, num_averaged_ports;
@@ -266,10 +269,11 @@ typedef struct ritz_import_request {
     int64_t num_inputs;
     const char *const *input; /* "NAME=GRID:COMP[*SCALE][,...]" */
     int64_t num_outputs;
-    const char *const *output; /* the same, then [/vel|/acc][@LIMIT] */
-    const char *input_matrix;  /* B; its inputs follow those above */
+    const char *const *output; /* as inputs, then [/vel|/acc][@LIMIT] */
+    const char *input_matrix;  /* matrix B; its inputs follow those of
+                                  `input` */
     const char *output_matrix, *velocity_matrix, *acceleration_matrix;
-    const char *input_names, *output_names; /* as of a state space */
+    const char *input_names, *output_names; /* as for a state space */
     int64_t num_dampers;
     const char *const *damper; /* "NAME=GRID:COMP[,GRID:COMP]*C[*K]" */
     const char *units;
@@ -292,10 +296,11 @@ typedef struct ritz_import_report {
     ritz_dof *fixed;
     int64_t num_massless;     /* rows empty in M only: kept */
     int64_t num_floating;     /* rows empty in K only: kept */
-    char map[RITZ_NAME_SIZE]; /* where the dofs come from: "file", "--dofs",
-                                 "--rows", "modes", "grids ascending", "A-set",
-                                 "grids less SPCs", "grids less dependents",
-                                 "grids less SPCs and dependents" */
+    char map[RITZ_NAME_SIZE]; /* what the dofs of the rows were taken from:
+                                 "file", "--dofs", "--rows", "modes", "grids
+                                 ascending", "A-set", "grids less SPCs", "grids
+                                 less dependents", "grids less SPCs and
+                                 dependents" */
     int64_t num_constraints;  /* elements that make dofs depend on others */
     char (*constraint)[RITZ_NAME_SIZE]; /* "RBE2 600" */
     int64_t num_eliminated; /* dofs that depend, of rows in the matrices */
@@ -315,9 +320,10 @@ typedef struct ritz_import_report {
  * Rows are named by, in this order: --dofs; the map in the file (DMIG); the
  * deck, if its dofs (of NASTRAN six for each grid, ascending, one for scalar
  * points) or its a-set, or its dofs without supports, fit the size; without a
- * deck grids 1, 2, ... of the directions that `rows` lists, or of all six if
- * the size is a multiple of six. A size that does not fit is refused. Matrices that name their rows may hold different ones: the
- * component has all of them.
+ * deck grids 1, 2, ..., each with the directions that `rows` lists, or with all
+ * six if the size is a multiple of six. A size that does not fit is refused.
+ * Matrices that name their rows may hold different ones: the component has all
+ * of them.
  *
  * Whatever names them, rows that the deck fixes (ritz_deck.fixed) are taken
  * out. Constraint elements (ritz_deck.equations) are applied if the matrices
@@ -330,20 +336,22 @@ typedef struct ritz_import_report {
  * body. An averaged port is their average without weights, and to keep it six
  * of them depend on it and the others.
  *
- * Inputs and outputs of texts act along basic axes; matrices of them,
+ * Inputs and outputs that are given as text act along basic axes. Those that
+ * are given as matrices,
  *
  *     M u'' + D u' + K u = B f,    y = C u + Cv u' + Ca u'',
  *
- * have the rows of the mass, as displacement axes have them: B is n x m, and
- * C, Cv and Ca are p x n (n x p where that alone fits, and in files that name
- * rows). Constraints are applied to them; entries of fixed dofs are left out.
+ * refer to the rows of the mass matrix, along displacement axes: B is n x m,
+ * and C, Cv and Ca are p x n (n x p where only that fits, and in files that
+ * name rows). Constraints are applied to these matrices; entries of fixed dofs
+ * are left out.
  *
- * Frequencies, with ratios if there are any, make a component in modal form
- * instead: K = diag(omega^2), M = I and D = diag(2 zeta omega), its dofs the
- * scalar points 1, 2, ...
+ * Instead of matrices, natural frequencies and optional damping ratios make a
+ * component in modal form: K = diag(omega^2), M = I and D = diag(2 zeta omega).
+ * Its dofs are the scalar points 1, 2, ...
  *
- * Positions are known from the deck
- * alone, but a single grid without a deck lies at the origin.
+ * Positions come from the deck alone; a single grid without a deck lies at the
+ * origin.
  *
  * @return RITZ_ERR_ARGUMENT, RITZ_ERR_FORMAT, RITZ_ERR_FILE; a constraint
  *         element that is not understood, or contradicts another, an SPC or the
@@ -363,10 +371,11 @@ typedef struct ritz_import_space_request {
 
 /**
  * Read A, B and C, and D and E if they are given. A and E stay sparse if there
- * are more than RITZ_SPARSE_STATES states and at most a tenth is not zero.
+ * are more than RITZ_SPARSE_STATES states and at most a tenth of their entries
+ * is not zero.
  *
- * @return RITZ_ERR_ARGUMENT if one is missing, or there are more than
- *         2 RITZ_STATE_DOFS dense states, inputs or outputs; RITZ_ERR_FORMAT if
+ * @return RITZ_ERR_ARGUMENT if one is missing, or there are more than 2
+ *         RITZ_STATE_DOFS dense states, inputs or outputs; RITZ_ERR_FORMAT if
  *         sizes disagree, one is complex or not finite, or E is singular
  */
 ritz_status ritz_import_state_space(const ritz_import_space_request *request,

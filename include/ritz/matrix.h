@@ -58,7 +58,8 @@ void ritz_dense_symmetrise(ritz_dense *A);
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, of a square matrix. */
 double ritz_dense_asymmetry(const ritz_dense *A);
 
-/** |A - A'| / (2 |A|) in the Frobenius norm: how much of A is antisymmetric. */
+/** |A - A'| / (2 |A|) in the Frobenius norm: relative size of the antisymmetric
+ * part of A. */
 double ritz_dense_skew(const ritz_dense *A);
 
 /** B'AB of a square A, exactly symmetric: always, or (project) if A is. */
@@ -101,7 +102,7 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
 ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
                             const int64_t *col, ritz_dense *out);
 
-/** A := 0 but for rows row[0], row[1], ..., which become those of @p B. */
+/** A := 0 except its rows row[0], row[1], ..., which become those of @p B. */
 void ritz_dense_spread(const ritz_dense *B, const int64_t *row, ritz_dense *A);
 
 /** A(at, at): rows at[0], at[1], ..., and the columns. */
@@ -251,7 +252,7 @@ double ritz_sparse_max(const ritz_sparse *A);
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, for a square matrix. */
 double ritz_sparse_asymmetry(const ritz_sparse *A);
 
-/** See ritz_dense_skew. */
+/** As ritz_dense_skew. */
 double ritz_sparse_skew(const ritz_sparse *A);
 
 /** A := (A + A') / 2, exactly symmetric in values and in pattern. */

@@ -116,27 +116,29 @@ ritz_status ritz_rigid_geometry(const ritz_component *component,
                                 const double origin[static 3], ritz_dense *out);
 
 /*
- * Rigid motions of a free body whose stiffness was rounded: K R is not 0, and K
- * and M have them at some frequencies, real or imaginary.
+ * Rigid motions R of a free body whose stiffness was rounded: K R is not
+ * exactly 0, so the rigid eigenvalues of (K, M) are not 0 but small, of either
+ * sign.
  */
 typedef struct ritz_rounded {
-    int64_t motions; /* of them; 0: rounding does nothing to responses */
-    bool hidden;     /* they do not stand apart from flexible modes, and do not
-                        all count as rigid ones */
-    double rigid_hz; /* the largest |f| among them */
-    double flexible_hz; /* of the mode above */
+    int64_t motions; /* number of rigid motions that rounding disturbs; 0:
+                        rounding does no harm to responses */
+    bool hidden;     /* some of their eigenvalues are not clearly below those of
+                        flexible modes, and were counted as flexible */
+    double rigid_hz; /* largest |f| among them  [Hz] */
+    double flexible_hz; /* of the lowest flexible mode  [Hz] */
 } ritz_rounded;
 
 /**
- * What rounding of K does to responses of a component. Without positions, or
- * where a translation meets more force than rounding of K leaves, only rigid
- * modes count as rigid motions.
+ * How rounding of K affects the responses of a component. Without positions, or
+ * where a translation meets larger forces than rounding of K can leave, only
+ * the modes that count as rigid are taken for rigid motions.
  *
- * @param[in] pairs        lowest modes of the component; a few more are found
- *                         if all of them are rigid
- * @param[in] by_matrices  K makes the responses, and not modes, of which rigid
- *                         ones respond without stiffness: then motions that
- *                         are not hidden do no harm
+ * @param[in] pairs        lowest modes of the component; if all are rigid, a
+ *                         few more are computed
+ * @param[in] by_matrices  the responses are computed from K. Responses from
+ *                         modes are not affected by motions that are not
+ *                         hidden, because rigid modes respond without stiffness
  */
 ritz_status ritz_rounded_of(const ritz_component *component,
                             const ritz_pairs *pairs, bool by_matrices,
@@ -144,9 +146,9 @@ ritz_status ritz_rounded_of(const ritz_component *component,
 
 /**
  * Frequency in Hz above which rounding of the rigid stiffness changes flexible
- * responses by less than a part @p tolerance, where rigid and flexible modes
- * take part alike: r / sqrt(e) of the rigid frequency r, or sqrt(f r / sqrt(e))
- * if the first flexible one, f, lies above that.
+ * responses by less than a relative @p tolerance, where rigid and flexible
+ * modes participate alike. With e the tolerance, r `rigid_hz` and f
+ * `flexible_hz`, it is r / sqrt(e), or sqrt(f r / sqrt(e)) if f is above that.
  */
 double ritz_rounded_ends(const ritz_rounded *rounded, double tolerance);
 
@@ -258,8 +260,8 @@ typedef struct ritz_measure {
     double value;
     double limit;               /* NaN: none was requested */
     char where[RITZ_NAME_SIZE]; /* "mode 7, 3.41 Hz"; "" if nowhere special */
-    char cause[RITZ_NAME_SIZE]; /* of a bound far above what is known of the
-                                   error: "rounding"; else "" */
+    char cause[RITZ_NAME_SIZE]; /* why a bound is far above the known error:
+                                   "rounding"; else "" */
 } ritz_measure;
 
 typedef struct ritz_measures {
@@ -353,12 +355,12 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
 ritz_status ritz_reduced_install(ritz_reduced *reduced);
 
 /**
- * A reduced component as one that can be reduced again: each coordinate is a
- * dof, scalar point 1, 2, ... Ports, which move by several coordinates, are no
- * part of it.
+ * A reduced component as a component that can be reduced again: its coordinates
+ * become dofs, the scalar points 1, 2, ... Ports are left out, since a port dof
+ * depends on several coordinates.
  *
- * @return RITZ_ERR_ARGUMENT if it has columns of kind force, or modes of
- *         negative eigenvalue, which these leave in a system
+ * @return RITZ_ERR_ARGUMENT if @p reduced has columns of kind force, or modes
+ *         with a negative eigenvalue, which force columns cause in a system
  */
 ritz_status ritz_component_of_reduced(const ritz_reduced *reduced,
                                       ritz_component *out);
@@ -394,7 +396,7 @@ ritz_status ritz_invariants_of(const ritz_component *component,
 ritz_status ritz_invariants_project(const ritz_invariants *invariants,
                                     const ritz_dense *V, ritz_invariants *out);
 
-/** Why the measure added last, a bound, is so large; "": it is not. */
+/** Store why the bound that was added last is far above the known error. */
 void ritz_measures_name_cause(ritz_measures *measures, const char *cause);
 
 /** Append a measure; @p where may be NULL. */
@@ -481,8 +483,9 @@ typedef struct ritz_configuration {
                              about the origin of the first body's basic frame;
                              {0}: not known of every body */
     double rigid[36];     /* R'MR, symmetric */
-    ritz_dense places;    /* num_blocks x 12, R row by row and t of each body,
-                             which is at R x + t; {0}: not known */
+    ritz_dense places;    /* num_blocks x 12: rotation R, row by row, and
+                             translation t of each body, whose points x are at R
+                             x + t; {0}: not known */
     ritz_measures errors; /* by ritz-verify or ritz-compare */
 } ritz_configuration;
 
@@ -527,10 +530,10 @@ void ritz_configuration_name(int64_t count, const char *sweep, size_t stride,
 ritz_status ritz_configuration_install(ritz_configuration *configuration);
 
 /**
- * What a system is at one of its configurations, as a reduced component: its
- * coordinates are the modes, rigid ones without stiffness. It has inputs and
- * outputs, dampers, damping, mass properties and errors, and neither ports nor
- * T: shapes are those of the bodies.
+ * A system at one of its configurations, as a reduced component whose
+ * coordinates are the modes of the system, rigid ones without stiffness. The
+ * component has inputs, outputs, dampers, damping, mass properties and errors.
+ * It has neither ports nor T, because shapes are those of the bodies.
  */
 ritz_status ritz_reduced_of_configuration(const ritz_system *system,
                                           const ritz_configuration *at,
@@ -547,24 +550,24 @@ void ritz_system_free(ritz_system *system);
  */
 
 /*
- * Flexible modes of a model, with their own share of inputs and outputs. Where
- * damping couples modes, rigid ones, if it couples them to flexible ones, follow
- * them in rows of B and Delta and in columns of C, Cv and Delta.
+ * Flexible modes of a model and their participation in inputs and outputs.
+ * Where damping couples rigid modes to flexible ones, the rigid modes follow
+ * the flexible ones in the rows of B, the columns of C and Cv, and in Delta.
  */
 typedef struct ritz_modal {
     int64_t count;     /* m */
     double *omega;     /* m, ascending, positive  [rad/s] */
-    double *zeta;      /* m, of the diagonal of damping; positive unless damping
-                         couples modes */
+    double *zeta;      /* m, from the diagonal of damping; positive unless
+                          damping couples modes */
     ritz_dense B;      /* m + r x inputs, inputs scaled by their weights */
-    ritz_dense C, Cv;  /* outputs x m + r, divided by limits; acceleration
-                          outputs are folded into both, their feedthrough left
-                          out */
+    ritz_dense C, Cv;  /* outputs x m + r, divided by limits. Acceleration
+                          outputs are expressed by displacements and velocities,
+                          without their feedthrough */
     int64_t num_rigid; /* r */
     ritz_dense Delta;  /* m + r x m + r, Phi'D Phi; {0}: damping couples no
-                          modes, and is 2 zeta omega */
-    ritz_dense Ca;     /* outputs x m + r, accelerations that are in C and Cv;
-                          {0} without such a Delta */
+                          modes and is diag(2 zeta omega) */
+    ritz_dense Ca;     /* outputs x m + r: the accelerations that C and Cv
+                          express; {0} if Delta is */
 } ritz_modal;
 
 /*
@@ -572,23 +575,24 @@ typedef struct ritz_modal {
  *
  *     E x' = A x + B u,    y = C x + D u
  *
- * small and dense, or with sparse A and E. Second-order models are brought into
- * it by x = [u; u'].
+ * with A and E either small and dense or sparse. For second-order models x =
+ * [u; u'].
  */
 
-/* Of more dofs than this no dense first-order model is made, nor of twice as
-   many states. */
+/* Most dofs of a component that is converted to a dense first-order model; a
+   dense state space has at most twice as many states. */
 enum { RITZ_STATE_DOFS = 1500 };
 
-/* What is imported with more states than this stays sparse, if at most a tenth
-   of A and E is not zero. */
+/* An imported state space with more states than this stays sparse if at most a
+   tenth of the entries of A and E is not zero. */
 enum { RITZ_SPARSE_STATES = 600 };
 
 typedef struct ritz_state_space {
     ritz_dense A, B, C, D; /* D is always there */
     ritz_dense E;          /* invertible; {0}: the identity */
-    ritz_sparse sA, sE; /* in the place of A and E, which are {0} then; sE {0}:
-                           the identity. {0}: it is dense */
+    ritz_sparse sA, sE; /* sparse model: used instead of A and E, which are then
+                           {0}; sE {0}: the identity. sA {0}: the model is
+                           dense */
     int64_t num_inputs, num_outputs;
     char (*input)[RITZ_NAME_SIZE];
     char (*output)[RITZ_NAME_SIZE];
@@ -605,7 +609,7 @@ typedef struct ritz_state_space {
 ritz_status ritz_state_space_new(int64_t states, const ritz_io *io,
                                  ritz_state_space *out);
 
-/** The same with sparse A and E, which are copied; E {0}: the identity. */
+/** A state space of sparse A and E, which are copied; E {0}: the identity. */
 ritz_status ritz_state_space_of_sparse(const ritz_sparse *A,
                                        const ritz_sparse *E, const ritz_io *io,
                                        ritz_state_space *out);
@@ -617,10 +621,11 @@ int64_t ritz_state_space_order(const ritz_state_space *model);
 bool ritz_state_space_is_sparse(const ritz_state_space *model);
 
 /**
- * The model with dense A and E: @p model itself, or one that is written to
- * @p made and is the caller's to free.
+ * The model with dense A and E: @p model itself if it is dense, else a dense
+ * copy written to @p made, which the caller frees.
  *
- * @return RITZ_ERR_ARGUMENT if it has more than 2 RITZ_STATE_DOFS sparse states
+ * @return RITZ_ERR_ARGUMENT if the model is sparse and has more than 2
+ *         RITZ_STATE_DOFS states
  */
 ritz_status ritz_state_space_dense(const ritz_state_space *model,
                                    ritz_state_space *made,
@@ -701,8 +706,8 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
                                   ritz_state_space *out);
 
 /**
- * A reduced component in first-order form, with its estimates and errors; its
- * dampers act as far as they are installed.
+ * A reduced component in first-order form, with its estimates and errors. Its
+ * dampers count as far as they are installed.
  *
  * @return as ritz_state_space_of_component
  */
@@ -772,8 +777,8 @@ int64_t ritz_model_order(ritz_model model);
 ritz_io ritz_model_io(ritz_model model);
 
 /**
- * The model in dense first-order form: that of @p model itself if it is a dense
- * state space, else one that is written to @p made and is the caller's to free.
+ * The model in dense first-order form: @p model itself if it is a dense state
+ * space, else a new one written to @p made, which the caller frees.
  *
  * @return as ritz_state_space_of_component, or as ritz_state_space_dense
  */

@@ -112,7 +112,8 @@ void ritz_damping_fit(ritz_damping *damping);
 /** Whether it is a M + b K, as stated or as fitted. */
 bool ritz_damping_is_rayleigh(const ritz_damping *damping);
 
-/** Whether it is ratios, each of a mode. @param[in] damping  may be NULL */
+/** Whether the damping is given as ratios, each of a mode.
+ * @param[in] damping  may be NULL */
 bool ritz_damping_has_ratios(const ritz_damping *damping);
 
 /**

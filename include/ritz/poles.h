@@ -23,14 +23,14 @@ typedef struct ritz_spectrum {
 } ritz_spectrum;
 
 /**
- * Poles of a model: all of a dense one (its io may be NULL) and of a dense state
- * space, which has neither shapes nor residuals; the lowest of a component; of
- * a sparse state space those nearest to 0, without shapes, of which nothing
- * proves that none is missing.
+ * Poles of a model: all poles of a dense model (its io may be NULL) and of a
+ * dense state space, which has neither shapes nor residuals; the lowest poles
+ * of a component; the poles nearest to 0 of a sparse state space, without
+ * shapes and without proof that none is missing.
  *
  * M may be singular: coordinates without mass respond statically, or with a
- * real pole where D acts on them. Damping ratios act on the undamped modes,
- * beside D. Of a component dampers count as far as they are installed.
+ * real pole where D acts on them. Damping ratios act on the undamped modes, in
+ * addition to D. Dampers of a component count as far as they are installed.
  *
  * Small components are solved as dense models. Of large ones the poles are
  * sought in the space of twice as many undamped modes as are wanted and of the
@@ -39,8 +39,8 @@ typedef struct ritz_spectrum {
  * the residual says how exact. Damping ratios are then added to what matrices
  * give.
  *
- * @param[in] span  of a component or sparse states: so many poles beside those at 0, or those
- *                  up to |s| / (2 pi); not read of other models
+ * @param[in] span  number of poles in addition to those at 0, or a limit of |s|
+ *                  / (2 pi); read for components and sparse state spaces only
  * @return RITZ_ERR_SINGULAR if neither mass nor stiffness holds a motion;
  *         RITZ_ERR_ARGUMENT if K4, or a skew part of D, acts on coordinates
  *         without mass
@@ -50,11 +50,11 @@ ritz_status ritz_spectrum_of(ritz_model model, const ritz_span *span,
                              ritz_spectrum *out);
 
 /**
- * The poles of a state space nearest to i 2 pi @p near_hz, on and above the real
- * axis, by Arnoldi iterations on sparse factors.
+ * The poles of a state space nearest to i 2 pi @p near_hz, on and above the
+ * real axis, by Arnoldi iterations on sparse factors.
  *
  * @param[out] out  at most @p count, by ascending |s|, without shapes
- * @return RITZ_ERR_SINGULAR if a pole lies there itself
+ * @return RITZ_ERR_SINGULAR if a pole lies at that point
  */
 ritz_status ritz_spectrum_near(const ritz_state_space *model, double near_hz,
                                int64_t count, ritz_spectrum *out);
@@ -62,42 +62,44 @@ ritz_status ritz_spectrum_near(const ritz_state_space *model, double near_hz,
 /** Damping ratio -Re s / |s|: 1 of real poles that decay. */
 double ritz_spectrum_ratio(double _Complex s);
 
-/* One value, of c or of k, for some dampers at once, through a range. */
+/* One parameter of a scan: c or k of one or several dampers, which share the
+   value, over a range. */
 typedef struct ritz_scan_axis {
     int64_t count;
-    const int64_t *damper; /* indices of those that take the value */
-    bool of_k;             /* their k, not their c */
-    double from, to, step; /* from < to, of c not negative */
+    const int64_t *damper; /* indices of the dampers that take the value */
+    bool of_k;             /* the parameter is k; false: c */
+    double from, to, step; /* from < to; c is not negative */
 } ritz_scan_axis;
 
-/* Every value of each axis with every one of the others. */
+/* A scan over the grid of all combinations of the axes' values. */
 typedef struct ritz_scan_request {
     int64_t count;
     const ritz_scan_axis *axis;
-    int64_t mode; /* which oscillating pole at the first point, 0 the lowest */
+    int64_t mode; /* which oscillating pole at the first point; 0: the lowest */
 } ritz_scan_request;
 
 typedef struct ritz_scan {
     int64_t count, num_axes;
-    int64_t *size;      /* num_axes, points along each */
-    double *value;      /* num_axes x count; the last axis is the fastest */
-    double _Complex *s; /* of the mode that is followed */
-    int64_t best;       /* where its damping ratio is largest */
+    int64_t *size;      /* num_axes, number of points along each */
+    double *value;      /* num_axes x count; the last axis varies fastest */
+    double _Complex *s; /* pole of the followed mode at each point */
+    int64_t best;       /* the point where its damping ratio is largest */
 } ritz_scan;
 
 /**
- * Follow one mode while dampers change. The pole nearest to where the last two
- * steps point is taken for the same mode, as frequencies swap places: the step
- * must be small against the way between poles. Where an axis begins anew, the
- * step is that of the next slower one.
+ * Follow one mode while dampers change. The last two points of the mode are
+ * extrapolated, and the pole nearest to the extrapolation is taken for the same
+ * mode, because frequencies can cross: steps must be small relative to the
+ * distance between poles. At the first point of a line, the extrapolation is
+ * along the next slower axis.
  *
- * A large component is scanned in the space of some modes and static
- * responses: at what the scan finds, ask ritz_spectrum_of.
+ * A large component is scanned in a space of some modes and static responses;
+ * confirm what the scan finds by ritz_spectrum_of.
  *
- * @param[in] model  no state space; K and D as they stand, with what they hold
- *                   of its dampers
- * @return RITZ_ERR_ARGUMENT if a range is none, has no such mode, or a value is
- *         scanned twice
+ * @param[in] model  no state space; K and D as stored, including what they hold
+ *                   of the model's dampers
+ * @return RITZ_ERR_ARGUMENT if a range is empty, there is no such mode, or two
+ *         axes scan the same parameter
  */
 ritz_status ritz_scan_of(ritz_model model, const ritz_scan_request *request,
                          ritz_scan *out);
@@ -152,10 +154,12 @@ ritz_status ritz_zeros_of(ritz_model model, int64_t output, int64_t input,
 
 typedef struct ritz_norm {
     double value;
-    double hertz;    /* H-infinity: where it stands; HUGE_VAL: far out */
-    double lower;    /* value is at least this, proven */
-    double rounding; /* H-infinity: how far eps |A| may move the response
-                        there, to first order: far beside a slow pole */
+    double hertz;    /* H-infinity: frequency of the peak; HUGE_VAL: beyond all
+                        poles */
+    double lower;    /* proven lower bound of the norm */
+    double rounding; /* H-infinity: first-order bound of how much rounding, eps
+                        |A|, may change the peak response; large next to a slow
+                        pole */
     char engine[RITZ_NAME_SIZE];
 } ritz_norm;
 

@@ -1,9 +1,9 @@
 /*
  * Rankings of modes: which matter from input to output, or carry mass. Rigid
  * modes are not ranked. Modes closer than 1e-6 in frequency are one cluster,
- * which gets one value and is kept or dropped whole; so are, in rankings that
- * take a cluster as a model of its own, modes that damping couples by more than
- * 0.1 of their own damping.
+ * which gets one value and is kept or dropped whole. Rankings that evaluate a
+ * cluster as a model of its own also put modes into one cluster that damping
+ * couples by more than 0.1 of their own damping.
  */
 #ifndef RITZ_RANKING_H
 #define RITZ_RANKING_H
@@ -83,8 +83,8 @@ typedef struct ritz_ranking {
     double *zeta;                    /* m, the damping used; 0: none was */
     double *value;    /* m, one for each mode; equal within a cluster */
     int64_t *order;   /* m, best first; ties in order of frequency */
-    int64_t *cluster; /* m, the first mode of its cluster, whose modes need not
-                         be neighbours */
+    int64_t *cluster; /* m, the first mode of its cluster; modes of a cluster
+                         need not be neighbours */
     double total;     /* what all values add up to by identity; NaN: nothing */
     int64_t num_parts;
     char (*part)[RITZ_NAME_SIZE]; /* what a value is made of: outputs, inputs,
@@ -92,8 +92,8 @@ typedef struct ritz_ranking {
     ritz_dense parts;             /* m x num_parts */
     double *whole; /* num_parts, what all of a part is; NaN where unknown */
     int64_t num_system;
-    double *system_value; /* exact Hankel values of the whole, descending; of
-                             rigid motion that is damped, without poles at 0 */
+    double *system_value; /* exact Hankel values of the whole model, descending;
+                             poles at 0 of damped rigid motion are left out */
     double coupling;      /* largest normalised off-diagonal of the exact modal
                         Gramian: where it is not small, Gregory's assumption
                         fails; NaN if not computed */
@@ -109,7 +109,7 @@ typedef struct ritz_ranker {
                   modes; if not, it is the value of each of them */
     double (*exact)(const double pair[static 2]); /* what a value approaches, of
                    a pair of exact Hankel values; NULL: it is no Hankel value */
-    bool joins; /* clusters are joined where damping couples their modes */
+    bool joins; /* modes that damping couples are put into one cluster */
     /* one of both: the value of a cluster, which is a model of its own, over a
        band if the ranking needs one, or ... */
     ritz_status (*value)(const double *band_hz, const ritz_modal *cluster,
@@ -160,11 +160,11 @@ ritz_rank_request_of_configuration(const ritz_configuration *configuration,
 void ritz_rank_request_free(ritz_rank_request *request);
 
 /**
- * Rank by magnitude of value, with exact system values and the coupling flag
- * if there are inputs, outputs and damping.
+ * Rank by magnitude of value, with exact system values and the coupling flag if
+ * there are inputs, outputs and damping.
  *
  * @return RITZ_ERR_ARGUMENT if the request lacks what the ranker needs, or a
- *         motion other than rigid motion does not decay
+ *         motion other than a rigid one does not decay
  */
 ritz_status ritz_rank(const ritz_ranker *ranker,
                       const ritz_rank_request *request, ritz_ranking *out);

@@ -50,10 +50,11 @@ ritz_status ritz_grid_points(const ritz_grid *grid, int64_t num_modes,
                              int64_t *count, double **out);
 
 /**
- * The response at a frequency between stored points. Each channel is a cubic in
- * the frequency: through two points on either side, in the first and the last
- * interval through the outermost four, and through all if there are fewer.
- * `tolerance` of a response refers to this interpolation.
+ * The response at a frequency between stored points: each channel is
+ * interpolated by a cubic through two points on either side, in the first and
+ * the last interval through the outermost four points, and by a polynomial
+ * through all points if there are fewer than four. The `tolerance` of a
+ * response refers to this interpolation.
  *
  * @param[in] hertz  within the range of the points
  * @param[out] out   num_outputs x num_inputs, row by row
@@ -68,12 +69,13 @@ void ritz_response_free(ritz_response *response);
 typedef struct ritz_response_request {
     ritz_model model;      /* that responds */
     double from_hz, to_hz; /* the range of later requests */
-    double up_to_hz;       /* modes of a component; 0: three times the end.
-                              Ratios damp all modes in any case, unless of
-                              more than 2000 dofs with D or K4 */
+    double up_to_hz;       /* highest frequency of the modes that are summed for
+                              a component; 0: three times to_hz. Damping ratios
+                              act on all modes whatever this is, except for
+                              components of more than 2000 dofs with D or K4 */
     double tolerance; /* of engines that approximate, relative to the largest
-                         |H| of a channel; 0: 1e-9, and modal remarks on its
-                         error alone */
+                         |H| of a channel; 0: 1e-9, except that modal only
+                         remarks on its error */
 } ritz_response_request;
 
 /* A model made ready to respond at any frequency of its range: opaque. */
@@ -95,22 +97,23 @@ typedef struct ritz_response_engine {
 extern const ritz_response_engine *const ritz_response_engines[];
 
 /**
- * The full matrices of a component at each point. Damping ratios act on all
- * modes; of components of more than 2000 dofs that have D or K4 on the modes up
- * to `up_to_hz` alone. Rayleigh damping is exact. With D, K4 or Rayleigh damping a free body is refused at 0 Hz.
+ * Solves with the full matrices of a component at each point. Damping ratios
+ * act on all modes; for components of more than 2000 dofs that have D or K4,
+ * only on the modes up to `up_to_hz`. Rayleigh damping is exact. With D, K4 or
+ * Rayleigh damping a free body is refused at 0 Hz.
  */
 extern const ritz_response_engine ritz_response_engine_direct;
 
 /**
- * A sum of modes. Of a dense model all of them, with ratios of given damping
- * and of Phi'D Phi; where D couples modes, they are solved for together at each
- * point. Of a component those up to `up_to_hz`; modes above respond as a series
- * in w^2 that begins with their residual flexibility, damped by a M + b K and
- * by ratios.
+ * A sum over modes. For a dense model it includes all modes, with the damping
+ * ratios given and those of Phi'D Phi; where D couples modes, a system of all
+ * modes is solved at each point. For a component it includes the modes up to
+ * `up_to_hz`; the modes above contribute a series in w^2 that begins with their
+ * residual flexibility and is damped by a M + b K and by ratios.
  *
- * Where other damping acts on a component, the sum is compared with direct at
- * some resonances and between them. The remark says how much it is off; where
- * that exceeds a tolerance the engine is refused, RITZ_ERR_CONVERGENCE.
+ * Where other damping acts on a component, the sum is compared with the direct
+ * engine at some resonances and between them. A remark states the difference;
+ * if it exceeds a tolerance, the engine returns RITZ_ERR_CONVERGENCE.
  *
  * Rigid modes contribute 1/(-w^2): a point at 0 Hz is refused if they are
  * controllable and observable.
@@ -161,14 +164,14 @@ ritz_status ritz_responder_at(ritz_responder *responder, double hertz,
 /** Remark on the preparation of a responder: "" if there is none. */
 const char *ritz_responder_remark(const ritz_responder *responder);
 
-/** What rounding of a component's stiffness does to its responses, or no
- * motions. */
+/** How rounding of a component's stiffness affects its responses; `motions` is
+ * 0 where it does no harm. */
 ritz_rounded ritz_responder_rounded(const ritz_responder *responder);
 
 /**
- * How much of H, relative to the largest |H| of a channel, is not known of what
- * damping ratios do to the modes above those that are summed; 0 where these are
- * all found, up to 2000 dofs.
+ * How far H is uncertain, relative to the largest |H| of a channel, because the
+ * effect of damping ratios on the modes that are not summed is known only
+ * approximately. 0 where all modes are computed, which is up to 2000 dofs.
  */
 double ritz_responder_uncertainty(const ritz_responder *responder);
 
@@ -177,14 +180,14 @@ ritz_status ritz_responder_sample(ritz_responder *responder,
                                   const ritz_grid *grid, ritz_response *out);
 
 /**
- * H at the points of a grid, and at as many more as ritz_response_at needs to
- * be within @p tolerance of H, relative to the largest |H| of each channel, at
- * all frequencies between. Among the points are the peak of every pole and the
- * dip of every zero that is near enough to the imaginary axis to make one.
+ * H at the points of a grid, and at as many more points as ritz_response_at
+ * needs to interpolate H within @p tolerance of the largest |H| of each
+ * channel. Among the points are the peak of every pole and the dip of every
+ * zero that is near enough to the imaginary axis to make one.
  *
- * @return RITZ_ERR_SINGULAR as above; RITZ_ERR_CONVERGENCE if it would take
- *         more points than can be
- * @cost   at 1e-3 some 40 points a resonance, at 1e-6 some 200
+ * @return RITZ_ERR_SINGULAR as above; RITZ_ERR_CONVERGENCE if the tolerance
+ *         needs too many points
+ * @cost   some 40 points a resonance at a tolerance of 1e-3, some 200 at 1e-6
  */
 ritz_status ritz_responder_follow(ritz_responder *responder,
                                   const ritz_grid *grid, double tolerance,
@@ -225,8 +228,9 @@ ritz_status ritz_singular_values(int64_t num_outputs, int64_t num_inputs,
                                  const double _Complex *H,
                                  const ritz_scales *scales, double *sigma);
 
-/** How many of them are not zero, beside the largest of all, at some of
- * @p points; @p most of each, descending. */
+/** Numerical rank of H: the most singular values at any of @p points that are
+ * not zero relative to the largest of all; @p most are stored for each point,
+ * descending. */
 int64_t ritz_singular_rank(int64_t points, int64_t most, const double *sigma);
 
 /**

@@ -30,18 +30,18 @@ typedef struct ritz_scene_place {
     char port[RITZ_NAME_SIZE];
 } ritz_scene_place;
 
-/* The plane in which the bodies of a scene lie and move, by its normal. */
+/* The plane in which all bodies of a scene lie and move. */
 typedef enum ritz_plane {
-    RITZ_PLANE_NONE, /* they move in space */
+    RITZ_PLANE_NONE, /* no plane: motion in space */
     RITZ_PLANE_YZ,
     RITZ_PLANE_XZ,
     RITZ_PLANE_XY,
 } ritz_plane;
 
 /*
- * What joins two ports; all but fixed ones hold one grid on each side, with six
- * dofs, or in a plane those that the joint needs there.
- * src/assembly/joints.c has the equations.
+ * Joints between two ports. All types but fixed ones hold one grid on each
+ * side. In space that grid needs six dofs; in a plane it needs those that the
+ * joint constrains there. src/assembly/joints.c has the equations.
  */
 typedef enum ritz_joint_type {
     RITZ_JOINT_FIXED,     /* grids in pairs */
@@ -129,14 +129,16 @@ enum {
     RITZ_ATTACHED_INTERFACE = 2, /* each dof of the ports that joints hold */
     RITZ_ATTACHED_OUTPUTS = 4,   /* a unit force where each output measures */
     RITZ_ATTACHED_DAMPERS = 8,   /* along each damper, of bodies and joints */
-    RITZ_ATTACHED_AUTO = 16,     /* the fewest whose response is near enough, of
-                                    those that are named too, or of all */
+    RITZ_ATTACHED_AUTO = 16,     /* the smallest set that is accurate enough;
+                                    chosen from the sets that are named as well,
+                                    or from all */
 };
 
-/* A force that a scene attaches by name: one input, one output, or unit forces
-   at a place: "PORT", "PORT:DIRECTION" or "GRID:DIRECTION" of a component. */
+/* A single force that a scene attaches by name: that of an input or an output,
+   or unit forces at a place: "PORT", "PORT:DIRECTION" or "GRID:DIRECTION" of a
+   component. */
 typedef struct ritz_scene_force {
-    int64_t input, output; /* its index; -1: it is none */
+    int64_t input, output; /* index; -1: it is no input, or no output */
     ritz_scene_place at;
     int64_t line, column;
 } ritz_scene_force;
@@ -146,7 +148,8 @@ typedef enum ritz_extraneous {
     RITZ_EXTRANEOUS_KEEP,
     RITZ_EXTRANEOUS_REMOVE,
     RITZ_EXTRANEOUS_OUT_OF_BAND, /* removed outside band_hz alone */
-    RITZ_EXTRANEOUS_COMPACT,     /* bodies lose the vectors that make them */
+    RITZ_EXTRANEOUS_COMPACT,     /* bodies lose the vectors that make such
+                                    modes */
 } ritz_extraneous;
 
 typedef struct ritz_scene {
@@ -179,13 +182,17 @@ typedef struct ritz_scene {
     int64_t *reference;    /* 0: union over all */
     ritz_augment augment;
     int attached; /* sum of RITZ_ATTACHED_...; 0: as the level implies */
-    int64_t num_attached_forces; /* named, in addition to sets */
+    int64_t num_attached_forces; /* forces named one by one, in addition to
+                                    `attached` */
     ritz_scene_force *attached_force;
-    double attached_tolerance; /* auto: of the largest and of the smallest
-                                  singular value that is not zero, 1e-3 */
+    double attached_tolerance; /* auto: largest relative error of the largest
+                                  singular value and of the smallest one that is
+                                  not zero; 1e-3 */
     ritz_extraneous extraneous;
-    double extraneous_tolerance; /* compact: by what errors may grow, 1e-3 */
-    const ritz_source *source;   /* of the models; containers after reading */
+    double extraneous_tolerance; /* compact: increase of the relative errors
+                                    that is allowed; 1e-3 */
+    const ritz_source *source;   /* from which models are loaded; containers
+                                    unless replaced after reading */
 } ritz_scene;
 
 /**

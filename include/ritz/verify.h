@@ -102,8 +102,9 @@ bool ritz_measure_meets(const char *name, double value, double limit);
 bool ritz_measure_holds(const ritz_measure *measure);
 
 /**
- * Whether a measure of which nothing was asked must be told beside the worst
- * one that was: both are relative, and it is more than ten times as wrong.
+ * Whether a measure without a tolerance must be reported in addition to the
+ * worst measure that has one: both are relative errors, and it is more than ten
+ * times as large.
  */
 bool ritz_measure_is_beside(const char *name, double value,
                             const ritz_measure *worst);
@@ -144,13 +145,14 @@ ritz_status ritz_verify(ritz_model full, ritz_model reduced,
                         const ritz_verify_request *request, ritz_measures *out);
 
 /**
- * Take "frequency=1e-3,mac=0.99,gain=1e-6": words of measures and their
- * tolerances; a number alone is of the flexible response and of frequencies, as
- * far as they are not named. Others stay as they are.
+ * Take "frequency=1e-3,mac=0.99,gain=1e-6": names of measures with their
+ * tolerances. A number without a name is the tolerance of the flexible response
+ * and of frequencies, unless they are named. Tolerances of other measures do
+ * not change.
  *
  * @return RITZ_ERR_ARGUMENT for a word that names no measure of second-order
- *         models, naming the nearest, for one that is given twice, for a number
- *         alone where both are named, or for a tolerance that can be none
+ *         models (the sentence names the nearest), a word that is given twice,
+ *         a number without a name where both are named, or an invalid tolerance
  */
 ritz_status ritz_tolerance_take(const char *text, ritz_verify_request *limits);
 
@@ -190,11 +192,12 @@ ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,
 typedef struct ritz_reference ritz_reference;
 
 typedef struct ritz_reference_request {
-    double band_hz[2];    /* not [0, 0]. From 0 on, responses start where
-                             rounding of a free body's stiffness rules no more */
+    double band_hz[2];    /* not [0, 0]. If the band starts at 0, responses
+                             start at the frequency above which rounding of a
+                             free body's stiffness is negligible */
     ritz_damping damping; /* none: as the model says, or else modal 0.01 */
-    double tolerance;     /* of flexible responses, that such rounding is held
-                             to; 0: 1e-3 */
+    double tolerance;     /* largest relative effect of that rounding on
+                             flexible responses; 0: 1e-3 */
     int64_t num_random;   /* further frequencies, anywhere in the band */
     uint64_t seed;        /* of those; one seed always gives the same */
 } ritz_reference_request;
@@ -210,10 +213,11 @@ enum {
  * @param[in] full     borrowed until free; dampers count as far as K and D hold
  *                     them
  * @param[in] request  copied
- * @return RITZ_ERR_ARGUMENT if the band is none
- * @cost   the modes to three times the band, or all of up to 2000 dofs with
- *         ratios, of more some factors; a factor a frequency where dampers couple modes of a model
- *         that is not small
+ * @return RITZ_ERR_ARGUMENT if the band is invalid
+ * @cost   the modes up to three times the band; with damping ratios all modes
+ *         of up to 2000 dofs, and some factorisations of larger models; a
+ *         factorisation for each frequency where dampers couple modes of a
+ *         model that is not small
  */
 ritz_status ritz_reference_new(const ritz_component *full,
                                const ritz_reference_request *request,
@@ -262,8 +266,8 @@ double ritz_random_next(uint64_t *state);
  *                                 to hold half
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
  *                                 points too, for ratios common to all modes
- *                                 and for D = a M + b K; of each input and
- *                                 output by itself, the worst
+ *                                 and for D = a M + b K; the worst channel,
+ *                                 each relative to its own max |H|
  *     response-relative-estimate  the same without proof, for other damping
  *
  * HUGE_VAL: nothing is known. Rounding is part of each bound.
