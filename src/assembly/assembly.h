@@ -34,14 +34,14 @@ typedef struct ritz_relation {
     const ritz_port_map *port[2];
     bool rotation;
     const ritz_freedom
-        *freedom; /* of the joint; or a locked one, where its type has
-                                    none */
+        *freedom; /* of the joint; where the joint's type allows no motion, a
+                     locked one */
     int64_t num_terms[2];
     int64_t row[2][6]; /* port rows of either end */
     double factor[2][6];
 } ritz_relation;
 
-/** The relation's row of one end, in coordinate @p j of its body. */
+/** Coefficient of the relation at one end for coordinate @p j of that body. */
 static inline double ritz_relation_at(const ritz_relation *relation, int end,
                                       int64_t j)
 {
@@ -78,12 +78,13 @@ void ritz_relations_free(ritz_relations *relations);
 
 /* Plane models. */
 
-/** Whether a direction, 1-6, is a motion in the plane; all are in space. */
+/** Whether a direction, 1-6, is a motion in the plane; without a plane every
+ * direction is. */
 bool ritz_plane_has(ritz_plane plane, int64_t component);
 
 /**
- * Whether a model, or a port whose directions are basic, lies in the plane and
- * moves in it alone; scalar points do.
+ * Refuse a model, or a port with directions along basic axes, that does not lie
+ * in the plane or can move out of it. Scalar points are accepted.
  *
  * @return RITZ_ERR_ARGUMENT naming the dof or the grids
  */
@@ -152,9 +153,9 @@ ritz_status ritz_place_grids(const ritz_stage *stage, const double *setting,
                              int64_t *add, ritz_grids *out);
 
 /**
- * Places of all bodies, and momentum and mass of their rigid motion there, for
- * a configuration that has its P; the latter empty where a body's own are
- * unknown.
+ * Place all bodies of a configuration that already has its P, and find momentum
+ * and mass of the system's rigid motion; these two stay empty if a body's own
+ * are unknown.
  */
 ritz_status ritz_place_configuration(const ritz_stage *stage,
                                      const double *setting,

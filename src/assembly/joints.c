@@ -107,7 +107,7 @@ static void find_normals(const double axis[static 3], double e[static 2][3])
  *
  * A joint is six directions e in the first body's axes, three for e'delta and
  * three for e'phi, each of them locked, free or caged: on a spring and damper.
- * Of plane models two e'delta and one e'phi are left, those in the plane.
+ * For plane models only the two e'delta and the one e'phi in the plane remain.
  *
  *     type        R                   d         free are
  *     hinge       R(a, angle)         0         a'phi
@@ -227,13 +227,15 @@ static int64_t find_direction(const ritz_port_map *port, int64_t first,
     return -1;
 }
 
-/* Rows of directions that a grid has not: that of a plane model's motion out of
-   its plane, which is zero, and of direction k another, ABSENT - k. */
+/* Marks in place of a port row for a direction that the grid does not have:
+   OUT_OF_PLANE for a motion out of a plane model's plane, which is zero; ABSENT
+   - k for any other direction k, 0-5. */
 enum { OUT_OF_PLANE = -1, ABSENT = -2 };
 
 static const char directions[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};
 
-/* Words for a model that lies in a plane: it has two translations. */
+/* A hint for models that seem to lie in a plane, because exactly two
+   translations are there. */
 static const char *guess_plane(const int64_t row[static 6])
 {
     static const char *const words[] = {
@@ -250,8 +252,9 @@ static const char *guess_plane(const int64_t row[static 6])
     return words[missing == 1 ? across : 0];
 }
 
-/* Port rows of the six directions of a joint's one grid. In space all of them
-   are due, in a plane those that the joint's relations have. */
+/* Port rows of the six directions of a joint's only grid. In space all six are
+   needed; in a plane only those in which the joint's relations have a
+   coefficient. */
 static ritz_status find_six(const ritz_joint_end *end, const ritz_joint *joint,
                             int64_t row[static 6])
 {
@@ -289,8 +292,8 @@ static ritz_status find_six(const ritz_joint_end *end, const ritz_joint *joint,
     return RITZ_OK;
 }
 
-/* sum += v'x, x at three port rows; rows with coefficient zero are left out,
-   and motions out of the plane. */
+/* sum += v'x, x at three port rows; coefficients that are zero and motions out
+   of the plane are left out. */
 static void add_terms(ritz_relation *r, int end, const int64_t *row,
                       const double *v)
 {
@@ -373,7 +376,8 @@ static bool is_in_plane(ritz_plane plane, const double *e, bool rotation)
     return plane == RITZ_PLANE_NONE || (e[plane - 1] != 0.0) == rotation;
 }
 
-/* A relation of plane models may need a direction that a grid has not. */
+/* Refuse a relation of a plane model that needs a direction which the grid does
+   not have. */
 static ritz_status check_rows(const ritz_relation *r, const ritz_joint *joint,
                               const ritz_joint_end end[static 2])
 {
@@ -388,7 +392,7 @@ static ritz_status check_rows(const ritz_relation *r, const ritz_joint *joint,
     return RITZ_OK;
 }
 
-/* What a type locks, whatever the scene says. */
+/* State of the directions that a joint type always locks. */
 static const ritz_freedom locked = {.state = RITZ_LOCKED};
 
 /* The relations of a joint of one grid on each side. */

@@ -1,8 +1,8 @@
 /*
- * Scenes of plane models: bodies that lie in a plane, and move in it by two
- * translations and a rotation about its normal n. Joints leave out what would
- * move them out of it, so each dof must be one of those three, and all grids
- * must have one position along n.
+ * Scenes of plane models: bodies lie in a plane and move in it by two
+ * translations and a rotation about its normal n. Joints have no relations for
+ * motion out of the plane, so each dof must be one of those three motions, and
+ * all grids must have the same coordinate along n.
  */
 #include "assembly/assembly.h"
 
@@ -11,7 +11,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* "xy"; "" of none. */
+/* "xy"; "" without a plane. */
 static const char *name_plane(ritz_plane plane)
 {
     static const char *const names[] = {[RITZ_PLANE_NONE] = "",
@@ -30,7 +30,9 @@ bool ritz_plane_has(ritz_plane plane, int64_t component)
     return plane == RITZ_PLANE_NONE || turns == (axis == (int64_t)plane);
 }
 
-/* Largest part of a unit axis across the plane, of a rotation's along it. */
+/* How far a dof's unit axis departs from the plane: for a translation its
+   component along the normal, for a rotation its largest component in the
+   plane. */
 static double stray_of(ritz_plane plane, const double *axis, bool turns)
 {
     const double across = fabs(axis[plane - 1]);
@@ -55,9 +57,10 @@ static ritz_status check_dof(ritz_plane plane, ritz_dof dof, const double *axes)
     return RITZ_OK;
 }
 
-/* Where points are across the plane, and how far apart they are in it. */
+/* Extent of a set of points, along the normal and in the plane. */
 typedef struct extent {
-    int64_t low, high; /* grids that are lowest and highest across it; -1 */
+    int64_t low, high; /* grids of the least and the largest coordinate along
+                          the normal; -1: none */
     double least[3], most[3];
 } extent;
 

@@ -123,7 +123,8 @@ static ritz_status check_ports(const ritz_scene *scene, int64_t k,
     return RITZ_OK;
 }
 
-/* A reduced model without its basis is known by its ports alone. */
+/* Check the dofs of the full or the reduced model. A reduced model without its
+   basis has no dofs; its ports are checked by check_planes. */
 static ritz_status check_plane(const ritz_scene *scene,
                                const ritz_component *full,
                                const ritz_reduced *reduced)
@@ -316,7 +317,8 @@ static ritz_status install_dampers(ritz_stage *stage)
     return RITZ_OK;
 }
 
-/* Bodies that were not loaded here are known by their ports. */
+/* Check the ports of all bodies, which also covers bodies whose models were not
+   loaded here. */
 static ritz_status check_planes(const ritz_stage *stage)
 {
     const ritz_scene *scene = stage->scene;

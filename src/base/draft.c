@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* NOLINT: declares realpath, and locks of open files */
+#define _GNU_SOURCE /* NOLINT: declares realpath and F_OFD_SETLK */
 
 #include "base/draft.h"
 
@@ -18,15 +18,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* --- names that a signal must not leave behind ---------------------------- */
+/* --- names to be removed on a signal -------------------------------------- */
 
 /*
- * A handler has no argument, and a writer of the library does not know the
- * program that it is part of: the library keeps state here, and only here. A
- * place is used again and never freed, as a handler may be reading it.
+ * Names of the drafts that exist, for the signal handler. The list is global
+ * because a handler has no argument, and writers in the library do not know the
+ * program around them. A place is reused and never freed, since a handler may
+ * be reading it.
  */
 typedef struct place {
-    _Atomic(const char *) name; /* NULL: free; "": of a file about to be made */
+    _Atomic(const char *) name; /* NULL: place is free; "": reserved for a file
+                                   that is about to be created */
     struct place *next;
 } place;
 
@@ -98,7 +100,7 @@ static int create_file(const char *name, mode_t mode, place *at)
 
 enum { MOST_LINKS = 40 };
 
-/* Follow one link, if it is one. */
+/* Replace a path by the target of its symbolic link; false if it is none. */
 static bool follow_link(char path[PATH_MAX])
 {
     char to[PATH_MAX];
@@ -116,7 +118,8 @@ static bool follow_link(char path[PATH_MAX])
     return true;
 }
 
-/* Where links lead, so that they stay, even to a file that is not there yet. */
+/* Resolve symbolic links, also those whose target does not exist yet, so that a
+   link is kept and its target is replaced. */
 static void follow_links(const char *path, char out[PATH_MAX])
 {
     if (realpath(path, out))
@@ -127,9 +130,9 @@ static void follow_links(const char *path, char out[PATH_MAX])
 }
 
 /*
- * Whether a path leads to what a process has open, as /dev/stdout and /dev/fd/3
- * do: a rename would not write to that, but put another file in the place of
- * the one that it is, which whoever opened it would never see.
+ * Whether a path leads to an open file of a process, as /dev/stdout and
+ * /dev/fd/3 do. A rename onto it would put a new file in the place of that
+ * file, and the process that has it open would never see the output.
  */
 static bool is_descriptor(const char *path)
 {
@@ -153,7 +156,8 @@ static bool same_file(const struct stat *a, const struct stat *b)
     return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/* The folder of a path, and the name in it. */
+/* Split a path into the name, which is returned, and the status of the
+   folder. */
 static const char *split_path(char path[PATH_MAX], struct stat *folder)
 {
     char *slash = strrchr(path, '/');
@@ -185,7 +189,7 @@ bool ritz_draft_same(const char *path, const char *other)
            strcmp(name, name_of_other) == 0;
 }
 
-/* --- what a program holds back -------------------------------------------- */
+/* --- drafts and inputs that a program has registered ---------------------- */
 
 typedef struct input {
     struct stat file;
@@ -206,7 +210,8 @@ void ritz_draft_hold(void)
 
     held.active = true;
     if (getrlimit(RLIMIT_NOFILE, &files) == 0) {
-        files.rlim_cur = files.rlim_max; /* drafts stay open, for their locks */
+        files.rlim_cur = files.rlim_max; /* drafts stay open, to keep their
+                                            locks */
         (void)setrlimit(RLIMIT_NOFILE, &files);
     }
 }
@@ -246,8 +251,8 @@ ritz_status ritz_draft_check(const char *path)
     return RITZ_OK;
 }
 
-/* Standard output and error of the program, if these are regular files: what it
-   says would go to a file that has no name any more. */
+/* Whether a file is the standard output or error of the program. Replacing such
+   a file would send what the program prints to a file without a name. */
 static bool is_spoken_to(const struct stat *file)
 {
     struct stat there;
@@ -258,13 +263,13 @@ static bool is_spoken_to(const struct stat *file)
     return false;
 }
 
-/* --- drafts of writers that were killed ----------------------------------- */
+/* --- drafts that killed writers left behind ------------------------------- */
 
 /*
- * A draft is locked as long as its writer lives, by a lock of the open file:
- * unlike one of the process it outlives other descriptors of the file that are
- * closed, and unlike flock it leaves HDF5 its own. Where the file system has no
- * locks nothing is swept.
+ * A draft is locked as long as its writer lives, by an open file description
+ * lock. Such a lock is not lost when another descriptor of the file is closed,
+ * as a lock of the process would be, and does not conflict with HDF5, which
+ * uses flock. On a file system without locks no draft is removed.
  */
 static bool lock_file(int file)
 {
@@ -273,7 +278,7 @@ static bool lock_file(int file)
     return fcntl(file, F_OFD_SETLK, &all) == 0;
 }
 
-/* Whether a name is that of an open file still, or again. */
+/* Whether the name refers to the file that is open. */
 static bool is_named(const char *name, int file)
 {
     struct stat open_one = {0}, there = {0};
@@ -283,8 +288,8 @@ static bool is_named(const char *name, int file)
 }
 
 /*
- * Lock a draft of our own. A sweeper may have come first, between creation and
- * lock: then it holds the lock, or the name is gone.
+ * Lock a new draft; false if another writer that removes old drafts took it in
+ * between, which then has the lock or has removed the file.
  */
 static bool claim_file(const char *name, int file)
 {
@@ -302,7 +307,7 @@ static const char *skip_digits(const char *at)
     return at;
 }
 
-/* "TARGET.PID-K.part", as drafts of @p target are called. */
+/* Whether a name is that of a draft of @p target: "TARGET.PID-K.part". */
 static bool is_draft_of(const char *target, const char *name)
 {
     size_t length = strlen(target);
@@ -317,7 +322,7 @@ static bool is_draft_of(const char *target, const char *name)
     return strcmp(skip_digits(end + 1), ".part") == 0;
 }
 
-/* Remove a draft of ours that no writer has locked. */
+/* Remove a draft of this user unless a living writer has locked it. */
 static void sweep_file(const char *name)
 {
     struct stat there = {0};
@@ -334,12 +339,13 @@ static void sweep_file(const char *name)
     close(file);
 }
 
-/* Remove what killed writers of @p target left in its folder. */
+/* Remove the drafts of @p target that killed writers left in its folder. */
 static void sweep_folder(const char *target)
 {
     const char *slash = strrchr(target, '/');
     const char *base = slash ? slash + 1 : target;
-    const int folder = (int)(base - target); /* letters, with the slash */
+    const int folder = (int)(base - target); /* length of the folder's name with
+                                                the slash */
     char name[PATH_MAX];
     DIR *listing = NULL;
 
@@ -359,8 +365,8 @@ static void sweep_folder(const char *target)
 
 /* --- drafts --------------------------------------------------------------- */
 
-/* An empty, locked file of a name that no other writer has, listed for a
- * signal. */
+/* Create an empty, locked file under a name that no other writer uses, and list
+   it for the signal handler. */
 static ritz_status create_draft(const char *path, place *at, ritz_draft *draft)
 {
     enum { MOST = 999999 };
@@ -378,7 +384,7 @@ static ritz_status create_draft(const char *path, place *at, ritz_draft *draft)
             continue;
         if (claim_file(draft->name, draft->file))
             return RITZ_OK;
-        atomic_store(&at->name, ""); /* the file is a sweeper's */
+        atomic_store(&at->name, ""); /* another writer is removing the file */
         close(draft->file);
     }
     return ritz_fail(RITZ_ERR_FILE, "cannot create '%s': no name is free",
@@ -432,7 +438,7 @@ static bool is_synced(void)
     return !text || strcmp(text, "0") != 0;
 }
 
-/* fsync of what is opened so; the system's error, 0 for none. */
+/* fsync of a path that is opened with the flags @p how; returns errno, or 0. */
 static int sync_path(const char *path, int how)
 {
     int file = open(path, how | O_CLOEXEC);
@@ -446,11 +452,12 @@ static int sync_path(const char *path, int how)
             break;
         error = 0;
     }
-    close(file); /* nothing was written through it */
+    close(file); /* errors of close do not matter: nothing was written through
+                    this descriptor */
     return error;
 }
 
-/* The bytes of a file, before it has its name. */
+/* Write the contents of a draft to the disk before the draft is renamed. */
 static ritz_status sync_bytes(const ritz_draft *draft)
 {
     int error = is_synced() ? sync_path(draft->name, O_WRONLY) : 0;
@@ -462,9 +469,9 @@ static ritz_status sync_bytes(const ritz_draft *draft)
 }
 
 /*
- * The name of a file, which its folder holds. A folder into which one may write
- * without reading it cannot be opened, and file systems that have no such call
- * say EINVAL or EOPNOTSUPP: nothing failed there.
+ * Write the name of a file to the disk, which is an fsync of its folder. A
+ * folder without read permission cannot be opened, and file systems without
+ * this call return EINVAL or EOPNOTSUPP: neither is a failure.
  */
 static ritz_status sync_name(const ritz_draft *draft)
 {
@@ -485,16 +492,17 @@ static ritz_status sync_name(const ritz_draft *draft)
     return RITZ_OK;
 }
 
-/* What is left to do once the file has its name, or is gone. */
+/* Forget a draft that has been renamed or removed. */
 static void forget_name(ritz_draft *draft)
 {
     strike_name(draft->name);
-    close(draft->file); /* and its lock with it */
+    close(draft->file); /* also releases the lock */
     free(draft->name);
     draft->name = NULL;
 }
 
-/* Rename it; its path stays, for whoever takes it back. */
+/* Rename a draft to its path; `path` is kept so that the file can be removed
+   again. */
 static ritz_status name_draft(ritz_draft *draft)
 {
     RITZ_REFUSE_IF(draft->mode >= 0 &&
@@ -508,8 +516,9 @@ static ritz_status name_draft(ritz_draft *draft)
 }
 
 /*
- * Each gets its name once the bytes of all are on the disk, or none does. What
- * fails afterwards takes the names back: a power cut could take them, too.
+ * Rename either all drafts or none, after the contents of all are on the disk.
+ * If a rename fails, or a name cannot be written to the disk, the new files are
+ * removed again, because a power cut could lose them as well.
  */
 static ritz_status name_all(int64_t count, ritz_draft *draft)
 {

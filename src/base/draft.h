@@ -2,24 +2,24 @@
  * A file that appears under its name only once it is complete.
  *
  * It is written in the same folder under a name that no other writer has, then
- * renamed. Of two writers of one file the last to publish wins, whole. A link
- * stays a link, and the file that it names is replaced, with the permission
- * bits that it had; another name of that file (a hard link) keeps the old
- * content, because nothing is ever written into a file that is there.
+ * renamed. If two writers publish the same file, the complete file of the last
+ * one remains. A symbolic link stays, and the file that it points to is
+ * replaced by one with the same permission bits. A hard link to that file keeps
+ * the old content, because existing files are never written to.
  *
- * A name is given once the bytes are on the disk, and is then brought there as
- * well, so that a power cut leaves the old file or the new one; what fails then
- * leaves no file. The environment's RITZ_SYNC=0 leaves this out, for tests and
- * benchmarks.
+ * A draft is renamed once its contents are on the disk, and the new name is
+ * then written to the disk as well, so that a power cut leaves the old file or
+ * the new one; if writing the name fails, the file is removed. The environment
+ * variable RITZ_SYNC=0 skips these writes, for tests and benchmarks.
  *
- * What a killed writer left is removed by the next writer of the same file: a
- * draft is locked as long as its writer lives.
+ * A draft that a killed writer left behind is removed by the next writer of the
+ * same file, since a draft is locked only as long as its writer lives.
  *
- * A program holds its files back until it knows that all went well: between
+ * A program publishes its files together, after it has succeeded: between
  * ritz_draft_hold and ritz_draft_settle, ritz_draft_publish only keeps the
- * complete file; no input is replaced, and no file is written twice. This state
- * is for one thread, as a program has that writes; without ritz_draft_hold
- * there is none.
+ * complete draft; drafts that would replace an input, or the file of another
+ * draft, are refused. Only one thread may write files in that time. Without
+ * ritz_draft_hold no such state exists.
  */
 #ifndef RITZ_BASE_DRAFT_H
 #define RITZ_BASE_DRAFT_H
@@ -32,66 +32,68 @@ typedef struct ritz_draft {
     char *path; /* where it will appear, which is what a link names */
     char *name; /* where it is written meanwhile */
     int mode;   /* permission bits of the file that it replaces; -1: none */
-    int file;   /* open and locked; of no meaning while name is NULL */
+    int file;   /* open and locked while `name` is not NULL */
 } ritz_draft;
 
 /**
- * Create an empty draft of @p path; once published it has the permissions of
- * the file that it replaces, or of any new file. Before, drafts of it that have
- * no living writer are removed; files of other users, links and what is no
- * regular file stay, and all of them where the file system has no locks.
+ * Create an empty draft of @p path. Once published, it has the permissions of
+ * the file that it replaces, or those of any new file. Old drafts of @p path
+ * without a living writer are removed first, except files of other users, links
+ * and anything that is not a regular file; where the file system has no locks,
+ * none is removed.
  *
  * @return RITZ_ERR_FILE if it cannot be created, or if @p path is a folder, a
- *         device, a pipe, what a process has open (/dev/stdout), or anything
- *         else that a rename must not replace;
- *         RITZ_ERR_ARGUMENT as ritz_draft_check
+ *         device, a pipe, an open file of a process (/dev/stdout), or anything
+ *         else that a rename must not replace; RITZ_ERR_ARGUMENT as
+ *         ritz_draft_check
  */
 ritz_status ritz_draft_new(const char *path, ritz_draft *out);
 
-/** Give the draft its name, at once or when it is settled; it is then empty. */
+/** Rename the draft to its path, now or in ritz_draft_settle; @p draft is then
+ * empty. */
 ritz_status ritz_draft_publish(ritz_draft *draft);
 
-/** Give the draft its name at once, whatever becomes of the others. */
+/** Rename the draft to its path now, even while others are held. */
 ritz_status ritz_draft_publish_now(ritz_draft *draft);
 
 /** Remove the file of a draft that was not published. */
 void ritz_draft_free(ritz_draft *draft);
 
-/** From now on published drafts wait for ritz_draft_settle, and the process may
- * have as many files open as the system allows. */
+/** From now on keep published drafts until ritz_draft_settle, and let the
+ * process open as many files as the system allows. */
 void ritz_draft_hold(void);
 
 /**
- * Remember a regular file that is read, by device and inode, so that no draft
- * replaces it; before ritz_draft_hold nothing is remembered.
+ * Register a regular file as an input, by device and inode, so that no draft
+ * replaces it; does nothing before ritz_draft_hold.
  */
 ritz_status ritz_draft_protect(const char *path);
 
 /**
- * Whether a file may be written under @p path.
+ * Whether a file may be written to @p path.
  *
- * @return RITZ_ERR_ARGUMENT if it is a protected file or that of a draft that
- *         waits
+ * @return RITZ_ERR_ARGUMENT if it is a registered input or the target of a
+ *         draft that is kept
  */
 ritz_status ritz_draft_check(const char *path);
 
-/** Whether both name one file: by device and inode or, of files that are not
- * there yet, by folder and name. */
+/** Whether two paths name the same file: by device and inode, or by folder and
+ * name if the files do not exist yet. */
 bool ritz_draft_same(const char *path, const char *other);
 
 /**
- * End ritz_draft_hold: all drafts that wait get their names or, without
- * @p keep, are removed, and so are those that have their names already if one
- * cannot get its own.
+ * End ritz_draft_hold: rename all drafts that were kept or, without @p keep,
+ * remove them. If one cannot be renamed, those already renamed are removed as
+ * well.
  *
- * @return RITZ_ERR_FILE if a name cannot be given
+ * @return RITZ_ERR_FILE if a draft cannot be renamed
  */
 ritz_status ritz_draft_settle(bool keep);
 
 /**
- * Remove the files of all drafts that have not their names and are not freed,
- * for a signal handler that then ends the process: async-signal-safe, and the
- * drafts themselves stay as they are.
+ * Remove the files of all drafts that have been neither renamed nor freed, for
+ * a signal handler that then ends the process. The function is
+ * async-signal-safe and does not change the drafts themselves.
  */
 void ritz_draft_discard_all(void);
 

@@ -1,4 +1,4 @@
-/* Order: searching ascending numbers, sorting, and choices of some of many. */
+/* Searching ascending numbers, sorting, and enumerating combinations. */
 #ifndef RITZ_BASE_SEARCH_H
 #define RITZ_BASE_SEARCH_H
 
@@ -32,7 +32,7 @@ static inline int64_t ritz_search(int64_t count, const int64_t *sorted,
     return k < count && sorted[k] == value ? k : -1;
 }
 
-/** How many of @p count ascending numbers are at or below @p value. */
+/** Number of the @p count ascending values that are at most @p value. */
 static inline int64_t ritz_upper_bound(int64_t count, const double *sorted,
                                        double value)
 {
@@ -58,7 +58,8 @@ static inline int ritz_ascending(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/** The same of indices, and of structs that begin with one. */
+/** For qsort: indices, or structs that begin with an index, in ascending
+ * order. */
 static inline int ritz_ascending_index(const void *left, const void *right)
 {
     int64_t a = *(const int64_t *)left;
@@ -68,8 +69,8 @@ static inline int ritz_ascending_index(const void *left, const void *right)
 }
 
 /**
- * The next of the choices of @p k among @p n, each ascending: the first is 0,
- * 1, ..., k - 1. False after the last.
+ * The next combination of @p k of the numbers 0 .. n - 1, ascending, in place
+ * of the one at @p at; the first is 0, 1, ..., k - 1. False after the last one.
  */
 static inline bool ritz_next_choice(int64_t n, int64_t k, int64_t *at)
 {

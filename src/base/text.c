@@ -1,4 +1,4 @@
-#define _XOPEN_SOURCE 700 /* NOLINT: realpath is declared only so */
+#define _XOPEN_SOURCE 700 /* NOLINT: declares realpath */
 
 #include "base/text.h"
 

@@ -28,19 +28,19 @@ bool ritz_text_part(const char *text, size_t length, char mark,
 bool ritz_text_range(const char *text, size_t length, int64_t *from,
                      int64_t *to);
 
-/** Bytes of the letter of UTF-8 at @p text, which may be a control character;
- * 0 at the end, or of what is not UTF-8. */
+/** Number of bytes of the UTF-8 character at @p text, which may be a control
+ * character; 0 at the end of the text, or if the bytes are not UTF-8. */
 int ritz_letter_size(const char *text);
 
-/** Replace what is no letter, byte by byte, by '?': control characters and what
- * is not UTF-8, which a terminal could obey. */
+/** Replace control characters, and each byte that is not UTF-8, by '?', because
+ * a terminal could obey them. */
 void ritz_text_clean(char *text);
 
 /** The folder of a path: "." if it names none. The caller frees @p out. */
 ritz_status ritz_path_folder(const char *path, char **out);
 
-/** Whether a file lies in a folder or below it, links followed; false if either
- * cannot be found. */
+/** Whether a file lies in a folder or below it, with symbolic links resolved;
+ * false if either does not exist. */
 bool ritz_path_within(const char *path, const char *folder);
 
 /* Names of one sort: an array of structs that each begin with a name. */
@@ -63,16 +63,18 @@ ritz_status ritz_words_find(const ritz_names *names, const char *word,
 /** Index of @p word, without a sentence; -1 if it is not there. */
 int64_t ritz_names_index(const ritz_names *names, const char *word);
 
-/** A name that is there twice, "" if each is there once; by sorting. */
+/** A name that occurs more than once; "" if there is none. */
 ritz_status ritz_names_repeated(int64_t count,
                                 const char (*name)[RITZ_NAME_SIZE],
                                 char out[RITZ_NAME_SIZE]);
 
-/** Index of @p word among names that stand alone; -1 if it is not there. */
+/** Index of @p word among names in an array of names only; -1 if it is not
+ * there. */
 int64_t ritz_name_index(int64_t count, char (*name)[RITZ_NAME_SIZE],
                         const char *word);
 
-/** Index with the sentence "there is no WHAT 'word', is 'ward' meant?". */
+/** Index of @p word; if it is not there, the sentence is "there is no WHAT
+ * 'word', is 'ward' meant?". */
 int64_t ritz_names_seek(const ritz_names *names, const char *word);
 
 enum { RITZ_SHORT_SIZE = 48 };

@@ -151,8 +151,9 @@
 
 /* MAC from which on two modes are the same mode. */
 #define RITZ_SAME_MODE 0.5
-/* Masses of bodies are those of a system if they differ by less than this part
-   of the largest entry: what was assembled of others differs by some of it. */
+/* Bodies belong to a system if the sum of their masses, in its coordinates,
+   differs from the system's mass matrix by less than this part of its largest
+   entry. */
 #define RITZ_SAME_MASS 1e-6
 /* A track is nearly a tie unless the second candidate's MAC is less by this. */
 #define RITZ_TRACK_CLEAR 0.1
@@ -170,8 +171,8 @@
 #define RITZ_BODE_FLOOR 1e-3
 /* A response over a band from 0 Hz starts at this part of its end. */
 #define RITZ_BAND_START 1e-3
-/* Part of a flexible response that rounding of the rigid stiffness may change
-   where a band starts, unless a tolerance is given. */
+/* Largest relative change of a flexible response by rounding of the rigid
+   stiffness at the start of a band, unless a tolerance is given. */
 #define RITZ_START_ROUNDING 1e-3
 /* An eigenvalue of a dense pencil of order e is in error by up to e eps
    lambda_max; two are compared, and P and V add their own: this many times
@@ -211,8 +212,8 @@
 #define RITZ_SEREP_CONDITION 1e3
 /* Rounding of a Gramian above this part of the least damping is not small. */
 #define RITZ_LANCZOS_SMALL 1e-3
-/* Residual of a low-rank Gramian in whose inverse vectors are measured: it is
-   divided by the square of the least value that is kept. */
+/* Relative residual of a low-rank Gramian whose inverse scales the Lanczos
+   vectors: the residual is divided by the square of the smallest value kept. */
 #define RITZ_LANCZOS_RESIDUAL 1e-13
 /* A pole must be left of the axis by this many times its rounding. */
 #define RITZ_LANCZOS_SAFE 10.0
@@ -260,12 +261,12 @@
 /* Asymmetry that a few sums of products leave: 8 eps. A matrix within it is
    taken as symmetric, which saves work and digits. */
 #define RITZ_SYMMETRIC_SUMS 0x1p-49
-/* Relative error of a pole that Arnoldi iterations found: a hundred times what
-   they settle to. */
+/* Relative error of a pole that Arnoldi iterations found: a hundred times the
+   residual at which they stop. */
 #define RITZ_POLE_FOUND 1e-10
-/* A pole at 0 is looked at from beside it: from this part of |A| / |E| off the
-   axis, which is above what rounding makes singular, and where that is singular
-   too from this much further off. */
+/* If 0 is a pole, the expansion point moves onto the real axis: to this part of
+   |A| / |E|, which is above the rounding that makes A - s E singular, and by
+   the second factor further each time that it is still singular. */
 #define RITZ_SHIFT_ASIDE   1e-10
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
@@ -348,9 +349,11 @@
    below this it is rounding, above it both count, as the error of such a system
    is the sum of both. */
 #define RITZ_HANKEL_REPEATED 1e-9
-/* Relative gap of the last value kept and the first left out below which they
-   may be of one mode: its two states have values in the ratio 1 - 2 zeta, this
-   is zeta of 0.05. */
+/* Largest relative gap between the last value kept and the first left out at
+   which the two can be states of one mode: these have values in the ratio 1 - 2
+   zeta, here with zeta = 0.05. modal-balanced also uses the number as the
+   smallest ratio of the values of two modes of close frequencies that form a
+   pair. */
 #define RITZ_HANKEL_PAIR 0.1
 /* Distance of W'E T from I up to which a value still has a direction. */
 #define RITZ_BALANCED_DEFECT 0.1
@@ -366,11 +369,13 @@
 /* Rigid motion that sparse products leave, of the same product in magnitudes,
    where there is none. */
 #define RITZ_RIGID_LOAD 1e-10
-/* Points of first-order tangential interpolation move less than this, relative:
-   the H2 error, which is stationary there, by its square. */
+/* Points of first-order tangential interpolation have settled when their
+   relative change is below this: the H2 error, which is stationary there, then
+   changes by the square. */
 #define RITZ_SPACE_POINTS_SETTLED 1e-4
-/* Two rules of a panel that agree so far, of all that has been met: the finer
-   one is then good to rounding, and Hankel values to half of its digits. */
+/* Relative difference of the coarse and the fine quadrature rule of a panel,
+   below which the panel is not divided: the fine rule is then exact to
+   rounding, and Hankel values to half of the digits. */
 #define RITZ_BAND_QUADRATURE 1e-9
 /* An imaginary part below this of the real one makes a shift real. */
 #define RITZ_SHIFT_REAL 1e-3
@@ -379,11 +384,12 @@
 /* Damping between two modes, over the root of their own, above which they are
    coupled: the closed forms err by its square. */
 #define RITZ_DAMPING_COUPLES 1e-6
-/* ... above which two modes are ranked as one: the value of each alone, damped
-   by its own part, errs by some of it where their frequencies are close. */
+/* Damping between two modes, over the root of their own, above which both are
+   ranked as one cluster: at close frequencies, the value of a mode alone,
+   damped by its own damping, errs by about this part. */
 #define RITZ_DAMPING_JOINS 0.1
 /* A pole nearer to 0 than this part of the lowest frequency, and not left of
-   the axis beyond rounding, is one of rigid motion at 0. */
+   the axis by more than its rounding, belongs to rigid motion at 0. */
 #define RITZ_POLE_AT_REST 1e-6
 /* Roundings of a band Gramian, relative to the magnitudes it sums: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49
@@ -430,15 +436,17 @@
 /* A shift below this part of the largest K_jj / M_jj is lost in the rounding
    of K. */
 #define RITZ_SHIFT_LOST 1e-10
-/* What ratios change above the modes is settled where twice as many poles of
-   its space change it by less, of the largest |H|. */
+/* The correction for ratios of modes above the sum is accurate when it changes
+   by less than this part of the largest |H| while its space is doubled. */
 #define RITZ_RATIO_SETTLED 1e-9
-/* Of the same, relative to the largest |H|: beyond, it is said. */
+/* Uncertainty of that correction, relative to the largest |H|, above which the
+   user is told of it. */
 #define RITZ_RATIO_UNCERTAIN 1e-6
-/* Eigenvalues beyond one over this of the first are those of motions without
-   mass, for that space. */
+/* Ratio of the first to the largest eigenvalue in that space; eigenvalues
+   beyond belong to motions without mass. */
 #define RITZ_RATIO_REACH 1e-13
-/* What is new in a vector of that space, relative. */
+/* Relative size of the independent part of a vector, below which that space
+   does not take it. */
 #define RITZ_RATIO_INDEPENDENT 1e-10
 /* Terms must fall by this factor each: forty of them reach
    RITZ_SERIES_WITHIN. */
@@ -499,7 +507,7 @@
 /* Forces of a rigid motion that elements computed in double precision leave:
    1024 eps; a commercial code left 290 in a solid, measured. */
 #define RITZ_ELEMENT_ROUNDING 0x1p-42
-/* A source of so many digits is as good as binary. */
+/* A source with this many significant digits or more counts as binary. */
 #define RITZ_MOST_DIGITS 15.0
 /* Rounding of positions and frames kept in single precision, or as eight
    letters of a card. */
@@ -597,8 +605,8 @@
 
 /* A full model's modes are computed to this multiple of the band's end. */
 #define RITZ_REFERENCE_REACH 3.0
-/* Error of projected responses that stand for the full model, relative to the
-   largest |H| of a channel: below what is printed of any error. */
+/* Error, relative to the largest |H| of a channel, of projected responses that
+   replace those of the full model: below the digits printed of any error. */
 #define RITZ_REFERENCE_TOLERANCE 1e-11
 /* Hz: no model has a mode above. */
 #define RITZ_ALL_MODES 1e100
@@ -609,26 +617,28 @@
 
 /* Dampers tuned for the least H2 norm */
 
-/* Twice as many modes change a norm by less than this, relative: it is known to
-   six digits, as a reduced model that knows its dampers has it
-   [ChuMilman1992]. */
+/* Relative change of the norm, when the number of modes is doubled, below which
+   it has settled: six digits are then known [ChuMilman1992]. */
 #define RITZ_H2_SETTLED 1e-6
-/* The norm of the full model may differ by this part from that of the model
-   that was tuned: near a minimum values are then known to its root, 1 %. */
+/* Relative difference allowed between the norms of the full model and of the
+   projected model that was tuned: near a minimum, values are then known to its
+   square root, 1 %. */
 #define RITZ_TUNED_FULL 1e-4
-/* A search ends where a step changes the norm by this part, or each place in
-   its range by this: a norm is flat at its minimum. */
+/* A search ends when a step changes the norm by less than this relative amount,
+   or each variable by less than the second number, in units of its range: a
+   norm is flat at its minimum. */
 #define RITZ_TUNED_NORM  1e-14
 #define RITZ_TUNED_PLACE 1e-9
-/* Places in a range of c are even in the logarithm of c plus 1/1000 of the
-   range: ln 1000, three decades. */
+/* The variable x in 0 .. 1 of a damping constant c is even in the logarithm of
+   c plus 1/1000 of its range: ln 1000, three decades. */
 #define RITZ_TUNED_DECADES 6.907755278982137
-/* d norm / d x over the norm, x from 0 to 1 over a range, above which a search
-   has not ended at a minimum. */
+/* Relative slope (d norm / d x) / norm, with x from 0 to 1 over a range, above
+   which a search has not ended at a minimum. */
 #define RITZ_TUNED_SLOPE 1e-4
-/* Norms of two searches closer than this, relative, are one minimum. */
+/* Relative difference of the norms of two searches below which both ended at
+   the same minimum. */
 #define RITZ_TUNED_SAME 1e-6
-/* Starts of searches are at least so far apart, of the width of a range. */
+/* Least distance between the starts of searches, as a part of each range. */
 #define RITZ_TUNED_STARTS 0.25
 /*
  * A bound holds in exact arithmetic. Solving Lyapunov equations and projecting
@@ -636,8 +646,9 @@
  * tests/claims/states.claims comes near its bound by less.
  */
 #define RITZ_BOUND_ROUNDING 1e3
-/* ... and beside a slow pole by what the condition of the pole makes of eps
-   |A|, to first order, times the roundings of a Schur form and a projection. */
+/* ... and next to a slow pole by the first-order effect of a relative change
+   eps of A, which the condition of the pole amplifies, times this factor for a
+   Schur form and a projection. */
 #define RITZ_BOUND_CONDITION 1.0
 /* Participation below this part of |c_i| |phi|, or of the largest product of a
    channel, is rounding of products and eigenvectors. */
@@ -652,8 +663,8 @@
 #define RITZ_EXCHANGE_GAIN 1e-9
 /* Largest tolerances of a relative measure, and of a count. */
 #define RITZ_MOST_RELATIVE 1.0
-/* A relative error of which nothing was asked is told beside the worst one that
-   was, where it is more than so many times as large. */
+/* A relative error without a tolerance is reported in addition to the worst one
+   that has a tolerance, if it is more than this many times as large. */
 #define RITZ_BESIDE_WORST 10.0
 #define RITZ_MOST_COUNT   1e9
 /* Modes closer than this, relative, are one cluster to ritz-verify: reduction
@@ -702,26 +713,25 @@
 /* A count at the band's end lies this far behind it, in lambda: further than
    what ritz-verify takes to be in the band. */
 #define RITZ_COUNT_BEHIND 8e-9
-/* Part of a residual vector below which it is rounding, and least eigenvalue of
-   the Gram matrix of such vectors of length one, which keeps half of the
-   digits. */
+/* Norm of a residual vector, relative to that of the whole, below which it is
+   rounding; and least eigenvalue of the Gram matrix of unit residual vectors,
+   at which half of the digits are kept. */
 #define RITZ_ENRICH_LEAST       1e-10
 #define RITZ_ENRICH_INDEPENDENT 1e-8
-/* An input and an output whose response is nowhere more than this part of what
-   it could be have nothing to do with each other: positions in single precision
-   leave so much of symmetry. */
+/* An input and an output count as decoupled if their response is nowhere proven
+   to exceed this part of its Cauchy-Schwarz bound (positions in single
+   precision disturb symmetry by about as much), */
 #define RITZ_CHANNEL_COUPLED 1e-6
-/* ... nor if it is not proven to be more than that, and proven to be nowhere
-   more than this part. */
+/* ... and if it is proven to stay below this part of the same bound. */
 #define RITZ_CHANNEL_WEAK 1e-2
-/* A bound of a response that is more than this many times what is known of the
-   error is worth a richer trial. */
+/* A bound of a response is refined with a richer trial space if it is more than
+   this many times the known part of the error. */
 #define RITZ_RESPONSE_LOOSE 2.0
-/* A bound that is more than this many times what is known of the error names
-   its cause. */
+/* The cause of a bound is named if the bound is more than this many times the
+   known part of the error. */
 #define RITZ_BOUND_FAR 10.0
-/* Of the largest eigenvalue of a dense pencil: its rounding, some thousand eps,
-   does not reach so far. */
+/* Least distance of a count from an eigenvalue, as a part of the largest
+   eigenvalue of a dense pencil, whose rounding is some thousand eps of it. */
 #define RITZ_WHOLE_CLEAR 1e-12
 /* A frequency error below this needs no tighter bound. */
 #define RITZ_NO_ERROR 1e-9
@@ -785,17 +795,18 @@
 /* A pivot of Gram-Schmidt columns must exceed another by this factor: of those
    that are equal to six digits the first is taken. */
 #define RITZ_PIVOT_TIE (1.0 + 1e-6)
-/* Defaults of a scene: of `select: {tolerance}`, as a part of the largest value
-   of all configurations; of `attached: auto`, as a part of the largest singular
-   value of the response and of the smallest; of `extraneous: compact`, as a part
-   of frequencies and of the largest |H|. */
+/* Defaults of a scene. `select: {tolerance}`: part of the largest value at all
+   configurations. `attached: auto`: relative error of the largest and the
+   smallest singular value of the response. `extraneous: compact`: increase of
+   relative errors of frequencies and of |H| over its largest. */
 #define RITZ_SCENE_SELECT   1e-3
 #define RITZ_SCENE_ATTACHED 1e-3
 #define RITZ_SCENE_COMPACT  1e-3
-/* Forces whose columns differ by less than this part of them are one. */
+/* Forces whose normalised columns differ by less than this are the same
+   force. */
 #define RITZ_SAME_FORCE 1e-9
-/* A motion of a body of which all modes of a system have less than this part of
-   the largest takes part in none. */
+/* A motion of a body takes part in no mode of the system if its participation
+   is below this part of the largest. */
 #define RITZ_NO_MOTION 1e-12
 
 #endif
