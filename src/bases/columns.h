@@ -75,40 +75,46 @@ const char *ritz_loads_name(const ritz_request *request, int loads, int64_t j,
                             char text[RITZ_LOADS_NAME_SIZE]);
 
 /**
- * The loads beside the attached dofs, which a method keeps in any case: the
- * requested ones, or else @p usual.
+ * The loads in addition to those at the attached dofs, for a method that always
+ * includes the latter: the requested loads, or else @p usual.
  *
  * @param[out] loads  sum of RITZ_LOADS_..., without RITZ_LOADS_ATTACHED
- * @return RITZ_ERR_ARGUMENT if some are requested and there is none
+ * @return RITZ_ERR_ARGUMENT if loads are requested and the component has none
+ *         of them
  */
 ritz_status ritz_loads_beside(const ritz_request *request, int usual,
                               int *loads);
 
 /**
- * Which static vectors Psi, responses to F less what others have of them, are
- * independent and more than rounding: by pivots of F'Psi scaled to a unit
- * diagonal, of which the square of what is new in a column must exceed the
- * tolerance. Of pivots that are equal to six digits the first is taken, so that
+ * Choose the static vectors Psi that are linearly independent and larger than
+ * rounding. Psi are responses to F without their part in other columns. Columns
+ * are chosen by pivots of F'Psi, scaled to a unit diagonal: the pivot, which is
+ * the squared relative size of the independent part of a column, must exceed
+ * the tolerance. Of pivots that agree to six digits the first is taken, so that
  * the choice does not depend on a processor's rounding.
  *
- * @param[in]     least  p, what f'psi must exceed
- * @param[in,out] keep   p, true for columns that are
+ * @param[in]     least  p values; column j is left out unless f_j'psi_j exceeds
+ *                       least[j]
+ * @param[in,out] keep   p flags, set to true for the columns chosen
+ * @param[out]    kept   number of columns chosen
  */
 ritz_status ritz_statics_choose(const ritz_dense *F, const ritz_dense *Psi,
                                 const double *least, double tolerance,
                                 bool *keep, int64_t *kept);
 
 /**
- * Say how many static vectors of a kind were left out, and the first of them.
+ * Add a remark with the number of static vectors of a kind that were left out,
+ * and the first of them.
  *
- * @param[in] first  of all loads, which is the first of these
- * @param[in] keep   count
+ * @param[in] first  index, among all loads, of the first load of this kind
+ * @param[in] keep   @p count flags; false: left out
  */
 void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                           int64_t count, const bool *keep,
                           ritz_column_kind kind, ritz_basis *basis);
 
-/** Say that there are dampers, if they are not among the loads. */
+/** Add a remark if the component has dampers and these are not among the
+ * loads. */
 void ritz_remark_dampers(const ritz_request *request, int loads,
                          ritz_basis *basis);
 

@@ -286,19 +286,20 @@ static ritz_status reduce_boundary(const ritz_request *request,
 }
 
 /*
- * Static vectors of other loads, of dampers above all [ChuMilman1992]: the
- * response of the interior while the boundary is held, less its part in the
+ * Static vectors of other loads, mainly of dampers [ChuMilman1992]: the
+ * response of the interior with a fixed boundary, without its part in the
  * modes,
  *
  *     X = K_ii^-1 F_i,   X := X - Phi Phi'M_ii X
  *
- * [0; X] is K-orthogonal to constraint modes and modes, with which it spans the
- * response of the component however its boundary moves.
+ * [0; X] is K-orthogonal to the constraint modes and the normal modes. Together
+ * they contain the static response to F for any motion of the boundary.
  */
 typedef struct interior_statics {
     int loads;       /* sum of RITZ_LOADS_... */
     ritz_dense F, X; /* interior rows; {0}: no load */
-    double *least;   /* energy that is nothing of a whole response */
+    double *least;   /* F_j'X_j, the energy of response j, below which it is
+                        rounding */
     bool *keep;
     int64_t kept;
 } interior_statics;
@@ -310,7 +311,7 @@ static void interior_statics_free(interior_statics *a)
     RITZ_FREE(a->least, a->keep);
 }
 
-/* X before modes are taken out of it. */
+/* X before its part in the modes is removed. */
 static ritz_status respond_interior(const ritz_request *request,
                                     const partition *s, int usual,
                                     interior_statics *out)
@@ -334,7 +335,8 @@ static ritz_status respond_interior(const ritz_request *request,
     return RITZ_OK;
 }
 
-/* The independent columns of X without their part in Phi beside Phi. */
+/* [Phi, X]: the modes, and the independent columns of X without their part in
+   the modes. */
 static ritz_status join_statics(const partition *s, double tolerance,
                                 const ritz_dense *Phi, interior_statics *a,
                                 ritz_dense *out)
@@ -356,7 +358,7 @@ static ritz_status join_statics(const partition *s, double tolerance,
     return ritz_dense_beside(Phi, &X, out);
 }
 
-/* Columns of the boundary, Phi and static vectors, the latter labelled. */
+/* Basis of boundary columns, Phi and labelled static vectors. */
 static ritz_status join_columns(const ritz_request *request, const partition *s,
                                 const ritz_dense *Phi, interior_statics *a,
                                 ritz_basis *out)
@@ -374,7 +376,8 @@ static ritz_status join_columns(const ritz_request *request, const partition *s,
     return RITZ_OK;
 }
 
-/* @param[in] usual  loads that have static vectors if none are requested */
+/* @param[in] usual  kinds of loads with static vectors, if none are
+   requested */
 static ritz_status make_fixed(const ritz_request *request, int usual,
                               ritz_basis *out)
 {

@@ -1,4 +1,5 @@
-/* Methods of free-interface modes and of the static response of the rest. */
+/* Methods of free-interface modes with residual attachment modes, the static
+   response of the modes that are left out. */
 #include "bases/free_set.h"
 
 #include "base/alloc.h"
@@ -11,7 +12,7 @@
 
 enum { NAMED = 3 }; /* dofs in a remark */
 
-/* The set of a body that others hold at its attached dofs. */
+/* Modes and residual modes of a body whose attached dofs are an interface. */
 static ritz_status find_joined_set(const ritz_request *request,
                                    ritz_free_set *out)
 {
@@ -234,8 +235,8 @@ const ritz_method ritz_method_normal_modes = {
  */
 
 /*
- * T = [G, Phi - G Phi_b, ..]. The rows of G are those of I, and those of all
- * other columns zero, where they are so exactly.
+ * T = [G, Phi - G Phi_b, ..]. At the attached dofs b, the rows of G are those
+ * of I, and those of all other columns are zero; both are set exactly.
  */
 static ritz_status fill_basis(const ritz_dense *Phi, const int64_t *b,
                               ritz_dense *G, ritz_dense *T)
@@ -283,7 +284,7 @@ static void add_remark(const ritz_request *request, const ritz_free_set *set,
                  count, text, count > NAMED ? ", ..." : "");
 }
 
-/* The columns of the set that are static, as the last ones of T. */
+/* Copy the static columns of the set to the end of T. */
 static void put_statics(const ritz_basis *joined, const ritz_free_set *set,
                         ritz_basis *basis)
 {
@@ -313,7 +314,8 @@ static ritz_status turn_columns(const ritz_free_set *set,
     ritz_columns_label_dofs(G.ncol, b, 0, &out->columns);
     ritz_columns_label(modes, RITZ_COLUMN_NORMAL, G.ncol, &out->columns);
     for (int64_t j = G.ncol; j < G.ncol + modes->num_rigid; j++) {
-        out->columns.kind[j] = RITZ_COLUMN_NORMAL; /* and no longer rigid */
+        out->columns.kind[j] = RITZ_COLUMN_NORMAL; /* no longer a rigid
+                                                      motion */
         out->columns.hertz[j] = nan("");
     }
     memcpy(out->origin.engine, modes->engine, sizeof out->origin.engine);

@@ -1,6 +1,6 @@
 /*
- * The static response of the modes that are left out to forces F. With the kept
- * modes Phi, Psi solves
+ * Residual modes Psi: the static response to forces F of the modes that are
+ * left out. With the kept modes Phi, Psi solves
  *
  *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
  *
@@ -9,10 +9,10 @@
  *     Psi <- A^-1 (G + s M Psi),
  *
  * which contracts by s / (lambda + s) for every mode lambda that was left out.
- * F' Psi = Psi' K Psi is the residual flexibility: columns that are dependent
- * by it, or negligible relative to the flexibility of the kept modes, are
- * removed. With T = [Phi, Psi], T'KT and T'MT are block diagonal, and the
- * flexible static response to F at the loaded dofs is exact.
+ * F' Psi = Psi' K Psi is the residual flexibility. Columns that are linearly
+ * dependent in this matrix, or negligible relative to the flexibility of the
+ * kept modes, are removed. With T = [Phi, Psi], T'KT and T'MT are block
+ * diagonal, and the flexible static response to F at the loaded dofs is exact.
  */
 #include "bases/free_set.h"
 
@@ -34,9 +34,9 @@ void ritz_free_set_free(ritz_free_set *set)
 }
 
 /*
- * A shift below the first flexible mode contracts fast and makes A well
- * conditioned. If that mode is not kept, it is found for this; if there is
- * none, the shift is of the scale of the matrices.
+ * A shift below the lowest flexible mode makes the iteration contract fast and
+ * A well conditioned. If that mode is not kept, its frequency is computed here;
+ * if there is none, the shift follows from the magnitude of the matrices.
  */
 static ritz_status choose_shift(const ritz_component *component,
                                 const ritz_pairs *modes, double *out)
@@ -75,8 +75,8 @@ static double bound_response(const ritz_pairs *modes, const ritz_dense *F,
 
 /*
  * One step of the iteration; *change is the largest change of a column relative
- * to its size. A column smaller than least[j] is rounding, and its change is
- * relative to least[j].
+ * to its size, or relative to least[j] if the column is smaller, where it is
+ * rounding.
  */
 static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
                                     double s, const ritz_dense *G,
@@ -108,8 +108,8 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
 }
 
 /*
- * The response of A to each load at the load itself, and the size below which
- * its column is rounding.
+ * own[j] = f_j' A^-1 f_j, and least[j], the size of column j of Psi below which
+ * it is rounding.
  */
 static ritz_status find_scales(const ritz_free_set *set, double tolerance,
                                ritz_factor *A, double *own, double *least)
@@ -126,7 +126,7 @@ static ritz_status find_scales(const ritz_free_set *set, double tolerance,
     return RITZ_OK;
 }
 
-/* Psi, and the response of A to each load at the load itself. */
+/* Psi, and response[j] = f_j' A^-1 f_j for each load. */
 static ritz_status find_residual(const ritz_request *request,
                                  ritz_free_set *set, double *response)
 {
@@ -148,13 +148,14 @@ static ritz_status find_residual(const ritz_request *request,
     RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
     RITZ_CHECK(ritz_dense_copy(&set->F, &G));
     RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G));
-    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* twice is enough */
+    RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* a second pass
+                                                        suffices */
     RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &set->Psi));
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
         RITZ_CHECK(iterate_residual(L, M, s, &G, least, &set->Psi, &change));
         RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &set->Psi));
         if (k > 8 && change > 0.5 * best)
-            break; /* rounding, not contraction, is what is left */
+            break; /* rounding has become larger than contraction */
         best = fmin(best, change);
     }
     RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
@@ -176,7 +177,7 @@ static double kept_flexibility(const ritz_free_set *set, int64_t j)
     return sum;
 }
 
-/* Psi_bb = S L L' S with a unit diagonal within. */
+/* Psi_bb = S^-1 L L' S^-1, scaled to a unit diagonal by S. */
 ritz_status ritz_residual_divide(const int64_t *b, ritz_dense *Psi)
 {
     RITZ_OWN(ritz_dense) F = {0};
@@ -208,8 +209,9 @@ ritz_status ritz_residual_divide(const int64_t *b, ritz_dense *Psi)
 }
 
 /*
- * Psi := Psi - G Psi_b of all loads that are not of the interface, with G of
- * its kept columns: K-orthogonal to those, and zero at the attached dofs.
+ * Psi := Psi - G Psi_b for all loads that are not of the interface, with G from
+ * the kept columns of the interface: Psi becomes K-orthogonal to those columns,
+ * and zero at the attached dofs.
  */
 static ritz_status clear_interface(ritz_free_set *set)
 {
@@ -243,7 +245,8 @@ static ritz_status clear_interface(ritz_free_set *set)
     return RITZ_OK;
 }
 
-/* Mark the residual modes that are kept, those of the interface first. */
+/* Choose the residual modes that are kept, first for the interface and then for
+   the other loads. */
 static ritz_status choose_independent(const double *response, double tolerance,
                                       ritz_free_set *set)
 {
@@ -270,8 +273,8 @@ static ritz_status choose_independent(const double *response, double tolerance,
     return RITZ_OK;
 }
 
-/* Residual modes of the loads, if there are any, M- and K-orthogonal to the
-   modes of the set. */
+/* Residual modes of all loads, M- and K-orthogonal to the modes of the set;
+   none without loads. */
 static ritz_status find_statics(const ritz_request *request, ritz_free_set *set)
 {
     RITZ_OWN_ARRAY double *response = NULL;

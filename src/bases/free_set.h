@@ -1,31 +1,36 @@
-/* Free-interface modes and the static response of what they leave out. */
+/* Free-interface modes with residual modes, the static response of the modes
+   that are left out. */
 #ifndef RITZ_BASES_FREE_SET_H
 #define RITZ_BASES_FREE_SET_H
 
 #include "bases/columns.h"
 
 /*
- * Modes, and residual modes for some loads. Where other bodies act on the
- * attached dofs, these come first, and residual modes of all other loads are
- * K-orthogonal to theirs, so that the interface is what it would be without
- * them.
+ * Modes, and residual modes for some loads. If the attached dofs are an
+ * interface to other bodies, their residual modes come first, and residual
+ * modes of all other loads are K-orthogonal to them: the interface then has the
+ * same stiffness with and without the others.
  */
 typedef struct ritz_free_set {
-    ritz_pairs modes;  /* that are kept, rigid ones first */
-    int loads;         /* RITZ_LOADS_..., of the columns below */
-    ritz_dense F, Psi; /* n x p, loads and residual modes; {0}: no load */
-    int64_t interface; /* how many of the first are of the interface */
-    int64_t *dof;      /* p, row of an attached dof, -1 of other loads */
-    bool *keep;        /* p, false: dependent, or negligible (tolerance) */
-    int64_t held;      /* how many columns of the interface are */
-    int64_t kept;      /* how many of all columns of Psi are */
+    ritz_pairs modes;  /* the modes that are kept, rigid ones first */
+    int loads;         /* RITZ_LOADS_... that the columns below belong to */
+    ritz_dense F, Psi; /* n x p, loads and their residual modes; {0}: no
+                          loads */
+    int64_t interface; /* number of leading columns that belong to the
+                          interface */
+    int64_t *dof;      /* p, row of the attached dof of a column; -1: other
+                          load */
+    bool *keep;        /* p, false: column is linearly dependent or
+                          negligible */
+    int64_t held;      /* number of interface columns that are kept */
+    int64_t kept;      /* number of all columns of Psi that are kept */
 } ritz_free_set;
 
 /**
  * The lowest modes as the request says, and residual modes of the loads, M- and
  * K-orthogonal to them.
  *
- * @param[in] loads   sum of RITZ_LOADS_...; none of them need be there
+ * @param[in] loads   sum of RITZ_LOADS_...; the component need not have any
  * @param[in] joined  whether the attached dofs, which are then among the loads,
  *                    are an interface
  */
@@ -34,25 +39,27 @@ ritz_status ritz_free_set_new(const ritz_request *request, int loads,
 
 /**
  * T = [rigid, normal, Psi]; the Psi columns of the interface are of @p kind,
- * others static, and the remark names those left out.
+ * others are static, and the remark names the loads whose columns were left
+ * out.
  */
 ritz_status ritz_free_set_join(const ritz_request *request,
                                const ritz_free_set *set, ritz_column_kind kind,
                                ritz_basis *out);
 
 /**
- * The same of modes that were found otherwise, and move over, all loads alike.
+ * A basis of modes that were computed elsewhere, which are moved, and static
+ * columns of residual modes for all loads.
  *
- * @param[in] request  the component is that whose modes they are
+ * @param[in] request  its component is the one whose modes these are
  */
 ritz_status ritz_free_set_beside(const ritz_request *request, int loads,
                                  ritz_pairs *modes, ritz_basis *out);
 
 /**
- * Psi := Psi Psi_bb^-1, of residual modes of unit forces at the dofs b.
+ * Psi := Psi Psi_bb^-1 for residual modes of unit forces at the dofs b.
  *
- * @param[in] b  as many as Psi has columns
- * @return RITZ_ERR_SINGULAR
+ * @param[in] b  rows of Psi, as many as Psi has columns
+ * @return RITZ_ERR_SINGULAR if Psi_bb is singular
  */
 ritz_status ritz_residual_divide(const int64_t *b, ritz_dense *Psi);
 

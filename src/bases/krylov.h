@@ -31,8 +31,9 @@ ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
 
 void ritz_elastic_free(ritz_elastic *E);
 
-/** The requested kinds of loads; else attached dofs, inputs and outputs, and
- * dampers too where the vectors are component modes of a body that is joined. */
+/** The requested kinds of loads. By default these are attached dofs, inputs and
+ * outputs, and also dampers if the vectors are component modes of a body that
+ * is @p joined to others. */
 int ritz_krylov_loads(const ritz_request *request, bool joined);
 
 /*
@@ -66,8 +67,8 @@ typedef struct ritz_forces {
 } ritz_forces;
 
 /**
- * The points of a choice, not factored, in place of those of S: they ascend, so
- * that 0 Hz is the first; it is the only one if none is chosen.
+ * Replace the points of S by those of @p choice, without factors, in ascending
+ * order, so that 0 Hz comes first; a choice without points means 0 Hz alone.
  */
 void ritz_krylov_points(const ritz_choice *choice, ritz_krylov *S);
 

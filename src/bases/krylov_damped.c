@@ -134,9 +134,10 @@ typedef struct recurrence {
     const ritz_sparse *K4;      /* NULL: none */
     ritz_elastic body;
     ritz_krylov S;
-    int64_t num_chains; /* about 0 Hz, without K4 */
+    int64_t num_chains; /* real sequences: about 0 Hz, without K4 */
     state_chain chain[MOST_CHAINS];
-    ritz_wave_point point[RITZ_MOST_SHIFTS]; /* all others, as in S */
+    ritz_wave_point point[RITZ_MOST_SHIFTS]; /* for complex sequences; same
+                                                indices as S.point */
     int64_t num_waves;
     ritz_waves wave[MOST_WAVES];
 } recurrence;
@@ -240,7 +241,8 @@ static ritz_status start_chain(recurrence *r, const ritz_sparse *D, int loads)
     return append_state(&r->S, &forces, &at_rest, chain);
 }
 
-/* Begin a sequence about point k, which is none of rest without K4. */
+/* Begin a complex sequence about point k, which is not at 0 Hz unless there is
+   K4. */
 static ritz_status start_waves(recurrence *r, int64_t k, const ritz_sparse *D,
                                int loads)
 {
@@ -266,8 +268,8 @@ static ritz_status start_at(recurrence *r, int64_t k, const ritz_sparse *D,
 }
 
 /*
- * At each point the chain of inputs with D and that of outputs with D'; one
- * chain if both are the same.
+ * At each point begin a sequence from the inputs with D and one from the
+ * outputs with D'; if D is symmetric, one sequence from both.
  */
 static ritz_status start_chains(recurrence *r, int loads)
 {
@@ -290,7 +292,8 @@ static ritz_status start_chains(recurrence *r, int loads)
     return RITZ_OK;
 }
 
-/* A block of each chain in turn; whether any brought something new. */
+/* Advance each sequence by a block; *moving is whether any gave a new
+   vector. */
 static ritz_status advance_all(recurrence *r, double omega, bool *moving)
 {
     const int64_t full = r->S.vectors;
@@ -309,7 +312,7 @@ static ritz_status advance_all(recurrence *r, double omega, bool *moving)
     return RITZ_OK;
 }
 
-/* Whole blocks of each point: those of the chain from its inputs. */
+/* Number of whole blocks of each point, by the sequence from its inputs. */
 static void count_blocks(recurrence *r)
 {
     for (int64_t k = 0; k < r->S.num_points; k++) {
@@ -335,7 +338,7 @@ static ritz_status run_chains(recurrence *r, int loads)
     return RITZ_OK;
 }
 
-/* What the points are, and what is done at them. */
+/* Note the engine, and remark if there is no damping. */
 static void sign_basis(const recurrence *r, ritz_basis *basis)
 {
     if (r->num_waves > 0)

@@ -1,15 +1,15 @@
 /*
- * Block Krylov vectors of a state space. About each point s, with
- * Z = A - s E and loads F,
+ * Block Krylov vectors of a state space. About each point s, with Z = A - s E
+ * and loads F,
  *
  *     X_0 = Z^-1 F,   X_j = Z^-1 E Q_(j-1),   Q_j = independent part of X_j
  *
- * by Arnoldi's recurrence in complex arithmetic, and T spans real and imaginary
- * parts of all Q. With W from (A', E', C') the reduced model keeps as many
- * moments about each point as T and W have whole blocks there together
- * [Grimme1997]. With W = T the reduced model is stable if E = E' and -(A + A')
- * are definite; of a symmetric model, with inputs and outputs among F, it keeps
- * as many moments.
+ * by Arnoldi's recurrence in complex arithmetic; T spans the real and imaginary
+ * parts of all Q. W comes from (A', E', C') in the same way. About each point
+ * the reduced model keeps as many moments as the whole blocks of T and W there,
+ * counted together [Grimme1997]. With W = T it is stable if E is symmetric and
+ * E and -(A + A') are definite. For a symmetric model with inputs and outputs
+ * among F, W = T keeps as many moments as two sides.
  */
 #include "bases/space.h"
 
@@ -29,8 +29,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Complex vectors of one point, orthonormal; those of the last block from
-   `last` on. */
+/* Orthonormal complex vectors of one point; the last block begins at column
+   `last`. */
 typedef struct arnoldi_space {
     int64_t n, count, last, room;
     double _Complex *Q; /* n x room */
@@ -41,7 +41,8 @@ static void arnoldi_space_free(arnoldi_space *a)
     free(a->Q);
 }
 
-/* x := x - Q Q^H x, twice; what is left of its length. */
+/* x := x - Q Q^H x, in two passes; returns |x| relative to its former
+   length. */
 static double orthogonalise(const arnoldi_space *a, double _Complex *h,
                             double _Complex *x)
 {
@@ -58,7 +59,8 @@ static double orthogonalise(const arnoldi_space *a, double _Complex *h,
     return before > 0.0 ? cblas_dznrm2(n, x, 1) / before : 0.0;
 }
 
-/* Append what columns of X, n x m, add; `last` becomes the first of them. */
+/* Append the independent parts of the columns of X, n x m, as the new last
+   block. */
 static ritz_status append_complex(double tolerance, int64_t m,
                                   double _Complex *X, arnoldi_space *a)
 {
@@ -81,7 +83,7 @@ static ritz_status append_complex(double tolerance, int64_t m,
     return RITZ_OK;
 }
 
-/* The next block about the point that is factored. */
+/* Append the next block about the point whose matrix is factored. */
 static ritz_status advance_block(const ritz_space_span *span, bool first,
                                  arnoldi_space *a)
 {
@@ -99,7 +101,8 @@ static ritz_status advance_block(const ritz_space_span *span, bool first,
     return append_complex(span->tolerance, m, X, a);
 }
 
-/* Real, and imaginary, parts of a point's vectors. */
+/* Real parts of a point's vectors, followed by imaginary parts if the point is
+   complex. */
 static ritz_status take_parts(const arnoldi_space *a, bool complex_point,
                               ritz_dense *out)
 {
@@ -114,7 +117,8 @@ static ritz_status take_parts(const arnoldi_space *a, bool complex_point,
     return RITZ_OK;
 }
 
-/* Vectors about one point, until they give @p share real columns. */
+/* Vectors about one point: @p share real columns, or fewer if no independent
+   ones are left. */
 static ritz_status span_point(const ritz_space_span *span, double _Complex s,
                               int64_t share, ritz_dense *out, int64_t *whole)
 {
@@ -212,8 +216,7 @@ ritz_status ritz_space_basis(const ritz_state_space *model, ritz_dense *T,
     return RITZ_OK;
 }
 
-/* Which loads a side responds to, and whether there is a side of its own on
-   the left. */
+/* Right-hand sides of T and, with two sides, of W; with one side W = T. */
 typedef struct krylov_sides {
     bool two;
     ritz_dense right, left; /* n x loads */
@@ -225,8 +228,8 @@ static void krylov_sides_free(krylov_sides *s)
     ritz_dense_free(&s->left);
 }
 
-/* One side keeps stability where energy falls; elsewhere two keep more
-   moments. */
+/* Choose one side if the model is dissipative, since projection by T alone then
+   keeps stability; otherwise two sides, which keep more moments. */
 static ritz_status choose_sides(const ritz_request *request,
                                 const ritz_pencil *pencil, krylov_sides *s)
 {
@@ -258,7 +261,7 @@ static ritz_status choose_sides(const ritz_request *request,
     return ritz_dense_beside(&model->B, &Ct, &s->right);
 }
 
-/* Points i 2 pi f; 0 without any. */
+/* Points i 2 pi f of the choice; 0 if it has none. */
 static int64_t list_points(const ritz_choice *choice, double _Complex *point)
 {
     point[0] = 0.0;

@@ -1,18 +1,19 @@
 /*
- * About s_0 = i w the impedance of M x'' + D x' + (K + i K4) x = F is
+ * Krylov vectors of a damped structure about s_0 = i w. The impedance of M x''
+ * + D x' + (K + i K4) x = F is
  *
  *     Z(s_0 + t) = Z_0 + t (2 s_0 M + D) + t^2 M,
  *
- * so that the coefficients of its inverse follow from the recurrence
+ * so the series of Z^-1 F in t follows from the recurrence
  *
  *     d_1 = Z_0^-1 F,  v_1 = 0,
  *     d_j+1 = -Z_0^-1 ((2 s_0 M + D) d_j + M v_j),  v_j+1 = d_j
  *
- * whose d are complex: V takes Re d and Im d, so that the reduced matrices are
- * real, and has the moments about s_0 and about its conjugate.
+ * with complex d. V contains Re d and Im d, so that the reduced matrices are
+ * real and keep the moments about s_0 and about its conjugate.
  *
- * A block of n rows holds real parts in its first columns, imaginary ones in as
- * many behind them.
+ * A complex block of p columns is stored as 2 p real ones: real parts first,
+ * then imaginary parts.
  */
 #include "bases/krylov_waves.h"
 
@@ -39,7 +40,7 @@ void ritz_waves_free(ritz_waves *waves)
     *waves = (ritz_waves){0};
 }
 
-/* Matrices of Z_0 and their factors; how many. */
+/* The real matrices A[k] and factors c[k] of Z_0 = sum c[k] A[k]. */
 static ritz_status list_matrices(ritz_wave_point *p, const ritz_sparse *D,
                                  const ritz_sparse *A[4], double _Complex c[4],
                                  int64_t *count)
@@ -85,7 +86,8 @@ ritz_status ritz_wave_point_new(const ritz_elastic *body, const ritz_sparse *D,
     ritz_status status = RITZ_OK;
 
     p.relieved = hertz == 0.0 && body->held.count > 0;
-    RITZ_MOVE(*out, p); /* what is borrowed must not move any more */
+    RITZ_MOVE(*out, p); /* the factor borrows matrices in it, so it must not
+                           move from here on */
     RITZ_CHECK(list_matrices(out, D, A, c, &count));
     if (out->relieved && body->rest.count == 0)
         return RITZ_OK;
@@ -96,7 +98,7 @@ ritz_status ritz_wave_point_new(const ritz_elastic *body, const ritz_sparse *D,
     return status;
 }
 
-/* X := Z_0^-1 X, rows of X being those of Z_0. */
+/* X := Z_0^-1 X; X has the rows of Z_0. */
 static ritz_status solve_complex(const ritz_wave_point *p, bool transposed,
                                  ritz_dense *X)
 {
@@ -115,7 +117,8 @@ static ritz_status solve_complex(const ritz_wave_point *p, bool transposed,
     return RITZ_OK;
 }
 
-/* X := P' S P X, S of the support: see ritz_elastic in krylov.c. */
+/* X := P' S P X: elastic response with a determinate support, see ritz_elastic
+   in krylov.c. */
 static ritz_status solve_relieved(const ritz_wave_point *p, ritz_dense *X)
 {
     const ritz_elastic *E = p->body;
@@ -132,7 +135,8 @@ static ritz_status solve_relieved(const ritz_wave_point *p, ritz_dense *X)
     return RITZ_OK;
 }
 
-/* A part, real or imaginary, that is rounding of both becomes zero. */
+/* Set the real or the imaginary part of a column to zero if it is rounding
+   relative to the larger of both. */
 static void clear_parts(const double *size, ritz_dense *X)
 {
     const int64_t p = X->ncol / 2;
@@ -143,7 +147,7 @@ static void clear_parts(const double *size, ritz_dense *X)
             memset(ritz_dense_col(X, j), 0, (size_t)X->nrow * sizeof *X->val);
 }
 
-/* The response X to forces G: its rigid coordinates q, and X without them. */
+/* Response X to forces G, split into rigid coordinates q and the rest X. */
 static ritz_status respond(const ritz_waves *waves, const ritz_dense *G,
                            ritz_dense *q, ritz_dense *X)
 {
@@ -167,8 +171,8 @@ static ritz_status respond(const ritz_waves *waves, const ritz_dense *G,
 }
 
 /*
- * Column j of some coordinates of d, from row @p at of the state's [Re d, Im d,
- * Re v, Im v].
+ * Write column j of the coordinates @p d, from row @p at on, to the real and
+ * imaginary parts of d in a state z = [Re d, Im d, Re v, Im v].
  */
 static void fill_state(const ritz_dense *d, int64_t at, int64_t j, int64_t room,
                        double *z)
@@ -181,7 +185,7 @@ static void fill_state(const ritz_dense *d, int64_t at, int64_t j, int64_t room,
     }
 }
 
-/* i z. */
+/* iz = i z, of a state [Re d, Im d, Re v, Im v]. */
 static void turn_state(int64_t room, const double *z, double *iz)
 {
     for (int64_t half = 0; half < 4 * room; half += 2 * room)
@@ -191,7 +195,8 @@ static void turn_state(int64_t room, const double *z, double *iz)
         }
 }
 
-/* Append a state, which is overwritten, and i times what is new in it. */
+/* Append the independent part of a state, and i times that part; z is
+   overwritten. */
 static ritz_status keep_state(ritz_waves *waves, ritz_dense *z)
 {
     ritz_orthonormal *kept = &waves->kept;
@@ -207,9 +212,11 @@ static ritz_status keep_state(ritz_waves *waves, ritz_dense *z)
 }
 
 /*
- * Append the response to forces G to V, and its states.
+ * Append the response to forces G to V, and the resulting states to the
+ * sequence.
  *
- * @param[in] before  2 room rows, coordinates of v, which is the last d; {0}: 0
+ * @param[in] before  2 room rows, coordinates of v, which is the previous d;
+ *                    {0}: v = 0
  */
 static ritz_status append_states(ritz_krylov *S, const ritz_dense *G,
                                  const ritz_dense *before, ritz_waves *waves)
@@ -264,7 +271,8 @@ ritz_status ritz_waves_start(ritz_krylov *S, const ritz_dense *F,
     return append_states(S, &G, &at_rest, waves);
 }
 
-/* The d, or v, of the last block, from its coordinates: [Re, Im]. */
+/* The d (row 0) or v (row 2 room) of the last block, from its coordinates, as
+   [Re, Im]. */
 static ritz_status expand_states(const ritz_krylov *S, const ritz_waves *waves,
                                  int64_t row, ritz_dense *out)
 {
@@ -287,7 +295,7 @@ static ritz_status expand_states(const ritz_krylov *S, const ritz_waves *waves,
     return ritz_dense_mul(&Q, &c, out);
 }
 
-/* G -= (a + i b) A X. */
+/* G -= (a + i b) A X, with G and X stored as [Re, Im]. */
 static ritz_status subtract_product(const ritz_sparse *A, double a, double b,
                                     const ritz_dense *X, ritz_dense *G)
 {

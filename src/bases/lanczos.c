@@ -51,8 +51,8 @@ typedef struct one_sided {
     ritz_dense A, B;
     int64_t states;      /* of the system */
     double damping;      /* least -Re s of A */
-    int64_t reached;     /* values of U above the tolerance */
-    ritz_dense Q, V;     /* n x r, r <= reached: as rounding allows */
+    int64_t reached;     /* number of values of U above the tolerance */
+    ritz_dense Q, V;     /* n x r; r <= reached, as far as rounding allows */
     ritz_dense A_r, B_r; /* V'A Q, V'B */
     ritz_dense G, b;     /* operator and start, r x r and r x inputs */
     double rounding;     /* |G + G' + b b'| */
@@ -315,7 +315,7 @@ static void add_remark(const ritz_request *request, const one_sided *s,
                  s->uncertain);
 }
 
-/* Operator, vectors and bases of a system whose range is known. */
+/* Operator, vectors and bases, once the range of the Gramian is known. */
 static ritz_status finish_one_sided(const ritz_request *request, one_sided *s,
                                     ritz_dense *own, ritz_dense *other)
 {
@@ -330,14 +330,15 @@ static ritz_status finish_one_sided(const ritz_request *request, one_sided *s,
 }
 
 /*
- * State spaces: with z' = E^-1 A z + E^-1 B u of a dense one, W := E^-T W in the
- * end. Of a sparse one the Gramian has a factor of low rank (gramians/space.h),
+ * State spaces. A dense one is converted to z' = E^-1 A z + E^-1 B u, and the
+ * left basis becomes E^-T W at the end. The Gramian of a sparse one has a
+ * factor of low rank (gramians/space.h) with residual R,
  *
  *     A W E' + E W A' + B B' = R,   W = Z Z',   Z = U Sigma
  *     Q = U Sigma,   V = E^-T U Sigma^-1,   V'E Q = I,
  *     V'A Q + (V'A Q)' + V'B B'V = V'R V
  *
- * so that what its residual R does is measured as rounding is.
+ * so V'R V takes the place of the rounding error and is measured like it.
  */
 
 /* E^-1 A - alpha I, E^-1 B and C of a dense state space. */
@@ -376,7 +377,7 @@ static ritz_status find_dense_bases(const ritz_request *request, double alpha,
     return ritz_general_solve(&model->E, true, outputs ? own : other);
 }
 
-/* A - alpha E in the place of A. */
+/* The model with A - alpha E instead of A. */
 static ritz_status shift_space(const ritz_state_space *model, double alpha,
                                const ritz_pencil *pencil, ritz_state_space *out)
 {
@@ -390,7 +391,7 @@ static ritz_status shift_space(const ritz_state_space *model, double alpha,
     return RITZ_OK;
 }
 
-/* X := E^-1 X, or E^-T X. */
+/* X := E^-1 X, or E^-T X if @p transposed. */
 static ritz_status divide_descriptor(const ritz_pencil *pencil, bool transposed,
                                      ritz_dense *X)
 {
@@ -413,7 +414,7 @@ static ritz_status divide_descriptor(const ritz_pencil *pencil, bool transposed,
     return RITZ_OK;
 }
 
-/* Q, V, A_r and B_r from the columns of Z, orthogonal, the longest first. */
+/* Q, V, A_r and B_r from Z, whose columns are orthogonal, longest first. */
 static ritz_status take_low_rank(const ritz_state_space *model,
                                  const ritz_pencil *pencil, bool outputs,
                                  double tolerance, const ritz_dense *Z,
@@ -446,8 +447,8 @@ static ritz_status take_low_rank(const ritz_state_space *model,
     return ritz_dense_mul_tn(&s->V, &B, &s->B_r);
 }
 
-/* The leading columns in which the residual is small against the damping of the
-   poles nearest to 0. */
+/* Keep the leading columns for which the residual is small relative to the
+   least damping of the poles nearest to 0. */
 static ritz_status cut_range(ritz_pencil *pencil, one_sided *s)
 {
     enum { LOOKED_AT = 20 };

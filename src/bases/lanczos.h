@@ -1,4 +1,4 @@
-/* What both Lanczos methods of states begin with. */
+/* Start of both Lanczos methods for states. */
 #ifndef RITZ_BASES_LANCZOS_H
 #define RITZ_BASES_LANCZOS_H
 
@@ -6,10 +6,11 @@
 
 #include <ritz/basis.h>
 
-/** The shift of the states, 0 without one. @return RITZ_ERR_ARGUMENT */
+/** The shift of the states, 0 if none is chosen.
+ * @return RITZ_ERR_ARGUMENT if several are chosen */
 ritz_status ritz_lanczos_shift(const ritz_choice *choice, double *alpha);
 
-/** The component of the request in states, less the shift. */
+/** The requested component in first-order form, with its states shifted. */
 ritz_status ritz_lanczos_states(const ritz_request *request, ritz_states *out);
 
 /**

@@ -4,18 +4,21 @@
  *     W'V = I,   W'A V block tridiagonal,
  *
  * spanning [B, A B, ...] and [C', A'C', ...] [KimCraig1988], [CraigSuKim1992,
- * section 5]. Of k full blocks on both sides the first 2k Markov parameters are
- * kept; on A^-1 the first 2k moments about 0 Hz, the reduced model being
- * (W'A^-1 V)^-1, with left vectors to that end.
+ * section 5]. With k full blocks on both sides the reduced model keeps the
+ * first 2k Markov parameters. With A^-1 as operator it keeps the first 2k
+ * moments about 0 Hz: A is then reduced to (W'A^-1 V)^-1, by left vectors that
+ * invert_left changes accordingly.
  *
- * The reduced model may be unstable: this method is kept to show that, and the
- * stability check reports it. So that failures are due to the method alone,
- * vectors are biorthogonalised against all others, twice.
+ * The reduced model may be unstable. The method is included to demonstrate
+ * that, and the stability check reports it. Vectors are biorthogonalised
+ * against all others, in two passes, so that failures are due to the method and
+ * not to rounding.
  *
- * A step joins candidates X and Y, orthonormal, by Y'X = L diag(s) R': vectors
- * are X R s^-1/2 and Y L s^-1/2 where s is above the tolerance. Directions of
- * either side that are not paired wait for the next block. If none is paired
- * the method ends: this is a serious breakdown, unless one side is exhausted.
+ * A step pairs orthonormal candidates X and Y by Y'X = L diag(s) R': the new
+ * vectors are X R s^-1/2 and Y L s^-1/2 for each s above the tolerance.
+ * Directions that are not paired stay candidates for the next block. If none is
+ * paired the method ends with a serious breakdown, unless one side is
+ * exhausted.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -67,24 +70,25 @@ ritz_status ritz_lanczos_operator(const ritz_dense *A, const ritz_dense *B,
     return ritz_dense_mul(G, B, b);
 }
 
-/* How a sequence of blocks ends. */
+/* How the sequence of blocks ended. */
 typedef enum ending {
-    COMPLETE,  /* as many vectors as were asked for */
-    EXHAUSTED, /* the controllable, or the observable states are spanned */
-    BREAKDOWN, /* both have more, but orthogonal to each other */
+    COMPLETE,  /* as many vectors as requested */
+    EXHAUSTED, /* the vectors span all controllable, or all observable states */
+    BREAKDOWN, /* both sides have candidates left, but these are orthogonal */
 } ending;
 
-/* One side: vectors so far, and candidates for the next block. */
+/* One side: its vectors, and candidates for the next block. */
 typedef struct lanczos_side {
-    ritz_dense vectors; /* as many columns as are asked for */
-    ritz_dense next;    /* operator times the last block; the start at first */
+    ritz_dense vectors; /* room for as many columns as requested */
+    ritz_dense next;    /* operator times the last block; at first the starting
+                           block */
     ritz_dense waiting; /* candidates that were not paired */
 } lanczos_side;
 
 typedef struct two_sided {
-    ritz_dense G; /* A or A^-1 */
+    ritz_dense G; /* operator, A or A^-1 */
     lanczos_side right, left;
-    int64_t used; /* columns of both sides' vectors */
+    int64_t used; /* number of vectors found on each side */
     ending end;
 } two_sided;
 
@@ -100,7 +104,7 @@ static void two_sided_free(two_sided *t)
     }
 }
 
-/* All candidates, each of unit length or zero. */
+/* All candidates, scaled to unit length; zero ones stay zero. */
 static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_beside(&s->next, &s->waiting, out));
@@ -110,8 +114,8 @@ static ritz_status gather_candidates(const lanczos_side *s, ritz_dense *out)
 }
 
 /*
- * Candidates, orthogonal to the vectors so far and orthonormal; dependent ones
- * left out.
+ * Orthonormal candidates, biorthogonalised against the vectors found so far,
+ * without dependent ones.
  */
 static ritz_status prepare_candidates(const lanczos_side *own,
                                       const lanczos_side *other, int64_t used,
@@ -125,14 +129,15 @@ static ritz_status prepare_candidates(const lanczos_side *own,
 
     RITZ_CHECK(gather_candidates(own, &X));
     RITZ_CHECK(ritz_dense_take_out(&V, &W, &X));
-    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X)); /* twice is enough */
+    RITZ_CHECK(ritz_dense_take_out(&V, &W, &X)); /* a second pass suffices */
     RITZ_CHECK(ritz_general_svd(&X, &U, &s, NULL));
     while (rank < U.ncol && s[rank] > tolerance)
         rank++;
     return ritz_dense_columns(&U, 0, rank, out);
 }
 
-/* X R s^-1/2 of the first columns become vectors, the others wait. */
+/* The first columns of X R s^-1/2 become vectors; the other columns of X R
+   wait. */
 static ritz_status accept_vectors(const ritz_dense *X, const ritz_dense *R,
                                   const double *s, int64_t joined, int64_t used,
                                   lanczos_side *own)
@@ -149,7 +154,7 @@ static ritz_status accept_vectors(const ritz_dense *X, const ritz_dense *R,
                               &own->waiting);
 }
 
-/* Pair candidates X of the right and Y of the left; possibly none. */
+/* Pair candidates X of the right side with Y of the left; *joined may be 0. */
 static ritz_status pair_candidates(const ritz_dense *X, const ritz_dense *Y,
                                    double tolerance, two_sided *t,
                                    int64_t *joined)
@@ -168,7 +173,7 @@ static ritz_status pair_candidates(const ritz_dense *X, const ritz_dense *Y,
     return accept_vectors(Y, &L, s, *joined, t->used, &t->left);
 }
 
-/* G times the last block, on either side. */
+/* Operator times the last block, on both sides. */
 static ritz_status advance_blocks(two_sided *t, int64_t joined)
 {
     const ritz_dense right =
@@ -201,7 +206,7 @@ static ritz_status advance_step(double tolerance, two_sided *t, bool *going)
     return RITZ_OK;
 }
 
-/* Right start B, or A^-1 B; left start C'. */
+/* Starting blocks: B, or A^-1 B with the inverse operator, and C'. */
 static ritz_status start_blocks(const ritz_request *request,
                                 const ritz_states *states, two_sided *t)
 {
@@ -220,7 +225,7 @@ static ritz_status start_blocks(const ritz_request *request,
     return ritz_dense_new(n, most, &t->left.vectors);
 }
 
-/* A first block is required. */
+/* Refuse a sequence that ended before its first block. */
 static ritz_status check_start(const ritz_request *request, const two_sided *t)
 {
     RITZ_REFUSE_IF(t->used == 0 && t->end == EXHAUSTED, RITZ_ERR_ARGUMENT,
@@ -236,7 +241,7 @@ static ritz_status check_start(const ritz_request *request, const two_sided *t)
     return RITZ_OK;
 }
 
-/* On A^-1: W := G'W (W'G V)^-T, with which W'A V = (W'G V)^-1. */
+/* With A^-1 as operator G: W := G'W (W'G V)^-T, so that W'A V = (W'G V)^-1. */
 static ritz_status invert_left(two_sided *t)
 {
     RITZ_OWN(ritz_dense) WG = {0}, Gr = {0};

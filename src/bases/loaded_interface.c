@@ -5,10 +5,10 @@
  *
  *     (K + E K_n E') Phi = (M + E M_n E') Phi Lambda,   E = I(:, a)
  *
- * normalised in the loaded mass. They have the shapes of the component in the
- * system, so that few are needed; if the condensed neighbour is exact, they are
- * too. Static vectors, of dampers and other loads, are those of the loaded
- * component.
+ * normalised in the loaded mass. These modes resemble the motion of the
+ * component in the system, so that few are needed; they are exact if the
+ * condensed neighbour is exact. Static vectors of dampers and other loads are
+ * those of the loaded component.
  */
 #include "base/alloc.h"
 #include "bases/free_set.h"
@@ -69,7 +69,8 @@ static ritz_status make_loaded_interface(const ritz_request *request,
 {
     const ritz_component *component = request->component;
     const ritz_span span = {request->modes, request->up_to_hz};
-    ritz_component loaded = *component; /* borrowed but for K and M */
+    ritz_component loaded = *component; /* a copy that borrows all but K and
+                                           M */
     ritz_request with_neighbour = *request;
     int loads = 0;
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};

@@ -1,18 +1,18 @@
 /*
  * Modes, ranked by their importance from inputs to outputs: the largest exact
- * Hankel value that a mode has alone, or a cluster of modes closer than 1e-6 in
- * frequency [Moore1981],
+ * Hankel value of a mode by itself, or of a cluster of modes closer than 1e-6
+ * in frequency [Moore1981]. A mode with a displacement output has
  *
  *     sigma_k = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
  *
- * with a displacement output. For lightly damped modes of well separated
- * frequencies these are the Hankel values of the whole model, and the best
- * modes its balanced states; for close modes they are not. The error is at most
- * the response of all modes that are left out: twice the sum of all values of
- * each cluster alone.
+ * For lightly damped modes of well separated frequencies these are the Hankel
+ * values of the whole model, and the best modes are its balanced states; for
+ * close modes neither holds. The error is at most the response of the modes
+ * that are left out, which is bounded by twice the sum of all Hankel values of
+ * each cluster by itself.
  *
- * Modes that damping couples are one cluster too. What is left out then acts on
- * what is kept, and nothing is known of the error.
+ * Modes coupled by damping are one cluster, too. Those that are left out then
+ * act on those that are kept, and the error has no bound.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -24,22 +24,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Modes that are kept whole or not at all. */
+/* A cluster of modes, kept whole or left out whole. */
 typedef struct mode_group {
-    int64_t first, size; /* its first flexible mode, and how many it has */
-    double value;        /* by which it is ranked */
-    double bound;        /* of its own response */
+    int64_t first, size; /* its first flexible mode, and its number of modes */
+    double value;        /* its rank value */
+    double bound;        /* H-infinity bound of its response */
     bool keep;
 } mode_group;
 
 typedef struct subset_search {
     ritz_modal_model modes;
     ritz_modal modal;
-    int64_t *cluster; /* of each mode, and of rigid ones behind them */
+    int64_t *cluster; /* cluster of each flexible mode, then of each rigid
+                         mode */
     int64_t count;
-    mode_group *groups; /* by their first frequency */
-    int64_t kept;       /* modes */
-    double bound;       /* of all that is left out; NaN: not known */
+    mode_group *groups; /* count, by frequency of their first mode */
+    int64_t kept;       /* number of modes that are kept */
+    double bound;       /* of the response of all modes left out; NaN: not
+                           known */
 } subset_search;
 
 static void subset_search_free(subset_search *s)
@@ -72,7 +74,8 @@ static ritz_status find_ranked_modes(const ritz_request *request,
     return ritz_coupled_clusters(&s->modal, s->cluster);
 }
 
-/* The value of a cluster of modes alone; over a band, if there is one. */
+/* The largest Hankel value of a cluster of modes by itself, over the band if
+   one is requested. */
 static ritz_status rank_group(const ritz_request *request,
                               const subset_search *s, mode_group *at)
 {
@@ -114,7 +117,8 @@ static ritz_status rank_groups(const ritz_request *request, subset_search *s)
 }
 
 /*
- * The best group that is not kept yet; of equal ones the lowest in frequency.
+ * The group with the largest value that is not kept yet; of equal ones the one
+ * with the lowest frequency.
  */
 static mode_group *find_best(subset_search *s)
 {
@@ -130,8 +134,8 @@ static mode_group *find_best(subset_search *s)
 }
 
 /*
- * Choose the best groups first, until the next one does not fit or has value
- * zero.
+ * Keep groups in descending order of value, until the next one does not fit or
+ * has value zero.
  */
 static ritz_status choose_groups(const ritz_request *request, subset_search *s)
 {
@@ -170,7 +174,8 @@ static void copy_mode(const subset_search *s, int64_t mode, int64_t column,
         ritz_columns_label_rigid(column, &basis->columns);
 }
 
-/* Whether two groups have one value, or one frequency and values of a size. */
+/* Whether two groups have equal values, or close frequencies and values of
+   similar size. */
 static bool is_tie(const subset_search *s, const mode_group *kept,
                    const mode_group *left)
 {
@@ -181,7 +186,7 @@ static bool is_tie(const subset_search *s, const mode_group *kept,
             left->value >= RITZ_HANKEL_PAIR * kept->value);
 }
 
-/* Remark on the first pair that the choice cuts. */
+/* Remark on the first pair of modes that the choice splits. */
 static void add_tie(const subset_search *s, ritz_basis *basis)
 {
     for (int64_t i = 0; i < s->count; i++)

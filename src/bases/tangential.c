@@ -310,7 +310,8 @@ typedef struct irka_search {
     ritz_rational R;
     ritz_dense T;       /* rigid and interpolating */
     ritz_probes probes; /* those that T interpolates */
-    int loads;          /* that are interpolated, sum of RITZ_LOADS_... */
+    int loads;          /* kinds of loads that are interpolated,
+                           RITZ_LOADS_... */
     int64_t left_out;   /* fixed probes without room */
     int rounds;
     double change;

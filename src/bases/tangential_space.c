@@ -5,14 +5,15 @@
  *     span T = { (A - s_i E)^-1 B b_i },   span W = { (A - s_i E)^-T C' c_i }
  *
  * so that H_r(s_i) b_i = H(s_i) b_i, c_i'H_r(s_i) = c_i'H(s_i), and
- * c_i'H_r'(s_i) b_i = c_i'H'(s_i) b_i. In H2 the best points mirror the poles
- * of the reduced model and the directions are its residues,
+ * c_i'H_r'(s_i) b_i = c_i'H'(s_i) b_i. In H2 the best points are the mirrored
+ * poles of the reduced model, and the best directions are its residues,
  *
  *     H_r(s) = sum c_i b_i' / (s - p_i),   s_i = -p_i,
  *
- * so both are taken from the model that the last ones gave, until they settle
- * (IRKA). The search begins at the most dominant poles, by |c||b| / sqrt(2 |Re
- * p|), of a Krylov model of twice as many states. Outputs are over their limits.
+ * IRKA takes both from the reduced model of the last iteration, until they
+ * settle. The first ones are the most dominant poles, by |c||b| / sqrt(2 |Re
+ * p|), of a Krylov model of twice as many states. Outputs are divided by their
+ * limits.
  */
 #include "bases/space.h"
 
@@ -33,12 +34,14 @@
 
 enum { MOST_ROUNDS = 50 };
 
-/* Points above or on the real axis, and their directions. */
+/* Interpolation points, one of each conjugate pair, and their tangential
+   directions. */
 typedef struct directions {
     int64_t count, inputs, outputs;
     double _Complex *s;
     double _Complex *b, *c; /* inputs x count, outputs x count */
-    double *size;           /* of each term, by which they are ordered */
+    double *size;           /* H2 norm of each term, by which terms are
+                               ordered */
 } directions;
 
 static void directions_free(directions *d)
@@ -64,7 +67,7 @@ typedef struct irka {
     ritz_pencil pencil;
     ritz_dense B, Ct; /* n x m, n x p */
     ritz_dense T, W;
-    directions points; /* that T and W interpolate */
+    directions points; /* the points that T and W interpolate */
     int rounds;
     double change;
 } irka;
@@ -79,7 +82,7 @@ static void irka_free(irka *s)
     directions_free(&s->points);
 }
 
-/* The reduced model of T and W: A_r and B_r divided by W'E T, C_r'. */
+/* The reduced model of T and W: (W'E T)^-1 W'A T, (W'E T)^-1 W'B, and T'C'. */
 typedef struct small_model {
     ritz_dense A, B, Ct;
 } small_model;
@@ -111,7 +114,8 @@ static ritz_status project_pencil(const irka *s, small_model *out)
     return ritz_general_solve(&E, false, &out->B);
 }
 
-/* Column j of LAPACK's real form of eigenvectors: conjugates are neighbours. */
+/* Entry i of eigenvector j in LAPACK's real storage, where columns j and j + 1
+   hold the real and imaginary part of a conjugate pair. */
 static double _Complex vector_entry(const ritz_dense *V, const double *im,
                                     int64_t i, int64_t j)
 {
@@ -120,7 +124,8 @@ static double _Complex vector_entry(const ritz_dense *V, const double *im,
     return ritz_complex(ritz_dense_col(V, j)[i], ritz_dense_col(V, j + 1)[i]);
 }
 
-/* Term j, Im p >= 0: its point, its residues and its size in H2. */
+/* Append the term of pole j, Im p >= 0: its mirrored point, residues and H2
+   norm. */
 static void add_term(const small_model *m, const ritz_dense *L,
                      const ritz_dense *R, const double *re, const double *im,
                      int64_t j, directions *out)
@@ -148,7 +153,8 @@ static void add_term(const small_model *m, const ritz_dense *L,
         b[a] /= sizes[0];
     for (int64_t a = 0; a < out->outputs && sizes[1] > 0.0; a++)
         c[a] /= sizes[1];
-    /* a pole right of the axis is mirrored too: the point lies right of it */
+    /* an unstable pole is mirrored as well, so that no point lies left of the
+       axis */
     out->s[k] = ritz_complex(fabs(re[j]), -im[j]);
     out->size[k] =
         sizes[0] * sizes[1] /
@@ -204,8 +210,8 @@ static int64_t parts_of(double _Complex s)
     return cimag(s) != 0.0 ? 2 : 1;
 }
 
-/* The largest terms to the front, those that give @p most columns; a pair that
-   has no room is passed over. */
+/* Move the largest terms to the front, as many as give at most @p most columns;
+   a conjugate pair that does not fit is skipped. */
 static void keep_dominant(int64_t most, directions *d)
 {
     int64_t kept = 0, columns = 0;
@@ -225,7 +231,8 @@ static void keep_dominant(int64_t most, directions *d)
     d->count = kept;
 }
 
-/* Largest relative distance of a point to the nearest one before. */
+/* Largest relative distance of a point to the nearest of the previous
+   points. */
 static double measure_change(const directions *before, const directions *now)
 {
     double worst = before->count == now->count ? 0.0 : HUGE_VAL;
@@ -240,7 +247,7 @@ static double measure_change(const directions *before, const directions *now)
     return worst;
 }
 
-/* x += F b, n long. */
+/* x += F b, with x of n entries. */
 static void combine_columns(const ritz_dense *F, const double _Complex *b,
                             double _Complex *x)
 {
@@ -265,7 +272,7 @@ static ritz_status append_response(const double _Complex *x, int64_t n,
 
 RITZ_PAIR_OF(ritz_orthonormal);
 
-/* T and W from points and directions. */
+/* T and W for the given points and directions. */
 static ritz_status span_points(const directions *d, irka *s)
 {
     const int64_t n = s->pencil.n;
@@ -296,8 +303,8 @@ static ritz_status span_points(const directions *d, irka *s)
     return RITZ_OK;
 }
 
-/* A Krylov model of twice as many states about 0, or beside a pole there; its
-   points and directions. */
+/* T and W of a Krylov model of twice as many states about 0, or about a point
+   near 0 if 0 is a pole. */
 static ritz_status span_start(irka *s)
 {
     const double size =
@@ -359,7 +366,8 @@ static ritz_status iterate_points(irka *s)
     return RITZ_OK;
 }
 
-/* Responses to every input, and from every output, at the given points. */
+/* T and W from responses to all inputs, and adjoint responses to all outputs,
+   at the requested points. */
 static ritz_status take_given(irka *s)
 {
     const ritz_choice *choice = &s->request->choice;
