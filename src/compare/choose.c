@@ -1,14 +1,16 @@
 /*
- * Which dofs to attach [McDaniel2000, sec. 3.2.2 and 3.3.1]: stage two is built
- * with the static corrections of a set of forces and compared with stage one by
- * its MIMO Bode plot, the largest singular value of H(i w) over the band and
- * the smallest that is not zero, at listed configurations; and by the static
- * gain, there and between them.
+ * Which forces get static corrections [McDaniel2000, sec. 3.2.2 and 3.3.1].
+ * Stage two is built with the static corrections of a set of forces and
+ * compared with stage one by its MIMO Bode plot at the listed configurations,
+ * which is the largest singular value of H(i w) over the band and the smallest
+ * one that is not zero. The static gain is compared there and between listed
+ * configurations.
  *
- * The sets are those that have a name, each force alone, and, until one is near
- * enough, all pairs, all triples, ... as long as these are not too many. A set
- * of more forces is then sought by adding the one that helps most, and, where
- * none helps, by leaving out of all of them those that are not needed.
+ * First the sets that have names are tried, and each force alone. Until a set
+ * is accurate enough, all pairs follow, all triples, and so on, as long as
+ * these are not too many. A larger set is then found by adding, one at a time,
+ * the force that reduces the error most. If no force reduces it, the search
+ * starts from all forces and leaves out those that are not needed.
  */
 #include "compare/compare.h"
 
@@ -49,7 +51,7 @@ static ritz_status copy_candidate(const ritz_candidate *from,
     return RITZ_OK;
 }
 
-/* A set of forces, ascending. */
+/* A set of forces: ascending indices. */
 typedef struct force_set {
     int64_t count;
     int64_t *at;
@@ -62,15 +64,15 @@ static void force_set_free(force_set *set)
 
 typedef struct chooser {
     const ritz_rows *rows; /* borrowed, with the responses of stage one */
-    const ritz_plan *plan; /* of the scene; borrowed */
-    force_set own;         /* its forces */
+    const ritz_plan *plan; /* the scene's plan; borrowed */
+    force_set own;         /* forces of that plan */
     force_set pool;        /* forces to choose from */
     int64_t tried;
     int64_t room;
-    ritz_comparison *out; /* whose candidates these are */
+    ritz_comparison *out; /* the candidates are appended to it */
 } chooser;
 
-/* The sets that have names, fewest forces first. */
+/* Sets of forces that have names, in ascending order of size. */
 static const int of_system[] = {0, RITZ_ATTACHED_INPUTS,
                                 RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_OUTPUTS};
 
@@ -82,7 +84,8 @@ static const int of_components[] = {
     RITZ_ATTACHED_INPUTS | RITZ_ATTACHED_INTERFACE | RITZ_ATTACHED_OUTPUTS,
 };
 
-/* "inputs, rotor/boom:3": sets by their words, other forces by their names. */
+/* A name like "inputs, rotor/boom:3": the words of @p sets, then the names of
+   forces that belong to none of them. */
 static void name_candidate(const ritz_unit_forces *forces, int sets,
                            ritz_candidate *out)
 {
@@ -111,7 +114,8 @@ static void name_candidate(const ritz_unit_forces *forces, int sets,
         snprintf(out->name, size, "nothing");
 }
 
-/* Deviations of the MIMO Bode plot at listed configuration k. */
+/* Update the worst deviations of the MIMO Bode plot with listed configuration
+   k. */
 static ritz_status measure_deviation(const chooser *it, int64_t k,
                                      const ritz_configuration *second,
                                      ritz_candidate *out)
@@ -133,7 +137,8 @@ static ritz_status measure_deviation(const chooser *it, int64_t k,
     return RITZ_OK;
 }
 
-/* Deviations at listed configurations, up to the first above @p enough. */
+/* Errors at listed configurations; stops after the first one at which a
+   deviation exceeds @p enough. */
 static ritz_status measure_listed(const chooser *it,
                                   const ritz_comparison *trial, double enough,
                                   bool gain, ritz_candidate *out)
@@ -158,7 +163,7 @@ static ritz_status measure_listed(const chooser *it,
     return RITZ_OK;
 }
 
-/* The static gain between listed configurations. */
+/* Static gain error between listed configurations. */
 static ritz_status measure_between(const chooser *it,
                                    const ritz_comparison *trial,
                                    ritz_candidate *out)
@@ -177,8 +182,9 @@ static ritz_status measure_between(const chooser *it,
     return RITZ_OK;
 }
 
-/* Stage two with a set of forces; its errors, of a set that is worse than
-   @p enough a part of them. The gain belongs to sets that are shown. */
+/* Build stage two with a set of forces and measure it. Measuring stops once a
+   deviation exceeds @p enough. Gain errors are measured only for sets that are
+   reported. */
 static ritz_status try_set(chooser *it, const force_set *set, double enough,
                            bool shown, ritz_candidate *out)
 {
@@ -207,7 +213,7 @@ static ritz_status try_set(chooser *it, const force_set *set, double enough,
     return RITZ_OK;
 }
 
-/* Try a set of forces and add it to those that are shown. */
+/* Try a set of forces and add it to the candidates that are reported. */
 static ritz_status show_set(chooser *it, const force_set *set, int sets)
 {
     ritz_comparison *out = it->out;
@@ -222,9 +228,10 @@ static ritz_status show_set(chooser *it, const force_set *set, int sets)
 }
 
 /*
- * Whether a set is to be preferred: one that is near enough; of such the one
- * with the fewest coordinates of all bodies, then of forces; of others the
- * nearest. Differences within rounding do not count.
+ * Whether set b is better than set a: it is if only b is accurate enough; if
+ * both are, the one with fewer coordinates of all bodies is better, then the
+ * one with fewer forces; if neither is, the more accurate one. Differences
+ * within rounding do not count.
  */
 static bool is_better(const ritz_scene *scene, const ritz_candidate *b,
                       const ritz_candidate *a)
@@ -248,7 +255,7 @@ static bool fits(const chooser *it, const ritz_candidate *candidate)
            it->rows->stage->scene->attached_tolerance;
 }
 
-/* Try a set, and keep it in @p best if it is better. */
+/* Try a set, and store it in @p best if it is better. */
 static ritz_status try_better(chooser *it, const force_set *set,
                               ritz_candidate *best)
 {
@@ -268,7 +275,7 @@ static ritz_status try_better(chooser *it, const force_set *set,
     return RITZ_OK;
 }
 
-/* Try all sets of so many forces of the pool. */
+/* Try all sets of @p size forces of the pool. */
 static ritz_status try_size(chooser *it, int64_t size, ritz_candidate *best)
 {
     RITZ_OWN(force_set) set = {.count = size};
@@ -286,11 +293,13 @@ static ritz_status try_size(chooser *it, int64_t size, ritz_candidate *best)
     return RITZ_OK;
 }
 
-/* Whether all sets of so many forces are few enough to be tried. */
+/* Whether the number of sets of @p size forces is small enough to try them
+   all. */
 static bool is_small(const chooser *it, int64_t size)
 {
     enum { MOST_SETS = 1000 };
-    const double most_work = 2e10; /* orders^3 of all systems: some minutes */
+    const double most_work = 2e10; /* cubes of the systems' orders, summed: some
+                                      minutes */
     double sets = 1.0, work = 0.0;
 
     for (int64_t k = 0; k < size; k++)
@@ -309,7 +318,7 @@ static bool holds(const ritz_candidate *set, int64_t force)
     return false;
 }
 
-/* The best of a set and one more force of the pool. */
+/* The best set that consists of @p with and one more force of the pool. */
 static ritz_status try_one_more(chooser *it, const ritz_candidate *with,
                                 ritz_candidate *best)
 {
@@ -327,8 +336,8 @@ static ritz_status try_one_more(chooser *it, const ritz_candidate *with,
     return RITZ_OK;
 }
 
-/* Add forces, each time the one that helps most, until the set is near enough
-   or none helps. */
+/* Add forces one by one, each time the one that reduces the error most, until
+   the set is accurate enough or no force reduces it. */
 static ritz_status add_forces(chooser *it, ritz_candidate *set)
 {
     while (!fits(it, set) && set->num_forces < it->pool.count) {
@@ -344,7 +353,7 @@ static ritz_status add_forces(chooser *it, ritz_candidate *set)
     return RITZ_OK;
 }
 
-/* Leave forces out of a set that is near enough, as long as it stays so. */
+/* Remove forces from a set that is accurate enough, as long as it stays so. */
 static ritz_status leave_out_forces(chooser *it, ritz_candidate *set)
 {
     for (int64_t k = set->num_forces - 1; k >= 0; k--) {
@@ -367,7 +376,7 @@ static ritz_status leave_out_forces(chooser *it, ritz_candidate *set)
     return RITZ_OK;
 }
 
-/* A set of more forces than all of which can be tried. */
+/* Search among sets that are too many to try them all. */
 static ritz_status seek_further(chooser *it, ritz_candidate *set)
 {
     RITZ_CHECK(add_forces(it, set));
@@ -390,7 +399,7 @@ static ritz_status show_candidate(chooser *it, const ritz_candidate *set)
     return show_set(it, &as, 0);
 }
 
-/* The best of single forces, the last that were shown. */
+/* The best of the single forces, which are the last candidates. */
 static ritz_status find_single(chooser *it, ritz_candidate *best)
 {
     const ritz_comparison *out = it->out;
@@ -405,7 +414,7 @@ static ritz_status find_single(chooser *it, ritz_candidate *best)
     return copy_candidate(&one[at], it->rows->stage->count, best);
 }
 
-/* Sets of the pool, larger and larger, until one is near enough. */
+/* Try sets of the pool of increasing size until one is accurate enough. */
 static ritz_status seek_sets(chooser *it)
 {
     ritz_attached_search *search = &it->out->search;
@@ -433,9 +442,10 @@ static ritz_status seek_sets(chooser *it)
 }
 
 /*
- * What each force does, a column in coordinates in which lengths have a
- * meaning: of bodies relieved of inertia and scaled by mass, or of flexible
- * modes of all listed configurations scaled by stiffness.
+ * The effect of each force as a column whose length is meaningful: with
+ * component augmentation, forces on bodies without rigid inertia, scaled by
+ * mass; with system augmentation, forces on flexible modes of all listed
+ * configurations, scaled by stiffness.
  */
 static ritz_status measure_forces(const chooser *it, const force_set *from,
                                   ritz_dense *out)
@@ -474,7 +484,7 @@ static ritz_status measure_forces(const chooser *it, const force_set *from,
     return RITZ_OK;
 }
 
-/* Whether two vectors of unit length are parallel. */
+/* Whether two unit vectors are parallel. */
 static bool is_alike(int64_t n, const double *y, const double *x)
 {
     double along = 0.0, rest = 0.0;
@@ -486,8 +496,8 @@ static bool is_alike(int64_t n, const double *y, const double *x)
     return rest <= RITZ_SAME_FORCE;
 }
 
-/* The pool: forces that do something, and of those that do the same the
-   first. */
+/* The pool: forces that deform the structure; of forces with the same effect
+   only the first. */
 static ritz_status fill_pool(chooser *it, const force_set *from)
 {
     RITZ_OWN(ritz_dense) X = {0};
@@ -509,8 +519,9 @@ static ritz_status fill_pool(chooser *it, const force_set *from)
     return RITZ_OK;
 }
 
-/* Try the sets that have names, where there are dampers once more with them;
-   the scene's own too, if it is another: its index. */
+/* Try the named sets and, if there are dampers, each of them once more with the
+   dampers. The scene's own set is tried as well unless it is one of these;
+   *requested is its index, or -1 if the scene leaves the choice open. */
 static ritz_status try_named(chooser *it, int64_t *requested)
 {
     const ritz_stage *stage = it->rows->stage;
@@ -543,7 +554,7 @@ static ritz_status try_named(chooser *it, int64_t *requested)
     return show_set(it, &own, plan->sets);
 }
 
-/* Of all that were tried the best; where the set is open also among others. */
+/* Search the open set, and return the index of the best of all candidates. */
 static ritz_status try_open(chooser *it, int64_t *chosen)
 {
     const ritz_scene *scene = it->rows->stage->scene;
@@ -559,7 +570,7 @@ static ritz_status try_open(chooser *it, int64_t *chosen)
         RITZ_CHECK(show_set(it, &(force_set){1, &it->pool.at[k]}, 0));
     }
     if (!fits(it, &out->candidate[0]) && it->pool.count > 0)
-        RITZ_CHECK(seek_sets(it)); /* the first attaches nothing */
+        RITZ_CHECK(seek_sets(it)); /* candidate 0 attaches no force */
     *chosen = 0;
     for (int64_t k = 1; k < out->num_candidates; k++)
         if (is_better(scene, &out->candidate[k], &out->candidate[*chosen]))

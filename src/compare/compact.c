@@ -1,22 +1,23 @@
 /*
- * COMPACT: bodies lose the vectors that make extraneous modes [McDaniel2000,
- * sec. 2.2.4, on a paper of Lee of 1993], so that these modes do not appear
- * again wherever the bodies are assembled.
+ * COMPACT: vectors that make extraneous modes are removed from the bodies
+ * [McDaniel2000, sec. 2.2.4, after a paper by Lee of 1993], so that these modes
+ * do not return in any assembly of the bodies.
  *
- * With modes of unit mass x_j of the second system, body c moves by z_cj =
- * P_c x_j in its orthonormal coordinates. Of a direction v, |v| = 1,
+ * In mode j of the second system, with unit mass, body c moves by z_cj = P_c
+ * x_j in its orthonormal coordinates. For a direction v of the body, |v| = 1,
  *
- *     h(v) = v'H v / v'T v,    H = sum over j that are not extraneous of z z',
- *                              T = the same sum over all j
+ *     h(v) = v'H v / v'T v,    T = sum of z z' over all modes j,
+ *                              H = the same without extraneous modes
  *
- * is the part of all that the system does with v that belongs to kept modes,
- * over all listed configurations. Of each body the v of the least h, and that
- * of the least v'H v, are left out on trial, and the one without which errors of
- * kept modes, responses and gains grow least is dropped, until there is no
- * extraneous mode or they grow by more than the scene's tolerance.
+ * over all listed configurations, is the part of the motion along v that
+ * belongs to modes that are not extraneous. In each step two directions of each
+ * body are removed on trial, the one with the smallest h and the one with the
+ * smallest v'H v. The direction whose removal increases the errors of kept
+ * modes, responses and gains least is removed for good, until no extraneous
+ * mode is left or the errors would increase by more than the scene's tolerance.
  *
- * Rigid motion, motions without mass and static solutions are not touched, so
- * that the static gain stays what it is.
+ * Rigid motion, motions without mass and static solutions are never removed, so
+ * that the static gain does not change.
  */
 #include "compare/compare.h"
 
@@ -31,15 +32,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stage two at some point of the search. */
+/* Stage two with some directions removed. */
 typedef struct trial {
     ritz_subspaces subspaces;
-    int64_t count;  /* of bodies that H and T are of */
-    double change;  /* the worst error of kept frequencies and shapes, 1 - MAC,
-                       and by how much those of responses, static gains and
-                       damping have grown */
-    int64_t strays; /* extraneous modes of all listed configurations */
-    ritz_dense *H;  /* of each body, its directions that are not firm */
+    int64_t count;  /* bodies that H and T belong to */
+    double change;  /* the largest of: errors of kept frequencies, 1 - MAC of
+                       kept modes, and increases of the errors of responses,
+                       static gains and damping */
+    int64_t strays; /* extraneous modes at all listed configurations */
+    ritz_dense *H;  /* for each body, over its directions that may be removed */
     ritz_dense *T;
 } trial;
 
@@ -51,7 +52,7 @@ static void trial_free(trial *t)
     ritz_subspaces_free(&t->subspaces);
 }
 
-/* A += z z' over the columns of Z, its rows from `first` on. */
+/* A += z z' with z from column j of Z, rows `first` and below. */
 static void add_motion(const ritz_dense *Z, int64_t j, int64_t first,
                        ritz_dense *A)
 {
@@ -62,11 +63,11 @@ static void add_motion(const ritz_dense *Z, int64_t j, int64_t first,
             ritz_dense_col(A, q)[p] += z[p] * z[q];
 }
 
-/* Add the modes of one configuration to H and T of every body. */
+/* Add the modes of one configuration to H and T of each body. */
 static void add_modes(const ritz_configuration *second,
                       const ritz_compare_row *row, trial *t)
 {
-    int64_t next = 0; /* strays ascend by mode */
+    int64_t next = 0; /* strays are sorted by mode */
 
     for (int64_t j = 0; j < second->K.ncol; j++) {
         bool stray = next < row->num_strays &&
@@ -84,13 +85,14 @@ static void add_modes(const ritz_configuration *second,
     t->strays += row->num_strays;
 }
 
-/* What is measured against: stage one, and stage two before anything was
-   dropped. */
+/* References of all trials: stage one, and stage two before anything was
+   removed. */
 typedef struct compactor {
     const ritz_rows *rows; /* borrowed, with the responses of stage one */
-    double (*before)[3];   /* of each listed configuration, errors of the
-                            response, the static gain and the damping */
-    bool known;            /* whether these are */
+    double (*before)[3];   /* for each listed configuration, errors of response,
+                              static gain and damping before anything was
+                              removed */
+    bool known;            /* `before` has been measured */
 } compactor;
 
 static void compactor_free(compactor *it)
@@ -98,7 +100,7 @@ static void compactor_free(compactor *it)
     free(it->before);
 }
 
-/* Measure the second system at listed configuration k. */
+/* Measure the second system of a trial at listed configuration k. */
 static ritz_status measure_at(compactor *it, const ritz_comparison *second,
                               int64_t k, trial *t)
 {
@@ -125,8 +127,8 @@ static ritz_status measure_at(compactor *it, const ritz_comparison *second,
     return status;
 }
 
-/* Measure a trial, up to the first configuration at which it changes more than
-   @p enough. */
+/* Measure a trial; stops after the first configuration at which its change
+   exceeds @p enough. */
 static ritz_status measure_trial(compactor *it, double enough, trial *t)
 {
     const int64_t count = t->subspaces.count;
@@ -149,8 +151,9 @@ static ritz_status measure_trial(compactor *it, double enough, trial *t)
 }
 
 /*
- * The direction with the least v'H v, or with the least part of v'T v; false if
- * there is none. A direction that takes part in no motion has no part of it.
+ * The direction v with the smallest v'H v or, if @p relative, the smallest v'H
+ * v / v'T v; v has no column if there is none. Directions without motion have
+ * v'T v = 0; a small multiple of I is added to T, which gives them h = 0.
  */
 static ritz_status find_direction(const trial *t, int64_t body, bool relative,
                                   ritz_dense *v)
@@ -172,8 +175,8 @@ static ritz_status find_direction(const trial *t, int64_t body, bool relative,
 }
 
 /*
- * V := V Q, Q the Householder reflection that takes the last unit vector to v,
- * without its last column; v has zeros where directions are firm.
+ * V := V Q without the last column, where the Householder reflection Q maps the
+ * last unit vector to v; v is zero in the first @p firm coordinates.
  */
 static ritz_status leave_out(const ritz_dense *v, int64_t firm, ritz_dense *V)
 {
@@ -213,8 +216,8 @@ static ritz_status copy_subspaces(const ritz_subspaces *from,
     return RITZ_OK;
 }
 
-/* Leave a direction of one body out, and keep what is left if it changes less
-   than the best so far. */
+/* Remove a direction of one body on trial, and store the result in @p best if
+   it changes less. */
 static ritz_status try_direction(compactor *it, const trial *now, int64_t body,
                                  bool relative, trial *best)
 {
@@ -235,7 +238,7 @@ static ritz_status try_direction(compactor *it, const trial *now, int64_t body,
     return RITZ_OK;
 }
 
-/* The best of what is left when one more vector is dropped. */
+/* The best trial with one direction less. */
 static ritz_status try_bodies(compactor *it, const trial *now, trial *best)
 {
     for (int64_t c = 0; c < now->subspaces.count; c++) {

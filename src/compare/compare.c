@@ -175,7 +175,7 @@ static ritz_status record_comparison(ritz_comparison *comparison)
 
 /* Stage two by one plan, and by each composite tolerance in turn. */
 
-/* The forces of a scene, and those of them that stage two is made with. */
+/* Forces of a scene, and the indices of those that stage two is built with. */
 typedef struct planning {
     ritz_unit_forces forces;
     int64_t *force;
@@ -188,7 +188,8 @@ static void planning_free(planning *p)
     free(p->force);
 }
 
-/* The plan that the scene requests; `auto` is what may be chosen. */
+/* The plan that the scene states; with `auto`, the set is still to be
+   chosen. */
 static ritz_status make_plan(const ritz_stage *stage, planning *out)
 {
     static const int implied[] = {
@@ -216,8 +217,8 @@ static ritz_status make_plan(const ritz_stage *stage, planning *out)
     return RITZ_OK;
 }
 
-/* Stage two by a plan: bodies with their V, made compact if the scene says so,
-   and the second system at listed configurations. */
+/* Build stage two by a plan: bodies reduced by their V, compacted if the scene
+   says so, and the second system at listed configurations. */
 static ritz_status try_plan(ritz_rows *rows, const ritz_plan *plan,
                             ritz_comparison *out)
 {
@@ -383,8 +384,9 @@ static ritz_status reduce_bodies(ritz_rows *rows, ritz_comparison *c)
     return try_plan(rows, &p.plan, c);
 }
 
-/* Bodies that are joined by forces: how many negative squares the forces leave
-   at the first configuration, and that there are no modes to choose from. */
+/* Refuse bodies that are joined by interface forces, with the number of
+   negative squares that these leave at the first configuration: such systems
+   have no modes to choose from. */
 static ritz_status refuse_forces(const ritz_stage *stage)
 {
     RITZ_OWN(ritz_system) system = {0};

@@ -10,11 +10,14 @@ enum { RITZ_FORCE_SIZE = 2 * RITZ_NAME_SIZE + 32 };
 /* A force whose static solutions may be added to the composite set. */
 typedef struct ritz_unit_force {
     char name[RITZ_FORCE_SIZE]; /* "torque", "rotor/boom:3" */
-    int sets;                   /* of RITZ_ATTACHED_..., to which it belongs */
-    bool named;                 /* the scene attaches it by its name */
-    double *f; /* over the coordinates of all bodies of the stage; NULL: along
-                  the damper of a joint, which turns with it */
-    int64_t spring; /* that one, among the springs of joints with dampers */
+    int sets;                   /* the sets that it belongs to,
+                                   RITZ_ATTACHED_... */
+    bool named;                 /* the scene attaches it by name */
+    double *f; /* vector over the coordinates of all bodies of the stage; NULL:
+                  a force along the damper of a joint, whose direction depends
+                  on the configuration */
+    int64_t spring; /* index of that damper among all joint springs that have a
+                       damper */
 } ritz_unit_force;
 
 typedef struct ritz_unit_forces {
@@ -25,11 +28,12 @@ typedef struct ritz_unit_forces {
 /* What is decided before stage two is built. */
 typedef struct ritz_plan {
     double tolerance;     /* of the composite set */
-    ritz_augment augment; /* level of static corrections, */
-    int sets;             /* for these sets and what is named, which are */
-    const ritz_unit_forces *forces; /* for these of all forces; borrowed */
+    ritz_augment augment; /* level of static corrections */
+    int sets;             /* named sets, RITZ_ATTACHED_..., that `force` was
+                             selected by */
+    const ritz_unit_forces *forces; /* all forces of the scene; borrowed */
     int64_t count;
-    const int64_t *force; /* count, ascending; borrowed */
+    const int64_t *force; /* count indices into `forces`, ascending; borrowed */
 } ritz_plan;
 
 /* Stage one at all rows: listed configurations, and those between them. */
@@ -40,48 +44,53 @@ typedef struct ritz_rows {
     int64_t num_rows;
     ritz_compare_row *row;
     int64_t num_responses;
-    ritz_response *response; /* of the listed ones; NULL until it is wanted */
+    ritz_response *response; /* at listed configurations; NULL until
+                                ritz_rows_respond */
 } ritz_rows;
 
 /** The stage-1 configuration of row @p k, borrowed. */
 const ritz_configuration *ritz_rows_first(const ritz_rows *rows, int64_t k);
 
-/** Make the responses of stage one at listed configurations, once. */
+/** Compute the responses of stage one at listed configurations, unless that is
+ * done. */
 ritz_status ritz_rows_respond(ritz_rows *rows);
 void ritz_rows_free(ritz_rows *rows);
 
 /**
- * Inputs, outputs, the dofs that joints hold, and what the scene attaches by
- * name; of `attached: auto` alone the dofs of all other ports too, and every
- * force is named.
+ * The forces that a scene may attach: inputs, outputs, dampers, dofs that
+ * joints hold, and what the scene names. If the scene says `attached: auto` and
+ * nothing else, the dofs of all other ports are included, and all forces count
+ * as named.
  *
- * @return RITZ_ERR_ARGUMENT if a place of the scene is not there
+ * @return RITZ_ERR_ARGUMENT if a place that the scene names does not exist
  */
 ritz_status ritz_unit_forces_new(const ritz_stage *stage,
                                  ritz_unit_forces *out);
 
-/** Inputs, outputs and the dampers of bodies and joints alone. */
+/** Only the inputs, the outputs, and the dampers of bodies and joints. */
 ritz_status ritz_unit_forces_of_channels(const ritz_stage *stage,
                                          ritz_unit_forces *out);
 
-/** Indices of those of some sets, and, if wanted, of those that are named. */
+/** Indices of the forces that belong to some sets and, if @p named, of those
+ * that the scene names. */
 ritz_status ritz_unit_forces_select(const ritz_unit_forces *forces, int sets,
                                     bool named, int64_t *count, int64_t **out);
 void ritz_unit_forces_free(ritz_unit_forces *forces);
 
-/** Whether bodies have dampers, or joints hold motions on them. */
+/** Whether bodies have dampers, or joints have springs with dampers. */
 bool ritz_stage_is_damped(const ritz_stage *stage);
 
-/** Forces of all dampers, of bodies and joints, on a configuration's modes. */
+/** Forces along all dampers of bodies and joints, in the modal coordinates of a
+ * configuration. */
 ritz_status ritz_damper_forces(const ritz_stage *stage,
                                const ritz_configuration *configuration,
                                ritz_dense *out);
 
-/** The planned forces as columns: of one body, r_c rows. */
+/** The planned forces on body @p k: a column each, r_c rows. */
 ritz_status ritz_plan_body(const ritz_stage *stage, int64_t k,
                            const ritz_plan *plan, ritz_dense *out);
 
-/** The same in the modal coordinates of a configuration. */
+/** The planned forces in the modal coordinates of a configuration. */
 ritz_status ritz_plan_system(const ritz_stage *stage,
                              const ritz_configuration *at,
                              const ritz_plan *plan, ritz_dense *out);
@@ -97,10 +106,11 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
                                    const ritz_system *system, double *least);
 
 /**
- * Value of each flexible mode in the scene's ranking; 1 where modes are not
+ * Value of each flexible mode in the scene's ranking; 1 if modes are not
  * ranked.
  *
- * @param[out] joined  modes that damping joins to others; NULL: not wanted
+ * @param[out] joined  number of modes that are in a cluster only because
+ *                     damping couples them to others; NULL: not wanted
  */
 ritz_status ritz_compare_values(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
@@ -165,14 +175,17 @@ ritz_status ritz_composite_choose(const ritz_stage *stage,
                                   const ritz_compare_row *row, int group,
                                   const ritz_plan *plan, ritz_dense *out);
 
-/* The subspace of each body in which stage two reduces it. */
+/* The subspace V of each body that stage two projects it on. */
 typedef struct ritz_subspaces {
     int64_t count;     /* of bodies */
-    ritz_dense *V;     /* r_c x s_c, M-orthonormal where M is definite; the
-                          identity where s_c would be r_c */
-    int64_t *massless; /* of each, how many first columns have no mass, */
-    int64_t *firm;     /* and how many hold these, rigid motion and statics */
-    int64_t vectors;   /* before dependent ones were removed */
+    ritz_dense *V;     /* r_c x s_c, M-orthonormal if M is definite; the
+                          identity if s_c would be r_c */
+    int64_t *massless; /* for each body, number of leading columns without
+                          mass */
+    int64_t *firm;     /* for each body, number of leading columns without mass,
+                          of rigid motion and of static solutions together */
+    int64_t vectors;   /* number of vectors before dependent ones were
+                          removed */
 } ritz_subspaces;
 
 /**
@@ -184,33 +197,33 @@ ritz_status ritz_compare_composite(const ritz_rows *rows, const ritz_plan *plan,
                                    ritz_subspaces *out);
 void ritz_subspaces_free(ritz_subspaces *subspaces);
 
-/** Stage two: the bodies in those subspaces; no configuration yet. */
+/** Stage two: the bodies projected on their subspaces; no configuration yet. */
 ritz_status ritz_compare_project(const ritz_stage *stage,
                                  const ritz_subspaces *subspaces,
                                  ritz_comparison *out);
 
-/** Orders of the bodies of stage two, and their sum. */
+/** Order of each body of stage two, and the sum of all. */
 ritz_status ritz_compare_orders(const ritz_comparison *trial, int64_t **order,
                                 int64_t *total);
 
 /**
- * Stage two with the static corrections of each of some sets of forces, where
- * the scene augments components or leaves the set open.
+ * Choose the forces with static corrections: build stage two with several sets
+ * of forces, if the scene augments components or leaves the set open.
  *
- * @param[in,out] plan  as the scene says; becomes the one that is chosen
- * @param[out] out      its candidates, and how they were sought
- * @param[out] force    what its forces are borrowed from; unless it is chosen
- *                      otherwise untouched
+ * @param[in,out] plan  the scene's; then the chosen one
+ * @param[out] out      candidates, and statistics of the search
+ * @param[out] force    owns the forces of the chosen plan; not written if there
+ *                      was no choice
  */
 ritz_status ritz_attached_choose(ritz_rows *rows, ritz_plan *plan,
                                  ritz_comparison *out, int64_t **force);
 void ritz_candidate_free(ritz_candidate *candidate);
 
 /**
- * Drop vectors of bodies that make extraneous modes, as long as no error of a
- * kept mode or of a response grows by more than the scene's tolerance.
+ * Remove vectors of bodies that make extraneous modes, as long as no error of a
+ * kept mode or of a response increases by more than the scene's tolerance.
  *
- * @param[in,out] subspaces  before and after
+ * @param[in,out] subspaces  of the bodies
  */
 ritz_status ritz_compact(ritz_rows *rows, ritz_subspaces *subspaces,
                          ritz_comparison *out);
@@ -235,19 +248,19 @@ ritz_status ritz_body_statics(const ritz_stage *stage, int64_t k,
 void ritz_statics_free(ritz_statics *statics);
 
 /**
- * Relieve forces on body @p k of the inertia of its rigid motion, and scale
- * their rows as the stage does; a force that does not deform it becomes 0.
+ * Subtract from forces on body @p k the inertia of the rigid motion that they
+ * cause, and scale the rows by the stage's scales; a force that only moves the
+ * body rigidly becomes 0.
  */
 ritz_status ritz_body_relieve(const ritz_stage *stage, int64_t k,
                               ritz_dense *F);
 
 /**
- * Compare the second system with the first at one configuration: stray modes
- * are found and, if the scene says so, removed from @p second; then errors are
- * measured.
+ * Compare the second system with the first at one configuration: find stray
+ * modes, remove them from @p second if the scene says so, and measure errors.
  *
  * @param[in]     V         of every body
- * @param[in]     response  of the first, NULL: made here
+ * @param[in]     response  of the first system; NULL: computed here
  * @param[in,out] row       kept modes; errors are filled in
  */
 ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
@@ -257,10 +270,11 @@ ritz_status ritz_compare_measure(const ritz_stage *stage, const ritz_dense *V,
                                  ritz_compare_row *row);
 
 /**
- * The same of a trial at listed configuration @p k.
+ * As ritz_compare_measure, for a trial at listed configuration @p k.
  *
- * @param[out] row  that of @p rows with the errors of the trial: its setting
- *                  and kept modes are borrowed, its strays the caller's
+ * @param[out] row  copy of the row of @p rows with the errors of the trial.
+ *                  Setting and kept modes are borrowed; the caller frees the
+ *                  strays
  */
 ritz_status ritz_rows_measure(const ritz_rows *rows, int64_t k,
                               const ritz_dense *V, ritz_configuration *second,
@@ -285,22 +299,23 @@ ritz_status ritz_compare_gain(const ritz_configuration *first,
 /** Whether a scene has a response: inputs, outputs, a band and damping. */
 bool ritz_compare_responds(const ritz_scene *scene);
 
-/** Response at the points of another. */
+/** Response at the frequencies of another response. */
 ritz_status ritz_compare_follow(const ritz_scene *scene,
                                 const ritz_configuration *configuration,
                                 const ritz_response *points,
                                 ritz_response *out);
 
-/* How far two MIMO Bode plots are apart: the largest singular value of H(i w)
-   and the smallest that is not zero. */
+/* Difference of two MIMO Bode plots: [0] by the largest singular value of H(i
+   w), [1] by the smallest one that is not zero. */
 typedef struct ritz_bode_gap {
     double deviation[2], hertz[2];
 } ritz_bode_gap;
 
 /**
- * Worst deviations of both, relative to the value of the first at each point;
- * at points more than 60 dB below the mean level of the plot they are relative
- * to that level. The smallest is the last that is not zero at some point.
+ * Worst deviations of both singular values, relative to the value of the first
+ * response at each point, or to 60 dB below the mean level of the plot where
+ * the value is smaller. The smallest singular value is the last one that is not
+ * zero at some point.
  *
  * @param[in] scales  of inputs and outputs, NULL: none
  */

@@ -87,9 +87,8 @@ static ritz_status factor_shifted(const ritz_reduced *body,
 }
 
 /*
- * F := S (F - M R R' F), S scaling its rows. Columns that are rounding become
- * zero: those of a force that accelerates the body as a rigid one and does not
- * deform it.
+ * F := S (F - M R R' F) with the row scales S. A column that is rounding
+ * becomes zero: its force accelerates the body rigidly and does not deform it.
  */
 static ritz_status relieve_inertia(const ritz_dense *R, const ritz_dense *MR,
                                    const double *scale, ritz_dense *F)
@@ -116,7 +115,7 @@ static ritz_status relieve_inertia(const ritz_dense *R, const ritz_dense *MR,
     return RITZ_OK;
 }
 
-/* Remove the columns of a matrix that are zero. */
+/* Remove zero columns. */
 static ritz_status remove_zeros(ritz_dense *F)
 {
     RITZ_OWN(ritz_dense) kept = {0};
@@ -132,7 +131,7 @@ static ritz_status remove_zeros(ritz_dense *F)
     return RITZ_OK;
 }
 
-/* Rigid modes of a body and M times these. */
+/* Rigid modes R of a body, and M R. */
 static ritz_status find_rigid(const ritz_reduced *body, ritz_dense *R,
                               ritz_dense *MR)
 {
@@ -396,7 +395,7 @@ static bool normalise_flexible(const ritz_configuration *c, double *x)
     return ritz_general_unit(c->K.ncol - c->num_rigid, x + c->num_rigid);
 }
 
-/* Divide by lambda; false if the force moves the system as a rigid one. */
+/* Divide by lambda; false if the force only moves the system rigidly. */
 static bool divide_by_lambda(const ritz_configuration *c, double *x)
 {
     double rigid = 0.0, flexible = 0.0;
@@ -533,8 +532,8 @@ static ritz_status gather_group(const composing *it, int group, ritz_dense *W)
     return append_columns(own[group], W);
 }
 
-/* U: the groups in turn, each orthogonal to those before it; where each begins
-   in it. */
+/* Orthonormal directions U: the groups in turn, each orthogonal to those before
+   it; first[g] is the first column of group g. */
 static ritz_status choose_directions(const composing *it, const ritz_dense *L,
                                      const double *scale,
                                      int64_t first[RITZ_GROUPS], ritz_dense *U)
@@ -561,7 +560,7 @@ static ritz_status choose_directions(const composing *it, const ritz_dense *L,
     return RITZ_OK;
 }
 
-/* V of one body; the count of vectors grows by its own. */
+/* V of one body; adds the number of its own vectors to out->vectors. */
 static ritz_status compose_body(composing *it, ritz_subspaces *out)
 {
     const ritz_reduced *body = &it->stage->body[it->body];
@@ -581,7 +580,8 @@ static ritz_status compose_body(composing *it, ritz_subspaces *out)
     RITZ_CHECK(choose_directions(it, &L, scale, first, &U));
     out->massless[it->body] = first[RITZ_GIVEN_RIGID];
     out->firm[it->body] = first[RITZ_GIVEN_KEPT];
-    if (U.ncol == U.nrow && !compact) { /* nothing is removed: leave it */
+    if (U.ncol == U.nrow && !compact) { /* nothing is removed: keep the
+                                           coordinates of the body */
         out->massless[it->body] = 0;
         return ritz_dense_identity(U.nrow, &out->V[it->body]);
     }

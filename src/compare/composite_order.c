@@ -22,7 +22,7 @@ typedef struct ordering {
     const ritz_stage *stage; /* borrowed */
     double lambda;           /* of the end of the band */
     ritz_system system;
-    ritz_givens givens;      /* of each configuration */
+    ritz_givens givens;      /* contributions of each configuration */
     ritz_unit_forces forces; /* inputs, outputs and dampers */
     int64_t *force;
     ritz_plan plan;

@@ -1,10 +1,11 @@
 /*
- * The forces whose static solutions may be added to the composite set, each a
- * vector over the coordinates of all bodies: inputs, unit forces at the dofs
- * that joints hold, where outputs measure, and at dofs that the scene names,
- * and forces along dampers. Dampers of joints turn with them: in a system their
- * forces belong to a configuration, and of components they are those of the
- * dofs that these joints hold.
+ * The forces whose static solutions may be added to the composite set: inputs,
+ * unit forces at dofs that joints hold, at points where outputs measure and at
+ * dofs that the scene names, and forces along dampers. Each is a vector over
+ * the coordinates of all bodies, except forces along dampers of joints, whose
+ * directions depend on the configuration. With system augmentation these are
+ * found at each configuration; with component augmentation they are replaced by
+ * the dofs that such joints hold.
  */
 #include "compare/compare.h"
 
@@ -19,7 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Append a force along the damper of a joint, or, of no body yet, a vector. */
+/* Append a force. Its vector is zero, and returned to be filled; without @p
+   vector it is a force along the damper of a joint. */
 static ritz_status add_force(const ritz_stage *stage, int sets, bool named,
                              const char *name, ritz_unit_forces *forces,
                              double **vector)
@@ -37,7 +39,7 @@ static ritz_status add_force(const ritz_stage *stage, int sets, bool named,
     return RITZ_OK;
 }
 
-/* Append column j of B. */
+/* Append column j of B as a force. */
 static ritz_status add_column(const ritz_stage *stage, int sets, bool named,
                               const char *name, const ritz_dense *B, int64_t j,
                               ritz_unit_forces *forces)
@@ -49,7 +51,7 @@ static ritz_status add_column(const ritz_stage *stage, int sets, bool named,
     return RITZ_OK;
 }
 
-/* Whether the scene names input or output @p j alone. */
+/* Whether the scene attaches input, or output, @p j by name. */
 static bool is_named(const ritz_scene *scene, bool input, int64_t j)
 {
     for (int64_t k = 0; k < scene->num_attached_forces; k++) {
@@ -70,7 +72,8 @@ static ritz_status add_inputs(const ritz_stage *stage, ritz_unit_forces *forces)
     return RITZ_OK;
 }
 
-/* A unit force where an output measures, whatever quantity it is. */
+/* A unit force at the point of each output, for displacements, velocities and
+   accelerations alike. */
 static ritz_status add_outputs(const ritz_stage *stage,
                                ritz_unit_forces *forces)
 {
@@ -89,7 +92,7 @@ static ritz_status add_outputs(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* Whether a port has the dofs of one grid alone. */
+/* Whether all dofs of a port belong to one grid. */
 static bool has_one_grid(const ritz_port_map *port)
 {
     for (int64_t i = 1; i < port->count; i++)
@@ -98,8 +101,8 @@ static bool has_one_grid(const ritz_port_map *port)
     return true;
 }
 
-/* A unit force at one row of a port of body k: "rotor/boom:3", as scenes name
-   it, or "rotor/33:3" where the port has several grids. */
+/* A unit force at one row of a port of body k. Its name is "rotor/boom:3", as
+   in scenes, or "rotor/33:3" if the port has several grids. */
 static ritz_status add_row(const ritz_stage *stage, int64_t k,
                            const ritz_port_map *port, int64_t row, int sets,
                            bool named, ritz_unit_forces *forces)
@@ -121,7 +124,7 @@ static ritz_status add_row(const ritz_stage *stage, int64_t k,
     return RITZ_OK;
 }
 
-/* Whether a joint has a damper in a motion that it leaves. */
+/* Whether one of the joint's springs has a damper. */
 static bool has_damper(const ritz_joint *joint)
 {
     for (int64_t k = 0; k < joint->num_freedoms; k++)
@@ -140,8 +143,9 @@ bool ritz_stage_is_damped(const ritz_stage *stage)
     return damped;
 }
 
-/* The sets to which the dofs of a port of body k belong: of those that a joint
-   holds, of those whose joint has a damper. */
+/* The sets that the dofs of a port of body k belong to: the interface if a
+   joint holds the port, and dampers if that joint has a damper and components
+   are augmented. */
 static int sets_of_port(const ritz_scene *scene, int64_t k, const char *port)
 {
     int sets = 0;
@@ -160,7 +164,8 @@ static int sets_of_port(const ritz_scene *scene, int64_t k, const char *port)
     return sets;
 }
 
-/* Every dof of the ports that joints hold, or of those that none does. */
+/* Each dof of the ports that joints hold or, without @p held, of the other
+   ports. */
 static ritz_status add_ports(const ritz_stage *stage, bool held,
                              ritz_unit_forces *forces)
 {
@@ -185,9 +190,9 @@ static ritz_status add_damper(const ritz_stage *stage, int64_t j, int sets,
 }
 
 /*
- * Forces along the dampers of joints, in the order of ritz_stage_springs: which
- * motions they have does not depend on the configuration, and in a plane they
- * are fewer than the joint's freedoms.
+ * Forces along the dampers of joints, in the order of ritz_stage_springs. The
+ * same joints have dampers at every configuration; in a plane a joint has fewer
+ * than it has freedoms.
  */
 static ritz_status add_joint_dampers(const ritz_stage *stage,
                                      ritz_unit_forces *forces)
@@ -211,7 +216,7 @@ static ritz_status add_joint_dampers(const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* Forces along the dampers of bodies, and of joints in a system. */
+/* Forces along the dampers of bodies and, if @p of_joints, of joints. */
 static ritz_status add_dampers(const ritz_stage *stage, bool of_joints,
                                ritz_unit_forces *forces)
 {
@@ -220,7 +225,7 @@ static ritz_status add_dampers(const ritz_stage *stage, bool of_joints,
     return of_joints ? add_joint_dampers(stage, forces) : RITZ_OK;
 }
 
-/* The only row of a direction; else a sentence. */
+/* The only row of a direction; refuses none, and several. */
 static ritz_status find_direction(const ritz_port_map *port, int64_t direction,
                                   int64_t *row)
 {
@@ -240,11 +245,11 @@ static ritz_status find_direction(const ritz_port_map *port, int64_t direction,
     return RITZ_OK;
 }
 
-/* How a grid of the full model moves, as if it were a port of its own. */
+/* The motion of a grid of the full model, as if the grid were a port. */
 static ritz_status map_grid(const ritz_reduced *body, int64_t grid,
                             ritz_port_map *out)
 {
-    /* borrowed; read alone */
+    /* borrowed; only read */
     const ritz_component full = {
         .num_dofs = body->num_dofs, .dof = body->dof, .grids = body->grids};
     ritz_port port = {0};
@@ -266,8 +271,8 @@ static ritz_status map_grid(const ritz_reduced *body, int64_t grid,
     return RITZ_OK;
 }
 
-/* "33:3" into a text before the last colon, and a direction; false if it does
-   not end in one. */
+/* Split "33:3" at its last colon into a place and a direction; false if the
+   text does not end in a direction. */
 static bool split_direction(const char *text, char place[RITZ_NAME_SIZE],
                             int64_t *direction)
 {
@@ -281,7 +286,7 @@ static bool split_direction(const char *text, char place[RITZ_NAME_SIZE],
     return true;
 }
 
-/* Whether a place has the name of a damper, "rotor/strut". */
+/* Whether @p at names a damper of a body, "rotor/strut". */
 static bool is_damper(const ritz_stage *stage, const ritz_scene_place *at,
                       const char *damper)
 {
@@ -292,7 +297,8 @@ static bool is_damper(const ritz_stage *stage, const ritz_scene_place *at,
            strcmp(damper + length + 1, at->port) == 0;
 }
 
-/* Unit forces at a place that the scene names. */
+/* Unit forces at a place that the scene attaches by name: a port, a damper, or
+   one direction of a port or a grid. */
 static ritz_status add_place(const ritz_stage *stage,
                              const ritz_scene_place *at,
                              ritz_unit_forces *forces)
@@ -402,7 +408,7 @@ ritz_status ritz_plan_body(const ritz_stage *stage, int64_t k,
     return RITZ_OK;
 }
 
-/* (S P)' of one spring, its elongations as the modes move. */
+/* f += (S P)' of one spring: its elongation in each mode. */
 static void add_spring(const ritz_stage *stage, const ritz_configuration *c,
                        const ritz_springs *springs, int64_t spring, double *f)
 {
@@ -433,7 +439,7 @@ ritz_status ritz_damper_forces(const ritz_stage *stage,
     return ritz_dense_columns(&F, 0, m, out);
 }
 
-/* Put forces along the dampers of joints into their columns. */
+/* Write forces along the dampers of joints to their columns of B. */
 static ritz_status put_springs(const ritz_stage *stage,
                                const ritz_configuration *at,
                                const ritz_plan *plan, ritz_dense *B)

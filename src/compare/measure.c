@@ -48,7 +48,7 @@ static ritz_status respond_at(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-/* Response over the band, at points around every resonance. */
+/* Response over the band, with additional points around each resonance. */
 static ritz_status respond_over_band(const ritz_scene *scene,
                                      const ritz_configuration *configuration,
                                      ritz_response *out)
@@ -105,7 +105,7 @@ static ritz_status list_singular(const ritz_scales *scales,
     return RITZ_OK;
 }
 
-/* The worst deviation of singular value @p i of two responses. */
+/* The worst deviation of singular value @p i between two responses. */
 static void compare_curve(const ritz_response *r, int64_t width, int64_t i,
                           const double *one, const double *two,
                           double *deviation, double *hertz)
@@ -327,9 +327,9 @@ static int64_t find_paired_mode(const ritz_configuration *second,
 
 /*
  * The smallest MAC and the largest error in frequency of the modes that matter.
- * Where modes were kept, one whose error exceeds its rounding limit precedes
- * any that is within it, lest a larger error that is allowed hide it. Where
- * bodies were made compact, the scene's tolerance is allowed.
+ * If any mode exceeds its allowed error, only such modes count, so that a
+ * larger error that is allowed does not hide them. Kept modes are allowed their
+ * rounding and, if bodies were compacted, the scene's tolerance.
  */
 static void measure_modes(const ritz_scene *scene,
                           const ritz_configuration *first,
@@ -442,8 +442,8 @@ static ritz_status measure_response(const ritz_scene *scene,
 
 /*
  * The largest error of the damping ratios of the modes that matter. Where D
- * couples modes, each is the pole that the mode has become, and its partner the
- * nearest pole of the second system, as in verify/modes.c.
+ * couples modes, a mode is represented by the pole that it has become, and is
+ * paired with the nearest pole of the second system, as in verify/modes.c.
  */
 static double damping_error(const ritz_damped *two, int64_t count,
                             double _Complex s, double zeta)
@@ -456,7 +456,7 @@ static double damping_error(const ritz_damped *two, int64_t count,
                         : fabs(other - zeta) / fmax(fabs(other), fabs(zeta));
 }
 
-/* Whether every flexible mode swings. */
+/* Whether every flexible mode has a positive eigenvalue. */
 static bool is_stable(const ritz_configuration *c)
 {
     for (int64_t k = c->num_rigid; k < c->K.ncol; k++)

@@ -1,4 +1,4 @@
-/* The bodies of stage two: those of stage one in smaller subspaces. */
+/* Stage two: the bodies of stage one projected on smaller subspaces. */
 #include "compare/compare.h"
 
 #include "base/alloc.h"
@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* Motions without mass have neither mass nor damping, but for rounding. */
+/* Set mass and damping of motions without mass, which are rounding, to zero. */
 static void zero_entries(int64_t massless, ritz_dense *A)
 {
     for (int64_t j = 0; j < massless && A->val; j++)

@@ -41,8 +41,8 @@ static void divide_by_lambda(const ritz_configuration *c, const double *r,
 }
 
 /*
- * Static solutions in modal coordinates, flexible part: Lambda^-1 B, and for
- * @p both Lambda^-1 [C', Cv', Ca'], where outputs measure.
+ * Static solutions in modal coordinates, flexible part: Lambda^-1 B and, if @p
+ * both, Lambda^-1 [C', Cv', Ca'] for unit forces where outputs measure.
  */
 static ritz_status find_statics(const ritz_configuration *configuration,
                                 bool both, ritz_dense *out)
@@ -136,7 +136,8 @@ static bool is_ranked(const ritz_scene *scene)
            (scene->num_outputs > 0 || !(needs & RITZ_RANK_OUTPUTS));
 }
 
-/* Modes of another frequency than the first of their cluster. */
+/* Number of modes whose frequency is not that of the first mode of their
+   cluster, which damping therefore coupled. */
 static int64_t count_joined(const ritz_ranking *r)
 {
     double gap = (double)r->count * RITZ_CLUSTER_GAP;

@@ -1,4 +1,4 @@
-/* Errors between listed angles against those at them. */
+/* Suggestion of a further angle, by errors between listed angles. */
 #include "compare/compare.h"
 
 #include "base/tolerances.h"
@@ -7,10 +7,10 @@
 #include <stddef.h>
 
 /*
- * Which angle to add: one where an error between listed angles is large
- * relative to those at listed angles. Errors that would be invisible in a plot
- * suggest nothing, nor do errors that are as large at listed angles, where
- * another angle would not help.
+ * Suggest the angle whose error is largest relative to the errors at listed
+ * angles. Nothing is suggested for errors that would be invisible in a plot,
+ * nor for errors that are as large at listed angles, which another angle would
+ * not reduce.
  */
 
 static const struct measure {
@@ -23,7 +23,8 @@ static const struct measure {
     {"damping", offsetof(ritz_compare_row, damping_error)},
 };
 
-/* The largest error of one measure between angles; row -1 if there is none. */
+/* The largest error of one measure between listed angles; row -1 if there is
+   none. */
 static ritz_suggestion find_worst(const ritz_comparison *c,
                                   const struct measure *m)
 {
@@ -42,7 +43,7 @@ static ritz_suggestion find_worst(const ritz_comparison *c,
     return worst;
 }
 
-/* How prominent an error is: at one or less no angle is suggested. */
+/* How prominent an error is; above 1 its angle is suggested. */
 static double rate_prominence(const ritz_suggestion *s)
 {
     return s->row < 0 ? 0.0
