@@ -103,7 +103,8 @@ typedef struct ritz_check_row {
 /** All checks, in order; the last has no function. */
 extern const ritz_check_row ritz_checks[];
 
-/** ritz_probe_states of a sparse model. @cost three factors, some solves */
+/** ritz_probe_states for a sparse model. @cost three factorisations, some
+ * solves */
 ritz_status ritz_probe_sparse(const ritz_state_space *model, ritz_probe *out);
 
 /** Append what a check found; @p where may be NULL. */

@@ -1,9 +1,10 @@
 /*
- * Stability of a large sparse E x' = A x, of which nobody has all poles. With
- * E = E' positive definite, V = x'E x falls along every motion if A + A' is
- * negative definite, as V' = x'(A + A')x: no pole is right of the axis.
- * With A = A' inertia says how many are. Otherwise the poles nearest to 0 are
- * looked at, and how many were not is said.
+ * Stability of a large sparse E x' = A x, whose poles cannot all be computed.
+ * If E = E' is positive definite and A + A' negative definite, V = x'E x
+ * decreases along every motion, since V' = x'(A + A')x: no pole is right of the
+ * axis. If A = A' and E is definite, the inertia of A gives the number of poles
+ * right of the axis. Otherwise only the poles nearest to 0 are computed, and
+ * the number of the others is reported.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -18,7 +19,8 @@
 
 enum { LOOKED_AT = 20 };
 
-/* The rightmost pole of those found, above the axis. */
+/* The rightmost of the computed poles, with its imaginary part made
+   positive. */
 static void take_rightmost(const ritz_pencil *pencil,
                            const ritz_pencil_pairs *near, ritz_probe *out)
 {
@@ -42,8 +44,9 @@ static void take_rightmost(const ritz_pencil *pencil,
 }
 
 /*
- * Of a symmetric pencil with definite E as many poles are right of the axis as A
- * has positive eigenvalues: its inertia says how many.
+ * Number of poles right of the axis of a symmetric pencil with definite E,
+ * which is the number of positive eigenvalues of A by its inertia; *known is
+ * false for other pencils.
  */
 static ritz_status count_unstable(const ritz_pencil *pencil, bool *known,
                                   int64_t *count, bool *singular)
@@ -68,7 +71,7 @@ static ritz_status count_unstable(const ritz_pencil *pencil, bool *known,
     return RITZ_OK;
 }
 
-/* What poles nearest to 0 say, where nothing is proven. */
+/* Verdict by the poles nearest to 0 alone. */
 static void judge_found(double error, ritz_probe *probe)
 {
     if (probe->pole[0] >= -error)

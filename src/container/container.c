@@ -152,7 +152,7 @@ void ritz_container_release(void)
     ritz_h5_release();
 }
 
-/* Number of members of the group `KG`, 0 if there is none. */
+/* Number of members of the group `KG`; 0 if there is no such group. */
 static ritz_status count_loads(hid_t file, int64_t *out)
 {
     H5G_info_t group = {0};

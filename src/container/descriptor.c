@@ -1,5 +1,5 @@
-/* A driver of HDF5 that reads from a descriptor: what its own driver for files
-   does, without a name. */
+/* A driver of HDF5 that reads from an open descriptor. It does what HDF5's own
+   driver for files does, but without a path. */
 #include "container/descriptor.h"
 
 #include <errno.h>
@@ -14,13 +14,13 @@
 #include <H5FDdevelop.h>
 #endif
 
-/* What H5Fopen is told. */
+/* Argument that H5Fopen passes to open_source. */
 typedef struct request {
     int file;
 } request;
 
 typedef struct source {
-    H5FD_t head; /* HDF5's part, first */
+    H5FD_t head; /* part of HDF5, must be first */
     int file;
     haddr_t eoa, eof;
 } source;
@@ -75,7 +75,7 @@ static haddr_t get_eof(const H5FD_t *file, H5FD_mem_t)
     return ((const source *)file)->eof;
 }
 
-/* Behind the end of the file there are zeros, as in HDF5's own driver. */
+/* Reads beyond the end of the file return zeros, as in HDF5's own driver. */
 static herr_t read_source(H5FD_t *file, H5FD_mem_t, hid_t, haddr_t at,
                           size_t size, void *buffer)
 {
@@ -104,7 +104,8 @@ static herr_t refuse_to_write(H5FD_t *, H5FD_mem_t, hid_t, haddr_t, size_t,
     return -1;
 }
 
-/* As HDF5's own driver: who writes to the file meanwhile keeps readers off. */
+/* A shared lock, as HDF5's own driver takes: fails while another process writes
+   to the file. */
 static herr_t lock_source(H5FD_t *file, hbool_t)
 {
     const int result = flock(((source *)file)->file, LOCK_SH | LOCK_NB);
@@ -122,7 +123,7 @@ static herr_t unlock_source(H5FD_t *file)
 static const H5FD_class_t driver = {
 #if H5_VERSION_GE(1, 13, 0)
     .version = H5FD_CLASS_VERSION,
-    .value = 513, /* of those that nobody registers */
+    .value = 513, /* of the range that HDF5 leaves to testing */
 #endif
     .name = "ritz-descriptor",
     .maxaddr = INT64_MAX,
@@ -142,9 +143,9 @@ static const H5FD_class_t driver = {
 };
 
 /*
- * The driver stays registered until the program ends: HDF5 1.10 gives up a
- * file's reference to its driver before it calls the driver's close, so that
- * the last file would be closed by a driver that is freed.
+ * The driver stays registered until the program ends. HDF5 1.10 releases a
+ * file's reference to its driver before it calls the driver's close, so
+ * unregistering would free the driver before it closes the last file.
  */
 static hid_t registered(void)
 {

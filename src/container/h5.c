@@ -20,12 +20,14 @@
 enum { MANY_ATTRIBUTES = 64 }; /* that an object header holds */
 
 /*
- * Whether an object of the file that is being written could not be closed: then
- * something of it is lost. RITZ_OWN closes, and has no status to return.
+ * Whether an object of the file that is being written could not be closed, so
+ * that some of it is lost. RITZ_OWN closes objects without returning a status;
+ * ritz_h5_finish() reports this.
  */
 static _Thread_local bool lost;
 
-/* What was taken for absent and is not, since a file was opened. */
+/* The first name since a file was opened that was treated as absent although it
+   is a link or could not be looked up. */
 static _Thread_local char unseen[RITZ_NAME_SIZE];
 
 /*
@@ -44,10 +46,10 @@ ritz_status ritz_h5_begin(void)
 
 static _Atomic(ritz_guard) asked;
 
-/* Bytes of memory that were filled since a file was opened. */
+/* Bytes of memory for values read since the file was opened. */
 static _Thread_local hsize_t taken;
 
-/* A file that is open for whoever asks for its path next. */
+/* The file that ritz_container_keep holds open. */
 static _Thread_local struct {
     char *path;
     hid_t file;
@@ -65,7 +67,8 @@ ritz_status ritz_h5_admit(int file)
     return guard ? guard(file) : RITZ_OK;
 }
 
-/* What the guard has looked at is opened, whatever has the path by now. */
+/* Have the guard examine an open file, and open the same file by its
+   descriptor. */
 static ritz_status open_admitted(int file, hid_t *out)
 {
     struct stat there = {0};
@@ -94,7 +97,7 @@ ritz_status ritz_h5_open(const char *path, hid_t *out)
         *out = kept.file;
         return RITZ_OK;
     }
-    /* a pipe is opened without a wait, to be refused */
+    /* O_NONBLOCK: a pipe must not block, since it is refused below */
     file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     RITZ_REFUSE_IF(file < 0, RITZ_ERR_FILE, "%s", strerror(errno));
     status = open_admitted(file, out);
@@ -103,8 +106,8 @@ ritz_status ritz_h5_open(const char *path, hid_t *out)
     return ritz_draft_protect(path);
 }
 
-/* Eight bytes stand for one that is stored at most; names, which take 64, are
-   few. */
+/* The limit allows eight bytes of memory for each byte of the file, since a
+   stored byte may become a double. Names take 64, but there are few. */
 ritz_status ritz_h5_take(hid_t at, const char *name, hsize_t bytes, bool read)
 {
     enum { WIDEST = 8, MEBI = 1 << 20, SPARE = 64 };
@@ -144,8 +147,8 @@ void ritz_h5_release(void)
 
 /* --- files that are written, groups --------------------------------------- */
 
-/* Of more than 8 attributes HDF5 would move some to a heap, which has no
-   checksum of its own, so the limit is raised. */
+/* If an object has more than 8 attributes, HDF5 moves some to a heap, which has
+   no checksum of its own, so the limit is raised. */
 static hid_t plan_object(hid_t kind)
 {
     hid_t plan = H5Pcreate(kind);
@@ -153,7 +156,8 @@ static hid_t plan_object(hid_t kind)
     if (H5Pset_obj_track_times(plan, false) >= 0 &&
         H5Pset_attr_phase_change(plan, MANY_ATTRIBUTES, 0) >= 0)
         return plan;
-    ritz_h5_close(plan); /* half a plan would make another file */
+    ritz_h5_close(plan); /* a plan that is set only in part would make other
+                            files */
     return -1;
 }
 
@@ -167,7 +171,8 @@ ritz_status ritz_h5_create(const char *path, hid_t *out)
     RITZ_REFUSE_IF(
         H5Pset_libver_bounds(bounds, H5F_LIBVER_V18, H5F_LIBVER_V110) < 0,
         RITZ_ERR_MEMORY, "no memory to create '%s'", path);
-    /* a draft is locked by its writer; on NFS HDF5 would meet that lock */
+    /* the writer has locked its draft already, and on NFS the lock that HDF5
+       takes would conflict with that one */
     H5Pset_file_locking(bounds, false, true);
     *out = H5Fcreate(path, H5F_ACC_TRUNC, plan, bounds);
     RITZ_REFUSE_IF(*out < 0, RITZ_ERR_FILE, "cannot create '%s'", path);
@@ -231,7 +236,8 @@ ritz_status ritz_h5_seen(void)
     return RITZ_OK;
 }
 
-/* Stop at the first link that is no member; its name begins in @p data. */
+/* Stop at the first link to elsewhere, and write the start of its name to @p
+   data. */
 static herr_t find_link(hid_t, const char *name, const H5L_info_t *info,
                         void *data)
 {
@@ -355,8 +361,8 @@ hid_t ritz_h5_string(size_t size)
 }
 
 /*
- * These three forget the object even if they fail; H5Idec_ref would keep an id
- * of memory that is freed.
+ * H5Dclose, H5Gclose and H5Aclose free the id even if they fail; H5Idec_ref
+ * would keep an id of freed memory.
  */
 static herr_t close_object(hid_t id)
 {

@@ -43,38 +43,43 @@ ritz_h5_shape ritz_h5_table(int64_t n, int64_t m);
 /** Number of values, @p most + 1 if it is larger. */
 hsize_t ritz_h5_volume(const ritz_h5_shape *shape, hsize_t most);
 
-/** Before HDF5 is first used: its messages are silenced, and its exit.
+/** Initialise HDF5 and turn off its messages and its exit handler; call it
+ * before anything else of HDF5.
  * @return RITZ_ERR_MEMORY if it does not start */
 [[nodiscard]] ritz_status ritz_h5_begin(void);
 
-/** Ask the guard of ritz_container_guard, if there is one, of an open file. */
+/** Have the guard of ritz_container_guard, if there is one, examine an open
+ * file. */
 ritz_status ritz_h5_admit(int file);
 
-/** Open to read what the guard admits; begins HDF5. The file of
- * ritz_container_keep is open already. */
+/** Initialise HDF5 and open a file to read, if the guard admits it. The file of
+ * ritz_container_keep is not opened again. */
 ritz_status ritz_h5_open(const char *path, hid_t *out);
 
 /**
- * Count bytes of memory that values of an open file take, once they are read.
+ * Check that values of an open file take no more memory than its size justifies
+ * and, if @p read, count their bytes.
  *
- * @return RITZ_ERR_FORMAT if all so far take far more than a file of its size
- *         holds, as many links to one data set do, or letters of texts
+ * @return RITZ_ERR_FORMAT if the values read so far and these take far more
+ *         memory than a file of this size holds, as with many links to one data
+ *         set, or with long texts
  */
 ritz_status ritz_h5_take(hid_t at, const char *name, hsize_t bytes, bool read);
 
-/** Keep a file open, for each ritz_h5_open of that path until the release. */
+/** Keep a file open for each ritz_h5_open of that path until ritz_h5_release. */
 ritz_status ritz_h5_keep(const char *path);
 void ritz_h5_release(void);
 
-/** Create or empty a file, to write; begins HDF5. One at a time, a thread. */
+/** Initialise HDF5 and create or empty a file to write. Only one file at a time
+ * in each thread. */
 ritz_status ritz_h5_create(const char *path, hid_t *out);
 
 /**
- * Write what HDF5 holds back of a file that was created, and close it, whole or
- * not: @p file is then 0.
+ * Write what HDF5 has buffered of a created file, and close it even if that
+ * fails; @p file becomes 0.
  *
- * @return RITZ_ERR_FILE if that fails, or if any object that was closed since
- *         the file was created could not be closed
+ * @return RITZ_ERR_FILE if writing fails, or if any object since the file was
+ *         created could not be closed
  */
 ritz_status ritz_h5_finish(hid_t *file);
 
@@ -82,21 +87,23 @@ ritz_status ritz_h5_finish(hid_t *file);
 ritz_status ritz_h5_group(hid_t at, const char *name, hid_t *out);
 
 /**
- * Refuse a group with a link to another object or file among its members: what
- * it leads to is not read, and the member is not taken as absent.
+ * Refuse a group that has a link to another object or file among its members.
+ * Such a member would not be read, and must not pass for absent.
  */
 ritz_status ritz_h5_refuse_links(hid_t group);
 
-/** Open a group to read, without such links. */
+/** Open a group to read; refuses such links. */
 ritz_status ritz_h5_enter(hid_t at, const char *name, hid_t *out);
 
-/** Whether there is a group or data set of that name, or such an attribute. One
- * that is a link, or that HDF5 cannot look up, is remembered. */
+/** Whether a group or data set of that name, or such an attribute, exists. A
+ * name that is a link, or that HDF5 cannot look up, counts as absent, and
+ * ritz_h5_seen reports it. */
 bool ritz_h5_has(hid_t at, const char *name);
 bool ritz_h5_has_attribute(hid_t at, const char *name);
 
-/** Call it when a file has been read: @return RITZ_ERR_FORMAT if anything that
- * was taken for absent since ritz_h5_open is not. Of one thread. */
+/** Call it after a file has been read.
+ * @return RITZ_ERR_FORMAT if a name since ritz_h5_open wrongly counted as
+ *         absent in this thread */
 ritz_status ritz_h5_seen(void);
 
 /**
@@ -111,8 +118,8 @@ ritz_status ritz_h5_list(hid_t group, int64_t *count,
 /** Type of strings that take @p size bytes with their NUL. */
 hid_t ritz_h5_string(size_t size);
 
-/** Close any object of these functions; 0 or less is none. What fails is told
- * by ritz_h5_finish(). */
+/** Close any object of these functions; does nothing for 0 or less. A failure
+ * is reported by ritz_h5_finish(). */
 void ritz_h5_close(hid_t id);
 
 /** The same for RITZ_OWN(hid_t). */

@@ -198,7 +198,8 @@ static bool is_borne_out(hid_t set, hid_t plan, const ritz_h5_shape *shape)
            is_whole(set, shape, &chunk);
 }
 
-/* Bytes of memory for its values: numbers are widened, names have room. */
+/* Bytes of memory for the values: numbers become at least double, texts at
+   least RITZ_NAME_SIZE. */
 static hsize_t measure_values(hid_t set, const ritz_h5_shape *shape)
 {
     RITZ_OWN(hid_t) type = H5Dget_type(set);
@@ -291,8 +292,8 @@ static ritz_status verify_values(hid_t set, const char *name, int64_t bytes,
     return RITZ_OK;
 }
 
-/* What HDF5 holds back of a data set is written now: on its way out it would be
-   lost without a word. */
+/* Write buffered values now: if HDF5 failed to write them when it closes the
+   data set, the error would be lost. */
 static ritz_status flush_set(hid_t set, const char *name)
 {
     RITZ_REFUSE_IF(H5Dflush(set) < 0, RITZ_ERR_FILE,
@@ -646,7 +647,7 @@ ritz_status ritz_h5_get_texts(hid_t at, const char *name, ritz_texts *out)
     RITZ_CHECK(measure_texts(at, name, &count, &size));
     RITZ_CHECK_NEW(block, count * (int64_t)size);
     type = ritz_h5_string(size);
-    /* the longest may fill its room, and have no NUL */
+    /* the longest text may fill its room, without a NUL */
     RITZ_REFUSE_IF(H5Tset_strpad(type, H5T_STR_NULLPAD) < 0, RITZ_ERR_MEMORY,
                    "no memory for '%s'", name);
     if (ritz_h5_has_attribute(at, name))

@@ -27,7 +27,7 @@ static ritz_status check_order(const ritz_ranking *ranking)
     return RITZ_OK;
 }
 
-/* Without clusters each mode is its own. */
+/* Without clusters in the file, each mode is a cluster of its own. */
 static ritz_status settle_clusters(ritz_ranking *ranking)
 {
     int64_t m = ranking->count;

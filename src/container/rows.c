@@ -63,7 +63,7 @@ static void print_shape(const ritz_place *place, const ritz_member *row,
         used += snprintf(out + used, 3, *c == ' ' ? ", " : "%c", *c);
 }
 
-/* Whether another member decides that this one must exist. */
+/* Whether the presence of another member requires this one. */
 static bool is_with_another(const ritz_member *row)
 {
     return row->optional && *row->optional &&

@@ -246,7 +246,7 @@ static void gather_values(const ritz_member *row, int64_t count,
     size_t width = width_in_file(row), step = width_of_item(row);
     const int64_t one = 1; /* of a flag */
 
-    if (count > 0) /* else there may be no array */
+    if (count > 0) /* without items the array may be NULL */
         from += row->item;
     for (int64_t k = 0; k < count; k++, from += step, to += width) {
         const ritz_column_kind *kind = (const void *)from;
@@ -267,7 +267,7 @@ static ritz_status scatter_values(const ritz_member *row, int64_t count,
 {
     size_t width = width_in_file(row), step = width_of_item(row);
 
-    if (count > 0) /* else there may be no array */
+    if (count > 0) /* without items the array may be NULL */
         to += row->item;
     for (int64_t k = 0; k < count; k++, from += width, to += step) {
         ritz_column_kind *kind = (void *)to;

@@ -69,10 +69,12 @@ typedef struct ritz_member {
     const char *range; /* of whole numbers, "0..n-1"; either end may lack */
     const char *type;  /* of a row by hand, for docs/container.md */
     ritz_member_values values;
-    bool inside : 1; /* the array is in the object itself, as attributes are */
-    bool numbered : 1; /* items of a list are "0", "1", ... and have no names */
-    bool alone : 1; /* members of an only item stand in the place of its list */
-    bool must : 1;  /* optional here, but what is read is refused without it */
+    bool inside : 1;   /* the array is part of the object, as attributes are */
+    bool numbered : 1; /* items of a list are called "0", "1", ... instead of by
+                          name */
+    bool alone : 1; /* a list with one item is stored as the item's members */
+    bool must : 1;  /* optional in the file, but a file that is read must have
+                       it */
     char some;      /* a letter: see below */
     /*
      * A member may be absent from a file if `optional` names what decides that,
