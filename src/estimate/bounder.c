@@ -168,9 +168,9 @@ static ritz_status take_sines(ritz_bounder *r)
 }
 
 /*
- * Rounding of each eigenvalue, in the full matrices and in the reduced ones.
- * Modes that it may exchange are not the same vectors in both: they share the
- * largest.
+ * Rounding of each eigenvalue, in the full and in the reduced matrices
+ * together. Modes whose eigenvalues rounding may exchange can be different
+ * vectors in the two models, so they all get the largest value among them.
  */
 static ritz_status take_roundings(ritz_bounder *r)
 {
@@ -197,7 +197,7 @@ static ritz_status take_roundings(ritz_bounder *r)
     return RITZ_OK;
 }
 
-/* Whether rounding cannot turn rigid motions among flexible ones. */
+/* Whether rounding is too small to mix rigid and flexible motions. */
 static bool rigid_is_apart(const ritz_bounder *r)
 {
     const double *theta = r->trial->theta;
@@ -207,8 +207,9 @@ static bool rigid_is_apart(const ritz_bounder *r)
            theta[n] - theta[n - 1] > r->rounding[n] + r->rounding[n - 1];
 }
 
-/* How far w d of a mode goes where its stiffness is off: most where it falls,
-   2 zeta w (sqrt(theta) - sqrt(theta - off)). */
+/* Largest change of w d of a mode whose stiffness is wrong by @p off: with a
+   ratio 2 zeta w (sqrt(theta) - sqrt(theta - off)), for a stiffness that is too
+   small. */
 static double damping_off(const ritz_bounder *r, double w, double theta,
                           double off)
 {
@@ -219,10 +220,12 @@ static double damping_off(const ritz_bounder *r, double w, double theta,
 }
 
 /*
- * How far rounding moves a reduced response at @p w rad/s: K_ij off by
- * sqrt(r_i r_j), r the rounding of eigenvalues, moves it by p_i eta_j K_ij, and
- * what damping is made of K too; M_ij moves it as well. Among rigid motions
- * only M does: their stiffness is set to 0, if both models have the same.
+ * Change of a reduced response at @p w rad/s by rounding. An error of K_ij of
+ * up to sqrt(r_i r_j), where r_i is the rounding of eigenvalue i, changes it by
+ * eta_i eta_j times that error, and so does the damping that depends on K;
+ * rounding of M_ij changes it as well. Between rigid motions only M counts,
+ * provided that both models have the same rigid motions, whose stiffness is
+ * then set to 0.
  */
 static double rounding_at(const ritz_bounder *r, double w, const ritz_side *in,
                           const ritz_side *out)
@@ -393,8 +396,7 @@ ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r)
     return r->coupled ? open_coupled(estimator->component, r) : RITZ_OK;
 }
 
-/* Bounds of |eta_j|, of its derivative and of the second one of c eta_j, within
-   h of w. */
+/* Upper bounds of |eta_j|, |eta_j'| and |(c eta_j)''| within h of w. */
 static void fill_most(const ritz_bounder *r, int64_t j, double w, double h,
                       ritz_side *s)
 {
@@ -542,7 +544,7 @@ static double bound_rest(const ritz_bounder *r, const frequency_interval *at,
     double best = HUGE_VAL;
 
     for (int64_t N = 0; N < e->count; N++) {
-        bool rigid = N < r->num_rigid; /* then both have it at 0 */
+        bool rigid = N < r->num_rigid; /* then both models have the mode at 0 */
         double low = rigid ? 0.0 : fmax(e->low[N], 0.0);
         double high = rigid ? 0.0 : e->high[N];
         double first = 1.0 + at->most_s / (low - sigma);
@@ -574,8 +576,8 @@ static frequency_interval interval_of(const ritz_bounder *r, double w, double h)
     return at;
 }
 
-/* r_d' (A^-1 / c + s A^-1 M A^-1 / c^2) r_p, the input's products being there.
- */
+/* r_d' (A^-1 / c + s A^-1 M A^-1 / c^2) r_p, for the input of the last
+   ritz_bounder_take_input. */
 static number lead_of(const ritz_bounder *r, const frequency_interval *at,
                       const ritz_side *out)
 {

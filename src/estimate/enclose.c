@@ -37,7 +37,8 @@
 #include <string.h>
 
 enum { MOST_SHIFTS = 16 };
-/* Of which intervals are made: the trial, iterated, and richer. */
+/* Trials that give intervals: the trial, its inverse iterate, and the richer
+   one. */
 enum { TRIALS = 3 };
 
 /*
@@ -470,8 +471,9 @@ int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
 }
 
 /*
- * A basis of as many columns as the component has dofs has all modes: unless
- * rounding may have moved one across rho, they are counted as they are.
+ * If the basis has as many columns as the component has dofs, its Ritz values
+ * are all eigenvalues, and no factorisation is needed unless rounding may have
+ * moved one of them across rho.
  */
 ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
                                  int64_t *below)

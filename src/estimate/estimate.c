@@ -42,8 +42,8 @@ enum { MOST_TRIES = 4, MOST_FOR_ONE = 16, GAPS_AROUND = 8 };
 enum { MOST_LISTED = 100 };
 enum { MORE = 10 };
 
-/* Count the modes below about rho, which moves off a mode; `refused` if that
-   cannot be, or there is no room for more. */
+/* Count the modes below rho, or below a slightly smaller value if a mode is at
+   rho. `refused`: that failed, or the table of counts is full. */
 static ritz_status count_at(ritz_measuring *m, double rho)
 {
     ritz_estimator *estimator = m->estimator;
@@ -503,8 +503,8 @@ static ritz_status list_modes(const ritz_measuring *m, ritz_measures *out)
     return RITZ_OK;
 }
 
-/* Why the bound of the worst frequency is far above what is known of its error;
-   "" if it is not. */
+/* Why the bound of the worst frequency error is far above the known error; ""
+   if it is not. */
 static const char *cause_of(const ritz_measuring *m)
 {
     const ritz_prediction *v = &m->prediction;

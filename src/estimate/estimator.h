@@ -27,8 +27,8 @@ struct ritz_estimator {
     const ritz_component *component; /* borrowed */
     ritz_estimate_request request;
     double sigma;
-    ritz_factor *A; /* factor of K - sigma M; NULL: not made yet */
-    int64_t num_factors; /* that were made to count */
+    ritz_factor *A;      /* factor of K - sigma M; NULL: not made yet */
+    int64_t num_factors; /* number of factorisations made for counts */
     int64_t num_counts;
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
 };
@@ -62,7 +62,8 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
                              const ritz_pairs *pairs, int64_t count,
                              ritz_lehmann *out);
 
-/** Pairs of the range of Y, whose columns are independent, of no reduction. */
+/** Ritz pairs in the range of Y, whose columns are independent; no reduced
+ * model. */
 ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, const ritz_dense *Y,
                                  ritz_lehmann *out);
 
@@ -115,7 +116,7 @@ typedef struct ritz_measuring {
     int64_t first, last; /* its flexible modes in the band: first .. last - 1 */
     int64_t reach;       /* at least last: modes that counts are spent on */
     ritz_lehmann trial, polished; /* polished: after an inverse iteration */
-    ritz_lehmann rich; /* of the trial and responses to its residuals */
+    ritz_lehmann rich; /* the trial and the responses to its residuals */
     ritz_enclosure enclosure;
     ritz_prediction prediction;
     bool refused; /* the last count could not be taken */
@@ -144,7 +145,7 @@ ritz_bounds ritz_error_of(const ritz_measuring *m, int64_t k, double low,
 /**
  * Count the full modes below @p rho.
  *
- * @return RITZ_ERR_SINGULAR if a mode is there
+ * @return RITZ_ERR_SINGULAR if a mode lies at @p rho
  */
 ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
                                  int64_t *below);
@@ -204,28 +205,33 @@ typedef struct ritz_side {
     /* sums over j of |eta_j||R_j| theta_j^(-1/4), and theta_j^(-3/4), that
        bound the defect of reduced damping */
     double defect_quarter, defect_three;
-    double self; /* sum of |participation|^2 / |z|, of the response to itself */
-    /* of each trial mode, most in the interval: |eta|, |eta'|, |(c eta)''| */
+    double self; /* sum of |participation|^2 / |z|: largest response of a side
+                    to itself */
+    /* for each trial mode, upper bounds of |eta|, |eta'| and |(c eta)''| in the
+       interval */
     double *most[3];
 } ritz_side;
 
-/* What a bound of a response adds up from. */
+/* Terms whose sum is the bound of a response. */
 typedef enum ritz_bound_part {
-    RITZ_PART_ERROR,   /* the error, as far as it is known */
-    RITZ_PART_DAMPING, /* ratios act on full modes, known as far as these are */
-    RITZ_PART_REST,    /* modes that the trial does not hold */
-    RITZ_PART_BETWEEN, /* between points */
+    RITZ_PART_ERROR,   /* the error as far as it is known */
+    RITZ_PART_DAMPING, /* ratios act on full modes, which are known only
+                          approximately */
+    RITZ_PART_REST,    /* modes that the trial space does not contain */
+    RITZ_PART_BETWEEN, /* change between the points */
     RITZ_PART_ROUNDING,
     RITZ_PARTS
 } ritz_bound_part;
 
-/* The bound of one input and output. */
+/* The bound of one channel. */
 typedef struct ritz_channel_bound {
-    double weight;           /* one over what it is relative to */
-    double _Complex known;   /* H - H_r, as far as it is known */
-    double part[RITZ_PARTS]; /* whose sum is the bound */
+    double weight;           /* one over the magnitude that the bound is
+                                relative to; 0: none */
+    double _Complex known;   /* the known part of H - H_r */
+    double part[RITZ_PARTS]; /* their sum is the bound */
     double response;         /* |H_r + known| */
-    double most;             /* no |H_r| is more: sqrt of both sides' `self` */
+    double most;             /* upper bound of |H_r|, by Cauchy-Schwarz from
+                                `self` of both sides */
 } ritz_channel_bound;
 
 struct ritz_refinement;
@@ -238,9 +244,9 @@ typedef struct ritz_bounder {
     bool rayleigh; /* D = a M + b K; else the ratio zeta of all modes */
     double zeta, a, b;
     double *rates;                 /* damping of each trial mode */
-    double *rounding;              /* of each theta, in both models */
+    double *rounding;              /* of each theta, in both models together */
     int64_t size;                  /* columns of V = [R b_o c_o D_o K4_o] */
-    ritz_dense V, E;               /* these, and A^-1 V */
+    ritz_dense V, E;               /* V, and A^-1 V */
     ritz_dense G, Q;               /* V'A^-1 V and V'A^-1 M A^-1 V */
     double *vector_norm;           /* |V_j|_(A^-1) */
     ritz_dense channel[1 + KINDS]; /* B'X, C X, Cv X, Ca X */
@@ -254,68 +260,75 @@ typedef struct ritz_bounder {
     ritz_dense D, K4;           /* of trial modes */
     double _Complex *Z, *responses;
     int *pivot;
-    ritz_channel_bound *at;        /* outputs x inputs, at the last frequency */
-    struct ritz_refinement *finer; /* NULL: none; borrowed */
+    ritz_channel_bound *at;        /* outputs x inputs, at the frequency solved
+                                      last */
+    struct ritz_refinement *finer; /* the richer trial; NULL: none; borrowed */
 } ritz_bounder;
 
-/** Fill the rates if need be, V's forms, angles and sides of a bounder that has
- * the rest. */
+/** Complete a bounder whose trial, enclosure, io and damping are set: rates
+ * unless they are set, forms of V, angles and sides. */
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
 void ritz_bounder_free(ritz_bounder *r);
 
-/** Responses and residuals of all sides anywhere within @p h of @p w rad/s. */
+/** Solve for responses and residuals of all sides at @p w rad/s, with bounds of
+ * their changes within @p h of it. */
 void ritz_bounder_solve(ritz_bounder *r, double w, double h);
 
-/** Products with the residual of an input, for ritz_bound_pair. */
+/** Multiply G and Q by the residual of an input, for ritz_bound_pair. */
 void ritz_bounder_take_input(ritz_bounder *r, int64_t input);
 
 /**
- * The bound of |H - H_r| of one channel by residuals of its sides, which are
- * solved: its parts, and what is known; the input has been taken.
+ * The bound of |H - H_r| of one channel, with its terms and the known part, by
+ * the residuals of its two sides. Call ritz_bounder_solve and
+ * ritz_bounder_take_input before.
  */
 void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
                      int64_t output, ritz_channel_bound *result);
 
-/** How far rounding moves H_r of a channel. */
+/** Change of H_r of a channel by rounding. */
 double ritz_rounding_of_pair(const ritz_bounder *r, double w, int64_t input,
                              int64_t output);
 
-/** The stiffness of a trial mode, 0 of a rigid one. */
+/** Stiffness of a trial mode; 0 of a rigid one. */
 double ritz_bounder_stiffness(const ritz_bounder *r, int64_t j);
 
-/** z of a trial mode at w, or the least |z| within h of it. */
+/** z of a trial mode at w; and the least |z| within h of w. */
 double _Complex ritz_bounder_z(const ritz_bounder *r, int64_t j, double w);
 double ritz_bounder_least_z(const ritz_bounder *r, int64_t j, double w,
                             double h);
 
-/* A richer trial, and how far its response is from that of the trial before:
-   the equations are at the head of refinement.c. */
+/* Richer trials, whose response is compared with that of the trial before; the
+   equations are at the head of refinement.c. */
 
-/* The residual of one side in the modes of the richer trial. */
+/* The residual r of one side, in the modes of the richer trial. */
 typedef struct ritz_finer_side {
-    double _Complex *r, *slope; /* of each, and its derivative by w */
-    double *curvature;          /* most |r''| in the interval */
+    double _Complex *r, *slope; /* of each mode: r, and its derivative by w */
+    double *curvature;          /* of each mode: upper bound of |r''| in the
+                                   interval */
 } ritz_finer_side;
 
 typedef struct ritz_refinement {
     ritz_bounder fine; /* of the richer trial */
-    ritz_dense U, U_d; /* X_2'V and, of ratios, the part of damping; else {0} */
-    ritz_dense defect; /* W'D_2 W - D, of ratios; else {0} */
+    ritz_dense U, U_d; /* X_2'V and, with ratios, its part from damping; else
+                          {0} */
+    ritz_dense defect; /* W'D_2 W - D with ratios; else {0} */
     int64_t num_sides;
     ritz_finer_side *side;
 } ritz_refinement;
 
 /**
- * The trial and A^-1 V, of which small and dependent columns are left out.
+ * Ritz pairs of a richer space: the trial and A^-1 V, without columns of V that
+ * are rounding or dependent.
  *
- * @param[in]  coarse  open
- * @param[out] rich    count 0 where V is rounding
+ * @param[in]  coarse  after ritz_bounder_open
+ * @param[out] rich    count 0 if all of V is rounding
  */
 ritz_status ritz_enrich(ritz_estimator *estimator, const ritz_bounder *coarse,
                         ritz_lehmann *rich);
 
 /**
- * @param[in] rich      borrowed until free, as enclosure and coarse's damping
+ * @param[in] rich  borrowed until free, as @p enclosure and the damping of @p
+ *                  coarse are
  */
 ritz_status ritz_refinement_new(ritz_estimator *estimator,
                                 const ritz_bounder *coarse,
@@ -323,11 +336,11 @@ ritz_status ritz_refinement_new(ritz_estimator *estimator,
                                 const ritz_enclosure *enclosure,
                                 ritz_refinement *out);
 
-/** Both trials within @p h of @p w; the coarse one is solved. */
+/** Solve the richer trial within @p h of @p w; @p coarse has been solved. */
 void ritz_refinement_solve(const ritz_bounder *coarse, ritz_refinement *f,
                            double w, double h);
 
-/** The same by a richer trial. */
+/** As ritz_bound_pair, by the richer trial. */
 void ritz_refinement_bound(const ritz_bounder *coarse, const ritz_refinement *f,
                            double w, double h, int64_t input, int64_t output,
                            ritz_channel_bound *result);

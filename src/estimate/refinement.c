@@ -1,22 +1,22 @@
 /*
- * How far the response of a trial X is from that of a richer one, X_2, in whose
- * span X is: X = X_2 W. In the modes of X_2, with Z_2 = Theta_2 - w^2 + i w D_2
- * diagonal and eta = Z^-1 X'b,
+ * Difference between the response H_r of a trial X and H_2 of a richer one,
+ * X_2, whose span contains X: X = X_2 W. In the modes of X_2, with Z_2 =
+ * Theta_2 - w^2 + i w D_2 diagonal and eta = Z^-1 X'b,
  *
  *     r_p = X_2'b - Z_2 W eta_p = X_2'b_o - (X_2'R + i w U_d) eta_p,
  *     U_d = D_2 W - W D,
  *     H_2 - H_r = r_d' Z_2^-1 r_p - i w eta_d' (W'D_2 W - D) eta_p
  *
- * where nothing cancels: X_2'R = Theta_2 W - W Theta is of the size of the
- * trial's errors. D = a M + b K makes U_d = b X_2'R, and the last term 0; of a
- * ratio zeta, with roots v of theta,
+ * without cancellation, since X_2'R = Theta_2 W - W Theta is of the size of the
+ * trial's errors. With D = a M + b K, U_d = b X_2'R, and the last term is 0;
+ * with a ratio zeta and v_k the square root of theta_k,
  *
  *     (U_d)_kj = 2 zeta (X_2'R)_kj / (v_k + v_j),
  *     (W'D_2 W - D)_ij = -(U_d'U_d)_ij / (2 zeta (v_i + v_j))
  *
- * The richer trial adds A^-1 V to the trial, V being all that its residuals are
- * made of. What it leaves, H - H_2, is bounded as in response.c, and is smaller
- * by the square of what an inverse iteration gains.
+ * The richer trial adds A^-1 V to the trial, where residuals are linear
+ * combinations of V. The remaining error H - H_2 is bounded as in response.c;
+ * it is smaller by the square of the gain of an inverse iteration.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -26,7 +26,7 @@
 #include <math.h>
 #include <string.h>
 
-/* |v|_(A^-1) of column k of V, before the trial's part was taken off. */
+/* |v|_(A^-1) of column k of V, together with its part in the trial. */
 static double whole_norm(const ritz_bounder *r, int64_t k)
 {
     const ritz_lehmann *trial = r->trial;
@@ -49,7 +49,8 @@ static double whole_norm(const ritz_bounder *r, int64_t k)
     return sqrt(sum);
 }
 
-/* Columns of E = A^-1 V of length one in A, but those that are rounding. */
+/* Columns of E = A^-1 V, scaled to unit length in A; those that are rounding
+   are left out. */
 static ritz_status take_long(const ritz_bounder *r, ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(r->E.nrow, r->size, out));
@@ -67,7 +68,8 @@ static ritz_status take_long(const ritz_bounder *r, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* An orthonormal basis in A of their span, as K - sigma M makes it. */
+/* An A-orthonormal basis of the span of Y, from the eigenvectors of Y'(K -
+   sigma M) Y. */
 static ritz_status take_independent(const ritz_component *full, double sigma,
                                     const ritz_dense *Y, ritz_dense *out)
 {
@@ -90,8 +92,8 @@ static ritz_status take_independent(const ritz_component *full, double sigma,
 }
 
 /*
- * A column whose residual is little more than rounding holds as much of the
- * trial as of anything new: its part in the trial is taken off again, in A.
+ * Remove, in A, the part of Y in the trial. A column whose residual is little
+ * more than rounding contains as much of the trial as of anything new.
  */
 static ritz_status take_trial_out(const ritz_component *full,
                                   const ritz_lehmann *trial, ritz_dense *Y)
@@ -139,7 +141,7 @@ static double sum_roots(const ritz_bounder *a, int64_t k, const ritz_bounder *b,
            sqrt(fmax(ritz_bounder_stiffness(b, j), 0.0));
 }
 
-/* U_d and the defect of ratios. */
+/* U_d and the defect W'D_2 W - D, with ratios. */
 static ritz_status take_ratios(const ritz_bounder *coarse, ritz_refinement *f)
 {
     const double twice = 2.0 * coarse->zeta;
@@ -218,7 +220,7 @@ void ritz_refinement_free(ritz_refinement *f)
     RITZ_FREE_EACH(ritz_finer_side, f->num_sides, f->side);
 }
 
-/* y += x column j of A. */
+/* y += x A_j, column j of A. */
 static void add_column(const ritz_dense *A, int64_t j, double _Complex x,
                        double _Complex *y)
 {
@@ -228,7 +230,7 @@ static void add_column(const ritz_dense *A, int64_t j, double _Complex x,
         y[i] += a[i] * x;
 }
 
-/* The same of magnitudes. */
+/* y += x |A_j|, magnitudes of column j of A. */
 static void add_magnitudes(const ritz_dense *A, int64_t j, double x, double *y)
 {
     const double *a = ritz_dense_col(A, j);
@@ -237,7 +239,7 @@ static void add_magnitudes(const ritz_dense *A, int64_t j, double x, double *y)
         y[i] += fabs(a[i]) * x;
 }
 
-/* r, r' and a bound of r'' of one side. */
+/* r, r' and an upper bound of |r''| of one side. */
 static void fill_side(const ritz_bounder *coarse, const ritz_refinement *f,
                       const ritz_side *s, double w, double h,
                       ritz_finer_side *out)
@@ -255,10 +257,13 @@ static void fill_side(const ritz_bounder *coarse, const ritz_refinement *f,
         if (h > 0.0 && j < m)
             add_magnitudes(&f->U, j, s->most[2][j], out->curvature);
         else if (h > 0.0 && j >= accelerations && s->residual[j] != 0.0)
-            add_magnitudes(&f->U, j, 2.0, out->curvature); /* of w^2 */
+            add_magnitudes(&f->U, j, 2.0, out->curvature); /* second derivative
+                                                              of w^2 */
     }
     for (int64_t j = 0; j < m && f->U_d.val; j++) {
-        double _Complex slope = -s->residual_slope[j]; /* of eta: c is 1 */
+        double _Complex slope = -s->residual_slope[j]; /* eta': residual_slope
+                                                          is -c eta', and c = 1
+                                                          with ratios */
 
         add_column(&f->U_d, j, -ritz_complex(0.0, w) * s->eta[j], out->r);
         if (!(h > 0.0))
@@ -298,7 +303,7 @@ static void multiply_sides(const ritz_refinement *f, double w,
     }
 }
 
-/* |x|, |x'| and |x''| of entry k of a residual, at most within h. */
+/* Upper bounds of |x|, |x'| and |x''| within h, of entry k of a residual. */
 static void bound_entry(const ritz_finer_side *s, int64_t k, double h,
                         double most[3])
 {
@@ -307,7 +312,7 @@ static void bound_entry(const ritz_finer_side *s, int64_t k, double h,
     most[0] = cabs(s->r[k]) + h * most[1];
 }
 
-/* The second derivative of that product, at most within h. */
+/* Upper bound of the second derivative of r_d' Z_2^-1 r_p within h of w. */
 static double bound_curvature(const ritz_refinement *f, double w, double h,
                               const ritz_finer_side *in,
                               const ritz_finer_side *out)
@@ -333,7 +338,7 @@ static double bound_curvature(const ritz_refinement *f, double w, double h,
     return sum;
 }
 
-/* i w eta_d' (W'D_2 W - D) eta_p; eta is complex. */
+/* i w eta_d' (W'D_2 W - D) eta_p, without conjugation of eta_d. */
 static double _Complex multiply_defect(const ritz_refinement *f, double w,
                                        const ritz_side *in,
                                        const ritz_side *out)
@@ -351,7 +356,8 @@ static double _Complex multiply_defect(const ritz_refinement *f, double w,
     return ritz_complex(0.0, w) * sum;
 }
 
-/* How far that can go within h: h times its derivative by w, at most. */
+/* Upper bound of the change of multiply_defect within h of w: h times its
+   largest derivative. */
 static double vary_defect(const ritz_refinement *f, double w, double h,
                           const ritz_side *in, const ritz_side *out)
 {

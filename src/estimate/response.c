@@ -215,7 +215,7 @@ static bool has_undamped(const ritz_bounder *r, const double band_hz[2])
     return false;
 }
 
-/* The bound of one channel, and what it is compared with. */
+/* The bound of one channel at w, and the magnitudes it is compared with. */
 static double bound_channel(const ritz_bounder *r, double w, double h,
                             int64_t input, int64_t output)
 {
@@ -238,8 +238,8 @@ static double bound_channel(const ritz_bounder *r, double w, double h,
     return isnan(sum) ? HUGE_VAL : sum;
 }
 
-/* The bounds of all channels anywhere within h of w rad/s, into r->at; returns
-   the largest, each times its weight. */
+/* Bounds of all channels anywhere within h of w rad/s, written to r->at;
+   returns the largest of bound times weight. */
 static double bound_at(ritz_bounder *r, double w, double h)
 {
     double largest = 0.0;
@@ -317,26 +317,28 @@ static ritz_status take_points(const ritz_bounder *r, const double band_hz[2],
     return ritz_grid_points(&grid, m, omega, zeta, count, hertz);
 }
 
-/* What is known of one channel over the points of the band. */
+/* Results for one channel over all points of the band. */
 typedef struct channel_found {
-    double bound, hertz;     /* the largest, and where */
-    double part[RITZ_PARTS]; /* of which that consists */
-    double error;            /* the largest that is known of the error */
-    double least;            /* the largest |H| is at least this */
-    /* the largest |H| over what could be there is at least, and at most */
+    double bound, hertz;     /* the largest bound, and its frequency */
+    double part[RITZ_PARTS]; /* terms of that bound */
+    double error;            /* the largest known part of the error */
+    double least;            /* proven lower bound of max |H| */
+    /* max |H| relative to its Cauchy-Schwarz bound is at least and at most
+       this */
     double coupled[2];
-    double most; /* the largest of what could be there */
+    double most; /* the largest Cauchy-Schwarz bound of |H| */
 } channel_found;
 
-/* The whole answer. */
+/* Results for the response. */
 typedef struct response_found {
     int64_t count; /* channels, outputs by inputs */
     channel_found *channel;
-    int64_t worst;        /* channel */
-    double value;         /* its bound, relative; HUGE_VAL: nothing is known */
-    bool between;         /* it is so large between points only */
-    ritz_rounded rounded; /* what rounding of K does to the full response */
-    double rules_hz;      /* and up to where; 0: nothing */
+    int64_t worst;        /* the channel with the largest relative bound */
+    double value;         /* that bound; HUGE_VAL: nothing is known */
+    bool between;         /* the bound is so large only between the points */
+    ritz_rounded rounded; /* effect of rounding of K on the full response */
+    double rules_hz;      /* frequency up to which that rounding dominates; 0:
+                             none  [Hz] */
 } response_found;
 
 static void response_found_free(response_found *f)
@@ -378,8 +380,7 @@ static void visit_points(ritz_bounder *r, int64_t count, const double *hertz,
     }
 }
 
-/* Whether an input and an output have next to nothing to do with each other, as
-   far as is known. */
+/* Whether an input and an output count as decoupled. */
 static bool is_hardly_coupled(const channel_found *c)
 {
     return c->coupled[0] <= RITZ_CHANNEL_COUPLED &&
@@ -387,11 +388,11 @@ static bool is_hardly_coupled(const channel_found *c)
 }
 
 /*
- * What a channel's bound is relative to: its own largest |H|, so that units do
- * not matter. A channel between an input and an output that have next to
- * nothing to do with each other is rounding: it is taken against what could be
- * there, but no more than some |H|, which is what ritz-verify compares with. 0:
- * it is not known to be anything.
+ * The magnitude that a channel's bound is relative to: the channel's own
+ * largest |H|, so that units do not matter. If input and output are decoupled,
+ * H is rounding, and its Cauchy-Schwarz bound is used, limited to the largest
+ * |H| of all channels, which ritz-verify compares with. 0 if |H| is not proven
+ * to be above 0.
  */
 static double unit_of(const response_found *f, const channel_found *c)
 {
@@ -404,7 +405,7 @@ static double unit_of(const response_found *f, const channel_found *c)
     return fmin(largest, c->most);
 }
 
-/* The worst channel over the points, and the weights of all. */
+/* Find the worst channel over the points, and set the weights of all. */
 static void weigh_channels(ritz_bounder *r, response_found *f)
 {
     f->worst = 0;
@@ -422,7 +423,7 @@ static void weigh_channels(ritz_bounder *r, response_found *f)
     }
 }
 
-/* Whether any channel's bound is far above what is known of its error. */
+/* Whether the bound of any channel is far above its known error. */
 static bool is_loose(const response_found *f)
 {
     for (int64_t k = 0; k < f->count; k++)
@@ -431,9 +432,10 @@ static bool is_loose(const response_found *f)
     return false;
 }
 
-/* What a richer trial is made with. */
+/* The richer trial of a response. */
 typedef struct richer {
-    ritz_enclosure before; /* the intervals of the trial before */
+    ritz_enclosure before; /* intervals of the coarse trial, which are still
+                              used */
     ritz_refinement finer;
 } richer;
 
@@ -443,7 +445,8 @@ static void richer_free(richer *all)
     ritz_refinement_free(&all->finer);
 }
 
-/* A richer trial, if there is one, and the intervals that it tells. */
+/* Make a richer trial, if there is one, and the intervals that follow from
+   it. */
 static ritz_status refine_response(ritz_measuring *m, ritz_bounder *r,
                                    richer *all)
 {
@@ -459,8 +462,8 @@ static ritz_status refine_response(ritz_measuring *m, ritz_bounder *r,
     return RITZ_OK;
 }
 
-/* Visit the points again with a richer trial, unless that says less: where
-   modes are missing it may. */
+/* Repeat the points with a richer trial, and keep the former results if these
+   are better, as may be where modes are missing. */
 static ritz_status visit_finer(ritz_measuring *m, int64_t count,
                                const double *hertz, ritz_bounder *r,
                                richer *all, response_found *f)
@@ -481,7 +484,7 @@ static ritz_status visit_finer(ritz_measuring *m, int64_t count,
     return RITZ_OK;
 }
 
-/* Between the points. */
+/* Extend the bound to all frequencies between the points. */
 static void bound_between(ritz_bounder *r, int64_t count, const double *hertz,
                           response_found *f)
 {
@@ -516,7 +519,8 @@ static ritz_status bound_band(ritz_measuring *m, bool known, richer *all,
     return RITZ_OK;
 }
 
-/* Why a bound is far above the error, or infinite; "" if it is not. */
+/* Why a bound is far above the known error, or infinite; "" if it is
+   neither. */
 static const char *cause_of(const ritz_measuring *m, const response_found *f)
 {
     static const char *const names[RITZ_PARTS] = {
@@ -540,7 +544,7 @@ static const char *cause_of(const ritz_measuring *m, const response_found *f)
     return names[most];
 }
 
-/* "12.5 Hz, force to tip" */
+/* Frequency and channel, "12.5 Hz, force to tip". */
 static void say_where(const ritz_measuring *m, const response_found *f,
                       char where[RITZ_NAME_SIZE])
 {
@@ -548,7 +552,7 @@ static void say_where(const ritz_measuring *m, const response_found *f,
 
     const channel_found *c = &f->channel[f->worst];
     bool hardly = is_hardly_coupled(c);
-    int room = hardly ? 12 : 20; /* of each name */
+    int room = hardly ? 12 : 20; /* characters of each name */
 
     (void)snprintf(where, RITZ_NAME_SIZE, "%.5g Hz, %.*s to %.*s%s", c->hertz,
                    room, io->input[f->worst / io->num_outputs], room,
@@ -599,7 +603,7 @@ static bool rigid_in_full(const ritz_lehmann *trial, int64_t num_rigid)
     return all;
 }
 
-/* What of a response's damping is not known at all; NULL: nothing. */
+/* Which damping is unknown, so that there is no bound; NULL: none. */
 static const char *unknown_damping(const ritz_measuring *m,
                                    const ritz_bounder *r)
 {
@@ -611,7 +615,8 @@ static const char *unknown_damping(const ritz_measuring *m,
                                        : NULL;
 }
 
-/* As ritz-verify finds it, of the trial's lowest modes. */
+/* Effect of rounding of K on the full response, from the trial's lowest modes,
+   as ritz-verify computes it. */
 static ritz_status find_rounding(const ritz_measuring *m, const ritz_bounder *r,
                                  response_found *f)
 {
@@ -629,7 +634,7 @@ static ritz_status find_rounding(const ritz_measuring *m, const ritz_bounder *r,
     return RITZ_OK;
 }
 
-/* Where the response is that of rounding. */
+/* Report the frequency up to which rounding dominates the response. */
 static ritz_status report_rounding(const ritz_measuring *m,
                                    const response_found *f, ritz_measures *out)
 {
@@ -644,7 +649,7 @@ static ritz_status report_rounding(const ritz_measuring *m,
                              where);
 }
 
-/* Add the answer, unless it is that there is no error. */
+/* Report the bound, unless the error is 0. */
 static ritz_status report_response(const ritz_measuring *m,
                                    const ritz_bounder *r, bool sure,
                                    const response_found *f, ritz_measures *out)
@@ -670,7 +675,7 @@ ritz_status ritz_bound_response(ritz_measuring *m, const ritz_reduced *reduced,
     const ritz_damping *damping = &estimator->request.damping;
     bool known = promise_of(estimator, reduced, m->pairs.Phi.ncol) == BOUND;
     RITZ_OWN(response_found) found = {0};
-    RITZ_OWN(richer) all = {0}; /* outlives what borrows it */
+    RITZ_OWN(richer) all = {0}; /* before r, which borrows from it */
     RITZ_OWN(ritz_bounder)
     r = {.trial = &m->trial,
          .e = &m->enclosure,
