@@ -288,8 +288,8 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
  *
  * @param[in] band_hz  the two ends of a band, whose Gramians are found by
  *                     quadrature; NULL: all frequencies
- * @return RITZ_ERR_ARGUMENT also if the engine is `modal`; RITZ_ERR_CONVERGENCE
- *         if the Gramians have no low rank
+ * @return RITZ_ERR_ARGUMENT also if the engine is `modal`, or is not `auto`
+ *         over a band; RITZ_ERR_CONVERGENCE if the Gramians have no low rank
  */
 ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
                                       ritz_engine engine, const double *band_hz,

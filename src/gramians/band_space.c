@@ -4,11 +4,11 @@
  *     x(w) = (i w E - A)^-1 B,   y(w) = (i w E - A)^-* C',
  *     W_c = 1/pi int_{w1}^{w2} Re x x^* dw,   W_o = 1/pi int Re y y^* dw
  *
- * with columns sqrt(weight / pi) [Re x, Im x] of every point, so that what is
- * found is semidefinite whatever its error [GawronskiJuang1990]. Panels are
- * halved until Gauss's seven points and Kronrod's fifteen agree in the sums of
- * |x|^2 and |y|^2; first panels end at the poles near the band, where both are
- * steepest.
+ * with the factor's columns sqrt(weight / pi) [Re x, Im x] at every point, so
+ * that the computed Gramian is semidefinite whatever its error
+ * [GawronskiJuang1990]. Panels are halved until the Gauss rule of seven points
+ * and the Kronrod rule of fifteen agree in the integrals of |x|^2 and |y|^2.
+ * The first panels end at poles near the band, where both change most.
  */
 #include "gramians/space.h"
 
@@ -27,16 +27,16 @@
 
 enum {
     NODES = 15,
-    HALF = 8,      /* nodes from the middle on */
-    DEPTH = 40,    /* halvings of a panel */
+    HALF = 8,      /* nodes of half a panel, with the middle */
+    DEPTH = 40,    /* largest number of halvings of a panel */
     PLACES = 3,    /* frequencies near which poles are sought */
-    NEAR = 10,     /* poles near each */
-    COLUMNS = 400, /* of a factor, that are compressed when they are met */
+    NEAR = 10,     /* poles sought near each of them */
+    COLUMNS = 400, /* of a factor, above which it is compressed */
     SIDES = 2
 };
 
-/* Nodes and weights on -1 .. 1, from 0 on, of Kronrod; Gauss has every other
-   node. [PiessensDonckerUberhuberKahaner1983] */
+/* Kronrod's nodes and weights on -1 .. 1, from 0 on; every other node is one of
+   Gauss. [PiessensDonckerUberhuberKahaner1983] */
 static const double node[HALF] = {
     0.0,
     0.207784955007898467600689403773245,
@@ -63,10 +63,11 @@ static const double gauss[HALF] = {
 typedef struct quadrature {
     const ritz_state_space *model; /* borrowed */
     ritz_pencil pencil;
-    ritz_dense F[SIDES]; /* B and C' over limits */
+    ritz_dense F[SIDES]; /* B, and C' divided by limits */
     ritz_dense Z[SIDES]; /* room for `room` columns, ncol in use */
     int64_t room[SIDES];
-    double sum[SIDES]; /* of |x|^2 and |y|^2 over the band, so far */
+    double sum[SIDES]; /* integrals of |x|^2 and |y|^2 over the panels accepted
+                          so far */
     int64_t points;
 } quadrature;
 
@@ -79,7 +80,7 @@ static void quadrature_free(quadrature *q)
     }
 }
 
-/* x and y at a point, n x columns each, one behind the other. */
+/* x and then y at a frequency w, n x columns each. */
 static ritz_status solve_at(quadrature *q, double w, double _Complex *out)
 {
     ritz_status status = ritz_pencil_factor(&q->pencil, ritz_complex(0.0, w));
@@ -102,7 +103,7 @@ static ritz_status solve_at(quadrature *q, double w, double _Complex *out)
     return RITZ_OK;
 }
 
-/* A panel: solutions at its nodes, and the sums of both rules. */
+/* A panel: solutions at its nodes, and the integrals by both rules. */
 typedef struct band_panel {
     double from, to;
     double _Complex *x; /* NODES times all columns */
@@ -189,7 +190,7 @@ static void append_pair(double f, int64_t n, const double _Complex *x,
     Z->ncol += 2;
 }
 
-/* Columns of a panel that is fine enough. */
+/* Append the columns of an accepted panel to both factors. */
 static ritz_status accept_panel(quadrature *q, const band_panel *p)
 {
     const int64_t n = q->pencil.n, values = values_of(q);
@@ -208,7 +209,7 @@ static ritz_status accept_panel(quadrature *q, const band_panel *p)
     return RITZ_OK;
 }
 
-/* Whether both rules agree, relative to all that has been met. */
+/* Whether both rules agree, relative to the integral so far. */
 static bool is_fine(const quadrature *q, const band_panel *p)
 {
     bool fine = true;
@@ -220,8 +221,8 @@ static bool is_fine(const quadrature *q, const band_panel *p)
     return fine;
 }
 
-/* One panel and, where it is too coarse, its halves: a stack of the right
-   ones. */
+/* Integrate one panel; where it is too coarse, its halves, with a stack of the
+   right halves. */
 static ritz_status integrate_panel(quadrature *q, double from, double to)
 {
     double end[DEPTH + 1] = {to};
@@ -249,7 +250,8 @@ static ritz_status integrate_panel(quadrature *q, double from, double to)
     return RITZ_OK;
 }
 
-/* Ends of the first panels: those of the band, and poles in it. */
+/* Ends of the first panels: those of the band, and frequencies of poles
+   within. */
 static ritz_status list_ends(quadrature *q, const double band[2],
                              int64_t *count, double *end)
 {

@@ -446,7 +446,8 @@ static ritz_status find_space_dense(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-/* Of low rank where that is to be had, and cheaper. */
+/* Low-rank engine for sparse models, dense for others, and for small sparse
+   ones where ADI does not converge. */
 static ritz_status find_space_any(const ritz_state_space *model,
                                   ritz_gramians *out)
 {

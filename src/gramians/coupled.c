@@ -1,21 +1,22 @@
 /*
- * Modes that damping couples. In states z = [w_1 q_1, q_1', w_2 q_2, ..., v],
- * v the velocities of rigid modes that are coupled to these,
+ * Modes that damping couples. The states are z = [w_1 q_1, q_1', w_2 q_2, ...,
+ * v], with v the velocities of rigid modes coupled to these,
  *
  *     z' = A z + B u,    y = C z + C_r q_r,    q_r' = v = N z
  *
- * where q_r, whose poles are 0, is in no other equation. A has more poles at 0
- * where a rigid motion is not damped. With A X = X S the part that decays and Y
- * its left vectors, Y'X = I, Y'A = S Y', and x = Y'z,
+ * where the rigid displacements q_r, which have poles at 0, appear in no other
+ * equation. If a rigid motion is not damped, A has further poles at 0. Let A X
+ * = X S be the part that decays, Y its left vectors, Y'X = I, Y'A = S Y', and x
+ * = Y'z. Then
  *
  *     q_r = N X int x + ...,   int x = S^-1 (x - Y'B int u),
  *
- * so that of what decays
+ * so that the part that decays is
  *
  *     x' = S x + Y'B u,    y = (C X + C_r N X S^-1) x
  *
- * and all else of y is in poles at 0. Its Gramians have Hammarling's factors
- * F_c and F_o, which are X F_c and Y F_o of z.
+ * and the rest of y belongs to poles at 0. Hammarling's factors of its Gramians
+ * are F_c and F_o for x, and X F_c and Y F_o for z.
  *
  * [Moore1981], [Hammarling1982]
  */
@@ -34,7 +35,7 @@ int64_t ritz_modal_order(const ritz_modal *modal)
     return 2 * modal->count + modal->num_rigid;
 }
 
-/* State q' of mode k, or v of a rigid one. */
+/* Index of state q' of flexible mode k, or of v of a rigid one. */
 static int64_t rate_of(const ritz_modal *modal, int64_t k)
 {
     return k < modal->count ? 2 * k + 1 : modal->count + k;
@@ -58,7 +59,8 @@ static ritz_status fill_matrix(const ritz_modal *modal, ritz_dense *A)
     return RITZ_OK;
 }
 
-/* B, and the outputs as columns; displacements of rigid modes are left out. */
+/* B, and the outputs as columns; outputs of rigid displacements are left
+   out. */
 static ritz_status fill_ends(const ritz_modal *modal, ritz_dense *B,
                              ritz_dense *C)
 {
@@ -83,8 +85,8 @@ static ritz_status fill_ends(const ritz_modal *modal, ritz_dense *B,
 }
 
 /*
- * Separate what decays. *hertz is the frequency of a pole that does not and is
- * not at 0; 0: there is none.
+ * Separate the part that decays. *hertz is the frequency of a pole that neither
+ * decays nor is at 0; 0: there is none.
  */
 static ritz_status split_decaying(const ritz_modal *modal, ritz_split *out,
                                   double *hertz)
@@ -106,7 +108,7 @@ static ritz_status split_decaying(const ritz_modal *modal, ritz_split *out,
     return RITZ_OK;
 }
 
-/* What decays: factors are of x, and of z by the vectors. */
+/* The part that decays, in the coordinates x. */
 typedef struct decaying {
     ritz_split split;
     ritz_dense B, C; /* Y'B, and outputs as columns */
@@ -158,7 +160,7 @@ static ritz_status find_decaying(const ritz_modal *modal, decaying *out)
     return RITZ_OK;
 }
 
-/* F_c and F_o of x. */
+/* F_c and F_o. */
 static ritz_status factor_decaying(const decaying *part, ritz_dense *Fc,
                                    ritz_dense *Fo)
 {
@@ -169,7 +171,8 @@ static ritz_status factor_decaying(const decaying *part, ritz_dense *Fc,
     return ritz_general_hammarling(&part->split.S, &one, true, &part->C, Fo);
 }
 
-/* Rows of z become those of (q_1, q_1', ...): times w, or over it. */
+/* Convert rows of z = [w_1 q_1, q_1', ...] to those of (q_1, q_1', ...): divide
+   by w if @p over, else multiply. */
 static void scale_positions(const ritz_modal *modal, bool over, ritz_dense *Z)
 {
     for (int64_t j = 0; j < Z->ncol; j++)
@@ -220,12 +223,12 @@ ritz_status ritz_coupled_outputs(const ritz_modal *modal, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Clusters. */
+/* Clusters of modes. */
 
 typedef struct joining {
     const ritz_modal *modal;
-    int64_t count;  /* m + r */
-    double largest; /* of Delta */
+    int64_t count;  /* number of modes, m + r */
+    double largest; /* largest entry of Delta */
     int64_t *cluster;
 } joining;
 
@@ -238,7 +241,8 @@ static void merge_clusters(joining *j, int64_t a, int64_t b)
             j->cluster[k] = to;
 }
 
-/* Flexible modes by frequency, and by damping. */
+/* Form clusters of modes that are close in frequency, or that damping
+   couples. */
 static void join_modes(joining *j)
 {
     const ritz_modal *modal = j->modal;
@@ -257,7 +261,7 @@ static void join_modes(joining *j)
                 merge_clusters(j, j->cluster[a], j->cluster[b]);
 }
 
-/* Whether Delta + Delta' is definite: then energy falls in every motion. */
+/* Whether Delta + Delta' is definite: energy then decreases in every motion. */
 static ritz_status is_definite(const ritz_dense *Delta, bool *out)
 {
     RITZ_OWN(ritz_dense) S = {0};
@@ -270,7 +274,7 @@ static ritz_status is_definite(const ritz_dense *Delta, bool *out)
     return RITZ_OK;
 }
 
-/* Whether a cluster decays by itself, rigid motion apart. */
+/* Whether every motion of a cluster decays by itself, except rigid motion. */
 static ritz_status does_decay(const ritz_modal *part, bool *out)
 {
     RITZ_OWN(ritz_split) split = {0};
@@ -301,7 +305,8 @@ static ritz_status take_cluster(const joining *j, int64_t cluster,
     return ritz_modal_part(j->modal, taken, taken + m, out);
 }
 
-/* The first mode of a cluster that has no damping of its own, or the first. */
+/* The first mode of a cluster without damping of its own; else its first
+   mode. */
 static int64_t find_undamped(const joining *j, int64_t cluster)
 {
     for (int64_t k = cluster; k < j->modal->count; k++)
@@ -310,7 +315,7 @@ static int64_t find_undamped(const joining *j, int64_t cluster)
     return cluster;
 }
 
-/* Join a cluster with all that damping couples it to, however little. */
+/* Merge a cluster with all modes that damping couples it to, however weakly. */
 static ritz_status grow_cluster(joining *j, int64_t cluster)
 {
     const ritz_modal *modal = j->modal;

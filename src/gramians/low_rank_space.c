@@ -4,16 +4,17 @@
  *     A W E' + E W A' + B B' = 0:   v_j = (A + p_j E)^-1 W_(j-1),
  *     W_j = W_(j-1) - 2 p_j E v_j,  Z = [sqrt(-2 p_1) v_1, ...]
  *
- * with W_0 = B, of which W_j W_j' is the residual, and the same of (A', C') by
- * the same factors. A pair of complex shifts adds real columns
+ * with W_0 = B and the residual W_j W_j'. The Gramian of (A', C') uses the same
+ * factorisations. A pair of complex shifts adds real columns
  * [BennerKuerschnerSaak2013]:
  *
  *     g v_+,  g sqrt(d^2 + 1) Im v,   v_+ = Re v + d Im v,   W += g^2 E v_+,
  *     g^2 = -4 Re p,   d = Re p / Im p
  *
- * Shifts are poles of A projected on the latest columns and on what is left of
- * W, those that take part in it most [BennerKuerschnerSaak2014]; projected poles
- * that are not left of the axis are mirrored.
+ * Shifts are poles of A projected on the latest columns of Z and on the
+ * residual factor W; those with the largest participation in W come first
+ * [BennerKuerschnerSaak2014]. Projected poles that are not left of the axis are
+ * mirrored.
  */
 #include "gramians/space.h"
 
@@ -35,27 +36,27 @@
 
 enum {
     MOST_SHIFTS = 300,
-    WINDOW = 72,  /* latest columns that shifts are found in */
-    TOGETHER = 3, /* shifts of one projection */
-    SIDES = 2,    /* controllability, observability */
-    PATIENCE = 60 /* shifts after which the rest is foreseen */
+    WINDOW = 72,  /* number of latest columns that shifts are computed from */
+    TOGETHER = 3, /* shifts taken from one projection */
+    SIDES = 2,    /* controllability and observability */
+    PATIENCE = 60 /* number of shifts after which slow convergence is refused */
 };
 
 /* One Gramian. */
 typedef struct adi_side {
-    ritz_dense W; /* what is left of B or C' */
+    ritz_dense W; /* residual factor, at first B or C' */
     ritz_dense Z; /* room for `room` columns, ncol in use */
     int64_t room;
-    double first;    /* |W'W| of the start */
-    double residual; /* over that */
+    double first;    /* |W'W| at the start */
+    double residual; /* |W'W| relative to that */
     bool open;
 } adi_side;
 
 typedef struct adi {
     ritz_pencil pencil;
     adi_side side[SIDES];
-    ritz_dense window; /* n x WINDOW, a ring */
-    int64_t entered;   /* columns that ever came in */
+    ritz_dense window; /* n x WINDOW, a ring buffer */
+    int64_t entered;   /* number of columns entered so far */
     double tolerance;
     int64_t shifts;
 } adi;
@@ -109,7 +110,7 @@ static double worst_residual(const adi *a)
     return fmax(a->side[0].residual, a->side[1].residual);
 }
 
-/* A copy of columns whose lengths are one. */
+/* Append columns, scaled to unit length; @p X does not change. */
 static ritz_status append_unit(const ritz_dense *X, ritz_orthonormal *set)
 {
     RITZ_OWN(ritz_dense) unit = {0};
@@ -127,8 +128,8 @@ static ritz_status append_unit(const ritz_dense *X, ritz_orthonormal *set)
     return ritz_orthonormal_append(set, &unit, unit.ncol, NULL);
 }
 
-/* U, orthonormal: the window and what is left of both sides; at first also
-   their responses at 0, or beside it. */
+/* Orthonormal basis U of the latest columns and the residual factors of both
+   sides. */
 static ritz_status span_window(adi *a, ritz_orthonormal *set)
 {
     int64_t used = a->entered < WINDOW ? a->entered : WINDOW;
@@ -143,9 +144,10 @@ static ritz_status span_window(adi *a, ritz_orthonormal *set)
     return RITZ_OK;
 }
 
-/* A and E between columns of U, and what is left of both sides in them. */
+/* The projected pencil and the projected residual factors. */
 typedef struct small_pencil {
-    ritz_dense A, w[SIDES]; /* both divided by U'E U, but w[1] */
+    ritz_dense A, w[SIDES]; /* U'A U and U'W of side 0, both multiplied by (U'E
+                               U)^-1; U'W of side 1 */
     double *re, *im, *part;
     ritz_dense left, right;
 } small_pencil;
@@ -203,7 +205,7 @@ static double _Complex entry_of(const small_pencil *s, const ritz_dense *V,
                                           ritz_dense_col(V, j + 1)[i]);
 }
 
-/* |V_j^H w|^2 */
+/* |V_j^H w|^2, summed over the columns of w. */
 static double part_of(const small_pencil *s, const ritz_dense *V, int64_t j,
                       const ritz_dense *w)
 {
@@ -219,7 +221,8 @@ static double part_of(const small_pencil *s, const ritz_dense *V, int64_t j,
     return sum;
 }
 
-/* Squares of both participations, each over the largest, added. */
+/* Participation of each pole: the squares for both sides, each relative to its
+   largest, added. */
 static ritz_status weigh_poles(const adi *a, small_pencil *s)
 {
     const int64_t n = s->A.nrow;
@@ -247,7 +250,7 @@ static ritz_status weigh_poles(const adi *a, small_pencil *s)
     return RITZ_OK;
 }
 
-/* The next shifts: poles that take most part in what is left. */
+/* The next shifts: poles with the largest participation in the residuals. */
 static ritz_status choose_shifts(adi *a, int64_t *count, double _Complex *out)
 {
     RITZ_OWN(ritz_orthonormal) set = {0};
@@ -309,7 +312,7 @@ static void enter_window(adi *a, const double *x)
            (size_t)a->pencil.n * sizeof *x);
 }
 
-/* Columns that v gives, W less what they explain. */
+/* Append the columns of solution v to Z, and update the residual factor W. */
 static ritz_status append_columns(adi *a, int k, double _Complex p,
                                   const double _Complex *v)
 {
@@ -369,7 +372,7 @@ static ritz_status take_shift(adi *a, double _Complex p)
     return RITZ_OK;
 }
 
-/* Whether it goes too slowly, or the other way. */
+/* Refuse an iteration that converges too slowly, or diverges. */
 static ritz_status refuse_slow(const adi *a, const double *history)
 {
     int64_t half = a->shifts / 2;

@@ -206,7 +206,7 @@ static ritz_status refuse_coupling(const ritz_modal_model *modes,
                      ritz_eigen_hertz(modes->lambda[found.mode[1]]), own, why);
 }
 
-/* A model of `count` modes and of `rigid` ones, all zero. */
+/* A modal model with `count` flexible and `rigid` rigid modes, all zero. */
 static ritz_status create_modal(int64_t count, int64_t rigid, int64_t inputs,
                                 int64_t outputs, ritz_modal *out)
 {
@@ -248,8 +248,8 @@ static bool is_rigid_coupled(const ritz_modal_model *modes)
     return false;
 }
 
-/* Flexible modes and, behind them, the rigid ones if damping couples any of
-   them to these: all, since any basis of rigid motion is as good. */
+/* Flexible modes, followed by all rigid ones if damping couples any of these to
+   a flexible one, since the basis of rigid motion is arbitrary. */
 static ritz_status choose_modes(const ritz_modal_model *modes, ritz_dofs *out)
 {
     RITZ_CHECK_NEW(out->at, modes->count);
@@ -269,8 +269,9 @@ ritz_status ritz_refuse_undamped(double omega, double zeta)
 }
 
 /*
- * Frequencies and ratios; without a coupling each ratio must be positive. A
- * damper that moves some modes moves others by rounding: that is no damping.
+ * Frequencies and damping ratios. If modes are not coupled, each ratio must be
+ * positive. If they are, a ratio that is rounding of the largest damping
+ * becomes 0: a damper acts on other modes by rounding alone.
  */
 static ritz_status put_ratios(const ritz_modal_model *modes, bool coupled,
                               ritz_modal *modal)
@@ -291,7 +292,8 @@ static ritz_status put_ratios(const ritz_modal_model *modes, bool coupled,
     return RITZ_OK;
 }
 
-/* Delta, and the accelerations that are written out by it, over limits. */
+/* Delta, and the accelerations that C and Cv express by Delta, divided by
+   limits. */
 static ritz_status put_coupling(const ritz_modal_model *modes,
                                 const ritz_io *io, const ritz_dofs *chosen,
                                 ritz_modal *modal)
@@ -329,7 +331,7 @@ ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
     return RITZ_OK;
 }
 
-/* Whether damping couples modes of a part, or a rigid mode is in it. */
+/* Whether damping couples modes of a part, or the part has rigid modes. */
 static bool is_part_coupled(const ritz_modal *part)
 {
     double largest = ritz_dense_max(&part->Delta);
@@ -343,8 +345,9 @@ static bool is_part_coupled(const ritz_modal *part)
 }
 
 /*
- * Accelerations of a part have its own damping alone: of Cv, which has
- * -sum_j ca_j Delta_jk of all modes j, those that are not in it are taken out.
+ * Restrict the accelerations of a part to the part's own damping: Cv contains
+ * -sum_j ca_j Delta_jk over all modes j, and the terms of modes that are not in
+ * the part are removed.
  */
 static void restrict_accelerations(const ritz_modal *modal,
                                    const ritz_dofs *chosen, ritz_modal *part)
@@ -366,7 +369,8 @@ static void restrict_accelerations(const ritz_modal *modal,
     }
 }
 
-/* Damping of the modes `chosen` of a model, if it couples any of them. */
+/* Damping matrix of the modes `chosen` of a model; {0} if it couples none of
+   them. */
 static ritz_status put_damping(const ritz_modal *modal, const ritz_dofs *chosen,
                                ritz_modal *part)
 {

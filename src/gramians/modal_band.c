@@ -1,21 +1,21 @@
 /*
- * Gramians of a band in closed form. With the full ones,
+ * Gramians over a band in closed form, from W_c and W_o over all frequencies:
  *
  *     W_c(band) = S W_c + W_c S',    W_o(band) = S'W_o + W_o S,
  *     S = S(w2) - S(w1),    S(w) = i/2pi ln((A + i w)(A - i w)^-1)
  *
- * and of a mode, whose A is 2 x 2, S(w) = p I + g (A + d/2 I). Whether it is
- * under-, over- or critically damped: with h = w_k^2 + w^2,
- * beta^2 = w_k^2 - d^2/4 of either sign,
+ * For one mode, A is 2 x 2 and S(w) = p I + g (A + d/2 I). For under-, over-
+ * and critical damping alike, with h = w_k^2 + w^2 and beta^2 = w_k^2 - d^2/4
+ * of either sign,
  *
  *     2 pi p = arg(w_k^2 - w^2 + i d w)
  *     2 pi g = (2 w / h) artanh(x) / x,    x = 2 w beta / h
  *
- * and the difference of two p is the angle between both arguments.
+ * and 2 pi (p(w2) - p(w1)) is the angle between the two complex numbers.
  *
- * Factors are from eigenvalues of Gramians scaled to a unit diagonal. What lies
- * within the rounding of S W + W S' is dropped; a negative one beyond it is an
- * error.
+ * Factors come from the eigenvalues of Gramians scaled to a unit diagonal.
+ * Eigenvalues within the rounding of S W + W S' are dropped; one that is more
+ * negative is an error.
  *
  * [GawronskiJuang1990]
  */
@@ -28,7 +28,7 @@
 #include <lapacke.h>
 #include <math.h>
 
-/* S of a mode, in states (q, q'). */
+/* S(w2) - S(w1) of a mode, in states (q, q'). */
 typedef struct response {
     double s[2][2];
 } response;
@@ -74,7 +74,7 @@ static response response_of(double wk, double zeta, const double w[static 2])
     return (response){{{p + g * d / 2.0, g}, {-g * wk * wk, p - g * d / 2.0}}};
 }
 
-/* Row i of S W, or of S'W, at column j. */
+/* Entry (i, j) of S W, or of S'W. */
 static double applied_at(const response *S, bool transposed,
                          const ritz_dense *W, int64_t i, int64_t j)
 {
@@ -86,7 +86,7 @@ static double applied_at(const response *S, bool transposed,
                       : s[a][0] * x[0] + s[a][1] * x[1];
 }
 
-/* S W + W S', exactly symmetric as W is. */
+/* S W + W S', exactly symmetric. */
 static ritz_status filter_gramian(const response *S, bool transposed,
                                   const ritz_dense *W, ritz_dense *out)
 {
@@ -102,7 +102,8 @@ static ritz_status filter_gramian(const response *S, bool transposed,
     return RITZ_OK;
 }
 
-/* A band Gramian with the magnitudes that it is a sum of. */
+/* A band Gramian, and the sums of magnitudes that its rounding is relative
+   to. */
 typedef struct filtered {
     ritz_dense W, terms;
 } filtered;
@@ -115,7 +116,7 @@ static void filtered_free(filtered *f)
 
 RITZ_PAIR_OF(filtered);
 
-/* Both Gramians of a band. */
+/* Both Gramians over a band. */
 static ritz_status filter_gramians(const ritz_modal *modal,
                                    const double band_hz[static 2],
                                    filtered out[static 2])
@@ -150,7 +151,7 @@ static ritz_status filter_gramians(const ritz_modal *modal,
 
 static const char band_alone[] = "over a band it must be mode by mode";
 
-/* Z Z' of both factors of modes that damping couples. */
+/* Gramians of modes that damping couples, by their factors. */
 static ritz_status multiply_factors(const ritz_modal *modal, ritz_dense *Wc,
                                     ritz_dense *Wo)
 {
@@ -180,7 +181,7 @@ ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
     return RITZ_OK;
 }
 
-/* Roots of the diagonal, 0 where that is rounding. */
+/* Square roots of the diagonal; 0 where it is rounding. */
 static ritz_status find_roots(const filtered *f, double *root)
 {
     for (int64_t k = 0; k < f->W.nrow; k++) {
@@ -194,7 +195,8 @@ static ritz_status find_roots(const filtered *f, double *root)
     return RITZ_OK;
 }
 
-/* A(i,j) / (root_i root_j); returns its largest sum of a column. */
+/* A(i,j) := A(i,j) / (root_i root_j); returns the largest sum of magnitudes in
+   a column. */
 static double scale_matrix(ritz_dense *A, const double *root)
 {
     double largest = 0.0;
@@ -214,7 +216,7 @@ static double scale_matrix(ritz_dense *A, const double *root)
     return largest;
 }
 
-/* root V s^1/2 of the eigenvalues s above what is rounding of others. */
+/* root V s^1/2 with the eigenvalues s that are larger than rounding. */
 static ritz_status put_factor(const ritz_dense *V, const double *s,
                               const double *root, ritz_dense *out)
 {
@@ -234,7 +236,7 @@ static ritz_status put_factor(const ritz_dense *V, const double *s,
     return RITZ_OK;
 }
 
-/* Overwrites both matrices. */
+/* Factor of a band Gramian; overwrites both matrices. */
 static ritz_status factor_filtered(filtered *f, ritz_dense *out)
 {
     int n = (int)f->W.nrow;
@@ -277,9 +279,9 @@ ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
 }
 
 /*
- * Exact Hankel singular values of a modal model are those of Z_o'Z_c, of
- * factors in closed form. Modes that are not controllable or not observable get
- * zero and not a failure.
+ * Exact Hankel singular values of a modal model are the singular values of
+ * Z_o'Z_c with factors in closed form. Modes that are not controllable or not
+ * observable give zeros.
  *
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */

@@ -14,17 +14,18 @@ ritz_status ritz_ends_check(const char *what, int64_t inputs, int64_t outputs,
                             const double *limit,
                             const char (*output)[RITZ_NAME_SIZE]);
 
-/** Rows of C over the limits of the outputs, where they have any. */
+/** Divide the rows of C by the limits of the outputs that have one. */
 void ritz_outputs_weigh(const double *limit, ritz_dense *C);
 
-/** C', its columns over the limits of the outputs, where they have any. */
+/** C', with the columns of outputs that have a limit divided by it. */
 ritz_status ritz_outputs_scaled(const ritz_dense *C, const double *limit,
                                 ritz_dense *out);
 
 /**
  * Modal model of symmetric dense matrices or of a configuration in modal form.
  *
- * @param[in] D        may couple modes: then some may have no damping here
+ * @param[in] D        may couple modes; modes may then lack damping of their
+ *                     own
  * @param[in] damping  ratio of each mode, added to what D says on the diagonal
  * @return RITZ_ERR_ARGUMENT if a flexible mode has no damping
  */
@@ -32,7 +33,7 @@ ritz_status ritz_modal_new(const ritz_dense *K, const ritz_dense *M,
                            const ritz_dense *D, const ritz_io *io,
                            const ritz_damping *damping, ritz_modal *out);
 
-/** States of a modal model: 2m, and the velocity of each rigid mode. */
+/** Number of states: 2m, and one for the velocity of each rigid mode. */
 int64_t ritz_modal_order(const ritz_modal *modal);
 
 /**
@@ -41,13 +42,14 @@ int64_t ritz_modal_order(const ritz_modal *modal);
  *
  *     W_c = 1/pi Re int_{w1}^{w2} (i w - A)^-1 B B' (i w - A)^-* dw
  *
- * and W_o likewise, are semidefinite, rounding apart, and from 0 to infinity
- * those of all frequencies. Where damping couples modes they are those of
+ * and W_o likewise, are semidefinite up to rounding; from 0 to infinity they
+ * equal those over all frequencies. If damping couples modes, they come from
  * ritz_coupled_factors.
  *
- * @param[in] band_hz  from and to, HUGE_VAL is infinity; NULL: all frequencies
- * @return RITZ_ERR_ARGUMENT if it is no band, a mode has no damping, or damping
- *         couples modes over a band
+ * @param[in] band_hz  ends of the band; HUGE_VAL is infinity; NULL: all
+ *                     frequencies
+ * @return RITZ_ERR_ARGUMENT if the band is invalid, a mode has no damping, or
+ *         there is a band and damping couples modes
  */
 ritz_status ritz_modal_gramians(const ritz_modal *modal, const double *band_hz,
                                 ritz_dense *Wc, ritz_dense *Wo);
@@ -62,15 +64,15 @@ ritz_status ritz_modal_factors(const ritz_modal *modal, const double *band_hz,
                                ritz_dense *Zc, ritz_dense *Zo);
 
 /**
- * Exact Hankel singular values, descending: ritz_modal_order numbers, of which
- * the last are 0 where poles at 0 were deflated. @cost O(m^3)
+ * Exact Hankel singular values, descending: ritz_modal_order values, of which
+ * the last are 0 if poles at 0 were removed. @cost O(m^3)
  */
 ritz_status ritz_modal_hankel(const ritz_modal *modal, const double *band_hz,
                               double *sigma);
 
 /**
- * Outputs as columns in the states of ritz_modal_gramians, without what grows
- * where poles at 0 were deflated.
+ * Outputs as columns in the states of ritz_modal_gramians, without the outputs
+ * of poles at 0, which grow with time.
  */
 ritz_status ritz_modal_outputs(const ritz_modal *modal, ritz_dense *out);
 
@@ -80,17 +82,17 @@ void ritz_modal_free(ritz_modal *modal);
 int64_t ritz_modal_cluster(const ritz_modal *modal, int64_t first);
 
 /**
- * Some modes as a model of their own, damping restricted to them.
+ * Some modes of a model as a model of their own, with the damping between them.
  *
- * @param[in] taken  one for each mode of @p modal, those that are wanted
- * @param[in] rigid  one for each rigid mode; NULL: all
+ * @param[in] taken  for each flexible mode of @p modal, whether it is taken
+ * @param[in] rigid  for each rigid mode, whether it is taken; NULL: all are
  */
 ritz_status ritz_modal_part(const ritz_modal *modal, const bool *taken,
                             const bool *rigid, ritz_modal *out);
 
 /**
- * Damping that couples modes i and j, over the root of their own; 0 where it is
- * rounding of @p largest, the largest entry.
+ * Damping between modes i and j relative to the root of the product of their
+ * own; 0 where it is rounding of @p largest, the largest entry of Delta.
  */
 double ritz_damping_between(const ritz_dense *Delta, double largest, int64_t i,
                             int64_t j);
@@ -100,38 +102,41 @@ double ritz_damping_between(const ritz_dense *Delta, double largest, int64_t i,
  */
 
 /**
- * Clusters that are ranked as one: flexible modes of one frequency, and those
- * that damping couples by more than RITZ_DAMPING_JOINS, in chains. A cluster
- * that does not decay by itself is joined with all that damping couples it to,
- * rigid motion too.
+ * Clusters of modes to be ranked as one: flexible modes of one frequency, and
+ * chains of flexible modes that damping couples by more than
+ * RITZ_DAMPING_JOINS. A cluster that does not decay by itself is merged with
+ * all modes that damping couples it to, rigid ones included.
  *
- * @param[out] cluster  m + r: the first mode of each mode's cluster; of rigid
- *                      modes m where they are in none
- * @return RITZ_ERR_ARGUMENT if a mode has no damping, and none that is coupled
- *         to it damps it
+ * @param[out] cluster  m + r: the first mode of each mode's cluster; m for
+ *                      rigid modes in no cluster
+ * @return RITZ_ERR_ARGUMENT if a mode has no damping and no mode coupled to it
+ *         damps it
  */
 ritz_status ritz_coupled_clusters(const ritz_modal *modal, int64_t *cluster);
 
 /**
- * Factors of both Gramians of what decays, in the states of
- * ritz_modal_gramians, of as many columns as it has states.
+ * Factors of both Gramians of the part that decays, in the states of
+ * ritz_modal_gramians, with as many columns as that part has states.
  *
- * @return RITZ_ERR_ARGUMENT if a pole other than at 0 is not left of the axis
+ * @return RITZ_ERR_ARGUMENT if a pole other than those at 0 is not left of the
+ *         axis
  */
 ritz_status ritz_coupled_factors(const ritz_modal *modal, ritz_dense *Zc,
                                  ritz_dense *Zo);
 
-/** Its Hankel values, descending; room for ritz_modal_order of them. */
+/** Hankel values of the part that decays, descending; @p sigma has room for
+ * ritz_modal_order values. */
 ritz_status ritz_coupled_hankel(const ritz_modal *modal, int64_t *count,
                                 double *sigma);
 
-/** ritz_modal_outputs of it. */
+/** ritz_modal_outputs of the part that decays. */
 ritz_status ritz_coupled_outputs(const ritz_modal *modal, ritz_dense *out);
 
-/** RITZ_ERR_ARGUMENT of a mode without damping. */
+/** Refuse a mode without damping: RITZ_ERR_ARGUMENT. */
 ritz_status ritz_refuse_undamped(double omega, double zeta);
 
-/** RITZ_ERR_ARGUMENT that names the modes that damping couples most. */
+/** Refuse damping that couples modes, naming the two it couples most:
+ * RITZ_ERR_ARGUMENT. */
 ritz_status ritz_coupled_refuse(const ritz_modal *modal, const char *why);
 
 /** ritz_modal_gramians and ritz_modal_factors over all frequencies. */
@@ -159,14 +164,13 @@ ritz_status ritz_modes_turn(ritz_modal_model *modes);
 bool ritz_modes_coupled(const ritz_modal_model *modes);
 
 /**
- * The flexible modes.
+ * The flexible modes, and rigid modes that damping couples to them.
  *
  * @param[in] io   for the limits of its outputs
- * @param[in] why  end of the sentence if damping couples modes, which it must
- *                 not; NULL: it may, and the rigid modes that it couples to
- *                 these come with them
- * @return RITZ_ERR_ARGUMENT if it does, if a mode has no damping, or a limit is
- *         not positive
+ * @param[in] why  NULL: damping may couple modes; else it must not, and this
+ *                 ends the sentence that refuses it
+ * @return RITZ_ERR_ARGUMENT if damping couples modes and must not, a mode has
+ *         no damping, or a limit is not positive
  */
 ritz_status ritz_modal_of_modes(const ritz_modal_model *modes,
                                 const ritz_io *io, const char *why,

@@ -1,4 +1,4 @@
-/* Gramians of state spaces: the engines other than the dense one. */
+/* Gramians of state spaces: the low-rank engine and that of a band. */
 #ifndef RITZ_GRAMIANS_SPACE_H
 #define RITZ_GRAMIANS_SPACE_H
 
@@ -9,30 +9,32 @@
 /**
  * Factors of both Gramians by low-rank ADI with sparse factors of A - s E.
  *
- * @param[in] tolerance  of both residuals |R| / |B B'| and |R| / |C'C|
- * @return RITZ_ERR_CONVERGENCE if they have no low rank, or a pole is not left
- *         of the axis
- * @cost   a complex factor a shift, some 20 to 300 shifts
+ * @param[in] tolerance  of both residuals, |R| / |B B'| and |R| / |C'C|; 0:
+ *                       default
+ * @return RITZ_ERR_CONVERGENCE if the Gramians have no low rank, or a pole is
+ *         not left of the axis
+ * @cost   a complex factorisation for each of some 20 to 300 shifts
  */
 ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
                                          double tolerance, ritz_gramians *out);
 
 /**
- * Factors of both Gramians over a band alone, 0 <= w1 < w2 finite,
+ * Factors of both Gramians over a band, 0 <= w1 < w2, w2 finite,
  *
  *     W_c = 1/pi Re int_{w1}^{w2} (i w E - A)^-1 B B' (i w E - A)^-* dw,
  *
  * and W_o likewise, by adaptive Gauss-Kronrod quadrature.
  *
  * @return RITZ_ERR_CONVERGENCE if a pole on the axis lies in the band
- * @cost   a complex factor a point, fifteen points a panel
+ * @cost   a complex factorisation for each point, fifteen points a panel
  */
 ritz_status ritz_gramians_space_band(const ritz_state_space *model,
                                      const double band_hz[2],
                                      ritz_gramians *out);
 
-/** A := Q R of its singular vectors that are longer than rounding: the same
- * A A' in fewer columns, orthogonal, the longest first. */
+/** Replace A by a factor of A A' with fewer columns: the singular vectors of A,
+ * scaled, without those shorter than rounding. They are orthogonal, longest
+ * first. */
 ritz_status ritz_factor_compress(ritz_dense *A);
 
 #endif
