@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* LU := its factors; the reciprocal condition, 0 if it is singular. */
+/* LU := L and U of its factorisation; *rcond is its reciprocal condition
+   number, 0 if it is singular. */
 static ritz_status factor_in_place(ritz_dense *LU, int *pivot, double *rcond)
 {
     int n = (int)LU->nrow, info = 0;
@@ -54,7 +55,8 @@ void ritz_general_factor_free(ritz_general_factor *F)
     *F = (ritz_general_factor){0};
 }
 
-/* Rows and columns of one size; false where one of them is zero. */
+/* Scale rows and columns to similar size, by powers of two; false if a row or a
+   column is zero. */
 static bool equilibrate(ritz_dense *A, double *row, double *col)
 {
     int n = (int)A->nrow;

@@ -22,14 +22,14 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X);
 
 /**
- * LU factor of a matrix whose rows and columns have units of their own, as
- * coordinates of a reduced model do: where it looks singular, they are scaled
- * by powers of two before it is called so.
+ * LU factor of a matrix whose rows and columns have different units, as
+ * coordinates of a reduced model do. If the matrix seems singular, rows and
+ * columns are scaled by powers of two and it is factored once more.
  */
 typedef struct ritz_general_factor {
     ritz_dense LU;
     int *pivot;
-    double *row, *col; /* scales; NULL: none */
+    double *row, *col; /* scales of rows and columns; NULL: none */
 } ritz_general_factor;
 
 /** @return RITZ_ERR_SINGULAR if A is singular to working accuracy */
@@ -44,7 +44,8 @@ void ritz_general_factor_free(ritz_general_factor *F);
 
 RITZ_PAIR_OF(ritz_general_factor);
 
-/** As ritz_general_solve, of such a matrix. */
+/** ritz_general_solve for a matrix whose rows and columns have different
+ * units. */
 ritz_status ritz_general_solve_scaled(const ritz_dense *A, bool transposed,
                                       ritz_dense *X);
 
@@ -127,7 +128,7 @@ ritz_status ritz_general_singular(ritz_dense *A, double *sigma);
 /** The largest of them, 0 of an empty matrix; A is lost. */
 ritz_status ritz_general_norm(ritz_dense *A, double *out);
 
-/** x := x / |x|; false, and x as it was, if that is zero. */
+/** x := x / |x|; false, without a change of x, if x is zero. */
 bool ritz_general_unit(int64_t n, double *x);
 
 /** Frobenius norm. */

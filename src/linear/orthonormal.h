@@ -37,7 +37,8 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
                                     int64_t most, bool *taken);
 
 /**
- * The same, and what the block was in the columns that V then has: (WV)'R.
+ * As ritz_orthonormal_append, and also return the coordinates (WV)'R of the
+ * original block in the columns of V.
  *
  * @param[out] at  count x p
  */

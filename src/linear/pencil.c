@@ -1,4 +1,4 @@
-/* The sparse pencil A - s E: products and factors. */
+/* The sparse pencil A - s E: products and factorisation. */
 #include "linear/pencil.h"
 
 #include "base/alloc.h"

@@ -1,6 +1,6 @@
 /*
- * The sparse pencil A - s E of a linear system E x' = A x: products, factors at
- * points s, and the eigenvalues nearest to a point.
+ * The sparse pencil A - s E of a linear system E x' = A x: products,
+ * factorisations at points s, and the eigenvalues nearest to a point.
  */
 #ifndef RITZ_LINEAR_PENCIL_H
 #define RITZ_LINEAR_PENCIL_H
@@ -11,16 +11,16 @@
 
 typedef struct ritz_pencil {
     int64_t n;
-    ritz_sparse A, E;   /* n x n; E is stored where it is the identity too */
-    ritz_sparse At, Et; /* transposed; {0}: both are symmetric */
+    ritz_sparse A, E;   /* n x n; E is stored even if it is the identity */
+    ritz_sparse At, Et; /* transposes; {0}: A and E are both symmetric */
     bool plain;         /* E is the identity */
-    ritz_zldl *F;       /* of A - s E */
+    ritz_zldl *F;       /* factor of A - s E at the last point */
     double _Complex s;
     bool factored;
 } ritz_pencil;
 
 /**
- * The pencil of some matrices, which are copied.
+ * The pencil of A and E, which are copied.
  *
  * @param[in] E  invertible; {0}: the identity
  */
@@ -30,44 +30,45 @@ ritz_status ritz_pencil_new(const ritz_sparse *A, const ritz_sparse *E,
 /** Whether A and E are symmetric. */
 bool ritz_pencil_is_symmetric(const ritz_pencil *pencil);
 
-/** A and E, or their transposes. */
+/** A, or its transpose; E, or its transpose. */
 const ritz_sparse *ritz_pencil_system(const ritz_pencil *pencil,
                                       bool transposed);
 const ritz_sparse *ritz_pencil_descriptor(const ritz_pencil *pencil,
                                           bool transposed);
 
 /**
- * Factor A - s E, unless that is what is factored.
+ * Factor A - s E, unless it is factored at the same s already.
  *
  * @return RITZ_ERR_SINGULAR if s is an eigenvalue to working accuracy
- * @cost   the pattern is analysed once, each s costs a complex factor
+ * @cost   one analysis of the pattern, and a complex factorisation for each s
  */
 ritz_status ritz_pencil_factor(ritz_pencil *pencil, double _Complex s);
 
-/** X := (A - s E)^-1 X, or by the transposed matrix; n x k. */
+/** X := (A - s E)^-1 X with the last factor, or (A - s E)^-T X if @p
+ * transposed; X is n x k. */
 ritz_status ritz_pencil_solve(ritz_pencil *pencil, bool transposed, int64_t k,
                               double _Complex *X);
 
-/** Y := A X, n x k, of a sparse A; X and Y are not the same. */
+/** Y := A X with a sparse A and n x k matrices; X and Y must not overlap. */
 void ritz_pencil_times(const ritz_sparse *A, int64_t k,
                        const double _Complex *X, double _Complex *Y);
 
-/* Eigenvalues of a pencil near a point, that nearest first. */
+/* Eigenvalues of a pencil near a point, nearest first. */
 typedef struct ritz_pencil_pairs {
     int64_t count;
     double _Complex *s;
-    double _Complex *x; /* n x count, of length one */
+    double _Complex *x; /* n x count, of unit length */
     double *residual;   /* |A x - s E x| / | |A||x| + |s||E||x| | */
     char engine[RITZ_NAME_SIZE];
 } ritz_pencil_pairs;
 
 /**
  * The @p count eigenvalues nearest to @p shift, or all if there are fewer: by
- * LAPACK of small pencils, else by Arnoldi iterations on (A - shift E)^-1 E
- * (ARPACK). That none is missing between them is not proven.
+ * LAPACK for small pencils, else by Arnoldi iterations on (A - shift E)^-1 E
+ * (ARPACK). It is not proven that no nearer one is missing.
  *
- * @return RITZ_ERR_SINGULAR if the shift is an eigenvalue;
- *         RITZ_ERR_CONVERGENCE if they are not found
+ * @return RITZ_ERR_SINGULAR if the shift is an eigenvalue; RITZ_ERR_CONVERGENCE
+ *         if the iterations do not converge
  */
 ritz_status ritz_pencil_nearest(ritz_pencil *pencil, double _Complex shift,
                                 int64_t count, ritz_pencil_pairs *out);

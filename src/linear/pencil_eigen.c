@@ -3,10 +3,9 @@
  *
  *     (A - sigma E)^-1 E x = nu x,   s = sigma + 1 / nu,
  *
- * those nearest to sigma are the largest nu, which implicitly restarted Arnoldi
- * iterations find first [LehoucqSorensenYang1998]. The last digits of s are not
- * those of nu: one inverse iteration with a Rayleigh quotient is not taken, the
- * residual says how exact a pair is.
+ * the eigenvalues nearest to sigma have the largest nu, which implicitly
+ * restarted Arnoldi iterations find first [LehoucqSorensenYang1998]. The pairs
+ * are not refined further; the residual of each shows its accuracy.
  */
 #include "linear/pencil.h"
 
@@ -25,9 +24,9 @@
 #include <string.h>
 
 enum {
-    SMALL = 120,    /* rows: all eigenvalues by LAPACK cost less */
-    RESTARTS = 100, /* of Arnoldi iterations */
-    SPARE = 20,     /* vectors beyond those needed */
+    SMALL = 120,    /* up to this order, all eigenvalues by LAPACK cost less */
+    RESTARTS = 100, /* largest number of restarts of the Arnoldi iterations */
+    SPARE = 20,     /* Arnoldi vectors in addition to the pairs wanted */
 };
 
 typedef struct arnoldi {
@@ -52,7 +51,7 @@ static ritz_status apply_operator(ritz_pencil *p, int64_t k,
     return ritz_pencil_solve(p, false, k, y);
 }
 
-/* The start is the same on every machine, real and not smooth. */
+/* The starting vector is real, not smooth, and the same on every machine. */
 static ritz_status allocate_arnoldi(const ritz_pencil *p, int64_t count,
                                     arnoldi *a)
 {
@@ -68,7 +67,7 @@ static ritz_status allocate_arnoldi(const ritz_pencil *p, int64_t count,
     a->nev = (a_int)count;
     a->ncv = (a_int)ncv;
     a->lworkl = (a_int)(ncv * (3 * ncv + 5));
-    a->info = 1; /* resid holds the start */
+    a->info = 1; /* resid holds the starting vector */
     a->iparam[0] = 1;
     a->iparam[2] = RESTARTS;
     a->iparam[3] = 1;
@@ -114,7 +113,7 @@ static ritz_status iterate_arnoldi(ritz_pencil *p, arnoldi *a)
     return RITZ_OK;
 }
 
-/* The same of a small pencil: all of them. */
+/* All eigenvalues of a small pencil, by LAPACK. */
 static ritz_status solve_small(ritz_pencil *p, arnoldi *a)
 {
     int64_t n = p->n;
@@ -141,7 +140,8 @@ typedef struct near_pole {
     int64_t index;
 } near_pole;
 
-/* Of a pair that is as near the one above the axis comes first. */
+/* By distance; of two at equal distance, the one with the larger imaginary part
+   first. */
 static int compare_distance(const void *left, const void *right)
 {
     const near_pole *a = left, *b = right;
@@ -201,7 +201,8 @@ static ritz_status take_pairs(const ritz_pencil *p, double _Complex shift,
 
         out->s[k] = shift + 1.0 / a->d[order[k].index];
         if (fabs(cimag(out->s[k])) <= RITZ_POLE_FOUND * cabs(out->s[k]))
-            out->s[k] = creal(out->s[k]); /* A and E are real */
+            out->s[k] = creal(out->s[k]); /* A and E are real, so this one is
+                                             real */
         memcpy(x, a->V + order[k].index * n, (size_t)n * sizeof *x);
         RITZ_CHECK(find_residual(p, out->s[k], x, &out->residual[k]));
     }

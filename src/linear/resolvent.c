@@ -1,6 +1,6 @@
 /*
- * The transfer function of a linear system at many points, of complex triangles
- * that are made once.
+ * The transfer function of a linear system at many points, from complex
+ * triangular matrices that are computed once.
  */
 #include "linear/resolvent.h"
 
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A with complex entries, by column. */
+/* Complex copy of a real matrix. */
 static ritz_status widen_matrix(const ritz_dense *A, double _Complex **out)
 {
     RITZ_CHECK_NEW(*out, A->nrow * A->ncol);
@@ -22,7 +22,7 @@ static ritz_status widen_matrix(const ritz_dense *A, double _Complex **out)
     return RITZ_OK;
 }
 
-/* B := Q^H B, C := C Z; T and X are there to work in. */
+/* B := Q^H B, C := C Z; T and X are used as work space. */
 static void turn_loads(const double _Complex *Q, const double _Complex *Z,
                        ritz_resolvent *r)
 {
@@ -34,17 +34,18 @@ static void turn_loads(const double _Complex *Q, const double _Complex *Z,
         cblas_zgemm(CblasColMajor, CblasConjTrans, CblasNoTrans, n, m, n, &one,
                     Q, n, r->X, n, &zero, r->B, n);
     }
-    for (int i = 0; i < p; i++) { /* a row at a time, as T holds one */
+    for (int i = 0; i < p; i++) { /* row by row, because T has room for one
+                                     row */
         cblas_zcopy(n, r->C + i, p, r->T, 1);
         cblas_zgemv(CblasColMajor, CblasTrans, n, n, &one, Z, n, r->T, 1, &zero,
                     r->C + i, p);
     }
 }
 
-/* Whether A is a real Schur form already, and P a triangle. */
+/* Whether A is in real Schur form and P is upper triangular. */
 static bool is_schur(const ritz_dense *A, const ritz_dense *P)
 {
-    bool pair = false; /* the entry before stood below the diagonal */
+    bool pair = false; /* the previous column has an entry below the diagonal */
 
     for (int64_t j = 0; j < A->ncol; j++) {
         const double *a = ritz_dense_col(A, j);
@@ -61,7 +62,8 @@ static bool is_schur(const ritz_dense *A, const ritz_dense *P)
     return true;
 }
 
-/* Rows k and k + 1 of A, from column `first` on, times Q^H from the left. */
+/* Multiply rows k and k + 1 of A, in columns first .. last - 1, by Q^H from the
+   left. */
 static void turn_rows(const double _Complex Q[4], int64_t k, int64_t rows,
                       int64_t first, int64_t last, double _Complex *A)
 {
@@ -74,7 +76,8 @@ static void turn_rows(const double _Complex Q[4], int64_t k, int64_t rows,
     }
 }
 
-/* Columns k and k + 1 of A, down to row `last`, times Z from the right. */
+/* Multiply columns k and k + 1 of A, in rows 0 .. last - 1, by Z from the
+   right. */
 static void turn_columns(const double _Complex Z[4], int64_t k, int64_t rows,
                          int64_t last, double _Complex *A)
 {
@@ -87,7 +90,8 @@ static void turn_columns(const double _Complex Z[4], int64_t k, int64_t rows,
     }
 }
 
-/* The pair of complex poles of rows k and k + 1, made a triangle. */
+/* Make the 2 x 2 diagonal block of a pair of complex poles, at row k, upper
+   triangular. */
 static ritz_status turn_block(int64_t k, ritz_resolvent *r)
 {
     int64_t n = r->n;
@@ -154,7 +158,7 @@ static ritz_status triangularise_pencil(ritz_resolvent *r)
     return RITZ_OK;
 }
 
-/* Where each column of the triangles begins. */
+/* Find the first row of each column of the triangles that is not zero. */
 static ritz_status find_tops(ritz_resolvent *r)
 {
     RITZ_CHECK_NEW(r->top, r->n);
@@ -222,8 +226,9 @@ static bool is_near_pole(const ritz_resolvent *r, double _Complex z,
 }
 
 /*
- * X = (z P - S)^-1 B, by columns of the triangles from the last: each is read
- * once, and none is copied, which is what a point costs.
+ * X = (z P - S)^-1 B by back substitution, column by column. Each column of the
+ * triangles is read once and none is copied, since memory traffic dominates the
+ * cost.
  */
 static void solve_shifted(ritz_resolvent *r, double _Complex z)
 {
@@ -266,23 +271,25 @@ bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
 }
 
 /*
- * Many points at once: X' holds (z P - S)^-1 B of all of them, a row for each
- * point and input, so that what rows of X above a block of columns take from it
+ * Many points at once: X' holds (z P - S)^-1 B of all points, a row for each
+ * point and input. The effect of a block of rows of X on the rows above,
  *
  *     X_above += S_above X_block - P_above (X_block z)
  *
- * is a product of matrices, the same for all points but for factors z.
+ * is then a product of matrices that are the same for all points, except for
+ * the factors z.
  */
 
-/* Columns of a block, and rows of X' that are solved for together. */
+/* Columns of X' in a block; rows of X', that is points times inputs, in a
+   panel. */
 enum { BLOCK = 48, PANEL = 240 };
 
 typedef struct point_rows {
     const ritz_resolvent *r;
-    const double _Complex *z; /* of each point */
+    const double _Complex *z; /* value at each point */
     int rows;                 /* points times inputs */
-    double _Complex *X, *Z; /* rows x n; rows x BLOCK: columns of X, times -z */
-    double _Complex *H;     /* rows x p */
+    double _Complex *X, *Z;   /* X', rows x n; Z = -z X', rows x BLOCK */
+    double _Complex *H;       /* C X of each row, rows x p */
 } point_rows;
 
 static void point_rows_free(point_rows *s)
@@ -290,7 +297,7 @@ static void point_rows_free(point_rows *s)
     RITZ_FREE(s->X, s->Z, s->H);
 }
 
-/* Z, column `at`, = -z X, column j. */
+/* Column `at` of Z := -z times column j of X'. */
 static void shift_column(const point_rows *s, int at, int j)
 {
     for (int k = 0; k < s->rows; k++)
@@ -298,7 +305,8 @@ static void shift_column(const point_rows *s, int at, int j)
             -s->z[k / s->r->m] * s->X[k + (int64_t)j * s->rows];
 }
 
-/* Columns first .. last - 1 of X, from the last; Z is theirs too. */
+/* Back substitution within columns first .. last - 1 of X'; sets these columns
+   of Z. */
 static void solve_block(const point_rows *s, int first, int last)
 {
     const ritz_resolvent *r = s->r;
@@ -322,7 +330,7 @@ static void solve_block(const point_rows *s, int first, int last)
     }
 }
 
-/* What columns of X before the block take from it. */
+/* Subtract the contribution of a block from the columns of X' before it. */
 static void take_block(const point_rows *s, int first, int last)
 {
     const double _Complex one = 1.0;
@@ -345,7 +353,7 @@ static void take_block(const point_rows *s, int first, int last)
                     s->X + top * rows, s->rows);
 }
 
-/* H of the points of a panel, added to theirs. */
+/* Add C X of a panel's points to H. */
 static void add_panel(const point_rows *s, double _Complex *H)
 {
     const double _Complex one = 1.0, zero = 0.0;
@@ -390,7 +398,7 @@ ritz_status ritz_resolvent_many(const ritz_resolvent *resolvent, int64_t count,
     return RITZ_OK;
 }
 
-/* T = z P - S, its upper triangle. */
+/* T = upper triangle of z P - S. */
 static void shift_triangle(ritz_resolvent *r, double _Complex z)
 {
     for (int64_t j = 0; j < r->n; j++)
@@ -402,7 +410,7 @@ static void shift_triangle(ritz_resolvent *r, double _Complex z)
         }
 }
 
-/* Length of a vector of complex numbers. */
+/* Euclidean norm of a complex vector. */
 static double complex_size(int64_t count, const double _Complex *x)
 {
     double sum = 0.0;

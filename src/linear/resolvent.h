@@ -11,7 +11,7 @@
  *
  *     C (z P - A)^-1 B
  *
- * A and P are brought to complex upper triangles once,
+ * A and P are transformed to complex upper triangular matrices once,
  *
  *     Q^H A Z = S,    Q^H P Z = P_z,    B := Q^H B,    C := C Z
  *
@@ -20,17 +20,18 @@
 typedef struct ritz_resolvent {
     int n, m, p;            /* states, inputs, outputs */
     double _Complex *S, *P; /* n x n, upper triangles; P NULL: the identity */
-    double _Complex *B, *C; /* n x m, p x n, in coordinates of the triangles */
-    double _Complex *T, *X; /* n x n, n x m: to work in, of one thread */
-    int *top;               /* the first row of each column of S and P that is
-                               not 0: of a diagonal, that of the diagonal */
+    double _Complex *B, *C; /* n x m, p x n, transformed */
+    double _Complex *T, *X; /* n x n, n x m: work space, for one thread at a
+                               time */
+    int *top;               /* for each column, the first row in which S or P is
+                               not 0; for a diagonal entry only, its own row */
 } ritz_resolvent;
 
 /**
  * @param[in] P  {0}: the identity
  * @return RITZ_ERR_CONVERGENCE if the eigenvalues are not found
- * @cost   25 n^3 complex operations, 66 n^3 with P; n^2 where A is
- *         quasi-triangular, and P triangular, as in a Schur form
+ * @cost   25 n^3 complex operations, 66 n^3 with P; n^2 if A is
+ *         quasi-triangular and P triangular, as in a Schur form
  */
 ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
                                const ritz_dense *B, const ritz_dense *C,
@@ -40,20 +41,21 @@ ritz_status ritz_resolvent_new(const ritz_dense *A, const ritz_dense *P,
 double _Complex ritz_resolvent_pole(const ritz_resolvent *resolvent, int64_t k);
 
 /**
- * H += C (z P - A)^-1 B, p x m by columns.
+ * H += C (z P - A)^-1 B, p x m, column-major.
  *
- * @return false, and nothing is added, where z is within @p near |z| of a pole
+ * @return false, without a change of H, if a pole is closer to z than @p near
+ *         |z|
  * @cost   O(n^2 m)
  */
 bool ritz_resolvent_add(ritz_resolvent *resolvent, double _Complex z,
                         double near, double _Complex *H);
 
 /**
- * H += C (z P - A)^-1 B at @p count points, none of which is a pole: p x m by
- * columns, one point after another.
+ * H += C (z P - A)^-1 B at @p count points, none of which is a pole; H holds p
+ * x m values, column-major, for each point.
  *
  * @return RITZ_ERR_MEMORY
- * @cost   as many operations as for single points, by products of matrices
+ * @cost   as ritz_resolvent_add at each point, but in matrix products
  */
 ritz_status ritz_resolvent_many(const ritz_resolvent *resolvent, int64_t count,
                                 const double _Complex *z, double _Complex *H);
@@ -61,7 +63,7 @@ ritz_status ritz_resolvent_many(const ritz_resolvent *resolvent, int64_t count,
 /**
  * Frobenius norms of (z P - A)^-1 B and C (z P - A)^-1.
  *
- * @param[in] z  no pole
+ * @param[in] z  must not be a pole
  * @return RITZ_ERR_MEMORY
  */
 ritz_status ritz_resolvent_sides(ritz_resolvent *resolvent, double _Complex z,

@@ -58,7 +58,7 @@ ritz_status ritz_curve_between(const ritz_curve *curve, double within,
     return RITZ_OK;
 }
 
-/* The golden sections of a bracket. */
+/* Golden section points of a bracket. */
 static double lower_section(const ritz_bracket *s)
 {
     return s->high - RITZ_GOLDEN * (s->high - s->low);
@@ -69,7 +69,8 @@ static double upper_section(const ritz_bracket *s)
     return s->low + RITZ_GOLDEN * (s->high - s->low);
 }
 
-/* Where the next value is needed; false if the bracket is short enough. */
+/* Shorten a bracket, and return where its next value is needed; false if the
+   bracket is short enough. */
 static bool advance_bracket(ritz_bracket *s, double within, double **at,
                             double **value)
 {
@@ -93,7 +94,7 @@ static bool advance_bracket(ritz_bracket *s, double within, double **at,
     return true;
 }
 
-/* The first values, at both sections of each. */
+/* Values at both section points of each bracket. */
 static ritz_status begin_brackets(const ritz_curves *curves, int64_t count,
                                   ritz_bracket *bracket, double *at,
                                   double *value)

@@ -22,23 +22,25 @@ typedef struct ritz_curve {
 ritz_status ritz_curve_between(const ritz_curve *curve, double within,
                                double *low, double *high, double *most);
 
-/* Values at some frequencies, all at once. */
+/* A function that returns values at several frequencies at once. */
 typedef struct ritz_curves {
     ritz_status (*at)(void *state, int64_t count, const double *hertz,
                       double *value);
     void *state;
 } ritz_curves;
 
-/* Two frequencies between which a peak is sought. */
+/* Two frequencies between which a maximum is sought. */
 typedef struct ritz_bracket {
     double low, high;
-    double a, b, at_a, at_b; /* inner points and their values: to work in */
+    double a, b, at_a, at_b; /* section points and their values, used by the
+                                search */
 } ritz_bracket;
 
 /**
- * As ritz_curve_between, of many brackets: a point of each at a time.
+ * As ritz_curve_between, for many brackets at the same time: each step
+ * evaluates one point of each bracket.
  *
- * @param[in,out] bracket  low and high; count of them
+ * @param[in,out] bracket  @p count brackets, with low and high
  */
 ritz_status ritz_curves_between(const ritz_curves *curves, double within,
                                 int64_t count, ritz_bracket *bracket);
