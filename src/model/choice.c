@@ -212,7 +212,7 @@ static void append_word(int64_t size, char *out, const char *key,
 {
     const size_t room = (size_t)size;
     size_t used = strlen(out);
-    size_t from = used + (used > 0); /* beyond the end if there is no room */
+    size_t from = used + (used > 0); /* beyond the end if the text is full */
 
     snprintf(out + used, room - used, "%s%s %s", used > 0 ? " " : "", key,
              value);

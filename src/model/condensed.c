@@ -1,7 +1,7 @@
 /*
- * What tools make of small models so that each may follow another: a
- * configuration of a system as a reduced component, a reduced component as a
- * component, and either as a state space.
+ * Conversions that let tools use small models further: a configuration of a
+ * system as a reduced component, a reduced component as a component, and a
+ * reduced component as a state space.
  */
 #include "base/alloc.h"
 #include "model/equations.h"
@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Column @p j of a matrix has no entry but on its diagonal. */
+/* Whether row and column @p j of a matrix are zero except on the diagonal. */
 static bool is_decoupled(const ritz_dense *A, int64_t j)
 {
     for (int64_t i = 0; i < A->nrow; i++)
@@ -23,7 +23,7 @@ static bool is_decoupled(const ritz_dense *A, int64_t j)
 }
 
 /*
- * K of the modes. What is left of a rigid one's eigenvalue is rounding and
+ * Stiffness of the modes. The eigenvalue of a rigid mode is rounding and
  * becomes 0, unless springs have been installed since.
  */
 static ritz_status copy_stiffness(const ritz_configuration *at, ritz_dense *out)
@@ -35,7 +35,7 @@ static ritz_status copy_stiffness(const ritz_configuration *at, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Each column is a mode, the rigid ones first. */
+/* Columns are modes, the rigid ones first. */
 static ritz_status describe_modes(const ritz_configuration *at,
                                   ritz_columns *out)
 {
@@ -84,8 +84,8 @@ ritz_status ritz_reduced_of_configuration(const ritz_system *system,
     return RITZ_OK;
 }
 
-/* Forces at an interface, and the modes of negative eigenvalue that they leave
-   in a system, are none of a component. */
+/* Refuse columns that a component cannot have: forces at an interface, and
+   modes of negative eigenvalue that such forces cause in a system. */
 static ritz_status check_columns(const ritz_columns *columns)
 {
     for (int64_t j = 0; j < columns->count; j++) {

@@ -1,11 +1,12 @@
 /*
- * The significant digits of K: as the source states, or fewer where all values
- * are decimal numbers of fewer digits.
+ * The number of significant digits of K: as the source states, or fewer if all
+ * values are decimal numbers with fewer digits.
  *
- * A matrix of short numbers need not have been rounded: springs of 200 and 0.5
- * are exact. Of values that were rounded to d digits nine in ten need all d,
- * whatever their size, or, with a fixed number of decimals, nine in ten need
- * the last of these. Sums and products of short numbers have neither property.
+ * Values with few digits need not have been rounded: springs of 200 and 0.5 are
+ * exact. If values were rounded to d digits, nine in ten of them need all d
+ * digits; if they were rounded to a fixed number of decimals, nine in ten need
+ * the last decimal. Sums and products of exact numbers with few digits have
+ * neither property.
  */
 
 #include "base/alloc.h"
@@ -19,22 +20,27 @@
 #include <stdlib.h>
 
 enum {
-    LOOKED_AT = 2000, /* entries of K */
-    FULL = 16,        /* digits of a double, and no decimal number */
-    FEW = 12,         /* as many are enough; floats of 24 bits have more */
-    LEAST = 5,        /* that a writer of stiffness leaves, as of %.4e */
-    TELLING = 8,      /* values; less than half of so many: 1 in 2000 */
+    LOOKED_AT = 2000, /* entries of K that are examined, at most */
+    FULL = 16,        /* digits of a double that is no decimal number */
+    FEW = 12,         /* fewer digits than this count as decimal; single
+                         precision needs more */
+    LEAST = 5,        /* fewest digits to which writers round a stiffness, as
+                         with %.4e */
+    TELLING = 8,      /* fewest values for a decision: of 8 rounded ones less
+                         than half need all digits with a probability of 1 in
+                         2000 */
 };
 
 typedef struct decimals {
-    int64_t count;     /* of values looked at, each once */
-    int64_t full;      /* of them, those that need all of `digits` */
-    int64_t last;      /* those that need the last decimal, `place` */
-    int digits, place; /* that all make do with */
+    int64_t count;     /* number of distinct values examined */
+    int64_t full;      /* values that need all of `digits` */
+    int64_t last;      /* values that need the last decimal, `place` */
+    int digits, place; /* digits, and power of ten of the last decimal, that
+                          suffice for all values */
     double largest;
 } decimals;
 
-/* Whether `digits` decimal digits say what `value` is. */
+/* Whether `digits` decimal digits represent `value` to 4 eps. */
 static bool digits_suffice(double value, int digits)
 {
     char text[40];
@@ -43,7 +49,7 @@ static bool digits_suffice(double value, int digits)
     return fabs(strtod(text, NULL) - value) <= 4.0 * DBL_EPSILON * fabs(value);
 }
 
-/* The digits of a value, and the power of ten of the last one. */
+/* Number of decimal digits of a value, and the power of ten of the last one. */
 static int count_decimals(double value, int *place)
 {
     char text[40];
@@ -56,7 +62,7 @@ static int count_decimals(double value, int *place)
     return digits;
 }
 
-/* Distinct magnitudes of some entries of K that are not 0. */
+/* Distinct magnitudes of a sample of the nonzero entries of K. */
 static int64_t sample_entries(const ritz_sparse *K, double *value)
 {
     int64_t nnz = K->colptr[K->ncol], step = nnz / LOOKED_AT + 1;
@@ -93,7 +99,7 @@ static ritz_status count_digits(const ritz_sparse *K, decimals *out)
     return RITZ_OK;
 }
 
-/* Whether its numbers are short without having been rounded. */
+/* Whether the values have few digits without having been rounded. */
 static bool is_exact(const decimals *d)
 {
     return d->digits < LEAST ||

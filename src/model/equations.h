@@ -183,7 +183,8 @@ ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
 
 void ritz_nodes_free(ritz_nodes *nodes);
 
-/** Mass properties from R'MR, R the rigid motions about the basic origin. */
+/** Mass, centre and inertia from A = R'MR, with R the rigid motions about the
+ * basic origin. */
 void ritz_inertia_read(const ritz_dense *A, ritz_inertia *inertia);
 
 #endif

@@ -43,7 +43,8 @@ typedef struct ritz_modal_model {
     ritz_dense Delta;     /* m x m, all damping */
     ritz_dense B;         /* m x inputs */
     ritz_dense C, Cv;     /* outputs x m, accelerations written out */
-    ritz_dense Ca;        /* outputs x m, as they were */
+    ritz_dense Ca;        /* outputs x m, before accelerations were expressed by
+                             displacements and velocities */
     ritz_dense feed;      /* outputs x inputs */
 } ritz_modal_model;
 
@@ -125,7 +126,8 @@ ritz_status ritz_states_project(const ritz_component *component,
 ritz_status ritz_states_settle(const ritz_basis *basis, const ritz_dense *E,
                                ritz_state_space *model);
 
-/** The number of rigid modes if Delta couples none with a flexible one; else 0. */
+/** Number of rigid modes if Delta couples none of them with a flexible mode;
+ * else 0. */
 int64_t ritz_modal_decoupled(const ritz_modal_model *modes);
 
 /** |lambda|^1/2, or 1 where lambda is 0: it makes states well scaled. */

@@ -74,7 +74,7 @@ static bool may_be_rigid(ritz_column_kind kind)
  * |T|'|K||T|, and is taken for the zero that it stands for. Left as it is, it
  * would be all the stiffness that a statically determinate interface has, and
  * mix flexible motion into the rigid modes of every system with this body. Nor
- * do they lose any: of T'K4T the same is true.
+ * do rigid-body motions dissipate energy, so T'K4T is treated in the same way.
  */
 static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)

@@ -1,18 +1,20 @@
 /*
- * What rounding of a free body's stiffness does. K R = 0 of rigid motions R is
- * left by large numbers that cancel, and of rounded entries it is K R = F. The
- * rigid eigenvalues of K and M are then some mu, of either sign, and
+ * Effect of rounding of a free body's stiffness. K R = 0 for rigid motions R is
+ * the result of large numbers that cancel; with rounded entries K R = F. The
+ * rigid eigenvalues of (K, M) are then small values mu, of either sign, and
+ * rigid motion responds by
  *
  *     c'R (mu - w^2)^-1 R'b  =  -c'R R'b / w^2  -  mu c'R R'b / w^4  -  ...
  *
- * where participations in rigid motion are of the size of those in the first
- * flexible mode, lambda, whose response is c'b / lambda at rest. The second
- * term stays below a part e of what both modes respond at all frequencies with
+ * Let participations in rigid motion be of the size of those in the first
+ * flexible mode, which has the eigenvalue lambda and the static response c'b /
+ * lambda. The second term is then below a part e of the response of both modes
+ * at all frequencies w with
  *
  *     mu / w^2 <= e   and   mu lambda / w^4 <= e.
  *
- * A relative error u of the entries of K leaves in row i of F at most
- * u sum_j |K_ij| |r_j|: what exceeds that is a support.
+ * A relative error u of the entries of K causes in row i of F at most u sum_j
+ * |K_ij| |r_j|; a larger force is that of a support.
  */
 #include "model/rounding.h"
 #include "base/alloc.h"
@@ -51,8 +53,8 @@ double ritz_digits_rounding(double digits)
     return 0.5 * pow(10.0, 1.0 - digits);
 }
 
-/* Mean position of the dofs' grids, and how far they reach; false if some dof
-   is of no grid that has one. */
+/* Mean position of the dofs' grids, and the largest distance from it; false if
+   a dof has no grid with a position. */
 static bool find_extent(const ritz_component *c, double centre[static 3],
                         double *size)
 {
@@ -76,7 +78,8 @@ static bool find_extent(const ritz_component *c, double centre[static 3],
     return c->num_dofs > 0;
 }
 
-/* Whether a rigid motion meets no more force than an error of u leaves. */
+/* Whether the forces of a rigid motion are no larger than a relative error u of
+   K causes. */
 static ritz_status is_free(const ritz_component *c, const ritz_dense *R,
                            int64_t j, double u, bool *out)
 {
@@ -89,7 +92,7 @@ static ritz_status is_free(const ritz_component *c, const ritz_dense *R,
     return RITZ_OK;
 }
 
-/* Independent ones of some motions with mass: the rank of R'MR. */
+/* Number of independent motions with mass: the rank of R'MR. */
 static ritz_status count_massive(const ritz_component *c, const ritz_dense *R,
                                  int64_t *out)
 {
@@ -106,7 +109,7 @@ static ritz_status count_massive(const ritz_component *c, const ritz_dense *R,
     return RITZ_OK;
 }
 
-/* Relative error of the entries of K. */
+/* Relative rounding error of the entries of K. */
 static ritz_status find_rounding(const ritz_component *c, double *out)
 {
     double digits = 0.0;
@@ -119,8 +122,8 @@ static ritz_status find_rounding(const ritz_component *c, double *out)
 }
 
 /*
- * Rigid motions, by positions, that nothing but rounding of K holds; 0 where
- * any translation is held, or positions are not known.
+ * Number of rigid motions, from positions, that K holds by rounding alone; 0 if
+ * K holds any translation, or positions are not known.
  */
 static ritz_status count_free(const ritz_component *c, int64_t *out)
 {
@@ -149,7 +152,7 @@ static ritz_status count_free(const ritz_component *c, int64_t *out)
     return count_massive(c, &R, out);
 }
 
-/* The largest |f| of the rigid motions, and the first one above. */
+/* The largest |f| of the rigid motions, and the frequency of the next mode. */
 static void take_pairs(const ritz_pairs *pairs, ritz_rounded *out)
 {
     for (int64_t k = 0; k < out->motions && k < pairs->Phi.ncol; k++)
@@ -159,7 +162,8 @@ static void take_pairs(const ritz_pairs *pairs, ritz_rounded *out)
         out->flexible_hz = ritz_eigen_hertz(pairs->lambda[out->motions]);
 }
 
-/* The lowest pairs, where those that are known hold no flexible one. */
+/* Take the frequencies from @p pairs or, if these contain no flexible mode,
+   compute more. */
 static ritz_status take_lowest(const ritz_component *component,
                                const ritz_pairs *pairs, ritz_rounded *out)
 {

@@ -1,4 +1,5 @@
-/* The pencil of a state space, and its transfer function by factors of it. */
+/* The pencil of a state space, and the transfer function by its
+   factorisations. */
 #include "model/space.h"
 
 #include "base/alloc.h"
@@ -45,7 +46,7 @@ ritz_status ritz_pencil_is_dissipative(const ritz_pencil *pencil, bool *out)
     return is_definite(&sum, out);
 }
 
-/* Fewer columns of B, or rows of C, are solved for. */
+/* Solves with the columns of B, or with the rows of C if these are fewer. */
 ritz_status ritz_space_transfer(const ritz_state_space *model,
                                 ritz_pencil *pencil, double _Complex s,
                                 double _Complex *H)

@@ -624,7 +624,7 @@ ritz_status ritz_reduce_companion(const ritz_component *component,
 
 /* A state space in a basis of its states: see ritz_reduce_states. */
 
-/* W'A T, of a dense or sparse A or, if there is neither, of the identity. */
+/* W'A T, with a dense or a sparse A; without either, A is the identity. */
 static ritz_status product_between(const ritz_dense *W, const ritz_dense *A,
                                    const ritz_sparse *sA, const ritz_dense *T,
                                    ritz_dense *out)

@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-/* All but A and E. */
+/* Allocate a state space without A and E. */
 static ritz_status start_space(int64_t states, const ritz_io *io,
                                ritz_state_space *model)
 {
@@ -61,7 +61,7 @@ ritz_status ritz_state_space_of_sparse(const ritz_sparse *A,
     return RITZ_OK;
 }
 
-/* All of a model but A and E. */
+/* Copy a state space without A and E. */
 static ritz_status copy_space(const ritz_state_space *model,
                               ritz_state_space *out)
 {
@@ -144,7 +144,7 @@ static ritz_status refuse_singular(ritz_status status)
     return status;
 }
 
-/* A and E of either form. */
+/* Check A and E, both dense or both sparse. */
 static ritz_status check_pencil(const ritz_state_space *model, int64_t n)
 {
     const ritz_sparse *const E[] = {&model->sE};
