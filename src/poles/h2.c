@@ -1,4 +1,4 @@
-/* H2 norm of any model. */
+/* H2 norm of a model of any kind. */
 #include "poles/h2.h"
 
 #include "base/alloc.h"
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* NULL: as the dampers are installed, no more. */
+/* Set c and k of each damper; without values, those that the matrices hold. */
 static void set_values(const double *c, const double *k, ritz_dampers *dampers)
 {
     for (int64_t j = 0; j < dampers->count; j++) {
@@ -38,10 +38,11 @@ static ritz_status measure_plant(const double *c, const double *k,
     return take_root(&variance, out);
 }
 
-/* Modes to begin with, and at most. */
+/* Number of modes in the first space, and largest number of modes. */
 enum { FIRST_MODES = 20, MOST_MODES = 320 };
 
-/* In spaces of twice as many modes until that changes nothing. */
+/* H2 norm of a large component in spaces of modes and static responses; the
+   number of modes is doubled until the norm settles. */
 static ritz_status measure_large(ritz_model model,
                                  const ritz_disturbance *noise, const double *c,
                                  const double *k, ritz_h2 *out)

@@ -39,7 +39,7 @@ static void axis_response_free(axis_response *r)
     ritz_resolvent_free(&r->resolvent);
 }
 
-/* At points on the axis; those at infinity are last. */
+/* Response at points on the imaginary axis; infinite ones come last. */
 static ritz_status respond_at(void *state, int64_t count, const double *w,
                               double _Complex *H)
 {
@@ -58,7 +58,8 @@ static ritz_status respond_at(void *state, int64_t count, const double *w,
     return ritz_resolvent_many(&r->resolvent, finite, z, H);
 }
 
-/* 0 and, for every pole, where its own response peaks. */
+/* Search the peak, starting at 0 and where the response of each pole by itself
+   peaks. */
 static ritz_status search_peak(axis_response *r, ritz_peak *out)
 {
     int64_t n = r->resolvent.n;
@@ -110,7 +111,7 @@ static void divide_by(double by, ritz_dense *A)
         A->val[k] /= by;
 }
 
-/* B and C of length one. */
+/* Scale B and C to unit length, and D by both. */
 static void divide_sides(stable *s)
 {
     s->size = ritz_general_size(&s->B) * ritz_general_size(&s->C);
@@ -141,7 +142,7 @@ static ritz_status take_stable(const ritz_state_space *model, stable *s)
     return RITZ_OK;
 }
 
-/* The same of a model that is in Schur form and stable. */
+/* Copy a stable model that is in Schur form already. */
 static ritz_status copy_stable(const ritz_state_space *model, stable *s)
 {
     RITZ_CHECK(ritz_dense_copy(&model->A, &s->split.S));
@@ -191,8 +192,8 @@ static ritz_status bisect_peak(const stable *s, double tolerance, double *w,
 }
 
 /*
- * A change dA of the matrix moves the response by C R dA R B, R = (i w P -
- * S)^-1: rounding by eps (|S| + w |P|) |C R| |R B|.
+ * A change dA changes the response by C R dA R B with R = (i w P - S)^-1;
+ * rounding therefore changes it by eps (|S| + w |P|) |C R| |R B|.
  */
 static ritz_status find_rounding(axis_response *r, const stable *s,
                                  ritz_norm *out)
@@ -285,8 +286,8 @@ static void tell_two(const stable *s, const ritz_dense *CF, ritz_norm *out)
 }
 
 /*
- * F is an upper triangle: of blocks side by side, its last part is that of the
- * last block alone.
+ * Factor F is upper triangular. If A is block diagonal, the last diagonal block
+ * of F is therefore the factor of the last block by itself.
  */
 static ritz_status norm_two(const stable *s, int64_t last, ritz_norm *out,
                             ritz_norm *part)

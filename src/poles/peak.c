@@ -10,11 +10,11 @@
 #include <stdlib.h>
 
 /*
- * Peaks lie near poles: they are where the search begins, and golden sections
- * between neighbours end it, of all brackets at a time.
+ * The search starts at the given points, which are near poles since peaks are,
+ * and refines all brackets at the same time by golden sections.
  */
 
-/* Peaks that are followed between points, at most, by so many brackets each. */
+/* Largest number of peaks that are refined, and brackets for each of them. */
 enum { MOST_PEAKS = 8, BRACKETS = 3 };
 
 double ritz_peak_of_pole(double _Complex pole)
@@ -62,7 +62,7 @@ static ritz_status climb_at(void *state, int64_t count, const double *w,
     return ritz_peak_at(state, count, w, value);
 }
 
-/* Index of the largest that was not yet taken, -1 if there is none. */
+/* Index of the highest point not yet taken; -1 if there is none. */
 static int64_t next_highest_point(int64_t count, const double *value)
 {
     int64_t best = -1;
@@ -74,8 +74,8 @@ static int64_t next_highest_point(int64_t count, const double *value)
 }
 
 /*
- * Between a point and a neighbour on either side; a narrow peak is in the half
- * width around the point, whatever is between it and the next.
+ * Brackets from a point to its neighbour on either side, and one within 1 % of
+ * the point, for a narrow peak next to it.
  */
 static void place_brackets(int64_t count, const double *w, int64_t k,
                            ritz_bracket *bracket)

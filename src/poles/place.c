@@ -1,6 +1,7 @@
 /*
- * Places of dampers by pruning [ChuMilman1992, section 4]: every candidate is
- * tuned alone, and of the best all combinations are tuned together.
+ * Choice of places for dampers by pruning [ChuMilman1992, section 4]: each
+ * candidate is tuned by itself, and all combinations of the best ones are
+ * tuned.
  */
 #include "base/alloc.h"
 #include "base/search.h"
@@ -14,12 +15,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Combinations at most; candidates beyond the places, where nothing is said;
-   the next best that are told; searches of a candidate, a combination. */
+/* Largest number of combinations; candidates to combine in addition to the
+   number of places, by default; number of next best combinations reported;
+   evaluations of a search; starts for a single candidate, and for a
+   combination. */
 enum { MOST_CHOICES = 100000, MORE = 5, NEXT = 5, EVALUATIONS = 300 };
 enum { STARTS_ALONE = 2, STARTS_TOGETHER = 1 };
 
-/* n over k. */
+/* Binomial coefficient n over k. */
 static double count_choices(int64_t n, int64_t k)
 {
     double product = 1.0;
@@ -29,7 +32,7 @@ static double count_choices(int64_t n, int64_t k)
     return round(product);
 }
 
-/* How many candidates are combined. */
+/* Number of candidates of which combinations are formed. */
 static int64_t count_among(const ritz_placing_request *request)
 {
     int64_t among =
@@ -38,15 +41,16 @@ static int64_t count_among(const ritz_placing_request *request)
     return among < request->tuning.count ? among : request->tuning.count;
 }
 
-/* The model without any candidate, from which plants are made. */
+/* The model without any candidate, and the space that plants are made from. */
 typedef struct field {
     const ritz_placing_request *request;
-    ritz_component component; /* the model's, with these dampers; borrowed */
+    ritz_component component; /* the model's component with `dampers` in place
+                                 of its own; borrows the rest */
     ritz_dampers dampers;
     ritz_model bare;
     ritz_static_space space;
     bool in_space;
-    bool *used; /* room for each damper */
+    bool *used; /* work space, an entry for each damper */
 } field;
 
 static void field_free(field *f)
@@ -86,7 +90,7 @@ static ritz_status field_new(const ritz_placing_request *request, field *f)
     return RITZ_OK;
 }
 
-/* What a choice of candidates is tuned on. */
+/* The plant of a combination of candidates. */
 static ritz_status make_plant(field *f, int64_t count, const ritz_tuned *tuned,
                               ritz_plant *out)
 {
@@ -99,7 +103,7 @@ static ritz_status make_plant(field *f, int64_t count, const ritz_tuned *tuned,
     return ritz_static_space_plant(&f->space, f->used, out);
 }
 
-/* The norm of a choice, HUGE_VAL where it is infinite. */
+/* Tune a combination; its norm is HUGE_VAL if it is infinite. */
 static ritz_status tune_choice(field *f, const ritz_tuning_search *search,
                                ritz_tuning *out)
 {
@@ -130,7 +134,7 @@ static ritz_status tune_alone(field *f, ritz_placing *out)
     return RITZ_OK;
 }
 
-/* Candidates, the best alone first; ties in their order. */
+/* Candidates by ascending norm of each by itself; equal ones in their order. */
 static ritz_status rank_candidates(const ritz_placing *placing, int64_t **out)
 {
     RITZ_OWN_ARRAY int64_t *order = NULL;
@@ -150,7 +154,7 @@ static ritz_status rank_candidates(const ritz_placing *placing, int64_t **out)
     return RITZ_OK;
 }
 
-/* A choice, its norm and its values. */
+/* A combination of candidates, its norm and its values. */
 typedef struct choice {
     double norm;
     int64_t *group;
@@ -164,7 +168,7 @@ static void choice_free(choice *one)
 }
 
 typedef struct choices {
-    int64_t count; /* the best so far, ascending; NEXT + 1 at most */
+    int64_t count; /* NEXT + 1 best combinations so far, by ascending norm */
     choice at[NEXT + 2];
 } choices;
 
@@ -174,7 +178,7 @@ static void choices_free(choices *all)
         choice_free(&all->at[j]);
 }
 
-/* Put a choice where it belongs, and drop the last if there are too many. */
+/* Insert a combination by its norm, and drop the last if there are too many. */
 static void keep_choice(choices *all, choice *one)
 {
     int64_t at = all->count++;
@@ -188,7 +192,8 @@ static void keep_choice(choices *all, choice *one)
         choice_free(&all->at[--all->count]);
 }
 
-/* One combination: tuned from what its dampers were alone, too. */
+/* Tune one combination, with the values of each candidate by itself as an
+   additional start. */
 static ritz_status try_choice(field *f, const ritz_placing *placing,
                               const int64_t *order, const int64_t *at,
                               choices *all)
@@ -244,7 +249,8 @@ static ritz_status try_choices(field *f, ritz_placing *placing,
     return RITZ_OK;
 }
 
-/* The best choice is tuned again, on the full model; the others are listed. */
+/* Tune the best combination again, on the full model, and list the next
+   best. */
 static ritz_status settle_choice(field *f, const choices *all,
                                  ritz_placing *out)
 {

@@ -15,32 +15,35 @@
 #include <ritz/poles.h>
 #include <ritz/response.h>
 
-/* Components of so many dofs have all their modes found where ratios damp them:
-   one dense eigenproblem, a minute at most. Of larger ones Ritz vectors take the
-   place of those that are not summed. */
+/* Components of up to this many dofs have all their modes computed if damping
+   ratios act on them, by a dense eigenproblem of at most a minute. For larger
+   ones Ritz vectors replace the modes that are not summed. */
 enum { RITZ_RATIO_DOFS = 2000 };
 
 /*
  * Response of the modes that were left out, damped by a M + b K: with K^+ the
- * inverse of K where they live, R_0 = K^+ B and R_j = K^+ M R_(j-1),
+ * inverse of K in the space of these modes, R_0 = K^+ B and R_j = K^+ M
+ * R_(j-1),
  *
  *     X = sum_j mu^j R_j / (1 + i w b),    mu = (w^2 - i w a) / (1 + i w b)
  *
- * of which only the outputs are kept. Damping ratios, of which mode k has the
- * rate d_k, change its part of that by
+ * of which only the outputs are stored. A damping ratio gives mode k a rate d_k
+ * in addition, which changes the mode's term 1 / z by
  *
  *     1 / (z + i w d) - 1 / z = -i w d / (z (z + i w d)),
  *     z = lambda (1 + i w b) + i w a - w^2
  *
- * which is summed over all of them, or over the Ritz vectors of ritz_ratio_space.
+ * This change is summed over all modes left out, or over the Ritz vectors of
+ * ritz_ratio_space.
  */
 typedef struct ritz_residual {
     int64_t count, num_outputs, num_inputs;
-    int64_t num_damped; /* modes that were left out and have a rate; or Ritz
-                           vectors for these */
+    int64_t num_damped; /* number of modes left out that have a rate, or of Ritz
+                           vectors in their place */
     double *lambda, *rate;
-    ritz_io modes;    /* for these */
-    double uncertain; /* what ratios change, relative to |H|; 0: rounding */
+    ritz_io modes;    /* inputs and outputs of these */
+    double uncertain; /* error of the changes by ratios, relative to |H|; 0:
+                         rounding */
     double a, b;
     bool known;      /* a and b are all that D and K4 do to them */
     double unit;     /* of mu: term j is kept times its power j */
@@ -129,12 +132,12 @@ ritz_status ritz_poles_of_pairs(const ritz_second_order *model,
                                 ritz_pairs *pairs, ritz_poles *out);
 
 /**
- * The scale to which errors of each channel are relative: its largest |H|,
- * but at least a billionth of the geometric mean of the largest in its row and
- * in its column, below which a channel is rounding.
+ * The magnitude that errors of each channel are relative to: the channel's
+ * largest |H|, but at least a billionth of the geometric mean of the largest
+ * |H| in its row and in its column. Smaller channels are rounding.
  *
  * @param[in]  peak   num_outputs x num_inputs, largest |H| of each channel
- * @param[out] scale  of that size; may be @p peak
+ * @param[out] scale  of the same size; may be @p peak
  */
 void ritz_channel_scales(int64_t num_outputs, int64_t num_inputs,
                          const double *peak, double *scale);
@@ -157,40 +160,40 @@ ritz_status ritz_poles_of_component(const ritz_component *component,
                                     ritz_poles *out);
 
 /**
- * Whether ratios damp all modes of a component, rather than those that are
- * summed: it has up to RITZ_RATIO_DOFS dofs, or neither D nor K4.
+ * Whether damping ratios act on all modes of a component, and not only on those
+ * that are summed: it has at most RITZ_RATIO_DOFS dofs, or neither D nor K4.
  */
 bool ritz_ratios_act_on_all(const ritz_component *component,
                             const ritz_damping *damping);
 
 /**
- * The modes of a component that are not among known ones, M-orthogonal to
- * these. @cost O(n^3)
+ * The modes of a component above those that are known, M-orthogonal to the
+ * latter. @cost O(n^3)
  *
- * @param[in]  pairs  the lowest modes, all up to some frequency
- * @param[out] Phi, lambda  all others that have mass, ascending
+ * @param[in]  pairs  the lowest modes, complete up to some frequency
+ * @param[out] Phi, lambda  all other modes with mass, ascending
  */
 ritz_status ritz_modes_above(const ritz_component *component,
                              const ritz_pairs *pairs, ritz_dense *Phi,
                              double **lambda);
 
 /**
- * All modes of a component that have mass. Those up to a frequency are as exact
- * as ritz_eigen_sparse has them.
+ * All modes of a component that have mass. Those up to @p up_to_hz have the
+ * accuracy of ritz_eigen_sparse.
  */
 ritz_status ritz_modes_of_whole(const ritz_component *component,
                                 double up_to_hz, ritz_pairs *out);
 
 /**
  * Response of the modes that are not in @p pairs, damped by @p damping, if it
- * is a M + b K, and by D, if it is such a sum; by ratios if
- * ritz_ratios_act_on_all. Other damping of these modes is neglected: by another
- * D, by K4, by ratios of larger components, and where a is so large that the
- * series does not converge.
+ * is a M + b K, by D if it has this form, and by ratios if
+ * ritz_ratios_act_on_all. Other damping of these modes is neglected: another D,
+ * K4, ratios if they do not act on all modes, and an a so large that the series
+ * does not converge.
  *
- * @param[in] damping  NULL: none beside D
- * @param[in] to_hz    where the series is to be good to 1e-12
- * @param[in] out_hz   all modes up to here are in @p pairs
+ * @param[in] damping  NULL: none in addition to D
+ * @param[in] to_hz    frequency up to which the series is accurate to 1e-12
+ * @param[in] out_hz   all modes up to this frequency are in @p pairs
  */
 ritz_status ritz_residual_new(const ritz_component *component,
                               const ritz_damping *damping,
@@ -198,8 +201,8 @@ ritz_status ritz_residual_new(const ritz_component *component,
                               double out_hz, ritz_residual *out);
 
 /**
- * What ratios change in the response of the modes that are not in @p pairs,
- * alone; nothing unless ritz_ratios_act_on_all.
+ * Only the change by damping ratios of the response of the modes that are not
+ * in @p pairs; empty unless ritz_ratios_act_on_all.
  */
 ritz_status ritz_residual_of_ratios(const ritz_component *component,
                                     const ritz_damping *damping,
@@ -207,19 +210,19 @@ ritz_status ritz_residual_of_ratios(const ritz_component *component,
                                     ritz_residual *out);
 
 /**
- * The same for components of so many dofs that their modes cannot be found: Ritz
- * pairs in the place of these, as many as settle what ratios change up to a
- * third of @p out_hz, and `uncertain`.
+ * As ritz_residual_of_ratios, for components so large that their modes cannot
+ * all be computed: Ritz pairs take the place of modes, as many as are needed
+ * for the response up to a third of @p out_hz. Sets `uncertain`.
  *
- * @param[in,out] r  with its terms, if it has any
- * @cost a factor for each of up to 33 poles, n x 800 numbers at most
+ * @param[in,out] r  its series is kept, if it has one
+ * @cost a factorisation for each of up to 33 poles, n x 800 numbers at most
  */
 ritz_status ritz_ratio_space(const ritz_component *component,
                              const ritz_damping *damping,
                              const ritz_pairs *pairs, double out_hz,
                              ritz_residual *r);
 
-/** H += that part of a residual. */
+/** H += the changes by damping ratios alone. */
 void ritz_residual_add_ratios(const ritz_residual *residual, double hertz,
                               double _Complex *H);
 
@@ -282,7 +285,8 @@ ritz_status ritz_spectrum_dense(const ritz_second_order *model,
                                 const ritz_damping *damping,
                                 ritz_spectrum *out);
 
-/** Poles of a state space: all of a dense one, of a sparse one as @p span. */
+/** Poles of a state space: all poles of a dense one, those that @p span asks
+ * for of a sparse one. */
 ritz_status ritz_spectrum_of_space(const ritz_state_space *model,
                                    const ritz_span *span, ritz_spectrum *out);
 
@@ -292,8 +296,8 @@ ritz_status ritz_spectrum_large(const ritz_component *component,
                                 const ritz_span *span, ritz_spectrum *out);
 
 /**
- * The space in which they are sought, modes and static responses to dampers, as
- * a model of its own with its dampers: T is kept.
+ * The space in which ritz_spectrum_large seeks poles, modes and static
+ * responses to dampers, as a reduced model with dampers and T.
  */
 ritz_status ritz_spectrum_space(const ritz_component *component,
                                 const ritz_span *span, ritz_reduced *out);
@@ -380,9 +384,9 @@ ritz_status ritz_channel_states(const ritz_state_space *model, int64_t output,
 void ritz_channel_free(ritz_channel *channel);
 
 /*
- * Norms of models in Schur form, A quasi-triangular and E, if there is one,
- * triangular, all poles known to be left of the axis: what ritz_norm_infinity
- * and ritz_norm_two find, without a further eigenproblem.
+ * Norms of a model in Schur form, with A quasi-triangular, E triangular or {0},
+ * and all poles known to be left of the axis. They equal those of
+ * ritz_norm_infinity and ritz_norm_two, without another eigenproblem.
  */
 
 /** @return RITZ_ERR_CONVERGENCE */
@@ -390,9 +394,9 @@ ritz_status ritz_norm_infinity_schur(const ritz_state_space *model,
                                      double tolerance, ritz_norm *out);
 
 /**
- * @param[in]  last  states at the end that no other state acts on or is acted
- *                   on by
- * @param[out] part  the norm of what these alone respond; may be NULL
+ * @param[in]  last  number of states at the end that are decoupled from all
+ *                   others
+ * @param[out] part  the norm of the response of these states alone; may be NULL
  * @return RITZ_ERR_ARGUMENT if D is not 0
  */
 ritz_status ritz_norm_two_schur(const ritz_state_space *model, int64_t last,

@@ -1,22 +1,22 @@
 /*
- * Damping ratios of the modes above those of `pairs`, where these are too many
- * to be found. What the rates d of these modes change in a response,
+ * Damping ratios of the modes above those of `pairs`, for components with too
+ * many modes to compute. The rates d of these modes change a response by
  *
  *     sum_k -i w d_k / (z_k (z_k + i w d_k)) c phi_k phi_k'b,
  *
- * is a function of the eigenvalue, as smooth as lambda^(-3/2): c f(A) b with A
- * = M^-1 K on what the known modes leave. It is taken by the Ritz pairs of A on
- * the rational Krylov space of all loads and outputs,
+ * which has the form c f(A) b with A = M^-1 K in the space of the modes above,
+ * and an f that falls like lambda^(-3/2). Instead of modes, the Ritz pairs of A
+ * are used in the rational Krylov space of all loads and outputs,
  *
  *     V = [(K + t_1 M)^-1 W, (K + t_2 M)^-1 W, ...],
- *     W = (I - M Phi Phi') [B, C', Cv', Ca'],
+ *     W = (I - M Phi Phi') [B, C', Cv', Ca'].
  *
- * in the place of its modes. Poles -t_j that are spread evenly in log(t) from
- * the first eigenvalue to the largest make the error fall by a factor with each
- * of them, as in rational approximations of the square root, and twice as fast
- * since b and c are both in the space. Each level halves the distances between
- * the poles. The difference of two levels is the error of the former: it is
- * what is stated of the latter.
+ * The poles -t_j are spread evenly in log(t) from the first eigenvalue to the
+ * largest. Each of them then reduces the error by a constant factor, as in
+ * rational approximations of the square root, and by the square of that because
+ * the space contains both b and c. Each level halves the distances between the
+ * poles. The difference between two levels is the error of the former, and is
+ * reported as that of the latter.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -33,10 +33,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Poles at the ends, then 2^(level - 1) between those that are there. */
+/* Level 0 has poles at both ends; each level adds poles half way between those
+   that exist. */
 enum { LEVELS = 6, MOST_COLUMNS = 800, SAMPLES = 6 };
 
-/* A ratio for every mode that no ratio of a list is of. */
+/* Index of a mode beyond a list of ratios, which has the last ratio of the
+   list. */
 enum { BEYOND_LISTED = RITZ_MOST_RATIOS };
 
 typedef struct ratio_space {
@@ -44,15 +46,17 @@ typedef struct ratio_space {
     const ritz_damping *damping;
     const ritz_pairs *pairs;
     ritz_dense MPhi;
-    ritz_dense loads;      /* W, columns of zeros left out */
-    ritz_sparse A;         /* K + low M: of what V is orthonormal in */
+    ritz_dense loads;      /* W, without zero columns */
+    ritz_sparse A;         /* K + low M, in which V is orthonormal */
     ritz_orthonormal set;  /* V */
-    double low, high;      /* of t_j */
-    ritz_io modes;         /* for the known modes */
-    double hertz[SAMPLES]; /* where levels are compared */
+    double low, high;      /* range of t_j */
+    ritz_io modes;         /* inputs and outputs of the known modes */
+    double hertz[SAMPLES]; /* frequencies at which levels are compared */
     int64_t values;
-    double _Complex *H, *last; /* SAMPLES x values: what ratios change */
-    double *scale;             /* values */
+    double _Complex *H, *last; /* SAMPLES x values: changes by ratios at this
+                                  and the former level */
+    double *scale;             /* values: magnitude that errors of each channel
+                                  are relative to */
 } ratio_space;
 
 static void ratio_space_free(ratio_space *s)
@@ -65,7 +69,8 @@ static void ratio_space_free(ratio_space *s)
     RITZ_FREE(s->H, s->last, s->scale);
 }
 
-/* Columns of X that are not zero, without the part of the modes, appended. */
+/* Append the columns of X to the loads, without their part in the known modes,
+   unless all are zero. */
 static ritz_status add_loads(const ratio_space *s, const ritz_dense *X,
                              ritz_dense *loads)
 {
@@ -99,8 +104,8 @@ static ritz_status gather_loads(ratio_space *s)
 }
 
 /*
- * From the last eigenvalue that is known to about the largest, which is no
- * smaller than any K_jj / M_jj.
+ * Range of t_j: from the last known eigenvalue to the largest one, estimated as
+ * twice the largest K_jj / M_jj.
  */
 static void place_ends(double out_hz, ratio_space *s)
 {
@@ -120,7 +125,7 @@ static void place_ends(double out_hz, ratio_space *s)
     s->high = fmin(s->high, s->low / RITZ_RATIO_REACH);
 }
 
-/* The response of the known modes, to which errors are relative. */
+/* Response of the known modes, which errors are relative to. */
 static void respond_modes(const ratio_space *s, double hertz,
                           double _Complex *H)
 {
@@ -148,9 +153,9 @@ static void respond_modes(const ratio_space *s, double hertz,
 }
 
 /*
- * Largest |H| of each channel in the upper half of the range, which is the least
- * that its largest |H| may be. Modes are known to three times the end of a range
- * or more.
+ * Largest |H| of each channel in the upper half of the range, a lower bound of
+ * the channel's largest |H|. The range ends at a third of the frequency up to
+ * which modes are known.
  */
 static ritz_status find_scales(double out_hz, const ritz_residual *r,
                                ratio_space *s)
@@ -177,7 +182,8 @@ static ritz_status find_scales(double out_hz, const ritz_residual *r,
     return RITZ_OK;
 }
 
-/* (K + t M)^-1 W joins V, as far as there is room. */
+/* Append the part of (K + t M)^-1 W that V does not contain, as far as there is
+   room. */
 static ritz_status add_pole(ratio_space *s, double t)
 {
     const ritz_component *c = s->component;
@@ -197,7 +203,7 @@ static ritz_status add_pole(ratio_space *s, double t)
     return ritz_orthonormal_append(&s->set, &X, room, NULL);
 }
 
-/* Poles of one level: even in log(t). */
+/* Add the poles of one level, spread evenly in log(t). */
 static ritz_status add_level(ratio_space *s, int level)
 {
     const double reach = log(s->high / s->low);
@@ -211,8 +217,8 @@ static ritz_status add_level(ratio_space *s, int level)
 }
 
 /*
- * Ritz pairs: V'MV y = kappa y with V'(K + low M)V = I, lambda = 1 / kappa -
- * low. Motions without mass have none.
+ * Ritz pairs lambda = 1 / kappa - low, X = V y, from V'MV y = kappa y with V'(K
+ * + low M)V = I. Motions without mass, kappa = 0, are left out.
  */
 static ritz_status find_pairs(const ratio_space *s, ritz_dense *X,
                               double **lambda)
@@ -246,7 +252,7 @@ static ritz_status find_pairs(const ratio_space *s, ritz_dense *X,
     return ritz_dense_mul(&V, &Y, X);
 }
 
-/* What a residual says of the rates of this level. */
+/* Store the Ritz pairs of this level and their rates in the residual. */
 static ritz_status take_rates(const ratio_space *s, ritz_residual *r)
 {
     RITZ_OWN(ritz_dense) X = {0};
@@ -270,7 +276,8 @@ static void respond_rates(const ratio_space *s, const ritz_residual *r,
         ritz_residual_add_ratios(r, s->hertz[k], H + k * s->values);
 }
 
-/* The largest difference of two responses, relative to |H| of its channel. */
+/* Largest difference between the responses of two levels, relative to the scale
+   of each channel. */
 static double compare_levels(const ratio_space *s)
 {
     double worst = 0.0;
@@ -285,9 +292,9 @@ static double compare_levels(const ratio_space *s)
 }
 
 /*
- * A list may have more ratios than modes are known. Which of the modes above
- * have these is not known: at most what all of them with the largest and all
- * with the smallest make different.
+ * Uncertainty because a list has ratios for modes that are not known: which
+ * Ritz vectors they belong to is not known. It is the difference between all
+ * Ritz vectors with the largest of these ratios and all with the smallest.
  */
 static double spread_of_list(ratio_space *s, ritz_residual *r)
 {
@@ -313,7 +320,7 @@ static double spread_of_list(ratio_space *s, ritz_residual *r)
     return compare_levels(s);
 }
 
-/* An empty space, and what levels of it are compared by. */
+/* An empty space, and the scales for comparisons between levels. */
 static ritz_status begin_space(double out_hz, const ritz_residual *r,
                                ratio_space *s)
 {

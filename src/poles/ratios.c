@@ -1,9 +1,9 @@
 /*
- * Damping ratios act on every mode: D = 2 zeta M (M^-1 K)^1/2 of one ratio. Of
- * components that are not too large all modes are found; the lowest of them by
- * the sparse eigensolver, which has them to more digits. Of larger ones Ritz
- * vectors take the place of the others (ratio_space.c), unless D or K4 couples
- * them.
+ * Damping ratios that act on every mode: for one common ratio, D = 2 zeta M
+ * (M^-1 K)^1/2. For components that are not too large all modes are computed,
+ * the lowest by the sparse eigensolver, which is more accurate. For larger ones
+ * Ritz vectors take the place of the modes above (ratio_space.c), unless D or
+ * K4 couples modes.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"

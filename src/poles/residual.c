@@ -12,8 +12,8 @@
  * by |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the
  * |mu| at the end of the range: powers of rad^2/s^2 would overflow.
  *
- * What ratios change is a sum over these modes where all of them are known, and
- * over Ritz vectors in their place where they are too many.
+ * The change by damping ratios is a sum over these modes or, if there are too
+ * many to compute, over Ritz vectors in their place.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -350,7 +350,7 @@ static int64_t count_terms(double to_hz, double out_hz, ritz_residual *r)
         MOST_TERMS, 1.0 + ceil(log(RITZ_SERIES_WITHIN) / log(mu / lambda)));
 }
 
-/* The modes above, with the rates of given ratios. */
+/* Add the modes above `pairs` and their rates from given ratios. */
 static ritz_status take_ratios(const ritz_component *component,
                                const ritz_damping *damping,
                                const ritz_pairs *pairs, double out_hz,

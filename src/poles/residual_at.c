@@ -1,4 +1,4 @@
-/* The response of modes that are left out at one frequency, once it is known. */
+/* Evaluation at one frequency of the response of modes that are left out. */
 #include "base/alloc.h"
 #include "poles/poles.h"
 

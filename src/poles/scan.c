@@ -1,7 +1,7 @@
 /*
- * One mode followed while c and k of dampers change, along one axis or over the
- * grid of several. The last axis is the fastest; each point continues the line
- * of the fastest axis on which there is a point before it.
+ * One mode is followed while c and k of dampers change, along one axis or over
+ * a grid of several. The last axis varies fastest. Each point extrapolates
+ * along the fastest axis on which it is not the first.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -16,7 +16,8 @@
 
 static const int64_t most_points = 100000;
 
-/* Undamped modes to scan with, at least; and for each mode before the one. */
+/* Number of undamped modes of the space: a fixed part, and a part for each mode
+   up to the one that is followed. */
 enum { LEAST_MODES = 20, EACH_MODE = 2 };
 
 static ritz_status check_axis(const ritz_scan_axis *axis, int64_t *count)
@@ -30,14 +31,14 @@ static ritz_status check_axis(const ritz_scan_axis *axis, int64_t *count)
         axis->from, axis->to, axis->step);
     RITZ_REFUSE_IF(!(steps < (double)most_points), RITZ_ERR_ARGUMENT,
                    "%.0f steps of a scan are too many", steps);
-    /* an end that rounding puts a hair beyond the last step belongs to it */
+    /* an end that rounding puts just beyond the last step counts as a point */
     *count =
         (int64_t)floor(steps * (1.0 + RITZ_RANGE_ROUNDING) + RITZ_RANGE_STEPS) +
         1;
     return RITZ_OK;
 }
 
-/* Whether a value is scanned by an axis before this one. */
+/* Whether an earlier axis scans the same parameter. */
 static bool is_scanned(const ritz_scan_request *request, int64_t before,
                        bool of_k, int64_t damper)
 {
@@ -49,7 +50,7 @@ static bool is_scanned(const ritz_scan_request *request, int64_t before,
     return false;
 }
 
-/* Points of each axis, and values at each point. */
+/* Number of points of each axis, and the values at each point of the grid. */
 static ritz_status fill_points(const ritz_scan_request *request,
                                const ritz_dampers *dampers, ritz_scan *scan)
 {
@@ -86,7 +87,7 @@ static ritz_status fill_points(const ritz_scan_request *request,
     return RITZ_OK;
 }
 
-/* The mode-th oscillating pole. */
+/* The oscillating pole of number @p mode at the first point. */
 static ritz_status begin_scan(const ritz_spectrum *spectrum, int64_t mode,
                               double _Complex *out)
 {
@@ -107,7 +108,7 @@ static ritz_status begin_scan(const ritz_spectrum *spectrum, int64_t mode,
     return RITZ_OK;
 }
 
-/* Where the pole of point k > 0 is expected. */
+/* The pole expected at point k > 0, by extrapolation. */
 static double _Complex expect_pole(const ritz_scan *scan, int64_t k)
 {
     int64_t stride = 1;
@@ -132,7 +133,7 @@ static void set_point(const ritz_scan_request *request, const ritz_scan *scan,
     }
 }
 
-/* Of a dense model; K, D and the dampers are copied. */
+/* Scan a dense model; K, D and the dampers are copied. */
 static ritz_status scan_dense(ritz_model model,
                               const ritz_scan_request *request, ritz_scan *out)
 {

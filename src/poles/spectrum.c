@@ -230,8 +230,8 @@ static ritz_status check_rest(const ritz_dense *D, int64_t from)
 }
 
 /*
- * A motion that nothing holds loses nothing, but for rounding of K4: s^2 = -i
- * eps |K4| would be two poles near 0, one of them right of the axis.
+ * Rigid motion has no structural damping, except rounding of K4, which would
+ * put two poles of s^2 = -i eps |K4| near 0, one of them right of the axis.
  */
 static void clear_rigid_loss(const ritz_pairs *pairs, ritz_dense *K4)
 {

@@ -1,6 +1,6 @@
 /*
- * Poles of a state space: all of a dense one, those nearest to 0 or to a
- * frequency of a sparse one.
+ * Poles of a state space: all of a dense one; of a sparse one those nearest to
+ * 0 or to a frequency.
  */
 #include "poles/poles.h"
 
@@ -14,9 +14,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { FIRST = 20 }; /* poles that are sought at first, up to a frequency */
+enum {
+    FIRST = 20
+}; /* number of poles sought first when a frequency limits
+                        them */
 
-/* All of them have neither shapes nor residuals. */
+/* All poles of a dense state space, without shapes and residuals. */
 static ritz_status find_all(const ritz_state_space *model, ritz_spectrum *out)
 {
     int64_t count = 0;
@@ -45,8 +48,8 @@ static int compare_sizes(const void *left, const void *right)
     return (a->size > b->size) - (a->size < b->size);
 }
 
-/* Those on and above the axis that are no further from 0 than @p limit, by
-   size, @p most at most. */
+/* Poles on and above the real axis with |s| up to @p limit, by ascending |s|,
+   @p most at most. */
 static ritz_status list_pairs(const ritz_pencil_pairs *pairs, double limit,
                               int64_t most, ritz_spectrum *out)
 {
@@ -70,7 +73,7 @@ static ritz_status list_pairs(const ritz_pencil_pairs *pairs, double limit,
     return RITZ_OK;
 }
 
-/* Twice as many poles each time, until one lies beyond the frequency. */
+/* Poles up to a frequency: their number is doubled until one lies beyond it. */
 static ritz_status find_up_to(ritz_pencil *pencil, double limit,
                               ritz_pencil_pairs *out)
 {

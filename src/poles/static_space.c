@@ -3,12 +3,12 @@
  *
  *     (K - sigma M) X = [B, b_1, b_2, ...],    W = [Phi X],   sigma <= 0,
  *
- * X without its part along Phi and of unit length in K - sigma M. Truncated
- * modes alone mislead: to the motion across a damper all modes contribute that
- * were left out [ChuMilman1992, eq. 11-14].
+ * with X without its part along Phi, and of unit length in K - sigma M.
+ * Truncated modes alone are not accurate, since all modes that were left out
+ * contribute to the motion across a damper [ChuMilman1992, eq. 11-14].
  *
- * Each choice of dampers takes its own columns of W: with G their
- * W'(K - sigma M) W, G E = E g, the basis is W E g^-1/2.
+ * Each choice of dampers uses a choice of columns of W. With G = W'(K - sigma
+ * M) W of these columns and G E = E g, the basis is W E g^-1/2.
  */
 #include "poles/h2.h"
 
@@ -19,7 +19,8 @@
 #include <math.h>
 #include <string.h>
 
-/* X := X over |X| in A, columns of which less than a part is new as zeros. */
+/* Scale the columns of X to unit length in A; those that are small relative to
+   `before`, X with its part along Phi, become zero. */
 static ritz_status normalise_columns(const ritz_sparse *A,
                                      const ritz_dense *before, ritz_dense *X)
 {
@@ -38,7 +39,7 @@ static ritz_status normalise_columns(const ritz_sparse *A,
     return RITZ_OK;
 }
 
-/* X of the inputs and dampers, without Phi. */
+/* Responses X to inputs and dampers, without their part along Phi. */
 static ritz_status find_responses(const ritz_component *component,
                                   const ritz_pairs *pairs, double sigma,
                                   ritz_dense *out)
@@ -72,7 +73,8 @@ static ritz_status project_component(const ritz_component *component,
     return ritz_dampers_project(&component->dampers, W, &space->dampers);
 }
 
-/* 0, or where rigid motion is free, -lambda of the lowest mode that is not. */
+/* Shift of K: 0, or -lambda of the lowest flexible mode if the component has
+   rigid motion. */
 static double choose_shift(const ritz_pairs *pairs)
 {
     int64_t r = pairs->num_rigid;
@@ -107,7 +109,7 @@ ritz_status ritz_static_space_new(ritz_model model, int64_t modes,
     return RITZ_OK;
 }
 
-/* Columns that a choice of dampers has. */
+/* The columns of W for a choice of dampers, without those that are zero. */
 static ritz_status choose_columns(const ritz_static_space *space,
                                   const bool *used, int64_t *count,
                                   int64_t **out)
@@ -130,7 +132,7 @@ static ritz_status choose_columns(const ritz_static_space *space,
     return RITZ_OK;
 }
 
-/* V, for which V'(K - sigma M) V = I, of these columns. */
+/* V with V'(K - sigma M) V = I, for these columns. */
 static ritz_status orthonormalise_columns(const ritz_static_space *space,
                                           int64_t count, const int64_t *column,
                                           ritz_dense *out)

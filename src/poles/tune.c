@@ -1,13 +1,14 @@
 /*
- * The c and k of some dampers for which the H2 norm is least: sequential
- * quadratic programming within bounds [Kraft1994] (NLopt's SLSQP), as
- * [ChuMilman1992] do it, from a few of the best points of a coarse grid.
+ * The c and k of some dampers that minimise the H2 norm, by sequential
+ * quadratic programming within bounds [Kraft1994] (NLopt's SLSQP), as in
+ * [ChuMilman1992], started at a few of the best points of a coarse grid.
  *
  * Variables x run from 0 to 1 over each range: k linearly, c as
  *
  *     c = c_0 + (c_1 - c_0) (exp(a x) - 1) / (exp(a) - 1),   exp(a) = 1000
  *
- * as nobody knows a good c to within a factor of ten, and 0 is in the range.
+ * because a good c is not known to within a factor of ten, and 0 may be in the
+ * range.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -22,7 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The value that variable `x` is of. */
+/* A variable of the search: c or k of a group. */
 typedef struct variable {
     int64_t group;
     bool of_k;
@@ -31,16 +32,16 @@ typedef struct variable {
 typedef struct tuner {
     const ritz_tuning_search *search;
     ritz_plant *plant;
-    int64_t count; /* variables */
+    int64_t count; /* number of variables */
     variable *variable;
     ritz_variance variance;
-    double unit; /* of the norm, which NLopt is given over it */
+    double unit; /* NLopt minimises the norm divided by this */
     ritz_status status;
     int64_t evaluations;
-    double *here;         /* where it is measured */
-    double found;         /* the least norm of a search, and where */
-    double best, *best_x; /* of all searches */
-    double slope;         /* there */
+    double *here;         /* the variables at which the norm is evaluated */
+    double found;         /* least norm of the present search */
+    double best, *best_x; /* least norm of all searches, and its variables */
+    double slope;         /* relative slope at best_x */
 } tuner;
 
 static void tuner_free(tuner *t)
@@ -61,7 +62,7 @@ static const double *range_of(const tuner *t, int64_t i)
     return t->variable[i].of_k ? tuned->k : tuned->c;
 }
 
-/* Value of a variable, and its derivative. */
+/* Value of c or k for a variable x, and its derivative by x. */
 static double value_at(const tuner *t, int64_t i, double x, double *slope)
 {
     const double *range = range_of(t, i);
@@ -72,7 +73,7 @@ static double value_at(const tuner *t, int64_t i, double x, double *slope)
                  : width * RITZ_TUNED_DECADES * exp(RITZ_TUNED_DECADES * x) /
                        expm1(RITZ_TUNED_DECADES);
     if (x >= 1.0)
-        return range[1]; /* its digits, not those of exp */
+        return range[1]; /* exactly, without the rounding of exp */
     return range[0] + (t->variable[i].of_k
                            ? width * x
                            : width * expm1(RITZ_TUNED_DECADES * x) /
@@ -99,7 +100,7 @@ static void set_group(const ritz_tuned *tuned, bool of_k, double value,
         values[tuned->damper[j]] = value;
 }
 
-/* Values that have no choice; NaN: each damper keeps its own. */
+/* Set the values that do not vary; with NaN each damper keeps its own value. */
 static void set_fixed(const ritz_tuning_search *search, ritz_dampers *dampers)
 {
     for (int64_t g = 0; g < search->count; g++) {
@@ -121,7 +122,7 @@ static void set_variables(const tuner *t, const double *x)
                   value_at(t, i, x[i], &slope), &t->plant->dampers);
 }
 
-/* d norm / d x, from d norm^2 / d c = 2 norm d norm / d c. */
+/* d norm / dx, from d norm^2 / dc = 2 norm d norm / dc. */
 static void fill_gradient(const tuner *t, const double *x, double norm,
                           double *gradient)
 {
@@ -138,7 +139,8 @@ static void fill_gradient(const tuner *t, const double *x, double norm,
     }
 }
 
-/* The largest part of a gradient that stays within bounds, over the norm. */
+/* Largest component of a gradient that does not lead out of the bounds,
+   relative to the norm. */
 static double slope_of(const tuner *t, const double *x, double norm,
                        const double *gradient)
 {
@@ -154,7 +156,7 @@ static double slope_of(const tuner *t, const double *x, double norm,
     return most;
 }
 
-/* What is an end of a range to rounding is that end. */
+/* Move x onto the end of its range if it differs by rounding. */
 static double settle_place(double x)
 {
     if (x < RITZ_TUNED_PLACE)
@@ -162,7 +164,8 @@ static double settle_place(double x)
     return x > 1.0 - RITZ_TUNED_PLACE ? 1.0 : x;
 }
 
-/* The norm at `place`; HUGE_VAL where it is infinite. */
+/* Norm and gradient at `place`, and the best so far; HUGE_VAL if the norm is
+   infinite. */
 static ritz_status measure_at(tuner *t, const double *place, double *gradient,
                               double *norm)
 {
@@ -189,7 +192,7 @@ static ritz_status measure_at(tuner *t, const double *place, double *gradient,
     return RITZ_OK;
 }
 
-/* What NLopt calls. */
+/* What NLopt passes to objective_at. */
 typedef struct objective {
     tuner *t;
     nlopt_opt engine;
@@ -219,8 +222,8 @@ static double objective_at(unsigned n, const double *x, double *gradient,
 }
 
 /*
- * From x. How NLopt ends does not matter but for memory: what counts is the
- * least norm that was met, and its slope.
+ * One search from @p start. Apart from missing memory, the way in which NLopt
+ * ends does not matter: measure_at keeps the least norm found, and its slope.
  */
 static ritz_status search_from(tuner *t, const double *start)
 {
@@ -252,7 +255,7 @@ static ritz_status search_from(tuner *t, const double *start)
 
 /* --- Starts --------------------------------------------------------------- */
 
-/* All c at one x, all k at another. */
+/* Grid of starts: the same x for all c, and the same x for all k. */
 enum { GRID_C = 9, GRID_K = 3, GRID = GRID_C * GRID_K };
 
 static const double grid_c[GRID_C] = {0.1, 0.2, 0.3, 0.4, 0.5,
@@ -284,7 +287,7 @@ static bool has_variable(const tuner *t, bool of_k)
     return false;
 }
 
-/* Norms of the grid, the least first. */
+/* Norms at all points of the grid, in ascending order. */
 static ritz_status survey_grid(tuner *t, grid_point point[GRID], int64_t *count)
 {
     RITZ_OWN_ARRAY double *x = NULL, *gradient = NULL;
@@ -307,14 +310,14 @@ static ritz_status survey_grid(tuner *t, grid_point point[GRID], int64_t *count)
     return RITZ_OK;
 }
 
-/* Starts nearer than this, in x, lead to the same minimum. */
+/* Whether two starts are so close in x that they lead to the same minimum. */
 static bool is_near(const grid_point *a, const grid_point *b)
 {
     return fabs(a->c - b->c) < RITZ_TUNED_STARTS &&
            fabs(a->k - b->k) < RITZ_TUNED_STARTS;
 }
 
-/* The best points of the grid that are not near better ones. */
+/* Keep the best points of the grid that are not close to better ones. */
 static int64_t choose_starts(int64_t count, grid_point *point, int64_t most)
 {
     int64_t kept = 0;
@@ -330,7 +333,7 @@ static int64_t choose_starts(int64_t count, grid_point *point, int64_t most)
     return kept;
 }
 
-/* One search, and what it found among the others. */
+/* Run one search, and append the norm that it found. */
 static ritz_status run_search(tuner *t, const double *start, double *found,
                               ritz_tuning *out)
 {
@@ -390,7 +393,8 @@ static ritz_status tuner_new(ritz_plant *plant,
     return RITZ_OK;
 }
 
-/* Values of a group as its first damper has them; NaN: each has its own. */
+/* Values of each group, by its first damper; NaN: each damper has its own
+   value. */
 static void read_values(const ritz_tuning_search *search,
                         const ritz_dampers *dampers, ritz_tuning *out)
 {
@@ -521,7 +525,8 @@ void ritz_tuning_uses(const ritz_tuning_request *request, bool *used)
             used[request->tuned[g].damper[j]] = true;
 }
 
-/* What is tuned: the model, or its space of so many modes. */
+/* The plant that is tuned: the model itself, or its projection on a space of @p
+   modes modes and static responses. */
 static ritz_status make_plant(const ritz_tuning_request *request, int64_t modes,
                               ritz_plant *out)
 {
@@ -537,7 +542,8 @@ static ritz_status make_plant(const ritz_tuning_request *request, int64_t modes,
     return ritz_static_space_plant(&space, used, out);
 }
 
-/* One round: tune, and measure the full model with what was found. */
+/* One round: tune the plant, and compute the norm of the full model with the
+   values found. */
 static ritz_status tune_once(const ritz_tuning_request *request,
                              const ritz_tuning_search *search, int64_t modes,
                              ritz_tuning *out)

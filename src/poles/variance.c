@@ -2,25 +2,27 @@
  * H2 norm of a second-order model with dampers, and its derivatives with
  * respect to their c_j and k_j.
  *
- * In the modes Phi of the model as its dampers are, K Phi = M Phi Lambda, with
- * beta = Phi'b of a damper and the states z = [S q; q'] (model/modal.h),
+ * With the modes Phi of the model for the present c and k, K Phi = M Phi
+ * Lambda, beta = Phi'b for a damper and the states z = [S q; q']
+ * (model/modal.h),
  *
  *     A = [0 S; -Lambda S^-1 -Delta],   Delta = Phi'D Phi + d(Lambda)
  *
- * where d are the rates of stated damping. Phi and S need not move with c and
- * k, as no norm depends on coordinates; then
+ * where d(Lambda) are the rates of stated damping. Phi and S may be held fixed
+ * while c and k change, since the norm does not depend on coordinates; then
  *
  *     d Delta / dc = beta beta',    d Lambda / dk = beta beta',
  *     d d(Lambda) / dk = L o beta beta',
  *     L_ij = (d_i - d_j) / (lambda_i - lambda_j),    L_ii = d'(lambda_i)
  *
- * [DaleckiiKrein1965], and an output of accelerations has -Ca Phi times the
- * same in C. With both Gramians
+ * [DaleckiiKrein1965]. For acceleration outputs, C changes by -Ca Phi times the
+ * same derivatives. With both Gramians
  *
  *     A P + P A' + B B' = 0,    A'Q + Q A + C'C = 0,    J = tr(C P C'),
  *     dJ = 2 tr(P Q dA) + 2 tr(P C'dC)
  *
- * A filter of the noise is in front: u = C_f x_f, x_f' = A_f x_f + B_f w.
+ * A filter of white noise w drives the inputs: u = C_f x_f, x_f' = A_f x_f +
+ * B_f w.
  */
 #include "poles/h2.h"
 
@@ -35,7 +37,8 @@
 #include <math.h>
 #include <string.h>
 
-/* x' = A x + B w, y = C x; `states` of them are the model's own. */
+/* x' = A x + B w, y = C x; the first `states` of x are those of the model
+   without filters. */
 typedef struct first_order {
     int64_t states;
     ritz_dense A, B, C;
@@ -74,9 +77,10 @@ static int64_t filter_states(const ritz_disturbance *noise)
 }
 
 /*
- * One filter from state `at` on: with w = 2 pi f a cascade of
- * w^2 / (s^2 + 2 sin((2 j + 1) pi / (2 n)) w s + w^2), j < n / 2, and for odd n
- * of w / (s + w); what is state `at` of the last is the noise.
+ * Put one filter at state `at` and below. With w = 2 pi f it is a cascade of
+ * the factors w^2 / (s^2 + 2 sin((2 j + 1) pi / (2 n)) w s + w^2), j < n / 2,
+ * and for odd n of w / (s + w). The first state of the last factor is the
+ * filter's output.
  */
 static void put_filter(const ritz_disturbance *noise, int64_t at, int64_t input,
                        first_order *f)
@@ -106,7 +110,7 @@ static void put_filter(const ritz_disturbance *noise, int64_t at, int64_t input,
     }
 }
 
-/* State of filter `input` that is the filtered noise. */
+/* Index of the state that is the output of filter `input`. */
 static int64_t filter_output(const ritz_disturbance *noise, int64_t first,
                              int64_t input)
 {
@@ -116,9 +120,9 @@ static int64_t filter_output(const ritz_disturbance *noise, int64_t first,
 }
 
 /*
- * A model in A, B, C with the noise in front of it.
+ * Put the filters of all inputs in front of a model.
  *
- * @param[in] feed  from inputs to outputs at once
+ * @param[in] feed  feedthrough from inputs to outputs
  */
 static ritz_status add_noise(const ritz_disturbance *noise,
                              const ritz_dense *feed, first_order *f)
@@ -157,13 +161,13 @@ static ritz_status add_noise(const ritz_disturbance *noise,
 
 /* --- Gramians ------------------------------------------------------------- */
 
-/* Factors of both, of the states left of the axis: P = (X F)(X F)', Q = (Y G)
-   (Y G)'. */
+/* Factors of both Gramians of the states left of the axis: P = (X F)(X F)', Q =
+   (Y G)(Y G)'. */
 typedef struct gramians {
     ritz_split split;
-    ritz_dense B, C; /* in coordinates of the split, of size 1 */
+    ritz_dense B, C; /* in the coordinates of the split, scaled to unit norm */
     ritz_dense F, G;
-    double size_B, size_C; /* what they were divided by */
+    double size_B, size_C; /* norms that B and C were divided by */
 } gramians;
 
 static void gramians_free(gramians *g)
@@ -175,7 +179,7 @@ static void gramians_free(gramians *g)
     ritz_dense_free(&g->G);
 }
 
-/* A := A / |A|; its size, 1 of zeros. */
+/* A := A / |A|; returns |A|, or 1 if A is zero. */
 static double divide_size(ritz_dense *A)
 {
     double size = ritz_general_size(A);
@@ -186,8 +190,8 @@ static double divide_size(ritz_dense *A)
 }
 
 /*
- * Whether poles that are not left of the axis are both driven and observed:
- * C T (W'A T)^k W'B, k = 0, 1, ..., which are 0 where they are not.
+ * Whether poles that are not left of the axis are both controllable and
+ * observable: some C T (W'A T)^k W'B, k = 0, 1, ..., is then not 0.
  */
 static ritz_status transmits_rest(const first_order *f, const ritz_split *split,
                                   bool *out)
@@ -214,7 +218,8 @@ static ritz_status transmits_rest(const first_order *f, const ritz_split *split,
     return RITZ_OK;
 }
 
-/* Both Gramians; the second if it is wanted. */
+/* Factors of the controllability Gramian and, if @p both, of the observability
+   Gramian. */
 static ritz_status find_gramians(const first_order *f, bool both, gramians *g,
                                  ritz_variance *out)
 {
@@ -244,7 +249,8 @@ static ritz_status find_gramians(const first_order *f, bool both, gramians *g,
     return ritz_general_hammarling(&g->split.S, &g->split.P, true, &Ct, &g->G);
 }
 
-/* PQ = P Q and PC = P C', in states, of all sizes. */
+/* PQ = P Q and PC = P C' in the states of the model, with the scales of B and
+   C. */
 static ritz_status multiply_gramians(const gramians *g, ritz_dense *PQ,
                                      ritz_dense *PC)
 {
@@ -269,9 +275,10 @@ static ritz_status multiply_gramians(const gramians *g, ritz_dense *PQ,
 
 typedef struct modal_form {
     ritz_modal_model modes;
-    int64_t first;    /* the modes before it are rigid, and left out */
+    int64_t first;    /* number of leading modes that are decoupled rigid ones,
+                         which are left out */
     ritz_dense beta;  /* m x dampers */
-    ritz_dense CaPhi; /* outputs x m, over limits */
+    ritz_dense CaPhi; /* outputs x m, divided by limits */
     first_order f;
 } modal_form;
 
@@ -295,7 +302,8 @@ static ritz_status install_plant(const ritz_plant *plant, ritz_structure *out)
     return ritz_dampers_install(&dampers, &out->K, &out->D);
 }
 
-/* Whether outputs observe what inputs drive of the first `count` modes. */
+/* Whether the first `count` modes are controllable and observable, taken
+   together. */
 static bool transmits_rigid(const ritz_modal_model *modes, int64_t count)
 {
     const ritz_dense *const C[] = {&modes->C, &modes->Cv};
@@ -318,7 +326,7 @@ static bool transmits_rigid(const ritz_modal_model *modes, int64_t count)
     return false;
 }
 
-/* A damper whose force moves dofs without mass has no such derivatives. */
+/* Refuse derivatives for a damper that acts on dofs without mass. */
 static ritz_status refuse_massless(const ritz_plant *plant,
                                    const modal_form *form)
 {
@@ -339,8 +347,8 @@ static ritz_status refuse_massless(const ritz_plant *plant,
     return RITZ_OK;
 }
 
-/* @param[out] infinite  a rigid motion that is left out is driven and
-   observed */
+/* @param[out] infinite  a rigid motion that is left out is controllable and
+                         observable */
 static ritz_status modal_form_new(const ritz_plant *plant, modal_form *form,
                                   bool *infinite)
 {
@@ -367,7 +375,7 @@ static ritz_status modal_form_new(const ritz_plant *plant, modal_form *form,
     return RITZ_OK;
 }
 
-/* d(lambda_i) of stated damping. */
+/* d(lambda_i), the rate of stated damping. */
 static double rate_of(const ritz_plant *plant, const ritz_modal_model *modes,
                       int64_t i)
 {
@@ -375,7 +383,8 @@ static double rate_of(const ritz_plant *plant, const ritz_modal_model *modes,
                            modes->lambda[i]);
 }
 
-/* L_ij. Ratios have d = 2 zeta sqrt(lambda), and d' = zeta / sqrt(lambda). */
+/* L_ij. A damping ratio gives d = 2 zeta sqrt(lambda) and d' = zeta /
+   sqrt(lambda). */
 static double divided_rate(const ritz_plant *plant,
                            const ritz_modal_model *modes, int64_t i, int64_t j)
 {
@@ -395,8 +404,8 @@ static double divided_rate(const ritz_plant *plant,
 }
 
 /*
- * 2 sum_ij beta_i beta_j weight_ij (PQ(from_j, v_i) + (PC Ca)(from_j, i)) with
- * a minus: of what is in row v_i and column from_j of A.
+ * -2 beta_i beta_j (PQ(from, m + i) + (PC Ca)(from, i)): derivative of J by a
+ * coefficient of beta_i beta_j in row m + i, column `from` of A.
  */
 static double sum_derivative(const modal_form *form, const ritz_dense *PQ,
                              const ritz_dense *PCCa, int64_t damper, int64_t i,
