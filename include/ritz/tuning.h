@@ -64,7 +64,8 @@ ritz_status ritz_h2_of(ritz_model model, const ritz_disturbance *noise,
 typedef struct ritz_tuned {
     int64_t count;
     const int64_t *damper; /* indices, borrowed */
-    double c[2], k[2];     /* ranges; equal ends fix the value */
+    double c[2], k[2];     /* ranges; equal ends fix the value; NaN: each damper
+                              keeps its own */
 } ritz_tuned;
 
 typedef struct ritz_tuning_request {
@@ -81,9 +82,9 @@ typedef struct ritz_tuning_request {
 
 typedef struct ritz_tuning {
     int64_t count; /* number of groups, as requested */
-    double *c, *k; /* values of each group */
-    double before; /* norm with the model's present dampers; HUGE_VAL:
-                      infinite */
+    double *c, *k; /* values of each group; NaN: each damper has its own */
+    double before; /* norm with the model's present dampers, of the model that
+                      was tuned; HUGE_VAL: infinite */
     double norm;   /* norm of the full model with these c and k */
     double change; /* of the full model's norm, as in ritz_h2 */
     double tuned;  /* norm of the projected model that was tuned */

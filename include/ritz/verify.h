@@ -197,7 +197,7 @@ typedef struct ritz_reference_request {
                              free body's stiffness is negligible */
     ritz_damping damping; /* none: as the model says, or else modal 0.01 */
     double tolerance;     /* largest relative effect of that rounding on
-                             flexible responses; 0: 1e-3 */
+                             flexible responses; 0, or above 1e-3: 1e-3 */
     int64_t num_random;   /* further frequencies, anywhere in the band */
     uint64_t seed;        /* of those; one seed always gives the same */
 } ritz_reference_request;

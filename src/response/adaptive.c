@@ -112,18 +112,18 @@ static ritz_status evaluate_points(ritz_mesh *mesh, int64_t count,
     return insert_points(mesh, count, hertz, H);
 }
 
-/* Interpolation of a response between its points, as ritz_response_at states. */
+/* Interpolation of a response between its points, as in ritz_response_at. */
 
 enum { CUBIC = 4 };
 
-/* A cubic at one frequency: the points that it goes through, and the weights
-   with which their values are summed. */
+/* An interpolating cubic at one frequency: its points, and the weight of the
+   value at each. */
 typedef struct cubic {
     int64_t first, points;
     double weight[CUBIC];
 } cubic;
 
-/* The cubic of the interval that begins at point k, at a frequency. */
+/* The cubic at a frequency in the interval that begins at point k. */
 static cubic find_cubic(int64_t count, const double *x, int64_t k, double hertz)
 {
     cubic c = {.first = k - 1, .points = count < CUBIC ? count : CUBIC};
@@ -142,7 +142,7 @@ static cubic find_cubic(int64_t count, const double *x, int64_t k, double hertz)
     return c;
 }
 
-/* The cubic's value for channel v; H has `values` channels at each point. */
+/* Interpolated value of channel v; H has `values` channels at each point. */
 static double _Complex interpolate_channel(const cubic *c, int64_t values,
                                            const double _Complex *H, int64_t v)
 {

@@ -5,10 +5,10 @@
  *     Z_0 = K + i K4 + i w D - w^2 M,    Rayleigh: (1 + i w b) K, a M too
  *
  * Damping ratios act on modes Phi: Z = Z_0 + M Phi E Phi'M with E = i w diag(2
- * zeta w_k), Phi being the modes up to a frequency. Those above are damped too:
- * where a component has no D or K4, the residual says what ratios change; where
- * it has, and up to RITZ_RATIO_DOFS dofs, M Phi E Phi'M of all modes is added to
- * its D once, as a full matrix.
+ * zeta w_k) and Phi the modes up to a frequency. The modes above are damped as
+ * well: without D and K4 by the residual's changes by ratios; with D or K4, and
+ * up to RITZ_RATIO_DOFS dofs, by adding M Phi diag(2 zeta w_k) Phi'M of all
+ * modes to D as a full matrix.
  *
  * Without D and K4 the modes decouple from the rest exactly,
  *
@@ -58,7 +58,8 @@ ritz_status ritz_matrix_of_ratios(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* The component with ratios as a part of D, which has no others then. */
+/* Replace the component by one whose D contains the damping by ratios;
+   `damping` is then empty. */
 static ritz_status install_ratios(double up_to_hz, ritz_direct *s)
 {
     const ritz_component *component = s->component;

@@ -24,10 +24,12 @@ typedef struct krylov_responder {
     ritz_direct full;
     ritz_krylov_space space;
     ritz_krylov_small small;
-    ritz_residual rest; /* what ratios change above the modes */
-    double lambda_h;    /* every mode below is in the space */
-    double tolerance;   /* of the largest |H| of a channel */
-    double amplify;     /* of errors that full responses showed */
+    ritz_residual rest; /* changes by ratios of the modes above */
+    double lambda_h;    /* all modes with smaller eigenvalues are in the
+                           space */
+    double tolerance;   /* relative to the largest |H| of a channel */
+    double amplify;     /* factor for error estimates, from errors that full
+                           responses showed */
     int64_t outputs, inputs, values;
     int64_t count, num_even; /* of points; at the even ones H too */
     double *hertz;

@@ -1,6 +1,6 @@
 /*
- * The krylov engine on state spaces. With V real and orthonormal, in E where E
- * is symmetric and definite,
+ * The krylov engine for state spaces. With V real and orthonormal
+ * (E-orthonormal if E is symmetric and definite),
  *
  *     H_r = C V (i w V'E V - V'A V)^-1 V'B + D
  *
@@ -8,14 +8,15 @@
  *
  *     (A - i w_k E)^-1 B,    (A - i w_k E)^-T C'
  *
- * at expansion points w_k. As both are in V, H_r equals H at w_k together with
- * its derivative [Grimme1997].
+ * at expansion points w_k. Since V contains both, H_r and its derivative equal
+ * those of H at w_k [Grimme1997].
  *
- * The next point is that candidate where H_r changed most when V grew last, over
- * what each channel may err. The full response there is compared with H_r: three
- * in a row within the tolerance, or within rounding, and two more at the candidates that are the
- * farthest from all points, end the search. So the error is not proven, but
- * measured where it was expected, and where nothing was known.
+ * The next point is the candidate at which H_r, relative to the error allowed
+ * for each channel, changed most when V last grew. H_r is compared with the
+ * full response there. The search ends when three comparisons in a row are
+ * within the tolerance, or within rounding, and two more at the candidates
+ * farthest from all points are as well. The error is therefore not proven, but
+ * measured where it was expected to be largest and where nothing was known.
  */
 #include "response/krylov_states.h"
 
@@ -36,32 +37,35 @@
 #include <string.h>
 
 enum {
-    EVEN = 200,       /* candidates over the range */
-    DECADES = 6,      /* and towards its lower end, so many decades of it */
-    A_DECADE = 5,     /* so many each */
-    IN_A_ROW = 3,     /* comparisons where H_r changed most */
-    ELSEWHERE = 2,    /* and at candidates far from all points */
-    MOST_POINTS = 100 /* full responses */
+    EVEN = 200,       /* candidates spread evenly over the range */
+    DECADES = 6,      /* decades of candidates towards the lower end of the
+                         range */
+    A_DECADE = 5,     /* candidates in each of these decades */
+    IN_A_ROW = 3,     /* comparisons at candidates where H_r changed most */
+    ELSEWHERE = 2,    /* comparisons at candidates far from all points */
+    MOST_POINTS = 100 /* largest number of full responses */
 };
 
 typedef struct krylov_states {
     const ritz_state_space *model; /* borrowed */
     ritz_pencil pencil;
-    bool plain; /* V'E V is the identity */
+    bool plain; /* V is E-orthonormal: V'E V is the identity */
     ritz_poles poles;
     int64_t p, m, values; /* outputs, inputs, p m */
     ritz_orthonormal V;
     ritz_resolvent small;
     double tolerance, unmet;
-    double rounding; /* of full responses, largest over what may be off */
-    int64_t count;   /* of candidates */
+    double rounding; /* largest rounding of a full response, relative to the
+                        allowed error */
+    int64_t count;   /* number of candidates */
     double *hertz;
     bool *used;
-    double _Complex *H, *before; /* count x values, by columns of D */
-    double *peak, *allowed;      /* values, by rows as engines give H */
-    double _Complex *G;          /* values: to work in */
-    double *noise;               /* values: rounding of the last full H */
-    bool infinite_at_rest;       /* a pole is at 0 */
+    double _Complex *H, *before; /* count x values, column-major as D */
+    double *peak, *allowed;      /* values, row by row as H of engines */
+    double _Complex *G;          /* values, work space */
+    double *noise;               /* values: rounding of the last full
+                                    response */
+    bool infinite_at_rest;       /* 0 is a pole */
     int64_t points;
 } krylov_states;
 
@@ -77,8 +81,8 @@ static void krylov_states_free(void *state)
               k->noise);
 }
 
-/* Whether E is the identity, or symmetric and definite: V is orthonormal in it
-   then. */
+/* Whether E is symmetric and positive definite, so that V can be
+   E-orthonormal. */
 static ritz_status is_definite(const ritz_pencil *pencil, bool *out)
 {
     RITZ_OWN(ritz_factor) *L = NULL;
@@ -92,7 +96,8 @@ static ritz_status is_definite(const ritz_pencil *pencil, bool *out)
     return status == RITZ_ERR_SINGULAR ? RITZ_OK : status;
 }
 
-/* Even ones, others towards the lower end, and those of poles. */
+/* Candidates: evenly spread ones, ones towards the lower end, and frequencies
+   of poles. */
 static ritz_status place_candidates(krylov_states *k,
                                     const ritz_response_request *request)
 {
@@ -120,7 +125,7 @@ static ritz_status place_candidates(krylov_states *k,
     return RITZ_OK;
 }
 
-/* Real and imaginary parts of count vectors join V. */
+/* Append real and imaginary parts of @p count vectors to V. */
 static ritz_status append_parts(krylov_states *k, int64_t count,
                                 const double _Complex *X)
 {
@@ -135,7 +140,7 @@ static ritz_status append_parts(krylov_states *k, int64_t count,
     return ritz_orthonormal_append(&k->V, &parts, n - k->V.count, NULL);
 }
 
-/* Project on V. */
+/* Project the model on V. */
 static ritz_status renew_small(krylov_states *k)
 {
     RITZ_OWN(ritz_dense) V = {0}, X = {0}, A = {0}, E = {0}, B = {0}, C = {0};
@@ -153,7 +158,7 @@ static ritz_status renew_small(krylov_states *k)
     return ritz_resolvent_new(&A, &E, &B, &C, &k->small);
 }
 
-/* H_r at all candidates, what each channel may err. */
+/* Evaluate H_r at all candidates, and the error allowed for each channel. */
 static ritz_status renew_candidates(krylov_states *k)
 {
     RITZ_OWN_ARRAY double _Complex *z = NULL;
@@ -181,8 +186,8 @@ static ritz_status renew_candidates(krylov_states *k)
     return RITZ_OK;
 }
 
-/* Largest ratio of a difference, less rounding, to what its channel may err; by
-   columns. */
+/* Largest difference of two responses beyond rounding, relative to the error
+   allowed for its channel. */
 static double worst_ratio(const krylov_states *k, const double _Complex *a,
                           const double _Complex *b, const double *noise)
 {
@@ -198,7 +203,7 @@ static double worst_ratio(const krylov_states *k, const double _Complex *a,
     return worst;
 }
 
-/* The least distance of a candidate from points that were used, relative. */
+/* Least distance of a candidate from the points used so far  [Hz] */
 static double distance_of(const krylov_states *k, int64_t c)
 {
     double least = HUGE_VAL;
@@ -209,7 +214,8 @@ static double distance_of(const krylov_states *k, int64_t c)
     return least;
 }
 
-/* The next candidate: where H_r changed most, or the farthest; -1: none. */
+/* The next candidate: the one at which H_r changed most, or the one farthest
+   from all points; -1: none is left. */
 static int64_t choose_next(const krylov_states *k, bool farthest)
 {
     int64_t best = -1;
@@ -231,7 +237,7 @@ static int64_t choose_next(const krylov_states *k, bool farthest)
     return best;
 }
 
-/* X = (A - s E)^-1 B, Y = (A - s E)^-T C' behind it. */
+/* X = [(A - s E)^-1 B, (A - s E)^-T C']. */
 static ritz_status solve_both(krylov_states *k, double _Complex s,
                               double _Complex *X)
 {
@@ -248,7 +254,7 @@ static ritz_status solve_both(krylov_states *k, double _Complex s,
     return ritz_pencil_solve(&k->pencil, true, k->p, Y);
 }
 
-/* H = D - C X, by columns. */
+/* G = D - C X, column-major. */
 static void respond_full(const krylov_states *k, const double _Complex *X)
 {
     const int64_t n = k->pencil.n;
@@ -263,7 +269,7 @@ static void respond_full(const krylov_states *k, const double _Complex *X)
         }
 }
 
-/* t += factor |A||x| */
+/* t += factor |A| |x|, entry by entry. */
 static void add_magnitudes(const ritz_sparse *A, double factor,
                            const double _Complex *x, double *t)
 {
@@ -273,8 +279,9 @@ static void add_magnitudes(const ritz_sparse *A, double factor,
 }
 
 /*
- * Rounding of the full response: factors are exact for a matrix that differs by
- * some eps of each entry, so that it is some eps |y|'(|A| + w |E|)|x|.
+ * Rounding of the full response. Factors are exact for a matrix whose entries
+ * differ by some eps of their size, so the rounding of H is some eps times
+ * |y|'(|A| + w |E|)|x|.
  */
 static ritz_status find_noise(krylov_states *k, double w,
                               const double _Complex *X)
@@ -299,7 +306,7 @@ static ritz_status find_noise(krylov_states *k, double w,
     return RITZ_OK;
 }
 
-/* The rounding of a full response over what each channel may err. */
+/* Update `rounding` by the rounding of a full response. */
 static void note_rounding(krylov_states *k)
 {
     for (int64_t v = 0; v < k->values; v++) {
@@ -311,8 +318,8 @@ static void note_rounding(krylov_states *k)
 }
 
 /*
- * Compare with the full response at a candidate; unless it is within the
- * tolerance it joins V.
+ * Compare H_r with the full response at a candidate, and extend V by the latter
+ * if the difference exceeds the tolerance. *held: it does not.
  */
 static ritz_status try_candidate(krylov_states *k, int64_t c, bool *held)
 {
@@ -324,7 +331,8 @@ static ritz_status try_candidate(krylov_states *k, int64_t c, bool *held)
     RITZ_CHECK_NEW(X, k->pencil.n * (k->m + k->p));
     k->used[c] = true;
     status = solve_both(k, ritz_complex(0.0, 2.0 * RITZ_PI * hertz), X);
-    if (status == RITZ_ERR_SINGULAR) { /* a pole: nothing to compare with */
+    if (status == RITZ_ERR_SINGULAR) { /* a pole: there is no response to
+                                          compare with */
         k->infinite_at_rest = k->infinite_at_rest || hertz == 0.0;
         return RITZ_OK;
     }
@@ -363,10 +371,10 @@ static ritz_status converge_space(krylov_states *k)
                        k->V.count, k->unmet * k->tolerance, k->tolerance);
         RITZ_CHECK(try_candidate(k, c, &held));
         if (k->points == points)
-            continue; /* it was a pole */
+            continue; /* the candidate was a pole */
         in_a_row = held ? in_a_row + 1 : 0;
         if (!held && k->V.count == before && before == k->pencil.n)
-            break; /* V is all there is */
+            break; /* V spans the whole space */
         ritz_monitor_step("space of the response", k->V.count, 0);
     }
     return RITZ_OK;
@@ -403,7 +411,7 @@ static ritz_status start_states(const ritz_response_request *request,
     return converge_space(k);
 }
 
-/* Whether i w is a pole of the projection, to rounding. */
+/* Whether i w is a pole of the projected model, to rounding. */
 static bool is_on_pole(const krylov_states *k, double w)
 {
     if (w == 0.0)
@@ -451,7 +459,7 @@ ritz_status ritz_krylov_states(const ritz_response_request *request,
                    " full responses, the last of which were met to %.1e%s",
                    k->V.count, k->points, fmax(k->rounding, 1.0) * k->tolerance,
                    k->rounding > 1.0 ? ", which is their rounding" : "");
-    ritz_pencil_free(&k->pencil); /* frees what is of the size of the model */
+    ritz_pencil_free(&k->pencil); /* large matrices are no longer needed */
     ritz_orthonormal_free(&k->V);
     return RITZ_OK;
 }

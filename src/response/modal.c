@@ -2,10 +2,10 @@
  * Response by modes: all modes of a small dense model; the lowest modes of a
  * full component, with the residual of the others.
  *
- * D and K4 act on the residual too, and couple it with the modes. Unless D is
- * a M + b K the sum leaves that out, and its error is measured: the full
- * matrices are factored at the resonances where the sum is largest, and at some
- * points between.
+ * D and K4 damp the residual too, and couple it with the modes. The sum
+ * neglects this unless D is a M + b K. The resulting error is measured: the
+ * full matrices are factored at the resonances where the sum is largest, and at
+ * some points between.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -44,20 +44,24 @@ static ritz_status modal_at(void *state, double hertz, double _Complex *H)
     return RITZ_OK;
 }
 
-/* Points of comparison: between resonances, and at the largest ones. */
+/* Number of points of comparison between resonances, and at the largest
+   resonances. */
 enum { BETWEEN = 4, RESONANCES = 8 };
 
-/* What becomes of a comparison with the full matrices. */
+/* The comparison of the sum with the full matrices. */
 typedef struct modal_comparison {
-    int64_t values, count;     /* of channels, of points */
-    double *hertz;             /* count, those between first */
+    int64_t values, count;     /* number of channels; number of points */
+    double *hertz;             /* count, points between resonances first */
     double *size;              /* count x values, |H| of the sum */
-    double *error;             /* the same, |H - H_full| */
+    double *error;             /* count x values, |H - H_full| */
     double *peak, *level;      /* values; see ritz_noise_scales */
-    double *scale;             /* values, what errors are relative to */
-    double _Complex *H, *full; /* values, to work in */
-    int64_t compared;          /* points where both responses are finite */
-    double worst, at_hz;       /* largest error, of the largest |H| */
+    double *scale;             /* values, magnitude that errors are relative
+                                  to */
+    double _Complex *H, *full; /* values, work space */
+    int64_t compared;          /* number of points at which both responses are
+                                  finite */
+    double worst, at_hz;       /* largest error, relative to the largest |H| of
+                                  its channel, and its frequency */
 } modal_comparison;
 
 static void modal_comparison_free(modal_comparison *c)
@@ -83,7 +87,8 @@ static ritz_status modal_comparison_new(const modal_responder *m,
     return RITZ_OK;
 }
 
-/* The sum of modes at one frequency more, unless it is infinite there. */
+/* Add a point of comparison with the sum of modes, unless the sum is infinite
+   there. */
 static ritz_status add_point(modal_responder *m, double hertz,
                              modal_comparison *c)
 {
@@ -102,7 +107,7 @@ static ritz_status add_point(modal_responder *m, double hertz,
     return RITZ_OK;
 }
 
-/* The largest part of its channel's peak that any |H| has at a point. */
+/* Largest |H| at a point, relative to the peak of its channel. */
 static double size_point(const modal_comparison *c, int64_t point)
 {
     double size = 0.0;
@@ -121,7 +126,7 @@ static void swap_reals(double *a, double *b)
     *b = was;
 }
 
-/* Of the points from the first resonance on keep the largest. */
+/* Keep the largest of the points from the first resonance on. */
 static ritz_status keep_largest(int64_t first, modal_comparison *c)
 {
     const int64_t most = first + RESONANCES;
@@ -161,7 +166,7 @@ static ritz_status place_points(const ritz_response_request *request,
     return keep_largest(first, c);
 }
 
-/* |H - H_full| at every point; where one of them is infinite, 0. */
+/* |H - H_full| at each point; 0 where the full response is infinite. */
 static ritz_status compare_points(modal_responder *m, const ritz_noise *noise,
                                   ritz_direct *direct, modal_comparison *c)
 {
@@ -186,7 +191,7 @@ static ritz_status compare_points(modal_responder *m, const ritz_noise *noise,
     return RITZ_OK;
 }
 
-/* The largest error, relative to the largest |H| of its channel. */
+/* Largest error, relative to the largest |H| of its channel. */
 static ritz_status measure_error(const ritz_response_request *request,
                                  const ritz_noise *noise, modal_responder *m,
                                  modal_comparison *c)
@@ -215,7 +220,7 @@ static ritz_status measure_error(const ritz_response_request *request,
     return RITZ_OK;
 }
 
-/* Remark on what is left out, and refuse it where a tolerance forbids it. */
+/* Remark on the error of the sum, and refuse it if it exceeds the tolerance. */
 static ritz_status judge_sum(const ritz_response_request *request,
                              modal_responder *m, ritz_responder *out)
 {

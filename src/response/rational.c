@@ -46,10 +46,12 @@ typedef struct interpolant {
 } interpolant;
 
 typedef struct rational_nodes {
-    ritz_direct full;               /* of a component */
-    const ritz_state_space *states; /* borrowed; NULL: it is a component */
-    ritz_pencil pencil;             /* of these states */
-    ritz_poles listed;              /* for a grid that is refined */
+    ritz_direct full;               /* if the model is a component */
+    const ritz_state_space *states; /* borrowed; NULL: the model is a
+                                       component */
+    ritz_pencil pencil;             /* of the state space */
+    ritz_poles listed;              /* poles of the state space, to refine grids
+                                       around */
     int64_t outputs, inputs;
     interpolant f;
     int64_t num_poles;
@@ -65,7 +67,8 @@ typedef struct rational_nodes {
     const ritz_noise *noise; /* of the responder */
     double *peak, *level, *scale;
     double _Complex *H, *guess, *other;
-    double _Complex *before; /* count x values: before the last node */
+    double _Complex *before; /* count x values: interpolants before the last
+                                node was added */
     int64_t nodes;
     bool small;         /* `whole` holds the model */
     ritz_reduced whole; /* of which `view` is a view, with inputs and outputs */
@@ -175,7 +178,7 @@ enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3, SWEPT = 500 };
 /* Distance of a candidate from its pole, in half-power widths. */
 static const double offset[OFFSETS] = {1.0, 4.0, 16.0};
 
-/* The interpolant of each channel, by what errs less there. */
+/* H by the more accurate of the two interpolants of each channel. */
 static void evaluate_best(rational_nodes *s, double hertz, double _Complex *H)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
@@ -333,8 +336,8 @@ static bool measure_node(rational_nodes *s, double hertz, double tolerance)
 }
 
 /*
- * The candidate where the interpolants without and with zeros differ most, in
- * the channels that take the second; -1 if none does or no candidate is left.
+ * The candidate at which the interpolants without and with zeros differ most,
+ * over the channels that use the latter; -1: none.
  */
 static int64_t find_doubtful(rational_nodes *s)
 {
@@ -357,7 +360,7 @@ static int64_t find_doubtful(rational_nodes *s)
     return doubtful;
 }
 
-/* H at a frequency, added to zeros. */
+/* H of the full model at a frequency. */
 static ritz_status respond_full(rational_nodes *s, double hertz)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
@@ -368,7 +371,7 @@ static ritz_status respond_full(rational_nodes *s, double hertz)
     return ritz_space_transfer(s->states, &s->pencil, at, s->H);
 }
 
-/* Keep what candidates have, before another node. */
+/* Store the interpolants at candidates before another node is added. */
 static void keep_candidates(rational_nodes *s)
 {
     for (int64_t k = 0; k < s->count; k += s->count / SWEPT + 1)
@@ -377,8 +380,9 @@ static void keep_candidates(rational_nodes *s)
 }
 
 /*
- * The candidate that the last node has changed most, -1 if none by more than is
- * tolerated: nodes that are right tell nothing of what lies between others.
+ * The candidate at which the last node changed the interpolant most; -1 if no
+ * change exceeds the tolerance. A node that is accurate shows nothing about the
+ * error between other nodes.
  */
 static int64_t find_changed(rational_nodes *s, double tolerance)
 {
@@ -399,7 +403,8 @@ static int64_t find_changed(rational_nodes *s, double tolerance)
     return changed;
 }
 
-/* Measure the errors at candidate k, then take it for a node. */
+/* Measure the errors of both interpolants at candidate k, then add it as a
+   node. */
 static ritz_status take_candidate(rational_nodes *s, int64_t k,
                                   double tolerance, bool *near)
 {
@@ -408,7 +413,7 @@ static ritz_status take_candidate(rational_nodes *s, int64_t k,
     s->used[k] = true;
     status = respond_full(s, s->hertz[k]);
     if (status == RITZ_ERR_SINGULAR && s->states)
-        return RITZ_OK; /* a pole that was not known */
+        return RITZ_OK; /* an unknown pole: there is no response */
     RITZ_CHECK(status);
     *near = measure_node(s, s->hertz[k], tolerance);
     if (*near)
@@ -419,10 +424,11 @@ static ritz_status take_candidate(rational_nodes *s, int64_t k,
 }
 
 /*
- * Add nodes until the last ones were within the tolerance. Nodes are where the
- * interpolant without zeros errs most. With zeros that are known to a few
- * digits only, the other one errs elsewhere: it is tried there too. And the
- * last node must have moved nothing.
+ * Add nodes until the errors at the last ones are within the tolerance. Nodes
+ * are placed where the error of the interpolant without zeros is expected to be
+ * largest. If zeros are known to a few digits only, the other interpolant errs
+ * elsewhere, so a node is also placed where the two differ most. Finally, the
+ * last node must have changed the interpolant nowhere.
  */
 static ritz_status converge_nodes(rational_nodes *s, double tolerance)
 {
@@ -508,7 +514,7 @@ static ritz_status list_poles(const rational_nodes *s,
     return ritz_spectrum_list(&all, count, out);
 }
 
-/* Poles up to 1.5 times the range, and their conjugates. */
+/* Cancel the poles up to 1.5 times the range and their conjugates. */
 static ritz_status cancel_poles(rational_nodes *s, double to_hz, int64_t count,
                                 const double _Complex *found)
 {
@@ -521,7 +527,7 @@ static ritz_status cancel_poles(rational_nodes *s, double to_hz, int64_t count,
         if (cabs(at) > most || (s->states && cimag(at) < 0.0))
             continue;
         if (s->states && cabs(at) <= RITZ_NEGLIGIBLE * most)
-            at = 0.0; /* but for rounding */
+            at = 0.0; /* an exact 0, without rounding */
         add_pole(s, at);
         if (cimag(at) > 0.0)
             add_pole(s, s->mirror ? conj(at) : -at);
@@ -546,7 +552,8 @@ static ritz_status find_poles(rational_nodes *s,
     return cancel_poles(s, responder->to_hz, count, found);
 }
 
-/* All poles of a dense state space, those near the range of a sparse one. */
+/* Find the poles to be cancelled: all poles of a dense state space, those near
+   the range of a sparse one. */
 static ritz_status find_state_poles(rational_nodes *s,
                                     const ritz_response_request *request)
 {
@@ -595,7 +602,8 @@ static ritz_status find_zeros(rational_nodes *s, int64_t v)
  * added; three successive nodes within the tolerance end the search.
  */
 
-/* Largest number of channels: of more, zeros take longer than nodes. */
+/* Largest number of channels with zeros; with more, zeros take longer than
+   nodes. */
 static const int64_t most_channels = 9;
 
 static void free_rational(void *state)

@@ -287,7 +287,8 @@ static ritz_status check_needs(const ritz_response_engine *engine,
     return RITZ_OK;
 }
 
-/* Beside D or K4 of a large component ratios do not damp all modes. */
+/* Remark if damping ratios act only on the modes that are summed, as for large
+   components with D or K4. */
 static void remark_ratios(const ritz_response_request *request,
                           ritz_responder *r)
 {

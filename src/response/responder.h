@@ -51,9 +51,9 @@ struct ritz_responder {
     ritz_damping given;              /* in addition to that of matrices */
     char damping[RITZ_DAMPING_SIZE]; /* the same in words, or the model's */
     char remark[RITZ_REMARK_SIZE];
-    double uncertain;     /* what ratios change above the modes, of |H| */
-    ritz_noise noise;     /* rounding of the responses */
-    ritz_rounded rounded; /* what rounding of K does to them */
+    double uncertain;     /* error of the changes by ratios, relative to |H| */
+    ritz_noise noise;     /* rounding level of the responses */
+    ritz_rounded rounded; /* effect of rounding of K on the responses */
     void *state;
     /** Add H at a frequency to an array of zeros. */
     ritz_status (*at)(void *state, double hertz, double _Complex *H);
@@ -68,12 +68,14 @@ extern const ritz_response_engine ritz_response_engine_states;
 /** Note the engine and the damping in a response. */
 void ritz_responder_sign(const ritz_responder *responder, ritz_response *r);
 
-/** @return RITZ_ERR_ARGUMENT if the range ends above the modes of a request */
+/** Refuse a range that ends above the modes of a request. @return
+ * RITZ_ERR_ARGUMENT */
 ritz_status ritz_response_reach(const ritz_response_request *request);
 
 /**
- * The highest mode that a request needs of a component, Hz. Where ratios act on
- * all modes it is no lower than the series of the others needs.
+ * Highest frequency up to which a request needs the modes of a component, in
+ * Hz. If damping ratios act on all modes, it is at least what the series of the
+ * modes above needs.
  */
 double ritz_response_highest(const ritz_response_request *request);
 

@@ -3,12 +3,13 @@
  *
  *     H = C (i w E - A)^-1 B + D,
  *
- * by a sparse complex factor of A - i w E at each point; the pattern is analysed
- * once. Where inputs are more than outputs, rows of C are solved for.
+ * by a sparse complex factorisation of A - i w E at each point; the pattern is
+ * analysed once. If there are more inputs than outputs, the transposed system
+ * is solved for the rows of C.
  *
- * A grid is refined around the poles that are nearest to some frequencies of the
- * range. Of a symmetric pencil with definite E all poles are real, and nothing
- * is refined.
+ * A grid is refined around the poles nearest to some frequencies of the range.
+ * If A and E are symmetric and E is definite, all poles are real and there is
+ * no need to.
  */
 #include "base/alloc.h"
 #include "base/complex.h"
@@ -37,7 +38,7 @@ static void free_sparse(void *state)
     ritz_pencil_free(&h->pencil);
 }
 
-/* Whether all poles are known to be real: A = A', E = E' definite. */
+/* Whether all poles are known to be real: A = A', E = E', and E definite. */
 static ritz_status is_overdamped(const ritz_pencil *pencil, bool *out)
 {
     RITZ_OWN(ritz_factor) *L = NULL;

@@ -16,7 +16,7 @@ void ritz_near_poles_free(ritz_near_poles *near)
     *near = (ritz_near_poles){0};
 }
 
-/* Add a pole and its vector of n entries, unless it is known already. */
+/* Add a pole and its vector of n entries, unless the pole is known already. */
 static void add_pole(double _Complex s, int64_t n, const double _Complex *x,
                      ritz_near_poles *out)
 {

@@ -34,8 +34,8 @@ void tb05ad_(/* NOLINT: its name */ const char *baleig, const char *inita,
  */
 typedef struct state_responder {
     ritz_poles poles;
-    const ritz_state_space *model; /* borrowed, or `made` */
-    ritz_state_space made;         /* of a sparse model */
+    const ritz_state_space *model; /* borrowed; or `made` */
+    ritz_state_space made;         /* dense copy of a sparse model */
     int n, m, p;
     bool begun;
     ritz_dense A, B, C;
