@@ -9,10 +9,11 @@ void ritz_ranking_name_part(const char (*names)[RITZ_NAME_SIZE],
                             const char *letter, int64_t k,
                             char out[RITZ_NAME_SIZE]);
 
-/** The first mode of each mode's cluster, by frequency alone. */
+/** For each mode, the first mode of its cluster; clusters by frequency only. */
 void ritz_ranking_clusters(const ritz_modal *modal, int64_t *cluster);
 
-/** One past the last mode of a cluster by frequency that begins at @p first. */
+/** One past the last mode of the cluster by frequency that begins at @p
+ * first. */
 int64_t ritz_cluster_end(int64_t count, const int64_t *cluster, int64_t first);
 
 /** Replace the values within each cluster by their mean. */

@@ -11,13 +11,13 @@
 #include <math.h>
 
 /*
- * The largest exact Hankel value of a mode (or cluster) alone, which for one
- * mode with a displacement output is
+ * The largest exact Hankel value of a mode, or a cluster of modes, by itself.
+ * For one mode with a displacement output it is
  *
  *     sigma = |b||c| / (4 zeta w^2) (sqrt(1 + zeta^2) + zeta)
  *
- * and for several, of one frequency or coupled by damping, that of all of them,
- * the damping matrix restricted to them.
+ * and for a cluster, of modes of one frequency or coupled by damping, that of
+ * the model that consists of these modes and the damping between them.
  *
  * [Moore1981], [McDaniel2000] eq. 3.2.19 to 3.2.21
  */
@@ -79,8 +79,9 @@ const ritz_ranker ritz_ranker_hankel_band = {
  *
  *     sigma = | [C_d/w; C_v] B |_2 / (4 zeta w),
  *
- * which is the same for a single mode. Damping that couples modes of different
- * frequencies is of second order in this limit: zeta is of its diagonal.
+ * which is the same for a single mode. In this limit, damping that couples
+ * modes of different frequencies has an effect of second order, so zeta comes
+ * from the diagonal of the damping matrix.
  *
  * [Gregory1984], [McDaniel2000] eq. 3.2.22
  */

@@ -26,8 +26,8 @@
 #include <string.h>
 
 /*
- * Modal costs of each output: m + 1 x p, row k that of mode k, the last that of
- * rigid motion that damping couples to modes.
+ * Modal costs of each output, m + 1 x p: row k is that of mode k, the last row
+ * that of rigid motion coupled to modes by damping.
  */
 static ritz_status find_costs(const ritz_modal *modal, ritz_dense *out)
 {
@@ -68,7 +68,7 @@ static ritz_status rank_modal_cost(const ritz_rank_request *request,
         ranking->whole[i] += ritz_dense_col(&V, i)[modal->count];
         ranking->total += ranking->whole[i];
     }
-    if (modal->num_rigid > 0) /* a part of it belongs to no mode */
+    if (modal->num_rigid > 0) /* a part of the total belongs to no mode */
         ranking->total = nan("");
     return RITZ_OK;
 }

@@ -70,8 +70,8 @@ int64_t ritz_cluster_end(int64_t count, const int64_t *cluster, int64_t first)
 }
 
 /*
- * A ranking of so many modes, all zero; nothing of the whole is known. Rigid
- * modes have a cluster too, behind those of the others.
+ * A ranking of @p count modes, all zero; `total` and `coupling` are not known.
+ * Entries for rigid modes follow those of flexible modes in `cluster`.
  */
 static ritz_status create_zeros(int64_t count, int64_t rigid, ritz_ranking *out)
 {
@@ -382,7 +382,8 @@ ritz_status ritz_rankings_largest(const ritz_rankings *rankings,
         largest.hertz[k] = r->hertz[mode[k]];
         largest.zeta[k] = r->zeta[mode[k]];
         largest.value[k] = r->value[mode[k]];
-        /* modes that were one cluster where they are largest remain one */
+        /* modes that are one cluster in the ranking of their largest value
+           remain one */
         largest.cluster[k] = k;
         for (int64_t j = 0; j < k && largest.cluster[k] == k; j++)
             if (item[k] == item[j] &&

@@ -269,9 +269,9 @@ static ritz_status read_freedoms(const ritz_yaml *yaml, const yaml_node_t *node,
 /* ---- axes of plane models ----------------------------------------------- */
 
 /*
- * A joint of plane models has its axis in the plane or normal to it. An axis
- * that is off by no more than scenes' digits is put there, so that no motion in
- * the plane is mixed with one out of it.
+ * Check that the axis of a joint between plane models is normal to the plane,
+ * or lies in it. An axis that departs from this by the digits of scene files is
+ * corrected, so that motion in the plane is not mixed with motion out of it.
  */
 static ritz_status settle_axis(const ritz_yaml *yaml, const yaml_node_t *node,
                                const ritz_joint *joint, bool lies, bool normal,
@@ -299,7 +299,7 @@ static ritz_status settle_axis(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* A hinge turns about the normal, a slider moves in the plane. */
+/* A hinge must turn about the normal, a slider must slide in the plane. */
 static ritz_status settle_plane(const ritz_yaml *yaml, const yaml_node_t *node,
                                 const yaml_node_t *const *value,
                                 ritz_joint *joint)

@@ -169,14 +169,14 @@ static const ritz_yaml_key augment_keys[NUM_AUGMENT_KEYS] = {
                            .offset = offsetof(ritz_scene, attached_tolerance)},
 };
 
-/* Sets of forces, in the order of their bits; names of inputs and of outputs
-   follow. */
+/* Words for the sets of forces, in the order of their bits; names of inputs and
+   outputs are accepted in addition. */
 static const char sets[][RITZ_NAME_SIZE] = {"inputs", "interface", "outputs",
                                             "dampers"};
 
 enum { NUM_SETS = sizeof sets / sizeof *sets };
 
-/* A force that one item names, unless it names a set. */
+/* Read an item of the list: the word of a set, or the name of a force. */
 static ritz_status read_force(const ritz_yaml *yaml, const yaml_node_t *item,
                               const ritz_names *names, ritz_scene *scene)
 {
@@ -214,7 +214,7 @@ static ritz_status read_force(const ritz_yaml *yaml, const yaml_node_t *item,
     return RITZ_OK;
 }
 
-/* A list of sets and names. */
+/* Read a list of sets and forces. */
 static ritz_status take_forces(const ritz_yaml *yaml, const yaml_node_t *node,
                                ritz_scene *scene)
 {
@@ -243,7 +243,7 @@ static ritz_status take_forces(const ritz_yaml *yaml, const yaml_node_t *node,
     return RITZ_OK;
 }
 
-/* The word 'auto', or a list. */
+/* Read the word 'auto', or a list. */
 static ritz_status take_attached(const ritz_yaml *yaml, const yaml_node_t *node,
                                  ritz_scene *scene)
 {

@@ -61,7 +61,7 @@ static double sparse_quadratic(const ritz_sparse *A, const double *x)
     return 0.5 * sum;
 }
 
-/* Kinetic and potential energy now. */
+/* Kinetic and potential energy of the present state. */
 static void find_energy(const ritz_march *march, double *kinetic,
                         double *potential)
 {
