@@ -110,7 +110,7 @@ static const ritz_measure_kind *find_word(const char *word)
     return NULL;
 }
 
-/* The number of a tolerance of some measure. */
+/* Read the number of a tolerance for a measure. */
 static ritz_status take_number(const char *text, const ritz_measure_kind *kind,
                                double *out)
 {
@@ -126,7 +126,7 @@ static ritz_status take_number(const char *text, const ritz_measure_kind *kind,
     return RITZ_OK;
 }
 
-/* "gain=1e-2" */
+/* Read a named tolerance, "gain=1e-2". */
 static ritz_status take_named(const char *item, ritz_verify_request *limits)
 {
     const char *equals = strchr(item, '=');
@@ -145,9 +145,9 @@ static ritz_status take_named(const char *item, ritz_verify_request *limits)
 }
 
 /*
- * "1e-2": of the response without rigid motion, which alone would meet a
- * tolerance of the whole response near 0 Hz, and of frequencies; but not of
- * those that are named.
+ * Read a tolerance without a name, "1e-2". It holds for frequencies and for the
+ * flexible response, unless these are named; not for the whole response, which
+ * rigid motion near 0 Hz dominates.
  */
 static ritz_status take_alone(const char *item, ritz_verify_request *limits)
 {
@@ -170,7 +170,7 @@ static ritz_status take_alone(const char *item, ritz_verify_request *limits)
     return RITZ_OK;
 }
 
-/* The items with a name, or those without. */
+/* Read the items with a name, or those without. */
 static ritz_status take_items(const char *text, bool named,
                               ritz_verify_request *limits)
 {

@@ -74,7 +74,7 @@ static void keep_larger(double value, int64_t mode, extreme *of)
     of->mode = mode;
 }
 
-/* Whether a mode is a rigid motion that rounding of K has given a frequency. */
+/* Whether a mode is a rigid motion whose frequency is rounding of K. */
 static bool is_hidden(const ritz_sides *sides, int64_t k)
 {
     const ritz_rounded *rounded = &sides->full->rounded;

@@ -140,8 +140,10 @@ bool ritz_reference_factors(const ritz_reference *reference)
 }
 
 /*
- * With ratios beside it, the damping of a component is a full matrix: a factor
- * for each point would take hours, and a projection takes a few.
+ * Response of a component whose damping takes a factorisation of the full
+ * matrices at each point. If ratios and matrices act together, the damping
+ * matrix is full, and a factorisation at each point would take hours; the
+ * krylov engine needs only a few.
  */
 static ritz_status respond_by_factors(const ritz_reference *reference,
                                       const ritz_grid *grid, ritz_response *out)
@@ -340,8 +342,8 @@ ritz_status ritz_sides_respond(ritz_sides *sides)
     return RITZ_OK;
 }
 
-/* The largest |f| of rigid motions that the reduced model alone holds; 0:
-   it holds none. */
+/* The largest |f| of the rigid motions that only the reduced model holds; 0:
+   none. */
 static double find_held(const ritz_sides *sides)
 {
     int64_t rigid = sides->full->poles.num_rigid;
@@ -353,8 +355,8 @@ static double find_held(const ritz_sides *sides)
     return held;
 }
 
-/* Whether an error is of rigid motions that are held, "9 Hz: rigid eigenvalues
-   of rounded K, 0.0338 Hz". */
+/* Whether an error belongs to a rigid motion that is held: "9 Hz: rigid
+   eigenvalues of rounded K, 0.0338 Hz". */
 static bool tell_rigid(const ritz_sides *sides, double hertz,
                        char where[RITZ_NAME_SIZE])
 {
@@ -380,8 +382,8 @@ static bool tell_rigid(const ritz_sides *sides, double hertz,
 }
 
 /*
- * The error over @p unit, and "3.41 Hz, modal 0.01 assumed"; behind it what is
- * not known of the full response.
+ * The error relative to @p unit, with its frequency and damping, "3.41 Hz,
+ * modal 0.01 assumed", and the uncertainty of the full response.
  */
 static void tell_error(const ritz_sides *sides, ritz_extreme found, double unit,
                        ritz_measure *out)
@@ -431,7 +433,8 @@ ritz_status ritz_responses_level(const ritz_sides *sides, ritz_measure *out)
     return RITZ_OK;
 }
 
-/* The end of what rounding rules, where the band reaches below it. */
+/* The frequency up to which rounding of K dominates the response, if it is in
+   the band. */
 ritz_status ritz_responses_rounding(const ritz_sides *sides, ritz_measure *out)
 {
     const ritz_reference *full = sides->full;

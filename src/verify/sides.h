@@ -50,10 +50,12 @@ struct ritz_reference {
     double band_hz[2];
     double modes_hz; /* its modes are known up to here */
     ritz_damping damping;
-    bool assumed;         /* nobody had said how it is damped */
-    ritz_rounded rounded; /* what rounding of K does to its responses, */
-    double rules_hz;      /* and below which frequency; 0: nothing */
-    ritz_pairs pairs;     /* to three times the band */
+    bool assumed;         /* the damping was assumed, because neither model
+                             states any */
+    ritz_rounded rounded; /* effect of rounding of K on its responses */
+    double rules_hz;      /* frequency up to which that rounding dominates; 0:
+                             none  [Hz] */
+    ritz_pairs pairs;     /* modes up to three times the band */
     ritz_poles poles;
     ritz_residual residual;
     ritz_damped damped;
@@ -130,13 +132,13 @@ ritz_status ritz_sweep_points(const ritz_reference *reference,
                               const ritz_damped *damped, int64_t even,
                               ritz_reference_sweep *out);
 
-/** Rigid motions of the full model, hidden ones too. */
+/** Number of rigid motions of the full model, with hidden ones. */
 int64_t ritz_reference_rigid(const ritz_reference *reference);
 
 /**
- * Where responses over the band start: above 0 where a rigid motion responds,
- * and above what rounding of the stiffness rules, unless the band itself starts
- * above 0 or ends below.
+ * Frequency at which responses over the band start. If the band starts at 0, it
+ * is above 0 if there is rigid motion, and above the frequency up to which
+ * rounding of the stiffness dominates, unless the band ends below that.
  */
 double ritz_reference_start(const ritz_reference *reference);
 
@@ -172,16 +174,19 @@ void ritz_sweep_free(ritz_reference_sweep *sweep);
 /* Outputs are divided by their limits; 0 is the full model, 1 the reduced. */
 typedef struct ritz_state_pair {
     const ritz_verify_request *request;
-    const ritz_state_space *given[2]; /* as they came; borrowed, or `dense` */
-    ritz_state_space dense[2];        /* of sparse ones */
-    ritz_state_space model[2];        /* with their outputs divided: C and D
-                                         alone are their own */
-    ritz_state_space stable[2]; /* what belongs to poles left of the axis */
-    int64_t num_unstable[2];    /* poles that are not left of the axis */
-    bool large;     /* sparse, and too many states for dense matrices */
-    bool has_norms; /* both have as many of those; not if large */
-    ritz_state_space difference; /* of the stable ones, the full model's states
-                                    last, if has_norms */
+    const ritz_state_space *given[2]; /* the models as given, borrowed; or
+                                         `dense` */
+    ritz_state_space dense[2];        /* dense copies of sparse models */
+    ritz_state_space model[2];        /* models with outputs divided by limits;
+                                         own only C and D */
+    ritz_state_space stable[2]; /* the parts whose poles are left of the axis */
+    int64_t num_unstable[2];    /* number of poles that are not left of the
+                                   axis */
+    bool large;     /* a model is sparse with too many states for dense
+                       matrices */
+    bool has_norms; /* num_unstable of both are equal; false if large */
+    ritz_state_space difference; /* of the stable parts, the full model's states
+                                    last; if has_norms */
     bool has_gain;               /* neither has a pole at 0 */
     ritz_dense gain[2];          /* static */
     ritz_norm full,

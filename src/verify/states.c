@@ -112,8 +112,8 @@ static ritz_status divide_outputs(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-/* The part of the poles left of the axis, in Schur form: Y'A X, Y'E X, Y'B,
-   C X. */
+/* The part of a model whose poles are left of the axis, in Schur form: Y'A X,
+   Y'E X, Y'B, C X. */
 static ritz_status take_stable(const ritz_state_space *model,
                                ritz_state_space *out, int64_t *num_unstable)
 {
@@ -131,7 +131,7 @@ static ritz_status take_stable(const ritz_state_space *model,
     return ritz_dense_mul(&model->C, &split.X, &out->C);
 }
 
-/* The same of a sparse model. */
+/* Static gain of a sparse model. */
 static ritz_status sparse_gain(const ritz_state_space *model, ritz_dense *out)
 {
     RITZ_OWN(ritz_pencil) pencil = {0};
@@ -176,7 +176,7 @@ static ritz_status take_gains(ritz_state_pair *p)
     return RITZ_OK;
 }
 
-/* Both models as they are compared: dense, unless one is too large for it. */
+/* Both models as they are compared: dense, unless one is too large. */
 static ritz_status take_models(const ritz_state_space *full,
                                const ritz_state_space *reduced,
                                ritz_state_pair *p)
@@ -422,7 +422,7 @@ ritz_status ritz_states_growth(const ritz_state_pair *p, ritz_measure *out)
     ritz_probe probe[2] = {0};
     RITZ_OWN(ritz_measures) found = {0};
 
-    if (p->num_unstable[0] > 0) /* else all are known to be stable */
+    if (p->num_unstable[0] > 0) /* otherwise all poles are known to be stable */
         RITZ_CHECK_IN("full model", ritz_probe_states(p->given[0], &probe[0]));
     RITZ_CHECK_IN("reduced model", ritz_probe_states(p->given[1], &probe[1]));
     RITZ_CHECK(ritz_probe_record(&probe[1], &found));

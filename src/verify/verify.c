@@ -84,8 +84,9 @@ static ritz_status take_modes(double up_to_hz, ritz_reference *r)
                         "full model");
 }
 
-/* Factors of the full matrices hold rounding of its rigid stiffness; modes, and
-   what krylov adds to them, only that of motions that do not count as rigid. */
+/* Effect of rounding of the rigid stiffness. Responses by factorisation of the
+   full matrices contain all of it. Responses by modes, and by the krylov
+   engine, contain only that of motions that are not counted as rigid. */
 static ritz_status find_rounding(double tolerance, ritz_reference *r)
 {
     const bool factors = ritz_reference_factors(r) &&
