@@ -1,5 +1,6 @@
 /*
- * Joints, each held to closed forms on two masses; ports that do not fit them.
+ * Joints between two rigid bodies, compared with closed forms, and ports that a
+ * joint cannot hold.
  */
 #include "testing.h"
 
@@ -47,7 +48,7 @@ static void assert_points(const char *joint, const char *at, int64_t rigid,
 }
 
 /* Six rigid modes and one for each motion that is left; rank of the rest. */
-static void what_a_joint_leaves_is_rigid(void **)
+static void motions_that_stay_free_are_rigid_modes(void **)
 {
     static const struct {
         const char *joint, *at;
@@ -294,7 +295,7 @@ static void no_allocation_failure_leaks(void **)
     RITZ_OWN(rig) r = two_points();
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
-    ritz_component system = rig_join_full(&r, cross, ""); /* stores files */
+    ritz_component system = rig_join_full(&r, cross, ""); /* writes the files */
 
     ritz_component_free(&system);
     rig_scene(&r, cross, text);
@@ -305,7 +306,7 @@ static void no_allocation_failure_leaks(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(what_a_joint_leaves_is_rigid),
+    cmocka_unit_test(motions_that_stay_free_are_rigid_modes),
     cmocka_unit_test(a_caged_joint_swings_on_its_spring),
     cmocka_unit_test(a_caged_cross_swings_about_both_axes),
     cmocka_unit_test(a_bushing_is_six_springs),

@@ -1,6 +1,6 @@
 /*
- * Joints of elastic bodies, each held to the other joints, and to itself
- * turned, exchanged and at full order.
+ * Joints between elastic bodies, compared with equivalent joints, with the same
+ * joint turned or with exchanged ends, and with the assembly at full order.
  */
 #include "testing.h"
 
@@ -15,12 +15,14 @@
 #include <float.h>
 #include <stdio.h>
 
-/* 12 to 90 dofs at lambda_max of 1e5: n eps of that, and a margin of ten. */
+/* Relative to the largest eigenvalue: n eps with n = 12 to 90 dofs, and a
+   margin of ten. */
 static const double elastic = 1e3 * DBL_EPSILON;
 
 #define HELD(type) "- {name: p, between: [A/g3, B/g1], type: " type "}\n"
 
-/* Eigenvalues agree to `error` of the largest; rigid ones in number. */
+/* Eigenvalues agree within `error` times the largest one; the numbers of rigid
+   modes are equal. */
 static void assert_alike(const ritz_configuration *a,
                          const ritz_configuration *b, double error)
 {
@@ -52,7 +54,8 @@ static void locked_joints_are_fixed_ones(void **)
     }
 }
 
-/* From grid 1 of a rigid body to its grid 3 is as good as grid 3 itself. */
+/* On a rigid body, an offset from grid 1 to grid 3 replaces the port at grid
+   3. */
 static void an_offset_reaches_another_grid(void **)
 {
     static const char bushing[] =
@@ -84,13 +87,14 @@ static void an_offset_reaches_another_grid(void **)
 }
 
 /*
- * Two scenes that say the same. A universal joint is two hinges with a body
- * between that weighs nothing, a spherical one three.
+ * Each case states one system twice. A universal joint equals two hinges with a
+ * massless body between them, a spherical joint equals three hinges with two
+ * such bodies.
  */
 static void joints_agree_with_each_other(void **)
 {
     static const struct {
-        int64_t points; /* bodies without mass, C and D */
+        int64_t points; /* number of massless bodies: C, or C and D */
         const char *one, *at_one, *two, *at_two;
     } cases[] = {
         {0, HELD("slider, axis: [2, -1, 2], state: locked"), "p=-1.5",
@@ -137,13 +141,13 @@ static void joints_agree_with_each_other(void **)
         two = rig_join(&r, cases[k].two, cases[k].at_two);
         if (k + 1 < sizeof cases / sizeof *cases)
             assert_alike(&one, &two, elastic);
-        for (int64_t j = 0; j < one.K.ncol; j++) /* 1e12 is not all stiffness */
+        for (int64_t j = 0; j < one.K.ncol; j++) /* 1e12 N/m replaces a lock */
             assert_near(two.lambda[j], one.lambda[j],
                         1e-6 * one.lambda[one.K.ncol - 1]);
     }
 }
 
-/* What a spring k yields of a locked joint: lambda errs as 1 / k. */
+/* A stiff spring k in place of a lock changes lambda in proportion to 1 / k. */
 static void stiff_cages_approach_locked_joints(void **)
 {
     static const struct {
@@ -173,7 +177,7 @@ static void stiff_cages_approach_locked_joints(void **)
                      i ? 1e8 : 1e7);
             caged = rig_join(&r, joint, cases[k].at);
             assert_int_equal(caged.num_rigid, locked.num_rigid);
-            for (int64_t j = 6; j < 20; j++) /* the low ones */
+            for (int64_t j = 6; j < 20; j++) /* low elastic modes */
                 error[i] = fmax(error[i],
                                 fabs(1.0 - caged.lambda[j] / locked.lambda[j]));
         }
@@ -182,13 +186,14 @@ static void stiff_cages_approach_locked_joints(void **)
     }
 }
 
-/* Each type at settings, its ends exchanged, its axes to be turned. */
+/* A joint at a setting, the same joint with its ends exchanged, and its axes,
+   which a test may turn. */
 typedef struct sample {
     const char *type, *at;      /* between A and B */
     const char *back, *back_at; /* between B and A */
-    const char *rest;           /* behind the axes */
+    const char *rest;           /* keys after the axes */
     double axis[2][3];          /* of `type` */
-    int64_t num_axes;           /* 0: key without */
+    int64_t num_axes;           /* 0: the joint takes no axes */
     const char *key;
 } sample;
 
@@ -273,7 +278,7 @@ static const sample samples[] = {
 
 enum { NUM_SAMPLES = sizeof samples / sizeof *samples };
 
-/* "type: hinge, axis: [..]", the axes turned by R. */
+/* YAML text of the joint, its axes turned by R: "type: hinge, axis: [..]". */
 static void write_sample(const sample *s, const double R[9], char *text,
                          size_t size)
 {
@@ -307,7 +312,7 @@ static double damping_of(const ritz_configuration *c)
     return sum;
 }
 
-/* Decks stand where they like, all of them turned by the same R. */
+/* Each body's deck has its own origin; all decks are turned by the same R. */
 static void a_turned_scene_is_the_same(void **)
 {
     const double axis[3] = {2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0};
@@ -358,14 +363,15 @@ static void ends_can_be_exchanged(void **)
     }
 }
 
-/* Craig-Bampton with every mode is the body itself. */
+/* Bodies reduced by Craig-Bampton with all modes, which is exact. */
 static ritz_configuration join_all_modes(const rig *r, const char *joints,
                                          const char *at)
 {
     return rig_join_by(r, &ritz_method_craig_bampton, 18, joints, at);
 }
 
-/* tr(M^-1 D) is that of the modes; so is every eigenvalue. */
+/* All eigenvalues agree, and so does tr(M^-1 D), the sum of the modal
+   damping. */
 static void assert_full(const ritz_configuration *c,
                         const ritz_component *system)
 {
@@ -407,7 +413,7 @@ static void full_order_agrees(void **)
     }
 }
 
-/* One of each in a row of five bodies, at settings of their own. */
+/* Four joints in a row of five bodies; three of them have settings. */
 static const char train[] =
     "- {name: one, between: [A/g3, B/g1], type: slider, axis: [1, 0, 2], "
     "positions: [0.1, 0.5]}\n"
@@ -419,7 +425,9 @@ static const char train[] =
     "- {name: four, between: [D/g3, E/g1], type: bushing, "
     "stiffness: [100, 200, 300, 0, 5, 6], damping: [0, 0, 0, 1, 0, 0]}\n";
 
-/* Six, and one each of slider, cross and hinge; the bushing turns about x. */
+/* Rigid modes: six of the whole, and one each of the slider, the free axis of
+   the universal joint, the hinge, and the bushing, which has no stiffness about
+   x. */
 static void several_swept_joints_agree_with_full_order(void **)
 {
     static const char *const at[] = {"one=0.1,two=0,three=10",

@@ -39,7 +39,8 @@ static void reduced_chain(ritz_reduced *out)
     request.modes = MODES;
     request.component = &body;
     request.attached = (ritz_dofs){12, attached};
-    request.choice.given = RITZ_USES_LOADS; /* no static vector of the damper */
+    /* leaves out the damper's static vector */
+    request.choice.given = RITZ_USES_LOADS;
     request.choice.loads = RITZ_LOADS_ATTACHED;
     assert_ok(method->make(&request, &basis));
     assert_ok(ritz_reduce(&body, &basis, out));

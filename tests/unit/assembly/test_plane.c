@@ -1,6 +1,7 @@
 /*
- * Joints of plane models, held to closed forms of two rigid links, to the same
- * bodies in space, and refused where a body or a joint leaves the plane.
+ * Joints of plane models, compared with closed forms of two rigid links and
+ * with the assembly at full order; bodies and joints that leave the plane are
+ * refused.
  */
 #include "testing.h"
 
@@ -17,8 +18,9 @@
 
 enum { PLANES = 3 };
 
-/* Directions along u and v and about w, of the planes uv = yz, xz and xy; the
-   turn about w is from u to v where `sign` is 1. */
+/* For the planes yz, xz and xy: directions along u and v and about w. The
+   rotation about w turns u towards v where `sign` is 1, v towards u where it is
+   -1. */
 static const struct {
     const char *name, *normal, *in;
     int64_t u, v, w;
@@ -37,7 +39,7 @@ static ritz_status link_body(int p, double m, double J, double cu, double cv,
     return body_link(direction, planes[p].sign, (double[]){m, J, cu, cv}, out);
 }
 
-/* Links A and B, and the joint p between them, at some settings. */
+/* Assemble bodies A and B with joint p at the setting `at`. */
 static ritz_status join_bodies(const ritz_component body[2], const char *plane,
                                const char *joint, const char *at,
                                ritz_configuration *out)
@@ -84,12 +86,14 @@ static double lambda_of(const ritz_configuration *c, int64_t k)
     return c->lambda ? c->lambda[k] : nan("");
 }
 
-/* Orders below ten, entries of order one: a few dozen roundings. */
+/* Entries are of order one and matrices of order below ten: a few hundred
+   roundings. */
 static const double rounding = 200.0 * DBL_EPSILON;
 
 /*
- * Free links that turn against each other at a hinge with a spring k, the
- * centres at a and b from it, mu the reduced mass:
+ * Two free links are connected by a hinge with a spring k; their centres lie at
+ * a and b from the hinge, and mu is the reduced mass. The matrices of the two
+ * rotations are
  *
  *     M = [J_1 + mu a^2, -mu a.b; ., J_2 + mu b^2],   K = k [1, -1; -1, 1]
  */
@@ -103,7 +107,7 @@ static void a_caged_hinge_swings_two_links(void **state)
     for (int t = 0; t < 4 * PLANES; t++) {
         const int p = t % PLANES;
         const double turn = angles[t / PLANES] * acos(-1.0) / 180.0;
-        const double axis = p == 1 ? -1.0 : 1.0; /* the axis given, and w */
+        const double axis = p == 1 ? -1.0 : 1.0; /* -1: axis along -w */
         const double q = turn * axis * planes[p].sign;
         const double bu = cos(q) * b[0] - sin(q) * b[1];
         const double bv = sin(q) * b[0] + cos(q) * b[1];
@@ -126,8 +130,9 @@ static void a_caged_hinge_swings_two_links(void **state)
     }
 }
 
-/* Three rigid modes and one for each motion that is left in the plane. */
-static void what_a_joint_leaves_in_the_plane_is_rigid(void **state)
+/* Three rigid modes of the whole, and one for each motion in the plane that the
+   joint leaves free. */
+static void motions_that_stay_free_in_the_plane_are_rigid_modes(void **state)
 {
     static const struct {
         const char *joint;
@@ -156,7 +161,7 @@ static void what_a_joint_leaves_in_the_plane_is_rigid(void **state)
     }
 }
 
-/* Springs out of the plane have nothing to stretch them. */
+/* Springs along or about directions out of the plane have no effect. */
 static void a_bushing_has_three_springs_in_the_plane(void **state)
 {
     static const char *const same[] = {
@@ -183,8 +188,8 @@ static void a_bushing_has_three_springs_in_the_plane(void **state)
     }
 }
 
-/* A hinge that is free, at the grids themselves, asks for no rotation; a lever
-   does. */
+/* A free hinge at the grids themselves needs no rotational dof; a locked hinge
+   and an offset need one. */
 static void a_pin_needs_no_rotation(void **state)
 {
     ritz_component body[2] = {0};
@@ -237,8 +242,9 @@ static void joints_that_leave_the_plane_are_refused(void **state)
                  RITZ_ERR_FORMAT, "must be normal to it");
 }
 
-/* Without the word a plane model is one of space that lacks three dofs. */
-static void a_plane_is_said_and_checked(void **state)
+/* Without the key `plane`, joints need six dofs at each grid; with it, dofs out
+   of the plane are refused. */
+static void plane_models_need_the_key_plane(void **state)
 {
     RITZ_OWN(ritz_component) body = {0};
     RITZ_OWN(ritz_configuration) c = {0};
@@ -262,7 +268,7 @@ static void a_plane_is_said_and_checked(void **state)
         RITZ_ERR_FORMAT, "unknown plane 'zx', there is");
 }
 
-/* Dofs and positions of a whole model. */
+/* The check covers all dofs of a model and the positions of its grids. */
 static void models_lie_in_the_plane(void **state)
 {
     static const double tilted[] = {0.8, 0.0,  0.6, 0.0, 1.0,
@@ -294,7 +300,8 @@ static void models_lie_in_the_plane(void **state)
     assert_ok(ritz_plane_check_dofs(RITZ_PLANE_NONE, 6, dof, &grids));
 }
 
-/* Models that a scene loads are checked whole, and join at full order too. */
+/* Models that a scene loads are checked as a whole; the assembly at full order
+   agrees. */
 static void models_of_files_are_checked(void **state)
 {
     static const char text[] =
@@ -322,7 +329,7 @@ static void models_of_files_are_checked(void **state)
     assert_int_equal(whole.num_dofs, 4);
     assert_ok(ritz_eigen_sparse(&whole.K, &whole.M, &all, &pairs));
     assert_near(pairs.lambda[3], lambda_of(&c, 3), rounding * lambda_of(&c, 3));
-    a.dof[2].component = 5; /* about y */
+    a.dof[2].component = 5; /* rotation about y */
     folder_store("a.h5", &a);
     ritz_stage_free(&stage);
     assert_fails(ritz_stage_new(&scene, &stage), RITZ_ERR_ARGUMENT,
@@ -344,11 +351,11 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_caged_hinge_swings_two_links),
-    cmocka_unit_test(what_a_joint_leaves_in_the_plane_is_rigid),
+    cmocka_unit_test(motions_that_stay_free_in_the_plane_are_rigid_modes),
     cmocka_unit_test(a_bushing_has_three_springs_in_the_plane),
     cmocka_unit_test(a_pin_needs_no_rotation),
     cmocka_unit_test(joints_that_leave_the_plane_are_refused),
-    cmocka_unit_test(a_plane_is_said_and_checked),
+    cmocka_unit_test(plane_models_need_the_key_plane),
     cmocka_unit_test(models_lie_in_the_plane),
     cmocka_unit_test(models_of_files_are_checked),
     cmocka_unit_test(no_allocation_failure_leaks),

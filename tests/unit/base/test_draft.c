@@ -138,7 +138,7 @@ static void unfinished_drafts_are_discarded_at_once(void **state)
     remove(path);
 }
 
-static void as_many_drafts_as_are_wanted_are_discarded(void **state)
+static void any_number_of_drafts_is_discarded(void **state)
 {
     enum { MANY = 40 };
     ritz_draft drafts[MANY] = {{0}};
@@ -168,7 +168,8 @@ static void permissions_of_a_replaced_file_stay(void **state)
         assert_int_equal(chmod(path, modes[k]), 0);
         assert_ok(ritz_draft_new(path, &draft));
         assert_int_equal(stat(draft.name, &there), 0);
-        assert_int_equal(there.st_mode & 077, 0); /* while it is written */
+        /* no access for others while it is written */
+        assert_int_equal(there.st_mode & 077, 0);
         put(draft.name, '1');
         assert_ok(ritz_draft_publish(&draft));
         assert_int_equal(stat(path, &there), 0);
@@ -178,8 +179,8 @@ static void permissions_of_a_replaced_file_stay(void **state)
     }
 }
 
-/* Also one link that leads to another, in a folder. */
-static void a_link_to_nothing_stays_and_what_it_names_is_made(void **state)
+/* Two links in a row, the second one in a folder. */
+static void a_dangling_link_stays_and_its_target_is_made(void **state)
 {
     static const char link[] = "test_draft.link";
     static const char folder[] = "test_draft.d";
@@ -202,7 +203,7 @@ static void a_link_to_nothing_stays_and_what_it_names_is_made(void **state)
     assert_true(S_ISLNK(there.st_mode));
     assert_int_equal(get(path), '1');
     remove(inner);
-    assert_int_equal(symlink("link", inner), 0); /* to itself */
+    assert_int_equal(symlink("link", inner), 0); /* a link to itself */
     assert_fails(ritz_draft_new(inner, &draft), RITZ_ERR_FILE,
                  "Too many levels");
     remove(inner);
@@ -232,7 +233,8 @@ static void one_file_has_many_names(void **state)
     remove(path);
 }
 
-/* Drafts of two paths, published while a program holds them back. */
+/* Write and publish drafts of two paths while the program holds published
+   drafts back. */
 static void hold_two(const char *first, const char *second)
 {
     const char *const paths[] = {first, second};
@@ -265,7 +267,9 @@ static void held_drafts_appear_together_or_not_at_all(void **state)
         snprintf(name, sizeof name, "%s.%ld-0.part", path, (long)getpid());
         assert_int_equal(get(name), 0);
     }
-    ritz_draft_hold(); /* what a signal handler calls finds them, too */
+    /* ritz_draft_discard_all, which signal handlers call, removes drafts that
+       are held back too */
+    ritz_draft_hold();
     hold_two(path, other);
     ritz_draft_discard_all();
     assert_fails(ritz_draft_settle(true), RITZ_ERR_FILE, "No such file");
@@ -274,7 +278,7 @@ static void held_drafts_appear_together_or_not_at_all(void **state)
     remove(path);
 }
 
-static void of_names_that_cannot_all_be_given_none_is(void **state)
+static void a_failed_rename_removes_the_other_held_file(void **state)
 {
     static const char other[] = "test_draft.two";
 
@@ -287,7 +291,7 @@ static void of_names_that_cannot_all_be_given_none_is(void **state)
     rmdir(other);
 }
 
-static void what_was_read_is_not_replaced(void **state)
+static void inputs_are_not_replaced(void **state)
 {
     static const char other[] = "test_draft.two";
     static const char sentence[] = "would overwrite the input 'test_draft.out'";
@@ -295,7 +299,7 @@ static void what_was_read_is_not_replaced(void **state)
 
     (void)state;
     put(path, 'x');
-    assert_ok(ritz_draft_protect(path)); /* not yet */
+    assert_ok(ritz_draft_protect(path)); /* without effect before the hold */
     assert_ok(ritz_draft_check(path));
     ritz_draft_hold();
     assert_ok(ritz_draft_protect(path));
@@ -310,7 +314,8 @@ static void what_was_read_is_not_replaced(void **state)
     remove(other);
     put(other, 'y');
     assert_ok(ritz_draft_new(other, &draft));
-    assert_ok(ritz_draft_protect(other)); /* read while it is written */
+    /* an input now, while its draft is open */
+    assert_ok(ritz_draft_protect(other));
     assert_fails(ritz_draft_publish(&draft), RITZ_ERR_ARGUMENT,
                  "would overwrite the input 'test_draft.two'");
     ritz_draft_free(&draft);
@@ -384,14 +389,15 @@ static ritz_status write_two(const void *)
     return ritz_draft_settle(true);
 }
 
-/* fsync of the file, rename, fsync of the folder. */
-static void what_is_not_on_the_disk_is_not_published(void **)
+/* The three calls in their order: fsync of the file, rename, fsync of the
+   folder. */
+static void a_failed_sync_or_rename_leaves_no_file(void **)
 {
     setenv("RITZ_SYNC", "1", 1);
     assert_int_equal(faults_try_each(write_one, NULL, path), 3);
 }
 
-static void of_files_that_belong_together_all_stay_or_none(void **)
+static void a_failure_leaves_neither_of_two_held_files(void **)
 {
     setenv("RITZ_SYNC", "1", 1);
     assert_int_equal(faults_try_each(write_two, NULL, path), 6);
@@ -411,7 +417,7 @@ static void a_failure_before_the_rename_leaves_the_old_file(void **)
     remove(path);
 }
 
-/* Calls of fsync that one file takes. */
+/* Number of calls of fsync when one file is published. */
 static int count_syncs(void)
 {
     faults_begin(1000, false);
@@ -433,7 +439,7 @@ static void syncs_are_left_out_on_request(void **)
 
 /* --- drafts of killed writers --------------------------------------------- */
 
-/* The name of the first draft of another process. */
+/* Name of the first draft of `path` by the process `writer`. */
 static void name_draft(pid_t writer, char name[64])
 {
     snprintf(name, 64, "%s.%ld-0.part", path, (long)writer);
@@ -455,14 +461,15 @@ static void drafts_of_killed_writers_are_swept(void **state)
     assert_int_equal(waitpid(writer, &outcome, 0), writer);
     assert_true(WIFSIGNALED(outcome));
     name_draft(writer, left);
-    assert_int_equal(get(left), EOF); /* empty, and there */
+    assert_int_equal(get(left), EOF); /* the draft exists and is empty */
     assert_ok(ritz_draft_new(path, &draft));
     assert_int_equal(get(left), 0);
     assert_int_equal(get(draft.name), EOF);
     ritz_draft_free(&draft);
 }
 
-/* Two writers of one file, as of make -j: neither removes the other's draft. */
+/* Two writers of one file, as under make -j: neither removes the other's
+   draft. */
 static void drafts_of_living_writers_stay(void **state)
 {
     ritz_draft draft = {0};
@@ -479,7 +486,7 @@ static void drafts_of_living_writers_stay(void **state)
     if (writer == 0) {
         bool made = ritz_draft_new(path, &draft) == RITZ_OK;
 
-        close(done[1]); /* so that it does not wait for a test that failed */
+        close(done[1]); /* so that read ends if the test fails */
         made = write(ready[1], &letter, 1) == 1 && made;
         made = read(done[0], &letter, 1) == 1 && made;
         _exit(made && ritz_draft_publish(&draft) == RITZ_OK ? 0 : 1);
@@ -499,7 +506,7 @@ static void drafts_of_living_writers_stay(void **state)
     assert_int_equal(remove(path), 0);
 }
 
-static void what_is_called_otherwise_is_not_swept(void **state)
+static void files_of_other_names_are_not_swept(void **state)
 {
     static const char *const names[] = {
         "test_draft.out.part",         "test_draft.out.1.part",
@@ -517,7 +524,7 @@ static void what_is_called_otherwise_is_not_swept(void **state)
     (void)state;
     for (int k = 0; k < COUNT; k++)
         put(names[k], 'n');
-    remove(linked); /* what a run that failed may have left */
+    remove(linked); /* may be left by an earlier run */
     remove(pipe_name);
     remove(folder);
     assert_int_equal(symlink(names[0], linked), 0);
@@ -542,22 +549,22 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(devices_and_folders_stay),
     cmocka_unit_test(a_link_stays_and_what_it_names_is_replaced),
     cmocka_unit_test(unfinished_drafts_are_discarded_at_once),
-    cmocka_unit_test(as_many_drafts_as_are_wanted_are_discarded),
+    cmocka_unit_test(any_number_of_drafts_is_discarded),
     cmocka_unit_test(permissions_of_a_replaced_file_stay),
-    cmocka_unit_test(a_link_to_nothing_stays_and_what_it_names_is_made),
+    cmocka_unit_test(a_dangling_link_stays_and_its_target_is_made),
     cmocka_unit_test(one_file_has_many_names),
     cmocka_unit_test(held_drafts_appear_together_or_not_at_all),
-    cmocka_unit_test(of_names_that_cannot_all_be_given_none_is),
-    cmocka_unit_test(what_was_read_is_not_replaced),
+    cmocka_unit_test(a_failed_rename_removes_the_other_held_file),
+    cmocka_unit_test(inputs_are_not_replaced),
     cmocka_unit_test(no_file_is_written_twice_by_one_program),
     cmocka_unit_test(survives_every_allocation),
-    cmocka_unit_test(what_is_not_on_the_disk_is_not_published),
-    cmocka_unit_test(of_files_that_belong_together_all_stay_or_none),
+    cmocka_unit_test(a_failed_sync_or_rename_leaves_no_file),
+    cmocka_unit_test(a_failure_leaves_neither_of_two_held_files),
     cmocka_unit_test(a_failure_before_the_rename_leaves_the_old_file),
     cmocka_unit_test(syncs_are_left_out_on_request),
     cmocka_unit_test(drafts_of_killed_writers_are_swept),
     cmocka_unit_test(drafts_of_living_writers_stay),
-    cmocka_unit_test(what_is_called_otherwise_is_not_swept),
+    cmocka_unit_test(files_of_other_names_are_not_swept),
 };
 
 TEST_MODULE(draft, tests, NULL, NULL)

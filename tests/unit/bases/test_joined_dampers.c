@@ -1,6 +1,7 @@
 /*
- * Static vectors of dampers in bodies that others hold: whatever the basis, the
- * response to a pair of forces along a damper is in its span [ChuMilman1992].
+ * Static vectors of dampers inside bodies with attached dofs: for every basis,
+ * the response to a damper's pair of forces lies in the span of the basis
+ * [ChuMilman1992].
  */
 #include "testing.h"
 
@@ -18,14 +19,14 @@ enum { MASSES = 30, MODES = 6, DAMPERS = 3, HELD = 2 };
 
 static const int64_t damped[DAMPERS] = {2, 9, 17};
 
-/* Solves with K of the chain, whose condition number is 3e3: as in
-   test_normal_modes.c, some of them squared by a Cholesky factor. */
+/* Rounding of a solve with K of the chain, whose condition number is 3e3
+   (test_normal_modes.c derives it). The tests allow a hundred times as much. */
 static const double solve_error = MASSES * DBL_EPSILON * 3e3;
 
 typedef struct fixture {
     ritz_component chain;
     int64_t held[HELD];
-    ritz_neighbour neighbour; /* of loaded-interface */
+    ritz_neighbour neighbour; /* for loaded-interface */
     ritz_request request;
 } fixture;
 
@@ -59,7 +60,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* b'A^-1 b of a dense matrix that is symmetric and definite. */
+/* b'A^-1 b for a symmetric positive definite A. */
 static double flexibility(const ritz_dense *A, const double *b)
 {
     int n = (int)A->nrow;
@@ -77,7 +78,7 @@ static double flexibility(const ritz_dense *A, const double *b)
     return sum;
 }
 
-/* K, and of loaded-interface that of the neighbour beside it. */
+/* K of the chain; for loaded-interface with the neighbour's stiffness added. */
 static ritz_dense stiffness(const fixture *f, const ritz_method *method)
 {
     ritz_dense K = {0};
@@ -89,7 +90,8 @@ static ritz_dense stiffness(const fixture *f, const ritz_method *method)
     return K;
 }
 
-/* The part of the energy of the static responses that T has not, at worst. */
+/* Largest fraction of the strain energy of a damper's static response that lies
+   outside the span of T. */
 static double missing(const fixture *f, const ritz_method *method,
                       const ritz_dense *T)
 {
@@ -125,7 +127,7 @@ static ritz_basis basis_of(const fixture *f, const ritz_method *method,
     return basis;
 }
 
-/* Methods of modes; then those of Krylov vectors. */
+/* Methods with modes, MODAL of them; then those with Krylov vectors. */
 static const ritz_method *const joined[] = {
     &ritz_method_craig_bampton,
     &ritz_method_macneal_rubin,
@@ -141,8 +143,9 @@ static const ritz_method *const joined[] = {
 
 enum { MODAL = 7 };
 
-/* Methods that are named for what they leave out: only where they are asked.
-   Constraint modes of irs, which inertia bends, are no static responses. */
+/* guyan and irs have static vectors of loads only on request. The constraint
+   modes of irs are corrected for inertia, so that they span static responses
+   only approximately. */
 static const ritz_method *const bare[] = {&ritz_method_guyan, &ritz_method_irs,
                                           NULL};
 
@@ -174,8 +177,8 @@ static void responses_along_dampers_are_spanned(void **state)
     }
 }
 
-/* The columns of the interface and of modes stay what they are; the others
-   are static, of no dof. */
+/* Columns of the interface and of modes do not change; the additional columns
+   are static vectors, which belong to no dof. */
 static void other_columns_do_not_change(void **state)
 {
     const fixture *f = *state;
@@ -203,8 +206,8 @@ static void other_columns_do_not_change(void **state)
     }
 }
 
-/* Interface forces of dual-craig-bampton do not deform static vectors, and
-   those of rubin vanish at the attached dofs: K couples neither. */
+/* In dual-craig-bampton K does not couple interface forces with static vectors;
+   in rubin all columns after the first HELD vanish at the attached dofs. */
 static void static_vectors_leave_the_interface_alone(void **state)
 {
     const fixture *f = *state;
@@ -225,7 +228,7 @@ static void static_vectors_leave_the_interface_alone(void **state)
             assert_near(ritz_dense_col(&rubin.T, j)[f->held[k]], 0.0, 0.0);
 }
 
-/* Inputs are loads too. */
+/* Responses to inputs and to dampers can be requested together. */
 static void loads_are_those_asked_for(void **state)
 {
     fixture *f = *state;
@@ -247,7 +250,8 @@ static void loads_are_those_asked_for(void **state)
     f->chain.io = none;
 }
 
-/* A damper between attached dofs moves with them alone: nothing is left. */
+/* Constraint modes span the response to a damper between two attached dofs,
+   which therefore adds no column. */
 static void a_damper_of_the_interface_has_no_vector(void **state)
 {
     fixture *f = *state;
@@ -280,7 +284,7 @@ static void loads_that_are_not_there_are_refused(void **state)
     assert_fails(ritz_basis_make(&ritz_method_craig_bampton, &request, &none),
                  RITZ_ERR_ARGUMENT,
                  "there is no load to respond to, no damper");
-    request.choice.loads |= RITZ_LOADS_ATTACHED; /* which there are */
+    request.choice.loads |= RITZ_LOADS_ATTACHED; /* attached dofs exist */
     assert_ok(ritz_basis_make(&ritz_method_rubin, &request, &none));
     assert_int_equal(none.T.ncol, HELD + MODES);
     ritz_basis_free(&none);

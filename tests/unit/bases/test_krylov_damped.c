@@ -320,7 +320,7 @@ static void damping_of_rigid_motion_is_answered(void **state)
     moments_free(&part);
 }
 
-/* K4 of a model that has some: a loss of the bars next to three dofs. */
+/* K4 of the truss: structural damping at three dofs. */
 static void set_loss(ritz_component *c)
 {
     int64_t row[3] = {0, 13, 40};
@@ -391,15 +391,15 @@ static void waves_free(wave_model *m)
 }
 
 /*
- * Coefficient j of C Z^-1 B about s, q x p, times unit^j, by its recurrence:
- * X_0 = Z^-1 B, X_j = -Z^-1 ((2 s M + D) X_j-1 + M X_j-2).
+ * Taylor coefficient j of C Z(s)^-1 B about s (q x p), times unit^j, by the
+ * recurrence X_0 = Z^-1 B, X_j = -Z^-1 ((2 s M + D) X_j-1 + M X_j-2).
  */
 static void wave_moments(const wave_model *m, double _Complex s, double unit,
                          int count, double _Complex *out)
 {
     size_t n = (size_t)m->n, p = (size_t)m->p, q = (size_t)m->q;
     double _Complex *Z = calloc(n * n, sizeof *Z);
-    double _Complex *X = calloc(3 * n * p, sizeof *X); /* j, j-1, j-2 */
+    double _Complex *X = calloc(3 * n * p, sizeof *X); /* X_j, X_j-1, X_j-2 */
     int *pivot = calloc(n, sizeof *pivot);
 
     assert_true(Z && X && pivot);
@@ -440,7 +440,8 @@ static void wave_moments(const wave_model *m, double _Complex s, double unit,
 
 enum { MOST_MOMENTS = 8, MOST_CHANNELS = 4 };
 
-/* The largest relative difference of moment j between a component and T. */
+/* For each j < count: the largest difference of moment j between the component
+   and its projection onto T, relative to the largest entry. */
 static void differ_about(const ritz_component *c, const ritz_dense *T,
                          double hertz, int count, double *out)
 {
@@ -471,11 +472,13 @@ static void differ_about(const ritz_component *c, const ritz_dense *T,
     waves_free(&part);
 }
 
-/* Of moments, by two dense recurrences: 4e-12 measured. */
+/* Relative error of a moment by the two dense recurrences; 4e-12 was
+   measured. */
 #define WAVE_ERROR (0.02 * solve_error)
 
-/* So many moments about a point are those of the component; with a first block
-   alone, before others make the rest small too, no more. */
+/* The first `kept` moments about the point agree with those of the component.
+   With a single block the next moment differs; more blocks make its difference
+   small as well. */
 static void check_waves(const ritz_request *request, int64_t vectors,
                         double hertz, int kept)
 {
@@ -498,8 +501,9 @@ static void shift_to(ritz_request *request, int64_t count, const double *hertz)
 }
 
 /*
- * About a frequency each load gives two vectors, real and imaginary part; with
- * inputs and outputs a block keeps two moments, with inputs alone one.
+ * About a frequency above 0 Hz each load gives two vectors, real and imaginary
+ * part. A block keeps two moments if inputs and outputs are loads, one moment
+ * if inputs alone are.
  */
 static void moments_about_a_frequency_are_kept(void **state)
 {
@@ -514,7 +518,8 @@ static void moments_about_a_frequency_are_kept(void **state)
         check_waves(&request, 4 * (int64_t)blocks, 7.0, blocks);
 }
 
-/* Points take turns: a block about 0 Hz, one about each other. */
+/* Blocks of vectors are added about each expansion point in turn; a block about
+   0 Hz has half as many vectors as one about another frequency. */
 static void several_points_keep_moments_each(void **state)
 {
     fixture *f = *state;
@@ -529,8 +534,8 @@ static void several_points_keep_moments_each(void **state)
     check_waves(&request, 4 * LOADS, 11.0, 2);
 }
 
-/* K4 is part of Z_0, at rest too. */
-static void structural_damping_has_its_part(void **state)
+/* K4 is part of Z(s) at every expansion point, 0 Hz included. */
+static void structural_damping_is_expanded_too(void **state)
 {
     fixture *f = *state;
     ritz_request request = f->request;
@@ -551,7 +556,7 @@ static void structural_damping_has_its_part(void **state)
     assert_true(without[0] > 1e3 * WAVE_ERROR);
 }
 
-static void gyroscopes_keep_theirs_about_a_frequency(void **state)
+static void gyroscopic_models_keep_moments_about_a_frequency(void **state)
 {
     fixture *f = *state;
     static const int64_t rotor[][2] = {{30, 33}, {20, 27}};
@@ -567,8 +572,9 @@ static void gyroscopes_keep_theirs_about_a_frequency(void **state)
     ritz_sparse_free(&spun.D);
 }
 
-/* A free truss on dashpots: rigid motion is coupled, and has its part. */
-static void free_bodies_keep_theirs(void **state)
+/* A free truss with dampers to ground: D couples rigid and elastic motion, and
+   the moments contain both. */
+static void free_bodies_keep_their_moments(void **state)
 {
     static const int64_t tether[][2] = {{70, -1}, {10, -1}};
     RITZ_OWN(ritz_component) body = {0};
@@ -593,11 +599,12 @@ static void free_bodies_keep_theirs(void **state)
 }
 
 /*
- * A free truss that loses a part of its strain energy, at rest: the elastic
- * part is expanded, rigid motion loses nothing. Two moments: the error of the
- * response without its rigid part falls by 2^2 when s halves.
+ * A free truss with structural damping K4 = 0.05 K, expanded about 0 Hz. Only
+ * the elastic part is expanded, because K4 does not act on rigid motion. As two
+ * moments are kept, the error of the elastic response falls by 2^2 when s
+ * halves.
  */
-static void free_bodies_with_loss_keep_theirs_at_rest(void **state)
+static void free_bodies_with_structural_damping_keep_two_moments(void **state)
 {
     RITZ_OWN(ritz_component) body = {0};
     ritz_request request = RITZ_REQUEST_NONE;
@@ -615,7 +622,7 @@ static void free_bodies_with_loss_keep_theirs_at_rest(void **state)
         double hertz = k ? 1.0 : 2.0;
 
         differ_about(&body, &basis.T, hertz, 1, error[k]);
-        size[k] = error[k][0] / (hertz * hertz); /* |H| is rigid, as 1 / s^2 */
+        size[k] = error[k][0] / (hertz * hertz); /* rigid: |H| ~ 1 / s^2 */
     }
     assert_true(error[0][0] < 1e-3);
     assert_true(size[1] * 3.6 <= size[0]);
@@ -671,10 +678,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(damping_of_rigid_motion_is_answered),
     cmocka_unit_test(moments_about_a_frequency_are_kept),
     cmocka_unit_test(several_points_keep_moments_each),
-    cmocka_unit_test(structural_damping_has_its_part),
-    cmocka_unit_test(gyroscopes_keep_theirs_about_a_frequency),
-    cmocka_unit_test(free_bodies_keep_theirs),
-    cmocka_unit_test(free_bodies_with_loss_keep_theirs_at_rest),
+    cmocka_unit_test(structural_damping_is_expanded_too),
+    cmocka_unit_test(gyroscopic_models_keep_moments_about_a_frequency),
+    cmocka_unit_test(free_bodies_keep_their_moments),
+    cmocka_unit_test(free_bodies_with_structural_damping_keep_two_moments),
     cmocka_unit_test(requests_that_make_no_sense_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

@@ -74,7 +74,7 @@ static void find_gain(const ritz_state_space *model, double _Complex *H)
     assert_ok(ritz_space_transfer(model, &pencil, 0.0, H));
 }
 
-/* On A^-1 the first block is the static response. */
+/* With A^-1 as the operator, the first block contains the static response. */
 static void the_inverse_operator_keeps_the_static_gain(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0}, made_dense = {0};
@@ -94,13 +94,13 @@ static void the_inverse_operator_keeps_the_static_gain(void **)
         reduce(&request, &m);
         assert_int_equal(m.basis.T.ncol, 4);
         find_gain(&m.model, small);
-        /* what ADI leaves of the Gramian, of |A^-1| = 400 */
+        /* ADI's residual of the Gramian, times |A^-1| = 400 */
         for (int i = 0; i < 4; i++)
             assert_near(cabs(small[i] - full[i]), 0.0, 1e-6 * cabs(full[0]));
     }
 }
 
-/* W = Q'W^-1 A Q has W'E T = I, and its own Gramian is the identity. */
+/* The reduced model's Gramian is the identity: A_r + A_r' + B_r B_r' = 0. */
 static void the_reduced_gramian_is_the_identity(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
@@ -118,12 +118,12 @@ static void the_reduced_gramian_is_the_identity(void **)
             for (int64_t k = 0; k < 2; k++)
                 sum += ritz_dense_col(&m.model.B, k)[i] *
                        ritz_dense_col(&m.model.B, k)[j];
-            /* a thousandth of the least damping, 3e-3 */
+            /* a thousandth of the slowest decay rate, 3e-3 1/s */
             assert_near(sum, 0.0, 3e-6);
         }
 }
 
-static void a_shift_serves_what_is_not_stable(void **)
+static void a_shift_allows_models_that_are_not_stable(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
     RITZ_OWN(ritz_basis) none = {0};
@@ -173,7 +173,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_order_is_stable),
     cmocka_unit_test(the_inverse_operator_keeps_the_static_gain),
     cmocka_unit_test(the_reduced_gramian_is_the_identity),
-    cmocka_unit_test(a_shift_serves_what_is_not_stable),
+    cmocka_unit_test(a_shift_allows_models_that_are_not_stable),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

@@ -316,7 +316,7 @@ static void loads_are_what_is_asked_for(void **state)
     request.choice.loads = RITZ_LOADS_OUTPUTS;
     assert_ok(ritz_basis_make(&ritz_method_normal_modes, &request, &basis));
     assert_int_equal(basis.T.ncol, MODES + 2);
-    assert_string_equal(basis.remark, /* rows of Cv and Ca were none */
+    assert_string_equal(basis.remark, /* rows of zeros are no loads */
                         "3 damper(s) without a static vector: damping may be "
                         "wrong where frequencies are right, take dampers among "
                         "the loads");

@@ -1,6 +1,6 @@
 /*
- * krylov and tangential of state spaces: moments, interpolation, the conditions
- * of least H2 error, stability of one side, refusals.
+ * krylov and tangential of state spaces: moments, interpolation, conditions of
+ * the smallest H2 error, stability of one-sided projection, refusals.
  */
 #include "testing.h"
 
@@ -84,7 +84,8 @@ static void find_moments(const ritz_state_space *model, double _Complex s,
     free(Y);
 }
 
-/* Largest difference of moment j, relative to its largest entry. */
+/* Largest difference of moment j, relative to the largest entry of the
+   moment. */
 static double moment_error(const ritz_state_space *full, const made *m,
                            double _Complex s, int j)
 {
@@ -107,7 +108,7 @@ static void one_side_of_a_symmetric_rod_keeps_two_moments_a_block(void **)
     ritz_request request = {0};
 
     assert_ok(spaces_rod(STATES, 0.0, true, &rod));
-    request = asking(&rod, 8); /* two blocks of four loads */
+    request = asking(&rod, 8); /* two blocks of four vectors */
     reduce("krylov", &request, &m);
     assert_null(m.basis.W.val);
     assert_non_null(strstr(m.basis.remark, "2 whole block(s) about 0 Hz"));
@@ -117,7 +118,8 @@ static void one_side_of_a_symmetric_rod_keeps_two_moments_a_block(void **)
     assert_true(moment_error(&rod, &m, 0.0, 4) > 1e-10);
 }
 
-/* A wind alone leaves A + A' definite; moments of B and of C' add up there. */
+/* With two sides, the moments that B keeps and those that C' keeps add up at
+   each expansion point. */
 static void two_sides_keep_moments_of_each_at_every_point(void **)
 {
     static const double hertz[] = {0.0, 0.02};
@@ -126,7 +128,8 @@ static void two_sides_keep_moments_of_each_at_every_point(void **)
     ritz_request request = {0};
 
     assert_ok(spaces_rod(STATES, 0.05, true, &rod));
-    request = asking(&rod, 12); /* 6 about 0, 3 pairs elsewhere */
+    /* 6 vectors about 0 Hz, 3 pairs about 0.02 Hz */
+    request = asking(&rod, 12);
     shift_to(&request, 2, hertz);
     request.choice.given |= RITZ_USES_SIDES;
     reduce("krylov", &request, &m);
@@ -209,8 +212,9 @@ static void given_points_are_interpolated(void **)
         }
 }
 
-/* One input and output: at -p of each pole p both H and H' agree, which least
-   H2 error implies; points move less than 1e-4, and so do both. */
+/* For one input and one output the smallest H2 error implies that H and H'
+   agree at -p for each reduced pole p. Settled points move by less than 1e-4,
+   which bounds the difference of H and H'. */
 static void settled_points_mirror_the_poles(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
@@ -244,9 +248,9 @@ static void settled_points_mirror_the_poles(void **)
     free(pole);
 }
 
-/* The norm of the error is below that of balancing with as many states: IRKA is
-   at a minimum of H2. */
-static void its_h2_error_is_no_larger_than_that_of_balancing(void **)
+/* IRKA ends at a local minimum of the H2 error, here below the error of
+   balancing with the same order. */
+static void tangential_has_no_larger_h2_error_than_balanced(void **)
 {
     static const char *const method[] = {"tangential", "balanced"};
     RITZ_OWN(ritz_state_space) rod = {0};
@@ -280,7 +284,7 @@ static void fewer_states_than_asked_are_said(void **)
     assert_non_null(strstr(m.basis.remark, "6 vectors and not 30"));
 }
 
-static void what_makes_no_sense_is_refused(void **)
+static void wrong_requests_are_refused(void **)
 {
     const ritz_method *krylov = ritz_method_find("krylov");
     const ritz_method *tangential = ritz_method_find("tangential");
@@ -310,7 +314,7 @@ static void what_makes_no_sense_is_refused(void **)
     request.choice.loads = RITZ_LOADS_INPUTS;
     assert_fails(ritz_basis_make(krylov, &request, &none), RITZ_ERR_ARGUMENT,
                  "loads are chosen of one side");
-    /* an insulated rod: a constant temperature stays */
+    /* insulated rod: a uniform temperature is a pole at 0 */
     rod.sA.val[0] = rod.sA.val[rod.sA.colptr[20] - 1] = -1.0;
     request = asking(&rod, 4);
     shift_to(&request, 1, rest);
@@ -338,7 +342,7 @@ static void every_allocation_may_fail(void **)
     assert_ok(spaces_rod(6, 0.1, true, &rod));
     request = asking(&rod, 3);
     assert_survives_every_allocation(make("krylov", &request));
-    request = asking(&rod, 1); /* a few rounds */
+    request = asking(&rod, 1); /* settles in a few iterations */
     assert_survives_every_allocation(make("tangential", &request));
 }
 
@@ -349,9 +353,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(loads_are_inputs_or_outputs_alone_if_asked),
     cmocka_unit_test(given_points_are_interpolated),
     cmocka_unit_test(settled_points_mirror_the_poles),
-    cmocka_unit_test(its_h2_error_is_no_larger_than_that_of_balancing),
+    cmocka_unit_test(tangential_has_no_larger_h2_error_than_balanced),
     cmocka_unit_test(fewer_states_than_asked_are_said),
-    cmocka_unit_test(what_makes_no_sense_is_refused),
+    cmocka_unit_test(wrong_requests_are_refused),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

@@ -1,4 +1,7 @@
-/* Stability of sparse state spaces: proven, looked at, and seen to fail. */
+/*
+ * Stability of sparse state spaces: proven by falling energy, judged by the
+ * poles near 0, and unstable models.
+ */
 #include "testing.h"
 
 #include "spaces.h"
@@ -29,9 +32,10 @@ static void falling_energy_is_proof(void **)
     assert_null(strstr(text, "not looked at"));
 }
 
-/* A row of 30 in which energy may rise first: A + A' is indefinite, poles are
-   stable, and 180 of 200 are not looked at. */
-static void without_proof_what_was_not_looked_at_is_said(void **)
+/* The entry 30 makes A + A' indefinite, so that energy proves nothing. The
+   check finds 20 poles, all of them stable, and says that it has not looked at
+   the other 180. */
+static void without_a_proof_the_poles_not_looked_at_are_counted(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
     char text[2 * RITZ_NAME_SIZE];
@@ -48,19 +52,22 @@ static void without_proof_what_was_not_looked_at_is_said(void **)
     assert_near(probe.pole[0], spaces_rod_pole(200, 0.0, 1), 1e-9);
 }
 
-static void growth_and_rest_are_found(void **)
+static void unstable_and_marginal_models_are_found(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
     ritz_probe probe;
 
     assert_ok(spaces_rod(200, 0.0, true, &rod));
     rod.sA.val[0] = rod.sA.val[rod.sA.colptr[200] - 1] = -1.0;
-    assert_int_equal(probe_of(&rod).verdict, RITZ_MARGINAL); /* insulated */
-    rod.sA.val[0] = 0.0; /* heated: a pole at 0.8, farther than the twentieth */
+    /* insulated rod: a pole at 0 */
+    assert_int_equal(probe_of(&rod).verdict, RITZ_MARGINAL);
+    /* heated: the pole at 0.8 is not among the 20 poles nearest to 0 */
+    rod.sA.val[0] = 0.0;
     probe = probe_of(&rod);
     assert_int_equal(probe.verdict, RITZ_UNSTABLE);
     assert_string_equal(probe.why, "1 real poles are right of the axis");
-    rod.sA.val[0] = -0.999; /* heated a little, unsymmetric: seen near 0 */
+    /* weakly heated, unsymmetric: an unstable pole near 0 */
+    rod.sA.val[0] = -0.999;
     rod.sA.val[1] = 1.5;
     rod.sA.val[2] = 1.0 / 1.5;
     probe = probe_of(&rod);
@@ -98,8 +105,8 @@ static void every_allocation_may_fail(void **)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(falling_energy_is_proof),
-    cmocka_unit_test(without_proof_what_was_not_looked_at_is_said),
-    cmocka_unit_test(growth_and_rest_are_found),
+    cmocka_unit_test(without_a_proof_the_poles_not_looked_at_are_counted),
+    cmocka_unit_test(unstable_and_marginal_models_are_found),
     cmocka_unit_test(too_many_states_for_dense_checks_are_checked_by_poles),
     cmocka_unit_test(every_allocation_may_fail),
 };

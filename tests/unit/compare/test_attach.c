@@ -1,8 +1,9 @@
 /*
- * Attached dofs by name, and which of them are chosen, on the beam of
- * [McDaniel2000] chapter 3, modes 1, 2, 3 and 5 kept: its section 3.3.1 has
- * twelve dofs to choose an attachment mode from. Numbers are those of NumPy:
- * dense eigenvectors, compatibility by SVD, H summed over modes at 4000 points.
+ * Attached dofs by name, and the choice among them, on the beam of
+ * [McDaniel2000], chapter 3, with modes 1, 2, 3 and 5 kept: its section 3.3.1
+ * has twelve dofs to choose an attachment mode from. The expected numbers were
+ * computed with NumPy: dense eigenvectors, compatibility by SVD, H summed over
+ * modes at 4000 frequencies.
  */
 #include "testing.h"
 
@@ -72,9 +73,9 @@ static const ritz_candidate *find_chosen(const fixture *f)
 
 /*
  * The twelve dofs of the paper. Without attachment modes the largest singular
- * value is off by 2.5e-3 and the smallest that is not zero by 2.3e-2. The
- * smallest is worst at 0.3 Hz, but for the three that are named last, where that
- * lies between the points of the grid.
+ * value of H is off by 2.5e-3 and the smallest non-zero one by 2.3e-2. The
+ * smallest one is worst at 0.3 Hz; for the last three dofs it is worst between
+ * two frequencies of the grid, hence their wider bound.
  */
 static void twelve_dofs_are_compared_by_both_singular_values(void **)
 {
@@ -118,7 +119,8 @@ static void twelve_dofs_are_compared_by_both_singular_values(void **)
     release(&f);
 }
 
-/* With a tolerance between both deviations of 'nothing', something is due. */
+/* The tolerance lies between the two deviations without attachment modes, so
+   that an attachment mode is needed. */
 static void the_smallest_singular_value_decides(void **)
 {
     fixture f;
@@ -130,8 +132,9 @@ static void the_smallest_singular_value_decides(void **)
     release(&f);
 }
 
-/* No single dof is near enough, and 28 of the 66 pairs are; two bending forces
-   complete what bends. Three inputs take two coordinates more. */
+/* No single dof meets the tolerance, and 28 of the 66 pairs do: two bending
+   forces complete the bending motion. The set of all three inputs takes two
+   coordinates more. */
 static void pairs_are_tried_where_no_single_dof_is_near_enough(void **)
 {
     const ritz_candidate *chosen = NULL;
@@ -148,14 +151,14 @@ static void pairs_are_tried_where_no_single_dof_is_near_enough(void **)
     release(&f);
 }
 
-/* Among those that the scene lists: sets, an output, every dof of a port. */
+/* `among` lists the candidates: two outputs, and a port with all its dofs. */
 static void the_choice_can_be_limited(void **)
 {
     fixture f;
 
     reduce(&f, "augment: {level: system, attached: auto, tolerance: 0.02,\n"
                "          among: [y1, A/n1, y6]}\n");
-    assert_int_equal(f.c.search.pool, 4); /* direction 6 of A/n1 is y1 */
+    assert_int_equal(f.c.search.pool, 4); /* A/n1:6 is y1 */
     assert_non_null(find_candidate(&f, "y1"));
     assert_non_null(find_candidate(&f, "A/n1:1"));
     assert_non_null(find_candidate(&f, "A/n1:2"));
@@ -164,8 +167,8 @@ static void the_choice_can_be_limited(void **)
     release(&f);
 }
 
-/* Whatever a dof is called, it is the same: ||gain - gain of stage 1|| with the
-   attachment mode of dof 5 is 1.9e-5 of it. */
+/* All names of a dof attach the same mode. With the attachment mode of dof 5
+   the gain of stage two is off by 1.9e-5 of that of stage one. */
 static void a_dof_can_be_attached_by_any_of_its_names(void **)
 {
     static const char *const names[] = {"u2", "A/middle:2", "A/2:2",
@@ -188,7 +191,8 @@ static void a_dof_can_be_attached_by_any_of_its_names(void **)
     }
 }
 
-/* An output alone, and the force that it is a measurement of. */
+/* An output without an input can be attached: its force acts where it
+   measures. */
 static void an_output_can_be_attached(void **)
 {
     static const char *const names[] = {"y5", "B/n4:2", "B/4:2"};
@@ -209,7 +213,8 @@ static void an_output_can_be_attached(void **)
     }
 }
 
-/* Of components too: every dof of a port, where the sets are shown beside. */
+/* At component level all dofs of a port can be attached, and the usual sets are
+   compared too. */
 static void ports_of_components_can_be_attached(void **)
 {
     const ritz_candidate *own = NULL;
@@ -226,7 +231,7 @@ static void ports_of_components_can_be_attached(void **)
     release(&f);
 }
 
-static void places_that_are_not_there_are_refused(void **)
+static void unknown_ports_and_grids_are_refused(void **)
 {
     static const struct {
         const char *place, *words;
@@ -252,7 +257,7 @@ static void places_that_are_not_there_are_refused(void **)
     }
 }
 
-/* Without T only the ports of a body are known. */
+/* A body without T has no grids but those of its ports. */
 static void a_grid_of_a_body_without_a_basis_is_refused(void **)
 {
     fixture f;
@@ -273,8 +278,7 @@ static ritz_status compare_anew(const ritz_stage *stage)
     return status;
 }
 
-/* Some 200 of the allocations are made to fail in turn, as there are tens of
-   thousands. */
+/* Some 200 of tens of thousands of allocations are made to fail in turn. */
 static void no_allocation_failure_leaks(void **)
 {
     enum { TRIALS = 200 };
@@ -305,7 +309,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_dof_can_be_attached_by_any_of_its_names),
     cmocka_unit_test(an_output_can_be_attached),
     cmocka_unit_test(ports_of_components_can_be_attached),
-    cmocka_unit_test(places_that_are_not_there_are_refused),
+    cmocka_unit_test(unknown_ports_and_grids_are_refused),
     cmocka_unit_test(a_grid_of_a_body_without_a_basis_is_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

@@ -125,7 +125,7 @@ static void components_with_all_attached_keep_the_gain(void **)
         assert_int_equal(k->total, cases[i].total);
         assert_near(k->gain_listed, cases[i].gain, cases[i].bound);
         assert_true(isnan(k->gain_between)); /* there is one configuration */
-        assert_true(isnan(ritz_candidate_worst(k))); /* and no band */
+        assert_true(isnan(ritz_candidate_worst(k))); /* no band, no response */
         assert_true(k->chosen == (i == 3));
     }
     assert_true(f.c.row[0].gain_error < 1e-11);
@@ -331,8 +331,8 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **)
             assert_false(fits && k[i].total < k[at].total);
             assert_false(fits && k[i].num_forces <= f.c.search.below);
         }
-        /* 'interface' is off by 9.8e-3 in the smallest singular value alone,
-           and with inputs it takes six coordinates more */
+        /* 'interface' deviates by 9.8e-3, in the smallest singular value alone;
+           with the inputs it takes six coordinates more than the chosen set */
         assert_true(l != 0 ||
                     (k[2].deviation[0] < 1e-4 && k[2].deviation[1] > 9e-3 &&
                      k[at].total <= k[3].total - 6));
@@ -342,9 +342,10 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **)
 }
 
 /*
- * Singular values of a diagonal 2 x 2 response are |its entries|. Of the larger
- * one point is off by a fifth, one is far below all others; the smaller is off
- * by half at the first point. Outputs are divided by their limits.
+ * Singular values of a diagonal 2 x 2 response are the magnitudes of its
+ * entries. The largest one is off by a fifth at the second point; at the third
+ * it is far below its mean and does not count. The smallest one is off by half
+ * at the first point. Outputs are divided by their limits.
  */
 static void a_deviation_is_that_of_both_singular_values(void **)
 {
@@ -370,14 +371,14 @@ static void a_deviation_is_that_of_both_singular_values(void **)
     assert_near(gap.hertz[0], 2.0, 0.0);
     assert_near(gap.deviation[1], 0.5, 1e-14);
     assert_near(gap.hertz[1], 1.0, 0.0);
-    /* 2, 0.1 -> 1.6, 0.1 in the exchanged rows of the second point */
+    /* the second point has 2, 0.1 and, with exchanged inputs, 1.6, 0.1 */
     assert_ok(ritz_compare_bode(&scales, &first, &second, &gap));
     assert_near(gap.deviation[0], 0.2, 1e-14);
     assert_near(gap.deviation[1], 0.5, 1e-14);
 }
 
-/* Where the second value is zero at all points, the smallest that is not is the
-   first. */
+/* The second singular value is zero at all points, so that the first one is the
+   smallest non-zero one. */
 static void a_singular_value_of_zero_is_none(void **)
 {
     double hertz[] = {1.0, 2.0};

@@ -1,7 +1,8 @@
 /*
- * COMPACT: bodies without the vectors that make extraneous modes. Kept modes,
- * responses, rigid motion and static gain stay what the scene allows, at fewer
- * coordinates, and what is dropped does not come back in another assembly.
+ * COMPACT drops the component vectors that make extraneous modes. Kept modes,
+ * responses, rigid motion and static gain change by no more than the scene
+ * allows, the bodies have fewer coordinates, and the modes do not return in
+ * another assembly.
  */
 #include "testing.h"
 
@@ -19,7 +20,7 @@
 typedef struct fixture {
     ritz_scene scene;
     ritz_stage stage;
-    ritz_comparison kept, compact; /* without and with it */
+    ritz_comparison kept, compact; /* without and with COMPACT */
 } fixture;
 
 static int set_up(void **state)
@@ -85,7 +86,7 @@ static void what_is_kept_changes_within_the_tolerance(void **state)
         assert_true(row->mac >= 1.0 - 1e-3);
         worst = fmax(worst, row->response_error);
     }
-    assert_true(worst > 1e-5); /* something was paid */
+    assert_true(worst > 1e-5); /* dropping costs accuracy */
     assert_true(f->compact.next_drop > 1e-3);
 }
 
@@ -115,8 +116,8 @@ static double lack_of_unity(const ritz_dense *M, const ritz_dense *V)
 }
 
 /*
- * Every V is in the span of the one before, whose columns were reflected: V'MV
- * is as near to I as before, a sum of at most 31 such columns.
+ * Columns of each V are combinations of at most 31 columns of the V before,
+ * which bounds V'MV - I by 31 times that of the V before.
  */
 static void smaller_subspaces_lie_in_the_larger_ones(void **state)
 {
@@ -143,8 +144,8 @@ static void smaller_subspaces_lie_in_the_larger_ones(void **state)
     }
 }
 
-/* Another system of the bodies, at an angle that is not listed, has none of
-   what was dropped: its order is that of the bodies less the joints'. */
+/* Assembled at an angle that the scene does not list, the compact bodies have
+   as few coordinates: those of the bodies less the rank of the joints. */
 static void what_is_dropped_does_not_come_back(void **state)
 {
     fixture *f = *state;
@@ -158,7 +159,8 @@ static void what_is_dropped_does_not_come_back(void **state)
     ritz_configuration_free(&at);
 }
 
-/* Looser composite tolerances are made compact too, each from where it is. */
+/* Bodies of looser composite tolerances are made compact too, each from its own
+   composite set. */
 static void composite_tolerances_are_made_compact(void **state)
 {
     static const double tolerance[] = {1e-6, 1e-3};
@@ -192,8 +194,8 @@ static void close_beams(fixture *f)
 }
 
 /*
- * Four vectors of either half of [McDaniel2000]'s beam carry four kept modes:
- * without any of them one kept mode is gone, and its frequency with it.
+ * Four vectors of each half of the beam [McDaniel2000] represent four kept
+ * modes: without any one of them a kept mode and its frequency are lost.
  */
 static void what_kept_modes_need_is_not_dropped(void **)
 {
@@ -208,8 +210,8 @@ static void what_kept_modes_need_is_not_dropped(void **)
     close_beams(&f);
 }
 
-/* Two modes of a scene without a response; all vectors are in the composite
-   set, and the bodies stay as they are. */
+/* A scene without a band has no response: vectors are dropped by the errors of
+   frequencies alone. */
 static void frequencies_alone_are_compared_without_a_response(void **)
 {
     fixture f;

@@ -242,8 +242,8 @@ static void the_frequency_error_is_the_largest(void **state)
         assert_near(c.row[k].frequency_error, largest_error(&c, k), 1e-12);
 }
 
-/* No input and no damping: neither gain, response nor damping ratio, and no zero
-   that stands for them. */
+/* Without inputs and damping there is no gain, response or damping ratio to
+   measure, and no record holds a zero in its place. */
 static void what_was_not_measured_is_not_recorded(void **state)
 {
     fixture *f = *state;

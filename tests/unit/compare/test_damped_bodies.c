@@ -1,7 +1,8 @@
 /*
- * Dampers in stage two: two elastic bodies with dampers within, on a hinge with
- * a spring and a damper. Kept modes are exact whatever is done; their damping
- * is not, unless the static responses along the dampers are there too.
+ * Dampers in stage two: two elastic bodies with internal dampers, connected by
+ * a hinge with a spring and a damper. Kept modes are exact under every
+ * augmentation; their damping is exact only with the static responses to the
+ * damper forces.
  */
 #include "testing.h"
 
@@ -39,7 +40,8 @@ typedef struct fixture {
     ritz_comparison c;
 } fixture;
 
-/* A chain of grids with a damper between two of them, across, on a spring. */
+/* A chain of grids out of line; a damper with a spring acts along y between two
+   of them. */
 static void damped_chain(int64_t first, const int64_t between[2], double spring,
                          ritz_component *out)
 {
@@ -106,7 +108,7 @@ static void release(fixture *f)
     ritz_scene_free(&f->scene);
 }
 
-/* Poles above the axis of x'' + D x' + Lambda x = 0, by dgeev. */
+/* Poles of x'' + D x' + Lambda x = 0 above the real axis, by dgeev. */
 static int64_t poles_of(const ritz_configuration *c, double _Complex *out)
 {
     int64_t n = c->K.ncol, count = 0;
@@ -150,7 +152,8 @@ static double _Complex nearest(int64_t count, const double _Complex *pole,
     return best;
 }
 
-/* The worst of the kept modes, each of which has the pole nearest to it. */
+/* Largest relative error of a kept mode's damping ratio; the pole nearest to a
+   mode is taken for its pole. */
 static double worst_damping(const fixture *f, int64_t row)
 {
     const ritz_configuration *one = &f->c.first_system.configuration[row];
@@ -170,7 +173,8 @@ static double worst_damping(const fixture *f, int64_t row)
     return worst;
 }
 
-/* What is reported is what an eigenvalue solver says of both systems. */
+/* The reported error is the one that an eigenvalue solver finds in both
+   systems. */
 static void the_error_is_that_of_the_poles(void **state)
 {
     fixture f;
@@ -185,7 +189,7 @@ static void the_error_is_that_of_the_poles(void **state)
         assert_near(f.c.row[k].damping_error, worst, 1e-6 * worst);
         assert_true(f.c.row[k].frequency_error <= f.c.row[k].allowed);
     }
-    assert_true(f.c.row[2].damping_error > 1e-4); /* between them */
+    assert_true(f.c.row[2].damping_error > 1e-4); /* between the two angles */
     release(&f);
 }
 
@@ -194,8 +198,9 @@ static double largest(const fixture *f)
     return fmax(f->c.row[0].damping_error, f->c.row[1].damping_error);
 }
 
-/* At either level, with what is implied, or with what is listed. */
-static void static_responses_along_dampers_mend_it(void **state)
+/* At either level, whether dampers are implied by `augment` or listed in
+   `attached`. */
+static void static_responses_along_dampers_make_damping_right(void **state)
 {
     static const struct {
         const char *without, *with, *listed;
@@ -225,7 +230,8 @@ static void static_responses_along_dampers_mend_it(void **state)
     }
 }
 
-/* Forces along dampers: those of the bodies, and the joint's as it turns. */
+/* One force vector for each body's damper, and one for the hinge's, which turns
+   with the hinge. */
 static void forces_are_those_of_dampers(void **state)
 {
     fixture f;
@@ -252,7 +258,8 @@ static void forces_are_those_of_dampers(void **state)
     release(&f);
 }
 
-/* Without dampers nothing is tried that has none: see test_augment.c. */
+/* Bodies with dampers have sets with dampers as candidates; test_augment.c has
+   the sets of bodies without. */
 static void sets_are_tried_with_dampers_too(void **state)
 {
     fixture f;
@@ -266,7 +273,7 @@ static void sets_are_tried_with_dampers_too(void **state)
     release(&f);
 }
 
-/* By its name a body's damper is attached alone: a coordinate more. */
+/* A body's damper is attached by its name, and adds one coordinate. */
 static void a_damper_can_be_attached_by_its_name(void **state)
 {
     int64_t total = 0;
@@ -284,8 +291,9 @@ static void a_damper_can_be_attached_by_its_name(void **state)
     release(&f);
 }
 
-/* Springs that push: no mode of that system has a ratio, and none is told. */
-static void a_system_that_falls_over_has_no_damping_error(void **state)
+/* A negative spring makes the system unstable: no mode has a damping ratio, and
+   no error of damping is reported. */
+static void an_unstable_system_has_no_damping_error(void **state)
 {
     fixture f;
 
@@ -297,7 +305,8 @@ static void a_system_that_falls_over_has_no_damping_error(void **state)
     release(&f);
 }
 
-/* The part of w that columns of V do not span, relative. */
+/* The part of w outside the span of the first `count` columns of V, relative to
+   w. */
 static double unspanned(const ritz_dense *V, int64_t count, const double *w)
 {
     int n = (int)V->nrow, m = (int)count;
@@ -317,8 +326,8 @@ static double unspanned(const ritz_dense *V, int64_t count, const double *w)
     return left / all;
 }
 
-/* The motion of body A as the system answers a force along its damper. */
-static void answer_of(const fixture *f, double *w)
+/* Static response of body A, in the full system, to forces along its damper. */
+static void static_response_of(const fixture *f, double *w)
 {
     const ritz_configuration *c = &f->c.first_system.configuration[0];
     RITZ_OWN(ritz_dense) F = {0};
@@ -329,8 +338,8 @@ static void answer_of(const fixture *f, double *w)
             w[i] += ritz_dense_col(&c->P[0], k)[i] * F.val[k] / c->lambda[k];
 }
 
-/* Directions in the order of a search: modes and static responses first. */
-static void ordered_directions_have_them_early(void **state)
+/* The search takes modes and static responses before all other directions. */
+static void modes_and_static_responses_are_searched_first(void **state)
 {
     RITZ_OWN(ritz_composite) composite = {0};
     double w[64] = {0.0};
@@ -340,10 +349,10 @@ static void ordered_directions_have_them_early(void **state)
     (void)state;
     prepare(&f, "augment: system\nconfigurations: [{hinge: 0}]\n");
     assert_ok(ritz_composite_new(&f.stage, &composite));
-    answer_of(&f, w);
+    static_response_of(&f, w);
     first = composite.rigid[0] + f.c.row[0].num_kept;
     assert_true(unspanned(&composite.V[0], first, w) > 1e-3);
-    first += f.scene.num_inputs + 3; /* and so many dampers */
+    first += f.scene.num_inputs + 3; /* three dampers */
     assert_true(unspanned(&composite.V[0], first, w) < 1e-9);
     release(&f);
 }
@@ -377,8 +386,8 @@ static void no_allocation_failure_leaks(void **state)
 }
 
 /*
- * Of plane models a joint has the motions in the plane alone, and so have its
- * dampers: D of the system is the sum of c b b' over their forces b.
+ * In a plane model a joint has only the motions in the plane, and so have its
+ * dampers: D of the system is the sum of c b b' over their force vectors b.
  */
 static void dampers_out_of_a_plane_are_no_forces(void **)
 {
@@ -430,12 +439,12 @@ static void dampers_out_of_a_plane_are_no_forces(void **)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(dampers_out_of_a_plane_are_no_forces),
     cmocka_unit_test(the_error_is_that_of_the_poles),
-    cmocka_unit_test(static_responses_along_dampers_mend_it),
+    cmocka_unit_test(static_responses_along_dampers_make_damping_right),
     cmocka_unit_test(forces_are_those_of_dampers),
     cmocka_unit_test(sets_are_tried_with_dampers_too),
     cmocka_unit_test(a_damper_can_be_attached_by_its_name),
-    cmocka_unit_test(a_system_that_falls_over_has_no_damping_error),
-    cmocka_unit_test(ordered_directions_have_them_early),
+    cmocka_unit_test(an_unstable_system_has_no_damping_error),
+    cmocka_unit_test(modes_and_static_responses_are_searched_first),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 

@@ -329,8 +329,8 @@ static void no_allocation_failure_leaks(void **)
 }
 
 /*
- * A dashpot between node 1 of body A and the ground damps what bends there,
- * which is one cluster then. All of it is kept, or nothing.
+ * A damper between node 1 of body A and the ground couples bending modes, which
+ * then form one cluster. A cluster is kept as a whole or not at all.
  */
 static void modes_that_damping_joins_are_kept_together(void **)
 {

@@ -472,7 +472,8 @@ static void what_is_read_and_written_again_has_the_same_bytes(void **)
     }
 }
 
-/* Else a damping, or a stiffness, would be zero without a word. */
+/* If a linked member counted as absent, damping or stiffness would be zero
+   without a message. */
 static void a_member_that_is_a_link_is_not_absent(void **)
 {
     ritz_component component = {0};

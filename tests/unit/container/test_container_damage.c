@@ -291,8 +291,8 @@ static void links_to_elsewhere_are_not_followed(void **)
                  "'T' is a link to elsewhere");
 }
 
-/* A matrix that is a link is not a matrix that is absent, which would be read
-   as 0; nor is a part of one. */
+/* A linked matrix, or a linked part of one, must not count as absent, which
+   would mean 0. */
 static void a_member_that_is_a_link_is_not_absent(void **)
 {
     static const char *const members[] = {"K",        "D",    "dampers",
@@ -325,7 +325,8 @@ static void store_letters(hid_t set, hsize_t count)
     free(letters);
 }
 
-/* A name of one letter takes 64 bytes of memory: 128 MB of a file of 2 MB. */
+/* A name takes 64 bytes of memory: 2 million names of one letter are 128 MB,
+   from a file of 2 MB. */
 static void texts_are_limited_in_memory(void **)
 {
     const hsize_t count = 2000000;
@@ -347,8 +348,9 @@ static void texts_are_limited_in_memory(void **)
                  "'names' takes 122 MiB of memory, in all more than a file of");
 }
 
-/* As many links to one data set do, for which it is read each time: 8 times 8
-   MB and 64 MiB are 16 times. */
+/* A data set that is read again counts again, as it would through many links.
+   The limit is 8 times the file's size and 64 MiB: 16 reads of a data set of 8
+   MB. */
 static void a_file_is_limited_in_memory(void **)
 {
     enum { COUNT = 1000000, TIMES = 15 };
@@ -366,7 +368,7 @@ static void a_file_is_limited_in_memory(void **)
     H5Dclose(set);
     H5Sclose(space);
     H5Fclose(file);
-    for (int round = 0; round < 2; round++) { /* opened again, from the start */
+    for (int round = 0; round < 2; round++) { /* each open begins a new count */
         assert_ok(ritz_h5_open(path, &file));
         for (int k = 0; k < TIMES; k++)
             assert_ok(ritz_h5_read(file, "x", H5T_IEEE_F64LE, shape, values));
@@ -381,8 +383,8 @@ static void a_file_is_limited_in_memory(void **)
     free(values);
 }
 
-/* What a guard refuses is not opened, and what it admits is what is read, though
-   another file has its name by then. */
+/* A file that the guard refuses is not opened. A file that it admits is the one
+   that is read, even if another file has taken its name meanwhile. */
 static int64_t num_guarded;
 static bool refusing;
 
@@ -393,7 +395,7 @@ static ritz_status guard_file(int file)
     num_guarded++;
     assert_int_equal(pread(file, begins, sizeof begins, 0), sizeof begins);
     assert_memory_equal(begins, "\211HDF\r\n\032\n", sizeof begins);
-    if (!refusing) /* meanwhile it is replaced */
+    if (!refusing) /* another file takes its name */
         assert_int_equal(rename(again, path), 0);
     RITZ_REFUSE_IF(refusing, RITZ_ERR_FORMAT, "not by this guard");
     return RITZ_OK;
@@ -422,7 +424,7 @@ static void a_guard_sees_what_is_read(void **)
         assert_int_equal(num_guarded, 1);
         ritz_container_release();
         ritz_summary_free(&summary);
-        refusing = true; /* it would be another file now */
+        refusing = true; /* the path now names the other file */
         assert_fails(ritz_container_summary(path, &summary), RITZ_ERR_FORMAT,
                      "not by this guard");
     }
@@ -451,7 +453,7 @@ static void other_files_are_refused(void **)
                  "not an HDF5 file");
     file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     H5Fclose(file);
-    assert_true(ritz_container_seems(path)); /* until it is opened */
+    assert_true(ritz_container_seems(path)); /* by its first bytes */
     assert_fails(ritz_container_summary(path, &summary), RITZ_ERR_FORMAT,
                  "no container");
     assert_ok(sample_kinds[1].make(path, &stamp));

@@ -1,4 +1,6 @@
-/* Containers on a disk that fails: each call that writes, in turn. */
+/*
+ * Containers on a disk that fails: each system call that writes fails in turn.
+ */
 #include "testing.h"
 
 #include "faults.h"
@@ -25,14 +27,15 @@ static ritz_status write_sample(const void *what)
     return kind->make(path, &stamp);
 }
 
-/* At least: values, the file's head, two calls of fsync, the rename. */
+/* There are more than five such calls: data sets, the file's head, fsync of
+   file and folder, the rename. */
 static void no_failed_write_is_lost(void **)
 {
     for (int k = 0; k < SAMPLE_KINDS; k++)
         assert_true(faults_try_each(write_sample, &sample_kinds[k], path) > 5);
 }
 
-/* 300 x 300 values, of which each column of chunks is written by itself. */
+/* A matrix of 300 x 300 values, whose chunks are written one by one. */
 static ritz_status write_large(const void *what)
 {
     return ritz_container_write_state_space(path, what, &stamp);

@@ -1,4 +1,7 @@
-/* Bounds of responses: each input and output by itself, and why. */
+/*
+ * Bounds of responses: each channel relative to its own maximum, and the cause
+ * of a bound.
+ */
 #include "testing.h"
 
 #include "frame.h"
@@ -13,7 +16,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The bound, or estimate, of a response by a method with so many modes. */
+/* The bound of the response of a model reduced by a method with `modes`
+   modes. */
 static void bound_of(const ritz_component *full, const ritz_method *method,
                      ritz_dofs attached, int64_t modes,
                      const ritz_estimate_request *asked, ritz_reduced *reduced,
@@ -31,14 +35,14 @@ static void bound_of(const ritz_component *full, const ritz_method *method,
     *out = *find_measure(&reduced->estimates, "response-relative-bound");
 }
 
-/* Outputs are rows of C times this, which reduction has taken over. */
+/* Output i in another unit: row i of C times `by`. */
 static void scale_output(int64_t i, double by, ritz_io *io)
 {
     for (int64_t j = 0; j < io->C.ncol; j++)
         ritz_dense_col(&io->C, j)[i] *= by;
 }
 
-/* What verify measures of one output alone. */
+/* The error of output i alone, as ritz-verify measures it. */
 static double error_of_output(const ritz_component *full,
                               const ritz_reduced *reduced, int64_t i,
                               const ritz_damping *damping, double to_hz)
@@ -50,7 +54,7 @@ static double error_of_output(const ritz_component *full,
 
     request.band_hz[1] = to_hz;
     request.damping = *damping;
-    /* 1e-30 of the other outputs is nothing beside that one */
+    /* other outputs times 1e-30 do not contribute to the measure */
     for (int64_t k = 0; k < one.io.num_outputs; k++)
         if (k != i) {
             scale_output(k, 1e-30, &one.io);
@@ -65,8 +69,8 @@ static double error_of_output(const ritz_component *full,
     return find_measure(&found, "response-relative")->value;
 }
 
-/* A clamped beam pushed at its end: deflection and rotation there, and the
-   deflection near the clamp, which is small. */
+/* A clamped beam with a force at its tip. Outputs are the deflection and the
+   rotation of the tip, and the deflection near the clamp, which is small. */
 static void open_beam(ritz_component *beam)
 {
     int64_t in = 0, seen[3];
@@ -79,7 +83,8 @@ static void open_beam(ritz_component *beam)
     assert_ok(frame_io(beam, 1, &in, 3, seen));
 }
 
-/* The bound is of the worst output by itself: units of one change nothing. */
+/* Each output's bound is relative to its own maximum, so that its unit does not
+   matter. */
 static void units_do_not_change_a_bound(void **)
 {
     int64_t attached[] = {0, 1, 2};
@@ -99,12 +104,13 @@ static void units_do_not_change_a_bound(void **)
                  12, &request, &reduced, &found);
         bound[k] = found.value;
     }
-    /* rounding of a sum of modes, and where intervals are halved */
+    /* rounding of sums over modes, which also moves where intervals are
+       halved */
     assert_near(bound[1], bound[0], 1e-6 * bound[0]);
     assert_near(bound[2], bound[0], 1e-6 * bound[0]);
 }
 
-/* Row i of A, and of its columns too, times by[i] of it. */
+/* Row i of A times by[i]; scale_both does the same to its columns. */
 static void scale_rows(const double *by, ritz_dense *A)
 {
     for (int64_t j = 0; j < A->ncol; j++)
@@ -119,8 +125,12 @@ static void scale_both(const double *by, ritz_sparse *A)
             A->val[p] *= by[A->rowind[p]] * by[j];
 }
 
-/* The beam in mm, N mm and rad: a force and a moment at its end, and what they
-   deflect and turn. u = S u' of new dofs u', and S' K S is their stiffness. */
+/*
+ * The beam with lengths in units of 1 / `length` m, so that 1e3 means mm and N
+ * mm. Inputs are a force and a moment at the tip; outputs are deflection and
+ * rotation there and the deflection near the clamp. Dofs become u = S u', and K
+ * becomes S' K S.
+ */
 static void open_beam_of(double length, ritz_component *beam)
 {
     RITZ_OWN_ARRAY double *unit = NULL;
@@ -140,15 +150,15 @@ static void open_beam_of(double length, ritz_component *beam)
     scale_both(unit, &beam->M);
     scale_rows(unit, &beam->io.B);
     for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < 3; i++) /* in new units, as are moments */
+        for (int64_t i = 0; i < 3; i++) /* in the new unit of length */
             ritz_dense_col(&beam->io.C, j)[i] *=
                 unit[j] * (i == 1 ? 1.0 : length);
-    for (int64_t i = 0; i < n; i++) /* N m are `length` of N mm */
+    for (int64_t i = 0; i < n; i++) /* 1 N m is `length` units of moment */
         ritz_dense_col(&beam->io.B, 1)[i] /= length;
 }
 
-/* Forces with moments, deflections with rotations: a bound is the same in all
-   units, of the same channel, by the same cause. */
+/* With forces and moments as inputs, and deflections and rotations as outputs,
+   the bound, its channel and its cause are the same in all units of length. */
 static void moments_in_other_units_change_no_bound(void **)
 {
     static const double length[] = {1.0, 1e3, 1e-3};
@@ -167,14 +177,16 @@ static void moments_in_other_units_change_no_bound(void **)
                  12, &request, &reduced, &found);
         if (k == 0)
             first = found;
-        /* rounding of a sum of modes, and where intervals are halved */
+        /* rounding of sums over modes, which also moves where intervals are
+           halved */
         assert_near(found.value, first.value, 1e-6 * first.value);
         assert_string_equal(found.where, first.where);
         assert_string_equal(found.cause, first.cause);
     }
 }
 
-/* No output's own error is above the bound, and the worst is within ten. */
+/* The bound is at least the error of every output, and at most ten times the
+   largest of them. */
 static void a_bound_is_of_the_worst_channel(void **)
 {
     int64_t attached[] = {0, 1, 2};
@@ -196,8 +208,8 @@ static void a_bound_is_of_the_worst_channel(void **)
 }
 
 /*
- * Input and output at both ends of a long chain: residuals that are large by
- * themselves hardly couple. No mode is missing.
+ * Input and output lie at opposite ends of a long chain: each residual is
+ * large, and the product of the two is small. No mode is missing.
  */
 static void far_channels_are_bounded_within_ten(void **)
 {
@@ -233,8 +245,9 @@ static void far_channels_are_bounded_within_ten(void **)
     }
 }
 
-/* Two bodies that do not touch: no response between them is no error. */
-static void what_is_not_coupled_is_not_compared_with_itself(void **)
+/* Two bodies without a connection: channels from one to the other have no
+   response, and add nothing to the bound. */
+static void channels_without_a_response_add_nothing_to_the_bound(void **)
 {
     enum { N = 4 };
     const double lambda[N] = {1.0, 2.0, 30.0, 40.0};
@@ -248,7 +261,7 @@ static void what_is_not_coupled_is_not_compared_with_itself(void **)
     assert_ok(masses_apart(N, lambda, NULL, &body));
     ritz_io_free(&body.io);
     assert_ok(ritz_io_new(N, 2, 2, &body.io));
-    for (int64_t i = 0; i < N; i++) { /* 0 and 2, 1 and 3 */
+    for (int64_t i = 0; i < N; i++) { /* body 1: dofs 0, 2; body 2: 1, 3 */
         ritz_dense_col(&body.io.B, i % 2)[i] = 1.0;
         ritz_dense_col(&body.io.C, i)[i % 2] = 1.0;
     }
@@ -258,16 +271,17 @@ static void what_is_not_coupled_is_not_compared_with_itself(void **)
     assert_ok(ritz_reduce(&body, &basis, &reduced));
     assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
     found = find_measure(&reduced.estimates, "response-relative-bound");
-    /* 1 / (30 - w^2) of 1 / 0.1: 0.004 */
+    /* the missing mode's 1 / (30 - w^2), relative to the peak 1 / (2 zeta) =
+       10 */
     assert_true(found->value > 1e-3 && found->value < 1e-2);
 }
 
 /*
- * Bodies that do not touch, of which the reduced model couples the first mode
- * of one with the second of the other: what is known of the error says that
- * there is no response between them, though the reduced model has one.
+ * Two bodies without a connection, of which the reduced model couples the first
+ * mode of one with the second mode of the other. That response is no larger
+ * than its error, and no scale for a relative bound.
  */
-static void a_response_that_is_an_error_alone_is_no_unit(void **)
+static void a_response_below_its_error_is_no_scale(void **)
 {
     enum { N = 4 };
     const double lambda[N] = {1.0, 2.0, 30.0, 40.0};
@@ -282,7 +296,7 @@ static void a_response_that_is_an_error_alone_is_no_unit(void **)
     assert_ok(masses_apart(N, lambda, NULL, &body));
     ritz_io_free(&body.io);
     assert_ok(ritz_io_new(N, 2, 2, &body.io));
-    for (int64_t i = 0; i < N; i++) { /* 0 and 2, 1 and 3 */
+    for (int64_t i = 0; i < N; i++) { /* body 1: dofs 0, 2; body 2: 1, 3 */
         ritz_dense_col(&body.io.B, i % 2)[i] = i < 2 ? 1.0 : 0.0;
         ritz_dense_col(&body.io.C, i)[i % 2] = 1.0;
     }
@@ -294,14 +308,16 @@ static void a_response_that_is_an_error_alone_is_no_unit(void **)
     assert_ok(ritz_reduce(&body, &basis, &reduced));
     assert_ok(ritz_estimate(&body, &basis, &request, &reduced));
     found = find_measure(&reduced.estimates, "response-relative-bound");
-    /* `mixed` of what could be there; own responses are right to its square */
+    /* of the order of `mixed`; errors within a body are of the order of its
+       square */
     assert_non_null(strstr(found->where, "hardly coupled"));
     if (!(found->value > 0.01 * mixed && found->value < 10.0 * mixed))
         fail_msg("%.3e at %s: %s", found->value, found->where, found->cause);
 }
 
-/* A single channel that may be zero has no bound, and says so. */
-static void a_channel_that_may_be_zero_says_so(void **)
+/* If the only channel may have no response, the bound is infinite and names a
+   cause. */
+static void a_channel_that_may_be_zero_has_no_finite_bound(void **)
 {
     enum { N = 2 };
     const double lambda[N] = {1.0, 2.0};
@@ -327,7 +343,7 @@ static void a_channel_that_may_be_zero_says_so(void **)
     assert_true(found->cause[0]);
 }
 
-/* A bound that is far above the error says why. */
+/* A bound far above the error names its cause. */
 static void causes_are_named(void **)
 {
     enum { N = 3 };
@@ -338,7 +354,7 @@ static void causes_are_named(void **)
     RITZ_OWN(ritz_reduced) reduced = {0};
     const ritz_measure *found = NULL;
 
-    /* the second mode is missing, and hardly driven */
+    /* the second mode is missing, and weakly excited */
     assert_ok(ritz_damping_parse("modal 0.01", &request.damping));
     assert_ok(masses_apart(N, lambda, NULL, &body));
     ritz_io_free(&body.io);
@@ -353,7 +369,7 @@ static void causes_are_named(void **)
     found = find_measure(&reduced.estimates, "response-relative-bound");
     if (found->value > 1e-3 && strcmp(found->cause, "missing modes") != 0)
         fail_msg("%.3e: %s", found->value, found->cause);
-    /* exact modes, and all of them: what is left is rounding */
+    /* all modes are kept exactly: only rounding is left */
     ritz_basis_free(&basis);
     ritz_reduced_free(&reduced);
     assert_ok(ritz_basis_new(N, N, &basis));
@@ -373,11 +389,11 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(units_do_not_change_a_bound),
     cmocka_unit_test(a_bound_is_of_the_worst_channel),
     cmocka_unit_test(far_channels_are_bounded_within_ten),
-    cmocka_unit_test(what_is_not_coupled_is_not_compared_with_itself),
+    cmocka_unit_test(channels_without_a_response_add_nothing_to_the_bound),
     cmocka_unit_test(causes_are_named),
     cmocka_unit_test(moments_in_other_units_change_no_bound),
-    cmocka_unit_test(a_response_that_is_an_error_alone_is_no_unit),
-    cmocka_unit_test(a_channel_that_may_be_zero_says_so),
+    cmocka_unit_test(a_response_below_its_error_is_no_scale),
+    cmocka_unit_test(a_channel_that_may_be_zero_has_no_finite_bound),
 };
 
 TEST_MODULE(estimate_channels, tests, NULL, NULL)

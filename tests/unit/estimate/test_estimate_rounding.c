@@ -213,8 +213,9 @@ static void modes_that_rounding_exchanges_share_it(void **)
 }
 
 /*
- * Where the basis holds the modes of the band to rounding, no count makes a
- * bound better: a few are enough, of a full basis or of exact modes.
+ * A full basis, or one of exact modes, contains the modes of the band up to
+ * rounding. More eigenvalue counts then improve no bound, and a few factors are
+ * enough.
  */
 static void exact_bases_need_few_counts(void **)
 {
@@ -254,9 +255,10 @@ static void exact_bases_need_few_counts(void **)
 }
 
 /*
- * A full basis has all modes: where the reduced ones are clear of rounding, what
- * lies below them is known without a factor. Below its first flexible mode a
- * free body is counted again and again, to tell its rigid motions from zero.
+ * A full basis has all modes: where its eigenvalues are clear of rounding, the
+ * number of modes below a frequency is known without a factor. The band of this
+ * free body ends below its first flexible mode, where many counts tell rigid
+ * eigenvalues from zero.
  */
 static void a_full_basis_is_counted_without_factors(void **)
 {
@@ -283,11 +285,11 @@ static void a_full_basis_is_counted_without_factors(void **)
 }
 
 /*
- * All dofs kept, what a richer trial would gain is rounding: it has a part along
- * what is known already, which no vectors may repeat. The rotor has motions
- * without mass.
+ * With all dofs kept, the residual that would enrich the trial space is
+ * rounding. Part of it lies in the space already, and no vector may be added
+ * twice. The rotor has dofs without mass.
  */
-static void what_rounding_leaves_is_no_richer_trial(void **)
+static void rounding_does_not_enrich_the_trial_space(void **)
 {
     const ritz_estimate_request request = {
         .band_hz = {0.1, 2.15},
@@ -317,7 +319,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(modes_that_rounding_exchanges_share_it),
     cmocka_unit_test(exact_bases_need_few_counts),
     cmocka_unit_test(a_full_basis_is_counted_without_factors),
-    cmocka_unit_test(what_rounding_leaves_is_no_richer_trial),
+    cmocka_unit_test(rounding_does_not_enrich_the_trial_space),
 };
 
 TEST_MODULE(estimate_rounding, tests, NULL, NULL)

@@ -329,8 +329,9 @@ static void bounds_are_of_the_same_mode_where_none_is_missing(void **state)
     ritz_sparse_free(&full.M);
 }
 
-/* Of several places the worst bound stays, with its place and its cause. */
-static void the_cause_of_the_worst_place_stays(void **)
+/* Of several configurations the largest bound is reported, with its
+   configuration and cause. */
+static void the_worst_configuration_keeps_its_cause(void **)
 {
     static const struct {
         const char *at, *where, *cause;
@@ -358,7 +359,7 @@ static void the_cause_of_the_worst_place_stays(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_cause_of_the_worst_place_stays),
+    cmocka_unit_test(the_worst_configuration_keeps_its_cause),
     cmocka_unit_test(the_system_s_basis_condenses_the_full_system),
     cmocka_unit_test(a_body_without_its_basis_is_refused),
     cmocka_unit_test(every_allocation_of_the_basis_may_fail),

@@ -1,6 +1,7 @@
 /*
- * Free bodies and ports: what a tolerance holds when rigid motion makes the
- * largest response, and what of an interface stays.
+ * Free bodies and ports: a tolerance is met by flexible motion even where rigid
+ * motion makes the largest response, and a component with ports keeps columns
+ * for them.
  */
 #include "testing.h"
 
@@ -12,7 +13,8 @@
 
 #include <ritz/matrix.h>
 
-/* The free beam, its tip driven and seen; its ends may be ports. */
+/* The free beam with input and output at its tip; with `ports` both ends are
+   ports. */
 static void open_free(bool ports, ritz_component *beam)
 {
     int64_t tip = 0;
@@ -67,7 +69,7 @@ static void a_number_alone_is_not_met_by_rigid_motion(void **state)
     assert_true(find_measure(&c->errors, "missing-modes")->value == 0.0);
 }
 
-/* Columns that must stay, but rigid ones. */
+/* Number of columns that a fit must keep, not counting rigid ones. */
 static int64_t count_interface(const ritz_columns *columns, int64_t count)
 {
     int64_t found = 0;
@@ -78,7 +80,8 @@ static int64_t count_interface(const ritz_columns *columns, int64_t count)
     return found;
 }
 
-/* Two modes, and columns for the six attached dofs or none. */
+/* With 8 modes, a method has columns for all six attached dofs if and only if
+   it declares that it keeps an interface. */
 static void methods_that_keep_an_interface_have_columns_for_it(void **state)
 {
     const int special = RITZ_USES_SPACE | RITZ_USES_GRAMIAN |
@@ -119,7 +122,8 @@ static void methods_that_keep_an_interface_have_columns_for_it(void **state)
     assert_true(keeping >= 8);
 }
 
-/* Forces at the ports are no inputs: it is their columns that hold them. */
+/* Forces at ports are no inputs, so that no error of a response accounts for
+   them: columns for the ports are kept instead. */
 static void a_component_with_ports_keeps_columns_of_them(void **state)
 {
     const ritz_fit_request request = request_of("response=1e-1");

@@ -311,7 +311,8 @@ static void includes_are_followed_sixteen_deep(void **state)
                  "d16', line 2: INCLUDE is more than 16 files deep");
 }
 
-/* What has no end, or no writer, is not read. */
+/* Devices, folders and pipes may never end or have no writer, and are not
+   read. */
 static void includes_are_regular_files(void **state)
 {
     static const char *const names[] = {"/dev/null", ".", "p.blk"};
@@ -331,7 +332,8 @@ static void includes_are_regular_files(void **state)
     assert_int_equal(remove(folder_path("p.blk")), 0);
 }
 
-/* By whatever name, so that a deck cannot grow without bound. */
+/* The limit holds under different names of the file, so that a deck cannot grow
+   without bound. */
 static void a_file_is_included_sixteen_times(void **state)
 {
     char text[512] = "";
@@ -357,7 +359,7 @@ static void a_file_is_included_sixteen_times(void **state)
     assert_non_null(strstr(ritz_error_message(), "/./loop.dat' includes"));
 }
 
-/* Who writes a deck does not learn from a refusal what other files hold. */
+/* A refusal does not show the author of a deck what files elsewhere contain. */
 static void files_outside_the_decks_folder_are_not_quoted(void **state)
 {
     static const struct {
@@ -379,7 +381,7 @@ static void files_outside_the_decks_folder_are_not_quoted(void **state)
         assert_fails(ritz_deck_read(folder_path("in/top.dat"), &bulk),
                      RITZ_ERR_FORMAT, CASES[k].words);
     }
-    folder_write("top.dat", "INCLUDE key\n"); /* in the folder of this deck */
+    folder_write("top.dat", "INCLUDE key\n"); /* in the deck's own folder */
     assert_fails(ritz_deck_read(folder_path("top.dat"), &bulk), RITZ_ERR_FORMAT,
                  "'1234567890123456...' in GRID");
     assert_int_equal(remove(folder_path("in/top.dat")), 0);

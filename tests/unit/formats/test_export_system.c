@@ -1,5 +1,5 @@
 /*
- * A system and what it is at a configuration, as shapes of its bodies and as a
+ * A system at a configuration, exported as shapes of its bodies and as a
  * container.
  */
 #include "testing.h"
@@ -19,9 +19,9 @@ enum { BODIES = 2, GRIDS = 2 };
 
 static const double places[GRIDS][3] = {{0.5, -0.2, 0.1}, {1.5, 0.4, -0.3}};
 
-/* Two bodies of the same grid numbers, B turned by 90 degrees about z. */
+/* Two bodies with the same grid numbers; B is turned by 90 degrees about z. */
 typedef struct fixture {
-    ritz_bodies bodies; /* as the stage's, which takes its own */
+    ritz_bodies bodies; /* the stage owns another copy */
     ritz_system system;
 } fixture;
 
@@ -78,7 +78,7 @@ static ritz_status shape_once(const fixture *f, const char *list,
                                  list, out);
 }
 
-/* u of a grid in a shape. */
+/* Displacement of a grid in shape k. */
 static const double *motion_of(const ritz_dense *u, int64_t point, int64_t k)
 {
     return ritz_dense_col(u, k) + 3 * point;
@@ -88,7 +88,7 @@ static void bodies_stand_where_joints_put_them(void **state)
 {
     fixture *f = *state;
     RITZ_OWN(ritz_shapes) s = {0};
-    /* B's second grid, R (x_2 - x_1) from A's second */
+    /* B's second grid lies at R (x_2 - x_1) from A's second grid */
     const double last[3] = {1.5 - 0.6, 0.4 + 1.0, -0.3 - 0.4};
     const double near = 100.0 * DBL_EPSILON;
 
@@ -99,7 +99,7 @@ static void bodies_stand_where_joints_put_them(void **state)
     assert_int_equal(s.cells.count, BODIES * GRIDS);
     assert_int_equal(s.cells.grid[3], 3);
     assert_int_equal(s.id[0], 1);
-    assert_int_equal(s.id[3], 12); /* 2 + 10 */
+    assert_int_equal(s.id[3], 12); /* grid 2, offset by 10 */
     for (int i = 0; i < 3; i++) {
         assert_near(s.position[3 + i], places[1][i], 0.0);
         assert_near(s.position[6 + i], places[1][i], near);
@@ -109,13 +109,13 @@ static void bodies_stand_where_joints_put_them(void **state)
         for (int i = 0; i < 3; i++) {
             assert_near(motion_of(&s.u, 2, k)[i], motion_of(&s.u, 1, k)[i],
                         1e4 * DBL_EPSILON);
-            if (i < 2) /* about z they turn apart */
+            if (i < 2) /* the hinge is free about z */
                 assert_near(motion_of(&s.turn, 2, k)[i],
                             motion_of(&s.turn, 1, k)[i], 1e4 * DBL_EPSILON);
         }
 }
 
-static void bodies_that_are_others_are_refused(void **state)
+static void bodies_of_another_system_are_refused(void **state)
 {
     fixture *f = *state;
     const ritz_reduced *swapped[] = {&f->bodies.item[1], &f->bodies.item[0]};
@@ -156,8 +156,9 @@ static void rename_grid(fixture *f, int64_t from, int64_t to)
     }
 }
 
-/* The last grid of the bodies, which have the same numbers. */
-static void numbers_that_leave_no_others_are_refused(void **state)
+/* Renumber the last grid of both bodies: grids of B get an offset above the
+   largest number. */
+static void grid_numbers_without_room_for_an_offset_are_refused(void **state)
 {
     static const int64_t huge[] = {INT64_MAX / 2, 999999999999999999};
     fixture *f = *state;
@@ -225,8 +226,8 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bodies_stand_where_joints_put_them),
-    cmocka_unit_test(bodies_that_are_others_are_refused),
-    cmocka_unit_test(numbers_that_leave_no_others_are_refused),
+    cmocka_unit_test(bodies_of_another_system_are_refused),
+    cmocka_unit_test(grid_numbers_without_room_for_an_offset_are_refused),
     cmocka_unit_test(a_container_holds_what_was_exported),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

@@ -251,7 +251,7 @@ static void copy_sample(const mat_sample *sample, const char *name)
     assert_int_equal(fclose(file), 0);
 }
 
-/* A struct with a member that is the struct itself. */
+/* A struct with a member that is a hard link to the struct itself. */
 static void a_struct_is_gone_through_once(void **state)
 {
     enum { OWN = 4 };

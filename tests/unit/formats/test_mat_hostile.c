@@ -1,6 +1,6 @@
 /*
- * MAT 7.3 files that no MATLAB writes: links in place of members, filters that
- * would inflate without bounds, elements of no size and large ones.
+ * MAT 7.3 files that MATLAB does not write: links in place of members,
+ * compression applied twice, elements of size 0 and very large elements.
  */
 #include "testing.h"
 
@@ -16,7 +16,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* A file of HDF5 1.8 behind a block of 512 bytes, as MATLAB's are. */
+/* An HDF5 file behind a user block of 512 bytes, as MATLAB writes it. */
 static hid_t begin(const char *path)
 {
     hid_t plan = H5Pcreate(H5P_FILE_CREATE);
@@ -41,7 +41,8 @@ static void end(const char *path, hid_t file)
     assert_int_equal(fclose(stream), 0);
 }
 
-/* A data set of zeros with so many deflate filters, all in one chunk. */
+/* A data set of zeros: one chunk behind `deflates` deflate filters, if there
+   are any. */
 static void put_zeros(hid_t at, const char *name, hid_t type, hsize_t rows,
                       hsize_t cols, int deflates)
 {
@@ -75,7 +76,7 @@ static void assert_refused(const char *path, const char *words)
     ritz_matrices_free(&all);
 }
 
-/* One inflates by 1032 at most; two of them by its square. */
+/* One deflate filter inflates 1032-fold at most, two of them 1032^2-fold. */
 static void one_deflate_is_read_and_two_are_refused(void **state)
 {
     (void)state;
@@ -93,7 +94,8 @@ static void one_deflate_is_read_and_two_are_refused(void **state)
     }
 }
 
-/* A matrix whose values, rows or starts are a link is not an empty one. */
+/* A link in place of values, rows or starts is refused, not taken for an empty
+   matrix. */
 static void a_link_in_a_sparse_matrix_is_refused(void **state)
 {
     static const char *const parts[] = {"data", "ir", "jc"};
@@ -128,7 +130,7 @@ static void a_link_in_a_sparse_matrix_is_refused(void **state)
         }
 }
 
-/* The size of the elements, where the file states it, becomes 0. */
+/* The file's element size is overwritten by 0. */
 static void elements_of_no_size_are_refused(void **state)
 {
     static const char type[] = {0x11, 0x20, 0x3f, 0, 8, 0, 0, 0, 0, 0, 0x40};
@@ -153,8 +155,9 @@ static void elements_of_no_size_are_refused(void **state)
     free(at);
 }
 
-/* A chunk is limited in bytes, not in values: here it is of 60000 pairs with 4 kB
-   between them, 245 MB, for which the file has a thousand bytes. */
+/* The limit of a chunk counts bytes, not values: this chunk of 60000 complex
+   values of 4 kB each (mostly padding) takes 245 MB, for which the file stores
+   1000 bytes. */
 static void a_chunk_is_limited_in_bytes(void **state)
 {
     enum { STORED = 1000 };
@@ -184,8 +187,8 @@ static void a_chunk_is_limited_in_bytes(void **state)
     assert_refused(path, "'A' declares more than the file holds");
 }
 
-/* Values of a byte take 32 in memory: these zeros, 36 million in 36 kB of the
-   file, more than a GiB. */
+/* The limit counts values as held in memory, 32 bytes each: 36 million values
+   of one byte, stored in 36 kB, would take more than 1 GiB. */
 static void values_are_limited_as_they_are_in_memory(void **state)
 {
     enum { CHUNKS = 36, WIDE = 1000000, ROOM = 4096 };

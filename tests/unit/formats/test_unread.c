@@ -10,7 +10,7 @@
 #define SAMPLE(text) (text), sizeof(text) - 1
 
 static const struct sample {
-    const char *name; /* what its row's name begins with */
+    const char *name; /* beginning of the row's name */
     const char *text;
     size_t size;
 } samples[] = {
@@ -90,7 +90,7 @@ static void a_refusal_says_what_it_is_and_what_to_do(void **state)
     }
 }
 
-static void what_is_read_looks_like_none(void **state)
+static void formats_that_are_read_are_not_taken_for_others(void **state)
 {
     static const char *const texts[] = {
         "",
@@ -118,7 +118,8 @@ static void what_is_read_looks_like_none(void **state)
     }
 }
 
-/* Each in a block of its own size, which sanitisers watch. */
+/* Each copy fills a heap block of its size, so that sanitisers detect reads
+   beyond it. */
 static void a_file_that_is_cut_is_not_read_beyond_its_end(void **state)
 {
     (void)state;
@@ -136,7 +137,7 @@ static void a_file_that_is_cut_is_not_read_beyond_its_end(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(each_row_is_recognised),
     cmocka_unit_test(a_refusal_says_what_it_is_and_what_to_do),
-    cmocka_unit_test(what_is_read_looks_like_none),
+    cmocka_unit_test(formats_that_are_read_are_not_taken_for_others),
     cmocka_unit_test(a_file_that_is_cut_is_not_read_beyond_its_end),
 };
 

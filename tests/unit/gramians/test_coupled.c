@@ -1,4 +1,4 @@
-/* Modes that damping couples: Gramians, clusters, and poles at 0. */
+/* Modes coupled by damping: Gramians, clusters, and poles at 0. */
 #include "testing.h"
 
 #include "gramians/modes.h"
@@ -12,8 +12,9 @@
 enum { MODES = 3, RIGID = 2, ALL = MODES + RIGID, STATES = 2 * ALL };
 
 /*
- * Three flexible modes and, where they are wanted, two rigid ones. Damping is
- * definite with a gyroscopic part; inputs and outputs are of all kinds.
+ * Three flexible modes and no or two rigid ones. Damping has a definite
+ * symmetric part and a gyroscopic part; there are outputs of displacement and
+ * of velocity.
  */
 typedef struct numbers {
     double omega[MODES], zeta[MODES];
@@ -51,7 +52,7 @@ static ritz_modal set_model(int rigid, numbers *at)
                         rigid,         {n, n, at->delta}, {0}};
 }
 
-/* A of the states (q_1, q_1', ..., v). */
+/* A of the states (q_1, q_1', ..., v), v the velocities of rigid motion. */
 static void set_matrix(const ritz_modal *modal, double A[STATES][STATES])
 {
     int64_t n = modal->count + modal->num_rigid;
@@ -70,7 +71,7 @@ static void set_matrix(const ritz_modal *modal, double A[STATES][STATES])
     }
 }
 
-/* Largest entry of A W + W A' + sum_k f_k f_k', or with A'. */
+/* Largest entry of A W + W A' + sum_k f_k f_k', or of the equation with A'. */
 static double residual(const ritz_modal *modal, bool transposed,
                        const ritz_dense *W, const double f[2][STATES])
 {
@@ -92,7 +93,7 @@ static double residual(const ritz_modal *modal, bool transposed,
     return largest;
 }
 
-/* Entries are up to 20; some hundred roundings of them: 1e-13. */
+/* Entries are up to 20, and 1e-13 is some twenty of their roundings. */
 static void gramians_satisfy_their_equations(void **state)
 {
     numbers own;
@@ -113,8 +114,9 @@ static void gramians_satisfy_their_equations(void **state)
     assert_near(residual(&modal, true, &Wo, c), 0.0, 1e-13);
 }
 
-/* Of rigid motion that is damped: velocities alone are controllable as they
-   are; of the outputs what is deflated is not there. */
+/* Rigid motion with damping enters by its velocities: with the inputs
+   unchanged, and with the outputs of ritz_modal_outputs, from which poles at 0
+   are removed. */
 static void gramians_of_rigid_motion_satisfy_them_too(void **state)
 {
     numbers own;
@@ -137,9 +139,10 @@ static void gramians_of_rigid_motion_satisfy_them_too(void **state)
 }
 
 /*
- * SciPy 1.10: states [q; q'] of all modes, poles at 0 taken out by
- * x - X (W'X)^-1 W'x with their vectors X and W, Lyapunov equations of what is
- * left by solve_continuous_lyapunov, roots of the eigenvalues of W_c W_o.
+ * Computed by SciPy 1.10: of the states [q; q'] of all modes, poles at 0 are
+ * removed by x - X (W'X)^-1 W'x with their right and left eigenvectors X and W;
+ * solve_continuous_lyapunov gives W_c and W_o of the rest; values are the
+ * square roots of the eigenvalues of W_c W_o.
  */
 static void hankel_values_are_those_of_scipy(void **state)
 {
@@ -166,16 +169,19 @@ static void hankel_values_are_those_of_scipy(void **state)
 }
 
 /*
- * A rotor that nothing brakes, v' = 0.7 q' + u / 2, which a gyroscopic term
- * couples to a damped mode, q'' + 0.2 q' + 0.7 v + 4 q = u. With v = 0.7 q + z,
- * z' = u / 2, and p = s^2 + 0.2 s + 4.49,
+ * A rotor without damping of its own, v' = 0.7 q' + u / 2, is coupled by a
+ * gyroscopic term to a damped mode, q'' + 0.2 q' + 0.7 v + 4 q = u. With v =
+ * 0.7 q + z, z' = u / 2, and p = s^2 + 0.2 s + 4.49,
  *
  *     q = (s - 0.35) / (s p) u,    y = q + 0.3 q_r,    q_r' = v
  *
- * has three poles at 0, and what is left when these are taken out term by term,
- * G / s = g(0) / s + (G - g(0) p) / (s p), is a mode of p with outputs q, q'.
+ * there are three poles at 0. They are removed term by term by
+ *
+ *     G / s = g(0) / s + (G - g(0) p) / (s p),
+ *
+ * and a mode with denominator p and outputs q and q' is left.
  */
-static void a_rotor_that_nothing_brakes_is_not_refused(void **state)
+static void an_undamped_rotor_is_not_refused(void **state)
 {
     double omega[] = {2.0}, zeta[] = {0.05};
     double delta[] = {0.2, -0.7, 0.7, 0.0};
@@ -183,9 +189,9 @@ static void a_rotor_that_nothing_brakes_is_not_refused(void **state)
     const ritz_modal modal = {1,         omega,         zeta,
                               {2, 1, b}, {1, 2, c},     {1, 2, none},
                               1,         {2, 2, delta}, {0}};
-    double r = -0.35 / 4.49;  /* of q at 0 */
-    double x = 1.0 - 0.2 * r; /* q: (x - r s) / p */
-    double t = x / 4.49;      /* of that, integrated */
+    double r = -0.35 / 4.49;  /* residue of q at s = 0 */
+    double x = 1.0 - 0.2 * r; /* rest of q: (x - r s) / p */
+    double t = x / 4.49;      /* residue of its integral */
     double seen[] = {x + 0.21 * (-r - 0.2 * t)};
     double rate[] = {-r - 0.21 * t};
     double w[] = {sqrt(4.49)}, z[] = {0.1 / sqrt(4.49)};
@@ -202,7 +208,8 @@ static void a_rotor_that_nothing_brakes_is_not_refused(void **state)
         assert_near(sigma[k], exact[k], 1e-13 * exact[0]);
 }
 
-/* Modes 1 and 3 by 0.2, 3 and 4 by 0.3, 2 with none by more than 0.05. */
+/* Damping couples modes 1 and 3 by 0.2 of their own damping, modes 3 and 4 by
+   0.3, and mode 2 with no other by more than 0.05. */
 static void clusters_are_chains_of_couplings(void **state)
 {
     double omega[] = {1.0, 2.0, 3.0, 4.0};
@@ -222,8 +229,9 @@ static void clusters_are_chains_of_couplings(void **state)
 }
 
 /*
- * Rigid motion is always kept: it joins no modes, and is in a cluster only where
- * nothing else damps it. Then all of it is, as any basis of it is as good.
+ * Rigid motion is always kept, and joins no modes to one cluster. It is in a
+ * mode's cluster only if no other damping acts on that mode, and then as a
+ * whole, because any basis of rigid motion is as good.
  */
 static void rigid_motion_joins_no_modes(void **state)
 {
@@ -241,7 +249,8 @@ static void rigid_motion_joins_no_modes(void **state)
     assert_ok(ritz_coupled_clusters(&modal, cluster));
     for (int k = 0; k < 4; k++)
         assert_int_equal(cluster[k], k < 2 ? k : 2);
-    /* no damping of its own, and a gyroscopic term to rigid motion */
+    /* mode 1 has no damping of its own, and a gyroscopic coupling to rigid
+       motion */
     delta[0] = zeta[0] = 0.0;
     delta[2] = -0.3;
     assert_ok(ritz_coupled_clusters(&modal, cluster));
@@ -254,11 +263,11 @@ static void rigid_motion_joins_no_modes(void **state)
 enum { MANY = 151 };
 
 /*
- * A mode whose own damping is negative, by 0.01, and that decays by gyroscopic
- * couplings of 0.09 to 150 others, each of which adds 8.1e-5: a cluster by
- * itself would grow.
+ * A mode with damping of -0.01 decays through gyroscopic couplings of 0.009 to
+ * 150 other modes, each of which adds 0.009^2 = 8.1e-5 of damping. All modes
+ * form one cluster, because fewer of them would grow.
  */
-static void what_decays_as_a_whole_is_not_refused(void **state)
+static void modes_that_decay_only_together_are_one_cluster(void **state)
 {
     ritz_modal modal = {.count = MANY};
     RITZ_OWN_ARRAY int64_t *cluster = NULL;
@@ -282,7 +291,7 @@ static void what_decays_as_a_whole_is_not_refused(void **state)
     assert_ok(ritz_coupled_clusters(&modal, cluster));
     for (int k = 0; k < MANY; k++)
         assert_int_equal(cluster[k], 0);
-    /* less of it, and the whole grows */
+    /* with half of each coupling the whole system grows */
     for (int k = 1; k < MANY; k++)
         ritz_dense_col(&modal.Delta, k)[0] *= 0.5;
     assert_fails(ritz_coupled_clusters(&modal, cluster), RITZ_ERR_ARGUMENT,
@@ -290,7 +299,7 @@ static void what_decays_as_a_whole_is_not_refused(void **state)
     ritz_modal_free(&modal);
 }
 
-/* A mode of a part has the damping of the part alone. */
+/* A part's modes have the damping of that part alone. */
 static void a_part_has_its_own_damping(void **state)
 {
     const bool first[] = {true, false, false}, two[] = {true, true, false};
@@ -314,7 +323,8 @@ static void a_part_has_its_own_damping(void **state)
     assert_near(ritz_dense_col(&all.C, 1)[0], 0.7, 0.0);
 }
 
-/* An acceleration is b u - Lambda q - Delta q' of the part, not of the whole. */
+/* Accelerations of a part are b u - Lambda q - Delta q' with Delta of the part,
+   not of the whole. */
 static void accelerations_of_a_part_have_its_damping(void **state)
 {
     const bool taken[] = {true, false, true};
@@ -337,7 +347,7 @@ static void accelerations_of_a_part_have_its_damping(void **state)
     assert_ok(ritz_modal_part(&modal, taken, rigid, &part));
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 2; i++) {
-            int mode = k < 2 ? 2 * k : 4; /* of the whole */
+            int mode = k < 2 ? 2 * k : 4; /* its number in the whole */
             double left = ritz_dense_col(&part.Cv, k)[i];
 
             for (int j = 0; j < 3; j++)
@@ -400,10 +410,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(gramians_satisfy_their_equations),
     cmocka_unit_test(gramians_of_rigid_motion_satisfy_them_too),
     cmocka_unit_test(hankel_values_are_those_of_scipy),
-    cmocka_unit_test(a_rotor_that_nothing_brakes_is_not_refused),
+    cmocka_unit_test(an_undamped_rotor_is_not_refused),
     cmocka_unit_test(clusters_are_chains_of_couplings),
     cmocka_unit_test(rigid_motion_joins_no_modes),
-    cmocka_unit_test(what_decays_as_a_whole_is_not_refused),
+    cmocka_unit_test(modes_that_decay_only_together_are_one_cluster),
     cmocka_unit_test(a_part_has_its_own_damping),
     cmocka_unit_test(accelerations_of_a_part_have_its_damping),
     cmocka_unit_test(motions_that_do_not_decay_are_refused),

@@ -268,8 +268,8 @@ static void inputs_and_outputs_act_along_basic_axes(void **)
     assert_string_equal(c.io.input[0], "fx");
 }
 
-/* Column k of B and row k of the outputs, of grids 3, 7 (turned) and 9 and of
- * point 5, are the sums of those of single dofs, times their scales. */
+/* Inputs and outputs of several terms are the sums of those of single dofs
+ * times their scales; grid 7 is turned. */
 static void terms_of_inputs_and_outputs_add_up(void **)
 {
     const char *const inputs[] = {"a=3:1", "b=7:2", "c=5:0",
@@ -290,7 +290,7 @@ static void terms_of_inputs_and_outputs_add_up(void **)
     for (int64_t i = 0; i < 19; i++) {
         const double *Cv = ritz_dense_col(&c.io.Cv, i);
 
-        /* few terms, the scales powers of two: no rounding */
+        /* exact: few terms, and scales are powers of two */
         assert_near(ritz_dense_col(&c.io.B, 3)[i],
                     3.0 * ritz_dense_col(&c.io.B, 0)[i] -
                         0.5 * ritz_dense_col(&c.io.B, 1)[i] +

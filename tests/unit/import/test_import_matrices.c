@@ -1,4 +1,4 @@
-/* Inputs and outputs out of matrix files, and rows without grids. */
+/* Inputs and outputs from matrix files, and models without grids. */
 #include "testing.h"
 
 #include "folder.h"
@@ -12,7 +12,7 @@
 
 #define ARRAY "%%MatrixMarket matrix array real general\n"
 
-/* Entries "row column value\n..." of a matrix of this size. */
+/* Write a matrix whose entries are lines "row column value". */
 static const char *put_entries(const char *name, int nrow, int ncol, int count,
                                const char *entries)
 {
@@ -24,8 +24,8 @@ static const char *put_entries(const char *name, int nrow, int ncol, int count,
     return folder_write(name, text);
 }
 
-/* Grid 7 is turned: its first axis is the second basic one, its second axis the
- * first one reversed. */
+/* Grid 7 is turned: its first axis is the basic second axis, its second axis
+ * the basic first axis reversed. */
 static const char deck[] = "BEGIN BULK\n"
                            "CORD2R,4,,0.,0.,0.,0.,0.,1.\n"
                            ",0.,1.,0.\n"
@@ -34,8 +34,9 @@ static const char deck[] = "BEGIN BULK\n"
                            "GRID,7,,2.,6.,0.,4\n"
                            "SPOINT,5\n";
 
-/* Rows are those of matrices: grid 3 first, point 5 the 7th, grid 7 the 8th. */
-static void matrices_do_what_texts_do(void **)
+/* Rows of matrices: grid 3 has rows 1 to 6, point 5 has row 7, grid 7 begins at
+   row 8. */
+static void inputs_by_matrix_and_by_text_agree(void **)
 {
     const char *const inputs[] = {"a=3:1,7:2*2", "b=5:0*-4"};
     const char *const outputs[] = {"a=3:1,7:1*-3", "b=9:6/vel", "c=5:0/acc@2"};
@@ -72,7 +73,7 @@ static void matrices_do_what_texts_do(void **)
             const double *Cv = ritz_dense_col(&io->Cv, i);
             const double *Ca = ritz_dense_col(&io->Ca, i);
 
-            /* frames are built of square roots: two eps, times 3 */
+            /* frames contain square roots: two eps, times the scale 3 */
             if (k < 2)
                 assert_near(ritz_dense_col(&io->B, k)[i],
                             ritz_dense_col(&io->B, k + 2)[i], 2e-15);
@@ -84,8 +85,9 @@ static void matrices_do_what_texts_do(void **)
     assert_near(ritz_dense_col(&io->C, 8)[3], 3.0, 0.0);
 }
 
-/* Outputs x n and n x outputs; a square one has outputs in its rows. */
-static void outputs_lie_either_way(void **)
+/* A file has outputs in its rows or in its columns; a square one has them in
+   its rows. */
+static void outputs_are_rows_or_columns(void **)
 {
     ritz_import_request request = {
         .mass = put_diagonal("m.mtx", 3, NULL),
@@ -115,8 +117,8 @@ static void outputs_lie_either_way(void **)
 }
 
 /* Grid 4 follows grid 3, from which it is 2 away along x: a force f along y on
- * it is f and a moment 2 f about z there. */
-static void constraints_act_on_them(void **)
+ * grid 4 is a force f and a moment 2 f about z on grid 3. */
+static void constraints_act_on_inputs_and_outputs(void **)
 {
     const char *const inputs[] = {"a=4:2*5"};
     const char *const outputs[] = {"a=4:2"};
@@ -145,7 +147,7 @@ static void constraints_act_on_them(void **)
     assert_near(ritz_dense_col(&c.io.B, 1)[5], 10.0, 0.0);
 }
 
-/* The deck fixes 1, 5 and 6 of grid 3; nothing moves there. */
+/* The deck fixes directions 1, 5 and 6 of grid 3, whose entries are dropped. */
 static void entries_of_fixed_dofs_are_left_out(void **)
 {
     const ritz_import_request request = {
@@ -166,7 +168,8 @@ static void entries_of_fixed_dofs_are_left_out(void **)
     assert_near(c.io.C.val[2], 8.0, 0.0);
 }
 
-/* DMIG of 2 x 1 names the dofs of its rows, of which there are fewer. */
+/* A DMIG matrix of 2 x 1 names the dofs of its two rows; the model has
+   twelve. */
 static void files_that_name_rows_are_placed_by_name(void **)
 {
     const char *file = folder_write("b.pch", "DMIG,B,0,9,2,0,,,1\n"
@@ -192,7 +195,7 @@ static void files_that_name_rows_are_placed_by_name(void **)
     }
 }
 
-/* A request, and the sentence that it gets. */
+/* A request and the sentence that refuses it. */
 typedef struct refusal {
     const char *B, *C, *Cv, *inputs, *outputs, *says;
 } refusal;
@@ -245,7 +248,7 @@ static void wrong_matrices_are_refused(void **)
     }
 }
 
-/* Terms whose sum is beyond the largest number. */
+/* The sum of the two terms exceeds the largest double. */
 static void inputs_that_are_not_finite_are_refused(void **)
 {
     const char *const input[] = {"f=1:1*1e308,1:1*1e308"};
@@ -266,7 +269,7 @@ static void rows_are_directions_of_grids(void **)
     static const struct {
         const char *rows;
         ritz_dof last;
-        int64_t grids; /* one alone lies at the origin */
+        int64_t grids; /* a single grid lies at the origin */
     } cases[] = {{"0", {6, 0}, 0},   {"1", {6, 1}, 0},     {"12", {3, 2}, 0},
                  {"126", {2, 6}, 0}, {"612", {2, 2}, 0},   {"345", {2, 5}, 0},
                  {"16", {3, 6}, 0},  {"123456", {1, 6}, 1}};
@@ -377,9 +380,9 @@ static void no_allocation_failure_leaks(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(matrices_do_what_texts_do),
-    cmocka_unit_test(outputs_lie_either_way),
-    cmocka_unit_test(constraints_act_on_them),
+    cmocka_unit_test(inputs_by_matrix_and_by_text_agree),
+    cmocka_unit_test(outputs_are_rows_or_columns),
+    cmocka_unit_test(constraints_act_on_inputs_and_outputs),
     cmocka_unit_test(entries_of_fixed_dofs_are_left_out),
     cmocka_unit_test(files_that_name_rows_are_placed_by_name),
     cmocka_unit_test(wrong_matrices_are_refused),

@@ -48,7 +48,7 @@ static void modes_are_scalar_points_of_unit_mass(void **)
         assert_int_equal(c.dof[k].grid, k + 1);
         assert_int_equal(c.dof[k].component, 0);
         assert_near(entry(&c.M, k, k), 1.0, 0.0);
-        /* a square, and its root: a few roundings */
+        /* rounding of a square and of its root */
         assert_near(entry(&c.K, k, k), w * w, 4.0 * DBL_EPSILON * w * w);
         assert_near(entry(&c.D, k, k), 2.0 * z * w, 4.0 * DBL_EPSILON * w);
         assert_near(c.io.B.val[k], (double)(k + 1), 0.0);
@@ -82,7 +82,8 @@ static void one_ratio_is_that_of_all_modes(void **)
     }
 }
 
-/* Two unit masses on unit springs, ground - 1 - 2, as their two modes. */
+/* Two unit masses in a chain with unit springs, ground - 1 - 2, as two
+   modes. */
 static ritz_status import_chain(const char *ratios, ritz_component *out)
 {
     const double lambda[] = {(3.0 - sqrt(5.0)) / 2.0, (3.0 + sqrt(5.0)) / 2.0};
@@ -109,7 +110,7 @@ static ritz_status import_chain(const char *ratios, ritz_component *out)
     return ritz_import(&request, out, &report);
 }
 
-/* Force on mass 1, motion of mass 2: 1 / det(K - w^2 I). */
+/* Response of mass 2 to a force on mass 1: 1 / det(K - w^2 I). */
 static void a_chain_and_its_modes_respond_alike(void **)
 {
     const double hertz[] = {0.0, 0.05, 0.13, 0.2, 0.4};
@@ -124,12 +125,12 @@ static void a_chain_and_its_modes_respond_alike(void **)
         double s = two_pi() * hertz[k] * two_pi() * hertz[k];
         double due = 1.0 / ((2.0 - s) * (1.0 - s) - 1.0);
 
-        /* w^2 is 0.3 and more away from lambda: condition below 10 */
+        /* w^2 differs from lambda by 0.3 or more: condition below 10 */
         assert_near(creal(response.H[k]), due, 100.0 * DBL_EPSILON * 10.0);
     }
 }
 
-/* The ratios of the modes in D are those of `modal 0.03`. */
+/* Ratios that import stores in D damp as `modal 0.03` does. */
 static void ratios_in_d_are_modal_damping(void **)
 {
     const double hertz[] = {0.05, 0.0984, 0.2575, 0.3};
@@ -200,7 +201,7 @@ static ritz_status import_and_free(const char *ratios)
 
 static void no_allocation_failure_leaks(void **)
 {
-    char z[512]; /* paths of the folder last for sixteen calls */
+    char z[512]; /* folder_path keeps sixteen paths */
 
     snprintf(z, sizeof z, "%s", folder_write("z.mtx", ARRAY "1 1\n0.02\n"));
     assert_survives_every_allocation(import_and_free("0.02"));

@@ -1,4 +1,4 @@
-/* Ports of grids that import makes for them: rigid and averaged ones. */
+/* Ports at grids that import creates: rigid and averaged ones. */
 #include "testing.h"
 
 #include "folder.h"
@@ -15,8 +15,8 @@
 
 enum { CORNERS = 8, SOLID = 3 * CORNERS };
 
-/* A cube of side 2 about (1, 1, 1), grids 1 to 8, 5 to 8 above; grid 6 has
- * axes of its own. */
+/* A cube of side 2 about (1, 1, 1): grids 1 to 4 below, 5 to 8 above; grid 6
+ * has axes of its own. */
 static const char CUBE[] = "CORD2R,4,,0.,0.,0.,0.3,0.1,1.0\n,1.0,0.4,0.\n"
                            "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\n"
                            "GRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\n"
@@ -27,7 +27,7 @@ static const double corner[CORNERS][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0},
                                           {0, 2, 0}, {0, 0, 2}, {2, 0, 2},
                                           {2, 2, 2}, {0, 2, 2}};
 
-/* Displacement axes of grid 6, from the deck. */
+/* Displacement axes of grid 6 as the deck defines them. */
 static void find_axes(double A[9])
 {
     RITZ_OWN(ritz_deck) bulk = {0};
@@ -38,7 +38,8 @@ static void find_axes(double A[9])
     memcpy(A, bulk.grids.axes + 9 * bulk.grids.frame[k], 9 * sizeof *A);
 }
 
-/* Springs between all corners, stiffness by the pair; masses 1 to 8. */
+/* Springs between all pairs of corners, a stiffness for each pair; masses 1 to
+   8. */
 static void fill_cube(ritz_dense *K, ritz_dense *M)
 {
     double A[9];
@@ -75,7 +76,7 @@ static void fill_cube(ritz_dense *K, ritz_dense *M)
             ritz_dense_col(M, k)[k] = 1.0 + g;
 }
 
-/* Import the cube, its rows named by a file: translations only. */
+/* Import the cube; a file names its rows, which are translations only. */
 static ritz_status import_cube(const char *deck_rest, const char *rigid,
                                const char *averaged, ritz_component *out,
                                ritz_import_report *report)
@@ -127,7 +128,7 @@ static void assert_same_spectrum(const ritz_component *a,
     ritz_pairs_free(&two);
 }
 
-/* Largest sum of a row of |G|, at least 1. */
+/* Largest sum of magnitudes in a row of G, at least 1. */
 static double row_sum(const ritz_sparse *G)
 {
     double sum[SOLID] = {0};
@@ -141,14 +142,15 @@ static double row_sum(const ritz_sparse *G)
 }
 
 /*
- * K R = 0 with rigid motions by geometry: of rows and of what is recovered.
+ * K R = 0 for the rigid motions R, and recovered dofs move as geometry says.
  *
- * Six dofs of an averaged port follow from A_p u_p = q - A_r u_r. QR of 6 x 6
- * errs by |dA_p| <= 6^2 eps |A_p| [Higham2002, sec. 19.3], and u_p with it by
- * A_p^-1 dA_p u_p. A is an average, of order 1, and rows of G = A_p^-1 [I,
- * -A_r] hold those of A_p^-1: the error is at most 36 eps |G| |R|, |G| by sums
- * of rows. Which dofs depend, and |G| with that, is chosen by pivoting, where
- * rounding decides between equals: |G| is 28 on one processor, 58 on another.
+ * Six dofs of an averaged port follow from A_p u_p = q - A_r u_r. QR of the 6 x
+ * 6 matrix A_p has a backward error |dA_p| <= 6^2 eps |A_p| [Higham2002, sec.
+ * 19.3], which changes u_p by A_p^-1 dA_p u_p. A is an average, of order 1, and
+ * A_p^-1 is a part of G = A_p^-1 [I, -A_r]: the error is at most 36 eps |G|
+ * |R|, with |G| the largest row sum. Pivoting decides which dofs depend on the
+ * others, and rounding decides between equal pivots: |G| is 28 on one processor
+ * and 58 on another.
  */
 static void assert_rigid_motion(const ritz_component *c)
 {
@@ -177,7 +179,7 @@ static void assert_rigid_motion(const ritz_component *c)
     free(names);
 }
 
-static void a_rigid_port_is_an_rbe2_from_a_grid_amid(void **)
+static void a_rigid_port_is_an_rbe2_from_the_centre(void **)
 {
     ritz_import_report report = {0};
     RITZ_OWN(ritz_component) port = {0}, element = {0};
@@ -206,9 +208,9 @@ static void a_rigid_port_is_an_rbe2_from_a_grid_amid(void **)
 }
 
 /*
- * Six new coordinates and six dependent ones: with u = G q square, the spectrum
- * of (G'KG, G'MG) is that of (K, M). Rounding grows by the condition of G, some
- * 10, and of the mass, 8.
+ * Six coordinates are new and six dofs depend on them: G in u = G q is square,
+ * so that (G'KG, G'MG) has the spectrum of (K, M). Rounding grows by the
+ * condition of G, about 10, and by that of the mass, 8.
  */
 static void an_averaged_port_stiffens_nothing(void **)
 {
@@ -227,8 +229,9 @@ static void an_averaged_port_stiffens_nothing(void **)
     ritz_import_report_free(&report);
 }
 
-/* A force f on the new grid does the work q' f = u' A' f: by B = G' A' f. The
- * average of corners is their mean, and about z their mean swirl. */
+/* Coordinates q of the port are averages over the corners: the mean
+ * displacement, and about z the mean rotation. A force on the port is thereby
+ * spread over the corners. */
 static void loads_on_an_averaged_port_are_spread(void **)
 {
     RITZ_OWN(ritz_import_report) report = {0};
@@ -237,7 +240,7 @@ static void loads_on_an_averaged_port_are_spread(void **)
     ritz_dof *names = NULL;
 
     assert_ok(import_cube("", NULL, "foot=1-4", &c, &report));
-    /* u of every corner, by columns of all motions q */
+    /* displacements of all corners for unit values of each coordinate */
     assert_ok(ritz_dense_new(c.num_dofs, c.num_dofs, &T));
     for (int64_t k = 0; k < c.num_dofs; k++)
         ritz_dense_col(&T, k)[k] = 1.0;
@@ -254,7 +257,8 @@ static void loads_on_an_averaged_port_are_spread(void **)
             if (g > 4)
                 continue;
             mean[names[i].component - 1] += u[i] / 4.0;
-            /* r_z = sum of d x u / sum of d^2, d^2 = 2 at all four */
+            /* mean rotation: sum of d x u over sum of d^2; d^2 = 2 at each
+               corner */
             if (names[i].component == 1)
                 swirl -= (corner[g - 1][1] - 1.0) * u[i] / 8.0;
             if (names[i].component == 2)
@@ -305,7 +309,7 @@ static void ports_that_leave_motion_open_are_refused(void **)
                  RITZ_ERR_FORMAT, "and on rigid port p");
     assert_fails(import_cube("", "p=1-4", "p=5-8", &c, &report),
                  RITZ_ERR_ARGUMENT, "there are two ports 'p'");
-    /* all but one dof fixed: the average of what is left */
+    /* three of the four corners are fixed */
     assert_fails(import_cube("SPC1,1,123,1,2,3\n", NULL, "p=1-4", &c, &report),
                  RITZ_ERR_ARGUMENT, "its dofs leave 3 of six motions open");
 }
@@ -324,7 +328,8 @@ static void positions_come_from_a_deck(void **)
                  "positions of its grids are known from a deck alone: --bulk");
 }
 
-/* One grid with six dofs is a body: a port on it changes nothing but names. */
+/* One grid with six dofs is a rigid body: a port at this grid renames its
+   dofs. */
 static void one_grid_of_six_dofs_is_enough(void **)
 {
     const double m[6] = {2, 2, 2, 3, 4, 5};
@@ -352,9 +357,10 @@ static void one_grid_of_six_dofs_is_enough(void **)
     }
 }
 
-/* An average over what an RBE2 carries is the body itself: its leader becomes
- * dependent, and the average of the other side still leaves the spectrum. */
-static void averages_see_through_the_elements_of_the_deck(void **)
+/* An average over grids of an RBE2 is the motion of the RBE2's leading grid,
+ * which then depends on the port. An average that includes the other grids
+ * keeps the spectrum too. */
+static void averages_follow_the_rigid_elements_of_the_deck(void **)
 {
     static const char REST[] = "GRID,9,,1.,1.,2.\nRBE2,1,9,123,5,6,7,8\n";
     ritz_import_report report = {0};
@@ -377,8 +383,8 @@ static void averages_see_through_the_elements_of_the_deck(void **)
     ritz_import_report_free(&report);
 }
 
-/* Two ports hold 12 coordinates that are not those of corners; a third that
- * names a corner itself keeps it. */
+/* Two averaged ports have 12 coordinates, which replace dofs of corners; the
+ * dofs of a port at corners 1 and 4 are not replaced. */
 static void averaged_ports_may_share_grids(void **)
 {
     static const char *const ports[] = {"a=1-6", "b=3-8", "c=1-8"};
@@ -394,8 +400,9 @@ static void averaged_ports_may_share_grids(void **)
     request.mass = folder_path("m.mtx");
     request.dofs = folder_path("dofs");
     request.bulk = folder_path("deck.bdf");
-    /* two of the six means over all corners follow from those of the others,
-     * as singular values of the 18 x 24 matrix of the three show too */
+    /* two of the six means over all corners follow from those of the other two
+     * ports; the singular values of the 18 x 24 matrix of the three ports show
+     * this too */
     assert_fails(ritz_import(&request, &c, &report), RITZ_ERR_ARGUMENT,
                  "c=1-8: six of its dofs are to depend on it, and without "
                  "those that other ports hold 2 motions are left open: name "
@@ -462,13 +469,13 @@ static void importing_survives_every_allocation(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_rigid_port_is_an_rbe2_from_a_grid_amid),
+    cmocka_unit_test(a_rigid_port_is_an_rbe2_from_the_centre),
     cmocka_unit_test(an_averaged_port_stiffens_nothing),
     cmocka_unit_test(loads_on_an_averaged_port_are_spread),
     cmocka_unit_test(ports_that_leave_motion_open_are_refused),
     cmocka_unit_test(positions_come_from_a_deck),
     cmocka_unit_test(one_grid_of_six_dofs_is_enough),
-    cmocka_unit_test(averages_see_through_the_elements_of_the_deck),
+    cmocka_unit_test(averages_follow_the_rigid_elements_of_the_deck),
     cmocka_unit_test(averaged_ports_may_share_grids),
     cmocka_unit_test(importing_survives_every_allocation),
 };

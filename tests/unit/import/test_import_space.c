@@ -10,7 +10,8 @@
 
 #define ARRAY "%%MatrixMarket matrix array real general\n"
 
-/* 3001 x 3001 with @p value on the diagonal, or with so many in all. */
+/* 3001 x 3001 with @p value on the diagonal or, with @p columns, in all entries
+   of the first columns. */
 static void write_many(const char *name, int value, int columns)
 {
     const int n = 3001, count = columns > 0 ? columns * n : n;

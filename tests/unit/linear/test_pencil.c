@@ -17,7 +17,7 @@ static void pencil_of(int64_t n, double wind, bool mass, ritz_pencil *out)
     assert_ok(ritz_pencil_new(&rod.sA, &rod.sE, out));
 }
 
-/* |(A - s E) x - b|, the transposed one if asked. */
+/* |(A - s E) x - b|, or the same of the transposed matrix. */
 static double left_over(const ritz_pencil *p, bool transposed,
                         double _Complex s, const double _Complex *x,
                         const double _Complex *b)
@@ -52,19 +52,19 @@ static void both_sides_are_solved(void **)
             x[i] = b[i] = ritz_complex(cos(i), sin(3 * i));
         assert_ok(ritz_pencil_factor(&p, at[k % 3]));
         assert_ok(ritz_pencil_solve(&p, transposed, 1, x));
-        /* condition 900, entries of x up to 500 */
+        /* condition 900, and entries of x up to 500 */
         assert_near(left_over(&p, transposed, at[k % 3], x, b), 0.0, 1e-12);
     }
 }
 
-/* The poles nearest to 0 and elsewhere, of rods below and above the size from
-   which Arnoldi iterations find them. */
+/* Poles nearest to a shift, of small rods (dense eigenvalues) and of larger
+   ones (Arnoldi iterations). */
 static void eigenvalues_near_a_point_are_those_of_the_closed_form(void **)
 {
     static const struct {
         int64_t n;
         double wind, shift;
-        int64_t first; /* of the closed form, that nearest to the shift */
+        int64_t first; /* number of the pole nearest to the shift */
     } table[] = {{40, 0.0, 0.0, 1},
                  {400, 0.0, 0.0, 1},
                  {400, 0.01, 0.0, 1},
@@ -89,8 +89,9 @@ static void eigenvalues_near_a_point_are_those_of_the_closed_form(void **)
     }
 }
 
-/* Poles -2 +- 2 i sqrt(wind^2 - 1) cos(..): for a wind above 1 they are pairs. */
-static void of_a_pair_the_one_above_the_axis_is_first(void **)
+/* With a wind above 1 the poles are pairs -2 +- 2 i sqrt(wind^2 - 1)
+   cos(..). */
+static void the_pole_above_the_real_axis_comes_first(void **)
 {
     RITZ_OWN(ritz_pencil) p = {0};
     RITZ_OWN(ritz_pencil_pairs) pairs = {0};
@@ -114,7 +115,7 @@ static void a_shift_on_an_eigenvalue_is_refused(void **)
 
     pencil_of(41, 0.0, false, &p);
     assert_fails(ritz_pencil_nearest(&p, -2.0, 3, &pairs), RITZ_ERR_SINGULAR,
-                 "singular"); /* pole 21 */
+                 "singular"); /* pole 21 is -2 */
     assert_fails(ritz_pencil_nearest(&p, 0.0, 0, &pairs), RITZ_ERR_ARGUMENT,
                  "no poles are asked for");
 }
@@ -139,7 +140,7 @@ static void every_allocation_may_fail(void **)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(both_sides_are_solved),
     cmocka_unit_test(eigenvalues_near_a_point_are_those_of_the_closed_form),
-    cmocka_unit_test(of_a_pair_the_one_above_the_axis_is_first),
+    cmocka_unit_test(the_pole_above_the_real_axis_comes_first),
     cmocka_unit_test(a_shift_on_an_eigenvalue_is_refused),
     cmocka_unit_test(every_allocation_may_fail),
 };

@@ -1,4 +1,7 @@
-/* Resolvents: many points at once, of triangles with and without gaps. */
+/*
+ * Resolvents: many points in one call agree with single ones, for dense and
+ * diagonal matrices; maxima of many brackets are found together.
+ */
 #include "testing.h"
 
 #include "base/complex.h"
@@ -17,7 +20,8 @@ static double at_random(uint64_t *seed)
     return (double)(*seed >> 40) / 0x1p24 - 0.5;
 }
 
-/* Entries up to 1, with -n on the diagonal: poles are far from 0. */
+/* Entries up to 1; resolvent_of subtracts n on the diagonal of A, which moves
+   poles away from 0. */
 static void fill(int64_t n, int64_t m, bool diagonal, ritz_dense *A)
 {
     uint64_t seed = 7;
@@ -47,7 +51,7 @@ static void resolvent_of(int64_t n, int kind, ritz_resolvent *out)
     assert_ok(ritz_resolvent_new(&A, &P, &B, &C, out));
 }
 
-static void points_are_the_same_one_by_one_and_together(void **)
+static void many_points_agree_with_single_ones(void **)
 {
     static const int64_t order[] = {1, 47, 48, 49, 130};
     double _Complex z[POINTS], H[POINTS * INPUTS * OUTPUTS];
@@ -59,7 +63,7 @@ static void points_are_the_same_one_by_one_and_together(void **)
 
         resolvent_of(order[k % 5], k / 5, &r);
         for (int i = 0; i < POINTS * INPUTS * OUTPUTS; i++)
-            H[i] = i; /* it is added to */
+            H[i] = i; /* the call adds to H */
         assert_ok(ritz_resolvent_many(&r, POINTS, z, H));
         for (int i = 0; i < POINTS; i++) {
             double _Complex one[INPUTS * OUTPUTS] = {0};
@@ -68,7 +72,8 @@ static void points_are_the_same_one_by_one_and_together(void **)
             for (int v = 0; v < INPUTS * OUTPUTS; v++) {
                 int at = i * INPUTS * OUTPUTS + v;
 
-                /* sums of 130 terms below 1 / 10, on numbers up to 1020 */
+                /* sums of 130 terms below 1 / 10, added to numbers up to
+                   1020 */
                 assert_near(cabs(H[at] - at - one[v]), 0.0,
                             (130 + 1020) * DBL_EPSILON);
             }
@@ -91,7 +96,7 @@ static ritz_status many_points(int kind)
     return ritz_resolvent_many(&r, 2, z, H);
 }
 
-/* Peaks at 1, 2, 3, ...; the number of calls is counted. */
+/* A curve with peaks at 1, 2, 3, ..., which counts its calls. */
 typedef struct hills {
     int calls;
 } hills;
@@ -114,7 +119,7 @@ static ritz_status hills_at(void *state, int64_t count, const double *w,
     return RITZ_OK;
 }
 
-static void brackets_close_together_as_one_by_one(void **)
+static void many_brackets_close_as_single_ones_do(void **)
 {
     hills h = {0};
     const ritz_curve one = {hill_at, &h};
@@ -131,7 +136,7 @@ static void brackets_close_together_as_one_by_one(void **)
         assert_true(bracket[k].low == low && bracket[k].high == high);
         assert_near(0.5 * (low + high), k + 1, 2e-9 * (k + 1));
     }
-    /* 0.618^44 is 6e-10 */
+    /* golden sections: 0.618^44 is 6e-10 */
     assert_true(h.calls <= 46);
     assert_ok(ritz_curves_between(&all, 1e-9, 0, bracket));
 }
@@ -143,8 +148,8 @@ static void every_allocation_may_fail(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(points_are_the_same_one_by_one_and_together),
-    cmocka_unit_test(brackets_close_together_as_one_by_one),
+    cmocka_unit_test(many_points_agree_with_single_ones),
+    cmocka_unit_test(many_brackets_close_as_single_ones_do),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

@@ -71,7 +71,7 @@ static void a_print_that_does_not_fit_is_cut(void **state)
     assert_string_equal(text, "shift-hz 1,2,3,");
 }
 
-/* Where nothing more fits, what stands behind the text stays. */
+/* A print that is cut writes nothing behind its room. */
 static void a_print_keeps_to_its_room(void **state)
 {
     struct {

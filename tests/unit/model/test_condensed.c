@@ -1,6 +1,6 @@
 /*
- * A configuration as a reduced component, that as a component and as a state
- * space: the same matrices, the same response, what is left out, refusals.
+ * A configuration as a reduced component, this one as a component and as a
+ * state space: the same matrices and response, what is left out, refusals.
  */
 #include "testing.h"
 
@@ -20,8 +20,8 @@ enum { POINTS = 3, ORDER = 4, RIGID = 1 };
 
 static const double hertz[POINTS] = {0.05, 0.3, 2.0};
 
-/* A free chain of masses 1, 2, 1, 3 in its modes, damped by D = 0.01 K and a
-   damper that is installed. */
+/* A free chain of masses 1, 2, 1, 3 in modal coordinates, damped by D = 0.01 K
+   and by a damper that is installed. */
 static ritz_status make_system(ritz_system *out)
 {
     static const double m[] = {1, 2, 1, 3}, k[] = {0, 9, 7, 8};
@@ -48,7 +48,7 @@ static ritz_status make_system(ritz_system *out)
     snprintf(c->at, sizeof c->at, "clock=60");
     c->num_rigid = pairs.num_rigid;
     RITZ_MOVE(c->lambda, pairs.lambda);
-    c->lambda[0] = -1e-15; /* rounding */
+    c->lambda[0] = -1e-15; /* as rounding leaves it */
     RITZ_CHECK(ritz_dense_identity(ORDER, &c->M));
     RITZ_CHECK(ritz_dense_new(ORDER, ORDER, &c->K));
     RITZ_CHECK(ritz_dense_new(ORDER, ORDER, &c->D));
@@ -84,7 +84,7 @@ static void respond(ritz_model model, double _Complex H[2 * POINTS])
     memcpy(H, response.H, 2 * POINTS * sizeof *H);
 }
 
-/* Orders of four, entries of order ten. */
+/* Solves of order four with entries of order ten: 1e4 eps is ample. */
 static void assert_same(const double _Complex *a, const double _Complex *b)
 {
     for (int k = 0; k < 2 * POINTS; k++)
@@ -136,7 +136,8 @@ static void a_configuration_keeps_all_but_its_bodies(void **state)
     assert_int_equal(r.columns.kind[1], RITZ_COLUMN_NORMAL);
     assert_near(r.columns.hertz[1],
                 ritz_eigen_hertz(system.configuration[0].lambda[1]), 0.0);
-    assert_near(ritz_dense_col(&r.K, 0)[0], 0.0, 0.0); /* it was -1e-15 */
+    /* the rounding, -1e-15, is dropped */
+    assert_near(ritz_dense_col(&r.K, 0)[0], 0.0, 0.0);
     assert_int_equal(r.errors.count, 1);
     /* the damper is in D once */
     assert_ok(ritz_reduced_install(&r));
@@ -144,7 +145,7 @@ static void a_configuration_keeps_all_but_its_bodies(void **state)
                 ritz_dense_col(&system.configuration[0].D, 2)[2], 0.0);
 }
 
-/* A spring on a rigid mode is no rounding. */
+/* The stiffness of a spring on a rigid mode is not taken for rounding. */
 static void springs_on_rigid_modes_stay(void **state)
 {
     RITZ_OWN(ritz_system) system = {0};

@@ -1,4 +1,6 @@
-/* State spaces with sparse A and E: the same model as dense, and checks. */
+/*
+ * State spaces with sparse A and E, compared with their dense copies; refusals.
+ */
 #include "testing.h"
 
 #include "spaces.h"
@@ -54,7 +56,8 @@ static void poles_and_transfer_are_those_of_the_dense_model(void **)
     assert_ok(ritz_pencil_of_space(&rod, &sparse));
     assert_ok(ritz_pencil_of_space(dense, &full));
     assert_ok(ritz_space_slowest(&sparse, 3, &slow));
-    for (int k = 0; k < 3; k++) /* condition (1.05 / 0.95)^65 = 670 */
+    /* the poles' condition is (1.05 / 0.95)^65 = 670 */
+    for (int k = 0; k < 3; k++)
         assert_near(creal(slow.s[k]), spaces_rod_pole(130, 0.05, k + 1), 1e-10);
     for (int k = 0; k < 4; k++) {
         const double _Complex s = ritz_complex(0.01 * k, 0.1 * k);
@@ -67,7 +70,8 @@ static void poles_and_transfer_are_those_of_the_dense_model(void **)
     free(pole);
 }
 
-/* Fewer outputs than inputs: rows are solved for. */
+/* With fewer outputs than inputs the solver takes the rows of C, not the
+   columns of B. */
 static void one_output_gives_the_row_of_two(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};

@@ -410,11 +410,11 @@ static ritz_status verify_once(const ritz_component *full,
 }
 
 /*
- * A free truss that loses eta of its strain energy: s = i sqrt(lambda (1 +
- * i eta)), whatever the columns that its rigid motions come in. Rounding of K4
- * is no loss of theirs, which would be poles near 0 on either side of the axis.
+ * A free truss with structural damping K4 = eta K has the poles s = i
+ * sqrt(lambda (1 + i eta)), for any basis of its rigid motions. Rounding of K4
+ * on rigid motions must not make poles near 0 on either side of the axis.
  */
-static void rigid_motion_loses_nothing(void **state)
+static void structural_damping_does_not_act_on_rigid_motion(void **state)
 {
     enum { RIGID = 3, LOWEST = 4 };
     static const ritz_method *const methods[] = {
@@ -489,7 +489,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(overdamped_models_are_compared_pole_by_pole),
     cmocka_unit_test(what_creeps_in_one_model_alone_is_wholly_wrong),
     cmocka_unit_test(a_system_has_the_damping_of_its_bodies),
-    cmocka_unit_test(rigid_motion_loses_nothing),
+    cmocka_unit_test(structural_damping_does_not_act_on_rigid_motion),
     cmocka_unit_test(no_allocation_is_forgotten),
 };
 

@@ -49,7 +49,7 @@ static void make_plant(const one_mass *one, const ritz_disturbance *noise,
     out->noise = *noise;
 }
 
-/* J and its derivatives of a single damper. */
+/* J of the output, and its derivatives by c and k of the damper. */
 typedef struct single {
     double J, by_c, by_k;
 } single;
@@ -67,7 +67,7 @@ static single variance_of(const one_mass *one, const ritz_disturbance *noise)
     return found;
 }
 
-/* Of the displacement 1 / (2 c k), of the velocity 1 / (2 c m). */
+/* J is 1 / (2 c k) of the displacement and 1 / (2 c m) of the velocity. */
 static void a_mass_has_its_variance_and_derivatives(void **state)
 {
     const one_mass u = {2.0, 0.5, 30.0, 1.5, 20.0, 0, 0.0};
@@ -81,16 +81,16 @@ static void a_mass_has_its_variance_and_derivatives(void **state)
     assert_near(found.by_c, -J / c, 100.0 * eps * J / c);
     assert_near(found.by_k, -J / k, 400.0 * eps * J / k);
     found = variance_of(&v, &white);
-    J = 1.0 / (2.0 * c * 2.0) / 16.0; /* over the limit, squared */
+    J = 1.0 / (2.0 * c * 2.0) / 16.0; /* divided by the limit squared */
     assert_near(found.J, J, 50.0 * eps * J);
     assert_near(found.by_c, -J / c, 100.0 * eps * J / c);
     assert_near(found.by_k, 0.0, 100.0 * eps * J / k);
 }
 
 /*
- * An acceleration has the noise at once: it needs a filter. Of order 1,
- * w / (s + w), the variance is that of a system of order 3
- * [NewtonGouldKaiser1957, table E.2],
+ * An acceleration contains the noise itself, so that its variance is infinite
+ * without a filter. With a filter of order 1, w / (s + w), it is that of a
+ * system of order 3 [NewtonGouldKaiser1957, table E.2],
  *
  *     w^2 a_1 / (2 m (a_1 a_2 - a_0 a_3)),
  *     a = k w, k + c w, c + m w, m
@@ -114,7 +114,7 @@ static void an_acceleration_has_a_variance_through_a_filter(void **state)
 
     (void)state;
     assert_near(found.J, J, 100.0 * eps * J);
-    /* h^2 / 6 of the third derivative, 6 J / c^3 at most, and eps J / h */
+    /* h^2 / 6 of the third derivative, at most 6 J / c^3; rounding eps J / h */
     assert_near(found.by_c,
                 (acceleration_variance(2.0, 2.0 + h, 50.0, w) -
                  acceleration_variance(2.0, 2.0 - h, 50.0, w)) /
@@ -130,11 +130,12 @@ static void an_acceleration_has_a_variance_through_a_filter(void **state)
                  "an output follows an input at once");
 }
 
-/* Far above the mass' own frequency a filter does nothing, and J of its output
-   alone, the noise held by a spring, is w times a number of its order. */
+/* A stiff spring with k = 1 holds a small mass, whose displacement is the
+   filtered noise. Its variance is w_c times a number that depends on the
+   filter's order; here w_c = 1 rad/s. */
 static void filters_are_of_unit_gain_and_their_order(void **state)
 {
-    /* integral of 1 / (1 + x^2n) over pi: 1 / (2 n sin(pi / 2 n)) */
+    /* (1 / pi) integral of 1 / (1 + x^2n) is 1 / (2 n sin(pi / 2 n)) */
     const one_mass stiff = {1e-6, 2e-3, 1.0, 0.0, 0.0, 0, 0.0};
     const double pi = 3.14159265358979323846;
 
@@ -143,8 +144,8 @@ static void filters_are_of_unit_gain_and_their_order(void **state)
         const ritz_disturbance low = {1.0 / (2.0 * pi), n};
         double J = 1.0 / (2.0 * (double)n * sin(pi / (2.0 * (double)n)));
 
-        /* critical damping at 1000 rad/s: 2 s / 1000 of the response; order 1
-           has noise up there */
+        /* critically damped at 1000 rad/s: H is off by 2 s / 1000; a filter of
+           order 1 passes noise up there */
         assert_near(variance_of(&stiff, &low).J, J,
                     n == 1 ? 2e-3 * J : 3e-6 * J);
     }
@@ -191,8 +192,8 @@ static double square_at(ritz_plant *plant, bool of_k, int64_t j, double value)
     return v.square;
 }
 
-/* Differences of fourth order: h^4 / 30 of the fifth derivative, and rounding
-   of J, n eps J or so, over h. */
+/* Differences of fourth order are off by h^4 / 30 of the fifth derivative, and
+   by the rounding of J, about n eps J, over h. */
 static void gradients_are_what_differences_are(void **state)
 {
     static const chain_case cases[] = {
@@ -229,7 +230,7 @@ static void gradients_are_what_differences_are(void **state)
     }
 }
 
-/* The same model as a state space has the norm that SLICOT's way gives. */
+/* ritz_norm_two finds the same norm by SLICOT from the state space. */
 static void a_state_space_has_the_norm_of_its_model(void **state)
 {
     RITZ_OWN(ritz_component) chain = {0};
@@ -258,8 +259,9 @@ static void a_state_space_has_the_norm_of_its_model(void **state)
     assert_true(whole.value < norm.value);
 }
 
-/* Outside: SciPy 1.10, solve_continuous_lyapunov and butter, of data/damper-
-   chain and of the same in 8 or 12 modes and four static responses. */
+/* Computed by SciPy 1.10 (solve_continuous_lyapunov, butter) for the chain of
+   data/damper-chain and for its projection onto 8 or 12 modes and four static
+   responses. */
 static const struct {
     ritz_disturbance noise;
     double full, eight, twelve;
@@ -300,7 +302,8 @@ static void the_damper_chain_has_the_norms_of_scipy(void **state)
     }
 }
 
-/* Masses in a long row, every tenth one on a damper to ground. */
+/* A long chain of equal masses and springs, held at one end, with one damper
+   between two masses at a third of its length. */
 static void make_row(int64_t n, ritz_component *out)
 {
     int64_t count = 0;
@@ -361,8 +364,9 @@ static void a_large_component_has_the_norm_of_its_dense_matrices(void **state)
     assert_near(h2.value, sqrt(v.square), 1e-6 * h2.value);
 }
 
-/* Undamped but for one damper, high modes of white noise do not settle. */
-static void a_norm_of_endless_modes_is_not_made_up(void **state)
+/* One damper is the only damping: under white noise higher modes go on adding
+   to the norm. */
+static void a_norm_that_does_not_settle_is_refused(void **state)
 {
     enum { N = 700 };
     RITZ_OWN(ritz_component) chain = {0};
@@ -381,11 +385,12 @@ static void a_norm_of_endless_modes_is_not_made_up(void **state)
 /* --- Free bodies ---------------------------------------------------------- */
 
 /*
- * Two masses with k and c between, free. The force on the first drives their
- * distance, m_r = m_1 m_2 / (m_1 + m_2), by m_r / m_1: its variance is
- * (m_r / m_1)^2 / (2 c k); that of a displacement is infinite.
+ * Two free masses, connected by k and c, with the reduced mass m_r = m_1 m_2 /
+ * (m_1 + m_2). A force on the first drives their distance by m_r / m_1, so that
+ * its variance is (m_r / m_1)^2 / (2 c k). The variance of a displacement is
+ * infinite.
  */
-static void a_free_body_has_the_variance_of_what_stays(void **state)
+static void a_free_body_has_the_variance_of_its_deformation(void **state)
 {
     double K[] = {50.0, -50.0, -50.0, 50.0}, M[] = {2.0, 0.0, 0.0, 3.0};
     const ritz_dense A[] = {{2, 2, K}, {2, 2, M}};
@@ -413,7 +418,7 @@ static void a_free_body_has_the_variance_of_what_stays(void **state)
     assert_near(v.square, J, 100.0 * eps * J);
     assert_near(by_c, -J / 4.0, 100.0 * eps * J);
     assert_near(by_k, -J / 50.0, 100.0 * eps * J);
-    plant.io.C.val[0] = 0.0; /* its displacement */
+    plant.io.C.val[0] = 0.0; /* the displacement of mass 2 */
     assert_ok(ritz_variance_of(&plant, &v));
     assert_false(v.finite);
     assert_int_equal(v.unstable, 2);
@@ -422,8 +427,8 @@ static void a_free_body_has_the_variance_of_what_stays(void **state)
                  "imaginary axis");
 }
 
-/* A free chain whose ends are pushed apart, in full and in modes and static
-   responses about a shift: rigid motion is in neither. */
+/* A free chain whose ends are pushed apart, as a full model and in modes and
+   static responses about a shift. The two forces drive no rigid motion. */
 static void a_free_chain_has_its_norm_in_its_space(void **state)
 {
     static const int64_t two[] = {9, 17};
@@ -446,7 +451,7 @@ static void a_free_chain_has_its_norm_in_its_space(void **state)
     assert_ok(ritz_variance_of(&whole, &v[0]));
     assert_ok(ritz_static_space_new(model, 10, &slow, &space));
     assert_true(space.sigma < 0.0);
-    assert_int_equal(space.num_modes, 11); /* one is rigid */
+    assert_int_equal(space.num_modes, 11); /* one of them is rigid */
     assert_ok(ritz_static_space_plant(&space, NULL, &small));
     assert_int_equal(small.base.K.nrow, 14);
     assert_ok(ritz_variance_of(&small, &v[1]));
@@ -461,9 +466,9 @@ static void a_free_chain_has_its_norm_in_its_space(void **state)
     assert_false(v[0].finite);
 }
 
-/* Two masses, each on a spring, one of them damped: where the other is not
-   driven, or not observed, it does not matter. */
-static void undamped_motion_that_passes_nothing_is_left_out(void **state)
+/* Two masses, each on its own spring, one of them damped: the other one does
+   not count where it is not driven, or not observed. */
+static void undamped_motion_counts_only_if_driven_and_observed(void **state)
 {
     double K[] = {50.0, 0.0, 0.0, 70.0}, M[] = {2.0, 0.0, 0.0, 3.0};
     double D[] = {4.0, 0.0, 0.0, 0.0};
@@ -491,7 +496,7 @@ static void undamped_motion_that_passes_nothing_is_left_out(void **state)
 
 /* --- Refusals and allocations --------------------------------------------- */
 
-static void what_has_no_norm_is_refused_in_words(void **state)
+static void models_without_a_norm_are_refused(void **state)
 {
     const one_mass u = {2.0, 0.5, 30.0, 1.5, 20.0, 0, 0.0};
     const ritz_disturbance bad[] = {
@@ -575,11 +580,11 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_state_space_has_the_norm_of_its_model),
     cmocka_unit_test(the_damper_chain_has_the_norms_of_scipy),
     cmocka_unit_test(a_large_component_has_the_norm_of_its_dense_matrices),
-    cmocka_unit_test(a_norm_of_endless_modes_is_not_made_up),
-    cmocka_unit_test(a_free_body_has_the_variance_of_what_stays),
+    cmocka_unit_test(a_norm_that_does_not_settle_is_refused),
+    cmocka_unit_test(a_free_body_has_the_variance_of_its_deformation),
     cmocka_unit_test(a_free_chain_has_its_norm_in_its_space),
-    cmocka_unit_test(undamped_motion_that_passes_nothing_is_left_out),
-    cmocka_unit_test(what_has_no_norm_is_refused_in_words),
+    cmocka_unit_test(undamped_motion_counts_only_if_driven_and_observed),
+    cmocka_unit_test(models_without_a_norm_are_refused),
     cmocka_unit_test(no_allocation_is_forgotten),
 };
 

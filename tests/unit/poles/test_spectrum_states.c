@@ -1,4 +1,7 @@
-/* Poles of sparse state spaces: the lowest, up to a frequency, near one. */
+/*
+ * Poles of sparse state spaces: the lowest ones, all up to a frequency, those
+ * near a frequency.
+ */
 #include "testing.h"
 
 #include "spaces.h"
@@ -9,7 +12,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void the_lowest_are_those_of_the_closed_form(void **)
+static void the_lowest_poles_are_those_of_the_closed_form(void **)
 {
     static const ritz_span span = {.modes = 5};
     RITZ_OWN(ritz_state_space) rod = {0};
@@ -27,7 +30,7 @@ static void the_lowest_are_those_of_the_closed_form(void **)
     assert_string_equal(found.engine, "MUMPS + ARPACK");
 }
 
-static void all_up_to_a_frequency_are_found(void **)
+static void all_poles_up_to_a_frequency_are_found(void **)
 {
     const double limit = -spaces_rod_pole(500, 0.0, 33) * 1.01;
     const ritz_span span = {.modes = -1, .up_to_hz = limit / (2.0 * pi)};
@@ -39,8 +42,9 @@ static void all_up_to_a_frequency_are_found(void **)
     assert_int_equal(found.count, 33);
 }
 
-/* Poles -2 + 2 i sqrt(9999) cos(k pi / 301), upper ones k = 1 .. 150. */
-static void those_near_a_frequency_are_found(void **)
+/* Poles are -2 + 2 i sqrt(9999) cos(k pi / 301); k = 1 .. 150 lie above the
+   axis. */
+static void poles_near_a_frequency_are_found(void **)
 {
     const double size = 2.0 * sqrt(9999.0);
     const double near = size * cos(100.2 * pi / 301.0);
@@ -50,7 +54,7 @@ static void those_near_a_frequency_are_found(void **)
     assert_ok(spaces_rod(300, 100.0, false, &rod));
     assert_ok(ritz_spectrum_near(&rod, near / (2.0 * pi), 3, &found));
     assert_int_equal(found.count, 3);
-    for (int k = 0; k < 3; k++) { /* by size: 101, 100, 99 */
+    for (int k = 0; k < 3; k++) { /* ascending: k = 101, 100, 99 */
         double im = size * cos((101.0 - k) * pi / 301.0);
 
         assert_near(creal(found.s[k]), -2.0, 1e-9);
@@ -61,7 +65,7 @@ static void those_near_a_frequency_are_found(void **)
                  "no poles are asked for");
 }
 
-static void a_dense_model_has_them_near_a_frequency_too(void **)
+static void poles_of_a_dense_model_near_a_frequency_are_found(void **)
 {
     static const double A[] = {0, 1, 0, -25, -0.1, 0, 0, 0, -3};
     static const double B[] = {0, 1, 1}, C[] = {1, 0, 1};
@@ -94,10 +98,10 @@ static void every_allocation_may_fail(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_lowest_are_those_of_the_closed_form),
-    cmocka_unit_test(all_up_to_a_frequency_are_found),
-    cmocka_unit_test(those_near_a_frequency_are_found),
-    cmocka_unit_test(a_dense_model_has_them_near_a_frequency_too),
+    cmocka_unit_test(the_lowest_poles_are_those_of_the_closed_form),
+    cmocka_unit_test(all_poles_up_to_a_frequency_are_found),
+    cmocka_unit_test(poles_near_a_frequency_are_found),
+    cmocka_unit_test(poles_of_a_dense_model_near_a_frequency_are_found),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

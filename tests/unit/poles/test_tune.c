@@ -14,12 +14,12 @@
 
 static const double eps = DBL_EPSILON;
 static const ritz_disturbance white = {0};
-#define KEEP ((double)NAN) /* each damper keeps its own */
+#define KEEP ((double)NAN) /* not tuned */
 
 /* --- Two masses ----------------------------------------------------------- */
 
-/* m_1 = 2 on a spring k_1 = 50 is pushed and observed; m_2 hangs on it by a
-   damper and its spring alone. */
+/* Mass m_1 = 2 on a spring k_1 = 50 is pushed and observed; only the damper and
+   its spring connect m_2 to it. */
 typedef struct absorber {
     ritz_dense K, M;
     ritz_io io;
@@ -58,8 +58,8 @@ static void absorber_free(absorber *a)
 
 static const int64_t first[] = {0};
 
-/* A norm is flat at its minimum: values are known to the root of its rounding
-   by values alone, and much better by slopes; 1e-6 was measured. */
+/* Near its minimum a norm is flat: comparing norms finds c and k to the root of
+   rounding only, slopes find them far better. 1e-6 was measured. */
 enum { MEASURED = 1000000 };
 
 /*
@@ -95,7 +95,7 @@ static void a_mass_damper_is_tuned_as_warburton_does(void **state)
         assert_int_equal(found.modes, 0);
         assert_true(found.agreed >= 1 && found.agreed <= found.starts);
         assert_true(found.slope < 1e-4);
-        /* no worse than with what the formula says */
+        /* the norm is that of the formula's values, to rounding */
         assert_ok(ritz_plant_new(a.model, &white, &plant));
         plant.dampers.c[0] = c;
         plant.dampers.k[0] = k;
@@ -128,12 +128,12 @@ static void a_mass_on_a_dashpot_has_its_best_rate(void **state)
     assert_near(found.c[0], c, c / MEASURED);
     assert_true(isnan(found.k[0]));
     assert_near(found.norm, sqrt(J), 1e-12 * sqrt(J));
-    /* twice the best: (1 + 4) / (2 * 2) of it */
+    /* at twice the best rate the variance is (1 + 4) / (2 * 2) of the least */
     assert_near(found.before, sqrt(1.25 * J), 1e-12 * sqrt(J));
 }
 
-/* 1 / (2 c k): more is always better. */
-static void what_only_falls_ends_at_the_end(void **state)
+/* The variance 1 / (2 c k) falls with c and with k, up to their limits. */
+static void a_falling_norm_ends_at_the_limits(void **state)
 {
     double K = 50.0, M = 2.0;
     const ritz_dense A[] = {{1, 1, &K}, {1, 1, &M}};
@@ -159,15 +159,15 @@ static void what_only_falls_ends_at_the_end(void **state)
 
 /* --- The damper chain ----------------------------------------------------- */
 
-/* Outside: SciPy 1.10, roots of the gradient that two Lyapunov equations give;
-   low-pass of 2 Hz, order 6. */
+/* Computed by SciPy 1.10 as roots of the gradient, which takes two Lyapunov
+   equations; low-pass filter of 2 Hz and order 6. */
 static const ritz_disturbance low = {2.0, 6};
 static const double best_c[3] = {688.90667744, 913.97088458, 876.47812947};
 static const double best_norm = 0.0708066201363;
-/* norm(c (1 + h)) = norm(c) (1 + curvature h^2 / 2), the least of the three */
+/* norm(c (1 + h)) = norm(c) (1 + curvature h^2 / 2); the smallest of three */
 static const double curvature = 0.0724;
 static const double alike_c = 786.86550522, alike_norm = 0.0710585979998;
-/* of 12 modes alone: what they promise, and what they give */
+/* tuned with 12 modes alone: their norm, and that of the full model */
 static const double truncated_c[3] = {2427.12, 3637.51, 6088.26};
 static const double truncated_norm = 0.03845141097, truncated_full = 0.1037881;
 
@@ -183,7 +183,7 @@ static void a_chain_is_tuned_in_full_and_in_its_space(void **state)
     RITZ_OWN(ritz_component) chain = {0};
     ritz_tuning_request request = {
         .noise = low, .count = 3, .tuned = each, .modes = 8};
-    /* what the norm may be off moves its minimum by h */
+    /* an error `off` of the norm moves its minimum by h */
     const double off = 1e-12, h = sqrt(2.0 * off / best_norm / curvature);
 
     (void)state;
@@ -204,8 +204,9 @@ static void a_chain_is_tuned_in_full_and_in_its_space(void **state)
     }
 }
 
-/* Installed or not, a damper is what it is tuned to. */
-static void what_is_installed_does_not_matter(void **state)
+/* Whether a damper is installed in the matrices or not, tuning gives the
+   same. */
+static void installed_dampers_are_tuned_too(void **state)
 {
     const ritz_tuned alike = {3, all, {0.0, 10000.0}, {KEEP, KEEP}};
     ritz_tuning_request request = {.noise = low, .count = 1, .tuned = &alike};
@@ -226,8 +227,8 @@ static void what_is_installed_does_not_matter(void **state)
     }
 }
 
-/* What [ChuMilman1992] found: truncated modes want far too much, and promise
-   what the full model does not give. */
+/* As [ChuMilman1992] found, a model of truncated modes asks for dampers that
+   are far too strong, and promises a norm that the full model does not have. */
 static void truncated_modes_mislead(void **state)
 {
     ritz_tuning_request request = {.noise = low, .count = 3, .tuned = each};
@@ -256,8 +257,9 @@ static void truncated_modes_mislead(void **state)
     assert_near(h2.value, truncated_full, 5.1e-8);
 }
 
-/* A space that is too small for its noise is doubled. */
-static void a_space_that_misleads_is_doubled(void **state)
+/* A space of modes and static responses that is too small for the noise is
+   doubled. */
+static void a_space_that_is_too_small_is_doubled(void **state)
 {
     ritz_tuning_request request = {
         .noise = white, .count = 3, .tuned = each, .modes = 4, .most_full = 10};
@@ -268,8 +270,8 @@ static void a_space_that_misleads_is_doubled(void **state)
     assert_ok(chain_component(30, &chain));
     request.model = ritz_model_of_component(&chain, NULL);
     assert_ok(ritz_tuning_of(&request, &found));
-    assert_int_equal(found.modes, 0); /* 4, 8, 16: 32 are all */
-    /* SciPy of the full model */
+    assert_int_equal(found.modes, 0); /* 4, 8, 16 modes, then the full model */
+    /* computed by SciPy for the full model */
     assert_near(found.c[0], 694.27943448, 1e-3);
     assert_near(found.c[2], 79.88961158, 1e-3);
     assert_near(found.norm, 0.0800510044358, 1e-12);
@@ -280,7 +282,7 @@ static void a_space_that_misleads_is_doubled(void **state)
 enum { CANDIDATES = 6 };
 static const int64_t spring[CANDIDATES] = {0, 3, 5, 8, 11, 14};
 
-/* The chain with dampers across other springs, and their groups. */
+/* The chain with dampers across other springs, each of which is a candidate. */
 static void make_candidates(ritz_component *chain, int64_t *index,
                             ritz_tuned *tuned)
 {
@@ -295,7 +297,8 @@ static void make_candidates(ritz_component *chain, int64_t *index,
         b[spring[j]] = 1.0;
         if (spring[j] > 0)
             b[spring[j] - 1] = -1.0;
-        dampers.c[j] = 7.0; /* which places without a damper do not have */
+        /* does not count where the candidate is not taken */
+        dampers.c[j] = 7.0;
         index[j] = j;
         tuned[j] = (ritz_tuned){1, index + j, {0.0, 4000.0}, {0.0, 0.0}};
     }
@@ -303,7 +306,8 @@ static void make_candidates(ritz_component *chain, int64_t *index,
     chain->dampers = dampers;
 }
 
-/* Outside: SciPy 1.10, each alone and all pairs by exhaustion; ratio 0.002. */
+/* Computed by SciPy 1.10: each candidate alone, and all pairs; damping ratio
+   0.002. */
 static const double alone_c[CANDIDATES] = {580.04851133, 696.77342595,
                                            932.64488459, 579.53387277,
                                            714.67265539, 822.36660255};
@@ -362,7 +366,7 @@ static void places_are_those_of_an_exhaustive_search(void **state)
 
 /* --- Refusals and allocations --------------------------------------------- */
 
-static void what_cannot_be_tuned_is_refused_in_words(void **state)
+static void wrong_requests_are_refused(void **state)
 {
     static const int64_t bad[] = {7};
     static const ritz_tuned cases[][2] = {
@@ -415,7 +419,7 @@ static void what_cannot_be_tuned_is_refused_in_words(void **state)
     places.among = 2;
     assert_fails(ritz_placing_of(&places, &placing), RITZ_ERR_ARGUMENT,
                  "3 places among the 2 best candidates cannot be taken");
-    make_absorber(0.5, &a); /* m_2 is observed and held by nothing */
+    make_absorber(0.5, &a); /* m_2 is observed; its spring is negative */
     a.io.C.val[1] = 1.0;
     request = (ritz_tuning_request){
         .count = 1,
@@ -470,8 +474,8 @@ static void too_many_combinations_are_refused(void **state)
                  "are too many");
 }
 
-/* As few evaluations as there can be: every one has some seventy allocations,
-   each of which fails once. */
+/* As few evaluations as possible: each makes some seventy allocations, all of
+   which fail in turn. */
 static ritz_status place_one(const ritz_component *chain)
 {
     const ritz_placing_request request = {
@@ -502,13 +506,13 @@ static void no_allocation_is_forgotten(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_mass_damper_is_tuned_as_warburton_does),
     cmocka_unit_test(a_mass_on_a_dashpot_has_its_best_rate),
-    cmocka_unit_test(what_only_falls_ends_at_the_end),
+    cmocka_unit_test(a_falling_norm_ends_at_the_limits),
     cmocka_unit_test(a_chain_is_tuned_in_full_and_in_its_space),
-    cmocka_unit_test(what_is_installed_does_not_matter),
+    cmocka_unit_test(installed_dampers_are_tuned_too),
     cmocka_unit_test(truncated_modes_mislead),
-    cmocka_unit_test(a_space_that_misleads_is_doubled),
+    cmocka_unit_test(a_space_that_is_too_small_is_doubled),
     cmocka_unit_test(places_are_those_of_an_exhaustive_search),
-    cmocka_unit_test(what_cannot_be_tuned_is_refused_in_words),
+    cmocka_unit_test(wrong_requests_are_refused),
     cmocka_unit_test(a_norm_of_zero_is_not_tuned),
     cmocka_unit_test(too_many_combinations_are_refused),
     cmocka_unit_test(no_allocation_is_forgotten),

@@ -321,8 +321,9 @@ static void what_cannot_be_ranked_is_refused_in_words(void **state)
 }
 
 /*
- * Modes 1 and 3 of four that damping couples by 0.5, and 2 and 3 by 0.05: one
- * cluster of two that are no neighbours, with one value.
+ * Damping couples modes 1 and 3 of four by 0.5 of their own damping, and modes
+ * 2 and 3 by 0.05: modes 1 and 3 are one cluster with one value, though mode 2
+ * lies between them.
  */
 static void modes_that_damping_couples_have_one_value(void **state)
 {
@@ -349,10 +350,10 @@ static void modes_that_damping_couples_have_one_value(void **state)
     assert_near(ranking.value[0], sigma[0], 0.0);
     assert_near(ranking.value[2], sigma[0], 0.0);
     assert_int_equal(ranking.num_system, 8);
-    /* alone, as its own damping is all it has: zeta of 0.05, then 0.025 */
+    /* modes in no cluster have their own damping: zeta of 0.05 and 0.025 */
     assert_near(ranking.value[1], 2.0 / 0.8 * (sqrt(1.0025) + 0.05), 1e-14);
     assert_near(ranking.value[3], 0.5 / 1.6 * (sqrt(1.000625) + 0.025), 1e-14);
-    /* light damping, and costs, are mode by mode */
+    /* gregory and modal-cost rank each mode by itself */
     assert_ok(rank(&ritz_ranker_gregory, &modal, &light));
     assert_int_equal(light.cluster[2], 2);
     assert_near(light.value[0], 1.0 / 0.4, 1e-14);
@@ -362,9 +363,9 @@ static void modes_that_damping_couples_have_one_value(void **state)
                 cost.total, 1e-13 * cost.total);
 }
 
-/* A damper that couples two modes leaves 1e-17 of itself to a third, which is
-   rounding and no damping. */
-static void rounding_of_a_damper_damps_nothing(void **state)
+/* A damper that couples two modes leaves 1e-17 of damping on a third mode. This
+   is rounding, and the mode counts as undamped. */
+static void rounding_of_a_damper_is_no_damping(void **state)
 {
     double k[] = {4, 0, 0, 0, 9, 0, 0, 0, 16};
     double m[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -424,7 +425,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(damping_limits_and_accelerations_are_taken_in),
     cmocka_unit_test(what_cannot_be_ranked_is_refused_in_words),
     cmocka_unit_test(modes_that_damping_couples_have_one_value),
-    cmocka_unit_test(rounding_of_a_damper_damps_nothing),
+    cmocka_unit_test(rounding_of_a_damper_is_no_damping),
     cmocka_unit_test(rankings_are_found_by_name_or_nearly),
     cmocka_unit_test(ranking_survives_every_allocation),
 };

@@ -1,6 +1,6 @@
 /*
- * What a sum of modes says of its error where dampers act on modes above those
- * that are summed.
+ * The error that the modal engine states where dampers act on modes above those
+ * that it sums.
  */
 #include "testing.h"
 
@@ -13,14 +13,14 @@
 #include <complex.h>
 #include <stdlib.h>
 
-/* More elements than are ever taken with all their modes. */
+/* Both bars have many modes above the range, which are not summed. */
 enum { FEW = 330, MANY = 2100, POINTS = 100 };
 
 /* Hz: the free bar has modes at 0.5, 1, 1.5 and 2 Hz. */
 static const double from_hz = 0.1, to_hz = 2.2;
 
-/* Three dampers to ground, each c times the impedance of the bar, which is 1:
- * at 1 it absorbs what arrives. */
+/* Three dampers to ground with c, c / 2 and 0.7 c, relative to the impedance of
+ * the bar, which is 1: a damper of 1 absorbs an arriving wave. */
 static void open_damped_bar(int64_t elements, double c, ritz_component *bar)
 {
     const int64_t at[] = {elements / 5, elements / 2, 4 * elements / 5};
@@ -44,7 +44,8 @@ static ritz_response_request request_of(const ritz_component *bar,
     };
 }
 
-/* The largest difference from direct at even points, of the largest |H|. */
+/* The largest difference from the direct engine at evenly spaced frequencies,
+   relative to the largest |H|. */
 static double apart_from_direct(const ritz_component *bar, ritz_responder *r)
 {
     const ritz_response_request request = request_of(bar, 0.0);
@@ -65,7 +66,7 @@ static double apart_from_direct(const ritz_component *bar, ritz_responder *r)
     return difference / largest;
 }
 
-/* Whatever is asked for: the tolerance holds. */
+/* Whichever engine responds, the tolerance holds. */
 static void with_a_tolerance_direct_takes_over(void **state)
 {
     const ritz_response_request none = {0};
@@ -100,10 +101,11 @@ static void a_sum_that_misses_its_tolerance_is_refused(void **state)
 }
 
 /*
- * Without a tolerance it responds, and what it says of its error is the error:
- * a dozen points find half of what a hundred do, or more.
+ * Without a tolerance the engine responds and states its error. It compares at
+ * a dozen frequencies, which find at least half and at most twice the error at
+ * a hundred.
  */
-static void without_a_tolerance_the_error_is_told(void **state)
+static void without_a_tolerance_the_error_is_stated(void **state)
 {
     static const double strength[] = {1e-3, 1.0, 30.0};
 
@@ -129,7 +131,7 @@ static void without_a_tolerance_the_error_is_told(void **state)
     }
 }
 
-/* What is off by less than the tolerance stays a sum of modes. */
+/* A sum of modes within the tolerance is not replaced. */
 static void a_sum_within_its_tolerance_stays_one(void **state)
 {
     const ritz_grid grid = {.from_hz = from_hz, .to_hz = to_hz, .count = 5};
@@ -164,7 +166,7 @@ static void the_comparison_survives_every_allocation(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(with_a_tolerance_direct_takes_over),
     cmocka_unit_test(a_sum_that_misses_its_tolerance_is_refused),
-    cmocka_unit_test(without_a_tolerance_the_error_is_told),
+    cmocka_unit_test(without_a_tolerance_the_error_is_stated),
     cmocka_unit_test(a_sum_within_its_tolerance_stays_one),
     cmocka_unit_test(the_comparison_survives_every_allocation),
 };

@@ -1,6 +1,6 @@
 /*
  * Damping ratios act on every mode of a component, above the band too: a free
- * bar, whose modes are known in closed form, with few and with many dofs.
+ * bar with modes in closed form, with few and with many dofs.
  */
 #include "responses.h"
 #include "testing.h"
@@ -21,7 +21,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Dense and sparse eigensolvers take one each. */
+/* One size for the dense eigensolver, one for the sparse eigensolver. */
 enum { FEW = 40, MANY = 700, POINTS = 12, SIDES = 2, VALUES = SIDES * SIDES };
 
 /* Hz: the band holds modes at 0.5, 1, 1.5 and 2 Hz. */
@@ -40,7 +40,7 @@ static const ritz_damping dampings[] = {
 
 enum { DAMPINGS = sizeof dampings / sizeof *dampings };
 
-/* Driven and observed at an end, and near the middle. */
+/* Inputs and outputs at an end and near the middle. */
 static void open_bar(int64_t elements, ritz_component *bar)
 {
     const int64_t at[SIDES] = {elements, 2 * elements / 5};
@@ -57,7 +57,7 @@ static void add_damper(ritz_component *bar, double c)
                                         &at, &c, &bar->D));
 }
 
-/* Sum of all modes, cos(k pi x), of a free bar of N elements. */
+/* Response of a free bar of N elements, the sum over all modes cos(k pi x). */
 static void bar_response(int64_t N, const ritz_damping *damping, double hertz,
                          double _Complex *H)
 {
@@ -84,7 +84,7 @@ static double hertz_of(int point)
     return from_hz + (to_hz - from_hz) * point / (POINTS - 1);
 }
 
-/* Largest difference over the largest |H|. */
+/* Largest difference, relative to the largest |H|. */
 static double apart(const double _Complex *exact, const double _Complex *H)
 {
     double largest = 0.0, worst = 0.0;
@@ -98,7 +98,7 @@ static double apart(const double _Complex *exact, const double _Complex *H)
 
 static char remark[RITZ_REMARK_SIZE]; /* of the last responder */
 
-/* The uncertainty that the engine states. */
+/* Respond at all points. @return the uncertainty that the engine states */
 static double respond(const char *engine, const ritz_component *bar,
                       const ritz_damping *damping, double end_hz,
                       double _Complex *H)
@@ -117,7 +117,7 @@ static double respond(const char *engine, const ritz_component *bar,
     return ritz_responder_uncertainty(r);
 }
 
-/* What ritz-verify and ritz-fit compare with. */
+/* The response that ritz-verify and ritz-fit compare with. */
 static void refer(const ritz_component *bar, const ritz_damping *damping,
                   double _Complex *H)
 {
@@ -137,9 +137,10 @@ static void refer(const ritz_component *bar, const ritz_damping *damping,
 }
 
 /*
- * Eigenvalues err by eps lambda_max / w^2 = 2e4 eps / 0.4 = 1e-11 at rest, of
- * many elements less, as they are refined. The rest undamped was 1e-3 off at
- * 0.05 and 2e-2 at 0.5.
+ * At rest eigenvalues are off by eps lambda_max / w^2 = 2e4 eps / 0.4 = 1e-11;
+ * with many elements by less, because sparse eigenpairs are refined. With
+ * undamped modes above the sum the response was off by 1e-3 at zeta = 0.05 and
+ * by 2e-2 at 0.5.
  */
 static void a_ratio_damps_all_modes(void **state)
 {
@@ -158,7 +159,8 @@ static void a_ratio_damps_all_modes(void **state)
             double _Complex exact[POINTS * VALUES], H[POINTS * VALUES];
             RITZ_OWN(ritz_component) bar = {0};
 
-            if (e == 1 && d % 2 == 1) /* of many dofs a few are enough */
+            /* with many dofs every second damping is enough */
+            if (e == 1 && d % 2 == 1)
                 continue;
             open_bar(elements[e], &bar);
             for (int k = 0; k < POINTS; k++)
@@ -178,7 +180,7 @@ static void a_ratio_damps_all_modes(void **state)
         }
 }
 
-/* Where the range ends decides what is summed, and not what it responds. */
+/* The end of the range decides which modes are summed, but not the response. */
 static void a_response_does_not_depend_on_the_end_of_its_range(void **state)
 {
     double _Complex near[POINTS * VALUES], far[POINTS * VALUES];
@@ -192,10 +194,11 @@ static void a_response_does_not_depend_on_the_end_of_its_range(void **state)
 }
 
 /*
- * What the nodes that came last show is not what lies between the others: with
- * many poles cancelled six nodes in a row were taken for enough, 3e-3 off.
+ * A last node that agrees does not prove the interpolant right between other
+ * nodes: with many poles cancelled, six nodes in a row once agreed, and the
+ * response was off by 3e-3.
  */
-static void interpolation_is_checked_where_no_node_is(void **state)
+static void interpolation_is_checked_between_nodes(void **state)
 {
     const ritz_damping heavy = {.kind = RITZ_DAMPING_MODAL, .zeta = 0.99};
     double _Complex exact[POINTS * VALUES], H[POINTS * VALUES];
@@ -219,7 +222,7 @@ static void interpolation_is_checked_where_no_node_is(void **state)
     assert_true(apart(exact, H) <= 1e-9);
 }
 
-/* Beside a damper: all modes at once, as a dense model, by ratios and D. */
+/* A ratio and a damper: the reference is a dense model with all modes. */
 static void a_ratio_beside_a_damper_damps_all_modes(void **state)
 {
     static const char *const engines[] = {"direct", "krylov", "rational"};
@@ -252,7 +255,8 @@ static void a_ratio_beside_a_damper_damps_all_modes(void **state)
     }
 }
 
-/* More dofs than have all modes damped: the same modes by all that factor. */
+/* Above RITZ_RATIO_DOFS dofs, ratios damp only the modes up to a frequency, in
+   each engine that factors the same modes. */
 static void engines_agree_on_a_damper_and_ratios_of_large_components(void **s)
 {
     double _Complex direct[POINTS * VALUES], H[POINTS * VALUES];
@@ -267,7 +271,7 @@ static void engines_agree_on_a_damper_and_ratios_of_large_components(void **s)
     assert_true(apart(direct, H) <= 1e-8);
 }
 
-/* All dofs kept, nothing is lost; nor is more than what is proven. */
+/* With all dofs kept the error is rounding, and within the proven bound. */
 static void the_identity_is_exact_at_any_ratio(void **state)
 {
     RITZ_OWN(ritz_component) bar = {0};
@@ -293,14 +297,15 @@ static void the_identity_is_exact_at_any_ratio(void **state)
         assert_ok(ritz_estimate(&bar, &basis, &estimate, &reduced));
         assert_ok(verify_reduced(&bar, &reduced, &request, &found));
         error = find_measure(&found, "response-relative")->value;
-        /* eps lambda_max / (2 pi 0.1)^2, over 2 zeta at a peak */
+        /* eps lambda_max / (2 pi 0.1)^2, divided by 2 zeta at a peak */
         assert_true(error <= 1e-11 / fmin(dampings[d].zeta, 0.1));
         assert_true(error <= ritz_measures_value(&reduced.estimates,
                                                  "response-relative-bound"));
     }
 }
 
-/* What ratios change above the modes of a bar up to 6.6 Hz. */
+/* What damping ratios change in the modes above 6.6 Hz, from all modes
+   (`exact`) and from Ritz vectors (`found`). */
 static ritz_status change_by_space(const ritz_component *bar,
                                    const ritz_damping *damping,
                                    ritz_residual *exact, ritz_residual *found)
@@ -316,8 +321,9 @@ static ritz_status change_by_space(const ritz_component *bar,
     return ritz_ratio_space(bar, damping, &pairs, 3.0 * to_hz, found);
 }
 
-/* Ritz vectors in the place of all modes above, which are known too. */
-static void few_vectors_hold_what_ratios_change(void **state)
+/* Ritz vectors replace all modes above the sum, within the stated
+   uncertainty. */
+static void few_vectors_replace_all_modes_above_the_sum(void **state)
 {
     (void)state;
     for (int d = 0; d < DAMPINGS; d++) {
@@ -338,13 +344,14 @@ static void few_vectors_hold_what_ratios_change(void **state)
         if (!(worst <= fmax(found.uncertain, 1e-12)))
             fail_msg("damping %d: %.1e where %.1e is stated", d, worst,
                      found.uncertain);
-        /* the step at the end of the last band, 40 Hz, is no smooth function */
+        /* damping has a step at the end of the last band, 40 Hz */
         assert_true(found.uncertain <=
                     (dampings[d].kind == RITZ_DAMPING_BANDS ? 1e-4 : 1e-6));
     }
 }
 
-/* The rest undamped was 2e-2 off. What is stated is no less than the error. */
+/* Errors are within the stated uncertainty; with undamped modes above the sum
+   the response was off by 2e-2. */
 static void ratios_damp_all_modes_of_large_components(void **state)
 {
     static const char *const engines[] = {"modal", "direct"};
@@ -402,13 +409,13 @@ static void ratios_survive_every_allocation(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(interpolation_is_checked_where_no_node_is),
+    cmocka_unit_test(interpolation_is_checked_between_nodes),
     cmocka_unit_test(a_ratio_damps_all_modes),
     cmocka_unit_test(a_response_does_not_depend_on_the_end_of_its_range),
     cmocka_unit_test(a_ratio_beside_a_damper_damps_all_modes),
     cmocka_unit_test(engines_agree_on_a_damper_and_ratios_of_large_components),
     cmocka_unit_test(the_identity_is_exact_at_any_ratio),
-    cmocka_unit_test(few_vectors_hold_what_ratios_change),
+    cmocka_unit_test(few_vectors_replace_all_modes_above_the_sum),
     cmocka_unit_test(ratios_damp_all_modes_of_large_components),
     cmocka_unit_test(ratios_survive_every_allocation),
 };

@@ -241,12 +241,13 @@ static void krylov_answers_as_the_full_matrices_do(void **state)
 static void rational_answers_as_the_full_matrices_do(void **state)
 {
     (void)state;
-    /* asked at three nodes in a row: elsewhere it may be a few times that;
-       measured 9e-10 on seven kernels of OpenBLAS */
+    /* the engine stops when three nodes in a row are within 1e-9; between nodes
+       errors may be a few times that; 9e-10 was measured on seven kernels of
+       OpenBLAS */
     agrees_with_direct("rational", 3e-9);
 }
 
-/* 1/(a - w^2), a = k: H of one degree of freedom, whose pole is cancelled. */
+/* 1 / (a - w^2), a = k: response of one mass, whose pole is cancelled. */
 static void interpolation_of_one_mode_takes_few_nodes(void **state)
 {
     const int64_t zero = 0;

@@ -59,8 +59,8 @@ static double row_mode(int64_t j, int64_t point)
     return 0.5 * (here + free_mode(MASSES, j, i + 1));
 }
 
-/* Modes, damped by a ratio, and what the springs beside a point without mass
- * give. */
+/* Modes damped by a ratio, and the static flexibility of the springs at a point
+ * without mass. */
 static double _Complex row_response(int64_t to, int64_t from, double hertz,
                                     double zeta)
 {

@@ -1,4 +1,4 @@
-/* Responses of sparse state spaces: the engine against that of dense ones. */
+/* Responses of sparse state spaces, compared with those of dense ones. */
 #include "testing.h"
 
 #include "spaces.h"
@@ -47,7 +47,7 @@ static void a_sparse_model_responds_as_its_dense_copy(void **)
     }
 }
 
-static void a_dense_model_takes_it_if_asked(void **)
+static void a_dense_model_takes_the_sparse_engine_if_asked(void **)
 {
     static const double A[] = {-1, 2, 0, -3}, B[] = {1, 1}, C[] = {1, 0};
     static const spaces_rows rows = {2, 1, 1, A, B, C, NULL, NULL};
@@ -62,7 +62,8 @@ static void a_dense_model_takes_it_if_asked(void **)
     assert_near(difference(&sparse, &dense), 0.0, 1e-14);
 }
 
-/* Oscillating poles -2 +- 2 i sqrt(wind^2 - 1) cos(..) within the range. */
+/* With wind 100 poles oscillate: -2 +- 2 i sqrt(wind^2 - 1) cos(..), within the
+   range. */
 static void points_are_added_at_poles_that_oscillate(void **)
 {
     const ritz_grid even = {.to_hz = 40.0, .count = 20};
@@ -92,12 +93,12 @@ static void a_point_on_a_pole_is_refused(void **)
     RITZ_OWN(ritz_response) none = {0};
 
     assert_ok(spaces_rod(30, 0.0, false, &rod));
-    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[30] - 1] = -1.0; /* insulated */
+    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[30] - 1] = -1.0; /* a pole at 0 */
     assert_fails(respond(&rod, NULL, &grid, &none), RITZ_ERR_SINGULAR,
                  "0 Hz is the frequency of a pole");
 }
 
-/* Rods with and without convection and mass, and oscillating ones. */
+/* Rods with and without wind and mass, with real and with oscillating poles. */
 static void projections_and_interpolants_agree_with_factors(void **)
 {
     static const char *const engine[] = {"krylov", "rational"};
@@ -105,7 +106,7 @@ static void projections_and_interpolants_agree_with_factors(void **)
         int64_t n;
         double wind;
         bool mass;
-        double to_hz[2]; /* of each: of rational, that of a dozen poles */
+        double to_hz[2]; /* for krylov, for rational */
     } kind[] = {{150, 0.0, false, {0.5, 1e-3}},
                 {150, 0.0, true, {2.0, 1e-3}},
                 {150, 0.1, true, {0.1, 1e-2}},
@@ -129,7 +130,8 @@ static void projections_and_interpolants_agree_with_factors(void **)
     }
 }
 
-/* 16 damped oscillators, dense, two of them within the width of a point. */
+/* A dense model of 16 damped oscillators; two of them differ in frequency by
+   less than the spacing of points. */
 static void resonances_are_in_the_space(void **)
 {
     enum { MODES = 16, N = 2 * MODES };
@@ -164,7 +166,7 @@ static void resonances_are_in_the_space(void **)
     }
 }
 
-static void these_engines_refuse_a_pole_too(void **)
+static void krylov_and_rational_refuse_a_pole_too(void **)
 {
     static const double rest[] = {0.0, 0.1};
     const ritz_grid grid = {.count = 2, .hertz = rest};
@@ -172,7 +174,7 @@ static void these_engines_refuse_a_pole_too(void **)
     RITZ_OWN(ritz_response) none = {0};
 
     assert_ok(spaces_rod(30, 0.0, false, &rod));
-    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[30] - 1] = -1.0; /* insulated */
+    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[30] - 1] = -1.0; /* a pole at 0 */
     assert_fails(respond(&rod, "krylov", &grid, &none), RITZ_ERR_SINGULAR,
                  "0 Hz");
     assert_fails(respond(&rod, "rational", &grid, &none), RITZ_ERR_SINGULAR,
@@ -213,12 +215,12 @@ static void every_allocation_may_fail(void **)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_sparse_model_responds_as_its_dense_copy),
-    cmocka_unit_test(a_dense_model_takes_it_if_asked),
+    cmocka_unit_test(a_dense_model_takes_the_sparse_engine_if_asked),
     cmocka_unit_test(points_are_added_at_poles_that_oscillate),
     cmocka_unit_test(a_point_on_a_pole_is_refused),
     cmocka_unit_test(projections_and_interpolants_agree_with_factors),
     cmocka_unit_test(resonances_are_in_the_space),
-    cmocka_unit_test(these_engines_refuse_a_pole_too),
+    cmocka_unit_test(krylov_and_rational_refuse_a_pole_too),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

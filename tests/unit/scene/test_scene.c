@@ -1,4 +1,4 @@
-/* Scenes as text: what is read, and what is refused with which words. */
+/* Scenes as text: what is read, and the sentences of refusals. */
 #include "testing.h"
 
 #include "scene_texts.h"

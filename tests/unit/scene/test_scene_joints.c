@@ -49,7 +49,8 @@ static void settings_combine_with_the_last_joint_fastest(void **)
     assert_memory_equal(scene.setting, expected, sizeof expected);
 }
 
-/* (3, 4, 0) / 5; squares of 1e300 and of 1e-300 are not doubles. */
+/* (3, 4, 0) / 5; the squares of 3e300 and 3e-300 are out of the range of
+   doubles. */
 static void an_axis_gets_length_one(void **)
 {
     static const char *const axes[] = {"3, 4, 0", "3e300, 4e300, 0",
@@ -115,7 +116,7 @@ static void bad_angles_are_refused_and_nothing_is_written(void **)
     }
 }
 
-/* A joint p between two ports, and what else is said of it. */
+/* A joint p between two ports, with `rest` as its other keys. */
 #define JOINT(between, rest)                                                   \
     SMALL "joints:\n- {name: p, between: " between ", " rest "}\n"
 
@@ -380,7 +381,7 @@ static void too_many_settings_are_refused(void **)
     char *name = text;
     ritz_scene scene = {0};
 
-    for (int k = 0; k < 501; k++) { /* names of their own */
+    for (int k = 0; k < 501; k++) { /* each joint has its own name */
         char number[16];
 
         name = strstr(name, "name: ") + strlen("name: ");

@@ -285,8 +285,8 @@ static void change_unit(motions *m, double by)
 }
 
 /*
- * A static response to a unit force is a column of 1e-9 on steel, of M 1e-18
- * beside the 1 of a mode: no reason to call M singular.
+ * On steel a static response to a unit force is a column of about 1e-9, so that
+ * its entry of M is 1e-18 where that of a mode is 1. Such an M is not singular.
  */
 static void coordinates_may_have_any_units(void **state)
 {

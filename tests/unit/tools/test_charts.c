@@ -94,13 +94,14 @@ static void hostile_text_is_text(void **state)
     assert_text("", "");
 }
 
-/* A page or picture with one of them would not be read at all. */
+/* XML forbids these characters, and a page or picture with one could not be
+   read. */
 static void letters_that_xml_has_not_are_marked(void **state)
 {
     (void)state;
-    assert_text("\xed\xa0\x80", "???"); /* half of a pair */
+    assert_text("\xed\xa0\x80", "???"); /* half of a surrogate pair */
     assert_text("\xef\xbf\xbe", "???"); /* U+FFFE */
-    assert_text("\xe0\x80\xaf", "???"); /* '/', longer than need be */
+    assert_text("\xe0\x80\xaf", "???"); /* '/' in an overlong encoding */
     assert_text("\xf0\x80\x80\xaf", "????");
     assert_text("\xf4\x90\x80\x80", "????"); /* above U+10FFFF */
     assert_text("\xef\xbf\xbd\xed\x9f\xbf", "\xef\xbf\xbd\xed\x9f\xbf");
@@ -136,7 +137,7 @@ static void a_tip_is_one_field_of_markup(void **state)
     picture_free(&p);
 }
 
-/* gnuplot takes two quotes in a row for the end of a text. */
+/* gnuplot takes two quotes in a row for the end of a string. */
 static void a_quote_is_a_piece_of_its_own(void **state)
 {
     picture p = {0};

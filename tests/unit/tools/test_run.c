@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* What a tool does once its command line is understood. */
+/* The work of a tool after its command line is parsed. */
 typedef void run_body(cli_run *run);
 
 static void finish_in_order(cli_run *run)
@@ -20,7 +20,7 @@ static void finish_with_failure(cli_run *run)
     exit(cli_finish(run, ritz_fail(RITZ_ERR_FORMAT, "it is no file")));
 }
 
-/* As the library of Fortran does where it has no memory. */
+/* The Fortran library ends the process like this when it has no memory. */
 static void end_within_a_library(cli_run *)
 {
     exit(EXIT_SUCCESS);
@@ -31,7 +31,7 @@ static void refuse_later(cli_run *run)
     cli_refuse(run->program, "no such thing");
 }
 
-/* The status of a tool, in a process of its own. */
+/* Exit status of a tool that runs in its own process. */
 static int run_tool(run_body *body)
 {
     static const cli_option none[] = {{0}};

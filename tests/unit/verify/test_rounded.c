@@ -1,7 +1,7 @@
 /*
- * A small stiff part, free, whose stiffness was printed with few digits: a
- * steel bar of 5 cm. K R is not 0 then, and what K itself responds with at low
- * frequencies is no response of the body.
+ * A free steel bar of 5 cm, whose stiffness was printed with few digits. Rigid
+ * motions R then have K R != 0, so that K gives a response at low frequencies
+ * which the body does not have.
  */
 #include "testing.h"
 
@@ -19,7 +19,7 @@
 
 enum { RIGID = 3, ENDS = 2 };
 
-/* Rayleigh damping takes the direct engine to the full matrices. */
+/* With Rayleigh damping the direct engine factors the full matrices. */
 static const ritz_damping light = {.kind = RITZ_DAMPING_RAYLEIGH, .b = 1e-8};
 
 static void round_to(ritz_sparse *A, int digits)
@@ -32,7 +32,7 @@ static void round_to(ritz_sparse *A, int digits)
     }
 }
 
-/* Pushed across at one end, and observed there. */
+/* A transverse force at one end, and the displacement there. */
 static void open_bar(int64_t elements, int digits, ritz_component *bar)
 {
     const frame_section steel = {.rho = 7850.0,
@@ -77,7 +77,7 @@ static ritz_rounded rounded_of(const ritz_component *bar, const char *engine)
     return ritz_responder_rounded(responder);
 }
 
-/* The response of flexible modes at rest. */
+/* The response of the flexible modes at 0 Hz. */
 static double flexible_gain(const ritz_component *bar)
 {
     const int64_t row = bar->num_dofs - 2;
@@ -91,13 +91,14 @@ static double flexible_gain(const ritz_component *bar)
 }
 
 /*
- * At the end of a free bar rigid motion takes part with 4 / m, and so does the
- * first bending mode, whose gain at rest is 4 / (m lambda_1): what rounding
- * adds where its rule ends is a thousandth of that at most. At a tenth of the
- * frequency it is 1e4 times as much, of motions held at least a hundredth as
- * much as the worst.
+ * Rounding gives rigid motions a frequency w_r, and changes the response at the
+ * end of the bar by (4 / m) w_r^2 / w^4. The first bending mode's gain at 0 Hz
+ * is 4 / (m lambda_1). At the stated frequency, for the tolerance 1e-3, the
+ * change is at most 1e-3 of this gain. At a tenth of that frequency the change
+ * is 1e4 times as large: at least a tenth of the gain, if the largest w_r^2 of
+ * motions at this end is at least a hundredth of the largest of all.
  */
-static void rounding_rules_up_to_there(void **)
+static void rounding_dominates_below_the_stated_frequency(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
     ritz_rounded rounded = {0};
@@ -122,8 +123,8 @@ static void rounding_rules_up_to_there(void **)
     }
 }
 
-/* Modes that count as rigid respond without stiffness. */
-static void modes_are_not_ruled_by_it(void **)
+/* These engines sum modes, and rigid modes respond without stiffness. */
+static void engines_with_modes_ignore_rounded_stiffness(void **)
 {
     RITZ_OWN(ritz_component) bar = {0};
 
@@ -132,7 +133,8 @@ static void modes_are_not_ruled_by_it(void **)
     assert_int_equal(rounded_of(&bar, "krylov").motions, 0);
 }
 
-/* r / sqrt(e) above the first flexible mode, f; below, its mean with f. */
+/* The band starts at r / sqrt(e) if that is above the first flexible frequency
+   f, else at the geometric mean of r / sqrt(e) and f. */
 static void the_end_depends_on_the_tolerance(void **)
 {
     const ritz_rounded rounded = {
@@ -143,7 +145,8 @@ static void the_end_depends_on_the_tolerance(void **)
                 64 * DBL_EPSILON * 200);
 }
 
-/* Rigid motions whose eigenvalues do not stand apart: positions tell. */
+/* With six digits rigid eigenvalues are not below flexible ones by enough to be
+   told apart; the positions of grids show how many there are. */
 static void positions_show_what_rounding_hides(void **)
 {
     static const char *const engines[] = {"direct", "krylov", "modal",
@@ -160,7 +163,7 @@ static void positions_show_what_rounding_hides(void **)
     }
 }
 
-/* Its clamped end holds it, however few digits there are. */
+/* A clamped bar has no rigid motions, however few digits its stiffness has. */
 static void a_held_bar_is_not_called_rounded(void **)
 {
     const frame_section steel = {.rho = 7850.0,
@@ -177,7 +180,7 @@ static void a_held_bar_is_not_called_rounded(void **)
     assert_int_equal(rounded_of(&bar, "direct").motions, 0);
 }
 
-/* A reduction by all modes but the highest, and its errors over a band. */
+/* Reduce by the first `modes` modes, and measure errors over a band. */
 static void verify_bar(const ritz_component *bar, int64_t modes,
                        const double band_hz[2], ritz_measures *found)
 {
@@ -207,11 +210,12 @@ static void add_damper(ritz_component *bar, double c)
 }
 
 /*
- * A damper and more than 300 dofs take verify to factors. All modes up to 40
- * times the band are kept: what is found at the start of a band that begins
- * too low is rounding, and it says so. From 0 on the band begins above that.
+ * With a damper and more than 300 dofs, verify factors the full matrices. Modes
+ * far above the band are kept, so that an error at the start of a band from 20
+ * Hz is rounding, and the measure says so. A band from 0 Hz starts above this
+ * rounding.
  */
-static void verify_starts_above_it_or_names_it(void **)
+static void verify_starts_above_rounding_or_names_it(void **)
 {
     const double whole[2] = {0.0, 20e3}, low[2] = {20.0, 20e3};
     const ritz_measure *start = NULL, *worst = NULL;
@@ -234,8 +238,9 @@ static void verify_starts_above_it_or_names_it(void **)
                 0.01 * start->value);
 }
 
-/* Eigenvalues of either sign, of 6 digits: what is left is measured. */
-static void hidden_motions_are_no_undamped_mode(void **)
+/* With six digits rigid eigenvalues have either sign. The band starts above
+   them, and errors are still measured. */
+static void hidden_rigid_motions_are_no_undamped_modes(void **)
 {
     const double band[2] = {0.0, 40e3};
     RITZ_OWN(ritz_component) bar = {0};
@@ -261,13 +266,13 @@ static void rounding_survives_every_allocation(void **)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(rounding_rules_up_to_there),
-    cmocka_unit_test(modes_are_not_ruled_by_it),
+    cmocka_unit_test(rounding_dominates_below_the_stated_frequency),
+    cmocka_unit_test(engines_with_modes_ignore_rounded_stiffness),
     cmocka_unit_test(the_end_depends_on_the_tolerance),
     cmocka_unit_test(positions_show_what_rounding_hides),
     cmocka_unit_test(a_held_bar_is_not_called_rounded),
-    cmocka_unit_test(verify_starts_above_it_or_names_it),
-    cmocka_unit_test(hidden_motions_are_no_undamped_mode),
+    cmocka_unit_test(verify_starts_above_rounding_or_names_it),
+    cmocka_unit_test(hidden_rigid_motions_are_no_undamped_modes),
     cmocka_unit_test(rounding_survives_every_allocation),
 };
 

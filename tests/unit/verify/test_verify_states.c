@@ -87,15 +87,15 @@ static void the_error_is_held_to_the_bound_that_came_with_it(void **)
 }
 
 /*
- * Poles at -0.01 +- 789 i beside entries of 3e4, behind a rotation of states:
- * the resonance is known to eps |A| over 0.01, and an error of no more than
- * that is none; one of a hundred times as much is.
+ * Poles at -0.01 +- 789 i with entries of 3e4 in A, whose states are rotated:
+ * the peak is known to a relative eps |A| / 0.01. An error within that is no
+ * violation of a proven bound; one of a hundred times as much is.
  */
 static void a_bound_is_not_missed_by_rounding_beside_a_slow_pole(void **)
 {
     const double slow = 0.01, w = 789.0, fast = 3e4;
     const double cosine = 0.6, sine = 0.8;
-    /* of the peak 1 / slow: A is about sqrt(2) fast */
+    /* eps |A| / slow of the peak 1 / slow; |A| is about sqrt(2) fast */
     const double rounding = DBL_EPSILON * fast / slow / slow;
     static const struct {
         double part;
