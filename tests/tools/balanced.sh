@@ -30,8 +30,8 @@ done
 expect 2 "no 'band_hz'" ritz-basis balanced --modes 4 --band-hz 0,1 chain.h5 \
     -o none.h5
 
-# The two states of a mode of ratio zeta have values in the ratio 1 - 2 zeta;
-# one of them alone is a real pole.
+# The two Hankel values of a mode with damping ratio zeta have the ratio 1 - 2
+# zeta; a basis with only one of the two states has a real pole.
 matrix() {
     printf '%%%%MatrixMarket matrix array real general\n%s\n' "$2" >"$1"
 }
@@ -46,7 +46,8 @@ for order in 1 3; do
     expect 0 "of the two states of a mode are: --modes $order splits them" \
         ritz-basis balanced --modes $order modes.h5 -o split.h5
 done
-# Two modes of equal values, of different frequencies: one of them is arbitrary.
+# Two modes of different frequencies have equal values: keeping one is
+# arbitrary.
 matrix K.mtx '3 3
 1 0 0 0 4 0 0 0 100'
 matrix M.mtx '3 3

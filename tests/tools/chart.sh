@@ -265,7 +265,7 @@ for words in 'Speed against accuracy' Convergence 'At equal order' \
     'Modes over configurations' "$(sha256sum full.h5 | cut -d' ' -f1)"; do
     expect 0 "$words" cat all.html
 done
-# a file that stops a report is named
+# the message names the file that the report cannot use
 expect 0 '' ritz-rank --damping 'modal 0.01' stator.h5 -o values.h5
 expect 1 "'values.h5': no mode has a value" ritz-chart report full.h5 \
     values.h5 response.h5 -o none.html

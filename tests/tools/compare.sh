@@ -95,7 +95,8 @@ scene one 'select: {modes: [1]}' 'augment: {level: system, attached: [motor]}'
 expect 0 'Composite set: 20 vectors from 2 configurations' \
     ritz-compare one.yaml -o one.h5
 
-# --- more configurations than anybody waits for -------------------------------------
+# --- very many configurations
+# ---------------------------------------------------------
 
 grid=$(seq -s, 0 299)
 scene many
@@ -169,12 +170,14 @@ holds '  a looser tolerance costs exactness and never gain' \
 expect 2 "--tolerances takes numbers between 0 and 1, not '2'" \
     ritz-compare list.yaml --tolerances 1e-3,2 -o list.h5
 
-# --- dampers in bodies and joints, against the full system ---------------------------
+# --- dampers in bodies and joints, compared with the full system
+# ----------------------
 
 mkdir damped
 cd damped || exit 1
 import_spacecraft --damper strut=33:3,54:3*12 --damper brace=23:1,27:1*400
-# damped NAME ROTOR-KEY KEY...: a rotor with dampers, the cone on a damper.
+# damped NAME ROTOR-KEY KEY...: a scene with dampers in the rotor and in the
+# joint 'cone'.
 damped() {
     name=$1 rotor=$2
     shift 2
@@ -206,7 +209,8 @@ holds '  and the table of tolerances has it' \
 expect 0 'platform	damping' head -n 1 t.tsv
 cd ..
 
-# --- structural damping: K4 of a body is in every system and not in a ranking ---------
+# --- structural damping: K4 of a body is in every system and in no ranking
+# ------------
 
 cat >loss.py <<'END'
 import h5py, shutil

@@ -1,14 +1,14 @@
 #!/bin/sh
-# Ranking and COMPARE where damping couples modes: caged joints, dampers that
-# hold a vehicle, poles at 0. SciPy finds the same values from the matrices in
-# the containers.
+# Ranking and COMPARE where damping couples modes: caged joints, a vehicle on
+# dampers, poles at 0. SciPy computes the same values from the matrices in the
+# containers.
 # Usage: coupled.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
-# hankel.py MODEL AT RATIO: values of the ranking in log.json, another way.
-# Poles at 0 are taken out by an ordered Schur form. The roots of eigenvalues of
-# a product lose half of the digits.
+# hankel.py MODEL AT RATIO: compute the values of the ranking in log.json in
+# another way. Poles at 0 are removed by an ordered Schur form. Square roots of
+# a product's eigenvalues lose half of the digits.
 cat >hankel.py <<'END'
 import json, sys
 import h5py, numpy as np, scipy.linalg as sl
@@ -77,10 +77,11 @@ assert worst < 1e-9, worst
 END
 
 # --- a vehicle of five dofs on dampers ------------------------------------------
-# Seat, body up and in pitch, two axles (pounds, inches, seconds): the seat on a
-# spring and a damper 10 ahead of the centre, axles 40 ahead and 80 behind, tyres
-# of 1500 and 5; then without the springs of the tyres, so that only dampers hold
-# it to the ground and two poles are 0.
+# Seat, body (heave and pitch) and two axles, in pounds, inches and seconds. A
+# spring and a damper carry the seat 10 ahead of the body's centre; the axles
+# are 40 ahead and 80 behind; tyres have k = 1500 and c = 5. The second vehicle
+# has tyres without springs: only dampers hold it to the ground, and two poles
+# are 0.
 
 /usr/bin/python3 -s - <<'END'
 import numpy as np, scipy.io

@@ -96,7 +96,7 @@ ritz-poles $full --modes 2 -q --tsv -o two.tsv
 expect 0 "3 two.tsv" wc -l two.tsv
 expect 0 "rayleigh 0.001 0.002" ritz-poles $full --damping "rayleigh 0.001 0.002"
 
-# the H2 norm, tuning and places
+# the H2 norm, tuning and placement
 expect 0 "white noise at the inputs" ritz-poles $full --norm
 expect 0 "H2 norm 0.1192920444 (dense, SLICOT SB03OD)" ritz-poles $full --norm
 json 0 ritz-poles $full --norm --low-pass 2:6
@@ -217,12 +217,12 @@ expect 0 "zeta %" ritz-poles other-reduced.h5 --modes 3
 ritz-export -q --to output4 --force other-reduced.h5 -o other.op4
 expect 0 "K4" ritz-info other.op4
 
-# losses and dampers in one recurrence, about 0 Hz and elsewhere
+# structural and viscous damping in one recurrence, about 0 Hz and elsewhere
 printf '%s\n' '%%MatrixMarket matrix coordinate real symmetric' '30 30 3' \
     '4 4 90' '15 15 400' '25 25 200' >losses.mtx
 import -q --structural-damping losses.mtx --damper low=3:0,2:0*150 \
     --damper middle=10:0,9:0*150 --input push=30:0 --output-at tip=30:0 >log
-# krylov LIMIT WORDS OPTION...: response up to 2 Hz with 16 vectors
+# krylov LIMIT WORDS OPTION...: the response up to 2 Hz with 16 vectors
 krylov() {
     limit=$1 words=$2
     shift 2

@@ -1,13 +1,13 @@
 #!/bin/sh
-# disk.sh FOLDER-OF-THE-TOOLS - a disk that is full: outputs are whole or not
-# there, and so are the lines of records.
+# disk.sh FOLDER-OF-THE-TOOLS - a full disk: outputs are complete or absent, and
+# so are the lines of records.
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
 # --- outputs ------------------------------------------------------------------------
 
-# fails_on_each_disk OUTPUT COMMAND...: with less room than its output needs, in
-# blocks of 512 bytes, the command fails and leaves nothing; at most 12 sizes.
+# fails_on_each_disk OUTPUT COMMAND...: on disks with fewer blocks of 512 bytes
+# than OUTPUT needs, the command fails and leaves nothing; at most 12 sizes.
 fails_on_each_disk() {
     out=$1
     shift
@@ -43,7 +43,7 @@ done
 
 # --- records ------------------------------------------------------------------------
 
-# Lines are appended until one does not fit: nothing of it stays.
+# Lines are appended until one does not fit, of which nothing may stay.
 for blocks in 3 6 9; do
     while cp full.jsonl before.jsonl 2>/dev/null || : >before.jsonl &&
         sh -c "ulimit -f $blocks; exec ritz-info rotor.h5 -q --record full.jsonl" \

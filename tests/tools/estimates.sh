@@ -32,7 +32,8 @@ expect 0 'response-relative-bound' ritz-reduce truss.h5 basis.h5 -o r.h5 \
 expect 0 'response-relative-estimate' ritz-reduce truss.h5 basis.h5 -o r.h5 \
     --band-hz 0,140 --damping 'bands 0 50 0.01 50 900 0.02'
 
-# Exact modes: what is left is rounding, in text, JSON, file, record and report.
+# With exact modes a bound is rounding; text, JSON, file, record and report name
+# this cause.
 ritz-basis macneal-rubin --modes 14 truss.h5 -o exact.h5 >log
 json 0 ritz-reduce truss.h5 exact.h5 -o r.h5 --band-hz 0,140 \
     --record runs.jsonl
@@ -49,7 +50,7 @@ expect 0 'far above the error by damping of inexact modes' cat report.html
 works '  and no cause where there is none' \
     test "$(grep -c 'far above the error' report.html)" = 1
 
-# No bound is below the error of any channel, nor what ritz-verify measures.
+# No bound is below the error of a channel, nor below what ritz-verify measures.
 expect 0 ', 0 below the error' /usr/bin/python3 -s "$here/../bench/bounds.py" \
     "$bin" --only 'dual-spin stator' --cases 8
 expect 0 ', 0 below the error' /usr/bin/python3 -s "$here/../bench/bounds.py" \

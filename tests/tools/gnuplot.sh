@@ -1,6 +1,6 @@
 #!/bin/sh
-# What gnuplot is given: names that are text and nothing else, none of a user's
-# settings, and an end with the tool that started it.
+# How tools run gnuplot: names are text and never commands, a user's settings
+# have no effect, and gnuplot ends with the tool that started it.
 # Usage: gnuplot.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
@@ -11,8 +11,8 @@ command -v gnuplot >/dev/null || {
     exit 0
 }
 
-# Names that gnuplot, a shell, printf, markup or a terminal could take for
-# something else; with a slash they would be paths.
+# Names that gnuplot, a shell, printf, markup or a terminal could interpret;
+# none has a slash, which would make it a path.
 cat >names.py <<'END_OF_NAMES'
 names = ["|touch ran;", "<touch ran;", "`touch ran`", "$(touch ran)",
          "x';system('touch ran');y='", "'first", "two''quotes", "'''", '"q',
@@ -24,7 +24,7 @@ bytes_ = [b"new\nline", b"tab\tand\rreturn", b"\x01\x1b[31m\x7f", b"\xff\xfe",
 END_OF_NAMES
 
 cat >inside.py <<'END_OF_INSIDE'
-"""Pictures on a page are XML, and nothing on it is a name's markup."""
+"""Pictures on a page are XML, and names add no markup to it."""
 import re, sys, xml.etree.ElementTree as xml
 page = open(sys.argv[1], encoding="utf-8").read()
 body = page[page.index("<body"):]
@@ -56,7 +56,7 @@ for name in [n.encode() for n in names] + bytes_:
                           b"-o", path], capture_output=True)
     assert run.returncode == 0 and not run.stderr, (name, run.stderr)
     xml.parse(open(path, "rb"))
-    # the script that is kept makes the same file again
+    # the script that is kept draws the same file again
     os.remove(path)
     run = subprocess.run([b"gnuplot", b"-d", b"./" + path + b".gp"],
                          capture_output=True)
@@ -89,14 +89,14 @@ with open("evil.jsonl", "w") as out:
                 "command": name}), file=out)
 END_OF_RECORDS
 cat >drawn.py <<'END_OF_DRAWN'
-"""Each name stands in the legend or title as it is."""
+"""Each name appears unchanged in the legend or the title."""
 import sys, xml.etree.ElementTree as xml
 from names import names
 text = ["".join(node.itertext()) for node in xml.parse(sys.argv[1]).iter()
         if node.tag.endswith("text")]
 wanted = names if len(sys.argv) < 3 else sys.argv[2:]
 for name in wanted:
-    # gnuplot draws a blank that cannot be broken as another letter
+    # gnuplot writes a space as a non-breaking space
     assert any(name.strip() in t.replace("\u00a0", " ") for t in text), \
         (name, text)
 END_OF_DRAWN
@@ -106,7 +106,8 @@ for kind in pareto convergence; do
     well $kind.svg
     expect 0 '' /usr/bin/python3 -s drawn.py $kind.svg
 done
-# the order of a point of the front stands beside it, whatever its method
+# each point of the front is labelled with its order, whatever its method is
+# called
 {
     line '\"' 2 0.5
     line '\"' 40 0.001
@@ -177,7 +178,7 @@ mkdir slow
 printf '#!/bin/sh\necho $$ >gnuplot.pid\nexec sleep 300\n' >slow/gnuplot
 chmod +x slow/gnuplot
 cat >end.py <<'END_OF_END'
-"""A gnuplot that takes long ends with the tool, which a signal ends."""
+"""A slow gnuplot ends when a signal ends the tool."""
 import os, signal, subprocess, sys, time
 
 def state(pid):

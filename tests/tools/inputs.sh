@@ -1,10 +1,11 @@
 #!/bin/sh
-# inputs.sh FOLDER-OF-THE-TOOLS - inputs and outputs on several dofs and out of
-# matrices; chains, plane models and modal data, which have no grids.
+# inputs.sh FOLDER-OF-THE-TOOLS - inputs and outputs on several dofs and from
+# matrices; chains, plane models and modal data without grids.
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
-# --- a chain of two unit masses on unit springs, and the same as its modes -----
+# --- a chain of two unit masses on unit springs, and its modes as a component
+# --
 
 array k.mtx '2 2' 2 -1 -1 1
 array m.mtx '2 2' 1 0 0 1

@@ -37,7 +37,7 @@ works 'response: |H| is that of a free rod' awk 'NR == 2 {
     d = $2 * w * sin(200 * w) / cos(200 * w) - 1
     exit !(d * d < 1e-6) }' response.txt
 
-# the tools find the process that reads HDF5 files first, wherever they are
+# the tools find ritz-walk, which reads HDF5 files first, relative to themselves
 "$bin/ritz-import" -q --stiffness "$data/chain/chain.K.mtx" \
     --mass "$data/chain/chain.M.mtx" --dofs "$data/chain/chain.dofs" -o chain.h5
 works 'an installed tool reads a container' there/bin/ritz-info chain.h5

@@ -1,10 +1,10 @@
 #!/bin/sh
-# outputs.sh FOLDER-OF-THE-TOOLS - inputs are never overwritten, a failure leaves
-# no output, a replaced file keeps its permissions and its links.
+# outputs.sh FOLDER-OF-THE-TOOLS - no input is overwritten, a failure leaves no
+# output, and a replaced file keeps its permissions and links.
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
-# stays FILE COMMAND...: refused, and the file is what it was.
+# stays FILE COMMAND...: the command is refused, and FILE is unchanged.
 stays() {
     kept=$1
     shift
@@ -13,7 +13,7 @@ stays() {
     same "  $kept stays" "$kept" kept
 }
 
-# gone FILE: there is none, nor half of one.
+# gone FILE: neither FILE nor a draft of it exists.
 gone() {
     ls "$1"* >log 2>&1 && report no "no $1*" || report yes "  leaves no $1*"
 }
@@ -25,7 +25,7 @@ ritz-reduce -q chain.h5 basis.h5 -o small.h5
 ritz-basis -q macneal-rubin --modes 4 chain.h5 -o modes.h5
 ritz-reduce -q chain.h5 modes.h5 -o list.h5
 
-# --- an input by any of its names --------------------------------------------
+# --- an input under any of its names -----------------------------------------
 
 stays chain.h5 ritz-basis balanced --modes 2 chain.h5 -o chain.h5
 stays basis.h5 ritz-reduce chain.h5 basis.h5 -o ./basis.h5
@@ -56,7 +56,7 @@ stays small.h5 ritz-export small.h5 --to matlab --force -o small.h5
 stays K.mtx ritz-import --stiffness K.mtx --mass "$data/chain/chain.M.mtx" \
     --dofs "$data/chain/chain.dofs" -o K.mtx
 
-# what an input names is an input, too
+# a file that an input includes is an input too
 printf "BEGIN BULK\nINCLUDE 'inner.bdf'\nENDDATA\n" >outer.bdf
 awk 'BEGIN { for (i = 1; i <= 10; i++) printf "GRID,%d,,%d.,0.,0.\n", i, i }' \
     >inner.bdf
@@ -75,7 +75,8 @@ gone system.h5
 ritz-assemble -q scene.yaml -o system.h5 --tracks page.svg.tsv
 stays page.svg.tsv ritz-chart tracks page.svg.tsv -o page.svg
 
-# --- outputs by one name -------------------------------------------------------
+# --- two outputs under one name
+# ------------------------------------------------
 
 expect 2 "--report and --output name one file, './system.h5'" ritz-compare \
     scene.yaml --report system.h5 -o ./system.h5
@@ -86,7 +87,8 @@ expect 1 'written twice' ritz-rank list.h5 --by modal-cost --table x.svg.tsv \
     --chart x.svg
 gone x.svg
 
-# --- a failure, also the last one, leaves nothing ------------------------------
+# --- any failure, even the last step's, leaves nothing
+# -------------------------
 
 expect 1 'No space left' ritz-reduce chain.h5 basis.h5 -o new.h5 \
     --record /dev/full
@@ -108,7 +110,7 @@ expect 1 "No space left" ritz-compare scene.yaml --components new- \
     --report new.txt --tracks new.tsv -o new.h5 --record /dev/full
 gone new
 
-# a limit that is missed keeps what is documented, but not without its record
+# a missed limit keeps its output, as documented, but not without its record
 expect 1 'limits not met' ritz-verify chain.h5 small.h5 --limit-h-infinity \
     1e-12 -o missed.h5 --record runs.jsonl
 works '  missed.h5 is there' test -s missed.h5
@@ -126,7 +128,8 @@ expect 0 '' ritz-reduce -q chain.h5 basis.h5 -o link.h5
 works '  a link to nothing yet stays a link' test -L link.h5
 works '  and what it names is made' test -s made.h5
 
-# --- what is no place for a file --------------------------------------------------
+# --- names under which no file can be made
+# ----------------------------------------
 
 mkfifo fifo
 for name in /dev/stdout /dev/stderr /dev/fd/1 /proc/self/fd/1; do

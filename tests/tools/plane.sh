@@ -1,6 +1,6 @@
 #!/bin/sh
-# A plane two-link arm, from matrices of beams to responses at angles of its
-# elbow, against an assembly of its own in Python.
+# A plane two-link arm, from matrices of beams to responses at several angles of
+# its elbow, compared with an assembly in Python.
 # Usage: plane.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 
@@ -9,8 +9,8 @@ if ! /usr/bin/python3 -s -c 'import scipy, h5py' 2>/dev/null; then
     exit 0
 fi
 
-# Euler-Bernoulli beams along x with T1, T2 and R3. The upper arm is pinned at
-# its root, where a hub turns; the fore arm carries a payload.
+# Euler-Bernoulli beams along x with T1, T2 and R3. The upper arm turns about
+# its root, where a hub is; the fore arm carries a payload.
 cat >arm.py <<'END'
 import numpy as np, scipy.io, scipy.sparse, scipy.linalg, json, sys
 
@@ -57,8 +57,8 @@ def write():
             f.writelines(f"GRID,{g},,{(g - 1) * links[name][0] / N:.12g},0.,0.\n"
                          for g in range(1, N + 2))
 
-# The fore arm's matrices are turned by the elbow's angle, its first two dofs
-# are the last but one of the upper arm; k holds the elbow, c damps it.
+# The fore arm's matrices are turned by the angle of the elbow; its first two
+# dofs are the upper arm's translations at the elbow, where a spring k acts.
 def whole(degrees, k=0.0):
     (Ku, Kf), (Mu, Mf) = arm()
     n, a = len(Ku), np.radians(degrees)
@@ -70,7 +70,7 @@ def whole(degrees, k=0.0):
         A[:n, :n] += u
         A[np.ix_(at, at)] += R @ f @ R.T
     s = np.zeros(2*n - 2)
-    s[n - 1], s[n] = -1, 1      # turn of the fore arm less that of the upper
+    s[n - 1], s[n] = -1, 1      # rotations: fore arm less upper arm
     K += k * np.outer(s, s)
     return K[2:, 2:], M[2:, 2:]
 
@@ -78,8 +78,8 @@ def hertz(degrees, k=0.0):
     w2 = scipy.linalg.eigh(*whole(degrees, k), eigvals_only=True)
     return np.sqrt(np.abs(w2)) / 2 / np.pi
 
-# The response of both turns, at the hub and at the payload, to a torque at the
-# hub and to one at the elbow, damped by `modal 0.01`.
+# Rotations of the hub and of the payload due to a torque at the hub and one at
+# the elbow, with `modal 0.01`.
 def response(degrees, at):
     K, M = whole(degrees)
     w2, V = scipy.linalg.eigh(K, M)
@@ -105,7 +105,7 @@ for link in fore; do
         --dofs $link.dofs --bulk $link.bdf --port root=1 --port tip=7 -o $link.h5
 done
 
-# scene NAME BASIS ELBOW KEY...
+# scene NAME BASIS ELBOW KEY...: write NAME.yaml; ELBOW has keys of the elbow.
 scene() {
     file=$1.yaml basis=$2 elbow=$3
     shift 3
@@ -129,7 +129,8 @@ END
     for key in "$@"; do echo "$key" >>"$file"; done
 }
 
-# near SYSTEM STIFFNESS: frequencies of log.json at all angles are Python's.
+# near SENTENCE K COUNT TOLERANCE: at all angles, the lowest COUNT frequencies
+# in log.json are those of Python with the stiffness K at the elbow.
 near() {
     cat >near.py <<'END'
 import arm, json, numpy as np, sys
@@ -151,7 +152,8 @@ END
 
 scene free 'basis: full' 'state: free'
 json 0 ritz-assemble free.yaml -o free.h5
-# 38 dofs: n eps lambda_max / lambda_1, of a frequency half of it; measured 1e-11
+# 38 dofs: n eps lambda_max / lambda_1 of an eigenvalue, half of it of a
+# frequency; 1e-11 was measured
 near 'frequencies at every angle are those of the arm in Python' 0 40 1e-8
 scene caged 'basis: full' 'state: caged, stiffness: 35'
 json 0 ritz-assemble caged.yaml -o caged.h5

@@ -83,7 +83,7 @@ expect 0 '' ritz-chart report unmet.jsonl -o unmet.html
 expect 0 '<div class="big">near</div>' cat unmet.html
 expect 0 'this is the one that comes nearest to its tolerance' cat unmet.html
 expect 0 'It misses a tolerance' cat unmet.html
-# the headline is of what was asked for; what is ten times worse stands beside
+# the headline is the measure asked for; a measure ten times worse is next to it
 printf '{"method": "near", "order": 9, "subject": "beam", "chosen": true,
  "tolerance": {"frequency-relative": 0.01}, "seconds": {"cpu": 0.1},
  "errors": {"response-relative": 0.5, "frequency-relative": 0.004,

@@ -27,8 +27,8 @@ expect 1 'is the frequency of an undamped mode' ritz-frf plain.h5 --to-hz 0.3 --
 expect 2 'one of the two' ritz-frf plain.h5 --points-of modal.h5 \
     --tolerance 1e-3 -o none.h5
 
-# Three dampers in a chain of 2101 masses of 1 kg, springs of 1e6 N/m: modes
-# above those that are summed are damped too.
+# Three dampers in a chain of 2101 masses of 1 kg, springs of 1e6 N/m: they damp
+# modes above those that are summed too.
 awk 'BEGIN {
     n = 2101; head = "%%MatrixMarket matrix coordinate real symmetric"
     print head > "row.K.mtx"; print n, n, 2 * n - 1 > "row.K.mtx"

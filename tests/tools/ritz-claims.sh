@@ -67,7 +67,7 @@ expect 2 'FILE' ritz-claims
 printf '\000' >x.claims
 expect 1 'x.claims' ritz-claims x.claims
 
-# A claims file is a program; it runs others of its kind, and no third level.
+# A claims file is a program. It may run other claims files, which may run none.
 printf 'source me\nrun ritz-claims $HERE/a.claims\nexpect holds is 1\n' >outer.claims
 expect 0 'ok 1 - outer.claims:3 holds' ritz-claims outer.claims
 printf 'source me\ntry ritz-claims $HERE/endless.claims\nexpect failure "may not be run"\n' \
@@ -77,7 +77,7 @@ expect 0 'ok 1 - top.claims:3 holds' ritz-claims top.claims
 printf 'source a\nexpect x[9223372036854775807] 1 1 rel 1\n' >x.claims
 expect 1 'x[9223372036854775807]: nothing there' ritz-claims x.claims
 
-# Whatever ends it, its commands end too, and their folder is gone.
+# However a run ends, its commands end too, and its folder is removed.
 printf 'source nobody\nbeam b --elements 100000\nrun ritz-import --stiffness b.k.mtx --mass b.m.mtx --bulk b.bdf --dofs b.dofs -o b.h5\n' >long.claims
 works 'no folder outlives a signal' /usr/bin/python3 -s - <<'END'
 import glob, os, signal, subprocess, sys, time
@@ -88,7 +88,7 @@ def wait_for(what):
         time.sleep(0.01)
     sys.exit("it takes too long")
 for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL:
-    if number != signal.SIGKILL: # a job in the background ignores some
+    if number != signal.SIGKILL: # background jobs ignore some
         signal.signal(number, signal.SIG_DFL)
     run = subprocess.Popen(["ritz-claims", "long.claims"],
                            stdout=subprocess.DEVNULL)

@@ -1,9 +1,9 @@
 #!/bin/sh
-# A small stiff part, free, whose stiffness was printed with few digits.
+# A small stiff free part whose stiffness was printed with few digits.
 # Usage: rounded.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 
-# bar DIGITS: a free steel bar of 5 cm in its plane, damped by K.
+# bar DIGITS: a free plane steel bar of 5 cm, with damping proportional to K.
 bar() {
     /usr/bin/python3 -s - "$1" <<'END'
 import sys

@@ -55,8 +55,8 @@ works 'a table is interpolated' awk -F '\t' \
 expect 0 '3 times to 0.4 s' ritz-simulate --seconds 0.4 --step 0.05 --every 4 \
     --input torque=impulse reduced.h5 -o few.h5
 
-# Springs of 1e9 N/m: static responses are columns of 1e-9, and M of these is
-# 1e-18 beside the 1 of modes. That is no singular matrix.
+# Springs of 1e9 N/m: static responses are columns of about 1e-9, and their
+# entries of M are 1e-18 where those of modes are 1. Such an M is not singular.
 awk 'BEGIN {
     n = 8; k = 1e9
     head = "%%MatrixMarket matrix coordinate real symmetric"

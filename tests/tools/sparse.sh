@@ -1,10 +1,10 @@
 #!/bin/sh
-# sparse.sh FOLDER-OF-THE-TOOLS - large sparse state spaces through the tools:
-# they stay sparse, and every method that takes one reduces one.
+# sparse.sh FOLDER-OF-THE-TOOLS - large sparse state spaces stay sparse in all
+# tools, and every method for state spaces reduces one.
 . "$(dirname "$0")/tap.sh"
 
-# rod N: heat in a rod of N cells, heated at its first third, seen at N / 4 and
-# over its last third; E x' = A x + B u.
+# rod N: heat in a rod of N cells, E x' = A x + B u; the input heats the first
+# third, and outputs are cell N / 4 and the mean of the last third.
 rod() {
     for matrix in A E; do
         awk -v n="$1" -v m="$matrix" 'BEGIN {
@@ -55,12 +55,12 @@ expect 0 'sparse response, 20 points' ritz-frf rod.h5 --to-hz 1e-4 --points 20 \
     -o full.h5
 expect 0 'all are left of the axis' ritz-check rod.h5
 
-# reduced METHOD OPTION...: a stable model
+# reduced METHOD OPTION...: the reduced model is stable
 reduced() {
     expect 0 '' ritz-basis -q "$@" rod.h5 -o basis.h5
     expect 0 'stable:' ritz-reduce rod.h5 basis.h5 -o small.h5
 }
-# verified METHOD OPTION...: and its response is within 1e-4
+# verified METHOD OPTION...: it is stable, and its response is within 1e-4
 verified() {
     reduced "$@"
     json 0 ritz-verify rod.h5 small.h5 --band-hz 0,1e-5 -o verified.h5
@@ -98,7 +98,8 @@ same 'Matrix Market keeps every bit of sparse matrices' rod.sums back.sums
 expect 1 'more than 3000' ritz-simulate rod.h5 --seconds 1 \
     --input heat=step -o none.h5
 
-# --- what the list says -----------------------------------------------------------
+# --- the list of methods
+# ----------------------------------------------------------
 
 ritz-basis --list >list
 works '--list says which methods take a state space' awk '

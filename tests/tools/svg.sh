@@ -43,8 +43,8 @@ if __name__ == "__main__":
 END
 
 # well NAME: the picture is XML without scripts, and no word covers another. Its
-# script draws it again without a warning, in a locale with UTF-8: in others
-# gnuplot warns of its degree sign.
+# script draws it again without a warning in a UTF-8 locale; in other locales
+# gnuplot warns about the degree sign.
 well() {
     expect 0 '' /usr/bin/python3 -s well.py "$1"
     expect 0 '' /usr/bin/python3 -s words.py "$1"

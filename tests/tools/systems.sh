@@ -1,6 +1,7 @@
 #!/bin/sh
-# What ritz-compare and ritz-assemble write goes on: a system at a configuration
-# is reduced for a controller, exported, read back by SciPy, checked, measured.
+# Other tools take what ritz-compare and ritz-assemble write: a system at a
+# configuration is reduced for a controller, exported, read by SciPy, checked
+# and measured.
 # Usage: systems.sh FOLDER-OF-THE-TOOLS
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
@@ -22,7 +23,8 @@ expect 0 '' ritz-compare scene.yaml --components small- -o system.h5
 expect 0 '' ritz-frf --at clock=90 --to-hz 4 --points 50 --no-refine system.h5 \
     -o frf.h5
 
-# --- which tools take one, and what is said ------------------------------------------
+# --- which tools take a system, and what help and refusals say
+# -----------------------
 
 for tool in basis reduce export check verify rank frf poles simulate; do
     expect 0 'configuration of a system' "ritz-$tool" --help
@@ -82,7 +84,7 @@ def by_modes(K, M, B, C, Cv, Ca):
     return np.array(out)
 
 def off(G):
-    # at 0 Hz a free body has no response
+    # a free body has no response at 0 Hz
     keep = hertz > 0
     return (abs(G - H)[keep].max(axis=0) / abs(H)[keep].max(axis=0)).max()
 
@@ -100,8 +102,8 @@ g = h5py.File("states.h5")
 worst["container"] = off(by_states(*(g[k][:] for k in "ABCD")))
 print(worst)
 assert [str(x[0][0]) for x in m["input_names"]] == ["motor", "thruster"]
-# 60 modes, A with entries up to w^2 of the highest: n eps of a condition of
-# some 1e3 at the resonances; measured 1e-11
+# 60 modes; A has entries up to w^2 of the highest: n eps times a condition of
+# some 1e3 at the resonances; 1e-11 was measured
 sys.exit(0 if max(worst.values()) < 1e-9 else "responses differ")
 END
 works 'SciPy computes the response of ritz-frf from each file' \
@@ -169,7 +171,7 @@ END
 works 'joints hold and outputs measure what the shapes show' \
     /usr/bin/python3 -s shapes.py
 
-# Bodies of an assembled system, written with it.
+# Bodies of an assembled system, which --components writes too.
 expect 2 'there are none to write by --components' ritz-assemble --full \
     --components none- scene.yaml -o none.h5
 expect 1 "'no/where-rotor.h5" ritz-assemble --components no/where- scene.yaml \
@@ -210,7 +212,7 @@ got = np.array(json.load(open("log.json"))["hankel_values"])[:40]
 due = np.sort(due)[::-1]
 off = abs(got - due)[:20] / due[:20]
 print(got[:4], due[:4], off.max())
-# eigenvalues of a product: eps of the largest squared over these squared
+# eigenvalues of a product: eps times the largest one, relative to each
 sys.exit(0 if off.max() < 1e-6 else "Hankel values differ")
 END
 works 'Hankel values are those of Lyapunov equations by SciPy' \

@@ -168,7 +168,7 @@ json 0 ritz-reduce bar.h5 cb.h5 -o red.h5
 holds '  estimates its errors' 'len(j["estimates"]) > 0 and j["dofs"] == 7 and
     j["dofs_full"] == 21 and j["frequencies_hz"][0] == 0'
 
-# geometric stiffness, which no tool uses: whatever leaves it out says so
+# no tool uses geometric stiffness, and each that leaves it out says so
 expect 0 'is stored; no tool uses it yet' ritz-import --stiffness bar.k.mtx \
     --mass bar.m.mtx --bulk bar.bdf --dofs bar.dofs --port left=1:1 \
     --input push=21:1 --output-at tip=21:1 --units 'm kg s' \
@@ -391,10 +391,11 @@ ritz-basis guyan bar.h5 -q -o link.h5
 ritz-basis guyan bar.h5 -q -o link.h5
 works 'an output that is a link stays one' test -L link.h5
 
-# --- names that a terminal could obey ------------------------------------------
+# --- names with escape sequences
+# -------------------------------------------------
 
-# Escape sequences in a file's name and among its values, as an archive from
-# elsewhere may have them: shown as '?', and kept as they are in JSON.
+# Escape sequences in a file's name and among its values are printed as '?' and
+# kept as they are in JSON: a file from elsewhere must not control a terminal.
 works 'no control character of a file leaves a tool' \
     /usr/bin/python3 -s - <<'END'
 import json, h5py, numpy, shutil, subprocess, sys
@@ -471,7 +472,8 @@ sys.exit(0 if run.returncode == -number and not left
 END
 done
 
-# Killed, it cannot remove its draft; the next run does, and no other's.
+# A killed run cannot remove its draft; the next run removes this draft and no
+# other.
 works 'a killed run leaves a draft, which the next run removes' \
     /usr/bin/python3 -s - <<'END'
 import glob, os, signal, subprocess, sys

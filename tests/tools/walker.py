@@ -1,10 +1,10 @@
-"""HDF5 files of the kind that has no checksums, whole and damaged, as walker.sh
-gives them to the tools.
+"""Makes HDF5 files without checksums for walker.sh, sound and damaged ones.
 
-Usage: walker.py make           old.mat, old.h5 (of new.h5), and what is made to
-                                end, delay or fill up who reads it
-       walker.py damage COUNT   COUNT damages of old.mat and of old.h5, through
-                                ritz-info, which is on the PATH
+Usage: walker.py make           write old.mat, old.h5 (from new.h5), and files
+                                that make their reader crash, hang or run out of
+                                memory
+       walker.py damage COUNT   run ritz-info, which is on the PATH, on COUNT
+                                damaged copies of old.mat and of old.h5
 """
 import concurrent.futures
 import os
@@ -24,7 +24,7 @@ def begin(path):
 
 
 def end(path):
-    """The head of a MAT file, and the bytes."""
+    """Write the head of a MAT file; return all bytes of the file."""
     with open(path, "r+b") as file:
         file.write(b"MATLAB 7.3 MAT-file")
         file.seek(0)
@@ -37,7 +37,7 @@ def write(path, data):
 
 
 def node(data, kind):
-    """Where the first B-tree node of a kind begins: 0 groups, 1 chunks."""
+    """Position of the first B-tree node of a kind (0: groups, 1: chunks)."""
     at = data.index(b"TREE")
     while data[at + 4] != kind:
         at = data.index(b"TREE", at + 1)
@@ -45,7 +45,7 @@ def node(data, kind):
 
 
 def small(path):
-    """Two matrices in a file whose parts are easily found."""
+    """A small file of two matrices, whose parts are easy to find."""
     with begin(path) as f:
         f["K"] = numpy.eye(2)
         f.create_dataset("M", data=numpy.eye(4), chunks=(2, 4),
@@ -56,7 +56,7 @@ def small(path):
 def make_hostile():
     data = small("own_child.mat")
     at = node(data, 0)
-    data[at + 5] = 1  # its level: what it names are nodes, itself
+    data[at + 5] = 1  # level 1: its children are nodes, here itself
     struct.pack_into("<Q", data, at + 32, at - 512)
     write("own_child.mat", data)
 
@@ -67,7 +67,7 @@ def make_hostile():
 
     data = small("large_chunk.mat")
     at = node(data, 1)
-    struct.pack_into("<I", data, at + 24, 0xf0000000)  # bytes of the first
+    struct.pack_into("<I", data, at + 24, 0xf0000000)  # size of the first chunk
     write("large_chunk.mat", data)
 
     with begin("own_member.mat") as f:
@@ -101,7 +101,7 @@ def make_sound():
 
 
 def spoil(data, seed):
-    """Bytes and words where there is something to spoil."""
+    """Change random bytes and words, but not within long runs of zeros."""
     rng = random.Random(seed)
     out = bytearray(data)
     words = (b"\xff" * 8, b"\0" * 8, b"\xff" * 7 + b"\x7f", b"\0" * 7 + b"\x80",
@@ -118,8 +118,9 @@ def spoil(data, seed):
 
 
 def prepare_sanitizers():
-    """HDF5 itself loses bytes of a damaged file, and copies some that lie
-    behind a block; neither ends it, and our own code is still looked at."""
+    """On damaged files HDF5 leaks, and copies bytes beyond the end of a block.
+    Neither ends the process; these settings ignore both, and leave the checks
+    of Ritz's own code as they are."""
     with open("leaks", "w") as file:
         file.write("leak:libhdf5\n")
     os.environ["LSAN_OPTIONS"] = "suppressions=leaks:print_suppressions=0"
@@ -128,7 +129,7 @@ def prepare_sanitizers():
 
 
 def judge(path):
-    """What is wrong with a run of ritz-info, or None."""
+    """Run ritz-info; return what is wrong with the run, or None."""
     try:
         run = subprocess.run(["ritz-info", path], capture_output=True,
                              timeout=LIMIT, text=True, errors="replace")

@@ -1,7 +1,8 @@
 #!/bin/sh
 # walker.sh FOLDER-OF-THE-TOOLS [COUNT] - HDF5 files that are damaged, or made to
-# end who reads them: refused by a process of their own, and the tool goes on.
-# COUNT random damages of a MAT file and of a container; more for a night.
+# crash their reader: ritz-walk, a process of its own, reads them first, and the
+# tool refuses them. COUNT is the number of random damages of a MAT file and of
+# a container; use more for a night.
 spoils=${2:-25}
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
@@ -10,7 +11,7 @@ import_chain --input tip=10:1 --output-at root=1:1 -o new.h5
 works 'files without checksums are made' \
     /usr/bin/python3 -s "$here/walker.py" make
 ulimit -c 0
-echo leak:libhdf5 >leaks # what HDF5 itself loses, under a sanitizer
+echo leak:libhdf5 >leaks # leaks of HDF5 itself, if the tools have a sanitizer
 export LSAN_OPTIONS="suppressions=$dir/leaks:print_suppressions=0"
 
 # --- sound files --------------------------------------------------------------
@@ -22,7 +23,8 @@ works 'a container without checksums is read as one with them' \
     sh -c "sed '1s/new/old/' new.txt | cmp - old.txt"
 expect 0 'a struct of another name' ritz-info own_member.mat
 
-# --- HDF5 dies, goes round, or asks for 4 GB ------------------------------------
+# --- HDF5 dies, loops, or asks for 4 GB
+# -----------------------------------------
 
 expect 1 'own_child.mat'"'"': damaged: HDF5 ends by' ritz-info own_child.mat
 expect 1 'damaged: HDF5 ends by' ritz-import --mass own_child.mat:K \
@@ -32,7 +34,8 @@ expect 1 'HDF5 has not read its' sh -c \
 expect 1 'HDF5 asks for more than 1024 MiB' ritz-info large_chunk.mat
 works 'none of them leaves a file' sh -c '! ls none.h5* 2>/dev/null'
 
-# --- what is no file of HDF5, or not whole ----------------------------------------
+# --- not an HDF5 file, or a part of one
+# --------------------------------------------
 
 head -c 3000 old.h5 >cut.h5
 expect 1 'cut.h5: ' ritz-check cut.h5
@@ -45,7 +48,7 @@ expect 1 'no container' ritz-check own_member.mat
 
 # --- the process ---------------------------------------------------------------------
 
-# a tool that was copied alone: what it needs is not sought elsewhere
+# a tool that was copied without ritz-walk does not look for it elsewhere
 mkdir alone
 cp "$bin/ritz-info" alone
 expect 1 'cannot be checked' alone/ritz-info new.h5
