@@ -1,21 +1,21 @@
-"""Faults in the tools, as faults.sh prepares them.
+"""Makes commands of the tools fail; faults.sh prepares the files.
 
-Usage: faults.py FOLDER PRELOAD TRIES [KIND]..., the tools being on the PATH.
+Usage: faults.py FOLDER PRELOAD TRIES [KIND]..., with the tools on the PATH.
 
-FOLDER/cases has one case a line, as of tests/fuzz/damage.py; nothing is damaged
-here. Each command runs once undisturbed, then TRIES times with a fault of each
-kind, or of those named, spread over its run:
+FOLDER/cases has one case per line, as for tests/fuzz/damage.py, but no file is
+damaged here. Each command runs once without a fault, then TRIES times with a
+fault of each KIND (by default of all), at points spread over its run:
 
     memory   an allocation fails, of Ritz or of a library
     write    a call that writes to a file fails
-    disk     files may not be larger than so many bytes
+    disk     files are limited to a number of bytes
     kill     SIGKILL at a call that writes, then the command once more
 
-It must end with status 1 and one sentence, and with no output; or, where a
-library goes on without the memory, with status 0 and the same bytes as without
-a fault. A signal is a finding in our own code, or after an allocation of our
-own; else it is the library's, and counted. What was killed
-leaves an output whole or not at all, and the next run removes the rest.
+The command must end with status 1, one sentence and no output. If a library
+does without the memory, status 0 and the same output as without a fault are
+right. A signal is a finding if it came in code of Ritz, or after an allocation
+of Ritz; otherwise the table counts it for the library. A killed command leaves
+a complete output or none, and the next run removes its drafts.
 """
 import os
 import pathlib
@@ -31,7 +31,7 @@ KINDS = ("memory", "write", "disk", "kill")
 
 
 class Run:
-    """What one run did: status, sentences, files, notes of the preload."""
+    """One run: its status, its sentences, the log of the preloaded library."""
 
     def __init__(self, folder, words, fault=None, preload=None, room=None):
         log = folder / "fault.log"
@@ -60,21 +60,21 @@ class Run:
         return int(self.notes.get("calls", 0))
 
     def home(self, note):
-        """Where an allocation failed, or a signal struck."""
+        """Whose code a note names: "ours", "libc" or "other"."""
         name = os.path.basename(self.notes.get(note, ""))
         return ("ours" if name.startswith("ritz") else
                 "libc" if name.startswith("libc.so") or not name else "other")
 
     def is_foreign(self):
-        """Whether a library ended the run, or spoke for itself, after it did
-        not get its own memory."""
+        """Whether a library ended the run, or printed sentences of its own,
+        after one of its allocations failed."""
         return self.home("failed") == "other" and (
             self.status not in (0, 1) and self.home("signal") != "ours" or
             len(self.sentences) > 1)
 
 
 class Case:
-    """A command, and the files that it leaves without a fault."""
+    """A command, and the files that it writes without a fault."""
 
     def __init__(self, folder, place, words, preload):
         self.folder, self.place, self.words = folder, place, words
@@ -97,15 +97,15 @@ class Case:
             (self.place / name).unlink()
 
     def count(self, kind):
-        """How many faults of a kind there can be."""
+        """Number of possible faults of a kind."""
         if kind == "disk":
             return max(map(len, self.made.values()), default=0)
         self.remove_outputs()
         return Run(self.place, self.words, f"{kind}:0", self.preload).calls()
 
     def meet(self, kind, number):
-        """What is wrong with a run, None if nothing; and whether a library
-        ended it."""
+        """Run with one fault. Returns what is wrong with the run, or None, and
+        whether a library ended it."""
         self.remove_outputs()
         if kind == "disk":
             run = Run(self.place, self.words, room=number - 1)

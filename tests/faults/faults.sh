@@ -2,9 +2,9 @@
 # Faults in every tool: allocations and calls that write fail, disks are full,
 # runs are killed.
 # Usage: faults.sh BUILD-FOLDER [TRIES] [KIND]...
-# TRIES faults of each kind for each case; 1 is for check, 50 for a night. Kinds
-# are memory, write, disk and kill, all by default. Ends with a table; status 1 if
-# there is a finding.
+# TRIES is the number of faults of each kind for each case: 1 for check, 50 for
+# a night. A KIND is memory, write, disk or kill; by default all are tried. The
+# script ends with a table, and with status 1 if there is a finding.
 set -eu
 build=$(cd "$1" && pwd)
 tries=${2:-1}

@@ -1,14 +1,14 @@
 /*
- * Loaded before the C library: one call of a tool fails. RITZ_FAULT is
- * "CALL:K", the K-th call from 1 on of a kind:
+ * A library that is loaded before the C library and makes one call of a tool
+ * fail. RITZ_FAULT is "KIND:K", for the K-th call of a kind, counted from 1:
  *
  *     memory   malloc, calloc, realloc: no memory
  *     write    write, pwrite, ftruncate, fsync, rename, fwrite's own: no room
- *     kill     the K-th call that writes is the last: SIGKILL
+ *     kill     the process is killed at the K-th call that writes
  *
- * How many calls there were, and whose call failed, is appended to the file
- * RITZ_FAULT_LOG: "calls N", "failed OBJECT", and "signal OBJECT" for the code
- * in which a signal caught the program.
+ * The file RITZ_FAULT_LOG gets lines: "calls N", the number of calls; "failed
+ * OBJECT", the program or library whose call failed; "signal OBJECT", the one
+ * whose code received a signal.
  */
 #define _GNU_SOURCE /* NOLINT: dladdr, and where a signal struck */
 #include <dlfcn.h>
@@ -29,7 +29,7 @@
 enum fault_kind { FAULT_NONE, FAULT_MEMORY, FAULT_WRITE, FAULT_KILL };
 
 static enum fault_kind kind;
-static long wanted; /* 0: calls are only counted */
+static long wanted; /* number of the call that fails; 0: none */
 static atomic_long calls;
 static bool ready;
 
@@ -37,7 +37,7 @@ void *__libc_malloc(size_t size);               /* NOLINT: glibc's own */
 void *__libc_calloc(size_t count, size_t size); /* NOLINT */
 void *__libc_realloc(void *block, size_t size); /* NOLINT */
 
-/* A line of the log, without the streams of the C library. */
+/* Append a line to the log, without the C library's streams, which allocate. */
 static void put_line(const char *what, const char *more)
 {
     char line[512];
@@ -56,7 +56,7 @@ static void put_line(const char *what, const char *more)
     (void)syscall(SYS_close, file);
 }
 
-/* The object that code belongs to. */
+/* Log the program or library that contains this code. */
 static void put_object(const char *what, const void *code)
 {
     Dl_info info = {0};
@@ -65,7 +65,8 @@ static void put_object(const char *what, const void *code)
                                                               : "unknown");
 }
 
-/* The C library asks for others: the first of them that is another object. */
+/* The C library often calls on behalf of others: the first of its callers in
+   another object. */
 static const void *find_asker(const void *from)
 {
     enum { MOST = 24 };
@@ -85,12 +86,12 @@ static const void *find_asker(const void *from)
     return from;
 }
 
-/* Whether this call is the one; `from`: who called. */
+/* Whether this call is to fail; `from` is its caller. */
 static bool is_to_fail(enum fault_kind asked, const void *from)
 {
     if (!ready || kind != asked || atomic_fetch_add(&calls, 1) + 1 != wanted)
         return false;
-    ready = false; /* what reports it shall not fail */
+    ready = false; /* the report itself must not fail */
     put_object("failed", find_asker(from));
     ready = true;
     return true;
@@ -118,12 +119,13 @@ static void note_signal(int number, siginfo_t *info, void *context)
     static const char *const words[] = {[FAULT_MEMORY] = "memory:",
                                         [FAULT_WRITE] = "write:",
                                         [FAULT_KILL] = "kill:"};
-    static char room[65536]; /* a stack that is full is a cause, too */
+    /* a stack for the handler, as an overflow of the stack is a signal too */
+    static char room[65536];
     const stack_t other = {.ss_sp = room, .ss_size = sizeof room};
     struct sigaction action = {
         .sa_sigaction = note_signal,
         .sa_flags = (int)(SA_SIGINFO | SA_RESETHAND | SA_ONSTACK)};
-    /* the process that reads HDF5 files first is no tool */
+    /* ritz-walk, which reads HDF5 files first, is not under test */
     const bool other_program =
         strcmp(program_invocation_short_name, "ritz-walk") == 0;
     const char *text = other_program ? NULL : getenv("RITZ_FAULT");
@@ -135,7 +137,7 @@ static void note_signal(int number, siginfo_t *info, void *context)
             wanted = strtol(text + strlen(words[k]), NULL, 10);
         }
     sigaltstack(&other, NULL);
-    (void)backtrace(&first, 1); /* it takes memory once */
+    (void)backtrace(&first, 1); /* its first call allocates */
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         sigaction(numbers[k], &action, NULL);
     ready = kind != FAULT_NONE;
@@ -185,7 +187,7 @@ void *realloc(void *block, size_t size)
 
 /* --- writes --------------------------------------------------------------- */
 
-/* Standard output and errors are the user's: only files fail. */
+/* Only files fail: standard output and standard error are the user's. */
 static bool is_file(int file)
 {
     struct stat there;

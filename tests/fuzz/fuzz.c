@@ -1,4 +1,7 @@
-/* The program: libFuzzer's two functions, and the table of targets. */
+/*
+ * The program: the two functions that libFuzzer calls, and the table of
+ * targets.
+ */
 #include "fuzz.h"
 
 #include <stdbool.h>
@@ -53,7 +56,8 @@ static void list_targets(void)
     exit(0);
 }
 
-/* "--target=NAME", which libFuzzer passes over; "--list" alone. */
+/* "--target=NAME" selects a target, and libFuzzer ignores it; "--list" lists
+   the targets and ends. */
 int LLVMFuzzerInitialize(int *argc, char ***argv)
 {
     static const char option[] = "--target=";
@@ -75,7 +79,8 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
     exit(2);
 }
 
-/* The copy ends where the bytes do, so that every overrun is seen. */
+/* The copy is as long as the input, so that AddressSanitizer detects each
+   overrun. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
     char *copy = malloc(size + 1);

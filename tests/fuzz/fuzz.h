@@ -1,10 +1,10 @@
 /*
- * Targets of the fuzzer: every reader of files and texts that others wrote. A
- * target gets bytes, hands them to a reader and drops what it read; what must
- * not happen is a signal, a report of a sanitizer, a leak, a refusal without a
- * sentence, more memory or more time than such an input deserves.
+ * Targets of the fuzzer: every reader of files and texts from elsewhere. A
+ * target passes bytes to a reader and frees what was read. A finding is a
+ * signal, a report of a sanitizer, a leak, a refusal without a sentence, or
+ * more memory or time than such an input needs.
  *
- * The working folder is the fuzzer's own, and may be written to.
+ * The working folder belongs to the fuzzer, and targets may write to it.
  */
 #ifndef RITZ_TESTS_FUZZ_H
 #define RITZ_TESTS_FUZZ_H
@@ -13,7 +13,7 @@
 
 #include <stdint.h>
 
-/* Reads @p size bytes, which a NUL follows. */
+/* Read @p size bytes, which are followed by a NUL. */
 typedef void fuzz_run(const char *bytes, int64_t size);
 
 typedef struct fuzz_target {
@@ -30,14 +30,15 @@ fuzz_run fuzz_claims, fuzz_records, fuzz_tracks;
 fuzz_run fuzz_container, fuzz_mat_hdf5;
 fuzz_run fuzz_commands, fuzz_initial, fuzz_rank_tracks;
 
-/** A reader ended so: abort unless it worked or says why not. */
+/** Abort unless a reader that ended with @p status succeeded or left a
+ * sentence. */
 void fuzz_judge(ritz_status status);
 
-/** Write a file into the working folder, which replaces one of that name. */
+/** Write a file into the working folder, in place of any file of that name. */
 void fuzz_store(const char *name, const char *bytes, int64_t size);
 
-/** Write the files of a text that begins with '>', and take away those of a text
- * again: they are no part of the next input. */
+/** Write the files that a text contains (from its first '>' on), and remove
+ * them again, so that the next input does not find them. */
 void fuzz_store_files(const char *text);
 void fuzz_remove_files(const char *text);
 

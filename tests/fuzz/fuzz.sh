@@ -1,10 +1,10 @@
 #!/bin/sh
-# Each reader under libFuzzer, from the small corpus that corpus.py makes.
+# Run readers under libFuzzer, beginning with the small corpus of corpus.py.
 # Usage: fuzz.sh BUILD-FOLDER SECONDS [TARGET]...
-# For SECONDS each, all targets by default. Inputs that found new paths stay in
-# RITZ_FUZZ_CORPUS/TARGET, if that is set, for the next campaign; those that are
-# findings stay in BUILD-FOLDER/findings. Ends with a table; status 1 if there is
-# one.
+# Each TARGET, by default every one, runs for SECONDS. Inputs that reach new
+# code are kept in RITZ_FUZZ_CORPUS/TARGET, if that is set, for the next
+# campaign; inputs that are findings are kept in BUILD-FOLDER/findings. The
+# script ends with a table, and with status 1 if there is a finding.
 set -eu
 build=$(cd "$1" && pwd)
 seconds=$2
@@ -18,7 +18,7 @@ program=$build/tests/ritz_fuzz
 # shellcheck disable=SC2046 # names are words
 [ $# -gt 0 ] || set -- $("$program" --list | cut -d' ' -f1)
 
-# in memory, where there is a folder of that kind: files are short-lived
+# in memory if possible, because files are short-lived
 parent=${TMPDIR:-/tmp}
 [ ! -w /dev/shm ] || parent=/dev/shm
 dir=$(mktemp -d "$parent/ritz-fuzz-XXXXXX")
@@ -37,9 +37,9 @@ clear_shadow_mmap_threshold=1073741824:quarantine_size_mb=16"
 export UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS="suppressions=$here/../unit/hdf5.supp:print_suppressions=0"
 
-# fuzz TARGET BYTES LEAKS SILENT: for so many seconds, inputs of so many bytes;
-# whether leaks are looked for after each; 3 where what tools print is dropped.
-# Its row of the table.
+# fuzz TARGET BYTES LEAKS SILENT: run a target for $seconds on inputs of at most
+# BYTES bytes, and print its row of the table. LEAKS 1: look for leaks after
+# each input. SILENT 3: drop what tools print.
 fuzz() {
     mkdir -p "$dir/$1" "$kept/$1"
     got=0
@@ -64,7 +64,7 @@ printf '| %-13s | %10s | %7s | %5s | %8s |\n' target executions seconds edges \
 echo '|---|---|---|---|---|'
 result=0
 for target; do
-    # HDF5 keeps memory for later, which is told from leaks at the end alone
+    # HDF5 keeps memory for reuse; only at exit does that differ from a leak
     case $target in
     container | mat-hdf5) fuzz "$target" 200 0 0 || result=1 ;;
     commands | initial | rank-tracks) fuzz "$target" 4096 1 3 || result=1 ;;

@@ -1,7 +1,7 @@
 /*
- * Command lines of the tools: their mains are compiled into the fuzzer, and
- * read options, files and texts as ever. A text has the tool and its words, one
- * a line, then the files that it names:
+ * Command lines of the tools. Their mains are compiled into the fuzzer, and
+ * read options, files and texts as usual. An input has the tool and its words,
+ * one per line, then the files that these name:
  *
  *     ritz-simulate
  *     --initial
@@ -11,9 +11,9 @@
  *     1 0.5
  *     ...
  *
- * Models are samples, and what a tool would compute with them is refused: see
- * fuzz_samples.c. No word has a '/', so that nothing outside of a folder of our
- * own is touched.
+ * Models are samples, and computations are refused (fuzz_samples.c). Inputs
+ * with a '/' in a word are skipped, so that no file outside of the working
+ * folder is touched.
  */
 #define _GNU_SOURCE /* NOLINT: declares memmem */
 #include "fuzz.h"
@@ -34,7 +34,8 @@ enum { MOST_WORDS = 48 };
 
 typedef int tool_main(int argc, char **argv);
 
-/* X(name of the tool behind "ritz-"): targets.cmake calls their mains so. */
+/* X(NAME): a tool ritz-NAME. CMakeLists.txt renames its main to
+   fuzz_ritz_NAME. */
 #define EACH_TOOL(X)                                                           \
     X(assemble)                                                                \
     X(basis)                                                                   \
@@ -66,9 +67,9 @@ static const struct tool {
 
 /* --- how a run ends ------------------------------------------------------- */
 
-static jmp_buf end;      /* where a tool that exits comes back to */
-static bool running;     /* a tool, which may exit */
-static cli_run *current; /* its run, from cli_parse to cli_finish */
+static jmp_buf end;      /* exit of a tool returns here */
+static bool running;     /* a tool runs, and may exit */
+static cli_run *current; /* the tool's run, from cli_parse to cli_finish */
 
 /* NOLINTBEGIN(*-reserved-identifier, *-identifier-naming): the linker's */
 void __real_cli_parse(const cli_program *program, const cli_option *options,
@@ -87,13 +88,14 @@ void __wrap_cli_parse(const cli_program *program, const cli_option *options,
     __real_cli_parse(program, options, argc, argv, run);
 }
 
-/* Signals are libFuzzer's, and this process goes on. */
+/* Does nothing: libFuzzer handles signals. */
 void __wrap_cli_watch(const cli_run *run)
 {
     (void)run;
 }
 
-/* Standard output stays open, and nothing gets its name. */
+/* Unlike the tools' own, leaves standard output open and publishes no
+   output. */
 int __wrap_cli_finish(cli_run *run, ritz_status status)
 {
     fuzz_judge(status);
@@ -123,7 +125,7 @@ void __wrap_exit(int status)
 
 /* --- words ---------------------------------------------------------------- */
 
-/* The words of a command line; each ends where its memory does. */
+/* The words of a command line, each in a heap block of its own length. */
 typedef struct fuzz_words {
     int count;
     char *word[MOST_WORDS + 1];
@@ -149,7 +151,7 @@ static void free_words(fuzz_words *words)
         free(words->word[k]);
 }
 
-/* In a folder of its own, which is left empty. */
+/* Run a tool in a folder of its own, which is empty afterwards. */
 static void run_tool(tool_main *tool, fuzz_words *words, const char *files)
 {
     static const char folder[] = "commands";
@@ -172,8 +174,8 @@ static void run_tool(tool_main *tool, fuzz_words *words, const char *files)
     fuzz_empty(folder);
 }
 
-/* A line each, with a word before it if there are some: the first, then always
-   the second. Returns the files behind them. */
+/* Add each line as a word, preceded by before[0] for the first line and by
+   before[1] for all others, if there are any. Returns the files that follow. */
 static const char *add_lines(fuzz_words *words, const char *text,
                              const char *const *before)
 {
@@ -190,8 +192,8 @@ static const char *add_lines(fuzz_words *words, const char *text,
     return text;
 }
 
-/* Whether no word leads out of the folder, and nothing is HDF5's own: what is
-   wrong with that is found elsewhere, or HDF5's. */
+/* Whether no word leads out of the folder, and no file is HDF5, which has its
+   own targets (fuzz_hdf5.c) and is not robust to damaged files. */
 static bool is_harmless(const fuzz_words *words, const char *bytes,
                         int64_t size)
 {
@@ -215,7 +217,7 @@ void fuzz_commands(const char *bytes, int64_t size)
     free_words(&words);
 }
 
-/* A line for --initial, then some for --input, then files. */
+/* A line for --initial, further lines for --input, then files. */
 void fuzz_initial(const char *bytes, int64_t size)
 {
     static const char *const head[] = {
@@ -231,7 +233,7 @@ void fuzz_initial(const char *bytes, int64_t size)
     free_words(&words);
 }
 
-/* A file. */
+/* The input is the file of --tracks. */
 void fuzz_rank_tracks(const char *bytes, int64_t size)
 {
     static const char *const line[] = {"ritz-rank", "s.h5", "--tracks",

@@ -1,5 +1,5 @@
 /*
- * Files that an input brings along, behind what is said about them:
+ * Files that an input contains, after the text that names them:
  *
  *     >K
  *     %%MatrixMarket matrix coordinate real symmetric
@@ -29,7 +29,7 @@ void fuzz_store(const char *name, const char *bytes, int64_t size)
     exit(1);
 }
 
-/* ">NAME", then what the file holds; returns what follows it. */
+/* ">NAME", then the file's content; returns what follows the content. */
 static const char *store_file(const char *line, int *count)
 {
     char name[NAME_SIZE + 1] = "";

@@ -1,11 +1,11 @@
 /*
- * HDF5 of any content. Damaged files of HDF5 would find what is wrong with
- * HDF5; here it writes the files itself: a sound one, then what the bytes say
- * about it. They are commands,
+ * HDF5 files of any content. Damaged bytes would find faults of HDF5, not of
+ * Ritz. Therefore HDF5 itself writes the files here: a sound file, edited as
+ * the input says. An input is a list of commands,
  *
- *     which object, what is done with it, and as many bytes as that takes,
+ *     number of an object, number of an edit, bytes that the edit takes,
  *
- * and zeros follow the last of them.
+ * followed by zeros.
  */
 #include "fuzz.h"
 
@@ -41,7 +41,7 @@ static unsigned take_byte(fuzz_tape *tape)
     return tape->at < tape->end ? (unsigned char)*tape->at++ : 0U;
 }
 
-/* A word of eight bytes: a striking one, or the next eight. */
+/* Eight bytes: one of some special values, or the next eight of the tape. */
 static void take_word(fuzz_tape *tape, char out[8])
 {
     static const double reals[] = {0.0,   -0.0,   1.0,      -1.0,     0.5,
@@ -85,7 +85,7 @@ static const char *take_object(fuzz_tape *tape, const fuzz_objects *all)
     return all->path[take_byte(tape) % (unsigned)all->count];
 }
 
-/* --- what is done with them ----------------------------------------------- */
+/* --- edits ---------------------------------------------------------------- */
 
 static hid_t take_type(fuzz_tape *tape)
 {
@@ -144,7 +144,7 @@ static void fill_values(fuzz_tape *tape, char values[MOST_BYTES])
         take_word(tape, values + at);
 }
 
-/* Whether so many values of a type can be written from our bytes. */
+/* Whether `volume` values of a type can be written from bytes of the input. */
 static bool is_small(hid_t type, hsize_t volume)
 {
     return volume > 0 && !H5Tis_variable_str(type) &&
@@ -152,7 +152,7 @@ static bool is_small(hid_t type, hsize_t volume)
            volume <= MOST_BYTES / H5Tget_size(type);
 }
 
-/* Another data set in the place of a member. */
+/* Replace a member by a data set from the tape. */
 static void replace_member(fuzz_tape *tape, hid_t file, const char *path)
 {
     char values[MOST_BYTES];
@@ -173,7 +173,7 @@ static void replace_member(fuzz_tape *tape, hid_t file, const char *path)
     H5Tclose(type);
 }
 
-/* Some other values in a data set, which then has no checksum of them. */
+/* Overwrite some values of a data set, and delete its checksum. */
 static void patch_values(fuzz_tape *tape, hid_t file, const char *path)
 {
     char values[2 * MOST_BYTES];
@@ -203,7 +203,7 @@ static void patch_values(fuzz_tape *tape, hid_t file, const char *path)
     }
 }
 
-/* Another attribute in the place of one of an object's, or none. */
+/* Delete an attribute of an object and, in most cases, write another one. */
 static void replace_attribute(fuzz_tape *tape, hid_t file, const char *path)
 {
     char values[MOST_BYTES];
@@ -254,7 +254,7 @@ static void edit_file(fuzz_tape *tape, const fuzz_objects *all, hid_t file)
     case 3:
         H5Ldelete(file, path, H5P_DEFAULT);
         break;
-    case 4: /* another member in its place */
+    case 4: /* replace it by another member */
         other = take_object(tape, all);
         H5Ldelete(file, path, H5P_DEFAULT);
         H5Lcreate_hard(file, other, file, path, H5P_DEFAULT, H5P_DEFAULT);
@@ -272,7 +272,8 @@ static void edit_file(fuzz_tape *tape, const fuzz_objects *all, hid_t file)
 
 /* --- sound files ---------------------------------------------------------- */
 
-/* A file as HDF5 wrote it once: that takes longer than to read it. */
+/* A file that HDF5 wrote once, kept because writing takes longer than
+   reading. */
 typedef struct fuzz_image {
     int64_t size;
     char *bytes; /* NULL: not written yet */
@@ -280,9 +281,9 @@ typedef struct fuzz_image {
 } fuzz_image;
 
 /*
- * HDF5 takes blocks of half a megabyte and more for each file and each
- * conversion, and frees them at once: to map and clear them took most of the
- * time. Without limits it keeps them.
+ * HDF5 allocates blocks of half a megabyte and more for each file and each
+ * conversion, and frees them at once; mapping and clearing them took most of
+ * the time. Without limits its free lists keep these blocks.
  */
 static bool keep_image(const char *path, fuzz_image *image)
 {
@@ -299,7 +300,7 @@ static bool keep_image(const char *path, fuzz_image *image)
            ritz_bytes_read(path, &image->size, &image->bytes) == RITZ_OK;
 }
 
-/* The file, with which is done what the tape says. */
+/* Write the file, edited as the tape says. */
 static void put_edited(fuzz_tape *tape, const fuzz_image *image,
                        const char *path)
 {
@@ -315,7 +316,7 @@ static void put_edited(fuzz_tape *tape, const fuzz_image *image,
         H5Fclose(file);
 }
 
-/* Nothing of HDF5 is left open by a reader. */
+/* Abort if a reader has left an object of HDF5 open. */
 static void judge_ids(void)
 {
     if (H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) == 0)
@@ -326,8 +327,9 @@ static void judge_ids(void)
 
 /* --- containers ----------------------------------------------------------- */
 
-/* The first letter is the kind: 'a' to 'h' full, 'A' to 'H' bare. What could be
-   read can be written. */
+/* The first letter is the kind of container: 'a' to 'h' with all optional
+   members, 'A' to 'H' without. A container that can be read must be
+   writable. */
 void fuzz_container(const char *bytes, int64_t size)
 {
     static const char path[] = "container.h5", again[] = "again.h5";
@@ -381,7 +383,7 @@ static void put_set(hid_t at, const char *name, hid_t type,
     H5Sclose(space);
 }
 
-/* 3 x 3 with 4 entries. */
+/* A sparse matrix of 3 x 3 with 4 entries. */
 static void put_sparse(hid_t at, const char *name)
 {
     const double data[] = {1.0, 2.0, 3.0, -1.0};
@@ -402,7 +404,8 @@ static void put_sparse(hid_t at, const char *name)
     H5Gclose(group);
 }
 
-/* A full, a sparse and a complex matrix, and a struct of the first two. */
+/* A file with a full, a sparse and a complex matrix, and a struct of the first
+   two. */
 static void make_mat(const char *path)
 {
     const double full[] = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
@@ -428,7 +431,7 @@ static void make_mat(const char *path)
     H5Pclose(plan);
 }
 
-/* What the file holds, and one matrix of it: each is another pass. */
+/* List the file's matrices, then read one of them in a second pass. */
 static void read_mat(const char *path, unsigned which)
 {
     ritz_foreign file = {0};
@@ -446,7 +449,7 @@ static void read_mat(const char *path, unsigned which)
     ritz_foreign_free(&file);
 }
 
-/* The first byte says which matrix is read. */
+/* The first byte selects the matrix to read. */
 void fuzz_mat_hdf5(const char *bytes, int64_t size)
 {
     static const char path[] = "v73.mat";

@@ -24,12 +24,12 @@
 
 enum { MOST_TEXTS = 8 };
 
-/* An option; texts of a list are counted. */
+/* An option, and where the request keeps its text or list of texts. */
 typedef struct fuzz_option {
     const char *word;
-    bool is_file; /* no path leads out of the working folder */
-    size_t text;  /* offset of a text, or of the list of texts */
-    size_t count; /* offset of their number; 0: there is one */
+    bool is_file; /* a path, which must stay in the working folder */
+    size_t text;  /* offset of the text, or of the list of texts */
+    size_t count; /* offset of the number of texts; 0: one text */
 } fuzz_option;
 
 #define ONE(word, field)                                                       \
@@ -83,7 +83,7 @@ static const fuzz_option of_space[] = {
 };
 #undef REQUEST
 
-/* What a text asks for; lists of texts are kept here. */
+/* The request that a text states, and its lists of texts. */
 typedef struct fuzz_reading {
     char *request;
     const fuzz_option *options;
@@ -108,7 +108,7 @@ static void take_list(fuzz_reading *reading, const fuzz_option *option,
             reading->list[k][(*count)++] = value;
 }
 
-/* "WORD VALUE"; unknown words are passed over. */
+/* "WORD VALUE"; unknown words are ignored. */
 static void take_option(fuzz_reading *reading, char *line)
 {
     char *value = strchr(line, ' ');

@@ -1,4 +1,4 @@
-/* Files of matrices and decks, in memory. */
+/* Files of matrices and decks, read from memory. */
 #include "fuzz.h"
 
 #include "base/alloc.h"
@@ -23,7 +23,7 @@ static void read_matrices(const ritz_format *format, const char *bytes,
     ritz_foreign_free(&file);
 }
 
-/* A reader is called with what it recognises. */
+/* Call a reader on bytes that it recognises. */
 static void read_as(const ritz_format *format, const char *bytes, int64_t size)
 {
     if (format->recognise(bytes, size))
@@ -45,7 +45,7 @@ void fuzz_dmig(const char *bytes, int64_t size)
     read_as(&ritz_format_dmig, bytes, size);
 }
 
-/* Of MAT files those of level 5: HDF5 trusts its file. */
+/* Only MAT files of level 5: HDF5 is not robust to damaged bytes. */
 void fuzz_mat(const char *bytes, int64_t size)
 {
     enum { HEAD = 512 };

@@ -1,7 +1,8 @@
 /*
- * What the tools of fuzz_commands.c find instead of files and answers: samples
- * under names of one letter, and a refusal wherever computing begins. What is
- * read of a command line up to there, and of the files that it names, is read.
+ * Stand-ins for what the tools of fuzz_commands.c read and compute: sample
+ * models under names of one letter, and a refusal wherever a computation
+ * begins. Up to there the tools read their command lines and the files that
+ * these name.
  */
 #include "cli/model.h"
 
@@ -73,9 +74,9 @@ ritz_status __wrap_model_read(cli_run *run, const char *path, int wanted,
     return RITZ_OK;
 }
 
-/* --- answers -------------------------------------------------------------- */
+/* --- results -------------------------------------------------------------- */
 
-/* Three modes, so that a table of their tracks is short. */
+/* A ranking of three modes, which keeps the table of their tracks short. */
 ritz_status __wrap_ritz_rank(const ritz_ranker *ranker,
                              const ritz_rank_request *request,
                              ritz_ranking *out)
@@ -127,7 +128,7 @@ double __wrap_ritz_responder_uncertainty(const void *responder)
     return 0.0;
 }
 
-/* Nothing is made, and that is well. */
+/* A stand-in that does nothing and succeeds. */
 #define PASSES(name)                                                           \
     ritz_status __wrap_##name(void);                                           \
     ritz_status __wrap_##name(void)                                            \

@@ -1,4 +1,4 @@
-/* Scenes, signals and values of options. */
+/* Texts: scenes, signals and values of options. */
 #include "fuzz.h"
 
 #include "base/alloc.h"
@@ -17,7 +17,7 @@
 
 /* --- scenes --------------------------------------------------------------- */
 
-/* A first line "# at: TEXT" is taken as --at. */
+/* A first line "# at: TEXT" is the value of --at. */
 static void read_settings(const ritz_scene *scene, const char *bytes)
 {
     static const char mark[] = "# at: ";
@@ -62,13 +62,13 @@ static void read_signal(const char *text)
         (void)ritz_signal_at(&signal, times[k], 1.0);
 }
 
-/* "= WORDS", or the lines of a table. */
+/* "= WORDS" is a signal in words, all else is a table. */
 void fuzz_signal(const char *bytes, int64_t size)
 {
     if (strncmp(bytes, "= ", 2) != 0) {
         fuzz_store("table", bytes, size);
         read_signal("table");
-    } else if (!strchr(bytes, '/')) { /* it may be the name of a file */
+    } else if (!strchr(bytes, '/')) { /* it may name a file */
         read_signal(bytes + 2);
     }
 }
@@ -100,7 +100,7 @@ static void read_tolerance(const char *text)
     ritz_tolerance_print(&request, sizeof printed, printed);
 }
 
-/* "shift-hz 0,5" */
+/* "KEY VALUE", such as "shift-hz 0,5". */
 static void read_choice(const char *text)
 {
     const size_t length = strcspn(text, " ");
@@ -166,7 +166,7 @@ static const struct option_reader {
     {"units ", read_units},
 };
 
-/* Lines "READER TEXT". */
+/* Lines "READER TEXT": each names the reader of its text. */
 void fuzz_texts(const char *bytes, int64_t size)
 {
     char *text = strndup(bytes, (size_t)size);

@@ -13,10 +13,10 @@
 
 /* --- claims --------------------------------------------------------------- */
 
-/* The folder of commands, which claims write files into. */
+/* The folder where commands run, and into which claims write files. */
 static const char folder[] = "claims";
 
-/* The answer of the last command, as if one had been run. */
+/* What the last command would have printed as JSON. */
 static json_t *make_answer(void)
 {
     return json_pack("{s:[f,f,f], s:s, s:b, s:i, s:[{s:s, s:f}]}",
@@ -25,7 +25,7 @@ static json_t *make_answer(void)
                      "measures", "name", "static-gain-relative", "value", 1e-9);
 }
 
-/* No tool is where commands look for them, so that none is run. */
+/* No command runs, because its tools are not where claims look for them. */
 void fuzz_claims(const char *bytes, int64_t size)
 {
     cli_run run = {.quiet = true};
@@ -76,7 +76,7 @@ void fuzz_records(const char *bytes, int64_t size)
 ritz_status __wrap_picture_draw(picture *p, const char *template, /* NOLINT */
                                 const char *title, const char *summary);
 
-/* What has been read is not drawn: gnuplot is no reader of ours. */
+/* Draws nothing: gnuplot is not to be fuzzed. */
 ritz_status __wrap_picture_draw(picture *p, const char *template, /* NOLINT */
                                 const char *title, const char *summary)
 {

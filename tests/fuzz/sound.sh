@@ -1,7 +1,7 @@
-# Sound files of every kind, small, of the dual-spin spacecraft in $data; and
-# in `cases` one case a line: a file that a tool reads, then the command, in which
-# '@' is that file and OUT the output. Sourced in an empty folder, the tools being
-# on the PATH.
+# Make small sound files of every kind from the dual-spin spacecraft in $data,
+# and the file `cases` with one case per line: a file that a tool reads, then
+# the command, in which '@' is that file and OUT the output. To be sourced in an
+# empty folder, with the tools on the PATH.
 # shellcheck shell=sh disable=SC2154 # $data is of those who source it
 # --- sound files, small and of every kind --------------------------------------
 
@@ -44,7 +44,7 @@ rows=$(awk '!/^%/ { print $1; exit }' k.mtx)
 awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print i, 0 }' >k.dofs
 awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print "1e-3 0" }' >values.tsv
 
-# one matrix as DMIG, in small fields and large
+# one matrix as DMIG, in small fields and in large ones
 {
     echo 'DMIG,KAAX,0,6,2,0'
     for k in 1 2 3; do
@@ -56,7 +56,8 @@ awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print "1e-3 0" }' >values.tsv
     done
 } >k.pch
 
-# --- what meets damage ----------------------------------------------------------
+# --- cases: a file to damage, and the command that reads it
+# ---------------------
 
 cat >cases <<'CASES'
 stator.op4   ritz-info @

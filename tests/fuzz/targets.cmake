@@ -1,5 +1,5 @@
-# The program ritz_fuzz, and a test for each of its targets; one test that is
-# skipped where there is no libFuzzer.
+# The program ritz_fuzz and a test for each of its targets; without libFuzzer a
+# single test, which is skipped.
 include(CheckCSourceCompiles)
 set(CMAKE_REQUIRED_FLAGS -fsanitize=fuzzer)
 check_c_source_compiles("
@@ -9,22 +9,22 @@ check_c_source_compiles("
 unset(CMAKE_REQUIRED_FLAGS)
 set(script ${CMAKE_CURRENT_LIST_DIR}/fuzz.sh)
 if(NOT compiler_has_fuzzer)
-    add_custom_target(ritz_fuzz) # asked for by bootstrap; the script says more
+    add_custom_target(ritz_fuzz) # empty; fuzz.sh says that it is skipped
     ritz_test(fuzz fuzz sh ${script} ${PROJECT_BINARY_DIR} 0)
     return()
 endif()
 
 add_subdirectory(fuzz)
 file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.c)
-# rows of targets and names of stand-ins are read from them
+# rows of targets and names of stand-ins are read from these files
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
 add_executable(ritz_fuzz ${files} $<TARGET_OBJECTS:ritz_readers>)
 target_include_directories(ritz_fuzz PRIVATE ${PROJECT_SOURCE_DIR}
     unit unit/fixtures)
 target_compile_options(ritz_fuzz PRIVATE -g -O1
     -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
-# What is read is neither drawn nor computed with, and a tool that exits comes
-# back: each __wrap_NAME of these files stands in for a NAME.
+# Tools draw and compute nothing, and an exit returns to the fuzzer: each
+# __wrap_NAME in these files replaces NAME.
 set(wrapped)
 foreach(file ${files})
     file(STRINGS ${file} lines REGEX "__wrap_[a-z]|^(PASSES|REFUSES)")
