@@ -1,12 +1,13 @@
 #!/usr/bin/python3 -s
-"""bounds.py FOLDER-OF-THE-TOOLS [--cases N] [--seed N] - no proven bound of a
-response is below the error, of any input and output, whatever the damping.
+"""bounds.py FOLDER-OF-THE-TOOLS [--cases N] [--seed N] - check that no proven
+bound of a response is below the error of any channel, whatever the damping.
 
-Cases are drawn: a data set of up to 400 dofs, up to three inputs and outputs
+Cases are random: a data set of up to 400 dofs, up to three inputs and outputs
 (displacements, velocities, accelerations), a method, an order, a band and a
-ratio from 0.001 to 0.9. The truth is the sum of all modes by NumPy, one channel
-after the other, each relative to its own largest |H|; and what ritz-verify
-measures, of all channels together. Status 1 if a bound is below either.
+damping ratio from 0.001 to 0.9. A bound is compared with the error of each
+channel relative to its own largest |H|, against the sum of all modes by NumPy,
+and with the error of all channels by ritz-verify. Status 1 if a bound is below
+either of them.
 """
 import pathlib
 import random
@@ -27,20 +28,20 @@ POINTS = {  # dofs that a signal may be of: components, grids
 LEFT_OUT = {"macneal", "tangential"}  # no response; too slow
 # Cases whose bound was too low: data set, signals, method, ratio, band
 FOUND = [("truss72", ["--input", "i0=8:2", "--output-at", "o0=3:2"], "irs",
-          0.03, 0, 30.863727)]  # a rigid motion is a mode by rounding
-COUPLED = 1e-6  # of what could be there: less has nothing to do with it
-PEAK = 1e-3  # of the largest |H|: a peak is not met better by the points
-ROUNDING = 1e-10  # of ritz-verify's own measurement
+          0.03, 0, 30.863727)]  # rounding makes a mode of a rigid motion
+COUPLED = 1e-6  # of the largest possible response; less is no coupling
+PEAK = 1e-3  # relative to the largest |H|: points miss peaks by this much
+ROUNDING = 1e-10  # of what ritz-verify measures
 
 
 def without(options, *names):
-    """Options less some, each with its value."""
+    """The options without those of the given names and their values."""
     pairs = [options[k:k + 2] for k in range(0, len(options), 2)]
     return [word for pair in pairs if pair[0] not in names for word in pair]
 
 
 def signals(name):
-    """Some inputs and outputs."""
+    """Random inputs and outputs of a data set."""
     comps, most = POINTS[name]
 
     def place():
@@ -55,14 +56,14 @@ def signals(name):
 
 
 def channels_of(path):
-    """B, and C, Cv and Ca of a file."""
+    """B, and [C, Cv, Ca], of a container."""
     with h5py.File(path) as file:
         return (file["inputs/B"][()],
                 [file[f"outputs/{c}"][()] for c in ("C", "Cv", "Ca")])
 
 
 def summed(value, B, C, zeta, w):
-    """All channels by modes, and what each could be at most."""
+    """All channels as sums over modes, and the largest that each could be."""
     w = w[:, None]
     own = numpy.maximum(value, 0)[None]
     Z = own - w**2 + 2j * zeta * w * numpy.sqrt(own)
@@ -75,7 +76,7 @@ def summed(value, B, C, zeta, w):
 
 
 def points(values, zeta, low, high):
-    """Frequencies of a band, rad/s: even ones, and around all poles."""
+    """Frequencies in a band [rad/s], even ones and some near each pole."""
     f = [numpy.linspace(low, high, 400)]
     for pole in effectivity.hertz(numpy.concatenate(values)):
         f.append(pole * (1 + zeta * numpy.linspace(-6, 6, 121)))
@@ -85,7 +86,7 @@ def points(values, zeta, low, high):
 
 
 def worst_channel(full, rigid, model, reduced, num_rigid, asked):
-    """Largest error of a channel, relative to what its bound is."""
+    """Largest error of a channel, relative to the scale of its bound."""
     zeta, low, high = asked
     if rigid:
         low = max(low, 1e-3 * high)
@@ -98,7 +99,7 @@ def worst_channel(full, rigid, model, reduced, num_rigid, asked):
     b, c = channels_of(reduced)
     w = points([value, small], zeta, low, high)
     H, could = summed(value, full.X.T @ B, [k @ full.X for k in C], zeta, w)
-    if len(value) < len(full.K):  # what no mode with mass answers
+    if len(value) < len(full.K):  # static response of massless motions
         A = numpy.linalg.solve(full.K + full.s * full.M, B)
         H = H + C[0] @ A - ((C[0] @ full.X) / (full.value + full.s)) @ (
             full.X.T @ B)
@@ -110,7 +111,7 @@ def worst_channel(full, rigid, model, reduced, num_rigid, asked):
 
 
 def estimate(bin_, case, model, method, asked):
-    """The bound of a reduction of some order; None if there is none."""
+    """A reduction of random order and its bound; None if it has no bound."""
     zeta, low, high = asked
     method, how, more = method
     order = int(case["order"] * random.choice([0.5, 0.75, 1, 1.5]))
@@ -129,7 +130,7 @@ def estimate(bin_, case, model, method, asked):
 
 
 def measured(bin_, case, model, reduced, asked):
-    """What ritz-verify has of all channels together."""
+    """The error of all channels together, by ritz-verify."""
     zeta, low, high = asked
     answer = methods.run(bin_, "ritz-verify", model, reduced, "-o",
                          case["folder"] / "verified.h5", "--band-hz",
@@ -139,7 +140,7 @@ def measured(bin_, case, model, reduced, asked):
 
 
 def draw_band(hertz):
-    """Up to some mode, or a little beside it; from 0 or from later."""
+    """A damping ratio, and a band that ends at or near one of six modes."""
     k = random.randint(1, 6)
     high = (hertz[k - 1] * hertz[k])**0.5 if random.random() < 0.7 \
         else hertz[k - 1] * random.uniform(0.9, 1.3)
@@ -148,20 +149,20 @@ def draw_band(hertz):
 
 
 def draw(case):
-    """Signals, a method, and a ratio and a band."""
+    """A random case: signals, a method, a damping ratio and a band."""
     return (signals(case["name"]), random.choice(
         [m for m in methods.METHODS if m[0] not in LEFT_OUT]),
         draw_band(case["hertz"]))
 
 
 def found_before(case):
-    """The same of those that were too low once."""
+    """The cases of FOUND that belong to this data set."""
     return [(words, methods.some_methods([method])[0], asked)
             for name, words, method, *asked in FOUND if name == case["name"]]
 
 
 def compare(bin_, case, words, method, asked):
-    """One case; 1 if its bound is too low, None if there is none."""
+    """Print one case; whether its bound is too low, None if it has none."""
     model = case["folder"] / "model.h5"
     methods.run(bin_, "ritz-import", *case["bare"], *words, "-o", model)
     made = estimate(bin_, case, model, method, asked)
@@ -180,7 +181,7 @@ def compare(bin_, case, words, method, asked):
 
 
 def prepare(bin_, case):
-    """What cases of a data set share; None if it is not looked at."""
+    """The data that all cases of a set share; None if the set is not tested."""
     if case["name"] not in POINTS:
         return None
     case["bare"] = without(case["options"], "--damping", "--input",
@@ -195,7 +196,7 @@ def prepare(bin_, case):
 
 
 def main():
-    """Parse and run."""
+    """Read the options and run the cases."""
     parser = methods.parser_of(__doc__)
     parser.add_argument("--cases", type=int, default=50, help="of a data set")
     parser.add_argument("--seed", type=int, default=1)
@@ -211,7 +212,7 @@ def main():
                                          for _ in range(asked.cases)]:
             try:
                 found = compare(asked.bin, case, *one)
-            except methods.Refused:  # drawn, so it may be nothing to reduce
+            except methods.Refused:  # a drawn case may leave nothing to reduce
                 continue
             count += found is not None
             low += bool(found)

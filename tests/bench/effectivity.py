@@ -143,7 +143,7 @@ class Response:
         return abs(H - H_r).max() / abs(H).max()
 
     def rounding(self, path, rigid):
-        """How far 4 eps of the sums behind K and M move H_r, over max |H_r|."""
+        """Relative change of H_r by rounding: 4 eps of the sums in K and M."""
         with h5py.File(path) as file:
             K, M, B = (file[k][()] for k in ("K", "M", "inputs/B"))
             C = [file[f"outputs/{c}"][()] for c in ("C", "Cv", "Ca")]
@@ -196,7 +196,7 @@ def estimates_of(path):
 
 
 def cause_of(path, name):
-    """Why a bound is far above what is known of the error; "" if it is not."""
+    """The cause of a bound far above its estimate; "" if it has none."""
     with h5py.File(path) as file:
         told = file["estimates"]
         causes = told["cause"] if "cause" in told else []
@@ -205,8 +205,8 @@ def cause_of(path, name):
 
 
 def reduced_values(full, path):
-    """Eigenvalues of a reduced model, and their rounding, absolute: that of a
-    rigid mode is no part of it, as it may be 0."""
+    """Eigenvalues of a reduced model, and their rounding. It is absolute,
+    because the eigenvalue of a rigid mode may be 0."""
     with h5py.File(path) as file:
         K, M, T = (file[k][()] for k in ("K", "M", "T"))
     value, Q = small_modes(K, M)

@@ -86,7 +86,7 @@ def error_of(truth, path):
     eye = numpy.eye(len(A))
     error = size = 0
     poles = abs(numpy.linalg.eigvals(A).imag)
-    # poles of rigid modes are 0 to rounding, and H is infinite there
+    # poles of rigid modes are 0 but for rounding, and H is infinite there
     poles = poles[poles >= truth.omega.min()]
     for w in numpy.unique(numpy.concatenate([truth.omega, poles])):
         if w == 0 and isinstance(truth, Component):

@@ -1,16 +1,21 @@
 #!/usr/bin/python3 -s
-"""ratios.py FOLDER-OF-THE-TOOLS [--only SET] - damping `modal Z`, Z from 0.001 to
-0.9, on components of data/ and of others: the table of docs/methods/damping.md,
-on standard output.
+"""ratios.py FOLDER-OF-THE-TOOLS [--only SET] - damping `modal Z` with Z from
+0.001 to 0.9, on components of data/ and on third-party ones. Prints the table
+of docs/methods/damping.md.
 
-The reference is D = 2 Z M (M^-1 K)^1/2, the sum of all modes by SciPy. Compared
-with it are the engines of ritz-frf; an identity basis, and Craig-Bampton with its
-bound, by ritz-reduce and ritz-verify. Status 1 if an engine is off by more than
-1e-10 of the largest |H| (krylov and rational 1e-9; twice that of a free body,
-whose rigid stiffness is rounding; of more than 2000 dofs 1e-6), an identity by
-more than 1e-10 (1e-9 at Z = 0.001, where a resonance makes 500 times as much of
-the rounding of its eigenvalue), or a bound is below what ritz-verify measures.
-Files of others come from RITZ_EXTERNAL_DATA.
+The reference is D = 2 Z M (M^-1 K)^1/2, as the sum of all modes by SciPy. The
+script compares with it the engines of ritz-frf and, by ritz-reduce and
+ritz-verify, an identity basis and Craig-Bampton with its bound.
+
+Status 1 if
+- an engine is off by more than 1e-10 of the largest |H|, krylov and rational by
+  more than 1e-9; on a free body, whose rigid stiffness is rounding, by more
+  than twice as much; above 2000 dofs by more than 1e-6;
+- an identity basis is off by more than 1e-10, or 1e-9 at Z = 0.001, where a
+  resonance amplifies the rounding of its eigenvalue 500 times;
+- a bound is below what ritz-verify measures.
+
+Third-party files are read from RITZ_EXTERNAL_DATA.
 """
 import pathlib
 import sys
@@ -25,16 +30,16 @@ import methods  # noqa: E402
 
 RATIOS = [0.001, 0.1, 0.9]
 ENGINES = {"modal": 1e-10, "direct": 1e-10, "krylov": 1e-9, "rational": 1e-9}
-LARGE = 2000  # dofs, beyond which not all modes are found
+LARGE = 2000  # dofs; larger sets do not find all modes
 LARGE_WITHIN = 1e-6
 IDENTITY = 1e-10
-DENSE = 2000  # dofs of an identity basis
-LOW = 0.05  # of the band, of a free body: below, rounding of K rules
+DENSE = 2000  # dofs; larger sets have no identity basis
+LOW = 0.05  # of the band: on free bodies rounding of K dominates below
 POINTS = 31
 
 
 def tetrahedra(external, folder):
-    """A free solid on a mesh of ANSYS, linear tetrahedra of steel made here."""
+    """A free steel solid of linear tetrahedra, on a mesh of ANSYS."""
     p = external / "ansys"
 
     def table(name, first, last):
@@ -56,7 +61,7 @@ def tetrahedra(external, folder):
     for nodes in elements:
         A = numpy.column_stack([numpy.ones(4), x[nodes]])
         volume = abs(numpy.linalg.det(A)) / 6
-        g = numpy.linalg.inv(A)[1:]  # gradients of the four shapes
+        g = numpy.linalg.inv(A)[1:]  # gradients of the shape functions
         S = numpy.zeros((6, 12))
         for k in range(4):
             a, b, c = g[:, k]
@@ -76,7 +81,7 @@ def tetrahedra(external, folder):
 
 
 def linear_block(external, folder, _):
-    """A free solid of linear tetrahedra, masses lumped."""
+    """A free solid of linear tetrahedra with lumped masses."""
     p = external / "abaqus"
     K, M = (methods.abaqus(p / f"blockC3D4_{name}1.mtx")
             for name in ("STIF", "MASS"))
@@ -110,7 +115,7 @@ def conrod(external, folder, _):
 
 
 def bare_lf10(external, folder, n):
-    """A beam, without its own damping."""
+    """The beam LF10 without its damping matrix."""
     case = methods.lf10(external, folder, n)
     at = case["options"].index("--damping")
     del case["options"][at:at + 2], case["damping"]
@@ -127,7 +132,7 @@ SETS = [row if row[0] != "LF10" else (row[0], bare_lf10, row[2])
 
 
 def all_modes(path, rigid, soft):
-    """Of a component with many dofs, in doubles; `soft` is an eigenvalue."""
+    """All modes of a large component, in double precision, from K + soft M."""
     with h5py.File(path) as file:
         K, M = (effectivity.sparse(file[key]).toarray() for key in "KM")
         B, C = file["inputs/B"][()], file["outputs/C"][()]
@@ -156,14 +161,14 @@ class Reference:
         self.B, self.C = X.T @ B, C @ X
 
     def largest(self, ratio):
-        """max |H|, at resonances too."""
+        """The largest |H| of the band, resonances included."""
         hertz = numpy.concatenate([numpy.linspace(self.low, self.band, 500),
                                    numpy.sqrt(self.value) / 2 / numpy.pi])
         return abs(self.respond(ratio, hertz[(hertz >= self.low) & (
             hertz <= self.band)])).max()
 
     def respond(self, ratio, hertz):
-        """H at some frequencies, of outputs that are displacements."""
+        """H at the given frequencies; outputs are displacements."""
         w = 2 * numpy.pi * hertz[:, None]
         own = self.value[None]
         Z = own - w**2 + 2j * ratio * w * numpy.sqrt(own)
@@ -171,14 +176,14 @@ class Reference:
 
 
 def response_of(path):
-    """Frequencies and H of a file of ritz-frf."""
+    """Frequencies and H from a file of ritz-frf."""
     with h5py.File(path) as file:
         return (file["hertz"][()],
                 file["H/real"][()] + 1j * file["H/imag"][()])
 
 
 def engines_of(bin_, case, reference, ratio):
-    """By engine, the largest error over the largest |H|; what was stated."""
+    """By engine: largest error over the largest |H|, stated uncertainty."""
     out = case["folder"] / "response.h5"
     largest = reference.largest(ratio)
     found = {}
@@ -196,7 +201,7 @@ def engines_of(bin_, case, reference, ratio):
 
 
 def reduction_of(bin_, case, method, more, ratio):
-    """Columns, error of the response by ritz-verify, bound of ritz-reduce."""
+    """Number of columns, error by ritz-verify, and bound by ritz-reduce."""
     folder, component = case["folder"], case["component"]
     basis, reduced = folder / "basis.h5", folder / "reduced.h5"
     damping = ["--damping", f"modal {ratio}"]
@@ -215,13 +220,13 @@ def reduction_of(bin_, case, method, more, ratio):
 
 
 def cell(value):
-    """A number of the table; a mark for what there is not."""
+    """A number of the table; empty if there is none."""
     return "" if value is None or numpy.isnan(value) else (
         "none" if numpy.isinf(value) else f"{value:.1e}")
 
 
 def line(bin_, case, reference, ratio):
-    """One line; how many numbers of it are not as they must be."""
+    """Print one row of the table; return how many of its numbers are wrong."""
     wrong = []
     found = engines_of(bin_, case, reference, ratio)
     large = case["dofs"] > LARGE
@@ -240,7 +245,7 @@ def line(bin_, case, reference, ratio):
         _, error, bound = reduction_of(bin_, case, "full", [], ratio)
         if not error <= IDENTITY / min(1, 100 * ratio):
             wrong.append(f"the identity is off by {error:.1e}")
-        if error > bound:  # massless motions have none
+        if error > bound:  # infinite bounds of massless motions pass
             wrong.append(f"identity: {error:.1e} above {bound:.1e}")
         cells += [cell(error), cell(bound)]
     else:
@@ -261,7 +266,7 @@ TITLES = ["set", "dofs", "Z", *ENGINES, "stated", "identity", "bound",
 
 
 def main():
-    """Parse and run."""
+    """Read the options and print the table."""
     asked = methods.parser_of(__doc__).parse_args()
     methods.SETS[:] = SETS
     print("| " + " | ".join(TITLES) + " |\n|" + "---|" * len(TITLES),

@@ -1,7 +1,8 @@
 #!/usr/bin/python3 -s
 """pages.py FOLDER-OF-THE-TOOLS - the commands of docs/import.md turn foreign
-files into what Ritz reads; the script of docs/container.md writes a component,
-of which those members must exist that the page does not call optional."""
+files into files that Ritz reads. The script of docs/container.md writes a
+component; without a member that the page does not call optional, it is refused.
+"""
 import os
 import pathlib
 import re
@@ -21,7 +22,7 @@ except ImportError as missing:
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 BIN = pathlib.Path(sys.argv[1]).resolve()
 EXTERNAL = pathlib.Path(os.environ.get("RITZ_EXTERNAL_DATA", "absent"))
-# of two grids with three directions each, no entry of which is short
+# of two grids with three directions each; no entry has few digits
 K = numpy.diag([1000.5, 2000.25, 3000.125] * 2)
 K[0, 3] = K[3, 0] = -1000.0 / 3.0
 K[1, 2] = K[2, 1] = 1.0 / 7.0
@@ -60,7 +61,7 @@ check.count = 0
 # --- a component from a script ------------------------------------------------
 
 def members(text):
-    """Name, type and whether it is optional, of each row of a table."""
+    """For each row of a table: name, type and whether it is optional."""
     for row in re.findall(r"^\| `([^`]+)` \| ([^|]+) \|", text, re.M):
         yield row[0], row[1], "optional" in row[1]
 
@@ -111,7 +112,7 @@ def drop_members():
 
 
 def change_types():
-    """Types are those of the page: others are refused, narrower ones read."""
+    """Other types than the page states are refused, narrower ones are read."""
     for name, value, due in (("dofs/grid", [1.0, 2.0], 1),
                              ("inputs/B", [[1], [0]], 1),
                              ("inputs/names", ["push"], 1),
@@ -171,7 +172,7 @@ def write_samples():
 
 
 def recognise(path):
-    """What ritz-info and ritz-import take a file for."""
+    """The format as which ritz-info and ritz-import recognise a file."""
     status, said = tool("ritz-info", path)
     found = re.search(r"looks like (.*), which is not read: .* as "
                       r"docs/import\.md shows", said)
