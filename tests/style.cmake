@@ -40,7 +40,7 @@ foreach(folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
             cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${folder}
                 OUTPUT_VARIABLE name)
             if(${file} IN_LIST seen)
-                continue() # a file of two programs is looked at once
+                continue() # a file of two programs is checked once
             endif()
             list(APPEND seen ${file})
             style_stamp(tidy ${file}

@@ -2,7 +2,7 @@
 
 Gyroscopic terms are the skew part of D. Programs that symmetrise what they read, or take the diagonal of Phi'D Phi, lose them without a trace, as skew matrices have neither. A wheel on isotropic supports then has two double frequencies, where it whirls at four.
 
-Ritz keeps D as it is, says how much of it is gyroscopic, finds the poles with it, and ranks modes that it couples as one, by exact Hankel values with all of D. What nothing damps has none.
+Ritz keeps D as it is, says how much of it is gyroscopic, finds the poles with it, and ranks modes that it couples as one, by exact Hankel values with all of D. A motion without damping has no Hankel value.
 """
 import numpy as np
 import scipy.linalg as la
