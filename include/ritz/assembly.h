@@ -186,10 +186,13 @@ typedef struct ritz_compare_row {
                                between, they would have been */
     int64_t *kept;    /* num_kept indices into the flexible modes, ascending */
     int64_t num_completed; /* of those, kept only as a cluster is never split */
-    int64_t num_joined;    /* flexible modes that damping couples to others and
+    int64_t num_equal; /* kept only as their value is that of the least one */
+    double cut_hertz[2], cut_value[2]; /* a mode that is kept and one that is
+                                          left out which are a pair; 0: none */
+    int64_t num_joined;     /* flexible modes that damping couples to others and
                               that are ranked with them as one cluster */
-    int64_t num_vectors;   /* Krylov vectors kept instead of modes */
-    int64_t order;         /* of the stage-2 system, strays removed */
+    int64_t num_vectors;    /* Krylov vectors kept instead of modes */
+    int64_t order;          /* of the stage-2 system, strays removed */
     double frequency_error; /* worst relative, of those modes; NaN: no mode */
     double allowed;         /* what rounding allows it, c eps lambda_max /
                                lambda_k with c = 20 e; NaN between */
@@ -360,7 +363,8 @@ typedef struct ritz_tracking {
     int64_t num_configurations;
     int64_t *before;  /* the configuration that each is followed from; -1 */
     int64_t *first;   /* num_configurations + 1, where modes of each begin */
-    int64_t *track;   /* from 0, ascending as they first appear */
+    int64_t *track;   /* from 0, ascending as they first appear; -1: a negative
+                         square of dual-craig-bampton, which is no mode */
     int64_t *cluster; /* of each mode, the first mode of its cluster */
     double *hertz;
     double *mac; /* with its like in `before`; NaN where it has none */

@@ -15,9 +15,9 @@
  * act on those that are kept, and the error has no bound.
  */
 #include "base/alloc.h"
-#include "base/tolerances.h"
 #include "bases/columns.h"
 #include "gramians/modes.h"
+#include "model/pair.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -174,16 +174,9 @@ static void copy_mode(const subset_search *s, int64_t mode, int64_t column,
         ritz_columns_label_rigid(column, &basis->columns);
 }
 
-/* Whether two groups have equal values, or close frequencies and values of
-   similar size. */
-static bool is_tie(const subset_search *s, const mode_group *kept,
-                   const mode_group *left)
+static double hertz_of(const subset_search *s, const mode_group *group)
 {
-    double w = s->modal.omega[kept->first];
-
-    return left->value >= (1.0 - RITZ_CLUSTER_GAP) * kept->value ||
-           (fabs(s->modal.omega[left->first] - w) <= RITZ_CLOSE * w &&
-            left->value >= RITZ_HANKEL_PAIR * kept->value);
+    return ritz_eigen_hertz(s->modes.lambda[group->first + s->modes.num_rigid]);
 }
 
 /* Remark on the first pair of modes that the choice splits. */
@@ -192,18 +185,14 @@ static void add_tie(const subset_search *s, ritz_basis *basis)
     for (int64_t i = 0; i < s->count; i++)
         for (int64_t j = 0; j < s->count; j++) {
             const mode_group *kept = &s->groups[i], *left = &s->groups[j];
+            const double hertz[] = {hertz_of(s, kept), hertz_of(s, left)};
+            const double value[] = {kept->value, left->value};
+            char text[RITZ_PAIR_SIZE];
 
-            if (!kept->keep || left->keep || !is_tie(s, kept, left))
+            if (!kept->keep || left->keep || !ritz_is_pair(hertz, value))
                 continue;
-            ritz_remark_add(
-                basis, "; ",
-                "the modes at %.6g and %.6g Hz are a pair, of values %.4g and "
-                "%.4g: keeping %" PRId64 " splits them",
-                ritz_eigen_hertz(
-                    s->modes.lambda[kept->first + s->modes.num_rigid]),
-                ritz_eigen_hertz(
-                    s->modes.lambda[left->first + s->modes.num_rigid]),
-                kept->value, left->value, s->kept);
+            ritz_pair_print(hertz, value, s->kept, text);
+            ritz_remark_add(basis, "; ", "%s", text);
             return;
         }
 }

@@ -10,12 +10,14 @@
 #include "base/alloc.h"
 #include "compare/compare.h"
 #include "linear/orthonormal.h"
+#include "model/pair.h"
 
 #include <ritz/matrix.h>
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /*
  * Krylov vectors of a system at one configuration [McDaniel2000, eq. 3.2.15 to
@@ -222,18 +224,68 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
     return RITZ_OK;
 }
 
-/* Mark the modes whose value is at least the threshold. */
-static ritz_status mark_ranked(const ritz_scene *scene,
-                               const ritz_configuration *c, double least,
-                               bool *taken, int64_t *joined)
+/*
+ * Mark the modes whose value is at least the threshold, and those whose value
+ * is that of the least one marked: which of equal values is above a threshold
+ * is rounding. Returns the number of the latter.
+ */
+static int64_t mark_ranked(int64_t flexible, const double *value, double least,
+                           bool *taken)
 {
-    RITZ_OWN_ARRAY double *value = NULL;
+    double last = HUGE_VAL;
+    int64_t added = 0;
 
-    RITZ_CHECK_NEW(value, c->K.ncol - c->num_rigid);
-    RITZ_CHECK(ritz_compare_values(scene, c, value, joined));
-    for (int64_t k = 0; k < c->K.ncol - c->num_rigid; k++)
+    for (int64_t k = 0; k < flexible; k++) {
         taken[k] = value[k] >= least;
-    return RITZ_OK;
+        if (taken[k])
+            last = fmin(last, value[k]);
+    }
+    for (int64_t k = 0; k < flexible; k++)
+        if (!taken[k] && ritz_is_one_value(last, value[k])) {
+            taken[k] = true;
+            added++;
+        }
+    return added;
+}
+
+/* Note the pair of the largest value that the choice cuts. */
+static void find_cut(const ritz_configuration *c, const double *value,
+                     const bool *taken, ritz_compare_row *row)
+{
+    const double *lambda = c->lambda + c->num_rigid;
+    const int64_t flexible = c->K.ncol - c->num_rigid;
+
+    for (int64_t i = 0; i < flexible; i++)
+        for (int64_t j = 0; taken[i] && j < flexible; j++) {
+            const double hertz[] = {ritz_eigen_hertz(lambda[i]),
+                                    ritz_eigen_hertz(lambda[j])};
+            const double values[] = {value[i], value[j]};
+
+            if (taken[j] || value[i] <= row->cut_value[0] ||
+                !ritz_is_pair(hertz, values))
+                continue;
+            memcpy(row->cut_hertz, hertz, sizeof hertz);
+            memcpy(row->cut_value, values, sizeof values);
+        }
+}
+
+/* Values of modes that are listed by number, whatever they are; false: they
+   have none, as without inputs, outputs or damping. Damping that couples modes
+   would make values dear where nobody asked for them. */
+static ritz_status rank_listed(const ritz_scene *scene,
+                               const ritz_configuration *c, double *value,
+                               bool *ranked)
+{
+    ritz_scene by = *scene;
+    ritz_status status = RITZ_OK;
+
+    by.select = RITZ_SELECT_RANKED;
+    *ranked = false;
+    if (scene->select != RITZ_SELECT_LISTED || !is_ranked(&by) || c->D.val)
+        return RITZ_OK;
+    status = ritz_compare_values(&by, c, value, NULL);
+    *ranked = status == RITZ_OK;
+    return status == RITZ_ERR_ARGUMENT ? RITZ_OK : status;
 }
 
 /* Modes in the band; without inputs or outputs, those below its lower end. */
@@ -324,18 +376,26 @@ ritz_status ritz_compare_select(const ritz_scene *scene,
     const ritz_configuration *c = configuration;
     int64_t flexible = c->K.ncol - c->num_rigid;
     RITZ_OWN_ARRAY bool *taken = NULL;
+    RITZ_OWN_ARRAY double *value = NULL;
+    bool ranked = is_ranked(scene);
 
     RITZ_CHECK_NEW(row->kept, flexible);
     if (scene->select == RITZ_SELECT_KRYLOV)
         return count_vectors(scene, c, row);
     RITZ_CHECK_NEW(taken, flexible);
-    if (is_ranked(scene))
-        RITZ_CHECK(mark_ranked(scene, c, least, taken, &row->num_joined));
-    else if (scene->select == RITZ_SELECT_LISTED)
+    RITZ_CHECK_NEW(value, flexible);
+    if (ranked) {
+        RITZ_CHECK(ritz_compare_values(scene, c, value, &row->num_joined));
+        row->num_equal = mark_ranked(flexible, value, least, taken);
+    } else if (scene->select == RITZ_SELECT_LISTED)
         RITZ_CHECK(mark_listed(scene, c, taken));
     else
         mark_band(scene, c, taken);
     row->num_completed = complete_clusters(c, taken);
+    if (!ranked)
+        RITZ_CHECK(rank_listed(scene, c, value, &ranked));
+    if (ranked)
+        find_cut(c, value, taken, row);
     for (int64_t k = 0; k < flexible; k++)
         if (taken[k])
             row->kept[row->num_kept++] = k;

@@ -64,6 +64,42 @@ expect 0 ' Hz are a pair, of values 25.25 and 25.25: keeping 1 splits them' \
 expect 0 '' ritz-basis modal-balanced --modes 2 --damping "modal 0.01" \
     twins.h5 -o twin.h5
 works "  two modes split nothing" test -z "$(grep splits log)"
+# The same chosen by a scene: a threshold between values that differ by 1e-10
+# keeps both, and a list says which pair it splits.
+printf '1 1\n1 2\n1 3\n' >dofs
+printf 'BEGIN BULK\nGRID,1,,0.,0.,0.\nENDDATA\n' >one.bdf
+expect 0 '' ritz-import -q --stiffness K.mtx --mass M.mtx --dofs dofs \
+    --bulk one.bdf --port p=1 -o one.h5
+chosen() {
+    cat >twins.yaml <<END
+scene: twins
+components:
+  body: {model: one.h5, basis: normal-modes, modes: 3}
+inputs:
+  - {name: a, at: body/p, component: 1}
+  - {name: b, at: body/p, component: 2, scale: 3.9999999996}
+  - {name: c, at: body/p, component: 3}
+outputs:
+  - {name: x, at: body/p, component: 1}
+  - {name: y, at: body/p, component: 2}
+  - {name: z, at: body/p, component: 3}
+band_hz: [0, 3]
+damping: {modal: 0.01}
+select: {$1}
+END
+}
+chosen 'tolerance: 0.99999999999'
+expect 0 "1 modes are kept in addition, as their value is that of the least" \
+    ritz-compare twins.yaml -o small.h5
+works "  and no pair is split" test -z "$(grep splits log)"
+chosen 'modes: [1, 3]'
+expect 0 "Hz are a pair, of values 25.25 and 25.25: keeping 2 splits them" \
+    ritz-compare twins.yaml -o small.h5
+json 0 ritz-compare twins.yaml -o small.h5
+holds '  which JSON counts' 'j["cut_pairs"] == 1 and j["equal"] == 0'
+chosen 'modes: [1, 2]'
+expect 0 "" ritz-compare twins.yaml -o small.h5
+works "  both of them split nothing" test -z "$(grep splits log)"
 expect 1 "the first values are equal, and are kept whole or not at all" \
     ritz-basis balanced --modes 1 --damping "modal 0.01" twins.h5 -o twin.h5
 for order in 2 4; do

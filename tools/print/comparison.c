@@ -2,6 +2,7 @@
 #include "print/print.h"
 
 #include "base/alloc.h"
+#include "model/pair.h"
 
 #include <float.h>
 
@@ -70,24 +71,48 @@ static bool ranks_without_loss(const ritz_stage *first)
            scene->num_inputs > 0 && scene->num_outputs > 0;
 }
 
+/* The first pair that a choice of modes cuts. */
+static void warn_of_cuts(cli_run *run, const ritz_comparison *c)
+{
+    int64_t count = 0, first = 0;
+    char text[RITZ_PAIR_SIZE];
+
+    for (int64_t k = c->num_rows - 1; k >= 0; k--)
+        if (c->row[k].listed && c->row[k].cut_value[0] > 0.0) {
+            first = k;
+            count++;
+        }
+    sink_set(run, "cut_pairs", "%ld", count);
+    if (count == 0)
+        return;
+    ritz_pair_print(c->row[first].cut_hertz, c->row[first].cut_value,
+                    c->row[first].num_kept, text);
+    if (c->first_system.num_sweeps == 0)
+        cli_warn(run, "%s", text);
+    else
+        cli_warn(run, "%s: %s%s", c->first_system.configuration[first].at, text,
+                 count > 1 ? ", as at other configurations" : "");
+}
+
 static void say_composite(cli_run *run, const ritz_stage *first,
                           const ritz_comparison *c)
 {
     const ritz_scene *scene = first->scene;
     int64_t count = scene->num_reference > 0 ? scene->num_reference
                                              : scene->num_configurations;
-    int64_t completed = 0, joined = 0;
+    int64_t completed = 0, equal = 0, joined = 0;
     char choice[160];
 
     describe_choice(scene, choice);
     for (int64_t k = 0; k < c->num_rows; k++)
         if (c->row[k].listed) {
             completed += c->row[k].num_completed;
+            equal += c->row[k].num_equal;
             joined =
                 c->row[k].num_joined > joined ? c->row[k].num_joined : joined;
         }
-    sink_set(run, "removed,completed,joined", "%d %ld %ld", c->removed,
-             completed, joined);
+    sink_set(run, "removed,completed,equal,joined", "%d %ld %ld %ld",
+             c->removed, completed, equal, joined);
     sink_say(run, "composite",
              "Composite set: %ld vectors from %ld configurations, %s,",
              c->composite, count, choice);
@@ -97,6 +122,12 @@ static void say_composite(cli_run *run, const ritz_stage *first,
         cli_say(run,
                 "%ld modes are kept in addition, as a cluster is never split.",
                 completed);
+    if (equal > 0)
+        cli_say(run,
+                "%ld modes are kept in addition, as their value is that of the "
+                "least one above the tolerance.",
+                equal);
+    warn_of_cuts(run, c);
     if (joined > 0)
         cli_say(run,
                 "Damping joins up to %ld flexible modes to others: they are "
