@@ -49,11 +49,12 @@ int main(int argc, char **argv)
                       "the component to be reduced, or a state space, a "
                       "reduced component or a system",
                       false}},
-        .summary = "Find the subspace in which a component is reduced. Rigid "
-                   "modes of a free component\nare kept in addition to the "
-                   "flexible vectors. A reduced component, and a system at a\n"
-                   "configuration, are reduced as components are: a low-order "
-                   "model for a controller.",
+        .summary =
+            "Find the subspace in which a component is reduced. Rigid "
+            "modes of a free component\nare kept in addition to the "
+            "flexible vectors. A reduced component, and a system at a\n"
+            "configuration, are reduced as components are, for example to "
+            "a low-order model\nfor a controller.",
         .example = "ritz-basis craig-bampton --modes 12 blade.h5 -o basis.h5",
         .output = "the basis",
         .threads = true,

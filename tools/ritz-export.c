@@ -30,7 +30,8 @@ int main(int argc, char **argv)
                 "significant digits of text [17]"),
         MODEL_OPTIONS(&given.model),
         CLI_FLAG("states", &given.states,
-                 "write x' = A x + B u, y = C x + D u, damping in A"),
+                 "write the states x' = A x + B u, y = C x + D u, with damping "
+                 "in A"),
         CLI_FLAG("force", &given.force,
                  "export even a model that is unstable or of unknown "
                  "errors"),

@@ -19,7 +19,7 @@ static const char *tolerance_help(void)
                         kind->unit[0] ? ")" : "");
     }
     sink_append(help, sizeof help,
-                "; a number alone is of flexible and frequency");
+                "; a number alone is for flexible and frequency");
     return help;
 }
 

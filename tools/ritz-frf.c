@@ -20,10 +20,10 @@ int main(int argc, char **argv)
     response_options given = {.from_hz = (double)NAN, .method = "auto"};
     loop_options *loops = &given.loops;
     const cli_option options[] = {
-        CLI_REAL(
-            "from-hz", &given.from_hz, "F", 0.0, 1e9,
-            "lowest frequency [the band's, or the highest / 1000, or where "
-            "rounding of K rules no more]"),
+        CLI_REAL("from-hz", &given.from_hz, "F", 0.0, 1e9,
+                 "lowest frequency [the band's, or the highest / 1000, but not "
+                 "below "
+                 "the rounding of rigid motion]"),
         CLI_REAL("to-hz", &given.to_hz, "F", 1e-9, 1e9,
                  "highest frequency [that of the band of a system]"),
         CLI_INT("points", &given.points, "N", 2, 1000000,

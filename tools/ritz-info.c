@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Whether a member must exist, behind its type. */
+/* Print after a member's type whether it must exist. */
 static void print_presence(const ritz_container_row *row)
 {
     if (row->with)

@@ -19,7 +19,7 @@ int main(int argc, char **argv)
         .name = "ritz-reduce",
         .operands = {{"COMPONENT",
                       "the full component or state space, or a reduced "
-                      "component or system of which the basis was made",
+                      "component or system for which the basis was made",
                       false},
                      {"BASIS", "what ritz-basis made of it", false}},
         .summary = "Project a component on a basis; estimate the errors; "

@@ -140,8 +140,8 @@ expect 1 "2 places of 1 candidates cannot be taken" ritz-poles $full \
     --tune low=0:9 --place 2
 expect 2 "one of the three" ritz-poles $full --norm --tune low=0:9
 expect 2 "--place chooses among what --tune names" ritz-poles $full --place 1
-expect 2 "--among is of --place" ritz-poles $full --tune low=0:9 --among 1
-expect 2 "--low-pass is of --norm and --tune" ritz-poles $full --low-pass 2
+expect 2 "--among needs --place" ritz-poles $full --tune low=0:9 --among 1
+expect 2 "--low-pass needs --norm or --tune" ritz-poles $full --low-pass 2
 
 # a fit says what it came to: two points are met, three are not
 expect 0 "a = 0.101546, b = 0.000610898" \

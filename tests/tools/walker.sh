@@ -21,7 +21,7 @@ ritz-info new.h5 >new.txt
 ritz-info old.h5 >old.txt
 works 'a container without checksums is read as one with them' \
     sh -c "sed '1s/new/old/' new.txt | cmp - old.txt"
-expect 0 'a struct of another name' ritz-info own_member.mat
+expect 0 'the same struct as under another name' ritz-info own_member.mat
 
 # --- HDF5 dies, loops, or asks for 4 GB
 # -----------------------------------------

@@ -9,7 +9,7 @@ set encoding utf8
 set micro
 set terminal svg size wide, high dynamic enhanced font 'sans,13' \
     background paper
-# without a name gnuplot writes to its standard output
+# if `out` is empty, gnuplot writes to its standard output
 if (strlen(out) > 0) { set output out }
 set datafile separator tab
 set datafile missing 'nan'

@@ -65,8 +65,8 @@ extern const chart_kind chart_kinds[];
 ritz_status chart_read(cli_run *run, int64_t count, char *const *path,
                        int holds, chart_sources *out);
 
-/** Put the names of the files of some contents before the sentence of a failure,
- * unless it names one of them. */
+/** Put the names of the files with some contents before the sentence of a
+ * failure, unless the sentence names one of them. */
 ritz_status chart_name_files(ritz_status status, const chart_sources *sources,
                              int holds);
 void chart_sources_free(chart_sources *sources);

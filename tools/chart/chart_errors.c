@@ -226,16 +226,16 @@ static void put_row(work *w, int64_t p, int64_t k, int style, bool word)
     fputc('\t', file);
     if (word)
         fprintf(file, "%ld", r->order);
-    /* the last column: a quote in it takes in what follows */
+    /* the last column, because a quote in a field takes in all that follows */
     fprintf(file, "\t%ld\t", r->order);
     html_line(file, r->method);
     fputc('\n', file);
 }
 
 /*
- * A line, ended by an empty row. Below and left of a point of the front is no
- * other point, by its definition: there its order is written, unless the last
- * one is too near.
+ * A line, ended by an empty row. By its definition a point of the front has no
+ * other point below and left of it: its order is written there, unless the last
+ * order is too near.
  */
 static void put_line(work *w, int64_t p, int64_t method)
 {

@@ -169,7 +169,7 @@ static void copy_value(FILE *file, const char *value, size_t length,
                 value + refers);
 }
 
-/* A tag to its end; with a prefix its values become those of the page. */
+/* Copy a tag to its end; with a prefix, its values become those of the page. */
 static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
 {
     const char *begin = tag;
@@ -192,8 +192,8 @@ static const char *copy_tag(FILE *file, const char *tag, const char *prefix)
     return tag;
 }
 
-/* A letter between tags. gnuplot escapes neither '>', which must not follow
-   "]]", nor '&' before "#x", which would be a character of any number. */
+/* Copy a letter between tags. gnuplot does not escape '>', which is forbidden
+   after "]]", nor '&' before "#x", which would make a character reference. */
 static const char *copy_letter(FILE *file, const char *c)
 {
     if (*c == '>')

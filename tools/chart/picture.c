@@ -17,8 +17,8 @@
 #include <unistd.h>
 
 enum {
-    TIP_SIZE = 1000, /* a label of gnuplot's has 1024 bytes at most */
-    PIECE = 65536,   /* what a pipe holds */
+    TIP_SIZE = 1000, /* gnuplot's labels have at most 1024 bytes */
+    PIECE = 65536,   /* capacity of a pipe */
 };
 
 /* Widths in the legend, pixels: a sign with the space beside it; a letter, as
@@ -55,9 +55,9 @@ void picture_add_sign(picture *p, picture_sign sign, const char *format, ...)
 }
 
 /*
- * Texts are in single quotes, where gnuplot interprets nothing but quotes: of
- * three in a row it takes two for a letter and the third for the end. Each is
- * therefore a piece of its own, 'it' . "\047" . 's'.
+ * Texts are in single quotes, where gnuplot interprets quotes only: it reads
+ * two of them as a quote, and a third one as the end of the text. Each quote is
+ * therefore a string of its own, 'it' . "\047" . 's'.
  */
 static void put_byte(FILE *file, char byte)
 {
@@ -75,8 +75,8 @@ static void quote_text(FILE *file, const char *text)
     fputc('\'', file);
 }
 
-/* A file name keeps every byte. One that is relative gets a "./" in front:
-   gnuplot would run "|NAME" and "<NAME". */
+/* A file name keeps every byte. A relative one gets "./" in front of it,
+   because gnuplot would run "|NAME" and "<NAME" as commands. */
 static void quote_path(FILE *file, const char *path, const char *ending)
 {
     fprintf(file, "'%s", *path == '/' ? "" : "./");
@@ -190,7 +190,7 @@ const char *picture_base(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* The name of a file of the folder that the script is in. */
+/* Set a variable to a file name in the folder of the script. */
 static void put_name(FILE *file, const char *variable, const char *path,
                      const char *ending)
 {
@@ -275,13 +275,14 @@ static ritz_status write_script(picture *p, const char *template,
     return RITZ_OK;
 }
 
-/* gnuplot ends with the tool, however that ends. What it writes comes through a
-   pipe: where the system cannot do so it ends at its next write. */
+/* Run gnuplot in the child. It is killed when the tool ends; on systems that
+   cannot do this it ends when it writes to the broken pipe. */
 static void become_gnuplot(const int ends[2], char *const argv[])
 {
     dup2(ends[1], STDOUT_FILENO);
     for (int k = 0; k < 2; k++)
-        if (ends[k] != STDOUT_FILENO) /* if the tool itself has none */
+        /* not if the tool has no standard output */
+        if (ends[k] != STDOUT_FILENO)
             close(ends[k]);
     execvp(argv[0], argv);
     _exit(CHILD_NO_PROGRAM);
@@ -303,7 +304,7 @@ static ritz_status read_pipe(int from, cli_table *out)
     return cli_table_end(out);
 }
 
-/* Run it until it ends; what it writes. */
+/* Run gnuplot until it ends, and collect its output. */
 static ritz_status collect_gnuplot(char *const argv[], cli_table *out,
                                    int *outcome)
 {
@@ -328,8 +329,10 @@ static ritz_status collect_gnuplot(char *const argv[], cli_table *out,
     return status;
 }
 
-/* Draw by gnuplot, without a user's ~/.gnuplot.
-   @param[in] shown  what the script is called for the user */
+/*
+ * Let gnuplot draw, ignoring a user's ~/.gnuplot.
+ * @param[in] shown  name of the script in messages
+ */
 static ritz_status run_gnuplot(const char *script, const char *data,
                                const char *shown, cli_table *out)
 {
@@ -355,8 +358,8 @@ static ritz_status run_gnuplot(const char *script, const char *data,
     return RITZ_OK;
 }
 
-/* Write a table next to the picture, as a draft: under a name of its own if it
-   is kept. */
+/* Write a table as a draft next to the picture, under its own name if it is
+   kept. */
 static ritz_status put_beside(const picture *p, cli_table *table,
                               const char *ending, ritz_draft *draft,
                               char path[PICTURE_PATH])
@@ -367,8 +370,8 @@ static ritz_status put_beside(const picture *p, cli_table *table,
     return ritz_context(cli_table_write(table, draft->name), path);
 }
 
-/* What gnuplot makes of them; data and script of a picture that it cannot draw
-   stay, to be drawn elsewhere. */
+/* Let gnuplot draw the drafts. If it cannot, data and script of a kept picture
+   are published, so that it can be drawn elsewhere. */
 static ritz_status draw_drafts(picture *p, ritz_draft *data, ritz_draft *script,
                                const char *shown)
 {

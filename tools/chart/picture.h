@@ -1,9 +1,9 @@
 /*
- * Pictures that gnuplot draws: a table of numbers with tabs between them, and a
- * script, which sets variables before a template, KIND.gp of this folder. Both
- * are kept, so that `gnuplot -d PICTURE.svg.gp` draws the picture again. Names
- * that users chose are in single quotes or in the table, and always
- * `noenhanced`, so that gnuplot does not interpret them.
+ * Pictures that gnuplot draws from a table of numbers, separated by tabs, and a
+ * script. The script sets variables and continues with a template, KIND.gp of
+ * this folder. Both are kept, so that `gnuplot -d PICTURE.svg.gp` draws the
+ * picture again. Names that users chose are in single quotes or in the table,
+ * and always `noenhanced`, so that gnuplot does not interpret them.
  */
 #ifndef RITZ_TOOLS_CHART_PICTURE_H
 #define RITZ_TOOLS_CHART_PICTURE_H

@@ -81,7 +81,7 @@ static bool is_system(const chart_file *file)
     return file->holds == MODEL_SYSTEM;
 }
 
-/* A system at two configurations is compared with itself. */
+/* Whether a single system is to be compared at two of its configurations. */
 static bool is_pair(const chart_sources *some, const chart_request *request)
 {
     return some->count == 1 && is_system(some->file) &&
@@ -89,8 +89,8 @@ static bool is_pair(const chart_sources *some, const chart_request *request)
             some->file->model.system.num_configurations == 2);
 }
 
-/* A picture; and of responses their singular values, if they hold them and
-   nothing else was asked for. */
+/* Add a picture. Responses also get one of their singular values, if they hold
+   these and no other picture was asked for. */
 static ritz_status put_picture(report_page *p, const struct part *part,
                                const chart_sources *some)
 {
@@ -100,7 +100,7 @@ static ritz_status put_picture(report_page *p, const struct part *part,
 
     for (int64_t k = 0; k < some->count; k++)
         systems = systems || is_system(&some->file[k]);
-    if (!systems) /* --at is for others of the page */
+    if (!systems) /* --at belongs to a system elsewhere on the page */
         request.at = (cli_list){0};
     for (int64_t k = 0; k < some->count; k++)
         sink_append(names, sizeof names, "%s%.60s", k > 0 ? ", " : "",

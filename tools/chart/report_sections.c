@@ -283,8 +283,8 @@ static void say_bounds(FILE *file, const record *r)
     }
 }
 
-/* The measure of a tolerance of which the error is the largest part; of no
-   name: none is known. */
+/* The measure whose error is the largest fraction of its tolerance; without a
+   name if none is known. */
 static ritz_measure find_worst(const record *r)
 {
     ritz_measure worst = {.value = nan(""), .limit = nan("")};
@@ -308,7 +308,8 @@ static ritz_measure find_worst(const record *r)
     return worst;
 }
 
-/* What was not asked for and is far worse than what was. */
+/* Name measures without a tolerance that are far worse than the worst one with
+   a tolerance. */
 static void say_beside(FILE *file, const record *r, const ritz_measure *worst)
 {
     const char *name = NULL;
@@ -327,7 +328,7 @@ static void say_beside(FILE *file, const record *r, const ritz_measure *worst)
     }
 }
 
-/* Above all the worst measure that was asked for, if it is relative. */
+/* The headline is the worst measure that has a tolerance, if it is relative. */
 static void say_headline(FILE *file, const record *r, const measure *first)
 {
     const ritz_measure worst = find_worst(r);

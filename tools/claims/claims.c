@@ -125,8 +125,8 @@ static ritz_status need_file(claims_state *state, const claims_line *line)
     return RITZ_OK;
 }
 
-/* In the child: the tool with --json, its words to the answer. It ends with
-   this program, however that ends. */
+/* In the child: run the tool with --json, its output in the answer's file. It
+   is killed when this program ends. */
 static _Noreturn void become(const claims_state *state, const char *tool,
                              char **argv)
 {

@@ -13,7 +13,7 @@
 enum {
     CLAIMS_MOST_WORDS = 128,
     CLAIMS_MOST_ROWS = 1000000, /* grids of `rows` */
-    CLAIMS_MOST_LEVELS = 2,     /* claims that run ritz-claims, and those */
+    CLAIMS_MOST_LEVELS = 2,     /* a claims file, and one that it runs */
 };
 
 /* One line of a claims file, cut into words. */
@@ -28,10 +28,10 @@ typedef struct claims_state {
     cli_run *run;
     char bin[PATH_MAX];    /* the tools are here */
     char here[PATH_MAX];   /* the claims file is here */
-    char data[PATH_MAX];   /* files of others: $DATA */
+    char data[PATH_MAX];   /* third-party files: $DATA */
     char folder[PATH_MAX]; /* commands run here; "": there is none */
-    pid_t keeper;          /* the process that removes it */
-    int held;              /* as long as this is open, it does not */
+    pid_t keeper;          /* the process that removes the folder */
+    int held;              /* keeps the folder while it is open */
     const char *file;      /* of claims, and a line of it */
     int number;
     char *rest;        /* what follows that line; NULL: nothing */
@@ -45,21 +45,23 @@ typedef struct claims_state {
     int64_t holds, fails, skipped;
 } claims_state;
 
-/** Make the folder of the commands; it is gone when all are that use it, by
- * whichever way they end. */
+/** Make the folder of the commands. It is removed after this program and all
+ * its commands have ended, even by a signal. */
 ritz_status claims_folder_new(claims_state *state);
 
-/** Let go of it, and wait until it is gone. */
+/** Give the folder up, and wait until it is removed. */
 void claims_folder_free(claims_state *state);
 
-/** Claims may run ritz-claims, but not without end: count a level.
- * @return RITZ_ERR_FORMAT beyond CLAIMS_MOST_LEVELS */
+/**
+ * Count a level of claims files that run others, which must not go on forever.
+ * @return RITZ_ERR_FORMAT beyond CLAIMS_MOST_LEVELS
+ */
 ritz_status claims_level(void);
 
 /** Run all lines of a file. @return RITZ_ERR_FORMAT if it is not understood */
 ritz_status claims_file(claims_state *state, const char *path);
 
-/** Compare the answer with "expect PATH ..." and tell. */
+/** Compare the answer with "expect PATH ..." and print the result. */
 ritz_status claims_expect(claims_state *state, const claims_line *line);
 
 /** Write a text as NAME and its ending into the folder of the state. */

@@ -1,10 +1,9 @@
 /*
- * What commands run in: a folder, and a level.
+ * The folder in which commands run, and the level of nested claims files.
  *
- * The folder is gone once nobody runs in it, by
- * whichever way they end, SIGKILL among them: a process of its own waits at a
- * pipe whose other end this program and its commands hold, and removes the
- * folder at the end of the pipe.
+ * The folder is removed after all processes that use it have ended, even by
+ * SIGKILL: a separate process waits at a pipe, whose other end this program and
+ * its commands hold open, and removes the folder when that end is closed.
  */
 #include "claims/claims.h"
 
@@ -28,7 +27,8 @@ static void remove_folder(const char *path)
     nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* Signals are held back here, and the keyboard is that of another session. */
+/* The caller has blocked all signals, and setsid keeps those of the terminal
+   away. */
 static _Noreturn void wait_and_remove(const char *folder, const int ends[2])
 {
     const int nothing = open("/dev/null", O_RDWR);
@@ -36,7 +36,8 @@ static _Noreturn void wait_and_remove(const char *folder, const int ends[2])
 
     setsid();
     for (int k = 0; k <= STDERR_FILENO && nothing >= 0; k++)
-        dup2(nothing, k); /* a reader of our output need not wait */
+        /* readers of our output must not wait for this process */
+        dup2(nothing, k);
     close(ends[1]);
     while (read(ends[0], &letter, 1) < 0 && errno == EINTR)
         ;
@@ -44,7 +45,7 @@ static _Noreturn void wait_and_remove(const char *folder, const int ends[2])
     _exit(EXIT_SUCCESS);
 }
 
-/* The process that removes the folder, before a signal can leave it. */
+/* Start the process that removes the folder, before a signal could leave it. */
 static ritz_status start_keeper(claims_state *state)
 {
     int ends[2] = {-1, -1};
@@ -102,7 +103,7 @@ void claims_folder_free(claims_state *state)
     state->folder[0] = '\0';
 }
 
-/* The number of levels so far is in the environment of commands. */
+/* An environment variable passes the number of levels to commands. */
 ritz_status claims_level(void)
 {
     static const char name[] = "RITZ_CLAIMS_LEVEL";

@@ -8,7 +8,8 @@
 #include <sys/prctl.h>
 #endif
 
-/* A write past a limit fails still: SIGXFSZ stays ignored. */
+/* Signals that are ignored stay so: a write beyond a limit (SIGXFSZ) still
+   fails. */
 static void reset_signals(void)
 {
     struct sigaction now;

@@ -4,17 +4,17 @@
 
 #include <sys/types.h>
 
-/* What a child ends with that could not start its program, as of a shell. */
+/* Exit status of a child that could not start its program, as in a shell. */
 enum { CHILD_NO_PROGRAM = 127 };
 
 /**
- * fork. The child gets the signal @p number when the tool ends, however that
- * ends, where the system can do so. No handler of the tool runs in it, which
- * would remove the files of the tool.
+ * fork. The child gets the signal @p number when the tool ends for any reason,
+ * if the system supports this. The tool's signal handlers, which remove its
+ * files, do not run in the child.
  */
 pid_t child_start(int number);
 
-/** Wait for its end. @return 0, or -1 with errno */
+/** Wait until the child ends. @return 0, or -1 with errno */
 int child_wait(pid_t child, int *outcome);
 
 #endif

@@ -428,7 +428,8 @@ static void occupy_streams(void)
         close(file);
 }
 
-/* Files that options name to be written, each of which is one of its own. */
+/* Collect the output files that options name, and refuse one that is named
+   twice. */
 static void gather_outputs(cli_run *run, const cli_option *all)
 {
     const cli_option *named[CLI_MAX_OUTPUTS];

@@ -50,9 +50,9 @@ typedef struct cli_list {
 
 typedef struct cli_option {
     cli_kind kind;
-    char letter;  /* for -o, -q and -h alone */
-    bool written; /* a text that names a file which the tool writes */
-    union {       /* where the default is, and then the value */
+    char letter;  /* only -o, -q and -h have one */
+    bool written; /* the text names an output file */
+    union {       /* the default, and then the value */
         void (*action)(void);
         bool *flag;
         int64_t *whole;
@@ -87,8 +87,8 @@ typedef struct cli_option {
     CLI_ROW(PAIR, real, 0, word, place, value, 0.0, 0.0, says)
 #define CLI_TEXT(word, place, value, says)                                     \
     CLI_ROW(TEXT, text, 0, word, place, value, 0.0, 0.0, says)
-/* The name of a file that is written: it is compared with all inputs and with
-   the other outputs, and made when all is done (see cli_finish) */
+/* Name of an output file. It is compared with all inputs and with the other
+   outputs, and the file appears when the run has succeeded (see cli_finish). */
 #define CLI_OUTPUT(word, place, value, says)                                   \
     {                                                                          \
         .kind = CLI_KIND_TEXT, .written = true, .to.text = (place),            \
@@ -111,11 +111,11 @@ ritz_status cli_table_new(cli_table *out);
 /** Make sure that `text` holds all that was written. @return RITZ_ERR_MEMORY */
 ritz_status cli_table_end(const cli_table *table);
 
-/** Write it under a name of its own, then give it this one. Control characters
- * other than ends of lines and tabs become '?'. */
+/** Write the table as a draft, then rename it. Control characters other than
+ * ends of lines and tabs become '?'. */
 ritz_status cli_table_save(cli_table *table, const char *path);
 
-/** Write it into a file that is the caller's own, such as a draft. */
+/** Write the table into a file that the caller owns, such as a draft. */
 ritz_status cli_table_write(cli_table *table, const char *path);
 
 void cli_table_free(cli_table *table);
@@ -144,11 +144,12 @@ typedef struct cli_run {
     char **operand;
     char **argv;
     const char *output, *record;
-    int num_written; /* of the files that options name, these among them */
+    /* number of outputs that options name, these two included */
+    int num_written;
     const char *written[CLI_MAX_OUTPUTS];
     bool quiet, json;
     bool kept;                     /* see cli_keep_outputs */
-    char command[CLI_MAX_COMMAND]; /* for the file that it makes */
+    char command[CLI_MAX_COMMAND]; /* for the containers that the tool writes */
     json_t *report;                /* of --json; sink.h adds to it */
     json_t *open[CLI_MAX_DEPTH];   /* in it, where values go at present */
     int depth;
@@ -166,16 +167,16 @@ typedef struct cli_run {
 /**
  * Parse the command line into the variables of the table and into @p run.
  *
- * Answers --help, --version and actions itself, and ends the program with
- * status 2 on a command line that it does not understand. From then on a
- * signal that ends the program leaves no unfinished file, long work shows its
- * progress on a terminal, and files that are written are held back until
- * cli_finish. Two outputs under one name are refused.
+ * It executes --help, --version and actions itself, and ends the program with
+ * status 2 on a command line that is wrong. From then on a signal that ends the
+ * program removes unfinished files, long work shows its progress on a terminal,
+ * and outputs are held back until cli_finish. Two outputs under one name are
+ * refused.
  */
 void cli_parse(const cli_program *program, const cli_option *options, int argc,
                char **argv, cli_run *run);
 
-/** End the program with status 2: the command line makes no sense. */
+/** End the program with status 2 on options that contradict each other, etc. */
 [[gnu::format(printf, 2, 3)]] _Noreturn void
 cli_refuse(const cli_program *program, const char *format, ...);
 
@@ -198,33 +199,32 @@ void cli_list_advice(const char *when, const char *cost, const char *holds,
 bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
 
 /**
- * Remember a file that is about to be read: its SHA-256 goes into what is
- * written. One that is named again counts once. A pipe, which can be read only
- * once, has '-' for its sum. An output that is the same file, by device and
+ * Register a file before it is read: its SHA-256 is stored in what the tool
+ * writes. A file that is registered twice counts once. The sum of a pipe, which
+ * can be read only once, is '-'. An output that is the same file, by device and
  * inode, is refused.
  *
- * A program with `threads` starts once more when its inputs are large and
- * OMP_THREAD_LIMIT is not set, with as many threads as there are cores. So call
- * this before anything is written or said.
+ * A program with `threads` starts again, with as many threads as there are
+ * cores, if its inputs are large and OMP_THREAD_LIMIT is not set. Call this
+ * therefore before anything is written or printed.
  */
 ritz_status cli_input(cli_run *run, const char *path);
 
-/** Remember a file whose reader knows its SHA-256 and gives it to
+/** Register a file whose reader computes the SHA-256 and passes it to
  * cli_input_sum. */
 ritz_status cli_input_unread(cli_run *run, const char *path);
 void cli_input_sum(cli_run *run, const char *path, const char *digest);
 
 /**
- * Check that a file can be made at @p path, before the work that it is to hold:
- * one is made in its folder and removed. cli_input checks outputs that options
- * name by itself.
+ * Check, before long work, that a file can be created at @p path: create one in
+ * its folder and remove it. cli_input does this for outputs that options name.
  */
 ritz_status cli_can_write(const char *path);
 
-/** Command and inputs so far, as containers take them; borrowed from run. */
+/** The command and the inputs so far, for containers; borrowed from run. */
 const ritz_stamp *cli_stamp(cli_run *run);
 
-/** A line on standard error, and in the report, once; not fatal. */
+/** Print a warning on standard error and add it to the report, once. */
 [[gnu::format(printf, 2, 3)]] void cli_warn(cli_run *run, const char *format,
                                             ...);
 
@@ -232,65 +232,66 @@ const ritz_stamp *cli_stamp(cli_run *run);
 json_t *cli_real(double value);
 json_t *cli_string(const char *text);
 
-/** A value as JSON, with what a terminal could obey as \u009b. The caller frees
- * it; NULL: no memory. */
+/** A value as JSON; control characters that could act on a terminal are written
+ * as \u009b and the like. The caller frees it; NULL: no memory. */
 char *cli_json(const json_t *value, size_t flags);
 
-/** Write to standard error: all that tools say there goes this way, with '?'
- * for what a terminal could obey, except the ends of lines. */
+/** Write to standard error. Every message of a tool goes through this function,
+ * which prints '?' for characters that could act on a terminal, except
+ * newlines. */
 [[gnu::format(printf, 1, 2)]] void cli_complain(const char *format, ...);
 [[gnu::format(printf, 1, 0)]] void cli_complain_list(const char *format,
                                                      va_list args);
 
-/** Method and order (-1: none) of the line that --record appends. */
+/** Set method and order (-1: none) in the line that --record appends. */
 void cli_record(cli_run *run, const char *method, int64_t order);
 void cli_record_error(cli_run *run, const char *name, double value);
-/** Why an error that is recorded, a bound, is so large; "": it is not. */
+/** Record why an error, a bound, is large; "": no cause. */
 void cli_record_cause(cli_run *run, const char *name, const char *cause);
 
 /**
- * Append one further line to the file of --record, now: tool, command and
- * inputs are added to it. Without --record nothing happens.
+ * Append another line to the file of --record at once, with the tool, the
+ * command and the inputs added. Does nothing without --record.
  *
  * @param[in] line  given away
  */
 ritz_status cli_record_line(cli_run *run, json_t *line);
 
 /**
- * From now on signals that end the program remove unfinished files first, HDF5
- * files are read by another process before HDF5 opens them (cli/walk.h), and
- * steps of the library are shown as one line if standard error is a terminal.
- * Steps that will take more than ten minutes are a warning, as soon as the
- * first ones tell.
+ * From now on signals that end the program remove unfinished files first, and
+ * HDF5 files are read by another process before HDF5 opens them (cli/walk.h).
+ * If standard error is a terminal, steps of the library are shown as one line.
+ * Steps that will take more than ten minutes give a warning, as soon as the
+ * first ones show it.
  */
 void cli_watch(cli_run *run);
 
-/** From now on the program ends with status 1 where JSON has no memory. */
+/** From now on the program ends with status 1 if JSON gets no memory. */
 void cli_prepare(void);
 
-/** The program is about to end by itself; that of cli_watch which ends before is
- * ended by a library, and fails. */
+/** The program is about to end by itself. After cli_watch and without this
+ * call, an exit counts as a failure within a library. */
 void cli_unwatch(void);
 
 /** "12.5 s", "3 min", "5.2 h" or "4 days"; returns @p out. */
 const char *cli_duration(double seconds, char out[CLI_DURATION]);
 
-/** Seconds, of the monotonic clock. */
+/** Seconds of a monotonic clock. */
 double cli_clock(void);
 
-/** Remove that line, before something else is written. */
+/** Remove the line of progress, before something else is written. */
 void cli_watch_clear(void);
 
 /**
- * The outputs are as documented though the status will tell of a limit that is
- * not met: cli_finish gives them their names all the same.
+ * Publish the outputs in cli_finish even if the status is a failure: they are
+ * documented to be there when a limit is missed.
  */
 void cli_keep_outputs(cli_run *run);
 
 /**
- * Exit status for main: record, report, say why it failed, check standard
- * output; then all files that were written get their names or, after a failure
- * of any of that, none does.
+ * Exit status for main. Appends the record, prints the report, says why the run
+ * failed, and checks standard output. Then all outputs get their names; if any
+ * of these steps has failed, none does.
  */
 int cli_finish(cli_run *run, ritz_status status);
 

@@ -24,8 +24,8 @@
 /* --- signals and progress ------------------------------------------------- */
 
 /* Neither a handler nor an observer has an argument: state is kept here. */
-static volatile sig_atomic_t shown; /* a line of progress stands there */
-static double last;                 /* when it was written, by the clock */
+static volatile sig_atomic_t shown; /* a line of progress is on the screen */
+static double last;                 /* when it was written, by cli_clock */
 static cli_run *watched;            /* the run whose steps are observed */
 static bool on_terminal;            /* progress is shown */
 
@@ -50,9 +50,9 @@ static void end_program(int number)
     raise(number);
 }
 
-/* All that end a program, by others or by a defect of its own or of a library:
-   the handler has a stack of its own, as that may be what is at its end. What
-   is ignored, as nohup leaves it, or has a handler already, stays so. */
+/* Catch all signals that end a program, sent by others or raised by a defect.
+   The handler has its own stack, because a stack overflow is one such defect. A
+   signal that is ignored (nohup) or has a handler keeps its setting. */
 static void watch_signals(void)
 {
     static const int numbers[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGXCPU,
@@ -111,20 +111,21 @@ const char *cli_duration(double seconds, char out[CLI_DURATION])
     return out;
 }
 
-/* A kind of step of which it is known how many there will be. */
+/* A kind of step whose total number is known. */
 typedef struct step_series {
-    const char *what; /* the library's text */
+    const char *what; /* text of the library */
     int64_t total;
-    int64_t first, done; /* steps at the start, and now */
+    int64_t first, done; /* number of steps at the start and now */
     double began;
     bool told;
 } step_series;
 
-/* Some, as steps of one kind may consist of steps of another. */
+/* Several series at once, because a step may consist of steps of another
+   kind. */
 static step_series series[8];
 static int num_series;
 
-/* The series that a step belongs to; a new one at its first step. */
+/* The series of a step; the first step begins a new series. */
 static step_series *find_series(const char *what, int64_t done, int64_t total)
 {
     enum { MOST = sizeof series / sizeof *series };
@@ -141,7 +142,7 @@ static step_series *find_series(const char *what, int64_t done, int64_t total)
     return found;
 }
 
-/* Say how long work takes, once that is long and can be known. */
+/* Warn of long work once its duration can be estimated. */
 static void foresee_end(const char *what, int64_t done, int64_t total)
 {
     static const double long_work = 600.0, enough = 1.0; /* seconds */
@@ -169,8 +170,8 @@ static void follow_step(const char *what, int64_t done, int64_t total)
         show_progress(what, done, total);
 }
 
-/* Some libraries end a program that they cannot serve, with any status: Fortran
-   does with 0. Without its output it has failed. */
+/* A library that cannot go on may end the program with any status, Fortran with
+   0. Without its output such a run has failed. */
 static void end_early(void)
 {
     ritz_draft_discard_all();
@@ -186,7 +187,8 @@ void cli_unwatch(void)
     watched = NULL;
 }
 
-/* A report that lacks a part is none, and who builds it asks for no status. */
+/* Callers do not check each allocation of JSON, and an incomplete report would
+   be wrong: end the program. */
 static void *allocate_json(size_t size)
 {
     void *block = malloc(size);
@@ -292,7 +294,8 @@ static char *find_input(const cli_run *run, const char *path)
     return NULL;
 }
 
-/* To read as well where that is allowed: its end is looked at. */
+/* Open for reading as well if that is allowed, to look at the file's last
+   line. */
 static int open_to_append(const char *path)
 {
     const int how = O_CREAT | O_APPEND | O_CLOEXEC;
@@ -303,8 +306,8 @@ static int open_to_append(const char *path)
     return file >= 0 ? file : open(path, O_WRONLY | how, 0666);
 }
 
-/* Whether a regular file has a first letter, and none of a record; false where
-   it may not be read. */
+/* Whether a regular file begins with anything but a record; false if it may not
+   be read. */
 static bool holds_else(int file)
 {
     char text[512];
@@ -318,8 +321,8 @@ static bool holds_else(int file)
     return false;
 }
 
-/* That a line can be appended to the file of --record. One that holds anything
-   else may be an input that a run which fails did not come to read. */
+/* Open the file of --record for appending. A file that holds anything but
+   records is refused: it may be an input that a failed run did not reach. */
 static ritz_status open_record(const char *path, int *out)
 {
     int file = -1;
@@ -337,8 +340,8 @@ static ritz_status open_record(const char *path, int *out)
                      "--record: '%s' holds something else than records", path);
 }
 
-/* That no output is an input so far and, once, before long work, that each can
-   be made. */
+/* Check that no output is an input so far and, once before long work, that each
+   output can be created. */
 static ritz_status check_outputs(const cli_run *run)
 {
     const bool once = run->program->threads && run->num_inputs == 1;
@@ -421,7 +424,7 @@ const ritz_stamp *cli_stamp(cli_run *run)
 
 /* --- reports -------------------------------------------------------------- */
 
-/* Clean what stands between some characters, which stay. */
+/* Clean the text between the characters of `kept`, which stay. */
 static void clean_between(char *text, const char *kept)
 {
     while (*text) {
@@ -437,7 +440,7 @@ static void clean_between(char *text, const char *kept)
 
 void cli_complain_list(const char *format, va_list args)
 {
-    char text[2 * CLI_MAX_COMMAND]; /* for a sentence about a long path */
+    char text[2 * CLI_MAX_COMMAND]; /* room for a sentence with a long path */
 
     vsnprintf(text, sizeof text, format, args);
     clean_between(text, "\n");
@@ -493,7 +496,8 @@ json_t *cli_string(const char *text)
     return string ? string : json_null();
 }
 
-/* A control character that JSON allows in strings, U+007F to U+009F. */
+/* Write a letter, or the escape of a control character (U+007F to U+009F),
+   which JSON allows in strings. */
 static void put_letter(FILE *file, const char *letter, int size)
 {
     const unsigned char *c = (const unsigned char *)letter;
@@ -536,7 +540,7 @@ void cli_record(cli_run *run, const char *method, int64_t order)
         json_object_set_new(run->line, "order", json_integer(order));
 }
 
-/* An object of the line that --record appends. */
+/* The object with this key in the line that --record appends. */
 static json_t *find_recorded(cli_run *run, const char *key)
 {
     json_t *found = json_object_get(run->line, key);
@@ -604,7 +608,7 @@ static bool write_all(int file, const char *text, size_t length)
     return true;
 }
 
-/* Whether a last line has no end, as that of a run that was killed. */
+/* Whether the last line has no newline, as after a run that was killed. */
 static bool is_cut(int file, off_t size)
 {
     char end = '\n';
@@ -613,9 +617,10 @@ static bool is_cut(int file, off_t size)
 }
 
 /*
- * Of a line that does not fit nothing stays, and none is glued to half a line
- * of another run. The lock keeps other tools from writing meanwhile; without
- * it lines still do not mix, as each is written in one call.
+ * A line that does not fit is removed again, and a line is never joined to half
+ * a line of another run. The lock keeps other tools from writing meanwhile.
+ * Where locks do not work, lines do not mix either, because each is written in
+ * one call.
  */
 static ritz_status append_text(int file, const char *path, const char *text,
                                size_t length)
@@ -640,7 +645,7 @@ static ritz_status append_text(int file, const char *path, const char *text,
                      strerror(error));
 }
 
-/* With the memory so far. */
+/* Append a line, with the memory used so far. */
 static ritz_status append_line(const cli_run *run, json_t *line)
 {
     RITZ_OWN_ARRAY char *text = NULL;
@@ -676,8 +681,8 @@ ritz_status cli_record_line(cli_run *run, json_t *line)
     return status;
 }
 
-/* A failure to record takes back the files that were written, and is told; but
-   not if the work itself failed. */
+/* Append the record of the run. If this fails, so does the run, and its outputs
+   are removed; the message of an earlier failure is kept. */
 static ritz_status keep_record(cli_run *run, ritz_status outcome, bool *keep)
 {
     char *first = outcome == RITZ_OK ? NULL : strdup(ritz_error_message());
@@ -721,8 +726,8 @@ void cli_keep_outputs(cli_run *run)
     run->kept = true;
 }
 
-/* Names for all files that were written, or for none. A record that said that
-   all went well is followed by one that does not. */
+/* Give all outputs their names, or remove all. If that fails after a record of
+   success, a record of failure follows it. */
 static ritz_status settle_outputs(cli_run *run, bool keep, ritz_status status)
 {
     if (ritz_draft_settle(keep) == RITZ_OK)

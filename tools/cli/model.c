@@ -112,7 +112,7 @@ ritz_status model_peek(const char *path, model_kind *kind, const char **noun)
     return RITZ_OK;
 }
 
-/* Of the file that is kept open. */
+/* Read from the file that is kept open. */
 static ritz_status read_kept(const char *path, int wanted, model *out)
 {
     RITZ_OWN(ritz_summary) summary = {0};
@@ -157,8 +157,8 @@ void model_warn_loads(cli_run *run, const char *path, int64_t count)
                  path, count, count > 1 ? "s" : "");
 }
 
-/* A file that cannot be read is refused when the scene loads it, which names
-   its line. */
+/* A file that cannot be read is refused later, when the scene loads it and
+   names the line. */
 static void warn_of_model(cli_run *run, const char *path)
 {
     RITZ_OWN(ritz_summary) summary = {0};
@@ -181,7 +181,7 @@ ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out)
     return RITZ_OK;
 }
 
-/* Bytes of what a system holds of a configuration. */
+/* Bytes that a system holds for one configuration. */
 static double count_bytes(const ritz_configuration *at)
 {
     const ritz_dense parts[] = {at->K,     at->M,     at->D,
@@ -418,7 +418,7 @@ void model_set_cost(cli_run *run, const ritz_cost *cost)
     sink_end(run);
 }
 
-/* PREFIXname.h5 */
+/* Name of a body's file: PREFIXname.h5. */
 static ritz_status name_body(const char *prefix, const char *name,
                              char out[MODEL_PATH])
 {

@@ -44,8 +44,8 @@ enum {
     X(STATES, state_space, states, "state-space", "a state space")             \
     X(SIMULATION, simulation, simulation, "simulation", "a time response")
 
-/* A container: the object that `kind` names, others empty but for what it was
-   made of. */
+/* The content of a container: the object that `kind` names. All others are
+   empty, except those from which it was made. */
 typedef struct model {
     model_kind kind;
 #define MODEL_MEMBER(KIND, type, member, name, noun) ritz_##type member;
@@ -120,38 +120,37 @@ void model_nouns(int wanted, char *out, size_t room);
  */
 ritz_status model_read(cli_run *run, const char *path, int wanted, model *out);
 
-/** Warn that geometric stiffness of so many loads of a model is not used. */
+/** Warn that a model's geometric stiffness, for @p count loads, is not used. */
 void model_warn_loads(cli_run *run, const char *path, int64_t count);
 
-/** Hash and read a scene, and hash the models that it names. Geometric
- * stiffness that these have is not used, and that is said. */
+/** Hash and read a scene, and hash the models that it names. Warn if these have
+ * geometric stiffness, which is not used. */
 ritz_status model_scene(cli_run *run, const char *path, ritz_scene *out);
 
-/** Of a scene with more than 1000 configurations, as a few lines of text make
- * them: warn how long all of them take and how large they are, by the first. */
+/** Warn of a scene with more than 1000 configurations, which a few lines of
+ * text can define: estimate from the first one their time and memory. */
 ritz_status model_foresee(cli_run *run, const ritz_stage *stage);
 
 /** Choose the configuration of --at; @p at given for no system is refused. */
 ritz_status model_at(model *model, const char *path, const char *at);
 
 /**
- * What a tool that takes a reduced component takes too: of a nested one the
- * first columns, and a system at its configuration, which becomes the reduced
- * component that it is there.
+ * Convert to a reduced component, if possible: a nested reduced component is
+ * cut to its first columns, a system is taken at its configuration.
  */
 ritz_status model_as_reduced(model *model, const char *path,
                              const model_options *given);
 
 /**
- * What a tool that takes a component takes too: a reduced component or system
- * as above, whose coordinates become dofs; `reduced` stays beside it.
+ * Convert to a component, if possible: a reduced component or a system as
+ * above, whose coordinates become dofs. `reduced` stays as well.
  */
 ritz_status model_as_component(model *model, const char *path,
                                const model_options *given);
 
 /**
- * Take the first @p order columns of what was read, before anything is made of
- * it; 0: all.
+ * Cut a reduced component to its first @p order columns, before anything is
+ * made of it; 0: keep all.
  *
  * @return RITZ_ERR_ARGUMENT if it is no reduced component, or has no such
  *         prefix
@@ -205,14 +204,15 @@ ritz_status model_hertz(const ritz_dense *K, const ritz_dense *M,
                         int64_t *num_rigid, int64_t *count, double **out);
 
 /**
- * Modes of negative eigenvalue at the configuration of a system whose bodies
- * are joined by forces: spurious, since no body has such. 0 of other models.
+ * Number of modes with negative eigenvalue at a configuration of a system whose
+ * bodies are joined by interface forces. They are spurious, since no body has
+ * any. 0 for other models.
  *
  * @param[out] first_hz  |f| of the one nearest to 0; NULL: not wanted
  */
 int64_t model_negative_squares(const ritz_configuration *at, double *first_hz);
 
-/** Refuse a model that has such: it has no steady response. */
+/** Refuse a model with such modes: it has no steady response. */
 ritz_status model_refuse_forces(const model *m, const char *path);
 
 /** Frequencies of a configuration, Hz, rigid modes as 0; caller frees. */
@@ -227,7 +227,8 @@ ritz_status model_hertz_at(const ritz_configuration *at, double **out);
 void model_say_measures(cli_run *run, sink_text text, const char *key,
                         const ritz_measures *measures, const char *known);
 
-/** Its value, and their values, for the line of --record; causes of bounds. */
+/** Add a measure, or all of them, and causes of bounds to the line of
+ * --record. */
 void model_record_measure(cli_run *run, const ritz_measure *measure);
 void model_record(cli_run *run, const ritz_measures *measures);
 
@@ -236,10 +237,11 @@ void model_set_cost(cli_run *run, const ritz_cost *cost);
 
 enum { MODEL_PATH = 4096 };
 
-/** Check, before long work, that model_write_bodies can make its files. */
+/** Check, before long work, that model_write_bodies can create its files. */
 ritz_status model_foresee_bodies(const char *prefix, const ritz_scene *scene);
 
-/** Reduced components of a scene as PREFIXname.h5; NULL: none is written. */
+/** Write the reduced components of a scene as PREFIXname.h5; NULL: write
+ * none. */
 ritz_status model_write_bodies(cli_run *run, const char *prefix,
                                const ritz_scene *scene,
                                const ritz_reduced *body);

@@ -58,13 +58,13 @@ double record_value(const json_t *values, const char *name);
 /** An error as it is drawn: of MAC, what it lacks of one. */
 double record_error(const record *r, const char *name);
 
-/** What charts call a measure; its own name if they do not draw it. */
+/** Title of a measure in charts; its name if charts do not draw it. */
 const char *record_title(const char *name);
 
 enum { RECORD_SET_MEASURES = 12 };
 
-/* Those that a chart can show: with a method, an order and errors, of one
-   subject, a line that is repeated once. They borrow from the records. */
+/* The records that a chart can show: of one subject, with a method, an order
+   and errors, each repeated line once. They borrow from `all`. */
 typedef struct record_set {
     records all;
     int64_t num_measures; /* with a tolerance first, then by importance */

@@ -84,8 +84,8 @@ static void put_value(telling *t, const char *key, json_t *value)
         json_decref(value);
 }
 
-/* Text of a file may be anything: on a terminal, in a report and in a table it
- * stays on its line, and is never obeyed. */
+/* Texts from files may hold anything. In a terminal, a report or a table they
+ * stay on their line, and control characters become '?'. */
 static void put_text(FILE *file, conversion c, const char *value)
 {
     const size_t size =
@@ -102,7 +102,7 @@ static void put_text(FILE *file, conversion c, const char *value)
         else
             at += putc('?', file) == '?';
         if (ferror(file))
-            return; /* as whoever made the file will see */
+            return; /* the owner of the file sees the error */
     }
     fprintf(file, "%*s", c.width < 0 ? blanks : 0, "");
 }

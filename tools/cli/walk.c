@@ -20,11 +20,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* --- files that were read ------------------------------------------------- */
+/* --- files that were read before ------------------------------------------ */
 
 enum { REMEMBERED = 64 };
 
-/* A tool opens a file more than once; what changes it changes these. */
+/* A tool opens a file more than once. A change of the file changes its device,
+   inode, size or times. */
 static struct stat sound[REMEMBERED];
 static int64_t num_sound;
 
@@ -47,8 +48,8 @@ static bool is_remembered(const struct stat *file)
 
 /* --- the process ---------------------------------------------------------- */
 
-/* The program lies where it was installed beside the tool, or was built: it is
-   no question of the environment, nor of the folder in which the tool runs. */
+/* Find ritz-walk relative to the tool, as both were installed or built; neither
+   the environment nor the working folder has an influence. */
 static ritz_status find_program(char out[PATH_MAX])
 {
     static const char from_tools[] = "/" RITZ_WALKER;
@@ -75,8 +76,8 @@ static ritz_status find_program(char out[PATH_MAX])
     return RITZ_OK;
 }
 
-/* Never more than whoever started the tool allows. What is above the limit that
-   a process hears of kills it: one second of the processor later. */
+/* Set a limit, never above the present one. Beyond the soft limit the process
+   gets a signal, beyond the hard limit, `above` higher, it is killed. */
 static bool limit_use(int what, rlim_t most, rlim_t above)
 {
     struct rlimit limit = {0};
@@ -100,7 +101,7 @@ static rlim_t count_seconds(off_t size)
     return limit.rlim_cur;
 }
 
-/* In the child: the file, and nothing else that the tool has open. */
+/* In the child: keep the file open as WALK_FILE, and nothing else. */
 static bool pass_file(int file)
 {
     const int copy = fcntl(file, F_DUPFD_CLOEXEC, WALK_FILE + 1);
@@ -115,14 +116,15 @@ static bool pass_file(int file)
     return true;
 }
 
-/* By the clock a sound file takes what its disk takes: ten times as long. */
+/* Limit processor time, memory, and time by the clock: ten times as much, as a
+   slow disk delays a sound file. */
 static bool set_limits(off_t size)
 {
     const rlim_t seconds = count_seconds(size);
     sigset_t none;
 
     sigemptyset(&none);
-    signal(SIGXCPU, SIG_DFL); /* though the tool ignores them */
+    signal(SIGXCPU, SIG_DFL); /* even if the tool ignores it */
     signal(SIGALRM, SIG_DFL);
     sigprocmask(SIG_SETMASK, &none, NULL);
     alarm((unsigned)(seconds < 100000 ? 10 * seconds : 1000000));
@@ -141,7 +143,7 @@ static _Noreturn void become_walker(const char *program, int file, off_t size)
     _exit(CHILD_NO_PROGRAM);
 }
 
-/* --- what its end says ---------------------------------------------------- */
+/* --- how it ended --------------------------------------------------------- */
 
 static ritz_status explain_signal(int number, off_t size)
 {
@@ -187,7 +189,8 @@ ritz_status walk_file(int file)
     if (is_remembered(&before))
         return RITZ_OK;
     RITZ_CHECK(find_program(program));
-    signal(SIGCHLD, SIG_DFL); /* ignored, it would take the outcome away */
+    /* if it were ignored, no outcome would be reported */
+    signal(SIGCHLD, SIG_DFL);
     child = child_start(SIGKILL);
     if (child == 0)
         become_walker(program, file, before.st_size);

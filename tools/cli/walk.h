@@ -1,8 +1,8 @@
 /*
- * HDF5 trusts its files: one that is damaged, or made to, can end a program
- * that reads it, lead it in circles or have it ask for all memory. So another
- * process reads each file first, libexec/ritz-walk.c, which may die of it. Here
- * is what the two sides agree on.
+ * HDF5 trusts its files: a damaged or malicious one can crash the program that
+ * reads it, make it loop, or make it ask for all memory. Another process,
+ * libexec/ritz-walk.c, therefore reads each file first. This header is what the
+ * two sides share.
  */
 #ifndef RITZ_TOOLS_CLI_WALK_H
 #define RITZ_TOOLS_CLI_WALK_H
@@ -10,28 +10,27 @@
 #include <ritz/base.h>
 
 enum {
-    WALK_FILE = 3,                 /* the file, as a descriptor */
-    WALK_BYTES = 1 << 30,          /* memory that the process may have */
-    WALK_SECONDS = 10,             /* of its processor, */
-    WALK_BYTES_A_SECOND = 1 << 18, /* and one more for so much of the file */
-    WALK_RATIO = 1032,             /* that deflate can reach */
-    WALK_SPARE = 1 << 19,          /* bytes that may be declared in vain */
+    WALK_FILE = 3,                 /* descriptor of the file */
+    WALK_BYTES = 1 << 30,          /* memory limit of the process */
+    WALK_SECONDS = 10,             /* of processor time, and one more for */
+    WALK_BYTES_A_SECOND = 1 << 18, /* each of these bytes of the file */
+    WALK_RATIO = 1032,             /* best compression of deflate */
+    WALK_SPARE = 1 << 19, /* bytes declared beyond what the file holds */
 };
 
-/* How the process ends, unless a signal ends it, or it
-   cannot be started. */
+/* How the process ends, if it can be started and no signal ends it. */
 typedef enum walk_end {
-    WALK_WHOLE,    /* all that can be read was read; errors are the tool's */
-    WALK_UNOPENED, /* HDF5 does not know it */
+    WALK_WHOLE,    /* all that can be read was read; the tool reports errors */
+    WALK_UNOPENED, /* HDF5 does not recognise the file */
     WALK_MEMORY,   /* HDF5 asked for more memory than it may have */
 } walk_end;
 
 /**
- * Have an open file read by a process of its own, with limits on its time, its
- * memory and what it may write; a file that was read so, and was not changed,
- * is not read again. For ritz_container_guard.
+ * Let another process read an open file, with limits on its time, its memory
+ * and what it may write. A file that was read before and has not changed is not
+ * read again. For ritz_container_guard.
  *
- * @return RITZ_ERR_FORMAT if that process does not come to its end, and
+ * @return RITZ_ERR_FORMAT if a signal or a limit ends the process,
  *         RITZ_ERR_FILE if it cannot be started
  */
 ritz_status walk_file(int file);

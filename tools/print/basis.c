@@ -76,7 +76,7 @@ static void say_basis(cli_run *run, const ritz_basis *basis)
     cli_record(run, basis->origin.method, c->count);
 }
 
-/* A state space that the method does not take: name those that do. */
+/* Refuse a state space for this method, and name the methods that take one. */
 static ritz_status refuse_space(const char *path, const ritz_method *method)
 {
     char names[256] = "";
@@ -91,7 +91,7 @@ static ritz_status refuse_space(const char *path, const ritz_method *method)
                      path, method->name, names);
 }
 
-/* The model to be reduced, of a kind that the method takes. */
+/* Read the model to be reduced, of a kind that the method takes. */
 static ritz_status read_full(cli_run *run, const char *path,
                              const basis_options *given, model *out)
 {
@@ -112,8 +112,8 @@ static ritz_status read_full(cli_run *run, const char *path,
     return model_as_component(out, path, &given->model);
 }
 
-/* A port of a reduced component moves by several coordinates, none of which
-   can be attached in its place. */
+/* Refuse ports of a reduced component: several coordinates move such a port,
+   and none of them can be attached in its place. */
 static ritz_status check_ports(const char *path, const model *full,
                                const basis_options *given)
 {
@@ -134,9 +134,9 @@ static double gap_above(int64_t count, const double *value, int64_t k)
 }
 
 /*
- * A lightly damped mode has two states of nearly equal value. A cut between
- * them, which is narrower than the gaps on both of its sides, keeps half of the
- * mode: a real pole. Equal values are never cut, and fewer than were asked for
+ * A lightly damped mode has two states of nearly equal value. A cut between the
+ * two, whose gap is narrower than those on both sides, keeps half of the mode,
+ * which is a real pole. Equal values are never cut: fewer states than asked for
  * are kept then.
  */
 static void warn_of_split(cli_run *run, const ritz_basis *basis, int64_t kept,
@@ -161,7 +161,7 @@ static void warn_of_split(cli_run *run, const ritz_basis *basis, int64_t kept,
                  kept, kept + 1, s[kept - 1], s[kept], kept);
 }
 
-/* The configuration of a system that a model is; NULL: it is none. */
+/* Configuration at which a system was read as this model; NULL: no system. */
 static const char *name_configuration(const model *full)
 {
     const ritz_origin *origin = &full->reduced.origin;
@@ -169,8 +169,8 @@ static const char *name_configuration(const model *full)
     return strcmp(origin->method, "system") == 0 ? origin->options : NULL;
 }
 
-/* A basis says at which configuration it was made: "modes 12, at clock=60";
-   one whose options leave no room for it does not. */
+/* A basis stores the configuration at which it was made, as "modes 12, at
+   clock=60", unless its options leave no room. */
 static const char configuration_mark[] = ", at ";
 
 static void sign_configuration(const model *full, ritz_origin *origin)
@@ -184,7 +184,7 @@ static void sign_configuration(const model *full, ritz_origin *origin)
         snprintf(origin->options + used, room, "%s%s", mark, at);
 }
 
-/* The configuration that a basis was made at; NULL: it does not say. */
+/* The configuration at which a basis was made; NULL: not stored. */
 static const char *find_configuration(const char *options)
 {
     const char *mark = strstr(options, configuration_mark);
@@ -196,7 +196,8 @@ static const char *find_configuration(const char *options)
                                                        : NULL;
 }
 
-/* A basis of one configuration fits every other in size, and no other. */
+/* A basis made at one configuration of a system has the size of all others, but
+   is for this one only. */
 static ritz_status check_configuration(const cli_run *run, const model *full,
                                        const ritz_basis *basis)
 {
@@ -208,7 +209,8 @@ static ritz_status check_configuration(const cli_run *run, const model *full,
     return RITZ_OK;
 }
 
-/* What a choice of modes remarks first, if it cuts a pair. */
+/* Repeat the beginning of the basis' remark as a warning if it says that a pair
+   of modes is cut. */
 static void warn_of_pair(cli_run *run, const ritz_basis *basis)
 {
     static const char cut[] = " splits them";
@@ -267,8 +269,8 @@ static void drop_basis(ritz_reduced *reduced)
     reduced->dof = NULL;
 }
 
-/* A component in a basis. What was reduced before is projected once more, so
-   that its ports and shapes follow; its coordinates are no dofs of theirs. */
+/* Reduce a component by a basis. A model that was reduced before is projected
+   again, so that its ports and shapes follow. */
 static ritz_status project_component(const model *full, const ritz_basis *basis,
                                      ritz_reduced *out)
 {

@@ -59,7 +59,7 @@ static void describe_choice(const ritz_scene *scene, char out[160])
     }
 }
 
-/* Whether modes were chosen by a ranking, of which K4 has no part. */
+/* Whether modes were selected by a ranking, which does not include K4. */
 static bool ranks_without_loss(const ritz_stage *first)
 {
     const ritz_scene *scene = first->scene;
@@ -178,7 +178,7 @@ static void say_candidate(cli_run *run, int64_t bodies, const ritz_candidate *k)
              k->num_forces, k->chosen);
 }
 
-/* How the chosen set was found among all that the pool allows. */
+/* Report how the chosen set was found in the pool. */
 static void say_search(cli_run *run, const ritz_scene *scene,
                        const ritz_comparison *c, const ritz_candidate *chosen)
 {
@@ -243,7 +243,7 @@ static void say_candidates(cli_run *run, const ritz_stage *first,
         say_search(run, scene, c, chosen);
 }
 
-/* What became of the vectors that made extraneous modes. */
+/* Report the vectors that were dropped because they make extraneous modes. */
 static void say_compact(cli_run *run, const ritz_stage *first,
                         const ritz_comparison *c)
 {

@@ -1,4 +1,4 @@
-/* What dampers do: scans of a mode, the H2 norm, tuning and places. */
+/* Reports of dampers: scans of a pole, the H2 norm, tuning and placement. */
 #include "print/print.h"
 
 #include "base/tolerances.h"
@@ -10,8 +10,8 @@
 
 /* --- Ranges of the command line ------------------------------------------- */
 
-/* "NAME[,NAME]=C[*K]", C and K "FROM:TO:STEP" or "FROM:TO", either may be
-   empty. */
+/* "NAME[,NAME]=C[*K]" with C and K as "FROM:TO:STEP" or "FROM:TO"; one of the
+   two may be empty. */
 typedef struct damper_ranges {
     int64_t count;
     int64_t *damper;
@@ -27,7 +27,7 @@ static void damper_ranges_free(damper_ranges *ranges)
 
 RITZ_ARRAY_OF(damper_ranges);
 
-/* The names before '=', as indices. */
+/* Convert the names before '=' to indices. */
 static ritz_status take_names(char *names, const ritz_dampers *dampers,
                               damper_ranges *out)
 {
@@ -42,7 +42,7 @@ static ritz_status take_names(char *names, const ritz_dampers *dampers,
     return RITZ_OK;
 }
 
-/* "FROM:TO:STEP" of three, "FROM:TO" of two numbers; "": there is none. */
+/* "FROM:TO:STEP" as three numbers, "FROM:TO" as two; "" is no range. */
 static bool take_range(char *text, int numbers, bool *has, double *value)
 {
     char *rest = NULL;
@@ -56,7 +56,7 @@ static bool take_range(char *text, int numbers, bool *has, double *value)
     return !*has || count == numbers;
 }
 
-/* What is behind '='. */
+/* Parse the ranges after '='. */
 static bool take_ranges(char *text, int numbers, damper_ranges *out)
 {
     char *star = strchr(text, '*');
@@ -68,7 +68,7 @@ static bool take_ranges(char *text, int numbers, damper_ranges *out)
            (out->has[0] || out->has[1]);
 }
 
-/* All but the dampers, whose names are left in @p names. */
+/* Parse all but the names of dampers, which are left in @p names. */
 static ritz_status parse_values(const char *text, int numbers, char **names,
                                 damper_ranges *out)
 {
@@ -112,7 +112,7 @@ static void join_names(const ritz_dampers *dampers, int64_t count,
 
 enum { LABEL_SIZE = 256 };
 
-/* What the columns of a scan are of. */
+/* The axes of a scan, and their columns of the table. */
 typedef struct scan_axes {
     int64_t count;
     ritz_scan_axis *axis;
@@ -157,7 +157,7 @@ static double hertz_of(double _Complex s)
     return cabs(s) / (2.0 * RITZ_PI);
 }
 
-/* "c", or "values" in the order of the axes, and the pole. */
+/* One point: "c", or "values" in the order of the axes, and the pole. */
 static void set_point(cli_run *run, const ritz_scan *scan,
                       const scan_axes *axes, int64_t k)
 {
@@ -172,7 +172,7 @@ static void set_point(cli_run *run, const ritz_scan *scan,
              ritz_spectrum_ratio(s), creal(s), cimag(s));
 }
 
-/* Where the best is at an end of an axis. */
+/* Warn if the best point lies at an end of an axis. */
 static void warn_ends(cli_run *run, const ritz_scan *scan,
                       const scan_axes *axes)
 {
@@ -197,7 +197,7 @@ static void say_heading(cli_run *run, const scan_axes *axes, bool tsv)
             tsv ? "zeta" : "zeta %");
 }
 
-/* A table, and the best point. */
+/* Print the table of a scan and its best point. */
 static void say_scan(cli_run *run, const ritz_scan *scan, const scan_axes *axes,
                      bool tsv)
 {
@@ -252,7 +252,7 @@ ritz_status dampers_scan(cli_run *run, model *m, const poles_options *given)
 
 /* --- The H2 norm ---------------------------------------------------------- */
 
-/* "HZ[:ORDER]", and a line that says what drives the inputs. */
+/* Parse "HZ[:ORDER]", and print a line about the disturbance at the inputs. */
 static ritz_status take_noise(cli_run *run, const poles_options *given,
                               ritz_disturbance *out)
 {
@@ -325,7 +325,7 @@ static bool is_each(const char *text, const ritz_dampers *dampers)
     return true;
 }
 
-/* One group of an option, or of each damper one. */
+/* One group from an option, or one group for each damper. */
 static ritz_status take_groups(const char *text, const ritz_dampers *dampers,
                                damper_ranges_array *out)
 {
@@ -374,7 +374,7 @@ static void warn_range(cli_run *run, const char *what, const char *name,
                  what, name, value);
 }
 
-/* Values of group g: its own, or what its damper j has. */
+/* Values of damper j in group g: the tuned ones, or its own where not tuned. */
 static void values_of(const ritz_tuning *tuning, int64_t g,
                       const ritz_dampers *dampers, int64_t j, double value[2])
 {
@@ -382,7 +382,7 @@ static void values_of(const ritz_tuning *tuning, int64_t g,
     value[1] = isnan(tuning->k[g]) ? dampers->k[j] : tuning->k[g];
 }
 
-/* A table of c and k, and the same as options. */
+/* Print c and k as a table, and as options of ritz-poles. */
 static void say_values(cli_run *run, const tuned_groups *groups,
                        const int64_t *taken, const ritz_dampers *dampers,
                        const ritz_tuning *tuning, bool tsv)
@@ -472,7 +472,7 @@ static void say_tuning(cli_run *run, const ritz_tuning *tuning, bool tsv)
     warn_tuning(run, tuning);
 }
 
-/* Norm of each candidate alone, then the best combinations. */
+/* Print the norm of each candidate alone, then the best combinations. */
 static void say_places(cli_run *run, const ritz_placing *placing,
                        const tuned_groups *groups, const ritz_dampers *dampers)
 {

@@ -363,7 +363,8 @@ static void describe_inertia(cli_run *run, const ritz_inertia *i)
     sink_end(run);
 }
 
-/* Five a line, without those that @p negative leaves out. */
+/* List frequencies, five per line; those < 0 if @p negative, else all
+   others. */
 static void list_hertz(cli_run *run, int64_t first, int64_t count,
                        const double *hertz, bool negative)
 {
@@ -382,14 +383,14 @@ static void list_hertz(cli_run *run, int64_t first, int64_t count,
         cli_say(run, "%s", "");
 }
 
-/* Frequencies, rigid modes as their number; @p squares of negative eigenvalue
-   stand apart. */
+/* List frequencies; rigid modes are only counted, and @p squares modes of
+   negative eigenvalue are listed separately. */
 static void describe_hertz(cli_run *run, const char *title, int64_t rigid,
                            int64_t count, int64_t squares, const double *hertz)
 {
     cli_say(run, "  %-14s %ld rigid, %ld flexible modes%s", title, rigid,
             count - rigid - squares, count - squares > rigid ? ", Hz:" : "");
-    if (squares == 0) { /* a negative one is of rounding, or a mistake */
+    if (squares == 0) { /* negative by rounding, or by mistake */
         for (int64_t k = rigid; k < count; k += 5) {
             sink_part(run, "  %-14s", "");
             for (int64_t i = k; i < k + 5 && i < count; i++)

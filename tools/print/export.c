@@ -101,8 +101,8 @@ static ritz_status check_stability(cli_run *run, const model *m,
     return RITZ_OK;
 }
 
-/* Errors that are not those of a body against its full model: what they are of,
-   by what their names begin with. */
+/* Errors that do not compare a body with its full model, recognised by the
+   prefix of their names, and the warning about them. */
 typedef struct reference {
     const char *prefix, *word, *by, *warning;
 } reference;
@@ -115,7 +115,7 @@ static const reference references[] = {
     {"", "full", "ritz-verify or ritz-fit", NULL},
 };
 
-/* The first row that all names of measures begin with. */
+/* The first row whose prefix all names of measures have. */
 static const reference *find_reference(const ritz_measures *errors)
 {
     const reference *row = references;
@@ -237,7 +237,7 @@ static ritz_status find_basis_shapes(cli_run *run, const ritz_basis *basis,
                                 out);
 }
 
-/* "BODY=FILE" among those that are given; NULL: there is none. */
+/* The file of body `name` among texts "BODY=FILE"; NULL: not given. */
 static const char *find_body(const export_options *given, const char *name)
 {
     const size_t length = strlen(name);
@@ -251,7 +251,7 @@ static const char *find_body(const export_options *given, const char *name)
     return NULL;
 }
 
-/* Modes of a system, whose bodies bring their grids. */
+/* Modes of a system on the grids of its bodies. */
 static ritz_status find_system_shapes(cli_run *run, const model *m,
                                       const export_options *given,
                                       ritz_shapes *out)
@@ -282,8 +282,8 @@ static ritz_status find_system_shapes(cli_run *run, const model *m,
                                  out);
 }
 
-/* Modes of a reduced component, of a component or of a system, or columns of a
-   basis. */
+/* Shapes to export: modes of a reduced component, of a component or of a
+   system, or columns of a basis. */
 static ritz_status find_shapes(cli_run *run, const model *m,
                                const export_options *given, ritz_shapes *out)
 {
@@ -360,7 +360,7 @@ static ritz_status export_model(cli_run *run, model *m,
     return exporter->write(&object, &request, done);
 }
 
-/* With --states, or as it stands with the damping that is asked for. */
+/* Add the damping that is asked for and, with --states, make a state space. */
 static ritz_status settle_damping(model *m, const char *path,
                                   const export_options *given)
 {
@@ -385,7 +385,8 @@ static ritz_status settle_damping(model *m, const char *path,
     return RITZ_OK;
 }
 
-/* Formats of matrices take a system, and viewers its bodies. */
+/* Refuse a system for formats that take neither matrices of states nor
+   shapes. */
 static ritz_status check_kind(const model *m, const char *path,
                               const ritz_exporter *exporter)
 {

@@ -50,7 +50,7 @@ static void set_values(cli_run *run, const char *key,
     sink_end(run);
 }
 
-/* Why bounds are far above what is known of the errors, where they are. */
+/* Report the causes of bounds that are far above the known errors. */
 static void set_causes(cli_run *run, const ritz_measures *measures)
 {
     sink_object(run, "causes");
@@ -257,8 +257,8 @@ static void say_bounds(const cli_run *run, const ritz_measures *estimates)
     }
 }
 
-/* The worst measure of those with a tolerance, and beside it what is far worse
-   and was not asked for. */
+/* Print the worst measure that has a tolerance and, next to it, measures
+   without a tolerance that are far worse. */
 static void say_worst(cli_run *run, const ritz_fit_candidate *c)
 {
     const ritz_measure *worst = NULL;
@@ -471,8 +471,9 @@ static ritz_status compare_methods(cli_run *run, const fit_options *a,
     return RITZ_OK;
 }
 
-/* The tolerance was held from inputs to outputs. Forces and motions at ports
-   were not compared; only methods that keep interfaces are right there. */
+/* Warn if the method keeps no interface of a component with ports: the
+   tolerance was measured from inputs to outputs, and forces and motions at
+   ports were not compared. */
 static void warn_of_ports(cli_run *run, const ritz_component *component,
                           const ritz_fit_candidate *chosen)
 {

@@ -17,8 +17,8 @@ static double hertz_of(double _Complex s)
     return cabs(s) / (2.0 * RITZ_PI);
 }
 
-/* Whether a pole is of an interface force: such grow without oscillation, and
-   there are @p squares of them. */
+/* Whether a pole belongs to an interface force: such poles grow without
+   oscillation, and at most @p squares poles grow at all. */
 static bool is_force(const ritz_spectrum *spectrum, int64_t squares, int64_t j)
 {
     int64_t growing = 0;
@@ -48,7 +48,7 @@ static void set_pole(cli_run *run, double _Complex s)
              ritz_spectrum_ratio(s), creal(s), cimag(s));
 }
 
-/* One line for all of them. */
+/* Warn of all poles of interface forces in one line. */
 static void warn_of_forces(cli_run *run, const ritz_spectrum *spectrum,
                            int64_t squares)
 {

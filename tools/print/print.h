@@ -74,7 +74,7 @@ typedef struct export_options {
     const ritz_exporter *exporter;
     ritz_export_request request;
     model_options model;
-    cli_list component; /* that a basis is of, or "BODY=FILE" of a system */
+    cli_list component; /* the basis' component, or "BODY=FILE" of a system */
     bool force;
     bool states; /* write a reduced component as a state space */
 } export_options;
@@ -146,7 +146,7 @@ ritz_status import_run(cli_run *run, import_options *given);
 /* --- ritz-poles ----------------------------------------------------------- */
 
 typedef struct poles_options {
-    int64_t modes, mode; /* the lowest, 0: all; the one that a scan follows */
+    int64_t modes, mode;      /* number, 0: all; mode that a scan follows */
     double up_to_hz, near_hz; /* near_hz NaN: not given */
     cli_list scan;            /* "NAME[,NAME]=FROM:TO:STEP[*FROM:TO:STEP]" */
     cli_list tune;            /* "NAME[,NAME]=FROM:TO[*FROM:TO]" */
@@ -156,21 +156,22 @@ typedef struct poles_options {
     bool norm, tsv;
 } poles_options;
 
-/** Poles of a model, or what is made of its dampers. */
+/** Print the poles of a model, or the results for its dampers. */
 ritz_status poles_report(cli_run *run, const poles_options *given);
 
-/** One pole through ranges of c and k, and where it is damped most. */
+/** Follow one pole through ranges of c and k, to the largest damping ratio. */
 ritz_status dampers_scan(cli_run *run, model *m, const poles_options *given);
 
-/** H2 norm. */
+/** Print the H2 norm. */
 ritz_status dampers_norm(cli_run *run, model *m, const poles_options *given);
 
-/** The c and k of the least H2 norm, and with --place in which places. */
+/** Find the c and k of the smallest H2 norm, and with --place the best
+ * placement. */
 ritz_status dampers_tune(cli_run *run, model *m, const poles_options *given);
 
 /* --- ritz-rank ------------------------------------------------------------ */
 
-/* Rankings of one kind over configurations, and the largest of each mode. */
+/* Rankings of one kind at all configurations, and each mode's largest value. */
 typedef struct ranked {
     ritz_rankings all;
     ritz_ranking largest;   /* of several configurations; else empty */

@@ -43,7 +43,7 @@ static int64_t number_of(const int64_t *track, int64_t mode)
     return (track ? track[mode] : mode) + 1;
 }
 
-/* One past the last of the modes first, first + 1, ... of one cluster. */
+/* One past the last mode of a run first, first + 1, ... within one cluster. */
 static int64_t end_of_run(const ritz_ranking *r, int64_t first)
 {
     int64_t last = first + 1;
@@ -53,8 +53,8 @@ static int64_t end_of_run(const ritz_ranking *r, int64_t first)
     return last;
 }
 
-/* "7-8" or "2,5,7-8" of a cluster, "-" of a mode by itself; of a long one how
-   many more: "2,5,7-8+21". */
+/* Members of a mode's cluster, as "7-8" or "2,5,7-8"; "-" if it has no others.
+   A long list is cut, with the number of the other members: "2,5,7-8+21". */
 static void name_cluster(const ritz_ranking *r, const int64_t *track,
                          int64_t mode, char out[CELL])
 {
@@ -81,7 +81,7 @@ static void name_cluster(const ritz_ranking *r, const int64_t *track,
         snprintf(out, CELL, "-");
 }
 
-/* Modes that damping, not their frequency, puts into their cluster. */
+/* Number of modes that are in their cluster by damping, not by frequency. */
 static int64_t count_joined(const ritz_ranking *r)
 {
     int64_t joined = 0;
@@ -121,8 +121,9 @@ const char *rankings_damping(const ritz_ranking *r)
     return r->count > 0 && !(r->zeta[0] > 0.0) ? "none" : "of the matrices";
 }
 
-/* Largest relative difference between values and exact ones; NaN if they are no
-   Hankel values, or if damping joins modes: then no pair is that of a value. */
+/* Largest relative difference between values and exact Hankel values. NaN if
+   values are no Hankel values, or if damping joins modes, whose single values
+   have no exact counterpart. */
 static double difference_of(const ritz_ranking *r)
 {
     double worst = nan("");
@@ -357,7 +358,7 @@ void rankings_warn(cli_run *run, const ranked *group)
     }
     if (!worst)
         return;
-    if (worst->coupling > 0.0) /* or all modes are one cluster */
+    if (worst->coupling > 0.0) /* otherwise all modes are one cluster */
         sink_say(run,
                  json_object_get(run->report, "coupling") ? "" : ",,coupling",
                  "coupling: modes %ld and %ld share %.3g of the exact "

@@ -47,7 +47,7 @@ static void check_options(const cli_program *program,
     cli_refuse_name(program, "no method", given->method, count, names);
 }
 
-/* "auto, modal" of the engines that take a kind of model. */
+/* Names of the engines that take a kind of model, as "auto, modal". */
 static void list_engines(int kind, size_t size, char *out)
 {
     snprintf(out, size, "auto");
@@ -56,7 +56,7 @@ static void list_engines(int kind, size_t size, char *out)
             sink_append(out, size, ", %s", ritz_response_engines[k]->name);
 }
 
-/* The engine that is asked for, if it is for such a model. */
+/* The engine that is asked for, if it takes such a model. */
 static ritz_status choose_engine(cli_run *run, const char *method,
                                  const ritz_response_request *request,
                                  const ritz_response_engine **out)
@@ -84,7 +84,8 @@ static ritz_status choose_engine(cli_run *run, const char *method,
     return RITZ_OK;
 }
 
-/* Of components whose modes are too many to be found. */
+/* Report the stated uncertainty of components whose modes are too many to
+   find. */
 static void say_uncertainty(cli_run *run, const ritz_responder *r)
 {
     const double uncertain = ritz_responder_uncertainty(r);
@@ -94,8 +95,8 @@ static void say_uncertainty(cli_run *run, const ritz_responder *r)
                    "known to %.1e of the largest |H|", uncertain);
     if (uncertain > RITZ_RATIO_UNCERTAIN)
         cli_warn(run,
-                 "what damping ratios do to the modes above is known to "
-                 "%.1e of the largest |H| alone: raise --up-to-hz",
+                 "the effect of damping ratios on the modes above is known "
+                 "only to %.1e of the largest |H|: raise --up-to-hz",
                  uncertain);
 }
 
@@ -506,9 +507,9 @@ static ritz_status say_margins(cli_run *run, const loop_run *loop,
 /* --- the response --------------------------------------------------------- */
 
 /*
- * A range that is not asked for begins above what rounding of a free body's
- * stiffness rules: a thousandth of flexible responses, and the tolerance of the
- * largest one.
+ * A range that is not given begins above the frequency below which rounding of
+ * a free body's stiffness dominates: there it is a thousandth of flexible
+ * responses, and within the tolerance of the largest response.
  */
 static void heed_rounding(cli_run *run, const response_options *given,
                           const ritz_responder *plant, ritz_grid *grid)

@@ -305,9 +305,9 @@ static void warn_of_rounding(cli_run *run, double accuracy,
 }
 
 /*
- * Modes of a component are simulated alone. How much D puts their responses off
- * when it acts on the modes above too is measured in frequency, up to a third
- * of the last mode.
+ * A component is simulated in its modes alone. The effect of D on the modes
+ * above is measured on frequency responses, up to a third of the last mode's
+ * frequency.
  */
 static ritz_status warn_of_damping(cli_run *run, ritz_model subject,
                                    const ritz_simulation_request *request)
@@ -366,7 +366,7 @@ simulate_response(cli_run *run, const simulation_options *given, const drive *d)
     return RITZ_OK;
 }
 
-/* Spurious motions that grow by e^(2 pi f t). */
+/* Warn of spurious motions that grow as e^(2 pi f t). */
 static void warn_of_forces(cli_run *run, const model *m)
 {
     double first_hz = 0.0;

@@ -151,7 +151,7 @@ static ritz_status settle_matrices(cli_run *run, model *full, model *reduced,
     return ritz_context(model_install(reduced, damper), run->operand[1]);
 }
 
-/* --at is for whichever is a system, --order for the reduced model. */
+/* --at belongs to whichever model is a system, --order to the reduced model. */
 static ritz_status settle_configurations(const cli_run *run, model *full,
                                          model *reduced,
                                          const model_options *given)

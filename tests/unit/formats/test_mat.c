@@ -273,7 +273,7 @@ static void a_struct_is_gone_through_once(void **state)
     assert_int_equal(file.listing.count, OWN + 1);
     assert_string_equal(file.listing.item[OWN].name, "sys.same");
     assert_string_equal(file.listing.item[OWN].other,
-                        "a struct of another name, too");
+                        "the same struct as under another name");
 }
 
 static void every_allocation_may_fail(void **state)
