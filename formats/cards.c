@@ -27,11 +27,11 @@ typedef struct card_text {
     char *folder; /* to which its INCLUDEs are relative; NULL: not followed */
 } card_text;
 
-/* The file on top, below it those whose INCLUDE led there. */
+/* The file that is read, on top of those whose INCLUDE led to it. */
 typedef struct ritz_scanner {
     ritz_cards *cards;
     const char *home; /* folder of the deck; NULL: INCLUDE is not followed */
-    bool ended;       /* by ENDDATA */
+    bool ended;       /* ENDDATA was read */
     int depth;
     card_text open[RITZ_CARDS_DEEPEST + 1];
 } ritz_scanner;
@@ -100,7 +100,7 @@ static ritz_status skip_control(const char *path, ritz_lines *text,
     return RITZ_OK;
 }
 
-/* Append a file; its text becomes the deck's, unless the call fails. */
+/* Append a file; its text belongs to the deck then, unless the call fails. */
 static ritz_status add_file(ritz_cards *cards, const char *path,
                             ritz_cards_file file)
 {
@@ -188,8 +188,8 @@ static bool same_file(const ritz_cards_file *a, const ritz_cards_file *b)
            a->inode == b->inode;
 }
 
-/* Whether a file may be included once more: it is none of those that are open,
- * and few times so far. *earlier: NULL, or where its text is already. */
+/* Whether a file may be included: it is not open, and was included few times.
+ * *earlier: an earlier inclusion, whose text can be used; NULL: none. */
 static ritz_status check_repeats(const ritz_scanner *scan, const char *path,
                                  const ritz_cards_file *file,
                                  const ritz_cards_file **earlier)
@@ -215,9 +215,9 @@ static ritz_status check_repeats(const ritz_scanner *scan, const char *path,
 }
 
 /*
- * Go on with a file before the one that includes it. A deck is written by
- * others: what it names must be a regular file, as a device may have no end and
- * a pipe no writer, and a file that is named again is not read again.
+ * Continue with an included file. Decks may come from strangers: the name must
+ * be that of a regular file, because a device may have no end and a pipe no
+ * writer. A file that is included again is not read again.
  */
 static ritz_status include_file(ritz_scanner *scan, const char *path)
 {
@@ -354,7 +354,7 @@ static void copy_marker(ritz_piece piece, int64_t skipped,
 {
     int64_t k = 0;
 
-    if (skipped > 0) /* of an absent marker there is no text */
+    if (skipped > 0) /* an absent marker has no text */
         piece.text += skipped;
     piece.length -= skipped;
     piece = ritz_piece_trim(piece);

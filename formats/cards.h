@@ -37,10 +37,11 @@ typedef struct ritz_line {
 
 typedef struct ritz_cards_file {
     char *path;
-    char *text;      /* NULL if borrowed, from an earlier inclusion too */
-    bool known;      /* which file it is */
-    bool outside;    /* of the deck's folder: sentences do not quote it */
-    uint64_t device; /* with inode: the same by whatever name */
+    char *text; /* NULL if borrowed, from an earlier inclusion too */
+    bool known; /* device and inode are known */
+    /* outside of the deck's folder: sentences do not quote it */
+    bool outside;
+    uint64_t device; /* device and inode are the same under all names */
     uint64_t inode;
 } ritz_cards_file;
 
@@ -100,10 +101,10 @@ typedef struct ritz_card {
 ritz_status ritz_cards_parse(const char *path, const char *text, int64_t size,
                              const char *folder, ritz_cards *out);
 
-/** Take the @p k -th card apart. @return RITZ_ERR_FORMAT, naming the line */
+/** Split card @p k into fields. @return RITZ_ERR_FORMAT, naming the line */
 ritz_status ritz_card_take(const ritz_cards *cards, int64_t k, ritz_card *card);
 
-/** Field @p k of a card, from 0; "" behind its end. */
+/** Field @p k of a card, from 0; "" after its end. */
 const char *ritz_card_text(const ritz_card *card, int64_t k);
 
 /** Field @p k as a number; @p blank if the field is blank. */
@@ -121,8 +122,8 @@ bool ritz_card_number(const char *text, double *out);
 /** Significant digits that a number is written with; 0 for a zero. */
 int64_t ritz_card_digits(const char *text);
 
-/** Fail with file and line before the sentence. What it quotes of a file outside
- * the deck's folder is left out: who writes a deck could else read by it what
+/** Fail, with file and line before the sentence. Quotes from a file outside of
+ * the deck's folder are left out: they could show the author of a deck what
  * only the user of Ritz may read. */
 [[gnu::format(printf, 3, 4)]] ritz_status
 ritz_cards_refuse(const ritz_cards *cards, int64_t line, const char *format,

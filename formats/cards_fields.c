@@ -165,8 +165,9 @@ int ritz_cards_compare_name(const void *name, const void *row)
     return strcmp(name, *one);
 }
 
-/* Leave out of a sentence what stands in quotes, from the first quote to the
- * last, as what is quoted may hold quotes; to the end if it was cut off. */
+/* Remove from a sentence everything between the first quote and the last one,
+ * since a quotation may contain quotes; remove all after the first one if the
+ * sentence was cut off. */
 static void hide_quotes(char *sentence, size_t size)
 {
     char *first = strchr(sentence, '\'');

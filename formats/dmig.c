@@ -358,7 +358,7 @@ static ritz_status list_file(const ritz_foreign *file, ritz_listing *out)
     RITZ_REFUSE_IF(all.num_headers == 0, RITZ_ERR_FORMAT,
                    "there is no DMIG card in the bulk data");
     qsort(all.header, (size_t)all.num_headers, sizeof *all.header,
-          ritz_ascending_index); /* the order of the file */
+          ritz_ascending_index); /* into the order of the file */
     for (int64_t k = 0; k < all.num_headers; k++) {
         const ritz_dmig_header *header = &all.header[k];
         ritz_listed item = {.nrow = -1,

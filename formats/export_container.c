@@ -1,6 +1,6 @@
 /*
- * A reduced component or state space as a container of its own: what a system
- * is at a configuration, the first columns of a nested component, or either in
+ * A container with one reduced component or state space: a system at a
+ * configuration, the first columns of a nested component, or either in
  * first-order form, for every tool that takes one. [HDFGroup2016]
  */
 #include <ritz/container.h>

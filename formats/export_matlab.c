@@ -1,11 +1,11 @@
 /*
- * A reduced component or state space as a MAT file of level 5, which MATLAB,
- * Octave and SciPy read: its matrices, names of inputs and outputs as cells of
- * text, limits, and what its columns are. Absent matrices are left out.
+ * A reduced component or state space as a MAT file of level 5 for MATLAB,
+ * Octave and SciPy: matrices, names of inputs and outputs as cells of text,
+ * limits, and the kinds of columns. Absent matrices are left out.
  *
- * The head says no time, so that the same run writes the same bytes. What was
- * written is read back and compared, matrices by our own reader, as libmatio
- * does not say whether a disk was full. [MathWorks2019]
+ * The head contains no time, so that the same run writes the same bytes. The
+ * file is read back and compared, matrices by Ritz's own reader, because
+ * libmatio does not report a full disk. [MathWorks2019]
  */
 #include "base/alloc.h"
 #include "base/text.h"
@@ -15,7 +15,7 @@
 #include <matio.h>
 #include <string.h>
 
-/* A file that is being written, and what was put into it. */
+/* The file, and the variables written to it. */
 typedef struct sheet {
     ritz_draft draft;
     mat_t *file;
@@ -41,7 +41,7 @@ static ritz_status keep_variable(sheet *s, matvar_t *variable)
     return RITZ_OK;
 }
 
-/* Takes the variable. */
+/* Takes ownership of the variable. */
 static ritz_status put_variable(sheet *s, const char *name, matvar_t *variable)
 {
     ritz_status status = RITZ_OK;
@@ -196,7 +196,7 @@ static bool is_same_array(const matvar_t *a, const matvar_t *b)
             (a->data && b->data && memcmp(a->data, b->data, a->nbytes) == 0));
 }
 
-/* An array, or a column of cells that are arrays. */
+/* Compare two arrays, or two columns of cells that are arrays. */
 static bool is_same(const matvar_t *a, const matvar_t *b)
 {
     bool same = is_same_array(a, b) && strcmp(a->name, b->name) == 0;
@@ -209,7 +209,7 @@ static bool is_same(const matvar_t *a, const matvar_t *b)
     return same;
 }
 
-/* Whether the file holds all variables that were put. */
+/* Check that the file contains all variables that were written. */
 static ritz_status compare_variables(const sheet *s)
 {
     mat_t *file = Mat_Open(s->draft.name, MAT_ACC_RDONLY);
@@ -301,7 +301,7 @@ static ritz_status fill_sheet(const ritz_export_object *object,
                                    "y = C q + Cv q' + Ca q''");
 }
 
-/* Sparse A and E are written as dense ones. */
+/* Sparse A and E are converted to dense ones. */
 static ritz_status write_sheet(const ritz_export_object *object,
                                const ritz_export_request *request,
                                ritz_export_report *report)

@@ -58,12 +58,15 @@ typedef struct ritz_mat_list {
 int64_t ritz_mat_size(int type);
 double ritz_mat_value(const ritz_mat_values *values, int64_t k);
 
-/** @return RITZ_ERR_FORMAT if so many values of a file of @p bytes take more
- * memory than deflate can stand for, and a GiB */
+/**
+ * Check the memory for @p count values of a file of @p bytes.
+ * @return RITZ_ERR_FORMAT if it is more than a GiB and more than deflate could
+ *         have compressed into the file
+ */
 ritz_status ritz_mat_fits(int64_t bytes, const char *name, int64_t count);
 
-/** Whether the next matrix is not wanted, so that its values need not be read
- * before it is added. */
+/** Whether the next matrix is not asked for, so that its values need not be
+ * read. */
 bool ritz_mat_passes(const ritz_mat_list *list);
 
 /** Add a variable that is not a matrix, and the reason. */

@@ -1,12 +1,13 @@
 /*
- * MAT 7.3: HDF5 behind 512 bytes of head. A full matrix is a data set whose
- * dimensions are turned round, complex ones of pairs {real, imag}; a sparse one
- * is a group of data, ir, jc with its rows in the attribute MATLAB_sparse; a
- * struct is a group too. Attribute MATLAB_class says what it is.
+ * MAT 7.3: HDF5 after a head of 512 bytes. A full matrix is a data set with its
+ * dimensions in reverse order, a complex one has pairs {real, imag}; a sparse
+ * one is a group of data, ir, jc with its number of rows in the attribute
+ * MATLAB_sparse; a struct is a group too. The attribute MATLAB_class says which
+ * it is.
  *
- * Links to other objects are refused, and only filters that HDF5 itself brings
- * are taken, deflate once: a file neither leads into others nor declares more
- * than it can hold.
+ * Links to other objects are refused, and so are filters that are not part of
+ * HDF5 and a second deflate filter: a file neither leads to other files nor
+ * declares more than it can hold.
  */
 #define _GNU_SOURCE /* NOLINT: declares memfd_create */
 
@@ -23,13 +24,14 @@
 #include <unistd.h>
 
 enum {
-    BLOCK = 512, /* where HDF5 begins */
+    BLOCK = 512, /* position of HDF5 */
     MOST_MEMBERS = 65536,
-    PIECE = 65536,     /* bytes by which an image grows: it never does */
-    SPARE = 8 * PIECE, /* bytes of a chunk that may be declared in vain */
+    PIECE = 65536, /* bytes by which an image would grow */
+    /* declared size that a chunk may have beyond the file's */
+    SPARE = 8 * PIECE,
 };
 
-/* A group that is to be gone through. */
+/* A group whose members are still to be listed. */
 typedef struct group {
     hid_t id;
     haddr_t at; /* of the file */
@@ -60,7 +62,7 @@ bool ritz_mat_is_hdf5(const char *bytes, int64_t size)
            memcmp(bytes + BLOCK, mark, 8) == 0;
 }
 
-/* Write them to a file without a name. */
+/* Write bytes to a file without a name. */
 static ritz_status store_bytes(int file, const char *bytes, int64_t size)
 {
     for (ssize_t more = 0; size > 0; bytes += more, size -= more) {
@@ -72,7 +74,8 @@ static ritz_status store_bytes(int file, const char *bytes, int64_t size)
     return RITZ_OK;
 }
 
-/* What was read is shown, and not what the path names by now. */
+/* The guard gets a copy of the bytes that were read; the path may name another
+   file by now. */
 ritz_status ritz_mat_admit_hdf5(const char *bytes, int64_t size)
 {
     const int file = memfd_create("mat", MFD_CLOEXEC);
@@ -105,9 +108,9 @@ static ritz_status open_image(const char *bytes, int64_t size, hid_t *out)
     return RITZ_OK;
 }
 
-/* True if all filters are known ones, and one at most inflates: their output is
- * bounded. `chunk` gets the values of a chunk, as many as HDF5 takes memory for;
- * 0: there are none. */
+/* Whether all filters are known and at most one inflates, which bounds their
+ * output. `chunk`: number of values in a chunk, for all of which HDF5 allocates
+ * memory; 0: no chunks. */
 static bool is_plain(hid_t set, hsize_t *chunk)
 {
     static const H5Z_filter_t known[] = {H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE,
@@ -144,7 +147,7 @@ static ritz_status take_shape(hid_t set, const char *name, int64_t bytes,
     RITZ_OWN(hid_t) space = H5Dget_space(set);
     RITZ_OWN(hid_t) type = H5Dget_type(set);
     const hsize_t size = type < 0 ? 0 : H5Tget_size(type);
-    hsize_t most = 0; /* bytes */
+    hsize_t most = 0; /* in bytes */
     hsize_t chunk = 0;
 
     out->rank = H5Sget_simple_extent_ndims(space);
@@ -209,7 +212,7 @@ static ritz_status read_part(hid_t set, const char *name, const char *part,
     return RITZ_OK;
 }
 
-/* @param[in] bytes  of the file */
+/* @param[in] bytes  size of the file */
 static ritz_status read_numbers(hid_t set, const char *name, int64_t bytes,
                                 int64_t count, numbers *out)
 {
@@ -335,8 +338,9 @@ static ritz_status add_set(hdf5_walk *w, hid_t set, const char *name)
                                             .im = values_of(value.im, count)});
 }
 
-/* A struct waits, and keeps its object open. One that is its own member, or
-   that of many, is gone through once: else there would be no end. */
+/* Remember a struct, whose object stays open. A struct that is a member of
+   itself or of several structs is listed once; otherwise there would be no
+   end. */
 static ritz_status add_group(hdf5_walk *w, hid_t object, const char *whole,
                              int depth)
 {
@@ -348,7 +352,7 @@ static ritz_status add_group(hdf5_walk *w, hid_t object, const char *whole,
     for (int64_t k = 0; k < w->count; k++)
         if (w->group[k].at == info.addr)
             return ritz_mat_add_other(w->list, whole,
-                                      "a struct of another name, too");
+                                      "the same struct as under another name");
     RITZ_CHECK_ROOM(w->group, w->count, w->room);
     g = &w->group[w->count++];
     *g = (group){.id = object, .at = info.addr, .depth = depth};

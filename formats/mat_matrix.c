@@ -156,7 +156,8 @@ static void put_values(const ritz_mat_entries *e, ritz_triplets *t,
 
 ritz_status ritz_mat_fits(int64_t bytes, const char *name, int64_t count)
 {
-    enum { MEBI = 1 << 20, EACH = 32 }; /* row, column, value, and it as read */
+    /* bytes: row, column, value, and the value as read */
+    enum { MEBI = 1 << 20, EACH = 32 };
     const int64_t by_file = bytes / MEBI * RITZ_MAT_MOST_RATIO;
     const int64_t most = by_file > 1024 ? by_file : 1024; /* MiB */
 

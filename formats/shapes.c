@@ -202,7 +202,8 @@ static ritz_status pick_shapes(const ritz_dense *from, const mode_choice *which,
     return RITZ_OK;
 }
 
-/* "mode 7, 12.3 Hz"; a square is no mode: "negative square 41, -27.9 Hz" */
+/* Shapes with titles "mode 7, 12.3 Hz"; a spurious one is "negative square 41,
+   -27.9 Hz". */
 static ritz_status pick_modes(const ritz_pairs *pairs, bool squares,
                               const mode_choice *which, ritz_dense *Phi,
                               ritz_shapes *out)
@@ -252,14 +253,13 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
 }
 
 /*
- * The shapes of a system: with q_c = P_c x the coordinates of body c, its grids
- * move by T_c P_c phi along its own axes and stand at R_c X + t_c.
+ * The shapes of a system. With the coordinates q_c = P_c x of body c, its grids
+ * move by T_c P_c phi along the body's own axes, and are at R_c X + t_c.
  */
 
 RITZ_ARRAY_OF(ritz_shapes);
 
-/* Whether these are the bodies: sum_c P_c' M_c P_c is the mass of the system.
- */
+/* Check that these are the system's bodies: sum_c P_c' M_c P_c is its mass. */
 static ritz_status check_bodies(const ritz_system *system,
                                 const ritz_configuration *at,
                                 const ritz_reduced *const *bodies)
@@ -290,8 +290,7 @@ static ritz_status check_bodies(const ritz_system *system,
     return RITZ_OK;
 }
 
-/* What is added to the numbers of the grids of each body, where any are alike.
- */
+/* Offset of the grid numbers of each body, if any numbers occur twice. */
 static ritz_status renumber_grids(const ritz_shapes_array *part, int64_t *add)
 {
     int64_t highest = -1, power = 1;
@@ -319,7 +318,7 @@ static ritz_status renumber_grids(const ritz_shapes_array *part, int64_t *add)
     return RITZ_OK;
 }
 
-/* R x, R being columns 0 to 8 of row c. */
+/* y = R x, with R in columns 0 to 8 of row c. */
 static void turn_vector(const ritz_dense *places, int64_t c, const double *x,
                         double *y)
 {
@@ -330,7 +329,7 @@ static void turn_vector(const ritz_dense *places, int64_t c, const double *x,
     }
 }
 
-/* Points of body c, and how they move, from point `first` on. */
+/* Append the points of body c and their motions as points `first`, ... */
 static void put_points(const ritz_shapes *part, const ritz_dense *places,
                        int64_t c, int64_t add, int64_t first, ritz_shapes *all)
 {
@@ -351,7 +350,7 @@ static void put_points(const ritz_shapes *part, const ritz_dense *places,
     }
 }
 
-/* Cells behind those that are there; their grids are points from `first` on. */
+/* Append cells, whose grids are points `first`, ... */
 static void put_cells(const ritz_elements *part, int64_t first,
                       ritz_elements *all)
 {
@@ -365,7 +364,7 @@ static void put_cells(const ritz_elements *part, int64_t first,
     }
 }
 
-/* Room for all points and cells; names and count are there. */
+/* Allocate all points and cells; names and count are set already. */
 static ritz_status make_room(const ritz_shapes_array *part, ritz_shapes *all)
 {
     int64_t cells = 0, corners = 0;

@@ -150,9 +150,10 @@ ritz_status ritz_shapes_say(const ritz_shapes *shapes,
 
 typedef struct entry {
     const char *name;
-    size_t offset;  /* of the dense matrix in its object */
-    bool symmetric; /* if its values are: a gyroscopic D is not */
-    size_t sparse;  /* of a sparse one that may be in its place; 0: never */
+    size_t offset;  /* position of the dense matrix in its object */
+    bool symmetric; /* false for a gyroscopic D */
+    /* position of a sparse matrix that may replace it; 0: none may */
+    size_t sparse;
 } entry;
 
 /* Matrices of one kind of object; the table ends in one without a name. */
@@ -204,7 +205,7 @@ static const ritz_dense *dense_of(const void *object, const entry *e)
     return (const ritz_dense *)(const void *)((const char *)object + e->offset);
 }
 
-/* The sparse matrix in the place of a dense one; NULL if there is none. */
+/* The sparse matrix that replaces a dense one; NULL: none does. */
 static const ritz_sparse *sparse_of(const void *object, const entry *e)
 {
     const ritz_sparse *A =

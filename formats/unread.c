@@ -10,10 +10,10 @@
 #include <string.h>
 #include <strings.h>
 
-/* Lines that are looked at: a matrix of millions shows its form in these. */
+/* Number of lines that are examined; large matrices have more. */
 enum { MOST_LINES = 1000 };
 
-/* Take the next line that is not blank, without blanks around it. */
+/* Take the next line that is not blank, and strip it of blanks. */
 static bool next_line(ritz_lines *text)
 {
     while (ritz_lines_next(text)) {
@@ -32,7 +32,7 @@ static ritz_lines lines_of(const char *bytes, int64_t size)
     return (ritz_lines){.at = bytes, .end = bytes + size};
 }
 
-/* True if a text begins with one of these words, whatever their case. */
+/* Whether a text begins with one of these words, in any case. */
 static bool begins(const char *at, const char *end, const char *const *word)
 {
     for (; *word; word++) {
@@ -44,7 +44,7 @@ static bool begins(const char *at, const char *end, const char *const *word)
     return false;
 }
 
-/* "%MatrixMarket", or without any '%'. */
+/* "%MatrixMarket", or the same without a '%'. */
 static bool has_short_banner(const char *bytes, int64_t size)
 {
     static const char *const word[] = {"%MatrixMarket", "MatrixMarket", NULL};
@@ -52,8 +52,7 @@ static bool has_short_banner(const char *bytes, int64_t size)
     return begins(bytes, bytes + size, word);
 }
 
-/* Counts of cards in the second line; in the third the type, such as RSA, and
-   sizes. */
+/* Line 2 has counts of cards; line 3 has the type, such as RSA, and sizes. */
 static bool is_harwell_boeing(const char *bytes, int64_t size)
 {
     enum { TYPE = 3, CARDS = 4, SIZES = 3 };
@@ -76,7 +75,7 @@ static bool is_harwell_boeing(const char *bytes, int64_t size)
            ritz_decimal_scan_wholes(&at, text.line_end, SIZES, sizes);
 }
 
-/* A value with a point or an exponent, and nothing behind it. */
+/* Whether the text is a value with a point or an exponent, and nothing else. */
 static bool is_real(const char *at, const char *end)
 {
     ritz_decimal number = {0};
@@ -90,8 +89,8 @@ static bool is_real(const char *at, const char *end)
     return point;
 }
 
-/* Lines "row column value": 0 if there are others, 2 if entries stand on both
-   sides of the diagonal, else 1. */
+/* For lines "row column value" the number of triangles with entries, 1 or 2; 0
+   if there are other lines. */
 static int count_triangles(const char *bytes, int64_t size)
 {
     ritz_lines text = lines_of(bytes, size);
@@ -138,7 +137,7 @@ static bool is_calculix_dofs(const char *bytes, int64_t size)
     return count > 0;
 }
 
-/* Lines "node,direction, node,direction, value" behind comments. */
+/* Lines "node,direction, node,direction, value" after comments. */
 static bool is_matrix_input(const char *bytes, int64_t size)
 {
     static const char *const comment[] = {"**", NULL};
@@ -161,7 +160,7 @@ static bool is_matrix_input(const char *bytes, int64_t size)
     return is_real(at, text.line_end);
 }
 
-/* The first line that is no comment is a keyword of its own. */
+/* The first line that is no comment is a keyword line. */
 static bool is_abaqus_deck(const char *bytes, int64_t size)
 {
     static const char *const comment[] = {"**", NULL};
@@ -177,8 +176,8 @@ static bool is_abaqus_deck(const char *bytes, int64_t size)
     return false;
 }
 
-/* The header is a record of 100 whole numbers, of which the first says what the
-   file holds: 2 to 16, or 45. */
+/* The header is a record of 100 whole numbers. The first of them is the kind of
+   file: 2 to 16, or 45. */
 static bool is_ansys_binary(const char *bytes, int64_t size)
 {
     const unsigned char *b = (const unsigned char *)bytes;

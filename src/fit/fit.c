@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Second-order models by a number of modes, of what has an interface those that
-   keep it; others only if they are named. */
+/* Methods tried by default: second-order models with a number of modes; for a
+   model with an interface those that keep it. Others must be named. */
 static bool is_usual(const ritz_fitter *fitter, const ritz_method *method)
 {
     const int special =

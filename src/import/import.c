@@ -184,7 +184,7 @@ static ritz_status check_matrix(const ritz_part *part)
     return RITZ_OK;
 }
 
-/* Read the matrices of all parts, and those of inputs and outputs: each file
+/* Read the matrices of all parts, inputs and outputs; each file is read
  * once. */
 static ritz_status read_parts(const ritz_import_request *request,
                               ritz_parts *parts, ritz_io_files *files)

@@ -45,14 +45,15 @@ ritz_status ritz_names_find(const ritz_import_request *request,
 ritz_status ritz_names_of_file(const char *path, ritz_row_names *out);
 void ritz_row_names_free(ritz_row_names *names);
 
-/** Check directions: digits 1 to 6, each once, or 0 alone; @p want of each. */
+/** Parse directions, digits 1 to 6, each once, or a single 0, into flags @p
+ * want. */
 ritz_status ritz_import_directions(const char *text, bool want[static 7]);
 
-/** Set a bit for each row that has an entry other than zero. */
+/** Set @p bit of each row that has a non-zero entry. */
 void ritz_part_mark(const ritz_part *part, unsigned char bit,
                     unsigned char *mark);
 
-/** Whether a dof is in a sorted list. */
+/** Whether a sorted list contains a dof. */
 bool ritz_dof_among(ritz_dof dof, int64_t count, const ritz_dof *sorted);
 
 enum {
@@ -128,8 +129,8 @@ ritz_status ritz_extended_new(const ritz_component *component,
                               ritz_extended *out);
 
 /**
- * Add @p value at @p row of the extended rows: a dof that follows, u = G u_n,
- * puts G' there.
+ * Add @p value at @p row of the extended rows. A recovered dof, u = G u_n, adds
+ * it through G'.
  *
  * @param[in,out] into  one number for each row of the component, @p stride
  *                      apart
@@ -146,29 +147,30 @@ enum {
     RITZ_NUM_IO_FILES
 };
 
-/* Matrices of inputs and outputs as files state them. */
+/* Matrices of inputs and outputs, as files contain them. */
 typedef struct ritz_io_files {
     const char *spec[RITZ_NUM_IO_FILES]; /* NULL: not given */
     ritz_matrix matrix[RITZ_NUM_IO_FILES];
     int64_t num_dofs; /* rows of mass and stiffness as they are read */
-    ritz_dof *dof;    /* of each */
-    bool in_order;    /* rows are these, whatever files call theirs */
+    ritz_dof *dof;    /* name of each row */
+    /* rows are in this order, whatever their names in files */
+    bool in_order;
 } ritz_io_files;
 
-/** What files are wanted of the request. @return how many */
+/** List the files that the request needs. @return their number */
 int64_t ritz_io_files_want(const ritz_import_request *request,
                            ritz_io_files *files, ritz_wanted *wanted);
 
-/** Remember what rows are, before any of them is left out. */
+/** Remember the names of all rows, before some of them are eliminated. */
 ritz_status ritz_io_files_name(const ritz_import_request *request,
                                const ritz_row_names *names,
                                ritz_io_files *files);
 
-/** How many inputs and outputs there are. @return RITZ_ERR_FORMAT */
+/** Find the numbers of inputs and outputs. @return RITZ_ERR_FORMAT */
 ritz_status ritz_io_files_size(const ritz_io_files *files, int64_t *inputs,
                                int64_t *outputs);
 
-/** Fill the last inputs and outputs of @p io, and name them. */
+/** Fill the last inputs and outputs of @p io, and set their names. */
 ritz_status ritz_io_files_add(const ritz_import_request *request,
                               const ritz_deck *deck,
                               const ritz_import_report *report,
@@ -177,30 +179,31 @@ ritz_status ritz_io_files_add(const ritz_import_request *request,
 void ritz_io_files_free(ritz_io_files *files);
 
 /**
- * Names "a,b,c", each once, of so many inputs or outputs; without a list
- * "u1", "u2", ... of prefix u.
+ * Parse @p count names "a,b,c", each of which occurs once; without a list they
+ * are "u1", "u2", ... for the prefix u.
  *
- * @param[in,out] limit  of "NAME@LIMIT", else as it was; NULL: there are none
+ * @param[in,out] limit  set by "NAME@LIMIT", otherwise unchanged; NULL: names
+ *                       have no limits
  * @return RITZ_ERR_ARGUMENT
  */
 ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
                                  char (*name)[RITZ_NAME_SIZE], double *limit);
 
 /**
- * The files of a component in modal form as parts.
+ * Add the files of a component in modal form to the parts.
  *
- * @return RITZ_ERR_ARGUMENT if the request has matrices or names of rows
+ * @return RITZ_ERR_ARGUMENT if the request also has matrices or names of rows
  */
 ritz_status ritz_modal_want(const ritz_import_request *request,
                             ritz_component *component, ritz_parts *parts);
 
-/** What these files hold becomes stiffness, damping and mass. */
+/** Make stiffness, damping and mass from the content of these files. */
 ritz_status ritz_modal_make(const ritz_import_request *request,
                             ritz_component *component, ritz_parts *parts);
 
 /**
- * Ports, those of grids made for ports too, inputs, outputs and dampers as the
- * request states them.
+ * Add the ports of the request, also those at grids made for ports, its inputs,
+ * outputs and dampers.
  *
  * @param[in] deck  its supports; its equations, for messages about dofs that
  *                  depend on others

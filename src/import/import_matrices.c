@@ -1,13 +1,14 @@
 /*
- * Inputs and outputs out of matrix files,
+ * Inputs and outputs from matrix files,
  *
  *     M u'' + D u' + K u = B f,    y = C u + Cv u' + Ca u''
  *
- * u being the rows of mass and stiffness as they are read, along the axes of
- * displacement of their grids. B has a row for each dof. C, Cv and Ca have a
- * column for each, or else a row for each; files that name their rows name dofs
- * by them. Where constraints eliminated dofs, u = G u_n, these are G'B and C G;
- * what the deck fixes does not move, and its entries are left out.
+ * u being the rows of mass and stiffness as they are read, along the
+ * displacement axes of their grids. B has a row for each dof. C, Cv and Ca have
+ * a column for each dof, or else a row for each. Files that name their rows
+ * refer to dofs by name. If constraints eliminate dofs, u = G u_n, the matrices
+ * become G'B and C G. Entries of dofs that the deck fixes are dropped, because
+ * these do not move.
  */
 #include "import/import.h"
 
@@ -62,8 +63,8 @@ void ritz_io_files_free(ritz_io_files *files)
 
 /* ---- sizes -------------------------------------------------------------- */
 
-/* How a matrix lies: its dofs, in its columns or its rows, and how many inputs
- * or outputs it has. */
+/* The dofs of a matrix, in its columns or its rows, and its number of inputs or
+ * outputs. */
 typedef struct layout {
     int64_t num_dofs;
     const ritz_dof *dof;
@@ -97,7 +98,7 @@ static ritz_status find_layout(const ritz_io_files *files, int k, layout *out)
 ritz_status ritz_io_files_size(const ritz_io_files *files, int64_t *inputs,
                                int64_t *outputs)
 {
-    int first = -1; /* of the matrices of outputs */
+    int first = -1; /* first output matrix that is given */
 
     *inputs = *outputs = 0;
     for (int k = 0; k < RITZ_NUM_IO_FILES; k++) {
@@ -131,7 +132,7 @@ static int64_t count_items(const char *list)
     return count;
 }
 
-/* "NAME[@LIMIT]": the limit, cut off; where none may be NULL. */
+/* Cut "@LIMIT" off a name and parse it; @p limit NULL: names have no limits. */
 static ritz_status take_limit(char *item, double *limit)
 {
     char *at = limit ? strrchr(item, '@') : NULL;
@@ -173,15 +174,15 @@ ritz_status ritz_import_channels(const char *list, char prefix, int64_t count,
 
 /* ---- entries ------------------------------------------------------------ */
 
-/* A matrix on its way into a component. */
+/* A matrix whose entries are added to a component. */
 typedef struct filling {
     const char *spec;
     const ritz_matrix *matrix;
     layout is;
     const ritz_import_report *report;
     const ritz_extended *extended;
-    int64_t *row;   /* extended row of each of its dofs, or IS_... */
-    int64_t stride; /* of dofs in `into`, whose channels lie `step` apart */
+    int64_t *row;   /* extended row of each dof of the matrix, or IS_... */
+    int64_t stride; /* of dofs in `into`; its channels are `step` apart */
     int64_t step;
     double *into;
 } filling;

@@ -1,6 +1,6 @@
 /*
- * A component in modal form, without geometry: its dofs are its modes, scalar
- * points 1, 2, ..., each of unit modal mass,
+ * A component in modal form, without geometry. Its dofs are modes of unit modal
+ * mass, at scalar points 1, 2, ...:
  *
  *     q_k'' + 2 zeta_k omega_k q_k' + omega_k^2 q_k = b_k f,
  *     y = sum_k c_k q_k + cv_k q_k' + ca_k q_k''
@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Numbers that a file states as a row or a column. */
+/* The numbers of a file with one row or one column. */
 typedef struct vector {
     int64_t count;
     double *at;
@@ -48,8 +48,8 @@ static ritz_status take_vector(const ritz_part *part, vector *out)
     return RITZ_OK;
 }
 
-/* The matrix of a part becomes diag(value). Its digits are left unknown: there
- * are no differences of stiffness that they could spoil. */
+/* Make the matrix of a part diag(value). Its number of digits stays unknown,
+ * because rounding spoils no differences in a diagonal stiffness. */
 static ritz_status make_diagonal(const vector *value, ritz_part *part)
 {
     int64_t n = value->count;
@@ -66,7 +66,7 @@ static ritz_status make_diagonal(const vector *value, ritz_part *part)
     return RITZ_OK;
 }
 
-/* lambda = omega^2 of frequencies  [rad^2/s^2] */
+/* Convert frequencies to lambda = omega^2  [rad^2/s^2]. */
 static ritz_status take_lambda(const ritz_part *part, vector *lambda)
 {
     RITZ_CHECK(take_vector(part, lambda));
@@ -81,7 +81,7 @@ static ritz_status take_lambda(const ritz_part *part, vector *lambda)
     return RITZ_OK;
 }
 
-/* zeta_k; one number is the ratio of all modes. */
+/* Read zeta_k; a single number is the ratio of all modes. */
 static ritz_status take_ratios(const char *text, const ritz_part *part,
                                int64_t count, vector *zeta)
 {
@@ -114,7 +114,7 @@ static ritz_status take_ratios(const char *text, const ritz_part *part,
     return RITZ_OK;
 }
 
-/* A part behind the others. */
+/* Append a part. */
 static ritz_part *next_part(const char *spec, const char *what,
                             ritz_sparse *becomes, ritz_parts *parts)
 {

@@ -359,8 +359,8 @@ ritz_status ritz_import_directions(const char *text, bool want[static 7])
     return RITZ_OK;
 }
 
-/* Without a deck: grids 1, 2, ... with a row for each of these directions, six
- * unless --rows says which; 0: scalar points. */
+/* Without a deck, grids 1, 2, ... have a row for each direction of --rows, six
+ * by default; 0: scalar points. */
 static ritz_status number_grids(int64_t n, const char *spec, const char *rows,
                                 ritz_row_names *out)
 {
@@ -384,7 +384,7 @@ static ritz_status number_grids(int64_t n, const char *spec, const char *rows,
     return RITZ_OK;
 }
 
-/* --rows are directions, and nothing else names the rows. */
+/* Check that --rows has directions, and that nothing else names the rows. */
 static ritz_status check_rows(const ritz_import_request *request,
                               const ritz_part *unnamed)
 {

@@ -271,7 +271,7 @@ static ritz_status add_ports(const ritz_import_request *request,
  * Of dofs that constraints eliminated, u = G u_n, these are G' t and t' G.
  */
 
-/* A direction of a grid along a basic axis, in terms of dofs. */
+/* A direction of a grid along a basic axis, as a combination of dofs. */
 typedef struct aim {
     int64_t count;
     int64_t row[3];
@@ -312,8 +312,8 @@ static ritz_status take_aim(const ritz_extended *extended, ritz_dof dof,
     return out->count == 0 ? ritz_roster_miss(roster, dof) : RITZ_OK;
 }
 
-/* Add scale t to a column of B (stride 1) or a row of C (stride the number of
- * outputs). */
+/* Add `scale` times t to a column of B (stride 1) or a row of C (stride: number
+ * of outputs). */
 static void add_aim(const ritz_extended *extended, const aim *to, double scale,
                     int64_t stride, double *into)
 {
@@ -354,7 +354,7 @@ static ritz_status add_direction(const char *text, size_t length,
     return RITZ_OK;
 }
 
-/* So many letters as a number. */
+/* Parse the first `length` letters as a number. */
 static ritz_status take_number(const char *text, size_t length, double *out)
 {
     char copy[RITZ_NAME_SIZE];
@@ -367,7 +367,7 @@ static ritz_status take_number(const char *text, size_t length, double *out)
     return RITZ_OK;
 }
 
-/* "GRID:COMP[*SCALE]" */
+/* Add a term "GRID:COMP[*SCALE]". */
 static ritz_status add_term(const char *text, size_t length,
                             const ritz_extended *extended, int64_t stride,
                             double *into)
@@ -381,7 +381,8 @@ static ritz_status add_term(const char *text, size_t length,
     return add_direction(text, before, extended, scale, stride, into);
 }
 
-/* "GRID:COMP[*SCALE][,...]"; terms that cancel each other are refused. */
+/* Add terms "GRID:COMP[*SCALE][,...]"; terms that cancel each other are
+   refused. */
 static ritz_status add_terms(const char *text, size_t length,
                              const ritz_extended *extended, int64_t stride,
                              double *into)
@@ -415,7 +416,7 @@ static ritz_status make_input(const char *text, const ritz_extended *extended,
                      ritz_dense_col(&io->B, k));
 }
 
-/* "@LIMIT" at the end, if it is there. */
+/* Cut "@LIMIT" off the end, if it is there, and parse it. */
 static ritz_status take_limit(const char *text, size_t *length, double *limit)
 {
     const char *at = strchr(text, '@');
@@ -485,7 +486,7 @@ static ritz_status check_names(int64_t count, char (*name)[RITZ_NAME_SIZE],
     return RITZ_OK;
 }
 
-/* Those of options, and behind them those of matrices. */
+/* Add the inputs and outputs of options, then those of matrices. */
 static ritz_status add_io(const ritz_import_request *request,
                           const ritz_deck *deck,
                           const ritz_import_report *report,

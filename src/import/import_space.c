@@ -1,12 +1,12 @@
 /*
- * State spaces out of matrix files,
+ * State spaces from matrix files,
  *
  *     E x' = A x + B u,   y = C x + D u
  *
- * "A=F,B=F,C=F[,D=F][,E=F]", F as any matrix; or one file, "FILE" or
- * "FILE:NAME", whose matrices are called so, NAME.A or A of a struct too. D is
- * zero and E the identity where they are not given. An E that is the identity
- * is left out, so that no solver factors it. Large sparse A and E stay sparse.
+ * "A=F,B=F,C=F[,D=F][,E=F]", each F being a matrix file; or one file, "FILE" or
+ * "FILE:NAME", with matrices of these names, NAME.A or A of a struct too.
+ * Without a file D is zero and E the identity. An E that is the identity is
+ * dropped, so that no solver factors it. Large sparse A and E stay sparse.
  */
 #include "import/import.h"
 
@@ -245,8 +245,11 @@ static bool is_identity(const ritz_sparse *E)
     return count_entries(E) == E->ncol;
 }
 
-/* Whether A and E stay sparse. @return RITZ_ERR_ARGUMENT if they are too large
-   to be dense, and full */
+/*
+ * Decide whether A and E stay sparse.
+ * @return RITZ_ERR_ARGUMENT if they have too many states to be dense and too
+ *         many entries to be sparse
+ */
 static ritz_status choose_form(const parts *p, bool *sparse)
 {
     const int64_t most = 2 * (int64_t)RITZ_STATE_DOFS;
@@ -273,7 +276,7 @@ static ritz_status choose_form(const parts *p, bool *sparse)
     return RITZ_OK;
 }
 
-/* Matrices in the place of those that are zero. */
+/* Copy the matrices that were given; the others stay zero. */
 static ritz_status fill_matrices(const parts *p, bool sparse,
                                  ritz_state_space *model)
 {
