@@ -391,6 +391,10 @@
 /* A pole nearer to 0 than this part of the lowest frequency, and not left of
    the axis by more than its rounding, belongs to rigid motion at 0. */
 #define RITZ_POLE_AT_REST 1e-6
+/* Point right of the axis from which poles at 0 are found, of the next pole:
+   far enough for the square root of rounding that a double pole has, near
+   enough for a digit an iteration. */
+#define RITZ_ZERO_POLE_SHIFT 0.05
 /* Roundings of a band Gramian, relative to the magnitudes it sums: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49
 /* Up to this ratio a mode is eliminated as a whole: eigenvectors of its two

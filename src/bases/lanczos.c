@@ -487,6 +487,10 @@ static ritz_status find_sparse_bases(const ritz_request *request, double alpha,
     RITZ_CHECK(shift_space(request->space, alpha, &pencil, &model));
     RITZ_CHECK(ritz_pencil_of_space(&model, &shifted));
     RITZ_CHECK(ritz_gramians_space_low_rank(&model, RITZ_LANCZOS_RESIDUAL, &g));
+    RITZ_REFUSE_IF(g.T.ncol > 0, RITZ_ERR_ARGUMENT,
+                   "the Gramian is infinite: poles at 0 (%" PRId64
+                   " of them) have no damping, give a shift above 0 Hz",
+                   g.T.ncol);
     s->states = shifted.n;
     RITZ_CHECK(take_low_rank(&model, &shifted, outputs, request->tolerance,
                              outputs ? &g.Zo : &g.Zc, s));

@@ -4,7 +4,8 @@
  * decreases along every motion, since V' = x'(A + A')x: no pole is right of the
  * axis. If A = A' and E is definite, the inertia of A gives the number of poles
  * right of the axis. Otherwise only the poles nearest to 0 are computed, and
- * the number of the others is reported.
+ * the number of the others is reported. ARPACK finds poles at 0 to a root of
+ * rounding; their vectors tell that they are there.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -82,6 +83,7 @@ ritz_status ritz_probe_sparse(const ritz_state_space *model, ritz_probe *out)
 {
     RITZ_OWN(ritz_pencil) pencil = {0};
     RITZ_OWN(ritz_pencil_pairs) near = {0};
+    RITZ_OWN(ritz_zero_poles) zero = {0};
     ritz_probe probe = {.verdict = RITZ_STABLE};
     bool proven = false, known = false, singular = false;
     int64_t unstable = 0;
@@ -91,6 +93,9 @@ ritz_status ritz_probe_sparse(const ritz_state_space *model, ritz_probe *out)
     if (!proven)
         RITZ_CHECK(count_unstable(&pencil, &known, &unstable, &singular));
     RITZ_CHECK(ritz_space_slowest(&pencil, LOOKED_AT, &near));
+    RITZ_CHECK(ritz_zero_poles_find(&pencil, &zero));
+    for (int64_t k = 0; k < near.count && k < zero.T.ncol; k++)
+        near.s[k] = 0.0;
     take_rightmost(&pencil, &near, &probe);
     judge_found(probe.tolerance * probe.radius, &probe);
     if ((proven || singular) && probe.verdict == RITZ_UNSTABLE)

@@ -63,7 +63,8 @@ static const double gauss[HALF] = {
 typedef struct quadrature {
     const ritz_state_space *model; /* borrowed */
     ritz_pencil pencil;
-    ritz_dense F[SIDES]; /* B, and C' divided by limits */
+    ritz_zero_poles zero;
+    ritz_dense F[SIDES]; /* B, and C' divided by limits, without poles at 0 */
     ritz_dense Z[SIDES]; /* room for `room` columns, ncol in use */
     int64_t room[SIDES];
     double sum[SIDES]; /* integrals of |x|^2 and |y|^2 over the panels accepted
@@ -74,6 +75,7 @@ typedef struct quadrature {
 static void quadrature_free(quadrature *q)
 {
     ritz_pencil_free(&q->pencil);
+    ritz_zero_poles_free(&q->zero);
     for (int k = 0; k < SIDES; k++) {
         ritz_dense_free(&q->F[k]);
         ritz_dense_free(&q->Z[k]);
@@ -97,6 +99,8 @@ static ritz_status solve_at(quadrature *q, double w, double _Complex *out)
         for (int64_t i = 0; i < size; i++)
             out[i] = q->F[k].val[i];
         RITZ_CHECK(ritz_pencil_solve(&q->pencil, k == 1, q->F[k].ncol, out));
+        RITZ_CHECK(
+            ritz_zero_poles_of_states(&q->zero, k == 1, q->F[k].ncol, out));
         out += size;
     }
     ritz_monitor_step("points", ++q->points, 0);
@@ -276,16 +280,14 @@ static ritz_status list_ends(quadrature *q, const double band[2],
 
 static ritz_status finish_factors(quadrature *q, ritz_gramians *out)
 {
-    const int64_t n = q->pencil.n;
-
     for (int k = 0; k < SIDES; k++)
         RITZ_CHECK(ritz_factor_compress(&q->Z[k]));
     RITZ_MOVE(out->Zc, q->Z[0]);
     RITZ_MOVE(out->Zo, q->Z[1]);
     if (!q->pencil.plain)
         RITZ_CHECK(ritz_sparse_mul(&q->pencil.E, &out->Zc, &out->EZc));
-    RITZ_CHECK(ritz_dense_new(n, 0, &out->T));
-    RITZ_CHECK(ritz_dense_new(n, 0, &out->W));
+    RITZ_MOVE(out->T, q->zero.T);
+    RITZ_MOVE(out->W, q->zero.W);
     (void)snprintf(out->engine, sizeof out->engine,
                    "quadrature, %" PRId64 " points", q->points);
     return RITZ_OK;
@@ -309,6 +311,9 @@ ritz_status ritz_gramians_space_band(const ritz_state_space *model,
     RITZ_CHECK(ritz_pencil_of_space(model, &q.pencil));
     RITZ_CHECK(ritz_dense_copy(&model->B, &q.F[0]));
     RITZ_CHECK(ritz_outputs_scaled(&model->C, model->limit, &q.F[1]));
+    RITZ_CHECK_IN("poles at 0", ritz_zero_poles_find(&q.pencil, &q.zero));
+    for (int k = 0; k < SIDES; k++)
+        RITZ_CHECK(ritz_zero_poles_of_loads(&q.zero, k == 1, &q.F[k]));
     RITZ_CHECK(list_ends(&q, band, &count, end));
     for (int64_t k = 0; k + 1 < count; k++)
         RITZ_CHECK(integrate_panel(&q, end[k], end[k + 1]));

@@ -15,6 +15,9 @@
  * residual factor W; those with the largest participation in W come first
  * [BennerKuerschnerSaak2014]. Projected poles that are not left of the axis are
  * mirrored.
+ *
+ * Poles at 0 are decoupled before the iteration. What rounding leaves of them
+ * in v is subtracted at each shift.
  */
 #include "gramians/space.h"
 
@@ -54,6 +57,7 @@ typedef struct adi_side {
 
 typedef struct adi {
     ritz_pencil pencil;
+    ritz_zero_poles zero;
     adi_side side[SIDES];
     ritz_dense window; /* n x WINDOW, a ring buffer */
     int64_t entered;   /* number of columns entered so far */
@@ -64,6 +68,7 @@ typedef struct adi {
 static void adi_free(adi *a)
 {
     ritz_pencil_free(&a->pencil);
+    ritz_zero_poles_free(&a->zero);
     for (int k = 0; k < SIDES; k++) {
         ritz_dense_free(&a->side[k].W);
         ritz_dense_free(&a->side[k].Z);
@@ -79,10 +84,16 @@ static ritz_status measure_left(const ritz_dense *W, double *out)
     return ritz_general_norm(&WW, out);
 }
 
-static ritz_status start_side(adi_side *side)
+/* Of a load that moves states at rest alone, rounding is left. */
+static ritz_status start_side(adi *a, int k)
 {
+    adi_side *side = &a->side[k];
+    double whole = 0.0;
+
+    RITZ_CHECK(measure_left(&side->W, &whole));
+    RITZ_CHECK(ritz_zero_poles_of_loads(&a->zero, k == 1, &side->W));
     RITZ_CHECK(measure_left(&side->W, &side->first));
-    side->open = side->first > 0.0;
+    side->open = side->first > RITZ_ADI_NOTHING * whole;
     side->residual = side->open ? 1.0 : 0.0;
     return RITZ_OK;
 }
@@ -91,12 +102,13 @@ static ritz_status start_adi(const ritz_state_space *model, double tolerance,
                              adi *a)
 {
     RITZ_CHECK(ritz_pencil_of_space(model, &a->pencil));
+    RITZ_CHECK_IN("poles at 0", ritz_zero_poles_find(&a->pencil, &a->zero));
     RITZ_CHECK(ritz_dense_copy(&model->B, &a->side[0].W));
     RITZ_CHECK(ritz_outputs_scaled(&model->C, model->limit, &a->side[1].W));
     RITZ_CHECK(ritz_dense_new(a->pencil.n, WINDOW, &a->window));
     a->tolerance = tolerance > 0.0 ? tolerance : RITZ_ADI_TOLERANCE;
     for (int k = 0; k < SIDES; k++)
-        RITZ_CHECK(start_side(&a->side[k]));
+        RITZ_CHECK(start_side(a, k));
     return RITZ_OK;
 }
 
@@ -250,6 +262,19 @@ static ritz_status weigh_poles(const adi *a, small_pencil *s)
     return RITZ_OK;
 }
 
+/* A projected pole may be nearer to 0 than any pole but those that are
+   decoupled: it is moved away. */
+static void keep_away(const adi *a, small_pencil *s, int64_t k)
+{
+    const double size = hypot(s->re[k], s->im[k]);
+
+    if (size >= a->zero.radius)
+        return;
+    s->re[k] =
+        size > 0.0 ? s->re[k] * (a->zero.radius / size) : -a->zero.radius;
+    s->im[k] = size > 0.0 ? s->im[k] * (a->zero.radius / size) : 0.0;
+}
+
 /* The next shifts: poles with the largest participation in the residuals. */
 static ritz_status choose_shifts(adi *a, int64_t *count, double _Complex *out)
 {
@@ -271,6 +296,7 @@ static ritz_status choose_shifts(adi *a, int64_t *count, double _Complex *out)
                 best = j;
         if (best < 0)
             break;
+        keep_away(a, &s, best);
         size = hypot(s.re[best], s.im[best]);
         out[*count] = -fmax(fabs(s.re[best]), RITZ_SHIFT_DAMPED * size);
         if (fabs(s.im[best]) > RITZ_SHIFT_REAL * fabs(s.re[best]))
@@ -363,6 +389,8 @@ static ritz_status take_shift(adi *a, double _Complex p)
         for (int64_t i = 0; i < size; i++)
             v[i] = side->W.val[i];
         RITZ_CHECK(ritz_pencil_solve(&a->pencil, k == 1, side->W.ncol, v));
+        RITZ_CHECK(
+            ritz_zero_poles_of_states(&a->zero, k == 1, side->W.ncol, v));
         RITZ_CHECK(append_columns(a, k, p, v));
         RITZ_CHECK(measure_left(&side->W, &left));
         side->residual = left / side->first;
@@ -465,8 +493,8 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
     RITZ_CHECK(take_factor(&a.side[1], n, &g.Zo));
     if (!a.pencil.plain)
         RITZ_CHECK(ritz_sparse_mul(&a.pencil.E, &g.Zc, &g.EZc));
-    RITZ_CHECK(ritz_dense_new(n, 0, &g.T));
-    RITZ_CHECK(ritz_dense_new(n, 0, &g.W));
+    RITZ_MOVE(g.T, a.zero.T);
+    RITZ_MOVE(g.W, a.zero.W);
     g.residual[0] = a.side[0].residual;
     g.residual[1] = a.side[1].residual;
     (void)snprintf(g.engine, sizeof g.engine, "ADI, %" PRId64 " shifts",

@@ -8,11 +8,12 @@
 
 /**
  * Factors of both Gramians by low-rank ADI with sparse factors of A - s E.
+ * Poles at 0 are decoupled, as T and W.
  *
  * @param[in] tolerance  of both residuals, |R| / |B B'| and |R| / |C'C|; 0:
  *                       default
- * @return RITZ_ERR_CONVERGENCE if the Gramians have no low rank, or a pole is
- *         not left of the axis
+ * @return RITZ_ERR_CONVERGENCE if the Gramians have no low rank, or another
+ *         pole is not left of the axis
  * @cost   a complex factorisation for each of some 20 to 300 shifts
  */
 ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
@@ -23,9 +24,10 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
  *
  *     W_c = 1/pi Re int_{w1}^{w2} (i w E - A)^-1 B B' (i w E - A)^-* dw,
  *
- * and W_o likewise, by adaptive Gauss-Kronrod quadrature.
+ * and W_o likewise, by adaptive Gauss-Kronrod quadrature. Poles at 0 are
+ * decoupled, as T and W.
  *
- * @return RITZ_ERR_CONVERGENCE if a pole on the axis lies in the band
+ * @return RITZ_ERR_CONVERGENCE if another pole on the axis lies in the band
  * @cost   a complex factorisation for each point, fifteen points a panel
  */
 ritz_status ritz_gramians_space_band(const ritz_state_space *model,

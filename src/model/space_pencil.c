@@ -76,6 +76,7 @@ ritz_status ritz_space_transfer(const ritz_state_space *model,
     return RITZ_OK;
 }
 
+/* Next to a pole of two vectors and one direction ARPACK does not converge. */
 ritz_status ritz_space_slowest(ritz_pencil *pencil, int64_t count,
                                ritz_pencil_pairs *out)
 {
@@ -84,7 +85,8 @@ ritz_status ritz_space_slowest(ritz_pencil *pencil, int64_t count,
     double shift = RITZ_SHIFT_ASIDE * size;
     ritz_status status = ritz_pencil_nearest(pencil, 0.0, count, out);
 
-    while (status == RITZ_ERR_SINGULAR && shift < size) {
+    while ((status == RITZ_ERR_SINGULAR || status == RITZ_ERR_CONVERGENCE) &&
+           shift < size) {
         status = ritz_pencil_nearest(pencil, shift, count, out);
         shift *= RITZ_SHIFT_FARTHER;
     }

@@ -88,6 +88,19 @@ static void too_many_states_for_dense_checks_are_checked_by_poles(void **)
     assert_string_equal(audit.check[0].says, "all are left of the axis");
 }
 
+/* A double pole at 0 is found to the root of rounding, as two poles of which
+   one is right of the axis. */
+static void a_free_chain_is_marginal(void **)
+{
+    RITZ_OWN(ritz_state_space) chain = {0};
+    ritz_probe probe = {0};
+
+    assert_ok(spaces_chains(1, 100, true, &chain));
+    probe = probe_of(&chain);
+    assert_int_equal(probe.verdict, RITZ_MARGINAL);
+    assert_true(probe.pole[0] == 0.0 && probe.pole[1] == 0.0);
+}
+
 static ritz_status probe_rod(double wind)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
@@ -108,6 +121,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(without_a_proof_the_poles_not_looked_at_are_counted),
     cmocka_unit_test(unstable_and_marginal_models_are_found),
     cmocka_unit_test(too_many_states_for_dense_checks_are_checked_by_poles),
+    cmocka_unit_test(a_free_chain_is_marginal),
     cmocka_unit_test(every_allocation_may_fail),
 };
 

@@ -1,6 +1,7 @@
 /*
  * Gramians of sparse state spaces: ADI against SLICOT, the stated residual
- * against that of the equation, bands against closed forms, refusals.
+ * against that of the equation, poles at 0, bands against closed forms,
+ * refusals.
  */
 #include "testing.h"
 
@@ -79,20 +80,126 @@ static void a_sparse_model_takes_adi_by_itself(void **)
     assert_non_null(strstr(full.engine, "SLICOT"));
 }
 
-/* With a pole at 0 the Gramian has no low rank; the dense engine removes the
-   pole. */
-static void a_pole_on_the_axis_goes_to_the_dense_engine(void **)
+/* ADI stops at 1e-10 of B B'; Hankel values were met to 1e-8. */
+#define RESIDUAL 1e-8
+
+/* Hankel values of both engines, and how many states are decoupled. */
+static void compare_engines(const ritz_state_space *sparse, int64_t decoupled,
+                            double tolerance)
+{
+    RITZ_OWN(ritz_state_space) made = {0};
+    RITZ_OWN(ritz_gramians) thin = {0}, full = {0};
+    RITZ_OWN(ritz_dense) WET = {0}, ET = {0};
+    const ritz_state_space *dense = NULL;
+    double *a = NULL, *b = NULL;
+    int64_t count_a = 0, count_b = 0;
+
+    assert_ok(ritz_state_space_dense(sparse, &made, &dense));
+    assert_ok(
+        ritz_gramians_of_space_by(sparse, RITZ_ENGINE_LOW_RANK, NULL, &thin));
+    assert_ok(ritz_gramians_of_space_by(dense, RITZ_ENGINE_DENSE, NULL, &full));
+    assert_int_equal(full.T.ncol, decoupled);
+    assert_int_equal(thin.T.ncol, decoupled);
+    assert_int_equal(thin.W.ncol, decoupled);
+    assert_ok(dense->E.val ? ritz_dense_mul(&dense->E, &thin.T, &ET)
+                           : ritz_dense_copy(&thin.T, &ET));
+    assert_ok(ritz_dense_mul_tn(&thin.W, &ET, &WET));
+    for (int64_t j = 0; j < decoupled; j++)
+        for (int64_t i = 0; i < decoupled; i++)
+            assert_near(ritz_dense_col(&WET, j)[i], i == j, 1e-10);
+    assert_ok(ritz_gramians_hankel(&thin, &count_a, &a));
+    assert_ok(ritz_gramians_hankel(&full, &count_b, &b));
+    for (int i = 0; i < 8; i++)
+        assert_near(a[i], b[i], tolerance * b[0]);
+    free(a);
+    free(b);
+}
+
+/* A rod that loses no heat at its ends: with wind its right and left vectors
+   differ. */
+static void a_pole_at_0_is_decoupled(void **)
+{
+    for (int k = 0; k < 4; k++) {
+        RITZ_OWN(ritz_state_space) rod = {0};
+        const double wind = k & 1 ? 0.05 : 0.0;
+
+        assert_ok(spaces_rod(60, wind, k & 2, &rod));
+        rod.sA.val[0] = -1.0 - wind;
+        rod.sA.val[rod.sA.colptr[60] - 1] = -1.0 + wind;
+        compare_engines(&rod, 1, RESIDUAL);
+    }
+}
+
+/* Two free chains of masses with springs and dampers between them: two double
+   poles at 0, of one vector each. */
+static void double_poles_of_free_bodies_are_decoupled(void **)
+{
+    for (int mass = 0; mass < 2; mass++) {
+        RITZ_OWN(ritz_state_space) chain = {0};
+
+        assert_ok(spaces_chains(2, 20, mass, &chain));
+        compare_engines(&chain, 4, RESIDUAL);
+    }
+}
+
+/* A chain on a damper to the ground alone: of its two poles at 0 one is left. */
+static void a_damped_rigid_motion_leaves_one_pole(void **)
+{
+    RITZ_OWN(ritz_state_space) chain = {0};
+
+    assert_ok(spaces_chains(1, 20, false, &chain));
+    for (int64_t p = chain.sA.colptr[20]; p < chain.sA.colptr[21]; p++)
+        if (chain.sA.rowind[p] == 20)
+            chain.sA.val[p] -= 0.3;
+    compare_engines(&chain, 1, RESIDUAL);
+}
+
+/* A pole at -2e-9 is no pole at 0: rounding moves it by some eps |A|, 4e-16
+   each of 4, of which its Gramian has 1e-6. */
+static void a_slow_pole_is_no_pole_at_0(void **)
+{
+    RITZ_OWN(ritz_state_space) rod = {0};
+
+    assert_ok(spaces_rod(60, 0.05, false, &rod));
+    rod.sA.val[0] = -1.05;
+    rod.sA.val[rod.sA.colptr[60] - 1] = -0.95 - 1e-7;
+    compare_engines(&rod, 0, 1e-6);
+}
+
+/* An unstable pole is left to the dense engine. */
+static void an_unstable_pole_goes_to_the_dense_engine(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
     RITZ_OWN(ritz_gramians) g = {0}, none = {0};
 
     assert_ok(spaces_rod(60, 0.0, false, &rod));
-    rod.sA.val[0] = rod.sA.val[rod.sA.colptr[60] - 1] = -1.0;
+    rod.sA.val[0] = 0.5;
     assert_int_equal(
         ritz_gramians_of_space_by(&rod, RITZ_ENGINE_LOW_RANK, NULL, &none),
         RITZ_ERR_CONVERGENCE);
     assert_ok(ritz_gramians_of_space(&rod, &g));
     assert_int_equal(g.T.ncol, 1);
+}
+
+/* Over a band as over all frequencies: the rigid motion is not in it. */
+static void a_band_from_0_may_have_a_pole_at_0(void **)
+{
+    static const double band[] = {0.0, 40.0};
+    RITZ_OWN(ritz_state_space) chain = {0};
+    RITZ_OWN(ritz_gramians) all = {0}, part = {0};
+    double *a = NULL, *b = NULL;
+    int64_t count = 0;
+
+    assert_ok(spaces_chains(1, 6, false, &chain));
+    assert_ok(ritz_gramians_of_space(&chain, &all));
+    assert_ok(ritz_gramians_of_space_by(&chain, RITZ_ENGINE_AUTO, band, &part));
+    assert_int_equal(part.T.ncol, 2);
+    assert_ok(ritz_gramians_hankel(&all, &count, &a));
+    assert_ok(ritz_gramians_hankel(&part, &count, &b));
+    for (int i = 0; i < 4; i++)
+        assert_near(a[i], b[i], 1e-3 * a[0]);
+    free(a);
+    free(b);
 }
 
 /* x' = -a x + b u has the Gramian b^2 / (pi a) (atan(w2 / a) - atan(w1 /
@@ -191,17 +298,24 @@ static ritz_status make(const ritz_state_space *model, const double *band)
 static void every_allocation_may_fail(void **)
 {
     static const double band[] = {0.0, 0.01};
-    RITZ_OWN(ritz_state_space) rod = {0};
+    RITZ_OWN(ritz_state_space) rod = {0}, chain = {0};
 
     assert_ok(spaces_rod(8, 0.1, true, &rod));
+    assert_ok(spaces_chains(1, 3, false, &chain));
     assert_survives_every_allocation(make(&rod, NULL));
+    assert_survives_every_allocation(make(&chain, NULL));
     assert_survives_every_allocation(make(&rod, band));
 }
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(low_rank_values_are_those_of_dense_ones),
     cmocka_unit_test(a_sparse_model_takes_adi_by_itself),
-    cmocka_unit_test(a_pole_on_the_axis_goes_to_the_dense_engine),
+    cmocka_unit_test(a_pole_at_0_is_decoupled),
+    cmocka_unit_test(double_poles_of_free_bodies_are_decoupled),
+    cmocka_unit_test(a_damped_rigid_motion_leaves_one_pole),
+    cmocka_unit_test(a_slow_pole_is_no_pole_at_0),
+    cmocka_unit_test(an_unstable_pole_goes_to_the_dense_engine),
+    cmocka_unit_test(a_band_from_0_may_have_a_pole_at_0),
     cmocka_unit_test(a_band_of_one_state_has_its_closed_form),
     cmocka_unit_test(a_narrow_peak_within_a_band_is_found),
     cmocka_unit_test(all_frequencies_are_the_limit_of_a_band),
