@@ -577,8 +577,8 @@ static ritz_status write_matrices(const ritz_export_object *object,
                                         : object->reduced->origin.method;
     RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_CHECK(ritz_export_matrices(object, request, pattern ? NULL : one,
-                                    report, &list));
+    RITZ_CHECK(ritz_export_damped(object, request, pattern ? NULL : one, report,
+                                  &list));
     RITZ_REFUSE_IF(list.count != 1 && !pattern, RITZ_ERR_ARGUMENT,
                    "a Matrix Market file holds one matrix: name it with "
                    "--matrix, or write '%%' for it in the output's name");

@@ -313,7 +313,7 @@ static ritz_status write_matrices(const ritz_export_object *object,
     };
     RITZ_OWN(ritz_matrices) list = {0};
 
-    RITZ_CHECK(ritz_export_matrices(object, request, NULL, report, &list));
+    RITZ_CHECK(ritz_export_damped(object, request, NULL, report, &list));
     if (style.text && style.digits < 17)
         RITZ_CHECK(
             ritz_export_say(report,

@@ -3,6 +3,7 @@
 #include "formats/sink.h"
 
 #include "base/alloc.h"
+#include "model/modal.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -305,6 +306,46 @@ ritz_status ritz_export_matrices(const ritz_export_object *object,
                                    list.matrix[k].name,
                                    (long long)list.matrix[k].A.nrow,
                                    (long long)list.matrix[k].A.ncol));
+    RITZ_MOVE(*out, list);
+    return RITZ_OK;
+}
+
+static bool has_matrix(const ritz_matrices *list, const char *name)
+{
+    for (int64_t k = 0; k < list->count; k++)
+        if (strcmp(list->matrix[k].name, name) == 0)
+            return true;
+    return false;
+}
+
+ritz_status ritz_export_damped(const ritz_export_object *object,
+                               const ritz_export_request *request,
+                               const char *usual, ritz_export_report *report,
+                               ritz_matrices *out)
+{
+    const char *text = object->reduced ? object->reduced->damping : "";
+    RITZ_OWN(ritz_structure) model = {0};
+    RITZ_OWN(ritz_matrices) list = {0};
+    ritz_export_object damped = *object; /* borrowed but for D */
+    ritz_reduced reduced_damped;
+    ritz_damping damping = {0};
+
+    if (*text) {
+        RITZ_CHECK(ritz_damping_parse(text, &damping));
+        RITZ_CHECK(ritz_structure_of_reduced(object->reduced, &model));
+        RITZ_CHECK_IN("damping",
+                      ritz_modal_damping(&model, &damping, &model.D));
+        reduced_damped = *object->reduced;
+        reduced_damped.D = model.D;
+        damped.reduced = &reduced_damped;
+    }
+    RITZ_CHECK(ritz_export_matrices(&damped, request, usual, report, &list));
+    if (*text)
+        RITZ_CHECK(ritz_export_say(report,
+                                   has_matrix(&list, "D")
+                                       ? "damping '%s' is in D"
+                                       : "damping '%s' is left out: D has it",
+                                   text));
     RITZ_MOVE(*out, list);
     return RITZ_OK;
 }

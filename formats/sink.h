@@ -41,6 +41,15 @@ ritz_status ritz_export_matrices(const ritz_export_object *object,
                                  const char *usual, ritz_export_report *report,
                                  ritz_matrices *out);
 
+/**
+ * The same for formats that hold nothing but matrices: a rule of damping, as
+ * ratios of modes, is in D.
+ */
+ritz_status ritz_export_damped(const ritz_export_object *object,
+                               const ritz_export_request *request,
+                               const char *usual, ritz_export_report *report,
+                               ritz_matrices *out);
+
 /** @p text with markup as entities and control characters as '?'. */
 void ritz_xml_put(FILE *file, const char *text);
 

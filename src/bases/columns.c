@@ -306,6 +306,18 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                         left_out, ritz_column_name(kind), name);
 }
 
+ritz_status ritz_refuse_unattached(const ritz_request *request, const char *so)
+{
+    RITZ_REFUSE_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
+                   "nothing is attached, so %s: %s", so,
+                   request->component->num_ports > 0
+                       ? "name a port by --attach"
+                       : "there is no port; ritz-import --port gives them to a "
+                         "component, and a system has none, of which "
+                         "normal-modes or balanced makes less");
+    return RITZ_OK;
+}
+
 void ritz_remark_dampers(const ritz_request *request, int loads,
                          ritz_basis *basis)
 {

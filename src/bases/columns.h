@@ -113,6 +113,14 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                           int64_t count, const bool *keep,
                           ritz_column_kind kind, ritz_basis *basis);
 
+/**
+ * Refuse a request that attaches nothing, and say what to do: models without
+ * ports, as systems at a configuration, have nothing to attach.
+ *
+ * @param[in] so  what follows from it, "nothing would be kept"
+ */
+ritz_status ritz_refuse_unattached(const ritz_request *request, const char *so);
+
 /** Add a remark if the component has dampers and these are not among the
  * loads. */
 void ritz_remark_dampers(const ritz_request *request, int loads,

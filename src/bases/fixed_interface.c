@@ -433,9 +433,7 @@ static ritz_status make_guyan(const ritz_request *request, ritz_basis *out)
 {
     ritz_request without_modes = *request;
 
-    RITZ_REFUSE_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
-                   "nothing is attached, so nothing would be kept: name a port "
-                   "by --attach");
+    RITZ_CHECK(ritz_refuse_unattached(request, "nothing would be kept"));
     without_modes.modes = 0;
     RITZ_CHECK(make_fixed(&without_modes, 0, out));
     snprintf(out->origin.engine, sizeof out->origin.engine, "CHOLMOD");
@@ -555,9 +553,7 @@ static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
     RITZ_OWN(interior_statics) statics = {0};
     RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0}, none = {0};
 
-    RITZ_REFUSE_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,
-                   "nothing is attached, so nothing would be kept: name a port "
-                   "by --attach");
+    RITZ_CHECK(ritz_refuse_unattached(request, "nothing would be kept"));
     RITZ_CHECK(hold_boundary(request, &s));
     if (s.i.count > 0) {
         RITZ_CHECK(condense_boundary(s.component, &s.held.T, &K_R, &M_R));

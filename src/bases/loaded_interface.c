@@ -48,6 +48,8 @@ static ritz_status check_request(const ritz_request *request)
     const ritz_neighbour *neighbour = request->neighbour;
     int64_t a = request->attached.count;
 
+    if (request->component->num_ports == 0)
+        RITZ_CHECK(ritz_refuse_unattached(request, "nothing can hang on it"));
     RITZ_REFUSE_IF(
         !neighbour, RITZ_ERR_ARGUMENT,
         "it is not said what hangs on the interface: name a neighbour "

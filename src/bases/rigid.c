@@ -18,7 +18,7 @@ static ritz_status make_rigid(const ritz_request *request, ritz_basis *out)
     RITZ_CHECK(ritz_inertia_of(component, &inertia));
     RITZ_REFUSE_IF(!inertia.known, RITZ_ERR_ARGUMENT,
                    "no grid has a position and a mass, so rigid motion cannot "
-                   "be told: import with --bulk");
+                   "be told: import with --bulk; a system has no grids");
     RITZ_CHECK(ritz_rigid_geometry(component, inertia.centre, &R));
     RITZ_CHECK(ritz_dense_new(n, 6, &kept));
     largest = ritz_dense_max(&R);

@@ -244,9 +244,7 @@ static ritz_status make_serep(const ritz_request *request, ritz_basis *out)
     RITZ_OWN(ritz_dofs) rest = {0};
     int64_t m = 0;
 
-    RITZ_REFUSE_IF(a->count == 0, RITZ_ERR_ARGUMENT,
-                   "nothing is attached, so nothing is measured: name a port "
-                   "by --attach");
+    RITZ_CHECK(ritz_refuse_unattached(request, "nothing is measured"));
     /* refuses attached dofs that are out of range or repeated */
     RITZ_CHECK(ritz_dofs_complement(a, component->num_dofs, &rest));
     RITZ_CHECK_IN(

@@ -210,6 +210,7 @@ static ritz_status keep_names(const ritz_component *component,
     reduced->origin = basis->origin;
     reduced->num_dofs = component->num_dofs;
     memcpy(reduced->units, component->units, sizeof reduced->units);
+    memcpy(reduced->remark, basis->remark, sizeof reduced->remark);
     memcpy(reduced->damping, component->damping, sizeof reduced->damping);
     RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count, NULL,
                                  &reduced->columns));
@@ -290,6 +291,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
     fastest f = {0.0, false};
 
     memcpy(second.units, reduced->units, sizeof second.units);
+    memcpy(second.remark, reduced->remark, sizeof second.remark);
     memcpy(second.damping, reduced->damping, sizeof second.damping);
     RITZ_CHECK(ritz_columns_new(V->ncol, &second.columns));
     for (int64_t j = 0; j < V->ncol; j++)

@@ -194,6 +194,12 @@ damped with '' 'augment: system'
 damped without ', loads: [attached]' \
     'augment: {level: system, attached: [inputs]}'
 expect 0 'damping   1 - MAC' ritz-compare without.yaml -o without.h5
+mv log said
+works '  where a basis has no vectors for dampers, it says so' grep -q \
+    'note  *basis of rotor: 2 damper(s) without a static vector' said
+json 0 ritz-assemble without.yaml --at clock=90 -o one.h5
+holds '  as ritz-assemble does' 'j["notes"][0]["component"] == "rotor" and
+    "2 damper(s) without" in j["notes"][0]["note"]'
 json 0 ritz-compare with.yaml -o with.h5
 holds '  damping is right to 1e-4 at all angles' \
     'all(0 < c["errors"]["damping"] < 1e-4 for c in j["configurations"])'

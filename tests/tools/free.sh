@@ -139,6 +139,10 @@ expect 1 "has columns for a joint by forces" ritz-export --to output4 \
 expect 0 "has columns for a joint by forces" ritz-export --to output4 --force \
     dual-craig-bampton-verified.h5 -o forced.op4
 expect 0 "stage 2" ritz-compare scene-macneal.yaml -o compared.h5
+for method in guyan irs; do
+    expect 1 "there is no port; ritz-import --port gives them to a component" \
+        ritz-basis $method macneal.h5 -o none.h5
+done
 
 # --- neighbours ---------------------------------------------------------------
 

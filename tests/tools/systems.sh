@@ -56,8 +56,12 @@ expect 0 'of stage two against stage one' ritz-export --to matlab --states \
     --at clock=90 system.h5 -o states.mat
 export_at matlab modes.mat
 export_at matrix-market 's-%.mtx' --states
-export_at matrix-market 'm-%.mtx' --matrix K,M,B,C,Cv,Ca
-export_at output4 modes.op4 --matrix K,M
+export_at matrix-market 'm-%.mtx' --matrix K,M,D,B,C,Cv,Ca
+export_at output4 modes.op4
+expect 0 "damping 'modal 0.002' is in D" ritz-export --to output4 \
+    --at clock=90 system.h5 -o again.op4
+expect 0 "damping 'modal 0.002' is left out: D has it" ritz-export \
+    --to matrix-market --at clock=90 system.h5 -o k.mtx
 export_at container reduced.h5
 export_at container states.h5 --states
 cat >respond.py <<'END'
@@ -72,8 +76,9 @@ def by_states(A, B, C, D):
     return np.array([C @ np.linalg.solve(2j * np.pi * x * one - A, B) + D
                      for x in hertz])
 
-def by_modes(K, M, B, C, Cv, Ca):
-    D = 2 * zeta * np.diag(np.sqrt(np.diag(K).clip(0)))
+def by_modes(K, M, B, C, Cv, Ca, D=None):
+    if D is None: # a rule, and text
+        D = 2 * zeta * np.diag(np.sqrt(np.diag(K).clip(0)))
     assert abs(K - np.diag(np.diag(K))).max() == 0
     assert abs(M - np.eye(len(M))).max() == 0
     out = []
@@ -96,7 +101,7 @@ worst = {
     "MATLAB": off(by_modes(*(s[k] for k in ("K", "M", "B", "C", "Cv", "Ca")))),
     "Matrix Market states": off(by_states(*(r(f"s-{k}.mtx") for k in "ABCD"))),
     "Matrix Market": off(by_modes(
-        *(r(f"m-{k}.mtx") for k in ("K", "M", "B", "C", "Cv", "Ca")))),
+        *(r(f"m-{k}.mtx") for k in ("K", "M", "B", "C", "Cv", "Ca", "D")))),
 }
 g = h5py.File("states.h5")
 worst["container"] = off(by_states(*(g[k][:] for k in "ABCD")))
@@ -121,7 +126,19 @@ sys.exit(0 if off < 1e-9 else f"off by {off}")
 END
 done
 
-expect 0 '2 matrices' ritz-info modes.op4
+expect 0 '3 matrices' ritz-info modes.op4
+# of a body, whose M and K are full, a ratio is in D as well
+expect 0 "damping 'modal 0.01' is in D" ritz-export --to output4 --force \
+    --damping 'modal 0.01' small-rotor.h5 -o rotor.op4
+works '  and gives its poles this ratio' sh -c '
+    n=$(ritz-info rotor.op4 --json | grep -o "\"rows\": [0-9]*" | head -n 1)
+    n=${n##* }
+    seq "$n" | sed "s/$/ 0/" >rotor.dofs
+    ritz-import -q --stiffness rotor.op4:K --mass rotor.op4:M \
+        --damping rotor.op4:D --dofs rotor.dofs -o rotor-d.h5
+    ritz-poles --json rotor-d.h5 >log.json'
+holds '  to rounding' \
+    'len(j["poles"]) > 9 and all(abs(p["zeta"] - 0.01) < 1e-7 for p in j["poles"])'
 expect 1 'wants a body with its grids' ritz-export --to exudyn --at clock=90 \
     system.h5 -o none.hdf5
 

@@ -607,6 +607,7 @@ static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
             *scene->name ? scene->name : run->operand[0],
             scene->num_configurations, band);
     say_orders(run, first, &c->second);
+    describe_remarks(run, first->scene, first->body);
     cli_say(run, "%s", "");
     say_composite(run, first, c);
     say_compact(run, first, c);

@@ -132,6 +132,21 @@ static ritz_status describe_model(cli_run *run, const model *m)
     return ritz_fail(RITZ_ERR_FORMAT, "nothing is known of this kind");
 }
 
+void describe_remarks(cli_run *run, const ritz_scene *scene,
+                      const ritz_reduced *body)
+{
+    SINK_EACH(run, "notes", k, scene->num_components) {
+        const char *name = scene->component[k].name;
+
+        if (!body[k].remark[0])
+            continue;
+        sink_object(run, NULL);
+        sink_set(run, "component,note", "%s %s", name, body[k].remark);
+        sink_end(run);
+        cli_say(run, "  %-14s basis of %s: %s", "note", name, body[k].remark);
+    }
+}
+
 ritz_status describe_output(cli_run *run, const model *m)
 {
     RITZ_CHECK(model_write(run, m));
@@ -215,5 +230,5 @@ ritz_status describe_file(cli_run *run, const char *path, bool members,
                           bool directory)
 {
     return ritz_container_seems(path) ? describe_container(run, path, members)
-                                   : describe_foreign(run, path, directory);
+                                      : describe_foreign(run, path, directory);
 }

@@ -444,6 +444,7 @@ static ritz_status write_scene(const fit_run *f, ritz_fitter *fitter,
     RITZ_OWN(ritz_bodies) body = {0};
 
     RITZ_CHECK(ritz_fitter_system(fitter, chosen, &body, &path, &system));
+    describe_remarks(run, f->scene, body.item);
     say_path(run, fitter, &path);
     RITZ_CHECK(model_write_bodies(run, f->given->prefix, f->scene, body.item));
     if (!run->output)

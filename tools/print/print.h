@@ -306,6 +306,11 @@ ritz_status verify_run(cli_run *run, verify_options *given);
 MODEL_EACH_KIND(DESCRIBE_ONE)
 #undef DESCRIBE_ONE
 
+/** What the bases of a scene's components remark, as of dampers without static
+ * vectors: a line each, "notes" in JSON. */
+void describe_remarks(cli_run *run, const ritz_scene *scene,
+                      const ritz_reduced *body);
+
 /** Write an object of any kind as the output, and describe it. */
 ritz_status describe_output(cli_run *run, const model *m);
 
