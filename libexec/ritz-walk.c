@@ -164,7 +164,7 @@ static bool is_accepted(const data_set *s)
 }
 
 /* Whether the file is large enough for the declared values, and for those of a
-   chunk, at the best ratio of deflate. */
+   chunk, at the highest compression ratio of deflate. */
 static bool is_borne_out(data_set *s)
 {
     const hsize_t size = H5Tget_size(s->on_file);

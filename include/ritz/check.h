@@ -65,9 +65,9 @@ typedef struct ritz_probe {
 } ritz_probe;
 
 /**
- * Poles of A, or of E^-1 A. A pole is on the axis if |Re s| is within 8 eps |A|
- * / cos, the bound of first order on what rounding does to it, cos being that
- * between its left and right eigenvectors.
+ * Poles of A, or of E^-1 A. A pole s is on the axis if |Re s| is within
+ * 8 eps |A| / cos, the first-order bound of its rounding error, where cos is
+ * the cosine of the angle between its left and right eigenvectors.
  *
  * A sparse model is proven stable where E and -(A + A') are definite; otherwise
  * only the poles nearest to 0 are computed.

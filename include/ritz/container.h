@@ -103,8 +103,8 @@ typedef struct ritz_container_row {
     const char *about; /* what it means */
     const char *range; /* of whole numbers, "0..n-1"; NULL: any */
     bool optional;
-    const char *with; /* an optional member must be there if the member of this
-                         name is; NULL: it may be absent by itself */
+    const char *with; /* name of a member that requires this optional one; NULL:
+                         none */
     bool nan;         /* NaN means that there is no value */
 } ritz_container_row;
 

@@ -44,8 +44,8 @@ ritz_status ritz_shapes_of_reduced(const ritz_reduced *reduced,
  * ten.
  *
  * @param[in] bodies  bodies of the system, in its order
- * @return RITZ_ERR_ARGUMENT if the system does not store where its bodies are,
- *         @p bodies are others, or as ritz_shapes_of_reduced
+ * @return RITZ_ERR_ARGUMENT if the system does not store where its bodies are
+ *         or @p bodies are not its bodies, or as ritz_shapes_of_reduced
  */
 ritz_status ritz_shapes_of_system(const ritz_system *system,
                                   const ritz_configuration *at,

@@ -296,7 +296,7 @@ typedef struct ritz_import_report {
     ritz_dof *fixed;
     int64_t num_massless;     /* rows empty in M only: kept */
     int64_t num_floating;     /* rows empty in K only: kept */
-    char map[RITZ_NAME_SIZE]; /* what the dofs of the rows were taken from:
+    char map[RITZ_NAME_SIZE]; /* where the dofs of the rows were taken from:
                                  "file", "--dofs", "--rows", "modes", "grids
                                  ascending", "A-set", "grids less SPCs", "grids
                                  less dependents", "grids less SPCs and
@@ -331,10 +331,11 @@ typedef struct ritz_import_report {
  * have been eliminated already. In both cases the dependent dofs go to the
  * component's recovery.
  *
- * A rigid port and an averaged one make a grid of six dofs at the mean position
- * of theirs, along basic axes. The dofs of a rigid port follow it as a rigid
- * body. An averaged port is their average without weights, and to keep it six
- * of them depend on it and the others.
+ * A rigid port and an averaged port each add a grid of six dofs at the mean
+ * position of the port's grids, along basic axes. The port's dofs follow the
+ * added grid of a rigid port as a rigid body. The added grid of an averaged
+ * port moves by the unweighted average of the port's dofs, six of which then
+ * depend on it and on the others.
  *
  * Inputs and outputs that are given as text act along basic axes. Those that
  * are given as matrices,

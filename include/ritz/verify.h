@@ -103,8 +103,8 @@ bool ritz_measure_holds(const ritz_measure *measure);
 
 /**
  * Whether a measure without a tolerance must be reported in addition to the
- * worst measure that has one: both are relative errors, and it is more than ten
- * times as large.
+ * worst measure that has one: both are relative errors, and the measure without
+ * a tolerance is more than ten times as large.
  */
 bool ritz_measure_is_beside(const char *name, double value,
                             const ritz_measure *worst);
@@ -256,14 +256,15 @@ double ritz_random_next(uint64_t *state);
  * is computed: the full model is factored and its modes are counted.
  *
  *     mode-7, mode-8, ...         |f_r - f| / f of each reduced mode in the
- *                                 band, f that of the full mode of its number
- *                                 or of the one that the place names
+ *                                 band; f is the frequency of the full mode
+ *                                 with the same number, or with the number that
+ *                                 the place states
  *     frequency-relative-bound    upper bound of ritz-verify's measure
  *                                 frequency-relative; none without modes
  *     frequency-relative-least    lower bound of it; none if it may be 0
  *     missing-modes-bound         upper bound of its missing-modes: full modes
- *                                 in the band of which no reduced one is proven
- *                                 to hold half
+ *                                 in the band without a reduced mode that is
+ *                                 proven to contain half of them
  *     response-relative-bound     max |H - H_r| / max |H| in the band, between
  *                                 points too, for ratios common to all modes
  *                                 and for D = a M + b K; the worst channel,
