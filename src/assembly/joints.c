@@ -120,9 +120,10 @@ static void find_normals(const double axis[static 3], double e[static 2][3])
  * In a loop R and d follow from the other joints (placement.c).
  *
  * The axes of a universal joint now point along a and c = R b, as b is fixed in
- * the second body. n = a x c / |a x c| is the direction about which it locks;
- * angles q_1, q_2 about a and c, phi = a q_1 + c q_2, are those of the dual
- * basis, q_k = g_k'phi with g_1 = c x n / a'(c x n), g_2 = n x a / c'(n x a).
+ * the second body. n = a x c / |a x c| is the direction about which the joint
+ * locks; angles q_1, q_2 about a and c, phi = a q_1 + c q_2, are those of the
+ * dual basis, q_k = g_k'phi with g_1 = c x n / a'(c x n) and
+ * g_2 = n x a / c'(n x a).
  */
 
 /* Directions e of a joint: three of translation, then three of rotation. */
@@ -228,8 +229,8 @@ static int64_t find_direction(const ritz_port_map *port, int64_t first,
 }
 
 /* Marks in place of a port row for a direction that the grid does not have:
-   OUT_OF_PLANE for a motion out of a plane model's plane, which is zero; ABSENT
-   - k for any other direction k, 0-5. */
+   OUT_OF_PLANE for a motion out of a plane model's plane, which is zero;
+   ABSENT - k for any other direction k, 0-5. */
 enum { OUT_OF_PLANE = -1, ABSENT = -2 };
 
 static const char directions[][3] = {"T1", "T2", "T3", "R1", "R2", "R3"};

@@ -288,8 +288,8 @@ static bool is_named(const char *name, int file)
 }
 
 /*
- * Lock a new draft; false if another writer that removes old drafts took it in
- * between, which then has the lock or has removed the file.
+ * Lock a new draft; false if another writer, removing old drafts, has locked or
+ * removed it in the meantime.
  */
 static bool claim_file(const char *name, int file)
 {

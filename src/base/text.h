@@ -68,8 +68,7 @@ ritz_status ritz_names_repeated(int64_t count,
                                 const char (*name)[RITZ_NAME_SIZE],
                                 char out[RITZ_NAME_SIZE]);
 
-/** Index of @p word among names in an array of names only; -1 if it is not
- * there. */
+/** Index of @p word in an array of names; -1 if it is not there. */
 int64_t ritz_name_index(int64_t count, char (*name)[RITZ_NAME_SIZE],
                         const char *word);
 

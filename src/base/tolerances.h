@@ -265,8 +265,8 @@
    residual at which they stop. */
 #define RITZ_POLE_FOUND 1e-10
 /* If 0 is a pole, the expansion point moves onto the real axis: to this part of
-   |A| / |E|, which is above the rounding that makes A - s E singular, and by
-   the second factor further each time that it is still singular. */
+   |A| / |E|, which is above the rounding that makes A - s E singular, and
+   further by the second factor as long as A - s E stays singular. */
 #define RITZ_SHIFT_ASIDE   1e-10
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
@@ -381,12 +381,12 @@
 #define RITZ_SHIFT_REAL 1e-3
 /* Least |Re p| / |p| of a shift that can be told from none: 64 eps. */
 #define RITZ_SHIFT_DAMPED 0x1p-46
-/* Damping between two modes, over the root of their own, above which they are
-   coupled: the closed forms err by its square. */
+/* Damping between two modes, relative to the geometric mean of their own, above
+   which they are coupled: the closed forms err by its square. */
 #define RITZ_DAMPING_COUPLES 1e-6
-/* Damping between two modes, over the root of their own, above which both are
-   ranked as one cluster: at close frequencies, the value of a mode alone,
-   damped by its own damping, errs by about this part. */
+/* Damping between two modes, relative to the geometric mean of their own, above
+   which both are ranked as one cluster: at close frequencies, the value of a
+   mode alone, damped by its own damping, errs by about this part. */
 #define RITZ_DAMPING_JOINS 0.1
 /* A pole nearer to 0 than this part of the lowest frequency, and not left of
    the axis by more than its rounding, belongs to rigid motion at 0. */
@@ -633,8 +633,9 @@
    norm is flat at its minimum. */
 #define RITZ_TUNED_NORM  1e-14
 #define RITZ_TUNED_PLACE 1e-9
-/* The variable x in 0 .. 1 of a damping constant c is even in the logarithm of
-   c plus 1/1000 of its range: ln 1000, three decades. */
+/* A damping constant is searched by a variable x in 0 .. 1 that is linear in
+   the logarithm of its distance from the lower end, plus 1/1000 of its range:
+   ln 1000, three decades. */
 #define RITZ_TUNED_DECADES 6.907755278982137
 /* Relative slope (d norm / d x) / norm, with x from 0 to 1 over a range, above
    which a search has not ended at a minimum. */
@@ -650,9 +651,9 @@
  * tests/claims/states.claims comes near its bound by less.
  */
 #define RITZ_BOUND_ROUNDING 1e3
-/* ... and next to a slow pole by the first-order effect of a relative change
-   eps of A, which the condition of the pole amplifies, times this factor for a
-   Schur form and a projection. */
+/* Next to a slow pole, rounding also moves the response by the first-order
+   effect of a relative change eps of A, which the condition of the pole
+   amplifies, times this factor for a Schur form and a projection. */
 #define RITZ_BOUND_CONDITION 1.0
 /* Participation below this part of |c_i| |phi|, or of the largest product of a
    channel, is rounding of products and eigenvectors. */
@@ -723,10 +724,11 @@
 #define RITZ_ENRICH_LEAST       1e-10
 #define RITZ_ENRICH_INDEPENDENT 1e-8
 /* An input and an output count as decoupled if their response is nowhere proven
-   to exceed this part of its Cauchy-Schwarz bound (positions in single
-   precision disturb symmetry by about as much), */
+   to exceed this part of its Cauchy-Schwarz bound. Positions in single
+   precision disturb symmetry by about as much. */
 #define RITZ_CHANNEL_COUPLED 1e-6
-/* ... and if it is proven to stay below this part of the same bound. */
+/* For an input and an output to count as decoupled, their response must also be
+   proven to stay below this part of its Cauchy-Schwarz bound. */
 #define RITZ_CHANNEL_WEAK 1e-2
 /* A bound of a response is refined with a richer trial space if it is more than
    this many times the known part of the error. */
@@ -802,7 +804,8 @@
 /* Defaults of a scene. `select: {tolerance}`: part of the largest value at all
    configurations. `attached: auto`: relative error of the largest and the
    smallest singular value of the response. `extraneous: compact`: increase of
-   relative errors of frequencies and of |H| over its largest. */
+   the errors of frequencies and of |H|, relative to the frequency and to the
+   largest |H|. */
 #define RITZ_SCENE_SELECT   1e-3
 #define RITZ_SCENE_ATTACHED 1e-3
 #define RITZ_SCENE_COMPACT  1e-3
