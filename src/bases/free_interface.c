@@ -1,5 +1,5 @@
-/* Methods of free-interface modes with residual attachment modes, the static
-   response of the modes that are left out. */
+/* Methods that use free-interface modes and residual attachment modes, which
+   are the static response of the modes that are left out. */
 #include "bases/free_set.h"
 
 #include "base/alloc.h"

@@ -1,5 +1,5 @@
-/* Free-interface modes with residual modes, the static response of the modes
-   that are left out. */
+/* Free-interface modes and residual attachment modes, which are the static
+   response of the modes that are left out. */
 #ifndef RITZ_BASES_FREE_SET_H
 #define RITZ_BASES_FREE_SET_H
 

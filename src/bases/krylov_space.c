@@ -7,9 +7,9 @@
  * by Arnoldi's recurrence in complex arithmetic; T spans the real and imaginary
  * parts of all Q. W comes from (A', E', C') in the same way. About each point
  * the reduced model keeps as many moments as the whole blocks of T and W there,
- * counted together [Grimme1997]. With W = T it is stable if E is symmetric and
- * E and -(A + A') are definite. For a symmetric model with inputs and outputs
- * among F, W = T keeps as many moments as two sides.
+ * counted together [Grimme1997]. With W = T the reduced model is stable if E
+ * is symmetric and E and -(A + A') are definite. For a symmetric model with
+ * inputs and outputs among F, W = T keeps as many moments as two sides.
  */
 #include "bases/space.h"
 

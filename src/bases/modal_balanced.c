@@ -27,7 +27,7 @@
 /* A cluster of modes, kept whole or left out whole. */
 typedef struct mode_group {
     int64_t first, size; /* its first flexible mode, and its number of modes */
-    double value;        /* its rank value */
+    double value;        /* Hankel value by which groups are ranked */
     double bound;        /* H-infinity bound of its response */
     bool keep;
 } mode_group;
