@@ -17,7 +17,7 @@ enum {
     RITZ_OF_COMPONENT = 1,
     RITZ_OF_REDUCED = 2,
     RITZ_OF_STATES = 4,
-    RITZ_OF_SPARSE = 8, /* states, too many for dense matrices */
+    RITZ_OF_SPARSE = 8, /* sparse state spaces, too large for dense matrices */
 };
 
 /* Features without which a check is left out. */
@@ -74,7 +74,8 @@ typedef struct ritz_checker {
     ritz_structure model; /* with dampers installed */
     ritz_damping damping;
     ritz_modal_model modes;
-    bool *moves;  /* whether a mode is a rigid motion; NULL: not known */
+    bool *moves;  /* for each mode, whether it is a rigid motion; NULL: not
+                     known */
     ritz_dense L; /* p x r, rows of the interface; velocities are L q' */
     char (*row)[RITZ_NAME_SIZE]; /* p */
 
@@ -142,7 +143,8 @@ void ritz_least_value_free(ritz_least_value *found);
 /** The least value that rounding leaves of a semidefinite A. */
 double ritz_least_rounding(const ritz_dense *A);
 
-/** Tell rigid motions among all modes, by mass properties that are known. */
+/** Find which modes of a reduced component are rigid motions, by the mass
+ * properties and the momentum that it stores. */
 ritz_status ritz_check_motions(ritz_checker *it);
 
 /** All modes; or that M and K are singular together. */

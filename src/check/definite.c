@@ -304,8 +304,8 @@ static ritz_status say_rigid(ritz_checker *it, bool *said)
     return RITZ_OK;
 }
 
-/* The first mode, of those that do not count as rigid, that is no rigid
-   motion. */
+/* Eigenvalue of the first mode that is neither counted as rigid nor found to be
+   a rigid motion. */
 static double find_softest(const ritz_checker *it)
 {
     const ritz_modal_model *modes = &it->modes;
@@ -316,7 +316,8 @@ static double find_softest(const ritz_checker *it)
     return k < modes->count ? modes->lambda[k] : HUGE_VAL;
 }
 
-/* Negative squares of forces, as systems of dual-craig-bampton have them. */
+/* Report negative eigenvalues of the forces between bodies of
+   dual-craig-bampton. */
 static void say_squares(ritz_checker *it, double value)
 {
     const ritz_modal_model *modes = &it->modes;
@@ -362,7 +363,8 @@ static void say_negative(ritz_checker *it, double value)
                          least);
 }
 
-/* Rigid motions with positive stiffness: supports, or too few digits. */
+/* Report rigid motions with positive stiffness: supports, or a stiffness of too
+   few digits. */
 static bool say_held(ritz_checker *it, double value)
 {
     const ritz_modal_model *modes = &it->modes;

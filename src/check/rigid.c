@@ -406,8 +406,9 @@ static ritz_status check_null_space(ritz_checker *it, int64_t eigen)
     return RITZ_OK;
 }
 
-/* Rigid motions that have a frequency by rounding of the stiffness, and are no
-   rigid modes; without positions all six are taken to be there. */
+/* Number of rigid motions that are not rigid modes, since rounding of the
+   stiffness gives them a frequency. Without positions six rigid motions are
+   assumed. */
 static int64_t count_rounded(const ritz_checker *it, const ritz_pairs *pairs)
 {
     const int64_t all = it->placed ? it->Phi.ncol : (int64_t)RITZ_BODY_MOTIONS;
@@ -416,9 +417,9 @@ static int64_t count_rounded(const ritz_checker *it, const ritz_pairs *pairs)
 }
 
 /*
- * First flexible eigenvalue. Where rounding holds the body its rigid modes are
- * not distinguished from others by size, and as many as there are rigid motions
- * are taken as rigid.
+ * First flexible eigenvalue. Where rounding of the stiffness holds the body,
+ * the size of an eigenvalue does not show whether it is rigid: the lowest
+ * eigenvalues count as rigid, one for each rigid motion.
  */
 static double find_softest(const ritz_checker *it, const ritz_pairs *pairs)
 {

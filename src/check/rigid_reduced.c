@@ -1,12 +1,12 @@
 /*
  * Rigid motions R c of a body in its reduced model, by the momentum
- * N = R'M T that the model stores. If they are T q, then M_r q = N'c, and
- * columns of
+ * N = R'M T that the model stores, with c'R'M R c = I. If R c = T q, then
+ * M_r q = N'c, and
  *
- *     Q = M_r^-1 N' c,    c'R'M R c = I,
+ *     Q = M_r^-1 N' c
  *
- * have Q'M_r Q = I; if T does not span them, less. Of a mode phi with
- * phi'M_r phi = 1 the part |Q'M_r phi|^2 is rigid motion.
+ * has Q'M_r Q = I. If T does not span the motions, Q'M_r Q is less than I. The
+ * part of a mode phi, phi'M_r phi = 1, that is rigid motion is |Q'M_r phi|^2.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -18,7 +18,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* c: motions with mass, whose units are taken out first. */
+/* c, the motions that have mass, by the eigenvectors of R'M R in coordinates
+   without units. */
 static ritz_status scale_motions(const double *rigid, ritz_dense *out)
 {
     enum { ALL = RITZ_BODY_MOTIONS };
@@ -49,7 +50,7 @@ static ritz_status scale_motions(const double *rigid, ritz_dense *out)
     return RITZ_OK;
 }
 
-/* Q'M_r = c'N; false if T does not span the motions. */
+/* N'c = M_r Q; *spans: T spans the motions. */
 static ritz_status find_motions(const ritz_checker *it, ritz_dense *out,
                                 bool *spans)
 {
