@@ -2,9 +2,9 @@
  * Which forces get static corrections [McDaniel2000, sec. 3.2.2 and 3.3.1].
  * Stage two is built with the static corrections of a set of forces and
  * compared with stage one by its MIMO Bode plot at the listed configurations,
- * which is the largest singular value of H(i w) over the band and the smallest
- * one that is not zero. The static gain is compared there and between listed
- * configurations.
+ * which shows the largest singular value of H(i w) over the band and the
+ * smallest one that is not zero. The static gain is compared at and between
+ * listed configurations.
  *
  * First the sets that have names are tried, and each force alone. Until a set
  * is accurate enough, all pairs follow, all triples, and so on, as long as
@@ -298,8 +298,8 @@ static ritz_status try_size(chooser *it, int64_t size, ritz_candidate *best)
 static bool is_small(const chooser *it, int64_t size)
 {
     enum { MOST_SETS = 1000 };
-    const double most_work = 2e10; /* cubes of the systems' orders, summed: some
-                                      minutes */
+    const double most_work = 2e10; /* largest sum of the cubes of the systems'
+                                      orders: some minutes of work */
     double sets = 1.0, work = 0.0;
 
     for (int64_t k = 0; k < size; k++)
@@ -376,7 +376,7 @@ static ritz_status leave_out_forces(chooser *it, ritz_candidate *set)
     return RITZ_OK;
 }
 
-/* Search among sets that are too many to try them all. */
+/* Search among sets that are too many to be tried one by one. */
 static ritz_status seek_further(chooser *it, ritz_candidate *set)
 {
     RITZ_CHECK(add_forces(it, set));
@@ -443,9 +443,9 @@ static ritz_status seek_sets(chooser *it)
 
 /*
  * The effect of each force as a column whose length is meaningful: with
- * component augmentation, forces on bodies without rigid inertia, scaled by
- * mass; with system augmentation, forces on flexible modes of all listed
- * configurations, scaled by stiffness.
+ * component augmentation, forces on bodies relieved by the inertia of rigid
+ * motion, scaled by mass; with system augmentation, forces on flexible modes of
+ * all listed configurations, scaled by stiffness.
  */
 static ritz_status measure_forces(const chooser *it, const force_set *from,
                                   ritz_dense *out)
@@ -554,7 +554,7 @@ static ritz_status try_named(chooser *it, int64_t *requested)
     return show_set(it, &own, plan->sets);
 }
 
-/* Search the open set, and return the index of the best of all candidates. */
+/* Search for a set, and return the index of the best of all candidates. */
 static ritz_status try_open(chooser *it, int64_t *chosen)
 {
     const ritz_scene *scene = it->rows->stage->scene;

@@ -210,7 +210,7 @@ ritz_status ritz_compare_orders(const ritz_comparison *trial, int64_t **order,
  * Choose the forces with static corrections: build stage two with several sets
  * of forces, if the scene augments components or leaves the set open.
  *
- * @param[in,out] plan  the scene's; then the chosen one
+ * @param[in,out] plan  the scene's plan; replaced by the chosen one
  * @param[out] out      candidates, and statistics of the search
  * @param[out] force    owns the forces of the chosen plan; not written if there
  *                      was no choice

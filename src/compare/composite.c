@@ -395,7 +395,8 @@ static bool normalise_flexible(const ritz_configuration *c, double *x)
     return ritz_general_unit(c->K.ncol - c->num_rigid, x + c->num_rigid);
 }
 
-/* Divide by lambda; false if the force only moves the system rigidly. */
+/* Divide modal forces x by lambda; false if the force only moves the system
+   rigidly. */
 static bool divide_by_lambda(const ritz_configuration *c, double *x)
 {
     double rigid = 0.0, flexible = 0.0;
@@ -477,7 +478,7 @@ static ritz_status choose_krylov(const ritz_scene *scene,
  * mass, M_c N = 0, come first: if they were made orthogonal to a column that
  * stores energy, they would acquire part of that column and of its mass. Rigid
  * modes store energy by rounding, most of all in N, where every motion is
- * stiff; after N is projected out of them, that is of the order of eps.
+ * stiff; after N is projected out of them, that energy is of the order of eps.
  */
 
 ritz_status ritz_composite_choose(const ritz_stage *stage,

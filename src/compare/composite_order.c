@@ -135,7 +135,7 @@ static ritz_status assemble_ordering(const ritz_stage *stage, ordering *g)
  *                                      value of mode k in the ranking over the
  *                                      largest at any configuration, or 1,
  *     P_c Phi_f Lambda_f^-1 Phi_f' F   static solutions for inputs and forces
- *                                      where outputs read and dampers act,
+ *                                      where outputs measure and dampers act,
  *     P_c Phi_f                        all flexible modes of stage one
  *
  * in groups, each orthogonal to those before it. Within a group directions are

@@ -191,8 +191,8 @@ static ritz_status add_damper(const ritz_stage *stage, int64_t j, int sets,
 
 /*
  * Forces along the dampers of joints, in the order of ritz_stage_springs. The
- * same joints have dampers at every configuration; in a plane a joint has fewer
- * than it has freedoms.
+ * same joints have dampers at every configuration; in a plane a joint may have
+ * fewer dampers than freedoms.
  */
 static ritz_status add_joint_dampers(const ritz_stage *stage,
                                      ritz_unit_forces *forces)
@@ -225,7 +225,8 @@ static ritz_status add_dampers(const ritz_stage *stage, bool of_joints,
     return of_joints ? add_joint_dampers(stage, forces) : RITZ_OK;
 }
 
-/* The only row of a direction; refuses none, and several. */
+/* The row of a port in a direction; a port with none, or with several, is
+   refused. */
 static ritz_status find_direction(const ritz_port_map *port, int64_t direction,
                                   int64_t *row)
 {

@@ -31,8 +31,8 @@ static void ritz_track_step_free(ritz_track_step *step)
     ritz_dense_free(&step->mac);
 }
 
-/* Whether flexible mode i of `from`, 0, or of `to`, 1, is a negative square of
-   forces. */
+/* Whether flexible mode i of `from` (side 0) or `to` (side 1) is a negative
+   eigenvalue of forces between bodies. */
 static bool is_square(const ritz_track_step *step, int side, int64_t i)
 {
     const ritz_configuration *c = step->at[side];

@@ -107,7 +107,7 @@ ritz_status ritz_h5_open(const char *path, hid_t *out)
 }
 
 /* The limit allows eight bytes of memory for each byte of the file, since a
-   stored byte may become a double. Names take 64, but there are few. */
+   stored byte may become a double. A name takes 64 bytes, but names are few. */
 ritz_status ritz_h5_take(hid_t at, const char *name, hsize_t bytes, bool read)
 {
     enum { WIDEST = 8, MEBI = 1 << 20, SPARE = 64 };
@@ -156,8 +156,8 @@ static hid_t plan_object(hid_t kind)
     if (H5Pset_obj_track_times(plan, false) >= 0 &&
         H5Pset_attr_phase_change(plan, MANY_ATTRIBUTES, 0) >= 0)
         return plan;
-    ritz_h5_close(plan); /* a plan that is set only in part would make other
-                            files */
+    ritz_h5_close(plan); /* with only some of the properties set, files would
+                            differ */
     return -1;
 }
 

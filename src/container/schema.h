@@ -70,11 +70,10 @@ typedef struct ritz_member {
     const char *type;  /* of a row by hand, for docs/container.md */
     ritz_member_values values;
     bool inside : 1;   /* the array is part of the object, as attributes are */
-    bool numbered : 1; /* items of a list are called "0", "1", ... instead of by
-                          name */
+    bool numbered : 1; /* items of a list have the names "0", "1", ... */
     bool alone : 1; /* a list with one item is stored as the item's members */
-    bool must : 1;  /* optional in the file, but a file that is read must have
-                       it */
+    bool must : 1;  /* not written if it is empty, but required in a file that
+                       is read */
     char some;      /* a letter: see below */
     /*
      * A member may be absent from a file if `optional` names what decides that,
