@@ -207,9 +207,9 @@ static bool rigid_is_apart(const ritz_bounder *r)
            theta[n] - theta[n - 1] > r->rounding[n] + r->rounding[n - 1];
 }
 
-/* Largest change of w d of a mode whose stiffness is wrong by @p off: with a
-   ratio 2 zeta w (sqrt(theta) - sqrt(theta - off)), for a stiffness that is too
-   small. */
+/* Largest change of the damping term w d of a mode whose stiffness is wrong by
+   @p off. With a ratio it is 2 zeta w (sqrt(theta) - sqrt(theta - off)), for a
+   stiffness that is too small. */
 static double damping_off(const ritz_bounder *r, double w, double theta,
                           double off)
 {

@@ -43,7 +43,7 @@ enum { MOST_LISTED = 100 };
 enum { MORE = 10 };
 
 /* Count the modes below rho, or below a slightly smaller value if a mode is at
-   rho. `refused`: that failed, or the table of counts is full. */
+   rho. `refused` is set if that fails, or the table of counts is full. */
 static ritz_status count_at(ritz_measuring *m, double rho)
 {
     ritz_estimator *estimator = m->estimator;

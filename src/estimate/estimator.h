@@ -265,8 +265,8 @@ typedef struct ritz_bounder {
     struct ritz_refinement *finer; /* the richer trial; NULL: none; borrowed */
 } ritz_bounder;
 
-/** Complete a bounder whose trial, enclosure, io and damping are set: rates
- * unless they are set, forms of V, angles and sides. */
+/** Complete a bounder whose trial, enclosure, io and damping are set: compute
+ * rates, unless they are set, and all that follows from V. */
 ritz_status ritz_bounder_open(ritz_estimator *estimator, ritz_bounder *r);
 void ritz_bounder_free(ritz_bounder *r);
 

@@ -7,9 +7,9 @@
  *     U_d = D_2 W - W D,
  *     H_2 - H_r = r_d' Z_2^-1 r_p - i w eta_d' (W'D_2 W - D) eta_p
  *
- * without cancellation, since X_2'R = Theta_2 W - W Theta is of the size of the
- * trial's errors. With D = a M + b K, U_d = b X_2'R, and the last term is 0;
- * with a ratio zeta and v_k the square root of theta_k,
+ * Nothing cancels in these sums, since X_2'R = Theta_2 W - W Theta is of the
+ * size of the trial's errors. With D = a M + b K, U_d = b X_2'R, and the last
+ * term is 0; with a ratio zeta and v_k the square root of theta_k,
  *
  *     (U_d)_kj = 2 zeta (X_2'R)_kj / (v_k + v_j),
  *     (W'D_2 W - D)_ij = -(U_d'U_d)_ij / (2 zeta (v_i + v_j))

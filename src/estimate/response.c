@@ -463,7 +463,7 @@ static ritz_status refine_response(ritz_measuring *m, ritz_bounder *r,
 }
 
 /* Repeat the points with a richer trial, and keep the former results if these
-   are better, as may be where modes are missing. */
+   are better, as may happen where modes are missing. */
 static ritz_status visit_finer(ritz_measuring *m, int64_t count,
                                const double *hertz, ritz_bounder *r,
                                richer *all, response_found *f)

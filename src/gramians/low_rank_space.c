@@ -233,8 +233,8 @@ static double part_of(const small_pencil *s, const ritz_dense *V, int64_t j,
     return sum;
 }
 
-/* Participation of each pole: the squares for both sides, each relative to its
-   largest, added. */
+/* Participation of each pole: the sum over both sides of the square, relative
+   to the largest square of the side. */
 static ritz_status weigh_poles(const adi *a, small_pencil *s)
 {
     const int64_t n = s->A.nrow;

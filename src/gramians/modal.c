@@ -270,8 +270,8 @@ ritz_status ritz_refuse_undamped(double omega, double zeta)
 
 /*
  * Frequencies and damping ratios. If modes are not coupled, each ratio must be
- * positive. If they are, a ratio that is rounding of the largest damping
- * becomes 0: a damper acts on other modes by rounding alone.
+ * positive. If they are, a ratio that is only rounding of the largest damping
+ * becomes 0.
  */
 static ritz_status put_ratios(const ritz_modal_model *modes, bool coupled,
                               ritz_modal *modal)

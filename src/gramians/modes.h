@@ -135,8 +135,8 @@ ritz_status ritz_coupled_outputs(const ritz_modal *modal, ritz_dense *out);
 /** Refuse a mode without damping: RITZ_ERR_ARGUMENT. */
 ritz_status ritz_refuse_undamped(double omega, double zeta);
 
-/** Refuse damping that couples modes, naming the two it couples most:
- * RITZ_ERR_ARGUMENT. */
+/** Refuse damping that couples modes, naming the two modes that it couples
+ * most: RITZ_ERR_ARGUMENT. */
 ritz_status ritz_coupled_refuse(const ritz_modal *modal, const char *why);
 
 /** ritz_modal_gramians and ritz_modal_factors over all frequencies. */
