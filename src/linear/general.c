@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* LU := L and U of its factorisation; *rcond is its reciprocal condition
-   number, 0 if it is singular. */
+/* Replace LU by its factors L and U; *rcond is the reciprocal condition number,
+   0 if the matrix is singular. */
 static ritz_status factor_in_place(ritz_dense *LU, int *pivot, double *rcond)
 {
     int n = (int)LU->nrow, info = 0;

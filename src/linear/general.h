@@ -22,9 +22,9 @@ ritz_status ritz_general_solve(const ritz_dense *A, bool transposed,
                                ritz_dense *X);
 
 /**
- * LU factor of a matrix whose rows and columns have different units, as
- * coordinates of a reduced model do. If the matrix seems singular, rows and
- * columns are scaled by powers of two and it is factored once more.
+ * LU factor of a matrix whose rows and columns have different units, as those
+ * of a reduced model have. If the matrix seems singular, rows and columns are
+ * scaled by powers of two and it is factored once more.
  */
 typedef struct ritz_general_factor {
     ritz_dense LU;

@@ -140,8 +140,8 @@ typedef struct near_pole {
     int64_t index;
 } near_pole;
 
-/* By distance; of two at equal distance, the one with the larger imaginary part
-   first. */
+/* Order by distance; of two poles at the same distance, the one with the larger
+   imaginary part comes first. */
 static int compare_distance(const void *left, const void *right)
 {
     const near_pole *a = left, *b = right;
@@ -201,8 +201,7 @@ static ritz_status take_pairs(const ritz_pencil *p, double _Complex shift,
 
         out->s[k] = shift + 1.0 / a->d[order[k].index];
         if (fabs(cimag(out->s[k])) <= RITZ_POLE_FOUND * cabs(out->s[k]))
-            out->s[k] = creal(out->s[k]); /* A and E are real, so this one is
-                                             real */
+            out->s[k] = creal(out->s[k]); /* the imaginary part is rounding */
         memcpy(x, a->V + order[k].index * n, (size_t)n * sizeof *x);
         RITZ_CHECK(find_residual(p, out->s[k], x, &out->residual[k]));
     }

@@ -330,7 +330,7 @@ static void solve_block(const point_rows *s, int first, int last)
     }
 }
 
-/* Subtract the contribution of a block from the columns of X' before it. */
+/* Add the contribution of a block to the columns of X' before it. */
 static void take_block(const point_rows *s, int first, int last)
 {
     const double _Complex one = 1.0;

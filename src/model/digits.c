@@ -26,9 +26,9 @@ enum {
                          precision needs more */
     LEAST = 5,        /* fewest digits to which writers round a stiffness, as
                          with %.4e */
-    TELLING = 8,      /* fewest values for a decision: of 8 rounded ones less
-                         than half need all digits with a probability of 1 in
-                         2000 */
+    TELLING = 8,      /* fewest values for a decision: of 8 rounded values, less
+                         than half need all digits with a probability of only 1
+                         in 2000 */
 };
 
 typedef struct decimals {

@@ -70,11 +70,11 @@ static bool may_be_rigid(ritz_column_kind kind)
 }
 
 /*
- * Rigid-body motions cost no energy: what T'KT shows for them is rounding of
- * |T|'|K||T|, and is taken for the zero that it stands for. Left as it is, it
- * would be all the stiffness that a statically determinate interface has, and
- * mix flexible motion into the rigid modes of every system with this body. Nor
- * do rigid-body motions dissipate energy, so T'K4T is treated in the same way.
+ * Rigid-body motions store no energy: entries of T'KT that are rounding of
+ * |T|'|K||T| for them become 0. Otherwise rounding would be the only stiffness
+ * of a statically determinate interface, and would mix flexible motion into the
+ * rigid modes of every system with this body. Rigid-body motions do not
+ * dissipate energy either, so T'K4T is treated in the same way.
  */
 static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)

@@ -17,7 +17,8 @@ typedef struct ritz_rigid_forces {
     double fine; /* relative error of K that is still accepted */
 } ritz_rigid_forces;
 
-/** Over all columns of R; `fine` of @p out is 0. */
+/** The largest force over all columns r of R, and the bound; `fine` of the
+ * result is 0. */
 ritz_status ritz_rigid_forces_of(const ritz_sparse *K, const ritz_dense *R,
                                  ritz_rigid_forces *out);
 

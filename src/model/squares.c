@@ -17,7 +17,7 @@ bool ritz_configuration_is_square(const ritz_configuration *configuration,
            ritz_measures_find(&c->errors, RITZ_NEGATIVE_SQUARES);
 }
 
-/* value[order[0]], value[order[1]], ... in their place. */
+/* Reorder values: value[j] becomes value[order[j]]. */
 static ritz_status order_values(int64_t count, const int64_t *order,
                                 double *value)
 {

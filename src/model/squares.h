@@ -1,23 +1,22 @@
 /*
- * Negative squares: eigenvalues below 0 that forces between bodies of
- * dual-craig-bampton leave in a system, -1/m for each force of mass m. They
- * are of no motion of the bodies.
+ * Negative squares of frequencies: in a system of dual-craig-bampton, the
+ * forces between bodies leave eigenvalues below 0, -1/m for each force of mass
+ * m. The bodies have no such motion.
  */
 #ifndef RITZ_MODEL_SQUARES_H
 #define RITZ_MODEL_SQUARES_H
 
 #include <ritz/model.h>
 
-/** Name of the measure that such a configuration has: how many there are. */
+/** Measure of a configuration with negative squares: their number. */
 #define RITZ_NEGATIVE_SQUARES "negative-eigenvalues"
 
-/** Whether mode k of a configuration, from 0, is one. */
+/** Whether mode k = 0, 1, ... of a configuration is a negative square. */
 bool ritz_configuration_is_square(const ritz_configuration *configuration,
                                   int64_t k);
 
 /**
- * Modes in the order of |lambda|, rigid ones first, as systems with negative
- * squares have them.
+ * Order modes by |lambda|, so that rigid modes come before negative squares.
  */
 ritz_status ritz_pairs_by_size(ritz_pairs *pairs);
 
