@@ -111,7 +111,7 @@ static void divide_by(double by, ritz_dense *A)
         A->val[k] /= by;
 }
 
-/* Scale B and C to unit length, and D by both. */
+/* Scale B and C to unit norm, and D by both factors. */
 static void divide_sides(stable *s)
 {
     s->size = ritz_general_size(&s->B) * ritz_general_size(&s->C);

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 
 /*
- * The search starts at the given points, which are near poles since peaks are,
- * and refines all brackets at the same time by golden sections.
+ * Peaks lie near poles, so the search starts at points near poles. It refines
+ * all brackets at the same time by golden sections.
  */
 
 /* Largest number of peaks that are refined, and brackets for each of them. */

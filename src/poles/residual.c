@@ -9,8 +9,8 @@
  *     mu = (w^2 - i w a) / (1 + i w b)
  *
  * so that X = (R_0 + mu R_1 + mu^2 R_2 + ...) / (1 + i w b), whose terms fall
- * by |mu| / lambda. |mu| grows with w. Term j is kept as mu_1^j R_j, mu_1 the
- * |mu| at the end of the range: powers of rad^2/s^2 would overflow.
+ * by |mu| / lambda. |mu| grows with w. Term j is stored as mu_1^j R_j, where
+ * mu_1 is |mu| at the end of the range: powers of rad^2/s^2 would overflow.
  *
  * The change by damping ratios is a sum over these modes or, if there are too
  * many to compute, over Ritz vectors in their place.

@@ -1,7 +1,7 @@
 /*
  * One mode is followed while c and k of dampers change, along one axis or over
- * a grid of several. The last axis varies fastest. Each point extrapolates
- * along the fastest axis on which it is not the first.
+ * a grid of several. The last axis varies fastest. The pole at a point is
+ * extrapolated along the fastest axis on which the point is not the first.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"

@@ -14,10 +14,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum {
-    FIRST = 20
-}; /* number of poles sought first when a frequency limits
-                        them */
+/* Number of poles that are computed first when a frequency limits them. */
+enum { FIRST = 20 };
 
 /* All poles of a dense state space, without shapes and residuals. */
 static ritz_status find_all(const ritz_state_space *model, ritz_spectrum *out)

@@ -3,7 +3,8 @@
  *
  *     (K - sigma M) X = [B, b_1, b_2, ...],    W = [Phi X],   sigma <= 0,
  *
- * with X without its part along Phi, and of unit length in K - sigma M.
+ * where X is without its part along Phi and has columns of unit length in
+ * K - sigma M.
  * Truncated modes alone are not accurate, since all modes that were left out
  * contribute to the motion across a damper [ChuMilman1992, eq. 11-14].
  *
