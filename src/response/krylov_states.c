@@ -319,7 +319,8 @@ static void note_rounding(krylov_states *k)
 
 /*
  * Compare H_r with the full response at a candidate, and extend V by the latter
- * if the difference exceeds the tolerance. *held: it does not.
+ * if the difference exceeds the tolerance. *held: the difference is within the
+ * tolerance.
  */
 static ritz_status try_candidate(krylov_states *k, int64_t c, bool *held)
 {

@@ -527,7 +527,7 @@ static ritz_status cancel_poles(rational_nodes *s, double to_hz, int64_t count,
         if (cabs(at) > most || (s->states && cimag(at) < 0.0))
             continue;
         if (s->states && cabs(at) <= RITZ_NEGLIGIBLE * most)
-            at = 0.0; /* an exact 0, without rounding */
+            at = 0.0; /* exactly 0: the value is rounding */
         add_pole(s, at);
         if (cimag(at) > 0.0)
             add_pole(s, s->mirror ? conj(at) : -at);
@@ -536,9 +536,9 @@ static ritz_status cancel_poles(rational_nodes *s, double to_hz, int64_t count,
 }
 
 /*
- * The poles that are observable in a channel, and their conjugates. With K4
- * their counterparts below the axis are taken as -s, which is exact but for
- * damping by D and accurate enough at their distance.
+ * The poles that are observable in a channel, and their conjugates. With K4 the
+ * poles below the real axis are taken as -s, which is exact without damping by
+ * D, and accurate enough with it since they are far from the range.
  */
 static ritz_status find_poles(rational_nodes *s,
                               const ritz_responder *responder)

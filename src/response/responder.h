@@ -68,8 +68,7 @@ extern const ritz_response_engine ritz_response_engine_states;
 /** Note the engine and the damping in a response. */
 void ritz_responder_sign(const ritz_responder *responder, ritz_response *r);
 
-/** Refuse a range that ends above the modes of a request. @return
- * RITZ_ERR_ARGUMENT */
+/** Refuse a range that ends above the modes of a request: RITZ_ERR_ARGUMENT. */
 ritz_status ritz_response_reach(const ritz_response_request *request);
 
 /**

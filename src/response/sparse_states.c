@@ -8,8 +8,8 @@
  * is solved for the rows of C.
  *
  * A grid is refined around the poles nearest to some frequencies of the range.
- * If A and E are symmetric and E is definite, all poles are real and there is
- * no need to.
+ * If A and E are symmetric and E is definite, all poles are real and no points
+ * are added.
  */
 #include "base/alloc.h"
 #include "base/complex.h"
