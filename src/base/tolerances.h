@@ -391,9 +391,9 @@
 /* A pole nearer to 0 than this part of the lowest frequency, and not left of
    the axis by more than its rounding, belongs to rigid motion at 0. */
 #define RITZ_POLE_AT_REST 1e-6
-/* Point right of the axis from which poles at 0 are found, of the next pole:
-   far enough for the square root of rounding that a double pole has, near
-   enough for a digit an iteration. */
+/* Expansion point on the positive real axis from which poles at 0 are found,
+   relative to |s| of the next pole: far above the square root of rounding by
+   which double poles err, and near enough for an iteration to gain a digit. */
 #define RITZ_ZERO_POLE_SHIFT 0.05
 /* Roundings of a band Gramian, relative to the magnitudes it sums: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49

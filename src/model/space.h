@@ -29,32 +29,35 @@ ritz_status ritz_space_transfer(const ritz_state_space *model,
 
 /**
  * As ritz_pencil_nearest, the poles nearest to 0; if 0 is a pole, those nearest
- * to a point next to it. Poles at 0 are in error by a root of rounding.
+ * to a point next to it. Multiple poles at 0 are found only to a root of
+ * rounding.
  */
 ritz_status ritz_space_slowest(ritz_pencil *pencil, int64_t count,
                                ritz_pencil_pairs *out);
 
 /* Poles at 0, decoupled (zero_poles.c). */
 typedef struct ritz_zero_poles {
-    ritz_dense T, W;    /* n x a, W'E T = I; a is 0 where there are none */
-    ritz_dense ET, EtW; /* E T, E'W; {0}: there are none */
-    double radius;      /* no other pole is that near to 0; 0: no poles at 0 */
+    ritz_dense T, W;    /* n x a, W'E T = I; a is 0 without poles at 0 */
+    ritz_dense ET, EtW; /* E T, E'W; {0} without poles at 0 */
+    double radius; /* all other poles are farther than this from 0; 0: there
+                           are no poles at 0  [rad/s] */
 } ritz_zero_poles;
 
 /**
- * Right and left vectors of all poles at 0, Jordan blocks included: of more
- * than a score, none are found.
+ * Right and left vectors of all poles at 0, including Jordan blocks. If there
+ * are more than about 20, none is found.
  *
- * @cost  a factor and some 30 solves of 28 columns; two real factors where E
- *        and -(A + A') are definite, so that there are none
+ * @cost  some factorisations, and some 30 solves of 28 columns; two real
+ *        factorisations where E and -(A + A') are definite, which proves that
+ *        no pole is at 0
  */
 ritz_status ritz_zero_poles_find(ritz_pencil *pencil, ritz_zero_poles *out);
 
-/** B := B - E T W'B; of outputs C' := C' - E'W T'C'. */
+/** B := B - E T W'B; for outputs C' := C' - E'W T'C'. */
 ritz_status ritz_zero_poles_of_loads(const ritz_zero_poles *z, bool outputs,
                                      ritz_dense *F);
 
-/** X := X - T W'E X, n x count; of the transposed system X - W T'E'X. */
+/** X := X - T W'E X, n x count; for outputs X := X - W T'E'X. */
 ritz_status ritz_zero_poles_of_states(const ritz_zero_poles *z, bool outputs,
                                       int64_t count, double _Complex *X);
 

@@ -76,7 +76,7 @@ ritz_status ritz_space_transfer(const ritz_state_space *model,
     return RITZ_OK;
 }
 
-/* Next to a pole of two vectors and one direction ARPACK does not converge. */
+/* ARPACK does not converge next to a double pole with a single eigenvector. */
 ritz_status ritz_space_slowest(ritz_pencil *pencil, int64_t count,
                                ritz_pencil_pairs *out)
 {

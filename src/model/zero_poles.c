@@ -1,19 +1,20 @@
 /*
- * Poles at 0 of E x' = A x: rigid motion, integrators. They have no Gramian,
- * and are decoupled with right and left vectors,
+ * Poles at 0 of E x' = A x, of rigid motion and of integrators. States of these
+ * poles have no Gramian, and are decoupled by right and left vectors T and W,
  *
  *     A T = E T J,   A'W = E'W J',   W'E T = I,   J nilpotent:
  *     B := B - E T W'B,   C' := C' - E'W T'C'
  *
- * J of a free body is a block [0 1; 0 0] for each motion, and its eigenvalues
- * are known to the root of rounding only. T and W span the slowest poles: they
- * are found by block iterations with (A - sigma E)^-1 E, sigma > 0, and with
- * its counterpart of (A', E'), of which a Jordan block takes no digits. Whether
- * an eigenvalue mu of J with vectors x and y is 0 is decided by
+ * For a free body J has a block [0 1; 0 0] for each motion, whose eigenvalues
+ * are known only to the square root of rounding. T and W span the right and
+ * left invariant subspaces of the slowest poles, found by block iterations with
+ * (A - sigma E)^-1 E, sigma > 0, and with the same operator of (A', E'). A
+ * Jordan block does not make these subspaces less accurate. An eigenvalue mu of
+ * J with right and left vectors x and y counts as 0 if
  *
  *     |mu| <= 8 eps |y|'(|A| + |mu| |E|)|x| / |y'E x|,
  *
- * which does not depend on units of states.
+ * a criterion that does not depend on the units of states.
  */
 #include "model/space.h"
 
@@ -31,18 +32,18 @@
 #include <string.h>
 
 enum {
-    BLOCK = 28,  /* vectors */
-    ROUNDS = 12, /* to place sigma */
-    FEW = 3,     /* iterations of a round */
-    MANY = 12,   /* after the last */
+    BLOCK = 28,  /* vectors in a block */
+    ROUNDS = 12, /* largest number of rounds to place sigma */
+    FEW = 3,     /* iterations in a round */
+    MANY = 12,   /* iterations after the last round */
 };
 
 typedef struct slow_poles {
     ritz_pencil *pencil; /* borrowed */
     double sigma;
-    ritz_dense V[2];  /* n x block, orthonormal: right and left */
-    ritz_dense SV;    /* (A - sigma E)^-1 E V, of the side iterated last */
-    ritz_dense at[2]; /* n x c, those of the slowest */
+    ritz_dense V[2];  /* n x BLOCK, orthonormal: right and left */
+    ritz_dense SV;    /* (A - sigma E)^-1 E V of the side iterated last */
+    ritz_dense at[2]; /* n x c, vectors of the slowest poles: right and left */
 } slow_poles;
 
 static void slow_poles_free(slow_poles *s)
@@ -54,7 +55,7 @@ static void slow_poles_free(slow_poles *s)
     ritz_dense_free(&s->SV);
 }
 
-/* Orthonormal columns of the same span. */
+/* Replace V by orthonormal columns with the same span. */
 static ritz_status orthonormalise(ritz_dense *V)
 {
     const int n = (int)V->nrow, k = (int)V->ncol;
@@ -70,7 +71,7 @@ static ritz_status orthonormalise(ritz_dense *V)
     return RITZ_OK;
 }
 
-/* A start that is the same on every machine and not smooth. */
+/* Starting vectors that are not smooth, and the same on every machine. */
 static ritz_status start_block(slow_poles *s, int side)
 {
     const int64_t n = s->pencil->n, k = n < BLOCK ? n : BLOCK;
@@ -84,7 +85,7 @@ static ritz_status start_block(slow_poles *s, int side)
     return orthonormalise(&s->V[side]);
 }
 
-/* SV, and V := SV orthonormalised if @p next. */
+/* Compute SV or, if @p next, replace V by the orthonormalised SV. */
 static ritz_status iterate_block(slow_poles *s, int side, bool next)
 {
     const bool left = side == 1;
@@ -108,7 +109,7 @@ static ritz_status iterate_block(slow_poles *s, int side, bool next)
     return RITZ_OK;
 }
 
-/* -sigma V'S V, whose eigenvalues are 1 / (1 - s / sigma) of poles s. */
+/* -sigma V'S V; a pole s gives the eigenvalue 1 / (1 - s / sigma). */
 static ritz_status project_operator(slow_poles *s, int side, ritz_dense *out)
 {
     RITZ_CHECK(iterate_block(s, side, false));
@@ -133,7 +134,8 @@ static int compare_sizes(const void *left, const void *right)
     return (*a > *b) - (*a < *b);
 }
 
-/* |s| above the widest gap of those found: poles at 0 are below. */
+/* |s| of the first pole above the widest gap between computed poles; poles at 0
+   lie below that gap. */
 static ritz_status find_gap(slow_poles *s, double *out)
 {
     RITZ_OWN(ritz_dense) H = {0};
@@ -161,7 +163,7 @@ static ritz_status find_gap(slow_poles *s, double *out)
     return RITZ_OK;
 }
 
-/* Factor A - sigma E, sigma farther off where that is singular. */
+/* Factor A - sigma E; sigma is increased while that is singular. */
 static ritz_status factor_beside(slow_poles *s)
 {
     ritz_status status = ritz_pencil_factor(s->pencil, s->sigma);
@@ -197,7 +199,7 @@ static lapack_logical is_slow(const double *re, const double *im)
     return relative_size(*re, *im) < 0.5;
 }
 
-/* Vectors of one side that span the slow ones. */
+/* Orthonormal vectors of one side that span those of the slow poles. */
 static ritz_status take_slow(slow_poles *s, int side)
 {
     const int k = (int)s->V[side].ncol;
@@ -215,7 +217,7 @@ static ritz_status take_slow(slow_poles *s, int side)
     RITZ_CHECK_NEW(im, k);
     info = LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'S', is_slow, k, H.val, k,
                          &count, re, im, Q.val, k);
-    /* reordered poles that are not quite below half of sigma any more */
+    /* k + 2: rounding moved a reordered pole to half of sigma or beyond */
     RITZ_REFUSE_IF(info != 0 && info != k + 2, RITZ_ERR_CONVERGENCE,
                    "poles near 0 were not separated");
     first = ritz_dense_part(&Q, 0, count);
@@ -223,7 +225,7 @@ static ritz_status take_slow(slow_poles *s, int side)
     return ritz_dense_mul(&s->V[side], &first, &s->at[side]);
 }
 
-/* |y|'(|A| + |mu| |E|)|x| of column k of both, or of a pair. */
+/* |y|'(|A| + |mu| |E|)|x| for magnitudes x and y of eigenvectors. */
 static double rounding_of(const ritz_pencil *pencil, double mu, const double *x,
                           const double *y)
 {
@@ -238,7 +240,7 @@ static double rounding_of(const ritz_pencil *pencil, double mu, const double *x,
     return sum;
 }
 
-/* |V_k|, entry by entry, of column k of B times complex vectors. */
+/* Magnitude of each entry of B v, with v the eigenvector of eigenvalue k. */
 static ritz_status size_entries(const ritz_dense *B, const ritz_dense *V,
                                 const double *im, int64_t k, double *out)
 {
@@ -252,7 +254,7 @@ static ritz_status size_entries(const ritz_dense *B, const ritz_dense *V,
     return RITZ_OK;
 }
 
-/* |eta^H xi| of column k */
+/* |eta^H xi| of the left and right eigenvectors of eigenvalue k. */
 static double cosine_of(const ritz_dense *left, const ritz_dense *right,
                         const double *im, int64_t k)
 {
@@ -266,7 +268,8 @@ static double cosine_of(const ritz_dense *left, const ritz_dense *right,
     return hypot(re, imaginary);
 }
 
-/* How many eigenvalues of J are 0, and the least of the others. */
+/* Number of eigenvalues of J that count as 0, and the least magnitude of the
+   others. */
 static ritz_status judge_slow(const slow_poles *s, const ritz_dense *J,
                               int64_t *zero, double *least)
 {
@@ -303,7 +306,8 @@ static ritz_status judge_slow(const slow_poles *s, const ritz_dense *J,
     return RITZ_OK;
 }
 
-/* W := W (W'E T)^-T, and J = W'A T; false if the two sides do not fit. */
+/* W := W (W'E T)^-T, and J = W'A T. *fit is false if T and W do not have the
+   same number of columns, or W'E T is singular. */
 static ritz_status normalise_sides(slow_poles *s, ritz_dense *J, bool *fit)
 {
     RITZ_OWN(ritz_dense) ET = {0}, AT = {0}, G = {0}, X = {0};
