@@ -186,9 +186,11 @@ typedef struct ritz_compare_row {
                                between, they would have been */
     int64_t *kept;    /* num_kept indices into the flexible modes, ascending */
     int64_t num_completed; /* of those, kept only as a cluster is never split */
-    int64_t num_equal; /* kept only as their value is that of the least one */
-    double cut_hertz[2], cut_value[2]; /* a mode that is kept and one that is
-                                          left out which are a pair; 0: none */
+    int64_t num_equal; /* modes kept only because their value equals the least
+                          value above the threshold */
+    double cut_hertz[2], cut_value[2]; /* a pair of which one mode is kept, [0],
+                                          and the other is left out, [1]; 0:
+                                          none */
     int64_t num_joined;     /* flexible modes that damping couples to others and
                               that are ranked with them as one cluster */
     int64_t num_vectors;    /* Krylov vectors kept instead of modes */
@@ -363,8 +365,9 @@ typedef struct ritz_tracking {
     int64_t num_configurations;
     int64_t *before;  /* the configuration that each is followed from; -1 */
     int64_t *first;   /* num_configurations + 1, where modes of each begin */
-    int64_t *track;   /* from 0, ascending as they first appear; -1: a negative
-                         square of dual-craig-bampton, which is no mode */
+    int64_t *track;   /* of each mode, from 0, ascending as tracks first appear;
+                         -1: a negative square of dual-craig-bampton, which is
+                         no mode */
     int64_t *cluster; /* of each mode, the first mode of its cluster */
     double *hertz;
     double *mac; /* with its like in `before`; NaN where it has none */

@@ -281,10 +281,10 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
 
 /**
  * Gramians of a state space by an engine: `dense` as above; `low-rank`, by ADI
- * with sparse factors, for models whose poles are all left of the imaginary
- * axis; `auto`, which takes `dense` for a dense model, and for a sparse one
- * `low-rank` or, where ADI does not converge and the model is small enough,
- * `dense`.
+ * with sparse factors, for models whose poles, except those at 0, are all left
+ * of the imaginary axis; `auto`, which takes `dense` for a dense model, and for
+ * a sparse one `low-rank` or, where ADI does not converge and the model is
+ * small enough, `dense`.
  *
  * @param[in] band_hz  the two ends of a band, whose Gramians are found by
  *                     quadrature; NULL: all frequencies

@@ -328,7 +328,7 @@ typedef struct ritz_reduced {
     ritz_measures errors;            /* by ritz-verify */
     ritz_nested nested;
     char units[RITZ_NAME_SIZE];
-    char remark[4 * RITZ_NAME_SIZE]; /* of the basis; not stored */
+    char remark[4 * RITZ_NAME_SIZE]; /* the remark of the basis; not stored */
 } ritz_reduced;
 
 /**

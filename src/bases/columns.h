@@ -115,9 +115,9 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
 
 /**
  * Refuse a request that attaches nothing, and say what to do: models without
- * ports, as systems at a configuration, have nothing to attach.
+ * ports, such as systems at a configuration, have nothing to attach.
  *
- * @param[in] so  what follows from it, "nothing would be kept"
+ * @param[in] so  the consequence, for the sentence: "nothing would be kept"
  */
 ritz_status ritz_refuse_unattached(const ritz_request *request, const char *so);
 

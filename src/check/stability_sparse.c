@@ -4,8 +4,8 @@
  * decreases along every motion, since V' = x'(A + A')x: no pole is right of the
  * axis. If A = A' and E is definite, the inertia of A gives the number of poles
  * right of the axis. Otherwise only the poles nearest to 0 are computed, and
- * the number of the others is reported. ARPACK finds poles at 0 to a root of
- * rounding; their vectors tell that they are there.
+ * the number of the others is reported. ARPACK finds multiple poles at 0 only
+ * to a root of rounding; ritz_zero_poles_find recognises them.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"

@@ -225,9 +225,9 @@ ritz_status ritz_compare_threshold(const ritz_scene *scene,
 }
 
 /*
- * Mark the modes whose value is at least the threshold, and those whose value
- * is that of the least one marked: which of equal values is above a threshold
- * is rounding. Returns the number of the latter.
+ * Mark the modes whose value is at least the threshold. Modes whose value
+ * equals the least of these are marked as well, since rounding decides which of
+ * equal values is above a threshold; their number is returned.
  */
 static int64_t mark_ranked(int64_t flexible, const double *value, double least,
                            bool *taken)
@@ -248,7 +248,7 @@ static int64_t mark_ranked(int64_t flexible, const double *value, double least,
     return added;
 }
 
-/* Note the pair of the largest value that the choice cuts. */
+/* Store the pair with the largest value of which only one mode is kept. */
 static void find_cut(const ritz_configuration *c, const double *value,
                      const bool *taken, ritz_compare_row *row)
 {
@@ -269,9 +269,10 @@ static void find_cut(const ritz_configuration *c, const double *value,
         }
 }
 
-/* Values of modes that are listed by number, whatever they are; false: they
-   have none, as without inputs, outputs or damping. Damping that couples modes
-   would make values dear where nobody asked for them. */
+/* Values of all modes where modes are chosen by number, to find pairs of which
+   one is left out. *ranked is false if there are no values, as without inputs,
+   outputs or damping, or if they would be expensive, as with damping that
+   couples modes. */
 static ritz_status rank_listed(const ritz_scene *scene,
                                const ritz_configuration *c, double *value,
                                bool *ranked)

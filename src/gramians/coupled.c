@@ -305,8 +305,8 @@ static ritz_status take_cluster(const joining *j, int64_t cluster,
     return ritz_modal_part(j->modal, taken, taken + m, out);
 }
 
-/* The first mode of a cluster without damping of its own; else its first
-   mode. */
+/* The first mode of a cluster that has no damping of its own; if all modes have
+   damping, the first. */
 static int64_t find_undamped(const joining *j, int64_t cluster)
 {
     for (int64_t k = cluster; k < j->modal->count; k++)

@@ -16,8 +16,8 @@
  * [BennerKuerschnerSaak2014]. Projected poles that are not left of the axis are
  * mirrored.
  *
- * Poles at 0 are decoupled before the iteration. What rounding leaves of them
- * in v is subtracted at each shift.
+ * Poles at 0 are decoupled before the iteration. Their part in v, which is
+ * rounding, is subtracted at each shift.
  */
 #include "gramians/space.h"
 
@@ -84,7 +84,8 @@ static ritz_status measure_left(const ritz_dense *W, double *out)
     return ritz_general_norm(&WW, out);
 }
 
-/* Of a load that moves states at rest alone, rounding is left. */
+/* Decouple the poles at 0 from B or C'. A side of which only rounding is left
+   is not iterated. */
 static ritz_status start_side(adi *a, int k)
 {
     adi_side *side = &a->side[k];
@@ -262,8 +263,8 @@ static ritz_status weigh_poles(const adi *a, small_pencil *s)
     return RITZ_OK;
 }
 
-/* A projected pole may be nearer to 0 than any pole but those that are
-   decoupled: it is moved away. */
+/* Move a projected pole away from 0 if it is nearer than all poles that are not
+   decoupled. */
 static void keep_away(const adi *a, small_pencil *s, int64_t k)
 {
     const double size = hypot(s->re[k], s->im[k]);

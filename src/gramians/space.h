@@ -8,7 +8,7 @@
 
 /**
  * Factors of both Gramians by low-rank ADI with sparse factors of A - s E.
- * Poles at 0 are decoupled, as T and W.
+ * Poles at 0 are decoupled; their vectors are T and W of the result.
  *
  * @param[in] tolerance  of both residuals, |R| / |B B'| and |R| / |C'C|; 0:
  *                       default
@@ -25,7 +25,7 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
  *     W_c = 1/pi Re int_{w1}^{w2} (i w E - A)^-1 B B' (i w E - A)^-* dw,
  *
  * and W_o likewise, by adaptive Gauss-Kronrod quadrature. Poles at 0 are
- * decoupled, as T and W.
+ * decoupled; their vectors are T and W of the result.
  *
  * @return RITZ_ERR_CONVERGENCE if another pole on the axis lies in the band
  * @cost   a complex factorisation for each point, fifteen points a panel
