@@ -463,7 +463,7 @@ static ritz_status sync_bytes(const ritz_draft *draft)
     int error = is_synced() ? sync_path(draft->name, O_WRONLY) : 0;
 
     RITZ_REFUSE_IF(error != 0, RITZ_ERR_FILE,
-                   "'%s' cannot be brought to the disk: %s", draft->path,
+                   "'%s' cannot be written to the disk: %s", draft->path,
                    strerror(error));
     return RITZ_OK;
 }
@@ -487,7 +487,7 @@ static ritz_status sync_name(const ritz_draft *draft)
     error = sync_path(folder, O_RDONLY | O_DIRECTORY);
     RITZ_REFUSE_IF(
         error != 0 && error != EACCES && error != EINVAL && error != EOPNOTSUPP,
-        RITZ_ERR_FILE, "the name of '%s' cannot be brought to the disk: %s",
+        RITZ_ERR_FILE, "the name of '%s' cannot be written to the disk: %s",
         draft->path, strerror(error));
     return RITZ_OK;
 }

@@ -636,8 +636,8 @@ static ritz_status make_krylov(const ritz_request *request, ritz_basis *out)
     RITZ_REFUSE_IF(request->choice.given & RITZ_USES_SIDES &&
                        !request->choice.one_sided,
                    RITZ_ERR_ARGUMENT,
-                   "vectors of a component serve on both sides, sides are "
-                   "chosen of a state space");
+                   "one set of vectors serves both sides of a component: only "
+                   "a state space has a choice of sides");
     return make_vectors(request, false, out);
 }
 

@@ -245,9 +245,10 @@ static ritz_status choose_sides(const ritz_request *request,
     RITZ_CHECK(ritz_pencil_is_dissipative(pencil, &stable));
     s->two = choice->given & RITZ_USES_SIDES ? !choice->one_sided
                                              : !stable && loads == 0;
-    RITZ_REFUSE_IF(s->two && loads, RITZ_ERR_ARGUMENT,
-                   "of two sides inputs give the right one and outputs the "
-                   "left one: loads are chosen of one side");
+    RITZ_REFUSE_IF(
+        s->two && loads, RITZ_ERR_ARGUMENT,
+        "with two sides, right vectors come from the inputs and left "
+        "ones from the outputs: a choice of loads needs one side");
     RITZ_CHECK(ritz_outputs_scaled(&model->C, model->limit, &Ct));
     if (s->two) {
         RITZ_CHECK(ritz_dense_copy(&model->B, &s->right));

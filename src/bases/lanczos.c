@@ -464,8 +464,8 @@ static ritz_status cut_range(ritz_pencil *pencil, one_sided *s)
     r = count_accurate(&s->A_r, &s->B_r, RITZ_LANCZOS_SMALL * s->damping,
                        &norm);
     RITZ_REFUSE_IF(r == 0, RITZ_ERR_CONVERGENCE,
-                   "what is left of the Gramian's equation is as large as the "
-                   "least damping");
+                   "the residual of the Gramian is as large as the least "
+                   "damping");
     RITZ_CHECK(ritz_dense_block(&s->A_r, 0, r, 0, r, &A));
     RITZ_CHECK(ritz_dense_block(&s->B_r, 0, r, 0, s->B_r.ncol, &B));
     ritz_dense_replace(&s->A_r, &A);

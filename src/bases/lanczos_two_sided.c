@@ -232,9 +232,9 @@ static ritz_status check_start(const ritz_request *request, const two_sided *t)
                    "no flexible state is both controllable and observable");
     RITZ_REFUSE_IF(
         t->used == 0 && !request->choice.inverse, RITZ_ERR_SINGULAR,
-        "serious breakdown at the first block: C B is zero, no output "
-        "moves at once, as those of displacement never do; the "
-        "inverse operator begins with the static response");
+        "serious breakdown at the first block: C B is zero, no output follows "
+        "an input at once, and displacements never do; the inverse operator "
+        "begins with the static response");
     RITZ_REFUSE_IF(t->used == 0, RITZ_ERR_SINGULAR,
                    "serious breakdown at the first block: C A^-1 B is zero, no "
                    "output has a static response");

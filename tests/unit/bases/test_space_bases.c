@@ -313,7 +313,7 @@ static void wrong_requests_are_refused(void **)
     request.choice.given = RITZ_USES_LOADS | RITZ_USES_SIDES;
     request.choice.loads = RITZ_LOADS_INPUTS;
     assert_fails(ritz_basis_make(krylov, &request, &none), RITZ_ERR_ARGUMENT,
-                 "loads are chosen of one side");
+                 "a choice of loads needs one side");
     /* insulated rod: a uniform temperature is a pole at 0 */
     rod.sA.val[0] = rod.sA.val[rod.sA.colptr[20] - 1] = -1.0;
     request = asking(&rod, 4);
