@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/orthonormal.h"
+#include "model/local_damping.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -329,4 +330,23 @@ void ritz_remark_dampers(const ritz_request *request, int loads,
                         "damping may be wrong where frequencies are right, "
                         "take dampers among the loads",
                         count);
+}
+
+ritz_status ritz_remark_damping(const ritz_request *request, ritz_basis *basis)
+{
+    const ritz_component *c = request->component;
+    char name[RITZ_DOF_NAME_SIZE] = "";
+    int64_t count = 0, first = -1;
+
+    RITZ_CHECK(ritz_damping_beyond(c, &count, &first));
+    if (count == 0)
+        return RITZ_OK;
+    ritz_remark_add(basis, "; ",
+                    "the damping matrix, no a M + b K at %" PRId64
+                    " dof(s)%s%s, has no static vectors: damping may "
+                    "be wrong where frequencies are right; state local "
+                    "dampers by ritz-import --damper",
+                    count, c->dof ? ", the first " : "",
+                    c->dof ? ritz_dof_name(c->dof[first], name) : "");
+    return RITZ_OK;
 }

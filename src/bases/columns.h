@@ -121,6 +121,12 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
  */
 ritz_status ritz_refuse_unattached(const ritz_request *request, const char *so);
 
+/**
+ * Add a remark if D is no combination of M and K at some dofs: what acts there
+ * has no static vectors, as dampers that are stated have them.
+ */
+ritz_status ritz_remark_damping(const ritz_request *request, ritz_basis *basis);
+
 /** Add a remark if the component has dampers and these are not among the
  * loads. */
 void ritz_remark_dampers(const ritz_request *request, int loads,

@@ -2,6 +2,9 @@
  * A basis by the name of its method: the request is checked and the basis
  * signed.
  */
+#include "base/alloc.h"
+#include "bases/columns.h"
+
 #include <ritz/basis.h>
 
 #include <inttypes.h>
@@ -56,8 +59,16 @@ static void sign_basis(const ritz_method *method, const ritz_request *request,
 ritz_status ritz_basis_make(const ritz_method *method,
                             const ritz_request *request, ritz_basis *out)
 {
+    /* methods that take no damping know only dampers that are stated */
+    const bool blind = request->component && method->uses & RITZ_USES_LOADS &&
+                       !(method->uses & RITZ_USES_DAMPING);
+    RITZ_OWN(ritz_basis) basis = {0};
+
     RITZ_CHECK(ritz_request_check(method, request));
-    RITZ_CHECK_IN(method->name, method->make(request, out));
-    sign_basis(method, request, &out->origin);
+    RITZ_CHECK_IN(method->name, method->make(request, &basis));
+    sign_basis(method, request, &basis.origin);
+    if (blind)
+        RITZ_CHECK(ritz_remark_damping(request, &basis));
+    RITZ_MOVE(*out, basis);
     return RITZ_OK;
 }

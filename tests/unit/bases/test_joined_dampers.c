@@ -13,7 +13,10 @@
 
 #include <float.h>
 #include <lapacke.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MASSES = 30, MODES = 6, DAMPERS = 3, HELD = 2 };
 
@@ -177,6 +180,54 @@ static void responses_along_dampers_are_spanned(void **state)
     }
 }
 
+/* A damping matrix gets no vectors. Where it is no a M + b K, a remark says so,
+   and how many dofs that concerns. */
+static void a_damping_matrix_without_vectors_is_remarked(void **state)
+{
+    const fixture *f = *state;
+    RITZ_OWN(ritz_component) chain = {0};
+    ritz_request request = f->request;
+    char due[64];
+
+    assert_ok(spring_chain(MASSES, false, &chain));
+    request.component = &chain;
+    for (int local = 0; local < 2; local++) {
+        RITZ_OWN(ritz_dense) D = {0}, M = {0};
+        int64_t touched = 0;
+
+        assert_ok(ritz_sparse_dense(&chain.K, &D));
+        assert_ok(ritz_sparse_dense(&chain.M, &M));
+        for (int64_t k = 0; k < MASSES * MASSES; k++)
+            D.val[k] = 0.02 * M.val[k] + 3e-4 * D.val[k];
+        for (int64_t i = 0; i < MASSES && local; i++) {
+            double size = 0.0;
+
+            for (int64_t d = 0; d < DAMPERS; d++) {
+                const double *b = ritz_dense_col(&f->chain.dampers.B, d);
+
+                size += fabs(b[i]);
+                for (int64_t j = 0; j < MASSES; j++)
+                    ritz_dense_col(&D, j)[i] += 150.0 * b[i] * b[j];
+            }
+            touched += size > 0.0;
+        }
+        snprintf(due, sizeof due, "no a M + b K at %d dof(s)", (int)touched);
+        ritz_sparse_free(&chain.D);
+        assert_ok(ritz_sparse_from_dense(&D, &chain.D));
+        for (const ritz_method *const *m = joined; *m; m++) {
+            RITZ_OWN(ritz_basis) basis = {0};
+
+            request.neighbour =
+                (*m)->uses & RITZ_USES_NEIGHBOUR ? &f->neighbour : NULL;
+            assert_ok(ritz_basis_make(*m, &request, &basis));
+            if (local)
+                assert_non_null(strstr(basis.remark, due));
+            else
+                assert_null(strstr(basis.remark, "damping matrix"));
+        }
+    }
+}
+
 /* Columns of the interface and of modes do not change; the additional columns
    are static vectors, which belong to no dof. */
 static void other_columns_do_not_change(void **state)
@@ -306,6 +357,7 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(responses_along_dampers_are_spanned),
+    cmocka_unit_test(a_damping_matrix_without_vectors_is_remarked),
     cmocka_unit_test(other_columns_do_not_change),
     cmocka_unit_test(static_vectors_leave_the_interface_alone),
     cmocka_unit_test(loads_are_those_asked_for),
