@@ -572,6 +572,10 @@ static void gyroscopic_models_keep_moments_about_a_frequency(void **state)
     ritz_sparse_free(&spun.D);
 }
 
+/* Of a free body, whose rigid vectors are known to eps lambda_max over the
+   lowest flexible eigenvalue: 3e-11 measured on the kernels of OpenBLAS. */
+#define FREE_ERROR (4.0 * WAVE_ERROR)
+
 /* A free truss with dampers to ground: D couples rigid and elastic motion, and
    the moments contain both. */
 static void free_bodies_keep_their_moments(void **state)
@@ -594,7 +598,7 @@ static void free_bodies_keep_their_moments(void **state)
         assert_int_equal(basis.T.ncol, 3 + 4 * blocks);
         differ_about(&body, &basis.T, 9.0, 2 * blocks, error);
         for (int j = 0; j < 2 * blocks; j++)
-            assert_near(error[j], 0.0, WAVE_ERROR);
+            assert_near(error[j], 0.0, FREE_ERROR);
     }
 }
 
