@@ -46,10 +46,16 @@ def precise(K, M, X):
     return quotient.astype(float), terms.astype(float)
 
 
-class Full:
-    """All modes of a component, by dense eigenvalues."""
+def exactly(A):
+    """A matrix as it is."""
+    return A
 
-    def __init__(self, path, rigid):
+
+class Full:
+    """All modes of a component, by dense eigenvalues; of K and M as `alter`
+    changes them."""
+
+    def __init__(self, path, rigid, alter=exactly):
         with h5py.File(path) as file:
             self.K = sparse(file["K"]).toarray()
             self.M = sparse(file["M"]).toarray()
@@ -57,7 +63,7 @@ class Full:
             self.C = ([file[f"outputs/{c}"][()] for c in ("C", "Cv", "Ca")]
                       if "outputs/C" in file else None)
             self.D = sparse(file["D"]).toarray() if "D" in file else None
-        self.K, self.M = (self.K + self.K.T) / 2, (self.M + self.M.T) / 2
+        self.K, self.M = (alter((A + A.T) / 2) for A in (self.K, self.M))
         # 1 / (lambda + s): massless motions are at 0; s of the soft modes,
         # that rigid ones are told from them
         s = 1e-3 * numpy.trace(self.K) / max(numpy.trace(self.M), 1e-300)
