@@ -21,7 +21,7 @@ import effectivity  # noqa: E402
 import methods  # noqa: E402
 
 RATIOS = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.5, 0.7, 0.9]
-POINTS = {  # dofs that a signal may be of: components, grids
+POINTS = {  # dofs that signals may use: directions, number of grids
     "lund": ("0", 147), "LF10": ("0", 18), "truss72": ("12", 36),
     "rotorAnsys": ("123", 115), "nas2cam outboard": ("123456", 26),
     "dual-spin rotor": ("123456", 79), "dual-spin stator": ("123456", 11)}

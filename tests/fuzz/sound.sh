@@ -56,8 +56,7 @@ awk -v n="$rows" 'BEGIN { for (i = 1; i <= n; i++) print "1e-3 0" }' >values.tsv
     done
 } >k.pch
 
-# --- cases: a file to damage, and the command that reads it
-# ---------------------
+# --- cases: a file to damage, and the command that reads it -------------------
 
 cat >cases <<'CASES'
 stator.op4   ritz-info @

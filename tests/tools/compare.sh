@@ -95,8 +95,7 @@ scene one 'select: {modes: [1]}' 'augment: {level: system, attached: [motor]}'
 expect 0 'Composite set: 20 vectors from 2 configurations' \
     ritz-compare one.yaml -o one.h5
 
-# --- very many configurations
-# ---------------------------------------------------------
+# --- very many configurations -------------------------------------------------
 
 grid=$(seq -s, 0 299)
 scene many
@@ -170,8 +169,7 @@ holds '  a looser tolerance costs exactness and never gain' \
 expect 2 "--tolerances takes numbers between 0 and 1, not '2'" \
     ritz-compare list.yaml --tolerances 1e-3,2 -o list.h5
 
-# --- dampers in bodies and joints, compared with the full system
-# ----------------------
+# --- dampers in bodies and joints, compared with the full system --------------
 
 mkdir damped
 cd damped || exit 1
@@ -215,8 +213,7 @@ holds '  and the table of tolerances has it' \
 expect 0 'platform	damping' head -n 1 t.tsv
 cd ..
 
-# --- structural damping: K4 of a body is in every system and in no ranking
-# ------------
+# --- structural damping: K4 of a body is in every system and in no ranking ----
 
 cat >loss.py <<'END'
 import h5py, shutil

@@ -4,8 +4,7 @@
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
-# --- a chain of two unit masses on unit springs, and its modes as a component
-# --
+# --- a chain of two unit masses on unit springs, and its modes as a component -
 
 array k.mtx '2 2' 2 -1 -1 1
 array m.mtx '2 2' 1 0 0 1

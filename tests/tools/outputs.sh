@@ -75,8 +75,7 @@ gone system.h5
 ritz-assemble -q scene.yaml -o system.h5 --tracks page.svg.tsv
 stays page.svg.tsv ritz-chart tracks page.svg.tsv -o page.svg
 
-# --- two outputs under one name
-# ------------------------------------------------
+# --- two outputs under one name -----------------------------------------------
 
 expect 2 "--report and --output name one file, './system.h5'" ritz-compare \
     scene.yaml --report system.h5 -o ./system.h5
@@ -87,8 +86,7 @@ expect 1 'written twice' ritz-rank list.h5 --by modal-cost --table x.svg.tsv \
     --chart x.svg
 gone x.svg
 
-# --- any failure, even the last step's, leaves nothing
-# -------------------------
+# --- any failure, even the last step's, leaves nothing ------------------------
 
 expect 1 'No space left' ritz-reduce chain.h5 basis.h5 -o new.h5 \
     --record /dev/full
@@ -128,8 +126,7 @@ expect 0 '' ritz-reduce -q chain.h5 basis.h5 -o link.h5
 works '  a link to nothing yet stays a link' test -L link.h5
 works '  and what it names is made' test -s made.h5
 
-# --- names under which no file can be made
-# ----------------------------------------
+# --- names under which no file can be made ------------------------------------
 
 mkfifo fifo
 for name in /dev/stdout /dev/stderr /dev/fd/1 /proc/self/fd/1; do

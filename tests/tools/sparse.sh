@@ -98,8 +98,7 @@ same 'Matrix Market keeps every bit of sparse matrices' rod.sums back.sums
 expect 1 'more than 3000' ritz-simulate rod.h5 --seconds 1 \
     --input heat=step -o none.h5
 
-# --- the list of methods
-# ----------------------------------------------------------
+# --- the list of methods ------------------------------------------------------
 
 ritz-basis --list >list
 works '--list says which methods take a state space' awk '

@@ -23,8 +23,7 @@ expect 0 '' ritz-compare scene.yaml --components small- -o system.h5
 expect 0 '' ritz-frf --at clock=90 --to-hz 4 --points 50 --no-refine system.h5 \
     -o frf.h5
 
-# --- which tools take a system, and what help and refusals say
-# -----------------------
+# --- which tools take a system, and what help and refusals say ----------------
 
 for tool in basis reduce export check verify rank frf poles simulate; do
     expect 0 'configuration of a system' "ritz-$tool" --help
@@ -77,7 +76,7 @@ def by_states(A, B, C, D):
                      for x in hertz])
 
 def by_modes(K, M, B, C, Cv, Ca, D=None):
-    if D is None: # a rule, and text
+    if D is None: # the model states a ratio, not D
         D = 2 * zeta * np.diag(np.sqrt(np.diag(K).clip(0)))
     assert abs(K - np.diag(np.diag(K))).max() == 0
     assert abs(M - np.eye(len(M))).max() == 0
@@ -127,7 +126,7 @@ END
 done
 
 expect 0 '3 matrices' ritz-info modes.op4
-# of a body, whose M and K are full, a ratio is in D as well
+# a body has full M and K: its D includes the ratio as well
 expect 0 "damping 'modal 0.01' is in D" ritz-export --to output4 --force \
     --damping 'modal 0.01' small-rotor.h5 -o rotor.op4
 works '  and gives its poles this ratio' sh -c '

@@ -391,8 +391,7 @@ ritz-basis guyan bar.h5 -q -o link.h5
 ritz-basis guyan bar.h5 -q -o link.h5
 works 'an output that is a link stays one' test -L link.h5
 
-# --- names with escape sequences
-# -------------------------------------------------
+# --- names with escape sequences ----------------------------------------------
 
 # Escape sequences in a file's name and among its values are printed as '?' and
 # kept as they are in JSON: a file from elsewhere must not control a terminal.

@@ -23,8 +23,7 @@ works 'a container without checksums is read as one with them' \
     sh -c "sed '1s/new/old/' new.txt | cmp - old.txt"
 expect 0 'the same struct as under another name' ritz-info own_member.mat
 
-# --- HDF5 dies, loops, or asks for 4 GB
-# -----------------------------------------
+# --- HDF5 dies, loops, or asks for 4 GB ---------------------------------------
 
 expect 1 'own_child.mat'"'"': damaged: HDF5 ends by' ritz-info own_child.mat
 expect 1 'damaged: HDF5 ends by' ritz-import --mass own_child.mat:K \
@@ -34,8 +33,7 @@ expect 1 'HDF5 has not read its' sh -c \
 expect 1 'HDF5 asks for more than 1024 MiB' ritz-info large_chunk.mat
 works 'none of them leaves a file' sh -c '! ls none.h5* 2>/dev/null'
 
-# --- not an HDF5 file, or a part of one
-# --------------------------------------------
+# --- not an HDF5 file, or a part of one ---------------------------------------
 
 head -c 3000 old.h5 >cut.h5
 expect 1 'cut.h5: ' ritz-check cut.h5

@@ -88,8 +88,8 @@ static void too_many_states_for_dense_checks_are_checked_by_poles(void **)
     assert_string_equal(audit.check[0].says, "all are left of the axis");
 }
 
-/* A double pole at 0 is found to the root of rounding, as two poles of which
-   one is right of the axis. */
+/* Rounding splits a double pole at 0 into two poles, one of them right of the
+   axis: both count as 0. */
 static void a_free_chain_is_marginal(void **)
 {
     RITZ_OWN(ritz_state_space) chain = {0};

@@ -371,7 +371,8 @@ static void a_deviation_is_that_of_both_singular_values(void **)
     assert_near(gap.hertz[0], 2.0, 0.0);
     assert_near(gap.deviation[1], 0.5, 1e-14);
     assert_near(gap.hertz[1], 1.0, 0.0);
-    /* the second point has 2, 0.1 and, with exchanged inputs, 1.6, 0.1 */
+    /* singular values at the second point: 2, 0.1 and, inputs exchanged,
+       1.6, 0.1 */
     assert_ok(ritz_compare_bode(&scales, &first, &second, &gap));
     assert_near(gap.deviation[0], 0.2, 1e-14);
     assert_near(gap.deviation[1], 0.5, 1e-14);

@@ -80,10 +80,10 @@ static void a_sparse_model_takes_adi_by_itself(void **)
     assert_non_null(strstr(full.engine, "SLICOT"));
 }
 
-/* ADI stops at 1e-10 of B B'; Hankel values were met to 1e-8. */
+/* ADI stops at a residual of 1e-10 |B B'|; Hankel values agreed to 1e-8. */
 #define RESIDUAL 1e-8
 
-/* Hankel values of both engines, and how many states are decoupled. */
+/* Both engines find the same Hankel values and decouple as many states. */
 static void compare_engines(const ritz_state_space *sparse, int64_t decoupled,
                             double tolerance)
 {
@@ -115,8 +115,8 @@ static void compare_engines(const ritz_state_space *sparse, int64_t decoupled,
     free(b);
 }
 
-/* A rod that loses no heat at its ends: with wind its right and left vectors
-   differ. */
+/* A rod that loses no heat at its ends has a pole at 0, whose right and left
+   vectors differ with wind. */
 static void a_pole_at_0_is_decoupled(void **)
 {
     for (int k = 0; k < 4; k++) {
@@ -130,8 +130,8 @@ static void a_pole_at_0_is_decoupled(void **)
     }
 }
 
-/* Two free chains of masses with springs and dampers between them: two double
-   poles at 0, of one vector each. */
+/* Two free chains of masses, springs and dampers have two double poles at 0,
+   each with a single eigenvector. */
 static void double_poles_of_free_bodies_are_decoupled(void **)
 {
     for (int mass = 0; mass < 2; mass++) {
@@ -142,7 +142,7 @@ static void double_poles_of_free_bodies_are_decoupled(void **)
     }
 }
 
-/* A chain on a damper to the ground alone: of its two poles at 0 one is left. */
+/* A damper to the ground moves one of the two poles at 0 of a free chain. */
 static void a_damped_rigid_motion_leaves_one_pole(void **)
 {
     RITZ_OWN(ritz_state_space) chain = {0};
@@ -154,8 +154,8 @@ static void a_damped_rigid_motion_leaves_one_pole(void **)
     compare_engines(&chain, 1, RESIDUAL);
 }
 
-/* A pole at -2e-9 is no pole at 0: rounding moves it by some eps |A|, 4e-16
-   each of 4, of which its Gramian has 1e-6. */
+/* A pole at -2e-9 is no pole at 0. Rounding moves it by some eps |A| = 1e-15,
+   so that its Gramian is known to a relative 1e-6. */
 static void a_slow_pole_is_no_pole_at_0(void **)
 {
     RITZ_OWN(ritz_state_space) rod = {0};
@@ -181,7 +181,8 @@ static void an_unstable_pole_goes_to_the_dense_engine(void **)
     assert_int_equal(g.T.ncol, 1);
 }
 
-/* Over a band as over all frequencies: the rigid motion is not in it. */
+/* Gramians over a band leave out rigid motion, as those over all frequencies
+   do. */
 static void a_band_from_0_may_have_a_pole_at_0(void **)
 {
     static const double band[] = {0.0, 40.0};

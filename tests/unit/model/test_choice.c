@@ -71,7 +71,7 @@ static void a_print_that_does_not_fit_is_cut(void **state)
     assert_string_equal(text, "shift-hz 1,2,3,");
 }
 
-/* A print that is cut writes nothing behind its room. */
+/* A text that is too long is cut and nothing is written beyond its buffer. */
 static void a_print_keeps_to_its_room(void **state)
 {
     struct {

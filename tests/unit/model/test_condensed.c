@@ -48,7 +48,7 @@ static ritz_status make_system(ritz_system *out)
     snprintf(c->at, sizeof c->at, "clock=60");
     c->num_rigid = pairs.num_rigid;
     RITZ_MOVE(c->lambda, pairs.lambda);
-    c->lambda[0] = -1e-15; /* as rounding leaves it */
+    c->lambda[0] = -1e-15; /* a rigid one, with rounding */
     RITZ_CHECK(ritz_dense_identity(ORDER, &c->M));
     RITZ_CHECK(ritz_dense_new(ORDER, ORDER, &c->K));
     RITZ_CHECK(ritz_dense_new(ORDER, ORDER, &c->D));
