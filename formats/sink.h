@@ -42,8 +42,8 @@ ritz_status ritz_export_matrices(const ritz_export_object *object,
                                  ritz_matrices *out);
 
 /**
- * The same for formats that hold nothing but matrices: a rule of damping, as
- * ratios of modes, is in D.
+ * The same for formats that hold nothing but matrices: a damping rule, such as
+ * modal damping ratios, is added to D.
  */
 ritz_status ritz_export_damped(const ritz_export_object *object,
                                const ritz_export_request *request,

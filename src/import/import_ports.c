@@ -268,7 +268,7 @@ static ritz_status add_ports(const ritz_import_request *request,
  *
  * With u_b = t' u the displacement of a grid along a basic axis, a force along
  * it is the row vector t in B, as it does the work t' u; an output is t in C.
- * Of dofs that constraints eliminated, u = G u_n, these are G' t and t' G.
+ * If constraints eliminate dofs, u = G u_n, these become G' t and t' G.
  */
 
 /* A direction of a grid along a basic axis, as a combination of dofs. */

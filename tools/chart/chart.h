@@ -71,8 +71,8 @@ ritz_status chart_name_files(ritz_status status, const chart_sources *sources,
                              int holds);
 void chart_sources_free(chart_sources *sources);
 
-/** Say, and note below the picture, that the negative squares of a system are
- * left out, if it has any: see model_negative_squares. */
+/** If a system has negative squares, state in the report and below the picture
+ * that they are left out: see model_negative_squares. */
 void chart_leave_squares(const chart_sources *sources, const char *name,
                          int64_t count, picture *out);
 

@@ -60,14 +60,15 @@ static void mac_pair_free(mac_pair *pair)
 
 /* --- modes, at dofs and by inputs and outputs ----------------------------- */
 
-/* The next one is mode k. A column of a basis may have no frequency, NaN. */
+/* Name the next row or column after mode k. A column of a basis may have no
+   frequency, NaN. */
 static void name_mode(mac_side *s, int64_t k, double hertz)
 {
     snprintf(s->mode[s->count], sizeof *s->mode,
              isnan(hertz) ? "%ld" : "%ld: %.3g", k + 1, hertz);
 }
 
-/* The flexible modes behind the rigid ones, and their frequencies. */
+/* The flexible modes, which follow the rigid ones, and their frequencies. */
 static ritz_status list_modes(int64_t all, int64_t rigid, const double *lambda,
                               mac_side *out)
 {

@@ -29,8 +29,8 @@ typedef struct track_table {
     double *x;       /* and its place */
     char xlabel[RITZ_NAME_SIZE];
     bool swept; /* x is a setting; else only the number of its configuration */
-    int64_t num_squares; /* negative squares of forces, which are left out; most
-                            of them at one configuration */
+    int64_t num_squares; /* negative squares of forces, which are left out: the
+                            largest number at any configuration */
 } track_table;
 
 static void track_table_free(track_table *t)

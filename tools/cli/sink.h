@@ -8,8 +8,8 @@
  * conversion without a key, as the second of "name,,step", is of the text
  * alone.
  *
- *     %s           text      NULL: null; what a terminal could obey is '?' in
- *                            the text, and \u001b in JSON
+ *     %s           text      NULL: null; a control character is '?' in the
+ *                            text, and escaped as \u001b in JSON
  *     %ld          integer   int64_t, which is long where Ritz builds
  *     %g %e %f     number    not finite: null; NaN is '-' in the text
  *     %d           boolean

@@ -306,7 +306,7 @@ ritz_status verify_run(cli_run *run, verify_options *given);
 MODEL_EACH_KIND(DESCRIBE_ONE)
 #undef DESCRIBE_ONE
 
-/** What the bases of a scene's components remark, as of dampers without static
+/** Remarks on the bases of a scene's components, such as dampers without static
  * vectors: a line each, "notes" in JSON. */
 void describe_remarks(cli_run *run, const ritz_scene *scene,
                       const ritz_reduced *body);

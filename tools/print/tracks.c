@@ -138,7 +138,8 @@ static void say_kind(cli_run *run, const ritz_system *system,
                 kinds[which].title);
 }
 
-/* Negative squares of the first configuration: others have about as many. */
+/* Report the number of negative squares at the first configuration; others have
+   about as many. */
 static void say_squares(cli_run *run, const ritz_system *system,
                         const ritz_tracking *t)
 {
@@ -156,8 +157,8 @@ static void say_squares(cli_run *run, const ritz_system *system,
             count);
 }
 
-/* Track, configuration, mode, Hz, MAC with the mode it goes on from; track 0 is
-   of negative squares. */
+/* Track, configuration, mode, Hz, MAC with the preceding mode of the track;
+   track 0 holds the negative squares. */
 static ritz_status write_table(const char *path, const ritz_system *system,
                                const ritz_tracking *t)
 {
