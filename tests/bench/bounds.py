@@ -29,7 +29,9 @@ LEFT_OUT = {"macneal", "tangential"}  # no response; too slow
 # Cases whose bound was too low: data set, signals, method, ratio, band
 FOUND = [("truss72", ["--input", "i0=8:2", "--output-at", "o0=3:2"], "irs",
           0.03, 0, 30.863727)]  # rounding makes a mode of a rigid motion
-COUPLED = 1e-6  # of the largest possible response; less is no coupling
+# Channels whose |H| is below this fraction of the largest possible response are
+# not coupled
+COUPLED = 1e-6
 PEAK = 1e-3  # relative to the largest |H|: points miss peaks by this much
 ROUNDING = 1e-10  # of what ritz-verify measures
 

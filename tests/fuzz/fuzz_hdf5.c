@@ -24,10 +24,10 @@
 enum {
     MOST_EDITS = 12,
     MOST_OBJECTS = 256,
-    MOST_BYTES = 4096, /* of values that are written */
+    MOST_BYTES = 4096, /* bytes of values in a data set */
     PATH_SIZE = 256,
     MOST_RANK = 4,
-    USER_BLOCK = 512, /* of MAT 7.3 */
+    USER_BLOCK = 512, /* bytes before HDF5 in a MAT 7.3 file */
 };
 
 /* --- the commands --------------------------------------------------------- */

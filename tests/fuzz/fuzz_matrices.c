@@ -5,7 +5,7 @@
 
 #include <ritz/import.h>
 
-enum { MOST_READ = 8 }; /* matrices of one file */
+enum { MOST_READ = 8 }; /* matrices read of one file */
 
 static void read_matrices(const ritz_format *format, const char *bytes,
                           int64_t size)

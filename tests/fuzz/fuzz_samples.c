@@ -1,6 +1,6 @@
 /*
  * Stand-ins for what the tools of fuzz_commands.c read and compute: sample
- * models under names of one letter, and a refusal wherever a computation
+ * models, each named by one letter, and a refusal wherever a computation
  * begins. Up to there the tools read their command lines and the files that
  * these name.
  */

@@ -152,8 +152,8 @@ END
 
 scene free 'basis: full' 'state: free'
 json 0 ritz-assemble free.yaml -o free.h5
-# 38 dofs: n eps lambda_max / lambda_1 of an eigenvalue, half of it of a
-# frequency; 1e-11 was measured
+# 38 dofs: an eigenvalue is off by n eps lambda_max / lambda_1, a frequency by
+# half as much; 1e-11 was measured
 near 'frequencies at every angle are those of the arm in Python' 0 40 1e-8
 scene caged 'basis: full' 'state: caged, stiffness: 35'
 json 0 ritz-assemble caged.yaml -o caged.h5

@@ -228,7 +228,7 @@ got = np.array(json.load(open("log.json"))["hankel_values"])[:40]
 due = np.sort(due)[::-1]
 off = abs(got - due)[:20] / due[:20]
 print(got[:4], due[:4], off.max())
-# eigenvalues of a product: eps times the largest one, relative to each
+# an eigenvalue of the product is off by eps times the largest eigenvalue
 sys.exit(0 if off.max() < 1e-6 else "Hankel values differ")
 END
 works 'Hankel values are those of Lyapunov equations by SciPy' \

@@ -25,7 +25,7 @@ def wheel():
 
 
 def hankel_values(model, zeta):
-    """Exact ones, and those without what couples modes, with modal damping."""
+    """With modal damping: exact Hankel values, and those without G."""
     G = model.D
     model.D, _, _ = naive.modal_damping(model.K, model.M, zeta)
     modal = exact_values(model)

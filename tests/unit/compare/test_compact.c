@@ -116,8 +116,8 @@ static double lack_of_unity(const ritz_dense *M, const ritz_dense *V)
 }
 
 /*
- * Columns of each V are combinations of at most 31 columns of the V before,
- * which bounds V'MV - I by 31 times that of the V before.
+ * Each V consists of combinations of at most 31 columns of the previous V, so
+ * that its V'MV - I is at most 31 times that of the previous one.
  */
 static void smaller_subspaces_lie_in_the_larger_ones(void **state)
 {

@@ -354,7 +354,7 @@ static void causes_are_named(void **)
     RITZ_OWN(ritz_reduced) reduced = {0};
     const ritz_measure *found = NULL;
 
-    /* the second mode is missing, and weakly excited */
+    /* the basis lacks the second mode, which is weakly excited */
     assert_ok(ritz_damping_parse("modal 0.01", &request.damping));
     assert_ok(masses_apart(N, lambda, NULL, &body));
     ritz_io_free(&body.io);

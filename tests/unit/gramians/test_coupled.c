@@ -114,9 +114,9 @@ static void gramians_satisfy_their_equations(void **state)
     assert_near(residual(&modal, true, &Wo, c), 0.0, 1e-13);
 }
 
-/* Rigid motion with damping enters by its velocities: with the inputs
-   unchanged, and with the outputs of ritz_modal_outputs, from which poles at 0
-   are removed. */
+/* Damped rigid motion has its velocities as states. The Gramians satisfy
+   Lyapunov equations with the same inputs, and with the outputs of
+   ritz_modal_outputs, from which poles at 0 are removed. */
 static void gramians_of_rigid_motion_satisfy_them_too(void **state)
 {
     numbers own;

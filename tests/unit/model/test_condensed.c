@@ -1,6 +1,7 @@
 /*
- * A configuration as a reduced component, this one as a component and as a
- * state space: the same matrices and response, what is left out, refusals.
+ * A configuration is converted to a reduced component, and this one to a
+ * component and to a state space: all have the same matrices and response;
+ * what is left out; refusals.
  */
 #include "testing.h"
 

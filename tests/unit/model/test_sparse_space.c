@@ -56,7 +56,7 @@ static void poles_and_transfer_are_those_of_the_dense_model(void **)
     assert_ok(ritz_pencil_of_space(&rod, &sparse));
     assert_ok(ritz_pencil_of_space(dense, &full));
     assert_ok(ritz_space_slowest(&sparse, 3, &slow));
-    /* the poles' condition is (1.05 / 0.95)^65 = 670 */
+    /* the poles have the condition number (1.05 / 0.95)^65 = 670 */
     for (int k = 0; k < 3; k++)
         assert_near(creal(slow.s[k]), spaces_rod_pole(130, 0.05, k + 1), 1e-10);
     for (int k = 0; k < 4; k++) {

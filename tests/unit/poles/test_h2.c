@@ -114,7 +114,8 @@ static void an_acceleration_has_a_variance_through_a_filter(void **state)
 
     (void)state;
     assert_near(found.J, J, 100.0 * eps * J);
-    /* h^2 / 6 of the third derivative, at most 6 J / c^3; rounding eps J / h */
+    /* errors of a difference: h^2 / 6 times the third derivative, which is at
+       most 6 J / c^3, and rounding, eps J / h */
     assert_near(found.by_c,
                 (acceleration_variance(2.0, 2.0 + h, 50.0, w) -
                  acceleration_variance(2.0, 2.0 - h, 50.0, w)) /
@@ -466,8 +467,8 @@ static void a_free_chain_has_its_norm_in_its_space(void **state)
     assert_false(v[0].finite);
 }
 
-/* Two masses, each on its own spring, one of them damped: the other one does
-   not count where it is not driven, or not observed. */
+/* Two masses, each on its own spring; only the first one has a damper. The norm
+   is finite unless the second one is both driven and observed. */
 static void undamped_motion_counts_only_if_driven_and_observed(void **state)
 {
     double K[] = {50.0, 0.0, 0.0, 70.0}, M[] = {2.0, 0.0, 0.0, 3.0};

@@ -164,10 +164,11 @@ static void a_falling_norm_ends_at_the_limits(void **state)
 static const ritz_disturbance low = {2.0, 6};
 static const double best_c[3] = {688.90667744, 913.97088458, 876.47812947};
 static const double best_norm = 0.0708066201363;
-/* norm(c (1 + h)) = norm(c) (1 + curvature h^2 / 2); the smallest of three */
+/* norm(c (1 + h)) = norm(c) (1 + curvature h^2 / 2); smallest of three */
 static const double curvature = 0.0724;
 static const double alike_c = 786.86550522, alike_norm = 0.0710585979998;
-/* tuned with 12 modes alone: their norm, and that of the full model */
+/* Tuned in a model of 12 modes without static responses: the norm of this model
+   and, with the same dampers, that of the full model. */
 static const double truncated_c[3] = {2427.12, 3637.51, 6088.26};
 static const double truncated_norm = 0.03845141097, truncated_full = 0.1037881;
 
@@ -297,7 +298,7 @@ static void make_candidates(ritz_component *chain, int64_t *index,
         b[spring[j]] = 1.0;
         if (spring[j] > 0)
             b[spring[j] - 1] = -1.0;
-        /* does not count where the candidate is not taken */
+        /* has no effect unless the candidate is taken */
         dampers.c[j] = 7.0;
         index[j] = j;
         tuned[j] = (ritz_tuned){1, index + j, {0.0, 4000.0}, {0.0, 0.0}};
