@@ -8,6 +8,7 @@
 #include "testing.h"
 
 #include "beams.h"
+#include "compared.h"
 #include "matrices.h"
 #include "scenes.h"
 
@@ -21,35 +22,21 @@
 static const char band[] = "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
                            "select: {modes: [1, 2, 3, 5]}\n";
 
-typedef struct fixture {
-    ritz_scene scene;
-    ritz_stage stage;
-    ritz_comparison c;
-} fixture;
-
-static void prepare(fixture *f, const char *choice)
+static void prepare(compared *f, const char *choice)
 {
-    char tail[2048];
+    char keys[1024];
 
-    *f = (fixture){0};
-    snprintf(tail, sizeof tail, "%s%s%s", beams_io, band, choice);
-    assert_ok(beams_stage(false, tail, &f->scene, &f->stage));
+    snprintf(keys, sizeof keys, "%s%s", band, choice);
+    compared_prepare(false, beams_io, keys, f);
 }
 
-static void reduce(fixture *f, const char *choice)
+static void reduce(compared *f, const char *choice)
 {
     prepare(f, choice);
     assert_ok(ritz_compare(&f->stage, &f->c));
 }
 
-static void release(fixture *f)
-{
-    ritz_comparison_free(&f->c);
-    ritz_stage_free(&f->stage);
-    ritz_scene_free(&f->scene);
-}
-
-static const ritz_candidate *find_candidate(const fixture *f, const char *name)
+static const ritz_candidate *find_candidate(const compared *f, const char *name)
 {
     for (int64_t k = 0; k < f->c.num_candidates; k++)
         if (strcmp(f->c.candidate[k].name, name) == 0)
@@ -58,7 +45,7 @@ static const ritz_candidate *find_candidate(const fixture *f, const char *name)
     return NULL;
 }
 
-static const ritz_candidate *find_chosen(const fixture *f)
+static const ritz_candidate *find_chosen(const compared *f)
 {
     const ritz_candidate *chosen = NULL;
 
@@ -98,7 +85,7 @@ static void twelve_dofs_are_compared_by_both_singular_values(void **)
         {"y6", 2.997311e-3, 2.450802e-2, 2e-2},
     };
     const ritz_candidate *chosen = NULL;
-    fixture f;
+    compared f;
 
     reduce(&f, "augment: {level: system, attached: auto}\n");
     assert_int_equal(f.c.search.pool, 12);
@@ -116,20 +103,20 @@ static void twelve_dofs_are_compared_by_both_singular_values(void **)
     chosen = find_chosen(&f);
     assert_string_equal(chosen->name, "u2");
     assert_int_equal(f.c.second.num_coordinates, 9);
-    release(&f);
+    compared_release(&f);
 }
 
 /* The tolerance lies between the two deviations without attachment modes, so
    that an attachment mode is needed. */
 static void the_smallest_singular_value_decides(void **)
 {
-    fixture f;
+    compared f;
 
     reduce(&f, "augment: {level: system, attached: auto, tolerance: 0.003}\n");
     assert_true(f.c.candidate[0].deviation[0] < 0.003);
     assert_true(find_chosen(&f) != &f.c.candidate[0]);
     assert_true(ritz_candidate_worst(find_chosen(&f)) <= 0.003);
-    release(&f);
+    compared_release(&f);
 }
 
 /* No single dof meets the tolerance, and 28 of the 66 pairs do: two bending
@@ -138,7 +125,7 @@ static void the_smallest_singular_value_decides(void **)
 static void pairs_are_tried_where_no_single_dof_is_near_enough(void **)
 {
     const ritz_candidate *chosen = NULL;
-    fixture f;
+    compared f;
 
     reduce(&f, "augment: {level: system, attached: auto, tolerance: 1e-6}\n");
     chosen = find_chosen(&f);
@@ -148,13 +135,13 @@ static void pairs_are_tried_where_no_single_dof_is_near_enough(void **)
     assert_true(ritz_candidate_worst(chosen) < 1e-9);
     assert_true(chosen->total <= find_candidate(&f, "inputs")->total - 2);
     assert_int_equal(f.c.second.num_coordinates, chosen->total);
-    release(&f);
+    compared_release(&f);
 }
 
 /* `among` lists the candidates: two outputs, and a port with all its dofs. */
 static void the_choice_can_be_limited(void **)
 {
-    fixture f;
+    compared f;
 
     reduce(&f, "augment: {level: system, attached: auto, tolerance: 0.02,\n"
                "          among: [y1, A/n1, y6]}\n");
@@ -164,7 +151,7 @@ static void the_choice_can_be_limited(void **)
     assert_non_null(find_candidate(&f, "A/n1:2"));
     assert_null(find_candidate(&f, "u2"));
     assert_string_equal(find_chosen(&f)->name, "A/n1:2");
-    release(&f);
+    compared_release(&f);
 }
 
 /* All names of a dof attach the same mode. With the attachment mode of dof 5
@@ -177,7 +164,7 @@ static void a_dof_can_be_attached_by_any_of_its_names(void **)
 
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char choice[128];
-        fixture f;
+        compared f;
 
         snprintf(choice, sizeof choice,
                  "augment: {level: system, attached: [%s]}\n", names[k]);
@@ -187,7 +174,7 @@ static void a_dof_can_be_attached_by_any_of_its_names(void **)
         assert_near(gain, 1.9e-5, 5e-7);
         assert_near(f.c.row[0].gain_error / gain, 1.0, 1e-6);
         assert_int_equal(f.c.second.num_coordinates, 9);
-        release(&f);
+        compared_release(&f);
     }
 }
 
@@ -200,7 +187,7 @@ static void an_output_can_be_attached(void **)
 
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         char choice[128];
-        fixture f;
+        compared f;
 
         snprintf(choice, sizeof choice,
                  "augment: {level: system, attached: [%s]}\n", names[k]);
@@ -209,7 +196,7 @@ static void an_output_can_be_attached(void **)
             gain = f.c.row[0].gain_error;
         assert_near(gain, 8.6e-4, 5e-6);
         assert_near(f.c.row[0].gain_error / gain, 1.0, 1e-6);
-        release(&f);
+        compared_release(&f);
     }
 }
 
@@ -218,7 +205,7 @@ static void an_output_can_be_attached(void **)
 static void ports_of_components_can_be_attached(void **)
 {
     const ritz_candidate *own = NULL;
-    fixture f;
+    compared f;
 
     reduce(&f, "augment: {level: component, attached: [inputs, B/n4]}\n");
     own = find_chosen(&f);
@@ -228,7 +215,7 @@ static void ports_of_components_can_be_attached(void **)
     assert_int_equal(f.c.search.pool, 0);
     assert_true(own->total > find_candidate(&f, "inputs")->total);
     assert_true(f.c.row[0].gain_error < 1e-11);
-    release(&f);
+    compared_release(&f);
 }
 
 static void unknown_ports_and_grids_are_refused(void **)
@@ -246,46 +233,37 @@ static void unknown_ports_and_grids_are_refused(void **)
 
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char choice[128];
-        fixture f;
+        compared f;
 
         snprintf(choice, sizeof choice,
                  "augment: {level: system, attached: [%s]}\n", cases[k].place);
         prepare(&f, choice);
         assert_fails(ritz_compare(&f.stage, &f.c), RITZ_ERR_ARGUMENT,
                      cases[k].words);
-        release(&f);
+        compared_release(&f);
     }
 }
 
 /* A body without T has no grids but those of its ports. */
 static void a_grid_of_a_body_without_a_basis_is_refused(void **)
 {
-    fixture f;
+    compared f;
 
     prepare(&f, "augment: {level: system, attached: [A/2:2]}\n");
     ritz_dense_free(&f.stage.body[0].T);
     assert_fails(ritz_compare(&f.stage, &f.c), RITZ_ERR_ARGUMENT,
                  "only its ports are known of this component");
-    release(&f);
-}
-
-static ritz_status compare_anew(const ritz_stage *stage)
-{
-    ritz_comparison c = {0};
-    ritz_status status = ritz_compare(stage, &c);
-
-    ritz_comparison_free(&c);
-    return status;
+    compared_release(&f);
 }
 
 static void no_allocation_failure_leaks(void **)
 {
-    fixture f;
+    compared f;
 
     prepare(&f, "augment: {level: system, attached: auto, tolerance: 1e-6,\n"
                 "          among: [y1, A/n1:2]}\n");
-    assert_survives_allocations(11, compare_anew(&f.stage));
-    release(&f);
+    assert_survives_allocations(11, compared_anew(&f.stage));
+    compared_release(&f);
 }
 
 static const struct CMUnitTest tests[] = {

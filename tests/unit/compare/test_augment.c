@@ -6,6 +6,7 @@
 #include "testing.h"
 
 #include "beams.h"
+#include "compared.h"
 #include "dualspin.h"
 #include "matrices.h"
 #include "scenes.h"
@@ -18,34 +19,6 @@
 #include <complex.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-typedef struct fixture {
-    ritz_scene scene;
-    ritz_stage stage;
-    ritz_comparison c;
-} fixture;
-
-static void prepare(fixture *f, const char *choice)
-{
-    char tail[2048];
-
-    *f = (fixture){0};
-    snprintf(tail, sizeof tail, "%s%s", beams_io, choice);
-    assert_ok(beams_stage(false, tail, &f->scene, &f->stage));
-}
-
-static void reduce(fixture *f, const char *choice)
-{
-    prepare(f, choice);
-    assert_ok(ritz_compare(&f->stage, &f->c));
-}
-
-static void release(fixture *f)
-{
-    ritz_comparison_free(&f->c);
-    ritz_stage_free(&f->stage);
-    ritz_scene_free(&f->scene);
-}
 
 /* ||gain of stage 2 - gain of stage 1|| / ||gain of stage 1||, 2-norms. */
 static double gain_error(const ritz_comparison *c, double *norm)
@@ -83,16 +56,16 @@ static void static_gains_are_those_published(void **)
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char choice[256];
         double norm = 0.0;
-        fixture f;
+        compared f;
 
         snprintf(choice, sizeof choice, "select: {modes: [1, 2, 3, 5]}\n%s",
                  cases[k].augment);
-        reduce(&f, choice);
+        compared_reduce(false, beams_io, choice, &f);
         assert_near(gain_error(&f.c, &norm), cases[k].error, cases[k].bound);
         assert_near(norm, 11.5485, 5e-5);
         assert_true(f.c.row[0].frequency_error <= f.c.row[0].allowed);
         assert_int_equal(f.c.num_candidates, 0);
-        release(&f);
+        compared_release(&f);
     }
 }
 
@@ -114,9 +87,10 @@ static void components_with_all_attached_keep_the_gain(void **)
         {"inputs, interface", 13, 0.0, 1e-11},
         {"inputs, interface, outputs", 14, 0.0, 1e-11},
     };
-    fixture f;
+    compared f;
 
-    reduce(&f, "select: {modes: [1]}\naugment: component\n");
+    compared_reduce(false, beams_io,
+                    "select: {modes: [1]}\naugment: component\n", &f);
     assert_int_equal(f.c.num_candidates, 5);
     for (int i = 0; i < 5; i++) {
         const ritz_candidate *k = &f.c.candidate[i];
@@ -130,7 +104,7 @@ static void components_with_all_attached_keep_the_gain(void **)
     }
     assert_true(f.c.row[0].gain_error < 1e-11);
     assert_true(f.c.row[0].frequency_error <= f.c.row[0].allowed);
-    release(&f);
+    compared_release(&f);
 }
 
 /* F = map', the unit forces at a port. */
@@ -160,9 +134,10 @@ static void attachment_modes_relieve_inertia(void **)
     ritz_dense F = {0}, MR = {0}, RF = {0}, gone = {0}, KA = {0}, MA = {0};
     ritz_dense none = {0};
     const ritz_reduced *B = NULL;
-    fixture f;
+    compared f;
 
-    prepare(&f, "select: {modes: [1]}\naugment: component\n");
+    compared_prepare(false, beams_io,
+                     "select: {modes: [1]}\naugment: component\n", &f);
     B = &f.stage.body[1];
     assert_ok(ritz_unit_forces_new(&f.stage, &forces));
     assert_ok(ritz_unit_forces_select(&forces, RITZ_ATTACHED_INTERFACE, false,
@@ -191,7 +166,7 @@ static void attachment_modes_relieve_inertia(void **)
     ritz_dense_free(&KA);
     ritz_dense_free(&MA);
     ritz_dense_free(&none);
-    release(&f);
+    compared_release(&f);
 }
 
 /*
@@ -220,12 +195,12 @@ static const char thruster[] =
     "damping: {modal: 0.002}\n"
     "select: {by: band}\n";
 
-static void prepare_thruster(fixture *f, const char *choice)
+static void prepare_thruster(compared *f, const char *choice)
 {
     ritz_reduced body[3] = {0};
     char text[2048];
 
-    *f = (fixture){0};
+    *f = (compared){0};
     snprintf(text, sizeof text, "%s%s", thruster, choice);
     assert_ok(ritz_scene_parse("thruster.yaml", text, &f->scene));
     for (int k = 0; k < 3; k++) {
@@ -250,7 +225,7 @@ static void prepare_thruster(fixture *f, const char *choice)
 static void the_gain_is_exact_at_every_angle_with_all_attached(void **)
 {
     const ritz_candidate *k = NULL;
-    fixture f;
+    compared f;
 
     dualspin_or_skip();
     prepare_thruster(&f, "augment: component\n");
@@ -269,13 +244,13 @@ static void the_gain_is_exact_at_every_angle_with_all_attached(void **)
         assert_true(f.c.row[r].gain_error < 1e-8);
     for (int64_t r = 0; r < 2; r++)
         assert_true(f.c.row[r].frequency_error <= f.c.row[r].allowed);
-    release(&f);
+    compared_release(&f);
 }
 
 /* Static answers of the system are exact at listed angles, not between. */
 static void answers_of_the_system_are_exact_where_they_were_made(void **)
 {
-    fixture f;
+    compared f;
 
     dualspin_or_skip();
     prepare_thruster(&f, "augment: system\n");
@@ -283,7 +258,7 @@ static void answers_of_the_system_are_exact_where_they_were_made(void **)
     for (int64_t r = 0; r < 2; r++)
         assert_true(f.c.row[r].gain_error < 1e-9);
     assert_true(f.c.row[2].gain_error > 1e-9); /* measured: 2e-8 */
-    release(&f);
+    compared_release(&f);
 }
 
 /* Which candidate is chosen; no other is. */
@@ -311,7 +286,7 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **)
         char choice[128];
         const ritz_candidate *k = NULL;
         int64_t at = 0;
-        fixture f;
+        compared f;
 
         snprintf(choice, sizeof choice,
                  "augment: {level: %s, attached: auto, tolerance: 0.001}\n",
@@ -337,7 +312,7 @@ static void the_fewest_forces_whose_response_fits_are_chosen(void **)
                     (k[2].deviation[0] < 1e-4 && k[2].deviation[1] > 9e-3 &&
                      k[at].total <= k[3].total - 6));
         assert_int_equal(f.c.second.num_coordinates, k[at].total);
-        release(&f);
+        compared_release(&f);
     }
 }
 
@@ -451,21 +426,24 @@ static void augmentations_that_make_no_sense_are_refused(void **)
 
 static void a_choice_without_damping_is_refused(void **)
 {
-    fixture f;
+    compared f;
 
-    prepare(&f, "band_hz: [0, 1]\nselect: {modes: [1]}\n"
-                "augment: {level: system, attached: auto}\n");
+    compared_prepare(false, beams_io,
+                     "band_hz: [0, 1]\nselect: {modes: [1]}\n"
+                     "augment: {level: system, attached: auto}\n",
+                     &f);
     assert_fails(ritz_compare(&f.stage, &f.c), RITZ_ERR_ARGUMENT,
                  "attached dofs: they are chosen by frequency responses");
-    release(&f);
+    compared_release(&f);
 }
 
 /* A motion that nothing holds and that has no mass answers no force. */
 static void a_body_without_stiffness_or_mass_is_refused(void **)
 {
-    fixture f;
+    compared f;
 
-    prepare(&f, "select: {modes: [1]}\naugment: component\n");
+    compared_prepare(false, beams_io,
+                     "select: {modes: [1]}\naugment: component\n", &f);
     for (int64_t k = 0; k < 6; k++) { /* of A, its first coordinate */
         ritz_dense *const of[] = {&f.stage.body[0].K, &f.stage.body[0].M};
 
@@ -473,27 +451,20 @@ static void a_body_without_stiffness_or_mass_is_refused(void **)
             ritz_dense_col(of[m], 0)[k] = ritz_dense_col(of[m], k)[0] = 0.0;
     }
     assert_int_equal(ritz_compare(&f.stage, &f.c), RITZ_ERR_SINGULAR);
-    release(&f);
-}
-
-static ritz_status compare_anew(const ritz_stage *stage)
-{
-    ritz_comparison c = {0};
-    ritz_status status = ritz_compare(stage, &c);
-
-    ritz_comparison_free(&c);
-    return status;
+    compared_release(&f);
 }
 
 static void no_allocation_failure_leaks(void **)
 {
-    fixture f;
+    compared f;
 
-    prepare(&f, "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
-                "select: {modes: [1, 3]}\n"
-                "augment: {level: system, attached: auto, among: [u1]}\n");
-    assert_survives_allocations(5, compare_anew(&f.stage));
-    release(&f);
+    compared_prepare(false, beams_io,
+                     "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
+                     "select: {modes: [1, 3]}\n"
+                     "augment: {level: system, attached: auto, among: [u1]}\n",
+                     &f);
+    assert_survives_allocations(5, compared_anew(&f.stage));
+    compared_release(&f);
 }
 
 static ritz_status statics_anew(const ritz_stage *stage)
@@ -518,12 +489,13 @@ static ritz_status statics_anew(const ritz_stage *stage)
 
 static void no_allocation_failure_of_statics_leaks(void **)
 {
-    fixture f;
+    compared f;
 
-    prepare(&f, "select: {modes: [1, 3]}\naugment: component\n");
+    compared_prepare(false, beams_io,
+                     "select: {modes: [1, 3]}\naugment: component\n", &f);
     assert_survives_every_allocation(statics_anew(&f.stage));
-    assert_survives_every_allocation(compare_anew(&f.stage));
-    release(&f);
+    assert_survives_every_allocation(compared_anew(&f.stage));
+    compared_release(&f);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -7,6 +7,7 @@
 #include "testing.h"
 
 #include "beams.h"
+#include "compared.h"
 #include "dualspin.h"
 #include "matrices.h"
 
@@ -176,54 +177,41 @@ static void composite_tolerances_are_made_compact(void **state)
     ritz_tolerances_free(2, &row);
 }
 
-static void open_beams(fixture *f, const char *choice)
-{
-    char tail[2048];
-
-    *f = (fixture){0};
-    snprintf(tail, sizeof tail, "%s%s", beams_io, choice);
-    assert_ok(beams_stage(false, tail, &f->scene, &f->stage));
-    assert_ok(ritz_compare(&f->stage, &f->compact));
-}
-
-static void close_beams(fixture *f)
-{
-    ritz_comparison_free(&f->compact);
-    ritz_stage_free(&f->stage);
-    ritz_scene_free(&f->scene);
-}
-
 /*
  * Four vectors of each half of the beam [McDaniel2000] represent four kept
  * modes: without any one of them a kept mode and its frequency are lost.
  */
 static void what_kept_modes_need_is_not_dropped(void **)
 {
-    fixture f;
+    compared f;
 
-    open_beams(&f, "band_hz: [0, 2]\nselect: {modes: [1, 2, 3, 5]}\n"
-                   "extraneous: {fate: compact, tolerance: 0.01}\n");
-    assert_int_equal(f.compact.dropped, 0);
-    assert_true(f.compact.next_drop > 0.01);
-    assert_int_equal(f.compact.row[0].order, 6);
-    assert_int_equal(f.compact.row[0].num_strays, 2);
-    close_beams(&f);
+    compared_reduce(false, beams_io,
+                    "band_hz: [0, 2]\nselect: {modes: [1, 2, 3, 5]}\n"
+                    "extraneous: {fate: compact, tolerance: 0.01}\n",
+                    &f);
+    assert_int_equal(f.c.dropped, 0);
+    assert_true(f.c.next_drop > 0.01);
+    assert_int_equal(f.c.row[0].order, 6);
+    assert_int_equal(f.c.row[0].num_strays, 2);
+    compared_release(&f);
 }
 
 /* A scene without a band has no response: vectors are dropped by the errors of
    frequencies alone. */
 static void frequencies_alone_are_compared_without_a_response(void **)
 {
-    fixture f;
+    compared f;
 
-    open_beams(&f, "select: {modes: [1, 2, 3, 4, 5, 6, 7, 8, 9]}\n"
-                   "extraneous: compact\n");
+    compared_reduce(false, beams_io,
+                    "select: {modes: [1, 2, 3, 4, 5, 6, 7, 8, 9]}\n"
+                    "extraneous: compact\n",
+                    &f);
     assert_near(f.scene.extraneous_tolerance, 1e-3, 1e-18);
-    assert_true(f.compact.row[0].frequency_error <= 1e-3);
-    assert_true(isnan(f.compact.row[0].response_error));
-    assert_true(f.compact.dropped > 0 || f.compact.next_drop > 1e-3);
-    assert_int_equal(f.compact.row[0].order, 9 + f.compact.row[0].num_strays);
-    close_beams(&f);
+    assert_true(f.c.row[0].frequency_error <= 1e-3);
+    assert_true(isnan(f.c.row[0].response_error));
+    assert_true(f.c.dropped > 0 || f.c.next_drop > 1e-3);
+    assert_int_equal(f.c.row[0].order, 9 + f.c.row[0].num_strays);
+    compared_release(&f);
 }
 
 static void fates_that_make_no_sense_are_refused(void **)
@@ -252,23 +240,16 @@ static void fates_that_make_no_sense_are_refused(void **)
     }
 }
 
-static ritz_status compare_anew(const ritz_stage *stage)
-{
-    ritz_comparison c = {0};
-    ritz_status status = ritz_compare(stage, &c);
-
-    ritz_comparison_free(&c);
-    return status;
-}
-
 static void no_allocation_failure_leaks(void **)
 {
-    fixture f;
+    compared f;
 
-    open_beams(&f, "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
-                   "select: {modes: [1, 3]}\nextraneous: compact\n");
-    assert_survives_every_allocation(compare_anew(&f.stage));
-    close_beams(&f);
+    compared_reduce(false, beams_io,
+                    "band_hz: [0, 0.3]\ndamping: {modal: 0.01}\n"
+                    "select: {modes: [1, 3]}\nextraneous: compact\n",
+                    &f);
+    assert_survives_every_allocation(compared_anew(&f.stage));
+    compared_release(&f);
 }
 
 static const struct CMUnitTest tests[] = {

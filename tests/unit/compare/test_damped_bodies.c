@@ -7,6 +7,7 @@
 #include "testing.h"
 
 #include "bodies.h"
+#include "compared.h"
 #include "scenes.h"
 
 #include "compare/compare.h"
@@ -33,12 +34,6 @@ static const char head[] =
     "  - {name: push, at: A/g7, component: 2}\n"
     "band_hz: [0, 4]\n"
     "select: {by: band}\n";
-
-typedef struct fixture {
-    ritz_scene scene;
-    ritz_stage stage;
-    ritz_comparison c;
-} fixture;
 
 /* A chain of grids out of line; a damper with a spring acts along y between two
    of them. */
@@ -76,13 +71,13 @@ static void reduce_chain(const ritz_component *chain, const char *port,
     assert_ok(ritz_reduce(chain, &basis, out));
 }
 
-static void prepare_sprung(fixture *f, const char *choice, double spring)
+static void prepare_sprung(compared *f, const char *choice, double spring)
 {
     static const int64_t between[2][2] = {{1, 4}, {2, 5}};
     char text[2048];
     ritz_reduced body[2] = {0};
 
-    *f = (fixture){0};
+    *f = (compared){0};
     (void)snprintf(text, sizeof text, "%s%s", head, choice);
     assert_ok(ritz_scene_parse("dampers.yaml", text, &f->scene));
     for (int k = 0; k < 2; k++) {
@@ -96,16 +91,9 @@ static void prepare_sprung(fixture *f, const char *choice, double spring)
     assert_ok(ritz_compare(&f->stage, &f->c));
 }
 
-static void prepare(fixture *f, const char *choice)
+static void prepare(compared *f, const char *choice)
 {
     prepare_sprung(f, choice, 0.0);
-}
-
-static void release(fixture *f)
-{
-    ritz_comparison_free(&f->c);
-    ritz_stage_free(&f->stage);
-    ritz_scene_free(&f->scene);
 }
 
 /* Poles of x'' + D x' + Lambda x = 0 above the real axis, by dgeev. */
@@ -154,7 +142,7 @@ static double _Complex nearest(int64_t count, const double _Complex *pole,
 
 /* Largest relative error of a kept mode's damping ratio; the pole nearest to a
    mode is taken for its pole. */
-static double worst_damping(const fixture *f, int64_t row)
+static double worst_damping(const compared *f, int64_t row)
 {
     const ritz_configuration *one = &f->c.first_system.configuration[row];
     const ritz_configuration *two = &f->c.second_system.configuration[row];
@@ -177,7 +165,7 @@ static double worst_damping(const fixture *f, int64_t row)
    systems. */
 static void the_error_is_that_of_the_poles(void **state)
 {
-    fixture f;
+    compared f;
 
     (void)state;
     prepare(&f, "augment: {level: system, attached: [inputs]}\n");
@@ -190,10 +178,10 @@ static void the_error_is_that_of_the_poles(void **state)
         assert_true(f.c.row[k].frequency_error <= f.c.row[k].allowed);
     }
     assert_true(f.c.row[2].damping_error > 1e-4); /* between the two angles */
-    release(&f);
+    compared_release(&f);
 }
 
-static double largest(const fixture *f)
+static double largest(const compared *f)
 {
     return fmax(f->c.row[0].damping_error, f->c.row[1].damping_error);
 }
@@ -215,18 +203,18 @@ static void static_responses_along_dampers_make_damping_right(void **state)
     (void)state;
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         double error = 0.0;
-        fixture f;
+        compared f;
 
         prepare(&f, cases[k].without);
         error = largest(&f);
         assert_true(error > 1e-4);
-        release(&f);
+        compared_release(&f);
         prepare(&f, cases[k].with);
         assert_true(largest(&f) < 0.05 * error);
-        release(&f);
+        compared_release(&f);
         prepare(&f, cases[k].listed);
         assert_true(largest(&f) < 0.05 * error);
-        release(&f);
+        compared_release(&f);
     }
 }
 
@@ -234,7 +222,7 @@ static void static_responses_along_dampers_make_damping_right(void **state)
    with the hinge. */
 static void forces_are_those_of_dampers(void **state)
 {
-    fixture f;
+    compared f;
 
     (void)state;
     prepare(&f, "augment: none\n");
@@ -255,14 +243,14 @@ static void forces_are_those_of_dampers(void **state)
         for (int64_t i = 0; i < F.nrow * F.nrow; i++)
             assert_near(D.val[i], c->D.val[i], 1e-12 * ritz_dense_max(&D));
     }
-    release(&f);
+    compared_release(&f);
 }
 
 /* Bodies with dampers have sets with dampers as candidates; test_augment.c has
    the sets of bodies without. */
 static void sets_are_tried_with_dampers_too(void **state)
 {
-    fixture f;
+    compared f;
 
     (void)state;
     prepare(&f, "augment: component\n");
@@ -270,39 +258,39 @@ static void sets_are_tried_with_dampers_too(void **state)
     assert_string_equal(f.c.candidate[5].name, "dampers");
     assert_string_equal(f.c.candidate[8].name, "inputs, interface, dampers");
     assert_true(f.c.candidate[8].chosen);
-    release(&f);
+    compared_release(&f);
 }
 
 /* A body's damper is attached by its name, and adds one coordinate. */
 static void a_damper_can_be_attached_by_its_name(void **state)
 {
     int64_t total = 0;
-    fixture f;
+    compared f;
 
     (void)state;
     prepare(&f, "augment: {level: component, attached: [inputs]}\n");
     total = f.c.second.num_coordinates;
-    release(&f);
+    compared_release(&f);
     prepare(&f, "augment: {level: component, attached: [inputs, A/strut]}\n");
     assert_int_equal(f.c.second.num_coordinates, total + 1);
     assert_int_equal(f.c.num_candidates, 11);
     assert_string_equal(f.c.candidate[10].name, "inputs, A/strut");
     assert_true(f.c.candidate[10].chosen);
-    release(&f);
+    compared_release(&f);
 }
 
 /* A negative spring makes the system unstable: no mode has a damping ratio, and
    no error of damping is reported. */
 static void an_unstable_system_has_no_damping_error(void **state)
 {
-    fixture f;
+    compared f;
 
     (void)state;
     prepare_sprung(&f, "augment: none\n", -1e4);
     assert_true(f.c.first_system.configuration[0].lambda[0] < -1.0);
     for (int64_t k = 0; k < f.c.num_rows; k++)
         assert_true(isnan(f.c.row[k].damping_error));
-    release(&f);
+    compared_release(&f);
 }
 
 /* The part of w outside the span of the first `count` columns of V, relative to
@@ -327,7 +315,7 @@ static double unspanned(const ritz_dense *V, int64_t count, const double *w)
 }
 
 /* Static response of body A, in the full system, to forces along its damper. */
-static void static_response_of(const fixture *f, double *w)
+static void static_response_of(const compared *f, double *w)
 {
     const ritz_configuration *c = &f->c.first_system.configuration[0];
     RITZ_OWN(ritz_dense) F = {0};
@@ -344,7 +332,7 @@ static void modes_and_static_responses_are_searched_first(void **state)
     RITZ_OWN(ritz_composite) composite = {0};
     double w[64] = {0.0};
     int64_t first = 0;
-    fixture f;
+    compared f;
 
     (void)state;
     prepare(&f, "augment: system\nconfigurations: [{hinge: 0}]\n");
@@ -354,26 +342,17 @@ static void modes_and_static_responses_are_searched_first(void **state)
     assert_true(unspanned(&composite.V[0], first, w) > 1e-3);
     first += f.scene.num_inputs + 3; /* three dampers */
     assert_true(unspanned(&composite.V[0], first, w) < 1e-9);
-    release(&f);
-}
-
-static ritz_status measure_anew(const fixture *f)
-{
-    ritz_comparison c = {0};
-    ritz_status status = ritz_compare(&f->stage, &c);
-
-    ritz_comparison_free(&c);
-    return status;
+    compared_release(&f);
 }
 
 static void no_allocation_failure_leaks(void **state)
 {
-    fixture f;
+    compared f;
 
     (void)state;
     prepare(&f, "augment: system\n");
-    assert_survives_allocations(7, measure_anew(&f));
-    release(&f);
+    assert_survives_allocations(7, compared_anew(&f.stage));
+    compared_release(&f);
 }
 
 /*

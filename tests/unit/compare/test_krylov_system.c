@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include "beams.h"
+#include "compared.h"
 
 #include "compare/compare.h"
 
@@ -246,22 +247,13 @@ static void vectors_that_no_input_drives_are_refused(void **)
     free_all(&scene, &stage, &c);
 }
 
-static ritz_status compare_anew(const ritz_stage *stage)
-{
-    ritz_comparison c = {0};
-    ritz_status status = ritz_compare(stage, &c);
-
-    ritz_comparison_free(&c);
-    return status;
-}
-
 static void no_allocation_failure_leaks(void **)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
 
     make("select: {by: krylov, vectors: 3, start: both}\n", &scene, &stage);
-    assert_survives_every_allocation(compare_anew(&stage));
+    assert_survives_every_allocation(compared_anew(&stage));
 }
 
 static const struct CMUnitTest tests[] = {

@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include "beams.h"
+#include "compared.h"
 #include "project.h"
 
 #include "compare/compare.h"
@@ -19,36 +20,6 @@
 /* Half a unit of the last digit printed. */
 static const double four_digits = 5e-5;
 
-/* A comparison of the beam and what it was made of. */
-typedef struct fixture {
-    ritz_scene scene;
-    ritz_stage stage;
-    ritz_comparison c;
-} fixture;
-
-static void prepare(fixture *f, bool clamped, const char *io,
-                    const char *choice)
-{
-    char tail[2048];
-
-    *f = (fixture){0};
-    snprintf(tail, sizeof tail, "%s%s", io, choice);
-    assert_ok(beams_stage(clamped, tail, &f->scene, &f->stage));
-}
-
-static void reduce(fixture *f, bool clamped, const char *io, const char *choice)
-{
-    prepare(f, clamped, io, choice);
-    assert_ok(ritz_compare(&f->stage, &f->c));
-}
-
-static void release(fixture *f)
-{
-    ritz_comparison_free(&f->c);
-    ritz_stage_free(&f->stage);
-    ritz_scene_free(&f->scene);
-}
-
 /* Table 3.3, with the six dofs that a constraint of rank 2 leaves. */
 static void modes_1_2_3_5_give_table_3_3(void **)
 {
@@ -56,9 +27,9 @@ static void modes_1_2_3_5_give_table_3_3(void **)
     static const double B[] = {0.0, 0.0147, 0.3992, 1.5928};
     static const double S[] = {0.0156, 0.0979, 0.2760, 0.5446, 1.0631, 2.0961};
     const ritz_configuration *second = NULL;
-    fixture f;
+    compared f;
 
-    reduce(&f, false, "", "select: {modes: [1, 2, 3, 5]}\n");
+    compared_reduce(false, "", "select: {modes: [1, 2, 3, 5]}\n", &f);
     second = &f.c.second_system.configuration[0];
     assert_hertz(&f.c.second.body[0].K, &f.c.second.body[0].M, 4, A,
                  four_digits);
@@ -70,20 +41,20 @@ static void modes_1_2_3_5_give_table_3_3(void **)
     assert_int_equal(f.c.row[0].num_kept, 4);
     assert_int_equal(f.c.row[0].kept[3], 4);
     assert_true(f.c.row[0].frequency_error <= f.c.row[0].allowed);
-    release(&f);
+    compared_release(&f);
 }
 
 static void modes_1_2_3_4_bring_an_axial_constraint(void **)
 {
     static const double S[] = {0.0156, 0.0979, 0.2760, 0.4872, 0.6626};
     const ritz_configuration *second = NULL;
-    fixture f;
+    compared f;
 
-    reduce(&f, false, "", "select: {modes: [4, 3, 1, 2]}\n");
+    compared_reduce(false, "", "select: {modes: [4, 3, 1, 2]}\n", &f);
     second = &f.c.second_system.configuration[0];
     assert_int_equal(second->rank, 3);
     assert_hertz(&second->K, &second->M, 5, S, four_digits);
-    release(&f);
+    compared_release(&f);
 }
 
 /* Each of the 4095 sets of modes but for some: the kept ones are exact. */
@@ -115,35 +86,37 @@ static void every_kept_mode_is_a_mode_of_the_second_system(void **)
 
 static void a_band_keeps_what_lies_in_it(void **)
 {
-    fixture f;
+    compared f;
 
-    reduce(&f, false, "", "band_hz: [0.05, 0.5]\nselect: {by: band}\n");
+    compared_reduce(false, "", "band_hz: [0.05, 0.5]\nselect: {by: band}\n",
+                    &f);
     assert_int_equal(f.c.row[0].num_kept, 3); /* 0.098, 0.276, 0.487 */
     assert_int_equal(f.c.row[0].kept[0], 1);
     assert_int_equal(f.c.row[0].kept[2], 3);
-    release(&f);
+    compared_release(&f);
     /* nothing to rank by: from 0 up to the end of the band */
-    reduce(&f, false, "", "band_hz: [0.05, 0.5]\n");
+    compared_reduce(false, "", "band_hz: [0.05, 0.5]\n", &f);
     assert_int_equal(f.c.row[0].num_kept, 4);
     assert_int_equal(f.c.row[0].kept[0], 0);
-    release(&f);
+    compared_release(&f);
 }
 
 /* Modes 4, 7, 10 and 11 are axial, and neither driven nor seen. */
 static void a_ranking_leaves_out_what_no_input_drives(void **)
 {
-    fixture f;
+    compared f;
 
-    reduce(&f, false, beams_io,
-           "damping: {modal: 0.01}\n"
-           "select: {by: gregory, tolerance: 1.0e-6}\n");
+    compared_reduce(false, beams_io,
+                    "damping: {modal: 0.01}\n"
+                    "select: {by: gregory, tolerance: 1.0e-6}\n",
+                    &f);
     assert_int_equal(f.c.row[0].num_kept, 8);
     for (int k = 0; k < 8; k++) {
         int64_t mode = f.c.row[0].kept[k] + 1;
 
         assert_true(mode != 4 && mode != 7 && mode != 10 && mode != 11);
     }
-    release(&f);
+    compared_release(&f);
 }
 
 /*
@@ -204,12 +177,12 @@ static void extraneous_modes_are_found_and_removed(void **)
         char choice[256];
         const ritz_compare_row *row = NULL;
         const ritz_configuration *second = NULL;
-        fixture f;
+        compared f;
 
         snprintf(choice, sizeof choice,
                  "band_hz: [0, 2]\nselect: {modes: [1, 2, 3, 5]}\n%s",
                  fates[k]);
-        reduce(&f, false, "", choice);
+        compared_reduce(false, "", choice, &f);
         row = &f.c.row[0];
         second = &f.c.second_system.configuration[0];
         assert_int_equal(row->num_strays, 2);
@@ -226,7 +199,7 @@ static void extraneous_modes_are_found_and_removed(void **)
         for (int64_t j = 0; j < orders[k]; j++)
             assert_near(ritz_dense_col(&second->K, j)[j], second->lambda[j],
                         DBL_EPSILON);
-        release(&f);
+        compared_release(&f);
     }
 }
 
@@ -234,10 +207,11 @@ static void extraneous_modes_are_found_and_removed(void **)
 static void modes_that_are_left_keep_their_frequencies(void **)
 {
     const ritz_configuration *one = NULL, *two = NULL;
-    fixture f;
+    compared f;
 
-    reduce(&f, false, beams_io,
-           "select: {modes: [3, 5]}\naugment: system\nextraneous: remove\n");
+    compared_reduce(
+        false, beams_io,
+        "select: {modes: [3, 5]}\naugment: system\nextraneous: remove\n", &f);
     one = &f.c.first_system.configuration[0];
     two = &f.c.second_system.configuration[0];
     assert_true(f.c.row[0].stray[0].hertz < 0.27);
@@ -252,7 +226,7 @@ static void modes_that_are_left_keep_their_frequencies(void **)
         assert_near(fabs(ritz_dense_col(&two->io.B, 0)[j]),
                     fabs(ritz_dense_col(&one->io.B, 0)[k]), 1e-9);
     }
-    release(&f);
+    compared_release(&f);
 }
 
 static void choices_that_make_no_sense_are_refused(void **)
@@ -299,33 +273,25 @@ static void choices_that_make_no_sense_are_refused(void **)
 
 static void a_mode_that_is_not_there_is_refused(void **)
 {
-    fixture f;
+    compared f;
 
-    prepare(&f, false, "", "select: {modes: [1, 13]}\n");
+    compared_prepare(false, "", "select: {modes: [1, 13]}\n", &f);
     assert_fails(ritz_compare(&f.stage, &f.c), RITZ_ERR_ARGUMENT,
                  "selection: mode 13 is listed, and there are 12 flexible "
                  "modes");
-    release(&f);
-}
-
-static ritz_status compare_anew(const ritz_stage *stage)
-{
-    ritz_comparison c = {0};
-    ritz_status status = ritz_compare(stage, &c);
-
-    ritz_comparison_free(&c);
-    return status;
+    compared_release(&f);
 }
 
 static void no_allocation_failure_leaks(void **)
 {
-    fixture f;
+    compared f;
 
-    prepare(&f, false, "",
-            "band_hz: [0, 2]\nselect: {modes: [1, 2, 3, 5]}\n"
-            "extraneous: remove\n");
-    assert_survives_every_allocation(compare_anew(&f.stage));
-    release(&f);
+    compared_prepare(false, "",
+                     "band_hz: [0, 2]\nselect: {modes: [1, 2, 3, 5]}\n"
+                     "extraneous: remove\n",
+                     &f);
+    assert_survives_every_allocation(compared_anew(&f.stage));
+    compared_release(&f);
 }
 
 /*
@@ -337,10 +303,11 @@ static void modes_that_damping_joins_are_kept_together(void **)
     const ritz_configuration *one = NULL;
     double value[16] = {0.0}, largest = 0.0;
     int64_t whole = 0, joined = 0;
-    fixture f;
+    compared f;
 
-    prepare(&f, false, beams_io,
-            "damping: {modal: 0.001}\nselect: {by: hankel, tolerance: 0.5}\n");
+    compared_prepare(
+        false, beams_io,
+        "damping: {modal: 0.001}\nselect: {by: hankel, tolerance: 0.5}\n", &f);
     assert_ok(ritz_dense_new(6, 6, &f.stage.body[0].D));
     ritz_dense_col(&f.stage.body[0].D, 1)[1] = 0.05;
     assert_ok(ritz_compare(&f.stage, &f.c));
@@ -357,7 +324,7 @@ static void modes_that_damping_joins_are_kept_together(void **)
     assert_true(f.c.row[0].num_kept >= whole);
     assert_true(f.c.row[0].num_kept < one->K.ncol - one->num_rigid);
     assert_true(f.c.row[0].frequency_error <= f.c.row[0].allowed);
-    release(&f);
+    compared_release(&f);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -4,6 +4,7 @@
  */
 #include "testing.h"
 
+#include "compared.h"
 #include "dualspin.h"
 
 #include "compare/compare.h"
@@ -88,25 +89,12 @@ static void without_rows_between_nothing_is_suggested(void **)
     assert_false(s.worth);
 }
 
-typedef struct fixture {
-    ritz_scene scene;
-    ritz_stage stage;
-    ritz_comparison c;
-} fixture;
-
-static void prepare(fixture *f)
+static void prepare(compared *f)
 {
-    *f = (fixture){0};
+    *f = (compared){0};
     assert_ok(dualspin_stage(&f->scene, &f->stage));
     f->scene.num_configurations = 2; /* 0 and 60 degrees, to be quick */
     assert_ok(ritz_compare(&f->stage, &f->c));
-}
-
-static void release(fixture *f)
-{
-    ritz_comparison_free(&f->c);
-    ritz_stage_free(&f->stage);
-    ritz_scene_free(&f->scene);
 }
 
 /*
@@ -116,7 +104,7 @@ static void release(fixture *f)
 static void a_looser_tolerance_trades_exactness_for_size(void **)
 {
     ritz_tolerance_row *rows = NULL;
-    fixture f;
+    compared f;
 
     dualspin_or_skip();
     prepare(&f);
@@ -141,24 +129,24 @@ static void a_looser_tolerance_trades_exactness_for_size(void **)
     assert_true(rows[2].total < rows[0].total);
     assert_true(rows[2].frequency_error > 1e3 * rows[0].frequency_error);
     ritz_tolerances_free(3, &rows);
-    release(&f);
+    compared_release(&f);
 }
 
 static void tolerances_beyond_one_are_refused(void **)
 {
     const double tolerance[] = {0.1, 1.0};
     ritz_tolerance_row *rows = NULL;
-    fixture f;
+    compared f;
 
     dualspin_or_skip();
     prepare(&f);
     assert_fails(ritz_compare_tolerances(&f.stage, &f.c, 2, tolerance, &rows),
                  RITZ_ERR_ARGUMENT,
                  "the composite tolerance 1 is not between 0 and 1");
-    release(&f);
+    compared_release(&f);
 }
 
-static ritz_status chart_anew(const fixture *f)
+static ritz_status chart_anew(const compared *f)
 {
     const double tolerance = 1e-3;
     ritz_tolerance_row *rows = NULL;
@@ -171,14 +159,14 @@ static ritz_status chart_anew(const fixture *f)
 
 static void no_allocation_failure_leaks(void **)
 {
-    fixture f;
+    compared f;
 
     dualspin_or_skip();
     prepare(&f);
     f.scene.num_configurations = f.c.first_system.num_configurations = 1;
     assert_survives_every_allocation(chart_anew(&f));
     f.c.first_system.num_configurations = 2;
-    release(&f);
+    compared_release(&f);
 }
 
 static const struct CMUnitTest tests[] = {
