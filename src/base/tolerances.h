@@ -395,6 +395,9 @@
    relative to |s| of the next pole: far above the square root of rounding by
    which double poles err, and near enough for an iteration to gain a digit. */
 #define RITZ_ZERO_POLE_SHIFT 0.05
+/* Part of that point at which the response of the other poles is taken for that
+   at 0: it differs by the square, 3e-7. */
+#define RITZ_ZERO_POLE_BESIDE 0.01
 /* Roundings of a band Gramian, relative to the magnitudes it sums: 8 eps. */
 #define RITZ_BAND_ROUNDING 0x1p-49
 /* Up to this ratio a mode is eliminated as a whole: eigenvectors of its two
@@ -618,6 +621,9 @@
 #define RITZ_ZERO_SINGULAR 1e-10
 /* Relative tolerance of H-infinity norms. */
 #define RITZ_NORM_TOLERANCE 1e-8
+/* ... of sparse models: an interpolant whose peak is that near to a value of
+   the model itself is not searched any longer. */
+#define RITZ_SPARSE_NORM 1e-6
 
 /* Dampers tuned for the least H2 norm */
 

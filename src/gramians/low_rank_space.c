@@ -504,3 +504,41 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
     RITZ_MOVE(*out, g);
     return RITZ_OK;
 }
+
+/* |X'Y|^2 of the rows from @p first on. */
+static ritz_status square_product(const ritz_dense *X, const ritz_dense *Y,
+                                  int64_t first, double *out)
+{
+    RITZ_OWN(ritz_dense) x = {0}, y = {0}, XY = {0};
+    const int64_t rows = X->nrow - first;
+
+    *out = 0.0;
+    if (!X->val || !Y->val)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_dense_block(X, first, rows, 0, X->ncol, &x));
+    RITZ_CHECK(ritz_dense_block(Y, first, rows, 0, Y->ncol, &y));
+    RITZ_CHECK(ritz_dense_mul_tn(&x, &y, &XY));
+    *out = pow(ritz_general_size(&XY), 2.0);
+    return RITZ_OK;
+}
+
+ritz_status ritz_space_norm_two(const ritz_state_space *model, int64_t last,
+                                double *whole, double *part)
+{
+    const int64_t first[] = {0, ritz_state_space_order(model) - last};
+    double *const out[] = {whole, part};
+    RITZ_OWN(adi) a = {0};
+    RITZ_OWN(ritz_dense) Ct = {0};
+
+    RITZ_CHECK(start_adi(model, 0.0, &a));
+    RITZ_CHECK(ritz_dense_copy(&a.side[1].W, &Ct));
+    RITZ_CHECK(run_adi(&a));
+    for (int k = 0; k < 2; k++) {
+        double met = 0.0, left = 0.0;
+
+        RITZ_CHECK(square_product(&Ct, &a.side[0].Z, first[k], &met));
+        RITZ_CHECK(square_product(&a.side[1].Z, &a.side[0].W, first[k], &left));
+        *out[k] = sqrt(met + left);
+    }
+    return RITZ_OK;
+}

@@ -20,6 +20,22 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
                                          double tolerance, ritz_gramians *out);
 
 /**
+ * H2 norm of the response C x of a sparse model without its poles at 0, by both
+ * factors: with what ADI leaves in its equations, W_c W_c',
+ *
+ *     |G|_2^2 = |C Z_c|^2 + |Z_o'W_c|^2
+ *
+ * up to the product of both residuals.
+ *
+ * @param[in]  last  number of states at the end that are decoupled from all
+ *                   others
+ * @param[out] part  the norm of the response of these states alone
+ * @return as ritz_gramians_space_low_rank
+ */
+ritz_status ritz_space_norm_two(const ritz_state_space *model, int64_t last,
+                                double *whole, double *part);
+
+/**
  * Factors of both Gramians over a band, 0 <= w1 < w2, w2 finite,
  *
  *     W_c = 1/pi Re int_{w1}^{w2} (i w E - A)^-1 B B' (i w E - A)^-* dw,

@@ -402,4 +402,18 @@ ritz_status ritz_norm_infinity_schur(const ritz_state_space *model,
 ritz_status ritz_norm_two_schur(const ritz_state_space *model, int64_t last,
                                 ritz_norm *out, ritz_norm *part);
 
+/**
+ * H-infinity norms of a sparse model and of its difference from a small one, by
+ * interpolation of the sparse one. Each is a value that is reached; `engine`
+ * says that it is a lower bound.
+ *
+ * @param[in]  small      in Schur form, all poles left of the axis
+ * @param[out] decoupled  number of poles at 0 of @p model, which are left out
+ * @cost  some 10 to 40 complex factors, and solves for all inputs and outputs
+ */
+ritz_status ritz_norm_infinity_sparse(const ritz_state_space *model,
+                                      const ritz_state_space *small,
+                                      double tolerance, int64_t *decoupled,
+                                      ritz_norm *whole, ritz_norm *error);
+
 #endif

@@ -184,7 +184,8 @@ typedef struct ritz_state_pair {
                                    axis */
     bool large;     /* a model is sparse with too many states for dense
                        matrices */
-    bool has_norms; /* num_unstable of both are equal; false if large */
+    bool has_norms; /* num_unstable of both are equal, and one at most is
+                       large */
     ritz_state_space difference; /* of the stable parts, the full model's states
                                     last; if has_norms */
     bool has_gain;               /* neither has a pole at 0 */

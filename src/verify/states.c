@@ -8,6 +8,7 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "gramians/space.h"
 #include "linear/general.h"
 #include "linear/split.h"
 #include "model/space.h"
@@ -176,6 +177,40 @@ static ritz_status take_gains(ritz_state_pair *p)
     return RITZ_OK;
 }
 
+/* [A 0; 0 B] of a dense A and a sparse B, either of which may be {0}, the
+   identity. */
+static ritz_status join_blocks(const ritz_dense *A, int64_t rows_A,
+                               const ritz_sparse *B, int64_t rows_B,
+                               ritz_sparse *out)
+{
+    const int64_t n = rows_A + rows_B;
+    int64_t at = 0;
+
+    RITZ_CHECK(ritz_sparse_new(
+        n, n, rows_A * rows_A + (B->colptr ? B->colptr[rows_B] : rows_B), out));
+    for (int64_t j = 0; j < n; j++) {
+        for (int64_t i = 0; j < rows_A && i < rows_A; i++) {
+            double entry = A->val ? ritz_dense_col(A, j)[i] : i == j;
+
+            if (entry == 0.0)
+                continue;
+            out->rowind[at] = i;
+            out->val[at++] = entry;
+        }
+        if (j >= rows_A && !B->colptr) {
+            out->rowind[at] = j;
+            out->val[at++] = 1.0;
+        }
+        for (int64_t q = j >= rows_A && B->colptr ? B->colptr[j - rows_A] : 0;
+             j >= rows_A && B->colptr && q < B->colptr[j - rows_A + 1]; q++) {
+            out->rowind[at] = rows_A + B->rowind[q];
+            out->val[at++] = B->val[q];
+        }
+        out->colptr[j + 1] = at;
+    }
+    return RITZ_OK;
+}
+
 /* Both models as they are compared: dense, unless one is too large. */
 static ritz_status take_models(const ritz_state_space *full,
                                const ritz_state_space *reduced,
@@ -195,6 +230,61 @@ static ritz_status take_models(const ritz_state_space *full,
     return RITZ_OK;
 }
 
+/* A large model, with the small one's stable part in front of it. */
+static ritz_status join_sparse(const ritz_state_space *small,
+                               const ritz_state_space *large,
+                               ritz_state_space *out)
+{
+    const ritz_io io = ritz_model_io(ritz_model_of_states(large));
+    const int64_t r = ritz_state_space_order(small);
+    const bool plain = !small->E.val && !large->sE.colptr;
+    RITZ_OWN(ritz_sparse) A = {0}, E = {0};
+
+    RITZ_CHECK(join_blocks(&small->A, r, &large->sA,
+                           ritz_state_space_order(large), &A));
+    if (!plain)
+        RITZ_CHECK(join_blocks(&small->E, r, &large->sE,
+                               ritz_state_space_order(large), &E));
+    RITZ_CHECK(ritz_state_space_of_sparse(&A, &E, &io, out));
+    for (int64_t i = 0; i < out->num_outputs; i++)
+        out->limit[i] = nan(""); /* outputs are divided already */
+    ritz_general_place(1.0, &small->B, false, 0, 0, &out->B);
+    ritz_general_place(1.0, &large->B, false, r, 0, &out->B);
+    ritz_general_place(-1.0, &small->C, false, 0, 0, &out->C);
+    ritz_general_place(1.0, &large->C, false, 0, r, &out->C);
+    return RITZ_OK;
+}
+
+/* Norms of a large model and its difference from a small one. Without them
+   responses are still compared. */
+static ritz_status open_large(ritz_state_pair *p)
+{
+    const ritz_state_space *reduced = p->given[1];
+    ritz_status status = RITZ_OK;
+
+    if (!ritz_state_space_is_sparse(p->given[0]) ||
+        (ritz_state_space_is_sparse(reduced) &&
+         ritz_state_space_order(reduced) > RITZ_STATE_DOFS))
+        return RITZ_OK;
+    RITZ_CHECK(ritz_state_space_dense(reduced, &p->dense[1], &reduced));
+    if (reduced != p->given[1]) {
+        ritz_dense_free(&p->model[1].C);
+        ritz_dense_free(&p->model[1].D);
+        RITZ_CHECK(divide_outputs(reduced, p->given[0]->limit, &p->model[1]));
+    }
+    RITZ_CHECK(take_stable(&p->model[1], &p->stable[1], &p->num_unstable[1]));
+    status =
+        ritz_norm_infinity_sparse(&p->model[0], &p->stable[1], RITZ_SPARSE_NORM,
+                                  &p->num_unstable[0], &p->full, &p->error);
+    if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE)
+        return status;
+    p->has_norms =
+        status == RITZ_OK && p->num_unstable[0] == p->num_unstable[1];
+    return p->has_norms
+               ? join_sparse(&p->stable[1], &p->model[0], &p->difference)
+               : RITZ_OK;
+}
+
 static ritz_status open_pair(const ritz_state_space *full,
                              const ritz_state_space *reduced,
                              const ritz_verify_request *request,
@@ -205,7 +295,7 @@ static ritz_status open_pair(const ritz_state_space *full,
                                    ritz_model_of_states(reduced)));
     RITZ_CHECK(take_models(full, reduced, p));
     if (p->large)
-        return RITZ_OK;
+        return open_large(p);
     for (int k = 0; k < 2; k++)
         RITZ_CHECK(
             take_stable(&p->model[k], &p->stable[k], &p->num_unstable[k]));
@@ -219,10 +309,12 @@ static ritz_status open_pair(const ritz_state_space *full,
 /* A limit of a norm that is infinite cannot be held. */
 static ritz_status check_norms(const ritz_state_pair *p)
 {
-    RITZ_REFUSE_IF(p->large, RITZ_ERR_ARGUMENT,
-                   "norms need dense matrices, and the full model has %" PRId64
-                   " sparse states: compare responses over a band",
-                   ritz_state_space_order(p->given[0]));
+    RITZ_REFUSE_IF(p->large && !p->has_norms &&
+                       p->num_unstable[0] == p->num_unstable[1],
+                   RITZ_ERR_ARGUMENT,
+                   "of two models with more than %d sparse states no norms are "
+                   "taken: compare responses over a band",
+                   (int)RITZ_STATE_DOFS);
     RITZ_REFUSE_IF(!p->has_norms, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " poles of the full model and %" PRId64
                    " of the reduced one are not left of the axis: the norm "
@@ -238,7 +330,7 @@ static ritz_status take_norms(ritz_state_pair *p)
     if (!isnan(limit[RITZ_MEASURE_INFINITY_RELATIVE]) ||
         !isnan(limit[RITZ_MEASURE_H2]))
         RITZ_CHECK(check_norms(p));
-    if (!p->has_norms)
+    if (!p->has_norms || p->large)
         return RITZ_OK;
     RITZ_CHECK_IN(
         "full model",
@@ -319,6 +411,22 @@ ritz_status ritz_states_infinity_bound(const ritz_state_pair *p,
     return tell_norm(p, 1.0, out);
 }
 
+/* By low-rank Gramians, if they have low rank. */
+static ritz_status measure_sparse_two(const ritz_state_pair *p,
+                                      ritz_measure *out)
+{
+    double full = 0.0, error = 0.0;
+    ritz_status status = ritz_space_norm_two(
+        &p->difference, ritz_state_space_order(p->given[0]), &error, &full);
+
+    if (status == RITZ_ERR_CONVERGENCE && isnan(out->limit))
+        return RITZ_OK;
+    RITZ_CHECK_IN("--limit-h2", status);
+    if (full > 0.0)
+        out->value = error / full;
+    return RITZ_OK;
+}
+
 ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
 {
     ritz_norm full = {0}, error = {0};
@@ -332,6 +440,8 @@ ritz_status ritz_states_h2(const ritz_state_pair *p, ritz_measure *out)
                        "not 0), there is no H2 norm");
         return RITZ_OK;
     }
+    if (p->large)
+        return measure_sparse_two(p, out);
     RITZ_CHECK_IN("difference",
                   ritz_norm_two_schur(&p->difference,
                                       ritz_state_space_order(&p->stable[0]),

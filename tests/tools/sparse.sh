@@ -66,7 +66,7 @@ verified() {
     json 0 ritz-verify rod.h5 small.h5 --band-hz 0,1e-5 -o verified.h5
     holds "  $1 has the response of 3010 states" '(lambda m:
         m["response-relative"] < 1e-4 and
-        "h-infinity" not in m)({x["name"]: x["value"] for x in j["measures"]})'
+        0 < m["h-infinity-relative"] < 1 and 0 < m["h2-relative"] < 1)({x["name"]: x["value"] for x in j["measures"]})'
 }
 verified krylov --modes 24
 expect 0 'left and right vectors agree' ritz-basis krylov --modes 4 rod.h5 \
@@ -78,9 +78,10 @@ verified balanced --modes 8
 expect 0 'residuals of Gramians' ritz-basis balanced --modes 8 rod.h5 -o basis.h5
 reduced lanczos-one-sided --modes 8 --operator inverse
 verified balanced-band --modes 8 --band-hz 0,1e-5
-expect 0 'too many for norms' ritz-verify rod.h5 small.h5 -o verified.h5
-expect 1 'norms need dense matrices' ritz-verify rod.h5 small.h5 \
-    --limit-h-infinity 1 -o none.h5
+expect 0 'h2-relative' ritz-verify rod.h5 small.h5 \
+    --limit-h-infinity 1 --limit-h2 1 -o verified.h5
+expect 1 'limits not met' ritz-verify rod.h5 small.h5 --limit-h2 1e-9 \
+    -o none.h5
 expect 0 'ADI' ritz-rank --by hankel rod.h5 -o ranking.h5
 expect 0 'ADI' ritz-rank --by hankel --engine low-rank rod.h5 -o ranking.h5
 expect 1 'its engines are dense and low-rank' ritz-rank --by hankel \

@@ -73,12 +73,6 @@ static ritz_status keep_measures(cli_run *run, const verify_options *given,
     return say_measures(run, place);
 }
 
-static bool is_large_space(const ritz_state_space *states)
-{
-    return ritz_state_space_is_sparse(states) &&
-           ritz_state_space_order(states) > RITZ_STATE_DOFS;
-}
-
 /* The full model as states: as it is, or a component that is small enough. */
 static ritz_status settle_states(cli_run *run, model *full, model *reduced,
                                  verify_options *given)
@@ -95,11 +89,6 @@ static ritz_status settle_states(cli_run *run, model *full, model *reduced,
     RITZ_REFUSE_IF(full->kind == MODEL_STATES && own, RITZ_ERR_ARGUMENT,
                    "'%s' is damped as it is: --damping is for components",
                    path);
-    if (full->kind == MODEL_STATES && is_large_space(&full->states))
-        cli_say(run,
-                "'%s' has %ld sparse states, too many for norms: responses are "
-                "compared over --band-hz, and static gains",
-                path, ritz_state_space_order(&full->states));
     if (full->kind == MODEL_STATES)
         return RITZ_OK;
     RITZ_REFUSE_IF(full->component.num_dofs > RITZ_STATE_DOFS,
