@@ -1,0 +1,237 @@
+/* What a run tells while it works: progress, warnings, the end of long work; and
+   what it leaves when a signal or a library ends it. */
+#include "cli/cli.h"
+
+#include "base/draft.h"
+#include "base/text.h"
+#include "cli/walk.h"
+
+#include <inttypes.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Neither a handler nor an observer has an argument: state is kept here. */
+static volatile sig_atomic_t shown; /* a line of progress is on the screen */
+static double last;                 /* when it was written, by cli_clock */
+static cli_run *watched;            /* the run whose steps are observed */
+static bool on_terminal;            /* progress is shown */
+
+static const char erase[] = "\r\033[K";
+
+double cli_clock(void)
+{
+    struct timespec now = {0};
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The signal is raised again with its own effect, so that whoever started the
+ * program sees what ended it; held back here, it comes on return. */
+static void end_program(int number)
+{
+    ritz_draft_discard_all();
+    if (shown && write(STDERR_FILENO, erase, sizeof erase - 1) < 0)
+        shown = 0;
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/* Catch all signals that end a program, sent by others or raised by a defect.
+   The handler has its own stack, because a stack overflow is one such defect. A
+   signal that is ignored (nohup) or has a handler keeps its setting. */
+static void watch_signals(void)
+{
+    static const int numbers[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGXCPU,
+                                  SIGPIPE,   SIGALRM, SIGUSR1, SIGUSR2, SIGPROF,
+                                  SIGVTALRM, SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,
+                                  SIGILL,    SIGSYS,  SIGTRAP};
+    static char room[1 << 16];
+    const stack_t other = {.ss_sp = room, .ss_size = sizeof room};
+    struct sigaction before;
+    struct sigaction action = {.sa_handler = end_program};
+
+    sigemptyset(&action.sa_mask);
+    if (sigaltstack(&other, NULL) == 0)
+        action.sa_flags = SA_ONSTACK;
+    signal(SIGXFSZ, SIG_IGN); /* a write past a limit fails, and is reported */
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        if (sigaction(numbers[k], NULL, &before) == 0 &&
+            before.sa_handler == SIG_DFL)
+            sigaction(numbers[k], &action, NULL);
+}
+
+/* At most ten times a second, and not before a tenth has passed. */
+static void show_progress(const char *what, int64_t done, int64_t total)
+{
+    char line[80];
+    const double now = cli_clock();
+    int length = 0;
+
+    if (now - last < 0.1)
+        return;
+    last = now;
+    if (total > 0)
+        length = snprintf(line, sizeof line, "%s: %" PRId64 " of %" PRId64,
+                          what, done, total);
+    else
+        length = snprintf(line, sizeof line, "%s: %" PRId64, what, done);
+    if (length > 0) {
+        shown = 1;
+        fprintf(stderr, "%s%s", erase, line);
+        fflush(stderr);
+    }
+}
+
+const char *cli_duration(double seconds, char out[CLI_DURATION])
+{
+    static const struct unit {
+        const char *name;
+        double seconds;
+    } units[] = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"days", 86400.0}};
+    int k = 0;
+
+    while (k < 3 && seconds >= 2.0 * units[k + 1].seconds)
+        k++;
+    snprintf(out, CLI_DURATION, "%.3g %s", seconds / units[k].seconds,
+             units[k].name);
+    return out;
+}
+
+void cli_warn(cli_run *run, const char *format, ...)
+{
+    char text[512];
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    ritz_text_clean(text);
+    for (size_t k = 0; k < json_array_size(run->warnings); k++)
+        if (strcmp(json_string_value(json_array_get(run->warnings, k)), text) ==
+            0)
+            return;
+    json_array_append_new(run->warnings, cli_string(text));
+    if (!run->quiet) {
+        cli_watch_clear();
+        fflush(stdout);
+        cli_complain("%s: warning: %s\n", run->program->name, text);
+    }
+}
+
+/* A kind of step whose total number is known. */
+typedef struct step_series {
+    const char *what; /* text of the library */
+    int64_t total;
+    int64_t first, done; /* number of steps at the start and now */
+    double began;
+    bool told;
+} step_series;
+
+/* Several series at once, because a step may consist of steps of another
+   kind. */
+static step_series series[8];
+static int num_series;
+
+/* The series of a step; the first step begins a new series. */
+static step_series *find_series(const char *what, int64_t done, int64_t total)
+{
+    enum { MOST = sizeof series / sizeof *series };
+    step_series *found = NULL;
+
+    for (int k = 0; k < MOST && !found; k++)
+        if (series[k].what == what)
+            found = &series[k];
+    if (found && found->total == total && done >= found->done)
+        return found;
+    if (!found)
+        found = &series[num_series++ % MOST];
+    *found = (step_series){what, total, done, done, cli_clock(), false};
+    return found;
+}
+
+/* Warn of long work once its duration can be estimated. */
+static void foresee_end(const char *what, int64_t done, int64_t total)
+{
+    static const double long_work = 600.0, enough = 1.0; /* seconds */
+    step_series *w = find_series(what, done, total);
+    const double spent = cli_clock() - w->began;
+    double whole = 0.0;
+    char text[CLI_DURATION];
+
+    w->done = done;
+    if (w->told || done == w->first || spent < enough)
+        return;
+    whole = spent / (double)(done - w->first) * (double)(total - w->first);
+    if (whole < long_work)
+        return;
+    w->told = true;
+    cli_warn(watched, "%s: all %" PRId64 " take about %s at this rate", what,
+             total, cli_duration(whole, text));
+}
+
+static void follow_step(const char *what, int64_t done, int64_t total)
+{
+    if (total > 0)
+        foresee_end(what, done, total);
+    if (on_terminal)
+        show_progress(what, done, total);
+}
+
+/* A library that cannot go on may end the program with any status, Fortran with
+   0. Without its output such a run has failed. */
+static void end_early(void)
+{
+    ritz_draft_discard_all();
+    if (!watched)
+        return;
+    cli_complain("%s: ended by a library, perhaps for want of memory\n",
+                 watched->program->name);
+    _exit(EXIT_FAILURE);
+}
+
+void cli_unwatch(void)
+{
+    watched = NULL;
+}
+
+/* Callers do not check each allocation of JSON, and an incomplete report would
+   be wrong: end the program. */
+static void *allocate_json(size_t size)
+{
+    void *block = malloc(size);
+
+    if (block)
+        return block;
+    cli_complain("%s: no memory for the report\n",
+                 watched ? watched->program->name : "ritz");
+    cli_unwatch();
+    exit(EXIT_FAILURE);
+}
+
+void cli_prepare(void)
+{
+    json_set_alloc_funcs(allocate_json, free);
+}
+
+void cli_watch(cli_run *run)
+{
+    watched = run;
+    ritz_container_guard(walk_file);
+    atexit(end_early);
+    on_terminal = !run->quiet && isatty(STDERR_FILENO);
+    watch_signals();
+    last = cli_clock();
+    ritz_monitor_observe(follow_step);
+}
+
+void cli_watch_clear(void)
+{
+    if (shown)
+        fputs(erase, stderr);
+    shown = 0;
+}
