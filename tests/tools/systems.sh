@@ -193,6 +193,8 @@ expect 2 'there are none to write by --components' ritz-assemble --full \
 expect 1 "'no/where-rotor.h5" ritz-assemble --components no/where- scene.yaml \
     -o none.h5
 expect 0 '' ritz-assemble --components one- scene.yaml -o system1.h5
+expect 1 'make its full model with ritz-assemble --full --at clock=0,cone=0' \
+    ritz-export --to output4 --at clock=0 system1.h5 -o none.op4
 json 0 ritz-assemble --components one- scene.yaml -o system1.h5
 holds '  and named' 'j["component_files"] == ["one-rotor.h5", "one-stator.h5",
     "one-platform.h5"]'

@@ -131,8 +131,34 @@ static const reference *find_reference(const ritz_measures *errors)
     return row;
 }
 
+/* How errors become known: of a system at a configuration against the full one
+   of its scene. */
+static ritz_status refuse_unknown(const char *path, const ritz_origin *origin)
+{
+    const bool system = strcmp(origin->method, "system") == 0;
+    char at[RITZ_NAME_SIZE + 8] = "";
+
+    if (system && strchr(origin->options, '='))
+        snprintf(at, sizeof at, " --at %s", origin->options);
+    if (system)
+        return ritz_fail(
+            RITZ_ERR_ARGUMENT,
+            "'%s' carries no measured errors: make its full model with "
+            "ritz-assemble --full%s SCENE -o full.h5, measure with ritz-verify "
+            "full.h5 %s%s -o verified.h5 and export verified.h5, or export it "
+            "all the same with --force",
+            path, at, path, at);
+    return ritz_fail(
+        RITZ_ERR_ARGUMENT,
+        "'%s' carries neither estimated nor measured errors: run ritz-verify "
+        "FULL %s -o verified.h5 and export verified.h5, or export it all the "
+        "same with --force",
+        path, path);
+}
+
 /* Which errors are known of it: no number without its error. */
-static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
+static ritz_status say_errors(cli_run *run, const ritz_origin *origin,
+                              const ritz_measures *errors,
                               const ritz_measures *estimates, bool force)
 {
     const char *rests = errors->count > 0      ? "measured"
@@ -144,10 +170,8 @@ static ritz_status say_errors(cli_run *run, const ritz_measures *errors,
     sink_set(run, "errors_rest_on", "%s", rests);
     if (known->count == 0)
         model_say_measures(run, SINK_NONE, "errors", known, rests);
-    RITZ_REFUSE_IF(known->count == 0 && !force, RITZ_ERR_ARGUMENT,
-                   "'%s' carries neither estimated nor measured errors: run "
-                   "ritz-verify, or export it all the same with --force",
-                   run->operand[0]);
+    if (known->count == 0 && !force)
+        return refuse_unknown(run->operand[0], origin);
     if (known->count == 0) {
         cli_warn(run, "nothing is known of the errors of '%s'",
                  run->operand[0]);
@@ -198,7 +222,8 @@ static ritz_status check_reduced(cli_run *run, const model *m,
         cli_say(run, "damper '%s' installed: c = %g, k = %g",
                 reduced->dampers.name[j], reduced->dampers.c[j],
                 reduced->dampers.k[j]);
-    RITZ_CHECK(say_errors(run, &reduced->errors, &reduced->estimates, force));
+    RITZ_CHECK(say_errors(run, &reduced->origin, &reduced->errors,
+                          &reduced->estimates, force));
     RITZ_CHECK(check_forces(run, &reduced->columns, force));
     return check_stability(run, m, given);
 }
@@ -216,7 +241,8 @@ static ritz_status say_state_errors(cli_run *run,
         bounded = bounded || strcmp(states->estimates.item[k].name,
                                     "growth-relative") != 0;
     if (states->errors.count > 0 || bounded)
-        return say_errors(run, &states->errors, &states->estimates, force);
+        return say_errors(run, &states->origin, &states->errors,
+                          &states->estimates, force);
     cli_warn(run, "nothing is known of the errors of '%s' but its stability",
              run->operand[0]);
     return RITZ_OK;
