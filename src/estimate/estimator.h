@@ -167,6 +167,29 @@ ritz_status ritz_measuring_predict(ritz_measuring *m);
  */
 int64_t ritz_missing_modes(const ritz_measuring *m);
 
+/** Whether more than @p k full modes were counted at or below @p rho. */
+bool ritz_estimator_has_counted(const ritz_estimator *estimator, int64_t k,
+                                double rho);
+
+/**
+ * Whether reduced mode @p k, with eigenvalue @p theta, is a rigid motion that
+ * the basis represents badly: it is far below @p band, an eigenvalue, and a
+ * count shows the full mode of its number below half its eigenvalue.
+ */
+bool ritz_estimator_sees_rigid(const ritz_estimator *estimator, int64_t k,
+                               double theta, double band);
+
+/** Add the bounds of the worst mode and of each, and of modes missing. */
+ritz_status ritz_measuring_report(const ritz_measuring *m, ritz_measures *out);
+
+/**
+ * Add "frequency-relative-least", the largest of the lower bounds over full
+ * modes that are certainly in the band. Nothing can be said of a band that does
+ * not begin at 0, as modes below it need no partner.
+ */
+ritz_status ritz_measuring_report_least(const ritz_measuring *m,
+                                        ritz_measures *out);
+
 /**
  * Whether anything can be said of a reduced response: there are inputs, outputs
  * and damping, and of the reduced model's modes, @p modes, none is massless.

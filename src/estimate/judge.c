@@ -411,3 +411,21 @@ ritz_status ritz_measuring_predict(ritz_measuring *m)
             judge_group(&j, &j.group[k]);
     return RITZ_OK;
 }
+
+bool ritz_estimator_has_counted(const ritz_estimator *estimator, int64_t k,
+                                double rho)
+{
+    const ritz_counted *c = estimator->count;
+
+    for (int64_t s = 0; s < estimator->num_counts; s++)
+        if (c[s].below > k && c[s].rho <= rho)
+            return true;
+    return false;
+}
+
+bool ritz_estimator_sees_rigid(const ritz_estimator *estimator, int64_t k,
+                               double theta, double band)
+{
+    return theta <= RITZ_MAY_BE_RIGID * band &&
+           ritz_estimator_has_counted(estimator, k, 0.5 * theta);
+}
