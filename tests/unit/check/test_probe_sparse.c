@@ -93,7 +93,7 @@ static void too_many_states_for_dense_checks_are_checked_by_poles(void **)
 static void a_free_chain_is_marginal(void **)
 {
     RITZ_OWN(ritz_state_space) chain = {0};
-    ritz_probe probe = {0};
+    ritz_probe probe;
 
     assert_ok(spaces_chains(1, 100, true, &chain));
     probe = probe_of(&chain);

@@ -8,7 +8,6 @@
 
 #include "base/alloc.h"
 #include "gramians/space.h"
-#include "linear/split.h"
 #include "poles/poles.h"
 
 #include <ritz/poles.h>
@@ -64,11 +63,11 @@ static void norms_are_those_of_dense_models(void **)
    some hundred columns. */
 static void h2_norms_need_no_small_residual(void **)
 {
-    RITZ_OWN(ritz_state_space) chains = {0}, made = {0}, one = {0};
-    RITZ_OWN(ritz_split) split = {0};
+    RITZ_OWN(ritz_state_space) chains = {0}, chain = {0}, made = {0};
+    RITZ_OWN(ritz_state_space) one = {0};
     const ritz_state_space *dense = NULL;
     ritz_norm exact = {0};
-    double whole = 0.0, last = 0.0;
+    double whole = 0.0, last = 0.0, alone = 0.0;
 
     assert_ok(spaces_rod(CELLS, 0.05, true, &one));
     assert_ok(ritz_state_space_dense(&one, &made, &dense));
@@ -76,11 +75,14 @@ static void h2_norms_need_no_small_residual(void **)
     assert_ok(ritz_space_norm_two(&one, CELLS, &whole, &last));
     assert_near(whole, exact.value, 1e-12 * exact.value);
     assert_near(last, whole, 1e-12 * whole);
-    /* two equal chains, one channel each: sqrt(2) of one, rigid motion left
-       out */
+    /* two equal chains, one channel each, are sqrt(2) of one; rigid motion is
+       left out */
+    assert_ok(spaces_chains(1, 12, true, &chain));
+    assert_ok(ritz_space_norm_two(&chain, 24, &alone, &last));
     assert_ok(spaces_chains(2, 12, true, &chains));
     assert_ok(ritz_space_norm_two(&chains, 48, &whole, &last));
-    assert_true(whole > 0.0 && last == whole);
+    assert_near(whole, sqrt(2.0) * alone, 1e-10 * whole);
+    assert_true(last == whole);
 }
 
 /* Rigid motion is left out: the response of two chains is that of one. */
