@@ -276,9 +276,9 @@
 #define RITZ_LIKE_LARGEST 1e-9
 /* Rounding that scaling may add, over that of the matrices as given. */
 #define RITZ_FRAME_GROWTH 1e4
-/* An eigenvalue of a dense pencil below this part of the largest has lost six
+/* An eigenvalue of a dense pencil below this part of the largest has lost three
    digits and more, and is found again among its like. */
-#define RITZ_EIGEN_FAR_BELOW 1e-6
+#define RITZ_EIGEN_FAR_BELOW 1e-3
 /* Residual of a sparse eigenpair after inverse iteration: a larger one is
    refused. */
 #define RITZ_EIGEN_RESIDUAL 1e-11

@@ -344,14 +344,20 @@ static int64_t count_low(int64_t count, const double *lambda)
     return low;
 }
 
-/* The first columns of X, and their eigenvalues, from K and M in their span. */
-static ritz_status project_pairs(const ritz_dense *K, const ritz_dense *M,
+/*
+ * The first columns of X, and their eigenvalues, from K and M in their span. In
+ * K x of a low mode nearly all cancels, so that it is summed with twice the
+ * digits.
+ */
+static ritz_status project_pairs(const ritz_sparse *K, const ritz_dense *M,
                                  int64_t count, double *lambda, ritz_dense *X)
 {
     ritz_dense first = ritz_dense_part(X, 0, count);
-    RITZ_OWN(ritz_dense) K_x = {0}, M_x = {0}, Y = {0}, XY = {0};
+    RITZ_OWN(ritz_dense) KX = {0}, K_x = {0}, M_x = {0}, Y = {0}, XY = {0};
 
-    RITZ_CHECK(ritz_dense_congruence(K, &first, &K_x));
+    RITZ_CHECK(ritz_sparse_mul_twofold(K, &first, &KX));
+    RITZ_CHECK(ritz_dense_mul_tn(&first, &KX, &K_x));
+    ritz_dense_symmetrise(&K_x);
     RITZ_CHECK(ritz_dense_congruence(M, &first, &M_x));
     RITZ_CHECK(solve_scaled(&K_x, &M_x, lambda, &Y));
     RITZ_CHECK(ritz_dense_mul(&first, &Y, &XY));
@@ -362,13 +368,16 @@ static ritz_status project_pairs(const ritz_dense *K, const ritz_dense *M,
 static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
                                 double *lambda, ritz_dense *X)
 {
+    RITZ_OWN(ritz_sparse) stored = {0};
     int64_t count = 0, low = 0;
 
     RITZ_CHECK(solve_scaled(K, M, lambda, X));
     count = X->ncol;
     for (low = count_low(count, lambda); low > 0 && low < count;
          low = count_low(count, lambda)) {
-        RITZ_CHECK(project_pairs(K, M, low, lambda, X));
+        if (!stored.colptr)
+            RITZ_CHECK(ritz_sparse_from_dense(K, &stored));
+        RITZ_CHECK(project_pairs(&stored, M, low, lambda, X));
         count = low;
     }
     return RITZ_OK;

@@ -473,6 +473,34 @@ static void inertia_counts_modes(void **state)
     release(&p);
 }
 
+/*
+ * A chain of n equal masses and springs, fixed at one end, has lambda_1 =
+ * 4 sin^2(pi / (4 n + 2)), here 1e-4 of the largest. Its dofs are out of order,
+ * so that LAPACK mixes them: it errs by some eps of the largest eigenvalue.
+ */
+static void low_modes_of_dense_pencils_keep_their_digits(void **)
+{
+    enum { N = 149, STRIDE = 37 };
+    const double root = sin(pi / (4.0 * N + 2.0));
+    RITZ_OWN(ritz_dense) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) P = {0};
+
+    assert_ok(ritz_dense_new(N, N, &K));
+    assert_ok(ritz_dense_new(N, N, &M));
+    for (int64_t i = 0; i < N; i++) {
+        const int64_t at = i * STRIDE % N, next = (i + 1) * STRIDE % N;
+
+        ritz_dense_col(&M, at)[at] = 1.0;
+        ritz_dense_col(&K, at)[at] = i + 1 < N ? 2.0 : 1.0;
+        if (i + 1 < N)
+            ritz_dense_col(&K, at)[next] = ritz_dense_col(&K, next)[at] = -1.0;
+    }
+    assert_ok(ritz_eigen_dense(&K, &M, &P));
+    /* Rayleigh's quotient of x errs by eps of itself and by |dx|^2 of the
+       largest, |dx| being some eps of the largest over the gap: 1e-12 */
+    assert_near(P.lambda[0] / (4.0 * root * root), 1.0, 64 * DBL_EPSILON);
+}
+
 typedef struct spectrum {
     int64_t count;
     double lambda[10];
@@ -645,6 +673,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(units_do_not_matter),
     cmocka_unit_test(slender_beams_are_not_too_soft),
     cmocka_unit_test(inertia_counts_modes),
+    cmocka_unit_test(low_modes_of_dense_pencils_keep_their_digits),
     cmocka_unit_test(only_a_gap_makes_a_mode_rigid),
     cmocka_unit_test(heavy_and_light_masses_keep_the_lowest_mode),
     cmocka_unit_test(hertz_keep_their_sign),
