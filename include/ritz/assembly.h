@@ -22,7 +22,7 @@ typedef struct ritz_bodies {
     ritz_reduced *item;
 } ritz_bodies;
 
-/** So many empty ones. */
+/** @p count empty ones. */
 ritz_status ritz_bodies_new(int64_t count, ritz_bodies *out);
 void ritz_bodies_free(ritz_bodies *bodies);
 

@@ -127,8 +127,8 @@ typedef struct ritz_fit {
 /*
  * From the whole answer down to the fewest columns that its bodies can have,
  * each row one column less than the one before; where they are many, some. In a
- * row each flexible body is cut to its first columns: so many as `modes` says,
- * the `order` of its file in a scene. Errors are the worst of all listed and
+ * row each flexible body is cut to its first columns; `modes` is their number,
+ * in a scene the `order` of its file. Errors are the worst of all listed and
  * random configurations.
  */
 typedef struct ritz_fit_path {
@@ -138,7 +138,7 @@ typedef struct ritz_fit_path {
 
 /* Composite modes of a scene's configurations on each body, the second stage of
    COMPARE: a method among those of a scene, and refused of a component. Its
-   "modes" are the first so many directions of a body. */
+   "modes" are the number of directions of a body. */
 extern const ritz_method ritz_fit_compare;
 
 /** A method of a search by its name: one of ritz_methods, or that. */

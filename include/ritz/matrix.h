@@ -343,7 +343,7 @@ typedef struct ritz_pairs {
 
 /* How many of the lowest pairs. Rigid modes are always found in addition. */
 typedef struct ritz_span {
-    int64_t modes;   /* so many flexible ones; -1: by frequency */
+    int64_t modes;   /* number of flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
 } ritz_span;
 

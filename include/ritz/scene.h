@@ -175,7 +175,7 @@ typedef struct ritz_scene {
     double select_tolerance;        /* 1e-3 */
     int64_t num_select_modes;       /* listed: flexible modes, from 0 */
     int64_t *select_mode;           /* ascending */
-    int64_t select_vectors;         /* krylov: so many at a configuration */
+    int64_t select_vectors;         /* krylov: vectors at a configuration */
     bool select_outputs;            /* krylov: outputs start the block too */
     double composite_tolerance;     /* of dependent columns, 1e-12 */
     int64_t num_reference; /* composite from these configurations only; */

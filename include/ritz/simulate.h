@@ -95,7 +95,7 @@ typedef struct ritz_simulation_request {
     ritz_hold hold;
     double rho;      /* generalised-alpha, at infinite frequency, 0 to 1 */
     double up_to_hz; /* of a component by its modes */
-    int64_t every;   /* write each so many steps; 0: every one */
+    int64_t every;   /* steps from one that is written to the next; 0: 1 */
     const ritz_signal *signal; /* one of each input, in their order; NULL: 0 */
     const double *x0, *v0;     /* of the model's coordinates; NULL: at rest.
                                   Of a state space x0 are its states */

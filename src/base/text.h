@@ -15,7 +15,7 @@
 int ritz_letter_length(const char *text);
 
 /**
- * Copy so many letters, and cut the copy at the first @p mark.
+ * Copy @p length letters, and cut the copy at the first @p mark.
  *
  * @param[out] rest  what stands behind the mark; NULL: there is none
  * @return false if the copy has no room for them
@@ -23,7 +23,7 @@ int ritz_letter_length(const char *text);
 bool ritz_text_part(const char *text, size_t length, char mark,
                     char copy[RITZ_NAME_SIZE], char **rest);
 
-/** So many letters as "5" or "7-9", from 1 on; @p to is 0 of one number.
+/** Read @p length letters as "5" or "7-9", from 1 on; @p to is 0 of one number.
  * @return false if they are neither */
 bool ritz_text_range(const char *text, size_t length, int64_t *from,
                      int64_t *to);

@@ -691,7 +691,8 @@
 /* Roundings, in eps, of a sum of terms that cancel: one is due, the rest is
    room. */
 #define RITZ_CANCELLED_ROUNDINGS 4.0
-/* A count may be off by so many times the rounding of eigenvalues near it. */
+/* Eigenvalues within this many times their rounding of a shift may be counted
+   on either side. */
 #define RITZ_COUNT_MARGIN 2.0
 /* A ratio of bound to error that is good enough. */
 #define RITZ_GOOD_RATIO 3.0

@@ -16,7 +16,7 @@
 #include <time.h>
 
 /* Where the ladder is too short, it is made again with twice the modes of each
-   body and some, up to so many of all bodies or as columns are allowed. */
+   body and some, until all bodies have 1000 or as many as columns allow. */
 enum { AT_FIRST = 4 };
 static const int64_t furthest = 1000;
 

@@ -133,7 +133,7 @@ int64_t ritz_fit_rungs(const ritz_fitter *fitter, const ritz_method *method);
 ritz_status ritz_fit_second_make(ritz_fitter *fitter, double up_to_hz,
                                  bool *made);
 
-/** Flexible body @p k with its rigid motions and so many directions. */
+/** Flexible body @p k with its rigid motions and @p count directions. */
 ritz_status ritz_fit_second_body(ritz_fitter *fitter, int64_t k, int64_t count,
                                  ritz_reduced *out);
 void ritz_fit_second_free(ritz_fit_second *second);

@@ -35,7 +35,7 @@ typedef struct nesting {
     int64_t *column;      /* count, what matters most first */
     double *alone;        /* of each column: the ratio without it */
     int64_t *own, *some;  /* to work in: columns of one body, and of all */
-    int64_t every;        /* one in so many listed places is used */
+    int64_t every;        /* of listed places the first, and each every-th */
     int64_t step;         /* columns between two cuts that are measured */
     int64_t hardest;      /* the place where the last model was worst */
 } nesting;
@@ -187,7 +187,7 @@ ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
     return RITZ_OK;
 }
 
-/* ceil(count / most): one in so many is measured; 1 if there is no end. */
+/* ceil(count / most) = k: one in k is measured; 1 if `most` is no limit. */
 static int64_t divide_work(int64_t count, int64_t most)
 {
     return count > most && most > 0 ? (count + most - 1) / most : 1;
@@ -369,11 +369,10 @@ void ritz_fit_path_free(ritz_fit_path *path)
     *path = (ritz_fit_path){0};
 }
 
-/* --- nested bodies
-   --------------------------------------------------------------- */
+/* --- nested bodies -------------------------------------------------------- */
 
-/* "system-response-relative" of a scene's body of so many columns; no limit is
-   its own. */
+/* Give a body of `order` columns "system-response-relative" of the scene, which
+   has no limit for this body alone. */
 static ritz_status note_errors(const nesting *n, const ritz_measures *errors,
                                int64_t order, ritz_reduced *body)
 {
@@ -394,7 +393,7 @@ static ritz_status note_errors(const nesting *n, const ritz_measures *errors,
     return RITZ_OK;
 }
 
-/* A row of the path that cuts this body alone, to so many columns. */
+/* The row of the path that cuts body k alone, to `columns`. */
 static const ritz_fit_candidate *find_row(const ritz_fit_path *path, int64_t k,
                                           int64_t columns)
 {

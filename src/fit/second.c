@@ -1,8 +1,8 @@
 /*
  * COMPARE as a method of a scene [LeeTsuha1992]: of every flexible body the
  * composite set of all listed configurations, made once of a first stage that
- * is rich, its directions in order; a candidate takes so many of each body, and
- * the ladder is the order of all bodies' directions together.
+ * is rich, its directions in order; a candidate takes the first of each body,
+ * and the ladder is the order of all bodies' directions together.
  *
  * Modes of the band weigh as the scene ranks them where the tolerance is of
  * what inputs and outputs see; where it is of modes, all the same. Nothing is

@@ -374,8 +374,8 @@ enum {
 };
 
 /*
- * After so many shifts, if more than so much is left, no more than so many may
- * be expected in all.
+ * If more than `left` of the residual is left after `after` shifts, the search
+ * gives up where more than `total` shifts are expected in all.
  */
 typedef struct patience {
     int64_t after, total;

@@ -340,7 +340,7 @@ static ritz_status take_dof(const char *text, size_t length, ritz_dof *out)
     return RITZ_OK;
 }
 
-/* Add scale t of "GRID:COMP", of so many letters, as add_aim does. */
+/* Add scale t of "GRID:COMP", of `length` letters, as add_aim does. */
 static ritz_status add_direction(const char *text, size_t length,
                                  const ritz_extended *extended, double scale,
                                  int64_t stride, double *into)

@@ -442,7 +442,7 @@ static ritz_status count_below(const search *s, int64_t k, int64_t *out)
     return status;
 }
 
-/* Request more modes: so many were missed, or are needed to find a gap. */
+/* Request `more` modes, which were missed or are needed to find a gap. */
 static ritz_status ask_more(search *s, int64_t more)
 {
     double hertz = ritz_eigen_hertz(s->found.lambda[s->found.Phi.ncol - 1]);

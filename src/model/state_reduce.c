@@ -231,7 +231,7 @@ static ritz_status take_half(const ritz_modal_model *modes,
     return RITZ_OK;
 }
 
-/* By all modes, of which there can be so many. */
+/* By all modes of the component, where their number allows it. */
 static ritz_status project_modes(const ritz_component *component,
                                  const ritz_damping *damping,
                                  const ritz_basis *basis, ritz_state_space *out,

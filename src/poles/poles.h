@@ -277,7 +277,7 @@ ritz_status ritz_impedance_factor(const ritz_component *component,
                                   const double _Complex c[static 3],
                                   ritz_zldl *Z);
 
-/* Components of so many dofs are taken whole, as dense: some seconds. */
+/* Components of at most 300 dofs are taken whole, as dense: some seconds. */
 enum { RITZ_WHOLE_DOFS = 300 };
 
 /** All poles of a dense model; its io may be NULL. @cost O((2 n)^3) */
@@ -371,8 +371,8 @@ typedef struct ritz_channel {
     ritz_dense A, B, C, D;
     bool squared;       /* then A is diagonal */
     bool blocks;        /* A is [0 w; -l/w -d] of pairs of states k, k + n/2 */
-    int64_t derivative; /* y is that derivative of what is above: so many zeros
-                           at 0, but where poles are */
+    int64_t derivative; /* y is this time derivative of C x + D u: it adds as
+                           many zeros at 0, less the poles there */
 } ritz_channel;
 
 ritz_status ritz_channel_dense(const ritz_second_order *model,

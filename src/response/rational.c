@@ -1,4 +1,5 @@
-/* The rational engine: see the equations below. */
+/* The rational engine: nodes are chosen until the interpolant of interpolant.h
+   changes nowhere. */
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
@@ -6,6 +7,7 @@
 #include "model/space.h"
 #include "poles/poles.h"
 #include "response/direct.h"
+#include "response/interpolant.h"
 #include "response/responder.h"
 #include "response/state_poles.h"
 
@@ -20,31 +22,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/*
- * Rational interpolation with poles and zeros cancelled: through nodes s_m,
- *
- *     H(s) = Z(s)/D(s) sum_m H_m D(s_m)/Z(s_m)
- *                      prod_(l != m) (s - s_l)/(s_m - s_l)
- *     D(s) = prod (s - pole),    Z(s) = prod (s - zero) of the channel
- *
- * [KenneyStubberudLaub1992, (40)] in Lagrange's form. It is the same polynomial
- * as Newton's, whose coefficients are differences of large numbers when many
- * poles are cancelled; here every term is of the size of H.
- */
-
-typedef struct interpolant {
-    int64_t values; /* channels */
-    double unit;    /* of frequency, against overflow  [rad/s] */
-    int64_t num_poles;
-    double _Complex *pole; /* in units, like all that follow */
-    int64_t *num_zeros;    /* of each channel */
-    double _Complex **zero;
-    int64_t count, room, weight_room, H_room;
-    double _Complex *node;
-    double _Complex *weight; /* D(s_m) / prod (s_m - s_l) */
-    double _Complex *H;      /* count x values */
-} interpolant;
-
 typedef struct rational_nodes {
     ritz_direct full;               /* if the model is a component */
     const ritz_state_space *states; /* borrowed; NULL: the model is a
@@ -53,7 +30,7 @@ typedef struct rational_nodes {
     ritz_poles listed;              /* poles of the state space, to refine grids
                                        around */
     int64_t outputs, inputs;
-    interpolant f;
+    ritz_interpolant f;
     int64_t num_poles;
     double _Complex *pole; /* all, conjugates too */
     bool mirror;           /* nodes count at -i w too */
@@ -75,103 +52,12 @@ typedef struct rational_nodes {
     ritz_second_order view;
 } rational_nodes;
 
-static void free_interpolant(interpolant *f)
-{
-    for (int64_t v = 0; f->zero && v < f->values; v++)
-        free(f->zero[v]);
-    RITZ_FREE(f->pole, f->num_zeros, f->zero, f->node, f->weight, f->H);
-}
-
-/*
- * A quotient of products, factors multiplied and divided in turn against
- * overflow.
- */
-static double _Complex divide_products(double _Complex s, int64_t above,
-                                       const double _Complex *top,
-                                       int64_t below,
-                                       const double _Complex *bottom)
-{
-    double _Complex value = 1.0;
-
-    for (int64_t k = 0; k < above || k < below; k++) {
-        if (k < above)
-            value *= s - top[k];
-        if (k < below)
-            value /= s - bottom[k];
-    }
-    return value;
-}
-
-/* Append a node, which is no pole, no zero and no other node. */
-static ritz_status append_node(interpolant *f, double _Complex s,
-                               const double _Complex *H)
-{
-    double _Complex x = s / f->unit;
-
-    RITZ_CHECK_ROOM(f->node, f->count, f->room);
-    RITZ_CHECK_ROOM(f->weight, f->count, f->weight_room);
-    while (f->H_room < (f->count + 1) * f->values)
-        RITZ_CHECK_ROOM(f->H, f->H_room, f->H_room);
-    f->weight[f->count] =
-        divide_products(x, f->num_poles, f->pole, f->count, f->node);
-    for (int64_t k = 0; k < f->count; k++)
-        f->weight[k] /= f->node[k] - x;
-    f->node[f->count] = x;
-    memcpy(f->H + f->count * f->values, H, (size_t)f->values * sizeof *H);
-    f->count++;
-    return RITZ_OK;
-}
-
-/*
- * H at s; not finite at an undamped pole. @cost O(nodes + poles) a channel
- *
- * @param[in] with_zeros  of the channels that have any cancelled too
- */
-static void evaluate_interpolant(const interpolant *f, double _Complex s,
-                                 bool with_zeros, double _Complex *H)
-{
-    double _Complex x = s / f->unit;
-    double _Complex all =
-        divide_products(x, f->count, f->node, f->num_poles, f->pole);
-
-    for (int64_t v = 0; v < f->values; v++)
-        H[v] = 0.0;
-    for (int64_t m = 0; m < f->count; m++) {
-        double _Complex share = f->weight[m] * all / (x - f->node[m]);
-
-        if (x == f->node[m]) {
-            memcpy(H, f->H + m * f->values, (size_t)f->values * sizeof *H);
-            return;
-        }
-        for (int64_t v = 0; v < f->values; v++) {
-            double _Complex zeros = 1.0;
-
-            for (int64_t k = 0; with_zeros && k < f->num_zeros[v]; k++)
-                zeros *= (x - f->zero[v][k]) / (f->node[m] - f->zero[v][k]);
-            H[v] += share * zeros * f->H[m * f->values + v];
-        }
-    }
-}
-
-/* log |prod (s - s_m) / D(s)|: a node helps most where this is largest. */
-static double log_node_weight(const interpolant *f, double _Complex s)
-{
-    double _Complex x = s / f->unit;
-    double need = 0.0;
-
-    for (int64_t m = 0; m < f->count; m++)
-        need += log(cabs(x - f->node[m]));
-    for (int64_t k = 0; k < f->num_poles; k++)
-        need -= log(cabs(x - f->pole[k]));
-    return need;
-}
-
 /*
  * The frequencies where nodes may be, the choice of the next, and the end of
  * the search.
  */
 
-/* So many nodes in a row must be within the tolerance at the end. */
+/* The search ends when ENOUGH nodes in a row are within the tolerance. */
 enum { ENOUGH = 3 };
 enum { EVEN = 1000, BETWEEN = 16, MOST_NODES = 300, OFFSETS = 3, SWEPT = 500 };
 
@@ -183,8 +69,8 @@ static void evaluate_best(rational_nodes *s, double hertz, double _Complex *H)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
-    evaluate_interpolant(&s->f, at, false, s->guess);
-    evaluate_interpolant(&s->f, at, true, s->other);
+    ritz_interpolant_at(&s->f, at, false, s->guess);
+    ritz_interpolant_at(&s->f, at, true, s->other);
     for (int64_t v = 0; v < s->values; v++)
         H[v] = s->with_zeros[v] ? s->other[v] : s->guess[v];
 }
@@ -228,8 +114,8 @@ static void add_candidate(rational_nodes *s, double hertz, double low,
 }
 
 /*
- * Candidates next to resonances and between them, and so many towards both ends
- * of the range that they contain Leja points, which gather there.
+ * Candidates next to resonances, between them, and dense towards both ends of
+ * the range, where Leja points gather.
  */
 static ritz_status place_nodes(rational_nodes *s, double low, double high)
 {
@@ -277,8 +163,9 @@ static int64_t find_next(const rational_nodes *s)
 
     for (int64_t k = 0; k < s->count; k++) {
         double w = 2.0 * RITZ_PI * s->hertz[k];
-        double need = s->used[k] ? -HUGE_VAL
-                                 : log_node_weight(&s->f, ritz_complex(0.0, w));
+        double need = s->used[k]
+                          ? -HUGE_VAL
+                          : ritz_interpolant_need(&s->f, ritz_complex(0.0, w));
 
         if (need > most) {
             most = need;
@@ -292,13 +179,13 @@ static ritz_status add_node(rational_nodes *s, double hertz)
 {
     const double _Complex at = ritz_complex(0.0, 2.0 * RITZ_PI * hertz);
 
-    RITZ_CHECK(append_node(&s->f, at, s->H));
+    RITZ_CHECK(ritz_interpolant_append(&s->f, at, s->H));
     s->nodes++;
     if (!s->mirror || hertz == 0.0)
         return RITZ_OK;
     for (int64_t v = 0; v < s->values; v++)
         s->H[v] = conj(s->H[v]);
-    return append_node(&s->f, -at, s->H);
+    return ritz_interpolant_append(&s->f, -at, s->H);
 }
 
 /*
@@ -311,8 +198,8 @@ static bool measure_node(rational_nodes *s, double hertz, double tolerance)
     double *miss = s->miss + s->nodes % ENOUGH * 2 * s->values;
     bool near = s->nodes >= ENOUGH;
 
-    evaluate_interpolant(&s->f, at, false, s->guess);
-    evaluate_interpolant(&s->f, at, true, s->other);
+    ritz_interpolant_at(&s->f, at, false, s->guess);
+    ritz_interpolant_at(&s->f, at, true, s->other);
     for (int64_t v = 0; v < s->values; v++)
         s->peak[v] = fmax(s->peak[v], cabs(s->H[v]));
     ritz_noise_heed(s->noise, hertz, s->H, s->level);
@@ -614,7 +501,7 @@ static void free_rational(void *state)
     ritz_pencil_free(&s->pencil);
     ritz_poles_free(&s->listed);
     ritz_reduced_free(&s->whole);
-    free_interpolant(&s->f);
+    ritz_interpolant_free(&s->f);
     RITZ_FREE(s->pole, s->hertz, s->used, s->with_zeros, s->missed, s->miss,
               s->peak, s->level, s->scale, s->H, s->guess, s->other, s->before);
 }
@@ -634,7 +521,7 @@ static ritz_status start_rational(const ritz_response_request *request,
     if (s->full.poles.num_rigid > 0 && low == 0.0)
         low = RITZ_ABOVE_REST * request->to_hz;
     RITZ_CHECK(s->states ? find_state_poles(s, request) : find_poles(s, out));
-    s->f = (interpolant){
+    s->f = (ritz_interpolant){
         .values = s->values, .unit = unit, .num_poles = s->num_poles};
     RITZ_CHECK_NEW(s->f.pole, s->num_poles);
     for (int64_t k = 0; k < s->num_poles; k++)

@@ -42,7 +42,7 @@ void ritz_state_pair_free(ritz_state_pair *p)
     ritz_state_space_free(&p->difference);
 }
 
-/* Names and limits of a model, for another of so many states. */
+/* Copy names and limits of a model to one of another number of states. */
 static ritz_status make_states(const ritz_state_space *model, int64_t states,
                                ritz_state_space *out)
 {

@@ -234,7 +234,7 @@ def left_out(name):
 
 
 def refused(method, sentence, more):
-    """In place of a line of a table, with so many cells more."""
+    """Print a refusal in place of a line of a table; `more` cells are empty."""
     text = str(sentence).split(": ", 1)[-1]
     print(f"| {method} | refused: {text} |" + " |" * more, flush=True)
 

@@ -8,8 +8,7 @@
 enum {
     MOST_RUNS = 8,
     MOST_OUTPUTS = 6,
-    MOST_POINTS =
-        2000, /* points of a line; a page is not so many pixels wide */
+    MOST_POINTS = 2000, /* points of a line; a page has fewer pixels */
     WIDE = 560,
     HIGH = 210,
 };

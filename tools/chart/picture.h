@@ -67,7 +67,7 @@ picture_add_sign(picture *p, picture_sign sign, const char *format, ...);
 /** NAME = 'TEXT' for the template. */
 void picture_give_text(picture *p, const char *name, const char *text);
 
-/** An array of so many texts, the k-th at text + k * size. */
+/** An array of @p count texts, the k-th at text + k * size. */
 void picture_give_texts(picture *p, const char *name, int64_t count,
                         const char *text, size_t size);
 

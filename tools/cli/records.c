@@ -297,7 +297,7 @@ void records_join(records *all)
 
 /* --- what a chart shows --------------------------------------------------- */
 
-/* The measure that is drawn after so many others; NULL: there are no more. */
+/* The measure at `rank` in the order of drawing; NULL: there are no more. */
 static const ritz_measure_kind *by_importance(int rank)
 {
     for (int k = 0; k < RITZ_MEASURES; k++)

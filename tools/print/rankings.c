@@ -248,8 +248,8 @@ void rankings_say(const cli_run *run, const ritz_ranking *r,
         cli_say(run, "all values add up to %.9g", r->total);
 }
 
-/* " 3", the place of the mode with that number, as part of a line, or " -" if
-   it is not there, in so many letters. */
+/* " 3", the place of the mode with that number, right-aligned in `width`
+   letters; " -" if the mode is not in the ranking. */
 static void say_place(const cli_run *run, const ritz_ranking *r,
                       const int64_t *track, int64_t number, int width)
 {

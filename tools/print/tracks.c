@@ -1,6 +1,6 @@
 #include "print/print.h"
 
-/* So many of each kind are said; JSON and the table have all. */
+/* Tracks of each kind that are printed; JSON and the table have all. */
 enum { MOST_SAID = 12 };
 
 static const char *at_of(const ritz_system *system, int64_t k)

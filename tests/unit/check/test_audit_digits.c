@@ -11,7 +11,7 @@
 
 enum { MASSES = 14 };
 
-/* A row on springs k, which its source says has so many digits. */
+/* A row on springs k, whose source declares a number of digits. */
 static ritz_audit audit_of(int64_t n, const double *k, int64_t declared,
                            const char *format)
 {

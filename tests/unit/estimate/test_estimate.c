@@ -55,7 +55,7 @@ static void hold_to(const ritz_measures *found, const ritz_reduced *reduced,
     assert_true(listed > 0);
 }
 
-/* Some rows are attached; a reduction by a method with so many modes. */
+/* Reduce by a method, with some rows attached. */
 static void reduce_by(const ritz_method *method,
                       const ritz_component *component, ritz_dofs attached,
                       int64_t modes, ritz_basis *basis, ritz_reduced *out)

@@ -93,7 +93,7 @@ static void of_a_spacecraft_it_is_the_smallest(void **state)
                 a.fit.candidate[a.fit.best[0]].order);
 }
 
-/* Bodies that are the answer's: so many columns, and the method's name. */
+/* Bodies of the answer have its number of columns and name the method. */
 static void its_bodies_are_nested_and_say_so(void **state)
 {
     const ritz_fit_candidate *chosen = NULL;

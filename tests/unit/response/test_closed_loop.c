@@ -201,7 +201,7 @@ static double number(uint64_t *seed)
     return (double)(*seed >> 11) / 4503599627370496.0 - 1.0;
 }
 
-/* A stable model of so many states with everything in it. */
+/* A stable model of n states, m inputs and q outputs, with all its matrices. */
 static void random_space(int64_t n, int64_t m, int64_t q, bool mass,
                          uint64_t seed, ritz_state_space *out)
 {
