@@ -312,6 +312,24 @@ void ritz_bound_pair(const ritz_bounder *r, double w, double h, int64_t input,
 double ritz_rounding_of_pair(const ritz_bounder *r, double w, int64_t input,
                              int64_t output);
 
+/** Whether D is a M + b K with a, b >= 0, and which; K4 is absent then. */
+ritz_status ritz_estimator_rayleigh(const ritz_component *full, double *a,
+                                    double *b, bool *found);
+
+/**
+ * Rates where no ratio is common to all modes: D's diagonal, K4's over omega,
+ * and what was requested. Modes above those known get the least ratio.
+ *
+ * @param[out] matrices  the part of each rate that is of D and K4; borrowed by
+ *                       @p r
+ */
+ritz_status ritz_bounder_take_rates(const ritz_estimator *estimator,
+                                    ritz_bounder *r, double *matrices);
+
+/** Which damping is unknown, so that there is no bound; NULL: none. */
+const char *ritz_bounder_unknown(const ritz_measuring *m,
+                                 const ritz_bounder *r);
+
 /** Stiffness of a trial mode; 0 of a rigid one. */
 double ritz_bounder_stiffness(const ritz_bounder *r, int64_t j);
 

@@ -31,6 +31,9 @@ void report_begin(report_page *p, const char *words, const char *name);
 /** Its end: one legend of all its pictures, then these. */
 ritz_status report_end(report_page *p);
 
+/** Begin a table with this caption, up to the rows of its head. */
+void report_table(FILE *file, const char *caption);
+
 /** Draw a chart for the section: picture, caption, and the same as a table. */
 ritz_status report_figure(report_page *p, chart_draw *draw,
                           const chart_sources *sources,

@@ -68,6 +68,22 @@ typedef struct comparison_options {
 /** Reduce in two stages, write, and report orders, errors and frequencies. */
 ritz_status comparison_run(cli_run *run, const comparison_options *given);
 
+/** Worst errors by several composite tolerances. */
+typedef struct tolerance_rows {
+    int64_t count;
+    ritz_tolerance_row *at;
+} tolerance_rows;
+
+/** "31+19+6", the orders of bodies; with --json as a list. */
+void tolerances_orders(cli_run *run, int64_t count, const int64_t *order,
+                       char out[80]);
+void tolerances_say(cli_run *run, const ritz_stage *first,
+                    const tolerance_rows *rows);
+/** Write the same as a table. */
+ritz_status tolerances_write(const char *path, const ritz_stage *first,
+                             const tolerance_rows *rows);
+void tolerance_rows_free(tolerance_rows *rows);
+
 /* --- ritz-export ---------------------------------------------------------- */
 
 typedef struct export_options {
