@@ -1,10 +1,11 @@
 #!/bin/sh
 # processors.sh [--two] BUILD - the unit tests of a build on the kernels that
 # OpenBLAS has for other processors, as far as this one can run them, and on
-# reference BLAS: a line each, on two that the number of commits picks, or all.
+# reference BLAS: a line each; or, without searches, on two that the number of
+# commits picks.
 set -eu
-two=
-[ "$1" != --two ] || { two=yes; shift; }
+two='' kinds='unit|search'
+[ "$1" != --two ] || { two=yes kinds=unit; shift; }
 build=$(cd "$1" && pwd)
 logs=$build/processors
 reference=$logs/reference-blas
@@ -81,7 +82,7 @@ run() (
     [ "$used" = "$1" ] || { echo "$1: the kernels are those of $used"; exit 1; }
     # a call gives up on any processor as on this one
     export RITZ_TEST_ALLOCATIONS=0
-    if ctest --test-dir "$build" -L '^unit$' --no-tests=error -j "$cores" \
+    if ctest --test-dir "$build" -L "^($kinds)\$" --no-tests=error -j "$cores" \
         --timeout 600 --output-on-failure >"$log" 2>&1; then
         sed -n "s/^100% tests passed.* out of \(.*\)/$1: \1 tests passed/p" "$log"
     else

@@ -22,17 +22,14 @@ int main(int argc, char **argv)
         CLI_TEXT("damping", &it->damping, "F", "viscous damping D"),
         CLI_TEXT("structural-damping", &it->structural_damping, "F",
                  "structural damping K4, of K + i K4"),
-        CLI_LIST(
-            "geometric-stiffness", &given.load, "F@LOAD",
-            "K_g for a unit of the load LOAD: is stored, no tool uses it yet"),
+        CLI_LIST("geometric-stiffness", &given.load, "F@LOAD",
+                 "K_g for a unit of LOAD: stored, no tool uses it yet"),
         CLI_TEXT("bulk", &it->bulk, "F",
                  "NASTRAN bulk data: grids, frames, sets"),
         CLI_TEXT("dofs", &it->dofs, "F",
                  "names of rows: GRID COMP a line, COMP 0 for a scalar point"),
         CLI_TEXT("rows", &it->rows, "COMPS",
-                 "directions of rows at grids 1, 2, ..., as 126 in a plane; 0: "
-                 "scalar "
-                 "points [123456]"),
+                 "rows at grids 1, 2, ..., as 126; 0: scalar points [123456]"),
         CLI_TEXT("frequencies", &it->frequencies, "F",
                  "instead of matrices: frequencies in Hz of a modal form"),
         CLI_TEXT("ratios", &it->ratios, "F|ZETA",
@@ -55,18 +52,15 @@ int main(int argc, char **argv)
         CLI_TEXT("velocity-matrix", &it->velocity_matrix, "F", "Cv, likewise"),
         CLI_TEXT("acceleration-matrix", &it->acceleration_matrix, "F",
                  "Ca, likewise"),
-        CLI_TEXT(
-            "input-names", &it->input_names, "NAME[,NAME]",
-            "names of inputs of --input-matrix or --state-space [u1,u2,...]"),
+        CLI_TEXT("input-names", &it->input_names, "NAME[,NAME]",
+                 "of inputs of a matrix or state space [u1,u2,...]"),
         CLI_TEXT("output-names", &it->output_names, "NAME[@LIMIT][,NAME]",
-                 "names of outputs of --output-matrix, --velocity-matrix, "
-                 "--acceleration-matrix or --state-space [y1,y2,...]"),
+                 "of outputs of matrices or a state space [y1,y2,...]"),
         CLI_LIST("damper", &given.damper, "NAME=GRID:COMP[,GRID:COMP]*C[*K]",
                  "damper C, and spring K, between two dofs or to ground"),
         CLI_TEXT(
             "state-space", &given.space.matrices, "A=F,B=F,C=F[,D=F][,E=F]",
-            "instead of matrices: E x' = A x + B u, y = C x + D u; or one file "
-            "F with all of them"),
+            "E x' = A x + B u, y = C x + D u, or one file F with all of these"),
         CLI_TEXT("units", &it->units, "LABELS",
                  "\"kg m s\": kept and shown, nothing is converted"),
         CLI_FLAG("symmetrise", &it->symmetrise,
