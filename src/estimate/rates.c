@@ -10,8 +10,8 @@
 enum { PASSES = 3 };
 
 /*
- * D as a M + b K, if it is that to rounding: least squares, twice more of what
- * it leaves, and then every entry is compared.
+ * Whether D is a M + b K to rounding: a and b by least squares, corrected twice
+ * by the least squares of the remainder; then every entry is compared.
  */
 
 /* Entries of a soft row are compared with soft ones, however stiff others
@@ -124,8 +124,9 @@ ritz_status ritz_bounder_take_rates(const ritz_estimator *estimator,
 }
 
 /*
- * Whether ratios stated mode by mode differ within a pair of equal ones: any
- * vectors of these will do, and each model damps its own.
+ * Whether ratios that are stated mode by mode differ within a pair of equal
+ * frequencies. Any combination of the two modes is a mode too, so that the full
+ * and the reduced model may damp different ones.
  */
 static bool is_at_odds(const ritz_bounder *r)
 {

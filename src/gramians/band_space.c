@@ -254,11 +254,16 @@ static ritz_status integrate_panel(quadrature *q, double from, double to)
     return RITZ_OK;
 }
 
-/* Ends of the first panels: those of the band, and frequencies of poles
-   within. */
+/*
+ * Ends of the first panels: those of the band, and frequencies of poles within.
+ * A pole nearer to an end of the band than the shortest panel that halving can
+ * reach makes no panel: rounding gives poles at 0 such frequencies.
+ */
 static ritz_status list_ends(quadrature *q, const double band[2],
                              int64_t *count, double *end)
 {
+    const double shortest = ldexp(band[1] - band[0], -DEPTH);
+
     *count = 0;
     end[(*count)++] = band[0];
     end[(*count)++] = band[1];
@@ -271,7 +276,8 @@ static ritz_status list_ends(quadrature *q, const double band[2],
         if (status == RITZ_ERR_MEMORY)
             return status;
         for (int64_t j = 0; status == RITZ_OK && j < near.count; j++)
-            if (cimag(near.s[j]) > band[0] && cimag(near.s[j]) < band[1])
+            if (cimag(near.s[j]) > band[0] + shortest &&
+                cimag(near.s[j]) < band[1] - shortest)
                 end[(*count)++] = cimag(near.s[j]);
     }
     *count = ritz_sort_distinct(*count, end, RITZ_SAME);
