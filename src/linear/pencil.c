@@ -3,6 +3,8 @@
 
 #include "base/alloc.h"
 
+#include <math.h>
+
 static ritz_status make_identity(int64_t n, ritz_sparse *out)
 {
     RITZ_CHECK(ritz_sparse_new(n, n, n, out));
@@ -91,4 +93,18 @@ void ritz_pencil_free(ritz_pencil *pencil)
     ritz_sparse_free(&pencil->At);
     ritz_sparse_free(&pencil->Et);
     *pencil = (ritz_pencil){0};
+}
+
+double ritz_pencil_magnitude(const ritz_pencil *pencil, double w,
+                             const double *x, const double *y)
+{
+    const ritz_sparse *const M[] = {&pencil->A, &pencil->E};
+    const double c[] = {1.0, w};
+    double sum = 0.0;
+
+    for (int m = 0; m < 2; m++)
+        for (int64_t j = 0; j < pencil->n; j++)
+            for (int64_t p = M[m]->colptr[j]; p < M[m]->colptr[j + 1]; p++)
+                sum += c[m] * fabs(M[m]->val[p]) * y[M[m]->rowind[p]] * x[j];
+    return sum;
 }

@@ -36,6 +36,11 @@ const ritz_sparse *ritz_pencil_system(const ritz_pencil *pencil,
 const ritz_sparse *ritz_pencil_descriptor(const ritz_pencil *pencil,
                                           bool transposed);
 
+/** |y|'(|A| + w |E|)|x| for magnitudes @p x and @p y of n entries: eps times
+ * this bounds the rounding of y'(A - w E) x. */
+double ritz_pencil_magnitude(const ritz_pencil *pencil, double w,
+                             const double *x, const double *y);
+
 /**
  * Factor A - s E, unless it is factored at the same s already.
  *

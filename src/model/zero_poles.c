@@ -225,21 +225,6 @@ static ritz_status take_slow(slow_poles *s, int side)
     return ritz_dense_mul(&s->V[side], &first, &s->at[side]);
 }
 
-/* |y|'(|A| + |mu| |E|)|x| for magnitudes x and y of eigenvectors. */
-static double rounding_of(const ritz_pencil *pencil, double mu, const double *x,
-                          const double *y)
-{
-    const ritz_sparse *const M[] = {&pencil->A, &pencil->E};
-    const double c[] = {1.0, mu};
-    double sum = 0.0;
-
-    for (int m = 0; m < 2; m++)
-        for (int64_t j = 0; j < pencil->n; j++)
-            for (int64_t p = M[m]->colptr[j]; p < M[m]->colptr[j + 1]; p++)
-                sum += c[m] * fabs(M[m]->val[p]) * y[M[m]->rowind[p]] * x[j];
-    return sum;
-}
-
 /* Magnitude of each entry of B v, with v the eigenvector of eigenvalue k. */
 static ritz_status size_entries(const ritz_dense *B, const ritz_dense *V,
                                 const double *im, int64_t k, double *out)
@@ -297,7 +282,7 @@ static ritz_status judge_slow(const slow_poles *s, const ritz_dense *J,
         RITZ_CHECK(size_entries(&s->at[0], &right, im, k, x));
         RITZ_CHECK(size_entries(&s->at[1], &left, im, k, y));
         moves = RITZ_POLE_BOUND_FACTOR * DBL_EPSILON *
-                rounding_of(s->pencil, mu, x, y);
+                ritz_pencil_magnitude(s->pencil, mu, x, y);
         if (mu * cosine_of(&left, &right, im, k) <= moves)
             *zero += step;
         else

@@ -29,7 +29,6 @@
 #include <complex.h>
 #include <float.h>
 #include <inttypes.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,33 +104,13 @@ static ritz_status append_parts(axis_interpolant *g, int64_t count,
     return ritz_orthonormal_append(&g->V, &parts, parts.ncol, NULL);
 }
 
-/* sigma_1 of H, p x m by columns. */
-static ritz_status largest_singular(int64_t p, int64_t m, double _Complex *H,
-                                    double *out)
-{
-    RITZ_OWN_ARRAY double *sigma = NULL, *spare = NULL;
-    const int64_t count = p < m ? p : m;
-
-    RITZ_CHECK_NEW(sigma, count);
-    RITZ_CHECK_NEW(spare, count);
-    RITZ_REFUSE_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)p, (int)m, H,
-                                  (int)p, sigma, NULL, 1, NULL, 1, spare) != 0,
-                   RITZ_ERR_CONVERGENCE,
-                   "singular values of a response were not found");
-    *out = sigma[0];
-    return RITZ_OK;
-}
-
-/* eps of the sum of |y|'(|A| + w |E|)|x|, rows of X and Y by their lengths. */
+/* eps |y|'(|A| + w |E|)|x| for the lengths x and y of rows of X and Y. */
 static ritz_status size_rounding(const axis_interpolant *g, double w,
                                  const double _Complex *X,
                                  const double _Complex *Y, double *out)
 {
     const int64_t n = g->pencil.n;
-    const ritz_sparse *const M[] = {&g->pencil.A, &g->pencil.E};
-    const double c[] = {1.0, w};
     RITZ_OWN_ARRAY double *x = NULL, *y = NULL;
-    double sum = 0.0;
 
     RITZ_CHECK_NEW(x, n);
     RITZ_CHECK_NEW(y, n);
@@ -141,11 +120,7 @@ static ritz_status size_rounding(const axis_interpolant *g, double w,
         for (int64_t k = 0; k < g->Ct.ncol; k++)
             y[i] = hypot(y[i], cabs(Y[i + k * n]));
     }
-    for (int k = 0; k < 2; k++)
-        for (int64_t j = 0; j < n; j++)
-            for (int64_t q = M[k]->colptr[j]; q < M[k]->colptr[j + 1]; q++)
-                sum += c[k] * fabs(M[k]->val[q]) * y[M[k]->rowind[q]] * x[j];
-    *out = DBL_EPSILON * sum;
+    *out = DBL_EPSILON * ritz_pencil_magnitude(&g->pencil, w, x, y);
     return RITZ_OK;
 }
 
@@ -169,7 +144,7 @@ static ritz_status measure_error(axis_interpolant *g, double w,
                 sum -= g->Ct.val[k + i * n] * X[k + j * n];
             H[i + j * p] = sum;
         }
-    return largest_singular(p, m, H, out);
+    return ritz_largest_singular(p, m, H, out);
 }
 
 /* Interpolate at i w as well; next to 0 where that is a pole, which is left

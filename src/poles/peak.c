@@ -24,30 +24,37 @@ double ritz_peak_of_pole(double _Complex pole)
     return gap > 0.0 ? sqrt(gap) : cabs(pole);
 }
 
+ritz_status ritz_largest_singular(int64_t p, int64_t m, double _Complex *H,
+                                  double *out)
+{
+    RITZ_OWN_ARRAY double *sigma = NULL, *spare = NULL;
+    const int64_t count = p < m ? p : m;
+
+    RITZ_CHECK_NEW(sigma, count);
+    RITZ_CHECK_NEW(spare, count);
+    RITZ_REFUSE_IF(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', (int)p, (int)m, H,
+                                  (int)p, sigma, NULL, 1, NULL, 1, spare) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "singular values of a response were not found");
+    *out = sigma[0];
+    return RITZ_OK;
+}
+
 ritz_status ritz_peak_at(ritz_peak *peak, int64_t count, const double *w,
                          double *value)
 {
-    const int p = (int)peak->outputs, m = (int)peak->inputs;
-    const int64_t size = (int64_t)p * m;
+    const int64_t size = peak->outputs * peak->inputs;
     RITZ_OWN_ARRAY double _Complex *H = NULL;
-    RITZ_OWN_ARRAY double *sigma = NULL, *spare = NULL;
 
     for (int64_t k = 0; k < count; k++)
         value[k] = 0.0;
     if (size == 0 || count == 0)
         return RITZ_OK;
     RITZ_CHECK_NEW(H, count * size);
-    RITZ_CHECK_NEW(sigma, p < m ? p : m);
-    RITZ_CHECK_NEW(spare, p < m ? p : m);
     RITZ_CHECK(peak->respond(peak->state, count, w, H));
     for (int64_t k = 0; k < count; k++) {
-        int info =
-            LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', p, m, H + k * size, p,
-                           sigma, NULL, 1, NULL, 1, spare);
-
-        RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                       "singular values of a response were not found");
-        value[k] = sigma[0];
+        RITZ_CHECK(ritz_largest_singular(peak->outputs, peak->inputs,
+                                         H + k * size, &value[k]));
         if (value[k] > peak->value) {
             peak->value = value[k];
             peak->w = w[k];

@@ -28,6 +28,11 @@ typedef struct ritz_peak {
  */
 ritz_status ritz_peak_find(ritz_peak *peak, int64_t count, const double *w);
 
+/** Largest singular value of a p x m response, p and m at least 1.
+ * @param[in,out] H  by columns; overwritten */
+ritz_status ritz_largest_singular(int64_t p, int64_t m, double _Complex *H,
+                                  double *out);
+
 /** Largest singular value at some frequencies; raises `value`, and `w` with it,
  * if one is larger. */
 ritz_status ritz_peak_at(ritz_peak *peak, int64_t count, const double *w,
