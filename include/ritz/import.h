@@ -101,8 +101,8 @@ extern const ritz_unread ritz_unread_formats[];
 /** The format of that table which these bytes look like; NULL: none. */
 const ritz_unread *ritz_unread_find(const char *bytes, int64_t size);
 
-/** @return RITZ_ERR_FORMAT if the bytes look like one of these formats, which
- *         the sentence names */
+/** @return RITZ_ERR_FORMAT if the bytes look like one of these formats; the
+ *         message names it */
 ritz_status ritz_unread_refuse(const char *bytes, int64_t size);
 
 /** Read the bytes of a file once, sum them up and recognise their format. */

@@ -58,7 +58,7 @@ ritz_status ritz_h5_open(const char *path, hid_t *out);
 
 /**
  * Check that values of an open file take no more memory than its size justifies
- * and, if @p read, count their bytes.
+ * and, if @p read, add their bytes to those read so far.
  *
  * @return RITZ_ERR_FORMAT if the values read so far and these take far more
  *         memory than a file of this size holds, as with many links to one data

@@ -122,8 +122,8 @@ static ritz_status find_rounding(const ritz_component *c, double *out)
 }
 
 /*
- * Number of rigid motions, from positions, that K holds by rounding alone; 0 if
- * K holds any translation, or positions are not known.
+ * Number of rigid motions, found from the positions of grids, that K resists by
+ * rounding alone; 0 if K holds any translation, or positions are not known.
  */
 static ritz_status count_free(const ritz_component *c, int64_t *out)
 {

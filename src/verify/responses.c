@@ -140,7 +140,7 @@ bool ritz_reference_factors(const ritz_reference *reference)
 }
 
 /*
- * Response of a component whose damping takes a factorisation of the full
+ * Response of a component whose damping needs a factorisation of the full
  * matrices at each point. If ratios and matrices act together, the damping
  * matrix is full, and a factorisation at each point would take hours; the
  * krylov engine needs only a few.
