@@ -177,6 +177,25 @@ static ritz_status take_gains(ritz_state_pair *p)
     return RITZ_OK;
 }
 
+/* Make A, or the identity if A is {0}, the block of @p out that begins at row
+   and column `at`; earlier columns are complete. */
+static void append_block(const ritz_sparse *A, int64_t rows, int64_t at,
+                         ritz_sparse *out)
+{
+    int64_t next = out->colptr[at];
+
+    for (int64_t j = 0; j < rows; j++) {
+        const int64_t from = A->colptr ? A->colptr[j] : 0;
+        const int64_t to = A->colptr ? A->colptr[j + 1] : 1;
+
+        for (int64_t q = from; q < to; q++) {
+            out->rowind[next] = at + (A->colptr ? A->rowind[q] : j);
+            out->val[next++] = A->colptr ? A->val[q] : 1.0;
+        }
+        out->colptr[at + j + 1] = next;
+    }
+}
+
 /* [A 0; 0 B] of a dense A and a sparse B, either of which may be {0}, the
    identity. */
 static ritz_status join_blocks(const ritz_dense *A, int64_t rows_A,
@@ -184,30 +203,16 @@ static ritz_status join_blocks(const ritz_dense *A, int64_t rows_A,
                                ritz_sparse *out)
 {
     const int64_t n = rows_A + rows_B;
-    int64_t at = 0;
+    RITZ_OWN(ritz_sparse) first = {0};
 
-    RITZ_CHECK(ritz_sparse_new(
-        n, n, rows_A * rows_A + (B->colptr ? B->colptr[rows_B] : rows_B), out));
-    for (int64_t j = 0; j < n; j++) {
-        for (int64_t i = 0; j < rows_A && i < rows_A; i++) {
-            double entry = A->val ? ritz_dense_col(A, j)[i] : i == j;
-
-            if (entry == 0.0)
-                continue;
-            out->rowind[at] = i;
-            out->val[at++] = entry;
-        }
-        if (j >= rows_A && !B->colptr) {
-            out->rowind[at] = j;
-            out->val[at++] = 1.0;
-        }
-        for (int64_t q = j >= rows_A && B->colptr ? B->colptr[j - rows_A] : 0;
-             j >= rows_A && B->colptr && q < B->colptr[j - rows_A + 1]; q++) {
-            out->rowind[at] = rows_A + B->rowind[q];
-            out->val[at++] = B->val[q];
-        }
-        out->colptr[j + 1] = at;
-    }
+    if (A->val)
+        RITZ_CHECK(ritz_sparse_from_dense(A, &first));
+    RITZ_CHECK(ritz_sparse_new(n, n,
+                               (first.colptr ? first.colptr[rows_A] : rows_A) +
+                                   (B->colptr ? B->colptr[rows_B] : rows_B),
+                               out));
+    append_block(&first, rows_A, 0, out);
+    append_block(B, rows_B, rows_A, out);
     return RITZ_OK;
 }
 
