@@ -1,8 +1,8 @@
 /*
- * Columns d, m, k of D, M and K are proportional if d = a m + b k. A column of
- * a D that is a M + b K nearly everywhere gives a and b by least squares, one
- * at a local damper does not; of some columns, spread over all, the a and b are
- * taken that fit the most columns.
+ * Where D is not a M + b K. Columns d, m, k of D, M and K at one dof give a and
+ * b by the least squares of d = a m + b k; at a local damper these fit no other
+ * dof. So a and b are computed at some dofs, spread over all, and those that
+ * fit the most dofs are taken.
  */
 #include "model/local_damping.h"
 
@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 
-/* Products of three columns. */
+/* Scalar products of the columns m, k and d of one dof. */
 typedef struct column_products {
     double mm, kk, mk, md, kd, dd;
 } column_products;
@@ -117,7 +117,7 @@ ritz_status ritz_damping_beyond(const ritz_component *component, int64_t *count,
     RITZ_CHECK_NEW(products, n);
     RITZ_CHECK(multiply_columns(component, products));
     *count = count_beyond(n, products, (proportion){0.0, 0.0}, first);
-    for (int64_t t = 0; t<TRIED && * count> 0; t++) {
+    for (int64_t t = 0; t < TRIED; t++) {
         const proportion by = fit_column(&products[t * (n - 1) / TRIED]);
         int64_t at = -1;
         const int64_t beyond = count_beyond(n, products, by, &at);
