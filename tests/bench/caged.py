@@ -27,29 +27,6 @@ SPACECRAFT = methods.DATA / "dualspin"
 POLES = 1e-5  # that stage two may add to the error of stage one
 EXPORTED = 1e-9
 
-OBLIQUE = """scene: spacecraft with an oblique hinge, caged
-components:
-  rotor: {model: rotor.h5, basis: macneal-rubin, up_to_hz: 60}
-  stator: {model: stator.h5, basis: macneal-rubin, up_to_hz: 60}
-  platform: {model: platform.h5, basis: rigid}
-joints:
-  - {name: clock, between: [rotor/bearing, stator/bearing], type: hinge,
-     axis: [1, 2, 3], angles_deg: [0, 40, 90, 180, 270],
-     state: caged, stiffness: 3000, damping: 30}
-  - {name: cone, between: [stator/scan, platform/scan], type: hinge,
-     axis: [0, 1, 0]}
-inputs:
-  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}
-outputs:
-  - {name: gyro, at: platform/scan, component: 6}
-  - {name: rate, at: rotor/bearing, component: 5, quantity: velocity}
-band_hz: [0, 10]
-damping: {modal: 0.02}
-select: {by: hankel, tolerance: 0.05}
-composite: {tolerance: 1.0e-9}
-augment: system
-"""
-
 
 def bodies(bin_, folder):
     """The three of data/dualspin."""
@@ -137,9 +114,11 @@ def zeta(s):
 class Scene:
     """A scene, its stage one and its full systems."""
 
-    def __init__(self, bin_, folder, name, text, ratio, band):
+    def __init__(self, bin_, folder, name, scene, ratio, band):
         self.bin, self.folder, self.name = bin_, folder, name
-        self.text, self.ratio, self.band = text, ratio, band
+        self.text = (SPACECRAFT / f"{scene}.yaml").read_text().replace(
+            "build/", "")
+        self.ratio, self.band = ratio, band
         self.stage1 = folder / f"{name}-stage1.h5"
         self.full = {}
         methods.run(bin_, "ritz-assemble", self.write("system"), "-o",
@@ -222,9 +201,8 @@ def main():
     with tempfile.TemporaryDirectory() as place:
         folder = pathlib.Path(place)
         bodies(bin_, folder)
-        cages = (SPACECRAFT / "caged.yaml").read_text().replace("build/", "")
-        for scene in (Scene(bin_, folder, "oblique", OBLIQUE, 0.02, 10),
-                      Scene(bin_, folder, "cages", cages, 0.002, 10)):
+        for scene in (Scene(bin_, folder, "oblique", "oblique", 0.02, 10),
+                      Scene(bin_, folder, "cages", "caged", 0.002, 10)):
             for level in ("system", "component"):
                 wrong += scene.table(level)
     return 1 if wrong else 0

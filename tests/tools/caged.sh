@@ -9,27 +9,9 @@
 
 import_spacecraft --port boom=33
 for level in system component; do
-    cat >$level.yaml <<END
-scene: spacecraft with an oblique hinge, caged
-components:
-  rotor: {model: rotor.h5, basis: macneal-rubin, up_to_hz: 60}
-  stator: {model: stator.h5, basis: macneal-rubin, up_to_hz: 60}
-  platform: {model: platform.h5, basis: rigid}
-joints:
-  - {name: clock, between: [rotor/bearing, stator/bearing], type: hinge, axis: [1, 2, 3], angles_deg: [0, 40, 90],
-     state: caged, stiffness: 3000, damping: 30}
-  - {name: cone, between: [stator/scan, platform/scan], type: hinge, axis: [0, 1, 0]}
-inputs:
-  - {name: motor, at: rotor/bearing, component: 6, against: stator/bearing}
-outputs:
-  - {name: gyro, at: platform/scan, component: 6}
-  - {name: rate, at: rotor/bearing, component: 5, quantity: velocity}
-band_hz: [0, 10]
-damping: {modal: 0.02}
-select: {by: hankel, tolerance: 0.05}
-composite: {tolerance: 1.0e-9}
-augment: $level
-END
+    sed -e 's|build/||' -e 's/ 90, 180, 270\]/ 90]/' \
+        -e "s/^augment: .*/augment: $level/" "$data/dualspin/oblique.yaml" \
+        >$level.yaml
 done
 
 # damped.py AT LEVEL: print the largest difference of kept modes' damped poles
