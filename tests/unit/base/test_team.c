@@ -1,0 +1,92 @@
+#include "base/team.h"
+#include "testing.h"
+
+enum { MOST = 4, TASKS = 2000 };
+
+/* What each thread did. */
+typedef struct tally {
+    int64_t done[MOST];
+    int wrong;
+} tally;
+
+/* Every thread counts, and after each meeting finds the counts of all equal. */
+static void count_together(int thread, int threads, void *task)
+{
+    tally *t = task;
+    const int64_t before = t->done[thread];
+
+    for (int64_t step = 1; step <= 3; step++) {
+        t->done[thread]++;
+        ritz_team_meet(threads);
+        for (int k = 0; k < threads; k++)
+            if (t->done[k] != before + step && thread == 0)
+                t->wrong++;
+        ritz_team_meet(threads);
+    }
+}
+
+static void all_threads_work_and_meet(void **state)
+{
+    (void)state;
+    for (int limit = 1; limit <= MOST; limit++) {
+        tally t = {{0}, 0};
+        int threads = 0;
+
+        ritz_set_threads(limit);
+        threads = ritz_team_ready(MOST);
+        assert_true(threads >= 1 && threads <= limit);
+        for (int k = 0; k < TASKS; k++)
+            ritz_team_run(threads, count_together, &t);
+        for (int k = 0; k < threads; k++)
+            assert_int_equal(t.done[k], 3 * TASKS);
+        for (int k = threads; k < MOST; k++)
+            assert_int_equal(t.done[k], 0);
+        assert_int_equal(t.wrong, 0);
+    }
+    ritz_set_threads(1);
+}
+
+static void fewer_threads_than_there_are_may_be_asked_for(void **state)
+{
+    tally t = {{0}, 0};
+
+    (void)state;
+    ritz_set_threads(3);
+    assert_true(ritz_team_ready(2) <= 2);
+    assert_int_equal(ritz_team_ready(0), 1);
+    ritz_team_run(ritz_team_ready(3), count_together, &t);
+    ritz_team_run(ritz_team_ready(2), count_together, &t);
+    assert_int_equal(t.done[0], 6);
+    assert_int_equal(t.wrong, 0);
+    ritz_set_threads(-7);
+    assert_int_equal(ritz_team_ready(MOST), 1);
+    ritz_set_threads(1);
+}
+
+static void parts_cover_everything_once(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads < 9; threads++)
+        for (int64_t count = 0; count < 20; count++) {
+            int64_t end = 0;
+
+            for (int k = 0; k < threads; k++) {
+                int64_t from = 0;
+                int64_t to = 0;
+
+                ritz_team_part(count, k, threads, &from, &to);
+                assert_int_equal(from, end);
+                assert_true(to >= from);
+                end = to;
+            }
+            assert_int_equal(end, count);
+        }
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(all_threads_work_and_meet),
+    cmocka_unit_test(fewer_threads_than_there_are_may_be_asked_for),
+    cmocka_unit_test(parts_cover_everything_once),
+};
+
+TEST_MODULE(team, tests, NULL, NULL)
