@@ -1,5 +1,5 @@
 /*
- * P A P' = L L' by CHOLMOD.
+ * P A P' = L L' by CHOLMOD, packed for solves of many right-hand sides.
  *
  * Whether A is singular must not depend on units: a model mixes N/m with N m.
  * Rounding perturbs A(i,j) by about eps sqrt(A(i,i) A(j,j)), whatever they are
@@ -10,12 +10,14 @@
  * estimated by inverse iteration from the row with the smallest L(j,j)^2 /
  * A(j,j).
  */
+#include "linear/factor.h"
 #include "base/alloc.h"
+#include "base/team.h"
 #include "base/tolerances.h"
+#include "linear/ordering.h"
+#include "linear/supernodal.h"
 
 #include <ritz/matrix.h>
-
-#include <suitesparse/cholmod.h>
 
 #include <inttypes.h>
 #include <math.h>
@@ -23,15 +25,27 @@
 #include <string.h>
 
 enum {
-    BLOCK = 32, /* right-hand sides at once: more gain nothing, cost room */
     SWEEPS = 3, /* of inverse iteration: one finds a lone small eigenvalue */
 };
 
 struct ritz_factor {
+    int64_t n;
+    int64_t *order; /* row of A at each place */
+    ritz_supernodal *S;
+    double *x; /* right-hand sides of one solve, row by row */
+};
+
+/* CHOLMOD's own, while it factors. */
+typedef struct cholesky {
     cholmod_common common;
     cholmod_factor *L;
-    cholmod_dense *X, *Y, *E; /* room for a solve, kept from one to the next */
-};
+} cholesky;
+
+static void cholesky_free(cholesky *C)
+{
+    cholmod_l_free_factor(&C->L, &C->common);
+    cholmod_l_finish(&C->common);
+}
 
 /* Describe A to CHOLMOD without copying; stype -1 reads the lower triangle. */
 static cholmod_sparse view_sparse(const ritz_sparse *A)
@@ -52,19 +66,6 @@ static cholmod_sparse view_sparse(const ritz_sparse *A)
     };
 }
 
-static cholmod_dense view_dense(int64_t nrow, int64_t ncol, double *val)
-{
-    return (cholmod_dense){
-        .nrow = (size_t)nrow,
-        .ncol = (size_t)ncol,
-        .nzmax = (size_t)(nrow * ncol),
-        .d = (size_t)nrow,
-        .x = val,
-        .xtype = CHOLMOD_REAL,
-        .dtype = CHOLMOD_DOUBLE,
-    };
-}
-
 static ritz_status copy_diagonal(const ritz_sparse *A, double *a)
 {
     for (int64_t j = 0; j < A->ncol; j++)
@@ -78,8 +79,8 @@ static ritz_status copy_diagonal(const ritz_sparse *A, double *a)
     return RITZ_OK;
 }
 
-/* d(k) = L(k,k) of a supernodal factor: blocks of columns with common rows. */
-static void supernodal_diagonal(const cholmod_factor *L, double *d)
+/* d(k) = L(k,k): blocks of columns with common rows. */
+static void copy_pivots(const cholmod_factor *L, double *d)
 {
     const int64_t *super = L->super;
     const int64_t *pi = L->pi;
@@ -94,16 +95,6 @@ static void supernodal_diagonal(const cholmod_factor *L, double *d)
     }
 }
 
-/* Pivots of a simplicial factor: the first entry of each column. */
-static void simplicial_diagonal(const cholmod_factor *L, double *d)
-{
-    const int64_t *p = L->p;
-    const double *x = L->x;
-
-    for (size_t k = 0; k < L->n; k++)
-        d[k] = x[p[k]];
-}
-
 /* Smallest L(k,k)^2 / A(k,k), and the row of A where it stands. */
 static ritz_status weakest_pivot(const cholmod_factor *L, const double *a,
                                  double *ratio, int64_t *row)
@@ -112,7 +103,7 @@ static ritz_status weakest_pivot(const cholmod_factor *L, const double *a,
     RITZ_OWN_ARRAY double *d = NULL;
 
     RITZ_CHECK_NEW(d, (int64_t)L->n);
-    (L->is_super ? supernodal_diagonal : simplicial_diagonal)(L, d);
+    copy_pivots(L, d);
     for (size_t k = 0; k < L->n; k++) {
         double r = d[k] * d[k] / a[perm[k]];
 
@@ -144,7 +135,7 @@ static double normalise_vector(int64_t n, double *y)
 static ritz_status smallest_eigenvalue(ritz_factor *F, const double *a,
                                        int64_t row, double *out)
 {
-    int64_t n = (int64_t)F->L->n;
+    const int64_t n = F->n;
     RITZ_OWN(ritz_dense) y = {0};
 
     RITZ_CHECK(ritz_dense_new(n, 1, &y));
@@ -160,18 +151,23 @@ static ritz_status smallest_eigenvalue(ritz_factor *F, const double *a,
     return RITZ_OK;
 }
 
-static ritz_status judge_pivots(ritz_factor *F, const double *a, int64_t *weak)
+/* Pack the factor, and judge whether A was positive definite. */
+static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
+                               int64_t *weak)
 {
-    const int64_t *perm = F->L->Perm;
+    const int64_t *order = C->L->Perm;
     double ratio = HUGE_VAL;
     double lambda = HUGE_VAL;
     int64_t row = -1;
 
-    if (F->common.status == CHOLMOD_NOT_POSDEF) {
-        row = F->L->minor < F->L->n ? perm[F->L->minor] : -1;
+    if (C->common.status == CHOLMOD_NOT_POSDEF) {
+        row = C->L->minor < C->L->n ? order[C->L->minor] : -1;
         lambda = 0.0;
     } else {
-        RITZ_CHECK(weakest_pivot(F->L, a, &ratio, &row));
+        RITZ_CHECK_COPY(F->order, order, F->n);
+        RITZ_CHECK(weakest_pivot(C->L, a, &ratio, &row));
+        RITZ_CHECK(ritz_supernodal_new(C->L, &F->S));
+        cholmod_l_free_factor(&C->L, &C->common);
         if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))
             RITZ_CHECK(smallest_eigenvalue(F, a, row, &lambda));
     }
@@ -182,24 +178,31 @@ static ritz_status judge_pivots(ritz_factor *F, const double *a, int64_t *weak)
     return RITZ_OK;
 }
 
-/* Supernodal or not, and which ordering, CHOLMOD decides by the fill. */
-static ritz_status factorise_sparse(ritz_factor *F, const ritz_sparse *A)
+/* The order of a small matrix CHOLMOD decides by the fill. */
+static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
 {
+    RITZ_OWN_ARRAY int64_t *order = NULL;
     cholmod_sparse view = view_sparse(A);
 
-    cholmod_l_start(&F->common);
-    F->common.print = 0;
-    F->common.final_ll = 1; /* LDL', the default, accepts negative pivots */
-    F->L = cholmod_l_analyze(&view, &F->common);
-    if (F->L)
-        cholmod_l_factorize(&view, F->L, &F->common);
-    RITZ_REFUSE_IF(F->common.status == CHOLMOD_OUT_OF_MEMORY ||
-                       F->common.status == CHOLMOD_TOO_LARGE,
+    cholmod_l_start(&C->common);
+    C->common.print = 0;
+    C->common.final_ll = 1; /* LDL', the default, accepts negative pivots */
+    C->common.supernodal = CHOLMOD_SUPERNODAL;
+    if (A->nrow >= RITZ_ORDER_FROM) {
+        RITZ_CHECK(ritz_ordering_new(A, &order));
+        C->common.nmethods = 1;
+        C->common.method[0].ordering = CHOLMOD_GIVEN;
+    }
+    C->L = cholmod_l_analyze_p(&view, order, NULL, 0, &C->common);
+    if (C->L)
+        cholmod_l_factorize(&view, C->L, &C->common);
+    RITZ_REFUSE_IF(C->common.status == CHOLMOD_OUT_OF_MEMORY ||
+                       C->common.status == CHOLMOD_TOO_LARGE,
                    RITZ_ERR_MEMORY,
                    "no memory for the factor of %" PRId64 " rows", A->nrow);
-    RITZ_REFUSE_IF(F->common.status < 0, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(C->common.status < 0, RITZ_ERR_ARGUMENT,
                    "the matrix cannot be factored, CHOLMOD says %d",
-                   F->common.status);
+                   C->common.status);
     return RITZ_OK;
 }
 
@@ -207,6 +210,7 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
                                  int64_t *weak)
 {
     RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(cholesky) C = {0};
     RITZ_OWN_ARRAY double *a = NULL;
 
     if (weak)
@@ -217,8 +221,10 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
     RITZ_CHECK_NEW(a, A->nrow);
     RITZ_CHECK(copy_diagonal(A, a));
     RITZ_CHECK_NEW(F, 1);
-    RITZ_CHECK(factorise_sparse(F, A));
-    RITZ_CHECK(judge_pivots(F, a, weak));
+    F->n = A->nrow;
+    RITZ_CHECK_NEW(F->x, F->n * RITZ_SOLVE_WIDTH);
+    RITZ_CHECK(factorise_sparse(&C, A));
+    RITZ_CHECK(pack_factor(F, &C, a, weak));
     RITZ_MOVE(*out, F);
     return RITZ_OK;
 }
@@ -228,33 +234,83 @@ ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
     return ritz_factor_spd_weak(A, out, NULL);
 }
 
+/* Columns of X, between them and the rows of F->x, in the factor's order. */
+typedef struct exchange {
+    const ritz_factor *F;
+    double *X;
+    int64_t count, width;
+} exchange;
+
+static void take_columns(int thread, int threads, void *task)
+{
+    const exchange *e = task;
+    int64_t from = 0;
+    int64_t to = 0;
+
+    ritz_team_part(e->F->n, thread, threads, &from, &to);
+    for (int64_t k = from; k < to; k++) {
+        double *x = e->F->x + k * e->width;
+
+        for (int64_t j = 0; j < e->count; j++)
+            x[j] = e->X[e->F->order[k] + j * e->F->n];
+        for (int64_t j = e->count; j < e->width; j++)
+            x[j] = 0.0;
+    }
+}
+
+static void return_columns(int thread, int threads, void *task)
+{
+    const exchange *e = task;
+    int64_t from = 0;
+    int64_t to = 0;
+
+    ritz_team_part(e->F->n, thread, threads, &from, &to);
+    for (int64_t k = from; k < to; k++)
+        for (int64_t j = 0; j < e->count; j++)
+            e->X[e->F->order[k] + j * e->F->n] = e->F->x[k * e->width + j];
+}
+
 ritz_status ritz_factor_solve(ritz_factor *F, ritz_dense *X)
 {
-    int64_t n = (int64_t)F->L->n;
+    RITZ_REFUSE_IF(X->nrow != F->n, RITZ_ERR_ARGUMENT,
+                   "a factor of %" PRId64 " rows meets %" PRId64, F->n,
+                   X->nrow);
+    for (int64_t j = 0; F->n > 0 && j < X->ncol;) {
+        const int threads = ritz_supernodal_threads(F->S);
+        const int64_t left = X->ncol - j;
+        exchange e = {F, ritz_dense_col(X, j), left, RITZ_SOLVE_WIDTH};
 
-    RITZ_REFUSE_IF(X->nrow != n, RITZ_ERR_ARGUMENT,
-                   "a factor of %" PRId64 " rows meets %" PRId64, n, X->nrow);
-    for (int64_t j = 0; n > 0 && j < X->ncol; j += BLOCK) {
-        int64_t k = X->ncol - j < BLOCK ? X->ncol - j : BLOCK;
-        cholmod_dense B = view_dense(n, k, ritz_dense_col(X, j));
-        int solved = cholmod_l_solve2(CHOLMOD_A, F->L, &B, NULL, &F->X, NULL,
-                                      &F->Y, &F->E, &F->common);
-
-        RITZ_REFUSE_IF(!solved, RITZ_ERR_MEMORY, "no memory to solve");
-        memcpy(B.x, F->X->x, (size_t)(n * k) * sizeof *X->val);
+        e.width = left <= RITZ_SOLVE_WIDTH / 2 ? e.width / 2 : e.width;
+        e.count = left < e.width ? left : e.width;
+        ritz_team_run(threads, take_columns, &e);
+        ritz_supernodal_solve(F->S, e.width, F->x);
+        ritz_team_run(threads, return_columns, &e);
+        j += e.count;
     }
     return RITZ_OK;
+}
+
+const int64_t *ritz_factor_order(const ritz_factor *F)
+{
+    return F->order;
+}
+
+void ritz_factor_solve_rows(ritz_factor *F, double *x)
+{
+    ritz_supernodal_solve(F->S, RITZ_SOLVE_WIDTH / 2, x);
+}
+
+int ritz_factor_threads(const ritz_factor *F)
+{
+    return ritz_supernodal_threads(F->S);
 }
 
 void ritz_factor_free(ritz_factor **F)
 {
     if (!*F)
         return;
-    cholmod_l_free_dense(&(*F)->X, &(*F)->common);
-    cholmod_l_free_dense(&(*F)->Y, &(*F)->common);
-    cholmod_l_free_dense(&(*F)->E, &(*F)->common);
-    cholmod_l_free_factor(&(*F)->L, &(*F)->common);
-    cholmod_l_finish(&(*F)->common);
+    ritz_supernodal_free(&(*F)->S);
+    RITZ_FREE((*F)->order, (*F)->x);
     free(*F);
     *F = NULL;
 }

@@ -4,6 +4,8 @@
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/inertia.h"
+#include "linear/ordering.h"
 
 #include <ritz/matrix.h>
 
@@ -42,6 +44,7 @@ enum {
     ROOT_SEQUENTIAL = 12,
     ROOM_PERCENT = 13,
     NULL_PIVOTS = 23,
+    DISCARD_FACTOR = 30,
     THRESHOLD = 0,        /* of CNTL: of pivots, 0 for none */
     NULL_PIVOT_SIZE = 2,  /* of CNTL */
     OUTCOME = 0,          /* of INFOG */
@@ -61,10 +64,12 @@ typedef struct mumps_factor {
         whole; /* one of the matrices is not symmetric: not only its triangle */
     int64_t n, nnz;       /* union of the patterns, entry k at row[k], col[k] */
     MUMPS_INT *row, *col; /* from 1; borrowed by MUMPS, as val is */
+    MUMPS_INT *place;     /* from 1, of each row among the pivots, or NULL */
+    bool counted;         /* pivots alone are wanted: the factor is not kept */
     double *val;          /* width * nnz */
     int64_t count;
     ritz_sparse *A; /* borrowed, all but the array */
-    int64_t *place; /* of each row among the entries of one column */
+    int64_t *at;    /* of each row among the entries of one column */
 } mumps_factor;
 
 struct ritz_ldl {
@@ -227,15 +232,58 @@ static ritz_status analyse_pattern(mumps_factor *F)
         F->id.d.a = F->val;
     else
         F->id.z.a = (void *)F->val;
+    if (F->place) {
+        FIELD(F, icntl)[ORDERING] = 1;
+        FIELD(F, perm_in) = F->place;
+    }
+    FIELD(F, icntl)[DISCARD_FACTOR] = F->counted;
     return run_job(F, ANALYSE);
 }
 
+/* An order of the union of the patterns. */
+static ritz_status order_union(int64_t count, const ritz_sparse *const *A,
+                               int64_t **order)
+{
+    RITZ_OWN(ritz_sparse) sum = {0};
+
+    if (count == 1)
+        return ritz_ordering_new(A[0], order);
+    RITZ_CHECK(ritz_sparse_add(1.0, A[0], 1.0, A[1], &sum));
+    for (int64_t k = 2; k < count; k++) {
+        RITZ_OWN(ritz_sparse) next = {0};
+
+        RITZ_CHECK(ritz_sparse_add(1.0, &sum, 1.0, A[k], &next));
+        ritz_sparse_free(&sum);
+        RITZ_MOVE(sum, next);
+    }
+    return ritz_ordering_new(&sum, order);
+}
+
+/* The places of rows, by the order given or by one that is found. Small and
+   unsymmetric matrices MUMPS orders itself. */
+static ritz_status place_rows(int64_t count, const ritz_sparse *const *A,
+                              const int64_t *order, mumps_factor *F)
+{
+    RITZ_OWN_ARRAY int64_t *found = NULL;
+
+    if (F->n < RITZ_ORDER_FROM || F->whole)
+        return RITZ_OK;
+    if (!order)
+        RITZ_CHECK(order_union(count, A, &found));
+    order = order ? order : found;
+    RITZ_CHECK_NEW(F->place, F->n);
+    for (int64_t k = 0; k < F->n; k++)
+        F->place[order[k]] = (MUMPS_INT)(k + 1);
+    return RITZ_OK;
+}
+
 static ritz_status prepare_factor(int64_t count, const ritz_sparse *const *A,
-                                  mumps_factor *F)
+                                  const int64_t *order, mumps_factor *F)
 {
     RITZ_CHECK(unite_patterns(count, A, F));
+    RITZ_CHECK(place_rows(count, A, order, F));
     RITZ_CHECK_NEW(F->val, F->width * F->nnz);
-    RITZ_CHECK_NEW(F->place, F->n);
+    RITZ_CHECK_NEW(F->at, F->n);
     RITZ_CHECK_NEW(F->A, count);
     for (int64_t k = 0; k < count; k++)
         F->A[k] = *A[k];
@@ -251,14 +299,14 @@ static void add_values(const ritz_sparse *A, double _Complex c, mumps_factor *F)
 
     for (int64_t j = 0; j < F->n; j++) {
         for (; at < F->nnz && F->col[at] == j + 1; at++)
-            F->place[F->row[at] - 1] = at;
+            F->at[F->row[at] - 1] = at;
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             if (!F->whole && A->rowind[p] < j)
                 continue;
             if (F->width == 1)
-                F->val[F->place[A->rowind[p]]] += A->val[p];
+                F->val[F->at[A->rowind[p]]] += A->val[p];
             else
-                z[F->place[A->rowind[p]]] += c * A->val[p];
+                z[F->at[A->rowind[p]]] += c * A->val[p];
         }
     }
 }
@@ -364,7 +412,8 @@ static ritz_status factor_values(mumps_factor *F)
 {
     if (F->n > 0) {
         RITZ_CHECK(run_job(F, FACTOR));
-        RITZ_CHECK(refuse_singular(F));
+        if (!F->counted)
+            RITZ_CHECK(refuse_singular(F));
     }
     F->factored = true;
     return RITZ_OK;
@@ -374,7 +423,7 @@ static void release_factor(mumps_factor *F)
 {
     if (F->started)
         call_mumps(F, END);
-    RITZ_FREE(F->row, F->col, F->val, F->A, F->place);
+    RITZ_FREE(F->row, F->col, F->val, F->A, F->place, F->at);
 }
 
 ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
@@ -384,12 +433,27 @@ ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
 
     RITZ_CHECK_NEW(F, 1);
     F->of.width = 1;
-    RITZ_CHECK(prepare_factor(1, &A, &F->of));
+    RITZ_CHECK(prepare_factor(1, &A, NULL, &F->of));
     add_values(A, 1.0, &F->of);
     RITZ_CHECK(factor_values(&F->of));
     if (negative)
         *negative = A->nrow > 0 ? F->of.id.d.infog[NEGATIVE_PIVOTS] : 0;
     RITZ_MOVE(*out, F);
+    return RITZ_OK;
+}
+
+ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
+                                  int64_t *negative)
+{
+    RITZ_OWN(ritz_ldl) *F = NULL;
+
+    RITZ_CHECK_NEW(F, 1);
+    F->of.width = 1;
+    F->of.counted = true;
+    RITZ_CHECK(prepare_factor(1, &A, order, &F->of));
+    add_values(A, 1.0, &F->of);
+    RITZ_CHECK(factor_values(&F->of));
+    *negative = A->nrow > 0 ? F->of.id.d.infog[NEGATIVE_PIVOTS] : 0;
     return RITZ_OK;
 }
 
@@ -419,7 +483,7 @@ ritz_status ritz_zldl_new(int64_t count, const ritz_sparse *const *A,
     for (int64_t k = 0; k < count; k++)
         F->of.whole = F->of.whole || (A[k]->nrow == A[k]->ncol &&
                                       ritz_sparse_asymmetry(A[k]) > 0.0);
-    RITZ_CHECK(prepare_factor(count, A, &F->of));
+    RITZ_CHECK(prepare_factor(count, A, NULL, &F->of));
     RITZ_MOVE(*out, F);
     return RITZ_OK;
 }

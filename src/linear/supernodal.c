@@ -1,0 +1,656 @@
+#define _DEFAULT_SOURCE /* NOLINT: declares madvise */
+#include "linear/supernodal.h"
+
+#include "base/alloc.h"
+#include "base/team.h"
+#include "linear/tiles.h"
+
+#include <limits.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+enum {
+    LINE = 64,           /* bytes of a line of the cache */
+    HUGE_PAGE = 2 << 20, /* bytes */
+    SHARE = 10,          /* subtrees a thread has, at least, to even them out */
+    WORTHWHILE = 400000, /* entries of L that a second thread is worth */
+    OVERHEAD = 200,      /* of a supernode, in entries */
+    DISCARD = 8 << 20,   /* bytes that are read before they are given back */
+};
+
+/* What one thread has. */
+typedef struct crew {
+    int64_t num_blocks; /* of its subtrees, ascending */
+    int64_t *block;
+    double *top; /* what its subtrees subtract from the top, and then its copy
+                    of the top's solution */
+    /* of one block column: */
+    double *z, *rest;
+    double *sum[2]; /* read by other threads, too */
+} crew;
+
+struct ritz_supernodal {
+    int64_t n;
+    const ritz_tiles *tiles;
+    int threads;
+    int64_t num_blocks;
+    ritz_block_column *block;
+    int32_t *row;
+    double *values; /* 64-byte aligned */
+    size_t bytes;
+    int64_t num_top;  /* rows of the top */
+    int32_t *top_row; /* its rows */
+    double *top;      /* its right-hand sides */
+    int64_t num_shared;
+    int64_t *shared; /* block columns of the top, ascending */
+    crew *crew;
+};
+
+/* The elimination tree of supernodes while L is packed. */
+typedef struct tree {
+    const cholmod_factor *L;
+    int64_t count;
+    int64_t *parent; /* of each supernode, -1 for a root */
+    double *entries; /* in the subtree of each */
+    int *owner;      /* thread, -1 for the top */
+    int32_t *place;  /* of each row among those of the top, or -1 */
+    int64_t *begin;  /* the first block column of each supernode, and an end */
+} tree;
+
+static void tree_free(tree *t)
+{
+    RITZ_FREE(t->parent, t->entries, t->owner, t->place, t->begin);
+}
+
+/* Supernode s of L: its columns, and the rows in them. */
+typedef struct supernode {
+    int64_t first, cols, rows;
+    const int64_t *row;
+    double *values; /* rows x cols */
+} supernode;
+
+static supernode supernode_of(const cholmod_factor *L, int64_t s)
+{
+    const int64_t *super = L->super, *pi = L->pi, *px = L->px;
+    const int64_t *row = L->s;
+    double *x = L->x;
+
+    return (supernode){super[s], super[s + 1] - super[s], pi[s + 1] - pi[s],
+                       row + pi[s], x + px[s]};
+}
+
+/* Parents, and the work in each subtree. */
+static ritz_status survey_tree(tree *t)
+{
+    const cholmod_factor *L = t->L;
+    RITZ_OWN_ARRAY int64_t *of = NULL; /* supernode of each column */
+
+    RITZ_CHECK_NEW(of, (int64_t)L->n);
+    RITZ_CHECK_NEW(t->parent, t->count);
+    RITZ_CHECK_NEW(t->entries, t->count);
+    for (int64_t s = 0; s < t->count; s++) {
+        const supernode node = supernode_of(L, s);
+
+        for (int64_t j = 0; j < node.cols; j++)
+            of[node.first + j] = s;
+    }
+    for (int64_t s = 0; s < t->count; s++) {
+        const supernode node = supernode_of(L, s);
+
+        t->entries[s] += (double)(node.cols * node.rows + OVERHEAD);
+        t->parent[s] =
+            node.rows > node.cols ? of[node.row[node.cols]] : (int64_t)-1;
+        if (t->parent[s] >= 0)
+            t->entries[t->parent[s]] += t->entries[s];
+    }
+    return RITZ_OK;
+}
+
+/*
+ * Whose each supernode is: subtrees below a part of the whole go, from the last
+ * to the first, to the thread with the least work; what is above them is the
+ * top. One thread owns everything.
+ */
+static ritz_status share_tree(ritz_supernodal *S, tree *t)
+{
+    RITZ_OWN_ARRAY double *load = NULL;
+    double whole = 0.0;
+
+    RITZ_CHECK_NEW(load, S->threads);
+    RITZ_CHECK_NEW(t->owner, t->count);
+    for (int64_t s = 0; s < t->count; s++)
+        whole += t->parent[s] < 0 ? t->entries[s] : 0.0;
+    for (int64_t s = t->count - 1; s >= 0; s--) {
+        const int64_t parent = t->parent[s];
+        int least = 0;
+
+        t->owner[s] = parent >= 0 ? t->owner[parent] : -1;
+        if (t->owner[s] >= 0 ||
+            (S->threads > 1 && t->entries[s] * SHARE * S->threads > whole))
+            continue;
+        for (int k = 1; k < S->threads; k++)
+            least = load[k] < load[least] ? k : least;
+        t->owner[s] = least;
+        load[least] += t->entries[s];
+    }
+    return RITZ_OK;
+}
+
+/* Places of the top's rows, ascending. */
+static ritz_status number_top(ritz_supernodal *S, tree *t)
+{
+    RITZ_CHECK_NEW(t->place, S->n);
+    for (int64_t s = 0; s < t->count; s++)
+        S->num_top += t->owner[s] < 0 ? supernode_of(t->L, s).cols : 0;
+    RITZ_CHECK_NEW(S->top_row, S->num_top);
+    S->num_top = 0;
+    for (int64_t s = 0; s < t->count; s++) {
+        const supernode node = supernode_of(t->L, s);
+
+        for (int64_t j = 0; j < node.cols; j++) {
+            t->place[node.first + j] = -1;
+            if (t->owner[s] >= 0)
+                continue;
+            t->place[node.first + j] = (int32_t)S->num_top;
+            S->top_row[S->num_top++] = (int32_t)(node.first + j);
+        }
+    }
+    return RITZ_OK;
+}
+
+static int64_t panels_of(int64_t rows)
+{
+    return (rows + RITZ_TILE - 1) / RITZ_TILE;
+}
+
+/* Numbers of an inverted diagonal block of so many columns: its panels end with
+   the last column that they have. */
+static int64_t diagonal_size(int64_t cols)
+{
+    int64_t size = 0;
+
+    for (int64_t r = 0; r < cols; r += RITZ_TILE)
+        size += RITZ_TILE * (r + RITZ_TILE < cols ? r + RITZ_TILE : cols);
+    return size;
+}
+
+static int64_t blocks_in(const supernode *node)
+{
+    return (node->cols + RITZ_TILE_COLS - 1) / RITZ_TILE_COLS;
+}
+
+/* Block column @p k of a supernode: its columns, and the rows below. */
+static ritz_block_column block_of(const supernode *node, int64_t k)
+{
+    const int64_t from = k * RITZ_TILE_COLS;
+    const int64_t left = node->cols - from;
+    const int64_t cols = left < RITZ_TILE_COLS ? left : RITZ_TILE_COLS;
+
+    return (ritz_block_column){.first = node->first + from,
+                               .cols = cols,
+                               .below = node->rows - from - cols};
+}
+
+static int64_t block_size(const ritz_block_column *b)
+{
+    return diagonal_size(b->cols) + RITZ_TILE * panels_of(b->below) * b->cols;
+}
+
+/* Room for all values, in huge pages where the system has them. */
+static ritz_status map_values(ritz_supernodal *S, int64_t count)
+{
+    const size_t page = HUGE_PAGE;
+    const size_t bytes = ((size_t)count * sizeof(double) + page) / page * page;
+    void *map = MAP_FAILED;
+
+    if (!ritz_alloc_denied || !ritz_alloc_denied())
+        map = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                   MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    RITZ_REFUSE_IF(map == MAP_FAILED, RITZ_ERR_MEMORY,
+                   "no memory for a factor of %zu MB", bytes >> 20);
+    (void)madvise(map, bytes, MADV_HUGEPAGE); /* it costs only speed */
+    S->values = map;
+    S->bytes = bytes;
+    return RITZ_OK;
+}
+
+/* The block columns, without their values and rows. */
+static ritz_status lay_out_blocks(ritz_supernodal *S, tree *t, int64_t *values,
+                                  int64_t *rows)
+{
+    RITZ_CHECK_NEW(t->begin, t->count + 1);
+    for (int64_t s = 0; s < t->count; s++) {
+        const supernode node = supernode_of(t->L, s);
+
+        t->begin[s + 1] = t->begin[s] + blocks_in(&node);
+    }
+    S->num_blocks = t->begin[t->count];
+    RITZ_CHECK_NEW(S->block, S->num_blocks);
+    for (int64_t s = 0; s < t->count; s++) {
+        const supernode node = supernode_of(t->L, s);
+        ritz_block_column *b = S->block + t->begin[s];
+
+        for (int64_t k = 0; k < blocks_in(&node); k++) {
+            b[k] = block_of(&node, k);
+            *values += block_size(&b[k]);
+        }
+        *rows += node.rows;
+    }
+    return RITZ_OK;
+}
+
+/* The rows of each block column, as tiles.h counts them, and the places of its
+   values. */
+static ritz_status place_blocks(ritz_supernodal *S, const tree *t, int64_t rows)
+{
+    double *values = S->values;
+    int32_t *row = NULL;
+
+    RITZ_CHECK_NEW(S->row, rows);
+    row = S->row;
+    for (int64_t s = 0; s < t->count; s++) {
+        const supernode node = supernode_of(t->L, s);
+        ritz_block_column *b = S->block + t->begin[s];
+
+        for (int64_t k = 0; k < node.rows; k++)
+            row[k] = t->place[node.row[k]] < 0 ? (int32_t)node.row[k]
+                                               : ~t->place[node.row[k]];
+        for (int64_t k = 0; k < blocks_in(&node); k++) {
+            b[k].row = row + (node.rows - b[k].below);
+            b[k].diagonal = values;
+            b[k].panel = values + diagonal_size(b[k].cols);
+            values += block_size(&b[k]);
+        }
+        row += node.rows;
+    }
+    return RITZ_OK;
+}
+
+/* D := L^-1 of the lower triangle of a block, n x n, D zero before. */
+static void invert_triangle(int64_t n, const double *L, int64_t stride,
+                            double *D)
+{
+    for (int64_t j = 0; j < n; j++) {
+        double *d = D + j * n;
+
+        d[j] = 1.0;
+        for (int64_t k = j; k < n; k++) {
+            const double *l = L + k * stride;
+
+            d[k] /= l[k];
+            for (int64_t i = k + 1; i < n; i++)
+                d[i] -= l[i] * d[k];
+        }
+    }
+}
+
+/* Panels of the rows [0, rows) of `cols` columns; those of a triangle end with
+   the last column that they have. */
+static void pack_panels(int64_t rows, int64_t cols, bool triangle,
+                        const double *from, int64_t stride, double *to)
+{
+    for (int64_t r = 0; r < rows; r += RITZ_TILE) {
+        const int64_t count = rows - r < RITZ_TILE ? rows - r : RITZ_TILE;
+        const int64_t end = triangle ? r + count : cols;
+
+        for (int64_t j = 0; j < end; j++, to += RITZ_TILE)
+            for (int64_t i = 0; i < count; i++)
+                to[i] = from[r + i + j * stride];
+    }
+}
+
+static void pack_block(const supernode *node, const ritz_block_column *b,
+                       double *to)
+{
+    const int64_t at = b->first - node->first;
+    const double *L = node->values + at + at * node->rows;
+    double D[RITZ_TILE_COLS * RITZ_TILE_COLS];
+
+    memset(D, 0, (size_t)(b->cols * b->cols) * sizeof *D);
+    invert_triangle(b->cols, L, node->rows, D);
+    pack_panels(b->cols, b->cols, true, D, b->cols, to);
+    pack_panels(b->below, b->cols, false, L + b->cols, node->rows,
+                to + diagonal_size(b->cols));
+}
+
+/* Give the whole pages of [*from, to) back, what they hold being read. */
+static void discard_pages(char **from, char *to)
+{
+    const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
+    const uintptr_t begin = ((uintptr_t)*from + page - 1) / page * page;
+    const uintptr_t end = (uintptr_t)to / page * page;
+
+    if (end > begin) /* it costs only memory if that cannot be done */
+        (void)madvise(*from + (begin - (uintptr_t)*from), end - begin,
+                      MADV_DONTNEED);
+    *from = to;
+}
+
+typedef struct packing {
+    ritz_supernodal *S;
+    const tree *t;
+} packing;
+
+/* The first supernode whose values end behind this part of all. */
+static int64_t supernode_behind(const tree *t, int64_t thread, int64_t threads)
+{
+    const int64_t *px = t->L->px;
+    const int64_t at = px[t->count] * thread / threads;
+    int64_t low = 0;
+    int64_t high = t->count;
+
+    while (low < high) {
+        const int64_t middle = (low + high) / 2;
+
+        if (px[middle + 1] > at)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+static void pack_part(int thread, int threads, void *task)
+{
+    const packing *P = task;
+    const tree *t = P->t;
+    const int64_t from = supernode_behind(t, thread, threads);
+    const int64_t to = thread + 1 == threads
+                           ? t->count
+                           : supernode_behind(t, thread + 1, threads);
+    char *read = NULL;
+
+    for (int64_t s = from; s < to; s++) {
+        const supernode node = supernode_of(t->L, s);
+        char *end = (char *)(node.values + node.rows * node.cols);
+
+        read = read ? read : (char *)node.values;
+        for (int64_t k = t->begin[s]; k < t->begin[s + 1]; k++) {
+            const ritz_block_column *b = &P->S->block[k];
+
+            pack_block(&node, b, P->S->values + (b->diagonal - P->S->values));
+        }
+        if (end - read >= DISCARD)
+            discard_pages(&read, end);
+    }
+}
+
+/* Lists of each thread's block columns and of the shared ones. */
+static ritz_status list_blocks(ritz_supernodal *S, const tree *t)
+{
+    RITZ_CHECK_NEW(S->crew, S->threads);
+    RITZ_CHECK_NEW(S->shared, S->num_blocks);
+    for (int k = 0; k < S->threads; k++)
+        RITZ_CHECK_NEW(S->crew[k].block, S->num_blocks);
+    for (int64_t s = 0; s < t->count; s++)
+        for (int64_t b = t->begin[s]; b < t->begin[s + 1]; b++) {
+            crew *c = S->crew + (t->owner[s] < 0 ? 0 : t->owner[s]);
+
+            if (t->owner[s] < 0)
+                S->shared[S->num_shared++] = b;
+            else
+                c->block[c->num_blocks++] = b;
+        }
+    return RITZ_OK;
+}
+
+/* Room for a solve, so that none fails. */
+static ritz_status make_room(ritz_supernodal *S)
+{
+    const int64_t block = (int64_t)RITZ_TILE_COLS * RITZ_SOLVE_WIDTH;
+
+    RITZ_CHECK_NEW(S->top, 2 * S->num_top * RITZ_SOLVE_WIDTH);
+    for (int k = 0; k < S->threads; k++) {
+        crew *c = &S->crew[k];
+
+        RITZ_CHECK_NEW(c->top, S->num_top * RITZ_SOLVE_WIDTH);
+        RITZ_CHECK_NEW(c->z, 4 * block);
+        c->sum[0] = c->z + block;
+        c->sum[1] = c->z + 2 * block;
+        c->rest = c->z + 3 * block;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status pack_factor(const cholmod_factor *L, ritz_supernodal *S)
+{
+    RITZ_OWN(tree) t = {.L = L, .count = (int64_t)L->nsuper};
+    int64_t values = 0;
+    int64_t rows = 0;
+
+    RITZ_CHECK(survey_tree(&t));
+    RITZ_CHECK(share_tree(S, &t));
+    RITZ_CHECK(number_top(S, &t));
+    RITZ_CHECK(lay_out_blocks(S, &t, &values, &rows));
+    RITZ_CHECK(list_blocks(S, &t));
+    RITZ_CHECK(make_room(S));
+    RITZ_CHECK(map_values(S, values));
+    RITZ_CHECK(place_blocks(S, &t, rows));
+    ritz_team_run(S->threads, pack_part, &(packing){S, &t});
+    return RITZ_OK;
+}
+
+ritz_status ritz_supernodal_new(cholmod_factor *L, ritz_supernodal **out)
+{
+    RITZ_OWN(ritz_supernodal) *S = NULL;
+    const int64_t most = 1 + (int64_t)L->xsize / WORTHWHILE;
+
+    RITZ_REFUSE_IF(L->n > INT32_MAX - 1, RITZ_ERR_ARGUMENT,
+                   "%zu rows are more than a factor can have", L->n);
+    RITZ_CHECK_NEW(S, 1);
+    S->n = (int64_t)L->n;
+    S->tiles = ritz_tiles_here();
+    S->threads = ritz_team_ready(most < INT_MAX ? (int)most : INT_MAX);
+    if (S->n > 0)
+        RITZ_CHECK(pack_factor(L, S));
+    RITZ_MOVE(*out, S);
+    return RITZ_OK;
+}
+
+typedef struct solving {
+    ritz_supernodal *S;
+    const ritz_tile_width *tile;
+    double *x;
+} solving;
+
+/* Panels of B that this thread works on. */
+static void share_panels(const ritz_block_column *b, int thread, int threads,
+                         int64_t *from, int64_t *to)
+{
+    ritz_team_part(panels_of(b->below), thread, threads, from, to);
+}
+
+/* x := L^-1 x in the rows of this thread's subtrees. */
+static void descend_subtrees(const solving *s, const crew *c)
+{
+    const int64_t width = s->tile->width;
+
+    for (int64_t k = 0; k < c->num_blocks; k++) {
+        const ritz_block_column *b = &s->S->block[c->block[k]];
+        double *x = s->x + b->first * width;
+
+        s->tile->lower(b, x, c->z);
+        memcpy(x, c->z, (size_t)(b->cols * width) * sizeof *x);
+        s->tile->scatter(b, 0, panels_of(b->below), c->z, s->x, c->top);
+    }
+}
+
+/* x := L'^-1 x there, with the solution of the top in c->top. */
+static void ascend_subtrees(const solving *s, const crew *c)
+{
+    const int64_t width = s->tile->width;
+
+    for (int64_t k = c->num_blocks; k-- > 0;) {
+        const ritz_block_column *b = &s->S->block[c->block[k]];
+        double *x = s->x + b->first * width;
+        double *sum = c->rest;
+
+        memset(sum, 0, (size_t)(b->cols * width) * sizeof *sum);
+        s->tile->gather(b, 0, panels_of(b->below), s->x, c->top, sum);
+        for (int64_t i = 0; i < b->cols * width; i++)
+            sum[i] = x[i] - sum[i];
+        s->tile->upper(b, sum, c->z);
+        memcpy(x, c->z, (size_t)(b->cols * width) * sizeof *x);
+    }
+}
+
+/* The place of a shared block column's rows among those of the top: rows of a
+   supernode follow each other there, too. */
+static int64_t place_in_top(const ritz_supernodal *S,
+                            const ritz_block_column *b)
+{
+    int64_t low = 0;
+    int64_t high = S->num_top;
+
+    while (low < high) {
+        const int64_t middle = (low + high) / 2;
+
+        if (S->top_row[middle] < b->first)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The top's right-hand sides, with what all subtrees subtract from them. */
+static void collect_top(const solving *s, int thread, int threads)
+{
+    const ritz_supernodal *S = s->S;
+    const int64_t width = s->tile->width;
+    int64_t from = 0;
+    int64_t to = 0;
+
+    ritz_team_part(S->num_top, thread, threads, &from, &to);
+    for (int64_t k = from; k < to; k++)
+        for (int64_t c = 0; c < width; c++) {
+            double sum = s->x[S->top_row[k] * width + c];
+
+            for (int t = 0; t < threads; t++)
+                sum += S->crew[t].top[k * width + c];
+            S->top[k * width + c] = sum;
+        }
+}
+
+/*
+ * Forward in the top. Every thread solves the diagonal block for itself, which
+ * is cheaper than to wait for another, and subtracts its panels' part. The
+ * first one keeps the solution, behind the right-hand sides.
+ */
+static void descend_top(const solving *s, int thread, int threads)
+{
+    const ritz_supernodal *S = s->S;
+    const int64_t width = s->tile->width;
+    const crew *c = &S->crew[thread];
+    double *solved = S->top + S->num_top * width;
+
+    for (int64_t k = 0; k < S->num_shared; k++) {
+        const ritz_block_column *b = &S->block[S->shared[k]];
+        const int64_t at = place_in_top(S, b) * width;
+        int64_t from = 0;
+        int64_t to = 0;
+
+        share_panels(b, thread, threads, &from, &to);
+        s->tile->lower(b, S->top + at, c->z);
+        if (thread == 0)
+            memcpy(solved + at, c->z, (size_t)(b->cols * width) * sizeof *c->z);
+        s->tile->scatter(b, from, to, c->z, NULL, S->top);
+        ritz_team_meet(threads);
+    }
+}
+
+/*
+ * Backward. Every thread has the solution for itself in c->top; sums over its
+ * panels are met by those of the others, in one of two places in turn, so that
+ * none is written to while another thread may still read it.
+ */
+static void ascend_top(const solving *s, int thread, int threads)
+{
+    const ritz_supernodal *S = s->S;
+    const int64_t width = s->tile->width;
+    const crew *c = &S->crew[thread];
+    const double *solved = S->top + S->num_top * width;
+
+    for (int64_t k = S->num_shared; k-- > 0;) {
+        const ritz_block_column *b = &S->block[S->shared[k]];
+        const int64_t at = place_in_top(S, b) * width;
+        const int64_t count = b->cols * width;
+        double *sum = c->sum[k % 2];
+        double *rest = c->rest;
+        int64_t from = 0;
+        int64_t to = 0;
+
+        share_panels(b, thread, threads, &from, &to);
+        memset(sum, 0, (size_t)count * sizeof *sum);
+        s->tile->gather(b, from, to, NULL, c->top, sum);
+        ritz_team_meet(threads);
+        memcpy(rest, solved + at, (size_t)count * sizeof *rest);
+        for (int t = 0; t < threads; t++)
+            for (int64_t i = 0; i < count; i++)
+                rest[i] -= S->crew[t].sum[k % 2][i];
+        s->tile->upper(b, rest, c->z);
+        memcpy(c->top + at, c->z, (size_t)count * sizeof *rest);
+    }
+}
+
+/* This thread's part of the top's solution, into x. */
+static void return_top(const solving *s, int thread, int threads)
+{
+    const ritz_supernodal *S = s->S;
+    const int64_t width = s->tile->width;
+    int64_t from = 0;
+    int64_t to = 0;
+
+    ritz_team_part(S->num_top, thread, threads, &from, &to);
+    for (int64_t k = from; k < to; k++)
+        memcpy(s->x + S->top_row[k] * width, S->crew[thread].top + k * width,
+               (size_t)width * sizeof *s->x);
+}
+
+static void solve_part(int thread, int threads, void *task)
+{
+    const solving *s = task;
+    const crew *c = &s->S->crew[thread];
+    const int64_t size = s->S->num_top * s->tile->width;
+
+    memset(c->top, 0, (size_t)size * sizeof *c->top);
+    descend_subtrees(s, c);
+    if (threads > 1) {
+        ritz_team_meet(threads);
+        collect_top(s, thread, threads);
+        ritz_team_meet(threads);
+        descend_top(s, thread, threads);
+        ascend_top(s, thread, threads);
+        return_top(s, thread, threads);
+    }
+    ascend_subtrees(s, c);
+}
+
+void ritz_supernodal_solve(ritz_supernodal *S, int64_t width, double *x)
+{
+    const int k = width == S->tiles->of[0].width ? 0 : 1;
+
+    if (S->n > 0)
+        ritz_team_run(S->threads, solve_part,
+                      &(solving){S, &S->tiles->of[k], x});
+}
+
+int ritz_supernodal_threads(const ritz_supernodal *S)
+{
+    return S->threads;
+}
+
+void ritz_supernodal_free(ritz_supernodal **S)
+{
+    if (!*S)
+        return;
+    for (int k = 0; (*S)->crew && k < (*S)->threads; k++)
+        RITZ_FREE((*S)->crew[k].block, (*S)->crew[k].top, (*S)->crew[k].z);
+    RITZ_FREE((*S)->block, (*S)->row, (*S)->top_row, (*S)->top, (*S)->shared,
+              (*S)->crew);
+    if ((*S)->values)
+        munmap((*S)->values, (*S)->bytes);
+    free(*S);
+    *S = NULL;
+}

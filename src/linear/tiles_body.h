@@ -1,0 +1,228 @@
+/*
+ * The kernels of tiles.h for vectors of LANES numbers: tiles_2.c, tiles_4.c and
+ * tiles_8.c include this file, each compiled for the processors that have such
+ * vectors.
+ *
+ * STRIP columns of a block are worked on at once and ROWS rows of a panel, so
+ * that ROWS x STRIP sums stay in registers: 16 of them hold 4 x 2 vectors, and
+ * 32 hold 8 x 2.
+ */
+#include "linear/tiles.h"
+
+#include <string.h>
+
+#define INLINE static inline __attribute__((always_inline))
+
+typedef double vector
+    __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+
+enum {
+    T = RITZ_TILE,
+    ROWS = LANES == 8 ? 8 : 4,
+    MOST = LANES == 8 ? 16 : 2 * LANES, /* columns at once */
+};
+
+/* What one strip of `width` columns is, at most MOST of them. */
+#define STRIP(width) ((width) < MOST ? (width) : MOST)
+
+/* y := a x, a one panel of k columns, x k x width, y 8 x width. */
+INLINE void multiply_panel(const int64_t width, const double *a, int64_t k,
+                           const double *x, double *y)
+{
+    enum { VECTORS = MOST / LANES };
+    const int64_t vectors = STRIP(width) / LANES;
+
+    for (int64_t c = 0; c < width; c += STRIP(width))
+        for (int64_t r = 0; r < T; r += ROWS) {
+            vector sum[ROWS][VECTORS] = {0};
+
+            for (int64_t j = 0; j < k; j++) {
+                const double *from = x + j * width + c;
+                vector b[VECTORS];
+
+                for (int64_t v = 0; v < vectors; v++)
+                    b[v] = *(const vector *)(from + v * LANES);
+                for (int i = 0; i < ROWS; i++)
+                    for (int64_t v = 0; v < vectors; v++)
+                        sum[i][v] += a[T * j + r + i] * b[v];
+            }
+            for (int i = 0; i < ROWS; i++)
+                for (int64_t v = 0; v < vectors; v++)
+                    *(vector *)(y + (r + i) * width + c + v * LANES) =
+                        sum[i][v];
+        }
+}
+
+/* z += a'y, a one panel of k columns, y 8 x width, z k x width. */
+INLINE void add_transposed(const int64_t width, const double *a, int64_t k,
+                           const double *y, double *z)
+{
+    enum { VECTORS = MOST / LANES };
+    const int64_t vectors = STRIP(width) / LANES;
+
+    for (int64_t c = 0; c < width; c += STRIP(width))
+        for (int64_t r = 0; r < T; r += ROWS) {
+            vector x[ROWS][VECTORS];
+
+            for (int i = 0; i < ROWS; i++)
+                for (int64_t v = 0; v < vectors; v++)
+                    x[i][v] =
+                        *(const vector *)(y + (r + i) * width + c + v * LANES);
+            for (int64_t j = 0; j < k; j++) {
+                double *to = z + j * width + c;
+
+                for (int64_t v = 0; v < vectors; v++) {
+                    vector sum = *(vector *)(to + v * LANES);
+
+                    for (int i = 0; i < ROWS; i++)
+                        sum += a[T * j + r + i] * x[i][v];
+                    *(vector *)(to + v * LANES) = sum;
+                }
+            }
+        }
+}
+
+/* y := row of x or of the top; and back, y taken from it. */
+INLINE const double *row_at(const int64_t width, int32_t row, const double *x,
+                            const double *top)
+{
+    return row >= 0 ? x + row * width : top + (int64_t)~row * width;
+}
+
+INLINE void subtract_row(const int64_t width, const double *y, double *to)
+{
+    for (int64_t c = 0; c < width; c += LANES)
+        *(vector *)(to + c) -= *(const vector *)(y + c);
+}
+
+INLINE int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+INLINE void lower(const int64_t width, const ritz_block_column *b,
+                  const double *x, double *z)
+{
+    const double *a = b->diagonal;
+
+    for (int64_t r = 0; r < b->cols; r += T) {
+        const int64_t end = least(r + T, b->cols);
+
+        multiply_panel(width, a, end, x, z + r * width);
+        a += T * end;
+    }
+}
+
+INLINE void upper(const int64_t width, const ritz_block_column *b,
+                  const double *x, double *z)
+{
+    const double *a = b->diagonal;
+
+    memset(z, 0, (size_t)(b->cols * width) * sizeof *z);
+    for (int64_t r = 0; r < b->cols; r += T) {
+        const int64_t end = least(r + T, b->cols);
+        double y[T * 16] = {0};
+
+        memcpy(y, x + r * width, (size_t)((end - r) * width) * sizeof *y);
+        add_transposed(width, a, end, y, z);
+        a += T * end;
+    }
+}
+
+INLINE void scatter(const int64_t width, const ritz_block_column *b,
+                    int64_t from, int64_t to, const double *z, double *x,
+                    double *top)
+{
+    for (int64_t p = from; p < to; p++) {
+        const int64_t count = least(T, b->below - p * T);
+        double y[T * 16];
+
+        multiply_panel(width, b->panel + p * T * b->cols, b->cols, z, y);
+        for (int64_t i = 0; i < count; i++) {
+            const int32_t row = b->row[p * T + i];
+
+            subtract_row(width, y + i * width,
+                         row >= 0 ? x + row * width
+                                  : top + (int64_t)~row * width);
+        }
+    }
+}
+
+INLINE void gather(const int64_t width, const ritz_block_column *b,
+                   int64_t from, int64_t to, const double *x, const double *top,
+                   double *z)
+{
+    for (int64_t p = from; p < to; p++) {
+        const int64_t count = least(T, b->below - p * T);
+        double y[T * 16] = {0};
+
+        for (int64_t i = 0; i < count; i++)
+            memcpy(y + i * width, row_at(width, b->row[p * T + i], x, top),
+                   (size_t)width * sizeof *y);
+        add_transposed(width, b->panel + p * T * b->cols, b->cols, y, z);
+    }
+}
+
+/* The functions of one width. */
+#define WIDTH(p)                                                               \
+    static void lower_##p(const ritz_block_column *b, const double *x,         \
+                          double *z)                                           \
+    {                                                                          \
+        lower(p, b, x, z);                                                     \
+    }                                                                          \
+    static void upper_##p(const ritz_block_column *b, const double *x,         \
+                          double *z)                                           \
+    {                                                                          \
+        upper(p, b, x, z);                                                     \
+    }                                                                          \
+    static void scatter_##p(const ritz_block_column *b, int64_t from,          \
+                            int64_t to, const double *z, double *x,            \
+                            double *top)                                       \
+    {                                                                          \
+        scatter(p, b, from, to, z, x, top);                                    \
+    }                                                                          \
+    static void gather_##p(const ritz_block_column *b, int64_t from,           \
+                           int64_t to, const double *x, const double *top,     \
+                           double *z)                                          \
+    {                                                                          \
+        gather(p, b, from, to, x, top, z);                                     \
+    }
+
+WIDTH(8)
+WIDTH(16)
+
+static void inner_8(int64_t rows, const double *A, const double *X, double *C)
+{
+    multiply_panel(T, A, rows, X, C);
+}
+
+static void outer_8(int64_t rows, const double *A, const double *C, double *X)
+{
+    add_transposed(T, A, rows, C, X);
+}
+
+static void times_8(int64_t from, int64_t to, const int64_t *start,
+                    const int32_t *col, const double *val, const double *X,
+                    double *Y)
+{
+    for (int64_t i = from; i < to; i++) {
+        vector sum[T / LANES] = {0};
+
+        for (int64_t k = start[i]; k < start[i + 1]; k++)
+            for (int64_t v = 0; v < T / LANES; v++)
+                sum[v] += val[k] * *(const vector *)(X + T * (int64_t)col[k] +
+                                                     v * LANES);
+        for (int64_t v = 0; v < T / LANES; v++)
+            *(vector *)(Y + T * i + v * LANES) = sum[v];
+    }
+}
+
+#define TILES(lanes, bits)                                                     \
+    const ritz_tiles ritz_tiles_##lanes = {                                    \
+        .name = #bits " bit",                                                  \
+        .of = {{8, lower_8, upper_8, scatter_8, gather_8},                     \
+               {16, lower_16, upper_16, scatter_16, gather_16}},               \
+        .inner = inner_8,                                                      \
+        .outer = outer_8,                                                      \
+        .times = times_8,                                                      \
+    };

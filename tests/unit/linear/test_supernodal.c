@@ -1,0 +1,148 @@
+#include "fixtures/lattice.h"
+#include "linear/inertia.h"
+#include "linear/ordering.h"
+#include "linear/tiles.h"
+#include "testing.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+enum { EDGE = 20, POINTS = EDGE * EDGE * EDGE };
+
+static const double ground = 0.01;
+
+/* X := A^-1 A X and its distance from X; the same bits again. */
+static double solve_twice(const ritz_sparse *A, ritz_factor *F, int64_t columns)
+{
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0}, Z = {0};
+    double worst = 0.0;
+
+    assert_ok(ritz_dense_new(POINTS, columns, &X));
+    for (int64_t i = 0; i < POINTS * columns; i++)
+        X.val[i] = sin((double)(i + 1));
+    assert_ok(ritz_sparse_mul(A, &X, &Y));
+    assert_ok(ritz_dense_copy(&Y, &Z));
+    assert_ok(ritz_factor_solve(F, &Y));
+    assert_ok(ritz_factor_solve(F, &Z));
+    for (int64_t i = 0; i < POINTS * columns; i++)
+        worst = fmax(worst, fabs(Y.val[i] - X.val[i]));
+    assert_memory_equal(Y.val, Z.val, (size_t)(POINTS * columns) * 8);
+    return worst;
+}
+
+/*
+ * Errors are at most the condition number, 12.01 / 0.06, times some eps for
+ * each of the few sums that an entry takes part in.
+ */
+static void any_threads_and_any_kernel_solve(void **state)
+{
+    const char *const bits[] = {"128", "256", "512"};
+    const int64_t columns[] = {1, 7, 8, 9, 16, 20};
+    const double bound = 200.0 * 16.0 * DBL_EPSILON;
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+
+    (void)state;
+    lattice_new(EDGE, ground, &K, &M);
+    for (int threads = 1; threads <= 3; threads++)
+        for (size_t b = 0; b < 3; b++) {
+            RITZ_OWN(ritz_factor) *F = NULL;
+
+            setenv("RITZ_TILES", bits[b], 1);
+            ritz_set_threads(threads);
+            assert_ok(ritz_factor_spd(&K, &F));
+            for (size_t c = 0; c < 6; c++)
+                assert_near(solve_twice(&K, F, columns[c]), 0.0, bound);
+        }
+    unsetenv("RITZ_TILES");
+    ritz_set_threads(1);
+}
+
+/* Every row has one place; rows of one pattern that follow each other stay
+   together. */
+static void an_order_is_a_permutation_of_grids(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0}, both = {0};
+    int64_t *order = NULL;
+    int64_t *place = calloc(2 * POINTS, sizeof *place);
+    int64_t *row = NULL;
+
+    (void)state;
+    assert_non_null(place);
+    lattice_new(EDGE, ground, &K, &M);
+    /* each point has the two dofs 2 i and 2 i + 1, which are coupled */
+    assert_ok(
+        ritz_sparse_new(2 * POINTS, 2 * POINTS, 4 * K.colptr[POINTS], &both));
+    row = both.rowind;
+    for (int64_t j = 0; j < 2 * POINTS; j++) {
+        for (int64_t p = K.colptr[j / 2]; p < K.colptr[j / 2 + 1]; p++) {
+            *row++ = 2 * K.rowind[p];
+            *row++ = 2 * K.rowind[p] + 1;
+        }
+        both.colptr[j + 1] = row - both.rowind;
+    }
+    assert_ok(ritz_ordering_new(&both, &order));
+    for (int64_t k = 0; k < 2 * POINTS; k++)
+        place[order[k]] += k + 1;
+    for (int64_t i = 0; i < POINTS; i++)
+        assert_int_equal(place[2 * i + 1], place[2 * i] + 1);
+    for (int64_t k = 0; k < 2 * POINTS; k++)
+        assert_int_equal(order[place[k] - 1], k);
+    free(order);
+    free(place);
+}
+
+/* As many negative pivots as eigenvalues below the shift, in whichever order
+   the rows are taken. */
+static void inertia_counts_eigenvalues(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    double *lambda = lattice_eigenvalues(14, 0.0);
+    int64_t *order = NULL;
+
+    (void)state;
+    lattice_new(14, 0.0, &K, &M);
+    assert_ok(ritz_ordering_new(&K, &order));
+    for (int64_t k = 1; k < 2000; k += 331) {
+        RITZ_OWN(ritz_sparse) A = {0};
+        int64_t below = 0;
+        int64_t count = 0;
+        const double shift = lambda[k] + 1e-7;
+
+        while (lambda[below] < shift)
+            below++;
+        assert_ok(ritz_sparse_add(1.0, &K, -shift, &M, &A));
+        assert_ok(ritz_inertia_negative(&A, order, &count));
+        assert_int_equal(count, below);
+        assert_ok(ritz_inertia_negative(&A, NULL, &count));
+        assert_int_equal(count, below);
+    }
+    free(order);
+    free(lambda);
+}
+
+static ritz_status order_and_count(const ritz_sparse *A)
+{
+    RITZ_OWN(ritz_factor) *F = NULL;
+    int64_t negative = 0;
+
+    RITZ_CHECK(ritz_factor_spd(A, &F));
+    return ritz_inertia_negative(A, NULL, &negative);
+}
+
+static void no_allocation_failure_leaks(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+
+    (void)state;
+    lattice_new(13, ground, &K, &M);
+    assert_survives_every_allocation(order_and_count(&K));
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(any_threads_and_any_kernel_solve),
+    cmocka_unit_test(an_order_is_a_permutation_of_grids),
+    cmocka_unit_test(inertia_counts_eigenvalues),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
+
+TEST_MODULE(supernodal, tests, NULL, NULL)
