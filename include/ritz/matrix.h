@@ -345,6 +345,8 @@ typedef struct ritz_pairs {
 typedef struct ritz_span {
     int64_t modes;   /* number of flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
+    bool arpack;     /* one vector at a time, by ARPACK, to compare with */
+    bool uncounted;  /* the proof that none is missing is left out */
 } ritz_span;
 
 /**

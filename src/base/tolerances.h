@@ -271,6 +271,15 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
+/* Convergence of block Lanczos: |A^-1 M x - theta x| / theta |x|. Vectors are
+   an inverse iteration better. */
+#define RITZ_LANCZOS_SETTLED 1e-10
+/* A column of a block that keeps less than this part of its square depends on
+   the others: half of the digits of its length are lost in the sums. */
+#define RITZ_GRAM_DEPENDENT 1e-10
+/* What is left of a vector below this part of its length is rounding of sums
+   over all rows. */
+#define RITZ_NO_DIRECTION 1e-13
 /* Entries of a vector this near to its largest are as large: the first of them
    gives the sign, on every processor. */
 #define RITZ_LIKE_LARGEST 1e-9

@@ -14,10 +14,15 @@
  * Held to: bars and membranes in closed form, free, clamped, with double modes
  * and with dofs without mass.
  */
+#include "linear/eigen_sparse.h"
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
+#include "linear/block_lanczos.h"
+#include "linear/factor.h"
 #include "linear/general.h"
+#include "linear/inertia.h"
+#include "linear/residuals.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -32,7 +37,9 @@ enum {
     MEDIUM = 4000, /* dense where a quarter of all modes is wanted */
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
-    SPARE = 4,     /* modes asked for beyond those needed */
+    GUESS = 20,    /* flexible modes up to a frequency, if none are counted */
+    BEHIND = 2,    /* modes asked for behind those needed, to count between */
+    SPARE = 4,     /* the same, where some were missed */
     MISSES = 3,
     POLISHES = 3, /* inverse iterations, most often one */
 };
@@ -42,6 +49,7 @@ typedef struct search {
     double limit;   /* of lambda by frequency, a little above */
     int64_t target; /* modes below limit */
     ritz_shifted S;
+    int64_t *order; /* of the factor, kept for the count */
     double typical; /* median of K_jj / M_jj, 1 if there is none */
     int64_t *heavy; /* columns of M that are not zero */
     int64_t num_heavy;
@@ -54,7 +62,7 @@ typedef struct search {
 
 static void search_free(search *s)
 {
-    free(s->heavy);
+    RITZ_FREE(s->heavy, s->order);
     ritz_factor_free(&s->S.A);
     ritz_pairs_free(&s->found);
 }
@@ -83,55 +91,6 @@ static ritz_status survey_pencil(search *s)
     qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s->typical = count > 0 ? ratio[count / 2] : 1.0;
     return RITZ_OK;
-}
-
-/* Residual of one pair, as ritz_pairs defines it; *energy = |x|'|K||x|. */
-static double residual_of(const ritz_shifted *S, const double *x, double lambda,
-                          double *energy)
-{
-    const ritz_sparse *K = S->K;
-    const ritz_sparse *M = S->M;
-    double gap = 0.0;
-    double size = 0.0;
-
-    *energy = 0.0;
-    for (int64_t j = 0; j < K->ncol; j++) {
-        double g = 0.0;
-        double k = 0.0;
-        double m = 0.0;
-
-        for (int64_t p = K->colptr[j]; p < K->colptr[j + 1]; p++) {
-            g += K->val[p] * x[K->rowind[p]];
-            k += fabs(K->val[p] * x[K->rowind[p]]);
-        }
-        for (int64_t p = M->colptr[j]; p < M->colptr[j + 1]; p++) {
-            g -= lambda * M->val[p] * x[M->rowind[p]];
-            m += fabs(M->val[p] * x[M->rowind[p]]);
-        }
-        *energy += fabs(x[j]) * k;
-        k += fabs(lambda) * m;
-        gap = hypot(gap, g);
-        size = hypot(size, k);
-    }
-    return size > 0.0 ? gap / size : 0.0;
-}
-
-/* Residuals and the number of rigid modes; the worst residual. */
-static double assess_pairs(const ritz_shifted *S, ritz_pairs *P)
-{
-    double worst = 0.0;
-    double scale = 0.0;
-
-    for (int64_t j = 0; j < P->Phi.ncol; j++) {
-        double energy = 0.0;
-
-        P->residual[j] =
-            residual_of(S, ritz_dense_col(&P->Phi, j), P->lambda[j], &energy);
-        scale = fmax(scale, energy);
-        worst = P->residual[j] <= worst ? worst : P->residual[j];
-    }
-    P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
-    return worst;
 }
 
 /* A_r := (A_r + A_r') / 2, with unit diagonal of M_r: Y_j / |Y_j|_M. */
@@ -327,18 +286,24 @@ static ritz_status shift_near(search *s, double sigma)
     return status;
 }
 
-/* s->found from the vectors in X, which it takes. */
-static ritz_status refine_pairs(search *s, ritz_dense *X)
+/* s->found from the vectors in X and their eigenvalues, NULL if they are not
+   known, both of which it takes. */
+static ritz_status refine_pairs(search *s, ritz_dense *X, double **lambda)
 {
+    const bool known = *lambda != NULL;
     double worst = HUGE_VAL;
 
     ritz_pairs_free(&s->found);
     RITZ_MOVE(s->found.Phi, *X);
-    RITZ_CHECK_NEW(s->found.lambda, s->found.Phi.ncol);
+    RITZ_MOVE(s->found.lambda, *lambda);
+    if (!known)
+        RITZ_CHECK_NEW(s->found.lambda, s->found.Phi.ncol);
     RITZ_CHECK_NEW(s->found.residual, s->found.Phi.ncol);
+    if (known)
+        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
     for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
         RITZ_CHECK(polish_vectors(&s->S, &s->found.Phi, s->found.lambda));
-        worst = assess_pairs(&s->S, &s->found);
+        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
     }
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
                    "a residual of %.1e stays above %.0e", worst,
@@ -367,16 +332,22 @@ static ritz_status find_pairs(search *s)
 {
     ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
     RITZ_OWN(ritz_dense) X = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
     double reach = 0.0;
 
+    if (!s->S.A)
+        RITZ_CHECK(shift_near(s, s->S.sigma));
     ritz_pairs_free(&s->found);
     s->all = s->all || s->num_heavy <= SMALL || s->ask + 21 > s->num_heavy;
     if (s->all)
         RITZ_CHECK(find_all_modes(&s->S, s->num_heavy, s->heavy, &X));
-    else
+    else if (s->span->arpack)
         RITZ_CHECK(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
+    else
+        RITZ_CHECK(
+            ritz_block_lanczos(&s->S, s->ask, 0, &X, &lambda, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
-        RITZ_CHECK(refine_pairs(s, &X));
+        RITZ_CHECK(refine_pairs(s, &X, &lambda));
     if (end == RITZ_LANCZOS_SLOW)
         RITZ_CHECK(shift_elsewhere(s, reach));
     if (end == RITZ_LANCZOS_EXHAUSTED)
@@ -430,15 +401,30 @@ static double place_between(const ritz_pairs *P, int64_t k, double part)
     return below + part * (above - below);
 }
 
+/* Free the factor, so that the count's is alone, and keep its order. */
+static ritz_status keep_order(search *s)
+{
+    if (!s->order && s->S.A)
+        RITZ_CHECK_COPY(s->order, ritz_factor_order(s->S.A), s->S.K->nrow);
+    ritz_factor_free(&s->S.A);
+    return RITZ_OK;
+}
+
 /* Modes below a place between pairs k - 1 and k, none of which it may hit. */
-static ritz_status count_below(const search *s, int64_t k, int64_t *out)
+static ritz_status count_below(search *s, int64_t k, int64_t *out)
 {
     const double parts[] = {0.5, RITZ_COUNT_PLACE, 0.7};
     ritz_status status = RITZ_ERR_SINGULAR;
 
-    for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++)
-        status = ritz_eigen_count(s->S.K, s->S.M,
-                                  place_between(&s->found, k, parts[i]), out);
+    RITZ_CHECK(keep_order(s));
+    for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
+        const double tau = place_between(&s->found, k, parts[i]);
+        RITZ_OWN(ritz_sparse) A = {0};
+
+        RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
+        ritz_monitor_step("count of modes", 0, 0);
+        status = ritz_inertia_negative(&A, s->order, out);
+    }
     return status;
 }
 
@@ -466,7 +452,8 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
         return RITZ_OK;
     }
     at = s->all ? *end : widest_gap(P, *end);
-    if (P->Phi.ncol > 0)
+    count = at;
+    if (P->Phi.ncol > 0 && !s->span->uncounted)
         RITZ_CHECK(count_below(s, at, &count));
     RITZ_REFUSE_IF(count < at, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes were found where there are %" PRId64, at,
@@ -474,6 +461,8 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
     *done = count == at;
     s->found.proven_to =
         P->Phi.ncol > 0 ? place_between(P, *end, RITZ_COUNT_PLACE) : HUGE_VAL;
+    if (s->span->uncounted)
+        s->found.proven_to = (double)NAN;
     if (!*done) {
         s->misses++;
         RITZ_CHECK(ask_more(s, count - at));
@@ -490,6 +479,12 @@ static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;
     *end = count_wanted(P, s->span, s->limit);
+    if (s->span->uncounted) {
+        s->found.proven_to = (double)NAN;
+        *done = below < P->Phi.ncol || s->all;
+        s->ask *= *done ? 1 : 2;
+        return RITZ_OK;
+    }
     RITZ_REFUSE_IF(below > s->target, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes were found where there are %" PRId64,
                    below, s->target);
@@ -527,13 +522,18 @@ static ritz_status search_proven(search *s, int64_t *end)
     return RITZ_OK;
 }
 
-/* Modes up to the frequency, counted a little above it lest one lie there. */
+/* Modes up to the frequency, counted a little above it lest one lie there; a
+   guess, where they are not to be counted. */
 static ritz_status count_target(search *s)
 {
     const double above[] = RITZ_COUNT_ABOVE;
     ritz_status status = RITZ_ERR_SINGULAR;
     double lambda = ritz_eigen_lambda(s->span->up_to_hz);
 
+    s->limit = lambda * (1.0 + above[0]);
+    s->target = BODY + GUESS;
+    if (s->span->uncounted)
+        return RITZ_OK;
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
         s->limit = lambda * (1.0 + above[i]);
         status = ritz_eigen_count(s->S.K, s->S.M, s->limit, &s->target);
@@ -541,26 +541,31 @@ static ritz_status count_target(search *s)
     return status;
 }
 
+/* A stiffness that is factored has no rigid modes and needs no shift. */
 static ritz_status begin_search(search *s)
 {
     double sigma = 0.0;
 
     RITZ_CHECK(survey_pencil(s));
     sigma = RITZ_FIRST_SHIFT * s->typical;
-    s->ask = BODY + s->span->modes + s->span->modes / 10 + SPARE;
+    s->ask = (s->S.A ? 0 : BODY) + s->span->modes + BEHIND;
     if (s->span->modes < 0) {
         RITZ_CHECK(count_target(s));
-        s->ask = s->target + SPARE;
+        s->ask = s->target + BEHIND;
         sigma = fmax(fmin(sigma, 0.1 * s->limit), RITZ_LEAST_SHIFT * sigma);
     }
-    return shift_near(s, -sigma);
+    return s->S.A ? RITZ_OK : shift_near(s, -sigma);
 }
 
 static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
-                              const ritz_span *span, ritz_pairs *out)
+                              ritz_factor **L, const ritz_span *span,
+                              ritz_pairs *out)
 {
     RITZ_OWN(search) s = {.span = span, .S = {.K = K, .M = M}};
     int64_t end = 0;
+
+    if (L)
+        RITZ_MOVE(s.S.A, *L);
 
     RITZ_CHECK(begin_search(&s));
     RITZ_CHECK(search_proven(&s, &end));
@@ -568,7 +573,9 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     snprintf(s.found.engine, sizeof s.found.engine, "%s",
-             s.all ? "condensed LAPACK" : "ARPACK");
+             s.all            ? "condensed LAPACK"
+             : s.span->arpack ? "ARPACK"
+                              : "block Lanczos");
     RITZ_MOVE(*out, s.found);
     return RITZ_OK;
 }
@@ -595,10 +602,12 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
-                              const ritz_span *span, ritz_pairs *out)
+/* @param[in,out] L  the factor of K, taken; NULL: none is known */
+static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
+                               ritz_factor **L, const ritz_span *span,
+                               ritz_pairs *out)
 {
-    int64_t n = K->nrow;
+    const int64_t n = K->nrow;
 
     RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
     RITZ_REFUSE_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
@@ -608,8 +617,22 @@ ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
                    RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
                    span->up_to_hz);
     if (n <= SMALL || (n <= MEDIUM && span->modes > n / 4))
-        RITZ_CHECK(by_lapack(K, M, span, out));
-    else
-        RITZ_CHECK(by_lanczos(K, M, span, out));
-    return RITZ_OK;
+        return by_lapack(K, M, span, out);
+    return by_lanczos(K, M, L, span, out);
+}
+
+ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
+                              const ritz_span *span, ritz_pairs *out)
+{
+    return find_lowest(K, M, NULL, span, out);
+}
+
+ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
+                                ritz_factor **L, const ritz_span *span,
+                                ritz_pairs *out)
+{
+    ritz_status status = find_lowest(K, M, L, span, out);
+
+    ritz_factor_free(L);
+    return status;
 }

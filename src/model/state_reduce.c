@@ -325,7 +325,7 @@ static ritz_status add_ratios(const ritz_damping *damping, double among_hz,
                               const ritz_dense *MT, large *m)
 {
     const ritz_sparse *M = &m->component->M;
-    const ritz_span span = {-1, among_hz};
+    const ritz_span span = {.modes = -1, .up_to_hz = among_hz};
     RITZ_OWN(ritz_pairs) modes = {0};
     RITZ_OWN(ritz_dense) q = {0}, rate = {0}, force = {0};
 

@@ -205,7 +205,8 @@ static void prepare_thruster(compared *f, const char *choice)
     assert_ok(ritz_scene_parse("thruster.yaml", text, &f->scene));
     for (int k = 0; k < 3; k++) {
         const ritz_scene_component *item = &f->scene.component[k];
-        const ritz_span span = {item->modes, item->up_to_hz};
+        const ritz_span span = {.modes = item->modes,
+                                .up_to_hz = item->up_to_hz};
         ritz_component component = {0};
 
         assert_ok(dualspin_component(k, &component));

@@ -186,14 +186,50 @@ static void check_bar(int64_t n, int64_t clamped, const char *engine)
     release(&p);
 }
 
-/* 300 elements go to LAPACK, 2000 to ARPACK. */
+/* 300 elements go to LAPACK, 2000 to block Lanczos. */
 static void bars_have_the_modes_of_their_mesh(void **state)
 {
     (void)state;
     for (int64_t clamped = 0; clamped < 2; clamped++) {
         check_bar(300, clamped, "dense LAPACK");
-        check_bar(2000, clamped, "ARPACK");
+        check_bar(2000, clamped, "block Lanczos");
     }
+}
+
+/* ARPACK, and a search without a proof, find the same modes of a membrane. */
+static void other_ways_find_the_same_modes(void **state)
+{
+    const ritz_span span[] = {
+        {.modes = 20},
+        {.modes = 20, .arpack = true},
+        {.modes = 20, .uncounted = true},
+        {.modes = -1, .up_to_hz = 0.06, .uncounted = true},
+        {.modes = -1, .up_to_hz = 0.06},
+    };
+    pencil p = membrane(40);
+    double *lambda = membrane_eigenvalues(40);
+    const double bound = rounding(1600, 8.0);
+    const double limit = ritz_eigen_lambda(0.06);
+
+    (void)state;
+    for (size_t k = 0; k < 5; k++) {
+        RITZ_OWN(ritz_pairs) P = {0};
+        int64_t count = 20;
+
+        if (span[k].modes < 0)
+            for (count = 0; lambda[count] <= limit;)
+                count++;
+
+        assert_ok(ritz_eigen_sparse(&p.K, &p.M, &span[k], &P));
+        assert_string_equal(P.engine,
+                            span[k].arpack ? "ARPACK" : "block Lanczos");
+        assert_int_equal(isnan(P.proven_to) != 0, span[k].uncounted);
+        assert_true(P.Phi.ncol >= count && P.Phi.ncol <= count + 1);
+        for (int64_t j = 0; j < P.Phi.ncol; j++)
+            assert_near(P.lambda[j], lambda[j], bound);
+    }
+    free(lambda);
+    release(&p);
 }
 
 /* lambda_2 = lambda_3 by symmetry: three asked are three, two are three too. */
@@ -331,7 +367,7 @@ static void joints_without_mass_have_no_modes(void **state)
     (void)state;
     check_half_heavy(101, 101, "dense LAPACK");
     check_half_heavy(801, 200, "condensed LAPACK");
-    check_half_heavy(2001, 30, "ARPACK");
+    check_half_heavy(2001, 30, "block Lanczos");
 }
 
 /* One mass of 1 at the end of 700 massless springs: lambda = 1 / 700. */
@@ -444,7 +480,7 @@ static void slender_beams_are_not_too_soft(void **state)
             }
     p = finish(&l, 2 * (int64_t)ELEMENTS);
     assert_ok(ritz_eigen_sparse(&p.K, &p.M, &(ritz_span){.modes = 8}, &P));
-    assert_string_equal(P.engine, "ARPACK");
+    assert_string_equal(P.engine, "block Lanczos");
     assert_int_equal(P.num_rigid, 0);
     assert_int_equal(P.Phi.ncol, 8);
     for (int64_t i = 0; i < 2; i++)
@@ -663,6 +699,7 @@ static void nothing_has_no_modes(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bars_have_the_modes_of_their_mesh),
+    cmocka_unit_test(other_ways_find_the_same_modes),
     cmocka_unit_test(a_double_mode_is_never_cut),
     cmocka_unit_test(a_frequency_finds_every_mode_below),
     cmocka_unit_test(there_may_be_no_mode),

@@ -1,0 +1,149 @@
+#include "fixtures/lattice.h"
+#include "linear/block_lanczos.h"
+#include "testing.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* Residual |(lambda - sigma) A^-1 M x - x| / |x| of pair j. */
+static double residual_of(const ritz_shifted *S, ritz_dense *Phi, int64_t j,
+                          double lambda)
+{
+    const ritz_dense X = {S->M->nrow, 1, ritz_dense_col(Phi, j)};
+    RITZ_OWN(ritz_dense) Y = {0};
+    double gap = 0.0;
+    double size = 0.0;
+
+    assert_ok(ritz_sparse_mul(S->M, &X, &Y));
+    assert_ok(ritz_factor_solve(S->A, &Y));
+    for (int64_t i = 0; i < X.nrow; i++) {
+        gap = hypot(gap, (lambda - S->sigma) * Y.val[i] - X.val[i]);
+        size = hypot(size, X.val[i]);
+    }
+    return gap / size;
+}
+
+/*
+ * The lowest of the cube, threefold and sixfold ones with all their vectors:
+ * eigenvalues err by the square of the residual and by rounding of A, eps of
+ * its largest eigenvalue, and vectors are an inverse iteration better than
+ * RITZ_LANCZOS_SETTLED.
+ */
+static void check_cube(int64_t edge, double sigma, int64_t k, int64_t room)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0}, A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0}, MX = {0}, G = {0};
+    double *exact = lattice_eigenvalues(edge, 0.0);
+    double *lambda = NULL;
+    double next = 0.0;
+    ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+    ritz_shifted S = {&K, &M, sigma, NULL};
+
+    lattice_new(edge, 0.0, &K, &M);
+    assert_ok(ritz_sparse_add(1.0, &K, -sigma, &M, &A));
+    assert_ok(ritz_factor_spd(&A, &F));
+    S.A = F;
+    assert_ok(ritz_block_lanczos(&S, k, room, &X, &lambda, &next, &end));
+    assert_int_equal(end, RITZ_LANCZOS_FOUND);
+    assert_true(X.ncol >= k);
+    for (int64_t j = 0; j < X.ncol; j++) {
+        assert_near(lambda[j], exact[j], 12.0 * 64.0 * DBL_EPSILON);
+        assert_near(residual_of(&S, &X, j, lambda[j]), 0.0, 1e-10);
+    }
+    assert_true(next > lambda[X.ncol - 1] - 1e-12);
+    assert_ok(ritz_sparse_mul(&M, &X, &MX));
+    assert_ok(ritz_dense_mul_tn(&X, &MX, &G));
+    for (int64_t i = 0; i < X.ncol * X.ncol; i++)
+        assert_near(G.val[i], i % (X.ncol + 1) == 0 ? 1.0 : 0.0, 1e-12);
+    free(lambda);
+    free(exact);
+}
+
+static void multiple_eigenvalues_are_all_found(void **state)
+{
+    (void)state;
+    check_cube(13, 0.0, 40, 0);
+    check_cube(13, -0.1, 3, 0);
+    ritz_set_threads(2);
+    check_cube(16, 0.0, 25, 0);
+    ritz_set_threads(1);
+}
+
+/* 112 vectors instead of 212: several restarts. */
+static void restarts_lose_nothing(void **state)
+{
+    (void)state;
+    check_cube(12, 0.0, 40, 112);
+    check_cube(12, -0.01, 20, 80);
+}
+
+/* A cube with masses on `heavy` points only has as many eigenvalues. */
+static ritz_status weigh_few(int64_t heavy, int64_t k, ritz_dense *X,
+                             double **lambda, ritz_lanczos_end *end)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    ritz_shifted S = {&K, &M, 0.0, NULL};
+    double next = 0.0;
+
+    lattice_new(9, 0.1, &K, &M);
+    for (int64_t i = heavy; i < M.nrow; i++)
+        M.val[i] = 0.0;
+    RITZ_CHECK(ritz_factor_spd(&K, &F));
+    S.A = F;
+    return ritz_block_lanczos(&S, k, 0, X, lambda, &next, end);
+}
+
+static void few_masses_exhaust_the_iteration(void **state)
+{
+    const int64_t heavy[] = {3, 5, 8, 12, 16, 21};
+
+    (void)state;
+    for (size_t i = 0; i < 6; i++) {
+        RITZ_OWN(ritz_dense) X = {0}, none = {0};
+        double *lambda = NULL;
+        double *nothing = NULL;
+        ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+
+        assert_ok(weigh_few(heavy[i], heavy[i] / 2, &X, &lambda, &end));
+        assert_int_equal(end, RITZ_LANCZOS_FOUND);
+        assert_true(X.ncol >= heavy[i] / 2 && X.ncol <= heavy[i]);
+        assert_ok(weigh_few(heavy[i], heavy[i] + 1, &none, &nothing, &end));
+        assert_int_equal(end, RITZ_LANCZOS_EXHAUSTED);
+        assert_null(nothing);
+        free(lambda);
+    }
+}
+
+static ritz_status find_few(const ritz_shifted *S)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+    double *lambda = NULL;
+    double next = 0.0;
+    ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+    ritz_status status = ritz_block_lanczos(S, 3, 56, &X, &lambda, &next, &end);
+
+    free(lambda);
+    return status;
+}
+
+static void no_allocation_failure_leaks(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+
+    (void)state;
+    lattice_new(9, 0.1, &K, &M);
+    assert_ok(ritz_factor_spd(&K, &F));
+    assert_survives_every_allocation(find_few(&(ritz_shifted){&K, &M, 0.0, F}));
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(multiple_eigenvalues_are_all_found),
+    cmocka_unit_test(restarts_lose_nothing),
+    cmocka_unit_test(few_masses_exhaust_the_iteration),
+    cmocka_unit_test(no_allocation_failure_leaks),
+};
+
+TEST_MODULE(block_lanczos, tests, NULL, NULL)
