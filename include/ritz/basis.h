@@ -30,6 +30,8 @@ enum {
     RITZ_USES_BAND = 4096,
     RITZ_USES_REMAINDER = 8192,
     RITZ_USES_SIDES = 16384,
+    RITZ_USES_COUNT = 65536,
+    RITZ_USES_EIGEN = RITZ_USES_COUNT | RITZ_USES_ENGINE, /* finds modes */
     RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
 };
 
@@ -51,12 +53,14 @@ typedef enum ritz_gramian {
     RITZ_GRAMIAN_OUTPUTS, /* observability */
 } ritz_gramian;
 
-/* How Gramians are found. */
+/* How Gramians are found, or modes. */
 typedef enum ritz_engine {
     RITZ_ENGINE_AUTO,
-    RITZ_ENGINE_DENSE,
+    RITZ_ENGINE_DENSE, /* Gramians */
     RITZ_ENGINE_MODAL,
     RITZ_ENGINE_LOW_RANK,
+    RITZ_ENGINE_LANCZOS, /* modes of sparse matrices: see ritz_span */
+    RITZ_ENGINE_ARPACK,
 } ritz_engine;
 
 typedef struct ritz_choice {
@@ -74,6 +78,7 @@ typedef struct ritz_choice {
     double band_hz[2]; /* where the response matters */
     bool perturb;      /* the remainder answers statically, it is not dropped */
     bool one_sided;    /* of second order: W = T, which keeps symmetry */
+    bool uncounted;    /* that no mode is missing is not proven */
 } ritz_choice;
 
 /* What the value of a word is. */
@@ -108,7 +113,8 @@ extern const ritz_choice_word ritz_choice_words[];
  * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
- * "dense", "modal" or "low-rank" for engine, "50" for among_hz, "0,10" for
+ * "dense", "modal", "low-rank", "lanczos" or "arpack" for engine, "yes" or "no"
+ * for count, "50" for among_hz, "0,10" for
  * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
@@ -200,6 +206,9 @@ extern const ritz_method *const ritz_methods[];
 
 /** Method called @p name; NULL and a sentence with the nearest if none. */
 const ritz_method *ritz_method_find(const char *name);
+
+/** Whether an engine is one of the method's: of modes or of Gramians. */
+bool ritz_engine_fits(const ritz_method *method, ritz_engine engine);
 
 /**
  * Check a request against its method, before there is a component.

@@ -307,6 +307,16 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                         left_out, ritz_column_name(kind), name);
 }
 
+ritz_span ritz_request_span(const ritz_request *request)
+{
+    return (ritz_span){
+        .modes = request->modes,
+        .up_to_hz = request->up_to_hz,
+        .arpack = request->choice.engine == RITZ_ENGINE_ARPACK,
+        .uncounted = request->choice.uncounted,
+    };
+}
+
 ritz_status ritz_refuse_unattached(const ritz_request *request, const char *so)
 {
     RITZ_REFUSE_IF(request->attached.count == 0, RITZ_ERR_ARGUMENT,

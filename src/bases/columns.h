@@ -113,6 +113,9 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                           int64_t count, const bool *keep,
                           ritz_column_kind kind, ritz_basis *basis);
 
+/** The modes that a request asks for. */
+ritz_span ritz_request_span(const ritz_request *request);
+
 /**
  * Refuse a request that attaches nothing, and say what to do: models without
  * ports, such as systems at a configuration, have nothing to attach.

@@ -23,6 +23,7 @@
 #include "base/tolerances.h"
 #include "bases/columns.h"
 #include "bases/krylov.h"
+#include "linear/eigen_sparse.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -235,12 +236,12 @@ static ritz_status join_interior(const partition *s, const ritz_dense *X,
 }
 
 /* The requested number of modes, or all up to the requested frequency. */
-static ritz_status find_normal_modes(const ritz_request *request,
-                                     const partition *s, ritz_pairs *out)
+static ritz_status find_normal_modes(const ritz_request *request, partition *s,
+                                     ritz_pairs *out)
 {
-    const ritz_span span = {request->modes, request->up_to_hz};
+    const ritz_span span = ritz_request_span(request);
 
-    RITZ_CHECK(ritz_eigen_sparse(&s->K_ii, &s->M_ii, &span, out));
+    RITZ_CHECK(ritz_eigen_factored(&s->K_ii, &s->M_ii, &s->L, &span, out));
     return out->num_rigid > 0 ? refuse_mechanism(s, -1) : RITZ_OK;
 }
 
@@ -388,7 +389,6 @@ static ritz_status make_fixed(const ritz_request *request, int usual,
     RITZ_CHECK(hold_boundary(request, &s));
     RITZ_CHECK_IN("static vectors",
                   respond_interior(request, &s, usual, &statics));
-    ritz_factor_free(&s.L);
     if (request->choice.interface_modes > 0 && s.b->count > 0)
         RITZ_CHECK_IN("interface modes", reduce_boundary(request, &s.held));
     if (request->modes != 0)
@@ -418,7 +418,7 @@ const ritz_method ritz_method_craig_bampton = {
     .holds = "statics of the interface, rigid motion; frequencies from above",
     .fails = "an interior that moves with the interface held; loads within it",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE |
-            RITZ_USES_LOADS,
+            RITZ_USES_LOADS | RITZ_USES_EIGEN,
     .keeps_interface = true,
     .make = make_craig_bampton,
 };

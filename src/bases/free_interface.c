@@ -61,7 +61,8 @@ const ritz_method ritz_method_macneal_rubin = {
     .cost = "a factor, two solves a mode, 3 to 10 an attached dof",
     .holds = "kept modes, flexible static gain, rigid motion; from above",
     .fails = "attached dofs that depend on each other: left out, and named",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_EIGEN,
     .keeps_interface = true,
     .make = make_macneal_rubin,
 };
@@ -89,7 +90,8 @@ const ritz_method ritz_method_macneal = {
     .cost = "as macneal-rubin",
     .holds = "flexible static gain; kept modes",
     .fails = "frequencies need not come from above; M is singular",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_EIGEN,
     .keeps_interface = true,
     .make = make_macneal,
 };
@@ -145,7 +147,8 @@ const ritz_method ritz_method_inertia_relief = {
     .cost = "as macneal-rubin",
     .holds = "spans what macneal-rubin spans",
     .fails = "columns that are nearly parallel once many modes are kept",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_EIGEN,
     .keeps_interface = true,
     .make = make_inertia_relief,
 };
@@ -170,7 +173,8 @@ const ritz_method ritz_method_dual_craig_bampton = {
     .cost = "as macneal-rubin",
     .holds = "nothing: interfaces are met weakly",
     .fails = "systems have a negative eigenvalue for each interface force",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_EIGEN,
     .only_named = RITZ_NAMED_FOR_COMPONENTS | RITZ_NAMED_FOR_SCENES,
     .keeps_interface = true,
     .make = make_dual,
@@ -214,7 +218,8 @@ const ritz_method ritz_method_normal_modes = {
     .cost = "a factor, two solves a mode, 3 to 10 a load",
     .holds = "kept modes, flexible static gain of its loads",
     .fails = "interfaces: forces of other bodies have no static correction",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_EIGEN,
     .make = make_normal_modes,
 };
 
@@ -354,7 +359,8 @@ const ritz_method ritz_method_rubin = {
     .cost = "as macneal-rubin",
     .holds = "spans what macneal-rubin spans",
     .fails = "nearly all modes kept: what is left at the interface is rounding",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
+            RITZ_USES_EIGEN,
     .keeps_interface = true,
     .make = make_rubin,
 };

@@ -18,6 +18,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "bases/columns.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -292,7 +293,7 @@ ritz_status ritz_free_set_new(const ritz_request *request, int loads,
                               bool joined, ritz_free_set *out)
 {
     const ritz_component *component = request->component;
-    const ritz_span span = {request->modes, request->up_to_hz};
+    const ritz_span span = ritz_request_span(request);
     RITZ_OWN(ritz_free_set)
     set = {.loads = loads, .interface = joined ? request->attached.count : 0};
     RITZ_OWN(ritz_dofs) rest = {0};

@@ -11,6 +11,7 @@
  * those of the loaded component.
  */
 #include "base/alloc.h"
+#include "bases/columns.h"
 #include "bases/free_set.h"
 
 #include <inttypes.h>
@@ -70,7 +71,7 @@ static ritz_status make_loaded_interface(const ritz_request *request,
                                          ritz_basis *out)
 {
     const ritz_component *component = request->component;
-    const ritz_span span = {request->modes, request->up_to_hz};
+    const ritz_span span = ritz_request_span(request);
     ritz_component loaded = *component; /* a copy that borrows all but K and
                                            M */
     ritz_request with_neighbour = *request;
@@ -104,7 +105,7 @@ const ritz_method ritz_method_loaded_interface = {
     .holds = "frequencies from above",
     .fails = "other neighbours; statics of the interface",
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_NEIGHBOUR |
-            RITZ_USES_LOADS,
+            RITZ_USES_LOADS | RITZ_USES_EIGEN,
     .keeps_interface = true,
     .make = make_loaded_interface,
 };

@@ -15,6 +15,15 @@ const ritz_method *ritz_method_find(const char *name)
     return ritz_row_find(ritz_methods, "method", name);
 }
 
+bool ritz_engine_fits(const ritz_method *method, ritz_engine engine)
+{
+    const bool modes =
+        engine == RITZ_ENGINE_LANCZOS || engine == RITZ_ENGINE_ARPACK;
+
+    return engine == RITZ_ENGINE_AUTO ||
+           modes == ((method->uses & RITZ_USES_COUNT) != 0);
+}
+
 ritz_status ritz_request_check(const ritz_method *method,
                                const ritz_request *request)
 {
@@ -36,6 +45,14 @@ ritz_status ritz_request_check(const ritz_method *method,
         RITZ_REFUSE_IF(request->choice.given & word->uses & ~method->uses,
                        RITZ_ERR_ARGUMENT, "%s has no '%s' to choose",
                        method->name, word->key);
+    RITZ_REFUSE_IF(
+        !ritz_engine_fits(method, request->choice.engine), RITZ_ERR_ARGUMENT,
+        method->uses & RITZ_USES_COUNT
+            ? "%s finds modes: its engines are auto, lanczos and "
+              "arpack"
+            : "%s finds Gramians: its engines are auto, dense, modal "
+              "and low-rank",
+        method->name);
     RITZ_REFUSE_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
                    RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",
                    method->name);

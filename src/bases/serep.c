@@ -237,7 +237,7 @@ static ritz_status make_serep(const ritz_request *request, ritz_basis *out)
 {
     const ritz_component *component = request->component;
     const ritz_dofs *a = &request->attached;
-    const ritz_span span = {request->modes, request->up_to_hz};
+    const ritz_span span = ritz_request_span(request);
     RITZ_OWN(ritz_pairs) modes = {0};
     RITZ_OWN(selection) c = {.request = request, .modes = &modes};
     RITZ_OWN(ritz_basis) basis = {0};
@@ -277,7 +277,7 @@ const ritz_method ritz_method_serep = {
     .cost = "a factor, two solves a mode",
     .holds = "kept frequencies and shapes",
     .fails = "statics; modes that the measured dofs do not distinguish",
-    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED,
+    .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_EIGEN,
     .only_named = RITZ_NAMED_FOR_SCENES,
     .make = make_serep,
 };

@@ -130,6 +130,10 @@ static ritz_choice choose_options(const ritz_fitter *fitter,
         choice.given |= RITZ_USES_SIDES;
     }
     choice.given &= method->uses;
+    if (!ritz_engine_fits(method, choice.engine)) {
+        choice.engine = RITZ_ENGINE_AUTO;
+        choice.given &= ~RITZ_USES_ENGINE;
+    }
     return choice;
 }
 

@@ -360,6 +360,15 @@ static const engine_row engines[] = {
     [RITZ_ENGINE_LOW_RANK] = {"low-rank", ritz_gramians_low_rank, false, false},
 };
 
+/* Engines that find modes find no Gramians. */
+static ritz_status refuse_modes(ritz_engine engine)
+{
+    RITZ_REFUSE_IF(engine > RITZ_ENGINE_LOW_RANK, RITZ_ERR_ARGUMENT,
+                   "Gramians are found by the engines auto, dense, modal and "
+                   "low-rank");
+    return RITZ_OK;
+}
+
 static ritz_status check_request(const ritz_gramians_request *request,
                                  const engine_row *engine)
 {
@@ -387,6 +396,7 @@ ritz_status ritz_gramians_of_component(const ritz_gramians_request *request,
 {
     const engine_row *engine = &engines[request->engine];
 
+    RITZ_CHECK(refuse_modes(request->engine));
     RITZ_CHECK(check_request(request, engine));
     return engine->find(request, out);
 }
@@ -467,6 +477,7 @@ ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
                                       ritz_gramians *out)
 {
     RITZ_CHECK(check_space(model));
+    RITZ_CHECK(refuse_modes(engine));
     RITZ_REFUSE_IF(engine == RITZ_ENGINE_MODAL, RITZ_ERR_ARGUMENT,
                    "a state space has no modes: its engines are dense and "
                    "low-rank");

@@ -75,13 +75,13 @@ static const char gramians[][16] = {
 };
 static const char operators[][16] = {"state", "inverse"};
 static const char engines[][16] = {
-    [RITZ_ENGINE_AUTO] = "auto",
-    [RITZ_ENGINE_DENSE] = "dense",
-    [RITZ_ENGINE_MODAL] = "modal",
-    [RITZ_ENGINE_LOW_RANK] = "low-rank",
+    [RITZ_ENGINE_AUTO] = "auto",       [RITZ_ENGINE_DENSE] = "dense",
+    [RITZ_ENGINE_MODAL] = "modal",     [RITZ_ENGINE_LOW_RANK] = "low-rank",
+    [RITZ_ENGINE_LANCZOS] = "lanczos", [RITZ_ENGINE_ARPACK] = "arpack",
 };
 static const char remainders[][16] = {"dropped", "static"};
 static const char sides[][16] = {"two", "one"};
+static const char counts[][16] = {"yes", "no"};
 
 #define FIELD(field) offsetof(ritz_choice, field)
 #define WORDS(words) words, sizeof(words) / sizeof *(words)
@@ -107,7 +107,9 @@ const ritz_choice_word ritz_choice_words[] = {
      WORDS(operators)},
     {"damping", "TEXT", "'modal 0.01', instead of the component's own",
      RITZ_USES_DAMPING, RITZ_CHOICE_DAMPING, FIELD(damping), NULL, NULL, 0},
-    {"engine", "WORD", "how Gramians are found: auto, dense, modal, low-rank",
+    {"engine", "WORD",
+     "how Gramians are found: auto, dense, modal, low-rank; modes: auto, "
+     "lanczos, arpack",
      RITZ_USES_ENGINE, RITZ_CHOICE_ENUM, FIELD(engine), "engine",
      WORDS(engines)},
     {"among_hz", "F", "modal Gramians: of the modes up to this frequency",
@@ -117,6 +119,9 @@ const ritz_choice_word ritz_choice_words[] = {
     {"remainder", "WORD", "what becomes of other states: dropped or static",
      RITZ_USES_REMAINDER, RITZ_CHOICE_FLAG, FIELD(perturb), "remainder",
      WORDS(remainders)},
+    {"count", "WORD", "prove by a count that no mode is missing: yes or no",
+     RITZ_USES_COUNT, RITZ_CHOICE_FLAG, FIELD(uncounted), "count",
+     WORDS(counts)},
     {"sides", "WORD", "project by one side, which keeps symmetry, or by two",
      RITZ_USES_SIDES, RITZ_CHOICE_FLAG, FIELD(one_sided), "side", WORDS(sides)},
     {0},

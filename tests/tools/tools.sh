@@ -151,6 +151,15 @@ holds '  with small residuals' 'len(j["residuals"]) == 5 and
 expect 0 '2 constraint' ritz-basis guyan bar.h5 --output guyan.h5
 expect 0 '1 constraint' ritz-basis guyan --attach left bar.h5 -o one.h5
 expect 2 "no method 'guyam', is 'guyan' meant?" ritz-basis guyam bar.h5 -o x.h5
+expect 0 '7 columns for 21 dofs' ritz-basis craig-bampton --modes 5 --count no \
+    --engine lanczos bar.h5 -o uncounted.h5
+expect 0 'modes 5 engine lanczos count no' ritz-info uncounted.h5
+expect 2 'its engines are auto, lanczos and arpack' ritz-basis craig-bampton \
+    --modes 5 --engine modal bar.h5 -o x.h5
+expect 2 'its engines are auto, dense, modal and low-rank' ritz-basis balanced \
+    --modes 5 --engine arpack bar.h5 -o x.h5
+expect 2 "guyan has no 'count' to choose" ritz-basis guyan --count no bar.h5 \
+    -o x.h5
 expect 2 'whole number' ritz-basis craig-bampton --modes 2.5 bar.h5 -o x.h5
 expect 2 'from 0 to 100000' ritz-basis craig-bampton --modes -1 bar.h5 -o x.h5
 expect 2 'METHOD COMPONENT' ritz-basis bar.h5 -o x.h5
