@@ -1,0 +1,122 @@
+#!/usr/bin/python3 -s
+"""bench.py FOLDER-OF-THE-TOOLS [--quick] - the tools beside other people's
+programs on the same matrices, in one run: times of whole processes, memory,
+residuals, agreement, and the targets of targets.toml with pass or fail.
+
+Results go to build/bench/results.json, tables to standard output; page.py makes
+docs/benchmarks.md of the results. Status 0 whatever the verdicts.
+"""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import tempfile
+
+# of the harness itself; before NumPy is loaded, which reads it
+os.environ["OMP_NUM_THREADS"] = "1"
+
+import figures
+import machine
+import models
+import page
+import quality
+import rounds
+import targets
+from stopwatch import Failed, Stopwatch
+from workshop import ROOT, USUAL, Workshop, say
+
+
+def measure_figures(shop):
+    found = {}
+    for function, names, usual, quick in figures.FIGURES:
+        for model in quick if shop.quick else usual:
+            if (model and model not in shop.models) or not shop.wants(
+                    function.__name__):
+                continue
+            say(shop, model, function.__name__)
+            try:
+                figure = function(shop, model)
+            except (Failed, quality.Unknown) as reason:
+                figure = {name: {"why": str(reason)} for name in names}
+            found.setdefault(model, {}).update(figure)
+    return found
+
+
+def measure_in(shop, folder, result):
+    shop.folder = pathlib.Path(folder)
+    result["limits"] = machine.limits(shop, result["machine"]["cores"])
+    for model in shop.models:
+        say(shop, model, "is made")
+        shop.make_model(model)
+    timing = rounds.Timing(shop)
+    timing.first()
+    result["figures"] = measure_figures(shop)
+    timing.others()
+    result["runs"] = timing.finish()
+    result["models"] = shop.facts
+    for model, runs in result["runs"].items():
+        say(shop, model, "residuals and eigenvalues")
+        quality.measure(shop, model, runs)
+
+
+def measure(shop):
+    shop.prepare()
+    result = {"machine": machine.describe(ROOT), "quick": shop.quick,
+              "repeats": shop.repeats,
+              "titles": {job: row["title"] for job, row in shop.jobs.items()}}
+    try:
+        with tempfile.TemporaryDirectory(
+                prefix="ritz-bench-", dir=folder_in_memory()) as folder:
+            measure_in(shop, folder, result)
+    finally:
+        shutil.rmtree(shop.disk, ignore_errors=True)
+    result["seconds"] = shop.elapsed()
+    result["targets"] = targets.evaluate(result)
+    return result
+
+
+def folder_in_memory():
+    """tmpfs where there is room for the models, else where TMPDIR says."""
+    shared = pathlib.Path("/dev/shm")
+    if shared.is_dir() and shutil.disk_usage(shared).free > 4e9:
+        return shared
+    return None
+
+
+def words(text):
+    return text.split(",")
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="./bootstrap bench", usage="%(prog)s [OPTION]...",
+        description="The tools beside other programs, and their targets.")
+    parser.add_argument("tools", help=argparse.SUPPRESS)
+    parser.add_argument("--quick", action="store_true",
+                        help="S10 and P50, SLEPc and SciPy; five minutes")
+    parser.add_argument("--models", type=words, metavar="NAME[,NAME]",
+                        help="of " + ", ".join(models.SHAPES)
+                        + " [" + ",".join(USUAL) + "]")
+    parser.add_argument("--repeats", type=int, metavar="N",
+                        help="rounds after the first, 5; 3 of --quick")
+    parser.add_argument("--only", type=words, metavar="NAME[,NAME]",
+                        help="these rows of tests/bench/speed/jobs.toml and "
+                        "functions of figures.py [all]")
+    parser.add_argument("--limit", type=float, default=3600.0,
+                        metavar="SECONDS",
+                        help="a process that takes longer is stopped [3600]")
+    arguments = parser.parse_args()
+    if set(arguments.models or []) - set(models.SHAPES):
+        parser.error("models are " + ", ".join(models.SHAPES))
+    stopwatch = Stopwatch()
+    try:
+        result = measure(Workshop(arguments, stopwatch))
+    finally:
+        stopwatch.close()
+    page.RESULTS.write_text(json.dumps(result, indent=1) + "\n")
+    print(page.text(result))
+
+
+if __name__ == "__main__":
+    main()

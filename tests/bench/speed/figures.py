@@ -1,0 +1,241 @@
+"""Measurements that are more than one process: each gives figures of a model,
+{name: {value, detail}}, or raises Failed or Unknown with the reason."""
+import pathlib
+import shlex
+import shutil
+import statistics
+
+import h5py
+import numpy
+
+import models
+import output4
+from quality import Unknown
+from stopwatch import Failed
+
+HERE = pathlib.Path(__file__).resolve().parent
+DUALSPIN = HERE.parents[2] / "data" / "dualspin"
+
+def rayleigh(low, high):
+    """a and b of D = a M + b K: 1 % at two frequencies in Hz."""
+    low, high = 2 * numpy.pi * low, 2 * numpy.pi * high
+    return (f"rayleigh {0.02 * low * high / (low + high):.17g} "
+            f"{0.02 / (low + high):.17g}")
+
+
+def channels(shop, model):
+    """The component with forces and displacements at two far corners."""
+    stem = shop.stem(model)
+    path = stem.with_suffix(".channels.h5")
+    if not path.exists():
+        last = shop.facts[model]["dofs"] // 3
+        shop.tool("ritz-import", *shop.import_words(model),
+                   "--input", "push=1:3", "--input", f"pull={last}:1",
+                   "--output-at", "near=1:1", "--output-at", f"far={last}:3",
+                   "-o", path)
+    return path
+
+
+def values(path):
+    with h5py.File(path) as f:
+        return f["H/real"][:] + 1j * f["H/imag"][:]
+
+
+def response(shop, model):
+    """1000 points beside a factor at each of 28 of them, every 37th: what a
+    factor takes is the difference of 28 and 2 points over 26."""
+    component, out = channels(shop, model), shop.out(model)
+    common = ["ritz-frf", component, "--damping", rayleigh(1000, 3000),
+              "--no-refine", "--from-hz", 10, "--to-hz", 3000]
+    ends, some, all_ = [], [], []
+    for _ in range(shop.repeats_of_figures):
+        for times, words in (
+                (ends, ["--method", "direct", "--points", 2]),
+                (some, ["--method", "direct", "--points", 28]),
+                (all_, ["--points", 1000])):
+            path = out / f"response-{words[-1]}.h5"
+            times.append(shop.tool(*common, *words, "-o", path)["wall"])
+    ends, some, all_ = map(statistics.median, (ends, some, all_))
+    each = (some - ends) / 26
+    H, exact = values(out / "response-1000.h5"), values(out / "response-28.h5")
+    error = numpy.abs(H[::37] - exact) / numpy.abs(exact).max(axis=0)
+    return {
+        "response": {"value": 1000 * each / all_,
+                     "detail": f"a factor {each:.3g} s, 1000 points "
+                               f"{all_:.3g} s"},
+        "response-error": {"value": float(error.max())}}
+
+
+METHODS = "craig-bampton,macneal-rubin,rubin,krylov,krylov-cms-fixed"
+
+
+def fit(shop, model):
+    """Processor seconds of a search, in bases of as many columns."""
+    component, out = channels(shop, model), shop.out(model)
+    found = shop.tool(
+        "ritz-fit", component, "--methods", METHODS, "--damping", "modal 0.01",
+        "--tolerance", "frequency=1e-3,response=1e-2", "--band-hz", "0,1500",
+        "-o", out / "fit.h5", limit=shop.limit)
+    with h5py.File(out / "fit.h5") as f:
+        order = f["K"].shape[0]
+    modes = max(order - shop.facts[model]["port"], 1)
+    basis = statistics.median(
+        shop.tool("ritz-basis", "craig-bampton", "--modes", modes, component,
+                   "-o", out / "fit-basis.h5")["cpu"] for _ in range(3))
+    return {"fit": {"value": found["cpu"] / basis,
+                    "detail": f"{found['cpu']:.3g} s of processor, {order} "
+                              f"columns, a basis {basis:.3g}"}}
+
+
+SCENE = """scene: two blocks
+components:
+  a: {{model: {model}, basis: craig-bampton, modes: 30}}
+  b: {{model: {model}, basis: craig-bampton, modes: 30}}
+joints:
+  - {{name: hinge, between: [a/hub, b/hub], type: hinge, axis: [0, 0, 1],
+     angles_deg: {angles}}}
+inputs:
+  - {{name: turn, at: a/hub, component: 6}}
+outputs:
+  - {{name: angle, at: b/hub, component: 6, quantity: displacement}}
+band_hz: [0, 1500]
+damping: {{modal: 0.01}}
+"""
+FEW, MANY = 2, 102  # configurations
+
+
+def configuration(shop, model):
+    """What a configuration adds to COMPARE, beside stage one."""
+    out = shop.out(model)
+    hub = out / "hub.h5"
+    shop.tool("ritz-import", *shop.import_words(model, port=False),
+               "--rigid-port", "hub=" + shop.port(model), "-o", hub)
+    times = {}
+    for count in (FEW, MANY):
+        scene = out / f"scene-{count}.yaml"
+        angles = [float(a) for a in numpy.linspace(0, 180, count)]
+        scene.write_text(SCENE.format(model=hub, angles=angles))
+        times[count] = statistics.median(
+            shop.tool("ritz-compare", scene, "-o", out / "system.h5")["wall"]
+            for _ in range(shop.repeats_of_figures))
+    each = (times[MANY] - times[FEW]) / (MANY - FEW)
+    first = times[FEW] - FEW * each
+    return {"configuration": {
+        "value": each / first,
+        "detail": f"a configuration {each:.3g} s, stage one {first:.3g} s"}}
+
+
+READ = """import sys, time
+import pyyeti.nastran.op4
+began = time.monotonic()
+found = pyyeti.nastran.op4.read(sys.argv[1], into="dct", sparse=True)
+assert sorted(found) == ["k", "m"] or sorted(found) == ["K", "M"], found
+print(time.monotonic() - began)
+"""
+
+
+def import_output4(shop, model):
+    """Whole ritz-import, beside pyYeti's reading alone, without its start."""
+    stem, out = shop.stem(model), shop.out(model)
+    K, M = models.load(stem)[:2]
+    spellings = {"text": output4.write_text, "binary": output4.write}
+    python = shop.program("peer-pyyeti")
+    figures = {}
+    for spelling, write in spellings.items():
+        path = out / f"{spelling}.op4"
+        write(path, K=K, M=M)
+        words = shop.import_words(model, matrices=path)
+        ours, theirs = [], []
+        for _ in range(shop.repeats_of_figures):
+            ours.append(shop.tool("ritz-import", *words, "-o",
+                                   out / "imported.h5")["wall"])
+            theirs.append(float(shop.peer([*python, "-c", READ, path])["out"]))
+        ours, theirs = map(statistics.median, (ours, theirs))
+        size = path.stat().st_size / 1e6
+        path.unlink()
+        figures[f"output4-{spelling}"] = {
+            "value": theirs / ours,
+            "detail": f"ritz-import {ours:.3g} s, {size / ours:.0f} MB/s; "
+                      f"pyYeti {theirs:.3g} s, {size / theirs:.0f} MB/s"}
+    return figures
+
+
+def slowest(times):
+    order = sorted(times, key=times.get, reverse=True)
+    return {"value": 1e3 * times[order[0]], "detail": ", ".join(
+        f"{tool} {1e3 * times[tool]:.0f}" for tool in order[:4])}
+
+
+def version(shop, _):
+    """Slowest --version, milliseconds."""
+    tools = sorted(path.name for path in shop.bin.glob("ritz-*"))
+    return {"version": slowest({tool: statistics.median(
+        shop.tool(tool, "--version", quiet=False)["wall"]
+        for _ in range(shop.starts)) for tool in tools})}
+
+
+def dualspin(shop, _):
+    """Slowest tool at work on the small models of the demo, milliseconds."""
+    folder = shop.folder / "dualspin"
+    (folder / "build").mkdir(parents=True)
+    for path in DUALSPIN.iterdir():
+        if path.suffix in (".op4", ".bdf", ".yaml"):
+            shutil.copy(path, folder)
+    times = {}
+    for line in (HERE / "starts.txt").read_text().splitlines():
+        if line.startswith("#"):
+            continue
+        timed = not line.startswith("- ")
+        words = shlex.split(line.removeprefix("- "))
+        walls = [shop.tool(*words, folder=folder)["wall"]
+                 for _ in range(shop.starts + 1 if timed else 1)]
+        if timed:
+            times[words[0]] = statistics.median(walls[1:])
+    return {"dualspin": slowest(times)}
+
+
+def hankel(shop, model):
+    """Hankel values by projection, beside low-rank ADI, which may be stopped
+    before its end: the value is then less than the ratio."""
+    reason = shop.lacks("ritz-rank --engine projection")
+    if reason:
+        raise Unknown(reason)
+    stem, out = shop.stem(model), shop.out(model)
+    last = shop.facts[model]["dofs"] // 3
+    component = stem.with_suffix(".input.h5")
+    shop.tool("ritz-import", *shop.import_words(model),
+               "--input", f"pull={last}:1", "--output-at", "near=1:1",
+               "--output-at", f"far={last}:3", "-o", component)
+    with h5py.File(out / "macneal-rubin.h5") as f:
+        hertz = numpy.sort(f["columns/hertz"][:][
+            f["columns/kind"][:] == b"normal"])
+    words = ["ritz-rank", "--by", "hankel", "--damping",
+             rayleigh(hertz[0], hertz[9]), component]
+    fast = statistics.median(
+        shop.tool(*words, "--engine", "projection",
+                   "-o", out / "hankel.h5")["wall"]
+        for _ in range(shop.repeats_of_figures))
+    try:
+        slow, how = shop.tool(*words, "--engine", "low-rank",
+                               "-o", out / "adi.h5",
+                               limit=shop.limit)["wall"], ""
+    except Failed as reason:
+        if not reason.late:
+            raise
+        slow, how = shop.limit, "stopped after "
+    return {"hankel": {"value": slow / fast,
+                       "detail": f"projection {fast:.3g} s, ADI "
+                                 f"{how}{slow:.3g} s"}}
+
+
+# function, its names, models, those of --quick
+FIGURES = [
+    (version, ["version"], [""], [""]),
+    (dualspin, ["dualspin"], [""], [""]),
+    (response, ["response", "response-error"], ["S10", "S50"], ["S10"]),
+    (import_output4, ["output4-text", "output4-binary"], ["S10", "S50"],
+     ["S10"]),
+    (configuration, ["configuration"], ["S50"], []),
+    (hankel, ["hankel"], ["S50"], []),
+    (fit, ["fit"], ["S10", "S50"], []),
+]

@@ -1,0 +1,79 @@
+"""What the machine is and can do, and what is installed on it."""
+import datetime
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+from quality import Unknown
+
+# threads of peers are set job by job; the tools choose theirs themselves
+THREADS = re.compile(r"^(OMP|GOMP|KMP|OPENBLAS|GOTO|MKL)_")
+LIBRARIES = ("libsuitesparse-dev", "libmumps-seq-dev", "libopenblas-openmp-dev",
+             "slepc-dev", "petsc-dev", "python3-scipy", "octave",
+             "calculix-ccx")
+
+
+def environment(**more):
+    """That of this process without what sets threads."""
+    kept = {name: value for name, value in os.environ.items()
+            if not THREADS.match(name) and not name.startswith("RITZ_")}
+    return kept | more
+
+
+def said(*command):
+    """What a command prints; empty where there is no such command."""
+    try:
+        return subprocess.run(command, capture_output=True, text=True,
+                              check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def processor():
+    text = pathlib.Path("/proc/cpuinfo").read_text()
+    name = re.search(r"^model name\s*:\s*(.*)$", text, re.M)
+    flags = set(re.search(r"^flags\s*:\s*(.*)$", text, re.M)[1].split())
+    bits = 512 if "avx512f" in flags else 256 if "avx2" in flags else 128
+    return (name[1] if name else "unknown processor"), bits
+
+
+def memory():
+    """Bytes of physical memory."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
+def packages():
+    """Versions of Debian's packages, those that are there."""
+    found = {}
+    for name in LIBRARIES:
+        version = said("dpkg-query", "-W", "-f", "${Version}", name)
+        if version:
+            found[name] = version
+    return found
+
+
+def describe(root):
+    name, bits = processor()
+    return {"processor": name, "vector_bits": bits,
+            "cores": len(os.sched_getaffinity(0)), "memory": memory(),
+            "system": said("uname", "-sr"),
+            "date": datetime.date.today().isoformat(),
+            "commit": said("git", "-C", str(root), "describe", "--always",
+                           "--dirty", "--abbrev=10"),
+            "load": os.getloadavg()[0], "packages": packages()}
+
+
+def limits(shop, cores):
+    """Operations and bytes a second, on one thread and on all cores."""
+    try:
+        program = shop.program("limits")
+    except Unknown as reason:
+        print(f"limits of the machine are not known: {reason}",
+              file=sys.stderr)
+        return {}
+    return {str(n): json.loads(shop.stopwatch(
+        program, environment(OMP_NUM_THREADS=str(n)), shop.folder)["out"])
+        for n in sorted({1, cores})}

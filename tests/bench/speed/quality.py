@@ -1,0 +1,152 @@
+"""How good results are: residuals by a factor of our own, and eigenvalues of
+one program beside those of another."""
+import json
+
+import h5py
+import numpy
+import scipy.sparse.linalg
+
+import models
+
+# SuperLU's factor of more takes minutes; MUMPS checks those, in peer_slepc
+LARGEST_FOR_SUPERLU = 45000
+REFERENCES = "slepc-1x2", "scipy", "basis"
+
+
+class Unknown(Exception):
+    """Why there is nothing to measure."""
+
+
+def values_of_basis(path):
+    """Eigenvalues (rad/s)^2 of the normal modes, ascending."""
+    with h5py.File(path) as f:
+        kind = f["columns/kind"][:]
+        hertz = f["columns/hertz"][:]
+    return numpy.sort((2 * numpy.pi * hertz[kind == b"normal"])**2)
+
+
+def pairs_of_basis(path, interior):
+    """Eigenvalues, and vectors as columns, with the interface held."""
+    with h5py.File(path) as f:
+        normal = numpy.flatnonzero(f["columns/kind"][:] == b"normal")
+        hertz = f["columns/hertz"][:][normal]
+        vectors = f["T"][:, normal.min():normal.max() + 1]
+    return ((2 * numpy.pi * hertz)**2,
+            vectors[:, normal - normal.min()][interior])
+
+
+def read_pairs(path):
+    """As peer_slepc writes them."""
+    with open(path, "rb") as file:
+        rows, count = numpy.fromfile(file, numpy.int64, 2)
+        values = numpy.fromfile(file, float, count)
+        return values, numpy.fromfile(file).reshape(count, rows).T
+
+
+def write_pairs(path, values, vectors):
+    with open(path, "wb") as file:
+        numpy.array(vectors.shape, numpy.int64).tofile(file)
+        values.tofile(file)
+        numpy.ascontiguousarray(vectors.T).tofile(file)
+
+
+def difference(values, others):
+    """Largest relative difference of the modes that both have."""
+    count = min(len(values), len(others))
+    if count == 0:
+        raise Unknown("no eigenvalues to compare")
+    a, b = numpy.sort(values)[:count], numpy.sort(others)[:count]
+    return float(numpy.max(numpy.abs(a / b - 1)))
+
+
+class Residual:
+    """Largest |lambda K^-1 M x - x| / |x|, x being of the interior. K^-1 is
+    that of K itself: what the factor rounds is refined away once, with a
+    residual of long doubles, since on thin plates it is seen otherwise."""
+
+    def __init__(self, K, M):
+        self.K, self.M = (A.tocsr().astype(numpy.longdouble) for A in (K, M))
+        self.factor = scipy.sparse.linalg.splu(
+            K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True})
+
+    def solve(self, right):
+        return self.factor.solve(right.astype(float))
+
+    def __call__(self, values, vectors):
+        right = self.M @ vectors
+        found = self.solve(right).astype(numpy.longdouble)
+        found += self.solve(right - self.K @ found)
+        error = (values * found - vectors).astype(float)
+        size = numpy.linalg.norm
+        return float((size(error, axis=0) / size(vectors, axis=0)).max())
+
+
+class PeersResidual:
+    """The same by MUMPS, which reads the matrices and a file of pairs."""
+
+    def __init__(self, solve, path):
+        self.solve, self.path = solve, path
+
+    def __call__(self, values, vectors):
+        write_pairs(self.path, values, vectors)
+        return self.solve("-check", self.path)["residual"]
+
+
+def find_residual(shop, solve, stem, interior, pairs):
+    """Whichever suits the size; None if no peer can check a large one."""
+    if len(interior) <= LARGEST_FOR_SUPERLU:
+        K, M = (A[interior][:, interior] for A in models.load(stem)[:2])
+        return Residual(K, M)
+    if isinstance(shop.programs["peer-slepc"], str):
+        return None
+    return PeersResidual(solve, pairs)
+
+
+def measure(shop, model, runs):
+    """Adds residuals and differences of eigenvalues to the runs of a model."""
+    stem, out = shop.stem(model), shop.out(model)
+    pairs = out / "slepc.pairs"
+
+    def solve(*words):
+        matrices = ["-stiffness", stem.with_suffix(".K.petsc"),
+                    "-mass", stem.with_suffix(".M.petsc")]
+        order = ["-st_mat_mumps_icntl_7", 5, "-mat_mumps_icntl_7", 5]
+        return json.loads(shop.peer(
+            [*shop.program("peer-slepc"), *matrices, *order, *words],
+            OMP_NUM_THREADS="2")["out"])
+
+    ran = [job for job in shop.jobs if "wall" in runs.get(job, {})]
+    values, vectors = {}, {}
+    port = models.load_port(stem)
+    interior = numpy.setdiff1d(range(shop.facts[model]["dofs"]), port)
+    for job in ran:
+        path = out / f"{job}.h5"
+        if runs[job]["said"].get("values"):
+            values[job] = runs[job]["said"].pop("values")
+        elif job == "slepc-1x2":
+            said = solve("-vectors", pairs)
+            shop.facts[model] |= {key: said[key] for key in
+                                  ("factor_entries", "factor_flops")}
+            values[job], vectors[job] = read_pairs(pairs)
+        elif shop.jobs[job].get("pairs"):
+            values[job], vectors[job] = pairs_of_basis(path, interior)
+        elif job.startswith("basis-500"):
+            values[job] = values_of_basis(path)
+    if vectors:
+        residual = find_residual(shop, solve, stem, interior, pairs)
+        for job, found in vectors.items():
+            if residual:
+                runs[job]["residual"] = residual(values[job], found)
+    compare(shop.jobs, runs, values)
+
+
+def compare(jobs, runs, values):
+    reference = next((job for job in REFERENCES if job in values), None)
+    for job, found in values.items():
+        if job != reference and jobs[job].get("pairs") and reference:
+            runs[job]["agreement"] = difference(found, values[reference])
+        other = jobs[job].get("beside")
+        if other in values:
+            runs[job][f"error beside {other}"] = difference(found,
+                                                            values[other])
