@@ -11,6 +11,8 @@ import json
 import os
 import pathlib
 import shutil
+import signal
+import sys
 import tempfile
 
 # of the harness itself; before NumPy is loaded, which reads it
@@ -109,9 +111,12 @@ def main():
     arguments = parser.parse_args()
     if set(arguments.models or []) - set(models.SHAPES):
         parser.error("models are " + ", ".join(models.SHAPES))
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     stopwatch = Stopwatch()
     try:
         result = measure(Workshop(arguments, stopwatch))
+    except KeyboardInterrupt:
+        sys.exit(130)
     finally:
         stopwatch.close()
     page.RESULTS.write_text(json.dumps(result, indent=1) + "\n")

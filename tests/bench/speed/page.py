@@ -5,6 +5,8 @@ import json
 import pathlib
 import sys
 
+from targets import NOT_ASKED
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 RESULTS = ROOT / "build" / "bench" / "results.json"
 
@@ -84,9 +86,13 @@ def job_rows(result, model):
 
 
 def merged(targets):
-    """Rows that were not measured for one reason become one."""
+    """Rows that were not measured for one reason become one; a model that was
+    not asked for has none beside one that was."""
+    asked = {row["what"] for row in targets if row["notes"] != NOT_ASKED}
     found = {}
     for row in targets:
+        if row["notes"] == NOT_ASKED and row["what"] in asked:
+            continue
         key = (row["number"], row["what"], row["verdict"], row["notes"],
                "" if row["verdict"] == "not measured" else row["model"])
         other = found.setdefault(key, row | {"model": None})

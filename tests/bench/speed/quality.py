@@ -93,14 +93,13 @@ class PeersResidual:
         return self.solve("-check", self.path)["residual"]
 
 
-def find_residual(shop, solve, stem, interior, pairs):
-    """Whichever suits the size; None if no peer can check a large one."""
+def find_residual(solve, stem, interior, pairs):
+    """Whichever suits the size; None where no factor of MUMPS was seen to fit
+    in memory."""
     if len(interior) <= LARGEST_FOR_SUPERLU:
         K, M = (A[interior][:, interior] for A in models.load(stem)[:2])
         return Residual(K, M)
-    if isinstance(shop.programs["peer-slepc"], str):
-        return None
-    return PeersResidual(solve, pairs)
+    return PeersResidual(solve, pairs) if pairs.exists() else None
 
 
 def measure(shop, model, runs):
@@ -134,7 +133,7 @@ def measure(shop, model, runs):
         elif job.startswith("basis-500"):
             values[job] = values_of_basis(path)
     if vectors:
-        residual = find_residual(shop, solve, stem, interior, pairs)
+        residual = find_residual(solve, stem, interior, pairs)
         for job, found in vectors.items():
             if residual:
                 runs[job]["residual"] = residual(values[job], found)

@@ -36,13 +36,18 @@ class Stopwatch:
                    "limit": limit}
         self.server.stdin.write(json.dumps(request) + "\n")
         self.server.stdin.flush()
-        answer = json.loads(self.server.stdout.readline())
+        line = self.server.stdout.readline()
+        if not line:
+            raise RuntimeError("the process that starts others has ended")
+        answer = json.loads(line)
         if answer["status"] != 0:
             raise Failed(answer["why"], answer.get("late", False))
         return answer
 
     def close(self):
+        """Also ends a process that still runs."""
         self.server.stdin.close()
+        self.server.send_signal(signal.SIGINT)
         self.server.wait()
 
 
@@ -80,7 +85,11 @@ def run(request):
     late = False
     signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, request["limit"])
-    _, status, used = os.wait4(child, 0)
+    try:
+        _, status, used = os.wait4(child, 0)
+    except KeyboardInterrupt:
+        os.killpg(child, signal.SIGKILL)
+        raise
     wall = time.monotonic() - began
     signal.setitimer(signal.ITIMER_REAL, 0.0)
     text = [os.pread(f, os.fstat(f).st_size, 0).decode(errors="replace")
@@ -98,8 +107,11 @@ def run(request):
 
 
 def serve():
-    for line in sys.stdin:
-        print(json.dumps(run(json.loads(line))), flush=True)
+    try:
+        for line in sys.stdin:
+            print(json.dumps(run(json.loads(line))), flush=True)
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import tomllib
 PATH = pathlib.Path(__file__).with_name("targets.toml")
 KEYS = {"number", "what", "value", "models", "at_least", "at_most",
         "at_least_128_bit", "stretch"}
+NOT_ASKED = "model not asked for"
 
 
 class NotMeasured(Exception):
@@ -42,7 +43,7 @@ class Measurements:
         if key in found:
             return found[key]
         if not self.asked:
-            raise NotMeasured("model not asked for")
+            raise NotMeasured(NOT_ASKED)
         raise NotMeasured(found.get("why", f"{job}: not part of this run"))
 
     def note(self, name, value, unit):
@@ -78,12 +79,12 @@ class Measurements:
     def peer(self, key):
         if key not in self.facts:
             raise NotMeasured("SLEPc did not run, whose factor is the measure"
-                              if self.asked else "model not asked for")
+                              if self.asked else NOT_ASKED)
         return self.facts[key]
 
     def figure(self, name):
         if not self.asked:
-            raise NotMeasured("model not asked for")
+            raise NotMeasured(NOT_ASKED)
         found = self.figures.get(name, {"why": "not part of this run"})
         if "value" not in found:
             raise NotMeasured(found["why"])

@@ -166,14 +166,15 @@ def check_verdicts():
 def check_page():
     """One model, of which one job ran; no peer."""
     one = {"median": 2.0, "least": 1.0, "most": 3.0, "runs": 3}
+    facts = {"dofs": 3, "entries_K": 9, "entries_M": 3}
     result = {
         "machine": {"processor": "none", "vector_bits": 256, "cores": 2,
                     "memory": 2**30, "system": "", "date": "", "commit": "",
                     "load": 0.0, "packages": {}},
         "quick": True, "repeats": 3, "seconds": 1.0, "limits": {},
         "titles": {"basis": "a basis", "krylov": "another"},
-        "models": {"S10": {"dofs": 3, "entries_K": 9, "entries_M": 3}},
-        "runs": {"S10": {"basis": {"wall": one, "cpu": one, "peak": one,
+        "models": {"S50": facts, "S10": facts},
+        "runs": {"S50": {}, "S10": {"basis": {"wall": one, "cpu": one, "peak": one,
                                    "said": {}, "residual": 1e-12},
                          "krylov": {"wall": one | {"median": 0.5}}}},
         "figures": {}}
@@ -188,8 +189,12 @@ def check_page():
           "what was not measured says why")
     rows = page.target_rows(result)
     check([row[2] for row in rows if row[0] == "3"]
-          == ["S10", "P50, S50, S150"],
+          == ["S10, S50"],
           "models that were not measured for one reason share a row")
+    check([row[2] for row in rows if row[0] == "4"]
+          == ["S10, S50", "S10", "S50"]
+          and [row[2] for row in rows if row[0] == "7"] == ["S150"] * 3,
+          "a model not asked for has a row only if no other has")
     del result["runs"]["S10"]["krylov"]
     text = page.markdown(json.loads(json.dumps(result)))
     check("| a basis | 2 | 1 - 3 | 2 |" in text and "## Targets" in text,
