@@ -63,6 +63,7 @@ def measure_in(shop, folder, result):
 
 
 def measure(shop):
+    others = machine.Others(shop.stopwatch)
     shop.prepare()
     result = {"machine": machine.describe(ROOT), "quick": shop.quick,
               "repeats": shop.repeats,
@@ -74,6 +75,7 @@ def measure(shop):
     finally:
         shutil.rmtree(shop.disk, ignore_errors=True)
     result["seconds"] = shop.elapsed()
+    result["others"] = others.part()
     result["targets"] = targets.evaluate(result)
     return result
 

@@ -4,8 +4,10 @@ import json
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
+import time
 
 from quality import Unknown
 
@@ -55,6 +57,33 @@ def packages():
     return found
 
 
+def busy():
+    """Processor seconds of everything on this machine since it started, and
+    those that its host took from it."""
+    words = pathlib.Path("/proc/stat").read_text().split("\n", 1)[0].split()
+    user, nice, system, _, _, interrupt, soft, steal = map(int, words[1:9])
+    return (user + nice + system + interrupt + soft + steal) / os.sysconf(
+        "SC_CLK_TCK")
+
+
+class Others:
+    """How much of the processors others use meanwhile."""
+
+    def __init__(self, stopwatch):
+        self.stopwatch = stopwatch
+        self.began, self.busy = time.monotonic(), busy() - self.own()
+
+    def own(self):
+        return self.stopwatch.cpu + sum(
+            used.ru_utime + used.ru_stime for used in map(
+                resource.getrusage,
+                (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+
+    def part(self):
+        seconds = (time.monotonic() - self.began) * os.cpu_count()
+        return max(busy() - self.own() - self.busy, 0.0) / seconds
+
+
 def describe(root):
     name, bits = processor()
     return {"processor": name, "vector_bits": bits,
@@ -63,7 +92,7 @@ def describe(root):
             "date": datetime.date.today().isoformat(),
             "commit": said("git", "-C", str(root), "describe", "--always",
                            "--dirty", "--abbrev=10"),
-            "load": os.getloadavg()[0], "packages": packages()}
+            "packages": packages()}
 
 
 def limits(shop, cores):

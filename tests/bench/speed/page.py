@@ -14,6 +14,7 @@ RESULTS = ROOT / "build" / "bench" / "results.json"
 # 1e-10: measured on solids and on plates. Six more are 48 columns.
 BLOCKS = {"S": 32, "P": 21}
 COLUMN_BLOCKS = 6
+DISTURBED = 0.05  # of the processors, by others
 SWEEP_BYTES = 2 * 8  # forward and backward, an entry of the factor each
 
 JOB_HEAD = ["program", "seconds", "least - most", "of processor", "peak MB",
@@ -133,11 +134,14 @@ def machine_lines(result):
     lines = [f"{m['processor']}, {m['cores']} cores, "
              f"{m['vector_bits']}-bit vectors, {m['memory'] / 2**30:.0f} GiB, "
              f"{m['system']}",
-             f"{m['date']}, commit {m['commit'] or 'unknown'}, load "
-             f"{m['load']:.1f} when the run began",
+             f"{m['date']}, commit {m['commit'] or 'unknown'}",
              ("--quick: " if result["quick"] else "")
              + f"medians of {result['repeats']} runs or fewer, "
              f"{result['seconds']:.0f} s in all"]
+    if result["others"] > DISTURBED:
+        lines.append(f"DISTURBED: other programs took "
+                     f"{100 * result['others']:.0f} % of the processors "
+                     "meanwhile: trust no time of this run")
     for found in result.get("limits", {}).values():
         lines.append(
             f"{found['threads']} thread{'s' * (found['threads'] > 1)}: dense "

@@ -26,6 +26,7 @@ class Stopwatch:
     of standard output."""
 
     def __init__(self):
+        self.cpu = 0.0  # of all that ran
         self.server = subprocess.Popen(
             ["/usr/bin/python3", "-S", "-E", __file__], text=True,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE)
@@ -40,6 +41,7 @@ class Stopwatch:
         if not line:
             raise RuntimeError("the process that starts others has ended")
         answer = json.loads(line)
+        self.cpu += answer.get("cpu", 0.0)
         if answer["status"] != 0:
             raise Failed(answer["why"], answer.get("late", False))
         return answer
@@ -47,7 +49,7 @@ class Stopwatch:
     def close(self):
         """Also ends a process that still runs."""
         self.server.stdin.close()
-        self.server.send_signal(signal.SIGINT)
+        self.server.terminate()
         self.server.wait()
 
 
@@ -72,7 +74,8 @@ def run(request):
     try:
         child = os.posix_spawnp(
             request["command"][0], request["command"],
-            request["environment"], file_actions=actions, setpgroup=0)
+            request["environment"], file_actions=actions, setpgroup=0,
+            setsigdef=[signal.SIGINT, signal.SIGPIPE])  # Python ignores both
     except OSError as error:
         return {"status": 127, "why": f"{request['command'][0]}: "
                                       f"{error.strerror}"}
@@ -82,15 +85,17 @@ def run(request):
         nonlocal late
         late = True
 
+    def give_up(*_):
+        os.killpg(child, signal.SIGKILL)
+        os._exit(143)
+
     late = False
     signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, request["limit"])
-    try:
-        _, status, used = os.wait4(child, 0)
-    except KeyboardInterrupt:
-        os.killpg(child, signal.SIGKILL)
-        raise
+    signal.signal(signal.SIGTERM, give_up)
+    _, status, used = os.wait4(child, 0)
     wall = time.monotonic() - began
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.setitimer(signal.ITIMER_REAL, 0.0)
     text = [os.pread(f, os.fstat(f).st_size, 0).decode(errors="replace")
             for f in (out, err)]
@@ -107,11 +112,9 @@ def run(request):
 
 
 def serve():
-    try:
-        for line in sys.stdin:
-            print(json.dumps(run(json.loads(line))), flush=True)
-    except KeyboardInterrupt:
-        sys.exit(130)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the harness hears it
+    for line in sys.stdin:
+        print(json.dumps(run(json.loads(line))), flush=True)
 
 
 if __name__ == "__main__":

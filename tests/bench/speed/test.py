@@ -170,13 +170,15 @@ def check_page():
     result = {
         "machine": {"processor": "none", "vector_bits": 256, "cores": 2,
                     "memory": 2**30, "system": "", "date": "", "commit": "",
-                    "load": 0.0, "packages": {}},
+                    "packages": {}},
         "quick": True, "repeats": 3, "seconds": 1.0, "limits": {},
+        "others": 0.5,
         "titles": {"basis": "a basis", "krylov": "another"},
         "models": {"S50": facts, "S10": facts},
-        "runs": {"S50": {}, "S10": {"basis": {"wall": one, "cpu": one, "peak": one,
-                                   "said": {}, "residual": 1e-12},
-                         "krylov": {"wall": one | {"median": 0.5}}}},
+        "runs": {"S50": {}, "S10": {
+            "basis": {"wall": one, "cpu": one, "peak": one, "said": {},
+                      "residual": 1e-12},
+            "krylov": {"wall": one | {"median": 0.5}}}},
         "figures": {}}
     result["targets"] = targets.evaluate(result)
     verdict = {(row["what"], row["model"]): row for row in result["targets"]}
@@ -197,6 +199,8 @@ def check_page():
           "a model not asked for has a row only if no other has")
     del result["runs"]["S10"]["krylov"]
     text = page.markdown(json.loads(json.dumps(result)))
+    check("DISTURBED: other programs took 50 %" in text,
+          "a page of a disturbed run says so")
     check("| a basis | 2 | 1 - 3 | 2 |" in text and "## Targets" in text,
           "the page has a table of the model")
 
