@@ -1,13 +1,20 @@
 /* Sparse matrices, their sums and products. */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/team.h"
 
 #include <ritz/matrix.h>
 
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
+
+enum {
+    EIGHT = 8,          /* columns of a product at a time */
+    WORTHWHILE = 50000, /* entries that a second thread is worth */
+};
 
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
                             ritz_sparse *out)
@@ -194,6 +201,65 @@ ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out)
     return RITZ_OK;
 }
 
+/* Several columns of a product at a time, so that A is read once for them. */
+typedef struct columns_task {
+    const ritz_sparse *A;
+    const ritz_dense *X;
+    ritz_dense *Y;
+    double *room; /* of each thread: eight columns of X and of Y, row by row */
+} columns_task;
+
+/* y := A x, eight columns of each, row by row: terms in the order of A. */
+static void multiply_eight(const ritz_sparse *A, const double *x, double *y)
+{
+    memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            double *to = y + A->rowind[p] * EIGHT;
+
+            for (int c = 0; c < EIGHT; c++)
+                to[c] += A->val[p] * x[j * EIGHT + c];
+        }
+}
+
+static void multiply_groups(int thread, int threads, void *task)
+{
+    const columns_task *t = task;
+    const ritz_sparse *A = t->A;
+    double *x = t->room + thread * (A->nrow + A->ncol) * EIGHT;
+    double *y = x + A->ncol * EIGHT;
+
+    for (int64_t k = (int64_t)thread * EIGHT; k < t->X->ncol;
+         k += (int64_t)threads * EIGHT) {
+        const int64_t left = t->X->ncol - k;
+        const int64_t count = left < EIGHT ? left : EIGHT;
+
+        for (int64_t i = 0; i < A->ncol; i++)
+            for (int64_t c = 0; c < EIGHT; c++)
+                x[i * EIGHT + c] =
+                    c < count ? ritz_dense_col(t->X, k + c)[i] : 0.0;
+        multiply_eight(A, x, y);
+        for (int64_t c = 0; c < count; c++)
+            for (int64_t i = 0; i < A->nrow; i++)
+                ritz_dense_col(t->Y, k + c)[i] = y[i * EIGHT + c];
+    }
+}
+
+/* Y := A X of many columns; Y is zero before. */
+static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
+                                    ritz_dense *Y)
+{
+    const int64_t groups = (X->ncol + EIGHT - 1) / EIGHT;
+    const bool large = A->colptr[A->ncol] >= WORTHWHILE;
+    const int threads =
+        ritz_team_ready(large && groups < INT_MAX ? (int)groups : 1);
+    RITZ_OWN_ARRAY double *room = NULL;
+
+    RITZ_CHECK_NEW(room, threads * (A->nrow + A->ncol) * EIGHT);
+    ritz_team_run(threads, multiply_groups, &(columns_task){A, X, Y, room});
+    return RITZ_OK;
+}
+
 ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
                             ritz_dense *Y)
 {
@@ -201,6 +267,8 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
                    "A has %" PRId64 " columns but X has %" PRId64 " rows",
                    A->ncol, X->nrow);
     RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
+    if (X->ncol >= EIGHT / 2)
+        return multiply_columns(A, X, Y);
     for (int64_t k = 0; k < X->ncol; k++) {
         const double *x = ritz_dense_col(X, k);
         double *y = ritz_dense_col(Y, k);
