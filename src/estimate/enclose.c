@@ -29,7 +29,9 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
+#include "linear/factor.h"
 #include "linear/general.h"
+#include "linear/inertia.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -491,7 +493,9 @@ ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
             return RITZ_OK;
     }
     m->estimator->num_factors++;
-    return ritz_eigen_count(&full->K, &full->M, rho, below);
+    return ritz_inertia_below(
+        &full->K, &full->M, rho,
+        m->estimator->A ? ritz_factor_order(m->estimator->A) : NULL, below);
 }
 
 bool ritz_counted_within(const ritz_estimator *estimator, double low,

@@ -536,7 +536,9 @@ static ritz_status count_target(search *s)
         return RITZ_OK;
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
         s->limit = lambda * (1.0 + above[i]);
-        status = ritz_eigen_count(s->S.K, s->S.M, s->limit, &s->target);
+        status = ritz_inertia_below(s->S.K, s->S.M, s->limit,
+                                    s->S.A ? ritz_factor_order(s->S.A) : NULL,
+                                    &s->target);
     }
     return status;
 }

@@ -1,4 +1,5 @@
-/* The number of negative eigenvalues of a sparse symmetric matrix. */
+/* The number of negative eigenvalues of a sparse symmetric matrix, and of
+ * eigenvalues of a pencil below a value. */
 #ifndef RITZ_LINEAR_INERTIA_H
 #define RITZ_LINEAR_INERTIA_H
 
@@ -15,5 +16,17 @@
  */
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);
+
+/**
+ * ritz_eigen_count() with the order of rows of another factor of K and M.
+ *
+ * @param[in] order  as above
+ */
+ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
+                               double tau, const int64_t *order, int64_t *out);
+
+/** ritz_ldl_new() with an order of rows, as above. */
+ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
+                             int64_t *negative, ritz_ldl **out);
 
 #endif

@@ -426,20 +426,26 @@ static void release_factor(mumps_factor *F)
     RITZ_FREE(F->row, F->col, F->val, F->A, F->place, F->at);
 }
 
-ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
-                         ritz_ldl **out)
+ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
+                             int64_t *negative, ritz_ldl **out)
 {
     RITZ_OWN(ritz_ldl) *F = NULL;
 
     RITZ_CHECK_NEW(F, 1);
     F->of.width = 1;
-    RITZ_CHECK(prepare_factor(1, &A, NULL, &F->of));
+    RITZ_CHECK(prepare_factor(1, &A, order, &F->of));
     add_values(A, 1.0, &F->of);
     RITZ_CHECK(factor_values(&F->of));
     if (negative)
         *negative = A->nrow > 0 ? F->of.id.d.infog[NEGATIVE_PIVOTS] : 0;
     RITZ_MOVE(*out, F);
     return RITZ_OK;
+}
+
+ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
+                         ritz_ldl **out)
+{
+    return ritz_ldl_ordered(A, NULL, negative, out);
 }
 
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
