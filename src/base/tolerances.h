@@ -280,6 +280,9 @@
 /* What is left of a vector below this part of its length is rounding of sums
    over all rows. */
 #define RITZ_NO_DIRECTION 1e-13
+/* A vector of length one that is not longer than this without its parts along
+   others lay among them: what is left is rounding. */
+#define RITZ_MOSTLY_LEFT 0.5
 /* Entries of a vector this near to its largest are as large: the first of them
    gives the sign, on every processor. */
 #define RITZ_LIKE_LARGEST 1e-9

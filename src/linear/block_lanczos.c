@@ -372,12 +372,26 @@ static void scale_column(const block_lanczos *L, double a, int j, double *X)
         X[i * B + j] *= a;
 }
 
+/* |x_j|'|M||x_j|, of which x_j'M x_j has the rounding. */
+static double mass_terms(const block_lanczos *L, const double *X, int j)
+{
+    double sum = 0.0;
+
+    for (int64_t i = 0; i < L->n; i++)
+        for (int64_t p = L->start[i]; p < L->start[i + 1]; p++)
+            sum +=
+                fabs(X[i * B + j] * L->val[p] * X[(int64_t)L->col[p] * B + j]);
+    return sum;
+}
+
 /* Column j made orthonormal to the columns of `others`, twice; false, and zero,
-   if no more than `least` of its length is left. R += its coefficients. */
+   if no more than `least` of its length is left, or rounding: a vector without
+   mass has some. R += its coefficients. */
 static bool settle_column(block_lanczos *L, int j, const bool *others,
                           double least, double *X, double *MX, double *R)
 {
     double size = 0.0;
+    bool settled = false;
 
     for (int pass = 0; pass < 2; pass++)
         for (int k = 0; k < B; k++) {
@@ -390,10 +404,23 @@ static bool settle_column(block_lanczos *L, int j, const bool *others,
             R[k * B + j] += r;
         }
     size = sqrt(fmax(multiply_columns(L, X, j, MX, j), 0.0));
-    R[j * B + j] = size > least ? size : 0.0;
-    scale_column(L, size > least ? 1.0 / size : 0.0, j, X);
-    scale_column(L, size > least ? 1.0 / size : 0.0, j, MX);
-    return size > least;
+    settled =
+        size > least && size * size > RITZ_NO_DIRECTION * mass_terms(L, X, j);
+    R[j * B + j] = settled ? size : 0.0;
+    scale_column(L, settled ? 1.0 / size : 0.0, j, X);
+    scale_column(L, settled ? 1.0 / size : 0.0, j, MX);
+    return settled;
+}
+
+/* W := Q of W = Q R, column by column; those that are not settled are zero, and
+   so are their rows of R. */
+static void settle_columns(block_lanczos *L, double least, bool *settled,
+                           double *R)
+{
+    memset(settled, 0, B * sizeof *settled);
+    memset(R, 0, SQUARE * sizeof *R);
+    for (int j = 0; j < B; j++)
+        settled[j] = settle_column(L, j, settled, least, L->W, L->MW, R);
 }
 
 /* Take the parts in V out of X, and MX := M X. */
@@ -448,9 +475,21 @@ static ritz_status refill_block(block_lanczos *L, bool *settled)
     return RITZ_OK;
 }
 
+static int count_settled(const bool *settled)
+{
+    int count = 0;
+
+    for (int j = 0; j < B; j++)
+        count += settled[j];
+    return count;
+}
+
 /*
  * W := Q of W = Q R, and MW := M Q; `size` is that of what W is the rest of.
  * Columns that are only rounding of it are replaced; their rows of R are zero.
+ *
+ * A column of which little is left has become long by its division, and so has
+ * the rounding in it, which lies in V, too: it is taken out once more.
  *
  * @param[out] exhausted  Q is zero
  */
@@ -459,25 +498,20 @@ static ritz_status orthonormalise(block_lanczos *L, double size, double *R,
 {
     const double least = RITZ_NO_DIRECTION * size;
     bool settled[B] = {false};
-    bool all = true;
     double Q[SQUARE];
 
     *exhausted = false;
     if (settle_block(L, least, L->W, L->MW, R))
         return RITZ_OK;
-    memset(R, 0, SQUARE * sizeof *R);
-    for (int j = 0; j < B; j++) {
-        settled[j] = settle_column(L, j, settled, least, L->W, L->MW, R);
-        all = all && settled[j];
-    }
-    if (!all)
-        RITZ_CHECK(refill_block(L, settled));
-    *exhausted = true;
-    for (int j = 0; j < B; j++)
-        *exhausted = *exhausted && !settled[j];
-    multiply_mass(L, L->W, L->MW);
-    if (settle_block(L, 0.5, L->W, L->MW, Q))
+    settle_columns(L, least, settled, R);
+    for (int pass = 0; pass < 2; pass++) {
+        if (count_settled(settled) < B)
+            RITZ_CHECK(refill_block(L, settled));
+        take_out_blocks(L, L->W, L->MW);
+        settle_columns(L, RITZ_MOSTLY_LEFT, settled, Q);
         multiply_small(Q, R);
+    }
+    *exhausted = count_settled(settled) == 0;
     return RITZ_OK;
 }
 
