@@ -501,7 +501,7 @@ static ritz_status orthonormalise(block_lanczos *L, double size, double *R,
     double Q[SQUARE];
 
     *exhausted = false;
-    if (settle_block(L, least, L->W, L->MW, R))
+    if (settle_block(L, RITZ_CLEARLY_LEFT * size, L->W, L->MW, R))
         return RITZ_OK;
     settle_columns(L, least, settled, R);
     for (int pass = 0; pass < 2; pass++) {
@@ -807,6 +807,17 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
     }
 }
 
+/* Of the c-th largest theta; HUGE_VAL if that is rounding. */
+static double eigenvalue_at(const block_lanczos *L, int64_t c)
+{
+    const int64_t m = L->blocks * B;
+    const double theta = c < m ? L->theta[m - 1 - c] : 0.0;
+
+    return theta > RITZ_NO_DIRECTION * L->theta[m - 1]
+               ? L->S->sigma + 1.0 / theta
+               : HUGE_VAL;
+}
+
 ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
                                ritz_dense *X, double **lambda, double *next,
                                ritz_lanczos_end *end)
@@ -839,10 +850,10 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
     RITZ_CHECK(iterate_blocks(&L, R, &found, end));
     m = L.blocks * B;
     if (*end == RITZ_LANCZOS_SLOW)
-        *next = S->sigma + 1.0 / L.theta[m < k ? 0 : m - k];
+        *next = eigenvalue_at(&L, k - 1);
     if (*end != RITZ_LANCZOS_FOUND)
         return RITZ_OK;
-    *next = found < m ? S->sigma + 1.0 / L.theta[m - 1 - found] : HUGE_VAL;
+    *next = eigenvalue_at(&L, found);
     RITZ_CHECK_NEW(values, found);
     for (int64_t c = 0; c < found; c++)
         values[c] = S->sigma + 1.0 / L.theta[m - 1 - c];

@@ -29,7 +29,8 @@
  *                     FOUND
  * @param[out] lambda  of the columns of X, to be freed; NULL unless FOUND
  * @param[out] next    the eigenvalue behind them, as far as it is known: an
- *                     upper bound
+ *                     upper bound, HUGE_VAL if nothing is known; of the k-th
+ *                     if SLOW
  * @cost   some 3 k / 8 block solves; memory for some 4 k vectors
  */
 ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,

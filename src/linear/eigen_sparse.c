@@ -318,7 +318,7 @@ static ritz_status shift_elsewhere(search *s, double reach)
 
     if (-sigma > fabs(reach))
         sigma = -fmax(fabs(reach), -sigma / 1e3);
-    else if (reach > -1e4 * sigma)
+    else if (isfinite(reach) && reach > -1e4 * sigma)
         sigma = -reach / 100.0;
     if (sigma == s->S.sigma || -sigma <= s->broken) {
         s->ask += s->ask / 2 + SPARE;

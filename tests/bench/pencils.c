@@ -1,0 +1,78 @@
+/*
+ * bench_pencils [COUNT [SEARCHES]] - block Lanczos of COUNT random pencils of
+ * 20 to 150 rows, 10000 unless another number is given, and the whole search of
+ * SEARCHES ones of 650 to 900 rows, 60 unless given; and what was missed,
+ * miscounted or inexact, by kind. Each is seeded by its number: a line names
+ * every pencil with a fault.
+ */
+#include "judged.h"
+#include "testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct sum_of_kind {
+    int64_t pencils, refused, exhausted, slow, missed, caught, spurious;
+    int64_t counts, wrong;
+    double value, residual, orthogonal;
+} sum_of_kind;
+
+static void add_verdict(const pencil_verdict *v, sum_of_kind *s)
+{
+    s->pencils++;
+    s->refused += v->refused;
+    s->exhausted += v->exhausted;
+    s->slow += v->slow;
+    s->missed += v->missed;
+    s->caught += v->caught;
+    s->spurious += v->false_mode;
+    s->counts += v->counts;
+    s->wrong += v->wrong_counts;
+    s->value = fmax(s->value, v->value);
+    s->residual = fmax(s->residual, v->residual);
+    s->orthogonal = fmax(s->orthogonal, v->orthogonal);
+}
+
+static void print_sum(const char *name, const sum_of_kind *s)
+{
+    printf("%-15s %7ld %7ld %9ld %5ld %6ld %6ld %8ld %7ld %5ld %8.1e %8.1e "
+           "%8.1e\n",
+           name, (long)s->pencils, (long)s->refused, (long)s->exhausted,
+           (long)s->slow, (long)s->missed, (long)s->caught, (long)s->spurious,
+           (long)s->counts, (long)s->wrong, s->value, s->residual,
+           s->orthogonal);
+}
+
+static void run(int64_t count, void (*judge)(uint64_t, pencil_verdict *))
+{
+    sum_of_kind sums[PENCIL_KINDS] = {0};
+
+    for (int64_t seed = 0; seed < count; seed++) {
+        pencil_verdict v;
+
+        judge((uint64_t)seed, &v);
+        add_verdict(&v, &sums[v.kind]);
+        if (v.missed || v.false_mode || v.wrong_counts || v.slow ||
+            v.orthogonal > 1e-11)
+            printf("  seed %ld, %s, %ld rows, %ld of %ld%s%s%s%s, value %.1e, "
+                   "residual %.1e, orthogonal %.1e, wrong counts %ld\n",
+                   (long)seed, pencil_names[v.kind], (long)v.n, (long)v.found,
+                   (long)v.asked, v.missed ? ", missed" : "",
+                   v.caught ? ", caught" : "", v.false_mode ? ", false" : "",
+                   v.slow ? ", slow" : "", v.value, v.residual, v.orthogonal,
+                   (long)v.wrong_counts);
+    }
+    printf("%-15s %7s %7s %9s %5s %6s %6s %8s %7s %5s %8s %8s %8s\n", "kind",
+           "pencils", "refused", "exhausted", "slow", "missed", "caught",
+           "spurious", "counts", "wrong", "value", "residual", "X'MX - I");
+    for (int k = 0; k < PENCIL_KINDS; k++)
+        print_sum(pencil_names[k], &sums[k]);
+    (void)fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    run(argc > 1 ? strtol(argv[1], NULL, 10) : 10000, judge_lanczos);
+    run(argc > 2 ? strtol(argv[2], NULL, 10) : 60, judge_search);
+    return 0;
+}

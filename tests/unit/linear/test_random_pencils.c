@@ -1,0 +1,61 @@
+#include "fixtures/judged.h"
+#include "testing.h"
+
+enum { PENCILS = 300, SEARCHES = 2 };
+
+static void check_verdict(uint64_t seed, const pencil_verdict *v)
+{
+    const bool wide = v->kind == PENCIL_SPREAD || v->kind == PENCIL_MIXED;
+
+    if (v->refused || (v->slow && !wide) || v->false_mode || v->wrong_counts ||
+        (v->missed && !v->caught) || v->orthogonal > 1e-11)
+        fail_msg("seed %ju, %s, %jd rows, %jd of %jd modes: "
+                 "%s%s%s%s %jd wrong counts, orthogonal to %.1e",
+                 (uintmax_t)seed, pencil_names[v->kind], (intmax_t)v->n,
+                 (intmax_t)v->found, (intmax_t)v->asked,
+                 v->refused ? "refused," : "", v->slow ? "slow," : "",
+                 v->false_mode ? "false," : "", v->missed ? "missed," : "",
+                 (intmax_t)v->wrong_counts, v->orthogonal);
+}
+
+/* bench_pencils runs ten thousand. */
+static void no_pencil_loses_modes_unseen(void **state)
+{
+    int64_t found = 0;
+    int64_t counts = 0;
+
+    (void)state;
+    for (uint64_t seed = 0; seed < PENCILS; seed++) {
+        pencil_verdict v;
+
+        judge_lanczos(seed, &v);
+        check_verdict(seed, &v);
+        found += v.found;
+        counts += v.counts;
+    }
+    assert_true(found > 10 * PENCILS);
+    assert_true(counts > PENCILS);
+}
+
+static void searches_find_every_mode(void **state)
+{
+    const uint64_t seeds[SEARCHES] = {PENCIL_EQUAL, PENCIL_FREE};
+
+    (void)state;
+    for (int k = 0; k < SEARCHES; k++) {
+        pencil_verdict v;
+
+        judge_search(seeds[k], &v);
+        check_verdict(seeds[k], &v);
+        assert_false(v.missed || v.slow);
+        assert_true(v.found >= v.asked);
+        assert_near(v.residual, 0.0, 1e-11); /* RITZ_EIGEN_RESIDUAL */
+    }
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(no_pencil_loses_modes_unseen),
+    cmocka_unit_test(searches_find_every_mode),
+};
+
+TEST_MODULE(random_pencils, tests, NULL, NULL)
