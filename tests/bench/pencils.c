@@ -1,7 +1,7 @@
 /*
  * bench_pencils [COUNT [SEARCHES]] - block Lanczos of COUNT random pencils of
  * 20 to 150 rows, 10000 unless another number is given, and the whole search of
- * SEARCHES ones of 650 to 900 rows, 60 unless given; and what was missed,
+ * SEARCHES ones of 650 to 899 rows, 60 unless given; and what was missed,
  * miscounted or inexact, by kind. Each is seeded by its number: a line names
  * every pencil with a fault.
  */
@@ -43,6 +43,12 @@ static void print_sum(const char *name, const sum_of_kind *s)
            s->orthogonal);
 }
 
+/* Of 650 to 899 rows. */
+static void judge_large(uint64_t seed, pencil_verdict *out)
+{
+    judge_search(seed, 650 + (int64_t)(seed * 37 % 250), out);
+}
+
 static void run(int64_t count, void (*judge)(uint64_t, pencil_verdict *))
 {
     sum_of_kind sums[PENCIL_KINDS] = {0};
@@ -73,6 +79,6 @@ static void run(int64_t count, void (*judge)(uint64_t, pencil_verdict *))
 int main(int argc, char **argv)
 {
     run(argc > 1 ? strtol(argv[1], NULL, 10) : 10000, judge_lanczos);
-    run(argc > 2 ? strtol(argv[2], NULL, 10) : 60, judge_search);
+    run(argc > 2 ? strtol(argv[2], NULL, 10) : 60, judge_large);
     return 0;
 }

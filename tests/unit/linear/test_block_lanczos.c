@@ -116,6 +116,39 @@ static void few_masses_exhaust_the_iteration(void **state)
     }
 }
 
+/* Three eigenvalues, twenty times each: a space of powers of one block has
+   eight vectors of each, and new directions the others. */
+static void new_directions_find_further_copies(void **state)
+{
+    enum { COPIES = 20, DOFS = 3 * COPIES };
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+    int64_t row[DOFS];
+    double val[DOFS];
+    double *lambda = NULL;
+    double next = 0.0;
+    ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+
+    (void)state;
+    for (int64_t i = 0; i < DOFS; i++) {
+        row[i] = i;
+        val[i] = 1.0;
+    }
+    assert_ok(ritz_sparse_from_triplets(DOFS, DOFS, DOFS, row, row, val, &M));
+    for (int64_t i = 0; i < DOFS; i++)
+        val[i] = 1.0 + (double)(i % 3);
+    assert_ok(ritz_sparse_from_triplets(DOFS, DOFS, DOFS, row, row, val, &K));
+    assert_ok(ritz_factor_spd(&K, &F));
+    assert_ok(ritz_block_lanczos(&(ritz_shifted){&K, &M, 0.0, F}, 50, 0, &X,
+                                 &lambda, &next, &end));
+    assert_int_equal(end, RITZ_LANCZOS_FOUND);
+    assert_true(X.ncol >= 50);
+    for (int64_t j = 0; j < X.ncol; j++)
+        assert_near(lambda[j], 1.0 + (double)(j / COPIES), 1e-13);
+    free(lambda);
+}
+
 static ritz_status find_few(const ritz_shifted *S)
 {
     RITZ_OWN(ritz_dense) X = {0};
@@ -143,6 +176,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(multiple_eigenvalues_are_all_found),
     cmocka_unit_test(restarts_lose_nothing),
     cmocka_unit_test(few_masses_exhaust_the_iteration),
+    cmocka_unit_test(new_directions_find_further_copies),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
