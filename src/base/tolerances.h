@@ -277,9 +277,6 @@
 /* A column of a block that keeps less than this part of its square depends on
    the others: three digits of its length are lost in the sums. */
 #define RITZ_GRAM_DEPENDENT 1e-6
-/* A column that keeps less than this part of what was taken out of it has too
-   much of the rounding of that. */
-#define RITZ_CLEARLY_LEFT 1e-6
 /* What is left of a vector below this part of its length is rounding of sums
    over all rows. */
 #define RITZ_NO_DIRECTION 1e-13

@@ -501,7 +501,7 @@ static ritz_status orthonormalise(block_lanczos *L, double size, double *R,
     double Q[SQUARE];
 
     *exhausted = false;
-    if (settle_block(L, RITZ_CLEARLY_LEFT * size, L->W, L->MW, R))
+    if (settle_block(L, least, L->W, L->MW, R))
         return RITZ_OK;
     settle_columns(L, least, settled, R);
     for (int pass = 0; pass < 2; pass++) {

@@ -1,7 +1,7 @@
 #include "fixtures/judged.h"
 #include "testing.h"
 
-enum { PENCILS = 300, SEARCHES = 2 };
+enum { PENCILS = 225, SEARCHES = 2 };
 
 static void check_verdict(uint64_t seed, const pencil_verdict *v)
 {
@@ -37,11 +37,11 @@ static void no_pencil_loses_modes_unseen(void **state)
     assert_true(counts > PENCILS);
 }
 
-/* Seeds whose blocks come near to dependence in the course of the iteration:
-   vectors were orthogonal to 1e-11 or not at all. */
+/* Seeds whose blocks come near to dependence, or whose last directions have no
+   mass but rounding: vectors were orthogonal to 1e-11 or not at all. */
 static void nearly_dependent_blocks_stay_orthogonal(void **state)
 {
-    const uint64_t seeds[] = {550, 667, 2909, 5581, 7957};
+    const uint64_t seeds[] = {550, 667, 755, 1250, 2195, 2909, 5581, 7957};
 
     (void)state;
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
