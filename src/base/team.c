@@ -108,13 +108,36 @@ static void *serve_tasks(void *argument)
     return NULL;
 }
 
+/* A process that was forked has none of the threads. */
+static void forget_threads(void)
+{
+    signal_count *const each[] = {&team.tasks, &team.ends, &team.meetings};
+
+    for (size_t k = 0; k < sizeof each / sizeof *each; k++) {
+        atomic_store(&each[k]->sleepers, 0);
+        pthread_mutex_init(&each[k]->lock, NULL);
+        pthread_cond_init(&each[k]->changed, NULL);
+    }
+    pthread_mutex_init(&team.busy, NULL);
+    atomic_store(&team.arrived, 0);
+    team.started = 0;
+    team.refused = false;
+}
+
+static void watch_forks(void)
+{
+    (void)pthread_atfork(NULL, NULL, forget_threads); /* fails without memory */
+}
+
 /* One more thread, which leaves all signals to the others. */
 static bool start_thread(int thread)
 {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
     sigset_t all, before;
     pthread_t id;
     bool started = false;
 
+    pthread_once(&once, watch_forks);
     team.before[thread] = atomic_load(&team.tasks.count);
     sigfillset(&all);
     if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0)
@@ -160,6 +183,8 @@ void ritz_team_run(int threads, ritz_team_work *work, void *task)
         return;
     }
     pthread_mutex_lock(&team.busy);
+    while (team.started + 1 < threads && start_thread(team.started + 1))
+        team.started++; /* after a fork */
     ended = atomic_load(&team.ends.count);
     team.threads = threads;
     team.work = work;

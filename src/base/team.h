@@ -19,6 +19,8 @@ typedef void ritz_team_work(int thread, int threads, void *task);
  * return when all have ended. Work of a single thread runs here. Tasks of
  * several callers run one after the other.
  *
+ * A task starts no other task.
+ *
  * @param[in] threads  at most what ritz_team_ready() gave
  */
 void ritz_team_run(int threads, ritz_team_work *work, void *task);
@@ -27,7 +29,7 @@ void ritz_team_run(int threads, ritz_team_work *work, void *task);
 void ritz_team_meet(int threads);
 
 /**
- * The number of threads for a task whose parts are worth @p most threads: what
+ * The number of threads for a task that gains from at most @p most of them: what
  * ritz_set_threads() allows, as far as the system has started them.
  */
 int ritz_team_ready(int most);

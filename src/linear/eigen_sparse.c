@@ -277,7 +277,7 @@ static ritz_status shift_near(search *s, double sigma)
     ritz_status status = shift_to(s, sigma);
 
     while (status == RITZ_ERR_SINGULAR && -sigma < 1e3 * s->typical) {
-        sigma *= 100.0;
+        sigma = fmin(100.0 * sigma, -RITZ_FIRST_SHIFT * s->typical);
         status = shift_to(s, sigma);
     }
     if (status == RITZ_ERR_SINGULAR)

@@ -11,9 +11,8 @@
 #include <unistd.h>
 
 enum {
-    LINE = 64,           /* bytes of a line of the cache */
     HUGE_PAGE = 2 << 20, /* bytes */
-    SHARE = 10,          /* subtrees a thread has, at least, to even them out */
+    SHARE = 10,          /* subtrees of each thread, so that loads are even */
     WORTHWHILE = 400000, /* entries of L that a second thread is worth */
     OVERHEAD = 200,      /* of a supernode, in entries */
     DISCARD = 8 << 20,   /* bytes that are read before they are given back */
@@ -561,9 +560,9 @@ static void descend_top(const solving *s, int thread, int threads)
 }
 
 /*
- * Backward. Every thread has the solution for itself in c->top; sums over its
- * panels are met by those of the others, in one of two places in turn, so that
- * none is written to while another thread may still read it.
+ * Backward. Every thread has the solution for itself in c->top. Each sums over
+ * its own panels, and then all sums are added. They lie in one of two places in
+ * turn, so that none is written to while another thread may still read it.
  */
 static void ascend_top(const solving *s, int thread, int threads)
 {

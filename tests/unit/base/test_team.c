@@ -1,6 +1,9 @@
 #include "base/team.h"
 #include "testing.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 enum { MOST = 4, TASKS = 2000 };
 
 /* What each thread did. */
@@ -63,6 +66,32 @@ static void fewer_threads_than_there_are_may_be_asked_for(void **state)
     ritz_set_threads(1);
 }
 
+/* The child of a fork has the caller's thread alone, and starts others. */
+static void a_forked_process_starts_its_own(void **state)
+{
+    tally t = {{0}, 0};
+    int status = 0;
+    int threads = 0;
+    pid_t child = 0;
+
+    (void)state;
+    ritz_set_threads(2);
+    threads = ritz_team_ready(2);
+    ritz_team_run(threads, count_together, &t);
+    child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        alarm(20);
+        ritz_team_run(threads, count_together, &t);
+        _exit(t.wrong == 0 && t.done[threads - 1] == 6 ? 0 : 1);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    ritz_team_run(threads, count_together, &t);
+    assert_int_equal(t.done[0], 6);
+    ritz_set_threads(1);
+}
+
 static void parts_cover_everything_once(void **state)
 {
     (void)state;
@@ -86,6 +115,7 @@ static void parts_cover_everything_once(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_threads_work_and_meet),
     cmocka_unit_test(fewer_threads_than_there_are_may_be_asked_for),
+    cmocka_unit_test(a_forked_process_starts_its_own),
     cmocka_unit_test(parts_cover_everything_once),
 };
 
