@@ -14,9 +14,12 @@ fault of each KIND (by default of all), at points spread over its run:
 The command must end with status 1, one sentence and no output. If a library
 does without the memory, status 0 and the same output as without a fault are
 right. A signal is a finding if it came in code of Ritz, or after an allocation
-of Ritz; otherwise the table counts it for the library. A killed command leaves
-a complete output or none, and the next run removes its drafts.
+of Ritz; otherwise the table counts it for the library. Archives of libraries
+are part of the tools: functions that are not in Ritz's own are theirs. A killed
+command leaves a complete output or none, and the next run removes its drafts.
 """
+import bisect
+import functools
 import os
 import pathlib
 import random
@@ -28,6 +31,36 @@ import sys
 
 LIMIT = 120.0  # seconds
 KINDS = ("memory", "write", "disk", "kill")
+
+
+@functools.cache
+def own_functions(build):
+    """Names of the functions of Ritz, from its archives in a build folder."""
+    lists = subprocess.run(
+        ["nm", "--defined-only", build / "libritz.a", build / "libritz_cli.a"],
+        capture_output=True, text=True, check=True).stdout
+    words = [line.split() for line in lists.splitlines()]
+    return {w[2] for w in words if len(w) == 3 and w[1] in "tT"} | {"main"}
+
+
+@functools.cache
+def program_functions(program):
+    """Addresses of the functions of a program, ascending, and their names."""
+    lists = subprocess.run(["nm", "-n", "--defined-only", program],
+                           capture_output=True, text=True, check=True).stdout
+    words = [line.split() for line in lists.splitlines()]
+    rows = [(int(w[0], 16), w[2]) for w in words
+            if len(w) == 3 and w[1] in "tTwWi"]
+    return [row[0] for row in rows], [row[1] for row in rows]
+
+
+def is_own(program, offset):
+    """Whether the code at an offset in a tool is Ritz's. GCC's parts of a
+    function, NAME.cold or NAME.isra.0, are the function's."""
+    addresses, names = program_functions(program)
+    at = bisect.bisect_right(addresses, offset) - 1
+    build = pathlib.Path(program).resolve().parent.parent
+    return names[at].split(".")[0] in own_functions(build)
 
 
 class Run:
@@ -61,9 +94,12 @@ class Run:
 
     def home(self, note):
         """Whose code a note names: "ours", "libc" or "other"."""
-        name = os.path.basename(self.notes.get(note, ""))
-        return ("ours" if name.startswith("ritz") else
-                "libc" if name.startswith("libc.so") or not name else "other")
+        program, _, offset = self.notes.get(note, "").rpartition("+")
+        name = os.path.basename(program)
+        if name.startswith("ritz"):
+            program = shutil.which(name)
+            return "ours" if is_own(program, int(offset, 16)) else "other"
+        return ("libc" if name.startswith("libc.so") or not name else "other")
 
     def is_foreign(self):
         """Whether a library ended the run, or printed sentences of its own,

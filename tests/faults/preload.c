@@ -7,8 +7,9 @@
  *     kill     the process is killed at the K-th call that writes
  *
  * The file RITZ_FAULT_LOG gets lines: "calls N", the number of calls; "failed
- * OBJECT", the program or library whose call failed; "signal OBJECT", the one
- * whose code received a signal.
+ * OBJECT+OFFSET", the program or library whose call failed, and where in it, in
+ * hexadecimal digits; "signal OBJECT+OFFSET", the one whose code received a
+ * signal.
  */
 #define _GNU_SOURCE /* NOLINT: dladdr, and where a signal struck */
 #include <dlfcn.h>
@@ -56,13 +57,17 @@ static void put_line(const char *what, const char *more)
     (void)syscall(SYS_close, file);
 }
 
-/* Log the program or library that contains this code. */
+/* Log the program or library that contains this code, and the place in it. */
 static void put_object(const char *what, const void *code)
 {
     Dl_info info = {0};
+    char place[480];
+    const bool found = dladdr(code, &info) != 0 && info.dli_fname;
 
-    put_line(what, dladdr(code, &info) != 0 && info.dli_fname ? info.dli_fname
-                                                              : "unknown");
+    (void)snprintf(
+        place, sizeof place, "%.400s+%tx", found ? info.dli_fname : "unknown",
+        found ? (const char *)code - (const char *)info.dli_fbase : 0);
+    put_line(what, place);
 }
 
 /* The C library often calls on behalf of others: the first of its callers in

@@ -37,7 +37,7 @@ endforeach()
 list(REMOVE_DUPLICATES wrapped)
 target_link_options(ritz_fuzz PRIVATE -fsanitize=fuzzer,address,undefined
     ${wrapped} -fuse-ld=bfd) # gold warns of the sanitizer
-target_link_libraries(ritz_fuzz PRIVATE ritz_flags ritz_cli ritz hdf5::hdf5 m)
+target_link_libraries(ritz_fuzz PRIVATE ritz_flags ritz_cli ritz ritz_uses)
 
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/fuzz.c rows REGEX "^    {\"[a-z0-9-]+\",")
 foreach(row ${rows})
