@@ -16,11 +16,60 @@
  * left out too, as nothing moves there.
  */
 
+/* Whether the rows of a part that stay keep their order. */
+static bool is_in_order(const ritz_part *part, const int64_t *stays)
+{
+    int64_t last = -1;
+
+    for (int64_t i = 0; i < part->matrix.A.nrow; i++) {
+        int64_t row = stays[part->place[i]];
+
+        if (row >= 0 && row <= last)
+            return false;
+        last = row >= 0 ? row : last;
+    }
+    return true;
+}
+
+/* The matrix of a part whose rows keep their order, in the place of itself. */
+static ritz_status close_up_part(ritz_part *part, const int64_t *stays,
+                                 int64_t n, ritz_sparse *out)
+{
+    ritz_sparse *A = &part->matrix.A;
+    RITZ_OWN_ARRAY int64_t *colptr = NULL;
+    int64_t kept = 0;
+
+    RITZ_CHECK_NEW(colptr, n + 1);
+    for (int64_t j = 0; j < A->ncol; j++) {
+        int64_t col = stays[part->place[j]];
+        int64_t before = kept;
+
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            int64_t row = stays[part->place[A->rowind[p]]];
+
+            if (col < 0 || row < 0 || A->val[p] == 0.0)
+                continue;
+            A->rowind[kept] = row;
+            A->val[kept++] = A->val[p];
+        }
+        if (col >= 0)
+            colptr[col + 1] = kept - before;
+    }
+    for (int64_t j = 0; j < n; j++)
+        colptr[j + 1] += colptr[j];
+    free(A->colptr);
+    *out = (ritz_sparse){n, n, colptr, A->rowind, A->val};
+    colptr = NULL;
+    *A = (ritz_sparse){0};
+    return RITZ_OK;
+}
+
 /*
- * A(place, place) of the rows that stay. Zeros are left out, so that a dense
- * and a sparse spelling of a matrix become the same.
+ * A(place, place) of the rows that stay, which takes the matrix of the part.
+ * Zeros are left out, so that a dense and a sparse spelling of a matrix become
+ * the same.
  */
-static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
+static ritz_status scatter_part(ritz_part *part, const int64_t *stays,
                                 int64_t n, ritz_sparse *out)
 {
     const ritz_sparse *A = &part->matrix.A;
@@ -30,6 +79,8 @@ static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
     RITZ_OWN_ARRAY int64_t *col = NULL;
     RITZ_OWN_ARRAY double *val = NULL;
 
+    if (is_in_order(part, stays))
+        return close_up_part(part, stays, n, out);
     RITZ_CHECK_NEW(row, nnz);
     RITZ_CHECK_NEW(col, nnz);
     RITZ_CHECK_NEW(val, nnz);
@@ -40,7 +91,9 @@ static ritz_status scatter_part(const ritz_part *part, const int64_t *stays,
             val[kept] = A->val[p];
             kept += A->val[p] != 0.0 && row[kept] >= 0 && col[kept] >= 0;
         }
-    return ritz_sparse_from_triplets(n, n, kept, row, col, val, out);
+    RITZ_CHECK(ritz_sparse_from_triplets(n, n, kept, row, col, val, out));
+    ritz_sparse_free(&part->matrix.A);
+    return RITZ_OK;
 }
 
 /* What the entries of a row are of. */
@@ -133,9 +186,9 @@ static ritz_status place_alone(const ritz_row_names *names, ritz_grids *out)
     return RITZ_OK;
 }
 
-/* Put the parts into the component but for its grids, without rows that are
+/* Move the parts into the component but for its grids, without rows that are
  * empty in K and M. */
-static ritz_status settle_parts(const ritz_parts *parts, const ritz_deck *deck,
+static ritz_status settle_parts(ritz_parts *parts, const ritz_deck *deck,
                                 const ritz_row_names *names,
                                 ritz_component *component,
                                 ritz_import_report *report)

@@ -367,20 +367,50 @@ double ritz_sparse_max(const ritz_sparse *A)
     return largest;
 }
 
-double ritz_sparse_asymmetry(const ritz_sparse *A)
+/* Entries above the diagonal less those below it. */
+static int64_t compare_triangles(const ritz_sparse *A)
 {
-    double largest = 0.0;
+    int64_t more = 0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            more += (A->rowind[p] < j) - (A->rowind[p] > j);
+    return more;
+}
+
+/*
+ * The largest |A(i,j) - A(j,i)| over the stored (i,j) of the lower triangle,
+ * or of both. *whole: each of these has a stored A(j,i). Looking from the lower
+ * triangle is enough if it is whole and the upper one has no more entries.
+ */
+static double largest_gap(const ritz_sparse *A, bool both, bool *whole)
+{
     double gap = 0.0;
     bool stored = false;
 
+    *whole = true;
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            double other = entry_at(A, j, A->rowind[p], &stored);
+            int64_t i = A->rowind[p];
+            double other = 0.0;
 
-            largest = fmax(largest, fabs(A->val[p]));
+            if (i == j || (i < j && !both))
+                continue;
+            other = entry_at(A, j, i, &stored);
             gap = fmax(gap, fabs(A->val[p] - other));
+            *whole = *whole && stored;
         }
-    return gap > 0.0 ? gap / largest : 0.0;
+    return gap;
+}
+
+double ritz_sparse_asymmetry(const ritz_sparse *A)
+{
+    bool whole = false;
+    double gap = largest_gap(A, false, &whole);
+
+    if (!whole || compare_triangles(A) != 0)
+        gap = largest_gap(A, true, &whole);
+    return gap > 0.0 ? gap / ritz_sparse_max(A) : 0.0;
 }
 
 double ritz_sparse_skew(const ritz_sparse *A)
