@@ -1,6 +1,7 @@
 /* Files of matrices and decks: recognised by content, and what a user may ask
  * of them. */
 #include "base/alloc.h"
+#include "base/bytes.h"
 #include "base/text.h"
 
 #include <ritz/import.h>
@@ -20,7 +21,7 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
     RITZ_CHECK(ritz_path_folder(path, &file.folder));
     RITZ_CHECK_COPY(file.path, path, (int64_t)strlen(path) + 1);
     file.bytes = file.owned;
-    ritz_digest_bytes(file.bytes, (size_t)file.size, file.digest);
+    RITZ_CHECK(ritz_digest_begin(file.bytes, file.size, &file.summing));
     for (int k = 0; ritz_formats[k] && !file.format; k++)
         if (ritz_formats[k]->recognise(file.bytes, file.size))
             file.format = ritz_formats[k];
@@ -29,6 +30,12 @@ ritz_status ritz_foreign_open(const char *path, ritz_foreign *out)
             &file, file.format->admit(file.bytes, file.size)));
     RITZ_MOVE(*out, file);
     return RITZ_OK;
+}
+
+const char *ritz_foreign_digest(ritz_foreign *file)
+{
+    ritz_digest_end(&file->summing, file->digest);
+    return file->digest;
 }
 
 ritz_status ritz_foreign_list(ritz_foreign *file)
@@ -70,6 +77,7 @@ ritz_status ritz_foreign_context(const ritz_foreign *file, ritz_status status)
 
 void ritz_foreign_free(ritz_foreign *file)
 {
+    ritz_digest_end(&file->summing, NULL);
     RITZ_FREE(file->path, file->folder, file->owned, file->listing.item);
     *file = (ritz_foreign){0};
 }
@@ -286,8 +294,6 @@ static ritz_status take_of_file(int64_t k, int64_t count,
 
     RITZ_CHECK(ritz_foreign_path(wanted[k].spec, &path));
     RITZ_CHECK(add_context(wanted[k].what, ritz_foreign_open(path, &file)));
-    if (sums)
-        RITZ_CHECK(ritz_file_sums_add(sums, path, file.digest));
     for (; k < count; k++) {
         if (taken[k] || !is_of_file(path, wanted[k].spec))
             continue;
@@ -295,7 +301,8 @@ static ritz_status take_of_file(int64_t k, int64_t count,
         RITZ_CHECK(add_context(
             wanted[k].what, take_named(&file, wanted[k].spec, wanted[k].into)));
     }
-    return RITZ_OK;
+    return sums ? ritz_file_sums_add(sums, path, ritz_foreign_digest(&file))
+                : RITZ_OK;
 }
 
 ritz_status ritz_foreign_collect(int64_t count, const ritz_wanted *wanted,

@@ -53,7 +53,9 @@ typedef struct ritz_foreign {
     const char *bytes; /* a NUL follows those of a file */
     int64_t size;
     char *folder; /* where files that it includes lie; NULL: none is followed */
-    char digest[RITZ_DIGEST_SIZE];    /* SHA-256 of a file */
+    char digest[RITZ_DIGEST_SIZE];    /* SHA-256 of a file, after
+                                      ritz_foreign_digest() */
+    struct ritz_digest_work *summing; /* the digest, until then */
     const struct ritz_format *format; /* NULL: none knows it */
     ritz_listing listing;
     char *owned; /* the bytes of a file */
@@ -105,8 +107,12 @@ const ritz_unread *ritz_unread_find(const char *bytes, int64_t size);
  *         message names it */
 ritz_status ritz_unread_refuse(const char *bytes, int64_t size);
 
-/** Read the bytes of a file once, sum them up and recognise their format. */
+/** Read the bytes of a file once and recognise their format. Their SHA-256 is
+ * made meanwhile. */
 ritz_status ritz_foreign_open(const char *path, ritz_foreign *out);
+
+/** SHA-256 of the file: wait until it is there. */
+const char *ritz_foreign_digest(ritz_foreign *file);
 
 /** Fill the directory; @return RITZ_ERR_FORMAT if no format knows the file. */
 ritz_status ritz_foreign_list(ritz_foreign *file);

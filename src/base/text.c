@@ -3,77 +3,13 @@
 #include "base/text.h"
 
 #include "base/alloc.h"
-#include "base/draft.h"
 
 #include <errno.h>
 #include <math.h>
-#include <nettle/sha2.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* A file that is read. */
-typedef struct input_file {
-    FILE *file;
-} input_file;
-
-static void input_file_free(input_file *from)
-{
-    if (from->file)
-        fclose(from->file);
-}
-
-static ritz_status open_file(const char *path, input_file *out)
-{
-    out->file = fopen(path, "rb");
-    RITZ_REFUSE_IF(!out->file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
-                   strerror(errno));
-    return ritz_draft_protect(path);
-}
-
-static ritz_status check_file(const char *path, const input_file *from)
-{
-    RITZ_REFUSE_IF(ferror(from->file), RITZ_ERR_FILE, "cannot read '%s': %s",
-                   path, strerror(errno));
-    return RITZ_OK;
-}
-
-/* Size that the system states of a regular file; 0 of a pipe, or if unknown. */
-static int64_t stated_size(FILE *file)
-{
-    struct stat about;
-
-    if (fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode))
-        return 0;
-    return about.st_size < INT64_MAX / 4 ? about.st_size : INT64_MAX / 4;
-}
-
-/*
- * The size that is stated is a first guess, good for reading at once; a byte
- * more than that is requested, and doubled blocks follow if it comes.
- */
-ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
-{
-    enum { SMALLEST = 4096 };
-    RITZ_OWN(input_file) from = {0};
-    RITZ_OWN_ARRAY char *bytes = NULL;
-    int64_t used = 0, room = 0;
-
-    RITZ_CHECK(open_file(path, &from));
-    room = stated_size(from.file) + 2; /* with the NUL behind */
-    room = room < SMALLEST ? SMALLEST : room;
-    RITZ_CHECK_NEW(bytes, room);
-    do {
-        RITZ_CHECK_ROOM(bytes, used + 1, room);
-        used += (int64_t)fread(bytes + used, 1, (size_t)(room - 1 - used),
-                               from.file);
-    } while (used == room - 1); /* full: there may be more */
-    RITZ_CHECK(check_file(path, &from));
-    *size = used;
-    RITZ_MOVE(*out, bytes);
-    return RITZ_OK;
-}
 
 ritz_status ritz_text_read(const char *path, char **out)
 {
@@ -84,43 +20,6 @@ ritz_status ritz_text_read(const char *path, char **out)
     RITZ_REFUSE_IF(strlen(text) != (size_t)size, RITZ_ERR_FORMAT,
                    "'%s' is not a text file", path);
     RITZ_MOVE(*out, text);
-    return RITZ_OK;
-}
-
-/* SHA-256 by nettle: what was read is named by content. */
-
-static void write_digest(struct sha256_ctx *sum, char out[RITZ_DIGEST_SIZE])
-{
-    uint8_t digest[SHA256_DIGEST_SIZE];
-
-    sha256_digest(sum, sizeof digest, digest);
-    for (size_t k = 0; k < sizeof digest; k++)
-        snprintf(out + 2 * k, 3, "%02x", (unsigned)digest[k]);
-}
-
-void ritz_digest_bytes(const void *bytes, size_t size,
-                       char out[RITZ_DIGEST_SIZE])
-{
-    struct sha256_ctx sum;
-
-    sha256_init(&sum);
-    sha256_update(&sum, size, bytes);
-    write_digest(&sum, out);
-}
-
-ritz_status ritz_digest_file(const char *path, char out[RITZ_DIGEST_SIZE])
-{
-    RITZ_OWN(input_file) from = {0};
-    struct sha256_ctx sum;
-    uint8_t block[1 << 16];
-    size_t size = 0;
-
-    RITZ_CHECK(open_file(path, &from));
-    sha256_init(&sum);
-    while ((size = fread(block, 1, sizeof block, from.file)) > 0)
-        sha256_update(&sum, size, block);
-    RITZ_CHECK(check_file(path, &from));
-    write_digest(&sum, out);
     return RITZ_OK;
 }
 

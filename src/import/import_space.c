@@ -184,14 +184,14 @@ static ritz_status take_file(const char *text, ritz_file_sums *sums, parts *out)
 
     RITZ_CHECK(ritz_foreign_path(text, &path));
     RITZ_CHECK(ritz_foreign_open(path, &file));
-    if (sums)
-        RITZ_CHECK(ritz_file_sums_add(sums, path, file.digest));
     RITZ_CHECK(ritz_foreign_context(&file, ritz_foreign_list(&file)));
     if (strlen(path) < strlen(text))
         snprintf(stem, sizeof stem, "%s", text + strlen(path) + 1);
     else
         RITZ_CHECK(find_stem(&file.listing, path, stem));
-    return take_stem(&file, stem, out);
+    RITZ_CHECK(take_stem(&file, stem, out));
+    return sums ? ritz_file_sums_add(sums, path, ritz_foreign_digest(&file))
+                : RITZ_OK;
 }
 
 /* A, B and C are there, all are real, and they are as large as A says. */

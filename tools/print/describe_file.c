@@ -219,7 +219,7 @@ static ritz_status describe_foreign(cli_run *run, const char *path,
 
     RITZ_CHECK(cli_input_unread(run, path));
     RITZ_CHECK(ritz_foreign_open(path, &file));
-    cli_input_sum(run, path, file.digest);
+    cli_input_sum(run, path, ritz_foreign_digest(&file));
     if (!file.format)
         return describe_text(run, &file);
     RITZ_CHECK_IN(path, ritz_foreign_list(&file));

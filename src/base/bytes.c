@@ -1,0 +1,240 @@
+/*
+ * Whole files, and SHA-256 by nettle: what was read is named by content.
+ *
+ * A file is read, not mapped: a mapped one that another program shortens ends
+ * the process by a signal. Large files are read in pieces by several threads,
+ * each piece to its place, so that nothing is copied twice.
+ */
+#define _XOPEN_SOURCE 700 /* NOLINT: declares pread */
+
+#include "base/bytes.h"
+
+#include "base/alloc.h"
+#include "base/draft.h"
+#include "base/team.h"
+
+#include <errno.h>
+#include <nettle/sha2.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { PIECE = 4 << 20 }; /* bytes that a thread reads at once */
+
+/* A file that is read. */
+typedef struct input_file {
+    FILE *file;
+} input_file;
+
+static void input_file_free(input_file *from)
+{
+    if (from->file)
+        fclose(from->file);
+}
+
+static ritz_status open_file(const char *path, input_file *out)
+{
+    out->file = fopen(path, "rb");
+    RITZ_REFUSE_IF(!out->file, RITZ_ERR_FILE, "cannot open '%s': %s", path,
+                   strerror(errno));
+    return ritz_draft_protect(path);
+}
+
+static ritz_status check_file(const char *path, const input_file *from)
+{
+    RITZ_REFUSE_IF(ferror(from->file), RITZ_ERR_FILE, "cannot read '%s': %s",
+                   path, strerror(errno));
+    return RITZ_OK;
+}
+
+/* Size that the system states of a regular file; 0 of a pipe, or if unknown. */
+static int64_t stated_size(FILE *file)
+{
+    struct stat about;
+
+    if (fstat(fileno(file), &about) != 0 || !S_ISREG(about.st_mode))
+        return 0;
+    return about.st_size < INT64_MAX / 4 ? about.st_size : INT64_MAX / 4;
+}
+
+/* ---- pieces by several threads ------------------------------------------ */
+
+typedef struct piecewise {
+    int file;
+    char *bytes;
+    int64_t size;
+    _Atomic int64_t next; /* piece that nobody has taken */
+    atomic_bool cut;      /* the file ended early, or could not be read */
+} piecewise;
+
+static bool read_piece(const piecewise *all, int64_t from, int64_t to)
+{
+    while (from < to) {
+        ssize_t got =
+            pread(all->file, all->bytes + from, (size_t)(to - from), from);
+
+        if (got <= 0)
+            return false;
+        from += got;
+    }
+    return true;
+}
+
+static void read_pieces(int thread, int threads, void *task)
+{
+    piecewise *all = task;
+
+    (void)thread;
+    (void)threads;
+    for (;;) {
+        int64_t from = PIECE * atomic_fetch_add(&all->next, 1);
+        int64_t to = all->size - from < PIECE ? all->size : from + PIECE;
+
+        if (from >= all->size)
+            return;
+        if (!read_piece(all, from, to))
+            atomic_store(&all->cut, true);
+    }
+}
+
+/* Read as many bytes as a large file states to have. @return 0 if they are to
+ * be read one after the other */
+static int64_t read_stated(FILE *file, int64_t size, char *bytes)
+{
+    piecewise all = {.file = fileno(file), .bytes = bytes, .size = size};
+    const int64_t pieces = size / PIECE;
+    const int threads = ritz_team_ready(pieces < 64 ? (int)pieces : 64);
+
+    if (pieces < 2 || threads < 2)
+        return 0;
+    ritz_team_run(threads, read_pieces, &all);
+    return atomic_load(&all.cut) || fseeko(file, size, SEEK_SET) != 0 ? 0
+                                                                      : size;
+}
+
+/*
+ * The size that is stated is a first guess, good for reading at once; a byte
+ * more than that is requested, and doubled blocks follow if it comes.
+ */
+ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
+{
+    enum { SMALLEST = 4096 };
+    RITZ_OWN(input_file) from = {0};
+    RITZ_OWN_ARRAY char *bytes = NULL;
+    int64_t used = 0, room = 0;
+
+    RITZ_CHECK(open_file(path, &from));
+    room = stated_size(from.file) + 2; /* with the NUL behind */
+    room = room < SMALLEST ? SMALLEST : room;
+    RITZ_CHECK_NEW(bytes, room);
+    used = read_stated(from.file, room - 2, bytes);
+    do {
+        RITZ_CHECK_ROOM(bytes, used + 1, room);
+        used += (int64_t)fread(bytes + used, 1, (size_t)(room - 1 - used),
+                               from.file);
+    } while (used == room - 1); /* full: there may be more */
+    RITZ_CHECK(check_file(path, &from));
+    bytes[used] = '\0'; /* pieces of a file that became shorter lie behind */
+    *size = used;
+    RITZ_MOVE(*out, bytes);
+    return RITZ_OK;
+}
+
+/* ---- SHA-256 ------------------------------------------------------------ */
+
+static void write_digest(struct sha256_ctx *sum, char out[RITZ_DIGEST_SIZE])
+{
+    uint8_t digest[SHA256_DIGEST_SIZE];
+
+    sha256_digest(sum, sizeof digest, digest);
+    for (size_t k = 0; k < sizeof digest; k++)
+        snprintf(out + 2 * k, 3, "%02x", (unsigned)digest[k]);
+}
+
+void ritz_digest_bytes(const void *bytes, size_t size,
+                       char out[RITZ_DIGEST_SIZE])
+{
+    struct sha256_ctx sum;
+
+    sha256_init(&sum);
+    sha256_update(&sum, size, bytes);
+    write_digest(&sum, out);
+}
+
+ritz_status ritz_digest_file(const char *path, char out[RITZ_DIGEST_SIZE])
+{
+    RITZ_OWN(input_file) from = {0};
+    struct sha256_ctx sum;
+    uint8_t block[1 << 16];
+    size_t size = 0;
+
+    RITZ_CHECK(open_file(path, &from));
+    sha256_init(&sum);
+    while ((size = fread(block, 1, sizeof block, from.file)) > 0)
+        sha256_update(&sum, size, block);
+    RITZ_CHECK(check_file(path, &from));
+    write_digest(&sum, out);
+    return RITZ_OK;
+}
+
+struct ritz_digest_work {
+    const void *bytes;
+    size_t size;
+    char digest[RITZ_DIGEST_SIZE];
+    bool apart; /* in a thread */
+    pthread_t thread;
+};
+
+static void *sum_up(void *argument)
+{
+    ritz_digest_work *work = argument;
+
+    ritz_digest_bytes(work->bytes, work->size, work->digest);
+    return NULL;
+}
+
+/* Start a thread that leaves all signals to the others. */
+static bool start_thread(ritz_digest_work *work)
+{
+    sigset_t all, before;
+    bool started = false;
+
+    sigfillset(&all);
+    if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0)
+        return false;
+    started = pthread_create(&work->thread, NULL, sum_up, work) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return started;
+}
+
+ritz_status ritz_digest_begin(const void *bytes, int64_t size,
+                              ritz_digest_work **out)
+{
+    ritz_digest_work *work = NULL;
+
+    RITZ_CHECK_NEW(work, 1);
+    work->bytes = bytes;
+    work->size = (size_t)size;
+    work->apart = size >= PIECE && ritz_team_ready(2) > 1 && start_thread(work);
+    if (!work->apart)
+        sum_up(work);
+    *out = work;
+    return RITZ_OK;
+}
+
+void ritz_digest_end(ritz_digest_work **work, char digest[RITZ_DIGEST_SIZE])
+{
+    if (!*work)
+        return;
+    if ((*work)->apart)
+        pthread_join((*work)->thread, NULL);
+    if (digest)
+        memcpy(digest, (*work)->digest, RITZ_DIGEST_SIZE);
+    free(*work);
+    *work = NULL;
+}
