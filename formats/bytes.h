@@ -10,8 +10,18 @@
 static inline uint64_t ritz_bytes_bits(const unsigned char *at, int64_t size,
                                        bool big_endian)
 {
+    const bool turned = big_endian != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
     uint64_t bits = 0;
+    uint32_t half = 0;
 
+    if (size == 8) { /* the sizes that millions of numbers have */
+        memcpy(&bits, at, sizeof bits);
+        return turned ? __builtin_bswap64(bits) : bits;
+    }
+    if (size == 4) {
+        memcpy(&half, at, sizeof half);
+        return turned ? __builtin_bswap32(half) : half;
+    }
     for (int64_t k = 0; k < size; k++)
         bits = bits << 8 | at[big_endian ? k : size - 1 - k];
     return bits;

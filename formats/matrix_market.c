@@ -9,20 +9,16 @@
  * taken if they agree. An entry given twice is refused: the format leaves open
  * whether it is to be summed, and a stiffness twice too large looks like one.
  * Zeros are not kept, so that array and coordinate give one pattern.
- *
- * It is written with 17 digits, which read back to the same bits. A matrix is
- * called symmetric, and written as its lower triangle, if it says so and its
- * triangles agree in every bit; else nothing would bring the difference back.
- * It is an array if all its entries are stored.
  */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/team.h"
 #include "formats/decimal.h"
 #include "formats/matrix.h"
-#include "formats/sink.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -261,14 +257,140 @@ static ritz_status read_values(ritz_market *m, ritz_market_entry *next)
     return RITZ_OK;
 }
 
-/* Entries from the next line to the end of the file. */
-static ritz_status read_entries(ritz_market *m)
+/* Entries from the next line to the end of the text. */
+static ritz_status read_lines_of_entries(ritz_market *m)
 {
     ritz_market_entry next = {.row = m->symmetry == RITZ_MARKET_SKEW};
 
     while (next_line(m))
         RITZ_CHECK(m->layout == RITZ_MARKET_COORDINATE ? read_entry(m)
                                                        : read_values(m, &next));
+    return RITZ_OK;
+}
+
+/* ---- entries in shares -------------------------------------------------- */
+
+/*
+ * A share is a run of lines that a thread reads. Unless all shares are right
+ * and together have as many entries as are declared, the lines are read again
+ * one after the other, which says what is wrong and where.
+ */
+enum {
+    SHARE_BYTES = 1 << 20, /* from which a thread is worth it */
+    SHARES_EACH = 4,       /* for a thread: some take longer than others */
+    MOST_SHARES = 64,
+    SPARE = 1000, /* entries */
+};
+
+typedef struct ritz_market_shares {
+    const ritz_market *whole;
+    int64_t count;
+    ritz_market share[MOST_SHARES];
+    ritz_status status[MOST_SHARES];
+    int64_t offset[MOST_SHARES]; /* of its entries among all */
+    _Atomic int64_t next;        /* share that nobody has taken */
+} ritz_market_shares;
+
+static void ritz_market_shares_free(ritz_market_shares *all)
+{
+    for (int64_t k = 0; k < all->count; k++)
+        ritz_market_free(&all->share[k]);
+}
+
+/* Cut the text at ends of lines. */
+static void cut_shares(const ritz_market *m, int64_t most,
+                       ritz_market_shares *all)
+{
+    const char *begin = m->text.at;
+    const char *at = begin;
+    const char *end = m->text.end;
+
+    for (int64_t k = 0; k < most && at < end; k++) {
+        const char *wanted = begin + (end - begin) / most * (k + 1);
+        const char *stop = NULL;
+        ritz_market *share = &all->share[all->count++];
+
+        if (k + 1 < most && wanted < end)
+            stop = memchr(wanted, '\n', (size_t)(end - wanted));
+        *share = *m;
+        share->entry = NULL;
+        share->text.at = at;
+        at = share->text.end = stop ? stop + 1 : end;
+    }
+}
+
+/* Lines of small numbers are shorter than the mean line, hence the factor. */
+static ritz_status read_share(const ritz_market *m, ritz_market *share)
+{
+    double part = (double)(share->text.end - share->text.at) /
+                  (double)(m->text.end - m->text.at);
+
+    share->most = (int64_t)(2.0 * part * (double)m->most) + SPARE;
+    RITZ_CHECK_NEW(share->entry, share->most);
+    return read_lines_of_entries(share);
+}
+
+static void read_shares(int thread, int threads, void *task)
+{
+    ritz_market_shares *all = task;
+    int64_t k = 0;
+
+    (void)thread;
+    (void)threads;
+    while ((k = atomic_fetch_add(&all->next, 1)) < all->count)
+        all->status[k] = read_share(all->whole, &all->share[k]);
+}
+
+static void join_shares(int thread, int threads, void *task)
+{
+    ritz_market_shares *all = task;
+
+    for (int64_t k = thread; k < all->count; k += threads) {
+        ritz_market *share = &all->share[k];
+
+        memcpy(all->whole->entry + all->offset[k], share->entry,
+               (size_t)share->count * sizeof *share->entry);
+    }
+}
+
+/* False if the entries must be read one after the other. */
+static bool read_in_shares(ritz_market *m)
+{
+    const int64_t size = (m->text.end - m->text.at) / SHARE_BYTES;
+    const int threads =
+        m->layout != RITZ_MARKET_COORDINATE
+            ? 1
+            : ritz_team_ready(size < MOST_SHARES ? (int)size : MOST_SHARES);
+    const int64_t most = (int64_t)threads * SHARES_EACH;
+    RITZ_OWN(ritz_market_shares) all = {.whole = m};
+    int64_t total = 0;
+    bool right = true;
+
+    if (threads < 2)
+        return false;
+    cut_shares(m, most < MOST_SHARES ? most : MOST_SHARES, &all);
+    ritz_team_run(threads, read_shares, &all);
+    for (int64_t k = 0; k < all.count; k++) {
+        right = right && all.status[k] == RITZ_OK;
+        all.offset[k] = total;
+        total += all.share[k].count;
+    }
+    if (!right || total != m->most)
+        return false;
+    ritz_team_run(threads, join_shares, &all);
+    m->count = total;
+    for (int64_t k = 0; k < all.count; k++)
+        if (all.share[k].digits > m->digits)
+            m->digits = all.share[k].digits;
+    return true;
+}
+
+/* All entries of the file. */
+static ritz_status read_entries(ritz_market *m)
+{
+    if (read_in_shares(m))
+        return RITZ_OK;
+    RITZ_CHECK(read_lines_of_entries(m));
     RITZ_REFUSE_IF(m->count < m->most, RITZ_ERR_FORMAT,
                    "ends after %" PRId64 " of %" PRId64 " entries", m->count,
                    m->most);
@@ -454,152 +576,4 @@ const ritz_format ritz_format_matrix_market = {
     .recognise = has_banner,
     .list = list_file,
     .read = read_matrix,
-};
-
-/* ---- writing ------------------------------------------------------------ */
-
-typedef struct market_job {
-    const ritz_matrix *matrix;
-    const char *comment;
-} market_job;
-
-/* Place of A(i,j) among the entries; -1 if nothing is stored there. */
-static int64_t find_entry(const ritz_sparse *A, int64_t i, int64_t j)
-{
-    int64_t p = A->colptr[j];
-    int64_t k = ritz_search(A->colptr[j + 1] - p, A->rowind + p, i);
-
-    return k < 0 ? -1 : p + k;
-}
-
-/* True if A(j,i) is stored and equal for each A(i,j). */
-static bool is_mirrored(const ritz_matrix *m)
-{
-    for (int64_t j = 0; j < m->A.ncol; j++)
-        for (int64_t p = m->A.colptr[j]; p < m->A.colptr[j + 1]; p++) {
-            int64_t q = find_entry(&m->A, j, m->A.rowind[p]);
-
-            if (q < 0 || m->A.val[p] != m->A.val[q] ||
-                (m->imaginary && m->imaginary[p] != m->imaginary[q]))
-                return false;
-        }
-    return true;
-}
-
-static void write_comment(FILE *file, const char *comment)
-{
-    while (comment && *comment) {
-        size_t length = strcspn(comment, "\r\n");
-
-        fprintf(file, "%% %.*s\n", (int)length, comment);
-        comment += length;
-        comment += *comment != '\0';
-    }
-}
-
-static ritz_status write_market(FILE *file, const void *what)
-{
-    const market_job *all = what;
-    const ritz_matrix *m = all->matrix;
-    const ritz_sparse *A = &m->A;
-    int64_t nnz = A->colptr[A->ncol];
-    bool symmetric =
-        m->symmetric && A->nrow == A->ncol && nnz > 0 && is_mirrored(m);
-    bool array = A->ncol > 0 && nnz % A->ncol == 0 && nnz / A->ncol == A->nrow;
-    int64_t count = 0;
-
-    RITZ_CHECK(ritz_sink_check(m));
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-            count += !symmetric || A->rowind[p] >= j;
-    fprintf(file, "%%%%MatrixMarket matrix %s %s %s\n",
-            array ? "array" : "coordinate", m->imaginary ? "complex" : "real",
-            symmetric ? "symmetric" : "general");
-    write_comment(file, all->comment);
-    fprintf(file, "%" PRId64 " %" PRId64, A->nrow, A->ncol);
-    if (!array)
-        fprintf(file, " %" PRId64, count);
-    fputc('\n', file);
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            if (symmetric && A->rowind[p] < j)
-                continue;
-            if (!array)
-                fprintf(file, "%" PRId64 " %" PRId64 " ", A->rowind[p] + 1,
-                        j + 1);
-            fprintf(file, "%.16e", A->val[p]);
-            if (m->imaginary)
-                fprintf(file, " %.16e", m->imaginary[p]);
-            fputc('\n', file);
-        }
-    return RITZ_OK;
-}
-
-ritz_status ritz_matrix_market_write(const char *path,
-                                     const ritz_matrix *matrix,
-                                     const char *comment)
-{
-    market_job all = {matrix, comment};
-
-    return ritz_sink_write(path, write_market, &all);
-}
-
-/*
- * Matrices of a reduced component or state space in Matrix Market form, each in
- * a file of its own: "small-%.mtx" becomes small-A.mtx, small-B.mtx, ...
- */
-
-/* The output with the matrix' name in the place of its '%', if there is one. */
-static ritz_status name_file(const char *output, const char *name, char **out)
-{
-    int64_t room = (int64_t)(strlen(output) + strlen(name)) + 1;
-    const char *mark = strchr(output, '%');
-    char *path = NULL;
-
-    RITZ_CHECK_NEW(path, room);
-    if (mark)
-        snprintf(path, (size_t)room, "%.*s%s%s", (int)(mark - output), output,
-                 name, mark + 1);
-    else
-        snprintf(path, (size_t)room, "%s", output);
-    *out = path;
-    return RITZ_OK;
-}
-
-/* One file takes one matrix, a pattern of names all of them. */
-static ritz_status write_matrices(const ritz_export_object *object,
-                                  const ritz_export_request *request,
-                                  ritz_export_report *report)
-{
-    bool pattern = strchr(request->output, '%') != NULL;
-    const char *one = object->states ? "A" : "K";
-    const char *method = object->states ? object->states->origin.method
-                                        : object->reduced->origin.method;
-    RITZ_OWN(ritz_matrices) list = {0};
-
-    RITZ_CHECK(ritz_export_damped(object, request, pattern ? NULL : one, report,
-                                  &list));
-    RITZ_REFUSE_IF(list.count != 1 && !pattern, RITZ_ERR_ARGUMENT,
-                   "a Matrix Market file holds one matrix: name it with "
-                   "--matrix, or write '%%' for it in the output's name");
-    for (int64_t k = 0; k < list.count; k++) {
-        const char *name = list.matrix[k].name;
-        char comment[4 * RITZ_NAME_SIZE];
-        RITZ_OWN_ARRAY char *path = NULL;
-
-        snprintf(comment, sizeof comment, *method ? "%s, reduced by %s" : "%s",
-                 name, method);
-        RITZ_CHECK(name_file(request->output, name, &path));
-        RITZ_CHECK(ritz_matrix_market_write(path, &list.matrix[k], comment));
-    }
-    return RITZ_OK;
-}
-
-const ritz_exporter ritz_exporter_matrix_market = {
-    .name = "matrix-market",
-    .summary = "Matrix Market text: one matrix, or -o NAME-%.mtx for all",
-    .reference = "BoisvertPozoRemington1996",
-    .kind = "reduced",
-    .takes = RITZ_EXPORT_REDUCED | RITZ_EXPORT_STATES | RITZ_EXPORT_MATRICES,
-    .write = write_matrices,
 };

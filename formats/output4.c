@@ -96,67 +96,6 @@ static ritz_status obey_form(ritz_output4_build *build)
     return spread_diagonal(t, n);
 }
 
-/* ---- columns ------------------------------------------------------------ */
-
-/*
- * Columns that a file may declare beyond one for each of its bytes. A matrix of
- * ten million columns, nearly all null, is legal and takes 150 bytes; a limit
- * keeps such bytes from asking for all memory there is.
- */
-enum { NULL_COLUMNS = 32000000 };
-
-static void name_column(ritz_output4_build *build)
-{
-    snprintf(build->where, sizeof build->where, "column %" PRId64 " of '%s'",
-             build->column + 1, build->header.name);
-}
-
-/* Begin a matrix of a file of so many bytes. */
-static ritz_status begin_matrix(const ritz_output4_header *header, int64_t size,
-                                ritz_output4_build *out)
-{
-    int64_t most = NULL_COLUMNS + size;
-
-    RITZ_REFUSE_IF(header->ncol > most, RITZ_ERR_FORMAT,
-                   "'%s' is said to have %" PRId64
-                   " columns, far more than its file can fill",
-                   header->name, header->ncol);
-    *out = (ritz_output4_build){
-        .header = *header,
-        .columns = most - header->ncol,
-        .column = -1,
-        .rule = header->bigmat ? RITZ_OUTPUT4_BIGMAT : RITZ_OUTPUT4_WORDS,
-        .entries.is_complex = header->numbers == 2,
-    };
-    name_column(out);
-    RITZ_CHECK_NEW(out->entries.counts, header->ncol + 1);
-    return RITZ_OK;
-}
-
-/* Begin a column, from 1; those between are null. */
-static ritz_status begin_column(ritz_output4_build *build, int64_t column)
-{
-    RITZ_REFUSE_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
-                   "'%s' has %" PRId64 " columns, but one is numbered %" PRId64,
-                   build->header.name, build->header.ncol, column);
-    RITZ_REFUSE_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
-                   "column %" PRId64 " of '%s' follows column %" PRId64, column,
-                   build->header.name, build->column + 1);
-    build->column = column - 1;
-    name_column(build);
-    build->first = build->entries.count;
-    build->below = 0;
-    return RITZ_OK;
-}
-
-/* Forget what this column got so far. */
-static void rewind_column(ritz_output4_build *build)
-{
-    build->entries.count = build->first;
-    build->entries.counts[build->column + 1] = 0;
-    build->below = 0;
-}
-
 /* After the last column: obey FORM and hand the matrix over. */
 static ritz_status end_matrix(ritz_output4_build *build, ritz_matrix *out)
 {
@@ -174,139 +113,36 @@ static ritz_status end_matrix(ritz_output4_build *build, ritz_matrix *out)
     return RITZ_OK;
 }
 
-static void ritz_output4_build_free(ritz_output4_build *build)
-{
-    ritz_triplets_free(&build->entries);
-}
-
-/* ---- one matrix --------------------------------------------------------- */
-
-/* The strings of a column, of so many words, by one reading of their
-   headers. */
-static ritz_status read_strings(ritz_output4_reader *r,
-                                ritz_output4_build *build, int64_t words)
-{
-    for (int64_t left = words; left > 0;) {
-        ritz_output4_string string = {0};
-
-        RITZ_CHECK(r->as->take_string(r, build, words, left, &string));
-        RITZ_CHECK(r->as->read_numbers(r, build, string.row, string.reals));
-        left -= string.words;
-    }
-    return RITZ_OK;
-}
-
-static ritz_status try_strings(ritz_output4_reader *r,
-                               const ritz_output4_reader *start,
-                               ritz_output4_build *build, int64_t rule,
-                               int64_t wide, int64_t words)
-{
-    *r = *start;
-    rewind_column(build);
-    build->rule = rule;
-    build->wide = wide;
-    return read_strings(r, build, words);
-}
-
-/* The reading whose strings add up, tried first the one that fitted last; if
- * none does, that one says what is wrong. */
-static ritz_status read_sparse(ritz_output4_reader *r,
-                               ritz_output4_build *build, int64_t words)
-{
-    const ritz_output4_reader start = *r;
-    int64_t rule = build->rule;
-    int64_t wide = build->wide;
-
-    for (int64_t k = 0; k < r->widths * RITZ_OUTPUT4_RULES; k++) {
-        ritz_status status =
-            try_strings(r, &start, build, (rule + k) % RITZ_OUTPUT4_RULES,
-                        k < RITZ_OUTPUT4_RULES ? wide : 3 - wide, words);
-
-        if (status != RITZ_ERR_FORMAT)
-            return status;
-    }
-    return try_strings(r, &start, build, rule, wide, words);
-}
-
-/*
- * Move behind a matrix by its counts alone; false if these do not fit.
- *
- * @param[out] size  bytes of the records that were passed, where columns are
- *                   records
- */
-static bool skip_columns(ritz_output4_reader *r,
-                         const ritz_output4_header *header, int64_t *size)
-{
-    const ritz_output4_build build = {.header = *header};
-    int64_t column = 0;
-    int64_t n[3] = {0};
-
-    *size = 0;
-    while (column <= header->ncol) {
-        if (r->as->take_column(r, &build, n) != RITZ_OK || n[0] <= column ||
-            n[0] > header->ncol + 1)
-            return false;
-        column = n[0];
-        *size += r->data_end - r->data;
-        if (column <= header->ncol && r->as->skip_column &&
-            !r->as->skip_column(r, n))
-            return false;
-    }
-    return !r->as->skip_last || r->as->skip_last(r, &build, n[2]) == RITZ_OK;
-}
-
-/* Entries that a matrix can hold, by its records or else by what is left of its
- * file: with room for these at once nothing is copied. */
-static int64_t most_entries(const ritz_output4_reader *r,
-                            const ritz_output4_header *h)
-{
-    ritz_output4_reader ahead = *r;
-    int64_t most = (r->text.end - r->text.at) / (r->width > 0 ? r->width : 1);
-
-    if (r->width == 0) {
-        (void)skip_columns(&ahead, h, &most);
-        most /= r->real;
-    }
-    most /= h->numbers;
-    return h->nrow > 0 && most / h->nrow < h->ncol ? most : h->nrow * h->ncol;
-}
-
-/* The matrix whose header was taken. */
+/* The matrix whose header was taken. @param[in] end  as of
+ * ritz_output4_read_columns() */
 static ritz_status read_columns(ritz_output4_reader *r,
                                 const ritz_output4_header *header,
-                                ritz_matrix *out)
+                                const char *end, ritz_matrix *out)
 {
     RITZ_OWN(ritz_output4_build) build = {0};
     RITZ_OWN(ritz_matrix) new = {.digits = r->digits};
-    bool sparse = false;
-    int64_t n[3] = {0};
 
-    RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, &build));
-    build.wide = r->wide;
-    RITZ_CHECK(ritz_triplets_reserve(&build.entries, most_entries(r, header)));
-    for (;;) {
-        RITZ_CHECK(r->as->take_column(r, &build, n));
-        if (n[0] == header->ncol + 1) {
-            if (r->as->skip_last)
-                RITZ_CHECK(r->as->skip_last(r, &build, n[2]));
-            break;
-        }
-        RITZ_CHECK(begin_column(&build, n[0]));
-        sparse = sparse || n[1] == 0;
-        if (n[1] == 0)
-            RITZ_CHECK(read_sparse(r, &build, n[2]));
-        else
-            RITZ_CHECK(r->as->read_dense(r, &build, n));
-    }
+    RITZ_CHECK(ritz_output4_read_columns(r, header, end, &build));
     snprintf(new.spelling, sizeof new.spelling, "OUTPUT4 %s, %s, %s",
              r->as->name,
-             !sparse          ? "dense"
+             !build.sparse    ? "dense"
              : header->bigmat ? "bigmat"
                               : "sparse",
              r->format);
     RITZ_CHECK(end_matrix(&build, &new));
     RITZ_MOVE(*out, new);
     return RITZ_OK;
+}
+
+/* Where the next matrix of the file begins, or the file ends. */
+static const char *find_end(const ritz_foreign *file, const ritz_listed *which)
+{
+    const ritz_listing *all = &file->listing;
+
+    for (int64_t k = 0; k < all->count; k++)
+        if (all->item[k].at > which->at)
+            return file->bytes + all->item[k].at;
+    return file->bytes + file->size;
 }
 
 static ritz_status read_matrix(const ritz_foreign *file,
@@ -321,7 +157,7 @@ static ritz_status read_matrix(const ritz_foreign *file,
     r.text.at = file->bytes + which->at;
     r.text.number = which->line - 1;
     RITZ_CHECK(r.as->take_header(&r, &header, &found));
-    return read_columns(&r, &header, out);
+    return read_columns(&r, &header, find_end(file, which), out);
 }
 
 /* ---- directory ---------------------------------------------------------- */
@@ -335,8 +171,8 @@ static ritz_status pass_matrix(ritz_output4_reader *r,
     ritz_output4_reader ahead = *r;
     int64_t size = 0;
 
-    if (check || !skip_columns(&ahead, header, &size))
-        return read_columns(r, header, &unused);
+    if (check || !ritz_output4_skip_columns(&ahead, header, &size))
+        return read_columns(r, header, NULL, &unused);
     *r = ahead;
     return RITZ_OK;
 }

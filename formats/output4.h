@@ -32,10 +32,15 @@ typedef struct ritz_output4_build {
     int64_t column;  /* the one being read, from 0; -1 before the first */
     char where[RITZ_NAME_SIZE + 32]; /* "column 1 of 'KAA'" */
     int64_t first;                   /* entry of this column */
-    int64_t below; /* rows up to here are taken in this column */
-    int64_t rule;  /* RITZ_OUTPUT4_... of the strings' headers */
-    int64_t wide;  /* words of a real by that reading */
+    int64_t below;        /* rows up to here are taken in this column */
+    int64_t rule;         /* RITZ_OUTPUT4_... of the strings' headers */
+    int64_t wide;         /* words of a real by that reading */
+    int64_t first_column; /* that was begun */
+    bool sparse;          /* a column has strings */
+    bool ended;           /* behind the last column */
 } ritz_output4_build;
+
+void ritz_output4_build_free(ritz_output4_build *build);
 
 /* A string of a sparse column: consecutive rows. */
 typedef struct ritz_output4_string {
@@ -55,7 +60,8 @@ enum {
 /* ---- spellings ---------------------------------------------------------- */
 
 /* A file that is gone through; a copy goes on from where it was made. */
-typedef struct ritz_output4_reader {
+typedef struct ritz_output4_reader ritz_output4_reader;
+struct ritz_output4_reader {
     const struct ritz_output4_spelling *as;
     const char *begin;
     ritz_lines text; /* binary has no lines: only `at` and `end` are used */
@@ -71,7 +77,7 @@ typedef struct ritz_output4_reader {
     int64_t integer; /* bytes of an integer, the size of a word too */
     int64_t real;    /* bytes of a number in this matrix */
     const char *data, *data_end; /* of the column's record */
-} ritz_output4_reader;
+};
 
 typedef struct ritz_output4_spelling {
     const char *name; /* "text" */
@@ -98,10 +104,36 @@ typedef struct ritz_output4_spelling {
     /** Move behind a column; false if its counts do not lead there. NULL: it
      * was taken whole. */
     bool (*skip_column)(ritz_output4_reader *r, const int64_t n[3]);
+    /** The beginning of a column at or behind @p from, which lies behind the
+     * reader; NULL if none is found. What merely looks like one may be given. */
+    const char *(*find_column)(const ritz_output4_reader *r, const char *from);
     /** Take what stands behind ICOL = NCOL + 1. NULL: it was taken whole. */
     ritz_status (*skip_last)(ritz_output4_reader *r,
                              const ritz_output4_build *build, int64_t words);
 } ritz_output4_spelling;
+
+/* ---- columns ------------------------------------------------------------ */
+
+/**
+ * All columns of a matrix whose header was taken, with the reader behind them
+ * where they were read one after the other.
+ *
+ * @param[in] end  where the matrix ends, so that several threads may read it;
+ *                 NULL: one reads it
+ */
+ritz_status ritz_output4_read_columns(ritz_output4_reader *r,
+                                      const ritz_output4_header *header,
+                                      const char *end, ritz_output4_build *out);
+
+/**
+ * Move behind a matrix by its counts alone; false if these do not fit.
+ *
+ * @param[out] size  bytes of the records that were passed, where columns are
+ *                   records
+ */
+bool ritz_output4_skip_columns(ritz_output4_reader *r,
+                               const ritz_output4_header *header,
+                               int64_t *size);
 
 extern const ritz_output4_spelling ritz_output4_text;
 extern const ritz_output4_spelling ritz_output4_binary;

@@ -423,18 +423,19 @@ static ritz_status skip_last(ritz_output4_reader *t,
  */
 static bool skip_strings(ritz_output4_reader *t)
 {
-    ritz_output4_reader ahead = *t;
-    int64_t n[3];
+    for (;;) {
+        const ritz_lines before = t->text;
+        int64_t n[3];
 
-    while (take_line(&ahead)) {
-        int64_t length = ahead.text.line_end - ahead.text.line;
-
-        if (!memchr(ahead.text.line, '.', (size_t)length) &&
-            take_integers(&ahead, 3, n))
+        if (!take_line(t))
+            return false;
+        if (!memchr(t->text.line, '.',
+                    (size_t)(t->text.line_end - t->text.line)) &&
+            take_integers(t, 3, n)) {
+            t->text = before;
             return true;
-        *t = ahead;
+        }
     }
-    return false;
 }
 
 static bool skip_column(ritz_output4_reader *t, const int64_t n[3])
@@ -447,6 +448,16 @@ static bool skip_column(ritz_output4_reader *t, const int64_t n[3])
     return true;
 }
 
+/* The first line behind `from` that looks like the header of a column. */
+static const char *find_text_column(const ritz_output4_reader *t,
+                                    const char *from)
+{
+    ritz_output4_reader ahead = *t;
+
+    ahead.text.at = from;
+    return take_line(&ahead) && skip_strings(&ahead) ? ahead.text.at : NULL;
+}
+
 const ritz_output4_spelling ritz_output4_text = {
     .name = "text",
     .recognise = is_text,
@@ -456,6 +467,7 @@ const ritz_output4_spelling ritz_output4_text = {
     .take_string = take_text_string,
     .read_numbers = read_text_numbers,
     .skip_column = skip_column,
+    .find_column = find_text_column,
     .skip_last = skip_last,
 };
 
@@ -660,6 +672,18 @@ static ritz_status read_record_dense(ritz_output4_reader *b,
     return read_record_numbers(b, build, n[1] - 1, reals);
 }
 
+/* The first record at or behind `from`, by the lengths of those before. */
+static const char *find_record(const ritz_output4_reader *b, const char *from)
+{
+    ritz_output4_reader ahead = *b;
+    ritz_binary_record passed = {0};
+
+    while (ahead.text.at < from)
+        if (take_record(&ahead, &passed) != RITZ_OK || passed.size < 0)
+            return NULL;
+    return ahead.text.at;
+}
+
 const ritz_output4_spelling ritz_output4_binary = {
     .name = "binary",
     .recognise = find_records,
@@ -668,4 +692,5 @@ const ritz_output4_spelling ritz_output4_binary = {
     .read_dense = read_record_dense,
     .take_string = take_record_string,
     .read_numbers = read_record_numbers,
+    .find_column = find_record,
 };

@@ -1,0 +1,390 @@
+/*
+ * Columns of an OUTPUT4 matrix, one after the other or in shares.
+ *
+ * A share is a run of columns that a thread reads. Where the shares begin is
+ * found by their spelling. What they read is taken only if it must be what
+ * reading one after the other gives: every share ends where the next begins,
+ * columns ascend, and no share changed the reading of strings. Otherwise, as in
+ * damaged files, the columns are read again one after the other, which says
+ * what is wrong.
+ */
+#include "base/alloc.h"
+#include "base/team.h"
+#include "formats/output4.h"
+
+#include <inttypes.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- columns ------------------------------------------------------------ */
+
+/*
+ * Columns that a file may declare beyond one for each of its bytes. A matrix of
+ * ten million columns, nearly all null, is legal and takes 150 bytes; a limit
+ * keeps such bytes from asking for all memory there is.
+ */
+enum { NULL_COLUMNS = 32000000 };
+
+static void name_column(ritz_output4_build *build)
+{
+    snprintf(build->where, sizeof build->where, "column %" PRId64 " of '%s'",
+             build->column + 1, build->header.name);
+}
+
+/* The reading of strings that is tried first. */
+static int64_t begin_rule(const ritz_output4_header *header)
+{
+    return header->bigmat ? RITZ_OUTPUT4_BIGMAT : RITZ_OUTPUT4_WORDS;
+}
+
+/* Begin a matrix of a file of so many bytes. */
+static ritz_status begin_matrix(const ritz_output4_header *header, int64_t size,
+                                ritz_output4_build *out)
+{
+    int64_t most = NULL_COLUMNS + size;
+
+    RITZ_REFUSE_IF(header->ncol > most, RITZ_ERR_FORMAT,
+                   "'%s' is said to have %" PRId64
+                   " columns, far more than its file can fill",
+                   header->name, header->ncol);
+    *out = (ritz_output4_build){
+        .header = *header,
+        .columns = most - header->ncol,
+        .column = -1,
+        .rule = begin_rule(header),
+        .entries.is_complex = header->numbers == 2,
+    };
+    name_column(out);
+    RITZ_CHECK_NEW(out->entries.counts, header->ncol + 1);
+    return RITZ_OK;
+}
+
+/* Begin a column, from 1; those between are null. */
+static ritz_status begin_column(ritz_output4_build *build, int64_t column)
+{
+    RITZ_REFUSE_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
+                   "'%s' has %" PRId64 " columns, but one is numbered %" PRId64,
+                   build->header.name, build->header.ncol, column);
+    RITZ_REFUSE_IF(column <= build->column + 1, RITZ_ERR_FORMAT,
+                   "column %" PRId64 " of '%s' follows column %" PRId64, column,
+                   build->header.name, build->column + 1);
+    if (build->column < 0)
+        build->first_column = column - 1;
+    build->column = column - 1;
+    name_column(build);
+    build->first = build->entries.count;
+    build->below = 0;
+    return RITZ_OK;
+}
+
+/* Forget what this column got so far. */
+static void rewind_column(ritz_output4_build *build)
+{
+    build->entries.count = build->first;
+    build->entries.counts[build->column + 1] = 0;
+    build->below = 0;
+}
+
+/* ---- one matrix --------------------------------------------------------- */
+
+/* The strings of a column, of so many words, by one reading of their
+   headers. */
+static ritz_status read_strings(ritz_output4_reader *r,
+                                ritz_output4_build *build, int64_t words)
+{
+    for (int64_t left = words; left > 0;) {
+        ritz_output4_string string = {0};
+
+        RITZ_CHECK(r->as->take_string(r, build, words, left, &string));
+        RITZ_CHECK(r->as->read_numbers(r, build, string.row, string.reals));
+        left -= string.words;
+    }
+    return RITZ_OK;
+}
+
+static ritz_status try_strings(ritz_output4_reader *r,
+                               const ritz_output4_reader *start,
+                               ritz_output4_build *build, int64_t rule,
+                               int64_t wide, int64_t words)
+{
+    *r = *start;
+    rewind_column(build);
+    build->rule = rule;
+    build->wide = wide;
+    return read_strings(r, build, words);
+}
+
+/* The reading whose strings add up, tried first the one that fitted last; if
+ * none does, that one says what is wrong. */
+static ritz_status read_sparse(ritz_output4_reader *r,
+                               ritz_output4_build *build, int64_t words)
+{
+    const ritz_output4_reader start = *r;
+    int64_t rule = build->rule;
+    int64_t wide = build->wide;
+
+    for (int64_t k = 0; k < r->widths * RITZ_OUTPUT4_RULES; k++) {
+        ritz_status status =
+            try_strings(r, &start, build, (rule + k) % RITZ_OUTPUT4_RULES,
+                        k < RITZ_OUTPUT4_RULES ? wide : 3 - wide, words);
+
+        if (status != RITZ_ERR_FORMAT)
+            return status;
+    }
+    return try_strings(r, &start, build, rule, wide, words);
+}
+
+bool ritz_output4_skip_columns(ritz_output4_reader *r,
+                               const ritz_output4_header *header, int64_t *size)
+{
+    const ritz_output4_build build = {.header = *header};
+    int64_t column = 0;
+    int64_t n[3] = {0};
+
+    *size = 0;
+    while (column <= header->ncol) {
+        if (r->as->take_column(r, &build, n) != RITZ_OK || n[0] <= column ||
+            n[0] > header->ncol + 1)
+            return false;
+        column = n[0];
+        *size += r->data_end - r->data;
+        if (column <= header->ncol && r->as->skip_column &&
+            !r->as->skip_column(r, n))
+            return false;
+    }
+    return !r->as->skip_last || r->as->skip_last(r, &build, n[2]) == RITZ_OK;
+}
+
+/* Entries that a matrix can hold, by its records or else by what is left of its
+ * file: with room for these at once nothing is copied. */
+static int64_t most_entries(const ritz_output4_reader *r,
+                            const ritz_output4_header *h)
+{
+    ritz_output4_reader ahead = *r;
+    int64_t most = (r->text.end - r->text.at) / (r->width > 0 ? r->width : 1);
+
+    if (r->width == 0) {
+        (void)ritz_output4_skip_columns(&ahead, h, &most);
+        most /= r->real;
+    }
+    most /= h->numbers;
+    return h->nrow > 0 && most / h->nrow < h->ncol ? most : h->nrow * h->ncol;
+}
+
+/* ---- columns one after the other ---------------------------------------- */
+
+/* Columns up to `stop`, where another share begins, or the end of the matrix.
+ * @param[in] stop  NULL: there is no other share */
+static ritz_status read_until(ritz_output4_reader *r, ritz_output4_build *build,
+                              const char *stop)
+{
+    int64_t n[3] = {0};
+
+    while (!stop || r->text.at < stop) {
+        RITZ_CHECK(r->as->take_column(r, build, n));
+        if (n[0] == build->header.ncol + 1) {
+            build->ended = true;
+            return r->as->skip_last ? r->as->skip_last(r, build, n[2])
+                                    : RITZ_OK;
+        }
+        RITZ_CHECK(begin_column(build, n[0]));
+        build->sparse = build->sparse || n[1] == 0;
+        if (n[1] == 0)
+            RITZ_CHECK(read_sparse(r, build, n[2]));
+        else
+            RITZ_CHECK(r->as->read_dense(r, build, n));
+    }
+    return RITZ_OK;
+}
+
+/* ---- shares ------------------------------------------------------------- */
+
+enum {
+    SHARE_BYTES = 1 << 20, /* of the file, from which a thread is worth it */
+    SHARES_EACH = 4,       /* for a thread: some take longer than others */
+    MOST_SHARES = 64,
+};
+
+typedef struct ritz_output4_share {
+    ritz_output4_reader r;
+    ritz_output4_build build;
+    const char *stop; /* beginning of the next; NULL of the last */
+    ritz_status status;
+    int64_t offset; /* of its entries among all */
+} ritz_output4_share;
+
+typedef struct ritz_output4_shares {
+    int64_t count;
+    ritz_output4_share share[MOST_SHARES];
+    ritz_output4_header header;
+    _Atomic int64_t next; /* share that nobody has taken */
+} ritz_output4_shares;
+
+static void ritz_output4_shares_free(ritz_output4_shares *all)
+{
+    for (int64_t k = 0; k < all->count; k++)
+        ritz_output4_build_free(&all->share[k].build);
+}
+
+/* Cut what lies from the reader to `end`. */
+static void cut_shares(const ritz_output4_reader *r, const char *end,
+                       int64_t most, ritz_output4_shares *all)
+{
+    const char *begin = r->text.at;
+    const char *at = begin;
+
+    for (int64_t k = 0; k < most && at && at < end; k++) {
+        ritz_output4_share *share = &all->share[all->count++];
+        const char *from = begin + (end - begin) / most * (k + 1);
+
+        share->r = *r;
+        share->r.text.at = at;
+        at = r->as->find_column(&share->r, from > at ? from : at);
+        if (k + 1 < most && at && at < end)
+            share->stop = at;
+    }
+}
+
+/* Room for all entries in the first share, for its own in another. */
+static int64_t share_room(const ritz_output4_reader *r,
+                          const ritz_output4_header *header,
+                          const ritz_output4_share *share, bool first)
+{
+    int64_t size = (share->stop ? share->stop : r->text.end) - share->r.text.at;
+
+    return first
+               ? most_entries(r, header)
+               : size / ((r->width > 0 ? r->width : r->real) * header->numbers);
+}
+
+static ritz_status begin_share(const ritz_output4_header *header, bool first,
+                               ritz_output4_share *share)
+{
+    const ritz_output4_reader *r = &share->r;
+    ritz_output4_build *build = &share->build;
+
+    RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, build));
+    build->wide = r->wide;
+    return ritz_triplets_reserve(&build->entries,
+                                 share_room(r, header, share, first));
+}
+
+static void read_shares(int thread, int threads, void *task)
+{
+    ritz_output4_shares *all = task;
+
+    (void)thread;
+    (void)threads;
+    for (;;) {
+        int64_t k = atomic_fetch_add(&all->next, 1);
+        ritz_output4_share *share = &all->share[k < all->count ? k : 0];
+
+        if (k >= all->count)
+            return;
+        share->status = begin_share(&all->header, k == 0, share);
+        if (share->status == RITZ_OK)
+            share->status = read_until(&share->r, &share->build, share->stop);
+    }
+}
+
+/* Whether the shares are what reading one after the other gives. */
+static bool do_shares_join(const ritz_output4_shares *all)
+{
+    const ritz_output4_build *first = &all->share[0].build;
+    const int64_t rule = begin_rule(&all->header);
+    int64_t column = -1;
+
+    for (int64_t k = 0; k < all->count; k++) {
+        const ritz_output4_share *share = &all->share[k];
+        const ritz_output4_build *build = &share->build;
+        bool last = k + 1 == all->count;
+
+        if (share->status != RITZ_OK || build->ended != last ||
+            (!last && share->r.text.at != share->stop))
+            return false;
+        if (!last && (build->rule != rule || build->wide != share->r.wide))
+            return false;
+        if (build->column >= 0 && build->first_column <= column)
+            return false;
+        column = build->column >= 0 ? build->column : column;
+    }
+    return first->entries.counts != NULL;
+}
+
+/* Copy the entries of shares behind those of the first. */
+static void join_shares(int thread, int threads, void *task)
+{
+    ritz_output4_shares *all = task;
+    ritz_triplets *to = &all->share[0].build.entries;
+
+    for (int64_t k = 1 + thread; k < all->count; k += threads) {
+        ritz_output4_build *build = &all->share[k].build;
+        const ritz_triplets *from = &build->entries;
+        int64_t at = all->share[k].offset;
+
+        memcpy(to->row + at, from->row,
+               (size_t)from->count * sizeof *from->row);
+        memcpy(to->re + at, from->re, (size_t)from->count * sizeof *from->re);
+        if (to->im)
+            memcpy(to->im + at, from->im,
+                   (size_t)from->count * sizeof *from->im);
+        if (build->column >= 0)
+            memcpy(to->counts + build->first_column + 1,
+                   from->counts + build->first_column + 1,
+                   (size_t)(build->column - build->first_column + 1) *
+                       sizeof *to->counts);
+        ritz_output4_build_free(build);
+    }
+}
+
+/* Read columns in shares; false if they must be read one after the other. */
+static bool read_in_shares(const ritz_output4_reader *r,
+                           const ritz_output4_header *header, const char *end,
+                           ritz_output4_build *out)
+{
+    const int64_t size = end ? (end - r->text.at) / SHARE_BYTES : 0;
+    const int threads =
+        ritz_team_ready(size < MOST_SHARES ? (int)size : MOST_SHARES);
+    RITZ_OWN(ritz_output4_shares) all = {.header = *header};
+    int64_t most = (int64_t)threads * SHARES_EACH;
+    int64_t total = 0;
+
+    if (threads < 2)
+        return false;
+    cut_shares(r, end, most < MOST_SHARES ? most : MOST_SHARES, &all);
+    ritz_team_run(threads, read_shares, &all);
+    if (!do_shares_join(&all))
+        return false;
+    for (int64_t k = 0; k < all.count; k++) {
+        all.share[k].offset = total;
+        total += all.share[k].build.entries.count;
+        all.share[0].build.sparse |= all.share[k].build.sparse;
+    }
+    if (ritz_triplets_reserve(&all.share[0].build.entries,
+                              total - all.share[0].build.entries.count) !=
+        RITZ_OK)
+        return false;
+    ritz_team_run(threads, join_shares, &all);
+    all.share[0].build.entries.count = total;
+    RITZ_MOVE(*out, all.share[0].build);
+    return true;
+}
+
+ritz_status ritz_output4_read_columns(ritz_output4_reader *r,
+                                      const ritz_output4_header *header,
+                                      const char *end, ritz_output4_build *out)
+{
+    if (read_in_shares(r, header, end, out))
+        return RITZ_OK;
+    RITZ_CHECK(begin_matrix(header, r->text.end - r->begin, out));
+    out->wide = r->wide;
+    RITZ_CHECK(ritz_triplets_reserve(&out->entries, most_entries(r, header)));
+    return read_until(r, out, NULL);
+}
+
+void ritz_output4_build_free(ritz_output4_build *build)
+{
+    ritz_triplets_free(&build->entries);
+}

@@ -1,0 +1,221 @@
+/* Large files that several threads read give what one thread reads, and are
+   refused in the same words. */
+#include "testing.h"
+
+#include "foreign.h"
+
+#include <ritz/import.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THREADS = 3, ROWS = 1000 };
+
+static int one_thread(void **state)
+{
+    (void)state;
+    ritz_set_threads(1);
+    return 0;
+}
+
+/* ROWS rows, of whose entries every seventh is missing, and column 5 is null */
+static void make(int64_t ncol, ritz_matrix *out)
+{
+    ritz_sparse *A = &out->A;
+    int64_t count = 0;
+
+    *out = (ritz_matrix){.name = "KAA", .digits = 17};
+    assert_ok(ritz_sparse_new(ROWS, ncol, ROWS * ncol, A));
+    for (int64_t j = 0; j < ncol; j++) {
+        for (int64_t i = 0; i < ROWS && j != 5; i++) {
+            if ((i + j) % 7 == 0)
+                continue;
+            A->rowind[count] = i;
+            A->val[count++] = sin((double)(i + ROWS * j + 1)) *
+                              pow(10.0, (double)(i % 40 - 20));
+        }
+        A->colptr[j + 1] = count;
+    }
+}
+
+/* The bytes of a file by some number of threads; its sentence if it fails. */
+static ritz_status read_by(int threads, const char *bytes, int64_t size,
+                           ritz_matrices *out, char sentence[400])
+{
+    ritz_status status = RITZ_OK;
+
+    ritz_set_threads(threads);
+    status = foreign_parse(bytes, size, out);
+    ritz_set_threads(1);
+    snprintf(sentence, 400, "%s",
+             status == RITZ_OK ? "" : ritz_error_message());
+    return status;
+}
+
+static void assert_same_matrix(const ritz_matrix *a, const ritz_matrix *b)
+{
+    size_t nnz = (size_t)a->A.colptr[a->A.ncol];
+
+    assert_int_equal(a->A.nrow, b->A.nrow);
+    assert_int_equal(a->A.ncol, b->A.ncol);
+    assert_int_equal(a->digits, b->digits);
+    assert_int_equal(a->symmetric, b->symmetric);
+    assert_string_equal(a->spelling, b->spelling);
+    assert_memory_equal(a->A.colptr, b->A.colptr,
+                        (size_t)(a->A.ncol + 1) * sizeof *a->A.colptr);
+    assert_memory_equal(a->A.rowind, b->A.rowind, nnz * sizeof *a->A.rowind);
+    assert_memory_equal(a->A.val, b->A.val, nnz * sizeof *a->A.val);
+}
+
+/* One and several threads read the same, or refuse in the same words. */
+static ritz_status compare_readings(const char *bytes, int64_t size)
+{
+    RITZ_OWN(ritz_matrices) one = {0}, many = {0};
+    char first[400], second[400];
+    ritz_status status = read_by(1, bytes, size, &one, first);
+
+    assert_int_equal(read_by(THREADS, bytes, size, &many, second), status);
+    assert_string_equal(first, second);
+    assert_int_equal(one.count, many.count);
+    for (int64_t k = 0; k < one.count; k++)
+        assert_same_matrix(&one.matrix[k], &many.matrix[k]);
+    return status;
+}
+
+/* A sound file, the same with a byte spoiled here and there, and cut. */
+static void compare_damages(const char *path)
+{
+    static const double places[] = {0.31, 0.9};
+    char *bytes = NULL;
+    int64_t size = 0;
+    int64_t refused = 0;
+
+    assert_ok(ritz_bytes_read(path, &size, &bytes));
+    assert_true(size > 2 << 20);
+    assert_ok(compare_readings(bytes, size));
+    for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+        int64_t at = (int64_t)(places[k] * (double)size);
+        char good = bytes[at];
+
+        bytes[at] = 'x';
+        refused += compare_readings(bytes, size) != RITZ_OK;
+        bytes[at] = '\n';
+        (void)compare_readings(bytes, size);
+        bytes[at] = good;
+    }
+    refused += compare_readings(bytes, size / 2) != RITZ_OK;
+    assert_true(refused > 0);
+    free(bytes);
+    remove(path);
+}
+
+static void shares_of_text_are_what_one_thread_reads(void **state)
+{
+    static const ritz_output4_style styles[] = {
+        {.text = true, .digits = 17},
+        {.text = true, .digits = 17, .sparse = true},
+    };
+    RITZ_OWN(ritz_matrix) m = {0};
+    (void)state;
+
+    make(120, &m);
+    for (size_t k = 0; k < sizeof styles / sizeof *styles; k++) {
+        assert_ok(ritz_output4_write("shares.op4", 1, &m, &styles[k]));
+        compare_damages("shares.op4");
+    }
+}
+
+static void shares_of_records_are_what_one_thread_reads(void **state)
+{
+    static const ritz_output4_style styles[] = {{0}, {.sparse = true}};
+    RITZ_OWN(ritz_matrix) m = {0};
+    (void)state;
+
+    make(350, &m);
+    for (size_t k = 0; k < sizeof styles / sizeof *styles; k++) {
+        assert_ok(ritz_output4_write("shares.op4", 1, &m, &styles[k]));
+        compare_damages("shares.op4");
+    }
+}
+
+static void shares_of_lines_are_what_one_thread_reads(void **state)
+{
+    RITZ_OWN(ritz_matrix) m = {0};
+    (void)state;
+
+    make(120, &m);
+    assert_ok(ritz_matrix_market_write("shares.mtx", &m, "a comment"));
+    compare_damages("shares.mtx");
+}
+
+/* The second column tells how strings are headed, which the header does not:
+   what follows must be read as one thread reads it. */
+static void unmarked_strings_are_read_alike(void **state)
+{
+    const ritz_output4_style style = {
+        .text = true, .digits = 17, .sparse = true};
+    RITZ_OWN(ritz_matrix) m = {0};
+    RITZ_OWN(ritz_matrices) read = {0};
+    char *bytes = NULL;
+    char *minus = NULL;
+    int64_t size = 0;
+    (void)state;
+
+    make(120, &m);
+    assert_ok(ritz_output4_write("shares.op4", 1, &m, &style));
+    assert_ok(ritz_bytes_read("shares.op4", &size, &bytes));
+    minus = memchr(bytes, '-', 32);
+    if (minus)
+        *minus = ' ';
+    assert_ok(compare_readings(bytes, size));
+    assert_ok(foreign_parse(bytes, size, &read));
+    assert_memory_equal(read.matrix[0].A.val, m.A.val,
+                        (size_t)m.A.colptr[m.A.ncol] * sizeof *m.A.val);
+    free(bytes);
+    remove("shares.op4");
+}
+
+/* Files from which several threads read pieces have some megabytes. */
+static void pieces_of_a_file_are_its_bytes(void **state)
+{
+    enum { SIZE = 9 << 20 };
+    const char *path = "shares.bin";
+    FILE *file = fopen(path, "wb");
+    RITZ_OWN(ritz_foreign) foreign = {0};
+    char *written = malloc(SIZE);
+    char *bytes = NULL;
+    char digest[RITZ_DIGEST_SIZE];
+    int64_t size = 0;
+    (void)state;
+
+    for (int64_t k = 0; k < SIZE; k++)
+        written[k] = (char)(k * k >> 7);
+    assert_int_equal(fwrite(written, 1, SIZE, file), SIZE);
+    assert_int_equal(fclose(file), 0);
+    ritz_set_threads(THREADS);
+    assert_ok(ritz_bytes_read(path, &size, &bytes));
+    assert_int_equal(size, SIZE);
+    assert_memory_equal(bytes, written, SIZE);
+    assert_int_equal(bytes[size], 0);
+    assert_ok(ritz_foreign_open(path, &foreign));
+    assert_ok(ritz_digest_file(path, digest));
+    assert_string_equal(ritz_foreign_digest(&foreign), digest);
+    free(bytes);
+    free(written);
+    remove(path);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test_teardown(shares_of_text_are_what_one_thread_reads,
+                              one_thread),
+    cmocka_unit_test_teardown(shares_of_records_are_what_one_thread_reads,
+                              one_thread),
+    cmocka_unit_test_teardown(shares_of_lines_are_what_one_thread_reads,
+                              one_thread),
+    cmocka_unit_test_teardown(unmarked_strings_are_read_alike, one_thread),
+    cmocka_unit_test_teardown(pieces_of_a_file_are_its_bytes, one_thread),
+};
+
+TEST_MODULE(shares, tests, NULL, NULL)
