@@ -252,6 +252,10 @@ double ritz_sparse_max(const ritz_sparse *A);
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, for a square matrix. */
 double ritz_sparse_asymmetry(const ritz_sparse *A);
 
+/** The same in one sweep over the columns of a large matrix.
+ * @param[out] work  room for A->ncol numbers */
+double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *work);
+
 /** As ritz_dense_skew. */
 double ritz_sparse_skew(const ritz_sparse *A);
 

@@ -413,6 +413,44 @@ double ritz_sparse_asymmetry(const ritz_sparse *A)
     return gap > 0.0 ? gap / ritz_sparse_max(A) : 0.0;
 }
 
+/* Entries of column i from next[i] on, in rows above `row`, have no entry below
+ * the diagonal to be compared with: 0 stands there. */
+static double pass_unpaired(const ritz_sparse *A, int64_t i, int64_t row,
+                            int64_t *next)
+{
+    double gap = 0.0;
+
+    for (; next[i] < A->colptr[i + 1] && A->rowind[next[i]] < row; next[i]++)
+        gap = fmax(gap, fabs(A->val[next[i]]));
+    return gap;
+}
+
+/*
+ * A(j,i), i > j, come in column i by ascending j, as the A(i,j) come by columns
+ * j: next[i] moves along.
+ */
+double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next)
+{
+    double gap = 0.0;
+
+    memcpy(next, A->colptr, (size_t)A->ncol * sizeof *next);
+    for (int64_t j = 0; j < A->ncol; j++) {
+        gap = fmax(gap, pass_unpaired(A, j, j, next));
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            int64_t i = A->rowind[p];
+            double other = 0.0;
+
+            if (i <= j)
+                continue;
+            gap = fmax(gap, pass_unpaired(A, i, j, next));
+            if (next[i] < A->colptr[i + 1] && A->rowind[next[i]] == j)
+                other = A->val[next[i]++];
+            gap = fmax(gap, fabs(A->val[p] - other));
+        }
+    }
+    return gap > 0.0 ? gap / ritz_sparse_max(A) : 0.0;
+}
+
 double ritz_sparse_skew(const ritz_sparse *A)
 {
     double all = 0.0;

@@ -24,14 +24,20 @@ typedef struct settling {
     int64_t n;
     bool symmetrise; /* any asymmetry */
     double worst;
+    int64_t *work; /* of n numbers */
 } settling;
+
+static void settling_free(settling *s)
+{
+    free(s->work);
+}
 
 static ritz_status settle_matrix(ritz_sparse *A, settling *s)
 {
     double asymmetry = 0.0;
 
     RITZ_CHECK(check_matrix(A, s->n));
-    asymmetry = ritz_sparse_asymmetry(A);
+    asymmetry = ritz_sparse_sweep_asymmetry(A, s->work);
     RITZ_REFUSE_IF(asymmetry > RITZ_SYMMETRIC_SOURCE && !s->symmetrise,
                    RITZ_ERR_FORMAT,
                    "unsymmetric by %.1e of its largest entry, %.0e is let pass "
@@ -63,8 +69,9 @@ static ritz_status settle_damping(ritz_sparse *D, settling *s)
 
 static ritz_status settle_matrices(ritz_component *component, bool symmetrise)
 {
-    settling s = {component->num_dofs, symmetrise, 0.0};
+    RITZ_OWN(settling) s = {component->num_dofs, symmetrise, 0.0, NULL};
 
+    RITZ_CHECK_NEW(s.work, s.n);
     RITZ_REFUSE_IF(!component->M.colptr, RITZ_ERR_FORMAT, "there is no mass");
     RITZ_CHECK_IN("M", settle_matrix(&component->M, &s));
     RITZ_CHECK_IN("K", complete_matrix(&component->K, &s));
