@@ -253,8 +253,8 @@ double ritz_sparse_max(const ritz_sparse *A);
 double ritz_sparse_asymmetry(const ritz_sparse *A);
 
 /** The same in one sweep over the columns of a large matrix.
- * @param[out] work  room for A->ncol numbers */
-double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *work);
+ * @param[out] next  room for A->ncol numbers */
+double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next);
 
 /** As ritz_dense_skew. */
 double ritz_sparse_skew(const ritz_sparse *A);

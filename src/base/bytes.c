@@ -104,17 +104,17 @@ static void read_pieces(int thread, int threads, void *task)
 
 /* Read as many bytes as a large file states to have. @return 0 if they are to
  * be read one after the other */
-static int64_t read_stated(FILE *file, int64_t size, char *bytes)
+static int64_t read_stated(FILE *file, piecewise *all)
 {
-    piecewise all = {.file = fileno(file), .bytes = bytes, .size = size};
-    const int64_t pieces = size / PIECE;
+    const int64_t pieces = all->size / PIECE;
     const int threads = ritz_team_ready(pieces < 64 ? (int)pieces : 64);
 
     if (pieces < 2 || threads < 2)
         return 0;
-    ritz_team_run(threads, read_pieces, &all);
-    return atomic_load(&all.cut) || fseeko(file, size, SEEK_SET) != 0 ? 0
-                                                                      : size;
+    ritz_team_run(threads, read_pieces, all);
+    return atomic_load(&all->cut) || fseeko(file, all->size, SEEK_SET) != 0
+               ? 0
+               : all->size;
 }
 
 /*
@@ -127,12 +127,14 @@ ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
     RITZ_OWN(input_file) from = {0};
     RITZ_OWN_ARRAY char *bytes = NULL;
     int64_t used = 0, room = 0;
+    piecewise all;
 
     RITZ_CHECK(open_file(path, &from));
     room = stated_size(from.file) + 2; /* with the NUL behind */
     room = room < SMALLEST ? SMALLEST : room;
     RITZ_CHECK_NEW(bytes, room);
-    used = read_stated(from.file, room - 2, bytes);
+    all = (piecewise){fileno(from.file), bytes, room - 2, 0, false};
+    used = read_stated(from.file, &all);
     do {
         RITZ_CHECK_ROOM(bytes, used + 1, room);
         used += (int64_t)fread(bytes + used, 1, (size_t)(room - 1 - used),
