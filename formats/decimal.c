@@ -124,11 +124,43 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
+enum { EIGHT = 100000000 };
+
+/*
+ * Eight digits at once: pairs of neighbouring bytes become numbers of two
+ * digits, pairs of these numbers of four, and these one of eight.
+ *
+ * @return false if they are not all digits, or bytes have another order here
+ */
+static bool take_eight(const char *at, uint64_t *out)
+{
+    const uint64_t ones = UINT64_C(0x0101010101010101);
+    uint64_t v = 0;
+
+    memcpy(&v, at, sizeof v);
+    v ^= '0' * ones; /* digits become 0 to 9, all other bytes more */
+    if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ ||
+        ((v | ((v & (0x7f * ones)) + 0x76 * ones)) & (0x80 * ones)) != 0)
+        return false;
+    v = (10 * v + (v >> 8)) & UINT64_C(0x00ff00ff00ff00ff);
+    v = (100 * v + (v >> 16)) & UINT64_C(0x0000ffff0000ffff);
+    *out = (10000 * v + (v >> 32)) & UINT64_C(0xffffffff);
+    return true;
+}
+
 /* Digits from `at`; more than fit the mantissa are only counted. */
 static const char *scan_digits(const char *at, const char *end, reading *r)
 {
+    uint64_t eight = 0;
+
     while (r->mantissa == 0 && at < end && *at == '0')
         at++;
+    for (; end - at >= 8 && r->digits + 8 <= MOST_DIGITS &&
+           take_eight(at, &eight);
+         at += 8) {
+        r->mantissa = EIGHT * r->mantissa + eight;
+        r->digits += 8;
+    }
     for (; at < end && is_digit(*at); at++) {
         if (r->digits < MOST_DIGITS)
             r->mantissa = 10 * r->mantissa + (uint64_t)(*at - '0');
