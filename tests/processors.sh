@@ -43,6 +43,7 @@ choose() {
 }
 
 # A folder of libraries that takes the place of OpenBLAS's for LD_LIBRARY_PATH.
+# OpenBLAS is both BLAS and LAPACK: an empty library that needs both stands in.
 substitute() {
     for name in blas lapack; do
         found=$(ls -d /usr/lib/*/$name/lib$name.so.3 2>/dev/null | head -n 1)
@@ -53,7 +54,10 @@ substitute() {
         mkdir -p "$reference"
         ln -sf "$found" "$reference/lib$name.so.3"
     done
-    ln -sf libblas.so.3 "$reference/libopenblas.so.0"
+    rm -f "$reference/libopenblas.so.0"
+    "${CC:-cc}" -shared -nostdlib -Wl,--no-as-needed \
+        -Wl,-soname,libopenblas.so.0 -o "$reference/libopenblas.so.0" \
+        "$reference/libblas.so.3" "$reference/liblapack.so.3"
 }
 
 # The kernels that a program really computes with.
