@@ -10,13 +10,12 @@
 #include "base/bytes.h"
 
 #include "base/alloc.h"
+#include "base/aside.h"
 #include "base/draft.h"
 #include "base/team.h"
 
 #include <errno.h>
 #include <nettle/sha2.h>
-#include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -188,30 +187,14 @@ struct ritz_digest_work {
     const void *bytes;
     size_t size;
     char digest[RITZ_DIGEST_SIZE];
-    bool apart; /* in a thread */
-    pthread_t thread;
+    ritz_aside aside;
 };
 
-static void *sum_up(void *argument)
+static void sum_up(void *task)
 {
-    ritz_digest_work *work = argument;
+    ritz_digest_work *work = task;
 
     ritz_digest_bytes(work->bytes, work->size, work->digest);
-    return NULL;
-}
-
-/* Start a thread that leaves all signals to the others. */
-static bool start_thread(ritz_digest_work *work)
-{
-    sigset_t all, before;
-    bool started = false;
-
-    sigfillset(&all);
-    if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0)
-        return false;
-    started = pthread_create(&work->thread, NULL, sum_up, work) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
 }
 
 ritz_status ritz_digest_begin(const void *bytes, int64_t size,
@@ -222,9 +205,7 @@ ritz_status ritz_digest_begin(const void *bytes, int64_t size,
     RITZ_CHECK_NEW(work, 1);
     work->bytes = bytes;
     work->size = (size_t)size;
-    work->apart = size >= PIECE && ritz_team_ready(2) > 1 && start_thread(work);
-    if (!work->apart)
-        sum_up(work);
+    ritz_aside_begin(sum_up, work, size >= PIECE, &work->aside);
     *out = work;
     return RITZ_OK;
 }
@@ -233,8 +214,7 @@ void ritz_digest_end(ritz_digest_work **work, char digest[RITZ_DIGEST_SIZE])
 {
     if (!*work)
         return;
-    if ((*work)->apart)
-        pthread_join((*work)->thread, NULL);
+    ritz_aside_end(&(*work)->aside);
     if (digest)
         memcpy(digest, (*work)->digest, RITZ_DIGEST_SIZE);
     free(*work);

@@ -14,6 +14,7 @@
 #include "container/h5.h"
 
 #include "base/alloc.h"
+#include "base/aside.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -254,26 +255,51 @@ static int64_t sum_words(int64_t bytes, const void *values)
     for (int64_t k = 0; k < bytes; k += 8) {
         uint64_t w = 0;
 
-        memcpy(&w, at + k, bytes - k < 8 ? (size_t)(bytes - k) : 8);
+        if (bytes - k >= 8) /* a number that the compiler knows: one load */
+            memcpy(&w, at + k, 8);
+        else
+            memcpy(&w, at + k, (size_t)(bytes - k));
         h = (h ^ w) * 1099511628211U;
         h ^= h >> 32;
     }
     return (int64_t)(h >> 1); /* a positive number for every reader */
 }
 
-static ritz_status seal_values(hid_t set, const char *name, int64_t bytes,
-                               const void *values)
+/* The checksum of values, while HDF5 writes them. */
+typedef struct sealing {
+    int64_t bytes;
+    const void *values;
+    int64_t checksum;
+    ritz_aside aside;
+} sealing;
+
+static void sum_values(void *task)
+{
+    sealing *seal = task;
+
+    seal->checksum = sum_words(seal->bytes, seal->values);
+}
+
+static void begin_seal(int64_t bytes, const void *values, sealing *out)
+{
+    enum { LARGE = 4 << 20 };
+
+    out->bytes = bytes;
+    out->values = values;
+    ritz_aside_begin(sum_values, out, bytes >= LARGE, &out->aside);
+}
+
+/* Write the checksum of a chunked data set, whose seal was ended. */
+static ritz_status write_seal(hid_t set, const char *name, const sealing *seal)
 {
     RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);
     const H5D_layout_t layout = H5Pget_layout(plan);
-    int64_t checksum = 0;
 
     RITZ_REFUSE_IF(layout < 0, RITZ_ERR_MEMORY, "no memory for '%s'", name);
     if (layout != H5D_CHUNKED)
         return RITZ_OK;
-    checksum = sum_words(bytes, values);
     return ritz_context(ritz_h5_set(set, "checksum", H5T_STD_I64LE,
-                                    ritz_h5_scalar(), &checksum),
+                                    ritz_h5_scalar(), &seal->checksum),
                         name);
 }
 
@@ -312,13 +338,16 @@ ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
     RITZ_OWN(hid_t) memory = H5Tget_native_type(type, H5T_DIR_ASCEND);
     RITZ_OWN(hid_t) set = 0;
     herr_t result = 0;
+    sealing seal;
 
     RITZ_CHECK(create_set(at, name, type, shape, &set));
+    begin_seal(count_bytes(&shape, memory), values, &seal);
     if (ritz_h5_volume(&shape, 1) > 0)
         result = H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    ritz_aside_end(&seal.aside);
     RITZ_REFUSE_IF(result < 0, RITZ_ERR_FILE,
                    "cannot write '%s', is the disk full?", name);
-    RITZ_CHECK(seal_values(set, name, count_bytes(&shape, memory), values));
+    RITZ_CHECK(write_seal(set, name, &seal));
     return flush_set(set, name);
 }
 
@@ -444,14 +473,17 @@ ritz_status ritz_h5_write_dense(hid_t at, const char *name, const ritz_dense *A)
 {
     RITZ_OWN(hid_t) set = 0;
     ritz_status status = RITZ_OK;
+    sealing seal;
 
     RITZ_CHECK(create_set(at, name, H5T_IEEE_F64LE,
                           ritz_h5_table(A->nrow, A->ncol), &set));
+    begin_seal(matrix_bytes(A), A->val, &seal);
     status = move_pieces(set, false, A);
+    ritz_aside_end(&seal.aside);
     RITZ_REFUSE_IF(status == RITZ_ERR_FILE, RITZ_ERR_FILE,
                    "cannot write '%s', is the disk full?", name);
     RITZ_CHECK(status);
-    RITZ_CHECK(seal_values(set, name, matrix_bytes(A), A->val));
+    RITZ_CHECK(write_seal(set, name, &seal));
     return flush_set(set, name);
 }
 
