@@ -159,7 +159,7 @@ enum {
 
 static inline bool ritz_card_is_blank(char c)
 {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+    return c == ' ' || (c >= '\t' && c <= '\r' && c != '\n');
 }
 
 static inline char ritz_card_upper(char c)

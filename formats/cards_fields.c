@@ -106,6 +106,13 @@ static int64_t expand_tabs(const ritz_line *line, char *out)
 {
     int64_t column = 0;
 
+    if (!memchr(line->text, '\t', (size_t)line->length)) { /* nearly all */
+        column =
+            line->length < RITZ_CARD_COLUMNS ? line->length : RITZ_CARD_COLUMNS;
+        memcpy(out, line->text, (size_t)column);
+        out[column] = '\0';
+        return column;
+    }
     for (int32_t k = 0; k < line->length && column < RITZ_CARD_COLUMNS; k++) {
         if (line->text[k] != '\t') {
             out[column++] = line->text[k];
