@@ -17,6 +17,7 @@
  */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/team.h"
 #include "base/tolerances.h"
 #include "formats/cards.h"
 #include "formats/matrix.h"
@@ -25,6 +26,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <strings.h>
 
@@ -203,12 +205,13 @@ static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
     return RITZ_OK;
 }
 
-/* Go through the DMIG cards: headers first, as they may follow columns. */
-static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
+/* Go through the DMIG cards of a range of entries. */
+static ritz_status take_range(ritz_dmig_cards *all, bool headers, int64_t from,
+                              int64_t to)
 {
     RITZ_OWN(ritz_card) card = {0};
 
-    for (int64_t k = 0; k < all->cards.num_entries; k++) {
+    for (int64_t k = from; k < to; k++) {
         if (strcmp(all->cards.entry[k].name, "DMIG") != 0)
             continue;
         RITZ_CHECK(ritz_card_take(&all->cards, k, &card));
@@ -216,6 +219,125 @@ static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
             continue;
         RITZ_CHECK(headers ? add_header(all, &card) : add_column(all, &card));
     }
+    return RITZ_OK;
+}
+
+/* ---- cards in shares ----------------------------------------------------- */
+
+/*
+ * A share is a range of entries that a thread goes through. If a card of any is
+ * refused, one thread goes through all, so that the first one is named.
+ */
+enum {
+    SHARE_ENTRIES = 4000, /* from which a thread is worth it */
+    SHARES_EACH = 4,
+    MOST_SHARES = 64,
+};
+
+typedef struct ritz_dmig_shares {
+    const ritz_dmig_cards *all;
+    bool headers;
+    int64_t count;
+    ritz_dmig_cards share[MOST_SHARES]; /* their cards are borrowed */
+    ritz_status status[MOST_SHARES];
+    int64_t offset[MOST_SHARES]; /* of its terms among all */
+    _Atomic int64_t next;        /* share that nobody has taken */
+} ritz_dmig_shares;
+
+static void ritz_dmig_shares_free(ritz_dmig_shares *shares)
+{
+    for (int64_t k = 0; k < shares->count; k++)
+        RITZ_FREE(shares->share[k].header, shares->share[k].term);
+}
+
+static ritz_status take_share(const ritz_dmig_shares *shares, int64_t k,
+                              ritz_dmig_cards *share)
+{
+    const ritz_dmig_cards *all = shares->all;
+    int64_t entries = all->cards.num_entries;
+
+    share->cards = all->cards;
+    share->wanted = all->wanted;
+    if (!shares->headers) {
+        RITZ_CHECK_COPY(share->header, all->header, all->num_headers);
+        share->num_headers = share->headers_room = all->num_headers;
+    }
+    return take_range(share, shares->headers, entries * k / shares->count,
+                      entries * (k + 1) / shares->count);
+}
+
+static void take_shares(int thread, int threads, void *task)
+{
+    ritz_dmig_shares *shares = task;
+    int64_t k = 0;
+
+    (void)thread;
+    (void)threads;
+    while ((k = atomic_fetch_add(&shares->next, 1)) < shares->count)
+        shares->status[k] = take_share(shares, k, &shares->share[k]);
+}
+
+static void join_terms(int thread, int threads, void *task)
+{
+    ritz_dmig_shares *shares = task;
+
+    for (int64_t k = thread; k < shares->count; k += threads)
+        if (shares->share[k].num_terms > 0)
+            memcpy(shares->all->term + shares->offset[k], shares->share[k].term,
+                   (size_t)shares->share[k].num_terms * sizeof(ritz_dmig_term));
+}
+
+/* Add what the shares counted of each header to what is known of it. */
+static void join_counts(const ritz_dmig_cards *share, ritz_dmig_cards *all)
+{
+    for (int64_t k = 0; k < all->num_headers; k++) {
+        all->header[k].count += share->header[k].count;
+        if (share->header[k].digits > all->header[k].digits)
+            all->header[k].digits = share->header[k].digits;
+    }
+}
+
+static ritz_status join_headers(const ritz_dmig_cards *share,
+                                ritz_dmig_cards *all)
+{
+    for (int64_t k = 0; k < share->num_headers; k++) {
+        RITZ_CHECK_ROOM(all->header, all->num_headers, all->headers_room);
+        all->header[all->num_headers++] = share->header[k];
+    }
+    return RITZ_OK;
+}
+
+/* Go through the DMIG cards: headers first, as they may follow columns. */
+static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
+{
+    const int64_t entries = all->cards.num_entries;
+    const int64_t most = entries / SHARE_ENTRIES;
+    const int threads =
+        ritz_team_ready(most < MOST_SHARES ? (int)most : MOST_SHARES);
+    RITZ_OWN(ritz_dmig_shares) shares = {.all = all, .headers = headers};
+    int64_t total = 0;
+
+    if (threads < 2)
+        return take_range(all, headers, 0, entries);
+    shares.count = (int64_t)threads * SHARES_EACH;
+    shares.count = shares.count < MOST_SHARES ? shares.count : MOST_SHARES;
+    ritz_team_run(threads, take_shares, &shares);
+    for (int64_t k = 0; k < shares.count; k++) {
+        if (shares.status[k] != RITZ_OK)
+            return take_range(all, headers, 0, entries);
+        shares.offset[k] = total;
+        total += shares.share[k].num_terms;
+    }
+    if (headers) {
+        for (int64_t k = 0; k < shares.count; k++)
+            RITZ_CHECK(join_headers(&shares.share[k], all));
+        return RITZ_OK;
+    }
+    RITZ_CHECK_NEW(all->term, total);
+    all->num_terms = all->terms_room = total;
+    ritz_team_run(threads, join_terms, &shares);
+    for (int64_t k = 0; k < shares.count; k++)
+        join_counts(&shares.share[k], all);
     return RITZ_OK;
 }
 

@@ -150,6 +150,30 @@ static void shares_of_lines_are_what_one_thread_reads(void **state)
     compare_damages("shares.mtx");
 }
 
+/* A term in each column; then cards in two shares are spoiled. */
+static void shares_of_cards_are_what_one_thread_reads(void **state)
+{
+    enum { COLS = 9000, LINE = 80 };
+    char *bytes = calloc(3 * COLS + 4, LINE);
+    int64_t size = 0;
+    (void)state;
+
+    size += sprintf(bytes,
+                    "DMIG    KAA            0       9       2       0"
+                    "                %8d\n",
+                    COLS);
+    for (int64_t j = 1; j <= COLS; j++)
+        size += sprintf(bytes + size,
+                        "DMIG*   KAA     %16d%16d\n*       %16d%16d%16.9E\n",
+                        (int)j, 1, (int)(j % 97 + 1), 3, sin((double)j));
+    assert_ok(compare_readings(bytes, size));
+    bytes[size / 2] = 'x';
+    assert_int_equal(compare_readings(bytes, size), RITZ_ERR_FORMAT);
+    bytes[size * 3 / 4] = 'x';
+    assert_int_equal(compare_readings(bytes, size), RITZ_ERR_FORMAT);
+    free(bytes);
+}
+
 /* The second column tells how strings are headed, which the header does not:
    what follows must be read as one thread reads it. */
 static void unmarked_strings_are_read_alike(void **state)
@@ -213,6 +237,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(shares_of_records_are_what_one_thread_reads,
                               one_thread),
     cmocka_unit_test_teardown(shares_of_lines_are_what_one_thread_reads,
+                              one_thread),
+    cmocka_unit_test_teardown(shares_of_cards_are_what_one_thread_reads,
                               one_thread),
     cmocka_unit_test_teardown(unmarked_strings_are_read_alike, one_thread),
     cmocka_unit_test_teardown(pieces_of_a_file_are_its_bytes, one_thread),
