@@ -108,16 +108,19 @@ static void *serve_tasks(void *argument)
     return NULL;
 }
 
+static void forget_sleepers(signal_count *s)
+{
+    atomic_store(&s->sleepers, 0);
+    pthread_mutex_init(&s->lock, NULL);
+    pthread_cond_init(&s->changed, NULL);
+}
+
 /* A process that was forked has none of the threads. */
 static void forget_threads(void)
 {
-    signal_count *const each[] = {&team.tasks, &team.ends, &team.meetings};
-
-    for (size_t k = 0; k < sizeof each / sizeof *each; k++) {
-        atomic_store(&each[k]->sleepers, 0);
-        pthread_mutex_init(&each[k]->lock, NULL);
-        pthread_cond_init(&each[k]->changed, NULL);
-    }
+    forget_sleepers(&team.tasks);
+    forget_sleepers(&team.ends);
+    forget_sleepers(&team.meetings);
     pthread_mutex_init(&team.busy, NULL);
     atomic_store(&team.arrived, 0);
     team.started = 0;

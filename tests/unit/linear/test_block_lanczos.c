@@ -144,8 +144,11 @@ static void new_directions_find_further_copies(void **state)
                                  &lambda, &next, &end));
     assert_int_equal(end, RITZ_LANCZOS_FOUND);
     assert_true(X.ncol >= 50);
-    for (int64_t j = 0; j < X.ncol; j++)
-        assert_near(lambda[j], 1.0 + (double)(j / COPIES), 1e-13);
+    for (int64_t j = 0; j < X.ncol; j++) {
+        const int64_t kind = j / COPIES;
+
+        assert_near(lambda[j], 1.0 + (double)kind, 1e-13);
+    }
     free(lambda);
 }
 
