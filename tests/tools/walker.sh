@@ -11,8 +11,8 @@ import_chain --input tip=10:1 --output-at root=1:1 -o new.h5
 works 'files without checksums are made' \
     /usr/bin/python3 -s "$here/walker.py" make
 ulimit -c 0
-echo leak:libhdf5 >leaks # leaks of HDF5 itself, if the tools have a sanitizer
-export LSAN_OPTIONS="suppressions=$dir/leaks:print_suppressions=0"
+# leaks of HDF5 itself, if the tools have a sanitizer
+export LSAN_OPTIONS="suppressions=$here/../unit/hdf5.supp:print_suppressions=0"
 
 # --- sound files --------------------------------------------------------------
 
