@@ -26,7 +26,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <strings.h>
 
@@ -228,20 +227,15 @@ static ritz_status take_range(ritz_dmig_cards *all, bool headers, int64_t from,
  * A share is a range of entries that a thread goes through. If a card of any is
  * refused, one thread goes through all, so that the first one is named.
  */
-enum {
-    SHARE_ENTRIES = 4000, /* from which a thread is worth it */
-    SHARES_EACH = 4,
-    MOST_SHARES = 64,
-};
+enum { SHARE_ENTRIES = 4000 }; /* from which a thread is worth it */
 
 typedef struct ritz_dmig_shares {
     const ritz_dmig_cards *all;
     bool headers;
     int64_t count;
-    ritz_dmig_cards share[MOST_SHARES]; /* their cards are borrowed */
-    ritz_status status[MOST_SHARES];
-    int64_t offset[MOST_SHARES]; /* of its terms among all */
-    _Atomic int64_t next;        /* share that nobody has taken */
+    ritz_dmig_cards share[RITZ_TEAM_SHARES]; /* their cards are borrowed */
+    ritz_status status[RITZ_TEAM_SHARES];
+    int64_t offset[RITZ_TEAM_SHARES]; /* of its terms among all */
 } ritz_dmig_shares;
 
 static void ritz_dmig_shares_free(ritz_dmig_shares *shares)
@@ -250,11 +244,12 @@ static void ritz_dmig_shares_free(ritz_dmig_shares *shares)
         RITZ_FREE(shares->share[k].header, shares->share[k].term);
 }
 
-static ritz_status take_share(const ritz_dmig_shares *shares, int64_t k,
+static ritz_status read_share(const ritz_dmig_shares *shares, int64_t k,
                               ritz_dmig_cards *share)
 {
     const ritz_dmig_cards *all = shares->all;
-    int64_t entries = all->cards.num_entries;
+    int64_t from = 0;
+    int64_t to = 0;
 
     share->cards = all->cards;
     share->wanted = all->wanted;
@@ -262,29 +257,25 @@ static ritz_status take_share(const ritz_dmig_shares *shares, int64_t k,
         RITZ_CHECK_COPY(share->header, all->header, all->num_headers);
         share->num_headers = share->headers_room = all->num_headers;
     }
-    return take_range(share, shares->headers, entries * k / shares->count,
-                      entries * (k + 1) / shares->count);
+    ritz_team_part(all->cards.num_entries, k, shares->count, &from, &to);
+    return take_range(share, shares->headers, from, to);
 }
 
-static void take_shares(int thread, int threads, void *task)
-{
-    ritz_dmig_shares *shares = task;
-    int64_t k = 0;
-
-    (void)thread;
-    (void)threads;
-    while ((k = atomic_fetch_add(&shares->next, 1)) < shares->count)
-        shares->status[k] = take_share(shares, k, &shares->share[k]);
-}
-
-static void join_terms(int thread, int threads, void *task)
+static void take_share(int64_t k, void *task)
 {
     ritz_dmig_shares *shares = task;
 
-    for (int64_t k = thread; k < shares->count; k += threads)
-        if (shares->share[k].num_terms > 0)
-            memcpy(shares->all->term + shares->offset[k], shares->share[k].term,
-                   (size_t)shares->share[k].num_terms * sizeof(ritz_dmig_term));
+    shares->status[k] = read_share(shares, k, &shares->share[k]);
+}
+
+static void join_terms(int64_t k, void *task)
+{
+    const ritz_dmig_shares *shares = task;
+    const ritz_dmig_cards *share = &shares->share[k];
+
+    if (share->num_terms > 0)
+        memcpy(shares->all->term + shares->offset[k], share->term,
+               (size_t)share->num_terms * sizeof *share->term);
 }
 
 /* Add what the shares counted of each header to what is known of it. */
@@ -311,17 +302,14 @@ static ritz_status join_headers(const ritz_dmig_cards *share,
 static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
 {
     const int64_t entries = all->cards.num_entries;
-    const int64_t most = entries / SHARE_ENTRIES;
-    const int threads =
-        ritz_team_ready(most < MOST_SHARES ? (int)most : MOST_SHARES);
+    const int threads = ritz_team_ready(entries / SHARE_ENTRIES);
     RITZ_OWN(ritz_dmig_shares) shares = {.all = all, .headers = headers};
     int64_t total = 0;
 
     if (threads < 2)
         return take_range(all, headers, 0, entries);
-    shares.count = (int64_t)threads * SHARES_EACH;
-    shares.count = shares.count < MOST_SHARES ? shares.count : MOST_SHARES;
-    ritz_team_run(threads, take_shares, &shares);
+    shares.count = ritz_team_shares(threads);
+    ritz_team_each(threads, shares.count, take_share, &shares);
     for (int64_t k = 0; k < shares.count; k++) {
         if (shares.status[k] != RITZ_OK)
             return take_range(all, headers, 0, entries);
@@ -335,7 +323,7 @@ static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
     }
     RITZ_CHECK_NEW(all->term, total);
     all->num_terms = all->terms_room = total;
-    ritz_team_run(threads, join_terms, &shares);
+    ritz_team_each(threads, shares.count, join_terms, &shares);
     for (int64_t k = 0; k < shares.count; k++)
         join_counts(&shares.share[k], all);
     return RITZ_OK;

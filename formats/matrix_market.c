@@ -18,7 +18,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -277,18 +276,15 @@ static ritz_status read_lines_of_entries(ritz_market *m)
  */
 enum {
     SHARE_BYTES = 1 << 20, /* from which a thread is worth it */
-    SHARES_EACH = 4,       /* for a thread: some take longer than others */
-    MOST_SHARES = 64,
-    SPARE = 1000, /* entries */
+    SPARE = 1000,          /* entries */
 };
 
 typedef struct ritz_market_shares {
     const ritz_market *whole;
     int64_t count;
-    ritz_market share[MOST_SHARES];
-    ritz_status status[MOST_SHARES];
-    int64_t offset[MOST_SHARES]; /* of its entries among all */
-    _Atomic int64_t next;        /* share that nobody has taken */
+    ritz_market share[RITZ_TEAM_SHARES];
+    ritz_status status[RITZ_TEAM_SHARES];
+    int64_t offset[RITZ_TEAM_SHARES]; /* of its entries among all */
 } ritz_market_shares;
 
 static void ritz_market_shares_free(ritz_market_shares *all)
@@ -330,46 +326,36 @@ static ritz_status read_share(const ritz_market *m, ritz_market *share)
     return read_lines_of_entries(share);
 }
 
-static void read_shares(int thread, int threads, void *task)
+static void take_share(int64_t k, void *task)
 {
     ritz_market_shares *all = task;
-    int64_t k = 0;
 
-    (void)thread;
-    (void)threads;
-    while ((k = atomic_fetch_add(&all->next, 1)) < all->count)
-        all->status[k] = read_share(all->whole, &all->share[k]);
+    all->status[k] = read_share(all->whole, &all->share[k]);
 }
 
-static void join_shares(int thread, int threads, void *task)
+static void join_share(int64_t k, void *task)
 {
-    ritz_market_shares *all = task;
+    const ritz_market_shares *all = task;
+    const ritz_market *share = &all->share[k];
 
-    for (int64_t k = thread; k < all->count; k += threads) {
-        ritz_market *share = &all->share[k];
-
-        memcpy(all->whole->entry + all->offset[k], share->entry,
-               (size_t)share->count * sizeof *share->entry);
-    }
+    memcpy(all->whole->entry + all->offset[k], share->entry,
+           (size_t)share->count * sizeof *share->entry);
 }
 
 /* False if the entries must be read one after the other. */
 static bool read_in_shares(ritz_market *m)
 {
-    const int64_t size = (m->text.end - m->text.at) / SHARE_BYTES;
+    const int64_t gain = (m->text.end - m->text.at) / SHARE_BYTES;
     const int threads =
-        m->layout != RITZ_MARKET_COORDINATE
-            ? 1
-            : ritz_team_ready(size < MOST_SHARES ? (int)size : MOST_SHARES);
-    const int64_t most = (int64_t)threads * SHARES_EACH;
+        ritz_team_ready(m->layout == RITZ_MARKET_COORDINATE ? gain : 1);
     RITZ_OWN(ritz_market_shares) all = {.whole = m};
     int64_t total = 0;
     bool right = true;
 
     if (threads < 2)
         return false;
-    cut_shares(m, most < MOST_SHARES ? most : MOST_SHARES, &all);
-    ritz_team_run(threads, read_shares, &all);
+    cut_shares(m, ritz_team_shares(threads), &all);
+    ritz_team_each(threads, all.count, take_share, &all);
     for (int64_t k = 0; k < all.count; k++) {
         right = right && all.status[k] == RITZ_OK;
         all.offset[k] = total;
@@ -377,7 +363,7 @@ static bool read_in_shares(ritz_market *m)
     }
     if (!right || total != m->most)
         return false;
-    ritz_team_run(threads, join_shares, &all);
+    ritz_team_each(threads, all.count, join_share, &all);
     m->count = total;
     for (int64_t k = 0; k < all.count; k++)
         if (all.share[k].digits > m->digits)

@@ -13,7 +13,6 @@
 #include "formats/output4.h"
 
 #include <inttypes.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -201,11 +200,7 @@ static ritz_status read_until(ritz_output4_reader *r, ritz_output4_build *build,
 
 /* ---- shares ------------------------------------------------------------- */
 
-enum {
-    SHARE_BYTES = 1 << 20, /* of the file, from which a thread is worth it */
-    SHARES_EACH = 4,       /* for a thread: some take longer than others */
-    MOST_SHARES = 64,
-};
+enum { SHARE_BYTES = 1 << 20 }; /* of the file, that a thread is worth */
 
 typedef struct ritz_output4_share {
     ritz_output4_reader r;
@@ -217,9 +212,8 @@ typedef struct ritz_output4_share {
 
 typedef struct ritz_output4_shares {
     int64_t count;
-    ritz_output4_share share[MOST_SHARES];
+    ritz_output4_share share[RITZ_TEAM_SHARES];
     ritz_output4_header header;
-    _Atomic int64_t next; /* share that nobody has taken */
 } ritz_output4_shares;
 
 static void ritz_output4_shares_free(ritz_output4_shares *all)
@@ -271,22 +265,14 @@ static ritz_status begin_share(const ritz_output4_header *header, bool first,
                                  share_room(r, header, share, first));
 }
 
-static void read_shares(int thread, int threads, void *task)
+static void read_share(int64_t k, void *task)
 {
     ritz_output4_shares *all = task;
+    ritz_output4_share *share = &all->share[k];
 
-    (void)thread;
-    (void)threads;
-    for (;;) {
-        int64_t k = atomic_fetch_add(&all->next, 1);
-        ritz_output4_share *share = &all->share[k < all->count ? k : 0];
-
-        if (k >= all->count)
-            return;
-        share->status = begin_share(&all->header, k == 0, share);
-        if (share->status == RITZ_OK)
-            share->status = read_until(&share->r, &share->build, share->stop);
-    }
+    share->status = begin_share(&all->header, k == 0, share);
+    if (share->status == RITZ_OK)
+        share->status = read_until(&share->r, &share->build, share->stop);
 }
 
 /* Whether the shares are what reading one after the other gives. */
@@ -313,30 +299,27 @@ static bool do_shares_join(const ritz_output4_shares *all)
     return first->entries.counts != NULL;
 }
 
-/* Copy the entries of shares behind those of the first. */
-static void join_shares(int thread, int threads, void *task)
+/* Copy the entries of a share behind those of the shares before it. */
+static void join_share(int64_t k, void *task)
 {
     ritz_output4_shares *all = task;
+    ritz_output4_build *build = &all->share[k].build;
     ritz_triplets *to = &all->share[0].build.entries;
+    const ritz_triplets *from = &build->entries;
+    const int64_t at = all->share[k].offset;
 
-    for (int64_t k = 1 + thread; k < all->count; k += threads) {
-        ritz_output4_build *build = &all->share[k].build;
-        const ritz_triplets *from = &build->entries;
-        int64_t at = all->share[k].offset;
-
-        memcpy(to->row + at, from->row,
-               (size_t)from->count * sizeof *from->row);
-        memcpy(to->re + at, from->re, (size_t)from->count * sizeof *from->re);
-        if (to->im)
-            memcpy(to->im + at, from->im,
-                   (size_t)from->count * sizeof *from->im);
-        if (build->column >= 0)
-            memcpy(to->counts + build->first_column + 1,
-                   from->counts + build->first_column + 1,
-                   (size_t)(build->column - build->first_column + 1) *
-                       sizeof *to->counts);
-        ritz_output4_build_free(build);
-    }
+    if (k == 0) /* the first has room for all of them */
+        return;
+    memcpy(to->row + at, from->row, (size_t)from->count * sizeof *from->row);
+    memcpy(to->re + at, from->re, (size_t)from->count * sizeof *from->re);
+    if (to->im)
+        memcpy(to->im + at, from->im, (size_t)from->count * sizeof *from->im);
+    if (build->column >= 0)
+        memcpy(to->counts + build->first_column + 1,
+               from->counts + build->first_column + 1,
+               (size_t)(build->column - build->first_column + 1) *
+                   sizeof *to->counts);
+    ritz_output4_build_free(build);
 }
 
 /* Read columns in shares; false if they must be read one after the other. */
@@ -344,17 +327,15 @@ static bool read_in_shares(const ritz_output4_reader *r,
                            const ritz_output4_header *header, const char *end,
                            ritz_output4_build *out)
 {
-    const int64_t size = end ? (end - r->text.at) / SHARE_BYTES : 0;
     const int threads =
-        ritz_team_ready(size < MOST_SHARES ? (int)size : MOST_SHARES);
+        ritz_team_ready(end ? (end - r->text.at) / SHARE_BYTES : 1);
     RITZ_OWN(ritz_output4_shares) all = {.header = *header};
-    int64_t most = (int64_t)threads * SHARES_EACH;
     int64_t total = 0;
 
     if (threads < 2)
         return false;
-    cut_shares(r, end, most < MOST_SHARES ? most : MOST_SHARES, &all);
-    ritz_team_run(threads, read_shares, &all);
+    cut_shares(r, end, ritz_team_shares(threads), &all);
+    ritz_team_each(threads, all.count, read_share, &all);
     if (!do_shares_join(&all))
         return false;
     for (int64_t k = 0; k < all.count; k++) {
@@ -366,7 +347,7 @@ static bool read_in_shares(const ritz_output4_reader *r,
                               total - all.share[0].build.entries.count) !=
         RITZ_OK)
         return false;
-    ritz_team_run(threads, join_shares, &all);
+    ritz_team_each(threads, all.count, join_share, &all);
     all.share[0].build.entries.count = total;
     RITZ_MOVE(*out, all.share[0].build);
     return true;

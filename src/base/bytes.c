@@ -67,37 +67,24 @@ typedef struct piecewise {
     int file;
     char *bytes;
     int64_t size;
-    _Atomic int64_t next; /* piece that nobody has taken */
-    atomic_bool cut;      /* the file ended early, or could not be read */
+    atomic_bool cut; /* the file ended early, or could not be read */
 } piecewise;
 
-static bool read_piece(const piecewise *all, int64_t from, int64_t to)
+static void read_piece(int64_t k, void *task)
 {
+    piecewise *all = task;
+    int64_t from = PIECE * k;
+    const int64_t to = all->size - from < PIECE ? all->size : from + PIECE;
+
     while (from < to) {
         ssize_t got =
             pread(all->file, all->bytes + from, (size_t)(to - from), from);
 
-        if (got <= 0)
-            return false;
-        from += got;
-    }
-    return true;
-}
-
-static void read_pieces(int thread, int threads, void *task)
-{
-    piecewise *all = task;
-
-    (void)thread;
-    (void)threads;
-    for (;;) {
-        int64_t from = PIECE * atomic_fetch_add(&all->next, 1);
-        int64_t to = all->size - from < PIECE ? all->size : from + PIECE;
-
-        if (from >= all->size)
-            return;
-        if (!read_piece(all, from, to))
+        if (got <= 0) {
             atomic_store(&all->cut, true);
+            return;
+        }
+        from += got;
     }
 }
 
@@ -105,12 +92,11 @@ static void read_pieces(int thread, int threads, void *task)
  * be read one after the other */
 static int64_t read_stated(FILE *file, piecewise *all)
 {
-    const int64_t pieces = all->size / PIECE;
-    const int threads = ritz_team_ready(pieces < 64 ? (int)pieces : 64);
+    const int threads = ritz_team_ready(all->size / PIECE);
 
-    if (pieces < 2 || threads < 2)
+    if (threads < 2)
         return 0;
-    ritz_team_run(threads, read_pieces, all);
+    ritz_team_each(threads, (all->size + PIECE - 1) / PIECE, read_piece, all);
     return atomic_load(&all->cut) || fseeko(file, all->size, SEEK_SET) != 0
                ? 0
                : all->size;
@@ -132,7 +118,7 @@ ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
     room = stated_size(from.file) + 2; /* with the NUL behind */
     room = room < SMALLEST ? SMALLEST : room;
     RITZ_CHECK_NEW(bytes, room);
-    all = (piecewise){fileno(from.file), bytes, room - 2, 0, false};
+    all = (piecewise){fileno(from.file), bytes, room - 2, false};
     used = read_stated(from.file, &all);
     do {
         RITZ_CHECK_ROOM(bytes, used + 1, room);

@@ -3,11 +3,11 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stdbool.h>
 
 enum {
-    MOST = 64,   /* threads */
-    SPINS = 400, /* pauses before sleep: some 20 microseconds */
+    MOST = 64,       /* threads */
+    SPINS = 400,     /* pauses before sleep: some 20 microseconds */
+    SHARES_EACH = 4, /* of a file for each thread: some take longer */
 };
 
 /* A number that threads wait for: it only grows. */
@@ -132,25 +132,33 @@ static void watch_forks(void)
     (void)pthread_atfork(NULL, NULL, forget_threads); /* fails without memory */
 }
 
-/* One more thread, which leaves all signals to the others. */
-static bool start_thread(int thread)
+bool ritz_team_start(void *(*run)(void *argument), void *argument,
+                     pthread_t *out)
 {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
     sigset_t all, before;
-    pthread_t id;
     bool started = false;
 
-    pthread_once(&once, watch_forks);
-    team.before[thread] = atomic_load(&team.tasks.count);
     sigfillset(&all);
     if (pthread_sigmask(SIG_SETMASK, &all, &before) != 0)
         return false;
-    started = pthread_create(&id, NULL, serve_tasks,
-                             (void *)(intptr_t)thread) == 0; // NOLINT
-    if (started)
-        pthread_detach(id);
+    started = pthread_create(out, NULL, run, argument) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return started;
+}
+
+/* Start thread @p thread of the team. */
+static bool enlarge_team(int thread)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    void *number = (void *)(intptr_t)thread; // NOLINT
+    pthread_t id;
+
+    pthread_once(&once, watch_forks);
+    team.before[thread] = atomic_load(&team.tasks.count);
+    if (!ritz_team_start(serve_tasks, number, &id))
+        return false;
+    pthread_detach(id);
+    return true;
 }
 
 void ritz_set_threads(int threads)
@@ -159,17 +167,17 @@ void ritz_set_threads(int threads)
     atomic_store(&team.limit, threads < MOST ? threads : MOST);
 }
 
-int ritz_team_ready(int most)
+int ritz_team_ready(int64_t gain)
 {
     const int limit = atomic_load(&team.limit);
+    const int most = gain < limit ? (int)gain : limit;
     int ready = 0;
 
-    most = most < limit ? most : limit;
-    if (most <= 1)
+    if (gain <= 1 || most <= 1)
         return 1;
     pthread_mutex_lock(&team.busy);
     while (team.started + 1 < most && !team.refused) {
-        team.refused = !start_thread(team.started + 1);
+        team.refused = !enlarge_team(team.started + 1);
         team.started += !team.refused;
     }
     ready = team.started + 1 < most ? team.started + 1 : most;
@@ -186,7 +194,7 @@ void ritz_team_run(int threads, ritz_team_work *work, void *task)
         return;
     }
     pthread_mutex_lock(&team.busy);
-    while (team.started + 1 < threads && start_thread(team.started + 1))
+    while (team.started + 1 < threads && enlarge_team(team.started + 1))
         team.started++; /* after a fork */
     ended = atomic_load(&team.ends.count);
     team.threads = threads;
@@ -197,4 +205,60 @@ void ritz_team_run(int threads, ritz_team_work *work, void *task)
     work(0, threads, task);
     await_change(&team.ends, ended);
     pthread_mutex_unlock(&team.busy);
+}
+
+/* Items that are divided among threads beforehand. */
+typedef struct divided_items {
+    int64_t count;
+    ritz_team_range *work;
+    void *task;
+} divided_items;
+
+static void work_on_range(int thread, int threads, void *task)
+{
+    const divided_items *r = task;
+    int64_t from = 0;
+    int64_t to = 0;
+
+    ritz_team_part(r->count, thread, threads, &from, &to);
+    r->work(thread, from, to, r->task);
+}
+
+void ritz_team_over(int threads, int64_t count, ritz_team_range *work,
+                    void *task)
+{
+    ritz_team_run(threads, work_on_range, &(divided_items){count, work, task});
+}
+
+/* Items of which each thread takes the next one when it is free. */
+typedef struct item_queue {
+    int64_t count;
+    _Atomic int64_t next;
+    ritz_team_item *work;
+    void *task;
+} item_queue;
+
+static void work_on_items(int thread, int threads, void *task)
+{
+    item_queue *q = task;
+    int64_t k = 0;
+
+    (void)thread;
+    (void)threads;
+    while ((k = atomic_fetch_add(&q->next, 1)) < q->count)
+        q->work(k, q->task);
+}
+
+void ritz_team_each(int threads, int64_t count, ritz_team_item *work,
+                    void *task)
+{
+    ritz_team_run(threads, work_on_items,
+                  &(item_queue){.count = count, .work = work, .task = task});
+}
+
+int64_t ritz_team_shares(int threads)
+{
+    const int64_t shares = (int64_t)threads * SHARES_EACH;
+
+    return shares < RITZ_TEAM_SHARES ? shares : RITZ_TEAM_SHARES;
 }

@@ -241,13 +241,11 @@ typedef struct exchange {
     int64_t count, width;
 } exchange;
 
-static void take_columns(int thread, int threads, void *task)
+static void take_columns(int thread, int64_t from, int64_t to, void *task)
 {
     const exchange *e = task;
-    int64_t from = 0;
-    int64_t to = 0;
 
-    ritz_team_part(e->F->n, thread, threads, &from, &to);
+    (void)thread;
     for (int64_t k = from; k < to; k++) {
         double *x = e->F->x + k * e->width;
 
@@ -258,13 +256,11 @@ static void take_columns(int thread, int threads, void *task)
     }
 }
 
-static void return_columns(int thread, int threads, void *task)
+static void return_columns(int thread, int64_t from, int64_t to, void *task)
 {
     const exchange *e = task;
-    int64_t from = 0;
-    int64_t to = 0;
 
-    ritz_team_part(e->F->n, thread, threads, &from, &to);
+    (void)thread;
     for (int64_t k = from; k < to; k++)
         for (int64_t j = 0; j < e->count; j++)
             e->X[e->F->order[k] + j * e->F->n] = e->F->x[k * e->width + j];
@@ -282,9 +278,9 @@ ritz_status ritz_factor_solve(ritz_factor *F, ritz_dense *X)
 
         e.width = left <= RITZ_SOLVE_WIDTH / 2 ? e.width / 2 : e.width;
         e.count = left < e.width ? left : e.width;
-        ritz_team_run(threads, take_columns, &e);
+        ritz_team_over(threads, F->n, take_columns, &e);
         ritz_supernodal_solve(F->S, e.width, F->x);
-        ritz_team_run(threads, return_columns, &e);
+        ritz_team_over(threads, F->n, return_columns, &e);
         j += e.count;
     }
     return RITZ_OK;

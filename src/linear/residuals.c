@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/team.h"
 
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -25,13 +24,11 @@ typedef struct assessment {
     sums *of;             /* each thread */
 } assessment;
 
-static void lay_out_rows(int thread, int threads, void *task)
+static void lay_out_rows(int thread, int64_t from, int64_t to, void *task)
 {
     const assessment *a = task;
-    int64_t from = 0;
-    int64_t to = 0;
 
-    ritz_team_part(a->K->nrow, thread, threads, &from, &to);
+    (void)thread;
     for (int64_t i = from; i < to; i++)
         for (int64_t c = 0; c < a->count; c++)
             a->x[i * WIDTH + c] =
@@ -57,15 +54,12 @@ static void multiply_row(const ritz_sparse *A, int64_t j, const double *x,
     }
 }
 
-static void assess_rows(int thread, int threads, void *task)
+static void assess_rows(int thread, int64_t from, int64_t to, void *task)
 {
     const assessment *a = task;
     sums *s = &a->of[thread];
-    int64_t from = 0;
-    int64_t to = 0;
 
     *s = (sums){0};
-    ritz_team_part(a->K->nrow, thread, threads, &from, &to);
     for (int64_t j = from; j < to; j++) {
         double Kx[WIDTH], Mx[WIDTH], k[WIDTH], m[WIDTH];
 
@@ -85,8 +79,8 @@ static void assess_rows(int thread, int threads, void *task)
    |x|'|K||x|. */
 static void assess_eight(assessment *a, int threads, double *scale)
 {
-    ritz_team_run(threads, lay_out_rows, a);
-    ritz_team_run(threads, assess_rows, a);
+    ritz_team_over(threads, a->K->nrow, lay_out_rows, a);
+    ritz_team_over(threads, a->K->nrow, assess_rows, a);
     for (int64_t c = 0; c < a->count; c++) {
         double gap = 0.0;
         double size = 0.0;
@@ -106,8 +100,7 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_pairs *P, double *worst)
 {
     const int64_t entries = K->colptr[K->ncol] + M->colptr[M->ncol];
-    const int64_t most = 1 + entries / WORTHWHILE;
-    const int threads = ritz_team_ready(most < INT_MAX ? (int)most : INT_MAX);
+    const int threads = ritz_team_ready(1 + entries / WORTHWHILE);
     RITZ_OWN_ARRAY double *x = NULL;
     RITZ_OWN_ARRAY sums *of = NULL;
     double scale = 0.0;

@@ -6,7 +6,6 @@
 #include <ritz/matrix.h>
 
 #include <inttypes.h>
-#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -251,8 +250,7 @@ static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
 {
     const int64_t groups = (X->ncol + EIGHT - 1) / EIGHT;
     const bool large = A->colptr[A->ncol] >= WORTHWHILE;
-    const int threads =
-        ritz_team_ready(large && groups < INT_MAX ? (int)groups : 1);
+    const int threads = ritz_team_ready(large ? groups : 1);
     RITZ_OWN_ARRAY double *room = NULL;
 
     RITZ_CHECK_NEW(room, threads * (A->nrow + A->ncol) * EIGHT);

@@ -5,7 +5,6 @@
 #include "base/team.h"
 #include "linear/tiles.h"
 
-#include <limits.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -433,14 +432,13 @@ static ritz_status pack_factor(const cholmod_factor *L, ritz_supernodal *S)
 ritz_status ritz_supernodal_new(cholmod_factor *L, ritz_supernodal **out)
 {
     RITZ_OWN(ritz_supernodal) *S = NULL;
-    const int64_t most = 1 + (int64_t)L->xsize / WORTHWHILE;
 
     RITZ_REFUSE_IF(L->n > INT32_MAX - 1, RITZ_ERR_ARGUMENT,
                    "%zu rows are more than a factor can have", L->n);
     RITZ_CHECK_NEW(S, 1);
     S->n = (int64_t)L->n;
     S->tiles = ritz_tiles_here();
-    S->threads = ritz_team_ready(most < INT_MAX ? (int)most : INT_MAX);
+    S->threads = ritz_team_ready(1 + (int64_t)L->xsize / WORTHWHILE);
     if (S->n > 0)
         RITZ_CHECK(pack_factor(L, S));
     RITZ_MOVE(*out, S);

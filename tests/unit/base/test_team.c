@@ -1,18 +1,19 @@
 #include "base/team.h"
 #include "testing.h"
 
+#include <signal.h>
+#include <stdatomic.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 enum { MOST = 4, TASKS = 2000 };
 
-/* What each thread did. */
 typedef struct tally {
-    int64_t done[MOST];
-    int wrong;
+    int64_t done[MOST]; /* steps of each thread */
+    int wrong;          /* steps of others that thread 0 found missing */
 } tally;
 
-/* Every thread counts, and after each meeting finds the counts of all equal. */
+/* Every thread counts its steps; behind each meeting all counts are equal. */
 static void count_together(int thread, int threads, void *task)
 {
     tally *t = task;
@@ -49,7 +50,7 @@ static void all_threads_work_and_meet(void **state)
     ritz_set_threads(1);
 }
 
-static void fewer_threads_than_there_are_may_be_asked_for(void **state)
+static void a_task_may_use_fewer_threads_than_were_started(void **state)
 {
     tally t = {{0}, 0};
 
@@ -67,7 +68,7 @@ static void fewer_threads_than_there_are_may_be_asked_for(void **state)
 }
 
 /* The child of a fork has the caller's thread alone, and starts others. */
-static void a_forked_process_starts_its_own(void **state)
+static void a_forked_process_starts_threads_of_its_own(void **state)
 {
     tally t = {{0}, 0};
     int status = 0;
@@ -92,7 +93,7 @@ static void a_forked_process_starts_its_own(void **state)
     ritz_set_threads(1);
 }
 
-static void parts_cover_everything_once(void **state)
+static void parts_cover_every_item_once(void **state)
 {
     (void)state;
     for (int threads = 1; threads < 9; threads++)
@@ -112,11 +113,93 @@ static void parts_cover_everything_once(void **state)
         }
 }
 
+enum { ITEMS = 1000 };
+
+/* How often each item was worked on, and by which thread if that is known. */
+typedef struct items {
+    _Atomic int done[ITEMS];
+    int thread[ITEMS];
+} items;
+
+static void mark_range(int thread, int64_t from, int64_t to, void *task)
+{
+    items *all = task;
+
+    for (int64_t k = from; k < to; k++) {
+        all->done[k]++;
+        all->thread[k] = thread;
+    }
+}
+
+static void mark_item(int64_t k, void *task)
+{
+    items *all = task;
+
+    all->done[k]++;
+}
+
+static void every_item_is_worked_on_once(void **state)
+{
+    (void)state;
+    for (int limit = 1; limit <= MOST; limit++) {
+        items all = {{0}, {0}};
+        int threads = 0;
+
+        ritz_set_threads(limit);
+        threads = ritz_team_ready(MOST);
+        ritz_team_over(threads, ITEMS, mark_range, &all);
+        for (int64_t k = 0; k < ITEMS; k++) {
+            int64_t from = 0;
+            int64_t to = 0;
+
+            ritz_team_part(ITEMS, all.thread[k], threads, &from, &to);
+            assert_true(k >= from && k < to);
+            assert_int_equal(all.done[k], 1);
+        }
+        ritz_team_each(threads, ITEMS, mark_item, &all);
+        for (int64_t k = 0; k < ITEMS; k++)
+            assert_int_equal(all.done[k], 2);
+    }
+    ritz_set_threads(1);
+}
+
+static void a_file_has_four_shares_for_each_thread(void **state)
+{
+    (void)state;
+    assert_int_equal(ritz_team_shares(1), 4);
+    assert_int_equal(ritz_team_shares(16), 64);
+    assert_int_equal(ritz_team_shares(17), RITZ_TEAM_SHARES);
+}
+
+static void *read_signal_mask(void *argument)
+{
+    pthread_sigmask(SIG_SETMASK, NULL, argument);
+    return NULL;
+}
+
+static void a_thread_outside_the_team_blocks_signals(void **state)
+{
+    sigset_t before, inside, after;
+    pthread_t id;
+
+    (void)state;
+    pthread_sigmask(SIG_SETMASK, NULL, &before);
+    assert_true(ritz_team_start(read_signal_mask, &inside, &id));
+    assert_int_equal(pthread_join(id, NULL), 0);
+    pthread_sigmask(SIG_SETMASK, NULL, &after);
+    assert_int_equal(sigismember(&inside, SIGINT), 1);
+    assert_int_equal(sigismember(&inside, SIGTERM), 1);
+    assert_int_equal(sigismember(&after, SIGINT), sigismember(&before, SIGINT));
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_threads_work_and_meet),
-    cmocka_unit_test(fewer_threads_than_there_are_may_be_asked_for),
-    cmocka_unit_test(a_forked_process_starts_its_own),
-    cmocka_unit_test(parts_cover_everything_once),
+    cmocka_unit_test(a_task_may_use_fewer_threads_than_were_started),
+    cmocka_unit_test(a_forked_process_starts_threads_of_its_own),
+    cmocka_unit_test(parts_cover_every_item_once),
+    cmocka_unit_test(every_item_is_worked_on_once),
+    cmocka_unit_test(a_file_has_four_shares_for_each_thread),
+    cmocka_unit_test(a_thread_outside_the_team_blocks_signals),
 };
 
 TEST_MODULE(team, tests, NULL, NULL)
