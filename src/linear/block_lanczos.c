@@ -1,10 +1,9 @@
 #include "linear/block_lanczos.h"
 
-#include "base/team.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
+#include "linear/blocks.h"
 #include "linear/factor.h"
-#include "linear/tiles.h"
 
 #include <inttypes.h>
 #include <lapacke.h>
@@ -13,9 +12,8 @@
 #include <string.h>
 
 enum {
-    B = RITZ_TILE,    /* vectors of a block */
-    SQUARE = B * B,   /* a small matrix, row by row */
-    CHUNK = 256,      /* rows that are worked on while they are in the cache */
+    B = RITZ_BLOCK,
+    SQUARE = RITZ_SQUARE,
     MORE_BLOCKS = 12, /* room beyond what convergence mostly takes */
     RESTARTS = 40,
     ALONE = 600, /* order of T up to which one thread of the BLAS is enough */
@@ -25,17 +23,14 @@ enum {
 /* Blocks of n x 8, row by row, in the order of the factor. */
 typedef struct block_lanczos {
     const ritz_shifted *S;
-    const ritz_tiles *tiles;
-    int threads;
+    ritz_blocks on; /* how blocks are computed with */
+    ritz_row_matrix M;
     int64_t n, k;
-    int64_t *start; /* M by rows, in that order */
-    int32_t *col;
-    double *val;
     int64_t room, blocks; /* of V */
     double *V;            /* the blocks, and one more behind them */
     double *W, *MW, *MV;
     double *T;         /* (8 room) square, symmetric */
-    double *C;         /* blocks x 8 x 8, and as much again for each thread */
+    double *C;         /* 8 x 8 for each block of V and the one behind */
     double *Z, *theta; /* of T, ascending */
     int64_t coupled;   /* the first block that the last one is coupled with */
     uint64_t noise;
@@ -43,52 +38,14 @@ typedef struct block_lanczos {
 
 static void block_lanczos_free(block_lanczos *L)
 {
-    RITZ_FREE(L->start, L->col, L->val, L->V, L->W, L->MW, L->MV, L->T, L->C,
-              L->Z, L->theta);
-}
-
-/* Uniform in (-1, 1), the same on every machine. */
-static double next_noise(uint64_t *state)
-{
-    *state = *state * 6364136223846793005U + 1442695040888963407U;
-    return (double)(int64_t)*state / (double)INT64_MAX;
+    ritz_blocks_free(&L->on);
+    ritz_row_matrix_free(&L->M);
+    RITZ_FREE(L->V, L->W, L->MW, L->MV, L->T, L->C, L->Z, L->theta);
 }
 
 static double *block_at(const block_lanczos *L, int64_t j)
 {
     return L->V + j * L->n * B;
-}
-
-/* M by rows in the factor's order, without its zeros. It is symmetric, so that
-   columns are rows. */
-static ritz_status permute_mass(block_lanczos *L)
-{
-    const ritz_sparse *M = L->S->M;
-    const int64_t *order = ritz_factor_order(L->S->A);
-    RITZ_OWN_ARRAY int32_t *place = NULL;
-    int64_t count = 0;
-
-    RITZ_CHECK_NEW(place, L->n);
-    for (int64_t k = 0; k < L->n; k++)
-        place[order[k]] = (int32_t)k;
-    for (int64_t p = 0; p < M->colptr[L->n]; p++)
-        count += M->val[p] != 0.0;
-    RITZ_CHECK_NEW(L->start, L->n + 1);
-    RITZ_CHECK_NEW(L->col, count);
-    RITZ_CHECK_NEW(L->val, count);
-    count = 0;
-    for (int64_t k = 0; k < L->n; k++) {
-        const int64_t j = order[k];
-
-        for (int64_t p = M->colptr[j]; p < M->colptr[j + 1]; p++) {
-            if (M->val[p] == 0.0)
-                continue;
-            L->col[count] = place[M->rowind[p]];
-            L->val[count++] = M->val[p];
-        }
-        L->start[k + 1] = count;
-    }
-    return RITZ_OK;
 }
 
 static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
@@ -110,213 +67,39 @@ static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
     RITZ_CHECK_NEW(L->T, order * order);
     RITZ_CHECK_NEW(L->Z, order * order);
     RITZ_CHECK_NEW(L->theta, order);
-    RITZ_CHECK_NEW(L->C, (1 + L->threads) * (L->room + 1) * SQUARE);
-    return permute_mass(L);
-}
-
-/* --- work of all threads -------------------------------------------------- */
-
-/* What one of them works on: rows of blocks, of V from the first of them. */
-typedef struct block_task {
-    block_lanczos *L;
-    int64_t first, count;
-    const double *from;
-    double *to;
-    const double *C;
-} block_task;
-
-static void multiply_rows(int thread, int threads, void *task)
-{
-    const block_task *t = task;
-    const block_lanczos *L = t->L;
-    int64_t from = 0;
-    int64_t to = 0;
-
-    ritz_team_part(L->n, thread, threads, &from, &to);
-    L->tiles->times(from, to, L->start, L->col, L->val, t->from, t->to);
+    RITZ_CHECK_NEW(L->C, (L->room + 1) * SQUARE);
+    RITZ_CHECK(ritz_blocks_new(L->n, ritz_factor_threads(L->S->A), L->room + 1,
+                               &L->on));
+    return ritz_row_matrix_new(L->S->M, ritz_factor_order(L->S->A), &L->M);
 }
 
 /* Y := M X */
-static void multiply_mass(block_lanczos *L, const double *X, double *Y)
+static void multiply_mass(const block_lanczos *L, const double *X, double *Y)
 {
-    ritz_team_run(L->threads, multiply_rows,
-                  &(block_task){.L = L, .from = X, .to = Y});
+    ritz_blocks_multiply(&L->on, &L->M, X, Y);
 }
 
-static void project_rows(int thread, int threads, void *task)
-{
-    const block_task *t = task;
-    const block_lanczos *L = t->L;
-    double *C = L->C + (1 + thread) * (L->room + 1) * SQUARE;
-    int64_t from = 0;
-    int64_t to = 0;
-
-    memset(C, 0, (size_t)(t->count * SQUARE) * sizeof *C);
-    ritz_team_part(L->n, thread, threads, &from, &to);
-    for (int64_t r = from; r < to; r += CHUNK) {
-        const int64_t rows = to - r < CHUNK ? to - r : CHUNK;
-
-        for (int64_t p = 0; p < t->count; p++) {
-            double part[SQUARE];
-
-            L->tiles->inner(rows, block_at(L, t->first + p) + r * B,
-                            t->from + r * B, part);
-            for (int i = 0; i < SQUARE; i++)
-                C[p * SQUARE + i] += part[i];
-        }
-    }
-}
-
-/* L->C := V'X of blocks [first, first + count), the parts of threads summed in
-   their order. */
-static void project_blocks(block_lanczos *L, int64_t first, int64_t count,
+/* L->C := V'X of blocks [first, first + count). */
+static void project_blocks(const block_lanczos *L, int64_t first, int64_t count,
                            const double *X)
 {
-    const int64_t stride = (L->room + 1) * SQUARE;
-
-    ritz_team_run(
-        L->threads, project_rows,
-        &(block_task){.L = L, .first = first, .count = count, .from = X});
-    for (int64_t i = 0; i < count * SQUARE; i++) {
-        L->C[i] = 0.0;
-        for (int t = 1; t <= L->threads; t++)
-            L->C[i] += L->C[i + t * stride];
-    }
-}
-
-static void combine_rows(int thread, int threads, void *task)
-{
-    const block_task *t = task;
-    const block_lanczos *L = t->L;
-    int64_t from = 0;
-    int64_t to = 0;
-
-    ritz_team_part(L->n, thread, threads, &from, &to);
-    for (int64_t r = from; r < to; r += CHUNK) {
-        const int64_t rows = to - r < CHUNK ? to - r : CHUNK;
-
-        for (int64_t p = 0; p < t->count; p++)
-            L->tiles->outer(rows, block_at(L, t->first + p) + r * B,
-                            t->C + p * SQUARE, t->to + r * B);
-    }
+    ritz_blocks_project(&L->on, count, block_at(L, first), X, L->C);
 }
 
 /* X += V C of blocks [first, first + count). */
-static void add_blocks(block_lanczos *L, int64_t first, int64_t count,
+static void add_blocks(const block_lanczos *L, int64_t first, int64_t count,
                        const double *C, double *X)
 {
-    ritz_team_run(
-        L->threads, combine_rows,
-        &(block_task){.L = L, .first = first, .count = count, .C = C, .to = X});
+    ritz_blocks_add(&L->on, count, block_at(L, first), C, X);
 }
 
 /* X -= V C of blocks [first, first + count), C in L->C. */
-static void subtract_blocks(block_lanczos *L, int64_t first, int64_t count,
-                            double *X)
+static void subtract_blocks(const block_lanczos *L, int64_t first,
+                            int64_t count, double *X)
 {
     for (int64_t i = 0; i < count * SQUARE; i++)
         L->C[i] = -L->C[i];
     add_blocks(L, first, count, L->C, X);
-}
-
-static void transform_rows(int thread, int threads, void *task)
-{
-    const block_task *t = task;
-    int64_t from = 0;
-    int64_t to = 0;
-
-    ritz_team_part(t->L->n, thread, threads, &from, &to);
-    for (int64_t r = from; r < to; r += CHUNK) {
-        const int64_t rows = to - r < CHUNK ? to - r : CHUNK;
-        const size_t size = (size_t)(rows * B) * sizeof(double);
-        double X[CHUNK * B];
-
-        memcpy(X, t->to + r * B, size);
-        memset(t->to + r * B, 0, size);
-        t->L->tiles->outer(rows, X, t->C, t->to + r * B);
-    }
-}
-
-/* X := X C */
-static void transform_block(block_lanczos *L, const double *C, double *X)
-{
-    ritz_team_run(L->threads, transform_rows,
-                  &(block_task){.L = L, .C = C, .to = X});
-}
-
-static void inner_rows(int thread, int threads, void *task)
-{
-    const block_task *t = task;
-    const block_lanczos *L = t->L;
-    double *C = L->C + (1 + thread) * (L->room + 1) * SQUARE;
-    int64_t from = 0;
-    int64_t to = 0;
-
-    ritz_team_part(L->n, thread, threads, &from, &to);
-    L->tiles->inner(to - from, t->from + from * B, t->to + from * B, C);
-}
-
-/* G := X'Y of two blocks. */
-static void multiply_inner(block_lanczos *L, const double *X, double *Y,
-                           double *G)
-{
-    const int64_t stride = (L->room + 1) * SQUARE;
-
-    ritz_team_run(L->threads, inner_rows,
-                  &(block_task){.L = L, .from = X, .to = Y});
-    for (int i = 0; i < SQUARE; i++) {
-        G[i] = 0.0;
-        for (int t = 1; t <= L->threads; t++)
-            G[i] += L->C[i + t * stride];
-    }
-}
-
-/* --- small matrices, 8 x 8 row by row ------------------------------------- */
-
-/* G = R'R, R upper triangular; false if a pivot is below this part of its
-   column. */
-static bool factor_gram(const double *G, double *R, double least)
-{
-    memset(R, 0, SQUARE * sizeof *R);
-    for (int j = 0; j < B; j++)
-        for (int i = 0; i <= j; i++) {
-            double sum = 0.5 * (G[i * B + j] + G[j * B + i]);
-
-            for (int k = 0; k < i; k++)
-                sum -= R[k * B + i] * R[k * B + j];
-            if (i == j && !(sum > least * G[j * B + j]))
-                return false;
-            R[i * B + j] = i == j ? sqrt(sum) : sum / R[i * B + i];
-        }
-    return true;
-}
-
-/* U := R^-1 of an upper triangle. */
-static void invert_upper(const double *R, double *U)
-{
-    memset(U, 0, SQUARE * sizeof *U);
-    for (int j = 0; j < B; j++) {
-        U[j * B + j] = 1.0 / R[j * B + j];
-        for (int i = j - 1; i >= 0; i--) {
-            double sum = 0.0;
-
-            for (int k = i + 1; k <= j; k++)
-                sum += R[i * B + k] * U[k * B + j];
-            U[i * B + j] = -sum / R[i * B + i];
-        }
-    }
-}
-
-/* R := Q R */
-static void multiply_small(const double *Q, double *R)
-{
-    double P[SQUARE] = {0};
-
-    for (int i = 0; i < B; i++)
-        for (int k = 0; k < B; k++)
-            for (int j = 0; j < B; j++)
-                P[i * B + j] += Q[i * B + k] * R[k * B + j];
-    memcpy(R, P, sizeof P);
 }
 
 /* --- orthonormal blocks --------------------------------------------------- */
@@ -328,60 +111,23 @@ static bool settle_block(block_lanczos *L, double least, double *X, double *MX,
 {
     double G[SQUARE], Q[SQUARE], U[SQUARE];
 
-    multiply_inner(L, X, MX, G);
+    ritz_blocks_inner(&L->on, X, MX, G);
     for (int j = 0; j < B; j++)
         if (!(G[j * B + j] > least * least))
             return false;
-    if (!factor_gram(G, R, RITZ_GRAM_DEPENDENT))
+    if (!ritz_square_factor(G, R, RITZ_GRAM_DEPENDENT))
         return false;
     for (int pass = 0;; pass++) {
-        invert_upper(pass == 0 ? R : Q, U);
-        transform_block(L, U, X);
-        transform_block(L, U, MX);
+        ritz_square_invert(pass == 0 ? R : Q, U);
+        ritz_blocks_transform(&L->on, U, X);
+        ritz_blocks_transform(&L->on, U, MX);
         if (pass == 1)
             return true;
-        multiply_inner(L, X, MX, G);
-        if (!factor_gram(G, Q, 0.0)) /* of the unit matrix, nearly */
+        ritz_blocks_inner(&L->on, X, MX, G);
+        if (!ritz_square_factor(G, Q, 0.0)) /* of the unit matrix, nearly */
             return false;
-        multiply_small(Q, R);
+        ritz_square_multiply(Q, R);
     }
-}
-
-/* x_j'y_k of two columns of blocks. */
-static double multiply_columns(const block_lanczos *L, const double *X, int j,
-                               const double *Y, int k)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < L->n; i++)
-        sum += X[i * B + j] * Y[i * B + k];
-    return sum;
-}
-
-/* x_j += a x_k */
-static void add_column(const block_lanczos *L, double a, int k, int j,
-                       double *X)
-{
-    for (int64_t i = 0; i < L->n; i++)
-        X[i * B + j] += a * X[i * B + k];
-}
-
-static void scale_column(const block_lanczos *L, double a, int j, double *X)
-{
-    for (int64_t i = 0; i < L->n; i++)
-        X[i * B + j] *= a;
-}
-
-/* |x_j|'|M||x_j|, of which x_j'M x_j has the rounding. */
-static double mass_terms(const block_lanczos *L, const double *X, int j)
-{
-    double sum = 0.0;
-
-    for (int64_t i = 0; i < L->n; i++)
-        for (int64_t p = L->start[i]; p < L->start[i + 1]; p++)
-            sum +=
-                fabs(X[i * B + j] * L->val[p] * X[(int64_t)L->col[p] * B + j]);
-    return sum;
 }
 
 /* Column j made orthonormal to the columns of `others`, twice; false, and zero,
@@ -395,20 +141,22 @@ static bool settle_column(block_lanczos *L, int j, const bool *others,
 
     for (int pass = 0; pass < 2; pass++)
         for (int k = 0; k < B; k++) {
-            const double r = others[k] ? multiply_columns(L, X, k, MX, j) : 0.0;
+            const double r =
+                others[k] ? ritz_columns_inner(L->n, X, k, MX, j) : 0.0;
 
             if (r == 0.0)
                 continue;
-            add_column(L, -r, k, j, X);
-            add_column(L, -r, k, j, MX);
+            ritz_columns_add(L->n, -r, k, j, X);
+            ritz_columns_add(L->n, -r, k, j, MX);
             R[k * B + j] += r;
         }
-    size = sqrt(fmax(multiply_columns(L, X, j, MX, j), 0.0));
+    size = sqrt(fmax(ritz_columns_inner(L->n, X, j, MX, j), 0.0));
     settled =
-        size > least && size * size > RITZ_NO_DIRECTION * mass_terms(L, X, j);
+        size > least &&
+        size * size > RITZ_NO_DIRECTION * ritz_row_matrix_terms(&L->M, X, j);
     R[j * B + j] = settled ? size : 0.0;
-    scale_column(L, settled ? 1.0 / size : 0.0, j, X);
-    scale_column(L, settled ? 1.0 / size : 0.0, j, MX);
+    ritz_columns_scale(L->n, settled ? 1.0 / size : 0.0, j, X);
+    ritz_columns_scale(L->n, settled ? 1.0 / size : 0.0, j, MX);
     return settled;
 }
 
@@ -438,7 +186,7 @@ static void take_out_blocks(block_lanczos *L, double *X, double *MX)
 static void start_block(block_lanczos *L)
 {
     for (int64_t i = 0; i < L->n * B; i++)
-        L->MW[i] = next_noise(&L->noise);
+        L->MW[i] = ritz_general_noise(&L->noise);
     multiply_mass(L, L->MW, L->W);
     ritz_factor_solve_rows(L->S->A, L->W);
     multiply_mass(L, L->W, L->MW);
@@ -457,7 +205,7 @@ static ritz_status refill_block(block_lanczos *L, bool *settled)
     RITZ_CHECK_COPY(X, L->W, L->n * B);
     RITZ_CHECK_COPY(MX, L->MW, L->n * B);
     start_block(L);
-    multiply_inner(L, L->W, L->MW, G);
+    ritz_blocks_inner(&L->on, L->W, L->MW, G);
     take_out_blocks(L, L->W, L->MW);
     for (int64_t i = 0; i < L->n * B; i++)
         if (settled[i % B]) {
@@ -509,7 +257,7 @@ static ritz_status orthonormalise(block_lanczos *L, double size, double *R,
             RITZ_CHECK(refill_block(L, settled));
         take_out_blocks(L, L->W, L->MW);
         settle_columns(L, RITZ_MOSTLY_LEFT, settled, Q);
-        multiply_small(Q, R);
+        ritz_square_multiply(Q, R);
     }
     *exhausted = count_settled(settled) == 0;
     return RITZ_OK;
@@ -545,15 +293,6 @@ static void take_projected(const block_lanczos *L, int64_t i, int64_t j,
             C[r * B + c] = place_projected(L, i, j)[r + c * (L->room * B)];
 }
 
-static double size_of(const double *C)
-{
-    double sum = 0.0;
-
-    for (int i = 0; i < SQUARE; i++)
-        sum += C[i] * C[i];
-    return sqrt(sum);
-}
-
 /*
  * W := A^-1 M V_j without its parts in V, MW := M W: first the blocks that it
  * is coupled with, by the coefficients that are known, and then all of V once
@@ -569,10 +308,11 @@ static void expand_space(block_lanczos *L, double *size)
     *size = 0.0;
     for (int64_t p = L->coupled; p < j; p++) {
         take_projected(L, p, j, L->C + (p - L->coupled) * SQUARE);
-        *size = hypot(*size, size_of(L->C + (p - L->coupled) * SQUARE));
+        *size =
+            hypot(*size, ritz_square_size(L->C + (p - L->coupled) * SQUARE));
     }
     subtract_blocks(L, L->coupled, j - L->coupled, L->W);
-    multiply_inner(L, L->MV, L->W, A);
+    ritz_blocks_inner(&L->on, L->MV, L->W, A);
     memcpy(L->C, A, sizeof A);
     subtract_blocks(L, j, 1, L->W);
     multiply_mass(L, L->W, L->MW);
@@ -585,7 +325,7 @@ static void expand_space(block_lanczos *L, double *size)
         for (int c = 0; c < r; c++)
             A[r * B + c] = A[c * B + r] = 0.5 * (A[r * B + c] + A[c * B + r]);
     put_projected(L, j, j, A);
-    *size = hypot(*size, size_of(A));
+    *size = hypot(*size, ritz_square_size(A));
 }
 
 /* Eigenpairs of T. */
@@ -686,38 +426,6 @@ static ritz_status extract_vectors(block_lanczos *L, int64_t count,
     return RITZ_OK;
 }
 
-typedef struct restart_task {
-    block_lanczos *L;
-    int64_t kept;    /* blocks */
-    const double *C; /* coefficients of each of them */
-    double *room;    /* of each thread: its rows of the kept blocks */
-} restart_task;
-
-static void restart_rows(int thread, int threads, void *task)
-{
-    const restart_task *t = task;
-    const block_lanczos *L = t->L;
-    const int64_t piece = (int64_t)CHUNK * B;
-    double *Y = t->room + thread * t->kept * piece;
-    int64_t from = 0;
-    int64_t to = 0;
-
-    ritz_team_part(L->n, thread, threads, &from, &to);
-    for (int64_t r = from; r < to; r += CHUNK) {
-        const int64_t rows = to - r < CHUNK ? to - r : CHUNK;
-
-        memset(Y, 0, (size_t)(t->kept * piece) * sizeof *Y);
-        for (int64_t g = 0; g < t->kept; g++)
-            for (int64_t p = 0; p < L->blocks; p++)
-                L->tiles->outer(rows, block_at(L, p) + r * B,
-                                t->C + (g * (L->blocks + 1) + p) * SQUARE,
-                                Y + g * piece);
-        for (int64_t g = 0; g < t->kept; g++)
-            memcpy(block_at(L, g) + r * B, Y + g * piece,
-                   (size_t)(rows * B) * sizeof *Y);
-    }
-}
-
 /* Blocks of Ritz vectors that a restart keeps. */
 static int64_t blocks_kept(const block_lanczos *L)
 {
@@ -737,7 +445,7 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
     RITZ_OWN_ARRAY double *C = NULL, *room = NULL;
 
     RITZ_CHECK_NEW(C, kept * part);
-    RITZ_CHECK_NEW(room, L->threads * kept * CHUNK * B);
+    RITZ_CHECK_NEW(room, ritz_blocks_room(&L->on, kept));
     memset(L->T, 0, (size_t)(ld * ld) * sizeof *L->T);
     for (int64_t g = 0; g < kept; g++)
         combine_ritz(L, g * B, m, NULL, C + g * part);
@@ -751,7 +459,7 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
             L->T[c + (kept * B + i) * ld] = q[i];
         }
     }
-    ritz_team_run(L->threads, restart_rows, &(restart_task){L, kept, C, room});
+    ritz_blocks_combine(&L->on, L->blocks, kept, part, C, room, L->V);
     memcpy(block_at(L, kept), block_at(L, L->blocks),
            (size_t)(L->n * B) * sizeof *L->V);
     L->blocks = kept + 1;
@@ -825,8 +533,6 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
     RITZ_OWN(block_lanczos)
     L = {
         .S = S,
-        .tiles = ritz_tiles_here(),
-        .threads = ritz_factor_threads(S->A),
         .n = S->M->nrow,
         .k = k,
         .noise = 1998,
@@ -839,8 +545,8 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
 
     RITZ_CHECK(allocate_lanczos(&L, room));
     start_block(&L);
-    multiply_inner(&L, L.W, L.MW, R);
-    RITZ_CHECK(orthonormalise(&L, sqrt(size_of(R)), R, &exhausted));
+    ritz_blocks_inner(&L.on, L.W, L.MW, R);
+    RITZ_CHECK(orthonormalise(&L, sqrt(ritz_square_size(R)), R, &exhausted));
     *end = RITZ_LANCZOS_EXHAUSTED;
     if (exhausted)
         return RITZ_OK;

@@ -444,13 +444,6 @@ typedef struct lanczos {
     ritz_dense V;
 } lanczos;
 
-/* Uniform in (-1, 1), the same on every machine. */
-static double next_noise(uint64_t *state)
-{
-    *state = *state * 6364136223846793005U + 1442695040888963407U;
-    return (double)(int64_t)*state / (double)INT64_MAX;
-}
-
 /* y := M X, X a column, which y may be. */
 static ritz_status multiply_mass(const ritz_sparse *M, const ritz_dense *X,
                                  double *y)
@@ -500,7 +493,7 @@ static ritz_status allocate_lanczos(const ritz_shifted *S, int64_t k,
     RITZ_CHECK_NEW(L->select, ncv);
     RITZ_CHECK(ritz_dense_new(n, ncv, &L->V));
     for (int64_t i = 0; i < n; i++)
-        L->resid[i] = next_noise(&seed);
+        L->resid[i] = ritz_general_noise(&seed);
     RITZ_CHECK(multiply_mass(S->M, &(ritz_dense){n, 1, L->resid}, L->resid));
     return solve_shifted(S, L->resid, L->resid);
 }

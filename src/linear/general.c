@@ -143,6 +143,12 @@ ritz_status ritz_general_cholesky(ritz_dense *A, double *rcond)
     return RITZ_OK;
 }
 
+double ritz_general_noise(uint64_t *state)
+{
+    *state = *state * 6364136223846793005U + 1442695040888963407U;
+    return (double)(int64_t)*state / (double)INT64_MAX;
+}
+
 bool ritz_general_unit(int64_t n, double *x)
 {
     double length = 0.0;

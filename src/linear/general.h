@@ -128,6 +128,14 @@ ritz_status ritz_general_singular(ritz_dense *A, double *sigma);
 /** The largest of them, 0 of an empty matrix; A is lost. */
 ritz_status ritz_general_norm(ritz_dense *A, double *out);
 
+/**
+ * A number between -1 and 1, uniformly distributed: the next one of a sequence
+ * that is the same on every machine.
+ *
+ * @param[in,out] state  any number to begin with
+ */
+double ritz_general_noise(uint64_t *state);
+
 /** x := x / |x|; false, without a change of x, if x is zero. */
 bool ritz_general_unit(int64_t n, double *x);
 
