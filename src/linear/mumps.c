@@ -426,13 +426,15 @@ static void release_factor(mumps_factor *F)
     RITZ_FREE(F->row, F->col, F->val, F->A, F->place, F->at);
 }
 
-ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
-                             int64_t *negative, ritz_ldl **out)
+/* @param[in] counted  only the pivots are wanted: the factor is not kept */
+static ritz_status factor_real(const ritz_sparse *A, const int64_t *order,
+                               bool counted, int64_t *negative, ritz_ldl **out)
 {
     RITZ_OWN(ritz_ldl) *F = NULL;
 
     RITZ_CHECK_NEW(F, 1);
     F->of.width = 1;
+    F->of.counted = counted;
     RITZ_CHECK(prepare_factor(1, &A, order, &F->of));
     add_values(A, 1.0, &F->of);
     RITZ_CHECK(factor_values(&F->of));
@@ -442,10 +444,16 @@ ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
     return RITZ_OK;
 }
 
+ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
+                             int64_t *negative, ritz_ldl **out)
+{
+    return factor_real(A, order, false, negative, out);
+}
+
 ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
                          ritz_ldl **out)
 {
-    return ritz_ldl_ordered(A, NULL, negative, out);
+    return factor_real(A, NULL, false, negative, out);
 }
 
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
@@ -453,14 +461,7 @@ ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
 {
     RITZ_OWN(ritz_ldl) *F = NULL;
 
-    RITZ_CHECK_NEW(F, 1);
-    F->of.width = 1;
-    F->of.counted = true;
-    RITZ_CHECK(prepare_factor(1, &A, order, &F->of));
-    add_values(A, 1.0, &F->of);
-    RITZ_CHECK(factor_values(&F->of));
-    *negative = A->nrow > 0 ? F->of.id.d.infog[NEGATIVE_PIVOTS] : 0;
-    return RITZ_OK;
+    return factor_real(A, order, true, negative, &F);
 }
 
 ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)

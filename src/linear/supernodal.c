@@ -451,13 +451,6 @@ typedef struct solving {
     double *x;
 } solving;
 
-/* Panels of B that this thread works on. */
-static void share_panels(const ritz_block_column *b, int thread, int threads,
-                         int64_t *from, int64_t *to)
-{
-    ritz_team_part(panels_of(b->below), thread, threads, from, to);
-}
-
 /* x := L^-1 x in the rows of this thread's subtrees. */
 static void descend_subtrees(const solving *s, const crew *c)
 {
@@ -511,6 +504,25 @@ static int64_t place_in_top(const ritz_supernodal *S,
     return low;
 }
 
+/* What one thread does of a block column of the top. */
+typedef struct shared_part {
+    const ritz_block_column *b;
+    int64_t at;       /* of its rows in the top's right-hand sides */
+    int64_t from, to; /* panels of this thread */
+} shared_part;
+
+static shared_part part_of_shared(const solving *s, int64_t k, int thread,
+                                  int threads)
+{
+    const ritz_supernodal *S = s->S;
+    shared_part part = {.b = &S->block[S->shared[k]]};
+
+    part.at = place_in_top(S, part.b) * s->tile->width;
+    ritz_team_part(panels_of(part.b->below), thread, threads, &part.from,
+                   &part.to);
+    return part;
+}
+
 /* The top's right-hand sides, with what all subtrees subtract from them. */
 static void collect_top(const solving *s, int thread, int threads)
 {
@@ -543,16 +555,14 @@ static void descend_top(const solving *s, int thread, int threads)
     double *solved = S->top + S->num_top * width;
 
     for (int64_t k = 0; k < S->num_shared; k++) {
-        const ritz_block_column *b = &S->block[S->shared[k]];
-        const int64_t at = place_in_top(S, b) * width;
-        int64_t from = 0;
-        int64_t to = 0;
+        const shared_part part = part_of_shared(s, k, thread, threads);
+        const ritz_block_column *b = part.b;
 
-        share_panels(b, thread, threads, &from, &to);
-        s->tile->lower(b, S->top + at, c->z);
+        s->tile->lower(b, S->top + part.at, c->z);
         if (thread == 0)
-            memcpy(solved + at, c->z, (size_t)(b->cols * width) * sizeof *c->z);
-        s->tile->scatter(b, from, to, c->z, NULL, S->top);
+            memcpy(solved + part.at, c->z,
+                   (size_t)(b->cols * width) * sizeof *c->z);
+        s->tile->scatter(b, part.from, part.to, c->z, NULL, S->top);
         ritz_team_meet(threads);
     }
 }
@@ -570,24 +580,20 @@ static void ascend_top(const solving *s, int thread, int threads)
     const double *solved = S->top + S->num_top * width;
 
     for (int64_t k = S->num_shared; k-- > 0;) {
-        const ritz_block_column *b = &S->block[S->shared[k]];
-        const int64_t at = place_in_top(S, b) * width;
-        const int64_t count = b->cols * width;
+        const shared_part part = part_of_shared(s, k, thread, threads);
+        const int64_t count = part.b->cols * width;
         double *sum = c->sum[k % 2];
         double *rest = c->rest;
-        int64_t from = 0;
-        int64_t to = 0;
 
-        share_panels(b, thread, threads, &from, &to);
         memset(sum, 0, (size_t)count * sizeof *sum);
-        s->tile->gather(b, from, to, NULL, c->top, sum);
+        s->tile->gather(part.b, part.from, part.to, NULL, c->top, sum);
         ritz_team_meet(threads);
-        memcpy(rest, solved + at, (size_t)count * sizeof *rest);
+        memcpy(rest, solved + part.at, (size_t)count * sizeof *rest);
         for (int t = 0; t < threads; t++)
             for (int64_t i = 0; i < count; i++)
                 rest[i] -= S->crew[t].sum[k % 2][i];
-        s->tile->upper(b, rest, c->z);
-        memcpy(c->top + at, c->z, (size_t)count * sizeof *rest);
+        s->tile->upper(part.b, rest, c->z);
+        memcpy(c->top + part.at, c->z, (size_t)count * sizeof *rest);
     }
 }
 

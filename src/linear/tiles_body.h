@@ -82,11 +82,10 @@ INLINE void add_transposed(const int64_t width, const double *a, int64_t k,
         }
 }
 
-/* y := row of x or of the top; and back, y taken from it. */
-INLINE const double *row_at(const int64_t width, int32_t row, const double *x,
-                            const double *top)
+/* Where a row of B begins in its array: in x, or, if negative, in the top. */
+INLINE int64_t index_of(const int64_t width, int32_t row)
 {
-    return row >= 0 ? x + row * width : top + (int64_t)~row * width;
+    return (int64_t)(row >= 0 ? row : ~row) * width;
 }
 
 INLINE void subtract_row(const int64_t width, const double *y, double *to)
@@ -142,8 +141,7 @@ INLINE void scatter(const int64_t width, const ritz_block_column *b,
             const int32_t row = b->row[p * T + i];
 
             subtract_row(width, y + i * width,
-                         row >= 0 ? x + row * width
-                                  : top + (int64_t)~row * width);
+                         (row >= 0 ? x : top) + index_of(width, row));
         }
     }
 }
@@ -156,9 +154,12 @@ INLINE void gather(const int64_t width, const ritz_block_column *b,
         const int64_t count = least(T, b->below - p * T);
         double y[T * 16] = {0};
 
-        for (int64_t i = 0; i < count; i++)
-            memcpy(y + i * width, row_at(width, b->row[p * T + i], x, top),
+        for (int64_t i = 0; i < count; i++) {
+            const int32_t row = b->row[p * T + i];
+
+            memcpy(y + i * width, (row >= 0 ? x : top) + index_of(width, row),
                    (size_t)width * sizeof *y);
+        }
         add_transposed(width, b->panel + p * T * b->cols, b->cols, y, z);
     }
 }
