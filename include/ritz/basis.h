@@ -31,7 +31,7 @@ enum {
     RITZ_USES_REMAINDER = 8192,
     RITZ_USES_SIDES = 16384,
     RITZ_USES_COUNT = 65536,
-    RITZ_USES_EIGEN = RITZ_USES_COUNT | RITZ_USES_ENGINE, /* finds modes */
+    RITZ_USES_EIGEN = RITZ_USES_COUNT | RITZ_USES_ENGINE, /* computes modes */
     RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
 };
 
@@ -53,13 +53,13 @@ typedef enum ritz_gramian {
     RITZ_GRAMIAN_OUTPUTS, /* observability */
 } ritz_gramian;
 
-/* How Gramians are found, or modes. */
+/* How Gramians or modes are computed. */
 typedef enum ritz_engine {
     RITZ_ENGINE_AUTO,
-    RITZ_ENGINE_DENSE, /* Gramians */
+    RITZ_ENGINE_DENSE, /* this and the next two: Gramians */
     RITZ_ENGINE_MODAL,
     RITZ_ENGINE_LOW_RANK,
-    RITZ_ENGINE_LANCZOS, /* modes of sparse matrices: see ritz_span */
+    RITZ_ENGINE_LANCZOS, /* this and the next: modes, see ritz_span */
     RITZ_ENGINE_ARPACK,
 } ritz_engine;
 
@@ -78,7 +78,7 @@ typedef struct ritz_choice {
     double band_hz[2]; /* where the response matters */
     bool perturb;      /* the remainder answers statically, it is not dropped */
     bool one_sided;    /* of second order: W = T, which keeps symmetry */
-    bool uncounted;    /* that no mode is missing is not proven */
+    bool uncounted;    /* skip the count of modes that proves none missing */
 } ritz_choice;
 
 /* What the value of a word is. */
@@ -114,8 +114,8 @@ extern const ritz_choice_word ritz_choice_words[];
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
  * "dense", "modal", "low-rank", "lanczos" or "arpack" for engine, "yes" or "no"
- * for count, "50" for among_hz, "0,10" for
- * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
+ * for count, "50" for among_hz, "0,10" for band_hz, "dropped" or "static" for
+ * remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
  */
@@ -207,7 +207,11 @@ extern const ritz_method *const ritz_methods[];
 /** Method called @p name; NULL and a sentence with the nearest if none. */
 const ritz_method *ritz_method_find(const char *name);
 
-/** Whether an engine is one of the method's: of modes or of Gramians. */
+/**
+ * Whether a request for @p method may name @p engine: an engine for modes where
+ * the method computes modes, one for Gramians where it does not, and
+ * RITZ_ENGINE_AUTO always.
+ */
 bool ritz_engine_fits(const ritz_method *method, ritz_engine engine);
 
 /**

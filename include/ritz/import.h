@@ -53,9 +53,9 @@ typedef struct ritz_foreign {
     const char *bytes; /* a NUL follows those of a file */
     int64_t size;
     char *folder; /* where files that it includes lie; NULL: none is followed */
-    char digest[RITZ_DIGEST_SIZE];    /* SHA-256 of a file, after
-                                      ritz_foreign_digest() */
-    struct ritz_digest_work *summing; /* the digest, until then */
+    char digest[RITZ_DIGEST_SIZE];    /* SHA-256 of the bytes; empty until
+                                      ritz_foreign_digest() is called */
+    struct ritz_digest_work *summing; /* its computation, until then */
     const struct ritz_format *format; /* NULL: none knows it */
     ritz_listing listing;
     char *owned; /* the bytes of a file */
@@ -107,11 +107,19 @@ const ritz_unread *ritz_unread_find(const char *bytes, int64_t size);
  *         message names it */
 ritz_status ritz_unread_refuse(const char *bytes, int64_t size);
 
-/** Read the bytes of a file once and recognise their format. Their SHA-256 is
- * made meanwhile. */
+/**
+ * Read a file into memory and recognise its format by content. Another thread
+ * starts to compute the SHA-256 of a file of 4 MiB or more if
+ * ritz_set_threads() allows two; a smaller file's is computed at once.
+ *
+ * @param[out] out  format NULL if none knows the file; freed by
+ *                  ritz_foreign_free()
+ * @return RITZ_ERR_FILE if the file cannot be read
+ */
 ritz_status ritz_foreign_open(const char *path, ritz_foreign *out);
 
-/** SHA-256 of the file: wait until it is there. */
+/** SHA-256 of the file's bytes as 64 hexadecimal digits, which @p file keeps.
+ * Waits until they are computed. */
 const char *ritz_foreign_digest(ritz_foreign *file);
 
 /** Fill the directory; @return RITZ_ERR_FORMAT if no format knows the file. */

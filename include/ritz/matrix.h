@@ -252,8 +252,13 @@ double ritz_sparse_max(const ritz_sparse *A);
 /** Largest |A(i,j) - A(j,i)| over largest |A(i,j)|, for a square matrix. */
 double ritz_sparse_asymmetry(const ritz_sparse *A);
 
-/** The same in one sweep over the columns of a large matrix.
- * @param[out] next  room for A->ncol numbers */
+/**
+ * The value of ritz_sparse_asymmetry(), bit for bit, in one pass over a square
+ * A instead of one binary search for each entry: faster for large matrices.
+ *
+ * @param[out] next  workspace of A->ncol numbers, overwritten
+ * @cost  O(n + number of entries)
+ */
 double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next);
 
 /** As ritz_dense_skew. */
@@ -349,8 +354,8 @@ typedef struct ritz_pairs {
 typedef struct ritz_span {
     int64_t modes;   /* number of flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
-    bool arpack;     /* one vector at a time, by ARPACK, to compare with */
-    bool uncounted;  /* the proof that none is missing is left out */
+    bool arpack;     /* by ARPACK, to compare with block Lanczos */
+    bool uncounted;  /* skip the count that proves none missing */
 } ritz_span;
 
 /**

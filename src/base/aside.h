@@ -1,4 +1,4 @@
-/* One piece of work beside other work. */
+/* Work that runs in a thread of its own while its caller goes on. */
 #ifndef RITZ_BASE_ASIDE_H
 #define RITZ_BASE_ASIDE_H
 
@@ -8,21 +8,24 @@
 typedef struct ritz_aside {
     void (*work)(void *task);
     void *task;
-    bool apart; /* it runs in a thread */
-    pthread_t thread;
+    bool apart;       /* the work runs in the thread below */
+    pthread_t thread; /* undefined unless `apart` */
 } ritz_aside;
 
 /**
- * Begin the work: in a thread of its own if it is large and ritz_set_threads()
- * allows more than one, at once otherwise. The work must not fail.
+ * Start work(task) in a thread of its own and return, if @p large and if
+ * ritz_set_threads() allows two threads; otherwise, or if the system refuses a
+ * thread, run it before this function returns.
  *
- * @param[out] out  must stay where it is until ritz_aside_end(), which must
- *                  follow
+ * @param[in]  work   cannot report a failure
+ * @param[in]  task   valid until ritz_aside_end()
+ * @param[out] out    passed to ritz_aside_end() in any case, and not copied,
+ *                    moved or freed before that
  */
 void ritz_aside_begin(void (*work)(void *task), void *task, bool large,
                       ritz_aside *out);
 
-/** Wait until the work is done. */
+/** Wait until the work has ended. A second call does nothing. */
 void ritz_aside_end(ritz_aside *aside);
 
 #endif

@@ -1,9 +1,10 @@
 /*
- * Whole files, and SHA-256 by nettle: what was read is named by content.
+ * Whole files read into memory, and the SHA-256 (by nettle) that names what was
+ * read.
  *
- * A file is read, not mapped: a mapped one that another program shortens ends
- * the process by a signal. Large files are read in pieces by several threads,
- * each piece to its place, so that nothing is copied twice.
+ * Files are not mapped: if another program shortens a mapped file, reading it
+ * kills the process by a signal. Several threads read a large file, each its
+ * own pieces, straight into the buffer that is returned.
  */
 #define _XOPEN_SOURCE 700 /* NOLINT: declares pread */
 
@@ -51,7 +52,7 @@ static ritz_status check_file(const char *path, const input_file *from)
     return RITZ_OK;
 }
 
-/* Size that the system states of a regular file; 0 of a pipe, or if unknown. */
+/* Size of a regular file; 0 for a pipe, or if the system does not tell. */
 static int64_t stated_size(FILE *file)
 {
     struct stat about;
@@ -67,7 +68,7 @@ typedef struct piecewise {
     int file;
     char *bytes;
     int64_t size;
-    atomic_bool cut; /* the file ended early, or could not be read */
+    atomic_bool failed; /* a piece ended early or could not be read */
 } piecewise;
 
 static void read_piece(int64_t k, void *task)
@@ -81,30 +82,31 @@ static void read_piece(int64_t k, void *task)
             pread(all->file, all->bytes + from, (size_t)(to - from), from);
 
         if (got <= 0) {
-            atomic_store(&all->cut, true);
+            atomic_store(&all->failed, true);
             return;
         }
         from += got;
     }
 }
 
-/* Read as many bytes as a large file states to have. @return 0 if they are to
- * be read one after the other */
-static int64_t read_stated(FILE *file, piecewise *all)
+/* Read the pieces of a large file by several threads, up to its size as the
+   system tells it. @return bytes read; 0: one thread is to read the file */
+static int64_t read_pieces(FILE *file, piecewise *all)
 {
     const int threads = ritz_team_ready(all->size / PIECE);
 
     if (threads < 2)
         return 0;
     ritz_team_each(threads, (all->size + PIECE - 1) / PIECE, read_piece, all);
-    return atomic_load(&all->cut) || fseeko(file, all->size, SEEK_SET) != 0
+    return atomic_load(&all->failed) || fseeko(file, all->size, SEEK_SET) != 0
                ? 0
                : all->size;
 }
 
 /*
- * The size that is stated is a first guess, good for reading at once; a byte
- * more than that is requested, and doubled blocks follow if it comes.
+ * The size that the system tells is a first guess: the file may have become
+ * longer, or be a pipe. So a byte more is requested, and while more bytes come
+ * the buffer is doubled.
  */
 ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
 {
@@ -115,18 +117,18 @@ ritz_status ritz_bytes_read(const char *path, int64_t *size, char **out)
     piecewise all;
 
     RITZ_CHECK(open_file(path, &from));
-    room = stated_size(from.file) + 2; /* with the NUL behind */
+    room = stated_size(from.file) + 2; /* one byte more, and a NUL */
     room = room < SMALLEST ? SMALLEST : room;
     RITZ_CHECK_NEW(bytes, room);
     all = (piecewise){fileno(from.file), bytes, room - 2, false};
-    used = read_stated(from.file, &all);
+    used = read_pieces(from.file, &all);
     do {
         RITZ_CHECK_ROOM(bytes, used + 1, room);
         used += (int64_t)fread(bytes + used, 1, (size_t)(room - 1 - used),
                                from.file);
     } while (used == room - 1); /* full: there may be more */
     RITZ_CHECK(check_file(path, &from));
-    bytes[used] = '\0'; /* pieces of a file that became shorter lie behind */
+    bytes[used] = '\0'; /* behind it are old pieces if the file was shortened */
     *size = used;
     RITZ_MOVE(*out, bytes);
     return RITZ_OK;

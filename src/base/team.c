@@ -10,7 +10,7 @@ enum {
     SHARES_EACH = 4, /* of a file for each thread: some take longer */
 };
 
-/* A number that threads wait for: it only grows. */
+/* A counter that threads wait on; it only grows. */
 typedef struct signal_count {
     _Atomic uint32_t count;
     _Atomic uint32_t sleepers;
@@ -26,13 +26,13 @@ typedef struct signal_count {
 static struct {
     pthread_mutex_t busy; /* held by the caller whose task runs */
     _Atomic int limit;
-    int started;           /* threads beside the callers' own */
-    uint32_t before[MOST]; /* tasks before each of them was started */
+    int started;           /* threads, without the callers' own */
+    uint32_t before[MOST]; /* count of tasks when each was started */
     bool refused;          /* the system starts no more */
     signal_count tasks, ends, meetings;
-    _Atomic int working; /* started threads that are not at the task's end */
-    _Atomic int arrived; /* at the next meeting */
-    int threads;         /* of this task */
+    _Atomic int working; /* started threads that have not ended the task */
+    _Atomic int arrived; /* threads that wait in ritz_team_meet() */
+    int threads;         /* that work on the task */
     ritz_team_work *work;
     void *task;
 } team = {
@@ -50,7 +50,7 @@ static void pause_thread(void)
 #endif
 }
 
-/* Wait until the count is another than @p seen. */
+/* Wait until the count differs from @p seen. */
 static void await_change(signal_count *s, uint32_t seen)
 {
     for (int k = 0; k < SPINS; k++) {
@@ -66,8 +66,8 @@ static void await_change(signal_count *s, uint32_t seen)
     pthread_mutex_unlock(&s->lock);
 }
 
-/* A thread that goes to sleep counts itself before it looks at the count a last
-   time, so that either it sees the change or it is seen here. */
+/* A thread adds itself to the sleepers before it reads the count for the last
+   time: so either it sees the new count, or it is among the sleepers here. */
 static void announce_change(signal_count *s)
 {
     atomic_fetch_add(&s->count, 1);
@@ -92,8 +92,8 @@ void ritz_team_meet(int threads)
     announce_change(&team.meetings);
 }
 
-/* What a thread that was started does: its part of every task, which may be
-   none. */
+/* Run by each started thread: it does its part of every task. A task of fewer
+   threads has no part for it. */
 static void *serve_tasks(void *argument)
 {
     const int thread = (int)(intptr_t)argument;
@@ -115,7 +115,7 @@ static void forget_sleepers(signal_count *s)
     pthread_cond_init(&s->changed, NULL);
 }
 
-/* A process that was forked has none of the threads. */
+/* In the child of a fork only the thread that called fork() exists. */
 static void forget_threads(void)
 {
     forget_sleepers(&team.tasks);
@@ -129,7 +129,8 @@ static void forget_threads(void)
 
 static void watch_forks(void)
 {
-    (void)pthread_atfork(NULL, NULL, forget_threads); /* fails without memory */
+    /* if there is no memory for this, a child must not use the team */
+    (void)pthread_atfork(NULL, NULL, forget_threads);
 }
 
 bool ritz_team_start(void *(*run)(void *argument), void *argument,
@@ -195,7 +196,7 @@ void ritz_team_run(int threads, ritz_team_work *work, void *task)
     }
     pthread_mutex_lock(&team.busy);
     while (team.started + 1 < threads && enlarge_team(team.started + 1))
-        team.started++; /* after a fork */
+        team.started++; /* a fork has lost those that were ready */
     ended = atomic_load(&team.ends.count);
     team.threads = threads;
     team.work = work;

@@ -55,21 +55,22 @@ void ritz_team_over(int threads, int64_t count, ritz_team_range *work,
 void ritz_team_each(int threads, int64_t count, ritz_team_item *work,
                     void *task);
 
-/** Called by all @p threads threads of a task: wait until all have called it. */
+/** Called by each of the @p threads threads of a task: wait for the others. */
 void ritz_team_meet(int threads);
 
 /**
  * How many threads a task is to use, at least 1: @p gain, unless
- * ritz_set_threads() allows fewer or the system refuses to start so many. Starts
- * those that are missing.
+ * ritz_set_threads() allows fewer or the system refuses to start so many.
+ * Starts those that are missing.
  *
  * @param[in] gain  threads from which the task gains, by its size; any number
  */
 int ritz_team_ready(int64_t gain);
 
 /**
- * Into how many shares to cut a file for ritz_team_each(): four for each thread,
- * because some take longer to read than others, at most RITZ_TEAM_SHARES.
+ * Into how many shares to cut a file for ritz_team_each(): four for each
+ * thread, because some take longer to read than others, at most
+ * RITZ_TEAM_SHARES.
  */
 int64_t ritz_team_shares(int threads);
 
@@ -83,8 +84,8 @@ int64_t ritz_team_shares(int threads);
 bool ritz_team_start(void *(*run)(void *argument), void *argument,
                      pthread_t *out);
 
-/** The items [*from, *to) of part @p part, from 0, of @p count items in @p parts
- * contiguous parts that are equal but for one item. */
+/** The items [*from, *to) of part @p part, from 0, of @p count items in @p
+ * parts contiguous parts that are equal but for one item. */
 static inline void ritz_team_part(int64_t count, int64_t part, int64_t parts,
                                   int64_t *from, int64_t *to)
 {

@@ -271,17 +271,22 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
-/* Convergence of block Lanczos: |A^-1 M x - theta x| / theta |x|. Vectors are
-   an inverse iteration better. */
+/* A Ritz pair of block Lanczos has converged if |A^-1 M x - theta x| is at most
+   this part of theta |x|, norms by M. The vectors returned are more accurate,
+   by one inverse iteration. */
 #define RITZ_LANCZOS_SETTLED 1e-10
-/* A column of a block that keeps less than this part of its square depends on
-   the others: three digits of its length are lost in the sums. */
+/* Cholesky factor of the inner products of a block: a pivot that is a smaller
+   part of its diagonal entry x'M x means that x depends on the vectors before
+   it, within 1e-3 of its length. Such blocks are orthonormalised vector by
+   vector, as the factor would lose six digits. */
 #define RITZ_GRAM_DEPENDENT 1e-6
-/* What is left of a vector below this part of its length is rounding of sums
-   over all rows. */
+/* A vector without its components along a basis that is shorter than this part
+   of what it was consists of rounding errors of the sums over all rows: it has
+   no direction of its own. */
 #define RITZ_NO_DIRECTION 1e-13
-/* A vector of length one that is not longer than this without its parts along
-   others lay among them: what is left is rounding. */
+/* A vector of length one that was made orthogonal to a basis keeps its length
+   when this is done once more. If it becomes shorter than this, it consists of
+   rounding errors. */
 #define RITZ_MOSTLY_LEFT 0.5
 /* Entries of a vector this near to its largest are as large: the first of them
    gives the sign, on every processor. */
