@@ -14,7 +14,7 @@ static inline uint64_t ritz_bytes_bits(const unsigned char *at, int64_t size,
     uint64_t bits = 0;
     uint32_t half = 0;
 
-    if (size == 8) { /* the sizes that millions of numbers have */
+    if (size == 8) { /* fast for 8 and 4 bytes, which files have by millions */
         memcpy(&bits, at, sizeof bits);
         return turned ? __builtin_bswap64(bits) : bits;
     }

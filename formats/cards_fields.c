@@ -106,7 +106,7 @@ static int64_t expand_tabs(const ritz_line *line, char *out)
 {
     int64_t column = 0;
 
-    if (!memchr(line->text, '\t', (size_t)line->length)) { /* nearly all */
+    if (!memchr(line->text, '\t', (size_t)line->length)) { /* mostly */
         column =
             line->length < RITZ_CARD_COLUMNS ? line->length : RITZ_CARD_COLUMNS;
         memcpy(out, line->text, (size_t)column);

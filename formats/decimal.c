@@ -124,13 +124,15 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-enum { EIGHT = 100000000 };
+enum { TEN_TO_8 = 100000000 };
 
 /*
- * Eight digits at once: pairs of neighbouring bytes become numbers of two
- * digits, pairs of these numbers of four, and these one of eight.
+ * The value of eight decimal digits by three multiplications: neighbouring
+ * bytes are combined to numbers of two digits, these to numbers of four, and
+ * these to one of eight.
  *
- * @return false if they are not all digits, or bytes have another order here
+ * @return false if one of the eight bytes is no digit, or on a big-endian
+ *         processor; *out is unchanged
  */
 static bool take_eight(const char *at, uint64_t *out)
 {
@@ -138,7 +140,7 @@ static bool take_eight(const char *at, uint64_t *out)
     uint64_t v = 0;
 
     memcpy(&v, at, sizeof v);
-    v ^= '0' * ones; /* digits become 0 to 9, all other bytes more */
+    v ^= '0' * ones; /* digits become 0 to 9, other bytes become 10 or more */
     if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ ||
         ((v | ((v & (0x7f * ones)) + 0x76 * ones)) & (0x80 * ones)) != 0)
         return false;
@@ -158,7 +160,7 @@ static const char *scan_digits(const char *at, const char *end, reading *r)
     for (; end - at >= 8 && r->digits + 8 <= MOST_DIGITS &&
            take_eight(at, &eight);
          at += 8) {
-        r->mantissa = EIGHT * r->mantissa + eight;
+        r->mantissa = TEN_TO_8 * r->mantissa + eight;
         r->digits += 8;
     }
     for (; at < end && is_digit(*at); at++) {

@@ -204,7 +204,7 @@ static ritz_status add_column(ritz_dmig_cards *all, const ritz_card *card)
     return RITZ_OK;
 }
 
-/* Go through the DMIG cards of a range of entries. */
+/* Take the headers, or the columns, of the entries [from, to) of the deck. */
 static ritz_status take_range(ritz_dmig_cards *all, bool headers, int64_t from,
                               int64_t to)
 {
@@ -221,21 +221,23 @@ static ritz_status take_range(ritz_dmig_cards *all, bool headers, int64_t from,
     return RITZ_OK;
 }
 
-/* ---- cards in shares ----------------------------------------------------- */
+/* ---- cards by several threads -------------------------------------------- */
 
 /*
- * A share is a range of entries that a thread goes through. If a card of any is
- * refused, one thread goes through all, so that the first one is named.
+ * The entries of the deck are cut into shares, contiguous ranges; each share is
+ * taken by one thread, and the results are joined in the order of the deck. If
+ * a card is refused, one thread takes all entries once more, so that the error
+ * names the first wrong card of the file.
  */
-enum { SHARE_ENTRIES = 4000 }; /* from which a thread is worth it */
+enum { SHARE_ENTRIES = 4000 }; /* one thread for each so many entries */
 
 typedef struct ritz_dmig_shares {
     const ritz_dmig_cards *all;
     bool headers;
     int64_t count;
-    ritz_dmig_cards share[RITZ_TEAM_SHARES]; /* their cards are borrowed */
+    ritz_dmig_cards share[RITZ_TEAM_SHARES]; /* `cards` are borrowed of all */
     ritz_status status[RITZ_TEAM_SHARES];
-    int64_t offset[RITZ_TEAM_SHARES]; /* of its terms among all */
+    int64_t offset[RITZ_TEAM_SHARES]; /* first term of the share in all */
 } ritz_dmig_shares;
 
 static void ritz_dmig_shares_free(ritz_dmig_shares *shares)
@@ -268,6 +270,7 @@ static void take_share(int64_t k, void *task)
     shares->status[k] = read_share(shares, k, &shares->share[k]);
 }
 
+/* Copy the terms of share k to their place among all. */
 static void join_terms(int64_t k, void *task)
 {
     const ritz_dmig_shares *shares = task;
@@ -278,7 +281,7 @@ static void join_terms(int64_t k, void *task)
                (size_t)share->num_terms * sizeof *share->term);
 }
 
-/* Add what the shares counted of each header to what is known of it. */
+/* Add the terms and digits that a share counted for each header. */
 static void join_counts(const ritz_dmig_cards *share, ritz_dmig_cards *all)
 {
     for (int64_t k = 0; k < all->num_headers; k++) {
@@ -288,6 +291,7 @@ static void join_counts(const ritz_dmig_cards *share, ritz_dmig_cards *all)
     }
 }
 
+/* Append the headers of a share. */
 static ritz_status join_headers(const ritz_dmig_cards *share,
                                 ritz_dmig_cards *all)
 {
@@ -298,7 +302,8 @@ static ritz_status join_headers(const ritz_dmig_cards *share,
     return RITZ_OK;
 }
 
-/* Go through the DMIG cards: headers first, as they may follow columns. */
+/* Take the headers, or the columns, of the whole deck. Headers are taken first,
+ * because they may stand behind their columns. */
 static ritz_status take_cards(ritz_dmig_cards *all, bool headers)
 {
     const int64_t entries = all->cards.num_entries;

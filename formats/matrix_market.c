@@ -256,7 +256,7 @@ static ritz_status read_values(ritz_market *m, ritz_market_entry *next)
     return RITZ_OK;
 }
 
-/* Entries from the next line to the end of the text. */
+/* Read all lines that are left of m->text. */
 static ritz_status read_lines_of_entries(ritz_market *m)
 {
     ritz_market_entry next = {.row = m->symmetry == RITZ_MARKET_SKEW};
@@ -267,16 +267,18 @@ static ritz_status read_lines_of_entries(ritz_market *m)
     return RITZ_OK;
 }
 
-/* ---- entries in shares -------------------------------------------------- */
+/* ---- entries by several threads ----------------------------------------- */
 
 /*
- * A share is a run of lines that a thread reads. Unless all shares are right
- * and together have as many entries as are declared, the lines are read again
- * one after the other, which says what is wrong and where.
+ * The text is cut into shares, contiguous runs of lines; each share is read by
+ * one thread, and the entries are joined in the order of the file. If a share
+ * cannot be read, or the number of entries differs from the declared one, one
+ * thread reads all lines once more, so that the error names the first wrong
+ * line.
  */
 enum {
-    SHARE_BYTES = 1 << 20, /* from which a thread is worth it */
-    SPARE = 1000,          /* entries */
+    SHARE_BYTES = 1 << 20, /* one thread for each so many bytes of text */
+    SPARE = 1000,          /* entries of room in addition to the estimate */
 };
 
 typedef struct ritz_market_shares {
@@ -284,7 +286,7 @@ typedef struct ritz_market_shares {
     int64_t count;
     ritz_market share[RITZ_TEAM_SHARES];
     ritz_status status[RITZ_TEAM_SHARES];
-    int64_t offset[RITZ_TEAM_SHARES]; /* of its entries among all */
+    int64_t offset[RITZ_TEAM_SHARES]; /* first entry of the share in all */
 } ritz_market_shares;
 
 static void ritz_market_shares_free(ritz_market_shares *all)
@@ -293,7 +295,7 @@ static void ritz_market_shares_free(ritz_market_shares *all)
         ritz_market_free(&all->share[k]);
 }
 
-/* Cut the text at ends of lines. */
+/* Cut the text at ends of lines into at most `most` shares, nearly equal. */
 static void cut_shares(const ritz_market *m, int64_t most,
                        ritz_market_shares *all)
 {
@@ -315,7 +317,8 @@ static void cut_shares(const ritz_market *m, int64_t most,
     }
 }
 
-/* Lines of small numbers are shorter than the mean line, hence the factor. */
+/* Room is for twice the mean number of entries, as lines may be shorter than
+ * the mean line; a share with more entries fails. */
 static ritz_status read_share(const ritz_market *m, ritz_market *share)
 {
     double part = (double)(share->text.end - share->text.at) /
@@ -333,6 +336,7 @@ static void take_share(int64_t k, void *task)
     all->status[k] = read_share(all->whole, &all->share[k]);
 }
 
+/* Copy the entries of share k to their place among all. */
 static void join_share(int64_t k, void *task)
 {
     const ritz_market_shares *all = task;
@@ -342,7 +346,8 @@ static void join_share(int64_t k, void *task)
            (size_t)share->count * sizeof *share->entry);
 }
 
-/* False if the entries must be read one after the other. */
+/* Read the entries by several threads. @return false if one thread must read
+ * them: the file is small, an array, or wrong */
 static bool read_in_shares(ritz_market *m)
 {
     const int64_t gain = (m->text.end - m->text.at) / SHARE_BYTES;

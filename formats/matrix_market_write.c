@@ -1,8 +1,9 @@
 /*
- * Matrix Market as it is written: with 17 digits, which read back to the same
- * bits. A matrix is called symmetric, and written as its lower triangle, if it
- * says so and its triangles agree in every bit; else nothing would bring the
- * difference back. It is an array if all its entries are stored.
+ * Matrix Market files are written with 17 digits, so that reading them gives
+ * the same bits. A matrix is written as symmetric, its lower triangle only, if
+ * it is marked so and both triangles agree in every bit; otherwise both are
+ * written, because a reader could not restore the difference. A matrix all of
+ * whose entries are stored is written as an array.
  */
 #include "base/alloc.h"
 #include "base/search.h"
@@ -18,7 +19,7 @@ typedef struct market_job {
     const char *comment;
 } market_job;
 
-/* Place of A(i,j) among the entries; -1 if nothing is stored there. */
+/* Index of A(i,j) in A->val; -1 if it is not stored. */
 static int64_t find_entry(const ritz_sparse *A, int64_t i, int64_t j)
 {
     int64_t p = A->colptr[j];
@@ -27,7 +28,7 @@ static int64_t find_entry(const ritz_sparse *A, int64_t i, int64_t j)
     return k < 0 ? -1 : p + k;
 }
 
-/* True if A(j,i) is stored and equal for each A(i,j). */
+/* Whether for each stored A(i,j) an equal A(j,i) is stored. */
 static bool is_mirrored(const ritz_matrix *m)
 {
     for (int64_t j = 0; j < m->A.ncol; j++)
@@ -100,11 +101,12 @@ ritz_status ritz_matrix_market_write(const char *path,
 }
 
 /*
- * Matrices of a reduced component or state space in Matrix Market form, each in
- * a file of its own: "small-%.mtx" becomes small-A.mtx, small-B.mtx, ...
+ * Export of a reduced component or a state space: each matrix is written to its
+ * own file. The '%' in the output's name stands for the name of the matrix:
+ * "small-%.mtx" gives small-A.mtx, small-B.mtx, ...
  */
 
-/* The output with the matrix' name in the place of its '%', if there is one. */
+/* The name of the output, with its '%' replaced by the name of the matrix. */
 static ritz_status name_file(const char *output, const char *name, char **out)
 {
     int64_t room = (int64_t)(strlen(output) + strlen(name)) + 1;
@@ -121,7 +123,7 @@ static ritz_status name_file(const char *output, const char *name, char **out)
     return RITZ_OK;
 }
 
-/* One file takes one matrix, a pattern of names all of them. */
+/* An output whose name has a '%' takes all matrices, another takes only one. */
 static ritz_status write_matrices(const ritz_export_object *object,
                                   const ritz_export_request *request,
                                   ritz_export_report *report)

@@ -113,7 +113,7 @@ static ritz_status end_matrix(ritz_output4_build *build, ritz_matrix *out)
     return RITZ_OK;
 }
 
-/* The matrix whose header was taken. @param[in] end  as of
+/* Read the matrix whose header was taken. @param[in] end  as for
  * ritz_output4_read_columns() */
 static ritz_status read_columns(ritz_output4_reader *r,
                                 const ritz_output4_header *header,
@@ -134,7 +134,7 @@ static ritz_status read_columns(ritz_output4_reader *r,
     return RITZ_OK;
 }
 
-/* Where the next matrix of the file begins, or the file ends. */
+/* The byte behind a matrix: where the next one begins, or the file ends. */
 static const char *find_end(const ritz_foreign *file, const ritz_listed *which)
 {
     const ritz_listing *all = &file->listing;

@@ -32,12 +32,12 @@ typedef struct ritz_output4_build {
     int64_t column;  /* the one being read, from 0; -1 before the first */
     char where[RITZ_NAME_SIZE + 32]; /* "column 1 of 'KAA'" */
     int64_t first;                   /* entry of this column */
-    int64_t below;        /* rows up to here are taken in this column */
-    int64_t rule;         /* RITZ_OUTPUT4_... of the strings' headers */
-    int64_t wide;         /* words of a real by that reading */
-    int64_t first_column; /* that was begun */
-    bool sparse;          /* a column has strings */
-    bool ended;           /* behind the last column */
+    int64_t below;        /* first row that the next string may have, from 0 */
+    int64_t rule;         /* how headers of strings are read, RITZ_OUTPUT4_* */
+    int64_t wide;         /* words of a real, if headers are read so */
+    int64_t first_column; /* the first that was read, from 0 */
+    bool sparse;          /* a column was stored as strings */
+    bool ended;           /* the last column was read */
 } ritz_output4_build;
 
 void ritz_output4_build_free(ritz_output4_build *build);
@@ -104,8 +104,10 @@ typedef struct ritz_output4_spelling {
     /** Move behind a column; false if its counts do not lead there. NULL: it
      * was taken whole. */
     bool (*skip_column)(ritz_output4_reader *r, const int64_t n[3]);
-    /** The beginning of a column at or behind @p from, which lies behind the
-     * reader; NULL if none is found. What merely looks like one may be given. */
+    /** Where a column begins, at or behind @p from; NULL if none is found.
+     * @p from is not before the reader's position, which is that of a column.
+     * What is returned may only look like the beginning of a column: the caller
+     * checks it by reading up to there. */
     const char *(*find_column)(const ritz_output4_reader *r, const char *from);
     /** Take what stands behind ICOL = NCOL + 1. NULL: it was taken whole. */
     ritz_status (*skip_last)(ritz_output4_reader *r,
@@ -115,21 +117,26 @@ typedef struct ritz_output4_spelling {
 /* ---- columns ------------------------------------------------------------ */
 
 /**
- * All columns of a matrix whose header was taken, with the reader behind them
- * where they were read one after the other.
+ * Read all columns of a matrix whose header was taken: by several threads if
+ * @p end is known, the matrix is large and ritz_set_threads() allows it. The
+ * entries are the same, in the same order, as one thread reads.
  *
- * @param[in] end  where the matrix ends, so that several threads may read it;
- *                 NULL: one reads it
+ * @param[in,out] r    moved behind the matrix if one thread reads, as it does
+ *                     with @p end NULL; otherwise left where it is
+ * @param[in]     end  the byte behind the matrix, NULL if it is not known
+ * @param[out]    out  freed by ritz_output4_build_free()
+ * @return RITZ_ERR_FORMAT, its sentence naming the column; RITZ_ERR_MEMORY
  */
 ritz_status ritz_output4_read_columns(ritz_output4_reader *r,
                                       const ritz_output4_header *header,
                                       const char *end, ritz_output4_build *out);
 
 /**
- * Move behind a matrix by its counts alone; false if these do not fit.
+ * Move behind a matrix by the counts in the headers of its columns, without
+ * reading numbers.
  *
- * @param[out] size  bytes of the records that were passed, where columns are
- *                   records
+ * @param[out] size  bytes of the columns' records in a binary file, 0 in text
+ * @return false if a count does not lead to another column
  */
 bool ritz_output4_skip_columns(ritz_output4_reader *r,
                                const ritz_output4_header *header,

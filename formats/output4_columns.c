@@ -1,12 +1,14 @@
 /*
- * Columns of an OUTPUT4 matrix, one after the other or in shares.
+ * The columns of an OUTPUT4 matrix, read by one thread or by several.
  *
- * A share is a run of columns that a thread reads. Where the shares begin is
- * found by their spelling. What they read is taken only if it must be what
- * reading one after the other gives: every share ends where the next begins,
- * columns ascend, and no share changed the reading of strings. Otherwise, as in
- * damaged files, the columns are read again one after the other, which says
- * what is wrong.
+ * For several threads the columns are cut into shares, contiguous runs of
+ * columns; one thread reads a share. A share begins where find_column() of the
+ * spelling (text or binary) sees the header of a column, which in text may be a
+ * mistake. So the shares are used only if one thread would have read the same:
+ * each share ends where the next one begins, columns ascend, and no share had
+ * to change how headers of strings are read. Otherwise, for example in a
+ * damaged file, one thread reads all columns once more and reports the first
+ * error.
  */
 #include "base/alloc.h"
 #include "base/team.h"
@@ -38,7 +40,7 @@ static int64_t begin_rule(const ritz_output4_header *header)
     return header->bigmat ? RITZ_OUTPUT4_BIGMAT : RITZ_OUTPUT4_WORDS;
 }
 
-/* Begin a matrix of a file of so many bytes. */
+/* Begin a matrix that stands in a file of `size` bytes. */
 static ritz_status begin_matrix(const ritz_output4_header *header, int64_t size,
                                 ritz_output4_build *out)
 {
@@ -174,8 +176,8 @@ static int64_t most_entries(const ritz_output4_reader *r,
 
 /* ---- columns one after the other ---------------------------------------- */
 
-/* Columns up to `stop`, where another share begins, or the end of the matrix.
- * @param[in] stop  NULL: there is no other share */
+/* Read columns until the reader is at `stop` or behind it, or until the matrix
+ * ends. @param[in] stop  where the next share begins; NULL: there is none */
 static ritz_status read_until(ritz_output4_reader *r, ritz_output4_build *build,
                               const char *stop)
 {
@@ -198,16 +200,16 @@ static ritz_status read_until(ritz_output4_reader *r, ritz_output4_build *build,
     return RITZ_OK;
 }
 
-/* ---- shares ------------------------------------------------------------- */
+/* ---- columns by several threads ----------------------------------------- */
 
-enum { SHARE_BYTES = 1 << 20 }; /* of the file, that a thread is worth */
+enum { SHARE_BYTES = 1 << 20 }; /* one thread for each so many bytes */
 
 typedef struct ritz_output4_share {
     ritz_output4_reader r;
     ritz_output4_build build;
-    const char *stop; /* beginning of the next; NULL of the last */
+    const char *stop; /* where the next share begins; NULL for the last */
     ritz_status status;
-    int64_t offset; /* of its entries among all */
+    int64_t offset; /* its first entry in the matrix */
 } ritz_output4_share;
 
 typedef struct ritz_output4_shares {
@@ -222,7 +224,7 @@ static void ritz_output4_shares_free(ritz_output4_shares *all)
         ritz_output4_build_free(&all->share[k].build);
 }
 
-/* Cut what lies from the reader to `end`. */
+/* Cut the bytes from the reader to `end` into at most `most` shares. */
 static void cut_shares(const ritz_output4_reader *r, const char *end,
                        int64_t most, ritz_output4_shares *all)
 {
@@ -241,7 +243,11 @@ static void cut_shares(const ritz_output4_reader *r, const char *end,
     }
 }
 
-/* Room for all entries in the first share, for its own in another. */
+/*
+ * How many entries a share gets room for. The first share gets room for all
+ * entries of the matrix, because those of the other shares are copied behind
+ * its own; another share gets room for as many as its bytes can hold.
+ */
 static int64_t share_room(const ritz_output4_reader *r,
                           const ritz_output4_header *header,
                           const ritz_output4_share *share, bool first)
@@ -275,7 +281,7 @@ static void read_share(int64_t k, void *task)
         share->status = read_until(&share->r, &share->build, share->stop);
 }
 
-/* Whether the shares are what reading one after the other gives. */
+/* Whether one thread would have read the same as the shares: see the head. */
 static bool do_shares_join(const ritz_output4_shares *all)
 {
     const ritz_output4_build *first = &all->share[0].build;
@@ -299,7 +305,7 @@ static bool do_shares_join(const ritz_output4_shares *all)
     return first->entries.counts != NULL;
 }
 
-/* Copy the entries of a share behind those of the shares before it. */
+/* Copy the entries of share k behind those of the shares before it. */
 static void join_share(int64_t k, void *task)
 {
     ritz_output4_shares *all = task;
@@ -308,7 +314,7 @@ static void join_share(int64_t k, void *task)
     const ritz_triplets *from = &build->entries;
     const int64_t at = all->share[k].offset;
 
-    if (k == 0) /* the first has room for all of them */
+    if (k == 0) /* the others are copied behind it */
         return;
     memcpy(to->row + at, from->row, (size_t)from->count * sizeof *from->row);
     memcpy(to->re + at, from->re, (size_t)from->count * sizeof *from->re);
@@ -322,7 +328,8 @@ static void join_share(int64_t k, void *task)
     ritz_output4_build_free(build);
 }
 
-/* Read columns in shares; false if they must be read one after the other. */
+/* Read the columns by several threads. @return false if one thread must read
+ * them: the matrix is small, its end is not known, or the shares do not fit */
 static bool read_in_shares(const ritz_output4_reader *r,
                            const ritz_output4_header *header, const char *end,
                            ritz_output4_build *out)

@@ -448,7 +448,8 @@ static bool skip_column(ritz_output4_reader *t, const int64_t n[3])
     return true;
 }
 
-/* The first line behind `from` that looks like the header of a column. */
+/* The first line that begins behind `from` and looks like the header of a
+ * column: three integers and no decimal point. */
 static const char *find_text_column(const ritz_output4_reader *t,
                                     const char *from)
 {
@@ -672,7 +673,8 @@ static ritz_status read_record_dense(ritz_output4_reader *b,
     return read_record_numbers(b, build, n[1] - 1, reals);
 }
 
-/* The first record at or behind `from`, by the lengths of those before. */
+/* The first record that begins at `from` or behind it, found by passing from
+ * record to record by their lengths. */
 static const char *find_record(const ritz_output4_reader *b, const char *from)
 {
     ritz_output4_reader ahead = *b;
