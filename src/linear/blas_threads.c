@@ -1,6 +1,6 @@
 #include "linear/blas_threads.h"
 
-/* Both are absent from other libraries of BLAS. */
+/* Null where the BLAS is not OpenBLAS. */
 [[gnu::weak]] void openblas_set_num_threads(int threads);
 [[gnu::weak]] int openblas_get_num_threads(void);
 

@@ -1,12 +1,13 @@
-/* The threads of the BLAS. */
+/* How many threads the BLAS library uses. */
 #ifndef RITZ_LINEAR_BLAS_THREADS_H
 #define RITZ_LINEAR_BLAS_THREADS_H
 
 /**
- * Let the BLAS use this number of threads, where it is OpenBLAS; another BLAS
- * keeps its own.
+ * Set the number of threads of OpenBLAS, for the whole process. Another BLAS is
+ * left as it is.
  *
- * @return how many they were, 0 if that is not known
+ * @param[in] threads  0 changes nothing
+ * @return the number before, to restore it; 0 if the BLAS is not OpenBLAS
  */
 int ritz_blas_threads(int threads);
 

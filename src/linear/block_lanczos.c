@@ -14,25 +14,25 @@
 enum {
     B = RITZ_BLOCK,
     SQUARE = RITZ_SQUARE,
-    MORE_BLOCKS = 12, /* room beyond what convergence mostly takes */
+    MORE_BLOCKS = 12, /* room in addition to 4 k vectors, for small k */
     RESTARTS = 40,
-    ALONE = 600, /* order of T up to which one thread of the BLAS is enough */
-    SPARES = 8,  /* converged pairs beyond those asked for that are returned */
+    ALONE = 600, /* order of T up to which LAPACK is fastest on one thread */
+    SPARES = 8,  /* converged pairs returned in addition to the k requested */
 };
 
-/* Blocks of n x 8, row by row, in the order of the factor. */
+/* Blocks are n x 8 as blocks.h has them, with rows in the factor's order. */
 typedef struct block_lanczos {
     const ritz_shifted *S;
-    ritz_blocks on; /* how blocks are computed with */
+    ritz_blocks on;
     ritz_row_matrix M;
     int64_t n, k;
-    int64_t room, blocks; /* of V */
-    double *V;            /* the blocks, and one more behind them */
+    int64_t room, blocks; /* of V: the most, and those it has */
+    double *V;            /* room + 1 blocks, the next block included */
     double *W, *MW, *MV;
-    double *T;         /* (8 room) square, symmetric */
-    double *C;         /* 8 x 8 for each block of V and the one behind */
-    double *Z, *theta; /* of T, ascending */
-    int64_t coupled;   /* the first block that the last one is coupled with */
+    double *T;         /* V'M A^-1 M V, of order 8 room, column-major */
+    double *C;         /* 8 x 8 coefficients for each block of V */
+    double *Z, *theta; /* eigenvectors and eigenvalues of T, ascending */
+    int64_t coupled;   /* T has blocks of the last column from here on */
     uint64_t noise;
 } block_lanczos;
 
@@ -93,7 +93,7 @@ static void add_blocks(const block_lanczos *L, int64_t first, int64_t count,
     ritz_blocks_add(&L->on, count, block_at(L, first), C, X);
 }
 
-/* X -= V C of blocks [first, first + count), C in L->C. */
+/* X -= V L->C of blocks [first, first + count); L->C changes its sign. */
 static void subtract_blocks(const block_lanczos *L, int64_t first,
                             int64_t count, double *X)
 {
@@ -104,8 +104,9 @@ static void subtract_blocks(const block_lanczos *L, int64_t first,
 
 /* --- orthonormal blocks --------------------------------------------------- */
 
-/* Cholesky of X'MX, twice; false, with X and MX unchanged, if a column depends
-   on others or is no longer than `least`. */
+/* Orthonormalise a block, X := Q of X = Q R, by two Cholesky factors of X'MX.
+   False, with X and MX unchanged, if a vector is no longer than `least` or
+   depends on the others. */
 static bool settle_block(block_lanczos *L, double least, double *X, double *MX,
                          double *R)
 {
@@ -124,15 +125,16 @@ static bool settle_block(block_lanczos *L, double least, double *X, double *MX,
         if (pass == 1)
             return true;
         ritz_blocks_inner(&L->on, X, MX, G);
-        if (!ritz_square_factor(G, Q, 0.0)) /* of the unit matrix, nearly */
+        if (!ritz_square_factor(G, Q, 0.0)) /* G is nearly the identity */
             return false;
         ritz_square_multiply(Q, R);
     }
 }
 
-/* Column j made orthonormal to the columns of `others`, twice; false, and zero,
-   if no more than `least` of its length is left, or rounding: a vector without
-   mass has some. R += its coefficients. */
+/* Make column j orthogonal to the columns of `others`, in two passes, and
+   divide it by its length. It becomes zero, and false is returned, if what is
+   left is no longer than `least`, or if x'M x is only rounding, as for a vector
+   that moves no mass. The coefficients are added to column j of R. */
 static bool settle_column(block_lanczos *L, int j, const bool *others,
                           double least, double *X, double *MX, double *R)
 {
@@ -160,8 +162,8 @@ static bool settle_column(block_lanczos *L, int j, const bool *others,
     return settled;
 }
 
-/* W := Q of W = Q R, column by column; those that are not settled are zero, and
-   so are their rows of R. */
+/* W := Q of W = Q R, column by column. settled[j] is false where column j
+   depends on those before it; it is zero then, and so is row j of R. */
 static void settle_columns(block_lanczos *L, double least, bool *settled,
                            double *R)
 {
@@ -171,7 +173,7 @@ static void settle_columns(block_lanczos *L, double least, bool *settled,
         settled[j] = settle_column(L, j, settled, least, L->W, L->MW, R);
 }
 
-/* Take the parts in V out of X, and MX := M X. */
+/* X := X - V V'M X, in two passes, and MX := M X. */
 static void take_out_blocks(block_lanczos *L, double *X, double *MX)
 {
     for (int pass = 0; pass < 2; pass++) {
@@ -182,7 +184,7 @@ static void take_out_blocks(block_lanczos *L, double *X, double *MX)
     multiply_mass(L, X, MX);
 }
 
-/* W: random vectors in the range of A^-1 M, and MW := M W. */
+/* W := A^-1 M times random vectors, and MW := M W. */
 static void start_block(block_lanczos *L)
 {
     for (int64_t i = 0; i < L->n * B; i++)
@@ -193,9 +195,10 @@ static void start_block(block_lanczos *L)
 }
 
 /*
- * Random columns in the place of those that are not `settled`, orthonormal to
- * all others: they continue the iteration elsewhere. Where there is no further
- * direction, the column is zero, and so are its row and column of T.
+ * Replace each column of W that is not `settled` by a random vector,
+ * orthonormal to V and to the other columns, with which the iteration goes on.
+ * Where V already spans the range of A^-1 M, no vector is left: the column
+ * stays zero and not settled, and its row and column of T are zero.
  */
 static ritz_status refill_block(block_lanczos *L, bool *settled)
 {
@@ -233,13 +236,15 @@ static int count_settled(const bool *settled)
 }
 
 /*
- * W := Q of W = Q R, and MW := M Q; `size` is that of what W is the rest of.
- * Columns that are only rounding of it are replaced; their rows of R are zero.
+ * W := Q of W = Q R, and MW := M Q. `size` is the norm of the components
+ * along V that were subtracted from W. Columns of W that are only rounding
+ * errors of that subtraction are replaced by random ones, and their rows of R
+ * are zero.
  *
- * A column of which little is left has become long by its division, and so has
- * the rounding in it, which lies in V, too: it is taken out once more.
+ * Dividing a short column by its length makes its rounding errors as much
+ * longer, and these have components along V: so V is subtracted once more.
  *
- * @param[out] exhausted  Q is zero
+ * @param[out] exhausted  no direction is left: all of Q is zero
  */
 static ritz_status orthonormalise(block_lanczos *L, double size, double *R,
                                   bool *exhausted)
@@ -265,13 +270,13 @@ static ritz_status orthonormalise(block_lanczos *L, double size, double *R,
 
 /* --- the iteration -------------------------------------------------------- */
 
-/* T's block at rows of block i and columns of block j. */
+/* The block of T at rows of V_i and columns of V_j, column-major. */
 static double *place_projected(const block_lanczos *L, int64_t i, int64_t j)
 {
     return L->T + i * B + j * B * (L->room * B);
 }
 
-/* Blocks of T := C and C', C row by row. */
+/* T_ij := C and T_ji := C', C row by row. */
 static void put_projected(block_lanczos *L, int64_t i, int64_t j,
                           const double *C)
 {
@@ -284,7 +289,7 @@ static void put_projected(block_lanczos *L, int64_t i, int64_t j,
         }
 }
 
-/* C := a block of T, row by row. */
+/* C := T_ij, row by row. */
 static void take_projected(const block_lanczos *L, int64_t i, int64_t j,
                            double *C)
 {
@@ -294,9 +299,12 @@ static void take_projected(const block_lanczos *L, int64_t i, int64_t j,
 }
 
 /*
- * W := A^-1 M V_j without its parts in V, MW := M W: first the blocks that it
- * is coupled with, by the coefficients that are known, and then all of V once
- * more. *size: the length of what was taken out.
+ * W := A^-1 M V_j minus its components along V, and MW := M W; sets T_jj.
+ * First the components along the blocks that T couples with V_j are subtracted,
+ * whose coefficients are known from T, and along V_j itself. Then all of V is
+ * subtracted once more, which keeps W orthogonal to working accuracy.
+ *
+ * @param[out] size  norm of the coefficients that were subtracted
  */
 static void expand_space(block_lanczos *L, double *size)
 {
@@ -337,7 +345,7 @@ static ritz_status solve_projected(block_lanczos *L)
 
     for (int64_t j = 0; j < m; j++)
         memcpy(L->Z + j * m, L->T + j * L->room * B, (size_t)m * sizeof *L->Z);
-    /* threads of the BLAS that wait for each other cost more than they bring */
+    /* for a small T the threads of the BLAS mostly wait for each other */
     if (m <= ALONE)
         before = ritz_blas_threads(1);
     info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (int)m, L->Z, (int)m,
@@ -350,7 +358,8 @@ static ritz_status solve_projected(block_lanczos *L)
     return RITZ_OK;
 }
 
-/* q := R z_j of the c-th largest theta. */
+/* q := R z_j, z_j the last eight components of the vector of the c-th largest
+   theta (c from 0): |q| is the norm of its residual. */
 static void last_part(const block_lanczos *L, int64_t c, const double *R,
                       double *q)
 {
@@ -364,7 +373,7 @@ static void last_part(const block_lanczos *L, int64_t c, const double *R,
     }
 }
 
-/* The number of largest theta, from the first, that have converged. */
+/* How many theta, counted from the largest, have converged; at most `most`. */
 static int64_t count_converged(const block_lanczos *L, int64_t most,
                                const double *R)
 {
@@ -385,8 +394,9 @@ static int64_t count_converged(const block_lanczos *L, int64_t most,
     return c;
 }
 
-/* Coefficients, in V and the block behind it, of eight Ritz vectors from the
-   c-th on, up to `end`. */
+/* C := coefficients of the Ritz vectors of the c-th to (c + 7)-th largest
+   theta, those before `end`, in the blocks of V and in the next block. R NULL:
+   without the inverse iteration, so that those in the next block are zero. */
 static void combine_ritz(const block_lanczos *L, int64_t c, int64_t end,
                          const double *R, double *C)
 {
@@ -407,8 +417,7 @@ static void combine_ritz(const block_lanczos *L, int64_t c, int64_t end,
     }
 }
 
-/* Ritz vectors of the `count` largest theta, the last block of V being behind
-   it. */
+/* X := Ritz vectors of the `count` largest theta, rows in the order of M. */
 static ritz_status extract_vectors(block_lanczos *L, int64_t count,
                                    const double *R, ritz_dense *X)
 {
@@ -426,15 +435,17 @@ static ritz_status extract_vectors(block_lanczos *L, int64_t count,
     return RITZ_OK;
 }
 
-/* Blocks of Ritz vectors that a restart keeps. */
+/* How many blocks of Ritz vectors a restart keeps: 5 k / 4 vectors and more. */
 static int64_t blocks_kept(const block_lanczos *L)
 {
     return (L->k + L->k / 4 + B - 1) / B + 1;
 }
 
 /*
- * Thick restart [WuSimon2000]: V becomes Ritz vectors of the largest theta, and
- * the block that was behind V, which is coupled with all of them by R z_j.
+ * Thick restart [WuSimon2000]: the blocks of V become the Ritz vectors of the
+ * largest theta, followed by the block that came after V. In T these vectors
+ * have theta on the diagonal, and that block is coupled with each of them by
+ * R z_j.
  */
 static ritz_status restart_space(block_lanczos *L, const double *R)
 {
@@ -467,7 +478,8 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
     return RITZ_OK;
 }
 
-/* Blocks from which on convergence is looked at, and then every few. */
+/* Whether to look for converged pairs, which costs an eigensolution of T: once
+   V has *next blocks or is full; sets *next for the time after. */
 static bool is_time_to_look(const block_lanczos *L, int64_t *next)
 {
     if (L->blocks < *next && L->blocks < L->room)
@@ -476,7 +488,7 @@ static bool is_time_to_look(const block_lanczos *L, int64_t *next)
     return true;
 }
 
-/* Expand V until k pairs have converged; R is of the last block. */
+/* Extend V until k pairs have converged. R is that of the block after V. */
 static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
                                   ritz_lanczos_end *end)
 {
@@ -515,7 +527,7 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
     }
 }
 
-/* Of the c-th largest theta; HUGE_VAL if that is rounding. */
+/* The eigenvalue of the c-th largest theta; HUGE_VAL if theta is rounding. */
 static double eigenvalue_at(const block_lanczos *L, int64_t c)
 {
     const int64_t m = L->blocks * B;

@@ -1,18 +1,21 @@
 /*
- * Block Lanczos with one full reorthogonalisation, for the lowest pairs of a
- * factored pencil [GrimesLewisSimon1994].
+ * Block Lanczos iteration for the lowest eigenpairs of K x = lambda M x, with a
+ * Cholesky factor of A = K - sigma M [GrimesLewisSimon1994]. A block has eight
+ * vectors, because the time of a solve is that of reading the factor, which is
+ * read once for the whole block. Each new block V_j+1 is made orthogonal to all
+ * blocks before it:
  *
- * Eight vectors at once cost little more than one, as a solve reads the factor
- * once for all of them:
+ *     A^-1 M V_j = V_j-1 R_j' + V_j A_j + V_j+1 R_j+1,   V'M V = I
  *
- *     A = K - sigma M,   A^-1 M V_j = V_j-1 R_j' + V_j A_j + V_j+1 R_j+1,
- *     V'M V = I,   T z = theta z,   lambda = sigma + 1 / theta
+ * T = V'M A^-1 M V is block tridiagonal, with A_j on its diagonal. Its
+ * eigenpairs T z = theta z give lambda = sigma + 1 / theta. With z_j the last
+ * eight components of z, |R_j+1 z_j| is the norm of the residual A^-1 M x -
+ * theta x of x = V z, and
  *
- * The residual of a Ritz pair is |R_j+1 z_j|, z_j the last part of z, and
+ *     V z + V_j+1 R_j+1 z_j / theta = A^-1 M V z / theta
  *
- *     x = V z + V_j+1 R_j+1 z_j / theta = A^-1 M V z / theta
- *
- * is one inverse iteration better than V z, and costs no solve.
+ * is the vector of one more inverse iteration, which needs no solve: this one
+ * is returned.
  */
 #ifndef RITZ_LINEAR_BLOCK_LANCZOS_H
 #define RITZ_LINEAR_BLOCK_LANCZOS_H
@@ -20,18 +23,27 @@
 #include "linear/general.h"
 
 /**
- * The @p k eigenvalues nearest above sigma, and those behind them that converge
- * as well, up to a few.
+ * The @p k lowest eigenvalues above sigma, with their vectors, and up to eight
+ * more where these have converged, too. That none is missing is not guaranteed:
+ * see ritz_inertia_below().
  *
- * @param[in]  room    vectors that are kept at most, at least 5 k / 4 + 48;
- *                     0: as many as convergence mostly takes
- * @param[out] X       n x at least k, by ascending eigenvalue; empty unless
- *                     FOUND
- * @param[out] lambda  of the columns of X, to be freed; NULL unless FOUND
- * @param[out] next    the eigenvalue behind them, as far as it is known: an
- *                     upper bound, HUGE_VAL if nothing is known; of the k-th
- *                     if SLOW
- * @cost   some 3 k / 8 block solves; memory for some 4 k vectors
+ * @param[in]  S       K, M and the factor of K - sigma M, which is positive
+ *                     definite; M positive semidefinite
+ * @param[in]  room    largest number of basis vectors, at least 5 k / 4 + 48;
+ *                     0: about 4 k, with which few models need a restart
+ * @param[out] X       n x at least k, by ascending eigenvalue, columns
+ *                     M-orthonormal; empty unless *end is FOUND
+ * @param[out] lambda  eigenvalues of the columns of X, to be freed; NULL unless
+ *                     *end is FOUND  [rad^2/s^2]
+ * @param[out] next    estimate, from above, of the eigenvalue after the last of
+ *                     X, or of the k-th one if *end is SLOW; HUGE_VAL if there
+ *                     is no estimate; not set if *end is EXHAUSTED
+ * @param[out] end     FOUND; SLOW after 40 restarts, or if @p room is too small
+ *                     for one; EXHAUSTED if there are fewer than k finite
+ *                     eigenvalues
+ * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if @p k is too large for LAPACK;
+ *         RITZ_ERR_CONVERGENCE if LAPACK fails
+ * @cost   about 3 k / 8 block solves and 4 k vectors of memory
  */
 ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
                                ritz_dense *X, double **lambda, double *next,

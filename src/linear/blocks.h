@@ -7,8 +7,9 @@
  * between two blocks are 8 x 8, row by row.
  *
  * All threads of a ritz_blocks work on each product, each on its own rows. Sums
- * over rows are made for each thread and then added in the order of the threads,
- * so that a result has the same bits whenever the number of threads is the same.
+ * over rows are made for each thread and then added in the order of the
+ * threads, so that a result has the same bits whenever the number of threads is
+ * the same.
  */
 #ifndef RITZ_LINEAR_BLOCKS_H
 #define RITZ_LINEAR_BLOCKS_H

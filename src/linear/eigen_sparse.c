@@ -37,9 +37,9 @@ enum {
     MEDIUM = 4000, /* dense where a quarter of all modes is wanted */
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
-    GUESS = 20,    /* flexible modes up to a frequency, if none are counted */
-    BEHIND = 2,    /* modes asked for behind those needed, to count between */
-    SPARE = 4,     /* the same, where some were missed */
+    GUESS = 20,    /* flexible modes requested first if they are not counted */
+    BEHIND = 2,    /* modes requested above those wanted: a gap to count in */
+    SPARE = 4,     /* the same after a mode was missed */
     MISSES = 3,
     POLISHES = 3, /* inverse iterations, most often one */
 };
@@ -49,7 +49,7 @@ typedef struct search {
     double limit;   /* of lambda by frequency, a little above */
     int64_t target; /* modes below limit */
     ritz_shifted S;
-    int64_t *order; /* of the factor, kept for the count */
+    int64_t *order; /* fill-reducing order of the factor, for the count */
     double typical; /* median of K_jj / M_jj, 1 if there is none */
     int64_t *heavy; /* columns of M that are not zero */
     int64_t num_heavy;
@@ -286,8 +286,9 @@ static ritz_status shift_near(search *s, double sigma)
     return status;
 }
 
-/* s->found from the vectors in X and their eigenvalues, NULL if they are not
-   known, both of which it takes. */
+/* Refine the vectors X until their residuals are small, and put the pairs into
+   s->found, which takes over X and *lambda. *lambda NULL: eigenvalues are not
+   known yet. */
 static ritz_status refine_pairs(search *s, ritz_dense *X, double **lambda)
 {
     const bool known = *lambda != NULL;
@@ -401,7 +402,7 @@ static double place_between(const ritz_pairs *P, int64_t k, double part)
     return below + part * (above - below);
 }
 
-/* Free the factor, so that the count's is alone, and keep its order. */
+/* Free the factor before the count makes its own; keep its order of rows. */
 static ritz_status keep_order(search *s)
 {
     if (!s->order && s->S.A)
@@ -522,8 +523,9 @@ static ritz_status search_proven(search *s, int64_t *end)
     return RITZ_OK;
 }
 
-/* Modes up to the frequency, counted a little above it lest one lie there; a
-   guess, where they are not to be counted. */
+/* s->target := number of modes up to the frequency, or a guess if they are not
+   to be counted. The count is made a little above the frequency, because it
+   fails where an eigenvalue lies. */
 static ritz_status count_target(search *s)
 {
     const double above[] = RITZ_COUNT_ABOVE;
@@ -543,7 +545,7 @@ static ritz_status count_target(search *s)
     return status;
 }
 
-/* A stiffness that is factored has no rigid modes and needs no shift. */
+/* With a factor of K there are no rigid modes, and sigma = 0 is kept. */
 static ritz_status begin_search(search *s)
 {
     double sigma = 0.0;
@@ -604,7 +606,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* @param[in,out] L  the factor of K, taken; NULL: none is known */
+/* @param[in,out] L  the factor of K, which may be taken over; NULL: none */
 static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
                                ritz_factor **L, const ritz_span *span,
                                ritz_pairs *out)

@@ -30,12 +30,12 @@ enum {
 
 struct ritz_factor {
     int64_t n;
-    int64_t *order; /* row of A at each place */
+    int64_t *order; /* row k of the factor is row order[k] of A */
     ritz_supernodal *S;
-    double *x; /* right-hand sides of one solve, row by row */
+    double *x; /* n x 16 right-hand sides, row by row, for one solve */
 };
 
-/* CHOLMOD's own, while it factors. */
+/* What CHOLMOD needs while it factors. */
 typedef struct cholesky {
     cholmod_common common;
     cholmod_factor *L;
@@ -178,7 +178,7 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
     return RITZ_OK;
 }
 
-/* The order of a small matrix CHOLMOD decides by the fill. */
+/* For a small matrix CHOLMOD tries several orders and keeps the best. */
 static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
 {
     RITZ_OWN_ARRAY int64_t *order = NULL;
@@ -234,7 +234,8 @@ ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
     return ritz_factor_spd_weak(A, out, NULL);
 }
 
-/* Columns of X, between them and the rows of F->x, in the factor's order. */
+/* Copies `count` columns of X to F->x, or back: F->x has `width` numbers for
+   each row, and its rows are in the factor's order. */
 typedef struct exchange {
     const ritz_factor *F;
     double *X;

@@ -1,16 +1,21 @@
-/* A Cholesky factor, as solvers see it that work in its own order. */
+/* A Cholesky factor P A P' = L L', for solvers that work in the order of its
+ * rows. */
 #ifndef RITZ_LINEAR_FACTOR_H
 #define RITZ_LINEAR_FACTOR_H
 
 #include <ritz/matrix.h>
 
-/** Row of A at each place of the factor's order; borrowed. */
+/** n numbers: row k of the factor is row order[k] of A. Borrowed from @p F. */
 const int64_t *ritz_factor_order(const ritz_factor *F);
 
-/** x := A^-1 x, n x 8 row by row, rows in the factor's order. */
+/**
+ * x := A^-1 x for a block of eight vectors: x[8 k + c] is row k, in the
+ * factor's order, of vector c.
+ */
 void ritz_factor_solve_rows(ritz_factor *F, double *x);
 
-/** Threads that a solve takes, and that other work of this size is worth. */
+/** How many threads each solve uses; products of vectors of this length may use
+ * as many. */
 int ritz_factor_threads(const ritz_factor *F);
 
 #endif

@@ -6,26 +6,31 @@
 #include <ritz/matrix.h>
 
 /**
- * Negative pivots of A = L D L', by Sylvester's law of inertia the number of
- * negative eigenvalues. The factor is not kept, so that no solve tells whether
- * A is singular to working accuracy: an eigenvalue that is rounding counts as
- * negative or not.
+ * The number of negative eigenvalues of A. By Sylvester's law of inertia it is
+ * the number of negative pivots of A = L D L'. The factor is not kept, so that
+ * A cannot be tested for being singular to working accuracy: an eigenvalue that
+ * is zero within rounding may be counted as negative or as positive.
  *
- * @param[in] order  of ritz_ordering_new(), NULL to find one
- * @return RITZ_ERR_SINGULAR if a pivot is rounding
+ * @param[in]  A      n x n, symmetric, both triangles stored
+ * @param[in]  order  as ritz_ordering_new() returns it; NULL: find one
+ * @param[out] negative  number of negative eigenvalues
+ * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding;
+ *         RITZ_ERR_ARGUMENT if an entry is not finite; RITZ_ERR_MEMORY
+ * @cost   one factor by MUMPS, whose fronts alone are in memory
  */
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);
 
 /**
- * ritz_eigen_count() with the order of rows of another factor of K and M.
+ * ritz_eigen_count(), with the order of rows of another factor of the same
+ * pattern, so that no new one has to be found.
  *
- * @param[in] order  as above
+ * @param[in] order  as for ritz_inertia_negative()
  */
 ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
                                double tau, const int64_t *order, int64_t *out);
 
-/** ritz_ldl_new() with an order of rows, as above. */
+/** ritz_ldl_new(). @param[in] order  as for ritz_inertia_negative() */
 ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
                              int64_t *negative, ritz_ldl **out);
 

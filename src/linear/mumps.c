@@ -64,8 +64,8 @@ typedef struct mumps_factor {
         whole; /* one of the matrices is not symmetric: not only its triangle */
     int64_t n, nnz;       /* union of the patterns, entry k at row[k], col[k] */
     MUMPS_INT *row, *col; /* from 1; borrowed by MUMPS, as val is */
-    MUMPS_INT *place;     /* from 1, of each row among the pivots, or NULL */
-    bool counted;         /* pivots alone are wanted: the factor is not kept */
+    MUMPS_INT *place;     /* pivot of each row, from 1; NULL: MUMPS orders */
+    bool counted;         /* only pivots are wanted: the factor is not kept */
     double *val;          /* width * nnz */
     int64_t count;
     ritz_sparse *A; /* borrowed, all but the array */
@@ -240,7 +240,7 @@ static ritz_status analyse_pattern(mumps_factor *F)
     return run_job(F, ANALYSE);
 }
 
-/* An order of the union of the patterns. */
+/* A fill-reducing order for the union of the patterns of all matrices. */
 static ritz_status order_union(int64_t count, const ritz_sparse *const *A,
                                int64_t **order)
 {
@@ -259,8 +259,8 @@ static ritz_status order_union(int64_t count, const ritz_sparse *const *A,
     return ritz_ordering_new(&sum, order);
 }
 
-/* The places of rows, by the order given or by one that is found. Small and
-   unsymmetric matrices MUMPS orders itself. */
+/* F->place, from the given order or from one that is found. MUMPS itself orders
+   small and unsymmetric matrices. */
 static ritz_status place_rows(int64_t count, const ritz_sparse *const *A,
                               const int64_t *order, mumps_factor *F)
 {
@@ -426,7 +426,7 @@ static void release_factor(mumps_factor *F)
     RITZ_FREE(F->row, F->col, F->val, F->A, F->place, F->at);
 }
 
-/* @param[in] counted  only the pivots are wanted: the factor is not kept */
+/* A = L D L'. @param[in] counted  only pivots are wanted: L is not kept */
 static ritz_status factor_real(const ritz_sparse *A, const int64_t *order,
                                bool counted, int64_t *negative, ritz_ldl **out)
 {

@@ -7,10 +7,10 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-/* Rows in groups of such that follow each other. */
+/* Consecutive rows with nearly the same entries form a group, mostly a grid. */
 typedef struct grouping {
     int64_t count;
-    int64_t *first; /* row of each group, and an end */
+    int64_t *first; /* group g has the rows [first[g], first[g + 1]) */
     int64_t *of;    /* group of each row */
 } grouping;
 
@@ -19,8 +19,8 @@ static void grouping_free(grouping *g)
     RITZ_FREE(g->first, g->of);
 }
 
-/* Whether four fifths of the entries of two columns are in the same rows: dofs
-   of one grid may miss a few by symmetry. */
+/* Whether four fifths of the entries of two columns are in the same rows. Not
+   all need be: symmetry of the mesh may make a few entries zero. */
 static bool is_alike(const ritz_sparse *A, int64_t a, int64_t b)
 {
     const int64_t end_a = A->colptr[a + 1];
@@ -55,8 +55,8 @@ static ritz_status group_rows(const ritz_sparse *A, grouping *g)
 }
 
 /*
- * The graph of groups, its lower triangle: group h is a neighbour of g if an
- * entry of a column of g is in a row of h.
+ * The graph of groups: the neighbours h >= g of group g are the groups in whose
+ * rows a column of g has an entry; neighbour[start[g]] and the following.
  */
 typedef struct graph {
     int64_t *start, *neighbour;
@@ -70,7 +70,7 @@ static void graph_free(graph *G)
 static ritz_status join_groups(const ritz_sparse *A, const grouping *g,
                                graph *G)
 {
-    RITZ_OWN_ARRAY int64_t *met = NULL; /* by which group + 1, last */
+    RITZ_OWN_ARRAY int64_t *met = NULL; /* 1 + last group next to this one */
     int64_t count = 0;
 
     RITZ_CHECK_NEW(met, g->count);
@@ -101,7 +101,7 @@ static ritz_status join_groups(const ritz_sparse *A, const grouping *g,
     return RITZ_OK;
 }
 
-/* at: the groups in the order of METIS. */
+/* at := the groups in the order that METIS finds. */
 static ritz_status order_groups(const grouping *g, const graph *G, int64_t *at)
 {
     cholmod_common common;

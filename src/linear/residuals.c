@@ -8,10 +8,11 @@
 
 enum {
     WIDTH = 8,          /* pairs at a time */
-    WORTHWHILE = 50000, /* entries of K and M that a second thread is worth */
+    WORTHWHILE = 50000, /* one thread for each so many entries of K and M */
 };
 
-/* Of eight pairs, sums over the rows of one thread. */
+/* Norms of eight pairs, summed over the rows of one thread: |K x - lambda M x|,
+   | |K||x| + |lambda||M||x| | and |x|'|K||x|. */
 typedef struct sums {
     double gap[WIDTH], size[WIDTH], energy[WIDTH];
 } sums;
@@ -20,8 +21,8 @@ typedef struct assessment {
     const ritz_sparse *K, *M;
     const ritz_pairs *P;
     int64_t first, count; /* of the pairs */
-    double *x;            /* their vectors, row by row */
-    sums *of;             /* each thread */
+    double *x;            /* their vectors, n x 8 row by row */
+    sums *of;             /* of each thread */
 } assessment;
 
 static void lay_out_rows(int thread, int64_t from, int64_t to, void *task)
@@ -35,7 +36,7 @@ static void lay_out_rows(int thread, int64_t from, int64_t to, void *task)
                 a->P->Phi.val[i + (a->first + c) * a->K->nrow];
 }
 
-/* y := A x and size := |A||x| of column j of a symmetric A. */
+/* y := row j of A x, and size := row j of |A||x|, for a symmetric A. */
 static void multiply_row(const ritz_sparse *A, int64_t j, const double *x,
                          double *y, double *size)
 {
@@ -75,8 +76,8 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
     }
 }
 
-/* Residuals of the pairs [first, first + count); *scale: their largest
-   |x|'|K||x|. */
+/* Residuals of the pairs [first, first + count). *scale becomes their largest
+   |x|'|K||x|, unless it is larger. */
 static void assess_eight(assessment *a, int threads, double *scale)
 {
     ritz_team_over(threads, a->K->nrow, lay_out_rows, a);

@@ -12,7 +12,7 @@
 
 enum {
     EIGHT = 8,          /* columns of a product at a time */
-    WORTHWHILE = 50000, /* entries that a second thread is worth */
+    WORTHWHILE = 50000, /* entries from which several threads are used */
 };
 
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
@@ -200,15 +200,17 @@ ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out)
     return RITZ_OK;
 }
 
-/* Several columns of a product at a time, so that A is read once for them. */
+/* Eight columns of a product are made at a time, so that A is read once for
+   them. */
 typedef struct columns_task {
     const ritz_sparse *A;
     const ritz_dense *X;
     ritz_dense *Y;
-    double *room; /* of each thread: eight columns of X and of Y, row by row */
+    double *room; /* each thread's eight columns of X and Y, row by row */
 } columns_task;
 
-/* y := A x, eight columns of each, row by row: terms in the order of A. */
+/* y := A x, eight columns row by row; each sum in the order of the entries of
+   A, so that it has the same bits as that of a single column. */
 static void multiply_eight(const ritz_sparse *A, const double *x, double *y)
 {
     memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
@@ -244,7 +246,7 @@ static void multiply_groups(int thread, int threads, void *task)
     }
 }
 
-/* Y := A X of many columns; Y is zero before. */
+/* Y := A X by several threads, eight columns at a time. */
 static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
                                     ritz_dense *Y)
 {
@@ -365,7 +367,7 @@ double ritz_sparse_max(const ritz_sparse *A)
     return largest;
 }
 
-/* Entries above the diagonal less those below it. */
+/* Number of entries above the diagonal minus the number below it. */
 static int64_t compare_triangles(const ritz_sparse *A)
 {
     int64_t more = 0;
@@ -377,9 +379,10 @@ static int64_t compare_triangles(const ritz_sparse *A)
 }
 
 /*
- * The largest |A(i,j) - A(j,i)| over the stored (i,j) of the lower triangle,
- * or of both. *whole: each of these has a stored A(j,i). Looking from the lower
- * triangle is enough if it is whole and the upper one has no more entries.
+ * The largest |A(i,j) - A(j,i)| over the stored (i,j) of the lower triangle, or
+ * of both triangles. *whole is true if A(j,i) is stored for each of them. The
+ * lower triangle is enough if it is whole and has as many entries as the upper
+ * one, because then no entry of the upper one is left unpaired.
  */
 static double largest_gap(const ritz_sparse *A, bool both, bool *whole)
 {
@@ -411,8 +414,9 @@ double ritz_sparse_asymmetry(const ritz_sparse *A)
     return gap > 0.0 ? gap / ritz_sparse_max(A) : 0.0;
 }
 
-/* Entries of column i from next[i] on, in rows above `row`, have no entry below
- * the diagonal to be compared with: 0 stands there. */
+/* Move next[i] to the first entry of column i that is not above `row`; the
+ * largest of the entries A(r,i) passed. Their counterparts A(i,r) are not
+ * stored: the sweep has passed column r without meeting one. */
 static double pass_unpaired(const ritz_sparse *A, int64_t i, int64_t row,
                             int64_t *next)
 {
@@ -424,8 +428,9 @@ static double pass_unpaired(const ritz_sparse *A, int64_t i, int64_t row,
 }
 
 /*
- * A(j,i), i > j, come in column i by ascending j, as the A(i,j) come by columns
- * j: next[i] moves along.
+ * The sweep takes the entries A(i,j), i > j, by ascending j. Their counterparts
+ * A(j,i) stand in column i by ascending row j: so next[i], the next entry of
+ * column i to be compared, only moves forward.
  */
 double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next)
 {

@@ -11,21 +11,20 @@
 
 enum {
     HUGE_PAGE = 2 << 20, /* bytes */
-    SHARE = 10,          /* subtrees of each thread, so that loads are even */
-    WORTHWHILE = 400000, /* entries of L that a second thread is worth */
-    OVERHEAD = 200,      /* of a supernode, in entries */
-    DISCARD = 8 << 20,   /* bytes that are read before they are given back */
+    SHARE = 10,          /* subtrees for each thread, to balance their work */
+    WORTHWHILE = 400000, /* one thread for each so many entries of L */
+    OVERHEAD = 200,      /* time for a supernode as such, in entries of L */
+    DISCARD = 8 << 20,   /* bytes of L after which their pages are returned */
 };
 
-/* What one thread has. */
+/* The work and workspace of one thread. */
 typedef struct crew {
-    int64_t num_blocks; /* of its subtrees, ascending */
-    int64_t *block;
-    double *top; /* what its subtrees subtract from the top, and then its copy
-                    of the top's solution */
-    /* of one block column: */
-    double *z, *rest;
-    double *sum[2]; /* read by other threads, too */
+    int64_t num_blocks;
+    int64_t *block; /* block columns of its subtrees, ascending */
+    double *top;    /* rows of the top: forward, what its subtrees subtract from
+                       them; backward, its copy of their solution */
+    double *z, *rest; /* rows of one block column */
+    double *sum[2];   /* the same; other threads read them, too */
 } crew;
 
 struct ritz_supernodal {
@@ -37,9 +36,9 @@ struct ritz_supernodal {
     int32_t *row;
     double *values; /* 64-byte aligned */
     size_t bytes;
-    int64_t num_top;  /* rows of the top */
-    int32_t *top_row; /* its rows */
-    double *top;      /* its right-hand sides */
+    int64_t num_top;  /* number of rows of the top */
+    int32_t *top_row; /* num_top rows of L, ascending */
+    double *top;      /* their right-hand sides, then their solutions */
     int64_t num_shared;
     int64_t *shared; /* block columns of the top, ascending */
     crew *crew;
@@ -51,9 +50,9 @@ typedef struct tree {
     int64_t count;
     int64_t *parent; /* of each supernode, -1 for a root */
     double *entries; /* in the subtree of each */
-    int *owner;      /* thread, -1 for the top */
-    int32_t *place;  /* of each row among those of the top, or -1 */
-    int64_t *begin;  /* the first block column of each supernode, and an end */
+    int *owner;      /* thread of each supernode, -1 for the top */
+    int32_t *place;  /* of each row among those of the top; -1: not there */
+    int64_t *begin;  /* supernode s: block columns [begin[s], begin[s + 1]) */
 } tree;
 
 static void tree_free(tree *t)
@@ -61,7 +60,7 @@ static void tree_free(tree *t)
     RITZ_FREE(t->parent, t->entries, t->owner, t->place, t->begin);
 }
 
-/* Supernode s of L: its columns, and the rows in them. */
+/* A supernode: consecutive columns of L with the same rows below them. */
 typedef struct supernode {
     int64_t first, cols, rows;
     const int64_t *row;
@@ -78,7 +77,7 @@ static supernode supernode_of(const cholmod_factor *L, int64_t s)
                        row + pi[s], x + px[s]};
 }
 
-/* Parents, and the work in each subtree. */
+/* Find the parent of each supernode and the entries of L in its subtree. */
 static ritz_status survey_tree(tree *t)
 {
     const cholmod_factor *L = t->L;
@@ -106,9 +105,10 @@ static ritz_status survey_tree(tree *t)
 }
 
 /*
- * Whose each supernode is: subtrees below a part of the whole go, from the last
- * to the first, to the thread with the least work; what is above them is the
- * top. One thread owns everything.
+ * Choose the owner of each supernode. A subtree that has at most 1 / (SHARE
+ * threads) of all entries goes to the thread with the least work so far, from
+ * the last supernode to the first; the supernodes above these subtrees are the
+ * top. With one thread there is no top.
  */
 static ritz_status share_tree(ritz_supernodal *S, tree *t)
 {
@@ -135,7 +135,7 @@ static ritz_status share_tree(ritz_supernodal *S, tree *t)
     return RITZ_OK;
 }
 
-/* Places of the top's rows, ascending. */
+/* Number the rows of the top, ascending: t->place and S->top_row. */
 static ritz_status number_top(ritz_supernodal *S, tree *t)
 {
     RITZ_CHECK_NEW(t->place, S->n);
@@ -162,8 +162,8 @@ static int64_t panels_of(int64_t rows)
     return (rows + RITZ_TILE - 1) / RITZ_TILE;
 }
 
-/* Numbers of an inverted diagonal block of so many columns: its panels end with
-   the last column that they have. */
+/* How many numbers a packed diagonal block has. It is a lower triangle: the
+   panel of the rows from r on ends with column r + 7. */
 static int64_t diagonal_size(int64_t cols)
 {
     int64_t size = 0;
@@ -178,7 +178,7 @@ static int64_t blocks_in(const supernode *node)
     return (node->cols + RITZ_TILE_COLS - 1) / RITZ_TILE_COLS;
 }
 
-/* Block column @p k of a supernode: its columns, and the rows below. */
+/* The size of block column k of a supernode; its row and values are NULL. */
 static ritz_block_column block_of(const supernode *node, int64_t k)
 {
     const int64_t from = k * RITZ_TILE_COLS;
@@ -195,7 +195,7 @@ static int64_t block_size(const ritz_block_column *b)
     return diagonal_size(b->cols) + RITZ_TILE * panels_of(b->below) * b->cols;
 }
 
-/* Room for all values, in huge pages where the system has them. */
+/* Allocate room for all values, in huge pages where the system has them. */
 static ritz_status map_values(ritz_supernodal *S, int64_t count)
 {
     const size_t page = HUGE_PAGE;
@@ -207,13 +207,13 @@ static ritz_status map_values(ritz_supernodal *S, int64_t count)
                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     RITZ_REFUSE_IF(map == MAP_FAILED, RITZ_ERR_MEMORY,
                    "no memory for a factor of %zu MB", bytes >> 20);
-    (void)madvise(map, bytes, MADV_HUGEPAGE); /* it costs only speed */
+    (void)madvise(map, bytes, MADV_HUGEPAGE); /* a refusal costs only speed */
     S->values = map;
     S->bytes = bytes;
     return RITZ_OK;
 }
 
-/* The block columns, without their values and rows. */
+/* Set the sizes of all block columns, and add up their values and rows. */
 static ritz_status lay_out_blocks(ritz_supernodal *S, tree *t, int64_t *values,
                                   int64_t *rows)
 {
@@ -238,8 +238,8 @@ static ritz_status lay_out_blocks(ritz_supernodal *S, tree *t, int64_t *values,
     return RITZ_OK;
 }
 
-/* The rows of each block column, as tiles.h counts them, and the places of its
-   values. */
+/* Point each block column to its rows, as ritz_block_column.row has them, and
+   to room for its values. */
 static ritz_status place_blocks(ritz_supernodal *S, const tree *t, int64_t rows)
 {
     double *values = S->values;
@@ -265,7 +265,7 @@ static ritz_status place_blocks(ritz_supernodal *S, const tree *t, int64_t rows)
     return RITZ_OK;
 }
 
-/* D := L^-1 of the lower triangle of a block, n x n, D zero before. */
+/* D := L^-1 of a lower triangle, n x n; D is zero on entry. */
 static void invert_triangle(int64_t n, const double *L, int64_t stride,
                             double *D)
 {
@@ -283,8 +283,8 @@ static void invert_triangle(int64_t n, const double *L, int64_t stride,
     }
 }
 
-/* Panels of the rows [0, rows) of `cols` columns; those of a triangle end with
-   the last column that they have. */
+/* Pack a column-major matrix, rows x cols, into panels of eight rows. Those of
+   a lower triangle end with the last column that is not zero in their rows. */
 static void pack_panels(int64_t rows, int64_t cols, bool triangle,
                         const double *from, int64_t stride, double *to)
 {
@@ -312,14 +312,14 @@ static void pack_block(const supernode *node, const ritz_block_column *b,
                 to + diagonal_size(b->cols));
 }
 
-/* Give the whole pages of [*from, to) back, what they hold being read. */
+/* Return the pages that lie in [*from, to) to the system; *from := to. */
 static void discard_pages(char **from, char *to)
 {
     const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
     const uintptr_t begin = ((uintptr_t)*from + page - 1) / page * page;
     const uintptr_t end = (uintptr_t)to / page * page;
 
-    if (end > begin) /* it costs only memory if that cannot be done */
+    if (end > begin) /* a refusal costs only memory */
         (void)madvise(*from + (begin - (uintptr_t)*from), end - begin,
                       MADV_DONTNEED);
     *from = to;
@@ -330,7 +330,7 @@ typedef struct packing {
     const tree *t;
 } packing;
 
-/* The first supernode whose values end behind this part of all. */
+/* The supernode from which on a thread packs: each has the same share of L. */
 static int64_t supernode_behind(const tree *t, int64_t thread, int64_t threads)
 {
     const int64_t *px = t->L->px;
@@ -374,7 +374,7 @@ static void pack_part(int thread, int threads, void *task)
     }
 }
 
-/* Lists of each thread's block columns and of the shared ones. */
+/* List the block columns of each thread and those of the top. */
 static ritz_status list_blocks(ritz_supernodal *S, const tree *t)
 {
     RITZ_CHECK_NEW(S->crew, S->threads);
@@ -393,7 +393,7 @@ static ritz_status list_blocks(ritz_supernodal *S, const tree *t)
     return RITZ_OK;
 }
 
-/* Room for a solve, so that none fails. */
+/* Allocate the workspace of all solves, so that a solve cannot fail. */
 static ritz_status make_room(ritz_supernodal *S)
 {
     const int64_t block = (int64_t)RITZ_TILE_COLS * RITZ_SOLVE_WIDTH;
@@ -466,7 +466,7 @@ static void descend_subtrees(const solving *s, const crew *c)
     }
 }
 
-/* x := L'^-1 x there, with the solution of the top in c->top. */
+/* x := L'^-1 x in the same rows, with the solution of the top in c->top. */
 static void ascend_subtrees(const solving *s, const crew *c)
 {
     const int64_t width = s->tile->width;
@@ -485,8 +485,8 @@ static void ascend_subtrees(const solving *s, const crew *c)
     }
 }
 
-/* The place of a shared block column's rows among those of the top: rows of a
-   supernode follow each other there, too. */
+/* Index, among the rows of the top, of the first row of a block column of the
+   top. Its other rows follow, as consecutive rows stay so. */
 static int64_t place_in_top(const ritz_supernodal *S,
                             const ritz_block_column *b)
 {
@@ -504,10 +504,10 @@ static int64_t place_in_top(const ritz_supernodal *S,
     return low;
 }
 
-/* What one thread does of a block column of the top. */
+/* The work of one thread in block column k of the top. */
 typedef struct shared_part {
     const ritz_block_column *b;
-    int64_t at;       /* of its rows in the top's right-hand sides */
+    int64_t at;       /* index in S->top of its first number */
     int64_t from, to; /* panels of this thread */
 } shared_part;
 
@@ -523,7 +523,8 @@ static shared_part part_of_shared(const solving *s, int64_t k, int thread,
     return part;
 }
 
-/* The top's right-hand sides, with what all subtrees subtract from them. */
+/* S->top := right-hand sides of this thread's rows of the top, minus what the
+   subtrees of all threads subtract from them (c->top is negative). */
 static void collect_top(const solving *s, int thread, int threads)
 {
     const ritz_supernodal *S = s->S;
@@ -543,9 +544,10 @@ static void collect_top(const solving *s, int thread, int threads)
 }
 
 /*
- * Forward in the top. Every thread solves the diagonal block for itself, which
- * is cheaper than to wait for another, and subtracts its panels' part. The
- * first one keeps the solution, behind the right-hand sides.
+ * Forward substitution in the top. Every thread solves with the diagonal block
+ * itself, which takes less time than waiting for another thread to do so, and
+ * subtracts the product with its own panels. Thread 0 stores the solution
+ * behind the right-hand sides.
  */
 static void descend_top(const solving *s, int thread, int threads)
 {
@@ -568,9 +570,11 @@ static void descend_top(const solving *s, int thread, int threads)
 }
 
 /*
- * Backward. Every thread has the solution for itself in c->top. Each sums over
- * its own panels, and then all sums are added. They lie in one of two places in
- * turn, so that none is written to while another thread may still read it.
+ * Backward substitution in the top. Each thread sums over its own panels; then
+ * each adds the sums of all threads and solves with the diagonal block, so that
+ * each has the whole solution in its c->top. Two arrays of sums are used in
+ * turn, so that no thread writes to one which another thread may still be
+ * reading.
  */
 static void ascend_top(const solving *s, int thread, int threads)
 {
@@ -597,7 +601,7 @@ static void ascend_top(const solving *s, int thread, int threads)
     }
 }
 
-/* This thread's part of the top's solution, into x. */
+/* Copy the solution of this thread's rows of the top to x. */
 static void return_top(const solving *s, int thread, int threads)
 {
     const ritz_supernodal *S = s->S;

@@ -1,11 +1,13 @@
 /*
- * Triangular solves with a supernodal Cholesky factor for blocks of right-hand
- * sides, near the speed of memory on all threads.
+ * Triangular solves with a supernodal Cholesky factor L L' for blocks of 8 or
+ * 16 right-hand sides, by several threads, about as fast as memory can be read.
  *
- * The columns of L are packed as tiles.h has them. Subtrees of the elimination
- * tree are independent of each other: each thread has some, and adds what they
- * subtract from the rows of the tree's top to rows of its own. The top is
- * shared: every thread has some panels of each of its block columns.
+ * The columns of L are packed as tiles.h describes. The elimination tree is cut
+ * into its top, which contains the roots, and the subtrees below it. Subtrees
+ * do not depend on each other: each thread solves with some of them. What they
+ * subtract from rows of the top a thread collects in a copy of its own, and the
+ * copies are added. All threads work on each block column of the top, each on
+ * some of its panels.
  */
 #ifndef RITZ_LINEAR_SUPERNODAL_H
 #define RITZ_LINEAR_SUPERNODAL_H
@@ -16,26 +18,31 @@
 
 typedef struct ritz_supernodal ritz_supernodal;
 
-/** Right-hand sides that one solve has at most. */
+/** The largest width of a block of right-hand sides. */
 enum { RITZ_SOLVE_WIDTH = 16 };
 
 /**
- * Pack a factor L L', whose values are lost: their pages are given back while
- * they are read, so that the factor is held once.
+ * Pack a factor of CHOLMOD. Its values are lost: their pages are returned to
+ * the system as they are read, so that memory holds the factor about once.
  *
- * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT beyond 2^31 rows
+ * @param[in,out] L    supernodal, L L'; only cholmod_l_free_factor() may follow
+ * @param[out]    out  freed by ritz_supernodal_free()
+ * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if L has 2^31 - 1 rows or more
+ * @cost   memory of about the size of L
  */
 ritz_status ritz_supernodal_new(cholmod_factor *L, ritz_supernodal **out);
 
 /**
- * x := (L L')^-1 x, n x @p width row by row, in the factor's order. It has the
- * same bits whenever it is run with the same number of threads.
+ * x := (L L')^-1 x for a block of @p width right-hand sides. The result has the
+ * same bits in every run with the same number of threads.
  *
- * @param[in] width  8 or 16
+ * @param[in]     width  8 or 16
+ * @param[in,out] x      n x width, row by row, rows in the order of L
+ * @cost   L is read twice
  */
 void ritz_supernodal_solve(ritz_supernodal *S, int64_t width, double *x);
 
-/** Threads that each solve takes. */
+/** How many threads each solve uses: more for a larger factor. */
 int ritz_supernodal_threads(const ritz_supernodal *S);
 
 void ritz_supernodal_free(ritz_supernodal **S);

@@ -1,18 +1,19 @@
 /*
- * Dense arithmetic on tiles of eight rows or columns, for vectors of eight,
- * four or two numbers; which of them the processor has is found out when the
- * program runs.
+ * Kernels of dense arithmetic on tiles of eight rows, compiled for processors
+ * with vectors of eight, four or two numbers. ritz_tiles_here() chooses among
+ * them when the program runs.
  *
- * Blocks of right-hand sides lie row by row: x[p i + c] is row i of column c,
- * with a width p of 8 or 16. A factor L lies in block columns of at most
- * RITZ_TILE_COLS columns
+ * A block of right-hand sides is stored row by row: x[p i + c] is row i of
+ * right-hand side c, with a width p of 8 or 16. A factor L is stored in block
+ * columns of at most RITZ_TILE_COLS columns:
  *
- *     | D |    D     its inverted diagonal block, lower triangular
- *     | B |    B     the rows below, only those that are not zero
+ *     | D |    D     inverse of its diagonal block, lower triangular
+ *     | B |    B     the rows below it that are not zero
  *
- * in panels of eight rows, column by column: entry (i, j) of a panel is
- * a[8 j + i]. Rows beyond the last are zeros. A panel of D ends with the last
- * column that its rows have.
+ * D and B are cut into panels of eight rows, each stored column by column:
+ * entry (i, j) of a panel is a[8 j + i]. The last panel is filled up with rows
+ * of zeros. A panel of D ends with the last column that is not zero in its
+ * rows.
  */
 #ifndef RITZ_LINEAR_TILES_H
 #define RITZ_LINEAR_TILES_H
@@ -28,21 +29,23 @@ enum {
 typedef struct ritz_block_column {
     int64_t first, cols; /* columns of L */
     int64_t below;       /* rows of B */
-    const int32_t *row;  /* of B: a row of x, or ~k for row k of the top */
+    const int32_t *row;  /* of each row of B: a row of x, or ~k, row k of the
+                            top, an array of its own */
     const double *diagonal, *panel;
 } ritz_block_column;
 
-/* Sums over the panels [from, to) of B. */
+/* Kernels for one width of x. Where they take panels [from, to) of B, threads
+ * can share the work; a panel has eight rows. */
 typedef struct ritz_tile_width {
     int64_t width;
-    /** z := D x, cols rows; z has room for the rows of whole panels. */
+    /** z := D x, cols rows; z has room for cols rounded up to whole panels. */
     void (*lower)(const ritz_block_column *b, const double *x, double *z);
     /** z := D'x */
     void (*upper)(const ritz_block_column *b, const double *x, double *z);
-    /** x -= B z, in rows of x or of the top. */
+    /** x -= B z, where the rows of B are in x, and in @p top for the others. */
     void (*scatter)(const ritz_block_column *b, int64_t from, int64_t to,
                     const double *z, double *x, double *top);
-    /** z += B'x, from rows of x or of the top. */
+    /** z += B'x, with the same rows. */
     void (*gather)(const ritz_block_column *b, int64_t from, int64_t to,
                    const double *x, const double *top, double *z);
 } ritz_tile_width;
@@ -54,17 +57,19 @@ typedef struct ritz_tiles {
     void (*inner)(int64_t rows, const double *A, const double *X, double *C);
     /** X += A C, A and X rows x 8, C 8 x 8. */
     void (*outer)(int64_t rows, const double *A, const double *C, double *X);
-    /** Rows [from, to) of Y := A X, X and Y 8 wide, rows of A as of a CSR. */
+    /** Rows [from, to) of Y := A X, X and Y with 8 numbers a row. Row i of the
+     * sparse A has the entries [start[i], start[i + 1]) of @p col and @p val.
+     * */
     void (*times)(int64_t from, int64_t to, const int64_t *start,
                   const int32_t *col, const double *val, const double *X,
                   double *Y);
 } ritz_tiles;
 
-/** The widest that this processor has. RITZ_TILES=128, 256 or 512 in the
- * environment asks for no wider ones. */
+/** The kernels with the widest vectors that this processor has. The environment
+ * variable RITZ_TILES limits their width, in bits: 128, 256 or 512. */
 const ritz_tiles *ritz_tiles_here(void);
 
-/** Kernels of vectors of 2, 4 and 8 numbers. */
+/** Kernels for vectors of 2, 4 and 8 numbers (128, 256 and 512 bits). */
 extern const ritz_tiles ritz_tiles_2;
 extern const ritz_tiles ritz_tiles_4;
 extern const ritz_tiles ritz_tiles_8;

@@ -1,11 +1,11 @@
 /*
- * The kernels of tiles.h for vectors of LANES numbers: tiles_2.c, tiles_4.c and
- * tiles_8.c include this file, each compiled for the processors that have such
- * vectors.
+ * The kernels of tiles.h for vectors of LANES numbers. tiles_2.c, tiles_4.c and
+ * tiles_8.c define LANES and include this file; each is compiled for processors
+ * with such vectors.
  *
- * STRIP columns of a block are worked on at once and ROWS rows of a panel, so
- * that ROWS x STRIP sums stay in registers: 16 of them hold 4 x 2 vectors, and
- * 32 hold 8 x 2.
+ * Products are made for ROWS rows of a panel and at most MOST columns of a
+ * block at a time, so that their sums stay in registers: with 16 registers 4 x
+ * 2 vectors of sums, with the 32 of AVX-512 8 x 2.
  */
 #include "linear/tiles.h"
 
@@ -22,7 +22,7 @@ enum {
     MOST = LANES == 8 ? 16 : 2 * LANES, /* columns at once */
 };
 
-/* What one strip of `width` columns is, at most MOST of them. */
+/* How many of `width` columns are worked on at a time. */
 #define STRIP(width) ((width) < MOST ? (width) : MOST)
 
 /* y := a x, a one panel of k columns, x k x width, y 8 x width. */
@@ -82,7 +82,7 @@ INLINE void add_transposed(const int64_t width, const double *a, int64_t k,
         }
 }
 
-/* Where a row of B begins in its array: in x, or, if negative, in the top. */
+/* Index of the first number of a row of B, in x or, if negative, in the top. */
 INLINE int64_t index_of(const int64_t width, int32_t row)
 {
     return (int64_t)(row >= 0 ? row : ~row) * width;
