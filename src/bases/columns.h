@@ -113,7 +113,7 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                           int64_t count, const bool *keep,
                           ritz_column_kind kind, ritz_basis *basis);
 
-/** The modes that a request asks for. */
+/** Which modes a request asks for, by which engine, and counted or not. */
 ritz_span ritz_request_span(const ritz_request *request);
 
 /**

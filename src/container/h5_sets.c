@@ -255,7 +255,7 @@ static int64_t sum_words(int64_t bytes, const void *values)
     for (int64_t k = 0; k < bytes; k += 8) {
         uint64_t w = 0;
 
-        if (bytes - k >= 8) /* a number that the compiler knows: one load */
+        if (bytes - k >= 8) /* a constant size compiles to one load */
             memcpy(&w, at + k, 8);
         else
             memcpy(&w, at + k, (size_t)(bytes - k));
@@ -265,7 +265,7 @@ static int64_t sum_words(int64_t bytes, const void *values)
     return (int64_t)(h >> 1); /* a positive number for every reader */
 }
 
-/* The checksum of values, while HDF5 writes them. */
+/* A checksum of values that is computed while HDF5 writes them. */
 typedef struct sealing {
     int64_t bytes;
     const void *values;
@@ -289,7 +289,7 @@ static void begin_seal(int64_t bytes, const void *values, sealing *out)
     ritz_aside_begin(sum_values, out, bytes >= LARGE, &out->aside);
 }
 
-/* Write the checksum of a chunked data set, whose seal was ended. */
+/* Store the checksum of a chunked data set, once it is computed. */
 static ritz_status write_seal(hid_t set, const char *name, const sealing *seal)
 {
     RITZ_OWN(hid_t) plan = H5Dget_create_plist(set);

@@ -360,7 +360,7 @@ static const engine_row engines[] = {
     [RITZ_ENGINE_LOW_RANK] = {"low-rank", ritz_gramians_low_rank, false, false},
 };
 
-/* Engines that find modes find no Gramians. */
+/* The enum has engines that compute modes, too; these compute no Gramians. */
 static ritz_status refuse_modes(ritz_engine engine)
 {
     RITZ_REFUSE_IF(engine > RITZ_ENGINE_LOW_RANK, RITZ_ERR_ARGUMENT,

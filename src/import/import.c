@@ -16,7 +16,7 @@
  * left out too, as nothing moves there.
  */
 
-/* Whether the rows of a part that stay keep their order. */
+/* Whether the rows of a part that stay keep their order in the component. */
 static bool is_in_order(const ritz_part *part, const int64_t *stays)
 {
     int64_t last = -1;
@@ -31,7 +31,8 @@ static bool is_in_order(const ritz_part *part, const int64_t *stays)
     return true;
 }
 
-/* The matrix of a part whose rows keep their order, in the place of itself. */
+/* Remove the other rows and columns of such a part within its own arrays, which
+ * `out` takes over. */
 static ritz_status close_up_part(ritz_part *part, const int64_t *stays,
                                  int64_t n, ritz_sparse *out)
 {
@@ -65,9 +66,9 @@ static ritz_status close_up_part(ritz_part *part, const int64_t *stays,
 }
 
 /*
- * A(place, place) of the rows that stay, which takes the matrix of the part.
- * Zeros are left out, so that a dense and a sparse spelling of a matrix become
- * the same.
+ * A(place, place) of the rows that stay. The part loses its matrix: it is
+ * freed, or `out` takes over its arrays. Zeros are left out, so that a dense
+ * and a sparse spelling of a matrix give the same component.
  */
 static ritz_status scatter_part(ritz_part *part, const int64_t *stays,
                                 int64_t n, ritz_sparse *out)
@@ -186,8 +187,8 @@ static ritz_status place_alone(const ritz_row_names *names, ritz_grids *out)
     return RITZ_OK;
 }
 
-/* Move the parts into the component but for its grids, without rows that are
- * empty in K and M. */
+/* Move the parts into the component, without the rows that are empty in K and
+ * M. The grids of the component are set elsewhere. */
 static ritz_status settle_parts(ritz_parts *parts, const ritz_deck *deck,
                                 const ritz_row_names *names,
                                 ritz_component *component,

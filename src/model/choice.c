@@ -108,8 +108,8 @@ const ritz_choice_word ritz_choice_words[] = {
     {"damping", "TEXT", "'modal 0.01', instead of the component's own",
      RITZ_USES_DAMPING, RITZ_CHOICE_DAMPING, FIELD(damping), NULL, NULL, 0},
     {"engine", "WORD",
-     "how Gramians are found: auto, dense, modal, low-rank; modes: auto, "
-     "lanczos, arpack",
+     "how Gramians are computed: auto, dense, modal, low-rank; how modes "
+     "are: auto, lanczos, arpack",
      RITZ_USES_ENGINE, RITZ_CHOICE_ENUM, FIELD(engine), "engine",
      WORDS(engines)},
     {"among_hz", "F", "modal Gramians: of the modes up to this frequency",

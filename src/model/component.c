@@ -24,7 +24,7 @@ typedef struct settling {
     int64_t n;
     bool symmetrise; /* any asymmetry */
     double worst;
-    int64_t *work; /* of n numbers */
+    int64_t *work; /* n numbers for ritz_sparse_sweep_asymmetry() */
 } settling;
 
 static void settling_free(settling *s)
