@@ -42,8 +42,9 @@ choose() {
         END { print name[2 * turn % NR]; print name[(2 * turn + 1) % NR] }'
 }
 
-# A folder of libraries that takes the place of OpenBLAS's for LD_LIBRARY_PATH.
-# OpenBLAS is both BLAS and LAPACK: an empty library that needs both stands in.
+# Make a folder of libraries that replace OpenBLAS if LD_LIBRARY_PATH names it.
+# OpenBLAS is both BLAS and LAPACK. An empty library of its name that loads the
+# reference BLAS and LAPACK, stands in for it.
 substitute() {
     for name in blas lapack; do
         found=$(ls -d /usr/lib/*/$name/lib$name.so.3 2>/dev/null | head -n 1)

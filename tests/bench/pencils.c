@@ -1,9 +1,8 @@
 /*
- * bench_pencils [COUNT [SEARCHES]] - block Lanczos of COUNT random pencils of
- * 20 to 150 rows, 10000 unless another number is given, and the whole search of
- * SEARCHES ones of 650 to 899 rows, 60 unless given; and what was missed,
- * miscounted or inexact, by kind. Each is seeded by its number: a line names
- * every pencil with a fault.
+ * bench_pencils [COUNT [SEARCHES]] - run block Lanczos on COUNT random pencils
+ * (10000) of 20 to 150 rows, and ritz_eigen_sparse() on SEARCHES others (60) of
+ * 650 to 899 rows. Prints a table by kind of pencil: modes missed, wrong counts,
+ * largest errors; and a line for each pencil with a fault, with its seed.
  */
 #include "judged.h"
 #include "testing.h"
@@ -43,7 +42,7 @@ static void print_sum(const char *name, const sum_of_kind *s)
            s->orthogonal);
 }
 
-/* Of 650 to 899 rows. */
+/* ritz_eigen_sparse() on a pencil of 650 to 899 rows. */
 static void judge_large(uint64_t seed, pencil_verdict *out)
 {
     judge_search(seed, 650 + (int64_t)(seed * 37 % 250), out);

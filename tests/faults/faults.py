@@ -14,9 +14,10 @@ fault of each KIND (by default of all), at points spread over its run:
 The command must end with status 1, one sentence and no output. If a library
 does without the memory, status 0 and the same output as without a fault are
 right. A signal is a finding if it came in code of Ritz, or after an allocation
-of Ritz; otherwise the table counts it for the library. Archives of libraries
-are part of the tools: functions that are not in Ritz's own are theirs. A killed
-command leaves a complete output or none, and the next run removes its drafts.
+of Ritz; otherwise the table counts it for the library. The tools contain static
+archives of libraries: a function that is not in libritz.a or libritz_cli.a
+belongs to a library. A killed command leaves a complete output or none, and the
+next run removes its drafts.
 """
 import bisect
 import functools
@@ -35,7 +36,7 @@ KINDS = ("memory", "write", "disk", "kill")
 
 @functools.cache
 def own_functions(build):
-    """Names of the functions of Ritz, from its archives in a build folder."""
+    """Names of the functions in libritz.a and libritz_cli.a of a build."""
     lists = subprocess.run(
         ["nm", "--defined-only", build / "libritz.a", build / "libritz_cli.a"],
         capture_output=True, text=True, check=True).stdout
@@ -45,7 +46,7 @@ def own_functions(build):
 
 @functools.cache
 def program_functions(program):
-    """Addresses of the functions of a program, ascending, and their names."""
+    """Addresses of all functions in a program, ascending, and their names."""
     lists = subprocess.run(["nm", "-n", "--defined-only", program],
                            capture_output=True, text=True, check=True).stdout
     words = [line.split() for line in lists.splitlines()]
@@ -55,8 +56,8 @@ def program_functions(program):
 
 
 def is_own(program, offset):
-    """Whether the code at an offset in a tool is Ritz's. GCC's parts of a
-    function, NAME.cold or NAME.isra.0, are the function's."""
+    """Whether the function at an offset in a tool is one of Ritz. GCC splits
+    functions; the parts NAME.cold and NAME.isra.0 belong to NAME."""
     addresses, names = program_functions(program)
     at = bisect.bisect_right(addresses, offset) - 1
     build = pathlib.Path(program).resolve().parent.parent

@@ -7,9 +7,9 @@
  *     kill     the process is killed at the K-th call that writes
  *
  * The file RITZ_FAULT_LOG gets lines: "calls N", the number of calls; "failed
- * OBJECT+OFFSET", the program or library whose call failed, and where in it, in
- * hexadecimal digits; "signal OBJECT+OFFSET", the one whose code received a
- * signal.
+ * OBJECT+OFFSET", the program or library whose call failed, and the offset of
+ * the call in it, hexadecimal; "signal OBJECT+OFFSET", the same of the code that
+ * received a signal.
  */
 #define _GNU_SOURCE /* NOLINT: dladdr, and where a signal struck */
 #include <dlfcn.h>
@@ -57,7 +57,7 @@ static void put_line(const char *what, const char *more)
     (void)syscall(SYS_close, file);
 }
 
-/* Log the program or library that contains this code, and the place in it. */
+/* Log the program or library that contains this code, and its offset there. */
 static void put_object(const char *what, const void *code)
 {
     Dl_info info = {0};

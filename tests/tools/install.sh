@@ -47,7 +47,7 @@ rm -r moved/libexec
 expect 1 'ritz-walk'"'"', which a tool is installed with, is not there' \
     moved/bin/ritz-info chain.h5
 
-# the dynamic linker takes 20 ms for HDF5's libcurl and Kerberos alone
+# Shared, HDF5 loads libcurl and Kerberos, which alone takes 20 ms.
 for tool in there/bin/ritz-*; do
     works "${tool##*/} starts with few libraries" sh -c 'ldd "$1" >libraries &&
         ! grep -E "curl|krb5|hdf5|cholmod|mumps|scotch|slicot" libraries' - \

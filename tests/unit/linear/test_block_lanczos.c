@@ -24,10 +24,11 @@ static double residual_of(const ritz_shifted *S, ritz_dense *Phi, int64_t j,
 }
 
 /*
- * The lowest of the cube, threefold and sixfold ones with all their vectors:
- * eigenvalues err by the square of the residual and by rounding of A, eps of
- * its largest eigenvalue, and vectors are an inverse iteration better than
- * RITZ_LANCZOS_SETTLED.
+ * The k lowest eigenpairs of a cubic lattice, whose eigenvalues are simple,
+ * threefold or sixfold. The error of an eigenvalue is the square of the
+ * residual, which is negligible, and the rounding of A: some eps of its largest
+ * eigenvalue, 12. The residual is smaller than RITZ_LANCZOS_SETTLED, because
+ * the vectors have gone through one more inverse iteration.
  */
 static void check_cube(int64_t edge, double sigma, int64_t k, int64_t room)
 {
@@ -70,7 +71,7 @@ static void multiple_eigenvalues_are_all_found(void **state)
     ritz_set_threads(1);
 }
 
-/* 112 vectors instead of 212: several restarts. */
+/* Room for 112 vectors, where 212 would do without a restart. */
 static void restarts_lose_nothing(void **state)
 {
     (void)state;
@@ -78,9 +79,10 @@ static void restarts_lose_nothing(void **state)
     check_cube(12, -0.01, 20, 80);
 }
 
-/* A cube with masses on `heavy` points only has as many eigenvalues. */
-static ritz_status weigh_few(int64_t heavy, int64_t k, ritz_dense *X,
-                             double **lambda, ritz_lanczos_end *end)
+/* Search for k modes of a lattice in which only `heavy` points have mass: it
+   has `heavy` finite eigenvalues. */
+static ritz_status search_few_masses(int64_t heavy, int64_t k, ritz_dense *X,
+                                     double **lambda, ritz_lanczos_end *end)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
@@ -95,7 +97,7 @@ static ritz_status weigh_few(int64_t heavy, int64_t k, ritz_dense *X,
     return ritz_block_lanczos(&S, k, 0, X, lambda, &next, end);
 }
 
-static void few_masses_exhaust_the_iteration(void **state)
+static void a_search_ends_when_all_finite_modes_are_found(void **state)
 {
     const int64_t heavy[] = {3, 5, 8, 12, 16, 21};
 
@@ -106,19 +108,21 @@ static void few_masses_exhaust_the_iteration(void **state)
         double *nothing = NULL;
         ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
 
-        assert_ok(weigh_few(heavy[i], heavy[i] / 2, &X, &lambda, &end));
+        assert_ok(search_few_masses(heavy[i], heavy[i] / 2, &X, &lambda, &end));
         assert_int_equal(end, RITZ_LANCZOS_FOUND);
         assert_true(X.ncol >= heavy[i] / 2 && X.ncol <= heavy[i]);
-        assert_ok(weigh_few(heavy[i], heavy[i] + 1, &none, &nothing, &end));
+        assert_ok(
+            search_few_masses(heavy[i], heavy[i] + 1, &none, &nothing, &end));
         assert_int_equal(end, RITZ_LANCZOS_EXHAUSTED);
         assert_null(nothing);
         free(lambda);
     }
 }
 
-/* Three eigenvalues, twenty times each: a space of powers of one block has
-   eight vectors of each, and new directions the others. */
-static void new_directions_find_further_copies(void **state)
+/* Three eigenvalues, each twenty-fold. The Krylov space of a block of eight
+   holds eight vectors of each; the others are found from the random vectors
+   that then continue the iteration. */
+static void random_vectors_find_eigenvalues_of_high_multiplicity(void **state)
 {
     enum { COPIES = 20, DOFS = 3 * COPIES };
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
@@ -178,8 +182,8 @@ static void no_allocation_failure_leaks(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(multiple_eigenvalues_are_all_found),
     cmocka_unit_test(restarts_lose_nothing),
-    cmocka_unit_test(few_masses_exhaust_the_iteration),
-    cmocka_unit_test(new_directions_find_further_copies),
+    cmocka_unit_test(a_search_ends_when_all_finite_modes_are_found),
+    cmocka_unit_test(random_vectors_find_eigenvalues_of_high_multiplicity),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 

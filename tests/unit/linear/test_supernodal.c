@@ -11,7 +11,8 @@ enum { EDGE = 20, POINTS = EDGE * EDGE * EDGE };
 
 static const double ground = 0.01;
 
-/* X := A^-1 A X and its distance from X; the same bits again. */
+/* The largest error of A^-1 (A X); also checks that a second solve gives the
+   same bits. */
 static double solve_twice(const ritz_sparse *A, ritz_factor *F, int64_t columns)
 {
     RITZ_OWN(ritz_dense) X = {0}, Y = {0}, Z = {0};
@@ -31,10 +32,10 @@ static double solve_twice(const ritz_sparse *A, ritz_factor *F, int64_t columns)
 }
 
 /*
- * Errors are at most the condition number, 12.01 / 0.06, times some eps for
- * each of the few sums that an entry takes part in.
+ * The error is at most the condition number, 12.01 / 0.06 = 200, times some
+ * eps: 16, as an entry takes part in few sums.
  */
-static void any_threads_and_any_kernel_solve(void **state)
+static void every_kernel_and_number_of_threads_solves(void **state)
 {
     const char *const bits[] = {"128", "256", "512"};
     const int64_t columns[] = {1, 7, 8, 9, 16, 20};
@@ -57,9 +58,9 @@ static void any_threads_and_any_kernel_solve(void **state)
     ritz_set_threads(1);
 }
 
-/* Every row has one place; rows of one pattern that follow each other stay
-   together. */
-static void an_order_is_a_permutation_of_grids(void **state)
+/* Each row occurs once in the order, and the two rows of a grid follow each
+   other. */
+static void an_order_keeps_the_rows_of_a_grid_together(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0}, both = {0};
     int64_t *order = NULL;
@@ -91,9 +92,9 @@ static void an_order_is_a_permutation_of_grids(void **state)
     free(place);
 }
 
-/* As many negative pivots as eigenvalues below the shift, in whichever order
-   the rows are taken. */
-static void inertia_counts_eigenvalues(void **state)
+/* K - shift M has as many negative pivots as eigenvalues of the pencil are
+   below the shift, in the order given and in that of MUMPS. */
+static void negative_pivots_count_eigenvalues_below_a_shift(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     double *lambda = lattice_eigenvalues(14, 0.0);
@@ -139,9 +140,9 @@ static void no_allocation_failure_leaks(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(any_threads_and_any_kernel_solve),
-    cmocka_unit_test(an_order_is_a_permutation_of_grids),
-    cmocka_unit_test(inertia_counts_eigenvalues),
+    cmocka_unit_test(every_kernel_and_number_of_threads_solves),
+    cmocka_unit_test(an_order_keeps_the_rows_of_a_grid_together),
+    cmocka_unit_test(negative_pivots_count_eigenvalues_below_a_shift),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
