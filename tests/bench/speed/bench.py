@@ -1,10 +1,11 @@
 #!/usr/bin/python3 -s
-"""bench.py FOLDER-OF-THE-TOOLS [--quick] - the tools beside other people's
-programs on the same matrices, in one run: times of whole processes, memory,
-residuals, agreement, and the targets of targets.toml with pass or fail.
+"""bench.py FOLDER-OF-THE-TOOLS [--quick] - measure the tools and other people's
+programs on the same matrices in one run: seconds of whole processes, memory,
+residuals, differences of eigenvalues; and compare with targets.toml.
 
-Results go to build/bench/results.json, tables to standard output; page.py makes
-docs/benchmarks.md of the results. Status 0 whatever the verdicts.
+Results are written to build/bench/results.json, tables to standard output.
+page.py makes docs/benchmarks.md from the results. The status is 0 even if
+targets are missed.
 """
 import argparse
 import json
@@ -81,7 +82,7 @@ def measure(shop):
 
 
 def folder_in_memory():
-    """tmpfs where there is room for the models, else where TMPDIR says."""
+    """A folder in tmpfs if the models fit there, else in TMPDIR."""
     shared = pathlib.Path("/dev/shm")
     if shared.is_dir() and shutil.disk_usage(shared).free > 4e9:
         return shared

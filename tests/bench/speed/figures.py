@@ -1,5 +1,6 @@
-"""Measurements that are more than one process: each gives figures of a model,
-{name: {value, detail}}, or raises Failed or Unknown with the reason."""
+"""Measurements that take more than one process. Each function returns figures
+of a model, {name: {value, detail}}, or raises Failed or Unknown with the
+reason."""
 import pathlib
 import shlex
 import shutil
@@ -17,14 +18,16 @@ HERE = pathlib.Path(__file__).resolve().parent
 DUALSPIN = HERE.parents[2] / "data" / "dualspin"
 
 def rayleigh(low, high):
-    """a and b of D = a M + b K: 1 % at two frequencies in Hz."""
+    """a and b of D = a M + b K with 1 % of critical damping at two frequencies
+    [Hz]."""
     low, high = 2 * numpy.pi * low, 2 * numpy.pi * high
     return (f"rayleigh {0.02 * low * high / (low + high):.17g} "
             f"{0.02 / (low + high):.17g}")
 
 
 def channels(shop, model):
-    """The component with forces and displacements at two far corners."""
+    """Import the model with forces and displacements at two opposite
+    corners."""
     stem = shop.stem(model)
     path = stem.with_suffix(".channels.h5")
     if not path.exists():
@@ -42,8 +45,9 @@ def values(path):
 
 
 def response(shop, model):
-    """1000 points beside a factor at each of 28 of them, every 37th: what a
-    factor takes is the difference of 28 and 2 points over 26."""
+    """How many times faster ritz-frf computes 1000 points than with a factor at
+    each. The time of one factor is (time of 28 points - time of 2 points) / 26,
+    every 37th point with a factor of its own."""
     component, out = channels(shop, model), shop.out(model)
     common = ["ritz-frf", component, "--damping", rayleigh(1000, 3000),
               "--no-refine", "--from-hz", 10, "--to-hz", 3000]
@@ -70,7 +74,8 @@ METHODS = "craig-bampton,macneal-rubin,rubin,krylov,krylov-cms-fixed"
 
 
 def fit(shop, model):
-    """Processor seconds of a search, in bases of as many columns."""
+    """Processor seconds of ritz-fit over those of one Craig-Bampton basis with
+    as many columns as the result."""
     component, out = channels(shop, model), shop.out(model)
     found = shop.tool(
         "ritz-fit", component, "--methods", METHODS, "--damping", "modal 0.01",
@@ -105,7 +110,8 @@ FEW, MANY = 2, 102  # configurations
 
 
 def configuration(shop, model):
-    """What a configuration adds to COMPARE, beside stage one."""
+    """Time that each further configuration adds to COMPARE, over that of stage
+    one."""
     out = shop.out(model)
     hub = out / "hub.h5"
     shop.tool("ritz-import", *shop.import_words(model, port=False),
@@ -135,7 +141,8 @@ print(time.monotonic() - began)
 
 
 def import_output4(shop, model):
-    """Whole ritz-import, beside pyYeti's reading alone, without its start."""
+    """How many times faster the whole ritz-import is than the reading alone of
+    pyYeti, without the start of Python."""
     stem, out = shop.stem(model), shop.out(model)
     K, M = models.load(stem)[:2]
     spellings = {"text": output4.write_text, "binary": output4.write}
@@ -167,7 +174,7 @@ def slowest(times):
 
 
 def version(shop, _):
-    """Slowest --version, milliseconds."""
+    """Milliseconds of the tool whose --version is slowest."""
     tools = sorted(path.name for path in shop.bin.glob("ritz-*"))
     return {"version": slowest({tool: statistics.median(
         shop.tool(tool, "--version", quiet=False)["wall"]
@@ -175,7 +182,7 @@ def version(shop, _):
 
 
 def dualspin(shop, _):
-    """Slowest tool at work on the small models of the demo, milliseconds."""
+    """Milliseconds of the slowest tool on the dual-spin data."""
     folder = shop.folder / "dualspin"
     (folder / "build").mkdir(parents=True)
     for path in DUALSPIN.iterdir():
@@ -195,8 +202,8 @@ def dualspin(shop, _):
 
 
 def hankel(shop, model):
-    """Hankel values by projection, beside low-rank ADI, which may be stopped
-    before its end: the value is then less than the ratio."""
+    """How many times faster Hankel values are by projection than by low-rank
+    ADI. If ADI is stopped before its end, the ratio is at least this."""
     reason = shop.lacks("ritz-rank --engine projection")
     if reason:
         raise Unknown(reason)

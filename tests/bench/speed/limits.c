@@ -1,7 +1,8 @@
 /*
- * limits: what this machine can do, as one JSON object: products of dense
- * matrices in operations a second, and bytes read from memory a second, on as
- * many threads as OMP_NUM_THREADS says. The best of several tries.
+ * limits: measure how fast this machine is with OMP_NUM_THREADS threads, and print
+ * one JSON object: floating-point operations a second in products of dense
+ * matrices, and bytes read from memory a second. Each is the best of several
+ * tries.
  */
 #include <cblas.h>
 #include <omp.h>
@@ -62,7 +63,7 @@ static double measure_reading(void)
         total += sum;
     }
     free(x);
-    if (total < 1.0) /* the sums are wanted, or no compiler would make them */
+    if (total < 1.0) /* never, but so no compiler leaves the sums out */
         exit(1);
     return best;
 }

@@ -1,4 +1,4 @@
-"""What the machine is and can do, and what is installed on it."""
+"""What the machine is, how fast it is, and which packages are installed."""
 import datetime
 import json
 import os
@@ -19,14 +19,14 @@ LIBRARIES = ("libsuitesparse-dev", "libmumps-seq-dev", "libopenblas-openmp-dev",
 
 
 def environment(**more):
-    """That of this process without what sets threads."""
+    """The environment of this process without variables that set threads."""
     kept = {name: value for name, value in os.environ.items()
             if not THREADS.match(name) and not name.startswith("RITZ_")}
     return kept | more
 
 
 def said(*command):
-    """What a command prints; empty where there is no such command."""
+    """The output of a command; empty if there is no such command."""
     try:
         return subprocess.run(command, capture_output=True, text=True,
                               check=True).stdout.strip()
@@ -48,7 +48,7 @@ def memory():
 
 
 def packages():
-    """Versions of Debian's packages, those that are there."""
+    """Versions of the Debian packages that are installed."""
     found = {}
     for name in LIBRARIES:
         version = said("dpkg-query", "-W", "-f", "${Version}", name)
@@ -58,8 +58,8 @@ def packages():
 
 
 def busy():
-    """Processor seconds of everything on this machine since it started, and
-    those that its host took from it."""
+    """Processor seconds that all processes used since the machine started, and
+    those that its host gave to other machines."""
     words = pathlib.Path("/proc/stat").read_text().split("\n", 1)[0].split()
     user, nice, system, _, _, interrupt, soft, steal = map(int, words[1:9])
     return (user + nice + system + interrupt + soft + steal) / os.sysconf(
@@ -67,7 +67,7 @@ def busy():
 
 
 class Others:
-    """How much of the processors others use meanwhile."""
+    """The fraction of the processors that other processes use meanwhile."""
 
     def __init__(self, stopwatch):
         self.stopwatch = stopwatch
@@ -96,7 +96,8 @@ def describe(root):
 
 
 def limits(shop, cores):
-    """Operations and bytes a second, on one thread and on all cores."""
+    """Floating-point operations and bytes read a second, on one thread and on
+    all cores."""
     try:
         program = shop.program("limits")
     except Unknown as reason:

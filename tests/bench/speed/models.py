@@ -1,5 +1,6 @@
 #!/usr/bin/python3 -s
-"""models.py NAME FOLDER - the models on which speed is measured, as files.
+"""models.py NAME FOLDER - write the files of a model on which speed is
+measured.
 
 A model is a solid block or plate of steel with round holes, free in space, of
 8-node bricks with consistent mass (units kg m s). Its interface is sixteen
@@ -46,7 +47,8 @@ ELEMENTS_AT_ONCE = 60000  # entries of so many are held while they are summed
 
 @dataclasses.dataclass
 class Model:
-    """K and M hold both triangles; port holds rows, position a row a grid."""
+    """K and M have both triangles; port has the rows of the interface dofs, and
+    position a row for each grid."""
 
     K: scipy.sparse.csc_matrix
     M: scipy.sparse.csc_matrix
@@ -83,9 +85,10 @@ def element(edges):
 
 
 def assemble(bricks, matrix, n):
-    """Sum of one matrix over all bricks; zeros of the element are left out."""
+    """Assemble one matrix from all bricks; zeros of the element are left
+    out."""
     rows, columns = numpy.nonzero(numpy.tril(matrix) != 0)
-    # the lower triangle of the whole needs both of the element's
+    # the lower triangle of the sum has entries of both triangles of a brick
     rows, columns = (numpy.r_[rows, columns[rows != columns]],
                      numpy.r_[columns, rows[rows != columns]])
     dofs = (3 * bricks[:, :, None] + numpy.arange(3)).reshape(-1, 24)
@@ -131,7 +134,7 @@ def make(counts, lengths, holes=HOLES):
 
 
 def write_petsc(A, path):
-    """A sparse matrix as PETSc's MatLoad reads it, big-endian."""
+    """Write a sparse matrix as PETSc's MatLoad reads it, big-endian."""
     A = A.tocsr()
     A.sort_indices()
     with open(path, "wb") as file:
@@ -155,7 +158,7 @@ def write_grids(model, stem):
 
 
 def write_calculix(model, path):
-    """The mesh; the peer adds its steps and reads it by *INCLUDE."""
+    """Write the mesh; peer_calculix.sh adds steps and reads it by *INCLUDE."""
     with open(path, "w", encoding="ascii") as deck:
         deck.write("*NODE,NSET=NALL\n")
         deck.writelines(f"{k},{x:.12g},{y:.12g},{z:.12g}\n"
@@ -198,7 +201,7 @@ def load_port(stem):
 
 
 def load(stem):
-    """K, M, the interface dofs and positions, of NAME.npz."""
+    """Read K, M, the interface dofs and the positions from NAME.npz."""
     with numpy.load(pathlib.Path(stem).with_suffix(".npz")) as f:
         K, M = (scipy.sparse.csc_matrix(
             (f[f"{c}_data"], f[f"{c}_indices"], f[f"{c}_indptr"]), f["shape"])

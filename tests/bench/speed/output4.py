@@ -1,8 +1,9 @@
-"""Sparse matrices as NASTRAN OUTPUT4 files, binary or text, both triangles.
+"""Write sparse matrices as NASTRAN OUTPUT4 files, binary or text.
 
-A column is a record: its number, zero, its length in words of four bytes; then
-strings of rows that follow each other, each headed by its length + 1 and its
-first row ("bigmat", which the negative number of rows announces).
+The columns are stored in the form "bigmat", which a negative number of rows in
+the header marks. A column is a record: its number, zero, its length in words of
+four bytes, then its strings. A string is a run of consecutive rows: its length
+in words + 1, its first row, the values.
 """
 import numpy
 
@@ -11,7 +12,8 @@ COLUMNS_AT_ONCE = 50000
 
 
 def strings(A):
-    """First entry of each string, and the first string of each column."""
+    """Index of the first entry of each string, and of the first string of each
+    column."""
     begins = numpy.ones(A.nnz, bool)
     begins[1:] = numpy.diff(A.indices) != 1
     begins[A.indptr[:-1]] = True  # every column of K and M has a diagonal
@@ -20,11 +22,11 @@ def strings(A):
 
 
 def pack_columns(A, number):
-    """Records of the columns of A, the first of which is column `number`."""
+    """Records of the columns of A, numbered from `number` on."""
     first, of_column = strings(A)
     length = numpy.diff(numpy.r_[first, A.nnz])
     column = numpy.repeat(numpy.arange(A.shape[1]), numpy.diff(of_column))
-    # words of a record: two marks, three of its head, its strings
+    # a record has two marks, three words of its header, and its strings
     words = 2 * numpy.diff(A.indptr) + 2 * numpy.diff(of_column)
     start = numpy.r_[0, numpy.cumsum(words + 5)]
     out = numpy.empty(start[-1], "<i4")
@@ -32,7 +34,7 @@ def pack_columns(A, number):
     out[start[:-1] + 1] = number + numpy.arange(A.shape[1])
     out[start[:-1] + 2] = 0
     out[start[:-1] + 3] = words
-    # a string stands behind the heads of its column and those before it
+    # words before a string: headers of all columns and strings up to it
     head = (2 * first + 2 * numpy.arange(len(first))
             + 5 * column + 4)
     out[head], out[head + 1] = 2 * length + 1, A.indices[first] + 1
@@ -44,7 +46,7 @@ def pack_columns(A, number):
 
 
 def write(path, **matrices):
-    """Binary, matrices by name."""
+    """Write a binary file of the matrices {name: A}."""
     with open(path, "wb") as file:
         def record(*parts):
             body = b"".join(parts)
@@ -65,7 +67,7 @@ def write(path, **matrices):
 
 
 def write_text(path, **matrices):
-    """Text, seventeen digits, three values a line."""
+    """Write a text file, 17 digits, three values a line."""
     with open(path, "w", encoding="ascii") as file:
         for name, A in matrices.items():
             A = A.tocsc()

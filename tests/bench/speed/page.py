@@ -1,6 +1,6 @@
 #!/usr/bin/python3 -s
-"""page.py - docs/benchmarks.md of the last results of bench.py, in
-build/bench/results.json; text() is the same tables for a terminal."""
+"""page.py - write docs/benchmarks.md from the last results of bench.py, in
+build/bench/results.json; text() makes the same tables for a terminal."""
 import json
 import pathlib
 import sys
@@ -10,12 +10,12 @@ from targets import NOT_ASKED
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 RESULTS = ROOT / "build" / "bench" / "results.json"
 
-# Blocks of eight right-hand sides that block Lanczos needs for 50 modes to
-# 1e-10: measured on solids and on plates. Six more are 48 columns.
+# How many solves of eight right-hand sides block Lanczos takes for 50 modes to
+# 1e-10, measured on solids and on plates; six more solve for 48 columns.
 BLOCKS = {"S": 32, "P": 21}
 COLUMN_BLOCKS = 6
-DISTURBED = 0.05  # of the processors, by others
-SWEEP_BYTES = 2 * 8  # forward and backward, an entry of the factor each
+DISTURBED = 0.05  # warn if others used more than this part of the processors
+SWEEP_BYTES = 2 * 8  # a solve reads each entry of the factor twice
 
 JOB_HEAD = ["program", "seconds", "least - most", "of processor", "peak MB",
             "residual", "eigenvalues", "at least", "phases, seconds"]
@@ -26,7 +26,7 @@ MODEL_HEAD = ["model", "dofs", "entries of K", "of M", "of the factor",
 
 
 def number(value, digits=3):
-    """As short as `digits` figures allow, without 1.2e+02."""
+    """A number with `digits` digits, never as 1.2e+02."""
     if value is None:
         return ""
     if value == 0 or 1e-3 <= abs(value) < 1e5:
@@ -36,7 +36,8 @@ def number(value, digits=3):
 
 
 def rates(result):
-    """Operations and bytes a second on all cores; None if not measured."""
+    """Floating-point operations and bytes read a second, on all cores; None if
+    they were not measured."""
     limits = result.get("limits")
     if not limits:
         return None
@@ -45,8 +46,9 @@ def rates(result):
 
 
 def floor(result, model, job):
-    """Seconds below which no program gets that factors once (twice with a
-    count) at the speed of products and solves at that of memory."""
+    """The least seconds that the job can take on this machine: its factor (two
+    with a count) at the speed of dense products, and its solves at the speed at
+    which memory is read."""
     facts, rate = result["models"][model], rates(result)
     if not rate or "factor_flops" not in facts:
         return None
@@ -87,8 +89,9 @@ def job_rows(result, model):
 
 
 def merged(targets):
-    """Rows that were not measured for one reason become one; a model that was
-    not asked for has none beside one that was."""
+    """Join the rows of models that were not measured for the same reason. Rows
+    of models that were not requested are left out if another model has the
+    row."""
     asked = {row["what"] for row in targets if row["notes"] != NOT_ASKED}
     found = {}
     for row in targets:
@@ -153,7 +156,7 @@ def machine_lines(result):
 
 
 def as_text(head, rows):
-    """Columns as wide as they need; the last is left free."""
+    """A table in columns as wide as their text; the last is not padded."""
     widths = [max(len(row[i]) for row in [head, *rows])
               for i in range(len(head))]
     return "\n".join("  ".join(cell.ljust(width) for cell, width
@@ -192,17 +195,17 @@ def text(result):
 
 PAGE = """# Benchmarks
 
-How fast the tools are beside other people's programs, on the same matrices, in the same run. `./bootstrap bench` measures this; `./bootstrap bench --page` then writes this page from the results in `build/bench/results.json`. Nothing here is written by hand, and no figure is a promise: another machine has others.
+Times of the tools and of other people's programs for the same job, on the same matrices, in the same run. `./bootstrap bench` measures them; `./bootstrap bench --page` then writes this page from the results in `build/bench/results.json`. No line of it is written by hand. The figures are those of one machine and promise nothing for another.
 
 ## How it is measured
 
-- The models are solid blocks (S) and plates (P) of steel with two round holes, of 8-node bricks, free in space; the number is thousands of dofs, roughly. Their interface is sixteen grids, 48 dofs. `tests/bench/speed/models.py` makes them.
-- The job is Craig-Bampton: 50 modes with the interface held, to a residual of 1e-10, and the static response to each of 48 dofs. A peer solves for the interior alone: it reads PETSc's binary format, projects nothing and writes nothing. The tools read a container and write one.
-- Times are of whole processes. Each runs once to warm up; then all run in random order, all models mixed, and the median is shown. What takes long runs once. Files are in memory (tmpfs). The tools get `RITZ_SYNC=0` and choose their threads; SLEPc runs with one rank of two threads and with two ranks of one, and the better counts.
-- *Residual* is the largest |λ K⁻¹ M x - x| / |x| of the modes, computed by the harness with a factor of its own (SuperLU refined once, of larger models MUMPS). On a thin plate, what any factor rounds leaves 1e-10 to 1e-9. *Eigenvalues* is the largest relative difference from those of SLEPc; CalculiX makes its own matrices from the mesh and prints seven digits.
-- *At least* is what the machine allows for the same work: the operations of the factor (MUMPS's, by METIS; twice with a count) at the speed of dense products, and the factor read twice for each solve at the speed of memory. The tools are given {solid} blocks of eight vectors on solids and {plate} on plates, and {columns} more for the interface; SLEPc's solves are those that it did, a vector each. A factor that fits into the processor's cache is read faster than that.
-- *Peak* is the largest process; of SLEPc's ranks the sum.
-- *Verdict*: a row passes if its value is within the limit, *stretch* if it is within that better figure too. Rows for which a tool still lacks an option name it, and are measured once the tool has it. A model that was not asked for has no row beside others.
+- The models are solid blocks (S) and plates (P) of steel with two round holes, meshed with 8-node bricks and free in space; the number is roughly thousands of dofs. The interface has sixteen grids, 48 dofs. `tests/bench/speed/models.py` makes them.
+- The job is Craig-Bampton: 50 modes with the interface held, to a residual of 1e-10, and the static response to each of 48 dofs. Another program solves only for the interior: it reads matrices in PETSc's binary format, projects nothing and writes nothing. The tools read a container and write one.
+- Times are of whole processes. Each program runs once to warm up; then the runs of all programs and models are mixed in random order, and the median is shown. Programs that take long run once. Files are in memory (tmpfs). The tools get `RITZ_SYNC=0` and choose their threads; SLEPc runs with one rank of two threads and with two ranks of one, and the faster of both is compared.
+- *Residual* is the largest |λ K⁻¹ M x - x| / |x| of the modes, computed by the harness with a factor of its own: by SuperLU with one step of refinement, for larger models by MUMPS. On a thin plate the rounding of any factor leaves 1e-10 to 1e-9. *Eigenvalues* is the largest relative difference from those of SLEPc; CalculiX makes its own matrices from the mesh and prints seven digits.
+- *At least* is the time that this machine needs for the same work if nothing else takes time: the operations of the factor (as MUMPS counts them with METIS; two factors with a count) at the speed of dense products, and two readings of the factor for each solve at the speed of memory. For the tools, {solid} solves with blocks of eight vectors are assumed on solids and {plate} on plates, and {columns} more for the interface; for SLEPc the solves that it made, of one vector each. A factor that fits into the processor's cache is read faster.
+- *Peak* is the memory of the largest process; for SLEPc the sum over its ranks.
+- *Verdict*: `pass` if the value is within the limit, `stretch` if it is also within the better figure of that column. If a tool does not have the option yet, the row names it; it is measured as soon as the tool has it. Models that were not requested are left out where another model has the row.
 
 ## The machine
 

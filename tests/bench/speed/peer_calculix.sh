@@ -1,7 +1,7 @@
 #!/bin/sh
 # peer_calculix.sh NAME.inp FOLDER - the job by CalculiX from the mesh: 50 modes
-# with the interface held, then *SUBSTRUCTURE GENERATE. One JSON object; its
-# eigenvalues have seven digits.
+# with the interface held, then *SUBSTRUCTURE GENERATE. Prints one JSON object;
+# CalculiX gives eigenvalues with seven digits.
 set -eu
 mesh=$1
 mkdir -p "$2"

@@ -1,6 +1,6 @@
 """peer_exudyn.py NAME.npz - the job by Exudyn: 50 modes with the interface
-held, and static modes of its four patches, each moving rigidly. One JSON
-object."""
+held, and static modes of its four patches, each of which moves rigidly. Prints
+one JSON object."""
 import contextlib
 import io
 import json

@@ -1,5 +1,5 @@
-% peer_octave.m K M - the peer's job by Octave: eigs and a solve with 48
-% right-hand sides. PETSc matrices; one JSON object.
+% peer_octave.m K M - the job by Octave: eigs, and a solve with 48 right-hand
+% sides. K and M are files of PETSc. Prints one JSON object.
 1;
 
 function A = load_petsc (path)

@@ -1,6 +1,6 @@
-"""peer_scipy.py K M [MODES [COLUMNS]] - the peer's job by SciPy: eigsh in
-shift-invert mode on a factor of SuperLU in its symmetric mode. PETSc matrices;
-one JSON object."""
+"""peer_scipy.py K M [MODES [COLUMNS]] - the job by SciPy: eigsh in
+shift-invert mode with a factor of SuperLU in its symmetric mode. K and M are
+files of PETSc. Prints one JSON object."""
 import json
 import sys
 import time

@@ -1,15 +1,16 @@
 /*
- * peer_slepc: the job of Craig-Bampton without its ends, by SLEPc's
- * Krylov-Schur iteration and MUMPS, to compare speed with. Reads K and M of the
- * interior, finds the lowest modes by shift-invert at zero, and solves for as
- * many random right-hand sides as the interface has dofs. Prints one JSON
- * object: seconds of each phase, size of the factor, peak memory of all ranks.
+ * peer_slepc: the costly part of Craig-Bampton by SLEPc's Krylov-Schur iteration
+ * and MUMPS, to compare speed with. Reads K and M of the interior, computes the
+ * lowest modes by shift-invert at zero, and solves for as many random right-hand
+ * sides as the interface has dofs; nothing is projected or written. Prints one
+ * JSON object: seconds of each phase, size of the factor, peak memory of all
+ * ranks.
  *
  *   -stiffness FILE -mass FILE   PETSc binary
  *   -modes N -columns N          50 and 48
  *   -vectors FILE                write eigenvalues and vectors, on one rank
- *   -check FILE                  instead: largest |lambda K^-1 M x - x| / |x|
- *                                of the pairs of such a file, on one rank
+ *   -check FILE                  only print the largest |lambda K^-1 M x - x| /
+ *                                |x| of the pairs in such a file, on one rank
  *
  * A file of pairs holds two 64-bit integers, rows and pairs, the eigenvalues,
  * and the vectors one after the other.
@@ -66,7 +67,7 @@ static PetscErrorCode load(const char *path, Mat *A)
     return 0;
 }
 
-/* One Cholesky factor by MUMPS, of the matrix that ksp is given. */
+/* Make ksp solve with one Cholesky factor by MUMPS. */
 static PetscErrorCode choose_factor(KSP ksp, PC *pc)
 {
     PetscCall(KSPSetType(ksp, KSPPREONLY));
@@ -105,7 +106,7 @@ static PetscErrorCode find_modes(job *j)
     return 0;
 }
 
-/* What constraint modes cost: as many solves, of other right-hand sides. */
+/* Solve as often as constraint modes take, for random right-hand sides. */
 static PetscErrorCode solve_columns(job *j)
 {
     PetscLogDouble began, done;
@@ -144,7 +145,7 @@ static PetscErrorCode report(const job *j)
     PetscCall(STGetKSP(st, &ksp));
     PetscCall(KSPGetTotalIterations(ksp, &solves));
     PetscCall(PCFactorGetMatrix(j->pc, &F));
-    /* of all ranks; MUMPS gives more than 2^31 as millions, negative */
+    /* of all ranks; MUMPS returns more than 2^31 as minus so many millions */
     PetscCall(MatMumpsGetInfog(F, 29, &entries));
     PetscCall(MatMumpsGetRinfog(F, 3, &flops));
     getrusage(RUSAGE_SELF, &used);
@@ -217,7 +218,7 @@ static PetscErrorCode find_residual(KSP ksp, Mat M, PetscScalar value, Vec x,
     return 0;
 }
 
-/* Residuals of the pairs of a file, by a factor of our own. */
+/* Residuals of the pairs in a file, with a factor that is made for this. */
 static PetscErrorCode check_pairs(const job *j)
 {
     FILE *file = fopen(j->check, "rb");

@@ -1,5 +1,5 @@
-"""How good results are: residuals by a factor of our own, and eigenvalues of
-one program beside those of another."""
+"""How accurate results are: residuals with a factor that the harness makes, and
+differences between the eigenvalues of two programs."""
 import json
 
 import h5py
@@ -8,13 +8,13 @@ import scipy.sparse.linalg
 
 import models
 
-# SuperLU's factor of more takes minutes; MUMPS checks those, in peer_slepc
+# Rows above which SuperLU takes minutes, so that peer_slepc computes residuals.
 LARGEST_FOR_SUPERLU = 45000
 REFERENCES = "slepc-1x2", "scipy", "basis"
 
 
 class Unknown(Exception):
-    """Why there is nothing to measure."""
+    """Why something cannot be measured."""
 
 
 def values_of_basis(path):
@@ -36,7 +36,7 @@ def pairs_of_basis(path, interior):
 
 
 def read_pairs(path):
-    """As peer_slepc writes them."""
+    """Eigenvalues and vectors from a file of peer_slepc."""
     with open(path, "rb") as file:
         rows, count = numpy.fromfile(file, numpy.int64, 2)
         values = numpy.fromfile(file, float, count)
@@ -51,7 +51,8 @@ def write_pairs(path, values, vectors):
 
 
 def difference(values, others):
-    """Largest relative difference of the modes that both have."""
+    """Largest relative difference of two lists of eigenvalues, as far as both
+    go."""
     count = min(len(values), len(others))
     if count == 0:
         raise Unknown("no eigenvalues to compare")
@@ -60,9 +61,9 @@ def difference(values, others):
 
 
 class Residual:
-    """Largest |lambda K^-1 M x - x| / |x|, x being of the interior. K^-1 is
-    that of K itself: what the factor rounds is refined away once, with a
-    residual of long doubles, since on thin plates it is seen otherwise."""
+    """Largest |lambda K^-1 M x - x| / |x|, x being of the interior. Each solve
+    is refined once, with a residual in long doubles: on thin plates the
+    rounding of the factor would otherwise hide the residual of the modes."""
 
     def __init__(self, K, M):
         self.K, self.M = (A.tocsr().astype(numpy.longdouble) for A in (K, M))
@@ -83,7 +84,7 @@ class Residual:
 
 
 class PeersResidual:
-    """The same by MUMPS, which reads the matrices and a file of pairs."""
+    """The same by peer_slepc with MUMPS, from files of matrices and pairs."""
 
     def __init__(self, solve, path):
         self.solve, self.path = solve, path
@@ -94,8 +95,8 @@ class PeersResidual:
 
 
 def find_residual(solve, stem, interior, pairs):
-    """Whichever suits the size; None where no factor of MUMPS was seen to fit
-    in memory."""
+    """The one of the two that suits the size; None for large models of which
+    MUMPS has made no factor in this run, so that it may not fit in memory."""
     if len(interior) <= LARGEST_FOR_SUPERLU:
         K, M = (A[interior][:, interior] for A in models.load(stem)[:2])
         return Residual(K, M)
@@ -103,7 +104,7 @@ def find_residual(solve, stem, interior, pairs):
 
 
 def measure(shop, model, runs):
-    """Adds residuals and differences of eigenvalues to the runs of a model."""
+    """Add residuals and differences of eigenvalues to the runs of a model."""
     stem, out = shop.stem(model), shop.out(model)
     pairs = out / "slepc.pairs"
 

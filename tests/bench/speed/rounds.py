@@ -1,5 +1,5 @@
-"""All jobs on all models: one round in the order of the table, which prepares
-what others read, then rounds in random order."""
+"""Run all jobs on all models: once in the order of the table, as some jobs read
+the results of others, then several rounds in random order."""
 import random
 import statistics
 
@@ -23,7 +23,7 @@ class Timing:
         self.samples = {}
 
     def attempt(self, job, model):
-        """Another sample; why it failed, if it did."""
+        """Run a job once more; keep the sample, or the reason of its failure."""
         say(self.shop, model, job)
         try:
             done = self.shop.run(job, model)
@@ -63,7 +63,7 @@ class Timing:
             lasts = self.shop.elapsed() - began
 
     def finish(self):
-        """Medians; the first run warms up, unless it is the only one."""
+        """Medians of all runs but the first, or of a single run."""
         for (model, job), samples in self.samples.items():
             counted = samples[1:] or samples
             run = {key: summary([done[key] for done in counted])

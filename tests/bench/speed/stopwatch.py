@@ -1,8 +1,9 @@
-"""Processes, timed from outside.
+"""Start processes and measure their time and peak memory.
 
-What the kernel says of a process's peak memory includes that of the one that
-started it. So a small server starts them: this file, run as a program, which
-imports little. It reads a request a line and answers with a line, both JSON.
+The peak that the kernel reports for a process is at least that of the process
+that forked it. So a small server starts them: this file, run as a program,
+which imports little. It reads one request a line and answers with one line,
+both JSON.
 """
 import json
 import os
@@ -13,7 +14,7 @@ import time
 
 
 class Failed(Exception):
-    """A process that did not end with status 0; what it said, in short."""
+    """A process did not end with status 0; the last words that it printed."""
 
     def __init__(self, why, late=False):
         super().__init__(why)
@@ -21,9 +22,9 @@ class Failed(Exception):
 
 
 class Stopwatch:
-    """Runs one process after the other; each as {wall, cpu, peak, out}:
-    seconds, seconds of all its processes, bytes of the largest of them, text
-    of standard output."""
+    """Runs one command after the other and returns {wall, cpu, peak, out}:
+    seconds, processor seconds of all its processes, bytes of the largest of
+    them, and the text of standard output."""
 
     def __init__(self):
         self.cpu = 0.0  # of all that ran
@@ -47,7 +48,7 @@ class Stopwatch:
         return answer
 
     def close(self):
-        """Also ends a process that still runs."""
+        """End the server, and a command that still runs."""
         self.server.stdin.close()
         self.server.terminate()
         self.server.wait()
@@ -65,7 +66,7 @@ def explain(status, error):
 
 
 def run(request):
-    """Output goes to files, which no process waits for."""
+    """Run a command. Its output goes to files, as a pipe could fill up."""
     out, err = (os.memfd_create(name) for name in ("out", "err"))
     os.chdir(request["folder"])
     actions = [(os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),

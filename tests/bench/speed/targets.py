@@ -1,4 +1,4 @@
-"""Rows of targets.toml and what measurements make of them."""
+"""The rows of targets.toml, evaluated with the results of a run."""
 import pathlib
 import tomllib
 
@@ -13,7 +13,7 @@ class NotMeasured(Exception):
 
 
 def read(path=PATH):
-    """Rows, each one of a model (None: of none)."""
+    """The targets, one row for each model (model None if they have none)."""
     rows = []
     for target in tomllib.loads(path.read_text())["target"]:
         stray = set(target) - KEYS
@@ -28,7 +28,8 @@ def read(path=PATH):
 
 
 class Measurements:
-    """Names that formulas use, of one model; notes what they looked up."""
+    """The functions that formulas call, for one model; keeps what they looked
+    up for the column of notes."""
 
     def __init__(self, result, model):
         self.model = model
@@ -101,7 +102,8 @@ class Measurements:
 
 
 def judge(row, value, vector_bits):
-    """pass or fail, stretch where that holds too; the limit."""
+    """The verdict (pass, stretch or fail; stated if there is no limit), and the
+    limit."""
     least = row.get("at_least")
     if least is not None and vector_bits < 256:
         least = row.get("at_least_128_bit", least)
@@ -118,7 +120,7 @@ def judge(row, value, vector_bits):
 
 
 def evaluate(result, rows=None):
-    """Verdicts, as what the report prints."""
+    """All rows with values and verdicts, for the report."""
     verdicts = []
     for row in rows or read():
         at = Measurements(result, row["model"])

@@ -1,6 +1,7 @@
 #!/usr/bin/python3 -s
-"""test.py FOLDER-OF-THE-TOOLS - the harness itself: its models are what they
-are said to be, its files are read, its tables are whole. TAP."""
+"""test.py FOLDER-OF-THE-TOOLS - test the harness: its models have the
+properties that they should, its files can be read, its tables have all rows.
+TAP."""
 import json
 import pathlib
 import re
@@ -46,7 +47,7 @@ def near(found, expected, sentence):
 
 
 def check_solid():
-    """Against closed forms of a block without holes."""
+    """Compare with closed forms of a block without holes."""
     block = models.make(COUNTS, LENGTHS, holes=0)
     volume, mass = numpy.prod(LENGTHS), models.RHO * numpy.prod(LENGTHS)
     x, y, z = block.position.T
@@ -90,7 +91,7 @@ def check_holes():
 
 
 def check_files(tools, folder):
-    """What ritz-import reads is what was made, to the bit."""
+    """Check that ritz-import reads the matrices that were made, bit for bit."""
     model = models.make(COUNTS, LENGTHS, holes=1)
     stem = folder / "block"
     models.write_grids(model, stem)
@@ -164,7 +165,7 @@ def check_verdicts():
 
 
 def check_page():
-    """One model, of which one job ran; no peer."""
+    """Make the page of a run of one model with one job and no peer."""
     one = {"median": 2.0, "least": 1.0, "most": 3.0, "runs": 3}
     facts = {"dofs": 3, "entries_K": 9, "entries_M": 3}
     result = {

@@ -1,4 +1,4 @@
-"""What a run works with: programs of ours and of others, models as files, and
+"""The programs of a run, ours and those of others, its files of models, and its
 processes."""
 import json
 import pathlib
@@ -22,12 +22,13 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1"}  # threads of small products only wait
 
 
 def say(shop, *what):
-    """Where a run is, on standard error."""
+    """Print on standard error what the run does now."""
     print(f"{shop.elapsed():8.1f} s ", *what, file=sys.stderr, flush=True)
 
 
 def build(name, compiler, libraries, folder):
-    """NAME.c of this folder as a command; else a text that says why not."""
+    """Compile NAME.c of this folder: a command, or a text that says why it
+    cannot be compiled."""
     flags = machine.said("pkg-config", "--cflags", "--libs", *libraries)
     if not flags:
         return f"pkg-config does not find {' and '.join(libraries)}"
@@ -48,14 +49,14 @@ def find(program, *command):
 
 
 def find_module(python, module, *command):
-    """A command of Python if it has the module."""
+    """The command of a Python if it has a module, else a text that says so."""
     if machine.said(python, "-c", f"import {module}; print(1)") != "1":
         return f"no {module} in build/interop"
     return [python, *command]
 
 
 class Workshop:
-    """Of one run."""
+    """Programs, files and processes of one run."""
 
     def __init__(self, arguments, stopwatch):
         self.bin = pathlib.Path(arguments.tools).resolve()
@@ -101,14 +102,14 @@ class Workshop:
         }
 
     def program(self, name):
-        """Its command; Unknown if it cannot be had."""
+        """The command of a program; raises Unknown if it is not available."""
         found = self.programs[name]
         if isinstance(found, str):
             raise quality.Unknown(found)
         return found
 
     def option(self, tool, option):
-        """What the help of a tool says of an option; None without it."""
+        """The lines of a tool's --help on an option; None if it has none."""
         if tool not in self.help:
             self.help[tool] = machine.said(self.bin / tool, "--help")
         text, within = [], False
@@ -178,7 +179,7 @@ class Workshop:
                               self.folder, self.limit)
 
     def command(self, job, model):
-        """Words with programs and files in their places."""
+        """The words of a job's command, with paths in place of names."""
         words = []
         for word in self.jobs[job]["command"].split():
             if word in self.programs:
@@ -191,8 +192,8 @@ class Workshop:
         return words
 
     def why_not(self, job, model):
-        """Why a job does not run on a model; None if it does; empty if it is
-        not meant to."""
+        """Why a job cannot run on a model; None if it can; "" if it is not
+        meant for this model."""
         row = self.jobs[job]
         if model not in row.get("models", [model]) or not self.wants(job):
             return ""
