@@ -1,11 +1,11 @@
-# What Ritz is made of: the libraries of other people.
+# The libraries that Ritz uses.
 #
-# `ritz_shared_uses` are shared libraries, for libritz.so. `ritz_uses` is what
-# the tools and tests are linked with: archives of the libraries that cost a
-# program most of its start. Shared, these bring 50 more that the dynamic linker
-# must search for each symbol (HDF5 alone brings libcurl, OpenSSL, GnuTLS and
-# Kerberos for a driver that Ritz never calls). OpenBLAS stays shared, so that
-# another BLAS can take its place.
+# libritz.so is linked with shared libraries (`ritz_shared_uses`). Tools and
+# tests are linked with `ritz_uses`: static archives of those libraries that
+# take most time when a program starts. As shared libraries these would load 50
+# more, all of which the dynamic linker searches for each symbol (HDF5 alone
+# loads libcurl, OpenSSL, GnuTLS and Kerberos for a driver that Ritz never
+# calls). OpenBLAS stays shared, so that another BLAS can be used in its place.
 find_package(PkgConfig REQUIRED)
 find_package(HDF5 REQUIRED COMPONENTS C)
 pkg_check_modules(ARPACK REQUIRED IMPORTED_TARGET arpack)
@@ -22,14 +22,15 @@ find_library(SUITESPARSE_CONFIG suitesparseconfig REQUIRED)
 find_library(DMUMPS dmumps_seq REQUIRED)
 find_library(ZMUMPS zmumps_seq REQUIRED)
 find_library(SLICOT slicot REQUIRED)
-# Of compilers that may not be here: only their libraries for programs are sure.
+# Their development packages may be missing; only the libraries that programs
+# load are sure to be installed.
 find_library(FORTRAN NAMES gfortran libgfortran.so.5)
 find_library(OPENMP NAMES gomp libgomp.so.1)
 find_library(METIS NAMES metis libmetis.so.5)
 mark_as_advanced(CHOLMOD SUITESPARSE_CONFIG DMUMPS ZMUMPS SLICOT FORTRAN OPENMP
     METIS)
 
-# What archives call that stays shared, if it is there.
+# Shared libraries that the archives call, as far as they are installed.
 set(ritz_beneath PkgConfig::BLAS PkgConfig::ZLIB)
 foreach(library FORTRAN OPENMP METIS)
     if(${library})
@@ -38,9 +39,9 @@ foreach(library FORTRAN OPENMP METIS)
 endforeach()
 list(APPEND ritz_beneath m)
 
-# prefer_archives(OUT FUNCTION SHARED ARCHIVE...): OUT becomes the archives, if
-# all are there and a program that calls FUNCTION can be linked with them, and
-# the list SHARED otherwise. An archive is libNAME.a, or a path.
+# prefer_archives(OUT FUNCTION SHARED ARCHIVE...) sets OUT to the list of
+# archives, if all exist and a program that calls FUNCTION links with them;
+# otherwise to the list SHARED. ARCHIVE is a path, or NAME for libNAME.a.
 include(CheckFunctionExists)
 function(prefer_archives out function shared)
     set(${out} ${shared} PARENT_SCOPE)
@@ -65,7 +66,8 @@ function(prefer_archives out function shared)
     endif()
 endfunction()
 
-# one HDF5 in a program: matio's too
+# Chosen together: a program must not contain the archive of HDF5 and load the
+# shared library with matio.
 set(hdf5 ${HDF5_C_LIBRARIES})
 list(FILTER hdf5 INCLUDE REGEX "/libhdf5[^/]*\\.so$")
 list(TRANSFORM hdf5 REPLACE "\\.so$" ".a")
@@ -85,7 +87,8 @@ set(ritz_shared_uses hdf5::hdf5 PkgConfig::LAPACKE PkgConfig::BLAS
     PkgConfig::YAML PkgConfig::ZLIB
     ${CHOLMOD} ${SUITESPARSE_CONFIG} ${DMUMPS} ${ZMUMPS} ${SLICOT} m)
 
-# Headers come from packages, whichever libraries are linked.
+# Include folders and definitions are the same for archives and shared
+# libraries.
 add_library(ritz_headers INTERFACE)
 foreach(package hdf5::hdf5 PkgConfig::LAPACKE PkgConfig::BLAS PkgConfig::ARPACK
         PkgConfig::MATIO PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML
