@@ -22,9 +22,9 @@
 /* ---- columns ------------------------------------------------------------ */
 
 /*
- * Columns that a file may declare beyond one for each of its bytes. A matrix of
- * ten million columns, nearly all null, is legal and takes 150 bytes; a limit
- * keeps such bytes from asking for all memory there is.
+ * A file may declare one column for each of its bytes, and so many more. A
+ * matrix of ten million columns, nearly all zero, is legal and takes 150 bytes;
+ * without a limit, a few damaged bytes could request all memory.
  */
 enum { NULL_COLUMNS = 32000000 };
 
@@ -34,7 +34,7 @@ static void name_column(ritz_output4_build *build)
              build->column + 1, build->header.name);
 }
 
-/* The reading of strings that is tried first. */
+/* How headers of strings are read at first. */
 static int64_t begin_rule(const ritz_output4_header *header)
 {
     return header->bigmat ? RITZ_OUTPUT4_BIGMAT : RITZ_OUTPUT4_WORDS;
@@ -62,7 +62,7 @@ static ritz_status begin_matrix(const ritz_output4_header *header, int64_t size,
     return RITZ_OK;
 }
 
-/* Begin a column, from 1; those between are null. */
+/* Begin a column, numbered from 1. Columns that were skipped are zero. */
 static ritz_status begin_column(ritz_output4_build *build, int64_t column)
 {
     RITZ_REFUSE_IF(column < 1 || column > build->header.ncol, RITZ_ERR_FORMAT,
@@ -80,7 +80,7 @@ static ritz_status begin_column(ritz_output4_build *build, int64_t column)
     return RITZ_OK;
 }
 
-/* Forget what this column got so far. */
+/* Remove the entries of this column that were read so far. */
 static void rewind_column(ritz_output4_build *build)
 {
     build->entries.count = build->first;
@@ -90,8 +90,8 @@ static void rewind_column(ritz_output4_build *build)
 
 /* ---- one matrix --------------------------------------------------------- */
 
-/* The strings of a column, of so many words, by one reading of their
-   headers. */
+/* Read the strings of a column, which take `words` words, with build->rule and
+   build->wide. */
 static ritz_status read_strings(ritz_output4_reader *r,
                                 ritz_output4_build *build, int64_t words)
 {
@@ -117,8 +117,9 @@ static ritz_status try_strings(ritz_output4_reader *r,
     return read_strings(r, build, words);
 }
 
-/* The reading whose strings add up, tried first the one that fitted last; if
- * none does, that one says what is wrong. */
+/* Read the strings of a column. Files do not say how headers of strings are to
+ * be read: the way that fitted last is tried first, then all others. If none
+ * fits, the error is that of the first. */
 static ritz_status read_sparse(ritz_output4_reader *r,
                                ritz_output4_build *build, int64_t words)
 {
@@ -158,8 +159,9 @@ bool ritz_output4_skip_columns(ritz_output4_reader *r,
     return !r->as->skip_last || r->as->skip_last(r, &build, n[2]) == RITZ_OK;
 }
 
-/* Entries that a matrix can hold, by its records or else by what is left of its
- * file: with room for these at once nothing is copied. */
+/* The largest number of entries that a matrix can have: by the lengths of its
+ * records, or of the rest of the file in text. With room for so many, arrays
+ * need not grow. */
 static int64_t most_entries(const ritz_output4_reader *r,
                             const ritz_output4_header *h)
 {

@@ -354,7 +354,7 @@ typedef struct ritz_pairs {
 typedef struct ritz_span {
     int64_t modes;   /* number of flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
-    bool arpack;     /* by ARPACK, to compare with block Lanczos */
+    bool arpack;     /* compute them by ARPACK, not by block Lanczos */
     bool uncounted;  /* skip the count that proves none missing */
 } ritz_span;
 

@@ -277,8 +277,8 @@
 #define RITZ_LANCZOS_SETTLED 1e-10
 /* Cholesky factor of the inner products of a block: a pivot that is a smaller
    part of its diagonal entry x'M x means that x depends on the vectors before
-   it, within 1e-3 of its length. Such blocks are orthonormalised vector by
-   vector, as the factor would lose six digits. */
+   it, within 1e-3 of its length. Such blocks are
+   orthonormalised vector by vector, because the pivot has lost six digits. */
 #define RITZ_GRAM_DEPENDENT 1e-6
 /* A vector without its components along a basis that is shorter than this part
    of what it was consists of rounding errors of the sums over all rows: it has

@@ -80,7 +80,7 @@ double ritz_row_matrix_terms(const ritz_row_matrix *A, const double *X, int j)
 
 /* --- products of blocks --------------------------------------------------- */
 
-/* One product; what it does not have is NULL. */
+/* The operands of one product; those that it does not have are NULL. */
 typedef struct block_task {
     const ritz_blocks *on;
     const ritz_row_matrix *A;

@@ -25,7 +25,7 @@ enum {
     RITZ_SQUARE = RITZ_BLOCK * RITZ_BLOCK, /* numbers of a small matrix */
 };
 
-/** What products of blocks of @p n rows need. */
+/** What all products of blocks of n rows have in common. */
 typedef struct ritz_blocks {
     int64_t n;
     int threads;
@@ -35,8 +35,12 @@ typedef struct ritz_blocks {
 } ritz_blocks;
 
 /**
- * @param[in] threads  at most what ritz_team_ready() returned
- * @param[in] most     blocks that ritz_blocks_project() is given at most
+ * Allocate the workspace of products of blocks.
+ *
+ * @param[in]  n        rows of each block
+ * @param[in]  threads  at most what ritz_team_ready() returned
+ * @param[in]  most     largest number of blocks for ritz_blocks_project()
+ * @param[out] out      freed by ritz_blocks_free()
  * @return RITZ_ERR_MEMORY
  */
 ritz_status ritz_blocks_new(int64_t n, int threads, int64_t most,
@@ -54,9 +58,12 @@ typedef struct ritz_row_matrix {
 } ritz_row_matrix;
 
 /**
- * Rows and columns of a symmetric A in another order; zeros are left out.
+ * Copy a symmetric A with its rows and columns in another order, without stored
+ * zeros.
  *
- * @param[in] order  n, the row of A that row k of the result is
+ * @param[in]  A      n x n, both triangles stored
+ * @param[in]  order  n numbers: row k of the copy is row order[k] of A
+ * @param[out] out    freed by ritz_row_matrix_free()
  * @return RITZ_ERR_MEMORY
  */
 ritz_status ritz_row_matrix_new(const ritz_sparse *A, const int64_t *order,
@@ -64,8 +71,8 @@ ritz_status ritz_row_matrix_new(const ritz_sparse *A, const int64_t *order,
 
 void ritz_row_matrix_free(ritz_row_matrix *A);
 
-/** |x_j|'|A||x_j| of vector @p j of a block, n eps of which bounds the rounding
- * error of x_j'A x_j. */
+/** |x_j|'|A||x_j| of vector @p j of a block. The rounding error of x_j'A x_j is
+ * at most n eps times this. */
 double ritz_row_matrix_terms(const ritz_row_matrix *A, const double *X, int j);
 
 /* --- products of blocks, n x 8 each --------------------------------------- */

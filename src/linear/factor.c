@@ -79,7 +79,7 @@ static ritz_status copy_diagonal(const ritz_sparse *A, double *a)
     return RITZ_OK;
 }
 
-/* d(k) = L(k,k): blocks of columns with common rows. */
+/* d(k) := L(k,k). L is stored in supernodes, columns with the same rows. */
 static void copy_pivots(const cholmod_factor *L, double *d)
 {
     const int64_t *super = L->super;

@@ -16,7 +16,7 @@
  * @param[out] negative  number of negative eigenvalues
  * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding;
  *         RITZ_ERR_ARGUMENT if an entry is not finite; RITZ_ERR_MEMORY
- * @cost   one factor by MUMPS, whose fronts alone are in memory
+ * @cost   one factor by MUMPS; memory holds only the part in work
  */
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    WIDTH = 8,          /* pairs at a time */
+    WIDTH = 8,          /* pairs that are assessed at a time */
     WORTHWHILE = 50000, /* one thread for each so many entries of K and M */
 };
 
@@ -20,7 +20,7 @@ typedef struct sums {
 typedef struct assessment {
     const ritz_sparse *K, *M;
     const ritz_pairs *P;
-    int64_t first, count; /* of the pairs */
+    int64_t first, count; /* pairs [first, first + count) */
     double *x;            /* their vectors, n x 8 row by row */
     sums *of;             /* of each thread */
 } assessment;
@@ -76,8 +76,8 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
     }
 }
 
-/* Residuals of the pairs [first, first + count). *scale becomes their largest
-   |x|'|K||x|, unless it is larger. */
+/* Residuals of the pairs [first, first + count). *scale is raised to the
+   largest of their |x|'|K||x|. */
 static void assess_eight(assessment *a, int threads, double *scale)
 {
     ritz_team_over(threads, a->K->nrow, lay_out_rows, a);

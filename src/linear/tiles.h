@@ -29,8 +29,8 @@ enum {
 typedef struct ritz_block_column {
     int64_t first, cols; /* columns of L */
     int64_t below;       /* rows of B */
-    const int32_t *row;  /* of each row of B: a row of x, or ~k, row k of the
-                            top, an array of its own */
+    const int32_t *row;  /* row i of B belongs to row row[i] of x; if row[i] is
+                            negative, to row ~row[i] of the array `top` */
     const double *diagonal, *panel;
 } ritz_block_column;
 

@@ -8,8 +8,8 @@
  *
  * The file RITZ_FAULT_LOG gets lines: "calls N", the number of calls; "failed
  * OBJECT+OFFSET", the program or library whose call failed, and the offset of
- * the call in it, hexadecimal; "signal OBJECT+OFFSET", the same of the code that
- * received a signal.
+ * the call in it, hexadecimal; "signal OBJECT+OFFSET", the same of the code
+ * that received a signal.
  */
 #define _GNU_SOURCE /* NOLINT: dladdr, and where a signal struck */
 #include <dlfcn.h>

@@ -1,8 +1,8 @@
 /*
- * limits: measure how fast this machine is with OMP_NUM_THREADS threads, and print
- * one JSON object: floating-point operations a second in products of dense
- * matrices, and bytes read from memory a second. Each is the best of several
- * tries.
+ * limits: measure how fast this machine is with OMP_NUM_THREADS threads, and
+ * print one JSON object: floating-point operations a second in products of
+ * dense matrices, and bytes read from memory a second. Each is the best of
+ * several tries.
  */
 #include <cblas.h>
 #include <omp.h>

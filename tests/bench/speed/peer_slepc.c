@@ -1,10 +1,10 @@
 /*
- * peer_slepc: the costly part of Craig-Bampton by SLEPc's Krylov-Schur iteration
- * and MUMPS, to compare speed with. Reads K and M of the interior, computes the
- * lowest modes by shift-invert at zero, and solves for as many random right-hand
- * sides as the interface has dofs; nothing is projected or written. Prints one
- * JSON object: seconds of each phase, size of the factor, peak memory of all
- * ranks.
+ * peer_slepc: the costly part of Craig-Bampton by SLEPc's Krylov-Schur
+ * iteration and MUMPS, to compare speed with. Reads K and M of the interior,
+ * computes the lowest modes by shift-invert at zero, and solves for as many
+ * random right-hand sides as the interface has dofs; nothing is projected or
+ * written. Prints one JSON object: seconds of each phase, size of the factor,
+ * peak memory of all ranks.
  *
  *   -stiffness FILE -mass FILE   PETSc binary
  *   -modes N -columns N          50 and 48

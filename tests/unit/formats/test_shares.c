@@ -85,8 +85,7 @@ static ritz_status compare_readings(const char *bytes, int64_t size)
     return status;
 }
 
-/* Compare readings of a file as it is, with one byte changed, and cut in half.
-   */
+/* Compare readings of a file as it is, with one byte changed, and cut short. */
 static void compare_damages(const char *path)
 {
     char *bytes = NULL;

@@ -77,7 +77,7 @@ static void projections_are_sums_over_all_rows(void **state)
     }
 }
 
-/* X + V C, by hand, of row r and vector j. */
+/* Row r of vector j of X + V C. */
 static double plain_sum(const products *p, int64_t r, int j)
 {
     double sum = p->X[r * B + j];
@@ -132,7 +132,7 @@ static void cholesky_of_the_inner_products_orthonormalises(void **state)
     ritz_square_invert(R, U);
     ritz_blocks_transform(&p.on, U, p.X);
     ritz_blocks_inner(&p.on, p.X, p.X, G);
-    for (int k = 0; k < SQUARE; k++) /* the columns are nearly orthogonal */
+    for (int k = 0; k < SQUARE; k++) /* condition of X is near 1 */
         assert_near(G[k], k % (B + 1) == 0 ? 1.0 : 0.0, N * DBL_EPSILON);
     ritz_square_multiply(R, U);
     for (int k = 0; k < SQUARE; k++)
@@ -150,7 +150,7 @@ static void a_dependent_vector_is_refused_by_the_cholesky_factor(void **state)
     assert_false(ritz_square_factor(G, R, 1e-12));
 }
 
-/* A product with rows in another order, a stored zero left out. */
+/* Row k of R is row order[k] of A, and stored zeros are not copied. */
 static void rows_of_a_matrix_follow_the_order(void **state)
 {
     int64_t row[] = {0, 1, 0, 1, 2, 2};

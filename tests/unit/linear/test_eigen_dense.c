@@ -74,8 +74,8 @@ static const spectrum spectra[] = {
     {4, {-3e-4, 1e-4, 1e4, 2e4}, 1e12, 2}, /* rounding, both signs */
     {3, {4e-3, 4.0, 9.0}, 4e9, 0},         /* boom: 0.01 Hz, 0.3 Hz, 25 kHz */
     {3, {12.4, 485.0, 3800.0}, 1e16, 0},   /* beam of 5000 elements */
-    {4, {-1e-2, 3e-2, 4e5, 5e5}, 1e9, 2},  /* ten digits show their noise */
-    {3, {-5.0, 100.0, 200.0}, 1e6, 0},     /* buckled */
+    {4, {-1e-2, 3e-2, 4e5, 5e5}, 1e9, 2},  /* K rounded to ten digits */
+    {3, {-5.0, 100.0, 200.0}, 1e6, 0},     /* buckled: negative */
     {8, {1e-2, 1e-2, 1e-2, 2e-2, 2e-2, 3e-2, 4e3, 5e3}, 1e9, 6}, /* a body */
     {9,
      {0, 0, 0, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 4e3},

@@ -93,7 +93,7 @@ static void an_order_keeps_the_rows_of_a_grid_together(void **state)
 }
 
 /* K - shift M has as many negative pivots as eigenvalues of the pencil are
-   below the shift, in the order given and in that of MUMPS. */
+   below the shift, with a given order and with one that is found. */
 static void negative_pivots_count_eigenvalues_below_a_shift(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
