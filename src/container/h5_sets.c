@@ -416,21 +416,22 @@ static herr_t move_piece(hid_t set, const ritz_h5_shape *piece, bool reads,
     const hsize_t start[2] = {i, j};
     const hsize_t count[2] = {smaller_of(piece->dims[0], all[0] - i),
                               smaller_of(piece->dims[1], all[1] - j)};
-    const hsize_t total = count[0] * count[1];
     RITZ_OWN(hid_t) space = H5Screate_simple(2, all, NULL);
-    RITZ_OWN(hid_t) memory = H5Screate_simple(1, &total, NULL);
+    /* of the piece's shape, or HDF5 goes from entry to entry */
+    RITZ_OWN(hid_t) memory = H5Screate_simple(2, count, NULL);
 
     H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
     if (reads &&
         H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, rows) < 0)
         return -1;
-    for (hsize_t c = 0; c < count[1]; c++)
-        for (hsize_t r = 0; r < count[0]; r++) {
-            double *a = ritz_dense_col(A, (int64_t)(j + c)) + i + r;
-            double *in_row = &rows[r * count[1] + c];
+    for (hsize_t c = 0; c < count[1]; c++) {
+        double *a = ritz_dense_col(A, (int64_t)(j + c)) + i;
 
-            *(reads ? a : in_row) = reads ? *in_row : *a;
-        }
+        for (hsize_t r = 0; reads && r < count[0]; r++)
+            a[r] = rows[r * count[1] + c];
+        for (hsize_t r = 0; !reads && r < count[0]; r++)
+            rows[r * count[1] + c] = a[r];
+    }
     return reads ? 0
                  : H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT,
                             rows);
