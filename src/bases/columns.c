@@ -108,9 +108,21 @@ typedef struct load_view {
     int64_t stride;
 } load_view;
 
-static double load_entry(const load_view *load, int64_t i)
+/* x := the load, x zero before. */
+static void take_load(const load_view *load, int64_t n, double *x)
 {
-    return load->val ? load->val[i * load->stride] : i == load->row;
+    if (load->row >= 0)
+        x[load->row] = 1.0;
+    for (int64_t i = 0; load->val && i < n; i++)
+        x[i] = load->val[i * load->stride];
+}
+
+static bool is_zero_load(const load_view *load, int64_t n)
+{
+    for (int64_t i = 0; load->val && i < n; i++)
+        if (load->val[i * load->stride] != 0.0)
+            return false;
+    return load->val != NULL;
 }
 
 /* An iterator over the loads that are not zero. */
@@ -165,9 +177,8 @@ static bool next_load(load_walk *w, load_view *out)
         while ((w->loads & kinds[w->kind].bit) &&
                find_load(w->request, w->kind, w->at, out)) {
             w->at++;
-            for (int64_t i = 0; i < w->request->component->num_dofs; i++)
-                if (load_entry(out, i) != 0.0)
-                    return true;
+            if (!is_zero_load(out, w->request->component->num_dofs))
+                return true;
         }
     return false;
 }
@@ -220,8 +231,7 @@ ritz_status ritz_loads_collect(const ritz_request *request, int loads,
     RITZ_CHECK_NEW(row, count);
     for (int64_t k = 0; next_load(&w, &load); k++) {
         row[k] = load.row;
-        for (int64_t i = 0; i < n; i++)
-            ritz_dense_col(&columns, k)[i] = load_entry(&load, i);
+        take_load(&load, n, ritz_dense_col(&columns, k));
     }
     RITZ_MOVE(*F, columns);
     RITZ_MOVE(*dof, row);

@@ -24,7 +24,7 @@
 #include <lapacke.h>
 #include <math.h>
 
-enum { MOST_SWEEPS = 60 };
+enum { MOST_SWEEPS = 60, SLOW_SWEEPS = 8 };
 
 void ritz_free_set_free(ritz_free_set *set)
 {
@@ -38,9 +38,12 @@ void ritz_free_set_free(ritz_free_set *set)
  * A shift below the lowest flexible mode makes the iteration contract fast and
  * A well conditioned. If that mode is not kept, its frequency is computed here;
  * if there is none, the shift follows from the magnitude of the matrices.
+ *
+ * *slow: sweeps in which the change may stay as it is. None where the mode is
+ * known, as each sweep leaves RITZ_SHIFT_OF_FIRST of the error at most.
  */
 static ritz_status choose_shift(const ritz_component *component,
-                                const ritz_pairs *modes, double *out)
+                                const ritz_pairs *modes, double *out, int *slow)
 {
     const ritz_span one = {.modes = 1};
     double K = ritz_sparse_max(&component->K);
@@ -54,6 +57,7 @@ static ritz_status choose_shift(const ritz_component *component,
             ritz_eigen_sparse(&component->K, &component->M, &one, &first));
         known = &first;
     }
+    *slow = known->Phi.ncol > known->num_rigid ? 0 : SLOW_SWEEPS;
     if (known->Phi.ncol > known->num_rigid)
         *out = RITZ_SHIFT_OF_FIRST * known->lambda[known->num_rigid];
     else
@@ -136,13 +140,14 @@ static ritz_status find_residual(const ritz_request *request,
     const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
     double s = 0.0;
     double change = 1.0, best = HUGE_VAL;
+    int slow = 0;
     RITZ_OWN(ritz_sparse) A = {0};
     RITZ_OWN(ritz_factor) *L = NULL;
     RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
     RITZ_OWN_ARRAY double *least = NULL;
 
     RITZ_CHECK_NEW(least, set->F.ncol);
-    RITZ_CHECK(choose_shift(request->component, &set->modes, &s));
+    RITZ_CHECK(choose_shift(request->component, &set->modes, &s, &slow));
     RITZ_CHECK(ritz_sparse_add(1.0, &request->component->K, s, M, &A));
     RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
     RITZ_CHECK(find_scales(set, request->tolerance, L, response, least));
@@ -155,7 +160,7 @@ static ritz_status find_residual(const ritz_request *request,
     for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
         RITZ_CHECK(iterate_residual(L, M, s, &G, least, &set->Psi, &change));
         RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &set->Psi));
-        if (k > 8 && change > 0.5 * best)
+        if (k > slow && change > 0.5 * best)
             break; /* rounding has become larger than contraction */
         best = fmin(best, change);
     }
