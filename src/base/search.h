@@ -1,4 +1,5 @@
-/* Searching ascending numbers, sorting, and enumerating combinations. */
+/* The larger of two numbers, searching ascending ones, sorting, and enumerating
+ * combinations. */
 #ifndef RITZ_BASE_SEARCH_H
 #define RITZ_BASE_SEARCH_H
 
@@ -47,6 +48,12 @@ static inline int64_t ritz_upper_bound(int64_t count, const double *sorted,
             count = middle;
     }
     return low;
+}
+
+/** fmax(@p a, @p b) without a call; @p a where @p b is not a number. */
+static inline double ritz_larger(double a, double b)
+{
+    return b > a ? b : a;
 }
 
 /** For qsort: numbers in ascending order. */

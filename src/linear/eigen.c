@@ -28,20 +28,6 @@ ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
     return RITZ_OK;
 }
 
-ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
-                               double tau, const int64_t *order, int64_t *out)
-{
-    RITZ_OWN(ritz_sparse) A = {0};
-    RITZ_OWN(ritz_ldl) *F = NULL;
-
-    RITZ_CHECK(ritz_eigen_refuse(K->nrow, K->ncol, M->nrow, M->ncol));
-    RITZ_REFUSE_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
-                   "modes below %g cannot be counted", tau);
-    RITZ_CHECK(ritz_sparse_add(1.0, K, -tau, M, &A));
-    ritz_monitor_step("count of modes", 0, 0);
-    return ritz_ldl_ordered(&A, order, out, &F);
-}
-
 ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
                              double tau, int64_t *out)
 {

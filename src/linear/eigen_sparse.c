@@ -81,8 +81,8 @@ static ritz_status survey_pencil(search *s)
         double m = ritz_sparse_diagonal(M, j);
         bool heavy = false;
 
-        for (int64_t p = M->colptr[j]; p < M->colptr[j + 1]; p++)
-            heavy = heavy || M->val[p] != 0.0;
+        for (int64_t p = M->colptr[j]; p < M->colptr[j + 1] && !heavy; p++)
+            heavy = M->val[p] != 0.0;
         if (heavy)
             s->heavy[s->num_heavy++] = j;
         if (k > 0.0 && m > 0.0)

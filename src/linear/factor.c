@@ -14,6 +14,7 @@
 #include "base/alloc.h"
 #include "base/team.h"
 #include "base/tolerances.h"
+#include "linear/blas_threads.h"
 #include "linear/ordering.h"
 #include "linear/supernodal.h"
 
@@ -194,8 +195,12 @@ static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
         C->common.method[0].ordering = CHOLMOD_GIVEN;
     }
     C->L = cholmod_l_analyze_p(&view, order, NULL, 0, &C->common);
-    if (C->L)
+    if (C->L) {
+        const int before = ritz_blas_threads_for(C->common.fl);
+
         cholmod_l_factorize(&view, C->L, &C->common);
+        ritz_blas_threads(before);
+    }
     RITZ_REFUSE_IF(C->common.status == CHOLMOD_OUT_OF_MEMORY ||
                        C->common.status == CHOLMOD_TOO_LARGE,
                    RITZ_ERR_MEMORY,

@@ -21,17 +21,33 @@
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);
 
+/** Counts of eigenvalues below several values, for which the patterns of K and M
+ * are united and ordered once. */
+typedef struct ritz_counter ritz_counter;
+
 /**
- * ritz_eigen_count(), with the order of rows of another factor of the same
- * pattern, so that no new one has to be found.
- *
- * @param[in] order  as for ritz_inertia_negative()
+ * @param[in] K,M    n x n, symmetric, M semidefinite; borrowed until the counter
+ *                   is freed
+ * @param[in] order  as for ritz_inertia_negative(), copied
+ * @return RITZ_ERR_ARGUMENT if their sizes differ or an entry is not finite
  */
+ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
+                             const int64_t *order, ritz_counter **out);
+
+/**
+ * Eigenvalues of the pencil below @p tau. Between two counts no factor is held.
+ *
+ * @return RITZ_ERR_SINGULAR if K - tau M is singular to working accuracy: an
+ *         eigenvalue is at tau; RITZ_ERR_ARGUMENT if tau is not finite
+ * @cost   an LDL' factor and three solves
+ */
+ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below);
+
+void ritz_counter_free(ritz_counter **C);
+
+/** One count, as ritz_eigen_count(). @param[in] order  as for
+ * ritz_inertia_negative() */
 ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
                                double tau, const int64_t *order, int64_t *out);
-
-/** ritz_ldl_new(). @param[in] order  as for ritz_inertia_negative() */
-ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
-                             int64_t *negative, ritz_ldl **out);
 
 #endif

@@ -3,7 +3,9 @@
  * L U, complex.
  */
 #include "base/alloc.h"
+#include "base/search.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 #include "linear/inertia.h"
 #include "linear/ordering.h"
 
@@ -28,7 +30,13 @@ enum {
 };
 
 /* MUMPS's numbers for its jobs. */
-enum { START = -1, END = -2, ANALYSE = 1, FACTOR = 2, SOLVE = 3 };
+enum {
+    START = -1,
+    END = -2,
+    ANALYSE = 1,
+    FACTOR = 2,
+    SOLVE = 3,
+};
 
 /* Indices from zero of the control arrays: ICNTL(k) of the manual is k - 1. */
 enum {
@@ -77,6 +85,10 @@ struct ritz_ldl {
 };
 
 struct ritz_zldl {
+    mumps_factor of;
+};
+
+struct ritz_counter {
     mumps_factor of;
 };
 
@@ -277,7 +289,7 @@ static ritz_status place_rows(int64_t count, const ritz_sparse *const *A,
     return RITZ_OK;
 }
 
-static ritz_status prepare_factor(int64_t count, const ritz_sparse *const *A,
+static ritz_status unite_matrices(int64_t count, const ritz_sparse *const *A,
                                   const int64_t *order, mumps_factor *F)
 {
     RITZ_CHECK(unite_patterns(count, A, F));
@@ -288,6 +300,13 @@ static ritz_status prepare_factor(int64_t count, const ritz_sparse *const *A,
     for (int64_t k = 0; k < count; k++)
         F->A[k] = *A[k];
     F->count = count;
+    return RITZ_OK;
+}
+
+static ritz_status prepare_factor(int64_t count, const ritz_sparse *const *A,
+                                  const int64_t *order, mumps_factor *F)
+{
+    RITZ_CHECK(unite_matrices(count, A, order, F));
     return F->n > 0 ? analyse_pattern(F) : RITZ_OK;
 }
 
@@ -304,7 +323,7 @@ static void add_values(const ritz_sparse *A, double _Complex c, mumps_factor *F)
             if (!F->whole && A->rowind[p] < j)
                 continue;
             if (F->width == 1)
-                F->val[F->at[A->rowind[p]]] += A->val[p];
+                F->val[F->at[A->rowind[p]]] += creal(c) * A->val[p];
             else
                 z[F->at[A->rowind[p]]] += c * A->val[p];
         }
@@ -332,8 +351,8 @@ static ritz_status equilibrate_rows(const mumps_factor *F, double *s)
             int64_t j = F->col[k] - 1;
             double a = s[i] * magnitude_of(F->val, k, F->width) * s[j];
 
-            largest[i] = fmax(largest[i], a);
-            largest[j] = fmax(largest[j], a);
+            largest[i] = ritz_larger(largest[i], a);
+            largest[j] = ritz_larger(largest[j], a);
         }
         for (int64_t i = 0; i < F->n; i++)
             s[i] /= largest[i] > 0.0 ? sqrt(largest[i]) : 1.0;
@@ -419,10 +438,16 @@ static ritz_status factor_values(mumps_factor *F)
     return RITZ_OK;
 }
 
-static void release_factor(mumps_factor *F)
+static void end_mumps(mumps_factor *F)
 {
     if (F->started)
         call_mumps(F, END);
+    F->started = false;
+}
+
+static void release_factor(mumps_factor *F)
+{
+    end_mumps(F);
     RITZ_FREE(F->row, F->col, F->val, F->A, F->place, F->at);
 }
 
@@ -444,12 +469,6 @@ static ritz_status factor_real(const ritz_sparse *A, const int64_t *order,
     return RITZ_OK;
 }
 
-ritz_status ritz_ldl_ordered(const ritz_sparse *A, const int64_t *order,
-                             int64_t *negative, ritz_ldl **out)
-{
-    return factor_real(A, order, false, negative, out);
-}
-
 ritz_status ritz_ldl_new(const ritz_sparse *A, int64_t *negative,
                          ritz_ldl **out)
 {
@@ -462,6 +481,61 @@ ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
     RITZ_OWN(ritz_ldl) *F = NULL;
 
     return factor_real(A, order, true, negative, &F);
+}
+
+ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
+                             const int64_t *order, ritz_counter **out)
+{
+    const ritz_sparse *const both[] = {K, M};
+    RITZ_OWN(ritz_counter) *C = NULL;
+
+    RITZ_CHECK(ritz_eigen_refuse(K->nrow, K->ncol, M->nrow, M->ncol));
+    RITZ_CHECK_NEW(C, 1);
+    C->of.width = 1;
+    RITZ_CHECK(unite_matrices(2, both, order, &C->of));
+    RITZ_MOVE(*out, C);
+    return RITZ_OK;
+}
+
+/* MUMPS gives a factor back only with its analysis, which is cheap where the
+   order is known. */
+ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below)
+{
+    mumps_factor *F = &C->of;
+    ritz_status status = RITZ_OK;
+
+    RITZ_REFUSE_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
+                   "modes below %g cannot be counted", tau);
+    *below = 0;
+    if (F->n == 0)
+        return RITZ_OK;
+    memset(F->val, 0, (size_t)F->nnz * sizeof *F->val);
+    add_values(&F->A[0], 1.0, F);
+    add_values(&F->A[1], -tau, F);
+    ritz_monitor_step("count of modes", 0, 0);
+    status = analyse_pattern(F);
+    if (status == RITZ_OK)
+        status = factor_values(F);
+    *below = F->id.d.infog[NEGATIVE_PIVOTS];
+    end_mumps(F);
+    return status;
+}
+
+void ritz_counter_free(ritz_counter **C)
+{
+    if (*C)
+        release_factor(&(*C)->of);
+    free(*C);
+    *C = NULL;
+}
+
+ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
+                               double tau, const int64_t *order, int64_t *out)
+{
+    RITZ_OWN(ritz_counter) *C = NULL;
+
+    RITZ_CHECK(ritz_counter_new(K, M, order, &C));
+    return ritz_counter_below(C, tau, out);
 }
 
 ritz_status ritz_ldl_solve(ritz_ldl *F, ritz_dense *X)

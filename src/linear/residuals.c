@@ -2,122 +2,207 @@
 
 #include "base/alloc.h"
 #include "base/team.h"
+#include "linear/tiles.h"
 
 #include <math.h>
 #include <string.h>
 
 enum {
-    WIDTH = 8,          /* pairs that are assessed at a time */
-    WORTHWHILE = 50000, /* one thread for each so many entries of K and M */
+    WIDTH = RITZ_TILE,  /* vectors that are assessed at a time */
+    CHUNK = 32,         /* rows of them that are multiplied at a time */
+    WORTHWHILE = 50000, /* one thread for each so many entries */
 };
 
-/* Norms of eight pairs, summed over the rows of one thread: |K x - lambda M x|,
-   | |K||x| + |lambda||M||x| | and |x|'|K||x|. */
+static int threads_for(int64_t entries)
+{
+    return ritz_team_ready(1 + entries / WORTHWHILE);
+}
+
+/* Columns [first, first + count) of X, copied to x row by row, n x 8. */
+typedef struct eight {
+    const ritz_dense *X;
+    int64_t first, count;
+    double *x;
+} eight;
+
+static void lay_out_rows(int thread, int64_t from, int64_t to, void *task)
+{
+    const eight *e = task;
+
+    (void)thread;
+    for (int64_t i = from; i < to; i++)
+        for (int64_t c = 0; c < WIDTH; c++)
+            e->x[i * WIDTH + c] =
+                c < e->count ? e->X->val[i + (e->first + c) * e->X->nrow] : 0.0;
+}
+
+static eight next_eight(const ritz_dense *X, int64_t first, double *x,
+                        int threads)
+{
+    const int64_t left = X->ncol - first;
+    eight e = {X, first, left < WIDTH ? left : WIDTH, x};
+
+    ritz_team_over(threads, X->nrow, lay_out_rows, &e);
+    return e;
+}
+
+/* Of eight pairs, summed over the rows of one thread: the squares
+   |K x - lambda M x|^2 and | |K||x| + |lambda||M||x| |^2, of forces divided by
+   `unit`, and |x|'|K||x|. */
 typedef struct sums {
     double gap[WIDTH], size[WIDTH], energy[WIDTH];
 } sums;
 
 typedef struct assessment {
     const ritz_sparse *K, *M;
-    const ritz_pairs *P;
-    int64_t first, count; /* pairs [first, first + count) */
-    double *x;            /* their vectors, n x 8 row by row */
-    sums *of;             /* of each thread */
+    eight of;
+    double lambda[WIDTH];
+    double unit; /* of forces, so that their squares stay in range */
+    sums *sums;  /* of each thread */
 } assessment;
 
-static void lay_out_rows(int thread, int64_t from, int64_t to, void *task)
+static void assess_row(const assessment *a, const double *x, const double *K[2],
+                       const double *M[2], sums *s)
 {
-    const assessment *a = task;
+    const double per = 1.0 / a->unit;
 
-    (void)thread;
-    for (int64_t i = from; i < to; i++)
-        for (int64_t c = 0; c < a->count; c++)
-            a->x[i * WIDTH + c] =
-                a->P->Phi.val[i + (a->first + c) * a->K->nrow];
-}
+    for (int c = 0; c < WIDTH; c++) {
+        const double lambda = a->lambda[c];
+        const double gap = (K[0][c] - lambda * M[0][c]) * per;
+        const double size = (K[1][c] + fabs(lambda) * M[1][c]) * per;
 
-/* y := row j of A x, and size := row j of |A||x|, for a symmetric A. */
-static void multiply_row(const ritz_sparse *A, int64_t j, const double *x,
-                         double *y, double *size)
-{
-    memset(y, 0, WIDTH * sizeof *y);
-    memset(size, 0, WIDTH * sizeof *size);
-    for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-        const double *from = x + A->rowind[p] * WIDTH;
-        const double a = A->val[p];
-
-        for (int c = 0; c < WIDTH; c++) {
-            const double part = a * from[c];
-
-            y[c] += part;
-            size[c] += fabs(part);
-        }
+        s->energy[c] += fabs(x[c]) * K[1][c];
+        s->gap[c] += gap * gap;
+        s->size[c] += size * size;
     }
 }
 
 static void assess_rows(int thread, int64_t from, int64_t to, void *task)
 {
     const assessment *a = task;
-    sums *s = &a->of[thread];
+    const ritz_sparse *K = a->K, *M = a->M;
+    const ritz_tiles *tiles = ritz_tiles_here();
+    sums s = {0};
 
-    *s = (sums){0};
-    for (int64_t j = from; j < to; j++) {
-        double Kx[WIDTH], Mx[WIDTH], k[WIDTH], m[WIDTH];
+    for (int64_t r = from; r < to; r += CHUNK) {
+        const int64_t end = r + CHUNK < to ? r + CHUNK : to;
+        double Kx[2][CHUNK * WIDTH], Mx[2][CHUNK * WIDTH];
 
-        multiply_row(a->K, j, a->x, Kx, k);
-        multiply_row(a->M, j, a->x, Mx, m);
-        for (int c = 0; c < a->count; c++) {
-            const double lambda = a->P->lambda[a->first + c];
-
-            s->energy[c] += fabs(a->x[j * WIDTH + c]) * k[c];
-            s->gap[c] = hypot(s->gap[c], Kx[c] - lambda * Mx[c]);
-            s->size[c] = hypot(s->size[c], k[c] + fabs(lambda) * m[c]);
-        }
+        tiles->terms(r, end, K->colptr, K->rowind, K->val, a->of.x, Kx[0],
+                     Kx[1]);
+        tiles->terms(r, end, M->colptr, M->rowind, M->val, a->of.x, Mx[0],
+                     Mx[1]);
+        for (int64_t i = 0; i < (end - r) * WIDTH; i += WIDTH)
+            assess_row(a, a->of.x + r * WIDTH + i,
+                       (const double *[]){Kx[0] + i, Kx[1] + i},
+                       (const double *[]){Mx[0] + i, Mx[1] + i}, &s);
     }
+    a->sums[thread] = s;
 }
 
-/* Residuals of the pairs [first, first + count). *scale is raised to the
-   largest of their |x|'|K||x|. */
-static void assess_eight(assessment *a, int threads, double *scale)
+/* Residuals of eight pairs. *scale is raised to the largest of their
+   |x|'|K||x|. */
+static void assess_eight(assessment *a, int threads, double *residual,
+                         double *scale)
 {
-    ritz_team_over(threads, a->K->nrow, lay_out_rows, a);
     ritz_team_over(threads, a->K->nrow, assess_rows, a);
-    for (int64_t c = 0; c < a->count; c++) {
+    for (int64_t c = 0; c < a->of.count; c++) {
         double gap = 0.0;
         double size = 0.0;
         double energy = 0.0;
 
         for (int t = 0; t < threads; t++) {
-            gap = hypot(gap, a->of[t].gap[c]);
-            size = hypot(size, a->of[t].size[c]);
-            energy += a->of[t].energy[c];
+            gap += a->sums[t].gap[c];
+            size += a->sums[t].size[c];
+            energy += a->sums[t].energy[c];
         }
         *scale = fmax(*scale, energy);
-        a->P->residual[a->first + c] = size > 0.0 ? gap / size : 0.0;
+        residual[c] = size == 0.0 ? 0.0 : sqrt(gap / size);
     }
+}
+
+/* The power of two above every |K(i,j)|, or |M(i,j)| where K is zero: vectors of
+   unit mass have entries of moderate size. */
+static double unit_of(const ritz_sparse *K, const ritz_sparse *M)
+{
+    const double k = ritz_sparse_max(K);
+    int exponent = 0;
+
+    frexp(k > 0.0 ? k : ritz_sparse_max(M), &exponent);
+    return ldexp(1.0, exponent);
 }
 
 ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_pairs *P, double *worst)
 {
-    const int64_t entries = K->colptr[K->ncol] + M->colptr[M->ncol];
-    const int threads = ritz_team_ready(1 + entries / WORTHWHILE);
+    const int threads = threads_for(K->colptr[K->ncol] + M->colptr[M->ncol]);
     RITZ_OWN_ARRAY double *x = NULL;
     RITZ_OWN_ARRAY sums *of = NULL;
+    assessment a = {.K = K, .M = M, .unit = unit_of(K, M)};
     double scale = 0.0;
 
     RITZ_CHECK_NEW(x, K->nrow * WIDTH);
     RITZ_CHECK_NEW(of, threads);
+    a.sums = of;
     *worst = 0.0;
     for (int64_t first = 0; first < P->Phi.ncol; first += WIDTH) {
-        const int64_t left = P->Phi.ncol - first;
-
-        assess_eight(
-            &(assessment){K, M, P, first, left < WIDTH ? left : WIDTH, x, of},
-            threads, &scale);
+        a.of = next_eight(&P->Phi, first, x, threads);
+        memset(a.lambda, 0, sizeof a.lambda);
+        memcpy(a.lambda, P->lambda + first,
+               (size_t)a.of.count * sizeof *a.lambda);
+        assess_eight(&a, threads, P->residual + first, &scale);
     }
     for (int64_t j = 0; j < P->Phi.ncol; j++)
         *worst = P->residual[j] <= *worst ? *worst : P->residual[j];
     P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    return RITZ_OK;
+}
+
+/* |x|'|A||x| of eight columns. */
+typedef struct summation {
+    const ritz_sparse *A;
+    eight of;
+    double (*sum)[WIDTH]; /* of each thread */
+} summation;
+
+static void sum_rows(int thread, int64_t from, int64_t to, void *task)
+{
+    const summation *t = task;
+    const ritz_sparse *A = t->A;
+    const ritz_tiles *tiles = ritz_tiles_here();
+    double sum[WIDTH] = {0};
+
+    for (int64_t r = from; r < to; r += CHUNK) {
+        const int64_t end = r + CHUNK < to ? r + CHUNK : to;
+        double y[CHUNK * WIDTH], terms[CHUNK * WIDTH];
+
+        tiles->terms(r, end, A->colptr, A->rowind, A->val, t->of.x, y, terms);
+        for (int64_t i = 0; i < end - r; i++)
+            for (int c = 0; c < WIDTH; c++)
+                sum[c] +=
+                    fabs(t->of.x[(r + i) * WIDTH + c]) * terms[i * WIDTH + c];
+    }
+    memcpy(t->sum[thread], sum, sizeof sum);
+}
+
+ritz_status ritz_energy_terms(const ritz_sparse *A, const ritz_dense *X,
+                              double *out)
+{
+    const int threads = threads_for(A->colptr[A->ncol]);
+    RITZ_OWN_ARRAY double *x = NULL;
+    RITZ_OWN_ARRAY double(*sum)[WIDTH] = NULL;
+
+    RITZ_CHECK_NEW(x, A->nrow * WIDTH);
+    RITZ_CHECK_NEW(sum, threads);
+    for (int64_t first = 0; first < X->ncol; first += WIDTH) {
+        summation t = {A, next_eight(X, first, x, threads), sum};
+
+        ritz_team_over(threads, A->nrow, sum_rows, &t);
+        for (int64_t c = 0; c < t.of.count; c++) {
+            out[first + c] = 0.0;
+            for (int k = 0; k < threads; k++)
+                out[first + c] += sum[k][c];
+        }
+    }
     return RITZ_OK;
 }

@@ -1,4 +1,4 @@
-/* Sparse matrices, their sums and products. */
+/* Sparse matrices: their parts, sums and symmetry. */
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/team.h"
@@ -10,10 +10,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum {
-    EIGHT = 8,          /* columns of a product at a time */
-    WORTHWHILE = 50000, /* entries from which several threads are used */
-};
+enum { WORTHWHILE = 50000 }; /* one thread for each so many entries */
 
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
                             ritz_sparse *out)
@@ -111,42 +108,108 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
     return RITZ_OK;
 }
 
+/* The columns `cols` of A, and for each row of A its place in the result. */
+typedef struct extraction {
+    const ritz_sparse *A;
+    const int64_t *cols;
+    int64_t *place; /* of each row of A, -1 where it is not wanted */
+    ritz_sparse *out;
+} extraction;
+
+static void extraction_free(extraction *e)
+{
+    free(e->place);
+}
+
+static ritz_status place_rows(extraction *e, int64_t count, const int64_t *rows)
+{
+    const int64_t n = e->A->nrow;
+
+    RITZ_CHECK_NEW(e->place, n);
+    for (int64_t i = 0; i < n; i++)
+        e->place[i] = -1;
+    for (int64_t k = 0; k < count; k++) {
+        RITZ_REFUSE_IF(rows[k] < 0 || rows[k] >= n, RITZ_ERR_ARGUMENT,
+                       "row %" PRId64 " is out of range", rows[k]);
+        e->place[rows[k]] = k;
+    }
+    return RITZ_OK;
+}
+
+/* colptr[k + 1] := the number of entries that column k keeps. */
+static void count_extracted(int thread, int64_t from, int64_t to, void *task)
+{
+    const extraction *e = task;
+
+    (void)thread;
+    for (int64_t k = from; k < to; k++)
+        for (int64_t p = e->A->colptr[e->cols[k]];
+             p < e->A->colptr[e->cols[k] + 1]; p++)
+            e->out->colptr[k + 1] += e->place[e->A->rowind[p]] >= 0;
+}
+
+static void copy_extracted(int thread, int64_t from, int64_t to, void *task)
+{
+    const extraction *e = task;
+
+    (void)thread;
+    for (int64_t k = from; k < to; k++) {
+        int64_t at = e->out->colptr[k];
+
+        for (int64_t p = e->A->colptr[e->cols[k]];
+             p < e->A->colptr[e->cols[k] + 1]; p++) {
+            const int64_t row = e->place[e->A->rowind[p]];
+
+            if (row < 0)
+                continue;
+            e->out->rowind[at] = row;
+            e->out->val[at++] = e->A->val[p];
+        }
+    }
+}
+
+/* Sort the rows within each column: two transpositions do. */
+static ritz_status sort_columns(ritz_sparse *A)
+{
+    RITZ_OWN(ritz_sparse) turned = {0}, sorted = {0};
+
+    RITZ_CHECK(ritz_sparse_transpose(A, &turned));
+    RITZ_CHECK(ritz_sparse_transpose(&turned, &sorted));
+    ritz_sparse_free(A);
+    RITZ_MOVE(*A, sorted);
+    return RITZ_OK;
+}
+
+static bool is_ascending(int64_t count, const int64_t *item)
+{
+    for (int64_t k = 1; k < count; k++)
+        if (item[k] <= item[k - 1])
+            return false;
+    return true;
+}
+
 ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
                                 const int64_t *rows, int64_t num_cols,
                                 const int64_t *cols, ritz_sparse *out)
 {
-    /* position in rows plus one, 0 if not wanted */
-    RITZ_OWN_ARRAY int64_t *new_row = NULL;
-    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
-    int64_t nnz = 0;
-    int64_t kept = 0;
+    RITZ_OWN(ritz_sparse) B = {.nrow = num_rows, .ncol = num_cols};
+    RITZ_OWN(extraction) e = {.A = A, .cols = cols, .out = &B};
+    const int threads = ritz_team_ready(1 + A->colptr[A->ncol] / WORTHWHILE);
 
-    RITZ_CHECK_NEW(new_row, A->nrow);
-    for (int64_t k = 0; k < num_rows; k++) {
-        RITZ_REFUSE_IF(rows[k] < 0 || rows[k] >= A->nrow, RITZ_ERR_ARGUMENT,
-                       "row %" PRId64 " is out of range", rows[k]);
-        new_row[rows[k]] = k + 1;
-    }
-    for (int64_t k = 0; k < num_cols; k++) {
+    RITZ_CHECK(place_rows(&e, num_rows, rows));
+    for (int64_t k = 0; k < num_cols; k++)
         RITZ_REFUSE_IF(cols[k] < 0 || cols[k] >= A->ncol, RITZ_ERR_ARGUMENT,
                        "column %" PRId64 " is out of range", cols[k]);
-        nnz += A->colptr[cols[k] + 1] - A->colptr[cols[k]];
-    }
-    RITZ_CHECK_NEW(row, nnz);
-    RITZ_CHECK_NEW(col, nnz);
-    RITZ_CHECK_NEW(val, nnz);
-    for (int64_t k = 0; k < num_cols; k++) {
-        for (int64_t p = A->colptr[cols[k]]; p < A->colptr[cols[k] + 1]; p++) {
-            if (!new_row[A->rowind[p]])
-                continue;
-            row[kept] = new_row[A->rowind[p]] - 1;
-            col[kept] = k;
-            val[kept++] = A->val[p];
-        }
-    }
-    return ritz_sparse_from_triplets(num_rows, num_cols, kept, row, col, val,
-                                     out);
+    RITZ_CHECK_NEW(B.colptr, num_cols + 1);
+    ritz_team_over(threads, num_cols, count_extracted, &e);
+    accumulate_counts(num_cols, B.colptr);
+    RITZ_CHECK_NEW(B.rowind, B.colptr[num_cols]);
+    RITZ_CHECK_NEW(B.val, B.colptr[num_cols]);
+    ritz_team_over(threads, num_cols, copy_extracted, &e);
+    if (!is_ascending(num_rows, rows))
+        RITZ_CHECK(sort_columns(&B));
+    RITZ_MOVE(*out, B);
+    return RITZ_OK;
 }
 
 /* Merge column j of both into C from entry *at on. */
@@ -196,119 +259,6 @@ ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out)
     if (nnz > 0) {
         memcpy(out->rowind, A->rowind, (size_t)nnz * sizeof *A->rowind);
         memcpy(out->val, A->val, (size_t)nnz * sizeof *A->val);
-    }
-    return RITZ_OK;
-}
-
-/* Eight columns of a product are made at a time, so that A is read once for
-   them. */
-typedef struct columns_task {
-    const ritz_sparse *A;
-    const ritz_dense *X;
-    ritz_dense *Y;
-    double *room; /* each thread's eight columns of X and Y, row by row */
-} columns_task;
-
-/* y := A x, eight columns row by row; each sum in the order of the entries of
-   A, so that it has the same bits as that of a single column. */
-static void multiply_eight(const ritz_sparse *A, const double *x, double *y)
-{
-    memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
-    for (int64_t j = 0; j < A->ncol; j++)
-        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
-            double *to = y + A->rowind[p] * EIGHT;
-
-            for (int c = 0; c < EIGHT; c++)
-                to[c] += A->val[p] * x[j * EIGHT + c];
-        }
-}
-
-static void multiply_groups(int thread, int threads, void *task)
-{
-    const columns_task *t = task;
-    const ritz_sparse *A = t->A;
-    double *x = t->room + thread * (A->nrow + A->ncol) * EIGHT;
-    double *y = x + A->ncol * EIGHT;
-
-    for (int64_t k = (int64_t)thread * EIGHT; k < t->X->ncol;
-         k += (int64_t)threads * EIGHT) {
-        const int64_t left = t->X->ncol - k;
-        const int64_t count = left < EIGHT ? left : EIGHT;
-
-        for (int64_t i = 0; i < A->ncol; i++)
-            for (int64_t c = 0; c < EIGHT; c++)
-                x[i * EIGHT + c] =
-                    c < count ? ritz_dense_col(t->X, k + c)[i] : 0.0;
-        multiply_eight(A, x, y);
-        for (int64_t c = 0; c < count; c++)
-            for (int64_t i = 0; i < A->nrow; i++)
-                ritz_dense_col(t->Y, k + c)[i] = y[i * EIGHT + c];
-    }
-}
-
-/* Y := A X by several threads, eight columns at a time. */
-static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
-                                    ritz_dense *Y)
-{
-    const int64_t groups = (X->ncol + EIGHT - 1) / EIGHT;
-    const bool large = A->colptr[A->ncol] >= WORTHWHILE;
-    const int threads = ritz_team_ready(large ? groups : 1);
-    RITZ_OWN_ARRAY double *room = NULL;
-
-    RITZ_CHECK_NEW(room, threads * (A->nrow + A->ncol) * EIGHT);
-    ritz_team_run(threads, multiply_groups, &(columns_task){A, X, Y, room});
-    return RITZ_OK;
-}
-
-ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
-                            ritz_dense *Y)
-{
-    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
-                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
-                   A->ncol, X->nrow);
-    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
-    if (X->ncol >= EIGHT / 2)
-        return multiply_columns(A, X, Y);
-    for (int64_t k = 0; k < X->ncol; k++) {
-        const double *x = ritz_dense_col(X, k);
-        double *y = ritz_dense_col(Y, k);
-
-        for (int64_t j = 0; j < A->ncol; j++)
-            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-                y[A->rowind[p]] += A->val[p] * x[j];
-    }
-    return RITZ_OK;
-}
-
-/* y + low := y + low + a x, its rounding of eps^2 [OgitaRumpOishi2005]. */
-static void add_product(double a, double x, double *y, double *low)
-{
-    double product = a * x;
-    double sum = *y + product;
-    double part = sum - *y;
-
-    *low += fma(a, x, -product) + (*y - (sum - part)) + (product - part);
-    *y = sum;
-}
-
-ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
-                                    ritz_dense *Y)
-{
-    RITZ_OWN_ARRAY double *low = NULL;
-
-    RITZ_CHECK_NEW(low, A->nrow);
-    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
-    for (int64_t k = 0; k < X->ncol; k++) {
-        double *y = ritz_dense_col(Y, k);
-
-        for (int64_t j = 0; j < A->ncol; j++)
-            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-                add_product(A->val[p], ritz_dense_col(X, k)[j],
-                            &y[A->rowind[p]], &low[A->rowind[p]]);
-        for (int64_t i = 0; i < A->nrow; i++) {
-            y[i] += low[i];
-            low[i] = 0.0;
-        }
     }
     return RITZ_OK;
 }
@@ -363,7 +313,7 @@ double ritz_sparse_max(const ritz_sparse *A)
     double largest = 0.0;
 
     for (int64_t p = 0; p < A->colptr[A->ncol]; p++)
-        largest = fmax(largest, fabs(A->val[p]));
+        largest = ritz_larger(largest, fabs(A->val[p]));
     return largest;
 }
 
@@ -398,7 +348,7 @@ static double largest_gap(const ritz_sparse *A, bool both, bool *whole)
             if (i == j || (i < j && !both))
                 continue;
             other = entry_at(A, j, i, &stored);
-            gap = fmax(gap, fabs(A->val[p] - other));
+            gap = ritz_larger(gap, fabs(A->val[p] - other));
             *whole = *whole && stored;
         }
     return gap;
@@ -423,7 +373,7 @@ static double pass_unpaired(const ritz_sparse *A, int64_t i, int64_t row,
     double gap = 0.0;
 
     for (; next[i] < A->colptr[i + 1] && A->rowind[next[i]] < row; next[i]++)
-        gap = fmax(gap, fabs(A->val[next[i]]));
+        gap = ritz_larger(gap, fabs(A->val[next[i]]));
     return gap;
 }
 
@@ -438,17 +388,17 @@ double ritz_sparse_sweep_asymmetry(const ritz_sparse *A, int64_t *next)
 
     memcpy(next, A->colptr, (size_t)A->ncol * sizeof *next);
     for (int64_t j = 0; j < A->ncol; j++) {
-        gap = fmax(gap, pass_unpaired(A, j, j, next));
+        gap = ritz_larger(gap, pass_unpaired(A, j, j, next));
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             int64_t i = A->rowind[p];
             double other = 0.0;
 
             if (i <= j)
                 continue;
-            gap = fmax(gap, pass_unpaired(A, i, j, next));
+            gap = ritz_larger(gap, pass_unpaired(A, i, j, next));
             if (next[i] < A->colptr[i + 1] && A->rowind[next[i]] == j)
                 other = A->val[next[i]++];
-            gap = fmax(gap, fabs(A->val[p] - other));
+            gap = ritz_larger(gap, fabs(A->val[p] - other));
         }
     }
     return gap > 0.0 ? gap / ritz_sparse_max(A) : 0.0;
@@ -472,25 +422,6 @@ double ritz_sparse_skew(const ritz_sparse *A)
         }
     return all > 0.0 ? skew / all : 0.0;
 }
-
-ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
-{
-    RITZ_OWN(ritz_sparse) turned = {0}, mean = {0};
-
-    RITZ_CHECK(ritz_sparse_transpose(A, &turned));
-    RITZ_CHECK(ritz_sparse_add(0.5, A, 0.5, &turned, &mean));
-    ritz_sparse_free(A);
-    RITZ_MOVE(*A, mean);
-    return RITZ_OK;
-}
-
-void ritz_sparse_free(ritz_sparse *A)
-{
-    RITZ_FREE(A->colptr, A->rowind, A->val);
-    *A = (ritz_sparse){0};
-}
-
-/* Products of sparse matrices, and of theirs with few dense columns. */
 
 ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
 {
@@ -516,119 +447,22 @@ ritz_status ritz_sparse_transpose(const ritz_sparse *A, ritz_sparse *out)
     return RITZ_OK;
 }
 
-/* Entries of A B, each place of a column counted once. */
-static int64_t count_product(const ritz_sparse *A, const ritz_sparse *B,
-                             int64_t *mark)
+ritz_status ritz_sparse_symmetrise(ritz_sparse *A)
 {
-    int64_t count = 0;
+    RITZ_OWN(ritz_sparse) turned = {0}, mean = {0};
 
-    for (int64_t j = 0; j < B->ncol; j++)
-        for (int64_t q = B->colptr[j]; q < B->colptr[j + 1]; q++) {
-            int64_t k = B->rowind[q];
-
-            for (int64_t p = A->colptr[k]; p < A->colptr[k + 1]; p++)
-                if (mark[A->rowind[p]] != j + 1) {
-                    mark[A->rowind[p]] = j + 1;
-                    count++;
-                }
-        }
-    return count;
-}
-
-/* Column j of A B, as it comes: rows are put in order by transposing twice. */
-static void multiply_column(const ritz_sparse *A, const ritz_sparse *B,
-                            int64_t j, int64_t *place, ritz_sparse *C)
-{
-    int64_t first = C->colptr[j];
-    int64_t at = first;
-
-    for (int64_t q = B->colptr[j]; q < B->colptr[j + 1]; q++) {
-        int64_t k = B->rowind[q];
-
-        for (int64_t p = A->colptr[k]; p < A->colptr[k + 1]; p++) {
-            int64_t i = A->rowind[p];
-
-            if (place[i] <= first) { /* one more than where it lies */
-                C->rowind[at] = i;
-                C->val[at] = 0.0;
-                place[i] = ++at;
-            }
-            C->val[place[i] - 1] += A->val[p] * B->val[q];
-        }
-    }
-    C->colptr[j + 1] = at;
-}
-
-ritz_status ritz_sparse_product(const ritz_sparse *A, const ritz_sparse *B,
-                                ritz_sparse *C)
-{
-    RITZ_OWN(ritz_sparse) raw = {0}, turned = {0};
-    RITZ_OWN_ARRAY int64_t *mark = NULL;
-    RITZ_OWN_ARRAY int64_t *place = NULL;
-
-    RITZ_REFUSE_IF(A->ncol != B->nrow, RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " columns meet %" PRId64 " rows", A->ncol,
-                   B->nrow);
-    RITZ_CHECK_NEW(mark, A->nrow);
-    RITZ_CHECK_NEW(place, A->nrow);
-    RITZ_CHECK(
-        ritz_sparse_new(A->nrow, B->ncol, count_product(A, B, mark), &raw));
-    for (int64_t j = 0; j < B->ncol; j++)
-        multiply_column(A, B, j, place, &raw);
-    RITZ_CHECK(ritz_sparse_transpose(&raw, &turned));
-    return ritz_sparse_transpose(&turned, C);
-}
-
-ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
-                                   ritz_sparse *out)
-{
-    RITZ_OWN(ritz_sparse) AT = {0}, turned = {0}, C = {0};
-
-    RITZ_CHECK(ritz_sparse_product(A, T, &AT));
-    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
-    RITZ_CHECK(ritz_sparse_product(&turned, &AT, &C));
-    if (ritz_sparse_asymmetry(A) == 0.0)
-        RITZ_CHECK(ritz_sparse_symmetrise(&C));
-    RITZ_MOVE(*out, C);
+    RITZ_CHECK(ritz_sparse_transpose(A, &turned));
+    RITZ_CHECK(ritz_sparse_add(0.5, A, 0.5, &turned, &mean));
+    ritz_sparse_free(A);
+    RITZ_MOVE(*A, mean);
     return RITZ_OK;
 }
 
-ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
-                                ritz_dense *out)
+void ritz_sparse_free(ritz_sparse *A)
 {
-    RITZ_OWN(ritz_dense) AT = {0};
-
-    if (!A->colptr)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_mul(A, T, &AT));
-    RITZ_CHECK(ritz_dense_mul_tn(T, &AT, out));
-    if (ritz_sparse_asymmetry(A) == 0.0)
-        ritz_dense_symmetrise(out);
-    return RITZ_OK;
+    RITZ_FREE(A->colptr, A->rowind, A->val);
+    *A = (ritz_sparse){0};
 }
-
-ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
-                                 ritz_dense *out)
-{
-    RITZ_CHECK(ritz_sparse_project(A, T, out));
-    ritz_dense_symmetrise(out);
-    return RITZ_OK;
-}
-
-ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
-                              ritz_dense *out)
-{
-    RITZ_OWN(ritz_sparse) size = {0};
-    RITZ_OWN(ritz_dense) columns = {0};
-
-    RITZ_CHECK(ritz_sparse_copy(A, &size));
-    for (int64_t k = 0; k < size.colptr[size.ncol]; k++)
-        size.val[k] = fabs(size.val[k]);
-    RITZ_CHECK(ritz_dense_abs(T, &columns));
-    return ritz_sparse_condense(&size, &columns, out);
-}
-
-/* Between sparse and dense. */
 
 ritz_status ritz_sparse_dense(const ritz_sparse *A, ritz_dense *out)
 {

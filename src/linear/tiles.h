@@ -63,6 +63,14 @@ typedef struct ritz_tiles {
     void (*times)(int64_t from, int64_t to, const int64_t *start,
                   const int32_t *col, const double *val, const double *X,
                   double *Y);
+    /** Y += A X, X and Y 8 wide, A the columns [0, cols) of a ritz_sparse. */
+    void (*spread)(int64_t cols, const int64_t *start, const int64_t *row,
+                   const double *val, const double *X, double *Y);
+    /** Rows [from, to) of A X and |A||X| of a symmetric ritz_sparse A, X all
+     * rows x 8, Y and S to - from rows x 8. */
+    void (*terms)(int64_t from, int64_t to, const int64_t *start,
+                  const int64_t *row, const double *val, const double *X,
+                  double *Y, double *S);
 } ritz_tiles;
 
 /** The kernels with the widest vectors that this processor has. The environment

@@ -15,6 +15,7 @@
 
 typedef double vector
     __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+typedef int64_t integers __attribute__((vector_size(8 * LANES), aligned(8)));
 
 enum {
     T = RITZ_TILE,
@@ -218,6 +219,48 @@ static void times_8(int64_t from, int64_t to, const int64_t *start,
     }
 }
 
+static void spread_8(int64_t cols, const int64_t *start, const int64_t *row,
+                     const double *val, const double *X, double *Y)
+{
+    for (int64_t j = 0; j < cols; j++) {
+        vector x[T / LANES];
+
+        for (int64_t v = 0; v < T / LANES; v++)
+            x[v] = *(const vector *)(X + T * j + v * LANES);
+        for (int64_t p = start[j]; p < start[j + 1]; p++)
+            for (int64_t v = 0; v < T / LANES; v++)
+                *(vector *)(Y + T * row[p] + v * LANES) += val[p] * x[v];
+    }
+}
+
+/* |x|, by clearing the signs. */
+INLINE vector magnitudes(vector x)
+{
+    return (vector)((integers)x & INT64_MAX);
+}
+
+static void terms_8(int64_t from, int64_t to, const int64_t *start,
+                    const int64_t *row, const double *val, const double *X,
+                    double *Y, double *S)
+{
+    for (int64_t i = from; i < to; i++, Y += T, S += T) {
+        vector sum[T / LANES] = {0}, size[T / LANES] = {0};
+
+        for (int64_t p = start[i]; p < start[i + 1]; p++)
+            for (int64_t v = 0; v < T / LANES; v++) {
+                const vector part =
+                    val[p] * *(const vector *)(X + T * row[p] + v * LANES);
+
+                sum[v] += part;
+                size[v] += magnitudes(part);
+            }
+        for (int64_t v = 0; v < T / LANES; v++) {
+            *(vector *)(Y + v * LANES) = sum[v];
+            *(vector *)(S + v * LANES) = size[v];
+        }
+    }
+}
+
 #define TILES(lanes, bits)                                                     \
     const ritz_tiles ritz_tiles_##lanes = {                                    \
         .name = #bits " bit",                                                  \
@@ -226,4 +269,6 @@ static void times_8(int64_t from, int64_t to, const int64_t *start,
         .inner = inner_8,                                                      \
         .outer = outer_8,                                                      \
         .times = times_8,                                                      \
+        .spread = spread_8,                                                    \
+        .terms = terms_8,                                                      \
     };

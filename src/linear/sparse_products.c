@@ -1,0 +1,237 @@
+/* Products of sparse matrices, and of theirs with few dense columns. */
+#include "base/alloc.h"
+#include "base/team.h"
+#include "linear/tiles.h"
+
+#include <ritz/matrix.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum {
+    EIGHT = RITZ_TILE,  /* columns of a product at a time */
+    WORTHWHILE = 50000, /* entries that a second thread is worth */
+};
+
+/* Eight columns of a product are made at a time, so that A is read once for
+   them. */
+typedef struct columns_task {
+    const ritz_sparse *A;
+    const ritz_dense *X;
+    ritz_dense *Y;
+    double *room; /* each thread's eight columns of X and Y, row by row */
+} columns_task;
+
+static void multiply_groups(int thread, int threads, void *task)
+{
+    const columns_task *t = task;
+    const ritz_sparse *A = t->A;
+    double *x = t->room + thread * (A->nrow + A->ncol) * EIGHT;
+    double *y = x + A->ncol * EIGHT;
+
+    for (int64_t k = (int64_t)thread * EIGHT; k < t->X->ncol;
+         k += (int64_t)threads * EIGHT) {
+        const int64_t left = t->X->ncol - k;
+        const int64_t count = left < EIGHT ? left : EIGHT;
+
+        for (int64_t c = 0; c < EIGHT; c++)
+            for (int64_t i = 0; i < A->ncol; i++)
+                x[i * EIGHT + c] =
+                    c < count ? t->X->val[i + (k + c) * A->ncol] : 0.0;
+        memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
+        ritz_tiles_here()->spread(A->ncol, A->colptr, A->rowind, A->val, x, y);
+        for (int64_t c = 0; c < count; c++)
+            for (int64_t i = 0; i < A->nrow; i++)
+                ritz_dense_col(t->Y, k + c)[i] = y[i * EIGHT + c];
+    }
+}
+
+/* Y := A X by several threads, eight columns at a time. */
+static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
+                                    ritz_dense *Y)
+{
+    const int64_t groups = (X->ncol + EIGHT - 1) / EIGHT;
+    const bool large = A->colptr[A->ncol] >= WORTHWHILE;
+    const int threads = ritz_team_ready(large ? groups : 1);
+    RITZ_OWN_ARRAY double *room = NULL;
+
+    RITZ_CHECK_NEW(room, threads * (A->nrow + A->ncol) * EIGHT);
+    ritz_team_run(threads, multiply_groups, &(columns_task){A, X, Y, room});
+    return RITZ_OK;
+}
+
+ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
+                            ritz_dense *Y)
+{
+    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
+                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
+                   A->ncol, X->nrow);
+    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
+    if (X->ncol >= EIGHT / 2)
+        return multiply_columns(A, X, Y);
+    for (int64_t k = 0; k < X->ncol; k++) {
+        const double *x = ritz_dense_col(X, k);
+        double *y = ritz_dense_col(Y, k);
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+                y[A->rowind[p]] += A->val[p] * x[j];
+    }
+    return RITZ_OK;
+}
+
+/* y + low := y + low + a x, its rounding of eps^2 [OgitaRumpOishi2005]. */
+static void add_product(double a, double x, double *y, double *low)
+{
+    double product = a * x;
+    double sum = *y + product;
+    double part = sum - *y;
+
+    *low += fma(a, x, -product) + (*y - (sum - part)) + (product - part);
+    *y = sum;
+}
+
+ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
+                                    ritz_dense *Y)
+{
+    RITZ_OWN_ARRAY double *low = NULL;
+
+    RITZ_CHECK_NEW(low, A->nrow);
+    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
+    for (int64_t k = 0; k < X->ncol; k++) {
+        double *y = ritz_dense_col(Y, k);
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+                add_product(A->val[p], ritz_dense_col(X, k)[j],
+                            &y[A->rowind[p]], &low[A->rowind[p]]);
+        for (int64_t i = 0; i < A->nrow; i++) {
+            y[i] += low[i];
+            low[i] = 0.0;
+        }
+    }
+    return RITZ_OK;
+}
+
+/* Entries of A B, each place of a column counted once. */
+static int64_t count_product(const ritz_sparse *A, const ritz_sparse *B,
+                             int64_t *mark)
+{
+    int64_t count = 0;
+
+    for (int64_t j = 0; j < B->ncol; j++)
+        for (int64_t q = B->colptr[j]; q < B->colptr[j + 1]; q++) {
+            int64_t k = B->rowind[q];
+
+            for (int64_t p = A->colptr[k]; p < A->colptr[k + 1]; p++)
+                if (mark[A->rowind[p]] != j + 1) {
+                    mark[A->rowind[p]] = j + 1;
+                    count++;
+                }
+        }
+    return count;
+}
+
+/* Column j of A B, as it comes: rows are put in order by transposing twice. */
+static void multiply_column(const ritz_sparse *A, const ritz_sparse *B,
+                            int64_t j, int64_t *place, ritz_sparse *C)
+{
+    int64_t first = C->colptr[j];
+    int64_t at = first;
+
+    for (int64_t q = B->colptr[j]; q < B->colptr[j + 1]; q++) {
+        int64_t k = B->rowind[q];
+
+        for (int64_t p = A->colptr[k]; p < A->colptr[k + 1]; p++) {
+            int64_t i = A->rowind[p];
+
+            if (place[i] <= first) { /* one more than where it lies */
+                C->rowind[at] = i;
+                C->val[at] = 0.0;
+                place[i] = ++at;
+            }
+            C->val[place[i] - 1] += A->val[p] * B->val[q];
+        }
+    }
+    C->colptr[j + 1] = at;
+}
+
+ritz_status ritz_sparse_product(const ritz_sparse *A, const ritz_sparse *B,
+                                ritz_sparse *C)
+{
+    RITZ_OWN(ritz_sparse) raw = {0}, turned = {0};
+    RITZ_OWN_ARRAY int64_t *mark = NULL;
+    RITZ_OWN_ARRAY int64_t *place = NULL;
+
+    RITZ_REFUSE_IF(A->ncol != B->nrow, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " columns meet %" PRId64 " rows", A->ncol,
+                   B->nrow);
+    RITZ_CHECK_NEW(mark, A->nrow);
+    RITZ_CHECK_NEW(place, A->nrow);
+    RITZ_CHECK(
+        ritz_sparse_new(A->nrow, B->ncol, count_product(A, B, mark), &raw));
+    for (int64_t j = 0; j < B->ncol; j++)
+        multiply_column(A, B, j, place, &raw);
+    RITZ_CHECK(ritz_sparse_transpose(&raw, &turned));
+    return ritz_sparse_transpose(&turned, C);
+}
+
+ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
+                                   ritz_sparse *out)
+{
+    RITZ_OWN(ritz_sparse) AT = {0}, turned = {0}, C = {0};
+
+    RITZ_CHECK(ritz_sparse_product(A, T, &AT));
+    RITZ_CHECK(ritz_sparse_transpose(T, &turned));
+    RITZ_CHECK(ritz_sparse_product(&turned, &AT, &C));
+    if (ritz_sparse_asymmetry(A) == 0.0)
+        RITZ_CHECK(ritz_sparse_symmetrise(&C));
+    RITZ_MOVE(*out, C);
+    return RITZ_OK;
+}
+
+/* T'AT; empty where A is. */
+static ritz_status project_matrix(const ritz_sparse *A, const ritz_dense *T,
+                                  ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) AT = {0};
+
+    if (!A->colptr)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_sparse_mul(A, T, &AT));
+    return ritz_dense_mul_tn(T, &AT, out);
+}
+
+ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
+                                ritz_dense *out)
+{
+    RITZ_CHECK(project_matrix(A, T, out));
+    if (A->colptr && ritz_sparse_asymmetry(A) == 0.0)
+        ritz_dense_symmetrise(out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
+                                 ritz_dense *out)
+{
+    RITZ_CHECK(project_matrix(A, T, out));
+    ritz_dense_symmetrise(out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
+                              ritz_dense *out)
+{
+    RITZ_OWN(ritz_sparse) size = {0};
+    RITZ_OWN(ritz_dense) columns = {0};
+
+    RITZ_CHECK(ritz_sparse_copy(A, &size));
+    for (int64_t k = 0; k < size.colptr[size.ncol]; k++)
+        size.val[k] = fabs(size.val[k]);
+    RITZ_CHECK(ritz_dense_abs(T, &columns));
+    return ritz_sparse_condense(&size, &columns, out);
+}
+
+/* Between sparse and dense. */

@@ -1,0 +1,182 @@
+#include "fixtures/lattice.h"
+#include "linear/inertia.h"
+#include "linear/residuals.h"
+#include "testing.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* 91 000 entries: enough for a second thread. */
+enum { EDGE = 24, POINTS = EDGE * EDGE * EDGE, COLUMNS = 11 };
+
+static const char *const bits[] = {"128", "256", "512"};
+
+static void fill_columns(int64_t rows, ritz_dense *X)
+{
+    assert_ok(ritz_dense_new(rows, COLUMNS, X));
+    for (int64_t i = 0; i < rows * COLUMNS; i++)
+        X->val[i] = sin((double)(i + 1));
+}
+
+/* A without its last columns: not square. */
+static void take_columns(const ritz_sparse *A, int64_t count, ritz_sparse *out)
+{
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+
+    at = calloc((size_t)A->nrow, sizeof *at);
+    assert_non_null(at);
+    for (int64_t i = 0; i < A->nrow; i++)
+        at[i] = i;
+    assert_ok(ritz_sparse_extract(A, A->nrow, at, count, at, out));
+}
+
+/* Y = A X to the rounding of 7 terms of each sum, of at most 6 + 6. */
+static void check_product(const ritz_sparse *A, const ritz_dense *X,
+                          const ritz_dense *Y)
+{
+    for (int64_t k = 0; k < COLUMNS; k++) {
+        RITZ_OWN(ritz_dense) y = {0};
+
+        assert_ok(ritz_dense_new(A->nrow, 1, &y));
+        for (int64_t j = 0; j < A->ncol; j++)
+            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+                y.val[A->rowind[p]] += A->val[p] * X->val[j + k * A->ncol];
+        for (int64_t i = 0; i < A->nrow; i++)
+            assert_near(Y->val[i + k * A->nrow], y.val[i],
+                        7.0 * 13.0 * DBL_EPSILON);
+    }
+}
+
+static void any_threads_and_any_kernel_multiply(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0}, A = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+
+    (void)state;
+    lattice_new(EDGE, 1.0, &K, &M);
+    take_columns(&K, POINTS - 100, &A);
+    fill_columns(A.ncol, &X);
+    for (int threads = 1; threads <= 3; threads++)
+        for (size_t b = 0; b < 3; b++) {
+            RITZ_OWN(ritz_dense) Y = {0};
+
+            setenv("RITZ_TILES", bits[b], 1);
+            ritz_set_threads(threads);
+            assert_ok(ritz_sparse_mul(&A, &X, &Y));
+            check_product(&A, &X, &Y);
+        }
+    unsetenv("RITZ_TILES");
+    ritz_set_threads(1);
+}
+
+/* |x|'|K||x|, of sums of POINTS terms that are all positive. */
+static void energy_terms_are_sums_of_magnitudes(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+    double terms[COLUMNS];
+
+    (void)state;
+    lattice_new(EDGE, 1.0, &K, &M);
+    fill_columns(POINTS, &X);
+    for (int threads = 1; threads <= 3; threads++) {
+        ritz_set_threads(threads);
+        assert_ok(ritz_energy_terms(&K, &X, terms));
+        for (int64_t k = 0; k < COLUMNS; k++) {
+            const double *x = ritz_dense_col(&X, k);
+            double sum = 0.0;
+
+            for (int64_t j = 0; j < POINTS; j++)
+                for (int64_t p = K.colptr[j]; p < K.colptr[j + 1]; p++)
+                    sum += fabs(x[K.rowind[p]] * K.val[p] * x[j]);
+            assert_near(terms[k], sum, POINTS * DBL_EPSILON * sum);
+        }
+    }
+    ritz_set_threads(1);
+    assert_survives_every_allocation(ritz_energy_terms(&K, &X, terms));
+}
+
+/* Every second row and column, in the order given. */
+static void pick_every_second(const ritz_sparse *A, bool descending)
+{
+    enum { HALF = POINTS / 2 };
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+    RITZ_OWN(ritz_sparse) B = {0};
+    int64_t due = 0;
+
+    at = calloc(HALF, sizeof *at);
+    assert_non_null(at);
+    for (int64_t k = 0; k < HALF; k++)
+        at[k] = descending ? POINTS - 1 - 2 * k : 2 * k;
+    for (int64_t k = 0; k < HALF; k++)
+        for (int64_t p = A->colptr[at[k]]; p < A->colptr[at[k] + 1]; p++)
+            due += (A->rowind[p] + at[k]) % 2 == 0;
+    assert_ok(ritz_sparse_extract(A, HALF, at, HALF, at, &B));
+    assert_ok(ritz_sparse_check(&B, due));
+    for (int64_t k = 0; k < HALF; k++)
+        for (int64_t p = B.colptr[k]; p < B.colptr[k + 1]; p++) {
+            int64_t q = A->colptr[at[k]];
+
+            while (A->rowind[q] != at[B.rowind[p]])
+                q++;
+            assert_true(B.val[p] == A->val[q]);
+        }
+}
+
+static void large_submatrices_follow_their_lists(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+
+    (void)state;
+    lattice_new(EDGE, 1.0, &K, &M);
+    for (int threads = 1; threads <= 2; threads++) {
+        ritz_set_threads(threads);
+        pick_every_second(&K, false);
+        pick_every_second(&K, true);
+    }
+    ritz_set_threads(1);
+}
+
+/* A count at an eigenvalue fails, and those after it do not. */
+static void one_counter_counts_below_many_values(void **state)
+{
+    enum { SIDE = 5, ALL = SIDE * SIDE * SIDE };
+    const double middle = 1.0 + 6.0; /* of three cosines that are 0 */
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
+    ritz_counter *counter = NULL;
+    int64_t below = -1;
+
+    (void)state;
+    lattice_new(SIDE, 1.0, &K, &M);
+    lambda = lattice_eigenvalues(SIDE, 1.0);
+    assert_ok(ritz_counter_new(&K, &M, NULL, &counter));
+    for (int64_t k = 1; k < ALL; k++) {
+        if (lambda[k] - lambda[k - 1] < 1e-6)
+            continue;
+        assert_ok(ritz_counter_below(counter, 0.5 * (lambda[k] + lambda[k - 1]),
+                                     &below));
+        assert_int_equal(below, k);
+        if (k % 8 == 0)
+            assert_fails(ritz_counter_below(counter, middle, &below),
+                         RITZ_ERR_SINGULAR, "singular");
+    }
+    assert_ok(ritz_counter_below(counter, 100.0, &below));
+    assert_int_equal(below, ALL);
+    assert_fails(ritz_counter_below(counter, (double)NAN, &below),
+                 RITZ_ERR_ARGUMENT, "cannot be counted");
+    assert_survives_every_allocation(ritz_counter_below(counter, 3.9, &below));
+    ritz_counter_free(&counter);
+    assert_survives_every_allocation(ritz_counter_new(&K, &M, NULL, &counter));
+    ritz_counter_free(&counter);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(any_threads_and_any_kernel_multiply),
+    cmocka_unit_test(energy_terms_are_sums_of_magnitudes),
+    cmocka_unit_test(large_submatrices_follow_their_lists),
+    cmocka_unit_test(one_counter_counts_below_many_values),
+};
+
+TEST_MODULE(products, tests, NULL, NULL)
