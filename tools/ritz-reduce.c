@@ -8,6 +8,9 @@ int main(int argc, char **argv)
         CLI_PAIR("band-hz", given.estimate.band_hz, "F,F",
                  "band of the error estimates [up to half the highest "
                  "frequency of the basis]"),
+        CLI_WORD("estimates", &given.estimates, "all|frequency|none",
+                 "errors that are estimated: of frequencies and responses, of "
+                 "frequencies alone, or none [all]"),
         AT_OPTION(&given.model.at),
         ORDER_OPTION(&given.model.order),
         DAMPING_OPTION(&given.model.damping),

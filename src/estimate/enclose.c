@@ -32,6 +32,7 @@
 #include "linear/factor.h"
 #include "linear/general.h"
 #include "linear/inertia.h"
+#include "linear/residuals.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -91,21 +92,6 @@ static ritz_status take_ritz_pairs(const ritz_component *full,
     return RITZ_OK;
 }
 
-/* |x|'|K||x| of each column. */
-static double sum_magnitudes(const ritz_sparse *K, const double *x)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < K->ncol; j++) {
-        double part = 0.0;
-
-        for (int64_t p = K->colptr[j]; p < K->colptr[j + 1]; p++)
-            part += fabs(K->val[p] * x[K->rowind[p]]);
-        sum += fabs(x[j]) * part;
-    }
-    return sum;
-}
-
 /* R = K X - M X Theta, E = A^-1 R and G = R'E; rounding of theta. */
 static ritz_status take_residuals(const ritz_estimator *estimator,
                                   ritz_lehmann *trial)
@@ -118,18 +104,18 @@ static ritz_status take_residuals(const ritz_estimator *estimator,
         largest = trial->theta[trial->count - 1];
     RITZ_CHECK_NEW(trial->rounding, trial->count);
     RITZ_CHECK_NEW(trial->mass_terms, trial->count);
+    RITZ_CHECK(ritz_energy_terms(&full->K, &trial->X, trial->rounding));
+    RITZ_CHECK(ritz_energy_terms(&full->M, &trial->X, trial->mass_terms));
     RITZ_CHECK(ritz_sparse_mul(&full->K, &trial->X, &trial->R));
     RITZ_CHECK(ritz_sparse_mul(&full->M, &trial->X, &MX));
     for (int64_t j = 0; j < trial->count; j++) {
         double *r = ritz_dense_col(&trial->R, j);
-        double *x = ritz_dense_col(&trial->X, j);
 
         for (int64_t i = 0; i < MX.nrow; i++)
             r[i] -= trial->theta[j] * ritz_dense_col(&MX, j)[i];
-        trial->mass_terms[j] = sum_magnitudes(&full->M, x);
         trial->rounding[j] =
             RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
-            (sum_magnitudes(&full->K, x) +
+            (trial->rounding[j] +
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
     }
@@ -236,6 +222,7 @@ void ritz_lehmann_free(ritz_lehmann *trial)
     ritz_dense_free(&trial->R);
     ritz_dense_free(&trial->E);
     ritz_dense_free(&trial->G);
+    ritz_dense_free(&trial->Q);
     RITZ_FREE(trial->theta, trial->rounding, trial->mass_terms,
               trial->reduced_rounding, trial->reduced_low, trial->reduced_high);
     *trial = (ritz_lehmann){0};
@@ -493,9 +480,12 @@ ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
             return RITZ_OK;
     }
     m->estimator->num_factors++;
-    return ritz_inertia_below(
-        &full->K, &full->M, rho,
-        m->estimator->A ? ritz_factor_order(m->estimator->A) : NULL, below);
+    if (!m->estimator->counter)
+        RITZ_CHECK(ritz_counter_new(
+            &full->K, &full->M,
+            m->estimator->A ? ritz_factor_order(m->estimator->A) : NULL,
+            &m->estimator->counter));
+    return ritz_counter_below(m->estimator->counter, rho, below);
 }
 
 bool ritz_counted_within(const ritz_estimator *estimator, double low,

@@ -243,6 +243,8 @@ static double propose_count(const ritz_measuring *m, const int64_t *tries,
     int64_t fewest = MOST_FOR_ONE;
 
     if (band > 0.0)
+        rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_OFF * band);
+    if (band > 0.0 && isnan(rho))
         rho = find_above(m, RITZ_COUNT_NEAR * band, RITZ_COUNT_FAR * band);
     *mode = -1;
     for (int64_t k = m->reach - 1; k >= m->first && (isnan(rho) || *mode >= 0);
@@ -409,6 +411,7 @@ void ritz_estimator_free(ritz_estimator **estimator)
     if (!*estimator)
         return;
     ritz_factor_free(&(*estimator)->A);
+    ritz_counter_free(&(*estimator)->counter);
     free(*estimator);
     *estimator = NULL;
 }
@@ -517,7 +520,7 @@ ritz_status ritz_estimator_measure(ritz_estimator *estimator,
     RITZ_OWN(ritz_measuring) m = {.estimator = estimator};
     RITZ_OWN(ritz_measures) found = {0};
     ritz_estimator bare = {0}; /* the same, nothing being counted */
-    bool response = !least;
+    bool response = !least && !estimator->request.frequencies;
 
     RITZ_CHECK(open_measuring(basis, reduced, &response, &m));
     if (m.band_hz[1] > 0.0 && least) {

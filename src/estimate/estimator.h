@@ -9,6 +9,7 @@
 #ifndef RITZ_ESTIMATE_ESTIMATOR_H
 #define RITZ_ESTIMATE_ESTIMATOR_H
 
+#include "linear/inertia.h"
 #include "poles/poles.h"
 
 #include <ritz/verify.h>
@@ -27,8 +28,9 @@ struct ritz_estimator {
     const ritz_component *component; /* borrowed */
     ritz_estimate_request request;
     double sigma;
-    ritz_factor *A;      /* factor of K - sigma M; NULL: not made yet */
-    int64_t num_factors; /* number of factorisations made for counts */
+    ritz_factor *A;        /* factor of K - sigma M; NULL: not made yet */
+    ritz_counter *counter; /* NULL: nothing was counted yet */
+    int64_t num_factors;   /* number of factorisations made for counts */
     int64_t num_counts;
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
 };
@@ -50,6 +52,9 @@ typedef struct ritz_lehmann {
     ritz_dense R; /* n x m, residuals K X - M X Theta */
     ritz_dense E; /* n x m, A^-1 R */
     ritz_dense G; /* m x m, R'A^-1 R */
+    ritz_dense
+        Q; /* r x m, all modes of the reduced model times M X; empty until
+                     ritz_measuring_predict() needs it */
     double sigma;
 } ritz_lehmann;
 

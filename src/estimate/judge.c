@@ -36,15 +36,12 @@ typedef struct ritz_judge {
     double low, high; /* the band, in lambda */
     int64_t count;
     ritz_mode_group *group;
-    ritz_dense Q[2]; /* reduced modes times M times trial, polished vectors */
-    int64_t *found;  /* reduced modes that can be partners of a group */
+    int64_t *found; /* reduced modes that can be partners of a group */
 } ritz_judge;
 
 static void ritz_judge_free(ritz_judge *j)
 {
     RITZ_FREE(j->group, j->found);
-    ritz_dense_free(&j->Q[0]);
-    ritz_dense_free(&j->Q[1]);
 }
 
 static double square_of(double x)
@@ -143,16 +140,15 @@ static ritz_mode_group group_of(const ritz_measuring *m, int64_t first)
 }
 
 /* Q = Phi' T' M X: what reduced modes hold of a trial's vectors. */
-static ritz_status take_overlap(const ritz_measuring *m,
-                                const ritz_lehmann *trial, ritz_dense *out)
+static ritz_status take_overlap(const ritz_measuring *m, ritz_lehmann *trial)
 {
     RITZ_OWN(ritz_dense) MX = {0}, TMX = {0};
 
-    if (!trial->X.val)
+    if (!trial->X.val || trial->Q.val)
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_mul(&m->estimator->component->M, &trial->X, &MX));
     RITZ_CHECK(ritz_dense_mul_tn(m->T, &MX, &TMX));
-    return ritz_dense_mul_tn(&m->pairs.Phi, &TMX, out);
+    return ritz_dense_mul_tn(&m->pairs.Phi, &TMX, &trial->Q);
 }
 
 /* Whether rounding of the reduced matrices may mix mode r with the next one. */
@@ -187,7 +183,7 @@ static double most_by_residual(const ritz_measuring *m,
 static ritz_bounds share_of(const ritz_judge *j, const ritz_mode_group *g,
                             int64_t r)
 {
-    const ritz_dense *Q = &j->Q[g->vectors];
+    const ritz_dense *Q = g->vectors == 0 ? &j->m->trial.Q : &j->m->polished.Q;
     double sum = 0.0;
     double alpha = 0.0, delta = 0.0;
     ritz_bounds share = {0.0, 1.0};
@@ -373,7 +369,7 @@ static int64_t first_flexible(const ritz_measuring *m, double band)
 /* Groups of the full modes from the first flexible one on. */
 static ritz_status group_modes(ritz_judge *j, int64_t first)
 {
-    const ritz_measuring *m = j->m;
+    ritz_measuring *m = j->m;
     int64_t last = m->enclosure.count;
 
     RITZ_CHECK_NEW(j->found, m->pairs.Phi.ncol);
@@ -382,8 +378,8 @@ static ritz_status group_modes(ritz_judge *j, int64_t first)
         j->group[j->count] = group_of(m, first);
         first = j->group[j->count++].last;
     }
-    RITZ_CHECK(take_overlap(m, &m->trial, &j->Q[0]));
-    return take_overlap(m, &m->polished, &j->Q[1]);
+    RITZ_CHECK(take_overlap(m, &m->trial));
+    return take_overlap(m, &m->polished);
 }
 
 ritz_status ritz_measuring_predict(ritz_measuring *m)

@@ -32,6 +32,18 @@ expect 0 'response-relative-bound' ritz-reduce truss.h5 basis.h5 -o r.h5 \
 expect 0 'response-relative-estimate' ritz-reduce truss.h5 basis.h5 -o r.h5 \
     --band-hz 0,140 --damping 'bands 0 50 0.01 50 900 0.02'
 
+# --estimates says how much is estimated.
+json 0 ritz-reduce truss.h5 basis.h5 -o r.h5 --band-hz 0,140 \
+    --damping 'modal 0.01' --estimates frequency
+holds '  frequencies, no response' '
+    any(e["name"] == "frequency-relative-bound" for e in j["estimates"]) and
+    not any("response" in e["name"] for e in j["estimates"])'
+json 0 ritz-reduce truss.h5 basis.h5 -o r.h5 --estimates none
+holds '  nothing' 'not j.get("estimates")'
+expect 1 'neither estimated nor measured' ritz-export --to exudyn r.h5 -o r.npz
+expect 2 "'all', 'frequency' or 'none', not 'some'" ritz-reduce truss.h5 basis.h5 -o r.h5 \
+    --estimates some
+
 # With exact modes a bound is rounding; text, JSON, file, record and report name
 # this cause.
 ritz-basis macneal-rubin --modes 14 truss.h5 -o exact.h5 >log

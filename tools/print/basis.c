@@ -286,6 +286,11 @@ static ritz_status project_component(const model *full, const ritz_basis *basis,
     return RITZ_OK;
 }
 
+static bool asked_for(const reduce_options *given, const char *estimates)
+{
+    return given->estimates && strcmp(given->estimates, estimates) == 0;
+}
+
 static ritz_status reduce_to_matrices(cli_run *run, const model *full,
                                       const ritz_basis *basis,
                                       const reduce_options *given)
@@ -296,8 +301,9 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
     const ritz_columns *c = &reduced->columns;
 
     RITZ_CHECK_IN(what, project_component(full, basis, reduced));
-    RITZ_CHECK_IN(what, ritz_estimate(&full->component, basis, &given->estimate,
-                                      reduced));
+    if (!asked_for(given, "none"))
+        RITZ_CHECK_IN(what, ritz_estimate(&full->component, basis,
+                                          &given->estimate, reduced));
     if (given->without_basis)
         drop_basis(reduced);
     RITZ_CHECK(describe_output(run, &made));
@@ -382,7 +388,13 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
         given->without_basis && full.kind == MODEL_STATES, RITZ_ERR_ARGUMENT,
         "a reduced state space keeps no basis, --without-basis is for "
         "components");
-    if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val)
+    given->estimate.frequencies = asked_for(given, "frequency");
+    if (full.kind == MODEL_STATES || basis.basis.states || basis.basis.W.val) {
+        RITZ_REFUSE_IF(given->estimates, RITZ_ERR_ARGUMENT,
+                       "'%s' reduces to a state space, --estimates is for "
+                       "components",
+                       what);
         return reduce_to_states(run, &full, &basis.basis);
+    }
     return reduce_to_matrices(run, &full, &basis.basis, given);
 }

@@ -34,7 +34,8 @@ ritz_status basis_run(cli_run *run, basis_options *given);
 
 typedef struct reduce_options {
     bool without_basis;
-    model_options model; /* configuration or columns, and damping */
+    model_options model;   /* configuration or columns, and damping */
+    const char *estimates; /* "all", "frequency" or "none"; NULL: not said */
     ritz_estimate_request estimate;
 } reduce_options;
 
