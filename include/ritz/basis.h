@@ -163,6 +163,10 @@ typedef struct ritz_method {
     int uses;             /* sum of RITZ_USES_... */
     bool keeps_interface; /* has a column for every attached dof, however few
                              others are kept */
+    bool nested;          /* what it has for fewer modes are columns of what it
+                             has for more: those that are no modes, and the
+                             first of the others. Unless there are static
+                             columns, whose part in the modes is left out */
     int only_named;       /* ritz-fit tries the method only if the user names
                              it: sum of RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */

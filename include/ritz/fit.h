@@ -35,16 +35,16 @@ typedef struct ritz_fit_candidate {
                              `columns` */
     int64_t columns;    /* of all flexible bodies together */
     ritz_measures errors;    /* worst of all configurations; {0} if refused */
-    ritz_measures estimates; /* bounds; of a scene: worst of the configurations
-                                that were bounded */
+    ritz_measures estimates; /* bounds of what a search chose and of its
+                                runner-up, of a scene the worst of all
+                                configurations; of others what ruled them out */
     double ratio;     /* largest error over its tolerance; 1 or less: met */
     int64_t worst;    /* the measure of that ratio in `errors`; -1: none */
     bool feasible;    /* it meets the tolerance everywhere, and is stable */
     bool unconfirmed; /* it met the tolerance on the grid, and not at the random
                          frequencies and configurations */
-    bool ruled_out;   /* its bounds exclude it, so it was not measured */
-    bool bounded;     /* its bounds meet the tolerance, so it was measured only
-                         where it is confirmed */
+    bool ruled_out;   /* of a scene: a bound excludes it, so it was not
+                         measured */
     ritz_fit_watch making; /* to make basis and reduction */
     ritz_cost cost;        /* if it is feasible; order 0: not measured */
     char refusal[256];     /* why it could not be made, or is unstable; "" */
@@ -70,8 +70,8 @@ typedef struct ritz_fit_request {
                                `num_between` */
     int64_t num_between;   /* random configurations that confirm */
     uint64_t seed;         /* of both */
-    bool estimates;        /* bounds before errors: what they decide is not
-                            measured, but where it is confirmed */
+    bool estimates;        /* bounds of the result and the runner-up; of a
+                            scene what a bound rules out is not measured */
     bool costs;            /* of feasible ones, measured: some 20 ms each */
     bool thorough;         /* every method to its end, not only as far as twice
                             the best of others */

@@ -236,6 +236,32 @@ ritz_status ritz_reference_measure(const ritz_reference *reference,
                                    ritz_measures *out);
 
 /**
+ * Phi'M T with the reference's modes Phi: what the columns of T hold of each
+ * full mode. Reductions whose columns are combinations of those of T have the
+ * same combinations of these, and need no T to be measured.
+ *
+ * @param[in]  T    n x r
+ * @param[out] out  modes x r
+ * @cost   O(n modes r)
+ */
+ritz_status ritz_reference_parts(const ritz_reference *reference,
+                                 const ritz_dense *T, ritz_dense *out);
+
+/**
+ * As ritz_reference_measure of a reduced component of which T is not at hand:
+ * shapes are compared by @p parts, of as many columns as it has.
+ *
+ * @param[in] parts  of ritz_reference_parts; NULL: as ritz_reference_measure
+ * @cost   nothing that grows with the full model's size, unless its response
+ *         at each frequency takes a factor
+ */
+ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
+                                         ritz_model reduced,
+                                         const ritz_dense *parts,
+                                         const ritz_verify_request *limits,
+                                         int where, ritz_measures *out);
+
+/**
  * Number of flexible modes of the full model in the band, and of rigid ones.
  */
 int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid);

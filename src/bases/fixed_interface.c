@@ -420,6 +420,7 @@ const ritz_method ritz_method_craig_bampton = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_INTERFACE |
             RITZ_USES_LOADS | RITZ_USES_EIGEN,
     .keeps_interface = true,
+    .nested = true,
     .make = make_craig_bampton,
 };
 
@@ -676,5 +677,6 @@ const ritz_method ritz_method_krylov_cms_fixed = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
     .keeps_interface = true,
+    .nested = true,
     .make = make_krylov_fixed,
 };

@@ -652,6 +652,7 @@ const ritz_method ritz_method_krylov = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER | RITZ_USES_SIDES |
             RITZ_USES_SPACE,
+    .nested = true,
     .make = make_krylov,
 };
 
@@ -672,5 +673,6 @@ const ritz_method ritz_method_krylov_cms_free = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_SHIFTS |
             RITZ_USES_LOADS | RITZ_USES_INNER,
     .keeps_interface = true,
+    .nested = true,
     .make = make_krylov_free,
 };

@@ -229,6 +229,7 @@ void ritz_fit_joined_free(ritz_fit_joined *joined)
         memset(stage->body, 0, (size_t)stage->count * sizeof *stage->body);
     ritz_stage_free(stage);
     ritz_bodies_free(&joined->own);
+    ritz_dense_free(&joined->parts);
 }
 
 ritz_status ritz_fit_rich(const ritz_fitter *f, double up_to_hz,

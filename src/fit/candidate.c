@@ -1,7 +1,7 @@
 /*
- * One candidate: its bodies are made, each once, lent to a stage, bounded,
- * measured at every listed configuration and, where it meets the tolerance
- * there, confirmed at random frequencies and configurations.
+ * One candidate: its bodies are made, each once, and joined; unless a bound
+ * rules it out it is measured at every listed configuration and, where it meets
+ * the tolerance there, confirmed at random frequencies and configurations.
  */
 #include "fit/fitter.h"
 
@@ -107,70 +107,11 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
 /* --- its bodies
    ------------------------------------------------------------------ */
 
-/* Those of the options that this method uses; band and damping are those of the
-   tolerance where no others are given. */
-static ritz_choice choose_options(const ritz_fitter *fitter,
-                                  const ritz_method *method)
+/* Free a body that was made. */
+static void free_made(ritz_fit_made *made)
 {
-    const ritz_verify_request *limits = &fitter->request.tolerance;
-    ritz_choice choice = fitter->request.choice;
-    int absent = ~choice.given;
-
-    if (absent & method->uses & RITZ_USES_DAMPING &&
-        limits->damping.kind != RITZ_DAMPING_NONE) {
-        choice.damping = limits->damping;
-        choice.given |= RITZ_USES_DAMPING;
-    }
-    if (absent & method->uses & RITZ_USES_BAND) {
-        memcpy(choice.band_hz, limits->band_hz, sizeof choice.band_hz);
-        choice.given |= RITZ_USES_BAND;
-    }
-    if (absent & method->uses & RITZ_USES_SIDES) {
-        choice.one_sided = true; /* symmetric, as all that are compared */
-        choice.given |= RITZ_USES_SIDES;
-    }
-    choice.given &= method->uses;
-    if (!ritz_engine_fits(method, choice.engine)) {
-        choice.engine = RITZ_ENGINE_AUTO;
-        choice.given &= ~RITZ_USES_ENGINE;
-    }
-    return choice;
-}
-
-static ritz_status reduce_component(const ritz_fitter *f,
-                                    const ritz_method *method, int64_t modes,
-                                    ritz_reduced *out)
-{
-    ritz_request request = RITZ_REQUEST_NONE;
-    RITZ_OWN(ritz_basis) basis = {0};
-
-    request.component = f->component;
-    request.modes = modes;
-    request.choice = choose_options(f, method);
-    request.attached = f->attached; /* borrowed */
-    RITZ_CHECK(ritz_basis_make(method, &request, &basis));
-    return ritz_reduce(f->component, &basis, out);
-}
-
-ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
-                          int64_t modes, ritz_reduced *out)
-{
-    ritz_scene_component item = {0};
-
-    if (!f->scene)
-        return reduce_component(f, method, modes, out);
-    if (method == &ritz_fit_compare)
-        return ritz_fit_second_body(f, k, modes, out);
-    item = f->scene->component[f->body[k]];
-    (void)snprintf(item.basis, sizeof item.basis, "%s", method->name);
-    item.modes = modes;
-    item.up_to_hz = 0.0;
-    if (f->request.choice.given)
-        item.choice = f->request.choice;
-    item.choice.given &= method->uses;
-    return ritz_context(
-        ritz_stage_reduce(f->scene, f->body[k], &item, &f->model[k], out),
-        item.name);
+    ritz_reduced_free(&made->reduced);
+    ritz_dense_free(&made->parts);
 }
 
 void ritz_fit_forget(ritz_fitter *f, const ritz_method *method)
@@ -179,21 +120,21 @@ void ritz_fit_forget(ritz_fitter *f, const ritz_method *method)
 
     for (int64_t k = 0; k < f->num_made; k++)
         if (f->made[k].method == method)
-            ritz_reduced_free(&f->made[k].reduced);
+            free_made(&f->made[k]);
         else
             f->made[kept++] = f->made[k];
     f->num_made = kept;
 }
 
-/* Whether there is room for one more T: bounds need those of all bodies, and
-   MAC needs that of a component. */
+/* Whether there is room for one more T: bounds of a scene need those of all
+   bodies. */
 static bool keeps_basis(const ritz_fitter *f, const ritz_dense *T)
 {
     int64_t held = T->nrow * T->ncol;
 
     for (int64_t k = 0; k < f->num_made; k++)
         held += f->made[k].reduced.T.nrow * f->made[k].reduced.T.ncol;
-    return !f->scene || (f->place[0].estimator && held <= most_entries);
+    return f->scene && f->place[0].estimator && held <= most_entries;
 }
 
 /* That body in that basis, made once; of what cannot be, why. */
@@ -201,6 +142,7 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
                              int64_t body, int64_t modes, int64_t *at)
 {
     RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
     const ritz_fit_watch watch = ritz_fit_start();
     ritz_fit_made *made = NULL;
     ritz_status status = RITZ_OK;
@@ -212,7 +154,9 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
             return RITZ_OK;
     }
     RITZ_CHECK_ROOM(f->made, f->num_made, f->room_made);
-    status = ritz_fit_body(f, method, body, modes, &reduced);
+    status = f->scene
+                 ? ritz_fit_body(f, method, body, modes, &reduced)
+                 : ritz_fit_take(f, method, modes, false, &reduced, &parts);
     if (status == RITZ_OK)
         status = ritz_reduced_install(&reduced);
     if (status == RITZ_ERR_MEMORY)
@@ -227,6 +171,7 @@ static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
                        ritz_error_message());
     made->making = ritz_fit_since(watch);
     RITZ_MOVE(made->reduced, reduced);
+    RITZ_MOVE(made->parts, parts);
     return RITZ_OK;
 }
 
@@ -259,6 +204,8 @@ static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
         candidate->making.cpu += made->making.cpu;
         candidate->columns += made->reduced.K.ncol;
         body[k] = made->reduced;
+        if (!f->scene)
+            RITZ_CHECK(ritz_dense_copy(&made->parts, &out->parts));
     }
     return ritz_fit_join(f, body, out);
 }
@@ -270,8 +217,9 @@ static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
 typedef struct ritz_fit_model {
     const ritz_fit_place *place;
     const ritz_stage *stage;
-    ritz_configuration at; /* of a scene */
-    ritz_reduced lent;     /* its matrices, and T of a component; borrowed */
+    const ritz_dense *parts; /* of a component, Phi'M T; NULL: not known */
+    ritz_configuration at;   /* of a scene */
+    ritz_reduced lent;       /* its matrices, and T of a component; borrowed */
 } ritz_fit_model;
 
 static void ritz_fit_model_free(ritz_fit_model *m)
@@ -324,11 +272,11 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
     const ritz_reference *reference = m->place->reference;
     RITZ_OWN(ritz_measures) found = {0};
 
-    RITZ_CHECK(ritz_reference_measure(
+    RITZ_CHECK(ritz_reference_measure_parts(
         reference,
         f->scene ? ritz_model_of_configuration(&m->at, NULL)
                  : ritz_model_of_reduced(&m->lent, NULL),
-        limits, points, &found));
+        m->parts, limits, points, &found));
     RITZ_CHECK(ritz_fit_worst(&found, m->place->at, &candidate->errors));
     ritz_fit_judge(limits, candidate);
     if (candidate->feasible && points)
@@ -339,17 +287,6 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
 /* --- bounds
    ---------------------------------------------------------------------- */
 
-/*
- * What bounds decide before anything is measured. A candidate fails for certain
- * if its worst frequency error is at least more than is allowed; a component's
- * holds on the grid if every measure that has a tolerance has a bound within.
- */
-typedef enum ritz_fit_verdict {
-    RITZ_FIT_OPEN, /* measure it */
-    RITZ_FIT_HOLDS,
-    RITZ_FIT_FAILS,
-} ritz_fit_verdict;
-
 /* Whether all bodies have their T. */
 static bool has_bases(const ritz_stage *stage)
 {
@@ -358,26 +295,6 @@ static bool has_bases(const ritz_stage *stage)
     for (int64_t k = 0; k < stage->count; k++)
         all = all && stage->body[k].T.val;
     return all;
-}
-
-/* Whether bounds say that every measure with a tolerance holds: one without a
-   bound is not known to. Where frequencies are to be near, no mode may be
-   missing. */
-static bool surely_holds(const ritz_verify_request *limits,
-                         const ritz_measures *found)
-{
-    for (int k = 0; k < RITZ_MEASURES; k++) {
-        const char *bound = ritz_measure_table[k].bound;
-        double limit = limits->limit[k];
-
-        if (k == RITZ_MEASURE_MISSING &&
-            !isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
-            limit = fmax(limit, 0.0);
-        if (!isnan(limit) &&
-            !(bound && ritz_measures_value(found, bound) <= limit))
-            return false;
-    }
-    return true;
 }
 
 /* Where modes may be missing, no error is certain. */
@@ -423,25 +340,22 @@ static void forget_least(ritz_measures *found)
 }
 
 /*
- * A component's bounds stand beside the errors of every candidate. Of a scene
- * measuring costs less than they do, save that what is off at one configuration
- * need not be measured at all: so that is asked alone.
+ * A candidate fails for certain if its worst frequency error is at least more
+ * than is allowed. Of a scene that is one bound, where measuring takes as many
+ * systems as there are configurations. Of a component measuring costs less than
+ * any bound.
  */
-static ritz_status foresee_errors(const ritz_fitter *f, const ritz_fit_model *m,
-                                  ritz_fit_candidate *candidate,
-                                  ritz_fit_verdict *verdict)
+static ritz_status rule_out(const ritz_fitter *f, const ritz_fit_model *m,
+                            ritz_fit_candidate *candidate)
 {
     const ritz_verify_request *limits = &f->request.tolerance;
     RITZ_OWN(ritz_measures) found = {0};
     double ratio = 0.0;
 
-    if (f->scene && isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
+    if (isnan(limits->limit[RITZ_MEASURE_FREQUENCY]))
         return RITZ_OK;
-    RITZ_CHECK(bound_model(f, m, f->scene != NULL, &found));
-    if (!f->request.thorough && surely_holds(limits, &found)) {
-        *verdict = RITZ_FIT_HOLDS;
-    } else if (!f->request.thorough && surely_fails(limits, &found, &ratio)) {
-        *verdict = RITZ_FIT_FAILS;
+    RITZ_CHECK(bound_model(f, m, true, &found));
+    if (surely_fails(limits, &found, &ratio)) {
         candidate->ruled_out = true;
         candidate->ratio = ratio;
     }
@@ -486,14 +400,14 @@ int ritz_fit_points(const ritz_reference *reference,
                : RITZ_AT_RANDOM;
 }
 
-ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
+ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_fit_joined *joined,
                                 const ritz_fit_place *place, int points,
                                 bool bounds, ritz_fit_candidate *candidate)
 {
-    RITZ_OWN(ritz_fit_model) m = {0};
-    ritz_fit_verdict verdict = RITZ_FIT_OPEN;
+    RITZ_OWN(ritz_fit_model)
+    m = {.parts = joined->parts.ncol > 0 ? &joined->parts : NULL};
 
-    RITZ_CHECK(open_model(f, stage, place, &m));
+    RITZ_CHECK(open_model(f, &joined->stage, place, &m));
     if (m.lent.K.ncol > candidate->order)
         candidate->order = m.lent.K.ncol;
     RITZ_REFUSE_IF(candidate->order > f->largest, RITZ_ERR_ARGUMENT,
@@ -501,12 +415,9 @@ ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_stage *stage,
                    " that are tried",
                    candidate->order, f->largest);
     if (bounds)
-        RITZ_CHECK(foresee_errors(f, &m, candidate, &verdict));
-    if (verdict == RITZ_FIT_OPEN)
-        RITZ_CHECK(measure_model(f, &m, points, candidate));
-    candidate->bounded = verdict == RITZ_FIT_HOLDS;
-    candidate->feasible = candidate->feasible || candidate->bounded;
-    return RITZ_OK;
+        RITZ_CHECK(rule_out(f, &m, candidate));
+    return candidate->ruled_out ? RITZ_OK
+                                : measure_model(f, &m, points, candidate);
 }
 
 /* The cost of simulation at the first place; there may be none. */
@@ -532,22 +443,22 @@ static ritz_status take_cost(const ritz_fitter *f, const ritz_stage *stage,
  * Bounds are asked where the candidate before was worst, as that is where the
  * next one fails, if it does.
  */
-static ritz_status meet_grid(ritz_fitter *f, const ritz_stage *stage,
+static ritz_status meet_grid(ritz_fitter *f, const ritz_fit_joined *joined,
                              ritz_fit_candidate *candidate)
 {
     const int64_t first = f->hardest;
-    bool bounds = f->place[0].estimator && has_bases(stage) &&
-                  !(f->scene && f->request.thorough);
+    bool bounds = f->scene && f->place[0].estimator &&
+                  has_bases(&joined->stage) && !f->request.thorough;
     double worst = 0.0;
 
     RITZ_CHECK(
-        ritz_fit_measure_at(f, stage, &f->place[first], 0, bounds, candidate));
+        ritz_fit_measure_at(f, joined, &f->place[first], 0, bounds, candidate));
     worst = candidate->ratio;
     for (int64_t k = 0; k < f->num_listed && !candidate->ruled_out; k++) {
         if (k == first)
             continue;
         RITZ_CHECK(
-            ritz_fit_measure_at(f, stage, &f->place[k], 0, false, candidate));
+            ritz_fit_measure_at(f, joined, &f->place[k], 0, false, candidate));
         if (candidate->ratio > worst)
             f->hardest = k;
         worst = candidate->ratio;
@@ -555,35 +466,30 @@ static ritz_status meet_grid(ritz_fitter *f, const ritz_stage *stage,
     return RITZ_OK;
 }
 
-ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_stage *stage,
+ritz_status ritz_fit_measure(ritz_fitter *f, const ritz_fit_joined *joined,
                              ritz_fit_candidate *candidate)
 {
-    bool bounded = false;
     int points = 0;
 
-    RITZ_CHECK(meet_grid(f, stage, candidate));
-    bounded = candidate->bounded;
+    RITZ_CHECK(meet_grid(f, joined, candidate));
     if (!candidate->feasible || candidate->ruled_out)
         return RITZ_OK;
     points = ritz_fit_points(f->place[0].reference, &candidate->errors);
     ritz_measures_free(&candidate->errors);
     for (int64_t k = 0; k < f->num_places && candidate->refusal[0] == '\0'; k++)
-        RITZ_CHECK(ritz_fit_measure_at(f, stage, &f->place[k], points, false,
+        RITZ_CHECK(ritz_fit_measure_at(f, joined, &f->place[k], points, false,
                                        candidate));
-    candidate->bounded = bounded;
     candidate->unconfirmed =
         !candidate->feasible && candidate->refusal[0] == '\0';
     return candidate->feasible && f->request.costs
-               ? take_cost(f, stage, candidate)
+               ? take_cost(f, &joined->stage, candidate)
                : RITZ_OK;
 }
 
-ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
+ritz_status ritz_fit_bound_joined(ritz_fitter *f, ritz_fit_candidate *candidate)
 {
     RITZ_OWN(ritz_fit_joined) joined = {0};
 
-    if (!f->scene || !f->place[0].estimator || candidate->left_out > 0)
-        return RITZ_OK;
     RITZ_CHECK(join_bodies(f, candidate, &joined));
     return joined.stage.body ? ritz_fit_bound_stage(f, &joined.stage, candidate)
                              : RITZ_OK;
@@ -603,7 +509,7 @@ ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
         candidate.modes[k] = method->uses & RITZ_USES_MODES ? modes[k] : -1;
     status = join_bodies(fitter, &candidate, &joined);
     if (status == RITZ_OK && joined.stage.body) /* no body is refused */
-        status = ritz_fit_measure(fitter, &joined.stage, &candidate);
+        status = ritz_fit_measure(fitter, &joined, &candidate);
     if (!fitter->scene) /* its candidates have no body in common */
         ritz_fit_forget(fitter, method);
     RITZ_CHECK(ritz_fit_refuse(status, &candidate));

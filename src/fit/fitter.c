@@ -392,10 +392,17 @@ void ritz_fitter_free(ritz_fitter **fitter)
     for (int64_t k = 0; f->model && k < f->num_bodies; k++)
         ritz_component_free(&f->model[k]);
     ritz_bodies_free(&f->still);
-    for (int64_t k = 0; k < f->num_made; k++)
+    for (int64_t k = 0; k < f->num_made; k++) {
         ritz_reduced_free(&f->made[k].reduced);
+        ritz_dense_free(&f->made[k].parts);
+    }
+    for (int64_t k = 0; k < f->num_families; k++)
+        ritz_fit_family_free(&f->family[k]);
+    for (int64_t k = 0; k < f->num_ordered; k++)
+        RITZ_FREE(f->ordered[k].modes, f->ordered[k].column);
     ritz_fit_second_free(&f->second);
     ritz_dofs_free(&f->attached);
-    RITZ_FREE(f->place, f->body, f->model, f->step, f->made, f);
+    RITZ_FREE(f->place, f->body, f->model, f->step, f->made, f->family,
+              f->ordered, f);
     *fitter = NULL;
 }

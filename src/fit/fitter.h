@@ -26,10 +26,29 @@ typedef struct ritz_fit_made {
     int64_t body, modes;
     ritz_reduced reduced; /* dampers installed; without T, unless bounds need
                              it */
+    ritz_dense parts;     /* of a component: Phi'M T, as ritz_reference_parts */
     ritz_fit_watch making;
     ritz_status status; /* of making it */
     char refusal[256];
 } ritz_fit_made;
+
+/* The columns that a method has for many modes of a component; those that it
+   has for fewer are among them (ritz_method.nested). */
+typedef struct ritz_fit_family {
+    const ritz_method *method;
+    int64_t modes; /* asked for */
+    ritz_reduced whole;
+    ritz_dense parts; /* Phi'M T */
+    bool none;        /* its columns do not contain those of fewer modes */
+} ritz_fit_family;
+
+/* The order in which columns of a candidate's bodies matter, once found. */
+typedef struct ritz_fit_ordered {
+    const ritz_method *method;
+    int64_t *modes; /* num_bodies */
+    int64_t count, fixed;
+    int64_t *column; /* count, what matters most first */
+} ritz_fit_ordered;
 
 /* A rung of a ladder: the body that gets one mode more. */
 typedef struct ritz_fit_step {
@@ -53,7 +72,8 @@ typedef struct ritz_fit_second {
 /* Bodies joined: the stage borrows all of them. */
 typedef struct ritz_fit_joined {
     ritz_stage stage;
-    ritz_bodies own; /* flexible ones that were made for this stage alone */
+    ritz_bodies own;  /* flexible ones that were made for this stage alone */
+    ritz_dense parts; /* of a component, Phi'M T; {0}: T is at hand */
 } ritz_fit_joined;
 
 struct ritz_fitter {
@@ -76,6 +96,10 @@ struct ritz_fitter {
     double rich_hz;        /* modes of bodies in a rich reference, up to it */
     int64_t num_made, room_made;
     ritz_fit_made *made;
+    int64_t num_families, room_families;
+    ritz_fit_family *family; /* of a component */
+    int64_t num_ordered, room_ordered;
+    ritz_fit_ordered *ordered;
     ritz_fit_second second;
     int64_t largest; /* order to be tried */
 };
@@ -105,6 +129,44 @@ ritz_status ritz_fit_extend(ritz_fitter *fitter, ritz_fit_end *end);
  */
 ritz_status ritz_fit_join(const ritz_fitter *fitter,
                           const ritz_reduced *flexible, ritz_fit_joined *out);
+
+/* --- family.c
+   --------------------------------------------------------------------- */
+
+/** Whether a column must stay: without it a body could not move rigidly, or
+ * would not have its interface. */
+bool ritz_fit_stays(ritz_column_kind kind);
+
+/**
+ * What the columns of a body are. One that takes part in its rigid motion is
+ * rigid, whatever its method calls it: modes of Rubin store energy.
+ *
+ * @param[out] kind  one for each column
+ */
+ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
+
+/** Flexible body @p k by a method and a number of modes. */
+ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
+                          int64_t k, int64_t modes, ritz_reduced *out);
+
+/**
+ * A component's candidate by a method and a number of modes. If the method is
+ * nested it is made of the first columns of a basis with more modes, which is
+ * made once and made larger when more are asked for.
+ *
+ * @param[in]  with_T  whether @p out gets its T
+ * @param[out] parts   Phi'M T
+ * @cost  a basis the first time; later, and without T, what the candidate's
+ *        own order costs
+ */
+ritz_status ritz_fit_take(ritz_fitter *fitter, const ritz_method *method,
+                          int64_t modes, bool with_T, ritz_reduced *out,
+                          ritz_dense *parts);
+
+void ritz_fit_family_free(ritz_fit_family *family);
+
+/* --- bodies.c again: joined bodies
+   --------------------------------------------------------------------- */
 
 /** Join the flexible bodies that @p joined owns, and install their dampers. */
 ritz_status ritz_fit_join_own(const ritz_fitter *fitter,
@@ -172,35 +234,35 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
 int ritz_fit_points(const ritz_reference *reference,
                     const ritz_measures *errors);
 
-/** Flexible body @p k by a method and a number of modes; forget those made by
- * a method. */
-ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
-                          int64_t k, int64_t modes, ritz_reduced *out);
+/** Forget the bodies that were made by a method. */
 void ritz_fit_forget(ritz_fitter *fitter, const ritz_method *method);
 
 /**
- * Add the errors of a stage at a place to the worst so far; refuse what is
- * unstable where it is confirmed (@p points is not 0).
+ * Add the errors of joined bodies at a place to the worst so far; refuse what
+ * is unstable where it is confirmed (@p points is not 0).
  *
- * @param[in] bounds  what bounds decide is not measured
+ * @param[in] bounds  what a bound rules out is not measured
  */
-ritz_status ritz_fit_measure_at(ritz_fitter *fitter, const ritz_stage *stage,
+ritz_status ritz_fit_measure_at(ritz_fitter *fitter,
+                                const ritz_fit_joined *joined,
                                 const ritz_fit_place *place, int points,
                                 bool bounds, ritz_fit_candidate *candidate);
 
 /**
- * Measure and judge a stage: at every listed place, by bounds or on the grid;
- * what holds there at all places where it is confirmed too.
+ * Measure and judge joined bodies: at every listed place on the grid, unless a
+ * bound rules them out; what holds there at all places where it is confirmed
+ * too.
  */
-ritz_status ritz_fit_measure(ritz_fitter *fitter, const ritz_stage *stage,
+ritz_status ritz_fit_measure(ritz_fitter *fitter, const ritz_fit_joined *joined,
                              ritz_fit_candidate *candidate);
 
-/** Bounds of a scene's stage at every place in place of its estimates. */
+/** Bounds of joined bodies at every place in place of the estimates. */
 ritz_status ritz_fit_bound_stage(ritz_fitter *fitter, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate);
 
-/** Bound a candidate of a scene that was tried. */
-ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);
+/** Bound a scene's candidate that was tried, with nothing left out. */
+ritz_status ritz_fit_bound_joined(ritz_fitter *fitter,
+                                  ritz_fit_candidate *candidate);
 
 /** Whether candidate @p a is nearer to the tolerance, as far as is known: it
  * misses fewer modes that may not be missing, or its other errors are less. */
@@ -213,22 +275,13 @@ double ritz_fit_misses(const ritz_fit_candidate *candidate);
 /* --- nest.c
    ------------------------------------------------------------------ */
 
-/** Whether a column must stay: without it a body could not move rigidly, or
- * would not have its interface. */
-bool ritz_fit_stays(ritz_column_kind kind);
-
-/**
- * What the columns of a body are. One that takes part in its rigid motion is
- * rigid, whatever its method calls it: modes of Rubin store energy.
- *
- * @param[out] kind  one for each column
- */
-ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
-
 /** Flexible bodies of a candidate, cut if it is; dampers not installed. */
 ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
                                  const ritz_fit_candidate *candidate,
                                  ritz_bodies *out);
+
+/** Bound a candidate that was tried, at every place. */
+ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);
 
 /**
  * The candidate without columns that its tolerance can do without; its order is

@@ -30,6 +30,7 @@ enum { TRIED = 6 };
 typedef struct nesting {
     ritz_fitter *f;
     ritz_bodies whole;    /* flexible bodies with all their columns */
+    ritz_dense parts;     /* of a component: Phi'M T of all columns */
     int64_t *first;       /* num_bodies + 1: its first column of all */
     int64_t count, fixed; /* columns; those that must stay, first */
     int64_t *column;      /* count, what matters most first */
@@ -43,6 +44,7 @@ typedef struct nesting {
 static void nesting_free(nesting *n)
 {
     ritz_bodies_free(&n->whole);
+    ritz_dense_free(&n->parts);
     RITZ_FREE(n->first, n->column, n->alone, n->own, n->some);
 }
 
@@ -61,8 +63,8 @@ static int64_t take_own(const nesting *n, int64_t k, int64_t count,
     return found;
 }
 
-/* The model of some columns. It needs no invariants, and T only of a component,
-   whose MAC is that of shapes. */
+/* The model of some columns. It needs no invariants and no T: shapes of a
+   component are compared by `parts`. */
 static ritz_status join_columns(const nesting *n, int64_t count,
                                 const int64_t *column, ritz_fit_joined *out)
 {
@@ -70,12 +72,13 @@ static ritz_status join_columns(const nesting *n, int64_t count,
     for (int64_t k = 0; k < n->f->num_bodies; k++) {
         ritz_reduced bare = n->whole.item[k]; /* borrowed */
 
-        if (n->f->scene)
-            bare.T = (ritz_dense){0};
+        bare.T = (ritz_dense){0};
         bare.invariants = (ritz_invariants){0};
         RITZ_CHECK(ritz_reduced_nest(&bare, take_own(n, k, count, column),
                                      n->own, 1, &out->own.item[k]));
     }
+    if (!n->f->scene)
+        RITZ_CHECK(ritz_dense_pick(&n->parts, count, column, &out->parts));
     return ritz_fit_join_own(n->f, out);
 }
 
@@ -100,8 +103,8 @@ static ritz_status measure_ratio(nesting *n, int64_t count,
         const int64_t k = (from + t) % places;
         const double before = judged.ratio;
 
-        status = ritz_fit_measure_at(
-            n->f, &joined.stage, &n->f->place[k * n->every], 0, false, &judged);
+        status = ritz_fit_measure_at(n->f, &joined, &n->f->place[k * n->every],
+                                     0, false, &judged);
         if (status == RITZ_OK && judged.ratio > before)
             n->hardest = k;
     }
@@ -111,14 +114,14 @@ static ritz_status measure_ratio(nesting *n, int64_t count,
 }
 
 /* At all places, or at the listed ones on the grid if @p points is 0. */
-static ritz_status measure_places(ritz_fitter *f, const ritz_stage *stage,
+static ritz_status measure_places(ritz_fitter *f, const ritz_fit_joined *joined,
                                   int points, ritz_fit_candidate *out)
 {
     const int64_t places = points ? f->num_places : f->num_listed;
 
     for (int64_t k = 0; k < places && !out->refusal[0]; k++)
         RITZ_CHECK(
-            ritz_fit_measure_at(f, stage, &f->place[k], points, false, out));
+            ritz_fit_measure_at(f, joined, &f->place[k], points, false, out));
     return RITZ_OK;
 }
 
@@ -132,12 +135,12 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
     int points = ritz_fit_points(reference, &out->errors);
 
     if (status == RITZ_OK && !(points & RITZ_AT_OTHER_POLES)) {
-        status = measure_places(n->f, &joined.stage, 0, out);
+        status = measure_places(n->f, &joined, 0, out);
         points = ritz_fit_points(reference, &out->errors);
         ritz_measures_free(&out->errors); /* poles only if there is need */
     }
     if (status == RITZ_OK)
-        status = measure_places(n->f, &joined.stage, points, out);
+        status = measure_places(n->f, &joined, points, out);
     RITZ_CHECK(ritz_fit_refuse(status, out));
     if (out->refusal[0])
         ritz_measures_free(&out->errors);
@@ -146,46 +149,6 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
 
 /* --- the order
    ------------------------------------------------------------------- */
-
-bool ritz_fit_stays(ritz_column_kind kind)
-{
-    static const ritz_column_kind kinds[] = {
-        RITZ_COLUMN_RIGID,      RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
-        RITZ_COLUMN_ATTACHMENT, RITZ_COLUMN_RESIDUAL,   RITZ_COLUMN_MASSLESS,
-        RITZ_COLUMN_FORCE};
-
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-        if (kind == kinds[k])
-            return true;
-    return false;
-}
-
-/* Columns j that take part in rigid motion, |x_j| sqrt(M_jj) of its x'M x =
-   1. */
-ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
-{
-    RITZ_OWN(ritz_pairs) pairs = {0};
-    const int64_t n = whole->K.ncol;
-    ritz_status status = RITZ_OK;
-
-    if (n == 0)
-        return RITZ_OK;
-    memcpy(kind, whole->columns.kind, (size_t)n * sizeof *kind);
-    status = ritz_eigen_dense(&whole->K, &whole->M, &pairs);
-    if (status == RITZ_ERR_SINGULAR)
-        return RITZ_OK; /* a mechanism without mass: kinds alone decide */
-    RITZ_CHECK(status);
-    for (int64_t r = 0; r < pairs.num_rigid; r++)
-        for (int64_t j = 0; j < n; j++) {
-            const double mass = ritz_dense_col(&whole->M, j)[j];
-            const double part = ritz_dense_col(&pairs.Phi, r)[j];
-
-            if (part * part * mass > RITZ_RIGID_PART * RITZ_RIGID_PART &&
-                !ritz_fit_stays(kind[j]))
-                kind[j] = RITZ_COLUMN_RIGID;
-        }
-    return RITZ_OK;
-}
 
 /* ceil(count / most) = k: one in k is measured; 1 if `most` is no limit. */
 static int64_t divide_work(int64_t count, int64_t most)
@@ -212,6 +175,9 @@ static ritz_status begin_nesting(ritz_fitter *f, nesting *n)
     RITZ_CHECK_NEW(n->own, n->count);
     RITZ_CHECK_NEW(n->some, n->count);
     RITZ_CHECK_NEW(kind, n->count);
+    if (!f->scene)
+        RITZ_CHECK(ritz_reference_parts(f->place[0].reference,
+                                        &n->whole.item[0].T, &n->parts));
     for (int64_t k = 0; k < f->num_bodies; k++)
         RITZ_CHECK(ritz_fit_kinds(&n->whole.item[k], kind + n->first[k]));
     for (int64_t k = 0; k < n->count; k++)
@@ -299,10 +265,38 @@ static ritz_status drop_column(nesting *n, int64_t left)
     return RITZ_OK;
 }
 
-/* Columns of the whole bodies that @p n has, in order. */
-static ritz_status order_columns(ritz_fitter *f, nesting *n)
+/* The order that was found before for the bodies of a candidate; NULL: none. */
+static const ritz_fit_ordered *
+find_ordered(const ritz_fitter *f, const ritz_fit_candidate *of, int64_t count)
 {
-    RITZ_CHECK(begin_nesting(f, n));
+    for (int64_t k = 0; k < f->num_ordered; k++) {
+        const ritz_fit_ordered *o = &f->ordered[k];
+
+        if (o->method == of->method && o->count == count &&
+            memcmp(o->modes, of->modes,
+                   (size_t)f->num_bodies * sizeof *o->modes) == 0)
+            return o;
+    }
+    return NULL;
+}
+
+static ritz_status keep_ordered(ritz_fitter *f, const ritz_fit_candidate *of,
+                                const nesting *n)
+{
+    ritz_fit_ordered *kept = NULL;
+
+    RITZ_CHECK_ROOM(f->ordered, f->num_ordered, f->room_ordered);
+    kept = &f->ordered[f->num_ordered++];
+    *kept = (ritz_fit_ordered){
+        .method = of->method, .count = n->count, .fixed = n->fixed};
+    RITZ_CHECK_COPY(kept->modes, of->modes, f->num_bodies);
+    RITZ_CHECK_COPY(kept->column, n->column, n->count);
+    return RITZ_OK;
+}
+
+/* Columns of the whole bodies that @p n has, in order. */
+static ritz_status find_order(ritz_fitter *f, nesting *n)
+{
     if (!f->scene && n->whole.item[0].T.nrow * n->count > most_entries)
         return RITZ_OK;
     RITZ_CHECK(order_alone(n));
@@ -313,6 +307,23 @@ static ritz_status order_columns(ritz_fitter *f, nesting *n)
         ritz_monitor_step("columns in order", n->count - left, n->count);
         RITZ_CHECK(drop_column(n, left));
     }
+    return RITZ_OK;
+}
+
+/* The same, of the bodies of a candidate with nothing left out; found once. */
+static ritz_status order_columns(ritz_fitter *f, const ritz_fit_candidate *of,
+                                 nesting *n)
+{
+    const ritz_fit_ordered *known = NULL;
+
+    RITZ_CHECK(begin_nesting(f, n));
+    known = find_ordered(f, of, n->count);
+    if (!known) {
+        RITZ_CHECK(find_order(f, n));
+        return keep_ordered(f, of, n);
+    }
+    n->fixed = known->fixed;
+    memcpy(n->column, known->column, (size_t)n->count * sizeof *n->column);
     return RITZ_OK;
 }
 
@@ -464,33 +475,60 @@ static ritz_status make_uncut(ritz_fitter *f,
     return RITZ_OK;
 }
 
-/* Those bodies, not nested, as a row of the path of their cuts says: that of so
-   many columns, or the last feasible one if @p columns is 0; found: how many it
-   has, 0 of none. */
+/* The same as the search has them, which is cheaper: of a component they are
+   part of a larger basis, and their remarks are its remarks. */
+static ritz_status take_uncut(ritz_fitter *f,
+                              const ritz_fit_candidate *candidate,
+                              ritz_bodies *out)
+{
+    RITZ_OWN(ritz_dense) parts = {0};
+
+    if (f->scene)
+        return make_uncut(f, candidate, out);
+    RITZ_CHECK(ritz_bodies_new(1, out));
+    return ritz_fit_take(f, candidate->method, candidate->modes[0], true,
+                         &out->item[0], &parts);
+}
+
+/* The least number of columns that feasible rows of the path have, all
+   excepted; 0 if there is none. */
+static ritz_status find_cut(const nesting *n, int64_t *columns)
+{
+    RITZ_OWN(ritz_fit_path) path = {0};
+
+    *columns = 0;
+    RITZ_CHECK(
+        walk_path(n, n->f->scene ? INT64_MAX : COMPONENT_PATIENCE, &path));
+    for (int64_t t = 1; t < path.count; t++)
+        if (path.row[t].feasible)
+            *columns = path.row[t].columns;
+    return RITZ_OK;
+}
+
+/* Bodies of a candidate with nothing left out, cut to the columns that matter
+   most and not nested: to so many, or to as few as the tolerance needs if @p
+   columns is 0; found: how many they have, 0 of none. */
 static ritz_status cut_candidate(ritz_fitter *f,
                                  const ritz_fit_candidate *candidate,
                                  int64_t columns, int64_t *found,
                                  ritz_bodies *out)
 {
     RITZ_OWN(nesting) n = {0};
-    RITZ_OWN(ritz_fit_path) path = {0};
-    const ritz_fit_candidate *row = NULL;
 
-    RITZ_CHECK(make_uncut(f, candidate, &n.whole));
-    RITZ_CHECK(order_columns(f, &n));
-    RITZ_CHECK(walk_path(&n, f->scene ? INT64_MAX : COMPONENT_PATIENCE, &path));
-    for (int64_t t = 0; t < path.count; t++)
-        if (columns > 0 ? path.row[t].columns == columns
-                        : t > 0 && path.row[t].feasible)
-            row = &path.row[t];
-    *found = row ? row->columns : 0;
-    if (!row)
+    *found = 0;
+    RITZ_CHECK(take_uncut(f, candidate, &n.whole));
+    RITZ_CHECK(order_columns(f, candidate, &n));
+    if (columns == 0)
+        RITZ_CHECK(find_cut(&n, &columns));
+    if (columns < n.fixed || columns < 1 || columns > n.count)
         return RITZ_OK;
+    *found = columns;
     RITZ_CHECK(ritz_bodies_new(f->num_bodies, out));
     for (int64_t k = 0; k < f->num_bodies; k++) {
-        (void)take_own(&n, k, n.count, n.column);
-        RITZ_CHECK(ritz_reduced_nest(&n.whole.item[k], row->modes[k], n.own, 1,
-                                     &out->item[k]));
+        const int64_t own = take_own(&n, k, columns, n.column);
+
+        RITZ_CHECK(
+            ritz_reduced_nest(&n.whole.item[k], own, n.own, 1, &out->item[k]));
         ritz_nested_free(&out->item[k].nested);
     }
     return RITZ_OK;
@@ -503,7 +541,7 @@ ritz_status ritz_fit_make_bodies(ritz_fitter *f,
     int64_t found = 0;
 
     if (candidate->left_out == 0)
-        return make_uncut(f, candidate, out);
+        return take_uncut(f, candidate, out);
     RITZ_CHECK(cut_candidate(f, candidate, candidate->columns, &found, out));
     RITZ_REFUSE_IF(found == 0, RITZ_ERR_ARGUMENT,
                    "the candidate is none of this scene's: no cut of it has "
@@ -520,10 +558,24 @@ static ritz_status measure_cut(ritz_fitter *f, ritz_fit_joined *cut,
                                ritz_fit_candidate *out)
 {
     RITZ_CHECK(ritz_fit_join_own(f, cut));
-    RITZ_CHECK(ritz_fit_measure(f, &cut->stage, out));
+    RITZ_CHECK(ritz_fit_measure(f, cut, out));
     return out->feasible && f->scene && f->place[0].estimator
                ? ritz_fit_bound_stage(f, &cut->stage, out)
                : RITZ_OK;
+}
+
+ritz_status ritz_fit_bound(ritz_fitter *f, ritz_fit_candidate *candidate)
+{
+    RITZ_OWN(ritz_fit_joined) joined = {0};
+
+    if (!f->place[0].estimator)
+        return RITZ_OK;
+    if (f->scene) /* bounded already where columns are left out */
+        return candidate->left_out > 0 ? RITZ_OK
+                                       : ritz_fit_bound_joined(f, candidate);
+    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, &joined.own));
+    RITZ_CHECK(ritz_fit_join_own(f, &joined));
+    return ritz_fit_bound_stage(f, &joined.stage, candidate);
 }
 
 ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
@@ -559,7 +611,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
     RITZ_OWN(ritz_reduced) nested = {0};
 
     RITZ_CHECK(make_uncut(f, candidate, &n.whole));
-    RITZ_CHECK(order_columns(f, &n));
+    RITZ_CHECK(order_columns(f, candidate, &n));
     if (candidate->columns < n.count) /* the others are left out */
         n.count = candidate->columns;
     RITZ_CHECK(walk_path(&n, INT64_MAX, &path));
@@ -599,7 +651,7 @@ static ritz_status make_answer(ritz_fitter *f,
             j++;
         else
             RITZ_CHECK(copy_body(&f->still.item[k], &body[k]));
-    RITZ_CHECK(order_columns(f, &n));
+    RITZ_CHECK(order_columns(f, candidate, &n));
     RITZ_CHECK(walk_path(&n, INT64_MAX, path));
     for (int64_t k = 0; k < f->num_bodies; k++) {
         RITZ_CHECK(nest_body(&n, k, &body[f->body[k]]));

@@ -319,20 +319,28 @@ static ritz_status match_cluster(ritz_sides *sides, const ritz_dense *Q,
     return RITZ_OK;
 }
 
+ritz_status ritz_reference_parts(const ritz_reference *reference,
+                                 const ritz_dense *T, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) MPhi = {0};
+
+    RITZ_CHECK(ritz_sparse_mul(&reference->component->M, &reference->pairs.Phi,
+                               &MPhi));
+    return ritz_dense_mul_tn(&MPhi, T, out);
+}
+
 /*
  * With Q = Phi_full' M T Phi_reduced, both sides normalised. Full modes closer
  * than 1e-3 are one cluster, whose MAC is that of subspaces: the least singular
  * value of its block of Q, squared. Rigid modes have no partner.
  */
-static ritz_status match_shapes(const ritz_dense *T, ritz_sides *sides)
+static ritz_status match_shapes(const ritz_dense *parts, ritz_sides *sides)
 {
     const ritz_poles *full = &sides->full->poles;
-    RITZ_OWN(ritz_dense) shapes = {0}, MS = {0}, Q = {0};
+    RITZ_OWN(ritz_dense) Q = {0};
     int64_t last = 0;
 
-    RITZ_CHECK(ritz_dense_mul(T, &sides->small.Phi, &shapes));
-    RITZ_CHECK(ritz_sparse_mul(&sides->full->component->M, &shapes, &MS));
-    RITZ_CHECK(ritz_dense_mul_tn(&sides->full->pairs.Phi, &MS, &Q));
+    RITZ_CHECK(ritz_dense_mul(parts, &sides->small.Phi, &Q));
     for (int64_t first = full->num_rigid; first < full->count; first = last) {
         last = first + 1;
         while (last < full->count && is_close(full, last - 1))
@@ -510,8 +518,15 @@ static ritz_status match_outputs(ritz_sides *sides)
 ritz_status ritz_sides_match(ritz_sides *sides)
 {
     const ritz_dense *T = sides->component ? &sides->component->T : NULL;
+    RITZ_OWN(ritz_dense) parts = {0};
 
     RITZ_CHECK(match_none(sides));
-    sides->shapes = T && T->val && T->nrow == sides->full->component->num_dofs;
-    return sides->shapes ? match_shapes(T, sides) : match_outputs(sides);
+    sides->shapes =
+        sides->parts ||
+        (T && T->val && T->nrow == sides->full->component->num_dofs);
+    if (!sides->shapes)
+        return match_outputs(sides);
+    if (!sides->parts)
+        RITZ_CHECK(ritz_reference_parts(sides->full, T, &parts));
+    return match_shapes(sides->parts ? sides->parts : &parts, sides);
 }

@@ -86,10 +86,12 @@ typedef struct ritz_sides {
     ritz_second_order model; /* the reduced one */
     const ritz_reduced *component; /* it too; NULL: a system */
     ritz_gap gap;
-    int where;        /* sum of RITZ_AT_... */
-    bool shapes;      /* MAC is of shapes; else, of a system, of the
+    int where;               /* sum of RITZ_AT_... */
+    const ritz_dense *parts; /* Phi'M T where it is at hand; NULL: not; borrowed
+                              */
+    bool shapes;             /* MAC is of shapes; else, of a system, of the
                          participations of observable modes */
-    ritz_pairs small; /* of the reduced model, all */
+    ritz_pairs small;        /* of the reduced model, all */
     ritz_poles reduced;
     ritz_dense gain_reduced;
     ritz_damped damped_reduced;

@@ -339,7 +339,18 @@ ritz_status ritz_reference_measure(const ritz_reference *reference,
                                    const ritz_verify_request *limits, int where,
                                    ritz_measures *out)
 {
-    RITZ_OWN(ritz_sides) sides = {.full = reference, .where = where};
+    return ritz_reference_measure_parts(reference, reduced, NULL, limits, where,
+                                        out);
+}
+
+ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
+                                         ritz_model reduced,
+                                         const ritz_dense *parts,
+                                         const ritz_verify_request *limits,
+                                         int where, ritz_measures *out)
+{
+    RITZ_OWN(ritz_sides)
+    sides = {.full = reference, .where = where, .parts = parts};
     RITZ_OWN(ritz_measures) found = {0};
 
     RITZ_CHECK(check_reduced(reference->component, reduced));

@@ -92,9 +92,9 @@ static void set_order(cli_run *run, int64_t order)
 
 static void set_candidate(cli_run *run, const ritz_fit_candidate *c)
 {
-    sink_set(run, "method,columns,left_out,screened,held,caught,feasible",
-             "%s %ld %ld %d %d %d %d", c->method->name, c->columns, c->left_out,
-             c->ruled_out, c->bounded, c->unconfirmed, c->feasible);
+    sink_set(run, "method,columns,left_out,screened,caught,feasible",
+             "%s %ld %ld %d %d %d", c->method->name, c->columns, c->left_out,
+             c->ruled_out, c->unconfirmed, c->feasible);
     set_order(run, c->order);
     set_modes(run, c);
     sink_object(run, "seconds");

@@ -8,6 +8,8 @@
 #include "spring_chain.h"
 #include "truss.h"
 
+#include "fit/fitter.h"
+
 #include <ritz/fit.h>
 #include <ritz/matrix.h>
 #include <ritz/model.h>
@@ -146,14 +148,13 @@ static void a_clamped_beam_is_fitted_within_one(void **state)
     assert_within_one(&beam, &request);
 }
 
-/* What they rule out is not measured: of the answer's own neighbours none. */
-static void estimates_rule_out_candidates_and_change_no_answer(void **state)
+/* The result and the runner-up have bounds; all candidates are measured. */
+static void the_answer_of_a_component_is_bounded(void **state)
 {
     RITZ_OWN(ritz_component) truss = {0};
     ritz_fit_request request = quick(40.0, 0.01, "frequency=1e-3");
     RITZ_OWN(ritz_fitter) *fitter = NULL;
     RITZ_OWN(ritz_fit) fit = {0};
-    int64_t screened = 0;
 
     (void)state;
     open_truss(&truss);
@@ -164,10 +165,16 @@ static void estimates_rule_out_candidates_and_change_no_answer(void **state)
     for (int64_t k = 0; k < fit.count; k++) {
         const ritz_fit_candidate *c = &fit.candidate[k];
 
-        screened += c->ruled_out;
-        assert_true(!c->ruled_out || (!c->feasible && c->errors.count == 0));
+        assert_false(c->ruled_out);
+        assert_true(c->refusal[0] || c->errors.count > 0);
+        if (k == fit.chosen || k == fit.runner_up)
+            assert_true(find_measure(&c->estimates, "frequency-relative-bound")
+                            ->value >=
+                        find_measure(&c->errors, "frequency-relative")->value);
+        else
+            assert_int_equal(c->estimates.count, 0);
     }
-    assert_true(screened > 0 && screened < fit.count);
+    assert_true(fit.chosen >= 0 && fit.runner_up >= 0);
 }
 
 static void a_free_beam_is_fitted_within_one(void **state)
@@ -423,6 +430,7 @@ static void bounds_stand_beside_errors_and_hold(void **state)
 
         assert_ok(
             ritz_fitter_try(f.fitter, &ritz_method_craig_bampton, &modes, &c));
+        assert_ok(ritz_fit_bound(f.fitter, &c));
         error = find_measure(&c.errors, "frequency-relative");
         bound = find_measure(&c.estimates, "frequency-relative-bound");
         if (find_measure(&c.estimates, "missing-modes-bound")->value > 0.0) {
@@ -513,7 +521,7 @@ static void fitting_survives_every_allocation(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_clamped_beam_is_fitted_within_one),
-    cmocka_unit_test(estimates_rule_out_candidates_and_change_no_answer),
+    cmocka_unit_test(the_answer_of_a_component_is_bounded),
     cmocka_unit_test(a_free_beam_is_fitted_within_one),
     cmocka_unit_test(a_free_truss_is_fitted_within_one),
     cmocka_unit_test(a_chain_with_dampers_is_fitted_within_one),

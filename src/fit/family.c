@@ -1,0 +1,278 @@
+/*
+ * Flexible bodies by a method and a number of modes, and what their columns
+ * are.
+ *
+ * Candidates of one method on a component are made from one basis. A method is nested
+ * if what it makes for m modes are columns of what it makes for N > m: all that
+ * are no modes, and the first m modes. With S the unit vectors of these,
+ *
+ *     K_m = S'K_N S,   M_m = S'M_N S,   Phi'M T_m = (Phi'M T_N) S,
+ *
+ * so that a candidate takes no work of the full model's size. The basis is made
+ * for more modes than the first candidate needs, and again for twice as many
+ * when that is not enough. Modes of one cluster stay together, as in
+ * ritz_eigen_sparse.
+ */
+#include "fit/fitter.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Modes of the first basis: some for each mode of the band, and more. */
+enum { FOR_EACH = 4, AND_MORE = 24 };
+
+bool ritz_fit_stays(ritz_column_kind kind)
+{
+    static const ritz_column_kind kinds[] = {
+        RITZ_COLUMN_RIGID,      RITZ_COLUMN_CONSTRAINT, RITZ_COLUMN_INTERFACE,
+        RITZ_COLUMN_ATTACHMENT, RITZ_COLUMN_RESIDUAL,   RITZ_COLUMN_MASSLESS,
+        RITZ_COLUMN_FORCE};
+
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (kind == kinds[k])
+            return true;
+    return false;
+}
+
+/* Columns j that take part in rigid motion, |x_j| sqrt(M_jj) of its x'M x =
+   1. */
+ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
+{
+    RITZ_OWN(ritz_pairs) pairs = {0};
+    const int64_t n = whole->K.ncol;
+    ritz_status status = RITZ_OK;
+
+    if (n == 0)
+        return RITZ_OK;
+    memcpy(kind, whole->columns.kind, (size_t)n * sizeof *kind);
+    status = ritz_eigen_dense(&whole->K, &whole->M, &pairs);
+    if (status == RITZ_ERR_SINGULAR)
+        return RITZ_OK; /* a mechanism without mass: kinds alone decide */
+    RITZ_CHECK(status);
+    for (int64_t r = 0; r < pairs.num_rigid; r++)
+        for (int64_t j = 0; j < n; j++) {
+            const double mass = ritz_dense_col(&whole->M, j)[j];
+            const double part = ritz_dense_col(&pairs.Phi, r)[j];
+
+            if (part * part * mass > RITZ_RIGID_PART * RITZ_RIGID_PART &&
+                !ritz_fit_stays(kind[j]))
+                kind[j] = RITZ_COLUMN_RIGID;
+        }
+    return RITZ_OK;
+}
+
+/* --- one body
+   --------------------------------------------------------------------- */
+
+/* Those of the options that this method uses; band and damping are those of the
+   tolerance where no others are given. */
+static ritz_choice choose_options(const ritz_fitter *fitter,
+                                  const ritz_method *method)
+{
+    const ritz_verify_request *limits = &fitter->request.tolerance;
+    ritz_choice choice = fitter->request.choice;
+    int absent = ~choice.given;
+
+    if (absent & method->uses & RITZ_USES_DAMPING &&
+        limits->damping.kind != RITZ_DAMPING_NONE) {
+        choice.damping = limits->damping;
+        choice.given |= RITZ_USES_DAMPING;
+    }
+    if (absent & method->uses & RITZ_USES_BAND) {
+        memcpy(choice.band_hz, limits->band_hz, sizeof choice.band_hz);
+        choice.given |= RITZ_USES_BAND;
+    }
+    if (absent & method->uses & RITZ_USES_SIDES) {
+        choice.one_sided = true; /* symmetric, as all that are compared */
+        choice.given |= RITZ_USES_SIDES;
+    }
+    choice.given &= method->uses;
+    if (!ritz_engine_fits(method, choice.engine)) {
+        choice.engine = RITZ_ENGINE_AUTO;
+        choice.given &= ~RITZ_USES_ENGINE;
+    }
+    return choice;
+}
+
+static ritz_status reduce_component(const ritz_fitter *f,
+                                    const ritz_method *method, int64_t modes,
+                                    ritz_reduced *out)
+{
+    ritz_request request = RITZ_REQUEST_NONE;
+    RITZ_OWN(ritz_basis) basis = {0};
+
+    request.component = f->component;
+    request.modes = modes;
+    request.choice = choose_options(f, method);
+    request.attached = f->attached; /* borrowed */
+    RITZ_CHECK(ritz_basis_make(method, &request, &basis));
+    return ritz_reduce(f->component, &basis, out);
+}
+
+ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
+                          int64_t modes, ritz_reduced *out)
+{
+    ritz_scene_component item = {0};
+
+    if (!f->scene)
+        return reduce_component(f, method, modes, out);
+    if (method == &ritz_fit_compare)
+        return ritz_fit_second_body(f, k, modes, out);
+    item = f->scene->component[f->body[k]];
+    (void)snprintf(item.basis, sizeof item.basis, "%s", method->name);
+    item.modes = modes;
+    item.up_to_hz = 0.0;
+    if (f->request.choice.given)
+        item.choice = f->request.choice;
+    item.choice.given &= method->uses;
+    return ritz_context(
+        ritz_stage_reduce(f->scene, f->body[k], &item, &f->model[k], out),
+        item.name);
+}
+
+/* --- bodies of one component
+   --------------------------------------------------------------------- */
+
+void ritz_fit_family_free(ritz_fit_family *family)
+{
+    ritz_reduced_free(&family->whole);
+    ritz_dense_free(&family->parts);
+    *family = (ritz_fit_family){0};
+}
+
+static bool is_mode(ritz_column_kind kind)
+{
+    return kind == RITZ_COLUMN_NORMAL || kind == RITZ_COLUMN_KRYLOV;
+}
+
+/* Static vectors of loads are made without what modes contain of them, and
+   differ with their number. */
+static bool contains_fewer(const ritz_columns *columns)
+{
+    for (int64_t j = 0; j < columns->count; j++)
+        if (columns->kind[j] == RITZ_COLUMN_STATIC)
+            return false;
+    return true;
+}
+
+/* Whether two columns are modes of one cluster. */
+static bool are_close(const ritz_columns *columns, int64_t j, int64_t next)
+{
+    const double low = columns->hertz[j];
+    const double high = columns->hertz[next];
+
+    return high * high - low * low <= RITZ_CLUSTER_GAP * high * high;
+}
+
+/* Columns of a basis that belong to @p modes of its modes; how many. */
+static int64_t choose_columns(const ritz_columns *columns, int64_t modes,
+                              int64_t *at)
+{
+    int64_t count = 0, taken = 0, last = -1;
+
+    for (int64_t j = 0; j < columns->count; j++) {
+        if (is_mode(columns->kind[j])) {
+            if (taken >= modes && !(last >= 0 && are_close(columns, last, j)))
+                continue;
+            last = j;
+            taken++;
+        }
+        at[count++] = j;
+    }
+    return count;
+}
+
+static ritz_status make_whole(ritz_fitter *f, const ritz_method *method,
+                              int64_t modes, ritz_reduced *out,
+                              ritz_dense *parts)
+{
+    RITZ_CHECK(ritz_fit_body(f, method, 0, modes, out));
+    return ritz_reference_parts(f->place[0].reference, &out->T, parts);
+}
+
+/* The family of a method; there is one after the first call. */
+static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
+                               ritz_fit_family **out)
+{
+    for (int64_t k = 0; k < f->num_families; k++)
+        if (f->family[k].method == method) {
+            *out = &f->family[k];
+            return RITZ_OK;
+        }
+    RITZ_CHECK_ROOM(f->family, f->num_families, f->room_families);
+    *out = &f->family[f->num_families++];
+    **out = (ritz_fit_family){.method = method, .modes = -1};
+    return RITZ_OK;
+}
+
+/* Make the family's basis for so many modes at least. One that cannot be made
+   for more is no refusal of a candidate with fewer. */
+static ritz_status extend_family(ritz_fitter *f, int64_t modes,
+                                 ritz_fit_family *family)
+{
+    RITZ_OWN(ritz_reduced) whole = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
+    int64_t rigid = 0, more = 2 * family->modes;
+    ritz_status status = RITZ_OK;
+
+    if (family->modes < 0)
+        more = FOR_EACH * ritz_reference_modes(f->place[0].reference, &rigid) +
+               AND_MORE;
+    if (more > f->largest)
+        more = f->largest;
+    if (more < modes)
+        more = modes;
+    status = make_whole(f, family->method, more, &whole, &parts);
+    if (status == RITZ_ERR_MEMORY)
+        return status;
+    family->none = status != RITZ_OK || !contains_fewer(&whole.columns);
+    ritz_reduced_free(&family->whole);
+    ritz_dense_free(&family->parts);
+    family->modes = more;
+    if (family->none)
+        return RITZ_OK;
+    RITZ_MOVE(family->whole, whole);
+    RITZ_MOVE(family->parts, parts);
+    return RITZ_OK;
+}
+
+/* A candidate of some columns of the family's basis. */
+static ritz_status take_columns(const ritz_fit_family *family, int64_t count,
+                                const int64_t *at, bool with_T,
+                                ritz_reduced *out, ritz_dense *parts)
+{
+    ritz_reduced whole = family->whole; /* borrowed */
+
+    if (!with_T)
+        whole.T = (ritz_dense){0};
+    whole.invariants = (ritz_invariants){0};
+    RITZ_CHECK(ritz_reduced_nest(&whole, count, at, 1, out));
+    ritz_nested_free(&out->nested);
+    return ritz_dense_pick(&family->parts, count, at, parts);
+}
+
+ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
+                          int64_t modes, bool with_T, ritz_reduced *out,
+                          ritz_dense *parts)
+{
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+    ritz_fit_family *family = NULL;
+    int64_t count = 0;
+
+    if (method->nested) {
+        RITZ_CHECK(find_family(f, method, &family));
+        if (!family->none && modes > family->modes)
+            RITZ_CHECK(extend_family(f, modes, family));
+    }
+    if (family && !family->none) {
+        RITZ_CHECK_NEW(at, family->whole.columns.count);
+        count = choose_columns(&family->whole.columns, modes, at);
+    }
+    if (count == 0) /* the method itself says why, if that is all */
+        return make_whole(f, method, modes, out, parts);
+    return take_columns(family, count, at, with_T, out, parts);
+}

@@ -1,0 +1,215 @@
+/* Candidates that are columns of a basis with more modes. */
+#include "testing.h"
+
+#include "frame.h"
+#include "masses.h"
+#include "project.h"
+#include "scenes.h"
+#include "truss.h"
+
+#include "fit/fitter.h"
+
+#include <ritz/matrix.h>
+
+#include <stdio.h>
+
+enum { LARGEST = 12, NESTED = 4 };
+
+static const ritz_method *const nested[NESTED] = {
+    &ritz_method_craig_bampton, &ritz_method_krylov,
+    &ritz_method_krylov_cms_fixed, &ritz_method_krylov_cms_free};
+
+/* The free truss, loaded and measured at its end, with a port at a grid. */
+static void open_truss(bool damped, ritz_component *truss)
+{
+    const int64_t in = 69, out = 71;
+
+    assert_ok(truss_component(&truss_free72, truss));
+    assert_ok(frame_io(truss, 1, &in, 1, &out));
+    assert_ok(add_port(truss, "left", 1));
+    assert_ok(add_port(truss, "right", 34));
+    if (!damped)
+        return;
+    ritz_dampers_free(&truss->dampers);
+    assert_ok(ritz_dampers_new(truss->num_dofs, 1, &truss->dampers));
+    (void)snprintf(truss->dampers.name[0], RITZ_NAME_SIZE, "strut");
+    ritz_dense_col(&truss->dampers.B, 0)[30] = 1.0;
+    ritz_dense_col(&truss->dampers.B, 0)[33] = -1.0;
+    truss->dampers.c[0] = 1.0;
+}
+
+static ritz_fit_request ask(const ritz_method *const *methods, int64_t count)
+{
+    ritz_fit_request request = RITZ_FIT_NONE;
+
+    request.tolerance.band_hz[1] = 40.0;
+    request.tolerance.damping =
+        (ritz_damping){.kind = RITZ_DAMPING_MODAL, .zeta = 0.01};
+    request.num_random = 10;
+    request.costs = request.estimates = false;
+    request.methods = methods;
+    request.num_methods = count;
+    assert_ok(
+        ritz_tolerance_take("frequency=1e-3,mac=0.99", &request.tolerance));
+    return request;
+}
+
+/* Both models have the same columns, eigenvalues and parts of full modes. */
+static void assert_same_model(const ritz_fitter *fitter,
+                              const ritz_reduced *taken,
+                              const ritz_dense *parts, const ritz_reduced *made)
+{
+    RITZ_OWN(ritz_pairs) a = {0}, b = {0};
+    RITZ_OWN(ritz_dense) own = {0};
+    const int64_t r = made->K.ncol;
+
+    assert_int_equal(taken->K.ncol, r);
+    assert_memory_equal(taken->columns.kind, made->columns.kind,
+                        (size_t)r * sizeof *made->columns.kind);
+    assert_ok(ritz_eigen_dense(&taken->K, &taken->M, &a));
+    assert_ok(ritz_eigen_dense(&made->K, &made->M, &b));
+    assert_int_equal(a.Phi.ncol, b.Phi.ncol);
+    for (int64_t k = 0; k < b.Phi.ncol; k++) /* eps of the largest */
+        assert_near(a.lambda[k], b.lambda[k],
+                    1e-9 * b.lambda[k] + 1e-12 * b.lambda[r - 1]);
+    assert_int_equal(parts->ncol, r);
+    assert_ok(
+        ritz_reference_parts(fitter->place[0].reference, &taken->T, &own));
+    for (int64_t k = 0; k < own.nrow * own.ncol; k++)
+        assert_near(own.val[k], parts->val[k], 1e-12 * ritz_dense_max(parts));
+}
+
+static void compare_all(const ritz_method *method, ritz_fitter *fitter)
+{
+    for (int64_t modes = LARGEST; modes >= 1; modes--) {
+        RITZ_OWN(ritz_reduced) taken = {0}, made = {0};
+        RITZ_OWN(ritz_dense) parts = {0};
+
+        assert_ok(ritz_fit_take(fitter, method, modes, true, &taken, &parts));
+        assert_ok(ritz_fit_body(fitter, method, 0, modes, &made));
+        assert_same_model(fitter, &taken, &parts, &made);
+    }
+}
+
+static void fewer_modes_are_columns_of_more(void **state)
+{
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(nested, NESTED);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    for (int m = 0; m < NESTED; m++) {
+        assert_true(nested[m]->nested);
+        compare_all(nested[m], fitter);
+        assert_int_equal(fitter->num_families, m + 1);
+        assert_false(fitter->family[m].none);
+    }
+}
+
+/* Static vectors of dampers hold no part of the modes: of other modes they are
+   others. */
+static void static_vectors_are_made_for_each_number_of_modes(void **state)
+{
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(nested, 1);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+
+    (void)state;
+    open_truss(true, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    compare_all(nested[0], fitter);
+    assert_true(fitter->family[0].none);
+}
+
+/* What is asked for beyond the first basis takes a larger one. */
+static void a_family_grows(void **state)
+{
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(nested, 1);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    int64_t first = 0;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    for (int64_t modes = 0; modes <= 60; modes += 5) {
+        RITZ_OWN(ritz_reduced) taken = {0};
+        RITZ_OWN(ritz_dense) parts = {0};
+
+        assert_ok(
+            ritz_fit_take(fitter, nested[0], modes, false, &taken, &parts));
+        assert_null(taken.T.val);
+        assert_true(fitter->family[0].modes >= modes);
+        if (modes == 0)
+            first = fitter->family[0].modes;
+    }
+    assert_int_equal(fitter->num_families, 1);
+    assert_true(first > 0 && fitter->family[0].modes > first);
+}
+
+/* Errors by the parts of full modes are those by T, shapes included. */
+static void parts_measure_what_shapes_do(void **state)
+{
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(nested, 1);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_reduced) taken = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
+    RITZ_OWN(ritz_measures) with = {0}, without = {0};
+    const ritz_reference *reference = NULL;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    reference = fitter->place[0].reference;
+    assert_ok(ritz_fit_take(fitter, nested[0], 4, true, &taken, &parts));
+    assert_ok(ritz_reference_measure(reference,
+                                     ritz_model_of_reduced(&taken, NULL),
+                                     &request.tolerance, 0, &with));
+    ritz_dense_free(&taken.T);
+    assert_ok(ritz_reference_measure_parts(
+        reference, ritz_model_of_reduced(&taken, NULL), &parts,
+        &request.tolerance, 0, &without));
+    assert_non_null(find_measure(&with, "mac"));
+    assert_true(find_measure(&with, "mac")->value < 1.0);
+    assert_int_equal(with.count, without.count);
+    for (int64_t k = 0; k < with.count; k++) {
+        assert_string_equal(with.item[k].name, without.item[k].name);
+        assert_near(with.item[k].value, without.item[k].value, 1e-12);
+    }
+}
+
+static ritz_status search_once(const ritz_component *truss)
+{
+    ritz_fit_request request = ask(nested, 1);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_reduced) taken = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
+
+    request.num_random = 0;
+    RITZ_CHECK(ritz_fitter_new(truss, &request, &fitter));
+    return ritz_fit_take(fitter, nested[0], 2, true, &taken, &parts);
+}
+
+static void taking_survives_every_allocation(void **state)
+{
+    const double ones[] = {1.0, 1.0};
+    const int64_t in = 1;
+    RITZ_OWN(ritz_component) beam = {0};
+
+    (void)state;
+    assert_ok(masses_component(2, ones, ones, NULL, &beam));
+    assert_ok(masses_io(&beam, 1, &in, 1, &in));
+    assert_survives_every_allocation(search_once(&beam));
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(fewer_modes_are_columns_of_more),
+    cmocka_unit_test(static_vectors_are_made_for_each_number_of_modes),
+    cmocka_unit_test(a_family_grows),
+    cmocka_unit_test(parts_measure_what_shapes_do),
+    cmocka_unit_test(taking_survives_every_allocation),
+};
+TEST_MODULE(fit_family, tests, NULL, NULL)
