@@ -11,7 +11,7 @@
  * so that a candidate takes no work of the full model's size. The basis is made
  * for more modes than the first candidate needs, and again for twice as many
  * when that is not enough. Modes of one cluster stay together, as in
- * ritz_eigen_sparse.
+ * ritz_eigen_sparse. Of other methods the last basis is kept.
  */
 #include "fit/fitter.h"
 
@@ -24,6 +24,8 @@
 
 /* Modes of the first basis: some for each mode of the band, and more. */
 enum { FOR_EACH = 4, AND_MORE = 24 };
+/* Entries of T of all bases that are kept: half a gigabyte. */
+static const int64_t most_entries = INT64_C(1) << 26;
 
 bool ritz_fit_stays(ritz_column_kind kind)
 {
@@ -205,39 +207,74 @@ static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
         }
     RITZ_CHECK_ROOM(f->family, f->num_families, f->room_families);
     *out = &f->family[f->num_families++];
-    **out = (ritz_fit_family){.method = method, .modes = -1};
+    **out = (ritz_fit_family){
+        .method = method, .modes = -1, .exact = !method->nested};
     return RITZ_OK;
 }
 
-/* Make the family's basis for so many modes at least. One that cannot be made
-   for more is no refusal of a candidate with fewer. */
-static ritz_status extend_family(ritz_fitter *f, int64_t modes,
-                                 ritz_fit_family *family)
+/* Modes of the basis that is made for a candidate of some modes. */
+static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
+                            int64_t modes)
 {
-    RITZ_OWN(ritz_reduced) whole = {0};
-    RITZ_OWN(ritz_dense) parts = {0};
     int64_t rigid = 0, more = 2 * family->modes;
-    ritz_status status = RITZ_OK;
 
+    if (family->exact || modes <= family->modes) /* it was made before */
+        return family->exact ? modes : family->modes;
     if (family->modes < 0)
         more = FOR_EACH * ritz_reference_modes(f->place[0].reference, &rigid) +
                AND_MORE;
     if (more > f->largest)
         more = f->largest;
-    if (more < modes)
-        more = modes;
-    status = make_whole(f, family->method, more, &whole, &parts);
-    if (status == RITZ_ERR_MEMORY)
-        return status;
-    family->none = status != RITZ_OK || !contains_fewer(&whole.columns);
-    ritz_reduced_free(&family->whole);
-    ritz_dense_free(&family->parts);
-    family->modes = more;
-    if (family->none)
-        return RITZ_OK;
-    RITZ_MOVE(family->whole, whole);
-    RITZ_MOVE(family->parts, parts);
+    return more > modes ? more : modes;
+}
+
+/* Let go of the bases of other methods where they are too large together. */
+static void make_room(ritz_fitter *f, const ritz_fit_family *keep)
+{
+    int64_t held = 0;
+
+    for (int64_t k = 0; k < f->num_families; k++)
+        held += f->family[k].whole.T.nrow * f->family[k].whole.T.ncol;
+    for (int64_t k = 0; k < f->num_families && held > most_entries; k++)
+        if (&f->family[k] != keep) {
+            ritz_reduced_free(&f->family[k].whole);
+            ritz_dense_free(&f->family[k].parts);
+        }
+}
+
+/* Make a basis that serves a candidate of some modes. One that cannot be made
+   for more modes is no refusal of a candidate with fewer. */
+static ritz_status renew_family(ritz_fitter *f, int64_t modes,
+                                ritz_fit_family *family)
+{
+    for (bool served = false; !served;) {
+        RITZ_OWN(ritz_reduced) whole = {0};
+        RITZ_OWN(ritz_dense) parts = {0};
+        const int64_t made = choose_modes(f, family, modes);
+        const ritz_status status =
+            make_whole(f, family->method, made, &whole, &parts);
+
+        if (status == RITZ_ERR_MEMORY || made == modes)
+            RITZ_CHECK(status);
+        if (status != RITZ_OK || !contains_fewer(&whole.columns))
+            family->exact = true;
+        served = !family->exact || made == modes;
+        if (!served)
+            continue;
+        ritz_reduced_free(&family->whole);
+        ritz_dense_free(&family->parts);
+        family->modes = made;
+        RITZ_MOVE(family->whole, whole);
+        RITZ_MOVE(family->parts, parts);
+    }
+    make_room(f, family);
     return RITZ_OK;
+}
+
+static bool can_serve(const ritz_fit_family *family, int64_t modes)
+{
+    return family->whole.K.ncol > 0 &&
+           (family->exact ? modes == family->modes : modes <= family->modes);
 }
 
 /* A candidate of some columns of the family's basis. */
@@ -247,9 +284,10 @@ static ritz_status take_columns(const ritz_fit_family *family, int64_t count,
 {
     ritz_reduced whole = family->whole; /* borrowed */
 
-    if (!with_T)
+    if (!with_T) {
         whole.T = (ritz_dense){0};
-    whole.invariants = (ritz_invariants){0};
+        whole.invariants = (ritz_invariants){0};
+    }
     RITZ_CHECK(ritz_reduced_nest(&whole, count, at, 1, out));
     ritz_nested_free(&out->nested);
     return ritz_dense_pick(&family->parts, count, at, parts);
@@ -263,15 +301,12 @@ ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
     ritz_fit_family *family = NULL;
     int64_t count = 0;
 
-    if (method->nested) {
-        RITZ_CHECK(find_family(f, method, &family));
-        if (!family->none && modes > family->modes)
-            RITZ_CHECK(extend_family(f, modes, family));
-    }
-    if (family && !family->none) {
-        RITZ_CHECK_NEW(at, family->whole.columns.count);
-        count = choose_columns(&family->whole.columns, modes, at);
-    }
+    RITZ_CHECK(find_family(f, method, &family));
+    if (!can_serve(family, modes))
+        RITZ_CHECK(renew_family(f, modes, family));
+    RITZ_CHECK_NEW(at, family->whole.columns.count);
+    count = choose_columns(&family->whole.columns,
+                           family->exact ? INT64_MAX : modes, at);
     if (count == 0) /* the method itself says why, if that is all */
         return make_whole(f, method, modes, out, parts);
     return take_columns(family, count, at, with_T, out, parts);

@@ -32,14 +32,14 @@ typedef struct ritz_fit_made {
     char refusal[256];
 } ritz_fit_made;
 
-/* The columns that a method has for many modes of a component; those that it
-   has for fewer are among them (ritz_method.nested). */
+/* The last basis that was made of a component by a method. If the method is
+   nested it has the columns of candidates with fewer modes. */
 typedef struct ritz_fit_family {
     const ritz_method *method;
-    int64_t modes; /* asked for */
-    ritz_reduced whole;
-    ritz_dense parts; /* Phi'M T */
-    bool none;        /* its columns do not contain those of fewer modes */
+    bool exact;         /* it has not, and serves one number of modes alone */
+    int64_t modes;      /* asked for; -1: none was made */
+    ritz_reduced whole; /* {0} where there was no room to keep it */
+    ritz_dense parts;   /* Phi'M T */
 } ritz_fit_family;
 
 /* The order in which columns of a candidate's bodies matter, once found. */
@@ -152,7 +152,8 @@ ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
 /**
  * A component's candidate by a method and a number of modes. If the method is
  * nested it is made of the first columns of a basis with more modes, which is
- * made once and made larger when more are asked for.
+ * made once and made larger when more are asked for. Of other methods the last
+ * candidate is kept, and costs nothing the next time.
  *
  * @param[in]  with_T  whether @p out gets its T
  * @param[out] parts   Phi'M T

@@ -610,7 +610,8 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
     RITZ_OWN(ritz_fit_path) path = {0};
     RITZ_OWN(ritz_reduced) nested = {0};
 
-    RITZ_CHECK(make_uncut(f, candidate, &n.whole));
+    RITZ_CHECK(candidate->method->nested ? make_uncut(f, candidate, &n.whole)
+                                         : take_uncut(f, candidate, &n.whole));
     RITZ_CHECK(order_columns(f, candidate, &n));
     if (candidate->columns < n.count) /* the others are left out */
         n.count = candidate->columns;

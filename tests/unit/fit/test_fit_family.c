@@ -104,7 +104,7 @@ static void fewer_modes_are_columns_of_more(void **state)
         assert_true(nested[m]->nested);
         compare_all(nested[m], fitter);
         assert_int_equal(fitter->num_families, m + 1);
-        assert_false(fitter->family[m].none);
+        assert_false(fitter->family[m].exact);
     }
 }
 
@@ -120,7 +120,37 @@ static void static_vectors_are_made_for_each_number_of_modes(void **state)
     open_truss(true, &truss);
     assert_ok(ritz_fitter_new(&truss, &request, &fitter));
     compare_all(nested[0], fitter);
-    assert_true(fitter->family[0].none);
+    assert_true(fitter->family[0].exact);
+}
+
+/* Of a method that is not nested the last basis serves again, invariants and
+   all. */
+static void the_last_basis_of_a_method_is_kept(void **state)
+{
+    const ritz_method *const one[] = {&ritz_method_macneal_rubin};
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(one, 1);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_reduced) taken = {0}, made = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
+    const double *T = NULL;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    compare_all(one[0], fitter);
+    assert_int_equal(fitter->num_families, 1);
+    assert_true(fitter->family[0].exact);
+    T = fitter->family[0].whole.T.val;
+    assert_ok(ritz_fit_take(fitter, one[0], 1, true, &taken, &parts));
+    assert_ptr_equal(fitter->family[0].whole.T.val, T);
+    assert_ok(ritz_fit_body(fitter, one[0], 0, 1, &made));
+    assert_memory_equal(taken.K.val, made.K.val,
+                        (size_t)(made.K.ncol * made.K.ncol) *
+                            sizeof *made.K.val);
+    assert_int_equal(taken.invariants.momentum.ncol,
+                     made.invariants.momentum.ncol);
+    assert_string_equal(taken.origin.options, made.origin.options);
 }
 
 /* What is asked for beyond the first basis takes a larger one. */
@@ -208,6 +238,7 @@ static void taking_survives_every_allocation(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(fewer_modes_are_columns_of_more),
     cmocka_unit_test(static_vectors_are_made_for_each_number_of_modes),
+    cmocka_unit_test(the_last_basis_of_a_method_is_kept),
     cmocka_unit_test(a_family_grows),
     cmocka_unit_test(parts_measure_what_shapes_do),
     cmocka_unit_test(taking_survives_every_allocation),
