@@ -8,13 +8,15 @@
  * and an f that falls like lambda^(-3/2). Instead of modes, the Ritz pairs of A
  * are used in the rational Krylov space of all loads and outputs,
  *
- *     V = [(K + t_1 M)^-1 W, (K + t_2 M)^-1 W, ...],
- *     W = (I - M Phi Phi') [B, C', Cv', Ca'].
+ *     V = [V_1, V_2, ...],   V_j = [S_j W, S_j M S_j W, ..., (S_j M)^(R-1) S_j W],
+ *     S_j = (K + t_j M)^-1,  W = (I - M Phi Phi') [B, C', Cv', Ca'].
  *
  * The poles -t_j are spread evenly in log(t) from the first eigenvalue to the
  * largest. Each of them then reduces the error by a constant factor, as in
  * rational approximations of the square root, and by the square of that because
- * the space contains both b and c. Each level halves the distances between the
+ * the space contains both b and c. A factor costs far more than its solves: so
+ * each pole serves R times, as often as the columns of all poles have room, R
+ * being 1 where W has many columns. Each level halves the distances between the
  * poles. The difference between two levels is the error of the former, and is
  * reported as that of the latter.
  */
@@ -35,7 +37,7 @@
 
 /* Level 0 has poles at both ends; each level adds poles half way between those
    that exist. */
-enum { LEVELS = 6, MOST_COLUMNS = 800, SAMPLES = 6 };
+enum { LEVELS = 6, MOST_POLES = 33, MOST_COLUMNS = 800, SAMPLES = 6 };
 
 /* Index of a mode beyond a list of ratios, which has the last ratio of the
    list. */
@@ -182,25 +184,50 @@ static ritz_status find_scales(double out_hz, const ritz_residual *r,
     return RITZ_OK;
 }
 
-/* Append the part of (K + t M)^-1 W that V does not contain, as far as there is
-   room. */
+/* How often each pole serves: once where f jumps, at the edges of bands of
+   ratios, since poles then place Ritz values and do not approximate f. */
+static int64_t count_blocks(const ratio_space *s)
+{
+    const int64_t room = MOST_COLUMNS / (MOST_POLES * s->loads.ncol);
+
+    return room > 1 && s->damping->kind != RITZ_DAMPING_BANDS ? room : 1;
+}
+
+/* X := S X of a pole, without its part in the known modes; what V does not
+   contain of it is appended as far as there is room. */
+static ritz_status append_block(ratio_space *s, ritz_factor *S, ritz_dense *X)
+{
+    RITZ_CHECK(ritz_factor_solve(S, X));
+    for (int pass = 0; pass < 2; pass++)
+        RITZ_CHECK(ritz_dense_take_out(&s->pairs->Phi, &s->MPhi, X));
+    return ritz_orthonormal_append(&s->set, X, MOST_COLUMNS - s->set.count,
+                                   NULL);
+}
+
+/* Append the blocks of one pole, each from the columns of the one before. */
 static ritz_status add_pole(ratio_space *s, double t)
 {
     const ritz_component *c = s->component;
-    const int64_t room = MOST_COLUMNS - s->set.count;
-    RITZ_OWN(ritz_factor) *F = NULL;
+    const int64_t blocks = count_blocks(s);
+    RITZ_OWN(ritz_factor) *S = NULL;
     RITZ_OWN(ritz_sparse) A = {0};
     RITZ_OWN(ritz_dense) X = {0};
 
-    if (room <= 0)
+    if (s->set.count >= MOST_COLUMNS)
         return RITZ_OK;
     RITZ_CHECK(ritz_sparse_add(1.0, &c->K, t, &c->M, &A));
-    RITZ_CHECK_IN("modes above the band", ritz_factor_spd(&A, &F));
+    RITZ_CHECK_IN("modes above the band", ritz_factor_spd(&A, &S));
     RITZ_CHECK(ritz_dense_copy(&s->loads, &X));
-    RITZ_CHECK(ritz_factor_solve(F, &X));
-    for (int pass = 0; pass < 2; pass++)
-        RITZ_CHECK(ritz_dense_take_out(&s->pairs->Phi, &s->MPhi, &X));
-    return ritz_orthonormal_append(&s->set, &X, room, NULL);
+    for (int64_t k = 0; k < blocks && X.ncol > 0; k++) {
+        const int64_t before = s->set.count;
+        ritz_dense last = {0}; /* borrowed */
+
+        RITZ_CHECK(append_block(s, S, &X));
+        last = ritz_dense_part(&s->set.V, before, s->set.count - before);
+        ritz_dense_free(&X);
+        RITZ_CHECK(ritz_sparse_mul(&c->M, &last, &X));
+    }
+    return RITZ_OK;
 }
 
 /* Add the poles of one level, spread evenly in log(t). */
