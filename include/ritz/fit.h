@@ -80,8 +80,10 @@ typedef struct ritz_fit_request {
     int64_t most_measured; /* systems at a place, to put a scene's columns in
                               order and for what cuts come to: beyond it some
                               places and some cuts speak for all; 0: no end */
-    ritz_fit_observer *observe; /* may be NULL */
-    void *context;
+    ritz_fit_observer *observe;  /* may be NULL */
+    bool (*stop)(void *context); /* asked between candidates: true ends the
+                                    search with what it has; NULL: never */
+    void *context;               /* of both */
 } ritz_fit_request;
 
 #define RITZ_FIT_NONE                                                          \
@@ -114,6 +116,7 @@ typedef struct ritz_fit {
     ritz_fit_candidate *candidate; /* all that were tried, in their order */
     int64_t chosen, runner_up;     /* -1: none; the runner-up is the best of
                                       another method */
+    bool interrupted;              /* by request.stop: others may be smaller */
     int64_t num_methods;
     int64_t *best;     /* num_methods, of each the smallest that is feasible;
                           -1: none is */
@@ -193,6 +196,9 @@ ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
  * then orders below are tried one by one, since errors do not always fall with
  * the order; of a scene modes are then taken from one body after the other, and
  * exchanged between them.
+ *
+ * A search that is stopped has the best of the candidates that were tried, and
+ * no bounds. What is made of it afterwards is not nested, and has no path.
  *
  * @return as ritz_fitter_try; that no method meets the tolerance is no failure
  *         but has no `chosen`

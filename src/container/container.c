@@ -40,6 +40,8 @@ static ritz_status write_head(hid_t file, const char *kind, const char *units,
     RITZ_CHECK(write_command(file, stamp->command));
     RITZ_CHECK(
         ritz_h5_set_texts(file, "inputs", stamp->num_inputs, stamp->input));
+    if (stamp->interrupted)
+        RITZ_CHECK(ritz_h5_set_text(file, "interrupted", stamp->interrupted));
     return ritz_h5_set_text(file, "units", units);
 }
 
@@ -175,6 +177,10 @@ static ritz_status read_head(const char *path, ritz_summary *out)
     RITZ_CHECK(ritz_h5_get_text(file, "ritz_version", RITZ_NAME_SIZE,
                                 summary.version));
     RITZ_CHECK(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE, summary.units));
+    if (H5Aexists(file, "interrupted") > 0)
+        RITZ_CHECK(ritz_h5_get_text(file, "interrupted",
+                                    sizeof summary.interrupted,
+                                    summary.interrupted));
     RITZ_CHECK(ritz_h5_get_texts(file, "command", &command));
     RITZ_REFUSE_IF(command.count != 1, RITZ_ERR_FORMAT,
                    "'command' is not one text");

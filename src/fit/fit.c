@@ -215,8 +215,13 @@ static void explain_none(const ritz_fitter *f, ritz_fit *fit)
             method = !near || ritz_fit_is_nearer(c, near) ? m : method;
             near = &fit->candidate[fit->reached[method]];
         }
+    if (!near && fit->count == 0) {
+        add_why(fit, "none was tried");
+        return;
+    }
     if (!near) {
-        add_why(fit, "every method was refused");
+        add_why(fit, "every %s was refused",
+                fit->interrupted ? "candidate so far" : "method");
         for (int64_t k = 0; k < fit->count; k++)
             if (fit->candidate[k].refusal[0]) {
                 add_why(fit, ", the first with: %s", fit->candidate[k].refusal);
@@ -225,8 +230,9 @@ static void explain_none(const ritz_fitter *f, ritz_fit *fit)
         return;
     }
     add_why(fit,
-            "no method meets the tolerance; nearest is %s with %" PRId64
+            "no %s meets the tolerance; nearest is %s with %" PRId64
             " column%s, where ",
+            fit->interrupted ? "candidate so far" : "method",
             near->method->name, near->order, near->order == 1 ? "" : "s");
     add_error(fit, near);
     explain_end(f, method, fit);
@@ -297,6 +303,9 @@ static void explain_choice(const ritz_fitter *fitter, ritz_fit *fit)
     int64_t caught = 0, smaller = -1;
 
     fit->why[0] = '\0';
+    if (fit->interrupted)
+        add_why(fit, "interrupted after %" PRId64 " candidate%s; ", fit->count,
+                fit->count == 1 ? "" : "s");
     if (fit->chosen < 0) {
         explain_none(fitter, fit);
         return;
@@ -338,23 +347,37 @@ static void explain_choice(const ritz_fitter *fitter, ritz_fit *fit)
 /* --- the search
    ------------------------------------------------------------------- */
 
+static ritz_status search_methods(ritz_fitter *fitter, ritz_fit *fit)
+{
+    for (int64_t m = 0; m < fit->num_methods; m++)
+        RITZ_CHECK(ritz_fit_search(fitter, fit, m, false));
+    for (int64_t m = 0; m < fit->num_methods; m++)
+        if (fitter->scene && fit->best[m] < 0 &&
+            fit->method[m] != &ritz_fit_compare)
+            RITZ_CHECK(ritz_fit_search(fitter, fit, m, true));
+    choose_best(fit);
+    RITZ_CHECK(trim_best(fitter, fit));
+    if (fit->chosen >= 0)
+        RITZ_CHECK(ritz_fit_bound(fitter, &fit->candidate[fit->chosen]));
+    if (fit->runner_up >= 0)
+        RITZ_CHECK(ritz_fit_bound(fitter, &fit->candidate[fit->runner_up]));
+    return RITZ_OK;
+}
+
 ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
 {
     RITZ_OWN(ritz_fit) fit = {.chosen = -1, .runner_up = -1};
+    ritz_status status = RITZ_OK;
 
     RITZ_CHECK(list_methods(fitter, &fit));
-    for (int64_t m = 0; m < fit.num_methods; m++)
-        RITZ_CHECK(ritz_fit_search(fitter, &fit, m, false));
-    for (int64_t m = 0; m < fit.num_methods; m++)
-        if (fitter->scene && fit.best[m] < 0 &&
-            fit.method[m] != &ritz_fit_compare)
-            RITZ_CHECK(ritz_fit_search(fitter, &fit, m, true));
-    choose_best(&fit);
-    RITZ_CHECK(trim_best(fitter, &fit));
-    if (fit.chosen >= 0)
-        RITZ_CHECK(ritz_fit_bound(fitter, &fit.candidate[fit.chosen]));
-    if (fit.runner_up >= 0)
-        RITZ_CHECK(ritz_fit_bound(fitter, &fit.candidate[fit.runner_up]));
+    status = search_methods(fitter, &fit);
+    fit.interrupted = fitter->stopped;
+    if (!fit.interrupted)
+        RITZ_CHECK(status);
+    for (int64_t m = 0; fit.interrupted && m < fit.num_methods; m++)
+        ritz_fit_conclude(&fit, m);
+    if (fit.interrupted)
+        choose_best(&fit);
     explain_choice(fitter, &fit);
     RITZ_MOVE(*out, fit);
     return RITZ_OK;

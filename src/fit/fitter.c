@@ -341,6 +341,15 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
     return RITZ_OK;
 }
 
+ritz_status ritz_fit_go_on(ritz_fitter *f)
+{
+    if (f->request.stop && f->request.stop(f->request.context))
+        f->stopped = true;
+    RITZ_REFUSE_IF(f->stopped, RITZ_ERR_CONVERGENCE,
+                   "the search was interrupted");
+    return RITZ_OK;
+}
+
 const ritz_verify_request *ritz_fitter_tolerance(const ritz_fitter *fitter)
 {
     return &fitter->request.tolerance;
@@ -399,7 +408,7 @@ void ritz_fitter_free(ritz_fitter **fitter)
     for (int64_t k = 0; k < f->num_families; k++)
         ritz_fit_family_free(&f->family[k]);
     for (int64_t k = 0; k < f->num_ordered; k++)
-        RITZ_FREE(f->ordered[k].modes, f->ordered[k].column);
+        ritz_fit_ordered_free(&f->ordered[k]);
     ritz_fit_second_free(&f->second);
     ritz_dofs_free(&f->attached);
     RITZ_FREE(f->place, f->body, f->model, f->step, f->made, f->family,

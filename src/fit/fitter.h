@@ -102,6 +102,7 @@ struct ritz_fitter {
     ritz_fit_ordered *ordered;
     ritz_fit_second second;
     int64_t largest; /* order to be tried */
+    bool stopped;    /* request.stop has ended the search */
 };
 
 /* --- bodies.c
@@ -212,6 +213,10 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                const ritz_component *full,
                                ritz_fit_place *place);
 
+/** Nothing, unless the search is to end. @return RITZ_ERR_CONVERGENCE, with
+ * `stopped` set */
+ritz_status ritz_fit_go_on(ritz_fitter *fitter);
+
 /* --- candidate.c
    ------------------------------------------------------------- */
 
@@ -272,6 +277,21 @@ bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
 
 /** Modes that a candidate misses and may not. */
 double ritz_fit_misses(const ritz_fit_candidate *candidate);
+
+/* --- ordered.c
+   --------------------------------------------------------------------- */
+
+/** The order that was found for a candidate's bodies with so many columns;
+ * NULL: none was. */
+const ritz_fit_ordered *ritz_fit_ordered_find(const ritz_fitter *fitter,
+                                              const ritz_fit_candidate *of,
+                                              int64_t count);
+
+/** Keep a copy of an order; @p found needs neither method nor modes. */
+ritz_status ritz_fit_ordered_keep(ritz_fitter *fitter,
+                                  const ritz_fit_candidate *of,
+                                  const ritz_fit_ordered *found);
+void ritz_fit_ordered_free(ritz_fit_ordered *ordered);
 
 /* --- nest.c
    ------------------------------------------------------------------ */

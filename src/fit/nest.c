@@ -95,8 +95,10 @@ static ritz_status measure_ratio(nesting *n, int64_t count,
     const int64_t from = n->hardest;
     RITZ_OWN(ritz_fit_candidate) judged = {0};
     RITZ_OWN(ritz_fit_joined) joined = {0};
-    ritz_status status = join_columns(n, count, column, &joined);
+    ritz_status status = RITZ_OK;
 
+    RITZ_CHECK(ritz_fit_go_on(n->f));
+    status = join_columns(n, count, column, &joined);
     for (int64_t t = 0;
          status == RITZ_OK && t < places && (t == 0 || judged.ratio < most);
          t++) {
@@ -265,35 +267,6 @@ static ritz_status drop_column(nesting *n, int64_t left)
     return RITZ_OK;
 }
 
-/* The order that was found before for the bodies of a candidate; NULL: none. */
-static const ritz_fit_ordered *
-find_ordered(const ritz_fitter *f, const ritz_fit_candidate *of, int64_t count)
-{
-    for (int64_t k = 0; k < f->num_ordered; k++) {
-        const ritz_fit_ordered *o = &f->ordered[k];
-
-        if (o->method == of->method && o->count == count &&
-            memcmp(o->modes, of->modes,
-                   (size_t)f->num_bodies * sizeof *o->modes) == 0)
-            return o;
-    }
-    return NULL;
-}
-
-static ritz_status keep_ordered(ritz_fitter *f, const ritz_fit_candidate *of,
-                                const nesting *n)
-{
-    ritz_fit_ordered *kept = NULL;
-
-    RITZ_CHECK_ROOM(f->ordered, f->num_ordered, f->room_ordered);
-    kept = &f->ordered[f->num_ordered++];
-    *kept = (ritz_fit_ordered){
-        .method = of->method, .count = n->count, .fixed = n->fixed};
-    RITZ_CHECK_COPY(kept->modes, of->modes, f->num_bodies);
-    RITZ_CHECK_COPY(kept->column, n->column, n->count);
-    return RITZ_OK;
-}
-
 /* Columns of the whole bodies that @p n has, in order. */
 static ritz_status find_order(ritz_fitter *f, nesting *n)
 {
@@ -317,10 +290,13 @@ static ritz_status order_columns(ritz_fitter *f, const ritz_fit_candidate *of,
     const ritz_fit_ordered *known = NULL;
 
     RITZ_CHECK(begin_nesting(f, n));
-    known = find_ordered(f, of, n->count);
+    known = ritz_fit_ordered_find(f, of, n->count);
     if (!known) {
         RITZ_CHECK(find_order(f, n));
-        return keep_ordered(f, of, n);
+        return ritz_fit_ordered_keep(f, of,
+                                     &(ritz_fit_ordered){.count = n->count,
+                                                         .fixed = n->fixed,
+                                                         .column = n->column});
     }
     n->fixed = known->fixed;
     memcpy(n->column, known->column, (size_t)n->count * sizeof *n->column);
@@ -602,6 +578,19 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
 /* --- the answer
    --------------------------------------------------------------------- */
 
+/* The reduced component with its columns as they are. */
+static ritz_status make_plain(ritz_fitter *f,
+                              const ritz_fit_candidate *candidate,
+                              ritz_reduced *out)
+{
+    RITZ_OWN(ritz_bodies) body = {0};
+
+    RITZ_CHECK(ritz_fit_make_bodies(f, candidate, &body));
+    RITZ_CHECK(ritz_measures_copy(&candidate->errors, &body.item[0].errors));
+    RITZ_MOVE(*out, body.item[0]);
+    return RITZ_OK;
+}
+
 ritz_status ritz_fitter_reduced(ritz_fitter *f,
                                 const ritz_fit_candidate *candidate,
                                 ritz_reduced *out)
@@ -610,6 +599,8 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
     RITZ_OWN(ritz_fit_path) path = {0};
     RITZ_OWN(ritz_reduced) nested = {0};
 
+    if (f->stopped)
+        return make_plain(f, candidate, out);
     RITZ_CHECK(candidate->method->nested ? make_uncut(f, candidate, &n.whole)
                                          : take_uncut(f, candidate, &n.whole));
     RITZ_CHECK(order_columns(f, candidate, &n));
@@ -652,6 +643,11 @@ static ritz_status make_answer(ritz_fitter *f,
             j++;
         else
             RITZ_CHECK(copy_body(&f->still.item[k], &body[k]));
+    if (f->stopped) { /* as they are */
+        for (int64_t k = 0; k < f->num_bodies; k++)
+            RITZ_MOVE(body[f->body[k]], n.whole.item[k]);
+        return RITZ_OK;
+    }
     RITZ_CHECK(order_columns(f, candidate, &n));
     RITZ_CHECK(walk_path(&n, INT64_MAX, path));
     for (int64_t k = 0; k < f->num_bodies; k++) {

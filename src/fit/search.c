@@ -17,6 +17,8 @@
    ---------------------------------------------------- */
 
 enum { PART = 4 };
+/* Candidates of a method, before any method tells. */
+enum { USUAL = 15 };
 /* Richer first stages in a row that are no better, before they are given up. */
 enum { MOST_FLAT_STAGES = 3 };
 /* Most modes that one body is given in exchange for one more of another. */
@@ -50,6 +52,21 @@ static bool is_same(const ritz_fit_candidate *c, const ritz_method *method,
     return true;
 }
 
+/* How many candidates there will be: the methods to come take as many as those
+   before on average, or as is usual. */
+static int64_t foresee_count(const ritz_fit *fit, int64_t method)
+{
+    int64_t before = 0, each = USUAL, here = 0;
+
+    for (int64_t k = 0; k < fit->count; k++)
+        here += fit->candidate[k].method == fit->method[method];
+    before = fit->count - here;
+    if (method > 0 && before >= method)
+        each = before / method;
+    return fit->count + (here < each ? each - here : 1) +
+           each * (fit->num_methods - method - 1);
+}
+
 ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
                            const int64_t *modes, int64_t *at)
 {
@@ -60,7 +77,8 @@ ritz_status ritz_fit_visit(ritz_fitter *fitter, ritz_fit *fit, int64_t method,
             *at = k;
             return RITZ_OK;
         }
-    ritz_monitor_step(fit->method[method]->name, fit->count, 0);
+    RITZ_CHECK(ritz_fit_go_on(fitter));
+    ritz_monitor_step("candidates", fit->count, foresee_count(fit, method));
     RITZ_CHECK(ritz_fitter_try(fitter, fit->method[method], modes, &candidate));
     RITZ_CHECK(ritz_fit_append(fit, &candidate));
     *at = fit->count - 1;
@@ -127,6 +145,7 @@ static ritz_status measure_uncut(ritz_fitter *f, double *out)
     RITZ_OWN_ARRAY int64_t *modes = NULL;
     ritz_status status = RITZ_OK;
 
+    RITZ_CHECK(ritz_fit_go_on(f));
     RITZ_CHECK_NEW(modes, f->num_bodies);
     ritz_fit_rung(f, method, ritz_fit_rungs(f, method), modes);
     f->largest = INT64_MAX;

@@ -148,7 +148,9 @@ typedef struct cli_run {
     int num_written;
     const char *written[CLI_MAX_OUTPUTS];
     bool quiet, json;
-    bool kept;                     /* see cli_keep_outputs */
+    bool kept;                            /* see cli_keep_outputs */
+    char interrupted[4 * RITZ_NAME_SIZE]; /* see cli_divert; "": it was not */
+    char diverted[CLI_MAX_COMMAND];       /* name of the output then */
     char command[CLI_MAX_COMMAND]; /* for the containers that the tool writes */
     json_t *report;                /* of --json; sink.h adds to it */
     json_t *open[CLI_MAX_DEPTH];   /* in it, where values go at present */
@@ -268,6 +270,22 @@ void cli_watch(cli_run *run);
 
 /** From now on the program ends with status 1 if JSON gets no memory. */
 void cli_prepare(void);
+
+/**
+ * From now on the first SIGINT or SIGTERM does not end the program, but makes
+ * cli_interrupted true, so that what there is can be written; the second one
+ * ends it. A signal that is ignored stays so.
+ */
+void cli_interruptible(void);
+bool cli_interrupted(void);
+
+/**
+ * Write to OUTPUT.interrupted in place of OUTPUT, in containers that say what
+ * was interrupted; cli_finish publishes it though the status is a failure.
+ *
+ * @param[in] what  for the container: "the search, after 12 candidates"
+ */
+ritz_status cli_divert(cli_run *run, const char *what);
 
 /** The program is about to end by itself. After cli_watch and without this
  * call, an exit counts as a failure within a library. */

@@ -207,6 +207,20 @@ void cli_input_sum(cli_run *run, const char *path, const char *digest)
                  path);
 }
 
+ritz_status cli_divert(cli_run *run, const char *what)
+{
+    if (!run->output)
+        return RITZ_OK;
+    snprintf(run->interrupted, sizeof run->interrupted, "%s", what);
+    RITZ_REFUSE_IF(
+        snprintf(run->diverted, sizeof run->diverted, "%s.interrupted",
+                 run->output) >= (int)sizeof run->diverted,
+        RITZ_ERR_ARGUMENT, "the name of '%s' is too long", run->output);
+    run->output = run->diverted;
+    cli_keep_outputs(run);
+    return RITZ_OK;
+}
+
 ritz_status cli_can_write(const char *path)
 {
     ritz_draft draft = {0};
@@ -218,7 +232,11 @@ ritz_status cli_can_write(const char *path)
 
 const ritz_stamp *cli_stamp(cli_run *run)
 {
-    run->stamp = (ritz_stamp){run->command, run->num_inputs, run->input};
+    run->stamp = (ritz_stamp){
+        .command = run->command,
+        .num_inputs = run->num_inputs,
+        .input = run->input,
+        .interrupted = run->interrupted[0] ? run->interrupted : NULL};
     return &run->stamp;
 }
 

@@ -7,6 +7,7 @@
 #include "cli/walk.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -65,26 +66,33 @@ static void watch_signals(void)
             sigaction(numbers[k], &action, NULL);
 }
 
-/* At most ten times a second, and not before a tenth has passed. */
-static void show_progress(const char *what, int64_t done, int64_t total)
-{
-    char line[80];
-    const double now = cli_clock();
-    int length = 0;
+static volatile sig_atomic_t interrupted; /* by a first signal */
 
-    if (now - last < 0.1)
-        return;
-    last = now;
-    if (total > 0)
-        length = snprintf(line, sizeof line, "%s: %" PRId64 " of %" PRId64,
-                          what, done, total);
-    else
-        length = snprintf(line, sizeof line, "%s: %" PRId64, what, done);
-    if (length > 0) {
-        shown = 1;
-        fprintf(stderr, "%s%s", erase, line);
-        fflush(stderr);
-    }
+/* The second signal ends the program, as does one in code that never asks. */
+static void note_signal(int number)
+{
+    if (interrupted)
+        end_program(number);
+    interrupted = 1;
+}
+
+void cli_interruptible(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM};
+    struct sigaction before;
+    struct sigaction action = {.sa_handler = note_signal,
+                               .sa_flags = SA_ONSTACK | SA_RESTART};
+
+    sigemptyset(&action.sa_mask);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+        if (sigaction(numbers[k], NULL, &before) == 0 &&
+            before.sa_handler == end_program)
+            sigaction(numbers[k], &action, NULL);
+}
+
+bool cli_interrupted(void)
+{
+    return interrupted != 0;
 }
 
 const char *cli_duration(double seconds, char out[CLI_DURATION])
@@ -137,7 +145,8 @@ typedef struct step_series {
 static step_series series[8];
 static int num_series;
 
-/* The series of a step; the first step begins a new series. */
+/* The series of a step; the first step begins a new series, as does one that
+   does not follow the last. */
 static step_series *find_series(const char *what, int64_t done, int64_t total)
 {
     enum { MOST = sizeof series / sizeof *series };
@@ -146,40 +155,81 @@ static step_series *find_series(const char *what, int64_t done, int64_t total)
     for (int k = 0; k < MOST && !found; k++)
         if (series[k].what == what)
             found = &series[k];
-    if (found && found->total == total && done >= found->done)
+    if (found && done >= found->done &&
+        (found->total == total || done <= found->done + 1)) {
+        found->total = total; /* what was foreseen may change */
         return found;
+    }
     if (!found)
         found = &series[num_series++ % MOST];
     *found = (step_series){what, total, done, done, cli_clock(), false};
     return found;
 }
 
-/* Warn of long work once its duration can be estimated. */
-static void foresee_end(const char *what, int64_t done, int64_t total)
+/* Seconds that all steps of a series take at its rate so far; 0: not known. */
+static double foresee_whole(const step_series *w)
 {
-    static const double long_work = 600.0, enough = 1.0; /* seconds */
-    step_series *w = find_series(what, done, total);
+    static const double enough = 1.0; /* seconds */
     const double spent = cli_clock() - w->began;
-    double whole = 0.0;
+
+    if (w->done == w->first || spent < enough)
+        return 0.0;
+    return spent / (double)(w->done - w->first) * (double)(w->total - w->first);
+}
+
+/* Warn of long work once its duration can be estimated. */
+static void foresee_end(step_series *w)
+{
+    static const double long_work = 600.0; /* seconds */
+    const double whole = foresee_whole(w);
     char text[CLI_DURATION];
 
-    w->done = done;
-    if (w->told || done == w->first || spent < enough)
-        return;
-    whole = spent / (double)(done - w->first) * (double)(total - w->first);
-    if (whole < long_work)
+    if (w->told || whole < long_work)
         return;
     w->told = true;
-    cli_warn(watched, "%s: all %" PRId64 " take about %s at this rate", what,
-             total, cli_duration(whole, text));
+    cli_warn(watched, "%s: all %" PRId64 " take about %s at this rate", w->what,
+             w->total, cli_duration(whole, text));
+}
+
+/* "candidates: 12 of 59, about 3.2 s left": at most ten times a second, and not
+   before a tenth has passed. @param[in] w  NULL: the total is not known */
+static void show_progress(const char *what, int64_t done, const step_series *w)
+{
+    char line[80], text[CLI_DURATION];
+    const double now = cli_clock();
+    const double whole = w ? foresee_whole(w) : 0.0;
+    int length = 0;
+
+    if (now - last < 0.1)
+        return;
+    last = now;
+    if (w && whole > 0.0)
+        length = snprintf(
+            line, sizeof line, "%s: %" PRId64 " of %" PRId64 ", about %s left",
+            what, done, w->total,
+            cli_duration(fmax(0.0, whole - (now - w->began)), text));
+    else if (w)
+        length = snprintf(line, sizeof line, "%s: %" PRId64 " of %" PRId64,
+                          what, done, w->total);
+    else
+        length = snprintf(line, sizeof line, "%s: %" PRId64, what, done);
+    if (length > 0) {
+        shown = 1;
+        fprintf(stderr, "%s%s", erase, line);
+        fflush(stderr);
+    }
 }
 
 static void follow_step(const char *what, int64_t done, int64_t total)
 {
-    if (total > 0)
-        foresee_end(what, done, total);
+    step_series *w = total > 0 ? find_series(what, done, total) : NULL;
+
+    if (w) {
+        w->done = done;
+        foresee_end(w);
+    }
     if (on_terminal)
-        show_progress(what, done, total);
+        show_progress(what, done, w);
 }
 
 /* A library that cannot go on may end the program with any status, Fortran with

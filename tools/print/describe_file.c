@@ -180,6 +180,9 @@ static ritz_status describe_container(cli_run *run, const char *path,
     }
     sink_field(run, "made by", "command", "%s", summary.command);
     sink_field(run, "version", "made_by_version", "ritz %s", summary.version);
+    if (summary.interrupted[0])
+        sink_field(run, "interrupted", "interrupted", "%s",
+                   summary.interrupted);
     SINK_EACH(run, "made_from", k, summary.num_inputs) {
         cli_say(run, "  %-14s %s", k > 0 ? "" : "from", summary.input[k]);
         sink_add(run, "%s", summary.input[k]);

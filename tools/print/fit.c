@@ -1,5 +1,7 @@
 #include "print/print.h"
 
+#include <inttypes.h>
+
 /* "craig-bampton,rubin", or "all" there are. */
 static void read_methods(const cli_program *program, fit_options *given)
 {
@@ -157,7 +159,7 @@ static void say_candidate(const cli_run *run, const ritz_fit_candidate *c,
     char error[32];
 
     if (!c) {
-        cli_say(run, "%-18s refused", name);
+        cli_say(run, "%-18s not tried", name);
         return;
     }
     for (int64_t k = 0; k < c->num_bodies && c->modes[0] >= 0; k++)
@@ -487,36 +489,95 @@ static void warn_of_ports(cli_run *run, const ritz_component *component,
              chosen->method->name, component->port[0].name);
 }
 
-/* Search, say, record, write; nothing is written if nothing is found. */
-static ritz_status find_smallest(fit_run *f, const model *full,
-                                 ritz_fitter *fitter)
+/* The files that are asked for; a signal may stop it while columns are put in
+   order. */
+static ritz_status write_result(fit_run *f, ritz_fitter *fitter,
+                                const ritz_fit_candidate *chosen)
 {
     cli_run *run = f->run;
-    RITZ_OWN(ritz_fit) fit = {0};
     RITZ_OWN(ritz_reduced) reduced = {0};
-    const ritz_fit_candidate *chosen = NULL;
 
-    f->limits = ritz_fitter_tolerance(fitter);
-    RITZ_CHECK(ritz_fitter_search(fitter, &fit));
-    say_fit(run, fitter, &fit);
-    RITZ_CHECK(compare_methods(run, f->given, fitter, &fit));
-    RITZ_REFUSE_IF(fit.chosen < 0, RITZ_ERR_CONVERGENCE, "%s", fit.why);
-    chosen = &fit.candidate[fit.chosen];
-    if (fit.runner_up >= 0)
-        record_candidate(f, &fit.candidate[fit.runner_up], false, true, NULL);
-    record_candidate(f, chosen, true, false, fit.why);
-    RITZ_CHECK(f->recorded);
-    if (full)
-        warn_of_ports(run, &full->component, chosen);
-    if (f->scene && (run->output || f->given->prefix)) {
-        RITZ_CHECK(write_scene(f, fitter, chosen));
-    } else if (run->output) {
+    if (f->scene && (run->output || f->given->prefix))
+        return write_scene(f, fitter, chosen);
+    if (!run->output)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_fitter_reduced(fitter, chosen, &reduced));
+    return ritz_container_write_reduced(run->output, &reduced, cli_stamp(run));
+}
+
+/* Of a search that a signal has ended: the best so far into a file of its own,
+   marked, and a failure. Report and components are left as they were. */
+static ritz_status keep_best(fit_run *f, ritz_fitter *fitter,
+                             const ritz_fit *fit)
+{
+    cli_run *run = f->run;
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_system) system = {0};
+    RITZ_OWN(ritz_fit_path) path = {0};
+    RITZ_OWN(ritz_bodies) body = {0};
+    const ritz_fit_candidate *chosen = NULL;
+    char what[2 * RITZ_NAME_SIZE];
+
+    RITZ_REFUSE_IF(fit->chosen < 0 || !run->output, RITZ_ERR_CONVERGENCE, "%s",
+                   fit->why);
+    chosen = &fit->candidate[fit->chosen];
+    (void)snprintf(what, sizeof what,
+                   "the search, after %" PRId64 " candidates of %" PRId64
+                   " methods: others may be smaller",
+                   fit->count, fit->num_methods);
+    RITZ_CHECK(cli_divert(run, what));
+    if (f->scene) {
+        RITZ_CHECK(ritz_fitter_system(fitter, chosen, &body, &path, &system));
+        RITZ_CHECK(
+            ritz_container_write_system(run->output, &system, cli_stamp(run)));
+    } else {
         RITZ_CHECK(ritz_fitter_reduced(fitter, chosen, &reduced));
         RITZ_CHECK(ritz_container_write_reduced(run->output, &reduced,
                                                 cli_stamp(run)));
     }
+    return ritz_fail(RITZ_ERR_CONVERGENCE,
+                     "interrupted: the best so far, of order %" PRId64
+                     ", is in '%s'",
+                     chosen->order, run->output);
+}
+
+/* Compare, record and write what a whole search has found. */
+static ritz_status conclude_search(fit_run *f, const model *full,
+                                   ritz_fitter *fitter, ritz_fit *fit)
+{
+    cli_run *run = f->run;
+    const ritz_fit_candidate *chosen = NULL;
+
+    RITZ_CHECK(compare_methods(run, f->given, fitter, fit));
+    RITZ_REFUSE_IF(fit->chosen < 0, RITZ_ERR_CONVERGENCE, "%s", fit->why);
+    chosen = &fit->candidate[fit->chosen];
+    if (fit->runner_up >= 0)
+        record_candidate(f, &fit->candidate[fit->runner_up], false, true, NULL);
+    record_candidate(f, chosen, true, false, fit->why);
+    RITZ_CHECK(f->recorded);
+    if (full)
+        warn_of_ports(run, &full->component, chosen);
+    RITZ_CHECK(write_result(f, fitter, chosen));
     return f->given->report ? cli_table_save(&run->said, f->given->report)
                             : RITZ_OK;
+}
+
+/* Search, say, record, write; nothing is written if nothing is found. */
+static ritz_status find_smallest(fit_run *f, const model *full,
+                                 ritz_fitter *fitter)
+{
+    RITZ_OWN(ritz_fit) fit = {0};
+    ritz_status status = RITZ_OK;
+
+    f->limits = ritz_fitter_tolerance(fitter);
+    cli_interruptible();
+    RITZ_CHECK(ritz_fitter_search(fitter, &fit));
+    say_fit(f->run, fitter, &fit);
+    if (!fit.interrupted)
+        status = conclude_search(f, full, fitter, &fit);
+    if (fit.interrupted || (status != RITZ_OK && cli_interrupted()))
+        return keep_best(f, fitter, &fit);
+    return status;
 }
 
 /* Read a component or, into @p scene, a scene, and prepare the search. */
@@ -551,6 +612,12 @@ static ritz_status fit_input(fit_run *f, ritz_scene *scene)
     return find_smallest(f, component ? &full : NULL, fitter);
 }
 
+static bool is_interrupted(void *context)
+{
+    (void)context;
+    return cli_interrupted();
+}
+
 ritz_status fit_search(cli_run *run, fit_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
@@ -559,6 +626,7 @@ ritz_status fit_search(cli_run *run, fit_options *given)
 
     take_options(run->program, given);
     given->request.observe = observe_candidate;
+    given->request.stop = is_interrupted;
     given->request.thorough = given->all;
     given->request.context = &f;
     /* charts call it by its file, without folder and ending */

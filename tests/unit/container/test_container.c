@@ -549,7 +549,7 @@ static void every_container_says_how_it_was_made(void **)
     char first[] = "00ff  model.bdf";
     char second[] = "11ee  a longer name.op4";
     char *input[] = {first, second};
-    const ritz_stamp full = {"ritz-verb --option this", 2, input};
+    const ritz_stamp full = {"ritz-verb --option this", 2, input, "half"};
 
     for (int k = 0; k < SAMPLE_KINDS; k++) {
         ritz_summary summary = {0};
@@ -560,6 +560,7 @@ static void every_container_says_how_it_was_made(void **)
         assert_string_equal(summary.kind, sample_kinds[k].name);
         assert_string_equal(summary.version, ritz_version());
         assert_string_equal(summary.command, full.command);
+        assert_string_equal(summary.interrupted, full.interrupted);
         assert_int_equal(summary.num_inputs, 2);
         assert_string_equal(summary.input[0], first);
         assert_string_equal(summary.input[1], second);
@@ -574,6 +575,7 @@ static void an_empty_list_of_inputs_is_one(void **)
     assert_ok(sample_kinds[0].make(path, &stamp));
     assert_ok(ritz_container_summary(path, &summary));
     assert_int_equal(summary.num_inputs, 0);
+    assert_string_equal(summary.interrupted, "");
     assert_string_equal(summary.units, "kg m s");
 }
 
@@ -584,7 +586,7 @@ static void a_command_of_any_length_comes_back(void **)
     static char command[LONG + 1];
     static char text[MANY][110];
     static char *input[MANY];
-    const ritz_stamp full = {command, MANY, input};
+    const ritz_stamp full = {command, MANY, input, NULL};
     const size_t lengths[] = {16382, 16383, 16384, LONG};
     ritz_summary summary = {0};
 

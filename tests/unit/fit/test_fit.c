@@ -15,6 +15,8 @@
 #include <ritz/model.h>
 #include <ritz/verify.h>
 
+#include <limits.h>
+
 static const ritz_fit_request plain = RITZ_FIT_NONE;
 
 enum { SOME = 5 };
@@ -488,6 +490,52 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
                 10.0 * find_measure(&grid, "response-relative")->value);
 }
 
+/* Candidates that a search may try before it is stopped. */
+static bool is_enough(void *context)
+{
+    int *left = context;
+
+    return --*left < 0;
+}
+
+/* The best of those that were tried, whenever the search is stopped. */
+static void a_stopped_search_has_the_best_so_far(void **state)
+{
+    int64_t before = INT64_MAX;
+
+    (void)state;
+    for (int most = 0; most < 3000; most = most < 8 ? most + 1 : 2 * most) {
+        ritz_fit_request request = quick(0.5, 0.01, "frequency=1e-3,mac=0.99");
+        const ritz_fit_candidate *chosen = NULL;
+        int left = most;
+        RITZ_OWN(ritz_reduced) reduced = {0};
+        RITZ_OWN(fitted) f = {0};
+
+        request.stop = is_enough;
+        request.context = &left;
+        fit_beam(&request, &f);
+        assert_true(!f.fit.interrupted || f.fit.count <= most);
+        assert_true((strstr(f.fit.why, "interrupted after ") != NULL) ==
+                    f.fit.interrupted);
+        if (f.fit.chosen < 0) {
+            assert_true(f.fit.interrupted);
+            continue;
+        }
+        chosen = &f.fit.candidate[f.fit.chosen];
+        assert_true(chosen->feasible && chosen->order <= before);
+        before = chosen->order;
+        left = INT_MAX; /* what is made of it is not stopped */
+        assert_ok(ritz_fitter_reduced(f.fitter, chosen, &reduced));
+        assert_int_equal(reduced.K.ncol, chosen->order);
+        assert_true((reduced.nested.smallest == 0) == f.fit.interrupted);
+        assert_near(find_measure(&reduced.errors, "mac")->value,
+                    find_measure(&chosen->errors, "mac")->value, 0.0);
+        if (!f.fit.interrupted)
+            return;
+    }
+    fail_msg("the search never came to its end");
+}
+
 static ritz_status fit_once(const ritz_component *beam)
 {
     ritz_fit_request request = quick(0.3, 0.01, "frequency=1e-2");
@@ -533,6 +581,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_tolerance_that_no_method_meets_tells_the_nearest),
     cmocka_unit_test(the_answer_is_nested_and_knows_its_errors),
     cmocka_unit_test(bounds_stand_beside_errors_and_hold),
+    cmocka_unit_test(a_stopped_search_has_the_best_so_far),
     cmocka_unit_test(a_pole_between_points_is_seen_by_what_confirms),
     cmocka_unit_test(fitting_survives_every_allocation),
 };

@@ -1,0 +1,43 @@
+/* Orders of columns that were found for bodies of candidates: to leave columns
+   out, to bound what is left and to write it takes the same one. */
+#include "fit/fitter.h"
+
+#include "base/alloc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const ritz_fit_ordered *ritz_fit_ordered_find(const ritz_fitter *f,
+                                              const ritz_fit_candidate *of,
+                                              int64_t count)
+{
+    for (int64_t k = 0; k < f->num_ordered; k++) {
+        const ritz_fit_ordered *o = &f->ordered[k];
+
+        if (o->method == of->method && o->count == count &&
+            memcmp(o->modes, of->modes,
+                   (size_t)f->num_bodies * sizeof *o->modes) == 0)
+            return o;
+    }
+    return NULL;
+}
+
+ritz_status ritz_fit_ordered_keep(ritz_fitter *f, const ritz_fit_candidate *of,
+                                  const ritz_fit_ordered *found)
+{
+    ritz_fit_ordered *kept = NULL;
+
+    RITZ_CHECK_ROOM(f->ordered, f->num_ordered, f->room_ordered);
+    kept = &f->ordered[f->num_ordered++];
+    *kept = (ritz_fit_ordered){
+        .method = of->method, .count = found->count, .fixed = found->fixed};
+    RITZ_CHECK_COPY(kept->modes, of->modes, f->num_bodies);
+    RITZ_CHECK_COPY(kept->column, found->column, found->count);
+    return RITZ_OK;
+}
+
+void ritz_fit_ordered_free(ritz_fit_ordered *ordered)
+{
+    RITZ_FREE(ordered->modes, ordered->column);
+    *ordered = (ritz_fit_ordered){0};
+}

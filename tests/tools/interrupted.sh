@@ -1,0 +1,79 @@
+#!/bin/sh
+# What a search leaves that a signal ends.
+# Usage: interrupted.sh FOLDER-OF-THE-TOOLS
+. "$(dirname "$0")/tap.sh"
+. "$here/models.sh"
+
+# interrupt SIGNAL WORD COMMAND...: send the signal when a line of the record
+# has the word. The record is a pipe: the tool waits for a reader of each line,
+# and so is still at work. Its status is in $got, its words in said.
+interrupt() {
+    signal=$1 word=$2 got=0
+    shift 2
+    rm -f record
+    mkfifo record
+    # a shell has what runs behind it ignore SIGINT
+    env --default-signal="$signal" "$@" --record record >said 2>&1 &
+    tool=$!
+    line=
+    until case $line in *"$word"*) true ;; *) false ;; esac do
+        read -r line <record || line=
+    done
+    kill -s "$signal" "$tool"
+    exec 3<>record # it reads what is still said
+    wait "$tool" || got=$?
+    exec 3>&-
+}
+
+# says NAME WORDS: an interrupted tool said so, with status 1.
+says() {
+    cp said log
+    [ "$got" = 1 ] && grep -qF -e "$2" said && report yes "$1" || report no "$1"
+}
+
+truss=$data/truss72
+expect 0 '' ritz-import --stiffness "$truss/truss72.k.mtx" \
+    --mass "$truss/truss72.m.mtx" --bulk "$truss/truss72.bdf" \
+    --dofs "$truss/truss72.dofs" --port left=1:12 --input f=36:2 \
+    --output-at y=35:2 -q -o truss.h5
+
+# --- a component -----------------------------------------------------------------
+
+set -- ritz-fit truss.h5 --band-hz 0,20 --damping 'modal 0.01' \
+    --methods craig-bampton,normal-modes,krylov --tolerance flexible=1e-2
+echo before >fit.h5
+for signal in INT TERM; do
+    rm -f fit.h5.interrupted
+    interrupt "$signal" '"feasible":true' "$@" -o fit.h5
+    says "SIG$signal ends the search with the best so far" \
+        "is in 'fit.h5.interrupted'"
+    works '  why says after how many' grep -q 'Why: interrupted after [0-9]* cand' said
+    works '  the output is as it was' grep -qx before fit.h5
+    expect 0 'the search, after' ritz-info fit.h5.interrupted
+    expect 0 'pass' ritz-verify truss.h5 fit.h5.interrupted --band-hz 0,20 \
+        --damping 'modal 0.01' --limit-flexible 1e-2 -o verified.h5
+done
+
+rm -f fit.h5.interrupted
+interrupt TERM '"feasible":false' ritz-fit truss.h5 --band-hz 0,20 \
+    --damping 'modal 0.01' --methods normal-modes,krylov \
+    --tolerance flexible=1e-2 -o fit.h5
+says 'before anything meets the tolerance there is nothing to keep' \
+    'no candidate so far meets the tolerance'
+works '  and nothing is left' test ! -e fit.h5.interrupted
+works '  the output is as it was' grep -qx before fit.h5
+
+# --- a scene -------------------------------------------------------------------------
+
+import_spacecraft
+spacecraft scene 'band_hz: [0, 5]' \
+    'inputs: [{name: motor, at: rotor/bearing, component: 6, against: stator/bearing}]' \
+    'outputs: [{name: gyro, at: platform/scan, component: 6}]'
+interrupt TERM '"feasible":true' ritz-fit scene.yaml --tolerance flexible=1e-1 \
+    --methods craig-bampton --components s- --report s.txt -o s.h5
+says 'a scene gives the system of the best so far' "is in 's.h5.interrupted'"
+expect 0 'flexible-response-relative' ritz-info s.h5.interrupted
+works '  and no components, and no report' \
+    test ! -e s.h5 -a ! -e s-rotor.h5 -a ! -e s.txt
+
+echo "1..$count"
