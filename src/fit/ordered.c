@@ -25,14 +25,13 @@ const ritz_fit_ordered *ritz_fit_ordered_find(const ritz_fitter *f,
 ritz_status ritz_fit_ordered_keep(ritz_fitter *f, const ritz_fit_candidate *of,
                                   const ritz_fit_ordered *found)
 {
-    ritz_fit_ordered *kept = NULL;
+    RITZ_OWN(ritz_fit_ordered)
+    kept = {.method = of->method, .count = found->count, .fixed = found->fixed};
 
+    RITZ_CHECK_COPY(kept.modes, of->modes, f->num_bodies);
+    RITZ_CHECK_COPY(kept.column, found->column, found->count);
     RITZ_CHECK_ROOM(f->ordered, f->num_ordered, f->room_ordered);
-    kept = &f->ordered[f->num_ordered++];
-    *kept = (ritz_fit_ordered){
-        .method = of->method, .count = found->count, .fixed = found->fixed};
-    RITZ_CHECK_COPY(kept->modes, of->modes, f->num_bodies);
-    RITZ_CHECK_COPY(kept->column, found->column, found->count);
+    RITZ_MOVE(f->ordered[f->num_ordered++], kept);
     return RITZ_OK;
 }
 
