@@ -310,6 +310,9 @@
     }
 /* A mode this close above the end of a range, relative in lambda, is in it. */
 #define RITZ_SPAN_ROUNDING 1e-8
+/* Backward error of a factor of an indefinite matrix, relative, above which
+   another shift is taken: 1e-14 is usual, and residuals of 1e-11 need 1e-12. */
+#define RITZ_SIGNED_ERROR 1e-12
 /* First shift below 0, of the median of K_jj / M_jj, and the least part of it
    that is taken where a low frequency asks for less. */
 #define RITZ_FIRST_SHIFT 1e-5

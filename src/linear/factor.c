@@ -16,6 +16,7 @@
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 #include "linear/ordering.h"
+#include "linear/signed_cholesky.h"
 #include "linear/supernodal.h"
 
 #include <ritz/matrix.h>
@@ -167,7 +168,7 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
     } else {
         RITZ_CHECK_COPY(F->order, order, F->n);
         RITZ_CHECK(weakest_pivot(C->L, a, &ratio, &row));
-        RITZ_CHECK(ritz_supernodal_new(C->L, &F->S));
+        RITZ_CHECK(ritz_supernodal_new(C->L, NULL, &F->S));
         cholmod_l_free_factor(&C->L, &C->common);
         if (row >= 0 && !(ratio > RITZ_PIVOT_STRONG))
             RITZ_CHECK(smallest_eigenvalue(F, a, row, &lambda));
@@ -179,8 +180,23 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
     return RITZ_OK;
 }
 
-/* For a small matrix CHOLMOD tries several orders and keeps the best. */
-static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
+/* CHOLMOD ran out of memory, or cannot factor such a matrix. */
+static ritz_status report_failure(const cholesky *C, int64_t rows)
+{
+    RITZ_REFUSE_IF(C->common.status == CHOLMOD_OUT_OF_MEMORY ||
+                       C->common.status == CHOLMOD_TOO_LARGE,
+                   RITZ_ERR_MEMORY,
+                   "no memory for the factor of %" PRId64 " rows", rows);
+    RITZ_REFUSE_IF(C->common.status < 0, RITZ_ERR_ARGUMENT,
+                   "the matrix cannot be factored, CHOLMOD says %d",
+                   C->common.status);
+    return RITZ_OK;
+}
+
+/* The pattern of L, in the order of rows that is known, or one that is found.
+   For a small matrix CHOLMOD tries several orders and keeps the best. */
+static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
+                                  const int64_t *known)
 {
     RITZ_OWN_ARRAY int64_t *order = NULL;
     cholmod_sparse view = view_sparse(A);
@@ -189,25 +205,42 @@ static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
     C->common.print = 0;
     C->common.final_ll = 1; /* LDL', the default, accepts negative pivots */
     C->common.supernodal = CHOLMOD_SUPERNODAL;
-    if (A->nrow >= RITZ_ORDER_FROM) {
+    if (known)
+        RITZ_CHECK_COPY(order, known, A->nrow);
+    else if (A->nrow >= RITZ_ORDER_FROM)
         RITZ_CHECK(ritz_ordering_new(A, &order));
+    if (order) {
         C->common.nmethods = 1;
         C->common.method[0].ordering = CHOLMOD_GIVEN;
     }
     C->L = cholmod_l_analyze_p(&view, order, NULL, 0, &C->common);
-    if (C->L) {
-        const int before = ritz_blas_threads_for(C->common.fl);
+    return report_failure(C, A->nrow);
+}
 
-        cholmod_l_factorize(&view, C->L, &C->common);
-        ritz_blas_threads(before);
-    }
-    RITZ_REFUSE_IF(C->common.status == CHOLMOD_OUT_OF_MEMORY ||
-                       C->common.status == CHOLMOD_TOO_LARGE,
-                   RITZ_ERR_MEMORY,
-                   "no memory for the factor of %" PRId64 " rows", A->nrow);
-    RITZ_REFUSE_IF(C->common.status < 0, RITZ_ERR_ARGUMENT,
-                   "the matrix cannot be factored, CHOLMOD says %d",
-                   C->common.status);
+static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
+{
+    cholmod_sparse view = view_sparse(A);
+
+    int before = 0;
+
+    RITZ_CHECK(analyse_sparse(C, A, NULL));
+    before = ritz_blas_threads_for(C->common.fl);
+    cholmod_l_factorize(&view, C->L, &C->common);
+    ritz_blas_threads(before);
+    return report_failure(C, A->nrow);
+}
+
+/* Room for the solves of a factor of A, and A's diagonal. */
+static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
+                                double **a)
+{
+    RITZ_REFUSE_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
+                   "a %" PRId64 " x %" PRId64 " matrix is not square", A->nrow,
+                   A->ncol);
+    RITZ_CHECK_NEW(*a, A->nrow);
+    RITZ_CHECK(copy_diagonal(A, *a));
+    F->n = A->nrow;
+    RITZ_CHECK_NEW(F->x, F->n * RITZ_SOLVE_WIDTH);
     return RITZ_OK;
 }
 
@@ -220,14 +253,8 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
 
     if (weak)
         *weak = -1;
-    RITZ_REFUSE_IF(A->nrow != A->ncol, RITZ_ERR_ARGUMENT,
-                   "a %" PRId64 " x %" PRId64 " matrix is not square", A->nrow,
-                   A->ncol);
-    RITZ_CHECK_NEW(a, A->nrow);
-    RITZ_CHECK(copy_diagonal(A, a));
     RITZ_CHECK_NEW(F, 1);
-    F->n = A->nrow;
-    RITZ_CHECK_NEW(F->x, F->n * RITZ_SOLVE_WIDTH);
+    RITZ_CHECK(begin_factor(A, F, &a));
     RITZ_CHECK(factorise_sparse(&C, A));
     RITZ_CHECK(pack_factor(F, &C, a, weak));
     RITZ_MOVE(*out, F);
@@ -237,6 +264,62 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
 ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
 {
     return ritz_factor_spd_weak(A, out, NULL);
+}
+
+/* |b - A x| / | |A||x| + |b| | of the solution of A x = b, b of unequal entries:
+   the change of A that x is an exact solution of, relative. */
+static ritz_status backward_error(ritz_factor *F, const ritz_sparse *A,
+                                  double *out)
+{
+    RITZ_OWN(ritz_dense) x = {0};
+    double gap = 0.0;
+    double size = 0.0;
+
+    RITZ_CHECK(ritz_dense_new(F->n, 1, &x));
+    for (int64_t i = 0; i < F->n; i++)
+        x.val[i] = cos((double)i) * sqrt(fabs(ritz_sparse_diagonal(A, i)));
+    RITZ_CHECK(ritz_factor_solve(F, &x));
+    for (int64_t j = 0; j < F->n; j++) { /* rows are columns */
+        const double b =
+            cos((double)j) * sqrt(fabs(ritz_sparse_diagonal(A, j)));
+        double rest = b;
+        double sum = fabs(b);
+
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
+            rest -= A->val[p] * x.val[A->rowind[p]];
+            sum += fabs(A->val[p] * x.val[A->rowind[p]]);
+        }
+        gap = hypot(gap, rest);
+        size = hypot(size, sum);
+    }
+    *out = gap / size;
+    return RITZ_OK;
+}
+
+ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
+                               int64_t *negative, ritz_factor **out)
+{
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(cholesky) C = {0};
+    RITZ_OWN_ARRAY double *a = NULL, *sign = NULL;
+    double error = 0.0;
+
+    RITZ_CHECK_NEW(F, 1);
+    RITZ_CHECK(begin_factor(A, F, &a));
+    RITZ_CHECK_NEW(sign, F->n);
+    RITZ_CHECK(analyse_sparse(&C, A, order));
+    RITZ_CHECK(ritz_signed_cholesky(A, C.L, &C.common, sign));
+    RITZ_CHECK_COPY(F->order, (const int64_t *)C.L->Perm, F->n);
+    RITZ_CHECK(ritz_supernodal_new(C.L, sign, &F->S));
+    cholmod_l_free_factor(&C.L, &C.common);
+    RITZ_CHECK(backward_error(F, A, &error));
+    RITZ_REFUSE_IF(!(error <= RITZ_SIGNED_ERROR), RITZ_ERR_SINGULAR,
+                   "the factor has a backward error of %.1e", error);
+    *negative = 0;
+    for (int64_t k = 0; k < F->n; k++)
+        *negative += sign[k] < 0.0;
+    RITZ_MOVE(*out, F);
+    return RITZ_OK;
 }
 
 /* Copies `count` columns of X to F->x, or back: F->x has `width` numbers for

@@ -5,6 +5,20 @@
 
 #include <ritz/matrix.h>
 
+/**
+ * A = L S L', S = diag(+1 or -1), of an indefinite matrix, pivots exchanged
+ * within supernodes only, for the same solves; its backward error is measured by a solve.
+ *
+ * @param[in]  A         n x n, symmetric, both triangles stored
+ * @param[in]  order     of ritz_factor_order(), NULL to find one
+ * @param[out] negative  eigenvalues of A below 0, by Sylvester's law
+ * @return RITZ_ERR_SINGULAR if A or a leading part of it is nearly singular:
+ *         take another shift; RITZ_ERR_MEMORY
+ * @see    [GrimesLewisSimon1994]
+ */
+ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
+                               int64_t *negative, ritz_factor **out);
+
 /** n numbers: row k of the factor is row order[k] of A. Borrowed from @p F. */
 const int64_t *ritz_factor_order(const ritz_factor *F);
 

@@ -36,6 +36,7 @@ struct ritz_supernodal {
     int32_t *row;
     double *values; /* 64-byte aligned */
     size_t bytes;
+    double *sign;     /* of each pivot, NULL: all positive */
     int64_t num_top;  /* number of rows of the top */
     int32_t *top_row; /* num_top rows of L, ascending */
     double *top;      /* their right-hand sides, then their solutions */
@@ -429,7 +430,8 @@ static ritz_status pack_factor(const cholmod_factor *L, ritz_supernodal *S)
     return RITZ_OK;
 }
 
-ritz_status ritz_supernodal_new(cholmod_factor *L, ritz_supernodal **out)
+ritz_status ritz_supernodal_new(cholmod_factor *L, const double *sign,
+                                ritz_supernodal **out)
 {
     RITZ_OWN(ritz_supernodal) *S = NULL;
 
@@ -439,6 +441,8 @@ ritz_status ritz_supernodal_new(cholmod_factor *L, ritz_supernodal **out)
     S->n = (int64_t)L->n;
     S->tiles = ritz_tiles_here();
     S->threads = ritz_team_ready(1 + (int64_t)L->xsize / WORTHWHILE);
+    if (sign)
+        RITZ_CHECK_COPY(S->sign, sign, S->n);
     if (S->n > 0)
         RITZ_CHECK(pack_factor(L, S));
     RITZ_MOVE(*out, S);
@@ -466,7 +470,18 @@ static void descend_subtrees(const solving *s, const crew *c)
     }
 }
 
-/* x := L'^-1 x in the same rows, with the solution of the top in c->top. */
+/* x := S x in the rows of a block column, x from the first of them. */
+static void apply_signs(const ritz_supernodal *S, const ritz_block_column *b,
+                        int64_t width, double *x)
+{
+    if (!S->sign)
+        return;
+    for (int64_t j = 0; j < b->cols; j++)
+        for (int64_t c = 0; c < width; c++)
+            x[j * width + c] *= S->sign[b->first + j];
+}
+
+/* x := L'^-1 S x in the same rows, with the solution of the top in c->top. */
 static void ascend_subtrees(const solving *s, const crew *c)
 {
     const int64_t width = s->tile->width;
@@ -476,6 +491,7 @@ static void ascend_subtrees(const solving *s, const crew *c)
         double *x = s->x + b->first * width;
         double *sum = c->rest;
 
+        apply_signs(s->S, b, width, x);
         memset(sum, 0, (size_t)(b->cols * width) * sizeof *sum);
         s->tile->gather(b, 0, panels_of(b->below), s->x, c->top, sum);
         for (int64_t i = 0; i < b->cols * width; i++)
@@ -593,6 +609,7 @@ static void ascend_top(const solving *s, int thread, int threads)
         s->tile->gather(part.b, part.from, part.to, NULL, c->top, sum);
         ritz_team_meet(threads);
         memcpy(rest, solved + part.at, (size_t)count * sizeof *rest);
+        apply_signs(S, part.b, width, rest);
         for (int t = 0; t < threads; t++)
             for (int64_t i = 0; i < count; i++)
                 rest[i] -= S->crew[t].sum[k % 2][i];
@@ -655,7 +672,7 @@ void ritz_supernodal_free(ritz_supernodal **S)
     for (int k = 0; (*S)->crew && k < (*S)->threads; k++)
         RITZ_FREE((*S)->crew[k].block, (*S)->crew[k].top, (*S)->crew[k].z);
     RITZ_FREE((*S)->block, (*S)->row, (*S)->top_row, (*S)->top, (*S)->shared,
-              (*S)->crew);
+              (*S)->crew, (*S)->sign);
     if ((*S)->values)
         munmap((*S)->values, (*S)->bytes);
     free(*S);
