@@ -61,6 +61,7 @@ typedef enum ritz_engine {
     RITZ_ENGINE_LOW_RANK,
     RITZ_ENGINE_LANCZOS, /* this and the next: modes, see ritz_span */
     RITZ_ENGINE_ARPACK,
+    RITZ_ENGINE_SLICES,
 } ritz_engine;
 
 typedef struct ritz_choice {
@@ -113,8 +114,8 @@ extern const ritz_choice_word ritz_choice_words[];
  * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
- * "dense", "modal", "low-rank", "lanczos" or "arpack" for engine, "yes" or "no"
- * for count, "50" for among_hz, "0,10" for band_hz, "dropped" or "static" for
+ * "dense", "modal", "low-rank", "lanczos", "arpack" or "slices" for engine,
+ * "yes" or "no" for count, "50" for among_hz, "0,10" for band_hz, "dropped" or "static" for
  * remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong

@@ -353,12 +353,20 @@ typedef struct ritz_pairs {
     char engine[RITZ_NAME_SIZE];
 } ritz_pairs;
 
+/* How pairs of a large pencil are found. */
+typedef enum ritz_eigen_engine {
+    RITZ_EIGEN_AUTO,    /* what is mostly fastest of those below */
+    RITZ_EIGEN_LANCZOS, /* block Lanczos at one shift */
+    RITZ_EIGEN_ARPACK,  /* one vector at a time, to compare with */
+    RITZ_EIGEN_SLICES,  /* block Lanczos at shifts within the spectrum */
+} ritz_eigen_engine;
+
 /* How many of the lowest pairs. Rigid modes are always found in addition. */
 typedef struct ritz_span {
     int64_t modes;   /* number of flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
-    bool arpack;     /* compute them by ARPACK, not by block Lanczos */
-    bool uncounted;  /* skip the count that proves none missing */
+    ritz_eigen_engine engine;
+    bool uncounted; /* skip the count that proves none missing */
 } ritz_span;
 
 /**

@@ -313,6 +313,18 @@
 /* Backward error of a factor of an indefinite matrix, relative, above which
    another shift is taken: 1e-14 is usual, and residuals of 1e-11 need 1e-12. */
 #define RITZ_SIGNED_ERROR 1e-12
+/* A slice of the spectrum ends in a gap above this part of the eigenvalue:
+   vectors of two slices are then orthogonal to their residuals over it, 1e-6,
+   and are made so with one step. */
+#define RITZ_BORDER_GAP 1e-4
+/* Cosine of two vectors of different slices above which they are not accurate:
+   one projection leaves its square. */
+#define RITZ_BORDER_COSINE 1e-6
+/* A shift behind a cluster is this part of its eigenvalue further. */
+#define RITZ_BEHIND_CLUSTER 1e-2
+/* Where the factor at a shift fails, this part of its distance to the slice
+   before it is taken. */
+#define RITZ_SHIFT_ASTRAY 0.93
 /* First shift below 0, of the median of K_jj / M_jj, and the least part of it
    that is taken where a low frequency asks for less. */
 #define RITZ_FIRST_SHIFT 1e-5

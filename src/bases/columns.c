@@ -317,12 +317,24 @@ void ritz_remark_left_out(const ritz_request *request, int loads, int64_t first,
                         left_out, ritz_column_name(kind), name);
 }
 
+/* What a request's engine of modes is called by ritz_span. */
+static ritz_eigen_engine engine_of_modes(ritz_engine engine)
+{
+    static const ritz_eigen_engine of[] = {
+        [RITZ_ENGINE_LANCZOS] = RITZ_EIGEN_LANCZOS,
+        [RITZ_ENGINE_ARPACK] = RITZ_EIGEN_ARPACK,
+        [RITZ_ENGINE_SLICES] = RITZ_EIGEN_SLICES, /* the last */
+    };
+
+    return of[engine];
+}
+
 ritz_span ritz_request_span(const ritz_request *request)
 {
     return (ritz_span){
         .modes = request->modes,
         .up_to_hz = request->up_to_hz,
-        .arpack = request->choice.engine == RITZ_ENGINE_ARPACK,
+        .engine = engine_of_modes(request->choice.engine),
         .uncounted = request->choice.uncounted,
     };
 }

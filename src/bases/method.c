@@ -17,8 +17,9 @@ const ritz_method *ritz_method_find(const char *name)
 
 bool ritz_engine_fits(const ritz_method *method, ritz_engine engine)
 {
-    const bool modes =
-        engine == RITZ_ENGINE_LANCZOS || engine == RITZ_ENGINE_ARPACK;
+    const bool modes = engine == RITZ_ENGINE_LANCZOS ||
+                       engine == RITZ_ENGINE_ARPACK ||
+                       engine == RITZ_ENGINE_SLICES;
 
     return engine == RITZ_ENGINE_AUTO ||
            modes == ((method->uses & RITZ_USES_COUNT) != 0);
@@ -48,8 +49,8 @@ ritz_status ritz_request_check(const ritz_method *method,
     RITZ_REFUSE_IF(
         !ritz_engine_fits(method, request->choice.engine), RITZ_ERR_ARGUMENT,
         method->uses & RITZ_USES_COUNT
-            ? "%s finds modes: its engines are auto, lanczos and "
-              "arpack"
+            ? "%s finds modes: its engines are auto, lanczos, arpack and "
+              "slices"
             : "%s finds Gramians: its engines are auto, dense, modal "
               "and low-rank",
         method->name);

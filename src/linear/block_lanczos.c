@@ -32,6 +32,7 @@ typedef struct block_lanczos {
     double *T;         /* V'M A^-1 M V, of order 8 room, column-major */
     double *C;         /* 8 x 8 coefficients for each block of V */
     double *Z, *theta; /* eigenvectors and eigenvalues of T, ascending */
+    int64_t *rank;     /* of theta, by magnitude, the largest first */
     int64_t coupled;   /* T has blocks of the last column from here on */
     uint64_t noise;
 } block_lanczos;
@@ -40,7 +41,7 @@ static void block_lanczos_free(block_lanczos *L)
 {
     ritz_blocks_free(&L->on);
     ritz_row_matrix_free(&L->M);
-    RITZ_FREE(L->V, L->W, L->MW, L->MV, L->T, L->C, L->Z, L->theta);
+    RITZ_FREE(L->V, L->W, L->MW, L->MV, L->T, L->C, L->Z, L->theta, L->rank);
 }
 
 static double *block_at(const block_lanczos *L, int64_t j)
@@ -67,6 +68,7 @@ static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
     RITZ_CHECK_NEW(L->T, order * order);
     RITZ_CHECK_NEW(L->Z, order * order);
     RITZ_CHECK_NEW(L->theta, order);
+    RITZ_CHECK_NEW(L->rank, order);
     RITZ_CHECK_NEW(L->C, (L->room + 1) * SQUARE);
     RITZ_CHECK(ritz_blocks_new(L->n, ritz_factor_threads(L->S->A), L->room + 1,
                                &L->on));
@@ -336,6 +338,16 @@ static void expand_space(block_lanczos *L, double *size)
     *size = hypot(*size, ritz_square_size(A));
 }
 
+/* Eigenvalues by magnitude, the largest first: below sigma they are negative. */
+static void rank_magnitudes(block_lanczos *L)
+{
+    int64_t low = 0;
+    int64_t high = L->blocks * B - 1;
+
+    for (int64_t c = 0; low <= high; c++)
+        L->rank[c] = -L->theta[low] > L->theta[high] ? low++ : high--;
+}
+
 /* Eigenpairs of T. */
 static ritz_status solve_projected(block_lanczos *L)
 {
@@ -355,6 +367,7 @@ static ritz_status solve_projected(block_lanczos *L)
                    "no memory for eigenvectors of order %" PRId64, m);
     RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
                    "the eigenvectors of order %" PRId64 " cannot be found", m);
+    rank_magnitudes(L);
     return RITZ_OK;
 }
 
@@ -364,7 +377,7 @@ static void last_part(const block_lanczos *L, int64_t c, const double *R,
                       double *q)
 {
     const int64_t m = L->blocks * B;
-    const double *z = L->Z + (m - 1 - c) * m + (m - B);
+    const double *z = L->Z + L->rank[c] * m + (m - B);
 
     for (int i = 0; i < B; i++) {
         q[i] = 0.0;
@@ -381,14 +394,15 @@ static int64_t count_converged(const block_lanczos *L, int64_t most,
     int64_t c = 0;
 
     for (c = 0; c < most && c < m; c++) {
+        const double theta = fabs(L->theta[L->rank[c]]);
         double q[B];
         double size = 0.0;
 
         last_part(L, c, R, q);
         for (int i = 0; i < B; i++)
             size = hypot(size, q[i]);
-        if (!(size <= RITZ_LANCZOS_SETTLED * L->theta[m - 1 - c]) ||
-            L->theta[m - 1 - c] <= RITZ_NO_DIRECTION * L->theta[m - 1])
+        if (!(size <= RITZ_LANCZOS_SETTLED * theta) ||
+            theta <= RITZ_NO_DIRECTION * fabs(L->theta[L->rank[0]]))
             break;
     }
     return c;
@@ -404,7 +418,8 @@ static void combine_ritz(const block_lanczos *L, int64_t c, int64_t end,
 
     memset(C, 0, (size_t)((L->blocks + 1) * SQUARE) * sizeof *C);
     for (int k = 0; k < B && c + k < end; k++) {
-        const double *z = L->Z + (m - 1 - c - k) * m;
+        const int64_t at = L->rank[c + k];
+        const double *z = L->Z + at * m;
         double q[B];
 
         for (int64_t i = 0; i < m; i++)
@@ -413,7 +428,7 @@ static void combine_ritz(const block_lanczos *L, int64_t c, int64_t end,
             continue;
         last_part(L, c + k, R, q);
         for (int i = 0; i < B; i++)
-            C[(m + i) * B + k] = q[i] / L->theta[m - 1 - c - k];
+            C[(m + i) * B + k] = q[i] / L->theta[at];
     }
 }
 
@@ -464,7 +479,7 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
         double q[B];
 
         last_part(L, c, R, q);
-        L->T[c + c * ld] = L->theta[m - 1 - c];
+        L->T[c + c * ld] = L->theta[L->rank[c]];
         for (int i = 0; i < B; i++) {
             L->T[(kept * B + i) + c * ld] = q[i];
             L->T[c + (kept * B + i) * ld] = q[i];
@@ -488,11 +503,23 @@ static bool is_time_to_look(const block_lanczos *L, int64_t *next)
     return true;
 }
 
+/* Whether k of the pairs that were found are enough: those wanted below sigma
+   must be among them. */
+static bool is_enough(const block_lanczos *L, int64_t found)
+{
+    int64_t below = 0;
+
+    for (int64_t c = 0; c < found; c++)
+        below += L->theta[L->rank[c]] < 0.0;
+    return found >= L->k && below >= L->S->below;
+}
+
 /* Extend V until k pairs have converged. R is that of the block after V. */
 static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
                                   ritz_lanczos_end *end)
 {
-    int64_t next = (12 * L->k / 5 + B - 1) / B;
+    /* vectors for each pair: 2.4 at least, 1.4 where they lie on both sides */
+    int64_t next = ((L->S->below > 0 ? 7 : 12) * L->k / 5 + B - 1) / B;
     int64_t steps = 0;
     int restarts = 0;
     bool exhausted = false;
@@ -506,10 +533,11 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
         memcpy(L->MV, L->MW, (size_t)(L->n * B) * sizeof *L->MV);
         if (exhausted || is_time_to_look(L, &next)) {
             RITZ_CHECK(solve_projected(L));
-            *found = count_converged(L, L->k + SPARES, R);
-            *end = exhausted && *found < L->k ? RITZ_LANCZOS_EXHAUSTED
-                                              : RITZ_LANCZOS_FOUND;
-            if (exhausted || *found >= L->k)
+            *found = count_converged(
+                L, L->S->below > 0 ? L->blocks * B : L->k + SPARES, R);
+            *end = exhausted && !is_enough(L, *found) ? RITZ_LANCZOS_EXHAUSTED
+                                                      : RITZ_LANCZOS_FOUND;
+            if (exhausted || is_enough(L, *found))
                 return RITZ_OK;
         }
         *end = RITZ_LANCZOS_SLOW;
@@ -531,9 +559,9 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
 static double eigenvalue_at(const block_lanczos *L, int64_t c)
 {
     const int64_t m = L->blocks * B;
-    const double theta = c < m ? L->theta[m - 1 - c] : 0.0;
+    const double theta = c < m ? L->theta[L->rank[c]] : 0.0;
 
-    return theta > RITZ_NO_DIRECTION * L->theta[m - 1]
+    return fabs(theta) > RITZ_NO_DIRECTION * fabs(L->theta[L->rank[0]])
                ? L->S->sigma + 1.0 / theta
                : HUGE_VAL;
 }
@@ -552,7 +580,6 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
     RITZ_OWN_ARRAY double *values = NULL;
     double R[SQUARE];
     int64_t found = 0;
-    int64_t m = 0;
     bool exhausted = false;
 
     RITZ_CHECK(allocate_lanczos(&L, room));
@@ -566,7 +593,6 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
     memcpy(L.MV, L.MW, (size_t)(L.n * B) * sizeof *L.MV);
     L.blocks = 1;
     RITZ_CHECK(iterate_blocks(&L, R, &found, end));
-    m = L.blocks * B;
     if (*end == RITZ_LANCZOS_SLOW)
         *next = eigenvalue_at(&L, k - 1);
     if (*end != RITZ_LANCZOS_FOUND)
@@ -574,7 +600,7 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
     *next = eigenvalue_at(&L, found);
     RITZ_CHECK_NEW(values, found);
     for (int64_t c = 0; c < found; c++)
-        values[c] = S->sigma + 1.0 / L.theta[m - 1 - c];
+        values[c] = eigenvalue_at(&L, c);
     RITZ_CHECK(extract_vectors(&L, found, R, X));
     RITZ_MOVE(*lambda, values);
     return RITZ_OK;

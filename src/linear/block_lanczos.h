@@ -23,19 +23,19 @@
 #include "linear/general.h"
 
 /**
- * The @p k lowest eigenvalues above sigma, with their vectors, and up to eight
- * more where these have converged, too. That none is missing is not guaranteed:
- * see ritz_inertia_below().
+ * The @p k eigenvalues nearest to sigma, with their vectors, and up to eight
+ * more where these have converged, too. At least S->below of them lie below
+ * sigma. That none is missing is not guaranteed: see ritz_inertia_below().
  *
  * @param[in]  S       K, M and the factor of K - sigma M, which is positive
- *                     definite; M positive semidefinite
+ *                     definite if S->below is 0; M positive semidefinite
  * @param[in]  room    largest number of basis vectors, at least 5 k / 4 + 48;
  *                     0: about 4 k, with which few models need a restart
- * @param[out] X       n x at least k, by ascending eigenvalue, columns
+ * @param[out] X       n x at least k, by distance from sigma, columns
  *                     M-orthonormal; empty unless *end is FOUND
  * @param[out] lambda  eigenvalues of the columns of X, to be freed; NULL unless
  *                     *end is FOUND  [rad^2/s^2]
- * @param[out] next    estimate, from above, of the eigenvalue after the last of
+ * @param[out] next    estimate, from outside, of the eigenvalue after the last of
  *                     X, or of the k-th one if *end is SLOW; HUGE_VAL if there
  *                     is no estimate; not set if *end is EXHAUSTED
  * @param[out] end     FOUND; SLOW after 40 restarts, or if @p room is too small

@@ -23,6 +23,7 @@
 #include "linear/general.h"
 #include "linear/inertia.h"
 #include "linear/residuals.h"
+#include "linear/slices.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -44,6 +45,8 @@ enum {
     POLISHES = 3, /* inverse iterations, most often one */
 };
 
+typedef struct engine engine;
+
 typedef struct search {
     const ritz_span *span;
     double limit;   /* of lambda by frequency, a little above */
@@ -57,6 +60,7 @@ typedef struct search {
     int64_t ask;
     int64_t misses; /* how often the count found more */
     bool all;       /* found holds every finite mode */
+    const engine *engine;
     ritz_pairs found;
 } search;
 
@@ -303,6 +307,8 @@ static ritz_status refine_pairs(search *s, ritz_dense *X, double **lambda)
     if (known)
         RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
     for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
+        if (!s->S.A)
+            RITZ_CHECK(shift_near(s, s->S.sigma));
         RITZ_CHECK(polish_vectors(&s->S, &s->found.Phi, s->found.lambda));
         RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
     }
@@ -328,6 +334,60 @@ static ritz_status shift_elsewhere(search *s, double reach)
     return shift_near(s, sigma);
 }
 
+/* A way to find the s->ask lowest pairs with the factor s->S.A. */
+struct engine {
+    const char *name;
+    /** lambda stays NULL where it is not known; *reach as of
+     * ritz_lanczos_lowest() where *end is SLOW. */
+    ritz_status (*find)(search *s, ritz_dense *X, double **lambda,
+                        double *reach, ritz_lanczos_end *end);
+};
+
+static ritz_status find_by_blocks(search *s, ritz_dense *X, double **lambda,
+                                  double *reach, ritz_lanczos_end *end)
+{
+    return ritz_block_lanczos(&s->S, s->ask, 0, X, lambda, reach, end);
+}
+
+static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
+                                  double *reach, ritz_lanczos_end *end)
+{
+    (void)lambda;
+    return ritz_lanczos_lowest(&s->S, s->ask, X, reach, end);
+}
+
+/*
+ * The factor of the first slice is freed, and with it the order. Where slices
+ * do not end, as with fewer modes than were asked for, one shift is left.
+ */
+static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
+                                  double *reach, ritz_lanczos_end *end)
+{
+    static const engine blocks = {"block Lanczos", find_by_blocks};
+    ritz_slicing slicing = {0};
+    ritz_status status = RITZ_OK;
+
+    *reach = HUGE_VAL;
+    if (!s->order)
+        RITZ_CHECK_COPY(s->order, ritz_factor_order(s->S.A), s->S.K->nrow);
+    status = ritz_slices_lowest(&s->S, s->ask, &slicing, X, lambda, end);
+    if (status == RITZ_OK && *end == RITZ_LANCZOS_FOUND)
+        return RITZ_OK;
+    if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE &&
+        status != RITZ_ERR_SINGULAR)
+        return status;
+    s->engine = &blocks;
+    RITZ_CHECK(shift_near(s, s->S.sigma));
+    return find_by_blocks(s, X, lambda, reach, end);
+}
+
+static const engine engines[] = {
+    [RITZ_EIGEN_AUTO] = {"block Lanczos", find_by_blocks},
+    [RITZ_EIGEN_LANCZOS] = {"block Lanczos", find_by_blocks},
+    [RITZ_EIGEN_ARPACK] = {"ARPACK", find_by_arpack},
+    [RITZ_EIGEN_SLICES] = {"spectrum slices", find_by_slices},
+};
+
 /* Fill s->found; it is empty if sigma or the number asked had to change. */
 static ritz_status find_pairs(search *s)
 {
@@ -342,11 +402,8 @@ static ritz_status find_pairs(search *s)
     s->all = s->all || s->num_heavy <= SMALL || s->ask + 21 > s->num_heavy;
     if (s->all)
         RITZ_CHECK(find_all_modes(&s->S, s->num_heavy, s->heavy, &X));
-    else if (s->span->arpack)
-        RITZ_CHECK(ritz_lanczos_lowest(&s->S, s->ask, &X, &reach, &end));
     else
-        RITZ_CHECK(
-            ritz_block_lanczos(&s->S, s->ask, 0, &X, &lambda, &reach, &end));
+        RITZ_CHECK(s->engine->find(s, &X, &lambda, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
         RITZ_CHECK(refine_pairs(s, &X, &lambda));
     if (end == RITZ_LANCZOS_SLOW)
@@ -565,7 +622,8 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_factor **L, const ritz_span *span,
                               ritz_pairs *out)
 {
-    RITZ_OWN(search) s = {.span = span, .S = {.K = K, .M = M}};
+    RITZ_OWN(search)
+    s = {.span = span, .S = {.K = K, .M = M}, .engine = &engines[span->engine]};
     int64_t end = 0;
 
     if (L)
@@ -577,9 +635,7 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     snprintf(s.found.engine, sizeof s.found.engine, "%s",
-             s.all            ? "condensed LAPACK"
-             : s.span->arpack ? "ARPACK"
-                              : "block Lanczos");
+             s.all ? "condensed LAPACK" : s.engine->name);
     RITZ_MOVE(*out, s.found);
     return RITZ_OK;
 }

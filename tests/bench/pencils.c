@@ -1,6 +1,6 @@
 /*
- * bench_pencils [COUNT [SEARCHES]] - run block Lanczos on COUNT random pencils
- * (10000) of 20 to 150 rows, and ritz_eigen_sparse() on SEARCHES others (60) of
+ * bench_pencils [COUNT [SEARCHES]] - run block Lanczos, and then spectrum slices, on
+ * COUNT random pencils (10000) of 20 to 150 rows, and ritz_eigen_sparse() on SEARCHES others (60) of
  * 650 to 899 rows. Prints a table by kind of pencil: modes missed, wrong
  * counts, largest errors; and a line for each pencil with a fault, with its
  * seed.
@@ -78,7 +78,10 @@ static void run(int64_t count, void (*judge)(uint64_t, pencil_verdict *))
 
 int main(int argc, char **argv)
 {
-    run(argc > 1 ? strtol(argv[1], NULL, 10) : 10000, judge_lanczos);
+    const int64_t count = argc > 1 ? strtol(argv[1], NULL, 10) : 10000;
+
+    run(count, judge_lanczos);
+    run(count, judge_slices);
     run(argc > 2 ? strtol(argv[2], NULL, 10) : 60, judge_large);
     return 0;
 }

@@ -39,7 +39,7 @@ static void check_cube(int64_t edge, double sigma, int64_t k, int64_t room)
     double *lambda = NULL;
     double next = 0.0;
     ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
-    ritz_shifted S = {&K, &M, sigma, NULL};
+    ritz_shifted S = {&K, &M, sigma, NULL, 0};
 
     lattice_new(edge, 0.0, &K, &M);
     assert_ok(ritz_sparse_add(1.0, &K, -sigma, &M, &A));
@@ -86,7 +86,7 @@ static ritz_status search_few_masses(int64_t heavy, int64_t k, ritz_dense *X,
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
-    ritz_shifted S = {&K, &M, 0.0, NULL};
+    ritz_shifted S = {&K, &M, 0.0, NULL, 0};
     double next = 0.0;
 
     lattice_new(9, 0.1, &K, &M);
@@ -144,7 +144,7 @@ static void random_vectors_find_eigenvalues_of_high_multiplicity(void **state)
         val[i] = 1.0 + (double)(i % 3);
     assert_ok(ritz_sparse_from_triplets(DOFS, DOFS, DOFS, row, row, val, &K));
     assert_ok(ritz_factor_spd(&K, &F));
-    assert_ok(ritz_block_lanczos(&(ritz_shifted){&K, &M, 0.0, F}, 50, 0, &X,
+    assert_ok(ritz_block_lanczos(&(ritz_shifted){&K, &M, 0.0, F, 0}, 50, 0, &X,
                                  &lambda, &next, &end));
     assert_int_equal(end, RITZ_LANCZOS_FOUND);
     assert_true(X.ncol >= 50);
@@ -176,7 +176,8 @@ static void no_allocation_failure_leaks(void **state)
     (void)state;
     lattice_new(9, 0.1, &K, &M);
     assert_ok(ritz_factor_spd(&K, &F));
-    assert_survives_every_allocation(find_few(&(ritz_shifted){&K, &M, 0.0, F}));
+    assert_survives_every_allocation(
+        find_few(&(ritz_shifted){&K, &M, 0.0, F, 0}));
 }
 
 static const struct CMUnitTest tests[] = {

@@ -196,34 +196,39 @@ static void bars_have_the_modes_of_their_mesh(void **state)
     }
 }
 
-/* ARPACK, and a search without a proof, find the same modes of a membrane. */
+/* Every engine, and a search without a proof, find the same modes of a
+   membrane. */
 static void other_ways_find_the_same_modes(void **state)
 {
-    const ritz_span span[] = {
-        {.modes = 20},
-        {.modes = 20, .arpack = true},
-        {.modes = 20, .uncounted = true},
-        {.modes = -1, .up_to_hz = 0.06, .uncounted = true},
-        {.modes = -1, .up_to_hz = 0.06},
+    static const struct {
+        ritz_span span;
+        const char *engine;
+    } way[] = {
+        {{.modes = 20}, "block Lanczos"},
+        {{.modes = 20, .engine = RITZ_EIGEN_ARPACK}, "ARPACK"},
+        {{.modes = 20, .uncounted = true}, "block Lanczos"},
+        {{.modes = -1, .up_to_hz = 0.06, .uncounted = true}, "block Lanczos"},
+        {{.modes = -1, .up_to_hz = 0.06}, "block Lanczos"},
+        {{.modes = 240, .engine = RITZ_EIGEN_SLICES}, "spectrum slices"},
+        {{.modes = -1, .up_to_hz = 0.2, .engine = RITZ_EIGEN_SLICES},
+         "spectrum slices"},
     };
     pencil p = membrane(40);
     double *lambda = membrane_eigenvalues(40);
     const double bound = rounding(1600, 8.0);
-    const double limit = ritz_eigen_lambda(0.06);
 
     (void)state;
-    for (size_t k = 0; k < 5; k++) {
+    for (size_t k = 0; k < sizeof way / sizeof *way; k++) {
+        const ritz_span *span = &way[k].span;
         RITZ_OWN(ritz_pairs) P = {0};
-        int64_t count = 20;
+        int64_t count = span->modes;
 
-        if (span[k].modes < 0)
-            for (count = 0; lambda[count] <= limit;)
+        if (span->modes < 0)
+            for (count = 0; lambda[count] <= ritz_eigen_lambda(span->up_to_hz);)
                 count++;
-
-        assert_ok(ritz_eigen_sparse(&p.K, &p.M, &span[k], &P));
-        assert_string_equal(P.engine,
-                            span[k].arpack ? "ARPACK" : "block Lanczos");
-        assert_int_equal(isnan(P.proven_to) != 0, span[k].uncounted);
+        assert_ok(ritz_eigen_sparse(&p.K, &p.M, span, &P));
+        assert_string_equal(P.engine, way[k].engine);
+        assert_int_equal(isnan(P.proven_to) != 0, span->uncounted);
         assert_true(P.Phi.ncol >= count && P.Phi.ncol <= count + 1);
         for (int64_t j = 0; j < P.Phi.ncol; j++)
             assert_near(P.lambda[j], lambda[j], bound);
