@@ -1,10 +1,6 @@
 #include "linear/blas_threads.h"
 
-/* Floating-point operations of a factor below which one thread is used: two
-   wait for each other in every block of columns. Measured with CHOLMOD: factors
-   of 1.3e9 and 1.8e9 operations take as long with two threads as with one, a
-   factor of 2e10 takes two thirds of the time. */
-static const double FACTOR_ALONE = 4e9;
+#include "base/tolerances.h"
 
 /* Null where the BLAS is not OpenBLAS. */
 [[gnu::weak]] void openblas_set_num_threads(int threads);
@@ -33,5 +29,5 @@ int ritz_blas_threads(int threads)
 
 int ritz_blas_threads_for(double operations)
 {
-    return operations < FACTOR_ALONE ? ritz_blas_threads(1) : 0;
+    return operations < RITZ_FACTOR_ALONE ? ritz_blas_threads(1) : 0;
 }

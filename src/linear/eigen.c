@@ -17,17 +17,6 @@
 #include <stdio.h>
 #include <string.h>
 
-ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
-                              int64_t cols_M)
-{
-    RITZ_REFUSE_IF(rows_K != cols_K || rows_M != rows_K || cols_M != rows_K,
-                   RITZ_ERR_ARGUMENT,
-                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
-                   " x %" PRId64,
-                   rows_K, cols_K, rows_M, cols_M);
-    return RITZ_OK;
-}
-
 ritz_status ritz_eigen_count(const ritz_sparse *K, const ritz_sparse *M,
                              double tau, int64_t *out)
 {

@@ -622,3 +622,14 @@ ritz_status ritz_exponential(const ritz_dense *A, double h, int count,
     RITZ_MOVE(*E, made);
     return RITZ_OK;
 }
+
+ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
+                              int64_t cols_M)
+{
+    RITZ_REFUSE_IF(rows_K != cols_K || rows_M != rows_K || cols_M != rows_K,
+                   RITZ_ERR_ARGUMENT,
+                   "stiffness is %" PRId64 " x %" PRId64 " but mass %" PRId64
+                   " x %" PRId64,
+                   rows_K, cols_K, rows_M, cols_M);
+    return RITZ_OK;
+}
