@@ -31,7 +31,8 @@ int main(int argc, char **argv)
         CLI_INT("reweigh", &given.keep, "N", 1, 1e6,
                 "find the output weights that suit a choice of N modes"),
         CLI_TEXT("engine", &given.engine, "WORD",
-                 "Gramians of a component by auto, dense, modal or low-rank"),
+                 "Gramians of a component by auto, dense, modal, low-rank or "
+                 "projection"),
         CLI_TEXT("among-hz", &given.among, "F",
                  "modes up to this frequency, for modal Gramians of a "
                  "component"),

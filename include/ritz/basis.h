@@ -56,9 +56,10 @@ typedef enum ritz_gramian {
 /* How Gramians or modes are computed. */
 typedef enum ritz_engine {
     RITZ_ENGINE_AUTO,
-    RITZ_ENGINE_DENSE, /* this and the next two: Gramians */
+    RITZ_ENGINE_DENSE, /* this and the next three: Gramians */
     RITZ_ENGINE_MODAL,
     RITZ_ENGINE_LOW_RANK,
+    RITZ_ENGINE_PROJECTION,
     RITZ_ENGINE_LANCZOS, /* this and the next: modes, see ritz_span */
     RITZ_ENGINE_ARPACK,
     RITZ_ENGINE_SLICES,
@@ -114,9 +115,9 @@ extern const ritz_choice_word ritz_choice_words[];
  * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
- * "dense", "modal", "low-rank", "lanczos", "arpack" or "slices" for engine,
- * "yes" or "no" for count, "50" for among_hz, "0,10" for band_hz, "dropped" or "static" for
- * remainder, "one" or "two" for sides.
+ * "dense", "modal", "low-rank", "projection", "lanczos", "arpack" or "slices"
+ * for engine, "yes" or "no" for count, "50" for among_hz, "0,10" for band_hz,
+ * "dropped" or "static" for remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
  */
@@ -241,11 +242,13 @@ ritz_status ritz_basis_make(const ritz_method *method,
  * of Z_o' E Z_c. Only the factors are ever formed. Outputs that have a limit
  * are divided by it, so that values of different quantities can be compared.
  *
- * Three engines give them:
+ * Four engines give them:
  *
- *     dense     of first-order form, by SLICOT; any damping; O(n^3)
- *     modal     closed form in modal coordinates; modal damping; O(m^2)
- *     low-rank  ADI on sparse M, D, K; damping that lets Gramians decay
+ *     dense       of first-order form, by SLICOT; any damping; O(n^3)
+ *     modal       closed form in modal coordinates; modal damping; O(m^2)
+ *     low-rank    ADI on sparse M, D, K; damping that lets Gramians decay
+ *     projection  closed form in Krylov vectors of sparse M and K, with a bound
+ *                 of the error; D = a M + b K and discrete dampers
  *
  * [Moore1981], [Hammarling1982]
  */
@@ -258,11 +261,16 @@ typedef struct ritz_gramians {
     ritz_dense Zc;      /* n x k */
     ritz_dense EZc;     /* n x k; {0}: E is the identity */
     ritz_dense Zo;      /* n x l */
+    ritz_dense core[2]; /* of few rows, core[1]'core[0] = Z_o'E Z_c, of which
+                           Hankel values are found cheaply; {0}: not known */
     ritz_dense T, W;    /* n x a, W'E T = I: the states of poles that are not
                         left of the axis (rigid modes: positions and then
                         velocities), decoupled and without Gramian */
     double residual[2]; /* of either equation, |R| / |B B'| and |R| / |C' C|,
-                           where iterated; 0: exact to rounding */
+                           where iterated; 0: exact to rounding; projection:
+                           see ritz_gramians_of_component */
+    double error;       /* projection: no Hankel value errs by more, relative to
+                           the largest; 0: no other engine bounds it */
     char engine[RITZ_NAME_SIZE];     /* "SLICOT SB03OD", "closed form", "ADI" */
     char damping[RITZ_DAMPING_SIZE]; /* of a component, that was used */
 } ritz_gramians;
@@ -320,13 +328,23 @@ typedef struct ritz_gramians_request {
     ritz_engine engine;
     double among_hz;   /* modal: all modes up to here; 0: all there are */
     double band_hz[2]; /* modal: over this band alone; 0, 0: all frequencies */
-    double tolerance;  /* low-rank: of the residual; 0: 1e-10 */
+    bool values_only;  /* projection: leave Zc, EZc and Zo without columns where
+                          Hankel values are all that is wanted */
+    int64_t most;      /* projection: vectors at most; 0: as memory allows */
+    double tolerance;  /* low-rank: of the residual; 0: 1e-10; projection: of
+                          the error of Hankel values; 0: 1e-8 */
 } ritz_gramians_request;
 
 /**
  * Of a component, by the engine that is asked for. `auto` is: modal where all
- * modes can be had and D couples none, dense up to RITZ_STATE_DOFS, otherwise
+ * modes can be had and D couples none, dense up to RITZ_STATE_DOFS; beyond that
+ * projection if D is a M + b K, with or without discrete dampers, otherwise
  * low-rank.
+ *
+ * By projection `residual` is |r| / |F| of both responses, r what the projected
+ * response at the frequency where the error may be largest leaves in the
+ * equation of motion, in the norm of energy r'K^-1 r: no Hankel value errs by
+ * more than the product of |r| of both with the largest amplification there.
  *
  * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
  *         does not fit it; RITZ_ERR_CONVERGENCE if the rank grows too large

@@ -391,6 +391,14 @@
 #define RITZ_BALANCED_DEFECT 0.1
 /* Residual of a low-rank Gramian, if none is asked for. */
 #define RITZ_ADI_TOLERANCE 1e-10
+/* Bound of the error of Hankel values by projection, of the largest value, if
+   none is asked for. */
+#define RITZ_PROJECTION_TOLERANCE 1e-8
+/* Part of its energy that a Krylov vector may lose to those before it without
+   another pass: a hundredth of its length, and two digits of orthogonality. */
+#define RITZ_PROJECTION_KEPT 1e-4
+/* Energy that is new in a Krylov vector, relative: below it there is none. */
+#define RITZ_PROJECTION_DEPENDENT 1e-12
 /* A load without its rigid motion below this part, squared, is rounding: there
    is nothing flexible to iterate on. */
 #define RITZ_ADI_NOTHING 1e-24

@@ -104,7 +104,11 @@ static void add_remark(const ritz_request *request,
     if (!isnan(basis->bound))
         ritz_remark_add(basis, "; ", "error at most %.4g, largest value %.4g",
                         basis->bound, balanced->sigma[0]);
-    if (residual[0] > 0.0 || residual[1] > 0.0)
+    if (gramians->error > 0.0)
+        ritz_remark_add(basis, "; ",
+                        "no Hankel value errs by more than %.1e of the largest",
+                        gramians->error);
+    else if (residual[0] > 0.0 || residual[1] > 0.0)
         ritz_remark_add(basis, "; ", "residuals of Gramians %.1e and %.1e",
                         residual[0], residual[1]);
     if (!request->space)
@@ -198,7 +202,7 @@ const ritz_method ritz_method_balanced = {
     .summary = "balanced states, with a bound of the error before it is made",
     .reference = "Moore1981",
     .when = "damped models for control, few inputs and outputs; state spaces",
-    .cost = "modal O(m^2 r), dense O(n^3); low rank: some solves a state",
+    .cost = "modal O(m^2 r), dense O(n^3); large: solves, see projection",
     .holds = "stability; error at most twice the values left out",
     .fails = "light damping: no value is small; interfaces of other bodies",
     .uses = RITZ_USES_MODES | RITZ_USES_DAMPING | RITZ_USES_ENGINE |

@@ -51,8 +51,8 @@ ritz_status ritz_request_check(const ritz_method *method,
         method->uses & RITZ_USES_COUNT
             ? "%s finds modes: its engines are auto, lanczos, arpack and "
               "slices"
-            : "%s finds Gramians: its engines are auto, dense, modal "
-              "and low-rank",
+            : "%s finds Gramians: its engines are auto, dense, modal, "
+              "low-rank and projection",
         method->name);
     RITZ_REFUSE_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
                    RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",

@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/modes.h"
+#include "gramians/projection.h"
 #include "gramians/space.h"
 #include "linear/general.h"
 #include "linear/split.h"
@@ -70,92 +71,16 @@ ritz_status ritz_states_new(const ritz_component *component,
     return RITZ_OK;
 }
 
-/*
- * States of modes, without the first rigid ones, which are decoupled: q_k is
- * row k * step, q_k' the next row, or row m + k of 2m.
- */
-typedef struct mode_states {
-    const ritz_modal_model *modes;
-    int64_t num_decoupled;
-    int64_t step;        /* 1: all q before all q'; 2: each q before its q' */
-    const double *scale; /* m, rows are scale q and q'; NULL: q */
-} mode_states;
-
-/* Which vectors are lifted from states of modes to x = [u; u'], and by what. */
-typedef enum lift_kind {
-    LIFT_RIGHT,   /* [Phi S^-1 0; 0 Phi], of Z_c and T */
-    LIFT_MOMENTA, /* [Phi S^-1 0; 0 M Phi], of E Z_c */
-    LIFT_LEFT,    /* [M Phi S 0; 0 Phi], of Z_o and W */
-} lift_kind;
-
-/* Rows first, first + step, ... of Z, times the scale or over it; NULL: 1. */
-static ritz_status pick_rows(const ritz_dense *Z, int64_t first, int64_t step,
-                             const double *scale, bool over, ritz_dense *out)
-{
-    int64_t m = Z->nrow / 2;
-
-    RITZ_CHECK(ritz_dense_new(m, Z->ncol, out));
-    for (int64_t j = 0; j < Z->ncol; j++) {
-        const double *from = ritz_dense_col(Z, j) + first;
-        double *to = ritz_dense_col(out, j);
-
-        for (int64_t k = 0; k < m; k++) {
-            double s = scale ? scale[k] : 1.0;
-
-            to[k] = over ? from[k * step] / s : from[k * step] * s;
-        }
-    }
-    return RITZ_OK;
-}
-
-/*
- * The vectors Z of states as those of x = [u; u'].
- *
- * @param[in] rigid  behind the same of the decoupled rigid modes, positions and
- *                   then velocities
- */
-static ritz_status lift_states(const mode_states *states, lift_kind kind,
-                               bool rigid, const ritz_dense *Z, ritz_dense *out)
-{
-    const ritz_modal_model *modes = states->modes;
-    const ritz_dense *const halves[] = {
-        kind == LIFT_LEFT ? &modes->MPhi : &modes->Phi,
-        kind == LIFT_MOMENTA ? &modes->MPhi : &modes->Phi};
-    int64_t n = modes->num_dofs, a = states->num_decoupled;
-    int64_t r = rigid ? a : 0;
-    RITZ_OWN(ritz_dense) x = {0};
-
-    RITZ_CHECK(ritz_dense_new(2 * n, 2 * r + Z->ncol, &x));
-    for (int half = 0; half < 2; half++) {
-        const ritz_dense first = ritz_dense_part(halves[half], 0, r);
-        const ritz_dense Phi =
-            ritz_dense_part(halves[half], a, modes->count - a);
-        int64_t row = states->step == 1 ? half * (Z->nrow / 2) : half;
-        RITZ_OWN(ritz_dense) part = {0}, lifted = {0};
-
-        ritz_dense_put(&first, half * n, half * r, &x);
-        if (Z->ncol == 0)
-            continue;
-        RITZ_CHECK(pick_rows(Z, row, states->step,
-                             half == 0 ? states->scale : NULL,
-                             kind != LIFT_LEFT, &part));
-        RITZ_CHECK(ritz_dense_mul(&Phi, &part, &lifted));
-        ritz_dense_put(&lifted, half * n, 2 * r, &x);
-    }
-    RITZ_MOVE(*out, x);
-    return RITZ_OK;
-}
-
 ritz_status ritz_states_basis(const ritz_states *states, const ritz_dense *T,
                               const ritz_dense *W, ritz_basis *out)
 {
-    const mode_states layout = {&states->modes, states->num_decoupled, 1,
-                                states->scale};
+    const ritz_mode_states layout = {&states->modes, states->num_decoupled, 1,
+                                     states->scale};
     int64_t r = 2 * states->num_decoupled;
     RITZ_OWN(ritz_basis) basis = {.states = true};
 
-    RITZ_CHECK(lift_states(&layout, LIFT_RIGHT, true, T, &basis.T));
-    RITZ_CHECK(lift_states(&layout, LIFT_LEFT, true, W, &basis.W));
+    RITZ_CHECK(ritz_states_lift(&layout, RITZ_LIFT_RIGHT, true, T, &basis.T));
+    RITZ_CHECK(ritz_states_lift(&layout, RITZ_LIFT_LEFT, true, W, &basis.W));
     RITZ_CHECK(ritz_columns_new(basis.T.ncol, &basis.columns));
     for (int64_t j = 0; j < basis.T.ncol; j++)
         basis.columns.kind[j] = j < r ? RITZ_COLUMN_RIGID : RITZ_COLUMN_STATE;
@@ -178,32 +103,6 @@ void ritz_states_free(ritz_states *states)
 }
 
 /*
- * Gramians of modes as those of x = [u; u'] of the component,
- *
- *     Z_c := [Phi 0; 0 Phi] Z_c,    Z_o := [M Phi 0; 0 Phi] Z_o
- *
- * and T and W likewise, behind the decoupled rigid modes.
- *
- * @param[in,out] gramians  in states; without E
- */
-static ritz_status lift_gramians(const mode_states *states,
-                                 ritz_gramians *gramians)
-{
-    const ritz_dense *Zc = &gramians->Zc, *Zo = &gramians->Zo;
-    RITZ_OWN(ritz_gramians) x = *gramians;
-
-    x.Zc = x.Zo = x.T = x.W = (ritz_dense){0};
-    RITZ_CHECK(lift_states(states, LIFT_RIGHT, false, Zc, &x.Zc));
-    RITZ_CHECK(lift_states(states, LIFT_MOMENTA, false, Zc, &x.EZc));
-    RITZ_CHECK(lift_states(states, LIFT_LEFT, false, Zo, &x.Zo));
-    RITZ_CHECK(lift_states(states, LIFT_RIGHT, true, &gramians->T, &x.T));
-    RITZ_CHECK(lift_states(states, LIFT_LEFT, true, &gramians->W, &x.W));
-    ritz_gramians_free(gramians);
-    RITZ_MOVE(*gramians, x);
-    return RITZ_OK;
-}
-
-/*
  * By SLICOT, in states z = [S q; q'] of the modes. Rigid modes that damping
  * does not couple to others are decoupled first; whatever else does not decay
  * is split off by its poles.
@@ -214,7 +113,7 @@ static ritz_status find_dense(const ritz_gramians_request *request,
     RITZ_OWN(ritz_states) states = {0};
     RITZ_OWN(ritz_state_space) space = {0};
     RITZ_OWN(ritz_gramians) gramians = {0};
-    mode_states layout = {.step = 1};
+    ritz_mode_states layout = {.step = 1};
 
     RITZ_CHECK(
         ritz_states_new(request->component, &request->damping, 0.0, &states));
@@ -233,7 +132,7 @@ static ritz_status find_dense(const ritz_gramians_request *request,
     layout.modes = &states.modes;
     layout.num_decoupled = states.num_decoupled;
     layout.scale = states.scale;
-    RITZ_CHECK(lift_gramians(&layout, &gramians));
+    RITZ_CHECK(ritz_gramians_lift(&layout, &gramians));
     snprintf(gramians.damping, sizeof gramians.damping, "%s", states.damping);
     RITZ_MOVE(*out, gramians);
     return RITZ_OK;
@@ -304,7 +203,7 @@ static ritz_status find_closed_form(const ritz_gramians_request *request,
     RITZ_OWN(ritz_modal_model) modes = {0};
     RITZ_OWN(ritz_modal) modal = {0};
     RITZ_OWN(ritz_gramians) gramians = {.engine = "closed form"};
-    mode_states layout = {.modes = &modes, .step = 2};
+    ritz_mode_states layout = {.modes = &modes, .step = 2};
 
     RITZ_CHECK(ritz_gramians_modes(request, &modes));
     if (coupled && (*coupled = ritz_modes_coupled(&modes)))
@@ -315,7 +214,7 @@ static ritz_status find_closed_form(const ritz_gramians_request *request,
                                    &modal));
     RITZ_CHECK(ritz_modal_factors(&modal, band, &gramians.Zc, &gramians.Zo));
     layout.num_decoupled = modes.num_rigid;
-    RITZ_CHECK(lift_gramians(&layout, &gramians));
+    RITZ_CHECK(ritz_gramians_lift(&layout, &gramians));
     ritz_damping_print(&request->damping, gramians.damping);
     RITZ_MOVE(*out, gramians);
     return RITZ_OK;
@@ -335,6 +234,17 @@ typedef struct engine_row {
     bool band, among;
 } engine_row;
 
+/* Of a large component: by projection where the form of D allows it. */
+static ritz_status find_large(const ritz_gramians_request *request,
+                              ritz_gramians *out)
+{
+    bool fits = false;
+
+    RITZ_CHECK(ritz_projection_fits(request, &fits));
+    return fits ? ritz_gramians_projection(request, out)
+                : ritz_gramians_low_rank(request, out);
+}
+
 /* Closed form where damping allows, what takes any damping elsewhere. */
 static ritz_status find_any(const ritz_gramians_request *request,
                             ritz_gramians *out)
@@ -345,11 +255,10 @@ static ritz_status find_any(const ritz_gramians_request *request,
     if (request->band_hz[1] > 0.0)
         return find_modal(request, out);
     if (large && !(request->among_hz > 0.0))
-        return ritz_gramians_low_rank(request, out);
+        return find_large(request, out);
     RITZ_CHECK(find_closed_form(request, &coupled, out));
     if (coupled)
-        RITZ_CHECK(large ? ritz_gramians_low_rank(request, out)
-                         : find_dense(request, out));
+        RITZ_CHECK(large ? find_large(request, out) : find_dense(request, out));
     return RITZ_OK;
 }
 
@@ -358,14 +267,16 @@ static const engine_row engines[] = {
     [RITZ_ENGINE_DENSE] = {"dense", find_dense, false, false},
     [RITZ_ENGINE_MODAL] = {"modal", find_modal, true, true},
     [RITZ_ENGINE_LOW_RANK] = {"low-rank", ritz_gramians_low_rank, false, false},
+    [RITZ_ENGINE_PROJECTION] = {"projection", ritz_gramians_projection, false,
+                                false},
 };
 
 /* The enum has engines that compute modes, too; these compute no Gramians. */
 static ritz_status refuse_modes(ritz_engine engine)
 {
-    RITZ_REFUSE_IF(engine > RITZ_ENGINE_LOW_RANK, RITZ_ERR_ARGUMENT,
-                   "Gramians are found by the engines auto, dense, modal and "
-                   "low-rank");
+    RITZ_REFUSE_IF(engine > RITZ_ENGINE_PROJECTION, RITZ_ERR_ARGUMENT,
+                   "Gramians are found by the engines auto, dense, modal, "
+                   "low-rank and projection");
     return RITZ_OK;
 }
 
@@ -478,7 +389,9 @@ ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
 {
     RITZ_CHECK(check_space(model));
     RITZ_CHECK(refuse_modes(engine));
-    RITZ_REFUSE_IF(engine == RITZ_ENGINE_MODAL, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(engine == RITZ_ENGINE_MODAL ||
+                       engine == RITZ_ENGINE_PROJECTION,
+                   RITZ_ERR_ARGUMENT,
                    "a state space has no modes: its engines are dense and "
                    "low-rank");
     RITZ_REFUSE_IF(band_hz && engine != RITZ_ENGINE_AUTO, RITZ_ERR_ARGUMENT,
@@ -510,14 +423,23 @@ static const ritz_dense *descriptor_times(const ritz_gramians *gramians)
     return gramians->EZc.val ? &gramians->EZc : &gramians->Zc;
 }
 
+/* Singular values and vectors of Z_o' E Z_c. */
+static ritz_status find_product(const ritz_gramians *gramians, bool vectors,
+                                ritz_product_svd *out)
+{
+    if (gramians->core[1].val)
+        return ritz_product_svd_new(&gramians->core[1], &gramians->core[0],
+                                    vectors, out);
+    return ritz_product_svd_new(&gramians->Zo, descriptor_times(gramians),
+                                vectors, out);
+}
+
 ritz_status ritz_gramians_hankel(const ritz_gramians *gramians, int64_t *count,
                                  double **sigma)
 {
     RITZ_OWN(ritz_product_svd) svd = {0};
 
-    RITZ_CHECK_IN("Hankel values",
-                  ritz_product_svd_new(
-                      &gramians->Zo, descriptor_times(gramians), false, &svd));
+    RITZ_CHECK_IN("Hankel values", find_product(gramians, false, &svd));
     *count = svd.count;
     RITZ_MOVE(*sigma, svd.s);
     return RITZ_OK;
@@ -632,6 +554,8 @@ static ritz_status project_balanced(const ritz_gramians *gramians,
     out->count = count_close(&G);
     out->kept = cut_values(out->count, svd->s, order, tolerance);
     out->bound = ritz_hankel_bound(out->count, svd->s, out->kept);
+    if (out->count > 0)
+        out->bound += gramians->error * svd->s[0];
     RITZ_CHECK(ritz_dense_columns(&T, 0, out->kept, &out->T));
     return correct_sides(&W, &G, out->kept, &out->W);
 }
@@ -646,23 +570,11 @@ ritz_status ritz_gramians_balance(const ritz_gramians *gramians, int64_t order,
                    "a tolerance of Hankel values is %g, it must be at least 0 "
                    "and below 1",
                    tolerance);
-    RITZ_CHECK_IN("balancing",
-                  ritz_product_svd_new(&gramians->Zo,
-                                       descriptor_times(gramians), true, &svd));
+    RITZ_CHECK_IN("balancing", find_product(gramians, true, &svd));
     RITZ_CHECK(project_balanced(gramians, &svd, order, tolerance, &balanced));
     RITZ_MOVE(balanced.sigma, svd.s);
     RITZ_MOVE(*out, balanced);
     return RITZ_OK;
-}
-
-void ritz_gramians_free(ritz_gramians *gramians)
-{
-    ritz_dense_free(&gramians->Zc);
-    ritz_dense_free(&gramians->EZc);
-    ritz_dense_free(&gramians->Zo);
-    ritz_dense_free(&gramians->T);
-    ritz_dense_free(&gramians->W);
-    *gramians = (ritz_gramians){0};
 }
 
 void ritz_balanced_free(ritz_balanced *balanced)

@@ -138,8 +138,9 @@ static ritz_status solve_free(const ritz_low_rank_model *model, ritz_factor *F,
                                    &M_rr));
     status = ritz_factor_spd(&M_rr, &mass);
     RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
-                   "M is singular, and not by dofs without mass alone: engine "
-                   "'low-rank' needs mass for every other motion");
+                   "M is singular, and not by dofs without mass alone: engines "
+                   "'projection' and 'low-rank' need mass for every other "
+                   "motion");
     RITZ_CHECK(status);
     if (ritz_dense_max(X) == 0.0)
         return RITZ_OK;
@@ -184,6 +185,20 @@ double ritz_low_rank_unit(const ritz_low_rank_model *model, int side, int64_t i)
     return i < n ? unit_above(model, side, i) : unit_below(model, i - n);
 }
 
+void ritz_low_rank_weigh(const ritz_low_rank_model *model, int side,
+                         ritz_dense W[static RITZ_HALVES])
+{
+    for (int64_t i = 0; i < model->n; i++) {
+        double above = unit_above(model, side, i);
+        double m = unit_below(model, i);
+
+        for (int64_t j = 0; j < W[0].ncol; j++) {
+            ritz_dense_col(&W[RITZ_ABOVE], j)[i] *= above;
+            ritz_dense_col(&W[RITZ_BELOW], j)[i] *= m > 0.0 ? 1.0 / m : 0.0;
+        }
+    }
+}
+
 ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
                                double *out)
 {
@@ -195,15 +210,7 @@ ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
     RITZ_CHECK_NEW(e, p);
     RITZ_CHECK(ritz_dense_copy(&W[RITZ_ABOVE], &S[RITZ_ABOVE]));
     RITZ_CHECK(ritz_dense_copy(&W[RITZ_BELOW], &S[RITZ_BELOW]));
-    for (int64_t i = 0; i < model->n; i++) {
-        double above = unit_above(model, side, i);
-        double m = unit_below(model, i);
-
-        for (int64_t j = 0; j < p; j++) {
-            ritz_dense_col(&S[RITZ_ABOVE], j)[i] *= above;
-            ritz_dense_col(&S[RITZ_BELOW], j)[i] *= m > 0.0 ? 1.0 / m : 0.0;
-        }
-    }
+    ritz_low_rank_weigh(model, side, S);
     for (int half = 0; half < RITZ_HALVES; half++)
         RITZ_CHECK(ritz_dense_mul_tn(&S[half], &S[half], &G[half]));
     ritz_dense_add(1.0, &G[1], &G[0]);
@@ -260,8 +267,9 @@ static ritz_status collect_matrices(const ritz_gramians_request *request,
     RITZ_REFUSE_IF(damping->kind != RITZ_DAMPING_NONE &&
                        !ritz_damping_is_rayleigh(damping),
                    RITZ_ERR_ARGUMENT,
-                   "ratios of modes make no sparse matrix D, which engine "
-                   "'low-rank' needs: give rayleigh damping or a fit, or take "
+                   "ratios of modes make no sparse matrix D, which engines "
+                   "'projection' and 'low-rank' need: give rayleigh damping or "
+                   "a fit, or take "
                    "engine 'modal'");
     model->n = component->num_dofs;
     model->M = component->M;
@@ -309,6 +317,7 @@ static ritz_status split_dofs(const ritz_component *component,
 /* Stiffness and mass of each dof: the units in which residuals are measured. */
 static ritz_status weigh_dofs(double lambda, ritz_low_rank_model *model)
 {
+    model->lowest = lambda;
     RITZ_CHECK_NEW(model->stiff, model->n);
     RITZ_CHECK_NEW(model->mass, model->n);
     for (int64_t j = 0; j < model->n; j++) {
@@ -331,8 +340,9 @@ static ritz_status check_decoupled(const ritz_sparse *D,
                                                ritz_sparse_max(D) *
                                                ritz_dense_max(&model->Phi),
                    RITZ_ERR_ARGUMENT,
-                   "damping couples rigid motion to deformation, which engine "
-                   "'low-rank' cannot decouple: hold the component, or take "
+                   "damping couples rigid motion to deformation, which engines "
+                   "'projection' and 'low-rank' cannot decouple: hold the "
+                   "component, or take "
                    "engine 'dense'");
     return RITZ_OK;
 }

@@ -29,6 +29,7 @@ typedef struct ritz_low_rank_model {
     ritz_dense W[RITZ_SIDES][RITZ_HALVES]; /* n x inputs, n x outputs */
     double whole[RITZ_SIDES];              /* |W'W| with rigid motion */
     double *stiff, *mass;                  /* n, what a dof has of each */
+    double lowest; /* eigenvalue of the flexible modes; 1 if there is none */
     int64_t num_starts;
     double _Complex start[RITZ_LOW_RANK_STARTS];
 } ritz_low_rank_model;
@@ -41,7 +42,11 @@ void ritz_low_rank_model_free(ritz_low_rank_model *model);
 ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
                                double *out);
 
-/** What scales row @p i of 2n of a factor, or of W, to units of energy. */
+/** Scale both halves of W, or of a residual, to units of energy. */
+void ritz_low_rank_weigh(const ritz_low_rank_model *model, int side,
+                         ritz_dense W[static RITZ_HALVES]);
+
+/** What scales row @p i of 2n of a factor to units of energy. */
 double ritz_low_rank_unit(const ritz_low_rank_model *model, int side,
                           int64_t i);
 

@@ -228,4 +228,60 @@ void ritz_states_free(ritz_states *states);
 ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
                                    ritz_gramians *out);
 
+/**
+ * Factors of both Gramians of a large component by projection on Krylov vectors
+ * of M and K, whose number grows until a bound of the error of every Hankel
+ * value is below the tolerance times the largest (`error` of the result). Each
+ * Gramian alone is less accurate than the Hankel values.
+ *
+ * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank, and if D is not
+ *         a M + b K apart from discrete dampers; RITZ_ERR_CONVERGENCE if the
+ *         space would take more than RITZ_FACTOR_BYTES
+ * @cost   a factor of K, its two lowest modes, some 100 to 1000 vectors
+ */
+ritz_status ritz_gramians_projection(const ritz_gramians_request *request,
+                                     ritz_gramians *out);
+
+/*
+ * States of modes, without the first rigid ones, which are decoupled: q_k is
+ * row k * step, q_k' the next row, or row m + k of 2m.
+ */
+typedef struct ritz_mode_states {
+    const ritz_modal_model *modes;
+    int64_t num_decoupled;
+    int64_t step;        /* 1: all q before all q'; 2: each q before its q' */
+    const double *scale; /* m, rows are scale q and q'; NULL: q */
+} ritz_mode_states;
+
+/* Which vectors are lifted from states of modes to x = [u; u'], and by what. */
+typedef enum ritz_lift_kind {
+    RITZ_LIFT_RIGHT,   /* [Phi S^-1 0; 0 Phi], of Z_c and T */
+    RITZ_LIFT_MOMENTA, /* [Phi S^-1 0; 0 M Phi], of E Z_c */
+    RITZ_LIFT_LEFT,    /* [M Phi S 0; 0 Phi], of Z_o and W */
+} ritz_lift_kind;
+
+/**
+ * The vectors Z of states as those of x = [u; u'].
+ *
+ * @param[in] rigid  behind the same of the decoupled rigid modes, positions and
+ *                   then velocities
+ */
+ritz_status ritz_states_lift(const ritz_mode_states *states,
+                             ritz_lift_kind kind, bool rigid,
+                             const ritz_dense *Z, ritz_dense *out);
+
+/**
+ * Gramians of modes as those of x = [u; u'] of the component,
+ *
+ *     Z_c := [Phi 0; 0 Phi] Z_c,    Z_o := [M Phi 0; 0 Phi] Z_o
+ *
+ * and T and W likewise, behind the decoupled rigid modes; the factors as they
+ * were become the core. If there are only rigid modes, Z_c and Z_o get no
+ * columns.
+ *
+ * @param[in,out] gramians  in states; without E
+ */
+ritz_status ritz_gramians_lift(const ritz_mode_states *states,
+                               ritz_gramians *gramians);
+
 #endif

@@ -5,6 +5,7 @@
 #include <cblas.h>
 #include <complex.h>
 #include <float.h>
+#include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>

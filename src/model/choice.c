@@ -75,9 +75,13 @@ static const char gramians[][16] = {
 };
 static const char operators[][16] = {"state", "inverse"};
 static const char engines[][16] = {
-    [RITZ_ENGINE_AUTO] = "auto",       [RITZ_ENGINE_DENSE] = "dense",
-    [RITZ_ENGINE_MODAL] = "modal",     [RITZ_ENGINE_LOW_RANK] = "low-rank",
-    [RITZ_ENGINE_LANCZOS] = "lanczos", [RITZ_ENGINE_ARPACK] = "arpack",
+    [RITZ_ENGINE_AUTO] = "auto",
+    [RITZ_ENGINE_DENSE] = "dense",
+    [RITZ_ENGINE_MODAL] = "modal",
+    [RITZ_ENGINE_LOW_RANK] = "low-rank",
+    [RITZ_ENGINE_PROJECTION] = "projection",
+    [RITZ_ENGINE_LANCZOS] = "lanczos",
+    [RITZ_ENGINE_ARPACK] = "arpack",
     [RITZ_ENGINE_SLICES] = "slices",
 };
 static const char remainders[][16] = {"dropped", "static"};
@@ -109,8 +113,8 @@ const ritz_choice_word ritz_choice_words[] = {
     {"damping", "TEXT", "'modal 0.01', instead of the component's own",
      RITZ_USES_DAMPING, RITZ_CHOICE_DAMPING, FIELD(damping), NULL, NULL, 0},
     {"engine", "WORD",
-     "how Gramians are computed: auto, dense, modal, low-rank; how modes "
-     "are: auto, lanczos, arpack, slices",
+     "how Gramians are computed: auto, dense, modal, low-rank, "
+     "projection; how modes are: auto, lanczos, arpack, slices",
      RITZ_USES_ENGINE, RITZ_CHOICE_ENUM, FIELD(engine), "engine",
      WORDS(engines)},
     {"among_hz", "F", "modal Gramians: of the modes up to this frequency",

@@ -103,29 +103,53 @@ static int64_t count_beyond(int64_t n, const column_products *p, proportion by,
     return count;
 }
 
-ritz_status ritz_damping_beyond(const ritz_component *component, int64_t *count,
-                                int64_t *first)
+/* a and b that fit the most columns, and the columns that they do not fit. */
+static ritz_status fit_columns(const ritz_component *component, proportion *by,
+                               int64_t *count, int64_t *first)
 {
     enum { TRIED = 32 };
     const int64_t n = component->num_dofs;
     RITZ_OWN_ARRAY column_products *products = NULL;
 
+    *by = (proportion){0.0, 0.0};
     *count = 0;
     *first = -1;
     if (!component->D.colptr)
         return RITZ_OK;
     RITZ_CHECK_NEW(products, n);
     RITZ_CHECK(multiply_columns(component, products));
-    *count = count_beyond(n, products, (proportion){0.0, 0.0}, first);
+    *count = count_beyond(n, products, *by, first);
     for (int64_t t = 0; t < TRIED; t++) {
-        const proportion by = fit_column(&products[t * (n - 1) / TRIED]);
+        const proportion tried = fit_column(&products[t * (n - 1) / TRIED]);
         int64_t at = -1;
-        const int64_t beyond = count_beyond(n, products, by, &at);
+        const int64_t beyond = count_beyond(n, products, tried, &at);
 
         if (beyond < *count) {
+            *by = tried;
             *count = beyond;
             *first = at;
         }
     }
+    return RITZ_OK;
+}
+
+ritz_status ritz_damping_beyond(const ritz_component *component, int64_t *count,
+                                int64_t *first)
+{
+    proportion by = {0.0, 0.0};
+
+    return fit_columns(component, &by, count, first);
+}
+
+ritz_status ritz_damping_proportion(const ritz_component *component, double *a,
+                                    double *b, bool *whole)
+{
+    proportion by = {0.0, 0.0};
+    int64_t count = 0, first = -1;
+
+    RITZ_CHECK(fit_columns(component, &by, &count, &first));
+    *a = by.a;
+    *b = by.b;
+    *whole = count == 0;
     return RITZ_OK;
 }

@@ -15,4 +15,11 @@
 ritz_status ritz_damping_beyond(const ritz_component *component, int64_t *count,
                                 int64_t *first);
 
+/**
+ * The a and b on which most columns of D agree, 0 without a D; *whole: all of
+ * them do, to six digits.
+ */
+ritz_status ritz_damping_proportion(const ritz_component *component, double *a,
+                                    double *b, bool *whole);
+
 #endif

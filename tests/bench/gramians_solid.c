@@ -1,9 +1,11 @@
 /*
  * gramians_solid COMPONENT DAMPING [TOLERANCE [AMONG_HZ]] - time and memory of
  * the low-rank engine on one component, and its leading Hankel values beside
- * those of the modal engine, of modes up to a frequency. A table, no verdict.
+ * those by projection, where damping allows it, and of the modal engine, of
+ * modes up to a frequency. A table, no verdict.
  */
 #include "../unit/try.h"
+#include "gramians/projection.h"
 
 #include <ritz/base.h>
 #include <ritz/basis.h>
@@ -39,8 +41,9 @@ static void show(const char *what, int64_t done, int64_t total)
 {
     (void)total;
     if (done % 10 == 0)
-        fprintf(stderr, "%7.1f s  %s %" PRId64 "\n",
-                seconds(CLOCK_MONOTONIC) - began, what, done);
+        fprintf(stderr, "%7.1f s (%.1f of processors)  %s %" PRId64 "\n",
+                seconds(CLOCK_MONOTONIC) - began,
+                seconds(CLOCK_PROCESS_CPUTIME_ID), what, done);
 }
 
 /* One engine: its factors, time and values. */
@@ -56,11 +59,11 @@ static ritz_status measure(const ritz_gramians_request *request,
     RITZ_TRY(ritz_gramians_hankel(&gramians, count, sigma));
     printf("%-10s %8.1f s (%.1f of processors) %8.0f MB  %s\n"
            "           rank %" PRId64 " and %" PRId64
-           ", residuals %.1e and %.1e, %" PRId64 " values\n",
+           ", residuals %.1e and %.1e, error %.1e, %" PRId64 " values\n",
            name, seconds(CLOCK_MONOTONIC) - start,
            seconds(CLOCK_PROCESS_CPUTIME_ID) - worked, peak_megabytes(),
            gramians.engine, gramians.Zc.ncol, gramians.Zo.ncol,
-           gramians.residual[0], gramians.residual[1], *count);
+           gramians.residual[0], gramians.residual[1], gramians.error, *count);
     fflush(stdout);
 done:
     ritz_gramians_free(&gramians);
@@ -73,13 +76,19 @@ static ritz_status bench(int argc, char **argv)
     ritz_component component = {0};
     ritz_gramians_request request = {.component = &component,
                                      .engine = RITZ_ENGINE_LOW_RANK};
-    int64_t count[2] = {0};
-    double *sigma[2] = {0};
+    int64_t count[3] = {0};
+    double *sigma[3] = {0};
+    bool fits = false;
 
     RITZ_TRY(ritz_container_read_component(argv[1], &component));
     RITZ_TRY(ritz_damping_parse(argv[2], &request.damping));
     request.tolerance = argc > 3 ? strtod(argv[3], NULL) : 0.0;
     printf("%" PRId64 " dofs, %s\n", component.num_dofs, argv[2]);
+    RITZ_TRY(ritz_projection_fits(&request, &fits));
+    request.engine = RITZ_ENGINE_PROJECTION;
+    if (fits)
+        RITZ_TRY(measure(&request, "projection", &count[2], &sigma[2]));
+    request.engine = RITZ_ENGINE_LOW_RANK;
     RITZ_TRY(measure(&request, "low-rank", &count[0], &sigma[0]));
     request.tolerance = 0.0;
     request.engine = RITZ_ENGINE_MODAL;
@@ -87,7 +96,8 @@ static ritz_status bench(int argc, char **argv)
     if (argc > 4)
         RITZ_TRY(measure(&request, "modal", &count[1], &sigma[1]));
     for (int64_t k = 0; k < SHOWN && k < count[0]; k++)
-        printf("%4" PRId64 "  %.9e  %.9e\n", k + 1, sigma[0][k],
+        printf("%4" PRId64 "  %.9e  %.9e  %.9e\n", k + 1, sigma[0][k],
+               k < count[2] ? sigma[2][k] : 0.0,
                k < count[1] ? sigma[1][k] : 0.0);
     for (int64_t k = SHOWN; k < count[0]; k++)
         if (getenv("GRAMIANS_ALL"))
@@ -95,6 +105,7 @@ static ritz_status bench(int argc, char **argv)
 done:
     free(sigma[0]);
     free(sigma[1]);
+    free(sigma[2]);
     ritz_component_free(&component);
     return status;
 }

@@ -23,7 +23,7 @@ json 0 ritz-verify chain.h5 static-small.h5 -o verified.h5
 holds '  keeps the static gain, and the bound' '[e["value"] < limit
     for name, limit in [("static-gain-relative", 1e-12), ("h-infinity", 121.2)]
     for e in j["measures"] if e["name"] == name] == [True, True]'
-for engine in dense low-rank; do
+for engine in dense low-rank projection; do
     expect 0 'error at most 121.2, largest value 424.3' ritz-basis balanced --modes 4 \
         --engine $engine chain.h5 -o $engine.h5
 done

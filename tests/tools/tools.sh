@@ -156,7 +156,8 @@ expect 0 '7 columns for 21 dofs' ritz-basis craig-bampton --modes 5 --count no \
 expect 0 'modes 5 engine lanczos count no' ritz-info uncounted.h5
 expect 2 'its engines are auto, lanczos, arpack and slices' ritz-basis \
     craig-bampton --modes 5 --engine modal bar.h5 -o x.h5
-expect 2 'its engines are auto, dense, modal and low-rank' ritz-basis balanced \
+expect 2 'its engines are auto, dense, modal, low-rank and projection' \
+    ritz-basis balanced \
     --modes 5 --engine arpack bar.h5 -o x.h5
 expect 2 "guyan has no 'count' to choose" ritz-basis guyan --count no bar.h5 \
     -o x.h5

@@ -321,7 +321,8 @@ static ritz_status make_gramians(const rank_options *given, const model *m,
 {
     ritz_gramians_request request = {.component = &m->component,
                                      .engine = given->choice.engine,
-                                     .among_hz = given->choice.among_hz};
+                                     .among_hz = given->choice.among_hz,
+                                     .values_only = true};
 
     if (m->kind == MODEL_STATES) {
         RITZ_REFUSE_IF(given->damping.count > 0 ||
@@ -358,6 +359,20 @@ static ritz_status check_values(const rank_options *given, const model *m)
     return RITZ_OK;
 }
 
+static void say_accuracy(cli_run *run, const ritz_gramians *gramians)
+{
+    const double *residual = gramians->residual;
+
+    if (gramians->error > 0.0)
+        cli_say(run,
+                "no Hankel value errs by more than %.1e of the largest "
+                "(residuals of the responses %.1e and %.1e)",
+                gramians->error, residual[0], residual[1]);
+    else if (residual[0] > 0.0 || residual[1] > 0.0)
+        cli_say(run, "residuals of both Gramians %.1e and %.1e", residual[0],
+                residual[1]);
+}
+
 static ritz_status rank_values(cli_run *run, const rank_options *given,
                                model *m, rank_result *out)
 {
@@ -387,12 +402,12 @@ static ritz_status rank_values(cli_run *run, const rank_options *given,
                 "%ld states that are not damped, or grow, have none and stand "
                 "apart",
                 gramians.T.ncol);
-    if (gramians.residual[0] > 0.0 || gramians.residual[1] > 0.0)
-        cli_say(run, "residuals of both Gramians %.1e and %.1e",
-                gramians.residual[0], gramians.residual[1]);
+    say_accuracy(run, &gramians);
     rankings_say(run, r, NULL, 40);
     set_groups(run, out);
     sink_set(run, "engine", "%s", gramians.engine);
+    if (gramians.error > 0.0)
+        sink_set(run, "error", "%g", gramians.error);
     return RITZ_OK;
 }
 

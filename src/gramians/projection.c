@@ -1,0 +1,181 @@
+/*
+ * Gramians of a large component by projection: Krylov vectors of static
+ * responses first, the small Lyapunov equations in closed form next, and what
+ * they leave in the large model until it is below the tolerance.
+ *
+ *     D = a M + b K:   (K + s D + s^2 M)^-1 = (K + m(s) M)^-1 / (1 + b s),
+ *     m(s) = (s^2 + a s) / (1 + b s),
+ *
+ * so that all responses are functions of the one pencil (K, M), and one real
+ * factor makes a space of them. It takes some vectors for each mode that stands
+ * alone, as its Ritz value must settle, and few for those that overlap.
+ *
+ * The transfer functions of the projected model are within a bound of those of
+ * the large one (projection_error.c), and so are its Hankel values. The space
+ * grows until the bound is below the tolerance times the largest of them.
+ */
+#include "gramians/projection.h"
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "linear/general.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What has been found so far. */
+typedef struct projection_state {
+    ritz_projection_model model;
+    ritz_projection_space space;
+    ritz_projected projected;
+    ritz_gramians small; /* factors in states of the modal model */
+    double sigma;        /* largest Hankel value as far as known; 0: unknown */
+    ritz_projected_error error;
+    double tolerance;
+} projection_state;
+
+static void projection_state_free(projection_state *state)
+{
+    ritz_projected_free(&state->projected);
+    ritz_projection_space_free(&state->space);
+    ritz_projection_model_free(&state->model);
+    ritz_gramians_free(&state->small);
+}
+
+static ritz_status start_projection(const ritz_gramians_request *request,
+                                    projection_state *state)
+{
+    RITZ_REFUSE_IF(!(request->tolerance >= 0.0 && request->tolerance < 1.0),
+                   RITZ_ERR_ARGUMENT, "a tolerance is between 0 and 1, not %g",
+                   request->tolerance);
+    state->tolerance = request->tolerance > 0.0 ? request->tolerance
+                                                : RITZ_PROJECTION_TOLERANCE;
+    RITZ_CHECK(ritz_projection_model_new(request, &state->model));
+    return ritz_projection_space_new(&state->model, &state->space);
+}
+
+/* Small Gramians, and the largest Hankel value. */
+static ritz_status solve_small(projection_state *state)
+{
+    RITZ_OWN(ritz_modal) modal = {0};
+    RITZ_OWN(ritz_product_svd) svd = {0};
+    ritz_gramians *small = &state->small;
+
+    ritz_gramians_free(small);
+    RITZ_CHECK(ritz_projected_modal(&state->projected, &modal));
+    RITZ_CHECK(ritz_modal_factors(&modal, NULL, &small->Zc, &small->Zo));
+    RITZ_CHECK(ritz_product_svd_new(&small->Zo, &small->Zc, false, &svd));
+    state->sigma = svd.count > 0 ? svd.s[0] : 0.0;
+    return RITZ_OK;
+}
+
+/* Whether the bound is met. The largest value settles long before the bound is
+   small, and is found anew only when the bound is met. */
+static ritz_status look_at_bound(projection_state *state, bool *met)
+{
+    ritz_projected_error *error = &state->error;
+
+    ritz_projected_free(&state->projected);
+    RITZ_CHECK(ritz_projected_new(&state->space, &state->projected));
+    RITZ_CHECK(ritz_projected_bound(&state->projected, error));
+    if (state->sigma == 0.0 || error->bound <= state->tolerance * state->sigma)
+        RITZ_CHECK(solve_small(state));
+    *met = error->bound <= state->tolerance * state->sigma;
+    return RITZ_OK;
+}
+
+/* The bound, over the largest value. */
+static double relative_error(const projection_state *state)
+{
+    return state->sigma > 0.0 ? state->error.bound / state->sigma : 0.0;
+}
+
+/* Say how far it came, if the space has become too large. */
+static ritz_status refuse_large(const projection_state *state,
+                                ritz_status status)
+{
+    char reached[160];
+
+    if (status != RITZ_ERR_CONVERGENCE || !(state->sigma > 0.0))
+        return status;
+    snprintf(reached, sizeof reached,
+             "Hankel values are known to %.1e of the largest, %.1e is asked",
+             relative_error(state), state->tolerance);
+    return ritz_context(status, reached);
+}
+
+/* Vectors are worth a look when there are an eighth more. */
+static ritz_status grow_space(projection_state *state)
+{
+    ritz_projection_space *space = &state->space;
+    int64_t next = 0;
+    bool met = space->count == 0;
+
+    while (!met) {
+        RITZ_CHECK(refuse_large(state, ritz_projection_space_extend(space)));
+        if (space->last < next && space->count > space->last)
+            continue;
+        RITZ_CHECK(look_at_bound(state, &met));
+        next = space->last + space->last / 8;
+    }
+    return RITZ_OK;
+}
+
+/* Rigid motion, and with @p all Phi = V Y and M Phi behind it. */
+static ritz_status lift_modes(projection_state *state, bool all,
+                              ritz_modal_model *modes)
+{
+    const ritz_low_rank_model *low = &state->model.low;
+    const ritz_projected *p = &state->projected;
+    const ritz_dense V = ritz_dense_part(&state->space.V, 0, p->count);
+    RITZ_OWN(ritz_dense) Phi = {0}, MPhi = {0};
+
+    if (all) {
+        RITZ_CHECK(ritz_dense_mul(&V, &p->Y, &Phi));
+        ritz_projection_space_free(&state->space);
+        RITZ_CHECK(ritz_sparse_mul(&low->M, &Phi, &MPhi));
+    }
+    RITZ_CHECK(ritz_dense_beside(&low->Phi, &Phi, &modes->Phi));
+    RITZ_CHECK(ritz_dense_beside(&low->MPhi, &MPhi, &modes->MPhi));
+    modes->num_dofs = low->n;
+    modes->num_rigid = low->Phi.ncol;
+    modes->count = modes->Phi.ncol;
+    return RITZ_OK;
+}
+
+static ritz_status finish_projection(projection_state *state, bool values_only,
+                                     ritz_gramians *out)
+{
+    RITZ_OWN(ritz_modal_model) modes = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
+    const ritz_mode_states layout = {&modes, state->model.low.Phi.ncol, 2,
+                                     NULL};
+
+    RITZ_CHECK(lift_modes(state, !values_only, &modes));
+    RITZ_MOVE(gramians.Zc, state->small.Zc);
+    RITZ_MOVE(gramians.Zo, state->small.Zo);
+    RITZ_CHECK(ritz_gramians_lift(&layout, &gramians));
+    gramians.error = relative_error(state);
+    memcpy(gramians.residual, state->error.residual, sizeof gramians.residual);
+    snprintf(gramians.engine, sizeof gramians.engine,
+             "projection, %" PRId64 " vectors", state->projected.count);
+    RITZ_MOVE(*out, gramians);
+    return RITZ_OK;
+}
+
+ritz_status ritz_gramians_projection(const ritz_gramians_request *request,
+                                     ritz_gramians *out)
+{
+    RITZ_OWN(projection_state) state = {0};
+    RITZ_OWN(ritz_gramians) gramians = {0};
+
+    RITZ_CHECK(start_projection(request, &state));
+    RITZ_CHECK(grow_space(&state));
+    RITZ_CHECK(finish_projection(&state, request->values_only, &gramians));
+    if (request->damping.kind != RITZ_DAMPING_NONE)
+        ritz_damping_print(&request->damping, gramians.damping);
+    RITZ_MOVE(*out, gramians);
+    return RITZ_OK;
+}
