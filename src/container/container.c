@@ -65,9 +65,8 @@ static ritz_status write_container(const char *path, const ritz_schema *schema,
     return ritz_draft_publish(&draft);
 }
 
-/* Open a container of any kind that this release reads. */
-static ritz_status open_container(const char *path, char kind[RITZ_NAME_SIZE],
-                                  hid_t *out)
+ritz_status ritz_schema_open(const char *path, char kind[RITZ_NAME_SIZE],
+                             hid_t *out)
 {
     RITZ_OWN(hid_t) file = 0;
     int64_t format = 0;
@@ -85,14 +84,13 @@ static ritz_status open_container(const char *path, char kind[RITZ_NAME_SIZE],
     return RITZ_OK;
 }
 
-/* Read an empty object, which may be filled in part on failure. */
-static ritz_status read_container(const char *path, const ritz_schema *schema,
-                                  void *object)
+ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
+                             void *object)
 {
     RITZ_OWN(hid_t) file = 0;
     ritz_name found = "";
 
-    RITZ_CHECK(open_container(path, found, &file));
+    RITZ_CHECK(ritz_schema_open(path, found, &file));
     RITZ_REFUSE_IF(strcmp(found, schema->name) != 0, RITZ_ERR_FORMAT,
                    "holds a %s where a %s is due", found, schema->name);
     if (schema->units > 0)
@@ -110,7 +108,7 @@ static ritz_status read_container(const char *path, const ritz_schema *schema,
         RITZ_OWN(ritz_##kind) object = {0};                                    \
                                                                                \
         RITZ_CHECK_IN(path,                                                    \
-                      read_container(path, &ritz_schema_##kind, &object));     \
+                      ritz_schema_read(path, &ritz_schema_##kind, &object));   \
         RITZ_MOVE(*out, object);                                               \
         return RITZ_OK;                                                        \
     }                                                                          \
@@ -173,7 +171,7 @@ static ritz_status read_head(const char *path, ritz_summary *out)
     RITZ_OWN(ritz_summary) summary = {0};
     RITZ_OWN(ritz_texts) command = {0}, inputs = {0};
 
-    RITZ_CHECK(open_container(path, summary.kind, &file));
+    RITZ_CHECK(ritz_schema_open(path, summary.kind, &file));
     RITZ_CHECK(ritz_h5_get_text(file, "ritz_version", RITZ_NAME_SIZE,
                                 summary.version));
     RITZ_CHECK(ritz_h5_get_text(file, "units", RITZ_NAME_SIZE, summary.units));

@@ -168,6 +168,15 @@ ritz_status ritz_h5_write(hid_t at, const char *name, hid_t type,
 ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
                          ritz_h5_shape shape, void *values);
 
+/**
+ * The checksum of the values of a data set, in pieces of whole words: begin
+ * with RITZ_H5_SUM, continue with the last result; the end of it is what the
+ * attribute `checksum` holds.
+ */
+#define RITZ_H5_SUM 14695981039346656037U
+uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum);
+int64_t ritz_h5_sum_end(uint64_t sum);
+
 /** A dense matrix, which h5py shows as shape (nrow, ncol). */
 ritz_status ritz_h5_write_dense(hid_t at, const char *name,
                                 const ritz_dense *A);

@@ -133,6 +133,14 @@ struct ritz_schema {
 /** Write all members of an object at its place, or read them to its target. */
 ritz_status ritz_schema_move(const ritz_place *place);
 
+/** Open a container of any kind that this release reads. */
+ritz_status ritz_schema_open(const char *path, char kind[RITZ_NAME_SIZE],
+                             hid_t *out);
+
+/** Read an empty object, which may be filled in part on failure. */
+ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
+                             void *object);
+
 /* Where a walk over the rows of an object stands. */
 bool ritz_schema_is_given(const ritz_place *place, const ritz_member *row);
 ritz_h5_shape ritz_schema_shape(const ritz_place *place,

@@ -168,10 +168,9 @@ static ritz_status settle_io(ritz_component *component)
     return check_finite(&io->Ca, "outputs");
 }
 
-ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
+/* The rest, which is checked last. */
+static ritz_status settle_rest(ritz_component *component)
 {
-    RITZ_CHECK(check_dofs(component));
-    RITZ_CHECK(settle_matrices(component, symmetrise));
     RITZ_CHECK(check_grids(&component->grids));
     RITZ_CHECK_IN("elements", ritz_elements_check(&component->elements,
                                                   component->grids.count,
@@ -182,6 +181,19 @@ ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
                   ritz_recovery_check(&component->recovery, component->num_dofs,
                                       component->dof));
     return ritz_dampers_check(&component->dampers, component->num_dofs);
+}
+
+ritz_status ritz_component_settle(ritz_component *component, bool symmetrise)
+{
+    RITZ_CHECK(check_dofs(component));
+    RITZ_CHECK(settle_matrices(component, symmetrise));
+    return settle_rest(component);
+}
+
+ritz_status ritz_component_settle_frame(ritz_component *component)
+{
+    RITZ_CHECK(check_dofs(component));
+    return settle_rest(component);
 }
 
 ritz_status ritz_component_install(ritz_component *component)
