@@ -105,3 +105,36 @@ add_library(ritz_uses INTERFACE)
 target_link_libraries(ritz_uses INTERFACE ritz_headers ${hdf5_uses}
     ${lapacke_uses} ${arpack_uses} ${cholmod_uses} ${mumps_uses} ${slicot_uses}
     PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML ${ritz_beneath})
+
+# For ritz-basis --engine slepc, if they are there: PETSc and SLEPc with what
+# they are linked with themselves. Archives that PETSc does not use stay. Not
+# with sanitizers: MPI and PETSc leak and overlap by the dozen, and that build
+# shows instead what is said where they are missing.
+option(RITZ_WITH_SLEPC "build ritz-basis-slepc where PETSc and SLEPc are" ON)
+set(RITZ_SLEPC OFF)
+if(RITZ_WITH_SLEPC AND NOT RITZ_SANITIZE)
+    pkg_check_modules(SLEPC QUIET IMPORTED_TARGET slepc petsc)
+    pkg_check_modules(HDF5_MPI QUIET IMPORTED_TARGET hdf5-mpi)
+    find_package(MPI QUIET COMPONENTS C)
+    find_library(DMUMPS_MPI dmumps)
+    find_library(ZMUMPS_MPI zmumps)
+    mark_as_advanced(DMUMPS_MPI ZMUMPS_MPI)
+    if(SLEPC_FOUND AND HDF5_MPI_FOUND AND MPI_C_FOUND AND DMUMPS_MPI
+            AND ZMUMPS_MPI)
+        set(RITZ_SLEPC ON)
+    else()
+        message(STATUS "without ritz-basis --engine slepc, as not all of"
+            " slepc-dev petsc-dev libmumps-dev mpi-default-dev are there")
+    endif()
+endif()
+if(RITZ_SLEPC)
+    add_library(ritz_slepc INTERFACE)
+    target_include_directories(ritz_slepc SYSTEM INTERFACE
+        ${SLEPC_INCLUDE_DIRS} ${MPI_C_INCLUDE_DIRS})
+    add_library(ritz_slepc_uses INTERFACE)
+    target_link_libraries(ritz_slepc_uses INTERFACE PkgConfig::SLEPC
+        MPI::MPI_C ${DMUMPS_MPI} ${ZMUMPS_MPI} ${HDF5_MPI_LINK_LIBRARIES}
+        ${lapacke_uses} ${arpack_uses} ${slicot_uses} ${CHOLMOD}
+        ${SUITESPARSE_CONFIG} PkgConfig::JANSSON PkgConfig::NETTLE
+        PkgConfig::NLOPT PkgConfig::YAML ${ritz_beneath})
+endif()

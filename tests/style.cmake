@@ -63,7 +63,7 @@ endforeach()
 file(GLOB_RECURSE files CONFIGURE_DEPENDS
     ${PROJECT_SOURCE_DIR}/include/*.h ${PROJECT_SOURCE_DIR}/examples/*.[ch]
     ${PROJECT_SOURCE_DIR}/src/*.[ch] ${PROJECT_SOURCE_DIR}/formats/*.[ch]
-    ${PROJECT_SOURCE_DIR}/tools/*.[ch] ${PROJECT_SOURCE_DIR}/libexec/*.c
+    ${PROJECT_SOURCE_DIR}/tools/*.[ch] ${PROJECT_SOURCE_DIR}/libexec/*.[ch]
     ${PROJECT_SOURCE_DIR}/tests/*.[ch])
 foreach(file ${files})
     style_stamp(format ${file} ${PROJECT_SOURCE_DIR}/.clang-format

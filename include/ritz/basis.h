@@ -63,6 +63,7 @@ typedef enum ritz_engine {
     RITZ_ENGINE_LANCZOS, /* this and the next: modes, see ritz_span */
     RITZ_ENGINE_ARPACK,
     RITZ_ENGINE_SLICES,
+    RITZ_ENGINE_SLEPC, /* in several processes, by ritz-basis alone */
 } ritz_engine;
 
 typedef struct ritz_choice {
@@ -115,9 +116,9 @@ extern const ritz_choice_word ritz_choice_words[];
  * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
- * "dense", "modal", "low-rank", "projection", "lanczos", "arpack" or "slices"
- * for engine, "yes" or "no" for count, "50" for among_hz, "0,10" for band_hz,
- * "dropped" or "static" for remainder, "one" or "two" for sides.
+ * "dense", "modal", "low-rank", "projection", "lanczos", "arpack", "slices" or
+ * "slepc" for engine, "yes" or "no" for count, "50" for among_hz, "0,10" for
+ * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
  */
@@ -169,6 +170,7 @@ typedef struct ritz_method {
                              has for more: those that are no modes, and the
                              first of the others. Unless there are static
                              columns, whose part in the modes is left out */
+    bool by_ranks;        /* make is that of libexec/ritz-basis-slepc.c */
     int only_named;       /* ritz-fit tries the method only if the user names
                              it: sum of RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */

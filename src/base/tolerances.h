@@ -271,6 +271,8 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
+/* Convergence of SLEPc's Krylov-Schur: an inverse iteration follows. */
+#define RITZ_KRYLOV_SETTLED 1e-10
 /* A Ritz pair of block Lanczos has converged if |A^-1 M x - theta x| is at most
    this part of theta |x|, norms by M. The vectors returned are more accurate,
    by one inverse iteration. */

@@ -382,3 +382,70 @@ ritz_status ritz_remark_damping(const ritz_request *request, ritz_basis *basis)
                     c->dof ? ritz_dof_name(c->dof[first], name) : "");
     return RITZ_OK;
 }
+
+/* --- mechanisms ----------------------------------------------------------- */
+
+enum { NAMED = 3 };
+
+/* The largest entry of x that was not named before, the first of equals. */
+static int64_t largest_unnamed(int64_t n, const double *x, int64_t count,
+                               const int64_t *before)
+{
+    int64_t best = -1;
+
+    for (int64_t k = 0; k < n; k++) {
+        bool taken = false;
+
+        for (int64_t j = 0; j < count; j++)
+            taken = taken || before[j] == k;
+        if (!taken && (best < 0 || fabs(x[k]) > fabs(x[best]) * RITZ_TIE))
+            best = k;
+    }
+    return best;
+}
+
+/* "grid 3 R1, grid 7 R1": the dofs where a motion is largest. */
+static void name_dofs(const ritz_component *component, const ritz_dofs *i,
+                      const double *x, char text[static 160])
+{
+    int64_t named[NAMED];
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (int64_t k = 0; k < NAMED && k < i->count; k++) {
+        char name[RITZ_DOF_NAME_SIZE];
+
+        named[k] = largest_unnamed(i->count, x, k, named);
+        if (fabs(x[named[k]]) <= RITZ_NULL_VECTOR_SHARE * fabs(x[named[0]]))
+            break;
+        used += (size_t)snprintf(
+            text + used, 160 - used, "%s%s", k > 0 ? ", " : "",
+            ritz_dof_name(component->dof[i->at[named[k]]], name));
+    }
+}
+
+ritz_status ritz_refuse_mechanism(const ritz_component *component,
+                                  const ritz_dofs *i, const ritz_pairs *pairs,
+                                  int64_t weak)
+{
+    const int64_t num_rigid = pairs ? pairs->num_rigid : 0;
+    char text[160] = "";
+    char name[RITZ_DOF_NAME_SIZE];
+
+    if (num_rigid > 0)
+        name_dofs(component, i, ritz_dense_col(&pairs->Phi, 0), text);
+    else if (weak >= 0)
+        snprintf(text, sizeof text, "%s",
+                 ritz_dof_name(component->dof[i->at[weak]], name));
+    RITZ_REFUSE_IF(pairs && num_rigid == 0 && pairs->Phi.ncol > 0 &&
+                       pairs->lambda[0] < 0.0,
+                   RITZ_ERR_SINGULAR,
+                   "not positive definite: an eigenvalue is %.3g",
+                   pairs->lambda[0]);
+    return ritz_fail(
+        RITZ_ERR_SINGULAR,
+        "singular, is a rigid-body motion or mechanism left free? with "
+        "the attached dofs held, %" PRId64 " motion(s) cost no energy; "
+        "largest at %s",
+        num_rigid > 0 ? num_rigid : 1, text[0] ? text : "no dof in particular");
+}

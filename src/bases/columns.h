@@ -135,4 +135,17 @@ ritz_status ritz_remark_damping(const ritz_request *request, ritz_basis *basis);
 void ritz_remark_dampers(const ritz_request *request, int loads,
                          ritz_basis *basis);
 
+/**
+ * Refuse a stiffness that is not positive definite while the attached dofs are
+ * held, and name the dofs that move freely.
+ *
+ * @param[in] i      rows of the component that K is of
+ * @param[in] pairs  its rigid modes and the lowest others; NULL: not known
+ * @param[in] weak   row of K that gave way, -1 if not known
+ * @return RITZ_ERR_SINGULAR
+ */
+ritz_status ritz_refuse_mechanism(const ritz_component *component,
+                                  const ritz_dofs *i, const ritz_pairs *pairs,
+                                  int64_t weak);
+
 #endif

@@ -32,8 +32,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAMED = 3 };
-
 /* Boundary b, on which other bodies act, and interior i. */
 typedef struct partition {
     const ritz_component *component; /* borrowed */
@@ -54,43 +52,6 @@ static void partition_free(partition *s)
     ritz_basis_free(&s->held);
 }
 
-/* The largest entry of x that was not named before, the first of equals. */
-static int64_t largest_unnamed(int64_t n, const double *x, int64_t count,
-                               const int64_t *before)
-{
-    int64_t best = -1;
-
-    for (int64_t k = 0; k < n; k++) {
-        bool taken = false;
-
-        for (int64_t j = 0; j < count; j++)
-            taken = taken || before[j] == k;
-        if (!taken && (best < 0 || fabs(x[k]) > fabs(x[best]) * RITZ_TIE))
-            best = k;
-    }
-    return best;
-}
-
-/* "grid 3 R1, grid 7 R1": the dofs where a motion is largest. */
-static void name_dofs(const ritz_component *component, const ritz_dofs *i,
-                      const double *x, char text[static 160])
-{
-    int64_t named[NAMED];
-    size_t used = 0;
-
-    text[0] = '\0';
-    for (int64_t k = 0; k < NAMED && k < i->count; k++) {
-        char name[RITZ_DOF_NAME_SIZE];
-
-        named[k] = largest_unnamed(i->count, x, k, named);
-        if (fabs(x[named[k]]) <= RITZ_NULL_VECTOR_SHARE * fabs(x[named[0]]))
-            break;
-        used += (size_t)snprintf(
-            text + used, 160 - used, "%s%s", k > 0 ? ", " : "",
-            ritz_dof_name(component->dof[i->at[named[k]]], name));
-    }
-}
-
 /*
  * A sentence that names the dofs which move freely while the boundary is held.
  *
@@ -100,30 +61,13 @@ static ritz_status refuse_mechanism(const partition *s, int64_t weak)
 {
     const ritz_span rigid_only = {.modes = 0};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    char text[160] = "";
-    char name[RITZ_DOF_NAME_SIZE];
-    ritz_status status =
+    const ritz_status status =
         ritz_eigen_sparse(&s->K_ii, &s->M_ii, &rigid_only, &pairs);
 
-    if (status == RITZ_ERR_MEMORY)
-        return status;
-    if (status == RITZ_OK && pairs.num_rigid > 0)
-        name_dofs(s->component, &s->i, ritz_dense_col(&pairs.Phi, 0), text);
-    else if (weak >= 0)
-        snprintf(text, sizeof text, "%s",
-                 ritz_dof_name(s->component->dof[s->i.at[weak]], name));
-    RITZ_REFUSE_IF(status == RITZ_OK && pairs.num_rigid == 0 &&
-                       pairs.Phi.ncol > 0 && pairs.lambda[0] < 0.0,
-                   RITZ_ERR_SINGULAR,
-                   "not positive definite: an eigenvalue is %.3g",
-                   pairs.lambda[0]);
-    return ritz_fail(
-        RITZ_ERR_SINGULAR,
-        "singular, is a rigid-body motion or mechanism left free? with "
-        "the attached dofs held, %" PRId64 " motion(s) cost no energy; "
-        "largest at %s",
-        pairs.num_rigid > 0 ? pairs.num_rigid : 1,
-        text[0] ? text : "no dof in particular");
+    return status == RITZ_ERR_MEMORY
+               ? status
+               : ritz_refuse_mechanism(s->component, &s->i,
+                                       status == RITZ_OK ? &pairs : NULL, weak);
 }
 
 /*

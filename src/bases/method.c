@@ -17,9 +17,9 @@ const ritz_method *ritz_method_find(const char *name)
 
 bool ritz_engine_fits(const ritz_method *method, ritz_engine engine)
 {
-    const bool modes = engine == RITZ_ENGINE_LANCZOS ||
-                       engine == RITZ_ENGINE_ARPACK ||
-                       engine == RITZ_ENGINE_SLICES;
+    const bool modes =
+        engine == RITZ_ENGINE_LANCZOS || engine == RITZ_ENGINE_ARPACK ||
+        engine == RITZ_ENGINE_SLICES || engine == RITZ_ENGINE_SLEPC;
 
     return engine == RITZ_ENGINE_AUTO ||
            modes == ((method->uses & RITZ_USES_COUNT) != 0);
@@ -49,8 +49,8 @@ ritz_status ritz_request_check(const ritz_method *method,
     RITZ_REFUSE_IF(
         !ritz_engine_fits(method, request->choice.engine), RITZ_ERR_ARGUMENT,
         method->uses & RITZ_USES_COUNT
-            ? "%s finds modes: its engines are auto, lanczos, arpack and "
-              "slices"
+            ? "%s finds modes: its engines are auto, lanczos, arpack, "
+              "slices and slepc"
             : "%s finds Gramians: its engines are auto, dense, modal, "
               "low-rank and projection",
         method->name);
@@ -83,6 +83,11 @@ ritz_status ritz_basis_make(const ritz_method *method,
     RITZ_OWN(ritz_basis) basis = {0};
 
     RITZ_CHECK(ritz_request_check(method, request));
+    RITZ_REFUSE_IF(request->choice.engine == RITZ_ENGINE_SLEPC &&
+                       !method->by_ranks,
+                   RITZ_ERR_ARGUMENT,
+                   "engine slepc works in ritz-basis alone, for craig-bampton "
+                   "and normal-modes");
     RITZ_CHECK_IN(method->name, method->make(request, &basis));
     sign_basis(method, request, &basis.origin);
     if (blind)

@@ -234,9 +234,8 @@ static bool is_clustered(double a, double b)
     return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
 }
 
-/* How many of the pairs were requested. */
-static int64_t count_wanted(const ritz_pairs *P, const ritz_span *span,
-                            double limit)
+int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
+                          double limit)
 {
     int64_t end = P->num_rigid + (span->modes < 0 ? 0 : span->modes);
     int64_t count = P->Phi.ncol;
@@ -431,8 +430,7 @@ static ritz_status come_closer(search *s, bool *moved)
     return RITZ_OK;
 }
 
-/* The widest relative gap at or behind @p end, to count modes below it. */
-static int64_t widest_gap(const ritz_pairs *P, int64_t end)
+int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end)
 {
     double widest = 0.0;
     int64_t at = end;
@@ -448,8 +446,7 @@ static int64_t widest_gap(const ritz_pairs *P, int64_t end)
     return at;
 }
 
-/* A place between pairs k - 1 and k, part of the way. */
-static double place_between(const ritz_pairs *P, int64_t k, double part)
+double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part)
 {
     double above = k < P->Phi.ncol ? P->lambda[k] : HUGE_VAL;
     double below = k > 0 ? P->lambda[k - 1] : above - fabs(above) - DBL_MIN;
@@ -476,7 +473,7 @@ static ritz_status count_below(search *s, int64_t k, int64_t *out)
 
     RITZ_CHECK(keep_order(s));
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
-        const double tau = place_between(&s->found, k, parts[i]);
+        const double tau = ritz_pairs_between(&s->found, k, parts[i]);
         RITZ_OWN(ritz_sparse) A = {0};
 
         RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
@@ -504,12 +501,12 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
     int64_t count = 0;
     int64_t at = 0;
 
-    *end = count_wanted(P, s->span, 0.0);
+    *end = ritz_pairs_wanted(P, s->span, 0.0);
     if (*end >= P->Phi.ncol && !s->all) {
         s->ask += P->num_rigid + SPARE; /* no flexible mode was found yet */
         return RITZ_OK;
     }
-    at = s->all ? *end : widest_gap(P, *end);
+    at = s->all ? *end : ritz_pairs_gap(P, *end);
     count = at;
     if (P->Phi.ncol > 0 && !s->span->uncounted)
         RITZ_CHECK(count_below(s, at, &count));
@@ -517,8 +514,9 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
                    "%" PRId64 " modes were found where there are %" PRId64, at,
                    count);
     *done = count == at;
-    s->found.proven_to =
-        P->Phi.ncol > 0 ? place_between(P, *end, RITZ_COUNT_PLACE) : HUGE_VAL;
+    s->found.proven_to = P->Phi.ncol > 0
+                             ? ritz_pairs_between(P, *end, RITZ_COUNT_PLACE)
+                             : HUGE_VAL;
     if (s->span->uncounted)
         s->found.proven_to = (double)NAN;
     if (!*done) {
@@ -536,7 +534,7 @@ static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
 
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;
-    *end = count_wanted(P, s->span, s->limit);
+    *end = ritz_pairs_wanted(P, s->span, s->limit);
     if (s->span->uncounted) {
         s->found.proven_to = (double)NAN;
         *done = below < P->Phi.ncol || s->all;
@@ -654,9 +652,10 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_CHECK(ritz_eigen_dense(&K_d, &M_d, &P));
     if (span->modes < 0)
         limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
-    end = count_wanted(&P, span, limit);
+    end = ritz_pairs_wanted(&P, span, limit);
     if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
-        P.proven_to = fmax(limit, place_between(&P, end, RITZ_COUNT_PLACE));
+        P.proven_to =
+            fmax(limit, ritz_pairs_between(&P, end, RITZ_COUNT_PLACE));
     truncate_pairs(&P, end);
     RITZ_MOVE(*out, P);
     return RITZ_OK;

@@ -16,4 +16,21 @@ ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
                                 ritz_factor **L, const ritz_span *span,
                                 ritz_pairs *out);
 
+/*
+ * What a search for the lowest pairs decides from those that it has found, also
+ * where another program searches (libexec/slepc/modes.c).
+ */
+
+/** How many of the pairs were requested: by number, or up to @p limit; a
+ * cluster at the end is kept whole. */
+int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
+                          double limit);
+
+/** Pair k at or behind @p end with the widest relative gap to pair k - 1, in
+ * which modes are counted. */
+int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
+
+/** A value between pairs k - 1 and k, part of the way. */
+double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part);
+
 #endif

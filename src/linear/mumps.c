@@ -1,5 +1,5 @@
 /*
- * Factors by sequential MUMPS: A = L D L', real, and sum_k c_k A_k = L D L' or
+ * Factors by MUMPS in one process: A = L D L', real, and sum_k c_k A_k = L D L' or
  * L U, complex.
  */
 #include "base/alloc.h"
@@ -22,6 +22,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <zmumps_c.h>
+#ifdef RITZ_MPI /* as CMakeLists.txt compiles this file for ritz-basis-slepc */
+#include <mpi.h>
+#endif
 
 enum {
     EQUILIBRATIONS = 5, /* halve the logarithm of the row maxima each */
@@ -233,6 +236,9 @@ static ritz_status analyse_pattern(mumps_factor *F)
 {
     FIELD(F, sym) = F->whole ? 0 : 2;
     FIELD(F, par) = 1;
+#ifdef RITZ_MPI
+    FIELD(F, comm_fortran) = (MUMPS_INT)MPI_Comm_c2f(MPI_COMM_SELF);
+#endif
     RITZ_CHECK(run_job(F, START));
     F->started = true;
     set_options(F);

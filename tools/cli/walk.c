@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "cli/child.h"
+#include "cli/libexec.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -47,34 +48,6 @@ static bool is_remembered(const struct stat *file)
 }
 
 /* --- the process ---------------------------------------------------------- */
-
-/* Find ritz-walk relative to the tool, as both were installed or built; neither
-   the environment nor the working folder has an influence. */
-static ritz_status find_program(char out[PATH_MAX])
-{
-    static const char from_tools[] = "/" RITZ_WALKER;
-    char self[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
-    char *slash = NULL;
-
-    RITZ_REFUSE_IF(length <= 0, RITZ_ERR_FILE,
-                   "cannot be checked, as there is no /proc: %s",
-                   strerror(errno));
-    self[length] = '\0';
-    slash = strrchr(self, '/');
-    RITZ_REFUSE_IF(!slash ||
-                       (size_t)(slash - self) + sizeof from_tools > PATH_MAX,
-                   RITZ_ERR_FILE, "cannot be checked: no path to ritz-walk");
-    *slash = '\0';
-    snprintf(out, PATH_MAX, "%.*s%s", (int)(PATH_MAX - sizeof from_tools), self,
-             from_tools);
-    RITZ_REFUSE_IF(
-        access(out, X_OK) != 0, RITZ_ERR_FILE,
-        "cannot be checked: '%s', which a tool is installed with, is "
-        "not there to be run: %s",
-        out, strerror(errno));
-    return RITZ_OK;
-}
 
 /* Set a limit, never above the present one. Beyond the soft limit the process
    gets a signal, beyond the hard limit, `above` higher, it is killed. */
@@ -188,7 +161,7 @@ ritz_status walk_file(int file)
                    strerror(errno));
     if (is_remembered(&before))
         return RITZ_OK;
-    RITZ_CHECK(find_program(program));
+    RITZ_CHECK_IN("cannot be checked", libexec_find("ritz-walk", program));
     /* if it were ignored, no outcome would be reported */
     signal(SIGCHLD, SIG_DFL);
     child = child_start(SIGKILL);

@@ -100,6 +100,8 @@ static ritz_status read_full(cli_run *run, const char *path,
     model_kind kind = MODEL_ANY;
     const char *noun = NULL;
 
+    if (given->read)
+        return given->read(run, path, out);
     if (!space && ritz_container_seems(path)) {
         RITZ_CHECK(model_peek(path, &kind, &noun));
         if (kind == MODEL_STATES)

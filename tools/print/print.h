@@ -24,6 +24,8 @@
 
 typedef struct basis_options {
     const ritz_method *method;
+    /* reads the operand in place of basis_run; NULL: it does so itself */
+    ritz_status (*read)(cli_run *run, const char *path, model *out);
     const char *ports;    /* "PORT[,PORT]"; NULL: all */
     cli_list neighbours;  /* "PORT=FILE:PORT" */
     ritz_request request; /* the component is taken from the operand */
@@ -31,6 +33,14 @@ typedef struct basis_options {
 } basis_options;
 
 ritz_status basis_run(cli_run *run, basis_options *given);
+
+/**
+ * ritz-basis from its command line to its exit status.
+ *
+ * @param[in] make  basis_run, or what another program does before it calls that
+ */
+int basis_main(int argc, char **argv,
+               ritz_status (*make)(cli_run *run, basis_options *given));
 
 typedef struct reduce_options {
     bool without_basis;

@@ -1,0 +1,147 @@
+/*
+ * ritz-basis-slepc - what ritz-basis becomes with --engine slepc: the same tool,
+ * whose matrices, factors and modes are spread over the processes of MPI. It is
+ * linked with PETSc, SLEPc and the parallel MUMPS, and therefore with no part of
+ * the library that calls the sequential one: both have the same symbols.
+ *
+ * Rank 0 is the tool; the others help it in slepc/fixed.c and say nothing.
+ */
+#include "bases/columns.h"
+#include "cli/cli.h"
+#include "container/slab.h"
+#include "print/print.h"
+#include "slepc/fixed.h"
+#include "slepc/ranks.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The component's file, for the function of a method, which is not told. */
+static const char *file;
+
+/* --- what is refused ------------------------------------------------------ */
+
+static ritz_status refuse_options(const basis_options *given)
+{
+    const ritz_choice *choice = &given->request.choice;
+    const struct {
+        const char *option;
+        bool given;
+    } others[] = {
+        {"--neighbour", given->neighbours.count > 0},
+        {"--at", given->model.at != NULL},
+        {"--order", given->model.order > 0},
+        {"--interface-modes", choice->interface_modes > 0},
+    };
+
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        RITZ_REFUSE_IF(others[k].given, RITZ_ERR_ARGUMENT,
+                       "engine slepc takes no %s", others[k].option);
+    return RITZ_OK;
+}
+
+/* Static vectors of loads are not made here. */
+static ritz_status refuse_loads(const ritz_request *request, bool held)
+{
+    const bool asked = request->choice.given & RITZ_USES_LOADS;
+    const int usual = RITZ_LOADS_DAMPERS | (held ? 0 : RITZ_LOADS_INPUTS);
+    const int all = asked ? request->choice.loads : usual;
+    const int loads = held ? all & ~RITZ_LOADS_ATTACHED : all;
+
+    RITZ_REFUSE_IF((asked && loads) || ritz_loads_count(request, loads) > 0,
+                   RITZ_ERR_ARGUMENT,
+                   "engine slepc makes no static vectors of inputs, outputs "
+                   "or dampers%s",
+                   held ? ": leave them out by --loads attached" : "");
+    return RITZ_OK;
+}
+
+/* --- methods -------------------------------------------------------------- */
+
+static ritz_status make_held(const ritz_request *request, ritz_basis *out)
+{
+    RITZ_CHECK(refuse_loads(request, true));
+    return fixed_make(file, request, true, out);
+}
+
+static ritz_status make_free(const ritz_request *request, ritz_basis *out)
+{
+    RITZ_CHECK(refuse_loads(request, false));
+    return fixed_make(file, request, false, out);
+}
+
+static const struct {
+    const ritz_method *method;
+    ritz_status (*make)(const ritz_request *request, ritz_basis *out);
+} methods[] = {
+    {&ritz_method_craig_bampton, make_held},
+    {&ritz_method_normal_modes, make_free},
+};
+
+static ritz_status choose_method(const ritz_method *method, ritz_method *out)
+{
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; k++)
+        if (methods[k].method == method) {
+            *out = *method;
+            out->make = methods[k].make;
+            out->by_ranks = true;
+            return RITZ_OK;
+        }
+    return ritz_fail(RITZ_ERR_ARGUMENT,
+                     "engine slepc finds bases of craig-bampton and "
+                     "normal-modes, not of %s",
+                     method->name);
+}
+
+/* --- the tool ------------------------------------------------------------- */
+
+/* A component without its matrices, which the ranks read. */
+static ritz_status read_frame(cli_run *run, const char *path, model *out)
+{
+    ritz_status status = RITZ_OK;
+
+    RITZ_CHECK(cli_input(run, path));
+    RITZ_CHECK(ritz_container_keep(path));
+    status = ritz_slab_frame(path, &out->component);
+    ritz_container_release();
+    out->kind = MODEL_COMPONENT;
+    file = path;
+    return status;
+}
+
+static ritz_status run_in_ranks(cli_run *run, basis_options *given)
+{
+    ritz_method method;
+
+    RITZ_CHECK(refuse_options(given));
+    RITZ_CHECK(choose_method(given->method, &method));
+    given->method = &method;
+    given->read = read_frame;
+    return basis_run(run, given);
+}
+
+/* Rank 0 ends, by main or by a usage error: so do the others, which wait, or
+   are in the midst of a computation that rank 0 has left. */
+static void end_others(void)
+{
+    if (!fixed_is_idle())
+        ranks_abort();
+    fixed_dismiss();
+    ranks_stop();
+}
+
+int main(int argc, char **argv)
+{
+    /* the tool would start again with a limit of threads, without MPI */
+    if (setenv("OMP_THREAD_LIMIT", "1", 0) != 0)
+        return EXIT_FAILURE;
+    ranks_start();
+    if (ranks_own() > 0) {
+        fixed_help();
+        ranks_stop();
+        return EXIT_SUCCESS;
+    }
+    atexit(end_others);
+    return basis_main(argc, argv, run_in_ranks);
+}

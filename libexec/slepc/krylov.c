@@ -1,0 +1,104 @@
+#include "krylov.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "blocks.h"
+#include "ranks.h"
+#include "rows.h"
+
+#include <math.h>
+#include <slepceps.h>
+#include <string.h>
+
+/* SLEPc's solver for K - sigma M: the factor that is there. */
+static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
+{
+    void *context = NULL;
+
+    PetscCall(PCShellGetContext(pc, &context));
+    rank_pencil_solve_vector(context, x, y);
+    return 0;
+}
+
+/* The same start however many ranks there are, in the range of the operator,
+   which M without full rank makes smaller than the space. */
+static void set_start(EPS eps, const rank_pencil *p)
+{
+    Vec start = NULL;
+    Vec noise = NULL;
+
+    ranks_expect(MatCreateVecs(p->M, &noise, &start));
+    rows_fill(noise, 0);
+    ranks_expect(MatMult(p->M, noise, start));
+    rank_pencil_solve_vector(p, start, noise);
+    ranks_expect(EPSSetInitialSpace(eps, 1, &noise));
+    ranks_expect(VecDestroy(&start));
+    ranks_expect(VecDestroy(&noise));
+}
+
+/* Shift and invert with the factor, so that SLEPc makes no matrix. */
+static void set_transformation(EPS eps, rank_pencil *p)
+{
+    ST st = NULL;
+    KSP solver = NULL;
+    PC pc = NULL;
+
+    ranks_expect(EPSGetST(eps, &st));
+    ranks_expect(STSetType(st, STSINVERT));
+    ranks_expect(STSetMatMode(st, ST_MATMODE_SHELL));
+    ranks_expect(STGetKSP(st, &solver));
+    ranks_expect(KSPSetType(solver, KSPPREONLY));
+    ranks_expect(KSPGetPC(solver, &pc));
+    ranks_expect(PCSetType(pc, PCSHELL));
+    ranks_expect(PCShellSetContext(pc, p));
+    ranks_expect(PCShellSetApply(pc, apply_factor));
+}
+
+static void set_up(EPS eps, rank_pencil *p, int64_t ask, int64_t room)
+{
+    ranks_expect(EPSSetOperators(eps, p->K, p->M));
+    ranks_expect(EPSSetProblemType(eps, EPS_GHEP));
+    ranks_expect(EPSSetType(eps, EPSKRYLOVSCHUR));
+    ranks_expect(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
+    ranks_expect(EPSSetTarget(eps, p->sigma));
+    ranks_expect(
+        EPSSetDimensions(eps, (PetscInt)ask, (PetscInt)room, PETSC_DEFAULT));
+    ranks_expect(EPSSetTolerances(eps, RITZ_KRYLOV_SETTLED, PETSC_DEFAULT));
+    /* inverse iteration follows, on all vectors at once */
+    ranks_expect(EPSSetPurify(eps, PETSC_FALSE));
+    set_transformation(eps, p);
+    set_start(eps, p);
+    ranks_expect(EPSSetFromOptions(eps));
+}
+
+static ritz_status take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
+{
+    for (int64_t k = 0; k < count; k++) {
+        Vec x = NULL;
+        PetscScalar value = 0.0;
+
+        ranks_expect(MatDenseGetColumnVecWrite(X, (PetscInt)k, &x));
+        ranks_expect(EPSGetEigenpair(eps, (PetscInt)k, &value, NULL, x, NULL));
+        ranks_expect(MatDenseRestoreColumnVecWrite(X, (PetscInt)k, &x));
+        lambda[k] = value;
+    }
+    return RITZ_OK;
+}
+
+ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,
+                          double **lambda, int64_t *found)
+{
+    EPS eps = NULL;
+    PetscInt converged = 0;
+
+    ranks_expect(EPSCreate(PETSC_COMM_WORLD, &eps));
+    set_up(eps, p, ask, room);
+    ranks_expect(EPSSolve(eps));
+    ranks_expect(EPSGetConverged(eps, &converged));
+    *found = converged < ask ? converged : ask;
+    RANKS_CHECK_NEW(*lambda, ask);
+    block_new(p->K, *found, X);
+    RITZ_CHECK(take_pairs(eps, *found, *X, *lambda));
+    ranks_expect(EPSDestroy(&eps));
+    return RITZ_OK;
+}

@@ -1,0 +1,343 @@
+/*
+ * With OP = (K - sigma M)^-1 M and blocks V_j of eight M-orthonormal vectors,
+ *
+ *     OP V_j = V_(j-1) B_(j-1)' + V_j A_j + V_(j+1) B_j
+ *
+ * A_j and B_j fill the block tridiagonal T, whose pairs T s = theta s give
+ * x = V s and lambda = sigma + 1 / theta. The residual is known before x is:
+ *
+ *     OP x - theta x = V_(m+1) B_m s_m,   s_m the last eight rows of s,
+ *
+ * and one step of inverse iteration costs nothing: OP x = theta x + V_(m+1) B_m
+ * s_m. All vectors are orthogonalised to all others, twice [GrimesLewisSimon1994].
+ */
+#include "lanczos.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+#include "blocks.h"
+#include "ranks.h"
+#include "rows.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum { BLOCK = 8, SPARE_VECTORS = 200 };
+
+typedef struct rank_lanczos {
+    const rank_pencil *p;
+    int64_t ask, most; /* most vectors */
+    int64_t count;     /* of them in V that are in T, too: m */
+    ritz_dense V;      /* rows of this rank; block m + 1 follows */
+    ritz_dense T;      /* most x most, its lower triangle in use */
+    ritz_dense B;      /* B_m */
+    Mat W, MW;         /* a block, and M times it */
+    Mat Y;             /* right-hand sides: M V_(m+1) */
+    bool broken;       /* vectors of a block depend on each other */
+    /* of T, the largest theta first */
+    ritz_dense S;
+    double *theta;
+} rank_lanczos;
+
+static void rank_lanczos_free(rank_lanczos *z)
+{
+    ritz_dense_free(&z->V);
+    ritz_dense_free(&z->T);
+    ritz_dense_free(&z->B);
+    ritz_dense_free(&z->S);
+    RITZ_FREE(z->theta);
+    ranks_expect(MatDestroy(&z->MW));
+    ranks_expect(MatDestroy(&z->W));
+    ranks_expect(MatDestroy(&z->Y));
+}
+
+static void multiply_mass(rank_lanczos *z)
+{
+    ranks_expect(MatMatMult(z->p->M, z->W,
+                            z->MW ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX,
+                            PETSC_DEFAULT, &z->MW));
+}
+
+/* h := V'M W over all ranks, W := W - V h, of the first @p count vectors. */
+static void remove_parts(rank_lanczos *z, int64_t count, double *h)
+{
+    ritz_dense W = block_take(z->W);
+    ritz_dense MW = block_take(z->MW);
+    const int n = (int)W.nrow;
+    const int ld = n > 1 ? n : 1;
+
+    memset(h, 0, (size_t)(count * BLOCK) * sizeof *h);
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, (int)count, BLOCK, n,
+                1.0, z->V.val, ld, MW.val, ld, 0.0, h, (int)count);
+    ranks_sum(h, count * BLOCK);
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, BLOCK, (int)count,
+                -1.0, z->V.val, ld, h, (int)count, 1.0, W.val, ld);
+    block_return(z->MW, &MW);
+    block_return(z->W, &W);
+}
+
+/* A_m, in its place in T: the last eight rows of h. */
+static void keep_diagonal(rank_lanczos *z, int64_t count, const double *h)
+{
+    for (int64_t j = 0; j < BLOCK; j++)
+        for (int64_t i = 0; i < BLOCK; i++)
+            ritz_dense_col(&z->T, count - BLOCK + j)[count - BLOCK + i] +=
+                h[count - BLOCK + i + j * count];
+}
+
+/* X := X R^-1, X of eight columns, the rows of this rank. */
+static void divide_columns(Mat X, const double *R)
+{
+    ritz_dense x = block_take(X);
+
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans,
+                CblasNonUnit, (int)x.nrow, BLOCK, 1.0, R, BLOCK, x.val,
+                x.nrow > 1 ? (int)x.nrow : 1);
+    block_return(X, &x);
+}
+
+/* R'R = W'M W, upper; the same in every rank, as the sum is. */
+static ritz_status factor_gram(rank_lanczos *z, ritz_dense *R)
+{
+    RITZ_CHECK(block_product(z->W, z->MW, R));
+    ranks_share(R->val, (int64_t)BLOCK * BLOCK * (int64_t)sizeof *R->val);
+    z->broken =
+        LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', BLOCK, R->val, BLOCK) != 0;
+    for (int64_t j = 0; j < BLOCK; j++)
+        for (int64_t i = j + 1; i < BLOCK; i++)
+            R->val[i + j * BLOCK] = 0.0;
+    return RITZ_OK;
+}
+
+/* W = V_(m+1) B: W and M W become those of V_(m+1), twice for rounding. */
+static ritz_status orthonormalise_block(rank_lanczos *z)
+{
+    RITZ_OWN(ritz_dense) R = {0}, again = {0};
+
+    RITZ_CHECK(factor_gram(z, &R));
+    if (z->broken)
+        return RITZ_OK;
+    divide_columns(z->W, R.val);
+    divide_columns(z->MW, R.val);
+    RITZ_CHECK(factor_gram(z, &again));
+    if (z->broken)
+        return RITZ_OK;
+    divide_columns(z->W, again.val);
+    divide_columns(z->MW, again.val);
+    cblas_dtrmm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans,
+                CblasNonUnit, BLOCK, BLOCK, 1.0, again.val, BLOCK, R.val,
+                BLOCK);
+    memcpy(z->B.val, R.val, (size_t)BLOCK * BLOCK * sizeof *R.val);
+    return RITZ_OK;
+}
+
+/* W becomes block m + 1 of V, and M W the next right-hand sides. */
+static void append_block(rank_lanczos *z, int64_t count)
+{
+    ritz_dense W = block_take(z->W);
+
+    memcpy(ritz_dense_col(&z->V, count), W.val,
+           (size_t)(W.nrow * BLOCK) * sizeof *W.val);
+    block_return(z->W, &W);
+    ranks_expect(MatCopy(z->MW, z->Y, SAME_NONZERO_PATTERN));
+}
+
+/* B_m below the diagonal of T, once block m + 1 is taken into it. */
+static void keep_coupling(rank_lanczos *z, int64_t count)
+{
+    for (int64_t j = 0; j < BLOCK; j++)
+        for (int64_t i = 0; i <= j; i++)
+            ritz_dense_col(&z->T, count - BLOCK + j)[count + i] =
+                ritz_dense_col(&z->B, j)[i];
+}
+
+/* The first block: from vectors without structure, in the range of OP. */
+static ritz_status begin(rank_lanczos *z)
+{
+    block_new(z->p->K, BLOCK, &z->W);
+    block_new(z->p->K, BLOCK, &z->Y);
+    for (int64_t j = 0; j < BLOCK; j++) {
+        Vec x = NULL;
+
+        ranks_expect(MatDenseGetColumnVecWrite(z->W, (PetscInt)j, &x));
+        rows_fill(x, j);
+        ranks_expect(MatDenseRestoreColumnVecWrite(z->W, (PetscInt)j, &x));
+    }
+    multiply_mass(z);
+    ranks_expect(MatCopy(z->MW, z->Y, SAME_NONZERO_PATTERN));
+    rank_pencil_solve(z->p, z->Y, z->W);
+    multiply_mass(z);
+    RITZ_CHECK(orthonormalise_block(z));
+    append_block(z, 0);
+    return RITZ_OK;
+}
+
+/* One more block: z->count grows by eight. */
+static ritz_status extend(rank_lanczos *z, double *h)
+{
+    const int64_t count = z->count + BLOCK;
+
+    if (z->count > 0)
+        keep_coupling(z, z->count);
+    rank_pencil_solve(z->p, z->Y, z->W);
+    for (int pass = 0; pass < 2; pass++) {
+        multiply_mass(z);
+        remove_parts(z, count, h);
+        keep_diagonal(z, count, h);
+    }
+    multiply_mass(z);
+    RITZ_CHECK(orthonormalise_block(z));
+    if (!z->broken)
+        append_block(z, count);
+    z->count = count;
+    return RITZ_OK;
+}
+
+/* --- pairs of T ----------------------------------------------------------- */
+
+/* In rank 0: the `ask` pairs of T with the largest theta, largest first. */
+static ritz_status solve_small(rank_lanczos *z)
+{
+    const int64_t m = z->count;
+    RITZ_OWN(ritz_dense) A = {0};
+    RITZ_OWN_ARRAY double *value = NULL;
+
+    RITZ_CHECK(ritz_dense_new(m, m, &A));
+    RITZ_CHECK_NEW(value, m);
+    for (int64_t j = 0; j < m; j++)
+        memcpy(ritz_dense_col(&A, j), ritz_dense_col(&z->T, j),
+               (size_t)m * sizeof *A.val);
+    RITZ_REFUSE_IF(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', (int)m, A.val,
+                                  (int)m, value) != 0,
+                   RITZ_ERR_CONVERGENCE,
+                   "eigenvalues of a small matrix did not converge");
+    for (int64_t k = 0; k < z->ask; k++) {
+        z->theta[k] = value[m - 1 - k];
+        memcpy(ritz_dense_col(&z->S, k), ritz_dense_col(&A, m - 1 - k),
+               (size_t)m * sizeof *A.val);
+    }
+    return RITZ_OK;
+}
+
+/* B_m s_m of pair k: what OP x has along block m + 1. */
+static void find_remainder(const rank_lanczos *z, int64_t k, double rest[BLOCK])
+{
+    const double *s = ritz_dense_col(&z->S, k) + z->count - BLOCK;
+
+    for (int64_t i = 0; i < BLOCK; i++) {
+        rest[i] = 0.0;
+        for (int64_t j = i; j < BLOCK; j++)
+            rest[i] += ritz_dense_col(&z->B, j)[i] * s[j];
+    }
+}
+
+static bool is_settled(const rank_lanczos *z)
+{
+    for (int64_t k = 0; k < z->ask; k++) {
+        double rest[BLOCK];
+
+        find_remainder(z, k, rest);
+        if (!(cblas_dnrm2(BLOCK, rest, 1) <= RITZ_KRYLOV_SETTLED * z->theta[k]))
+            return false;
+    }
+    return true;
+}
+
+/* The same pairs in every rank. */
+static ritz_status find_ritz_pairs(rank_lanczos *z)
+{
+    ritz_status status = RITZ_OK;
+
+    if (ranks_own() == 0)
+        status = solve_small(z);
+    RANKS_CHECK(status);
+    ranks_share(z->theta, z->ask * (int64_t)sizeof *z->theta);
+    ranks_share(z->S.val, z->S.nrow * z->S.ncol * (int64_t)sizeof *z->S.val);
+    return RITZ_OK;
+}
+
+/* X = (V S theta + V_(m+1) B_m S_m) / theta, and lambda. */
+static ritz_status combine_vectors(const rank_lanczos *z, Mat X, double *lambda)
+{
+    const int64_t m = z->count + BLOCK;
+    RITZ_OWN(ritz_dense) C = {0};
+    ritz_dense x = {0};
+    const int n = (int)z->V.nrow;
+    const int ld = n > 1 ? n : 1;
+
+    RANKS_CHECK(ritz_dense_new(m, z->ask, &C));
+    for (int64_t k = 0; k < z->ask; k++) {
+        double *c = ritz_dense_col(&C, k);
+
+        lambda[k] = z->p->sigma + 1.0 / z->theta[k];
+        memcpy(c, ritz_dense_col(&z->S, k), (size_t)z->count * sizeof *c);
+        find_remainder(z, k, c + z->count);
+        for (int64_t i = z->count; i < m; i++)
+            c[i] /= z->theta[k];
+    }
+    x = block_take(X);
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n, (int)z->ask,
+                (int)m, 1.0, z->V.val, ld, C.val, (int)m, 0.0, x.val, ld);
+    block_return(X, &x);
+    return RITZ_OK;
+}
+
+/* --- all ------------------------------------------------------------------ */
+
+static ritz_status allocate(rank_lanczos *z)
+{
+    PetscInt own = 0;
+
+    ranks_expect(MatGetLocalSize(z->p->K, &own, NULL));
+    RITZ_CHECK(ritz_dense_new(own, z->most + BLOCK, &z->V));
+    RITZ_CHECK(ritz_dense_new(z->most, z->most, &z->T));
+    RITZ_CHECK(ritz_dense_new(BLOCK, BLOCK, &z->B));
+    RITZ_CHECK(ritz_dense_new(z->most, z->ask, &z->S));
+    RITZ_CHECK_NEW(z->theta, z->ask);
+    return RITZ_OK;
+}
+
+/* Blocks until the pairs are settled, or there is no room. */
+static ritz_status iterate(rank_lanczos *z, bool *settled)
+{
+    const int64_t first = z->ask + z->ask / 2 + BLOCK;
+    RITZ_OWN_ARRAY double *h = NULL;
+    int steps = 0;
+
+    RANKS_CHECK_NEW(h, z->most * BLOCK);
+    RITZ_CHECK(begin(z));
+    while (!z->broken && !*settled && z->count + BLOCK <= z->most) {
+        RITZ_CHECK(extend(z, h));
+        ritz_monitor_step("eigenvectors", ++steps, 0);
+        if (z->broken || z->count < first || steps % 2 != 0)
+            continue;
+        RITZ_CHECK(find_ritz_pairs(z));
+        *settled = is_settled(z);
+    }
+    return RITZ_OK;
+}
+
+ritz_status lanczos_lowest(const rank_pencil *p, int64_t ask, Mat *X,
+                           double **lambda, int64_t *found)
+{
+    const int64_t room = 3 * ask + SPARE_VECTORS;
+    RITZ_OWN(rank_lanczos) z = {.p = p, .ask = ask};
+    bool settled = false;
+
+    *found = 0;
+    z.most = room < p->heavy - BLOCK ? room : p->heavy - BLOCK;
+    z.most -= z.most % BLOCK;
+    if (z.most < 2 * ask)
+        return RITZ_OK;
+    RANKS_CHECK(allocate(&z));
+    RITZ_CHECK(iterate(&z, &settled));
+    if (!settled)
+        return RITZ_OK;
+    RANKS_CHECK_NEW(*lambda, ask);
+    block_new(p->K, ask, X);
+    RITZ_CHECK(combine_vectors(&z, *X, *lambda));
+    *found = ask;
+    return RITZ_OK;
+}

@@ -1,0 +1,128 @@
+#define _DEFAULT_SOURCE /* NOLINT: declares usleep */
+
+#include "ranks.h"
+
+#include "cli/cli.h"
+
+#include <slepceps.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SENTENCE = 1024, WAIT = 300000 };
+
+int ranks_own(void)
+{
+    int rank = 0;
+
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    return rank;
+}
+
+int ranks_count(void)
+{
+    int count = 1;
+
+    MPI_Comm_size(PETSC_COMM_WORLD, &count);
+    return count;
+}
+
+void ranks_abort(void)
+{
+    MPI_Abort(MPI_COMM_WORLD, EXIT_FAILURE);
+    _exit(EXIT_FAILURE);
+}
+
+/*
+ * Called by PETSc where an error begins. If all ranks come here, rank 0 is the
+ * first, and ends the others before they can say the same.
+ */
+/* NOLINTNEXTLINE(readability-function-size): PETSc's parameters */
+static PetscErrorCode complain_once(MPI_Comm comm, int line,
+                                    const char *function, const char *file,
+                                    PetscErrorCode code, PetscErrorType type,
+                                    const char *sentence, void *context)
+{
+    (void)comm;
+    (void)line;
+    (void)file;
+    (void)type;
+    (void)context;
+    if (ranks_own() > 0)
+        usleep(WAIT);
+    cli_complain("ritz-basis: %s: PETSc fails in %s, rank %d: %s\n",
+                 code == PETSC_ERR_MEM ? "no memory" : "engine slepc",
+                 function ? function : "a function", ranks_own(),
+                 sentence ? sentence : "no reason is given");
+    ranks_abort();
+}
+
+void ranks_start(void)
+{
+    static char name[] = "ritz-basis-slepc";
+    static char *names[] = {name, NULL};
+    char **arguments = names;
+    int count = 1;
+
+    if (PetscOptionsSetValue(NULL, "-no_signal_handler", NULL) != 0 ||
+        SlepcInitialize(&count, &arguments, NULL, NULL) != 0 ||
+        PetscPushErrorHandler(complain_once, NULL) != 0) {
+        cli_complain("ritz-basis: PETSc and SLEPc do not start\n");
+        _exit(EXIT_FAILURE);
+    }
+}
+
+void ranks_stop(void)
+{
+    ranks_expect(PetscPopErrorHandler());
+    ranks_expect(SlepcFinalize());
+}
+
+void ranks_expect(PetscErrorCode code)
+{
+    if (code != 0)
+        ranks_abort();
+}
+
+ritz_status ranks_agree(ritz_status own)
+{
+    char sentence[SENTENCE] = "";
+    int first = own == RITZ_OK ? ranks_count() : ranks_own();
+    int status = (int)own;
+
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD);
+    if (first == ranks_count())
+        return RITZ_OK;
+    if (first == ranks_own())
+        snprintf(sentence, sizeof sentence, "%s", ritz_error_message());
+    MPI_Bcast(sentence, SENTENCE, MPI_CHAR, first, PETSC_COMM_WORLD);
+    MPI_Bcast(&status, 1, MPI_INT, first, PETSC_COMM_WORLD);
+    if (first != ranks_own())
+        ritz_record("%s", sentence);
+    return (ritz_status)status;
+}
+
+void ranks_share(void *bytes, int64_t count)
+{
+    enum { PIECE = 1 << 30 };
+    char *at = bytes;
+
+    for (; count > 0; count -= PIECE, at += PIECE)
+        MPI_Bcast(at, count < PIECE ? (int)count : PIECE, MPI_BYTE, 0,
+                  PETSC_COMM_WORLD);
+}
+
+void ranks_sum(double *values, int64_t count)
+{
+    MPI_Allreduce(MPI_IN_PLACE, values, (int)count, MPI_DOUBLE, MPI_SUM,
+                  PETSC_COMM_WORLD);
+}
+
+int64_t ranks_total(int64_t own)
+{
+    int64_t total = own;
+
+    MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPI_INT64_T, MPI_SUM,
+                  PETSC_COMM_WORLD);
+    return total;
+}

@@ -1,0 +1,132 @@
+#!/bin/sh
+# slepc.sh FOLDER-OF-THE-TOOLS - ritz-basis --engine slepc on 1, 2 and 4 ranks:
+# bases agree with those of one process, and what fails fails once, in all.
+. "$(dirname "$0")/tap.sh"
+
+# Open MPI refuses root and more ranks than cores, unless it is told
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
+program=$bin/../libexec/ritz/ritz-basis-slepc
+check() { /usr/bin/python3 -s "$here/slepc.py" "$@"; }
+ranks() { number=$1 && shift && mpirun -n "$number" ritz-basis "$@"; }
+
+# A build without PETSc says what is missing, and nothing is written.
+if [ ! -x "$program" ]; then
+    expect 1 'Debian'"'"'s packages slepc-dev, petsc-dev and mpi-default-dev' \
+        ritz-basis craig-bampton --modes 3 --engine slepc none.h5 -o out.h5
+    works 'and writes nothing' test ! -e out.h5
+    echo "1..$count"
+    exit 0
+fi
+
+# the parallel MUMPS, and no symbol of the sequential one
+works 'it is not linked with the sequential MUMPS' sh -c '
+    ldd "$1" >libraries && ! grep -E "mumps_seq|mpiseq|hdf5_serial" libraries &&
+    grep -q "libdmumps-" libraries && nm "$1" >symbols &&
+    ! grep -iE " [TtDdBb] (dmumps_|zmumps_|mpi_init|mpi_comm_rank)" symbols' - \
+    "$program"
+
+# A square whose rim is the port: its interior has every eigenvalue but those of
+# the diagonal twice, 400 dofs, more than are solved by rank 0 alone.
+side=22
+rim=1-$side,$((side * (side - 1) + 1))-$((side * side))
+k=$((side + 1))
+while [ $k -lt $((side * (side - 1))) ]; do
+    rim=$rim,$k,$((k + side - 1))
+    k=$((k + side))
+done
+works 'a membrane is made' check membrane $side
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --port "rim=$rim:3" --port corner=1:3 --port "last=$((side * side)):3" -o m.h5
+fixed='-q craig-bampton --attach rim m.h5'
+# shellcheck disable=SC2086 # words
+{
+    expect 0 '' ritz-basis $fixed --modes 12 -o 0.h5
+    for n in 1 2 4; do
+        expect 0 '' ranks $n $fixed --modes 12 --engine slepc -o $n.h5
+    done
+    works 'bases agree on 1, 2 and 4 ranks' check same 0.h5 1.h5 2.h5 4.h5
+    # of one rank: with more, MUMPS decides while it runs who adds what
+    expect 0 '' ritz-basis $fixed --modes 12 --engine slepc -o again.h5
+    works 'the same bits again' sh -c 'ritz-info 1.h5 | grep sha256 >a &&
+        ritz-info again.h5 | grep sha256 >b && diff a b'
+    expect 0 '' ritz-basis $fixed --up-to-hz 0.09 -o 0.h5
+    expect 0 '' ranks 2 $fixed --up-to-hz 0.09 --engine slepc -o 2.h5
+    works 'up to a frequency' check same 0.h5 2.h5
+    expect 0 '' ritz-basis $fixed --modes 390 -o 0.h5
+    expect 0 '' ranks 2 $fixed --modes 390 --engine slepc -o 2.h5
+    works 'so many that rank 0 finds them alone' check same 0.h5 2.h5
+}
+expect 0 '' ritz-reduce -q m.h5 4.h5 -o reduced.h5
+
+# free, with a rigid mode; no mpirun is one rank
+expect 0 '' ritz-basis -q normal-modes --modes 8 m.h5 -o 0.h5
+expect 0 '' ritz-basis -q normal-modes --modes 8 --engine slepc m.h5 -o 1.h5
+expect 0 '' ranks 2 -q normal-modes --modes 8 --engine slepc m.h5 -o 2.h5
+works 'free bodies agree' check same 0.h5 1.h5 2.h5
+
+# few masses: Krylov spaces end early
+works 'a membrane of few masses is made' check membrane $side 7
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --port "corner=1:3" -o few.h5
+expect 0 '' ritz-basis -q craig-bampton --modes 20 few.h5 -o 0.h5
+expect 0 '' ranks 2 -q craig-bampton --modes 20 --engine slepc few.h5 -o 2.h5
+works 'a mass of low rank' check same 0.h5 2.h5
+
+# fewer rows than ranks, and none
+works 'nine dofs are made' check membrane 3
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --port most=1-8:3 --port all=1-9:3 -o nine.h5
+for port in most all; do
+    expect 0 '' ritz-basis -q craig-bampton --modes 2 --attach $port nine.h5 \
+        -o 0.h5
+    expect 0 '' ranks 4 -q craig-bampton --modes 2 --attach $port \
+        --engine slepc nine.h5 -o 4.h5
+    works "$port of nine dofs held" check same 0.h5 4.h5
+done
+
+# Failures are told once, with the status of one process, and nothing is left.
+fails() {
+    rm -f out.h5
+    expect "$@" -o out.h5
+    cp log said
+    works '  once, and nothing is written' sh -c 'cat said
+        test "$(grep -c "^ritz-basis:" said)" = 1 &&
+        test -z "$(ls -A | grep out.h5)"'
+}
+fails 1 'a rigid-body motion or mechanism left free? with the attached dofs held, 1 motion(s) cost no energy' \
+    ranks 2 craig-bampton --modes 3 --attach '' --engine slepc m.h5
+fails 1 'finds bases of craig-bampton and normal-modes, not of macneal' \
+    ranks 2 macneal --modes 3 --engine slepc m.h5
+fails 1 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
+    --modes 3 --interface-modes 2 --engine slepc m.h5
+fails 2 "no method 'craig'" ranks 2 craig --modes 3 --engine slepc m.h5
+fails 1 'makes no static vectors of inputs, outputs or dampers' \
+    ritz-basis craig-bampton --modes 3 --loads inputs --engine slepc m.h5
+# the last rank alone finds this entry
+cp m.h5 bad.h5
+check damage bad.h5 -1 nan unsealed
+fails 1 'bad.h5: K: entry' ranks 4 craig-bampton --modes 3 --engine slepc bad.h5
+cp m.h5 bad.h5
+check damage bad.h5 0 7
+fails 1 "K: 'data' is damaged: its checksum does not fit" ranks 2 \
+    craig-bampton --modes 3 --engine slepc bad.h5
+cp m.h5 bad.h5
+check damage bad.h5 1166 -7 unsealed
+fails 1 'K is unsymmetric by' ranks 2 craig-bampton --modes 3 --attach corner \
+    --engine slepc bad.h5
+cp m.h5 bad.h5
+check damage bad.h5 -2 -7 unsealed
+fails 1 'K is unsymmetric: its column of an attached dof' ranks 2 \
+    craig-bampton --modes 3 --attach last --engine slepc bad.h5
+
+# ended by the keyboard, wherever it is: the whole file, or none and no part
+for seconds in 0.4 0.6; do
+    timeout -s INT $seconds mpirun -n 2 ritz-basis -q craig-bampton --modes 12 \
+        --engine slepc m.h5 -o int.h5 >log 2>&1 || true
+    works "an end after $seconds s leaves no part of a file" sh -c '
+        left=$(ls -A | grep int.h5 || true)
+        test -z "$left" || { test "$left" = int.h5 && ritz-info int.h5; }'
+done
+
+echo "1..$count"

@@ -1,0 +1,115 @@
+#define _GNU_SOURCE /* NOLINT: declares sched_getaffinity */
+
+#include "cli/libexec.h"
+
+#include "base/text.h"
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The way to libexec from the folder of the program itself, which is that of
+   the tools or, if it has the same name, libexec. */
+static const char *choose_way(const char *folder)
+{
+    static const char from_tools[] = "/" RITZ_LIBEXEC "/";
+    const char *last = strrchr(folder, '/');
+
+    return last && strcmp(last, strrchr("/" RITZ_LIBEXEC, '/')) == 0
+               ? "/"
+               : from_tools;
+}
+
+ritz_status libexec_find(const char *name, char out[PATH_MAX])
+{
+    char self[PATH_MAX];
+    const ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+    char *slash = NULL;
+
+    RITZ_REFUSE_IF(length <= 0, RITZ_ERR_FILE, "there is no /proc: %s",
+                   strerror(errno));
+    self[length] = '\0';
+    slash = strrchr(self, '/');
+    if (slash)
+        *slash = '\0';
+    RITZ_REFUSE_IF(!slash || snprintf(out, PATH_MAX, "%s%s%s", self,
+                                      choose_way(self), name) >= PATH_MAX,
+                   RITZ_ERR_FILE, "no path to %s", name);
+    RITZ_REFUSE_IF(access(out, X_OK) != 0, RITZ_ERR_FILE,
+                   "'%s', which a tool is installed with, is not there to be "
+                   "run: %s",
+                   out, strerror(errno));
+    return RITZ_OK;
+}
+
+bool libexec_is_asked(char **argv, const char *option, const char *value)
+{
+    for (char **word = argv; *word; word++)
+        if (strcmp(*word, option) == 0 && word[1] &&
+            strcmp(word[1], value) == 0)
+            return true;
+    return false;
+}
+
+/* A number that a starter of processes leaves in the environment; -1: none. */
+static int64_t find_number(const char *const *names)
+{
+    for (; *names; names++) {
+        const char *text = getenv(*names);
+        int64_t number = 0;
+
+        if (text && ritz_text_whole(text, &number))
+            return number;
+    }
+    return -1;
+}
+
+/* As Open MPI, MPICH and SLURM call them. */
+static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK",
+                                    "SLURM_PROCID", NULL};
+static const char *const neighbours[] = {"OMPI_COMM_WORLD_LOCAL_SIZE",
+                                         "MPI_LOCALNRANKS",
+                                         "SLURM_TASKS_PER_NODE", NULL};
+
+/* The cores that are this process' own: those it is bound to, or its part. */
+static int64_t count_cores(void)
+{
+    const int64_t beside = find_number(neighbours);
+    const int64_t all = sysconf(_SC_NPROCESSORS_ONLN);
+    const int64_t part = beside > 1 ? all / beside : all;
+    cpu_set_t bound;
+    int64_t cores = part;
+
+    if (sched_getaffinity(0, sizeof bound, &bound) == 0 &&
+        CPU_COUNT(&bound) < cores)
+        cores = CPU_COUNT(&bound);
+    return cores > 1 ? cores : 1;
+}
+
+/* OpenMP reads its environment when a program starts. */
+static bool set_threads(void)
+{
+    char cores[24];
+
+    snprintf(cores, sizeof cores, "%lld", (long long)count_cores());
+    return setenv("OMP_THREAD_LIMIT", cores, 0) == 0 &&
+           setenv("OMP_NUM_THREADS", cores, 0) == 0 &&
+           setenv("OMP_WAIT_POLICY", "passive", 0) == 0;
+}
+
+int libexec_become(const char *program, char **argv, const char *tool,
+                   const char *option, const char *packages)
+{
+    char path[PATH_MAX];
+
+    if (libexec_find(program, path) == RITZ_OK && set_threads())
+        execv(path, argv);
+    if (find_number(ranks) <= 0)
+        cli_complain("%s: %s needs %s, which is built where Debian's packages "
+                     "%s are installed, and is not there to be run\n",
+                     tool, option, program, packages);
+    return EXIT_FAILURE;
+}
