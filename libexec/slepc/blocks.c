@@ -1,8 +1,10 @@
 #include "blocks.h"
 
 #include "base/alloc.h"
+#include "base/tolerances.h"
 #include "ranks.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -247,6 +249,130 @@ ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
         scale = fmax(scale, s[ENERGY]);
     }
     P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
+    return RITZ_OK;
+}
+
+/* --- quotients ------------------------------------------------------------ */
+
+/* The rows of a matrix that this rank has: its own columns, and those of other
+   ranks, of which x must be fetched. */
+typedef struct local_rows {
+    Mat part;
+    PetscInt rows;
+    const PetscInt *start, *column;
+    const double *value;
+} local_rows;
+
+static void take_rows(Mat part, local_rows *out)
+{
+    PetscBool done = PETSC_FALSE;
+
+    out->part = part;
+    ranks_expect(MatGetRowIJ(part, 0, PETSC_FALSE, PETSC_FALSE, &out->rows,
+                             &out->start, &out->column, &done));
+    ranks_expect(MatSeqAIJGetArrayRead(part, &out->value));
+}
+
+static void return_rows(local_rows *r)
+{
+    PetscBool done = PETSC_FALSE;
+
+    ranks_expect(MatSeqAIJRestoreArrayRead(r->part, &r->value));
+    ranks_expect(MatRestoreRowIJ(r->part, 0, PETSC_FALSE, PETSC_FALSE, &r->rows,
+                                 &r->start, &r->column, &done));
+}
+
+/* x'A y of these rows, |x|'|A||y|; 64 bits of a product and a sum, not 53. */
+static void sum_energy(const local_rows *r, const double *x, const double *y,
+                       long double *energy, double *size)
+{
+    for (PetscInt i = 0; i < r->rows; i++) {
+        long double sum = 0.0L;
+
+        for (PetscInt k = r->start[i]; k < r->start[i + 1]; k++) {
+            const long double part =
+                (long double)r->value[k] * (long double)y[r->column[k]];
+
+            sum += part;
+            *size += fabs((double)part * x[i]);
+        }
+        *energy += (long double)x[i] * sum;
+    }
+}
+
+/* x'A x, in two doubles, and |x|'|A||x| over all ranks. */
+static void find_energy(const local_rows part[2], Vec x, VecScatter fetch,
+                        Vec others, double out[3])
+{
+    const double *own = NULL;
+    const double *far = NULL;
+    long double energy = 0.0L;
+
+    out[2] = 0.0;
+    ranks_expect(
+        VecScatterBegin(fetch, x, others, INSERT_VALUES, SCATTER_FORWARD));
+    ranks_expect(
+        VecScatterEnd(fetch, x, others, INSERT_VALUES, SCATTER_FORWARD));
+    ranks_expect(VecGetArrayRead(x, &own));
+    ranks_expect(VecGetArrayRead(others, &far));
+    sum_energy(&part[0], own, own, &energy, &out[2]);
+    sum_energy(&part[1], own, far, &energy, &out[2]);
+    ranks_expect(VecRestoreArrayRead(others, &far));
+    ranks_expect(VecRestoreArrayRead(x, &own));
+    out[0] = (double)energy;
+    out[1] = (double)(energy - (long double)out[0]);
+    ranks_sum(out, 3);
+}
+
+/* Quotients of the columns one by one, the lowest first, up to one that has not
+   lost digits. x'M x = 1. */
+static void sharpen_columns(const local_rows part[2], Mat X, VecScatter fetch,
+                            Vec others, ritz_pairs *P)
+{
+    bool lost = true;
+
+    for (int64_t j = P->num_rigid; lost && j < P->Phi.ncol; j++) {
+        double energy[3];
+        Vec x = NULL;
+
+        ranks_expect(MatDenseGetColumnVecRead(X, (PetscInt)j, &x));
+        find_energy(part, x, fetch, others, energy);
+        ranks_expect(MatDenseRestoreColumnVecRead(X, (PetscInt)j, &x));
+        lost = energy[2] * DBL_EPSILON > RITZ_DIGITS_LOST * P->lambda[j];
+        if (lost)
+            P->lambda[j] = energy[0] + energy[1];
+        if (j > 0)
+            P->lambda[j] = fmax(P->lambda[j], P->lambda[j - 1]);
+    }
+}
+
+ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P)
+{
+    Mat parts[2] = {NULL, NULL};
+    const PetscInt *columns = NULL;
+    local_rows part[2];
+    VecScatter fetch = NULL;
+    PetscInt count = 0;
+    Vec x = NULL;
+    Vec others = NULL;
+    IS from = NULL;
+
+    ranks_expect(MatMPIAIJGetSeqAIJ(p->K, &parts[0], &parts[1], &columns));
+    ranks_expect(MatGetSize(parts[1], NULL, &count));
+    ranks_expect(MatCreateVecs(p->K, &x, NULL));
+    ranks_expect(VecCreateSeq(PETSC_COMM_SELF, count, &others));
+    ranks_expect(ISCreateGeneral(PETSC_COMM_SELF, count, columns,
+                                 PETSC_COPY_VALUES, &from));
+    ranks_expect(VecScatterCreate(x, from, others, NULL, &fetch));
+    for (int k = 0; k < 2; k++)
+        take_rows(parts[k], &part[k]);
+    sharpen_columns(part, X, fetch, others, P);
+    for (int k = 0; k < 2; k++)
+        return_rows(&part[k]);
+    ranks_expect(VecScatterDestroy(&fetch));
+    ranks_expect(ISDestroy(&from));
+    ranks_expect(VecDestroy(&others));
+    ranks_expect(VecDestroy(&x));
     return RITZ_OK;
 }
 

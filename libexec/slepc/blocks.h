@@ -38,6 +38,14 @@ ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda);
 ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
                          double *worst);
 
+/**
+ * Eigenvalues that have lost digits, as those of thin plates do, anew by
+ * x'K x / x'M x with sums of more digits: they carry the rounding of the factor,
+ * which differs from one number of ranks to another, and the quotient errs by
+ * the square of that. Collective.
+ */
+ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P);
+
 /** The first columns one after the other, all rows of each, in rank 0, where
  * @p take gets them. Collective. */
 ritz_status block_gather(Mat X, int64_t count,

@@ -191,7 +191,7 @@ static ritz_status refine_pairs(rank_search *s)
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
                    "a residual of %.1e stays above %.0e", worst,
                    RITZ_EIGEN_RESIDUAL);
-    return RITZ_OK;
+    return block_sharpen(s->p, s->found.X, P);
 }
 
 /* Vectors that a Krylov space of so many pairs has room for. */

@@ -271,6 +271,9 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
+/* Rounding of x'K x, relative to lambda, above which an eigenvalue is summed
+   anew with more digits: another number of ranks may change the 13th digit. */
+#define RITZ_DIGITS_LOST 1e-13
 /* Convergence of SLEPc's Krylov-Schur: an inverse iteration follows. */
 #define RITZ_KRYLOV_SETTLED 1e-10
 /* A Ritz pair of block Lanczos has converged if |A^-1 M x - theta x| is at most
