@@ -512,9 +512,10 @@ ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below)
 
     RITZ_REFUSE_IF(!isfinite(tau), RITZ_ERR_ARGUMENT,
                    "modes below %g cannot be counted", tau);
-    *below = 0;
-    if (F->n == 0)
+    if (F->n == 0) {
+        *below = 0;
         return RITZ_OK;
+    }
     memset(F->val, 0, (size_t)F->nnz * sizeof *F->val);
     add_values(&F->A[0], 1.0, F);
     add_values(&F->A[1], -tau, F);
@@ -522,7 +523,8 @@ ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below)
     status = analyse_pattern(F);
     if (status == RITZ_OK)
         status = factor_values(F);
-    *below = F->id.d.infog[NEGATIVE_PIVOTS];
+    if (status == RITZ_OK)
+        *below = F->id.d.infog[NEGATIVE_PIVOTS];
     end_mumps(F);
     return status;
 }
