@@ -153,7 +153,8 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
         assess_eight(&a, threads, P->residual + first, &scale);
     }
     for (int64_t j = 0; j < P->Phi.ncol; j++)
-        *worst = P->residual[j] <= *worst ? *worst : P->residual[j];
+        if (!isnan(*worst) && !(P->residual[j] <= *worst))
+            *worst = P->residual[j];
     P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
     return RITZ_OK;
 }

@@ -175,11 +175,35 @@ static void one_counter_counts_below_many_values(void **state)
     ritz_counter_free(&counter);
 }
 
+/* K = M = I, the first of two vectors not a number. */
+static void worst_residual_is_nan_if_any_residual_is(void **state)
+{
+    const int64_t at[] = {0, 1};
+    const double ones[] = {1.0, 1.0};
+    double lambda[] = {1.0, 1.0}, residual[2] = {0};
+    RITZ_OWN(ritz_sparse) I = {0};
+    RITZ_OWN(ritz_dense) Phi = {0};
+    ritz_pairs pairs = {.lambda = lambda, .residual = residual};
+    double worst = 0.0;
+
+    (void)state;
+    assert_ok(ritz_sparse_from_triplets(2, 2, 2, at, at, ones, &I));
+    assert_ok(ritz_dense_new(2, 2, &Phi));
+    Phi.val[0] = (double)NAN;
+    Phi.val[3] = 1.0;
+    pairs.Phi = Phi;
+    assert_ok(ritz_pairs_assess(&I, &I, &pairs, &worst));
+    assert_true(isnan(residual[0]));
+    assert_true(residual[1] == 0.0);
+    assert_true(isnan(worst));
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(any_threads_and_any_kernel_multiply),
     cmocka_unit_test(energy_terms_are_sums_of_magnitudes),
     cmocka_unit_test(large_submatrices_follow_their_lists),
     cmocka_unit_test(one_counter_counts_below_many_values),
+    cmocka_unit_test(worst_residual_is_nan_if_any_residual_is),
 };
 
 TEST_MODULE(products, tests, NULL, NULL)
