@@ -9,8 +9,8 @@ int main(int argc, char **argv)
                  "band of the error estimates [up to half the highest "
                  "frequency of the basis]"),
         CLI_WORD("estimates", &given.estimates, "all|frequency|none",
-                 "errors that are estimated: of frequencies and responses, of "
-                 "frequencies alone, or none [all]"),
+                 "which errors to estimate: of frequencies and responses, of "
+                 "frequencies only, or none [all]"),
         AT_OPTION(&given.model.at),
         ORDER_OPTION(&given.model.order),
         DAMPING_OPTION(&given.model.damping),

@@ -304,7 +304,7 @@ typedef struct ritz_estimate_request {
     double band_hz[2];    /* [0, 0]: up to half the highest frequency of the
                              basis */
     ritz_damping damping; /* of responses; none: no response is bounded */
-    bool frequencies;     /* frequencies alone: no response is bounded */
+    bool frequencies;     /* estimate frequencies only, no response */
 } ritz_estimate_request;
 
 /* The factors of one full component, made once for many reductions of it. */

@@ -50,7 +50,8 @@ static inline int64_t ritz_upper_bound(int64_t count, const double *sorted,
     return low;
 }
 
-/** fmax(@p a, @p b) without a call; @p a where @p b is not a number. */
+/** The larger of @p a and @p b; @p a if either is not a number, unlike fmax(),
+ * which is a call of the C library and too slow for long loops. */
 static inline double ritz_larger(double a, double b)
 {
     return b > a ? b : a;

@@ -743,11 +743,13 @@
 #define RITZ_GOOD_RATIO 3.0
 /* Relative error above which a mode is in no known gap. */
 #define RITZ_COARSE_ERROR 0.1
-/* The first count lies between the first two multiples of the band's end, in
-   lambda, or else below the third; a count for responses lies between the third
-   and the fourth. Nearer, bounds are loose; further off, a reduced model misses
-   modes, and as many counts more are spent on where (S10 and P50 of the
-   benchmarks: 4 and 3 counts up to 3 times, 7 and 5 up to 8 times). */
+/* Shifts rho of counts, as multiples of the highest eigenvalue in the band. The
+   first count lies between NEAR and OFF, or between NEAR and FAR if no gap of
+   the reduced spectrum is found there; a count for responses lies between FAR
+   and FARTHEST. A smaller rho makes bounds loose. Below a larger one the reduced
+   model has fewer modes than the full one, and finding the missing ones takes
+   further counts: models S10 and P50 of the benchmarks take 4 and 3 counts with
+   rho up to OFF, 7 and 5 with rho up to FAR. */
 #define RITZ_COUNT_NEAR     2.0
 #define RITZ_COUNT_OFF      3.0
 #define RITZ_COUNT_FAR      8.0

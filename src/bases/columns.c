@@ -108,7 +108,7 @@ typedef struct load_view {
     int64_t stride;
 } load_view;
 
-/* x := the load, x zero before. */
+/* x := the load vector; x is zero on entry. */
 static void take_load(const load_view *load, int64_t n, double *x)
 {
     if (load->row >= 0)

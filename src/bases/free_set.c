@@ -39,8 +39,10 @@ void ritz_free_set_free(ritz_free_set *set)
  * A well conditioned. If that mode is not kept, its frequency is computed here;
  * if there is none, the shift follows from the magnitude of the matrices.
  *
- * *slow: sweeps in which the change may stay as it is. None where the mode is
- * known, as each sweep leaves RITZ_SHIFT_OF_FIRST of the error at most.
+ * *slow: after how many sweeps a change that has not halved is taken for
+ * rounding. After none if the lowest flexible mode is known, as each sweep then
+ * multiplies the error by RITZ_SHIFT_OF_FIRST or less; after SLOW_SWEEPS if the
+ * shift is a guess, as first sweeps may then converge slowly.
  */
 static ritz_status choose_shift(const ritz_component *component,
                                 const ritz_pairs *modes, double *out, int *slow)

@@ -29,7 +29,7 @@ struct ritz_estimator {
     ritz_estimate_request request;
     double sigma;
     ritz_factor *A;        /* factor of K - sigma M; NULL: not made yet */
-    ritz_counter *counter; /* NULL: nothing was counted yet */
+    ritz_counter *counter; /* NULL: no count was made yet */
     int64_t num_factors;   /* number of factorisations made for counts */
     int64_t num_counts;
     ritz_counted count[RITZ_MOST_COUNTS]; /* rho ascends */
@@ -52,9 +52,9 @@ typedef struct ritz_lehmann {
     ritz_dense R; /* n x m, residuals K X - M X Theta */
     ritz_dense E; /* n x m, A^-1 R */
     ritz_dense G; /* m x m, R'A^-1 R */
-    ritz_dense
-        Q; /* r x m, all modes of the reduced model times M X; empty until
-                     ritz_measuring_predict() needs it */
+    /* r x m, Phi_r'T'M X with all modes Phi_r of the reduced model; empty until
+       ritz_measuring_predict() needs it */
+    ritz_dense Q;
     double sigma;
 } ritz_lehmann;
 

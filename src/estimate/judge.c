@@ -139,7 +139,8 @@ static ritz_mode_group group_of(const ritz_measuring *m, int64_t first)
     return g;
 }
 
-/* Q = Phi' T' M X: what reduced modes hold of a trial's vectors. */
+/* Q = Phi' T' M X, mass products of reduced modes and a trial's vectors; kept in
+   the trial, whose X never changes. */
 static ritz_status take_overlap(const ritz_measuring *m, ritz_lehmann *trial)
 {
     RITZ_OWN(ritz_dense) MX = {0}, TMX = {0};

@@ -5,7 +5,7 @@
 /* Null where the BLAS is not OpenBLAS. */
 [[gnu::weak]] void openblas_set_num_threads(int threads);
 [[gnu::weak]] int openblas_get_num_threads(void);
-/* Null where no library uses OpenMP. */
+/* Null where no library that is linked uses OpenMP. */
 [[gnu::weak]] void omp_set_max_active_levels(int levels);
 
 int ritz_blas_threads(int threads)
@@ -19,9 +19,9 @@ int ritz_blas_threads(int threads)
         return before;
     if (threads != before)
         openblas_set_num_threads(threads);
-    /* so that CHOLMOD's own loops start no threads either. The BLAS comes
-       first: told to use several, it waits for threads that OpenMP does not
-       start */
+    /* CHOLMOD's own OpenMP loops shall start no threads either. OpenBLAS is set
+       first: while it still counts on several threads, it would wait for some
+       that OpenMP no longer starts. */
     if (omp_set_max_active_levels)
         omp_set_max_active_levels(threads == 1 ? 0 : 1);
     return before;

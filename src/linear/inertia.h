@@ -21,32 +21,39 @@
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);
 
-/** Counts of eigenvalues below several values, for which the patterns of K and M
- * are united and ordered once. */
+/** Counts the eigenvalues of K phi = lambda M phi below one value after another.
+ * The union of the patterns of K and M and its order are kept between counts. */
 typedef struct ritz_counter ritz_counter;
 
 /**
  * @param[in] K,M    n x n, symmetric, M semidefinite; borrowed until the counter
  *                   is freed
- * @param[in] order  as for ritz_inertia_negative(), copied
- * @return RITZ_ERR_ARGUMENT if their sizes differ or an entry is not finite
+ * @param[in] order  as for ritz_inertia_negative(); copied
+ * @return RITZ_ERR_ARGUMENT if the sizes of K and M differ or an entry is not
+ *         finite; RITZ_ERR_MEMORY
  */
 ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
                              const int64_t *order, ritz_counter **out);
 
 /**
- * Eigenvalues of the pencil below @p tau. Between two counts no factor is held.
+ * The number of eigenvalues of K phi = lambda M phi below @p tau. The factor of
+ * K - tau M is freed on return. After a failure the counter can be used again.
  *
+ * @param[out] below  unchanged on failure
  * @return RITZ_ERR_SINGULAR if K - tau M is singular to working accuracy: an
- *         eigenvalue is at tau; RITZ_ERR_ARGUMENT if tau is not finite
- * @cost   an LDL' factor and three solves
+ *         eigenvalue is at tau; RITZ_ERR_ARGUMENT if tau is not finite;
+ *         RITZ_ERR_MEMORY
+ * @cost   an LDL' factorisation by MUMPS and three solves
  */
 ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below);
 
 void ritz_counter_free(ritz_counter **C);
 
-/** One count, as ritz_eigen_count(). @param[in] order  as for
- * ritz_inertia_negative() */
+/**
+ * ritz_eigen_count() with a given order of rows: one count, without a counter.
+ *
+ * @param[in] order  as for ritz_inertia_negative()
+ */
 ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
                                double tau, const int64_t *order, int64_t *out);
 

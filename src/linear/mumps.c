@@ -503,8 +503,8 @@ ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* MUMPS gives a factor back only with its analysis, which is cheap where the
-   order is known. */
+/* MUMPS frees a factor only together with its analysis. The analysis is
+   therefore made again for each count; with a known order it is cheap. */
 ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below)
 {
     mumps_factor *F = &C->of;

@@ -9,8 +9,8 @@
 
 enum {
     WIDTH = RITZ_TILE,  /* vectors that are assessed at a time */
-    CHUNK = 32,         /* rows of them that are multiplied at a time */
-    WORTHWHILE = 50000, /* one thread for each so many entries */
+    CHUNK = 32,         /* rows of K X and M X that are held at a time */
+    WORTHWHILE = 50000, /* matrix entries from which one more thread is used */
 };
 
 static int threads_for(int64_t entries)
@@ -18,7 +18,8 @@ static int threads_for(int64_t entries)
     return ritz_team_ready(1 + entries / WORTHWHILE);
 }
 
-/* Columns [first, first + count) of X, copied to x row by row, n x 8. */
+/* Columns [first, first + count) of X, at most 8, copied to x row by row, n x 8;
+   zeros fill the rest. */
 typedef struct eight {
     const ritz_dense *X;
     int64_t first, count;
@@ -46,9 +47,10 @@ static eight next_eight(const ritz_dense *X, int64_t first, double *x,
     return e;
 }
 
-/* Of eight pairs, summed over the rows of one thread: the squares
-   |K x - lambda M x|^2 and | |K||x| + |lambda||M||x| |^2, of forces divided by
-   `unit`, and |x|'|K||x|. */
+/* Of eight pairs, summed over the rows of one thread, with u = `unit`:
+     gap     |K x - lambda M x|^2 / u^2
+     size    | |K||x| + |lambda||M||x| |^2 / u^2
+     energy  |x|'|K||x| */
 typedef struct sums {
     double gap[WIDTH], size[WIDTH], energy[WIDTH];
 } sums;
@@ -57,7 +59,7 @@ typedef struct assessment {
     const ritz_sparse *K, *M;
     eight of;
     double lambda[WIDTH];
-    double unit; /* of forces, so that their squares stay in range */
+    double unit; /* of forces, so that their squares do not overflow */
     sums *sums;  /* of each thread */
 } assessment;
 
@@ -100,8 +102,8 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
     a->sums[thread] = s;
 }
 
-/* Residuals of eight pairs. *scale is raised to the largest of their
-   |x|'|K||x|. */
+/* Residuals of eight pairs, sqrt(gap / size). *scale is raised to the largest of
+   their energies. */
 static void assess_eight(assessment *a, int threads, double *residual,
                          double *scale)
 {
@@ -121,8 +123,9 @@ static void assess_eight(assessment *a, int threads, double *residual,
     }
 }
 
-/* The power of two above every |K(i,j)|, or |M(i,j)| where K is zero: vectors of
-   unit mass have entries of moderate size. */
+/* The power of two above the largest |K(i,j)|, or the largest |M(i,j)| if K = 0.
+   Vectors of unit mass have entries of moderate size, so that forces divided by
+   it can be squared. A power of two divides without rounding. */
 static double unit_of(const ritz_sparse *K, const ritz_sparse *M)
 {
     const double k = ritz_sparse_max(K);
@@ -159,7 +162,7 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* |x|'|A||x| of eight columns. */
+/* |x|'|A||x| of eight columns x, summed over the rows of one thread. */
 typedef struct summation {
     const ritz_sparse *A;
     eight of;

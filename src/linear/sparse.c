@@ -1,4 +1,4 @@
-/* Sparse matrices: their parts, sums and symmetry. */
+/* Sparse matrices: construction, submatrices, sums, transposes and symmetry. */
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/team.h"
@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { WORTHWHILE = 50000 }; /* one thread for each so many entries */
+enum { WORTHWHILE = 50000 }; /* entries from which one more thread is used */
 
 ritz_status ritz_sparse_new(int64_t nrow, int64_t ncol, int64_t nnz,
                             ritz_sparse *out)
@@ -108,11 +108,12 @@ ritz_status ritz_sparse_from_triplets(int64_t nrow, int64_t ncol, int64_t count,
     return RITZ_OK;
 }
 
-/* The columns `cols` of A, and for each row of A its place in the result. */
+/* A submatrix of A to be copied to `out`: its columns, and where each row of A
+   goes. */
 typedef struct extraction {
     const ritz_sparse *A;
     const int64_t *cols;
-    int64_t *place; /* of each row of A, -1 where it is not wanted */
+    int64_t *place; /* row of `out` of each row of A; -1: not wanted */
     ritz_sparse *out;
 } extraction;
 
@@ -136,7 +137,7 @@ static ritz_status place_rows(extraction *e, int64_t count, const int64_t *rows)
     return RITZ_OK;
 }
 
-/* colptr[k + 1] := the number of entries that column k keeps. */
+/* colptr[k + 1] := the number of entries of column k of the submatrix. */
 static void count_extracted(int thread, int64_t from, int64_t to, void *task)
 {
     const extraction *e = task;
@@ -168,7 +169,8 @@ static void copy_extracted(int thread, int64_t from, int64_t to, void *task)
     }
 }
 
-/* Sort the rows within each column: two transpositions do. */
+/* Sort the rows within each column. A transpose has its rows in ascending order,
+   so that two transpositions sort them. */
 static ritz_status sort_columns(ritz_sparse *A)
 {
     RITZ_OWN(ritz_sparse) turned = {0}, sorted = {0};

@@ -1,4 +1,5 @@
-/* Products of sparse matrices, and of theirs with few dense columns. */
+/* Products of sparse matrices with dense and with sparse matrices, and
+ * projections T'A T. */
 #include "base/alloc.h"
 #include "base/team.h"
 #include "linear/tiles.h"
@@ -12,11 +13,11 @@
 
 enum {
     EIGHT = RITZ_TILE,  /* columns of a product at a time */
-    WORTHWHILE = 50000, /* entries that a second thread is worth */
+    WORTHWHILE = 50000, /* entries of A from which several threads are used */
 };
 
-/* Eight columns of a product are made at a time, so that A is read once for
-   them. */
+/* The product Y = A X, eight columns at a time, so that A is read once for every
+   eight. */
 typedef struct columns_task {
     const ritz_sparse *A;
     const ritz_dense *X;
@@ -82,7 +83,8 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
     return RITZ_OK;
 }
 
-/* y + low := y + low + a x, its rounding of eps^2 [OgitaRumpOishi2005]. */
+/* y + low := y + low + a x with a rounding error of the order of eps^2: `low`
+   collects the rounding errors of y [OgitaRumpOishi2005]. */
 static void add_product(double a, double x, double *y, double *low)
 {
     double product = a * x;
@@ -115,7 +117,8 @@ ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
     return RITZ_OK;
 }
 
-/* Entries of A B, each place of a column counted once. */
+/* The number of entries of A B. mark[i] is the last column + 1 in which row i was
+   counted. */
 static int64_t count_product(const ritz_sparse *A, const ritz_sparse *B,
                              int64_t *mark)
 {
@@ -134,7 +137,8 @@ static int64_t count_product(const ritz_sparse *A, const ritz_sparse *B,
     return count;
 }
 
-/* Column j of A B, as it comes: rows are put in order by transposing twice. */
+/* Append column j of A B to C, its rows in no order. place[i] is one more than
+   the index in C of the last entry of row i. */
 static void multiply_column(const ritz_sparse *A, const ritz_sparse *B,
                             int64_t j, int64_t *place, ritz_sparse *C)
 {
@@ -147,7 +151,7 @@ static void multiply_column(const ritz_sparse *A, const ritz_sparse *B,
         for (int64_t p = A->colptr[k]; p < A->colptr[k + 1]; p++) {
             int64_t i = A->rowind[p];
 
-            if (place[i] <= first) { /* one more than where it lies */
+            if (place[i] <= first) { /* not yet in this column */
                 C->rowind[at] = i;
                 C->val[at] = 0.0;
                 place[i] = ++at;
@@ -174,6 +178,7 @@ ritz_status ritz_sparse_product(const ritz_sparse *A, const ritz_sparse *B,
         ritz_sparse_new(A->nrow, B->ncol, count_product(A, B, mark), &raw));
     for (int64_t j = 0; j < B->ncol; j++)
         multiply_column(A, B, j, place, &raw);
+    /* two transpositions sort the rows of each column */
     RITZ_CHECK(ritz_sparse_transpose(&raw, &turned));
     return ritz_sparse_transpose(&turned, C);
 }
@@ -192,7 +197,7 @@ ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
     return RITZ_OK;
 }
 
-/* T'AT; empty where A is. */
+/* T'A T; out stays empty if A is empty. */
 static ritz_status project_matrix(const ritz_sparse *A, const ritz_dense *T,
                                   ritz_dense *out)
 {
@@ -233,5 +238,3 @@ ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
     RITZ_CHECK(ritz_dense_abs(T, &columns));
     return ritz_sparse_condense(&size, &columns, out);
 }
-
-/* Between sparse and dense. */

@@ -63,11 +63,13 @@ typedef struct ritz_tiles {
     void (*times)(int64_t from, int64_t to, const int64_t *start,
                   const int32_t *col, const double *val, const double *X,
                   double *Y);
-    /** Y += A X, X and Y 8 wide, A the columns [0, cols) of a ritz_sparse. */
+    /** Y += A X, X and Y with 8 numbers a row. Column j of the sparse A has the
+     * entries [start[j], start[j + 1]) of @p row and @p val. */
     void (*spread)(int64_t cols, const int64_t *start, const int64_t *row,
                    const double *val, const double *X, double *Y);
-    /** Rows [from, to) of A X and |A||X| of a symmetric ritz_sparse A, X all
-     * rows x 8, Y and S to - from rows x 8. */
+    /** Y := rows [from, to) of A X, and S := those of |A||X|, for a symmetric
+     * sparse A with columns as in spread(). X has all rows, Y and S have to -
+     * from of them, each with 8 numbers a row. */
     void (*terms)(int64_t from, int64_t to, const int64_t *start,
                   const int64_t *row, const double *val, const double *X,
                   double *Y, double *S);

@@ -233,7 +233,7 @@ static void spread_8(int64_t cols, const int64_t *start, const int64_t *row,
     }
 }
 
-/* |x|, by clearing the signs. */
+/* |x| of each number, by clearing its sign bit. */
 INLINE vector magnitudes(vector x)
 {
     return (vector)((integers)x & INT64_MAX);

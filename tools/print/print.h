@@ -45,7 +45,7 @@ int basis_main(int argc, char **argv,
 typedef struct reduce_options {
     bool without_basis;
     model_options model;   /* configuration or columns, and damping */
-    const char *estimates; /* "all", "frequency" or "none"; NULL: not said */
+    const char *estimates; /* "all", "frequency" or "none"; NULL: all */
     ritz_estimate_request estimate;
 } reduce_options;
 

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* 91 000 entries: enough for a second thread. */
+/* 93 312 entries, n = 24^3 with 7 a row but at the faces: enough for a second
+   thread. */
 enum { EDGE = 24, POINTS = EDGE * EDGE * EDGE, COLUMNS = 11 };
 
 static const char *const bits[] = {"128", "256", "512"};
@@ -19,7 +20,7 @@ static void fill_columns(int64_t rows, ritz_dense *X)
         X->val[i] = sin((double)(i + 1));
 }
 
-/* A without its last columns: not square. */
+/* The first `count` columns of A, so that the result is not square. */
 static void take_columns(const ritz_sparse *A, int64_t count, ritz_sparse *out)
 {
     RITZ_OWN_ARRAY int64_t *at = NULL;
@@ -31,7 +32,8 @@ static void take_columns(const ritz_sparse *A, int64_t count, ritz_sparse *out)
     assert_ok(ritz_sparse_extract(A, A->nrow, at, count, at, out));
 }
 
-/* Y = A X to the rounding of 7 terms of each sum, of at most 6 + 6. */
+/* Y = A X within rounding. Each entry is a sum of at most 7 terms whose
+   magnitudes add up to at most 7 + 6, the row sum of |A|, as |x| <= 1. */
 static void check_product(const ritz_sparse *A, const ritz_dense *X,
                           const ritz_dense *Y)
 {
@@ -48,7 +50,7 @@ static void check_product(const ritz_sparse *A, const ritz_dense *X,
     }
 }
 
-static void any_threads_and_any_kernel_multiply(void **state)
+static void products_agree_for_all_threads_and_kernels(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0}, A = {0};
     RITZ_OWN(ritz_dense) X = {0};
@@ -70,7 +72,8 @@ static void any_threads_and_any_kernel_multiply(void **state)
     ritz_set_threads(1);
 }
 
-/* |x|'|K||x|, of sums of POINTS terms that are all positive. */
+/* |x|'|K||x|. All terms are positive, so that the relative rounding is less than
+   eps times the number of rows. */
 static void energy_terms_are_sums_of_magnitudes(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
@@ -97,8 +100,9 @@ static void energy_terms_are_sums_of_magnitudes(void **state)
     assert_survives_every_allocation(ritz_energy_terms(&K, &X, terms));
 }
 
-/* Every second row and column, in the order given. */
-static void pick_every_second(const ritz_sparse *A, bool descending)
+/* The submatrix of every second row and column, in ascending or descending
+   order, has the entries of A. */
+static void check_every_second(const ritz_sparse *A, bool descending)
 {
     enum { HALF = POINTS / 2 };
     RITZ_OWN_ARRAY int64_t *at = NULL;
@@ -124,7 +128,7 @@ static void pick_every_second(const ritz_sparse *A, bool descending)
         }
 }
 
-static void large_submatrices_follow_their_lists(void **state)
+static void submatrices_keep_the_given_order_of_rows(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
 
@@ -132,8 +136,8 @@ static void large_submatrices_follow_their_lists(void **state)
     lattice_new(EDGE, 1.0, &K, &M);
     for (int threads = 1; threads <= 2; threads++) {
         ritz_set_threads(threads);
-        pick_every_second(&K, false);
-        pick_every_second(&K, true);
+        check_every_second(&K, false);
+        check_every_second(&K, true);
     }
     ritz_set_threads(1);
 }
@@ -143,7 +147,7 @@ static void large_submatrices_follow_their_lists(void **state)
 static void one_counter_counts_below_many_values(void **state)
 {
     enum { SIDE = 5, ALL = SIDE * SIDE * SIDE };
-    const double middle = 1.0 + 6.0; /* of three cosines that are 0 */
+    const double middle = 1.0 + 6.0; /* an eigenvalue: all cosines are 0 */
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     RITZ_OWN_ARRAY double *lambda = NULL;
     ritz_counter *counter = NULL;
@@ -199,9 +203,9 @@ static void worst_residual_is_nan_if_any_residual_is(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(any_threads_and_any_kernel_multiply),
+    cmocka_unit_test(products_agree_for_all_threads_and_kernels),
     cmocka_unit_test(energy_terms_are_sums_of_magnitudes),
-    cmocka_unit_test(large_submatrices_follow_their_lists),
+    cmocka_unit_test(submatrices_keep_the_given_order_of_rows),
     cmocka_unit_test(one_counter_counts_below_many_values),
     cmocka_unit_test(worst_residual_is_nan_if_any_residual_is),
 };
