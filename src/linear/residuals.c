@@ -41,8 +41,9 @@ static eight next_eight(const ritz_dense *X, int64_t first, double *x,
                         int threads)
 {
     const int64_t left = X->ncol - first;
-    eight e = {X, first, left < WIDTH ? left : WIDTH, x};
+    eight e = {.X = X, .first = first, .count = left < WIDTH ? left : WIDTH};
 
+    e.x = x;
     ritz_team_over(threads, X->nrow, lay_out_rows, &e);
     return e;
 }

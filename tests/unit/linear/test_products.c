@@ -23,13 +23,13 @@ static void fill_columns(int64_t rows, ritz_dense *X)
 /* The first `count` columns of A, so that the result is not square. */
 static void take_columns(const ritz_sparse *A, int64_t count, ritz_sparse *out)
 {
-    RITZ_OWN_ARRAY int64_t *at = NULL;
+    int64_t *at = calloc((size_t)A->nrow, sizeof *at);
 
-    at = calloc((size_t)A->nrow, sizeof *at);
     assert_non_null(at);
     for (int64_t i = 0; i < A->nrow; i++)
         at[i] = i;
     assert_ok(ritz_sparse_extract(A, A->nrow, at, count, at, out));
+    free(at);
 }
 
 /* Y = A X within rounding. Each entry is a sum of at most 7 terms whose
