@@ -7,6 +7,7 @@
 [[gnu::weak]] int openblas_get_num_threads(void);
 /* Null where no library that is linked uses OpenMP. */
 [[gnu::weak]] void omp_set_max_active_levels(int levels);
+[[gnu::weak]] int omp_get_max_active_levels(void);
 
 int ritz_blas_threads(int threads)
 {
@@ -15,19 +16,31 @@ int ritz_blas_threads(int threads)
     if (!openblas_get_num_threads || !openblas_set_num_threads)
         return 0;
     before = openblas_get_num_threads();
-    if (threads <= 0)
-        return before;
-    if (threads != before)
+    if (threads > 0 && threads != before)
         openblas_set_num_threads(threads);
-    /* CHOLMOD's own OpenMP loops shall start no threads either. OpenBLAS is set
-       first: while it still counts on several threads, it would wait for some
-       that OpenMP no longer starts. */
-    if (omp_set_max_active_levels)
-        omp_set_max_active_levels(threads == 1 ? 0 : 1);
     return before;
 }
 
-int ritz_blas_threads_for(double operations)
+/* OpenBLAS comes first: while it still counts on several threads, it would wait
+   for some that OpenMP no longer starts. */
+ritz_blas_setting ritz_blas_alone(double operations)
 {
-    return operations < RITZ_FACTOR_ALONE ? ritz_blas_threads(1) : 0;
+    ritz_blas_setting before = {0, -1};
+
+    if (!(operations < RITZ_FACTOR_ALONE))
+        return before;
+    before.threads = ritz_blas_threads(1);
+    if (before.threads > 0 && omp_get_max_active_levels &&
+        omp_set_max_active_levels) {
+        before.levels = omp_get_max_active_levels();
+        omp_set_max_active_levels(0);
+    }
+    return before;
+}
+
+void ritz_blas_restore(ritz_blas_setting before)
+{
+    if (before.levels >= 0)
+        omp_set_max_active_levels(before.levels);
+    ritz_blas_threads(before.threads);
 }

@@ -3,24 +3,32 @@
 #define RITZ_LINEAR_BLAS_THREADS_H
 
 /**
- * Set the number of threads of OpenBLAS, for the whole process. With 1, OpenMP
- * loops of any library that the calling thread enters start no threads either;
- * with more they may again. Does nothing if the BLAS is not OpenBLAS.
+ * Set the number of threads of OpenBLAS, for the whole process. Does nothing if
+ * the BLAS is not OpenBLAS.
  *
  * @param[in] threads  0 changes nothing
- * @return the number of OpenBLAS before, to restore it by a second call; 0 if
- *         the BLAS is not OpenBLAS
+ * @return the number before, to restore it by a second call; 0 if the BLAS is
+ *         not OpenBLAS
  */
 int ritz_blas_threads(int threads);
 
+/* What a factorisation changed. */
+typedef struct ritz_blas_setting {
+    int threads; /* of OpenBLAS, 0: not changed */
+    int levels;  /* of parallel OpenMP loops, -1: not changed */
+} ritz_blas_setting;
+
 /**
- * Call ritz_blas_threads(1) before a sparse factorisation that is too small to
- * gain from several threads; leave the number as it is before a larger one.
+ * Before a sparse factorisation that is too small to gain from several threads:
+ * let OpenBLAS use one, and let OpenMP loops that the calling thread enters
+ * start no others. A larger factorisation changes nothing.
  *
  * @param[in] operations  floating-point operations of the factorisation
- * @return the argument of ritz_blas_threads() that restores the number
- *         afterwards
+ * @return for ritz_blas_restore(), which must follow in the same thread
  */
-int ritz_blas_threads_for(double operations);
+ritz_blas_setting ritz_blas_alone(double operations);
+
+/** Back to what was set before ritz_blas_alone(). */
+void ritz_blas_restore(ritz_blas_setting before);
 
 #endif

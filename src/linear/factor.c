@@ -220,13 +220,12 @@ static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
 static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
 {
     cholmod_sparse view = view_sparse(A);
-
-    int before = 0;
+    ritz_blas_setting before = {0};
 
     RITZ_CHECK(analyse_sparse(C, A, NULL));
-    before = ritz_blas_threads_for(C->common.fl);
+    before = ritz_blas_alone(C->common.fl);
     cholmod_l_factorize(&view, C->L, &C->common);
-    ritz_blas_threads(before);
+    ritz_blas_restore(before);
     return report_failure(C, A->nrow);
 }
 

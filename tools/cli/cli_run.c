@@ -79,7 +79,7 @@ static void limit_threads(cli_run *run, const struct stat *file)
     snprintf(cores, sizeof cores, "%ld", sysconf(_SC_NPROCESSORS_ONLN));
     if (setenv("OMP_THREAD_LIMIT", cores, 1) == 0 &&
         setenv("OMP_NUM_THREADS", cores, 0) == 0 &&
-        setenv("GOMP_SPINCOUNT", SPINS, 0) == 0)
+        (getenv("OMP_WAIT_POLICY") || setenv("GOMP_SPINCOUNT", SPINS, 0) == 0))
         execv(self, run->argv);
 }
 
