@@ -22,6 +22,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     FIRST_ROOM = 64, /* columns */
@@ -160,9 +161,16 @@ static ritz_status normalise_columns(const double *before, ritz_dense *G,
     return ritz_dense_times(&U, X);
 }
 
-/* Append X, orthonormalised: again if the energy of a column fell much. */
-static ritz_status append_columns(ritz_dense *X, ritz_projection_space *space)
+/*
+ * Append X, orthonormalised: again if the energy of a column fell much.
+ *
+ * @param[in] energy  of each column before anything was taken out of it: what
+ *                    is left may be rounding of that; NULL: as X is
+ */
+static ritz_status append_columns(const double *energy, ritz_dense *X,
+                                  ritz_projection_space *space)
 {
+    const int64_t room = X->nrow - space->model->low.Phi.ncol - space->count;
     double weak = 0.0;
 
     for (int pass = 0;
@@ -172,8 +180,11 @@ static ritz_status append_columns(ritz_dense *X, ritz_projection_space *space)
 
         RITZ_CHECK_NEW(before, X->ncol);
         RITZ_CHECK(project_out(space, X, before, &G));
+        if (pass == 0 && energy)
+            memcpy(before, energy, (size_t)X->ncol * sizeof *before);
         RITZ_CHECK(normalise_columns(before, &G, X, &weak));
     }
+    X->ncol = X->ncol < room ? X->ncol : room;
     RITZ_CHECK(reserve_columns(X->ncol, space));
     ritz_dense_put(X, 0, space->count, &space->V);
     space->count += X->ncol;
@@ -203,7 +214,7 @@ ritz_status ritz_projection_space_new(const ritz_projection_model *model,
     RITZ_CHECK(ritz_dense_new(0, F.ncol, &space.loads));
     RITZ_CHECK(factor_shifted(&space));
     RITZ_CHECK(solve_static(&space, &X));
-    RITZ_CHECK(append_columns(&X, &space));
+    RITZ_CHECK(append_columns(NULL, &X, &space));
     V = ritz_dense_part(&space.V, 0, space.count);
     RITZ_CHECK(ritz_dense_mul_tn(&V, &F, &at));
     ritz_dense_put(&at, 0, 0, &space.loads);
@@ -235,13 +246,17 @@ ritz_status ritz_projection_space_extend(ritz_projection_space *space)
 {
     int64_t first = space->count;
     RITZ_OWN(ritz_dense) MQ = {0}, X = {0}, coupling = {0};
+    RITZ_OWN_ARRAY double *energy = NULL;
     ritz_dense Q = ritz_dense_part(&space->V, space->last, first - space->last);
 
     RITZ_CHECK(ritz_sparse_mul(&space->model->low.M, &Q, &MQ));
     RITZ_CHECK(ritz_dense_copy(&MQ, &X));
     RITZ_CHECK(solve_static(space, &X));
+    RITZ_CHECK_NEW(energy, X.ncol);
+    for (int64_t j = 0; j < X.ncol; j++) /* x'K_s x, x = K_s^-1 M q */
+        energy[j] = ritz_dense_dot(&X, j, &MQ, j);
     RITZ_CHECK(take_out_near(&Q, &MQ, space, &X));
-    RITZ_CHECK(append_columns(&X, space));
+    RITZ_CHECK(append_columns(energy, &X, space));
     Q = ritz_dense_part(&space->V, first, space->count - first);
     RITZ_CHECK(ritz_dense_mul_tn(&Q, &MQ, &coupling));
     ritz_dense_replace(&space->coupling, &coupling);
