@@ -1,7 +1,8 @@
 /*
- * One candidate: its bodies are made, each once, and joined; unless a bound
- * rules it out it is measured at every listed configuration and, where it meets
- * the tolerance there, confirmed at random frequencies and configurations.
+ * One candidate: its bodies are made, unless a candidate before had the same,
+ * and joined. Unless a bound rules it out it is measured at every listed
+ * configuration; if it meets the tolerance there, it is confirmed at random
+ * frequencies and configurations.
  */
 #include "fit/fitter.h"
 
@@ -18,8 +19,7 @@
 /* Entries of T of all bodies that were made: half a gigabyte. */
 static const int64_t most_entries = INT64_C(1) << 26;
 
-/* --- judged
-   -------------------------------------------------------------------- */
+/* --- judged --------------------------------------------------------------- */
 
 static void set_refusal(const char *why, ritz_fit_candidate *candidate)
 {
@@ -104,8 +104,7 @@ ritz_status ritz_fit_worst(const ritz_measures *more, const char *at,
     return RITZ_OK;
 }
 
-/* --- its bodies
-   ------------------------------------------------------------------ */
+/* --- its bodies ----------------------------------------------------------- */
 
 /* Free a body that was made. */
 static void free_made(ritz_fit_made *made)
@@ -126,8 +125,8 @@ void ritz_fit_forget(ritz_fitter *f, const ritz_method *method)
     f->num_made = kept;
 }
 
-/* Whether there is room for one more T: bounds of a scene need those of all
-   bodies. */
+/* Whether T of a body that was made is kept: bounds of a scene need T of all
+   bodies. There is a limit of memory. */
 static bool keeps_basis(const ritz_fitter *f, const ritz_dense *T)
 {
     int64_t held = T->nrow * T->ncol;
@@ -137,7 +136,8 @@ static bool keeps_basis(const ritz_fitter *f, const ritz_dense *T)
     return f->scene && f->place[0].estimator && held <= most_entries;
 }
 
-/* That body in that basis, made once; of what cannot be, why. */
+/* Find or make a body reduced by a method with a number of modes. If it cannot
+   be made, the reason is kept in its place. */
 static ritz_status make_body(ritz_fitter *f, const ritz_method *method,
                              int64_t body, int64_t modes, int64_t *at)
 {
@@ -210,8 +210,7 @@ static ritz_status join_bodies(ritz_fitter *f, ritz_fit_candidate *candidate,
     return ritz_fit_join(f, body, out);
 }
 
-/* --- a model at a place
-   --------------------------------------------------------- */
+/* --- a model at a place --------------------------------------------------- */
 
 /* The reduced model at one place. */
 typedef struct ritz_fit_model {
@@ -284,8 +283,7 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
     return RITZ_OK;
 }
 
-/* --- bounds
-   ---------------------------------------------------------------------- */
+/* --- bounds --------------------------------------------------------------- */
 
 /* Whether all bodies have their T. */
 static bool has_bases(const ritz_stage *stage)
@@ -340,10 +338,10 @@ static void forget_least(ritz_measures *found)
 }
 
 /*
- * A candidate fails for certain if its worst frequency error is at least more
- * than is allowed. Of a scene that is one bound, where measuring takes as many
- * systems as there are configurations. Of a component measuring costs less than
- * any bound.
+ * Rule a scene's candidate out if a lower bound of its worst frequency error is
+ * above the tolerance. One bound, at one configuration, saves measuring the
+ * systems of all. A component is measured at once, which costs less than a
+ * bound.
  */
 static ritz_status rule_out(const ritz_fitter *f, const ritz_fit_model *m,
                             ritz_fit_candidate *candidate)
@@ -364,8 +362,8 @@ static ritz_status rule_out(const ritz_fitter *f, const ritz_fit_model *m,
     return ritz_fit_worst(&found, m->place->at, &candidate->estimates);
 }
 
-/* Estimates that the search made are those of one place. Errors of the answer
- * are of random places too, and so are its bounds. */
+/* The search found a bound at one place only. Errors of the answer are the
+ * worst of all places, random ones too, and so must be its bounds. */
 ritz_status ritz_fit_bound_stage(ritz_fitter *f, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate)
 {
@@ -387,8 +385,7 @@ ritz_status ritz_fit_bound_stage(ritz_fitter *f, const ritz_stage *stage,
     return RITZ_OK;
 }
 
-/* --- a candidate
-   ----------------------------------------------------------------- */
+/* --- a candidate ---------------------------------------------------------- */
 
 int ritz_fit_points(const ritz_reference *reference,
                     const ritz_measures *errors)
@@ -510,7 +507,7 @@ ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
     status = join_bodies(fitter, &candidate, &joined);
     if (status == RITZ_OK && joined.stage.body) /* no body is refused */
         status = ritz_fit_measure(fitter, &joined, &candidate);
-    if (!fitter->scene) /* its candidates have no body in common */
+    if (!fitter->scene) /* its candidates share no body */
         ritz_fit_forget(fitter, method);
     RITZ_CHECK(ritz_fit_refuse(status, &candidate));
     if (fitter->request.observe)

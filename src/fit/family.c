@@ -1,17 +1,19 @@
 /*
- * Flexible bodies by a method and a number of modes, and what their columns
- * are.
+ * The reduction of a flexible body by a method with some number of modes, and
+ * the kinds of its columns.
  *
- * Candidates of one method on a component are made from one basis. A method is nested
- * if what it makes for m modes are columns of what it makes for N > m: all that
- * are no modes, and the first m modes. With S the unit vectors of these,
+ * All candidates of a nested method on a component share one basis. A method is
+ * nested if its basis with m modes consists of columns of its basis with N > m
+ * modes: all columns that are no modes, and the first m modes. With S the
+ * columns of the unit matrix that select these,
  *
  *     K_m = S'K_N S,   M_m = S'M_N S,   Phi'M T_m = (Phi'M T_N) S,
  *
  * so that a candidate takes no work of the full model's size. The basis is made
- * for more modes than the first candidate needs, and again for twice as many
- * when that is not enough. Modes of one cluster stay together, as in
- * ritz_eigen_sparse. Of other methods the last basis is kept.
+ * with more modes than the first candidate needs, and again with twice as many
+ * when that is not enough. Modes of one cluster are taken together, as
+ * ritz_eigen_sparse computes them. A method that is not nested makes a new
+ * basis for each number of modes; the last one is kept.
  */
 #include "fit/fitter.h"
 
@@ -22,9 +24,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Modes of the first basis: some for each mode of the band, and more. */
+/* The first basis has FOR_EACH modes for each mode of the full model in the
+   band, and AND_MORE beyond these. */
 enum { FOR_EACH = 4, AND_MORE = 24 };
-/* Entries of T of all bases that are kept: half a gigabyte. */
+/* Most entries that T of all kept bases may have: half a gigabyte. */
 static const int64_t most_entries = INT64_C(1) << 26;
 
 bool ritz_fit_stays(ritz_column_kind kind)
@@ -40,8 +43,8 @@ bool ritz_fit_stays(ritz_column_kind kind)
     return false;
 }
 
-/* Columns j that take part in rigid motion, |x_j| sqrt(M_jj) of its x'M x =
-   1. */
+/* Column j is rigid if |x_j| sqrt(M_jj) is more than rounding in a rigid mode x
+   with x'M x = 1. */
 ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
 {
     RITZ_OWN(ritz_pairs) pairs = {0};
@@ -67,11 +70,10 @@ ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind)
     return RITZ_OK;
 }
 
-/* --- one body
-   --------------------------------------------------------------------- */
+/* --- one body by one method ----------------------------------------------- */
 
-/* Those of the options that this method uses; band and damping are those of the
-   tolerance where no others are given. */
+/* The options of the request that this method takes. A band or damping that is
+   not among them is that of the tolerance. */
 static ritz_choice choose_options(const ritz_fitter *fitter,
                                   const ritz_method *method)
 {
@@ -89,7 +91,7 @@ static ritz_choice choose_options(const ritz_fitter *fitter,
         choice.given |= RITZ_USES_BAND;
     }
     if (absent & method->uses & RITZ_USES_SIDES) {
-        choice.one_sided = true; /* symmetric, as all that are compared */
+        choice.one_sided = true; /* as symmetric as other candidates */
         choice.given |= RITZ_USES_SIDES;
     }
     choice.given &= method->uses;
@@ -136,8 +138,7 @@ ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
         item.name);
 }
 
-/* --- bodies of one component
-   --------------------------------------------------------------------- */
+/* --- the basis of a component that is kept -------------------------------- */
 
 void ritz_fit_family_free(ritz_fit_family *family)
 {
@@ -151,8 +152,9 @@ static bool is_mode(ritz_column_kind kind)
     return kind == RITZ_COLUMN_NORMAL || kind == RITZ_COLUMN_KRYLOV;
 }
 
-/* Static vectors of loads are made without what modes contain of them, and
-   differ with their number. */
+/* Whether a basis with fewer modes consists of columns of this one. Static
+   columns prevent that: the part that lies in the modes was removed from them,
+   so they change with the number of modes. */
 static bool contains_fewer(const ritz_columns *columns)
 {
     for (int64_t j = 0; j < columns->count; j++)
@@ -161,7 +163,8 @@ static bool contains_fewer(const ritz_columns *columns)
     return true;
 }
 
-/* Whether two columns are modes of one cluster. */
+/* Whether the frequencies of two modes differ so little that both are taken or
+   neither. */
 static bool are_close(const ritz_columns *columns, int64_t j, int64_t next)
 {
     const double low = columns->hertz[j];
@@ -170,7 +173,9 @@ static bool are_close(const ritz_columns *columns, int64_t j, int64_t next)
     return high * high - low * low <= RITZ_CLUSTER_GAP * high * high;
 }
 
-/* Columns of a basis that belong to @p modes of its modes; how many. */
+/* Choose the columns of a basis with @p modes modes: those that are no modes,
+   the first @p modes modes, and further ones of the last one's cluster.
+   @return how many */
 static int64_t choose_columns(const ritz_columns *columns, int64_t modes,
                               int64_t *at)
 {
@@ -196,7 +201,7 @@ static ritz_status make_whole(ritz_fitter *f, const ritz_method *method,
     return ritz_reference_parts(f->place[0].reference, &out->T, parts);
 }
 
-/* The family of a method; there is one after the first call. */
+/* Find what is kept for a method; at the first call, an empty entry. */
 static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
                                ritz_fit_family **out)
 {
@@ -212,13 +217,14 @@ static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
     return RITZ_OK;
 }
 
-/* Modes of the basis that is made for a candidate of some modes. */
+/* How many modes the basis gets that is made when a candidate with @p modes
+   modes needs one. */
 static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
                             int64_t modes)
 {
     int64_t rigid = 0, more = 2 * family->modes;
 
-    if (family->exact || modes <= family->modes) /* it was made before */
+    if (family->exact || modes <= family->modes) /* dropped by make_room */
         return family->exact ? modes : family->modes;
     if (family->modes < 0)
         more = FOR_EACH * ritz_reference_modes(f->place[0].reference, &rigid) +
@@ -228,7 +234,7 @@ static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
     return more > modes ? more : modes;
 }
 
-/* Let go of the bases of other methods where they are too large together. */
+/* If all kept bases together are too large, drop those of other methods. */
 static void make_room(ritz_fitter *f, const ritz_fit_family *keep)
 {
     int64_t held = 0;
@@ -242,8 +248,9 @@ static void make_room(ritz_fitter *f, const ritz_fit_family *keep)
         }
 }
 
-/* Make a basis that serves a candidate of some modes. One that cannot be made
-   for more modes is no refusal of a candidate with fewer. */
+/* Make the basis for a candidate with @p modes modes. If one with more modes
+   fails or has static columns, make one with exactly @p modes: only if that
+   fails is the candidate refused. */
 static ritz_status renew_family(ritz_fitter *f, int64_t modes,
                                 ritz_fit_family *family)
 {
@@ -277,7 +284,8 @@ static bool can_serve(const ritz_fit_family *family, int64_t modes)
            (family->exact ? modes == family->modes : modes <= family->modes);
 }
 
-/* A candidate of some columns of the family's basis. */
+/* Reduce the component by some columns of the kept basis; find Phi'M T of
+   these. */
 static ritz_status take_columns(const ritz_fit_family *family, int64_t count,
                                 const int64_t *at, bool with_T,
                                 ritz_reduced *out, ritz_dense *parts)
@@ -307,7 +315,7 @@ ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
     RITZ_CHECK_NEW(at, family->whole.columns.count);
     count = choose_columns(&family->whole.columns,
                            family->exact ? INT64_MAX : modes, at);
-    if (count == 0) /* the method itself says why, if that is all */
+    if (count == 0) /* the method may refuse that, and says why */
         return make_whole(f, method, modes, out, parts);
     return take_columns(family, count, at, with_T, out, parts);
 }

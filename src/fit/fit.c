@@ -120,8 +120,7 @@ static ritz_status trim_best(ritz_fitter *fitter, ritz_fit *fit)
     return RITZ_OK;
 }
 
-/* --- why
-   -------------------------------------------------------------------------- */
+/* --- why ------------------------------------------------------------------ */
 
 [[gnu::format(printf, 2, 3)]] static void add_why(ritz_fit *fit,
                                                   const char *format, ...)
@@ -344,8 +343,7 @@ static void explain_choice(const ritz_fitter *fitter, ritz_fit *fit)
                 caught == 1 ? "its own poles" : "their own poles");
 }
 
-/* --- the search
-   ------------------------------------------------------------------- */
+/* --- the search ----------------------------------------------------------- */
 
 static ritz_status search_methods(ritz_fitter *fitter, ritz_fit *fit)
 {

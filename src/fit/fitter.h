@@ -26,28 +26,30 @@ typedef struct ritz_fit_made {
     int64_t body, modes;
     ritz_reduced reduced; /* dampers installed; without T, unless bounds need
                              it */
-    ritz_dense parts;     /* of a component: Phi'M T, as ritz_reference_parts */
+    ritz_dense parts; /* of a component: Phi'M T, see ritz_reference_parts */
     ritz_fit_watch making;
     ritz_status status; /* of making it */
     char refusal[256];
 } ritz_fit_made;
 
-/* The last basis that was made of a component by a method. If the method is
-   nested it has the columns of candidates with fewer modes. */
+/* The basis of a component that a method made last. If the method is nested
+   (family.c), candidates with fewer modes take their columns from it. */
 typedef struct ritz_fit_family {
     const ritz_method *method;
-    bool exact;         /* it has not, and serves one number of modes alone */
-    int64_t modes;      /* asked for; -1: none was made */
-    ritz_reduced whole; /* {0} where there was no room to keep it */
-    ritz_dense parts;   /* Phi'M T */
+    bool exact;         /* it serves candidates with `modes` modes only */
+    int64_t modes;      /* that it was made with; -1: none was made */
+    ritz_reduced whole; /* {0}: dropped for lack of room */
+    ritz_dense parts;   /* Phi'M T of all its columns */
 } ritz_fit_family;
 
-/* The order in which columns of a candidate's bodies matter, once found. */
+/* The columns of a candidate's bodies, those whose loss raises its errors most
+   first. Method and modes say which candidate, before columns are left out. */
 typedef struct ritz_fit_ordered {
     const ritz_method *method;
-    int64_t *modes; /* num_bodies */
-    int64_t count, fixed;
-    int64_t *column; /* count, what matters most first */
+    int64_t *modes;  /* num_bodies */
+    int64_t count;   /* columns of all bodies */
+    int64_t fixed;   /* the first of them, which must stay */
+    int64_t *column; /* count */
 } ritz_fit_ordered;
 
 /* A rung of a ladder: the body that gets one mode more. */
@@ -73,7 +75,8 @@ typedef struct ritz_fit_second {
 typedef struct ritz_fit_joined {
     ritz_stage stage;
     ritz_bodies own;  /* flexible ones that were made for this stage alone */
-    ritz_dense parts; /* of a component, Phi'M T; {0}: T is at hand */
+    ritz_dense parts; /* of a component: Phi'M T, by which shapes are compared;
+                         {0}: by T */
 } ritz_fit_joined;
 
 struct ritz_fitter {
@@ -102,11 +105,10 @@ struct ritz_fitter {
     ritz_fit_ordered *ordered;
     ritz_fit_second second;
     int64_t largest; /* order to be tried */
-    bool stopped;    /* request.stop has ended the search */
+    bool stopped;    /* request.stop said that the search shall end */
 };
 
-/* --- bodies.c
-   ---------------------------------------------------------------- */
+/* --- bodies.c ------------------------------------------------------------- */
 
 /** A stop watch, and what it shows. */
 ritz_fit_watch ritz_fit_start(void);
@@ -131,35 +133,36 @@ ritz_status ritz_fit_extend(ritz_fitter *fitter, ritz_fit_end *end);
 ritz_status ritz_fit_join(const ritz_fitter *fitter,
                           const ritz_reduced *flexible, ritz_fit_joined *out);
 
-/* --- family.c
-   --------------------------------------------------------------------- */
+/* --- family.c ------------------------------------------------------------- */
 
-/** Whether a column must stay: without it a body could not move rigidly, or
- * would not have its interface. */
+/** Whether a column of this kind may never be left out: without it a body could
+ * not move rigidly, or would lose a part of its interface. */
 bool ritz_fit_stays(ritz_column_kind kind);
 
 /**
- * What the columns of a body are. One that takes part in its rigid motion is
- * rigid, whatever its method calls it: modes of Rubin store energy.
+ * The kind of each column of a body. A column that takes part in rigid motion
+ * of the body is RITZ_COLUMN_RIGID, also if its method calls it a mode.
  *
  * @param[out] kind  one for each column
  */
 ritz_status ritz_fit_kinds(const ritz_reduced *whole, ritz_column_kind *kind);
 
-/** Flexible body @p k by a method and a number of modes. */
+/** Reduce flexible body @p k by a method with a number of modes; dampers not
+ * installed. @return as ritz_basis_make */
 ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
                           int64_t k, int64_t modes, ritz_reduced *out);
 
 /**
- * A component's candidate by a method and a number of modes. If the method is
- * nested it is made of the first columns of a basis with more modes, which is
- * made once and made larger when more are asked for. Of other methods the last
- * candidate is kept, and costs nothing the next time.
+ * Reduce a component by a method with a number of modes, for a candidate. If
+ * the method is nested, columns are taken from a basis with more modes, which
+ * is made once, and again with twice as many modes when more are asked for. Of
+ * any other method the last basis is kept, in case it is asked for again.
  *
- * @param[in]  with_T  whether @p out gets its T
- * @param[out] parts   Phi'M T
- * @cost  a basis the first time; later, and without T, what the candidate's
- *        own order costs
+ * @param[in]  with_T  whether @p out gets T (n x r) and invariants
+ * @param[out] out     dampers not installed
+ * @param[out] parts   Phi'M T, modes of the reference x r
+ * @return as ritz_basis_make
+ * @cost   a basis if no kept one serves; otherwise O(r^2), with T O(n r)
  */
 ritz_status ritz_fit_take(ritz_fitter *fitter, const ritz_method *method,
                           int64_t modes, bool with_T, ritz_reduced *out,
@@ -167,8 +170,7 @@ ritz_status ritz_fit_take(ritz_fitter *fitter, const ritz_method *method,
 
 void ritz_fit_family_free(ritz_fit_family *family);
 
-/* --- bodies.c again: joined bodies
-   --------------------------------------------------------------------- */
+/* --- bodies.c: joined bodies ---------------------------------------------- */
 
 /** Join the flexible bodies that @p joined owns, and install their dampers. */
 ritz_status ritz_fit_join_own(const ritz_fitter *fitter,
@@ -179,8 +181,7 @@ void ritz_fit_joined_free(ritz_fit_joined *joined);
 ritz_status ritz_fit_rich(const ritz_fitter *fitter, double up_to_hz,
                           ritz_fit_joined *out);
 
-/* --- second.c
-   ---------------------------------------------------------------- */
+/* --- second.c ------------------------------------------------------------- */
 
 /** Modes of each body after @p rung steps of a method's ladder; its length. */
 void ritz_fit_rung(const ritz_fitter *fitter, const ritz_method *method,
@@ -202,8 +203,7 @@ ritz_status ritz_fit_second_body(ritz_fitter *fitter, int64_t k, int64_t count,
                                  ritz_reduced *out);
 void ritz_fit_second_free(ritz_fit_second *second);
 
-/* --- fitter.c
-   ---------------------------------------------------------------- */
+/* --- fitter.c ------------------------------------------------------------- */
 
 /** How far beyond the band, times it: 8, and up to 32 for fine tolerances. */
 double ritz_fit_rich_to(const ritz_verify_request *limits);
@@ -213,12 +213,11 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                const ritz_component *full,
                                ritz_fit_place *place);
 
-/** Nothing, unless the search is to end. @return RITZ_ERR_CONVERGENCE, with
- * `stopped` set */
+/** Ask request.stop, before a model is measured, whether the search shall end.
+ * @return RITZ_ERR_CONVERGENCE if so, now or before; `stopped` is then set */
 ritz_status ritz_fit_go_on(ritz_fitter *fitter);
 
-/* --- candidate.c
-   ------------------------------------------------------------- */
+/* --- candidate.c ---------------------------------------------------------- */
 
 /** Record the sentence of a failure that is the candidate's own; pass on what
  * is not: memory. */
@@ -247,7 +246,8 @@ void ritz_fit_forget(ritz_fitter *fitter, const ritz_method *method);
  * Add the errors of joined bodies at a place to the worst so far; refuse what
  * is unstable where it is confirmed (@p points is not 0).
  *
- * @param[in] bounds  what a bound rules out is not measured
+ * @param[in] bounds  find a lower bound first, and do not measure what it rules
+ *                    out
  */
 ritz_status ritz_fit_measure_at(ritz_fitter *fitter,
                                 const ritz_fit_joined *joined,
@@ -256,17 +256,19 @@ ritz_status ritz_fit_measure_at(ritz_fitter *fitter,
 
 /**
  * Measure and judge joined bodies: at every listed place on the grid, unless a
- * bound rules them out; what holds there at all places where it is confirmed
- * too.
+ * bound rules them out. If they meet the tolerance there, confirm them at all
+ * places, at random frequencies too.
  */
 ritz_status ritz_fit_measure(ritz_fitter *fitter, const ritz_fit_joined *joined,
                              ritz_fit_candidate *candidate);
 
-/** Bounds of joined bodies at every place in place of the estimates. */
+/** Replace a candidate's estimates by bounds of its joined bodies, the worst of
+ * all places. */
 ritz_status ritz_fit_bound_stage(ritz_fitter *fitter, const ritz_stage *stage,
                                  ritz_fit_candidate *candidate);
 
-/** Bound a scene's candidate that was tried, with nothing left out. */
+/** Find the bounds of a scene's candidate without columns left out; its bodies
+ * are joined for that. */
 ritz_status ritz_fit_bound_joined(ritz_fitter *fitter,
                                   ritz_fit_candidate *candidate);
 
@@ -278,30 +280,30 @@ bool ritz_fit_is_nearer(const ritz_fit_candidate *a,
 /** Modes that a candidate misses and may not. */
 double ritz_fit_misses(const ritz_fit_candidate *candidate);
 
-/* --- ordered.c
-   --------------------------------------------------------------------- */
+/* --- ordered.c ------------------------------------------------------------ */
 
-/** The order that was found for a candidate's bodies with so many columns;
- * NULL: none was. */
+/** The order that was kept for the @p count columns of a candidate's bodies,
+ * valid until another is kept; NULL: there is none. */
 const ritz_fit_ordered *ritz_fit_ordered_find(const ritz_fitter *fitter,
                                               const ritz_fit_candidate *of,
                                               int64_t count);
 
-/** Keep a copy of an order; @p found needs neither method nor modes. */
+/** Keep a copy of an order, for the method and modes of candidate @p of; those
+ * of @p found are not used. */
 ritz_status ritz_fit_ordered_keep(ritz_fitter *fitter,
                                   const ritz_fit_candidate *of,
                                   const ritz_fit_ordered *found);
 void ritz_fit_ordered_free(ritz_fit_ordered *ordered);
 
-/* --- nest.c
-   ------------------------------------------------------------------ */
+/* --- nest.c --------------------------------------------------------------- */
 
-/** Flexible bodies of a candidate, cut if it is; dampers not installed. */
+/** Make the flexible bodies of a candidate without the columns that it leaves
+ * out; dampers not installed. */
 ritz_status ritz_fit_make_bodies(ritz_fitter *fitter,
                                  const ritz_fit_candidate *candidate,
                                  ritz_bodies *out);
 
-/** Bound a candidate that was tried, at every place. */
+/** Find the bounds of a candidate that was tried, the worst of all places. */
 ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);
 
 /**
@@ -311,8 +313,7 @@ ritz_status ritz_fit_bound(ritz_fitter *fitter, ritz_fit_candidate *candidate);
 ritz_status ritz_fit_trim(ritz_fitter *fitter, const ritz_fit_candidate *from,
                           ritz_fit_candidate *out);
 
-/* --- search.c
-   ---------------------------------------------------------------- */
+/* --- search.c ------------------------------------------------------------- */
 
 /* A candidate up to this factor larger than the smallest may still win once
    columns are left out. */

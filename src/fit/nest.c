@@ -48,8 +48,7 @@ static void nesting_free(nesting *n)
     RITZ_FREE(n->first, n->column, n->alone, n->own, n->some);
 }
 
-/* --- the model of some columns
-   --------------------------------------------------- */
+/* --- the model of some columns -------------------------------------------- */
 
 /* The columns of body k among some, as the body numbers them, into `own`. */
 static int64_t take_own(const nesting *n, int64_t k, int64_t count,
@@ -149,8 +148,7 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
     return RITZ_OK;
 }
 
-/* --- the order
-   ------------------------------------------------------------------- */
+/* --- the order ------------------------------------------------------------ */
 
 /* ceil(count / most) = k: one in k is measured; 1 if `most` is no limit. */
 static int64_t divide_work(int64_t count, int64_t most)
@@ -267,7 +265,8 @@ static ritz_status drop_column(nesting *n, int64_t left)
     return RITZ_OK;
 }
 
-/* Columns of the whole bodies that @p n has, in order. */
+/* Put the columns of all bodies in order, those that matter most first. If a
+   component is too large for that, they stay as they were made. */
 static ritz_status find_order(ritz_fitter *f, nesting *n)
 {
     if (!f->scene && n->whole.item[0].T.nrow * n->count > most_entries)
@@ -283,7 +282,8 @@ static ritz_status find_order(ritz_fitter *f, nesting *n)
     return RITZ_OK;
 }
 
-/* The same, of the bodies of a candidate with nothing left out; found once. */
+/* The same for the bodies of a candidate before columns are left out: by the
+   order that was kept, or by a new one that is kept from now on. */
 static ritz_status order_columns(ritz_fitter *f, const ritz_fit_candidate *of,
                                  nesting *n)
 {
@@ -303,8 +303,7 @@ static ritz_status order_columns(ritz_fitter *f, const ritz_fit_candidate *of,
     return RITZ_OK;
 }
 
-/* --- the path
-   -------------------------------------------------------------------- */
+/* --- the path ------------------------------------------------------------- */
 
 /* A row of the path: the first columns of the order. */
 static ritz_status add_row(const nesting *n, int64_t count, ritz_fit_path *path)
@@ -451,8 +450,8 @@ static ritz_status make_uncut(ritz_fitter *f,
     return RITZ_OK;
 }
 
-/* The same as the search has them, which is cheaper: of a component they are
-   part of a larger basis, and their remarks are its remarks. */
+/* The same from the basis that the search keeps, which is cheaper. The remarks
+   on a component's body are those on this basis, which may have more modes. */
 static ritz_status take_uncut(ritz_fitter *f,
                               const ritz_fit_candidate *candidate,
                               ritz_bodies *out)
@@ -466,8 +465,8 @@ static ritz_status take_uncut(ritz_fitter *f,
                          &out->item[0], &parts);
 }
 
-/* The least number of columns that feasible rows of the path have, all
-   excepted; 0 if there is none. */
+/* The fewest columns in a feasible row of the path below its first row, which
+   has all columns; 0: no such row is feasible. */
 static ritz_status find_cut(const nesting *n, int64_t *columns)
 {
     RITZ_OWN(ritz_fit_path) path = {0};
@@ -481,9 +480,9 @@ static ritz_status find_cut(const nesting *n, int64_t *columns)
     return RITZ_OK;
 }
 
-/* Bodies of a candidate with nothing left out, cut to the columns that matter
-   most and not nested: to so many, or to as few as the tolerance needs if @p
-   columns is 0; found: how many they have, 0 of none. */
+/* Cut the bodies of a candidate to the columns that matter most; not nested.
+   @param[in]  columns  how many of all bodies; 0: the fewest that are feasible
+   @param[out] found    how many; 0: there is no such cut, and no body */
 static ritz_status cut_candidate(ritz_fitter *f,
                                  const ritz_fit_candidate *candidate,
                                  int64_t columns, int64_t *found,
@@ -526,10 +525,10 @@ ritz_status ritz_fit_make_bodies(ritz_fitter *f,
     return RITZ_OK;
 }
 
-/* --- columns left out
-   -------------------------------------------------------------- */
+/* --- columns left out ----------------------------------------------------- */
 
-/* Cut bodies joined, measured like any other candidate, and bounded. */
+/* Join cut bodies and measure them like any candidate; find the bounds of a
+   scene that is feasible. */
 static ritz_status measure_cut(ritz_fitter *f, ritz_fit_joined *cut,
                                ritz_fit_candidate *out)
 {
@@ -575,10 +574,9 @@ ritz_status ritz_fit_trim(ritz_fitter *f, const ritz_fit_candidate *from,
     return RITZ_OK;
 }
 
-/* --- the answer
-   --------------------------------------------------------------------- */
+/* --- the answer ----------------------------------------------------------- */
 
-/* The reduced component with its columns as they are. */
+/* The reduced component of a search that was stopped, not nested. */
 static ritz_status make_plain(ritz_fitter *f,
                               const ritz_fit_candidate *candidate,
                               ritz_reduced *out)
@@ -643,7 +641,7 @@ static ritz_status make_answer(ritz_fitter *f,
             j++;
         else
             RITZ_CHECK(copy_body(&f->still.item[k], &body[k]));
-    if (f->stopped) { /* as they are */
+    if (f->stopped) { /* not nested */
         for (int64_t k = 0; k < f->num_bodies; k++)
             RITZ_MOVE(body[f->body[k]], n.whole.item[k]);
         return RITZ_OK;

@@ -1,5 +1,5 @@
-/* Orders of columns that were found for bodies of candidates: to leave columns
-   out, to bound what is left and to write it takes the same one. */
+/* Orders of columns that were found are kept: to leave columns of a candidate
+   out, to bound the rest and to write it, the same order is needed. */
 #include "fit/fitter.h"
 
 #include "base/alloc.h"

@@ -13,11 +13,10 @@
 #include <math.h>
 #include <string.h>
 
-/* --- candidates that were tried
-   ---------------------------------------------------- */
+/* --- candidates that were tried ------------------------------------------- */
 
 enum { PART = 4 };
-/* Candidates of a method, before any method tells. */
+/* How many candidates a method is expected to need while none is done. */
 enum { USUAL = 15 };
 /* Richer first stages in a row that are no better, before they are given up. */
 enum { MOST_FLAT_STAGES = 3 };
@@ -52,8 +51,8 @@ static bool is_same(const ritz_fit_candidate *c, const ritz_method *method,
     return true;
 }
 
-/* How many candidates there will be: the methods to come take as many as those
-   before on average, or as is usual. */
+/* Estimate how many candidates the search will try: each method still to come
+   is expected to need as many as those before it did on average, or USUAL. */
 static int64_t foresee_count(const ritz_fit *fit, int64_t method)
 {
     int64_t before = 0, each = USUAL, here = 0;
@@ -132,8 +131,7 @@ void ritz_fit_conclude(ritz_fit *fit, int64_t method)
     }
 }
 
-/* --- COMPARE's first stage
-   ---------------------------------------------------------- */
+/* --- COMPARE's first stage ------------------------------------------------ */
 
 /* How far COMPARE is off with nothing removed, whatever its order. */
 static ritz_status measure_uncut(ritz_fitter *f, double *out)
@@ -230,8 +228,7 @@ ritz_status ritz_fit_enrich(ritz_fitter *f, ritz_fit_end *end)
     return RITZ_OK;
 }
 
-/* --- the ladder
-   --------------------------------------------------------------------- */
+/* --- the ladder ----------------------------------------------------------- */
 
 /* One method on its ladder. */
 typedef struct ladder {
