@@ -60,10 +60,10 @@ typedef enum ritz_engine {
     RITZ_ENGINE_MODAL,
     RITZ_ENGINE_LOW_RANK,
     RITZ_ENGINE_PROJECTION,
-    RITZ_ENGINE_LANCZOS, /* this and the next: modes, see ritz_span */
+    RITZ_ENGINE_LANCZOS, /* this and the next three: modes, see ritz_span */
     RITZ_ENGINE_ARPACK,
     RITZ_ENGINE_SLICES,
-    RITZ_ENGINE_SLEPC, /* in several processes, by ritz-basis alone */
+    RITZ_ENGINE_SLEPC, /* in several processes; only ritz-basis has it */
 } ritz_engine;
 
 typedef struct ritz_choice {
@@ -166,11 +166,12 @@ typedef struct ritz_method {
     int uses;             /* sum of RITZ_USES_... */
     bool keeps_interface; /* has a column for every attached dof, however few
                              others are kept */
-    bool nested;          /* what it has for fewer modes are columns of what it
-                             has for more: those that are no modes, and the
-                             first of the others. Unless there are static
-                             columns, whose part in the modes is left out */
-    bool by_ranks;        /* make is that of libexec/ritz-basis-slepc.c */
+    bool nested;          /* its basis with fewer modes consists of columns of
+                             its basis with more: all that are no modes, and the
+                             first modes. Not where there are static columns:
+                             they are made without the part in the modes */
+    bool by_ranks;        /* `make` is one of libexec/ritz-basis-slepc.c, which
+                             works in several processes */
     int only_named;       /* ritz-fit tries the method only if the user names
                              it: sum of RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
@@ -263,16 +264,18 @@ typedef struct ritz_gramians {
     ritz_dense Zc;      /* n x k */
     ritz_dense EZc;     /* n x k; {0}: E is the identity */
     ritz_dense Zo;      /* n x l */
-    ritz_dense core[2]; /* of few rows, core[1]'core[0] = Z_o'E Z_c, of which
-                           Hankel values are found cheaply; {0}: not known */
+    ritz_dense core[2]; /* core[1]'core[0] = Z_o'E Z_c with far fewer rows than
+                           n, from which Hankel values cost less; {0}: not
+                           known */
     ritz_dense T, W;    /* n x a, W'E T = I: the states of poles that are not
                         left of the axis (rigid modes: positions and then
                         velocities), decoupled and without Gramian */
     double residual[2]; /* of either equation, |R| / |B B'| and |R| / |C' C|,
-                           where iterated; 0: exact to rounding; projection:
-                           see ritz_gramians_of_component */
-    double error;       /* projection: no Hankel value errs by more, relative to
-                           the largest; 0: no other engine bounds it */
+                           if solved iteratively; 0: exact to rounding;
+                           projection: see ritz_gramians_of_component */
+    double error;       /* projection: bound of the error of each Hankel value,
+                           relative to the largest; 0: other engines have
+                           none */
     char engine[RITZ_NAME_SIZE];     /* "SLICOT SB03OD", "closed form", "ADI" */
     char damping[RITZ_DAMPING_SIZE]; /* of a component, that was used */
 } ritz_gramians;
@@ -330,9 +333,10 @@ typedef struct ritz_gramians_request {
     ritz_engine engine;
     double among_hz;   /* modal: all modes up to here; 0: all there are */
     double band_hz[2]; /* modal: over this band alone; 0, 0: all frequencies */
-    bool values_only;  /* projection: leave Zc, EZc and Zo without columns where
-                          Hankel values are all that is wanted */
-    int64_t most;      /* projection: vectors at most; 0: as memory allows */
+    bool values_only;  /* projection: only Hankel values are wanted, so Zc, EZc
+                          and Zo get no columns */
+    int64_t most;      /* projection: limit of Krylov vectors; 0: as memory
+                          allows */
     double tolerance;  /* low-rank: of the residual; 0: 1e-10; projection: of
                           the error of Hankel values; 0: 1e-8 */
 } ritz_gramians_request;
@@ -343,10 +347,12 @@ typedef struct ritz_gramians_request {
  * projection if D is a M + b K, with or without discrete dampers, otherwise
  * low-rank.
  *
- * By projection `residual` is |r| / |F| of both responses, r what the projected
- * response at the frequency where the error may be largest leaves in the
- * equation of motion, in the norm of energy r'K^-1 r: no Hankel value errs by
- * more than the product of |r| of both with the largest amplification there.
+ * With projection, `residual` is |r| / |F| of the responses to the inputs and
+ * to the outputs, at the frequency where the bound of the error is largest: F
+ * is the load, and r what the projected response leaves of it in the equation
+ * of motion. Both are in the norm (r'(K + mu M)^-1 r)^(1/2), with mu = 0 unless
+ * the body is free. The product of both |r| and the largest amplification of a
+ * mode at that frequency bounds the error of each Hankel value.
  *
  * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
  *         does not fit it; RITZ_ERR_CONVERGENCE if the rank grows too large

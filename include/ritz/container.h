@@ -71,7 +71,7 @@ typedef struct ritz_stamp {
     const char *command; /* that made it */
     int64_t num_inputs;
     char *const *input; /* "SHA256  NAME", one for each file that was read */
-    const char *interrupted; /* what a signal ended; NULL: the run was whole */
+    const char *interrupted; /* what a signal has cut short; NULL: nothing */
 } ritz_stamp;
 
 /* What can be said of any container without reading its matrices. */
@@ -79,7 +79,7 @@ typedef struct ritz_summary {
     char kind[RITZ_NAME_SIZE];
     char version[RITZ_NAME_SIZE];
     char units[RITZ_NAME_SIZE];
-    char interrupted[4 * RITZ_NAME_SIZE]; /* what a signal ended; "": nothing */
+    char interrupted[4 * RITZ_NAME_SIZE]; /* as in ritz_stamp; "": nothing */
     char *command;
     int64_t num_inputs;
     char **input;

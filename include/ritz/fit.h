@@ -35,16 +35,17 @@ typedef struct ritz_fit_candidate {
                              `columns` */
     int64_t columns;    /* of all flexible bodies together */
     ritz_measures errors;    /* worst of all configurations; {0} if refused */
-    ritz_measures estimates; /* bounds of what a search chose and of its
-                                runner-up, of a scene the worst of all
-                                configurations; of others what ruled them out */
+    ritz_measures estimates; /* bounds, of the result and the runner-up of a
+                                search: worst of all configurations. Of other
+                                candidates of a scene the lower bound of the
+                                frequency error, at one configuration */
     double ratio;     /* largest error over its tolerance; 1 or less: met */
     int64_t worst;    /* the measure of that ratio in `errors`; -1: none */
     bool feasible;    /* it meets the tolerance everywhere, and is stable */
     bool unconfirmed; /* it met the tolerance on the grid, and not at the random
                          frequencies and configurations */
-    bool ruled_out;   /* of a scene: a bound excludes it, so it was not
-                         measured */
+    bool ruled_out;   /* of a scene: a lower bound of its error is above the
+                         tolerance, so it was not measured */
     ritz_fit_watch making; /* to make basis and reduction */
     ritz_cost cost;        /* if it is feasible; order 0: not measured */
     char refusal[256];     /* why it could not be made, or is unstable; "" */
@@ -70,8 +71,9 @@ typedef struct ritz_fit_request {
                                `num_between` */
     int64_t num_between;   /* random configurations that confirm */
     uint64_t seed;         /* of both */
-    bool estimates;        /* bounds of the result and the runner-up; of a
-                            scene what a bound rules out is not measured */
+    bool estimates;        /* find bounds of the result and the runner-up, and
+                              do not measure candidates of a scene that a lower
+                              bound rules out */
     bool costs;            /* of feasible ones, measured: some 20 ms each */
     bool thorough;         /* every method to its end, not only as far as twice
                             the best of others */
@@ -81,8 +83,8 @@ typedef struct ritz_fit_request {
                               order and for what cuts come to: beyond it some
                               places and some cuts speak for all; 0: no end */
     ritz_fit_observer *observe;  /* may be NULL */
-    bool (*stop)(void *context); /* asked between candidates: true ends the
-                                    search with what it has; NULL: never */
+    bool (*stop)(void *context); /* asked often during a search: true ends it
+                                    with the best so far; NULL: never */
     void *context;               /* of both */
 } ritz_fit_request;
 
@@ -116,7 +118,8 @@ typedef struct ritz_fit {
     ritz_fit_candidate *candidate; /* all that were tried, in their order */
     int64_t chosen, runner_up;     /* -1: none; the runner-up is the best of
                                       another method */
-    bool interrupted;              /* by request.stop: others may be smaller */
+    bool interrupted;              /* request.stop ended the search: candidates
+                                      that were not tried may be smaller */
     int64_t num_methods;
     int64_t *best;     /* num_methods, of each the smallest that is feasible;
                           -1: none is */
@@ -197,8 +200,9 @@ ritz_status ritz_fitter_try(ritz_fitter *fitter, const ritz_method *method,
  * the order; of a scene modes are then taken from one body after the other, and
  * exchanged between them.
  *
- * A search that is stopped has the best of the candidates that were tried, and
- * no bounds. What is made of it afterwards is not nested, and has no path.
+ * A search that request.stop ends has the best of the candidates that were
+ * tried, without bounds. The reduced components or the system that this fitter
+ * makes afterwards are not nested, and have no path.
  *
  * @return as ritz_fitter_try; that no method meets the tolerance is no failure
  *         but has no `chosen`
@@ -217,6 +221,8 @@ ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
 /**
  * The reduced component of a candidate, nested: columns that must stay first,
  * then the others as they matter, with the errors of every prefix.
+ *
+ * @return as ritz_fitter_try, or RITZ_ERR_CONVERGENCE if request.stop ends it
  */
 ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
                                 const ritz_fit_candidate *candidate,

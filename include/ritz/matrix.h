@@ -355,9 +355,9 @@ typedef struct ritz_pairs {
 
 /* How pairs of a large pencil are found. */
 typedef enum ritz_eigen_engine {
-    RITZ_EIGEN_AUTO,    /* what is mostly fastest of those below */
+    RITZ_EIGEN_AUTO,    /* the one of those below that is fastest as a rule */
     RITZ_EIGEN_LANCZOS, /* block Lanczos at one shift */
-    RITZ_EIGEN_ARPACK,  /* one vector at a time, to compare with */
+    RITZ_EIGEN_ARPACK,  /* one vector at a time, for comparison */
     RITZ_EIGEN_SLICES,  /* block Lanczos at shifts within the spectrum */
 } ritz_eigen_engine;
 

@@ -70,8 +70,8 @@ typedef struct ritz_component {
  */
 ritz_status ritz_component_settle(ritz_component *component, bool symmetrise);
 
-/** The same of all but the matrices, which stay empty: for a component whose
- * matrices do not fit into one process. @return RITZ_ERR_FORMAT as above */
+/** As ritz_component_settle, for a component that was read without its
+ * matrices, which stay empty. @return RITZ_ERR_FORMAT as above */
 ritz_status ritz_component_settle_frame(ritz_component *component);
 
 /** Add its dampers to its D and K: see ritz_dampers_install. */

@@ -236,9 +236,9 @@ ritz_status ritz_reference_measure(const ritz_reference *reference,
                                    ritz_measures *out);
 
 /**
- * Phi'M T with the reference's modes Phi: what the columns of T hold of each
- * full mode. Reductions whose columns are combinations of those of T have the
- * same combinations of these, and need no T to be measured.
+ * Phi'M T with the modes Phi of the full model: how much of each mode the
+ * columns of T contain. A reduction by T S has Phi'M T S, so that its shapes
+ * can be compared without T.
  *
  * @param[in]  T    n x r
  * @param[out] out  modes x r
@@ -248,12 +248,12 @@ ritz_status ritz_reference_parts(const ritz_reference *reference,
                                  const ritz_dense *T, ritz_dense *out);
 
 /**
- * As ritz_reference_measure of a reduced component of which T is not at hand:
- * shapes are compared by @p parts, of as many columns as it has.
+ * As ritz_reference_measure, for a reduced component whose T may be missing:
+ * shapes are compared by @p parts, which has as many columns as T.
  *
- * @param[in] parts  of ritz_reference_parts; NULL: as ritz_reference_measure
- * @cost   nothing that grows with the full model's size, unless its response
- *         at each frequency takes a factor
+ * @param[in] parts  by ritz_reference_parts; NULL: as ritz_reference_measure
+ * @cost   does not grow with the size of the full model, unless dampers couple
+ *         its modes: then each of its response points may take a factor
  */
 ritz_status ritz_reference_measure_parts(const ritz_reference *reference,
                                          ritz_model reduced,

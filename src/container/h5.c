@@ -464,7 +464,7 @@ ritz_status ritz_h5_get_text(hid_t at, const char *name, size_t size, char *out)
     return ritz_h5_get(at, name, type, 1, out);
 }
 
-/* --- checksums, as the head of h5_sets.c defines them ----------------------- */
+/* --- checksums, as the head of h5_sets.c defines them --------------------- */
 
 uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum)
 {
@@ -474,7 +474,7 @@ uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum)
     for (int64_t k = 0; k < bytes; k += 8) {
         uint64_t w = 0;
 
-        if (bytes - k >= 8) /* a number that the compiler knows: one load */
+        if (bytes - k >= 8) /* a constant size: compilers make it one load */
             memcpy(&w, at + k, 8);
         else
             memcpy(&w, at + k, (size_t)(bytes - k));

@@ -66,7 +66,8 @@ ritz_status ritz_h5_open(const char *path, hid_t *out);
  */
 ritz_status ritz_h5_take(hid_t at, const char *name, hsize_t bytes, bool read);
 
-/** Keep a file open for each ritz_h5_open of that path until ritz_h5_release. */
+/** Keep a file open for each ritz_h5_open of that path, until
+ * ritz_h5_release. */
 ritz_status ritz_h5_keep(const char *path);
 void ritz_h5_release(void);
 
@@ -169,9 +170,10 @@ ritz_status ritz_h5_read(hid_t at, const char *name, hid_t type,
                          ritz_h5_shape shape, void *values);
 
 /**
- * The checksum of the values of a data set, in pieces of whole words: begin
- * with RITZ_H5_SUM, continue with the last result; the end of it is what the
- * attribute `checksum` holds.
+ * Continue the checksum of a data set by the next @p bytes of its values. The
+ * first call gets RITZ_H5_SUM, each later one the result of the call before;
+ * all but the last have a multiple of 8 bytes. ritz_h5_sum_end makes the last
+ * result the value of the attribute `checksum`.
  */
 #define RITZ_H5_SUM 14695981039346656037U
 uint64_t ritz_h5_sum(int64_t bytes, const void *values, uint64_t sum);

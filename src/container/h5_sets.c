@@ -404,8 +404,8 @@ static herr_t move_piece(hid_t set, const ritz_h5_shape *piece, bool reads,
     const hsize_t count[2] = {smaller_of(piece->dims[0], all[0] - i),
                               smaller_of(piece->dims[1], all[1] - j)};
     RITZ_OWN(hid_t) space = H5Screate_simple(2, all, NULL);
-    /* With a memory space of the piece's own shape HDF5 copies whole rows; with
-       one of one dimension it copies entry by entry. */
+    /* Two dimensions, as on file: HDF5 then copies whole rows. To and from a
+       memory space of one dimension it copies entry by entry. */
     RITZ_OWN(hid_t) memory = H5Screate_simple(2, count, NULL);
 
     H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);

@@ -137,7 +137,8 @@ ritz_status ritz_schema_move(const ritz_place *place);
 ritz_status ritz_schema_open(const char *path, char kind[RITZ_NAME_SIZE],
                              hid_t *out);
 
-/** Read an empty object, which may be filled in part on failure. */
+/** Read a container of one kind into @p object, which is empty before and may
+ * be filled in part on failure. */
 ritz_status ritz_schema_read(const char *path, const ritz_schema *schema,
                              void *object);
 

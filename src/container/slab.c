@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Sets of a sparse matrix, in the order of ritz_slab_sum. */
+/* Data sets of a sparse matrix, in the order of their checksums. */
 enum { DATA, INDICES, INDPTR };
 
 static const char *const sets[RITZ_SLAB_SETS] = {"data", "indices", "indptr"};
@@ -23,7 +23,7 @@ static ritz_status settle_frame(const ritz_place *place)
     return ritz_component_settle_frame(place->target);
 }
 
-/* The rows of a component but for those of matrices. */
+/* Read by the schema of a component without the rows of its matrices. */
 ritz_status ritz_slab_frame(const char *path, ritz_component *out)
 {
     enum { MOST = 64 };
@@ -61,7 +61,7 @@ ritz_status ritz_slab_has(const char *path, const char *name, bool *out)
     return ritz_context(ritz_h5_seen(), path);
 }
 
-/* Values [first, first + count) of a data set of one dimension. */
+/* Read values [first, first + count) of a data set of one dimension. */
 static ritz_status read_part(hid_t group, const char *name, hid_t type,
                              int64_t first, int64_t count, void *values)
 {
@@ -85,7 +85,8 @@ static ritz_status read_part(hid_t group, const char *name, hid_t type,
     return RITZ_OK;
 }
 
-/* The number of entries, after a look at the sizes of all sets. */
+/* Refuse a matrix whose data sets disagree in size; find how many entries it
+   has. */
 static ritz_status measure_matrix(hid_t group, int64_t n, int64_t *entries)
 {
     char format[RITZ_NAME_SIZE] = "";
@@ -100,12 +101,12 @@ static ritz_status measure_matrix(hid_t group, int64_t n, int64_t *entries)
                    "%" PRId64 " columns where %" PRId64 " are due",
                    (int64_t)shape[INDPTR].dims[0] - 1, n);
     RITZ_REFUSE_IF(shape[DATA].dims[0] != shape[INDICES].dims[0],
-                   RITZ_ERR_FORMAT, "as many rows as values are due");
+                   RITZ_ERR_FORMAT, "'data' and 'indices' differ in length");
     *entries = (int64_t)shape[DATA].dims[0];
     return RITZ_OK;
 }
 
-/* Pointers of the columns as the file has them, which ascend. */
+/* Read column pointers; refuse any that descend or leave the entries. */
 static ritz_status read_pointers(hid_t group, int64_t from, int64_t columns,
                                  int64_t entries, int64_t *colptr)
 {

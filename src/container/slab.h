@@ -1,5 +1,7 @@
-/* Components that do not fit into one process: all of a container but its
- * matrices, and some columns of a matrix. */
+/*
+ * Reading a component whose matrices do not fit into one process: all of its
+ * container but the matrices, and a slab, which is a range of columns of one.
+ */
 #ifndef RITZ_CONTAINER_SLAB_H
 #define RITZ_CONTAINER_SLAB_H
 
@@ -7,17 +9,18 @@
 
 #include <stdbool.h>
 
-/** A component without K, M, D, K4 and KG, which stay empty. */
+/** Read a component without K, M, D, K4 and KG, which stay empty. */
 ritz_status ritz_slab_frame(const char *path, ritz_component *out);
 
-/* Sets of a sparse matrix, in the order of the checksums below. */
+/* Data sets of a sparse matrix: `data`, `indices` and `indptr`. Arrays of their
+ * checksums are in this order. */
 enum { RITZ_SLAB_SETS = 3 };
 
 /* Columns [from, from + A.ncol) of a sparse matrix in a file. */
 typedef struct ritz_slab {
     ritz_sparse A; /* with all rows */
     int64_t from;
-    int64_t before;  /* entries of the columns before */
+    int64_t before;  /* entries of the columns before `from` */
     int64_t entries; /* of the whole matrix */
 } ritz_slab;
 
@@ -25,23 +28,24 @@ typedef struct ritz_slab {
 ritz_status ritz_slab_has(const char *path, const char *name, bool *out);
 
 /**
- * Read columns of a square matrix of @p n rows, without its checksums.
+ * Read columns [from, to) of a square matrix of @p n rows. Its checksums, which
+ * are those of all columns, are not compared: see ritz_slab_verify.
  *
- * @return RITZ_ERR_FORMAT if it is of another size, if its pointers descend, or
+ * @return RITZ_ERR_FORMAT if it has another size, column pointers descend, the
  *         rows of a column do not ascend, or a value is not finite
  */
 ritz_status ritz_slab_read(const char *path, const char *name, int64_t n,
                            int64_t from, int64_t to, ritz_slab *out);
 
-/** Checksums of `data`, `indices` and `indptr` before the first column. */
+/** Begin the checksums of a matrix. */
 void ritz_slab_begin(uint64_t sum[RITZ_SLAB_SETS]);
 
-/** Continue the checksums by those of a slab, after those of the columns
- * before. */
+/** Continue the checksums by a slab. Slabs must come in the order of their
+ * columns. */
 void ritz_slab_sum(const ritz_slab *slab, uint64_t sum[RITZ_SLAB_SETS]);
 
-/** Compare the checksums of all columns with those of the file, as far as it
- * has them. @return RITZ_ERR_FORMAT if one does not fit */
+/** Compare the checksums of all columns with those that the file has.
+ * @return RITZ_ERR_FORMAT if one differs */
 ritz_status ritz_slab_verify(const char *path, const char *name,
                              const uint64_t sum[RITZ_SLAB_SETS]);
 

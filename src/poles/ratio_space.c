@@ -8,17 +8,18 @@
  * and an f that falls like lambda^(-3/2). Instead of modes, the Ritz pairs of A
  * are used in the rational Krylov space of all loads and outputs,
  *
- *     V = [V_1, V_2, ...],   V_j = [S_j W, S_j M S_j W, ..., (S_j M)^(R-1) S_j W],
- *     S_j = (K + t_j M)^-1,  W = (I - M Phi Phi') [B, C', Cv', Ca'].
+ *     V = [V_1, V_2, ...],
+ *     V_j = [S_j W, S_j M S_j W, ..., (S_j M)^(R-1) S_j W],
+ *     S_j = (K + t_j M)^-1,   W = (I - M Phi Phi') [B, C', Cv', Ca'].
  *
  * The poles -t_j are spread evenly in log(t) from the first eigenvalue to the
  * largest. Each of them then reduces the error by a constant factor, as in
  * rational approximations of the square root, and by the square of that because
- * the space contains both b and c. A factor costs far more than its solves: so
- * each pole serves R times, as often as the columns of all poles have room, R
- * being 1 where W has many columns. Each level halves the distances between the
- * poles. The difference between two levels is the error of the former, and is
- * reported as that of the latter.
+ * the space contains both b and c. A factor costs far more than solves with it,
+ * so each pole gives R blocks. R is as large as the limit on the columns of V
+ * allows if all levels are needed; it is 1 where W has many columns. Each level
+ * halves the distances between the poles. The difference between two levels is
+ * the error of the former, and is reported as that of the latter.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -36,7 +37,8 @@
 #include <string.h>
 
 /* Level 0 has poles at both ends; each level adds poles half way between those
-   that exist. */
+   that exist, so that the last one makes them 2^(LEVELS - 1) + 1 =
+   MOST_POLES. */
 enum { LEVELS = 6, MOST_POLES = 33, MOST_COLUMNS = 800, SAMPLES = 6 };
 
 /* Index of a mode beyond a list of ratios, which has the last ratio of the
@@ -184,8 +186,9 @@ static ritz_status find_scales(double out_hz, const ritz_residual *r,
     return RITZ_OK;
 }
 
-/* How often each pole serves: once where f jumps, at the edges of bands of
-   ratios, since poles then place Ritz values and do not approximate f. */
+/* R, the number of blocks of each pole. It is 1 if ratios are given by bands:
+   f then jumps at their edges, and what matters is the number of poles, near
+   which Ritz values lie. */
 static int64_t count_blocks(const ratio_space *s)
 {
     const int64_t room = MOST_COLUMNS / (MOST_POLES * s->loads.ncol);
@@ -193,8 +196,8 @@ static int64_t count_blocks(const ratio_space *s)
     return room > 1 && s->damping->kind != RITZ_DAMPING_BANDS ? room : 1;
 }
 
-/* X := S X of a pole, without its part in the known modes; what V does not
-   contain of it is appended as far as there is room. */
+/* X := S X without its part in the known modes. Append the part of it that V
+   does not contain to V, as far as there is room. */
 static ritz_status append_block(ratio_space *s, ritz_factor *S, ritz_dense *X)
 {
     RITZ_CHECK(ritz_factor_solve(S, X));
@@ -204,7 +207,8 @@ static ritz_status append_block(ratio_space *s, ritz_factor *S, ritz_dense *X)
                                    NULL);
 }
 
-/* Append the blocks of one pole, each from the columns of the one before. */
+/* Append the blocks of one pole, each made from the columns that the block
+   before added to V. */
 static ritz_status add_pole(ratio_space *s, double t)
 {
     const ritz_component *c = s->component;

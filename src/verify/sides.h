@@ -87,8 +87,7 @@ typedef struct ritz_sides {
     const ritz_reduced *component; /* it too; NULL: a system */
     ritz_gap gap;
     int where;               /* sum of RITZ_AT_... */
-    const ritz_dense *parts; /* Phi'M T where it is at hand; NULL: not; borrowed
-                              */
+    const ritz_dense *parts; /* borrowed, Phi'M T; NULL: compute it from T */
     bool shapes;             /* MAC is of shapes; else, of a system, of the
                          participations of observable modes */
     ritz_pairs small;        /* of the reduced model, all */
