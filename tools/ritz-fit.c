@@ -65,7 +65,8 @@ int main(int argc, char **argv)
         .summary = "Find the smallest model, over methods and orders, that "
                    "meets a tolerance in a band;\nconfirm it at random "
                    "frequencies and configurations; say why it is that one.\n"
-                   "Interrupted, write the best so far to OUTPUT.interrupted.",
+                   "After SIGINT or SIGTERM, write the best so far to "
+                   "OUTPUT.interrupted.",
         .example = "ritz-fit blade.h5 --tolerance response=1e-2,frequency=1e-3 "
                    "--band-hz 0,50 -o small.h5",
         .output = "the nested reduced component, or the system of a scene",

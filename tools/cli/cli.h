@@ -149,8 +149,8 @@ typedef struct cli_run {
     const char *written[CLI_MAX_OUTPUTS];
     bool quiet, json;
     bool kept;                            /* see cli_keep_outputs */
-    char interrupted[4 * RITZ_NAME_SIZE]; /* see cli_divert; "": it was not */
-    char diverted[CLI_MAX_COMMAND];       /* name of the output then */
+    char interrupted[4 * RITZ_NAME_SIZE]; /* what a signal cut short; "" */
+    char diverted[CLI_MAX_COMMAND];       /* OUTPUT.interrupted, if one did */
     char command[CLI_MAX_COMMAND]; /* for the containers that the tool writes */
     json_t *report;                /* of --json; sink.h adds to it */
     json_t *open[CLI_MAX_DEPTH];   /* in it, where values go at present */
@@ -272,18 +272,20 @@ void cli_watch(cli_run *run);
 void cli_prepare(void);
 
 /**
- * From now on the first SIGINT or SIGTERM does not end the program, but makes
- * cli_interrupted true, so that what there is can be written; the second one
- * ends it. A signal that is ignored stays so.
+ * From now on the first SIGINT or SIGTERM only makes cli_interrupted true, so
+ * that the tool can write what it has found so far; the second one ends the
+ * program. A signal that is ignored stays ignored.
  */
 void cli_interruptible(void);
 bool cli_interrupted(void);
 
 /**
- * Write to OUTPUT.interrupted in place of OUTPUT, in containers that say what
- * was interrupted; cli_finish publishes it though the status is a failure.
+ * From now on run->output is OUTPUT.interrupted, and containers get the
+ * attribute `interrupted`. cli_finish publishes the file although the status is
+ * a failure.
  *
- * @param[in] what  for the container: "the search, after 12 candidates"
+ * @param[in] what  the attribute: "the search, after 12 candidates"
+ * @return RITZ_ERR_ARGUMENT if the name of the output is too long
  */
 ritz_status cli_divert(cli_run *run, const char *what);
 

@@ -26,9 +26,9 @@ enum { LARGE = 1 << 20 };
 
 /*
  * How many times an idle thread of GNU OpenMP looks for work before it sleeps.
- * If threads sleep at once, the factor of a model of 55 000 dofs takes 3.0 s
- * instead of 1.5 s; with 3000 to 100 000 times it takes the same 1.5 s. A larger
- * number keeps cores busy that other threads, of Ritz or of other programs, need.
+ * If threads sleep at once, the factor of a model of 55 000 dofs takes 3.0 s;
+ * with 3000 to 100 000 times it takes 1.5 s. A larger number keeps cores busy
+ * that other threads, of Ritz or of other programs, need.
  */
 static const char *const SPINS = "5000";
 

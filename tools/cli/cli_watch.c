@@ -1,5 +1,5 @@
-/* What a run tells while it works: progress, warnings, the end of long work; and
-   what it leaves when a signal or a library ends it. */
+/* What a run tells while it works: progress, warnings, the time that long work
+   will take; and what it leaves when a signal or a library ends it. */
 #include "cli/cli.h"
 
 #include "base/draft.h"
@@ -66,9 +66,10 @@ static void watch_signals(void)
             sigaction(numbers[k], &action, NULL);
 }
 
-static volatile sig_atomic_t interrupted; /* by a first signal */
+static volatile sig_atomic_t interrupted; /* there was a first signal */
 
-/* The second signal ends the program, as does one in code that never asks. */
+/* The first signal is only noted. A second one ends the program, also in code
+   that does not ask cli_interrupted. */
 static void note_signal(int number)
 {
     if (interrupted)
@@ -145,8 +146,9 @@ typedef struct step_series {
 static step_series series[8];
 static int num_series;
 
-/* The series of a step; the first step begins a new series, as does one that
-   does not follow the last. */
+/* The series that a step continues. A step begins a new series if its name is
+   new, if it comes before the last one, or if it skips steps and the total is
+   another. */
 static step_series *find_series(const char *what, int64_t done, int64_t total)
 {
     enum { MOST = sizeof series / sizeof *series };
@@ -157,7 +159,7 @@ static step_series *find_series(const char *what, int64_t done, int64_t total)
             found = &series[k];
     if (found && done >= found->done &&
         (found->total == total || done <= found->done + 1)) {
-        found->total = total; /* what was foreseen may change */
+        found->total = total; /* it may be an estimate that changes */
         return found;
     }
     if (!found)
@@ -166,7 +168,8 @@ static step_series *find_series(const char *what, int64_t done, int64_t total)
     return found;
 }
 
-/* Seconds that all steps of a series take at its rate so far; 0: not known. */
+/* Estimate the seconds that all steps of a series take, from its rate so far;
+   0: it is too early. */
 static double foresee_whole(const step_series *w)
 {
     static const double enough = 1.0; /* seconds */
@@ -177,7 +180,7 @@ static double foresee_whole(const step_series *w)
     return spent / (double)(w->done - w->first) * (double)(w->total - w->first);
 }
 
-/* Warn of long work once its duration can be estimated. */
+/* Warn of long work, once, when its duration can be estimated. */
 static void foresee_end(step_series *w)
 {
     static const double long_work = 600.0; /* seconds */

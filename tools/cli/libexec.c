@@ -11,8 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The way to libexec from the folder of the program itself, which is that of
-   the tools or, if it has the same name, libexec. */
+/* The path to libexec/ritz from the folder of the running program: that of the
+   tools, or libexec/ritz itself, which is recognised by its last name. */
 static const char *choose_way(const char *folder)
 {
     static const char from_tools[] = "/" RITZ_LIBEXEC "/";
@@ -37,10 +37,10 @@ ritz_status libexec_find(const char *name, char out[PATH_MAX])
         *slash = '\0';
     RITZ_REFUSE_IF(!slash || snprintf(out, PATH_MAX, "%s%s%s", self,
                                       choose_way(self), name) >= PATH_MAX,
-                   RITZ_ERR_FILE, "no path to %s", name);
+                   RITZ_ERR_FILE, "the path to '%s' is too long", name);
     RITZ_REFUSE_IF(access(out, X_OK) != 0, RITZ_ERR_FILE,
-                   "'%s', which a tool is installed with, is not there to be "
-                   "run: %s",
+                   "'%s', which is installed with the tools, cannot be run: "
+                   "%s",
                    out, strerror(errno));
     return RITZ_OK;
 }
@@ -54,7 +54,8 @@ bool libexec_is_asked(char **argv, const char *option, const char *value)
     return false;
 }
 
-/* A number that a starter of processes leaves in the environment; -1: none. */
+/* The whole number in the first of some environment variables that has one; -1:
+   none has. */
 static int64_t find_number(const char *const *names)
 {
     for (; *names; names++) {
@@ -67,14 +68,16 @@ static int64_t find_number(const char *const *names)
     return -1;
 }
 
-/* As Open MPI, MPICH and SLURM call them. */
+/* Variables in which Open MPI, MPICH and SLURM tell a process its rank, and how
+   many processes they started on this machine. */
 static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK",
                                     "SLURM_PROCID", NULL};
 static const char *const neighbours[] = {"OMPI_COMM_WORLD_LOCAL_SIZE",
                                          "MPI_LOCALNRANKS",
                                          "SLURM_TASKS_PER_NODE", NULL};
 
-/* The cores that are this process' own: those it is bound to, or its part. */
+/* How many cores this process may use: those that it is bound to, but no more
+   than an equal share of the machine. */
 static int64_t count_cores(void)
 {
     const int64_t beside = find_number(neighbours);
@@ -89,7 +92,8 @@ static int64_t count_cores(void)
     return cores > 1 ? cores : 1;
 }
 
-/* OpenMP reads its environment when a program starts. */
+/* Limit the threads of the program that is started next: its OpenMP reads the
+   environment at the start. */
 static bool set_threads(void)
 {
     char cores[24];
@@ -109,7 +113,7 @@ int libexec_become(const char *program, char **argv, const char *tool,
         execv(path, argv);
     if (find_number(ranks) <= 0)
         cli_complain("%s: %s needs %s, which is built where Debian's packages "
-                     "%s are installed, and is not there to be run\n",
+                     "%s are installed, and cannot be run here\n",
                      tool, option, program, packages);
     return EXIT_FAILURE;
 }

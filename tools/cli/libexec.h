@@ -1,4 +1,4 @@
-/* Programs of the folder libexec, which are installed with the tools. */
+/* Programs of the folder libexec/ritz, which are installed with the tools. */
 #ifndef RITZ_TOOLS_CLI_LIBEXEC_H
 #define RITZ_TOOLS_CLI_LIBEXEC_H
 
@@ -11,22 +11,24 @@
  * Find a program relative to the tool, as both were installed or built; neither
  * the environment nor the working folder has an influence.
  *
- * @return RITZ_ERR_FILE if it is not there
+ * @return RITZ_ERR_FILE if it is not there or cannot be run
  */
 ritz_status libexec_find(const char *name, char out[PATH_MAX]);
 
-/** Whether a command line gives an option this value, before it is parsed. */
+/** Whether the words `option value` are in a command line; it need not have
+ * been parsed. */
 bool libexec_is_asked(char **argv, const char *option, const char *value);
 
 /**
- * Become another program, with the same command line. Each process of MPI gets
- * as many threads as it has cores to itself, unless the environment says how
- * many. Only one of several processes complains of a failure.
+ * Replace this process by a program of libexec with the same command line
+ * (execv). It may use as many threads as its share of the cores, unless the
+ * environment sets their number. If it cannot be run, a message says so; of
+ * several MPI processes only that of rank 0 prints it.
  *
- * @param[in] tool      for the complaint
+ * @param[in] tool      name in the message
  * @param[in] option    that the program is needed for
  * @param[in] packages  of Debian that it is built with
- * @return the exit status of a tool that has failed: there is no such program
+ * @return only on failure: the exit status of the tool
  */
 int libexec_become(const char *program, char **argv, const char *tool,
                    const char *option, const char *packages);

@@ -1,4 +1,5 @@
-/* The command line of ritz-basis, which libexec/ritz-basis-slepc.c has too. */
+/* The command line of ritz-basis, which is also that of
+   libexec/ritz-basis-slepc.c. */
 #include "print/print.h"
 
 static void list_methods(void)

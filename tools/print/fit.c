@@ -489,8 +489,8 @@ static void warn_of_ports(cli_run *run, const ritz_component *component,
              chosen->method->name, component->port[0].name);
 }
 
-/* The files that are asked for; a signal may stop it while columns are put in
-   order. */
+/* Write the output files. A signal may stop this while columns are put in
+   order, which is before any file is written. */
 static ritz_status write_result(fit_run *f, ritz_fitter *fitter,
                                 const ritz_fit_candidate *chosen)
 {
@@ -505,8 +505,8 @@ static ritz_status write_result(fit_run *f, ritz_fitter *fitter,
     return ritz_container_write_reduced(run->output, &reduced, cli_stamp(run));
 }
 
-/* Of a search that a signal has ended: the best so far into a file of its own,
-   marked, and a failure. Report and components are left as they were. */
+/* After a signal: write the best candidate so far to OUTPUT.interrupted, and
+   fail. Report and components are not written. */
 static ritz_status keep_best(fit_run *f, ritz_fitter *fitter,
                              const ritz_fit *fit)
 {
@@ -541,7 +541,7 @@ static ritz_status keep_best(fit_run *f, ritz_fitter *fitter,
                      chosen->order, run->output);
 }
 
-/* Compare, record and write what a whole search has found. */
+/* After a complete search: compare methods, record the result and write it. */
 static ritz_status conclude_search(fit_run *f, const model *full,
                                    ritz_fitter *fitter, ritz_fit *fit)
 {
@@ -562,7 +562,8 @@ static ritz_status conclude_search(fit_run *f, const model *full,
                             : RITZ_OK;
 }
 
-/* Search, say, record, write; nothing is written if nothing is found. */
+/* Search, print and record the result, and write it; if a signal ends that,
+   write the best so far. Nothing is written if nothing meets the tolerance. */
 static ritz_status find_smallest(fit_run *f, const model *full,
                                  ritz_fitter *fitter)
 {

@@ -24,7 +24,7 @@
 
 typedef struct basis_options {
     const ritz_method *method;
-    /* reads the operand in place of basis_run; NULL: it does so itself */
+    /* reads the component; NULL: basis_run does so itself */
     ritz_status (*read)(cli_run *run, const char *path, model *out);
     const char *ports;    /* "PORT[,PORT]"; NULL: all */
     cli_list neighbours;  /* "PORT=FILE:PORT" */
@@ -35,9 +35,10 @@ typedef struct basis_options {
 ritz_status basis_run(cli_run *run, basis_options *given);
 
 /**
- * ritz-basis from its command line to its exit status.
+ * Run ritz-basis: parse its command line and make the basis.
  *
- * @param[in] make  basis_run, or what another program does before it calls that
+ * @param[in] make  basis_run, or a function that calls it with other options
+ * @return the exit status
  */
 int basis_main(int argc, char **argv,
                ritz_status (*make)(cli_run *run, basis_options *given));
