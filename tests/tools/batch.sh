@@ -20,9 +20,9 @@ folder() {
 folder one
 works 'two components and two configurations by make -j' make -s -j 2 -C one \
     MODES=4 FREQUENCIES='--from-hz 1 --to-hz 20 --points 20'
-works 'are made once' sh -c 'make -C one MODES=4 | grep -q "Nothing to be done"'
+works 'a second make has nothing to do' sh -c 'make -C one MODES=4 | grep -q "Nothing to be done"'
 
-# the indices of an array, last first, and one more than there are targets
+# Tasks of an array, the last one first; it has one more than there are targets.
 folder two
 export SLURM_ARRAY_TASK_ID SLURM_SUBMIT_DIR="$dir/two"
 for SLURM_ARRAY_TASK_ID in 5 4 3 2 1; do
@@ -35,9 +35,9 @@ for file in bases/rotor.h5 reduced/rotor.h5 reduced/stator.h5 responses/1.h5 \
     same "$file is the same by both" "one/$file" "two/$file"
 done
 
-# what fails is told by make, does not stop the others, and leaves nothing
+# make reports a component that fails, goes on with others, and leaves no file
 echo junk >one/components/broken.h5
 expect 2 'broken.h5' make -s -k -j 2 -C one MODES=4
-works 'and is not there' test ! -e one/reduced/broken.h5
+works 'and there is no file of it' test ! -e one/reduced/broken.h5
 
 echo "1..$count"

@@ -1,18 +1,19 @@
 #!/bin/sh
-# What a search leaves that a signal ends.
-# Usage: interrupted.sh FOLDER-OF-THE-TOOLS
+# interrupted.sh FOLDER-OF-THE-TOOLS - the files that ritz-fit leaves after a
+# signal.
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
-# interrupt SIGNAL WORD COMMAND...: send the signal when a line of the record
-# has the word. The record is a pipe: the tool waits for a reader of each line,
-# and so is still at work. Its status is in $got, its words in said.
+# interrupt SIGNAL WORD COMMAND...: run the command and send it the signal when a
+# line of its record has the word. The record is a pipe, and the tool waits until
+# each line is read: so it is still searching when the signal comes. Its status
+# is in $got, its output in the file said.
 interrupt() {
     signal=$1 word=$2 got=0
     shift 2
     rm -f record
     mkfifo record
-    # a shell has what runs behind it ignore SIGINT
+    # a shell starts background commands with SIGINT ignored
     env --default-signal="$signal" "$@" --record record >said 2>&1 &
     tool=$!
     line=
@@ -20,12 +21,12 @@ interrupt() {
         read -r line <record || line=
     done
     kill -s "$signal" "$tool"
-    exec 3<>record # it reads what is still said
+    exec 3<>record # a reader for the lines to come
     wait "$tool" || got=$?
     exec 3>&-
 }
 
-# says NAME WORDS: an interrupted tool said so, with status 1.
+# says NAME WORDS: the interrupted tool printed these words and failed.
 says() {
     cp said log
     [ "$got" = 1 ] && grep -qF -e "$2" said && report yes "$1" || report no "$1"
@@ -37,7 +38,7 @@ expect 0 '' ritz-import --stiffness "$truss/truss72.k.mtx" \
     --dofs "$truss/truss72.dofs" --port left=1:12 --input f=36:2 \
     --output-at y=35:2 -q -o truss.h5
 
-# --- a component -----------------------------------------------------------------
+# --- a component ---------------------------------------------------------------
 
 set -- ritz-fit truss.h5 --band-hz 0,20 --damping 'modal 0.01' \
     --methods craig-bampton,normal-modes,krylov --tolerance flexible=1e-2
@@ -47,7 +48,7 @@ for signal in INT TERM; do
     interrupt "$signal" '"feasible":true' "$@" -o fit.h5
     says "SIG$signal ends the search with the best so far" \
         "is in 'fit.h5.interrupted'"
-    works '  why says after how many' grep -q 'Why: interrupted after [0-9]* cand' said
+    works '  after how many candidates is said' grep -q 'Why: interrupted after [0-9]* cand' said
     works '  the output is as it was' grep -qx before fit.h5
     expect 0 'the search, after' ritz-info fit.h5.interrupted
     expect 0 'pass' ritz-verify truss.h5 fit.h5.interrupted --band-hz 0,20 \
@@ -63,7 +64,7 @@ says 'before anything meets the tolerance there is nothing to keep' \
 works '  and nothing is left' test ! -e fit.h5.interrupted
 works '  the output is as it was' grep -qx before fit.h5
 
-# --- a scene -------------------------------------------------------------------------
+# --- a scene -------------------------------------------------------------------
 
 import_spacecraft
 spacecraft scene 'band_hz: [0, 5]' \

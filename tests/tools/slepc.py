@@ -1,11 +1,11 @@
 """Parts of slepc.sh that are Python: a model, and comparisons of bases.
 
-membrane SIDE [EVERY]: m.K.mtx, m.M.mtx and m.dofs, a free square of SIDE x SIDE
-masses that springs join, and mass couples across the diagonals; with EVERY only
-each so-many-th dof has a mass.
-same BASIS BASIS...: each agrees with the first.
-damage FILE ENTRY VALUE [unsealed]: overwrite an entry of K, with its checksum
-left or removed.
+membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square of
+SIDE x SIDE masses with springs between neighbours, and with entries of M
+between diagonal neighbours. With EVERY, only every EVERY-th dof has a mass.
+same BASIS BASIS...: compare each basis with the first.
+damage FILE ENTRY VALUE [unsealed]: overwrite an entry of K, and leave its
+checksum as it was or, with `unsealed`, remove it.
 """
 import sys
 
@@ -24,7 +24,7 @@ def membrane(side, every=1):
                 for k in at, to:
                     stiffness[k, k] = stiffness.get((k, k), 0.0) + 1.0
     mass = {(k, k): 1.0 for k in range(0, n, every)}
-    if every == 1:  # where there is no stiffness
+    if every == 1:  # couple dofs in M that K does not couple
         for k in range(n - side):
             for to in ([k + side + 1] if (k + 1) % side else []) + \
                     ([k + side - 1] if k % side else []):
@@ -46,9 +46,9 @@ def columns(path):
 
 
 def same(first, *others):
-    """Constraint modes to 1e-12; eigenvalues to 1e-10, relative; subspaces of
-    clusters to ten times residual over gap: both residuals are below 1e-11 of
-    |K||x|, and no gap between clusters of the models is below 1e-3 of that."""
+    """Constraint modes agree to 1e-12, eigenvalues to 1e-10, relative. Subspaces
+    of clusters agree to ten times residual over gap: residuals of both are below
+    1e-11 |K| |x|, and gaps between clusters of these models above 1e-3 |K|."""
     T, hertz = columns(first)
     modes = np.isfinite(hertz)
     value = hertz[modes] ** 2

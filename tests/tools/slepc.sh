@@ -1,6 +1,7 @@
 #!/bin/sh
 # slepc.sh FOLDER-OF-THE-TOOLS - ritz-basis --engine slepc on 1, 2 and 4 ranks:
-# bases agree with those of one process, and what fails fails once, in all.
+# bases agree with those of ritz-basis alone; a failure is reported once and ends
+# all ranks.
 . "$(dirname "$0")/tap.sh"
 
 # Open MPI refuses root and more ranks than cores, unless it is told
@@ -26,8 +27,8 @@ works 'it is not linked with the sequential MUMPS' sh -c '
     ! grep -iE " [TtDdBb] (dmumps_|zmumps_|mpi_init|mpi_comm_rank)" symbols' - \
     "$program"
 
-# A square whose rim is the port: its interior has every eigenvalue but those of
-# the diagonal twice, 400 dofs, more than are solved by rank 0 alone.
+# A square membrane with its rim as the port. The 400 dofs inside are more than
+# rank 0 solves alone, and lambda_ij = lambda_ji are double eigenvalues.
 side=22
 rim=1-$side,$((side * (side - 1) + 1))-$((side * side))
 k=$((side + 1))
@@ -46,7 +47,7 @@ fixed='-q craig-bampton --attach rim m.h5'
         expect 0 '' ranks $n $fixed --modes 12 --engine slepc -o $n.h5
     done
     works 'bases agree on 1, 2 and 4 ranks' check same 0.h5 1.h5 2.h5 4.h5
-    # of one rank: with more, MUMPS decides while it runs who adds what
+    # on one rank: on more, the order of MUMPS's sums changes from run to run
     expect 0 '' ritz-basis $fixed --modes 12 --engine slepc -o again.h5
     works 'the same bits again' sh -c 'ritz-info 1.h5 | grep sha256 >a &&
         ritz-info again.h5 | grep sha256 >b && diff a b'
@@ -59,13 +60,13 @@ fixed='-q craig-bampton --attach rim m.h5'
 }
 expect 0 '' ritz-reduce -q m.h5 4.h5 -o reduced.h5
 
-# free, with a rigid mode; no mpirun is one rank
+# a free body, which has a rigid mode; without mpirun there is one rank
 expect 0 '' ritz-basis -q normal-modes --modes 8 m.h5 -o 0.h5
 expect 0 '' ritz-basis -q normal-modes --modes 8 --engine slepc m.h5 -o 1.h5
 expect 0 '' ranks 2 -q normal-modes --modes 8 --engine slepc m.h5 -o 2.h5
 works 'free bodies agree' check same 0.h5 1.h5 2.h5
 
-# few masses: Krylov spaces end early
+# few masses: the mass matrix has a low rank, and Krylov spaces end early
 works 'a membrane of few masses is made' check membrane $side 7
 expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
     --port "corner=1:3" -o few.h5
@@ -73,7 +74,7 @@ expect 0 '' ritz-basis -q craig-bampton --modes 20 few.h5 -o 0.h5
 expect 0 '' ranks 2 -q craig-bampton --modes 20 --engine slepc few.h5 -o 2.h5
 works 'a mass of low rank' check same 0.h5 2.h5
 
-# fewer rows than ranks, and none
+# fewer free dofs than ranks: one, and none
 works 'nine dofs are made' check membrane 3
 expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
     --port most=1-8:3 --port all=1-9:3 -o nine.h5
@@ -120,11 +121,11 @@ check damage bad.h5 -2 -7 unsealed
 fails 1 'K is unsymmetric: its column of an attached dof' ranks 2 \
     craig-bampton --modes 3 --attach last --engine slepc bad.h5
 
-# ended by the keyboard, wherever it is: the whole file, or none and no part
+# after Ctrl-C, whenever it comes, there is the whole file or none, never a part
 for seconds in 0.4 0.6; do
     timeout -s INT $seconds mpirun -n 2 ritz-basis -q craig-bampton --modes 12 \
         --engine slepc m.h5 -o int.h5 >log 2>&1 || true
-    works "an end after $seconds s leaves no part of a file" sh -c '
+    works "SIGINT after $seconds s leaves no part of a file" sh -c '
         left=$(ls -A | grep int.h5 || true)
         test -z "$left" || { test "$left" = int.h5 && ritz-info int.h5; }'
 done

@@ -21,7 +21,8 @@ static int tear_down(void **)
     return 0;
 }
 
-/* All columns, in @p parts slabs, and the checksums that these lead to. */
+/* Read all columns in @p parts slabs and compare them with A; find the
+   checksums of all. */
 static void read_in_parts(const char *name, int64_t parts, const ritz_sparse *A,
                           uint64_t sum[RITZ_SLAB_SETS])
 {
@@ -90,7 +91,7 @@ static void a_file_says_which_matrices_it_has(void **)
     assert_false(has);
 }
 
-/* Write one value of a data set in place. */
+/* Overwrite one value of a data set in the file. */
 static void overwrite(const char *set, hsize_t at, hid_t type,
                       const void *value)
 {
@@ -134,7 +135,7 @@ static ritz_status read_slab(const char *name, int64_t n, int64_t from,
     return ritz_slab_read(path, name, n, from, to, &slab);
 }
 
-static void what_is_no_matrix_is_refused(void **)
+static void damaged_matrices_are_refused(void **)
 {
     const double nan_value = (double)NAN;
     const int64_t wrong = 3000;
@@ -170,7 +171,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_frame_is_the_component_without_matrices),
     cmocka_unit_test(a_file_says_which_matrices_it_has),
     cmocka_unit_test_setup(one_wrong_value_breaks_the_checksum, write_sample),
-    cmocka_unit_test_setup(what_is_no_matrix_is_refused, write_sample),
+    cmocka_unit_test_setup(damaged_matrices_are_refused, write_sample),
     cmocka_unit_test_setup(reading_survives_every_allocation, write_sample),
 };
 

@@ -150,7 +150,8 @@ static void a_clamped_beam_is_fitted_within_one(void **state)
     assert_within_one(&beam, &request);
 }
 
-/* The result and the runner-up have bounds; all candidates are measured. */
+/* All candidates of a component are measured; only the result and the runner-up
+   have bounds. */
 static void the_answer_of_a_component_is_bounded(void **state)
 {
     RITZ_OWN(ritz_component) truss = {0};
@@ -490,7 +491,7 @@ static void a_pole_between_points_is_seen_by_what_confirms(void **state)
                 10.0 * find_measure(&grid, "response-relative")->value);
 }
 
-/* Candidates that a search may try before it is stopped. */
+/* As request.stop: false as often as the context says, and then true. */
 static bool is_enough(void *context)
 {
     int *left = context;
@@ -498,7 +499,8 @@ static bool is_enough(void *context)
     return --*left < 0;
 }
 
-/* The best of those that were tried, whenever the search is stopped. */
+/* The longer a search goes on before it is stopped, the smaller its result; the
+   last search is not stopped. */
 static void a_stopped_search_has_the_best_so_far(void **state)
 {
     int64_t before = INT64_MAX;
@@ -524,7 +526,7 @@ static void a_stopped_search_has_the_best_so_far(void **state)
         chosen = &f.fit.candidate[f.fit.chosen];
         assert_true(chosen->feasible && chosen->order <= before);
         before = chosen->order;
-        left = INT_MAX; /* what is made of it is not stopped */
+        left = INT_MAX; /* from here on nothing is stopped */
         assert_ok(ritz_fitter_reduced(f.fitter, chosen, &reduced));
         assert_int_equal(reduced.K.ncol, chosen->order);
         assert_true((reduced.nested.smallest == 0) == f.fit.interrupted);

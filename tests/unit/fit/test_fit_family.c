@@ -1,4 +1,4 @@
-/* Candidates that are columns of a basis with more modes. */
+/* Candidates whose bases are columns of a basis with more modes. */
 #include "testing.h"
 
 #include "frame.h"
@@ -54,7 +54,8 @@ static ritz_fit_request ask(const ritz_method *const *methods, int64_t count)
     return request;
 }
 
-/* Both models have the same columns, eigenvalues and parts of full modes. */
+/* Both models have columns of the same kinds and the same eigenvalues, and the
+   parts are Phi'M T of the first. */
 static void assert_same_model(const ritz_fitter *fitter,
                               const ritz_reduced *taken,
                               const ritz_dense *parts, const ritz_reduced *made)
@@ -69,7 +70,7 @@ static void assert_same_model(const ritz_fitter *fitter,
     assert_ok(ritz_eigen_dense(&taken->K, &taken->M, &a));
     assert_ok(ritz_eigen_dense(&made->K, &made->M, &b));
     assert_int_equal(a.Phi.ncol, b.Phi.ncol);
-    for (int64_t k = 0; k < b.Phi.ncol; k++) /* eps of the largest */
+    for (int64_t k = 0; k < b.Phi.ncol; k++) /* rounding is of the largest */
         assert_near(a.lambda[k], b.lambda[k],
                     1e-9 * b.lambda[k] + 1e-12 * b.lambda[r - 1]);
     assert_int_equal(parts->ncol, r);
@@ -108,8 +109,8 @@ static void fewer_modes_are_columns_of_more(void **state)
     }
 }
 
-/* Static vectors of dampers hold no part of the modes: of other modes they are
-   others. */
+/* Static vectors of dampers are made without the part that lies in the modes,
+   so they differ with the number of modes. */
 static void static_vectors_are_made_for_each_number_of_modes(void **state)
 {
     RITZ_OWN(ritz_component) truss = {0};
@@ -123,8 +124,8 @@ static void static_vectors_are_made_for_each_number_of_modes(void **state)
     assert_true(fitter->family[0].exact);
 }
 
-/* Of a method that is not nested the last basis serves again, invariants and
-   all. */
+/* A method that is not nested makes no second basis if the same number of modes
+   is asked for again. Invariants and options are those of the basis. */
 static void the_last_basis_of_a_method_is_kept(void **state)
 {
     const ritz_method *const one[] = {&ritz_method_macneal_rubin};
@@ -153,8 +154,8 @@ static void the_last_basis_of_a_method_is_kept(void **state)
     assert_string_equal(taken.origin.options, made.origin.options);
 }
 
-/* What is asked for beyond the first basis takes a larger one. */
-static void a_family_grows(void **state)
+/* A candidate with more modes than the first basis has makes a larger one. */
+static void more_modes_than_the_basis_has_make_a_larger_one(void **state)
 {
     RITZ_OWN(ritz_component) truss = {0};
     const ritz_fit_request request = ask(nested, 1);
@@ -179,8 +180,8 @@ static void a_family_grows(void **state)
     assert_true(first > 0 && fitter->family[0].modes > first);
 }
 
-/* Errors by the parts of full modes are those by T, shapes included. */
-static void parts_measure_what_shapes_do(void **state)
+/* Errors measured with Phi'M T and without T are those with T, MAC included. */
+static void errors_without_a_basis_are_those_with_it(void **state)
 {
     RITZ_OWN(ritz_component) truss = {0};
     const ritz_fit_request request = ask(nested, 1);
@@ -223,7 +224,7 @@ static ritz_status search_once(const ritz_component *truss)
     return ritz_fit_take(fitter, nested[0], 2, true, &taken, &parts);
 }
 
-static void taking_survives_every_allocation(void **state)
+static void reducing_by_a_kept_basis_survives_every_allocation(void **state)
 {
     const double ones[] = {1.0, 1.0};
     const int64_t in = 1;
@@ -239,8 +240,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(fewer_modes_are_columns_of_more),
     cmocka_unit_test(static_vectors_are_made_for_each_number_of_modes),
     cmocka_unit_test(the_last_basis_of_a_method_is_kept),
-    cmocka_unit_test(a_family_grows),
-    cmocka_unit_test(parts_measure_what_shapes_do),
-    cmocka_unit_test(taking_survives_every_allocation),
+    cmocka_unit_test(more_modes_than_the_basis_has_make_a_larger_one),
+    cmocka_unit_test(errors_without_a_basis_are_those_with_it),
+    cmocka_unit_test(reducing_by_a_kept_basis_survives_every_allocation),
 };
 TEST_MODULE(fit_family, tests, NULL, NULL)
