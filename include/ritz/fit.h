@@ -247,6 +247,7 @@ ritz_status ritz_fitter_reduced(ritz_fitter *fitter,
  * @param[out] body  one for each component of the scene, nested where flexible
  * @param[out] path  from the whole system down, measured where candidates are
  *                   confirmed; ritz_fit_path_free
+ * @return as ritz_fitter_reduced
  * @cost  of c columns that may go at p listed and q random configurations:
  *        c (2 p + 5) systems measured on the grid, or some more, and at most
  *        2 c (p + q) where candidates are confirmed; where c p or the latter is

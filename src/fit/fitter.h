@@ -162,7 +162,8 @@ ritz_status ritz_fit_body(ritz_fitter *fitter, const ritz_method *method,
  * @param[out] out     dampers not installed
  * @param[out] parts   Phi'M T, modes of the reference x r
  * @return as ritz_basis_make
- * @cost   a basis if no kept one serves; otherwise O(r^2), with T O(n r)
+ * @cost   a basis if no kept one serves; otherwise O(N^2 r) for the N columns
+ *         of the kept one, and O(n r) with T
  */
 ritz_status ritz_fit_take(ritz_fitter *fitter, const ritz_method *method,
                           int64_t modes, bool with_T, ritz_reduced *out,

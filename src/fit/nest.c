@@ -450,8 +450,9 @@ static ritz_status make_uncut(ritz_fitter *f,
     return RITZ_OK;
 }
 
-/* The same from the basis that the search keeps, which is cheaper. The remarks
-   on a component's body are those on this basis, which may have more modes. */
+/* The same from the basis that the search keeps, which is cheaper. Remarks and
+   options of a component's body are those of this basis, which may have more
+   modes. */
 static ritz_status take_uncut(ritz_fitter *f,
                               const ritz_fit_candidate *candidate,
                               ritz_bodies *out)
@@ -481,8 +482,8 @@ static ritz_status find_cut(const nesting *n, int64_t *columns)
 }
 
 /* Cut the bodies of a candidate to the columns that matter most; not nested.
-   @param[in]  columns  how many of all bodies; 0: the fewest that are feasible
-   @param[out] found    how many; 0: there is no such cut, and no body */
+   @param[in]  columns  of all bodies together; 0: as few as are feasible
+   @param[out] found    how many there are; 0: no such cut, and no body */
 static ritz_status cut_candidate(ritz_fitter *f,
                                  const ritz_fit_candidate *candidate,
                                  int64_t columns, int64_t *found,
