@@ -88,8 +88,8 @@ typedef struct ritz_sides {
     ritz_gap gap;
     int where;               /* sum of RITZ_AT_... */
     const ritz_dense *parts; /* borrowed, Phi'M T; NULL: compute it from T */
-    bool shapes;             /* MAC is of shapes; else, of a system, of the
-                         participations of observable modes */
+    bool shapes;             /* MAC compares shapes; otherwise, of a system,
+                                participations of observable modes */
     ritz_pairs small;        /* of the reduced model, all */
     ritz_poles reduced;
     ritz_dense gain_reduced;

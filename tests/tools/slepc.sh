@@ -4,7 +4,7 @@
 # all ranks.
 . "$(dirname "$0")/tap.sh"
 
-# Open MPI refuses root and more ranks than cores, unless it is told
+# Open MPI does not run as root or with more ranks than cores unless told to
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
 program=$bin/../libexec/ritz/ritz-basis-slepc
@@ -86,7 +86,8 @@ for port in most all; do
     works "$port of nine dofs held" check same 0.h5 4.h5
 done
 
-# Failures are told once, with the status of one process, and nothing is left.
+# A failure is reported once, with the status that one process would have, and no
+# file is left.
 fails() {
     rm -f out.h5
     expect "$@" -o out.h5
@@ -104,7 +105,7 @@ fails 1 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
 fails 2 "no method 'craig'" ranks 2 craig --modes 3 --engine slepc m.h5
 fails 1 'makes no static vectors of inputs, outputs or dampers' \
     ritz-basis craig-bampton --modes 3 --loads inputs --engine slepc m.h5
-# the last rank alone finds this entry
+# only the last rank reads this entry, which is no number
 cp m.h5 bad.h5
 check damage bad.h5 -1 nan unsealed
 fails 1 'bad.h5: K: entry' ranks 4 craig-bampton --modes 3 --engine slepc bad.h5

@@ -149,7 +149,7 @@ typedef struct cli_run {
     const char *written[CLI_MAX_OUTPUTS];
     bool quiet, json;
     bool kept;                            /* see cli_keep_outputs */
-    char interrupted[4 * RITZ_NAME_SIZE]; /* what a signal cut short; "" */
+    char interrupted[4 * RITZ_NAME_SIZE]; /* what a signal ended early, or "" */
     char diverted[CLI_MAX_COMMAND];       /* OUTPUT.interrupted, if one did */
     char command[CLI_MAX_COMMAND]; /* for the containers that the tool writes */
     json_t *report;                /* of --json; sink.h adds to it */

@@ -70,7 +70,7 @@ static void assert_same_model(const ritz_fitter *fitter,
     assert_ok(ritz_eigen_dense(&taken->K, &taken->M, &a));
     assert_ok(ritz_eigen_dense(&made->K, &made->M, &b));
     assert_int_equal(a.Phi.ncol, b.Phi.ncol);
-    for (int64_t k = 0; k < b.Phi.ncol; k++) /* rounding is of the largest */
+    for (int64_t k = 0; k < b.Phi.ncol; k++) /* and rounding, 1e-12 */
         assert_near(a.lambda[k], b.lambda[k],
                     1e-9 * b.lambda[k] + 1e-12 * b.lambda[r - 1]);
     assert_int_equal(parts->ncol, r);
