@@ -4,10 +4,10 @@
 . "$(dirname "$0")/tap.sh"
 . "$here/models.sh"
 
-# interrupt SIGNAL WORD COMMAND...: run the command and send it the signal when a
-# line of its record has the word. The record is a pipe, and the tool waits until
-# each line is read: so it is still searching when the signal comes. Its status
-# is in $got, its output in the file said.
+# interrupt SIGNAL WORD COMMAND...: run the command and send it the signal when
+# a line of its record has the word. The record is a pipe, and the tool waits
+# until each line is read: so it is still searching when the signal comes. Its
+# status is in $got, its output in the file said.
 interrupt() {
     signal=$1 word=$2 got=0
     shift 2
@@ -38,7 +38,7 @@ expect 0 '' ritz-import --stiffness "$truss/truss72.k.mtx" \
     --dofs "$truss/truss72.dofs" --port left=1:12 --input f=36:2 \
     --output-at y=35:2 -q -o truss.h5
 
-# --- a component ---------------------------------------------------------------
+# --- a component --------------------------------------------------------------
 
 set -- ritz-fit truss.h5 --band-hz 0,20 --damping 'modal 0.01' \
     --methods craig-bampton,normal-modes,krylov --tolerance flexible=1e-2
@@ -64,7 +64,7 @@ says 'before anything meets the tolerance there is nothing to keep' \
 works '  and nothing is left' test ! -e fit.h5.interrupted
 works '  the output is as it was' grep -qx before fit.h5
 
-# --- a scene -------------------------------------------------------------------
+# --- a scene ------------------------------------------------------------------
 
 import_spacecraft
 spacecraft scene 'band_hz: [0, 5]' \

@@ -1,7 +1,7 @@
 #!/bin/sh
 # slepc.sh FOLDER-OF-THE-TOOLS - ritz-basis --engine slepc on 1, 2 and 4 ranks:
-# bases agree with those of ritz-basis alone; a failure is reported once and ends
-# all ranks.
+# bases agree with those of ritz-basis alone; a failure is reported once and
+# ends all ranks.
 . "$(dirname "$0")/tap.sh"
 
 # Open MPI does not run as root or with more ranks than cores unless told to
@@ -86,8 +86,8 @@ for port in most all; do
     works "$port of nine dofs held" check same 0.h5 4.h5
 done
 
-# A failure is reported once, with the status that one process would have, and no
-# file is left.
+# A failure is reported once, with the status that one process would have, and
+# no file is left.
 fails() {
     rm -f out.h5
     expect "$@" -o out.h5
