@@ -271,10 +271,12 @@
 #define RITZ_SHIFT_FARTHER 1e2
 /* Convergence of ARPACK: eigenvalues err by its square. */
 #define RITZ_ARNOLDI_SETTLED 1e-12
-/* Rounding of x'K x, relative to lambda, above which an eigenvalue is summed
-   anew with more digits: another number of ranks may change the 13th digit. */
+/* Rounding of x'K x, relative to lambda, above which engine slepc computes an
+   eigenvalue again as a Rayleigh quotient with sums in extended precision, so
+   that it does not depend on the number of processes. */
 #define RITZ_DIGITS_LOST 1e-13
-/* Convergence of SLEPc's Krylov-Schur: an inverse iteration follows. */
+/* Relative residual at which Krylov-Schur and block Lanczos of engine slepc have
+   converged. Vectors become more accurate by one inverse iteration. */
 #define RITZ_KRYLOV_SETTLED 1e-10
 /* A Ritz pair of block Lanczos has converged if |A^-1 M x - theta x| is at most
    this part of theta |x|, norms by M. The vectors returned are more accurate,
@@ -318,17 +320,18 @@
 /* Backward error of a factor of an indefinite matrix, relative, above which
    another shift is taken: 1e-14 is usual, and residuals of 1e-11 need 1e-12. */
 #define RITZ_SIGNED_ERROR 1e-12
-/* A slice of the spectrum ends in a gap above this part of the eigenvalue:
-   vectors of two slices are then orthogonal to their residuals over it, 1e-6,
-   and are made so with one step. */
+/* Least gap between two slices of the spectrum, relative to the eigenvalue.
+   Vectors of two slices are then orthogonal to 1e-6, their residuals divided by
+   this gap, and one projection makes them orthogonal to rounding. */
 #define RITZ_BORDER_GAP 1e-4
-/* Cosine of two vectors of different slices above which they are not accurate:
-   one projection leaves its square. */
+/* Largest cosine between vectors of two slices, before the projection that
+   leaves its square. Above it the vectors are not accurate. */
 #define RITZ_BORDER_COSINE 1e-6
-/* A shift behind a cluster is this part of its eigenvalue further. */
+/* Distance of a shift from a cluster below it, relative to the eigenvalue, if
+   no other eigenvalue is known. */
 #define RITZ_BEHIND_CLUSTER 1e-2
-/* Where the factor at a shift fails, this part of its distance to the slice
-   before it is taken. */
+/* If the factor at a shift is singular, the distance of the shift from the last
+   slice is multiplied by this. */
 #define RITZ_SHIFT_ASTRAY 0.93
 /* First shift below 0, of the median of K_jj / M_jj, and the least part of it
    that is taken where a low frequency asks for less. */
@@ -396,13 +399,16 @@
 #define RITZ_BALANCED_DEFECT 0.1
 /* Residual of a low-rank Gramian, if none is asked for. */
 #define RITZ_ADI_TOLERANCE 1e-10
-/* Bound of the error of Hankel values by projection, of the largest value, if
-   none is asked for. */
+/* Default bound of the error of Hankel values of engine projection, relative to
+   the largest value. */
 #define RITZ_PROJECTION_TOLERANCE 1e-8
-/* Part of its energy that a Krylov vector may lose to those before it without
-   another pass: a hundredth of its length, and two digits of orthogonality. */
+/* A Krylov vector is orthogonalised again if less than this part of its energy
+   is left: it has then lost 99 % of its length, and with it two digits of
+   orthogonality. */
 #define RITZ_PROJECTION_KEPT 1e-4
-/* Energy that is new in a Krylov vector, relative: below it there is none. */
+/* A Krylov vector depends on those before it if orthogonalisation leaves less
+   than this part of its length; a combination of vectors of one block is nothing
+   if its energy is less than this part of theirs. */
 #define RITZ_PROJECTION_DEPENDENT 1e-12
 /* A load without its rigid motion below this part, squared, is rounding: there
    is nothing flexible to iterate on. */

@@ -21,8 +21,8 @@ int ritz_blas_threads(int threads)
     return before;
 }
 
-/* OpenBLAS comes first: while it still counts on several threads, it would wait
-   for some that OpenMP no longer starts. */
+/* OpenBLAS is set first: if it expects several threads and OpenMP starts none,
+   it waits for ever. */
 ritz_blas_setting ritz_blas_alone(double operations)
 {
     ritz_blas_setting before = {0, -1};

@@ -12,10 +12,10 @@
  */
 int ritz_blas_threads(int threads);
 
-/* What a factorisation changed. */
+/* Settings before ritz_blas_alone(). */
 typedef struct ritz_blas_setting {
-    int threads; /* of OpenBLAS, 0: not changed */
-    int levels;  /* of parallel OpenMP loops, -1: not changed */
+    int threads; /* number of threads of OpenBLAS; 0: was not changed */
+    int levels;  /* omp_get_max_active_levels(); -1: was not changed */
 } ritz_blas_setting;
 
 /**

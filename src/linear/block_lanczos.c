@@ -338,7 +338,8 @@ static void expand_space(block_lanczos *L, double *size)
     *size = hypot(*size, ritz_square_size(A));
 }
 
-/* Eigenvalues by magnitude, the largest first: below sigma they are negative. */
+/* Rank the eigenvalues theta of T by magnitude, the largest first. Theta of an
+   eigenvalue below sigma is negative. */
 static void rank_magnitudes(block_lanczos *L)
 {
     int64_t low = 0;
@@ -503,8 +504,8 @@ static bool is_time_to_look(const block_lanczos *L, int64_t *next)
     return true;
 }
 
-/* Whether k of the pairs that were found are enough: those wanted below sigma
-   must be among them. */
+/* Whether at least k pairs have converged, and S->below of them lie below
+   sigma. */
 static bool is_enough(const block_lanczos *L, int64_t found)
 {
     int64_t below = 0;
@@ -518,7 +519,8 @@ static bool is_enough(const block_lanczos *L, int64_t found)
 static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
                                   ritz_lanczos_end *end)
 {
-    /* vectors for each pair: 2.4 at least, 1.4 where they lie on both sides */
+    /* no check of convergence before there are 2.4 basis vectors for each pair,
+       or 1.4 if eigenvalues lie on both sides of sigma */
     int64_t next = ((L->S->below > 0 ? 7 : 12) * L->k / 5 + B - 1) / B;
     int64_t steps = 0;
     int restarts = 0;

@@ -23,9 +23,10 @@
 #include "linear/general.h"
 
 /**
- * The @p k eigenvalues nearest to sigma, with their vectors, and up to eight
- * more where these have converged, too. At least S->below of them lie below
- * sigma. That none is missing is not guaranteed: see ritz_inertia_below().
+ * The @p k eigenpairs nearest to sigma, and more if these have converged, too:
+ * up to eight if S->below is 0, any number otherwise. The search goes on until
+ * at least S->below of them lie below sigma. That none is missing is not
+ * guaranteed: see ritz_inertia_below().
  *
  * @param[in]  S       K, M and the factor of K - sigma M, which is positive
  *                     definite if S->below is 0; M positive semidefinite
@@ -35,12 +36,13 @@
  *                     M-orthonormal; empty unless *end is FOUND
  * @param[out] lambda  eigenvalues of the columns of X, to be freed; NULL unless
  *                     *end is FOUND  [rad^2/s^2]
- * @param[out] next    estimate, from outside, of the eigenvalue after the last of
- *                     X, or of the k-th one if *end is SLOW; HUGE_VAL if there
- *                     is no estimate; not set if *end is EXHAUSTED
+ * @param[out] next    estimate of the next eigenvalue after those of X by
+ *                     distance from sigma, or of the k-th one if *end is SLOW;
+ *                     the true one is nearer to sigma. HUGE_VAL if there is no
+ *                     estimate; not set if *end is EXHAUSTED
  * @param[out] end     FOUND; SLOW after 40 restarts, or if @p room is too small
  *                     for one; EXHAUSTED if there are fewer than k finite
- *                     eigenvalues
+ *                     eigenvalues, or fewer than S->below below sigma
  * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if @p k is too large for LAPACK;
  *         RITZ_ERR_CONVERGENCE if LAPACK fails
  * @cost   about 3 k / 8 block solves and 4 k vectors of memory

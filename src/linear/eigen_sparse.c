@@ -333,11 +333,11 @@ static ritz_status shift_elsewhere(search *s, double reach)
     return shift_near(s, sigma);
 }
 
-/* A way to find the s->ask lowest pairs with the factor s->S.A. */
+/* A method to find the s->ask lowest pairs with the factor s->S.A. */
 struct engine {
     const char *name;
-    /** lambda stays NULL where it is not known; *reach as of
-     * ritz_lanczos_lowest() where *end is SLOW. */
+    /** *lambda stays NULL if the method gives vectors alone. If *end is SLOW,
+     * *reach is set as by ritz_lanczos_lowest(). */
     ritz_status (*find)(search *s, ritz_dense *X, double **lambda,
                         double *reach, ritz_lanczos_end *end);
 };
@@ -356,8 +356,9 @@ static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
 }
 
 /*
- * The factor of the first slice is freed, and with it the order. Where slices
- * do not end, as with fewer modes than were asked for, one shift is left.
+ * The order of rows is copied, as the factor that has it is freed with the first
+ * slice. If slices fail or find fewer modes than requested, block Lanczos with
+ * one shift takes over for the rest of the search.
  */
 static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
                                   double *reach, ritz_lanczos_end *end)

@@ -17,20 +17,26 @@ ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
                                 ritz_pairs *out);
 
 /*
- * What a search for the lowest pairs decides from those that it has found, also
- * where another program searches (libexec/slepc/modes.c).
+ * Decisions of a search for the lowest pairs, of ritz_eigen_sparse() and of the
+ * one by several processes (libexec/slepc/modes.c).
  */
 
-/** How many of the pairs were requested: by number, or up to @p limit; a
- * cluster at the end is kept whole. */
+/**
+ * How many of the pairs found were requested: rigid modes and span->modes
+ * others, or all up to @p limit if span->modes is negative; and the rest of a
+ * cluster that the last of them belongs to.
+ *
+ * @param[in] limit  highest eigenvalue requested  [rad^2/s^2]
+ */
 int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
                           double limit);
 
-/** Pair k at or behind @p end with the widest relative gap to pair k - 1, in
- * which modes are counted. */
+/** The index k >= @p end with the widest relative gap between pairs k - 1 and k:
+ * modes are counted below a value in that gap. */
 int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
 
-/** A value between pairs k - 1 and k, part of the way. */
+/** A value between eigenvalues k - 1 and k of @p P, at @p part (0 to 1) of the
+ * way; beyond the first or the last one if there is only one of them. */
 double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part);
 
 #endif

@@ -180,7 +180,8 @@ static ritz_status pack_factor(ritz_factor *F, cholesky *C, const double *a,
     return RITZ_OK;
 }
 
-/* CHOLMOD ran out of memory, or cannot factor such a matrix. */
+/* The failure of the last call of CHOLMOD as a status; RITZ_OK if there is
+   none. A matrix that is not positive definite is not a failure here. */
 static ritz_status report_failure(const cholesky *C, int64_t rows)
 {
     RITZ_REFUSE_IF(C->common.status == CHOLMOD_OUT_OF_MEMORY ||
@@ -193,8 +194,8 @@ static ritz_status report_failure(const cholesky *C, int64_t rows)
     return RITZ_OK;
 }
 
-/* The pattern of L, in the order of rows that is known, or one that is found.
-   For a small matrix CHOLMOD tries several orders and keeps the best. */
+/* Find the pattern of L, with rows in the order `known`; NULL: find an order,
+   too. For a small matrix CHOLMOD tries several orders and keeps the best. */
 static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
                                   const int64_t *known)
 {
@@ -229,7 +230,8 @@ static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
     return report_failure(C, A->nrow);
 }
 
-/* Room for the solves of a factor of A, and A's diagonal. */
+/* Refuse A if it is not square; allocate what solves need, and copy the diagonal
+   of A to *a. */
 static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
                                 double **a)
 {
@@ -265,8 +267,9 @@ ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
     return ritz_factor_spd_weak(A, out, NULL);
 }
 
-/* |b - A x| / | |A||x| + |b| | of the solution of A x = b, b of unequal entries:
-   the change of A that x is an exact solution of, relative. */
+/* |b - A x| / | |A||x| + |b| | of the computed solution x of A x = b, for one b
+   of unequal entries. x solves a system exactly whose A and b are changed by
+   about this part. */
 static ritz_status backward_error(ritz_factor *F, const ritz_sparse *A,
                                   double *out)
 {
@@ -278,7 +281,7 @@ static ritz_status backward_error(ritz_factor *F, const ritz_sparse *A,
     for (int64_t i = 0; i < F->n; i++)
         x.val[i] = cos((double)i) * sqrt(fabs(ritz_sparse_diagonal(A, i)));
     RITZ_CHECK(ritz_factor_solve(F, &x));
-    for (int64_t j = 0; j < F->n; j++) { /* rows are columns */
+    for (int64_t j = 0; j < F->n; j++) { /* column j is row j: A is symmetric */
         const double b =
             cos((double)j) * sqrt(fabs(ritz_sparse_diagonal(A, j)));
         double rest = b;

@@ -6,14 +6,18 @@
 #include <ritz/matrix.h>
 
 /**
- * A = L S L', S = diag(+1 or -1), of an indefinite matrix, pivots exchanged
- * within supernodes only, for the same solves; its backward error is measured by a solve.
+ * Factor an indefinite matrix: A = L S L', S = diag(+1 or -1), for the same
+ * solves as a Cholesky factor. Pivots are exchanged only within supernodes,
+ * which may be inaccurate: the backward error of one solve is measured, and a
+ * factor above RITZ_SIGNED_ERROR is refused.
  *
  * @param[in]  A         n x n, symmetric, both triangles stored
- * @param[in]  order     of ritz_factor_order(), NULL to find one
- * @param[out] negative  eigenvalues of A below 0, by Sylvester's law
- * @return RITZ_ERR_SINGULAR if A or a leading part of it is nearly singular:
- *         take another shift; RITZ_ERR_MEMORY
+ * @param[in]  order     order of rows, as of ritz_factor_order(); NULL: find one
+ * @param[out] negative  number of negative eigenvalues of A, by Sylvester's law
+ * @param[out] out       to be freed by ritz_factor_free()
+ * @return RITZ_ERR_SINGULAR if A or a leading submatrix of it is singular or
+ *         nearly so: choose another shift; RITZ_ERR_ARGUMENT if A is not square;
+ *         RITZ_ERR_MEMORY
  * @see    [GrimesLewisSimon1994]
  */
 ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,

@@ -100,7 +100,7 @@ typedef struct ritz_shifted {
     const ritz_sparse *K, *M; /* borrowed */
     double sigma;
     ritz_factor *A; /* of K - sigma M */
-    int64_t below;  /* eigenvalues below sigma that are wanted, too */
+    int64_t below;  /* number of eigenvalues below sigma, all to be found */
 } ritz_shifted;
 
 /** How ritz_lanczos_lowest ended, if it did not fail. */

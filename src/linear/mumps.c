@@ -1,6 +1,6 @@
 /*
- * Factors by MUMPS in one process: A = L D L', real, and sum_k c_k A_k = L D L' or
- * L U, complex.
+ * Factors by MUMPS in one process: A = L D L', real, and sum_k c_k A_k = L D L'
+ * or L U, complex.
  */
 #include "base/alloc.h"
 #include "base/search.h"
@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <zmumps_c.h>
-#ifdef RITZ_MPI /* as CMakeLists.txt compiles this file for ritz-basis-slepc */
+#ifdef RITZ_MPI /* defined for the copy that is linked to ritz-basis-slepc */
 #include <mpi.h>
 #endif
 

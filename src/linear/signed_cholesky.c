@@ -5,14 +5,16 @@
  *     X := A(r, s) - sum over d of L(r, d) S_d L(s, d)'
  *     X(s, s) = L_s S_s L_s',   L(r, s) = X(r, s) L_s'^-1 S_s
  *
- * where d are the supernodes before s with rows in s. Each d is in the list of
- * the supernode that its next row lies in.
+ * where d runs over the finished supernodes with rows in s. Each d is in a linked
+ * list that belongs to one supernode: the one that contains its first row which
+ * has not been used yet.
  *
- * Columns of a supernode have the same rows, so that their order is free: of
- * each panel of 64 the largest pivot comes first. Without that, one shift of
- * four had a backward error above 1e-12 (measured: S10); with it, 1e-14.
- * Rows keep the number that the analysis gave them, their label, until all is
- * factored; then L and its order are renumbered.
+ * All columns of a supernode have the same rows, so that they may be exchanged:
+ * in each panel of 64 columns the largest remaining pivot comes next. Without
+ * this, one shift of four had a backward error above 1e-12 (model S10 of the
+ * benchmarks); with it the error was 1e-14. During the factorisation rows keep
+ * the number that the analysis gave them, here called their label; L and its
+ * permutation are renumbered at the end.
  */
 #include "linear/signed_cholesky.h"
 
@@ -27,17 +29,18 @@
 #include <string.h>
 
 enum {
-    PANEL = 64,          /* columns that are factored before others change */
-    STRIP = 256,         /* columns that are changed at once */
-    SHARE = 8,           /* subtrees of each thread, so that loads are even */
-    WORTHWHILE = 400000, /* entries of L that a second thread is worth */
+    PANEL = 64,          /* columns factored before the rest is updated */
+    STRIP = 256,         /* columns of one update by a matrix product */
+    SHARE = 8,           /* subtrees for each thread, to balance the loads */
+    WORTHWHILE = 400000, /* entries of L from which one more thread is used */
 };
 
-/* What one thread works with. */
+/* Memory of one thread. */
 typedef struct worker {
-    int64_t *at; /* of each row among those of the supernode at work */
-    double *update, *scaled;
-    bool singular;
+    int64_t *at;    /* position of each row in the present supernode */
+    double *update; /* L(r, d) S_d L(s, d)' of one d */
+    double *scaled; /* L(s, d) S_d, some columns of it */
+    bool singular;  /* a pivot was zero or not finite */
 } worker;
 
 typedef struct factoring {
@@ -45,16 +48,17 @@ typedef struct factoring {
     cholmod_factor *L;
     double *sign;
     int threads;
-    int64_t count;    /* supernodes */
-    int64_t most;     /* columns of the widest */
-    int64_t *place;   /* of each row of A in L */
-    int64_t *of;      /* supernode of each column */
-    int64_t *label;   /* column of L, as analysed, that is at each place */
-    int64_t *parent;  /* of each supernode, -1 for a root */
-    int64_t *pending; /* its first row whose column it has not changed yet */
-    int64_t *head;    /* the first in the list of each supernode, or -1 */
-    int64_t *next;    /* the one behind it in its list, or -1 */
-    int *owner;       /* thread, -1 for the top of the tree */
+    int64_t count;  /* number of supernodes */
+    int64_t most;   /* number of columns of the widest supernode */
+    int64_t *place; /* row of L, as analysed, of each row of A */
+    int64_t *of;    /* supernode of each column of L */
+    int64_t *label; /* of each column of L: its number in the analysis */
+    /* of each supernode */
+    int64_t *parent;  /* in the elimination tree, -1 for a root */
+    int64_t *pending; /* index of the first row that has not been used yet */
+    int64_t *head;    /* first supernode of its list, or -1 */
+    int64_t *next;    /* the supernode after it in the list it is in, or -1 */
+    int *owner;       /* thread that factors it, -1 for the top of the tree */
     worker *crew;
 } factoring;
 
@@ -85,7 +89,7 @@ static signed_node supernode_of(const factoring *F, int64_t s)
 
 /* --- the tree ------------------------------------------------------------- */
 
-/* Parents, the width of the widest supernode, and the place of each row. */
+/* Fill the arrays of rows, columns and supernodes from the analysis. */
 static void survey_factor(factoring *F)
 {
     const int64_t *perm = F->L->Perm;
@@ -109,8 +113,9 @@ static void survey_factor(factoring *F)
     }
 }
 
-/* Whose each supernode is: subtrees of less than a part of all operations go,
-   from the last to the first, to the thread with the least work. */
+/* Assign supernodes to threads. A subtree with less than 1 / (SHARE threads) of
+   all operations goes as a whole to the thread with the least work so far; what
+   is above such subtrees is the top, and has no owner. */
 static ritz_status share_tree(factoring *F)
 {
     RITZ_OWN_ARRAY double *work = NULL, *load = NULL;
@@ -164,7 +169,7 @@ static ritz_status allocate_factoring(factoring *F)
 
 /* --- one supernode -------------------------------------------------------- */
 
-/* X := A(r, s), zero before. */
+/* X := A(r, s), where X is zero on entry. */
 static void load_columns(const factoring *F, const signed_node *node,
                          const int64_t *at)
 {
@@ -192,8 +197,7 @@ static void scale_columns(int64_t rows, int64_t cols, const double *A,
             to[i + j * rows] = sign[j] * A[i + j * stride];
 }
 
-/* X -= L(r, d) S_d L(s, d)' of one supernode d, whose rows in s become
-   finished ones. */
+/* X -= L(r, d) S_d L(s, d)' of one supernode d. Its rows in s are then used. */
 static void apply_descendant(factoring *F, int64_t d, const signed_node *node,
                              worker *w)
 {
@@ -235,8 +239,8 @@ static void swap_values(int64_t count, double *a, double *b, int64_t stride)
     }
 }
 
-/* Exchange columns p < q of a supernode, and rows; those before them are
-   factored, and only the lower triangle is there. */
+/* Exchange columns p < q of a supernode, and rows p and q, in the stored lower
+   triangle. Columns before p are factored already. */
 static void exchange_columns(const signed_node *node, int64_t p, int64_t q,
                              int64_t *label)
 {
@@ -253,7 +257,7 @@ static void exchange_columns(const signed_node *node, int64_t p, int64_t q,
     label[q] = kept;
 }
 
-/* The largest of the pivots [from, to) comes first. */
+/* Move the largest of the diagonal entries [from, to) to `from`. */
 static void choose_pivot(const signed_node *node, int64_t from, int64_t to,
                          int64_t *label)
 {
@@ -267,8 +271,8 @@ static void choose_pivot(const signed_node *node, int64_t from, int64_t to,
         exchange_columns(node, from, at, label);
 }
 
-/* A = L S L' of the columns [from, to) of a supernode in the same rows; false
-   if a pivot is zero. */
+/* A = L S L' of the diagonal block of rows and columns [from, to) of a
+   supernode; false if a pivot is zero or not finite. */
 static bool factor_triangle(const signed_node *node, int64_t from, int64_t to,
                             double *sign, int64_t *label)
 {
@@ -291,7 +295,7 @@ static bool factor_triangle(const signed_node *node, int64_t from, int64_t to,
     return true;
 }
 
-/* L(r, s) from X, by panels; false if a pivot is zero. */
+/* L(r, s) from X, by panels; false if a pivot is zero or not finite. */
 static bool factor_supernode(const signed_node *node, double *sign,
                              int64_t *label, double *scaled)
 {
@@ -326,8 +330,8 @@ static bool factor_supernode(const signed_node *node, double *sign,
     return true;
 }
 
-/* Enter d into the list of the supernode that its next row is in, if `owner`
-   owns it. */
+/* Put d into the list of the supernode that contains its next row, unless that
+   supernode has another owner. */
 static void enlist(factoring *F, int64_t d, int owner)
 {
     const signed_node node = supernode_of(F, d);
@@ -360,7 +364,7 @@ static void make_supernode(factoring *F, int64_t s, worker *w)
     enlist(F, s, F->owner[s]);
 }
 
-/* The subtrees of this thread. */
+/* Factor the subtrees that this thread owns. */
 static void factor_subtrees(int thread, int threads, void *task)
 {
     factoring *F = task;
@@ -372,7 +376,8 @@ static void factor_subtrees(int thread, int threads, void *task)
             make_supernode(F, s, w);
 }
 
-/* Subtrees by threads, each with a BLAS of one thread, and then the top. */
+/* Factor the subtrees by threads, each with a BLAS of one thread, and then the
+   top by one thread with a BLAS of several. False if a pivot is zero. */
 static bool factor_tree(factoring *F)
 {
     const int before = ritz_blas_threads(1);
@@ -394,7 +399,8 @@ static bool factor_tree(factoring *F)
     return !singular;
 }
 
-/* The order and the rows of L by places, from labels. */
+/* Renumber the permutation and the rows of L: from labels to the columns that
+   they ended in. */
 static void place_labels(factoring *F)
 {
     const int64_t *pi = F->L->pi;
@@ -410,7 +416,7 @@ static void place_labels(factoring *F)
         for (int64_t i = node.cols; i < node.rows; i++)
             row[i] = place[row[i]];
     }
-    for (int64_t i = 0; i < F->A->nrow; i++) /* place[] was perm's inverse */
+    for (int64_t i = 0; i < F->A->nrow; i++) /* F->place: inverse of old perm */
         perm[place[F->place[i]]] = i;
 }
 

@@ -1,20 +1,22 @@
 /*
- * Block Lanczos at one end of the spectrum keeps three vectors for each pair,
- * all orthogonal to each other: n (3 k)^2 operations. In slices it keeps two,
- * and only those of a slice:
+ * Block Lanczos with one shift below the k lowest eigenvalues needs about three
+ * basis vectors for each of them, and orthogonalises all of these: 2 n (3 k)^2
+ * operations. With slices a basis serves only the eigenvalues near one shift.
+ * Slice i, of shift sigma_i, begins at border_i and has the eigenvalues
  *
  *     border_i < lambda <= sigma_i:  as many as the inertia of K - sigma_i M
- *                                    says, less those below the border
- *     lambda > sigma_i:              some more, until the next shift proves them
+ *                                    counts, less those below the border
+ *     lambda > sigma_i:              some more, which are verified by the count
+ *                                    at the next shift
  *
  * A border lies in the widest gap among the last eigenvalues of a slice, never
- * in a cluster, so that vectors of two slices are orthogonal to their residuals
- * over that gap, and become so to rounding with one projection. A slice that
- * has fewer eigenvalues than were counted is found again from the last proven
- * one, with a shift that is nearer.
+ * in a cluster. Vectors of two slices are therefore orthogonal up to the ratio
+ * of their residuals to that gap, and one projection makes them orthogonal to
+ * rounding. If Lanczos finds fewer eigenvalues than were counted, the search
+ * goes back to the last verified one and takes a nearer shift.
  *
- * Held to: block Lanczos and LAPACK on random pencils with clusters, masses of
- * zero, free bodies and mechanisms, with clusters at borders.
+ * Tests compare with block Lanczos and LAPACK on random pencils with clusters,
+ * also at borders, with singular M, free bodies and mechanisms.
  */
 #include "linear/slices.h"
 
@@ -30,30 +32,33 @@
 #include <string.h>
 
 enum {
-    SIDE = 100, /* eigenvalues on each side of a shift */
-    TRIES = 3,  /* shifts that are tried where one is too far, or singular */
-    MISSES = 4, /* slices that are found again */
-    SPARE = 64, /* room for eigenvalues found beside those asked for */
-    MORE_SLICES = 12, /* slices beyond those that are expected */
-    BEYOND = 8,       /* of a side: what the next border may cut off */
-    ROOM = 96,        /* vectors beyond four for each pair */
-    FUTILE = 16,      /* times longer: nothing new so far is nothing at all */
-    TOO_MANY = 3,     /* times the eigenvalues that a shift should have below */
+    SIDE = 100,       /* eigenvalues on each side of a shift */
+    TRIES = 3,        /* shifts to try if one is too far away, or singular */
+    MISSES = 4,       /* slices that may be repeated, in the whole search */
+    SPARE = 64,       /* columns for eigenvalues found beyond those requested */
+    MORE_SLICES = 12, /* slices allowed beyond 4 ask / side */
+    BEYOND = 8,       /* side / BEYOND more are found: a border cuts some off */
+    ROOM = 96,        /* basis vectors beyond four for each pair */
+    FUTILE = 16,  /* `longer` above which no further eigenvalue is expected */
+    TOO_MANY = 3, /* a shift is moved with so many times the expected number of
+                     eigenvalues between it and the border */
 };
 
 typedef struct slices {
     ritz_shifted S;
-    int64_t *order; /* of the first factor, for all others */
-    int64_t ask, side, count;
-    ritz_dense X; /* the first `found` columns, by ascending eigenvalue */
+    int64_t *order; /* of rows in the first factor, used for all others */
+    int64_t ask;    /* eigenvalues requested */
+    int64_t side;   /* eigenvalues on each side of a shift */
+    int64_t count;  /* slices so far */
+    ritz_dense X;   /* `found` columns are set, by ascending eigenvalue */
     double *lambda;
     int64_t found;
-    int64_t proven; /* so many of the lowest are counted */
-    int64_t longer; /* than a usual one is the next slice, this many times */
+    int64_t proven; /* so many of the lowest are verified by a count */
+    int64_t longer; /* factor on the length of the next slice, usually 1 */
     double base;    /* the first shift */
-    double border;  /* no eigenvalue behind X is below it */
-    double nearer;  /* the next shift, after a miss; NaN: none was missed */
-    int64_t misses;
+    double border;  /* all eigenvalues below it are in X, all others are not */
+    double nearer;  /* the next shift, if the last slice missed some; or NaN */
+    int64_t misses; /* slices with eigenvalues missing so far */
 } slices;
 
 static void slices_free(slices *s)
@@ -63,7 +68,7 @@ static void slices_free(slices *s)
     RITZ_FREE(s->order, s->lambda);
 }
 
-/* Pairs of one run, with the places of their eigenvalues by size. */
+/* The pairs that one run of block Lanczos found. */
 typedef struct run {
     ritz_dense X;
     double *lambda;
@@ -107,9 +112,10 @@ static ritz_status rank_values(run *r)
 }
 
 /*
- * The columns [first, found) made orthogonal to all before them, and of length
- * one: V := V - X (X'M V). What is taken out is the residual of both over the
- * gap between their eigenvalues; its square is left.
+ * V := V - X (X'M V) for the columns V from `first` on, X the columns before,
+ * then V is normalised. Entries of X'M V are at most the residuals divided by
+ * the gap between the eigenvalues; after the projection the square of that is
+ * left.
  */
 static ritz_status restore_border(slices *s, int64_t first)
 {
@@ -139,7 +145,8 @@ static ritz_status restore_border(slices *s, int64_t first)
     return RITZ_OK;
 }
 
-/* Append pairs [from, to) of a run, by rank, as far as there is room. */
+/* Append the pairs of a run with the `from`-th to (`to` - 1)-th lowest
+   eigenvalue, counted from 0, as far as there is room. */
 static ritz_status append_pairs(slices *s, const run *r, int64_t from,
                                 int64_t to)
 {
@@ -154,17 +161,17 @@ static ritz_status append_pairs(slices *s, const run *r, int64_t from,
     return restore_border(s, first);
 }
 
-/* A gap behind this eigenvalue that is none of a cluster, nor of rigid motions:
-   they err by parts of their distance from the first shift, below 0. */
+/* Least gap to an eigenvalue that no cluster contains. Eigenvalues of rigid-body
+   modes, which are 0, err in proportion to |base|: hence its share. */
 static double clear_gap(const slices *s, double lambda)
 {
     return RITZ_BORDER_GAP * (fabs(lambda) + fabs(s->base));
 }
 
 /*
- * Cut what was found, in the widest gap among the last quarter of a side, or
- * further down where that is not clear: what is behind it is found again with
- * the next slice.
+ * Set the border in the widest gap among the last side / 4 eigenvalues, or
+ * below them if they have no clear gap, and drop the pairs above it: the next
+ * slice finds these again.
  */
 static void settle_border(slices *s)
 {
@@ -185,8 +192,8 @@ static void settle_border(slices *s)
     s->proven = s->proven < at ? s->proven : at;
 }
 
-/* Eigenvalues on each side of the next shift: more if the last slice brought
-   nothing new. */
+/* Number of eigenvalues on each side of the next shift. It doubles with each
+   slice that brings nothing new. */
 static int64_t side_of_next(const slices *s)
 {
     const int64_t left = s->ask - s->found;
@@ -195,14 +202,14 @@ static int64_t side_of_next(const slices *s)
     return (left + 2 * more - 1) / (2 * more) * s->longer;
 }
 
-/* Where the next slice begins, at least. */
+/* A lower bound of the eigenvalues of the next slice. */
 static double next_begin(const slices *s)
 {
     return s->found > 0 ? s->border : s->lambda[0];
 }
 
-/* The shift below which `half` eigenvalues lie behind the border, if they go on
-   as the last ones did. */
+/* The shift with `half` eigenvalues between the border and itself, if their mean
+   distance is that of the last `half` of those `known`. */
 static double next_shift(const slices *s, int64_t known, int64_t half)
 {
     const int64_t last = known - 1;
@@ -218,20 +225,21 @@ static double next_shift(const slices *s, int64_t known, int64_t half)
     return from + fmax(mean, clear_gap(s, from)) * (double)half;
 }
 
-/* Factor K - sigma M and count. */
+/* Factor K - sigma M and count the eigenvalues below sigma. */
 static ritz_status factor_at(slices *s, double sigma, int64_t *negative)
 {
     RITZ_OWN(ritz_sparse) A = {0};
 
-    ritz_factor_free(&s->S.A); /* two at once may not fit */
+    ritz_factor_free(&s->S.A); /* memory may not hold two factors */
     ritz_monitor_step("factor", 0, 0);
     RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -sigma, s->S.M, &A));
     s->S.sigma = sigma;
     return ritz_factor_signed(&A, s->order, negative, &s->S.A);
 }
 
-/* The next shift, factored: nearer to the border where it would have too many
-   eigenvalues below, and a little elsewhere where it is an eigenvalue. */
+/* Choose the next shift and factor. With too many eigenvalues between border and
+   shift a nearer shift is tried, and a slightly nearer one if the factor is
+   singular. */
 static ritz_status shift_on(slices *s, int64_t known, int64_t half,
                             int64_t *negative)
 {
@@ -263,9 +271,10 @@ static ritz_status shift_on(slices *s, int64_t known, int64_t half,
 }
 
 /*
- * Take the pairs of a run: `below` between the border and the shift, and those
- * above it. If there are fewer, one of this slice or one above the last shift
- * was missed: *missed, and the search goes on from what is proven.
+ * Append the pairs of a run: `below` of them between the border and the shift,
+ * and all above the shift. If fewer than `below` are there, an eigenvalue was
+ * missed, in this run or above the last shift: *missed is set and nothing is
+ * appended.
  */
 static ritz_status take_run(slices *s, const run *r, int64_t below,
                             bool *missed)
@@ -285,7 +294,8 @@ static ritz_status take_run(slices *s, const run *r, int64_t below,
     return RITZ_OK;
 }
 
-/* After a miss: from the last proven pair on, with a shift at half the way. */
+/* After a miss: drop all pairs that are not verified, and let the next shift be
+   half as far from the new border. */
 static ritz_status step_back(slices *s, int64_t count)
 {
     const double sigma = s->S.sigma;
@@ -302,8 +312,9 @@ static ritz_status step_back(slices *s, int64_t count)
 }
 
 /*
- * Lanczos at the shift that is factored: some pairs, s->S.below of them below
- * it. As many again may lie nearer to the shift on its other side.
+ * Block Lanczos with the present shift: at least `pairs` pairs, s->S.below of
+ * them below the shift. As many above it may be nearer to it, and are then found
+ * first: the basis has room for these, too.
  */
 static ritz_status find_run(slices *s, int64_t pairs, run *r,
                             ritz_lanczos_end *end)
@@ -317,7 +328,7 @@ static ritz_status find_run(slices *s, int64_t pairs, run *r,
     return *end == RITZ_LANCZOS_FOUND ? rank_values(r) : RITZ_OK;
 }
 
-/* The next slice, from the border on. */
+/* Find the next slice, above a new border. */
 static ritz_status add_slice(slices *s, ritz_lanczos_end *end)
 {
     RITZ_OWN(run) r = {0};
@@ -346,7 +357,8 @@ static ritz_status add_slice(slices *s, ritz_lanczos_end *end)
     return missed ? step_back(s, negative) : RITZ_OK;
 }
 
-/* All slices; those behind the first begin with a factor of their own. */
+/* All slices. The first uses the factor that the caller gave; each other one
+   makes its own. */
 static ritz_status find_slices(slices *s, ritz_lanczos_end *end)
 {
     RITZ_OWN(run) r = {0};
@@ -385,7 +397,7 @@ ritz_status ritz_slices_lowest(ritz_shifted *S, int64_t k,
          .border = -HUGE_VAL,
          .nearer = (double)NAN};
 
-    S->A = NULL; /* taken */
+    S->A = NULL; /* now owned by s.S */
     RITZ_CHECK_COPY(s.order, ritz_factor_order(s.S.A), S->K->nrow);
     RITZ_CHECK(ritz_dense_new(S->K->nrow, room, &s.X));
     RITZ_CHECK_NEW(s.lambda, room);

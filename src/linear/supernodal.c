@@ -470,7 +470,7 @@ static void descend_subtrees(const solving *s, const crew *c)
     }
 }
 
-/* x := S x in the rows of a block column, x from the first of them. */
+/* x := S x, x the rows of one block column. */
 static void apply_signs(const ritz_supernodal *S, const ritz_block_column *b,
                         int64_t width, double *x)
 {

@@ -26,8 +26,8 @@ enum { RITZ_SOLVE_WIDTH = 16 };
  * the system as they are read, so that memory holds the factor about once.
  *
  * @param[in,out] L    supernodal, L L'; only cholmod_l_free_factor() may follow
- * @param[in]     sign of the pivots, as ritz_signed_cholesky() gives them, for a
- *                     factor L S L'; copied; NULL: all positive
+ * @param[in]     sign diagonal of S from ritz_signed_cholesky(), for a factor
+ *                     L S L'; copied; NULL: S = I
  * @param[out]    out  freed by ritz_supernodal_free()
  * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if L has 2^31 - 1 rows or more
  * @cost   memory of about the size of L
@@ -36,8 +36,8 @@ ritz_status ritz_supernodal_new(cholmod_factor *L, const double *sign,
                                 ritz_supernodal **out);
 
 /**
- * x := (L S L')^-1 x for a block of @p width right-hand sides. The result has the
- * same bits in every run with the same number of threads.
+ * x := (L S L')^-1 x for a block of @p width right-hand sides. The result has
+ * the same bits in every run with the same number of threads.
  *
  * @param[in]     width  8 or 16
  * @param[in,out] x      n x width, row by row, rows in the order of L
