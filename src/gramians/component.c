@@ -234,7 +234,7 @@ typedef struct engine_row {
     bool band, among;
 } engine_row;
 
-/* Of a large component: by projection where the form of D allows it. */
+/* Gramians of a large component, by projection if D has the form it needs. */
 static ritz_status find_large(const ritz_gramians_request *request,
                               ritz_gramians *out)
 {

@@ -1,8 +1,9 @@
-/* Vectors and Gramians of modes as those of x = [u; u'] of the component. */
+/* From vectors and Gramians of modal states to those of x = [u; u']. */
 #include "base/alloc.h"
 #include "gramians/modes.h"
 
-/* Rows first, first + step, ... of Z, times the scale or over it; NULL: 1. */
+/* Half of the rows of Z: first, first + step, ..., the k-th of them divided by
+   scale[k] if `over`, multiplied otherwise; NULL: not scaled. */
 static ritz_status pick_rows(const ritz_dense *Z, int64_t first, int64_t step,
                              const double *scale, bool over, ritz_dense *out)
 {

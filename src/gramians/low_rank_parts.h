@@ -29,7 +29,7 @@ typedef struct ritz_low_rank_model {
     ritz_dense W[RITZ_SIDES][RITZ_HALVES]; /* n x inputs, n x outputs */
     double whole[RITZ_SIDES];              /* |W'W| with rigid motion */
     double *stiff, *mass;                  /* n, what a dof has of each */
-    double lowest; /* eigenvalue of the flexible modes; 1 if there is none */
+    double lowest; /* lowest flexible eigenvalue; 1 if there is none */
     int64_t num_starts;
     double _Complex start[RITZ_LOW_RANK_STARTS];
 } ritz_low_rank_model;
@@ -42,11 +42,13 @@ void ritz_low_rank_model_free(ritz_low_rank_model *model);
 ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
                                double *out);
 
-/** Scale both halves of W, or of a residual, to units of energy. */
+/** Scale the rows of both halves of W, or of a residual, so that their squares
+ * are energies. @param[in] side  RITZ_CONTROLLABLE or RITZ_OBSERVABLE */
 void ritz_low_rank_weigh(const ritz_low_rank_model *model, int side,
                          ritz_dense W[static RITZ_HALVES]);
 
-/** What scales row @p i of 2n of a factor to units of energy. */
+/** The number by which row @p i of the 2n of a factor is multiplied, so that its
+ * squares are energies. */
 double ritz_low_rank_unit(const ritz_low_rank_model *model, int side,
                           int64_t i);
 

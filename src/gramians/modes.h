@@ -229,31 +229,34 @@ ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
                                    ritz_gramians *out);
 
 /**
- * Factors of both Gramians of a large component by projection on Krylov vectors
- * of M and K, whose number grows until a bound of the error of every Hankel
- * value is below the tolerance times the largest (`error` of the result). Each
- * Gramian alone is less accurate than the Hankel values.
+ * Factors of both Gramians of a large component by projection on a Krylov space
+ * of K^-1 M. The space grows until a bound of the error of every Hankel value is
+ * below the tolerance times the largest value; the relative bound is `error` of
+ * the result. Each Gramian alone is less accurate than the Hankel values.
  *
- * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank, and if D is not
- *         a M + b K apart from discrete dampers; RITZ_ERR_CONVERGENCE if the
- *         space would take more than RITZ_FACTOR_BYTES
- * @cost   a factor of K, its two lowest modes, some 100 to 1000 vectors
+ * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank(), or if D is not a M + b K
+ *         apart from discrete dampers; RITZ_ERR_CONVERGENCE if the space would
+ *         take more than RITZ_FACTOR_BYTES or exceed request->most vectors
+ * @cost   a factor of K, its two lowest modes, and mostly 100 to 1000 vectors,
+ *         each with a solve and an orthogonalisation
  */
 ritz_status ritz_gramians_projection(const ritz_gramians_request *request,
                                      ritz_gramians *out);
 
 /*
- * States of modes, without the first rigid ones, which are decoupled: q_k is
- * row k * step, q_k' the next row, or row m + k of 2m.
+ * How 2m states are ordered and scaled that belong to m modes: all modes but the
+ * first num_decoupled, which are rigid-body modes.
  */
 typedef struct ritz_mode_states {
     const ritz_modal_model *modes;
     int64_t num_decoupled;
     int64_t step;        /* 1: all q before all q'; 2: each q before its q' */
-    const double *scale; /* m, rows are scale q and q'; NULL: q */
+    const double *scale; /* m, the states are S q and q', S = diag(scale);
+                            NULL: S = I */
 } ritz_mode_states;
 
-/* Which vectors are lifted from states of modes to x = [u; u'], and by what. */
+/* By which matrix vectors of modal states are turned into vectors of
+   x = [u; u'], with S = diag(scale) of ritz_mode_states. */
 typedef enum ritz_lift_kind {
     RITZ_LIFT_RIGHT,   /* [Phi S^-1 0; 0 Phi], of Z_c and T */
     RITZ_LIFT_MOMENTA, /* [Phi S^-1 0; 0 M Phi], of E Z_c */
@@ -261,25 +264,28 @@ typedef enum ritz_lift_kind {
 } ritz_lift_kind;
 
 /**
- * The vectors Z of states as those of x = [u; u'].
+ * Turn vectors Z of modal states into vectors of x = [u; u'].
  *
- * @param[in] rigid  behind the same of the decoupled rigid modes, positions and
- *                   then velocities
+ * @param[in]  rigid  put the vectors of the decoupled rigid-body modes first,
+ *                    those of positions and then those of velocities
+ * @param[in]  Z      2m x k; without columns, any number of rows
+ * @param[out] out    2n x k, or 2n x (2 num_decoupled + k) if @p rigid
  */
 ritz_status ritz_states_lift(const ritz_mode_states *states,
                              ritz_lift_kind kind, bool rigid,
                              const ritz_dense *Z, ritz_dense *out);
 
 /**
- * Gramians of modes as those of x = [u; u'] of the component,
+ * Turn factors of Gramians in modal states into those of x = [u; u'],
  *
- *     Z_c := [Phi 0; 0 Phi] Z_c,    Z_o := [M Phi 0; 0 Phi] Z_o
+ *     Z_c := [Phi S^-1 0; 0 Phi] Z_c,    Z_o := [M Phi S 0; 0 Phi] Z_o
  *
- * and T and W likewise, behind the decoupled rigid modes; the factors as they
- * were become the core. If there are only rigid modes, Z_c and Z_o get no
- * columns.
+ * and T and W likewise, with those of the decoupled rigid-body modes first. The
+ * factors in modal states are kept as gramians->core, from which Hankel values
+ * are computed. If states->modes has no modes but the decoupled ones, Z_c and
+ * Z_o get no columns.
  *
- * @param[in,out] gramians  in states; without E
+ * @param[in,out] gramians  Zc, Zo, T and W in modal states; EZc is set
  */
 ritz_status ritz_gramians_lift(const ritz_mode_states *states,
                                ritz_gramians *gramians);

@@ -1,18 +1,22 @@
 /*
- * Gramians of a large component by projection: Krylov vectors of static
- * responses first, the small Lyapunov equations in closed form next, and what
- * they leave in the large model until it is below the tolerance.
+ * Gramians of a large component by projection: build a Krylov space from static
+ * responses, solve the Lyapunov equations of the projected model in closed form,
+ * bound the error from the residual of the large model, and enlarge the space
+ * until the bound is below the tolerance.
  *
- *     D = a M + b K:   (K + s D + s^2 M)^-1 = (K + m(s) M)^-1 / (1 + b s),
+ * With D = a M + b K
+ *
+ *     (K + s D + s^2 M)^-1 = (K + m(s) M)^-1 / (1 + b s),
  *     m(s) = (s^2 + a s) / (1 + b s),
  *
- * so that all responses are functions of the one pencil (K, M), and one real
- * factor makes a space of them. It takes some vectors for each mode that stands
- * alone, as its Ritz value must settle, and few for those that overlap.
+ * so that the responses at all s are functions of one pencil (K, M), and a space
+ * from one real factor approximates all of them. A mode whose resonance is well
+ * separated needs several vectors until its eigenvalue has converged; modes with
+ * overlapping resonances need fewer.
  *
- * The transfer functions of the projected model are within a bound of those of
- * the large one (projection_error.c), and so are its Hankel values. The space
- * grows until the bound is below the tolerance times the largest of them.
+ * The bound (projection_error.c) is one of the difference of the transfer
+ * functions of both models, and therefore of the error of every Hankel value. It
+ * is compared with the tolerance times the largest Hankel value.
  */
 #include "gramians/projection.h"
 #include "base/alloc.h"
@@ -30,8 +34,8 @@ typedef struct projection_state {
     ritz_projection_model model;
     ritz_projection_space space;
     ritz_projected projected;
-    ritz_gramians small; /* factors in states of the modal model */
-    double sigma;        /* largest Hankel value as far as known; 0: unknown */
+    ritz_gramians small; /* factors in the states of the projected model */
+    double sigma;        /* largest Hankel value so far; 0: unknown */
     ritz_projected_error error;
     double tolerance;
 } projection_state;
@@ -56,7 +60,7 @@ static ritz_status start_projection(const ritz_gramians_request *request,
     return ritz_projection_space_new(&state->model, &state->space);
 }
 
-/* Small Gramians, and the largest Hankel value. */
+/* Gramians of the projected model, and its largest Hankel value. */
 static ritz_status solve_small(projection_state *state)
 {
     RITZ_OWN(ritz_modal) modal = {0};
@@ -71,8 +75,9 @@ static ritz_status solve_small(projection_state *state)
     return RITZ_OK;
 }
 
-/* Whether the bound is met. The largest value settles long before the bound is
-   small, and is found anew only when the bound is met. */
+/* Project, and find whether the bound is below the tolerance. The largest Hankel
+   value converges long before the bound is small: it is computed first of all,
+   and again only when the bound is met with the value known before. */
 static ritz_status look_at_bound(projection_state *state, bool *met)
 {
     ritz_projected_error *error = &state->error;
@@ -86,13 +91,13 @@ static ritz_status look_at_bound(projection_state *state, bool *met)
     return RITZ_OK;
 }
 
-/* The bound, over the largest value. */
+/* The bound relative to the largest Hankel value. */
 static double relative_error(const projection_state *state)
 {
     return state->sigma > 0.0 ? state->error.bound / state->sigma : 0.0;
 }
 
-/* Say how far it came, if the space has become too large. */
+/* If the space has become too large, add the accuracy reached to the message. */
 static ritz_status refuse_large(const projection_state *state,
                                 ritz_status status)
 {
@@ -106,7 +111,8 @@ static ritz_status refuse_large(const projection_state *state,
     return ritz_context(status, reached);
 }
 
-/* Vectors are worth a look when there are an eighth more. */
+/* Enlarge the space until the bound is met. The bound is evaluated each time the
+   number of vectors has grown by an eighth. */
 static ritz_status grow_space(projection_state *state)
 {
     ritz_projection_space *space = &state->space;
@@ -123,7 +129,8 @@ static ritz_status grow_space(projection_state *state)
     return RITZ_OK;
 }
 
-/* Rigid motion, and with @p all Phi = V Y and M Phi behind it. */
+/* modes->Phi := rigid-body modes, followed by Phi = V Y if `all`; MPhi := M
+   times them. */
 static ritz_status lift_modes(projection_state *state, bool all,
                               ritz_modal_model *modes)
 {

@@ -1,5 +1,6 @@
 /*
- * Parts of the engine that projects: see projection.c for the equations.
+ * Parts of engine projection, Gramians of large components by projection on a
+ * Krylov space. projection.c has the equations.
  */
 #ifndef RITZ_GRAMIANS_PROJECTION_H
 #define RITZ_GRAMIANS_PROJECTION_H
@@ -9,63 +10,72 @@
 
 #include <ritz/matrix.h>
 
-/* D = a M + b K + P diag(c) P', and the loads whose responses are wanted. */
+/* A component with D = a M + b K + P diag(c) P', and its loads. */
 typedef struct ritz_projection_model {
-    ritz_low_rank_model low; /* matrices, loads, rigid motion */
+    ritz_low_rank_model low; /* matrices, loads, rigid-body modes */
     double a, b;             /* [rad/s], [s] */
     ritz_dense P;            /* n x d, influence vectors of dampers */
-    double *c;               /* d, positive */
-    int64_t inputs, outputs;
-    int64_t most; /* vectors of a space, for memory */
+    double *c;               /* d numbers, damping constants, positive */
+    int64_t inputs, outputs; /* numbers of them */
+    int64_t most;            /* largest number of vectors, limited by memory */
 } ritz_projection_model;
 
 /**
- * @return RITZ_ERR_ARGUMENT as ritz_low_rank_model_new, and if D is not of
- *         that form or leaves a mode without damping
+ * @return RITZ_ERR_ARGUMENT as ritz_low_rank_model_new(), or if D is not of that
+ *         form or leaves a mode without damping
  */
 ritz_status ritz_projection_model_new(const ritz_gramians_request *request,
                                       ritz_projection_model *out);
 
-/** Whether the damping of a request has that form. @cost O(nnz) */
+/** Whether D of a request has that form, with a, b >= 0 and one of them above 0.
+ * @cost O(nnz) */
 ritz_status ritz_projection_fits(const ritz_gramians_request *request,
                                  bool *fits);
 
 void ritz_projection_model_free(ritz_projection_model *model);
 
-/* Block Krylov space V of K_s^-1 M, orthonormal in K_s = K + mu M. */
+/* Basis V of a block Krylov space of K_s^-1 M, V'K_s V = I, K_s = K + mu M. */
 typedef struct ritz_projection_space {
     const ritz_projection_model *model; /* borrowed */
     double mu;                          /* [rad^2/s^2] */
     ritz_sparse Ks;
     ritz_factor *F;
-    int64_t count, room; /* columns of V, and those that there is memory for */
-    int64_t last;        /* columns before the last block: the projection */
+    int64_t count, room; /* columns of V in use, and allocated */
+    int64_t last;        /* columns before the last block: m of the projection,
+                            as the last block serves for the residual alone */
     ritz_dense V;        /* n x room */
-    ritz_dense T;        /* room x room, V'MV without its last block */
-    ritz_dense coupling; /* last block'M(block before it) */
+    ritz_dense T;        /* room x room, V'M V of the first `last` columns */
+    ritz_dense coupling; /* v'M v_before, v the last block of V */
     ritz_dense loads;    /* room x (inputs + 2 outputs + d): V'F */
 } ritz_projection_space;
 
 ritz_status ritz_projection_space_new(const ritz_projection_model *model,
                                       ritz_projection_space *out);
 
-/** One more block. A last block without columns: the space is invariant. */
+/**
+ * Add a block to V. If it has no columns (count == last) the space is invariant,
+ * and the projection is exact.
+ *
+ * @return RITZ_ERR_CONVERGENCE if V would have more columns than model->most;
+ *         RITZ_ERR_MEMORY
+ */
 ritz_status ritz_projection_space_extend(ritz_projection_space *space);
 
 void ritz_projection_space_free(ritz_projection_space *space);
 
 /*
- * The model in the space: Phi = V T^-1/2 in principal axes, Phi'M Phi = I,
- * Phi'K Phi = Lambda, and what it leaves in the large equations,
+ * The projected model in modal coordinates: T = U Theta U',
+ * Phi = V U Theta^-1/2, Phi'M Phi = I, Phi'K Phi = Lambda, and its residuals in
+ * the equations of the large model,
  *
  *     K Phi = M Phi Lambda - q L,    F = M Phi Phi'F - q L Theta Phi'F,
  *
- * with Theta = (Lambda + mu)^-1 and q = K_s v of the last block, V'q = 0.
+ * with Theta = (Lambda + mu)^-1 and q = K_s v, v the last block of V, V'q = 0.
  */
 typedef struct ritz_projected {
     int64_t count;       /* m */
-    double a, b, mu;     /* of D and K_s */
-    double lowest;       /* eigenvalue of the large model */
+    double a, b, mu;     /* of D = a M + b K and K_s = K + mu M */
+    double lowest;       /* lowest flexible eigenvalue of the large model */
     double *lambda;      /* m */
     double *theta;       /* m */
     ritz_dense Y;        /* m x m, Phi = V Y */
@@ -79,22 +89,23 @@ ritz_status ritz_projected_new(const ritz_projection_space *space,
                                ritz_projected *out);
 void ritz_projected_free(ritz_projected *projected);
 
-/** The same as a model in modal coordinates. */
+/** The same as a ritz_modal, for the closed forms of Gramians. */
 ritz_status ritz_projected_modal(const ritz_projected *projected,
                                  ritz_modal *out);
 
-/* How far the projected model is from the large one. */
+/* The error of the projected model. */
 typedef struct ritz_projected_error {
-    double bound;       /* of any Hankel value */
-    double residual[2]; /* of the responses to B and to C' + i w Cv' where the
-                           bound is reached, over the load, both in the norm of
-                           K_s^-1 */
+    double bound;       /* of the error of each Hankel value */
+    double residual[2]; /* at the frequency w of the bound, for the loads B and
+                           C' + i w Cv': norm of the residual divided by that of
+                           the load, |r|^2 = r'K_s^-1 r */
 } ritz_projected_error;
 
 /**
- * Bound of |G(i w) - G_V(i w)|, G the transfer functions of the large model
- * and G_V those of the projected one, over sampled frequencies. No Hankel value
- * errs by more, as their errors are below the Hankel norm of G - G_V.
+ * The largest bound of |G(i w) - G_V(i w)| over sampled frequencies, G the
+ * transfer matrix of the large model and G_V that of the projected one. The
+ * error of a Hankel value is at most the Hankel norm of G - G_V, which is at
+ * most the largest |G - G_V| over all w.
  *
  * @cost O(m^2 p (inputs + outputs))
  */

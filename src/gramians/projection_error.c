@@ -1,21 +1,25 @@
 /*
- * What the projected model leaves in the equations of the large one.
- *
- * In frequency, y the projected response to a load F, s = i w:
+ * A bound of the error of the projected model, from its residual in the equations
+ * of the large one. With s = i w and y the projected response to a load F:
  *
  *     Z(s) = K + s D + s^2 M,   r = F - Z Phi y = -z(s) q L Theta y,
  *     z(s) = s^2 + a s - mu (1 + b s),   q'K_s^-1 q = I
  *
  *     G - G_V = r_C' Z^-1 r_B,   |G - G_V| <= |r_C| |r_B| N(s),
  *
- * |r| = |z L Theta y| in the norm of K_s^-1, N that of K_s^1/2 Z^-1 K_s^1/2:
+ * where |r|^2 = r'K_s^-1 r, so that |r| = |z L Theta y|, and N is the norm of
+ * K_s^1/2 Z^-1 K_s^1/2. Without dampers, Z = Z_0,
  *
  *     N_0(s) = max over lambda of |(lambda + mu) / ((1 + b s)(lambda + mu) + z)|
  *
- * With dampers Z = Z_0 + s P c P', and with r_P of F = P in the model without
- * them, as c (1 + s c P'Z_0^-1 P)^-1 has the norm of c at most, N = N_0 +
- * N_0^2 |r_P|^2 w c. No Hankel value of two stable models differs by more than
- * the largest |G - G_V| on the axis [Glover1984].
+ * With dampers Z = Z_0 + s P c P'. As the norm of c (1 + s c P'Z_0^-1 P)^-1 is at
+ * most the largest c,
+ *
+ *     N <= N_0 + N_0^2 |r_P|^2 w max(c),
+ *
+ * where r_P is the residual for the load F = P in the model without dampers. The
+ * Hankel values of two stable models differ by at most the largest |G - G_V| on
+ * the imaginary axis [Glover1984].
  */
 #include "base/alloc.h"
 #include "base/complex.h"
@@ -28,13 +32,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* One frequency: room for columns of modes, dampers and residuals. */
+/* One frequency, with memory for the responses to one kind of load. `columns` is
+   the largest number of loads of a kind. */
 typedef struct frequency_point {
     double _Complex s, z;
-    double _Complex *diagonal; /* m, of Z_0 in modes */
-    double _Complex *y;        /* m x columns of the largest kind */
-    double _Complex *r;        /* p x the same */
-    double _Complex *S, *w;    /* d x d, d x the same */
+    double _Complex *diagonal; /* m, diagonal of Phi'Z_0 Phi */
+    double _Complex *y;        /* m x columns, modal response */
+    double _Complex *r;        /* p x columns, residual divided by z */
+    double _Complex *S, *w;    /* d x d and d x columns, for dampers */
 } frequency_point;
 
 static void frequency_point_free(frequency_point *point)
@@ -88,7 +93,8 @@ static void observe_dampers(const ritz_projected *p, int64_t columns,
         }
 }
 
-/* y -= s Z_0^-1 P c (I + s P'Z_0^-1 P c)^-1 P'y, of a y without dampers. */
+/* Turn the response y without dampers into that with dampers:
+   y -= s Z_0^-1 P c (I + s P'Z_0^-1 P c)^-1 P'y. */
 static ritz_status add_dampers(const ritz_projected *p, int64_t columns,
                                frequency_point *point)
 {
@@ -117,7 +123,7 @@ static ritz_status add_dampers(const ritz_projected *p, int64_t columns,
     return RITZ_OK;
 }
 
-/* |z L Theta y| in the Frobenius norm. */
+/* |z L Theta y|, Frobenius norm over all columns y. */
 static double measure_residual(const ritz_projected *p, int64_t columns,
                                const frequency_point *point)
 {
@@ -142,7 +148,7 @@ static double measure_residual(const ritz_projected *p, int64_t columns,
     return cabs(point->z) * sqrt(sum);
 }
 
-/* |r| of the loads F + s Fv, with or without dampers; Fv NULL: 0. */
+/* |r| of the loads F + s Fv, of the model with dampers or without. Fv NULL: 0. */
 static ritz_status find_residual(const ritz_projected *p, const ritz_dense *F,
                                  const ritz_dense *Fv, bool damped,
                                  frequency_point *point, double *out)
@@ -162,8 +168,9 @@ static ritz_status find_residual(const ritz_projected *p, const ritz_dense *F,
 }
 
 /*
- * N_0: 1 over the distance of the origin from 1 + b s + t z,
- * 0 <= t <= 1 / (lowest + mu).
+ * N_0 = max of 1 / |1 + b s + t z| over t = 1 / (lambda + mu),
+ * 0 <= t <= 1 / (lowest + mu): the inverse of the distance of a line segment
+ * in the complex plane from 0.
  */
 static double amplify(const ritz_projected *p, const frequency_point *point)
 {
@@ -175,8 +182,8 @@ static double amplify(const ritz_projected *p, const frequency_point *point)
     return 1.0 / cabs(from + t * point->z);
 }
 
-/* |K_s^-1/2 (F + s Fv)|, F of K_s V alone: |Theta^1/2 Lambda_s Phi'F| with
-   Lambda_s = Theta^-1. */
+/* |K_s^-1/2 (F + s Fv)| = |Theta^1/2 Phi'(F + s Fv)|, as the loads lie in the
+   span of K_s V. */
 static double measure_load(const ritz_projected *p, const ritz_dense *F,
                            const ritz_dense *Fv, double omega)
 {
@@ -218,7 +225,7 @@ static ritz_status bound_at(const ritz_projected *p, double omega,
 ritz_status ritz_projected_bound(const ritz_projected *projected,
                                  ritz_projected_error *out)
 {
-    enum { BEYOND = 4 }; /* octaves above the last mode and below the first */
+    enum { BEYOND = 4 }; /* octaves sampled above and below all modes */
     const ritz_projected *p = projected;
     RITZ_OWN(frequency_point) point = {0};
     ritz_projected_error error = {0};

@@ -1,4 +1,4 @@
-/* What the engine that projects starts from: D as a M + b K + P diag(c) P'. */
+/* The model of engine projection: D split into a M + b K + P diag(c) P'. */
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "gramians/projection.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Whether a damper acts, or its spring; the first that does, or -1. */
+/* The first damper whose `value`, its damping or stiffness, is not 0; -1: none. */
 static int64_t find_acting(const ritz_dampers *dampers, const double *value)
 {
     for (int64_t k = 0; k < dampers->count; k++)
@@ -17,8 +17,11 @@ static int64_t find_acting(const ritz_dampers *dampers, const double *value)
 }
 
 /*
- * a and b of words and of the component's D. K of the words contains the
- * springs of dampers, K that D is proportional to does not.
+ * a and b are the sums of those of the component's D and of the damping that the
+ * request adds. *whole is false if they do not describe all damping but that of
+ * discrete dampers. The K of the model includes the springs of dampers, the K to
+ * which the component's D is proportional does not: with such springs D is not
+ * a M + b K of the model.
  */
 static ritz_status find_proportion(const ritz_gramians_request *request,
                                    double *a, double *b, bool *whole)
@@ -49,7 +52,7 @@ ritz_status ritz_projection_fits(const ritz_gramians_request *request,
     return RITZ_OK;
 }
 
-/* Influence vectors of the dampers that act, without rigid motion. */
+/* Influence vectors of the dampers with c > 0, orthogonal to rigid motion. */
 static ritz_status collect_dampers(const ritz_dampers *dampers,
                                    ritz_projection_model *model)
 {

@@ -1,14 +1,15 @@
 /*
- * The space that Gramians are projected on: block Krylov vectors of K_s^-1 M
- * from the static responses to all loads F = [B, C', Cv', P],
+ * The space on which models are projected: block Krylov vectors of K_s^-1 M that
+ * begin with the static responses to all loads F = [B, C', Cv', P],
  *
  *     V_1 = K_s^-1 F,   V_j+1 = K_s^-1 M V_j,   V'K_s V = I,   V'M V = T,
  *
  *     M V = K_s (V T + v h),   v the next block, h = v'M (last block of V),
  *
- * so that T is block tridiagonal and one factor of K_s = K + mu M serves for
- * all of them; mu is 0 where K is definite. Displacements and velocities share
- * the space, which keeps the model one of second order, and stable.
+ * T is block tridiagonal, and one factor of K_s = K + mu M serves for all blocks;
+ * mu is 0 if K is positive definite. Displacements and velocities are projected
+ * on the same space, so that the projected model is one of second order with
+ * symmetric matrices, and stable.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -58,7 +59,7 @@ static ritz_status collect_loads(const ritz_projection_model *model,
     return RITZ_OK;
 }
 
-/* A becomes larger, by zeros. */
+/* Enlarge A to nrow x ncol, filled up with zeros. */
 static ritz_status grow_dense(int64_t nrow, int64_t ncol, ritz_dense *A)
 {
     RITZ_OWN(ritz_dense) grown = {0};
@@ -69,7 +70,7 @@ static ritz_status grow_dense(int64_t nrow, int64_t ncol, ritz_dense *A)
     return RITZ_OK;
 }
 
-/* Room for more columns of V, and of what is projected on them. */
+/* Allocate memory for `more` columns of V, and for T and V'F of that size. */
 static ritz_status reserve_columns(int64_t more, ritz_projection_space *space)
 {
     int64_t n = space->model->low.n, needed = space->count + more;
@@ -88,7 +89,7 @@ static ritz_status reserve_columns(int64_t more, ritz_projection_space *space)
     return grow_dense(space->room, space->loads.ncol, &space->loads);
 }
 
-/* X -= V C, V of `count` columns from `first` on. */
+/* X -= V C, V the C->nrow columns of the space from `first` on. */
 static void subtract_columns(const ritz_projection_space *space, int64_t first,
                              const ritz_dense *C, ritz_dense *X)
 {
@@ -100,8 +101,12 @@ static void subtract_columns(const ritz_projection_space *space, int64_t first,
                     C->val, (int)C->nrow, 1.0, X->val, n);
 }
 
-/* X := X - V (V'K_s X), without rigid motion, which the recurrence would let
-   grow from rounding, as K_s^-1 M is largest there; and G = X'K_s X; before[j]: K_s energy of column j. */
+/*
+ * before[j] := x'K_s x of column j, then X := X - V (V'K_s X), and G := X'K_s X.
+ * Rigid-body motion is removed from X, too: it is the eigenvector of the largest
+ * eigenvalue of K_s^-1 M, so that what rounding leaves of it would grow from
+ * block to block.
+ */
 static ritz_status project_out(const ritz_projection_space *space,
                                ritz_dense *X, double *before, ritz_dense *G)
 {
@@ -123,8 +128,9 @@ static ritz_status project_out(const ritz_projection_space *space,
 }
 
 /*
- * X := X D U e^-1/2 with D G D = U e U' of unit diagonal, which leaves out what
- * is dependent. *weak: the least part of its energy that a column of X kept.
+ * Orthonormalise X: X := X D U e^-1/2, where the diagonal D scales G to unit
+ * diagonal and D G D = U e U'. Columns with e near 0, which depend on others, are
+ * left out. *weak is the least part of its energy that a column has kept.
  */
 static ritz_status normalise_columns(const double *before, ritz_dense *G,
                                      ritz_dense *X, double *weak)
@@ -191,7 +197,7 @@ static ritz_status append_columns(const double *energy, ritz_dense *X,
     return RITZ_OK;
 }
 
-/* X := K_s^-1 X, without rigid motion. */
+/* X := K_s^-1 X, and remove rigid-body motion. */
 static ritz_status solve_static(const ritz_projection_space *space,
                                 ritz_dense *X)
 {
@@ -222,7 +228,8 @@ ritz_status ritz_projection_space_new(const ritz_projection_model *model,
     return RITZ_OK;
 }
 
-/* Entries of T of the last block, and X less what they say of it. */
+/* Set the blocks of T that belong to the last block Q of V, and subtract from
+   X = K_s^-1 M Q its parts along Q and along the block before Q. */
 static ritz_status take_out_near(const ritz_dense *Q, const ritz_dense *MQ,
                                  ritz_projection_space *space, ritz_dense *X)
 {
@@ -283,7 +290,7 @@ void ritz_projection_space_free(ritz_projection_space *space)
  *     L = h U Theta^-3/2   (rows of U of the last block of V)
  */
 
-/* theta and U, in place of T; theta below rounding of the largest is that. */
+/* theta and U, U in place of T. No theta is less than eps times the largest. */
 static ritz_status find_axes(ritz_dense *T, double *theta)
 {
     int m = (int)T->nrow;
@@ -326,7 +333,7 @@ static ritz_status find_residual_rows(const ritz_projection_space *space,
     return RITZ_OK;
 }
 
-/* Y'V'F of a kind of loads. */
+/* Phi'F = Y'V'F of `count` loads from `first` on. */
 static ritz_status project_loads(const ritz_projection_space *space,
                                  const ritz_dense *Y, int64_t first,
                                  int64_t count, ritz_dense *out)
@@ -379,7 +386,8 @@ static ritz_status find_damping(const ritz_projected *p, ritz_dense *out)
     return ritz_dense_mul_nt(&cP, &p->P, out);
 }
 
-/* Delta = a + b Lambda + P diag(c) P', and the ratios on its diagonal. */
+/* Modal damping matrix a I + b Lambda + P diag(c) P', stored only if there are
+   dampers, and the damping ratios, half its diagonal over omega. */
 static ritz_status put_damping(const ritz_projected *p, ritz_modal *modal)
 {
     bool coupled = p->P.ncol > 0;
