@@ -1,10 +1,12 @@
 /*
- * ritz-basis-slepc - what ritz-basis becomes with --engine slepc: the same tool,
- * whose matrices, factors and modes are spread over the processes of MPI. It is
- * linked with PETSc, SLEPc and the parallel MUMPS, and therefore with no part of
- * the library that calls the sequential one: both have the same symbols.
+ * ritz-basis-slepc - the program that ritz-basis executes for --engine slepc: the
+ * same tool, but matrices, factors and modes are distributed over the processes
+ * of MPI. It is linked with PETSc, SLEPc and the parallel MUMPS. The sequential
+ * MUMPS has the same symbols, so that mumps.c of the library is replaced by a
+ * copy that is compiled for the parallel one.
  *
- * Rank 0 is the tool; the others help it in slepc/fixed.c and say nothing.
+ * Rank 0 reads the command line, prints and writes the basis. The other ranks
+ * wait in fixed_help() for their part of the computation, and print nothing.
  */
 #include "bases/columns.h"
 #include "cli/cli.h"
@@ -17,10 +19,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The component's file, for the function of a method, which is not told. */
+/* Path of the component. A method's make() has no parameter for it. */
 static const char *file;
 
-/* --- what is refused ------------------------------------------------------ */
+/* --- options that this engine does not have ------------------------------- */
 
 static ritz_status refuse_options(const basis_options *given)
 {
@@ -41,7 +43,7 @@ static ritz_status refuse_options(const basis_options *given)
     return RITZ_OK;
 }
 
-/* Static vectors of loads are not made here. */
+/* Refuse a basis that would have static vectors of inputs, outputs or dampers. */
 static ritz_status refuse_loads(const ritz_request *request, bool held)
 {
     const bool asked = request->choice.given & RITZ_USES_LOADS;
@@ -96,7 +98,7 @@ static ritz_status choose_method(const ritz_method *method, ritz_method *out)
 
 /* --- the tool ------------------------------------------------------------- */
 
-/* A component without its matrices, which the ranks read. */
+/* Read a component without its matrices; of these each rank reads its part. */
 static ritz_status read_frame(cli_run *run, const char *path, model *out)
 {
     ritz_status status = RITZ_OK;
@@ -121,8 +123,9 @@ static ritz_status run_in_ranks(cli_run *run, basis_options *given)
     return basis_run(run, given);
 }
 
-/* Rank 0 ends, by main or by a usage error: so do the others, which wait, or
-   are in the midst of a computation that rank 0 has left. */
+/* Called when rank 0 exits, after main() or a usage error. If the other ranks
+   wait, they are told to end; if they are in a computation that rank 0 has left,
+   the whole run is aborted. */
 static void end_others(void)
 {
     if (!fixed_is_idle())
@@ -133,7 +136,8 @@ static void end_others(void)
 
 int main(int argc, char **argv)
 {
-    /* the tool would start again with a limit of threads, without MPI */
+    /* if it is not set, the tool sets it and executes itself again, which a
+       process of MPI must not do */
     if (setenv("OMP_THREAD_LIMIT", "1", 0) != 0)
         return EXIT_FAILURE;
     ranks_start();

@@ -56,7 +56,8 @@ void block_multiply(Mat A, Mat X, Mat *out)
 
 /* --- Rayleigh-Ritz -------------------------------------------------------- */
 
-/* Unit diagonal of M_r, A_r exactly symmetric; the scale of each column. */
+/* Scale rows and columns of both so that M_r has a unit diagonal, and make both
+   exactly symmetric. */
 static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, double *scale)
 {
     const int64_t k = A_r->ncol;
@@ -75,8 +76,8 @@ static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, double *scale)
     ritz_dense_symmetrise(M_r);
 }
 
-/* theta = q'A_r q of each column: even the lowest comes without the rounding of
-   the highest that the small eigenproblem leaves. */
+/* theta = q'A_r q of each column q of Q. LAPACK's theta err by eps times the
+   largest of them, these quotients by much less if theta is small. */
 static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
                                   double *theta)
 {
@@ -88,7 +89,8 @@ static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
     return RITZ_OK;
 }
 
-/* In rank 0, whose result is that of all: Q, with the scale in its rows. */
+/* Solve A_r q = theta M_r q, in rank 0 alone. Q is scaled back to the columns
+   before balancing. */
 static ritz_status solve_projection(ritz_dense *A_r, ritz_dense *M_r,
                                     double *theta, ritz_dense *Q)
 {
@@ -106,7 +108,7 @@ static ritz_status solve_projection(ritz_dense *A_r, ritz_dense *M_r,
     return RITZ_OK;
 }
 
-/* X := Y Q by the rows of this rank. */
+/* X := Y Q, each rank its own rows. */
 static ritz_status combine_columns(Mat Y, const ritz_dense *Q, Mat X)
 {
     RITZ_OWN(ritz_dense) product = {0};
@@ -121,7 +123,7 @@ static ritz_status combine_columns(Mat Y, const ritz_dense *Q, Mat X)
     return ranks_agree(status);
 }
 
-/* From Y, M X and M Y. */
+/* Rayleigh-Ritz in the span of Y: X := Y Q and theta, from M X and M Y. */
 static ritz_status project_pencil(Mat Y, Mat MX, Mat MY, double *theta, Mat X)
 {
     RITZ_OWN(ritz_dense) A_r = {0}, M_r = {0}, Q = {0};
@@ -162,6 +164,7 @@ ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda)
 
 /* --- residuals ------------------------------------------------------------ */
 
+/* A := |A|, entry by entry. */
 static void take_magnitudes(Mat A)
 {
     Mat parts[2] = {NULL, NULL};
@@ -180,7 +183,7 @@ static void take_magnitudes(Mat A)
     }
 }
 
-/* A X and |A||X|. */
+/* AX := A X and sizes := |A||X|, new blocks. */
 static void multiply_both(Mat A, Mat X, Mat *AX, Mat *sizes)
 {
     Mat magnitude = NULL;
@@ -202,7 +205,9 @@ static void multiply_both(Mat A, Mat X, Mat *AX, Mat *sizes)
 
 enum { GAP, SIZE, ENERGY, SUMS };
 
-/* Of the rows of this rank; sums of column j begin at SUMS j. */
+/* Sums over the rows of this rank of |K x - lambda M x|^2,
+   | |K||x| + |lambda||M||x| |^2 and |x|'|K||x|, from of[] = K X, |K||X|, M X,
+   |M||X|. Those of column j begin at sum[SUMS j]. */
 static void sum_rows(const ritz_dense *x, const ritz_dense of[4],
                      const double *lambda, double *sum)
 {
@@ -254,8 +259,9 @@ ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
 
 /* --- quotients ------------------------------------------------------------ */
 
-/* The rows of a matrix that this rank has: its own columns, and those of other
-   ranks, of which x must be fetched. */
+/* The rows of a distributed matrix in this rank, in compressed form: either the
+   part with the columns of this rank, or that with columns of other ranks, for
+   which entries of x must be fetched. */
 typedef struct local_rows {
     Mat part;
     PetscInt rows;
@@ -282,7 +288,8 @@ static void return_rows(local_rows *r)
                                  &r->start, &r->column, &done));
 }
 
-/* x'A y of these rows, |x|'|A||y|; 64 bits of a product and a sum, not 53. */
+/* Add x'A y and |x|'|A||y| of these rows, the former with products and sums of 64
+   bits instead of 53. */
 static void sum_energy(const local_rows *r, const double *x, const double *y,
                        long double *energy, double *size)
 {
@@ -300,7 +307,7 @@ static void sum_energy(const local_rows *r, const double *x, const double *y,
     }
 }
 
-/* x'A x, in two doubles, and |x|'|A||x| over all ranks. */
+/* out[0] + out[1] := x'A x and out[2] := |x|'|A||x|, summed over all ranks. */
 static void find_energy(const local_rows part[2], Vec x, VecScatter fetch,
                         Vec others, double out[3])
 {
@@ -324,8 +331,8 @@ static void find_energy(const local_rows part[2], Vec x, VecScatter fetch,
     ranks_sum(out, 3);
 }
 
-/* Quotients of the columns one by one, the lowest first, up to one that has not
-   lost digits. x'M x = 1. */
+/* lambda := x'K x of the flexible modes, the lowest first, until one has not lost
+   digits. x'M x = 1. */
 static void sharpen_columns(const local_rows part[2], Mat X, VecScatter fetch,
                             Vec others, ritz_pairs *P)
 {
@@ -378,7 +385,7 @@ ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P)
 
 /* --- gathering ------------------------------------------------------------ */
 
-/* Rows of each rank, and where they begin. */
+/* In rank 0: the number of rows of each rank, and the first of them. */
 static ritz_status find_layout(int own, int *counts, int *at)
 {
     MPI_Gather(&own, 1, MPI_INT, counts, 1, MPI_INT, 0, PETSC_COMM_WORLD);

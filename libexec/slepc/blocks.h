@@ -1,24 +1,25 @@
-/* Distributed dense matrices: some vectors of the interior. */
+/* Blocks: dense matrices of a few vectors, with rows distributed over the ranks. */
 #ifndef RITZ_LIBEXEC_SLEPC_BLOCKS_H
 #define RITZ_LIBEXEC_SLEPC_BLOCKS_H
 
 #include "pencil.h"
 
-/** A block of zeros with the rows of A. */
+/** A new block of zeros, with rows distributed as those of A. */
 void block_new(Mat A, int64_t columns, Mat *out);
 
-/** The rows of this rank, to be given back by block_return. */
+/** Access the rows of this rank, without a copy, until block_return(). */
 ritz_dense block_take(Mat X);
 void block_return(Mat X, ritz_dense *rows);
 
-/** X'Y, the same in every rank. Collective. */
+/** out := X'Y, the sum over all ranks, in every rank. Collective. */
 ritz_status block_product(Mat X, Mat Y, ritz_dense *out);
 
-/** A X, a new block. Collective. */
+/** *out := A X, a new block. Collective. */
 void block_multiply(Mat A, Mat X, Mat *out);
 
 /**
- * Inverse iteration and Rayleigh-Ritz: X becomes M-orthonormal, lambda ascends.
+ * One step of inverse iteration with the present factor, and Rayleigh-Ritz. X
+ * becomes M-orthonormal, with eigenvalues lambda in ascending order.
  *
  *     A Y = M X,   A_r = Y'(M X),   M_r = Y'M Y,   A_r q = theta M_r q,
  *     X := Y q,   lambda = sigma + theta
@@ -30,24 +31,30 @@ void block_multiply(Mat A, Mat X, Mat *out);
 ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda);
 
 /**
- * Residuals |K x - lambda M x| / ||K||x| + |lambda||M||x||, and which pairs are
- * rigid. Collective.
+ * Residuals | K x - lambda M x | / | |K||x| + |lambda||M||x| |, and the number of
+ * rigid-body modes. Collective.
  *
- * @param[in,out] P  eigenvalues, and the number of columns
+ * @param[in]     X      vectors
+ * @param[in,out] P      lambda and Phi.ncol are read; residual and num_rigid are
+ *                       set
+ * @param[out]    worst  the largest residual
  */
 ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
                          double *worst);
 
 /**
- * Eigenvalues that have lost digits, as those of thin plates do, anew by
- * x'K x / x'M x with sums of more digits: they carry the rounding of the factor,
- * which differs from one number of ranks to another, and the quotient errs by
- * the square of that. Collective.
+ * Compute eigenvalues that have lost digits again, by x'K x / x'M x with sums in
+ * extended precision. The rounding of the factor, which depends on the number of
+ * ranks, changes low eigenvalues, as of thin plates, in proportion; it changes
+ * the quotient only by its square. Collective.
+ *
+ * @param[in]     X  M-orthonormal, by ascending eigenvalue
+ * @param[in,out] P  lambda is changed, num_rigid is read
  */
 ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P);
 
-/** The first columns one after the other, all rows of each, in rank 0, where
- * @p take gets them. Collective. */
+/** Gather the first @p count columns in rank 0, one at a time: there @p take is
+ * called for each column, with all its rows in @p x. Collective. */
 ritz_status block_gather(Mat X, int64_t count,
                          void (*take)(void *state, int64_t column,
                                       const double *x),

@@ -12,15 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What rank 0 tells the others first; the path and the attached dofs follow. */
+/* A task, broadcast by rank 0; the path and the attached dofs follow it. */
 typedef struct task {
-    int64_t path_size; /* 0: no task, there is nothing more to do */
+    int64_t path_size; /* with its terminating 0; 0: there are no more tasks */
     int64_t num_dofs, num_attached;
     bool held;
     ritz_span span;
 } task;
 
-/* In rank 0, where results go; empty in the others. */
+/* The basis being made, in rank 0 only. */
 typedef struct target {
     const ritz_component *component;
     ritz_dofs interior;
@@ -33,15 +33,15 @@ static void target_free(target *t)
     ritz_basis_free(&t->basis);
 }
 
-/* What all ranks have while they work. */
+/* What each rank has during a task. */
 typedef struct rank_work {
     const task *task;
     rows_frame frame;
     rows rows;
     rank_pencil pencil;
-    Mat Psi;
+    Mat Psi; /* constraint modes, interior rows; NULL: nothing is attached */
     modes modes;
-    target *target;
+    target *target; /* NULL but in rank 0 */
 } rank_work;
 
 static void rank_work_free(rank_work *w)
@@ -69,7 +69,7 @@ static void put_column(void *state, int64_t column, const double *x)
         T->val[i->at[k] + (c->first + column) * T->nrow] = x[k];
 }
 
-/* Vectors of the modes into columns from @p first on. */
+/* Put the vectors of the modes into the columns of the basis from `first` on. */
 static ritz_status place_modes(const rank_work *w, int64_t first)
 {
     columns_at at = {w->target, first};
@@ -83,7 +83,8 @@ static ritz_status place_modes(const rank_work *w, int64_t first)
     return block_gather(w->modes.X, P->Phi.ncol, put_column, &at);
 }
 
-/* An empty basis of constraint modes and modes, with its labels. */
+/* Allocate the basis of constraint modes and modes, label its columns, and set
+   the rows of the attached dofs. */
 static ritz_status label_columns(const rank_work *w, const ritz_dofs *b)
 {
     const ritz_pairs *P = &w->modes.pairs;
@@ -130,7 +131,7 @@ static void keep_column(void *state, int64_t column, const double *x)
     memcpy(ritz_dense_col(Phi, column), x, (size_t)Phi->nrow * sizeof *x);
 }
 
-/* Name the dofs that move freely, in rank 0. */
+/* Fail with a sentence that names the dofs that move freely. */
 static ritz_status refuse_free(const rank_work *w, modes *found)
 {
     ritz_pairs *P = &found->pairs;
@@ -151,7 +152,8 @@ static ritz_status refuse_free(const rank_work *w, modes *found)
     return ranks_agree(status);
 }
 
-/* A stiffness that is not positive definite has free motions to be named. */
+/* K_ii is not positive definite: find the motions that cost no energy, to name
+   their dofs in the message. */
 static ritz_status explain_singular(rank_work *w)
 {
     const ritz_span rigid_only = {.modes = 0};
@@ -217,7 +219,7 @@ static ritz_status solve_interior(rank_work *w)
     return RITZ_OK;
 }
 
-/* Collective: every rank has the same task. */
+/* Carry out a task. Collective: every rank gives the same task, path and dofs. */
 static ritz_status work_together(const task *t, const char *path,
                                  const ritz_dofs *b, target *to)
 {
@@ -241,7 +243,7 @@ static ritz_status work_together(const task *t, const char *path,
 
 /* --- rank 0 and the others ------------------------------------------------ */
 
-/* Whether the others wait in fixed_help. */
+/* In rank 0: whether the other ranks wait in fixed_help() for a task. */
 static bool others_wait = true;
 
 bool fixed_is_idle(void)
@@ -283,7 +285,8 @@ ritz_status fixed_make(const char *path, const ritz_request *request, bool held,
     return RITZ_OK;
 }
 
-/* Room for what rank 0 is about to tell; without it the run cannot go on. */
+/* Memory for what rank 0 broadcasts next. Rank 0 cannot be told of a failure
+   here, as it does not wait for an answer: the run is aborted. */
 static void *take_room(int64_t count, size_t size)
 {
     void *room = ritz_zalloc(count, size);

@@ -1,6 +1,6 @@
 /*
- * Craig-Bampton and normal modes by all ranks: rank 0 asks, and gets the basis;
- * the others wait for what they are to do.
+ * Bases of Craig-Bampton and of normal modes, computed by all ranks: rank 0 calls
+ * fixed_make() and gets the basis, the others are in fixed_help() meanwhile.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_FIXED_H
 #define RITZ_LIBEXEC_SLEPC_FIXED_H
@@ -8,22 +8,26 @@
 #include <ritz/basis.h>
 
 /**
- * Rank 0: the basis of a component whose matrices are in a file, and which has
- * none in memory.
+ * To be called in rank 0: compute the basis of a component whose matrices are in
+ * its file only, not in memory.
  *
- * @param[in] held  attached dofs have constraint modes; false: normal modes
- * @return as the methods of one process, or as rows_read
+ * @param[in] path  of the component's file, readable by all ranks
+ * @param[in] held  true: Craig-Bampton, with the attached dofs held; false:
+ *                  normal modes of the free component
+ * @return as the methods of one process, or as rows_read()
  */
 ritz_status fixed_make(const char *path, const ritz_request *request, bool held,
                        ritz_basis *out);
 
-/** Other ranks: help until rank 0 dismisses them. */
+/** To be called in all other ranks: take part in each fixed_make() of rank 0,
+ * until it calls fixed_dismiss(). */
 void fixed_help(void);
 
-/** Rank 0: the others need not wait any longer. */
+/** To be called in rank 0: let fixed_help() return in the other ranks. */
 void fixed_dismiss(void);
 
-/** Whether the others wait for rank 0, rather than work with it. */
+/** In rank 0: whether no fixed_make() is under way, so that the other ranks wait
+ * for a task. */
 bool fixed_is_idle(void);
 
 #endif

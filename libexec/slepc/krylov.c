@@ -10,7 +10,7 @@
 #include <slepceps.h>
 #include <string.h>
 
-/* SLEPc's solver for K - sigma M: the factor that is there. */
+/* The preconditioner that SLEPc solves with: the factor of K - sigma M. */
 static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
 {
     void *context = NULL;
@@ -20,8 +20,8 @@ static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
     return 0;
 }
 
-/* The same start however many ranks there are, in the range of the operator,
-   which M without full rank makes smaller than the space. */
+/* A start vector that does not depend on the number of ranks. It is in the range
+   of (K - sigma M)^-1 M, which is not the whole space if M is singular. */
 static void set_start(EPS eps, const rank_pencil *p)
 {
     Vec start = NULL;
@@ -36,7 +36,8 @@ static void set_start(EPS eps, const rank_pencil *p)
     ranks_expect(VecDestroy(&noise));
 }
 
-/* Shift and invert with the factor, so that SLEPc makes no matrix. */
+/* Shift-and-invert with the factor that exists, so that SLEPc neither forms nor
+   factors a matrix of its own. */
 static void set_transformation(EPS eps, rank_pencil *p)
 {
     ST st = NULL;
@@ -64,7 +65,7 @@ static void set_up(EPS eps, rank_pencil *p, int64_t ask, int64_t room)
     ranks_expect(
         EPSSetDimensions(eps, (PetscInt)ask, (PetscInt)room, PETSC_DEFAULT));
     ranks_expect(EPSSetTolerances(eps, RITZ_KRYLOV_SETTLED, PETSC_DEFAULT));
-    /* inverse iteration follows, on all vectors at once */
+    /* block_polish() does what purification would, for all vectors at once */
     ranks_expect(EPSSetPurify(eps, PETSC_FALSE));
     set_transformation(eps, p);
     set_start(eps, p);

@@ -5,13 +5,14 @@
 #include "pencil.h"
 
 /**
- * The pairs of (K - sigma M)^-1 M of largest magnitude, which are those of the
- * pencil nearest to sigma, where K - sigma M is factored. Collective.
+ * The eigenpairs of K x = lambda M x nearest to sigma, at which @p p is factored.
+ * Collective.
  *
- * @param[in]  ask     how many
- * @param[in]  room    vectors that are kept before a restart
- * @param[out] X       their vectors, not yet polished
- * @param[out] lambda  ask, in every rank; the caller's to free
+ * @param[in]  ask     number of pairs requested
+ * @param[in]  room    number of Krylov vectors at which SLEPc restarts
+ * @param[out] X       n x *found, to be improved by block_polish()
+ * @param[out] lambda  room for @p ask eigenvalues, of which *found are set, in
+ *                     every rank; to be freed
  * @param[out] found   how many converged, at most @p ask
  */
 ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,

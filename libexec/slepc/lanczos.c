@@ -3,13 +3,15 @@
  *
  *     OP V_j = V_(j-1) B_(j-1)' + V_j A_j + V_(j+1) B_j
  *
- * A_j and B_j fill the block tridiagonal T, whose pairs T s = theta s give
- * x = V s and lambda = sigma + 1 / theta. The residual is known before x is:
+ * A_j and B_j are the blocks of the block tridiagonal matrix T. Its eigenpairs
+ * T s = theta s give x = V s and lambda = sigma + 1 / theta. The residual is
+ * known without x:
  *
  *     OP x - theta x = V_(m+1) B_m s_m,   s_m the last eight rows of s,
  *
- * and one step of inverse iteration costs nothing: OP x = theta x + V_(m+1) B_m
- * s_m. All vectors are orthogonalised to all others, twice [GrimesLewisSimon1994].
+ * and so is a step of inverse iteration, OP x = theta x + V_(m+1) B_m s_m, which
+ * needs no solve. Each block is orthogonalised to all before it, twice
+ * [GrimesLewisSimon1994].
  */
 #include "lanczos.h"
 
@@ -28,15 +30,16 @@ enum { BLOCK = 8, SPARE_VECTORS = 200 };
 
 typedef struct rank_lanczos {
     const rank_pencil *p;
-    int64_t ask, most; /* most vectors */
-    int64_t count;     /* of them in V that are in T, too: m */
-    ritz_dense V;      /* rows of this rank; block m + 1 follows */
-    ritz_dense T;      /* most x most, its lower triangle in use */
-    ritz_dense B;      /* B_m */
-    Mat W, MW;         /* a block, and M times it */
-    Mat Y;             /* right-hand sides: M V_(m+1) */
-    bool broken;       /* vectors of a block depend on each other */
-    /* of T, the largest theta first */
+    int64_t ask;   /* pairs requested */
+    int64_t most;  /* largest order of T */
+    int64_t count; /* order of T, eight for each block */
+    ritz_dense V;  /* rows of this rank; `count` columns and those of V_(m+1) */
+    ritz_dense T;  /* most x most, only the lower triangle is set */
+    ritz_dense B;  /* B_m, which is not yet in T */
+    Mat W, MW;     /* a new block, and M times it */
+    Mat Y;         /* right-hand sides of the next solve, M V_(m+1) */
+    bool broken;   /* vectors of a block are linearly dependent */
+    /* eigenvectors and eigenvalues of T, the largest theta first */
     ritz_dense S;
     double *theta;
 } rank_lanczos;
@@ -60,7 +63,8 @@ static void multiply_mass(rank_lanczos *z)
                             PETSC_DEFAULT, &z->MW));
 }
 
-/* h := V'M W over all ranks, W := W - V h, of the first @p count vectors. */
+/* h := V'M W, summed over all ranks, and W := W - V h, V its first `count`
+   columns. */
 static void remove_parts(rank_lanczos *z, int64_t count, double *h)
 {
     ritz_dense W = block_take(z->W);
@@ -78,7 +82,7 @@ static void remove_parts(rank_lanczos *z, int64_t count, double *h)
     block_return(z->W, &W);
 }
 
-/* A_m, in its place in T: the last eight rows of h. */
+/* Add the last eight rows of h to A_m, the last diagonal block of T. */
 static void keep_diagonal(rank_lanczos *z, int64_t count, const double *h)
 {
     for (int64_t j = 0; j < BLOCK; j++)
@@ -87,7 +91,7 @@ static void keep_diagonal(rank_lanczos *z, int64_t count, const double *h)
                 h[count - BLOCK + i + j * count];
 }
 
-/* X := X R^-1, X of eight columns, the rows of this rank. */
+/* X := X R^-1, X of eight columns, each rank its own rows. */
 static void divide_columns(Mat X, const double *R)
 {
     ritz_dense x = block_take(X);
@@ -98,7 +102,8 @@ static void divide_columns(Mat X, const double *R)
     block_return(X, &x);
 }
 
-/* R'R = W'M W, upper; the same in every rank, as the sum is. */
+/* R'R = W'M W, R upper triangular, from the W'M W of rank 0 in every rank.
+   z->broken if it is not positive definite. */
 static ritz_status factor_gram(rank_lanczos *z, ritz_dense *R)
 {
     RITZ_CHECK(block_product(z->W, z->MW, R));
@@ -111,7 +116,8 @@ static ritz_status factor_gram(rank_lanczos *z, ritz_dense *R)
     return RITZ_OK;
 }
 
-/* W = V_(m+1) B: W and M W become those of V_(m+1), twice for rounding. */
+/* Factor W = V_(m+1) B_m. W becomes V_(m+1), and MW becomes M V_(m+1). A second
+   factorisation removes what rounding left by the first. */
 static ritz_status orthonormalise_block(rank_lanczos *z)
 {
     RITZ_OWN(ritz_dense) R = {0}, again = {0};
@@ -133,7 +139,7 @@ static ritz_status orthonormalise_block(rank_lanczos *z)
     return RITZ_OK;
 }
 
-/* W becomes block m + 1 of V, and M W the next right-hand sides. */
+/* Store W as block m + 1 of V, and M W as the next right-hand sides. */
 static void append_block(rank_lanczos *z, int64_t count)
 {
     ritz_dense W = block_take(z->W);
@@ -144,7 +150,7 @@ static void append_block(rank_lanczos *z, int64_t count)
     ranks_expect(MatCopy(z->MW, z->Y, SAME_NONZERO_PATTERN));
 }
 
-/* B_m below the diagonal of T, once block m + 1 is taken into it. */
+/* Put B_m below the diagonal of T, before T gets the next block. */
 static void keep_coupling(rank_lanczos *z, int64_t count)
 {
     for (int64_t j = 0; j < BLOCK; j++)
@@ -153,7 +159,8 @@ static void keep_coupling(rank_lanczos *z, int64_t count)
                 ritz_dense_col(&z->B, j)[i];
 }
 
-/* The first block: from vectors without structure, in the range of OP. */
+/* The first block: OP applied to random vectors, so that it is in the range of
+   OP, orthonormalised. */
 static ritz_status begin(rank_lanczos *z)
 {
     block_new(z->p->K, BLOCK, &z->W);
@@ -174,7 +181,8 @@ static ritz_status begin(rank_lanczos *z)
     return RITZ_OK;
 }
 
-/* One more block: z->count grows by eight. */
+/* One step: T grows by A_m and the B before it, z->count by eight, and V gets
+   V_(m+1). `h` is working memory for count x 8 numbers. */
 static ritz_status extend(rank_lanczos *z, double *h)
 {
     const int64_t count = z->count + BLOCK;
@@ -221,7 +229,7 @@ static ritz_status solve_small(rank_lanczos *z)
     return RITZ_OK;
 }
 
-/* B_m s_m of pair k: what OP x has along block m + 1. */
+/* rest := B_m s_m of pair k, the coefficients of its residual in V_(m+1). */
 static void find_remainder(const rank_lanczos *z, int64_t k, double rest[BLOCK])
 {
     const double *s = ritz_dense_col(&z->S, k) + z->count - BLOCK;
@@ -233,6 +241,7 @@ static void find_remainder(const rank_lanczos *z, int64_t k, double rest[BLOCK])
     }
 }
 
+/* Whether all requested pairs have converged. */
 static bool is_settled(const rank_lanczos *z)
 {
     for (int64_t k = 0; k < z->ask; k++) {
@@ -245,7 +254,7 @@ static bool is_settled(const rank_lanczos *z)
     return true;
 }
 
-/* The same pairs in every rank. */
+/* Eigenpairs of T, from rank 0 in every rank. */
 static ritz_status find_ritz_pairs(rank_lanczos *z)
 {
     ritz_status status = RITZ_OK;
@@ -299,7 +308,7 @@ static ritz_status allocate(rank_lanczos *z)
     return RITZ_OK;
 }
 
-/* Blocks until the pairs are settled, or there is no room. */
+/* Add blocks until all pairs have converged, V is full, or a block breaks down. */
 static ritz_status iterate(rank_lanczos *z, bool *settled)
 {
     const int64_t first = z->ask + z->ask / 2 + BLOCK;

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* As in src/linear/eigen_sparse.c. */
+/* The numbers of src/linear/eigen_sparse.c, where they are explained. */
 enum { ATTEMPTS = 12, BODY = 6, GUESS = 20, BEHIND = 2, SPARE = 4 };
 enum { MISSES = 3, POLISHES = 3 };
 
@@ -22,7 +22,7 @@ typedef struct rank_search {
     const ritz_span *span;
     double limit;
     int64_t target;
-    double sigma;  /* where modes are looked for; the count moves the factor */
+    double sigma;  /* shift of the iteration; a count factors at other values */
     double broken; /* -sigma at which the factor broke down */
     int64_t ask, misses;
     bool by_blocks; /* block Lanczos found them, not Krylov-Schur */
@@ -65,7 +65,7 @@ ritz_status modes_foresee(rank_pencil *p, const ritz_span *span, double *limit,
     return status;
 }
 
-/* Factor at a shift below all eigenvalues. */
+/* Factor K - sigma M, and refuse it if an eigenvalue is below sigma. */
 static ritz_status factor_below(rank_pencil *p, double sigma)
 {
     RITZ_CHECK(rank_pencil_factor(p, sigma));
@@ -96,7 +96,7 @@ ritz_status modes_shift(rank_pencil *p, bool held, double limit)
 
 /* --- pairs ---------------------------------------------------------------- */
 
-/* All of a matrix in rank 0; nothing elsewhere. */
+/* Gather the whole matrix in rank 0. Other ranks get one without rows. */
 static ritz_status gather_matrix(Mat A, ritz_sparse *out)
 {
     const PetscInt *start = NULL;
@@ -134,7 +134,7 @@ static ritz_status gather_matrix(Mat A, ritz_sparse *out)
     return status;
 }
 
-/* What rank 0 has found alone is known to all, but for the vectors. */
+/* Broadcast the pairs that rank 0 has found alone, without their vectors. */
 static ritz_status share_pairs(ritz_pairs *P)
 {
     int64_t sizes[] = {P->Phi.ncol, P->num_rigid};
@@ -156,8 +156,8 @@ static ritz_status share_pairs(ritz_pairs *P)
     return RITZ_OK;
 }
 
-/* So many modes that a Krylov space would be the whole space: rank 0 finds them
-   as if it were alone. */
+/* For so many modes that a Krylov space would be nearly the whole space, rank 0
+   finds them as a single process does. */
 static ritz_status find_alone(const rank_pencil *p, const ritz_span *span,
                               modes *out)
 {
@@ -175,7 +175,8 @@ static ritz_status find_alone(const rank_pencil *p, const ritz_span *span,
     return RITZ_OK;
 }
 
-/* Vectors in the order of their eigenvalues, M-orthonormal, with residuals. */
+/* Improve the pairs by inverse iteration until their residuals are small enough.
+   The vectors are then M-orthonormal and the eigenvalues ascend. */
 static ritz_status refine_pairs(rank_search *s)
 {
     ritz_pairs *P = &s->found.pairs;
@@ -194,13 +195,13 @@ static ritz_status refine_pairs(rank_search *s)
     return block_sharpen(s->p, s->found.X, P);
 }
 
-/* Vectors that a Krylov space of so many pairs has room for. */
+/* Number of Krylov vectors for so many pairs. */
 static int64_t count_room(int64_t ask)
 {
     return 2 * ask > ask + 20 ? 2 * ask : ask + 20;
 }
 
-/* Fill s->found; it stays empty if more must be asked for. */
+/* Fill s->found. If too few pairs converge it stays empty, and s->ask grows. */
 static ritz_status find_pairs(rank_search *s)
 {
     ritz_pairs *P = &s->found.pairs;
@@ -222,8 +223,8 @@ static ritz_status find_pairs(rank_search *s)
     return RITZ_OK;
 }
 
-/* A shift far beyond the first flexible mode blurs it: come closer where that
-   is possible. */
+/* If |sigma| is much larger than the first flexible eigenvalue, that has lost
+   digits: move sigma closer to 0, unless the factor breaks down there. */
 static ritz_status come_closer(rank_search *s, bool *moved)
 {
     const ritz_pairs *P = &s->found.pairs;
@@ -245,7 +246,8 @@ static ritz_status come_closer(rank_search *s, bool *moved)
 
 /* --- proof ---------------------------------------------------------------- */
 
-/* Modes below a value between pairs k - 1 and k, none of which it may hit. */
+/* Count the modes below a value between eigenvalues k - 1 and k. Other values are
+   tried if an eigenvalue lies there. */
 static ritz_status count_below(rank_search *s, int64_t k, int64_t *out)
 {
     const double parts[] = {0.5, RITZ_COUNT_PLACE, 0.7};
@@ -276,7 +278,7 @@ static ritz_status refuse_excess(int64_t found, int64_t counted)
     return RITZ_OK;
 }
 
-/* By number: are there as many below a value in the gap behind them? */
+/* If a number of modes is requested: count below a value in a gap after them. */
 static ritz_status prove_number(rank_search *s, int64_t *end, bool *done)
 {
     ritz_pairs *P = &s->found.pairs;
@@ -300,7 +302,7 @@ static ritz_status prove_number(rank_search *s, int64_t *end, bool *done)
     return *done ? RITZ_OK : ask_more(s, count - at);
 }
 
-/* By frequency: are there as many as were counted before? */
+/* If modes up to a frequency are requested: compare with modes_foresee(). */
 static ritz_status prove_frequency(rank_search *s, int64_t *end, bool *done)
 {
     ritz_pairs *P = &s->found.pairs;
@@ -321,8 +323,8 @@ static ritz_status prove_frequency(rank_search *s, int64_t *end, bool *done)
     return *done ? RITZ_OK : ask_more(s, s->target - below);
 }
 
-/* Search until the pairs are proven to be all; `alone` if too many are asked
-   for. */
+/* Search until a count verifies the pairs. *alone if there are so many that
+   find_alone() must find them. */
 static ritz_status search_proven(rank_search *s, int64_t *end, bool *alone)
 {
     bool done = false;

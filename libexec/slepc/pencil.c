@@ -39,7 +39,7 @@ static ritz_status find_ratios(Mat K, Mat M, double **ratio, int *count)
     return status;
 }
 
-/* In rank 0, from the ratios of all ranks. */
+/* Gather the ratios of all ranks in rank 0; *total is their number there. */
 static ritz_status gather_ratios(const double *own, int count, double **all,
                                  int64_t *total)
 {
@@ -75,7 +75,7 @@ static ritz_status find_typical(rank_pencil *p)
     return RITZ_OK;
 }
 
-/* Rows of M, which is symmetric, with an entry that is not zero. */
+/* Number of rows of M, and so of columns, with an entry that is not zero. */
 static int64_t count_heavy(Mat M)
 {
     PetscInt from = 0;
@@ -110,9 +110,10 @@ ritz_status rank_pencil_new(Mat K, Mat M, rank_pencil *out)
 /* --- factors -------------------------------------------------------------- */
 
 /*
- * MUMPS's controls, by their numbers in its manual: METIS orders; null pivots
- * are counted; the last front is not ScaLAPACK's, which counts no pivots.
- * PETSC_OPTIONS, such as -mat_mumps_icntl_28 2, overrides them.
+ * Controls of MUMPS, ICNTL, by their numbers in its manual. Rows are ordered by
+ * METIS; null pivots are counted; ScaLAPACK does not factor the last front, as it
+ * does not count negative pivots. Options in PETSC_OPTIONS, such as
+ * -mat_mumps_icntl_28 2, override them.
  */
 enum { ORDERING = 7, ROOT_SEQUENTIAL = 13, ROOM_PERCENT = 14 };
 enum { NULL_PIVOTS = 24, METIS = 5, OUTCOME = 1 };
@@ -126,8 +127,8 @@ static void set_controls(Mat F, int room)
     ranks_expect(MatMumpsSetIcntl(F, NULL_PIVOTS, 1));
 }
 
-/* K - sigma M, in the pattern of both, from K itself, so that no rounding is
-   left of the last shift. */
+/* A := K - sigma M, in the union of both patterns. It is computed from K each
+   time, so that rounding of earlier shifts does not add up. */
 static void shift_matrix(rank_pencil *p, double sigma)
 {
     if (!p->A) {
@@ -154,6 +155,8 @@ static void analyse_pattern(rank_pencil *p)
     ranks_expect(MatCholeskyFactorSymbolic(p->F, p->A, NULL, &info));
 }
 
+/* Whether the last factorisation failed as its workspace was too small: -8 and
+   -9 of INFOG(1). */
 static bool needs_room(const rank_pencil *p)
 {
     PetscInt outcome = 0;
@@ -162,8 +165,8 @@ static bool needs_room(const rank_pencil *p)
     return outcome == -8 || outcome == -9;
 }
 
-/* Factor the matrix, with more room each time MUMPS asks for it: pivots that
-   were delayed need more than its analysis foresees. */
+/* Factor A. If delayed pivots need more workspace than the analysis predicted,
+   repeat with twice as much in addition. */
 static void factor_matrix(rank_pencil *p)
 {
     enum { MOST_ROOM = 2000 }; /* percent */
@@ -180,7 +183,7 @@ static void factor_matrix(rank_pencil *p)
     } while (again);
 }
 
-/* What MUMPS reports in INFOG(1), which is the same in every rank. */
+/* The outcome as a status, from INFOG(1), which is the same in every rank. */
 static ritz_status report_failure(const rank_pencil *p)
 {
     enum { SINGULAR = -10 };

@@ -1,8 +1,8 @@
 /*
- * One factor of K - sigma M, by MUMPS, which is made again for other shifts: the
- * pattern is analysed once, and the factor of one shift takes the place of that
- * of another. L D L' with pivots, as counts need it; Sylvester's law of inertia
- * gives the number of eigenvalues below sigma with each factor.
+ * A distributed pencil (K, M) and one factor K - sigma M = L D L' by MUMPS. The
+ * pattern is analysed once; the factor of a new shift replaces the one before.
+ * Pivoting allows any sigma, and by Sylvester's law of inertia D has as many
+ * negative eigenvalues as the pencil has below sigma.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_PENCIL_H
 #define RITZ_LIBEXEC_SLEPC_PENCIL_H
@@ -13,27 +13,28 @@
 
 typedef struct rank_pencil {
     Mat K, M; /* borrowed */
-    Mat A;    /* K - sigma M, with the pattern of both */
+    Mat A;    /* K - sigma M, with the union of both patterns */
     Mat F;    /* its factor */
-    int room; /* percent that MUMPS allocates over what it foresees */
+    int room; /* percent of memory beyond what the analysis of MUMPS predicts */
     double sigma;
-    int64_t negative; /* eigenvalues below sigma, if the factor was made */
+    int64_t negative; /* eigenvalues below sigma, of the last factor made */
     double typical;   /* median of K_jj / M_jj, 1 if there is none */
     int64_t heavy;    /* columns of M that are not zero */
 } rank_pencil;
 
-/** Survey K and M. Collective. */
+/** Set `typical` and `heavy` from K and M; nothing is factored. Collective. */
 ritz_status rank_pencil_new(Mat K, Mat M, rank_pencil *out);
 
 /**
  * Factor K - sigma M. Collective.
  *
- * @return RITZ_ERR_SINGULAR if a pivot is rounding; RITZ_ERR_MEMORY
+ * @return RITZ_ERR_SINGULAR if MUMPS finds a pivot that is zero or rounding;
+ *         RITZ_ERR_MEMORY; RITZ_ERR_CONVERGENCE for any other failure of MUMPS
  */
 ritz_status rank_pencil_factor(rank_pencil *p, double sigma);
 
-/** X := (K - sigma M)^-1 B, dense matrices with the rows of K; both may be the
- * same. Collective. */
+/** X := (K - sigma M)^-1 B for blocks with the rows of K; X is not B.
+ * Collective. */
 void rank_pencil_solve(const rank_pencil *p, Mat B, Mat X);
 
 /** x := (K - sigma M)^-1 b. Collective. */

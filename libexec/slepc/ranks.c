@@ -9,7 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SENTENCE = 1024, WAIT = 300000 };
+enum {
+    SENTENCE = 1024, /* bytes of a message */
+    WAIT = 300000,   /* microseconds */
+};
 
 int ranks_own(void)
 {
@@ -34,8 +37,9 @@ void ranks_abort(void)
 }
 
 /*
- * Called by PETSc where an error begins. If all ranks come here, rank 0 is the
- * first, and ends the others before they can say the same.
+ * PETSc calls this when a function of it fails. If it fails in all ranks, the
+ * message is to appear once: ranks above 0 wait a little, and rank 0 prints and
+ * aborts the run meanwhile.
  */
 /* NOLINTNEXTLINE(readability-function-size): PETSc's parameters */
 static PetscErrorCode complain_once(MPI_Comm comm, int line,

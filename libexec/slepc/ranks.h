@@ -1,10 +1,10 @@
 /*
  * Ranks: the processes of MPI that work on one component. Rank 0 is the tool,
- * with its command line, its messages and its output; the others help.
+ * with its command line, its messages and its output; the others compute with it.
  *
- * A step that can fail in one rank alone ends with ranks_agree, so that all go
- * on or all give up. Where PETSc itself reports an error, the other ranks may
- * wait for this one within PETSc: then the whole run is ended, by MPI_Abort.
+ * A step that can fail in one rank alone ends with ranks_agree(), so that all
+ * ranks continue or all return the failure. If PETSc reports an error, other
+ * ranks may be waiting for this one within PETSc: the run is ended by MPI_Abort.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_RANKS_H
 #define RITZ_LIBEXEC_SLEPC_RANKS_H
@@ -14,32 +14,37 @@
 #include <petscsys.h>
 #include <stdint.h>
 
-/** Start MPI, PETSc and SLEPc, none of which prints, or heeds signals, from now
- * on. They read the options of the environment PETSC_OPTIONS. */
+/** Start MPI, PETSc and SLEPc. PETSc installs no signal handlers, and its errors
+ * are reported in one line. Options are read from the environment variable
+ * PETSC_OPTIONS. */
 void ranks_start(void);
 
-/** End them, in every rank. */
+/** End MPI, PETSc and SLEPc. To be called in every rank. */
 void ranks_stop(void);
 
 /** End all ranks at once, with status 1. */
 _Noreturn void ranks_abort(void);
 
+/** The number of this process, from 0. */
 int ranks_own(void);
+/** The number of processes. */
 int ranks_count(void);
 
-/** End the run if PETSc has failed; its sentence was printed. */
+/** Abort the run if a call of PETSc has failed; its error handler has printed the
+ * reason. */
 void ranks_expect(PetscErrorCode code);
 
 /**
- * The status of all ranks: RITZ_OK if that is what each gives, otherwise that
- * of the first which failed, with its sentence. Collective.
+ * The common status of all ranks: RITZ_OK if @p own is RITZ_OK in each of them,
+ * otherwise the status and the message of the lowest rank that failed.
+ * Collective.
  */
 ritz_status ranks_agree(ritz_status own);
 
-/* Return at the first failure, in all ranks together. */
+/* Return from all ranks if the call failed in one of them. */
 #define RANKS_CHECK(call) RITZ_CHECK(ranks_agree(call))
 
-/* RITZ_CHECK_NEW in all ranks together. */
+/* Allocate in every rank; return from all ranks if one has no memory. */
 #define RANKS_CHECK_NEW(pointer, count)                                        \
     do {                                                                       \
         (pointer) = ritz_zalloc((count), sizeof *(pointer));                   \
@@ -48,11 +53,12 @@ ritz_status ranks_agree(ritz_status own);
             return RITZ_ERR_MEMORY;                                            \
     } while (0)
 
-/** Rank 0's bytes become those of every rank. Collective. */
+/** Broadcast @p count bytes from rank 0 to every rank. Collective. */
 void ranks_share(void *bytes, int64_t count);
 
-/** Sums over all ranks, the same in each. Collective. */
+/** Replace each value by its sum over all ranks. Collective. */
 void ranks_sum(double *values, int64_t count);
+/** The sum of @p own over all ranks. Collective. */
 int64_t ranks_total(int64_t own);
 
 #endif

@@ -11,6 +11,7 @@
 
 /* --- reading -------------------------------------------------------------- */
 
+/* The first dof of a rank; num_dofs for the rank after the last. */
 static int64_t first_dof(const rows_frame *f, int rank)
 {
     return f->num_dofs / ranks_count() * rank +
@@ -18,8 +19,9 @@ static int64_t first_dof(const rows_frame *f, int rank)
 }
 
 /*
- * The checksum of a data set is a chain over its values: each rank continues it
- * where the one before has come to, and the last compares.
+ * The checksum of a data set is computed over its values in their order. Each
+ * rank continues the sum that it receives from the one before, and the last rank
+ * compares it with the file.
  */
 static ritz_status verify_chain(const rows_frame *f, const char *name,
                                 const ritz_slab *slab)
@@ -50,7 +52,8 @@ static ritz_status read_matrix(const rows_frame *f, const char *name,
 
 /* --- partition ------------------------------------------------------------ */
 
-/* Uniform in (-1, 1), the same for a row however many ranks there are. */
+/* A pseudo-random number, uniform in (-1, 1), that depends on row and column
+   alone. */
 static double make_noise(int64_t row, int64_t column)
 {
     uint64_t state = (uint64_t)row + 1998 + ((uint64_t)column << 40);
@@ -62,7 +65,7 @@ static double make_noise(int64_t row, int64_t column)
     return (double)(int64_t)state / (double)INT64_MAX;
 }
 
-/* How many attached dofs are below a dof, and whether it is one itself. */
+/* The number of attached dofs below a dof, and whether it is attached itself. */
 static int64_t count_attached(const rows_frame *f, int64_t dof, bool *is_one)
 {
     int64_t low = 0;
@@ -80,7 +83,7 @@ static int64_t count_attached(const rows_frame *f, int64_t dof, bool *is_one)
     return low;
 }
 
-/* Rows of this rank, compressed, as PETSc counts. */
+/* Rows of this rank in compressed form, with indices of PETSc's type. */
 typedef struct compressed {
     int64_t rows;
     PetscInt *start, *column;
@@ -92,8 +95,9 @@ static void compressed_free(compressed *c)
     RITZ_FREE(c->start, c->column, c->value);
 }
 
-/* Sums of each attached dof b over the interior, and of their magnitudes: that
-   of K_bi x, from column b, less that of x'K_ib, from interior rows. */
+/* Check of K_bi = K_ib' for each attached dof b, x a random vector: x'K_ib from
+   the interior rows less K_bi x from column b, and the sum of the magnitudes of
+   both. */
 typedef struct mirror {
     double *gap, *size;
 } mirror;
@@ -110,7 +114,7 @@ static void compare_entry(const mirror *m, int64_t at, double value,
     m->size[at] += fabs(value);
 }
 
-/* Entries of an attached column. */
+/* Subtract the part of an attached column, from the interior rows of it. */
 static void sum_attached(const rows_frame *f, const ritz_slab *slab, int64_t j,
                          int64_t at, const mirror *m)
 {
@@ -124,8 +128,8 @@ static void sum_attached(const rows_frame *f, const ritz_slab *slab, int64_t j,
     }
 }
 
-/* Interior columns of the interior rows; entries of attached columns, negative,
-   into the dense load. */
+/* Split the rows of a slab: entries of interior columns go to *c, those of
+   attached columns with their sign changed to `load`, unless it is NULL. */
 static void partition_rows(const rows_frame *f, const ritz_slab *slab,
                            compressed *c, double *load, const mirror *m)
 {
@@ -158,7 +162,7 @@ static void partition_rows(const rows_frame *f, const ritz_slab *slab,
     }
 }
 
-/* After the sums of all ranks. */
+/* Sum over all ranks, and refuse a matrix with a difference beyond rounding. */
 static ritz_status check_mirror(const rows_frame *f, const mirror *m,
                                 const char *name)
 {
@@ -191,7 +195,7 @@ static ritz_status allocate_rows(const ritz_slab *slab, int64_t own,
     return RITZ_OK;
 }
 
-/* A matrix of PETSc from the slab, which is freed. */
+/* Make a distributed matrix of PETSc from the slab, which is freed. */
 static ritz_status convert_slab(const rows_frame *f, const char *name,
                                 ritz_slab *slab, double *load, const rows *r,
                                 Mat *out)
@@ -233,9 +237,9 @@ void rows_fill(Vec x, int64_t column)
 }
 
 /*
- * |A x - A'x| of one x without structure, relative to the largest entry of A:
- * that much an entry differs from its mirror image at least once. A component
- * is stored as import has made it symmetric, to the last bit.
+ * Refuse A if max |A x - A'x| of a random x is above rounding, relative to the
+ * largest row sum of |A|. ritz-import stores matrices that are symmetric to the
+ * last bit, so that any larger difference means a damaged file.
  */
 static ritz_status check_symmetry(Mat A, const char *name)
 {
@@ -263,8 +267,9 @@ static ritz_status check_symmetry(Mat A, const char *name)
     return RITZ_OK;
 }
 
-/* --- all ------------------------------------------------------------------ */
+/* --- interior ------------------------------------------------------------- */
 
+/* Number of interior dofs of this rank. */
 static int64_t count_interior(const rows_frame *f)
 {
     const int64_t from = first_dof(f, ranks_own());

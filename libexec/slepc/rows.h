@@ -1,7 +1,7 @@
 /*
- * The rows of a component that a rank holds: as many consecutive dofs as other
- * ranks, without those that are attached. A symmetric matrix is stored by
- * columns, so that the columns of these dofs are read from the file as rows.
+ * Distribution of a component's matrices: each rank holds the rows of an equal
+ * number of consecutive dofs, without those of attached dofs. Files store
+ * matrices by columns; as they are symmetric, columns are read and used as rows.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_ROWS_H
 #define RITZ_LIBEXEC_SLEPC_ROWS_H
@@ -16,28 +16,29 @@ typedef struct rows_frame {
     int64_t num_dofs;
     int64_t num_attached;
     const int64_t *sorted;   /* attached dofs, ascending */
-    const int64_t *position; /* of each of them among the columns of K_ib */
+    const int64_t *position; /* column of K_ib of each dof of `sorted` */
 } rows_frame;
 
-/* Matrices of the interior: rows are distributed, in the order of dofs. */
+/* Matrices of the interior, i.e. of all dofs that are not attached, in the order
+   of dofs. Rows are distributed. */
 typedef struct rows {
     Mat K, M;         /* K_ii, M_ii */
-    Mat load;         /* -K_ib, dense; NULL: nothing is attached */
+    Mat load;         /* -K_ib, dense; NULL if no dof is attached */
     int64_t interior; /* rows of all ranks */
     int64_t own;      /* rows of this rank */
 } rows;
 
 /**
- * Read them. Collective.
+ * Read K and M from the file. Collective.
  *
- * @return RITZ_ERR_FORMAT as ritz_slab_read and ritz_slab_verify, or if a
- *         matrix is not symmetric; RITZ_ERR_ARGUMENT if it has too many entries
- *         for the ranks
+ * @return as ritz_slab_read() and ritz_slab_verify(); RITZ_ERR_FORMAT if a matrix
+ *         is not symmetric; RITZ_ERR_ARGUMENT if a rank would hold more than
+ *         2^31 - 1 entries, or the interior has more rows; RITZ_ERR_MEMORY
  */
 ritz_status rows_read(const rows_frame *frame, rows *out);
 
-/** Fill a vector without structure, another for each column, the same however
- * many ranks there are. */
+/** Fill x with random numbers between -1 and 1, which depend on the row and on
+ * @p column alone, and not on the number of ranks. */
 void rows_fill(Vec x, int64_t column);
 
 void rows_free(rows *r);
