@@ -249,8 +249,9 @@ ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
     for (int64_t j = 0; j < P->Phi.ncol; j++) {
         const double *s = sum + SUMS * j;
 
-        P->residual[j] = s[SIZE] > 0.0 ? sqrt(s[GAP] / s[SIZE]) : 0.0;
-        *worst = P->residual[j] <= *worst ? *worst : P->residual[j];
+        P->residual[j] = s[SIZE] == 0.0 ? 0.0 : sqrt(s[GAP] / s[SIZE]);
+        if (!isnan(*worst) && !(P->residual[j] <= *worst))
+            *worst = P->residual[j];
         scale = fmax(scale, s[ENERGY]);
     }
     P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);

@@ -37,7 +37,7 @@ ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda);
  * @param[in]     X      vectors
  * @param[in,out] P      lambda and Phi.ncol are read; residual and num_rigid are
  *                       set
- * @param[out]    worst  the largest residual
+ * @param[out]    worst  the largest residual; NaN if one is NaN
  */
 ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
                          double *worst);
