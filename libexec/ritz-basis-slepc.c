@@ -1,9 +1,9 @@
 /*
- * ritz-basis-slepc - the program that ritz-basis executes for --engine slepc: the
- * same tool, but matrices, factors and modes are distributed over the processes
- * of MPI. It is linked with PETSc, SLEPc and the parallel MUMPS. The sequential
- * MUMPS has the same symbols, so that mumps.c of the library is replaced by a
- * copy that is compiled for the parallel one.
+ * ritz-basis-slepc - the program that ritz-basis executes for --engine slepc:
+ * the same tool, but matrices, factors and modes are distributed over the
+ * processes of MPI. It is linked with PETSc, SLEPc and the parallel MUMPS. The
+ * sequential MUMPS has the same symbols, so that mumps.c of the library is
+ * replaced by a copy that is compiled for the parallel one.
  *
  * Rank 0 reads the command line, prints and writes the basis. The other ranks
  * wait in fixed_help() for their part of the computation, and print nothing.
@@ -43,7 +43,8 @@ static ritz_status refuse_options(const basis_options *given)
     return RITZ_OK;
 }
 
-/* Refuse a basis that would have static vectors of inputs, outputs or dampers. */
+/* Refuse a basis that would have static vectors of inputs, outputs or
+   dampers. */
 static ritz_status refuse_loads(const ritz_request *request, bool held)
 {
     const bool asked = request->choice.given & RITZ_USES_LOADS;
@@ -124,8 +125,8 @@ static ritz_status run_in_ranks(cli_run *run, basis_options *given)
 }
 
 /* Called when rank 0 exits, after main() or a usage error. If the other ranks
-   wait, they are told to end; if they are in a computation that rank 0 has left,
-   the whole run is aborted. */
+   wait, they are told to end; if they are in a computation that rank 0 has
+   left, the whole run is aborted. */
 static void end_others(void)
 {
     if (!fixed_is_idle())

@@ -101,7 +101,7 @@ static ritz_status solve_projection(ritz_dense *A_r, ritz_dense *M_r,
     balance_projection(A_r, M_r, scale);
     RITZ_CHECK(ritz_eigen_dense(A_r, M_r, &small));
     RITZ_REFUSE_IF(small.Phi.ncol < A_r->ncol, RITZ_ERR_CONVERGENCE,
-                   "some eigenvectors depend on others");
+                   "some eigenvectors are linearly dependent");
     RITZ_CHECK(find_quotients(A_r, &small.Phi, theta));
     ritz_dense_scale_rows(scale, &small.Phi);
     memcpy(Q->val, small.Phi.val, (size_t)(Q->nrow * Q->ncol) * sizeof *Q->val);
@@ -289,8 +289,8 @@ static void return_rows(local_rows *r)
                                  &r->start, &r->column, &done));
 }
 
-/* Add x'A y and |x|'|A||y| of these rows, the former with products and sums of 64
-   bits instead of 53. */
+/* Add x'A y and |x|'|A||y| of these rows, the former with products and sums of
+   64 bits instead of 53. */
 static void sum_energy(const local_rows *r, const double *x, const double *y,
                        long double *energy, double *size)
 {
@@ -332,8 +332,8 @@ static void find_energy(const local_rows part[2], Vec x, VecScatter fetch,
     ranks_sum(out, 3);
 }
 
-/* lambda := x'K x of the flexible modes, the lowest first, until one has not lost
-   digits. x'M x = 1. */
+/* lambda := x'K x of the flexible modes, the lowest first, until one has not
+   lost digits. x'M x = 1. */
 static void sharpen_columns(const local_rows part[2], Mat X, VecScatter fetch,
                             Vec others, ritz_pairs *P)
 {

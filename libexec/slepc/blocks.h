@@ -1,4 +1,5 @@
-/* Blocks: dense matrices of a few vectors, with rows distributed over the ranks. */
+/* Blocks: dense matrices of a few vectors, with rows distributed over the
+   ranks. */
 #ifndef RITZ_LIBEXEC_SLEPC_BLOCKS_H
 #define RITZ_LIBEXEC_SLEPC_BLOCKS_H
 
@@ -31,22 +32,22 @@ void block_multiply(Mat A, Mat X, Mat *out);
 ritz_status block_polish(const rank_pencil *p, Mat X, double *lambda);
 
 /**
- * Residuals | K x - lambda M x | / | |K||x| + |lambda||M||x| |, and the number of
- * rigid-body modes. Collective.
+ * Residuals | K x - lambda M x | / | |K||x| + |lambda||M||x| |, and the number
+ * of rigid-body modes. Collective.
  *
  * @param[in]     X      vectors
- * @param[in,out] P      lambda and Phi.ncol are read; residual and num_rigid are
- *                       set
+ * @param[in,out] P      lambda and Phi.ncol are read; residual and num_rigid
+ *                       are set
  * @param[out]    worst  the largest residual; NaN if one is NaN
  */
 ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
                          double *worst);
 
 /**
- * Compute eigenvalues that have lost digits again, by x'K x / x'M x with sums in
- * extended precision. The rounding of the factor, which depends on the number of
- * ranks, changes low eigenvalues, as of thin plates, in proportion; it changes
- * the quotient only by its square. Collective.
+ * Compute eigenvalues that have lost digits again, by x'K x / x'M x with sums
+ * in extended precision. The rounding of the factor, which depends on the
+ * number of ranks, changes low eigenvalues, as of thin plates, in proportion;
+ * it changes the quotient only by its square. Collective.
  *
  * @param[in]     X  M-orthonormal, by ascending eigenvalue
  * @param[in,out] P  lambda is changed, num_rigid is read

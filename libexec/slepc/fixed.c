@@ -69,7 +69,8 @@ static void put_column(void *state, int64_t column, const double *x)
         T->val[i->at[k] + (c->first + column) * T->nrow] = x[k];
 }
 
-/* Put the vectors of the modes into the columns of the basis from `first` on. */
+/* Put the vectors of the modes into the columns of the basis from `first`
+   on. */
 static ritz_status place_modes(const rank_work *w, int64_t first)
 {
     columns_at at = {w->target, first};
@@ -219,7 +220,8 @@ static ritz_status solve_interior(rank_work *w)
     return RITZ_OK;
 }
 
-/* Carry out a task. Collective: every rank gives the same task, path and dofs. */
+/* Carry out a task. Collective: every rank gives the same task, path and
+   dofs. */
 static ritz_status work_together(const task *t, const char *path,
                                  const ritz_dofs *b, target *to)
 {

@@ -1,6 +1,7 @@
 /*
- * Bases of Craig-Bampton and of normal modes, computed by all ranks: rank 0 calls
- * fixed_make() and gets the basis, the others are in fixed_help() meanwhile.
+ * Bases of Craig-Bampton and of normal modes, computed by all ranks: rank 0
+ * calls fixed_make() and gets the basis, the others are in fixed_help()
+ * meanwhile.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_FIXED_H
 #define RITZ_LIBEXEC_SLEPC_FIXED_H
@@ -8,8 +9,8 @@
 #include <ritz/basis.h>
 
 /**
- * To be called in rank 0: compute the basis of a component whose matrices are in
- * its file only, not in memory.
+ * To be called in rank 0: compute the basis of a component whose matrices are
+ * in its file only, not in memory.
  *
  * @param[in] path  of the component's file, readable by all ranks
  * @param[in] held  true: Craig-Bampton, with the attached dofs held; false:
@@ -26,8 +27,8 @@ void fixed_help(void);
 /** To be called in rank 0: let fixed_help() return in the other ranks. */
 void fixed_dismiss(void);
 
-/** In rank 0: whether no fixed_make() is under way, so that the other ranks wait
- * for a task. */
+/** In rank 0: whether no fixed_make() is under way, so that the other ranks
+ * wait for a task. */
 bool fixed_is_idle(void);
 
 #endif

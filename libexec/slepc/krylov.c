@@ -20,8 +20,9 @@ static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
     return 0;
 }
 
-/* A start vector that does not depend on the number of ranks. It is in the range
-   of (K - sigma M)^-1 M, which is not the whole space if M is singular. */
+/* A start vector that does not depend on the number of ranks. It is in the
+   range of (K - sigma M)^-1 M, which is not the whole space if M is
+   singular. */
 static void set_start(EPS eps, const rank_pencil *p)
 {
     Vec start = NULL;

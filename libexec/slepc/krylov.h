@@ -5,8 +5,8 @@
 #include "pencil.h"
 
 /**
- * The eigenpairs of K x = lambda M x nearest to sigma, at which @p p is factored.
- * Collective.
+ * The eigenpairs of K x = lambda M x nearest to sigma, at which @p p is
+ * factored. Collective.
  *
  * @param[in]  ask     number of pairs requested
  * @param[in]  room    number of Krylov vectors at which SLEPc restarts

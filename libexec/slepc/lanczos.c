@@ -9,8 +9,8 @@
  *
  *     OP x - theta x = V_(m+1) B_m s_m,   s_m the last eight rows of s,
  *
- * and so is a step of inverse iteration, OP x = theta x + V_(m+1) B_m s_m, which
- * needs no solve. Each block is orthogonalised to all before it, twice
+ * and so is a step of inverse iteration, OP x = theta x + V_(m+1) B_m s_m,
+ * which needs no solve. Each block is orthogonalised to all before it, twice
  * [GrimesLewisSimon1994].
  */
 #include "lanczos.h"
@@ -308,7 +308,8 @@ static ritz_status allocate(rank_lanczos *z)
     return RITZ_OK;
 }
 
-/* Add blocks until all pairs have converged, V is full, or a block breaks down. */
+/* Add blocks until all pairs have converged, V is full, or a block breaks
+   down. */
 static ritz_status iterate(rank_lanczos *z, bool *settled)
 {
     const int64_t first = z->ask + z->ask / 2 + BLOCK;

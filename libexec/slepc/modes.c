@@ -175,8 +175,8 @@ static ritz_status find_alone(const rank_pencil *p, const ritz_span *span,
     return RITZ_OK;
 }
 
-/* Improve the pairs by inverse iteration until their residuals are small enough.
-   The vectors are then M-orthonormal and the eigenvalues ascend. */
+/* Improve the pairs by inverse iteration until their residuals are small
+   enough. The vectors are then M-orthonormal and the eigenvalues ascend. */
 static ritz_status refine_pairs(rank_search *s)
 {
     ritz_pairs *P = &s->found.pairs;
@@ -246,8 +246,8 @@ static ritz_status come_closer(rank_search *s, bool *moved)
 
 /* --- proof ---------------------------------------------------------------- */
 
-/* Count the modes below a value between eigenvalues k - 1 and k. Other values are
-   tried if an eigenvalue lies there. */
+/* Count the modes below a value between eigenvalues k - 1 and k. Other values
+   are tried if an eigenvalue lies there. */
 static ritz_status count_below(rank_search *s, int64_t k, int64_t *out)
 {
     const double parts[] = {0.5, RITZ_COUNT_PLACE, 0.7};
@@ -278,7 +278,8 @@ static ritz_status refuse_excess(int64_t found, int64_t counted)
     return RITZ_OK;
 }
 
-/* If a number of modes is requested: count below a value in a gap after them. */
+/* If a number of modes is requested: count below a value in a gap after
+   them. */
 static ritz_status prove_number(rank_search *s, int64_t *end, bool *done)
 {
     ritz_pairs *P = &s->found.pairs;

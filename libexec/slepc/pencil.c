@@ -111,8 +111,8 @@ ritz_status rank_pencil_new(Mat K, Mat M, rank_pencil *out)
 
 /*
  * Controls of MUMPS, ICNTL, by their numbers in its manual. Rows are ordered by
- * METIS; null pivots are counted; ScaLAPACK does not factor the last front, as it
- * does not count negative pivots. Options in PETSC_OPTIONS, such as
+ * METIS; null pivots are counted; ScaLAPACK does not factor the last front, as
+ * it does not count negative pivots. Options in PETSC_OPTIONS, such as
  * -mat_mumps_icntl_28 2, override them.
  */
 enum { ORDERING = 7, ROOT_SEQUENTIAL = 13, ROOM_PERCENT = 14 };
@@ -195,8 +195,8 @@ static ritz_status report_failure(const rank_pencil *p)
     ranks_expect(MatMumpsGetInfog(p->F, OUTCOME, &outcome));
     for (size_t k = 0; k < sizeof memory / sizeof *memory; k++)
         RITZ_REFUSE_IF(outcome == memory[k], RITZ_ERR_MEMORY,
-                       "no memory for the factor in one of %d ranks: take "
-                       "more of them, on more machines",
+                       "one of %d ranks has no memory for its part of the "
+                       "factor: take more ranks, on more machines",
                        ranks_count());
     RITZ_REFUSE_IF(outcome == SINGULAR, RITZ_ERR_SINGULAR,
                    "the matrix is singular");
@@ -217,7 +217,7 @@ ritz_status rank_pencil_factor(rank_pencil *p, double sigma)
     ranks_expect(MatGetInertia(p->F, &negative, &null, NULL));
     p->negative = negative;
     RITZ_REFUSE_IF(null > 0, RITZ_ERR_SINGULAR,
-                   "the matrix is singular, %d times", (int)null);
+                   "the matrix is singular, %d pivots are zero", (int)null);
     return RITZ_OK;
 }
 

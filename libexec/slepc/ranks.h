@@ -1,10 +1,12 @@
 /*
  * Ranks: the processes of MPI that work on one component. Rank 0 is the tool,
- * with its command line, its messages and its output; the others compute with it.
+ * with its command line, its messages and its output; the others compute with
+ * it.
  *
  * A step that can fail in one rank alone ends with ranks_agree(), so that all
  * ranks continue or all return the failure. If PETSc reports an error, other
- * ranks may be waiting for this one within PETSc: the run is ended by MPI_Abort.
+ * ranks may be waiting for this one within PETSc: the run is ended by
+ * MPI_Abort.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_RANKS_H
 #define RITZ_LIBEXEC_SLEPC_RANKS_H
@@ -14,9 +16,9 @@
 #include <petscsys.h>
 #include <stdint.h>
 
-/** Start MPI, PETSc and SLEPc. PETSc installs no signal handlers, and its errors
- * are reported in one line. Options are read from the environment variable
- * PETSC_OPTIONS. */
+/** Start MPI, PETSc and SLEPc. PETSc installs no signal handlers, and its
+ * errors are reported in one line. Options are read from the environment
+ * variable PETSC_OPTIONS. */
 void ranks_start(void);
 
 /** End MPI, PETSc and SLEPc. To be called in every rank. */
@@ -30,8 +32,8 @@ int ranks_own(void);
 /** The number of processes. */
 int ranks_count(void);
 
-/** Abort the run if a call of PETSc has failed; its error handler has printed the
- * reason. */
+/** Abort the run if a call of PETSc has failed; its error handler has printed
+ * the reason. */
 void ranks_expect(PetscErrorCode code);
 
 /**

@@ -20,8 +20,8 @@ static int64_t first_dof(const rows_frame *f, int rank)
 
 /*
  * The checksum of a data set is computed over its values in their order. Each
- * rank continues the sum that it receives from the one before, and the last rank
- * compares it with the file.
+ * rank continues the sum that it receives from the one before, and the last
+ * rank compares it with the file.
  */
 static ritz_status verify_chain(const rows_frame *f, const char *name,
                                 const ritz_slab *slab)
@@ -65,7 +65,8 @@ static double make_noise(int64_t row, int64_t column)
     return (double)(int64_t)state / (double)INT64_MAX;
 }
 
-/* The number of attached dofs below a dof, and whether it is attached itself. */
+/* The number of attached dofs below a dof, and whether it is attached
+   itself. */
 static int64_t count_attached(const rows_frame *f, int64_t dof, bool *is_one)
 {
     int64_t low = 0;

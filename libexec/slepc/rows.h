@@ -1,7 +1,8 @@
 /*
  * Distribution of a component's matrices: each rank holds the rows of an equal
  * number of consecutive dofs, without those of attached dofs. Files store
- * matrices by columns; as they are symmetric, columns are read and used as rows.
+ * matrices by columns; as they are symmetric, columns are read and used as
+ * rows.
  */
 #ifndef RITZ_LIBEXEC_SLEPC_ROWS_H
 #define RITZ_LIBEXEC_SLEPC_ROWS_H
@@ -19,8 +20,8 @@ typedef struct rows_frame {
     const int64_t *position; /* column of K_ib of each dof of `sorted` */
 } rows_frame;
 
-/* Matrices of the interior, i.e. of all dofs that are not attached, in the order
-   of dofs. Rows are distributed. */
+/* Matrices of the interior, i.e. of all dofs that are not attached, in the
+   order of dofs. Rows are distributed. */
 typedef struct rows {
     Mat K, M;         /* K_ii, M_ii */
     Mat load;         /* -K_ib, dense; NULL if no dof is attached */
@@ -31,9 +32,9 @@ typedef struct rows {
 /**
  * Read K and M from the file. Collective.
  *
- * @return as ritz_slab_read() and ritz_slab_verify(); RITZ_ERR_FORMAT if a matrix
- *         is not symmetric; RITZ_ERR_ARGUMENT if a rank would hold more than
- *         2^31 - 1 entries, or the interior has more rows; RITZ_ERR_MEMORY
+ * @return as ritz_slab_read() and ritz_slab_verify(); RITZ_ERR_FORMAT if a
+ *         matrix is not symmetric; RITZ_ERR_ARGUMENT if a rank would hold more
+ *         than 2^31 - 1 entries, or the interior has more rows; RITZ_ERR_MEMORY
  */
 ritz_status rows_read(const rows_frame *frame, rows *out);
 

@@ -275,8 +275,8 @@
    eigenvalue again as a Rayleigh quotient with sums in extended precision, so
    that it does not depend on the number of processes. */
 #define RITZ_DIGITS_LOST 1e-13
-/* Relative residual at which Krylov-Schur and block Lanczos of engine slepc have
-   converged. Vectors become more accurate by one inverse iteration. */
+/* Relative residual at which Krylov-Schur and block Lanczos of engine slepc
+   have converged. Vectors become more accurate by one inverse iteration. */
 #define RITZ_KRYLOV_SETTLED 1e-10
 /* A Ritz pair of block Lanczos has converged if |A^-1 M x - theta x| is at most
    this part of theta |x|, norms by M. The vectors returned are more accurate,
@@ -407,8 +407,8 @@
    orthogonality. */
 #define RITZ_PROJECTION_KEPT 1e-4
 /* A Krylov vector depends on those before it if orthogonalisation leaves less
-   than this part of its length; a combination of vectors of one block is nothing
-   if its energy is less than this part of theirs. */
+   than this part of its length; a combination of vectors of one block is
+   nothing if its energy is less than this part of theirs. */
 #define RITZ_PROJECTION_DEPENDENT 1e-12
 /* A load without its rigid motion below this part, squared, is rounding: there
    is nothing flexible to iterate on. */

@@ -47,8 +47,8 @@ ritz_status ritz_low_rank_size(const ritz_low_rank_model *model, int side,
 void ritz_low_rank_weigh(const ritz_low_rank_model *model, int side,
                          ritz_dense W[static RITZ_HALVES]);
 
-/** The number by which row @p i of the 2n of a factor is multiplied, so that its
- * squares are energies. */
+/** The number by which row @p i of the 2n of a factor is multiplied, so that
+ * its squares are energies. */
 double ritz_low_rank_unit(const ritz_low_rank_model *model, int side,
                           int64_t i);
 

@@ -230,13 +230,14 @@ ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
 
 /**
  * Factors of both Gramians of a large component by projection on a Krylov space
- * of K^-1 M. The space grows until a bound of the error of every Hankel value is
- * below the tolerance times the largest value; the relative bound is `error` of
- * the result. Each Gramian alone is less accurate than the Hankel values.
+ * of K^-1 M. The space grows until a bound of the error of every Hankel value
+ * is below the tolerance times the largest value; the relative bound is `error`
+ * of the result. Each Gramian alone is less accurate than the Hankel values.
  *
- * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank(), or if D is not a M + b K
- *         apart from discrete dampers; RITZ_ERR_CONVERGENCE if the space would
- *         take more than RITZ_FACTOR_BYTES or exceed request->most vectors
+ * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank(), or if D is not a M + b
+ *         K apart from discrete dampers; RITZ_ERR_CONVERGENCE if the space
+ *         would take more than RITZ_FACTOR_BYTES or exceed request->most
+ * vectors
  * @cost   a factor of K, its two lowest modes, and mostly 100 to 1000 vectors,
  *         each with a solve and an orthogonalisation
  */
@@ -244,8 +245,8 @@ ritz_status ritz_gramians_projection(const ritz_gramians_request *request,
                                      ritz_gramians *out);
 
 /*
- * How 2m states are ordered and scaled that belong to m modes: all modes but the
- * first num_decoupled, which are rigid-body modes.
+ * How 2m states are ordered and scaled that belong to m modes: all modes but
+ * the first num_decoupled, which are rigid-body modes.
  */
 typedef struct ritz_mode_states {
     const ritz_modal_model *modes;

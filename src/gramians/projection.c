@@ -1,22 +1,22 @@
 /*
  * Gramians of a large component by projection: build a Krylov space from static
- * responses, solve the Lyapunov equations of the projected model in closed form,
- * bound the error from the residual of the large model, and enlarge the space
- * until the bound is below the tolerance.
+ * responses, solve the Lyapunov equations of the projected model in closed
+ * form, bound the error from the residual of the large model, and enlarge the
+ * space until the bound is below the tolerance.
  *
  * With D = a M + b K
  *
  *     (K + s D + s^2 M)^-1 = (K + m(s) M)^-1 / (1 + b s),
  *     m(s) = (s^2 + a s) / (1 + b s),
  *
- * so that the responses at all s are functions of one pencil (K, M), and a space
- * from one real factor approximates all of them. A mode whose resonance is well
- * separated needs several vectors until its eigenvalue has converged; modes with
- * overlapping resonances need fewer.
+ * so that the responses at all s are functions of one pencil (K, M), and a
+ * space from one real factor approximates all of them. A mode whose resonance
+ * is well separated needs several vectors until its eigenvalue has converged;
+ * modes with overlapping resonances need fewer.
  *
  * The bound (projection_error.c) is one of the difference of the transfer
- * functions of both models, and therefore of the error of every Hankel value. It
- * is compared with the tolerance times the largest Hankel value.
+ * functions of both models, and therefore of the error of every Hankel value.
+ * It is compared with the tolerance times the largest Hankel value.
  */
 #include "gramians/projection.h"
 #include "base/alloc.h"
@@ -75,9 +75,9 @@ static ritz_status solve_small(projection_state *state)
     return RITZ_OK;
 }
 
-/* Project, and find whether the bound is below the tolerance. The largest Hankel
-   value converges long before the bound is small: it is computed first of all,
-   and again only when the bound is met with the value known before. */
+/* Project, and find whether the bound is below the tolerance. The largest
+   Hankel value converges long before the bound is small: it is computed first
+   of all, and again only when the bound is met with the value known before. */
 static ritz_status look_at_bound(projection_state *state, bool *met)
 {
     ritz_projected_error *error = &state->error;
@@ -97,7 +97,8 @@ static double relative_error(const projection_state *state)
     return state->sigma > 0.0 ? state->error.bound / state->sigma : 0.0;
 }
 
-/* If the space has become too large, add the accuracy reached to the message. */
+/* If the space has become too large, add the accuracy reached to the
+   message. */
 static ritz_status refuse_large(const projection_state *state,
                                 ritz_status status)
 {
@@ -106,13 +107,13 @@ static ritz_status refuse_large(const projection_state *state,
     if (status != RITZ_ERR_CONVERGENCE || !(state->sigma > 0.0))
         return status;
     snprintf(reached, sizeof reached,
-             "Hankel values are known to %.1e of the largest, %.1e is asked",
+             "Hankel values are known to %.1e of the largest, %.1e is required",
              relative_error(state), state->tolerance);
     return ritz_context(status, reached);
 }
 
-/* Enlarge the space until the bound is met. The bound is evaluated each time the
-   number of vectors has grown by an eighth. */
+/* Enlarge the space until the bound is met. The bound is evaluated each time
+   the number of vectors has grown by an eighth. */
 static ritz_status grow_space(projection_state *state)
 {
     ritz_projection_space *space = &state->space;

@@ -21,13 +21,14 @@ typedef struct ritz_projection_model {
 } ritz_projection_model;
 
 /**
- * @return RITZ_ERR_ARGUMENT as ritz_low_rank_model_new(), or if D is not of that
- *         form or leaves a mode without damping
+ * @return RITZ_ERR_ARGUMENT as ritz_low_rank_model_new(), or if D is not of
+ *         that form or leaves a mode without damping
  */
 ritz_status ritz_projection_model_new(const ritz_gramians_request *request,
                                       ritz_projection_model *out);
 
-/** Whether D of a request has that form, with a, b >= 0 and one of them above 0.
+/** Whether D of a request has that form, with a, b >= 0 and one of them above
+ * 0.
  * @cost O(nnz) */
 ritz_status ritz_projection_fits(const ritz_gramians_request *request,
                                  bool *fits);
@@ -53,8 +54,8 @@ ritz_status ritz_projection_space_new(const ritz_projection_model *model,
                                       ritz_projection_space *out);
 
 /**
- * Add a block to V. If it has no columns (count == last) the space is invariant,
- * and the projection is exact.
+ * Add a block to V. If it has no columns (count == last) the space is
+ * invariant, and the projection is exact.
  *
  * @return RITZ_ERR_CONVERGENCE if V would have more columns than model->most;
  *         RITZ_ERR_MEMORY

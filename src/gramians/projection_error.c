@@ -1,6 +1,7 @@
 /*
- * A bound of the error of the projected model, from its residual in the equations
- * of the large one. With s = i w and y the projected response to a load F:
+ * A bound of the error of the projected model, from its residual in the
+ * equations of the large one. With s = i w and y the projected response to a
+ * load F:
  *
  *     Z(s) = K + s D + s^2 M,   r = F - Z Phi y = -z(s) q L Theta y,
  *     z(s) = s^2 + a s - mu (1 + b s),   q'K_s^-1 q = I
@@ -12,14 +13,14 @@
  *
  *     N_0(s) = max over lambda of |(lambda + mu) / ((1 + b s)(lambda + mu) + z)|
  *
- * With dampers Z = Z_0 + s P c P'. As the norm of c (1 + s c P'Z_0^-1 P)^-1 is at
- * most the largest c,
+ * With dampers Z = Z_0 + s P c P'. As the norm of c (1 + s c P'Z_0^-1 P)^-1 is
+ * at most the largest c,
  *
  *     N <= N_0 + N_0^2 |r_P|^2 w max(c),
  *
- * where r_P is the residual for the load F = P in the model without dampers. The
- * Hankel values of two stable models differ by at most the largest |G - G_V| on
- * the imaginary axis [Glover1984].
+ * where r_P is the residual for the load F = P in the model without dampers.
+ * The Hankel values of two stable models differ by at most the largest |G -
+ * G_V| on the imaginary axis [Glover1984].
  */
 #include "base/alloc.h"
 #include "base/complex.h"
@@ -32,8 +33,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* One frequency, with memory for the responses to one kind of load. `columns` is
-   the largest number of loads of a kind. */
+/* One frequency, with memory for the responses to one kind of load. `columns`
+   is the largest number of loads of a kind. */
 typedef struct frequency_point {
     double _Complex s, z;
     double _Complex *diagonal; /* m, diagonal of Phi'Z_0 Phi */
@@ -148,7 +149,8 @@ static double measure_residual(const ritz_projected *p, int64_t columns,
     return cabs(point->z) * sqrt(sum);
 }
 
-/* |r| of the loads F + s Fv, of the model with dampers or without. Fv NULL: 0. */
+/* |r| of the loads F + s Fv, of the model with dampers or without. Fv NULL:
+   0. */
 static ritz_status find_residual(const ritz_projected *p, const ritz_dense *F,
                                  const ritz_dense *Fv, bool damped,
                                  frequency_point *point, double *out)

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The first damper whose `value`, its damping or stiffness, is not 0; -1: none. */
+/* The first damper whose `value`, its damping or stiffness, is not 0; -1:
+   none. */
 static int64_t find_acting(const ritz_dampers *dampers, const double *value)
 {
     for (int64_t k = 0; k < dampers->count; k++)
@@ -17,11 +18,11 @@ static int64_t find_acting(const ritz_dampers *dampers, const double *value)
 }
 
 /*
- * a and b are the sums of those of the component's D and of the damping that the
- * request adds. *whole is false if they do not describe all damping but that of
- * discrete dampers. The K of the model includes the springs of dampers, the K to
- * which the component's D is proportional does not: with such springs D is not
- * a M + b K of the model.
+ * a and b are the sums of those of the component's D and of the damping that
+ * the request adds. *whole is false if they do not describe all damping but
+ * that of discrete dampers. The K of the model includes the springs of dampers,
+ * the K to which the component's D is proportional does not: with such springs
+ * D is not a M + b K of the model.
  */
 static ritz_status find_proportion(const ritz_gramians_request *request,
                                    double *a, double *b, bool *whole)
@@ -83,8 +84,8 @@ ritz_status ritz_projection_model_new(const ritz_gramians_request *request,
     RITZ_CHECK(ritz_low_rank_model_new(request, &model.low));
     RITZ_CHECK(find_proportion(request, &model.a, &model.b, &whole));
     RITZ_REFUSE_IF(!whole, RITZ_ERR_ARGUMENT,
-                   "the damping matrix is no a M + b K, which engine "
-                   "'projection' needs: state local dampers by ritz-import "
+                   "the damping matrix is not a M + b K, which engine "
+                   "'projection' needs: give local dampers by ritz-import "
                    "--damper, or take engine 'low-rank'");
     RITZ_REFUSE_IF(
         model.b < 0.0 || !(model.a + model.b * model.low.lowest > 0.0),

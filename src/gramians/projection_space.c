@@ -1,15 +1,15 @@
 /*
- * The space on which models are projected: block Krylov vectors of K_s^-1 M that
- * begin with the static responses to all loads F = [B, C', Cv', P],
+ * The space on which models are projected: block Krylov vectors of K_s^-1 M
+ * that begin with the static responses to all loads F = [B, C', Cv', P],
  *
  *     V_1 = K_s^-1 F,   V_j+1 = K_s^-1 M V_j,   V'K_s V = I,   V'M V = T,
  *
  *     M V = K_s (V T + v h),   v the next block, h = v'M (last block of V),
  *
- * T is block tridiagonal, and one factor of K_s = K + mu M serves for all blocks;
- * mu is 0 if K is positive definite. Displacements and velocities are projected
- * on the same space, so that the projected model is one of second order with
- * symmetric matrices, and stable.
+ * T is block tridiagonal, and one factor of K_s = K + mu M serves for all
+ * blocks; mu is 0 if K is positive definite. Displacements and velocities are
+ * projected on the same space, so that the projected model is one of second
+ * order with symmetric matrices, and stable.
  */
 #include "base/alloc.h"
 #include "base/tolerances.h"
@@ -77,7 +77,7 @@ static ritz_status reserve_columns(int64_t more, ritz_projection_space *space)
 
     RITZ_REFUSE_IF(needed > space->model->most, RITZ_ERR_CONVERGENCE,
                    "the Gramians are not found in a space of %" PRId64
-                   " vectors, as many as memory shall hold: take more damping, "
+                   " vectors, the most that memory allows: take more damping, "
                    "fewer inputs and outputs, or engine 'modal' with "
                    "--among-hz",
                    space->model->most);
@@ -102,10 +102,10 @@ static void subtract_columns(const ritz_projection_space *space, int64_t first,
 }
 
 /*
- * before[j] := x'K_s x of column j, then X := X - V (V'K_s X), and G := X'K_s X.
- * Rigid-body motion is removed from X, too: it is the eigenvector of the largest
- * eigenvalue of K_s^-1 M, so that what rounding leaves of it would grow from
- * block to block.
+ * before[j] := x'K_s x of column j, then X := X - V (V'K_s X), and G := X'K_s
+ * X. Rigid-body motion is removed from X, too: it is the eigenvector of the
+ * largest eigenvalue of K_s^-1 M, so that what rounding leaves of it would grow
+ * from block to block.
  */
 static ritz_status project_out(const ritz_projection_space *space,
                                ritz_dense *X, double *before, ritz_dense *G)
@@ -129,8 +129,8 @@ static ritz_status project_out(const ritz_projection_space *space,
 
 /*
  * Orthonormalise X: X := X D U e^-1/2, where the diagonal D scales G to unit
- * diagonal and D G D = U e U'. Columns with e near 0, which depend on others, are
- * left out. *weak is the least part of its energy that a column has kept.
+ * diagonal and D G D = U e U'. Columns with e near 0, which depend on others,
+ * are left out. *weak is the least part of its energy that a column has kept.
  */
 static ritz_status normalise_columns(const double *before, ritz_dense *G,
                                      ritz_dense *X, double *weak)
@@ -300,7 +300,8 @@ static ritz_status find_axes(ritz_dense *T, double *theta)
     RITZ_CHECK_NEW(e, m);
     RITZ_REFUSE_IF(m > 0 && LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', m,
                                            T->val, m, e) != 0,
-                   RITZ_ERR_CONVERGENCE, "the projected model has no modes");
+                   RITZ_ERR_CONVERGENCE,
+                   "the modes of the projected model do not converge");
     RITZ_CHECK(ritz_dense_new(m, m, &U));
     for (int64_t k = 0; k < m; k++) {
         const ritz_dense u = ritz_dense_part(T, m - 1 - k, 1);

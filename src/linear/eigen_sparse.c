@@ -356,9 +356,9 @@ static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
 }
 
 /*
- * The order of rows is copied, as the factor that has it is freed with the first
- * slice. If slices fail or find fewer modes than requested, block Lanczos with
- * one shift takes over for the rest of the search.
+ * The order of rows is copied, as the factor that has it is freed with the
+ * first slice. If slices fail or find fewer modes than requested, block Lanczos
+ * with one shift takes over for the rest of the search.
  */
 static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
                                   double *reach, ritz_lanczos_end *end)

@@ -230,8 +230,8 @@ static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
     return report_failure(C, A->nrow);
 }
 
-/* Refuse A if it is not square; allocate what solves need, and copy the diagonal
-   of A to *a. */
+/* Refuse A if it is not square; allocate what solves need, and copy the
+   diagonal of A to *a. */
 static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
                                 double **a)
 {

@@ -12,12 +12,13 @@
  * factor above RITZ_SIGNED_ERROR is refused.
  *
  * @param[in]  A         n x n, symmetric, both triangles stored
- * @param[in]  order     order of rows, as of ritz_factor_order(); NULL: find one
+ * @param[in]  order     order of rows, as of ritz_factor_order(); NULL: find
+ *             one
  * @param[out] negative  number of negative eigenvalues of A, by Sylvester's law
  * @param[out] out       to be freed by ritz_factor_free()
  * @return RITZ_ERR_SINGULAR if A or a leading submatrix of it is singular or
- *         nearly so: choose another shift; RITZ_ERR_ARGUMENT if A is not square;
- *         RITZ_ERR_MEMORY
+ *         nearly so: choose another shift; RITZ_ERR_ARGUMENT if A is not
+ *         square; RITZ_ERR_MEMORY
  * @see    [GrimesLewisSimon1994]
  */
 ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,

@@ -227,7 +227,8 @@ static ritz_status run_job(mumps_factor *F, int job)
     }
     RITZ_CHECK(report_failure(infog));
     RITZ_REFUSE_IF(job == FACTOR && infog[NUM_NULL_PIVOTS] > 0,
-                   RITZ_ERR_SINGULAR, "the matrix is singular, %d times",
+                   RITZ_ERR_SINGULAR,
+                   "the matrix is singular, %d pivots are zero",
                    (int)infog[NUM_NULL_PIVOTS]);
     return RITZ_OK;
 }

@@ -5,9 +5,9 @@
  *     X := A(r, s) - sum over d of L(r, d) S_d L(s, d)'
  *     X(s, s) = L_s S_s L_s',   L(r, s) = X(r, s) L_s'^-1 S_s
  *
- * where d runs over the finished supernodes with rows in s. Each d is in a linked
- * list that belongs to one supernode: the one that contains its first row which
- * has not been used yet.
+ * where d runs over the finished supernodes with rows in s. Each d is in a
+ * linked list that belongs to one supernode: the one that contains its first
+ * row which has not been used yet.
  *
  * All columns of a supernode have the same rows, so that they may be exchanged:
  * in each panel of 64 columns the largest remaining pivot comes next. Without
@@ -435,7 +435,7 @@ ritz_status ritz_signed_cholesky(const ritz_sparse *A, cholmod_factor *L,
     L->xtype = CHOLMOD_REAL;
     RITZ_CHECK(allocate_factoring(&F));
     RITZ_REFUSE_IF(!factor_tree(&F), RITZ_ERR_SINGULAR,
-                   "the matrix is singular, or a leading part of it");
+                   "the matrix or a leading part of it is singular");
     place_labels(&F);
     return RITZ_OK;
 }

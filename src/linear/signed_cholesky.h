@@ -3,12 +3,12 @@
  *
  *     P A P' = L S L',   S = diag(+1 or -1),   L lower triangular
  *
- * A has as many negative eigenvalues as S has negative signs, by Sylvester's law
- * of inertia. Pivots are exchanged only within a supernode, so that L has the
- * pattern of a Cholesky factor and the same code packs it and solves with it.
- * The factor is inaccurate if a leading submatrix of A is nearly singular, as
- * entries of L are then large. A caller must measure the error of a solve, and
- * choose another shift if it is large (ritz_factor_signed() does).
+ * A has as many negative eigenvalues as S has negative signs, by Sylvester's
+ * law of inertia. Pivots are exchanged only within a supernode, so that L has
+ * the pattern of a Cholesky factor and the same code packs it and solves with
+ * it. The factor is inaccurate if a leading submatrix of A is nearly singular,
+ * as entries of L are then large. A caller must measure the error of a solve,
+ * and choose another shift if it is large (ritz_factor_signed() does).
  */
 #ifndef RITZ_LINEAR_SIGNED_CHOLESKY_H
 #define RITZ_LINEAR_SIGNED_CHOLESKY_H
@@ -19,8 +19,8 @@
 
 /**
  * Compute the values of a supernodal factor whose pattern CHOLMOD has analysed.
- * Threads work on independent subtrees of the elimination tree, each with a BLAS
- * of one thread; the top of the tree is left to a BLAS of several threads.
+ * Threads work on independent subtrees of the elimination tree, each with a
+ * BLAS of one thread; the top of the tree is left to a BLAS of several threads.
  *
  * @param[in]     A     n x n, symmetric, both triangles stored
  * @param[in,out] L     from cholmod_l_analyze_p(); its values are allocated and

@@ -161,8 +161,9 @@ static ritz_status append_pairs(slices *s, const run *r, int64_t from,
     return restore_border(s, first);
 }
 
-/* Least gap to an eigenvalue that no cluster contains. Eigenvalues of rigid-body
-   modes, which are 0, err in proportion to |base|: hence its share. */
+/* Least gap to an eigenvalue that no cluster contains. Eigenvalues of
+   rigid-body modes, which are 0, err in proportion to |base|: hence its
+   share. */
 static double clear_gap(const slices *s, double lambda)
 {
     return RITZ_BORDER_GAP * (fabs(lambda) + fabs(s->base));
@@ -208,8 +209,8 @@ static double next_begin(const slices *s)
     return s->found > 0 ? s->border : s->lambda[0];
 }
 
-/* The shift with `half` eigenvalues between the border and itself, if their mean
-   distance is that of the last `half` of those `known`. */
+/* The shift with `half` eigenvalues between the border and itself, if their
+   mean distance is that of the last `half` of those `known`. */
 static double next_shift(const slices *s, int64_t known, int64_t half)
 {
     const int64_t last = known - 1;
@@ -237,8 +238,8 @@ static ritz_status factor_at(slices *s, double sigma, int64_t *negative)
     return ritz_factor_signed(&A, s->order, negative, &s->S.A);
 }
 
-/* Choose the next shift and factor. With too many eigenvalues between border and
-   shift a nearer shift is tried, and a slightly nearer one if the factor is
+/* Choose the next shift and factor. With too many eigenvalues between border
+   and shift a nearer shift is tried, and a slightly nearer one if the factor is
    singular. */
 static ritz_status shift_on(slices *s, int64_t known, int64_t half,
                             int64_t *negative)
@@ -313,8 +314,8 @@ static ritz_status step_back(slices *s, int64_t count)
 
 /*
  * Block Lanczos with the present shift: at least `pairs` pairs, s->S.below of
- * them below the shift. As many above it may be nearer to it, and are then found
- * first: the basis has room for these, too.
+ * them below the shift. As many above it may be nearer to it, and are then
+ * found first: the basis has room for these, too.
  */
 static ritz_status find_run(slices *s, int64_t pairs, run *r,
                             ritz_lanczos_end *end)

@@ -1,6 +1,7 @@
 /*
- * Spectrum slicing: many of the lowest eigenpairs, one or two hundred at a time,
- * each time by block Lanczos with a shift among them [GrimesLewisSimon1994].
+ * Spectrum slicing: many of the lowest eigenpairs, one or two hundred at a
+ * time, each time by block Lanczos with a shift among them
+ * [GrimesLewisSimon1994].
  */
 #ifndef RITZ_LINEAR_SLICES_H
 #define RITZ_LINEAR_SLICES_H
@@ -20,8 +21,8 @@ typedef struct ritz_slicing {
  * above it nothing is verified, and with k up to 2 side nothing at all.
  *
  * @param[in,out] S      K, M, sigma below all eigenvalues, and the factor of
- *                       K - sigma M, which is taken over and freed; S->A is NULL
- *                       on return, also on failure
+ *                       K - sigma M, which is taken over and freed; S->A is
+ *                       NULL on return, also on failure
  * @param[out]    X      n x at least k, M-orthonormal, by ascending eigenvalue;
  *                       empty unless *end is FOUND
  * @param[out]    lambda eigenvalues of the columns of X, to be freed; NULL

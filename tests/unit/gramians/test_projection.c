@@ -16,7 +16,7 @@
 
 enum { MANY = 150 };
 
-/* Largest |sigma - exact| over the largest. */
+/* Largest difference of Hankel values, relative to the largest value of b. */
 static double differ(const ritz_gramians *a, const ritz_gramians *b)
 {
     int64_t count = 0, expected = 0;
@@ -35,7 +35,8 @@ static double differ(const ritz_gramians *a, const ritz_gramians *b)
     return most;
 }
 
-/* Values are those of SLICOT, within the bound and rounding. */
+/* Gramians by projection, whose Hankel values must agree with those of SLICOT
+   within the bound and rounding. */
 static ritz_gramians agree(ritz_gramians_request request)
 {
     ritz_gramians found = {0};
@@ -50,8 +51,8 @@ static ritz_gramians agree(ritz_gramians_request request)
     return found;
 }
 
-/* Of the inputs and outputs of a row the first alone: a space of two columns a
-   block does not fill it at once. */
+/* Keep only the first input and the first output. Blocks then have two vectors,
+   and a space of few blocks is smaller than the model. */
 static void keep_first(ritz_component *row)
 {
     for (int64_t i = 0; i < MASS_ROW; i++) {
@@ -73,9 +74,9 @@ static void add_damper(double c, double k, ritz_component *row)
 
 /*
  * m u'' + d u' + k u = f, y = u: sigma = (sqrt(1 + z^2) +- z) / (4 z k)
- * [Gregory1984], whose difference is half the static gain.
+ * [Gregory1984]. Their difference is half the static gain 1 / k.
  */
-static void an_oscillator_has_known_values(void **state)
+static void an_oscillator_has_closed_form_hankel_values(void **state)
 {
     const double m = 2.0, k = 50.0;
     RITZ_OWN(ritz_component) one = {0};
@@ -97,7 +98,7 @@ static void an_oscillator_has_known_values(void **state)
         assert_int_equal(count, 2);
         assert_near(sigma[0], (root + z) / (4.0 * z * k), scale);
         assert_near(sigma[1], 1.0 / (root + z) / (4.0 * z * k), scale);
-        assert_true(found.error == 0.0); /* the space is all there is */
+        assert_true(found.error == 0.0); /* the space contains the one mode */
         free(sigma);
     }
 }
@@ -122,7 +123,7 @@ static void values_agree_with_slicot(void **state)
     ritz_gramians_free(&found);
 }
 
-/* A second input that is the first, and one that is nothing. */
+/* The second input is a multiple of the first, and the second output is 0. */
 static void dependent_loads_add_no_vectors(void **state)
 {
     RITZ_OWN(ritz_component) held = mass_row(100.0);
@@ -137,7 +138,7 @@ static void dependent_loads_add_no_vectors(void **state)
     ritz_gramians_free(&found);
 }
 
-/* With a, the velocity of rigid motion decays. */
+/* With a = 0, and with a > 0, by which the velocity of rigid motion decays. */
 static void rigid_motion_is_decoupled(void **state)
 {
     RITZ_OWN(ritz_component) body = mass_row(0.0);
@@ -156,7 +157,7 @@ static void rigid_motion_is_decoupled(void **state)
     }
 }
 
-/* Forces in proportion to mass deform nothing. */
+/* Forces proportional to the masses of a free body do not deform it. */
 static void rigid_motion_alone_has_no_values(void **state)
 {
     RITZ_OWN(ritz_component) body = mass_row(0.0);
@@ -176,7 +177,8 @@ static void rigid_motion_alone_has_no_values(void **state)
     free(sigma);
 }
 
-static void dampers_and_a_proportional_matrix_count(void **state)
+/* Damping of the request, a D that is a M + b K, and dampers add up. */
+static void all_kinds_of_damping_add_up(void **state)
 {
     RITZ_OWN(ritz_component) held = mass_row(100.0);
     ritz_gramians_request request = mass_row_rayleigh(&held, 0.05, 1e-3);
@@ -196,7 +198,7 @@ static void dampers_and_a_proportional_matrix_count(void **state)
     ritz_gramians_free(&found);
 }
 
-static void dofs_without_mass_follow(void **state)
+static void models_with_massless_dofs_agree_with_slicot(void **state)
 {
     RITZ_OWN(ritz_component) held = mass_row_massless(3);
     ritz_gramians found = {0};
@@ -210,7 +212,8 @@ static void dofs_without_mass_follow(void **state)
     ritz_gramians_free(&found);
 }
 
-/* Difference from SLICOT against what the bound says. */
+/* Values differ from those of SLICOT by at most the bound, which is
+   returned. */
 static double hold_bound(ritz_gramians_request *request, double tolerance)
 {
     RITZ_OWN(ritz_gramians) found = {0}, dense = {0};
@@ -226,7 +229,7 @@ static double hold_bound(ritz_gramians_request *request, double tolerance)
     return found.error;
 }
 
-/* Of spaces that are not yet all there is: 6 to 10 vectors for 12 masses. */
+/* With spaces smaller than the model: 6 to 10 vectors for 12 masses. */
 static void no_value_errs_by_more_than_the_bound(void **state)
 {
     const double tolerance[] = {0.9, 0.3, 0.1, 0.03};
@@ -244,7 +247,7 @@ static void no_value_errs_by_more_than_the_bound(void **state)
         request.component = &body;
         hold_bound(&request, tolerance[k]);
     }
-    assert_true(largest > 1e-4); /* it was a bound of something */
+    assert_true(largest > 1e-4); /* spaces were not exact */
     ritz_dense_col(&held.io.Cv, 3)[0] = 0.7;
     add_damper(2.0, 5.0, &held);
     for (int k = 0; k < 4; k++) {
@@ -254,7 +257,8 @@ static void no_value_errs_by_more_than_the_bound(void **state)
     }
 }
 
-/* A row of many equal masses; ground 0: free. */
+/* A row of 150 equal masses and springs, the first mass held by a spring of
+   stiffness `ground`; 0: free. m and k are working memory. */
 static ritz_component long_row(double ground, double *m, double *k)
 {
     ritz_component row = {0};
@@ -268,7 +272,7 @@ static ritz_component long_row(double ground, double *m, double *k)
     return row;
 }
 
-static void few_vectors_give_what_all_modes_give(void **state)
+static void few_vectors_give_the_values_of_all_modes(void **state)
 {
     double m[MANY], k[MANY];
     RITZ_OWN(ritz_component) row = long_row(1e4, m, k);
@@ -318,8 +322,8 @@ static void a_free_row_stays_free_of_rigid_motion(void **state)
     assert_true(differ(&found, &exact) <= found.error + 1e-12);
 }
 
-/* W'E T = I, values of both Gramians: as of any other engine. */
-static void balancing_takes_what_was_found(void **state)
+/* W'E T = I, and the bound of a balanced basis includes that of the values. */
+static void balancing_uses_projected_gramians(void **state)
 {
     enum { KEPT = 6 };
     double m[MANY], k[MANY];
@@ -373,7 +377,7 @@ static void damping_of_another_form_is_refused(void **state)
     assert_false(fits);
     assert_ok(ritz_sparse_from_triplets(MASS_ROW, MASS_ROW, 1, at, at, pull,
                                         &held.D));
-    refuse(&request, RITZ_ERR_ARGUMENT, "the damping matrix is no a M + b K");
+    refuse(&request, RITZ_ERR_ARGUMENT, "the damping matrix is not a M + b K");
     assert_ok(ritz_projection_fits(&request, &fits));
     assert_false(fits);
     ritz_sparse_free(&held.D);
@@ -388,7 +392,8 @@ static void damping_of_another_form_is_refused(void **state)
            "damping couples rigid motion to deformation");
 }
 
-static void what_is_not_reached_is_said(void **state)
+/* Too few vectors allowed, a tolerance below 0, and a state space. */
+static void impossible_requests_are_refused(void **state)
 {
     double m[MANY], k[MANY];
     RITZ_OWN(ritz_component) row = long_row(1e4, m, k);
@@ -398,7 +403,8 @@ static void what_is_not_reached_is_said(void **state)
 
     (void)state;
     request.most = 40;
-    refuse(&request, RITZ_ERR_CONVERGENCE, "of the largest, 1.0e-08 is asked");
+    refuse(&request, RITZ_ERR_CONVERGENCE,
+           "of the largest, 1.0e-08 is required");
     refuse(&request, RITZ_ERR_CONVERGENCE,
            "the Gramians are not found in a space of 40 vectors");
     request.tolerance = -1.0;
@@ -430,19 +436,19 @@ static void no_allocation_failure_leaks(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(an_oscillator_has_known_values),
+    cmocka_unit_test(an_oscillator_has_closed_form_hankel_values),
     cmocka_unit_test(values_agree_with_slicot),
     cmocka_unit_test(dependent_loads_add_no_vectors),
     cmocka_unit_test(rigid_motion_is_decoupled),
     cmocka_unit_test(rigid_motion_alone_has_no_values),
-    cmocka_unit_test(dampers_and_a_proportional_matrix_count),
-    cmocka_unit_test(dofs_without_mass_follow),
+    cmocka_unit_test(all_kinds_of_damping_add_up),
+    cmocka_unit_test(models_with_massless_dofs_agree_with_slicot),
     cmocka_unit_test(no_value_errs_by_more_than_the_bound),
-    cmocka_unit_test(few_vectors_give_what_all_modes_give),
+    cmocka_unit_test(few_vectors_give_the_values_of_all_modes),
     cmocka_unit_test(a_free_row_stays_free_of_rigid_motion),
-    cmocka_unit_test(balancing_takes_what_was_found),
+    cmocka_unit_test(balancing_uses_projected_gramians),
     cmocka_unit_test(damping_of_another_form_is_refused),
-    cmocka_unit_test(what_is_not_reached_is_said),
+    cmocka_unit_test(impossible_requests_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 

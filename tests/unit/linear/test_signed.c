@@ -16,8 +16,8 @@ static int64_t count_lower(const double *lambda, int64_t n, double tau)
     return count;
 }
 
-/* Residual |A x - b| / (|A||x|) of a solve, |A| at most 12, and the same bits
-   from a second solve. */
+/* Largest |A x - b| over |A| max |x| of a solve with nine right-hand sides,
+   where |A| <= 12. A second solve must give the same bits. */
 static double residual_of(const ritz_sparse *A, ritz_factor *F)
 {
     RITZ_OWN(ritz_dense) X = {0}, Y = {0}, B = {0};
@@ -42,9 +42,9 @@ static double residual_of(const ritz_sparse *A, ritz_factor *F)
 }
 
 /*
- * Pivots are negative as often as eigenvalues of the cube lie below a shift;
- * shifts lie between eigenvalues. A solve errs by the backward error that a
- * factor may have.
+ * The number of negative pivots is that of the eigenvalues of the cube below
+ * the shift, for shifts between eigenvalues. The residual of a solve is at most
+ * the backward error that is allowed.
  */
 static void signs_count_eigenvalues(void **state)
 {
@@ -71,8 +71,8 @@ static void signs_count_eigenvalues(void **state)
     free(lambda);
 }
 
-/* An order that is given is kept, but for exchanges within supernodes, and the
-   order of a factor is one of all rows. */
+/* With the order of another factor solves are accurate, and the order of the
+   new factor is a permutation of all rows. */
 static void a_given_order_serves_any_shift(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0}, A = {0};
@@ -107,13 +107,14 @@ static ritz_status factor_pair(double a)
     return ritz_factor_signed(&A, NULL, &negative, &F);
 }
 
-static void what_needs_other_pivots_is_refused(void **state)
+/* Its leading minor a is zero or small. */
+static void small_leading_minors_are_refused(void **state)
 {
     (void)state;
     assert_ok(factor_pair(0.5));
     assert_int_equal(factor_pair(0.0), RITZ_ERR_SINGULAR);
     assert_string_equal(ritz_error_message(),
-                        "the matrix is singular, or a leading part of it");
+                        "the matrix or a leading part of it is singular");
     assert_int_equal(factor_pair(1e-14), RITZ_ERR_SINGULAR);
     assert_non_null(
         strstr(ritz_error_message(), "the factor has a backward error of"));
@@ -140,7 +141,7 @@ static void no_allocation_failure_leaks(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(signs_count_eigenvalues),
     cmocka_unit_test(a_given_order_serves_any_shift),
-    cmocka_unit_test(what_needs_other_pivots_is_refused),
+    cmocka_unit_test(small_leading_minors_are_refused),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
