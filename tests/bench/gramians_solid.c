@@ -1,8 +1,8 @@
 /*
- * gramians_solid COMPONENT DAMPING [TOLERANCE [AMONG_HZ]] - time and memory of
- * the low-rank engine on one component, and its leading Hankel values beside
- * those by projection, where damping allows it, and of the modal engine, of
- * modes up to a frequency. A table, no verdict.
+ * gramians_solid COMPONENT DAMPING [TOLERANCE [AMONG_HZ]] - print time, memory
+ * and the leading Hankel values of one component by engine low-rank, by engine
+ * projection if D is a M + b K, and with AMONG_HZ by engine modal from the
+ * modes up to that frequency. Nothing is judged.
  */
 #include "../unit/try.h"
 #include "gramians/projection.h"

@@ -1,9 +1,9 @@
 /*
- * bench_pencils [COUNT [SEARCHES]] - run block Lanczos, and then spectrum slices, on
- * COUNT random pencils (10000) of 20 to 150 rows, and ritz_eigen_sparse() on SEARCHES others (60) of
- * 650 to 899 rows. Prints a table by kind of pencil: modes missed, wrong
- * counts, largest errors; and a line for each pencil with a fault, with its
- * seed.
+ * bench_pencils [COUNT [SEARCHES]] - run block Lanczos, and then spectrum
+ * slices, on COUNT random pencils (10000) of 20 to 150 rows, and
+ * ritz_eigen_sparse() on SEARCHES others (60) of 650 to 899 rows. Prints a
+ * table by kind of pencil: modes missed, wrong counts, largest errors; and a
+ * line for each pencil with a fault, with its seed.
  */
 #include "judged.h"
 #include "testing.h"

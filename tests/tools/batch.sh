@@ -1,6 +1,6 @@
 #!/bin/sh
-# batch.sh FOLDER-OF-THE-TOOLS - examples/batch: many components and
-# configurations by make -j, and the same by a batch array.
+# batch.sh FOLDER-OF-THE-TOOLS - examples/batch makes several components and
+# configurations by make -j, and the same files by the tasks of a batch array.
 . "$(dirname "$0")/tap.sh"
 . "$(dirname "$0")/models.sh"
 
@@ -10,7 +10,7 @@ spacecraft scene 'inputs:' \
     '  - {name: turn, at: platform/scan, component: 6}'
 expect 0 '' ritz-assemble -q scene.yaml -o system.h5
 
-# folder NAME: what a user has before anything is made.
+# folder NAME: a folder with the inputs of examples/batch, and nothing made yet.
 folder() {
     mkdir -p "$1/components"
     cp "$here/../../examples/batch/Makefile" system.h5 "$1"
@@ -20,9 +20,10 @@ folder() {
 folder one
 works 'two components and two configurations by make -j' make -s -j 2 -C one \
     MODES=4 FREQUENCIES='--from-hz 1 --to-hz 20 --points 20'
-works 'a second make has nothing to do' sh -c 'make -C one MODES=4 | grep -q "Nothing to be done"'
+works 'are made once' sh -c 'make -C one MODES=4 | grep -q "Nothing to be done"'
 
-# Tasks of an array, the last one first; it has one more than there are targets.
+# the tasks of an array, the last first; there are four targets, so that task 5
+# has nothing to do
 folder two
 export SLURM_ARRAY_TASK_ID SLURM_SUBMIT_DIR="$dir/two"
 for SLURM_ARRAY_TASK_ID in 5 4 3 2 1; do
@@ -35,9 +36,9 @@ for file in bases/rotor.h5 reduced/rotor.h5 reduced/stator.h5 responses/1.h5 \
     same "$file is the same by both" "one/$file" "two/$file"
 done
 
-# make reports a component that fails, goes on with others, and leaves no file
+# a component that cannot be read: make fails with its name and leaves no file
 echo junk >one/components/broken.h5
 expect 2 'broken.h5' make -s -k -j 2 -C one MODES=4
-works 'and there is no file of it' test ! -e one/reduced/broken.h5
+works 'and is not there' test ! -e one/reduced/broken.h5
 
 echo "1..$count"

@@ -1,11 +1,11 @@
-"""Parts of slepc.sh that are Python: a model, and comparisons of bases.
+"""What slepc.sh does in Python: make a model, damage one, compare bases.
 
-membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square of
-SIDE x SIDE masses with springs between neighbours, and with entries of M
-between diagonal neighbours. With EVERY, only every EVERY-th dof has a mass.
-same BASIS BASIS...: compare each basis with the first.
-damage FILE ENTRY VALUE [unsealed]: overwrite an entry of K, and leave its
-checksum as it was or, with `unsealed`, remove it.
+membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square grid of
+SIDE x SIDE masses. Springs join neighbours, entries of M couple diagonal ones.
+With EVERY only every so many-th dof has a mass, and M is diagonal.
+same BASIS BASIS...: fail unless all bases agree with the first.
+damage FILE ENTRY VALUE [unsealed]: overwrite an entry of K; with `unsealed` its
+checksum is removed, otherwise it no longer fits.
 """
 import sys
 
@@ -24,7 +24,7 @@ def membrane(side, every=1):
                 for k in at, to:
                     stiffness[k, k] = stiffness.get((k, k), 0.0) + 1.0
     mass = {(k, k): 1.0 for k in range(0, n, every)}
-    if every == 1:  # couple dofs in M that K does not couple
+    if every == 1:  # entries of M where K has none, so that patterns differ
         for k in range(n - side):
             for to in ([k + side + 1] if (k + 1) % side else []) + \
                     ([k + side - 1] if k % side else []):
@@ -46,9 +46,10 @@ def columns(path):
 
 
 def same(first, *others):
-    """Constraint modes agree to 1e-12, eigenvalues to 1e-10, relative. Subspaces
-    of clusters agree to ten times residual over gap: residuals of both are below
-    1e-11 |K| |x|, and gaps between clusters of these models above 1e-3 |K|."""
+    """Constraint modes agree to 1e-12 and eigenvalues to 1e-10, relative. The
+    vectors of a cluster span the same space to ten times residual / gap:
+    residuals are below 1e-11 of |K||x|, and gaps between the clusters of these
+    models above 1e-3 of it."""
     T, hertz = columns(first)
     modes = np.isfinite(hertz)
     value = hertz[modes] ** 2

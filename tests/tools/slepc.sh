@@ -1,17 +1,17 @@
 #!/bin/sh
 # slepc.sh FOLDER-OF-THE-TOOLS - ritz-basis --engine slepc on 1, 2 and 4 ranks:
-# bases agree with those of ritz-basis alone; a failure is reported once and
+# bases agree with those of the usual engine, and a failure is reported once and
 # ends all ranks.
 . "$(dirname "$0")/tap.sh"
 
-# Open MPI does not run as root or with more ranks than cores unless told to
+# Open MPI refuses root and more ranks than cores, unless it is told
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
 program=$bin/../libexec/ritz/ritz-basis-slepc
 check() { /usr/bin/python3 -s "$here/slepc.py" "$@"; }
 ranks() { number=$1 && shift && mpirun -n "$number" ritz-basis "$@"; }
 
-# A build without PETSc says what is missing, and nothing is written.
+# Built without PETSc, ritz-basis names the packages that it needs.
 if [ ! -x "$program" ]; then
     expect 1 'Debian'"'"'s packages slepc-dev, petsc-dev and mpi-default-dev' \
         ritz-basis craig-bampton --modes 3 --engine slepc none.h5 -o out.h5
@@ -20,15 +20,15 @@ if [ ! -x "$program" ]; then
     exit 0
 fi
 
-# the parallel MUMPS, and no symbol of the sequential one
+# the program has the parallel MUMPS, and no symbol of the sequential one
 works 'it is not linked with the sequential MUMPS' sh -c '
     ldd "$1" >libraries && ! grep -E "mumps_seq|mpiseq|hdf5_serial" libraries &&
     grep -q "libdmumps-" libraries && nm "$1" >symbols &&
     ! grep -iE " [TtDdBb] (dmumps_|zmumps_|mpi_init|mpi_comm_rank)" symbols' - \
     "$program"
 
-# A square membrane with its rim as the port. The 400 dofs inside are more than
-# rank 0 solves alone, and lambda_ij = lambda_ji are double eigenvalues.
+# A square membrane with its rim as port. The interior has 400 dofs, more than
+# rank 0 would solve alone, and most eigenvalues are double, by symmetry.
 side=22
 rim=1-$side,$((side * (side - 1) + 1))-$((side * side))
 k=$((side + 1))
@@ -47,7 +47,8 @@ fixed='-q craig-bampton --attach rim m.h5'
         expect 0 '' ranks $n $fixed --modes 12 --engine slepc -o $n.h5
     done
     works 'bases agree on 1, 2 and 4 ranks' check same 0.h5 1.h5 2.h5 4.h5
-    # on one rank: on more, the order of MUMPS's sums changes from run to run
+    # of one rank; with more, MUMPS distributes work while it runs, and last
+    # digits differ
     expect 0 '' ritz-basis $fixed --modes 12 --engine slepc -o again.h5
     works 'the same bits again' sh -c 'ritz-info 1.h5 | grep sha256 >a &&
         ritz-info again.h5 | grep sha256 >b && diff a b'
@@ -60,13 +61,13 @@ fixed='-q craig-bampton --attach rim m.h5'
 }
 expect 0 '' ritz-reduce -q m.h5 4.h5 -o reduced.h5
 
-# a free body, which has a rigid mode; without mpirun there is one rank
+# free, with a rigid mode; no mpirun is one rank
 expect 0 '' ritz-basis -q normal-modes --modes 8 m.h5 -o 0.h5
 expect 0 '' ritz-basis -q normal-modes --modes 8 --engine slepc m.h5 -o 1.h5
 expect 0 '' ranks 2 -q normal-modes --modes 8 --engine slepc m.h5 -o 2.h5
 works 'free bodies agree' check same 0.h5 1.h5 2.h5
 
-# few masses: the mass matrix has a low rank, and Krylov spaces end early
+# few masses: Krylov spaces end early
 works 'a membrane of few masses is made' check membrane $side 7
 expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
     --port "corner=1:3" -o few.h5
@@ -74,7 +75,7 @@ expect 0 '' ritz-basis -q craig-bampton --modes 20 few.h5 -o 0.h5
 expect 0 '' ranks 2 -q craig-bampton --modes 20 --engine slepc few.h5 -o 2.h5
 works 'a mass of low rank' check same 0.h5 2.h5
 
-# fewer free dofs than ranks: one, and none
+# fewer rows than ranks, and none
 works 'nine dofs are made' check membrane 3
 expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
     --port most=1-8:3 --port all=1-9:3 -o nine.h5
@@ -86,8 +87,8 @@ for port in most all; do
     works "$port of nine dofs held" check same 0.h5 4.h5
 done
 
-# A failure is reported once, with the status that one process would have, and
-# no file is left.
+# fails STATUS WORDS COMMAND...: the failure is reported in one line by one rank,
+# with the status of a single process, and no file is left.
 fails() {
     rm -f out.h5
     expect "$@" -o out.h5
@@ -105,7 +106,7 @@ fails 1 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
 fails 2 "no method 'craig'" ranks 2 craig --modes 3 --engine slepc m.h5
 fails 1 'makes no static vectors of inputs, outputs or dampers' \
     ritz-basis craig-bampton --modes 3 --loads inputs --engine slepc m.h5
-# only the last rank reads this entry, which is no number
+# only the last rank reads this entry
 cp m.h5 bad.h5
 check damage bad.h5 -1 nan unsealed
 fails 1 'bad.h5: K: entry' ranks 4 craig-bampton --modes 3 --engine slepc bad.h5
@@ -122,11 +123,11 @@ check damage bad.h5 -2 -7 unsealed
 fails 1 'K is unsymmetric: its column of an attached dof' ranks 2 \
     craig-bampton --modes 3 --attach last --engine slepc bad.h5
 
-# after Ctrl-C, whenever it comes, there is the whole file or none, never a part
+# interrupted (SIGINT) at any point: the output is complete, or there is none
 for seconds in 0.4 0.6; do
     timeout -s INT $seconds mpirun -n 2 ritz-basis -q craig-bampton --modes 12 \
         --engine slepc m.h5 -o int.h5 >log 2>&1 || true
-    works "SIGINT after $seconds s leaves no part of a file" sh -c '
+    works "an end after $seconds s leaves no part of a file" sh -c '
         left=$(ls -A | grep int.h5 || true)
         test -z "$left" || { test "$left" = int.h5 && ritz-info int.h5; }'
 done

@@ -196,9 +196,9 @@ static void bars_have_the_modes_of_their_mesh(void **state)
     }
 }
 
-/* Every engine, and a search without a proof, find the same modes of a
-   membrane. */
-static void other_ways_find_the_same_modes(void **state)
+/* Every engine finds the same modes of a membrane, by number or up to a
+   frequency, with a count or without. */
+static void all_engines_find_the_same_modes(void **state)
 {
     static const struct {
         ritz_span span;
@@ -591,7 +591,7 @@ static void nothing_has_no_modes(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bars_have_the_modes_of_their_mesh),
-    cmocka_unit_test(other_ways_find_the_same_modes),
+    cmocka_unit_test(all_engines_find_the_same_modes),
     cmocka_unit_test(a_double_mode_is_never_cut),
     cmocka_unit_test(a_frequency_finds_every_mode_below),
     cmocka_unit_test(there_may_be_no_mode),

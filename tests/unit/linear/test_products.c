@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* 93 312 entries, n = 24^3 with 7 a row but at the faces: enough for a second
-   thread. */
+/* A lattice of 24^3 points, 7 entries a row except at the faces: 93 312
+   entries, enough for a second thread. */
 enum { EDGE = 24, POINTS = EDGE * EDGE * EDGE, COLUMNS = 11 };
 
 static const char *const bits[] = {"128", "256", "512"};

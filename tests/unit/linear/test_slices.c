@@ -5,7 +5,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* |X'M X - I|, M = 1. */
+/* Largest entry of |X'M X - I|, M = I. */
 static double orthogonality_of(const ritz_dense *X)
 {
     RITZ_OWN(ritz_dense) G = {0};
@@ -18,7 +18,7 @@ static double orthogonality_of(const ritz_dense *X)
     return worst;
 }
 
-/* |K x - lambda x| of the worst pair, |K| at most 12. */
+/* Largest |K x - lambda x| of all pairs. */
 static double residual_of(const ritz_sparse *K, const ritz_dense *X,
                           const double *lambda)
 {
@@ -38,10 +38,10 @@ static double residual_of(const ritz_sparse *K, const ritz_dense *X,
 }
 
 /*
- * The k lowest of the cube, threefold and sixfold ones at many borders.
- * Eigenvalues err by the square of residuals and by rounding of A, eps of the
- * largest eigenvalue; vectors of two slices are orthogonal to rounding, a sum
- * over all rows.
+ * The k lowest eigenpairs of a cube of edge^3 points; many eigenvalues near
+ * borders are threefold or sixfold. Eigenvalues err by the square of the
+ * residual and by rounding, some eps times the largest eigenvalue, 12. Vectors
+ * are orthogonal to the rounding of a sum over all rows.
  */
 static void check_cube(int64_t edge, double sigma, int64_t k, int64_t side)
 {
@@ -72,7 +72,7 @@ static void check_cube(int64_t edge, double sigma, int64_t k, int64_t side)
     free(exact);
 }
 
-static void slices_find_every_copy(void **state)
+static void slices_find_all_multiple_eigenvalues(void **state)
 {
     (void)state;
     check_cube(11, 0.0, 120, 20);
@@ -82,7 +82,8 @@ static void slices_find_every_copy(void **state)
     ritz_set_threads(1);
 }
 
-/* A cube with masses on `heavy` points only has as many eigenvalues. */
+/* A cube with masses on the first `heavy` points only: it has `heavy` finite
+   eigenvalues. */
 static void make_light(int64_t heavy, ritz_sparse *K, ritz_sparse *M)
 {
     lattice_new(7, 0.1, K, M);
@@ -106,7 +107,7 @@ static ritz_status find_some(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* As many modes as masses: one more is none. */
+/* Of 30 masses 20 modes are found; 31 modes do not exist. */
 static void few_masses_exhaust_the_slices(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
@@ -135,7 +136,7 @@ static void no_allocation_failure_leaks(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(slices_find_every_copy),
+    cmocka_unit_test(slices_find_all_multiple_eigenvalues),
     cmocka_unit_test(few_masses_exhaust_the_slices),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
