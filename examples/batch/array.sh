@@ -1,7 +1,7 @@
 #!/bin/sh
-# array.sh - one target of the Makefile beside it, by its number among those of
-# `make targets`. The lines below are for SLURM, whose array has an index for
-# each target; of another batch system set TASK.
+# array.sh [VARIABLE=VALUE...] - make one target of the Makefile in this folder:
+# the one in line N of `make targets`, N the index of the task. SLURM sets the
+# index and reads the lines below; with another batch system set TASK to it.
 #
 #SBATCH --array=1-100
 #SBATCH --ntasks=1
