@@ -117,7 +117,7 @@ static ritz_status factor_gram(rank_lanczos *z, ritz_dense *R)
 }
 
 /* Factor W = V_(m+1) B_m. W becomes V_(m+1), and MW becomes M V_(m+1). A second
-   factorisation removes what rounding left by the first. */
+   factorisation corrects the rounding of the first. */
 static ritz_status orthonormalise_block(rank_lanczos *z)
 {
     RITZ_OWN(ritz_dense) R = {0}, again = {0};

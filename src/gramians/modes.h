@@ -234,10 +234,10 @@ ritz_status ritz_gramians_low_rank(const ritz_gramians_request *request,
  * is below the tolerance times the largest value; the relative bound is `error`
  * of the result. Each Gramian alone is less accurate than the Hankel values.
  *
- * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank(), or if D is not a M + b
- *         K apart from discrete dampers; RITZ_ERR_CONVERGENCE if the space
- *         would take more than RITZ_FACTOR_BYTES or exceed request->most
- * vectors
+ * @return RITZ_ERR_ARGUMENT as ritz_gramians_low_rank(), or if D is not
+ *         a M + b K apart from discrete dampers; RITZ_ERR_CONVERGENCE if the
+ *         space would take more than RITZ_FACTOR_BYTES or exceed
+ *         request->most vectors
  * @cost   a factor of K, its two lowest modes, and mostly 100 to 1000 vectors,
  *         each with a solve and an orthogonalisation
  */

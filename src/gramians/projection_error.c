@@ -19,8 +19,8 @@
  *     N <= N_0 + N_0^2 |r_P|^2 w max(c),
  *
  * where r_P is the residual for the load F = P in the model without dampers.
- * The Hankel values of two stable models differ by at most the largest |G -
- * G_V| on the imaginary axis [Glover1984].
+ * The Hankel values of two stable models differ by at most the largest
+ * |G - G_V| on the imaginary axis [Glover1984].
  */
 #include "base/alloc.h"
 #include "base/complex.h"
@@ -149,8 +149,8 @@ static double measure_residual(const ritz_projected *p, int64_t columns,
     return cabs(point->z) * sqrt(sum);
 }
 
-/* |r| of the loads F + s Fv, of the model with dampers or without. Fv NULL:
-   0. */
+/* |r| of the loads F + s Fv, of the model with dampers or without. Fv = 0 if it
+   is NULL. */
 static ritz_status find_residual(const ritz_projected *p, const ritz_dense *F,
                                  const ritz_dense *Fv, bool damped,
                                  frequency_point *point, double *out)

@@ -102,10 +102,10 @@ static void subtract_columns(const ritz_projection_space *space, int64_t first,
 }
 
 /*
- * before[j] := x'K_s x of column j, then X := X - V (V'K_s X), and G := X'K_s
- * X. Rigid-body motion is removed from X, too: it is the eigenvector of the
- * largest eigenvalue of K_s^-1 M, so that what rounding leaves of it would grow
- * from block to block.
+ * before[j] := x'K_s x of column j, then X := X - V (V'K_s X) and
+ * G := X'K_s X. Rigid-body motion is removed from X, too: it is the eigenvector
+ * of the largest eigenvalue of K_s^-1 M, so that what rounding leaves of it
+ * would grow from block to block.
  */
 static ritz_status project_out(const ritz_projection_space *space,
                                ritz_dense *X, double *before, ritz_dense *G)

@@ -41,8 +41,8 @@ enum {
     GUESS = 20,    /* flexible modes requested first if they are not counted */
     BEHIND = 2,    /* modes requested above those wanted: a gap to count in */
     SPARE = 4,     /* the same after a mode was missed */
-    MISSES = 3,
-    POLISHES = 3, /* inverse iterations, most often one */
+    MISSES = 3,    /* searches repeated as a count found more modes */
+    POLISHES = 3,  /* inverse iterations, most often one */
 };
 
 typedef struct engine engine;

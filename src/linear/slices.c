@@ -56,7 +56,7 @@ typedef struct slices {
     int64_t proven; /* so many of the lowest are verified by a count */
     int64_t longer; /* factor on the length of the next slice, usually 1 */
     double base;    /* the first shift */
-    double border;  /* all eigenvalues below it are in X, all others are not */
+    double border;  /* of the next slice: all eigenvalues below are in X */
     double nearer;  /* the next shift, if the last slice missed some; or NaN */
     int64_t misses; /* slices with eigenvalues missing so far */
 } slices;

@@ -2,7 +2,7 @@
 
 membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square grid of
 SIDE x SIDE masses. Springs join neighbours, entries of M couple diagonal ones.
-With EVERY only every so many-th dof has a mass, and M is diagonal.
+With EVERY = 7, say, only every seventh dof has a mass, and M is diagonal.
 same BASIS BASIS...: fail unless all bases agree with the first.
 damage FILE ENTRY VALUE [unsealed]: overwrite an entry of K; with `unsealed` its
 checksum is removed, otherwise it no longer fits.
