@@ -46,14 +46,16 @@ static ritz_status gather_ratios(const double *own, int count, double **all,
     RITZ_OWN_ARRAY int *counts = NULL, *at = NULL;
     const int ranks = ranks_count();
 
-    RITZ_CHECK_NEW(counts, ranks);
-    RITZ_CHECK_NEW(at, ranks);
+    counts = ritz_zalloc(ranks, sizeof *counts);
+    at = ritz_zalloc(ranks, sizeof *at);
+    RANKS_CHECK(counts && at ? RITZ_OK : RITZ_ERR_MEMORY);
     MPI_Gather(&count, 1, MPI_INT, counts, 1, MPI_INT, 0, PETSC_COMM_WORLD);
     for (int r = 0; r < ranks; r++) {
         at[r] = (int)*total;
         *total += counts[r];
     }
-    RITZ_CHECK_NEW(*all, ranks_own() == 0 ? *total : 0);
+    *all = ritz_zalloc(ranks_own() == 0 ? *total : 0, sizeof **all);
+    RANKS_CHECK(*all ? RITZ_OK : RITZ_ERR_MEMORY);
     MPI_Gatherv(own, count, MPI_DOUBLE, *all, counts, at, MPI_DOUBLE, 0,
                 PETSC_COMM_WORLD);
     return RITZ_OK;
@@ -66,7 +68,7 @@ static ritz_status find_typical(rank_pencil *p)
     int64_t total = 0;
 
     RANKS_CHECK(find_ratios(p->K, p->M, &own, &count));
-    RANKS_CHECK(gather_ratios(own, count, &all, &total));
+    RITZ_CHECK(gather_ratios(own, count, &all, &total));
     if (ranks_own() == 0 && total > 0) {
         qsort(all, (size_t)total, sizeof *all, ritz_ascending);
         p->typical = all[total / 2];

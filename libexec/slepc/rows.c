@@ -210,7 +210,7 @@ static ritz_status convert_slab(const rows_frame *f, const char *name,
     RANKS_CHECK(allocate_rows(slab, r->own, &c));
     partition_rows(f, slab, &c, load, &m);
     ritz_slab_free(slab);
-    RITZ_CHECK(check_mirror(f, &m, name));
+    RANKS_CHECK(check_mirror(f, &m, name));
     ranks_expect(MatCreate(PETSC_COMM_WORLD, out));
     ranks_expect(MatSetSizes(*out, (PetscInt)r->own, (PetscInt)r->own,
                              (PetscInt)r->interior, (PetscInt)r->interior));
