@@ -110,6 +110,7 @@ static ritz_status factor_gram(rank_lanczos *z, ritz_dense *R)
     ranks_share(R->val, (int64_t)BLOCK * BLOCK * (int64_t)sizeof *R->val);
     z->broken =
         LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', BLOCK, R->val, BLOCK) != 0;
+    ranks_share(&z->broken, sizeof z->broken); /* processors may differ */
     for (int64_t j = 0; j < BLOCK; j++)
         for (int64_t i = j + 1; i < BLOCK; i++)
             R->val[i + j * BLOCK] = 0.0;
@@ -325,6 +326,7 @@ static ritz_status iterate(rank_lanczos *z, bool *settled)
             continue;
         RITZ_CHECK(find_ritz_pairs(z));
         *settled = is_settled(z);
+        ranks_share(settled, sizeof *settled); /* processors may differ */
     }
     return RITZ_OK;
 }
