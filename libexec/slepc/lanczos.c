@@ -110,7 +110,8 @@ static ritz_status factor_gram(rank_lanczos *z, ritz_dense *R)
     ranks_share(R->val, (int64_t)BLOCK * BLOCK * (int64_t)sizeof *R->val);
     z->broken =
         LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', BLOCK, R->val, BLOCK) != 0;
-    ranks_share(&z->broken, sizeof z->broken); /* processors may differ */
+    /* processors of unequal kind may round unequally: rank 0 decides */
+    ranks_share(&z->broken, sizeof z->broken);
     for (int64_t j = 0; j < BLOCK; j++)
         for (int64_t i = j + 1; i < BLOCK; i++)
             R->val[i + j * BLOCK] = 0.0;
@@ -326,7 +327,7 @@ static ritz_status iterate(rank_lanczos *z, bool *settled)
             continue;
         RITZ_CHECK(find_ritz_pairs(z));
         *settled = is_settled(z);
-        ranks_share(settled, sizeof *settled); /* processors may differ */
+        ranks_share(settled, sizeof *settled); /* as for z->broken */
     }
     return RITZ_OK;
 }

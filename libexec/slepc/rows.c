@@ -115,7 +115,8 @@ static void compare_entry(const mirror *m, int64_t at, double value,
     m->size[at] += fabs(value);
 }
 
-/* Subtract the part of an attached column, from the interior rows of it. */
+/* Subtract K_bi x of one attached dof b, from the interior entries of its
+   column. */
 static void sum_attached(const rows_frame *f, const ritz_slab *slab, int64_t j,
                          int64_t at, const mirror *m)
 {

@@ -27,9 +27,11 @@ typedef struct ritz_projection_model {
 ritz_status ritz_projection_model_new(const ritz_gramians_request *request,
                                       ritz_projection_model *out);
 
-/** Whether D of a request has that form, with a, b >= 0 and one of them above
- * 0.
- * @cost O(nnz) */
+/**
+ * Whether D of a request has that form, b >= 0, and a or b is above 0.
+ *
+ * @cost O(nnz)
+ */
 ritz_status ritz_projection_fits(const ritz_gramians_request *request,
                                  bool *fits);
 

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The first damper whose `value`, its damping or stiffness, is not 0; -1:
-   none. */
+/* The first damper with a `value` (damping or stiffness) that is not 0, or
+   -1. */
 static int64_t find_acting(const ritz_dampers *dampers, const double *value)
 {
     for (int64_t k = 0; k < dampers->count; k++)
@@ -53,7 +53,8 @@ ritz_status ritz_projection_fits(const ritz_gramians_request *request,
     return RITZ_OK;
 }
 
-/* Influence vectors of the dampers with c > 0, orthogonal to rigid motion. */
+/* Constants and influence vectors of the dampers that have damping, not only a
+   spring. The vectors are made orthogonal to rigid-body modes. */
 static ritz_status collect_dampers(const ritz_dampers *dampers,
                                    ritz_projection_model *model)
 {
