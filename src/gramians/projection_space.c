@@ -168,10 +168,12 @@ static ritz_status normalise_columns(const double *before, ritz_dense *G,
 }
 
 /*
- * Append X, orthonormalised: again if the energy of a column fell much.
+ * Orthonormalise X and append it to V. Another pass follows if a column has lost
+ * nearly all of its energy, as it is then not orthogonal to rounding.
  *
- * @param[in] energy  of each column before anything was taken out of it: what
- *                    is left may be rounding of that; NULL: as X is
+ * @param[in] energy  x'K_s x of each column before any part was subtracted from
+ *                    it, by which is judged whether the rest is rounding; NULL:
+ *                    of X as it is given
  */
 static ritz_status append_columns(const double *energy, ritz_dense *X,
                                   ritz_projection_space *space)
