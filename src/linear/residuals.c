@@ -91,10 +91,8 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
         const int64_t end = r + CHUNK < to ? r + CHUNK : to;
         double Kx[2][CHUNK * WIDTH], Mx[2][CHUNK * WIDTH];
 
-        tiles->terms(r, end, K->colptr, K->rowind, K->val, a->of.x, Kx[0],
-                     Kx[1]);
-        tiles->terms(r, end, M->colptr, M->rowind, M->val, a->of.x, Mx[0],
-                     Mx[1]);
+        tiles->terms(r, end, K, a->of.x, Kx[0], Kx[1]);
+        tiles->terms(r, end, M, a->of.x, Mx[0], Mx[1]);
         for (int64_t i = 0; i < (end - r) * WIDTH; i += WIDTH)
             assess_row(a, a->of.x + r * WIDTH + i,
                        (const double *[]){Kx[0] + i, Kx[1] + i},
@@ -181,7 +179,7 @@ static void sum_rows(int thread, int64_t from, int64_t to, void *task)
         const int64_t end = r + CHUNK < to ? r + CHUNK : to;
         double y[CHUNK * WIDTH], terms[CHUNK * WIDTH];
 
-        tiles->terms(r, end, A->colptr, A->rowind, A->val, t->of.x, y, terms);
+        tiles->terms(r, end, A, t->of.x, y, terms);
         for (int64_t i = 0; i < end - r; i++)
             for (int c = 0; c < WIDTH; c++)
                 sum[c] +=

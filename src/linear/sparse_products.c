@@ -42,7 +42,7 @@ static void multiply_groups(int thread, int threads, void *task)
                 x[i * EIGHT + c] =
                     c < count ? t->X->val[i + (k + c) * A->ncol] : 0.0;
         memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
-        ritz_tiles_here()->spread(A->ncol, A->colptr, A->rowind, A->val, x, y);
+        ritz_tiles_here()->spread(A, x, y);
         for (int64_t c = 0; c < count; c++)
             for (int64_t i = 0; i < A->nrow; i++)
                 ritz_dense_col(t->Y, k + c)[i] = y[i * EIGHT + c];

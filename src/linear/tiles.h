@@ -18,6 +18,8 @@
 #ifndef RITZ_LINEAR_TILES_H
 #define RITZ_LINEAR_TILES_H
 
+#include <ritz/matrix.h>
+
 #include <stdint.h>
 
 enum {
@@ -63,16 +65,13 @@ typedef struct ritz_tiles {
     void (*times)(int64_t from, int64_t to, const int64_t *start,
                   const int32_t *col, const double *val, const double *X,
                   double *Y);
-    /** Y += A X, X and Y with 8 numbers a row. Column j of the sparse A has the
-     * entries [start[j], start[j + 1]) of @p row and @p val. */
-    void (*spread)(int64_t cols, const int64_t *start, const int64_t *row,
-                   const double *val, const double *X, double *Y);
+    /** Y += A X, X and Y with 8 numbers a row. */
+    void (*spread)(const ritz_sparse *A, const double *X, double *Y);
     /** Y := rows [from, to) of A X, and S := those of |A||X|, for a symmetric
-     * sparse A with columns as in spread(). X has all rows, Y and S have to -
-     * from of them, each with 8 numbers a row. */
-    void (*terms)(int64_t from, int64_t to, const int64_t *start,
-                  const int64_t *row, const double *val, const double *X,
-                  double *Y, double *S);
+     * A. X has all rows, Y and S have to - from of them, each with 8 numbers a
+     * row. */
+    void (*terms)(int64_t from, int64_t to, const ritz_sparse *A,
+                  const double *X, double *Y, double *S);
 } ritz_tiles;
 
 /** The kernels with the widest vectors that this processor has. The environment

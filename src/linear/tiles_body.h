@@ -219,17 +219,17 @@ static void times_8(int64_t from, int64_t to, const int64_t *start,
     }
 }
 
-static void spread_8(int64_t cols, const int64_t *start, const int64_t *row,
-                     const double *val, const double *X, double *Y)
+static void spread_8(const ritz_sparse *A, const double *X, double *Y)
 {
-    for (int64_t j = 0; j < cols; j++) {
+    for (int64_t j = 0; j < A->ncol; j++) {
         vector x[T / LANES];
 
         for (int64_t v = 0; v < T / LANES; v++)
             x[v] = *(const vector *)(X + T * j + v * LANES);
-        for (int64_t p = start[j]; p < start[j + 1]; p++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
             for (int64_t v = 0; v < T / LANES; v++)
-                *(vector *)(Y + T * row[p] + v * LANES) += val[p] * x[v];
+                *(vector *)(Y + T * A->rowind[p] + v * LANES) +=
+                    A->val[p] * x[v];
     }
 }
 
@@ -239,17 +239,17 @@ INLINE vector magnitudes(vector x)
     return (vector)((integers)x & INT64_MAX);
 }
 
-static void terms_8(int64_t from, int64_t to, const int64_t *start,
-                    const int64_t *row, const double *val, const double *X,
-                    double *Y, double *S)
+static void terms_8(int64_t from, int64_t to, const ritz_sparse *A,
+                    const double *X, double *Y, double *S)
 {
     for (int64_t i = from; i < to; i++, Y += T, S += T) {
         vector sum[T / LANES] = {0}, size[T / LANES] = {0};
 
-        for (int64_t p = start[i]; p < start[i + 1]; p++)
+        for (int64_t p = A->colptr[i]; p < A->colptr[i + 1]; p++)
             for (int64_t v = 0; v < T / LANES; v++) {
                 const vector part =
-                    val[p] * *(const vector *)(X + T * row[p] + v * LANES);
+                    A->val[p] *
+                    *(const vector *)(X + T * A->rowind[p] + v * LANES);
 
                 sum[v] += part;
                 size[v] += magnitudes(part);
