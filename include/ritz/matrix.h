@@ -120,10 +120,7 @@ double ritz_dense_col_max(const ritz_dense *A, int64_t j);
 void ritz_dense_orient(ritz_dense *A);
 
 /** Borrowed pointer to column @p j. */
-static inline double *ritz_dense_col(const ritz_dense *A, int64_t j)
-{
-    return A->val + j * A->nrow;
-}
+double *ritz_dense_col(const ritz_dense *A, int64_t j);
 
 void ritz_dense_free(ritz_dense *A);
 

@@ -399,12 +399,9 @@ static ritz_status keep_places(int64_t count, const placement *body,
                                ritz_dense *out)
 {
     RITZ_CHECK(ritz_dense_new(count, 12, out));
-    for (int64_t k = 0; k < count; k++) {
-        for (int64_t j = 0; j < 9; j++)
-            ritz_dense_col(out, j)[k] = body[k].R[j];
-        for (int64_t j = 0; j < 3; j++)
-            ritz_dense_col(out, 9 + j)[k] = body[k].t[j];
-    }
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t j = 0; j < 12; j++)
+            ritz_dense_col(out, j)[k] = j < 9 ? body[k].R[j] : body[k].t[j - 9];
     return RITZ_OK;
 }
 

@@ -228,6 +228,11 @@ void ritz_dense_orient(ritz_dense *A)
     }
 }
 
+double *ritz_dense_col(const ritz_dense *A, int64_t j)
+{
+    return A->val + j * A->nrow;
+}
+
 void ritz_dense_free(ritz_dense *A)
 {
     free(A->val);
