@@ -29,6 +29,8 @@ static ritz_status check_names(const ritz_recovery *recovery, int64_t n,
     int64_t count = n + recovery->count;
     char name[RITZ_DOF_NAME_SIZE];
 
+    RITZ_REFUSE_IF(n > 0 && !dof, RITZ_ERR_FORMAT,
+                   "dofs are recovered from others that have no names");
     for (int64_t k = 0; k < recovery->count; k++)
         RITZ_REFUSE_IF(recovery->dof[k].component < 0 ||
                            recovery->dof[k].component > 6,

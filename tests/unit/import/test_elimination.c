@@ -363,6 +363,8 @@ static void a_recovery_that_does_not_fit_is_refused(void **)
     assert_fails(ritz_recovery_check(&r, POINTS - 1, points), RITZ_ERR_FORMAT,
                  "recovered dofs are of another size: 1 x 6 where 1 x 5 is "
                  "due");
+    assert_fails(ritz_recovery_check(&r, POINTS, NULL), RITZ_ERR_FORMAT,
+                 "recovered from others that have no names");
     r.dof[0].grid = 3;
     assert_fails(ritz_recovery_check(&r, POINTS, points), RITZ_ERR_FORMAT,
                  "'point 3' is recovered and has a row, or is recovered "
