@@ -55,10 +55,12 @@ for signal in INT TERM; do
         --damping 'modal 0.01' --limit-flexible 1e-2 -o verified.h5
 done
 
+# The tool may be one candidate ahead of the line that was read: so a tolerance
+# that the first few do not meet.
 rm -f fit.h5.interrupted
 interrupt TERM '"feasible":false' ritz-fit truss.h5 --band-hz 0,20 \
     --damping 'modal 0.01' --methods normal-modes,krylov \
-    --tolerance flexible=1e-2 -o fit.h5
+    --tolerance flexible=1e-13 -o fit.h5
 says 'before anything meets the tolerance there is nothing to keep' \
     'no candidate so far meets the tolerance'
 works '  and nothing is left' test ! -e fit.h5.interrupted
