@@ -349,20 +349,32 @@ static void rank_magnitudes(block_lanczos *L)
         L->rank[c] = -L->theta[low] > L->theta[high] ? low++ : high--;
 }
 
-/* Eigenpairs of T. */
+/* Z := the projected matrix, m x m. */
+static void copy_projected(block_lanczos *L, int64_t m)
+{
+    for (int64_t j = 0; j < m; j++)
+        memcpy(L->Z + j * m, L->T + j * L->room * B, (size_t)m * sizeof *L->Z);
+}
+
+/* Eigenpairs of T. Divide and conquer, which is fastest, may fail to converge
+   where many eigenvalues are nearly equal; QR iterations then do not. */
 static ritz_status solve_projected(block_lanczos *L)
 {
     const int64_t m = L->blocks * B;
     int before = 0;
     int info = 0;
 
-    for (int64_t j = 0; j < m; j++)
-        memcpy(L->Z + j * m, L->T + j * L->room * B, (size_t)m * sizeof *L->Z);
     /* for a small T the threads of the BLAS mostly wait for each other */
     if (m <= ALONE)
         before = ritz_blas_threads(1);
+    copy_projected(L, m);
     info = LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (int)m, L->Z, (int)m,
                           L->theta);
+    if (info > 0) {
+        copy_projected(L, m);
+        info = LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', (int)m, L->Z, (int)m,
+                             L->theta);
+    }
     ritz_blas_threads(before);
     RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR, RITZ_ERR_MEMORY,
                    "no memory for eigenvectors of order %" PRId64, m);
