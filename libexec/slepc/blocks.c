@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/general.h"
 #include "ranks.h"
 
 #include <float.h>
@@ -76,19 +77,6 @@ static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, double *scale)
     ritz_dense_symmetrise(M_r);
 }
 
-/* theta = q'A_r q of each column q of Q. LAPACK's theta err by eps times the
-   largest of them, these quotients by much less if theta is small. */
-static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
-                                  double *theta)
-{
-    RITZ_OWN(ritz_dense) AQ = {0};
-
-    RITZ_CHECK(ritz_dense_mul(A_r, Q, &AQ));
-    for (int64_t j = 0; j < Q->ncol; j++)
-        theta[j] = ritz_dense_dot(Q, j, &AQ, j);
-    return RITZ_OK;
-}
-
 /* Solve A_r q = theta M_r q, in rank 0 alone. Q is scaled back to the columns
    before balancing. */
 static ritz_status solve_projection(ritz_dense *A_r, ritz_dense *M_r,
@@ -102,7 +90,7 @@ static ritz_status solve_projection(ritz_dense *A_r, ritz_dense *M_r,
     RITZ_CHECK(ritz_eigen_dense(A_r, M_r, &small));
     RITZ_REFUSE_IF(small.Phi.ncol < A_r->ncol, RITZ_ERR_CONVERGENCE,
                    "some eigenvectors are linearly dependent");
-    RITZ_CHECK(find_quotients(A_r, &small.Phi, theta));
+    RITZ_CHECK(ritz_eigen_quotients(A_r, &small.Phi, theta));
     ritz_dense_scale_rows(scale, &small.Phi);
     memcpy(Q->val, small.Phi.val, (size_t)(Q->nrow * Q->ncol) * sizeof *Q->val);
     return RITZ_OK;

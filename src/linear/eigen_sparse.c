@@ -120,21 +120,6 @@ static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
 }
 
 /*
- * theta = q' A_r q of each column: nearly diagonal, so even the lowest comes
- * without the rounding of the highest that the small eigenproblem leaves.
- */
-static ritz_status find_quotients(const ritz_dense *A_r, const ritz_dense *Q,
-                                  double *theta)
-{
-    RITZ_OWN(ritz_dense) AQ = {0};
-
-    RITZ_CHECK(ritz_dense_mul(A_r, Q, &AQ));
-    for (int64_t j = 0; j < Q->ncol; j++)
-        theta[j] = ritz_dense_dot(Q, j, &AQ, j);
-    return RITZ_OK;
-}
-
-/*
  * One inverse iteration and Rayleigh-Ritz: X becomes M-orthonormal, lambda
  * ascends.
  *
@@ -162,7 +147,7 @@ static ritz_status polish_vectors(const ritz_shifted *S, ritz_dense *X,
                    "%" PRId64 " eigenvectors depend on each other",
                    X->ncol - small.Phi.ncol);
     RITZ_CHECK(ritz_dense_times(&small.Phi, X));
-    RITZ_CHECK(find_quotients(&A_r, &small.Phi, lambda));
+    RITZ_CHECK(ritz_eigen_quotients(&A_r, &small.Phi, lambda));
     for (int64_t j = 0; j < X->ncol; j++)
         lambda[j] += S->sigma;
     return RITZ_OK;

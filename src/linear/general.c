@@ -634,3 +634,14 @@ ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
                    rows_K, cols_K, rows_M, cols_M);
     return RITZ_OK;
 }
+
+ritz_status ritz_eigen_quotients(const ritz_dense *A, const ritz_dense *Q,
+                                 double *theta)
+{
+    RITZ_OWN(ritz_dense) AQ = {0};
+
+    RITZ_CHECK(ritz_dense_mul(A, Q, &AQ));
+    for (int64_t j = 0; j < Q->ncol; j++)
+        theta[j] = ritz_dense_dot(Q, j, &AQ, j);
+    return RITZ_OK;
+}

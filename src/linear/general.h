@@ -95,6 +95,18 @@ ritz_status ritz_general_hammarling(const ritz_dense *S, const ritz_dense *P,
 ritz_status ritz_eigen_refuse(int64_t rows_K, int64_t cols_K, int64_t rows_M,
                               int64_t cols_M);
 
+/**
+ * theta[j] = q'A q of each column q of @p Q, eigenvectors of a nearly diagonal
+ * A. LAPACK's eigenvalues err by eps times the largest of them, these quotients
+ * by much less where theta is small.
+ *
+ * @param[in]  A      k x k, symmetric
+ * @param[in]  Q      k x m
+ * @param[out] theta  m numbers
+ */
+ritz_status ritz_eigen_quotients(const ritz_dense *A, const ritz_dense *Q,
+                                 double *theta);
+
 /* Lanczos on the pencil K - sigma M, for ritz_eigen_sparse. */
 typedef struct ritz_shifted {
     const ritz_sparse *K, *M; /* borrowed */
