@@ -44,7 +44,7 @@ works 'an installed tool reads a container' there/bin/ritz-info chain.h5
 cp -r there moved
 works 'and does where it was moved to' moved/bin/ritz-info chain.h5
 rm -r moved/libexec
-expect 1 'ritz-walk'"'"', which a tool is installed with, is not there' \
+expect 1 'ritz-walk'"'"', which is installed with the tools, cannot be run' \
     moved/bin/ritz-info chain.h5
 
 # Shared, HDF5 loads libcurl and Kerberos, which alone takes 20 ms.
