@@ -38,7 +38,7 @@ void ritz_dense_scale_rows(const double *factor, ritz_dense *A);
 /** A := B, which is left empty. */
 void ritz_dense_replace(ritz_dense *A, ritz_dense *B);
 
-/** A := A B. */
+/** A := A B, where B has no more columns than rows. */
 ritz_status ritz_dense_times(const ritz_dense *B, ritz_dense *A);
 
 /** The block of @p out's size whose first entry is A(row, col). */
@@ -204,6 +204,18 @@ ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
                                  ritz_dense *out);
 ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
                                 ritz_dense *out);
+
+/**
+ * L'A T; A T is held only in part.
+ *
+ * @param[in]  L    n x l
+ * @param[in]  A    n x k
+ * @param[in]  T    k x r
+ * @param[out] out  l x r, freed by the caller
+ * @cost O(r nnz + n l r)
+ */
+ritz_status ritz_sparse_between(const ritz_dense *L, const ritz_sparse *A,
+                                const ritz_dense *T, ritz_dense *out);
 
 /** |T|'|A||T| of a symmetric A, of which T'AT has the rounding. */
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,

@@ -33,7 +33,8 @@ enum { GAPS = 3 };
 /* Most counts for one reduction: some, and some for each mode in the band. */
 enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
 /* Most inverse iterations, and most counts next to modes, while partners are
-   unclear. */
+   unclear. The first iteration comes before counts: it costs as much as one,
+   and serves all modes. */
 enum { ITERATIONS = 4, MOST_BESIDE = 16 };
 /* Tries of a count that meets a mode; counts for one mode; gaps near it. */
 enum { MOST_TRIES = 4, MOST_FOR_ONE = 16, GAPS_AROUND = 8 };
@@ -380,8 +381,8 @@ static ritz_status refine_all(bool response, ritz_measuring *m)
     RITZ_CHECK(predict_errors(m));
     RITZ_CHECK(count_ends(m));
     while (m->prediction.loose || m->prediction.unmatched) {
-        if (!isnan(m->prediction.count_at) && counts++ < MOST_BESIDE &&
-            has_room(m))
+        if (iterations > 0 && !isnan(m->prediction.count_at) &&
+            counts++ < MOST_BESIDE && has_room(m))
             RITZ_CHECK(count_at(m, m->prediction.count_at));
         else if (iterations++ < ITERATIONS)
             RITZ_CHECK(iterate_trial(m));

@@ -68,11 +68,12 @@ ritz_status ritz_lehmann_new(ritz_estimator *estimator, const ritz_dense *T,
                              ritz_lehmann *out);
 
 /** Ritz pairs in the range of Y, whose columns are independent; no reduced
- * model. */
-ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, const ritz_dense *Y,
+ * model. Y is left empty, or overwritten if that fails. */
+ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, ritz_dense *Y,
                                  ritz_lehmann *out);
 
-/** The same of A^-1 M X: one inverse iteration on, @p trial's errors shrink. */
+/** The same of (A^-1 M)^2 X: two inverse iterations shrink the errors of
+ * @p trial. */
 ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
                                 const ritz_lehmann *trial, ritz_lehmann *out);
 void ritz_lehmann_free(ritz_lehmann *trial);

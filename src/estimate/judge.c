@@ -143,12 +143,12 @@ static ritz_mode_group group_of(const ritz_measuring *m, int64_t first)
    the trial, whose X never changes. */
 static ritz_status take_overlap(const ritz_measuring *m, ritz_lehmann *trial)
 {
-    RITZ_OWN(ritz_dense) MX = {0}, TMX = {0};
+    RITZ_OWN(ritz_dense) TMX = {0};
 
     if (!trial->X.val || trial->Q.val)
         return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_mul(&m->estimator->component->M, &trial->X, &MX));
-    RITZ_CHECK(ritz_dense_mul_tn(m->T, &MX, &TMX));
+    RITZ_CHECK(ritz_sparse_between(m->T, &m->estimator->component->M, &trial->X,
+                                   &TMX));
     return ritz_dense_mul_tn(&m->pairs.Phi, &TMX, &trial->Q);
 }
 

@@ -147,10 +147,24 @@ void ritz_dense_replace(ritz_dense *A, ritz_dense *B)
 
 ritz_status ritz_dense_times(const ritz_dense *B, ritz_dense *A)
 {
-    RITZ_OWN(ritz_dense) AB = {0};
+    enum { ROWS = 1024 }; /* of A at a time, so that A is not held twice */
+    RITZ_OWN_ARRAY double *rows = NULL;
 
-    RITZ_CHECK(ritz_dense_mul(A, B, &AB));
-    ritz_dense_replace(A, &AB);
+    RITZ_REFUSE_IF(A->ncol != B->nrow || B->ncol > A->ncol, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " columns become %" PRId64 " by %" PRId64,
+                   A->ncol, B->ncol, B->nrow);
+    RITZ_CHECK_NEW(rows, ROWS * A->ncol);
+    for (int64_t r = 0; r < A->nrow && B->ncol > 0; r += ROWS) {
+        const int64_t count = A->nrow - r < ROWS ? A->nrow - r : ROWS;
+
+        for (int64_t j = 0; j < A->ncol; j++)
+            memcpy(rows + j * count, ritz_dense_col(A, j) + r,
+                   (size_t)count * sizeof *rows);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, (int)count,
+                    (int)B->ncol, (int)A->ncol, 1.0, rows, (int)count, B->val,
+                    (int)B->nrow, 0.0, A->val + r, (int)A->nrow);
+    }
+    A->ncol = B->ncol;
     return RITZ_OK;
 }
 

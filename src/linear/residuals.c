@@ -161,51 +161,73 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* |x|'|A||x| of eight columns x, summed over the rows of one thread. */
-typedef struct summation {
-    const ritz_sparse *A;
+/* Residuals of eight pairs, and their |x|'|K||x| and |x|'|M||x|, summed over the
+   rows of one thread. */
+typedef struct subtraction {
+    const ritz_sparse *K, *M;
     eight of;
-    double (*sum)[WIDTH]; /* of each thread */
-} summation;
+    const double *lambda;
+    ritz_dense *R;
+    double (*energy)[2][WIDTH]; /* of each thread */
+} subtraction;
 
-static void sum_rows(int thread, int64_t from, int64_t to, void *task)
+/* A X of rows from .. to - 1, row by row, to y; |X|'|A||X| of these rows is added
+   to @p sum. */
+static void multiply_rows(const ritz_sparse *A, int64_t from, int64_t to,
+                          const double *x, double *y, double *sum)
 {
-    const summation *t = task;
-    const ritz_sparse *A = t->A;
-    const ritz_tiles *tiles = ritz_tiles_here();
-    double sum[WIDTH] = {0};
+    double size[CHUNK * WIDTH];
+
+    ritz_tiles_here()->terms(from, to, A, x, y, size);
+    for (int64_t i = 0; i < to - from; i++)
+        for (int c = 0; c < WIDTH; c++)
+            sum[c] += fabs(x[(from + i) * WIDTH + c]) * size[i * WIDTH + c];
+}
+
+static void subtract_rows(int thread, int64_t from, int64_t to, void *task)
+{
+    const subtraction *t = task;
+    double energy[2][WIDTH] = {0};
 
     for (int64_t r = from; r < to; r += CHUNK) {
         const int64_t end = r + CHUNK < to ? r + CHUNK : to;
-        double y[CHUNK * WIDTH], terms[CHUNK * WIDTH];
+        double Kx[CHUNK * WIDTH], Mx[CHUNK * WIDTH];
 
-        tiles->terms(r, end, A, t->of.x, y, terms);
-        for (int64_t i = 0; i < end - r; i++)
-            for (int c = 0; c < WIDTH; c++)
-                sum[c] +=
-                    fabs(t->of.x[(r + i) * WIDTH + c]) * terms[i * WIDTH + c];
+        multiply_rows(t->K, r, end, t->of.x, Kx, energy[0]);
+        multiply_rows(t->M, r, end, t->of.x, Mx, energy[1]);
+        for (int64_t c = 0; c < t->of.count; c++)
+            for (int64_t i = 0; i < end - r; i++)
+                ritz_dense_col(t->R, t->of.first + c)[r + i] =
+                    Kx[i * WIDTH + c] -
+                    t->lambda[t->of.first + c] * Mx[i * WIDTH + c];
     }
-    memcpy(t->sum[thread], sum, sizeof sum);
+    memcpy(t->energy[thread], energy, sizeof energy);
 }
 
-ritz_status ritz_energy_terms(const ritz_sparse *A, const ritz_dense *X,
-                              double *out)
+ritz_status ritz_pairs_subtract(const ritz_sparse *K, const ritz_sparse *M,
+                                const ritz_dense *X, const double *lambda,
+                                ritz_dense *R, double *stiffness_terms,
+                                double *mass_terms)
 {
-    const int threads = threads_for(A->colptr[A->ncol]);
+    const int threads = threads_for(K->colptr[K->ncol] + M->colptr[M->ncol]);
+    double *const terms[] = {stiffness_terms, mass_terms};
     RITZ_OWN_ARRAY double *x = NULL;
-    RITZ_OWN_ARRAY double(*sum)[WIDTH] = NULL;
+    RITZ_OWN_ARRAY double(*energy)[2][WIDTH] = NULL;
 
-    RITZ_CHECK_NEW(x, A->nrow * WIDTH);
-    RITZ_CHECK_NEW(sum, threads);
+    RITZ_CHECK_NEW(x, K->nrow * WIDTH);
+    RITZ_CHECK_NEW(energy, threads);
+    RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, R));
     for (int64_t first = 0; first < X->ncol; first += WIDTH) {
-        summation t = {A, next_eight(X, first, x, threads), sum};
+        subtraction t = {K,      M, next_eight(X, first, x, threads),
+                         lambda, R, energy};
 
-        ritz_team_over(threads, A->nrow, sum_rows, &t);
-        for (int64_t c = 0; c < t.of.count; c++) {
-            out[first + c] = 0.0;
-            for (int k = 0; k < threads; k++)
-                out[first + c] += sum[k][c];
-        }
+        ritz_team_over(threads, K->nrow, subtract_rows, &t);
+        for (int a = 0; a < 2; a++)
+            for (int64_t c = 0; c < t.of.count; c++) {
+                terms[a][first + c] = 0.0;
+                for (int k = 0; k < threads; k++)
+                    terms[a][first + c] += energy[k][a][c];
+            }
     }
     return RITZ_OK;
 }

@@ -21,17 +21,22 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_pairs *P, double *worst);
 
 /**
- * |x|'|A||x| of each column x of @p X. The rounding error of x'A x is of the
- * order of eps times this.
+ * R = K X - M X diag(lambda), and |x|'|K||x| and |x|'|M||x| of each column x of
+ * @p X. The rounding errors of x'K x and x'M x are of the order of eps times
+ * these.
  *
- * @param[in]  A    n x n, symmetric, both triangles stored
- * @param[in]  X    n x k
- * @param[out] out  k numbers, of which the last bits depend on the number of
- *                  threads
+ * @param[in]  K, M    n x n, symmetric, both triangles stored
+ * @param[in]  X       n x k
+ * @param[in]  lambda  k numbers
+ * @param[out] R       n x k, freed by the caller
+ * @param[out] stiffness_terms, mass_terms  k numbers each, of which the last
+ *                     bits depend on the number of threads
  * @return RITZ_ERR_MEMORY
- * @cost  one pass over A for every eight columns, on all threads
+ * @cost  one pass over K and M for every eight columns, on all threads
  */
-ritz_status ritz_energy_terms(const ritz_sparse *A, const ritz_dense *X,
-                              double *out);
+ritz_status ritz_pairs_subtract(const ritz_sparse *K, const ritz_sparse *M,
+                                const ritz_dense *X, const double *lambda,
+                                ritz_dense *R, double *stiffness_terms,
+                                double *mass_terms);
 
 #endif

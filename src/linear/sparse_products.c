@@ -12,7 +12,8 @@
 #include <string.h>
 
 enum {
-    EIGHT = RITZ_TILE,  /* columns of a product at a time */
+    EIGHT = RITZ_TILE, /* columns of a product at a time */
+    WIDE = 4 * EIGHT,  /* columns of L'A T at a time: A T is never held whole */
     WORTHWHILE = 50000, /* entries of A from which several threads are used */
 };
 
@@ -37,15 +38,15 @@ static void multiply_groups(int thread, int threads, void *task)
         const int64_t left = t->X->ncol - k;
         const int64_t count = left < EIGHT ? left : EIGHT;
 
-        for (int64_t c = 0; c < EIGHT; c++)
-            for (int64_t i = 0; i < A->ncol; i++)
+        for (int64_t i = 0; i < A->ncol; i++)
+            for (int64_t c = 0; c < EIGHT; c++)
                 x[i * EIGHT + c] =
                     c < count ? t->X->val[i + (k + c) * A->ncol] : 0.0;
         memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
         ritz_tiles_here()->spread(A, x, y);
-        for (int64_t c = 0; c < count; c++)
-            for (int64_t i = 0; i < A->nrow; i++)
-                ritz_dense_col(t->Y, k + c)[i] = y[i * EIGHT + c];
+        for (int64_t i = 0; i < A->nrow; i++)
+            for (int64_t c = 0; c < count; c++)
+                t->Y->val[i + (k + c) * A->nrow] = y[i * EIGHT + c];
     }
 }
 
@@ -197,16 +198,31 @@ ritz_status ritz_sparse_congruence(const ritz_sparse *A, const ritz_sparse *T,
     return RITZ_OK;
 }
 
+ritz_status ritz_sparse_between(const ritz_dense *L, const ritz_sparse *A,
+                                const ritz_dense *T, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) product = {0};
+
+    RITZ_CHECK(ritz_dense_new(L->ncol, T->ncol, &product));
+    for (int64_t j = 0; j < T->ncol; j += WIDE) {
+        const int64_t left = T->ncol - j;
+        const ritz_dense some =
+            ritz_dense_part(T, j, left < WIDE ? left : WIDE);
+        RITZ_OWN(ritz_dense) AT = {0}, LAT = {0};
+
+        RITZ_CHECK(ritz_sparse_mul(A, &some, &AT));
+        RITZ_CHECK(ritz_dense_mul_tn(L, &AT, &LAT));
+        ritz_dense_put(&LAT, 0, j, &product);
+    }
+    RITZ_MOVE(*out, product);
+    return RITZ_OK;
+}
+
 /* T'A T; out stays empty if A is empty. */
 static ritz_status project_matrix(const ritz_sparse *A, const ritz_dense *T,
                                   ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) AT = {0};
-
-    if (!A->colptr)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_sparse_mul(A, T, &AT));
-    return ritz_dense_mul_tn(T, &AT, out);
+    return A->colptr ? ritz_sparse_between(T, A, T, out) : RITZ_OK;
 }
 
 ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,

@@ -72,32 +72,94 @@ static void products_agree_for_all_threads_and_kernels(void **state)
     ritz_set_threads(1);
 }
 
-/* |x|'|K||x|. All terms are positive, so that the relative rounding is less than
-   eps times the number of rows. */
-static void energy_terms_are_sums_of_magnitudes(void **state)
+/* |x|'|A||x| */
+static double sum_terms(const ritz_sparse *A, const double *x)
+{
+    double sum = 0.0;
+
+    for (int64_t j = 0; j < A->ncol; j++)
+        for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
+            sum += fabs(x[A->rowind[p]] * A->val[p] * x[j]);
+    return sum;
+}
+
+/* R = K X - M X Lambda against two products. Terms of |x|'|A||x| are positive,
+   so that their relative rounding is less than eps times the number of rows;
+   each row of R has at most 27 terms of K and of M. */
+static void residuals_are_differences_of_products(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
-    RITZ_OWN(ritz_dense) X = {0};
-    double terms[COLUMNS];
+    RITZ_OWN(ritz_dense) X = {0}, KX = {0}, MX = {0};
+    double terms[2][COLUMNS], lambda[COLUMNS];
 
     (void)state;
     lattice_new(EDGE, 1.0, &K, &M);
     fill_columns(POINTS, &X);
+    for (int k = 0; k < COLUMNS; k++)
+        lambda[k] = 0.5 * k - 1.0;
+    assert_ok(ritz_sparse_mul(&K, &X, &KX));
+    assert_ok(ritz_sparse_mul(&M, &X, &MX));
     for (int threads = 1; threads <= 3; threads++) {
+        RITZ_OWN(ritz_dense) R = {0};
+
         ritz_set_threads(threads);
-        assert_ok(ritz_energy_terms(&K, &X, terms));
+        assert_ok(
+            ritz_pairs_subtract(&K, &M, &X, lambda, &R, terms[0], terms[1]));
         for (int64_t k = 0; k < COLUMNS; k++) {
             const double *x = ritz_dense_col(&X, k);
-            double sum = 0.0;
+            double size = 0.0;
 
-            for (int64_t j = 0; j < POINTS; j++)
-                for (int64_t p = K.colptr[j]; p < K.colptr[j + 1]; p++)
-                    sum += fabs(x[K.rowind[p]] * K.val[p] * x[j]);
-            assert_near(terms[k], sum, POINTS * DBL_EPSILON * sum);
+            for (int a = 0; a < 2; a++) {
+                const double sum = sum_terms(a == 0 ? &K : &M, x);
+
+                assert_near(terms[a][k], sum, POINTS * DBL_EPSILON * sum);
+            }
+            for (int64_t i = 0; i < POINTS; i++)
+                size = fmax(size, fabs(x[i]));
+            size *= ritz_sparse_max(&K) + fabs(lambda[k]) * ritz_sparse_max(&M);
+            for (int64_t i = 0; i < POINTS; i++)
+                assert_near(ritz_dense_col(&R, k)[i],
+                            ritz_dense_col(&KX, k)[i] -
+                                lambda[k] * ritz_dense_col(&MX, k)[i],
+                            4.0 * 27.0 * 27.0 * DBL_EPSILON * size);
         }
     }
     ritz_set_threads(1);
-    assert_survives_every_allocation(ritz_energy_terms(&K, &X, terms));
+    {
+        RITZ_OWN(ritz_dense) R = {0};
+
+        assert_survives_every_allocation(
+            ritz_pairs_subtract(&K, &M, &X, lambda, &R, terms[0], terms[1]));
+    }
+}
+
+/* L'K X, L being the first 3 columns of X, against the product of K X; sums of
+   POINTS terms. */
+static void between_is_a_product_of_three(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) X = {0}, KX = {0}, C = {0}, wrong = {0};
+    ritz_dense L = {0};
+
+    (void)state;
+    lattice_new(EDGE, 1.0, &K, &M);
+    fill_columns(POINTS, &X);
+    L = ritz_dense_part(&X, 0, 3);
+    assert_ok(ritz_sparse_mul(&K, &X, &KX));
+    assert_ok(ritz_sparse_between(&L, &K, &X, &C));
+    assert_int_equal(C.nrow, 3);
+    assert_int_equal(C.ncol, COLUMNS);
+    for (int64_t j = 0; j < COLUMNS; j++)
+        for (int64_t i = 0; i < 3; i++)
+            assert_near(ritz_dense_col(&C, j)[i], ritz_dense_dot(&L, i, &KX, j),
+                        POINTS * DBL_EPSILON *
+                            sqrt(sum_terms(&K, ritz_dense_col(&L, i)) *
+                                 sum_terms(&K, ritz_dense_col(&X, j))));
+    ritz_dense_free(&C);
+    assert_survives_every_allocation(ritz_sparse_between(&L, &K, &X, &C));
+    assert_ok(ritz_dense_new(POINTS + 1, 1, &wrong));
+    assert_int_equal(ritz_sparse_between(&L, &K, &wrong, &C),
+                     RITZ_ERR_ARGUMENT);
 }
 
 /* The submatrix of every second row and column, in ascending or descending
@@ -204,7 +266,8 @@ static void worst_residual_is_nan_if_any_residual_is(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(products_agree_for_all_threads_and_kernels),
-    cmocka_unit_test(energy_terms_are_sums_of_magnitudes),
+    cmocka_unit_test(residuals_are_differences_of_products),
+    cmocka_unit_test(between_is_a_product_of_three),
     cmocka_unit_test(submatrices_keep_the_given_order_of_rows),
     cmocka_unit_test(one_counter_counts_below_many_values),
     cmocka_unit_test(worst_residual_is_nan_if_any_residual_is),
