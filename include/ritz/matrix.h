@@ -217,8 +217,18 @@ ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
 ritz_status ritz_sparse_between(const ritz_dense *L, const ritz_sparse *A,
                                 const ritz_dense *T, ritz_dense *out);
 
-/** |T|'|A||T| of a symmetric A, of which T'AT has the rounding. */
+/**
+ * Columns of |T|'|A||T|, of which T'A T has the rounding.
+ *
+ * @param[in]  A      n x n, symmetric, both triangles stored
+ * @param[in]  T      n x r
+ * @param[in]  count  number of columns
+ * @param[in]  at     their numbers; NULL: 0, 1, ..., count - 1
+ * @param[out] out    r x count, freed by the caller
+ * @cost O(count nnz + n r count)
+ */
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
+                              int64_t count, const int64_t *at,
                               ritz_dense *out);
 
 ritz_status ritz_sparse_copy(const ritz_sparse *A, ritz_sparse *out);

@@ -84,7 +84,7 @@ static ritz_status condense_boundary(const ritz_component *component,
 
     RITZ_CHECK(ritz_sparse_condense(&component->K, T_b, &stiffness));
     RITZ_CHECK(ritz_sparse_condense(&component->M, T_b, &mass));
-    RITZ_CHECK(ritz_sparse_terms(&component->K, T_b, &most));
+    RITZ_CHECK(ritz_sparse_terms(&component->K, T_b, T_b->ncol, NULL, &most));
     for (int64_t k = 0; k < most.nrow * most.ncol; k++)
         if (fabs(stiffness.val[k]) <= rounding * most.val[k])
             stiffness.val[k] = 0.0;

@@ -6,6 +6,7 @@
 
 #include <ritz/matrix.h>
 
+#include <cblas.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
@@ -14,6 +15,7 @@
 enum {
     EIGHT = RITZ_TILE, /* columns of a product at a time */
     WIDE = 4 * EIGHT,  /* columns of L'A T at a time: A T is never held whole */
+    ROWS = 32,         /* rows of magnitudes at a time */
     WORTHWHILE = 50000, /* entries of A from which several threads are used */
 };
 
@@ -242,15 +244,88 @@ ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
     return RITZ_OK;
 }
 
-ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
-                              ritz_dense *out)
-{
-    RITZ_OWN(ritz_sparse) size = {0};
-    RITZ_OWN(ritz_dense) columns = {0};
+/* The columns |A||t_j|, j = at[first], at[first + 1], ..., of a symmetric A. */
+typedef struct terms_task {
+    const ritz_sparse *A;
+    const ritz_dense *T;
+    const int64_t *at; /* NULL: j itself */
+    int64_t first;
+    ritz_dense *S;
+    double *room; /* each thread's eight columns of T, row by row */
+} terms_task;
 
-    RITZ_CHECK(ritz_sparse_copy(A, &size));
-    for (int64_t k = 0; k < size.colptr[size.ncol]; k++)
-        size.val[k] = fabs(size.val[k]);
-    RITZ_CHECK(ritz_dense_abs(T, &columns));
-    return ritz_sparse_condense(&size, &columns, out);
+static void add_terms(int thread, int threads, void *task)
+{
+    const terms_task *t = task;
+    const int64_t n = t->A->ncol;
+    double *x = t->room + thread * n * EIGHT;
+
+    for (int64_t k = (int64_t)thread * EIGHT; k < t->S->ncol;
+         k += (int64_t)threads * EIGHT) {
+        const int64_t left = t->S->ncol - k;
+        const int64_t count = left < EIGHT ? left : EIGHT;
+        const double *from[EIGHT] = {NULL};
+        double y[ROWS * EIGHT], size[ROWS * EIGHT];
+
+        for (int64_t c = 0; c < count; c++) {
+            const int64_t j = t->first + k + c;
+
+            from[c] = ritz_dense_col(t->T, t->at ? t->at[j] : j);
+        }
+        for (int64_t i = 0; i < n; i++)
+            for (int64_t c = 0; c < EIGHT; c++)
+                x[i * EIGHT + c] = c < count ? from[c][i] : 0.0;
+        for (int64_t r = 0; r < n; r += ROWS) {
+            const int64_t end = r + ROWS < n ? r + ROWS : n;
+
+            ritz_tiles_here()->terms(r, end, t->A, x, y, size);
+            for (int64_t i = r; i < end; i++)
+                for (int64_t c = 0; c < count; c++)
+                    ritz_dense_col(t->S, k + c)[i] = size[(i - r) * EIGHT + c];
+        }
+    }
+}
+
+/* C += |T|'S */
+static ritz_status add_magnitudes(const ritz_dense *T, const ritz_dense *S,
+                                  ritz_dense *C)
+{
+    enum { PANEL = 1024 }; /* rows of |T| at a time */
+    RITZ_OWN_ARRAY double *rows = NULL;
+
+    RITZ_CHECK_NEW(rows, PANEL * T->ncol);
+    for (int64_t r = 0; r < T->nrow && T->ncol > 0; r += PANEL) {
+        const int64_t count = T->nrow - r < PANEL ? T->nrow - r : PANEL;
+
+        for (int64_t j = 0; j < T->ncol; j++)
+            for (int64_t i = 0; i < count; i++)
+                rows[j * count + i] = fabs(ritz_dense_col(T, j)[r + i]);
+        cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, (int)T->ncol,
+                    (int)S->ncol, (int)count, 1.0, rows, (int)count, S->val + r,
+                    (int)S->nrow, 1.0, C->val, (int)T->ncol);
+    }
+    return RITZ_OK;
+}
+
+ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
+                              int64_t count, const int64_t *at, ritz_dense *out)
+{
+    const bool large = A->colptr[A->ncol] >= WORTHWHILE;
+    const int threads = ritz_team_ready(large ? WIDE / EIGHT : 1);
+    RITZ_OWN(ritz_dense) terms = {0};
+    RITZ_OWN_ARRAY double *room = NULL;
+
+    RITZ_CHECK_NEW(room, threads * A->ncol * EIGHT);
+    RITZ_CHECK(ritz_dense_new(T->ncol, count, &terms));
+    for (int64_t j = 0; j < count; j += WIDE) {
+        RITZ_OWN(ritz_dense) S = {0};
+        ritz_dense part =
+            ritz_dense_part(&terms, j, count - j < WIDE ? count - j : WIDE);
+
+        RITZ_CHECK(ritz_dense_new(A->nrow, part.ncol, &S));
+        ritz_team_run(threads, add_terms, &(terms_task){A, T, at, j, &S, room});
+        RITZ_CHECK(add_magnitudes(T, &S, &part));
+    }
+    RITZ_MOVE(*out, terms);
+    return RITZ_OK;
 }

@@ -80,15 +80,26 @@ static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
                                 ritz_dense *Kr)
 {
     RITZ_OWN(ritz_dense) most = {0};
+    RITZ_OWN_ARRAY int64_t *rigid = NULL;
+    int64_t count = 0;
 
-    RITZ_CHECK(ritz_sparse_terms(K, &basis->T, &most));
+    RITZ_CHECK_NEW(rigid, Kr->ncol);
     for (int64_t j = 0; j < Kr->ncol; j++)
-        for (int64_t i = 0; i < Kr->nrow; i++)
-            if ((may_be_rigid(basis->columns.kind[i]) ||
-                 may_be_rigid(basis->columns.kind[j])) &&
-                fabs(ritz_dense_col(Kr, j)[i]) <=
-                    RITZ_SUM_ROUNDING * ritz_dense_col(&most, j)[i])
-                ritz_dense_col(Kr, j)[i] = 0.0;
+        if (may_be_rigid(basis->columns.kind[j]))
+            rigid[count++] = j;
+    RITZ_CHECK(ritz_sparse_terms(K, &basis->T, count, rigid, &most));
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t i = 0; i < Kr->nrow; i++) {
+            const double rounding =
+                RITZ_SUM_ROUNDING * ritz_dense_col(&most, k)[i];
+            double *column = &ritz_dense_col(Kr, rigid[k])[i];
+            double *row = &ritz_dense_col(Kr, i)[rigid[k]];
+
+            if (fabs(*column) <= rounding)
+                *column = 0.0;
+            if (fabs(*row) <= rounding)
+                *row = 0.0;
+        }
     ritz_dense_symmetrise(Kr);
     return RITZ_OK;
 }
@@ -206,7 +217,10 @@ static ritz_status keep_names(const ritz_component *component,
                               const ritz_basis *basis, ritz_reduced *reduced)
 {
     RITZ_OWN(ritz_dense) T = {0};
+    bool any = false;
 
+    for (int64_t j = 0; j < basis->columns.count; j++)
+        any = any || basis->columns.kind[j] == RITZ_COLUMN_MASSLESS;
     reduced->origin = basis->origin;
     reduced->num_dofs = component->num_dofs;
     memcpy(reduced->units, component->units, sizeof reduced->units);
@@ -218,8 +232,10 @@ static ritz_status keep_names(const ritz_component *component,
     RITZ_CHECK(copy_rows(component->num_dofs, component->dof, &component->grids,
                          &component->elements, &component->recovery, reduced));
     RITZ_CHECK(ritz_inertia_of(component, &reduced->inertia));
-    RITZ_CHECK(copy_mass_columns(basis, &T));
-    return ritz_invariants_of(component, &T, &reduced->invariants);
+    if (any)
+        RITZ_CHECK(copy_mass_columns(basis, &T));
+    return ritz_invariants_of(component, any ? &T : &basis->T,
+                              &reduced->invariants);
 }
 
 ritz_status ritz_reduce(const ritz_component *component,

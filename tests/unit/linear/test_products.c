@@ -72,15 +72,47 @@ static void products_agree_for_all_threads_and_kernels(void **state)
     ritz_set_threads(1);
 }
 
-/* |x|'|A||x| */
-static double sum_terms(const ritz_sparse *A, const double *x)
+/* |x|'|A||y| */
+static double sum_terms(const ritz_sparse *A, const double *x, const double *y)
 {
     double sum = 0.0;
 
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-            sum += fabs(x[A->rowind[p]] * A->val[p] * x[j]);
+            sum += fabs(x[A->rowind[p]] * A->val[p] * y[j]);
     return sum;
+}
+
+/* Columns in any order, more than are taken at a time. */
+static void terms_are_sums_of_magnitudes(void **state)
+{
+    enum { MANY = 2 * COLUMNS };
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) X = {0}, terms = {0};
+    int64_t at[MANY];
+
+    (void)state;
+    lattice_new(EDGE, 1.0, &K, &M);
+    fill_columns(POINTS, &X);
+    for (int64_t k = 0; k < MANY; k++)
+        at[k] = (7 * k + 3) % COLUMNS;
+    for (int threads = 1; threads <= 3; threads++) {
+        RITZ_OWN(ritz_dense) most = {0};
+
+        ritz_set_threads(threads);
+        assert_ok(ritz_sparse_terms(&K, &X, MANY, at, &most));
+        for (int64_t k = 0; k < MANY; k++)
+            for (int64_t i = 0; i < COLUMNS; i++) {
+                const double sum = sum_terms(&K, ritz_dense_col(&X, i),
+                                             ritz_dense_col(&X, at[k]));
+
+                assert_near(ritz_dense_col(&most, k)[i], sum,
+                            POINTS * DBL_EPSILON * sum);
+            }
+    }
+    ritz_set_threads(1);
+    assert_survives_every_allocation(
+        ritz_sparse_terms(&K, &X, MANY, at, &terms));
 }
 
 /* R = K X - M X Lambda against two products. Terms of |x|'|A||x| are positive,
@@ -110,7 +142,7 @@ static void residuals_are_differences_of_products(void **state)
             double size = 0.0;
 
             for (int a = 0; a < 2; a++) {
-                const double sum = sum_terms(a == 0 ? &K : &M, x);
+                const double sum = sum_terms(a == 0 ? &K : &M, x, x);
 
                 assert_near(terms[a][k], sum, POINTS * DBL_EPSILON * sum);
             }
@@ -153,8 +185,8 @@ static void between_is_a_product_of_three(void **state)
         for (int64_t i = 0; i < 3; i++)
             assert_near(ritz_dense_col(&C, j)[i], ritz_dense_dot(&L, i, &KX, j),
                         POINTS * DBL_EPSILON *
-                            sqrt(sum_terms(&K, ritz_dense_col(&L, i)) *
-                                 sum_terms(&K, ritz_dense_col(&X, j))));
+                            sum_terms(&K, ritz_dense_col(&L, i),
+                                      ritz_dense_col(&X, j)));
     ritz_dense_free(&C);
     assert_survives_every_allocation(ritz_sparse_between(&L, &K, &X, &C));
     assert_ok(ritz_dense_new(POINTS + 1, 1, &wrong));
@@ -266,6 +298,7 @@ static void worst_residual_is_nan_if_any_residual_is(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(products_agree_for_all_threads_and_kernels),
+    cmocka_unit_test(terms_are_sums_of_magnitudes),
     cmocka_unit_test(residuals_are_differences_of_products),
     cmocka_unit_test(between_is_a_product_of_three),
     cmocka_unit_test(submatrices_keep_the_given_order_of_rows),
