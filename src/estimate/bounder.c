@@ -3,6 +3,7 @@
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
 #include "linear/general.h"
+#include "linear/residuals.h"
 
 #include <float.h>
 #include <lapacke.h>
@@ -74,6 +75,20 @@ static ritz_status put_product(const ritz_sparse *A, const ritz_bounder *r,
     return RITZ_OK;
 }
 
+/* Put the residuals K X - M X Theta of the trial into V's first columns. */
+static ritz_status put_residuals(const ritz_component *full,
+                                 const ritz_lehmann *trial, ritz_dense *V)
+{
+    RITZ_OWN(ritz_dense) R = {0};
+    RITZ_OWN_ARRAY double *terms = NULL; /* not needed */
+
+    RITZ_CHECK_NEW(terms, 2 * trial->count);
+    RITZ_CHECK(ritz_pairs_subtract(&full->K, &full->M, &trial->X, trial->theta,
+                                   &R, terms, terms + trial->count));
+    ritz_dense_put(&R, 0, 0, V);
+    return RITZ_OK;
+}
+
 /* V = [R b_o c_o D_o K4_o]: all but R less their part M X X' in the trial. */
 static ritz_status stack_vectors(const ritz_estimator *estimator,
                                  ritz_bounder *r, ritz_dense *V)
@@ -86,7 +101,7 @@ static ritz_status stack_vectors(const ritz_estimator *estimator,
     ritz_dense part = {0};
 
     RITZ_CHECK(ritz_dense_new(full->num_dofs, r->size, V));
-    ritz_dense_put(&r->trial->R, 0, 0, V);
+    RITZ_CHECK(put_residuals(full, r->trial, V));
     ritz_dense_put(&io->B, 0, m, V);
     for (int64_t k = 0; k < KINDS; k++)
         ritz_general_place(1.0, C[k], true, 0,
@@ -102,12 +117,18 @@ static ritz_status stack_vectors(const ritz_estimator *estimator,
     return RITZ_OK;
 }
 
-/* G = V'A^-1 V, Q = V'A^-1 M A^-1 V and the norms of V's columns. */
+/* E = A^-1 V, of which the trial has the columns A^-1 R; G = V'E, Q = E'M E and
+   the norms of V's columns. */
 static ritz_status take_forms(ritz_estimator *estimator, ritz_bounder *r)
 {
+    const int64_t m = r->trial->count;
+    ritz_dense others = {0};
+
     RITZ_CHECK(stack_vectors(estimator, r, &r->V));
     RITZ_CHECK(ritz_dense_copy(&r->V, &r->E));
-    RITZ_CHECK(ritz_factor_solve(estimator->A, &r->E));
+    ritz_dense_put(&r->trial->E, 0, 0, &r->E);
+    others = ritz_dense_part(&r->E, m, r->size - m);
+    RITZ_CHECK(ritz_factor_solve(estimator->A, &others));
     RITZ_CHECK(ritz_dense_mul_tn(&r->V, &r->E, &r->G));
     ritz_dense_symmetrise(&r->G);
     RITZ_CHECK(ritz_sparse_condense(&estimator->component->M, &r->E, &r->Q));

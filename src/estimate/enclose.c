@@ -98,11 +98,40 @@ static ritz_status take_ritz_pairs(const ritz_component *full, ritz_dense *Y,
     return RITZ_OK;
 }
 
-/* R = K X - M X Theta, E = A^-1 R and G = R'E; rounding of theta. */
+/*
+ * G = R'A^-1 R, and A^-1 R in the place of R. From the last columns to the
+ * first, as G_ij for i <= j needs R_i and A^-1 R_j only.
+ */
+static ritz_status solve_residuals(ritz_factor *A, ritz_dense *R, ritz_dense *G)
+{
+    enum { SOME = 32 }; /* columns at a time */
+
+    RITZ_CHECK(ritz_dense_new(R->ncol, R->ncol, G));
+    for (int64_t end = R->ncol; end > 0;) {
+        const int64_t first = (end - 1) / SOME * SOME;
+        const ritz_dense before = ritz_dense_part(R, 0, end);
+        const ritz_dense some = ritz_dense_part(R, first, end - first);
+        RITZ_OWN(ritz_dense) E = {0}, RE = {0};
+
+        RITZ_CHECK(ritz_dense_copy(&some, &E));
+        RITZ_CHECK(ritz_factor_solve(A, &E));
+        RITZ_CHECK(ritz_dense_mul_tn(&before, &E, &RE));
+        ritz_dense_put(&RE, 0, first, G);
+        ritz_dense_put(&E, 0, first, R);
+        end = first;
+    }
+    for (int64_t j = 0; j < G->ncol; j++)
+        for (int64_t i = 0; i < j; i++)
+            ritz_dense_col(G, i)[j] = ritz_dense_col(G, j)[i];
+    return RITZ_OK;
+}
+
+/* E = A^-1 R and G = R'E of R = K X - M X Theta; rounding of theta. */
 static ritz_status take_residuals(const ritz_estimator *estimator,
                                   ritz_lehmann *trial)
 {
     const ritz_component *full = estimator->component;
+    RITZ_OWN(ritz_dense) R = {0};
     double largest = 0.0;
 
     if (trial->count > 0)
@@ -110,19 +139,15 @@ static ritz_status take_residuals(const ritz_estimator *estimator,
     RITZ_CHECK_NEW(trial->rounding, trial->count);
     RITZ_CHECK_NEW(trial->mass_terms, trial->count);
     RITZ_CHECK(ritz_pairs_subtract(&full->K, &full->M, &trial->X, trial->theta,
-                                   &trial->R, trial->rounding,
-                                   trial->mass_terms));
+                                   &R, trial->rounding, trial->mass_terms));
     for (int64_t j = 0; j < trial->count; j++)
         trial->rounding[j] =
             RITZ_CANCELLED_ROUNDINGS * DBL_EPSILON *
             (trial->rounding[j] +
              (fabs(trial->theta[j]) - trial->sigma) * trial->mass_terms[j] +
              largest);
-    RITZ_CHECK(ritz_dense_copy(&trial->R, &trial->E));
-    if (trial->count > 0)
-        RITZ_CHECK(ritz_factor_solve(estimator->A, &trial->E));
-    RITZ_CHECK(ritz_dense_mul_tn(&trial->R, &trial->E, &trial->G));
-    ritz_dense_symmetrise(&trial->G);
+    RITZ_CHECK(solve_residuals(estimator->A, &R, &trial->G));
+    RITZ_MOVE(trial->E, R);
     return RITZ_OK;
 }
 
@@ -238,7 +263,6 @@ ritz_status ritz_lehmann_polish(ritz_estimator *estimator,
 void ritz_lehmann_free(ritz_lehmann *trial)
 {
     ritz_dense_free(&trial->X);
-    ritz_dense_free(&trial->R);
     ritz_dense_free(&trial->E);
     ritz_dense_free(&trial->G);
     ritz_dense_free(&trial->Q);

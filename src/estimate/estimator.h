@@ -49,8 +49,7 @@ typedef struct ritz_lehmann {
     /* m, ends of what the reduced model's eigenvalue can be; where rounding may
        exchange modes they share one interval */
     double *reduced_low, *reduced_high;
-    ritz_dense R; /* n x m, residuals K X - M X Theta */
-    ritz_dense E; /* n x m, A^-1 R */
+    ritz_dense E; /* n x m, A^-1 R of the residuals R = K X - M X Theta */
     ritz_dense G; /* m x m, R'A^-1 R */
     /* r x m, Phi_r'T'M X with all modes Phi_r of the reduced model; empty until
        ritz_measuring_predict() needs it */
