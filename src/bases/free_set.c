@@ -67,17 +67,22 @@ static ritz_status choose_shift(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* An upper bound of the kept flexible modes' static response to load j. */
-static double bound_response(const ritz_pairs *modes, const ritz_dense *F,
-                             int64_t j)
+/* most[j]: an upper bound of the kept flexible modes' static response to load
+   j. */
+static ritz_status bound_responses(const ritz_pairs *modes, const ritz_dense *F,
+                                   double *most)
 {
-    double most = 0.0;
+    RITZ_OWN(ritz_dense) share = {0};
 
-    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++)
-        most = fmax(most, ritz_dense_col_max(&modes->Phi, k) *
-                              fabs(ritz_dense_dot(&modes->Phi, k, F, j)) /
-                              modes->lambda[k]);
-    return most;
+    RITZ_CHECK(ritz_dense_mul_tn(&modes->Phi, F, &share));
+    for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
+        const double size =
+            ritz_dense_col_max(&modes->Phi, k) / modes->lambda[k];
+
+        for (int64_t j = 0; j < F->ncol; j++)
+            most[j] = fmax(most[j], size * fabs(ritz_dense_col(&share, j)[k]));
+    }
+    return RITZ_OK;
 }
 
 /*
@@ -103,9 +108,11 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
         double moved = 0.0;
         double size = least[j];
 
-        for (int64_t i = 0; i < G->nrow; i++) {
-            moved = fmax(moved, fabs(now[i] - before[i]));
-            size = fmax(size, fabs(now[i]));
+        for (int64_t i = 0; i < G->nrow; i++) { /* fmax() is a call */
+            const double step = fabs(now[i] - before[i]);
+
+            moved = step > moved ? step : moved;
+            size = fabs(now[i]) > size ? fabs(now[i]) : size;
         }
         if (size > 0.0)
             *change = fmax(*change, moved / size);
@@ -125,9 +132,10 @@ static ritz_status find_scales(const ritz_free_set *set, double tolerance,
 
     RITZ_CHECK(ritz_dense_copy(&set->F, &X));
     RITZ_CHECK(ritz_factor_solve(A, &X));
+    RITZ_CHECK(bound_responses(&set->modes, &set->F, least));
     for (int64_t j = 0; j < X.ncol; j++) {
         own[j] = ritz_dense_dot(&set->F, j, &X, j);
-        least[j] = fmax(tolerance * bound_response(&set->modes, &set->F, j),
+        least[j] = fmax(tolerance * least[j],
                         RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
     }
     return RITZ_OK;
@@ -171,14 +179,15 @@ static ritz_status find_residual(const ritz_request *request,
     return RITZ_OK;
 }
 
-/* Flexibility F' Phi_f Lambda_f^-1 Phi_f' F of the kept modes for load j. */
-static double kept_flexibility(const ritz_free_set *set, int64_t j)
+/* Flexibility f_j' Phi_f Lambda_f^-1 Phi_f' f_j of the kept modes, for load j;
+   share = Phi'F. */
+static double kept_flexibility(const ritz_pairs *modes, const ritz_dense *share,
+                               int64_t j)
 {
-    const ritz_pairs *modes = &set->modes;
     double sum = 0.0;
 
     for (int64_t k = modes->num_rigid; k < modes->Phi.ncol; k++) {
-        double x = ritz_dense_dot(&modes->Phi, k, &set->F, j);
+        const double x = ritz_dense_col(share, j)[k];
 
         sum += x * x / modes->lambda[k];
     }
@@ -264,13 +273,16 @@ static ritz_status choose_independent(const double *response, double tolerance,
     const ritz_dense Psi_a = ritz_dense_part(&set->Psi, 0, a);
     const ritz_dense Psi_b = ritz_dense_part(&set->Psi, a, b);
     RITZ_OWN_ARRAY double *least = NULL;
+    RITZ_OWN(ritz_dense) share = {0};
 
     RITZ_CHECK_NEW(least, a + b);
+    RITZ_CHECK(ritz_dense_mul_tn(&set->modes.Phi, &set->F, &share));
     for (int64_t j = 0; j < a + b; j++) {
-        double own = ritz_dense_dot(&set->F, j, &set->Psi, j);
+        const double own = ritz_dense_dot(&set->F, j, &set->Psi, j);
+        const double kept = kept_flexibility(&set->modes, &share, j);
 
-        least[j] = fmax(tolerance * (own + kept_flexibility(set, j)),
-                        RITZ_FORCE_RELIEVED * response[j]);
+        least[j] =
+            fmax(tolerance * (own + kept), RITZ_FORCE_RELIEVED * response[j]);
     }
     RITZ_CHECK(ritz_statics_choose(&F_a, &Psi_a, least, tolerance, set->keep,
                                    &set->held));

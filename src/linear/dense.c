@@ -216,8 +216,11 @@ double ritz_dense_max(const ritz_dense *A)
 {
     double largest = 0.0;
 
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++)
-        largest = fmax(largest, fabs(A->val[k]));
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++) { /* fmax() is a call */
+        const double size = fabs(A->val[k]);
+
+        largest = size > largest ? size : largest;
+    }
     return largest;
 }
 
@@ -296,13 +299,8 @@ ritz_status ritz_dense_mul_nt(const ritz_dense *A, const ritz_dense *B,
 double ritz_dense_dot(const ritz_dense *A, int64_t i, const ritz_dense *B,
                       int64_t j)
 {
-    const double *a = ritz_dense_col(A, i);
-    const double *b = ritz_dense_col(B, j);
-    double sum = 0.0;
-
-    for (int64_t k = 0; k < A->nrow; k++)
-        sum += a[k] * b[k];
-    return sum;
+    return cblas_ddot((int)A->nrow, ritz_dense_col(A, i), 1,
+                      ritz_dense_col(B, j), 1);
 }
 
 ritz_status ritz_dense_take_out(const ritz_dense *left, const ritz_dense *right,
