@@ -235,6 +235,9 @@
 /* A shift below 0 as part of the first flexible eigenvalue: small enough to
    converge, large enough to keep digits of a free body. */
 #define RITZ_SHIFT_OF_FIRST 1e-2
+/* The shift of the search for modes is used instead if it is at least this part
+   of that: another digit is lost. */
+#define RITZ_SHIFT_LENT 0.1
 /* ... as part of K / M where no flexible mode is known. */
 #define RITZ_SHIFT_OF_SIZE 1e-6
 

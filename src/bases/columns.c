@@ -23,9 +23,10 @@ ritz_status ritz_request_damping(const ritz_request *request, ritz_damping *out)
 
 ritz_status ritz_lowest_modes(const char *what, const char *name,
                               const ritz_sparse *K, const ritz_sparse *M,
-                              const ritz_span *span, ritz_pairs *out)
+                              const ritz_span *span, const ritz_factor_use *use,
+                              ritz_pairs *out)
 {
-    RITZ_CHECK_IN(what, ritz_eigen_sparse(K, M, span, out));
+    RITZ_CHECK_IN(what, ritz_eigen_lending(K, M, span, use, out));
     RITZ_REFUSE_IF(out->Phi.ncol > 0 && out->num_rigid == 0 &&
                        out->lambda[0] <= 0.0,
                    RITZ_ERR_SINGULAR,

@@ -3,6 +3,8 @@
 #ifndef RITZ_BASES_COLUMNS_H
 #define RITZ_BASES_COLUMNS_H
 
+#include "linear/eigen_sparse.h"
+
 #include <ritz/basis.h>
 
 /** The requested damping, or else the component's own. */
@@ -14,12 +16,14 @@ ritz_status ritz_request_damping(const ritz_request *request,
  *
  * @param[in] what  for sentences, "free-interface modes"
  * @param[in] K,M   @p name is what K is called in sentences
+ * @param[in] use   as of ritz_eigen_lending(); NULL: the factor is not used
  * @return RITZ_ERR_SINGULAR if K has a negative eigenvalue, or as
  *         ritz_eigen_sparse
  */
 ritz_status ritz_lowest_modes(const char *what, const char *name,
                               const ritz_sparse *K, const ritz_sparse *M,
-                              const ritz_span *span, ritz_pairs *out);
+                              const ritz_span *span, const ritz_factor_use *use,
+                              ritz_pairs *out);
 
 /** Label columns from @p at on: rigid modes, and others of a kind. */
 void ritz_columns_label(const ritz_pairs *modes, ritz_column_kind kind,

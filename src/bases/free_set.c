@@ -4,7 +4,8 @@
  *
  *     K Psi = G,  G = F - M Phi Phi' F,    Phi' M Psi = 0
  *
- * and is found from one definite factor of A = K + s M, s > 0, by
+ * and is found from one definite factor of A = K + s M, s > 0, that of the search
+ * for modes where its shift suits, by
  *
  *     Psi <- A^-1 (G + s M Psi),
  *
@@ -121,61 +122,120 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
     return RITZ_OK;
 }
 
+/* What residual modes are found from. */
+typedef struct residual_task {
+    const ritz_request *request;
+    ritz_free_set *set;
+    double *response; /* f_j' A^-1 f_j for each load */
+    bool done;        /* with the factor of the search for modes */
+} residual_task;
+
+static void residual_task_free(residual_task *t)
+{
+    RITZ_FREE(t->response);
+}
+
 /*
  * own[j] = f_j' A^-1 f_j, and least[j], the size of column j of Psi below which
  * it is rounding.
  */
-static ritz_status find_scales(const ritz_free_set *set, double tolerance,
-                               ritz_factor *A, double *own, double *least)
+static ritz_status find_scales(const ritz_dense *F, const ritz_pairs *modes,
+                               double tolerance, ritz_factor *A, double *own,
+                               double *least)
 {
     RITZ_OWN(ritz_dense) X = {0};
 
-    RITZ_CHECK(ritz_dense_copy(&set->F, &X));
+    RITZ_CHECK(ritz_dense_copy(F, &X));
     RITZ_CHECK(ritz_factor_solve(A, &X));
-    RITZ_CHECK(bound_responses(&set->modes, &set->F, least));
+    RITZ_CHECK(bound_responses(modes, F, least));
     for (int64_t j = 0; j < X.ncol; j++) {
-        own[j] = ritz_dense_dot(&set->F, j, &X, j);
+        own[j] = ritz_dense_dot(F, j, &X, j);
         least[j] = fmax(tolerance * least[j],
                         RITZ_FORCE_RELIEVED * ritz_dense_col_max(&X, j));
     }
     return RITZ_OK;
 }
 
-/* Psi, and response[j] = f_j' A^-1 f_j for each load. */
-static ritz_status find_residual(const ritz_request *request,
-                                 ritz_free_set *set, double *response)
+/*
+ * Psi and the responses, from the factor A of K + s M.
+ *
+ * @param[in]  slow    as of choose_shift
+ * @param[out] change  of the last sweep: what is left of the iteration
+ */
+static ritz_status sweep_residual(const residual_task *t,
+                                  const ritz_pairs *modes, ritz_factor *A,
+                                  double s, int slow, double *change)
 {
-    const ritz_sparse *M = &request->component->M;
-    const ritz_dense *Phi = &set->modes.Phi;
+    const ritz_sparse *M = &t->request->component->M;
+    const ritz_dense *F = &t->set->F, *Phi = &modes->Phi;
     const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
-    double s = 0.0;
-    double change = 1.0, best = HUGE_VAL;
-    int slow = 0;
-    RITZ_OWN(ritz_sparse) A = {0};
-    RITZ_OWN(ritz_factor) *L = NULL;
-    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0};
+    double best = HUGE_VAL;
+    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0}, Psi = {0};
     RITZ_OWN_ARRAY double *least = NULL;
 
-    RITZ_CHECK_NEW(least, set->F.ncol);
-    RITZ_CHECK(choose_shift(request->component, &set->modes, &s, &slow));
-    RITZ_CHECK(ritz_sparse_add(1.0, &request->component->K, s, M, &A));
-    RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
-    RITZ_CHECK(find_scales(set, request->tolerance, L, response, least));
+    RITZ_CHECK_NEW(least, F->ncol);
+    RITZ_CHECK(
+        find_scales(F, modes, t->request->tolerance, A, t->response, least));
     RITZ_CHECK(ritz_sparse_mul(M, Phi, &MPhi));
-    RITZ_CHECK(ritz_dense_copy(&set->F, &G));
+    RITZ_CHECK(ritz_dense_copy(F, &G));
     RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G));
     RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* a second pass
                                                         suffices */
-    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &set->Psi));
-    for (int k = 0; k < MOST_SWEEPS && change > settled; k++) {
-        RITZ_CHECK(iterate_residual(L, M, s, &G, least, &set->Psi, &change));
-        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &set->Psi));
-        if (k > slow && change > 0.5 * best)
+    RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &Psi));
+    *change = 1.0;
+    for (int k = 0; k<MOST_SWEEPS && * change> settled; k++) {
+        RITZ_CHECK(iterate_residual(A, M, s, &G, least, &Psi, change));
+        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
+        if (k > slow && *change > 0.5 * best)
             break; /* rounding has become larger than contraction */
-        best = fmin(best, change);
+        best = fmin(best, *change);
     }
+    ritz_dense_replace(&t->set->Psi, &Psi);
+    return RITZ_OK;
+}
+
+/* Psi and the responses, with a factor made for them. */
+static ritz_status find_residual(const residual_task *t)
+{
+    const ritz_component *component = t->request->component;
+    double s = 0.0;
+    double change = 0.0;
+    int slow = 0;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *L = NULL;
+
+    RITZ_CHECK(choose_shift(component, &t->set->modes, &s, &slow));
+    RITZ_CHECK(ritz_sparse_add(1.0, &component->K, s, &component->M, &A));
+    RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
+    RITZ_CHECK(sweep_residual(t, &t->set->modes, L, s, slow, &change));
     RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
                    "residual attachment modes still change by %.1e", change);
+    return RITZ_OK;
+}
+
+/*
+ * Psi and the responses with the factor of the search for modes, if its shift
+ * suits: each sweep multiplies the part of a mode that is left out by -sigma /
+ * (lambda - sigma), and of a small shift digits are lost.
+ */
+static ritz_status borrow_factor(void *of, const ritz_pairs *found,
+                                 int64_t count, ritz_factor *A, double sigma)
+{
+    residual_task *t = of;
+    const int64_t rigid = found->num_rigid, all = found->Phi.ncol;
+    const ritz_pairs kept = {.Phi = ritz_dense_part(&found->Phi, 0, count),
+                             .lambda = found->lambda,
+                             .num_rigid = rigid < count ? rigid : count};
+    double change = 0.0;
+
+    t->done = false;
+    if (rigid >= all || t->set->F.ncol == 0 ||
+        -sigma < RITZ_SHIFT_LENT * RITZ_SHIFT_OF_FIRST * found->lambda[rigid] ||
+        -sigma >
+            RITZ_SHIFT_OF_FIRST * found->lambda[count < all ? count : all - 1])
+        return RITZ_OK;
+    RITZ_CHECK(sweep_residual(t, &kept, A, -sigma, 0, &change));
+    t->done = change <= RITZ_SWEEPS_UNSETTLED;
     return RITZ_OK;
 }
 
@@ -293,19 +353,29 @@ static ritz_status choose_independent(const double *response, double tolerance,
     return RITZ_OK;
 }
 
-/* Residual modes of all loads, M- and K-orthogonal to the modes of the set;
-   none without loads. */
-static ritz_status find_statics(const ritz_request *request, ritz_free_set *set)
+/* The loads whose residual modes are wanted, and room for what is known of
+   each. */
+static ritz_status collect_loads(residual_task *t)
 {
-    RITZ_OWN_ARRAY double *response = NULL;
+    ritz_free_set *set = t->set;
 
-    if (ritz_loads_count(request, set->loads) == 0)
+    if (ritz_loads_count(t->request, set->loads) == 0)
         return RITZ_OK;
-    RITZ_CHECK(ritz_loads_collect(request, set->loads, &set->F, &set->dof));
+    RITZ_CHECK(ritz_loads_collect(t->request, set->loads, &set->F, &set->dof));
     RITZ_CHECK_NEW(set->keep, set->F.ncol);
-    RITZ_CHECK_NEW(response, set->F.ncol);
-    RITZ_CHECK(find_residual(request, set, response));
-    return choose_independent(response, request->tolerance, set);
+    RITZ_CHECK_NEW(t->response, set->F.ncol);
+    return RITZ_OK;
+}
+
+/* Residual modes of the loads, M- and K-orthogonal to the modes of the set;
+   none without loads. */
+static ritz_status find_statics(const residual_task *t)
+{
+    if (t->set->F.ncol == 0)
+        return RITZ_OK;
+    if (!t->done)
+        RITZ_CHECK(find_residual(t));
+    return choose_independent(t->response, t->request->tolerance, t->set);
 }
 
 ritz_status ritz_free_set_new(const ritz_request *request, int loads,
@@ -315,14 +385,17 @@ ritz_status ritz_free_set_new(const ritz_request *request, int loads,
     const ritz_span span = ritz_request_span(request);
     RITZ_OWN(ritz_free_set)
     set = {.loads = loads, .interface = joined ? request->attached.count : 0};
+    RITZ_OWN(residual_task) task = {.request = request, .set = &set};
+    const ritz_factor_use use = {borrow_factor, &task};
     RITZ_OWN(ritz_dofs) rest = {0};
 
     /* refuses attached dofs that are out of range or repeated */
     RITZ_CHECK(
         ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_CHECK(collect_loads(&task));
     RITZ_CHECK(ritz_lowest_modes("free-interface modes", "K", &component->K,
-                                 &component->M, &span, &set.modes));
-    RITZ_CHECK(find_statics(request, &set));
+                                 &component->M, &span, &use, &set.modes));
+    RITZ_CHECK(find_statics(&task));
     RITZ_MOVE(*out, set);
     return RITZ_OK;
 }
@@ -357,8 +430,10 @@ ritz_status ritz_free_set_beside(const ritz_request *request, int loads,
                                  ritz_pairs *modes, ritz_basis *out)
 {
     RITZ_OWN(ritz_free_set) set = {.loads = loads};
+    RITZ_OWN(residual_task) task = {.request = request, .set = &set};
 
     RITZ_MOVE(set.modes, *modes);
-    RITZ_CHECK(find_statics(request, &set));
+    RITZ_CHECK(collect_loads(&task));
+    RITZ_CHECK(find_statics(&task));
     return ritz_free_set_join(request, &set, RITZ_COLUMN_STATIC, out);
 }

@@ -89,7 +89,7 @@ static ritz_status make_loaded_interface(const ritz_request *request,
     RITZ_CHECK(add_neighbour(&component->M, &request->neighbour->M,
                              &request->attached, &M));
     RITZ_CHECK(ritz_lowest_modes("loaded modes", "K with its neighbour", &K, &M,
-                                 &span, &pairs));
+                                 &span, NULL, &pairs));
     loaded.K = K;
     loaded.M = M;
     with_neighbour.component = &loaded;

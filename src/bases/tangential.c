@@ -365,7 +365,7 @@ static ritz_status find_modes(irka_search *s)
     int64_t flexible = 0;
 
     RITZ_CHECK(ritz_lowest_modes("modes to begin with", "K", &component->K,
-                                 &component->M, &span, modes));
+                                 &component->M, &span, NULL, modes));
     if (wanted < 0)
         wanted = count_modes(modes, request->up_to_hz);
     flexible = component->num_dofs - modes->num_rigid;

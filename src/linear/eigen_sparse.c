@@ -61,6 +61,7 @@ typedef struct search {
     int64_t misses; /* how often the count found more */
     bool all;       /* found holds every finite mode */
     const engine *engine;
+    const ritz_factor_use *use; /* of the factor before the count, or NULL */
     ritz_pairs found;
 } search;
 
@@ -480,6 +481,13 @@ static ritz_status ask_more(search *s, int64_t more)
     return RITZ_OK;
 }
 
+static ritz_status lend_factor(const search *s, int64_t end)
+{
+    if (!s->use || !s->S.A)
+        return RITZ_OK;
+    return s->use->call(s->use->of, &s->found, end, s->S.A, s->S.sigma);
+}
+
 /* By number: whether all modes are found, and none below them is missed. */
 static ritz_status prove_number(search *s, int64_t *end, bool *done)
 {
@@ -492,6 +500,7 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
         s->ask += P->num_rigid + SPARE; /* no flexible mode was found yet */
         return RITZ_OK;
     }
+    RITZ_CHECK(lend_factor(s, *end));
     at = s->all ? *end : ritz_pairs_gap(P, *end);
     count = at;
     if (P->Phi.ncol > 0 && !s->span->uncounted)
@@ -525,18 +534,17 @@ static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
         s->found.proven_to = (double)NAN;
         *done = below < P->Phi.ncol || s->all;
         s->ask *= *done ? 1 : 2;
-        return RITZ_OK;
+        return *done ? lend_factor(s, *end) : RITZ_OK;
     }
     RITZ_REFUSE_IF(below > s->target, RITZ_ERR_CONVERGENCE,
                    "%" PRId64 " modes were found where there are %" PRId64,
                    below, s->target);
     *done = below == s->target;
     s->found.proven_to = s->limit;
-    if (!*done) {
-        s->misses++;
-        RITZ_CHECK(ask_more(s, s->target - below));
-    }
-    return RITZ_OK;
+    if (*done)
+        return lend_factor(s, *end);
+    s->misses++;
+    return ask_more(s, s->target - below);
 }
 
 /* Search until the pairs that were found are proven to be all; *end of them
@@ -604,10 +612,13 @@ static ritz_status begin_search(search *s)
 
 static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_factor **L, const ritz_span *span,
-                              ritz_pairs *out)
+                              const ritz_factor_use *use, ritz_pairs *out)
 {
     RITZ_OWN(search)
-    s = {.span = span, .S = {.K = K, .M = M}, .engine = &engines[span->engine]};
+    s = {.span = span,
+         .S = {.K = K, .M = M},
+         .engine = &engines[span->engine],
+         .use = use};
     int64_t end = 0;
 
     if (L)
@@ -650,7 +661,7 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
 /* @param[in,out] L  the factor of K, which may be taken over; NULL: none */
 static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
                                ritz_factor **L, const ritz_span *span,
-                               ritz_pairs *out)
+                               const ritz_factor_use *use, ritz_pairs *out)
 {
     const int64_t n = K->nrow;
 
@@ -663,20 +674,27 @@ static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
                    span->up_to_hz);
     if (n <= SMALL || (n <= MEDIUM && span->modes > n / 4))
         return by_lapack(K, M, span, out);
-    return by_lanczos(K, M, L, span, out);
+    return by_lanczos(K, M, L, span, use, out);
 }
 
 ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
                               const ritz_span *span, ritz_pairs *out)
 {
-    return find_lowest(K, M, NULL, span, out);
+    return find_lowest(K, M, NULL, span, NULL, out);
+}
+
+ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
+                               const ritz_span *span,
+                               const ritz_factor_use *use, ritz_pairs *out)
+{
+    return find_lowest(K, M, NULL, span, use, out);
 }
 
 ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
                                 ritz_factor **L, const ritz_span *span,
                                 ritz_pairs *out)
 {
-    ritz_status status = find_lowest(K, M, L, span, out);
+    ritz_status status = find_lowest(K, M, L, span, NULL, out);
 
     ritz_factor_free(L);
     return status;

@@ -16,6 +16,28 @@ ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
                                 ritz_factor **L, const ritz_span *span,
                                 ritz_pairs *out);
 
+/** Something that needs the factor of a search as well as its pairs. */
+typedef struct ritz_factor_use {
+    /**
+     * @param[in] found  the search's pairs
+     * @param[in] count  the first so many of them were requested
+     * @param[in] A      the factor of K - sigma M
+     */
+    ritz_status (*call)(void *of, const ritz_pairs *found, int64_t count,
+                        ritz_factor *A, double sigma);
+    void *of;
+} ritz_factor_use;
+
+/**
+ * ritz_eigen_sparse() that lends its factor: use->call is called when the pairs
+ * are found, before they are counted. Pairs that the count proves to be
+ * incomplete are searched for again, and use->call is called again. It is not
+ * called where no factor is left: with dense methods and with slices.
+ */
+ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
+                               const ritz_span *span,
+                               const ritz_factor_use *use, ritz_pairs *out);
+
 /*
  * Decisions of a search for the lowest pairs, of ritz_eigen_sparse() and of the
  * one by several processes (libexec/slepc/modes.c).

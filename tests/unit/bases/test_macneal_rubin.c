@@ -88,6 +88,56 @@ static void residual_modes_are_orthogonal_to_kept_ones(void **state)
 }
 
 /*
+ * K Psi = F - M Phi Phi'F and Phi' M Psi = 0 of a bar that is large enough for
+ * the search to lend its factor: 40 modes to the shift of the search, so that
+ * sweeps contract; with 2 modes a factor is made.
+ */
+static void residual_modes_of_a_long_bar_solve_their_equation(void **state)
+{
+    enum { LONG = 800, ROWS = LONG + 1 };
+    const int64_t numbers[] = {2, 40};
+    int64_t ends[] = {0, LONG};
+    ritz_component bar = {0};
+
+    (void)state;
+    assert_ok(bar_component(LONG, &bar));
+    for (size_t k = 0; k < 2; k++) {
+        ritz_request request = RITZ_REQUEST_NONE;
+        RITZ_OWN(ritz_basis) basis = {0};
+        RITZ_OWN(ritz_dense) KT = {0}, MT = {0}, C = {0};
+        ritz_dense Psi = {0};
+
+        request.component = &bar;
+        request.attached = (ritz_dofs){2, ends};
+        request.modes = numbers[k];
+        assert_ok(
+            ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
+        assert_int_equal(basis.T.ncol, 1 + numbers[k] + 2);
+        assert_ok(ritz_sparse_mul(&bar.K, &basis.T, &KT));
+        assert_ok(ritz_sparse_mul(&bar.M, &basis.T, &MT));
+        Psi = ritz_dense_part(&basis.T, 1 + numbers[k], 2);
+        assert_ok(ritz_dense_mul_tn(&MT, &Psi, &C));
+        for (int64_t j = 0; j < 2; j++) {
+            const double *KPsi = ritz_dense_col(&KT, 1 + numbers[k] + j);
+            const double size = ritz_dense_col_max(&Psi, j);
+            double G[ROWS] = {0.0};
+
+            G[ends[j]] = 1.0;
+            for (int64_t m = 0; m <= numbers[k]; m++) {
+                const double share = ritz_dense_col(&basis.T, m)[ends[j]];
+
+                assert_near(ritz_dense_col(&C, j)[m], 0.0, 1e-13 * size);
+                for (int64_t i = 0; i < ROWS; i++)
+                    G[i] -= ritz_dense_col(&MT, m)[i] * share;
+            }
+            for (int64_t i = 0; i < ROWS; i++) /* |K||Psi| is 4 size / h */
+                assert_near(KPsi[i], G[i], 4.0 * LONG * 1e-13 * size);
+        }
+    }
+    ritz_component_free(&bar);
+}
+
+/*
  * Psi of equation (6) as it is printed, with a support at dof r: S is the
  * inverse of K without row and column r, bordered by zeros.
  */
@@ -276,6 +326,7 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(columns_are_rigid_then_normal_then_residual),
+    cmocka_unit_test(residual_modes_of_a_long_bar_solve_their_equation),
     cmocka_unit_test(residual_modes_are_orthogonal_to_kept_ones),
     cmocka_unit_test(the_formula_with_any_support_gives_the_same),
     cmocka_unit_test(flexible_static_gain_is_exact),

@@ -1,5 +1,7 @@
 #include "testing.h"
 
+#include "linear/eigen_sparse.h"
+
 #include <ritz/matrix.h>
 
 #include <float.h>
@@ -552,6 +554,75 @@ static void a_mechanism_without_mass_is_refused(void **state)
     release(&p);
 }
 
+/* What a search lent its factor for. */
+typedef struct lent {
+    const pencil *p;
+    int calls;
+    int64_t count;
+    double worst; /* |x - A^-1 (K - sigma M) x| of x = 1, 2, ... */
+    ritz_status answer;
+} lent;
+
+static ritz_status use_factor(void *of, const ritz_pairs *found, int64_t count,
+                              ritz_factor *A, double sigma)
+{
+    lent *l = of;
+    RITZ_OWN(ritz_dense) x = {0}, y = {0}, mass = {0};
+
+    RITZ_CHECK(ritz_dense_new(l->p->K.nrow, 1, &x));
+    for (int64_t i = 0; i < x.nrow; i++)
+        x.val[i] = (double)(i + 1) / (double)x.nrow;
+    RITZ_CHECK(ritz_sparse_mul(&l->p->K, &x, &y));
+    RITZ_CHECK(ritz_sparse_mul(&l->p->M, &x, &mass));
+    ritz_dense_add(-sigma, &mass, &y);
+    RITZ_CHECK(ritz_factor_solve(A, &y));
+    ritz_dense_add(-1.0, &x, &y);
+    l->worst = ritz_dense_max(&y);
+    l->calls++;
+    l->count = count;
+    assert_true(count <= found->Phi.ncol);
+    return l->answer;
+}
+
+/* By number and by frequency, with and without a count; not by LAPACK. */
+static void the_factor_is_lent_while_it_is_there(void **state)
+{
+    const double fifth = ritz_eigen_hertz(bar_eigenvalue(700, 5)) * 1.01;
+    const ritz_span spans[] = {
+        {.modes = 5},
+        {.modes = 5, .uncounted = true},
+        {.modes = -1, .up_to_hz = fifth},
+        {.modes = -1, .up_to_hz = fifth, .uncounted = true}};
+    pencil p = bars(1, 700, 0), small = bars(1, 20, 0);
+
+    (void)state;
+    for (size_t k = 0; k < sizeof spans / sizeof *spans; k++) {
+        lent l = {.p = &p};
+        const ritz_factor_use use = {use_factor, &l};
+        RITZ_OWN(ritz_pairs) P = {0};
+
+        assert_ok(ritz_eigen_lending(&p.K, &p.M, &spans[k], &use, &P));
+        assert_int_equal(P.Phi.ncol, 6);
+        assert_int_equal(l.calls, 1);
+        assert_int_equal(l.count, 6);
+        /* |A| |A^-1| eps of a bar, whose mass at the shift is small */
+        assert_near(l.worst, 0.0, 700.0 * 700.0 * 700.0 * DBL_EPSILON);
+    }
+    {
+        lent l = {.p = &p, .answer = RITZ_ERR_CONVERGENCE};
+        const ritz_factor_use use = {use_factor, &l};
+        RITZ_OWN(ritz_pairs) P = {0};
+
+        assert_int_equal(ritz_eigen_lending(&p.K, &p.M, &spans[0], &use, &P),
+                         RITZ_ERR_CONVERGENCE);
+        l = (lent){.p = &small};
+        assert_ok(ritz_eigen_lending(&small.K, &small.M, &spans[0], &use, &P));
+        assert_int_equal(l.calls, 0);
+    }
+    release(&p);
+    release(&small);
+}
+
 static ritz_status lowest(const pencil *p, int64_t modes)
 {
     ritz_pairs P = {0};
@@ -604,6 +675,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(inertia_counts_modes),
     cmocka_unit_test(what_is_no_pencil_is_refused),
     cmocka_unit_test(a_mechanism_without_mass_is_refused),
+    cmocka_unit_test(the_factor_is_lent_while_it_is_there),
     cmocka_unit_test(no_allocation_failure_leaks),
     cmocka_unit_test(nothing_has_no_modes),
 };
