@@ -218,6 +218,18 @@ ritz_status ritz_sparse_between(const ritz_dense *L, const ritz_sparse *A,
                                 const ritz_dense *T, ritz_dense *out);
 
 /**
+ * A X, and |A||X|, of which it has the rounding.
+ *
+ * @param[in]  A     n x n, symmetric, both triangles stored
+ * @param[in]  X     n x k
+ * @param[out] AX    n x k, freed by the caller; NULL: not wanted
+ * @param[out] size  n x k, freed by the caller
+ * @cost  one pass over A for every eight columns
+ */
+ritz_status ritz_sparse_mul_sizes(const ritz_sparse *A, const ritz_dense *X,
+                                  ritz_dense *AX, ritz_dense *size);
+
+/**
  * Columns of |T|'|A||T|, of which T'A T has the rounding.
  *
  * @param[in]  A      n x n, symmetric, both triangles stored

@@ -346,15 +346,18 @@ ritz_status ritz_krylov_respond(const ritz_krylov *S,
                                 const ritz_krylov_point *point,
                                 const ritz_forces *forces, ritz_dense *R)
 {
+    const bool free = S->body->Phi.ncol > 0;
     RITZ_OWN(ritz_dense) PG = {0}, size = {0}, X = {0};
 
-    RITZ_CHECK(ritz_dense_copy(&forces->G, &PG));
-    RITZ_CHECK(ritz_dense_copy(&forces->size, &size));
-    RITZ_CHECK(add_rigid_size(S->body, &forces->G, &size));
-    RITZ_CHECK(relieve_forces(S->body, &PG));
-    RITZ_CHECK(ritz_dense_copy(&PG, &X));
+    RITZ_CHECK(ritz_dense_copy(&forces->G, &X));
+    if (free) {
+        RITZ_CHECK(ritz_dense_copy(&forces->size, &size));
+        RITZ_CHECK(add_rigid_size(S->body, &forces->G, &size));
+        RITZ_CHECK(relieve_forces(S->body, &X));
+        RITZ_CHECK(ritz_dense_copy(&X, &PG));
+    }
     RITZ_CHECK(respond_elastic(S->body, point->A, &X));
-    clear_rounding(&PG, &size, &X);
+    clear_rounding(free ? &PG : &forces->G, free ? &size : &forces->size, &X);
     RITZ_MOVE(*R, X);
     return RITZ_OK;
 }
@@ -374,10 +377,7 @@ static ritz_status find_inertia(const ritz_krylov *S,
 {
     const ritz_dense Q = ritz_dense_part(&S->set.V, point->first, point->count);
 
-    RITZ_CHECK(ritz_sparse_mul(S->body->M, &Q, &out->G));
-    RITZ_CHECK(ritz_dense_new(Q.nrow, Q.ncol, &out->size));
-    ritz_krylov_size(S->body->M, &Q, 1.0, &out->size);
-    return RITZ_OK;
+    return ritz_sparse_mul_sizes(S->body->M, &Q, &out->G, &out->size);
 }
 
 /* Append the response to the forces at a point. */
@@ -485,10 +485,8 @@ static ritz_status measure_orthonormality(const ritz_krylov *S, double *worst,
     const ritz_dense V = ritz_dense_part(&S->set.V, 0, S->set.count);
     RITZ_OWN(ritz_dense) WV = {0}, size = {0}, G = {0};
 
-    RITZ_CHECK(ritz_sparse_mul(W, &V, &WV));
+    RITZ_CHECK(ritz_sparse_mul_sizes(W, &V, &WV, &size));
     RITZ_CHECK(ritz_dense_mul_tn(&V, &WV, &G));
-    RITZ_CHECK(ritz_dense_new(V.nrow, V.ncol, &size));
-    ritz_krylov_size(W, &V, 1.0, &size);
     for (int64_t j = 0; j < G.ncol; j++)
         ritz_dense_col(&G, j)[j] -= 1.0;
     *worst = ritz_dense_max(&G);

@@ -222,35 +222,36 @@ static void drop_columns(column_block *b, double tolerance)
     b->R.ncol = b->WR.ncol = kept;
 }
 
-/* |r|' |W| |r| */
-static double largest_energy(const ritz_sparse *W, const double *r, int64_t n)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < n; j++) {
-        if (!W)
-            sum += r[j] * r[j];
-        for (int64_t p = W ? W->colptr[j] : 0; W && p < W->colptr[j + 1]; p++)
-            sum += fabs(r[W->rowind[p]] * W->val[p] * r[j]);
-    }
-    return sum;
-}
-
 /*
- * Columns of the incoming block are scaled to one, and zero columns dropped.
+ * Columns of the incoming block R are scaled to one, and zero columns dropped.
  * Entries of r are known to eps, so that e' W e <= eps^2 |r|' |W| |r| is
  * rounding.
  */
-static void scale_block(const ritz_sparse *W, column_block *b)
+static ritz_status scale_block(const ritz_sparse *W, column_block *b)
 {
     const double eps = RITZ_ENTRY_ROUNDING * DBL_EPSILON;
+    RITZ_OWN(ritz_dense) size = {0};
 
+    if (W && b->R.nrow > 0)
+        RITZ_CHECK(ritz_sparse_mul_sizes(W, &b->R, &b->WR, &size));
+    else
+        RITZ_CHECK(ritz_dense_copy(&b->R, &b->WR));
+    for (int64_t j = 0; j < b->R.ncol; j++) {
+        const double *r = ritz_dense_col(&b->R, j);
+        const double *all = ritz_dense_col(W && size.val ? &size : &b->R, j);
+        double sum = 0.0;
+
+        for (int64_t i = 0; i < b->R.nrow; i++)
+            sum += fabs(r[i] * all[i]);
+        b->least[j] = eps * eps * sum;
+        b->energy[j] = 1.0;
+    }
     drop_columns(b, 0.0);
     for (int64_t j = 0; j < b->R.ncol; j++) {
+        b->least[j] /= b->energy[j]; /* of the column scaled to one */
         b->energy[j] = 1.0;
-        b->least[j] =
-            eps * eps * largest_energy(W, ritz_dense_col(&b->R, j), b->R.nrow);
     }
+    return RITZ_OK;
 }
 
 /* A with room for `room` columns, of which `count` are kept. */
@@ -308,11 +309,15 @@ static ritz_status take_columns(ritz_orthonormal *set, column_block *b,
     return RITZ_OK;
 }
 
-/* One round: what is left of the block against V, and its strong columns. */
+/*
+ * One round: what is left of the block against V, and its strong columns.
+ * set->left becomes the number of strong columns beyond @p most.
+ */
 static ritz_status go_round(ritz_orthonormal *set, column_block *b,
                             int64_t most, int64_t *order, bool *taken)
 {
     RITZ_OWN(ritz_dense) G = {0};
+    int64_t count = 0;
 
     RITZ_CHECK(orthogonalise_block(set, b));
     drop_columns(b, set->tolerance);
@@ -320,9 +325,10 @@ static ritz_status go_round(ritz_orthonormal *set, column_block *b,
         return RITZ_OK;
     RITZ_CHECK(ritz_dense_mul_tn(&b->R, &b->WR, &G));
     ritz_dense_symmetrise(&G);
-    return take_columns(
-        set, b, ritz_pivots_find(&G, RITZ_PIVOT_STRONG, RITZ_TIE, most, order),
-        order, taken);
+    count = ritz_pivots_find(&G, RITZ_PIVOT_STRONG, RITZ_TIE, most, order);
+    for (int64_t j = 0; j < G.ncol; j++)
+        set->left += ritz_dense_col(&G, j)[j] > RITZ_PIVOT_STRONG;
+    return take_columns(set, b, count, order, taken);
 }
 
 ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
@@ -336,18 +342,18 @@ ritz_status ritz_orthonormal_append(ritz_orthonormal *set, ritz_dense *R,
     RITZ_CHECK_NEW(b.energy, R->ncol);
     RITZ_CHECK_NEW(b.least, R->ncol);
     RITZ_CHECK_NEW(order, R->ncol);
-    RITZ_CHECK(ritz_dense_new(R->nrow, R->ncol, &b.WR));
-    RITZ_CHECK(weigh_columns(set->W, R, &b.WR));
     for (int64_t j = 0; j < R->ncol; j++) {
         b.source[j] = j;
-        b.energy[j] = 1.0;
         if (taken)
             taken[j] = false;
     }
-    scale_block(set->W, &b);
+    RITZ_CHECK(scale_block(set->W, &b));
+    set->left = 0;
     while (b.R.ncol > 0 && set->count - before < most)
         RITZ_CHECK(
             go_round(set, &b, most - (set->count - before), order, taken));
+    if (set->left > 0)
+        return RITZ_OK;
     RITZ_CHECK(orthogonalise_block(set, &b));
     drop_columns(&b, set->tolerance);
     set->left = b.R.ncol;

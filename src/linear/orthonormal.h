@@ -10,7 +10,8 @@ typedef struct ritz_orthonormal {
     int64_t count;        /* columns that are set; there may be room for more */
     ritz_dense V, WV;     /* n x room */
     const ritz_sparse *W; /* borrowed; NULL: the identity */
-    int64_t left;         /* of the last block: new, but more than was wanted */
+    int64_t left;         /* of the last block: at least so many columns were
+                             new, but more than was wanted; 0: none */
     double tolerance;     /* of what is new in a column, relative, in W */
 } ritz_orthonormal;
 

@@ -244,46 +244,67 @@ ritz_status ritz_sparse_condense(const ritz_sparse *A, const ritz_dense *T,
     return RITZ_OK;
 }
 
-/* The columns |A||t_j|, j = at[first], at[first + 1], ..., of a symmetric A. */
-typedef struct terms_task {
+/* A X and |A||X|, eight columns at a time; the one that is not wanted is NULL. */
+typedef struct sizes_task {
     const ritz_sparse *A;
-    const ritz_dense *T;
-    const int64_t *at; /* NULL: j itself */
-    int64_t first;
-    ritz_dense *S;
-    double *room; /* each thread's eight columns of T, row by row */
-} terms_task;
+    const ritz_dense *X;
+    ritz_dense *AX, *size;
+    double *room; /* each thread's eight columns of X, row by row */
+} sizes_task;
 
-static void add_terms(int thread, int threads, void *task)
+/* Rows of eight columns become rows of columns k, k + 1, ... of to. */
+static void put_rows(int64_t rows, int64_t count, const double *y, int64_t row,
+                     int64_t k, ritz_dense *to)
 {
-    const terms_task *t = task;
+    for (int64_t c = 0; to && c < count; c++)
+        for (int64_t i = 0; i < rows; i++)
+            ritz_dense_col(to, k + c)[row + i] = y[i * EIGHT + c];
+}
+
+static void multiply_sizes(int thread, int threads, void *task)
+{
+    const sizes_task *t = task;
     const int64_t n = t->A->ncol;
     double *x = t->room + thread * n * EIGHT;
 
-    for (int64_t k = (int64_t)thread * EIGHT; k < t->S->ncol;
+    for (int64_t k = (int64_t)thread * EIGHT; k < t->X->ncol;
          k += (int64_t)threads * EIGHT) {
-        const int64_t left = t->S->ncol - k;
+        const int64_t left = t->X->ncol - k;
         const int64_t count = left < EIGHT ? left : EIGHT;
-        const double *from[EIGHT] = {NULL};
         double y[ROWS * EIGHT], size[ROWS * EIGHT];
 
-        for (int64_t c = 0; c < count; c++) {
-            const int64_t j = t->first + k + c;
-
-            from[c] = ritz_dense_col(t->T, t->at ? t->at[j] : j);
-        }
         for (int64_t i = 0; i < n; i++)
             for (int64_t c = 0; c < EIGHT; c++)
-                x[i * EIGHT + c] = c < count ? from[c][i] : 0.0;
+                x[i * EIGHT + c] = c < count ? t->X->val[i + (k + c) * n] : 0.0;
         for (int64_t r = 0; r < n; r += ROWS) {
-            const int64_t end = r + ROWS < n ? r + ROWS : n;
+            const int64_t rows = n - r < ROWS ? n - r : ROWS;
 
-            ritz_tiles_here()->terms(r, end, t->A, x, y, size);
-            for (int64_t i = r; i < end; i++)
-                for (int64_t c = 0; c < count; c++)
-                    ritz_dense_col(t->S, k + c)[i] = size[(i - r) * EIGHT + c];
+            ritz_tiles_here()->terms(r, r + rows, t->A, x, y, size);
+            put_rows(rows, count, y, r, k, t->AX);
+            put_rows(rows, count, size, r, k, t->size);
         }
     }
+}
+
+ritz_status ritz_sparse_mul_sizes(const ritz_sparse *A, const ritz_dense *X,
+                                  ritz_dense *AX, ritz_dense *size)
+{
+    const int64_t groups = (X->ncol + EIGHT - 1) / EIGHT;
+    const bool large = A->colptr[A->ncol] >= WORTHWHILE;
+    const int threads = ritz_team_ready(large ? groups : 1);
+    RITZ_OWN(ritz_dense) product = {0}, sizes = {0};
+    RITZ_OWN_ARRAY double *room = NULL;
+
+    RITZ_CHECK_NEW(room, threads * A->ncol * EIGHT);
+    if (AX)
+        RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, &product));
+    RITZ_CHECK(ritz_dense_new(X->nrow, X->ncol, &sizes));
+    ritz_team_run(threads, multiply_sizes,
+                  &(sizes_task){A, X, AX ? &product : NULL, &sizes, room});
+    if (AX)
+        RITZ_MOVE(*AX, product);
+    RITZ_MOVE(*size, sizes);
+    return RITZ_OK;
 }
 
 /* C += |T|'S */
@@ -310,21 +331,20 @@ static ritz_status add_magnitudes(const ritz_dense *T, const ritz_dense *S,
 ritz_status ritz_sparse_terms(const ritz_sparse *A, const ritz_dense *T,
                               int64_t count, const int64_t *at, ritz_dense *out)
 {
-    const bool large = A->colptr[A->ncol] >= WORTHWHILE;
-    const int threads = ritz_team_ready(large ? WIDE / EIGHT : 1);
     RITZ_OWN(ritz_dense) terms = {0};
-    RITZ_OWN_ARRAY double *room = NULL;
 
-    RITZ_CHECK_NEW(room, threads * A->ncol * EIGHT);
     RITZ_CHECK(ritz_dense_new(T->ncol, count, &terms));
     for (int64_t j = 0; j < count; j += WIDE) {
-        RITZ_OWN(ritz_dense) S = {0};
-        ritz_dense part =
-            ritz_dense_part(&terms, j, count - j < WIDE ? count - j : WIDE);
+        const int64_t some = count - j < WIDE ? count - j : WIDE;
+        ritz_dense part = ritz_dense_part(&terms, j, some);
+        RITZ_OWN(ritz_dense) X = {0}, size = {0};
 
-        RITZ_CHECK(ritz_dense_new(A->nrow, part.ncol, &S));
-        ritz_team_run(threads, add_terms, &(terms_task){A, T, at, j, &S, room});
-        RITZ_CHECK(add_magnitudes(T, &S, &part));
+        if (at)
+            RITZ_CHECK(ritz_dense_pick(T, some, at + j, &X));
+        else
+            RITZ_CHECK(ritz_dense_columns(T, j, some, &X));
+        RITZ_CHECK(ritz_sparse_mul_sizes(A, &X, NULL, &size));
+        RITZ_CHECK(add_magnitudes(T, &size, &part));
     }
     RITZ_MOVE(*out, terms);
     return RITZ_OK;
