@@ -11,25 +11,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-ritz_status ritz_dense_new(int64_t nrow, int64_t ncol, ritz_dense *out)
+/* A zero matrix, or one of any numbers for those who write all of it. */
+static ritz_status allocate_dense(int64_t nrow, int64_t ncol, bool zeroed,
+                                  ritz_dense *out)
 {
-    int64_t count = 0;
-
     RITZ_REFUSE_IF(nrow < 0 || ncol < 0 || nrow > INT_MAX || ncol > INT_MAX,
                    RITZ_ERR_ARGUMENT,
                    "a dense matrix cannot be %" PRId64 " x %" PRId64, nrow,
                    ncol);
-    count = nrow * ncol;
-    RITZ_CHECK_NEW(out->val, count);
+    if (zeroed)
+        RITZ_CHECK_NEW(out->val, nrow * ncol);
+    else
+        RITZ_CHECK_RAW(out->val, nrow * ncol);
     out->nrow = nrow;
     out->ncol = ncol;
     return RITZ_OK;
 }
 
+ritz_status ritz_dense_new(int64_t nrow, int64_t ncol, ritz_dense *out)
+{
+    return allocate_dense(nrow, ncol, true, out);
+}
+
 ritz_status ritz_dense_columns(const ritz_dense *A, int64_t first,
                                int64_t count, ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
+    RITZ_CHECK(allocate_dense(A->nrow, count, false, out));
     if (A->nrow * count > 0)
         memcpy(out->val, ritz_dense_col(A, first),
                (size_t)(A->nrow * count) * sizeof *out->val);
@@ -44,7 +51,7 @@ ritz_dense ritz_dense_part(const ritz_dense *A, int64_t first, int64_t count)
 ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
                             const int64_t *row, ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(count, A->ncol, out));
+    RITZ_CHECK(allocate_dense(count, A->ncol, false, out));
     for (int64_t j = 0; j < A->ncol; j++)
         for (int64_t i = 0; i < count; i++)
             ritz_dense_col(out, j)[i] = ritz_dense_col(A, j)[row[i]];
@@ -54,7 +61,7 @@ ritz_status ritz_dense_rows(const ritz_dense *A, int64_t count,
 ritz_status ritz_dense_pick(const ritz_dense *A, int64_t count,
                             const int64_t *col, ritz_dense *out)
 {
-    RITZ_CHECK(ritz_dense_new(A->nrow, count, out));
+    RITZ_CHECK(allocate_dense(A->nrow, count, false, out));
     for (int64_t j = 0; j < count && A->nrow > 0; j++)
         memcpy(ritz_dense_col(out, j), ritz_dense_col(A, col[j]),
                (size_t)A->nrow * sizeof *out->val);
@@ -107,7 +114,7 @@ ritz_status ritz_dense_beside(const ritz_dense *A, const ritz_dense *B,
 {
     int64_t n = A->nrow > 0 ? A->nrow : B->nrow;
 
-    RITZ_CHECK(ritz_dense_new(n, A->ncol + B->ncol, out));
+    RITZ_CHECK(allocate_dense(n, A->ncol + B->ncol, false, out));
     ritz_dense_put(A, 0, 0, out);
     ritz_dense_put(B, 0, A->ncol, out);
     return RITZ_OK;
@@ -270,7 +277,7 @@ static ritz_status multiply_dense(CBLAS_TRANSPOSE left, const ritz_dense *A,
 
     RITZ_REFUSE_IF(p != rows, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " columns meet %" PRId64 " rows", p, rows);
-    RITZ_CHECK(ritz_dense_new(m, q, C));
+    RITZ_CHECK(allocate_dense(m, q, p == 0, C));
     if (m > 0 && p > 0 && q > 0)
         cblas_dgemm(CblasColMajor, left, right, (int)m, (int)q, (int)p, 1.0,
                     A->val, (int)A->nrow, B->val, (int)B->nrow, 0.0, C->val,
