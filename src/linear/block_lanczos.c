@@ -1,5 +1,6 @@
 #include "linear/block_lanczos.h"
 
+#include "base/alloc.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 #include "linear/blocks.h"
@@ -9,6 +10,7 @@
 #include <lapacke.h>
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -445,21 +447,47 @@ static void combine_ritz(const block_lanczos *L, int64_t c, int64_t end,
     }
 }
 
-/* X := Ritz vectors of the `count` largest theta, rows in the order of M. */
+/* The first `kept` blocks of V become the Ritz vectors of the largest theta,
+   those before `end`. R as for combine_ritz(). */
+static ritz_status keep_ritz(block_lanczos *L, int64_t kept, int64_t end,
+                             const double *R)
+{
+    const int64_t part = (L->blocks + 1) * SQUARE;
+    RITZ_OWN_ARRAY double *C = NULL, *room = NULL;
+
+    RITZ_CHECK_NEW(C, kept * part);
+    RITZ_CHECK_NEW(room, ritz_blocks_room(&L->on, kept));
+    for (int64_t g = 0; g < kept; g++)
+        combine_ritz(L, g * B, end, R, C + g * part);
+    ritz_blocks_combine(&L->on, L->blocks + (R ? 1 : 0), kept, part, C, room,
+                        L->V);
+    return RITZ_OK;
+}
+
+/* Free the blocks of V from `kept` on; a failure costs only memory. */
+static void shorten_basis(block_lanczos *L, int64_t kept)
+{
+    double *shorter = realloc(L->V, (size_t)(kept * L->n * B) * sizeof *L->V);
+
+    L->V = shorter ? shorter : L->V;
+}
+
+/* X := Ritz vectors of the `count` largest theta, rows in the order of M. They
+   replace V, so that memory does not hold both. */
 static ritz_status extract_vectors(block_lanczos *L, int64_t count,
                                    const double *R, ritz_dense *X)
 {
     const int64_t *order = ritz_factor_order(L->S->A);
+    const int64_t kept = (count + B - 1) / B;
 
+    RITZ_CHECK(keep_ritz(L, kept, count, R));
+    shorten_basis(L, kept);
     RITZ_CHECK(ritz_dense_new(L->n, count, X));
-    for (int64_t c = 0; c < count; c += B) {
-        combine_ritz(L, c, count, R, L->C);
-        memset(L->W, 0, (size_t)(L->n * B) * sizeof *L->W);
-        add_blocks(L, 0, L->blocks + 1, L->C, L->W);
+    for (int64_t c = 0; c < count; c += B)
         for (int64_t i = 0; i < L->n; i++)
             for (int64_t k = 0; k < B && c + k < count; k++)
-                X->val[order[i] + (c + k) * L->n] = L->W[i * B + k];
-    }
+                X->val[order[i] + (c + k) * L->n] =
+                    block_at(L, c / B)[i * B + k];
     return RITZ_OK;
 }
 
@@ -480,14 +508,9 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
     const int64_t m = L->blocks * B;
     const int64_t ld = L->room * B;
     const int64_t kept = blocks_kept(L);
-    const int64_t part = (L->blocks + 1) * SQUARE;
-    RITZ_OWN_ARRAY double *C = NULL, *room = NULL;
 
-    RITZ_CHECK_NEW(C, kept * part);
-    RITZ_CHECK_NEW(room, ritz_blocks_room(&L->on, kept));
+    RITZ_CHECK(keep_ritz(L, kept, m, NULL));
     memset(L->T, 0, (size_t)(ld * ld) * sizeof *L->T);
-    for (int64_t g = 0; g < kept; g++)
-        combine_ritz(L, g * B, m, NULL, C + g * part);
     for (int64_t c = 0; c < kept * B; c++) {
         double q[B];
 
@@ -498,7 +521,6 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
             L->T[c + (kept * B + i) * ld] = q[i];
         }
     }
-    ritz_blocks_combine(&L->on, L->blocks, kept, part, C, room, L->V);
     memcpy(block_at(L, kept), block_at(L, L->blocks),
            (size_t)(L->n * B) * sizeof *L->V);
     L->blocks = kept + 1;

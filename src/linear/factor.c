@@ -34,7 +34,6 @@ struct ritz_factor {
     int64_t n;
     int64_t *order; /* row k of the factor is row order[k] of A */
     ritz_supernodal *S;
-    double *x; /* n x 16 right-hand sides, row by row, for one solve */
 };
 
 /* What CHOLMOD needs while it factors. */
@@ -230,8 +229,7 @@ static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
     return report_failure(C, A->nrow);
 }
 
-/* Refuse A if it is not square; allocate what solves need, and copy the
-   diagonal of A to *a. */
+/* Refuse A if it is not square; copy its diagonal to *a. */
 static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
                                 double **a)
 {
@@ -241,7 +239,6 @@ static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
     RITZ_CHECK_NEW(*a, A->nrow);
     RITZ_CHECK(copy_diagonal(A, *a));
     F->n = A->nrow;
-    RITZ_CHECK_NEW(F->x, F->n * RITZ_SOLVE_WIDTH);
     return RITZ_OK;
 }
 
@@ -324,11 +321,11 @@ ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
     return RITZ_OK;
 }
 
-/* Copies `count` columns of X to F->x, or back: F->x has `width` numbers for
-   each row, and its rows are in the factor's order. */
+/* Copies `count` columns of X to x, or back: x has `width` numbers for each
+   row, and its rows are in the factor's order. */
 typedef struct exchange {
     const ritz_factor *F;
-    double *X;
+    double *X, *x;
     int64_t count, width;
 } exchange;
 
@@ -338,7 +335,7 @@ static void take_columns(int thread, int64_t from, int64_t to, void *task)
 
     (void)thread;
     for (int64_t k = from; k < to; k++) {
-        double *x = e->F->x + k * e->width;
+        double *x = e->x + k * e->width;
 
         for (int64_t j = 0; j < e->count; j++)
             x[j] = e->X[e->F->order[k] + j * e->F->n];
@@ -354,23 +351,35 @@ static void return_columns(int thread, int64_t from, int64_t to, void *task)
     (void)thread;
     for (int64_t k = from; k < to; k++)
         for (int64_t j = 0; j < e->count; j++)
-            e->X[e->F->order[k] + j * e->F->n] = e->F->x[k * e->width + j];
+            e->X[e->F->order[k] + j * e->F->n] = e->x[k * e->width + j];
+}
+
+/* The width of the block in which so many columns, or some of them, are solved
+   for. */
+static int64_t width_for(int64_t columns)
+{
+    return columns <= RITZ_SOLVE_WIDTH / 2 ? RITZ_SOLVE_WIDTH / 2
+                                           : RITZ_SOLVE_WIDTH;
 }
 
 ritz_status ritz_factor_solve(ritz_factor *F, ritz_dense *X)
 {
+    RITZ_OWN_ARRAY double *x = NULL;
+
     RITZ_REFUSE_IF(X->nrow != F->n, RITZ_ERR_ARGUMENT,
                    "a factor of %" PRId64 " rows meets %" PRId64, F->n,
                    X->nrow);
-    for (int64_t j = 0; F->n > 0 && j < X->ncol;) {
+    if (F->n == 0 || X->ncol == 0)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(x, F->n * width_for(X->ncol));
+    for (int64_t j = 0; j < X->ncol;) {
         const int threads = ritz_supernodal_threads(F->S);
         const int64_t left = X->ncol - j;
-        exchange e = {F, ritz_dense_col(X, j), left, RITZ_SOLVE_WIDTH};
+        exchange e = {F, ritz_dense_col(X, j), x, left, width_for(left)};
 
-        e.width = left <= RITZ_SOLVE_WIDTH / 2 ? e.width / 2 : e.width;
         e.count = left < e.width ? left : e.width;
         ritz_team_over(threads, F->n, take_columns, &e);
-        ritz_supernodal_solve(F->S, e.width, F->x);
+        ritz_supernodal_solve(F->S, e.width, x);
         ritz_team_over(threads, F->n, return_columns, &e);
         j += e.count;
     }
@@ -397,7 +406,7 @@ void ritz_factor_free(ritz_factor **F)
     if (!*F)
         return;
     ritz_supernodal_free(&(*F)->S);
-    RITZ_FREE((*F)->order, (*F)->x);
+    RITZ_FREE((*F)->order);
     free(*F);
     *F = NULL;
 }
