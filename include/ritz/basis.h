@@ -146,6 +146,10 @@ typedef struct ritz_request {
     double tolerance;   /* relative, below which a column is dependent */
     ritz_choice choice; /* shifts, loads, inner product and so on */
     const ritz_neighbour *neighbour; /* loaded interface; NULL: none */
+    /* the component again if its K and M may be freed once the method needs
+       them no more, so that memory does not hold them beside parts of them;
+       NULL: they are kept */
+    ritz_component *owned;
 } ritz_request;
 
 /* A request without number of modes or frequency. */

@@ -135,8 +135,8 @@ static ritz_status find_constraint_modes(partition *s)
     return RITZ_OK;
 }
 
-/* Matrices, the factor and the constraint modes. */
-static ritz_status hold_boundary(const ritz_request *request, partition *out)
+/* The matrices of a partition. */
+static ritz_status split_matrices(const ritz_request *request, partition *out)
 {
     const ritz_sparse *K = &request->component->K;
     const ritz_sparse *M = &request->component->M;
@@ -151,10 +151,33 @@ static ritz_status hold_boundary(const ritz_request *request, partition *out)
         ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
     RITZ_CHECK(
         ritz_sparse_extract(M, i->count, i->at, i->count, i->at, &s.M_ii));
+    RITZ_MOVE(*out, s);
+    return RITZ_OK;
+}
+
+/* Matrices, the factor and the constraint modes. */
+static ritz_status hold_boundary(const ritz_request *request, partition *out)
+{
+    RITZ_OWN(partition) s = {0};
+
+    RITZ_CHECK(split_matrices(request, &s));
     RITZ_CHECK(factor_interior(&s));
     RITZ_CHECK(find_constraint_modes(&s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
+}
+
+/* Free K and M of the component, of which the partition has copies, if the
+   caller allows it. Characteristic constraint modes and a test of the damping
+   matrix still need them. */
+static void release_matrices(const ritz_request *request)
+{
+    ritz_component *owned = request->owned;
+
+    if (!owned || request->choice.interface_modes > 0 || owned->D.colptr)
+        return;
+    ritz_sparse_free(&owned->K);
+    ritz_sparse_free(&owned->M);
 }
 
 /*
@@ -330,7 +353,10 @@ static ritz_status make_fixed(const ritz_request *request, int usual,
     RITZ_OWN(interior_statics) statics = {0};
     RITZ_OWN(ritz_pairs) modes = {0};
 
-    RITZ_CHECK(hold_boundary(request, &s));
+    RITZ_CHECK(split_matrices(request, &s));
+    release_matrices(request);
+    RITZ_CHECK(factor_interior(&s));
+    RITZ_CHECK(find_constraint_modes(&s));
     RITZ_CHECK_IN("static vectors",
                   respond_interior(request, &s, usual, &statics));
     if (request->choice.interface_modes > 0 && s.b->count > 0)

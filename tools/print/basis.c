@@ -238,7 +238,7 @@ ritz_status basis_run(cli_run *run, basis_options *given)
     if (m.kind == MODEL_STATES)
         request->space = &m.states;
     else
-        request->component = &m.component;
+        request->component = request->owned = &m.component;
     if (request->component && method->uses & RITZ_USES_ATTACHED)
         RITZ_CHECK_IN(path, ritz_component_attached(&m.component, given->ports,
                                                     &attached));

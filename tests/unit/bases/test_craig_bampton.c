@@ -186,6 +186,40 @@ static void requests_that_make_no_sense_are_refused(void **state)
     assert_non_null(strstr(ritz_error_message(), "is 'craig-bampton' meant?"));
 }
 
+static void matrices_that_are_not_needed_are_freed_if_owned(void **state)
+{
+    fixture *f = *state;
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    ritz_request request = f->request;
+
+    assert_ok(bar_component(ELEMENTS, &bar));
+    request.component = request.owned = &bar;
+    assert_ok(ritz_basis_make(&ritz_method_craig_bampton, &request, &basis));
+    assert_null(bar.K.val);
+    assert_null(bar.M.val);
+    assert_memory_equal(basis.T.val, f->basis.T.val,
+                        (size_t)(DOFS * basis.T.ncol) * sizeof *basis.T.val);
+}
+
+static void matrices_are_kept_where_they_are_still_needed(void **state)
+{
+    fixture *f = *state;
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) few = {0}, damped = {0};
+    ritz_request request = f->request;
+
+    assert_ok(bar_component(ELEMENTS, &bar));
+    request.component = request.owned = &bar;
+    request.choice.interface_modes = 1;
+    assert_ok(ritz_basis_make(&ritz_method_craig_bampton, &request, &few));
+    assert_non_null(bar.K.val);
+    request.choice.interface_modes = 0;
+    assert_ok(ritz_sparse_copy(&bar.K, &bar.D));
+    assert_ok(ritz_basis_make(&ritz_method_craig_bampton, &request, &damped));
+    assert_non_null(bar.M.val);
+}
+
 static void no_allocation_failure_leaks(void **state)
 {
     fixture *f = *state;
@@ -205,6 +239,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(boundary_must_be_a_set_of_dofs),
     cmocka_unit_test(free_rigid_body_motion_is_refused_by_name),
     cmocka_unit_test(requests_that_make_no_sense_are_refused),
+    cmocka_unit_test(matrices_that_are_not_needed_are_freed_if_owned),
+    cmocka_unit_test(matrices_are_kept_where_they_are_still_needed),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
