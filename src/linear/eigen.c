@@ -347,6 +347,50 @@ static ritz_status project_pairs(const ritz_sparse *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
+/* Whether K and M are finite diagonals, and every dof has mass. */
+static bool is_decoupled(const ritz_dense *K, const ritz_dense *M)
+{
+    for (int64_t j = 0; j < K->ncol; j++) {
+        const double *k = ritz_dense_col(K, j), *m = ritz_dense_col(M, j);
+
+        if (!(m[j] > 0.0) || !isfinite(m[j]) || !isfinite(k[j]))
+            return false;
+        for (int64_t i = 0; i < K->nrow; i++)
+            if (i != j && (k[i] != 0.0 || m[i] != 0.0))
+                return false;
+    }
+    return true;
+}
+
+/*
+ * lambda = K_jj / M_jj, x = e_j M_jj^-1/2: systems in modal coordinates. They
+ * are in ascending order as a rule, so that one insertion each sorts them.
+ */
+static ritz_status solve_decoupled(const ritz_dense *K, const ritz_dense *M,
+                                   double *lambda, ritz_dense *X)
+{
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
+    int64_t n = K->ncol;
+
+    RITZ_CHECK_NEW(dof, n);
+    RITZ_CHECK(ritz_dense_new(n, n, X));
+    for (int64_t j = 0; j < n; j++) {
+        double value = ritz_dense_col(K, j)[j] / ritz_dense_col(M, j)[j];
+        int64_t k = j;
+
+        for (; k > 0 && lambda[k - 1] > value; k--) {
+            lambda[k] = lambda[k - 1];
+            dof[k] = dof[k - 1];
+        }
+        lambda[k] = value;
+        dof[k] = j;
+    }
+    for (int64_t k = 0; k < n; k++)
+        ritz_dense_col(X, k)[dof[k]] =
+            1.0 / sqrt(ritz_dense_col(M, dof[k])[dof[k]]);
+    return RITZ_OK;
+}
+
 static ritz_status solve_pencil(const ritz_dense *K, const ritz_dense *M,
                                 double *lambda, ritz_dense *X)
 {
@@ -374,13 +418,14 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
     RITZ_CHECK_NEW(pairs.lambda, n);
     RITZ_CHECK_NEW(pairs.residual, n);
-    if (n > 0)
+    if (is_decoupled(K, M)) {
+        RITZ_CHECK(solve_decoupled(K, M, pairs.lambda, &pairs.Phi));
+    } else {
         RITZ_CHECK(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
-    else
-        RITZ_CHECK(ritz_dense_new(0, 0, &pairs.Phi));
+        ritz_dense_orient(&pairs.Phi);
+        RITZ_CHECK(find_residuals(K, M, &pairs));
+    }
     n = pairs.Phi.ncol;
-    ritz_dense_orient(&pairs.Phi);
-    RITZ_CHECK(find_residuals(K, M, &pairs));
     pairs.num_rigid = ritz_eigen_rigid(
         n, pairs.lambda, n > 0 ? fmax(pairs.lambda[n - 1], 0.0) : 0.0);
     snprintf(pairs.engine, sizeof pairs.engine, "dense LAPACK");

@@ -60,6 +60,42 @@ static void heavy_and_light_masses_keep_the_lowest_mode(void **state)
     assert_near(P.lambda[3], high, 16.0 * DBL_EPSILON * high);
 }
 
+/* Both are divided by the entries of M alone, so that each digit is right. */
+static void diagonal_pencils_have_the_quotients_of_their_entries(void **)
+{
+    double stiffness[9] = {12.0, 0, 0, 0, 0.0, 0, 0, 0, -3.0};
+    double mass[9] = {4.0, 0, 0, 0, 1.0, 0, 0, 0, 0.25};
+    const ritz_dense K = {3, 3, stiffness}, M = {3, 3, mass};
+    const double lambda[] = {-12.0, 0.0, 3.0};
+    const double Phi[] = {0, 0, 2.0, 0, 1.0, 0, 0.5, 0, 0};
+    RITZ_OWN(ritz_pairs) P = {0};
+
+    assert_ok(ritz_eigen_dense(&K, &M, &P));
+    assert_memory_equal(P.lambda, lambda, sizeof lambda);
+    assert_memory_equal(P.Phi.val, Phi, sizeof Phi);
+    assert_true(P.residual[0] == 0.0);
+}
+
+/* An entry off the diagonal is not overlooked in either matrix, nor is a dof
+   without mass, whose eigenvalue is infinite. */
+static void nearly_diagonal_pencils_are_solved_as_any_other(void **)
+{
+    double diagonal[4] = {1.0, 0, 0, 1.0}, coupled[4] = {1.0, 0.5, 0.5, 1.0};
+    double massless[4] = {1.0, 0, 0, 0.0};
+    const ritz_dense I = {2, 2, diagonal}, C = {2, 2, coupled};
+    const ritz_dense none = {2, 2, massless};
+    RITZ_OWN(ritz_pairs) stiff = {0}, heavy = {0}, less = {0};
+
+    assert_ok(ritz_eigen_dense(&C, &I, &stiff));
+    assert_near(stiff.lambda[0], 0.5, 4 * DBL_EPSILON);
+    assert_near(stiff.lambda[1], 1.5, 4 * DBL_EPSILON);
+    assert_ok(ritz_eigen_dense(&I, &C, &heavy));
+    assert_near(heavy.lambda[0], 1.0 / 1.5, 4 * DBL_EPSILON);
+    assert_near(heavy.lambda[1], 1.0 / 0.5, 4 * DBL_EPSILON);
+    assert_ok(ritz_eigen_dense(&I, &none, &less));
+    assert_int_equal(less.Phi.ncol, 1);
+}
+
 typedef struct spectrum {
     int64_t count;
     double lambda[10];
@@ -128,6 +164,8 @@ static void a_mass_that_is_not_definite_is_refused(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(diagonal_pencils_have_the_quotients_of_their_entries),
+    cmocka_unit_test(nearly_diagonal_pencils_are_solved_as_any_other),
     cmocka_unit_test(low_modes_of_dense_pencils_keep_their_digits),
     cmocka_unit_test(heavy_and_light_masses_keep_the_lowest_mode),
     cmocka_unit_test(only_a_gap_makes_a_mode_rigid),
