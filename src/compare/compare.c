@@ -14,6 +14,7 @@
 #include "assembly/assembly.h"
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/blas_threads.h"
 #include "model/squares.h"
 
 #include <ritz/base.h>
@@ -299,6 +300,7 @@ ritz_status ritz_compare_tolerances(const ritz_stage *stage,
                                     int64_t count, const double *tolerance,
                                     ritz_tolerance_row **out)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     ritz_tolerance_row *made = NULL;
     ritz_status status = RITZ_OK;
 
@@ -406,6 +408,7 @@ static ritz_status refuse_forces(const ritz_stage *stage)
 
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     RITZ_OWN(ritz_comparison) c = {.next_drop = nan("")};
     RITZ_OWN(ritz_rows) rows = {.stage = stage, .listed = &c.first_system};
 

@@ -7,6 +7,7 @@
 #include "fit/fitter.h"
 
 #include "base/alloc.h"
+#include "linear/blas_threads.h"
 
 #include <ritz/check.h>
 
@@ -401,6 +402,7 @@ ritz_status ritz_fit_measure_at(ritz_fitter *f, const ritz_fit_joined *joined,
                                 const ritz_fit_place *place, int points,
                                 bool bounds, ritz_fit_candidate *candidate)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     RITZ_OWN(ritz_fit_model)
     m = {.parts = joined->parts.ncol > 0 ? &joined->parts : NULL};
 

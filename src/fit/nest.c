@@ -9,6 +9,7 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
+#include "linear/blas_threads.h"
 
 #include <ritz/base.h>
 #include <ritz/matrix.h>
@@ -489,6 +490,7 @@ static ritz_status cut_candidate(ritz_fitter *f,
                                  int64_t columns, int64_t *found,
                                  ritz_bodies *out)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
     RITZ_OWN(nesting) n = {0};
 
     *found = 0;

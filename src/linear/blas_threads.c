@@ -21,6 +21,17 @@ int ritz_blas_threads(int threads)
     return before;
 }
 
+ritz_blas_single ritz_blas_single_new(void)
+{
+    return (ritz_blas_single){ritz_blas_threads(1)};
+}
+
+void ritz_blas_single_free(ritz_blas_single *single)
+{
+    ritz_blas_threads(single->before);
+    single->before = 0;
+}
+
 /* OpenBLAS is set first: if it expects several threads and OpenMP starts none,
    it waits for ever. */
 ritz_blas_setting ritz_blas_alone(double operations)

@@ -12,6 +12,16 @@
  */
 int ritz_blas_threads(int threads);
 
+/* While it lives the BLAS uses one thread: for work on matrices of a few hundred
+   rows, after which further threads would look for more until they sleep. */
+typedef struct ritz_blas_single {
+    int before; /* number of threads */
+} ritz_blas_single;
+
+/** One thread from now on, until ritz_blas_single_free(): RITZ_OWN it. */
+ritz_blas_single ritz_blas_single_new(void);
+void ritz_blas_single_free(ritz_blas_single *single);
+
 /* Settings before ritz_blas_alone(). */
 typedef struct ritz_blas_setting {
     int threads; /* number of threads of OpenBLAS; 0: was not changed */
