@@ -236,6 +236,10 @@ bool ritz_engine_fits(const ritz_method *method, ritz_engine engine);
 ritz_status ritz_request_check(const ritz_method *method,
                                const ritz_request *request);
 
+/** The options of a request, "modes 12", as ritz_basis_make signs a basis with
+ * them. */
+void ritz_request_print(const ritz_request *request, char out[RITZ_NAME_SIZE]);
+
 /** Make a basis and sign it with method, options and reference. */
 ritz_status ritz_basis_make(const ritz_method *method,
                             const ritz_request *request, ritz_basis *out);

@@ -91,7 +91,8 @@ double ritz_measure_error(const char *name, double value);
 
 /**
  * Error over tolerance, 1 or less where the limit is met. Of a limit that
- * allows nothing: 0 where there is no error, else 1 + error.
+ * allows nothing: 0 where there is no error, else 1 + error. Infinite if @p
+ * value is not a number.
  */
 double ritz_measure_ratio(const char *name, double value, double limit);
 

@@ -60,18 +60,22 @@ ritz_status ritz_request_check(const ritz_method *method,
     return RITZ_OK;
 }
 
+void ritz_request_print(const ritz_request *request, char out[RITZ_NAME_SIZE])
+{
+    out[0] = '\0';
+    if (request->modes >= 0)
+        snprintf(out, RITZ_NAME_SIZE, "modes %" PRId64, request->modes);
+    else if (request->up_to_hz > 0.0)
+        snprintf(out, RITZ_NAME_SIZE, "up-to-hz %.17g", request->up_to_hz);
+    ritz_choice_print(&request->choice, RITZ_NAME_SIZE, out);
+}
+
 static void sign_basis(const ritz_method *method, const ritz_request *request,
                        ritz_origin *origin)
 {
     snprintf(origin->method, RITZ_NAME_SIZE, "%s", method->name);
     snprintf(origin->reference, RITZ_NAME_SIZE, "%s", method->reference);
-    if (request->modes >= 0)
-        snprintf(origin->options, RITZ_NAME_SIZE, "modes %" PRId64,
-                 request->modes);
-    else if (request->up_to_hz > 0.0)
-        snprintf(origin->options, RITZ_NAME_SIZE, "up-to-hz %.17g",
-                 request->up_to_hz);
-    ritz_choice_print(&request->choice, RITZ_NAME_SIZE, origin->options);
+    ritz_request_print(request, origin->options);
 }
 
 ritz_status ritz_basis_make(const ritz_method *method,

@@ -27,8 +27,6 @@
 /* The first basis has FOR_EACH modes for each mode of the full model in the
    band, and AND_MORE beyond these. */
 enum { FOR_EACH = 4, AND_MORE = 24 };
-/* Most entries that T of all kept bases may have: half a gigabyte. */
-static const int64_t most_entries = INT64_C(1) << 26;
 
 bool ritz_fit_stays(ritz_column_kind kind)
 {
@@ -102,17 +100,26 @@ static ritz_choice choose_options(const ritz_fitter *fitter,
     return choice;
 }
 
-static ritz_status reduce_component(const ritz_fitter *f,
-                                    const ritz_method *method, int64_t modes,
-                                    ritz_reduced *out)
+/* The request for a basis of the component; all of it is borrowed. */
+static ritz_request request_basis(const ritz_fitter *f,
+                                  const ritz_method *method, int64_t modes)
 {
     ritz_request request = RITZ_REQUEST_NONE;
-    RITZ_OWN(ritz_basis) basis = {0};
 
     request.component = f->component;
     request.modes = modes;
     request.choice = choose_options(f, method);
-    request.attached = f->attached; /* borrowed */
+    request.attached = f->attached;
+    return request;
+}
+
+static ritz_status reduce_component(const ritz_fitter *f,
+                                    const ritz_method *method, int64_t modes,
+                                    ritz_reduced *out)
+{
+    const ritz_request request = request_basis(f, method, modes);
+    RITZ_OWN(ritz_basis) basis = {0};
+
     RITZ_CHECK(ritz_basis_make(method, &request, &basis));
     return ritz_reduce(f->component, &basis, out);
 }
@@ -234,18 +241,42 @@ static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
     return more > modes ? more : modes;
 }
 
-/* If all kept bases together are too large, drop those of other methods. */
+static int64_t count_entries(const ritz_fit_family *family)
+{
+    return family->whole.T.nrow * family->whole.T.ncol;
+}
+
+/* The kept basis of another method that has not been used for longest; NULL:
+   there is none. */
+static ritz_fit_family *find_oldest(const ritz_fitter *f,
+                                    const ritz_fit_family *keep)
+{
+    ritz_fit_family *oldest = NULL;
+
+    for (int64_t k = 0; k < f->num_families; k++) {
+        ritz_fit_family *family = &f->family[k];
+
+        if (family != keep && count_entries(family) > 0 &&
+            (!oldest || family->used < oldest->used))
+            oldest = family;
+    }
+    return oldest;
+}
+
+/* While all kept bases together are too large, drop the one of another method
+   that has not been used for longest. */
 static void make_room(ritz_fitter *f, const ritz_fit_family *keep)
 {
+    ritz_fit_family *oldest = find_oldest(f, keep);
     int64_t held = 0;
 
     for (int64_t k = 0; k < f->num_families; k++)
-        held += f->family[k].whole.T.nrow * f->family[k].whole.T.ncol;
-    for (int64_t k = 0; k < f->num_families && held > most_entries; k++)
-        if (&f->family[k] != keep) {
-            ritz_reduced_free(&f->family[k].whole);
-            ritz_dense_free(&f->family[k].parts);
-        }
+        held += count_entries(&f->family[k]);
+    for (; held > f->most_entries && oldest; oldest = find_oldest(f, keep)) {
+        held -= count_entries(oldest);
+        ritz_reduced_free(&oldest->whole);
+        ritz_dense_free(&oldest->parts);
+    }
 }
 
 /* Make the basis for a candidate with @p modes modes. If one with more modes
@@ -307,15 +338,19 @@ ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
 {
     RITZ_OWN_ARRAY int64_t *at = NULL;
     ritz_fit_family *family = NULL;
+    const ritz_request request = request_basis(f, method, modes);
     int64_t count = 0;
 
     RITZ_CHECK(find_family(f, method, &family));
     if (!can_serve(family, modes))
         RITZ_CHECK(renew_family(f, modes, family));
+    family->used = ++f->num_uses;
     RITZ_CHECK_NEW(at, family->whole.columns.count);
     count = choose_columns(&family->whole.columns,
                            family->exact ? INT64_MAX : modes, at);
     if (count == 0) /* the method may refuse that, and says why */
         return make_whole(f, method, modes, out, parts);
-    return take_columns(family, count, at, with_T, out, parts);
+    RITZ_CHECK(take_columns(family, count, at, with_T, out, parts));
+    ritz_request_print(&request, out->origin.options);
+    return RITZ_OK;
 }

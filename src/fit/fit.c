@@ -321,12 +321,16 @@ static void explain_choice(const ritz_fitter *fitter, ritz_fit *fit)
                 less->order);
         add_error(fit, less);
     } else {
-        add_why(fit, ", the fewest that it can have");
+        add_why(fit, "%s",
+                fit->interrupted ? "; no smaller one was tried yet"
+                                 : ", the fewest that it can have");
     }
     if (fit->runner_up >= 0)
         explain_runner_up(fit, c);
     else if (fit->num_methods > 1)
-        add_why(fit, "; no other method meets it");
+        add_why(fit, "%s",
+                fit->interrupted ? "; no other method has met it yet"
+                                 : "; no other method meets it");
     if (rigid_alone(fitter, c))
         add_why(fit,
                 "; nothing but rigid motion makes the largest response: to "

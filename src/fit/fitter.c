@@ -314,6 +314,9 @@ static ritz_status open_component(const ritz_component *component,
     return RITZ_OK;
 }
 
+/* In all kept bases of a component: half a gigabyte. */
+static const int64_t most_entries = INT64_C(1) << 26;
+
 ritz_status ritz_fitter_new(const ritz_component *component,
                             const ritz_fit_request *request, ritz_fitter **out)
 {
@@ -321,6 +324,7 @@ ritz_status ritz_fitter_new(const ritz_component *component,
 
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
+    f->most_entries = most_entries;
     f->component = component;
     RITZ_CHECK(open_component(component, f));
     RITZ_MOVE(*out, f);

@@ -40,6 +40,7 @@ typedef struct ritz_fit_family {
     int64_t modes;      /* that it was made with; -1: none was made */
     ritz_reduced whole; /* {0}: dropped for lack of room */
     ritz_dense parts;   /* Phi'M T of all its columns */
+    int64_t used;       /* num_uses when it served last */
 } ritz_fit_family;
 
 /* The columns of a candidate's bodies, those whose loss raises its errors most
@@ -101,6 +102,8 @@ struct ritz_fitter {
     ritz_fit_made *made;
     int64_t num_families, room_families;
     ritz_fit_family *family; /* of a component */
+    int64_t num_uses;        /* of all families */
+    int64_t most_entries;    /* that T of all kept bases may have */
     int64_t num_ordered, room_ordered;
     ritz_fit_ordered *ordered;
     ritz_fit_second second;

@@ -53,6 +53,8 @@ double ritz_measure_ratio(const char *name, double value, double limit)
     double error = ritz_measure_error(name, value);
     double allowed = ritz_measure_error(name, limit);
 
+    if (isnan(value)) /* no number is no proof that the limit is met */
+        return HUGE_VAL;
     if (large_is_good(name)) /* rounding may take a MAC above 1 */
         error = fmax(error, 0.0);
     if (allowed > 0.0)

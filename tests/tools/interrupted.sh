@@ -7,23 +7,32 @@
 # interrupt SIGNAL WORD COMMAND...: run the command and send it the signal when
 # a line of its record has the word. The record is a pipe, and the tool waits
 # until each line is read: so it is still searching when the signal comes. Its
-# status is in $got, its output in the file said.
+# status is in $got, its output in the file said. If it ends before such a line,
+# no signal is sent.
 interrupt() {
-    signal=$1 word=$2 got=0
+    signal=$1 word=$2
     shift 2
-    rm -f record
+    rm -f record ended tool
     mkfifo record
-    # a shell starts background commands with SIGINT ignored
-    env --default-signal="$signal" "$@" --record record >said 2>&1 &
-    tool=$!
+    {
+        # a shell starts background commands with SIGINT ignored
+        env --default-signal="$signal" "$@" --record record >said 2>&1 &
+        echo $! >tool
+        status=0
+        wait $! || status=$?
+        echo "$status" >ended
+        : >record # the end of the pipe, for a reader that waits for a line
+    } &
     line=
-    until case $line in *"$word"*) true ;; *) false ;; esac do
+    until [ -e ended ] || case $line in *"$word"*) true ;; *) false ;; esac do
         read -r line <record || line=
     done
-    kill -s "$signal" "$tool"
+    until [ -s tool ]; do sleep 0.01; done
+    [ -e ended ] || kill -s "$signal" "$(cat tool)"
     exec 3<>record # a reader for the lines to come
-    wait "$tool" || got=$?
+    wait $!
     exec 3>&-
+    got=$(cat ended)
 }
 
 # says NAME WORDS: the interrupted tool printed these words and failed.
@@ -49,6 +58,8 @@ for signal in INT TERM; do
     says "SIG$signal ends the search with the best so far" \
         "is in 'fit.h5.interrupted'"
     works '  after how many candidates is said' grep -q 'Why: interrupted after [0-9]* cand' said
+    works '  methods that were not tried are not judged' \
+        grep -q 'no other method has met it yet' said
     works '  the output is as it was' grep -qx before fit.h5
     expect 0 'the search, after' ritz-info fit.h5.interrupted
     expect 0 'pass' ritz-verify truss.h5 fit.h5.interrupted --band-hz 0,20 \

@@ -23,12 +23,9 @@ static double excess_of(const record *r)
         return HUGE_VAL;
     json_object_foreach(r->tolerance, name, limit)
     {
-        double times = ritz_measure_ratio(name, record_value(r->errors, name),
-                                          json_number_value(limit));
-
-        if (isnan(times))
-            return HUGE_VAL;
-        worst = fmax(worst, times);
+        worst =
+            fmax(worst, ritz_measure_ratio(name, record_value(r->errors, name),
+                                           json_number_value(limit)));
     }
     return worst;
 }
@@ -151,7 +148,7 @@ static ritz_measure find_worst(const record *r)
         const double allowed = json_number_value(limit);
         const double times = ritz_measure_ratio(name, value, allowed);
 
-        if (!(times > most))
+        if (isnan(value) || !(times > most))
             continue;
         most = times;
         snprintf(worst.name, sizeof worst.name, "%s", name);

@@ -576,7 +576,10 @@ static ritz_status find_smallest(fit_run *f, const model *full,
     say_fit(f->run, fitter, &fit);
     if (!fit.interrupted)
         status = conclude_search(f, full, fitter, &fit);
-    if (fit.interrupted || (status != RITZ_OK && cli_interrupted()))
+    /* the signal stopped the search, or the ordering of columns; after any
+       other failure, as of a full disk, nothing is kept */
+    if (fit.interrupted ||
+        (status == RITZ_ERR_CONVERGENCE && cli_interrupted()))
         return keep_best(f, fitter, &fit);
     return status;
 }

@@ -89,6 +89,7 @@ static void compare_all(const ritz_method *method, ritz_fitter *fitter)
         assert_ok(ritz_fit_take(fitter, method, modes, true, &taken, &parts));
         assert_ok(ritz_fit_body(fitter, method, 0, modes, &made));
         assert_same_model(fitter, &taken, &parts, &made);
+        assert_string_equal(taken.origin.options, made.origin.options);
     }
 }
 
@@ -180,6 +181,67 @@ static void more_modes_than_the_basis_has_make_a_larger_one(void **state)
     assert_true(first > 0 && fitter->family[0].modes > first);
 }
 
+/* Take a candidate of several methods in turn. @return entries of all bases */
+static int64_t take_in_turn(ritz_fitter *fitter)
+{
+    static const int served[] = {0, 1, 0, 2};
+    int64_t entries = 0;
+
+    for (size_t k = 0; k < sizeof served / sizeof *served; k++) {
+        RITZ_OWN(ritz_reduced) taken = {0};
+        RITZ_OWN(ritz_dense) parts = {0};
+
+        assert_ok(
+            ritz_fit_take(fitter, nested[served[k]], 3, false, &taken, &parts));
+    }
+    assert_int_equal(fitter->num_families, 3);
+    for (int k = 0; k < 3; k++)
+        entries +=
+            fitter->family[k].whole.T.nrow * fitter->family[k].whole.T.ncol;
+    return entries;
+}
+
+/* Where there is no room for all three, the third basis drops the one of the
+   other two that served longest ago, and no more. */
+static void the_basis_that_served_longest_ago_is_dropped(void **state)
+{
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(nested, NESTED);
+    RITZ_OWN(ritz_fitter) *roomy = NULL, *narrow = NULL;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &roomy));
+    assert_ok(ritz_fitter_new(&truss, &request, &narrow));
+    narrow->most_entries = take_in_turn(roomy) - 1;
+    (void)take_in_turn(narrow);
+    assert_non_null(narrow->family[0].whole.T.val);
+    assert_null(narrow->family[1].whole.T.val);
+    assert_non_null(narrow->family[2].whole.T.val);
+}
+
+/* What is not a number is no proof, wherever it stands among other errors. */
+static void an_error_that_is_no_number_is_not_met(void **state)
+{
+    static const char *const names[] = {"frequency-relative", "mac",
+                                        "response-relative"};
+
+    (void)state;
+    for (int bad = 0; bad < 3; bad++) {
+        ritz_fit_candidate candidate = {0};
+        const ritz_fit_request request = ask(nested, 1);
+
+        for (int k = 0; k < 3; k++)
+            assert_ok(ritz_measures_add(
+                &candidate.errors, names[k],
+                k == bad ? nan("") : (k == 1 ? 1.0 : 1e-9), 0.5, ""));
+        ritz_fit_judge(&request.tolerance, &candidate);
+        assert_false(candidate.feasible);
+        assert_int_equal(candidate.worst, bad);
+        ritz_measures_free(&candidate.errors);
+    }
+}
+
 /* Errors measured with Phi'M T and without T are those with T, MAC included. */
 static void errors_without_a_basis_are_those_with_it(void **state)
 {
@@ -241,6 +303,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(static_vectors_are_made_for_each_number_of_modes),
     cmocka_unit_test(the_last_basis_of_a_method_is_kept),
     cmocka_unit_test(more_modes_than_the_basis_has_make_a_larger_one),
+    cmocka_unit_test(the_basis_that_served_longest_ago_is_dropped),
+    cmocka_unit_test(an_error_that_is_no_number_is_not_met),
     cmocka_unit_test(errors_without_a_basis_are_those_with_it),
     cmocka_unit_test(reducing_by_a_kept_basis_survives_every_allocation),
 };
