@@ -52,7 +52,9 @@ int main(int argc, char **argv)
         .summary = "Reduce the components of an articulated system in two "
                    "stages so that the important\nsystem modes are kept at "
                    "every configuration of the scene [LeeTsuha1992]; report "
-                   "what\nwas reduced, how far, and how wrong it is.",
+                   "what\nwas reduced, how far, and how wrong it is.\n"
+                   "After SIGINT or SIGTERM, write the configurations that are "
+                   "done to OUTPUT.interrupted.",
         .example = "ritz-compare scene.yaml --components small- --report "
                    "report.txt -o system.h5",
         .output = "the system of the second stage",

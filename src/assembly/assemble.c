@@ -210,8 +210,14 @@ static ritz_status label_system(const ritz_stage *stage, ritz_system *system)
     return RITZ_OK;
 }
 
-ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
-                          ritz_system *out)
+bool ritz_stop_asked(const ritz_stop *stop)
+{
+    return stop && stop->asked(stop->context);
+}
+
+/* One configuration by its name, or all until they are stopped. */
+static ritz_status assemble_rows(const ritz_stage *stage, const char *at,
+                                 const ritz_stop *stop, ritz_system *out)
 {
     const ritz_scene *scene = stage->scene;
     int64_t count = at ? 1 : scene->num_configurations;
@@ -221,7 +227,7 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
     RITZ_CHECK_NEW(setting, scene->num_sweeps);
     RITZ_CHECK(label_system(stage, &system));
     RITZ_CHECK_NEW(system.configuration, count);
-    for (int64_t k = 0; k < count; k++) {
+    for (int64_t k = 0; k < count && !(k > 0 && ritz_stop_asked(stop)); k++) {
         const double *row = setting;
 
         ritz_monitor_step("configuration", k, count);
@@ -234,4 +240,16 @@ ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
     }
     RITZ_MOVE(*out, system);
     return RITZ_OK;
+}
+
+ritz_status ritz_assemble(const ritz_stage *stage, const char *at,
+                          ritz_system *out)
+{
+    return assemble_rows(stage, at, NULL, out);
+}
+
+ritz_status ritz_assemble_until(const ritz_stage *stage, const ritz_stop *stop,
+                                ritz_system *out)
+{
+    return assemble_rows(stage, NULL, stop, out);
 }

@@ -227,4 +227,12 @@ ritz_status ritz_dual_assemble(const ritz_stage *stage,
                                const ritz_springs *springs, const ritz_dense *C,
                                ritz_dense *P, ritz_configuration *c);
 
+/** All configurations of the scene, as ritz_assemble does, until @p stop ends
+ * it; at least one. @param[in] stop  NULL: nothing ends it */
+ritz_status ritz_assemble_until(const ritz_stage *stage, const ritz_stop *stop,
+                                ritz_system *out);
+
+/** Whether the work is to end now. @param[in] stop  NULL: never */
+bool ritz_stop_asked(const ritz_stop *stop);
+
 #endif

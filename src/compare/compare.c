@@ -322,14 +322,41 @@ void ritz_tolerances_free(int64_t count, ritz_tolerance_row **rows)
 
 /* Both stages. */
 
-/* Assemble the stage-1 system between listed configurations. */
-static ritz_status assemble_between(ritz_rows *rows)
+/* Drop the last rows, so that @p count are left. */
+static void drop_rows(int64_t count, ritz_comparison *c)
+{
+    for (int64_t k = count; k < c->num_rows; k++)
+        RITZ_FREE(c->row[k].setting, c->row[k].kept, c->row[k].stray);
+    c->num_rows = count < c->num_rows ? count : c->num_rows;
+}
+
+/* Drop the last configurations of a system, so that @p count are left. */
+static void drop_configurations(int64_t count, ritz_system *system)
+{
+    for (int64_t k = count; k < system->num_configurations; k++)
+        ritz_configuration_free(&system->configuration[k]);
+    if (count < system->num_configurations)
+        system->num_configurations = count;
+}
+
+/* Assemble the stage-1 system between listed configurations, until that is
+   stopped: then no rows are left beyond. */
+static ritz_status assemble_between(const ritz_stop *stop, ritz_rows *rows,
+                                    ritz_comparison *c)
 {
     int64_t listed = rows->listed->num_configurations;
     ritz_system *between = &rows->between;
 
     RITZ_CHECK_NEW(between->configuration, rows->num_rows - listed);
     for (int64_t k = listed; k < rows->num_rows; k++) {
+        if (ritz_stop_asked(stop)) {
+            c->interrupted = true;
+            drop_rows(k, c);
+            rows->num_rows = k;
+            break;
+        }
+        ritz_monitor_step("configuration between", k - listed,
+                          rows->num_rows - listed);
         RITZ_CHECK(ritz_stage_assemble(rows->stage, rows->row[k].setting,
                                        &between->configuration[k - listed]));
         between->num_configurations++;
@@ -355,14 +382,23 @@ static ritz_status choose_modes(const ritz_rows *rows)
 
 /*
  * Measure the errors of every row; between angles the second system is
- * assembled for it.
+ * assembled for it. If that is stopped, no configuration is left whose errors
+ * are not known.
  */
-static ritz_status measure_rows(const ritz_rows *rows, ritz_comparison *c)
+static ritz_status measure_rows(const ritz_rows *rows, const ritz_stop *stop,
+                                ritz_comparison *c)
 {
     for (int64_t k = 0; k < rows->num_rows; k++) {
         ritz_compare_row *row = &rows->row[k];
         RITZ_OWN(ritz_configuration) second = {0};
 
+        if (k > 0 && ritz_stop_asked(stop)) {
+            c->interrupted = true;
+            drop_rows(k, c);
+            drop_configurations(k, &c->first_system);
+            drop_configurations(k, &c->second_system);
+            return RITZ_OK;
+        }
         ritz_monitor_step("errors", k, rows->num_rows);
         if (!row->listed)
             RITZ_CHECK(ritz_stage_assemble(&c->second, row->setting, &second));
@@ -406,25 +442,84 @@ static ritz_status refuse_forces(const ritz_stage *stage)
     return ritz_context(ritz_dual_refuse(stage), count);
 }
 
-ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
+/* A stage whose scene has its first configurations alone; all else is
+   borrowed. */
+typedef struct beginning {
+    ritz_scene scene;
+    ritz_stage stage;
+    int64_t *reference; /* those of the scene among its configurations */
+} beginning;
+
+static void beginning_free(beginning *b)
+{
+    free(b->reference);
+}
+
+/* If none of the scene's reference configurations is left, all count. */
+static ritz_status take_beginning(const ritz_stage *stage, int64_t count,
+                                  beginning *b)
+{
+    const ritz_scene *scene = stage->scene;
+
+    b->scene = *scene;
+    b->stage = *stage;
+    b->stage.scene = &b->scene;
+    b->scene.num_configurations = count;
+    b->scene.num_reference = 0;
+    RITZ_CHECK_NEW(b->reference, scene->num_reference);
+    for (int64_t k = 0; k < scene->num_reference; k++)
+        if (scene->reference[k] < count)
+            b->reference[b->scene.num_reference++] = scene->reference[k];
+    b->scene.reference = b->reference;
+    return RITZ_OK;
+}
+
+/* Compare at the configurations of stage one. */
+static ritz_status compare_stages(const ritz_stage *stage,
+                                  const ritz_stop *stop, ritz_comparison *c)
+{
+    RITZ_OWN(ritz_rows)
+    rows = {.stage = stage,
+            .listed = &c->first_system,
+            .num_rows = c->num_rows,
+            .row = c->row};
+
+    RITZ_CHECK_IN("stage 1", assemble_between(stop, &rows, c));
+    RITZ_CHECK_IN("selection", choose_modes(&rows));
+    RITZ_CHECK(reduce_bodies(&rows, c));
+    /* whoever has stopped stage one waits for its errors */
+    RITZ_CHECK_IN("errors",
+                  measure_rows(&rows, c->interrupted ? NULL : stop, c));
+    ritz_compare_suggest(c, &c->suggestion);
+    return record_comparison(c);
+}
+
+ritz_status ritz_compare_until(const ritz_stage *stage, const ritz_stop *stop,
+                               ritz_comparison *out)
 {
     [[maybe_unused]] RITZ_OWN(ritz_blas_single) single = ritz_blas_single_new();
+    RITZ_OWN(beginning) b = {0};
     RITZ_OWN(ritz_comparison) c = {.next_drop = nan("")};
-    RITZ_OWN(ritz_rows) rows = {.stage = stage, .listed = &c.first_system};
 
     RITZ_CHECK(refuse_forces(stage));
     RITZ_CHECK(list_rows(stage->scene, &c));
-    rows.num_rows = c.num_rows;
-    rows.row = c.row;
-    RITZ_CHECK_IN("stage 1", ritz_assemble(stage, NULL, &c.first_system));
-    RITZ_CHECK_IN("stage 1", assemble_between(&rows));
-    RITZ_CHECK_IN("selection", choose_modes(&rows));
-    RITZ_CHECK(reduce_bodies(&rows, &c));
-    RITZ_CHECK_IN("errors", measure_rows(&rows, &c));
-    ritz_compare_suggest(&c, &c.suggestion);
-    RITZ_CHECK(record_comparison(&c));
+    RITZ_CHECK_IN("stage 1", ritz_assemble_until(stage, stop, &c.first_system));
+    c.num_composed = c.first_system.num_configurations;
+    RITZ_CHECK(take_beginning(stage, c.num_composed, &b));
+    if (c.num_composed < stage->scene->num_configurations) {
+        c.interrupted = true;
+        drop_rows(c.num_composed, &c);
+        stop = NULL;
+    }
+    RITZ_CHECK(compare_stages(&b.stage, stop, &c));
+    c.second.scene = stage->scene;
     RITZ_MOVE(*out, c);
     return RITZ_OK;
+}
+
+ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out)
+{
+    return ritz_compare_until(stage, NULL, out);
 }
 
 void ritz_comparison_free(ritz_comparison *comparison)

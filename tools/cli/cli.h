@@ -279,6 +279,13 @@ void cli_prepare(void);
 void cli_interruptible(void);
 bool cli_interrupted(void);
 
+/** cli_interrupted, in the form in which functions of the library ask it. */
+bool cli_stop(void *context);
+
+/** From now on the first signal ends the program again. @return whether one
+ * came since cli_interruptible */
+bool cli_uninterruptible(void);
+
 /**
  * From now on run->output is OUTPUT.interrupted, and containers get the
  * attribute `interrupted`. cli_finish publishes the file although the status is

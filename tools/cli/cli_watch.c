@@ -77,23 +77,40 @@ static void note_signal(int number)
     interrupted = 1;
 }
 
-void cli_interruptible(void)
+/* Let one handler of SIGINT and SIGTERM take the place of another. */
+static void replace_handler(void (*from)(int), void (*to)(int), int flags)
 {
     static const int numbers[] = {SIGINT, SIGTERM};
     struct sigaction before;
-    struct sigaction action = {.sa_handler = note_signal,
-                               .sa_flags = SA_ONSTACK | SA_RESTART};
+    struct sigaction action = {.sa_handler = to, .sa_flags = flags};
 
     sigemptyset(&action.sa_mask);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         if (sigaction(numbers[k], NULL, &before) == 0 &&
-            before.sa_handler == end_program)
+            before.sa_handler == from)
             sigaction(numbers[k], &action, NULL);
+}
+
+void cli_interruptible(void)
+{
+    replace_handler(end_program, note_signal, SA_ONSTACK | SA_RESTART);
+}
+
+bool cli_uninterruptible(void)
+{
+    replace_handler(note_signal, end_program, SA_ONSTACK);
+    return cli_interrupted();
 }
 
 bool cli_interrupted(void)
 {
     return interrupted != 0;
+}
+
+bool cli_stop(void *context)
+{
+    (void)context;
+    return cli_interrupted();
 }
 
 const char *cli_duration(double seconds, char out[CLI_DURATION])

@@ -5,6 +5,7 @@
 #include "model/pair.h"
 
 #include <float.h>
+#include <inttypes.h>
 
 static void say_orders(cli_run *run, const ritz_stage *first,
                        const ritz_stage *second)
@@ -609,12 +610,42 @@ static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
     return say_modes(run, c);
 }
 
+/* After a signal: write the configurations that are done to
+   OUTPUT.interrupted, and fail. Report, tables and components are not
+   written. */
+static ritz_status keep_done(cli_run *run, const ritz_scene *scene,
+                             const ritz_comparison *c)
+{
+    const int64_t done = c->second_system.num_configurations;
+    const int64_t all = scene->num_configurations;
+    char what[4 * RITZ_NAME_SIZE];
+
+    if (done < all)
+        (void)snprintf(what, sizeof what,
+                       "the comparison, at the first %" PRId64 " of %" PRId64
+                       " configurations, with modes of the first %" PRId64,
+                       done, all, c->num_composed);
+    else
+        (void)snprintf(what, sizeof what,
+                       "the comparison, at all %" PRId64
+                       " configurations, without all errors between them",
+                       all);
+    RITZ_CHECK(cli_divert(run, what));
+    RITZ_CHECK(ritz_container_write_system(run->output, &c->second_system,
+                                           cli_stamp(run)));
+    return ritz_fail(RITZ_ERR_CONVERGENCE,
+                     "interrupted: the first %" PRId64 " of %" PRId64
+                     " configurations are in '%s'",
+                     done, all, run->output);
+}
+
 ritz_status comparison_run(cli_run *run, const comparison_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_comparison) c = {0};
     RITZ_OWN(tolerance_rows) rows = {0};
+    const ritz_stop stop = {.asked = cli_stop};
 
     RITZ_CHECK(model_scene(run, run->operand[0], &scene));
     RITZ_CHECK(model_foresee_bodies(given->prefix, &scene));
@@ -623,7 +654,10 @@ ritz_status comparison_run(cli_run *run, const comparison_options *given)
                       ritz_scene_set_extraneous(&scene, given->extraneous));
     RITZ_CHECK(ritz_stage_new(&scene, &stage));
     RITZ_CHECK(model_foresee(run, &stage));
-    RITZ_CHECK(ritz_compare(&stage, &c));
+    cli_interruptible();
+    RITZ_CHECK(ritz_compare_until(&stage, &stop, &c));
+    if (cli_uninterruptible())
+        return keep_done(run, &scene, &c);
     RITZ_CHECK(model_write_bodies(run, given->prefix, &scene, c.second.body));
     RITZ_CHECK(ritz_container_write_system(run->output, &c.second_system,
                                            cli_stamp(run)));

@@ -616,12 +616,6 @@ static ritz_status fit_input(fit_run *f, ritz_scene *scene)
     return find_smallest(f, component ? &full : NULL, fitter);
 }
 
-static bool is_interrupted(void *context)
-{
-    (void)context;
-    return cli_interrupted();
-}
-
 ritz_status fit_search(cli_run *run, fit_options *given)
 {
     RITZ_OWN(ritz_scene) scene = {0};
@@ -630,7 +624,7 @@ ritz_status fit_search(cli_run *run, fit_options *given)
 
     take_options(run->program, given);
     given->request.observe = observe_candidate;
-    given->request.stop = is_interrupted;
+    given->request.stop = cli_stop;
     given->request.thorough = given->all;
     given->request.context = &f;
     /* charts call it by its file, without folder and ending */

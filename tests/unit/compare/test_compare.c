@@ -38,6 +38,111 @@ static int tear_down(void **state)
     return 0;
 }
 
+/* As ritz_stop: false as often as the context says, and then true. */
+static bool is_enough(void *context)
+{
+    int *left = context;
+
+    return --*left < 0;
+}
+
+static void assert_same_systems(int64_t count, const ritz_system *a,
+                                const ritz_system *b)
+{
+    for (int64_t k = 0; k < count; k++) {
+        const ritz_dense *K = &a->configuration[k].K;
+
+        assert_string_equal(a->configuration[k].at, b->configuration[k].at);
+        assert_int_equal(K->ncol, b->configuration[k].K.ncol);
+        assert_memory_equal(K->val, b->configuration[k].K.val,
+                            (size_t)(K->ncol * K->ncol) * sizeof *K->val);
+    }
+}
+
+/* Compare the first configurations of the fixture alone. */
+static ritz_status compare_first(const fixture *f, int64_t count,
+                                 ritz_comparison *out)
+{
+    ritz_scene scene = f->scene;
+    ritz_stage stage = f->stage;
+    ritz_status status = RITZ_OK;
+
+    scene.num_configurations = count;
+    stage.scene = &scene;
+    status = ritz_compare(&stage, out);
+    out->second.scene = &f->scene;
+    return status;
+}
+
+/* Stopped in stage one, after 3 of 6 configurations: what is left is the
+   comparison of a scene with these three. */
+static void a_stopped_first_stage_leaves_a_scene_of_fewer_angles(void **state)
+{
+    const fixture *f = *state;
+    int left = 2;
+    const ritz_stop stop = {is_enough, &left};
+    RITZ_OWN(ritz_comparison) c = {0}, three = {0};
+
+    dualspin_or_skip();
+    assert_ok(ritz_compare_until(&f->stage, &stop, &c));
+    assert_true(c.interrupted);
+    assert_int_equal(c.num_composed, 3);
+    assert_int_equal(c.num_rows, 3);
+    assert_int_equal(c.second_system.num_configurations, 3);
+    assert_ptr_equal(c.second.scene, &f->scene);
+    assert_ok(compare_first(f, 3, &three));
+    assert_same_systems(3, &c.first_system, &three.first_system);
+    assert_same_systems(3, &c.second_system, &three.second_system);
+    for (int k = 0; k < 3; k++)
+        assert_true(c.row[k].listed &&
+                    c.row[k].response_error == three.row[k].response_error);
+}
+
+/* Stopped between angles, or while errors are measured: bodies keep modes of
+   all six configurations, and each configuration that is left is that of the
+   whole comparison, with its errors. */
+static void later_stops_leave_configurations_as_they_would_be(void **state)
+{
+    static const struct {
+        int asked;     /* 5 times in stage one, 6 between, 11 for errors */
+        int64_t rows;  /* left */
+        int64_t there; /* configurations in the system */
+    } cases[] = {{5, 6, 6}, {7, 8, 6}, {11, 1, 1}, {13, 3, 3}, {18, 8, 6}};
+    const fixture *f = *state;
+
+    dualspin_or_skip();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        int left = cases[k].asked;
+        const ritz_stop stop = {is_enough, &left};
+        RITZ_OWN(ritz_comparison) c = {0};
+
+        assert_ok(ritz_compare_until(&f->stage, &stop, &c));
+        assert_true(c.interrupted);
+        assert_int_equal(c.num_composed, 6);
+        assert_int_equal(c.num_rows, cases[k].rows);
+        assert_int_equal(c.second_system.num_configurations, cases[k].there);
+        assert_same_systems(cases[k].there, &c.second_system,
+                            &f->c.second_system);
+        for (int64_t i = 0; i < c.num_rows; i++)
+            assert_true(c.row[i].response_error == f->c.row[i].response_error);
+    }
+}
+
+static void a_comparison_that_is_not_stopped_is_whole(void **state)
+{
+    const fixture *f = *state;
+    int left = 22;
+    const ritz_stop stop = {is_enough, &left};
+    RITZ_OWN(ritz_comparison) c = {0};
+
+    dualspin_or_skip();
+    assert_ok(ritz_compare_until(&f->stage, &stop, &c));
+    assert_int_equal(left, 0); /* it was asked 22 times */
+    assert_false(c.interrupted);
+    assert_int_equal(c.num_rows, f->c.num_rows);
+    assert_same_systems(6, &c.second_system, &f->c.second_system);
+}
+
 /* 6 + 22 + 6 and 6 + 4 + 12 vectors; ten constraints, eight rigid modes. */
 static void the_first_stage_has_the_orders_of_its_bases(void **state)
 {
@@ -285,6 +390,9 @@ static void a_ranking_without_damping_is_refused(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_stopped_first_stage_leaves_a_scene_of_fewer_angles),
+    cmocka_unit_test(later_stops_leave_configurations_as_they_would_be),
+    cmocka_unit_test(a_comparison_that_is_not_stopped_is_whole),
     cmocka_unit_test(the_first_stage_has_the_orders_of_its_bases),
     cmocka_unit_test(kept_modes_are_exact_at_every_listed_angle),
     cmocka_unit_test(kept_frequencies_are_found_in_the_second_system),
