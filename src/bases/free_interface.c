@@ -64,6 +64,8 @@ const ritz_method ritz_method_macneal_rubin = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
             RITZ_USES_EIGEN,
     .keeps_interface = true,
+    .wide = &ritz_method_macneal_rubin,
+    .narrow = ritz_macneal_rubin_narrow,
     .make = make_macneal_rubin,
 };
 
@@ -362,5 +364,7 @@ const ritz_method ritz_method_rubin = {
     .uses = RITZ_USES_MODES | RITZ_USES_ATTACHED | RITZ_USES_LOADS |
             RITZ_USES_EIGEN,
     .keeps_interface = true,
+    .wide = &ritz_method_macneal_rubin,
+    .narrow = ritz_rubin_narrow,
     .make = make_rubin,
 };

@@ -63,6 +63,10 @@ ritz_status ritz_free_set_beside(const ritz_request *request, int loads,
  */
 ritz_status ritz_residual_divide(const int64_t *b, ritz_dense *Psi);
 
+/* As ritz_narrow, both from a basis of macneal-rubin without static columns. */
+ritz_narrow ritz_macneal_rubin_narrow;
+ritz_narrow ritz_rubin_narrow;
+
 void ritz_free_set_free(ritz_free_set *set);
 
 #endif

@@ -12,8 +12,12 @@
  * so that a candidate takes no work of the full model's size. The basis is made
  * with more modes than the first candidate needs, and again with twice as many
  * when that is not enough. Modes of one cluster are taken together, as
- * ritz_eigen_sparse computes them. A method that is not nested makes a new
- * basis for each number of modes; the last one is kept.
+ * ritz_eigen_sparse computes them.
+ *
+ * Of other methods a basis with fewer modes consists of combinations T_N V of
+ * the columns of one with more (ritz_narrow), which may be another method's:
+ * K_m = V'K_N V and so on. A method of neither kind makes a new basis for each
+ * number of modes; the last one is kept.
  */
 #include "fit/fitter.h"
 
@@ -159,15 +163,21 @@ static bool is_mode(ritz_column_kind kind)
     return kind == RITZ_COLUMN_NORMAL || kind == RITZ_COLUMN_KRYLOV;
 }
 
-/* Whether a basis with fewer modes consists of columns of this one. Static
-   columns prevent that: the part that lies in the modes was removed from them,
-   so they change with the number of modes. */
-static bool contains_fewer(const ritz_columns *columns)
+/* Whether a basis with fewer modes follows from this one. Static columns
+   prevent that: the part that lies in the modes was removed from them, so they
+   change with the number of modes. So does a residual mode that was left out:
+   with fewer modes it may be large enough. */
+static bool contains_fewer(const ritz_fitter *f, const ritz_method *method,
+                           const ritz_columns *columns)
 {
-    for (int64_t j = 0; j < columns->count; j++)
+    int64_t residuals = 0;
+
+    for (int64_t j = 0; j < columns->count; j++) {
         if (columns->kind[j] == RITZ_COLUMN_STATIC)
             return false;
-    return true;
+        residuals += columns->kind[j] == RITZ_COLUMN_RESIDUAL;
+    }
+    return !method->narrow || residuals == f->attached.count;
 }
 
 /* Whether the frequencies of two modes differ so little that both are taken or
@@ -219,8 +229,10 @@ static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
         }
     RITZ_CHECK_ROOM(f->family, f->num_families, f->room_families);
     *out = &f->family[f->num_families++];
-    **out = (ritz_fit_family){
-        .method = method, .modes = -1, .exact = !method->nested};
+    **out =
+        (ritz_fit_family){.method = method,
+                          .modes = -1,
+                          .exact = !method->nested && method->wide != method};
     return RITZ_OK;
 }
 
@@ -294,7 +306,8 @@ static ritz_status renew_family(ritz_fitter *f, int64_t modes,
 
         if (status == RITZ_ERR_MEMORY || made == modes)
             RITZ_CHECK(status);
-        if (status != RITZ_OK || !contains_fewer(&whole.columns))
+        if (status != RITZ_OK ||
+            !contains_fewer(f, family->method, &whole.columns))
             family->exact = true;
         served = !family->exact || made == modes;
         if (!served)
@@ -332,13 +345,83 @@ static ritz_status take_columns(const ritz_fit_family *family, int64_t count,
     return ritz_dense_pick(&family->parts, count, at, parts);
 }
 
-ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
-                          int64_t modes, bool with_T, ritz_reduced *out,
-                          ritz_dense *parts)
+/* Reduce the component by combinations V of the columns of the kept basis. */
+static ritz_status combine_columns(const ritz_fit_family *family,
+                                   const ritz_dense *V, bool with_T,
+                                   ritz_reduced *out, ritz_dense *parts)
+{
+    ritz_reduced whole = family->whole; /* borrowed */
+
+    if (!with_T) {
+        whole.T = (ritz_dense){0};
+        whole.invariants = (ritz_invariants){0};
+    }
+    RITZ_CHECK(ritz_reduced_project(&whole, V, out));
+    return ritz_dense_mul(&family->parts, V, parts);
+}
+
+/* Find the kept basis from which those of a method with fewer modes follow; if
+   there is none with so many modes, make it. If that fails, or if no basis with
+   fewer modes follows from it, the family is exact. */
+static ritz_status find_wide(ritz_fitter *f, const ritz_method *method,
+                             int64_t modes, ritz_fit_family **out)
+{
+    ritz_fit_family *family = NULL;
+
+    RITZ_CHECK(find_family(f, method->wide, &family));
+    if (!family->exact && !can_serve(family, modes)) {
+        const ritz_status status = renew_family(f, modes, family);
+
+        if (status == RITZ_ERR_MEMORY)
+            return status;
+        family->exact = family->exact || status != RITZ_OK;
+    }
+    family->used = ++f->num_uses;
+    *out = family;
+    return RITZ_OK;
+}
+
+/*
+ * Reduce the component by a method whose basis follows from a kept one with
+ * more modes. If it does not, because residual modes depend on others, @p out
+ * stays empty and the family is exact from now on.
+ */
+static ritz_status take_narrow(ritz_fitter *f, const ritz_request *request,
+                               const ritz_method *method, bool with_T,
+                               ritz_reduced *out, ritz_dense *parts)
+{
+    ritz_fit_family *family = NULL;
+    RITZ_OWN(ritz_dense) V = {0};
+    RITZ_OWN(ritz_columns) columns = {0};
+    RITZ_OWN_ARRAY int64_t *at = NULL;
+    int64_t count = 0;
+
+    RITZ_CHECK(find_wide(f, method, request->modes, &family));
+    if (family->exact)
+        return RITZ_OK;
+    RITZ_CHECK_NEW(at, family->whole.columns.count);
+    count = choose_columns(&family->whole.columns, request->modes, at);
+    RITZ_CHECK(method->narrow(&family->whole, count, at, request->tolerance, &V,
+                              &columns));
+    family->exact = V.ncol == 0;
+    if (family->exact)
+        return RITZ_OK;
+    RITZ_CHECK(combine_columns(family, &V, with_T, out, parts));
+    ritz_columns_free(&out->columns);
+    RITZ_MOVE(out->columns, columns);
+    (void)snprintf(out->origin.method, RITZ_NAME_SIZE, "%s", method->name);
+    (void)snprintf(out->origin.reference, RITZ_NAME_SIZE, "%s",
+                   method->reference);
+    return RITZ_OK;
+}
+
+/* Reduce the component by columns of the method's own kept basis. */
+static ritz_status take_own(ritz_fitter *f, const ritz_method *method,
+                            int64_t modes, bool with_T, ritz_reduced *out,
+                            ritz_dense *parts)
 {
     RITZ_OWN_ARRAY int64_t *at = NULL;
     ritz_fit_family *family = NULL;
-    const ritz_request request = request_basis(f, method, modes);
     int64_t count = 0;
 
     RITZ_CHECK(find_family(f, method, &family));
@@ -350,7 +433,19 @@ ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
                            family->exact ? INT64_MAX : modes, at);
     if (count == 0) /* the method may refuse that, and says why */
         return make_whole(f, method, modes, out, parts);
-    RITZ_CHECK(take_columns(family, count, at, with_T, out, parts));
+    return take_columns(family, count, at, with_T, out, parts);
+}
+
+ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
+                          int64_t modes, bool with_T, ritz_reduced *out,
+                          ritz_dense *parts)
+{
+    const ritz_request request = request_basis(f, method, modes);
+
+    if (method->narrow)
+        RITZ_CHECK(take_narrow(f, &request, method, with_T, out, parts));
+    if (out->K.ncol == 0)
+        RITZ_CHECK(take_own(f, method, modes, with_T, out, parts));
     ritz_request_print(&request, out->origin.options);
     return RITZ_OK;
 }

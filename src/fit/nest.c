@@ -602,8 +602,9 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
 
     if (f->stopped)
         return make_plain(f, candidate, out);
-    RITZ_CHECK(candidate->method->nested ? make_uncut(f, candidate, &n.whole)
-                                         : take_uncut(f, candidate, &n.whole));
+    RITZ_CHECK(candidate->method->nested || candidate->method->narrow
+                   ? make_uncut(f, candidate, &n.whole)
+                   : take_uncut(f, candidate, &n.whole));
     RITZ_CHECK(order_columns(f, candidate, &n));
     if (candidate->columns < n.count) /* the others are left out */
         n.count = candidate->columns;

@@ -110,6 +110,61 @@ static void fewer_modes_are_columns_of_more(void **state)
     }
 }
 
+/* Take a candidate of rubin from the kept basis. */
+static ritz_status narrow_once(ritz_fitter *fitter)
+{
+    RITZ_OWN(ritz_reduced) taken = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
+
+    return ritz_fit_take(fitter, &ritz_method_rubin, 2, true, &taken, &parts);
+}
+
+/* With fewer modes, bases of free modes follow from one basis of macneal-rubin
+   with more: the residual modes get what the other modes had. */
+static void bases_of_free_modes_follow_from_one(void **state)
+{
+    static const ritz_method *const free_modes[] = {&ritz_method_rubin,
+                                                    &ritz_method_macneal_rubin};
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(free_modes, 2);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    for (int m = 0; m < 2; m++)
+        compare_all(free_modes[m], fitter);
+    assert_int_equal(fitter->num_families, 1);
+    assert_ptr_equal(fitter->family[0].method, free_modes[1]);
+    assert_survives_every_allocation(narrow_once(fitter));
+    assert_false(fitter->family[0].exact);
+}
+
+/* Of 69 flexible modes three are left for four attached dofs: a residual mode is
+   left out, so that bases with fewer modes do not follow. */
+static void residual_modes_that_are_left_out_end_that(void **state)
+{
+    const ritz_method *const one[] = {&ritz_method_macneal_rubin};
+    const int64_t modes[] = {66, 3};
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(one, 1);
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    for (int k = 0; k < 2; k++) {
+        RITZ_OWN(ritz_reduced) taken = {0}, made = {0};
+        RITZ_OWN(ritz_dense) parts = {0};
+
+        assert_ok(
+            ritz_fit_take(fitter, one[0], modes[k], true, &taken, &parts));
+        assert_ok(ritz_fit_body(fitter, one[0], 0, modes[k], &made));
+        assert_same_model(fitter, &taken, &parts, &made);
+        assert_true(fitter->family[0].exact);
+    }
+}
+
 /* Static vectors of dampers are made without the part that lies in the modes,
    so they differ with the number of modes. */
 static void static_vectors_are_made_for_each_number_of_modes(void **state)
@@ -129,7 +184,7 @@ static void static_vectors_are_made_for_each_number_of_modes(void **state)
    is asked for again. Invariants and options are those of the basis. */
 static void the_last_basis_of_a_method_is_kept(void **state)
 {
-    const ritz_method *const one[] = {&ritz_method_macneal_rubin};
+    const ritz_method *const one[] = {&ritz_method_macneal};
     RITZ_OWN(ritz_component) truss = {0};
     const ritz_fit_request request = ask(one, 1);
     RITZ_OWN(ritz_fitter) *fitter = NULL;
@@ -300,6 +355,8 @@ static void reducing_by_a_kept_basis_survives_every_allocation(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(fewer_modes_are_columns_of_more),
+    cmocka_unit_test(bases_of_free_modes_follow_from_one),
+    cmocka_unit_test(residual_modes_that_are_left_out_end_that),
     cmocka_unit_test(static_vectors_are_made_for_each_number_of_modes),
     cmocka_unit_test(the_last_basis_of_a_method_is_kept),
     cmocka_unit_test(more_modes_than_the_basis_has_make_a_larger_one),
