@@ -424,7 +424,7 @@ ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
  * K + M definite (then the infinite ones are left out: Phi has fewer columns).
  *
  * @return RITZ_ERR_SINGULAR if neither holds
- * @cost   O(r^3); O(r^2) if K and M are diagonal and every M_jj is positive
+ * @cost   O(r^3); O(r^2) in modal coordinates: K is diagonal and M = I
  */
 ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
                              ritz_pairs *out);

@@ -347,13 +347,13 @@ static ritz_status project_pairs(const ritz_sparse *K, const ritz_dense *M,
     return RITZ_OK;
 }
 
-/* Whether K and M are finite diagonals, and every dof has mass. */
-static bool is_decoupled(const ritz_dense *K, const ritz_dense *M)
+/* Whether K is a finite diagonal, and M = I. */
+static bool is_modal(const ritz_dense *K, const ritz_dense *M)
 {
     for (int64_t j = 0; j < K->ncol; j++) {
         const double *k = ritz_dense_col(K, j), *m = ritz_dense_col(M, j);
 
-        if (!(m[j] > 0.0) || !isfinite(m[j]) || !isfinite(k[j]))
+        if (m[j] != 1.0 || !isfinite(k[j]))
             return false;
         for (int64_t i = 0; i < K->nrow; i++)
             if (i != j && (k[i] != 0.0 || m[i] != 0.0))
@@ -363,11 +363,11 @@ static bool is_decoupled(const ritz_dense *K, const ritz_dense *M)
 }
 
 /*
- * lambda = K_jj / M_jj, x = e_j M_jj^-1/2: systems in modal coordinates. They
- * are in ascending order as a rule, so that one insertion each sorts them.
+ * Modal coordinates: lambda = K_jj, x = e_j. They are in ascending order as a
+ * rule, so that one insertion each sorts them.
  */
-static ritz_status solve_decoupled(const ritz_dense *K, const ritz_dense *M,
-                                   double *lambda, ritz_dense *X)
+static ritz_status take_modal(const ritz_dense *K, double *lambda,
+                              ritz_dense *X)
 {
     RITZ_OWN_ARRAY int64_t *dof = NULL;
     int64_t n = K->ncol;
@@ -375,7 +375,7 @@ static ritz_status solve_decoupled(const ritz_dense *K, const ritz_dense *M,
     RITZ_CHECK_NEW(dof, n);
     RITZ_CHECK(ritz_dense_new(n, n, X));
     for (int64_t j = 0; j < n; j++) {
-        double value = ritz_dense_col(K, j)[j] / ritz_dense_col(M, j)[j];
+        double value = ritz_dense_col(K, j)[j];
         int64_t k = j;
 
         for (; k > 0 && lambda[k - 1] > value; k--) {
@@ -386,8 +386,7 @@ static ritz_status solve_decoupled(const ritz_dense *K, const ritz_dense *M,
         dof[k] = j;
     }
     for (int64_t k = 0; k < n; k++)
-        ritz_dense_col(X, k)[dof[k]] =
-            1.0 / sqrt(ritz_dense_col(M, dof[k])[dof[k]]);
+        ritz_dense_col(X, k)[dof[k]] = 1.0;
     return RITZ_OK;
 }
 
@@ -418,8 +417,8 @@ ritz_status ritz_eigen_dense(const ritz_dense *K, const ritz_dense *M,
     RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
     RITZ_CHECK_NEW(pairs.lambda, n);
     RITZ_CHECK_NEW(pairs.residual, n);
-    if (is_decoupled(K, M)) {
-        RITZ_CHECK(solve_decoupled(K, M, pairs.lambda, &pairs.Phi));
+    if (is_modal(K, M)) {
+        RITZ_CHECK(take_modal(K, pairs.lambda, &pairs.Phi));
     } else {
         RITZ_CHECK(solve_pencil(K, M, pairs.lambda, &pairs.Phi));
         ritz_dense_orient(&pairs.Phi);
