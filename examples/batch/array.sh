@@ -11,7 +11,9 @@
 set -eu
 cd "${SLURM_SUBMIT_DIR:-.}"
 task=${SLURM_ARRAY_TASK_ID:-${TASK:?number of a target}}
-target=$(make -s targets "$@" | sed -n "${task}p")
+# in two steps: of a pipe, sh would notice a failure of the last command only
+targets=$(make -s targets "$@")
+target=$(printf '%s\n' "$targets" | sed -n "${task}p")
 [ -n "$target" ] || exit 0 # the array is longer than the list
 OMP_NUM_THREADS=${SLURM_CPUS_PER_TASK:-1}
 export OMP_NUM_THREADS

@@ -73,7 +73,7 @@ static void set_up(EPS eps, rank_pencil *p, int64_t ask, int64_t room)
     ranks_expect(EPSSetFromOptions(eps));
 }
 
-static ritz_status take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
+static void take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
 {
     for (int64_t k = 0; k < count; k++) {
         Vec x = NULL;
@@ -84,7 +84,6 @@ static ritz_status take_pairs(EPS eps, int64_t count, Mat X, double *lambda)
         ranks_expect(MatDenseRestoreColumnVecWrite(X, (PetscInt)k, &x));
         lambda[k] = value;
     }
-    return RITZ_OK;
 }
 
 ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,
@@ -93,14 +92,14 @@ ritz_status krylov_lowest(rank_pencil *p, int64_t ask, int64_t room, Mat *X,
     EPS eps = NULL;
     PetscInt converged = 0;
 
+    RANKS_CHECK_NEW(*lambda, ask);
     ranks_expect(EPSCreate(PETSC_COMM_WORLD, &eps));
     set_up(eps, p, ask, room);
     ranks_expect(EPSSolve(eps));
     ranks_expect(EPSGetConverged(eps, &converged));
     *found = converged < ask ? converged : ask;
-    RANKS_CHECK_NEW(*lambda, ask);
     block_new(p->K, *found, X);
-    RITZ_CHECK(take_pairs(eps, *found, *X, *lambda));
+    take_pairs(eps, *found, *X, *lambda);
     ranks_expect(EPSDestroy(&eps));
     return RITZ_OK;
 }

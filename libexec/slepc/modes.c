@@ -230,15 +230,17 @@ static ritz_status come_closer(rank_search *s, bool *moved)
     const ritz_pairs *P = &s->found.pairs;
     const double first =
         P->num_rigid < P->Phi.ncol ? P->lambda[P->num_rigid] : 0.0;
+    ritz_status status = RITZ_OK;
 
     *moved = first > 0.0 && s->sigma < -RITZ_SHIFT_BLURRED * first &&
              first > s->broken;
     if (!*moved)
         return RITZ_OK;
-    if (factor_below(s->p, -first) == RITZ_OK) {
+    status = factor_below(s->p, -first);
+    if (status == RITZ_OK)
         s->sigma = -first;
-        return RITZ_OK;
-    }
+    if (status != RITZ_ERR_SINGULAR)
+        return status;
     s->broken = fmax(s->broken, first);
     *moved = false;
     return RITZ_OK;

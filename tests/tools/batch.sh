@@ -36,6 +36,11 @@ for file in bases/rotor.h5 reduced/rotor.h5 reduced/stator.h5 responses/1.h5 \
     same "$file is the same by both" "one/$file" "two/$file"
 done
 
+# a task that cannot list its targets fails
+sed 's/^targets:/&\n\t@false/' one/Makefile >two/Makefile
+SLURM_ARRAY_TASK_ID=1
+expect 2 '' sh "$here/../../examples/batch/array.sh" MODES=4
+
 # a component that cannot be read: make fails with its name and leaves no file
 echo junk >one/components/broken.h5
 expect 2 'broken.h5' make -s -k -j 2 -C one MODES=4

@@ -11,6 +11,19 @@ program=$bin/../libexec/ritz/ritz-basis-slepc
 check() { /usr/bin/python3 -s "$here/slepc.py" "$@"; }
 ranks() { number=$1 && shift && mpirun -n "$number" ritz-basis "$@"; }
 
+# Threads of a rank are its share of the cores, also where SLURM states the
+# number of ranks for several machines. A script that prints the number of threads
+# takes the place of the program.
+mkdir -p tool/bin tool/libexec/ritz
+cp "$bin/ritz-basis" tool/bin
+printf '#!/bin/sh\necho "threads=$OMP_NUM_THREADS."\n' \
+    >tool/libexec/ritz/ritz-basis-slepc
+chmod +x tool/libexec/ritz/ritz-basis-slepc
+for tasks in 9999 '9999(x2)' '9999(x2),3' 9999,3; do
+    expect 0 'threads=1.' env -u OMP_NUM_THREADS -u OMPI_COMM_WORLD_LOCAL_SIZE \
+        SLURM_TASKS_PER_NODE="$tasks" tool/bin/ritz-basis --engine slepc
+done
+
 # Built without PETSc, ritz-basis names the packages that it needs.
 if [ ! -x "$program" ]; then
     expect 1 'Debian'"'"'s packages slepc-dev, petsc-dev and mpi-default-dev' \

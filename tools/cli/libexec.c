@@ -54,15 +54,31 @@ bool libexec_is_asked(char **argv, const char *option, const char *value)
     return false;
 }
 
-/* The whole number in the first of some environment variables that has one; -1:
-   none has. */
+/* The whole number that a text begins with, and which its end, "(" or "," must
+   follow: SLURM writes "4(x2)" for four tasks on each of two machines, and
+   "4(x2),3" if a third one has three. -1: there is none. */
+static int64_t read_number(const char *text)
+{
+    char first[24];
+    const size_t length = strcspn(text, "(,");
+    int64_t number = 0;
+
+    if (length >= sizeof first)
+        return -1;
+    memcpy(first, text, length);
+    first[length] = '\0';
+    return ritz_text_whole(first, &number) ? number : -1;
+}
+
+/* The number in the first of some environment variables that has one; -1: none
+   has. */
 static int64_t find_number(const char *const *names)
 {
     for (; *names; names++) {
         const char *text = getenv(*names);
-        int64_t number = 0;
+        const int64_t number = text ? read_number(text) : -1;
 
-        if (text && ritz_text_whole(text, &number))
+        if (number >= 0)
             return number;
     }
     return -1;
@@ -92,8 +108,9 @@ static int64_t count_cores(void)
     return cores > 1 ? cores : 1;
 }
 
-/* Limit the threads of the program that is started next: its OpenMP reads the
-   environment at the start. */
+/* Set the number of threads of the program that execv() is about to start. Its
+   OpenMP reads these variables once, before main(), so that it is too late to
+   set them there. Variables that the user has set are kept. */
 static bool set_threads(void)
 {
     char cores[24];
