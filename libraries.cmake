@@ -106,11 +106,11 @@ target_link_libraries(ritz_uses INTERFACE ritz_headers ${hdf5_uses}
     ${lapacke_uses} ${arpack_uses} ${cholmod_uses} ${mumps_uses} ${slicot_uses}
     PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML ${ritz_beneath})
 
-# For ritz-basis --engine slepc, if they are there: PETSc and SLEPc with what
-# they are linked with themselves. Archives that PETSc does not use stay. Not
+# For --engine slepc, if they are there: PETSc and SLEPc with what they are
+# linked with themselves. Archives that PETSc does not use stay. Not
 # with sanitizers: MPI and PETSc leak and overlap by the dozen, and that build
 # shows instead what is said where they are missing.
-option(RITZ_WITH_SLEPC "build ritz-basis-slepc where PETSc and SLEPc are" ON)
+option(RITZ_WITH_SLEPC "build --engine slepc where PETSc and SLEPc are" ON)
 set(RITZ_SLEPC OFF)
 if(RITZ_WITH_SLEPC AND NOT RITZ_SANITIZE)
     pkg_check_modules(SLEPC QUIET IMPORTED_TARGET slepc petsc)
@@ -123,7 +123,7 @@ if(RITZ_WITH_SLEPC AND NOT RITZ_SANITIZE)
             AND ZMUMPS_MPI)
         set(RITZ_SLEPC ON)
     else()
-        message(STATUS "without ritz-basis --engine slepc, as not all of"
+        message(STATUS "without --engine slepc, as not all of"
             " slepc-dev petsc-dev libmumps-dev mpi-default-dev are there")
     endif()
 endif()

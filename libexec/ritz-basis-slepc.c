@@ -141,7 +141,7 @@ int main(int argc, char **argv)
        process of MPI must not do */
     if (setenv("OMP_THREAD_LIMIT", "1", 0) != 0)
         return EXIT_FAILURE;
-    ranks_start();
+    ranks_start("ritz-basis");
     if (ranks_own() > 0) {
         fixed_help();
         ranks_stop();

@@ -287,17 +287,6 @@ ritz_status fixed_make(const char *path, const ritz_request *request, bool held,
     return RITZ_OK;
 }
 
-/* Memory for what rank 0 broadcasts next. Rank 0 cannot be told of a failure
-   here, as it does not wait for an answer: the run is aborted. */
-static void *take_room(int64_t count, size_t size)
-{
-    void *room = ritz_zalloc(count, size);
-
-    if (!room)
-        ranks_abort();
-    return room;
-}
-
 void fixed_help(void)
 {
     for (;;) {
@@ -308,9 +297,9 @@ void fixed_help(void)
         ranks_share(&t, sizeof t);
         if (t.path_size == 0)
             return;
-        path = take_room(t.path_size, sizeof *path);
+        path = ranks_take(t.path_size, sizeof *path);
         b.count = t.num_attached;
-        b.at = take_room(b.count, sizeof *b.at);
+        b.at = ranks_take(b.count, sizeof *b.at);
         ranks_share(path, t.path_size);
         ranks_share(b.at, b.count * (int64_t)sizeof *b.at);
         (void)work_together(&t, path, &b, NULL);

@@ -2,6 +2,7 @@
 
 #include "ranks.h"
 
+#include "base/alloc.h"
 #include "cli/cli.h"
 
 #include <slepceps.h>
@@ -51,27 +52,31 @@ static PetscErrorCode complain_once(MPI_Comm comm, int line,
     (void)line;
     (void)file;
     (void)type;
-    (void)context;
     if (ranks_own() > 0)
         usleep(WAIT);
-    cli_complain("ritz-basis: %s: PETSc fails in %s, rank %d: %s\n",
+    cli_complain("%s: %s: PETSc fails in %s, rank %d: %s\n",
+                 (const char *)context,
                  code == PETSC_ERR_MEM ? "no memory" : "engine slepc",
                  function ? function : "a function", ranks_own(),
                  sentence ? sentence : "no reason is given");
     ranks_abort();
 }
 
-void ranks_start(void)
+void ranks_start(const char *tool)
 {
-    static char name[] = "ritz-basis-slepc";
+    static char name[] = "ritz-slepc";
     static char *names[] = {name, NULL};
     char **arguments = names;
     int count = 1;
+    union {
+        const char *given;
+        void *context; /* PETSc passes it on, and changes nothing */
+    } at = {.given = tool};
 
     if (PetscOptionsSetValue(NULL, "-no_signal_handler", NULL) != 0 ||
         SlepcInitialize(&count, &arguments, NULL, NULL) != 0 ||
-        PetscPushErrorHandler(complain_once, NULL) != 0) {
-        cli_complain("ritz-basis: PETSc and SLEPc do not start\n");
+        PetscPushErrorHandler(complain_once, at.context) != 0) {
+        cli_complain("%s: PETSc and SLEPc do not start\n", tool);
         _exit(EXIT_FAILURE);
     }
 }
@@ -104,6 +109,15 @@ ritz_status ranks_agree(ritz_status own)
     if (first != ranks_own())
         ritz_record("%s", sentence);
     return (ritz_status)status;
+}
+
+void *ranks_take(int64_t count, size_t size)
+{
+    void *room = ritz_zalloc(count, size);
+
+    if (!room)
+        ranks_abort();
+    return room;
 }
 
 void ranks_share(void *bytes, int64_t count)

@@ -16,10 +16,10 @@
 #include <petscsys.h>
 #include <stdint.h>
 
-/** Start MPI, PETSc and SLEPc. PETSc installs no signal handlers, and its
+/** Start MPI, PETSc and SLEPc; @p tool is named in messages. PETSc installs no signal handlers, and its
  * errors are reported in one line. Options are read from the environment
  * variable PETSC_OPTIONS. */
-void ranks_start(void);
+void ranks_start(const char *tool);
 
 /** End MPI, PETSc and SLEPc. To be called in every rank. */
 void ranks_stop(void);
@@ -57,6 +57,12 @@ ritz_status ranks_agree(ritz_status own);
 
 /** Broadcast @p count bytes from rank 0 to every rank. Collective. */
 void ranks_share(void *bytes, int64_t count);
+
+/**
+ * Memory of zeros, for what another rank sends next. That rank cannot be told of
+ * a failure, as it does not wait for a reply: the run is aborted.
+ */
+void *ranks_take(int64_t count, size_t size);
 
 /** Replace each value by its sum over all ranks. Collective. */
 void ranks_sum(double *values, int64_t count);

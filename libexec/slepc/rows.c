@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/tolerances.h"
-#include "container/slab.h"
 #include "ranks.h"
 
 #include <inttypes.h>
@@ -11,8 +10,7 @@
 
 /* --- reading -------------------------------------------------------------- */
 
-/* The first dof of a rank; num_dofs for the rank after the last. */
-static int64_t first_dof(const rows_frame *f, int rank)
+int64_t rows_first_dof(const rows_frame *f, int rank)
 {
     return f->num_dofs / ranks_count() * rank +
            f->num_dofs % ranks_count() * rank / ranks_count();
@@ -40,13 +38,14 @@ static ritz_status verify_chain(const rows_frame *f, const char *name,
     return RITZ_OK;
 }
 
-static ritz_status read_matrix(const rows_frame *f, const char *name,
-                               ritz_slab *out)
+ritz_status rows_read_matrix(const rows_frame *f, const char *name,
+                             ritz_slab *out)
 {
     const int rank = ranks_own();
 
-    RANKS_CHECK(ritz_slab_read(f->path, name, f->num_dofs, first_dof(f, rank),
-                               first_dof(f, rank + 1), out));
+    RANKS_CHECK(ritz_slab_read(f->path, name, f->num_dofs,
+                               rows_first_dof(f, rank),
+                               rows_first_dof(f, rank + 1), out));
     return ranks_agree(verify_chain(f, name, out));
 }
 
@@ -274,8 +273,8 @@ static ritz_status check_symmetry(Mat A, const char *name)
 /* Number of interior dofs of this rank. */
 static int64_t count_interior(const rows_frame *f)
 {
-    const int64_t from = first_dof(f, ranks_own());
-    const int64_t to = first_dof(f, ranks_own() + 1);
+    const int64_t from = rows_first_dof(f, ranks_own());
+    const int64_t to = rows_first_dof(f, ranks_own() + 1);
     bool is_one = false;
 
     return to - from -
@@ -287,7 +286,7 @@ static ritz_status read_stiffness(const rows_frame *f, rows *r)
     RITZ_OWN(ritz_slab) slab = {0};
     double *load = NULL;
 
-    RITZ_CHECK(read_matrix(f, "K", &slab));
+    RITZ_CHECK(rows_read_matrix(f, "K", &slab));
     if (f->num_attached > 0) {
         ranks_expect(MatCreateDense(PETSC_COMM_WORLD, (PetscInt)r->own,
                                     PETSC_DECIDE, (PetscInt)r->interior,
@@ -304,7 +303,7 @@ static ritz_status read_mass(const rows_frame *f, rows *r)
 {
     RITZ_OWN(ritz_slab) slab = {0};
 
-    RITZ_CHECK(read_matrix(f, "M", &slab));
+    RITZ_CHECK(rows_read_matrix(f, "M", &slab));
     RITZ_CHECK(convert_slab(f, "M", &slab, NULL, r, &r->M));
     return check_symmetry(r->M, "M");
 }

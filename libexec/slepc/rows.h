@@ -7,6 +7,8 @@
 #ifndef RITZ_LIBEXEC_SLEPC_ROWS_H
 #define RITZ_LIBEXEC_SLEPC_ROWS_H
 
+#include "container/slab.h"
+
 #include <ritz/matrix.h>
 
 #include <petscmat.h>
@@ -28,6 +30,19 @@ typedef struct rows {
     int64_t interior; /* rows of all ranks */
     int64_t own;      /* rows of this rank */
 } rows;
+
+/** The first dof of a rank; num_dofs for the rank after the last. */
+int64_t rows_first_dof(const rows_frame *frame, int rank);
+
+/**
+ * Read the columns of this rank's dofs of a matrix, and compare its checksums.
+ * Collective.
+ *
+ * @param[in] frame  path and num_dofs are used
+ * @return as ritz_slab_read() and ritz_slab_verify()
+ */
+ritz_status rows_read_matrix(const rows_frame *frame, const char *name,
+                             ritz_slab *out);
 
 /**
  * Read K and M from the file. Collective.

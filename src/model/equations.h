@@ -183,6 +183,11 @@ ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
 
 void ritz_nodes_free(ritz_nodes *nodes);
 
+/** R'MR, 6 x 6, of the rigid motions R about the basic origin; {0}: there is no
+ * grid. */
+ritz_status ritz_inertia_momenta(const ritz_component *component,
+                                 ritz_dense *out);
+
 /** Mass, centre and inertia from A = R'MR, with R the rigid motions about the
  * basic origin. */
 void ritz_inertia_read(const ritz_dense *A, ritz_inertia *inertia);

@@ -78,16 +78,25 @@ void ritz_inertia_read(const ritz_dense *A, ritz_inertia *inertia)
                     m * ((i == j ? square : 0.0) - c[i] * c[j]);
 }
 
+ritz_status ritz_inertia_momenta(const ritz_component *component,
+                                 ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) R = {0};
+
+    if (component->grids.count == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
+    return ritz_sparse_condense(&component->M, &R, out);
+}
+
 ritz_status ritz_inertia_of(const ritz_component *component, ritz_inertia *out)
 {
-    RITZ_OWN(ritz_dense) R = {0}, A = {0};
+    RITZ_OWN(ritz_dense) A = {0};
 
     *out = (ritz_inertia){0};
-    if (component->grids.count > 0) {
-        RITZ_CHECK(ritz_rigid_geometry(component, origin, &R));
-        RITZ_CHECK(ritz_sparse_condense(&component->M, &R, &A));
+    RITZ_CHECK(ritz_inertia_momenta(component, &A));
+    if (A.val)
         ritz_inertia_read(&A, out);
-    }
     return RITZ_OK;
 }
 

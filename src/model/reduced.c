@@ -3,6 +3,8 @@
 #include "base/text.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
+#include "model/congruences.h"
+#include "model/equations.h"
 
 #include <ritz/model.h>
 
@@ -21,39 +23,15 @@ static void clear_massless(const ritz_columns *columns, ritz_dense *A)
                 ritz_dense_col(A, j)[i] = 0.0;
 }
 
-/* T with zeros for massless columns, so that invariants agree with M. */
-static ritz_status copy_mass_columns(const ritz_basis *basis, ritz_dense *out)
-{
-    RITZ_CHECK(ritz_dense_copy(&basis->T, out));
-    for (int64_t j = 0; j < out->ncol; j++)
-        if (basis->columns.kind[j] == RITZ_COLUMN_MASSLESS)
-            memset(ritz_dense_col(out, j), 0,
-                   (size_t)out->nrow * sizeof *out->val);
-    return RITZ_OK;
-}
-
-/* Largest K_jj / M_jj of coordinates with mass, and whether some have none. */
-typedef struct fastest {
-    double most;
-    bool any;
-} fastest;
-
-static void weigh_coordinate(double k, double m, fastest *f)
-{
-    if (m > 0.0)
-        f->most = fmax(f->most, k / m);
-    else
-        f->any = true;
-}
-
 /*
  * A column that combines massless dofs alone has a mass that is rounding. An
  * eigenvalue above 1/eps times the largest of motions with mass cannot be told
  * from an infinite one: such a mass is set to zero.
  */
-static void clear_rounding(const fastest *f, const ritz_dense *K, ritz_dense *M)
+static void clear_rounding(const ritz_fastest *fastest, const ritz_dense *K,
+                           ritz_dense *M)
 {
-    double limit = f->any ? f->most / DBL_EPSILON : 0.0;
+    const double limit = fastest->massless ? fastest->ratio / DBL_EPSILON : 0.0;
 
     for (int64_t j = 0; j < M->ncol && limit > 0.0; j++) {
         if (ritz_dense_col(K, j)[j] <= limit * fabs(ritz_dense_col(M, j)[j]))
@@ -63,12 +41,6 @@ static void clear_rounding(const fastest *f, const ritz_dense *K, ritz_dense *M)
     }
 }
 
-/* Columns that are rigid-body motions, or combine to some. */
-static bool may_be_rigid(ritz_column_kind kind)
-{
-    return kind == RITZ_COLUMN_RIGID || kind == RITZ_COLUMN_CONSTRAINT;
-}
-
 /*
  * Rigid-body motions store no energy: entries of T'KT that are rounding of
  * |T|'|K||T| for them become 0. Otherwise rounding would be the only stiffness
@@ -76,75 +48,17 @@ static bool may_be_rigid(ritz_column_kind kind)
  * rigid modes of every system with this body. Rigid-body motions do not
  * dissipate energy either, so T'K4T is treated in the same way.
  */
-static ritz_status settle_rigid(const ritz_sparse *K, const ritz_basis *basis,
-                                ritz_dense *Kr)
+static void settle_rigid(const ritz_columns *columns, const ritz_dense *most,
+                         ritz_dense *Kr)
 {
-    RITZ_OWN(ritz_dense) most = {0};
-    RITZ_OWN_ARRAY int64_t *rigid = NULL;
-    int64_t count = 0;
-
-    RITZ_CHECK_NEW(rigid, Kr->ncol);
     for (int64_t j = 0; j < Kr->ncol; j++)
-        if (may_be_rigid(basis->columns.kind[j]))
-            rigid[count++] = j;
-    RITZ_CHECK(ritz_sparse_terms(K, &basis->T, count, rigid, &most));
-    for (int64_t k = 0; k < count; k++)
-        for (int64_t i = 0; i < Kr->nrow; i++) {
-            const double rounding =
-                RITZ_SUM_ROUNDING * ritz_dense_col(&most, k)[i];
-            double *column = &ritz_dense_col(Kr, rigid[k])[i];
-            double *row = &ritz_dense_col(Kr, i)[rigid[k]];
-
-            if (fabs(*column) <= rounding)
-                *column = 0.0;
-            if (fabs(*row) <= rounding)
-                *row = 0.0;
-        }
+        for (int64_t i = 0; i < Kr->nrow; i++)
+            if ((ritz_may_be_rigid(columns->kind[i]) ||
+                 ritz_may_be_rigid(columns->kind[j])) &&
+                fabs(ritz_dense_col(Kr, j)[i]) <=
+                    RITZ_SUM_ROUNDING * ritz_dense_col(most, j)[i])
+                ritz_dense_col(Kr, j)[i] = 0.0;
     ritz_dense_symmetrise(Kr);
-    return RITZ_OK;
-}
-
-/* Whether columns of T depend on each other to six digits or more. */
-static ritz_status nearly_depend(const ritz_dense *T, bool *out)
-{
-    int r = (int)T->ncol;
-    double rcond = 0.0;
-    RITZ_OWN(ritz_dense) G = {0}, scaled = {0};
-
-    *out = false;
-    if (r == 0 || T->nrow == 0)
-        return RITZ_OK;
-    RITZ_CHECK(ritz_dense_mul_tn(T, T, &G));
-    RITZ_CHECK(ritz_dense_copy(&G, &scaled));
-    for (int64_t j = 0; j < r; j++)
-        for (int64_t i = 0; i < r; i++)
-            ritz_dense_col(&scaled, j)[i] /=
-                sqrt(ritz_dense_col(&G, i)[i] * ritz_dense_col(&G, j)[j]);
-    RITZ_CHECK(ritz_general_cholesky(&scaled, &rcond));
-    *out = !(rcond > RITZ_SQUARED_DEPENDENT);
-    return RITZ_OK;
-}
-
-/*
- * T'KT. A direction d in which columns of T nearly depend on each other has a
- * stiffness d'Kd and a coupling phi'Kd that are far below the rounding of
- * |T|'|K||T|, and what is made of them, (phi'Kd)^2 / d'Kd, would be off in the
- * modes that are kept: K T is then summed with twice the digits.
- */
-static ritz_status project_stiffness(const ritz_sparse *K, const ritz_dense *T,
-                                     ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) KT = {0};
-    bool twofold = false;
-
-    RITZ_CHECK(nearly_depend(T, &twofold));
-    if (!twofold)
-        return ritz_sparse_project(K, T, out);
-    RITZ_CHECK(ritz_sparse_mul_twofold(K, T, &KT));
-    RITZ_CHECK(ritz_dense_mul_tn(T, &KT, out));
-    if (ritz_sparse_asymmetry(K) == 0.0)
-        ritz_dense_symmetrise(out);
-    return RITZ_OK;
 }
 
 static ritz_status copy_grids(const ritz_grids *grids, ritz_grids *out)
@@ -216,11 +130,6 @@ static ritz_status map_ports(const ritz_component *component,
 static ritz_status keep_names(const ritz_component *component,
                               const ritz_basis *basis, ritz_reduced *reduced)
 {
-    RITZ_OWN(ritz_dense) T = {0};
-    bool any = false;
-
-    for (int64_t j = 0; j < basis->columns.count; j++)
-        any = any || basis->columns.kind[j] == RITZ_COLUMN_MASSLESS;
     reduced->origin = basis->origin;
     reduced->num_dofs = component->num_dofs;
     memcpy(reduced->units, component->units, sizeof reduced->units);
@@ -229,22 +138,13 @@ static ritz_status keep_names(const ritz_component *component,
     RITZ_CHECK(ritz_columns_pick(&basis->columns, basis->columns.count, NULL,
                                  &reduced->columns));
     RITZ_CHECK(ritz_dense_copy(&basis->T, &reduced->T));
-    RITZ_CHECK(copy_rows(component->num_dofs, component->dof, &component->grids,
-                         &component->elements, &component->recovery, reduced));
-    RITZ_CHECK(ritz_inertia_of(component, &reduced->inertia));
-    if (any)
-        RITZ_CHECK(copy_mass_columns(basis, &T));
-    return ritz_invariants_of(component, any ? &T : &basis->T,
-                              &reduced->invariants);
+    return copy_rows(component->num_dofs, component->dof, &component->grids,
+                     &component->elements, &component->recovery, reduced);
 }
 
-ritz_status ritz_reduce(const ritz_component *component,
-                        const ritz_basis *basis, ritz_reduced *out)
+static ritz_status refuse_basis(const ritz_component *component,
+                                const ritz_basis *basis)
 {
-    const ritz_dense *T = &basis->T;
-    fastest f = {0.0, false};
-    RITZ_OWN(ritz_reduced) reduced = {0};
-
     RITZ_REFUSE_IF(basis->states, RITZ_ERR_ARGUMENT,
                    "the basis of '%s' is of states, it makes a state space and "
                    "no masses and stiffnesses",
@@ -253,28 +153,59 @@ ritz_status ritz_reduce(const ritz_component *component,
                    "the basis of '%s' has left vectors of its own, it makes a "
                    "state space and no symmetric masses and stiffnesses",
                    basis->origin.method);
-    RITZ_REFUSE_IF(T->nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
+    RITZ_REFUSE_IF(basis->T.nrow != component->num_dofs, RITZ_ERR_ARGUMENT,
                    "the basis is for %lld dofs, the component has %lld",
-                   (long long)T->nrow, (long long)component->num_dofs);
+                   (long long)basis->T.nrow, (long long)component->num_dofs);
+    return RITZ_OK;
+}
+
+ritz_status ritz_congruences_reduce(const ritz_component *component,
+                                    const ritz_basis *basis,
+                                    ritz_congruences *sums, ritz_reduced *out)
+{
+    const ritz_columns *columns = &basis->columns;
+    const ritz_dense *T = &basis->T;
+    RITZ_OWN(ritz_reduced) reduced = {0};
+
+    RITZ_CHECK(refuse_basis(component, basis));
     RITZ_CHECK(keep_names(component, basis, &reduced));
-    RITZ_CHECK(project_stiffness(&component->K, T, &reduced.K));
-    RITZ_CHECK(settle_rigid(&component->K, basis, &reduced.K));
-    RITZ_CHECK(ritz_sparse_project(&component->M, T, &reduced.M));
-    RITZ_CHECK(ritz_sparse_project(&component->D, T, &reduced.D));
-    for (int64_t j = 0; j < component->num_dofs; j++)
-        weigh_coordinate(ritz_sparse_diagonal(&component->K, j),
-                         ritz_sparse_diagonal(&component->M, j), &f);
-    clear_rounding(&f, &reduced.K, &reduced.M);
-    clear_massless(&basis->columns, &reduced.M);
-    clear_massless(&basis->columns, &reduced.D);
-    RITZ_CHECK(ritz_sparse_project(&component->K4, T, &reduced.K4));
-    if (reduced.K4.val)
-        RITZ_CHECK(settle_rigid(&component->K4, basis, &reduced.K4));
+    if (sums->rigid.val)
+        ritz_inertia_read(&sums->rigid, &reduced.inertia);
+    settle_rigid(columns, &sums->K_terms, &sums->K);
+    clear_rounding(&sums->fastest, &sums->K, &sums->M);
+    clear_massless(columns, &sums->M);
+    clear_massless(columns, &sums->D);
+    if (sums->K4.val)
+        settle_rigid(columns, &sums->K4_terms, &sums->K4);
+    RITZ_MOVE(reduced.K, sums->K);
+    RITZ_MOVE(reduced.M, sums->M);
+    RITZ_MOVE(reduced.D, sums->D);
+    RITZ_MOVE(reduced.K4, sums->K4);
+    RITZ_MOVE(reduced.invariants, sums->invariants);
     RITZ_CHECK(ritz_dampers_project(&component->dampers, T, &reduced.dampers));
     RITZ_CHECK(map_ports(component, T, &reduced));
     RITZ_CHECK(ritz_io_project(&component->io, T, &reduced.io));
     RITZ_MOVE(*out, reduced);
     return RITZ_OK;
+}
+
+ritz_status ritz_reduce(const ritz_component *component,
+                        const ritz_basis *basis, ritz_reduced *out)
+{
+    RITZ_OWN(ritz_congruences) sums = {0};
+    RITZ_OWN(ritz_dense) G = {0};
+    bool twofold = false;
+
+    RITZ_CHECK(refuse_basis(component, basis));
+    if (basis->T.ncol > 0 && basis->T.nrow > 0)
+        RITZ_CHECK(ritz_dense_mul_tn(&basis->T, &basis->T, &G));
+    RITZ_CHECK(ritz_congruences_twofold(&G, &twofold));
+    RITZ_CHECK(ritz_congruences_of(component, basis->columns.kind, &basis->T,
+                                   twofold, &sums));
+    for (int64_t j = 0; j < component->num_dofs; j++)
+        ritz_fastest_add(ritz_sparse_diagonal(&component->K, j),
+                         ritz_sparse_diagonal(&component->M, j), &sums.fastest);
+    return ritz_congruences_reduce(component, basis, &sums, out);
 }
 
 static ritz_status project_ports(const ritz_reduced *from, const ritz_dense *V,
@@ -304,7 +235,7 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
     second = {.origin = reduced->origin,
               .inertia = reduced->inertia,
               .num_dofs = reduced->num_dofs};
-    fastest f = {0.0, false};
+    ritz_fastest fastest = {0};
 
     memcpy(second.units, reduced->units, sizeof second.units);
     memcpy(second.remark, reduced->remark, sizeof second.remark);
@@ -315,9 +246,9 @@ ritz_status ritz_reduced_project(const ritz_reduced *reduced,
     RITZ_CHECK(ritz_dense_congruence(&reduced->K, V, &second.K));
     RITZ_CHECK(ritz_dense_congruence(&reduced->M, V, &second.M));
     for (int64_t j = 0; j < reduced->M.ncol; j++)
-        weigh_coordinate(ritz_dense_col(&reduced->K, j)[j],
-                         ritz_dense_col(&reduced->M, j)[j], &f);
-    clear_rounding(&f, &second.K, &second.M);
+        ritz_fastest_add(ritz_dense_col(&reduced->K, j)[j],
+                         ritz_dense_col(&reduced->M, j)[j], &fastest);
+    clear_rounding(&fastest, &second.K, &second.M);
     if (reduced->D.val)
         RITZ_CHECK(ritz_dense_project(&reduced->D, V, &second.D));
     if (reduced->K4.val)

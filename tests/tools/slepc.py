@@ -3,6 +3,9 @@
 membrane SIDE [EVERY]: write m.K.mtx, m.M.mtx and m.dofs of a free square grid of
 SIDE x SIDE masses. Springs join neighbours, entries of M couple diagonal ones.
 With EVERY = 7, say, only every seventh dof has a mass, and M is diagonal.
+damping DOFS SIDE: write m.D.mtx, which is not symmetric, and m.K4.mtx, for that
+grid.
+alike REDUCED REDUCED...: fail unless all reduced components agree with the first.
 same BASIS BASIS...: fail unless all bases agree with the first.
 damage FILE ENTRY VALUE [unsealed]: overwrite an entry of K; with `unsealed` its
 checksum is removed, otherwise it no longer fits.
@@ -38,6 +41,40 @@ def membrane(side, every=1):
     with open("m.dofs", "w") as file:
         for k in range(n):
             print(k + 1, 3, file=file)
+
+
+def damping(path, side):
+    with open(path) as file:
+        n = len(file.readlines())
+    D = {(k, k): 0.1 + k % 5 for k in range(n)}
+    D |= {(k + int(side), k): 0.5 for k in range(n - int(side))}
+    K4 = {(k, k): 0.02 for k in range(0, n, 2)}
+    for name, entries in ("D", D), ("K4", K4):
+        with open(f"m.{name}.mtx", "w") as file:
+            print("%%MatrixMarket matrix coordinate real general", file=file)
+            print(n, n, len(entries), file=file)
+            for (i, j), value in sorted(entries.items()):
+                print(i + 1, j + 1, value, file=file)
+
+
+def alike(first, *others):
+    """All numbers agree to 1e-12 of the largest of their data set: sums of a few
+    hundred products of six digits more."""
+    with h5py.File(first) as one:
+        sets = []
+        one.visititems(lambda name, item: sets.append(name)
+                       if isinstance(item, h5py.Dataset) else None)
+        assert "K" in sets and "T" in sets, sets
+        for path in others:
+            with h5py.File(path) as other:
+                for name in sets:
+                    a, b = one[name][()], other[name][()]
+                    if one[name].dtype.kind not in "fi":
+                        assert np.array_equal(a, b), f"{path}: {name}"
+                        continue
+                    gap = np.where(np.isnan(a) & np.isnan(b), 0.0, abs(a - b))
+                    assert gap.max(initial=0.0) <= 1e-12 * np.nanmax(
+                        abs(a), initial=0.0), f"{path}: {name}"
 
 
 def columns(path):
@@ -83,5 +120,6 @@ def damage(path, entry, value, *how):
 
 
 if __name__ == "__main__":
-    {"membrane": membrane, "same": same, "damage": damage}[sys.argv[1]](
+    {"membrane": membrane, "damping": damping, "alike": alike, "same": same,
+     "damage": damage}[sys.argv[1]](
         *sys.argv[2:])

@@ -1,8 +1,9 @@
 #!/bin/sh
-# slepc.sh FOLDER-OF-THE-TOOLS - ritz-basis --engine slepc on 1, 2 and 4 ranks:
-# bases agree with those of the usual engine, and a failure is reported once and
-# ends all ranks.
+# slepc.sh FOLDER-OF-THE-TOOLS - ritz-basis and ritz-reduce --engine slepc on 1, 2
+# and 4 ranks: bases and reduced components agree with those of the usual engine,
+# and a failure is reported once and ends all ranks.
 . "$(dirname "$0")/tap.sh"
+. "$(dirname "$0")/models.sh"
 
 # Open MPI refuses root and more ranks than cores, unless it is told
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
@@ -10,6 +11,7 @@ export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1
 program=$bin/../libexec/ritz/ritz-basis-slepc
 check() { /usr/bin/python3 -s "$here/slepc.py" "$@"; }
 ranks() { number=$1 && shift && mpirun -n "$number" ritz-basis "$@"; }
+reduce() { number=$1 && shift && mpirun -n "$number" ritz-reduce "$@"; }
 
 # Threads of a rank are its share of the cores, also where SLURM states the
 # number of ranks for several machines. A script that prints the number of threads
@@ -28,6 +30,8 @@ done
 if [ ! -x "$program" ]; then
     expect 1 'Debian'"'"'s packages slepc-dev, petsc-dev and mpi-default-dev' \
         ritz-basis craig-bampton --modes 3 --engine slepc none.h5 -o out.h5
+    expect 1 'Debian'"'"'s packages slepc-dev, petsc-dev and mpi-default-dev' \
+        ritz-reduce --engine slepc none.h5 none.h5 -o out.h5
     works 'and writes nothing' test ! -e out.h5
     echo "1..$count"
     exit 0
@@ -74,6 +78,29 @@ fixed='-q craig-bampton --attach rim m.h5'
 }
 expect 0 '' ritz-reduce -q m.h5 4.h5 -o reduced.h5
 
+# Reduction in ranks: of the membrane with a damping matrix that is not symmetric
+# and with structural damping, of a rotor with grids, and therefore inertia
+# invariants, and a damper, and of one grid whose dofs are in several ranks.
+works 'damping matrices are made' check damping m.dofs 22
+alone='-q --estimates none'
+together="$alone --engine slepc"
+expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
+    --damping m.D.mtx --structural-damping m.K4.mtx --port corner=1:3 \
+    --port "rim=$rim:3" --input push=30:3 --output see=40:3 -o damped.h5
+import_spacecraft --damper 'ground=1:1*10'
+# shellcheck disable=SC2086 # words
+for model in damped rotor platform; do
+    method='craig-bampton --modes 6'
+    [ $model != platform ] || method=rigid
+    expect 0 '' ritz-basis -q $method $model.h5 -o $model.b.h5
+    expect 0 '' ritz-reduce $alone $model.h5 $model.b.h5 -o $model.0.h5
+    for n in 1 2 4; do
+        expect 0 '' reduce $n $together $model.h5 $model.b.h5 -o $model.$n.h5
+    done
+    works "$model is reduced alike" check alike $model.0.h5 $model.1.h5 \
+        $model.2.h5 $model.4.h5
+done
+
 # free, with a rigid mode; no mpirun is one rank
 expect 0 '' ritz-basis -q normal-modes --modes 8 m.h5 -o 0.h5
 expect 0 '' ritz-basis -q normal-modes --modes 8 --engine slepc m.h5 -o 1.h5
@@ -107,7 +134,7 @@ fails() {
     expect "$@" -o out.h5
     cp log said
     works '  once, and nothing is written' sh -c 'cat said
-        test "$(grep -c "^ritz-basis:" said)" = 1 &&
+        test "$(grep -c "^ritz-[a-z]*:" said)" = 1 &&
         test -z "$(ls -A | grep out.h5)"'
 }
 fails 1 'a rigid-body motion or mechanism left free? with the attached dofs held, 1 motion(s) cost no energy' \
@@ -119,16 +146,27 @@ fails 1 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
 fails 2 "no method 'craig'" ranks 2 craig --modes 3 --engine slepc m.h5
 fails 1 'makes no static vectors of inputs, outputs or dampers' \
     ritz-basis craig-bampton --modes 3 --loads inputs --engine slepc m.h5
+fails 1 'engine slepc makes no estimates: say --estimates none' reduce 2 \
+    --engine slepc damped.h5 damped.b.h5
+fails 1 'engine slepc makes no estimates: say --estimates none' reduce 2 \
+    --engine slepc --estimates frequency damped.h5 damped.b.h5
+fails 1 'engine slepc takes no --damping' reduce 2 --engine slepc \
+    --estimates none --damping 'modal 0.01' damped.h5 damped.b.h5
+fails 1 'is a basis for 484 dofs' reduce 2 --engine slepc --estimates none \
+    rotor.h5 damped.b.h5
 # only the last rank reads this entry
 cp m.h5 bad.h5
 check damage bad.h5 -1 nan unsealed
 fails 1 'bad.h5: K: entry' ranks 4 craig-bampton --modes 3 --engine slepc bad.h5
+fails 1 'bad.h5: K: entry' reduce 4 --engine slepc --estimates none bad.h5 1.h5
 cp m.h5 bad.h5
 check damage bad.h5 0 7
 fails 1 "K: 'data' is damaged: its checksum does not fit" ranks 2 \
     craig-bampton --modes 3 --engine slepc bad.h5
 cp m.h5 bad.h5
 check damage bad.h5 1166 -7 unsealed
+fails 1 'K is not symmetric to the last bit' reduce 2 --engine slepc \
+    --estimates none bad.h5 1.h5
 fails 1 'K is unsymmetric by' ranks 2 craig-bampton --modes 3 --attach corner \
     --engine slepc bad.h5
 cp m.h5 bad.h5

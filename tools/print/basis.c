@@ -274,8 +274,11 @@ static void drop_basis(ritz_reduced *reduced)
 /* Reduce a component by a basis. A model that was reduced before is projected
    again, so that its ports and shapes follow. */
 static ritz_status project_component(const model *full, const ritz_basis *basis,
+                                     const reduce_options *given,
                                      ritz_reduced *out)
 {
+    if (given->project)
+        return given->project(&full->component, basis, out);
     if (full->reduced.num_ports == 0 && !full->reduced.T.val)
         return ritz_reduce(&full->component, basis, out);
     RITZ_CHECK(ritz_reduced_project(&full->reduced, &basis->T, out));
@@ -302,7 +305,7 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
     ritz_reduced *reduced = &made.reduced;
     const ritz_columns *c = &reduced->columns;
 
-    RITZ_CHECK_IN(what, project_component(full, basis, reduced));
+    RITZ_CHECK_IN(what, project_component(full, basis, given, reduced));
     if (!asked_for(given, "none"))
         RITZ_CHECK_IN(what, ritz_estimate(&full->component, basis,
                                           &given->estimate, reduced));
@@ -378,8 +381,12 @@ ritz_status reduce_run(cli_run *run, reduce_options *given)
     RITZ_OWN(model) full = {0};
     RITZ_OWN(model) basis = {0};
 
-    RITZ_CHECK(model_read(run, run->operand[0], MODEL_DYNAMIC, &full));
-    RITZ_CHECK(model_as_component(&full, run->operand[0], &given->model));
+    if (given->read) {
+        RITZ_CHECK(given->read(run, run->operand[0], &full));
+    } else {
+        RITZ_CHECK(model_read(run, run->operand[0], MODEL_DYNAMIC, &full));
+        RITZ_CHECK(model_as_component(&full, run->operand[0], &given->model));
+    }
     RITZ_CHECK(model_read(run, what, MODEL_BASIS, &basis));
     RITZ_CHECK(check_rows(run, &full, &basis.basis));
     RITZ_CHECK(check_configuration(run, &full, &basis.basis));

@@ -47,10 +47,25 @@ typedef struct reduce_options {
     bool without_basis;
     model_options model;   /* configuration or columns, and damping */
     const char *estimates; /* "all", "frequency" or "none"; NULL: all */
+    const char *engine;    /* "auto" or "slepc"; NULL: auto */
     ritz_estimate_request estimate;
+    /* reads the component, and projects it on the basis; NULL: reduce_run does
+       so itself */
+    ritz_status (*read)(cli_run *run, const char *path, model *out);
+    ritz_status (*project)(const ritz_component *component,
+                           const ritz_basis *basis, ritz_reduced *out);
 } reduce_options;
 
 ritz_status reduce_run(cli_run *run, reduce_options *given);
+
+/**
+ * Run ritz-reduce: parse its command line and reduce the component.
+ *
+ * @param[in] make  reduce_run, or a function that calls it with other options
+ * @return the exit status
+ */
+int reduce_main(int argc, char **argv,
+                ritz_status (*make)(cli_run *run, reduce_options *given));
 
 /* --- ritz-check ----------------------------------------------------------- */
 

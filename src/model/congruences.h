@@ -1,0 +1,70 @@
+/*
+ * What a reduced component has from the matrices of a component: T'KT and the
+ * like. All of it is linear in the matrices, so that it may be found for parts
+ * of them, in several processes, and added.
+ */
+#ifndef RITZ_MODEL_CONGRUENCES_H
+#define RITZ_MODEL_CONGRUENCES_H
+
+#include <ritz/model.h>
+
+/* The largest K_jj / M_jj of coordinates with mass. */
+typedef struct ritz_fastest {
+    double ratio;  /* 0: none has mass */
+    bool massless; /* whether a coordinate has no mass */
+} ritz_fastest;
+
+/** Take a coordinate with K_jj = @p k and M_jj = @p m into account. */
+void ritz_fastest_add(double k, double m, ritz_fastest *fastest);
+
+/** Whether columns of a kind are rigid-body motions, or combine to some. */
+bool ritz_may_be_rigid(ritz_column_kind kind);
+
+typedef struct ritz_congruences {
+    ritz_dense K, M, D, K4; /* r x r, T'KT and so on; {0} of an absent matrix */
+    /* r x r, |T|'|K||T| in rows and columns that may be rigid, else 0: T'KT is
+       rounded by some of its units in the last place */
+    ritz_dense K_terms, K4_terms;
+    ritz_dense rigid;           /* 6 x 6, R'MR of rigid motions R; {0}: there is
+                                   no grid */
+    ritz_invariants invariants; /* massless columns have no part in them */
+    ritz_fastest fastest;       /* of all dofs */
+} ritz_congruences;
+
+/**
+ * All but `fastest`.
+ *
+ * @param[in]  component  its matrices, dofs and grids are read
+ * @param[in]  kind       r kinds of the columns of T
+ * @param[in]  T          n x r
+ * @param[in]  twofold    sum K T with twice the digits
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree; RITZ_ERR_MEMORY
+ * @cost   O(r nnz + n r^2)
+ */
+ritz_status ritz_congruences_of(const ritz_component *component,
+                                const ritz_column_kind *kind,
+                                const ritz_dense *T, bool twofold,
+                                ritz_congruences *out);
+
+/**
+ * Whether K T must be summed with twice the digits: columns of T depend on each
+ * other to six digits or more.
+ *
+ * @param[in] G  r x r, T'T; {0} if T has no columns
+ */
+ritz_status ritz_congruences_twofold(const ritz_dense *G, bool *out);
+
+/**
+ * The reduced component of a basis, where the congruences are known. The
+ * matrices of the component are not read.
+ *
+ * @param[in,out] sums  of all of the matrices; taken over
+ * @return as ritz_reduce()
+ */
+ritz_status ritz_congruences_reduce(const ritz_component *component,
+                                    const ritz_basis *basis,
+                                    ritz_congruences *sums, ritz_reduced *out);
+
+void ritz_congruences_free(ritz_congruences *sums);
+
+#endif
