@@ -43,20 +43,17 @@ static ritz_status refuse_options(const basis_options *given)
     return RITZ_OK;
 }
 
-/* Refuse a basis that would have static vectors of inputs, outputs or
-   dampers. */
-static ritz_status refuse_loads(const ritz_request *request, bool held)
+/* Refuse normal modes that would have static vectors. */
+static ritz_status refuse_loads(const ritz_request *request)
 {
     const bool asked = request->choice.given & RITZ_USES_LOADS;
-    const int usual = RITZ_LOADS_DAMPERS | (held ? 0 : RITZ_LOADS_INPUTS);
-    const int all = asked ? request->choice.loads : usual;
-    const int loads = held ? all & ~RITZ_LOADS_ATTACHED : all;
+    const int loads =
+        asked ? request->choice.loads : RITZ_LOADS_DAMPERS | RITZ_LOADS_INPUTS;
 
     RITZ_REFUSE_IF((asked && loads) || ritz_loads_count(request, loads) > 0,
                    RITZ_ERR_ARGUMENT,
                    "engine slepc makes no static vectors of inputs, outputs "
-                   "or dampers%s",
-                   held ? ": leave them out by --loads attached" : "");
+                   "or dampers for a free component");
     return RITZ_OK;
 }
 
@@ -64,14 +61,17 @@ static ritz_status refuse_loads(const ritz_request *request, bool held)
 
 static ritz_status make_held(const ritz_request *request, ritz_basis *out)
 {
-    RITZ_CHECK(refuse_loads(request, true));
-    return fixed_make(file, request, true, out);
+    int loads = 0;
+
+    RITZ_CHECK_IN("static vectors",
+                  ritz_loads_beside(request, RITZ_LOADS_DAMPERS, &loads));
+    return fixed_make(file, request, true, loads, out);
 }
 
 static ritz_status make_free(const ritz_request *request, ritz_basis *out)
 {
-    RITZ_CHECK(refuse_loads(request, false));
-    return fixed_make(file, request, false, out);
+    RITZ_CHECK(refuse_loads(request));
+    return fixed_make(file, request, false, 0, out);
 }
 
 static const struct {

@@ -372,6 +372,44 @@ ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P)
     return RITZ_OK;
 }
 
+/* --- M-orthogonality --------------------------------------------------- */
+
+/* X := X - Phi h, each rank its own rows. */
+static ritz_status subtract_product(Mat Phi, const ritz_dense *h, Mat X)
+{
+    RITZ_OWN(ritz_dense) product = {0};
+    ritz_dense phi = block_take(Phi);
+    ritz_dense x = block_take(X);
+    const ritz_status status = ritz_dense_mul(&phi, h, &product);
+
+    for (int64_t k = 0; status == RITZ_OK && k < x.nrow * x.ncol; k++)
+        x.val[k] -= product.val[k];
+    block_return(X, &x);
+    block_return(Phi, &phi);
+    return ranks_agree(status);
+}
+
+ritz_status block_remove(const rank_pencil *p, Mat of, int64_t count, Mat X)
+{
+    ritz_status status = RITZ_OK;
+    Mat MPhi = NULL;
+    Mat Phi = NULL;
+
+    ranks_expect(MatDenseGetSubMatrix(of, PETSC_DECIDE, PETSC_DECIDE, 0,
+                                      (PetscInt)count, &Phi));
+    block_multiply(p->M, Phi, &MPhi);
+    for (int pass = 0; pass < 2 && status == RITZ_OK; pass++) {
+        RITZ_OWN(ritz_dense) h = {0};
+
+        status = block_product(MPhi, X, &h);
+        if (status == RITZ_OK)
+            status = subtract_product(Phi, &h, X);
+    }
+    ranks_expect(MatDestroy(&MPhi));
+    ranks_expect(MatDenseRestoreSubMatrix(of, &Phi));
+    return status;
+}
+
 /* --- gathering ------------------------------------------------------------ */
 
 /* In rank 0: the number of rows of each rank, and the first of them. */
@@ -380,6 +418,34 @@ static ritz_status find_layout(int own, int *counts, int *at)
     MPI_Gather(&own, 1, MPI_INT, counts, 1, MPI_INT, 0, PETSC_COMM_WORLD);
     for (int r = 1; r < ranks_count(); r++)
         at[r] = at[r - 1] + counts[r - 1];
+    return RITZ_OK;
+}
+
+ritz_status block_scatter(Mat A, int64_t count,
+                          void (*give)(const void *state, int64_t column,
+                                       double *x),
+                          const void *state, Mat *out)
+{
+    RITZ_OWN_ARRAY int *counts = NULL, *at = NULL;
+    RITZ_OWN_ARRAY double *all = NULL;
+    ritz_dense x = {0};
+    PetscInt rows = 0;
+
+    ranks_expect(MatGetSize(A, &rows, NULL));
+    counts = ritz_zalloc(ranks_count(), sizeof *counts);
+    at = ritz_zalloc(ranks_count(), sizeof *at);
+    all = ritz_zalloc(ranks_own() == 0 ? rows : 0, sizeof *all);
+    RANKS_CHECK(counts && at && all ? RITZ_OK : RITZ_ERR_MEMORY);
+    block_new(A, count, out);
+    x = block_take(*out);
+    RITZ_CHECK(find_layout((int)x.nrow, counts, at));
+    for (int64_t j = 0; j < count; j++) {
+        if (ranks_own() == 0)
+            give(state, j, all);
+        MPI_Scatterv(all, counts, at, MPI_DOUBLE, ritz_dense_col(&x, j),
+                     (int)x.nrow, MPI_DOUBLE, 0, PETSC_COMM_WORLD);
+    }
+    block_return(*out, &x);
     return RITZ_OK;
 }
 

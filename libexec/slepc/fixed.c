@@ -2,13 +2,14 @@
 
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/tolerances.h"
 #include "bases/columns.h"
 #include "blocks.h"
 #include "modes.h"
 #include "ranks.h"
 #include "rows.h"
 
-#include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,20 +17,25 @@
 typedef struct task {
     int64_t path_size; /* with its terminating 0; 0: there are no more tasks */
     int64_t num_dofs, num_attached;
+    int64_t num_loads; /* with static vectors */
+    double tolerance;  /* for dependent static vectors */
     bool held;
     ritz_span span;
 } task;
 
 /* The basis being made, in rank 0 only. */
 typedef struct target {
-    const ritz_component *component;
+    const ritz_request *request;
     ritz_dofs interior;
+    int loads;    /* sum of RITZ_LOADS_... */
+    ritz_dense F; /* all rows of the loads */
     ritz_basis basis;
 } target;
 
 static void target_free(target *t)
 {
     ritz_dofs_free(&t->interior);
+    ritz_dense_free(&t->F);
     ritz_basis_free(&t->basis);
 }
 
@@ -41,12 +47,20 @@ typedef struct rank_work {
     rank_pencil pencil;
     Mat Psi; /* constraint modes, interior rows; NULL: nothing is attached */
     modes modes;
+    /* Interior rows of loads, and their static responses; NULL: no loads */
+    Mat F, X;
+    double *least; /* energies of responses below which they are rounding */
+    bool *keep;    /* whether response j is a column of the basis */
+    int64_t kept;
     target *target; /* NULL but in rank 0 */
 } rank_work;
 
 static void rank_work_free(rank_work *w)
 {
     ranks_expect(MatDestroy(&w->Psi));
+    ranks_expect(MatDestroy(&w->F));
+    ranks_expect(MatDestroy(&w->X));
+    RITZ_FREE(w->least, w->keep);
     modes_free(&w->modes);
     rank_pencil_free(&w->pencil);
     rows_free(&w->rows);
@@ -57,23 +71,29 @@ static void rank_work_free(rank_work *w)
 typedef struct columns_at {
     const target *target;
     int64_t first;
+    const bool *keep; /* flags of the columns that are put; NULL: all are */
+    int64_t left_out; /* so far */
 } columns_at;
 
 static void put_column(void *state, int64_t column, const double *x)
 {
-    const columns_at *c = state;
+    columns_at *c = state;
     const ritz_dofs *i = &c->target->interior;
     const ritz_dense *T = &c->target->basis.T;
 
+    if (c->keep && !c->keep[column]) {
+        c->left_out++;
+        return;
+    }
     for (int64_t k = 0; k < i->count; k++)
-        T->val[i->at[k] + (c->first + column) * T->nrow] = x[k];
+        T->val[i->at[k] + (c->first + column - c->left_out) * T->nrow] = x[k];
 }
 
 /* Put the vectors of the modes into the columns of the basis from `first`
    on. */
 static ritz_status place_modes(const rank_work *w, int64_t first)
 {
-    columns_at at = {w->target, first};
+    columns_at at = {w->target, first, NULL, 0};
     const ritz_pairs *P = &w->modes.pairs;
 
     if (!w->modes.X) {
@@ -84,15 +104,23 @@ static ritz_status place_modes(const rank_work *w, int64_t first)
     return block_gather(w->modes.X, P->Phi.ncol, put_column, &at);
 }
 
-/* Allocate the basis of constraint modes and modes, label its columns, and set
-   the rows of the attached dofs. */
+/* Allocate the basis of constraint modes, modes and static vectors, label its
+   columns, and set the rows of the attached dofs. */
 static ritz_status label_columns(const rank_work *w, const ritz_dofs *b)
 {
     const ritz_pairs *P = &w->modes.pairs;
+    const target *t = w->target;
     ritz_basis *basis = &w->target->basis;
+    const int64_t statics = b->count + P->Phi.ncol; /* the first of them */
 
-    RITZ_CHECK(
-        ritz_basis_new(w->task->num_dofs, b->count + P->Phi.ncol, basis));
+    RITZ_CHECK(ritz_basis_new(w->task->num_dofs, statics + w->kept, basis));
+    for (int64_t j = statics; j < statics + w->kept; j++)
+        basis->columns.kind[j] = RITZ_COLUMN_STATIC;
+    if (w->task->held) {
+        ritz_remark_left_out(t->request, t->loads, 0, w->task->num_loads,
+                             w->keep, RITZ_COLUMN_STATIC, basis);
+        ritz_remark_dampers(t->request, t->loads, basis);
+    }
     ritz_columns_label_dofs(b->count, b->at, 0, &basis->columns);
     ritz_columns_label(P, RITZ_COLUMN_NORMAL, b->count, &basis->columns);
     for (int64_t j = 0; j < b->count; j++)
@@ -103,7 +131,7 @@ static ritz_status label_columns(const rank_work *w, const ritz_dofs *b)
 
 static ritz_status collect_columns(const rank_work *w, const ritz_dofs *b)
 {
-    columns_at at = {w->target, 0};
+    columns_at at = {w->target, 0, NULL, 0};
     ritz_status status = RITZ_OK;
 
     if (w->target)
@@ -113,6 +141,12 @@ static ritz_status collect_columns(const rank_work *w, const ritz_dofs *b)
         RITZ_CHECK(
             block_gather(w->Psi, w->task->num_attached, put_column, &at));
     RITZ_CHECK(place_modes(w, w->task->num_attached));
+    if (w->X) {
+        at = (columns_at){w->target,
+                          w->task->num_attached + w->modes.pairs.Phi.ncol,
+                          w->keep, 0};
+        RITZ_CHECK(block_gather(w->X, w->task->num_loads, put_column, &at));
+    }
     if (w->target) {
         ritz_dense Phi =
             ritz_dense_part(&w->target->basis.T, w->task->num_attached,
@@ -121,6 +155,77 @@ static ritz_status collect_columns(const rank_work *w, const ritz_dofs *b)
         ritz_dense_orient(&Phi);
     }
     return RITZ_OK;
+}
+
+/* --- static vectors -------------------------------------------------------- */
+
+/* The static vectors of src/bases/fixed_interface.c: X = K_ii^-1 F_i without its
+   part in the modes. */
+
+static void give_load(const void *state, int64_t column, double *x)
+{
+    const target *t = state;
+
+    for (int64_t k = 0; k < t->interior.count; k++)
+        x[k] = ritz_dense_col(&t->F, column)[t->interior.at[k]];
+}
+
+static void give_mode(const void *state, int64_t column, double *x)
+{
+    const ritz_dense *Phi = state;
+
+    memcpy(x, ritz_dense_col(Phi, column), (size_t)Phi->nrow * sizeof *x);
+}
+
+/* X before its part in the modes is removed, with the factor of K_ii. */
+static ritz_status respond_interior(rank_work *w)
+{
+    const double part = fmax(w->task->tolerance, RITZ_FORCE_RELIEVED);
+    RITZ_OWN(ritz_dense) R = {0};
+
+    if (w->task->num_loads == 0)
+        return RITZ_OK;
+    RITZ_CHECK(block_scatter(w->rows.K, w->task->num_loads, give_load,
+                             w->target, &w->F));
+    ranks_expect(MatDuplicate(w->F, MAT_DO_NOT_COPY_VALUES, &w->X));
+    rank_pencil_solve(&w->pencil, w->F, w->X);
+    RITZ_CHECK(block_product(w->F, w->X, &R));
+    for (int64_t j = 0; j < R.ncol; j++)
+        w->least[j] = part * ritz_dense_col(&R, j)[j];
+    return RITZ_OK;
+}
+
+/* Remove the modes from X. Modes that rank 0 found alone are distributed. */
+static ritz_status remove_modes(rank_work *w)
+{
+    const ritz_pairs *P = &w->modes.pairs;
+    Mat Phi = w->modes.X;
+    ritz_status status = RITZ_OK;
+
+    if (P->Phi.ncol == 0)
+        return RITZ_OK;
+    if (!Phi)
+        RITZ_CHECK(
+            block_scatter(w->rows.K, P->Phi.ncol, give_mode, &P->Phi, &Phi));
+    status = block_remove(&w->pencil, Phi, P->Phi.ncol, w->X);
+    if (!w->modes.X)
+        ranks_expect(MatDestroy(&Phi));
+    return status;
+}
+
+static ritz_status choose_statics(rank_work *w)
+{
+    RITZ_OWN(ritz_dense) R = {0};
+    ritz_status status = RITZ_OK;
+
+    if (!w->X)
+        return RITZ_OK;
+    RITZ_CHECK(remove_modes(w));
+    RITZ_CHECK(block_product(w->F, w->X, &R));
+    if (ranks_own() == 0)
+        status = ritz_statics_choose_from(&R, w->least, w->task->tolerance,
+                                          w->keep, &w->kept);
+    return ranks_agree(status);
 }
 
 /* --- mechanisms ----------------------------------------------------------- */
@@ -148,7 +253,7 @@ static ritz_status refuse_free(const rank_work *w, modes *found)
     }
     status = RITZ_ERR_SINGULAR;
     if (w->target)
-        status = ritz_refuse_mechanism(w->target->component,
+        status = ritz_refuse_mechanism(w->target->request->component,
                                        &w->target->interior, P, -1);
     return ranks_agree(status);
 }
@@ -168,8 +273,8 @@ static ritz_status explain_singular(rank_work *w)
     if (status == RITZ_ERR_MEMORY)
         return status;
     if (w->target)
-        (void)ritz_refuse_mechanism(w->target->component, &w->target->interior,
-                                    NULL, -1);
+        (void)ritz_refuse_mechanism(w->target->request->component,
+                                    &w->target->interior, NULL, -1);
     return ranks_agree(RITZ_ERR_SINGULAR);
 }
 
@@ -215,9 +320,10 @@ static ritz_status solve_interior(rank_work *w)
         status = explain_singular(w);
     RITZ_CHECK_IN(w->task->held ? "interior stiffness" : what, status);
     RITZ_CHECK(find_constraint_modes(w));
+    RITZ_CHECK_IN("static vectors", respond_interior(w));
     if (w->task->span.modes != 0 || !w->task->held)
         RITZ_CHECK_IN(what, find_modes(w, limit, goal));
-    return RITZ_OK;
+    return ritz_context(choose_statics(w), "static vectors");
 }
 
 /* Carry out a task. Collective: every rank gives the same task, path and
@@ -230,8 +336,10 @@ static ritz_status work_together(const task *t, const char *path,
     RITZ_OWN_ARRAY int64_t *position = NULL;
     ritz_status status = ritz_dofs_copy(b, &sorted);
 
-    position = ritz_zalloc(b->count, sizeof *position);
-    RANKS_CHECK(status == RITZ_OK && !position ? RITZ_ERR_MEMORY : status);
+    RANKS_CHECK(status);
+    RANKS_CHECK_NEW(position, b->count);
+    RANKS_CHECK_NEW(w.least, t->num_loads);
+    RANKS_CHECK_NEW(w.keep, t->num_loads);
     qsort(sorted.at, (size_t)sorted.count, sizeof *sorted.at,
           ritz_ascending_index);
     for (int64_t j = 0; j < b->count; j++)
@@ -260,21 +368,36 @@ void fixed_dismiss(void)
     ranks_share(&none, sizeof none);
 }
 
+/* In rank 0: the dofs and loads of a basis. */
+static ritz_status prepare_target(const ritz_request *request,
+                                  const ritz_dofs *b, target *to)
+{
+    RITZ_OWN_ARRAY int64_t *dof = NULL;
+
+    RITZ_CHECK(
+        ritz_dofs_complement(b, request->component->num_dofs, &to->interior));
+    if (ritz_loads_count(request, to->loads) > 0)
+        RITZ_CHECK(ritz_loads_collect(request, to->loads, &to->F, &dof));
+    return RITZ_OK;
+}
+
 ritz_status fixed_make(const char *path, const ritz_request *request, bool held,
-                       ritz_basis *out)
+                       int loads, ritz_basis *out)
 {
     const ritz_dofs nothing = {0};
     const ritz_dofs *b = held ? &request->attached : &nothing;
-    RITZ_OWN(target) to = {.component = request->component};
+    RITZ_OWN(target) to = {.request = request, .loads = loads};
     RITZ_OWN_ARRAY char *name = NULL;
     ritz_status status = RITZ_OK;
     task t = {.path_size = (int64_t)strlen(path) + 1,
               .num_dofs = request->component->num_dofs,
               .num_attached = b->count,
+              .tolerance = request->tolerance,
               .held = held,
               .span = ritz_request_span(request)};
 
-    RITZ_CHECK(ritz_dofs_complement(b, t.num_dofs, &to.interior));
+    RITZ_CHECK(prepare_target(request, b, &to));
+    t.num_loads = to.F.ncol;
     RITZ_CHECK_COPY(name, path, t.path_size);
     others_wait = false;
     ranks_share(&t, sizeof t);

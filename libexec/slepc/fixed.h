@@ -12,13 +12,15 @@
  * To be called in rank 0: compute the basis of a component whose matrices are
  * in its file only, not in memory.
  *
- * @param[in] path  of the component's file, readable by all ranks
- * @param[in] held  true: Craig-Bampton, with the attached dofs held; false:
- *                  normal modes of the free component
+ * @param[in] path   of the component's file, readable by all ranks
+ * @param[in] held   true: Craig-Bampton, with the attached dofs held; false:
+ *                   normal modes of the free component
+ * @param[in] loads  sum of RITZ_LOADS_..., for which static vectors of the held
+ *                   component are made
  * @return as the methods of one process, or as rows_read()
  */
 ritz_status fixed_make(const char *path, const ritz_request *request, bool held,
-                       ritz_basis *out);
+                       int loads, ritz_basis *out);
 
 /** To be called in all other ranks: take part in each fixed_make() of rank 0,
  * until it calls fixed_dismiss(). */

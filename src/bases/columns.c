@@ -278,24 +278,32 @@ ritz_status ritz_statics_choose(const ritz_dense *F, const ritz_dense *Psi,
                                 bool *keep, int64_t *kept)
 {
     RITZ_OWN(ritz_dense) R = {0};
+
+    RITZ_CHECK(ritz_dense_mul_tn(F, Psi, &R));
+    return ritz_statics_choose_from(&R, least, tolerance, keep, kept);
+}
+
+ritz_status ritz_statics_choose_from(ritz_dense *R, const double *least,
+                                     double tolerance, bool *keep,
+                                     int64_t *kept)
+{
     RITZ_OWN_ARRAY double *scale = NULL;
     RITZ_OWN_ARRAY int64_t *order = NULL;
 
     *kept = 0;
-    RITZ_CHECK_NEW(scale, Psi->ncol);
-    RITZ_CHECK_NEW(order, Psi->ncol);
-    RITZ_CHECK(ritz_dense_mul_tn(F, Psi, &R));
-    for (int64_t j = 0; j < R.ncol; j++) {
-        double own = ritz_dense_col(&R, j)[j];
+    RITZ_CHECK_NEW(scale, R->ncol);
+    RITZ_CHECK_NEW(order, R->ncol);
+    for (int64_t j = 0; j < R->ncol; j++) {
+        double own = ritz_dense_col(R, j)[j];
 
         if (own > least[j])
             scale[j] = 1.0 / sqrt(own);
     }
-    for (int64_t j = 0; j < R.ncol; j++)
-        for (int64_t i = 0; i < R.ncol; i++)
-            ritz_dense_col(&R, j)[i] *= scale[i] * scale[j];
-    ritz_dense_symmetrise(&R);
-    *kept = ritz_pivots_find(&R, tolerance, RITZ_PIVOT_TIE, R.ncol, order);
+    for (int64_t j = 0; j < R->ncol; j++)
+        for (int64_t i = 0; i < R->ncol; i++)
+            ritz_dense_col(R, j)[i] *= scale[i] * scale[j];
+    ritz_dense_symmetrise(R);
+    *kept = ritz_pivots_find(R, tolerance, RITZ_PIVOT_TIE, R->ncol, order);
     for (int64_t k = 0; k < *kept; k++)
         keep[order[k]] = true;
     return RITZ_OK;

@@ -107,6 +107,15 @@ ritz_status ritz_statics_choose(const ritz_dense *F, const ritz_dense *Psi,
                                 bool *keep, int64_t *kept);
 
 /**
+ * The same from R = F'Psi, where F and Psi are not in one process.
+ *
+ * @param[in,out] R  p x p, overwritten
+ */
+ritz_status ritz_statics_choose_from(ritz_dense *R, const double *least,
+                                     double tolerance, bool *keep,
+                                     int64_t *kept);
+
+/**
  * Add a remark with the number of static vectors of a kind that were left out,
  * and the first of them.
  *

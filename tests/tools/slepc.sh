@@ -86,7 +86,8 @@ alone='-q --estimates none'
 together="$alone --engine slepc"
 expect 0 '' ritz-import -q --stiffness m.K.mtx --mass m.M.mtx --dofs m.dofs \
     --damping m.D.mtx --structural-damping m.K4.mtx --port corner=1:3 \
-    --port "rim=$rim:3" --input push=30:3 --output see=40:3 -o damped.h5
+    --port "rim=$rim:3" --input push=30:3 --output see=40:3 \
+    --damper 'soft=100:3,142:3*2' --damper 'same=100:3,142:3*1' -o damped.h5
 import_spacecraft --damper 'ground=1:1*10'
 # shellcheck disable=SC2086 # words
 for model in damped rotor platform; do
@@ -100,6 +101,20 @@ for model in damped rotor platform; do
     works "$model is reduced alike" check alike $model.0.h5 $model.1.h5 \
         $model.2.h5 $model.4.h5
 done
+
+# static vectors: of the dampers, one of which depends on the other; of other loads;
+# and where rank 0 finds the modes alone
+# shellcheck disable=SC2086 # words
+for choice in '--modes 6' '--modes 6 --loads inputs,outputs' '--modes 390' \
+    '--modes 0'; do
+    fixed="-q craig-bampton --attach rim $choice damped.h5"
+    expect 0 '' ritz-basis $fixed -o 0.h5
+    expect 0 '' ranks 1 $fixed --engine slepc -o 1.h5
+    expect 0 '' ranks 4 $fixed --engine slepc -o 4.h5
+    works "static vectors, $choice" check same 0.h5 1.h5 4.h5
+done
+expect 0 '1 static mode(s) left out, the first of damper' ranks 2 \
+    craig-bampton --modes 6 --engine slepc damped.h5 -o 2.h5
 
 # free, with a rigid mode; no mpirun is one rank
 expect 0 '' ritz-basis -q normal-modes --modes 8 m.h5 -o 0.h5
@@ -144,8 +159,10 @@ fails 1 'finds bases of craig-bampton and normal-modes, not of macneal' \
 fails 1 'engine slepc takes no --interface-modes' ritz-basis craig-bampton \
     --modes 3 --interface-modes 2 --engine slepc m.h5
 fails 2 "no method 'craig'" ranks 2 craig --modes 3 --engine slepc m.h5
-fails 1 'makes no static vectors of inputs, outputs or dampers' \
-    ritz-basis craig-bampton --modes 3 --loads inputs --engine slepc m.h5
+fails 1 'makes no static vectors of inputs, outputs or dampers for a free' \
+    ritz-basis normal-modes --modes 3 --engine slepc damped.h5
+fails 1 'static vectors: there is no load to respond to, no input' \
+    ranks 2 craig-bampton --modes 3 --loads inputs --engine slepc m.h5
 fails 1 'engine slepc makes no estimates: say --estimates none' reduce 2 \
     --engine slepc damped.h5 damped.b.h5
 fails 1 'engine slepc makes no estimates: say --estimates none' reduce 2 \
