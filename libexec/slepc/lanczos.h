@@ -1,5 +1,6 @@
-/* Block Lanczos iteration on (K - sigma M)^-1 M with distributed vectors, eight
- * in a block: MUMPS solves for eight in little more time than for one. */
+/* Block Lanczos iteration on (K - sigma M)^-1 M with distributed vectors, four
+ * or eight in a block: MUMPS solves for eight in some four times the time of
+ * one. */
 #ifndef RITZ_LIBEXEC_SLEPC_LANCZOS_H
 #define RITZ_LIBEXEC_SLEPC_LANCZOS_H
 
