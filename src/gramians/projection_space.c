@@ -70,10 +70,12 @@ static ritz_status grow_dense(int64_t nrow, int64_t ncol, ritz_dense *A)
     return RITZ_OK;
 }
 
-/* Allocate memory for `more` columns of V, and for T and V'F of that size. */
+/* Allocate memory for `more` columns of V, and for T and V'F of that size. V is
+   by far the largest, and is not copied; its new columns have no values. */
 static ritz_status reserve_columns(int64_t more, ritz_projection_space *space)
 {
-    int64_t n = space->model->low.n, needed = space->count + more;
+    const int64_t n = space->model->low.n, needed = space->count + more;
+    const int64_t room = needed + needed / 2 + FIRST_ROOM;
 
     RITZ_REFUSE_IF(needed > space->model->most, RITZ_ERR_CONVERGENCE,
                    "the Gramians are not found in a space of %" PRId64
@@ -83,8 +85,10 @@ static ritz_status reserve_columns(int64_t more, ritz_projection_space *space)
                    space->model->most);
     if (needed <= space->room)
         return RITZ_OK;
-    space->room = needed + needed / 2 + FIRST_ROOM;
-    RITZ_CHECK(grow_dense(n, space->room, &space->V));
+    space->room = room < space->model->most ? room : space->model->most;
+    RITZ_CHECK(ritz_array_lengthen(&space->V.val, n * space->room,
+                                   sizeof *space->V.val));
+    space->V.ncol = space->room;
     RITZ_CHECK(grow_dense(space->room, space->room, &space->T));
     return grow_dense(space->room, space->loads.ncol, &space->loads);
 }
