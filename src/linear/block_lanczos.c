@@ -467,7 +467,8 @@ static ritz_status keep_ritz(block_lanczos *L, int64_t kept, int64_t end,
 /* Free the blocks of V from `kept` on; a failure costs only memory. */
 static void shorten_basis(block_lanczos *L, int64_t kept)
 {
-    double *shorter = realloc(L->V, (size_t)(kept * L->n * B) * sizeof *L->V);
+    const size_t size = (size_t)(kept * L->n * B) * sizeof *L->V;
+    double *shorter = size > 0 ? realloc(L->V, size) : NULL;
 
     L->V = shorter ? shorter : L->V;
 }
