@@ -164,11 +164,11 @@ enum { RITZ_NAMED_FOR_COMPONENTS = 1, RITZ_NAMED_FOR_SCENES = 2 };
  * V, and the kinds of the columns T V, of a basis with fewer modes than T of
  * @p wide has.
  *
- * @param[in]  at         count columns of @p wide: modes, ascending, and then all
- *                        columns that are no modes
+ * @param[in]  at         count columns of @p wide: the modes that are kept,
+ *                        ascending, and then all columns that are no modes
  * @param[in]  tolerance  relative, below which a column is dependent
- * @param[out] V          columns of @p wide x count; {0} if a column of the basis
- *                        with fewer modes would depend on others
+ * @param[out] V          columns of @p wide x count; {0} if a column of the
+ *                        basis with fewer modes would depend on others
  */
 typedef ritz_status ritz_narrow(const ritz_reduced *wide, int64_t count,
                                 const int64_t *at, double tolerance,
@@ -188,15 +188,15 @@ typedef struct ritz_method {
                              its basis with more: all that are no modes, and the
                              first modes. Not where there are static columns:
                              they are made without the part in the modes */
-    /* With fewer modes its basis consists of combinations T V of the columns T
-       of a basis of `wide` with more, its own or another method's. NULL: it does
-       not. See ritz_narrow. */
+    bool by_ranks;        /* `make` is one of libexec/ritz-basis-slepc.c, which
+                             works in several processes */
+    int only_named;       /* ritz-fit tries the method only if the user names
+                             it: sum of RITZ_NAMED_FOR_... */
+    /* its basis with fewer modes consists of combinations T V of the columns T
+       of a basis with more by the method `wide`, which may be itself; NULL: it
+       does not */
     const struct ritz_method *wide;
     ritz_narrow *narrow;
-    bool by_ranks;  /* `make` is one of libexec/ritz-basis-slepc.c, which
-                             works in several processes */
-    int only_named; /* ritz-fit tries the method only if the user names
-                             it: sum of RITZ_NAMED_FOR_... */
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */
     ritz_status (*make)(const ritz_request *request, ritz_basis *out);
 } ritz_method;
