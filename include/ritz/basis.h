@@ -60,9 +60,10 @@ typedef enum ritz_engine {
     RITZ_ENGINE_MODAL,
     RITZ_ENGINE_LOW_RANK,
     RITZ_ENGINE_PROJECTION,
-    RITZ_ENGINE_LANCZOS, /* this and the next three: modes, see ritz_span */
+    RITZ_ENGINE_LANCZOS, /* this and the next four: modes, see ritz_span */
     RITZ_ENGINE_ARPACK,
     RITZ_ENGINE_SLICES,
+    RITZ_ENGINE_AMLS,
     RITZ_ENGINE_SLEPC, /* in several processes; only ritz-basis has it */
 } ritz_engine;
 
@@ -116,8 +117,8 @@ extern const ritz_choice_word ritz_choice_words[];
  * Take a value: "0,5" for shift_hz, "inputs,outputs" for loads, "mass" or
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
- * "dense", "modal", "low-rank", "projection", "lanczos", "arpack", "slices" or
- * "slepc" for engine, "yes" or "no" for count, "50" for among_hz, "0,10" for
+ * "dense", "modal", "low-rank", "projection", "lanczos", "arpack", "slices",
+ * "amls" or "slepc" for engine, "yes" or "no" for count, "50" for among_hz, "0,10" for
  * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong

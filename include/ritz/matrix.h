@@ -390,6 +390,7 @@ typedef enum ritz_eigen_engine {
     RITZ_EIGEN_LANCZOS, /* block Lanczos at one shift */
     RITZ_EIGEN_ARPACK,  /* one vector at a time, for comparison */
     RITZ_EIGEN_SLICES,  /* block Lanczos at shifts within the spectrum */
+    RITZ_EIGEN_AMLS,    /* substructures: eigenvalues within 1e-4 */
 } ritz_eigen_engine;
 
 /* How many of the lowest pairs. Rigid modes are always found in addition. */
@@ -410,6 +411,9 @@ typedef struct ritz_span {
  * by the inertia of K - tau M, tau above the last pair returned; a cluster
  * (relative gap below 1e-6) at the end is returned whole, so there may be more
  * than requested. If fewer flexible modes exist than asked, all are returned.
+ *
+ * With RITZ_EIGEN_AMLS eigenvalues are within 1e-4 of their size, and residuals
+ * may be large; the name of the engine has a bound of all errors.
  *
  * @return RITZ_ERR_SINGULAR if K + M is singular (a mechanism without mass);
  *         RITZ_ERR_CONVERGENCE if a residual stays above its limit or the

@@ -323,6 +323,18 @@
 /* Backward error of a factor of an indefinite matrix, relative, above which
    another shift is taken: 1e-14 is usual, and residuals of 1e-11 need 1e-12. */
 #define RITZ_SIGNED_ERROR 1e-12
+/* Relative error of eigenvalues by substructures that is asked for: that of the
+   data of a model, mostly, is larger. */
+#define RITZ_AMLS_ERROR 1e-4
+/* Values of theta = 1 / (lambda - sigma) below this part of the largest have
+   fewer than four digits left after substructures are condensed. */
+#define RITZ_AMLS_DIGITS 1e-11
+/* Modes of substructures are kept up to so many times the last eigenvalue asked
+   for: measured, see docs/methods/eigen.md. */
+#define RITZ_AMLS_CUTOFF 6.0
+/* A random vector spans no further direction in Lanczos once what is new is
+   smaller than this part of the first: rounding. */
+#define RITZ_DENSITY_END 1e-13
 /* Least gap between two slices of the spectrum, relative to the eigenvalue.
    Vectors of two slices are then orthogonal to 1e-6, their residuals divided by
    this gap, and one projection makes them orthogonal to rounding. */

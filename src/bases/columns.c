@@ -332,7 +332,8 @@ static ritz_eigen_engine engine_of_modes(ritz_engine engine)
     static const ritz_eigen_engine of[] = {
         [RITZ_ENGINE_LANCZOS] = RITZ_EIGEN_LANCZOS,
         [RITZ_ENGINE_ARPACK] = RITZ_EIGEN_ARPACK,
-        [RITZ_ENGINE_SLICES] = RITZ_EIGEN_SLICES, /* the last */
+        [RITZ_ENGINE_SLICES] = RITZ_EIGEN_SLICES,
+        [RITZ_ENGINE_AMLS] = RITZ_EIGEN_AMLS, /* the last */
     };
 
     return of[engine];

@@ -19,7 +19,8 @@ bool ritz_engine_fits(const ritz_method *method, ritz_engine engine)
 {
     const bool modes =
         engine == RITZ_ENGINE_LANCZOS || engine == RITZ_ENGINE_ARPACK ||
-        engine == RITZ_ENGINE_SLICES || engine == RITZ_ENGINE_SLEPC;
+        engine == RITZ_ENGINE_SLICES || engine == RITZ_ENGINE_AMLS ||
+        engine == RITZ_ENGINE_SLEPC;
 
     return engine == RITZ_ENGINE_AUTO ||
            modes == ((method->uses & RITZ_USES_COUNT) != 0);
@@ -50,7 +51,7 @@ ritz_status ritz_request_check(const ritz_method *method,
         !ritz_engine_fits(method, request->choice.engine), RITZ_ERR_ARGUMENT,
         method->uses & RITZ_USES_COUNT
             ? "%s finds modes: its engines are auto, lanczos, arpack, "
-              "slices and slepc"
+              "slices, amls and slepc"
             : "%s finds Gramians: its engines are auto, dense, modal, "
               "low-rank and projection",
         method->name);

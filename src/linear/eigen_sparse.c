@@ -18,7 +18,11 @@
 #include "base/alloc.h"
 #include "base/search.h"
 #include "base/tolerances.h"
+#include "linear/amls.h"
 #include "linear/block_lanczos.h"
+#include "linear/condensed.h"
+#include "linear/density.h"
+#include "linear/enclosure.h"
 #include "linear/factor.h"
 #include "linear/general.h"
 #include "linear/inertia.h"
@@ -27,7 +31,6 @@
 
 #include <float.h>
 #include <inttypes.h>
-#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,10 +42,13 @@ enum {
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
     GUESS = 20,    /* flexible modes requested first if they are not counted */
+    GUARD = 2,     /* half as many modes more by substructures, and two */
+    PLENTY = 20,   /* substructures are of use up to one mode in so many dofs */
     BEHIND = 2,    /* modes requested above those wanted: a gap to count in */
     SPARE = 4,     /* the same after a mode was missed */
     MISSES = 3,    /* searches repeated as a count found more modes */
     POLISHES = 3,  /* inverse iterations, most often one */
+    STEPS = 4,     /* the same after substructures, most often three */
 };
 
 typedef struct engine engine;
@@ -63,6 +69,11 @@ typedef struct search {
     const engine *engine;
     const ritz_factor_use *use; /* of the factor before the count, or NULL */
     ritz_pairs found;
+    ritz_moments moments; /* of what found.Phi was before its last iteration;
+                             empty unless the engine is approximate */
+    int64_t counted;      /* modes below counted_at, by the last count */
+    double counted_at;
+    double error; /* bound of relative errors of eigenvalues */
 } search;
 
 static void search_free(search *s)
@@ -70,6 +81,7 @@ static void search_free(search *s)
     RITZ_FREE(s->heavy, s->order);
     ritz_factor_free(&s->S.A);
     ritz_pairs_free(&s->found);
+    ritz_moments_free(&s->moments);
 }
 
 /* Median of K_jj / M_jj, and the columns of M that are not zero. */
@@ -95,123 +107,6 @@ static ritz_status survey_pencil(search *s)
     }
     qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s->typical = count > 0 ? ratio[count / 2] : 1.0;
-    return RITZ_OK;
-}
-
-/* A_r := (A_r + A_r') / 2, with unit diagonal of M_r: Y_j / |Y_j|_M. */
-static void balance_projection(ritz_dense *A_r, ritz_dense *M_r, ritz_dense *Y)
-{
-    int64_t k = Y->ncol;
-
-    for (int64_t j = 0; j < k; j++) {
-        double size = sqrt(ritz_dense_col(M_r, j)[j]);
-
-        if (!(size > 0.0))
-            continue;
-        for (int64_t i = 0; i < k; i++) {
-            A_r->val[i + j * k] /= size;
-            M_r->val[i + j * k] /= size;
-            A_r->val[j + i * k] /= size;
-            M_r->val[j + i * k] /= size;
-        }
-        for (int64_t i = 0; i < Y->nrow; i++)
-            ritz_dense_col(Y, j)[i] /= size;
-    }
-    ritz_dense_symmetrise(A_r);
-}
-
-/*
- * One inverse iteration and Rayleigh-Ritz: X becomes M-orthonormal, lambda
- * ascends.
- *
- *     A Y = M X,   A_r = Y' (M X),   M_r = Y' M Y,   A_r q = theta M_r q
- *
- * A Y is known without a product by A: with one, x' A x would lose all digits
- * of a soft mode, x' |A| |x| being that much larger.
- */
-static ritz_status polish_vectors(const ritz_shifted *S, ritz_dense *X,
-                                  double *lambda)
-{
-    RITZ_OWN(ritz_dense) MX = {0}, MY = {0};
-    RITZ_OWN(ritz_dense) A_r = {0}, M_r = {0};
-    RITZ_OWN(ritz_pairs) small = {0};
-
-    RITZ_CHECK(ritz_sparse_mul(S->M, X, &MX));
-    memcpy(X->val, MX.val, (size_t)(X->nrow * X->ncol) * sizeof *X->val);
-    RITZ_CHECK(ritz_factor_solve(S->A, X)); /* X is Y now */
-    RITZ_CHECK(ritz_dense_mul_tn(X, &MX, &A_r));
-    RITZ_CHECK(ritz_sparse_mul(S->M, X, &MY));
-    RITZ_CHECK(ritz_dense_mul_tn(X, &MY, &M_r));
-    balance_projection(&A_r, &M_r, X);
-    RITZ_CHECK(ritz_eigen_dense(&A_r, &M_r, &small));
-    RITZ_REFUSE_IF(small.Phi.ncol < X->ncol, RITZ_ERR_CONVERGENCE,
-                   "%" PRId64 " eigenvectors depend on each other",
-                   X->ncol - small.Phi.ncol);
-    RITZ_CHECK(ritz_dense_times(&small.Phi, X));
-    RITZ_CHECK(ritz_eigen_quotients(&A_r, &small.Phi, lambda));
-    for (int64_t j = 0; j < X->ncol; j++)
-        lambda[j] += S->sigma;
-    return RITZ_OK;
-}
-
-/*
- * All finite modes, where only the columns h of M are not zero, and so only the
- * rows h of M x:
- *
- *     x = theta W M_hh x_h,   W = A^-1 E_h,   G = E_h' W = (A^-1)_hh
- *
- * and x_h solves the dense pencil G^-1 x_h = theta M_hh x_h, theta = lambda -
- * sigma: G^-1 is A condensed to h.
- */
-
-/* G := G^-1, symmetric positive definite. */
-static ritz_status invert_matrix(ritz_dense *G)
-{
-    int n = (int)G->nrow;
-    int info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, G->val, n);
-
-    if (info == 0)
-        info = LAPACKE_dpotri(LAPACK_COL_MAJOR, 'L', n, G->val, n);
-    RITZ_REFUSE_IF(
-        info != 0, RITZ_ERR_SINGULAR,
-        "stiffness condensed to the masses is not positive definite");
-    for (int64_t j = 0; j < n; j++)
-        for (int64_t i = 0; i < j; i++)
-            G->val[i + j * n] = G->val[j + i * n];
-    return RITZ_OK;
-}
-
-/* M_hh. */
-static ritz_status pick_mass(const ritz_sparse *M, int64_t count,
-                             const int64_t *h, ritz_dense *out)
-{
-    RITZ_OWN(ritz_sparse) M_hh = {0};
-
-    RITZ_CHECK(ritz_sparse_extract(M, count, h, count, h, &M_hh));
-    return ritz_sparse_dense(&M_hh, out);
-}
-
-static ritz_status find_all_modes(const ritz_shifted *S, int64_t count,
-                                  const int64_t *heavy, ritz_dense *X)
-{
-    RITZ_OWN(ritz_dense) W = {0}, G = {0}, M_hh = {0}, MX_h = {0};
-    RITZ_OWN(ritz_pairs) small = {0};
-
-    RITZ_CHECK(ritz_dense_new(S->K->nrow, count, &W));
-    if (count > 0) {
-        for (int64_t j = 0; j < count; j++)
-            ritz_dense_col(&W, j)[heavy[j]] = 1.0;
-        RITZ_CHECK(ritz_factor_solve(S->A, &W));
-        RITZ_CHECK(ritz_dense_rows(&W, count, heavy, &G));
-        RITZ_CHECK(invert_matrix(&G));
-    }
-    RITZ_CHECK(pick_mass(S->M, count, heavy, &M_hh));
-    RITZ_CHECK(ritz_eigen_dense(&G, &M_hh, &small));
-    RITZ_CHECK(ritz_dense_mul(&M_hh, &small.Phi, &MX_h));
-    RITZ_CHECK(ritz_dense_mul(&W, &MX_h, X));
-    for (int64_t j = 0; j < X->ncol; j++)
-        for (int64_t i = 0; i < X->nrow; i++)
-            ritz_dense_col(X, j)[i] *= small.lambda[j];
     return RITZ_OK;
 }
 
@@ -294,7 +189,8 @@ static ritz_status refine_pairs(search *s, ritz_dense *X, double **lambda)
     for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
         if (!s->S.A)
             RITZ_CHECK(shift_near(s, s->S.sigma));
-        RITZ_CHECK(polish_vectors(&s->S, &s->found.Phi, s->found.lambda));
+        RITZ_CHECK(
+            ritz_vectors_polish(&s->S, &s->found.Phi, s->found.lambda, NULL));
         RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
     }
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
@@ -322,6 +218,7 @@ static ritz_status shift_elsewhere(search *s, double reach)
 /* A method to find the s->ask lowest pairs with the factor s->S.A. */
 struct engine {
     const char *name;
+    bool approximate; /* eigenvalues to RITZ_AMLS_ERROR only */
     /** *lambda stays NULL if the method gives vectors alone. If *end is SLOW,
      * *reach is set as by ritz_lanczos_lowest(). */
     ritz_status (*find)(search *s, ritz_dense *X, double **lambda,
@@ -341,6 +238,8 @@ static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
     return ritz_lanczos_lowest(&s->S, s->ask, X, reach, end);
 }
 
+static const engine reliable = {"block Lanczos", false, find_by_blocks};
+
 /*
  * The order of rows is copied, as the factor that has it is freed with the
  * first slice. If slices fail or find fewer modes than requested, block Lanczos
@@ -349,7 +248,6 @@ static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
 static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
                                   double *reach, ritz_lanczos_end *end)
 {
-    static const engine blocks = {"block Lanczos", find_by_blocks};
     ritz_slicing slicing = {0};
     ritz_status status = RITZ_OK;
 
@@ -362,17 +260,103 @@ static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
     if (status != RITZ_OK && status != RITZ_ERR_CONVERGENCE &&
         status != RITZ_ERR_SINGULAR)
         return status;
-    s->engine = &blocks;
+    s->engine = &reliable;
     RITZ_CHECK(shift_near(s, s->S.sigma));
     return find_by_blocks(s, X, lambda, reach, end);
 }
 
+static const engine sliced = {"spectrum slices", false, find_by_slices};
+
+/* More modes than requested are found, so that the last ones requested are far
+   from those that are missing. Slices take over if the structure cannot be
+   divided, or if the reduced matrix would be nearly as large as M. */
+static ritz_status find_by_amls(search *s, ritz_dense *X, double **lambda,
+                                double *reach, ritz_lanczos_end *end)
+{
+    ritz_substructuring how = {0};
+    const int64_t k = s->ask + s->ask / GUARD + GUARD;
+    double last = 0.0;
+
+    *reach = HUGE_VAL;
+    *end = RITZ_LANCZOS_EXHAUSTED;
+    if (k < s->num_heavy / PLENTY) {
+        RITZ_CHECK(ritz_density_reach(&s->S, k, &last));
+        how.cutoff = s->S.sigma + RITZ_AMLS_CUTOFF * (last - s->S.sigma);
+        RITZ_CHECK(ritz_amls_lowest(&s->S, k, &how, X, lambda, end));
+    }
+    if (*end == RITZ_LANCZOS_FOUND)
+        return RITZ_OK;
+    s->engine = &sliced;
+    return find_by_slices(s, X, lambda, reach, end);
+}
+
 static const engine engines[] = {
-    [RITZ_EIGEN_AUTO] = {"block Lanczos", find_by_blocks},
-    [RITZ_EIGEN_LANCZOS] = {"block Lanczos", find_by_blocks},
-    [RITZ_EIGEN_ARPACK] = {"ARPACK", find_by_arpack},
-    [RITZ_EIGEN_SLICES] = {"spectrum slices", find_by_slices},
+    [RITZ_EIGEN_AUTO] = {"block Lanczos", false, find_by_blocks},
+    [RITZ_EIGEN_LANCZOS] = {"block Lanczos", false, find_by_blocks},
+    [RITZ_EIGEN_ARPACK] = {"ARPACK", false, find_by_arpack},
+    [RITZ_EIGEN_SLICES] = {"spectrum slices", false, find_by_slices},
+    [RITZ_EIGEN_AMLS] = {"substructures", true, find_by_amls},
 };
+
+/* Index of the pair below which modes are counted: for an approximate engine
+   not the next one, because errors of pairs far below have smaller bounds. */
+static int64_t gap_to_count(const search *s, int64_t end)
+{
+    const int64_t count = s->found.Phi.ncol;
+
+    if (s->all)
+        return end;
+    return ritz_pairs_gap(
+        &s->found, s->engine->approximate ? end + (count - end) / 2 : end);
+}
+
+/* The largest relative error of the first `end` eigenvalues, if `count` are below
+   tau. That of a rigid-body mode is relative to the first flexible one. */
+static ritz_status bound_error(const search *s, int64_t end, int64_t count,
+                               double tau, double *out)
+{
+    const ritz_pairs *P = &s->found;
+    RITZ_OWN_ARRAY double *lower = NULL;
+
+    RITZ_CHECK_NEW(lower, count);
+    RITZ_CHECK(
+        ritz_moments_enclose(&s->moments, s->S.sigma, tau, count, lower));
+    *out = 0.0;
+    for (int64_t j = 0; j < end; j++) {
+        const int64_t unit = j < P->num_rigid ? P->num_rigid : j;
+        const double scale = unit < P->Phi.ncol ? P->lambda[unit] : tau;
+
+        *out = fmax(*out, (P->lambda[j] - lower[j]) / fabs(scale));
+    }
+    return RITZ_OK;
+}
+
+/* Inverse iterations until errors are small, or else slices take over. */
+static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
+{
+    ritz_pairs *P = &s->found;
+    double worst = 0.0;
+
+    RITZ_MOVE(P->Phi, *X);
+    RITZ_MOVE(P->lambda, *lambda);
+    RITZ_CHECK_NEW(P->residual, P->Phi.ncol);
+    for (int k = 0; k < STEPS; k++) {
+        int64_t end = 0, at = 0;
+
+        ritz_monitor_step("inverse iteration", k, 0);
+        RITZ_CHECK(ritz_vectors_polish(&s->S, &P->Phi, P->lambda, &s->moments));
+        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, P, &worst));
+        end = ritz_pairs_wanted(P, s->span, s->limit);
+        at = gap_to_count(s, end);
+        RITZ_CHECK(
+            bound_error(s, end, at, ritz_pairs_between(P, at, 0.5), &s->error));
+        if (s->error <= RITZ_AMLS_ERROR)
+            return RITZ_OK;
+    }
+    s->engine = &sliced;
+    ritz_pairs_free(P);
+    return RITZ_OK;
+}
 
 /* Fill s->found; it is empty if sigma or the number asked had to change. */
 static ritz_status find_pairs(search *s)
@@ -387,11 +371,13 @@ static ritz_status find_pairs(search *s)
     ritz_pairs_free(&s->found);
     s->all = s->all || s->num_heavy <= SMALL || s->ask + 21 > s->num_heavy;
     if (s->all)
-        RITZ_CHECK(find_all_modes(&s->S, s->num_heavy, s->heavy, &X));
+        RITZ_CHECK(ritz_modes_condensed(&s->S, s->num_heavy, s->heavy, &X));
     else
         RITZ_CHECK(s->engine->find(s, &X, &lambda, &reach, &end));
     if (end == RITZ_LANCZOS_FOUND)
-        RITZ_CHECK(refine_pairs(s, &X, &lambda));
+        RITZ_CHECK(!s->all && s->engine->approximate
+                       ? improve_pairs(s, &X, &lambda)
+                       : refine_pairs(s, &X, &lambda));
     if (end == RITZ_LANCZOS_SLOW)
         RITZ_CHECK(shift_elsewhere(s, reach));
     if (end == RITZ_LANCZOS_EXHAUSTED)
@@ -466,6 +452,8 @@ static ritz_status count_below(search *s, int64_t k, int64_t *out)
         RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
         ritz_monitor_step("count of modes", 0, 0);
         status = ritz_inertia_negative(&A, s->order, out);
+        s->counted = status == RITZ_OK ? *out : s->counted;
+        s->counted_at = tau;
     }
     return status;
 }
@@ -501,7 +489,7 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
         return RITZ_OK;
     }
     RITZ_CHECK(lend_factor(s, *end));
-    at = s->all ? *end : ritz_pairs_gap(P, *end);
+    at = gap_to_count(s, *end);
     count = at;
     if (P->Phi.ncol > 0 && !s->span->uncounted)
         RITZ_CHECK(count_below(s, at, &count));
@@ -572,6 +560,23 @@ static ritz_status search_proven(search *s, int64_t *end)
     return RITZ_OK;
 }
 
+/* The bound of errors, which needs the number of modes below a value in a gap:
+   by frequency it was counted elsewhere. */
+static ritz_status settle_error(search *s, int64_t end)
+{
+    const int64_t at = gap_to_count(s, end);
+    int64_t count = at;
+
+    if (s->span->modes < 0 && !s->span->uncounted)
+        RITZ_CHECK(count_below(s, at, &count));
+    RITZ_REFUSE_IF(count != at, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " modes were found where there are %" PRId64, at,
+                   count);
+    if (s->span->uncounted)
+        s->counted_at = ritz_pairs_between(&s->found, at, 0.5);
+    return bound_error(s, end, at, s->counted_at, &s->error);
+}
+
 /* s->target := number of modes up to the frequency, or a guess if they are not
    to be counted. The count is made a little above the frequency, because it
    fails where an eigenvalue lies. */
@@ -610,6 +615,18 @@ static ritz_status begin_search(search *s)
     return s->S.A ? RITZ_OK : shift_near(s, -sigma);
 }
 
+static void name_engine(search *s)
+{
+    char error[48] = "";
+
+    if (!s->all && s->engine->approximate) /* rounded up */
+        snprintf(error, sizeof error, ", eigenvalues within %.1e%s",
+                 1.05 * s->error,
+                 s->span->uncounted ? " if none is missed" : "");
+    snprintf(s->found.engine, sizeof s->found.engine, "%s%s",
+             s->all ? "condensed LAPACK" : s->engine->name, error);
+}
+
 static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_factor **L, const ritz_span *span,
                               const ritz_factor_use *use, ritz_pairs *out)
@@ -623,14 +640,14 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
 
     if (L)
         RITZ_MOVE(s.S.A, *L);
-
     RITZ_CHECK(begin_search(&s));
     RITZ_CHECK(search_proven(&s, &end));
+    if (!s.all && s.engine->approximate)
+        RITZ_CHECK(settle_error(&s, end));
     truncate_pairs(&s.found, end);
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
-    snprintf(s.found.engine, sizeof s.found.engine, "%s",
-             s.all ? "condensed LAPACK" : s.engine->name);
+    name_engine(&s);
     RITZ_MOVE(*out, s.found);
     return RITZ_OK;
 }

@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Consecutive rows with nearly the same entries form a group, mostly a grid. */
 typedef struct grouping {
@@ -101,11 +102,10 @@ static ritz_status join_groups(const ritz_sparse *A, const grouping *g,
     return RITZ_OK;
 }
 
-/* at := the groups in the order that METIS finds. */
-static ritz_status order_groups(const grouping *g, const graph *G, int64_t *at)
+/* The graph as CHOLMOD reads it. */
+static cholmod_sparse view_graph(const grouping *g, const graph *G)
 {
-    cholmod_common common;
-    cholmod_sparse view = {
+    return (cholmod_sparse){
         .nrow = (size_t)g->count,
         .ncol = (size_t)g->count,
         .nzmax = (size_t)G->start[g->count],
@@ -117,6 +117,13 @@ static ritz_status order_groups(const grouping *g, const graph *G, int64_t *at)
         .dtype = CHOLMOD_DOUBLE,
         .packed = 1,
     };
+}
+
+/* at := the groups in the order that METIS finds. */
+static ritz_status order_groups(const grouping *g, const graph *G, int64_t *at)
+{
+    cholmod_common common;
+    cholmod_sparse view = view_graph(g, G);
     int done = 0;
 
     cholmod_l_start(&common);
@@ -145,4 +152,125 @@ ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order)
             found[count++] = j;
     RITZ_MOVE(*order, found);
     return RITZ_OK;
+}
+
+/* --- substructures -------------------------------------------------------- */
+
+/* Nodes as CHOLMOD numbers them: the parent of each node and the node of each
+   group. */
+typedef struct node_tree {
+    int64_t count;
+    int64_t *parent, *of;
+} node_tree;
+
+static void node_tree_free(node_tree *t)
+{
+    RITZ_FREE(t->parent, t->of);
+}
+
+static ritz_status dissect_groups(const grouping *g, const graph *G,
+                                  int64_t leaf, node_tree *t)
+{
+    RITZ_OWN_ARRAY int64_t *order = NULL;
+    cholmod_common common;
+    cholmod_sparse view = view_graph(g, G);
+
+    RITZ_CHECK_NEW(order, g->count);
+    RITZ_CHECK_NEW(t->parent, g->count);
+    RITZ_CHECK_NEW(t->of, g->count);
+    cholmod_l_start(&common);
+    common.print = 0;
+    common.current = 0;
+    common.method[0].nd_small = (size_t)(leaf < 4 ? 4 : leaf);
+    common.method[0].nd_components = 1;
+    common.method[0].nd_camd = 0;
+    t->count = cholmod_l_nested_dissection(&view, NULL, 0, order, t->parent,
+                                           t->of, &common);
+    cholmod_l_finish(&common);
+    RITZ_REFUSE_IF(t->count < 0, RITZ_ERR_MEMORY,
+                   "no memory to dissect %" PRId64 " groups of rows", g->count);
+    return RITZ_OK;
+}
+
+/* place[c] := position of node c in a postorder of the tree; D->parent and
+   D->begin follow. */
+static ritz_status number_nodes(const node_tree *t, ritz_dissection *D,
+                                int64_t *place)
+{
+    RITZ_OWN_ARRAY int64_t *child = NULL, *next = NULL;
+    int64_t count = 0;
+    int64_t at = -1;
+
+    RITZ_CHECK_NEW(child, t->count + 1); /* [0]: the roots, [c + 1]: of c */
+    RITZ_CHECK_NEW(next, t->count);
+    for (int64_t c = 0; c <= t->count; c++)
+        child[c] = -1;
+    for (int64_t c = t->count - 1; c >= 0; c--) {
+        next[c] = child[t->parent[c] + 1];
+        child[t->parent[c] + 1] = c;
+    }
+    while (at >= 0 || child[0] >= 0) {
+        const int64_t down = child[at + 1];
+
+        if (down >= 0) { /* descend to the next child that is not numbered */
+            child[at + 1] = next[down];
+            D->begin[down] = count; /* by the node's old number, for now */
+            at = down;
+            continue;
+        }
+        place[at] = count++;
+        at = t->parent[at];
+    }
+    memcpy(next, D->begin, (size_t)t->count * sizeof *next);
+    for (int64_t c = 0; c < t->count; c++) {
+        D->begin[place[c]] = next[c];
+        D->parent[place[c]] = t->parent[c] < 0 ? -1 : place[t->parent[c]];
+    }
+    return RITZ_OK;
+}
+
+/* D->row and D->first, by counting the rows of each node. */
+static void sort_rows(const grouping *g, const node_tree *t,
+                      const int64_t *place, ritz_dissection *D)
+{
+    for (int64_t i = 0; i < D->rows; i++)
+        D->first[place[t->of[g->of[i]]] + 1]++;
+    for (int64_t s = 0; s < D->nodes; s++)
+        D->first[s + 1] += D->first[s];
+    for (int64_t i = 0; i < D->rows; i++)
+        D->row[D->first[place[t->of[g->of[i]]]]++] = i;
+    for (int64_t s = D->nodes; s > 0; s--)
+        D->first[s] = D->first[s - 1];
+    D->first[0] = 0;
+}
+
+ritz_status ritz_dissection_new(const ritz_sparse *A, int64_t leaf,
+                                ritz_dissection *out)
+{
+    RITZ_OWN(grouping) g = {0};
+    RITZ_OWN(graph) G = {0};
+    RITZ_OWN(node_tree) t = {0};
+    RITZ_OWN(ritz_dissection) D = {.rows = A->nrow};
+    RITZ_OWN_ARRAY int64_t *place = NULL;
+
+    RITZ_CHECK(group_rows(A, &g));
+    RITZ_CHECK(join_groups(A, &g, &G));
+    if (A->nrow > 0)
+        RITZ_CHECK(dissect_groups(&g, &G, leaf * g.count / A->nrow, &t));
+    D.nodes = t.count;
+    RITZ_CHECK_NEW(place, D.nodes);
+    RITZ_CHECK_NEW(D.row, D.rows);
+    RITZ_CHECK_NEW(D.first, D.nodes + 1);
+    RITZ_CHECK_NEW(D.parent, D.nodes);
+    RITZ_CHECK_NEW(D.begin, D.nodes);
+    RITZ_CHECK(number_nodes(&t, &D, place));
+    sort_rows(&g, &t, place, &D);
+    RITZ_MOVE(*out, D);
+    return RITZ_OK;
+}
+
+void ritz_dissection_free(ritz_dissection *D)
+{
+    RITZ_FREE(D->row, D->first, D->parent, D->begin);
+    *D = (ritz_dissection){0};
 }

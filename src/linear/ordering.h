@@ -22,4 +22,29 @@ enum { RITZ_ORDER_FROM = 2000 };
  */
 ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order);
 
+/** A tree of substructures. The rows of a node separate those of the subtrees
+ * below it from each other: A(i, j) = 0 unless the node of i is that of j, or an
+ * ancestor or a descendant of it. */
+typedef struct ritz_dissection {
+    int64_t rows, nodes;
+    int64_t *row;    /* rows of A, node by node */
+    int64_t *first;  /* node s has row[first[s]] to row[first[s + 1] - 1] */
+    int64_t *parent; /* of each node; -1: none */
+    int64_t *begin;  /* the subtree of node s is the nodes begin[s] to s */
+} ritz_dissection;
+
+/**
+ * Dissect the pattern of A (METIS) until no more than about @p leaf rows are
+ * left in a leaf. Parts that are not connected become subtrees without a common
+ * parent, or with one that has no rows.
+ *
+ * @param[in]  A    n x n, symmetric, both triangles stored
+ * @param[out] out  freed by ritz_dissection_free()
+ * @return RITZ_ERR_MEMORY
+ */
+ritz_status ritz_dissection_new(const ritz_sparse *A, int64_t leaf,
+                                ritz_dissection *out);
+
+void ritz_dissection_free(ritz_dissection *D);
+
 #endif

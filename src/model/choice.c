@@ -83,6 +83,7 @@ static const char engines[][16] = {
     [RITZ_ENGINE_LANCZOS] = "lanczos",
     [RITZ_ENGINE_ARPACK] = "arpack",
     [RITZ_ENGINE_SLICES] = "slices",
+    [RITZ_ENGINE_AMLS] = "amls",
     [RITZ_ENGINE_SLEPC] = "slepc",
 };
 static const char remainders[][16] = {"dropped", "static"};
@@ -115,7 +116,7 @@ const ritz_choice_word ritz_choice_words[] = {
      RITZ_USES_DAMPING, RITZ_CHOICE_DAMPING, FIELD(damping), NULL, NULL, 0},
     {"engine", "WORD",
      "how Gramians are computed: auto, dense, modal, low-rank, "
-     "projection; how modes are: auto, lanczos, arpack, slices, slepc",
+     "projection; how modes are: auto, lanczos, arpack, slices, amls, slepc",
      RITZ_USES_ENGINE, RITZ_CHOICE_ENUM, FIELD(engine), "engine",
      WORDS(engines)},
     {"among_hz", "F", "modal Gramians: of the modes up to this frequency",

@@ -154,7 +154,7 @@ expect 2 "no method 'guyam', is 'guyan' meant?" ritz-basis guyam bar.h5 -o x.h5
 expect 0 '7 columns for 21 dofs' ritz-basis craig-bampton --modes 5 --count no \
     --engine lanczos bar.h5 -o uncounted.h5
 expect 0 'modes 5 engine lanczos count no' ritz-info uncounted.h5
-expect 2 'its engines are auto, lanczos, arpack, slices and slepc' ritz-basis \
+expect 2 'its engines are auto, lanczos, arpack, slices, amls and slepc' ritz-basis \
     craig-bampton --modes 5 --engine modal bar.h5 -o x.h5
 expect 2 'its engines are auto, dense, modal, low-rank and projection' \
     ritz-basis balanced \

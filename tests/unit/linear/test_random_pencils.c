@@ -59,6 +59,22 @@ static void slices_lose_no_modes_of_random_pencils(void **state)
     assert_true(found > 10 * PENCILS);
 }
 
+/* A search for more modes than exist is exhausted; nothing else may fail. */
+static void substructures_lose_no_modes_of_random_pencils(void **state)
+{
+    int64_t found = 0;
+
+    (void)state;
+    for (uint64_t seed = 0; seed < PENCILS; seed++) {
+        pencil_verdict v;
+
+        judge_amls(seed, &v);
+        check_verdict(seed, &v);
+        found += v.found;
+    }
+    assert_true(found > 10 * PENCILS);
+}
+
 /* With these seeds a block has nearly dependent vectors, or the last vectors
    move no mass beyond rounding errors. Earlier code returned vectors that were
    not orthogonal for some of them. */
@@ -94,6 +110,7 @@ static void searches_find_every_mode(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(no_mode_is_missed_without_the_count_showing_it),
     cmocka_unit_test(slices_lose_no_modes_of_random_pencils),
+    cmocka_unit_test(substructures_lose_no_modes_of_random_pencils),
     cmocka_unit_test(nearly_dependent_blocks_stay_orthogonal),
     cmocka_unit_test(searches_find_every_mode),
 };
