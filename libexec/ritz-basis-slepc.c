@@ -35,6 +35,7 @@ static ritz_status refuse_options(const basis_options *given)
         {"--at", given->model.at != NULL},
         {"--order", given->model.order > 0},
         {"--interface-modes", choice->interface_modes > 0},
+        {"--memory", given->memory != NULL},
     };
 
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)

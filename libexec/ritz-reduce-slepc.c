@@ -57,6 +57,7 @@ static ritz_status refuse_options(const reduce_options *given)
         {"--order", given->model.order > 0},
         {"--damping", given->model.damping != NULL},
         {"--band-hz", given->estimate.band_hz[1] > 0.0},
+        {"--memory", given->memory != NULL},
     };
 
     for (size_t k = 0; k < sizeof others / sizeof *others; k++)

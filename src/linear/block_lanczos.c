@@ -1,6 +1,7 @@
 #include "linear/block_lanczos.h"
 
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 #include "linear/blocks.h"
@@ -63,6 +64,8 @@ static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
                    "%" PRId64 " modes of %" PRId64
                    " dofs are more than can be found",
                    L->k, L->n);
+    RITZ_CHECK(ritz_memory_admit(
+        "the Lanczos basis", (L->room + 1) * L->n * B * (int64_t)sizeof *L->V));
     RITZ_CHECK_RAW(L->V, (L->room + 1) * L->n * B); /* most is never used */
     RITZ_CHECK_NEW(L->W, L->n * B);
     RITZ_CHECK_NEW(L->MW, L->n * B);

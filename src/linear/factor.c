@@ -12,6 +12,7 @@
  */
 #include "linear/factor.h"
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/team.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
@@ -214,7 +215,11 @@ static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
         C->common.method[0].ordering = CHOLMOD_GIVEN;
     }
     C->L = cholmod_l_analyze_p(&view, order, NULL, 0, &C->common);
-    return report_failure(C, A->nrow);
+    RITZ_CHECK(report_failure(C, A->nrow));
+    /* L is packed while its pages are given back: it is held once */
+    return ritz_memory_admit(
+        "the factor",
+        (int64_t)((C->L->xsize + C->L->maxcsize) * sizeof(double)));
 }
 
 static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)

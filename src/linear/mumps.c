@@ -3,6 +3,7 @@
  * or L U, complex.
  */
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/search.h"
 #include "base/tolerances.h"
 #include "linear/general.h"
@@ -60,6 +61,7 @@ enum {
     NULL_PIVOT_SIZE = 2,  /* of CNTL */
     OUTCOME = 0,          /* of INFOG */
     NEGATIVE_PIVOTS = 11, /* of INFOG */
+    MEGABYTES = 15,       /* of INFOG, that the factor will need */
     NUM_NULL_PIVOTS = 27, /* of INFOG */
 };
 
@@ -256,7 +258,11 @@ static ritz_status analyse_pattern(mumps_factor *F)
         FIELD(F, perm_in) = F->place;
     }
     FIELD(F, icntl)[DISCARD_FACTOR] = F->counted;
-    return run_job(F, ANALYSE);
+    RITZ_CHECK(run_job(F, ANALYSE));
+    if (F->counted) /* the estimate is of a factor that is kept */
+        return RITZ_OK;
+    return ritz_memory_admit("the factor",
+                             (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000);
 }
 
 /* A fill-reducing order for the union of the patterns of all matrices. */

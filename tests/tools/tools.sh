@@ -149,6 +149,10 @@ holds '  finds the frequencies of the clamped bar' 'near(j["frequencies_hz"],
 holds '  with small residuals' 'len(j["residuals"]) == 5 and
     max(j["residuals"]) < 1e-9 and j["vectors"] == 7'
 expect 0 '2 constraint' ritz-basis guyan bar.h5 --output guyan.h5
+expect 0 '2 constraint' ritz-basis guyan --memory 1.5GiB bar.h5 -o limited.h5
+expect 1 'are allowed (--memory)' ritz-basis guyan --memory 1K bar.h5 -o not.h5
+expect 2 "'22X' is no size such as 500M or 22G" ritz-basis guyan --memory 22X \
+    bar.h5 -o not.h5
 expect 0 '1 constraint' ritz-basis guyan --attach left bar.h5 -o one.h5
 expect 2 "no method 'guyam', is 'guyan' meant?" ritz-basis guyam bar.h5 -o x.h5
 expect 0 '7 columns for 21 dofs' ritz-basis craig-bampton --modes 5 --count no \

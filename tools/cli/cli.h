@@ -201,6 +201,14 @@ void cli_list_advice(const char *when, const char *cost, const char *holds,
 bool cli_next(const char **list, char word[RITZ_NAME_SIZE]);
 
 /**
+ * Set the limit of --memory: a number, and K, M, G or T of powers of 1024, with
+ * or without "iB" or "B". Another text is a usage error.
+ *
+ * @param[in] text  NULL: the limit stays as it is
+ */
+void cli_limit_memory(const cli_program *program, const char *text);
+
+/**
  * Register a file before it is read: its SHA-256 is stored in what the tool
  * writes. A file that is registered twice counts once. The sum of a pipe, which
  * can be read only once, is '-'. An output that is the same file, by device and

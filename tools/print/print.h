@@ -30,6 +30,7 @@ typedef struct basis_options {
     cli_list neighbours;  /* "PORT=FILE:PORT" */
     ritz_request request; /* the component is taken from the operand */
     model_options model;  /* configuration or columns of the operand */
+    const char *memory;   /* --memory; NULL: not given */
 } basis_options;
 
 ritz_status basis_run(cli_run *run, basis_options *given);
@@ -48,6 +49,7 @@ typedef struct reduce_options {
     model_options model;   /* configuration or columns, and damping */
     const char *estimates; /* "all", "frequency" or "none"; NULL: all */
     const char *engine;    /* "auto" or "slepc"; NULL: auto */
+    const char *memory;    /* --memory; NULL: not given */
     ritz_estimate_request estimate;
     /* reads the component, and projects it on the basis; NULL: reduce_run does
        so itself */

@@ -1,0 +1,132 @@
+#include "base/memory.h"
+
+#include <inttypes.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static _Atomic int64_t given; /* by ritz_set_memory(); 0: nothing */
+static _Atomic int64_t
+    standing; /* what stands in its place, once it is known */
+
+enum { SMALL_PART = 64 }; /* what is below this part of the limit is admitted */
+
+void ritz_set_memory(int64_t bytes)
+{
+    atomic_store(&given, bytes > 0 ? bytes : 0);
+}
+
+/* The first number of a file; INT64_MAX if there is none, as in "max". */
+static int64_t read_number(const char *path)
+{
+    FILE *file = fopen(path, "r");
+    int64_t number = INT64_MAX;
+
+    if (!file)
+        return INT64_MAX;
+    if (fscanf(file, "%" SCNd64, &number) != 1) /* NOLINT: a number or none */
+        number = INT64_MAX;
+    fclose(file);
+    return number;
+}
+
+static int64_t lesser(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+/*
+ * The limit of the process's control group, and of the groups above it, that of
+ * the machine if there is none. /proc/self/cgroup has a line "0::/A/B" of the
+ * unified hierarchy; a container sees its own group as the root. The older
+ * hierarchy has one file for each kind of resource.
+ */
+static int64_t group_limit(void)
+{
+    enum { ROOM = 4096 };
+    static const char root[] = "/sys/fs/cgroup";
+    FILE *file = fopen("/proc/self/cgroup", "r");
+    char line[ROOM], path[2 * ROOM];
+    int64_t least = read_number("/sys/fs/cgroup/memory/memory.limit_in_bytes");
+
+    least = lesser(least, read_number("/sys/fs/cgroup/memory.max"));
+    while (file && fgets(line, sizeof line, file)) {
+        if (strncmp(line, "0::/", 4) != 0)
+            continue;
+        line[strcspn(line, "\n")] = '\0';
+        for (char *end = NULL; (end = strrchr(line + 3, '/')); *end = '\0') {
+            snprintf(path, sizeof path, "%s%s/memory.max", root, line + 3);
+            least = lesser(least, read_number(path));
+        }
+    }
+    if (file)
+        fclose(file);
+    return least;
+}
+
+/* Four fifths of what the machine, or its control group, has. */
+static int64_t usual_limit(void)
+{
+    int64_t known = atomic_load(&standing);
+
+    if (known == 0) {
+        const int64_t pages = sysconf(_SC_PHYS_PAGES);
+        const int64_t all = pages * sysconf(_SC_PAGESIZE);
+
+        known = lesser(all > 0 ? all : INT64_MAX, group_limit()) / 5 * 4;
+        atomic_store(&standing, known);
+    }
+    return known;
+}
+
+int64_t ritz_memory_limit(void)
+{
+    const int64_t limit = atomic_load(&given);
+
+    return limit > 0 ? limit : usual_limit();
+}
+
+/* Memory that the process holds now; 0 if that is not known. */
+static int64_t memory_in_use(void)
+{
+    FILE *file = fopen("/proc/self/statm", "r");
+    int64_t resident = 0;
+
+    if (!file)
+        return 0;
+    if (fscanf(file, "%*s %" SCNd64, &resident) != 1) /* NOLINT: as above */
+        resident = 0;
+    fclose(file);
+    return resident * sysconf(_SC_PAGESIZE);
+}
+
+/* "15.2 GiB", "340 MiB" */
+static const char *name_size(int64_t bytes, char out[32])
+{
+    const double mib = (double)bytes / 1048576.0;
+
+    if (mib < 1024.0)
+        snprintf(out, 32, "%.3g MiB", mib);
+    else
+        snprintf(out, 32, "%.1f GiB", mib / 1024.0);
+    return out;
+}
+
+ritz_status ritz_memory_admit(const char *what, int64_t bytes)
+{
+    const int64_t limit = ritz_memory_limit();
+    char need[32], used[32], allowed[32];
+    int64_t in_use = 0;
+
+    if (bytes < limit / SMALL_PART)
+        return RITZ_OK;
+    in_use = memory_in_use();
+    RITZ_REFUSE_IF(bytes > limit - in_use, RITZ_ERR_MEMORY,
+                   "%s needs %s of memory beside %s in use, %s are allowed "
+                   "(--memory)",
+                   what, name_size(bytes, need), name_size(in_use, used),
+                   name_size(limit, allowed));
+    return RITZ_OK;
+}
