@@ -38,7 +38,13 @@ void ritz_dense_scale_rows(const double *factor, ritz_dense *A);
 /** A := B, which is left empty. */
 void ritz_dense_replace(ritz_dense *A, ritz_dense *B);
 
-/** A := A B, where B has no more columns than rows. */
+/**
+ * A := A B in the memory of A, which keeps its length.
+ *
+ * @param[in]     B  k x m, m <= k; it may be A itself, which is then copied
+ * @param[in,out] A  n x k, n x m afterwards
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree; RITZ_ERR_MEMORY
+ */
 ritz_status ritz_dense_times(const ritz_dense *B, ritz_dense *A);
 
 /** The block of @p out's size whose first entry is A(row, col). */
@@ -206,31 +212,35 @@ ritz_status ritz_sparse_project(const ritz_sparse *A, const ritz_dense *T,
                                 ritz_dense *out);
 
 /**
- * L'A T; A T is held only in part.
+ * L'A T, some columns of T at a time, so that memory never holds all of A T.
  *
  * @param[in]  L    n x l
  * @param[in]  A    n x k
  * @param[in]  T    k x r
  * @param[out] out  l x r, freed by the caller
+ * @return RITZ_ERR_ARGUMENT if the sizes disagree; RITZ_ERR_MEMORY
  * @cost O(r nnz + n l r)
  */
 ritz_status ritz_sparse_between(const ritz_dense *L, const ritz_sparse *A,
                                 const ritz_dense *T, ritz_dense *out);
 
 /**
- * A X, and |A||X|, of which it has the rounding.
+ * A X and |A||X|. Rounding errors of A X are some eps times |A||X|, entry by
+ * entry.
  *
  * @param[in]  A     n x n, symmetric, both triangles stored
  * @param[in]  X     n x k
  * @param[out] AX    n x k, freed by the caller; NULL: not wanted
- * @param[out] size  n x k, freed by the caller
+ * @param[out] size  |A||X|, n x k, freed by the caller
+ * @return RITZ_ERR_MEMORY
  * @cost  one pass over A for every eight columns
  */
 ritz_status ritz_sparse_mul_sizes(const ritz_sparse *A, const ritz_dense *X,
                                   ritz_dense *AX, ritz_dense *size);
 
 /**
- * Columns of |T|'|A||T|, of which T'A T has the rounding.
+ * Columns of |T|'|A||T|. Rounding errors of T'A T are some eps times this,
+ * entry by entry.
  *
  * @param[in]  A      n x n, symmetric, both triangles stored
  * @param[in]  T      n x r
@@ -390,7 +400,7 @@ typedef enum ritz_eigen_engine {
     RITZ_EIGEN_LANCZOS, /* block Lanczos at one shift */
     RITZ_EIGEN_ARPACK,  /* one vector at a time, for comparison */
     RITZ_EIGEN_SLICES,  /* block Lanczos at shifts within the spectrum */
-    RITZ_EIGEN_AMLS,    /* substructures: eigenvalues within 1e-4 */
+    RITZ_EIGEN_AMLS,    /* substructures: relative errors up to 1e-4 */
 } ritz_eigen_engine;
 
 /* How many of the lowest pairs. Rigid modes are always found in addition. */
@@ -412,8 +422,10 @@ typedef struct ritz_span {
  * (relative gap below 1e-6) at the end is returned whole, so there may be more
  * than requested. If fewer flexible modes exist than asked, all are returned.
  *
- * With RITZ_EIGEN_AMLS eigenvalues are within 1e-4 of their size, and residuals
- * may be large; the name of the engine has a bound of all errors.
+ * With RITZ_EIGEN_AMLS eigenvalues have relative errors up to 1e-4, and
+ * residuals are not limited; `engine` of the pairs states a bound of the
+ * errors. Slices take over, with the usual accuracy, where substructures are of
+ * no use.
  *
  * @return RITZ_ERR_SINGULAR if K + M is singular (a mechanism without mass);
  *         RITZ_ERR_CONVERGENCE if a residual stays above its limit or the

@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A zero matrix, or one of any numbers for those who write all of it. */
+/* A matrix of zeros; or, for functions that write every entry, of memory that
+   is not initialised. */
 static ritz_status allocate_dense(int64_t nrow, int64_t ncol, bool zeroed,
                                   ritz_dense *out)
 {
@@ -152,14 +153,27 @@ void ritz_dense_replace(ritz_dense *A, ritz_dense *B)
     RITZ_MOVE(*A, *B);
 }
 
+/* A := A A */
+static ritz_status square_matrix(ritz_dense *A)
+{
+    RITZ_OWN(ritz_dense) AA = {0};
+
+    RITZ_CHECK(ritz_dense_mul(A, A, &AA));
+    ritz_dense_replace(A, &AA);
+    return RITZ_OK;
+}
+
 ritz_status ritz_dense_times(const ritz_dense *B, ritz_dense *A)
 {
     enum { ROWS = 1024 }; /* of A at a time, so that A is not held twice */
     RITZ_OWN_ARRAY double *rows = NULL;
 
     RITZ_REFUSE_IF(A->ncol != B->nrow || B->ncol > A->ncol, RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " columns become %" PRId64 " by %" PRId64,
-                   A->ncol, B->ncol, B->nrow);
+                   "%" PRId64 " columns cannot be replaced by their products "
+                   "with a matrix of %" PRId64 " x %" PRId64,
+                   A->ncol, B->nrow, B->ncol);
+    if (A->ncol > 0 && A->val == B->val) /* B may not change with A */
+        return square_matrix(A);
     RITZ_CHECK_NEW(rows, ROWS * A->ncol);
     for (int64_t r = 0; r < A->nrow && B->ncol > 0; r += ROWS) {
         const int64_t count = A->nrow - r < ROWS ? A->nrow - r : ROWS;
@@ -223,7 +237,7 @@ double ritz_dense_max(const ritz_dense *A)
 {
     double largest = 0.0;
 
-    for (int64_t k = 0; k < A->nrow * A->ncol; k++) { /* fmax() is a call */
+    for (int64_t k = 0; k < A->nrow * A->ncol; k++) { /* fmax() is slower */
         const double size = fabs(A->val[k]);
 
         largest = size > largest ? size : largest;
