@@ -33,11 +33,11 @@
 #include "base/team.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
+#include "linear/largest.h"
 #include "linear/ordering.h"
 
 #include <cblas.h>
 #include <float.h>
-#include <inttypes.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -105,7 +105,8 @@ static int compare_rows(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Append the positions in `from` that are in no list yet and beyond front s. */
+/* Append to the list of front s those positions in `from` that lie beyond it
+   and are not in the list yet. */
 static void gather_positions(const amls *a, int64_t s, int64_t count,
                              const int64_t *from, int64_t *met, int64_t *list)
 {
@@ -119,7 +120,9 @@ static void gather_positions(const amls *a, int64_t s, int64_t count,
     }
 }
 
-/* f->row := rows beyond s that s or a child of it is coupled with. */
+/* f->row := rows beyond s that s or a child of it is coupled with. A zero that
+   is stored in one triangle only, of which the dissection may have read the
+   other, couples nothing. */
 static ritz_status find_boundary(const amls *a, int64_t s, int64_t *met,
                                  int64_t *list)
 {
@@ -134,8 +137,9 @@ static ritz_status find_boundary(const amls *a, int64_t s, int64_t *met,
 
             for (int64_t q = matrix[m]->colptr[j]; q < matrix[m]->colptr[j + 1];
                  q++)
-                gather_positions(a, s, 1, &a->position[matrix[m]->rowind[q]],
-                                 met, list);
+                if (matrix[m]->val[q] != 0.0)
+                    gather_positions(
+                        a, s, 1, &a->position[matrix[m]->rowind[q]], met, list);
         }
     for (int64_t c = a->tree.begin[s]; c < s; c++)
         if (a->tree.parent[c] == s)
@@ -154,7 +158,8 @@ static double work_of(const front *f)
     return n * (4.0 * n * n + 6.0 * n * b + 3.0 * b * b);
 }
 
-/* Choose subtrees for single threads: as large as allowed, none in another. */
+/* Choose subtrees for single threads: as large as allowed, and none within
+   another. */
 static void choose_jobs(amls *a)
 {
     double most = 0.0;
@@ -216,7 +221,8 @@ static void blocks_free(blocks *B)
     RITZ_FREE(B->A_ss, B->M_ss, B->M_sb, B->U_s);
 }
 
-/* Place of a position in front s: from 0 within s, from n within b. */
+/* Row of a position in the matrices of front s: 0 to n - 1 for the rows s, n
+   and above for the rows b. */
 static int64_t place_in(const amls *a, int64_t s, int64_t position)
 {
     const front *f = &a->front[s];
@@ -251,7 +257,7 @@ static void add_entries(const amls *a, int64_t s, double t,
             const int64_t at = a->position[matrix->rowind[p]];
             int64_t i = 0;
 
-            if (at < first[s] + j)
+            if (at < first[s] + j || matrix->val[p] == 0.0)
                 continue;
             i = place_in(a, s, at);
             if (i < n)
@@ -284,8 +290,8 @@ static void add_triangle(const front *f, int64_t c, const int64_t *place,
         }
 }
 
-/* Add what child c left to front s. `from` is the first column of U for its
-   modes. */
+/* Add A_bb, M_bb and U of child c to front s, and free them. `from` is the
+   column of U for the first mode of the child's subtree. */
 static ritz_status add_child(const amls *a, int64_t s, int64_t c, int64_t from,
                              blocks *B)
 {
@@ -377,37 +383,6 @@ static ritz_status condense_front(front *f, blocks *B)
     return RITZ_OK;
 }
 
-/* Eigenpairs of a symmetric matrix, n x n, lower triangle, with eigenvalues
-   above `least`: values descend. The matrix is lost. */
-static ritz_status solve_above(int64_t n, double *matrix, double least,
-                               int64_t *count, double **value, double **vector)
-{
-    RITZ_OWN_ARRAY double *w = NULL, *Z = NULL;
-    RITZ_OWN_ARRAY lapack_int *support = NULL;
-    lapack_int found = 0;
-    int info = 0;
-
-    RITZ_CHECK_NEW(w, n);
-    RITZ_CHECK_NEW(Z, n * n);
-    RITZ_CHECK_NEW(support, 2 * n);
-    if (n > 0)
-        info = LAPACKE_dsyevr(LAPACK_COL_MAJOR, 'V', 'V', 'L', (int)n, matrix,
-                              (int)n, least, HUGE_VAL, 0, 0, 0.0, &found, w, Z,
-                              (int)n, support);
-    RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR, RITZ_ERR_MEMORY,
-                   "no memory for eigenvectors of order %" PRId64, n);
-    RITZ_REFUSE_IF(info != 0, RITZ_ERR_CONVERGENCE,
-                   "the eigenvectors of order %" PRId64 " cannot be found", n);
-    *count = found;
-    RITZ_CHECK_NEW(*value, found);
-    RITZ_CHECK_NEW(*vector, n * found);
-    for (int64_t j = 0; j < found; j++) {
-        (*value)[j] = w[found - 1 - j];
-        memcpy(*vector + j * n, Z + (found - 1 - j) * n, (size_t)n * sizeof *Z);
-    }
-    return RITZ_OK;
-}
-
 /* Modes of front f, from L in A_ss; M_ss is lost. */
 static ritz_status find_modes(const amls *a, front *f, blocks *B)
 {
@@ -420,8 +395,9 @@ static ritz_status find_modes(const amls *a, front *f, blocks *B)
                    "modes of a substructure cannot be found");
     for (int64_t i = 0; i < f->n; i++)
         trace += B->M_ss[i * (f->n + 1)];
-    RITZ_CHECK(solve_above(f->n, B->M_ss, fmax(a->least, DBL_EPSILON * trace),
-                           &f->k, &f->nu, &f->Phi));
+    RITZ_CHECK(ritz_largest_pairs(f->n, B->M_ss, 0,
+                                  fmax(a->least, DBL_EPSILON * trace), &f->k,
+                                  &f->nu, &f->Phi));
     if (f->k > 0)
         cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans,
                     CblasNonUnit, n, (int)f->k, 1.0, B->A_ss, n, f->Phi, n);
@@ -527,33 +503,18 @@ static void assemble_reduced(const amls *a, double *R)
 }
 
 /* The k largest eigenvalues of R, descending, and their vectors. */
-static ritz_status solve_reduced(const amls *a, int64_t k, double *theta,
+static ritz_status solve_reduced(const amls *a, int64_t k, double **theta,
                                  ritz_dense *Y)
 {
-    const int n = (int)a->order;
-    RITZ_OWN_ARRAY double *R = NULL, *w = NULL, *Z = NULL;
-    RITZ_OWN_ARRAY lapack_int *support = NULL;
-    lapack_int found = 0;
-    int info = 0;
+    RITZ_OWN_ARRAY double *R = NULL;
+    int64_t found = 0;
 
     ritz_monitor_step("reduced matrix", 0, 0);
     RITZ_CHECK_NEW(R, a->order * a->order);
-    RITZ_CHECK_NEW(w, a->order);
-    RITZ_CHECK_NEW(Z, a->order * k);
-    RITZ_CHECK_NEW(support, 2 * k);
-    RITZ_CHECK(ritz_dense_new(a->order, k, Y));
     assemble_reduced(a, R);
-    info = LAPACKE_dsyevr(LAPACK_COL_MAJOR, 'V', 'I', 'L', n, R, n, 0.0, 0.0,
-                          n - (int)k + 1, n, 0.0, &found, w, Z, n, support);
-    RITZ_REFUSE_IF(info == LAPACK_WORK_MEMORY_ERROR, RITZ_ERR_MEMORY,
-                   "no memory for eigenvectors of order %d", n);
-    RITZ_REFUSE_IF(info != 0 || found != k, RITZ_ERR_CONVERGENCE,
-                   "the eigenvectors of order %d cannot be found", n);
-    for (int64_t j = 0; j < k; j++) {
-        theta[j] = w[k - 1 - j];
-        memcpy(ritz_dense_col(Y, j), Z + (k - 1 - j) * n,
-               (size_t)n * sizeof *Z);
-    }
+    RITZ_CHECK(ritz_largest_pairs(a->order, R, k, 0.0, &found, theta, &Y->val));
+    Y->nrow = a->order;
+    Y->ncol = found;
     return RITZ_OK;
 }
 
@@ -662,8 +623,7 @@ static ritz_status find_lowest(amls *a, int64_t k, ritz_substructuring *how,
     *end = RITZ_LANCZOS_EXHAUSTED;
     if (a->order < k)
         return RITZ_OK;
-    RITZ_CHECK_NEW(theta, k);
-    RITZ_CHECK(solve_reduced(a, k, theta, &Y));
+    RITZ_CHECK(solve_reduced(a, k, &theta, &Y));
     if (!(theta[k - 1] > DBL_EPSILON * (double)a->order * theta[0]))
         return RITZ_OK; /* fewer than k motions have mass */
     *end = RITZ_LANCZOS_SLOW;

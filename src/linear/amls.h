@@ -23,16 +23,17 @@ typedef struct ritz_substructuring {
  * upper bound of the eigenvalue of the same rank, and exact up to rounding if
  * all modes are kept.
  *
+ * @param[in]  k      1 or more
  * @param[in]  S      K, M, and sigma below all eigenvalues; its factor is not
  *                    used
- * @param[out] X      n x k, M-orthonormal, by ascending eigenvalue; empty unless
- *                    *end is FOUND
+ * @param[out] X      n x k, M-orthonormal, by ascending eigenvalue; empty
+ *                    unless *end is FOUND
  * @param[out] lambda k numbers, to be freed; NULL unless FOUND  [rad^2/s^2]
  * @param[out] end    FOUND; EXHAUSTED if fewer than k modes of substructures
- *                    are below the cutoff; SLOW if a part of the structure is
- *                    too densely connected to be divided, or if the k-th theta
- *                    = 1 / (lambda - sigma) is lost in the rounding of the
- *                    first
+ *                    are below the cutoff, or fewer than k have mass; SLOW if
+ *                    a part of the structure is too densely connected to be
+ *                    divided, or if the k-th theta = 1 / (lambda - sigma) is
+ *                    lost in the rounding of the first
  * @return RITZ_ERR_SINGULAR if K - sigma M is not positive definite;
  *         RITZ_ERR_CONVERGENCE; RITZ_ERR_MEMORY
  * @cost   some three Cholesky factors with fronts held dense, the modes of each

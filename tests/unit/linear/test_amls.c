@@ -164,6 +164,45 @@ static void uncoupled_masses_are_their_own_modes(void **state)
     free(lambda);
 }
 
+/* K with zeros stored above the diagonal, between points that are far apart. */
+static void store_zeros(ritz_sparse *K)
+{
+    const int64_t n = K->nrow;
+    RITZ_OWN(ritz_sparse) E = {0}, wide = {0};
+
+    assert_ok(ritz_sparse_new(n, n, n, &E));
+    for (int64_t j = 0; j < n; j++) {
+        E.rowind[j] = j / 2;
+        E.val[j] = 1.0;
+        E.colptr[j + 1] = j + 1;
+    }
+    assert_ok(ritz_sparse_add(1.0, K, 0.0, &E, &wide));
+    ritz_sparse_free(K);
+    *K = wide;
+    wide = (ritz_sparse){0};
+}
+
+/* Error of theta: n eps theta_1, as with all modes of substructures. */
+static void zeros_in_one_triangle_couple_nothing(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_dense) X = {0};
+    double *exact = lattice_eigenvalues(9, 0.0);
+    double *lambda = NULL;
+    ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+
+    (void)state;
+    lattice_new(9, 0.0, &K, &M);
+    store_zeros(&K);
+    assert_ok(find_lowest(&(ritz_shifted){.K = &K, .M = &M}, 20, HUGE_VAL, &X,
+                          &lambda, &end));
+    assert_int_equal(end, RITZ_LANCZOS_FOUND);
+    for (int64_t j = 0; j < 20; j++)
+        assert_near(lambda[j], exact[j], 1e-11 * exact[j]);
+    free(lambda);
+    free(exact);
+}
+
 /* A cube with masses on the first `heavy` points only: it has `heavy` finite
    eigenvalues. */
 static void make_light(int64_t heavy, ritz_sparse *K, ritz_sparse *M)
@@ -403,6 +442,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(fewer_modes_of_substructures_give_upper_bounds),
     cmocka_unit_test(two_runs_have_the_same_bits),
     cmocka_unit_test(uncoupled_masses_are_their_own_modes),
+    cmocka_unit_test(zeros_in_one_triangle_couple_nothing),
     cmocka_unit_test(few_masses_exhaust_the_substructures),
     cmocka_unit_test(indefinite_stiffness_is_refused),
     cmocka_unit_test(eigenvalues_lie_within_their_bounds),
