@@ -5,7 +5,7 @@
 #include "blocks.h"
 #include "krylov.h"
 #include "lanczos.h"
-#include "linear/eigen_sparse.h"
+#include "linear/requested.h"
 #include "ranks.h"
 
 #include <inttypes.h>

@@ -235,8 +235,9 @@
 /* A shift below 0 as part of the first flexible eigenvalue: small enough to
    converge, large enough to keep digits of a free body. */
 #define RITZ_SHIFT_OF_FIRST 1e-2
-/* The shift of the search for modes is used instead if it is at least this part
-   of that: another digit is lost. */
+/* Residual modes use the factor of the search for modes if its shift is at
+   least this part of RITZ_SHIFT_OF_FIRST times the first flexible eigenvalue: a
+   free body loses one more digit. */
 #define RITZ_SHIFT_LENT 0.1
 /* ... as part of K / M where no flexible mode is known. */
 #define RITZ_SHIFT_OF_SIZE 1e-6
@@ -323,17 +324,18 @@
 /* Backward error of a factor of an indefinite matrix, relative, above which
    another shift is taken: 1e-14 is usual, and residuals of 1e-11 need 1e-12. */
 #define RITZ_SIGNED_ERROR 1e-12
-/* Relative error of eigenvalues by substructures that is asked for: that of the
-   data of a model, mostly, is larger. */
+/* Largest relative error of eigenvalues by substructures. Material data and the
+   mesh cause larger errors in most models. */
 #define RITZ_AMLS_ERROR 1e-4
-/* Values of theta = 1 / (lambda - sigma) below this part of the largest have
-   fewer than four digits left after substructures are condensed. */
+/* Rounding of theta = 1 / (lambda - sigma) is 1e-15 of the largest theta after
+   substructures are condensed: below this part of it, theta has fewer than four
+   digits. */
 #define RITZ_AMLS_DIGITS 1e-11
-/* Modes of substructures are kept up to so many times the last eigenvalue asked
-   for: measured, see docs/methods/eigen.md. */
+/* Modes of substructures are kept up to so many times the last eigenvalue to be
+   found: measured, see docs/methods/eigen.md. */
 #define RITZ_AMLS_CUTOFF 6.0
-/* A random vector spans no further direction in Lanczos once what is new is
-   smaller than this part of the first: rounding. */
+/* Lanczos with a random vector ends where beta is below this part of the first
+   alpha: the next vector would be rounding. */
 #define RITZ_DENSITY_END 1e-13
 /* Least gap between two slices of the spectrum, relative to the eigenvalue.
    Vectors of two slices are then orthogonal to 1e-6, their residuals divided by

@@ -109,7 +109,7 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
         double moved = 0.0;
         double size = least[j];
 
-        for (int64_t i = 0; i < G->nrow; i++) { /* fmax() is a call */
+        for (int64_t i = 0; i < G->nrow; i++) { /* fmax() is slower */
             const double step = fabs(now[i] - before[i]);
 
             moved = step > moved ? step : moved;
@@ -122,12 +122,13 @@ static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* What residual modes are found from. */
+/* A search for residual modes, with what each of its functions needs. */
 typedef struct residual_task {
     const ritz_request *request;
     ritz_free_set *set;
     double *response; /* f_j' A^-1 f_j for each load */
-    bool done;        /* with the factor of the search for modes */
+    bool done;        /* Psi and response are found, with the factor of the
+                         search for modes */
 } residual_task;
 
 static void residual_task_free(residual_task *t)
@@ -160,7 +161,7 @@ static ritz_status find_scales(const ritz_dense *F, const ritz_pairs *modes,
  * Psi and the responses, from the factor A of K + s M.
  *
  * @param[in]  slow    as of choose_shift
- * @param[out] change  of the last sweep: what is left of the iteration
+ * @param[out] change  largest relative change of a column in the last sweep
  */
 static ritz_status sweep_residual(const residual_task *t,
                                   const ritz_pairs *modes, ritz_factor *A,
@@ -183,7 +184,9 @@ static ritz_status sweep_residual(const residual_task *t,
                                                         suffices */
     RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &Psi));
     *change = 1.0;
-    for (int k = 0; k<MOST_SWEEPS && * change> settled; k++) {
+    for (int k = 0; k < MOST_SWEEPS; k++) {
+        if (!(*change > settled))
+            break;
         RITZ_CHECK(iterate_residual(A, M, s, &G, least, &Psi, change));
         RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
         if (k > slow && *change > 0.5 * best)
@@ -215,8 +218,9 @@ static ritz_status find_residual(const residual_task *t)
 
 /*
  * Psi and the responses with the factor of the search for modes, if its shift
- * suits: each sweep multiplies the part of a mode that is left out by -sigma /
- * (lambda - sigma), and of a small shift digits are lost.
+ * suits. Each sweep multiplies the part of a mode that is left out by -sigma /
+ * (lambda - sigma), which must be small; if -sigma itself is small, K - sigma M
+ * of a free body is nearly singular, and digits are lost.
  */
 static ritz_status borrow_factor(void *of, const ritz_pairs *found,
                                  int64_t count, ritz_factor *A, double sigma)
@@ -229,7 +233,7 @@ static ritz_status borrow_factor(void *of, const ritz_pairs *found,
     double change = 0.0;
 
     t->done = false;
-    if (rigid >= all || t->set->F.ncol == 0 ||
+    if (!A || rigid >= all || t->set->F.ncol == 0 ||
         -sigma < RITZ_SHIFT_LENT * RITZ_SHIFT_OF_FIRST * found->lambda[rigid] ||
         -sigma >
             RITZ_SHIFT_OF_FIRST * found->lambda[count < all ? count : all - 1])

@@ -26,10 +26,10 @@
 #include "linear/factor.h"
 #include "linear/general.h"
 #include "linear/inertia.h"
+#include "linear/requested.h"
 #include "linear/residuals.h"
 #include "linear/slices.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -42,7 +42,7 @@ enum {
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
     GUESS = 20,    /* flexible modes requested first if they are not counted */
-    GUARD = 2,     /* half as many modes more by substructures, and two */
+    GUARD = 2,     /* substructures find k + k / GUARD + GUARD modes for k */
     PLENTY = 20,   /* substructures are of use up to one mode in so many dofs */
     BEHIND = 2,    /* modes requested above those wanted: a gap to count in */
     SPARE = 4,     /* the same after a mode was missed */
@@ -71,9 +71,8 @@ typedef struct search {
     ritz_pairs found;
     ritz_moments moments; /* of what found.Phi was before its last iteration;
                              empty unless the engine is approximate */
-    int64_t counted;      /* modes below counted_at, by the last count */
-    double counted_at;
-    double error; /* bound of relative errors of eigenvalues */
+    double counted_at;    /* the last count was of modes below this */
+    double error;         /* bound of relative errors of eigenvalues */
 } search;
 
 static void search_free(search *s)
@@ -108,27 +107,6 @@ static ritz_status survey_pencil(search *s)
     qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s->typical = count > 0 ? ratio[count / 2] : 1.0;
     return RITZ_OK;
-}
-
-static bool is_clustered(double a, double b)
-{
-    return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
-}
-
-int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
-                          double limit)
-{
-    int64_t end = P->num_rigid + (span->modes < 0 ? 0 : span->modes);
-    int64_t count = P->Phi.ncol;
-
-    if (span->modes < 0)
-        for (end = P->num_rigid; end < count && P->lambda[end] <= limit;)
-            end++;
-    end = end < count ? end : count;
-    while (end > 0 && end < count &&
-           is_clustered(P->lambda[end - 1], P->lambda[end]))
-        end++;
-    return end;
 }
 
 /* Keep the first @p end pairs. */
@@ -298,8 +276,9 @@ static const engine engines[] = {
     [RITZ_EIGEN_AMLS] = {"substructures", true, find_by_amls},
 };
 
-/* Index of the pair below which modes are counted: for an approximate engine
-   not the next one, because errors of pairs far below have smaller bounds. */
+/* Index of the pair below which modes are counted. An approximate engine counts
+   among the additional modes: bounds of eigenvalues far below a count are
+   narrower. */
 static int64_t gap_to_count(const search *s, int64_t end)
 {
     const int64_t count = s->found.Phi.ncol;
@@ -403,32 +382,6 @@ static ritz_status come_closer(search *s, bool *moved)
     return RITZ_OK;
 }
 
-int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end)
-{
-    double widest = 0.0;
-    int64_t at = end;
-
-    for (int64_t k = end > 0 ? end : 1; k < P->Phi.ncol; k++) {
-        double gap = (P->lambda[k] - P->lambda[k - 1]) / fabs(P->lambda[k]);
-
-        if (gap > widest) {
-            widest = gap;
-            at = k;
-        }
-    }
-    return at;
-}
-
-double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part)
-{
-    double above = k < P->Phi.ncol ? P->lambda[k] : HUGE_VAL;
-    double below = k > 0 ? P->lambda[k - 1] : above - fabs(above) - DBL_MIN;
-
-    if (k == P->Phi.ncol)
-        above = below + fabs(below) + DBL_MIN;
-    return below + part * (above - below);
-}
-
 /* Free the factor before the count makes its own; keep its order of rows. */
 static ritz_status keep_order(search *s)
 {
@@ -438,7 +391,9 @@ static ritz_status keep_order(search *s)
     return RITZ_OK;
 }
 
-/* Modes below a place between pairs k - 1 and k, none of which it may hit. */
+/* The number of modes below a value between pairs k - 1 and k. Where the factor
+   for the count is singular, because the value is an eigenvalue, another value
+   is taken. */
 static ritz_status count_below(search *s, int64_t k, int64_t *out)
 {
     const double parts[] = {0.5, RITZ_COUNT_PLACE, 0.7};
@@ -452,7 +407,6 @@ static ritz_status count_below(search *s, int64_t k, int64_t *out)
         RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
         ritz_monitor_step("count of modes", 0, 0);
         status = ritz_inertia_negative(&A, s->order, out);
-        s->counted = status == RITZ_OK ? *out : s->counted;
         s->counted_at = tau;
     }
     return status;
@@ -469,9 +423,10 @@ static ritz_status ask_more(search *s, int64_t more)
     return RITZ_OK;
 }
 
+/* Also without a factor: what the last call made of other pairs is void. */
 static ritz_status lend_factor(const search *s, int64_t end)
 {
-    if (!s->use || !s->S.A)
+    if (!s->use)
         return RITZ_OK;
     return s->use->call(s->use->of, &s->found, end, s->S.A, s->S.sigma);
 }
@@ -560,8 +515,8 @@ static ritz_status search_proven(search *s, int64_t *end)
     return RITZ_OK;
 }
 
-/* The bound of errors, which needs the number of modes below a value in a gap:
-   by frequency it was counted elsewhere. */
+/* The bound of errors, which needs a count among the additional modes. A search
+   by number has made it; one by frequency has counted at its limit only. */
 static ritz_status settle_error(search *s, int64_t end)
 {
     const int64_t at = gap_to_count(s, end);

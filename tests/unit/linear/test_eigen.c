@@ -558,6 +558,7 @@ static void a_mechanism_without_mass_is_refused(void **state)
 typedef struct lent {
     const pencil *p;
     int calls;
+    int without; /* calls without a factor */
     int64_t count;
     double worst; /* |x - A^-1 (K - sigma M) x| of x = 1, 2, ... */
     ritz_status answer;
@@ -569,6 +570,10 @@ static ritz_status use_factor(void *of, const ritz_pairs *found, int64_t count,
     lent *l = of;
     RITZ_OWN(ritz_dense) x = {0}, y = {0}, mass = {0};
 
+    l->without += !A;
+    l->count = count;
+    if (!A)
+        return l->answer;
     RITZ_CHECK(ritz_dense_new(l->p->K.nrow, 1, &x));
     for (int64_t i = 0; i < x.nrow; i++)
         x.val[i] = (double)(i + 1) / (double)x.nrow;
@@ -579,7 +584,6 @@ static ritz_status use_factor(void *of, const ritz_pairs *found, int64_t count,
     ritz_dense_add(-1.0, &x, &y);
     l->worst = ritz_dense_max(&y);
     l->calls++;
-    l->count = count;
     assert_true(count <= found->Phi.ncol);
     return l->answer;
 }
@@ -617,10 +621,29 @@ static void the_factor_is_lent_while_it_is_there(void **state)
                          RITZ_ERR_CONVERGENCE);
         l = (lent){.p = &small};
         assert_ok(ritz_eigen_lending(&small.K, &small.M, &spans[0], &use, &P));
-        assert_int_equal(l.calls, 0);
+        assert_int_equal(l.calls + l.without, 0);
     }
     release(&p);
     release(&small);
+}
+
+/* Slices free the factor. Who uses it is told so, as an earlier search may have
+   lent one for other pairs. */
+static void a_factor_that_is_gone_is_reported(void **state)
+{
+    const ritz_span span = {.modes = 5, .engine = RITZ_EIGEN_SLICES};
+    pencil p = bars(1, 700, 0);
+    lent l = {.p = &p};
+    const ritz_factor_use use = {use_factor, &l};
+    RITZ_OWN(ritz_pairs) P = {0};
+
+    (void)state;
+    assert_ok(ritz_eigen_lending(&p.K, &p.M, &span, &use, &P));
+    assert_string_equal(P.engine, "spectrum slices");
+    assert_int_equal(l.calls, 0);
+    assert_int_equal(l.without, 1);
+    assert_int_equal(l.count, P.Phi.ncol);
+    release(&p);
 }
 
 static ritz_status lowest(const pencil *p, int64_t modes)
@@ -676,6 +699,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_is_no_pencil_is_refused),
     cmocka_unit_test(a_mechanism_without_mass_is_refused),
     cmocka_unit_test(the_factor_is_lent_while_it_is_there),
+    cmocka_unit_test(a_factor_that_is_gone_is_reported),
     cmocka_unit_test(no_allocation_failure_leaks),
     cmocka_unit_test(nothing_has_no_modes),
 };

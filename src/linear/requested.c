@@ -1,0 +1,53 @@
+#include "linear/requested.h"
+
+#include "base/tolerances.h"
+
+#include <float.h>
+#include <math.h>
+
+static bool is_clustered(double a, double b)
+{
+    return fabs(b - a) <= RITZ_CLUSTER_GAP * fmax(fabs(a), fabs(b));
+}
+
+int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
+                          double limit)
+{
+    int64_t end = P->num_rigid + (span->modes < 0 ? 0 : span->modes);
+    int64_t count = P->Phi.ncol;
+
+    if (span->modes < 0)
+        for (end = P->num_rigid; end < count && P->lambda[end] <= limit;)
+            end++;
+    end = end < count ? end : count;
+    while (end > 0 && end < count &&
+           is_clustered(P->lambda[end - 1], P->lambda[end]))
+        end++;
+    return end;
+}
+
+int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end)
+{
+    double widest = 0.0;
+    int64_t at = end;
+
+    for (int64_t k = end > 0 ? end : 1; k < P->Phi.ncol; k++) {
+        double gap = (P->lambda[k] - P->lambda[k - 1]) / fabs(P->lambda[k]);
+
+        if (gap > widest) {
+            widest = gap;
+            at = k;
+        }
+    }
+    return at;
+}
+
+double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part)
+{
+    double above = k < P->Phi.ncol ? P->lambda[k] : HUGE_VAL;
+    double below = k > 0 ? P->lambda[k - 1] : above - fabs(above) - DBL_MIN;
+
+    if (k == P->Phi.ncol)
+        above = below + fabs(below) + DBL_MIN;
+    return below + part * (above - below);
+}

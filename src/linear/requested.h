@@ -1,0 +1,29 @@
+/*
+ * Which of the pairs that a search found were requested, and where modes are
+ * counted to prove that none is missing: for the search of ritz_eigen_sparse()
+ * and for the one by several processes (libexec/slepc/modes.c).
+ */
+#ifndef RITZ_LINEAR_REQUESTED_H
+#define RITZ_LINEAR_REQUESTED_H
+
+#include <ritz/matrix.h>
+
+/**
+ * How many of the pairs found were requested: rigid modes and span->modes
+ * others, or all up to @p limit if span->modes is negative; and the rest of a
+ * cluster that the last of them belongs to.
+ *
+ * @param[in] limit  highest eigenvalue requested  [rad^2/s^2]
+ */
+int64_t ritz_pairs_wanted(const ritz_pairs *P, const ritz_span *span,
+                          double limit);
+
+/** The index k >= @p end with the widest relative gap between pairs k - 1 and
+ * k: modes are counted below a value in that gap. */
+int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
+
+/** A value between eigenvalues k - 1 and k of @p P, at @p part (0 to 1) of the
+ * way; beyond the first or the last one if there is only one of them. */
+double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part);
+
+#endif
