@@ -270,27 +270,28 @@ typedef struct ritz_comparison {
     double next_drop; /* increase of the relative errors if one more vector were
                          removed; NaN: none need be removed, or none can be */
     ritz_suggestion suggestion;
-    bool interrupted;     /* stop->asked ended it: the first configurations of
-                             the scene's list, or all without some between, are
-                             in both systems and in `row` */
-    int64_t num_composed; /* of the listed configurations, from the first, those
-                             whose modes the bodies keep */
+    bool interrupted;     /* stop->asked ended the work: both systems and `row`
+                             have only the configurations that were done */
+    int64_t num_composed; /* the bodies keep modes of so many configurations,
+                             the first ones of the scene's list */
 } ritz_comparison;
 
 /** Both stages. @cost an eigenproblem of the stage-1 order a configuration */
 ritz_status ritz_compare(const ritz_stage *stage, ritz_comparison *out);
 
-/* Asked between configurations: true ends the work with what is done. */
+/* asked() is called between configurations; if it returns true, the work ends
+   with the configurations that are done. */
 typedef struct ritz_stop {
     bool (*asked)(void *context);
     void *context;
 } ritz_stop;
 
 /**
- * Both stages, until @p stop ends them. In stage one, those configurations that
- * are done are compared as if the scene listed no others. While errors are
- * measured, configurations are left out whose errors are not. At least the
- * first configuration is done.
+ * Both stages, until @p stop ends them. If it ends stage one, the
+ * configurations that are done are compared as if the scene listed no others.
+ * If it ends the measurement of errors, the systems are without those
+ * configurations whose errors are not measured. The first configuration is
+ * always done.
  */
 ritz_status ritz_compare_until(const ritz_stage *stage, const ritz_stop *stop,
                                ritz_comparison *out);

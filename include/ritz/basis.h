@@ -118,8 +118,9 @@ extern const ritz_choice_word ritz_choice_words[];
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
  * "dense", "modal", "low-rank", "projection", "lanczos", "arpack", "slices",
- * "amls" or "slepc" for engine, "yes" or "no" for count, "50" for among_hz, "0,10" for
- * band_hz, "dropped" or "static" for remainder, "one" or "two" for sides.
+ * "amls" or "slepc" for engine, "yes" or "no" for count, "50" for among_hz,
+ * "0,10" for band_hz, "dropped" or "static" for remainder, "one" or "two" for
+ * sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
  */
@@ -147,9 +148,9 @@ typedef struct ritz_request {
     double tolerance;   /* relative, below which a column is dependent */
     ritz_choice choice; /* shifts, loads, inner product and so on */
     const ritz_neighbour *neighbour; /* loaded interface; NULL: none */
-    /* the component again if its K and M may be freed once the method needs
-       them no more, so that memory does not hold them beside parts of them;
-       NULL: they are kept */
+    /* the same as `component` if a method may free its K and M once it no
+       longer needs them, so that memory does not hold both them and copies of
+       parts of them; NULL: they are kept */
     ritz_component *owned;
 } ritz_request;
 
@@ -162,14 +163,16 @@ typedef struct ritz_request {
 enum { RITZ_NAMED_FOR_COMPONENTS = 1, RITZ_NAMED_FOR_SCENES = 2 };
 
 /**
- * V, and the kinds of the columns T V, of a basis with fewer modes than T of
- * @p wide has.
+ * The basis T V with fewer modes, where T is the basis of @p wide.
  *
- * @param[in]  at         count columns of @p wide: the modes that are kept,
- *                        ascending, and then all columns that are no modes
+ * @param[in]  wide       the component reduced by T
+ * @param[in]  at         count columns of T: the modes that are kept,
+ *                        ascending, and then all columns that are not modes
  * @param[in]  tolerance  relative, below which a column is dependent
- * @param[out] V          columns of @p wide x count; {0} if a column of the
+ * @param[out] V          number of columns of T x count; {0} if a column of the
  *                        basis with fewer modes would depend on others
+ * @param[out] columns    kinds, dofs and frequencies of the columns of T V
+ * @return RITZ_ERR_MEMORY, or as solutions of order count fail
  */
 typedef ritz_status ritz_narrow(const ritz_reduced *wide, int64_t count,
                                 const int64_t *at, double tolerance,

@@ -43,9 +43,9 @@ enum { MOST_SHIFTS = 16 };
 /* Trials that give intervals: the trial, its inverse iterate, and the richer
    one. */
 enum { TRIALS = 3 };
-/* Inverse iterations between two trials. A solve takes a fifth of the time of a
-   trial, and two bring residuals from 1e-3 to where close modes are told
-   apart. */
+/* Inverse iterations between two trials. The solves of one take a fifth of the
+   time of a trial, and after two of them a trial with residuals of 1e-3 mostly
+   tells close modes apart. */
 enum { INVERSE_STEPS = 2 };
 
 /*
@@ -99,8 +99,8 @@ static ritz_status take_ritz_pairs(const ritz_component *full, ritz_dense *Y,
 }
 
 /*
- * G = R'A^-1 R, and A^-1 R in the place of R. From the last columns to the
- * first, as G_ij for i <= j needs R_i and A^-1 R_j only.
+ * G = R'A^-1 R and R := A^-1 R. The last columns come first: G_ij with i <= j
+ * needs R_i and A^-1 R_j, so that R_i must still be there.
  */
 static ritz_status solve_residuals(ritz_factor *A, ritz_dense *R, ritz_dense *G)
 {
@@ -225,8 +225,8 @@ ritz_status ritz_lehmann_of_span(ritz_estimator *estimator, ritz_dense *Y,
     return RITZ_OK;
 }
 
-/* A^-1 M Y in the place of Y; columns scaled by what that divides the modes
-   of the trial by. */
+/* Y := A^-1 M Y (Theta - sigma). The size of columns hardly changes, as A^-1 M
+   divides a mode by lambda - sigma. */
 static ritz_status iterate_inversely(const ritz_estimator *estimator,
                                      const ritz_lehmann *trial, ritz_dense *Y)
 {

@@ -33,8 +33,8 @@ enum { GAPS = 3 };
 /* Most counts for one reduction: some, and some for each mode in the band. */
 enum { SOME_COUNTS = 8, COUNTS_A_MODE = 4 };
 /* Most inverse iterations, and most counts next to modes, while partners are
-   unclear. The first iteration comes before counts: it costs as much as one,
-   and serves all modes. */
+   unclear. The first iteration comes before counts: it costs as much as one
+   of them, and improves the bounds of all modes. */
 enum { ITERATIONS = 4, MOST_BESIDE = 16 };
 /* Tries of a count that meets a mode; counts for one mode; gaps near it. */
 enum { MOST_TRIES = 4, MOST_FOR_ONE = 16, GAPS_AROUND = 8 };

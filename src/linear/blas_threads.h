@@ -12,8 +12,9 @@
  */
 int ritz_blas_threads(int threads);
 
-/* While it lives the BLAS uses one thread: for work on matrices of a few hundred
-   rows, after which further threads would look for more until they sleep. */
+/* While it exists the BLAS uses one thread. This saves time with matrices of a
+   few hundred rows: further threads would gain little, and wait for more work
+   in a loop that takes processor time. */
 typedef struct ritz_blas_single {
     int before; /* number of threads */
 } ritz_blas_single;

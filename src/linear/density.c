@@ -24,7 +24,8 @@
 
 enum {
     VECTORS = 8, /* one block of a solve */
-    STEPS = 14,  /* of Lanczos: points lie then at ratios of 1.5 or less */
+    STEPS = 14,  /* of Lanczos: theta of neighbouring points differ by a factor
+                    of 1.5 at most */
 };
 
 /* A point of a quadrature and its weight. */

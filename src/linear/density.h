@@ -6,12 +6,13 @@
 #include "linear/general.h"
 
 /**
- * Estimate the k-th lowest eigenvalue of K x = lambda M x.
+ * Estimate the k-th lowest eigenvalue of K x = lambda M x, within a third as a
+ * rule: of a hundred eigenvalues or more, and for M that is nearly diagonal.
  *
  * @param[in]  S    K, M, sigma below all eigenvalues, factor of K - sigma M
  * @param[out] out  HUGE_VAL if there seem to be fewer than k  [rad^2/s^2]
  * @return RITZ_ERR_MEMORY; RITZ_ERR_CONVERGENCE
- * @cost   a dozen solves of eight right-hand sides
+ * @cost   14 solves of eight right-hand sides
  * @see    [LinSaadYang2016]
  */
 ritz_status ritz_density_reach(const ritz_shifted *S, int64_t k, double *out);

@@ -35,6 +35,9 @@ ritz_status ritz_vectors_polish(const ritz_shifted *S, ritz_dense *X,
  * @param[in]  tau      there are exactly @p count eigenvalues below it
  * @param[out] lower    count bounds, ascending; -HUGE_VAL where the vectors
  *                      give none  [rad^2/s^2]
+ * @return RITZ_ERR_SINGULAR if 1 / (tau - sigma) is an eigenvalue of B within
+ *         rounding; RITZ_ERR_CONVERGENCE; RITZ_ERR_MEMORY
+ * @cost   O(k^3) for k vectors
  * @see    [Lehmann1963]
  */
 ritz_status ritz_moments_enclose(const ritz_moments *moments, double sigma,

@@ -11,7 +11,7 @@ typedef struct ritz_orthonormal {
     ritz_dense V, WV;     /* n x room */
     const ritz_sparse *W; /* borrowed; NULL: the identity */
     int64_t left;         /* of the last block: at least so many columns were
-                             new, but more than was wanted; 0: none */
+                             independent of V but not wanted; 0: none was */
     double tolerance;     /* of what is new in a column, relative, in W */
 } ritz_orthonormal;
 

@@ -1,7 +1,7 @@
 /*
- * What a reduced component has from the matrices of a component: T'KT and the
- * like. All of it is linear in the matrices, so that it may be found for parts
- * of them, in several processes, and added.
+ * What a reduced component needs of the matrices of a component: T'KT and the
+ * like. All but `fastest` are sums over entries of the matrices: processes that
+ * hold some of the entries each find them for these, and add.
  */
 #ifndef RITZ_MODEL_CONGRUENCES_H
 #define RITZ_MODEL_CONGRUENCES_H
@@ -22,8 +22,8 @@ bool ritz_may_be_rigid(ritz_column_kind kind);
 
 typedef struct ritz_congruences {
     ritz_dense K, M, D, K4; /* r x r, T'KT and so on; {0} of an absent matrix */
-    /* r x r, |T|'|K||T| in rows and columns that may be rigid, else 0: T'KT is
-       rounded by some of its units in the last place */
+    /* r x r, |T|'|K||T| in rows and columns that may be rigid, else 0: rounding
+       errors of T'KT are some eps times this */
     ritz_dense K_terms, K4_terms;
     ritz_dense rigid;           /* 6 x 6, R'MR of rigid motions R; {0}: there is
                                    no grid */
