@@ -86,40 +86,42 @@ static ritz_status bound_responses(const ritz_pairs *modes, const ritz_dense *F,
     return RITZ_OK;
 }
 
-/*
- * One step of the iteration; *change is the largest change of a column relative
- * to its size, or relative to least[j] if the column is smaller, where it is
- * rounding.
- */
+/* X := A^-1 (G + s M Psi), one step of the iteration. */
 static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
                                     double s, const ritz_dense *G,
-                                    const double *least, ritz_dense *Psi,
-                                    double *change)
+                                    const ritz_dense *Psi, ritz_dense *X)
 {
-    RITZ_OWN(ritz_dense) next = {0};
-
-    RITZ_CHECK(ritz_sparse_mul(M, Psi, &next));
+    RITZ_CHECK(ritz_sparse_mul(M, Psi, X));
     for (int64_t k = 0; k < G->nrow * G->ncol; k++)
-        next.val[k] = G->val[k] + s * next.val[k];
-    RITZ_CHECK(ritz_factor_solve(A, &next));
-    *change = 0.0;
-    for (int64_t j = 0; j < G->ncol; j++) {
-        const double *now = ritz_dense_col(&next, j);
+        X->val[k] = G->val[k] + s * X->val[k];
+    return ritz_factor_solve(A, X);
+}
+
+/*
+ * The largest change of a column relative to its size, or relative to least[j]
+ * if the column is smaller, where it is rounding.
+ */
+static double measure_change(const ritz_dense *Psi, const ritz_dense *X,
+                             const double *least)
+{
+    double change = 0.0;
+
+    for (int64_t j = 0; j < X->ncol; j++) {
+        const double *now = ritz_dense_col(X, j);
         const double *before = ritz_dense_col(Psi, j);
         double moved = 0.0;
         double size = least[j];
 
-        for (int64_t i = 0; i < G->nrow; i++) { /* fmax() is slower */
+        for (int64_t i = 0; i < X->nrow; i++) { /* fmax() is slower */
             const double step = fabs(now[i] - before[i]);
 
             moved = step > moved ? step : moved;
             size = fabs(now[i]) > size ? fabs(now[i]) : size;
         }
         if (size > 0.0)
-            *change = fmax(*change, moved / size);
+            change = fmax(change, moved / size);
     }
-    ritz_dense_replace(Psi, &next);
-    return RITZ_OK;
+    return change;
 }
 
 /* A search for residual modes, with what each of its functions needs. */
@@ -161,7 +163,9 @@ static ritz_status find_scales(const ritz_dense *F, const ritz_pairs *modes,
  * Psi and the responses, from the factor A of K + s M.
  *
  * @param[in]  slow    as of choose_shift
- * @param[out] change  largest relative change of a column in the last sweep
+ * @param[out] change  largest relative change of a column in the last sweep,
+ *                     without its part in the modes: of modes that are
+ *                     approximate such a part comes back in each sweep
  */
 static ritz_status sweep_residual(const residual_task *t,
                                   const ritz_pairs *modes, ritz_factor *A,
@@ -170,8 +174,8 @@ static ritz_status sweep_residual(const residual_task *t,
     const ritz_sparse *M = &t->request->component->M;
     const ritz_dense *F = &t->set->F, *Phi = &modes->Phi;
     const double settled = RITZ_SWEEPS_SETTLED * sqrt((double)M->nrow);
-    double best = HUGE_VAL;
-    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0}, Psi = {0};
+    double moved = 1.0, best = HUGE_VAL;
+    RITZ_OWN(ritz_dense) MPhi = {0}, G = {0}, Psi = {0}, X = {0};
     RITZ_OWN_ARRAY double *least = NULL;
 
     RITZ_CHECK_NEW(least, F->ncol);
@@ -183,15 +187,15 @@ static ritz_status sweep_residual(const residual_task *t,
     RITZ_CHECK(ritz_dense_take_out(&MPhi, Phi, &G)); /* a second pass
                                                         suffices */
     RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &Psi));
-    *change = 1.0;
-    for (int k = 0; k < MOST_SWEEPS; k++) {
-        if (!(*change > settled))
-            break;
-        RITZ_CHECK(iterate_residual(A, M, s, &G, least, &Psi, change));
-        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &Psi));
-        if (k > slow && *change > 0.5 * best)
+    for (int k = 0; k < MOST_SWEEPS && moved > settled; k++) {
+        RITZ_CHECK(iterate_residual(A, M, s, &G, &Psi, &X));
+        moved = measure_change(&Psi, &X, least);
+        RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &X));
+        *change = measure_change(&Psi, &X, least);
+        ritz_dense_replace(&Psi, &X);
+        if (k > slow && moved > 0.5 * best)
             break; /* rounding has become larger than contraction */
-        best = fmin(best, *change);
+        best = fmin(best, moved);
     }
     ritz_dense_replace(&t->set->Psi, &Psi);
     return RITZ_OK;
