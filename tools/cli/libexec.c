@@ -47,16 +47,24 @@ ritz_status libexec_find(const char *name, char out[PATH_MAX])
 
 bool libexec_is_asked(char **argv, const char *option, const char *value)
 {
-    for (char **word = argv; *word; word++)
-        if (strcmp(*word, option) == 0 && word[1] &&
-            strcmp(word[1], value) == 0)
+    const size_t length = strlen(option);
+
+    for (char **word = argv; *word; word++) {
+        const char *text = *word + length; /* behind the option */
+
+        if (strncmp(*word, option, length) != 0)
+            continue;
+        if (*text == '\0' && word[1] && strcmp(word[1], value) == 0)
             return true;
+        if (*text == '=' && strcmp(text + 1, value) == 0)
+            return true;
+    }
     return false;
 }
 
-/* The whole number that a text begins with, and which its end, "(" or "," must
-   follow: SLURM writes "4(x2)" for four tasks on each of two machines, and
-   "4(x2),3" if a third one has three. -1: there is none. */
+/* The text before the first "(" or ",", as a whole number; -1: it is none.
+   SLURM writes "4(x2)" for four tasks on each of two machines, and "4(x2),3" if
+   a third one has three. */
 static int64_t read_number(const char *text)
 {
     char first[24];
@@ -96,9 +104,9 @@ static const char *const neighbours[] = {"OMPI_COMM_WORLD_LOCAL_SIZE",
    than an equal share of the machine. */
 static int64_t count_cores(void)
 {
-    const int64_t beside = find_number(neighbours);
+    const int64_t processes = find_number(neighbours);
     const int64_t all = sysconf(_SC_NPROCESSORS_ONLN);
-    const int64_t part = beside > 1 ? all / beside : all;
+    const int64_t part = processes > 1 ? all / processes : all;
     cpu_set_t bound;
     int64_t cores = part;
 

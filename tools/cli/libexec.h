@@ -15,8 +15,8 @@
  */
 ritz_status libexec_find(const char *name, char out[PATH_MAX]);
 
-/** Whether the words `option value` are in a command line; it need not have
- * been parsed. */
+/** Whether a command line that is not parsed yet has `option value` or
+ * `option=value`. */
 bool libexec_is_asked(char **argv, const char *option, const char *value);
 
 /**

@@ -48,11 +48,13 @@ typedef struct reduce_options {
     bool without_basis;
     model_options model;   /* configuration or columns, and damping */
     const char *estimates; /* "all", "frequency" or "none"; NULL: all */
-    const char *engine;    /* "auto" or "slepc"; NULL: auto */
-    const char *memory;    /* --memory; NULL: not given */
+    /* "auto" or "slepc"; only shown by --help: libexec_is_asked() reads it
+       before options are parsed */
+    const char *engine;
+    const char *memory; /* --memory; NULL: not given */
     ritz_estimate_request estimate;
-    /* reads the component, and projects it on the basis; NULL: reduce_run does
-       so itself */
+    /* functions that read the component and project it on the basis; NULL:
+       those of one process */
     ritz_status (*read)(cli_run *run, const char *path, model *out);
     ritz_status (*project)(const ritz_component *component,
                            const ritz_basis *basis, ritz_reduced *out);
