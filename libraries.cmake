@@ -106,10 +106,10 @@ target_link_libraries(ritz_uses INTERFACE ritz_headers ${hdf5_uses}
     ${lapacke_uses} ${arpack_uses} ${cholmod_uses} ${mumps_uses} ${slicot_uses}
     PkgConfig::NETTLE PkgConfig::NLOPT PkgConfig::YAML ${ritz_beneath})
 
-# For --engine slepc, if they are there: PETSc and SLEPc with what they are
-# linked with themselves. Archives that PETSc does not use stay. Not
-# with sanitizers: MPI and PETSc leak and overlap by the dozen, and that build
-# shows instead what is said where they are missing.
+# For --engine slepc, if they are installed: PETSc and SLEPc with the shared
+# libraries that they use; libraries that PETSc does not use are linked as above.
+# Not with sanitizers, which report dozens of leaks and overlaps of MPI and
+# PETSc: that build tests instead what is said where they are missing.
 option(RITZ_WITH_SLEPC "build --engine slepc where PETSc and SLEPc are" ON)
 set(RITZ_SLEPC OFF)
 if(RITZ_WITH_SLEPC AND NOT RITZ_SANITIZE)

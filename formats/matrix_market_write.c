@@ -123,7 +123,9 @@ static ritz_status name_file(const char *output, const char *name, char **out)
     return RITZ_OK;
 }
 
-/* An output whose name has a '%' takes all matrices, another takes only one. */
+/* If the output's name has a '%', each matrix is written to a file of its own,
+   with the name of the matrix in place of the '%'. Otherwise one matrix is
+   written: the one that --matrix names, else K, or A of a state space. */
 static ritz_status write_matrices(const ritz_export_object *object,
                                   const ritz_export_request *request,
                                   ritz_export_report *report)

@@ -46,7 +46,8 @@ static ritz_status project(const ritz_component *component,
     return projection_make(file, component, basis, out);
 }
 
-/* Estimates need factors of the component, which is not in this process. */
+/* Refuse estimates, and options that change matrices or damping: rank 0 has no
+   matrices of the component. */
 static ritz_status refuse_options(const reduce_options *given)
 {
     const struct {

@@ -196,9 +196,8 @@ typedef struct ritz_method {
                              works in several processes */
     int only_named;       /* ritz-fit tries the method only if the user names
                              it: sum of RITZ_NAMED_FOR_... */
-    /* its basis with fewer modes consists of combinations T V of the columns T
-       of a basis with more by the method `wide`, which may be itself; NULL: it
-       does not */
+    /* the method by whose basis T, with more modes, a basis of this method is
+       T V; it may be this method itself; NULL: there is none */
     const struct ritz_method *wide;
     ritz_narrow *narrow;
     /** @return RITZ_ERR_ARGUMENT, RITZ_ERR_SINGULAR or RITZ_ERR_CONVERGENCE */

@@ -54,15 +54,16 @@ ritz_status block_assess(const rank_pencil *p, Mat X, ritz_pairs *P,
  */
 ritz_status block_sharpen(const rank_pencil *p, Mat X, ritz_pairs *P);
 
-/** A new block of @p count columns, with rows distributed as those of A: rank 0
- * calls @p give for each column, which sets all rows of @p x. Collective. */
+/** Distribute @p count columns from rank 0 to a new block, whose rows are
+ * distributed as those of A. Rank 0 calls @p give for each column, which sets
+ * all rows of @p x. Collective. */
 ritz_status block_scatter(Mat A, int64_t count,
                           void (*give)(const void *state, int64_t column,
                                        double *x),
                           const void *state, Mat *out);
 
-/** Remove from X its part in the first @p count columns Phi of @p of, Phi'M Phi =
- * I: X - Phi Phi'M X, twice. Collective. */
+/** X := X - Phi Phi'M X, twice, where Phi is the first @p count columns of
+ * @p of, which are M-orthonormal. Collective. */
 ritz_status block_remove(const rank_pencil *p, Mat of, int64_t count, Mat X);
 
 /** Gather the first @p count columns in rank 0, one at a time: there @p take is

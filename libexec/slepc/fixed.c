@@ -28,7 +28,7 @@ typedef struct target {
     const ritz_request *request;
     ritz_dofs interior;
     int loads;    /* sum of RITZ_LOADS_... */
-    ritz_dense F; /* all rows of the loads */
+    ritz_dense F; /* loads, one a column; rows of all dofs */
     ritz_basis basis;
 } target;
 
@@ -49,7 +49,7 @@ typedef struct rank_work {
     modes modes;
     /* Interior rows of loads, and their static responses; NULL: no loads */
     Mat F, X;
-    double *least; /* energies of responses below which they are rounding */
+    double *least; /* energy below which a response is rounding, for each */
     bool *keep;    /* whether response j is a column of the basis */
     int64_t kept;
     target *target; /* NULL but in rank 0 */
@@ -72,7 +72,7 @@ typedef struct columns_at {
     const target *target;
     int64_t first;
     const bool *keep; /* flags of the columns that are put; NULL: all are */
-    int64_t left_out; /* so far */
+    int64_t left_out; /* number of columns that were not put so far */
 } columns_at;
 
 static void put_column(void *state, int64_t column, const double *x)
@@ -111,7 +111,7 @@ static ritz_status label_columns(const rank_work *w, const ritz_dofs *b)
     const ritz_pairs *P = &w->modes.pairs;
     const target *t = w->target;
     ritz_basis *basis = &w->target->basis;
-    const int64_t statics = b->count + P->Phi.ncol; /* the first of them */
+    const int64_t statics = b->count + P->Phi.ncol; /* first column */
 
     RITZ_CHECK(ritz_basis_new(w->task->num_dofs, statics + w->kept, basis));
     for (int64_t j = statics; j < statics + w->kept; j++)
@@ -157,10 +157,10 @@ static ritz_status collect_columns(const rank_work *w, const ritz_dofs *b)
     return RITZ_OK;
 }
 
-/* --- static vectors -------------------------------------------------------- */
+/* --- static vectors ------------------------------------------------------- */
 
-/* The static vectors of src/bases/fixed_interface.c: X = K_ii^-1 F_i without its
-   part in the modes. */
+/* The static vectors of src/bases/fixed_interface.c: X = K_ii^-1 F_i without
+   its part in the modes. */
 
 static void give_load(const void *state, int64_t column, double *x)
 {
@@ -177,7 +177,8 @@ static void give_mode(const void *state, int64_t column, double *x)
     memcpy(x, ritz_dense_col(Phi, column), (size_t)Phi->nrow * sizeof *x);
 }
 
-/* X before its part in the modes is removed, with the factor of K_ii. */
+/* X := K_ii^-1 F_i, with the factor of K_ii. A column whose energy without the
+   modes will be below `least` consists of rounding. */
 static ritz_status respond_interior(rank_work *w)
 {
     const double part = fmax(w->task->tolerance, RITZ_FORCE_RELIEVED);
@@ -195,7 +196,8 @@ static ritz_status respond_interior(rank_work *w)
     return RITZ_OK;
 }
 
-/* Remove the modes from X. Modes that rank 0 found alone are distributed. */
+/* Remove the part of X in the modes. If rank 0 found the modes alone, each rank
+   first gets its rows of them. */
 static ritz_status remove_modes(rank_work *w)
 {
     const ritz_pairs *P = &w->modes.pairs;
@@ -213,6 +215,8 @@ static ritz_status remove_modes(rank_work *w)
     return status;
 }
 
+/* Remove the modes from X, and flag in `keep` the columns that do not depend on
+   others. */
 static ritz_status choose_statics(rank_work *w)
 {
     RITZ_OWN(ritz_dense) R = {0};

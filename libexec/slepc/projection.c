@@ -34,8 +34,8 @@ enum { STIFFNESS, MASS, DAMPING, HYSTERESIS, MATRICES };
 static const struct {
     const char *name;
     size_t at;      /* in a component */
-    bool symmetric; /* always: by definition */
-    bool by_rows;   /* columns that were read are used as rows */
+    bool symmetric; /* must be; if it is not, it is refused */
+    bool by_rows;   /* the columns that are read serve as rows */
 } matrices[MATRICES] = {
     [STIFFNESS] = {"K", offsetof(ritz_component, K), true, true},
     [MASS] = {"M", offsetof(ritz_component, M), true, false},
@@ -70,7 +70,7 @@ static void share_free(share *s)
 
 /* --- symmetry ------------------------------------------------------------- */
 
-/* A number that depends on place and value of an entry. */
+/* A hash of the place and the value of an entry. */
 static uint64_t hash_entry(int64_t row, int64_t column, double value)
 {
     uint64_t bits = 0;
@@ -86,7 +86,8 @@ static uint64_t hash_entry(int64_t row, int64_t column, double value)
 /*
  * Whether A = A' to the last bit. Entries below the diagonal add a hash of
  * (row, column, value), those above subtract that of (column, row, value): the
- * sum over all ranks is 0 if they agree, and by chance in 1 of 2^64 other cases.
+ * sum over all ranks is 0 if both triangles agree, and by chance in 1 of 2^64
+ * other cases.
  */
 static bool is_symmetric(const ritz_slab *slab)
 {
@@ -127,8 +128,8 @@ static ritz_status read_matrix(share *s, int k)
     RITZ_CHECK(rows_read_matrix(&s->frame, name, &s->slab[k]));
     s->symmetric[k] = is_symmetric(&s->slab[k]);
     RITZ_REFUSE_IF(matrices[k].symmetric && !s->symmetric[k], RITZ_ERR_FORMAT,
-                   "%s is not symmetric to the last bit, as ritz-import "
-                   "writes it",
+                   "%s is not symmetric to the last bit: ritz-import would "
+                   "average both triangles",
                    name);
     return RITZ_OK;
 }
@@ -149,8 +150,8 @@ static void mark_touched(const share *s, bool *mark)
     }
 }
 
-/* Mark all dofs of grids of which one is marked: masses between grids are means
-   over the translations that a grid has. */
+/* Mark all dofs of each grid of which one is marked: the mass that joins two
+   grids is a mean over their translations, and needs all of these. */
 static ritz_status mark_grids(const share *s, bool *mark)
 {
     const ritz_grids *grids = &s->component->grids;
@@ -172,6 +173,7 @@ static ritz_status mark_grids(const share *s, bool *mark)
     return RITZ_OK;
 }
 
+/* Choose the dofs of the part: those that are marked. */
 static ritz_status choose_rows(share *s)
 {
     const int64_t n = s->task->num_dofs;
@@ -264,7 +266,7 @@ static ritz_status send_rows(const ritz_dense *T, int rank)
     return RITZ_OK;
 }
 
-/* @param[in] T  the whole of it; NULL but in rank 0 */
+/* Give each rank its rows of T. @param[in] T  all rows; NULL but in rank 0 */
 static ritz_status distribute_basis(share *s, const ritz_dense *T)
 {
     const ritz_dofs *of = &s->rows;

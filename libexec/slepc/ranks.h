@@ -16,9 +16,9 @@
 #include <petscsys.h>
 #include <stdint.h>
 
-/** Start MPI, PETSc and SLEPc; @p tool is named in messages. PETSc installs no signal handlers, and its
- * errors are reported in one line. Options are read from the environment
- * variable PETSC_OPTIONS. */
+/** Start MPI, PETSc and SLEPc. PETSc installs no signal handlers, and its
+ * errors are reported in one line, which begins with @p tool. Options are read
+ * from the environment variable PETSC_OPTIONS. */
 void ranks_start(const char *tool);
 
 /** End MPI, PETSc and SLEPc. To be called in every rank. */
@@ -59,8 +59,8 @@ ritz_status ranks_agree(ritz_status own);
 void ranks_share(void *bytes, int64_t count);
 
 /**
- * Memory of zeros, for what another rank sends next. That rank cannot be told of
- * a failure, as it does not wait for a reply: the run is aborted.
+ * Allocate zeros, to receive what another rank sends next. That rank sends
+ * without asking whether this one has memory: if not, the run is aborted.
  */
 void *ranks_take(int64_t count, size_t size);
 

@@ -339,8 +339,8 @@ static void drop_configurations(int64_t count, ritz_system *system)
         system->num_configurations = count;
 }
 
-/* Assemble the stage-1 system between listed configurations, until that is
-   stopped: then no rows are left beyond. */
+/* Assemble the stage-1 system half way between listed configurations. If that
+   is stopped, rows of those that are not assembled are dropped. */
 static ritz_status assemble_between(const ritz_stop *stop, ritz_rows *rows,
                                     ritz_comparison *c)
 {
@@ -382,8 +382,8 @@ static ritz_status choose_modes(const ritz_rows *rows)
 
 /*
  * Measure the errors of every row; between angles the second system is
- * assembled for it. If that is stopped, no configuration is left whose errors
- * are not known.
+ * assembled for it. If that is stopped, configurations whose errors are not
+ * measured are dropped, from both systems too.
  */
 static ritz_status measure_rows(const ritz_rows *rows, const ritz_stop *stop,
                                 ritz_comparison *c)
@@ -442,12 +442,12 @@ static ritz_status refuse_forces(const ritz_stage *stage)
     return ritz_context(ritz_dual_refuse(stage), count);
 }
 
-/* A stage whose scene has its first configurations alone; all else is
-   borrowed. */
+/* A stage with only the first configurations of its scene. All but `reference`
+   is borrowed. */
 typedef struct beginning {
     ritz_scene scene;
     ritz_stage stage;
-    int64_t *reference; /* those of the scene among its configurations */
+    int64_t *reference; /* reference configurations among the first */
 } beginning;
 
 static void beginning_free(beginning *b)
@@ -455,7 +455,8 @@ static void beginning_free(beginning *b)
     free(b->reference);
 }
 
-/* If none of the scene's reference configurations is left, all count. */
+/* If none of the scene's reference configurations is among the first `count`,
+   all of these are reference configurations. */
 static ritz_status take_beginning(const ritz_stage *stage, int64_t count,
                                   beginning *b)
 {
@@ -474,7 +475,7 @@ static ritz_status take_beginning(const ritz_stage *stage, int64_t count,
     return RITZ_OK;
 }
 
-/* Compare at the configurations of stage one. */
+/* Stage two and the errors, at the configurations that stage one assembled. */
 static ritz_status compare_stages(const ritz_stage *stage,
                                   const ritz_stop *stop, ritz_comparison *c)
 {
@@ -487,7 +488,7 @@ static ritz_status compare_stages(const ritz_stage *stage,
     RITZ_CHECK_IN("stage 1", assemble_between(stop, &rows, c));
     RITZ_CHECK_IN("selection", choose_modes(&rows));
     RITZ_CHECK(reduce_bodies(&rows, c));
-    /* whoever has stopped stage one waits for its errors */
+    /* after a stop in stage one, all of its errors are measured */
     RITZ_CHECK_IN("errors",
                   measure_rows(&rows, c->interrupted ? NULL : stop, c));
     ritz_compare_suggest(c, &c->suggestion);

@@ -14,8 +14,8 @@
  * when that is not enough. Modes of one cluster are taken together, as
  * ritz_eigen_sparse computes them.
  *
- * Of other methods a basis with fewer modes consists of combinations T_N V of
- * the columns of one with more (ritz_narrow), which may be another method's:
+ * Methods with a function ritz_narrow combine the columns of one basis with N
+ * modes, which may be another method's, to those with m < N modes: T_m = T_N V,
  * K_m = V'K_N V and so on. A method of neither kind makes a new basis for each
  * number of modes; the last one is kept.
  */
@@ -163,10 +163,10 @@ static bool is_mode(ritz_column_kind kind)
     return kind == RITZ_COLUMN_NORMAL || kind == RITZ_COLUMN_KRYLOV;
 }
 
-/* Whether a basis with fewer modes follows from this one. Static columns
-   prevent that: the part that lies in the modes was removed from them, so they
-   change with the number of modes. So does a residual mode that was left out:
-   with fewer modes it may be large enough. */
+/* Whether bases with fewer modes can be made from this one. Static columns
+   prevent that: their part in the modes was removed, so that they change with
+   the number of modes. A residual mode that was left out prevents it too: with
+   fewer modes it may be large enough to be kept. */
 static bool contains_fewer(const ritz_fitter *f, const ritz_method *method,
                            const ritz_columns *columns)
 {
@@ -360,9 +360,9 @@ static ritz_status combine_columns(const ritz_fit_family *family,
     return ritz_dense_mul(&family->parts, V, parts);
 }
 
-/* Find the kept basis from which those of a method with fewer modes follow; if
-   there is none with so many modes, make it. If that fails, or if no basis with
-   fewer modes follows from it, the family is exact. */
+/* Find the kept basis from which the method's bases with at most `modes` modes
+   can be made; if there is none, make it. If that fails, or if bases with fewer
+   modes cannot be made from it, the family is exact. */
 static ritz_status find_wide(ritz_fitter *f, const ritz_method *method,
                              int64_t modes, ritz_fit_family **out)
 {
@@ -382,8 +382,8 @@ static ritz_status find_wide(ritz_fitter *f, const ritz_method *method,
 }
 
 /*
- * Reduce the component by a method whose basis follows from a kept one with
- * more modes. If it does not, because residual modes depend on others, @p out
+ * Reduce the component by a method whose basis can be made from a kept one with
+ * more modes. If it cannot, because residual modes depend on others, @p out
  * stays empty and the family is exact from now on.
  */
 static ritz_status take_narrow(ritz_fitter *f, const ritz_request *request,

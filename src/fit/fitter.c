@@ -314,7 +314,7 @@ static ritz_status open_component(const ritz_component *component,
     return RITZ_OK;
 }
 
-/* In all kept bases of a component: half a gigabyte. */
+/* Most entries of T of all kept bases of a component: half a gigabyte. */
 static const int64_t most_entries = INT64_C(1) << 26;
 
 ritz_status ritz_fitter_new(const ritz_component *component,

@@ -40,7 +40,7 @@ typedef struct ritz_fit_family {
     int64_t modes;      /* that it was made with; -1: none was made */
     ritz_reduced whole; /* {0}: dropped for lack of room */
     ritz_dense parts;   /* Phi'M T of all its columns */
-    int64_t used;       /* num_uses when it served last */
+    int64_t used;       /* value of num_uses at its last use */
 } ritz_fit_family;
 
 /* The columns of a candidate's bodies, those whose loss raises its errors most
@@ -103,7 +103,7 @@ struct ritz_fitter {
     int64_t num_families, room_families;
     ritz_fit_family *family; /* of a component */
     int64_t num_uses;        /* of all families */
-    int64_t most_entries;    /* that T of all kept bases may have */
+    int64_t most_entries;    /* of T of all kept bases together */
     int64_t num_ordered, room_ordered;
     ritz_fit_ordered *ordered;
     ritz_fit_second second;

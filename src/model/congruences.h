@@ -27,17 +27,17 @@ typedef struct ritz_congruences {
     ritz_dense K_terms, K4_terms;
     ritz_dense rigid;           /* 6 x 6, R'MR of rigid motions R; {0}: there is
                                    no grid */
-    ritz_invariants invariants; /* massless columns have no part in them */
-    ritz_fastest fastest;       /* of all dofs */
+    ritz_invariants invariants; /* with zeros for massless columns of T */
+    ritz_fastest fastest;       /* of all dofs; a maximum, not a sum */
 } ritz_congruences;
 
 /**
- * All but `fastest`.
+ * Compute all members but `fastest`.
  *
  * @param[in]  component  its matrices, dofs and grids are read
  * @param[in]  kind       r kinds of the columns of T
  * @param[in]  T          n x r
- * @param[in]  twofold    sum K T with twice the digits
+ * @param[in]  twofold    whether K T is summed with twice the digits
  * @return RITZ_ERR_ARGUMENT if the sizes disagree; RITZ_ERR_MEMORY
  * @cost   O(r nnz + n r^2)
  */
@@ -51,14 +51,15 @@ ritz_status ritz_congruences_of(const ritz_component *component,
  * other to six digits or more.
  *
  * @param[in] G  r x r, T'T; {0} if T has no columns
+ * @return RITZ_ERR_MEMORY
  */
 ritz_status ritz_congruences_twofold(const ritz_dense *G, bool *out);
 
 /**
- * The reduced component of a basis, where the congruences are known. The
- * matrices of the component are not read.
+ * Make the reduced component of a basis from its congruences. The matrices of
+ * the component are not read.
  *
- * @param[in,out] sums  of all of the matrices; taken over
+ * @param[in,out] sums  of the whole matrices; they are moved to @p out
  * @return as ritz_reduce()
  */
 ritz_status ritz_congruences_reduce(const ritz_component *component,

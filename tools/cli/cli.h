@@ -287,11 +287,12 @@ void cli_prepare(void);
 void cli_interruptible(void);
 bool cli_interrupted(void);
 
-/** cli_interrupted, in the form in which functions of the library ask it. */
+/** cli_interrupted() with the parameter of ritz_stop.asked and the like, which
+ * is not used. */
 bool cli_stop(void *context);
 
-/** From now on the first signal ends the program again. @return whether one
- * came since cli_interruptible */
+/** Undo cli_interruptible(): from now on the first signal ends the program.
+ * @return whether a signal came in between */
 bool cli_uninterruptible(void);
 
 /**

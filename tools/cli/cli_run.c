@@ -63,11 +63,12 @@ static int allowed_threads(void)
 }
 
 /*
- * Start once more with a limit of threads and the settings above, where there
- * is no limit and the inputs are large. OpenMP and malloc read these variables
- * only when a process starts; without the limit CHOLMOD's own threads crowd out
- * those of the BLAS. If that cannot be done, it costs only speed. A pipe cannot be read again, and what was said
- * is not to be said twice.
+ * If the inputs are large and the environment has no limit of threads: set one,
+ * and the settings above, and execute the program again, because OpenMP and
+ * malloc read these variables only when a process starts. Without the limit,
+ * CHOLMOD's own threads take cores from those of the BLAS. The program is not
+ * executed again if an input is a pipe, which cannot be read twice, or if a
+ * warning was printed, which would appear twice. A failure costs only speed.
  */
 static void limit_threads(cli_run *run, const struct stat *file)
 {

@@ -610,9 +610,9 @@ static ritz_status say_comparison(cli_run *run, const ritz_stage *first,
     return say_modes(run, c);
 }
 
-/* After a signal: write the configurations that are done to
-   OUTPUT.interrupted, and fail. Report, tables and components are not
-   written. */
+/* After a signal: write the system at the configurations whose errors are
+   measured to OUTPUT.interrupted, and fail. Report, tables and components are
+   not written. */
 static ritz_status keep_done(cli_run *run, const ritz_scene *scene,
                              const ritz_comparison *c)
 {
@@ -626,10 +626,10 @@ static ritz_status keep_done(cli_run *run, const ritz_scene *scene,
                        " configurations, with modes of the first %" PRId64,
                        done, all, c->num_composed);
     else
-        (void)snprintf(what, sizeof what,
-                       "the comparison, at all %" PRId64
-                       " configurations, without all errors between them",
-                       all);
+        (void)snprintf(
+            what, sizeof what,
+            "the comparison, at all %" PRId64 " configurations%s", all,
+            c->interrupted ? ", without all errors between them" : "");
     RITZ_CHECK(cli_divert(run, what));
     RITZ_CHECK(ritz_container_write_system(run->output, &c->second_system,
                                            cli_stamp(run)));

@@ -576,8 +576,9 @@ static ritz_status find_smallest(fit_run *f, const model *full,
     say_fit(f->run, fitter, &fit);
     if (!fit.interrupted)
         status = conclude_search(f, full, fitter, &fit);
-    /* the signal stopped the search, or the ordering of columns; after any
-       other failure, as of a full disk, nothing is kept */
+    /* the best candidate is kept if the signal stopped the search or the
+       ordering of columns, but not after another failure, such as a full
+       disk */
     if (fit.interrupted ||
         (status == RITZ_ERR_CONVERGENCE && cli_interrupted()))
         return keep_best(f, fitter, &fit);
