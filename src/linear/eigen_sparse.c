@@ -28,6 +28,7 @@
 #include "linear/inertia.h"
 #include "linear/requested.h"
 #include "linear/residuals.h"
+#include "linear/sharpen.h"
 #include "linear/slices.h"
 
 #include <inttypes.h>
@@ -148,6 +149,18 @@ static ritz_status shift_near(search *s, double sigma)
     return status;
 }
 
+/* Residuals of s->found; if they are small, digits that K x lost are found. */
+static ritz_status assess_sharp(search *s, double *worst)
+{
+    RITZ_OWN_ARRAY double *energy = NULL;
+
+    RITZ_CHECK_NEW(energy, s->found.Phi.ncol);
+    RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, energy, worst));
+    if (*worst <= RITZ_EIGEN_RESIDUAL)
+        RITZ_CHECK(ritz_pairs_sharpen(s->S.K, s->S.M, energy, &s->found));
+    return RITZ_OK;
+}
+
 /* Refine the vectors X until their residuals are small, and put the pairs into
    s->found, which takes over X and *lambda. *lambda NULL: eigenvalues are not
    known yet. */
@@ -163,13 +176,13 @@ static ritz_status refine_pairs(search *s, ritz_dense *X, double **lambda)
         RITZ_CHECK_NEW(s->found.lambda, s->found.Phi.ncol);
     RITZ_CHECK_NEW(s->found.residual, s->found.Phi.ncol);
     if (known)
-        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
+        RITZ_CHECK(assess_sharp(s, &worst));
     for (int k = 0; k < POLISHES && !(worst <= RITZ_EIGEN_RESIDUAL); k++) {
         if (!s->S.A)
             RITZ_CHECK(shift_near(s, s->S.sigma));
         RITZ_CHECK(
             ritz_vectors_polish(&s->S, &s->found.Phi, s->found.lambda, NULL));
-        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, &s->found, &worst));
+        RITZ_CHECK(assess_sharp(s, &worst));
     }
     RITZ_REFUSE_IF(!(worst <= RITZ_EIGEN_RESIDUAL), RITZ_ERR_CONVERGENCE,
                    "a residual of %.1e stays above %.0e", worst,
@@ -324,7 +337,7 @@ static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
 
         ritz_monitor_step("inverse iteration", k, 0);
         RITZ_CHECK(ritz_vectors_polish(&s->S, &P->Phi, P->lambda, &s->moments));
-        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, P, &worst));
+        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, P, NULL, &worst));
         end = ritz_pairs_wanted(P, s->span, s->limit);
         at = gap_to_count(s, end);
         RITZ_CHECK(

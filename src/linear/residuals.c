@@ -101,10 +101,9 @@ static void assess_rows(int thread, int64_t from, int64_t to, void *task)
     a->sums[thread] = s;
 }
 
-/* Residuals of eight pairs, sqrt(gap / size). *scale is raised to the largest of
-   their energies. */
+/* Residuals of eight pairs, sqrt(gap / size), and their energies. */
 static void assess_eight(assessment *a, int threads, double *residual,
-                         double *scale)
+                         double *energies)
 {
     ritz_team_over(threads, a->K->nrow, assess_rows, a);
     for (int64_t c = 0; c < a->of.count; c++) {
@@ -117,7 +116,7 @@ static void assess_eight(assessment *a, int threads, double *residual,
             size += a->sums[t].size[c];
             energy += a->sums[t].energy[c];
         }
-        *scale = fmax(*scale, energy);
+        energies[c] = energy;
         residual[c] = size == 0.0 ? 0.0 : sqrt(gap / size);
     }
 }
@@ -135,16 +134,21 @@ static double unit_of(const ritz_sparse *K, const ritz_sparse *M)
 }
 
 ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
-                              ritz_pairs *P, double *worst)
+                              ritz_pairs *P, double *energy, double *worst)
 {
     const int threads = threads_for(K->colptr[K->ncol] + M->colptr[M->ncol]);
     RITZ_OWN_ARRAY double *x = NULL;
     RITZ_OWN_ARRAY sums *of = NULL;
     assessment a = {.K = K, .M = M, .unit = unit_of(K, M)};
+    RITZ_OWN_ARRAY double *own = NULL;
     double scale = 0.0;
 
     RITZ_CHECK_NEW(x, K->nrow * WIDTH);
     RITZ_CHECK_NEW(of, threads);
+    if (!energy) {
+        RITZ_CHECK_NEW(own, P->Phi.ncol);
+        energy = own;
+    }
     a.sums = of;
     *worst = 0.0;
     for (int64_t first = 0; first < P->Phi.ncol; first += WIDTH) {
@@ -152,11 +156,13 @@ ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
         memset(a.lambda, 0, sizeof a.lambda);
         memcpy(a.lambda, P->lambda + first,
                (size_t)a.of.count * sizeof *a.lambda);
-        assess_eight(&a, threads, P->residual + first, &scale);
+        assess_eight(&a, threads, P->residual + first, energy + first);
     }
-    for (int64_t j = 0; j < P->Phi.ncol; j++)
+    for (int64_t j = 0; j < P->Phi.ncol; j++) {
+        scale = fmax(scale, energy[j]);
         if (!isnan(*worst) && !(P->residual[j] <= *worst))
             *worst = P->residual[j];
+    }
     P->num_rigid = ritz_eigen_rigid(P->Phi.ncol, P->lambda, scale);
     return RITZ_OK;
 }

@@ -12,13 +12,14 @@
  * @param[in]     K, M   n x n, symmetric, both triangles stored
  * @param[in,out] P      Phi and lambda are read; residual, one number for each
  *                       column of Phi, and num_rigid are set
+ * @param[out]    energy |x|'|K||x| of each pair; or NULL
  * @param[out]    worst  largest residual; NaN if one is NaN, 0 without pairs
  * @return RITZ_ERR_MEMORY
  * @cost  one pass over K and M for every eight pairs, on all threads. The last
  *        bits depend on the number of threads, as sums are divided among them.
  */
 ritz_status ritz_pairs_assess(const ritz_sparse *K, const ritz_sparse *M,
-                              ritz_pairs *P, double *worst);
+                              ritz_pairs *P, double *energy, double *worst);
 
 /**
  * R = K X - M X diag(lambda), and |x|'|K||x| and |x|'|M||x| of each column x of

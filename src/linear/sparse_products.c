@@ -25,14 +25,34 @@ typedef struct columns_task {
     const ritz_sparse *A;
     const ritz_dense *X;
     ritz_dense *Y;
-    double *room; /* each thread's eight columns of X and Y, row by row */
+    bool twofold; /* with twice the digits */
+    int64_t per_thread;
+    double *room; /* each thread's eight columns of X, of Y and, if twofold, of
+                     the rounding errors of Y, row by row */
 } columns_task;
+
+/* y := A x for eight columns, row by row; low holds their rounding errors. */
+static void multiply_eight(const columns_task *t, const double *x, double *y,
+                           double *low)
+{
+    const int64_t size = t->A->nrow * EIGHT;
+
+    memset(y, 0, (size_t)size * sizeof *y);
+    if (!t->twofold) {
+        ritz_tiles_here()->spread(t->A, x, y);
+        return;
+    }
+    memset(low, 0, (size_t)size * sizeof *low);
+    ritz_tiles_here()->twofold(t->A, x, y, low);
+    for (int64_t i = 0; i < size; i++)
+        y[i] += low[i];
+}
 
 static void multiply_groups(int thread, int threads, void *task)
 {
     const columns_task *t = task;
     const ritz_sparse *A = t->A;
-    double *x = t->room + thread * (A->nrow + A->ncol) * EIGHT;
+    double *x = t->room + thread * t->per_thread;
     double *y = x + A->ncol * EIGHT;
 
     for (int64_t k = (int64_t)thread * EIGHT; k < t->X->ncol;
@@ -44,8 +64,7 @@ static void multiply_groups(int thread, int threads, void *task)
             for (int64_t c = 0; c < EIGHT; c++)
                 x[i * EIGHT + c] =
                     c < count ? t->X->val[i + (k + c) * A->ncol] : 0.0;
-        memset(y, 0, (size_t)(A->nrow * EIGHT) * sizeof *y);
-        ritz_tiles_here()->spread(A, x, y);
+        multiply_eight(t, x, y, y + A->nrow * EIGHT);
         for (int64_t i = 0; i < A->nrow; i++)
             for (int64_t c = 0; c < count; c++)
                 t->Y->val[i + (k + c) * A->nrow] = y[i * EIGHT + c];
@@ -54,15 +73,17 @@ static void multiply_groups(int thread, int threads, void *task)
 
 /* Y := A X by several threads, eight columns at a time. */
 static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
-                                    ritz_dense *Y)
+                                    bool twofold, ritz_dense *Y)
 {
+    const int64_t size = (A->ncol + (twofold ? 2 : 1) * A->nrow) * EIGHT;
     const int64_t groups = (X->ncol + EIGHT - 1) / EIGHT;
     const bool large = A->colptr[A->ncol] >= WORTHWHILE;
     const int threads = ritz_team_ready(large ? groups : 1);
     RITZ_OWN_ARRAY double *room = NULL;
 
-    RITZ_CHECK_NEW(room, threads * (A->nrow + A->ncol) * EIGHT);
-    ritz_team_run(threads, multiply_groups, &(columns_task){A, X, Y, room});
+    RITZ_CHECK_NEW(room, threads * size);
+    ritz_team_run(threads, multiply_groups,
+                  &(columns_task){A, X, Y, twofold, size, room});
     return RITZ_OK;
 }
 
@@ -74,7 +95,7 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
                    A->ncol, X->nrow);
     RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
     if (X->ncol >= EIGHT / 2)
-        return multiply_columns(A, X, Y);
+        return multiply_columns(A, X, false, Y);
     for (int64_t k = 0; k < X->ncol; k++) {
         const double *x = ritz_dense_col(X, k);
         double *y = ritz_dense_col(Y, k);
@@ -86,38 +107,14 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
     return RITZ_OK;
 }
 
-/* y + low := y + low + a x with a rounding error of the order of eps^2: `low`
-   collects the rounding errors of y [OgitaRumpOishi2005]. */
-static void add_product(double a, double x, double *y, double *low)
-{
-    double product = a * x;
-    double sum = *y + product;
-    double part = sum - *y;
-
-    *low += fma(a, x, -product) + (*y - (sum - part)) + (product - part);
-    *y = sum;
-}
-
 ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
                                     ritz_dense *Y)
 {
-    RITZ_OWN_ARRAY double *low = NULL;
-
-    RITZ_CHECK_NEW(low, A->nrow);
+    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
+                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
+                   A->ncol, X->nrow);
     RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
-    for (int64_t k = 0; k < X->ncol; k++) {
-        double *y = ritz_dense_col(Y, k);
-
-        for (int64_t j = 0; j < A->ncol; j++)
-            for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
-                add_product(A->val[p], ritz_dense_col(X, k)[j],
-                            &y[A->rowind[p]], &low[A->rowind[p]]);
-        for (int64_t i = 0; i < A->nrow; i++) {
-            y[i] += low[i];
-            low[i] = 0.0;
-        }
-    }
-    return RITZ_OK;
+    return multiply_columns(A, X, true, Y);
 }
 
 /* The number of entries of A B. mark[i] is the last column + 1 in which row i was

@@ -67,6 +67,10 @@ typedef struct ritz_tiles {
                   double *Y);
     /** Y += A X, X and Y with 8 numbers a row. */
     void (*spread)(const ritz_sparse *A, const double *X, double *Y);
+    /** Y + L += A X with a rounding error of the order of eps^2: L collects the
+     * rounding errors of Y. X, Y and L with 8 numbers a row. */
+    void (*twofold)(const ritz_sparse *A, const double *X, double *Y,
+                    double *L);
     /** Y := rows [from, to) of A X, and S := those of |A||X|, for a symmetric
      * A. X has all rows, Y and S have to - from of them, each with 8 numbers a
      * row. */
@@ -77,6 +81,14 @@ typedef struct ritz_tiles {
 /** The kernels with the widest vectors that this processor has. The environment
  * variable RITZ_TILES limits their width, in bits: 128, 256 or 512. */
 const ritz_tiles *ritz_tiles_here(void);
+
+/** `twofold` for vectors of 2, 4 and 8 numbers. */
+void ritz_twofold_2(const ritz_sparse *A, const double *X, double *Y,
+                    double *L);
+void ritz_twofold_4(const ritz_sparse *A, const double *X, double *Y,
+                    double *L);
+void ritz_twofold_8(const ritz_sparse *A, const double *X, double *Y,
+                    double *L);
 
 /** Kernels for vectors of 2, 4 and 8 numbers (128, 256 and 512 bits). */
 extern const ritz_tiles ritz_tiles_2;

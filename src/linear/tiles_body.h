@@ -270,5 +270,6 @@ static void terms_8(int64_t from, int64_t to, const ritz_sparse *A,
         .outer = outer_8,                                                      \
         .times = times_8,                                                      \
         .spread = spread_8,                                                    \
+        .twofold = ritz_twofold_##lanes,                                       \
         .terms = terms_8,                                                      \
     };

@@ -1,0 +1,84 @@
+#include "linear/sharpen.h"
+
+#include "base/alloc.h"
+#include "base/tolerances.h"
+
+#include <float.h>
+#include <math.h>
+
+/* One more than the last flexible pair that has lost digits; num_rigid if there
+   is none. */
+static int64_t end_of_lost(const ritz_pairs *P, const double *energy)
+{
+    int64_t end = P->Phi.ncol;
+
+    while (end > P->num_rigid && !(energy[end - 1] * DBL_EPSILON >
+                                   RITZ_DIGITS_FEW * P->lambda[end - 1]))
+        end--;
+    return end;
+}
+
+typedef ritz_status product(const ritz_sparse *A, const ritz_dense *X,
+                            ritz_dense *Y);
+
+/* Phi'A x for the columns x from first to end - 1 of Phi, AT_ONCE at a time, so
+   that A x takes little memory. */
+static ritz_status project_columns(const ritz_sparse *A, product *multiply,
+                                   const ritz_dense *Phi, int64_t first,
+                                   int64_t end, ritz_dense *out)
+{
+    enum { AT_ONCE = 16 };
+
+    RITZ_CHECK(ritz_dense_new(Phi->ncol, end - first, out));
+    for (int64_t j = first; j < end; j += AT_ONCE) {
+        const ritz_dense x =
+            ritz_dense_part(Phi, j, end - j < AT_ONCE ? end - j : AT_ONCE);
+        RITZ_OWN(ritz_dense) Ax = {0}, part = {0};
+
+        RITZ_CHECK(multiply(A, &x, &Ax));
+        RITZ_CHECK(ritz_dense_mul_tn(Phi, &Ax, &part));
+        ritz_dense_put(&part, 0, j - first, out);
+    }
+    return RITZ_OK;
+}
+
+/* Phi'A Phi: from columns `first` to end - 1 of it, and those of exact pairs for
+   the rest: the diagonal given, or 1 if it is NULL. */
+static ritz_status project(const ritz_sparse *A, product *multiply,
+                           const ritz_dense *Phi, int64_t first, int64_t end,
+                           const double *diagonal, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) some = {0};
+
+    RITZ_CHECK(project_columns(A, multiply, Phi, first, end, &some));
+    RITZ_CHECK(ritz_dense_new(Phi->ncol, Phi->ncol, out));
+    for (int64_t j = 0; j < Phi->ncol; j++)
+        ritz_dense_col(out, j)[j] = diagonal ? diagonal[j] : 1.0;
+    ritz_dense_put(&some, 0, first, out);
+    for (int64_t j = first; j < end; j++)
+        for (int64_t i = 0; i < Phi->ncol; i++)
+            if (i < first || i >= end)
+                ritz_dense_col(out, i)[j] = ritz_dense_col(out, j)[i];
+    ritz_dense_symmetrise(out);
+    return RITZ_OK;
+}
+
+ritz_status ritz_pairs_sharpen(const ritz_sparse *K, const ritz_sparse *M,
+                               const double *energy, ritz_pairs *P)
+{
+    const int64_t first = P->num_rigid;
+    const int64_t end = end_of_lost(P, energy);
+    RITZ_OWN(ritz_dense) K_r = {0}, M_r = {0};
+    RITZ_OWN(ritz_pairs) found = {0};
+
+    if (end == first)
+        return RITZ_OK;
+    RITZ_CHECK(project(K, ritz_sparse_mul_twofold, &P->Phi, first, end,
+                       P->lambda, &K_r));
+    RITZ_CHECK(project(M, ritz_sparse_mul, &P->Phi, first, end, NULL, &M_r));
+    RITZ_CHECK(ritz_eigen_dense(&K_r, &M_r, &found));
+    RITZ_CHECK(ritz_dense_times(&found.Phi, &P->Phi));
+    for (int64_t j = 0; j < P->Phi.ncol; j++)
+        P->lambda[j] = found.lambda[j];
+    return RITZ_OK;
+}
