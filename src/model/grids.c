@@ -1,6 +1,7 @@
 /* Where grids are, along which axes they move, and rigid-body geometry. */
 #include "base/alloc.h"
 #include "base/search.h"
+#include "base/team.h"
 #include "model/equations.h"
 
 #include <ritz/model.h>
@@ -176,24 +177,42 @@ const double *ritz_nodes_axes(const ritz_nodes *nodes, int64_t node)
     return nodes->grids->axes + 9 * nodes->grids->frame[nodes->grid[node]];
 }
 
-ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
-                             int b, ritz_dense *out)
-{
-    RITZ_OWN(ritz_dense) along = {0};
+typedef struct along_task {
+    const ritz_nodes *nodes;
+    const ritz_dense *T;
+    int b;
+    ritz_dense *out;
+} along_task;
 
-    RITZ_CHECK(ritz_dense_new(nodes->count, T->ncol, &along));
-    for (int64_t k = 0; k < T->ncol; k++) {
-        const double *from = ritz_dense_col(T, k);
-        double *to = ritz_dense_col(&along, k);
+static void take_along(int thread, int64_t from, int64_t to, void *task)
+{
+    const along_task *t = task;
+    const ritz_nodes *nodes = t->nodes;
+
+    (void)thread;
+    for (int64_t k = from; k < to; k++) {
+        const double *u = ritz_dense_col(t->T, k);
+        double *along = ritz_dense_col(t->out, k);
 
         for (int64_t i = 0; i < nodes->count; i++) {
             const double *axes = ritz_nodes_axes(nodes, i);
 
             for (int p = 0; p < 3; p++)
                 if (nodes->row[3 * i + p] >= 0)
-                    to[i] += axes[3 * p + b] * from[nodes->row[3 * i + p]];
+                    along[i] += axes[3 * p + t->b] * u[nodes->row[3 * i + p]];
         }
     }
+}
+
+ritz_status ritz_nodes_along(const ritz_nodes *nodes, const ritz_dense *T,
+                             int b, ritz_dense *out)
+{
+    enum { WORTHWHILE = 50000 }; /* numbers from which a thread more is used */
+    RITZ_OWN(ritz_dense) along = {0};
+
+    RITZ_CHECK(ritz_dense_new(nodes->count, T->ncol, &along));
+    ritz_team_over(ritz_team_ready(1 + nodes->count * T->ncol / WORTHWHILE),
+                   T->ncol, take_along, &(along_task){nodes, T, b, &along});
     RITZ_MOVE(*out, along);
     return RITZ_OK;
 }

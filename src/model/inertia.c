@@ -135,44 +135,104 @@ static double count_common(const ritz_nodes *nodes, int64_t i, int64_t j)
     return fmax(sum, 1.0);
 }
 
+/* (a_ip . a_jq) / sum_pq (a_ip . a_jq)^2, at = 3 i + p and to = 3 j + q. Most
+   nodes are whole and have the axes of their neighbours. */
+static double share_of(const ritz_nodes *nodes, const bool *whole, int64_t at,
+                       int64_t to)
+{
+    const int64_t i = at / 3, j = to / 3;
+    const double *a = ritz_nodes_axes(nodes, i);
+    const double *b = ritz_nodes_axes(nodes, j);
+
+    if (whole[i] && whole[j])
+        return a == b ? (at % 3 == to % 3 ? 1.0 / 3.0 : 0.0)
+                      : dot_product(a + 3 * (at % 3), b + 3 * (to % 3)) / 3.0;
+    return dot_product(a + 3 * (at % 3), b + 3 * (to % 3)) /
+           count_common(nodes, i, j);
+}
+
+/* Where the dofs of nodes are, for their masses. */
+typedef struct placement {
+    const ritz_sparse *M;
+    const ritz_nodes *nodes;
+    bool *whole;    /* of each node: has three translations */
+    int64_t *place; /* of each dof: 3 node + direction, or -1 */
+    int64_t *mark;  /* of each node: its last entry in m + 1 */
+} placement;
+
+static void placement_free(placement *p)
+{
+    RITZ_FREE(p->whole, p->place, p->mark);
+}
+
+static ritz_status place_dofs(const ritz_component *component, placement *p)
+{
+    const ritz_nodes *nodes = p->nodes;
+
+    RITZ_CHECK_NEW(p->whole, nodes->count);
+    RITZ_CHECK_NEW(p->place, component->num_dofs);
+    RITZ_CHECK_NEW(p->mark, nodes->count);
+    for (int64_t i = 0; i < component->num_dofs; i++)
+        p->place[i] = -1;
+    for (int64_t i = 0; i < nodes->count; i++)
+        p->whole[i] = true;
+    for (int64_t k = 0; k < 3 * nodes->count; k++) {
+        p->whole[k / 3] = p->whole[k / 3] && nodes->row[k] >= 0;
+        if (nodes->row[k] >= 0)
+            p->place[nodes->row[k]] = k;
+    }
+    return RITZ_OK;
+}
+
+/* Column j of m from entry `first`, in no order of rows. Returns its end. With m
+   NULL the entries are only counted. */
+static int64_t sum_column(placement *p, int64_t j, int64_t first,
+                          ritz_sparse *m)
+{
+    const ritz_sparse *M = p->M;
+    int64_t end = first;
+
+    for (int64_t to = 3 * j; to < 3 * j + 3; to++) {
+        const int64_t c = p->nodes->row[to];
+
+        for (int64_t e = c < 0 ? 0 : M->colptr[c];
+             e < (c < 0 ? 0 : M->colptr[c + 1]); e++) {
+            const int64_t at = p->place[M->rowind[e]];
+            const double share =
+                at < 0 ? 0.0 : share_of(p->nodes, p->whole, at, to);
+
+            if (share == 0.0)
+                continue;
+            if (p->mark[at / 3] <= first)
+                p->mark[at / 3] = ++end;
+            if (m) {
+                m->rowind[p->mark[at / 3] - 1] = at / 3;
+                m->val[p->mark[at / 3] - 1] += M->val[e] * share;
+            }
+        }
+    }
+    return end;
+}
+
 /* m, with a row for each node, from entries of M between translations. */
 static ritz_status nodal_mass(const ritz_component *component,
                               const ritz_nodes *nodes, ritz_sparse *out)
 {
-    const ritz_sparse *M = &component->M;
-    int64_t entries = M->colptr[M->ncol], count = 0;
-    RITZ_OWN_ARRAY int64_t *place = NULL; /* 3 node + direction of a dof, or
-                                             -1 */
-    RITZ_OWN_ARRAY int64_t *row = NULL, *col = NULL;
-    RITZ_OWN_ARRAY double *val = NULL;
+    const int64_t n = nodes->count;
+    RITZ_OWN(placement) p = {.M = &component->M, .nodes = nodes};
+    RITZ_OWN(ritz_sparse) raw = {0}, turned = {0};
+    int64_t count = 0;
 
-    RITZ_CHECK_NEW(place, component->num_dofs);
-    RITZ_CHECK_NEW(row, entries);
-    RITZ_CHECK_NEW(col, entries);
-    RITZ_CHECK_NEW(val, entries);
-    for (int64_t i = 0; i < component->num_dofs; i++)
-        place[i] = -1;
-    for (int64_t k = 0; k < 3 * nodes->count; k++)
-        if (nodes->row[k] >= 0)
-            place[nodes->row[k]] = k;
-    for (int64_t c = 0; c < M->ncol; c++)
-        for (int64_t e = M->colptr[c]; e < M->colptr[c + 1]; e++) {
-            int64_t at = place[M->rowind[e]], to = place[c];
-            double cosine = 0.0;
-
-            if (at < 0 || to < 0)
-                continue;
-            cosine = dot_product(ritz_nodes_axes(nodes, at / 3) + 3 * (at % 3),
-                                 ritz_nodes_axes(nodes, to / 3) + 3 * (to % 3));
-            if (cosine == 0.0)
-                continue;
-            row[count] = at / 3;
-            col[count] = to / 3;
-            val[count++] =
-                M->val[e] * (cosine / count_common(nodes, at / 3, to / 3));
-        }
-    return ritz_sparse_from_triplets(nodes->count, nodes->count, count, row,
-                                     col, val, out);
+    RITZ_CHECK(place_dofs(component, &p));
+    for (int64_t j = 0; j < n; j++)
+        count = sum_column(&p, j, count, NULL);
+    memset(p.mark, 0, (size_t)n * sizeof *p.mark);
+    RITZ_CHECK(ritz_sparse_new(n, n, count, &raw));
+    for (int64_t j = 0; j < n; j++)
+        raw.colptr[j + 1] = sum_column(&p, j, raw.colptr[j], &raw);
+    /* two transpositions sort the rows of each column */
+    RITZ_CHECK(ritz_sparse_transpose(&raw, &turned));
+    return ritz_sparse_transpose(&turned, out);
 }
 
 /* R'MR and R'MT. */
