@@ -763,7 +763,8 @@
    room. */
 #define RITZ_CANCELLED_ROUNDINGS 4.0
 /* Eigenvalues within this many times their rounding of a shift may be counted
-   on either side. */
+   on either side: once for the count, which tests no shift for being an
+   eigenvalue, and once for the eigenvalue. */
 #define RITZ_COUNT_MARGIN 2.0
 /* A ratio of bound to error that is good enough. */
 #define RITZ_GOOD_RATIO 3.0

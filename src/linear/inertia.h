@@ -15,14 +15,16 @@
  * @param[in]  order  as ritz_ordering_new() returns it; NULL: find one
  * @param[out] negative  number of negative eigenvalues
  * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding;
- *         RITZ_ERR_ARGUMENT if an entry is not finite; RITZ_ERR_MEMORY
+ *         RITZ_ERR_ARGUMENT if an entry is not finite; RITZ_ERR_MEMORY,
+ *         also if the part in work would exceed the limit of memory
  * @cost   one factor by MUMPS; memory holds only the part in work
  */
 ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
                                   int64_t *negative);
 
 /** Counts the eigenvalues of K phi = lambda M phi below one value after another.
- * The union of the patterns of K and M and its order are kept between counts. */
+ * The union of the patterns of K and M and its order are kept between counts;
+ * of a factor, memory holds only the part in work. */
 typedef struct ritz_counter ritz_counter;
 
 /**
@@ -37,20 +39,23 @@ ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
 
 /**
  * The number of eigenvalues of K phi = lambda M phi below @p tau. The factor of
- * K - tau M is freed on return. After a failure the counter can be used again.
+ * K - tau M is not kept, as in ritz_inertia_negative(): an eigenvalue that is at
+ * tau within rounding may be counted or not. After a failure the counter can be
+ * used again.
  *
  * @param[out] below  unchanged on failure
- * @return RITZ_ERR_SINGULAR if K - tau M is singular to working accuracy: an
- *         eigenvalue is at tau; RITZ_ERR_ARGUMENT if tau is not finite;
- *         RITZ_ERR_MEMORY
- * @cost   an LDL' factorisation by MUMPS and three solves
+ * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding: an eigenvalue
+ *         is at tau; RITZ_ERR_ARGUMENT if tau is not finite; RITZ_ERR_MEMORY,
+ *         also if the part in work would exceed the limit of memory
+ * @cost   an LDL' factorisation by MUMPS
  */
 ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below);
 
 void ritz_counter_free(ritz_counter **C);
 
 /**
- * ritz_eigen_count() with a given order of rows: one count, without a counter.
+ * ritz_eigen_count() with a given order of rows. It keeps the factor and tests,
+ * by three solves, whether tau is an eigenvalue to working accuracy.
  *
  * @param[in] order  as for ritz_inertia_negative()
  */

@@ -61,7 +61,7 @@ enum {
     NULL_PIVOT_SIZE = 2,  /* of CNTL */
     OUTCOME = 0,          /* of INFOG */
     NEGATIVE_PIVOTS = 11, /* of INFOG */
-    MEGABYTES = 15,       /* of INFOG, that the factor will need */
+    MEGABYTES = 15,       /* of INFOG, that the job FACTOR will need */
     NUM_NULL_PIVOTS = 27, /* of INFOG */
 };
 
@@ -259,9 +259,8 @@ static ritz_status analyse_pattern(mumps_factor *F)
     }
     FIELD(F, icntl)[DISCARD_FACTOR] = F->counted;
     RITZ_CHECK(run_job(F, ANALYSE));
-    if (F->counted) /* the estimate is of a factor that is kept */
-        return RITZ_OK;
-    return ritz_memory_admit("the factor",
+    return ritz_memory_admit(F->counted ? "the factor of a count"
+                                        : "the factor",
                              (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000);
 }
 
@@ -496,8 +495,10 @@ ritz_status ritz_inertia_negative(const ritz_sparse *A, const int64_t *order,
     return factor_real(A, order, true, negative, &F);
 }
 
-ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
-                             const int64_t *order, ritz_counter **out)
+/* @param[in] counted  as for factor_real() */
+static ritz_status make_counter(const ritz_sparse *K, const ritz_sparse *M,
+                                const int64_t *order, bool counted,
+                                ritz_counter **out)
 {
     const ritz_sparse *const both[] = {K, M};
     RITZ_OWN(ritz_counter) *C = NULL;
@@ -505,12 +506,19 @@ ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_CHECK(ritz_eigen_refuse(K->nrow, K->ncol, M->nrow, M->ncol));
     RITZ_CHECK_NEW(C, 1);
     C->of.width = 1;
+    C->of.counted = counted;
     RITZ_CHECK(unite_matrices(2, both, order, &C->of));
     RITZ_MOVE(*out, C);
     return RITZ_OK;
 }
 
-/* MUMPS frees a factor only together with its analysis. The analysis is
+ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
+                             const int64_t *order, ritz_counter **out)
+{
+    return make_counter(K, M, order, true, out);
+}
+
+/* MUMPS frees its workspace only together with its analysis. The analysis is
    therefore made again for each count; with a known order it is cheap. */
 ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below)
 {
@@ -549,7 +557,7 @@ ritz_status ritz_inertia_below(const ritz_sparse *K, const ritz_sparse *M,
 {
     RITZ_OWN(ritz_counter) *C = NULL;
 
-    RITZ_CHECK(ritz_counter_new(K, M, order, &C));
+    RITZ_CHECK(make_counter(K, M, order, false, &C));
     return ritz_counter_below(C, tau, out);
 }
 

@@ -4,6 +4,7 @@
 #include "lattice.h"
 
 #include "base/memory.h"
+#include "linear/inertia.h"
 
 #include <ritz/matrix.h>
 
@@ -63,6 +64,25 @@ static void a_factor_that_does_not_fit_is_refused(void **state)
     assert_null(F);
 }
 
+/* A count holds only a part of its factor, and that part counts. */
+static void a_count_that_does_not_fit_is_refused(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    ritz_counter *counter = NULL;
+    int64_t below = -1;
+
+    (void)state;
+    lattice_new(12, 1.0, &K, &M);
+    assert_ok(ritz_counter_new(&K, &M, NULL, &counter));
+    ritz_set_memory(mebibyte);
+    assert_fails(ritz_counter_below(counter, 3.0, &below), RITZ_ERR_MEMORY,
+                 "the factor of a count needs ");
+    assert_int_equal(below, -1);
+    ritz_set_memory(0);
+    assert_ok(ritz_counter_below(counter, 3.0, &below));
+    ritz_counter_free(&counter);
+}
+
 /* The limit decides what is refused, and nothing else. */
 static void what_fits_has_the_same_bits(void **state)
 {
@@ -87,6 +107,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(the_usual_limit_is_part_of_the_machine, no_limit),
     cmocka_unit_test_teardown(the_number_needed_is_named, no_limit),
     cmocka_unit_test_teardown(a_factor_that_does_not_fit_is_refused, no_limit),
+    cmocka_unit_test_teardown(a_count_that_does_not_fit_is_refused, no_limit),
     cmocka_unit_test_teardown(what_fits_has_the_same_bits, no_limit),
 };
 
