@@ -322,6 +322,10 @@
     {                                                                          \
         1e-8, 1e-7, 3e-7                                                       \
     }
+/* A mode this close to where modes were counted, relative, may have been counted
+   or not: eps of the largest eigenvalue is rounding, up to 1e-10 of a low one.
+   A tenth of the least distance between two such values. */
+#define RITZ_COUNT_UNCLEAR 1e-9
 /* A mode this close above the end of a range, relative in lambda, is in it. */
 #define RITZ_SPAN_ROUNDING 1e-8
 /* Backward error of a factor of an indefinite matrix, relative, above which

@@ -26,7 +26,7 @@
  * The @p k eigenpairs nearest to sigma, and more if these have converged, too:
  * up to eight if S->below is 0, any number otherwise. The search goes on until
  * at least S->below of them lie below sigma. That none is missing is not
- * guaranteed: see ritz_inertia_below().
+ * guaranteed: see ritz_inertia_negative().
  *
  * @param[in]  S       K, M and the factor of K - sigma M, which is positive
  *                     definite if S->below is 0; M positive semidefinite

@@ -57,6 +57,7 @@ typedef struct engine engine;
 typedef struct search {
     const ritz_span *span;
     double limit;   /* of lambda by frequency, a little above */
+    int limits;     /* how many of RITZ_COUNT_ABOVE were tried */
     int64_t target; /* modes below limit */
     ritz_shifted S;
     int64_t *order; /* fill-reducing order of the factor, for the count */
@@ -404,6 +405,17 @@ static ritz_status keep_order(search *s)
     return RITZ_OK;
 }
 
+/* The number of modes below tau. */
+static ritz_status count_at(const search *s, double tau, int64_t *out)
+{
+    const int64_t *order = s->S.A ? ritz_factor_order(s->S.A) : s->order;
+    RITZ_OWN(ritz_sparse) A = {0};
+
+    RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
+    ritz_monitor_step("count of modes", 0, 0);
+    return ritz_inertia_negative(&A, order, out);
+}
+
 /* The number of modes below a value between pairs k - 1 and k. Where the factor
    for the count is singular, because the value is an eigenvalue, another value
    is taken. */
@@ -414,13 +426,8 @@ static ritz_status count_below(search *s, int64_t k, int64_t *out)
 
     RITZ_CHECK(keep_order(s));
     for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
-        const double tau = ritz_pairs_between(&s->found, k, parts[i]);
-        RITZ_OWN(ritz_sparse) A = {0};
-
-        RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
-        ritz_monitor_step("count of modes", 0, 0);
-        status = ritz_inertia_negative(&A, s->order, out);
-        s->counted_at = tau;
+        s->counted_at = ritz_pairs_between(&s->found, k, parts[i]);
+        status = count_at(s, s->counted_at, out);
     }
     return status;
 }
@@ -477,12 +484,48 @@ static ritz_status prove_number(search *s, int64_t *end, bool *done)
     return RITZ_OK;
 }
 
+/* s->target := number of modes up to the frequency, or a guess if they are not
+   to be counted. The count is made a little above the frequency, where no mode
+   is expected; each call goes further above it. */
+static ritz_status count_target(search *s)
+{
+    const double above[] = RITZ_COUNT_ABOVE;
+    const double lambda = ritz_eigen_lambda(s->span->up_to_hz);
+    ritz_status status = RITZ_ERR_SINGULAR;
+
+    s->limit = lambda * (1.0 + above[0]);
+    s->target = BODY + GUESS;
+    if (s->span->uncounted)
+        return RITZ_OK;
+    while (status == RITZ_ERR_SINGULAR && s->limits < 3) {
+        s->limit = lambda * (1.0 + above[s->limits++]);
+        status = count_at(s, s->limit, &s->target);
+    }
+    RITZ_REFUSE_IF(status == RITZ_ERR_SINGULAR, RITZ_ERR_SINGULAR,
+                   "modes up to %g Hz cannot be counted: several lie there",
+                   s->span->up_to_hz);
+    return status;
+}
+
+/* Whether a mode is so near to the limit that it may have been counted or not.
+ */
+static bool lies_at_limit(const search *s)
+{
+    for (int64_t j = 0; j < s->found.Phi.ncol; j++)
+        if (fabs(s->found.lambda[j] - s->limit) <=
+            RITZ_COUNT_UNCLEAR * s->limit)
+            return true;
+    return false;
+}
+
 /* By frequency: are there as many as counted before? */
 static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
 {
     const ritz_pairs *P = &s->found;
     int64_t below = 0;
 
+    while (!s->span->uncounted && lies_at_limit(s))
+        RITZ_CHECK(count_target(s));
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;
     *end = ritz_pairs_wanted(P, s->span, s->limit);
@@ -543,28 +586,6 @@ static ritz_status settle_error(search *s, int64_t end)
     if (s->span->uncounted)
         s->counted_at = ritz_pairs_between(&s->found, at, 0.5);
     return bound_error(s, end, at, s->counted_at, &s->error);
-}
-
-/* s->target := number of modes up to the frequency, or a guess if they are not
-   to be counted. The count is made a little above the frequency, because it
-   fails where an eigenvalue lies. */
-static ritz_status count_target(search *s)
-{
-    const double above[] = RITZ_COUNT_ABOVE;
-    ritz_status status = RITZ_ERR_SINGULAR;
-    double lambda = ritz_eigen_lambda(s->span->up_to_hz);
-
-    s->limit = lambda * (1.0 + above[0]);
-    s->target = BODY + GUESS;
-    if (s->span->uncounted)
-        return RITZ_OK;
-    for (size_t i = 0; i < 3 && status == RITZ_ERR_SINGULAR; i++) {
-        s->limit = lambda * (1.0 + above[i]);
-        status = ritz_inertia_below(s->S.K, s->S.M, s->limit,
-                                    s->S.A ? ritz_factor_order(s->S.A) : NULL,
-                                    &s->target);
-    }
-    return status;
 }
 
 /* With a factor of K there are no rigid modes, and sigma = 0 is kept. */

@@ -293,6 +293,45 @@ static void a_frequency_finds_every_mode_below(void **state)
         }
 }
 
+/* Modes are first counted 1e-8 above the frequency. If the fifth flexible mode
+   is there, they are counted again 1e-7 above it. */
+static void modes_are_counted_again_if_one_lies_at_the_limit(void **state)
+{
+    const double fifth = bar_eigenvalue(1500, 5);
+    const ritz_span span = {.modes = -1,
+                            .up_to_hz = ritz_eigen_hertz(fifth / (1.0 + 1e-8))};
+    pencil p = bars(1, 1500, 0);
+    ritz_pairs P = {0};
+
+    (void)state;
+    assert_ok(ritz_eigen_sparse(&p.K, &p.M, &span, &P));
+    assert_int_equal(P.Phi.ncol, 6);
+    assert_true(P.proven_to > fifth * (1.0 + 8e-8));
+    ritz_pairs_free(&P);
+    release(&p);
+}
+
+/* A mode at each of the three values where modes are counted. */
+static void modes_at_every_limit_are_refused(void **state)
+{
+    enum { N = 700 };
+    const double at[] = {1.0 + 1e-8, 1.0 + 1e-7, 1.0 + 3e-7};
+    loop l = {0};
+    pencil p = {0};
+    ritz_pairs P = {0};
+
+    (void)state;
+    for (int64_t i = 0; i < N; i++)
+        add(&l, i, i, i < 3 ? at[i] : 2.0 + (double)i, 1.0);
+    p = finish(&l, N);
+    assert_fails(
+        ritz_eigen_sparse(
+            &p.K, &p.M,
+            &(ritz_span){.modes = -1, .up_to_hz = ritz_eigen_hertz(1.0)}, &P),
+        RITZ_ERR_SINGULAR, "cannot be counted: several lie there");
+    release(&p);
+}
+
 /* Clamped, nothing lies below half the first frequency. */
 static void there_may_be_no_mode(void **state)
 {
@@ -688,6 +727,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_engines_find_the_same_modes),
     cmocka_unit_test(a_double_mode_is_never_cut),
     cmocka_unit_test(a_frequency_finds_every_mode_below),
+    cmocka_unit_test(modes_are_counted_again_if_one_lies_at_the_limit),
+    cmocka_unit_test(modes_at_every_limit_are_refused),
     cmocka_unit_test(there_may_be_no_mode),
     cmocka_unit_test(every_free_body_has_its_rigid_mode),
     cmocka_unit_test(joints_without_mass_have_no_modes),
