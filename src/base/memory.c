@@ -114,19 +114,24 @@ static const char *name_size(int64_t bytes, char out[32])
     return out;
 }
 
+bool ritz_memory_fits(int64_t bytes)
+{
+    const int64_t limit = ritz_memory_limit();
+
+    return bytes < limit / SMALL_PART || bytes <= limit - memory_in_use();
+}
+
 ritz_status ritz_memory_admit(const char *what, int64_t bytes)
 {
     const int64_t limit = ritz_memory_limit();
     char need[32], used[32], allowed[32];
-    int64_t in_use = 0;
 
-    if (bytes < limit / SMALL_PART)
+    if (ritz_memory_fits(bytes))
         return RITZ_OK;
-    in_use = memory_in_use();
-    RITZ_REFUSE_IF(bytes > limit - in_use, RITZ_ERR_MEMORY,
-                   "%s needs %s of memory beside %s in use, %s are allowed "
-                   "(--memory)",
-                   what, name_size(bytes, need), name_size(in_use, used),
-                   name_size(limit, allowed));
-    return RITZ_OK;
+    return ritz_fail(RITZ_ERR_MEMORY,
+                     "%s needs %s of memory beside %s in use, %s are allowed "
+                     "(--memory)",
+                     what, name_size(bytes, need),
+                     name_size(memory_in_use(), used),
+                     name_size(limit, allowed));
 }

@@ -4,10 +4,15 @@
 
 #include <ritz/base.h>
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /** The limit of ritz_set_memory() in bytes, or what stands in its place. */
 int64_t ritz_memory_limit(void);
+
+/** Whether these bytes fit beside the memory in use, as ritz_memory_admit()
+ * judges it. */
+bool ritz_memory_fits(int64_t bytes);
 
 /**
  * Refuse what would not fit, before it is allocated.

@@ -31,7 +31,6 @@
 #include "estimate/estimator.h"
 #include "linear/factor.h"
 #include "linear/general.h"
-#include "linear/inertia.h"
 #include "linear/residuals.h"
 
 #include <float.h>
@@ -500,35 +499,6 @@ int64_t ritz_count_below(int64_t count, const double *lambda, double rho)
     while (below < count && lambda[below] < rho)
         below++;
     return below;
-}
-
-/*
- * If the basis has as many columns as the component has dofs, its Ritz values
- * are all eigenvalues, and no factorisation is needed unless rounding may have
- * moved one of them across rho.
- */
-ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
-                                 int64_t *below)
-{
-    const ritz_component *full = m->estimator->component;
-    const ritz_pairs *pairs = &m->pairs;
-    int64_t count = pairs->Phi.ncol;
-    double off = 0.0;
-
-    if (count == full->num_dofs) {
-        off =
-            RITZ_WHOLE_CLEAR * pairs->lambda[count - 1] + RITZ_GAP_NARROW * rho;
-        *below = ritz_count_below(count, pairs->lambda, rho - off);
-        if (*below == ritz_count_below(count, pairs->lambda, rho + off))
-            return RITZ_OK;
-    }
-    m->estimator->num_factors++;
-    if (!m->estimator->counter)
-        RITZ_CHECK(ritz_counter_new(
-            &full->K, &full->M,
-            m->estimator->A ? ritz_factor_order(m->estimator->A) : NULL,
-            &m->estimator->counter));
-    return ritz_counter_below(m->estimator->counter, rho, below);
 }
 
 bool ritz_counted_within(const ritz_estimator *estimator, double low,

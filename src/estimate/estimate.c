@@ -22,6 +22,8 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "estimate/estimator.h"
+#include "linear/factor.h"
+#include "linear/inertia.h"
 #include "verify/sides.h"
 
 #include <float.h>
@@ -40,6 +42,55 @@ enum { ITERATIONS = 4, MOST_BESIDE = 16 };
 enum { MOST_TRIES = 4, MOST_FOR_ONE = 16, GAPS_AROUND = 8 };
 enum { MORE = 10 };
 
+/* The factor of K - sigma M is not needed while modes are counted. */
+static ritz_status spill_factor(void *of)
+{
+    ritz_estimator *estimator = of;
+
+    return estimator->A ? ritz_factor_spill(estimator->A) : RITZ_OK;
+}
+
+static ritz_status open_counter(ritz_estimator *estimator)
+{
+    const ritz_component *full = estimator->component;
+
+    RITZ_CHECK(
+        ritz_counter_new(&full->K, &full->M,
+                         estimator->A ? ritz_factor_order(estimator->A) : NULL,
+                         &estimator->counter));
+    ritz_counter_relieve(estimator->counter,
+                         (ritz_relief){spill_factor, estimator});
+    return RITZ_OK;
+}
+
+/*
+ * The number of full modes below rho; RITZ_ERR_SINGULAR if one lies there.
+ *
+ * If the basis has as many columns as the component has dofs, its Ritz values
+ * are all eigenvalues, and no factorisation is needed unless rounding may have
+ * moved one of them across rho.
+ */
+static ritz_status count_below(const ritz_measuring *m, double rho,
+                               int64_t *below)
+{
+    const ritz_component *full = m->estimator->component;
+    const ritz_pairs *pairs = &m->pairs;
+    int64_t count = pairs->Phi.ncol;
+    double off = 0.0;
+
+    if (count == full->num_dofs) {
+        off =
+            RITZ_WHOLE_CLEAR * pairs->lambda[count - 1] + RITZ_GAP_NARROW * rho;
+        *below = ritz_count_below(count, pairs->lambda, rho - off);
+        if (*below == ritz_count_below(count, pairs->lambda, rho + off))
+            return RITZ_OK;
+    }
+    m->estimator->num_factors++;
+    if (!m->estimator->counter)
+        RITZ_CHECK(open_counter(m->estimator));
+    return ritz_counter_below(m->estimator->counter, rho, below);
+}
+
 /* Count the modes below rho, or below a slightly smaller value if a mode is at
    rho. `refused` is set if that fails, or the table of counts is full. */
 static ritz_status count_at(ritz_measuring *m, double rho)
@@ -52,7 +103,7 @@ static ritz_status count_at(ritz_measuring *m, double rho)
          t < MOST_TRIES && at < RITZ_MOST_COUNTS && status == RITZ_ERR_SINGULAR;
          t++) {
         rho *= t > 0 ? 1.0 - RITZ_GAP_NARROW : 1.0;
-        status = ritz_measuring_count(m, rho, &below);
+        status = count_below(m, rho, &below);
     }
     m->refused = status == RITZ_ERR_SINGULAR;
     if (m->refused)

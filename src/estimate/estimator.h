@@ -147,14 +147,6 @@ typedef struct ritz_claim {
 ritz_bounds ritz_error_of(const ritz_measuring *m, int64_t k, double low,
                           double high);
 
-/**
- * Count the full modes below @p rho.
- *
- * @return RITZ_ERR_SINGULAR if a mode lies at @p rho
- */
-ritz_status ritz_measuring_count(const ritz_measuring *m, double rho,
-                                 int64_t *below);
-
 /** The claim on reduced mode @p k that has the least bound. */
 ritz_claim ritz_claim_of(const ritz_measuring *m, int64_t k);
 

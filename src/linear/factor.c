@@ -376,6 +376,7 @@ ritz_status ritz_factor_solve(ritz_factor *F, ritz_dense *X)
                    X->nrow);
     if (F->n == 0 || X->ncol == 0)
         return RITZ_OK;
+    RITZ_CHECK(ritz_supernodal_fetch(F->S));
     RITZ_CHECK_NEW(x, F->n * width_for(X->ncol));
     for (int64_t j = 0; j < X->ncol;) {
         const int threads = ritz_supernodal_threads(F->S);
@@ -389,6 +390,11 @@ ritz_status ritz_factor_solve(ritz_factor *F, ritz_dense *X)
         j += e.count;
     }
     return RITZ_OK;
+}
+
+ritz_status ritz_factor_spill(ritz_factor *F)
+{
+    return ritz_supernodal_spill(F->S);
 }
 
 const int64_t *ritz_factor_order(const ritz_factor *F)

@@ -28,6 +28,15 @@ ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
 const int64_t *ritz_factor_order(const ritz_factor *F);
 
 /**
+ * Put the numbers of the factor into a file, so that memory has room for
+ * something else. The next ritz_factor_solve() reads them back; results have
+ * the same bits. ritz_factor_solve_rows() must not come before it.
+ *
+ * @return RITZ_ERR_FILE as ritz_spill_put(), and the factor can be used
+ */
+ritz_status ritz_factor_spill(ritz_factor *F);
+
+/**
  * x := A^-1 x for a block of eight vectors: x[8 k + c] is row k, in the
  * factor's order, of vector c.
  */

@@ -37,6 +37,17 @@ typedef struct ritz_counter ritz_counter;
 ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
                              const int64_t *order, ritz_counter **out);
 
+/** Frees memory that somebody else can do without. */
+typedef struct ritz_relief {
+    /** @return a failure ends the count with the same status */
+    ritz_status (*call)(void *of);
+    void *of;
+} ritz_relief;
+
+/** Let a counter call @p relief before each count that would not fit into
+ * memory otherwise; NULL, as at first: such a count is refused. */
+void ritz_counter_relieve(ritz_counter *C, ritz_relief relief);
+
 /**
  * The number of eigenvalues of K phi = lambda M phi below @p tau. The factor of
  * K - tau M is not kept, as in ritz_inertia_negative(): an eigenvalue that is at
@@ -46,7 +57,8 @@ ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
  * @param[out] below  unchanged on failure
  * @return RITZ_ERR_SINGULAR if a pivot is zero within rounding: an eigenvalue
  *         is at tau; RITZ_ERR_ARGUMENT if tau is not finite; RITZ_ERR_MEMORY,
- *         also if the part in work would exceed the limit of memory
+ *         also if the part in work would exceed the limit of memory; those of
+ *         a relief
  * @cost   an LDL' factorisation by MUMPS
  */
 ritz_status ritz_counter_below(ritz_counter *C, double tau, int64_t *below);

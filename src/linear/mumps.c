@@ -81,8 +81,9 @@ typedef struct mumps_factor {
     bool counted;         /* only pivots are wanted: the factor is not kept */
     double *val;          /* width * nnz */
     int64_t count;
-    ritz_sparse *A; /* borrowed, all but the array */
-    int64_t *at;    /* of each row among the entries of one column */
+    ritz_sparse *A;     /* borrowed, all but the array */
+    int64_t *at;        /* of each row among the entries of one column */
+    ritz_relief relief; /* NULL: none */
 } mumps_factor;
 
 struct ritz_ldl {
@@ -235,6 +236,17 @@ static ritz_status run_job(mumps_factor *F, int job)
     return RITZ_OK;
 }
 
+/* Refuse a factor that would not fit, also after the relief. */
+static ritz_status admit_factor(mumps_factor *F)
+{
+    const int64_t bytes = (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000;
+
+    if (F->relief.call && !ritz_memory_fits(bytes))
+        RITZ_CHECK(F->relief.call(F->relief.of));
+    return ritz_memory_admit(
+        F->counted ? "the factor of a count" : "the factor", bytes);
+}
+
 static ritz_status analyse_pattern(mumps_factor *F)
 {
     FIELD(F, sym) = F->whole ? 0 : 2;
@@ -259,9 +271,7 @@ static ritz_status analyse_pattern(mumps_factor *F)
     }
     FIELD(F, icntl)[DISCARD_FACTOR] = F->counted;
     RITZ_CHECK(run_job(F, ANALYSE));
-    return ritz_memory_admit(F->counted ? "the factor of a count"
-                                        : "the factor",
-                             (int64_t)FIELD(F, infog)[MEGABYTES] * 1000000);
+    return admit_factor(F);
 }
 
 /* A fill-reducing order for the union of the patterns of all matrices. */
@@ -516,6 +526,11 @@ ritz_status ritz_counter_new(const ritz_sparse *K, const ritz_sparse *M,
                              const int64_t *order, ritz_counter **out)
 {
     return make_counter(K, M, order, true, out);
+}
+
+void ritz_counter_relieve(ritz_counter *C, ritz_relief relief)
+{
+    C->of.relief = relief;
 }
 
 /* MUMPS frees its workspace only together with its analysis. The analysis is

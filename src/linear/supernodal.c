@@ -2,6 +2,7 @@
 #include "linear/supernodal.h"
 
 #include "base/alloc.h"
+#include "base/spill.h"
 #include "base/team.h"
 #include "linear/tiles.h"
 
@@ -36,6 +37,7 @@ struct ritz_supernodal {
     int32_t *row;
     double *values; /* 64-byte aligned */
     size_t bytes;
+    ritz_spill spill; /* the values; {0}: they are in memory */
     double *sign;     /* of each pivot, NULL: all positive */
     int64_t num_top;  /* number of rows of the top */
     int32_t *top_row; /* num_top rows of L, ascending */
@@ -660,6 +662,18 @@ void ritz_supernodal_solve(ritz_supernodal *S, int64_t width, double *x)
                       &(solving){S, &S->tiles->of[k], x});
 }
 
+ritz_status ritz_supernodal_spill(ritz_supernodal *S)
+{
+    if (S->spill.bytes > 0 || S->bytes == 0)
+        return RITZ_OK;
+    return ritz_spill_put("the factor", S->values, S->bytes, &S->spill);
+}
+
+ritz_status ritz_supernodal_fetch(ritz_supernodal *S)
+{
+    return ritz_spill_fetch(&S->spill, S->values);
+}
+
 int ritz_supernodal_threads(const ritz_supernodal *S)
 {
     return S->threads;
@@ -673,6 +687,7 @@ void ritz_supernodal_free(ritz_supernodal **S)
         RITZ_FREE((*S)->crew[k].block, (*S)->crew[k].top, (*S)->crew[k].z);
     RITZ_FREE((*S)->block, (*S)->row, (*S)->top_row, (*S)->top, (*S)->shared,
               (*S)->crew, (*S)->sign);
+    ritz_spill_free(&(*S)->spill);
     if ((*S)->values)
         munmap((*S)->values, (*S)->bytes);
     free(*S);

@@ -312,6 +312,10 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
     if (given->without_basis)
         drop_basis(reduced);
     RITZ_CHECK(describe_output(run, &made));
+    if (ritz_disk_used() > 0)
+        sink_field(run, "disk", "disk_bytes",
+                   "%ld bytes in '%s' held the factor while modes were counted",
+                   ritz_disk_used(), ritz_disk_folder());
     sink_set(run, "vectors", "%ld", c->count);
     SINK_EACH(run, "residuals", k, c->count)
         if (!isnan(c->residual[k]))

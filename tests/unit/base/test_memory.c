@@ -83,6 +83,45 @@ static void a_count_that_does_not_fit_is_refused(void **state)
     ritz_counter_free(&counter);
 }
 
+/* Raise the limit; count the calls. */
+static ritz_status raise_limit(void *of)
+{
+    ++*(int *)of;
+    ritz_set_memory(0);
+    return RITZ_OK;
+}
+
+static ritz_status fail_to_relieve(void *of)
+{
+    (void)of;
+    return ritz_fail(RITZ_ERR_FILE, "no disk");
+}
+
+/* Only where a count does not fit; the counts are the same. */
+static void a_count_that_does_not_fit_calls_for_relief(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    ritz_counter *counter = NULL;
+    int64_t below[2] = {-1, -2};
+    int calls = 0;
+
+    (void)state;
+    lattice_new(12, 1.0, &K, &M);
+    assert_ok(ritz_counter_new(&K, &M, NULL, &counter));
+    ritz_counter_relieve(counter, (ritz_relief){raise_limit, &calls});
+    assert_ok(ritz_counter_below(counter, 3.0, &below[0]));
+    assert_int_equal(calls, 0);
+    ritz_set_memory(mebibyte);
+    assert_ok(ritz_counter_below(counter, 3.0, &below[1]));
+    assert_int_equal(calls, 1);
+    assert_int_equal(below[0], below[1]);
+    ritz_counter_relieve(counter, (ritz_relief){fail_to_relieve, NULL});
+    ritz_set_memory(mebibyte);
+    assert_fails(ritz_counter_below(counter, 3.0, &below[1]), RITZ_ERR_FILE,
+                 "no disk");
+    ritz_counter_free(&counter);
+}
+
 /* The limit decides what is refused, and nothing else. */
 static void what_fits_has_the_same_bits(void **state)
 {
@@ -108,6 +147,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_teardown(the_number_needed_is_named, no_limit),
     cmocka_unit_test_teardown(a_factor_that_does_not_fit_is_refused, no_limit),
     cmocka_unit_test_teardown(a_count_that_does_not_fit_is_refused, no_limit),
+    cmocka_unit_test_teardown(a_count_that_does_not_fit_calls_for_relief,
+                              no_limit),
     cmocka_unit_test_teardown(what_fits_has_the_same_bits, no_limit),
 };
 

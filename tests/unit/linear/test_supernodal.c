@@ -1,4 +1,5 @@
 #include "fixtures/lattice.h"
+#include "linear/factor.h"
 #include "linear/inertia.h"
 #include "linear/ordering.h"
 #include "linear/tiles.h"
@@ -6,6 +7,7 @@
 
 #include <float.h>
 #include <stdlib.h>
+#include <sys/vfs.h>
 
 enum { EDGE = 20, POINTS = EDGE * EDGE * EDGE };
 
@@ -29,6 +31,50 @@ static double solve_twice(const ritz_sparse *A, ritz_factor *F, int64_t columns)
         worst = fmax(worst, fabs(Y.val[i] - X.val[i]));
     assert_memory_equal(Y.val, Z.val, (size_t)(POINTS * columns) * 8);
     return worst;
+}
+
+/* The factor is read back before the next solve, with the same bits, also when
+   it is put aside twice. A folder in memory or none is refused, and the factor
+   can be used. */
+static void a_factor_can_be_in_a_file(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
+    const char *folder = getenv("TMPDIR");
+    struct statfs system = {0};
+
+    (void)state;
+    lattice_new(EDGE, ground, &K, &M);
+    assert_ok(ritz_factor_spd(&K, &F));
+    assert_ok(ritz_dense_new(POINTS, 3, &X));
+    for (int64_t i = 0; i < 3 * POINTS; i++)
+        X.val[i] = cos((double)i);
+    assert_ok(ritz_dense_copy(&X, &Y));
+    assert_ok(ritz_factor_solve(F, &X));
+    for (int pass = 0; pass < 2; pass++) {
+        RITZ_OWN(ritz_dense) Z = {0};
+
+        assert_ok(ritz_factor_spill(F));
+        assert_ok(ritz_factor_spill(F));
+        assert_true(ritz_disk_used() > 8 * (int64_t)POINTS);
+        assert_ok(ritz_dense_copy(&Y, &Z));
+        assert_ok(ritz_factor_solve(F, &Z));
+        assert_memory_equal(X.val, Z.val, (size_t)(3 * POINTS) * 8);
+    }
+    setenv("TMPDIR", "/no/such/folder", 1);
+    assert_fails(ritz_factor_spill(F), RITZ_ERR_FILE,
+                 "the factor cannot be written to '/no/such/folder' (TMPDIR)");
+    setenv("TMPDIR", "/dev/shm", 1);
+    if (statfs("/dev/shm", &system) == 0 && system.f_type == 0x1021994)
+        assert_fails(ritz_factor_spill(F), RITZ_ERR_FILE,
+                     "'/dev/shm' are in memory, too");
+    assert_ok(ritz_factor_solve(F, &Y));
+    assert_memory_equal(X.val, Y.val, (size_t)(3 * POINTS) * 8);
+    if (folder)
+        setenv("TMPDIR", folder, 1);
+    else
+        unsetenv("TMPDIR");
 }
 
 /*
@@ -140,6 +186,7 @@ static void no_allocation_failure_leaks(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_factor_can_be_in_a_file),
     cmocka_unit_test(every_kernel_and_number_of_threads_solves),
     cmocka_unit_test(an_order_keeps_the_rows_of_a_grid_together),
     cmocka_unit_test(negative_pivots_count_eigenvalues_below_a_shift),
