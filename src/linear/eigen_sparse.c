@@ -507,24 +507,13 @@ static ritz_status count_target(search *s)
     return status;
 }
 
-/* Whether a mode is so near to the limit that it may have been counted or not.
- */
-static bool lies_at_limit(const search *s)
-{
-    for (int64_t j = 0; j < s->found.Phi.ncol; j++)
-        if (fabs(s->found.lambda[j] - s->limit) <=
-            RITZ_COUNT_UNCLEAR * s->limit)
-            return true;
-    return false;
-}
-
 /* By frequency: are there as many as counted before? */
 static ritz_status prove_frequency(search *s, int64_t *end, bool *done)
 {
     const ritz_pairs *P = &s->found;
     int64_t below = 0;
 
-    while (!s->span->uncounted && lies_at_limit(s))
+    while (!s->span->uncounted && ritz_pairs_unclear(P, s->limit))
         RITZ_CHECK(count_target(s));
     while (below < P->Phi.ncol && P->lambda[below] <= s->limit)
         below++;

@@ -51,3 +51,11 @@ double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part)
         above = below + fabs(below) + DBL_MIN;
     return below + part * (above - below);
 }
+
+bool ritz_pairs_unclear(const ritz_pairs *P, double limit)
+{
+    for (int64_t j = 0; j < P->Phi.ncol; j++)
+        if (fabs(P->lambda[j] - limit) <= RITZ_COUNT_UNCLEAR * limit)
+            return true;
+    return false;
+}

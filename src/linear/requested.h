@@ -8,6 +8,8 @@
 
 #include <ritz/matrix.h>
 
+#include <stdbool.h>
+
 /**
  * How many of the pairs found were requested: rigid modes and span->modes
  * others, or all up to @p limit if span->modes is negative; and the rest of a
@@ -25,5 +27,9 @@ int64_t ritz_pairs_gap(const ritz_pairs *P, int64_t end);
 /** A value between eigenvalues k - 1 and k of @p P, at @p part (0 to 1) of the
  * way; beyond the first or the last one if there is only one of them. */
 double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part);
+
+/** Whether a pair lies so near to @p limit that a count of the modes below it
+ * may include it or not (RITZ_COUNT_UNCLEAR). */
+bool ritz_pairs_unclear(const ritz_pairs *P, double limit);
 
 #endif
