@@ -204,10 +204,12 @@ typedef struct ritz_reference_request {
 } ritz_reference_request;
 
 /* Where responses are compared in addition to an even grid and the poles of the
-   full model. */
+   full model, and what is measured. */
 enum {
     RITZ_AT_OTHER_POLES = 1, /* those of the reduced model */
     RITZ_AT_RANDOM = 2,      /* the random frequencies */
+    RITZ_ONLY_LIMITED = 4,   /* leave out responses and static gain if nothing
+                                that has a limit needs them */
 };
 
 /**
@@ -229,7 +231,7 @@ ritz_status ritz_reference_new(const ritz_component *full,
  *
  * @param[in] reduced  a reduced component or a configuration
  * @param[in] limits   its limits alone are used
- * @param[in] where    sum of RITZ_AT_...
+ * @param[in] where    sum of RITZ_AT_... and RITZ_ONLY_LIMITED
  */
 ritz_status ritz_reference_measure(const ritz_reference *reference,
                                    ritz_model reduced,

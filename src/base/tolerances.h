@@ -676,8 +676,9 @@
 /* Elongation of the period of the highest wanted mode, for which the step of an
    accurate simulation is quoted. */
 #define RITZ_PERIOD_ERROR 1e-3
-/* Least processor time of one measurement of a step. */
-#define RITZ_MEASURED_SECONDS 2e-3
+/* Least processor time of one measurement of a step: some thousand times what
+   the clock resolves and what reading it takes. */
+#define RITZ_MEASURED_SECONDS 2e-4
 /* More steps are a mistake in a step or an end. */
 #define RITZ_MOST_STEPS 1e10
 /* A step that ends within this part of itself of the end, ends there. */

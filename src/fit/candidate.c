@@ -279,7 +279,7 @@ static ritz_status measure_model(ritz_fitter *f, const ritz_fit_model *m,
         m->parts, limits, points, &found));
     RITZ_CHECK(ritz_fit_worst(&found, m->place->at, &candidate->errors));
     ritz_fit_judge(limits, candidate);
-    if (candidate->feasible && points)
+    if (candidate->feasible && points & ~RITZ_ONLY_LIMITED)
         RITZ_CHECK(check_stability(f, m, candidate));
     return RITZ_OK;
 }

@@ -40,6 +40,8 @@ typedef struct nesting {
     int64_t every;        /* of listed places the first, and each every-th */
     int64_t step;         /* columns between two cuts that are measured */
     int64_t hardest;      /* the place where the last model was worst */
+    int only;             /* RITZ_ONLY_LIMITED: of cuts, measure what decides
+                             whether they are feasible; 0: everything */
 } nesting;
 
 static void nesting_free(nesting *n)
@@ -106,7 +108,7 @@ static ritz_status measure_ratio(nesting *n, int64_t count,
         const double before = judged.ratio;
 
         status = ritz_fit_measure_at(n->f, &joined, &n->f->place[k * n->every],
-                                     0, false, &judged);
+                                     RITZ_ONLY_LIMITED, false, &judged);
         if (status == RITZ_OK && judged.ratio > before)
             n->hardest = k;
     }
@@ -116,14 +118,16 @@ static ritz_status measure_ratio(nesting *n, int64_t count,
 }
 
 /* At all places, or at the listed ones on the grid if @p points is 0. */
-static ritz_status measure_places(ritz_fitter *f, const ritz_fit_joined *joined,
-                                  int points, ritz_fit_candidate *out)
+static ritz_status measure_places(const nesting *n,
+                                  const ritz_fit_joined *joined, int points,
+                                  ritz_fit_candidate *out)
 {
+    ritz_fitter *f = n->f;
     const int64_t places = points ? f->num_places : f->num_listed;
 
     for (int64_t k = 0; k < places && !out->refusal[0]; k++)
-        RITZ_CHECK(
-            ritz_fit_measure_at(f, joined, &f->place[k], points, false, out));
+        RITZ_CHECK(ritz_fit_measure_at(f, joined, &f->place[k],
+                                       points | n->only, false, out));
     return RITZ_OK;
 }
 
@@ -137,12 +141,12 @@ static ritz_status judge_columns(const nesting *n, int64_t count,
     int points = ritz_fit_points(reference, &out->errors);
 
     if (status == RITZ_OK && !(points & RITZ_AT_OTHER_POLES)) {
-        status = measure_places(n->f, &joined, 0, out);
+        status = measure_places(n, &joined, 0, out);
         points = ritz_fit_points(reference, &out->errors);
         ritz_measures_free(&out->errors); /* poles only if there is need */
     }
     if (status == RITZ_OK)
-        status = measure_places(n->f, &joined, points, out);
+        status = measure_places(n, &joined, points, out);
     RITZ_CHECK(ritz_fit_refuse(status, out));
     if (out->refusal[0])
         ritz_measures_free(&out->errors);
@@ -469,11 +473,12 @@ static ritz_status take_uncut(ritz_fitter *f,
 
 /* The fewest columns in a feasible row of the path below its first row, which
    has all columns; 0: no such row is feasible. */
-static ritz_status find_cut(const nesting *n, int64_t *columns)
+static ritz_status find_cut(nesting *n, int64_t *columns)
 {
     RITZ_OWN(ritz_fit_path) path = {0};
 
     *columns = 0;
+    n->only = RITZ_ONLY_LIMITED;
     RITZ_CHECK(
         walk_path(n, n->f->scene ? INT64_MAX : COMPONENT_PATIENCE, &path));
     for (int64_t t = 1; t < path.count; t++)

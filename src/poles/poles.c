@@ -215,6 +215,15 @@ ritz_status ritz_refuse_pole(bool rigid, double hertz)
                      hertz);
 }
 
+/* 1 / (re + i im), without the scaling that only extreme numbers need. */
+static double _Complex invert(double re, double im)
+{
+    const double square = re * re + im * im;
+
+    return isnormal(square) ? ritz_complex(re / square, -im / square)
+                            : 1.0 / ritz_complex(re, im);
+}
+
 static ritz_status solve_decoupled(const ritz_poles *poles,
                                    const ritz_dense *loads, double hertz,
                                    double _Complex *q)
@@ -222,10 +231,11 @@ static ritz_status solve_decoupled(const ritz_poles *poles,
     double w = 2.0 * RITZ_PI * hertz;
 
     for (int64_t k = 0; k < poles->count; k++) {
-        double _Complex z =
-            ritz_complex(poles->lambda[k] - w * w, w * poles->rate[k]);
-        bool on_pole = cabs(z) <= RITZ_POLE_HIT * (poles->lambda[k] + w * w);
-        double _Complex g = on_pole ? 0.0 : 1.0 / z;
+        const double re = poles->lambda[k] - w * w, im = w * poles->rate[k];
+        const double hit = RITZ_POLE_HIT * (poles->lambda[k] + w * w);
+        const bool on_pole =
+            fmax(fabs(re), fabs(im)) <= hit && hypot(re, im) <= hit;
+        const double _Complex g = on_pole ? 0.0 : invert(re, im);
 
         if (on_pole && ritz_poles_matter(poles, k))
             return ritz_refuse_pole(k < poles->num_rigid, hertz);
@@ -461,4 +471,16 @@ ritz_status ritz_poles_of_dense(const ritz_second_order *model,
     RITZ_CHECK(ritz_eigen_dense(model->K, model->M, &pairs));
     RITZ_CHECK(refuse_unstable(&pairs, to_hz));
     return ritz_poles_of_pairs(model, damping, false, &pairs, out);
+}
+
+ritz_status ritz_poles_of_modes(const ritz_second_order *model,
+                                const ritz_damping *damping, double to_hz,
+                                const ritz_pairs *pairs, ritz_poles *out)
+{
+    RITZ_OWN(ritz_pairs) own = {.num_rigid = pairs->num_rigid};
+
+    RITZ_CHECK(refuse_unstable(pairs, to_hz));
+    RITZ_CHECK(ritz_dense_copy(&pairs->Phi, &own.Phi));
+    RITZ_CHECK_COPY(own.lambda, pairs->lambda, pairs->Phi.nrow);
+    return ritz_poles_of_pairs(model, damping, false, &own, out);
 }

@@ -119,6 +119,11 @@ ritz_status ritz_poles_of_dense(const ritz_second_order *model,
                                 const ritz_damping *damping, double to_hz,
                                 ritz_poles *out);
 
+/** The same, given the pairs of ritz_eigen_dense(K, M). */
+ritz_status ritz_poles_of_modes(const ritz_second_order *model,
+                                const ritz_damping *damping, double to_hz,
+                                const ritz_pairs *pairs, ritz_poles *out);
+
 /**
  * Poles of pairs that are known: all modes of finite frequency, `lambda` with
  * room for as many as there are coordinates.
@@ -241,6 +246,11 @@ void ritz_residual_free(ritz_residual *residual);
  */
 ritz_status ritz_static_rest(const ritz_second_order *model,
                              const ritz_pairs *pairs, ritz_residual *out);
+
+/** ritz_static_gain, given the pairs of ritz_eigen_dense. */
+ritz_status ritz_static_gain_of_modes(const ritz_second_order *model,
+                                      const ritz_pairs *pairs,
+                                      int64_t num_rigid, ritz_dense *out);
 
 /**
  * N, n x (n - m), the motions without mass, given the m finite pairs of the

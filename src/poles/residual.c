@@ -521,28 +521,36 @@ ritz_status ritz_static_rest(const ritz_second_order *model,
  * and what motions without mass add to it.
  */
 
+ritz_status ritz_static_gain_of_modes(const ritz_second_order *model,
+                                      const ritz_pairs *pairs,
+                                      int64_t num_rigid, ritz_dense *out)
+{
+    RITZ_OWN(ritz_io) modes = {0};
+    RITZ_OWN(ritz_residual) rest = {0};
+
+    if (num_rigid < pairs->num_rigid)
+        num_rigid = pairs->num_rigid;
+    RITZ_CHECK(ritz_io_project(model->io, &pairs->Phi, &modes));
+    for (int64_t j = 0; j < modes.num_inputs; j++)
+        for (int64_t k = 0; k < pairs->Phi.ncol; k++)
+            ritz_dense_col(&modes.B, j)[k] *=
+                k < num_rigid ? 0.0 : 1.0 / pairs->lambda[k];
+    RITZ_CHECK(ritz_static_rest(model, pairs, &rest));
+    RITZ_CHECK(ritz_dense_mul(&modes.C, &modes.B, out));
+    for (int64_t k = 0; rest.count > 0 && k < out->nrow * out->ncol; k++)
+        out->val[k] += rest.part[0][k];
+    return RITZ_OK;
+}
+
 ritz_status ritz_static_gain(const ritz_dense *K, const ritz_dense *M,
                              const ritz_io *io, int64_t num_rigid,
                              ritz_dense *out)
 {
     const ritz_second_order model = {.K = K, .M = M, .io = io};
     RITZ_OWN(ritz_pairs) pairs = {0};
-    RITZ_OWN(ritz_io) modes = {0};
-    RITZ_OWN(ritz_residual) rest = {0};
 
     RITZ_CHECK(ritz_eigen_dense(K, M, &pairs));
-    if (num_rigid < pairs.num_rigid)
-        num_rigid = pairs.num_rigid;
-    RITZ_CHECK(ritz_io_project(io, &pairs.Phi, &modes));
-    for (int64_t j = 0; j < modes.num_inputs; j++)
-        for (int64_t k = 0; k < pairs.Phi.ncol; k++)
-            ritz_dense_col(&modes.B, j)[k] *=
-                k < num_rigid ? 0.0 : 1.0 / pairs.lambda[k];
-    RITZ_CHECK(ritz_static_rest(&model, &pairs, &rest));
-    RITZ_CHECK(ritz_dense_mul(&modes.C, &modes.B, out));
-    for (int64_t k = 0; rest.count > 0 && k < out->nrow * out->ncol; k++)
-        out->val[k] += rest.part[0][k];
-    return RITZ_OK;
+    return ritz_static_gain_of_modes(&model, &pairs, num_rigid, out);
 }
 
 ritz_status ritz_gain_error(const ritz_dense *full, const ritz_dense *reduced,

@@ -458,6 +458,8 @@ ritz_status ritz_responses_singular(const ritz_sides *sides, ritz_measure *out)
 
 ritz_status ritz_responses_gain(const ritz_sides *sides, ritz_measure *out)
 {
+    if (!sides->gain_reduced.val) /* it was not needed */
+        return RITZ_OK;
     (void)snprintf(out->where, sizeof out->where, "largest singular value");
     return ritz_gain_error(&sides->full->gain, &sides->gain_reduced,
                            &out->value);

@@ -86,7 +86,7 @@ typedef struct ritz_sides {
     ritz_second_order model; /* the reduced one */
     const ritz_reduced *component; /* it too; NULL: a system */
     ritz_gap gap;
-    int where;               /* sum of RITZ_AT_... */
+    int where;               /* sum of RITZ_AT_... and RITZ_ONLY_LIMITED */
     const ritz_dense *parts; /* borrowed, Phi'M T; NULL: compute it from T */
     bool shapes;             /* MAC compares shapes; otherwise, of a system,
                                 participations of observable modes */

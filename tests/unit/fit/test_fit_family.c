@@ -329,6 +329,45 @@ static void errors_without_a_basis_are_those_with_it(void **state)
     }
 }
 
+/* Where only measures with a limit are asked for, these and what costs nothing
+   are as without that restriction, and the others are left out. */
+static void measures_without_a_limit_can_be_left_out(void **state)
+{
+    RITZ_OWN(ritz_component) truss = {0};
+    const ritz_fit_request request = ask(nested, 1);
+    static const int of[] = {RITZ_MEASURE_FREQUENCY, RITZ_MEASURE_RESPONSE,
+                             RITZ_MEASURE_GAIN};
+    RITZ_OWN(ritz_fitter) *fitter = NULL;
+    RITZ_OWN(ritz_reduced) taken = {0};
+    RITZ_OWN(ritz_dense) parts = {0};
+
+    (void)state;
+    open_truss(false, &truss);
+    assert_ok(ritz_fitter_new(&truss, &request, &fitter));
+    assert_ok(ritz_fit_take(fitter, nested[0], 4, false, &taken, &parts));
+    for (int k = 0; k < 3; k++) {
+        ritz_verify_request limits = RITZ_VERIFY_NONE;
+        RITZ_OWN(ritz_measures) all = {0}, some = {0};
+
+        limits.limit[of[k]] = 1e-3;
+        for (int t = 0; t < 2; t++)
+            assert_ok(ritz_reference_measure_parts(
+                fitter->place[0].reference, ritz_model_of_reduced(&taken, NULL),
+                &parts, &limits,
+                RITZ_AT_RANDOM | (t == 0 ? 0 : RITZ_ONLY_LIMITED),
+                t == 0 ? &all : &some));
+        assert_non_null(find_measure(&some, ritz_measure_table[of[k]].name));
+        assert_non_null(find_measure(&some, "missing-modes"));
+        assert_int_equal(!ritz_measures_find(&some, "response-relative"),
+                         k != 1);
+        assert_int_equal(!ritz_measures_find(&some, "static-gain-relative"),
+                         k != 2);
+        for (int64_t j = 0; j < some.count; j++)
+            assert_true(some.item[j].value ==
+                        find_measure(&all, some.item[j].name)->value);
+    }
+}
+
 static ritz_status search_once(const ritz_component *truss)
 {
     ritz_fit_request request = ask(nested, 1);
@@ -363,6 +402,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_basis_that_served_longest_ago_is_dropped),
     cmocka_unit_test(an_error_that_is_no_number_is_not_met),
     cmocka_unit_test(errors_without_a_basis_are_those_with_it),
+    cmocka_unit_test(measures_without_a_limit_can_be_left_out),
     cmocka_unit_test(reducing_by_a_kept_basis_survives_every_allocation),
 };
 TEST_MODULE(fit_family, tests, NULL, NULL)
