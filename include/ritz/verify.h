@@ -238,6 +238,9 @@ ritz_status ritz_reference_measure(const ritz_reference *reference,
                                    const ritz_verify_request *limits, int where,
                                    ritz_measures *out);
 
+/** The modes of the full model that it holds; borrowed. */
+const ritz_pairs *ritz_reference_pairs(const ritz_reference *reference);
+
 /**
  * Phi'M T with the modes Phi of the full model: how much of each mode the
  * columns of T contain. A reduction by T S has Phi'M T S, so that its shapes
@@ -308,6 +311,9 @@ typedef struct ritz_estimate_request {
                              basis */
     ritz_damping damping; /* of responses; none: no response is bounded */
     bool frequencies;     /* estimate frequencies only, no response */
+    /* modes of the full model, none of which is missing below `proven_to`: no
+       count is taken where they tell it; borrowed, NULL: not known */
+    const ritz_pairs *modes;
 } ritz_estimate_request;
 
 /* The factors of one full component, made once for many reductions of it. */

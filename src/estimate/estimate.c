@@ -64,6 +64,23 @@ static ritz_status open_counter(ritz_estimator *estimator)
 }
 
 /*
+ * Count by known eigenvalues, if that is certain: rho is above the first
+ * flexible one, below the end to which none is missing, and not close to any.
+ */
+static bool count_known(const ritz_pairs *known, double rho, int64_t *below)
+{
+    const int64_t rigid = known ? known->num_rigid : 0;
+    const int64_t count = known ? known->Phi.ncol : 0;
+    const double off = RITZ_GAP_NARROW * rho;
+
+    if (count <= rigid || !(rho - off > known->lambda[rigid]) ||
+        !(rho + off <= known->proven_to))
+        return false;
+    *below = ritz_count_below(count, known->lambda, rho - off);
+    return *below == ritz_count_below(count, known->lambda, rho + off);
+}
+
+/*
  * The number of full modes below rho; RITZ_ERR_SINGULAR if one lies there.
  *
  * If the basis has as many columns as the component has dofs, its Ritz values
@@ -85,6 +102,8 @@ static ritz_status count_below(const ritz_measuring *m, double rho,
         if (*below == ritz_count_below(count, pairs->lambda, rho + off))
             return RITZ_OK;
     }
+    if (count_known(m->estimator->request.modes, rho, below))
+        return RITZ_OK;
     m->estimator->num_factors++;
     if (!m->estimator->counter)
         RITZ_CHECK(open_counter(m->estimator));

@@ -119,11 +119,12 @@ static ritz_request request_basis(const ritz_fitter *f,
 
 static ritz_status reduce_component(const ritz_fitter *f,
                                     const ritz_method *method, int64_t modes,
-                                    ritz_reduced *out)
+                                    bool counted, ritz_reduced *out)
 {
-    const ritz_request request = request_basis(f, method, modes);
+    ritz_request request = request_basis(f, method, modes);
     RITZ_OWN(ritz_basis) basis = {0};
 
+    request.choice.uncounted = request.choice.uncounted || !counted;
     RITZ_CHECK(ritz_basis_make(method, &request, &basis));
     return ritz_reduce(f->component, &basis, out);
 }
@@ -134,7 +135,7 @@ ritz_status ritz_fit_body(ritz_fitter *f, const ritz_method *method, int64_t k,
     ritz_scene_component item = {0};
 
     if (!f->scene)
-        return reduce_component(f, method, modes, out);
+        return reduce_component(f, method, modes, true, out);
     if (method == &ritz_fit_compare)
         return ritz_fit_second_body(f, k, modes, out);
     item = f->scene->component[f->body[k]];
@@ -210,11 +211,19 @@ static int64_t choose_columns(const ritz_columns *columns, int64_t modes,
     return count;
 }
 
+/* Whether candidates with different numbers of modes are made from one basis.
+   It is not proven that this has all modes: candidates are measured, and the
+   basis of the result is made again, with that proof. */
+static bool is_shared(const ritz_method *method)
+{
+    return method->nested || method->narrow;
+}
+
 static ritz_status make_whole(ritz_fitter *f, const ritz_method *method,
                               int64_t modes, ritz_reduced *out,
                               ritz_dense *parts)
 {
-    RITZ_CHECK(ritz_fit_body(f, method, 0, modes, out));
+    RITZ_CHECK(reduce_component(f, method, modes, !is_shared(method), out));
     return ritz_reference_parts(f->place[0].reference, &out->T, parts);
 }
 
@@ -440,8 +449,12 @@ ritz_status ritz_fit_take(ritz_fitter *f, const ritz_method *method,
                           int64_t modes, bool with_T, ritz_reduced *out,
                           ritz_dense *parts)
 {
-    const ritz_request request = request_basis(f, method, modes);
+    ritz_request request = request_basis(f, method, modes);
 
+    if (is_shared(method) && method->uses & RITZ_USES_COUNT) {
+        request.choice.uncounted = true;
+        request.choice.given |= RITZ_USES_COUNT;
+    }
     if (method->narrow)
         RITZ_CHECK(take_narrow(f, &request, method, with_T, out, parts));
     if (out->K.ncol == 0)

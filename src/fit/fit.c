@@ -368,6 +368,8 @@ static ritz_status search_methods(ritz_fitter *fitter, ritz_fit *fit)
 
 ritz_status ritz_fitter_search(ritz_fitter *fitter, ritz_fit *out)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(fitter->orders);
     RITZ_OWN(ritz_fit) fit = {.chosen = -1, .runner_up = -1};
     ritz_status status = RITZ_OK;
 
@@ -418,6 +420,8 @@ static ritz_status approach_order(ritz_fitter *fitter, int64_t order,
 ritz_status ritz_fitter_equal(ritz_fitter *fitter, int64_t order, ritz_fit *fit,
                               int64_t *at)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(fitter->orders);
     RITZ_OWN_ARRAY int64_t *modes = NULL;
 
     RITZ_CHECK_NEW(modes, fitter->num_bodies);

@@ -132,7 +132,8 @@ ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
     const ritz_verify_request *limits = &fitter->request.tolerance;
     const ritz_estimate_request asked = {
         .band_hz = {limits->band_hz[0], limits->band_hz[1]},
-        .damping = limits->damping};
+        .damping = limits->damping,
+        .modes = ritz_reference_pairs(place->reference)};
 
     if (!fitter->request.estimates)
         return RITZ_OK;
@@ -238,8 +239,6 @@ static ritz_status full_systems(ritz_fitter *f)
                       ritz_assemble_full(f->scene, place->setting, &place->full,
                                          &place->master));
         RITZ_CHECK_IN(place->at, ritz_component_install(&place->full));
-        if (k < f->num_listed)
-            RITZ_CHECK(ritz_fit_estimator(f, &place->full, place));
     }
     return RITZ_OK;
 }
@@ -255,6 +254,8 @@ static ritz_status refer_scene(ritz_fitter *f)
     for (int64_t k = 0; k < f->num_places; k++) {
         ritz_monitor_step("modes of the full system", k, f->num_places);
         RITZ_CHECK_IN(f->place[k].at, refer_place(&f->request, &f->place[k]));
+        if (!f->rich && k < f->num_listed)
+            RITZ_CHECK(ritz_fit_estimator(f, &f->place[k].full, &f->place[k]));
     }
     return RITZ_OK;
 }
@@ -321,11 +322,14 @@ ritz_status ritz_fitter_new(const ritz_component *component,
                             const ritz_fit_request *request, ritz_fitter **out)
 {
     RITZ_OWN(ritz_fitter) *f = NULL;
+    RITZ_OWN(ritz_orders_lent) lent = ritz_orders_lend(NULL);
 
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->most_entries = most_entries;
     f->component = component;
+    RITZ_CHECK(ritz_orders_new(&f->orders));
+    (void)ritz_orders_lend(f->orders);
     RITZ_CHECK(open_component(component, f));
     RITZ_MOVE(*out, f);
     return RITZ_OK;
@@ -336,10 +340,13 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
                               ritz_fitter **out)
 {
     RITZ_OWN(ritz_fitter) *f = NULL;
+    RITZ_OWN(ritz_orders_lent) lent = ritz_orders_lend(NULL);
 
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->scene = scene;
+    RITZ_CHECK(ritz_orders_new(&f->orders));
+    (void)ritz_orders_lend(f->orders);
     RITZ_CHECK(open_scene(scene, f));
     RITZ_MOVE(*out, f);
     return RITZ_OK;
@@ -405,6 +412,7 @@ void ritz_fitter_free(ritz_fitter **fitter)
     for (int64_t k = 0; f->model && k < f->num_bodies; k++)
         ritz_component_free(&f->model[k]);
     ritz_bodies_free(&f->still);
+    ritz_orders_free(&f->orders);
     for (int64_t k = 0; k < f->num_made; k++) {
         ritz_reduced_free(&f->made[k].reduced);
         ritz_dense_free(&f->made[k].parts);

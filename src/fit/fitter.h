@@ -6,6 +6,8 @@
 #ifndef RITZ_FIT_FITTER_H
 #define RITZ_FIT_FITTER_H
 
+#include "linear/ordering.h"
+
 #include <ritz/assembly.h>
 #include <ritz/fit.h>
 #include <ritz/verify.h>
@@ -82,6 +84,7 @@ typedef struct ritz_fit_joined {
 
 struct ritz_fitter {
     ritz_fit_request request;
+    ritz_orders *orders; /* of all factors; lent in each call from outside */
     const ritz_component *component; /* borrowed; NULL: of a scene */
     const ritz_scene *scene;         /* borrowed; NULL: of a component */
     ritz_dofs attached;              /* of a component */
@@ -212,7 +215,8 @@ void ritz_fit_second_free(ritz_fit_second *second);
 /** How far beyond the band, times it: 8, and up to 32 for fine tolerances. */
 double ritz_fit_rich_to(const ritz_verify_request *limits);
 
-/** Factors for bounds at a place, if they are wanted. */
+/** Factors for bounds at a place that has its reference, if they are
+ * wanted. */
 ritz_status ritz_fit_estimator(const ritz_fitter *fitter,
                                const ritz_component *full,
                                ritz_fit_place *place);

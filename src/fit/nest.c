@@ -601,6 +601,8 @@ ritz_status ritz_fitter_reduced(ritz_fitter *f,
                                 const ritz_fit_candidate *candidate,
                                 ritz_reduced *out)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(f->orders);
     RITZ_OWN(nesting) n = {0};
     RITZ_OWN(ritz_fit_path) path = {0};
     RITZ_OWN(ritz_reduced) nested = {0};
@@ -684,6 +686,8 @@ ritz_status ritz_fitter_system(ritz_fitter *f,
                                ritz_bodies *body, ritz_fit_path *path,
                                ritz_system *out)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(f->orders);
     RITZ_OWN(ritz_bodies) made = {0}, joined = {0};
     RITZ_OWN(ritz_stage) stage = {0};
     RITZ_OWN(ritz_system) system = {0};

@@ -135,7 +135,98 @@ static ritz_status order_groups(const grouping *g, const graph *G, int64_t *at)
     return RITZ_OK;
 }
 
-ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order)
+/* --- orders that are stored ----------------------------------------------- */
+
+/* Equal hashes of two patterns would give one of them an order that is not made
+   for it: its factor has more entries then, and is no less correct. */
+typedef struct stored_order {
+    int64_t rows, entries;
+    uint64_t hash; /* of the pattern */
+    int64_t *order;
+} stored_order;
+
+struct ritz_orders {
+    int64_t count, room;
+    stored_order *item;
+};
+
+static _Thread_local ritz_orders *lent;
+
+ritz_status ritz_orders_new(ritz_orders **out)
+{
+    RITZ_CHECK_NEW(*out, 1);
+    return RITZ_OK;
+}
+
+void ritz_orders_free(ritz_orders **orders)
+{
+    if (!*orders)
+        return;
+    for (int64_t k = 0; k < (*orders)->count; k++)
+        free((*orders)->item[k].order);
+    free((*orders)->item);
+    free(*orders);
+    *orders = NULL;
+}
+
+int64_t ritz_orders_count(const ritz_orders *orders)
+{
+    return orders->count;
+}
+
+ritz_orders_lent ritz_orders_lend(ritz_orders *orders)
+{
+    const ritz_orders_lent scope = {lent};
+
+    lent = orders;
+    return scope;
+}
+
+void ritz_orders_lent_free(ritz_orders_lent *scope)
+{
+    lent = scope->before;
+}
+
+/* FNV-1a, of numbers in place of bytes. */
+static uint64_t hash_numbers(int64_t count, const int64_t *x, uint64_t hash)
+{
+    for (int64_t k = 0; k < count; k++)
+        hash = (hash ^ (uint64_t)x[k]) * UINT64_C(0x100000001b3);
+    return hash;
+}
+
+static stored_order describe_pattern(const ritz_sparse *A)
+{
+    const int64_t entries = A->colptr[A->ncol];
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+
+    hash = hash_numbers(A->ncol + 1, A->colptr, hash);
+    return (stored_order){.rows = A->nrow,
+                          .entries = entries,
+                          .hash = hash_numbers(entries, A->rowind, hash)};
+}
+
+static const int64_t *find_stored(const stored_order *of)
+{
+    for (int64_t k = 0; k < lent->count; k++) {
+        const stored_order *s = &lent->item[k];
+
+        if (s->rows == of->rows && s->entries == of->entries &&
+            s->hash == of->hash)
+            return s->order;
+    }
+    return NULL;
+}
+
+static ritz_status store_order(const int64_t *order, stored_order *of)
+{
+    RITZ_CHECK_ROOM(lent->item, lent->count, lent->room);
+    RITZ_CHECK_COPY(of->order, order, of->rows);
+    lent->item[lent->count++] = *of;
+    return RITZ_OK;
+}
+
+static ritz_status find_order(const ritz_sparse *A, int64_t **order)
 {
     RITZ_OWN(grouping) g = {0};
     RITZ_OWN(graph) G = {0};
@@ -150,6 +241,26 @@ ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order)
     for (int64_t k = 0; k < g.count; k++)
         for (int64_t j = g.first[at[k]]; j < g.first[at[k] + 1]; j++)
             found[count++] = j;
+    RITZ_MOVE(*order, found);
+    return RITZ_OK;
+}
+
+ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order)
+{
+    RITZ_OWN_ARRAY int64_t *found = NULL;
+    stored_order of = {0};
+    const int64_t *known = NULL;
+
+    if (!lent)
+        return find_order(A, order);
+    of = describe_pattern(A);
+    known = find_stored(&of);
+    if (known)
+        RITZ_CHECK_COPY(found, known, A->nrow);
+    else
+        RITZ_CHECK(find_order(A, &found));
+    if (!known)
+        RITZ_CHECK(store_order(found, &of));
     RITZ_MOVE(*order, found);
     return RITZ_OK;
 }

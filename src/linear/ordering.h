@@ -22,6 +22,27 @@ enum { RITZ_ORDER_FROM = 2000 };
  */
 ritz_status ritz_ordering_new(const ritz_sparse *A, int64_t **order);
 
+/* Orders that were found, each with the pattern that it is for. */
+typedef struct ritz_orders ritz_orders;
+
+ritz_status ritz_orders_new(ritz_orders **out);
+void ritz_orders_free(ritz_orders **orders);
+
+/** How many orders are stored. */
+int64_t ritz_orders_count(const ritz_orders *orders);
+
+/* While it exists, this thread takes the order of a pattern from a store if it
+   is there, and stores those that it finds. Matrices K - s M of all shifts s
+   have one pattern, so that their factors need one order. */
+typedef struct ritz_orders_lent {
+    ritz_orders *before;
+} ritz_orders_lent;
+
+/** Lend @p orders to this thread, until ritz_orders_lent_free(): RITZ_OWN it.
+ * NULL: none are stored. */
+ritz_orders_lent ritz_orders_lend(ritz_orders *orders);
+void ritz_orders_lent_free(ritz_orders_lent *scope);
+
 /** A tree of substructures. The rows of a node separate those of the subtrees
  * below it from each other: A(i, j) = 0 unless the node of i is that of j, or an
  * ancestor or a descendant of it. */

@@ -201,6 +201,11 @@ int64_t ritz_reference_modes(const ritz_reference *reference, int64_t *rigid)
     return count;
 }
 
+const ritz_pairs *ritz_reference_pairs(const ritz_reference *reference)
+{
+    return &reference->pairs;
+}
+
 void ritz_reference_free(ritz_reference **reference)
 {
     ritz_reference *r = *reference;

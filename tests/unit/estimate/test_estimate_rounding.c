@@ -254,6 +254,64 @@ static void exact_bases_need_few_counts(void **)
     }
 }
 
+/* Estimate a basis of MODES unit vectors and modes of a chain. */
+static void estimate_chain(const ritz_component *chain,
+                           const ritz_estimate_request *request,
+                           int64_t *num_factors, ritz_measures *found)
+{
+    enum { COLUMNS = 40 };
+    ritz_estimator *estimator = NULL;
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+
+    assert_ok(ritz_basis_new(chain->num_dofs, COLUMNS, &basis));
+    for (int64_t j = 0; j < COLUMNS; j++) /* sines that are no modes */
+        for (int64_t i = 0; i < chain->num_dofs; i++)
+            ritz_dense_col(&basis.T, j)[i] =
+                sin(3.14159265358979 * (double)((i + 1) * (j + 1)) /
+                    (double)(chain->num_dofs + 1));
+    assert_ok(ritz_reduce(chain, &basis, &reduced));
+    assert_ok(ritz_estimator_new(chain, request, &estimator));
+    assert_ok(
+        ritz_estimator_measure(estimator, &basis, &reduced, false, found));
+    *num_factors = estimator->num_factors;
+    ritz_estimator_free(&estimator);
+}
+
+/* Counts that known modes tell give the same bounds as factors do, and modes
+   that end within the band, or are not proven, give the same, too. */
+static void known_modes_are_counted_without_factors(void **)
+{
+    enum { MASSES = 60, MODES = 30, BAND = 10 };
+    const ritz_span span = {.modes = MODES};
+    RITZ_OWN(ritz_component) chain = {0};
+    RITZ_OWN(ritz_pairs) full = {0};
+    RITZ_OWN(ritz_measures) without = {0};
+    ritz_estimate_request request = {0};
+    int64_t factors = 0;
+
+    assert_ok(spring_chain(MASSES, false, &chain));
+    assert_ok(ritz_eigen_sparse(&chain.K, &chain.M, &span, &full));
+    request.band_hz[1] = 1.001 * ritz_eigen_hertz(full.lambda[BAND - 1]);
+    estimate_chain(&chain, &request, &factors, &without);
+    assert_true(factors > 0);
+    request.modes = &full;
+    for (int k = 0; k < 3; k++) {
+        RITZ_OWN(ritz_measures) with = {0};
+        const double proven[] = {full.proven_to, full.lambda[2], nan("")};
+        const double before = full.proven_to;
+        int64_t fewer = 0;
+
+        full.proven_to = proven[k];
+        estimate_chain(&chain, &request, &fewer, &with);
+        full.proven_to = before;
+        assert_true(k == 0 ? fewer == 0 : fewer <= factors && fewer > 0);
+        assert_int_equal(with.count, without.count);
+        for (int64_t j = 0; j < with.count; j++)
+            assert_true(with.item[j].value == without.item[j].value);
+    }
+}
+
 /*
  * A full basis has all modes: where its eigenvalues are clear of rounding, the
  * number of modes below a frequency is known without a factor. The band of this
@@ -318,6 +376,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_rigid_motion_hidden_by_rounding_is_no_mode),
     cmocka_unit_test(modes_that_rounding_exchanges_share_it),
     cmocka_unit_test(exact_bases_need_few_counts),
+    cmocka_unit_test(known_modes_are_counted_without_factors),
     cmocka_unit_test(a_full_basis_is_counted_without_factors),
     cmocka_unit_test(rounding_does_not_enrich_the_trial_space),
 };

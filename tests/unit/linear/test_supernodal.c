@@ -138,6 +138,71 @@ static void an_order_keeps_the_rows_of_a_grid_together(void **state)
     free(place);
 }
 
+/* Order a matrix of the pattern of A, and compare with A's order. */
+static ritz_status order_alike(const ritz_sparse *A, const int64_t *expected)
+{
+    RITZ_OWN(ritz_sparse) twice = {0};
+    RITZ_OWN_ARRAY int64_t *order = NULL;
+
+    RITZ_CHECK(ritz_sparse_add(1.0, A, 1.0, A, &twice));
+    RITZ_CHECK(ritz_ordering_new(&twice, &order));
+    assert_memory_equal(order, expected, (size_t)A->nrow * sizeof *order);
+    return RITZ_OK;
+}
+
+/* Order while a new store is lent, which is full then. */
+static ritz_status store_once(const ritz_sparse *A, const int64_t *expected)
+{
+    RITZ_OWN(ritz_orders) *orders = NULL;
+
+    RITZ_CHECK(ritz_orders_new(&orders));
+    {
+        [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+            ritz_orders_lend(orders);
+
+        RITZ_CHECK(order_alike(A, expected));
+        RITZ_CHECK(order_alike(A, expected));
+    }
+    assert_int_equal(ritz_orders_count(orders), 1);
+    return RITZ_OK;
+}
+
+/* One order is stored for each pattern, whatever the values, and none when the
+   store is no longer lent. */
+static void a_store_has_an_order_for_each_pattern(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0}, less = {0}, M_less = {0};
+    RITZ_OWN(ritz_orders) *orders = NULL;
+    RITZ_OWN_ARRAY int64_t *order = NULL, *other = NULL, *last = NULL;
+
+    (void)state;
+    lattice_new(EDGE, ground, &K, &M);
+    lattice_new(EDGE - 1, ground, &less, &M_less);
+    assert_ok(ritz_ordering_new(&K, &order));
+    assert_ok(ritz_ordering_new(&less, &other));
+    assert_ok(ritz_orders_new(&orders));
+    {
+        [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+            ritz_orders_lend(orders);
+
+        for (int k = 0; k < 2; k++) {
+            assert_ok(order_alike(&K, order));
+            assert_int_equal(ritz_orders_count(orders), 1 + k);
+            assert_ok(order_alike(&less, other));
+            assert_int_equal(ritz_orders_count(orders), 2);
+        }
+        assert_ok(store_once(&K, order)); /* this one is lent again after it */
+        assert_ok(ritz_ordering_new(&M, &last));
+        assert_int_equal(ritz_orders_count(orders), 3);
+    }
+    RITZ_FREE(last);
+    last = NULL;
+    lattice_new(EDGE - 2, ground, &less, &M_less);
+    assert_ok(ritz_ordering_new(&less, &last));
+    assert_int_equal(ritz_orders_count(orders), 3);
+    assert_survives_every_allocation(store_once(&K, order));
+}
+
 /* K - shift M has as many negative pivots as eigenvalues of the pencil are
    below the shift, with a given order and with one that is found. */
 static void negative_pivots_count_eigenvalues_below_a_shift(void **state)
@@ -189,6 +254,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_factor_can_be_in_a_file),
     cmocka_unit_test(every_kernel_and_number_of_threads_solves),
     cmocka_unit_test(an_order_keeps_the_rows_of_a_grid_together),
+    cmocka_unit_test(a_store_has_an_order_for_each_pattern),
     cmocka_unit_test(negative_pivots_count_eigenvalues_below_a_shift),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
