@@ -2,14 +2,16 @@
  * Block Lanczos iteration for the lowest eigenpairs of K x = lambda M x, with a
  * Cholesky factor of A = K - sigma M [GrimesLewisSimon1994]. A block has eight
  * vectors, because the time of a solve is that of reading the factor, which is
- * read once for the whole block. Each new block V_j+1 is made orthogonal to all
- * blocks before it:
+ * read once for the whole block. Where many pairs are requested, a step adds two
+ * such blocks at once, V_j of sixteen vectors: some fifty vectors more are
+ * needed in all, but the factor and the basis are read half as often. Each new
+ * V_j+1 is made orthogonal to all vectors before it:
  *
  *     A^-1 M V_j = V_j-1 R_j' + V_j A_j + V_j+1 R_j+1,   V'M V = I
  *
  * T = V'M A^-1 M V is block tridiagonal, with A_j on its diagonal. Its
- * eigenpairs T z = theta z give lambda = sigma + 1 / theta. With z_j the last
- * eight components of z, |R_j+1 z_j| is the norm of the residual A^-1 M x -
+ * eigenpairs T z = theta z give lambda = sigma + 1 / theta. With z_j the
+ * components of z for V_j, |R_j+1 z_j| is the norm of the residual A^-1 M x -
  * theta x of x = V z, and
  *
  *     V z + V_j+1 R_j+1 z_j / theta = A^-1 M V z / theta
@@ -22,33 +24,42 @@
 
 #include "linear/general.h"
 
+/** What ritz_block_lanczos() is to find. */
+typedef struct ritz_lanczos_plan {
+    int64_t k;     /* in: pairs */
+    int64_t room;  /* in: largest number of basis vectors, at least 5 k / 4 +
+                      48; 0: about 4 k, with which few models need a restart */
+    int64_t width; /* in: blocks of eight that each step adds, 1 or 2; 0: 2 from
+                      100 pairs on */
+    double next;   /* out: estimate of the next eigenvalue after those found, by
+                      distance from sigma, or of the k-th one if the search was
+                      SLOW; the true one is nearer to sigma. HUGE_VAL if there
+                      is no estimate; not set if it was EXHAUSTED */
+} ritz_lanczos_plan;
+
 /**
- * The @p k eigenpairs nearest to sigma, and more if these have converged, too:
- * up to eight if S->below is 0, any number otherwise. The search goes on until
- * at least S->below of them lie below sigma. That none is missing is not
+ * The plan->k eigenpairs nearest to sigma, and more if these have converged,
+ * too: up to eight if S->below is 0, any number otherwise. The search goes on
+ * until at least S->below of them lie below sigma. That none is missing is not
  * guaranteed: see ritz_inertia_negative().
  *
- * @param[in]  S       K, M and the factor of K - sigma M, which is positive
- *                     definite if S->below is 0; M positive semidefinite
- * @param[in]  room    largest number of basis vectors, at least 5 k / 4 + 48;
- *                     0: about 4 k, with which few models need a restart
- * @param[out] X       n x at least k, by distance from sigma, columns
- *                     M-orthonormal; empty unless *end is FOUND
- * @param[out] lambda  eigenvalues of the columns of X, to be freed; NULL unless
- *                     *end is FOUND  [rad^2/s^2]
- * @param[out] next    estimate of the next eigenvalue after those of X by
- *                     distance from sigma, or of the k-th one if *end is SLOW;
- *                     the true one is nearer to sigma. HUGE_VAL if there is no
- *                     estimate; not set if *end is EXHAUSTED
- * @param[out] end     FOUND; SLOW after 40 restarts, or if @p room is too small
- *                     for one; EXHAUSTED if there are fewer than k finite
- *                     eigenvalues, or fewer than S->below below sigma
- * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if @p k is too large for LAPACK;
+ * @param[in]     S       K, M and the factor of K - sigma M, which is positive
+ *                        definite if S->below is 0; M positive semidefinite
+ * @param[in,out] plan    see above
+ * @param[out]    X       n x at least k, by distance from sigma, columns
+ *                        M-orthonormal; empty unless *end is FOUND
+ * @param[out]    lambda  eigenvalues of the columns of X, to be freed; NULL
+ *                        unless *end is FOUND  [rad^2/s^2]
+ * @param[out]    end     FOUND; SLOW after 40 restarts, or if the room is too
+ *                        small for one; EXHAUSTED if there are fewer than k
+ *                        finite eigenvalues, or fewer than S->below below sigma
+ * @return RITZ_ERR_MEMORY; RITZ_ERR_ARGUMENT if k is too large for LAPACK;
  *         RITZ_ERR_CONVERGENCE if LAPACK fails
- * @cost   about 3 k / 8 block solves and 4 k vectors of memory
+ * @cost   about 3 k / 8 solves of a block, or half as many of two blocks, and
+ *         4 k vectors of memory
  */
-ritz_status ritz_block_lanczos(const ritz_shifted *S, int64_t k, int64_t room,
-                               ritz_dense *X, double **lambda, double *next,
+ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
+                               ritz_dense *X, double **lambda,
                                ritz_lanczos_end *end);
 
 #endif

@@ -9,7 +9,7 @@
 enum {
     B = RITZ_BLOCK,
     SQUARE = RITZ_SQUARE,
-    CHUNK = 256, /* rows of all blocks at a time, which stay in the cache */
+    CHUNK = 128, /* rows of all blocks at a time, which stay in the cache */
 };
 
 ritz_status ritz_blocks_new(int64_t n, int threads, int64_t most,
@@ -84,7 +84,7 @@ double ritz_row_matrix_terms(const ritz_row_matrix *A, const double *X, int j)
 typedef struct block_task {
     const ritz_blocks *on;
     const ritz_row_matrix *A;
-    int64_t count, kept, stride;
+    int64_t count, width, kept, stride;
     const double *V, *X, *C;
     double *to, *room;
 } block_task;
@@ -137,24 +137,30 @@ static void project_rows(int thread, int64_t from, int64_t to, void *task)
     const block_task *t = task;
     double *C = sums_of(t->on, thread);
 
-    memset(C, 0, (size_t)(t->count * SQUARE) * sizeof *C);
+    memset(C, 0, (size_t)(t->width * t->count * SQUARE) * sizeof *C);
     for (int64_t r = from; r < to; r += CHUNK)
-        for (int64_t p = 0; p < t->count; p++) {
+        for (int64_t k = 0; k < t->count * t->width; k++) {
+            const int64_t p = k / t->width;
+            const int64_t q = k % t->width;
+            double *sum = C + (q * t->count + p) * SQUARE;
             double part[SQUARE];
 
             t->on->tiles->inner(rows_of_chunk(r, to),
-                                t->V + at_row(t->on, p, r), t->X + r * B, part);
+                                t->V + at_row(t->on, p, r),
+                                t->X + at_row(t->on, q, r), part);
             for (int i = 0; i < SQUARE; i++)
-                C[p * SQUARE + i] += part[i];
+                sum[i] += part[i];
         }
 }
 
 void ritz_blocks_project(const ritz_blocks *on, int64_t count, const double *V,
-                         const double *X, double *C)
+                         int64_t width, const double *X, double *C)
 {
-    ritz_team_over(on->threads, on->n, project_rows,
-                   &(block_task){.on = on, .count = count, .V = V, .X = X});
-    add_sums(on, count, C);
+    ritz_team_over(
+        on->threads, on->n, project_rows,
+        &(block_task){
+            .on = on, .count = count, .width = width, .V = V, .X = X});
+    add_sums(on, width * count, C);
 }
 
 static void add_rows(int thread, int64_t from, int64_t to, void *task)
@@ -163,18 +169,24 @@ static void add_rows(int thread, int64_t from, int64_t to, void *task)
 
     (void)thread;
     for (int64_t r = from; r < to; r += CHUNK)
-        for (int64_t p = 0; p < t->count; p++)
+        for (int64_t k = 0; k < t->count * t->width; k++) {
+            const int64_t p = k / t->width;
+            const int64_t q = k % t->width;
+
             t->on->tiles->outer(rows_of_chunk(r, to),
-                                t->V + at_row(t->on, p, r), t->C + p * SQUARE,
-                                t->to + r * B);
+                                t->V + at_row(t->on, p, r),
+                                t->C + (q * t->count + p) * SQUARE,
+                                t->to + at_row(t->on, q, r));
+        }
 }
 
 void ritz_blocks_add(const ritz_blocks *on, int64_t count, const double *V,
-                     const double *C, double *X)
+                     int64_t width, const double *C, double *X)
 {
     ritz_team_over(
         on->threads, on->n, add_rows,
-        &(block_task){.on = on, .count = count, .V = V, .C = C, .to = X});
+        &(block_task){
+            .on = on, .count = count, .width = width, .V = V, .C = C, .to = X});
 }
 
 static void transform_rows(int thread, int64_t from, int64_t to, void *task)

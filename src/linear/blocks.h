@@ -30,7 +30,7 @@ typedef struct ritz_blocks {
     int64_t n;
     int threads;
     const ritz_tiles *tiles;
-    int64_t most; /* blocks in one basis */
+    int64_t most; /* small matrices that one product returns */
     double *sums; /* threads x most x 64 */
 } ritz_blocks;
 
@@ -39,7 +39,8 @@ typedef struct ritz_blocks {
  *
  * @param[in]  n        rows of each block
  * @param[in]  threads  at most what ritz_team_ready() returned
- * @param[in]  most     largest number of blocks for ritz_blocks_project()
+ * @param[in]  most     largest number of 8 x 8 matrices that one call of
+ *                      ritz_blocks_project() returns, 1 or more
  * @param[out] out      freed by ritz_blocks_free()
  * @return RITZ_ERR_MEMORY
  */
@@ -81,13 +82,19 @@ double ritz_row_matrix_terms(const ritz_row_matrix *A, const double *X, int j);
 void ritz_blocks_multiply(const ritz_blocks *on, const ritz_row_matrix *A,
                           const double *X, double *Y);
 
-/** C := V'X, @p count matrices 8 x 8 for the @p count blocks of V. */
+/**
+ * C := V'X. V is read once for all blocks of X.
+ *
+ * @param[in]  count  blocks of V
+ * @param[in]  width  blocks of X, one after the other
+ * @param[out] C      V_p'X_q is the matrix number q count + p
+ */
 void ritz_blocks_project(const ritz_blocks *on, int64_t count, const double *V,
-                         const double *X, double *C);
+                         int64_t width, const double *X, double *C);
 
-/** X += V C, with C as ritz_blocks_project() returns it. */
+/** X += V C, with the arguments of ritz_blocks_project(). */
 void ritz_blocks_add(const ritz_blocks *on, int64_t count, const double *V,
-                     const double *C, double *X);
+                     int64_t width, const double *C, double *X);
 
 /** X := X C, C 8 x 8. */
 void ritz_blocks_transform(const ritz_blocks *on, const double *C, double *X);

@@ -220,7 +220,11 @@ struct engine {
 static ritz_status find_by_blocks(search *s, ritz_dense *X, double **lambda,
                                   double *reach, ritz_lanczos_end *end)
 {
-    return ritz_block_lanczos(&s->S, s->ask, 0, X, lambda, reach, end);
+    ritz_lanczos_plan plan = {.k = s->ask, .next = *reach};
+
+    RITZ_CHECK(ritz_block_lanczos(&s->S, &plan, X, lambda, end));
+    *reach = plan.next;
+    return RITZ_OK;
 }
 
 static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,

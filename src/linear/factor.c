@@ -407,6 +407,47 @@ void ritz_factor_solve_rows(ritz_factor *F, double *x)
     ritz_supernodal_solve(F->S, RITZ_SOLVE_WIDTH / 2, x);
 }
 
+/* Two blocks x of n x 8 and one block y of n x 16. */
+typedef struct block_exchange {
+    int64_t n;
+    double *x, *y;
+} block_exchange;
+
+static void join_rows(int thread, int64_t from, int64_t to, void *task)
+{
+    const block_exchange *t = task;
+    const size_t half = RITZ_SOLVE_WIDTH / 2;
+
+    (void)thread;
+    for (int64_t k = from; k < to; k++)
+        for (int64_t q = 0; q < 2; q++)
+            memcpy(t->y + (2 * k + q) * (int64_t)half,
+                   t->x + (q * t->n + k) * (int64_t)half, half * sizeof *t->y);
+}
+
+static void part_rows(int thread, int64_t from, int64_t to, void *task)
+{
+    const block_exchange *t = task;
+    const size_t half = RITZ_SOLVE_WIDTH / 2;
+
+    (void)thread;
+    for (int64_t k = from; k < to; k++)
+        for (int64_t q = 0; q < 2; q++)
+            memcpy(t->x + (q * t->n + k) * (int64_t)half,
+                   t->y + (2 * k + q) * (int64_t)half, half * sizeof *t->y);
+}
+
+void ritz_factor_solve_two(ritz_factor *F, double *x, double *room)
+{
+    const int threads = ritz_supernodal_threads(F->S);
+    block_exchange t = {.n = F->n, .y = room};
+
+    t.x = x;
+    ritz_team_over(threads, F->n, join_rows, &t);
+    ritz_supernodal_solve(F->S, RITZ_SOLVE_WIDTH, room);
+    ritz_team_over(threads, F->n, part_rows, &t);
+}
+
 int ritz_factor_threads(const ritz_factor *F)
 {
     return ritz_supernodal_threads(F->S);

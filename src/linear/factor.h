@@ -42,6 +42,14 @@ ritz_status ritz_factor_spill(ritz_factor *F);
  */
 void ritz_factor_solve_rows(ritz_factor *F, double *x);
 
+/**
+ * x := A^-1 x for two such blocks, one after the other. Both together take
+ * little longer than one: L is read once for both.
+ *
+ * @param room  16 n numbers, overwritten
+ */
+void ritz_factor_solve_two(ritz_factor *F, double *x, double *room);
+
 /** How many threads each solve uses; products of vectors of this length may use
  * as many. */
 int ritz_factor_threads(const ritz_factor *F);

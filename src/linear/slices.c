@@ -315,17 +315,18 @@ static ritz_status step_back(slices *s, int64_t count)
 /*
  * Block Lanczos with the present shift: at least `pairs` pairs, s->S.below of
  * them below the shift. As many above it may be nearer to it, and are then
- * found first: the basis has room for these, too.
+ * found first: the basis has room for these, too. Steps of one block, as a slice
+ * has too few eigenvalues for two to be faster.
  */
 static ritz_status find_run(slices *s, int64_t pairs, run *r,
                             ritz_lanczos_end *end)
 {
     const int64_t nearest = pairs > 2 * s->S.below ? pairs : 2 * s->S.below;
-    double next = 0.0;
+    ritz_lanczos_plan plan = {
+        .k = pairs, .room = 4 * nearest + ROOM, .width = 1};
 
     s->count++;
-    RITZ_CHECK(ritz_block_lanczos(&s->S, pairs, 4 * nearest + ROOM, &r->X,
-                                  &r->lambda, &next, end));
+    RITZ_CHECK(ritz_block_lanczos(&s->S, &plan, &r->X, &r->lambda, end));
     return *end == RITZ_LANCZOS_FOUND ? rank_values(r) : RITZ_OK;
 }
 

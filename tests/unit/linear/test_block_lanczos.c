@@ -30,14 +30,13 @@ static double residual_of(const ritz_shifted *S, ritz_dense *Phi, int64_t j,
  * eigenvalue, 12. The residual is smaller than RITZ_LANCZOS_SETTLED, because
  * the vectors have gone through one more inverse iteration.
  */
-static void check_cube(int64_t edge, double sigma, int64_t k, int64_t room)
+static void check_cube(int64_t edge, double sigma, ritz_lanczos_plan plan)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0}, A = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
     RITZ_OWN(ritz_dense) X = {0}, MX = {0}, G = {0};
     double *exact = lattice_eigenvalues(edge, 0.0);
     double *lambda = NULL;
-    double next = 0.0;
     ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
     ritz_shifted S = {&K, &M, sigma, NULL, 0};
 
@@ -45,14 +44,14 @@ static void check_cube(int64_t edge, double sigma, int64_t k, int64_t room)
     assert_ok(ritz_sparse_add(1.0, &K, -sigma, &M, &A));
     assert_ok(ritz_factor_spd(&A, &F));
     S.A = F;
-    assert_ok(ritz_block_lanczos(&S, k, room, &X, &lambda, &next, &end));
+    assert_ok(ritz_block_lanczos(&S, &plan, &X, &lambda, &end));
     assert_int_equal(end, RITZ_LANCZOS_FOUND);
-    assert_true(X.ncol >= k);
+    assert_true(X.ncol >= plan.k);
     for (int64_t j = 0; j < X.ncol; j++) {
         assert_near(lambda[j], exact[j], 12.0 * 64.0 * DBL_EPSILON);
         assert_near(residual_of(&S, &X, j, lambda[j]), 0.0, 1e-10);
     }
-    assert_true(next > lambda[X.ncol - 1] - 1e-12);
+    assert_true(plan.next > lambda[X.ncol - 1] - 1e-12);
     assert_ok(ritz_sparse_mul(&M, &X, &MX));
     assert_ok(ritz_dense_mul_tn(&X, &MX, &G));
     for (int64_t i = 0; i < X.ncol * X.ncol; i++)
@@ -64,37 +63,48 @@ static void check_cube(int64_t edge, double sigma, int64_t k, int64_t room)
 static void multiple_eigenvalues_are_all_found(void **state)
 {
     (void)state;
-    check_cube(13, 0.0, 40, 0);
-    check_cube(13, -0.1, 3, 0);
-    ritz_set_threads(2);
-    check_cube(16, 0.0, 25, 0);
-    ritz_set_threads(1);
+    for (int64_t width = 1; width <= 2; width++) {
+        check_cube(13, 0.0, (ritz_lanczos_plan){.k = 40, .width = width});
+        check_cube(13, -0.1, (ritz_lanczos_plan){.k = 3, .width = width});
+        ritz_set_threads(2);
+        check_cube(16, 0.0, (ritz_lanczos_plan){.k = 25, .width = width});
+        ritz_set_threads(1);
+    }
+}
+
+/* From 100 modes on a step has sixteen vectors. */
+static void many_modes_are_found_sixteen_at_a_time(void **state)
+{
+    (void)state;
+    check_cube(13, 0.0, (ritz_lanczos_plan){.k = 100});
 }
 
 /* Room for 112 vectors, where 212 would do without a restart. */
 static void restarts_lose_nothing(void **state)
 {
     (void)state;
-    check_cube(12, 0.0, 40, 112);
-    check_cube(12, -0.01, 20, 80);
+    for (int64_t width = 1; width <= 2; width++) {
+        check_cube(12, 0.0, (ritz_lanczos_plan){40, 112, width, 0.0});
+        check_cube(12, -0.01, (ritz_lanczos_plan){20, 80, width, 0.0});
+    }
 }
 
 /* Search for k modes of a lattice in which only `heavy` points have mass: it
    has `heavy` finite eigenvalues. */
-static ritz_status search_few_masses(int64_t heavy, int64_t k, ritz_dense *X,
-                                     double **lambda, ritz_lanczos_end *end)
+static ritz_status search_few_masses(int64_t heavy, ritz_lanczos_plan plan,
+                                     ritz_dense *X, double **lambda,
+                                     ritz_lanczos_end *end)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
     ritz_shifted S = {&K, &M, 0.0, NULL, 0};
-    double next = 0.0;
 
     lattice_new(9, 0.1, &K, &M);
     for (int64_t i = heavy; i < M.nrow; i++)
         M.val[i] = 0.0;
     RITZ_CHECK(ritz_factor_spd(&K, &F));
     S.A = F;
-    return ritz_block_lanczos(&S, k, 0, X, lambda, &next, end);
+    return ritz_block_lanczos(&S, &plan, X, lambda, end);
 }
 
 static void a_search_ends_when_all_finite_modes_are_found(void **state)
@@ -102,17 +112,22 @@ static void a_search_ends_when_all_finite_modes_are_found(void **state)
     const int64_t heavy[] = {3, 5, 8, 12, 16, 21};
 
     (void)state;
-    for (size_t i = 0; i < 6; i++) {
+    for (size_t i = 0; i < 12; i++) {
+        const int64_t masses = heavy[i % 6];
+        const int64_t width = 1 + (int64_t)i / 6;
         RITZ_OWN(ritz_dense) X = {0}, none = {0};
         double *lambda = NULL;
         double *nothing = NULL;
         ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
 
-        assert_ok(search_few_masses(heavy[i], heavy[i] / 2, &X, &lambda, &end));
+        assert_ok(search_few_masses(
+            masses, (ritz_lanczos_plan){.k = masses / 2, .width = width}, &X,
+            &lambda, &end));
         assert_int_equal(end, RITZ_LANCZOS_FOUND);
-        assert_true(X.ncol >= heavy[i] / 2 && X.ncol <= heavy[i]);
-        assert_ok(
-            search_few_masses(heavy[i], heavy[i] + 1, &none, &nothing, &end));
+        assert_true(X.ncol >= masses / 2 && X.ncol <= masses);
+        assert_ok(search_few_masses(
+            masses, (ritz_lanczos_plan){.k = masses + 1, .width = width}, &none,
+            &nothing, &end));
         assert_int_equal(end, RITZ_LANCZOS_EXHAUSTED);
         assert_null(nothing);
         free(lambda);
@@ -127,11 +142,8 @@ static void random_vectors_find_eigenvalues_of_high_multiplicity(void **state)
     enum { COPIES = 20, DOFS = 3 * COPIES };
     RITZ_OWN(ritz_sparse) K = {0}, M = {0};
     RITZ_OWN(ritz_factor) *F = NULL;
-    RITZ_OWN(ritz_dense) X = {0};
     int64_t row[DOFS];
     double val[DOFS];
-    double *lambda = NULL;
-    double next = 0.0;
     ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
 
     (void)state;
@@ -144,25 +156,31 @@ static void random_vectors_find_eigenvalues_of_high_multiplicity(void **state)
         val[i] = 1.0 + (double)(i % 3);
     assert_ok(ritz_sparse_from_triplets(DOFS, DOFS, DOFS, row, row, val, &K));
     assert_ok(ritz_factor_spd(&K, &F));
-    assert_ok(ritz_block_lanczos(&(ritz_shifted){&K, &M, 0.0, F, 0}, 50, 0, &X,
-                                 &lambda, &next, &end));
-    assert_int_equal(end, RITZ_LANCZOS_FOUND);
-    assert_true(X.ncol >= 50);
-    for (int64_t j = 0; j < X.ncol; j++) {
-        const int64_t kind = j / COPIES;
+    for (int64_t width = 1; width <= 2; width++) {
+        RITZ_OWN(ritz_dense) X = {0};
+        double *lambda = NULL;
 
-        assert_near(lambda[j], 1.0 + (double)kind, 1e-13);
+        assert_ok(ritz_block_lanczos(
+            &(ritz_shifted){&K, &M, 0.0, F, 0},
+            &(ritz_lanczos_plan){.k = 50, .width = width}, &X, &lambda, &end));
+        assert_int_equal(end, RITZ_LANCZOS_FOUND);
+        assert_true(X.ncol >= 50);
+        for (int64_t j = 0; j < X.ncol; j++) {
+            const int64_t kind = j / COPIES;
+
+            assert_near(lambda[j], 1.0 + (double)kind, 1e-13);
+        }
+        free(lambda);
     }
-    free(lambda);
 }
 
 static ritz_status find_few(const ritz_shifted *S)
 {
     RITZ_OWN(ritz_dense) X = {0};
     double *lambda = NULL;
-    double next = 0.0;
     ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
-    ritz_status status = ritz_block_lanczos(S, 3, 56, &X, &lambda, &next, &end);
+    ritz_status status = ritz_block_lanczos(
+        S, &(ritz_lanczos_plan){3, 64, 2, 0.0}, &X, &lambda, &end);
 
     free(lambda);
     return status;
@@ -182,6 +200,7 @@ static void no_allocation_failure_leaks(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(multiple_eigenvalues_are_all_found),
+    cmocka_unit_test(many_modes_are_found_sixteen_at_a_time),
     cmocka_unit_test(restarts_lose_nothing),
     cmocka_unit_test(a_search_ends_when_all_finite_modes_are_found),
     cmocka_unit_test(random_vectors_find_eigenvalues_of_high_multiplicity),

@@ -64,7 +64,7 @@ static void projections_are_sums_over_all_rows(void **state)
         double G[SQUARE];
 
         begin(threads, &p);
-        ritz_blocks_project(&p.on, BLOCKS, p.V, p.X, p.C);
+        ritz_blocks_project(&p.on, BLOCKS, p.V, 1, p.X, p.C);
         ritz_blocks_inner(&p.on, p.V, p.X, G);
         for (int k = 0; k < BLOCKS * SQUARE; k++)
             assert_near(p.C[k],
@@ -75,6 +75,39 @@ static void projections_are_sums_over_all_rows(void **state)
             assert_near(G[k], p.C[k], bound);
         end(&p);
     }
+}
+
+/* Two blocks multiplied together are two blocks multiplied one by one. */
+static void two_blocks_are_multiplied_as_one_by_one(void **state)
+{
+    enum { V_BLOCKS = BLOCKS - 1, ALL = 2 * V_BLOCKS * SQUARE };
+    products p;
+    ritz_blocks on = {0};
+    double C[ALL];
+    double *X = NULL;
+    double *Y = NULL;
+
+    (void)state;
+    begin(2, &p);
+    assert_ok(ritz_blocks_new(N, ritz_team_ready(2), 2 * V_BLOCKS, &on));
+    X = calloc((size_t)2 * N * B, sizeof *X);
+    Y = calloc((size_t)2 * N * B, sizeof *Y);
+    assert_true(X && Y);
+    fill((int64_t)2 * N * B, X);
+    memcpy(Y, X, (size_t)2 * N * B * sizeof *X);
+    ritz_blocks_project(&on, V_BLOCKS, p.V, 2, X, C);
+    ritz_blocks_add(&on, V_BLOCKS, p.V, 2, C, X);
+    for (int64_t q = 0; q < 2; q++) {
+        ritz_blocks_project(&on, V_BLOCKS, p.V, 1, Y + q * N * B, p.C);
+        assert_memory_equal(p.C, C + q * V_BLOCKS * SQUARE,
+                            V_BLOCKS * SQUARE * sizeof *C);
+        ritz_blocks_add(&on, V_BLOCKS, p.V, 1, p.C, Y + q * N * B);
+    }
+    assert_memory_equal(X, Y, (size_t)2 * N * B * sizeof *X);
+    free(X);
+    free(Y);
+    ritz_blocks_free(&on);
+    end(&p);
 }
 
 /* Row r of vector j of X + V C. */
@@ -100,12 +133,12 @@ static void blocks_are_combined_row_by_row(void **state)
         begin(threads, &p);
         fill((int64_t)BLOCKS * SQUARE, p.C);
         memcpy(p.Y, p.X, (size_t)(N * B) * sizeof *p.Y);
-        ritz_blocks_add(&p.on, BLOCKS, p.V, p.C, p.Y);
+        ritz_blocks_add(&p.on, BLOCKS, p.V, 1, p.C, p.Y);
         for (int64_t k = 0; k < (int64_t)N * B; k++)
             assert_near(p.Y[k], plain_sum(&p, k / B, (int)(k % B)), bound);
         memset(p.X, 0, (size_t)(N * B) * sizeof *p.X);
         memset(p.Y, 0, (size_t)(N * B) * sizeof *p.Y);
-        ritz_blocks_add(&p.on, BLOCKS, p.V, p.C, p.Y);
+        ritz_blocks_add(&p.on, BLOCKS, p.V, 1, p.C, p.Y);
         room = calloc((size_t)ritz_blocks_room(&p.on, 1), sizeof *room);
         assert_non_null(room);
         ritz_blocks_combine(&p.on, BLOCKS, 1, 0, p.C, room, p.V);
@@ -181,6 +214,7 @@ static void rows_of_a_matrix_follow_the_order(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(projections_are_sums_over_all_rows),
+    cmocka_unit_test(two_blocks_are_multiplied_as_one_by_one),
     cmocka_unit_test(blocks_are_combined_row_by_row),
     cmocka_unit_test(cholesky_of_the_inner_products_orthonormalises),
     cmocka_unit_test(a_dependent_vector_is_refused_by_the_cholesky_factor),

@@ -1,0 +1,85 @@
+/*
+ * An M-orthonormal basis that grows by one or two blocks of eight vectors at a
+ * time, for block_lanczos.h. Two blocks are read and multiplied together where
+ * this saves time; they are orthonormalised one after the other.
+ */
+#ifndef RITZ_LINEAR_BLOCK_BASIS_H
+#define RITZ_LINEAR_BLOCK_BASIS_H
+
+#include "linear/blocks.h"
+#include "linear/general.h"
+
+enum {
+    RITZ_STEP_WIDEST = 2, /* blocks of a step */
+    RITZ_STEP_SQUARES = RITZ_STEP_WIDEST * RITZ_STEP_WIDEST,
+};
+
+/** Blocks are n x 8 as blocks.h has them, with rows in the order of the factor
+ * S->A. */
+typedef struct ritz_block_basis {
+    const ritz_shifted *S;
+    int64_t n;
+    int64_t width;  /* blocks of a step, 1 or 2 */
+    uint64_t noise; /* state of random vectors */
+    int64_t blocks; /* of V, without those of the next step */
+    double *V;
+    double *W, *MW; /* width blocks each: the next step, and M times it */
+    double *C;      /* 8 x 8 coefficients for each block of V and of W */
+    ritz_blocks on;
+    ritz_row_matrix M;
+} ritz_block_basis;
+
+/**
+ * Allocate what a basis needs; V has no blocks yet.
+ *
+ * @param[in]     room  blocks of V, a multiple of the width
+ * @param[in,out] b     with S, n, width and noise; freed by
+ *                      ritz_block_basis_free(), also on failure
+ * @return RITZ_ERR_MEMORY
+ */
+ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b);
+
+void ritz_block_basis_free(ritz_block_basis *b);
+
+/** V := one step of random vectors, multiplied by A^-1 M; W is the same.
+ * @param[out] exhausted  the range of A^-1 M is empty */
+ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
+
+/** Block j of V. */
+double *ritz_block_basis_at(const ritz_block_basis *b, int64_t j);
+
+/** Y := M X for all blocks of a step. */
+void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y);
+
+/** b->C := V'X for blocks [first, first + count) of V and @p width blocks X: as
+ * ritz_blocks_project(). */
+void ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
+                              int64_t count, int64_t width, const double *X);
+
+/** X -= V b->C with the same blocks; b->C changes its sign. */
+void ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
+                               int64_t count, int64_t width, double *X);
+
+/** Block R_pq of the R of a step, 8 x 8: V_p R_pq is the part of W_q along the
+ * p-th new block. */
+double *ritz_block_basis_square(const ritz_block_basis *b, double *R, int64_t p,
+                                int64_t q);
+
+/**
+ * W := Q of W = Q R, and MW := M Q, for W that is orthogonal to V. Q is also
+ * put behind the blocks of V, which b->blocks does not count yet. Vectors of W
+ * that depend on those before them are replaced by random ones, orthogonal to
+ * all others; where no direction is left they are zero.
+ *
+ * @param[in]  size       norm of what was subtracted from W to make it
+ *                        orthogonal: vectors that are much shorter are rounding
+ * @param[out] R          upper triangular, see ritz_block_basis_square(); rows
+ *                        of replaced vectors are zero
+ * @param[out] exhausted  no direction was left for any vector of the first
+ *                        block
+ * @return RITZ_ERR_MEMORY
+ */
+ritz_status ritz_block_basis_orthonormalise(ritz_block_basis *b, double size,
+                                            double *R, bool *exhausted);
+
+#endif
