@@ -21,10 +21,18 @@ enum {
     T = RITZ_TILE,
     ROWS = LANES == 8 ? 8 : 4,
     MOST = LANES == 8 ? 16 : 2 * LANES, /* columns at once */
+    AHEAD = 64, /* columns of a panel that are fetched in advance */
 };
 
 /* How many of `width` columns are worked on at a time. */
 #define STRIP(width) ((width) < MOST ? (width) : MOST)
+
+/* Panels follow each other in memory. A factor that exceeds the caches is read
+   a third faster if this is told in advance (64 to 256 columns, measured). */
+INLINE void fetch_ahead(const double *a)
+{
+    __builtin_prefetch(a + AHEAD * T, 0, 2);
+}
 
 /* y := a x, a one panel of k columns, x k x width, y 8 x width. */
 INLINE void multiply_panel(const int64_t width, const double *a, int64_t k,
@@ -41,6 +49,7 @@ INLINE void multiply_panel(const int64_t width, const double *a, int64_t k,
                 const double *from = x + j * width + c;
                 vector b[VECTORS];
 
+                fetch_ahead(a + T * j + r);
                 for (int64_t v = 0; v < vectors; v++)
                     b[v] = *(const vector *)(from + v * LANES);
                 for (int i = 0; i < ROWS; i++)
@@ -72,6 +81,7 @@ INLINE void add_transposed(const int64_t width, const double *a, int64_t k,
             for (int64_t j = 0; j < k; j++) {
                 double *to = z + j * width + c;
 
+                fetch_ahead(a + T * j + r);
                 for (int64_t v = 0; v < vectors; v++) {
                     vector sum = *(vector *)(to + v * LANES);
 
@@ -98,6 +108,18 @@ INLINE void subtract_row(const int64_t width, const double *y, double *to)
 INLINE int64_t least(int64_t a, int64_t b)
 {
     return a < b ? a : b;
+}
+
+/* Fetch the rows of x, or of the top, that panel p needs. */
+INLINE void fetch_rows(const int64_t width, const ritz_block_column *b,
+                       int64_t p, const double *x, const double *top)
+{
+    for (int64_t i = p * T; i < least(p * T + T, b->below); i++) {
+        const int32_t row = b->row[i];
+
+        for (int64_t c = 0; c < width; c += T)
+            __builtin_prefetch((row >= 0 ? x : top) + index_of(width, row) + c);
+    }
 }
 
 INLINE void lower(const int64_t width, const ritz_block_column *b,
@@ -137,6 +159,7 @@ INLINE void scatter(const int64_t width, const ritz_block_column *b,
         const int64_t count = least(T, b->below - p * T);
         double y[T * 16];
 
+        fetch_rows(width, b, p + 1, x, top);
         multiply_panel(width, b->panel + p * T * b->cols, b->cols, z, y);
         for (int64_t i = 0; i < count; i++) {
             const int32_t row = b->row[p * T + i];
@@ -155,6 +178,7 @@ INLINE void gather(const int64_t width, const ritz_block_column *b,
         const int64_t count = least(T, b->below - p * T);
         double y[T * 16] = {0};
 
+        fetch_rows(width, b, p + 1, x, top);
         for (int64_t i = 0; i < count; i++) {
             const int32_t row = b->row[p * T + i];
 
