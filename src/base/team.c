@@ -3,10 +3,13 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <time.h>
 
 enum {
     MOST = 64,       /* threads */
-    SPINS = 400,     /* pauses before sleep: some 20 microseconds */
+    SPINS = 64,      /* pauses between two looks at the clock */
+    AWAKE = 200,     /* microseconds before sleep: to wake a thread takes as
+                        long on a virtual machine */
     SHARES_EACH = 4, /* of a file for each thread: some take longer */
 };
 
@@ -50,14 +53,34 @@ static void pause_thread(void)
 #endif
 }
 
+static int64_t read_microseconds(void)
+{
+    struct timespec now = {0};
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+/* Whether the count differs from @p seen within AWAKE. */
+static bool spin_for_change(const signal_count *s, uint32_t seen)
+{
+    const int64_t start = read_microseconds();
+
+    do {
+        for (int k = 0; k < SPINS; k++) {
+            if (atomic_load(&s->count) != seen)
+                return true;
+            pause_thread();
+        }
+    } while (read_microseconds() - start < AWAKE);
+    return false;
+}
+
 /* Wait until the count differs from @p seen. */
 static void await_change(signal_count *s, uint32_t seen)
 {
-    for (int k = 0; k < SPINS; k++) {
-        if (atomic_load(&s->count) != seen)
-            return;
-        pause_thread();
-    }
+    if (spin_for_change(s, seen))
+        return;
     pthread_mutex_lock(&s->lock);
     atomic_fetch_add(&s->sleepers, 1);
     while (atomic_load(&s->count) == seen)

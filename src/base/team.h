@@ -3,7 +3,7 @@
  * triangular solve of 100 microseconds.
  *
  * A thread of the team is started when a task first needs it. Between tasks it
- * spins for some 20 microseconds and then sleeps. The team does not use OpenMP,
+ * spins for 200 microseconds and then sleeps. The team does not use OpenMP,
  * so that it behaves alike with every compiler and every BLAS.
  */
 #ifndef RITZ_BASE_TEAM_H
