@@ -1,6 +1,7 @@
 #include "base/memory.h"
 
 #include <inttypes.h>
+#include <malloc.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,11 +115,19 @@ static const char *name_size(int64_t bytes, char out[32])
     return out;
 }
 
+void ritz_memory_return(void)
+{
+    (void)malloc_trim(0);
+}
+
 bool ritz_memory_fits(int64_t bytes)
 {
     const int64_t limit = ritz_memory_limit();
 
-    return bytes < limit / SMALL_PART || bytes <= limit - memory_in_use();
+    if (bytes < limit / SMALL_PART || bytes <= limit - memory_in_use())
+        return true;
+    ritz_memory_return();
+    return bytes <= limit - memory_in_use();
 }
 
 ritz_status ritz_memory_admit(const char *what, int64_t bytes)

@@ -10,8 +10,15 @@
 /** The limit of ritz_set_memory() in bytes, or what stands in its place. */
 int64_t ritz_memory_limit(void);
 
+/**
+ * Return pages to the system in which all memory was freed. free() keeps them,
+ * because the system takes time to clear pages that it gives out; call this
+ * before a large array that will not fit into them.
+ */
+void ritz_memory_return(void);
+
 /** Whether these bytes fit beside the memory in use, as ritz_memory_admit()
- * judges it. */
+ * judges it. If they do not, memory that was freed is returned first. */
 bool ritz_memory_fits(int64_t bytes);
 
 /**

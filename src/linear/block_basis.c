@@ -1,6 +1,7 @@
 #include "linear/block_basis.h"
 
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/tolerances.h"
 #include "linear/factor.h"
 
@@ -9,18 +10,29 @@
 
 enum { B = RITZ_BLOCK, SQUARE = RITZ_SQUARE };
 
+/* V comes last, because the other arrays fit where memory was freed before and V
+   does not: the rest of that memory is returned to the system. */
+static ritz_status allocate_vectors(int64_t count, ritz_block_basis *b)
+{
+    ritz_memory_return();
+    RITZ_CHECK(
+        ritz_memory_admit("the Lanczos basis", count * (int64_t)sizeof *b->V));
+    RITZ_CHECK_RAW(b->V, count); /* most is never used */
+    return RITZ_OK;
+}
+
 ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
 {
     const int64_t step = b->width * b->n * B;
     const int64_t most = b->width * (room + b->width);
 
-    RITZ_CHECK_RAW(b->V, room * b->n * B + step); /* most is never used */
     RITZ_CHECK_NEW(b->W, step);
     RITZ_CHECK_NEW(b->MW, step);
     RITZ_CHECK_NEW(b->C, most * SQUARE);
     RITZ_CHECK(
         ritz_blocks_new(b->n, ritz_factor_threads(b->S->A), most, &b->on));
-    return ritz_row_matrix_new(b->S->M, ritz_factor_order(b->S->A), &b->M);
+    RITZ_CHECK(ritz_row_matrix_new(b->S->M, ritz_factor_order(b->S->A), &b->M));
+    return allocate_vectors(room * b->n * B + step, b);
 }
 
 void ritz_block_basis_free(ritz_block_basis *b)

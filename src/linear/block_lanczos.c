@@ -1,7 +1,6 @@
 #include "linear/block_lanczos.h"
 
 #include "base/alloc.h"
-#include "base/memory.h"
 #include "base/tolerances.h"
 #include "linear/blas_threads.h"
 #include "linear/block_basis.h"
@@ -58,10 +57,6 @@ static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
                    "%" PRId64 " modes of %" PRId64
                    " dofs are more than can be found",
                    L->k, n);
-    RITZ_CHECK(
-        ritz_memory_admit("the Lanczos basis",
-                          (L->room + width) * n * B * (int64_t)sizeof(double)));
-    RITZ_CHECK(ritz_block_basis_new(L->room, &L->b));
     RITZ_CHECK_NEW(L->MV, width * n * B);
     if (width > 1)
         RITZ_CHECK_NEW(L->both, width * n * B);
@@ -69,7 +64,7 @@ static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
     RITZ_CHECK_NEW(L->Z, order * order);
     RITZ_CHECK_NEW(L->theta, order);
     RITZ_CHECK_NEW(L->rank, order);
-    return RITZ_OK;
+    return ritz_block_basis_new(L->room, &L->b);
 }
 
 /* --- the iteration -------------------------------------------------------- */
