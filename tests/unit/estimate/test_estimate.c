@@ -269,6 +269,43 @@ static void one_estimator_serves_many_reductions(void **)
     assert_null(estimator);
 }
 
+/* A count that does not fit puts the factor into a file first; it is read back
+   where it is needed, and the bounds are the same. */
+static void the_factor_leaves_memory_to_a_count(void **)
+{
+    enum { ELEMENTS = 2500 };
+    int64_t attached[] = {0};
+    const ritz_estimate_request request = {.frequencies = true};
+    ritz_estimator *estimator = NULL;
+    RITZ_OWN(ritz_component) bar = {0};
+    RITZ_OWN(ritz_basis) basis = {0};
+    RITZ_OWN(ritz_reduced) reduced = {0};
+    RITZ_OWN(ritz_measures) least = {0}, none = {0}, found = {0};
+
+    assert_ok(bar_component(ELEMENTS, &bar));
+    reduce_by(&ritz_method_craig_bampton, &bar, (ritz_dofs){1, attached}, 4,
+              &basis, &reduced);
+    assert_ok(ritz_estimate(&bar, &basis, &request, &reduced));
+    assert_ok(ritz_estimator_new(&bar, &request, &estimator));
+    assert_ok(
+        ritz_estimator_measure(estimator, &basis, &reduced, true, &least));
+    assert_int_equal(ritz_disk_used(), 0);
+    ritz_set_memory(1024);
+    assert_fails(
+        ritz_estimator_measure(estimator, &basis, &reduced, false, &none),
+        RITZ_ERR_MEMORY, "the factor of a count needs");
+    ritz_set_memory(0);
+    assert_true(ritz_disk_used() > 0);
+    assert_ok(
+        ritz_estimator_measure(estimator, &basis, &reduced, false, &found));
+    assert_int_equal(found.count, reduced.estimates.count);
+    for (int64_t k = 0; k < found.count; k++)
+        assert_memory_equal(&found.item[k].value,
+                            &reduced.estimates.item[k].value,
+                            sizeof found.item[k].value);
+    ritz_estimator_free(&estimator);
+}
+
 /* Rows 3, 4, 5 of the chain have no mass: M is singular. */
 static void massless_dofs_are_no_obstacle(void **)
 {
@@ -340,6 +377,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(responses_are_bounded),
     cmocka_unit_test(what_is_not_proven_is_called_an_estimate),
     cmocka_unit_test(one_estimator_serves_many_reductions),
+    cmocka_unit_test(the_factor_leaves_memory_to_a_count),
     cmocka_unit_test(massless_dofs_are_no_obstacle),
     cmocka_unit_test(bands_and_bases_that_do_not_fit_are_refused),
     cmocka_unit_test(estimating_survives_every_allocation),
