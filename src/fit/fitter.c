@@ -262,6 +262,8 @@ static ritz_status refer_scene(ritz_fitter *f)
 
 static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(f->orders);
     ritz_verify_request *limits = &f->request.tolerance;
     const ritz_io *io = NULL;
 
@@ -291,6 +293,8 @@ static ritz_status open_scene(const ritz_scene *scene, ritz_fitter *f)
 static ritz_status open_component(const ritz_component *component,
                                   ritz_fitter *f)
 {
+    [[maybe_unused]] RITZ_OWN(ritz_orders_lent) lent =
+        ritz_orders_lend(f->orders);
     ritz_verify_request *limits = &f->request.tolerance;
 
     RITZ_REFUSE_IF(!(limits->band_hz[1] > 0.0), RITZ_ERR_ARGUMENT,
@@ -322,14 +326,12 @@ ritz_status ritz_fitter_new(const ritz_component *component,
                             const ritz_fit_request *request, ritz_fitter **out)
 {
     RITZ_OWN(ritz_fitter) *f = NULL;
-    RITZ_OWN(ritz_orders_lent) lent = ritz_orders_lend(NULL);
 
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->most_entries = most_entries;
     f->component = component;
     RITZ_CHECK(ritz_orders_new(&f->orders));
-    (void)ritz_orders_lend(f->orders);
     RITZ_CHECK(open_component(component, f));
     RITZ_MOVE(*out, f);
     return RITZ_OK;
@@ -340,13 +342,11 @@ ritz_status ritz_fitter_scene(const ritz_scene *scene,
                               ritz_fitter **out)
 {
     RITZ_OWN(ritz_fitter) *f = NULL;
-    RITZ_OWN(ritz_orders_lent) lent = ritz_orders_lend(NULL);
 
     RITZ_CHECK_NEW(f, 1);
     f->request = *request;
     f->scene = scene;
     RITZ_CHECK(ritz_orders_new(&f->orders));
-    (void)ritz_orders_lend(f->orders);
     RITZ_CHECK(open_scene(scene, f));
     RITZ_MOVE(*out, f);
     return RITZ_OK;

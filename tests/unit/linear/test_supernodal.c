@@ -172,6 +172,7 @@ static ritz_status store_once(const ritz_sparse *A, const int64_t *expected)
 static void a_store_has_an_order_for_each_pattern(void **state)
 {
     RITZ_OWN(ritz_sparse) K = {0}, M = {0}, less = {0}, M_less = {0};
+    RITZ_OWN(ritz_sparse) least = {0}, M_least = {0};
     RITZ_OWN(ritz_orders) *orders = NULL;
     RITZ_OWN_ARRAY int64_t *order = NULL, *other = NULL, *last = NULL;
 
@@ -197,8 +198,8 @@ static void a_store_has_an_order_for_each_pattern(void **state)
     }
     RITZ_FREE(last);
     last = NULL;
-    lattice_new(EDGE - 2, ground, &less, &M_less);
-    assert_ok(ritz_ordering_new(&less, &last));
+    lattice_new(EDGE - 2, ground, &least, &M_least);
+    assert_ok(ritz_ordering_new(&least, &last));
     assert_int_equal(ritz_orders_count(orders), 3);
     assert_survives_every_allocation(store_once(&K, order));
 }
