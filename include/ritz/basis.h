@@ -152,6 +152,10 @@ typedef struct ritz_request {
        longer needs them, so that memory does not hold both them and copies of
        parts of them; NULL: they are kept */
     ritz_component *owned;
+    /* the lowest modes of `component`, none of which is missing below
+       `proven_to`: methods of free modes take theirs, or rigid ones, from them
+       if there are enough; borrowed, NULL: none are known */
+    const ritz_pairs *known;
 } ritz_request;
 
 /* A request without number of modes or frequency. */

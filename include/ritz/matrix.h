@@ -481,6 +481,10 @@ double ritz_eigen_lambda(double hertz);
 
 void ritz_pairs_free(ritz_pairs *pairs);
 
+/** Copy the first @p count pairs, of which no more than these are proven. */
+ritz_status ritz_pairs_copy(const ritz_pairs *from, int64_t count,
+                            ritz_pairs *out);
+
 #pragma GCC visibility pop
 
 #endif

@@ -20,6 +20,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
+#include "linear/requested.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -386,11 +387,26 @@ static ritz_status find_statics(const residual_task *t)
     return choose_independent(t->response, t->request->tolerance, t->set);
 }
 
-ritz_status ritz_free_set_new(const ritz_request *request, int loads,
-                              bool joined, ritz_free_set *out)
+/* The modes that the request asks for: those that it knows, if the next one
+   above them is known too, or computed ones. */
+static ritz_status find_modes(const ritz_request *request,
+                              const ritz_factor_use *use, ritz_pairs *out)
 {
     const ritz_component *component = request->component;
     const ritz_span span = ritz_request_span(request);
+    const ritz_pairs *known = request->known;
+    const int64_t end =
+        known && span.modes >= 0 ? ritz_pairs_wanted(known, &span, 0.0) : 0;
+
+    if (known && span.modes >= 0 && end < known->Phi.ncol)
+        return ritz_pairs_copy(known, end, out);
+    return ritz_lowest_modes("free-interface modes", "K", &component->K,
+                             &component->M, &span, use, out);
+}
+
+ritz_status ritz_free_set_new(const ritz_request *request, int loads,
+                              bool joined, ritz_free_set *out)
+{
     RITZ_OWN(ritz_free_set)
     set = {.loads = loads, .interface = joined ? request->attached.count : 0};
     RITZ_OWN(residual_task) task = {.request = request, .set = &set};
@@ -398,11 +414,10 @@ ritz_status ritz_free_set_new(const ritz_request *request, int loads,
     RITZ_OWN(ritz_dofs) rest = {0};
 
     /* refuses attached dofs that are out of range or repeated */
-    RITZ_CHECK(
-        ritz_dofs_complement(&request->attached, component->num_dofs, &rest));
+    RITZ_CHECK(ritz_dofs_complement(&request->attached,
+                                    request->component->num_dofs, &rest));
     RITZ_CHECK(collect_loads(&task));
-    RITZ_CHECK(ritz_lowest_modes("free-interface modes", "K", &component->K,
-                                 &component->M, &span, &use, &set.modes));
+    RITZ_CHECK(find_modes(request, &use, &set.modes));
     RITZ_CHECK(find_statics(&task));
     RITZ_MOVE(*out, set);
     return RITZ_OK;

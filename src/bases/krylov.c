@@ -106,13 +106,16 @@ static ritz_status choose_support(ritz_elastic *E)
     return ritz_dofs_complement(&E->held, n, &E->rest);
 }
 
-static ritz_status find_rigid(ritz_elastic *E)
+static ritz_status find_rigid(const ritz_pairs *known, ritz_elastic *E)
 {
     const ritz_span rigid_only = {.modes = 0};
     RITZ_OWN(ritz_pairs) pairs = {0};
 
-    RITZ_CHECK_IN("rigid modes",
-                  ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
+    if (known)
+        RITZ_CHECK(ritz_pairs_copy(known, known->num_rigid, &pairs));
+    else
+        RITZ_CHECK_IN("rigid modes",
+                      ritz_eigen_sparse(E->K, E->M, &rigid_only, &pairs));
     RITZ_MOVE(E->Phi, pairs.Phi);
     RITZ_MOVE(E->residual, pairs.residual);
     return ritz_sparse_mul(E->M, &E->Phi, &E->MPhi);
@@ -148,11 +151,11 @@ static ritz_status factor_stiffness(ritz_elastic *E)
 }
 
 ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
-                             ritz_elastic *out)
+                             const ritz_pairs *known, ritz_elastic *out)
 {
     RITZ_OWN(ritz_elastic) E = {.K = K, .M = M};
 
-    RITZ_CHECK(find_rigid(&E));
+    RITZ_CHECK(find_rigid(known, &E));
     RITZ_CHECK(choose_support(&E));
     RITZ_CHECK(factor_stiffness(&E));
     RITZ_MOVE(*out, E);
@@ -613,7 +616,8 @@ static ritz_status make_vectors(const ritz_request *request, bool attached,
         request, loads | (attached ? RITZ_LOADS_ATTACHED : 0), &F, &dof));
     F_a = ritz_dense_part(&F, 0, seeds);
     RITZ_CHECK_NEW(taken, seeds);
-    RITZ_CHECK(ritz_elastic_new(&component->K, &component->M, &body));
+    RITZ_CHECK(
+        ritz_elastic_new(&component->K, &component->M, request->known, &body));
     RITZ_CHECK(ritz_krylov_new(&body, request, &S));
     if (attached)
         RITZ_CHECK(seed_vectors(&S, &F_a, taken));

@@ -22,12 +22,14 @@ typedef struct ritz_elastic {
 /**
  * Find the rigid modes, choose a support and factor K at the other dofs.
  *
+ * @param[in] known  modes of K and M, all rigid ones among them; NULL: they are
+ *                   computed
  * @return RITZ_ERR_SINGULAR if K has a negative eigenvalue, or K + M is
  *         singular; RITZ_ERR_CONVERGENCE
  * @cost   the rigid modes, which an inertia count proves, and a CHOLMOD factor
  */
 ritz_status ritz_elastic_new(const ritz_sparse *K, const ritz_sparse *M,
-                             ritz_elastic *out);
+                             const ritz_pairs *known, ritz_elastic *out);
 
 void ritz_elastic_free(ritz_elastic *E);
 

@@ -361,7 +361,7 @@ static ritz_status make_krylov_damped(const ritz_request *request,
 
     RITZ_CHECK(ritz_loads_collect(request, loads, &F, &dof)); /* refuses none */
     RITZ_CHECK(collect_matrices(&r));
-    RITZ_CHECK(ritz_elastic_new(&r.K, &request->component->M, &r.body));
+    RITZ_CHECK(ritz_elastic_new(&r.K, &request->component->M, NULL, &r.body));
     at_rest.choice.num_shifts = 0; /* no factors of K - sigma M */
     RITZ_CHECK(ritz_krylov_new(&r.body, &at_rest, &r.S));
     ritz_krylov_points(&request->choice, &r.S);

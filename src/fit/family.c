@@ -117,6 +117,16 @@ static ritz_request request_basis(const ritz_fitter *f,
     return request;
 }
 
+/* The modes of the component that the reference has; NULL if its stiffness is
+   not the component's, which is without dampers. */
+static const ritz_pairs *find_known(const ritz_fitter *f)
+{
+    return f->component->dampers.count > 0
+               ? NULL
+               : ritz_reference_pairs(f->place[0].reference);
+}
+
+/* @param[in] counted  prove by a count that no mode is missing */
 static ritz_status reduce_component(const ritz_fitter *f,
                                     const ritz_method *method, int64_t modes,
                                     bool counted, ritz_reduced *out)
@@ -124,7 +134,10 @@ static ritz_status reduce_component(const ritz_fitter *f,
     ritz_request request = request_basis(f, method, modes);
     RITZ_OWN(ritz_basis) basis = {0};
 
-    request.choice.uncounted = request.choice.uncounted || !counted;
+    if (!counted) {
+        request.choice.uncounted = true;
+        request.known = find_known(f);
+    }
     RITZ_CHECK(ritz_basis_make(method, &request, &basis));
     return ritz_reduce(f->component, &basis, out);
 }
@@ -245,6 +258,16 @@ static ritz_status find_family(ritz_fitter *f, const ritz_method *method,
     return RITZ_OK;
 }
 
+/* Flexible modes of the component that are known without the next one above
+   them: so many a method of free modes need not compute. */
+static int64_t count_known(const ritz_fitter *f)
+{
+    const ritz_pairs *known = find_known(f);
+    const int64_t flexible = known ? known->Phi.ncol - known->num_rigid : 0;
+
+    return flexible > 0 ? flexible - 1 : 0;
+}
+
 /* How many modes the basis gets that is made when a candidate with @p modes
    modes needs one. */
 static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
@@ -257,6 +280,9 @@ static int64_t choose_modes(const ritz_fitter *f, const ritz_fit_family *family,
     if (family->modes < 0)
         more = FOR_EACH * ritz_reference_modes(f->place[0].reference, &rigid) +
                AND_MORE;
+    if (family->modes < 0 && family->method->narrow &&
+        modes <= count_known(f) && count_known(f) < more)
+        more = count_known(f);
     if (more > f->largest)
         more = f->largest;
     return more > modes ? more : modes;

@@ -90,6 +90,25 @@ void ritz_pairs_free(ritz_pairs *pairs)
     *pairs = (ritz_pairs){0};
 }
 
+ritz_status ritz_pairs_copy(const ritz_pairs *from, int64_t count,
+                            ritz_pairs *out)
+{
+    const ritz_dense Phi = ritz_dense_part(&from->Phi, 0, count);
+    RITZ_OWN(ritz_pairs)
+    copy = {.num_rigid = from->num_rigid < count ? from->num_rigid : count,
+            .sigma = from->sigma,
+            .proven_to = from->proven_to};
+
+    if (count < from->Phi.ncol)
+        copy.proven_to = fmin(copy.proven_to, from->lambda[count]);
+    RITZ_CHECK(ritz_dense_copy(&Phi, &copy.Phi));
+    RITZ_CHECK_COPY(copy.lambda, from->lambda, count);
+    RITZ_CHECK_COPY(copy.residual, from->residual, count);
+    memcpy(copy.engine, from->engine, sizeof copy.engine);
+    RITZ_MOVE(*out, copy);
+    return RITZ_OK;
+}
+
 /*
  * All pairs of a dense pencil. LAPACK errs in lambda by about eps lambda_max.
  * What is far below is found anew within its own span X, where the largest

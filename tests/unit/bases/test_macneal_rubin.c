@@ -366,6 +366,41 @@ static void residual_modes_exist_for_approximate_modes(void **state)
                         1e-12 * ritz_dense_col_max(&basis.T, j));
 }
 
+/* Modes that the request knows are taken as they are: here with their signs
+   changed. They do if the mode above them is known too. */
+static void known_modes_are_not_computed(void **state)
+{
+    fixture *f = *state;
+    ritz_request request = f->request;
+    const ritz_span span = {.modes = MODES + 1};
+    RITZ_OWN(ritz_pairs) known = {0};
+    double sign[2] = {0.0};
+
+    assert_ok(ritz_eigen_sparse(&f->bar.K, &f->bar.M, &span, &known));
+    for (int64_t k = 0; k < known.Phi.nrow * known.Phi.ncol; k++)
+        known.Phi.val[k] = -known.Phi.val[k];
+    request.known = &known;
+    for (int more = 0; more < 2; more++) {
+        RITZ_OWN(ritz_basis) basis = {0};
+
+        request.modes = MODES + more;
+        assert_ok(
+            ritz_basis_make(&ritz_method_macneal_rubin, &request, &basis));
+        assert_int_equal(basis.T.ncol, f->basis.T.ncol + more);
+        sign[more] = basis.T.val[0] / f->basis.T.val[0];
+        if (more)
+            continue;
+        for (int64_t k = 0; k < DOFS * f->basis.T.ncol; k++) {
+            const bool mode = k < DOFS * (1 + MODES);
+
+            assert_near(basis.T.val[k], (mode ? -1.0 : 1.0) * f->basis.T.val[k],
+                        solve_error * ritz_dense_max(&basis.T));
+        }
+    }
+    assert_near(sign[0], -1.0, solve_error);
+    assert_near(sign[1], 1.0, solve_error);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(columns_are_rigid_then_normal_then_residual),
     cmocka_unit_test(residual_modes_of_a_long_bar_solve_their_equation),
@@ -378,6 +413,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_dof_attached_twice_is_refused),
     cmocka_unit_test(a_rigid_body_keeps_its_mass),
     cmocka_unit_test(without_flexible_modes_the_residual_is_all_flexibility),
+    cmocka_unit_test(known_modes_are_not_computed),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
