@@ -284,8 +284,8 @@ ritz_status ritz_basis_make(const ritz_method *method,
  *     dense       of first-order form, by SLICOT; any damping; O(n^3)
  *     modal       closed form in modal coordinates; modal damping; O(m^2)
  *     low-rank    ADI on sparse M, D, K; damping that lets Gramians decay
- *     projection  closed form in Krylov vectors of sparse M and K, with a bound
- *                 of the error; D = a M + b K and discrete dampers
+ *     projection  closed form in rational Krylov vectors of sparse M and K,
+ *                 with a bound of the error; D = a M + b K and discrete dampers
  *
  * [Moore1981], [Hammarling1982]
  */
@@ -305,8 +305,8 @@ typedef struct ritz_gramians {
                         left of the axis (rigid modes: positions and then
                         velocities), decoupled and without Gramian */
     double residual[2]; /* of either equation, |R| / |B B'| and |R| / |C' C|,
-                           if solved iteratively; 0: exact to rounding;
-                           projection: see ritz_gramians_of_component */
+                           if solved iteratively; 0: exact to rounding; its
+                           norm: see ritz_gramians_of_component */
     double error;       /* projection: bound of the error of each Hankel value,
                            relative to the largest; 0: other engines have
                            none */
@@ -372,7 +372,8 @@ typedef struct ritz_gramians_request {
     int64_t most;      /* projection: limit of Krylov vectors; 0: as memory
                           allows */
     double tolerance;  /* low-rank: of the residual; 0: 1e-10; projection: of
-                          the error of Hankel values; 0: 1e-8 */
+                          the error of Hankel values and of the residual; 0:
+                          1e-8 */
 } ritz_gramians_request;
 
 /**
@@ -381,12 +382,15 @@ typedef struct ritz_gramians_request {
  * projection if D is a M + b K, with or without discrete dampers, otherwise
  * low-rank.
  *
- * With projection, `residual` is |r| / |F| of the responses to the inputs and
- * to the outputs, at the frequency where the bound of the error is largest: F
- * is the load, and r what the projected response leaves of it in the equation
- * of motion. Both are in the norm (r'(K + mu M)^-1 r)^(1/2), with mu = 0 unless
- * the body is free. The product of both |r| and the largest amplification of a
- * mode at that frequency bounds the error of each Hankel value.
+ * With low-rank, `residual` is the norm of a matrix whose rows and columns have
+ * the units of energy, sqrt(K_ii) for displacements and 1/sqrt(M_ii) for forces.
+ * With projection it is the Frobenius norm of L R L', where |L (u, f)|^2 is
+ * u'M u + f'K_s^-1 f in the first equation, rows of displacements u and of
+ * forces f; in the second, in which rows belong to displacements and to
+ * velocities, f'K_s^-1 f + w_0^2 g'K_s^-1 g, w_0 the lowest angular frequency.
+ * K_s = K + mu M, with mu = 0 unless the body is free, and then w_0^2. Z_c Z_c'
+ * is thus the exact Gramian of white noise whose intensity differs from B B' by
+ * that part of the energy of its static response.
  *
  * @return RITZ_ERR_ARGUMENT if it has no inputs or no outputs, or the engine
  *         does not fit it; RITZ_ERR_CONVERGENCE if the rank grows too large

@@ -426,6 +426,10 @@
 /* Default bound of the error of Hankel values of engine projection, relative to
    the largest value. */
 #define RITZ_PROJECTION_TOLERANCE 1e-8
+/* A shift is added to the space of engine projection if the residual of a
+   static solution is above this part of the tolerance: the residuals of both
+   Lyapunov equations were 1 to 100 times that of static solutions. */
+#define RITZ_PROJECTION_SHIFT 1e-3
 /* A Krylov vector is orthogonalised again if less than this part of its energy
    is left: it has then lost 99 % of its length, and with it two digits of
    orthogonality. */

@@ -108,7 +108,7 @@ static void add_remark(const ritz_request *request,
         ritz_remark_add(basis, "; ",
                         "no Hankel value errs by more than %.1e of the largest",
                         gramians->error);
-    else if (residual[0] > 0.0 || residual[1] > 0.0)
+    if (residual[0] > 0.0 || residual[1] > 0.0)
         ritz_remark_add(basis, "; ", "residuals of Gramians %.1e and %.1e",
                         residual[0], residual[1]);
     if (!request->space)

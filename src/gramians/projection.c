@@ -1,8 +1,9 @@
 /*
  * Gramians of a large component by projection: build a Krylov space from static
  * responses, solve the Lyapunov equations of the projected model in closed
- * form, bound the error from the residual of the large model, and enlarge the
- * space until the bound is below the tolerance.
+ * form, bound the error from the residual of the large model, measure the
+ * residuals of the large Lyapunov equations, and enlarge the space until bound
+ * and residuals are below the tolerance.
  *
  * With D = a M + b K
  *
@@ -16,7 +17,12 @@
  *
  * The bound (projection_error.c) is one of the difference of the transfer
  * functions of both models, and therefore of the error of every Hankel value.
- * It is compared with the tolerance times the largest Hankel value.
+ * It is compared with the tolerance times the largest Hankel value. It is met
+ * early where high frequencies are strongly damped, as hardly any Hankel value
+ * is in them. The Gramian of each equation by itself contains them
+ * (projection_residual.c), and vectors of K_s^-1 M would be the slower to reach
+ * them the finer the mesh is: then the space gets static solutions of K + m M
+ * for real shifts m > 0 (projection_shift.c), one at a time.
  */
 #include "gramians/projection.h"
 #include "base/alloc.h"
@@ -36,7 +42,9 @@ typedef struct projection_state {
     ritz_projected projected;
     ritz_gramians small; /* factors in the states of the projected model */
     double sigma;        /* largest Hankel value so far; 0: unknown */
-    ritz_projected_error error;
+    double bound;        /* of the error of Hankel values */
+    double residual[RITZ_SIDES];
+    int64_t shifts; /* of the space, in addition to that of K_s */
     double tolerance;
 } projection_state;
 
@@ -60,7 +68,8 @@ static ritz_status start_projection(const ritz_gramians_request *request,
     return ritz_projection_space_new(&state->model, &state->space);
 }
 
-/* Gramians of the projected model, and its largest Hankel value. */
+/* Gramians of the projected model, its largest Hankel value, and the residuals
+   of the equations of the large one. */
 static ritz_status solve_small(projection_state *state)
 {
     RITZ_OWN(ritz_modal) modal = {0};
@@ -72,29 +81,32 @@ static ritz_status solve_small(projection_state *state)
     RITZ_CHECK(ritz_modal_factors(&modal, NULL, &small->Zc, &small->Zo));
     RITZ_CHECK(ritz_product_svd_new(&small->Zo, &small->Zc, false, &svd));
     state->sigma = svd.count > 0 ? svd.s[0] : 0.0;
-    return RITZ_OK;
+    return ritz_projected_residuals(&state->projected, small, state->residual);
 }
 
-/* Project, and find whether the bound is below the tolerance. The largest
-   Hankel value converges long before the bound is small: it is computed first
-   of all, and again only when the bound is met with the value known before. */
-static ritz_status look_at_bound(projection_state *state, bool *met)
+/* Project, and find whether the bound and both residuals are below the
+   tolerance. The largest Hankel value converges long before the bound is small:
+   it is computed first of all, and again, with the residuals, only when the
+   bound is met with the value known before. */
+static ritz_status measure_errors(projection_state *state, bool *met)
 {
-    ritz_projected_error *error = &state->error;
+    const double *residual = state->residual;
 
     ritz_projected_free(&state->projected);
     RITZ_CHECK(ritz_projected_new(&state->space, &state->projected));
-    RITZ_CHECK(ritz_projected_bound(&state->projected, error));
-    if (state->sigma == 0.0 || error->bound <= state->tolerance * state->sigma)
+    RITZ_CHECK(ritz_projected_bound(&state->projected, &state->bound));
+    if (state->sigma == 0.0 || state->bound <= state->tolerance * state->sigma)
         RITZ_CHECK(solve_small(state));
-    *met = error->bound <= state->tolerance * state->sigma;
+    *met = state->bound <= state->tolerance * state->sigma &&
+           residual[RITZ_CONTROLLABLE] <= state->tolerance &&
+           residual[RITZ_OBSERVABLE] <= state->tolerance;
     return RITZ_OK;
 }
 
 /* The bound relative to the largest Hankel value. */
 static double relative_error(const projection_state *state)
 {
-    return state->sigma > 0.0 ? state->error.bound / state->sigma : 0.0;
+    return state->sigma > 0.0 ? state->bound / state->sigma : 0.0;
 }
 
 /* If the space has become too large, add the accuracy reached to the
@@ -102,30 +114,59 @@ static double relative_error(const projection_state *state)
 static ritz_status refuse_large(const projection_state *state,
                                 ritz_status status)
 {
-    char reached[160];
+    char reached[200];
 
     if (status != RITZ_ERR_CONVERGENCE || !(state->sigma > 0.0))
         return status;
-    snprintf(reached, sizeof reached,
-             "Hankel values are known to %.1e of the largest, %.1e is required",
-             relative_error(state), state->tolerance);
+    if (relative_error(state) > state->tolerance)
+        snprintf(
+            reached, sizeof reached,
+            "Hankel values are known to %.1e of the largest, %.1e is required",
+            relative_error(state), state->tolerance);
+    else
+        snprintf(reached, sizeof reached,
+                 "the Gramians leave residuals of %.1e and %.1e in their "
+                 "equations, %.1e is required",
+                 state->residual[RITZ_CONTROLLABLE],
+                 state->residual[RITZ_OBSERVABLE], state->tolerance);
     return ritz_context(status, reached);
 }
 
-/* Enlarge the space until the bound is met. The bound is evaluated each time
-   the number of vectors has grown by an eighth. */
+/* Add a shift to the space where only the residuals of the Lyapunov equations
+   are too large and a shift makes them smaller. */
+static ritz_status add_shift(projection_state *state, bool *added)
+{
+    double shift = 0.0, residual = 0.0;
+
+    *added = false;
+    if (state->bound > state->tolerance * state->sigma)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_projected_shift(&state->projected, &shift, &residual));
+    if (residual < RITZ_PROJECTION_SHIFT * state->tolerance)
+        return RITZ_OK;
+    *added = true;
+    state->shifts++;
+    return refuse_large(state,
+                        ritz_projection_space_shift(shift, &state->space));
+}
+
+/* Enlarge the space until bound and residuals are below the tolerance. They are
+   evaluated each time the number of vectors has grown by an eighth, and after
+   each shift. */
 static ritz_status grow_space(projection_state *state)
 {
     ritz_projection_space *space = &state->space;
     int64_t next = 0;
-    bool met = space->count == 0;
+    bool met = space->count == 0, shifted = false;
 
     while (!met) {
         RITZ_CHECK(refuse_large(state, ritz_projection_space_extend(space)));
         if (space->last < next && space->count > space->last)
             continue;
-        RITZ_CHECK(look_at_bound(state, &met));
-        next = space->last + space->last / 8;
+        RITZ_CHECK(measure_errors(state, &met));
+        if (!met)
+            RITZ_CHECK(add_shift(state, &shifted));
+        next = shifted ? 0 : space->last + space->last / 8;
     }
     return RITZ_OK;
 }
@@ -153,6 +194,17 @@ static ritz_status lift_modes(projection_state *state, bool all,
     return RITZ_OK;
 }
 
+static void name_engine(const projection_state *state, size_t size, char *out)
+{
+    char shifts[40] = "";
+
+    if (state->shifts > 0)
+        snprintf(shifts, sizeof shifts, ", %" PRId64 " shift%s", state->shifts,
+                 state->shifts == 1 ? "" : "s");
+    snprintf(out, size, "projection, %" PRId64 " vectors%s",
+             state->projected.count, shifts);
+}
+
 static ritz_status finish_projection(projection_state *state, bool values_only,
                                      ritz_gramians *out)
 {
@@ -166,9 +218,8 @@ static ritz_status finish_projection(projection_state *state, bool values_only,
     RITZ_MOVE(gramians.Zo, state->small.Zo);
     RITZ_CHECK(ritz_gramians_lift(&layout, &gramians));
     gramians.error = relative_error(state);
-    memcpy(gramians.residual, state->error.residual, sizeof gramians.residual);
-    snprintf(gramians.engine, sizeof gramians.engine,
-             "projection, %" PRId64 " vectors", state->projected.count);
+    memcpy(gramians.residual, state->residual, sizeof gramians.residual);
+    name_engine(state, sizeof gramians.engine, gramians.engine);
     RITZ_MOVE(*out, gramians);
     return RITZ_OK;
 }

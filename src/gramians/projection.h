@@ -64,6 +64,17 @@ ritz_status ritz_projection_space_new(const ritz_projection_model *model,
  */
 ritz_status ritz_projection_space_extend(ritz_projection_space *space);
 
+/**
+ * Add the solutions of (K + m M) x = F for all loads F to the last block of V.
+ * As K_s^-1 M x is a combination of x and K_s^-1 F, which V contains, they add
+ * nothing to the residual. ritz_projection_space_extend() must follow.
+ *
+ * @param[in] m  above 0  [rad^2/s^2]
+ * @return as ritz_projection_space_extend()
+ * @cost   a factor of K + m M
+ */
+ritz_status ritz_projection_space_shift(double m, ritz_projection_space *space);
+
 void ritz_projection_space_free(ritz_projection_space *space);
 
 /*
@@ -96,14 +107,6 @@ void ritz_projected_free(ritz_projected *projected);
 ritz_status ritz_projected_modal(const ritz_projected *projected,
                                  ritz_modal *out);
 
-/* The error of the projected model. */
-typedef struct ritz_projected_error {
-    double bound;       /* of the error of each Hankel value */
-    double residual[2]; /* at the frequency w of the bound, for the loads B and
-                           C' + i w Cv': norm of the residual divided by that of
-                           the load, |r|^2 = r'K_s^-1 r */
-} ritz_projected_error;
-
 /**
  * The largest bound of |G(i w) - G_V(i w)| over sampled frequencies, G the
  * transfer matrix of the large model and G_V that of the projected one. The
@@ -112,7 +115,29 @@ typedef struct ritz_projected_error {
  *
  * @cost O(m^2 p (inputs + outputs))
  */
-ritz_status ritz_projected_bound(const ritz_projected *projected,
-                                 ritz_projected_error *out);
+ritz_status ritz_projected_bound(const ritz_projected *projected, double *out);
+
+/**
+ * Residuals of both Lyapunov equations of the large model, as
+ * ritz_gramians_of_component() states them.
+ *
+ * @param[in]  factors  Zc and Zo of ritz_projected_modal()
+ * @param[out] out      relative to B B' and to C'C
+ * @cost   O(m^2 p)
+ */
+ritz_status ritz_projected_residuals(const ritz_projected *projected,
+                                     const ritz_gramians *factors,
+                                     double out[static RITZ_SIDES]);
+
+/**
+ * The real shift m at which the static solutions (K + m M)^-1 F of the
+ * projected model are worst.
+ *
+ * @param[out] shift     [rad^2/s^2]
+ * @param[out] residual  of that solution, relative to its load
+ * @see    [DruskinSimoncini2011]
+ */
+ritz_status ritz_projected_shift(const ritz_projected *projected, double *shift,
+                                 double *residual);
 
 #endif

@@ -184,25 +184,8 @@ static double amplify(const ritz_projected *p, const frequency_point *point)
     return 1.0 / cabs(from + t * point->z);
 }
 
-/* |K_s^-1/2 (F + s Fv)| = |Theta^1/2 Phi'(F + s Fv)|, as the loads lie in the
-   span of K_s V. */
-static double measure_load(const ritz_projected *p, const ritz_dense *F,
-                           const ritz_dense *Fv, double omega)
-{
-    double sum = 0.0;
-
-    for (int64_t j = 0; j < F->ncol; j++)
-        for (int64_t k = 0; k < p->count; k++) {
-            double f = ritz_dense_col(F, j)[k];
-            double g = Fv ? omega * ritz_dense_col(Fv, j)[k] : 0.0;
-
-            sum += (f * f + g * g) * p->theta[k];
-        }
-    return sqrt(sum);
-}
-
 static ritz_status bound_at(const ritz_projected *p, double omega,
-                            frequency_point *point, ritz_projected_error *out)
+                            frequency_point *point, double *bound)
 {
     double in = 0.0, seen = 0.0, dampers = 0.0, most = 0.0, N = 0.0;
 
@@ -216,40 +199,35 @@ static ritz_status bound_at(const ritz_projected *p, double omega,
     N += N * N * dampers * dampers * omega * most;
     RITZ_REFUSE_IF(!isfinite(in * seen * N), RITZ_ERR_CONVERGENCE,
                    "the residual of a projected model is not finite");
-    if (in * seen * N > out->bound)
-        *out = (ritz_projected_error){
-            in * seen * N,
-            {in / measure_load(p, &p->B, NULL, omega),
-             seen / measure_load(p, &p->C, &p->Cv, omega)}};
+    *bound = fmax(*bound, in * seen * N);
     return RITZ_OK;
 }
 
-ritz_status ritz_projected_bound(const ritz_projected *projected,
-                                 ritz_projected_error *out)
+ritz_status ritz_projected_bound(const ritz_projected *projected, double *out)
 {
     enum { BEYOND = 4 }; /* octaves sampled above and below all modes */
     const ritz_projected *p = projected;
     RITZ_OWN(frequency_point) point = {0};
-    ritz_projected_error error = {0};
+    double bound = 0.0;
 
     if (p->count > 0 && p->L.nrow > 0) {
         double last = sqrt(p->lambda[p->count - 1]);
 
         RITZ_CHECK(allocate_point(p, &point));
         for (int k = 1; k <= BEYOND; k++) {
-            RITZ_CHECK(bound_at(p, ldexp(last, k), &point, &error));
+            RITZ_CHECK(bound_at(p, ldexp(last, k), &point, &bound));
             RITZ_CHECK(
-                bound_at(p, ldexp(sqrt(p->lambda[0]), -k), &point, &error));
+                bound_at(p, ldexp(sqrt(p->lambda[0]), -k), &point, &bound));
         }
     }
     for (int64_t k = 0; k < p->count && p->L.nrow > 0; k++) {
         double omega = sqrt(p->lambda[k]);
 
-        RITZ_CHECK(bound_at(p, omega, &point, &error));
+        RITZ_CHECK(bound_at(p, omega, &point, &bound));
         if (k + 1 < p->count)
             RITZ_CHECK(bound_at(p, sqrt(omega * sqrt(p->lambda[k + 1])), &point,
-                                &error));
+                                &bound));
     }
-    *out = error;
+    *out = bound;
     return RITZ_OK;
 }

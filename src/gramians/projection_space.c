@@ -278,6 +278,24 @@ ritz_status ritz_projection_space_extend(ritz_projection_space *space)
     return RITZ_OK;
 }
 
+ritz_status ritz_projection_space_shift(double m, ritz_projection_space *space)
+{
+    const ritz_low_rank_model *low = &space->model->low;
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+
+    RITZ_CHECK(ritz_sparse_add(1.0, &low->K, m, &low->M, &A));
+    RITZ_CHECK_IN("stiffness of a shift", ritz_factor_spd(&A, &F));
+    RITZ_CHECK(collect_loads(space->model, &X));
+    RITZ_CHECK(ritz_factor_solve(F, &X));
+    RITZ_CHECK(ritz_dense_take_out(&low->Phi, &low->MPhi, &X));
+    RITZ_CHECK(append_columns(NULL, &X, space));
+    /* V'M of the block before has zeros in the rows of x */
+    return grow_dense(space->count - space->last, space->coupling.ncol,
+                      &space->coupling);
+}
+
 void ritz_projection_space_free(ritz_projection_space *space)
 {
     ritz_sparse_free(&space->Ks);

@@ -29,6 +29,11 @@ for engine in dense low-rank projection; do
     expect 0 'error at most 121.2, largest value 424.3' ritz-basis balanced --modes 4 \
         --engine $engine chain.h5 -o $engine.h5
 done
+json 0 ritz-rank --by hankel --engine low-rank chain.h5
+holds '  states the residuals of both equations' \
+    'len(j["residuals"]) == 2 and 0.0 < max(j["residuals"]) <= 1e-10'
+json 0 ritz-rank --by hankel --engine dense chain.h5
+holds '  has none to state' '"residuals" not in j'
 expect 2 "no 'band_hz'" ritz-basis balanced --modes 4 --band-hz 0,1 chain.h5 \
     -o none.h5
 

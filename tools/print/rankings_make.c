@@ -359,16 +359,19 @@ static ritz_status check_values(const rank_options *given, const model *m)
     return RITZ_OK;
 }
 
+static bool is_iterative(const ritz_gramians *gramians)
+{
+    return gramians->residual[0] > 0.0 || gramians->residual[1] > 0.0;
+}
+
 static void say_accuracy(cli_run *run, const ritz_gramians *gramians)
 {
     const double *residual = gramians->residual;
 
     if (gramians->error > 0.0)
-        cli_say(run,
-                "no Hankel value errs by more than %.1e of the largest "
-                "(residuals of the responses %.1e and %.1e)",
-                gramians->error, residual[0], residual[1]);
-    else if (residual[0] > 0.0 || residual[1] > 0.0)
+        cli_say(run, "no Hankel value errs by more than %.1e of the largest",
+                gramians->error);
+    if (is_iterative(gramians))
         cli_say(run, "residuals of both Gramians %.1e and %.1e", residual[0],
                 residual[1]);
 }
@@ -408,6 +411,9 @@ static ritz_status rank_values(cli_run *run, const rank_options *given,
     sink_set(run, "engine", "%s", gramians.engine);
     if (gramians.error > 0.0)
         sink_set(run, "error", "%g", gramians.error);
+    if (is_iterative(&gramians))
+        SINK_EACH(run, "residuals", k, 2)
+            sink_add(run, "%g", gramians.residual[k]);
     return RITZ_OK;
 }
 
