@@ -347,7 +347,9 @@ ritz_status ritz_gramians_of_space(const ritz_state_space *model,
 /**
  * Gramians of a state space by an engine: `dense` as above; `low-rank`, by ADI
  * with sparse factors, for models whose poles, except those at 0, are all left
- * of the imaginary axis; `auto`, which takes `dense` for a dense model, and for
+ * of the imaginary axis; `projection`, by the solution in the space of ADI's
+ * columns, with a residual that is measured, for models of which E and
+ * -(A + A') are definite; `auto`, which takes `dense` for a dense model, and for
  * a sparse one `low-rank` or, where ADI does not converge and the model is
  * small enough, `dense`.
  *

@@ -389,11 +389,9 @@ ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
 {
     RITZ_CHECK(check_space(model));
     RITZ_CHECK(refuse_modes(engine));
-    RITZ_REFUSE_IF(engine == RITZ_ENGINE_MODAL ||
-                       engine == RITZ_ENGINE_PROJECTION,
-                   RITZ_ERR_ARGUMENT,
-                   "a state space has no modes: its engines are dense and "
-                   "low-rank");
+    RITZ_REFUSE_IF(engine == RITZ_ENGINE_MODAL, RITZ_ERR_ARGUMENT,
+                   "a state space has no modes: its engines are dense, "
+                   "low-rank and projection");
     RITZ_REFUSE_IF(band_hz && engine != RITZ_ENGINE_AUTO, RITZ_ERR_ARGUMENT,
                    "Gramians of a state space over a band have one engine: "
                    "leave out --engine");
@@ -401,6 +399,8 @@ ritz_status ritz_gramians_of_space_by(const ritz_state_space *model,
         return ritz_gramians_space_band(model, band_hz, out);
     if (engine == RITZ_ENGINE_LOW_RANK)
         return ritz_gramians_space_low_rank(model, 0.0, out);
+    if (engine == RITZ_ENGINE_PROJECTION)
+        return ritz_gramians_space_projection(model, 0.0, out);
     return engine == RITZ_ENGINE_DENSE ? find_space_dense(model, out)
                                        : find_space_any(model, out);
 }

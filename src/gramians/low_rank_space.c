@@ -16,6 +16,11 @@
  * [BennerKuerschnerSaak2014]. Projected poles that are not left of the axis are
  * mirrored.
  *
+ * Engine projection solves the equation in the span of Z, a rational Krylov
+ * space, and measures the residual of that solution (galerkin.c). Where E and
+ * -(A + A') are definite the projected model is stable, and its residual falls
+ * faster than that of ADI. The loop ends when it is below the tolerance.
+ *
  * Poles at 0 are decoupled before the iteration. Their part in v, which is
  * rounding, is subtracted at each shift.
  */
@@ -24,6 +29,7 @@
 #include "base/alloc.h"
 #include "base/complex.h"
 #include "base/tolerances.h"
+#include "gramians/galerkin.h"
 #include "gramians/modes.h"
 #include "linear/general.h"
 #include "linear/orthonormal.h"
@@ -50,6 +56,9 @@ typedef struct adi_side {
     ritz_dense W; /* residual factor, at first B or C' */
     ritz_dense Z; /* room for `room` columns, ncol in use */
     int64_t room;
+    ritz_dense load; /* W at the start, of engine projection */
+    ritz_dense X;    /* factor of its solution once that has converged */
+    int64_t next;    /* number of columns at which it is computed next */
     double first;    /* |W'W| at the start */
     double residual; /* |W'W| relative to that */
     bool open;
@@ -63,6 +72,7 @@ typedef struct adi {
     int64_t entered;   /* number of columns entered so far */
     double tolerance;
     int64_t shifts;
+    bool projects; /* engine projection */
 } adi;
 
 static void adi_free(adi *a)
@@ -72,6 +82,8 @@ static void adi_free(adi *a)
     for (int k = 0; k < SIDES; k++) {
         ritz_dense_free(&a->side[k].W);
         ritz_dense_free(&a->side[k].Z);
+        ritz_dense_free(&a->side[k].load);
+        ritz_dense_free(&a->side[k].X);
     }
     ritz_dense_free(&a->window);
 }
@@ -96,6 +108,21 @@ static ritz_status start_side(adi *a, int k)
     RITZ_CHECK(measure_left(&side->W, &side->first));
     side->open = side->first > RITZ_ADI_NOTHING * whole;
     side->residual = side->open ? 1.0 : 0.0;
+    return a->projects ? ritz_dense_copy(&side->W, &side->load) : RITZ_OK;
+}
+
+/* Projection on one space keeps a model stable only if it is dissipative. */
+static ritz_status refuse_unstable(const adi *a)
+{
+    bool dissipative = false;
+
+    if (!a->projects)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_pencil_is_dissipative(&a->pencil, &dissipative));
+    RITZ_REFUSE_IF(!dissipative, RITZ_ERR_ARGUMENT,
+                   "E and -(A + A') are not both definite, without which "
+                   "engine 'projection' can make a stable model unstable: take "
+                   "engine 'low-rank'");
     return RITZ_OK;
 }
 
@@ -103,6 +130,7 @@ static ritz_status start_adi(const ritz_state_space *model, double tolerance,
                              adi *a)
 {
     RITZ_CHECK(ritz_pencil_of_space(model, &a->pencil));
+    RITZ_CHECK(refuse_unstable(a));
     RITZ_CHECK_IN("poles at 0", ritz_zero_poles_find(&a->pencil, &a->zero));
     RITZ_CHECK(ritz_dense_copy(&model->B, &a->side[0].W));
     RITZ_CHECK(ritz_outputs_scaled(&model->C, model->limit, &a->side[1].W));
@@ -395,7 +423,7 @@ static ritz_status take_shift(adi *a, double _Complex p)
         RITZ_CHECK(append_columns(a, k, p, v));
         RITZ_CHECK(measure_left(&side->W, &left));
         side->residual = left / side->first;
-        side->open = side->residual > a->tolerance;
+        side->open = a->projects || side->residual > a->tolerance;
     }
     ritz_monitor_step("shifts", ++a->shifts, 0);
     return RITZ_OK;
@@ -419,6 +447,29 @@ static ritz_status refuse_slow(const adi *a, const double *history)
                      a->shifts, worst);
 }
 
+/* Solve the equation in the span of Z when that can be worth its cost: the
+   residual of ADI is not far from the tolerance, and Z has grown by an eighth,
+   or ADI has converged. */
+static ritz_status project_side(adi *a, int k)
+{
+    adi_side *side = &a->side[k];
+    RITZ_OWN(ritz_dense) X = {0};
+    double left = 0.0;
+
+    if (!side->open || side->residual > RITZ_GALERKIN_LEAD * a->tolerance ||
+        (side->Z.ncol < side->next && side->residual > a->tolerance))
+        return RITZ_OK;
+    side->next = side->Z.ncol + side->Z.ncol / 8;
+    RITZ_CHECK(ritz_galerkin_gramian(&a->pencil, k == 1, &side->Z, &side->load,
+                                     &X, &left));
+    if (left > a->tolerance * side->first)
+        return RITZ_OK;
+    side->residual = left / side->first;
+    side->open = false;
+    RITZ_MOVE(side->X, X);
+    return RITZ_OK;
+}
+
 static ritz_status run_adi(adi *a)
 {
     double history[MOST_SHIFTS + TOGETHER + 1] = {1.0};
@@ -433,6 +484,8 @@ static ritz_status run_adi(adi *a)
             history[a->shifts] = worst_residual(a);
             RITZ_CHECK(refuse_slow(a, history));
         }
+        for (int k = 0; a->projects && k < SIDES; k++)
+            RITZ_CHECK(project_side(a, k));
     }
     return RITZ_OK;
 }
@@ -474,18 +527,21 @@ ritz_status ritz_factor_compress(ritz_dense *A)
 
 static ritz_status take_factor(adi_side *side, int64_t n, ritz_dense *out)
 {
-    if (!side->Z.val)
+    ritz_dense *Z = side->X.val ? &side->X : &side->Z;
+
+    if (!Z->val)
         return ritz_dense_new(n, 0, out);
-    RITZ_CHECK(ritz_factor_compress(&side->Z));
-    RITZ_MOVE(*out, side->Z);
+    RITZ_CHECK(ritz_factor_compress(Z));
+    RITZ_MOVE(*out, *Z);
     return RITZ_OK;
 }
 
-ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
-                                         double tolerance, ritz_gramians *out)
+static ritz_status find_gramians(const ritz_state_space *model,
+                                 double tolerance, bool projects,
+                                 ritz_gramians *out)
 {
     const int64_t n = ritz_state_space_order(model);
-    RITZ_OWN(adi) a = {0};
+    RITZ_OWN(adi) a = {.projects = projects};
     RITZ_OWN(ritz_gramians) g = {0};
 
     RITZ_CHECK(start_adi(model, tolerance, &a));
@@ -498,11 +554,23 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
     RITZ_MOVE(g.W, a.zero.W);
     g.residual[0] = a.side[0].residual;
     g.residual[1] = a.side[1].residual;
-    (void)snprintf(g.engine, sizeof g.engine, "ADI, %" PRId64 " shifts",
-                   a.shifts);
+    (void)snprintf(g.engine, sizeof g.engine, "%s, %" PRId64 " shifts",
+                   projects ? "projection" : "ADI", a.shifts);
     memcpy(g.damping, model->damping, sizeof g.damping);
     RITZ_MOVE(*out, g);
     return RITZ_OK;
+}
+
+ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
+                                         double tolerance, ritz_gramians *out)
+{
+    return find_gramians(model, tolerance, false, out);
+}
+
+ritz_status ritz_gramians_space_projection(const ritz_state_space *model,
+                                           double tolerance, ritz_gramians *out)
+{
+    return find_gramians(model, tolerance, true, out);
 }
 
 /* |X'Y|^2 of the rows from @p first on. */

@@ -20,6 +20,19 @@ ritz_status ritz_gramians_space_low_rank(const ritz_state_space *model,
                                          double tolerance, ritz_gramians *out);
 
 /**
+ * The same by solution in the rational Krylov space that the columns of ADI
+ * span. Both residuals are measured, in the 2-norm.
+ *
+ * @return as ritz_gramians_space_low_rank; RITZ_ERR_ARGUMENT if E or -(A + A')
+ *         is not definite
+ * @cost   at most the factorisations of ADI, and some O(n k^2) for k columns
+ * @see    [DruskinSimoncini2011]
+ */
+ritz_status ritz_gramians_space_projection(const ritz_state_space *model,
+                                           double tolerance,
+                                           ritz_gramians *out);
+
+/**
  * H2 norm of the response C x of a sparse model without its poles at 0, by both
  * factors: with what ADI leaves in its equations, W_c W_c',
  *

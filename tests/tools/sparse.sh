@@ -84,7 +84,9 @@ expect 1 'limits not met' ritz-verify rod.h5 small.h5 --limit-h2 1e-9 \
     -o none.h5
 expect 0 'ADI' ritz-rank --by hankel rod.h5 -o ranking.h5
 expect 0 'ADI' ritz-rank --by hankel --engine low-rank rod.h5 -o ranking.h5
-expect 1 'its engines are dense and low-rank' ritz-rank --by hankel \
+expect 0 'projection, ' ritz-rank --by hankel --engine projection rod.h5 \
+    -o ranking.h5
+expect 1 'its engines are dense, low-rank and projection' ritz-rank --by hankel \
     --engine modal rod.h5 -o none.h5
 expect 1 'more than 3000' ritz-export --to matlab rod.h5 -o none.mat
 expect 0 'A  3010 x 3010' ritz-export --to matrix-market --force rod.h5 \

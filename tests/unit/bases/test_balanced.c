@@ -433,7 +433,7 @@ static void requests_that_make_no_sense_are_refused(void **state)
     request.space = &f->full;
     request.choice.engine = RITZ_ENGINE_MODAL;
     assert_fails(ritz_basis_make(method, &request, &none), RITZ_ERR_ARGUMENT,
-                 "its engines are dense and low-rank");
+                 "its engines are dense, low-rank and projection");
     request.choice.engine = RITZ_ENGINE_AUTO;
     request.choice.given = RITZ_USES_DAMPING;
     assert_fails(ritz_basis_make(method, &request, &none), RITZ_ERR_ARGUMENT,

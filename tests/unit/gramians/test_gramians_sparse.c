@@ -7,10 +7,13 @@
 
 #include "spaces.h"
 
+#include "gramians/space.h"
 #include "linear/general.h"
 
 #include <ritz/basis.h>
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -19,20 +22,43 @@ static double frobenius(const ritz_dense *A)
     return ritz_general_size(A);
 }
 
-/* |A W E' + E W A' + B B'| / |B B'| for W = Z Z', in the Frobenius norm. */
-static double residual_of(const ritz_state_space *m, const ritz_dense *Z)
+/* A W E' + E W A' + B B' for W = Z Z'. */
+static void residual_matrix(const ritz_state_space *m, const ritz_dense *Z,
+                            ritz_dense *out)
 {
-    RITZ_OWN(ritz_dense) AZ = {0}, EZ = {0}, sum = {0}, BB = {0}, back = {0};
+    RITZ_OWN(ritz_dense) AZ = {0}, EZ = {0}, BB = {0}, back = {0};
 
     assert_ok(ritz_dense_mul(&m->A, Z, &AZ));
     assert_ok(m->E.val ? ritz_dense_mul(&m->E, Z, &EZ)
                        : ritz_dense_copy(Z, &EZ));
-    assert_ok(ritz_dense_mul_nt(&AZ, &EZ, &sum));
+    assert_ok(ritz_dense_mul_nt(&AZ, &EZ, out));
     assert_ok(ritz_dense_mul_nt(&EZ, &AZ, &back));
     assert_ok(ritz_dense_mul_nt(&m->B, &m->B, &BB));
-    ritz_dense_add(1.0, &back, &sum);
-    ritz_dense_add(1.0, &BB, &sum);
-    return frobenius(&sum) / frobenius(&BB);
+    ritz_dense_add(1.0, &back, out);
+    ritz_dense_add(1.0, &BB, out);
+}
+
+/* Its norm over |B B'|, in the Frobenius norm. */
+static double residual_of(const ritz_state_space *m, const ritz_dense *Z)
+{
+    RITZ_OWN(ritz_dense) R = {0}, BB = {0};
+
+    residual_matrix(m, Z, &R);
+    assert_ok(ritz_dense_mul_nt(&m->B, &m->B, &BB));
+    return frobenius(&R) / frobenius(&BB);
+}
+
+/* The same in the 2-norm. */
+static double equation_norm(const ritz_state_space *m, const ritz_dense *Z)
+{
+    RITZ_OWN(ritz_dense) R = {0}, BB = {0};
+    double residual = 0.0, load = 0.0;
+
+    residual_matrix(m, Z, &R);
+    assert_ok(ritz_dense_mul_tn(&m->B, &m->B, &BB));
+    assert_ok(ritz_general_norm(&R, &residual));
+    assert_ok(ritz_general_norm(&BB, &load));
+    return residual / load;
 }
 
 /* Rods with and without wind, with and without E. */
@@ -64,6 +90,93 @@ static void low_rank_values_are_those_of_dense_ones(void **)
         free(a);
         free(b);
     }
+}
+
+/* Projection of rods: the stated residual is that of the equation in the
+   2-norm, and values are those of SLICOT and of ADI. */
+static void projected_values_are_those_of_dense_ones(void **)
+{
+    for (int k = 0; k < 4; k++) {
+        RITZ_OWN(ritz_state_space) rod = {0}, made = {0};
+        RITZ_OWN(ritz_gramians) found = {0}, thin = {0}, full = {0};
+        const ritz_state_space *dense = NULL;
+        double *sigma[3] = {NULL};
+        int64_t count = 0;
+
+        assert_ok(spaces_rod(150, k & 1 ? 0.05 : 0.0, k & 2, &rod));
+        assert_ok(ritz_state_space_dense(&rod, &made, &dense));
+        assert_ok(ritz_gramians_of_space_by(&rod, RITZ_ENGINE_PROJECTION, NULL,
+                                            &found));
+        assert_ok(
+            ritz_gramians_of_space_by(&rod, RITZ_ENGINE_LOW_RANK, NULL, &thin));
+        assert_ok(
+            ritz_gramians_of_space_by(dense, RITZ_ENGINE_DENSE, NULL, &full));
+        assert_non_null(strstr(found.engine, "projection, "));
+        assert_true(found.Zc.ncol < 100 && found.residual[0] <= 1e-10 &&
+                    found.residual[1] <= 1e-10);
+        assert_ok(ritz_gramians_hankel(&found, &count, &sigma[0]));
+        assert_ok(ritz_gramians_hankel(&thin, &count, &sigma[1]));
+        assert_ok(ritz_gramians_hankel(&full, &count, &sigma[2]));
+        for (int i = 0; i < 8; i++) {
+            assert_near(sigma[0][i], sigma[2][i], 1e-8 * sigma[2][0]);
+            assert_near(sigma[0][i], sigma[1][i], 1e-8 * sigma[2][0]);
+        }
+        for (int i = 0; i < 3; i++)
+            free(sigma[i]);
+    }
+}
+
+/* The residual that is stated, 1e-9 to 1e-4 here, is that of the equation, but
+   for the rounding of A W E', n eps |A| |W| / |B B'|. */
+static void the_residual_of_a_projection_is_measured(void **)
+{
+    double largest = 0.0;
+
+    for (int k = 0; k < 4; k++)
+        for (int power = -8; power <= -4; power += 2) {
+            RITZ_OWN(ritz_state_space) rod = {0}, made = {0};
+            RITZ_OWN(ritz_gramians) found = {0};
+            const ritz_state_space *dense = NULL;
+
+            assert_ok(spaces_rod(150, k & 1 ? 0.05 : 0.0, k & 2, &rod));
+            assert_ok(ritz_state_space_dense(&rod, &made, &dense));
+            assert_ok(
+                ritz_gramians_space_projection(&rod, pow(10.0, power), &found));
+            assert_true(found.residual[0] <= pow(10.0, power));
+            assert_near(equation_norm(dense, &found.Zc), found.residual[0],
+                        1e-12);
+            largest = fmax(largest, found.residual[0]);
+        }
+    assert_true(largest > 1e-6);
+}
+
+/* x' = -a x + b u, y = c x: W_c = b^2 / 2a, W_o = c^2 / 2a. */
+static void a_single_state_has_its_closed_form(void **)
+{
+    const double a = -0.3, b = 2.0, c = 5.0;
+    const spaces_rows rows = {1, 1, 1, &a, &b, &c, NULL, NULL};
+    RITZ_OWN(ritz_state_space) one = {0};
+    RITZ_OWN(ritz_gramians) found = {0};
+
+    assert_ok(spaces_make(&rows, &one));
+    assert_ok(
+        ritz_gramians_of_space_by(&one, RITZ_ENGINE_PROJECTION, NULL, &found));
+    assert_near(ritz_dense_dot(&found.Zc, 0, &found.Zc, 0), b * b / 0.6,
+                64.0 * DBL_EPSILON * b * b / 0.6);
+    assert_near(ritz_dense_dot(&found.Zo, 0, &found.Zo, 0), c * c / 0.6,
+                64.0 * DBL_EPSILON * c * c / 0.6);
+}
+
+/* A chain as [u; u'] is stable and not dissipative. */
+static void projection_refuses_what_it_may_make_unstable(void **)
+{
+    RITZ_OWN(ritz_state_space) chains = {0};
+    ritz_gramians none = {0};
+
+    assert_ok(spaces_chains(1, 30, false, &chains));
+    assert_fails(
+        ritz_gramians_of_space_by(&chains, RITZ_ENGINE_PROJECTION, NULL, &none),
+        RITZ_ERR_ARGUMENT, "E and -(A + A') are not both definite");
 }
 
 static void a_sparse_model_takes_adi_by_itself(void **)
@@ -278,7 +391,7 @@ static void wrong_requests_are_refused(void **)
     assert_ok(spaces_make(&rows, &model));
     assert_fails(
         ritz_gramians_of_space_by(&model, RITZ_ENGINE_MODAL, NULL, &none),
-        RITZ_ERR_ARGUMENT, "its engines are dense and low-rank");
+        RITZ_ERR_ARGUMENT, "its engines are dense, low-rank and projection");
     assert_fails(
         ritz_gramians_of_space_by(&model, RITZ_ENGINE_DENSE, wide, &none),
         RITZ_ERR_ARGUMENT, "leave out --engine");
@@ -298,6 +411,13 @@ static ritz_status make(const ritz_state_space *model, const double *band)
         model, band ? RITZ_ENGINE_AUTO : RITZ_ENGINE_LOW_RANK, band, &g);
 }
 
+static ritz_status project(const ritz_state_space *model)
+{
+    RITZ_OWN(ritz_gramians) g = {0};
+
+    return ritz_gramians_of_space_by(model, RITZ_ENGINE_PROJECTION, NULL, &g);
+}
+
 static void every_allocation_may_fail(void **)
 {
     static const double band[] = {0.0, 0.01};
@@ -307,11 +427,16 @@ static void every_allocation_may_fail(void **)
     assert_ok(spaces_chains(1, 3, false, &chain));
     assert_survives_allocations(4, make(&rod, NULL));
     assert_survives_allocations(4, make(&chain, NULL));
+    assert_survives_allocations(4, project(&rod));
     assert_survives_allocations(4, make(&rod, band));
 }
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(low_rank_values_are_those_of_dense_ones),
+    cmocka_unit_test(projected_values_are_those_of_dense_ones),
+    cmocka_unit_test(the_residual_of_a_projection_is_measured),
+    cmocka_unit_test(a_single_state_has_its_closed_form),
+    cmocka_unit_test(projection_refuses_what_it_may_make_unstable),
     cmocka_unit_test(a_sparse_model_takes_adi_by_itself),
     cmocka_unit_test(a_pole_at_0_is_decoupled),
     cmocka_unit_test(double_poles_of_free_bodies_are_decoupled),
