@@ -132,7 +132,7 @@ static void the_residual_of_a_projection_is_measured(void **)
 {
     double largest = 0.0;
 
-    for (int k = 0; k < 4; k++)
+    for (int k = 1; k < 3; k++)
         for (int power = -8; power <= -4; power += 2) {
             RITZ_OWN(ritz_state_space) rod = {0}, made = {0};
             RITZ_OWN(ritz_gramians) found = {0};
