@@ -31,7 +31,9 @@ enum {
     RITZ_USES_REMAINDER = 8192,
     RITZ_USES_SIDES = 16384,
     RITZ_USES_COUNT = 65536,
-    RITZ_USES_EIGEN = RITZ_USES_COUNT | RITZ_USES_ENGINE, /* computes modes */
+    RITZ_USES_ACCURACY = 131072,
+    RITZ_USES_EIGEN = RITZ_USES_COUNT | RITZ_USES_ENGINE |
+                      RITZ_USES_ACCURACY, /* computes modes */
     RITZ_USES_SPACE = 32768, /* a state space in the place of a component */
 };
 
@@ -83,16 +85,18 @@ typedef struct ritz_choice {
     bool perturb;      /* the remainder answers statically, it is not dropped */
     bool one_sided;    /* of second order: W = T, which keeps symmetry */
     bool uncounted;    /* skip the count of modes that proves none missing */
+    double accuracy;   /* of eigenvalues of modes, relative; see ritz_span */
 } ritz_choice;
 
 /* What the value of a word is. */
 typedef enum ritz_choice_kind {
     RITZ_CHOICE_SHIFTS,
-    RITZ_CHOICE_SET,   /* some of its words, as bits of an int */
-    RITZ_CHOICE_ENUM,  /* one of its words, as an int */
-    RITZ_CHOICE_FLAG,  /* the first of two words is false */
-    RITZ_CHOICE_COUNT, /* int64_t, 1 or more */
-    RITZ_CHOICE_HERTZ, /* above 0 */
+    RITZ_CHOICE_SET,      /* some of its words, as bits of an int */
+    RITZ_CHOICE_ENUM,     /* one of its words, as an int */
+    RITZ_CHOICE_FLAG,     /* the first of two words is false */
+    RITZ_CHOICE_COUNT,    /* int64_t, 1 or more */
+    RITZ_CHOICE_HERTZ,    /* above 0 */
+    RITZ_CHOICE_ACCURACY, /* 1e-8 to 1e-2 */
     RITZ_CHOICE_BAND,
     RITZ_CHOICE_DAMPING,
 } ritz_choice_kind;
@@ -118,7 +122,7 @@ extern const ritz_choice_word ritz_choice_words[];
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
  * "dense", "modal", "low-rank", "projection", "lanczos", "arpack", "slices",
- * "amls" or "slepc" for engine, "yes" or "no" for count, "50" for among_hz,
+ * "amls" or "slepc" for engine, "yes" or "no" for count, "1e-4" for accuracy, "50" for among_hz,
  * "0,10" for band_hz, "dropped" or "static" for remainder, "one" or "two" for
  * sides.
  *

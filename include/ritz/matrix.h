@@ -408,7 +408,10 @@ typedef struct ritz_span {
     int64_t modes;   /* number of flexible ones; -1: by frequency */
     double up_to_hz; /* every one up to this frequency, where modes is -1 */
     ritz_eigen_engine engine;
-    bool uncounted; /* skip the count that proves none missing */
+    bool uncounted;  /* skip the count that proves none missing */
+    double accuracy; /* largest relative error of eigenvalues, 1e-8 to 1e-2, for
+                        AUTO, LANCZOS, AMLS; 0: 1e-4 for AMLS, as accurate as
+                        the residuals allow for all others */
 } ritz_span;
 
 /**
@@ -422,12 +425,15 @@ typedef struct ritz_span {
  * (relative gap below 1e-6) at the end is returned whole, so there may be more
  * than requested. If fewer flexible modes exist than asked, all are returned.
  *
- * With RITZ_EIGEN_AMLS eigenvalues have relative errors up to 1e-4, and
- * residuals are not limited; `engine` of the pairs states a bound of the
- * errors. Slices take over, with the usual accuracy, where substructures are of
- * no use.
+ * With an accuracy, and with RITZ_EIGEN_AMLS, residuals are not limited;
+ * `engine` of the pairs states a bound of the errors of eigenvalues, and the
+ * values are upper bounds. Small pencils are solved by LAPACK as without.
+ * Slices take over from substructures, with the usual accuracy, where these are
+ * of no use.
  *
- * @return RITZ_ERR_SINGULAR if K + M is singular (a mechanism without mass);
+ * @return RITZ_ERR_ARGUMENT if the span is not one, or if an accuracy is
+ *         requested of an engine that knows none;
+ *         RITZ_ERR_SINGULAR if K + M is singular (a mechanism without mass);
  *         RITZ_ERR_CONVERGENCE if a residual stays above its limit or the
  *         inertia count finds a mode that was missed
  * @cost   a factor, about 2k solves, one LDL' factor for the proof

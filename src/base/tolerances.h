@@ -289,6 +289,19 @@
    this part of theta |x|, norms by M. The vectors returned are more accurate,
    by one inverse iteration. */
 #define RITZ_LANCZOS_SETTLED 1e-10
+/* The same where eigenvalues need a given relative accuracy: this part of the
+   square root of it. Errors of eigenvalues are about the squares of residuals
+   divided by the relative distance to eigenvalues that are not found, but pairs
+   below the last ones have much smaller residuals. For 500 modes of a solid the
+   bound was a twentieth of the accuracy requested. */
+#define RITZ_ACCURACY_SETTLED 0.5
+/* If the bound is larger than the accuracy after all, the search is repeated
+   with this part of the residuals. */
+#define RITZ_ACCURACY_FINER 1e-2
+/* The range of accuracies that can be requested. Bounds of errors have rounding
+   errors of some 1e-12, and a mode that is less accurate is none. */
+#define RITZ_ACCURACY_LEAST 1e-8
+#define RITZ_ACCURACY_MOST  1e-2
 /* Cholesky factor of the inner products of a block: a pivot that is a smaller
    part of its diagonal entry x'M x means that x depends on the vectors before
    it, within 1e-3 of its length. Such blocks are

@@ -346,6 +346,7 @@ ritz_span ritz_request_span(const ritz_request *request)
         .up_to_hz = request->up_to_hz,
         .engine = engine_of_modes(request->choice.engine),
         .uncounted = request->choice.uncounted,
+        .accuracy = request->choice.accuracy,
     };
 }
 

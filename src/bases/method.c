@@ -26,6 +26,12 @@ bool ritz_engine_fits(const ritz_method *method, ritz_engine engine)
            modes == ((method->uses & RITZ_USES_COUNT) != 0);
 }
 
+static bool knows_accuracy(ritz_engine engine)
+{
+    return engine == RITZ_ENGINE_AUTO || engine == RITZ_ENGINE_LANCZOS ||
+           engine == RITZ_ENGINE_AMLS;
+}
+
 ritz_status ritz_request_check(const ritz_method *method,
                                const ritz_request *request)
 {
@@ -55,6 +61,11 @@ ritz_status ritz_request_check(const ritz_method *method,
             : "%s finds Gramians: its engines are auto, dense, modal, "
               "low-rank and projection",
         method->name);
+    RITZ_REFUSE_IF(request->choice.accuracy > 0.0 &&
+                       !knows_accuracy(request->choice.engine),
+                   RITZ_ERR_ARGUMENT,
+                   "this engine finds eigenvalues to rounding only: with an "
+                   "accuracy the engines are auto, lanczos and amls");
     RITZ_REFUSE_IF(request->neighbour && !(method->uses & RITZ_USES_NEIGHBOUR),
                    RITZ_ERR_ARGUMENT, "%s loads nothing on its interface",
                    method->name);

@@ -6,6 +6,7 @@
 #include "linear/factor.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { B = RITZ_BLOCK, SQUARE = RITZ_SQUARE };
@@ -40,6 +41,14 @@ void ritz_block_basis_free(ritz_block_basis *b)
     ritz_blocks_free(&b->on);
     ritz_row_matrix_free(&b->M);
     RITZ_FREE(b->V, b->W, b->MW, b->C);
+}
+
+void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept)
+{
+    const size_t size = (size_t)(kept * b->n * B) * sizeof *b->V;
+    double *shorter = size > 0 ? realloc(b->V, size) : NULL;
+
+    b->V = shorter ? shorter : b->V;
 }
 
 double *ritz_block_basis_at(const ritz_block_basis *b, int64_t j)

@@ -41,6 +41,9 @@ ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b);
 
 void ritz_block_basis_free(ritz_block_basis *b);
 
+/** Free the blocks of V from @p kept on; a failure costs only memory. */
+void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept);
+
 /** V := one step of random vectors, multiplied by A^-1 M; W is the same.
  * @param[out] exhausted  the range of A^-1 M is empty */
 ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);

@@ -10,7 +10,6 @@
 #include <lapacke.h>
 #include <limits.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -27,6 +26,7 @@ enum {
 typedef struct block_lanczos {
     ritz_block_basis b; /* its rows are in the factor's order */
     int64_t k;
+    double settled;    /* residual of a pair that has converged */
     int64_t room;      /* of blocks in b */
     double *MV;        /* M times the last step of b */
     double *both;      /* n x 16, for solves of two blocks */
@@ -258,73 +258,102 @@ static int64_t count_converged(const block_lanczos *L, int64_t most,
         const double theta = fabs(L->theta[L->rank[c]]);
         double q[WIDEST * B];
 
-        if (!(last_part(L, c, R, q) <= RITZ_LANCZOS_SETTLED * theta) ||
+        if (!(last_part(L, c, R, q) <= L->settled * theta) ||
             theta <= RITZ_NO_DIRECTION * fabs(L->theta[L->rank[0]]))
             break;
     }
     return c;
 }
 
-/* C := coefficients of the Ritz vectors of the c-th to (c + 7)-th largest
-   theta, those before `end`, in the blocks of V and of the next step. R NULL:
-   without the inverse iteration, so that those of the next step are zero. */
-static void combine_ritz(const block_lanczos *L, int64_t c, int64_t end,
-                         const double *R, double *C)
+/* U := coefficients of the Ritz vectors of the `count` largest theta, in the
+   vectors of V and of the next step. R NULL: without the inverse iteration, and
+   so without the next step. */
+static ritz_status select_ritz(const block_lanczos *L, int64_t count,
+                               const double *R, ritz_dense *U)
 {
     const int64_t m = L->b.blocks * B;
+    const int64_t last = R ? L->b.width * B : 0;
 
-    memset(C, 0, (size_t)((L->b.blocks + L->b.width) * SQUARE) * sizeof *C);
-    for (int k = 0; k < B && c + k < end; k++) {
-        const int64_t at = L->rank[c + k];
-        const double *z = L->Z + at * m;
+    RITZ_CHECK(ritz_dense_new(m + last, count, U));
+    for (int64_t c = 0; c < count; c++) {
+        double *u = ritz_dense_col(U, c);
         double q[WIDEST * B];
 
-        for (int64_t i = 0; i < m; i++)
-            C[i * B + k] = z[i];
-        if (!R)
-            continue;
-        last_part(L, c + k, R, q);
-        for (int64_t i = 0; i < L->b.width * B; i++)
-            C[(m + i) * B + k] = q[i] / L->theta[at];
+        memcpy(u, L->Z + L->rank[c] * m, (size_t)m * sizeof *u);
+        if (R)
+            last_part(L, c, R, q);
+        for (int64_t i = 0; i < last; i++)
+            u[m + i] = q[i] / L->theta[L->rank[c]];
     }
+    return RITZ_OK;
 }
 
-/* The first `kept` blocks of V become the Ritz vectors of the largest theta,
-   those before `end`. R as for combine_ritz(). */
-static ritz_status keep_ritz(block_lanczos *L, int64_t kept, int64_t end,
-                             const double *R)
+/* The first blocks of V become its combinations U; zeros fill the last one. */
+static ritz_status combine_basis(block_lanczos *L, const ritz_dense *U)
 {
-    const int64_t part = (L->b.blocks + L->b.width) * SQUARE;
+    const int64_t kept = (U->ncol + B - 1) / B;
+    const int64_t part = U->nrow * B;
     RITZ_OWN_ARRAY double *C = NULL, *room = NULL;
 
     RITZ_CHECK_NEW(C, kept * part);
     RITZ_CHECK_NEW(room, ritz_blocks_room(&L->b.on, kept));
-    for (int64_t g = 0; g < kept; g++)
-        combine_ritz(L, g * B, end, R, C + g * part);
-    ritz_blocks_combine(&L->b.on, L->b.blocks + (R ? L->b.width : 0), kept,
-                        part, C, room, L->b.V);
+    for (int64_t c = 0; c < U->ncol; c++)
+        for (int64_t i = 0; i < U->nrow; i++)
+            C[c / B * part + i * B + c % B] = U->val[i + c * U->nrow];
+    ritz_blocks_combine(&L->b.on, U->nrow / B, kept, part, C, room, L->b.V);
     return RITZ_OK;
 }
 
-/* Free the blocks of V from `kept` on; a failure costs only memory. */
-static void shorten_basis(block_lanczos *L, int64_t kept)
+/*
+ * Rayleigh-Ritz for A in the span of X = A^-1 M V Z / Theta, which is V U, and
+ * the moments of V Z, see enclosure.h. With Q = R Z_j, by the recurrence,
+ *
+ *     A^-1 M V Z = V Z Theta + V_j+1 Q,    F1 = Theta,  F2 = Theta^2 + Q'Q
+ *     X'A X = Theta^-1,    X'M X = U'U = Theta^-1 F2 Theta^-1
+ *
+ * U is multiplied by the eigenvectors; values are those of K.
+ */
+static ritz_status improve_ritz(const block_lanczos *L, ritz_dense *U,
+                                double *values, ritz_moments *moments)
 {
-    const size_t size = (size_t)(kept * L->b.n * B) * sizeof *L->b.V;
-    double *shorter = size > 0 ? realloc(L->b.V, size) : NULL;
+    const int64_t k = U->ncol;
+    RITZ_OWN(ritz_dense) A_r = {0}, M_r = {0};
+    RITZ_OWN(ritz_pairs) small = {0};
 
-    L->b.V = shorter ? shorter : L->b.V;
+    ritz_moments_free(moments);
+    RITZ_CHECK(ritz_dense_new(k, k, &A_r));
+    RITZ_CHECK(ritz_dense_new(k, k, &moments->first));
+    RITZ_CHECK(ritz_dense_mul_tn(U, U, &M_r));
+    RITZ_CHECK(ritz_dense_copy(&M_r, &moments->second));
+    for (int64_t j = 0; j < k; j++) {
+        const double theta = L->theta[L->rank[j]];
+
+        ritz_dense_col(&A_r, j)[j] = 1.0 / theta;
+        ritz_dense_col(&moments->first, j)[j] = theta;
+        for (int64_t i = 0; i < k; i++)
+            ritz_dense_col(&moments->second, j)[i] *=
+                L->theta[L->rank[i]] * theta;
+    }
+    RITZ_CHECK(ritz_eigen_dense(&A_r, &M_r, &small));
+    RITZ_REFUSE_IF(small.Phi.ncol < k, RITZ_ERR_CONVERGENCE,
+                   "%" PRId64 " eigenvectors depend on each other",
+                   k - small.Phi.ncol);
+    RITZ_CHECK(ritz_eigen_quotients(&A_r, &small.Phi, values));
+    for (int64_t j = 0; j < k; j++)
+        values[j] += L->b.S->sigma;
+    return ritz_dense_times(&small.Phi, U);
 }
 
-/* X := Ritz vectors of the `count` largest theta, rows in the order of M. They
-   replace V, so that memory does not hold both. */
-static ritz_status extract_vectors(block_lanczos *L, int64_t count,
-                                   const double *R, ritz_dense *X)
+/* X := V U, rows in the order of M. They replace V, so that memory does not
+   hold both. */
+static ritz_status extract_vectors(block_lanczos *L, const ritz_dense *U,
+                                   ritz_dense *X)
 {
     const int64_t *order = ritz_factor_order(L->b.S->A);
-    const int64_t kept = (count + B - 1) / B;
+    const int64_t count = U->ncol;
 
-    RITZ_CHECK(keep_ritz(L, kept, count, R));
-    shorten_basis(L, kept);
+    RITZ_CHECK(combine_basis(L, U));
+    ritz_block_basis_shorten(&L->b, (count + B - 1) / B);
     RITZ_CHECK(ritz_dense_new(L->b.n, count, X));
     for (int64_t c = 0; c < count; c += B)
         for (int64_t i = 0; i < L->b.n; i++)
@@ -351,11 +380,12 @@ static int64_t blocks_kept(const block_lanczos *L)
  */
 static ritz_status restart_space(block_lanczos *L, const double *R)
 {
-    const int64_t m = L->b.blocks * B;
     const int64_t ld = L->room * B;
     const int64_t kept = blocks_kept(L);
+    RITZ_OWN(ritz_dense) U = {0};
 
-    RITZ_CHECK(keep_ritz(L, kept, m, NULL));
+    RITZ_CHECK(select_ritz(L, kept * B, NULL, &U));
+    RITZ_CHECK(combine_basis(L, &U));
     memset(L->T, 0, (size_t)(ld * ld) * sizeof *L->T);
     for (int64_t c = 0; c < kept * B; c++) {
         double q[WIDEST * B];
@@ -412,8 +442,14 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
                                   ritz_lanczos_end *end)
 {
     /* no check of convergence before there are 2.4 basis vectors for each pair,
-       or 1.4 if eigenvalues lie on both sides of sigma */
-    int64_t next = ((L->b.S->below > 0 ? 7 : 12) * L->k / 5 + B - 1) / B;
+       2.2 if
+       they need not be accurate, or 1.4 if eigenvalues lie on both sides of sigma */
+    int64_t next = ((L->b.S->below > 0                   ? 7
+                     : L->settled > RITZ_LANCZOS_SETTLED ? 11
+                                                         : 12) *
+                        L->k / 5 +
+                    B - 1) /
+                   B;
     int64_t steps = 0;
     int restarts = 0;
     bool exhausted = false;
@@ -470,7 +506,9 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
               .width = plan->width > 0 ? plan->width : width,
               .noise = 1998},
         .k = plan->k,
+        .settled = plan->settled > 0.0 ? plan->settled : RITZ_LANCZOS_SETTLED,
     };
+    RITZ_OWN(ritz_dense) U = {0};
     RITZ_OWN_ARRAY double *values = NULL;
     double R[RITZ_STEP_SQUARES * SQUARE];
     int64_t found = 0;
@@ -491,7 +529,10 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
     RITZ_CHECK_NEW(values, found);
     for (int64_t c = 0; c < found; c++)
         values[c] = eigenvalue_at(&L, c);
-    RITZ_CHECK(extract_vectors(&L, found, R, X));
+    RITZ_CHECK(select_ritz(&L, found, R, &U));
+    if (plan->settled > 0.0)
+        RITZ_CHECK(improve_ritz(&L, &U, values, &plan->moments));
+    RITZ_CHECK(extract_vectors(&L, &U, X));
     RITZ_MOVE(*lambda, values);
     return RITZ_OK;
 }

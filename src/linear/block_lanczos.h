@@ -17,11 +17,13 @@
  *     V z + V_j+1 R_j+1 z_j / theta = A^-1 M V z / theta
  *
  * is the vector of one more inverse iteration, which needs no solve: this one
- * is returned.
+ * is returned. If eigenvalues need few digits, the iteration ends earlier, and
+ * these vectors are not orthogonal enough: they are combined by Rayleigh-Ritz.
  */
 #ifndef RITZ_LINEAR_BLOCK_LANCZOS_H
 #define RITZ_LINEAR_BLOCK_LANCZOS_H
 
+#include "linear/enclosure.h"
 #include "linear/general.h"
 
 /** What ritz_block_lanczos() is to find. */
@@ -31,7 +33,14 @@ typedef struct ritz_lanczos_plan {
                       48; 0: about 4 k, with which few models need a restart */
     int64_t width; /* in: blocks of eight that each step adds, 1 or 2; 0: 2 from
                       100 pairs on */
-    double next;   /* out: estimate of the next eigenvalue after those found, by
+    double settled; /* in: residual |A^-1 M x - theta x| / |theta x| at which a
+                       pair has converged; 0: 1e-10. If it is given, vectors
+                       are improved by a Rayleigh-Ritz step, and there are
+                       moments; sigma must then be below all eigenvalues */
+    ritz_moments moments; /* out: of what the vectors were before their last
+                             iteration, as ritz_vectors_polish() has them; freed
+                             by the caller */
+    double next; /* out: estimate of the next eigenvalue after those found, by
                       distance from sigma, or of the k-th one if the search was
                       SLOW; the true one is nearer to sigma. HUGE_VAL if there
                       is no estimate; not set if it was EXHAUSTED */

@@ -38,18 +38,20 @@
 #include <string.h>
 
 enum {
-    SMALL = 600,   /* dofs, or dofs with mass: dense is faster */
-    MEDIUM = 4000, /* dense where a quarter of all modes is wanted */
+    SMALL = RITZ_EIGEN_SMALL,
     ATTEMPTS = 12, /* changes of sigma, and requests for more */
     BODY = 6,      /* rigid modes of one free body */
     GUESS = 20,    /* flexible modes requested first if they are not counted */
-    GUARD = 2,     /* substructures find k + k / GUARD + GUARD modes for k */
-    PLENTY = 20,   /* substructures are of use up to one mode in so many dofs */
-    BEHIND = 2,    /* modes requested above those wanted: a gap to count in */
-    SPARE = 4,     /* the same after a mode was missed */
-    MISSES = 3,    /* searches repeated as a count found more modes */
-    POLISHES = 3,  /* inverse iterations, most often one */
-    STEPS = 4,     /* the same after substructures, most often three */
+    ROUGH_PART = 50, /* block Lanczos for few digits finds k + k / ROUGH_PART +
+                        ROUGH_MORE modes for k, to have a gap to count in */
+    ROUGH_MORE = 8,
+    GUARD = 2,    /* substructures find k + k / GUARD + GUARD modes for k */
+    PLENTY = 20,  /* substructures are of use up to one mode in so many dofs */
+    BEHIND = 2,   /* modes requested above those wanted: a gap to count in */
+    SPARE = 4,    /* the same after a mode was missed */
+    MISSES = 3,   /* searches repeated as a count found more modes */
+    POLISHES = 3, /* inverse iterations, most often one */
+    STEPS = 4,    /* the same after substructures, most often three */
 };
 
 typedef struct engine engine;
@@ -75,6 +77,8 @@ typedef struct search {
                              empty unless the engine is approximate */
     double counted_at;    /* the last count was of modes below this */
     double error;         /* bound of relative errors of eigenvalues */
+    double accuracy;      /* the most that it may be */
+    double settled;       /* residuals of block Lanczos, for that accuracy */
 } search;
 
 static void search_free(search *s)
@@ -109,13 +113,6 @@ static ritz_status survey_pencil(search *s)
     qsort(ratio, (size_t)count, sizeof *ratio, ritz_ascending);
     s->typical = count > 0 ? ratio[count / 2] : 1.0;
     return RITZ_OK;
-}
-
-/* Keep the first @p end pairs. */
-static void truncate_pairs(ritz_pairs *P, int64_t end)
-{
-    P->Phi.ncol = end;
-    P->num_rigid = P->num_rigid < end ? P->num_rigid : end;
 }
 
 /* Factor K - sigma M in place of what was factored before. */
@@ -210,7 +207,8 @@ static ritz_status shift_elsewhere(search *s, double reach)
 /* A method to find the s->ask lowest pairs with the factor s->S.A. */
 struct engine {
     const char *name;
-    bool approximate; /* eigenvalues to RITZ_AMLS_ERROR only */
+    bool approximate; /* eigenvalues to s->accuracy only */
+    bool bounded;     /* s->moments are those of the vectors that it returns */
     /** *lambda stays NULL if the method gives vectors alone. If *end is SLOW,
      * *reach is set as by ritz_lanczos_lowest(). */
     ritz_status (*find)(search *s, ritz_dense *X, double **lambda,
@@ -234,7 +232,29 @@ static ritz_status find_by_arpack(search *s, ritz_dense *X, double **lambda,
     return ritz_lanczos_lowest(&s->S, s->ask, X, reach, end);
 }
 
-static const engine reliable = {"block Lanczos", false, find_by_blocks};
+static const engine reliable = {.name = "block Lanczos",
+                                .find = find_by_blocks};
+
+/* More modes than requested are found, and among them one of the widest gaps, in
+   which modes are counted: errors are the smaller, the wider it is. */
+static ritz_status find_roughly(search *s, ritz_dense *X, double **lambda,
+                                double *reach, ritz_lanczos_end *end)
+{
+    ritz_lanczos_plan plan = {.k = s->ask + s->ask / ROUGH_PART + ROUGH_MORE,
+                              .settled = s->settled,
+                              .next = *reach};
+    ritz_status status = ritz_block_lanczos(&s->S, &plan, X, lambda, end);
+
+    ritz_moments_free(&s->moments);
+    s->moments = plan.moments;
+    *reach = plan.next;
+    return status;
+}
+
+static const engine rough = {.name = "block Lanczos",
+                             .approximate = true,
+                             .bounded = true,
+                             .find = find_roughly};
 
 /*
  * The order of rows is copied, as the factor that has it is freed with the
@@ -261,7 +281,8 @@ static ritz_status find_by_slices(search *s, ritz_dense *X, double **lambda,
     return find_by_blocks(s, X, lambda, reach, end);
 }
 
-static const engine sliced = {"spectrum slices", false, find_by_slices};
+static const engine sliced = {.name = "spectrum slices",
+                              .find = find_by_slices};
 
 /* More modes than requested are found, so that the last ones requested are far
    from those that are missing. Slices take over if the structure cannot be
@@ -287,12 +308,22 @@ static ritz_status find_by_amls(search *s, ritz_dense *X, double **lambda,
 }
 
 static const engine engines[] = {
-    [RITZ_EIGEN_AUTO] = {"block Lanczos", false, find_by_blocks},
-    [RITZ_EIGEN_LANCZOS] = {"block Lanczos", false, find_by_blocks},
-    [RITZ_EIGEN_ARPACK] = {"ARPACK", false, find_by_arpack},
-    [RITZ_EIGEN_SLICES] = {"spectrum slices", false, find_by_slices},
-    [RITZ_EIGEN_AMLS] = {"substructures", true, find_by_amls},
+    [RITZ_EIGEN_AUTO] = {.name = "block Lanczos", .find = find_by_blocks},
+    [RITZ_EIGEN_LANCZOS] = {.name = "block Lanczos", .find = find_by_blocks},
+    [RITZ_EIGEN_ARPACK] = {.name = "ARPACK", .find = find_by_arpack},
+    [RITZ_EIGEN_SLICES] = {.name = "spectrum slices", .find = find_by_slices},
+    [RITZ_EIGEN_AMLS] = {.name = "substructures",
+                         .approximate = true,
+                         .find = find_by_amls},
 };
+
+/* With an accuracy block Lanczos, which then is fastest, ends earlier. */
+static const engine *engine_of(const ritz_span *span)
+{
+    const engine *e = &engines[span->engine];
+
+    return span->accuracy > 0.0 && e->find == find_by_blocks ? &rough : e;
+}
 
 /* Index of the pair below which modes are counted. An approximate engine counts
    among the additional modes: bounds of eigenvalues far below a count are
@@ -307,50 +338,59 @@ static int64_t gap_to_count(const search *s, int64_t end)
         &s->found, s->engine->approximate ? end + (count - end) / 2 : end);
 }
 
-/* The largest relative error of the first `end` eigenvalues, if `count` are below
-   tau. That of a rigid-body mode is relative to the first flexible one. */
-static ritz_status bound_error(const search *s, int64_t end, int64_t count,
-                               double tau, double *out)
+/* s->error := bound for the first `end` pairs, if `count` are below tau. */
+static ritz_status bound_error(search *s, int64_t end, int64_t count,
+                               double tau)
 {
-    const ritz_pairs *P = &s->found;
-    RITZ_OWN_ARRAY double *lower = NULL;
-
-    RITZ_CHECK_NEW(lower, count);
-    RITZ_CHECK(
-        ritz_moments_enclose(&s->moments, s->S.sigma, tau, count, lower));
-    *out = 0.0;
-    for (int64_t j = 0; j < end; j++) {
-        const int64_t unit = j < P->num_rigid ? P->num_rigid : j;
-        const double scale = unit < P->Phi.ncol ? P->lambda[unit] : tau;
-
-        *out = fmax(*out, (P->lambda[j] - lower[j]) / fabs(scale));
-    }
-    return RITZ_OK;
+    return ritz_pairs_bound(&s->found, &s->moments, s->S.sigma, tau, count, end,
+                            &s->error);
 }
 
-/* Inverse iterations until errors are small, or else slices take over. */
-static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
+/* s->error := bound for the pairs requested, if the count finds no others. */
+static ritz_status assess_pairs(search *s)
 {
     ritz_pairs *P = &s->found;
+    int64_t end = 0, at = 0;
     double worst = 0.0;
+
+    RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, P, NULL, &worst));
+    end = ritz_pairs_wanted(P, s->span, s->limit);
+    at = gap_to_count(s, end);
+    return bound_error(s, end, at, ritz_pairs_between(P, at, 0.5));
+}
+
+/* Search again with smaller residuals; with usual ones after a few times. */
+static void search_finer(search *s)
+{
+    s->settled *= RITZ_ACCURACY_FINER;
+    if (s->settled < RITZ_LANCZOS_SETTLED)
+        s->engine = &reliable;
+    s->ask += s->ask / ROUGH_PART + ROUGH_MORE;
+}
+
+/* Inverse iterations, if the engine has no bounds of its own, until errors are
+   small; or else pairs are found in another way. */
+static ritz_status improve_pairs(search *s, ritz_dense *X, double **lambda)
+{
+    const int steps = s->engine->bounded ? 1 : STEPS;
+    ritz_pairs *P = &s->found;
 
     RITZ_MOVE(P->Phi, *X);
     RITZ_MOVE(P->lambda, *lambda);
     RITZ_CHECK_NEW(P->residual, P->Phi.ncol);
-    for (int k = 0; k < STEPS; k++) {
-        int64_t end = 0, at = 0;
-
+    for (int k = 0; k < steps; k++) {
         ritz_monitor_step("inverse iteration", k, 0);
-        RITZ_CHECK(ritz_vectors_polish(&s->S, &P->Phi, P->lambda, &s->moments));
-        RITZ_CHECK(ritz_pairs_assess(s->S.K, s->S.M, P, NULL, &worst));
-        end = ritz_pairs_wanted(P, s->span, s->limit);
-        at = gap_to_count(s, end);
-        RITZ_CHECK(
-            bound_error(s, end, at, ritz_pairs_between(P, at, 0.5), &s->error));
-        if (s->error <= RITZ_AMLS_ERROR)
+        if (!s->engine->bounded)
+            RITZ_CHECK(
+                ritz_vectors_polish(&s->S, &P->Phi, P->lambda, &s->moments));
+        RITZ_CHECK(assess_pairs(s));
+        if (s->error <= s->accuracy)
             return RITZ_OK;
     }
-    s->engine = &sliced;
+    if (s->engine->bounded)
+        search_finer(s);
+    else
+        s->engine = &sliced;
     ritz_pairs_free(P);
     return RITZ_OK;
 }
@@ -578,7 +618,7 @@ static ritz_status settle_error(search *s, int64_t end)
                    count);
     if (s->span->uncounted)
         s->counted_at = ritz_pairs_between(&s->found, at, 0.5);
-    return bound_error(s, end, at, s->counted_at, &s->error);
+    return bound_error(s, end, at, s->counted_at);
 }
 
 /* With a factor of K there are no rigid modes, and sigma = 0 is kept. */
@@ -609,24 +649,26 @@ static void name_engine(search *s)
              s->all ? "condensed LAPACK" : s->engine->name, error);
 }
 
-static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
+ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
                               ritz_factor **L, const ritz_span *span,
                               const ritz_factor_use *use, ritz_pairs *out)
 {
     RITZ_OWN(search)
     s = {.span = span,
          .S = {.K = K, .M = M},
-         .engine = &engines[span->engine],
-         .use = use};
+         .engine = engine_of(span),
+         .use = use,
+         .accuracy = span->accuracy > 0.0 ? span->accuracy : RITZ_AMLS_ERROR};
     int64_t end = 0;
 
+    s.settled = RITZ_ACCURACY_SETTLED * sqrt(s.accuracy);
     if (L)
         RITZ_MOVE(s.S.A, *L);
     RITZ_CHECK(begin_search(&s));
     RITZ_CHECK(search_proven(&s, &end));
     if (!s.all && s.engine->approximate)
         RITZ_CHECK(settle_error(&s, end));
-    truncate_pairs(&s.found, end);
+    ritz_pairs_truncate(&s.found, end);
     ritz_dense_orient(&s.found.Phi);
     s.found.sigma = s.S.sigma;
     name_engine(&s);
@@ -634,67 +676,17 @@ static ritz_status by_lanczos(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* Every mode, so that none can be missing; the requested ones are kept. */
-static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
-                             const ritz_span *span, ritz_pairs *out)
+ritz_status ritz_eigen_refuse_accuracy(const ritz_span *span)
 {
-    RITZ_OWN(ritz_pairs) P = {0};
-    RITZ_OWN(ritz_dense) K_d = {0}, M_d = {0};
-    double limit = 0.0;
-    int64_t end = 0;
-
-    RITZ_CHECK(ritz_sparse_dense(K, &K_d));
-    RITZ_CHECK(ritz_sparse_dense(M, &M_d));
-    RITZ_CHECK(ritz_eigen_dense(&K_d, &M_d, &P));
-    if (span->modes < 0)
-        limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
-    end = ritz_pairs_wanted(&P, span, limit);
-    if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
-        P.proven_to =
-            fmax(limit, ritz_pairs_between(&P, end, RITZ_COUNT_PLACE));
-    truncate_pairs(&P, end);
-    RITZ_MOVE(*out, P);
+    if (span->accuracy == 0.0)
+        return RITZ_OK;
+    RITZ_REFUSE_IF(!(span->accuracy >= RITZ_ACCURACY_LEAST &&
+                     span->accuracy <= RITZ_ACCURACY_MOST),
+                   RITZ_ERR_ARGUMENT,
+                   "an accuracy of %g is not between 1e-8 and 1e-2",
+                   span->accuracy);
+    RITZ_REFUSE_IF(!engine_of(span)->approximate, RITZ_ERR_ARGUMENT,
+                   "modes by %s have no accuracy to choose",
+                   engine_of(span)->name);
     return RITZ_OK;
-}
-
-/* @param[in,out] L  the factor of K, which may be taken over; NULL: none */
-static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
-                               ritz_factor **L, const ritz_span *span,
-                               const ritz_factor_use *use, ritz_pairs *out)
-{
-    const int64_t n = K->nrow;
-
-    RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
-    RITZ_REFUSE_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
-                   "%" PRId64 " modes cannot be asked for", span->modes);
-    RITZ_REFUSE_IF(span->modes < 0 &&
-                       !(span->up_to_hz > 0.0 && isfinite(span->up_to_hz)),
-                   RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
-                   span->up_to_hz);
-    if (n <= SMALL || (n <= MEDIUM && span->modes > n / 4))
-        return by_lapack(K, M, span, out);
-    return by_lanczos(K, M, L, span, use, out);
-}
-
-ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
-                              const ritz_span *span, ritz_pairs *out)
-{
-    return find_lowest(K, M, NULL, span, NULL, out);
-}
-
-ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
-                               const ritz_span *span,
-                               const ritz_factor_use *use, ritz_pairs *out)
-{
-    return find_lowest(K, M, NULL, span, use, out);
-}
-
-ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
-                                ritz_factor **L, const ritz_span *span,
-                                ritz_pairs *out)
-{
-    ritz_status status = find_lowest(K, M, L, span, NULL, out);
-
-    ritz_factor_free(L);
-    return status;
 }

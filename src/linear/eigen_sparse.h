@@ -44,4 +44,21 @@ ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
                                const ritz_span *span,
                                const ritz_factor_use *use, ritz_pairs *out);
 
+/** Dofs, or dofs with mass, up to which LAPACK is faster than a search. */
+enum { RITZ_EIGEN_SMALL = 600 };
+
+/**
+ * ritz_eigen_sparse() without its cases for LAPACK and without its checks.
+ *
+ * @param[in,out] L    a factor of K, which is taken over; NULL: none
+ * @param[in]     use  NULL: the factor is not lent
+ */
+ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
+                              ritz_factor **L, const ritz_span *span,
+                              const ritz_factor_use *use, ritz_pairs *out);
+
+/** RITZ_ERR_ARGUMENT if the engine of the span knows no accuracy, or if the
+ * accuracy is out of range. */
+ritz_status ritz_eigen_refuse_accuracy(const ritz_span *span);
+
 #endif

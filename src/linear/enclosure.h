@@ -43,4 +43,17 @@ ritz_status ritz_vectors_polish(const ritz_shifted *S, ritz_dense *X,
 ritz_status ritz_moments_enclose(const ritz_moments *moments, double sigma,
                                  double tau, int64_t count, double *lower);
 
+/**
+ * The largest relative error of the first @p end eigenvalues of P. That of a
+ * rigid-body mode is relative to the first flexible eigenvalue.
+ *
+ * @param[in] P    pairs with the moments of their vectors, or of what these were
+ *                 before an inverse iteration
+ * @param[in] tau, count  as for ritz_moments_enclose()
+ * @return as ritz_moments_enclose()
+ */
+ritz_status ritz_pairs_bound(const ritz_pairs *P, const ritz_moments *moments,
+                             double sigma, double tau, int64_t count,
+                             int64_t end, double *out);
+
 #endif

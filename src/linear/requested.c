@@ -59,3 +59,9 @@ bool ritz_pairs_unclear(const ritz_pairs *P, double limit)
             return true;
     return false;
 }
+
+void ritz_pairs_truncate(ritz_pairs *P, int64_t end)
+{
+    P->Phi.ncol = end;
+    P->num_rigid = P->num_rigid < end ? P->num_rigid : end;
+}

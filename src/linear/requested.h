@@ -32,4 +32,7 @@ double ritz_pairs_between(const ritz_pairs *P, int64_t k, double part);
  * may include it or not (RITZ_COUNT_UNCLEAR). */
 bool ritz_pairs_unclear(const ritz_pairs *P, double limit);
 
+/** Keep the first @p end pairs. */
+void ritz_pairs_truncate(ritz_pairs *P, int64_t end);
+
 #endif

@@ -5,6 +5,7 @@
 #include <ritz/basis.h>
 
 #include "base/text.h"
+#include "base/tolerances.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -129,6 +130,10 @@ const ritz_choice_word ritz_choice_words[] = {
     {"count", "WORD", "prove by a count that no mode is missing: yes or no",
      RITZ_USES_COUNT, RITZ_CHOICE_FLAG, FIELD(uncounted), "count",
      WORDS(counts)},
+    {"accuracy", "X",
+     "eigenvalues of modes within this relative error, 1e-8 to 1e-2 "
+     "[to rounding; amls 1e-4]",
+     RITZ_USES_ACCURACY, RITZ_CHOICE_ACCURACY, FIELD(accuracy), NULL, NULL, 0},
     {"sides", "WORD", "project by one side, which keeps symmetry, or by two",
      RITZ_USES_SIDES, RITZ_CHOICE_FLAG, FIELD(one_sided), "side", WORDS(sides)},
     {0},
@@ -181,6 +186,7 @@ static ritz_status take_value(const ritz_choice_word *word, const char *text,
     char cut[RITZ_SHORT_SIZE];
     int64_t count = 0;
     double hertz = 0.0;
+    double accuracy = 0.0;
 
     switch (word->kind) {
     case RITZ_CHOICE_SHIFTS:
@@ -201,6 +207,15 @@ static ritz_status take_value(const ritz_choice_word *word, const char *text,
                        RITZ_ERR_ARGUMENT, "'%s' is no frequency above 0 Hz",
                        ritz_text_short(text, cut));
         *(double *)field = hertz;
+        return RITZ_OK;
+    case RITZ_CHOICE_ACCURACY:
+        RITZ_REFUSE_IF(!ritz_text_real(text, &accuracy) ||
+                           !(accuracy >= RITZ_ACCURACY_LEAST &&
+                             accuracy <= RITZ_ACCURACY_MOST),
+                       RITZ_ERR_ARGUMENT,
+                       "'%s' is no accuracy of modes from 1e-8 to 1e-2",
+                       ritz_text_short(text, cut));
+        *(double *)field = accuracy;
         return RITZ_OK;
     case RITZ_CHOICE_BAND:
         return take_band(text, field);
@@ -270,6 +285,7 @@ static void print_value(const ritz_choice_word *word, const ritz_choice *choice,
         snprintf(text, sizeof text, "%" PRId64, *(const int64_t *)field);
         break;
     case RITZ_CHOICE_HERTZ:
+    case RITZ_CHOICE_ACCURACY:
         print_reals(1, field, sizeof text, text);
         break;
     case RITZ_CHOICE_BAND:

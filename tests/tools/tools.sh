@@ -158,6 +158,14 @@ expect 2 "no method 'guyam', is 'guyan' meant?" ritz-basis guyam bar.h5 -o x.h5
 expect 0 '7 columns for 21 dofs' ritz-basis craig-bampton --modes 5 --count no \
     --engine lanczos bar.h5 -o uncounted.h5
 expect 0 'modes 5 engine lanczos count no' ritz-info uncounted.h5
+expect 0 'modes 5 accuracy' ritz-basis craig-bampton --modes 5 \
+    --accuracy 1e-4 bar.h5 -o accurate.h5
+expect 2 'with an accuracy the engines are auto, lanczos and amls' ritz-basis \
+    craig-bampton --modes 5 --accuracy 1e-4 --engine slices bar.h5 -o x.h5
+expect 2 "'3' is no accuracy of modes from 1e-8 to 1e-2" ritz-basis \
+    craig-bampton --modes 5 --accuracy 3 bar.h5 -o x.h5
+expect 2 "guyan has no 'accuracy' to choose" ritz-basis guyan --accuracy 1e-4 \
+    bar.h5 -o x.h5
 expect 2 'its engines are auto, lanczos, arpack, slices, amls and slepc' ritz-basis \
     craig-bampton --modes 5 --engine modal bar.h5 -o x.h5
 expect 2 'its engines are auto, dense, modal, low-rank and projection' \

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_OPTIONS = 32, EXIT_USAGE = 2, WORD = 32 };
+enum { MAX_OPTIONS = 40, EXIT_USAGE = 2, WORD = 32 };
 
 /* The tool's own options, then those that every tool has; ended by {0}. */
 static void gather_options(cli_run *run, cli_option *all)

@@ -182,6 +182,11 @@ static void requests_that_make_no_sense_are_refused(void **state)
                  RITZ_ERR_ARGUMENT, "either a number of modes or a frequency");
     assert_fails(ritz_request_check(&ritz_method_guyan, &request),
                  RITZ_ERR_ARGUMENT, "guyan has no modes to choose");
+    request.up_to_hz = 0.0;
+    request.choice.engine = RITZ_ENGINE_SLICES;
+    request.choice.accuracy = 1e-4;
+    assert_fails(ritz_request_check(&ritz_method_craig_bampton, &request),
+                 RITZ_ERR_ARGUMENT, "the engines are auto, lanczos and amls");
     assert_null(ritz_method_find("craig-bamton"));
     assert_non_null(strstr(ritz_error_message(), "is 'craig-bampton' meant?"));
 }

@@ -368,11 +368,14 @@ static void check_search(const ritz_span *span)
             count++;
     lattice_new(12, 0.0, &K, &M);
     assert_ok(ritz_eigen_sparse(&K, &M, span, &P));
-    assert_non_null(strstr(P.engine, "substructures"));
+    assert_non_null(strstr(P.engine, span->engine == RITZ_EIGEN_AMLS
+                                         ? "substructures"
+                                         : "block Lanczos"));
     assert_true((strstr(P.engine, "if none is missed") != NULL) ==
                 span->uncounted);
     assert_true(P.Phi.ncol >= count && P.Phi.ncol < count + 6);
-    assert_true(stated_error(&P) <= 1e-4);
+    assert_true(stated_error(&P) <=
+                (span->accuracy > 0.0 ? span->accuracy : 1e-4));
     for (int64_t j = 0; j < P.Phi.ncol; j++) {
         assert_true(P.lambda[j] >= exact[j] * (1.0 - 1e-11));
         assert_true(P.lambda[j] - exact[j] <=
@@ -387,11 +390,41 @@ static void a_search_states_how_large_errors_are(void **state)
         {.modes = 40, .engine = RITZ_EIGEN_AMLS},
         {.modes = 40, .engine = RITZ_EIGEN_AMLS, .uncounted = true},
         {.modes = -1, .up_to_hz = 0.12, .engine = RITZ_EIGEN_AMLS},
+        {.modes = 40, .engine = RITZ_EIGEN_AMLS, .accuracy = 1e-6},
+        {.modes = 40, .accuracy = 1e-4},
+        {.modes = 110, .engine = RITZ_EIGEN_LANCZOS, .accuracy = 1e-4},
+        {.modes = 40, .accuracy = 1e-7, .uncounted = true},
+        {.modes = -1, .up_to_hz = 0.12, .accuracy = 1e-4},
     };
 
     (void)state;
     for (size_t k = 0; k < sizeof way / sizeof *way; k++)
         check_search(&way[k]);
+}
+
+static void check_refused(const ritz_span *span, const char *sentence)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_pairs) P = {0};
+
+    lattice_new(3, 0.0, &K, &M);
+    assert_fails(ritz_eigen_sparse(&K, &M, span, &P), RITZ_ERR_ARGUMENT,
+                 sentence);
+}
+
+static void engines_without_an_accuracy_refuse_one(void **state)
+{
+    (void)state;
+    check_refused(
+        &(ritz_span){.modes = 4, .engine = RITZ_EIGEN_SLICES, .accuracy = 1e-4},
+        "modes by spectrum slices have no accuracy to choose");
+    check_refused(
+        &(ritz_span){.modes = 4, .engine = RITZ_EIGEN_ARPACK, .accuracy = 1e-4},
+        "modes by ARPACK have no accuracy to choose");
+    check_refused(&(ritz_span){.modes = 4, .accuracy = 1e-12},
+                  "an accuracy of 1e-12 is not between 1e-8 and 1e-2");
+    check_refused(&(ritz_span){.modes = 4, .accuracy = 0.5},
+                  "an accuracy of 0.5 is not between 1e-8 and 1e-2");
 }
 
 /* With so many modes the reduced matrix would be as large as the model. */
@@ -417,12 +450,12 @@ static ritz_status find_some(const ritz_sparse *K, const ritz_sparse *M)
                        &end);
 }
 
-static ritz_status find_bounded(const ritz_sparse *K, const ritz_sparse *M)
+static ritz_status find_bounded(const ritz_sparse *K, const ritz_sparse *M,
+                                const ritz_span *span)
 {
     RITZ_OWN(ritz_pairs) P = {0};
-    const ritz_span span = {.modes = 6, .engine = RITZ_EIGEN_AMLS};
 
-    return ritz_eigen_sparse(K, M, &span, &P);
+    return ritz_eigen_sparse(K, M, span, &P);
 }
 
 static void no_allocation_failure_leaks(void **state)
@@ -433,7 +466,12 @@ static void no_allocation_failure_leaks(void **state)
     lattice_new(6, 0.1, &K, &M);
     assert_survives_allocations(5, find_some(&K, &M));
     lattice_new(9, 0.0, &K_9, &M_9);
-    assert_survives_allocations(23, find_bounded(&K_9, &M_9));
+    assert_survives_allocations(
+        23, find_bounded(&K_9, &M_9,
+                         &(ritz_span){.modes = 6, .engine = RITZ_EIGEN_AMLS}));
+    assert_survives_allocations(
+        7,
+        find_bounded(&K_9, &M_9, &(ritz_span){.modes = 6, .accuracy = 1e-4}));
 }
 
 static const struct CMUnitTest tests[] = {
@@ -448,6 +486,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(eigenvalues_lie_within_their_bounds),
     cmocka_unit_test(the_number_of_eigenvalues_is_estimated),
     cmocka_unit_test(a_search_states_how_large_errors_are),
+    cmocka_unit_test(engines_without_an_accuracy_refuse_one),
     cmocka_unit_test(slices_take_over_where_most_modes_are_requested),
     cmocka_unit_test(no_allocation_failure_leaks),
 };

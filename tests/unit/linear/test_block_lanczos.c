@@ -79,13 +79,82 @@ static void many_modes_are_found_sixteen_at_a_time(void **state)
     check_cube(13, 0.0, (ritz_lanczos_plan){.k = 100});
 }
 
+/* Largest entry of |G - diag(d)|; d NULL: of |G - I|. */
+static double distance_from_diagonal(const ritz_dense *G, const double *d)
+{
+    double worst = 0.0;
+
+    for (int64_t j = 0; j < G->ncol; j++)
+        for (int64_t i = 0; i < G->nrow; i++) {
+            const double own = d ? d[j] : 1.0;
+
+            worst = fmax(worst,
+                         fabs(G->val[i + j * G->nrow] - (i == j ? own : 0.0)));
+        }
+    return worst;
+}
+
+/*
+ * Vectors that have converged to 1e-3 only: as they come from Rayleigh-Ritz,
+ * they are orthonormal in M, and X'K X is diagonal up to rounding, eps times the
+ * largest eigenvalue, 12, times the size of K^-1. Eigenvalues lie between exact
+ * ones and their bounds; how many lie below the widest gap is known here.
+ */
+static void rough_pairs_are_bounded(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0}, G = {0};
+    ritz_lanczos_plan plan = {.k = 40, .settled = 1e-3};
+    double *exact = lattice_eigenvalues(13, 0.0);
+    double lower[40];
+    double rough = 0.0;
+    int64_t count = 30;
+    double *lambda = NULL;
+    ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
+
+    (void)state;
+    lattice_new(13, 0.0, &K, &M);
+    assert_ok(ritz_factor_spd(&K, &F));
+    assert_ok(ritz_block_lanczos(&(ritz_shifted){&K, &M, 0.0, F, 0}, &plan, &X,
+                                 &lambda, &end));
+    assert_int_equal(end, RITZ_LANCZOS_FOUND);
+    assert_int_equal(plan.moments.first.ncol, X.ncol);
+    assert_ok(ritz_sparse_mul(&M, &X, &Y));
+    assert_ok(ritz_dense_mul_tn(&X, &Y, &G));
+    assert_near(distance_from_diagonal(&G, NULL), 0.0, 1e-12);
+    ritz_dense_free(&Y);
+    ritz_dense_free(&G);
+    assert_ok(ritz_sparse_mul(&K, &X, &Y));
+    assert_ok(ritz_dense_mul_tn(&X, &Y, &G));
+    assert_near(distance_from_diagonal(&G, lambda), 0.0, 1e-12);
+    for (int64_t k = 31; k < 40; k++)
+        if (exact[k] - exact[k - 1] > exact[count] - exact[count - 1])
+            count = k;
+    assert_ok(ritz_moments_enclose(&plan.moments, 0.0,
+                                   0.5 * (exact[count - 1] + exact[count]),
+                                   count, lower));
+    for (int64_t j = 0; j < count; j++) {
+        assert_true(lower[j] <= exact[j] + 1e-12);
+        assert_true(exact[j] <= lambda[j] + 1e-12);
+        assert_true(lambda[j] - lower[j] < 1e-4 * exact[j]);
+        rough = fmax(rough, lambda[j] - exact[j]);
+    }
+    assert_true(rough > 1e-13); /* or nothing was bounded */
+    ritz_moments_free(&plan.moments);
+    free(lambda);
+    free(exact);
+}
+
 /* Room for 112 vectors, where 212 would do without a restart. */
 static void restarts_lose_nothing(void **state)
 {
     (void)state;
     for (int64_t width = 1; width <= 2; width++) {
-        check_cube(12, 0.0, (ritz_lanczos_plan){40, 112, width, 0.0});
-        check_cube(12, -0.01, (ritz_lanczos_plan){20, 80, width, 0.0});
+        check_cube(12, 0.0,
+                   (ritz_lanczos_plan){.k = 40, .room = 112, .width = width});
+        check_cube(12, -0.01,
+                   (ritz_lanczos_plan){.k = 20, .room = 80, .width = width});
     }
 }
 
@@ -180,7 +249,8 @@ static ritz_status find_few(const ritz_shifted *S)
     double *lambda = NULL;
     ritz_lanczos_end end = RITZ_LANCZOS_SLOW;
     ritz_status status = ritz_block_lanczos(
-        S, &(ritz_lanczos_plan){3, 64, 2, 0.0}, &X, &lambda, &end);
+        S, &(ritz_lanczos_plan){.k = 3, .room = 64, .width = 2}, &X, &lambda,
+        &end);
 
     free(lambda);
     return status;
@@ -201,6 +271,7 @@ static void no_allocation_failure_leaks(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(multiple_eigenvalues_are_all_found),
     cmocka_unit_test(many_modes_are_found_sixteen_at_a_time),
+    cmocka_unit_test(rough_pairs_are_bounded),
     cmocka_unit_test(restarts_lose_nothing),
     cmocka_unit_test(a_search_ends_when_all_finite_modes_are_found),
     cmocka_unit_test(random_vectors_find_eigenvalues_of_high_multiplicity),

@@ -191,7 +191,7 @@ static void bad_keys_are_refused(void **)
          "s:2:28: unknown key 'q', there is model, basis, order, modes, "
          "up_to_hz, attach, shift_hz, loads, inner, interface_modes, gramian, "
          "operator, damping, engine, among_hz, band_hz, remainder, count, "
-         "sides"},
+         "accuracy, sides"},
         {"scene: a\ncomponent: {a: {model: m}}\n",
          "s:2:1: unknown key 'component', is 'components' meant?"},
         {"scene: a\nscene: b\n", "s:2:1: key 'scene' is given twice"},

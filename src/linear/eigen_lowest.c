@@ -1,0 +1,81 @@
+/*
+ * Lowest pairs of a sparse pencil: a small one is solved by LAPACK, any other by
+ * the search of eigen_sparse.c.
+ */
+#include "base/tolerances.h"
+#include "linear/eigen_sparse.h"
+#include "linear/general.h"
+#include "linear/requested.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+enum {
+    MEDIUM = 4000, /* dofs: LAPACK where a quarter of all modes is wanted */
+};
+
+/* Every mode, so that none can be missing; the requested ones are kept. */
+static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
+                             const ritz_span *span, ritz_pairs *out)
+{
+    RITZ_OWN(ritz_pairs) P = {0};
+    RITZ_OWN(ritz_dense) K_d = {0}, M_d = {0};
+    double limit = 0.0;
+    int64_t end = 0;
+
+    RITZ_CHECK(ritz_sparse_dense(K, &K_d));
+    RITZ_CHECK(ritz_sparse_dense(M, &M_d));
+    RITZ_CHECK(ritz_eigen_dense(&K_d, &M_d, &P));
+    if (span->modes < 0)
+        limit = ritz_eigen_lambda(span->up_to_hz) * (1.0 + RITZ_SPAN_ROUNDING);
+    end = ritz_pairs_wanted(&P, span, limit);
+    if (end < P.Phi.ncol) /* limit is 0 by number, and below the next mode */
+        P.proven_to =
+            fmax(limit, ritz_pairs_between(&P, end, RITZ_COUNT_PLACE));
+    ritz_pairs_truncate(&P, end);
+    RITZ_MOVE(*out, P);
+    return RITZ_OK;
+}
+
+/* @param[in,out] L  the factor of K, which may be taken over; NULL: none */
+static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
+                               ritz_factor **L, const ritz_span *span,
+                               const ritz_factor_use *use, ritz_pairs *out)
+{
+    const int64_t n = K->nrow;
+
+    RITZ_CHECK(ritz_eigen_refuse(n, K->ncol, M->nrow, M->ncol));
+    RITZ_REFUSE_IF(span->modes < -1, RITZ_ERR_ARGUMENT,
+                   "%" PRId64 " modes cannot be asked for", span->modes);
+    RITZ_REFUSE_IF(span->modes < 0 &&
+                       !(span->up_to_hz > 0.0 && isfinite(span->up_to_hz)),
+                   RITZ_ERR_ARGUMENT, "modes up to %g Hz cannot be asked for",
+                   span->up_to_hz);
+    RITZ_CHECK(ritz_eigen_refuse_accuracy(span));
+    if (n <= RITZ_EIGEN_SMALL || (n <= MEDIUM && span->modes > n / 4))
+        return by_lapack(K, M, span, out);
+    return ritz_eigen_search(K, M, L, span, use, out);
+}
+
+ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
+                              const ritz_span *span, ritz_pairs *out)
+{
+    return find_lowest(K, M, NULL, span, NULL, out);
+}
+
+ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
+                               const ritz_span *span,
+                               const ritz_factor_use *use, ritz_pairs *out)
+{
+    return find_lowest(K, M, NULL, span, use, out);
+}
+
+ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
+                                ritz_factor **L, const ritz_span *span,
+                                ritz_pairs *out)
+{
+    ritz_status status = find_lowest(K, M, L, span, NULL, out);
+
+    ritz_factor_free(L);
+    return status;
+}
