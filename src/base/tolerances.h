@@ -452,8 +452,8 @@
    nothing if its energy is less than this part of theirs. */
 #define RITZ_PROJECTION_DEPENDENT 1e-12
 /* The residual of ADI from which on the equation is also solved in the space of
-   its columns, as a multiple of the tolerance: that solution had residuals 10
-   to 20 000 times smaller. */
+   its columns, as a multiple of the tolerance: the residual of that solution was
+   from twice to some thousand times smaller (measured). */
 #define RITZ_GALERKIN_LEAD 1e4
 /* A load without its rigid motion below this part, squared, is rounding: there
    is nothing flexible to iterate on. */

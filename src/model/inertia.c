@@ -152,20 +152,20 @@ static double share_of(const ritz_nodes *nodes, const bool *whole, int64_t at,
 }
 
 /* Where the dofs of nodes are, for their masses. */
-typedef struct placement {
+typedef struct placed_dofs {
     const ritz_sparse *M;
     const ritz_nodes *nodes;
     bool *whole;    /* of each node: has three translations */
     int64_t *place; /* of each dof: 3 node + direction, or -1 */
     int64_t *mark;  /* of each node: its last entry in m + 1 */
-} placement;
+} placed_dofs;
 
-static void placement_free(placement *p)
+static void placed_dofs_free(placed_dofs *p)
 {
     RITZ_FREE(p->whole, p->place, p->mark);
 }
 
-static ritz_status place_dofs(const ritz_component *component, placement *p)
+static ritz_status place_dofs(const ritz_component *component, placed_dofs *p)
 {
     const ritz_nodes *nodes = p->nodes;
 
@@ -186,7 +186,7 @@ static ritz_status place_dofs(const ritz_component *component, placement *p)
 
 /* Column j of m from entry `first`, in no order of rows. Returns its end. With m
    NULL the entries are only counted. */
-static int64_t sum_column(placement *p, int64_t j, int64_t first,
+static int64_t sum_column(placed_dofs *p, int64_t j, int64_t first,
                           ritz_sparse *m)
 {
     const ritz_sparse *M = p->M;
@@ -219,7 +219,7 @@ static ritz_status nodal_mass(const ritz_component *component,
                               const ritz_nodes *nodes, ritz_sparse *out)
 {
     const int64_t n = nodes->count;
-    RITZ_OWN(placement) p = {.M = &component->M, .nodes = nodes};
+    RITZ_OWN(placed_dofs) p = {.M = &component->M, .nodes = nodes};
     RITZ_OWN(ritz_sparse) raw = {0}, turned = {0};
     int64_t count = 0;
 
