@@ -122,9 +122,9 @@ extern const ritz_choice_word ritz_choice_words[];
  * "stiffness" for inner, "8" for interface_modes, "inputs" or "outputs" for
  * gramian, "state" or "inverse" for operator, "modal 0.01" for damping, "auto",
  * "dense", "modal", "low-rank", "projection", "lanczos", "arpack", "slices",
- * "amls" or "slepc" for engine, "yes" or "no" for count, "1e-4" for accuracy, "50" for among_hz,
- * "0,10" for band_hz, "dropped" or "static" for remainder, "one" or "two" for
- * sides.
+ * "amls" or "slepc" for engine, "yes" or "no" for count, "1e-4" for accuracy,
+ * "50" for among_hz, "0,10" for band_hz, "dropped" or "static" for remainder,
+ * "one" or "two" for sides.
  *
  * @return RITZ_ERR_ARGUMENT with what is wrong
  */

@@ -87,15 +87,10 @@ static ritz_status multiply_columns(const ritz_sparse *A, const ritz_dense *X,
     return RITZ_OK;
 }
 
-ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
-                            ritz_dense *Y)
+/* Y := A X, one column after the other. */
+static void multiply_few(const ritz_sparse *A, const ritz_dense *X,
+                         ritz_dense *Y)
 {
-    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
-                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
-                   A->ncol, X->nrow);
-    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
-    if (X->ncol >= EIGHT / 2)
-        return multiply_columns(A, X, false, Y);
     for (int64_t k = 0; k < X->ncol; k++) {
         const double *x = ritz_dense_col(X, k);
         double *y = ritz_dense_col(Y, k);
@@ -104,17 +99,35 @@ ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
             for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++)
                 y[A->rowind[p]] += A->val[p] * x[j];
     }
+}
+
+static ritz_status multiply(const ritz_sparse *A, const ritz_dense *X,
+                            bool twofold, ritz_dense *out)
+{
+    RITZ_OWN(ritz_dense) Y = {0};
+
+    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
+                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
+                   A->ncol, X->nrow);
+    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, &Y));
+    if (twofold || X->ncol >= EIGHT / 2)
+        RITZ_CHECK(multiply_columns(A, X, twofold, &Y));
+    else
+        multiply_few(A, X, &Y);
+    RITZ_MOVE(*out, Y);
     return RITZ_OK;
+}
+
+ritz_status ritz_sparse_mul(const ritz_sparse *A, const ritz_dense *X,
+                            ritz_dense *Y)
+{
+    return multiply(A, X, false, Y);
 }
 
 ritz_status ritz_sparse_mul_twofold(const ritz_sparse *A, const ritz_dense *X,
                                     ritz_dense *Y)
 {
-    RITZ_REFUSE_IF(A->ncol != X->nrow, RITZ_ERR_ARGUMENT,
-                   "A has %" PRId64 " columns but X has %" PRId64 " rows",
-                   A->ncol, X->nrow);
-    RITZ_CHECK(ritz_dense_new(A->nrow, X->ncol, Y));
-    return multiply_columns(A, X, true, Y);
+    return multiply(A, X, true, Y);
 }
 
 /* The number of entries of A B. mark[i] is the last column + 1 in which row i was

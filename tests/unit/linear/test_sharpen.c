@@ -26,7 +26,6 @@ typedef struct chain {
 static chain new_chain(int64_t n)
 {
     chain c = {0};
-    RITZ_OWN(ritz_dense) ones = {0};
 
     assert_ok(ritz_sparse_new(n, n, 3 * n - 2, &c.K));
     assert_ok(ritz_sparse_new(n, n, n, &c.M));
