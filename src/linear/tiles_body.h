@@ -31,7 +31,7 @@ enum {
    a third faster if this is told in advance (64 to 256 columns, measured). */
 INLINE void fetch_ahead(const double *a)
 {
-    __builtin_prefetch(a + AHEAD * T, 0, 2);
+    __builtin_prefetch(a + (ptrdiff_t)AHEAD * T, 0, 2);
 }
 
 /* y := a x, a one panel of k columns, x k x width, y 8 x width. */
