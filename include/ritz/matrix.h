@@ -182,6 +182,18 @@ ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
                                 const int64_t *cols, ritz_sparse *out);
 
 /**
+ * A := A(rows, rows) in place, so that memory does not hold both.
+ *
+ * @param[in,out] A     square; not defined after a failure, and still to be freed
+ * @param[in]     rows  distinct members of 0..nrow-1, ascending
+ * @return RITZ_ERR_ARGUMENT if A is not square, or a member is out of range or
+ *         does not ascend; RITZ_ERR_MEMORY
+ * @cost   O(nrow + entries)
+ */
+ritz_status ritz_sparse_keep(ritz_sparse *A, int64_t count,
+                             const int64_t *rows);
+
+/**
  * C = alpha A + beta B over the union of both patterns.
  *
  * @return RITZ_ERR_ARGUMENT if the sizes disagree; RITZ_ERR_MEMORY

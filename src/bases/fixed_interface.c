@@ -135,8 +135,30 @@ static ritz_status find_constraint_modes(partition *s)
     return RITZ_OK;
 }
 
-/* The matrices of a partition. */
-static ritz_status split_matrices(const ritz_request *request, partition *out)
+/* Whether the partition may take K and M of the component for its parts of them.
+   Characteristic constraint modes and a test of the damping matrix still need
+   the whole matrices. */
+static bool may_take_matrices(const ritz_request *request)
+{
+    const ritz_component *owned = request->owned;
+
+    return owned && request->choice.interface_modes == 0 && !owned->D.colptr;
+}
+
+/* A_ii := A(i, i), a copy; or A itself, cut to the interior, where `owned` is
+   not NULL. */
+static ritz_status take_interior(const ritz_dofs *i, const ritz_sparse *A,
+                                 ritz_sparse *owned, ritz_sparse *A_ii)
+{
+    if (!owned)
+        return ritz_sparse_extract(A, i->count, i->at, i->count, i->at, A_ii);
+    RITZ_MOVE(*A_ii, *owned);
+    return ritz_sparse_keep(A_ii, i->count, i->at);
+}
+
+/* The matrices of a partition, which takes those of the component if `take`. */
+static ritz_status split_matrices(const ritz_request *request, bool take,
+                                  partition *out)
 {
     const ritz_sparse *K = &request->component->K;
     const ritz_sparse *M = &request->component->M;
@@ -146,11 +168,9 @@ static ritz_status split_matrices(const ritz_request *request, partition *out)
 
     RITZ_CHECK(ritz_dofs_complement(b, s.component->num_dofs, &s.i));
     RITZ_CHECK(
-        ritz_sparse_extract(K, i->count, i->at, i->count, i->at, &s.K_ii));
-    RITZ_CHECK(
         ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
-    RITZ_CHECK(
-        ritz_sparse_extract(M, i->count, i->at, i->count, i->at, &s.M_ii));
+    RITZ_CHECK(take_interior(i, K, take ? &request->owned->K : NULL, &s.K_ii));
+    RITZ_CHECK(take_interior(i, M, take ? &request->owned->M : NULL, &s.M_ii));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
@@ -160,24 +180,11 @@ static ritz_status hold_boundary(const ritz_request *request, partition *out)
 {
     RITZ_OWN(partition) s = {0};
 
-    RITZ_CHECK(split_matrices(request, &s));
+    RITZ_CHECK(split_matrices(request, false, &s));
     RITZ_CHECK(factor_interior(&s));
     RITZ_CHECK(find_constraint_modes(&s));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
-}
-
-/* Free K and M of the component, of which the partition has copies, if the
-   caller allows it. Characteristic constraint modes and a test of the damping
-   matrix still need them. */
-static void release_matrices(const ritz_request *request)
-{
-    ritz_component *owned = request->owned;
-
-    if (!owned || request->choice.interface_modes > 0 || owned->D.colptr)
-        return;
-    ritz_sparse_free(&owned->K);
-    ritz_sparse_free(&owned->M);
 }
 
 /*
@@ -353,8 +360,7 @@ static ritz_status make_fixed(const ritz_request *request, int usual,
     RITZ_OWN(interior_statics) statics = {0};
     RITZ_OWN(ritz_pairs) modes = {0};
 
-    RITZ_CHECK(split_matrices(request, &s));
-    release_matrices(request);
+    RITZ_CHECK(split_matrices(request, may_take_matrices(request), &s));
     RITZ_CHECK(factor_interior(&s));
     RITZ_CHECK(find_constraint_modes(&s));
     RITZ_CHECK_IN("static vectors",

@@ -11,15 +11,9 @@
 
 enum { B = RITZ_BLOCK, SQUARE = RITZ_SQUARE };
 
-/* V comes last, because the other arrays fit where memory was freed before and V
-   does not: the rest of that memory is returned to the system. */
-static ritz_status allocate_vectors(int64_t count, ritz_block_basis *b)
+static int64_t block_bytes(const ritz_block_basis *b)
 {
-    ritz_memory_return();
-    RITZ_CHECK(
-        ritz_memory_admit("the Lanczos basis", count * (int64_t)sizeof *b->V));
-    RITZ_CHECK_RAW(b->V, count); /* most is never used */
-    return RITZ_OK;
+    return b->n * B * (int64_t)sizeof **b->V;
 }
 
 ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
@@ -33,27 +27,48 @@ ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
     RITZ_CHECK(
         ritz_blocks_new(b->n, ritz_factor_threads(b->S->A), most, &b->on));
     RITZ_CHECK(ritz_row_matrix_new(b->S->M, ritz_factor_order(b->S->A), &b->M));
-    return allocate_vectors(room * b->n * B + step, b);
+    ritz_memory_return(); /* blocks of V may be smaller than what was freed */
+    RITZ_CHECK(ritz_memory_admit("the Lanczos basis",
+                                 (room + b->width) * block_bytes(b)));
+    RITZ_CHECK_NEW(b->V, room + b->width);
+    b->room = room + b->width;
+    return RITZ_OK;
 }
 
 void ritz_block_basis_free(ritz_block_basis *b)
 {
     ritz_blocks_free(&b->on);
     ritz_row_matrix_free(&b->M);
+    ritz_block_basis_shorten(b, 0);
     RITZ_FREE(b->V, b->W, b->MW, b->C);
 }
 
 void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept)
 {
-    const size_t size = (size_t)(kept * b->n * B) * sizeof *b->V;
-    double *shorter = size > 0 ? realloc(b->V, size) : NULL;
-
-    b->V = shorter ? shorter : b->V;
+    for (int64_t j = kept; j < b->room; j++) {
+        free(b->V[j]);
+        b->V[j] = NULL;
+    }
 }
 
-double *ritz_block_basis_at(const ritz_block_basis *b, int64_t j)
+void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept)
 {
-    return b->V + j * b->n * B;
+    for (int64_t q = 0; q < b->width; q++) {
+        double *other = b->V[kept + q];
+
+        b->V[kept + q] = b->V[b->blocks + q];
+        b->V[b->blocks + q] = other;
+    }
+    b->blocks = kept + b->width;
+}
+
+/* V_j := W, one block. */
+static ritz_status put_block(ritz_block_basis *b, int64_t j, const double *W)
+{
+    if (!b->V[j])
+        RITZ_CHECK_RAW(b->V[j], b->n * B);
+    memcpy(b->V[j], W, (size_t)block_bytes(b));
+    return RITZ_OK;
 }
 
 static double *part_of(const ritz_block_basis *b, double *W, int64_t q)
@@ -76,8 +91,7 @@ void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y)
 void ritz_block_basis_project(const ritz_block_basis *b, int64_t first,
                               int64_t count, int64_t width, const double *X)
 {
-    ritz_blocks_project(&b->on, count, ritz_block_basis_at(b, first), width, X,
-                        b->C);
+    ritz_blocks_project(&b->on, count, b->V + first, width, X, b->C);
 }
 
 void ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
@@ -85,8 +99,7 @@ void ritz_block_basis_subtract(const ritz_block_basis *b, int64_t first,
 {
     for (int64_t i = 0; i < width * count * SQUARE; i++)
         b->C[i] = -b->C[i];
-    ritz_blocks_add(&b->on, count, ritz_block_basis_at(b, first), width, b->C,
-                    X);
+    ritz_blocks_add(&b->on, count, b->V + first, width, b->C, X);
 }
 
 /* --- orthonormal blocks --------------------------------------------------- */
@@ -284,9 +297,8 @@ ritz_status ritz_block_basis_orthonormalise(ritz_block_basis *b, double size,
         }
         status = settle_one(b, size, W, MW, ritz_block_basis_square(b, R, q, q),
                             &none);
-        memcpy(ritz_block_basis_at(b, b->blocks), W,
-               (size_t)(b->n * B) * sizeof *W);
-        b->blocks++;
+        if (status == RITZ_OK)
+            status = put_block(b, b->blocks++, W);
         if (q == 0)
             *exhausted = none;
     }

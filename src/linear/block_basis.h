@@ -22,7 +22,8 @@ typedef struct ritz_block_basis {
     int64_t width;  /* blocks of a step, 1 or 2 */
     uint64_t noise; /* state of random vectors */
     int64_t blocks; /* of V, without those of the next step */
-    double *V;
+    int64_t room;   /* of the list V, whose other members are NULL */
+    double **V;
     double *W, *MW; /* width blocks each: the next step, and M times it */
     double *C;      /* 8 x 8 coefficients for each block of V and of W */
     ritz_blocks on;
@@ -30,26 +31,29 @@ typedef struct ritz_block_basis {
 } ritz_block_basis;
 
 /**
- * Allocate what a basis needs; V has no blocks yet.
+ * Allocate what a basis needs. V has no blocks yet: each is allocated when it is
+ * filled, so that they fit where memory was freed before.
  *
  * @param[in]     room  blocks of V, a multiple of the width
  * @param[in,out] b     with S, n, width and noise; freed by
  *                      ritz_block_basis_free(), also on failure
- * @return RITZ_ERR_MEMORY
+ * @return RITZ_ERR_MEMORY, also if so many blocks would exceed the limit
  */
 ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b);
 
 void ritz_block_basis_free(ritz_block_basis *b);
 
-/** Free the blocks of V from @p kept on; a failure costs only memory. */
+/** Free the blocks of V from @p kept on. */
 void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept);
+
+/** Let the step behind the blocks of V, which b->blocks does not count yet,
+ * follow the first @p kept blocks; the others are no longer counted, and what
+ * they hold is void. */
+void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept);
 
 /** V := one step of random vectors, multiplied by A^-1 M; W is the same.
  * @param[out] exhausted  the range of A^-1 M is empty */
 ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
-
-/** Block j of V. */
-double *ritz_block_basis_at(const ritz_block_basis *b, int64_t j);
 
 /** Y := M X for all blocks of a step. */
 void ritz_block_basis_multiply(const ritz_block_basis *b, double *X, double *Y);

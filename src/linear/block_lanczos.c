@@ -151,13 +151,14 @@ static void expand_space(block_lanczos *L, double *size)
 {
     const int64_t w = L->b.width;
     const int64_t j = L->b.blocks - w;
+    double *const MV[] = {L->MV, L->MV + (w - 1) * L->b.n * B};
     double A[RITZ_STEP_SQUARES * SQUARE];
 
     memcpy(L->b.W, L->MV, (size_t)(w * L->b.n * B) * sizeof *L->b.W);
     solve_step(L, L->b.W);
     *size = take_coupling(L, j);
     ritz_block_basis_subtract(&L->b, L->coupled, j - L->coupled, w, L->b.W);
-    ritz_blocks_project(&L->b.on, w, L->MV, w, L->b.W, L->b.C);
+    ritz_blocks_project(&L->b.on, w, MV, w, L->b.W, L->b.C);
     memcpy(A, L->b.C, (size_t)(w * w) * SQUARE * sizeof *A);
     ritz_block_basis_subtract(&L->b, j, w, w, L->b.W);
     ritz_block_basis_multiply(&L->b, L->b.W, L->b.MW);
@@ -344,22 +345,26 @@ static ritz_status improve_ritz(const block_lanczos *L, ritz_dense *U,
     return ritz_dense_times(&small.Phi, U);
 }
 
-/* X := V U, rows in the order of M. They replace V, so that memory does not
-   hold both. */
+/* X := V U, rows in the order of M. Each block of them replaces one of V, so that
+   memory does not hold both. */
 static ritz_status extract_vectors(block_lanczos *L, const ritz_dense *U,
                                    ritz_dense *X)
 {
     const int64_t *order = ritz_factor_order(L->b.S->A);
     const int64_t count = U->ncol;
+    const int64_t last = (count + B - 1) / B;
 
     RITZ_CHECK(combine_basis(L, U));
-    ritz_block_basis_shorten(&L->b, (count + B - 1) / B);
+    ritz_block_basis_shorten(&L->b, last);
     RITZ_CHECK(ritz_dense_new(L->b.n, count, X));
-    for (int64_t c = 0; c < count; c += B)
+    for (int64_t j = last; j-- > 0;) {
+        const int64_t width = count - j * B < B ? count - j * B : B;
+
         for (int64_t i = 0; i < L->b.n; i++)
-            for (int64_t k = 0; k < B && c + k < count; k++)
-                X->val[order[i] + (c + k) * L->b.n] =
-                    ritz_block_basis_at(&L->b, c / B)[i * B + k];
+            for (int64_t k = 0; k < width; k++)
+                X->val[order[i] + (j * B + k) * L->b.n] = L->b.V[j][i * B + k];
+        ritz_block_basis_shorten(&L->b, j);
+    }
     return RITZ_OK;
 }
 
@@ -397,10 +402,7 @@ static ritz_status restart_space(block_lanczos *L, const double *R)
             L->T[c + (kept * B + i) * ld] = q[i];
         }
     }
-    memmove(ritz_block_basis_at(&L->b, kept),
-            ritz_block_basis_at(&L->b, L->b.blocks),
-            (size_t)(L->b.width * L->b.n * B) * sizeof *L->b.V);
-    L->b.blocks = kept + L->b.width;
+    ritz_block_basis_move_step(&L->b, kept);
     L->coupled = 0;
     return RITZ_OK;
 }

@@ -85,11 +85,12 @@ typedef struct block_task {
     const ritz_blocks *on;
     const ritz_row_matrix *A;
     int64_t count, width, kept, stride;
-    const double *V, *X, *C;
+    double *const *V; /* blocks of a basis */
+    const double *X, *Y, *C;
     double *to, *room;
 } block_task;
 
-/* Row @p r of block @p p of a basis. */
+/* Row @p r of the p-th of several blocks that lie one after the other. */
 static int64_t at_row(const ritz_blocks *on, int64_t p, int64_t r)
 {
     return (p * on->n + r) * B;
@@ -145,15 +146,14 @@ static void project_rows(int thread, int64_t from, int64_t to, void *task)
             double *sum = C + (q * t->count + p) * SQUARE;
             double part[SQUARE];
 
-            t->on->tiles->inner(rows_of_chunk(r, to),
-                                t->V + at_row(t->on, p, r),
+            t->on->tiles->inner(rows_of_chunk(r, to), t->V[p] + r * B,
                                 t->X + at_row(t->on, q, r), part);
             for (int i = 0; i < SQUARE; i++)
                 sum[i] += part[i];
         }
 }
 
-void ritz_blocks_project(const ritz_blocks *on, int64_t count, const double *V,
+void ritz_blocks_project(const ritz_blocks *on, int64_t count, double *const *V,
                          int64_t width, const double *X, double *C)
 {
     ritz_team_over(
@@ -173,14 +173,13 @@ static void add_rows(int thread, int64_t from, int64_t to, void *task)
             const int64_t p = k / t->width;
             const int64_t q = k % t->width;
 
-            t->on->tiles->outer(rows_of_chunk(r, to),
-                                t->V + at_row(t->on, p, r),
+            t->on->tiles->outer(rows_of_chunk(r, to), t->V[p] + r * B,
                                 t->C + (q * t->count + p) * SQUARE,
                                 t->to + at_row(t->on, q, r));
         }
 }
 
-void ritz_blocks_add(const ritz_blocks *on, int64_t count, const double *V,
+void ritz_blocks_add(const ritz_blocks *on, int64_t count, double *const *V,
                      int64_t width, const double *C, double *X)
 {
     ritz_team_over(
@@ -215,7 +214,7 @@ static void inner_rows(int thread, int64_t from, int64_t to, void *task)
 {
     const block_task *t = task;
 
-    t->on->tiles->inner(to - from, t->V + from * B, t->X + from * B,
+    t->on->tiles->inner(to - from, t->X + from * B, t->Y + from * B,
                         sums_of(t->on, thread));
 }
 
@@ -223,7 +222,7 @@ void ritz_blocks_inner(const ritz_blocks *on, const double *X, const double *Y,
                        double *G)
 {
     ritz_team_over(on->threads, on->n, inner_rows,
-                   &(block_task){.on = on, .V = X, .X = Y});
+                   &(block_task){.on = on, .X = X, .Y = Y});
     add_sums(on, 1, G);
 }
 
@@ -239,18 +238,18 @@ static void combine_rows(int thread, int64_t from, int64_t to, void *task)
         memset(Y, 0, (size_t)(t->kept * piece) * sizeof *Y);
         for (int64_t g = 0; g < t->kept; g++)
             for (int64_t p = 0; p < t->count; p++)
-                t->on->tiles->outer(rows, t->to + at_row(t->on, p, r),
+                t->on->tiles->outer(rows, t->V[p] + r * B,
                                     t->C + g * t->stride + p * SQUARE,
                                     Y + g * piece);
         for (int64_t g = 0; g < t->kept; g++)
-            memcpy(t->to + at_row(t->on, g, r), Y + g * piece,
+            memcpy(t->V[g] + r * B, Y + g * piece,
                    (size_t)(rows * B) * sizeof *Y);
     }
 }
 
 void ritz_blocks_combine(const ritz_blocks *on, int64_t count, int64_t kept,
                          int64_t stride, const double *C, double *room,
-                         double *V)
+                         double *const *V)
 {
     ritz_team_over(on->threads, on->n, combine_rows,
                    &(block_task){.on = on,
@@ -258,7 +257,7 @@ void ritz_blocks_combine(const ritz_blocks *on, int64_t count, int64_t kept,
                                  .kept = kept,
                                  .stride = stride,
                                  .C = C,
-                                 .to = V,
+                                 .V = V,
                                  .room = room});
 }
 

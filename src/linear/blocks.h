@@ -2,9 +2,9 @@
  * Blocks of eight vectors, which block methods work on.
  *
  * The vectors of a block lie row by row: x[8 i + c] is row i of vector c, so
- * that a sparse matrix or a factor is read once for all eight. A basis of
- * several blocks is one array, block after block of 8 n numbers. Small matrices
- * between two blocks are 8 x 8, row by row.
+ * that a sparse matrix or a factor is read once for all eight. A basis is a list
+ * of blocks, each in memory of its own. Small matrices between two blocks are
+ * 8 x 8, row by row.
  *
  * All threads of a ritz_blocks work on each product, each on its own rows. Sums
  * over rows are made for each thread and then added in the order of the
@@ -86,14 +86,15 @@ void ritz_blocks_multiply(const ritz_blocks *on, const ritz_row_matrix *A,
  * C := V'X. V is read once for all blocks of X.
  *
  * @param[in]  count  blocks of V
+ * @param[in]  V      the address of each block
  * @param[in]  width  blocks of X, one after the other
  * @param[out] C      V_p'X_q is the matrix number q count + p
  */
-void ritz_blocks_project(const ritz_blocks *on, int64_t count, const double *V,
+void ritz_blocks_project(const ritz_blocks *on, int64_t count, double *const *V,
                          int64_t width, const double *X, double *C);
 
 /** X += V C, with the arguments of ritz_blocks_project(). */
-void ritz_blocks_add(const ritz_blocks *on, int64_t count, const double *V,
+void ritz_blocks_add(const ritz_blocks *on, int64_t count, double *const *V,
                      int64_t width, const double *C, double *X);
 
 /** X := X C, C 8 x 8. */
@@ -114,7 +115,7 @@ void ritz_blocks_inner(const ritz_blocks *on, const double *X, const double *Y,
  */
 void ritz_blocks_combine(const ritz_blocks *on, int64_t count, int64_t kept,
                          int64_t stride, const double *C, double *room,
-                         double *V);
+                         double *const *V);
 
 /** Numbers of room that ritz_blocks_combine() needs to keep so many blocks. */
 int64_t ritz_blocks_room(const ritz_blocks *on, int64_t kept);

@@ -453,11 +453,10 @@ static ritz_status keep_order(search *s)
 static ritz_status count_at(const search *s, double tau, int64_t *out)
 {
     const int64_t *order = s->S.A ? ritz_factor_order(s->S.A) : s->order;
-    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_counter) *C = NULL;
 
-    RITZ_CHECK(ritz_sparse_add(1.0, s->S.K, -tau, s->S.M, &A));
-    ritz_monitor_step("count of modes", 0, 0);
-    return ritz_inertia_negative(&A, order, out);
+    RITZ_CHECK(ritz_counter_new(s->S.K, s->S.M, order, &C));
+    return ritz_counter_below(C, tau, out);
 }
 
 /* The number of modes below a value between pairs k - 1 and k. Where the factor

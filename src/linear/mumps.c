@@ -148,8 +148,8 @@ static ritz_status unite_patterns(int64_t count, const ritz_sparse *const *A,
     RITZ_CHECK(check_sizes(count, A, &room));
     F->n = A[0]->nrow;
     RITZ_CHECK_NEW(mark, F->n);
-    RITZ_CHECK_NEW(F->row, room);
-    RITZ_CHECK_NEW(F->col, room);
+    RITZ_CHECK_RAW(F->row, room); /* half is never used of triangles */
+    RITZ_CHECK_RAW(F->col, room);
     for (int64_t j = 0; j < F->n; j++)
         for (int64_t k = 0; k < count; k++)
             RITZ_CHECK(unite_column(A[k], j, mark, F));

@@ -214,6 +214,52 @@ ritz_status ritz_sparse_extract(const ritz_sparse *A, int64_t num_rows,
     return RITZ_OK;
 }
 
+/* Copy the entries of A from `begin` to `end` - 1 that have a place to entry `at`
+   and behind it; returns where they end. */
+static int64_t keep_column(ritz_sparse *A, const int64_t *place, int64_t begin,
+                           int64_t end, int64_t at)
+{
+    for (int64_t p = begin; p < end; p++) {
+        const int64_t row = place[A->rowind[p]];
+
+        if (row < 0)
+            continue;
+        A->rowind[at] = row;
+        A->val[at++] = A->val[p];
+    }
+    return at;
+}
+
+ritz_status ritz_sparse_keep(ritz_sparse *A, int64_t count, const int64_t *rows)
+{
+    RITZ_OWN(extraction) e = {.A = A};
+    int64_t begin = 0;
+    int64_t at = 0;
+
+    RITZ_REFUSE_IF(A->nrow != A->ncol || !is_ascending(count, rows),
+                   RITZ_ERR_ARGUMENT,
+                   "rows and columns of a square matrix are kept in their "
+                   "order");
+    RITZ_CHECK(place_rows(&e, count, rows));
+    for (int64_t k = 0; k < count; k++) {
+        const int64_t end = A->colptr[rows[k] + 1];
+
+        /* that of the next column may have been overwritten just now */
+        if (k == 0 || rows[k] > rows[k - 1] + 1)
+            begin = A->colptr[rows[k]];
+        at = keep_column(A, e.place, begin, end, at);
+        A->colptr[k + 1] = at;
+        begin = end;
+    }
+    A->colptr[0] = 0;
+    A->nrow = A->ncol = count;
+    RITZ_CHECK(ritz_array_lengthen(&A->colptr, count + 1, sizeof *A->colptr));
+    if (at == 0)
+        return RITZ_OK;
+    RITZ_CHECK(ritz_array_lengthen(&A->rowind, at, sizeof *A->rowind));
+    return ritz_array_lengthen(&A->val, at, sizeof *A->val);
+}
+
 /* Merge column j of both into C from entry *at on. */
 static void merge_column(double alpha, const ritz_sparse *A, double beta,
                          const ritz_sparse *B, int64_t j, ritz_sparse *C,

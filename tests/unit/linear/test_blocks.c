@@ -19,6 +19,7 @@ static void fill(int64_t count, double *x)
 typedef struct products {
     ritz_blocks on;
     double *V, *X, *Y;
+    double *block[BLOCKS]; /* of V */
     double C[BLOCKS * SQUARE];
 } products;
 
@@ -31,6 +32,8 @@ static void begin(int threads, products *p)
     p->X = calloc((size_t)N * B, sizeof *p->X);
     p->Y = calloc((size_t)N * B, sizeof *p->Y);
     assert_true(p->V && p->X && p->Y);
+    for (int64_t k = 0; k < BLOCKS; k++)
+        p->block[k] = p->V + k * N * B;
     fill((int64_t)BLOCKS * N * B, p->V);
     fill((int64_t)N * B, p->X);
 }
@@ -64,7 +67,7 @@ static void projections_are_sums_over_all_rows(void **state)
         double G[SQUARE];
 
         begin(threads, &p);
-        ritz_blocks_project(&p.on, BLOCKS, p.V, 1, p.X, p.C);
+        ritz_blocks_project(&p.on, BLOCKS, p.block, 1, p.X, p.C);
         ritz_blocks_inner(&p.on, p.V, p.X, G);
         for (int k = 0; k < BLOCKS * SQUARE; k++)
             assert_near(p.C[k],
@@ -95,13 +98,13 @@ static void two_blocks_are_multiplied_as_one_by_one(void **state)
     assert_true(X && Y);
     fill((int64_t)2 * N * B, X);
     memcpy(Y, X, (size_t)2 * N * B * sizeof *X);
-    ritz_blocks_project(&on, V_BLOCKS, p.V, 2, X, C);
-    ritz_blocks_add(&on, V_BLOCKS, p.V, 2, C, X);
+    ritz_blocks_project(&on, V_BLOCKS, p.block, 2, X, C);
+    ritz_blocks_add(&on, V_BLOCKS, p.block, 2, C, X);
     for (int64_t q = 0; q < 2; q++) {
-        ritz_blocks_project(&on, V_BLOCKS, p.V, 1, Y + q * N * B, p.C);
+        ritz_blocks_project(&on, V_BLOCKS, p.block, 1, Y + q * N * B, p.C);
         assert_memory_equal(p.C, C + q * V_BLOCKS * SQUARE,
                             V_BLOCKS * SQUARE * sizeof *C);
-        ritz_blocks_add(&on, V_BLOCKS, p.V, 1, p.C, Y + q * N * B);
+        ritz_blocks_add(&on, V_BLOCKS, p.block, 1, p.C, Y + q * N * B);
     }
     assert_memory_equal(X, Y, (size_t)2 * N * B * sizeof *X);
     free(X);
@@ -133,15 +136,15 @@ static void blocks_are_combined_row_by_row(void **state)
         begin(threads, &p);
         fill((int64_t)BLOCKS * SQUARE, p.C);
         memcpy(p.Y, p.X, (size_t)(N * B) * sizeof *p.Y);
-        ritz_blocks_add(&p.on, BLOCKS, p.V, 1, p.C, p.Y);
+        ritz_blocks_add(&p.on, BLOCKS, p.block, 1, p.C, p.Y);
         for (int64_t k = 0; k < (int64_t)N * B; k++)
             assert_near(p.Y[k], plain_sum(&p, k / B, (int)(k % B)), bound);
         memset(p.X, 0, (size_t)(N * B) * sizeof *p.X);
         memset(p.Y, 0, (size_t)(N * B) * sizeof *p.Y);
-        ritz_blocks_add(&p.on, BLOCKS, p.V, 1, p.C, p.Y);
+        ritz_blocks_add(&p.on, BLOCKS, p.block, 1, p.C, p.Y);
         room = calloc((size_t)ritz_blocks_room(&p.on, 1), sizeof *room);
         assert_non_null(room);
-        ritz_blocks_combine(&p.on, BLOCKS, 1, 0, p.C, room, p.V);
+        ritz_blocks_combine(&p.on, BLOCKS, 1, 0, p.C, room, p.block);
         for (int64_t k = 0; k < (int64_t)N * B; k++)
             assert_near(p.V[k], p.Y[k], bound);
         free(room);
