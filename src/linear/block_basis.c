@@ -27,12 +27,15 @@ ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b)
     RITZ_CHECK(
         ritz_blocks_new(b->n, ritz_factor_threads(b->S->A), most, &b->on));
     RITZ_CHECK(ritz_row_matrix_new(b->S->M, ritz_factor_order(b->S->A), &b->M));
-    ritz_memory_return(); /* blocks of V may be smaller than what was freed */
-    RITZ_CHECK(ritz_memory_admit("the Lanczos basis",
-                                 (room + b->width) * block_bytes(b)));
     RITZ_CHECK_NEW(b->V, room + b->width);
     b->room = room + b->width;
     return RITZ_OK;
+}
+
+ritz_status ritz_block_basis_admit(const ritz_block_basis *b)
+{
+    ritz_memory_return();
+    return ritz_memory_admit("the Lanczos basis", b->room * block_bytes(b));
 }
 
 void ritz_block_basis_free(ritz_block_basis *b)
@@ -62,12 +65,17 @@ void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept)
     b->blocks = kept + b->width;
 }
 
-/* V_j := W, one block. */
-static ritz_status put_block(ritz_block_basis *b, int64_t j, const double *W)
+/* V_j := a block of W: a copy of it, or W itself if it has no other block. */
+static ritz_status put_block(ritz_block_basis *b, int64_t j, double *W)
 {
     if (!b->V[j])
         RITZ_CHECK_RAW(b->V[j], b->n * B);
-    memcpy(b->V[j], W, (size_t)block_bytes(b));
+    if (b->width > 1) {
+        memcpy(b->V[j], W, (size_t)block_bytes(b));
+        return RITZ_OK;
+    }
+    b->W = b->V[j];
+    b->V[j] = W;
     return RITZ_OK;
 }
 

@@ -24,8 +24,9 @@ typedef struct ritz_block_basis {
     int64_t blocks; /* of V, without those of the next step */
     int64_t room;   /* of the list V, whose other members are NULL */
     double **V;
-    double *W, *MW; /* width blocks each: the next step, and M times it */
-    double *C;      /* 8 x 8 coefficients for each block of V and of W */
+    double *W;  /* width blocks, one after the other: the next step */
+    double *MW; /* M times them; when W is put behind V, M times that */
+    double *C;  /* 8 x 8 coefficients for each block of V and of W */
     ritz_blocks on;
     ritz_row_matrix M;
 } ritz_block_basis;
@@ -37,9 +38,13 @@ typedef struct ritz_block_basis {
  * @param[in]     room  blocks of V, a multiple of the width
  * @param[in,out] b     with S, n, width and noise; freed by
  *                      ritz_block_basis_free(), also on failure
- * @return RITZ_ERR_MEMORY, also if so many blocks would exceed the limit
+ * @return RITZ_ERR_MEMORY
  */
 ritz_status ritz_block_basis_new(int64_t room, ritz_block_basis *b);
+
+/** RITZ_ERR_MEMORY if all blocks of V would exceed the limit of memory. Memory
+ * that was freed before is returned, as blocks of V may not fill it. */
+ritz_status ritz_block_basis_admit(const ritz_block_basis *b);
 
 void ritz_block_basis_free(ritz_block_basis *b);
 
@@ -51,7 +56,7 @@ void ritz_block_basis_shorten(ritz_block_basis *b, int64_t kept);
  * they hold is void. */
 void ritz_block_basis_move_step(ritz_block_basis *b, int64_t kept);
 
-/** V := one step of random vectors, multiplied by A^-1 M; W is the same.
+/** V := one step of random vectors, multiplied by A^-1 M.
  * @param[out] exhausted  the range of A^-1 M is empty */
 ritz_status ritz_block_basis_begin(ritz_block_basis *b, bool *exhausted);
 
@@ -73,8 +78,8 @@ double *ritz_block_basis_square(const ritz_block_basis *b, double *R, int64_t p,
                                 int64_t q);
 
 /**
- * W := Q of W = Q R, and MW := M Q, for W that is orthogonal to V. Q is also
- * put behind the blocks of V, which b->blocks does not count yet. Vectors of W
+ * Put Q of W = Q R behind the blocks of V, which b->blocks does not count yet,
+ * and MW := M Q, for W that is orthogonal to V. W is void then. Vectors of W
  * that depend on those before them are replaced by random ones, orthogonal to
  * all others; where no direction is left they are zero.
  *

@@ -5,6 +5,7 @@
 #include "linear/blas_threads.h"
 #include "linear/block_basis.h"
 #include "linear/factor.h"
+#include "linear/folded.h"
 
 #include <inttypes.h>
 #include <lapacke.h>
@@ -28,7 +29,6 @@ typedef struct block_lanczos {
     int64_t k;
     double settled;    /* residual of a pair that has converged */
     int64_t room;      /* of blocks in b */
-    double *MV;        /* M times the last step of b */
     double *both;      /* n x 16, for solves of two blocks */
     double *T;         /* V'M A^-1 M V, of order 8 room, column-major */
     double *Z, *theta; /* eigenvectors and eigenvalues of T, ascending */
@@ -39,7 +39,7 @@ typedef struct block_lanczos {
 static void block_lanczos_free(block_lanczos *L)
 {
     ritz_block_basis_free(&L->b);
-    RITZ_FREE(L->MV, L->both, L->T, L->Z, L->theta, L->rank);
+    RITZ_FREE(L->both, L->T, L->Z, L->theta, L->rank);
 }
 
 static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
@@ -57,7 +57,6 @@ static ritz_status allocate_lanczos(block_lanczos *L, int64_t room)
                    "%" PRId64 " modes of %" PRId64
                    " dofs are more than can be found",
                    L->k, n);
-    RITZ_CHECK_NEW(L->MV, width * n * B);
     if (width > 1)
         RITZ_CHECK_NEW(L->both, width * n * B);
     RITZ_CHECK_NEW(L->T, order * order);
@@ -151,10 +150,11 @@ static void expand_space(block_lanczos *L, double *size)
 {
     const int64_t w = L->b.width;
     const int64_t j = L->b.blocks - w;
-    double *const MV[] = {L->MV, L->MV + (w - 1) * L->b.n * B};
+    /* M V_j, until it is overwritten by M W */
+    double *const MV[] = {L->b.MW, L->b.MW + (w - 1) * L->b.n * B};
     double A[RITZ_STEP_SQUARES * SQUARE];
 
-    memcpy(L->b.W, L->MV, (size_t)(w * L->b.n * B) * sizeof *L->b.W);
+    memcpy(L->b.W, L->b.MW, (size_t)(w * L->b.n * B) * sizeof *L->b.W);
     solve_step(L, L->b.W);
     *size = take_coupling(L, j);
     ritz_block_basis_subtract(&L->b, L->coupled, j - L->coupled, w, L->b.W);
@@ -172,12 +172,6 @@ static void expand_space(block_lanczos *L, double *size)
     ritz_block_basis_subtract(&L->b, 0, L->b.blocks, w, L->b.W);
     ritz_block_basis_multiply(&L->b, L->b.W, L->b.MW);
     put_diagonal(L, j, A);
-}
-
-/* MV := MW, once W is the last step of V. */
-static void keep_product(block_lanczos *L)
-{
-    memcpy(L->MV, L->b.MW, (size_t)(L->b.width * L->b.n * B) * sizeof *L->MV);
 }
 
 /* Rank the eigenvalues theta of T by magnitude, the largest first. Theta of an
@@ -461,7 +455,6 @@ static ritz_status iterate_blocks(block_lanczos *L, double *R, int64_t *found,
         ritz_monitor_step("eigenvectors", ++steps, 0);
         expand_space(L, &size);
         RITZ_CHECK(ritz_block_basis_orthonormalise(&L->b, size, R, &exhausted));
-        keep_product(L);
         if (exhausted || is_time_to_look(L, &next)) {
             RITZ_CHECK(solve_projected(L));
             *found = count_converged(
@@ -496,9 +489,11 @@ static double eigenvalue_at(const block_lanczos *L, int64_t c)
                : HUGE_VAL;
 }
 
-ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
-                               ritz_dense *X, double **lambda,
-                               ritz_lanczos_end *end)
+/* ritz_block_lanczos() while matrices that may be folded are, in the order of
+   plan->fold. */
+static ritz_status find_pairs(const ritz_shifted *S, ritz_lanczos_plan *plan,
+                              ritz_folded *folded, ritz_dense *X,
+                              double **lambda, ritz_lanczos_end *end)
 {
     const int64_t width = plan->k < MANY ? 1 : WIDEST;
     RITZ_OWN(block_lanczos)
@@ -517,11 +512,14 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
     bool exhausted = false;
 
     RITZ_CHECK(allocate_lanczos(&L, plan->room));
+    for (int k = 0; k < 2; k++) /* M was copied, K is not needed */
+        if (plan->fold[k])
+            RITZ_CHECK(ritz_folded_new(plan->fold[k], &folded[k]));
+    RITZ_CHECK(ritz_block_basis_admit(&L.b));
     RITZ_CHECK(ritz_block_basis_begin(&L.b, &exhausted));
     *end = RITZ_LANCZOS_EXHAUSTED;
     if (exhausted)
         return RITZ_OK;
-    keep_product(&L);
     RITZ_CHECK(iterate_blocks(&L, R, &found, end));
     if (*end == RITZ_LANCZOS_SLOW)
         plan->next = eigenvalue_at(&L, L.k - 1);
@@ -537,4 +535,19 @@ ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
     RITZ_CHECK(extract_vectors(&L, &U, X));
     RITZ_MOVE(*lambda, values);
     return RITZ_OK;
+}
+
+ritz_status ritz_block_lanczos(const ritz_shifted *S, ritz_lanczos_plan *plan,
+                               ritz_dense *X, double **lambda,
+                               ritz_lanczos_end *end)
+{
+    RITZ_OWN(ritz_folded_pair) folded = {0};
+    ritz_status status = find_pairs(S, plan, folded, X, lambda, end);
+
+    for (int k = 0; k < 2 && status != RITZ_ERR_MEMORY; k++) {
+        const ritz_status opened = ritz_folded_open(&folded[k], plan->fold[k]);
+
+        status = status == RITZ_OK ? opened : status;
+    }
+    return status;
 }

@@ -37,9 +37,10 @@ static ritz_status by_lapack(const ritz_sparse *K, const ritz_sparse *M,
     return RITZ_OK;
 }
 
-/* @param[in,out] L  the factor of K, which may be taken over; NULL: none */
+/* @param[in] given  what a search may take over; NULL: nothing */
 static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
-                               ritz_factor **L, const ritz_span *span,
+                               const ritz_eigen_given *given,
+                               const ritz_span *span,
                                const ritz_factor_use *use, ritz_pairs *out)
 {
     const int64_t n = K->nrow;
@@ -54,7 +55,7 @@ static ritz_status find_lowest(const ritz_sparse *K, const ritz_sparse *M,
     RITZ_CHECK(ritz_eigen_refuse_accuracy(span));
     if (n <= RITZ_EIGEN_SMALL || (n <= MEDIUM && span->modes > n / 4))
         return by_lapack(K, M, span, out);
-    return ritz_eigen_search(K, M, L, span, use, out);
+    return ritz_eigen_search(K, M, given, span, use, out);
 }
 
 ritz_status ritz_eigen_sparse(const ritz_sparse *K, const ritz_sparse *M,
@@ -70,11 +71,11 @@ ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
     return find_lowest(K, M, NULL, span, use, out);
 }
 
-ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
-                                ritz_factor **L, const ritz_span *span,
-                                ritz_pairs *out)
+ritz_status ritz_eigen_factored(ritz_sparse *K, ritz_sparse *M, ritz_factor **L,
+                                const ritz_span *span, ritz_pairs *out)
 {
-    ritz_status status = find_lowest(K, M, L, span, NULL, out);
+    const ritz_eigen_given given = {.L = L, .K = K, .M = M};
+    ritz_status status = find_lowest(K, M, &given, span, NULL, out);
 
     ritz_factor_free(L);
     return status;

@@ -62,9 +62,10 @@ typedef struct search {
     int limits;     /* how many of RITZ_COUNT_ABOVE were tried */
     int64_t target; /* modes below limit */
     ritz_shifted S;
-    int64_t *order; /* fill-reducing order of the factor, for the count */
-    double typical; /* median of K_jj / M_jj, 1 if there is none */
-    int64_t *heavy; /* columns of M that are not zero */
+    ritz_sparse *own[2]; /* K and M, if they may be folded; NULL: not */
+    int64_t *order;      /* fill-reducing order of the factor, for the count */
+    double typical;      /* median of K_jj / M_jj, 1 if there is none */
+    int64_t *heavy;      /* columns of M that are not zero */
     int64_t num_heavy;
     double broken; /* -sigma at which the factor broke down */
     int64_t ask;
@@ -218,7 +219,8 @@ struct engine {
 static ritz_status find_by_blocks(search *s, ritz_dense *X, double **lambda,
                                   double *reach, ritz_lanczos_end *end)
 {
-    ritz_lanczos_plan plan = {.k = s->ask, .next = *reach};
+    ritz_lanczos_plan plan = {
+        .k = s->ask, .fold = {s->own[0], s->own[1]}, .next = *reach};
 
     RITZ_CHECK(ritz_block_lanczos(&s->S, &plan, X, lambda, end));
     *reach = plan.next;
@@ -242,6 +244,7 @@ static ritz_status find_roughly(search *s, ritz_dense *X, double **lambda,
 {
     ritz_lanczos_plan plan = {.k = s->ask + s->ask / ROUGH_PART + ROUGH_MORE,
                               .settled = s->settled,
+                              .fold = {s->own[0], s->own[1]},
                               .next = *reach};
     ritz_status status = ritz_block_lanczos(&s->S, &plan, X, lambda, end);
 
@@ -649,8 +652,9 @@ static void name_engine(search *s)
 }
 
 ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
-                              ritz_factor **L, const ritz_span *span,
-                              const ritz_factor_use *use, ritz_pairs *out)
+                              const ritz_eigen_given *given,
+                              const ritz_span *span, const ritz_factor_use *use,
+                              ritz_pairs *out)
 {
     RITZ_OWN(search)
     s = {.span = span,
@@ -661,8 +665,11 @@ ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
     int64_t end = 0;
 
     s.settled = RITZ_ACCURACY_SETTLED * sqrt(s.accuracy);
-    if (L)
-        RITZ_MOVE(s.S.A, *L);
+    if (given) {
+        RITZ_MOVE(s.S.A, *given->L);
+        s.own[0] = given->K;
+        s.own[1] = given->M;
+    }
     RITZ_CHECK(begin_search(&s));
     RITZ_CHECK(search_proven(&s, &end));
     if (!s.all && s.engine->approximate)

@@ -11,11 +11,14 @@
  * K - sigma M. The factor is freed once the pairs are found, before the count
  * makes its own, so that memory holds one factor at a time.
  *
- * @param[in,out] L  the factor of K; freed and NULL afterwards, also on failure
+ * @param[in,out] K,M  folded while block Lanczos does not need them, see
+ *                     folded.h: their arrays may be others afterwards, with the
+ *                     same contents. After RITZ_ERR_MEMORY they may be empty
+ * @param[in,out] L    the factor of K; freed and NULL afterwards, also on
+ *                     failure
  */
-ritz_status ritz_eigen_factored(const ritz_sparse *K, const ritz_sparse *M,
-                                ritz_factor **L, const ritz_span *span,
-                                ritz_pairs *out);
+ritz_status ritz_eigen_factored(ritz_sparse *K, ritz_sparse *M, ritz_factor **L,
+                                const ritz_span *span, ritz_pairs *out);
 
 /** Something that needs the factor of a search as well as its pairs. */
 typedef struct ritz_factor_use {
@@ -44,18 +47,26 @@ ritz_status ritz_eigen_lending(const ritz_sparse *K, const ritz_sparse *M,
                                const ritz_span *span,
                                const ritz_factor_use *use, ritz_pairs *out);
 
+/** What the caller of a search hands over to it. */
+typedef struct ritz_eigen_given {
+    ritz_factor **L; /* a factor of K, which is taken over */
+    ritz_sparse *K,
+        *M; /* the same as those of the search, which may be folded */
+} ritz_eigen_given;
+
 /** Dofs, or dofs with mass, up to which LAPACK is faster than a search. */
 enum { RITZ_EIGEN_SMALL = 600 };
 
 /**
  * ritz_eigen_sparse() without its cases for LAPACK and without its checks.
  *
- * @param[in,out] L    a factor of K, which is taken over; NULL: none
- * @param[in]     use  NULL: the factor is not lent
+ * @param[in] given  NULL: nothing
+ * @param[in] use    NULL: the factor is not lent
  */
 ritz_status ritz_eigen_search(const ritz_sparse *K, const ritz_sparse *M,
-                              ritz_factor **L, const ritz_span *span,
-                              const ritz_factor_use *use, ritz_pairs *out);
+                              const ritz_eigen_given *given,
+                              const ritz_span *span, const ritz_factor_use *use,
+                              ritz_pairs *out);
 
 /** RITZ_ERR_ARGUMENT if the engine of the span knows no accuracy, or if the
  * accuracy is out of range. */

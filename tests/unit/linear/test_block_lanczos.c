@@ -268,6 +268,55 @@ static void no_allocation_failure_leaks(void **state)
         find_few(&(ritz_shifted){&K, &M, 0.0, F, 0}));
 }
 
+static ritz_status find_folded(const ritz_sparse *K, const ritz_sparse *M,
+                               ritz_factor *F, ritz_dense *X)
+{
+    RITZ_OWN(ritz_sparse) own_K = {0}, own_M = {0};
+    ritz_lanczos_plan plan = {.k = 5, .fold = {&own_K, &own_M}};
+    ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
+    RITZ_OWN_ARRAY double *lambda = NULL;
+
+    RITZ_CHECK(ritz_sparse_copy(K, &own_K));
+    RITZ_CHECK(ritz_sparse_copy(M, &own_M));
+    RITZ_CHECK(ritz_block_lanczos(&(ritz_shifted){&own_K, &own_M, 0.0, F, 0},
+                                  &plan, X, &lambda, &end));
+    assert_memory_equal(own_K.val, K->val,
+                        (size_t)K->colptr[K->ncol] * sizeof *K->val);
+    assert_memory_equal(own_M.rowind, M->rowind,
+                        (size_t)M->colptr[M->ncol] * sizeof *M->rowind);
+    return RITZ_OK;
+}
+
+static ritz_status find_folded_once(const ritz_sparse *K, const ritz_sparse *M,
+                                    ritz_factor *F)
+{
+    RITZ_OWN(ritz_dense) X = {0};
+
+    return find_folded(K, M, F, &X);
+}
+
+/* Folding K and M changes neither them nor a bit of the vectors. */
+static void folded_matrices_change_nothing(void **state)
+{
+    RITZ_OWN(ritz_sparse) K = {0}, M = {0};
+    RITZ_OWN(ritz_factor) *F = NULL;
+    RITZ_OWN(ritz_dense) X = {0}, Y = {0};
+    RITZ_OWN_ARRAY double *lambda = NULL;
+    ritz_lanczos_plan plan = {.k = 5};
+    ritz_lanczos_end end = RITZ_LANCZOS_FOUND;
+
+    (void)state;
+    lattice_new(9, 0.1, &K, &M);
+    assert_ok(ritz_factor_spd(&K, &F));
+    assert_ok(ritz_block_lanczos(&(ritz_shifted){&K, &M, 0.0, F, 0}, &plan, &X,
+                                 &lambda, &end));
+    assert_ok(find_folded(&K, &M, F, &Y));
+    assert_int_equal(X.ncol, Y.ncol);
+    assert_memory_equal(X.val, Y.val,
+                        (size_t)(X.nrow * X.ncol) * sizeof *X.val);
+    assert_survives_every_allocation(find_folded_once(&K, &M, F));
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(multiple_eigenvalues_are_all_found),
     cmocka_unit_test(many_modes_are_found_sixteen_at_a_time),
@@ -276,6 +325,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_search_ends_when_all_finite_modes_are_found),
     cmocka_unit_test(random_vectors_find_eigenvalues_of_high_multiplicity),
     cmocka_unit_test(no_allocation_failure_leaks),
+    cmocka_unit_test(folded_matrices_change_nothing),
 };
 
 TEST_MODULE(block_lanczos, tests, NULL, NULL)
