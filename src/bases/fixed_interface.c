@@ -37,7 +37,7 @@ typedef struct partition {
     const ritz_component *component; /* borrowed */
     const ritz_dofs *b;              /* borrowed */
     ritz_dofs i;
-    ritz_sparse K_ii, K_ib, M_ii;
+    ritz_sparse K_ii, K_ib, M_ii, M_ib;
     ritz_factor *L;  /* of K_ii; NULL where there is no interior */
     ritz_basis held; /* [I; Psi], Psi = -K_ii^-1 K_ib: constraint modes */
 } partition;
@@ -48,6 +48,7 @@ static void partition_free(partition *s)
     ritz_sparse_free(&s->K_ii);
     ritz_sparse_free(&s->K_ib);
     ritz_sparse_free(&s->M_ii);
+    ritz_sparse_free(&s->M_ib);
     ritz_factor_free(&s->L);
     ritz_basis_free(&s->held);
 }
@@ -169,18 +170,22 @@ static ritz_status split_matrices(const ritz_request *request, bool take,
     RITZ_CHECK(ritz_dofs_complement(b, s.component->num_dofs, &s.i));
     RITZ_CHECK(
         ritz_sparse_extract(K, i->count, i->at, b->count, b->at, &s.K_ib));
+    RITZ_CHECK(
+        ritz_sparse_extract(M, i->count, i->at, b->count, b->at, &s.M_ib));
     RITZ_CHECK(take_interior(i, K, take ? &request->owned->K : NULL, &s.K_ii));
     RITZ_CHECK(take_interior(i, M, take ? &request->owned->M : NULL, &s.M_ii));
     RITZ_MOVE(*out, s);
     return RITZ_OK;
 }
 
-/* Matrices, the factor and the constraint modes. */
-static ritz_status hold_boundary(const ritz_request *request, partition *out)
+/* Matrices, the factor and the constraint modes. @param[in] take  as for
+   split_matrices() */
+static ritz_status hold_boundary(const ritz_request *request, bool take,
+                                 partition *out)
 {
     RITZ_OWN(partition) s = {0};
 
-    RITZ_CHECK(split_matrices(request, false, &s));
+    RITZ_CHECK(split_matrices(request, take, &s));
     RITZ_CHECK(factor_interior(&s));
     RITZ_CHECK(find_constraint_modes(&s));
     RITZ_MOVE(*out, s);
@@ -531,7 +536,7 @@ static ritz_status make_irs(const ritz_request *request, ritz_basis *out)
     RITZ_OWN(ritz_dense) K_R = {0}, M_R = {0}, none = {0};
 
     RITZ_CHECK(ritz_refuse_unattached(request, "nothing would be kept"));
-    RITZ_CHECK(hold_boundary(request, &s));
+    RITZ_CHECK(hold_boundary(request, false, &s));
     if (s.i.count > 0) {
         RITZ_CHECK(condense_boundary(s.component, &s.held.T, &K_R, &M_R));
         RITZ_CHECK(solve_mass(&s, request->tolerance, &M_R, &K_R));
@@ -576,16 +581,12 @@ const ritz_method ritz_method_irs = {
 static ritz_status find_coupling(const partition *s, const ritz_dense *Psi,
                                  ritz_dense *out)
 {
-    const ritz_dofs *i = &s->i;
-    const ritz_dofs *b = s->b;
-    RITZ_OWN(ritz_sparse) M_ib = {0};
+    const ritz_sparse *M_ib = &s->M_ib;
 
-    RITZ_CHECK(ritz_sparse_extract(&s->component->M, i->count, i->at, b->count,
-                                   b->at, &M_ib));
     RITZ_CHECK(ritz_sparse_mul(&s->M_ii, Psi, out));
-    for (int64_t j = 0; j < M_ib.ncol; j++)
-        for (int64_t p = M_ib.colptr[j]; p < M_ib.colptr[j + 1]; p++)
-            ritz_dense_col(out, j)[M_ib.rowind[p]] += M_ib.val[p];
+    for (int64_t j = 0; j < M_ib->ncol; j++)
+        for (int64_t p = M_ib->colptr[j]; p < M_ib->colptr[j + 1]; p++)
+            ritz_dense_col(out, j)[M_ib->rowind[p]] += M_ib->val[p];
     return RITZ_OK;
 }
 
@@ -623,7 +624,7 @@ static ritz_status make_krylov_fixed(const ritz_request *request,
     RITZ_OWN(ritz_basis) basis = {0};
     ritz_dense V = {0};
 
-    RITZ_CHECK(hold_boundary(request, &s));
+    RITZ_CHECK(hold_boundary(request, may_take_matrices(request), &s));
     RITZ_CHECK(ritz_dense_rows(&s.held.T, s.i.count, s.i.at, &Psi));
     RITZ_CHECK(find_loads(request, &s, &Psi, &F));
     interior = (ritz_elastic){.K = &s.K_ii, .M = &s.M_ii};

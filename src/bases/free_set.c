@@ -20,6 +20,7 @@
 #include "base/alloc.h"
 #include "base/tolerances.h"
 #include "bases/columns.h"
+#include "linear/factor.h"
 #include "linear/requested.h"
 
 #include <cblas.h>
@@ -87,13 +88,16 @@ static ritz_status bound_responses(const ritz_pairs *modes, const ritz_dense *F,
     return RITZ_OK;
 }
 
-/* X := A^-1 (G + s M Psi), one step of the iteration. */
+/* X := A^-1 (G + s M Psi), one step of the iteration; the first has Psi = 0. */
 static ritz_status iterate_residual(ritz_factor *A, const ritz_sparse *M,
                                     double s, const ritz_dense *G,
                                     const ritz_dense *Psi, ritz_dense *X)
 {
-    RITZ_CHECK(ritz_sparse_mul(M, Psi, X));
-    for (int64_t k = 0; k < G->nrow * G->ncol; k++)
+    if (Psi)
+        RITZ_CHECK(ritz_sparse_mul(M, Psi, X));
+    else
+        RITZ_CHECK(ritz_dense_copy(G, X));
+    for (int64_t k = 0; Psi && k < G->nrow * G->ncol; k++)
         X->val[k] = G->val[k] + s * X->val[k];
     return ritz_factor_solve(A, X);
 }
@@ -132,11 +136,12 @@ typedef struct residual_task {
     double *response; /* f_j' A^-1 f_j for each load */
     bool done;        /* Psi and response are found, with the factor of the
                          search for modes */
+    int64_t *order;   /* of rows in that factor; NULL: not known */
 } residual_task;
 
 static void residual_task_free(residual_task *t)
 {
-    RITZ_FREE(t->response);
+    RITZ_FREE(t->response, t->order);
 }
 
 /*
@@ -189,7 +194,7 @@ static ritz_status sweep_residual(const residual_task *t,
                                                         suffices */
     RITZ_CHECK(ritz_dense_new(G.nrow, G.ncol, &Psi));
     for (int k = 0; k < MOST_SWEEPS && moved > settled; k++) {
-        RITZ_CHECK(iterate_residual(A, M, s, &G, &Psi, &X));
+        RITZ_CHECK(iterate_residual(A, M, s, &G, k > 0 ? &Psi : NULL, &X));
         moved = measure_change(&Psi, &X, least);
         RITZ_CHECK(ritz_dense_take_out(Phi, &MPhi, &X));
         *change = measure_change(&Psi, &X, least);
@@ -214,7 +219,8 @@ static ritz_status find_residual(const residual_task *t)
 
     RITZ_CHECK(choose_shift(component, &t->set->modes, &s, &slow));
     RITZ_CHECK(ritz_sparse_add(1.0, &component->K, s, &component->M, &A));
-    RITZ_CHECK_IN("shifted stiffness", ritz_factor_spd(&A, &L));
+    RITZ_CHECK_IN("shifted stiffness",
+                  ritz_factor_spd_ordered(&A, t->order, &L));
     RITZ_CHECK(sweep_residual(t, &t->set->modes, L, s, slow, &change));
     RITZ_REFUSE_IF(change > RITZ_SWEEPS_UNSETTLED, RITZ_ERR_CONVERGENCE,
                    "residual attachment modes still change by %.1e", change);
@@ -238,6 +244,8 @@ static ritz_status borrow_factor(void *of, const ritz_pairs *found,
     double change = 0.0;
 
     t->done = false;
+    if (A && !t->order && t->set->F.ncol > 0)
+        RITZ_CHECK_COPY(t->order, ritz_factor_order(A), found->Phi.nrow);
     if (!A || rigid >= all || t->set->F.ncol == 0 ||
         -sigma < RITZ_SHIFT_LENT * RITZ_SHIFT_OF_FIRST * found->lambda[rigid] ||
         -sigma >

@@ -290,6 +290,7 @@ ritz_status ritz_krylov_new(const ritz_elastic *body,
     RITZ_CHECK(ritz_orthonormal_new(
         body->K->nrow, S.inner == RITZ_INNER_MASS ? body->M : body->K,
         request->tolerance, &S.set));
+    S.set.expected = S.vectors;
     RITZ_MOVE(*out, S);
     return RITZ_OK;
 }
@@ -408,6 +409,7 @@ static ritz_status seed_vectors(ritz_krylov *S, const ritz_dense *F,
     RITZ_CHECK(copy_loads(F, 0, &forces));
     RITZ_CHECK(append_block(S, &at_rest, &forces, F->ncol, taken));
     S->seeds = S->set.count;
+    S->set.expected += S->seeds;
     return RITZ_OK;
 }
 

@@ -226,12 +226,13 @@ static ritz_status analyse_sparse(cholesky *C, const ritz_sparse *A,
         (int64_t)((C->L->xsize + C->L->maxcsize) * sizeof(double)));
 }
 
-static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A)
+static ritz_status factorise_sparse(cholesky *C, const ritz_sparse *A,
+                                    const int64_t *order)
 {
     cholmod_sparse view = view_sparse(A);
     ritz_blas_setting before = {0};
 
-    RITZ_CHECK(analyse_sparse(C, A, NULL));
+    RITZ_CHECK(analyse_sparse(C, A, order));
     before = ritz_blas_alone(C->common.fl);
     cholmod_l_factorize(&view, C->L, &C->common);
     ritz_blas_restore(before);
@@ -251,8 +252,10 @@ static ritz_status begin_factor(const ritz_sparse *A, ritz_factor *F,
     return RITZ_OK;
 }
 
-ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
-                                 int64_t *weak)
+/* @param[in]  order  of rows; NULL: find one
+   @param[out] weak   as for ritz_factor_spd_weak(); NULL: not wanted */
+static ritz_status factor_definite(const ritz_sparse *A, const int64_t *order,
+                                   ritz_factor **out, int64_t *weak)
 {
     RITZ_OWN(ritz_factor) *F = NULL;
     RITZ_OWN(cholesky) C = {0};
@@ -262,15 +265,27 @@ ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
         *weak = -1;
     RITZ_CHECK_NEW(F, 1);
     RITZ_CHECK(begin_factor(A, F, &a));
-    RITZ_CHECK(factorise_sparse(&C, A));
+    RITZ_CHECK(factorise_sparse(&C, A, order));
     RITZ_CHECK(pack_factor(F, &C, a, weak));
     RITZ_MOVE(*out, F);
     return RITZ_OK;
 }
 
+ritz_status ritz_factor_spd_weak(const ritz_sparse *A, ritz_factor **out,
+                                 int64_t *weak)
+{
+    return factor_definite(A, NULL, out, weak);
+}
+
 ritz_status ritz_factor_spd(const ritz_sparse *A, ritz_factor **out)
 {
-    return ritz_factor_spd_weak(A, out, NULL);
+    return factor_definite(A, NULL, out, NULL);
+}
+
+ritz_status ritz_factor_spd_ordered(const ritz_sparse *A, const int64_t *order,
+                                    ritz_factor **out)
+{
+    return factor_definite(A, order, out, NULL);
 }
 
 /* |b - A x| / | |A||x| + |b| | of the computed solution x of A x = b, for one b

@@ -24,6 +24,14 @@
 ritz_status ritz_factor_signed(const ritz_sparse *A, const int64_t *order,
                                int64_t *negative, ritz_factor **out);
 
+/**
+ * ritz_factor_spd() with a known order of rows.
+ *
+ * @param[in] order  as of ritz_factor_order(); NULL: find one
+ */
+ritz_status ritz_factor_spd_ordered(const ritz_sparse *A, const int64_t *order,
+                                    ritz_factor **out);
+
 /** n numbers: row k of the factor is row order[k] of A. Borrowed from @p F. */
 const int64_t *ritz_factor_order(const ritz_factor *F);
 

@@ -270,6 +270,8 @@ static ritz_status reserve_columns(ritz_orthonormal *set, int64_t more)
     int64_t need = set->count + more;
     int64_t room = set->count + set->count / 2 + more;
 
+    if (set->expected >= need && set->expected <= need + need / 2)
+        room = set->expected; /* so that the columns are not moved again */
     if (set->V.ncol < need)
         RITZ_CHECK(widen_columns(&set->V, set->count, room));
     if (set->WV.ncol < need)

@@ -13,6 +13,8 @@ typedef struct ritz_orthonormal {
     int64_t left;         /* of the last block: at least so many columns were
                              independent of V but not wanted; 0: none was */
     double tolerance;     /* of what is new in a column, relative, in W */
+    int64_t expected;     /* columns that there will be, most likely; 0: not
+                             known */
 } ritz_orthonormal;
 
 /**

@@ -286,15 +286,23 @@ static void merge_column(double alpha, const ritz_sparse *A, double beta,
 ritz_status ritz_sparse_add(double alpha, const ritz_sparse *A, double beta,
                             const ritz_sparse *B, ritz_sparse *C)
 {
+    const int64_t room = A->colptr[A->ncol] + B->colptr[B->ncol];
+    RITZ_OWN(ritz_sparse) sum = {.nrow = A->nrow, .ncol = A->ncol};
     int64_t at = 0;
 
     RITZ_REFUSE_IF(A->nrow != B->nrow || A->ncol != B->ncol, RITZ_ERR_ARGUMENT,
                    "%" PRId64 " x %" PRId64 " meets %" PRId64 " x %" PRId64,
                    A->nrow, A->ncol, B->nrow, B->ncol);
-    RITZ_CHECK(ritz_sparse_new(A->nrow, A->ncol,
-                               A->colptr[A->ncol] + B->colptr[B->ncol], C));
+    RITZ_CHECK_NEW(sum.colptr, A->ncol + 1);
+    RITZ_CHECK_RAW(sum.rowind, room); /* where patterns agree, half is unused */
+    RITZ_CHECK_RAW(sum.val, room);
     for (int64_t j = 0; j < A->ncol; j++)
-        merge_column(alpha, A, beta, B, j, C, &at);
+        merge_column(alpha, A, beta, B, j, &sum, &at);
+    if (at > 0) {
+        RITZ_CHECK(ritz_array_lengthen(&sum.rowind, at, sizeof *sum.rowind));
+        RITZ_CHECK(ritz_array_lengthen(&sum.val, at, sizeof *sum.val));
+    }
+    RITZ_MOVE(*C, sum);
     return RITZ_OK;
 }
 

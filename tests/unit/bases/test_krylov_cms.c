@@ -308,6 +308,25 @@ static void attachment_modes_of_nothing_are_left_out(void **state)
     assert_non_null(strstr(basis.remark, "1 attachment mode(s) left out"));
 }
 
+static void matrices_that_are_owned_are_taken(void **state)
+{
+    fixture *f = *state;
+    RITZ_OWN(ritz_component) truss = {0};
+    RITZ_OWN(ritz_basis)
+    kept = basis_of(&ritz_method_krylov_cms_fixed, f->request, 8);
+    RITZ_OWN(ritz_basis) taken = {0};
+    ritz_request request = f->request;
+
+    assert_ok(truss_component(&truss_free72, &truss));
+    request.component = request.owned = &truss;
+    taken = basis_of(&ritz_method_krylov_cms_fixed, request, 8);
+    assert_null(truss.K.val);
+    assert_null(truss.M.val);
+    assert_int_equal(taken.T.ncol, kept.T.ncol);
+    assert_memory_equal(taken.T.val, kept.T.val,
+                        (size_t)(DOFS * kept.T.ncol) * sizeof *kept.T.val);
+}
+
 /* data/truss72 and the fixture, each rounded on its own way. */
 static void the_data_set_is_this_truss(void **state)
 {
@@ -416,6 +435,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(free_interface_frequencies_come_from_above),
     cmocka_unit_test(more_vectors_than_there_are_is_said),
     cmocka_unit_test(attachment_modes_of_nothing_are_left_out),
+    cmocka_unit_test(matrices_that_are_owned_are_taken),
     cmocka_unit_test(the_data_set_is_this_truss),
     cmocka_unit_test(every_dof_attached_is_the_body_itself),
     cmocka_unit_test(requests_that_make_no_sense_are_refused),

@@ -222,6 +222,31 @@ static void nothing_is_factored_too(void **state)
     assert_ok(ritz_factor_solve(F, &X));
 }
 
+/* A chain from its middle outwards, which no method of ordering would choose. */
+static void a_given_order_is_kept(void **state)
+{
+    enum { N = 41 };
+    int64_t order[N];
+    RITZ_OWN(ritz_sparse) A = {0};
+    RITZ_OWN(ritz_factor) *F = NULL, *again = NULL;
+    RITZ_OWN(ritz_dense) X = {0};
+
+    (void)state;
+    for (int64_t k = 0; k < N; k++)
+        order[k] = N / 2 + (k % 2 ? -1 : 1) * ((k + 1) / 2);
+    assert_ok(chain(N, 4.0, 1, &A));
+    assert_ok(ritz_factor_spd_ordered(&A, order, &F));
+    assert_ok(ritz_factor_spd_ordered(&A, ritz_factor_order(F), &again));
+    assert_memory_equal(ritz_factor_order(F), ritz_factor_order(again),
+                        N * sizeof *order);
+    assert_ok(ritz_dense_new(N, 1, &X));
+    X.val[N - 1] = 1.0;
+    assert_ok(ritz_factor_solve(F, &X));
+    for (int64_t i = 0; i < N; i++)
+        assert_near(X.val[i], (double)(i + 1) / 4.0,
+                    2.0 * N * N * DBL_EPSILON * N);
+}
+
 static ritz_status factor_and_solve(const ritz_sparse *A)
 {
     double x[5] = {1.0};
@@ -251,6 +276,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(long_chains_are_not_singular),
     cmocka_unit_test(what_is_no_such_matrix_is_refused),
     cmocka_unit_test(nothing_is_factored_too),
+    cmocka_unit_test(a_given_order_is_kept),
     cmocka_unit_test(no_allocation_failure_leaks),
 };
 
