@@ -271,6 +271,13 @@ static void drop_basis(ritz_reduced *reduced)
     reduced->dof = NULL;
 }
 
+/* Whether project_component() stores T of the basis as it is. */
+static bool keeps_vectors(const model *full, const reduce_options *given)
+{
+    return !given->project && full->reduced.num_ports == 0 &&
+           !full->reduced.T.val;
+}
+
 /* Reduce a component by a basis. A model that was reduced before is projected
    again, so that its ports and shapes follow. */
 static ritz_status project_component(const model *full, const ritz_basis *basis,
@@ -279,7 +286,7 @@ static ritz_status project_component(const model *full, const ritz_basis *basis,
 {
     if (given->project)
         return given->project(&full->component, basis, out);
-    if (full->reduced.num_ports == 0 && !full->reduced.T.val)
+    if (keeps_vectors(full, given))
         return ritz_reduce(&full->component, basis, out);
     RITZ_CHECK(ritz_reduced_project(&full->reduced, &basis->T, out));
     ritz_columns_free(&out->columns);
@@ -291,13 +298,28 @@ static ritz_status project_component(const model *full, const ritz_basis *basis,
     return RITZ_OK;
 }
 
+/* Estimates of a model with the T that it stores, where that is the one of the
+   basis, whose own copy is freed. */
+static ritz_status estimate_model(const model *full, ritz_basis *basis,
+                                  const reduce_options *given,
+                                  ritz_reduced *reduced)
+{
+    ritz_basis made = *basis;
+
+    if (keeps_vectors(full, given)) {
+        ritz_dense_free(&basis->T);
+        made.T = reduced->T;
+    }
+    return ritz_estimate(&full->component, &made, &given->estimate, reduced);
+}
+
 static bool asked_for(const reduce_options *given, const char *estimates)
 {
     return given->estimates && strcmp(given->estimates, estimates) == 0;
 }
 
 static ritz_status reduce_to_matrices(cli_run *run, const model *full,
-                                      const ritz_basis *basis,
+                                      ritz_basis *basis,
                                       const reduce_options *given)
 {
     const char *what = run->operand[1];
@@ -307,8 +329,7 @@ static ritz_status reduce_to_matrices(cli_run *run, const model *full,
 
     RITZ_CHECK_IN(what, project_component(full, basis, given, reduced));
     if (!asked_for(given, "none"))
-        RITZ_CHECK_IN(what, ritz_estimate(&full->component, basis,
-                                          &given->estimate, reduced));
+        RITZ_CHECK_IN(what, estimate_model(full, basis, given, reduced));
     if (given->without_basis)
         drop_basis(reduced);
     RITZ_CHECK(describe_output(run, &made));
