@@ -15,7 +15,7 @@ enum {
     SHARE = 10,          /* subtrees for each thread, to balance their work */
     WORTHWHILE = 400000, /* one thread for each so many entries of L */
     OVERHEAD = 200,      /* time for a supernode as such, in entries of L */
-    DISCARD = 8 << 20,   /* bytes of L after which their pages are returned */
+    DISCARD = HUGE_PAGE, /* bytes of L after which their pages are returned */
 };
 
 /* The work and workspace of one thread. */
@@ -315,17 +315,19 @@ static void pack_block(const supernode *node, const ritz_block_column *b,
                 to + diagonal_size(b->cols));
 }
 
-/* Return the pages that lie in [*from, to) to the system; *from := to. */
-static void discard_pages(char **from, char *to)
+/* Return the pages from *from on to the system, up to the last end of a huge
+   page before `to`, which becomes *from: so none has to be split. */
+static void discard_pages(char **from, const char *to)
 {
     const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
     const uintptr_t begin = ((uintptr_t)*from + page - 1) / page * page;
-    const uintptr_t end = (uintptr_t)to / page * page;
+    const uintptr_t end = (uintptr_t)to / HUGE_PAGE * HUGE_PAGE;
 
-    if (end > begin) /* a refusal costs only memory */
-        (void)madvise(*from + (begin - (uintptr_t)*from), end - begin,
-                      MADV_DONTNEED);
-    *from = to;
+    if (end <= begin)
+        return;
+    *from += begin - (uintptr_t)*from;
+    (void)madvise(*from, end - begin, MADV_DONTNEED); /* costs only memory */
+    *from += end - begin;
 }
 
 typedef struct packing {
